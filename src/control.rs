@@ -1,0 +1,112 @@
+//! Cancelling, watching and limiting long work.
+
+use crate::error::Error;
+use core::sync::atomic::{AtomicBool, AtomicUsize, Ordering::Relaxed};
+
+/// How a long operation may proceed. The default has no limit, uses all processors and reports to nobody.
+///
+/// No field changes a result: an operation either returns what it would have returned without them, bit for
+/// bit, or an error.
+#[derive(Clone, Copy, Default)]
+pub struct Control<'a> {
+    /// Threads to use; 0 means as many as the machine has processors. Without the feature `parallel` there
+    /// is always one.
+    pub threads: usize,
+    /// Refuse results of more than this many octree nodes with [`Error::Limit`].
+    pub max_nodes: Option<u64>,
+    /// Refuse results whose working form is larger than this many bytes with [`Error::Limit`].
+    pub max_bytes: Option<u64>,
+    /// Setting this flag, from any thread, ends the operation with [`Error::Cancelled`].
+    pub cancel: Option<&'a AtomicBool>,
+    /// Called now and then, from any of the threads, with the fraction done (0 to 1).
+    pub progress: Option<&'a (dyn Fn(f64) + Sync)>,
+}
+
+impl core::fmt::Debug for Control<'_> {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.debug_struct("Control")
+            .field("threads", &self.threads)
+            .field("max_nodes", &self.max_nodes)
+            .field("max_bytes", &self.max_bytes)
+            .field("cancel", &self.cancel)
+            .finish_non_exhaustive()
+    }
+}
+
+impl Control<'_> {
+    /// The default with a number of threads.
+    pub fn threads(threads: usize) -> Control<'static> {
+        Control { threads, ..Control::default() }
+    }
+
+    /// Runs `work` where parallel iterators use the threads that were asked for, if the work is `worth`
+    /// starting them; `work` is told whether there is more than one.
+    pub(crate) fn run<R: Send>(&self, worth: bool, work: impl FnOnce(bool) -> R + Send) -> Result<R, Error> {
+        #[cfg(feature = "parallel")]
+        if worth {
+            let threads = match self.threads {
+                0 => std::thread::available_parallelism().map_or(1, |n| n.get()),
+                n => n,
+            };
+            if threads > 1 {
+                let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+                let pool = pool.map_err(|refused| Error::Io(std::io::Error::other(refused)))?;
+                return Ok(pool.install(|| work(true)));
+            }
+        }
+        let _ = worth;
+        Ok(work(false))
+    }
+}
+
+/// One run of an operation under a [`Control`]: the counters that its threads share.
+pub(crate) struct Job<'a> {
+    control: &'a Control<'a>,
+    nodes: AtomicUsize,
+    bytes: AtomicUsize,
+    done: AtomicUsize,
+}
+
+/// Parts that progress is counted in.
+pub(crate) const WHOLE: usize = 1 << 18;
+
+impl<'a> Job<'a> {
+    pub(crate) fn new(control: &'a Control<'a>) -> Job<'a> {
+        Job { control, nodes: AtomicUsize::new(0), bytes: AtomicUsize::new(0), done: AtomicUsize::new(0) }
+    }
+
+    /// Whether octree nodes must be counted.
+    pub(crate) fn counts_nodes(&self) -> bool {
+        self.control.max_nodes.is_some()
+    }
+
+    /// Reports stored nodes and bytes; refuses when a limit is passed or the caller cancelled.
+    pub(crate) fn spend(&self, nodes: usize, bytes: usize) -> Result<(), Error> {
+        let within = |counter: &AtomicUsize, amount: usize, limit: Option<u64>, what| match limit {
+            Some(limit) => {
+                let total = counter.fetch_add(amount, Relaxed).saturating_add(amount);
+                if total as u64 > limit { Err(Error::Limit { what, limit }) } else { Ok(()) }
+            }
+            None => Ok(()),
+        };
+        within(&self.nodes, nodes, self.control.max_nodes, "nodes")?;
+        within(&self.bytes, bytes, self.control.max_bytes, "bytes")?;
+        self.check()
+    }
+
+    /// Refuses when the caller cancelled.
+    pub(crate) fn check(&self) -> Result<(), Error> {
+        match self.control.cancel {
+            Some(flag) if flag.load(Relaxed) => Err(Error::Cancelled),
+            _ => Ok(()),
+        }
+    }
+
+    /// Reports `parts` of [`WHOLE`] as done.
+    pub(crate) fn advance(&self, parts: usize) {
+        if let Some(progress) = self.control.progress {
+            let done = self.done.fetch_add(parts, Relaxed) + parts;
+            progress(done as f64 / WHOLE as f64);
+        }
+    }
+}

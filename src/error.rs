@@ -1,0 +1,262 @@
+//! Every way in which the library can refuse.
+//!
+//! One enum for the whole crate. Each variant carries what was found, and its text is a sentence that a
+//! user can act on; names of files are added by whoever knows them.
+
+use thiserror::Error;
+
+/// Why an operation was refused. Nothing is changed, and nothing half-made is returned, when one occurs.
+#[non_exhaustive]
+#[derive(Debug, Error)]
+pub enum Error {
+    /// An argument is outside of its documented range.
+    #[error("{name}: {problem}")]
+    Argument {
+        /// The parameter's name.
+        name: &'static str,
+        /// What is wrong with it.
+        problem: &'static str,
+    },
+    /// Two operands do not lie on one lattice.
+    #[error("the operands lie on different frames (origin, edge and depth must be the same)")]
+    FrameMismatch,
+    /// The producer cannot decide the centre of a cell, so the sampled rule cannot be used on it.
+    #[error("this solid cannot decide single points, which the sampled rule needs")]
+    NotSampled,
+    /// A triangle mesh that does not bound a solid.
+    #[error(transparent)]
+    Mesh(#[from] MeshError),
+    /// A mesh file that cannot be read.
+    #[error(transparent)]
+    MeshFile(#[from] MeshFileError),
+    /// The bytes are not a Leafless file, or a damaged one.
+    #[error(transparent)]
+    Format(#[from] FormatError),
+    /// The arrays of an octree contradict each other.
+    #[error("the octree is damaged: {0}")]
+    Damaged(#[from] Damage),
+    /// More nodes or bytes than the caller allowed.
+    #[error("the limit of {limit} {what} was reached")]
+    Limit {
+        /// `"nodes"` or `"bytes"`.
+        what: &'static str,
+        /// The limit that the caller set.
+        limit: u64,
+    },
+    /// An allocation failed.
+    #[error("out of memory")]
+    OutOfMemory,
+    /// The caller asked to stop.
+    #[error("cancelled")]
+    Cancelled,
+    /// The operating system refused to read or write.
+    #[cfg(feature = "std")]
+    #[error(transparent)]
+    Io(#[from] std::io::Error),
+}
+
+/// Why a triangle mesh does not bound a solid.
+#[non_exhaustive]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
+pub enum MeshError {
+    /// No triangle is left (after degenerate ones are dropped).
+    #[error("the mesh has no triangle of non-zero area")]
+    Empty,
+    /// All vertices lie in one point, so that no frame can be put around them.
+    #[error("the mesh has no extent")]
+    NoExtent,
+    /// A coordinate is infinite or not a number.
+    #[error("vertex {vertex} has a coordinate that is infinite or not a number")]
+    NotFinite {
+        /// Index of the first such vertex.
+        vertex: u64,
+    },
+    /// A coordinate is too large to compute with.
+    #[error("vertex {vertex} has a coordinate beyond ±2^256")]
+    TooLarge {
+        /// Index of the first such vertex.
+        vertex: u64,
+    },
+    /// A triangle names a vertex that does not exist.
+    #[error("triangle {triangle} refers to vertex {vertex}, but there are only {vertices}")]
+    Index {
+        /// Index of the triangle.
+        triangle: u64,
+        /// The vertex that it names.
+        vertex: u64,
+        /// How many vertices there are.
+        vertices: u64,
+    },
+    /// More vertices or triangles than 32-bit indices can name.
+    #[error("the mesh has more than 2^32 - 1 vertices or triangles")]
+    TooMany,
+    /// The surface has holes.
+    #[error("the mesh is not closed: {edges} edges bound a hole")]
+    Open {
+        /// Edges on which an odd number of triangles meet.
+        edges: u64,
+    },
+    /// The surface is closed, but neighbouring triangles face opposite sides.
+    #[error("the mesh is not consistently oriented: across {edges} edges the facing changes")]
+    Unoriented {
+        /// Edges on which an even number of triangles meet whose directions do not cancel.
+        edges: u64,
+    },
+}
+
+/// Why a mesh file cannot be read.
+#[non_exhaustive]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
+pub enum MeshFileError {
+    /// The file has no byte at all.
+    #[error("the file is empty")]
+    Empty,
+    /// A binary STL whose length contradicts its facet count.
+    #[error("a binary STL of {facets} facets needs {expected} bytes, the file has {found}")]
+    Length {
+        /// The count in the file's header.
+        facets: u64,
+        /// Length that this count asks for.
+        expected: u64,
+        /// Length of the file.
+        found: u64,
+    },
+    /// An ASCII STL departs from the grammar.
+    #[error("line {line}: expected {expected}")]
+    Syntax {
+        /// Line, counted from 1.
+        line: u64,
+        /// What should have stood there.
+        expected: &'static str,
+    },
+    /// A coordinate of a binary file is infinite or not a number.
+    #[error("facet {facet} has a coordinate that is infinite or not a number")]
+    NotFinite {
+        /// Index of the facet, counted from 0.
+        facet: u64,
+    },
+}
+
+/// Why bytes are not a readable Leafless file.
+#[non_exhaustive]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
+pub enum FormatError {
+    /// The first eight bytes are not the format's signature.
+    #[error("this is not a Leafless file (wrong signature)")]
+    Magic,
+    /// The signature was altered by a transfer in text mode.
+    #[error("the file was damaged by a text-mode transfer (line ends were rewritten)")]
+    TextMode,
+    /// The format's major version is one that this reader does not know.
+    #[error("format version {major}.{minor} is not readable by this version of the library")]
+    Version {
+        /// Major version in the file.
+        major: u16,
+        /// Minor version in the file.
+        minor: u16,
+    },
+    /// The file demands a feature that this reader does not know.
+    #[error("the file needs a feature that this version of the library does not have ({name} {value:#x})")]
+    Required {
+        /// Which field demands it.
+        name: &'static str,
+        /// The unknown bits or kind.
+        value: u64,
+    },
+    /// The file ends early, or goes on after its end.
+    #[error("the file should have {expected} bytes and has {found}")]
+    Length {
+        /// Length according to the header.
+        expected: u64,
+        /// Length found.
+        found: u64,
+    },
+    /// A field has a value that the specification does not allow.
+    #[error("{name} has the illegal value {value:#x}")]
+    Field {
+        /// The field's name in the specification.
+        name: &'static str,
+        /// The value found.
+        value: u64,
+    },
+    /// A section that the header's fields make necessary is absent, or stands twice.
+    #[error("section {name} is missing or stands twice")]
+    Section {
+        /// The section's name in the specification.
+        name: &'static str,
+    },
+    /// A checksum does not match.
+    #[error("the checksum of {name} is wrong")]
+    Checksum {
+        /// What the checksum covers.
+        name: &'static str,
+    },
+    /// The bytes are not aligned in memory as a view needs them.
+    #[error("the bytes must begin on an address that is a multiple of 8")]
+    Alignment,
+    /// Multi-byte numbers of this machine have the other order, so a file cannot be used in place.
+    #[error("files can only be mapped on little-endian machines; open copies instead")]
+    Endianness,
+}
+
+/// How the arrays of an octree contradict each other: what [`OctreeRef::check`](crate::OctreeRef::check)
+/// reports, and what a bulk operation reports when it runs into it.
+#[non_exhaustive]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
+pub enum Damage {
+    /// The children of an element do not lie where level order demands.
+    #[error("the children of element {element} are not where level order puts them")]
+    Link {
+        /// Index of the element.
+        element: u64,
+    },
+    /// A level has more or fewer elements than its parents have branches.
+    #[error("level {level} holds {found} elements where its parents demand {expected}")]
+    Count {
+        /// Element level, 0 = root.
+        level: u8,
+        /// Elements that the parents' branches demand.
+        expected: u64,
+        /// Elements found.
+        found: u64,
+    },
+    /// All cells of an element agree, so it should not exist.
+    #[error("element or brick {index} is uniform and should have been merged")]
+    Uniform {
+        /// Index; bricks are counted on after the elements.
+        index: u64,
+    },
+    /// A brick's cell claims to have children.
+    #[error("brick {brick} has a cell that claims to have children")]
+    BrickBranch {
+        /// Index of the brick.
+        brick: u64,
+    },
+    /// Of an odd depth the root has only one octant, but others are not empty.
+    #[error("the root of a tree of odd depth has cells outside of its universe")]
+    Padding,
+    /// A dictionary index or segment leads outside of the dictionary.
+    #[error("brick {brick} has no entry in the dictionary")]
+    Dictionary {
+        /// Index of the brick.
+        brick: u64,
+    },
+    /// A dictionary is not the one that the bricks determine.
+    #[error("the dictionary is not in canonical order at entry {entry}")]
+    DictionaryOrder {
+        /// Index of the entry.
+        entry: u64,
+    },
+    /// Two-plane bricks although nothing is undecided.
+    #[error("the bricks have two planes although no cell is undecided")]
+    NeedlessPlane,
+    /// One-plane bricks although something is undecided.
+    #[error("the bricks have one plane although a cell is undecided")]
+    MissingPlane,
+    /// The level table does not describe the tree.
+    #[error("the level table is wrong at level {level}")]
+    LevelTable {
+        /// Octree level.
+        level: u8,
+    },
+}

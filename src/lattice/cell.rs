@@ -1,0 +1,60 @@
+//! Octants of the universe as integers.
+
+/// An octant of the universe: at `level` the universe is cut into 2^level cells per axis, and this is the
+/// one at the integer position `at` (0 ≤ at < 2^level). Level 0 is the universe itself.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct Cell {
+    /// 0 for the universe, at most [`MAX_DEPTH`](crate::MAX_DEPTH).
+    pub level: u8,
+    /// Position in cells of this level: x, y, z.
+    pub at: [u32; 3],
+}
+
+impl Cell {
+    /// The universe.
+    pub const ROOT: Cell = Cell { level: 0, at: [0; 3] };
+
+    /// The child in `octant` (0 to 7; bit 0 = x, bit 1 = y, bit 2 = z).
+    #[inline]
+    pub fn child(self, octant: u8) -> Cell {
+        let [x, y, z] = self.at;
+        let o = octant as u32;
+        Cell { level: self.level + 1, at: [2 * x + (o & 1), 2 * y + (o >> 1 & 1), 2 * z + (o >> 2 & 1)] }
+    }
+
+    /// The parent; the universe is its own.
+    #[inline]
+    pub fn parent(self) -> Cell {
+        Cell { level: self.level.saturating_sub(1), at: self.at.map(|a| a >> 1) }
+    }
+
+    /// Which child of its parent this cell is.
+    #[inline]
+    pub fn octant(self) -> u8 {
+        let [x, y, z] = self.at;
+        ((x & 1) | (y & 1) << 1 | (z & 1) << 2) as u8
+    }
+
+    /// The first cell of `level` (at least this cell's own) inside this one.
+    #[inline]
+    pub fn first_at(self, level: u8) -> Cell {
+        debug_assert!(level >= self.level);
+        Cell { level, at: self.at.map(|a| a << (level - self.level)) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn children_know_their_parent() {
+        let cell = Cell { level: 3, at: [1, 6, 4] };
+        for octant in 0..8 {
+            let child = cell.child(octant);
+            assert_eq!((child.parent(), child.octant(), child.level), (cell, octant, 4));
+        }
+        assert_eq!(Cell::ROOT.child(5).at, [1, 0, 1]);
+        assert_eq!(cell.first_at(5).at, [4, 24, 16]);
+    }
+}

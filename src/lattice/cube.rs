@@ -1,0 +1,41 @@
+//! A cell together with its frame.
+
+use super::{Cell, Frame};
+
+/// A cell as a piece of model space: what a solid is asked about.
+#[derive(Debug, Clone, Copy)]
+pub struct Cube<'f> {
+    /// Where the universe lies.
+    pub frame: &'f Frame,
+    /// Which octant of it.
+    pub cell: Cell,
+}
+
+impl<'f> Cube<'f> {
+    /// The child in `octant`.
+    #[inline]
+    pub fn child(&self, octant: u8) -> Cube<'f> {
+        Cube { frame: self.frame, cell: self.cell.child(octant) }
+    }
+
+    /// The finest lattice planes that bound the cube: `(lower, upper)` per axis, in cells of the frame's
+    /// depth. A cube at the frame's depth has `upper = lower + 1`.
+    #[inline]
+    pub fn planes(&self) -> ([u32; 3], [u32; 3]) {
+        let shift = self.frame.depth() - self.cell.level;
+        (self.cell.at.map(|a| a << shift), self.cell.at.map(|a| (a + 1) << shift))
+    }
+
+    /// A box in model units that contains the cube: its corners, rounded outward to the nearest doubles
+    /// (exact on frames whose corners are representable).
+    pub fn bounds(&self) -> ([f64; 3], [f64; 3]) {
+        let (lower, upper) = self.planes();
+        let mut min = [0.0; 3];
+        let mut max = [0.0; 3];
+        for axis in 0..3 {
+            min[axis] = self.frame.plane(axis, lower[axis]).lower;
+            max[axis] = self.frame.plane(axis, upper[axis]).upper;
+        }
+        (min, max)
+    }
+}

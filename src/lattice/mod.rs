@@ -1,0 +1,33 @@
+//! The integer lattice and its place in model space.
+//!
+//! A [`Frame`] puts a cube (the *universe*) somewhere in model space and cuts it into 2^depth cells per axis.
+//! A [`Cell`] is an octant of that cube at some level, a [`Cube`] the same with its frame, hence with model
+//! coordinates. Inside the library everything is integers; frames are the only place where model units and
+//! cells meet, and they meet exactly: no rounding error ever puts a point into the wrong cell.
+//!
+//! Corners, children and bits are numbered the same way everywhere: bit 0 is x, bit 1 is y, bit 2 is z.
+//!
+//! ```text
+//!            6-------7
+//!      z    /|      /|       child or corner i of a cube:
+//!      |   4-------5 |         x upper half  if i & 1
+//!      |   | 2-----|-3         y upper half  if i & 2
+//!      |y  |/      |/          z upper half  if i & 4
+//!      |/__0-------1
+//!        x
+//! ```
+
+mod cell;
+mod cube;
+pub(crate) mod exact;
+mod frame;
+mod interval;
+pub(crate) mod morton;
+
+pub use cell::Cell;
+pub use cube::Cube;
+pub use frame::Frame;
+pub use interval::Interval;
+
+/// The deepest octree: 2^20 = 1 048 576 cells per axis.
+pub const MAX_DEPTH: u8 = 20;

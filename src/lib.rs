@@ -1,0 +1,70 @@
+//! Leafless is a solid-modelling kernel. A solid is an octree **without leaves**, in dense arrays that are
+//! also its file: mapped, and queried in place.
+//!
+//! Three ideas carry everything:
+//!
+//! 1. **A solid is what can split a cell.** Primitives, triangle meshes, stored octrees and a host program's
+//!    callback are all a [`Solid`]; whatever wants a shape only calls [`Solid::split`].
+//! 2. **Certified.** inner ⊆ true ⊆ outer, always: a FULL cell is proven inside, an EMPTY one proven outside,
+//!    and doubt stays PARTIAL through every operation. So a volume is an interval that contains the truth.
+//! 3. **Closed and exact.** On one lattice the Booleans are exact set algebra, and their results canonical: the
+//!    same bits for any number of threads on any platform.
+//!
+//! ```
+//! use leafless::{Ball, AxisBox, Control, Frame, Membership, Rule, build, difference};
+//!
+//! let frame = Frame::new([-1.0; 3], 2.0, 8)?; // the cube [-1, 1]³, 256 cells per axis
+//! let control = Control::default();
+//! let block = build(&AxisBox::new([-0.75; 3], [0.75; 3])?, &frame, Rule::Certified, &control)?;
+//! let ball = build(&Ball::new([0.0; 3], 0.9)?, &frame, Rule::Certified, &control)?;
+//! let part = difference(block.view(), ball.view(), &control)?;
+//!
+//! assert_eq!(part.contains([0.0, 0.0, 0.0]), Membership::Outside);
+//! assert_eq!(part.contains([0.74, 0.74, 0.74]), Membership::Inside);
+//! let volume = part.statistics().volume();
+//! assert!(volume.lower < 0.68186 && 0.68188 < volume.upper);
+//! # Ok::<(), leafless::Error>(())
+//! ```
+//!
+//! The modules from the bottom up; none uses one above it:
+//!
+//! | module | what it holds |
+//! |---|---|
+//! | `lattice` | cells, cubes, frames: integers and model space |
+//! | `octree` | tags, the word algebra, views, the writer, checks, statistics |
+//! | `solid` | what can split a cell: one file a producer |
+//! | `op` | building, and the set algebra of stored trees |
+//! | `query` | points and boxes |
+//! | `file` | the file format, and meshes from other programs |
+
+#![no_std]
+#![deny(unsafe_code)]
+
+extern crate alloc;
+#[cfg(feature = "std")]
+extern crate std;
+
+mod control;
+mod dispatch;
+mod error;
+mod lattice;
+mod octree;
+mod op;
+mod query;
+mod solid;
+
+pub use control::Control;
+pub use error::{Damage, Error, FormatError, MeshError, MeshFileError};
+pub use lattice::{Cell, Cube, Frame, Interval, MAX_DEPTH};
+pub use octree::{
+    Block, Cursor, LevelStatistics, Metadata, Node, Octree, OctreeRef, Planes, Rule, Statistics, Tag,
+};
+pub use op::{
+    build, compact, complement, difference, intersection, intersection_of, resolve, union, union_of, xor,
+    xor_of,
+};
+pub use query::{Membership, PointCursor, Region};
+pub use solid::{
+    AnySolid, AxisBox, Ball, Callback, ErasedPart, ErasedScratch, HalfSpace, Scratch, Solid, Stored,
+    StoredPart, Verdict,
+};

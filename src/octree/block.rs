@@ -1,0 +1,143 @@
+//! Dense blocks of 64³ cells: how bulk algorithms hand over what they found.
+
+use super::tag::Tag;
+use super::word::Planes;
+use super::writer::Writer;
+use crate::error::Error;
+use crate::lattice::morton;
+use alloc::boxed::Box;
+use alloc::vec;
+
+/// How PARTIAL cells of the finest level are resolved when a tree is built.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Rule {
+    /// Not at all: the tree holds the certified bounds.
+    #[default]
+    Certified,
+    /// By the cell's centre. The tree is binary and lies between `Inner` and `Outer`.
+    Sampled,
+    /// As EMPTY: the tree is binary and contained in the solid.
+    Inner,
+    /// As FULL: the tree is binary and contains the solid.
+    Outer,
+}
+
+impl Rule {
+    /// Whether nothing is left undecided.
+    pub fn is_binary(self) -> bool {
+        self != Rule::Certified
+    }
+}
+
+/// Levels of a block: 64³ cells are six octree levels, three elements.
+pub(crate) const BLOCK_LEVELS: u8 = 6;
+
+/// A cube of 64³ finest cells as bit columns along z: what a [`Solid`](crate::Solid) fills that can classify
+/// many cells at once. Bit k of word x + 64·y is the cell (x, y, k).
+pub struct Block {
+    rule: Rule,
+    lower: Box<[u64; 4096]>,
+    upper: Box<[u64; 4096]>,
+}
+
+impl Block {
+    /// An empty block whose PARTIAL cells are to be resolved by `rule`.
+    pub fn new(rule: Rule) -> Block {
+        let words = || vec![0u64; 4096].try_into().unwrap_or_else(|_| unreachable!());
+        Block { rule, lower: words(), upper: words() }
+    }
+
+    /// How PARTIAL cells must be resolved by whoever fills the block: only under [`Rule::Certified`] may
+    /// the two planes differ.
+    pub fn rule(&self) -> Rule {
+        self.rule
+    }
+
+    /// Surely solid cells.
+    pub fn lower(&self) -> &[u64; 4096] {
+        &self.lower
+    }
+
+    /// Possibly solid cells.
+    pub fn upper(&self) -> &[u64; 4096] {
+        &self.upper
+    }
+
+    /// Both planes, to be filled; a cell that is surely solid must be possibly solid too.
+    pub fn planes_mut(&mut self) -> (&mut [u64; 4096], &mut [u64; 4096]) {
+        (&mut self.lower, &mut self.upper)
+    }
+
+    /// Writes the block as three levels of elements, `e` being the first; returns the block's tag.
+    pub(crate) fn write(&self, e: usize, writer: &mut Writer<'_>) -> Result<Tag, Error> {
+        let mut block = Planes::uniform(Tag::Empty);
+        for c in 0..64 {
+            let [x, y, z] = morton::position(c);
+            block.set(c, self.write_element([4 * x, 4 * y, 4 * z], e + 1, writer)?);
+        }
+        writer.put(e, block)
+    }
+
+    /// 16³ cells; `at` in bricks.
+    fn write_element(&self, at: [u32; 3], e: usize, writer: &mut Writer<'_>) -> Result<Tag, Error> {
+        let mut element = Planes::uniform(Tag::Empty);
+        // What the 4 × 4 columns of each of the 16 tiles have in common decides most bricks.
+        let mut all = [Planes::uniform(Tag::Full); 16];
+        let mut any = [Planes::uniform(Tag::Empty); 16];
+        for y in 0..16 {
+            for x in 0..16 {
+                let word = ((4 * at[1] + y) * 64 + 4 * at[0] + x) as usize;
+                let column = Planes { lower: self.lower[word], upper: self.upper[word] };
+                let tile = (y / 4 * 4 + x / 4) as usize;
+                all[tile] = all[tile].intersection(column);
+                any[tile] = any[tile].union(column);
+            }
+        }
+        for c in 0..64 {
+            let [x, y, z] = morton::position(c);
+            let tile = (4 * y + x) as usize;
+            let shift = 4 * (at[2] + z);
+            let nibble = |word: u64| word >> shift & 0xF;
+            let tag = if nibble(any[tile].upper) == 0 {
+                Tag::Empty
+            } else if nibble(all[tile].lower) == 0xF {
+                Tag::Full
+            } else if nibble(any[tile].lower) == 0 && nibble(all[tile].upper) == 0xF {
+                Tag::Partial
+            } else {
+                let column = (4 * (at[1] + y) * 64 + 4 * (at[0] + x)) as usize;
+                let lower = gather(&self.lower, column, shift);
+                let upper = if self.rule.is_binary() { lower } else { gather(&self.upper, column, shift) };
+                writer.put(e + 1, Planes { lower, upper })?
+            };
+            element.set(c, tag);
+        }
+        writer.put(e, element)
+    }
+}
+
+/// The brick whose lowest column is `column`, its cells at bits `shift..shift + 4` of 4 × 4 columns.
+#[inline(always)]
+fn gather(words: &[u64; 4096], column: usize, shift: u32) -> u64 {
+    // A nibble's four bits (z = 0 to 3) belong at Morton bits 2 and 5 of the brick's index.
+    const fn spread_z(nibble: u64) -> u64 {
+        (nibble & 1) | (nibble & 2) << 3 | (nibble & 4) << 30 | (nibble & 8) << 33
+    }
+    const SPREAD: [u64; 16] = {
+        let mut table = [0; 16];
+        let mut n = 0;
+        while n < 16 {
+            table[n] = spread_z(n as u64);
+            n += 1;
+        }
+        table
+    };
+    let mut brick = 0;
+    for y in 0..4 {
+        for x in 0..4 {
+            let nibble = words[column + 64 * y + x] >> shift & 0xF;
+            brick |= SPREAD[nibble as usize] << morton::index(x as u32, y as u32, 0);
+        }
+    }
+    brick
+}

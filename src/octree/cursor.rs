@@ -1,0 +1,146 @@
+//! The octree as the papers draw it: node by node, eight 2-bit tags each.
+
+use super::tag::Tag;
+use super::view::{MAX_ELEMENT_LEVELS, OctreeRef};
+use super::word::Planes;
+use crate::lattice::Cell;
+
+/// One internal node of the leaf-free octree: the tags of a cell's eight children.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct Node {
+    /// Bit k: child k is surely solid.
+    pub lower: u8,
+    /// Bit k: child k is possibly solid.
+    pub upper: u8,
+}
+
+impl Node {
+    /// The tag of child `octant` (0 to 7).
+    pub const fn tag(self, octant: u8) -> Tag {
+        Tag::from_bits(self.lower >> octant & 1 != 0, self.upper >> octant & 1 != 0)
+    }
+
+    /// The eight tags in octant order.
+    pub fn tags(self) -> [Tag; 8] {
+        [0, 1, 2, 3, 4, 5, 6, 7].map(|octant| self.tag(octant))
+    }
+
+    /// The node of an element's own cell: what its octants amount to.
+    fn of_octants(planes: Planes) -> Node {
+        let mut node = Node { lower: 0, upper: 0 };
+        for k in 0..8 {
+            let tag = planes.octant(k);
+            node.lower |= (tag.lower() as u8) << k;
+            node.upper |= (tag.upper() as u8) << k;
+        }
+        node
+    }
+
+    /// The node of octant `k` of an element.
+    fn of_octant(planes: Planes, k: u32) -> Node {
+        Node { lower: (planes.lower >> (8 * k)) as u8, upper: (planes.upper >> (8 * k)) as u8 }
+    }
+}
+
+/// A position in an octree that moves along its links, one octree level at a step. It needs no allocation,
+/// and an octree of any odd or even depth looks the same through it.
+///
+/// ```
+/// use leafless::{Ball, Control, Cursor, Frame, Rule, Tag, build};
+/// let frame = Frame::new([0.0; 3], 1.0, 5)?;
+/// let ball = build(&Ball::new([0.5; 3], 0.4)?, &frame, Rule::Certified, &Control::default())?;
+/// let mut cursor = Cursor::new(ball.view());
+/// while cursor.tag() == Tag::Branch {
+///     cursor.descend(0);
+/// }
+/// assert_eq!((cursor.tag(), cursor.cell().level), (Tag::Empty, 2));
+/// # Ok::<(), leafless::Error>(())
+/// ```
+#[derive(Clone)]
+pub struct Cursor<'a> {
+    tree: OctreeRef<'a>,
+    cell: Cell,
+    tag: Tag,
+    /// Elements from the root to the one that describes the current cell's children.
+    path: [(usize, Planes); MAX_ELEMENT_LEVELS],
+}
+
+impl<'a> Cursor<'a> {
+    /// A cursor on the universe.
+    pub fn new(tree: &OctreeRef<'a>) -> Cursor<'a> {
+        let partial = (usize::MAX, Planes::uniform(Tag::Partial));
+        let mut cursor =
+            Cursor { tree: *tree, cell: Cell::ROOT, tag: tree.root, path: [partial; MAX_ELEMENT_LEVELS] };
+        if cursor.tag == Tag::Branch {
+            cursor.enter(0, 0);
+        }
+        cursor
+    }
+
+    /// The cell that the cursor stands on.
+    pub fn cell(&self) -> Cell {
+        self.cell
+    }
+
+    /// Its tag.
+    pub fn tag(&self) -> Tag {
+        self.tag
+    }
+
+    /// Its node, if the cell is a BRANCH.
+    pub fn node(&self) -> Option<Node> {
+        (self.tag == Tag::Branch).then(|| match self.position(self.cell.level) {
+            (e, None) => Node::of_octants(self.path[e].1),
+            (e, Some(k)) => Node::of_octant(self.path[e].1, k),
+        })
+    }
+
+    /// Moves to the child in `octant` (0 to 7) of a BRANCH; the cursor stays where it is, and the answer is
+    /// `false`, on any other cell.
+    pub fn descend(&mut self, octant: u8) -> bool {
+        let Some(node) = self.node().filter(|_| octant < 8) else { return false };
+        let (e, half) = self.position(self.cell.level);
+        self.cell = self.cell.child(octant);
+        self.tag = node.tag(octant);
+        if let (Tag::Branch, Some(k)) = (self.tag, half) {
+            let (n, planes) = self.path[e];
+            let child = self.tree.child(n, planes.branch(), 8 * k + octant as u32);
+            match child.filter(|&child| e + 1 < self.tree.levels() && self.tree.on_level(child, e + 1)) {
+                Some(child) => self.enter(e + 1, child),
+                None => self.tag = Tag::Partial,
+            }
+        }
+        true
+    }
+
+    /// Moves to the parent; `false` if the cursor stands on the universe.
+    pub fn ascend(&mut self) -> bool {
+        if self.cell.level == 0 {
+            return false;
+        }
+        self.cell = self.cell.parent();
+        self.tag = Tag::Branch;
+        true
+    }
+
+    /// Where the node of a cell at `level` is kept: the element level, and the octant of the element unless
+    /// it is the element's own.
+    fn position(&self, level: u8) -> (usize, Option<u32>) {
+        let padded = (level + self.tree.frame.depth() % 2) as usize;
+        let k = if padded % 2 == 0 {
+            None
+        } else if level == 0 {
+            Some(0)
+        } else {
+            Some(self.cell.octant() as u32)
+        };
+        (padded / 2, k)
+    }
+
+    fn enter(&mut self, e: usize, index: usize) {
+        match self.tree.entry(index) {
+            Some(planes) => self.path[e] = (index, planes),
+            None => self.tag = Tag::Partial,
+        }
+    }
+}

@@ -1,0 +1,234 @@
+//! Dictionaries of bricks.
+//!
+//! A smooth surface cuts 4³ cells in few ways, so most bricks of a tree are repetitions and a 16-bit index
+//! into the distinct ones is four or eight times smaller. A fixed rule decides, so that equal solids have
+//! equal files: fewest bytes among raw bricks, one dictionary for all, and dictionaries for segments of 2^k
+//! bricks by descending k, in this order where sizes tie. Entries stand by descending frequency, then value.
+
+use super::brick::{Brick, BrickArray, Bricks};
+use super::octree::{OwnedArray, OwnedBricks};
+use super::view::OctreeRef;
+use crate::error::{Damage, Error};
+use alloc::vec;
+use alloc::vec::Vec;
+use hashbrown::{HashMap, HashSet};
+
+/// Most entries that a 16-bit index can name.
+const MOST: usize = 1 << 16;
+
+/// Bricks of a segment when there is only one: 2^63 is more than any.
+pub(crate) const WHOLE: u8 = 63;
+
+/// Bytes of `bricks` bricks as `entries` entries in `segments` segments.
+fn bytes<T>(bricks: usize, entries: usize, segments: usize) -> usize {
+    size_of::<u16>() * bricks + size_of::<T>() * entries + size_of::<u64>() * segments
+}
+
+/// The bricks in the encoding that the rule demands.
+///
+/// # Errors
+/// [`Error::OutOfMemory`], and [`Error::Damaged`] if a brick cannot be read.
+pub(crate) fn encode(bricks: &Bricks<'_>) -> Result<OwnedBricks, Error> {
+    Ok(match bricks {
+        Bricks::One(bricks) => OwnedBricks::One(encode_array(bricks)?),
+        Bricks::Two(bricks) => OwnedBricks::Two(encode_array(bricks)?),
+    })
+}
+
+fn encode_array<T: Brick>(bricks: &BrickArray<'_, T>) -> Result<OwnedArray<T>, Error> {
+    let count = bricks.len();
+    let raw = match bricks {
+        BrickArray::Raw(raw) => copied(raw)?,
+        BrickArray::Dictionary { .. } => {
+            let mut raw = with_capacity(count)?;
+            if !bricks.extend(0..count, &mut raw, |brick| brick) {
+                return Err(Damage::Dictionary { brick: 0 }.into());
+            }
+            raw
+        }
+    };
+    // Halving the segments never makes the sum of their dictionaries smaller, so the first size that fits
+    // 16-bit indices is the smallest.
+    if raw.is_empty() {
+        return Ok(OwnedArray::Raw(raw));
+    }
+    let longest = count.next_power_of_two().trailing_zeros().saturating_sub(1) as u8;
+    for shift in core::iter::once(WHOLE).chain((16..=longest).rev()) {
+        if let Some(coded) = segmented(&raw, shift)? {
+            return Ok(coded);
+        }
+    }
+    Ok(OwnedArray::Raw(raw))
+}
+
+/// The bricks in segments of 2^shift; `Raw` if that is not longer, `None` if an index would not fit.
+fn segmented<T: Brick>(raw: &[T], shift: u8) -> Result<Option<OwnedArray<T>>, Error> {
+    let length = if shift == WHOLE { raw.len().max(1) } else { 1 << shift };
+    let mut indices: Vec<u16> = with_capacity(raw.len())?;
+    let mut entries: Vec<T> = Vec::new();
+    let mut segments: Vec<u64> = with_capacity(raw.len().div_ceil(length))?;
+    let mut seen: HashMap<T, u32> = HashMap::new();
+    let mut counts: Vec<u32> = Vec::new();
+    let mut distinct: Vec<T> = Vec::new();
+    for segment in raw.chunks(length) {
+        seen.clear();
+        counts.clear();
+        distinct.clear();
+        let first = indices.len();
+        // Indices are given in order of appearance first, and renamed once the frequencies are known.
+        for &brick in segment {
+            let fresh = counts.len();
+            seen.try_reserve(1).map_err(|_| Error::OutOfMemory)?;
+            let index = *seen.entry(brick).or_insert(fresh as u32) as usize;
+            if index == fresh {
+                if fresh == MOST {
+                    return Ok(None);
+                }
+                counts.push(0);
+                distinct.push(brick);
+            }
+            counts[index] += 1;
+            indices.push(index as u16);
+        }
+        let mut order: Vec<u16> = (0..=u16::MAX).take(distinct.len()).collect();
+        let key = |&i: &u16| (core::cmp::Reverse(counts[i as usize]), distinct[i as usize]);
+        order.sort_unstable_by_key(key);
+        let mut rename = vec![0u16; order.len()];
+        for (new, &old) in order.iter().enumerate() {
+            rename[old as usize] = new as u16;
+        }
+        indices[first..].iter_mut().for_each(|index| *index = rename[*index as usize]);
+        segments.push(entries.len() as u64);
+        entries.try_reserve(order.len()).map_err(|_| Error::OutOfMemory)?;
+        entries.extend(order.iter().map(|&i| distinct[i as usize]));
+        // Already no shorter than raw bricks: nor will it be with the other segments, or smaller ones.
+        if bytes::<T>(raw.len(), entries.len(), segments.len()) >= size_of_val(raw) {
+            return Ok(Some(OwnedArray::Raw(copied(raw)?)));
+        }
+    }
+    Ok(Some(OwnedArray::Dictionary { indices, entries, segments, shift }))
+}
+
+fn with_capacity<T>(count: usize) -> Result<Vec<T>, Error> {
+    let mut vec = Vec::new();
+    vec.try_reserve_exact(count).map_err(|_| Error::OutOfMemory)?;
+    Ok(vec)
+}
+
+fn copied<T: Copy>(slice: &[T]) -> Result<Vec<T>, Error> {
+    let mut vec = with_capacity(slice.len())?;
+    vec.extend_from_slice(slice);
+    Ok(vec)
+}
+
+/// Checks that the dictionary, if there is one, is the one that the bricks determine.
+pub(crate) fn check(tree: &OctreeRef<'_>) -> Result<(), Damage> {
+    match &tree.bricks {
+        Bricks::One(bricks) => check_array(bricks),
+        Bricks::Two(bricks) => check_array(bricks),
+    }
+}
+
+fn check_array<T: Brick>(bricks: &BrickArray<'_, T>) -> Result<(), Damage> {
+    let BrickArray::Dictionary { indices, entries, segments, shift } = *bricks else { return Ok(()) };
+    let length = if shift == WHOLE { indices.len().max(1) } else { 1usize << shift.min(62) };
+    if segments.len() != indices.len().div_ceil(length) {
+        return Err(Damage::Dictionary { brick: 0 });
+    }
+    let mut expected = 0;
+    for (s, indices) in indices.chunks(length).enumerate() {
+        let brick = (s * length) as u64;
+        let end = segments.get(s + 1).map_or(entries.len() as u64, |&end| end);
+        let range = segments[s] as usize..usize::try_from(end).unwrap_or(usize::MAX);
+        let own = entries.get(range).filter(|own| own.len() <= MOST).ok_or(Damage::Dictionary { brick })?;
+        if segments[s] != expected {
+            return Err(Damage::Dictionary { brick });
+        }
+        let mut counts = vec![0u32; own.len()];
+        for (b, &index) in indices.iter().enumerate() {
+            match counts.get_mut(index as usize) {
+                Some(count) => *count += 1,
+                None => return Err(Damage::Dictionary { brick: brick + b as u64 }),
+            }
+        }
+        let mut distinct = HashSet::with_capacity(own.len());
+        let key = |i: usize| (core::cmp::Reverse(counts[i]), own[i]);
+        for i in 0..own.len() {
+            if counts[i] == 0 || (i > 0 && key(i - 1) >= key(i)) || !distinct.insert(own[i]) {
+                return Err(Damage::DictionaryOrder { entry: expected + i as u64 });
+            }
+        }
+        expected = end;
+    }
+    if expected == entries.len() as u64 { Ok(()) } else { Err(Damage::DictionaryOrder { entry: expected }) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn indices(coded: &OwnedArray<u64>) -> (&[u16], &[u64], &[u64], u8) {
+        match coded {
+            OwnedArray::Dictionary { indices, entries, segments, shift } => {
+                (indices, entries, segments, *shift)
+            }
+            OwnedArray::Raw(_) => panic!("expected a dictionary"),
+        }
+    }
+
+    #[test]
+    fn entries_stand_by_frequency_then_value() {
+        let raw: Vec<u64> = [9, 5, 5, 7, 7, 1, 1, 1].repeat(4);
+        let coded = encode_array(&BrickArray::Raw(&raw)).unwrap();
+        let (found, entries, segments, shift) = indices(&coded);
+        assert_eq!((entries, segments, shift), (&[1, 5, 7, 9][..], &[0][..], WHOLE));
+        assert_eq!(&found[..8], &[3, 1, 1, 2, 2, 0, 0, 0]);
+        assert_eq!(check_array(&coded.view()), Ok(()));
+        let mut back = Vec::new();
+        assert!(coded.view().extend(0..raw.len(), &mut back, |brick| brick));
+        assert_eq!(back, raw);
+    }
+
+    #[test]
+    fn few_or_all_different_bricks_stay_raw() {
+        for raw in [vec![], vec![7], vec![3, 3], (0..500).collect()] {
+            assert!(
+                matches!(encode_array(&BrickArray::Raw(&raw)).unwrap(), OwnedArray::Raw(kept) if kept == raw)
+            );
+        }
+    }
+
+    #[test]
+    fn more_than_65536_distinct_bricks_need_segments() {
+        // 4 · 50 000 bricks, each quarter with its own 25 000 values: one dictionary cannot hold 100 000.
+        let raw: Vec<u64> = (0..200_000u64).map(|b| (b / 50_000) * 1_000_000 + b % 25_000).collect();
+        let coded = encode_array(&BrickArray::Raw(&raw)).unwrap();
+        let (_, entries, segments, shift) = indices(&coded);
+        assert_eq!((shift, segments.len()), (16, 4));
+        assert!(entries.len() > 100_000);
+        assert_eq!(check_array(&coded.view()), Ok(()));
+        for b in [0, 49_999, 65_535, 65_536, 131_071, 131_072, 199_999] {
+            assert_eq!(coded.view().get(b), Some(raw[b]));
+        }
+        assert_eq!(coded.view().get(200_000), None);
+    }
+
+    #[test]
+    fn damaged_dictionaries_are_found() {
+        let good = (vec![0u16, 0, 1], vec![4u64, 2], vec![0u64], WHOLE);
+        let verdict = |change: &dyn Fn(&mut (Vec<u16>, Vec<u64>, Vec<u64>, u8))| {
+            let mut parts = good.clone();
+            change(&mut parts);
+            let (indices, entries, segments, shift) = parts;
+            check_array(&OwnedArray::Dictionary { indices, entries, segments, shift }.view())
+        };
+        assert_eq!(verdict(&|_| ()), Ok(()));
+        assert_eq!(verdict(&|d| d.0[0] = 2), Err(Damage::Dictionary { brick: 0 }));
+        assert_eq!(verdict(&|d| d.0[0] = 1), Err(Damage::DictionaryOrder { entry: 1 }));
+        assert_eq!(verdict(&|d| d.1.push(1)), Err(Damage::DictionaryOrder { entry: 2 }));
+        assert_eq!(verdict(&|d| d.1[1] = 4), Err(Damage::DictionaryOrder { entry: 1 }));
+        assert_eq!(verdict(&|d| d.2[0] = 1), Err(Damage::Dictionary { brick: 0 }));
+        assert_eq!(verdict(&|d| d.2.push(1)), Err(Damage::Dictionary { brick: 0 }));
+        assert_eq!(verdict(&|d| d.3 = 1), Err(Damage::Dictionary { brick: 0 }));
+    }
+}

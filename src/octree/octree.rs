@@ -1,0 +1,259 @@
+//! The owned, shared, immutable octree.
+
+use super::brick::{Brick, BrickArray, Bricks};
+use super::dictionary;
+use super::metadata::Metadata;
+use super::stats::{LevelCounts, Statistics};
+use super::tag::Tag;
+use super::view::{MAX_ELEMENT_LEVELS, OctreeRef, element_levels};
+use super::word::Planes;
+use crate::error::{Damage, Error};
+use crate::lattice::Frame;
+use alloc::boxed::Box;
+use alloc::sync::Arc;
+use alloc::vec::Vec;
+use once_cell::race::OnceBox;
+use yoke::Yoke;
+use yoke::erased::ErasedArcCart;
+
+/// An octree that owns its arrays, or shares the mapping of a file.
+///
+/// It is immutable, a clone costs two reference counts, and any number of threads may read it at once. All
+/// reading is done through its [`view`](Octree::view).
+#[derive(Clone)]
+pub struct Octree {
+    arrays: Yoke<OctreeRef<'static>, ErasedArcCart>,
+    counts: Arc<OnceBox<Vec<LevelCounts>>>,
+    metadata: Arc<Metadata>,
+}
+
+/// The arrays behind an octree in memory.
+pub(crate) struct Arrays {
+    frame: Frame,
+    root: Tag,
+    exterior: Tag,
+    planes: Vec<Planes>,
+    rel: Vec<u16>,
+    base: Vec<u64>,
+    bricks: OwnedBricks,
+    starts: [usize; MAX_ELEMENT_LEVELS + 1],
+    table: Option<Vec<LevelCounts>>,
+}
+
+pub(crate) enum OwnedArray<T> {
+    Raw(Vec<T>),
+    Dictionary { indices: Vec<u16>, entries: Vec<T>, segments: Vec<u64>, shift: u8 },
+}
+
+impl<T: Brick> OwnedArray<T> {
+    pub(crate) fn view(&self) -> BrickArray<'_, T> {
+        match self {
+            OwnedArray::Raw(bricks) => BrickArray::Raw(bricks),
+            OwnedArray::Dictionary { indices, entries, segments, shift } => {
+                BrickArray::Dictionary { indices, entries, segments, shift: *shift }
+            }
+        }
+    }
+}
+
+pub(crate) enum OwnedBricks {
+    One(OwnedArray<u64>),
+    Two(OwnedArray<Planes>),
+}
+
+impl OwnedBricks {
+    pub(crate) fn view(&self) -> Bricks<'_> {
+        match self {
+            OwnedBricks::One(bricks) => Bricks::One(bricks.view()),
+            OwnedBricks::Two(bricks) => Bricks::Two(bricks.view()),
+        }
+    }
+
+    pub(crate) fn len(&self) -> usize {
+        self.view().len()
+    }
+}
+
+impl Arrays {
+    /// Ranks the children of `planes`, which lie in level order as `starts` says.
+    ///
+    /// # Errors
+    /// [`Damage::Count`] if a level does not hold what its parents demand, as can come of copying from
+    /// damaged operands.
+    pub(crate) fn link(
+        frame: Frame,
+        root: Tag,
+        exterior: Tag,
+        planes: Vec<Planes>,
+        bricks: OwnedBricks,
+        starts: [usize; MAX_ELEMENT_LEVELS + 1],
+    ) -> Result<Arrays, Error> {
+        let mut rel = Vec::new();
+        let mut base = Vec::new();
+        rel.try_reserve_exact(planes.len()).map_err(|_| Error::OutOfMemory)?;
+        base.try_reserve_exact(planes.len().div_ceil(1024)).map_err(|_| Error::OutOfMemory)?;
+        let levels = element_levels(frame.depth());
+        let mut next = (root == Tag::Branch) as usize;
+        for e in 0..levels {
+            let (found, expected) = (starts[e + 1], next);
+            if found != expected {
+                let (expected, found) = ((expected - starts[e]) as u64, (found - starts[e]) as u64);
+                return Err(Damage::Count { level: e as u8, expected, found }.into());
+            }
+            crate::dispatch::with_popcount(|| {
+                for (n, planes) in planes.iter().enumerate().take(starts[e + 1]).skip(starts[e]) {
+                    if n % 1024 == 0 {
+                        base.push(next as u64);
+                    }
+                    rel.push((next as u64 - base[n >> 10]) as u16);
+                    next += planes.branch().count_ones() as usize;
+                }
+            });
+        }
+        Ok(Arrays { frame, root, exterior, planes, rel, base, bricks, starts, table: None })
+    }
+
+    /// Takes over arrays as they were read from a file; nothing is checked.
+    #[allow(clippy::too_many_arguments)]
+    pub(crate) fn from_parts(
+        frame: Frame,
+        root: Tag,
+        exterior: Tag,
+        planes: Vec<Planes>,
+        rel: Vec<u16>,
+        base: Vec<u64>,
+        bricks: OwnedBricks,
+        starts: [usize; MAX_ELEMENT_LEVELS + 1],
+        table: Option<Vec<LevelCounts>>,
+    ) -> Arrays {
+        Arrays { frame, root, exterior, planes, rel, base, bricks, starts, table }
+    }
+
+    fn view(&self) -> OctreeRef<'_> {
+        OctreeRef {
+            frame: self.frame,
+            root: self.root,
+            exterior: self.exterior,
+            planes: &self.planes,
+            rel: &self.rel,
+            base: &self.base,
+            bricks: self.bricks.view(),
+            starts: self.starts,
+            table: self.table.as_deref(),
+        }
+    }
+}
+
+impl Octree {
+    pub(crate) fn new(arrays: Arrays) -> Octree {
+        Octree::attach(Arc::new(arrays), Metadata::default(), |arrays| Ok(arrays.view()))
+            .unwrap_or_else(|_: core::convert::Infallible| unreachable!())
+    }
+
+    /// An octree whose arrays lie in `owner`, wherever that has them.
+    pub(crate) fn attach<C: Send + Sync + 'static, E>(
+        owner: Arc<C>,
+        metadata: Metadata,
+        view: impl for<'a> FnOnce(&'a C) -> Result<OctreeRef<'a>, E>,
+    ) -> Result<Octree, E> {
+        Ok(Octree {
+            arrays: Yoke::<OctreeRef<'static>, Arc<C>>::try_attach_to_cart(owner, view)?.erase_arc_cart(),
+            counts: Arc::new(OnceBox::new()),
+            metadata: Arc::new(metadata),
+        })
+    }
+
+    /// An octree whose whole universe has one tag (not BRANCH), as has the space around it.
+    pub fn uniform(frame: Frame, tag: Tag, exterior: Tag) -> Result<Octree, Error> {
+        if tag == Tag::Branch || exterior == Tag::Branch {
+            return Err(Error::Argument { name: "tag", problem: "must be EMPTY, FULL or PARTIAL" });
+        }
+        let bricks = match tag {
+            Tag::Partial => OwnedBricks::Two(OwnedArray::Raw(Vec::new())),
+            _ => OwnedBricks::One(OwnedArray::Raw(Vec::new())),
+        };
+        let starts = [0; MAX_ELEMENT_LEVELS + 1];
+        Ok(Octree::new(Arrays::link(frame, tag, exterior, Vec::new(), bricks, starts)?))
+    }
+
+    /// A copy of `tree` with its bricks in the encoding that a file would give them.
+    pub(crate) fn recoded(tree: &OctreeRef<'_>) -> Result<Octree, Error> {
+        Ok(Octree::new(Arrays {
+            frame: tree.frame,
+            root: tree.root,
+            exterior: tree.exterior,
+            planes: try_copy(tree.planes)?,
+            rel: try_copy(tree.rel)?,
+            base: try_copy(tree.base)?,
+            bricks: dictionary::encode(&tree.bricks)?,
+            starts: tree.starts,
+            table: None,
+        }))
+    }
+
+    /// The view that all reading goes through. Free.
+    #[inline(always)]
+    pub fn view(&self) -> &OctreeRef<'_> {
+        self.arrays.get()
+    }
+
+    /// Where the tree lies.
+    pub fn frame(&self) -> &Frame {
+        self.view().frame()
+    }
+
+    /// What is known level by level: nodes, cells of each tag, volumes. O(depth) once the counts are known,
+    /// which for a tree from a file they are and for a new one takes one pass over its arrays.
+    pub fn statistics(&self) -> Statistics {
+        Statistics::new(self.view(), self.counts())
+    }
+
+    pub(crate) fn counts(&self) -> &[LevelCounts] {
+        match self.view().table {
+            Some(table) => table,
+            None => self.counts.get_or_init(|| Box::new(self.view().count_levels())),
+        }
+    }
+
+    /// Facts about the tree that its file carries along: units, name, source.
+    pub fn metadata(&self) -> &Metadata {
+        &self.metadata
+    }
+
+    /// The same tree with other metadata; the arrays are shared.
+    #[must_use]
+    pub fn with_metadata(&self, metadata: Metadata) -> Octree {
+        Octree { metadata: Arc::new(metadata), ..self.clone() }
+    }
+}
+
+impl core::fmt::Debug for Octree {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.debug_struct("Octree")
+            .field("frame", self.frame())
+            .field("root", &self.view().root_tag())
+            .field("elements", &self.view().element_count())
+            .field("bricks", &self.view().brick_count())
+            .finish_non_exhaustive()
+    }
+}
+
+/// Equal as sets of cells with the same tags on the same frame: trees are canonical, so their arrays agree
+/// however the bricks are encoded. Metadata does not count. O(n).
+impl PartialEq for Octree {
+    fn eq(&self, other: &Octree) -> bool {
+        let (a, b) = (self.view(), other.view());
+        a.frame == b.frame
+            && (a.root, a.exterior) == (b.root, b.exterior)
+            && a.planes == b.planes
+            && a.bricks.len() == b.bricks.len()
+            && (0..a.bricks.len()).all(|i| a.bricks.get(i) == b.bricks.get(i))
+    }
+}
+
+fn try_copy<T: Copy>(slice: &[T]) -> Result<Vec<T>, Error> {
+    let mut copy = Vec::new();
+    copy.try_reserve_exact(slice.len()).map_err(|_| Error::OutOfMemory)?;
+    copy.extend_from_slice(slice);
+    Ok(copy)
+}

@@ -1,0 +1,194 @@
+//! What a tree holds, level by level.
+
+use super::tag::Tag;
+use super::view::OctreeRef;
+use super::word::Planes;
+use crate::lattice::exact::{product_down, product_up};
+use crate::lattice::{Frame, Interval};
+use alloc::vec;
+use alloc::vec::Vec;
+use bytemuck::{Pod, Zeroable};
+
+/// What is counted on one octree level; the level table of a file is an array of these.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct LevelCounts {
+    /// Internal nodes of the level: its cells that are cut.
+    pub nodes: u64,
+    /// FULL cells of the level.
+    pub full: u64,
+    /// PARTIAL cells of the level.
+    pub partial: u64,
+}
+
+/// One level of the canonical octree.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LevelStatistics {
+    /// 0 = the universe.
+    pub level: u8,
+    /// Internal nodes at this level: cells that are cut and split.
+    pub nodes: u64,
+    /// Cells of this level that are EMPTY.
+    pub empty: u64,
+    /// Cells of this level that are FULL.
+    pub full: u64,
+    /// Cells of this level that are PARTIAL.
+    pub partial: u64,
+    /// Volume that is surely solid if the tree is cut at this level, in finest cells.
+    pub lower_cells: u64,
+    /// Volume that is possibly solid if the tree is cut at this level, in finest cells.
+    pub upper_cells: u64,
+    /// The same two in cubic model units, rounded outward.
+    pub volume: Interval,
+}
+
+/// Nodes, cells and certified volumes of an octree, per level and in all.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Statistics {
+    levels: Vec<LevelStatistics>,
+}
+
+impl Statistics {
+    pub(crate) fn new(tree: &OctreeRef<'_>, counts: &[LevelCounts]) -> Statistics {
+        let frame = tree.frame();
+        let depth = frame.depth();
+        let mut levels = Vec::with_capacity(counts.len());
+        let (mut lower, mut undecided) = (0u64, 0u64);
+        // A mapped level table may hold anything: nothing here may overflow.
+        let mut above = None;
+        for (level, count) in counts.iter().enumerate().take(depth as usize + 1) {
+            let cells = 1u64 << (3 * (depth as usize - level));
+            let all = above.map_or(1, |nodes: u64| nodes.saturating_mul(8));
+            lower = lower.saturating_add(count.full.saturating_mul(cells));
+            undecided = undecided.saturating_add(count.partial.saturating_mul(cells));
+            let upper = lower.saturating_add(undecided).saturating_add(count.nodes.saturating_mul(cells));
+            let kept = count.nodes.saturating_add(count.full).saturating_add(count.partial);
+            levels.push(LevelStatistics {
+                level: level as u8,
+                nodes: count.nodes,
+                empty: all.saturating_sub(kept),
+                full: count.full,
+                partial: count.partial,
+                lower_cells: lower,
+                upper_cells: upper,
+                volume: volume(frame, lower, upper),
+            });
+            above = Some(count.nodes);
+        }
+        Statistics { levels }
+    }
+
+    /// Level by level, from the universe to the finest cells.
+    pub fn levels(&self) -> &[LevelStatistics] {
+        &self.levels
+    }
+
+    /// Internal nodes m of the leaf-free octree; a classical octree of the same solid has 8 m + 1.
+    pub fn nodes(&self) -> u64 {
+        self.levels.iter().fold(0, |sum, level| sum.saturating_add(level.nodes))
+    }
+
+    /// Cells of one tag over all levels; BRANCH counts the nodes.
+    pub fn cells(&self, tag: Tag) -> u64 {
+        let of = |level: &LevelStatistics| match tag {
+            Tag::Empty => level.empty,
+            Tag::Branch => level.nodes,
+            Tag::Partial => level.partial,
+            Tag::Full => level.full,
+        };
+        self.levels.iter().fold(0, |sum, level| sum.saturating_add(of(level)))
+    }
+
+    /// The certified volume in cubic model units: the part of the solid inside of the universe is surely at
+    /// least `lower` and at most `upper`.
+    pub fn volume(&self) -> Interval {
+        self.levels.last().map_or(Interval::exactly(0.0), |level| level.volume)
+    }
+
+    /// The certified volume in finest cells: surely and possibly solid.
+    pub fn volume_cells(&self) -> (u64, u64) {
+        self.levels.last().map_or((0, 0), |level| (level.lower_cells, level.upper_cells))
+    }
+}
+
+/// Numbers of finest cells as cubic model units, rounded outward.
+fn volume(frame: &Frame, lower: u64, upper: u64) -> Interval {
+    let size = frame.cell_size();
+    let down = |cells: f64| product_down(product_down(product_down(cells, size), size), size);
+    let up = |cells: f64| product_up(product_up(product_up(cells, size), size), size);
+    // Cell counts beyond 2^53 are rounded when they become doubles.
+    let (least, most) = (lower as f64, upper as f64);
+    let least = if least as u64 > lower { least.next_down() } else { least };
+    let most = if (most as u64) < upper { most.next_up() } else { most };
+    Interval { lower: down(least), upper: up(most) }
+}
+
+impl OctreeRef<'_> {
+    /// Counts every level in one pass over the arrays.
+    pub(crate) fn count_levels(&self) -> Vec<LevelCounts> {
+        let depth = self.frame.depth();
+        let mut counts = vec![LevelCounts::default(); depth as usize + 1];
+        match self.root {
+            Tag::Full => counts[0].full = 1,
+            Tag::Partial => counts[0].partial = 1,
+            Tag::Empty | Tag::Branch => {}
+        }
+        if self.root != Tag::Branch {
+            return counts;
+        }
+        crate::dispatch::with_popcount(|| {
+            let (levels, odd) = (self.levels(), depth % 2 == 1);
+            for e in 0..levels {
+                let mut sum = ElementCounts::default();
+                let (first, end) = (self.starts[e], self.starts[e + 1]);
+                if e + 1 < levels {
+                    self.planes.get(first..end).unwrap_or(&[]).iter().for_each(|&planes| sum.add(planes));
+                } else {
+                    for b in 0..end.saturating_sub(first) {
+                        // A damaged brick reads as undecided.
+                        sum.add(self.bricks.get(b).unwrap_or(Planes::uniform(Tag::Partial)));
+                    }
+                }
+                let cells = self.cell_level(e) as usize;
+                counts[cells].full += sum.full_cells;
+                counts[cells].partial += sum.partial_cells;
+                if odd && e == 0 {
+                    // The root starts half-way: its only real octant is the universe itself.
+                    counts[0].nodes = 1;
+                    continue;
+                }
+                counts[cells - 1].full += sum.full_octants;
+                counts[cells - 1].partial += sum.partial_octants;
+                counts[cells - 1].nodes += 8 * sum.elements - sum.uniform_octants;
+                counts[cells - 2].nodes += sum.elements;
+            }
+        });
+        counts
+    }
+}
+
+/// Sums over elements.
+#[derive(Default)]
+struct ElementCounts {
+    elements: u64,
+    uniform_octants: u64,
+    full_octants: u64,
+    partial_octants: u64,
+    full_cells: u64,
+    partial_cells: u64,
+}
+
+impl ElementCounts {
+    #[inline(always)]
+    fn add(&mut self, planes: Planes) {
+        let [empty, full, partial] = planes.octants();
+        let (full_octants, partial_octants) = (full.count_ones() as u64, partial.count_ones() as u64);
+        self.elements += 1;
+        self.uniform_octants += empty.count_ones() as u64 + full_octants + partial_octants;
+        self.full_octants += full_octants;
+        self.partial_octants += partial_octants;
+        // Cells of a uniform octant are no cells: the octant is.
+        self.full_cells += planes.full().count_ones() as u64 - 8 * full_octants;
+        self.partial_cells += planes.partial().count_ones() as u64 - 8 * partial_octants;
+    }
+}

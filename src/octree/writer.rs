@@ -1,0 +1,328 @@
+//! The one place where trees come into being.
+//!
+//! Whoever makes a tree walks it depth first and hands over each element after its children. Each level has
+//! an output array of its own; because every level fills up in Morton order, the concatenation *is* the
+//! stored level order. An element whose cells all agree is not stored but reported as that tag, and as it
+//! then has no stored children nothing is ever taken back: the result is canonical by construction.
+
+use super::brick::{Brick, BrickArray, Bricks};
+use super::octree::{Arrays, Octree, OwnedArray, OwnedBricks};
+use super::tag::Tag;
+use super::view::{MAX_ELEMENT_LEVELS, OctreeRef, Windows, element_levels, root_cells};
+use super::word::Planes;
+use crate::control::Job;
+use crate::error::{Damage, Error};
+use crate::lattice::Frame;
+use alloc::vec::Vec;
+use core::ops::Range;
+
+/// A vector in pieces: it grows without ever copying what it holds or asking for twice the memory.
+struct Chunks<T> {
+    full: Vec<Vec<T>>,
+    tail: Vec<T>,
+}
+
+impl<T: Copy> Chunks<T> {
+    const SMALLEST: usize = 64;
+    const LARGEST: usize = 1 << 17;
+
+    fn new() -> Chunks<T> {
+        Chunks { full: Vec::new(), tail: Vec::new() }
+    }
+
+    fn len(&self) -> usize {
+        self.full.iter().map(Vec::len).sum::<usize>() + self.tail.len()
+    }
+
+    /// Makes room for at least `count` more without a further piece.
+    fn reserve(&mut self, count: usize) -> Result<(), Error> {
+        if self.tail.capacity() - self.tail.len() >= count {
+            return Ok(());
+        }
+        let grown = (2 * self.tail.capacity()).clamp(Self::SMALLEST, Self::LARGEST);
+        let mut fresh = Vec::new();
+        fresh.try_reserve_exact(grown.max(count)).map_err(|_| Error::OutOfMemory)?;
+        self.retire(fresh)
+    }
+
+    fn retire(&mut self, fresh: Vec<T>) -> Result<(), Error> {
+        let tail = core::mem::replace(&mut self.tail, fresh);
+        if !tail.is_empty() {
+            self.full.try_reserve(1).map_err(|_| Error::OutOfMemory)?;
+            self.full.push(tail);
+        }
+        Ok(())
+    }
+
+    #[inline(always)]
+    fn push(&mut self, value: T) -> Result<(), Error> {
+        if self.tail.len() == self.tail.capacity() {
+            self.reserve(1)?;
+        }
+        self.tail.push(value);
+        Ok(())
+    }
+
+    fn append(&mut self, mut other: Chunks<T>) -> Result<(), Error> {
+        if other.full.is_empty() && self.tail.capacity() - self.tail.len() >= other.tail.len() {
+            self.tail.extend_from_slice(&other.tail);
+            return Ok(());
+        }
+        self.retire(Vec::new())?;
+        self.full.try_reserve(other.full.len()).map_err(|_| Error::OutOfMemory)?;
+        self.full.append(&mut other.full);
+        self.tail = other.tail;
+        Ok(())
+    }
+
+    /// Everything in one piece; without a copy if it already is.
+    fn into_vec(self) -> Result<Vec<T>, Error> {
+        if self.full.is_empty() {
+            return Ok(self.tail);
+        }
+        let mut all = Vec::new();
+        all.try_reserve_exact(self.len()).map_err(|_| Error::OutOfMemory)?;
+        for piece in self.full.into_iter().chain([self.tail]) {
+            all.extend_from_slice(&piece);
+        }
+        Ok(all)
+    }
+}
+
+enum BrickChunks {
+    One(Chunks<u64>),
+    Two(Chunks<Planes>),
+}
+
+/// The working form of a tree that is being made: an output array per level, without links.
+pub(crate) struct Writer<'j> {
+    job: &'j Job<'j>,
+    depth: u8,
+    levels: Vec<Chunks<Planes>>,
+    bricks: BrickChunks,
+    // Written since the job was last told.
+    nodes: usize,
+    bytes: usize,
+    untold: u32,
+}
+
+/// Elements written between two reports to the job.
+const REPORT: u32 = 256;
+
+impl<'j> Writer<'j> {
+    /// A writer for a tree of `depth`; `binary` promises that no cell will be PARTIAL.
+    pub(crate) fn new(job: &'j Job<'j>, depth: u8, binary: bool) -> Writer<'j> {
+        Writer {
+            job,
+            depth,
+            levels: (1..element_levels(depth)).map(|_| Chunks::new()).collect(),
+            bricks: if binary { BrickChunks::One(Chunks::new()) } else { BrickChunks::Two(Chunks::new()) },
+            nodes: 0,
+            bytes: 0,
+            untold: 0,
+        }
+    }
+
+    /// An empty writer for a part of the same tree, to be [appended](Self::append) later.
+    pub(crate) fn sibling(&self) -> Writer<'j> {
+        Writer::new(self.job, self.depth, matches!(self.bricks, BrickChunks::One(_)))
+    }
+
+    pub(crate) fn job(&self) -> &'j Job<'j> {
+        self.job
+    }
+
+    /// Reserves room for `count` elements of level `e`; memory is only touched when it is used.
+    pub(crate) fn reserve(&mut self, e: usize, count: usize) -> Result<(), Error> {
+        match self.levels.get_mut(e) {
+            Some(level) => level.reserve(count),
+            None => match &mut self.bricks {
+                BrickChunks::One(bricks) => bricks.reserve(count),
+                BrickChunks::Two(bricks) => bricks.reserve(count),
+            },
+        }
+    }
+
+    /// Hands over an element or brick of level `e` whose children have been handed over: returns the tag of
+    /// its cell, which is BRANCH if it had to be stored.
+    #[inline(always)]
+    pub(crate) fn put(&mut self, e: usize, planes: Planes) -> Result<Tag, Error> {
+        let real = if e == 0 { root_cells(self.depth) } else { !0 };
+        if let Some(tag) = planes.merged(real) {
+            return Ok(tag);
+        }
+        let size = match self.levels.get_mut(e) {
+            Some(level) => {
+                level.push(planes.masked(real))?;
+                size_of::<Planes>()
+            }
+            None => match &mut self.bricks {
+                BrickChunks::One(bricks) => {
+                    if planes.partial() & real != 0 {
+                        return Err(Damage::MissingPlane.into());
+                    }
+                    bricks.push(planes.lower & real)?;
+                    size_of::<u64>()
+                }
+                BrickChunks::Two(bricks) => {
+                    bricks.push(planes.masked(real))?;
+                    size_of::<Planes>()
+                }
+            },
+        };
+        let half = e == 0 && self.depth % 2 == 1;
+        self.account(1, size, || octree_nodes(planes.masked(real), half))?;
+        Ok(Tag::Branch)
+    }
+
+    #[inline(always)]
+    fn account(&mut self, count: u32, bytes: usize, nodes: impl FnOnce() -> usize) -> Result<(), Error> {
+        self.bytes += bytes;
+        self.untold += count;
+        if self.job.counts_nodes() {
+            self.nodes += nodes();
+        }
+        if self.untold >= REPORT { self.report() } else { Ok(()) }
+    }
+
+    #[cold]
+    fn report(&mut self) -> Result<(), Error> {
+        self.untold = 0;
+        self.job.spend(core::mem::take(&mut self.nodes), core::mem::take(&mut self.bytes))
+    }
+
+    /// Copies the subtrees below the elements `range` of level `e`, complemented if `flip`: one run per
+    /// level. They must be admissible by `windows`, which they pass.
+    pub(crate) fn copy(
+        &mut self,
+        tree: &OctreeRef<'_>,
+        windows: &mut Windows,
+        parent: usize,
+        e: usize,
+        mut range: Range<usize>,
+        flip: bool,
+    ) -> Result<(), Error> {
+        let last = self.levels.len();
+        for level in e..=last {
+            windows.admit(parent, level, range.start, range.end)?;
+            if range.is_empty() {
+                return Ok(());
+            }
+            let count = range.len();
+            let reported = u32::try_from(count).unwrap_or(u32::MAX);
+            if level == last {
+                let (first, end) = (range.start - tree.planes.len(), range.end - tree.planes.len());
+                let damaged = Damage::Dictionary { brick: first as u64 };
+                let size = self.copy_bricks(&tree.bricks, first..end, flip)?.ok_or(damaged)?;
+                return self.account(reported, count * size, || {
+                    (first..end).filter_map(|b| tree.bricks.get(b)).map(|b| octree_nodes(b, false)).sum()
+                });
+            }
+            let run = &tree.planes[range.clone()];
+            let out = &mut self.levels[level];
+            out.reserve(count)?;
+            if flip {
+                out.tail.extend(run.iter().map(|planes| planes.complement()));
+            } else {
+                out.tail.extend_from_slice(run);
+            }
+            self.account(reported, size_of_val(run), || run.iter().map(|&p| octree_nodes(p, false)).sum())?;
+            range = tree.children_from(range.start, level)..tree.children_from(range.end, level);
+        }
+        Ok(())
+    }
+
+    /// Bytes of each copied brick, or `None` if one is damaged.
+    fn copy_bricks(
+        &mut self,
+        from: &Bricks<'_>,
+        run: Range<usize>,
+        flip: bool,
+    ) -> Result<Option<usize>, Error> {
+        fn append<T: Brick, U: Brick>(
+            from: &BrickArray<'_, T>,
+            run: Range<usize>,
+            flip: bool,
+            out: &mut Chunks<U>,
+        ) -> Result<Option<usize>, Error> {
+            out.reserve(run.len())?;
+            let good = match flip {
+                true => from.extend(run, &mut out.tail, |brick| U::of(brick.planes().complement())),
+                false => from.extend(run, &mut out.tail, |brick| U::of(brick.planes())),
+            };
+            Ok(good.then_some(size_of::<U>()))
+        }
+        match (from, &mut self.bricks) {
+            (Bricks::One(from), BrickChunks::One(out)) => append(from, run, flip, out),
+            (Bricks::One(from), BrickChunks::Two(out)) => append(from, run, flip, out),
+            (Bricks::Two(from), BrickChunks::Two(out)) => append(from, run, flip, out),
+            (Bricks::Two(_), BrickChunks::One(_)) => Err(Damage::MissingPlane.into()),
+        }
+    }
+
+    /// Takes over what a sibling wrote, which comes after all that this one wrote so far.
+    pub(crate) fn append(&mut self, other: Writer<'j>) -> Result<(), Error> {
+        for (level, theirs) in self.levels.iter_mut().zip(other.levels) {
+            level.append(theirs)?;
+        }
+        match (&mut self.bricks, other.bricks) {
+            (BrickChunks::One(bricks), BrickChunks::One(theirs)) => bricks.append(theirs)?,
+            (BrickChunks::Two(bricks), BrickChunks::Two(theirs)) => bricks.append(theirs)?,
+            _ => unreachable!("siblings write the same kind of brick"),
+        }
+        self.nodes += other.nodes;
+        self.bytes += other.bytes;
+        self.untold = self.untold.saturating_add(other.untold);
+        if self.untold >= REPORT { self.report() } else { Ok(()) }
+    }
+
+    /// Makes the tree: concatenates the levels and ranks the children. `root` is what the last
+    /// [`put`](Self::put) of level 0 returned.
+    pub(crate) fn finish(mut self, frame: Frame, root: Tag, exterior: Tag) -> Result<Octree, Error> {
+        self.report()?;
+        let mut starts = [0; MAX_ELEMENT_LEVELS + 1];
+        let total = self.levels.iter().map(Chunks::len).sum();
+        let mut planes: Vec<Planes> = Vec::new();
+        planes.try_reserve_exact(total).map_err(|_| Error::OutOfMemory)?;
+        let levels = self.levels.len() + 1;
+        for (e, level) in self.levels.into_iter().enumerate() {
+            starts[e] = planes.len();
+            for piece in level.full.iter().chain([&level.tail]) {
+                planes.extend_from_slice(piece);
+            }
+        }
+        starts[levels - 1] = planes.len();
+        let undecided = |planes: &Planes| planes.partial() != 0;
+        let bricks = match self.bricks {
+            BrickChunks::One(bricks) => {
+                if planes.iter().any(undecided) {
+                    return Err(Damage::MissingPlane.into());
+                }
+                OwnedBricks::One(OwnedArray::Raw(bricks.into_vec()?))
+            }
+            BrickChunks::Two(bricks) => {
+                let bricks = bricks.into_vec()?;
+                if planes.iter().any(undecided) || bricks.iter().any(undecided) {
+                    OwnedBricks::Two(OwnedArray::Raw(bricks))
+                } else {
+                    let mut one = Vec::new();
+                    one.try_reserve_exact(bricks.len()).map_err(|_| Error::OutOfMemory)?;
+                    one.extend(bricks.iter().map(|planes| planes.lower));
+                    OwnedBricks::One(OwnedArray::Raw(one))
+                }
+            }
+        };
+        starts[levels..].fill(planes.len() + bricks.len());
+        Ok(Octree::new(Arrays::link(frame, root, exterior, planes, bricks, starts)?))
+    }
+}
+
+/// Octree nodes in an element: itself and its cut octants. A root that starts half-way is only its octant.
+#[inline]
+pub(crate) fn octree_nodes(planes: Planes, half: bool) -> usize {
+    if half {
+        return 1;
+    }
+    let [empty, full, partial] = planes.octants();
+    9 - (empty | full | partial).count_ones() as usize
+}

@@ -1,0 +1,7 @@
+//! What makes octrees: building from a solid, and the set algebra of stored trees.
+
+mod boolean;
+mod build;
+
+pub use boolean::{complement, difference, intersection, intersection_of, union, union_of, xor, xor_of};
+pub use build::{build, compact, resolve};

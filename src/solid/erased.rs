@@ -1,0 +1,251 @@
+//! Solids of any kind behind one type.
+//!
+//! [`Solid`] has associated types so that loops over it compile to tight code. Programs that hold shapes of
+//! different kinds in one place (the C interface first of all) use [`AnySolid`], which is a `Solid` itself.
+
+use super::{Scratch, Solid, Verdict};
+use crate::error::Error;
+use crate::lattice::{Cube, Frame};
+use crate::octree::{Block, Tag};
+use alloc::boxed::Box;
+use alloc::sync::Arc;
+use alloc::vec::Vec;
+use core::any::Any;
+
+/// Any solid, shared. Costs an indirect call a split.
+#[derive(Clone)]
+pub struct AnySolid(Arc<dyn Erased>);
+
+/// A part of an [`AnySolid`]: its place among the parts that the scratch memory keeps.
+#[derive(Debug, Clone, Copy)]
+pub struct ErasedPart(usize);
+
+/// Scratch memory of an [`AnySolid`], made by the solid when it is first used.
+#[derive(Default)]
+pub struct ErasedScratch(Option<Box<dyn Slot>>);
+
+impl AnySolid {
+    /// Wraps a solid.
+    pub fn new<S: Solid<Part: 'static, Scratch: 'static> + Send + 'static>(solid: S) -> AnySolid {
+        AnySolid(Arc::new(solid))
+    }
+}
+
+/// The typed scratch memory behind an [`ErasedScratch`]: the solid's own, and the parts that were handed out,
+/// each with the height that the solid's own then had.
+struct Typed<S: Solid> {
+    scratch: S::Scratch,
+    parts: Vec<(S::Part, usize)>,
+}
+
+impl<S: Solid> Typed<S> {
+    fn hand_out(&mut self, part: S::Part) -> Result<ErasedPart, Error> {
+        self.parts.try_reserve(1).map_err(|_| Error::OutOfMemory)?;
+        self.parts.push((part, self.scratch.mark()));
+        Ok(ErasedPart(self.parts.len() - 1))
+    }
+}
+
+trait Slot: Any + Send + Sync {
+    fn mark(&self) -> usize;
+    fn release(&mut self, mark: usize);
+    fn as_any(&self) -> &dyn Any;
+    fn as_any_mut(&mut self) -> &mut dyn Any;
+}
+
+impl<S: Solid<Part: 'static, Scratch: 'static> + 'static> Slot for Typed<S> {
+    fn mark(&self) -> usize {
+        self.parts.len()
+    }
+
+    fn release(&mut self, mark: usize) {
+        self.parts.truncate(mark);
+        self.scratch.release(self.parts.last().map_or(0, |&(_, height)| height));
+    }
+
+    fn as_any(&self) -> &dyn Any {
+        self
+    }
+
+    fn as_any_mut(&mut self) -> &mut dyn Any {
+        self
+    }
+}
+
+impl Scratch for ErasedScratch {
+    fn mark(&self) -> usize {
+        self.0.as_ref().map_or(0, |slot| slot.mark())
+    }
+
+    fn release(&mut self, mark: usize) {
+        if let Some(slot) = &mut self.0 {
+            slot.release(mark);
+        }
+    }
+}
+
+impl ErasedScratch {
+    /// The scratch memory as that of `S`. One that another kind of solid left behind is replaced: its parts
+    /// mean nothing here.
+    fn typed<S: Solid<Part: 'static, Scratch: 'static> + 'static>(&mut self) -> &mut Typed<S> {
+        if !self.0.as_ref().is_some_and(|slot| slot.as_any().is::<Typed<S>>()) {
+            self.0 = Some(Box::new(Typed::<S> { scratch: S::Scratch::default(), parts: Vec::new() }));
+        }
+        let slot = self.0.as_mut().and_then(|slot| slot.as_any_mut().downcast_mut());
+        slot.unwrap_or_else(|| unreachable!("the slot was just made for this type"))
+    }
+
+    fn part<S: Solid<Part: 'static, Scratch: 'static> + 'static>(
+        &self,
+        part: ErasedPart,
+    ) -> Option<(&S::Scratch, &S::Part)> {
+        let typed = self.0.as_ref()?.as_any().downcast_ref::<Typed<S>>()?;
+        Some((&typed.scratch, &typed.parts.get(part.0)?.0))
+    }
+}
+
+/// The object-safe face of a solid.
+trait Erased: Send + Sync {
+    fn root(&self, scratch: &mut ErasedScratch, frame: &Frame) -> Result<Verdict<ErasedPart>, Error>;
+    fn split(
+        &self,
+        scratch: &mut ErasedScratch,
+        cube: &Cube<'_>,
+        part: ErasedPart,
+    ) -> Result<[Verdict<ErasedPart>; 8], Error>;
+    fn fill(
+        &self,
+        scratch: &mut ErasedScratch,
+        cube: &Cube<'_>,
+        part: ErasedPart,
+        block: &mut Block,
+    ) -> Result<bool, Error>;
+    fn sample(&self, scratch: &mut ErasedScratch, cube: &Cube<'_>, part: ErasedPart) -> Option<bool>;
+    fn exterior(&self, frame: &Frame) -> Tag;
+    fn hand_over(
+        &self,
+        from: &ErasedScratch,
+        part: ErasedPart,
+        to: &mut ErasedScratch,
+    ) -> Result<ErasedPart, Error>;
+}
+
+impl<S: Solid<Part: 'static, Scratch: 'static> + Send + 'static> Erased for S {
+    fn root(&self, scratch: &mut ErasedScratch, frame: &Frame) -> Result<Verdict<ErasedPart>, Error> {
+        let typed = scratch.typed::<S>();
+        Ok(match Solid::root(self, &mut typed.scratch, frame)? {
+            Verdict::Empty => Verdict::Empty,
+            Verdict::Full => Verdict::Full,
+            Verdict::Undecided => Verdict::Undecided,
+            Verdict::Partial(part) => Verdict::Partial(typed.hand_out(part)?),
+        })
+    }
+
+    fn split(
+        &self,
+        scratch: &mut ErasedScratch,
+        cube: &Cube<'_>,
+        part: ErasedPart,
+    ) -> Result<[Verdict<ErasedPart>; 8], Error> {
+        const UNDECIDED: Verdict<ErasedPart> = Verdict::Undecided;
+        let typed = scratch.typed::<S>();
+        let mut verdicts = [UNDECIDED; 8];
+        let Some((part, _)) = typed.parts.get(part.0).cloned() else { return Ok(verdicts) };
+        for (verdict, child) in verdicts.iter_mut().zip(Solid::split(self, &mut typed.scratch, cube, &part)?)
+        {
+            *verdict = match child {
+                Verdict::Empty => Verdict::Empty,
+                Verdict::Full => Verdict::Full,
+                Verdict::Undecided => Verdict::Undecided,
+                Verdict::Partial(part) => Verdict::Partial(typed.hand_out(part)?),
+            };
+        }
+        Ok(verdicts)
+    }
+
+    fn fill(
+        &self,
+        scratch: &mut ErasedScratch,
+        cube: &Cube<'_>,
+        part: ErasedPart,
+        block: &mut Block,
+    ) -> Result<bool, Error> {
+        let typed = scratch.typed::<S>();
+        match typed.parts.get(part.0).cloned() {
+            Some((part, _)) => Solid::fill(self, &mut typed.scratch, cube, &part, block),
+            None => Ok(false),
+        }
+    }
+
+    fn sample(&self, scratch: &mut ErasedScratch, cube: &Cube<'_>, part: ErasedPart) -> Option<bool> {
+        let typed = scratch.typed::<S>();
+        let (part, _) = typed.parts.get(part.0).cloned()?;
+        Solid::sample(self, &mut typed.scratch, cube, &part)
+    }
+
+    fn exterior(&self, frame: &Frame) -> Tag {
+        Solid::exterior(self, frame)
+    }
+
+    fn hand_over(
+        &self,
+        from: &ErasedScratch,
+        part: ErasedPart,
+        to: &mut ErasedScratch,
+    ) -> Result<ErasedPart, Error> {
+        let to = to.typed::<S>();
+        match from.part::<S>(part) {
+            Some((from, part)) => {
+                let part = Solid::hand_over(self, from, part, &mut to.scratch)?;
+                to.hand_out(part)
+            }
+            // A part that does not exist is none that can be split.
+            None => Ok(ErasedPart(usize::MAX)),
+        }
+    }
+}
+
+impl Solid for AnySolid {
+    type Part = ErasedPart;
+    type Scratch = ErasedScratch;
+
+    fn root(&self, scratch: &mut ErasedScratch, frame: &Frame) -> Result<Verdict<ErasedPart>, Error> {
+        self.0.root(scratch, frame)
+    }
+
+    fn split(
+        &self,
+        scratch: &mut ErasedScratch,
+        cube: &Cube<'_>,
+        part: &ErasedPart,
+    ) -> Result<[Verdict<ErasedPart>; 8], Error> {
+        self.0.split(scratch, cube, *part)
+    }
+
+    fn fill(
+        &self,
+        scratch: &mut ErasedScratch,
+        cube: &Cube<'_>,
+        part: &ErasedPart,
+        block: &mut Block,
+    ) -> Result<bool, Error> {
+        self.0.fill(scratch, cube, *part, block)
+    }
+
+    fn sample(&self, scratch: &mut ErasedScratch, cube: &Cube<'_>, part: &ErasedPart) -> Option<bool> {
+        self.0.sample(scratch, cube, *part)
+    }
+
+    fn exterior(&self, frame: &Frame) -> Tag {
+        self.0.exterior(frame)
+    }
+
+    fn hand_over(
+        &self,
+        from: &ErasedScratch,
+        part: &ErasedPart,
+        to: &mut ErasedScratch,
+    ) -> Result<ErasedPart, Error> {
+        self.0.hand_over(from, *part, to)
+    }
+}

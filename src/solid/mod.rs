@@ -1,0 +1,192 @@
+//! Solids: everything that can split a cell.
+//!
+//! The library asks one thing of a shape: *split this PARTIAL cell into its eight children, classified*.
+//! Whatever has a shape is a [`Solid`]: primitives, triangle meshes, stored octrees, a host program's
+//! callback. Whatever wants a shape calls [`Solid::split`] and nothing else. Each producer is one file, and
+//! none knows the others.
+
+mod callback;
+mod erased;
+mod exact;
+mod halfspace;
+mod primitive;
+mod stored;
+
+pub use callback::Callback;
+pub use erased::{AnySolid, ErasedPart, ErasedScratch};
+pub use halfspace::HalfSpace;
+pub use primitive::{AxisBox, Ball};
+pub use stored::{Stored, StoredPart};
+
+use crate::error::Error;
+use crate::lattice::{Cube, Frame};
+use crate::octree::{Block, Planes, Tag};
+use alloc::vec::Vec;
+
+/// What a solid says of one cell.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Verdict<P> {
+    /// The cell's interior and the solid's are proven disjoint.
+    Empty,
+    /// The cell is proven to lie in the solid.
+    Full,
+    /// Not decided, and splitting does not help.
+    Undecided,
+    /// Not decided; the part is what the solid remembers about the cell, so that it can split it.
+    Partial(P),
+}
+
+impl<P> Verdict<P> {
+    /// The verdict as a tag.
+    #[inline(always)]
+    pub fn tag(&self) -> Tag {
+        match self {
+            Verdict::Empty => Tag::Empty,
+            Verdict::Full => Tag::Full,
+            Verdict::Undecided | Verdict::Partial(_) => Tag::Partial,
+        }
+    }
+}
+
+/// Memory that parts of cells refer to: a stack, so that no split allocates. Parts made after a mark are
+/// gone once the mark is released.
+pub trait Scratch: Default + Send + Sync {
+    /// The present height.
+    fn mark(&self) -> usize;
+
+    /// Back to an earlier height.
+    fn release(&mut self, mark: usize);
+}
+
+/// For solids whose parts stand alone.
+impl Scratch for () {
+    fn mark(&self) -> usize {
+        0
+    }
+    fn release(&mut self, _: usize) {}
+}
+
+/// Anything that can split a cell.
+///
+/// # Laws
+/// 1. A FULL or EMPTY verdict is proven. Contact is not overlap: FULL means that the whole (closed) cell lies
+///    in the solid, EMPTY that the interiors are disjoint.
+/// 2. A verdict depends on the cell and the solid alone: not on the path to the cell, the thread, or what
+///    was asked before.
+/// 3. The part of any cell can be had again by replaying the splits from the root.
+///
+/// All of it concerns the solid inside of the universe.
+pub trait Solid: Sync {
+    /// What the solid remembers about one PARTIAL cell; it may refer to the scratch memory.
+    type Part: Clone + Send + Sync;
+
+    /// Where parts keep what does not fit into them.
+    type Scratch: Scratch;
+
+    /// The universe's verdict.
+    ///
+    /// # Errors
+    /// If the solid cannot be had in this frame, or memory runs out.
+    fn root(&self, scratch: &mut Self::Scratch, frame: &Frame) -> Result<Verdict<Self::Part>, Error>;
+
+    /// Splits a PARTIAL cell: the verdicts of its children in octant order.
+    ///
+    /// # Errors
+    /// If memory runs out.
+    fn split(
+        &self,
+        scratch: &mut Self::Scratch,
+        cube: &Cube<'_>,
+        part: &Self::Part,
+    ) -> Result<[Verdict<Self::Part>; 8], Error>;
+
+    /// Splits two levels at once, the grain of storage: the tags of the 64 grandchildren in Morton order.
+    /// The parts of those that can be split are appended to `parts` with their index, in ascending order.
+    ///
+    /// # Errors
+    /// As [`split`](Self::split).
+    fn split64(
+        &self,
+        scratch: &mut Self::Scratch,
+        cube: &Cube<'_>,
+        part: &Self::Part,
+        parts: &mut Vec<(u8, Self::Part)>,
+    ) -> Result<Planes, Error> {
+        split_twice(self, scratch, cube, part, parts)
+    }
+
+    /// Classifies a PARTIAL cell of 64³ finest cells at once, where that is faster than descent: fills
+    /// `block` with just what descending by [`split`](Self::split) would find, as the block's rule resolves
+    /// it, and returns `true`. The default returns `false`: descend.
+    ///
+    /// # Errors
+    /// As [`split`](Self::split).
+    fn fill(
+        &self,
+        scratch: &mut Self::Scratch,
+        cube: &Cube<'_>,
+        part: &Self::Part,
+        block: &mut Block,
+    ) -> Result<bool, Error> {
+        let _ = (scratch, cube, part, block);
+        Ok(false)
+    }
+
+    /// Whether the centre of a PARTIAL cell of the frame's depth lies in the solid, or `None` if the solid
+    /// cannot tell. A centre on the boundary is decided as if all centres were shifted by (ε, ε², ε³).
+    fn sample(&self, scratch: &mut Self::Scratch, cube: &Cube<'_>, part: &Self::Part) -> Option<bool> {
+        let _ = (scratch, cube, part);
+        None
+    }
+
+    /// What is known of the space around the universe: EMPTY if the solid is proven to end inside, FULL if
+    /// the space is proven solid, else PARTIAL.
+    fn exterior(&self, frame: &Frame) -> Tag {
+        let _ = frame;
+        Tag::Partial
+    }
+
+    /// Copies a part with what it refers to into the scratch memory of another thread.
+    ///
+    /// # Errors
+    /// If memory runs out.
+    fn hand_over(
+        &self,
+        from: &Self::Scratch,
+        part: &Self::Part,
+        to: &mut Self::Scratch,
+    ) -> Result<Self::Part, Error> {
+        let _ = (from, to);
+        Ok(part.clone())
+    }
+}
+
+/// Two levels by splitting twice.
+pub(crate) fn split_twice<S: Solid + ?Sized>(
+    solid: &S,
+    scratch: &mut S::Scratch,
+    cube: &Cube<'_>,
+    part: &S::Part,
+    parts: &mut Vec<(u8, S::Part)>,
+) -> Result<Planes, Error> {
+    let mut planes = Planes::uniform(Tag::Empty);
+    for (k, child) in (0u8..).zip(solid.split(scratch, cube, part)?) {
+        let mut octant = Planes::uniform(child.tag()).masked(0xFF << (8 * k));
+        if let Verdict::Partial(part) = child {
+            for (c, cell) in (8 * k..).zip(solid.split(scratch, &cube.child(k), &part)?) {
+                octant.set(c as u32, cell.tag());
+                if let Verdict::Partial(part) = cell {
+                    parts.try_reserve(1).map_err(|_| Error::OutOfMemory)?;
+                    parts.push((c, part));
+                }
+            }
+        }
+        planes = planes.union(octant);
+    }
+    Ok(planes)
+}
+
+/// Whether a coefficient is of a magnitude that exact arithmetic can take: 2^-256 to 2^256.
+pub(crate) fn is_moderate(value: f64) -> bool {
+    (f64::from_bits((1023 - 256) << 52)..=f64::from_bits((1023 + 256) << 52)).contains(&value.abs())
+}

@@ -1,0 +1,127 @@
+//! A stored octree as a solid.
+
+use super::{Solid, Verdict, split_twice};
+use crate::error::Error;
+use crate::lattice::{Cube, Frame};
+use crate::octree::{OctreeRef, Planes, Tag};
+use alloc::vec::Vec;
+
+/// An octree, in memory or on disk, as a solid on its own universe. Built to fewer levels it is cut there
+/// (what is cut becomes PARTIAL), built to more its PARTIAL cells stay undecided.
+#[derive(Debug, Clone, Copy)]
+pub struct Stored<'a>(OctreeRef<'a>);
+
+/// Where a cut cell of a stored octree is described.
+#[derive(Debug, Clone, Copy)]
+pub enum StoredPart {
+    /// By all of an element.
+    Element {
+        /// Element level.
+        level: u8,
+        /// Index of the element.
+        index: usize,
+    },
+    /// By one octant of an element.
+    Octant {
+        /// Element level.
+        level: u8,
+        /// Index of the element.
+        index: usize,
+        /// The octant.
+        octant: u8,
+    },
+}
+
+impl<'a> Stored<'a> {
+    /// The octree as a solid.
+    pub fn new(tree: &OctreeRef<'a>) -> Stored<'a> {
+        Stored(*tree)
+    }
+
+    /// Links are followed from parents to children only, and the level rises with each: whatever the bytes,
+    /// a descent ends.
+    fn entry(&self, level: u8, index: usize) -> Planes {
+        let tree = &self.0;
+        let entry = if tree.on_level(index, level as usize) { tree.entry(index) } else { None };
+        entry.unwrap_or(Planes::uniform(Tag::Partial))
+    }
+
+    fn cell(&self, level: u8, index: usize, planes: Planes, c: u32) -> Verdict<StoredPart> {
+        match planes.tag(c) {
+            Tag::Empty => Verdict::Empty,
+            Tag::Full => Verdict::Full,
+            Tag::Partial => Verdict::Undecided,
+            Tag::Branch => match self.0.child(index, planes.branch(), c) {
+                Some(child) if level as usize + 1 < self.0.levels() => {
+                    Verdict::Partial(StoredPart::Element { level: level + 1, index: child })
+                }
+                _ => Verdict::Undecided,
+            },
+        }
+    }
+}
+
+const OCTANTS: [u8; 8] = [0, 1, 2, 3, 4, 5, 6, 7];
+
+impl Solid for Stored<'_> {
+    type Part = StoredPart;
+    type Scratch = ();
+
+    fn root(&self, _: &mut (), frame: &Frame) -> Result<Verdict<StoredPart>, Error> {
+        if !frame.same_universe(self.0.frame()) {
+            return Err(Error::FrameMismatch);
+        }
+        let odd = self.0.frame().depth() % 2 == 1;
+        Ok(match self.0.root_tag() {
+            Tag::Empty => Verdict::Empty,
+            Tag::Full => Verdict::Full,
+            Tag::Partial => Verdict::Undecided,
+            Tag::Branch if odd => Verdict::Partial(StoredPart::Octant { level: 0, index: 0, octant: 0 }),
+            Tag::Branch => Verdict::Partial(StoredPart::Element { level: 0, index: 0 }),
+        })
+    }
+
+    fn split(&self, _: &mut (), _: &Cube<'_>, part: &StoredPart) -> Result<[Verdict<StoredPart>; 8], Error> {
+        Ok(match *part {
+            StoredPart::Element { level, index } => {
+                let planes = self.entry(level, index);
+                OCTANTS.map(|octant| match planes.octant(octant as u32) {
+                    Tag::Empty => Verdict::Empty,
+                    Tag::Full => Verdict::Full,
+                    Tag::Partial => Verdict::Undecided,
+                    Tag::Branch => Verdict::Partial(StoredPart::Octant { level, index, octant }),
+                })
+            }
+            StoredPart::Octant { level, index, octant } => {
+                let planes = self.entry(level, index);
+                OCTANTS.map(|k| self.cell(level, index, planes, (8 * octant + k) as u32))
+            }
+        })
+    }
+
+    fn split64(
+        &self,
+        scratch: &mut (),
+        cube: &Cube<'_>,
+        part: &StoredPart,
+        parts: &mut Vec<(u8, StoredPart)>,
+    ) -> Result<Planes, Error> {
+        // An octant straddles the stored grain: its grandchildren lie in the next elements.
+        let StoredPart::Element { level, index } = *part else {
+            return split_twice(self, scratch, cube, part, parts);
+        };
+        let planes = self.entry(level, index);
+        for c in (0..64).filter(|c| planes.branch() >> c & 1 != 0) {
+            if let Verdict::Partial(part) = self.cell(level, index, planes, c) {
+                parts.try_reserve(1).map_err(|_| Error::OutOfMemory)?;
+                parts.push((c as u8, part));
+            }
+        }
+        // Whoever asks sees a cut cell as PARTIAL with a part.
+        Ok(Planes { lower: planes.full(), upper: planes.upper | planes.lower })
+    }
+
+    fn exterior(&self, _: &Frame) -> Tag {
+        self.0.exterior()
+    }
+}
