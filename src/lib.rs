@@ -65,6 +65,6 @@ pub use op::{
 };
 pub use query::{Membership, PointCursor, Region};
 pub use solid::{
-    AnySolid, AxisBox, Ball, Callback, ErasedPart, ErasedScratch, HalfSpace, Scratch, Solid, Stored,
-    StoredPart, Verdict,
+    AnySolid, AxisBox, Ball, Callback, ErasedPart, ErasedScratch, FillRule, HalfSpace, MeshPart, MeshReport,
+    MeshScratch, MeshSolid, Scratch, Solid, Stored, StoredPart, TriangleMesh, Verdict,
 };

@@ -139,22 +139,39 @@ impl Frame {
     /// face belongs to the last cell. `None` outside the universe and for NaN. Exact for every double.
     #[inline]
     pub fn cell_at(&self, axis: usize, x: f64) -> Option<u32> {
-        let scaled = self.scaled(axis, x);
-        // Inside the universe |scaled| ≤ 2^20, so its error stays below 2^-31: only a hair's breadth from a
-        // lattice plane can the rounded coordinate lie in another cell than the true one.
-        const HAIR: f64 = 1.0 / (1u64 << 30) as f64;
-        let limit = self.cells() as f64;
-        if !(scaled > HAIR && scaled < limit - HAIR) {
-            return self.cell_at_exactly(axis, x);
-        }
-        let cell = scaled as u32;
-        let fraction = scaled - cell as f64;
-        if fraction > HAIR && fraction < 1.0 - HAIR { Some(cell) } else { self.cell_at_exactly(axis, x) }
+        let (cell, sure) = self.cell_nearby(axis, x);
+        if sure && cell < self.cells() as u64 { Some(cell as u32) } else { self.cell_at_exactly(axis, x) }
     }
 
     /// Indices of the finest cell that contains a model point; see [`cell_at`](Self::cell_at).
-    #[inline]
+    #[inline(always)]
     pub fn cell_of(&self, point: [f64; 3]) -> Option<[u32; 3]> {
+        let (x, x_sure) = self.cell_nearby(0, point[0]);
+        let (y, y_sure) = self.cell_nearby(1, point[1]);
+        let (z, z_sure) = self.cell_nearby(2, point[2]);
+        // Their number is a power of two, so one comparison tells whether all three are cells.
+        if x_sure & y_sure & z_sure && (x | y | z) < self.cells() as u64 {
+            return Some([x as u32, y as u32, z as u32]);
+        }
+        self.cell_of_exactly(point)
+    }
+
+    /// The rounded-down lattice coordinate of `x`, and whether rounding errors cannot have changed it. What is
+    /// outside of the universe comes out as a number that is no cell, or as unsure.
+    #[inline(always)]
+    fn cell_nearby(&self, axis: usize, x: f64) -> (u64, bool) {
+        // Adding this leaves the nearest integer in the low bits (and NaN and the far outside elsewhere).
+        const SHIFT: f64 = (3u64 << 51) as f64;
+        // Inside the universe the scaled coordinate is at most 2^20 and its error below 2^-31.
+        const SURE: f64 = 0.5 - 1.0 / (1u64 << 30) as f64;
+        let scaled = self.scaled(axis, x) - 0.5;
+        let shifted = scaled + SHIFT;
+        let cell = shifted.to_bits().wrapping_sub(SHIFT.to_bits());
+        (cell, (scaled - (shifted - SHIFT)).abs() < SURE)
+    }
+
+    #[cold]
+    fn cell_of_exactly(&self, point: [f64; 3]) -> Option<[u32; 3]> {
         Some([self.cell_at(0, point[0])?, self.cell_at(1, point[1])?, self.cell_at(2, point[2])?])
     }
 

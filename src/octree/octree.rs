@@ -100,15 +100,13 @@ impl Arrays {
                 let (expected, found) = ((expected - starts[e]) as u64, (found - starts[e]) as u64);
                 return Err(Damage::Count { level: e as u8, expected, found }.into());
             }
-            crate::dispatch::with_popcount(|| {
-                for (n, planes) in planes.iter().enumerate().take(starts[e + 1]).skip(starts[e]) {
-                    if n % 1024 == 0 {
-                        base.push(next as u64);
-                    }
-                    rel.push((next as u64 - base[n >> 10]) as u16);
-                    next += planes.branch().count_ones() as usize;
+            for (n, planes) in planes.iter().enumerate().take(starts[e + 1]).skip(starts[e]) {
+                if n % 1024 == 0 {
+                    base.push(next as u64);
                 }
-            });
+                rel.push((next as u64 - base[n >> 10]) as u16);
+                next += planes.branch().count_ones() as usize;
+            }
         }
         Ok(Arrays { frame, root, exterior, planes, rel, base, bricks, starts, table: None })
     }

@@ -3,6 +3,7 @@
 use super::tag::Tag;
 use super::view::OctreeRef;
 use super::word::Planes;
+use crate::dispatch::{Hot, with_popcount};
 use crate::lattice::exact::{product_down, product_up};
 use crate::lattice::{Frame, Interval};
 use alloc::vec;
@@ -136,34 +137,48 @@ impl OctreeRef<'_> {
         if self.root != Tag::Branch {
             return counts;
         }
-        crate::dispatch::with_popcount(|| {
-            let (levels, odd) = (self.levels(), depth % 2 == 1);
-            for e in 0..levels {
-                let mut sum = ElementCounts::default();
-                let (first, end) = (self.starts[e], self.starts[e + 1]);
-                if e + 1 < levels {
-                    self.planes.get(first..end).unwrap_or(&[]).iter().for_each(|&planes| sum.add(planes));
-                } else {
-                    for b in 0..end.saturating_sub(first) {
-                        // A damaged brick reads as undecided.
-                        sum.add(self.bricks.get(b).unwrap_or(Planes::uniform(Tag::Partial)));
-                    }
-                }
-                let cells = self.cell_level(e) as usize;
-                counts[cells].full += sum.full_cells;
-                counts[cells].partial += sum.partial_cells;
-                if odd && e == 0 {
-                    // The root starts half-way: its only real octant is the universe itself.
-                    counts[0].nodes = 1;
-                    continue;
-                }
-                counts[cells - 1].full += sum.full_octants;
-                counts[cells - 1].partial += sum.partial_octants;
-                counts[cells - 1].nodes += 8 * sum.elements - sum.uniform_octants;
-                counts[cells - 2].nodes += sum.elements;
-            }
-        });
+        with_popcount(Count { tree: self, counts: &mut counts });
         counts
+    }
+}
+
+/// One pass over the arrays.
+struct Count<'t, 'a> {
+    tree: &'t OctreeRef<'a>,
+    counts: &'t mut [LevelCounts],
+}
+
+impl Hot for Count<'_, '_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let Count { tree, counts } = self;
+        let (levels, odd) = (tree.levels(), tree.frame.depth() % 2 == 1);
+        for e in 0..levels {
+            let mut sum = ElementCounts::default();
+            let (first, end) = (tree.starts[e], tree.starts[e + 1]);
+            if e + 1 < levels {
+                tree.planes.get(first..end).unwrap_or(&[]).iter().for_each(|&planes| sum.add(planes));
+            } else {
+                for b in 0..end.saturating_sub(first) {
+                    // A damaged brick reads as undecided.
+                    sum.add(tree.bricks.get(b).unwrap_or(Planes::uniform(Tag::Partial)));
+                }
+            }
+            let cells = tree.cell_level(e) as usize;
+            counts[cells].full += sum.full_cells;
+            counts[cells].partial += sum.partial_cells;
+            if odd && e == 0 {
+                // The root starts half-way: its only real octant is the universe itself.
+                counts[0].nodes = 1;
+                continue;
+            }
+            counts[cells - 1].full += sum.full_octants;
+            counts[cells - 1].partial += sum.partial_octants;
+            counts[cells - 1].nodes += 8 * sum.elements - sum.uniform_octants;
+            counts[cells - 2].nodes += sum.elements;
+        }
     }
 }
 

@@ -240,9 +240,7 @@ fn combine(kernel: Kernel<'_>, control: &Control<'_>) -> Result<Octree, Error> {
                 windows.admit(root, 0, root, root + 1)?;
             }
         }
-        let root = crate::dispatch::with_popcount(|| {
-            kernel.visit(0, roots.0, roots.1, &mut windows, &mut writer, parallel)
-        })?;
+        let root = kernel.visit(0, roots.0, roots.1, &mut windows, &mut writer, parallel)?;
         let exteriors = (Planes::uniform(a.exterior()), Planes::uniform(b.exterior()));
         let exterior =
             kernel.words(exteriors.0.complement_if(kernel.a.flip), exteriors.1.complement_if(kernel.b.flip));
@@ -378,10 +376,8 @@ impl Kernel<'_> {
                         subtree.copy(&self.b.tree, &mut windows.1, n, 1, n..n + 1, flip)?;
                         Tag::Branch
                     }
-                    _ => crate::dispatch::with_popcount(|| {
-                        // The task's own root was admitted above.
-                        self.visit(1, a, b, &mut windows, &mut subtree, false)
-                    })?,
+                    // The task's own root was admitted above.
+                    _ => self.visit(1, a, b, &mut windows, &mut subtree, false)?,
                 };
                 Ok((c, tag, subtree))
             })

@@ -1,8 +1,7 @@
 //! Does the solid contain a point?
 
-use crate::dispatch::with_popcount;
+use crate::dispatch::{Hot, with_popcount};
 use crate::error::Error;
-use crate::lattice::morton;
 use crate::octree::brick::{Brick, BrickArray, Bricks};
 use crate::octree::view::{MAX_ELEMENT_LEVELS, OctreeRef};
 use crate::octree::{Octree, Planes, Tag};
@@ -20,25 +19,42 @@ pub enum Membership {
 }
 
 impl From<Tag> for Membership {
+    /// A branch that leads nowhere is undecided.
     #[inline(always)]
     fn from(tag: Tag) -> Membership {
-        match tag {
-            Tag::Empty => Membership::Outside,
-            Tag::Full => Membership::Inside,
-            Tag::Partial | Tag::Branch => Membership::Undecided,
-        }
+        const ANSWERS: [Membership; 4] =
+            [Membership::Outside, Membership::Undecided, Membership::Undecided, Membership::Inside];
+        ANSWERS[tag as usize]
     }
 }
 
-/// Points that a batch query keeps under way at once: enough to hide one level's cache misses behind
-/// another's.
-const LANES: usize = 16;
+/// Points that a batch query keeps under way at once: enough to hide one point's cache misses and
+/// mispredicted branches behind the others' work.
+const LANES: usize = 32;
 
-/// Cell of its element of level `e` (of `levels`) that the finest cell `at` lies in.
-#[inline(always)]
-fn cell_of(at: [u32; 3], e: usize, levels: usize) -> u32 {
-    let shift = 2 * (levels - 1 - e);
-    morton::index(at[0] >> shift, at[1] >> shift, at[2] >> shift)
+/// The coordinates of a finest cell side by side in one word, from which the cell's place in each element on
+/// the way is a few shifts away.
+#[derive(Clone, Copy, Default)]
+struct Packed(u64);
+
+/// Bits that a coordinate takes in a [`Packed`].
+const FIELD: u32 = 21;
+
+impl Packed {
+    #[inline(always)]
+    fn new(at: [u32; 3]) -> Packed {
+        Packed(at[0] as u64 | (at[1] as u64) << FIELD | (at[2] as u64) << (2 * FIELD))
+    }
+
+    /// The Morton index in the element whose cells have an edge of 2^shift.
+    #[inline(always)]
+    fn cell(self, shift: u32) -> u32 {
+        const FIELDS: u64 = 1 | 1 << FIELD | 1 << (2 * FIELD);
+        let pairs = self.0 >> shift & (3 * FIELDS);
+        // Bits 0 and 1 of a field to 0 and 3, then the fields into one another.
+        let spread = pairs * 5 & (9 * FIELDS);
+        (spread | spread >> (FIELD - 1) | spread >> (2 * FIELD - 2)) as u32 & 63
+    }
 }
 
 impl OctreeRef<'_> {
@@ -47,7 +63,7 @@ impl OctreeRef<'_> {
     #[inline]
     pub fn contains(&self, point: [f64; 3]) -> Membership {
         match self.frame.cell_of(point) {
-            Some(at) => self.tag_at(at).into(),
+            Some(at) => with_popcount(Descend { tree: self, at: Packed::new(at) }).into(),
             None => Membership::Undecided,
         }
     }
@@ -57,42 +73,15 @@ impl OctreeRef<'_> {
         if at.iter().any(|&a| a >= self.frame.cells()) {
             return Tag::Partial;
         }
-        with_popcount(|| self.descend(at))
-    }
-
-    #[inline(always)]
-    fn descend(&self, at: [u32; 3]) -> Tag {
-        if self.root != Tag::Branch {
-            return self.root;
-        }
-        match &self.bricks {
-            Bricks::One(bricks) => self.descend_to(bricks, at),
-            Bricks::Two(bricks) => self.descend_to(bricks, at),
-        }
-    }
-
-    #[inline(always)]
-    fn descend_to<T: Brick>(&self, bricks: &BrickArray<'_, T>, at: [u32; 3]) -> Tag {
-        let levels = self.levels();
-        let mut index = 0;
-        for e in 0..levels - 1 {
-            let c = cell_of(at, e, levels);
-            match self.step(index, e, c) {
-                Ok(child) => index = child,
-                Err(tag) => return tag,
-            }
-        }
-        let planes = bricks.get(index - self.planes.len()).map(Brick::planes);
-        finest(planes, cell_of(at, levels - 1, levels))
+        with_popcount(Descend { tree: self, at: Packed::new(at) })
     }
 
     /// The child of element `index` of level `e` in cell `c`, or the tag that ends the descent there.
     #[inline(always)]
     fn step(&self, index: usize, e: usize, c: u32) -> Result<usize, Tag> {
         let Some(planes) = self.planes.get(index) else { return Err(Tag::Partial) };
-        let tag = planes.tag(c);
-        if tag != Tag::Branch {
-            return Err(tag);
+        if planes.branch() >> c & 1 == 0 {
+            return Err(planes.tag(c));
         }
         match self.child(index, planes.branch(), c) {
             // A damaged link must not lead to another level.
@@ -102,8 +91,8 @@ impl OctreeRef<'_> {
     }
 
     /// Answers many points at once, `answers[i]` for `points[i]`; the same answers as
-    /// [`contains`](Self::contains). Points are kept under way in groups, which hides cache misses on trees
-    /// that are larger than the caches.
+    /// [`contains`](Self::contains). Points are kept under way in groups, level by level, which costs neither
+    /// mispredicted branches nor waiting for memory.
     ///
     /// # Errors
     /// [`Error::Argument`] if the slices differ in length.
@@ -111,54 +100,103 @@ impl OctreeRef<'_> {
         if points.len() != answers.len() {
             return Err(Error::Argument { name: "answers", problem: "must be as long as points" });
         }
-        with_popcount(|| match &self.bricks {
-            Bricks::One(bricks) => self.lockstep(bricks, points, answers),
-            Bricks::Two(bricks) => self.lockstep(bricks, points, answers),
-        });
+        if self.root != Tag::Branch {
+            points.iter().zip(answers).for_each(|(&point, answer)| *answer = self.contains(point));
+            return Ok(());
+        }
+        match &self.bricks {
+            Bricks::One(bricks) => with_popcount(Lockstep { tree: self, bricks, points, answers }),
+            Bricks::Two(bricks) => with_popcount(Lockstep { tree: self, bricks, points, answers }),
+        }
         Ok(())
     }
+}
+
+/// One point on its way down.
+struct Descend<'t, 'a> {
+    tree: &'t OctreeRef<'a>,
+    at: Packed,
+}
+
+impl Hot for Descend<'_, '_> {
+    type Output = Tag;
 
     #[inline(always)]
-    fn lockstep<T: Brick>(
-        &self,
-        bricks: &BrickArray<'_, T>,
-        points: &[[f64; 3]],
-        answers: &mut [Membership],
-    ) {
-        let levels = self.levels();
-        for (points, answers) in points.chunks(LANES).zip(answers.chunks_mut(LANES)) {
-            let mut at = [[0u32; 3]; LANES];
-            let mut index = [0usize; LANES];
-            let mut under_way = 0u32;
-            for (i, &point) in points.iter().enumerate() {
-                answers[i] = match self.frame.cell_of(point) {
-                    Some(cell) => {
-                        at[i] = cell;
-                        under_way |= ((self.root == Tag::Branch) as u32) << i;
-                        self.root.into()
-                    }
-                    None => Membership::Undecided,
-                };
+    fn run(self) -> Tag {
+        let Descend { tree, at } = self;
+        if tree.root != Tag::Branch {
+            return tree.root;
+        }
+        let mut index = 0;
+        let mut e = 0;
+        let mut shift = 2 * (tree.levels() as u32 - 1);
+        while shift != 0 {
+            match tree.step(index, e, at.cell(shift)) {
+                Ok(child) => index = child,
+                Err(tag) => return tag,
             }
-            for e in 0..levels - 1 {
-                let mut left = under_way;
-                while left != 0 {
-                    let i = left.trailing_zeros() as usize % LANES;
-                    left &= left - 1;
-                    match self.step(index[i], e, cell_of(at[i], e, levels)) {
-                        Ok(child) => index[i] = child,
-                        Err(tag) => {
-                            answers[i] = tag.into();
-                            under_way &= !(1 << i);
-                        }
+            e += 1;
+            shift -= 2;
+        }
+        finest(tree.bricks.get(index - tree.planes.len()), at.cell(0))
+    }
+}
+
+/// Many points on their way down, in groups.
+struct Lockstep<'t, 'a, T> {
+    tree: &'t OctreeRef<'a>,
+    bricks: &'t BrickArray<'a, T>,
+    points: &'t [[f64; 3]],
+    answers: &'t mut [Membership],
+}
+
+/// A point under way: its place in the group, its cell, and the element that it has come to.
+#[derive(Clone, Copy, Default)]
+struct Lane {
+    point: usize,
+    at: Packed,
+    index: usize,
+}
+
+impl<T: Brick> Hot for Lockstep<'_, '_, T> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let Lockstep { tree, bricks, points, answers } = self;
+        let last = tree.levels() as u32 - 1;
+        for (points, answers) in points.chunks(LANES).zip(answers.chunks_mut(LANES)) {
+            let mut lanes = [Lane::default(); LANES];
+            let mut under_way = 0;
+            for (i, &point) in points.iter().enumerate() {
+                match tree.frame.cell_of(point) {
+                    Some(at) => {
+                        lanes[under_way] = Lane { point: i, at: Packed::new(at), index: 0 };
+                        under_way += 1;
                     }
+                    None => answers[i] = Membership::Undecided,
                 }
             }
-            while under_way != 0 {
-                let i = under_way.trailing_zeros() as usize % LANES;
-                under_way &= under_way - 1;
-                let planes = bricks.get(index[i] - self.planes.len()).map(Brick::planes);
-                answers[i] = finest(planes, cell_of(at[i], levels - 1, levels)).into();
+            for e in 0..last {
+                let mut kept = 0;
+                for i in 0..under_way {
+                    let lane = lanes[i];
+                    let c = lane.at.cell(2 * (last - e));
+                    // Whatever comes of this step is written; no branch depends on whether it ends here.
+                    let planes =
+                        tree.planes.get(lane.index).copied().unwrap_or(Planes::uniform(Tag::Partial));
+                    let branch = planes.branch();
+                    let child = tree.child(lane.index, branch, c).unwrap_or(usize::MAX);
+                    let goes_on = branch >> c & 1 != 0 && tree.on_level(child, e as usize + 1);
+                    answers[lane.point] = planes.tag(c).into();
+                    lanes[kept] = Lane { index: child, ..lane };
+                    kept += goes_on as usize;
+                }
+                under_way = kept;
+            }
+            for lane in &lanes[..under_way] {
+                let planes = bricks.get(lane.index - tree.planes.len()).map(Brick::planes);
+                answers[lane.point] = finest(planes, lane.at.cell(0)).into();
             }
         }
     }
@@ -215,8 +253,9 @@ impl<'a> PointCursor<'a> {
         let shared = levels - 1 - (31 - (changed | 1).leading_zeros()) as usize / 2;
         let mut e = shared.min(self.reached);
         self.last = at;
+        let at = Packed::new(at);
         while e + 1 < levels {
-            match tree.step(self.path[e], e, cell_of(at, e, levels)) {
+            match tree.step(self.path[e], e, at.cell(2 * (levels - 1 - e) as u32)) {
                 Ok(child) => self.path[e + 1] = child,
                 Err(tag) => {
                     self.reached = e;
@@ -226,7 +265,7 @@ impl<'a> PointCursor<'a> {
             e += 1;
         }
         self.reached = e;
-        finest(tree.bricks.get(self.path[e] - tree.planes.len()), cell_of(at, e, levels))
+        finest(tree.bricks.get(self.path[e] - tree.planes.len()), at.cell(0))
     }
 }
 

@@ -9,12 +9,14 @@ mod callback;
 mod erased;
 mod exact;
 mod halfspace;
+mod mesh;
 mod primitive;
 mod stored;
 
 pub use callback::Callback;
 pub use erased::{AnySolid, ErasedPart, ErasedScratch};
 pub use halfspace::HalfSpace;
+pub use mesh::{FillRule, MeshPart, MeshReport, MeshScratch, MeshSolid, TriangleMesh};
 pub use primitive::{AxisBox, Ball};
 pub use stored::{Stored, StoredPart};
 

@@ -1,0 +1,19 @@
+//! Triangle meshes as solids.
+//!
+//! The truth for a closed mesh is the set of points with a non-zero winding number (or an odd one, on
+//! request), so that overlapping bodies, nested shells and shells turned inside out have a meaning.
+//!
+//! Classification is certified: the cells that a triangle cuts stay PARTIAL and none is ever missed, every
+//! other cell is wholly on one side, and which side is an exact integer, the winding number of its lowest
+//! centre, carried from cell to cell along lines that count the triangles they pierce.
+
+mod crossing;
+mod overlap;
+mod placed;
+mod scan;
+mod split;
+mod surface;
+mod topology;
+
+pub use split::{MeshPart, MeshScratch, MeshSolid};
+pub use surface::{FillRule, MeshReport, TriangleMesh};

@@ -1,0 +1,176 @@
+//! Which cells does a triangle cut?
+//!
+//! The separating-axis test of a triangle and a cube in the form of Schwarz and Seidel (*Fast parallel surface
+//! and solid voxelization on GPUs*, 2010): bounding box, plane, and the triangle's edges in the three
+//! coordinate planes. Each condition is linear in the cell's position, so that along a column it holds on an
+//! interval and 64 cells are decided at once.
+//!
+//! A surface cell is never missed: every condition is widened by a bound of its rounding error, which is zero
+//! where the arithmetic is exact. Then contact is not overlap: a triangle that only touches a cell's boundary
+//! does not cut it. Coarser cells are widened more than their children, so that what cuts a cell is
+//! always found to cut its parent too.
+
+use super::placed::{Corners, Placed, accuracy, are_short, bounds};
+
+/// A triangle and what the conditions need of it for cubes of one size.
+pub(super) struct Overlap {
+    /// Bounding box, outward.
+    pub(super) min: [f64; 3],
+    pub(super) max: [f64; 3],
+    /// The plane's normal, and its offsets for the cube's corner that reaches farthest along the normal and
+    /// for the one that stays farthest behind.
+    normal: [f64; 3],
+    ahead: f64,
+    behind: f64,
+    slack: f64,
+    /// Per axis w the triangle's edges seen along w: a cube with its lower corner at (u, v) is beside the
+    /// triangle unless `n · (u, v) + offset > −slack` for all three. No edges if the triangle is seen edge-on.
+    edges: [Option<[Edge; 3]>; 3],
+}
+
+#[derive(Clone, Copy)]
+struct Edge {
+    u: f64,
+    v: f64,
+    offset: f64,
+    slack: f64,
+}
+
+/// The other two axes, ascending.
+const OTHERS: [(usize, usize); 3] = [(1, 2), (0, 2), (0, 1)];
+
+impl Overlap {
+    /// Prepares the test of a triangle against cubes of edge `size` (in finest cells), `height` levels above the
+    /// finest.
+    pub(super) fn new(placed: &Placed<'_>, corners: &Corners<'_>, size: f64, height: u8) -> Overlap {
+        let (min, max) = bounds(corners);
+        let [a, b, c] = corners.map(|corner| corner.at);
+        let (wrong, extent) = if are_short(corners) {
+            (0.0, 0.0)
+        } else {
+            let (error, magnitude) = accuracy(placed, corners);
+            let extent = (0..3).fold(1.0, |most: f64, axis| most.max(max[axis] - min[axis])) + size;
+            // Relative to the product of their factors' sizes the conditions are off by a few dozen roundings;
+            // a level's widening exceeds that of the level below by more than both errors.
+            ((height as f64 + 1.0) * (16.0 * error + 64.0 * f64::EPSILON * magnitude), extent)
+        };
+        let minus = |p: [f64; 3], q: [f64; 3]| [p[0] - q[0], p[1] - q[1], p[2] - q[2]];
+        let (ab, bc, ca) = (minus(b, a), minus(c, b), minus(a, c));
+        let normal =
+            [ab[1] * bc[2] - ab[2] * bc[1], ab[2] * bc[0] - ab[0] * bc[2], ab[0] * bc[1] - ab[1] * bc[0]];
+        let height = normal[0] * a[0] + normal[1] * a[1] + normal[2] * a[2];
+        let reach = |sign: f64| normal.iter().fold(0.0, |sum, n| sum + (sign * n).max(0.0)) * sign * size;
+        let edges = [0, 1, 2].map(|w| {
+            let (u, v) = OTHERS[w];
+            // Twice the area seen along w; its sign orients the edges. (Along y, (x, z) is left-handed.)
+            let area = if w == 1 { -normal[1] } else { normal[w] };
+            if !(area.abs() > 4.0 * wrong * extent) {
+                return None;
+            }
+            let sign = if area > 0.0 { 1.0 } else { -1.0 };
+            Some([(a, ab), (b, bc), (c, ca)].map(|(from, edge)| {
+                let (nu, nv) = (-edge[v] * sign, edge[u] * sign);
+                let offset = size * (nu.max(0.0) + nv.max(0.0)) - (nu * from[u] + nv * from[v]);
+                Edge { u: nu, v: nv, offset, slack: wrong * extent }
+            }))
+        });
+        Overlap {
+            min,
+            max,
+            normal,
+            ahead: reach(1.0) - height,
+            behind: reach(-1.0) - height,
+            // Three factors go into the plane's condition, and three times the terms.
+            slack: 4.0 * wrong * extent * extent,
+            edges,
+        }
+    }
+
+    /// Whether the triangle cuts the cube of the prepared size with the lower corner `at`.
+    pub(super) fn cuts(&self, at: [f64; 3], size: f64) -> bool {
+        (0..3).all(|axis| self.min[axis] < at[axis] + size && self.max[axis] > at[axis])
+            && (0..3).all(|w| {
+                let (u, v) = OTHERS[w];
+                self.edges[w].is_none_or(|edges| edges.iter().all(|edge| edge.passes(at[u], at[v])))
+            })
+            && exceeds(self.normal[2], at[2], self.column(at[0], at[1], self.ahead), -self.slack)
+            && exceeds(-self.normal[2], at[2], -self.column(at[0], at[1], self.behind), -self.slack)
+    }
+
+    /// The part of the plane's condition that is the same along a column.
+    #[inline(always)]
+    fn column(&self, x: f64, y: f64, offset: f64) -> f64 {
+        self.normal[0] * x + (self.normal[1] * y + offset)
+    }
+
+    /// Whether the triangle, seen along z, is over the column of unit cells at (x, y).
+    #[inline(always)]
+    pub(super) fn over(&self, x: f64, y: f64) -> bool {
+        self.edges[2].is_none_or(|edges| edges.iter().all(|edge| edge.passes(x, y)))
+    }
+
+    /// Of the unit cells `first..=last` along z (at most 64; bit 0 is `base`), those that the triangle, seen
+    /// along `w` (0 or 1), is over; `u` is the cells' other coordinate.
+    #[inline]
+    pub(super) fn beside(&self, w: usize, u: f64, base: i32, first: i32, last: i32) -> u64 {
+        let mut mask = bits(base, first, last);
+        if let Some(edges) = &self.edges[w] {
+            for edge in edges {
+                let row = edge.u * u + edge.offset;
+                mask &= above(edge.v, row, -edge.slack, base, first, last);
+            }
+        }
+        mask
+    }
+
+    /// Of the unit cells `first..=last` of the column at (x, y), those that the triangle's plane cuts.
+    #[inline]
+    pub(super) fn plane(&self, x: f64, y: f64, base: i32, first: i32, last: i32) -> u64 {
+        let (ahead, behind) = (self.column(x, y, self.ahead), self.column(x, y, self.behind));
+        above(self.normal[2], ahead, -self.slack, base, first, last)
+            & above(-self.normal[2], -behind, -self.slack, base, first, last)
+    }
+}
+
+impl Edge {
+    #[inline(always)]
+    fn passes(&self, u: f64, v: f64) -> bool {
+        exceeds(self.v, v, self.u * u + self.offset, -self.slack)
+    }
+}
+
+/// Whether `slope · k + start > limit`; what cannot be computed (coordinates of astronomic size) counts as
+/// true, because only a proven separation may exclude a cell.
+#[inline(always)]
+fn exceeds(slope: f64, k: f64, start: f64, limit: f64) -> bool {
+    let value = slope * k + start;
+    value > limit || value.is_nan() || limit.is_nan()
+}
+
+/// Bits `first..=last`, counted from `base`; none if the range is empty.
+#[inline(always)]
+fn bits(base: i32, first: i32, last: i32) -> u64 {
+    if first > last { 0 } else { !0 >> (63 - (last - first)) << (first - base) }
+}
+
+/// The k in `first..=last` with `slope · k + start > limit`, as bits counted from `base`. Products and sums of
+/// doubles are monotone, so these are an interval that reaches to one end.
+#[inline(always)]
+fn above(slope: f64, start: f64, limit: f64, base: i32, first: i32, last: i32) -> u64 {
+    let holds = |k: i32| exceeds(slope, k as f64, start, limit);
+    match (holds(first), holds(last)) {
+        (true, true) => bits(base, first, last),
+        (false, false) => 0,
+        (low, _) => {
+            // The guess is right up to rounding: step to where the condition itself changes.
+            let mut k = (((limit - start) / slope) as i32).clamp(first, last);
+            while k > first && holds(k) != low {
+                k -= 1;
+            }
+            while k < last && holds(k + 1) == low {
+                k += 1;
+            }
+            if low { bits(base, first, k) } else { bits(base, k + 1, last) }
+        }
+    }
+}

@@ -1,0 +1,136 @@
+//! A mesh on a lattice.
+//!
+//! Vertices become lattice coordinates in doubles, each with a bound of its error (zero where the position is
+//! a double, as lattice-aligned parts have it), and with its exact *ranks* among the planes of cell centres.
+//! Bulk work is done on these; whatever they leave open is decided exactly on the original coordinates.
+
+use super::surface::TriangleMesh;
+use crate::error::Error;
+use crate::lattice::Frame;
+use crate::lattice::exact::{floor, two_diff, two_product};
+use alloc::vec::Vec;
+
+/// Bound of the relative error of one rounded subtraction and one rounded division: 2^-52 and some more.
+const UNIT: f32 = f32::EPSILON * f32::EPSILON / 32.0;
+
+/// Ranks beyond this say no more than "far outside".
+const FAR: f64 = (1u32 << 30) as f64;
+
+/// A vertex in finest cells from the frame's origin.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Vertex {
+    /// Position.
+    pub(super) at: [f64; 3],
+    /// Bound of the position's error, per axis.
+    pub(super) error: [f32; 3],
+    /// Per axis the first plane of cell centres that counts as above the vertex: the least k with
+    /// k + ½ ≥ position. Exact. (All centres are shifted by (ε, ε², ε³), so a centre at the vertex's own
+    /// height lies above it.)
+    pub(super) rank: [i32; 3],
+    /// The position is exact and short enough that determinants of such vertices and cell centres are
+    /// computed without rounding.
+    pub(super) short: bool,
+}
+
+/// A mesh on the lattice of a frame.
+pub(super) struct Placed<'m> {
+    pub(super) frame: Frame,
+    pub(super) mesh: &'m TriangleMesh,
+    vertices: Vec<Vertex>,
+}
+
+/// The three corners of a triangle.
+pub(super) type Corners<'p> = [&'p Vertex; 3];
+
+impl<'m> Placed<'m> {
+    pub(super) fn new(mesh: &'m TriangleMesh, frame: &Frame) -> Result<Placed<'m>, Error> {
+        let mut vertices = Vec::new();
+        vertices.try_reserve_exact(mesh.vertices().len()).map_err(|_| Error::OutOfMemory)?;
+        vertices.extend(mesh.vertices().iter().map(|&vertex| place(frame, vertex)));
+        Ok(Placed { frame: *frame, mesh, vertices })
+    }
+
+    #[inline(always)]
+    pub(super) fn corners(&self, triangle: u32) -> Corners<'_> {
+        self.mesh.triangles()[triangle as usize].map(|vertex| &self.vertices[vertex as usize])
+    }
+
+    /// The corners as the mesh has them, in model units.
+    pub(super) fn original(&self, triangle: u32) -> [[f64; 3]; 3] {
+        self.mesh.triangles()[triangle as usize].map(|vertex| self.mesh.vertices()[vertex as usize])
+    }
+}
+
+fn place(frame: &Frame, vertex: [f64; 3]) -> Vertex {
+    let depth = frame.depth() as i32;
+    let mut placed = Vertex { at: [0.0; 3], error: [0.0; 3], rank: [0; 3], short: depth <= 14 };
+    // With `grain` bits behind the point, a 3 × 3 determinant of differences needs 3·(depth + grain + 1) + 3
+    // bits: 51.
+    let grain = (1u64 << (15 - depth.min(14))) as f64;
+    for axis in 0..3 {
+        let (offset, lost) = two_diff(vertex[axis], frame.origin()[axis]);
+        // Division finds the exact quotient if it is a double; a product with the reciprocal may miss it.
+        let at = offset / frame.cell_size();
+        let exact = two_product(at, frame.cell_size()) == (offset, lost);
+        placed.at[axis] = at;
+        placed.error[axis] = if exact { 0.0 } else { (at.abs() as f32 * UNIT).max(UNIT) };
+        let steps = at * grain;
+        placed.short &=
+            exact && at.abs() <= frame.cells() as f64 && steps == floor(steps.clamp(-FAR, FAR)) as f64;
+        placed.rank[axis] = rank(frame, axis, vertex[axis], at, placed.error[axis] as f64);
+    }
+    placed
+}
+
+/// The least k with k + ½ ≥ position, exactly.
+fn rank(frame: &Frame, axis: usize, original: f64, at: f64, error: f64) -> i32 {
+    let below = (at - 0.5).clamp(-FAR, FAR);
+    let nearest = floor(below + 0.5);
+    if (below - nearest as f64).abs() > error + f64::EPSILON * FAR.min(at.abs() + 1.0) {
+        return -floor(-below) as i32;
+    }
+    // The position is a hair's breadth from a plane of centres, or on it.
+    (nearest + (frame.side(axis, original, 2 * nearest + 1) > 0) as i64) as i32
+}
+
+/// The range of plane indices `first..end` between the lowest and the highest corner along `axis`: a line of
+/// centres at k can meet the triangle only if k lies in it.
+#[inline(always)]
+pub(super) fn ranks(corners: &Corners<'_>, axis: usize) -> (i32, i32) {
+    let [a, b, c] = [corners[0].rank[axis], corners[1].rank[axis], corners[2].rank[axis]];
+    (a.min(b).min(c), a.max(b).max(c))
+}
+
+/// The box around a triangle, outward by the corners' errors; exact where these are zero.
+#[inline(always)]
+pub(super) fn bounds(corners: &Corners<'_>) -> ([f64; 3], [f64; 3]) {
+    let mut min = [f64::INFINITY; 3];
+    let mut max = [f64::NEG_INFINITY; 3];
+    for corner in corners {
+        for axis in 0..3 {
+            let error = corner.error[axis] as f64;
+            min[axis] = min[axis].min(corner.at[axis] - error);
+            max[axis] = max[axis].max(corner.at[axis] + error);
+        }
+    }
+    (min, max)
+}
+
+/// The largest error among the corners, and the largest magnitude that goes into their arithmetic.
+pub(super) fn accuracy(placed: &Placed<'_>, corners: &Corners<'_>) -> (f64, f64) {
+    let mut error = 0f32;
+    let mut magnitude = placed.frame.cells() as f64;
+    for corner in corners {
+        for axis in 0..3 {
+            error = error.max(corner.error[axis]);
+            magnitude = magnitude.max(corner.at[axis].abs());
+        }
+    }
+    (error as f64, magnitude)
+}
+
+/// Whether determinants of the corners and cell centres come out without rounding.
+#[inline(always)]
+pub(super) fn are_short(corners: &Corners<'_>) -> bool {
+    corners.iter().all(|corner| corner.short)
+}

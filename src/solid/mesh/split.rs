@@ -1,0 +1,300 @@
+//! Splitting the cells of a mesh.
+
+use super::crossing::Projection;
+use super::overlap::Overlap;
+use super::placed::{Placed, ranks};
+use super::scan::{Scan, Task};
+use super::surface::{FillRule, TriangleMesh};
+use crate::error::Error;
+use crate::lattice::{Cell, Cube, Frame};
+use crate::octree::{Block, Tag};
+use crate::solid::{Scratch, Solid, Verdict};
+use alloc::boxed::Box;
+use alloc::vec::Vec;
+
+/// A closed triangle mesh as a solid on the lattice of one frame.
+///
+/// ```
+/// use leafless::{Control, FillRule, Frame, MeshSolid, Rule, TriangleMesh, build};
+/// let vertices = vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+/// let mesh = TriangleMesh::new(vertices, vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]])?;
+/// let frame = Frame::new([0.0; 3], 1.0, 6)?;
+/// let solid = MeshSolid::new(&mesh, &frame, FillRule::NonZero)?;
+/// let tree = build(&solid, &frame, Rule::Certified, &Control::default())?;
+/// assert!(tree.statistics().volume().contains(1.0 / 6.0));
+/// # Ok::<(), leafless::Error>(())
+/// ```
+pub struct MeshSolid<'m> {
+    placed: Placed<'m>,
+    fill: FillRule,
+}
+
+/// What is remembered of a cell: the triangles that cut it, and the winding number of its lowest centre.
+#[derive(Debug, Clone, Copy)]
+pub struct MeshPart {
+    /// Where the triangles lie in the scratch memory.
+    first: usize,
+    count: usize,
+    winding: i32,
+}
+
+/// Lists of triangles, one for each cell on the way down, and what a block is scanned with.
+#[derive(Default)]
+pub struct MeshScratch {
+    triangles: Vec<u32>,
+    /// Bit k: the triangle belongs to child k.
+    masks: Vec<u8>,
+    scan: Option<Box<Scan>>,
+}
+
+impl Scratch for MeshScratch {
+    fn mark(&self) -> usize {
+        self.triangles.len()
+    }
+
+    fn release(&mut self, mark: usize) {
+        self.triangles.truncate(mark);
+    }
+}
+
+impl<'m> MeshSolid<'m> {
+    /// A closed mesh on the lattice of `frame`; time and memory linear in the mesh. A mesh that reaches beyond
+    /// the universe is clipped by it, which [`exterior`](Solid::exterior) tells.
+    ///
+    /// # Errors
+    /// [`Error::Mesh`] if the mesh is empty, not closed or (for [`FillRule::NonZero`]) not consistently
+    /// oriented.
+    pub fn new(mesh: &'m TriangleMesh, frame: &Frame, fill: FillRule) -> Result<MeshSolid<'m>, Error> {
+        mesh.check_closed(fill)?;
+        Ok(MeshSolid { placed: Placed::new(mesh, frame)?, fill })
+    }
+
+    fn is_inside(&self, winding: i32) -> bool {
+        match self.fill {
+            FillRule::NonZero => winding != 0,
+            FillRule::EvenOdd => winding % 2 != 0,
+        }
+    }
+
+    fn verdict(&self, part: MeshPart) -> Verdict<MeshPart> {
+        if part.count > 0 {
+            Verdict::Partial(part)
+        } else if self.is_inside(part.winding) {
+            Verdict::Full
+        } else {
+            Verdict::Empty
+        }
+    }
+
+    /// Winding numbers of the lowest centres of a cell's eight children of edge `half`, the cell's own being
+    /// that of child 0.
+    fn windings(&self, triangles: &[u32], at: [i32; 3], half: i32, own: i32) -> [i32; 8] {
+        // What changes on the ways along x, y and z, by the child at whose lowest centre the way begins.
+        let mut steps = [0; 8];
+        let next = at.map(|a| a + half);
+        for &triangle in triangles {
+            let corners = self.placed.corners(triangle);
+            let ranges = [ranks(&corners, 0), ranks(&corners, 1), ranks(&corners, 2)];
+            let spans = |axis: usize, k: i32| ranges[axis].0 <= k && k < ranges[axis].1;
+            // The way along an axis leads from `at` to `next`: it passes the triangle between two ranks.
+            let reaches = |axis: usize| ranges[axis].0 <= next[axis] && ranges[axis].1 > at[axis];
+            let mut pierce = |w: usize, u: i32, v: i32, child: usize| {
+                let mut seen = Projection::new(&self.placed, triangle, corners, w);
+                if let Some(span) = seen.span(v).filter(|span| span.first <= u && u < span.end) {
+                    let above = seen.above(u, v, span.step);
+                    if at[w] < above && above <= next[w] {
+                        steps[child] += span.step;
+                    }
+                }
+            };
+            let [x, y, z] = at;
+            if reaches(0) && spans(1, y) && spans(2, z) {
+                pierce(0, y, z, 1);
+            }
+            if reaches(1) && spans(2, z) {
+                for (child, x) in [(2, x), (3, next[0])] {
+                    if spans(0, x) {
+                        pierce(1, x, z, child);
+                    }
+                }
+            }
+            if reaches(2) {
+                for (child, x, y) in [(4, x, y), (5, next[0], y), (6, x, next[1]), (7, next[0], next[1])] {
+                    if spans(0, x) && spans(1, y) {
+                        pierce(2, x, y, child);
+                    }
+                }
+            }
+        }
+        let mut windings = [own; 8];
+        windings[1] = own + steps[1];
+        for child in 2..8 {
+            // The way to children 2 and 3 begins at 0 and 1, to 4 … 7 at 0 … 3.
+            windings[child] = windings[child - if child < 4 { 2 } else { 4 }] + steps[child];
+        }
+        windings
+    }
+}
+
+/// The lowest finest cell of `cell`, and its edge in finest cells.
+fn extent(cell: Cell, depth: u8) -> ([i32; 3], i32) {
+    (cell.first_at(depth).at.map(|a| a as i32), 1 << (depth - cell.level))
+}
+
+impl Solid for MeshSolid<'_> {
+    type Part = MeshPart;
+    type Scratch = MeshScratch;
+
+    fn root(&self, scratch: &mut MeshScratch, frame: &Frame) -> Result<Verdict<MeshPart>, Error> {
+        if *frame != self.placed.frame {
+            return Err(Error::FrameMismatch);
+        }
+        let first = scratch.triangles.len();
+        let count = self.placed.mesh.triangles().len();
+        scratch.triangles.try_reserve(count).map_err(|_| Error::OutOfMemory)?;
+        let size = frame.cells() as f64;
+        let mut winding = 0;
+        for triangle in 0..count as u32 {
+            let corners = self.placed.corners(triangle);
+            // The winding number is zero at infinity: follow the lowest centre's line along x from there.
+            let spans = |axis: usize| {
+                let (first, end) = ranks(&corners, axis);
+                first <= 0 && 0 < end
+            };
+            if spans(1) && spans(2) && ranks(&corners, 0).0 <= 0 {
+                let mut seen = Projection::new(&self.placed, triangle, corners, 0);
+                if let Some(span) = seen.span(0).filter(|span| span.first <= 0 && 0 < span.end)
+                    && seen.above(0, 0, span.step) <= 0
+                {
+                    winding += span.step;
+                }
+            }
+            let overlap = Overlap::new(&self.placed, &corners, size, frame.depth());
+            if overlap.cuts([0.0; 3], size) {
+                scratch.triangles.push(triangle);
+            }
+        }
+        let count = scratch.triangles.len() - first;
+        Ok(self.verdict(MeshPart { first, count, winding }))
+    }
+
+    fn split(
+        &self,
+        scratch: &mut MeshScratch,
+        cube: &Cube<'_>,
+        part: &MeshPart,
+    ) -> Result<[Verdict<MeshPart>; 8], Error> {
+        let depth = self.placed.frame.depth();
+        let (at, size) = extent(cube.cell, depth);
+        let half = size / 2;
+        let height = depth - cube.cell.level - 1;
+        let MeshScratch { triangles, masks, .. } = scratch;
+        let range = part.first..part.first + part.count;
+        let windings = self.windings(&triangles[range.clone()], at, half, part.winding);
+
+        masks.clear();
+        masks.try_reserve(part.count).map_err(|_| Error::OutOfMemory)?;
+        let mut counts = [0; 8];
+        for &triangle in &triangles[range.clone()] {
+            let corners = self.placed.corners(triangle);
+            let mask = children_cut(&self.placed, &corners, at, half, height);
+            masks.push(mask);
+            counts.iter_mut().enumerate().for_each(|(k, count)| *count += (mask >> k & 1) as usize);
+        }
+        let top = triangles.len();
+        triangles.try_reserve(counts.iter().sum()).map_err(|_| Error::OutOfMemory)?;
+        let mut firsts = [top; 8];
+        for k in 1..8 {
+            firsts[k] = firsts[k - 1] + counts[k - 1];
+        }
+        let mut next = firsts;
+        triangles.resize(top + counts.iter().sum::<usize>(), 0);
+        for (i, &mask) in masks.iter().enumerate() {
+            let triangle = triangles[part.first + i];
+            let mut left = mask;
+            while left != 0 {
+                let k = left.trailing_zeros() as usize;
+                left &= left - 1;
+                triangles[next[k]] = triangle;
+                next[k] += 1;
+            }
+        }
+        Ok([0, 1, 2, 3, 4, 5, 6, 7].map(|k: usize| {
+            self.verdict(MeshPart { first: firsts[k], count: counts[k], winding: windings[k] })
+        }))
+    }
+
+    fn fill(
+        &self,
+        scratch: &mut MeshScratch,
+        cube: &Cube<'_>,
+        part: &MeshPart,
+        block: &mut Block,
+    ) -> Result<bool, Error> {
+        let (at, _) = extent(cube.cell, self.placed.frame.depth());
+        let triangles = &scratch.triangles[part.first..part.first + part.count];
+        let task = Task { placed: &self.placed, at, triangles, winding: part.winding, fill: self.fill };
+        scratch.scan.get_or_insert_default().fill(task, block)?;
+        Ok(true)
+    }
+
+    fn sample(&self, _: &mut MeshScratch, _: &Cube<'_>, part: &MeshPart) -> Option<bool> {
+        // A finest cell's lowest centre is its only one.
+        Some(self.is_inside(part.winding))
+    }
+
+    fn exterior(&self, frame: &Frame) -> Tag {
+        let (min, max) = self.placed.mesh.bounds();
+        let within = |axis: usize| {
+            frame.side(axis, min[axis], 0) >= 0 && frame.side(axis, max[axis], 2 * frame.cells() as i64) <= 0
+        };
+        if (0..3).all(within) { Tag::Empty } else { Tag::Partial }
+    }
+
+    fn hand_over(
+        &self,
+        from: &MeshScratch,
+        part: &MeshPart,
+        to: &mut MeshScratch,
+    ) -> Result<MeshPart, Error> {
+        let first = to.triangles.len();
+        to.triangles.try_reserve(part.count).map_err(|_| Error::OutOfMemory)?;
+        to.triangles.extend_from_slice(&from.triangles[part.first..part.first + part.count]);
+        Ok(MeshPart { first, ..*part })
+    }
+}
+
+/// Which of the children of edge `half` of the cell at `at` a triangle cuts.
+fn children_cut(
+    placed: &Placed<'_>,
+    corners: &super::placed::Corners<'_>,
+    at: [i32; 3],
+    half: i32,
+    height: u8,
+) -> u8 {
+    let (min, max) = super::placed::bounds(corners);
+    let mut candidates = 0xFFu8;
+    let mut strictly = true;
+    for (axis, upper) in [0b1010_1010u8, 0b1100_1100, 0b1111_0000].into_iter().enumerate() {
+        let (low, middle, high) = (at[axis] as f64, (at[axis] + half) as f64, (at[axis] + 2 * half) as f64);
+        if max[axis] <= middle {
+            candidates &= !upper;
+            strictly &= min[axis] > low && max[axis] < middle;
+        }
+        if min[axis] >= middle {
+            candidates &= upper;
+            strictly &= min[axis] > middle && max[axis] < high;
+        }
+    }
+    // A triangle well inside of the only child that its box reaches needs no further test.
+    if candidates.count_ones() == 1 && strictly {
+        return candidates;
+    }
+    let overlap = Overlap::new(placed, corners, half as f64, height);
+    let mut cut = 0;
+    for k in (0..8).filter(|k| candidates >> k & 1 != 0) {
+        let corner = [0, 1, 2].map(|axis| (at[axis] + if k >> axis & 1 != 0 { half } else { 0 }) as f64);
+        cut |= (overlap.cuts(corner, half as f64) as u8) << k;
+    }
+    cut
+}
