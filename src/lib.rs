@@ -47,6 +47,7 @@ extern crate std;
 mod control;
 mod dispatch;
 mod error;
+pub mod file;
 mod lattice;
 mod octree;
 mod op;

@@ -4,10 +4,10 @@ use super::exact::{floor, sign_of_sum, two_diff, two_product, two_sum};
 use super::{Interval, MAX_DEPTH};
 use crate::error::{Error, MeshError};
 
-/// Coordinates and edges beyond ±2^256 are refused, edges below 2^-256 too: between these bounds no
-/// intermediate result of the library over- or underflows.
+/// Coordinates and edges beyond ±2^256 are refused: no intermediate result of the library overflows.
 pub(crate) const LARGEST: f64 = f64::from_bits((1023 + 256) << 52);
-const SMALLEST: f64 = 1.0 / LARGEST;
+/// Edges and coefficients below 2^-256 are refused too, so that nothing underflows.
+pub(crate) const SMALLEST: f64 = 1.0 / LARGEST;
 
 /// Where a tree lies: the cube `[origin, origin + edge]³` in model units, cut into 2^depth cells per axis.
 ///

@@ -27,6 +27,7 @@ pub(crate) mod morton;
 pub use cell::Cell;
 pub use cube::Cube;
 pub use frame::Frame;
+pub(crate) use frame::{LARGEST, SMALLEST};
 pub use interval::Interval;
 
 /// The deepest octree: 2^20 = 1 048 576 cells per axis.

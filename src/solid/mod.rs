@@ -16,12 +16,13 @@ mod stored;
 pub use callback::Callback;
 pub use erased::{AnySolid, ErasedPart, ErasedScratch};
 pub use halfspace::HalfSpace;
+pub(crate) use mesh::FacetWelder;
 pub use mesh::{FillRule, MeshPart, MeshReport, MeshScratch, MeshSolid, TriangleMesh};
 pub use primitive::{AxisBox, Ball};
 pub use stored::{Stored, StoredPart};
 
 use crate::error::Error;
-use crate::lattice::{Cube, Frame};
+use crate::lattice::{Cube, Frame, LARGEST, SMALLEST};
 use crate::octree::{Block, Planes, Tag};
 use alloc::vec::Vec;
 
@@ -190,5 +191,5 @@ pub(crate) fn split_twice<S: Solid + ?Sized>(
 
 /// Whether a coefficient is of a magnitude that exact arithmetic can take: 2^-256 to 2^256.
 pub(crate) fn is_moderate(value: f64) -> bool {
-    (f64::from_bits((1023 - 256) << 52)..=f64::from_bits((1023 + 256) << 52)).contains(&value.abs())
+    (SMALLEST..=LARGEST).contains(&value.abs())
 }

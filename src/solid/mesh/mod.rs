@@ -11,9 +11,11 @@ mod crossing;
 mod overlap;
 mod placed;
 mod scan;
+mod sew;
 mod split;
 mod surface;
 mod topology;
 
 pub use split::{MeshPart, MeshScratch, MeshSolid};
+pub(crate) use surface::FacetWelder;
 pub use surface::{FillRule, MeshReport, TriangleMesh};

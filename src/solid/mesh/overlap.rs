@@ -10,7 +10,7 @@
 //! does not cut it. Coarser cells are widened more than their children, so that what cuts a cell is
 //! always found to cut its parent too.
 
-use super::placed::{Corners, Placed, accuracy, are_short, bounds};
+use super::placed::{Corners, Placed, bounds, is_exact, surface_accuracy};
 
 /// A triangle and what the conditions need of it for cubes of one size.
 pub(super) struct Overlap {
@@ -43,12 +43,12 @@ impl Overlap {
     /// Prepares the test of a triangle against cubes of edge `size` (in finest cells), `height` levels above the
     /// finest.
     pub(super) fn new(placed: &Placed<'_>, corners: &Corners<'_>, size: f64, height: u8) -> Overlap {
-        let (min, max) = bounds(corners);
+        let (min, max) = bounds(placed, corners);
         let [a, b, c] = corners.map(|corner| corner.at);
-        let (wrong, extent) = if are_short(corners) {
+        let (wrong, extent) = if is_exact(placed, corners) {
             (0.0, 0.0)
         } else {
-            let (error, magnitude) = accuracy(placed, corners);
+            let (error, magnitude) = surface_accuracy(placed, corners);
             let extent = (0..3).fold(1.0, |most: f64, axis| most.max(max[axis] - min[axis])) + size;
             // Relative to the product of their factors' sizes the conditions are off by a few dozen roundings;
             // a level's widening exceeds that of the level below by more than both errors.

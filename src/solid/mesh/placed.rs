@@ -36,6 +36,8 @@ pub(super) struct Vertex {
 pub(super) struct Placed<'m> {
     pub(super) frame: Frame,
     pub(super) mesh: &'m TriangleMesh,
+    /// How far the surface may lie from the mesh, in finest cells: what was moved to close hair cracks.
+    displacement: f64,
     vertices: Vec<Vertex>,
 }
 
@@ -47,7 +49,8 @@ impl<'m> Placed<'m> {
         let mut vertices = Vec::new();
         vertices.try_reserve_exact(mesh.vertices().len()).map_err(|_| Error::OutOfMemory)?;
         vertices.extend(mesh.vertices().iter().map(|&vertex| place(frame, vertex)));
-        Ok(Placed { frame: *frame, mesh, vertices })
+        let displacement = mesh.displacement() / frame.cell_size() * (1.0 + 4.0 * f64::EPSILON);
+        Ok(Placed { frame: *frame, mesh, displacement, vertices })
     }
 
     #[inline(always)]
@@ -101,14 +104,14 @@ pub(super) fn ranks(corners: &Corners<'_>, axis: usize) -> (i32, i32) {
     (a.min(b).min(c), a.max(b).max(c))
 }
 
-/// The box around a triangle, outward by the corners' errors; exact where these are zero.
+/// The box around a triangle, outward by what its corners may be off; exact where that is zero.
 #[inline(always)]
-pub(super) fn bounds(corners: &Corners<'_>) -> ([f64; 3], [f64; 3]) {
+pub(super) fn bounds(placed: &Placed<'_>, corners: &Corners<'_>) -> ([f64; 3], [f64; 3]) {
     let mut min = [f64::INFINITY; 3];
     let mut max = [f64::NEG_INFINITY; 3];
     for corner in corners {
         for axis in 0..3 {
-            let error = corner.error[axis] as f64;
+            let error = corner.error[axis] as f64 + placed.displacement;
             min[axis] = min[axis].min(corner.at[axis] - error);
             max[axis] = max[axis].max(corner.at[axis] + error);
         }
@@ -116,7 +119,7 @@ pub(super) fn bounds(corners: &Corners<'_>) -> ([f64; 3], [f64; 3]) {
     (min, max)
 }
 
-/// The largest error among the corners, and the largest magnitude that goes into their arithmetic.
+/// The largest error among the corners' positions, and the largest magnitude that goes into their arithmetic.
 pub(super) fn accuracy(placed: &Placed<'_>, corners: &Corners<'_>) -> (f64, f64) {
     let mut error = 0f32;
     let mut magnitude = placed.frame.cells() as f64;
@@ -127,6 +130,18 @@ pub(super) fn accuracy(placed: &Placed<'_>, corners: &Corners<'_>) -> (f64, f64)
         }
     }
     (error as f64, magnitude)
+}
+
+/// The same when it is not the mesh that counts but the surface that it stands for.
+pub(super) fn surface_accuracy(placed: &Placed<'_>, corners: &Corners<'_>) -> (f64, f64) {
+    let (error, magnitude) = accuracy(placed, corners);
+    (error + placed.displacement, magnitude)
+}
+
+/// Whether determinants of the corners and lattice points are the surface's, without rounding.
+#[inline(always)]
+pub(super) fn is_exact(placed: &Placed<'_>, corners: &Corners<'_>) -> bool {
+    placed.displacement == 0.0 && are_short(corners)
 }
 
 /// Whether determinants of the corners and cell centres come out without rounding.

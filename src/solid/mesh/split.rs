@@ -245,8 +245,15 @@ impl Solid for MeshSolid<'_> {
 
     fn exterior(&self, frame: &Frame) -> Tag {
         let (min, max) = self.placed.mesh.bounds();
+        let margin = self.placed.mesh.displacement();
+        let outward = |x: f64, margin: f64| match margin {
+            0.0 => x,
+            margin if margin < 0.0 => (x + margin).next_down(),
+            margin => (x + margin).next_up(),
+        };
         let within = |axis: usize| {
-            frame.side(axis, min[axis], 0) >= 0 && frame.side(axis, max[axis], 2 * frame.cells() as i64) <= 0
+            let (min, max) = (outward(min[axis], -margin), outward(max[axis], margin));
+            frame.side(axis, min, 0) >= 0 && frame.side(axis, max, 2 * frame.cells() as i64) <= 0
         };
         if (0..3).all(within) { Tag::Empty } else { Tag::Partial }
     }
@@ -272,7 +279,7 @@ fn children_cut(
     half: i32,
     height: u8,
 ) -> u8 {
-    let (min, max) = super::placed::bounds(corners);
+    let (min, max) = super::placed::bounds(placed, corners);
     let mut candidates = 0xFFu8;
     let mut strictly = true;
     for (axis, upper) in [0b1010_1010u8, 0b1100_1100, 0b1111_0000].into_iter().enumerate() {

@@ -21,10 +21,7 @@ use once_cell::race::OnceBox;
 
 use super::topology::Topology;
 use crate::error::{Error, MeshError};
-
-/// Largest magnitude of a coordinate, 2^256: products of three coordinates, and sums of 2^32 of them, are far
-/// from overflow.
-const LARGEST: f64 = f64::from_bits((1023 + 256) << 52);
+use crate::lattice::LARGEST;
 
 /// Which points a closed surface encloses.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
@@ -39,7 +36,7 @@ pub enum FillRule {
 }
 
 /// What was found while a mesh was taken in, and how its triangles hang together.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MeshReport {
     /// Triangles that were handed in, `triangles` + `degenerate`.
     pub facets_read: u64,
@@ -62,6 +59,10 @@ pub struct MeshReport {
     /// Sets of triangles that hang together over edges. Bodies that touch only in single vertices count
     /// separately, and so does the outer from the inner surface of a hollow body.
     pub bodies: u64,
+    /// Vertices that [`sewn`](TriangleMesh::sewn) moved onto another one.
+    pub sewn: u64,
+    /// The farthest that any of them was moved along an axis, in model units.
+    pub displacement: f64,
 }
 
 /// A surface of triangles with shared vertices.
@@ -77,6 +78,8 @@ pub struct TriangleMesh {
     triangles: Vec<[u32; 3]>,
     welded: u64,
     degenerate: u64,
+    sewn: u64,
+    displacement: f64,
     topology: OnceBox<Topology>,
 }
 
@@ -126,7 +129,15 @@ impl TriangleMesh {
         let read = triangles.len();
         triangles.retain(is_proper);
         let (welded, degenerate) = ((given - kept) as u64, (read - triangles.len()) as u64);
-        Ok(Self { vertices, triangles, welded, degenerate, topology: OnceBox::new() })
+        Ok(Self {
+            vertices,
+            triangles,
+            welded,
+            degenerate,
+            sewn: 0,
+            displacement: 0.0,
+            topology: OnceBox::new(),
+        })
     }
 
     /// A mesh of separate triangles, each given by its three corners. Vertices have the order of their first
@@ -206,6 +217,8 @@ impl TriangleMesh {
             misoriented_edges: topology.misoriented_edges,
             non_manifold_edges: topology.non_manifold_edges,
             bodies: topology.bodies,
+            sewn: self.sewn,
+            displacement: self.displacement,
         })
     }
 
@@ -234,7 +247,8 @@ impl TriangleMesh {
     }
 
     /// The mesh with every vertex moved to where `f` says. Vertices that meet are welded, as in
-    /// [`new`](Self::new); a reflection turns the mesh inside out. The report starts anew.
+    /// [`new`](Self::new); a reflection turns the mesh inside out. The report starts anew, and the surface as it
+    /// then is counts as the truth, whatever cracks were closed before.
     ///
     /// O(v + t). Fails as `new` does.
     pub fn transformed(&self, f: impl FnMut([f64; 3]) -> [f64; 3]) -> Result<Self, Error> {
@@ -249,7 +263,48 @@ impl TriangleMesh {
 
     /// The mesh moved by `offset`: [`transformed`](Self::transformed) by a rounded sum.
     pub fn translated(&self, offset: [f64; 3]) -> Result<Self, Error> {
-        self.transformed(|p| (DVec3::from(p) + DVec3::from(offset)).to_array())
+        let moved = self.transformed(|p| (DVec3::from(p) + DVec3::from(offset)).to_array())?;
+        Ok(Self { displacement: self.displacement, ..moved })
+    }
+
+    /// How far any vertex was moved along an axis to close hair cracks, in model units: the surface that was
+    /// handed in lies within that distance.
+    pub fn displacement(&self) -> f64 {
+        self.displacement
+    }
+
+    /// The vertices at open edges, ascending.
+    pub(super) fn open_vertices(&self) -> Result<&[u32], Error> {
+        Ok(&self.topology()?.open_vertices)
+    }
+
+    /// The mesh with each first vertex of `moves` replaced by the second, none of which is replaced itself.
+    pub(super) fn moved(mut self, moves: &[(u32, u32)], displacement: f64) -> Result<Self, Error> {
+        let mut targets = Vec::new();
+        targets.try_reserve_exact(self.vertices.len()).map_err(|_| Error::OutOfMemory)?;
+        targets.extend(0..self.vertices.len() as u32);
+        moves.iter().for_each(|&(from, onto)| targets[from as usize] = onto);
+        // Whoever is not replaced moves up to where the replaced ones leave room.
+        let mut kept = 0;
+        for vertex in 0..self.vertices.len() {
+            if targets[vertex] == vertex as u32 {
+                self.vertices[kept] = self.vertices[vertex];
+                targets[vertex] = kept as u32;
+                kept += 1;
+            } else {
+                // Targets come earlier, so theirs is known.
+                targets[vertex] = targets[targets[vertex] as usize];
+            }
+        }
+        self.vertices.truncate(kept);
+        self.triangles.iter_mut().for_each(|t| *t = t.map(|v| targets[v as usize]));
+        let before = self.triangles.len();
+        self.triangles.retain(is_proper);
+        self.degenerate += (before - self.triangles.len()) as u64;
+        self.sewn += moves.len() as u64;
+        self.displacement = self.displacement.max(displacement);
+        self.topology = OnceBox::new();
+        Ok(self)
     }
 
     fn position(&self, vertex: u32) -> DVec3 {
@@ -317,7 +372,15 @@ impl FacetWelder {
         let welded = self.facets * 3 - self.vertices.len() as u64;
         let degenerate = self.facets - self.triangles.len() as u64;
         let (vertices, triangles) = (self.vertices, self.triangles);
-        TriangleMesh { vertices, triangles, welded, degenerate, topology: OnceBox::new() }
+        TriangleMesh {
+            vertices,
+            triangles,
+            welded,
+            degenerate,
+            sewn: 0,
+            displacement: 0.0,
+            topology: OnceBox::new(),
+        }
     }
 
     #[inline]
@@ -440,6 +503,8 @@ mod tests {
             misoriented_edges: 0,
             non_manifold_edges: 0,
             bodies: 1,
+            sewn: 0,
+            displacement: 0.0,
         };
         assert_eq!(mesh.report().unwrap(), expected);
         assert_eq!(mesh.clone().report().unwrap(), expected);
@@ -596,7 +661,7 @@ mod tests {
             assert_eq!(mesh_error(soup), MeshError::NotFinite { vertex: 3 });
         }
         // 2^256.
-        assert_eq!(LARGEST, [65536.0; 16].iter().product());
+        assert_eq!(LARGEST, [65536.0; 16].iter().product::<f64>());
         for x in [LARGEST.next_up(), -f64::MAX] {
             let (mesh, soup) = with(x);
             assert_eq!(mesh_error(mesh), MeshError::TooLarge { vertex: 2 });

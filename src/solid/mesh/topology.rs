@@ -6,10 +6,10 @@
 
 use alloc::vec::Vec;
 
-use crate::Error;
+use crate::error::Error;
 
 /// What the edges of a mesh say.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub(super) struct Topology {
     /// Edges that an odd number of triangles use.
     pub boundary_edges: u64,
@@ -19,6 +19,8 @@ pub(super) struct Topology {
     pub non_manifold_edges: u64,
     /// Sets of triangles that hang together over edges.
     pub bodies: u64,
+    /// The vertices of the boundary edges, ascending.
+    pub open_vertices: Vec<u32>,
 }
 
 impl Topology {
@@ -51,7 +53,13 @@ impl Topology {
                 *place += 1;
             }
         }
-        let mut result = Self { boundary_edges: 0, misoriented_edges: 0, non_manifold_edges: 0, bodies: 0 };
+        let mut result = Self {
+            boundary_edges: 0,
+            misoriented_edges: 0,
+            non_manifold_edges: 0,
+            bodies: 0,
+            open_vertices: Vec::new(),
+        };
         let mut bodies = DisjointSets::new(triangles.len())?;
         for low in 0..vertices {
             let list = &mut lists[ends[low]..ends[low + 1]];
@@ -69,6 +77,8 @@ impl Topology {
                 }
                 if edge.len() % 2 == 1 {
                     result.boundary_edges += 1;
+                    result.open_vertices.try_reserve(2).map_err(|_| Error::OutOfMemory)?;
+                    result.open_vertices.extend([low as u32, (edge[0] >> 32) as u32]);
                 } else if 2 * forward != edge.len() {
                     result.misoriented_edges += 1;
                 }
@@ -76,6 +86,8 @@ impl Topology {
             }
         }
         result.bodies = bodies.count;
+        result.open_vertices.sort_unstable();
+        result.open_vertices.dedup();
         Ok(result)
     }
 }

@@ -1,0 +1,5 @@
+//! Files.
+
+mod exchange;
+
+pub use exchange::{read_stl, write_stl};
