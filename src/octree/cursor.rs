@@ -1,7 +1,7 @@
 //! The octree as the papers draw it: node by node, eight 2-bit tags each.
 
 use super::tag::Tag;
-use super::view::{MAX_ELEMENT_LEVELS, OctreeRef};
+use super::view::{MAX_ELEMENT_LEVELS, OctreeRef, starts_half_way};
 use super::word::Planes;
 use crate::lattice::Cell;
 
@@ -126,8 +126,8 @@ impl<'a> Cursor<'a> {
     /// Where the node of a cell at `level` is kept: the element level, and the octant of the element unless
     /// it is the element's own.
     fn position(&self, level: u8) -> (usize, Option<u32>) {
-        let padded = (level + self.tree.frame.depth() % 2) as usize;
-        let k = if padded % 2 == 0 {
+        let padded = level as usize + starts_half_way(self.tree.frame.depth()) as usize;
+        let k = if padded.is_multiple_of(2) {
             None
         } else if level == 0 {
             Some(0)

@@ -1,7 +1,7 @@
 //! What a tree holds, level by level.
 
 use super::tag::Tag;
-use super::view::OctreeRef;
+use super::view::{OctreeRef, starts_half_way};
 use super::word::Planes;
 use crate::dispatch::{Hot, with_popcount};
 use crate::lattice::exact::{product_down, product_up};
@@ -154,7 +154,7 @@ impl Hot for Count<'_, '_> {
     #[inline(always)]
     fn run(self) {
         let Count { tree, counts } = self;
-        let (levels, odd) = (tree.levels(), tree.frame.depth() % 2 == 1);
+        let (levels, half) = (tree.levels(), starts_half_way(tree.frame.depth()));
         for e in 0..levels {
             let mut sum = ElementCounts::default();
             let (first, end) = (tree.starts[e], tree.starts[e + 1]);
@@ -169,7 +169,7 @@ impl Hot for Count<'_, '_> {
             let cells = tree.cell_level(e) as usize;
             counts[cells].full += sum.full_cells;
             counts[cells].partial += sum.partial_cells;
-            if odd && e == 0 {
+            if half && e == 0 {
                 // The root starts half-way: its only real octant is the universe itself.
                 counts[0].nodes = 1;
                 continue;

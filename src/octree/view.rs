@@ -16,10 +16,15 @@ pub(crate) const fn element_levels(depth: u8) -> usize {
     (depth as usize).div_ceil(2)
 }
 
-/// The cells of the root element that belong to the universe: all 64, or, where an odd depth makes the root
-/// start half-way into its element, the first octant.
+/// Whether the universe is not the root element's own cell but its first octant, because a tree of odd depth
+/// starts half-way into it.
+pub(crate) const fn starts_half_way(depth: u8) -> bool {
+    !depth.is_multiple_of(2)
+}
+
+/// The cells of the root element that belong to the universe.
 pub(crate) const fn root_cells(depth: u8) -> u64 {
-    if depth % 2 == 0 { !0 } else { 0xFF }
+    if starts_half_way(depth) { 0xFF } else { !0 }
 }
 
 /// A borrowed octree: everything that only reads is a method of this type, whether the arrays lie in a `Vec`,
@@ -117,7 +122,7 @@ impl<'a> OctreeRef<'a> {
 
     /// Octree level of the cells that an element of element level `e` describes.
     pub(crate) fn cell_level(&self, e: usize) -> u8 {
-        (2 * (e + 1) - self.frame.depth() as usize % 2) as u8
+        2 * (e as u8 + 1) - starts_half_way(self.frame.depth()) as u8
     }
 
     /// The element or brick with this index.
@@ -184,6 +189,7 @@ impl Windows {
 
     /// The subtree below element `index` of level `e`: windows of different elements of a level never
     /// overlap, so that several threads together visit nothing twice either.
+    #[cfg(feature = "parallel")]
     pub(crate) fn below(tree: &OctreeRef<'_>, e: usize, index: usize) -> Result<Windows, Damage> {
         let mut windows = Windows::new(tree);
         let (mut first, mut end) = (index, index + 1);

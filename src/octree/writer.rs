@@ -8,7 +8,7 @@
 use super::brick::{Brick, BrickArray, Bricks};
 use super::octree::{Arrays, Octree, OwnedArray, OwnedBricks};
 use super::tag::Tag;
-use super::view::{MAX_ELEMENT_LEVELS, OctreeRef, Windows, element_levels, root_cells};
+use super::view::{MAX_ELEMENT_LEVELS, OctreeRef, Windows, element_levels, root_cells, starts_half_way};
 use super::word::Planes;
 use crate::control::Job;
 use crate::error::{Damage, Error};
@@ -63,6 +63,7 @@ impl<T: Copy> Chunks<T> {
         Ok(())
     }
 
+    #[cfg(feature = "parallel")]
     fn append(&mut self, mut other: Chunks<T>) -> Result<(), Error> {
         if other.full.is_empty() && self.tail.capacity() - self.tail.len() >= other.tail.len() {
             self.tail.extend_from_slice(&other.tail);
@@ -124,6 +125,7 @@ impl<'j> Writer<'j> {
     }
 
     /// An empty writer for a part of the same tree, to be [appended](Self::append) later.
+    #[cfg(feature = "parallel")]
     pub(crate) fn sibling(&self) -> Writer<'j> {
         Writer::new(self.job, self.depth, matches!(self.bricks, BrickChunks::One(_)))
     }
@@ -170,7 +172,7 @@ impl<'j> Writer<'j> {
                 }
             },
         };
-        let half = e == 0 && self.depth % 2 == 1;
+        let half = e == 0 && starts_half_way(self.depth);
         self.account(1, size, || octree_nodes(planes.masked(real), half))?;
         Ok(Tag::Branch)
     }
@@ -261,6 +263,7 @@ impl<'j> Writer<'j> {
     }
 
     /// Takes over what a sibling wrote, which comes after all that this one wrote so far.
+    #[cfg(feature = "parallel")]
     pub(crate) fn append(&mut self, other: Writer<'j>) -> Result<(), Error> {
         for (level, theirs) in self.levels.iter_mut().zip(other.levels) {
             level.append(theirs)?;

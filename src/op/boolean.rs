@@ -16,7 +16,6 @@ use crate::error::{Damage, Error};
 use crate::octree::view::{OctreeRef, Windows, root_cells};
 use crate::octree::writer::Writer;
 use crate::octree::{Octree, Planes, Tag};
-use alloc::vec::Vec;
 use core::ops::Range;
 
 /// Every point of `a` and of `b`.
@@ -185,6 +184,7 @@ impl<'a> Operand<'a> {
     }
 
     /// The windows of a task that begins at `source` on level `e`.
+    #[cfg(feature = "parallel")]
     fn windows(&self, source: Source, e: usize) -> Result<Windows, Damage> {
         match source {
             Source::Element(n) => Windows::below(&self.tree, e, n),
@@ -354,6 +354,7 @@ impl Kernel<'_> {
         writer: &mut Writer<'_>,
         result: &mut Planes,
     ) -> Result<(), Error> {
+        use alloc::vec::Vec;
         use rayon::prelude::*;
         let mut tasks = Vec::new();
         for c in (0..64).filter(|c| open >> c & 1 != 0) {

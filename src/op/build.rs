@@ -4,7 +4,7 @@ use crate::control::{Control, Job, WHOLE};
 use crate::error::Error;
 use crate::lattice::{Cell, Cube, Frame, morton};
 use crate::octree::block::BLOCK_LEVELS;
-use crate::octree::view::element_levels;
+use crate::octree::view::{element_levels, starts_half_way};
 use crate::octree::writer::Writer;
 use crate::octree::{Block, Octree, OctreeRef, Planes, Rule, Tag};
 use crate::solid::{Scratch, Solid, Stored, Verdict};
@@ -126,7 +126,7 @@ impl<S: Solid> Builder<'_, S> {
         part: &S::Part,
         worker: &mut Worker<S>,
     ) -> Result<Planes, Error> {
-        if e > 0 || self.frame.depth() % 2 == 0 {
+        if e > 0 || !starts_half_way(self.frame.depth()) {
             return self.solid.split64(&mut worker.scratch, cube, part, &mut worker.parts);
         }
         let mut planes = Planes::uniform(Tag::Empty);
@@ -141,7 +141,7 @@ impl<S: Solid> Builder<'_, S> {
 
     /// The cell `c` of the element of level `e` at `cube`.
     fn at(&self, e: usize, cube: &Cube<'_>, c: u8) -> Cell {
-        if e == 0 && self.frame.depth() % 2 == 1 {
+        if e == 0 && starts_half_way(self.frame.depth()) {
             return cube.cell.child(c);
         }
         let [x, y, z] = morton::position(c as u32);
@@ -151,7 +151,7 @@ impl<S: Solid> Builder<'_, S> {
 
     /// Cells that an element of level `e` has in the universe.
     fn cells(&self, e: usize) -> usize {
-        if e == 0 && self.frame.depth() % 2 == 1 { 8 } else { 64 }
+        if e == 0 && starts_half_way(self.frame.depth()) { 8 } else { 64 }
     }
 
     /// What one cell of an element of level 0 or 1 counts for in the progress.

@@ -52,7 +52,7 @@ impl Packed {
         const FIELDS: u64 = 1 | 1 << FIELD | 1 << (2 * FIELD);
         let pairs = self.0 >> shift & (3 * FIELDS);
         // Bits 0 and 1 of a field to 0 and 3, then the fields into one another.
-        let spread = pairs * 5 & (9 * FIELDS);
+        let spread = (pairs * 5) & (9 * FIELDS);
         (spread | spread >> (FIELD - 1) | spread >> (2 * FIELD - 2)) as u32 & 63
     }
 }

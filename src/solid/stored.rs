@@ -3,6 +3,7 @@
 use super::{Solid, Verdict, split_twice};
 use crate::error::Error;
 use crate::lattice::{Cube, Frame};
+use crate::octree::view::starts_half_way;
 use crate::octree::{OctreeRef, Planes, Tag};
 use alloc::vec::Vec;
 
@@ -71,12 +72,12 @@ impl Solid for Stored<'_> {
         if !frame.same_universe(self.0.frame()) {
             return Err(Error::FrameMismatch);
         }
-        let odd = self.0.frame().depth() % 2 == 1;
+        let half = starts_half_way(self.0.frame().depth());
         Ok(match self.0.root_tag() {
             Tag::Empty => Verdict::Empty,
             Tag::Full => Verdict::Full,
             Tag::Partial => Verdict::Undecided,
-            Tag::Branch if odd => Verdict::Partial(StoredPart::Octant { level: 0, index: 0, octant: 0 }),
+            Tag::Branch if half => Verdict::Partial(StoredPart::Octant { level: 0, index: 0, octant: 0 }),
             Tag::Branch => Verdict::Partial(StoredPart::Element { level: 0, index: 0 }),
         })
     }

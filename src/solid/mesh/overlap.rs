@@ -64,7 +64,8 @@ impl Overlap {
             let (u, v) = OTHERS[w];
             // Twice the area seen along w; its sign orients the edges. (Along y, (x, z) is left-handed.)
             let area = if w == 1 { -normal[1] } else { normal[w] };
-            if !(area.abs() > 4.0 * wrong * extent) {
+            let faces = area.abs() > 4.0 * wrong * extent;
+            if !faces {
                 return None;
             }
             let sign = if area > 0.0 { 1.0 } else { -1.0 };
