@@ -68,6 +68,7 @@ struct Builder<'a, S> {
     frame: &'a Frame,
     rule: Rule,
     levels: usize,
+    #[cfg_attr(not(feature = "parallel"), allow(dead_code))]
     parallel: bool,
 }
 
