@@ -298,14 +298,15 @@ impl<'j> Writer<'j> {
         let undecided = |planes: &Planes| planes.partial() != 0;
         let bricks = match self.bricks {
             BrickChunks::One(bricks) => {
-                if planes.iter().any(undecided) {
+                if root == Tag::Partial || planes.iter().any(undecided) {
                     return Err(Damage::MissingPlane.into());
                 }
                 OwnedBricks::One(OwnedArray::Raw(bricks.into_vec()?))
             }
             BrickChunks::Two(bricks) => {
                 let bricks = bricks.into_vec()?;
-                if planes.iter().any(undecided) || bricks.iter().any(undecided) {
+                // Without a single brick their kind still says whether anything is undecided.
+                if root == Tag::Partial || planes.iter().any(undecided) || bricks.iter().any(undecided) {
                     OwnedBricks::Two(OwnedArray::Raw(bricks))
                 } else {
                     let mut one = Vec::new();
