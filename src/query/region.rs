@@ -120,7 +120,10 @@ fn range(frame: &Frame, axis: usize, min: f64, max: f64) -> Option<(u32, u32, bo
     const FAR: f64 = f64::from_bits((1023 + 400) << 52);
     let (min, max) = (min.clamp(-FAR, FAR), max.clamp(-FAR, FAR));
     let (low, high) = (0, 2 * cells as i64);
-    if frame.side(axis, max, low) < 0 || frame.side(axis, min, high) > 0 {
+    // What has thickness and only touches the universe has no cell in common with it; what has none may lie
+    // in the face.
+    let thick = (min < max) as i32;
+    if frame.side(axis, max, low) < thick || frame.side(axis, min, high) > -thick {
         return None;
     }
     let (below, above) = (frame.side(axis, min, low) < 0, frame.side(axis, max, high) > 0);
