@@ -35,7 +35,11 @@ pub fn build<S: Solid>(solid: &S, frame: &Frame, rule: Rule, control: &Control<'
         let builder = Builder { solid, frame, rule, levels: element_levels(frame.depth()), parallel };
         let mut worker = Worker::<S>::new(rule);
         let mut writer = Writer::new(&job, frame.depth(), rule.is_binary());
-        let tag = match solid.root(&mut worker.scratch, frame)? {
+        let root = solid.root(&mut worker.scratch, frame)?;
+        if !matches!(root, Verdict::Partial(_)) {
+            job.advance(WHOLE);
+        }
+        let tag = match root {
             Verdict::Empty => Tag::Empty,
             Verdict::Full => Tag::Full,
             Verdict::Undecided => builder.resolve_all(Planes::uniform(Tag::Partial))?.tag(0),
