@@ -6,7 +6,7 @@ use crate::error::{Error, MeshError};
 
 /// Coordinates and edges beyond ±2^256 are refused: no intermediate result of the library overflows.
 pub(crate) const LARGEST: f64 = f64::from_bits((1023 + 256) << 52);
-/// Edges and coefficients below 2^-256 are refused too, so that nothing underflows.
+/// Edges, and coordinates and coefficients but zero, below 2^-256 are refused too: nothing underflows.
 pub(crate) const SMALLEST: f64 = 1.0 / LARGEST;
 
 /// Where a tree lies: the cube `[origin, origin + edge]³` in model units, cut into 2^depth cells per axis.
@@ -33,15 +33,17 @@ pub struct Frame {
 }
 
 impl Frame {
-    /// A universe with its lower corner at `origin` (model units, |coordinate| ≤ 2^256), of edge length
-    /// `edge` (2^-256 to 2^256) and `depth` (1 to [`MAX_DEPTH`]) levels.
+    /// A universe with its lower corner at `origin` (model units; each coordinate zero or of a magnitude
+    /// between 2^-256 and 2^256), of edge length `edge` (2^-256 to 2^256) and `depth` (1 to [`MAX_DEPTH`])
+    /// levels.
     ///
     /// # Errors
     /// [`Error::Argument`] names the parameter that is out of range.
     pub fn new(origin: [f64; 3], edge: f64, depth: u8) -> Result<Frame, Error> {
         let refuse = |name, problem| Err(Error::Argument { name, problem });
-        if !origin.iter().all(|c| c.abs() <= LARGEST) {
-            return refuse("origin", "every coordinate must be a number between -2^256 and 2^256");
+        if !origin.iter().all(|&c| c == 0.0 || (SMALLEST..=LARGEST).contains(&c.abs())) {
+            let problem = "every coordinate must be zero or of a magnitude between 2^-256 and 2^256";
+            return refuse("origin", problem);
         }
         if !(SMALLEST..=LARGEST).contains(&edge) {
             return refuse("edge", "must be a number between 2^-256 and 2^256");
@@ -202,6 +204,7 @@ mod tests {
         for (origin, edge, depth) in [
             ([f64::NAN, 0.0, 0.0], 1.0, 4),
             ([0.0, f64::INFINITY, 0.0], 1.0, 4),
+            ([0.0, 0.0, -1e-300], 1.0, 4),
             ([0.0; 3], 0.0, 4),
             ([0.0; 3], -1.0, 4),
             ([0.0; 3], f64::NAN, 4),
