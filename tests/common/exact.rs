@@ -160,14 +160,15 @@ impl Definition {
         }
     }
 
-    /// Whether the centre of a finest cell lies inside, all centres being shifted by (ε, ε², ε³). Here the
-    /// shift is a real one, of 2^-3000: smaller than any difference that doubles of moderate size can make.
+    /// Whether the centre of a finest cell lies inside, all centres being shifted in the direction
+    /// (1, ε, ε²), whatever its length. Here the shift is a real one, with ε = 2^-3000 smaller than any
+    /// difference that doubles of moderate size can make, and so short that its square is smaller still.
     pub fn sampled(&self, frame: &Frame, at: [u32; 3]) -> bool {
         let mut centre = [0, 1, 2].map(|axis| Exact::half_plane(frame, axis, 2 * at[axis] + 1));
         match self.sign(&centre) {
             0 => {
                 for (axis, x) in centre.iter_mut().enumerate() {
-                    *x = x.plus(&Exact::power_of_two(-3000 * (axis as i64 + 1)));
+                    *x = x.plus(&Exact::power_of_two(-20_000 - 3000 * axis as i64));
                 }
                 let sign = self.sign(&centre);
                 assert_ne!(sign, 0);
