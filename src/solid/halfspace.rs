@@ -3,7 +3,7 @@
 use super::exact::{Expansion, certain};
 use super::{Solid, Verdict};
 use crate::error::Error;
-use crate::lattice::{Cube, Frame};
+use crate::lattice::{Cell, Cube, Frame};
 
 /// The points where `normal · p + offset ≥ 0`. Signs are exact for the coefficients given.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -78,7 +78,7 @@ impl Solid for HalfSpace {
     type Scratch = ();
 
     fn root(&self, _: &mut (), frame: &Frame) -> Result<Verdict<()>, Error> {
-        Ok(self.verdict(&Cube { frame, cell: crate::Cell::ROOT }))
+        Ok(self.verdict(&Cube { frame, cell: Cell::ROOT }))
     }
 
     fn split(&self, _: &mut (), cube: &Cube<'_>, _: &()) -> Result<[Verdict<()>; 8], Error> {
