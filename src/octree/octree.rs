@@ -202,6 +202,26 @@ impl Octree {
 
     /// What is known level by level: nodes, cells of each tag, volumes. O(depth) once the counts are known,
     /// which for a tree from a file they are and for a new one takes one pass over its arrays.
+    ///
+    /// A classical octree has a node for every cell, cut or not: of n leaves and m internal nodes
+    /// m + n = 8 m + 1 in all. A leaf says only EMPTY or FULL, which its parent can say as well. So the
+    /// leaf-free octree has m nodes. The example that the method was published with has 25 nodes with their
+    /// leaves and 3 without; a bar of three cells is such a solid:
+    ///
+    /// ```
+    /// use leafless::{AxisBox, Control, Frame, Rule, Tag, build};
+    /// let frame = Frame::new([0.0; 3], 4.0, 2)?;
+    /// let bar = AxisBox::new([0.0; 3], [3.0, 1.0, 1.0])?;
+    /// let statistics = build(&bar, &frame, Rule::Certified, &Control::default())?.statistics();
+    ///
+    /// let m = statistics.nodes();
+    /// let n = statistics.cells(Tag::Empty) + statistics.cells(Tag::Full);
+    /// assert_eq!((m, n, m + n, 8 * m + 1), (3, 22, 25, 25));
+    /// // The universe, and the two of its octants that the bar cuts.
+    /// let nodes: Vec<u64> = statistics.levels().iter().map(|level| level.nodes).collect();
+    /// assert_eq!(nodes, [1, 2, 0]);
+    /// # Ok::<(), leafless::Error>(())
+    /// ```
     pub fn statistics(&self) -> Statistics {
         Statistics::new(self.view(), self.counts())
     }
