@@ -1,0 +1,491 @@
+//! The order of the layers: a module uses only modules below it.
+//!
+//! The sources are read as text. Comments and literals are taken out, every path that begins with `crate`,
+//! `super` or `self` is resolved to a module of the crate, and its layer is compared with that of the file.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+/// From the bottom up; modules of one row may use each other.
+const LAYERS: [&[&str]; 8] = [
+    &["error", "control", "dispatch"],
+    &["lattice"],
+    &["octree"],
+    &["solid"],
+    &["op"],
+    &["query"],
+    &["file"],
+    &["capi"],
+];
+
+/// Modules of `solid` that its producers share. Every other one is a producer, which no other may use.
+const SHARED: [&str; 2] = ["exact", "erased"];
+
+fn layer(module: &str) -> Option<usize> {
+    LAYERS.iter().position(|layer| layer.contains(&module))
+}
+
+#[derive(Debug, Clone, PartialEq)]
+enum Token {
+    Word(String),
+    Mark(char),
+}
+
+/// Words and marks of Rust source, without comments, strings and characters. `::` is the mark ':'.
+fn tokens(source: &str) -> Vec<Token> {
+    let text: Vec<char> = source.chars().collect();
+    let at = |i: usize| text.get(i).copied().unwrap_or('\0');
+    let word = |c: char| c.is_alphanumeric() || c == '_';
+    let mut tokens = Vec::new();
+    let mut i = 0;
+    while i < text.len() {
+        match text[i] {
+            '/' if at(i + 1) == '/' => {
+                while i < text.len() && text[i] != '\n' {
+                    i += 1;
+                }
+            }
+            '/' if at(i + 1) == '*' => {
+                let mut depth = 0;
+                loop {
+                    match (at(i), at(i + 1)) {
+                        ('/', '*') => (depth, i) = (depth + 1, i + 2),
+                        ('*', '/') => (depth, i) = (depth - 1, i + 2),
+                        _ => i += 1,
+                    }
+                    if depth == 0 || i >= text.len() {
+                        break;
+                    }
+                }
+            }
+            '"' => i = after_string(&text, i),
+            '\'' if at(i + 1) == '\\' => {
+                i += 3;
+                while i < text.len() && text[i] != '\'' {
+                    i += 1;
+                }
+                i += 1;
+            }
+            '\'' if at(i + 2) == '\'' => i += 3,
+            c if word(c) => {
+                let start = i;
+                while word(at(i)) {
+                    i += 1;
+                }
+                let found: String = text[start..i].iter().collect();
+                let prefix = matches!(found.as_str(), "r" | "b" | "br" | "c" | "cr");
+                let raw = prefix && found.contains('r');
+                if raw && at(i) == '#' && word(at(i + 1)) {
+                    // A raw identifier: its name follows as a word.
+                    i += 1;
+                } else if raw && (at(i) == '"' || at(i) == '#') {
+                    let mut hashes = 0;
+                    while at(i) == '#' {
+                        (hashes, i) = (hashes + 1, i + 1);
+                    }
+                    i += 1;
+                    while i < text.len() && !(text[i] == '"' && (1..=hashes).all(|k| at(i + k) == '#')) {
+                        i += 1;
+                    }
+                    i += 1 + hashes;
+                } else if prefix && at(i) == '"' {
+                    i = after_string(&text, i);
+                } else {
+                    tokens.push(Token::Word(found));
+                }
+            }
+            ':' if at(i + 1) == ':' => {
+                tokens.push(Token::Mark(':'));
+                i += 2;
+            }
+            // A single colon is no path separator.
+            ':' => {
+                tokens.push(Token::Mark('.'));
+                i += 1;
+            }
+            c => {
+                if !c.is_whitespace() {
+                    tokens.push(Token::Mark(c));
+                }
+                i += 1;
+            }
+        }
+    }
+    tokens
+}
+
+fn after_string(text: &[char], quote: usize) -> usize {
+    let mut i = quote + 1;
+    while i < text.len() && text[i] != '"' {
+        i += if text[i] == '\\' { 2 } else { 1 };
+    }
+    i + 1
+}
+
+/// A path in a source, and the inline modules that it stands in.
+#[derive(Debug, PartialEq)]
+struct Mention {
+    inside: Vec<String>,
+    path: Vec<String>,
+    /// Whether it is part of a `use` declaration, and the name that this gives it.
+    import: Option<String>,
+}
+
+/// All paths of two or more segments, and all that are imported; `use` trees are spelled out.
+fn mentions(source: &str) -> Vec<Mention> {
+    let tokens = tokens(source);
+    let mut found = Vec::new();
+    let mut inside: Vec<(String, usize)> = Vec::new();
+    let mut braces = 0;
+    let mut i = 0;
+    while i < tokens.len() {
+        let names = || inside.iter().map(|(name, _)| name.clone()).collect::<Vec<_>>();
+        match &tokens[i] {
+            Token::Mark('{') => braces += 1,
+            Token::Mark('}') => {
+                braces -= 1;
+                if inside.last().is_some_and(|&(_, depth)| depth == braces) {
+                    inside.pop();
+                }
+            }
+            Token::Word(word) if word == "mod" => {
+                if let (Some(Token::Word(name)), Some(Token::Mark('{'))) =
+                    (tokens.get(i + 1), tokens.get(i + 2))
+                {
+                    inside.push((name.clone(), braces));
+                    braces += 1;
+                    i += 2;
+                }
+            }
+            Token::Word(word) if word == "use" => {
+                let mut paths = Vec::new();
+                i = use_tree(&tokens, i + 1, Vec::new(), &mut paths);
+                for (path, name) in paths {
+                    found.push(Mention { inside: names(), path, import: Some(name) });
+                }
+                continue;
+            }
+            Token::Word(_) => {
+                let mut path = Vec::new();
+                while let Some(Token::Word(word)) = tokens.get(i) {
+                    path.push(word.clone());
+                    i += 1;
+                    if tokens.get(i) != Some(&Token::Mark(':')) {
+                        break;
+                    }
+                    i += 1;
+                }
+                // A single word, as in `pub(crate)`, leads nowhere.
+                if path.len() > 1 {
+                    found.push(Mention { inside: names(), path, import: None });
+                }
+                continue;
+            }
+            _ => {}
+        }
+        i += 1;
+    }
+    found
+}
+
+/// Reads the use tree at `i`, all of it below `prefix`; returns what follows.
+fn use_tree(
+    tokens: &[Token],
+    mut i: usize,
+    mut prefix: Vec<String>,
+    out: &mut Vec<(Vec<String>, String)>,
+) -> usize {
+    let push = |path: Vec<String>, name: Option<String>, out: &mut Vec<(Vec<String>, String)>| {
+        let last = path.last().cloned().unwrap_or_default();
+        let own = if last == "self" { path.iter().rev().nth(1).cloned() } else { None };
+        let name = name.or(own).unwrap_or(last);
+        out.push((path, name));
+    };
+    loop {
+        match tokens.get(i) {
+            Some(Token::Mark('{')) => {
+                i += 1;
+                loop {
+                    match tokens.get(i) {
+                        Some(Token::Mark('}')) => return i + 1,
+                        Some(Token::Mark(',')) => i += 1,
+                        Some(_) => i = use_tree(tokens, i, prefix.clone(), out),
+                        None => return i,
+                    }
+                }
+            }
+            Some(Token::Mark(':')) => i += 1,
+            Some(Token::Mark('*')) => {
+                prefix.push("*".into());
+                push(prefix, None, out);
+                return i + 1;
+            }
+            Some(Token::Word(word)) if word == "as" => {
+                let name = match tokens.get(i + 1) {
+                    Some(Token::Word(name)) => name.clone(),
+                    _ => String::new(),
+                };
+                push(prefix, Some(name), out);
+                return i + 2;
+            }
+            Some(Token::Word(word)) => {
+                prefix.push(word.clone());
+                i += 1;
+            }
+            _ => {
+                if !prefix.is_empty() {
+                    push(prefix, None, out);
+                }
+                // The comma or brace belongs to the group, the semicolon to nobody.
+                return i + (tokens.get(i) == Some(&Token::Mark(';'))) as usize;
+            }
+        }
+    }
+}
+
+/// The crate's sources by module path.
+type Sources = BTreeMap<Vec<String>, String>;
+
+/// The absolute path of what a mention names, if that lies in this crate.
+fn resolve(module: &[String], mention: &Mention) -> Option<Vec<String>> {
+    let mut at: Vec<String> = module.iter().chain(&mention.inside).cloned().collect();
+    let mut rest = mention.path.iter().peekable();
+    match rest.peek()?.as_str() {
+        "crate" => {
+            rest.next();
+            at.clear();
+        }
+        "self" => {
+            rest.next();
+        }
+        "super" => {
+            while rest.next_if(|word| *word == "super").is_some() {
+                at.pop();
+            }
+        }
+        _ => return None,
+    }
+    at.extend(rest.filter(|word| *word != "self").cloned());
+    Some(at)
+}
+
+/// Names that `solid` re-exports, with the module that each comes from.
+fn origins(sources: &Sources) -> BTreeMap<String, String> {
+    let module = ["solid".to_string()];
+    let Some(source) = sources.get(&module[..]) else { return BTreeMap::new() };
+    let imports = mentions(source).into_iter().filter_map(|mention| {
+        let name = mention.import.clone()?;
+        let path = match resolve(&module, &mention) {
+            Some(path) => path,
+            // `pub use callback::Callback` is relative to the module.
+            None => module.iter().chain(&mention.path).cloned().collect(),
+        };
+        let from = path.get(1).filter(|_| path[0] == "solid" && path.len() > 2)?;
+        Some((name, from.clone()))
+    });
+    imports.collect()
+}
+
+/// Everything in `sources` that goes against the order.
+fn violations(sources: &Sources) -> Vec<String> {
+    let origins = origins(sources);
+    let mut found = Vec::new();
+    for (module, source) in sources {
+        let name = module.join("::");
+        let Some(first) = module.first() else { continue };
+        let Some(own) = layer(first) else {
+            found.push(format!("{name}: has no layer"));
+            continue;
+        };
+        for mention in mentions(source) {
+            let said = mention.path.join("::");
+            if said.starts_with("leafless::") {
+                found.push(format!("{name}: {said} goes through the crate's public face"));
+            }
+            let Some(target) = resolve(module, &mention) else { continue };
+            match target.first().map(|first| (first, layer(first))) {
+                Some((_, Some(theirs))) if theirs > own => {
+                    found.push(format!("{name}: {said} lies above"));
+                }
+                Some((_, Some(_))) => {}
+                Some((_, None)) | None => {
+                    found.push(format!("{name}: {said} goes through the crate's root"));
+                }
+            }
+            // One producer must not know another, by whatever name.
+            if first == "solid" && target.first() == Some(first) {
+                let producer =
+                    |name: &str| !SHARED.contains(&name) && sources.contains_key(&path(&["solid", name]));
+                let Some(mine) = module.get(1).filter(|name| producer(name)) else { continue };
+                let theirs = target.get(1).map(|name| origins.get(name).unwrap_or(name));
+                if theirs.is_some_and(|theirs| theirs != mine && producer(theirs)) {
+                    found.push(format!("{name}: {said} is another producer"));
+                }
+                if theirs.is_some_and(|theirs| theirs == "*") {
+                    found.push(format!("{name}: {said} takes in every producer"));
+                }
+            }
+        }
+    }
+    found
+}
+
+fn path(segments: &[&str]) -> Vec<String> {
+    segments.iter().map(|segment| segment.to_string()).collect()
+}
+
+/// The library's sources; the program and the crate's root are not part of the order.
+fn library() -> Sources {
+    fn read(folder: &Path, module: &[String], sources: &mut Sources) {
+        for entry in std::fs::read_dir(folder).unwrap() {
+            let file = entry.unwrap().path();
+            let stem = file.file_stem().unwrap().to_str().unwrap().to_string();
+            let mut inner = module.to_vec();
+            if file.is_dir() {
+                inner.push(stem);
+                read(&file, &inner, sources);
+            } else if file.extension().is_some_and(|extension| extension == "rs") {
+                if stem != "mod" {
+                    inner.push(stem);
+                }
+                sources.insert(inner, std::fs::read_to_string(&file).unwrap());
+            }
+        }
+    }
+    let mut sources = Sources::new();
+    read(&Path::new(env!("CARGO_MANIFEST_DIR")).join("src"), &[], &mut sources);
+    sources.retain(|module, _| module[0] != "bin" && module[..] != ["lib"]);
+    sources
+}
+
+#[test]
+fn the_order_is_kept() {
+    let sources = library();
+    for module in [&["octree", "view"][..], &["solid", "primitive"], &["op"], &["control"]] {
+        assert!(sources.contains_key(&path(module)), "{module:?} was not read");
+    }
+    // The checker sees what the sources are known to use.
+    let build = mentions(&sources[&path(&["op", "build"])]);
+    assert!(build.iter().any(|mention| mention.path == path(&["crate", "solid", "Stored"])));
+    assert!(origins(&sources).contains_key("Callback"));
+    let found = violations(&sources);
+    assert!(found.is_empty(), "\n{}", found.join("\n"));
+}
+
+#[test]
+fn the_program_uses_the_public_face_only() {
+    // A program cannot reach private modules; that its files do not include the library's says the rest.
+    let bin = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/bin/leafless");
+    for entry in std::fs::read_dir(bin).unwrap() {
+        let source = std::fs::read_to_string(entry.unwrap().path()).unwrap_or_default();
+        for word in ["path", "include"] {
+            assert!(!tokens(&source).contains(&Token::Word(word.into())) || !source.contains("../../"));
+        }
+    }
+}
+
+#[cfg(test)]
+mod checker {
+    use super::*;
+
+    fn with(extra: &[(&[&str], &str)]) -> Vec<String> {
+        let mut sources: Sources = BTreeMap::from([
+            (
+                path(&["solid"]),
+                "mod ball; mod slab; mod exact; pub use ball::Ball; pub trait Solid {}".into(),
+            ),
+            (path(&["solid", "ball"]), "use super::exact::sign; use super::Solid;".into()),
+            (path(&["solid", "slab"]), "use super::{Solid, exact};".into()),
+            (path(&["solid", "exact"]), "use crate::lattice::Frame;".into()),
+            (path(&["octree"]), "use crate::error::Error;".into()),
+        ]);
+        assert_eq!(violations(&sources), Vec::<String>::new());
+        for (module, source) in extra {
+            sources.insert(path(module), source.to_string());
+        }
+        violations(&sources)
+    }
+
+    #[test]
+    fn catches_what_lies_above() {
+        for source in [
+            "use crate::op::build;",
+            "use crate::{error::Error, op::build};",
+            "use crate::{error::Error, op::{self, build}};",
+            "fn f() { crate::op::build() }",
+            "fn f() { let x: crate::op::X = 1; }",
+            "use super::super::op::build;",
+            "mod tests { use super::super::super::op::build; }",
+            "pub(crate) use crate::op::build as innocent;",
+            "fn f() -> Vec<crate::query::Region> { }",
+            "const Q: char = '\"'; use crate::op::build; const R: char = '\"';",
+            "fn f<'a>(x: &'a str) { crate::op::build() }",
+            "use crate::r#op::build;",
+        ] {
+            let found = with(&[(&["octree", "view"], source)]);
+            assert_eq!(found.len(), if source.contains("self,") { 2 } else { 1 }, "{source}: {found:?}");
+            assert!(found[0].contains("lies above"), "{found:?}");
+        }
+    }
+
+    #[test]
+    fn catches_the_way_through_the_root() {
+        for source in [
+            "use crate::Frame;",
+            "fn f() { crate::build() }",
+            "use crate::{lattice::Cell, Cube};",
+            "use crate::*;",
+        ] {
+            let found = with(&[(&["octree", "view"], source)]);
+            assert!(found.len() == 1 && found[0].contains("root"), "{source}: {found:?}");
+        }
+        assert!(with(&[(&["octree", "view"], "use leafless::Frame;")])[0].contains("public face"));
+    }
+
+    #[test]
+    fn catches_producers_that_know_each_other() {
+        for source in [
+            "use super::ball::Ball;",
+            "use super::Ball;",
+            "use crate::solid::Ball;",
+            "use crate::solid::{Solid, Ball as Round};",
+            "fn f() { super::ball::helper() }",
+            "use super::*;",
+        ] {
+            let found = with(&[(&["solid", "slab"], source)]);
+            assert_eq!(found.len(), 1, "{source}: {found:?}");
+            // Folders are producers as a whole: their files may use each other.
+            let deeper = source.replace("super::", "super::super::");
+            let found = with(&[(&["solid", "mesh"], ""), (&["solid", "mesh", "scan"], &deeper)]);
+            assert_eq!(found.len(), 1, "{deeper}: {found:?}");
+        }
+        assert!(
+            with(&[(&["solid", "mesh"], ""), (&["solid", "mesh", "scan"], "use super::grid::Grid;")])
+                .is_empty()
+        );
+    }
+
+    #[test]
+    fn catches_modules_without_a_layer() {
+        assert_eq!(with(&[(&["surprise"], "")]), ["surprise: has no layer"]);
+    }
+
+    #[test]
+    fn is_not_misled() {
+        for source in [
+            "// use crate::op::build;",
+            "/* a /* nested */ use crate::op::build; */",
+            "/// [`crate::op::build`]\nfn f() {}",
+            "const S: &str = \"use crate::op::build;\";",
+            "const S: &str = \"\\\"crate::op::build\";",
+            "const S: &str = r#\"\" crate::op::build\"#;",
+            "pub(crate) fn f() {}",
+            "use crate::lattice::{self, Cell};",
+            "use super::tag::Tag; use alloc::vec::Vec; use core::ops::Range;",
+            "#[cfg(test)] mod tests { use super::*; use super::super::tag::Tag; }",
+            "fn op() { op::build() }",
+        ] {
+            assert_eq!(with(&[(&["octree", "view"], source)]), Vec::<String>::new(), "{source}");
+        }
+    }
+}
