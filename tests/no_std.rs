@@ -1,0 +1,40 @@
+//! Without its features the crate needs no standard library: a program that has none is built, linked and run.
+
+// The program takes its memory from the C library as Unix has it.
+#![cfg(unix)]
+
+use std::path::Path;
+use std::process::Command;
+
+#[test]
+fn a_program_without_the_standard_library_builds_links_and_runs() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let template = root.join("tests/no_std");
+    // A copy, so that nothing is written beside the sources; with the versions that the crate is tested with.
+    let copy = Path::new(env!("CARGO_TARGET_TMPDIR")).join("no_std");
+    std::fs::create_dir_all(copy.join("src")).unwrap();
+    let manifest = std::fs::read_to_string(template.join("Cargo.toml")).unwrap();
+    let here = format!("path = {root:?}");
+    assert!(manifest.contains("path = \"../..\""));
+    std::fs::write(copy.join("Cargo.toml"), manifest.replace("path = \"../..\"", &here)).unwrap();
+    std::fs::copy(template.join("src/main.rs"), copy.join("src/main.rs")).unwrap();
+    std::fs::copy(root.join("Cargo.lock"), copy.join("Cargo.lock")).unwrap();
+
+    let target = copy.join("target");
+    let built = Command::new(env!("CARGO"))
+        .args(["build", "--offline", "--quiet", "--manifest-path"])
+        .arg(copy.join("Cargo.toml"))
+        .arg("--target-dir")
+        .arg(&target)
+        // Configuration is looked for where this crate's is.
+        .current_dir(root)
+        // What was set for building these tests is not meant for a program of its own.
+        .env_remove("CARGO_BUILD_TARGET")
+        .output()
+        .unwrap();
+    assert!(built.status.success(), "{}", String::from_utf8_lossy(&built.stderr));
+
+    let program = target.join("debug").join(format!("leafless-no-std{}", std::env::consts::EXE_SUFFIX));
+    let run = Command::new(&program).output().unwrap();
+    assert_eq!(run.status.code(), Some(42), "{run:?}");
+}
