@@ -24,51 +24,68 @@ fn bytes<T>(bricks: usize, entries: usize, segments: usize) -> usize {
     size_of::<u16>() * bricks + size_of::<T>() * entries + size_of::<u64>() * segments
 }
 
-/// The bricks in the encoding that the rule demands.
+/// The bricks in the encoding that the rule demands, or `None` if they are raw and are to stay so: they need
+/// not be copied then.
 ///
 /// # Errors
 /// [`Error::OutOfMemory`], and [`Error::Damaged`] if a brick cannot be read.
-pub(crate) fn encode(bricks: &Bricks<'_>) -> Result<OwnedBricks, Error> {
+pub(crate) fn encode(bricks: &Bricks<'_>) -> Result<Option<OwnedBricks>, Error> {
     Ok(match bricks {
-        Bricks::One(bricks) => OwnedBricks::One(encode_array(bricks)?),
-        Bricks::Two(bricks) => OwnedBricks::Two(encode_array(bricks)?),
+        Bricks::One(bricks) => encode_array(bricks)?.map(OwnedBricks::One),
+        Bricks::Two(bricks) => encode_array(bricks)?.map(OwnedBricks::Two),
     })
 }
 
-fn encode_array<T: Brick>(bricks: &BrickArray<'_, T>) -> Result<OwnedArray<T>, Error> {
-    let count = bricks.len();
-    let raw = match bricks {
-        BrickArray::Raw(raw) => copied(raw)?,
+fn encode_array<T: Brick>(bricks: &BrickArray<'_, T>) -> Result<Option<OwnedArray<T>>, Error> {
+    let decoded = match bricks {
+        BrickArray::Raw(raw) => return shortest(raw),
         BrickArray::Dictionary { .. } => {
-            let mut raw = with_capacity(count)?;
-            if !bricks.extend(0..count, &mut raw, |brick| brick) {
+            let mut raw = with_capacity(bricks.len())?;
+            if !bricks.extend(0..bricks.len(), &mut raw, |brick| brick) {
                 return Err(Damage::Dictionary { brick: 0 }.into());
             }
             raw
         }
     };
+    Ok(Some(shortest(&decoded)?.unwrap_or(OwnedArray::Raw(decoded))))
+}
+
+/// The bricks through the dictionary that the rule demands, or `None` if it demands raw bricks.
+fn shortest<T: Brick>(raw: &[T]) -> Result<Option<OwnedArray<T>>, Error> {
     // Halving the segments never makes the sum of their dictionaries smaller, so the first size that fits
     // 16-bit indices is the smallest.
     if raw.is_empty() {
-        return Ok(OwnedArray::Raw(raw));
+        return Ok(None);
     }
-    let longest = count.next_power_of_two().trailing_zeros().saturating_sub(1) as u8;
+    let longest = raw.len().next_power_of_two().trailing_zeros().saturating_sub(1) as u8;
     for shift in core::iter::once(WHOLE).chain((16..=longest).rev()) {
-        if let Some(coded) = segmented(&raw, shift)? {
-            return Ok(coded);
+        match segmented(raw, shift)? {
+            Segmented::Fits(coded) => return Ok(Some(coded)),
+            Segmented::Longer => return Ok(None),
+            Segmented::TooManyEntries => {}
         }
     }
-    Ok(OwnedArray::Raw(raw))
+    Ok(None)
 }
 
-/// The bricks in segments of 2^shift; `Raw` if that is not longer, `None` if an index would not fit.
-fn segmented<T: Brick>(raw: &[T], shift: u8) -> Result<Option<OwnedArray<T>>, Error> {
+/// What comes of segments of one size.
+enum Segmented<T> {
+    /// A dictionary, shorter than raw bricks.
+    Fits(OwnedArray<T>),
+    /// No shorter than raw bricks.
+    Longer,
+    /// An index would not fit.
+    TooManyEntries,
+}
+
+/// The bricks in segments of 2^shift.
+fn segmented<T: Brick>(raw: &[T], shift: u8) -> Result<Segmented<T>, Error> {
     let length = if shift == WHOLE { raw.len().max(1) } else { 1 << shift };
     let mut indices: Vec<u16> = with_capacity(raw.len())?;
     let mut entries: Vec<T> = Vec::new();
     let mut segments: Vec<u64> = with_capacity(raw.len().div_ceil(length))?;
     let mut seen: HashMap<T, u32> = HashMap::new();
-    let mut counts: Vec<u32> = Vec::new();
+    let mut counts: Vec<u64> = Vec::new();
     let mut distinct: Vec<T> = Vec::new();
     for segment in raw.chunks(length) {
         seen.clear();
@@ -82,7 +99,7 @@ fn segmented<T: Brick>(raw: &[T], shift: u8) -> Result<Option<OwnedArray<T>>, Er
             let index = *seen.entry(brick).or_insert(fresh as u32) as usize;
             if index == fresh {
                 if fresh == MOST {
-                    return Ok(None);
+                    return Ok(Segmented::TooManyEntries);
                 }
                 counts.push(0);
                 distinct.push(brick);
@@ -103,21 +120,15 @@ fn segmented<T: Brick>(raw: &[T], shift: u8) -> Result<Option<OwnedArray<T>>, Er
         entries.extend(order.iter().map(|&i| distinct[i as usize]));
         // Already no shorter than raw bricks: nor will it be with the other segments, or smaller ones.
         if bytes::<T>(raw.len(), entries.len(), segments.len()) >= size_of_val(raw) {
-            return Ok(Some(OwnedArray::Raw(copied(raw)?)));
+            return Ok(Segmented::Longer);
         }
     }
-    Ok(Some(OwnedArray::Dictionary { indices, entries, segments, shift }))
+    Ok(Segmented::Fits(OwnedArray::Dictionary { indices, entries, segments, shift }))
 }
 
 fn with_capacity<T>(count: usize) -> Result<Vec<T>, Error> {
     let mut vec = Vec::new();
     vec.try_reserve_exact(count).map_err(|_| Error::OutOfMemory)?;
-    Ok(vec)
-}
-
-fn copied<T: Copy>(slice: &[T]) -> Result<Vec<T>, Error> {
-    let mut vec = with_capacity(slice.len())?;
-    vec.extend_from_slice(slice);
     Ok(vec)
 }
 
@@ -131,7 +142,8 @@ pub(crate) fn check(tree: &OctreeRef<'_>) -> Result<(), Damage> {
 
 fn check_array<T: Brick>(bricks: &BrickArray<'_, T>) -> Result<(), Damage> {
     let BrickArray::Dictionary { indices, entries, segments, shift } = *bricks else { return Ok(()) };
-    let length = if shift == WHOLE { indices.len().max(1) } else { 1usize << shift.min(62) };
+    // Segments longer than the address space are one segment.
+    let length = 1usize.checked_shl(shift.into()).unwrap_or(usize::MAX);
     if segments.len() != indices.len().div_ceil(length) {
         return Err(Damage::Dictionary { brick: 0 });
     }
@@ -144,7 +156,7 @@ fn check_array<T: Brick>(bricks: &BrickArray<'_, T>) -> Result<(), Damage> {
         if segments[s] != expected {
             return Err(Damage::Dictionary { brick });
         }
-        let mut counts = vec![0u32; own.len()];
+        let mut counts = vec![0u64; own.len()];
         for (b, &index) in indices.iter().enumerate() {
             match counts.get_mut(index as usize) {
                 Some(count) => *count += 1,
@@ -179,7 +191,7 @@ mod tests {
     #[test]
     fn entries_stand_by_frequency_then_value() {
         let raw: Vec<u64> = [9, 5, 5, 7, 7, 1, 1, 1].repeat(4);
-        let coded = encode_array(&BrickArray::Raw(&raw)).unwrap();
+        let coded = encode_array(&BrickArray::Raw(&raw)).unwrap().unwrap();
         let (found, entries, segments, shift) = indices(&coded);
         assert_eq!((entries, segments, shift), (&[1, 5, 7, 9][..], &[0][..], WHOLE));
         assert_eq!(&found[..8], &[3, 1, 1, 2, 2, 0, 0, 0]);
@@ -192,9 +204,7 @@ mod tests {
     #[test]
     fn few_or_all_different_bricks_stay_raw() {
         for raw in [vec![], vec![7], vec![3, 3], (0..500).collect()] {
-            assert!(
-                matches!(encode_array(&BrickArray::Raw(&raw)).unwrap(), OwnedArray::Raw(kept) if kept == raw)
-            );
+            assert!(encode_array(&BrickArray::Raw(&raw)).unwrap().is_none());
         }
     }
 
@@ -202,7 +212,7 @@ mod tests {
     fn more_than_65536_distinct_bricks_need_segments() {
         // 4 · 50 000 bricks, each quarter with its own 25 000 values: one dictionary cannot hold 100 000.
         let raw: Vec<u64> = (0..200_000u64).map(|b| (b / 50_000) * 1_000_000 + b % 25_000).collect();
-        let coded = encode_array(&BrickArray::Raw(&raw)).unwrap();
+        let coded = encode_array(&BrickArray::Raw(&raw)).unwrap().unwrap();
         let (_, entries, segments, shift) = indices(&coded);
         assert_eq!((shift, segments.len()), (16, 4));
         assert!(entries.len() > 100_000);

@@ -15,7 +15,7 @@ pub(crate) mod octree;
 pub(crate) mod stats;
 mod tag;
 pub(crate) mod view;
-mod word;
+pub(crate) mod word;
 pub(crate) mod writer;
 
 pub use block::{Block, Rule};

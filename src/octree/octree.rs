@@ -37,7 +37,6 @@ pub(crate) struct Arrays {
     base: Vec<u64>,
     bricks: OwnedBricks,
     starts: [usize; MAX_ELEMENT_LEVELS + 1],
-    table: Option<Vec<LevelCounts>>,
 }
 
 pub(crate) enum OwnedArray<T> {
@@ -108,23 +107,7 @@ impl Arrays {
                 next += planes.branch().count_ones() as usize;
             }
         }
-        Ok(Arrays { frame, root, exterior, planes, rel, base, bricks, starts, table: None })
-    }
-
-    /// Takes over arrays as they were read from a file; nothing is checked.
-    #[allow(clippy::too_many_arguments)]
-    pub(crate) fn from_parts(
-        frame: Frame,
-        root: Tag,
-        exterior: Tag,
-        planes: Vec<Planes>,
-        rel: Vec<u16>,
-        base: Vec<u64>,
-        bricks: OwnedBricks,
-        starts: [usize; MAX_ELEMENT_LEVELS + 1],
-        table: Option<Vec<LevelCounts>>,
-    ) -> Arrays {
-        Arrays { frame, root, exterior, planes, rel, base, bricks, starts, table }
+        Ok(Arrays { frame, root, exterior, planes, rel, base, bricks, starts })
     }
 
     fn view(&self) -> OctreeRef<'_> {
@@ -137,7 +120,7 @@ impl Arrays {
             base: &self.base,
             bricks: self.bricks.view(),
             starts: self.starts,
-            table: self.table.as_deref(),
+            table: None,
         }
     }
 }
@@ -183,9 +166,11 @@ impl Octree {
             planes: try_copy(tree.planes)?,
             rel: try_copy(tree.rel)?,
             base: try_copy(tree.base)?,
-            bricks: dictionary::encode(&tree.bricks)?,
+            bricks: match dictionary::encode(&tree.bricks)? {
+                Some(bricks) => bricks,
+                None => copy_raw(&tree.bricks)?,
+            },
             starts: tree.starts,
-            table: None,
         }))
     }
 
@@ -267,6 +252,20 @@ impl PartialEq for Octree {
             && a.bricks.len() == b.bricks.len()
             && (0..a.bricks.len()).all(|i| a.bricks.get(i) == b.bricks.get(i))
     }
+}
+
+/// A copy of bricks that are raw.
+fn copy_raw(bricks: &Bricks<'_>) -> Result<OwnedBricks, Error> {
+    fn copy<T: Brick>(bricks: &BrickArray<'_, T>) -> Result<OwnedArray<T>, Error> {
+        let mut copy = Vec::new();
+        copy.try_reserve_exact(bricks.len()).map_err(|_| Error::OutOfMemory)?;
+        bricks.extend(0..bricks.len(), &mut copy, |brick| brick);
+        Ok(OwnedArray::Raw(copy))
+    }
+    Ok(match bricks {
+        Bricks::One(bricks) => OwnedBricks::One(copy(bricks)?),
+        Bricks::Two(bricks) => OwnedBricks::Two(copy(bricks)?),
+    })
 }
 
 fn try_copy<T: Copy>(slice: &[T]) -> Result<Vec<T>, Error> {
