@@ -179,8 +179,9 @@ pub enum FormatError {
         /// The value found.
         value: u64,
     },
-    /// A section that the header's fields make necessary is absent, or stands twice.
-    #[error("section {name} is missing or stands twice")]
+    /// A section that the header's fields make necessary is absent, stands twice, or has another number of
+    /// elements than they demand.
+    #[error("section {name} is missing, stands twice or contradicts the header")]
     Section {
         /// The section's name in the specification.
         name: &'static str,
@@ -191,6 +192,9 @@ pub enum FormatError {
         /// What the checksum covers.
         name: &'static str,
     },
+    /// The metadata cannot be read.
+    #[error("the metadata are not UTF-8 texts with ascending keys")]
+    Metadata,
     /// The bytes are not aligned in memory as a view needs them.
     #[error("the bytes must begin on an address that is a multiple of 8")]
     Alignment,

@@ -1,0 +1,82 @@
+//! Files mapped into memory and queried in place.
+
+use super::read::{metadata, verify_contents, viewed};
+use crate::error::Error;
+use crate::octree::Octree;
+use alloc::sync::Arc;
+use memmap2::Mmap;
+use std::fs::File;
+use std::path::Path;
+
+/// The tree in the file at `path`, mapped into memory: nothing is copied, and only what queries touch is ever
+/// read from disk. Header, section table, bounds, level table and metadata are checked, and nothing else:
+/// O(sections + depth), some microseconds for a file of any size.
+///
+/// The pages are shared with all other processes that map the file, and the mapping lives until the last
+/// clone of the tree is gone. Removing the file, or replacing it by renaming another over it, as
+/// [`save`](super::save) does, leaves the mapping as it is.
+///
+/// Of a file that is damaged elsewhere all queries are still memory-safe, and end after bounded work; see
+/// [`OctreeRef`](crate::OctreeRef). [`map_verified`] and [`open`](super::open) refuse such a file.
+///
+/// # Errors
+/// [`Error::Io`]; [`Error::Argument`] if there is no regular file at `path`; else as [`view`](super::view),
+/// and [`FormatError::Metadata`](crate::FormatError::Metadata).
+///
+/// # Safety
+/// While the mapping lives,
+///
+/// * nobody may make the file shorter: reading beyond its new end raises SIGBUS (an in-page error on
+///   Windows), which by default ends the process;
+/// * nobody may write to it: the language demands that bytes behind a shared reference stand still. In
+///   practice the library checks every index at the moment of its use, after [`map_verified`] too, so changed
+///   contents can make answers wrong but are not known to make any access leave the mapping. Do not rely on
+///   the latter.
+///
+/// Programs that replace files instead of rewriting them keep this promise by themselves. Where others
+/// cannot be trusted with it, use [`open`](super::open).
+#[allow(unsafe_code)]
+pub unsafe fn map(path: impl AsRef<Path>) -> Result<Octree, Error> {
+    // SAFETY: the caller promises what `mapped` asks for.
+    unsafe { mapped(path.as_ref(), false) }
+}
+
+/// As [`map`], but verifies all of the file first, in one scan: everything that [`verify`](super::verify)
+/// checks.
+///
+/// # Errors
+/// As [`map`], and as [`verify`](super::verify).
+///
+/// # Safety
+/// As [`map`]. What was verified may be changed afterwards by whoever breaks that promise.
+#[allow(unsafe_code)]
+pub unsafe fn map_verified(path: impl AsRef<Path>) -> Result<Octree, Error> {
+    // SAFETY: the caller promises what `mapped` asks for.
+    unsafe { mapped(path.as_ref(), true) }
+}
+
+/// # Safety
+/// As [`map`].
+#[allow(unsafe_code)]
+unsafe fn mapped(path: &Path, verify: bool) -> Result<Octree, Error> {
+    // Asked before opening, because opening a pipe that nobody writes to would wait.
+    if !std::fs::metadata(path)?.is_file() {
+        return Err(Error::Argument { name: "path", problem: "only a regular file can be mapped" });
+    }
+    let file = File::open(path)?;
+    if file.metadata()?.len() == 0 {
+        // Nothing can be mapped; the error is the one of any file that is too short.
+        return super::from_bytes(&[]);
+    }
+    // SAFETY: the caller promises that the file is not changed while the mapping lives.
+    let map = Arc::new(unsafe { Mmap::map(&file) }?);
+    let (layout, _) = viewed(&map)?;
+    let metadata = if verify { verify_contents(&layout, &map)? } else { metadata(&layout, &map)? };
+    Octree::attach(map, metadata, |map| {
+        let tree = layout.octree(map)?;
+        if verify {
+            tree.check()?;
+        }
+        Ok(tree)
+    })
+}
