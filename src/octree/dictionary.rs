@@ -226,7 +226,8 @@ mod tests {
     #[test]
     fn damaged_dictionaries_are_found() {
         let good = (vec![0u16, 0, 1], vec![4u64, 2], vec![0u64], WHOLE);
-        let verdict = |change: &dyn Fn(&mut (Vec<u16>, Vec<u64>, Vec<u64>, u8))| {
+        type Parts = (Vec<u16>, Vec<u64>, Vec<u64>, u8);
+        let verdict = |change: &dyn Fn(&mut Parts)| {
             let mut parts = good.clone();
             change(&mut parts);
             let (indices, entries, segments, shift) = parts;
