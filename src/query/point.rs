@@ -2,7 +2,6 @@
 
 use crate::dispatch::{Hot, with_popcount};
 use crate::error::Error;
-use crate::octree::brick::{Brick, BrickArray, Bricks};
 use crate::octree::view::{MAX_ELEMENT_LEVELS, OctreeRef};
 use crate::octree::{Octree, Planes, Tag};
 
@@ -76,20 +75,6 @@ impl OctreeRef<'_> {
         with_popcount(Descend { tree: self, at: Packed::new(at) })
     }
 
-    /// The child of element `index` of level `e` in cell `c`, or the tag that ends the descent there.
-    #[inline(always)]
-    fn step(&self, index: usize, e: usize, c: u32) -> Result<usize, Tag> {
-        let Some(planes) = self.planes.get(index) else { return Err(Tag::Partial) };
-        if planes.branch() >> c & 1 == 0 {
-            return Err(planes.tag(c));
-        }
-        match self.child(index, planes.branch(), c) {
-            // A damaged link must not lead to another level.
-            Some(child) if self.on_level(child, e + 1) => Ok(child),
-            _ => Err(Tag::Partial),
-        }
-    }
-
     /// Answers many points at once, `answers[i]` for `points[i]`; the same answers as
     /// [`contains`](Self::contains). Points are kept under way in groups, level by level, which costs neither
     /// mispredicted branches nor waiting for memory.
@@ -104,12 +89,57 @@ impl OctreeRef<'_> {
             points.iter().zip(answers).for_each(|(&point, answer)| *answer = self.contains(point));
             return Ok(());
         }
-        match &self.bricks {
-            Bricks::One(bricks) => with_popcount(Lockstep { tree: self, bricks, points, answers }),
-            Bricks::Two(bricks) => with_popcount(Lockstep { tree: self, bricks, points, answers }),
-        }
+        with_popcount(Lockstep { tree: self, points, answers });
         Ok(())
     }
+
+    /// The tag of a finest cell in the brick with this index; damage reads as undecided.
+    #[inline(always)]
+    fn finest(&self, index: usize, at: Packed) -> Tag {
+        let brick = self.bricks.get(index.wrapping_sub(self.planes.len()));
+        brick.map_or(Tag::Partial, |planes| planes.tag(at.cell(0)))
+    }
+}
+
+/// The arrays that a descent reads, cut to one length so that an index needs to be checked only once.
+#[derive(Clone, Copy)]
+struct Links<'a> {
+    planes: &'a [Planes],
+    rel: &'a [u16],
+    base: &'a [u64],
+}
+
+impl<'a> Links<'a> {
+    #[inline(always)]
+    fn new(tree: &OctreeRef<'a>) -> Links<'a> {
+        let count = tree.planes.len().min(tree.rel.len());
+        Links { planes: &tree.planes[..count], rel: &tree.rel[..count], base: tree.base }
+    }
+
+    /// What element `index` has in cell `c`, and the child there, which means something for a BRANCH whose
+    /// link is sound: whether it leads to `level`, the children's range of indices.
+    #[inline(always)]
+    fn step(&self, index: usize, c: u32, level: &[usize]) -> (Tag, usize, bool) {
+        let (Some(planes), Some(&rel), Some(&base)) =
+            (self.planes.get(index), self.rel.get(index), self.base.get(index >> 10))
+        else {
+            return (Tag::Partial, 0, false);
+        };
+        let branch = planes.branch();
+        let rank = (branch & ((1u64 << c) - 1)).count_ones() as usize;
+        // A wild sum is caught by the range.
+        let child = (base as usize).wrapping_add(rel as usize).wrapping_add(rank);
+        let sound = child.wrapping_sub(level[0]) < level[1] - level[0];
+        (planes.tag(c), child, sound & (branch >> c & 1 != 0))
+    }
+}
+
+/// The index ranges of the element levels below the root, from the top.
+#[inline(always)]
+fn levels_below<'t>(tree: &'t OctreeRef<'_>) -> impl Iterator<Item = (u32, &'t [usize])> {
+    let levels = tree.levels();
+    let shifts = (1..levels as u32).rev().map(|below| 2 * below);
+    shifts.zip(tree.starts[1..levels + 1].windows(2))
 }
 
 /// One point on its way down.
@@ -127,25 +157,22 @@ impl Hot for Descend<'_, '_> {
         if tree.root != Tag::Branch {
             return tree.root;
         }
+        let links = Links::new(tree);
         let mut index = 0;
-        let mut e = 0;
-        let mut shift = 2 * (tree.levels() as u32 - 1);
-        while shift != 0 {
-            match tree.step(index, e, at.cell(shift)) {
-                Ok(child) => index = child,
-                Err(tag) => return tag,
+        for (shift, level) in levels_below(tree) {
+            let (tag, child, goes_on) = links.step(index, at.cell(shift), level);
+            if !goes_on {
+                return settled(tag);
             }
-            e += 1;
-            shift -= 2;
+            index = child;
         }
-        finest(tree.bricks.get(index - tree.planes.len()), at.cell(0))
+        settled(tree.finest(index, at))
     }
 }
 
 /// Many points on their way down, in groups.
-struct Lockstep<'t, 'a, T> {
+struct Lockstep<'t, 'a> {
     tree: &'t OctreeRef<'a>,
-    bricks: &'t BrickArray<'a, T>,
     points: &'t [[f64; 3]],
     answers: &'t mut [Membership],
 }
@@ -158,57 +185,46 @@ struct Lane {
     index: usize,
 }
 
-impl<T: Brick> Hot for Lockstep<'_, '_, T> {
+impl Hot for Lockstep<'_, '_> {
     type Output = ();
 
     #[inline(always)]
     fn run(self) {
-        let Lockstep { tree, bricks, points, answers } = self;
-        let last = tree.levels() as u32 - 1;
+        let Lockstep { tree, points, answers } = self;
+        let links = Links::new(tree);
         for (points, answers) in points.chunks(LANES).zip(answers.chunks_mut(LANES)) {
             let mut lanes = [Lane::default(); LANES];
             let mut under_way = 0;
             for (i, &point) in points.iter().enumerate() {
-                match tree.frame.cell_of(point) {
-                    Some(at) => {
-                        lanes[under_way] = Lane { point: i, at: Packed::new(at), index: 0 };
-                        under_way += 1;
-                    }
-                    None => answers[i] = Membership::Undecided,
+                answers[i] = Membership::Undecided;
+                if let Some(at) = tree.frame.cell_of(point) {
+                    lanes[under_way % LANES] = Lane { point: i, at: Packed::new(at), index: 0 };
+                    under_way += 1;
                 }
             }
-            for e in 0..last {
+            for (shift, level) in levels_below(tree) {
                 let mut kept = 0;
                 for i in 0..under_way {
-                    let lane = lanes[i];
-                    let c = lane.at.cell(2 * (last - e));
+                    let lane = lanes[i % LANES];
                     // Whatever comes of this step is written; no branch depends on whether it ends here.
-                    let planes =
-                        tree.planes.get(lane.index).copied().unwrap_or(Planes::uniform(Tag::Partial));
-                    let branch = planes.branch();
-                    let child = tree.child(lane.index, branch, c).unwrap_or(usize::MAX);
-                    let goes_on = branch >> c & 1 != 0 && tree.on_level(child, e as usize + 1);
-                    answers[lane.point] = planes.tag(c).into();
-                    lanes[kept] = Lane { index: child, ..lane };
+                    let (tag, index, goes_on) = links.step(lane.index, lane.at.cell(shift), level);
+                    answers[lane.point] = tag.into();
+                    lanes[kept % LANES] = Lane { index, ..lane };
                     kept += goes_on as usize;
                 }
                 under_way = kept;
             }
             for lane in &lanes[..under_way] {
-                let planes = bricks.get(lane.index - tree.planes.len()).map(Brick::planes);
-                answers[lane.point] = finest(planes, lane.at.cell(0)).into();
+                answers[lane.point] = tree.finest(lane.index, lane.at).into();
             }
         }
     }
 }
 
-/// The tag of cell `c` of a brick; damage reads as undecided.
+/// A branch that leads nowhere is undecided.
 #[inline(always)]
-fn finest(planes: Option<Planes>, c: u32) -> Tag {
-    match planes.map(|planes| planes.tag(c)) {
-        None | Some(Tag::Branch) => Tag::Partial,
-        Some(tag) => tag,
-    }
+fn settled(tag: Tag) -> Tag {
+    if tag == Tag::Branch { Tag::Partial } else { tag }
 }
 
 /// Point queries that remember the way to the last answer: for points that lie near each other, such as
@@ -254,18 +270,18 @@ impl<'a> PointCursor<'a> {
         let mut e = shared.min(self.reached);
         self.last = at;
         let at = Packed::new(at);
-        while e + 1 < levels {
-            match tree.step(self.path[e], e, at.cell(2 * (levels - 1 - e) as u32)) {
-                Ok(child) => self.path[e + 1] = child,
-                Err(tag) => {
-                    self.reached = e;
-                    return tag;
-                }
+        let links = Links::new(tree);
+        for (shift, level) in levels_below(tree).skip(e) {
+            let (tag, child, goes_on) = links.step(self.path[e], at.cell(shift), level);
+            if !goes_on {
+                self.reached = e;
+                return settled(tag);
             }
             e += 1;
+            self.path[e] = child;
         }
         self.reached = e;
-        finest(tree.bricks.get(self.path[e] - tree.planes.len()), at.cell(0))
+        settled(tree.finest(self.path[e], at))
     }
 }
 
