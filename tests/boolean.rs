@@ -151,7 +151,7 @@ proptest! {
 }
 
 proptest! {
-    #![proptest_config(cases(12))]
+    #![proptest_config(cases(5))]
 
     #[test]
     fn deeper_trees((a, b) in pairs(6..=7)) {

@@ -272,7 +272,7 @@ fn planes_through_the_lattice() {
                 assert_eq!(tree.view().tag_at(at), expected);
             }
             // On a lattice plane, or a plane of centres, of each axis.
-            let axes = if depth < 4 { 3 } else { 0 };
+            let axes = if depth < 3 { 3 } else { 0 };
             for axis in 0..axes {
                 for k in 0..=2 * frame.cells() {
                     for sign in [1.0, -1.0] {
