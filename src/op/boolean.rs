@@ -11,7 +11,7 @@
 //! PARTIAL cells follow Kleene's logic, so the bounds stay bounds. Operands may be mapped files with
 //! dictionaries; they are read where they lie.
 
-use crate::control::{Control, Job};
+use crate::control::{Control, Job, WHOLE};
 use crate::error::{Damage, Error};
 use crate::octree::view::{OctreeRef, Windows, root_cells};
 use crate::octree::writer::Writer;
@@ -292,9 +292,15 @@ impl Kernel<'_> {
         let clash = if self.op == Op::And { pa.clash(pb) } else { 0 };
         let real = if e == 0 { root_cells(self.a.tree.frame().depth()) } else { !0 };
         let mut open = (words.branch() | clash) & real;
+        // Progress is counted in the cells below the root.
+        let weight = WHOLE / real.count_ones() as usize;
+        if e == 0 {
+            writer.job().advance(weight * (real & !open).count_ones() as usize);
+        }
         if open == 0 {
             return writer.put(e, result);
         }
+        writer.job().check()?;
         if e + 1 == self.a.tree.levels() {
             return Err(Damage::BrickBranch { brick: 0 }.into());
         }
@@ -308,6 +314,9 @@ impl Kernel<'_> {
         while open != 0 {
             let c = open.trailing_zeros();
             open &= open - 1;
+            if e == 0 {
+                writer.job().advance(weight);
+            }
             match (self.step(pa.tag(c), pb.tag(c)), a, b) {
                 (Step::CopyA(flip), Source::Element(n), _) => {
                     let child = self.a.tree.child(n, pa.branch(), c).ok_or(link(n))?;
@@ -380,6 +389,7 @@ impl Kernel<'_> {
                     // The task's own root was admitted above.
                     _ => self.visit(1, a, b, &mut windows, &mut subtree, false)?,
                 };
+                subtree.job().advance(WHOLE / root_cells(self.a.tree.frame().depth()).count_ones() as usize);
                 Ok((c, tag, subtree))
             })
             .collect::<Result<Vec<_>, Error>>()?;
