@@ -69,3 +69,8 @@ pub use solid::{
     AnySolid, AxisBox, Ball, Callback, ErasedPart, ErasedScratch, FillRule, HalfSpace, MeshPart, MeshReport,
     MeshScratch, MeshSolid, Scratch, Solid, Stored, StoredPart, TriangleMesh, Verdict,
 };
+
+/// The README's example is compiled and run.
+#[cfg(all(doctest, feature = "mmap"))]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -1,0 +1,185 @@
+//! Speed of the foundation, on one thread: meshes to octrees, Booleans, point queries, files.
+//!
+//! ```text
+//! LEAFLESS_MODELS=/path/to/models cargo bench --bench foundation
+//! ```
+//!
+//! The models are `featuretype.STL` (a machined part, 3 476 triangles) and `bunny-closed.stl` (a scan, 69 674
+//! triangles); without them a part that the library makes itself takes their place. Figures measured with this
+//! file, and what limits them, stand in `benches/README.md`.
+
+use criterion::{BatchSize, Criterion, Throughput, criterion_group, criterion_main};
+use leafless::{
+    Control, FillRule, Frame, Membership, MeshSolid, Octree, PointCursor, Rule, TriangleMesh, build, compact,
+    difference, file, intersection, union, xor,
+};
+use std::hint::black_box;
+use std::path::Path;
+
+const DEPTH: u8 = 10;
+const POINTS: usize = 1_000_000;
+
+/// The bytes of a model, or of a generated mesh of about as many triangles.
+fn model(name: &str) -> Vec<u8> {
+    match std::env::var_os("LEAFLESS_MODELS") {
+        Some(folder) => std::fs::read(Path::new(&folder).join(name)).expect(name),
+        None => {
+            eprintln!("SKIPPED {name}: LEAFLESS_MODELS is not set; a generated mesh takes its place");
+            file::write_stl(&torus(if name.starts_with("bunny") { 187 } else { 42 })).expect("a torus")
+        }
+    }
+}
+
+/// A torus of 2 n² triangles.
+fn torus(n: u32) -> TriangleMesh {
+    let turn = |i: u32| std::f64::consts::TAU * i as f64 / n as f64;
+    let vertices = (0..n * n).map(|i| {
+        let ((s, c), (t, d)) = (turn(i / n).sin_cos(), turn(i % n).sin_cos());
+        [(2.0 + 0.7 * d) * c, (2.0 + 0.7 * d) * s, 0.7 * t]
+    });
+    let at = |i: u32, j: u32| i % n * n + j % n;
+    let triangles = (0..n * n).flat_map(|i| {
+        let (i, j) = (i / n, i % n);
+        let [a, b, c, d] = [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)];
+        [[a, b, c], [a, c, d]]
+    });
+    TriangleMesh::new(vertices.collect(), triangles.collect()).expect("a closed mesh")
+}
+
+fn mesh(bytes: &[u8]) -> TriangleMesh {
+    file::read_stl(bytes).and_then(TriangleMesh::sewn).expect("a closed mesh")
+}
+
+fn frame(mesh: &TriangleMesh) -> Frame {
+    let (min, max) = mesh.bounds();
+    Frame::around(min, max, DEPTH).expect("a frame")
+}
+
+fn octree(mesh: &TriangleMesh, frame: &Frame, rule: Rule) -> Octree {
+    let solid = MeshSolid::new(mesh, frame, FillRule::NonZero).expect("a closed mesh");
+    build(&solid, frame, rule, &Control::threads(1)).expect("an octree")
+}
+
+fn voxelise(c: &mut Criterion) {
+    let mut group = c.benchmark_group("voxelise 1024³");
+    group.sample_size(20);
+    for name in ["featuretype.STL", "bunny-closed.stl"] {
+        let bytes = model(name);
+        group.bench_function(format!("{name} read"), |b| b.iter(|| mesh(black_box(&bytes))));
+        let mesh = mesh(&bytes);
+        let frame = frame(&mesh);
+        for rule in [Rule::Sampled, Rule::Certified] {
+            group.bench_function(format!("{name} {rule:?}"), |b| b.iter(|| octree(&mesh, &frame, rule)));
+        }
+    }
+    group.finish();
+}
+
+/// The bunny and the same moved by 10 % of its extent along x, on one lattice.
+fn operands(rule: Rule) -> (Octree, Octree, Frame) {
+    let still = mesh(&model("bunny-closed.stl"));
+    let (min, max) = still.bounds();
+    let cell = frame(&still).cell_size();
+    let step = ((max[0] - min[0]) * 0.1 / cell).round() * cell;
+    let moved = still.translated([step, 0.0, 0.0]).expect("a mesh");
+    let frame = Frame::around(min, [max[0] + step, max[1], max[2]], DEPTH).expect("a frame");
+    (octree(&still, &frame, rule), octree(&moved, &frame, rule), frame)
+}
+
+fn booleans(c: &mut Criterion) {
+    let mut group = c.benchmark_group("boolean 1024³");
+    let control = Control::threads(1);
+    for rule in [Rule::Sampled, Rule::Certified] {
+        let (a, b, _) = operands(rule);
+        let (a, b) = (a.view(), b.view());
+        group.bench_function(format!("union {rule:?}"), |t| t.iter(|| union(a, b, &control)));
+        group.bench_function(format!("intersection {rule:?}"), |t| t.iter(|| intersection(a, b, &control)));
+        group.bench_function(format!("difference {rule:?}"), |t| t.iter(|| difference(a, b, &control)));
+        group.bench_function(format!("xor {rule:?}"), |t| t.iter(|| xor(a, b, &control)));
+    }
+    group.finish();
+}
+
+/// Uniform pseudo-random points in a box (xorshift64).
+fn points(min: [f64; 3], max: [f64; 3]) -> Vec<[f64; 3]> {
+    let mut state = 88_172_645_463_325_252u64;
+    let mut random = || {
+        state ^= state << 13;
+        state ^= state >> 7;
+        state ^= state << 17;
+        (state >> 11) as f64 / (1u64 << 53) as f64
+    };
+    (0..POINTS).map(|_| [0, 1, 2].map(|axis| min[axis] + random() * (max[axis] - min[axis]))).collect()
+}
+
+fn queries(c: &mut Criterion) {
+    let mut group = c.benchmark_group("a million points, 1024³");
+    group.throughput(Throughput::Elements(POINTS as u64)).sample_size(20);
+    let mesh = mesh(&model("bunny-closed.stl"));
+    let (min, max) = mesh.bounds();
+    let uniform = points(min, max);
+    // Lines of 256 steps of one cell each in random directions.
+    let frame = frame(&mesh);
+    let lines: Vec<[f64; 3]> = (uniform.chunks_exact(2).take(POINTS / 256))
+        .flat_map(|ends| {
+            let length = (0..3).map(|i| (ends[1][i] - ends[0][i]).powi(2)).sum::<f64>().sqrt();
+            let step = [0, 1, 2].map(|i| (ends[1][i] - ends[0][i]) / length * frame.cell_size());
+            (0..256).map(move |k| [0, 1, 2].map(|i| ends[0][i] + k as f64 * step[i]))
+        })
+        .collect();
+    let inside = |answers: &[Membership]| answers.iter().filter(|&&a| a == Membership::Inside).count();
+    for rule in [Rule::Sampled, Rule::Certified] {
+        let raw = octree(&mesh, &frame, rule);
+        let coded = compact(raw.view()).expect("an octree");
+        for (coding, tree) in [("raw", &raw), ("dictionary", &coded)] {
+            let view = tree.view();
+            let one = |points: &[[f64; 3]]| {
+                points.iter().filter(|&&p| view.contains(p) == Membership::Inside).count()
+            };
+            let name = |what: &str| format!("{what}, {rule:?}, {coding}");
+            group.bench_function(name("uniform, one by one"), |b| b.iter(|| one(black_box(&uniform))));
+            let mut answers = vec![Membership::Outside; POINTS];
+            group.bench_function(name("uniform, batch"), |b| {
+                b.iter(|| {
+                    view.contains_many(black_box(&uniform), &mut answers).expect("equal lengths");
+                    inside(&answers[..1])
+                })
+            });
+            group.bench_function(name("along lines, cursor"), |b| {
+                b.iter(|| {
+                    let mut cursor = PointCursor::new(view);
+                    lines.iter().filter(|&&p| cursor.contains(p) == Membership::Inside).count()
+                })
+            });
+        }
+    }
+    group.finish();
+}
+
+fn files(c: &mut Criterion) {
+    let mut group = c.benchmark_group("file, bunny 1024³");
+    let folder = tempfile::tempdir().expect("a folder");
+    let mesh = mesh(&model("bunny-closed.stl"));
+    let frame = frame(&mesh);
+    for rule in [Rule::Sampled, Rule::Certified] {
+        let tree = octree(&mesh, &frame, rule);
+        let path = folder.path().join(format!("{rule:?}.lfl"));
+        group.sample_size(20);
+        group.bench_function(format!("save {rule:?}"), |b| {
+            b.iter_batched(|| (), |()| file::save(&tree, &path), BatchSize::PerIteration)
+        });
+        let bytes = std::fs::metadata(&path).expect("the file").len();
+        let nodes = tree.statistics().nodes();
+        println!("{rule:?}: {bytes} bytes, {nodes} nodes, {:.3} bytes a node", bytes as f64 / nodes as f64);
+        let centre = frame.origin().map(|o| o + frame.edge() / 2.0);
+        // SAFETY: nobody else knows the file.
+        group.bench_function(format!("map and first query {rule:?}"), |b| {
+            b.iter(|| unsafe { file::map(&path) }.map(|tree| tree.contains(centre)))
+        });
+        group.bench_function(format!("open {rule:?}"), |b| b.iter(|| file::open(&path)));
+    }
+    group.finish();
+}
+
+criterion_group!(benches, voxelise, booleans, queries, files);
+criterion_main!(benches);
