@@ -388,6 +388,18 @@ fn metadata_have_a_limit() {
     let largest = with(1 << 20);
     let back = file::from_bytes(&file::to_bytes(&largest).unwrap()).unwrap();
     assert_eq!(back.metadata(), largest.metadata());
+    // One byte more in a file.
+    let mut bytes = file::to_bytes(&largest).unwrap();
+    let probe = file::probe_bytes(&bytes).unwrap();
+    let (entry, at) = (128 + 40 * (probe.sections.len() - 1), probe.sections.last().unwrap().offset as usize);
+    bytes.push(b'v');
+    for (at, length) in [(entry + 16, 8), (entry + 24, 8), (24, 8), (at + 4, 4)] {
+        let more = number(&bytes, at, length) + 1;
+        put(&mut bytes, at, more, length);
+    }
+    seal(&mut bytes);
+    let length = FormatError::Field { name: "section length", value: (1 << 20) + 1 };
+    assert_eq!(format_error(file::from_bytes(&bytes)), length);
     let refused = file::to_bytes(&with((1 << 20) + 1));
     assert!(matches!(refused, Err(Error::Argument { name: "metadata", .. })));
 }
@@ -576,6 +588,7 @@ fn each_field_is_checked() {
     ] {
         assert_eq!(name(&coded, at, value, 1), expected);
     }
+    assert_eq!(name(&coded, 88, number(&coded, 80, 8) + 1, 8), "dictionary entries");
     // Another count in the header than in the sections.
     assert_eq!(field(&bytes, 72, 1 << 40, 8), FormatError::Section { name: "planes" });
     assert_eq!(field(&bytes, 80, 1, 8), FormatError::Section { name: "bricks" });
@@ -595,6 +608,22 @@ fn each_field_is_checked() {
         for nodes in [0, 2, u64::MAX] {
             let bytes = changed(&bytes, true, |bytes| put(bytes, levels + 24 * level, nodes, 8));
             assert!(matches!(view(bytes), Err(Error::Damaged(_))), "{nodes} nodes on level {level}");
+        }
+    }
+    // Also where the sums are right: depth 5, elements on the levels 0 and 1, bricks on level 3.
+    let sections = file::probe_bytes(&coded).unwrap().sections;
+    let levels = sections.iter().find(|section| section.name == Some("level table")).unwrap().offset as usize;
+    for (from, to, wrong) in [(1, 0, 0), (1, 3, 5), (3, 1, 5)] {
+        let moved = changed(&coded, true, |bytes| {
+            for (level, change) in [(from, -1), (to, 1)] {
+                let at = levels + 24 * level;
+                let nodes = number(bytes, at, 8).checked_add_signed(change).unwrap();
+                put(bytes, at, nodes, 8);
+            }
+        });
+        match view(moved) {
+            Err(Error::Damaged(leafless::Damage::LevelTable { level })) => assert_eq!(level, wrong),
+            other => panic!("a node moved from level {from} to {to}: {other:?}"),
         }
     }
 }
