@@ -208,8 +208,26 @@ fn format_error<T>(result: Result<T, Error>) -> FormatError {
     }
 }
 
-/// Everything that reads, on a tree that may be damaged: all of it must return.
+/// Everything that reads and makes trees, on one that may be damaged: all of it must return.
 fn exercise(tree: &OctreeRef<'_>) {
+    read_all(tree);
+    let control = Control::threads(1);
+    let results = [
+        union(tree, tree, &control),
+        intersection(tree, tree, &control),
+        difference(tree, tree, &control),
+        xor(tree, tree, &control),
+        complement(tree, &control),
+        build(&Stored::new(tree), tree.frame(), Rule::Certified, &control),
+        compact(tree),
+    ];
+    for result in results.into_iter().flatten() {
+        result.statistics();
+    }
+}
+
+/// Queries and checks, on a tree that may be damaged.
+fn read_all(tree: &OctreeRef<'_>) {
     let frame = tree.frame();
     let (origin, edge) = (frame.origin(), frame.edge());
     let at = |t: [f64; 3]| [0, 1, 2].map(|axis| origin[axis] + t[axis] * edge);
@@ -242,19 +260,6 @@ fn exercise(tree: &OctreeRef<'_>) {
         }
     }
     let _ = tree.check();
-    let control = Control::threads(1);
-    let results = [
-        union(tree, tree, &control),
-        intersection(tree, tree, &control),
-        difference(tree, tree, &control),
-        xor(tree, tree, &control),
-        complement(tree, &control),
-        build(&Stored::new(tree), frame, Rule::Certified, &control),
-        compact(tree),
-    ];
-    for result in results.into_iter().flatten() {
-        result.statistics();
-    }
 }
 
 fn write(path: &Path, bytes: &[u8]) {
@@ -521,6 +526,64 @@ fn changes_with_right_checksums_never_panic() {
         }
     }
     assert!(let_in[0] > 1000 && let_in[1] > 100, "{let_in:?}");
+}
+
+/// A file of depth 20 in which all 64 elements of a level have the same 64 children: followed without a
+/// memory, its links would lead to 64^9 bricks.
+fn shared_children() -> Vec<u8> {
+    let (elements, bricks) = (1 + 64 * 8, 64);
+    let mut bytes = file::to_bytes(&Octree::uniform(frame(20), Tag::Empty, Tag::Empty).unwrap()).unwrap();
+    bytes.truncate(128);
+    bytes[65] = 1;
+    let sections = [(1, 16, elements), (2, 2, elements), (3, 8, 1), (4, 8, bricks), (8, 24, 21)];
+    bytes.resize(128 + 40 * sections.len(), 0);
+    let mut at = [0; 5];
+    for (i, &(kind, size, count)) in sections.iter().enumerate() {
+        at[i] = bytes.len().next_multiple_of(64);
+        bytes.resize(at[i] + size * count, 0);
+        for (field, value, length) in [(0, kind, 4), (4, size, 4), (8, at[i], 8), (16, size * count, 8)] {
+            put(&mut bytes, 128 + 40 * i + field, value as u64, length);
+        }
+        put(&mut bytes, 128 + 40 * i + 24, count as u64, 8);
+        put(&mut bytes, 128 + 40 * i + 36, 1, 4);
+    }
+    for n in 0..elements {
+        put(&mut bytes, at[0] + 16 * n, !0, 8);
+        put(&mut bytes, at[1] + 2 * n, 1 + 64 * (n as u64).div_ceil(64), 2);
+    }
+    for b in 0..bricks {
+        put(&mut bytes, at[3] + 8 * b, 0xF0, 8);
+    }
+    for level in 0..10 {
+        put(&mut bytes, at[4] + 48 * level, if level == 0 { 1 } else { 64 }, 8);
+    }
+    let length = bytes.len() as u64;
+    for (field, value, size) in
+        [(24, length, 8), (72, elements as u64, 8), (80, bricks as u64, 8), (96, sections.len() as u64, 4)]
+    {
+        put(&mut bytes, field, value, size);
+    }
+    seal(&mut bytes);
+    bytes
+}
+
+#[test]
+fn shared_children_are_not_visited_again_and_again() {
+    let bytes = Aligned::new(&shared_children());
+    let tree = file::view(bytes.bytes()).unwrap();
+    assert_eq!(tree.element_count() + tree.brick_count(), 577);
+    assert!(matches!(file::verify(bytes.bytes()), Err(Error::Damaged(_))));
+    read_all(&tree);
+    let control = Control::threads(2);
+    for result in [
+        union(&tree, &tree, &control),
+        intersection(&tree, &tree, &control),
+        difference(&tree, &tree, &control),
+        xor(&tree, &tree, &control),
+        complement(&tree, &control),
+    ] {
+        assert!(matches!(result, Err(Error::Damaged(_))));
+    }
 }
 
 #[test]
