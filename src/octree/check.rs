@@ -48,8 +48,8 @@ impl OctreeRef<'_> {
         Ok(())
     }
 
-    /// Ranks all children anew and compares.
-    fn check_links(&self) -> Result<(), Damage> {
+    /// Ranks all children anew and compares. Where this finds nothing, every element has one parent.
+    pub(crate) fn check_links(&self) -> Result<(), Damage> {
         let count = self.planes.len();
         let levels = self.levels();
         let mut next = (self.root == Tag::Branch) as usize;
