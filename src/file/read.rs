@@ -1,6 +1,8 @@
 //! The ways in that need no operating system, and reading from paths.
 
-use super::layout::{HEADER_LENGTH, Head, Kind, Layout, SECTION_REQUIRED, Table, entries, section};
+#[cfg(feature = "std")]
+use super::layout::HEADER_LENGTH;
+use super::layout::{Head, Kind, Layout, SECTION_REQUIRED, Table, entries, section};
 use crate::error::{Error, FormatError};
 use crate::lattice::Frame;
 use crate::octree::{Metadata, Octree, OctreeRef, Tag};
