@@ -5,7 +5,7 @@ use crate::lattice::Frame;
 use crate::octree::Tag;
 use crate::octree::brick::{BrickArray, Bricks};
 use crate::octree::dictionary;
-use crate::octree::stats::LevelCounts;
+use crate::octree::view::LevelCounts;
 use crate::octree::view::{MAX_ELEMENT_LEVELS, OctreeRef, element_levels};
 use crate::octree::word::Planes;
 use bytemuck::{Pod, Zeroable};

@@ -6,10 +6,10 @@ use super::layout::{
 };
 use crate::error::Error;
 use crate::octree::Octree;
+use crate::octree::brick::OwnedBricks;
 use crate::octree::brick::{Brick, BrickArray, Bricks};
 use crate::octree::dictionary;
-use crate::octree::octree::OwnedBricks;
-use crate::octree::stats::LevelCounts;
+use crate::octree::view::LevelCounts;
 use crate::octree::word::Planes;
 use alloc::vec::Vec;
 use bytemuck::Zeroable;

@@ -1,6 +1,7 @@
 //! The cells of the deepest level: 4³ to a brick, raw or through a dictionary.
 
 use super::word::Planes;
+use alloc::vec::Vec;
 use bytemuck::Pod;
 
 /// What a brick is stored as: one plane of a binary solid, or both planes.
@@ -66,7 +67,7 @@ impl<T: Brick> BrickArray<'_, T> {
     pub(crate) fn extend<U>(
         &self,
         range: core::ops::Range<usize>,
-        out: &mut alloc::vec::Vec<U>,
+        out: &mut Vec<U>,
         map: impl Fn(T) -> U,
     ) -> bool {
         match *self {
@@ -116,5 +117,40 @@ impl Bricks<'_> {
     /// Whether bricks have one plane: nothing in the tree is undecided.
     pub(crate) fn one_plane(&self) -> bool {
         matches!(self, Bricks::One(_))
+    }
+}
+
+/// Bricks that own their memory.
+pub(crate) enum OwnedArray<T> {
+    Raw(Vec<T>),
+    Dictionary { indices: Vec<u16>, entries: Vec<T>, segments: Vec<u64>, shift: u8 },
+}
+
+impl<T: Brick> OwnedArray<T> {
+    pub(crate) fn view(&self) -> BrickArray<'_, T> {
+        match self {
+            OwnedArray::Raw(bricks) => BrickArray::Raw(bricks),
+            OwnedArray::Dictionary { indices, entries, segments, shift } => {
+                BrickArray::Dictionary { indices, entries, segments, shift: *shift }
+            }
+        }
+    }
+}
+
+pub(crate) enum OwnedBricks {
+    One(OwnedArray<u64>),
+    Two(OwnedArray<Planes>),
+}
+
+impl OwnedBricks {
+    pub(crate) fn view(&self) -> Bricks<'_> {
+        match self {
+            OwnedBricks::One(bricks) => Bricks::One(bricks.view()),
+            OwnedBricks::Two(bricks) => Bricks::Two(bricks.view()),
+        }
+    }
+
+    pub(crate) fn len(&self) -> usize {
+        self.view().len()
     }
 }

@@ -5,8 +5,7 @@
 //! equal files: fewest bytes among raw bricks, one dictionary for all, and dictionaries for segments of 2^k
 //! bricks by descending k, in this order where sizes tie. Entries stand by descending frequency, then value.
 
-use super::brick::{Brick, BrickArray, Bricks};
-use super::octree::{OwnedArray, OwnedBricks};
+use super::brick::{Brick, BrickArray, Bricks, OwnedArray, OwnedBricks};
 use super::view::OctreeRef;
 use crate::error::{Damage, Error};
 use alloc::vec;

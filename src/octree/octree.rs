@@ -1,11 +1,11 @@
 //! The owned, shared, immutable octree.
 
-use super::brick::{Brick, BrickArray, Bricks};
+use super::brick::{Brick, BrickArray, Bricks, OwnedArray, OwnedBricks};
 use super::dictionary;
 use super::metadata::Metadata;
-use super::stats::{LevelCounts, Statistics};
+use super::stats::Statistics;
 use super::tag::Tag;
-use super::view::{MAX_ELEMENT_LEVELS, OctreeRef, element_levels};
+use super::view::{LevelCounts, MAX_ELEMENT_LEVELS, OctreeRef, element_levels};
 use super::word::Planes;
 use crate::error::{Damage, Error};
 use crate::lattice::Frame;
@@ -37,40 +37,6 @@ pub(crate) struct Arrays {
     base: Vec<u64>,
     bricks: OwnedBricks,
     starts: [usize; MAX_ELEMENT_LEVELS + 1],
-}
-
-pub(crate) enum OwnedArray<T> {
-    Raw(Vec<T>),
-    Dictionary { indices: Vec<u16>, entries: Vec<T>, segments: Vec<u64>, shift: u8 },
-}
-
-impl<T: Brick> OwnedArray<T> {
-    pub(crate) fn view(&self) -> BrickArray<'_, T> {
-        match self {
-            OwnedArray::Raw(bricks) => BrickArray::Raw(bricks),
-            OwnedArray::Dictionary { indices, entries, segments, shift } => {
-                BrickArray::Dictionary { indices, entries, segments, shift: *shift }
-            }
-        }
-    }
-}
-
-pub(crate) enum OwnedBricks {
-    One(OwnedArray<u64>),
-    Two(OwnedArray<Planes>),
-}
-
-impl OwnedBricks {
-    pub(crate) fn view(&self) -> Bricks<'_> {
-        match self {
-            OwnedBricks::One(bricks) => Bricks::One(bricks.view()),
-            OwnedBricks::Two(bricks) => Bricks::Two(bricks.view()),
-        }
-    }
-
-    pub(crate) fn len(&self) -> usize {
-        self.view().len()
-    }
 }
 
 impl Arrays {

@@ -1,26 +1,13 @@
 //! What a tree holds, level by level.
 
 use super::tag::Tag;
-use super::view::{OctreeRef, starts_half_way};
+use super::view::{LevelCounts, OctreeRef, starts_half_way};
 use super::word::Planes;
 use crate::dispatch::{Hot, with_popcount};
 use crate::lattice::exact::{product_down, product_up};
 use crate::lattice::{Frame, Interval};
 use alloc::vec;
 use alloc::vec::Vec;
-use bytemuck::{Pod, Zeroable};
-
-/// What is counted on one octree level; the level table of a file is an array of these.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Pod, Zeroable)]
-#[repr(C)]
-pub(crate) struct LevelCounts {
-    /// Internal nodes of the level: its cells that are cut.
-    pub nodes: u64,
-    /// FULL cells of the level.
-    pub full: u64,
-    /// PARTIAL cells of the level.
-    pub partial: u64,
-}
 
 /// One level of the canonical octree.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,11 +1,11 @@
 //! The borrowed view on which all reading code is written.
 
 use super::brick::Bricks;
-use super::stats::LevelCounts;
 use super::tag::Tag;
 use super::word::Planes;
 use crate::error::Damage;
 use crate::lattice::{Frame, MAX_DEPTH};
+use bytemuck::{Pod, Zeroable};
 use yoke::Yokeable;
 
 /// Element levels of the deepest tree.
@@ -25,6 +25,18 @@ pub(crate) const fn starts_half_way(depth: u8) -> bool {
 /// The cells of the root element that belong to the universe.
 pub(crate) const fn root_cells(depth: u8) -> u64 {
     if starts_half_way(depth) { 0xFF } else { !0 }
+}
+
+/// What is counted on one octree level; the level table of a file is an array of these.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct LevelCounts {
+    /// Internal nodes of the level: its cells that are cut.
+    pub nodes: u64,
+    /// FULL cells of the level.
+    pub full: u64,
+    /// PARTIAL cells of the level.
+    pub partial: u64,
 }
 
 /// A borrowed octree: everything that only reads is a method of this type, whether the arrays lie in a `Vec`,
