@@ -106,7 +106,7 @@ impl Scan {
                     }
                 }
             }
-            if end <= at[1] + 1 || first >= at[1] + SIZE as i32 {
+            if end <= at[1] || first >= at[1] + SIZE as i32 {
                 continue;
             }
             let mut seen = Projection::new(placed, triangle, corners, 1);
