@@ -13,8 +13,8 @@ use alloc::vec::Vec;
 /// Bound of the relative error of one rounded subtraction and one rounded division: 2^-52 and some more.
 const UNIT: f32 = f32::EPSILON * f32::EPSILON / 32.0;
 
-/// Ranks beyond this say no more than "far outside".
-const FAR: f64 = (1u32 << 30) as f64;
+/// Ranks beyond this say no more than "far outside"; differences of any two fit into 32 bits.
+const FAR: f64 = (1u32 << 29) as f64;
 
 /// A vertex in finest cells from the frame's origin.
 #[derive(Debug, Clone, Copy)]
