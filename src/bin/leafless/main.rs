@@ -1,1 +1,149 @@
-fn main() {}
+//! `leafless`: solids from STL files to queries, on the command line.
+//!
+//! One file per subcommand. Every failure is one line on standard error that names the file; the exit code is
+//! 0 for success, 1 for failure, 2 for wrong usage.
+
+#![deny(unsafe_code)]
+
+mod boolean;
+mod contains;
+mod demo;
+mod failure;
+mod info;
+mod input;
+mod output;
+mod part;
+mod progress;
+mod report;
+mod verify;
+mod voxelize;
+
+use clap::error::ErrorKind;
+use clap::{Parser, Subcommand};
+use failure::Failure;
+use std::process::ExitCode;
+
+/// Turns closed meshes into solids, cuts and joins them exactly, and answers questions about them.
+///
+/// A solid is kept as an octree in a file (.lfl) that is queried where it lies, without loading it. Answers are
+/// certified: what is called inside or outside is proven, and a volume is an interval that holds the true one.
+#[derive(Parser)]
+#[command(version, propagate_version = true, max_term_width = 100)]
+#[command(after_help = "\
+Try `leafless demo` first. A file named `-` is standard input or standard output.
+Files are mapped, not loaded: let no other program rewrite one in place while it is read here.")]
+struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// Make a solid from a closed mesh in an STL file
+    Voxelize(voxelize::Arguments),
+    /// Show what a solid consists of: depth, nodes, cells, volume
+    Info(info::Arguments),
+    /// Check a file completely: exit code 0 if it is good, 1 with the reason if not
+    Verify(verify::Arguments),
+    /// All points of any of the solids
+    Union(boolean::Arguments),
+    /// The points that the solids have in common
+    Intersection(boolean::Arguments),
+    /// The first solid without all the others
+    Difference(boolean::Arguments),
+    /// The points that lie in an odd number of the solids (of two: in just one of them)
+    Xor(boolean::Arguments),
+    /// Everything but the solid
+    Complement(boolean::ComplementArguments),
+    /// Say of points on standard input whether the solid contains them
+    Contains(contains::Arguments),
+    /// Show the main job end to end on a mechanical part that the program makes itself
+    Demo(demo::Arguments),
+}
+
+fn main() -> ExitCode {
+    let arguments = match Arguments::try_parse() {
+        Ok(arguments) => arguments,
+        Err(error) => return refuse_usage(&error),
+    };
+    let result = match &arguments.command {
+        Command::Voxelize(arguments) => voxelize::run(arguments),
+        Command::Info(arguments) => info::run(arguments),
+        Command::Verify(arguments) => verify::run(arguments),
+        Command::Union(arguments) => boolean::run(boolean::Operation::Union, arguments),
+        Command::Intersection(arguments) => boolean::run(boolean::Operation::Intersection, arguments),
+        Command::Difference(arguments) => boolean::run(boolean::Operation::Difference, arguments),
+        Command::Xor(arguments) => boolean::run(boolean::Operation::Xor, arguments),
+        Command::Complement(arguments) => boolean::run_complement(arguments),
+        Command::Contains(arguments) => contains::run(arguments),
+        Command::Demo(arguments) => demo::run(arguments),
+    };
+    match result {
+        Ok(()) => ExitCode::SUCCESS,
+        // Whoever reads has seen enough, as `head` has.
+        Err(Failure::ReaderGone) => ExitCode::SUCCESS,
+        Err(Failure::Failed(line)) => {
+            output::complain(&line);
+            ExitCode::from(1)
+        }
+        Err(Failure::Usage(line)) => {
+            output::complain(&line);
+            ExitCode::from(2)
+        }
+    }
+}
+
+/// Shows help and version as they are, and errors in one line.
+fn refuse_usage(error: &clap::Error) -> ExitCode {
+    match error.kind() {
+        ErrorKind::DisplayHelp
+        | ErrorKind::DisplayVersion
+        | ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand => {
+            // Nobody is left to be told if this cannot be printed.
+            let _ = error.print();
+        }
+        _ => output::complain(&usage_line(&error.to_string())),
+    }
+    ExitCode::from(error.exit_code() as u8)
+}
+
+/// What `clap` says over several lines, in one: the complaint and its hints, without the synopsis.
+fn usage_line(text: &str) -> String {
+    let complaint = text.split("\nUsage:").next().unwrap_or(text);
+    let complaint = complaint.split("\nFor more information").next().unwrap_or(complaint);
+    let complaint = complaint.strip_prefix("error: ").unwrap_or(complaint);
+    let paragraphs = complaint.split("\n\n").map(|paragraph| {
+        let words: Vec<&str> = paragraph.split_whitespace().collect();
+        words.join(" ")
+    });
+    let paragraphs: Vec<String> = paragraphs.filter(|paragraph| !paragraph.is_empty()).collect();
+    format!("{} (see `leafless --help`)", paragraphs.join("; "))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_definition_of_the_arguments_is_sound() {
+        Arguments::command().debug_assert();
+    }
+
+    #[test]
+    fn usage_errors_are_one_line() {
+        for arguments in [
+            &["leafless", "voxelise"][..],
+            &["leafless", "voxelize"],
+            &["leafless", "voxelize", "a", "-o", "b", "--depth", "21"],
+            &["leafless", "voxelize", "a", "-o", "b", "--depth", "3", "--rule", "exact"],
+            &["leafless", "info"],
+            &["leafless", "info", "a", "b"],
+            &["leafless", "union", "a", "-o", "b"],
+        ] {
+            let Err(error) = Arguments::try_parse_from(arguments) else { panic!("{arguments:?} was taken") };
+            let line = usage_line(&error.to_string());
+            assert!(!line.contains('\n') && !line.starts_with("error") && line.len() < 200, "{line}");
+        }
+    }
+}

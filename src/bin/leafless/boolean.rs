@@ -1,0 +1,140 @@
+//! `leafless union`, `intersection`, `difference`, `xor` and `complement`.
+
+use crate::failure::{Failure, Of};
+use crate::input::Input;
+use crate::output::{self, Output, seconds};
+use crate::progress::watched;
+use crate::report::Info;
+use clap::Args;
+use leafless::{Control, Error, Octree, OctreeRef};
+use std::ffi::OsString;
+use std::time::Instant;
+
+/// The solids must lie on one frame: voxelize them with the same --bounds and --depth. The result may replace one
+/// of them.
+#[derive(Args)]
+pub struct Arguments {
+    /// Solids (.lfl), two or more; one of them may be `-` for standard input
+    #[arg(required = true, num_args = 2.., value_name = "FILE")]
+    files: Vec<OsString>,
+    #[command(flatten)]
+    common: Common,
+}
+
+/// Solid where there was none, and none where there was some; also outside of the bounds.
+#[derive(Args)]
+pub struct ComplementArguments {
+    /// Solid (.lfl), or `-` for standard input
+    file: OsString,
+    #[command(flatten)]
+    common: Common,
+}
+
+#[derive(Args)]
+struct Common {
+    /// File to write, or `-` for standard output; it is written whole or not at all
+    #[arg(short, long, value_name = "OUT.lfl")]
+    output: OsString,
+    /// Threads to use; 0: as many as there are processors. The result is the same
+    #[arg(long, default_value_t = 0, value_name = "N", value_parser = crate::voxelize::threads)]
+    threads: usize,
+}
+
+/// What is made of the solids.
+#[derive(Debug, Clone, Copy)]
+pub enum Operation {
+    Union,
+    Intersection,
+    Difference,
+    Xor,
+    Complement,
+}
+
+impl Operation {
+    fn name(self) -> &'static str {
+        match self {
+            Operation::Union => "union",
+            Operation::Intersection => "intersection",
+            Operation::Difference => "difference",
+            Operation::Xor => "symmetric difference",
+            Operation::Complement => "complement",
+        }
+    }
+
+    fn of(
+        self,
+        first: &OctreeRef<'_>,
+        trees: &[OctreeRef<'_>],
+        control: &Control<'_>,
+    ) -> Result<Octree, Error> {
+        match (self, trees) {
+            (Operation::Union, _) => leafless::union_of(trees, control),
+            (Operation::Intersection, _) => leafless::intersection_of(trees, control),
+            (Operation::Xor, _) => leafless::xor_of(trees, control),
+            (Operation::Difference, [_, tool]) => leafless::difference(first, tool, control),
+            (Operation::Difference, _) => {
+                let tools = leafless::union_of(&trees[1..], control)?;
+                leafless::difference(first, tools.view(), control)
+            }
+            (Operation::Complement, _) => leafless::complement(first, control),
+        }
+    }
+}
+
+pub fn run(operation: Operation, arguments: &Arguments) -> Result<(), Failure> {
+    let inputs: Vec<Input> = arguments.files.iter().map(|name| Input::from(&**name)).collect();
+    if inputs.iter().filter(|input| input.path().is_none()).count() > 1 {
+        return Err(Failure::Usage("only one of the solids can be standard input".into()));
+    }
+    combine(operation, &inputs, &arguments.common)
+}
+
+pub fn run_complement(arguments: &ComplementArguments) -> Result<(), Failure> {
+    combine(Operation::Complement, &[Input::from(&*arguments.file)], &arguments.common)
+}
+
+/// Reads the operands, at least one (a difference has two), combines them, saves the result.
+fn combine(operation: Operation, inputs: &[Input], common: &Common) -> Result<(), Failure> {
+    let start = Instant::now();
+    let output = Output::from(&*common.output);
+    output.check()?;
+    let mut octrees = Vec::with_capacity(inputs.len());
+    for input in inputs {
+        // What is proven of the result is proven only if the operands are what their makers wrote.
+        octrees.push(input.octree(true)?.0);
+    }
+    for (input, octree) in inputs.iter().zip(&octrees).skip(1) {
+        if octree.frame() != octrees[0].frame() {
+            return Err(Failure::of(input, unlike(&inputs[0], &octrees[0], octree)));
+        }
+    }
+    let trees: Vec<OctreeRef<'_>> = octrees.iter().map(|octree| *octree.view()).collect();
+    let name = operation.name();
+    let result = watched(name, common.threads, |control| operation.of(&trees[0], &trees, control));
+    let result = result.of(name)?;
+    let bytes = output.save(&result)?;
+    let info = Info::new(&result, bytes);
+    output.report(&format!(
+        "{output}: {name} of {}, volume {}, {} nodes, {} bytes, in {}\n",
+        output::counted(inputs.len() as u64, "solid", "solids"),
+        info.volume_text(),
+        output::count(info.nodes),
+        output::count(bytes),
+        seconds(start.elapsed().as_secs_f64()),
+    ))
+}
+
+/// How the frame of `octree` differs from that of the first operand.
+fn unlike(first: &Input, whole: &Octree, octree: &Octree) -> String {
+    let (a, b) = (whole.frame(), octree.frame());
+    let number = output::number;
+    let what = if a.depth() != b.depth() {
+        format!("depth {} instead of {}", b.depth(), a.depth())
+    } else if a.edge() != b.edge() {
+        format!("edge {} instead of {}", number(b.edge()), number(a.edge()))
+    } else {
+        let [a, b] = [a, b].map(|frame| frame.origin().map(number).join(" "));
+        format!("origin {b} instead of {a}")
+    };
+    format!("lies on another frame than {first}: {what} (voxelize both with the same --bounds and --depth)")
+}

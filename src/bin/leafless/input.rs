@@ -1,0 +1,76 @@
+//! What the program reads.
+
+use crate::failure::{Failure, Of};
+use leafless::{Octree, file};
+use std::ffi::OsStr;
+use std::fmt;
+use std::io::Read;
+use std::path::{Path, PathBuf};
+
+/// A file, or standard input where the name is `-`.
+#[derive(Debug, Clone)]
+pub enum Input {
+    /// `-`
+    Standard,
+    /// A path.
+    Path(PathBuf),
+}
+
+impl From<&OsStr> for Input {
+    fn from(name: &OsStr) -> Input {
+        if name == "-" { Input::Standard } else { Input::Path(name.into()) }
+    }
+}
+
+impl fmt::Display for Input {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Input::Standard => f.write_str("standard input"),
+            Input::Path(path) => path.display().fmt(f),
+        }
+    }
+}
+
+impl Input {
+    /// The path, unless it is standard input.
+    pub fn path(&self) -> Option<&Path> {
+        match self {
+            Input::Standard => None,
+            Input::Path(path) => Some(path),
+        }
+    }
+
+    /// All bytes.
+    pub fn read(&self) -> Result<Vec<u8>, Failure> {
+        match self {
+            Input::Standard => {
+                let mut bytes = Vec::new();
+                std::io::stdin().lock().read_to_end(&mut bytes).of(self)?;
+                Ok(bytes)
+            }
+            Input::Path(path) => std::fs::read(path).of(self),
+        }
+    }
+
+    /// The octree in the file, and the file's length. A regular file is mapped and, unless `verified` is asked
+    /// for, hardly read; what comes through a pipe is read and verified in any case.
+    pub fn octree(&self, verified: bool) -> Result<(Octree, u64), Failure> {
+        if let Input::Path(path) = self {
+            let metadata = std::fs::metadata(path).of(self)?;
+            if metadata.is_file() {
+                return Ok((map(path, verified).of(self)?, metadata.len()));
+            }
+        }
+        let bytes = self.read()?;
+        Ok((file::from_bytes(&bytes).of(self)?, bytes.len() as u64))
+    }
+}
+
+/// Maps a file.
+#[allow(unsafe_code)]
+fn map(path: &Path, verified: bool) -> Result<Octree, leafless::Error> {
+    // SAFETY: this program never changes an existing file: it replaces files by renaming new ones over them,
+    // which leaves mappings as they are. That no other program rewrites or truncates a file while this one
+    // reads it is for the user to see to; the help text says so.
+    unsafe { if verified { file::map_verified(path) } else { file::map(path) } }
+}

@@ -1,0 +1,237 @@
+//! What the program writes: lines, files, numbers.
+
+use crate::failure::{Failure, Of};
+use leafless::{Interval, Octree, file};
+use std::ffi::OsStr;
+use std::fmt;
+use std::io::{ErrorKind, IsTerminal, Write};
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering::SeqCst};
+
+/// Where a result goes: a file, or standard output where the name is `-`.
+#[derive(Debug, Clone)]
+pub enum Output {
+    /// `-`
+    Standard,
+    /// A path.
+    Path(PathBuf),
+}
+
+impl From<&OsStr> for Output {
+    fn from(name: &OsStr) -> Output {
+        if name == "-" { Output::Standard } else { Output::Path(name.into()) }
+    }
+}
+
+impl fmt::Display for Output {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Output::Standard => f.write_str("standard output"),
+            Output::Path(path) => path.display().fmt(f),
+        }
+    }
+}
+
+impl Output {
+    /// The path, unless it is standard output.
+    pub fn path(&self) -> Option<&Path> {
+        match self {
+            Output::Standard => None,
+            Output::Path(path) => Some(path),
+        }
+    }
+
+    /// Refuses what can be known to fail before the work is done.
+    pub fn check(&self) -> Result<(), Failure> {
+        let Output::Path(path) = self else {
+            if std::io::stdout().is_terminal() {
+                return Err(Failure::of(self, "is a terminal, where the bytes of a solid are of no use"));
+            }
+            return Ok(());
+        };
+        if path.is_dir() {
+            return Err(Failure::of(self, "is a folder; name a file"));
+        }
+        match path.parent() {
+            Some(folder) if !folder.as_os_str().is_empty() && !folder.is_dir() => {
+                Err(Failure::of(self, format_args!("there is no folder {}", folder.display())))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Saves the octree, the whole of it or nothing, and returns the bytes that its file has.
+    pub fn save(&self, octree: &Octree) -> Result<u64, Failure> {
+        let Output::Path(path) = self else {
+            let mut counter = Counter { out: std::io::stdout().lock(), count: 0 };
+            file::write_to(octree, &mut counter).of(self)?;
+            return Ok(counter.count);
+        };
+        unharmed(|| file::save(octree, path)).of(self)?;
+        match std::fs::metadata(path) {
+            Ok(metadata) if metadata.is_file() => Ok(metadata.len()),
+            // A pipe or device does not tell.
+            _ => {
+                let mut counter = Counter { out: std::io::sink(), count: 0 };
+                file::write_to(octree, &mut counter).of(self)?;
+                Ok(counter.count)
+            }
+        }
+    }
+
+    /// Prints what was done: to standard error where standard output carries the result itself.
+    pub fn report(&self, text: &str) -> Result<(), Failure> {
+        match self {
+            Output::Path(_) => print(text.as_bytes()),
+            Output::Standard => {
+                // That nobody can read the report makes the result no worse.
+                let _ = std::io::stderr().lock().write_all(text.as_bytes());
+                Ok(())
+            }
+        }
+    }
+}
+
+/// Counts what passes through.
+struct Counter<W> {
+    out: W,
+    count: u64,
+}
+
+impl<W: Write> Write for Counter<W> {
+    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
+        let count = self.out.write(bytes)?;
+        self.count += count as u64;
+        Ok(count)
+    }
+
+    fn flush(&mut self) -> std::io::Result<()> {
+        self.out.flush()
+    }
+}
+
+/// Writes a file whole or not at all.
+pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let write = || {
+        let mut builder = tempfile::Builder::new();
+        builder.prefix(".leafless-").suffix(".tmp");
+        #[cfg(unix)]
+        {
+            use std::os::unix::fs::PermissionsExt;
+            // As for any new file: the system takes off the umask.
+            builder.permissions(std::fs::Permissions::from_mode(0o666));
+        }
+        let mut temporary = builder.tempfile_in(folder)?;
+        temporary.write_all(bytes)?;
+        temporary.persist(path).map_err(|refused| refused.error)?;
+        Ok::<_, std::io::Error>(())
+    };
+    unharmed(write).of(path.display())
+}
+
+/// Whether a temporary file exists at the moment.
+static SAVING: AtomicBool = AtomicBool::new(false);
+/// Whether the user wanted to stop meanwhile.
+static INTERRUPTED: AtomicBool = AtomicBool::new(false);
+/// What shells report of a program that Ctrl-C ended.
+const STOPPED: i32 = 130;
+
+/// Runs `save`, which a first Ctrl-C (or SIGTERM, SIGHUP) does not interrupt but only keeps from being the
+/// last thing that the program does: so that no temporary file is left behind. A second one ends at once.
+fn unharmed<T>(save: impl FnOnce() -> T) -> T {
+    // Fails the second time, and where the signals are ignored, as under `nohup`: both is well.
+    let _ = ctrlc::try_set_handler(|| {
+        if !SAVING.load(SeqCst) || INTERRUPTED.swap(true, SeqCst) {
+            std::process::exit(STOPPED);
+        }
+    });
+    SAVING.store(true, SeqCst);
+    let result = save();
+    SAVING.store(false, SeqCst);
+    if INTERRUPTED.load(SeqCst) {
+        std::process::exit(STOPPED);
+    }
+    result
+}
+
+/// Writes to standard output.
+pub fn print(bytes: &[u8]) -> Result<(), Failure> {
+    let mut out = std::io::stdout().lock();
+    out.write_all(bytes).and_then(|()| out.flush()).map_err(|error| match error.kind() {
+        ErrorKind::BrokenPipe => Failure::ReaderGone,
+        _ => Failure::of("standard output", error),
+    })
+}
+
+/// Writes `value` as JSON, one object over several lines.
+pub fn json(value: &impl serde::Serialize) -> Result<String, Failure> {
+    let mut text = serde_json::to_string_pretty(value).map_err(|error| Failure::of("JSON", error))?;
+    text.push('\n');
+    Ok(text)
+}
+
+/// Writes one line to standard error. If that is closed nobody wants to know.
+pub fn complain(line: &str) {
+    let _ = writeln!(std::io::stderr().lock(), "leafless: {line}");
+}
+
+/// A count, with commas: 1,234,567.
+pub fn count(count: u64) -> String {
+    let digits = count.to_string();
+    let mut text = String::with_capacity(digits.len() + digits.len() / 3);
+    for (i, digit) in digits.chars().enumerate() {
+        if i > 0 && (digits.len() - i).is_multiple_of(3) {
+            text.push(',');
+        }
+        text.push(digit);
+    }
+    text
+}
+
+/// A count and what is counted: "1 body", "2 bodies".
+pub fn counted(number: u64, one: &str, many: &str) -> String {
+    format!("{} {}", count(number), if number == 1 { one } else { many })
+}
+
+/// A number in full precision, in scientific notation if it is very large or small.
+pub fn number(x: f64) -> String {
+    let text = format!("{x:?}");
+    text.strip_suffix(".0").map_or(text.clone(), str::to_owned)
+}
+
+/// Both ends of an interval, in full precision lest it shrink.
+pub fn interval(interval: Interval) -> String {
+    format!("{} to {}", number(interval.lower), number(interval.upper))
+}
+
+/// A duration in the unit that suits it.
+pub fn seconds(seconds: f64) -> String {
+    match seconds {
+        s if s < 1e-3 => format!("{:.1} µs", s * 1e6),
+        s if s < 1.0 => format!("{:.1} ms", s * 1e3),
+        s => format!("{s:.2} s"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_read_well() {
+        for (number, text) in [(0, "0"), (999, "999"), (1000, "1,000"), (1_234_567, "1,234,567")] {
+            assert_eq!(count(number), text);
+        }
+        for (x, text) in
+            [(0.0, "0"), (1.5, "1.5"), (-3.0, "-3"), (1e300, "1e300"), (0.1 + 0.2, "0.30000000000000004")]
+        {
+            assert_eq!(number(x), text);
+        }
+        assert_eq!(counted(1, "body", "bodies"), "1 body");
+        assert_eq!(
+            (seconds(2e-6), seconds(0.0123), seconds(61.0)),
+            ("2.0 µs".into(), "12.3 ms".into(), "61.00 s".into())
+        );
+    }
+}

@@ -1,0 +1,301 @@
+//! `leafless voxelize`: from an STL file to a solid.
+
+use crate::failure::{Failure, Of};
+use crate::input::Input;
+use crate::output::{self, Output, count, counted, number, seconds};
+use crate::progress::watched;
+use crate::report::{Info, Mesh};
+use clap::{Args, ValueEnum};
+use leafless::{FillRule, Frame, MeshReport, MeshSolid, Metadata, Octree, Rule, TriangleMesh, build, file};
+use serde::Serialize;
+use std::ffi::OsString;
+use std::fmt::Write;
+use std::time::Instant;
+
+/// Cuts the space around a mesh into 2^N × 2^N × 2^N cells, of which only those near the surface are kept apart. By
+/// the certified rule every cell is proven inside, proven outside, or undecided because the surface may pass
+/// through it; no such cell is ever missed.
+///
+/// The mesh must be closed: every edge shared by an even number of triangles that face the same side. Bodies may
+/// overlap. Vertices that differ by no more than single precision can tell are joined, and it is reported how many.
+///
+/// The file records the input's name, length and checksum, and the rule. Equal input gives equal bytes, for any
+/// number of threads.
+#[derive(Args)]
+pub struct Arguments {
+    /// Mesh (STL, binary or ASCII), or `-` for standard input
+    #[arg(value_name = "IN.stl")]
+    input: OsString,
+    /// File to write, or `-` for standard output, whose summary then goes to standard error; it is written whole
+    /// or not at all
+    #[arg(short, long, value_name = "OUT.lfl")]
+    output: OsString,
+    /// Levels of the octree, 1 to 20: each halves the cells, and the error, and makes the file some four times as
+    /// long
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=leafless::MAX_DEPTH as i64))]
+    depth: u8,
+    /// What becomes of the finest cells that the surface passes through
+    #[arg(long, value_enum, default_value_t = RuleName::Certified)]
+    rule: RuleName,
+    /// Which points count as inside
+    #[arg(long, value_enum, default_value_t = FillName::Nonzero)]
+    fill: FillName,
+    /// Lower corner and edge length of the cube to cut into cells, in the mesh's units. Solids can be combined if
+    /// they were given the same bounds and depth. What sticks out is cut off, and reported. Without it: the cube
+    /// around the middle of the mesh, its edge 33/32 of the mesh's longest extent
+    #[arg(long, value_name = "X0,Y0,Z0,EDGE", value_parser = bounds, allow_hyphen_values = true)]
+    bounds: Option<Frame>,
+    /// Threads to use; 0: as many as there are processors. The result is the same
+    #[arg(long, default_value_t = 0, value_name = "N", value_parser = threads)]
+    threads: usize,
+    /// Print one JSON object with timings, counts, the mesh report and the volume (on standard error if the solid
+    /// goes to standard output)
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum RuleName {
+    /// They stay undecided: volumes are intervals that hold the truth
+    Certified,
+    /// They are inside if their centre is
+    Sampled,
+    /// They are outside: the result lies within the solid
+    Inner,
+    /// They are inside: the result contains the solid
+    Outer,
+}
+
+impl From<RuleName> for Rule {
+    fn from(name: RuleName) -> Rule {
+        match name {
+            RuleName::Certified => Rule::Certified,
+            RuleName::Sampled => Rule::Sampled,
+            RuleName::Inner => Rule::Inner,
+            RuleName::Outer => Rule::Outer,
+        }
+    }
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum FillName {
+    /// Those that the surface winds around: overlapping bodies are joined
+    Nonzero,
+    /// Those that it winds around an odd number of times: overlaps are holes
+    Evenodd,
+}
+
+impl From<FillName> for FillRule {
+    fn from(name: FillName) -> FillRule {
+        match name {
+            FillName::Nonzero => FillRule::NonZero,
+            FillName::Evenodd => FillRule::EvenOdd,
+        }
+    }
+}
+
+/// The universe of `--bounds`; its depth is a placeholder.
+fn bounds(text: &str) -> Result<Frame, String> {
+    let numbers: Result<Vec<f64>, _> = text.split(',').map(|number| number.trim().parse()).collect();
+    match numbers.as_deref() {
+        Ok(&[x, y, z, edge]) => Frame::new([x, y, z], edge, 1).map_err(|error| error.to_string()),
+        _ => Err("expected four numbers: x0,y0,z0,edge".into()),
+    }
+}
+
+/// A number of threads: far more than processors help nobody.
+pub fn threads(text: &str) -> Result<usize, String> {
+    match text.parse() {
+        Ok(threads @ 0..=1024) => Ok(threads),
+        _ => Err("expected a number from 0 to 1024".into()),
+    }
+}
+
+/// Seconds.
+#[derive(Serialize)]
+struct Timings {
+    /// Reading the mesh, welding and sewing it, checking that it is closed.
+    read: f64,
+    build: f64,
+    save: f64,
+    total: f64,
+}
+
+#[derive(Serialize)]
+struct Report {
+    input: String,
+    output: String,
+    rule: String,
+    fill: String,
+    timings: Timings,
+    mesh: Mesh,
+    #[serde(flatten)]
+    info: Info,
+}
+
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let start = Instant::now();
+    let (input, output) = (Input::from(&*arguments.input), Output::from(&*arguments.output));
+    output.check()?;
+    if let (Some(from), Some(to)) = (input.path(), output.path()) {
+        if from.canonicalize().is_ok_and(|from| to.canonicalize().is_ok_and(|to| from == to)) {
+            return Err(Failure::of(&output, "is the mesh itself, which is not overwritten"));
+        }
+    }
+
+    let (mesh, source) = read_mesh(&input)?;
+    let fill = arguments.fill.into();
+    mesh.check_closed(fill).of(&input)?;
+    let mesh_report = mesh.report().of(&input)?;
+    let (min, max) = mesh.bounds();
+    let frame = match &arguments.bounds {
+        Some(bounds) => bounds.with_depth(arguments.depth),
+        None => Frame::around(min, max, arguments.depth),
+    };
+    let frame = frame.of(&input)?;
+    let read = start.elapsed().as_secs_f64();
+
+    let building = Instant::now();
+    let solid = MeshSolid::new(&mesh, &frame, fill).of(&input)?;
+    let octree = watched("voxelize", arguments.threads, |control| {
+        build(&solid, &frame, arguments.rule.into(), control)
+    });
+    let octree = octree.of(&input)?.with_metadata(facts(&input, source, arguments.rule));
+    let build = building.elapsed().as_secs_f64();
+
+    let saving = Instant::now();
+    let bytes = output.save(&octree)?;
+    let save = saving.elapsed().as_secs_f64();
+
+    if octree.view().is_clipped() {
+        output::complain(&format!("{input}: warning: {}", clipping(&frame, min, max)));
+    }
+    let timings = Timings { read, build, save, total: start.elapsed().as_secs_f64() };
+    let info = Info::new(&octree, bytes);
+    if arguments.json {
+        let report = Report {
+            input: input.to_string(),
+            output: output.to_string(),
+            rule: name_of(arguments.rule),
+            fill: name_of(arguments.fill),
+            timings,
+            mesh: mesh_report.into(),
+            info,
+        };
+        return output.report(&output::json(&report)?);
+    }
+    output.report(&summary(&input, &output, arguments.rule, &mesh_report, &octree, &info, &timings))
+}
+
+/// The mesh in a file, hair cracks closed, and a fingerprint of the file.
+fn read_mesh(input: &Input) -> Result<(TriangleMesh, String), Failure> {
+    let bytes = input.read()?;
+    if bytes.starts_with(&file::MAGIC) {
+        return Err(Failure::of(input, "this is a solid already, not a mesh"));
+    }
+    let source = format!("crc32:{:08x} bytes:{}", crc32fast::hash(&bytes), bytes.len());
+    let mesh = file::read_stl(&bytes).of(input)?;
+    drop(bytes);
+    Ok((mesh.sewn().of(input)?, source))
+}
+
+/// What the solid's file says of its making: nothing that differs from run to run.
+fn facts(input: &Input, source: String, rule: RuleName) -> Metadata {
+    let mut metadata = Metadata::new();
+    if let Some(stem) = input.path().and_then(|path| path.file_stem()) {
+        metadata.insert("name", stem.to_string_lossy());
+    }
+    metadata.insert("source", source);
+    metadata.insert("rule", name_of(rule));
+    metadata
+}
+
+/// The name of an option's value, as the user writes it.
+fn name_of(value: impl ValueEnum) -> String {
+    value.to_possible_value().map_or_else(String::new, |value| value.get_name().to_owned())
+}
+
+/// Where the mesh sticks out of the bounds.
+fn clipping(frame: &Frame, min: [f64; 3], max: [f64; 3]) -> String {
+    let mut text = String::from("the mesh sticks out of the bounds and was cut off");
+    for (axis, name) in ["x", "y", "z"].iter().enumerate() {
+        let start = frame.origin()[axis];
+        let end = start + frame.edge();
+        if min[axis] < start || max[axis] > end {
+            let [from, to, start, end] = [min[axis], max[axis], start, end].map(number);
+            let _ = write!(text, "; {name} from {from} to {to}, bounds {start} to {end}");
+        }
+    }
+    text
+}
+
+fn summary(
+    input: &Input,
+    output: &Output,
+    rule: RuleName,
+    mesh: &MeshReport,
+    octree: &Octree,
+    info: &Info,
+    timings: &Timings,
+) -> String {
+    let mut text = format!(
+        "{input}: {}, {}",
+        counted(mesh.triangles, "triangle", "triangles"),
+        counted(mesh.bodies, "body", "bodies"),
+    );
+    if mesh.degenerate > 0 {
+        let _ =
+            write!(text, ", {} dropped", counted(mesh.degenerate, "degenerate facet", "degenerate facets"));
+    }
+    if mesh.sewn > 0 {
+        let moved = counted(mesh.sewn, "vertex", "vertices");
+        let _ = write!(text, ", {moved} moved by {} or less to close hair cracks", number(mesh.displacement));
+    }
+    let frame = octree.frame();
+    let _ = write!(
+        text,
+        "\n{output}: {} octree of depth {}, cells of {}\n\
+         volume  {}{}\n\
+         nodes   {} (a classical octree has {})\n\
+         bytes   {}",
+        name_of(rule),
+        frame.depth(),
+        number(frame.cell_size()),
+        info.volume_text(),
+        if octree.view().is_binary() { " (of the cells)" } else { " (the true one lies between)" },
+        count(info.nodes),
+        count(info.classical_nodes),
+        count(info.bytes),
+    );
+    if let Some(each) = info.bytes_per_node {
+        let _ = write!(text, ", {each:.2} a node");
+    }
+    let Timings { read, build, save, total } = *timings;
+    let [read, build, save, total] = [read, build, save, total].map(seconds);
+    let _ = writeln!(text, "\ntime    {total}: read {read}, build {build}, save {save}");
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bounds_are_four_numbers_that_make_a_frame() {
+        let frame = bounds("-1, 2.5,3e1,4").unwrap();
+        assert_eq!((frame.origin(), frame.edge()), ([-1.0, 2.5, 30.0], 4.0));
+        for text in [
+            "",
+            "1,2,3",
+            "1,2,3,4,5",
+            "1,2,3,x",
+            "0,0,0,0",
+            "0,0,0,-1",
+            "0,nan,0,1",
+            "0,0,0,inf",
+            "0,0,0,nan",
+        ] {
+            assert!(bounds(text).is_err(), "{text}");
+        }
+    }
+}
