@@ -1,0 +1,900 @@
+//! The program `leafless`, from outside: every subcommand, what it prints, what it leaves behind.
+
+#![cfg(feature = "cli")]
+
+mod common;
+
+use leafless::{Membership, TriangleMesh, file};
+use serde_json::Value;
+use std::ffi::OsStr;
+use std::io::{Read, Write};
+use std::path::PathBuf;
+use std::process::{Child, Command, Output, Stdio};
+
+/// A folder for one test, in which the program runs.
+struct Place(tempfile::TempDir);
+
+impl Place {
+    fn new() -> Place {
+        Place(tempfile::tempdir().unwrap())
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.0.path().join(name)
+    }
+
+    fn bytes(&self, name: &str) -> Vec<u8> {
+        std::fs::read(self.path(name)).unwrap()
+    }
+
+    fn write(&self, name: &str, bytes: impl AsRef<[u8]>) {
+        std::fs::write(self.path(name), bytes).unwrap();
+    }
+
+    /// Names of all files, sorted: temporary ones would show.
+    fn files(&self) -> Vec<String> {
+        let entries = std::fs::read_dir(self.0.path()).unwrap();
+        let mut names: Vec<_> =
+            entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+        names.sort();
+        names
+    }
+
+    fn command<S: AsRef<OsStr>>(&self, arguments: impl IntoIterator<Item = S>) -> Command {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_leafless"));
+        command.args(arguments).current_dir(self.0.path()).stdin(Stdio::null());
+        command
+    }
+
+    /// Runs a command line whose words are separated by blanks.
+    fn run(&self, line: &str) -> Run {
+        Run::new(line, self.command(line.split_whitespace()).output().unwrap())
+    }
+
+    fn run_with(&self, line: &str, input: &[u8]) -> Run {
+        let mut command = self.command(line.split_whitespace());
+        command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
+        let mut child = command.spawn().unwrap();
+        let mut stdin = child.stdin.take().unwrap();
+        let input = input.to_vec();
+        // The program may stop reading before everything is written.
+        let writer = std::thread::spawn(move || drop(stdin.write_all(&input)));
+        let output = child.wait_with_output().unwrap();
+        writer.join().unwrap();
+        Run::new(line, output)
+    }
+}
+
+/// What a run of the program came to.
+#[derive(Debug)]
+struct Run {
+    #[allow(dead_code, reason = "shown when a test fails")]
+    line: String,
+    code: Option<i32>,
+    bytes: Vec<u8>,
+    errors: String,
+}
+
+impl Run {
+    fn new(line: &str, output: Output) -> Run {
+        Run {
+            line: line.to_owned(),
+            code: output.status.code(),
+            bytes: output.stdout,
+            errors: String::from_utf8(output.stderr).unwrap(),
+        }
+    }
+
+    fn text(&self) -> &str {
+        std::str::from_utf8(&self.bytes).unwrap()
+    }
+
+    /// Success without a word on standard error.
+    #[track_caller]
+    fn good(self) -> Run {
+        assert!(self.code == Some(0) && self.errors.is_empty(), "{self:?}");
+        self
+    }
+
+    /// One line on standard error, with these words in it, and nothing on standard output.
+    #[track_caller]
+    fn bad(self, code: i32, words: &[&str]) {
+        assert_eq!(self.code, Some(code), "{self:?}");
+        assert!(self.errors.starts_with("leafless: ") && self.errors.ends_with('\n'), "{self:?}");
+        assert_eq!(self.errors.lines().count(), 1, "{self:?}");
+        for word in words {
+            assert!(self.errors.contains(word), "{word:?} is not in {self:?}");
+        }
+        assert!(self.bytes.is_empty(), "{self:?}");
+    }
+
+    #[track_caller]
+    fn json(&self) -> Value {
+        serde_json::from_str(self.text()).unwrap_or_else(|error| panic!("{error}: {self:?}"))
+    }
+}
+
+/// A box as a closed mesh of twelve triangles.
+fn block(min: [f64; 3], max: [f64; 3]) -> TriangleMesh {
+    let corners =
+        (0..8).map(|k| [0, 1, 2].map(|axis| if k >> axis & 1 == 0 { min[axis] } else { max[axis] }));
+    let sides: [[u32; 4]; 6] =
+        [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
+    let triangles = sides.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
+    TriangleMesh::new(corners.collect(), triangles).unwrap()
+}
+
+fn stl(mesh: &TriangleMesh) -> Vec<u8> {
+    file::write_stl(mesh).unwrap()
+}
+
+/// `cube.stl`, the cube [1, 3]³, and `slab.stl`, the box [2, 6] × [2, 6] × [0, 2].
+fn meshes() -> Place {
+    let place = Place::new();
+    place.write("cube.stl", stl(&block([1.0; 3], [3.0; 3])));
+    place.write("slab.stl", stl(&block([2.0, 2.0, 0.0], [6.0, 6.0, 2.0])));
+    place
+}
+
+/// The same as solids in [0, 8]³ at depth 5: their faces lie on planes of the lattice.
+fn solids() -> Place {
+    let place = meshes();
+    for name in ["cube", "slab"] {
+        place.run(&format!("voxelize {name}.stl -o {name}.lfl --depth 5 --bounds 0,0,0,8")).good();
+    }
+    place
+}
+
+fn keys(value: &Value) -> Vec<&str> {
+    value.as_object().unwrap().keys().map(String::as_str).collect()
+}
+
+fn volume(value: &Value) -> (f64, f64) {
+    (value["volume"]["lower"].as_f64().unwrap(), value["volume"]["upper"].as_f64().unwrap())
+}
+
+#[test]
+fn help_and_version() {
+    let place = Place::new();
+    let version = format!("leafless {}\n", env!("CARGO_PKG_VERSION"));
+    assert_eq!(place.run("--version").good().text(), version);
+    let help = place.run("--help").good();
+    let commands = [
+        "voxelize",
+        "info",
+        "verify",
+        "union",
+        "intersection",
+        "difference",
+        "xor",
+        "complement",
+        "contains",
+        "demo",
+    ];
+    for command in commands {
+        assert!(help.text().contains(&format!("\n  {command} ")), "{help:?}");
+        let own = place.run(&format!("{command} --help")).good();
+        assert!(own.text().contains("Usage: leafless"), "{own:?}");
+    }
+}
+
+#[test]
+fn wrong_usage_is_one_line_and_code_2() {
+    let place = solids();
+    let before = place.files();
+    for (line, words) in [
+        ("voxelise a", &["voxelise", "voxelize"][..]),
+        ("voxelize", &["IN.stl", "--output", "--depth"]),
+        ("voxelize cube.stl -o out.lfl", &["--depth"]),
+        ("voxelize cube.stl --depth 5", &["--output"]),
+        ("voxelize cube.stl -o out.lfl --depth 0", &["--depth", "0"]),
+        ("voxelize cube.stl -o out.lfl --depth 21", &["--depth", "21", "20"]),
+        ("voxelize cube.stl -o out.lfl --depth five", &["--depth", "five"]),
+        ("voxelize cube.stl -o out.lfl --depth 5 --rule exact", &["--rule", "certified", "sampled"]),
+        ("voxelize cube.stl -o out.lfl --depth 5 --fill odd", &["--fill", "evenodd"]),
+        ("voxelize cube.stl -o out.lfl --depth 5 --threads -1", &["-1"]),
+        ("voxelize cube.stl -o out.lfl --depth 5 --threads 9999", &["--threads", "1024"]),
+        ("voxelize cube.stl -o out.lfl --depth 5 --bounds 1,2,3", &["--bounds", "four numbers"]),
+        ("voxelize cube.stl -o out.lfl --depth 5 --bounds 1,2,3,x", &["--bounds", "four numbers"]),
+        ("voxelize cube.stl -o out.lfl --depth 5 --bounds 0,0,0,0", &["--bounds", "edge"]),
+        ("voxelize cube.stl -o out.lfl --depth 5 --bounds 0,0,0,-1", &["--bounds", "edge"]),
+        ("voxelize cube.stl -o out.lfl --depth 5 --bounds 0,0,0,nan", &["--bounds", "edge"]),
+        ("voxelize cube.stl -o out.lfl --depth 5 --bounds nan,0,0,1", &["--bounds", "origin"]),
+        ("voxelize cube.stl -o out.lfl --depth 5 --bounds 0,0,inf,1", &["--bounds", "origin"]),
+        ("info", &["FILE"]),
+        ("info cube.lfl slab.lfl", &["slab.lfl"]),
+        ("union cube.lfl -o out.lfl", &["FILE", "2"]),
+        ("union cube.lfl slab.lfl", &["--output"]),
+        ("xor - - -o out.lfl", &["standard input"]),
+        ("complement cube.lfl slab.lfl -o out.lfl", &["slab.lfl"]),
+        ("contains -", &["standard input"]),
+        ("demo a b", &["b"]),
+    ] {
+        place.run(line).bad(2, words);
+    }
+    // Without any command the help stands on standard error.
+    let nothing = place.run("");
+    assert!(nothing.code == Some(2) && nothing.bytes.is_empty() && nothing.errors.contains("voxelize"));
+    assert_eq!(place.files(), before);
+}
+
+#[test]
+fn voxelize_reports_and_records() {
+    let place = meshes();
+    let run = place.run("voxelize cube.stl -o cube.lfl --depth 6").good();
+    for words in ["12 triangles", "1 body", "cube.lfl", "depth 6", "volume", "nodes", "bytes"] {
+        assert!(run.text().contains(words), "{words}: {run:?}");
+    }
+    let json = place.run("voxelize cube.stl -o cube.lfl --depth 6 --json").good().json();
+    for key in ["read", "build", "save", "total"] {
+        let time = json["timings"][key].as_f64().unwrap();
+        assert!((0.0..60.0).contains(&time), "{key} {time}");
+    }
+    assert_eq!(
+        keys(&json["mesh"]),
+        [
+            "bodies",
+            "boundary_edges",
+            "degenerate",
+            "displacement",
+            "facets_read",
+            "misoriented_edges",
+            "non_manifold_edges",
+            "sewn",
+            "triangles",
+            "vertices",
+            "welded",
+        ]
+    );
+    assert_eq!((&json["mesh"]["triangles"], &json["mesh"]["welded"]), (&12.into(), &28.into()));
+    assert_eq!((&json["input"], &json["output"]), (&"cube.stl".into(), &"cube.lfl".into()));
+    assert_eq!((&json["rule"], &json["fill"]), (&"certified".into(), &"nonzero".into()));
+    assert_eq!(json["clipped"], false);
+    assert_eq!(json["bytes"], place.bytes("cube.lfl").len());
+    // L = 2: the edge is 2 · 33/32, the middle at (2, 2, 2).
+    assert_eq!((json["edge"].as_f64(), json["origin"][0].as_f64()), (Some(2.0625), Some(0.96875)));
+    let (lower, upper) = volume(&json);
+    assert!(lower <= 8.0 && 8.0 <= upper && upper - lower < 1.7, "{lower} {upper}");
+
+    // All that `info` tells is in it.
+    let info = place.run("info cube.lfl --json").good().json();
+    for (key, value) in info.as_object().unwrap() {
+        assert_eq!(json[key], *value, "{key}");
+    }
+    let length = place.bytes("cube.stl").len();
+    let source = format!("crc32:{:08x} bytes:{length}", crc32fast::hash(&place.bytes("cube.stl")));
+    assert_eq!(
+        info["metadata"],
+        serde_json::json!({ "name": "cube", "rule": "certified", "source": source })
+    );
+    assert_eq!(place.files(), ["cube.lfl", "cube.stl", "slab.stl"]);
+}
+
+#[test]
+fn the_four_rules_and_both_fills() {
+    let place = Place::new();
+    // Two boxes that overlap in [2, 3] × [1, 3]², each 2³.
+    let mut facets = Vec::new();
+    for mesh in [block([1.0; 3], [3.0; 3]), block([2.0, 1.0, 1.0], [4.0, 3.0, 3.0])] {
+        facets.extend(mesh.triangles().iter().map(|t| t.map(|v| mesh.vertices()[v as usize])));
+    }
+    place.write("two.stl", stl(&TriangleMesh::from_facets(&facets).unwrap()));
+    // The lattice planes do not meet the faces: 0.3 + i / 4.
+    let run = |options: &str| {
+        let json = place
+            .run(&format!("voxelize two.stl -o two.lfl --depth 4 --bounds 0.3,0.3,0.3,4 --json {options}"));
+        let json = json.good().json();
+        (json["binary"].as_bool().unwrap(), volume(&json))
+    };
+    let (binary, (lower, upper)) = run("");
+    assert!(!binary && lower < 12.0 && 12.0 < upper);
+    assert_eq!(run("--rule certified"), (false, (lower, upper)));
+    assert_eq!(run("--rule inner"), (true, (lower, lower)));
+    assert_eq!(run("--rule outer"), (true, (upper, upper)));
+    let (binary, (sampled, same)) = run("--rule sampled");
+    assert!(binary && sampled == same && lower < sampled && sampled < upper);
+    let (_, (lower, upper)) = run("--fill evenodd");
+    assert!(lower < 8.0 && 8.0 < upper && upper < 12.0 + 4.0, "{lower} {upper}");
+    let (_, (sampled, _)) = run("--fill evenodd --rule sampled");
+    assert!((7.0..9.0).contains(&sampled), "{sampled}");
+}
+
+#[test]
+fn a_mesh_that_sticks_out_is_reported() {
+    let place = meshes();
+    let run = place.run("voxelize slab.stl -o out.lfl --depth 4 --bounds -4,-4,-4,8 --json");
+    assert_eq!(run.code, Some(0), "{run:?}");
+    assert_eq!(run.errors.lines().count(), 1, "{run:?}");
+    for words in ["slab.stl", "warning", "x from 2 to 6, bounds -4 to 4", "y from 2 to 6"] {
+        assert!(run.errors.contains(words), "{run:?}");
+    }
+    assert!(!run.errors.contains("z from"), "{run:?}");
+    let json = run.json();
+    assert_eq!(json["clipped"], true);
+    // Of the slab [2, 4] × [2, 4] × [0, 2] is left.
+    let (lower, upper) = volume(&json);
+    assert!(lower <= 8.0 && 8.0 <= upper);
+    assert_eq!(place.run("info out.lfl --json").good().json()["clipped"], true);
+    assert!(place.run("info out.lfl").good().text().contains("may go on outside"));
+    // Nothing of it left is no error either.
+    let run = place.run("voxelize slab.stl -o out.lfl --depth 4 --bounds=-9,-9,-9,1 --json");
+    assert_eq!((run.code, volume(&run.json())), (Some(0), (0.0, 0.0)));
+    assert!(run.errors.contains("warning"), "{run:?}");
+}
+
+#[test]
+fn meshes_that_are_refused() {
+    let place = meshes();
+    let open = block([0.0; 3], [1.0; 3]);
+    let facets: Vec<_> =
+        open.triangles()[1..].iter().map(|t| t.map(|v| open.vertices()[v as usize])).collect();
+    place.write("open.stl", stl(&TriangleMesh::from_facets(&facets).unwrap()));
+    let mut turned = facets.clone();
+    let [a, b, c] = open.triangles()[0].map(|v| open.vertices()[v as usize]);
+    turned.push([a, c, b]);
+    place.write("turned.stl", stl(&TriangleMesh::from_facets(&turned).unwrap()));
+    place.write("empty.stl", "");
+    place.write("none.stl", "solid nothing\nendsolid nothing\n");
+    place.write("dot.stl", "solid dot\nfacet normal 0 0 1\nouter loop\nvertex 1 2 3\nvertex 1 2 3\nvertex 1 2 3\nendloop\nendfacet\nendsolid\n");
+    place.write("text.stl", "This is not a mesh, but a text that is longer than the header of a binary STL file would be, and on.");
+    place.write("short.stl", &place.bytes("cube.stl")[..300]);
+    place.run("voxelize cube.stl -o solid.lfl --depth 3").good();
+    let before = place.files();
+    for (name, words) in [
+        ("open.stl", &["not closed", "3 edges"][..]),
+        ("turned.stl", &["oriented"]),
+        ("empty.stl", &["empty"]),
+        ("none.stl", &["no triangle"]),
+        ("dot.stl", &["no triangle"]),
+        ("text.stl", &[]),
+        ("short.stl", &["12 facets", "300"]),
+        ("solid.lfl", &["solid already"]),
+        ("missing.stl", &["No such file"]),
+        (".", &["directory"]),
+    ] {
+        let words: Vec<_> =
+            words.iter().copied().chain([format!("leafless: {name}: ").leak() as &str]).collect();
+        place.run(&format!("voxelize {name} -o out.lfl --depth 4")).bad(1, &words);
+    }
+    place.run_with("voxelize - -o out.lfl --depth 4", b"").bad(1, &["standard input", "empty"]);
+    assert_eq!(place.files(), before);
+    // By the even-odd rule orientation does not matter.
+    place.run("voxelize turned.stl -o out.lfl --depth 4 --fill evenodd").good();
+}
+
+#[test]
+fn hair_cracks_are_sewn_and_reported() {
+    let place = Place::new();
+    let cube = block([1.0; 3], [3.0; 3]);
+    let mut text = String::from("solid cracked\n");
+    for (index, triangle) in cube.triangles().iter().enumerate() {
+        text.push_str("facet normal 0 0 0\nouter loop\n");
+        for &v in triangle {
+            let [x, y, z] = cube.vertices()[v as usize];
+            let x = if index == 0 { x + 1e-9 } else { x };
+            text.push_str(&format!("vertex {x} {y} {z}\n"));
+        }
+        text.push_str("endloop\nendfacet\n");
+    }
+    text.push_str("endsolid\n");
+    place.write("cracked.stl", text);
+    let json = place.run("voxelize cracked.stl -o out.lfl --depth 5 --json").good().json();
+    let displacement = json["mesh"]["displacement"].as_f64().unwrap();
+    assert_eq!(json["mesh"]["sewn"], 3);
+    assert!((0.9e-9..1.1e-9).contains(&displacement), "{displacement}");
+    assert!(
+        place.run("voxelize cracked.stl -o out.lfl --depth 5").good().text().contains("3 vertices moved")
+    );
+}
+
+#[test]
+fn outputs_that_are_refused() {
+    let place = solids();
+    let before = place.files();
+    let cube = place.bytes("cube.stl");
+    for (output, words) in [
+        ("nowhere/out.lfl", &["nowhere/out.lfl", "no folder nowhere"][..]),
+        ("cube.stl/out.lfl", &["cube.stl/out.lfl", "no folder cube.stl"]),
+        (".", &["leafless: .: ", "folder"]),
+    ] {
+        place.run(&format!("voxelize cube.stl -o {output} --depth 4")).bad(1, words);
+        place.run(&format!("union cube.lfl slab.lfl -o {output}")).bad(1, words);
+        place.run(&format!("complement cube.lfl -o {output}")).bad(1, words);
+    }
+    place.run("voxelize cube.stl -o cube.stl --depth 4").bad(1, &["cube.stl", "not overwritten"]);
+    place.run("voxelize cube.stl -o ./cube.stl --depth 4").bad(1, &["cube.stl", "not overwritten"]);
+    assert_eq!((place.files(), place.bytes("cube.stl")), (before, cube));
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn what_cannot_be_written_leaves_the_old_file() {
+    use std::os::unix::fs::PermissionsExt;
+    let place = solids();
+    place.run("voxelize cube.stl -o /dev/full --depth 5").bad(1, &["/dev/full", "No space left"]);
+    place.run("voxelize cube.stl -o /proc/version --depth 5").bad(1, &["/proc/version"]);
+
+    // The shell's limit on the size of files, with its signal ignored, makes writing fail half-way.
+    let old = place.bytes("slab.lfl");
+    let script = format!(
+        "trap '' XFSZ; ulimit -f 1; exec '{}' voxelize cube.stl -o slab.lfl --depth 9",
+        env!("CARGO_BIN_EXE_leafless")
+    );
+    let output = Command::new("sh").args(["-c", &script]).current_dir(place.0.path()).output().unwrap();
+    Run::new(&script, output).bad(1, &["slab.lfl", "File too large"]);
+    assert_eq!(place.bytes("slab.lfl"), old);
+
+    let folder = place.path("locked");
+    std::fs::create_dir(&folder).unwrap();
+    std::fs::set_permissions(&folder, std::fs::Permissions::from_mode(0o555)).unwrap();
+    // The superuser may write everywhere.
+    if std::fs::write(folder.join("probe"), "").is_err() {
+        place.run("voxelize cube.stl -o locked/out.lfl --depth 4").bad(1, &["locked/out.lfl", "denied"]);
+    }
+    std::fs::set_permissions(&folder, std::fs::Permissions::from_mode(0o755)).unwrap();
+    assert_eq!(place.files(), ["cube.lfl", "cube.stl", "locked", "slab.lfl", "slab.stl"]);
+}
+
+#[test]
+fn standard_input_and_output() {
+    let place = meshes();
+    place.run("voxelize cube.stl -o cube.lfl --depth 5 --bounds 0,0,0,8").good();
+    place.run("voxelize slab.stl -o slab.lfl --depth 5 --bounds 0,0,0,8").good();
+    let (cube, slab) = (place.bytes("cube.lfl"), place.bytes("slab.lfl"));
+
+    let run = place.run("voxelize cube.stl -o - --depth 5 --bounds 0,0,0,8");
+    assert_eq!((run.code, &run.bytes), (Some(0), &cube));
+    assert!(run.errors.contains("12 triangles"), "{run:?}");
+    let run = place.run("voxelize cube.stl -o - --depth 5 --bounds 0,0,0,8 --json");
+    assert_eq!((run.code, &run.bytes), (Some(0), &cube));
+    let json: Value = serde_json::from_str(&run.errors).unwrap();
+    assert_eq!((&json["output"], &json["bytes"]), (&"standard output".into(), &cube.len().into()));
+
+    // Standard input has no name to record.
+    place.run_with("voxelize - -o from-pipe.lfl --depth 5 --bounds 0,0,0,8", &place.bytes("cube.stl")).good();
+    let info = place.run("info from-pipe.lfl --json").good().json();
+    assert_eq!(keys(&info["metadata"]), ["rule", "source"]);
+    assert_eq!(file::open(place.path("from-pipe.lfl")).unwrap(), file::open(place.path("cube.lfl")).unwrap());
+
+    let from_file = place.run("info cube.lfl --json").good();
+    assert_eq!(place.run_with("info - --json", &cube).good().text(), from_file.text());
+    let verified = place.run_with("verify -", &cube).good();
+    assert!(verified.text().starts_with("standard input: good"), "{verified:?}");
+    place.run("difference cube.lfl slab.lfl -o expected.lfl").good();
+    let run = place.run_with("difference cube.lfl - -o -", &slab);
+    assert_eq!((run.code, run.bytes), (Some(0), place.bytes("expected.lfl")));
+    assert!(run.errors.starts_with("standard output: difference of 2 solids"), "{}", run.errors);
+    let run = place.run_with("complement - -o -", &cube);
+    assert_eq!(
+        (run.code, file::from_bytes(&run.bytes).unwrap().contains([0.5; 3])),
+        (Some(0), Membership::Inside)
+    );
+}
+
+#[cfg(unix)]
+#[test]
+fn names_that_need_care() {
+    use std::os::unix::ffi::OsStrExt;
+    let place = meshes();
+    for name in [&b"with blank.stl"[..], b"\xff\xfe.stl", b"-dash.stl", "Flansch Ø 120.stl".as_bytes()] {
+        let name = OsStr::from_bytes(name);
+        std::fs::copy(place.path("cube.stl"), place.0.path().join(name)).unwrap();
+        let arguments = ["voxelize", "--depth", "4", "-o", "out.lfl", "--"].map(OsStr::new);
+        let run = place.command(arguments.into_iter().chain([name])).output().unwrap();
+        assert!(run.status.success(), "{run:?}");
+        place.run("verify out.lfl").good();
+    }
+    assert_eq!(file::open(place.path("out.lfl")).unwrap().metadata().get("name"), Some("Flansch Ø 120"));
+    // A path from another folder.
+    let run = Command::new(env!("CARGO_BIN_EXE_leafless")).arg("info").arg(place.path("out.lfl")).output();
+    assert!(run.unwrap().status.success());
+}
+
+#[test]
+fn info_has_the_promised_keys() {
+    let place = solids();
+    let info = place.run("info slab.lfl --json").good().json();
+    assert_eq!(
+        keys(&info),
+        [
+            "binary",
+            "bytes",
+            "bytes_per_node",
+            "cells",
+            "classical_nodes",
+            "clipped",
+            "depth",
+            "edge",
+            "levels",
+            "metadata",
+            "nodes",
+            "origin",
+            "volume",
+        ]
+    );
+    assert_eq!(keys(&info["cells"]), ["branch", "empty", "full", "partial"]);
+    assert_eq!(keys(&info["volume"]), ["lower", "upper"]);
+    let nodes = info["nodes"].as_u64().unwrap();
+    assert_eq!(info["classical_nodes"], 8 * nodes + 1);
+    let cells: u64 = info["cells"].as_object().unwrap().values().map(|n| n.as_u64().unwrap()).sum();
+    assert_eq!(cells, 8 * nodes + 1);
+    let bytes = place.bytes("slab.lfl").len();
+    assert_eq!((&info["depth"], &info["bytes"], &info["edge"]), (&5.into(), &bytes.into(), &8.0.into()));
+    assert_eq!(info["origin"], serde_json::json!([0.0, 0.0, 0.0]));
+    assert_eq!(info["bytes_per_node"].as_f64(), Some(bytes as f64 / nodes as f64));
+    let levels = info["levels"].as_array().unwrap();
+    assert_eq!(levels.len(), 6);
+    let mut last = (0.0, 512.0);
+    for (level, value) in levels.iter().enumerate() {
+        assert_eq!(keys(value), ["level", "lower", "nodes", "upper"]);
+        assert_eq!(value["level"], level);
+        let now = (value["lower"].as_f64().unwrap(), value["upper"].as_f64().unwrap());
+        assert!(last.0 <= now.0 && now.0 <= 32.0 && 32.0 <= now.1 && now.1 <= last.1, "{now:?}");
+        last = now;
+    }
+    assert_eq!(last, volume(&info));
+    assert_eq!(levels.iter().map(|level| level["nodes"].as_u64().unwrap()).sum::<u64>(), nodes);
+
+    let text = place.run("info slab.lfl").good();
+    for words in ["depth", "volume", "classical nodes", "a node", "level"] {
+        assert!(text.text().contains(words), "{text:?}");
+    }
+    // A universe of one tag has no node.
+    assert_eq!(place.run("voxelize cube.stl -o whole.lfl --depth 3 --bounds 1.5,1.5,1.5,1").code, Some(0));
+    let whole = place.run("info whole.lfl --json").good().json();
+    assert_eq!((&whole["nodes"], &whole["bytes_per_node"]), (&0.into(), &Value::Null));
+    assert_eq!((&whole["classical_nodes"], volume(&whole)), (&1.into(), (1.0, 1.0)));
+    assert!(place.run("info whole.lfl").good().text().contains("- a node"));
+}
+
+#[test]
+fn verify_tells_good_from_bad() {
+    let place = solids();
+    let good = place.run("verify cube.lfl").good();
+    assert!(good.text().starts_with("cube.lfl: good"), "{good:?}");
+    assert_eq!(good.text().lines().count(), 1);
+    let bytes = place.bytes("cube.lfl");
+    // One bit of every 7th byte, and of the last ones.
+    for at in (0..bytes.len()).step_by(7).chain(bytes.len() - 3..bytes.len()) {
+        let mut damaged = bytes.clone();
+        damaged[at] ^= 1 << (at % 8);
+        place.write("damaged.lfl", &damaged);
+        place.run("verify damaged.lfl").bad(1, &["damaged.lfl: "]);
+        place.run_with("verify -", &damaged).bad(1, &["standard input: "]);
+    }
+    for (name, bytes) in
+        [("empty.lfl", &b""[..]), ("short.lfl", &bytes[..100]), ("mesh.lfl", &place.bytes("cube.stl"))]
+    {
+        place.write(name, bytes);
+        for line in ["verify", "info", "contains", "complement -o out.lfl"] {
+            place.run(&format!("{line} {name}")).bad(1, &[&format!("leafless: {name}: ")]);
+        }
+    }
+    for line in ["verify", "info", "contains", "complement -o out.lfl"] {
+        place.run(&format!("{line} missing.lfl")).bad(1, &["missing.lfl", "No such file"]);
+        place.run(&format!("{line} .")).bad(1, &["leafless: .: "]);
+    }
+    assert!(!place.files().contains(&"out.lfl".to_owned()));
+}
+
+#[test]
+fn booleans_are_those_of_the_library() {
+    let place = solids();
+    // Cube: 8, slab: 32, in common: 1. The faces lie on the lattice but certified cells touch them.
+    for (line, truth) in [
+        ("union cube.lfl slab.lfl", 39.0),
+        ("intersection cube.lfl slab.lfl", 1.0),
+        ("difference cube.lfl slab.lfl", 7.0),
+        ("difference slab.lfl cube.lfl", 31.0),
+        ("xor cube.lfl slab.lfl", 38.0),
+        ("union cube.lfl slab.lfl cube.lfl", 39.0),
+        ("intersection cube.lfl slab.lfl slab.lfl", 1.0),
+        ("difference slab.lfl cube.lfl cube.lfl", 31.0),
+        ("xor cube.lfl slab.lfl slab.lfl", 8.0),
+        ("complement cube.lfl", 504.0),
+    ] {
+        let run = place.run(&format!("{line} -o out.lfl")).good();
+        assert!(run.text().starts_with("out.lfl: ") && run.text().lines().count() == 1, "{run:?}");
+        place.run("verify out.lfl").good();
+        let info = place.run("info out.lfl --json").good().json();
+        let (lower, upper) = volume(&info);
+        assert!(lower <= truth && truth <= upper, "{line}: {lower} {upper}");
+        assert_eq!(info["metadata"], serde_json::json!({}));
+    }
+    let [cube, slab] = ["cube.lfl", "slab.lfl"].map(|name| file::open(place.path(name)).unwrap());
+    let control = leafless::Control::default();
+    place.run("difference cube.lfl slab.lfl -o out.lfl").good();
+    let expected = leafless::difference(cube.view(), slab.view(), &control).unwrap();
+    assert_eq!(place.bytes("out.lfl"), file::to_bytes(&expected).unwrap());
+    // Twice the complement is the solid, also in bytes but for the metadata; the result may replace the operand.
+    place.run("complement cube.lfl -o back.lfl").good();
+    place.run("complement back.lfl -o back.lfl").good();
+    assert_eq!(file::open(place.path("back.lfl")).unwrap(), cube);
+    place.run("difference cube.lfl slab.lfl -o cube.lfl").good();
+    assert_eq!(place.bytes("cube.lfl"), place.bytes("out.lfl"));
+    assert_eq!(place.files(), ["back.lfl", "cube.lfl", "cube.stl", "out.lfl", "slab.lfl", "slab.stl"]);
+}
+
+#[test]
+fn booleans_need_one_frame_and_sound_operands() {
+    let place = solids();
+    for (options, words) in [
+        ("--depth 6 --bounds 0,0,0,8", &["depth 6 instead of 5"][..]),
+        ("--depth 5 --bounds 0,0,0,9", &["edge 9 instead of 8"]),
+        ("--depth 5 --bounds -1,0,0,8", &["origin -1 0 0 instead of 0 0 0"]),
+        ("--depth 5", &["frame", "--bounds"]),
+    ] {
+        place.run(&format!("voxelize slab.stl -o other.lfl {options}")).good();
+        for operation in ["union", "intersection", "difference", "xor"] {
+            let words: Vec<_> = ["leafless: other.lfl: ", "cube.lfl"].iter().chain(words).copied().collect();
+            place.run(&format!("{operation} cube.lfl other.lfl -o out.lfl")).bad(1, &words);
+            place.run(&format!("{operation} cube.lfl slab.lfl other.lfl -o out.lfl")).bad(1, &words);
+        }
+    }
+    // Damage that only the checksums can tell.
+    let mut bytes = place.bytes("slab.lfl");
+    let probe = file::probe_bytes(&bytes).unwrap();
+    let section = probe.sections.iter().find(|section| section.name == Some("planes")).unwrap();
+    bytes[section.offset as usize] ^= 1;
+    place.write("damaged.lfl", bytes);
+    place.run("union cube.lfl damaged.lfl -o out.lfl").bad(1, &["leafless: damaged.lfl: "]);
+    place.run("union cube.lfl missing.lfl -o out.lfl").bad(1, &["leafless: missing.lfl: "]);
+    assert!(!place.files().contains(&"out.lfl".to_owned()));
+}
+
+#[test]
+fn contains_answers_line_by_line() {
+    let place = solids();
+    let points = b"# corner, middle, far\n1.5 1.5 1.5\n\n2.5,2.5,2.5\r\n7\t7\t7\n 4.5 , 2 2 \n9 9 9\nnan 0 0";
+    let run = place.run_with("contains cube.lfl", points).good();
+    assert_eq!(run.text(), "inside\ninside\noutside\noutside\nundecided\nundecided\n");
+    assert_eq!(place.run("contains cube.lfl").good().text(), "");
+    assert_eq!(place.run_with("contains cube.lfl", b"\n# nothing\n").good().text(), "");
+    // A point on the surface may be anything, but never proven wrongly beside it.
+    for (input, number, found) in [
+        ("2 2 2\n1 2\n2 2 2\n", 2, "\"1 2\""),
+        ("2 2 2\n\n# x\nx y z\n", 4, "\"x y z\""),
+        ("2 2 2\n1 2 3 4", 2, "\"1 2 3 4\""),
+        ("2 2 2\n1,2,\x1b[31m", 2, "\\u{1b}"),
+    ] {
+        let run = place.run_with("contains cube.lfl", input.as_bytes());
+        assert_eq!((run.code, run.text()), (Some(1), "inside\n"), "{run:?}");
+        let start = format!("leafless: standard input: line {number}: ");
+        assert!(run.errors.starts_with(&start) && run.errors.contains(found), "{run:?}");
+        assert_eq!(run.errors.lines().count(), 1, "{run:?}");
+    }
+    let run = place.run_with("contains cube.lfl", b"2 2 2\n\xff\xfe\n");
+    assert_eq!((run.code, run.text()), (Some(1), "inside\n"), "{run:?}");
+    // A line without end is refused before it fills the memory.
+    let run = place.run_with("contains cube.lfl", &vec![b'1'; 2_000_000]);
+    assert!(run.code == Some(1) && run.errors.contains("line 1") && run.errors.len() < 200, "{run:?}");
+}
+
+#[test]
+fn contains_agrees_with_the_library_on_many_points() {
+    let place = solids();
+    let cube = file::open(place.path("cube.lfl")).unwrap();
+    let mut state = 7u64;
+    let mut random = || {
+        state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        (state >> 11) as f64 / (1u64 << 53) as f64 * 8.4 - 0.2
+    };
+    let points: Vec<[f64; 3]> = (0..100_000).map(|_| [random(), random(), random()]).collect();
+    let text: String = points.iter().map(|[x, y, z]| format!("{x:?} {y:?} {z:?}\n")).collect();
+    let run = place.run_with("contains cube.lfl", text.as_bytes()).good();
+    let answers: Vec<&str> = run.text().lines().collect();
+    assert_eq!(answers.len(), points.len());
+    let mut met = [0; 3];
+    for (&point, answer) in points.iter().zip(answers) {
+        let (expected, kind) = match cube.contains(point) {
+            Membership::Inside => ("inside", 0),
+            Membership::Outside => ("outside", 1),
+            Membership::Undecided => ("undecided", 2),
+        };
+        assert_eq!(answer, expected, "{point:?}");
+        met[kind] += 1;
+    }
+    assert!(met.iter().all(|&n| n > 100), "{met:?}");
+}
+
+/// Starts the program with pipes to talk through.
+fn start(place: &Place, line: &str) -> Child {
+    let mut command = place.command(line.split_whitespace());
+    command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap()
+}
+
+#[test]
+fn contains_answers_while_the_asker_waits() {
+    let place = solids();
+    let mut child = start(&place, "contains cube.lfl");
+    let (mut stdin, mut stdout) = (child.stdin.take().unwrap(), child.stdout.take().unwrap());
+    for _ in 0..3 {
+        // The first half of a line has no answer yet.
+        stdin.write_all(b"2 2 2\n5 5").unwrap();
+        let mut answer = [0; 7];
+        stdout.read_exact(&mut answer).unwrap();
+        assert_eq!(&answer, b"inside\n");
+        stdin.write_all(b" 5\n").unwrap();
+        let mut answer = [0; 8];
+        stdout.read_exact(&mut answer).unwrap();
+        assert_eq!(&answer, b"outside\n");
+    }
+    drop(stdin);
+    assert!(child.wait().unwrap().success());
+}
+
+#[test]
+fn a_reader_that_leaves_is_no_error() {
+    let place = solids();
+    let mut child = start(&place, "contains cube.lfl");
+    drop(child.stdout.take());
+    let mut stdin = child.stdin.take().unwrap();
+    let lines = b"2 2 2\n".repeat(10_000);
+    // Until the program has noticed.
+    while stdin.write_all(&lines).is_ok() {}
+    drop(stdin);
+    let output = child.wait_with_output().unwrap();
+    assert!(output.status.success() && output.stderr.is_empty(), "{output:?}");
+    for line in ["info cube.lfl", "info cube.lfl --json", "verify cube.lfl", "--help", "demo ."] {
+        let mut child = start(&place, line);
+        drop(child.stdout.take());
+        let output = child.wait_with_output().unwrap();
+        assert!(output.status.success() && output.stderr.is_empty(), "{line}: {output:?}");
+    }
+    // But a solid that did not arrive is a failure.
+    place.run("voxelize cube.stl -o large.lfl --depth 9").good();
+    assert!(place.bytes("large.lfl").len() > 1 << 17);
+    let mut child = start(&place, "complement large.lfl -o -");
+    drop(child.stdout.take());
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(1), "{output:?}");
+    let errors = String::from_utf8(output.stderr).unwrap();
+    assert!(errors.starts_with("leafless: standard output: "), "{errors}");
+}
+
+#[test]
+fn equal_input_gives_equal_bytes_for_any_number_of_threads() {
+    let place = Place::new();
+    place.run("demo made").good();
+    for name in ["flange.stl", "cutter.stl"] {
+        std::fs::rename(place.path("made").join(name), place.path(name)).unwrap();
+    }
+    for rule in ["certified", "sampled"] {
+        let mut first = None;
+        for threads in [1, 2, 16, 0] {
+            let options = format!("--depth 8 --rule {rule} --threads {threads} --bounds -62,-62,-32,124");
+            for name in ["flange", "cutter"] {
+                place.run(&format!("voxelize {name}.stl -o {name}.lfl {options}")).good();
+            }
+            place.run(&format!("difference flange.lfl cutter.lfl -o out.lfl --threads {threads}")).good();
+            let bytes = ["flange.lfl", "cutter.lfl", "out.lfl"].map(|name| place.bytes(name));
+            assert_eq!(*first.get_or_insert(bytes.clone()), bytes, "{rule}, {threads} threads");
+        }
+    }
+}
+
+#[test]
+fn demo_does_what_it_says() {
+    let place = Place::new();
+    let run = place.run("demo new/folder").good();
+    let steps = [
+        "new/folder",
+        "flange.stl",
+        "cutter.stl",
+        "9,792 triangles",
+        "voxelize flange, 1024³ cells",
+        "subtract",
+        "save drilled.lfl",
+        "map",
+        "verify",
+        "one by one",
+        "in a batch",
+        "ns a point",
+        "inside",
+        "mm³",
+    ];
+    for step in steps {
+        assert!(run.text().contains(step), "{step}: {run:?}");
+    }
+    let drilled = place.path("new/folder").join("drilled.lfl");
+    let octree = file::open(&drilled).unwrap();
+    assert_eq!(octree.frame().depth(), 10);
+    // On the axis, in the flange, in the keyway and in the cross drill.
+    for (point, expected) in [
+        ([0.0, 0.0, 30.0], Membership::Outside),
+        ([56.0, 3.0, 6.0], Membership::Inside),
+        ([0.0, 16.0, 30.0], Membership::Outside),
+        ([20.0, 0.0, 51.0], Membership::Outside),
+        ([0.0, -20.0, 30.0], Membership::Inside),
+    ] {
+        assert_eq!(octree.contains(point), expected, "{point:?}");
+    }
+    let mut names: Vec<_> = std::fs::read_dir(drilled.parent().unwrap())
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .collect();
+    names.sort();
+    assert_eq!(names, ["cutter.stl", "drilled.lfl", "flange.stl"]);
+    // What the folder holds can be made again, and a file cannot be a folder.
+    place.run("demo new/folder").good();
+    place.run("demo new/folder/flange.stl").bad(1, &["flange.stl"]);
+    // Without a folder: in that for temporary files.
+    let output = place.command(["demo"]).env("TMPDIR", place.0.path()).output().unwrap();
+    if cfg!(unix) {
+        assert!(output.status.success() && place.path("leafless-demo/drilled.lfl").is_file(), "{output:?}");
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn demo_does_not_follow_what_others_put_in_its_place() {
+    let place = Place::new();
+    std::fs::create_dir(place.path("elsewhere")).unwrap();
+    std::os::unix::fs::symlink("elsewhere", place.path("leafless-demo")).unwrap();
+    let output = place.command(["demo"]).env("TMPDIR", place.0.path()).output().unwrap();
+    Run::new("demo", output).bad(1, &["leafless-demo", "demo DIR"]);
+    assert_eq!(std::fs::read_dir(place.path("elsewhere")).unwrap().count(), 0);
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn interrupted_work_leaves_nothing_behind() {
+    use std::time::{Duration, Instant};
+    let place = Place::new();
+    place.run("demo .").good();
+    for name in ["cutter.stl", "drilled.lfl"] {
+        std::fs::remove_file(place.path(name)).unwrap();
+    }
+    let mut stopped = 0;
+    for attempt in 0..60 {
+        let mut child = start(&place, "voxelize flange.stl -o out.lfl --depth 9");
+        let start = Instant::now();
+        // At first at any moment, then just when the temporary file is there.
+        let due = Duration::from_millis(10 * attempt);
+        while child.try_wait().unwrap().is_none()
+            && if attempt < 20 { start.elapsed() < due } else { place.files().len() < 2 }
+        {}
+        let signal = ["INT", "TERM"][attempt as usize % 2];
+        // It may have ended by itself meanwhile.
+        Command::new("kill").args(["-s", signal, &child.id().to_string()]).output().unwrap();
+        let code = child.wait().unwrap().code();
+        let files = place.files();
+        match files.iter().map(String::as_str).collect::<Vec<_>>()[..] {
+            ["flange.stl"] => assert_ne!(code, Some(0)),
+            ["flange.stl", "out.lfl"] => {
+                place.run("verify out.lfl").good();
+                std::fs::remove_file(place.path("out.lfl")).unwrap();
+            }
+            _ => panic!("{files:?} was left by attempt {attempt}, exit code {code:?}"),
+        }
+        stopped += u32::from(code == Some(130));
+        if stopped >= 5 {
+            return;
+        }
+    }
+    assert!(stopped > 0, "no attempt met the program while it saved");
+}
+
+#[test]
+fn the_volume_of_a_machined_part() {
+    const TRUE_VOLUME: f64 = 11.627733;
+    let Some(path) = common::model("featuretype.STL") else { return };
+    // The program runs in another folder.
+    let path = std::path::absolute(path).unwrap();
+    let place = Place::new();
+    let mut last: Option<f64> = None;
+    for depth in 6..=8 {
+        let depth = depth.to_string();
+        let arguments = ["-o", "part.lfl", "--json", "--depth", &depth].map(OsStr::new);
+        let words = [OsStr::new("voxelize"), path.as_os_str()].into_iter().chain(arguments);
+        let json = Run::new("voxelize", place.command(words).output().unwrap()).good().json();
+        assert_eq!((&json["mesh"]["triangles"], &json["mesh"]["facets_read"]), (&3476.into(), &3476.into()));
+        let (lower, upper) = volume(&json);
+        assert!(lower < TRUE_VOLUME && TRUE_VOLUME < upper, "{lower} {upper}");
+        let width = upper - lower;
+        if let Some(last) = last {
+            assert!((0.4..0.6).contains(&(width / last)), "{last} becomes {width}");
+        }
+        last = Some(width);
+    }
+}
