@@ -112,7 +112,10 @@ pub enum MeshFileError {
     #[error("the file is empty")]
     Empty,
     /// A binary STL whose length contradicts its facet count.
-    #[error("a binary STL of {facets} facets needs {expected} bytes, the file has {found}")]
+    #[error(
+        "this is no ASCII STL and no whole binary one: {facets} facets, as it seems to say, need {expected} bytes \
+         and the file has {found}"
+    )]
     Length {
         /// The count in the file's header.
         facets: u64,

@@ -137,10 +137,10 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let start = Instant::now();
     let (input, output) = (Input::from(&*arguments.input), Output::from(&*arguments.output));
     output.check()?;
-    if let (Some(from), Some(to)) = (input.path(), output.path()) {
-        if from.canonicalize().is_ok_and(|from| to.canonicalize().is_ok_and(|to| from == to)) {
-            return Err(Failure::of(&output, "is the mesh itself, which is not overwritten"));
-        }
+    if let (Some(from), Some(to)) = (input.path(), output.path())
+        && from.canonicalize().is_ok_and(|from| to.canonicalize().is_ok_and(|to| from == to))
+    {
+        return Err(Failure::of(&output, "is the mesh itself, which is not overwritten"));
     }
 
     let (mesh, source) = read_mesh(&input)?;
