@@ -342,7 +342,7 @@ fn meshes_that_are_refused() {
     let before = place.files();
     for (name, words) in [
         ("open.stl", &["not closed", "3 edges"][..]),
-        ("turned.stl", &["oriented"]),
+        ("turned.stl", &["oriented", "--fill evenodd"]),
         ("empty.stl", &["empty"]),
         ("none.stl", &["no triangle"]),
         ("dot.stl", &["no triangle"]),
@@ -485,6 +485,8 @@ fn names_that_need_care() {
         place.run("verify out.lfl").good();
     }
     assert_eq!(file::open(place.path("out.lfl")).unwrap().metadata().get("name"), Some("Flansch Ø 120"));
+    let output = place.command(["verify", "line\nend \x1b[31m.lfl"]).output().unwrap();
+    Run::new("verify", output).bad(1, &["line\\nend \\u{1b}[31m.lfl: "]);
     // A path from another folder.
     let run = Command::new(env!("CARGO_BIN_EXE_leafless")).arg("info").arg(place.path("out.lfl")).output();
     assert!(run.unwrap().status.success());
@@ -656,6 +658,7 @@ fn contains_answers_line_by_line() {
         ("2 2 2\n\n# x\nx y z\n", 4, "\"x y z\""),
         ("2 2 2\n1 2 3 4", 2, "\"1 2 3 4\""),
         ("2 2 2\n1,2,\x1b[31m", 2, "\\u{1b}"),
+        ("# first\n\n2 2 2\n1 2", 4, "\"1 2\""),
     ] {
         let run = place.run_with("contains cube.lfl", input.as_bytes());
         assert_eq!((run.code, run.text()), (Some(1), "inside\n"), "{run:?}");
@@ -663,6 +666,11 @@ fn contains_answers_line_by_line() {
         assert!(run.errors.starts_with(&start) && run.errors.contains(found), "{run:?}");
         assert_eq!(run.errors.lines().count(), 1, "{run:?}");
     }
+    // Many reads later.
+    let input = "2 2 2\n# nothing\n".repeat(100_000) + "2 2\n";
+    let run = place.run_with("contains cube.lfl", input.as_bytes());
+    assert_eq!((run.code, run.text()), (Some(1), &*"inside\n".repeat(100_000)), "{}", run.errors);
+    assert!(run.errors.contains("line 200001:"), "{}", run.errors);
     let run = place.run_with("contains cube.lfl", b"2 2 2\n\xff\xfe\n");
     assert_eq!((run.code, run.text()), (Some(1), "inside\n"), "{run:?}");
     // A line without end is refused before it fills the memory.

@@ -173,7 +173,16 @@ pub fn json(value: &impl serde::Serialize) -> Result<String, Failure> {
 
 /// Writes one line to standard error. If that is closed nobody wants to know.
 pub fn complain(line: &str) {
-    let _ = writeln!(std::io::stderr().lock(), "leafless: {line}");
+    let _ = writeln!(std::io::stderr().lock(), "leafless: {}", harmless(line));
+}
+
+/// The text without line ends and what else a terminal might obey: names of files may hold anything.
+fn harmless(text: &str) -> String {
+    let mut line = String::with_capacity(text.len());
+    for c in text.chars() {
+        if c.is_control() { line.extend(c.escape_default()) } else { line.push(c) }
+    }
+    line
 }
 
 /// A count, with commas: 1,234,567.

@@ -6,7 +6,10 @@ use crate::output::{self, Output, count, counted, number, seconds};
 use crate::progress::watched;
 use crate::report::{Info, Mesh};
 use clap::{Args, ValueEnum};
-use leafless::{FillRule, Frame, MeshReport, MeshSolid, Metadata, Octree, Rule, TriangleMesh, build, file};
+use leafless::{
+    Error, FillRule, Frame, MeshError, MeshReport, MeshSolid, Metadata, Octree, Rule, TriangleMesh, build,
+    file,
+};
 use serde::Serialize;
 use std::ffi::OsString;
 use std::fmt::Write;
@@ -145,7 +148,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 
     let (mesh, source) = read_mesh(&input)?;
     let fill = arguments.fill.into();
-    mesh.check_closed(fill).of(&input)?;
+    mesh.check_closed(fill).map_err(|error| hint(&input, error))?;
     let mesh_report = mesh.report().of(&input)?;
     let (min, max) = mesh.bounds();
     let frame = match &arguments.bounds {
@@ -197,6 +200,15 @@ fn read_mesh(input: &Input) -> Result<(TriangleMesh, String), Failure> {
     let mesh = file::read_stl(&bytes).of(input)?;
     drop(bytes);
     Ok((mesh.sewn().of(input)?, source))
+}
+
+/// What is wrong with the mesh, and what the user might do about it.
+fn hint(input: &Input, error: Error) -> Failure {
+    let hint = match error {
+        Error::Mesh(MeshError::Unoriented { .. }) => " (--fill evenodd does not depend on it)",
+        _ => "",
+    };
+    Failure::of(input, format_args!("{error}{hint}"))
 }
 
 /// What the solid's file says of its making: nothing that differs from run to run.
