@@ -70,42 +70,68 @@ impl Block {
 
     /// Writes the block as three levels of elements, `e` being the first; returns the block's tag.
     pub(crate) fn write(&self, e: usize, writer: &mut Writer<'_>) -> Result<Tag, Error> {
+        let tiles = self.tiles();
         let mut block = Planes::uniform(Tag::Empty);
         for c in 0..64 {
             let [x, y, z] = morton::position(c);
-            block.set(c, self.write_element([4 * x, 4 * y, 4 * z], e + 1, writer)?);
+            block.set(c, self.write_element(&tiles, [4 * x, 4 * y, 4 * z], e + 1, writer)?);
         }
         writer.put(e, block)
     }
 
-    /// 16³ cells; `at` in bricks.
-    fn write_element(&self, at: [u32; 3], e: usize, writer: &mut Writer<'_>) -> Result<Tag, Error> {
-        let mut element = Planes::uniform(Tag::Empty);
-        // What the 4 × 4 columns of each of the 16 tiles have in common decides most bricks.
-        let mut all = [Planes::uniform(Tag::Full); 16];
-        let mut any = [Planes::uniform(Tag::Empty); 16];
-        for y in 0..16 {
-            for x in 0..16 {
-                let word = ((4 * at[1] + y) * 64 + 4 * at[0] + x) as usize;
-                let column = Planes { lower: self.lower[word], upper: self.upper[word] };
-                let tile = (y / 4 * 4 + x / 4) as usize;
-                all[tile] = all[tile].intersection(column);
-                any[tile] = any[tile].union(column);
+    /// What the 4 × 4 columns of each tile have in common, which decides most bricks.
+    fn tiles(&self) -> [Tile; 256] {
+        let mut tiles = [Tile { all: Planes::uniform(Tag::Full), any: Planes::uniform(Tag::Empty) }; 256];
+        let binary = self.rule.is_binary();
+        for (row, columns) in self.lower.chunks_exact(4).enumerate() {
+            let upper = if binary { columns } else { &self.upper[4 * row..4 * row + 4] };
+            // Sixteen quadruples of columns to a row of 64, four rows to a row of tiles.
+            let tile = &mut tiles[row / 64 * 16 + row % 16];
+            for (&lower, &upper) in columns.iter().zip(upper) {
+                let column = Planes { lower, upper };
+                tile.all = tile.all.intersection(column);
+                tile.any = tile.any.union(column);
             }
         }
+        tiles
+    }
+
+    /// 16³ cells; `at` in bricks.
+    fn write_element(
+        &self,
+        tiles: &[Tile; 256],
+        at: [u32; 3],
+        e: usize,
+        writer: &mut Writer<'_>,
+    ) -> Result<Tag, Error> {
+        let mut common = Tile { all: Planes::uniform(Tag::Full), any: Planes::uniform(Tag::Empty) };
+        for row in tiles.chunks_exact(16).skip(at[1] as usize).take(4) {
+            for tile in &row[at[0] as usize..at[0] as usize + 4] {
+                common.all = common.all.intersection(tile.all);
+                common.any = common.any.union(tile.any);
+            }
+        }
+        let layers = |word: u64| word >> (4 * at[2]) & 0xFFFF;
+        if layers(common.any.upper) == 0 {
+            return Ok(Tag::Empty);
+        }
+        if layers(common.all.lower) == 0xFFFF {
+            return Ok(Tag::Full);
+        }
+        let mut element = Planes::uniform(Tag::Empty);
         for c in 0..64 {
             let [x, y, z] = morton::position(c);
-            let tile = (4 * y + x) as usize;
-            let shift = 4 * (at[2] + z);
+            let (x, y, shift) = (at[0] + x, at[1] + y, 4 * (at[2] + z));
+            let Tile { all, any } = tiles[(16 * y + x) as usize];
             let nibble = |word: u64| word >> shift & 0xF;
-            let tag = if nibble(any[tile].upper) == 0 {
+            let tag = if nibble(any.upper) == 0 {
                 Tag::Empty
-            } else if nibble(all[tile].lower) == 0xF {
+            } else if nibble(all.lower) == 0xF {
                 Tag::Full
-            } else if nibble(any[tile].lower) == 0 && nibble(all[tile].upper) == 0xF {
+            } else if nibble(any.lower) == 0 && nibble(all.upper) == 0xF {
                 Tag::Partial
             } else {
-                let column = (4 * (at[1] + y) * 64 + 4 * (at[0] + x)) as usize;
+                let column = (4 * y * 64 + 4 * x) as usize;
                 let lower = gather(&self.lower, column, shift);
                 let upper = if self.rule.is_binary() { lower } else { gather(&self.upper, column, shift) };
                 writer.put(e + 1, Planes { lower, upper })?
@@ -114,6 +140,13 @@ impl Block {
         }
         writer.put(e, element)
     }
+}
+
+/// Sixteen columns: what holds for all of them, and for any.
+#[derive(Clone, Copy)]
+struct Tile {
+    all: Planes,
+    any: Planes,
 }
 
 /// The brick whose lowest column is `column`, its cells at bits `shift..shift + 4` of 4 × 4 columns.

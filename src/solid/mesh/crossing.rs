@@ -172,7 +172,6 @@ impl<'p> Projection<'p> {
         search(height.first, height.last, guess, height.error, |k| self.is_above(column, row, k, step))
     }
 
-    #[cold]
     fn raise(&self) -> Height {
         let Axes { u, v, w } = self.axes;
         let (first, last) = ranks(&self.corners, w);
