@@ -13,9 +13,6 @@ use alloc::vec::Vec;
 /// Bound of the relative error of one rounded subtraction and one rounded division: 2^-52 and some more.
 const UNIT: f32 = f32::EPSILON * f32::EPSILON / 32.0;
 
-/// Ranks beyond this say no more than "far outside"; differences of any two fit into 32 bits.
-const FAR: f64 = (1u32 << 29) as f64;
-
 /// A vertex in finest cells from the frame's origin.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Vertex {
@@ -25,7 +22,7 @@ pub(super) struct Vertex {
     pub(super) error: [f32; 3],
     /// Per axis the first plane of cell centres that counts as above the vertex: the least k with
     /// k + ½ ≥ position. Exact. (All centres are shifted by (ε, ε², ε³), so a centre at the vertex's own
-    /// height lies above it.)
+    /// height lies above it.) Outside of the universe's neighbourhood only the side is right.
     pub(super) rank: [i32; 3],
     /// The position is exact and short enough that determinants of such vertices and cell centres are
     /// computed without rounding.
@@ -79,7 +76,7 @@ fn place(frame: &Frame, vertex: [f64; 3]) -> Vertex {
         placed.error[axis] = if exact { 0.0 } else { (at.abs() as f32 * UNIT).max(UNIT) };
         let steps = at * grain;
         placed.short &=
-            exact && at.abs() <= frame.cells() as f64 && steps == floor(steps.clamp(-FAR, FAR)) as f64;
+            exact && at.abs() <= frame.cells() as f64 && steps == floor(steps) as f64;
         placed.rank[axis] = rank(frame, axis, vertex[axis], at, placed.error[axis] as f64);
     }
     placed
@@ -87,9 +84,11 @@ fn place(frame: &Frame, vertex: [f64; 3]) -> Vertex {
 
 /// The least k with k + ½ ≥ position, exactly.
 fn rank(frame: &Frame, axis: usize, original: f64, at: f64, error: f64) -> i32 {
-    let below = (at - 0.5).clamp(-FAR, FAR);
+    // One more or less than any centre of the universe says no more than "outside".
+    let far = frame.cells() as f64 + 1.0;
+    let below = (at - 0.5).clamp(-far, far);
     let nearest = floor(below + 0.5);
-    if (below - nearest as f64).abs() > error + f64::EPSILON * FAR.min(at.abs() + 1.0) {
+    if (below - nearest as f64).abs() > error + f64::EPSILON * far.min(at.abs() + 1.0) {
         return -floor(-below) as i32;
     }
     // The position is a hair's breadth from a plane of centres, or on it.
