@@ -595,7 +595,7 @@ mod tests {
             let corners = [[0., 0., 0.], [scale, 0., 0.], [0., scale, 0.], [2. * scale, 0., 0.]];
             TriangleMesh::new(corners.to_vec(), vec![[0, 1, 2], [0, 1, 3]]).unwrap()
         };
-        for scale in [1e-300, 1e-30, 1.0, 1e38] {
+        for scale in [1e-70, 1e-30, 1.0, 1e38] {
             let bytes = write_stl(&mesh(scale)).unwrap();
             assert_eq!(bytes[84..96], [0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0x80, 0x3F]);
             assert_eq!(bytes[134..146], [0; 12], "no area, no normal");

@@ -21,7 +21,7 @@ use once_cell::race::OnceBox;
 
 use super::topology::Topology;
 use crate::error::{Error, MeshError};
-use crate::lattice::LARGEST;
+use crate::lattice::{LARGEST, SMALLEST};
 
 /// Which points a closed surface encloses.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
@@ -67,8 +67,8 @@ pub struct MeshReport {
 
 /// A surface of triangles with shared vertices.
 ///
-/// Coordinates are finite and at most 2^256 in magnitude, no two vertices are equal, and the corners of a
-/// triangle are three different vertices. Seen from outside of the solid the corners turn counter-clockwise.
+/// Coordinates are finite and at most 2^256 in magnitude, those below 2^-256 count as zero, no two vertices are
+/// equal, and the corners of a triangle are three different vertices. Seen from outside of the solid the corners turn counter-clockwise.
 /// Whether the mesh is closed is not implied: [`check_closed`](Self::check_closed) tells.
 ///
 /// A mesh takes 24 bytes per vertex and 12 bytes per triangle.
@@ -448,8 +448,9 @@ fn hash(builder: &DefaultHashBuilder, vertex: &[f64; 3]) -> u64 {
 fn normalised(vertex: [f64; 3], index: u64) -> Result<[f64; 3], MeshError> {
     // False for NaN as well.
     if vertex.iter().all(|x| x.abs() <= LARGEST) {
-        // -0.0 + 0.0 is 0.0, and adding 0.0 changes nothing else.
-        Ok(vertex.map(|x| x + 0.0))
+        // Products of three coordinates must not underflow, because signs of determinants are exact. (This
+        // also turns -0.0 into 0.0.)
+        Ok(vertex.map(|x| if x.abs() < SMALLEST { 0.0 } else { x }))
     } else if vertex.iter().all(|x| x.is_finite()) {
         Err(MeshError::TooLarge { vertex: index })
     } else {
