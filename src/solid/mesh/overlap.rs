@@ -140,12 +140,13 @@ impl Edge {
     }
 }
 
-/// Whether `slope · k + start > limit`; what cannot be computed (coordinates of astronomic size) counts as
-/// true, because only a proven separation may exclude a cell.
+/// Whether `slope · k + start > limit`; what cannot be computed (coordinates of astronomic size overflow) counts
+/// as true, because only a proven separation may exclude a cell.
 #[inline(always)]
 fn exceeds(slope: f64, k: f64, start: f64, limit: f64) -> bool {
     let value = slope * k + start;
-    value > limit || value.is_nan() || limit.is_nan()
+    // False for NaN on either side.
+    !(value <= limit && value > f64::NEG_INFINITY)
 }
 
 /// Bits `first..=last`, counted from `base`; none if the range is empty.
