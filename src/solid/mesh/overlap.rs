@@ -11,6 +11,7 @@
 //! always found to cut its parent too.
 
 use super::placed::{Corners, Placed, bounds, is_exact, surface_accuracy};
+use crate::lattice::MAX_DEPTH;
 
 /// A triangle and what the conditions need of it for cubes of one size.
 pub(super) struct Overlap {
@@ -24,8 +25,9 @@ pub(super) struct Overlap {
     behind: f64,
     slack: f64,
     /// Per axis w the triangle's edges seen along w: a cube with its lower corner at (u, v) is beside the
-    /// triangle unless `n · (u, v) + offset > −slack` for all three. No edges if the triangle is seen edge-on.
-    edges: [Option<[Edge; 3]>; 3],
+    /// triangle unless `n · (u, v) + offset > −slack` for all three. Where the triangle is seen (nearly) edge-on,
+    /// so that its edges have no sure inner side, the two sides of the strip along its longest edge instead.
+    edges: [[Edge; 3]; 3],
 }
 
 #[derive(Clone, Copy)]
@@ -45,15 +47,18 @@ impl Overlap {
     pub(super) fn new(placed: &Placed<'_>, corners: &Corners<'_>, size: f64, height: u8) -> Overlap {
         let (min, max) = bounds(placed, corners);
         let [a, b, c] = corners.map(|corner| corner.at);
-        let (wrong, extent) = if is_exact(placed, corners) {
-            (0.0, 0.0)
+        let thickest = (0..3).fold(1.0, |most: f64, axis| most.max(max[axis] - min[axis]));
+        let unit = if is_exact(placed, corners) {
+            0.0
         } else {
             let (error, magnitude) = surface_accuracy(placed, corners);
-            let extent = (0..3).fold(1.0, |most: f64, axis| most.max(max[axis] - min[axis])) + size;
-            // Relative to the product of their factors' sizes the conditions are off by a few dozen roundings;
-            // a level's widening exceeds that of the level below by more than both errors.
-            ((height as f64 + 1.0) * (16.0 * error + 64.0 * f64::EPSILON * magnitude), extent)
+            16.0 * error + 64.0 * f64::EPSILON * magnitude
         };
+        // Relative to the product of their factors' sizes the conditions are off by a few dozen roundings; a
+        // level's widening exceeds that of the level below by more than both errors.
+        let (wrong, extent) = ((height as f64 + 1.0) * unit, thickest + size);
+        // Edges or strip: the same for cubes of all sizes, or else a cell might be cut and its parent not.
+        let edge_on = 4.0 * (MAX_DEPTH as f64 + 1.0) * unit * (thickest + placed.frame.cells() as f64);
         let minus = |p: [f64; 3], q: [f64; 3]| [p[0] - q[0], p[1] - q[1], p[2] - q[2]];
         let (ab, bc, ca) = (minus(b, a), minus(c, b), minus(a, c));
         let normal =
@@ -64,16 +69,28 @@ impl Overlap {
             let (u, v) = OTHERS[w];
             // Twice the area seen along w; its sign orients the edges. (Along y, (x, z) is left-handed.)
             let area = if w == 1 { -normal[1] } else { normal[w] };
-            let faces = area.abs() > 4.0 * wrong * extent;
-            if !faces {
-                return None;
-            }
-            let sign = if area > 0.0 { 1.0 } else { -1.0 };
-            Some([(a, ab), (b, bc), (c, ca)].map(|(from, edge)| {
-                let (nu, nv) = (-edge[v] * sign, edge[u] * sign);
-                let offset = size * (nu.max(0.0) + nv.max(0.0)) - (nu * from[u] + nv * from[v]);
+            let side = |nu: f64, nv: f64, least: f64| {
+                let offset = size * (nu.max(0.0) + nv.max(0.0)) - least;
                 Edge { u: nu, v: nv, offset, slack: wrong * extent }
-            }))
+            };
+            if area.abs() > edge_on {
+                let sign = if area > 0.0 { 1.0 } else { -1.0 };
+                return [(a, ab), (b, bc), (c, ca)].map(|(from, edge)| {
+                    let (nu, nv) = (-edge[v] * sign, edge[u] * sign);
+                    side(nu, nv, nu * from[u] + nv * from[v])
+                });
+            }
+            let length = |edge: &[f64; 3]| edge[u] * edge[u] + edge[v] * edge[v];
+            let longest = [bc, ca].into_iter().fold(ab, |l, e| if length(&e) > length(&l) { e } else { l });
+            let (nu, nv) = (-longest[v], longest[u]);
+            let on = [a, b, c].map(|corner| nu * corner[u] + nv * corner[v]);
+            let (mut least, mut most) = (on[0].min(on[1]).min(on[2]), on[0].max(on[1]).max(on[2]));
+            if !on.iter().all(|x| x.is_finite()) {
+                // Minima pass over what is not a number; nothing is known then.
+                (least, most) = (f64::NAN, f64::NAN);
+            }
+            let (one, other) = (side(nu, nv, least), side(-nu, -nv, -most));
+            [one, other, other]
         });
         Overlap {
             min,
@@ -92,7 +109,7 @@ impl Overlap {
         (0..3).all(|axis| self.min[axis] < at[axis] + size && self.max[axis] > at[axis])
             && (0..3).all(|w| {
                 let (u, v) = OTHERS[w];
-                self.edges[w].is_none_or(|edges| edges.iter().all(|edge| edge.passes(at[u], at[v])))
+                self.edges[w].iter().all(|edge| edge.passes(at[u], at[v]))
             })
             && exceeds(self.normal[2], at[2], self.column(at[0], at[1], self.ahead), -self.slack)
             && exceeds(-self.normal[2], at[2], -self.column(at[0], at[1], self.behind), -self.slack)
@@ -107,7 +124,7 @@ impl Overlap {
     /// Whether the triangle, seen along z, is over the column of unit cells at (x, y).
     #[inline(always)]
     pub(super) fn over(&self, x: f64, y: f64) -> bool {
-        self.edges[2].is_none_or(|edges| edges.iter().all(|edge| edge.passes(x, y)))
+        self.edges[2].iter().all(|edge| edge.passes(x, y))
     }
 
     /// Of the unit cells `first..=last` along z (at most 64; bit 0 is `base`), those that the triangle, seen
@@ -115,11 +132,9 @@ impl Overlap {
     #[inline]
     pub(super) fn beside(&self, w: usize, u: f64, base: i32, first: i32, last: i32) -> u64 {
         let mut mask = bits(base, first, last);
-        if let Some(edges) = &self.edges[w] {
-            for edge in edges {
-                let row = edge.u * u + edge.offset;
-                mask &= above(edge.v, row, -edge.slack, base, first, last);
-            }
+        for edge in &self.edges[w] {
+            let row = edge.u * u + edge.offset;
+            mask &= above(edge.v, row, -edge.slack, base, first, last);
         }
         mask
     }

@@ -75,8 +75,7 @@ fn place(frame: &Frame, vertex: [f64; 3]) -> Vertex {
         placed.at[axis] = at;
         placed.error[axis] = if exact { 0.0 } else { (at.abs() as f32 * UNIT).max(UNIT) };
         let steps = at * grain;
-        placed.short &=
-            exact && at.abs() <= frame.cells() as f64 && steps == floor(steps) as f64;
+        placed.short &= exact && at.abs() <= frame.cells() as f64 && steps == floor(steps) as f64;
         placed.rank[axis] = rank(frame, axis, vertex[axis], at, placed.error[axis] as f64);
     }
     placed
