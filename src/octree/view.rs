@@ -199,15 +199,15 @@ impl Windows {
         windows
     }
 
-    /// The subtree below element `index` of level `e`: windows of different elements of a level never
-    /// overlap, so that several threads together visit nothing twice either.
+    /// Cuts off the windows of the subtree below element `index` of level `e`, which has been admitted, and
+    /// passes it: what several threads visit below elements that were cut off one after another never overlaps.
     #[cfg(feature = "parallel")]
-    pub(crate) fn below(tree: &OctreeRef<'_>, e: usize, index: usize) -> Result<Windows, Damage> {
-        let mut windows = Windows::new(tree);
+    pub(crate) fn below(&mut self, tree: &OctreeRef<'_>, e: usize, index: usize) -> Result<Windows, Damage> {
+        let mut windows = self.clone();
         let (mut first, mut end) = (index, index + 1);
         for level in e..tree.levels() {
-            if first < windows.next[level] || end < first || end > windows.end[level] {
-                return Err(Damage::Link { element: index as u64 });
+            if level > e {
+                self.admit(index, level, first, end)?;
             }
             (windows.next[level], windows.end[level]) = (first, end);
             if level + 1 < tree.levels() {

@@ -11,6 +11,7 @@ use super::tag::Tag;
 use super::view::{MAX_ELEMENT_LEVELS, OctreeRef, Windows, element_levels, root_cells, starts_half_way};
 use super::word::Planes;
 use crate::control::Job;
+use crate::dispatch::{Hot, with_popcount};
 use crate::error::{Damage, Error};
 use crate::lattice::Frame;
 use alloc::vec::Vec;
@@ -79,7 +80,9 @@ impl<T: Copy> Chunks<T> {
     /// Everything in one piece; without a copy if it already is.
     fn into_vec(self) -> Result<Vec<T>, Error> {
         if self.full.is_empty() {
-            return Ok(self.tail);
+            let mut tail = self.tail;
+            tail.shrink_to_fit();
+            return Ok(tail);
         }
         let mut all = Vec::new();
         all.try_reserve_exact(self.len()).map_err(|_| Error::OutOfMemory)?;
@@ -229,7 +232,12 @@ impl<'j> Writer<'j> {
                 out.tail.extend_from_slice(run);
             }
             self.account(reported, size_of_val(run), || run.iter().map(|&p| octree_nodes(p, false)).sum())?;
-            range = tree.children_from(range.start, level)..tree.children_from(range.end, level);
+            let children = with_popcount(Branches(run));
+            let start = range.start;
+            range = tree.children_from(start, level)..tree.children_from(range.end, level);
+            if range.len() != children {
+                return Err(Damage::Link { element: start as u64 }.into());
+            }
         }
         Ok(())
     }
@@ -318,6 +326,18 @@ impl<'j> Writer<'j> {
         };
         starts[levels..].fill(planes.len() + bricks.len());
         Ok(Octree::new(Arrays::link(frame, root, exterior, planes, bricks, starts)?))
+    }
+}
+
+/// Counts the branches of a run of elements.
+struct Branches<'r>(&'r [Planes]);
+
+impl Hot for Branches<'_> {
+    type Output = usize;
+
+    #[inline(always)]
+    fn run(self) -> usize {
+        self.0.iter().map(|planes| planes.branch().count_ones() as usize).sum()
     }
 }
 

@@ -13,7 +13,7 @@
 
 use crate::control::{Control, Job, WHOLE};
 use crate::error::{Damage, Error};
-use crate::octree::view::{OctreeRef, Windows, root_cells};
+use crate::octree::view::{OctreeRef, Windows, element_levels, root_cells};
 use crate::octree::writer::Writer;
 use crate::octree::{Octree, Planes, Tag};
 use core::ops::Range;
@@ -38,7 +38,7 @@ use core::ops::Range;
 /// # Ok::<(), leafless::Error>(())
 /// ```
 pub fn union(a: &OctreeRef<'_>, b: &OctreeRef<'_>, control: &Control<'_>) -> Result<Octree, Error> {
-    combine(Kernel { a: Operand::not(a), b: Operand::not(b), op: Op::And, flip: true }, control)
+    combine(Kernel { operands: [Operand::not(a), Operand::not(b)], op: Op::And, flip: true }, control)
 }
 
 /// The points that `a` and `b` have in common. Like [`union`] in all else.
@@ -46,7 +46,7 @@ pub fn union(a: &OctreeRef<'_>, b: &OctreeRef<'_>, control: &Control<'_>) -> Res
 /// # Errors
 /// As [`union`].
 pub fn intersection(a: &OctreeRef<'_>, b: &OctreeRef<'_>, control: &Control<'_>) -> Result<Octree, Error> {
-    combine(Kernel { a: Operand::of(a), b: Operand::of(b), op: Op::And, flip: false }, control)
+    combine(Kernel { operands: [Operand::of(a), Operand::of(b)], op: Op::And, flip: false }, control)
 }
 
 /// `a` without `b`. Like [`union`] in all else.
@@ -54,7 +54,7 @@ pub fn intersection(a: &OctreeRef<'_>, b: &OctreeRef<'_>, control: &Control<'_>)
 /// # Errors
 /// As [`union`].
 pub fn difference(a: &OctreeRef<'_>, b: &OctreeRef<'_>, control: &Control<'_>) -> Result<Octree, Error> {
-    combine(Kernel { a: Operand::of(a), b: Operand::not(b), op: Op::And, flip: false }, control)
+    combine(Kernel { operands: [Operand::of(a), Operand::not(b)], op: Op::And, flip: false }, control)
 }
 
 /// The points of just one of `a` and `b`. Like [`union`] in all else.
@@ -62,7 +62,7 @@ pub fn difference(a: &OctreeRef<'_>, b: &OctreeRef<'_>, control: &Control<'_>) -
 /// # Errors
 /// As [`union`].
 pub fn xor(a: &OctreeRef<'_>, b: &OctreeRef<'_>, control: &Control<'_>) -> Result<Octree, Error> {
-    combine(Kernel { a: Operand::of(a), b: Operand::of(b), op: Op::Xor, flip: false }, control)
+    combine(Kernel { operands: [Operand::of(a), Operand::of(b)], op: Op::Xor, flip: false }, control)
 }
 
 /// Everything but `a`, inside of its universe and out. One pass over the arrays.
@@ -71,11 +71,11 @@ pub fn xor(a: &OctreeRef<'_>, b: &OctreeRef<'_>, control: &Control<'_>) -> Resul
 /// As [`union`].
 pub fn complement(a: &OctreeRef<'_>, control: &Control<'_>) -> Result<Octree, Error> {
     let all = Octree::uniform(*a.frame(), Tag::Full, Tag::Full)?;
-    combine(Kernel { a: Operand::of(a), b: Operand::of(all.view()), op: Op::And, flip: true }, control)
+    combine(Kernel { operands: [Operand::of(a), Operand::of(all.view())], op: Op::And, flip: true }, control)
 }
 
 /// The union of any number of trees, at least one. Combined two by two, which gives the same result as any
-/// other order.
+/// other order; limits and progress of `control` concern each of these steps.
 ///
 /// # Errors
 /// [`Error::Argument`] if there is no tree; else as [`union`].
@@ -102,6 +102,9 @@ pub fn xor_of(trees: &[OctreeRef<'_>], control: &Control<'_>) -> Result<Octree, 
 type Binary = fn(&OctreeRef<'_>, &OctreeRef<'_>, &Control<'_>) -> Result<Octree, Error>;
 
 fn reduce(trees: &[OctreeRef<'_>], op: Binary, control: &Control<'_>) -> Result<Octree, Error> {
+    if trees.iter().any(|tree| tree.frame() != trees[0].frame()) {
+        return Err(Error::FrameMismatch);
+    }
     match trees {
         [] => Err(Error::Argument { name: "trees", problem: "at least one is needed" }),
         [one] => {
@@ -158,7 +161,11 @@ impl<'a> Operand<'a> {
         let planes = match source {
             Source::Element(n) => match self.tree.entry(n) {
                 Some(planes) => planes,
-                None => return Err(Damage::Dictionary { brick: n as u64 }),
+                None => {
+                    return Err(Damage::Dictionary {
+                        brick: n.saturating_sub(self.tree.planes.len()) as u64,
+                    });
+                }
             },
             Source::Uniform(tag) => Planes::uniform(tag),
         };
@@ -182,75 +189,76 @@ impl<'a> Operand<'a> {
             (_, tag) => Ok(Source::Uniform(if self.flip { tag.complement() } else { tag })),
         }
     }
-
-    /// The windows of a task that begins at `source` on level `e`.
-    #[cfg(feature = "parallel")]
-    fn windows(&self, source: Source, e: usize) -> Result<Windows, Damage> {
-        match source {
-            Source::Element(n) => Windows::below(&self.tree, e, n),
-            Source::Uniform(_) => Ok(Windows::new(&self.tree)),
-        }
-    }
 }
 
 /// `a op b`, complemented if `flip`.
 struct Kernel<'a> {
-    a: Operand<'a>,
-    b: Operand<'a>,
+    operands: [Operand<'a>; 2],
     op: Op,
     flip: bool,
 }
 
-/// What has to be done below a cell.
-#[derive(Clone, Copy)]
-enum Step {
-    /// Take over `a`'s subtrees in the range, complemented or not.
-    CopyA(bool),
-    /// Likewise from `b`.
-    CopyB(bool),
-    /// Combine.
-    Visit,
+/// Where a traversal stands: what of the operands it has passed, and where its results go.
+struct Walk<'w, 'j> {
+    windows: [Windows; 2],
+    writer: &'w mut Writer<'j>,
+}
+
+/// Neighbouring subtrees of operand `of` that are taken over as they are, or complemented.
+#[derive(Clone)]
+struct Run {
+    of: usize,
+    flip: bool,
+    parent: usize,
+    range: Range<usize>,
 }
 
 /// Entries of both operands from which threads pay: below, a Boolean takes about as long as starting them.
 const WORTH_THREADS: u64 = 1 << 19;
 
 fn combine(kernel: Kernel<'_>, control: &Control<'_>) -> Result<Octree, Error> {
-    let (a, b) = (&kernel.a.tree, &kernel.b.tree);
+    combine_above(WORTH_THREADS, kernel, control)
+}
+
+fn combine_above(entries: u64, kernel: Kernel<'_>, control: &Control<'_>) -> Result<Octree, Error> {
+    let [a, b] = [&kernel.operands[0].tree, &kernel.operands[1].tree];
     if a.frame() != b.frame() {
         return Err(Error::FrameMismatch);
     }
     let job = Job::new(control);
     job.check()?;
-    let entries = |tree: &OctreeRef<'_>| tree.element_count() + tree.brick_count();
-    control.run(entries(a) + entries(b) > WORTH_THREADS, |parallel| {
+    let count = |tree: &OctreeRef<'_>| tree.element_count() + tree.brick_count();
+    control.run(count(a) + count(b) > entries, |parallel| {
         let binary = a.is_binary() && b.is_binary();
         let mut writer = Writer::new(&job, a.frame().depth(), binary);
-        if !parallel {
-            // The result is never larger than both operands, so each level is written in one piece.
+        if !parallel && control.max_bytes.is_none() {
+            // The result is never larger than both operands, so each level can be written in one piece. Where
+            // that much cannot be reserved, it is written in several.
             for e in 0..a.levels() {
                 let most = |tree: &OctreeRef<'_>| tree.starts[e + 1].saturating_sub(tree.starts[e]);
-                writer.reserve(e, most(a).saturating_add(most(b)).min(1 << 26))?;
+                let _ = writer.reserve(e, most(a).saturating_add(most(b)).min(1 << 26));
             }
         }
-        let mut windows = (Windows::new(a), Windows::new(b));
-        let roots = (kernel.a.root(), kernel.b.root());
-        for (source, windows) in [(roots.0, &mut windows.0), (roots.1, &mut windows.1)] {
-            if let Source::Element(root) = source {
+        let mut walk = Walk { windows: [Windows::new(a), Windows::new(b)], writer: &mut writer };
+        let roots = [kernel.operands[0].root(), kernel.operands[1].root()];
+        for (source, windows) in roots.iter().zip(&mut walk.windows) {
+            if let Source::Element(root) = *source {
                 windows.admit(root, 0, root, root + 1)?;
             }
         }
-        let root = kernel.visit(0, roots.0, roots.1, &mut windows, &mut writer, parallel)?;
-        let exteriors = (Planes::uniform(a.exterior()), Planes::uniform(b.exterior()));
-        let exterior =
-            kernel.words(exteriors.0.complement_if(kernel.a.flip), exteriors.1.complement_if(kernel.b.flip));
-        writer.finish(*a.frame(), root, exterior.complement_if(kernel.flip).tag(0))
+        let root = kernel.visit(0, roots, &mut walk, parallel)?;
+        let exterior = [0, 1].map(|k| {
+            let operand = &kernel.operands[k];
+            Planes::uniform(operand.tree.exterior()).complement_if(operand.flip)
+        });
+        let exterior = kernel.words(exterior).complement_if(kernel.flip).tag(0);
+        writer.finish(*a.frame(), root, exterior)
     })?
 }
 
 impl Kernel<'_> {
     #[inline(always)]
-    fn words(&self, a: Planes, b: Planes) -> Planes {
+    fn words(&self, [a, b]: [Planes; 2]) -> Planes {
         match self.op {
             Op::And => a.intersection(b),
             Op::Xor => {
@@ -261,95 +269,119 @@ impl Kernel<'_> {
         }
     }
 
-    /// What to do with a cell that needs a descent, from the operands' (flipped) tags.
+    /// The operand whose subtree below a cell is the result as it is (or complemented, as the second says),
+    /// from the operands' (flipped) tags there; `None` if they must be combined.
     #[inline(always)]
-    fn step(&self, a: Tag, b: Tag) -> Step {
-        let invert = |other: Tag| self.op == Op::Xor && other == Tag::Full;
-        let lone = |other: Tag| other == Tag::Full || (self.op == Op::Xor && other == Tag::Empty);
-        if lone(b) {
-            Step::CopyA(self.a.flip ^ invert(b) ^ self.flip)
-        } else if lone(a) {
-            Step::CopyB(self.b.flip ^ invert(a) ^ self.flip)
-        } else {
-            Step::Visit
-        }
+    fn lone(&self, tags: [Tag; 2]) -> Option<(usize, bool)> {
+        let leaves = |tag: Tag| tag == Tag::Full || (self.op == Op::Xor && tag == Tag::Empty);
+        [0, 1].into_iter().find(|&k| tags[k] == Tag::Branch && leaves(tags[1 - k])).map(|k| {
+            let inverts = self.op == Op::Xor && tags[1 - k] == Tag::Full;
+            (k, self.operands[k].flip ^ inverts ^ self.flip)
+        })
+    }
+
+    /// What each operand has in cell `c`, which lies on level `e`.
+    #[inline(always)]
+    fn children(
+        &self,
+        windows: &mut [Windows; 2],
+        sources: [Source; 2],
+        planes: [Planes; 2],
+        c: u32,
+        e: usize,
+    ) -> Result<[Source; 2], Damage> {
+        let [wa, wb] = windows;
+        Ok([
+            self.operands[0].child(wa, sources[0], planes[0], c, e)?,
+            self.operands[1].child(wb, sources[1], planes[1], c, e)?,
+        ])
     }
 
     /// Combines two cells that elements of level `e` describe; returns the tag of the result.
-    #[allow(clippy::too_many_arguments)]
     fn visit(
         &self,
         e: usize,
-        a: Source,
-        b: Source,
-        windows: &mut (Windows, Windows),
-        writer: &mut Writer<'_>,
+        sources: [Source; 2],
+        walk: &mut Walk<'_, '_>,
         parallel: bool,
     ) -> Result<Tag, Error> {
-        let (pa, pb) = (self.a.planes(a)?, self.b.planes(b)?);
-        let words = self.words(pa, pb);
+        let planes = [self.operands[0].planes(sources[0])?, self.operands[1].planes(sources[1])?];
+        let words = self.words(planes);
         let mut result = words.complement_if(self.flip);
-        let clash = if self.op == Op::And { pa.clash(pb) } else { 0 };
-        let real = if e == 0 { root_cells(self.a.tree.frame().depth()) } else { !0 };
+        let clash = if self.op == Op::And { planes[0].clash(planes[1]) } else { 0 };
+        let depth = self.operands[0].tree.frame().depth();
+        let real = if e == 0 { root_cells(depth) } else { !0 };
         let mut open = (words.branch() | clash) & real;
         // Progress is counted in the cells below the root.
         let weight = WHOLE / real.count_ones() as usize;
         if e == 0 {
-            writer.job().advance(weight * (real & !open).count_ones() as usize);
+            walk.writer.job().advance(weight * (real & !open).count_ones() as usize);
         }
         if open == 0 {
-            return writer.put(e, result);
+            return walk.writer.put(e, result);
         }
-        writer.job().check()?;
-        if e + 1 == self.a.tree.levels() {
-            return Err(Damage::BrickBranch { brick: 0 }.into());
+        walk.writer.job().check()?;
+        if e + 1 == element_levels(depth) {
+            return Err(self.branching_brick(sources).into());
         }
         #[cfg(feature = "parallel")]
         if parallel && e == 0 {
-            self.visit_parallel(open, (a, pa), (b, pb), windows, writer, &mut result)?;
-            return writer.put(e, result);
+            self.visit_parallel(open, sources, planes, walk, weight, &mut result)?;
+            return walk.writer.put(e, result);
         }
         let _ = parallel;
-        let mut run = Run::default();
+        let mut run: Option<Run> = None;
         while open != 0 {
             let c = open.trailing_zeros();
             open &= open - 1;
             if e == 0 {
-                writer.job().advance(weight);
+                walk.writer.job().advance(weight);
             }
-            match (self.step(pa.tag(c), pb.tag(c)), a, b) {
-                (Step::CopyA(flip), Source::Element(n), _) => {
-                    let child = self.a.tree.child(n, pa.branch(), c).ok_or(link(n))?;
-                    result.set(c, Tag::Branch);
-                    run.extend(
-                        self,
-                        windows,
-                        writer,
-                        e,
-                        Run { of_b: false, flip, parent: n, range: child..child + 1 },
-                    )?;
+            let lone = self.lone(planes.map(|planes| planes.tag(c)));
+            if let Some((of, flip)) = lone
+                && let Source::Element(parent) = sources[of]
+            {
+                let bad = Damage::Link { element: parent as u64 };
+                let child = self.operands[of].tree.child(parent, planes[of].branch(), c).ok_or(bad)?;
+                let end = child.checked_add(1).ok_or(bad)?;
+                result.set(c, Tag::Branch);
+                match &mut run {
+                    Some(run) if (run.of, run.flip, run.range.end) == (of, flip, child) => {
+                        run.range.end = end
+                    }
+                    _ => {
+                        self.copy(e + 1, run.replace(Run { of, flip, parent, range: child..end }), walk)?;
+                    }
                 }
-                (Step::CopyB(flip), _, Source::Element(n)) => {
-                    let child = self.b.tree.child(n, pb.branch(), c).ok_or(link(n))?;
-                    result.set(c, Tag::Branch);
-                    run.extend(
-                        self,
-                        windows,
-                        writer,
-                        e,
-                        Run { of_b: true, flip, parent: n, range: child..child + 1 },
-                    )?;
-                }
-                _ => {
-                    run.flush(self, windows, writer, e)?;
-                    let a = self.a.child(&mut windows.0, a, pa, c, e + 1)?;
-                    let b = self.b.child(&mut windows.1, b, pb, c, e + 1)?;
-                    result.set(c, self.visit(e + 1, a, b, windows, writer, false)?);
-                }
+            } else {
+                self.copy(e + 1, run.take(), walk)?;
+                let children = self.children(&mut walk.windows, sources, planes, c, e + 1)?;
+                result.set(c, self.visit(e + 1, children, walk, false)?);
             }
         }
-        run.flush(self, windows, writer, e)?;
-        writer.put(e, result)
+        self.copy(e + 1, run, walk)?;
+        walk.writer.put(e, result)
+    }
+
+    /// Takes over the subtrees below the elements of a run on level `e`.
+    #[inline(always)]
+    fn copy(&self, e: usize, run: Option<Run>, walk: &mut Walk<'_, '_>) -> Result<(), Error> {
+        match run {
+            Some(Run { of, flip, parent, range }) => {
+                walk.writer.copy(&self.operands[of].tree, &mut walk.windows[of], parent, e, range, flip)
+            }
+            None => Ok(()),
+        }
+    }
+
+    /// The damage when cells of the deepest level claim to have children.
+    #[cold]
+    fn branching_brick(&self, sources: [Source; 2]) -> Damage {
+        let brick = [0, 1].into_iter().find_map(|k| match sources[k] {
+            Source::Element(n) => Some(n - self.operands[k].tree.planes.len()),
+            Source::Uniform(_) => None,
+        });
+        Damage::BrickBranch { brick: brick.unwrap_or(0) as u64 }
     }
 
     /// The descent below the root as independent tasks, their outputs appended in order.
@@ -357,98 +389,48 @@ impl Kernel<'_> {
     fn visit_parallel(
         &self,
         open: u64,
-        (a, pa): (Source, Planes),
-        (b, pb): (Source, Planes),
-        windows: &mut (Windows, Windows),
-        writer: &mut Writer<'_>,
+        sources: [Source; 2],
+        planes: [Planes; 2],
+        walk: &mut Walk<'_, '_>,
+        weight: usize,
         result: &mut Planes,
     ) -> Result<(), Error> {
         use alloc::vec::Vec;
         use rayon::prelude::*;
         let mut tasks = Vec::new();
         for c in (0..64).filter(|c| open >> c & 1 != 0) {
-            let a = self.a.child(&mut windows.0, a, pa, c, 1)?;
-            let b = self.b.child(&mut windows.1, b, pb, c, 1)?;
-            tasks.push((c, a, b));
+            let children = self.children(&mut walk.windows, sources, planes, c, 1)?;
+            let mut windows = walk.windows.clone();
+            for (k, child) in children.iter().enumerate() {
+                if let Source::Element(n) = *child {
+                    windows[k] = walk.windows[k].below(&self.operands[k].tree, 1, n)?;
+                }
+            }
+            tasks.push((c, children, windows));
         }
-        let subtrees = &*writer;
+        let subtrees = &*walk.writer;
         let done = tasks
             .into_par_iter()
-            .map(|(c, a, b)| {
-                let mut windows = (self.a.windows(a, 1)?, self.b.windows(b, 1)?);
+            .map(|(c, children, windows)| {
                 let mut subtree = subtrees.sibling();
-                let tag = match (self.step(pa.tag(c), pb.tag(c)), a, b) {
-                    (Step::CopyA(flip), Source::Element(n), _) => {
-                        subtree.copy(&self.a.tree, &mut windows.0, n, 1, n..n + 1, flip)?;
-                        Tag::Branch
-                    }
-                    (Step::CopyB(flip), _, Source::Element(n)) => {
-                        subtree.copy(&self.b.tree, &mut windows.1, n, 1, n..n + 1, flip)?;
-                        Tag::Branch
-                    }
-                    // The task's own root was admitted above.
-                    _ => self.visit(1, a, b, &mut windows, &mut subtree, false)?,
+                let mut walk = Walk { windows, writer: &mut subtree };
+                let lone = self.lone(planes.map(|planes| planes.tag(c)));
+                let tag = if let Some((of, flip)) = lone
+                    && let Source::Element(n) = children[of]
+                {
+                    self.copy(1, Some(Run { of, flip, parent: n, range: n..n + 1 }), &mut walk)?;
+                    Tag::Branch
+                } else {
+                    self.visit(1, children, &mut walk, false)?
                 };
-                subtree.job().advance(WHOLE / root_cells(self.a.tree.frame().depth()).count_ones() as usize);
+                subtree.job().advance(weight);
                 Ok((c, tag, subtree))
             })
             .collect::<Result<Vec<_>, Error>>()?;
         for (c, tag, subtree) in done {
             result.set(c, tag);
-            writer.append(subtree)?;
+            walk.writer.append(subtree)?;
         }
         Ok(())
     }
-}
-
-/// Neighbouring subtrees of one operand that are copied together.
-#[derive(Default)]
-struct Run {
-    of_b: bool,
-    flip: bool,
-    parent: usize,
-    range: Range<usize>,
-}
-
-impl Run {
-    /// Joins `next` to the run if it follows on, else writes the run and begins a new one.
-    #[inline(always)]
-    fn extend(
-        &mut self,
-        kernel: &Kernel<'_>,
-        windows: &mut (Windows, Windows),
-        writer: &mut Writer<'_>,
-        e: usize,
-        next: Run,
-    ) -> Result<(), Error> {
-        let follows = (self.of_b, self.flip, self.range.end) == (next.of_b, next.flip, next.range.start);
-        if follows && !self.range.is_empty() {
-            self.range.end = next.range.end;
-        } else {
-            self.flush(kernel, windows, writer, e)?;
-            *self = next;
-        }
-        Ok(())
-    }
-
-    fn flush(
-        &mut self,
-        kernel: &Kernel<'_>,
-        windows: &mut (Windows, Windows),
-        writer: &mut Writer<'_>,
-        e: usize,
-    ) -> Result<(), Error> {
-        let range = core::mem::take(&mut self.range);
-        if range.is_empty() {
-            return Ok(());
-        }
-        match self.of_b {
-            false => writer.copy(&kernel.a.tree, &mut windows.0, self.parent, e + 1, range, self.flip),
-            true => writer.copy(&kernel.b.tree, &mut windows.1, self.parent, e + 1, range, self.flip),
-        }
-    }
-}
-
-fn link(n: usize) -> Damage {
-    Damage::Link { element: n as u64 }
 }
