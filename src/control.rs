@@ -6,7 +6,7 @@ use core::sync::atomic::{AtomicBool, AtomicUsize, Ordering::Relaxed};
 /// How a long operation may proceed. The default has no limit, uses all processors and reports to nobody.
 ///
 /// No field changes a result: an operation either returns what it would have returned without them, bit for
-/// bit, or an error.
+/// bit, or an error. (Which damage to unverified bytes is noticed may depend on the number of threads.)
 #[derive(Clone, Copy, Default)]
 pub struct Control<'a> {
     /// Threads to use; 0 means as many as the machine has processors. Without the feature `parallel` there

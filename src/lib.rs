@@ -5,8 +5,9 @@
 //!
 //! 1. **A solid is what can split a cell.** Primitives, triangle meshes, stored octrees and a host program's
 //!    callback are all a [`Solid`]; whatever wants a shape only calls [`Solid::split`].
-//! 2. **Certified.** inner ⊆ true ⊆ outer, always: a FULL cell is proven inside, an EMPTY one proven outside,
-//!    and doubt stays PARTIAL through every operation. So a volume is an interval that contains the truth.
+//! 2. **Certified.** inner ⊆ true ⊆ outer: a FULL cell is proven inside, an EMPTY one proven outside, and doubt
+//!    stays PARTIAL through every operation. So a volume is an interval that contains the truth. (Whoever wants
+//!    a plain yes or no builds by another [`Rule`], and then the answers are about the tree, not the shape.)
 //! 3. **Closed and exact.** On one lattice the Booleans are exact set algebra, and their results canonical: the
 //!    same bits for any number of threads on any platform.
 //!

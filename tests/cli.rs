@@ -601,20 +601,30 @@ fn booleans_are_those_of_the_library() {
         let info = place.run("info out.lfl --json").good().json();
         let (lower, upper) = volume(&info);
         assert!(lower <= truth && truth <= upper, "{line}: {lower} {upper}");
-        assert_eq!(info["metadata"], serde_json::json!({}));
+        assert_eq!(info["metadata"], serde_json::json!({ "rule": "certified" }));
     }
     let [cube, slab] = ["cube.lfl", "slab.lfl"].map(|name| file::open(place.path(name)).unwrap());
     let control = leafless::Control::default();
     place.run("difference cube.lfl slab.lfl -o out.lfl").good();
-    let expected = leafless::difference(cube.view(), slab.view(), &control).unwrap();
+    let mut rule = leafless::Metadata::new();
+    rule.insert("rule", "certified");
+    let expected = leafless::difference(cube.view(), slab.view(), &control).unwrap().with_metadata(rule);
     assert_eq!(place.bytes("out.lfl"), file::to_bytes(&expected).unwrap());
+    // Of operands by different rules the result says so.
+    place.run("voxelize slab.stl -o sampled.lfl --depth 5 --bounds 0,0,0,8 --rule sampled").good();
+    place.run("union cube.lfl sampled.lfl -o sampled.lfl").good();
+    let info = place.run("info sampled.lfl --json").good().json();
+    assert_eq!(info["metadata"], serde_json::json!({ "rule": "mixed" }));
     // Twice the complement is the solid, also in bytes but for the metadata; the result may replace the operand.
     place.run("complement cube.lfl -o back.lfl").good();
     place.run("complement back.lfl -o back.lfl").good();
     assert_eq!(file::open(place.path("back.lfl")).unwrap(), cube);
     place.run("difference cube.lfl slab.lfl -o cube.lfl").good();
     assert_eq!(place.bytes("cube.lfl"), place.bytes("out.lfl"));
-    assert_eq!(place.files(), ["back.lfl", "cube.lfl", "cube.stl", "out.lfl", "slab.lfl", "slab.stl"]);
+    assert_eq!(
+        place.files(),
+        ["back.lfl", "cube.lfl", "cube.stl", "out.lfl", "sampled.lfl", "slab.lfl", "slab.stl"]
+    );
 }
 
 #[test]

@@ -556,7 +556,7 @@ fn parts_are_certified_and_converge() {
         let Some(mesh) = read(name) else { return };
         assert!((mesh.volume() / volume - 1.0).abs() < 1e-6);
         let mut before: Option<f64> = None;
-        for depth in 6..=9 {
+        for depth in 6..=10 {
             let frame = around(&mesh, depth);
             let solid = MeshSolid::new(&mesh, &frame, FillRule::NonZero).unwrap();
             let tree = |rule| build(&solid, &frame, rule, &Control::default()).unwrap();

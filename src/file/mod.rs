@@ -45,7 +45,7 @@
 //! | 16 | u32 | required flags | 0; a reader refuses what it does not know |
 //! | 20 | u32 | optional flags | 0 |
 //! | 24 | u64 | file length | in bytes |
-//! | 32 | 3 × f64 | origin | lower corner of the universe; magnitudes at most 2^256; no −0 |
+//! | 32 | 3 × f64 | origin | lower corner of the universe; each 0 (not −0) or of a magnitude of 2^-256 to 2^256 |
 //! | 56 | f64 | edge | of the universe; 2^-256 to 2^256 |
 //! | 64 | u8 | depth | 1 to 20 |
 //! | 65 | u8 | root tag | 0 EMPTY, 1 BRANCH, 2 PARTIAL, 3 FULL |

@@ -59,7 +59,8 @@ impl Frame {
     /// centre, L being its longest extent; the same universe at every depth.
     ///
     /// # Errors
-    /// [`MeshError::NoExtent`] if L is zero; [`Error::Argument`] if a bound is not a finite number in range.
+    /// [`MeshError::NoExtent`] if L is zero; [`Error::Argument`] if a bound is not a finite number in range, or
+    /// lies so far from the origin that the cube around it cannot be told in doubles.
     pub fn around(min: [f64; 3], max: [f64; 3], depth: u8) -> Result<Frame, Error> {
         let extent = |axis: usize| max[axis] - min[axis];
         let longest = extent(0).max(extent(1)).max(extent(2));
@@ -68,7 +69,13 @@ impl Frame {
         }
         let edge = longest * (1.0 + 1.0 / 32.0);
         let origin = [0, 1, 2].map(|axis| (min[axis] + extent(axis) / 2.0) - edge / 2.0);
-        Frame::new(origin, edge, depth)
+        let frame = Frame::new(origin, edge, depth)?;
+        let top = 2 * frame.cells() as i64;
+        if (0..3).any(|axis| frame.side(axis, min[axis], 0) < 0 || frame.side(axis, max[axis], top) > 0) {
+            let problem = "so far from the origin that doubles cannot resolve them";
+            return Err(Error::Argument { name: "bounds", problem });
+        }
+        Ok(frame)
     }
 
     /// The same universe with another depth.

@@ -41,7 +41,8 @@ fn encode_array<T: Brick>(bricks: &BrickArray<'_, T>) -> Result<Option<OwnedArra
         BrickArray::Dictionary { .. } => {
             let mut raw = with_capacity(bricks.len())?;
             if !bricks.extend(0..bricks.len(), &mut raw, |brick| brick) {
-                return Err(Damage::Dictionary { brick: 0 }.into());
+                let bad = (0..bricks.len()).find(|&b| bricks.get(b).is_none()).unwrap_or(0);
+                return Err(Damage::Dictionary { brick: bad as u64 }.into());
             }
             raw
         }

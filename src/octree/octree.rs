@@ -110,7 +110,8 @@ impl Octree {
         })
     }
 
-    /// An octree whose whole universe has one tag (not BRANCH), as has the space around it.
+    /// An octree whose whole universe has one `tag`, and the space around it the tag `exterior`; neither may be
+    /// BRANCH.
     pub fn uniform(frame: Frame, tag: Tag, exterior: Tag) -> Result<Octree, Error> {
         if tag == Tag::Branch || exterior == Tag::Branch {
             return Err(Error::Argument { name: "tag", problem: "must be EMPTY, FULL or PARTIAL" });

@@ -67,8 +67,10 @@ pub(crate) struct LevelCounts {
 /// # Trust
 ///
 /// A view may lie over bytes that nobody has checked. Reading is then still memory-safe, terminates, and
-/// does bounded work; whatever is damaged reads as PARTIAL, or makes a bulk operation return
-/// [`Error::Damaged`](crate::Error::Damaged).
+/// does bounded work; a damaged link or index reads as PARTIAL, or makes a bulk operation return
+/// [`Error::Damaged`](crate::Error::Damaged). A flipped tag cannot be told from a true one that way: only the
+/// checksums and [`check`](OctreeRef::check) find it. A [`Cursor`](crate::Cursor) is bounded step by step, but a
+/// walk over all of an unchecked tree is not: check first.
 #[derive(Debug, Clone, Copy, Yokeable)]
 pub struct OctreeRef<'a> {
     pub(crate) frame: Frame,

@@ -434,3 +434,92 @@ impl Kernel<'_> {
         Ok(())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::lattice::Frame;
+    use crate::octree::brick::{BrickArray, Bricks};
+    use alloc::vec;
+    use alloc::vec::Vec;
+
+    /// A tree of depth 6 whose root is cut in all 64 cells, each cut in its first; `link` says where the element
+    /// of a cell finds its brick.
+    fn with_tree<R>(base: u64, link: impl Fn(u16) -> u16, ask: impl FnOnce(&OctreeRef<'_>) -> R) -> R {
+        let mut planes = vec![Planes { lower: 1, upper: 0 }; 65];
+        planes[0] = Planes::uniform(Tag::Branch);
+        let rel: Vec<u16> = core::iter::once(0).chain((0..64).map(link)).collect();
+        let bricks: Vec<u64> = (1..=64).collect();
+        let mut starts = [0, 1, 65, 129, 129, 129, 129, 129, 129, 129, 129];
+        starts[4..].fill(129);
+        ask(&OctreeRef {
+            frame: Frame::new([0.0; 3], 1.0, 6).unwrap(),
+            root: Tag::Branch,
+            exterior: Tag::Empty,
+            planes: &planes,
+            rel: &rel,
+            base: &[base],
+            bricks: Bricks::One(BrickArray::Raw(&bricks)),
+            starts,
+            table: None,
+        })
+    }
+
+    /// Every operation with an operand that leaves each cell of the root alone, by one thread and by several.
+    fn results(tree: &OctreeRef<'_>) -> Vec<Result<Octree, Error>> {
+        let whole = |tag| Octree::uniform(*tree.frame(), tag, tag).unwrap();
+        let mut results = Vec::new();
+        for other in [whole(Tag::Empty), whole(Tag::Full)] {
+            for (op, flip) in [(Op::And, false), (Op::And, true), (Op::Xor, false)] {
+                for (entries, threads) in [(u64::MAX, 1), (0, 2)] {
+                    let operands = [Operand { tree: *tree, flip }, Operand { tree: *other.view(), flip }];
+                    let kernel = Kernel { operands, op, flip };
+                    results.push(combine_above(entries, kernel, &Control::threads(threads)));
+                }
+            }
+        }
+        results
+    }
+
+    #[test]
+    fn a_sound_tree_is_combined_the_same_by_any_number_of_threads() {
+        with_tree(
+            1,
+            |cell| 64 + cell,
+            |tree| {
+                tree.check().unwrap();
+                for pair in results(tree).chunks_exact(2) {
+                    assert_eq!(pair[0].as_ref().unwrap(), pair[1].as_ref().unwrap());
+                }
+            },
+        );
+    }
+
+    /// Bricks of the result, none if the damage was found. (Of a run that is copied whole only the ends are
+    /// looked at, so that not all damage is.)
+    fn copied(result: &Result<Octree, Error>) -> u64 {
+        match result {
+            Ok(tree) => tree.view().brick_count(),
+            Err(Error::Damaged(_)) => 0,
+            Err(other) => panic!("{other}"),
+        }
+    }
+
+    #[test]
+    fn shared_or_absent_children_never_multiply() {
+        type Link = fn(u16) -> u16;
+        let links: [(u64, Link); 5] = [
+            (1, |cell| 64 + cell % 2 * 32),
+            (1, |cell| 64 + cell / 2),
+            (1, |_| 64),
+            (u64::MAX, |_| 0),
+            (u64::MAX - 64, |cell| 64 + cell),
+        ];
+        for (base, link) in links {
+            with_tree(base, link, |tree| {
+                assert!(tree.check().is_err());
+                assert!(results(tree).iter().all(|result| copied(result) <= 64));
+            });
+        }
+    }
+}

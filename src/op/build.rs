@@ -31,7 +31,8 @@ use alloc::vec::Vec;
 pub fn build<S: Solid>(solid: &S, frame: &Frame, rule: Rule, control: &Control<'_>) -> Result<Octree, Error> {
     let job = Job::new(control);
     job.check()?;
-    control.run(true, |parallel| {
+    // Shallow trees are made faster than threads.
+    control.run(element_levels(frame.depth()) > 3, |parallel| {
         let builder = Builder { solid, frame, rule, levels: element_levels(frame.depth()), parallel };
         let mut worker = Worker::<S>::new(rule);
         let mut writer = Writer::new(&job, frame.depth(), rule.is_binary());
@@ -132,7 +133,9 @@ impl<S: Solid> Builder<'_, S> {
         worker: &mut Worker<S>,
     ) -> Result<Planes, Error> {
         if e > 0 || !starts_half_way(self.frame.depth()) {
-            return self.solid.split64(&mut worker.scratch, cube, part, &mut worker.parts);
+            let planes = self.solid.split64(&mut worker.scratch, cube, part, &mut worker.parts)?;
+            // Nothing is a branch yet; a solid that says so is not believed.
+            return Ok(Planes { lower: planes.full(), upper: planes.lower | planes.upper });
         }
         let mut planes = Planes::uniform(Tag::Empty);
         for (k, child) in (0u8..).zip(self.solid.split(&mut worker.scratch, cube, part)?) {

@@ -92,7 +92,7 @@ pub trait Solid: Sync {
     /// If the solid cannot be had in this frame, or memory runs out.
     fn root(&self, scratch: &mut Self::Scratch, frame: &Frame) -> Result<Verdict<Self::Part>, Error>;
 
-    /// Splits a PARTIAL cell: the verdicts of its children in octant order.
+    /// Splits a PARTIAL cell, which is above the frame's depth: the verdicts of its children in octant order.
     ///
     /// # Errors
     /// If memory runs out.

@@ -6,7 +6,7 @@ use crate::output::{self, Output, seconds};
 use crate::progress::watched;
 use crate::report::Info;
 use clap::Args;
-use leafless::{Control, Error, Octree, OctreeRef};
+use leafless::{Control, Error, Metadata, Octree, OctreeRef};
 use std::ffi::OsString;
 use std::time::Instant;
 
@@ -111,7 +111,7 @@ fn combine(operation: Operation, inputs: &[Input], common: &Common) -> Result<()
     let trees: Vec<OctreeRef<'_>> = octrees.iter().map(|octree| *octree.view()).collect();
     let name = operation.name();
     let result = watched(name, common.threads, |control| operation.of(&trees[0], &trees, control));
-    let result = result.of(name)?;
+    let result = result.of(name)?.with_metadata(common_rule(&octrees));
     let bytes = output.save(&result)?;
     let info = Info::new(&result, bytes);
     output.report(&format!(
@@ -122,6 +122,17 @@ fn combine(operation: Operation, inputs: &[Input], common: &Common) -> Result<()
         output::count(bytes),
         seconds(start.elapsed().as_secs_f64()),
     ))
+}
+
+/// By which rule the result's cells were resolved, if the operands say it: the common one, or `mixed`.
+fn common_rule(octrees: &[Octree]) -> Metadata {
+    let mut metadata = Metadata::new();
+    let rules: Option<Vec<&str>> = octrees.iter().map(|octree| octree.metadata().get("rule")).collect();
+    if let Some(rules) = rules {
+        let same = rules.iter().all(|rule| *rule == rules[0]);
+        metadata.insert("rule", if same { rules[0] } else { "mixed" });
+    }
+    metadata
 }
 
 /// How the frame of `octree` differs from that of the first operand.

@@ -11,7 +11,7 @@ use std::io::{ErrorKind, Read};
 /// Reads points from standard input, one a line: x, y and z in the solid's units, separated by blanks, tabs or
 /// commas. Empty lines and lines that begin with # are skipped.
 ///
-/// Prints a line for each point: `inside` and `outside` are proven; `undecided` are points in cells that the surface
+/// Prints a line for each point: `inside` and `outside` are proven if the solid is certified; `undecided` are points in cells that the surface
 /// may pass through, points outside of the solid's bounds, and such as `nan`. Answers come as soon as lines are
 /// there, so that another program can ask and wait.
 #[derive(Args)]
@@ -30,7 +30,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     if input.path().is_none() {
         return Err(Failure::Usage("standard input carries the points, so the solid must be a file".into()));
     }
-    let (octree, _) = input.octree(false)?;
+    // Proven answers need a file that is what its maker wrote.
+    let (octree, _) = input.octree(true)?;
     let mut batch = Batch::new(octree.view());
     let mut stdin = std::io::stdin().lock();
     let mut buffer = vec![0; CHUNK];

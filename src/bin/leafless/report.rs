@@ -101,7 +101,11 @@ impl Info {
         line("depth", format!("{}, {} cells per axis", self.depth, count(1 << self.depth)));
         line("origin", self.origin.map(number).join(" "));
         line("edge", format!("{}{clipped}", number(self.edge)));
-        line("kind", (if self.binary { "binary: every cell is decided" } else { "certified bounds" }).into());
+        line(
+            "kind",
+            (if self.binary { "binary: every cell is decided" } else { "bounds: some cells are undecided" })
+                .into(),
+        );
         line("volume", self.volume_text());
         line("nodes", count(self.nodes));
         line("classical nodes", count(self.classical_nodes));

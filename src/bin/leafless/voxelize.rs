@@ -274,7 +274,11 @@ fn summary(
         frame.depth(),
         number(frame.cell_size()),
         info.volume_text(),
-        if octree.view().is_binary() { " (of the cells)" } else { " (the true one lies between)" },
+        match (octree.view().is_binary(), octree.view().is_clipped()) {
+            (true, _) => " (of the cells)",
+            (false, false) => " (the true one lies between)",
+            (false, true) => " (that of the part inside of the bounds lies between)",
+        },
         count(info.nodes),
         count(info.classical_nodes),
         count(info.bytes),

@@ -114,6 +114,10 @@ pub(super) fn bounds(placed: &Placed<'_>, corners: &Corners<'_>) -> ([f64; 3], [
             max[axis] = max[axis].max(corner.at[axis] + error);
         }
     }
+    if placed.displacement > 0.0 {
+        // The sums were rounded too.
+        (min, max) = (min.map(f64::next_down), max.map(f64::next_up));
+    }
     (min, max)
 }
 

@@ -26,7 +26,7 @@ pub(super) struct Scan {
     high: Box<[u64; COLUMNS]>,
     /// Winding numbers of the centres of the lowest layer.
     floor: Box<[i32; COLUMNS]>,
-    /// Changes of the winding number along columns (65 to a column, the first at the floor), for the blocks
+    /// Changes of the winding number along columns, for the blocks
     /// where it leaves the range of the bitmaps.
     changes: Vec<i32>,
 }
@@ -55,32 +55,27 @@ impl Scan {
     /// Fills `block` by its rule.
     pub(super) fn fill(&mut self, task: Task<'_>, block: &mut Block) -> Result<(), Error> {
         let rule = block.rule();
-        let inside: &[u64; COLUMNS] = {
-            self.wind_floor(&task);
-            if !self.wind(&task) {
-                self.wind_counting(&task)?;
-            }
-            if task.fill == FillRule::NonZero {
-                self.low.iter_mut().zip(self.high.iter()).for_each(|(low, high)| *low |= high);
-            }
-            &self.low
-        };
+        self.wind_floor(&task);
+        if !self.wind(&task) {
+            self.wind_counting(&task)?;
+        }
+        if task.fill == FillRule::NonZero {
+            self.low.iter_mut().zip(self.high.iter()).for_each(|(low, high)| *low |= high);
+        }
+        let inside = &self.low;
         let (lower, upper) = block.planes_mut();
         if rule == Rule::Sampled {
-            *lower = *inside;
-            *upper = *inside;
+            *lower = **inside;
+            *upper = **inside;
             return Ok(());
         }
         mark_cut(&task, &mut self.cut);
         for (i, (&inside, &cut)) in inside.iter().zip(self.cut.iter()).enumerate() {
             match rule {
+                Rule::Inner => (lower[i], upper[i]) = (inside & !cut, inside & !cut),
+                Rule::Outer => (lower[i], upper[i]) = (inside | cut, inside | cut),
                 Rule::Certified | Rule::Sampled => (lower[i], upper[i]) = (inside & !cut, inside | cut),
-                Rule::Inner => lower[i] = inside & !cut,
-                Rule::Outer => lower[i] = inside | cut,
             }
-        }
-        if rule.is_binary() {
-            *upper = *lower;
         }
         Ok(())
     }

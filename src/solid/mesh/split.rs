@@ -2,7 +2,7 @@
 
 use super::crossing::Projection;
 use super::overlap::Overlap;
-use super::placed::{Placed, ranks};
+use super::placed::{Corners, Placed, bounds, ranks};
 use super::scan::{Scan, Task};
 use super::surface::{FillRule, TriangleMesh};
 use crate::error::Error;
@@ -169,8 +169,9 @@ impl Solid for MeshSolid<'_> {
                     winding += span.step;
                 }
             }
-            let overlap = Overlap::new(&self.placed, &corners, size, frame.depth());
-            if overlap.cuts([0.0; 3], size) {
+            let (min, max) = bounds(&self.placed, &corners);
+            let within = (0..3).all(|axis| min[axis] > 0.0 && max[axis] < size);
+            if within || Overlap::new(&self.placed, &corners, size, frame.depth()).cuts([0.0; 3], size) {
                 scratch.triangles.push(triangle);
             }
         }
@@ -185,6 +186,7 @@ impl Solid for MeshSolid<'_> {
         part: &MeshPart,
     ) -> Result<[Verdict<MeshPart>; 8], Error> {
         let depth = self.placed.frame.depth();
+        debug_assert!(cube.cell.level < depth, "finest cells have no children");
         let (at, size) = extent(cube.cell, depth);
         let half = size / 2;
         let height = depth - cube.cell.level - 1;
@@ -272,14 +274,8 @@ impl Solid for MeshSolid<'_> {
 }
 
 /// Which of the children of edge `half` of the cell at `at` a triangle cuts.
-fn children_cut(
-    placed: &Placed<'_>,
-    corners: &super::placed::Corners<'_>,
-    at: [i32; 3],
-    half: i32,
-    height: u8,
-) -> u8 {
-    let (min, max) = super::placed::bounds(placed, corners);
+fn children_cut(placed: &Placed<'_>, corners: &Corners<'_>, at: [i32; 3], half: i32, height: u8) -> u8 {
+    let (min, max) = bounds(placed, corners);
     let mut candidates = 0xFFu8;
     let mut strictly = true;
     for (axis, upper) in [0b1010_1010u8, 0b1100_1100, 0b1111_0000].into_iter().enumerate() {
@@ -293,8 +289,9 @@ fn children_cut(
             strictly &= min[axis] > middle && max[axis] < high;
         }
     }
-    // A triangle well inside of the only child that its box reaches needs no further test.
-    if candidates.count_ones() == 1 && strictly {
+    // A triangle well inside of the only child that its box reaches needs no further test. (A finest cell gets
+    // it all the same: of a triangle without area only the test knows that it cuts nothing.)
+    if candidates.count_ones() == 1 && strictly && height > 0 {
         return candidates;
     }
     let overlap = Overlap::new(placed, corners, half as f64, height);

@@ -44,8 +44,8 @@ pub struct MeshReport {
     pub triangles: u64,
     /// Vertices of the mesh, all at different places. Some may be used by no triangle.
     pub vertices: u64,
-    /// Vertices that were handed in and lay on an earlier one: of a triangle soup, 3 `facets_read` -
-    /// `vertices`.
+    /// Vertices that were handed in and lay on an earlier one: of a triangle soup that was not
+    /// sewn, 3 `facets_read` - `vertices`.
     pub welded: u64,
     /// Triangles that were dropped because two of their corners lie at one place.
     pub degenerate: u64,
