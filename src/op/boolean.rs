@@ -231,7 +231,8 @@ fn combine_above(entries: u64, kernel: Kernel<'_>, control: &Control<'_>) -> Res
     control.run(count(a) + count(b) > entries, |parallel| {
         let binary = a.is_binary() && b.is_binary();
         let mut writer = Writer::new(&job, a.frame().depth(), binary);
-        if !parallel && control.max_bytes.is_none() {
+        let most = (count(a) + count(b)).saturating_mul(size_of::<Planes>() as u64);
+        if !parallel && control.max_bytes.is_none_or(|limit| most <= limit) {
             // The result is never larger than both operands, so each level can be written in one piece. Where
             // that much cannot be reserved, it is written in several.
             for e in 0..a.levels() {

@@ -1,7 +1,7 @@
-//! Long work: a bar for whoever waits at a terminal.
+//! Long work: a bar for whoever waits at a terminal, and an end before memory runs out.
 
 use indicatif::{ProgressBar, ProgressStyle};
-use leafless::Control;
+use leafless::{Control, Error, Octree};
 use std::io::IsTerminal;
 use std::sync::OnceLock;
 use std::time::{Duration, Instant};
@@ -12,8 +12,13 @@ const PATIENCE: Duration = Duration::from_secs(1);
 const STEPS: u64 = 1000;
 
 /// Runs `work` on so many threads (0: one a processor), with a progress bar called `label` once it has taken
-/// more than a second, if standard error is a terminal.
-pub fn watched<T>(label: &'static str, threads: usize, work: impl FnOnce(&Control<'_>) -> T) -> T {
+/// more than a second, if standard error is a terminal. Says so, instead of being killed for it, when the solid
+/// outgrows the free memory.
+pub fn watched(
+    label: &'static str,
+    threads: usize,
+    work: impl FnOnce(&Control<'_>) -> Result<Octree, Error>,
+) -> Result<Octree, String> {
     let start = Instant::now();
     let bar = OnceLock::new();
     let show = |done: f64| {
@@ -24,11 +29,26 @@ pub fn watched<T>(label: &'static str, threads: usize, work: impl FnOnce(&Contro
     };
     let progress: Option<&(dyn Fn(f64) + Sync)> =
         if std::io::stderr().is_terminal() { Some(&show) } else { None };
-    let result = work(&Control { threads, progress, ..Control::default() });
+    let result = work(&Control { threads, progress, max_bytes: affordable_bytes(), ..Control::default() });
     if let Some(bar) = bar.get() {
         bar.finish_and_clear();
     }
-    result
+    result.map_err(|error| match error {
+        Error::Limit { .. } | Error::OutOfMemory => {
+            "not enough free memory for a solid of this depth (one of a level less takes a quarter)"
+                .to_string()
+        }
+        error => error.to_string(),
+    })
+}
+
+/// Bytes that a solid's working form may take, where the system tells: half of what is available, because it
+/// exists twice for a moment when the finished arrays are put together.
+fn affordable_bytes() -> Option<u64> {
+    let meminfo = std::fs::read_to_string("/proc/meminfo").ok()?;
+    let line = meminfo.lines().find_map(|line| line.strip_prefix("MemAvailable:"))?;
+    let kibibytes: u64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;
+    Some(kibibytes * 512)
 }
 
 fn started(label: &'static str, start: Instant) -> ProgressBar {
