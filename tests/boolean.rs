@@ -387,3 +387,28 @@ proptest! {
         assert_canonical(&compact(coded.view()).unwrap(), &tree);
     }
 }
+
+/// On trees that are large enough for a dictionary, Booleans through it are those of raw bricks.
+#[test]
+fn dictionary_coded_operands_give_the_same() {
+    let frame = Frame::new([0.0; 3], 1.0, 8).unwrap();
+    let control = Control::threads(1);
+    for rule in [Rule::Sampled, Rule::Certified] {
+        let ball = |x: f64| build(&Ball::new([x, 0.5, 0.5], 0.31).unwrap(), &frame, rule, &control).unwrap();
+        let (a, b) = (ball(0.4), ball(0.6));
+        let (coded_a, coded_b) = (compact(a.view()).unwrap(), compact(b.view()).unwrap());
+        for tree in [&a, &b] {
+            // `compact` encodes as a file is encoded.
+            let probe = leafless::file::probe_bytes(&leafless::file::to_bytes(tree).unwrap()).unwrap();
+            assert!(probe.sections.iter().any(|section| section.name == Some("brick indices")), "{rule:?}");
+        }
+        for op in [union, intersection, difference, xor] {
+            let expected = op(a.view(), b.view(), &control).unwrap();
+            expected.view().check().unwrap();
+            assert_eq!(op(coded_a.view(), coded_b.view(), &control).unwrap(), expected);
+            assert_eq!(op(coded_a.view(), b.view(), &control).unwrap(), expected);
+            assert_eq!(op(a.view(), coded_b.view(), &control).unwrap(), expected);
+        }
+        assert_eq!(complement(coded_a.view(), &control).unwrap(), complement(a.view(), &control).unwrap());
+    }
+}
