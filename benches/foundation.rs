@@ -15,6 +15,7 @@ use leafless::{
 };
 use std::hint::black_box;
 use std::path::Path;
+use std::sync::Arc;
 
 const DEPTH: u8 = 10;
 const POINTS: usize = 1_000_000;
@@ -46,8 +47,8 @@ fn torus(n: u32) -> TriangleMesh {
     TriangleMesh::new(vertices.collect(), triangles.collect()).expect("a closed mesh")
 }
 
-fn mesh(bytes: &[u8]) -> TriangleMesh {
-    file::read_stl(bytes).and_then(TriangleMesh::sewn).expect("a closed mesh")
+fn mesh(bytes: &[u8]) -> Arc<TriangleMesh> {
+    Arc::new(file::read_stl(bytes).and_then(TriangleMesh::sewn).expect("a closed mesh"))
 }
 
 fn frame(mesh: &TriangleMesh) -> Frame {
@@ -55,8 +56,8 @@ fn frame(mesh: &TriangleMesh) -> Frame {
     Frame::around(min, max, DEPTH).expect("a frame")
 }
 
-fn octree(mesh: &TriangleMesh, frame: &Frame, rule: Rule) -> Octree {
-    let solid = MeshSolid::new(mesh, frame, FillRule::NonZero).expect("a closed mesh");
+fn octree(mesh: &Arc<TriangleMesh>, frame: &Frame, rule: Rule) -> Octree {
+    let solid = MeshSolid::new(mesh.clone(), frame, FillRule::NonZero).expect("a closed mesh");
     build(&solid, frame, rule, &Control::threads(1)).expect("an octree")
 }
 
@@ -81,7 +82,7 @@ fn operands(rule: Rule) -> (Octree, Octree, Frame) {
     let (min, max) = still.bounds();
     let cell = frame(&still).cell_size();
     let step = ((max[0] - min[0]) * 0.1 / cell).round() * cell;
-    let moved = still.translated([step, 0.0, 0.0]).expect("a mesh");
+    let moved = Arc::new(still.translated([step, 0.0, 0.0]).expect("a mesh"));
     let frame = Frame::around(min, [max[0] + step, max[1], max[2]], DEPTH).expect("a frame");
     (octree(&still, &frame, rule), octree(&moved, &frame, rule), frame)
 }

@@ -49,6 +49,12 @@ pub enum Error {
     /// The caller asked to stop.
     #[error("cancelled")]
     Cancelled,
+    /// A function of the host program, which classifies its own shape, failed.
+    #[error("a function of the host program stopped the work with the code {code}")]
+    Callback {
+        /// What the function returned.
+        code: i32,
+    },
     /// The operating system refused to read or write.
     #[cfg(feature = "std")]
     #[error(transparent)]

@@ -37,6 +37,7 @@
 //! | `op` | building, and the set algebra of stored trees |
 //! | `query` | points and boxes |
 //! | `file` | the file format, and meshes from other programs |
+//! | `capi` | the C interface |
 
 #![no_std]
 #![deny(unsafe_code)]
@@ -45,6 +46,8 @@ extern crate alloc;
 #[cfg(feature = "std")]
 extern crate std;
 
+#[cfg(feature = "capi")]
+pub mod capi;
 mod control;
 mod dispatch;
 mod error;

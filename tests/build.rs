@@ -527,9 +527,15 @@ impl Solid for Crowd {
         }))
     }
 
-    fn sample(&self, lists: &mut Lists, cube: &Cube<'_>, &(start, end): &(u32, u32)) -> Option<bool> {
+    fn sample(
+        &self,
+        lists: &mut Lists,
+        cube: &Cube<'_>,
+        &(start, end): &(u32, u32),
+    ) -> Result<Option<bool>, Error> {
         let active = &lists.0[start as usize..end as usize];
-        Some(active.iter().any(|&ball| self.0[ball as usize].sample(&mut (), cube, &()) == Some(true)))
+        let inside = |&ball: &u32| matches!(self.0[ball as usize].sample(&mut (), cube, &()), Ok(Some(true)));
+        Ok(Some(active.iter().any(inside)))
     }
 
     fn hand_over(&self, from: &Lists, part: &(u32, u32), to: &mut Lists) -> Result<(u32, u32), Error> {
@@ -608,7 +614,7 @@ impl Solid for Bulk<'_> {
         Ok(true)
     }
 
-    fn sample(&self, scratch: &mut (), cube: &Cube<'_>, part: &()) -> Option<bool> {
+    fn sample(&self, scratch: &mut (), cube: &Cube<'_>, part: &()) -> Result<Option<bool>, Error> {
         self.ball.sample(scratch, cube, part)
     }
 
@@ -677,12 +683,12 @@ proptest! {
             let edge = at(max[0]) - at(min[0]);
             let level = n - edge.trailing_zeros() as u8;
             assert_eq!(edge, 1 << (n - level));
-            match dense.tag_of(Cell { level, at: min.map(|x| at(x) / edge) }) {
+            Ok(match dense.tag_of(Cell { level, at: min.map(|x| at(x) / edge) }) {
                 Some(Tag::Empty) => Verdict::Empty,
                 Some(Tag::Full) => Verdict::Full,
                 Some(_) => Verdict::Undecided,
                 None => Verdict::Partial(()),
-            }
+            })
         };
         let callback = Callback::new(classify);
         assert_eq!(callback.exterior(&frame), Tag::Partial);
@@ -702,7 +708,7 @@ fn callbacks_see_boxes_that_contain_their_cells() {
         let boxes = Mutex::new(Vec::new());
         let callback = Callback::new(|min, max| {
             boxes.lock().unwrap().push((min, max));
-            Verdict::Partial(())
+            Ok(Verdict::Partial(()))
         });
         build(&callback, &frame, Rule::Certified, &alone()).unwrap();
         let boxes = boxes.into_inner().unwrap();
@@ -723,10 +729,10 @@ fn callbacks_are_sampled_at_centres() {
     let centres = Mutex::new(Vec::new());
     let contains = |p: [f64; 3]| {
         centres.lock().unwrap().push(p);
-        p[0] + p[1] > 3.0
+        Ok(p[0] + p[1] > 3.0)
     };
-    let cut = |_: [f64; 3], _: [f64; 3]| Verdict::Partial(());
-    let tree = made(&Callback::new(cut).with_contains(&contains), &frame, Rule::Sampled);
+    let cut = |_: [f64; 3], _: [f64; 3]| Ok(Verdict::Partial(()));
+    let tree = made(&Callback::new(cut).with_contains(contains), &frame, Rule::Sampled);
     for at in positions(4) {
         let centre = [0, 1, 2].map(|axis| frame.origin()[axis] + (at[axis] as f64 + 0.5) * 0.5);
         assert_eq!(tree.view().tag_at(at), if centre[0] + centre[1] > 3.0 { Tag::Full } else { Tag::Empty });
@@ -739,7 +745,7 @@ fn callbacks_are_sampled_at_centres() {
         for at in [0.0, 3.0, 7.5] {
             // Undecided everywhere, in half of the universe, and in single cells.
             let classify =
-                |min: [f64; 3], _: [f64; 3]| if min[0] >= at - 1.0 { undecided } else { Verdict::Full };
+                |min: [f64; 3], _: [f64; 3]| Ok(if min[0] >= at - 1.0 { undecided } else { Verdict::Full });
             let refused = build(&Callback::new(classify), &frame, Rule::Sampled, &alone());
             assert!(matches!(refused, Err(Error::NotSampled)) || at > 0.0, "{refused:?}");
         }
@@ -750,7 +756,7 @@ fn callbacks_are_sampled_at_centres() {
 fn nothing_is_known_of_an_undecided_universe() {
     for depth in 1..=3 {
         let frame = lattice_frame(depth);
-        let callback = Callback::new(|_, _| Verdict::Undecided);
+        let callback = Callback::new(|_, _| Ok(Verdict::Undecided));
         let tree = made(&callback, &frame, Rule::Certified);
         assert_is(&tree, &Dense::uniform(depth, Tag::Partial));
         assert!(!tree.view().is_binary());
@@ -759,7 +765,7 @@ fn nothing_is_known_of_an_undecided_universe() {
         assert_is(&made(&callback, &frame, Rule::Outer), &Dense::uniform(depth, Tag::Full));
         assert!(matches!(build(&callback, &frame, Rule::Sampled, &alone()), Err(Error::NotSampled)));
         // Cells that split for ever are undecided in the end, and merge.
-        let endless = Callback::new(|_, _| Verdict::Partial(()));
+        let endless = Callback::new(|_, _| Ok(Verdict::Partial(())));
         assert_eq!(made(&endless, &frame, Rule::Certified), tree);
         let all = complement(tree.view(), &alone()).unwrap();
         all.view().check().unwrap();
@@ -867,10 +873,9 @@ fn progress_rises_to_one() {
             shape(Definition::Ball { centre: [0.45, 0.55, 0.1], radius: 31.0 }),
             shape(Definition::Ball { centre: [9.0, 0.55, 0.1], radius: 1.0 }),
             shape(Definition::HalfSpace { normal: [-1.0, -1.0, -1.0], offset: 0.1 }),
-            AnySolid::new(Callback::new(|_, _| Verdict::Undecided)),
-            AnySolid::new(Callback::new(|min: [f64; 3], _| match min[0] < 0.3 {
-                true => Verdict::Partial(()),
-                false => Verdict::Undecided,
+            AnySolid::new(Callback::new(|_, _| Ok(Verdict::Undecided))),
+            AnySolid::new(Callback::new(|min: [f64; 3], _| {
+                Ok(if min[0] < 0.3 { Verdict::Partial(()) } else { Verdict::Undecided })
             })),
         ];
         for (i, solid) in solids.iter().enumerate() {
@@ -941,5 +946,43 @@ fn errors_of_a_solid_end_the_build() {
             &Control::threads(threads),
         );
         assert!(matches!(refused, Err(Error::OutOfMemory)), "{refused:?}");
+    }
+}
+
+#[test]
+fn a_failing_callback_ends_the_operation() {
+    let frame = lattice_frame(6);
+    let control = Control::threads(4);
+    fn stop() -> Error {
+        Error::Callback { code: -7 }
+    }
+    let cut = |_: [f64; 3], _: [f64; 3]| Ok(Verdict::Partial(()));
+    let classify =
+        |min: [f64; 3], _: [f64; 3]| if min[0] > 40.0 { Err(stop()) } else { Ok(Verdict::Partial(())) };
+    let contains = |p: [f64; 3]| if p[2] > 33.0 { Err(stop()) } else { Ok(true) };
+    for refused in [
+        build(&Callback::new(|_, _| Err(stop())), &frame, Rule::Certified, &control),
+        build(&Callback::new(classify), &frame, Rule::Certified, &control),
+        build(&Callback::new(cut).with_contains(contains), &frame, Rule::Sampled, &control),
+        build(&AnySolid::new(Callback::new(classify)), &frame, Rule::Outer, &control),
+    ] {
+        assert!(matches!(refused, Err(Error::Callback { code: -7 })), "{refused:?}");
+    }
+}
+
+#[test]
+fn an_octree_is_a_solid_that_owns_itself() {
+    for depth in [3, 6, 7] {
+        let frame = lattice_frame(depth);
+        let edge = frame.edge();
+        let ball = Ball::new([edge * 0.4; 3], edge * 0.37).unwrap();
+        for rule in [Rule::Certified, Rule::Sampled] {
+            let tree = made(&ball, &frame, rule);
+            assert_eq!(made(&tree, &frame, Rule::Certified), tree);
+            assert_eq!(made(&AnySolid::new(tree.clone()), &frame, Rule::Certified), tree);
+            let coarse = frame.with_depth(depth - 1).unwrap();
+            let stored = made(&Stored::new(tree.view()), &coarse, Rule::Outer);
+            assert_eq!(made(&tree, &coarse, Rule::Outer), stored);
+        }
     }
 }

@@ -19,9 +19,9 @@ const FILLS: [FillRule; 2] = [FillRule::NonZero, FillRule::EvenOdd];
 const RULES: [Rule; 4] = [Rule::Certified, Rule::Sampled, Rule::Inner, Rule::Outer];
 
 /// A mesh that is only ever split, never scanned in blocks.
-struct Descended<'a, 'm>(&'a MeshSolid<'m>);
+struct Descended<'a>(&'a MeshSolid);
 
-impl Solid for Descended<'_, '_> {
+impl Solid for Descended<'_> {
     type Part = MeshPart;
     type Scratch = MeshScratch;
     fn root(&self, scratch: &mut MeshScratch, frame: &Frame) -> Result<Verdict<MeshPart>, Error> {
@@ -35,7 +35,12 @@ impl Solid for Descended<'_, '_> {
     ) -> Result<[Verdict<MeshPart>; 8], Error> {
         self.0.split(scratch, cube, part)
     }
-    fn sample(&self, scratch: &mut MeshScratch, cube: &Cube<'_>, part: &MeshPart) -> Option<bool> {
+    fn sample(
+        &self,
+        scratch: &mut MeshScratch,
+        cube: &Cube<'_>,
+        part: &MeshPart,
+    ) -> Result<Option<bool>, Error> {
         self.0.sample(scratch, cube, part)
     }
     fn exterior(&self, frame: &Frame) -> Tag {
@@ -54,7 +59,7 @@ impl Solid for Descended<'_, '_> {
 /// All four trees of a mesh, shown to be the same by scanning blocks and by descent, and for any number of
 /// threads.
 fn trees(what: &str, mesh: &TriangleMesh, frame: &Frame, fill: FillRule) -> [Octree; 4] {
-    let solid = MeshSolid::new(mesh, frame, fill).unwrap();
+    let solid = MeshSolid::new(mesh.clone(), frame, fill).unwrap();
     RULES.map(|rule| {
         let tree = build(&solid, frame, rule, &alone()).unwrap();
         tree.view().check().unwrap();
@@ -132,7 +137,7 @@ fn verify(what: &str, soup: &Soup, frame: &Frame) {
 /// The exterior is EMPTY if and only if no vertex is beyond the universe.
 fn exterior(soup: &Soup, frame: &Frame) -> Tag {
     let mesh = mesh(soup);
-    MeshSolid::new(&mesh, frame, FillRule::NonZero).unwrap().exterior(frame)
+    MeshSolid::new(mesh.clone(), frame, FillRule::NonZero).unwrap().exterior(frame)
 }
 
 fn join(soups: &[Soup]) -> Soup {
@@ -536,7 +541,7 @@ fn assert_sampled(what: &str, mesh: &TriangleMesh, depth: u8) {
     let frame = around(mesh, depth);
     let windings = Oracle::new(mesh, &frame).windings();
     for &fill in fills(mesh) {
-        let solid = MeshSolid::new(mesh, &frame, fill).unwrap();
+        let solid = MeshSolid::new(mesh.clone(), &frame, fill).unwrap();
         let tree = build(&solid, &frame, Rule::Sampled, &Control::default()).unwrap();
         let n = frame.cells();
         for (i, &winding) in windings.iter().enumerate() {
@@ -558,7 +563,7 @@ fn parts_are_certified_and_converge() {
         let mut before: Option<f64> = None;
         for depth in 6..=10 {
             let frame = around(&mesh, depth);
-            let solid = MeshSolid::new(&mesh, &frame, FillRule::NonZero).unwrap();
+            let solid = MeshSolid::new(mesh.clone(), &frame, FillRule::NonZero).unwrap();
             let tree = |rule| build(&solid, &frame, rule, &Control::default()).unwrap();
             let [certified, sampled, inner, outer] = RULES.map(tree);
             let interval = certified.statistics().volume();
@@ -612,7 +617,7 @@ fn the_erased_solid_is_the_same() {
     for depth in [5, 6, 8] {
         let frame = around(mesh, depth);
         for fill in FILLS {
-            let solid = || MeshSolid::new(mesh, &frame, fill).unwrap();
+            let solid = || MeshSolid::new(mesh.clone(), &frame, fill).unwrap();
             let trees = trees("erased", mesh, &frame, fill);
             let any = AnySolid::new(solid());
             for (rule, tree) in RULES.into_iter().zip(&trees) {
@@ -638,7 +643,7 @@ fn points_never_contradict(what: &str, mesh: &TriangleMesh, points: usize) {
     let (min, max) = mesh.bounds();
     for depth in [6, 9] {
         let frame = around(mesh, depth);
-        let solid = MeshSolid::new(mesh, &frame, FillRule::NonZero).unwrap();
+        let solid = MeshSolid::new(mesh.clone(), &frame, FillRule::NonZero).unwrap();
         let tree = build(&solid, &frame, Rule::Certified, &Control::default()).unwrap();
         let mut random = Random(depth as u64);
         let mut counts = [0usize; 3];
@@ -708,13 +713,13 @@ fn hair_cracks_keep_every_variant_inside() {
                 Frame::new([-1.25 + 0.125 / (1 << depth) as f64; 3], 2.5, depth).unwrap(),
             ] {
                 verify_with("sewn", &sewn, &frame, &FILLS);
-                let solid = MeshSolid::new(&sewn, &frame, FillRule::NonZero).unwrap();
+                let solid = MeshSolid::new(sewn.clone(), &frame, FillRule::NonZero).unwrap();
                 let tree = |rule| build(&solid, &frame, rule, &alone()).unwrap();
                 let (inner, outer) = (tree(Rule::Inner), tree(Rule::Outer));
                 // Both ways to close the cracks: every noisy coordinate as it is, and none.
                 for closed in [base.clone(), moved(&base, |p| p.map(|x| if x == 0.0 { noise } else { x }))] {
                     let closed = mesh(&closed);
-                    let solid = MeshSolid::new(&closed, &frame, FillRule::NonZero).unwrap();
+                    let solid = MeshSolid::new(closed.clone(), &frame, FillRule::NonZero).unwrap();
                     let tree = |rule| build(&solid, &frame, rule, &alone()).unwrap();
                     let within = |a: &Octree, b: &Octree| {
                         let left = difference(a.view(), b.view(), &alone()).unwrap();
@@ -745,7 +750,7 @@ fn meshes_that_bound_nothing_are_refused() {
     let frame = lattice_frame(4);
     let refusal = |soup: &Soup, fill| {
         let mesh = mesh(soup);
-        match MeshSolid::new(&mesh, &frame, fill) {
+        match MeshSolid::new(mesh.clone(), &frame, fill) {
             Ok(_) => None,
             Err(Error::Mesh(error)) => Some(error),
             Err(error) => panic!("{error}"),
@@ -774,6 +779,6 @@ fn meshes_that_bound_nothing_are_refused() {
     }
     // Another frame than the one it was made for.
     let mesh = mesh(&whole);
-    let solid = MeshSolid::new(&mesh, &frame, FillRule::NonZero).unwrap();
+    let solid = MeshSolid::new(mesh.clone(), &frame, FillRule::NonZero).unwrap();
     assert!(matches!(build(&solid, &other, Rule::Certified, &alone()), Err(Error::FrameMismatch)));
 }

@@ -5,7 +5,7 @@
 //! | function | reads | checks | cost |
 //! |---|---|---|---|
 //! | [`probe`], [`probe_from`], [`probe_bytes`] | header and section table | both | O(sections) |
-//! | [`map`], [`view`] (bytes) | in place | header, section table, bounds, level table | O(sections + depth) |
+//! | [`map`], [`view`], [`from_static`] (bytes) | in place | header, section table, bounds, level table | O(sections + depth) |
 //! | [`map_verified`], [`verify`] (bytes) | in place | everything | O(n) |
 //! | [`open`], [`from_bytes`] | a copy | everything | O(n) |
 //!
@@ -132,7 +132,7 @@ pub use exchange::{read_stl, write_stl};
 pub use layout::{MAGIC, MAJOR, MINOR};
 #[cfg(feature = "mmap")]
 pub use map::{map, map_verified};
-pub use read::{Probe, Section, from_bytes, probe_bytes, verify, view};
+pub use read::{Probe, Section, from_bytes, from_static, probe_bytes, verify, view};
 #[cfg(feature = "std")]
 pub use read::{open, probe, probe_from};
 pub use write::to_bytes;

@@ -159,6 +159,17 @@ pub fn from_bytes(bytes: &[u8]) -> Result<Octree, Error> {
     adopt(layout, buffer)
 }
 
+/// The tree in `bytes`, a whole file that lives as long as the program (one that was linked into it, say),
+/// read where it lies as by [`view`].
+///
+/// # Errors
+/// As [`view`], and [`FormatError::Metadata`].
+pub fn from_static(bytes: &'static [u8]) -> Result<Octree, Error> {
+    let (layout, _) = viewed(bytes)?;
+    let metadata = metadata(&layout, bytes)?;
+    Ok(Octree::attach(Arc::new(bytes), metadata, |bytes| layout.octree(bytes))?)
+}
+
 /// The tree in the file at `path`, read into memory and [verified](verify). Later changes of the file do not
 /// matter. A pipe or device may be read too.
 ///

@@ -4,6 +4,7 @@ use super::tag::Tag;
 use super::view::{MAX_ELEMENT_LEVELS, OctreeRef, starts_half_way};
 use super::word::Planes;
 use crate::lattice::Cell;
+use yoke::Yokeable;
 
 /// One internal node of the leaf-free octree: the tags of a cell's eight children.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -56,7 +57,7 @@ impl Node {
 /// assert_eq!((cursor.tag(), cursor.cell().level), (Tag::Empty, 2));
 /// # Ok::<(), leafless::Error>(())
 /// ```
-#[derive(Clone)]
+#[derive(Clone, Yokeable)]
 pub struct Cursor<'a> {
     tree: OctreeRef<'a>,
     cell: Cell,

@@ -266,7 +266,7 @@ impl<S: Solid> Builder<'_, S> {
         for i in first..worker.parts.len() {
             let (c, part) = worker.parts[i].clone();
             let cube = Cube { frame: self.frame, cell: self.at(self.levels - 1, cube, c) };
-            let inside = self.solid.sample(&mut worker.scratch, &cube, &part).ok_or(Error::NotSampled)?;
+            let inside = self.solid.sample(&mut worker.scratch, &cube, &part)?.ok_or(Error::NotSampled)?;
             result.set(c as u32, if inside { Tag::Full } else { Tag::Empty });
         }
         Ok(result)

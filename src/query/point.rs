@@ -4,6 +4,7 @@ use crate::dispatch::{Hot, with_popcount};
 use crate::error::Error;
 use crate::octree::view::{MAX_ELEMENT_LEVELS, OctreeRef};
 use crate::octree::{Octree, Planes, Tag};
+use yoke::Yokeable;
 
 /// The answer to a point query.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -229,7 +230,7 @@ fn settled(tag: Tag) -> Tag {
 
 /// Point queries that remember the way to the last answer: for points that lie near each other, such as
 /// along a line or in scan order.
-#[derive(Clone)]
+#[derive(Clone, Yokeable)]
 pub struct PointCursor<'a> {
     tree: OctreeRef<'a>,
     last: [u32; 3],

@@ -120,7 +120,12 @@ trait Erased: Send + Sync {
         part: ErasedPart,
         block: &mut Block,
     ) -> Result<bool, Error>;
-    fn sample(&self, scratch: &mut ErasedScratch, cube: &Cube<'_>, part: ErasedPart) -> Option<bool>;
+    fn sample(
+        &self,
+        scratch: &mut ErasedScratch,
+        cube: &Cube<'_>,
+        part: ErasedPart,
+    ) -> Result<Option<bool>, Error>;
     fn exterior(&self, frame: &Frame) -> Tag;
     fn hand_over(
         &self,
@@ -177,9 +182,14 @@ impl<S: Solid<Part: 'static, Scratch: 'static> + Send + 'static> Erased for S {
         }
     }
 
-    fn sample(&self, scratch: &mut ErasedScratch, cube: &Cube<'_>, part: ErasedPart) -> Option<bool> {
+    fn sample(
+        &self,
+        scratch: &mut ErasedScratch,
+        cube: &Cube<'_>,
+        part: ErasedPart,
+    ) -> Result<Option<bool>, Error> {
         let typed = scratch.typed::<S>();
-        let (part, _) = typed.parts.get(part.0).cloned()?;
+        let Some((part, _)) = typed.parts.get(part.0).cloned() else { return Ok(None) };
         Solid::sample(self, &mut typed.scratch, cube, &part)
     }
 
@@ -232,7 +242,12 @@ impl Solid for AnySolid {
         self.0.fill(scratch, cube, *part, block)
     }
 
-    fn sample(&self, scratch: &mut ErasedScratch, cube: &Cube<'_>, part: &ErasedPart) -> Option<bool> {
+    fn sample(
+        &self,
+        scratch: &mut ErasedScratch,
+        cube: &Cube<'_>,
+        part: &ErasedPart,
+    ) -> Result<Option<bool>, Error> {
         self.0.sample(scratch, cube, *part)
     }
 

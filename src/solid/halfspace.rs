@@ -85,13 +85,13 @@ impl Solid for HalfSpace {
         Ok([0, 1, 2, 3, 4, 5, 6, 7].map(|k| self.verdict(&cube.child(k))))
     }
 
-    fn sample(&self, _: &mut (), cube: &Cube<'_>, _: &()) -> Option<bool> {
+    fn sample(&self, _: &mut (), cube: &Cube<'_>, _: &()) -> Result<Option<bool>, Error> {
         let centre = cube.cell.at.map(|i| 2 * i as i64 + 1);
         // On the plane the first coefficient that is not zero decides where (ε, ε², ε³) leads.
         let shift = || self.normal.iter().find(|&&c| c != 0.0).is_some_and(|&c| c > 0.0);
-        Some(match self.sign_at(cube.frame, centre) {
+        Ok(Some(match self.sign_at(cube.frame, centre) {
             0 => shift(),
             sign => sign > 0,
-        })
+        }))
     }
 }

@@ -138,9 +138,17 @@ pub trait Solid: Sync {
     /// Whether the centre of a PARTIAL cell of the frame's depth lies in the solid, or `None` if the solid
     /// cannot tell. A centre on the boundary is decided as if all centres were shifted by (ε, ε², ε³), to first
     /// order: on a curved surface too, the first axis that leads across it decides.
-    fn sample(&self, scratch: &mut Self::Scratch, cube: &Cube<'_>, part: &Self::Part) -> Option<bool> {
+    ///
+    /// # Errors
+    /// If a host program's function stops the work.
+    fn sample(
+        &self,
+        scratch: &mut Self::Scratch,
+        cube: &Cube<'_>,
+        part: &Self::Part,
+    ) -> Result<Option<bool>, Error> {
         let _ = (scratch, cube, part);
-        None
+        Ok(None)
     }
 
     /// What is known of the space around the universe: EMPTY if the solid is proven to end inside, FULL if

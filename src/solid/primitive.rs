@@ -94,16 +94,16 @@ impl Solid for Ball {
         Ok([0, 1, 2, 3, 4, 5, 6, 7].map(|k| self.verdict(&cube.child(k))))
     }
 
-    fn sample(&self, _: &mut (), cube: &Cube<'_>, _: &()) -> Option<bool> {
+    fn sample(&self, _: &mut (), cube: &Cube<'_>, _: &()) -> Result<Option<bool>, Error> {
         let centre = cube.cell.at.map(|i| 2 * i as i64 + 1);
-        Some(match self.sign_at(cube.frame, centre.map(Some)) {
+        Ok(Some(match self.sign_at(cube.frame, centre.map(Some)) {
             // On the sphere the shift (ε, ε², ε³) leads inside if it leads towards the centre.
             0 => {
                 let towards = |axis: usize| cube.frame.side(axis, self.centre[axis], centre[axis]);
                 (0..3).map(towards).find(|&side| side != 0).is_some_and(|side| side > 0)
             }
             sign => sign > 0,
-        })
+        }))
     }
 
     fn exterior(&self, frame: &Frame) -> Tag {
@@ -167,13 +167,13 @@ impl Solid for AxisBox {
         Ok([0, 1, 2, 3, 4, 5, 6, 7].map(|k| self.verdict(&cube.child(k))))
     }
 
-    fn sample(&self, _: &mut (), cube: &Cube<'_>, _: &()) -> Option<bool> {
+    fn sample(&self, _: &mut (), cube: &Cube<'_>, _: &()) -> Result<Option<bool>, Error> {
         // The shift is positive on every axis: a centre on the lower face goes inside, on the upper outside.
-        Some((0..3).all(|axis| {
+        Ok(Some((0..3).all(|axis| {
             let k = 2 * cube.cell.at[axis] as i64 + 1;
             let side = |x: f64| cube.frame.side(axis, x, k);
             side(self.min[axis]) <= 0 && side(self.max[axis]) > 0
-        }))
+        })))
     }
 
     fn exterior(&self, frame: &Frame) -> Tag {

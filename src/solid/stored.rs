@@ -4,7 +4,7 @@ use super::{Solid, Verdict, split_twice};
 use crate::error::Error;
 use crate::lattice::{Cube, Frame};
 use crate::octree::view::starts_half_way;
-use crate::octree::{OctreeRef, Planes, Tag};
+use crate::octree::{Octree, OctreeRef, Planes, Tag};
 use alloc::vec::Vec;
 
 /// An octree, in memory or on disk, as a solid on its own universe. Built to fewer levels it is cut there
@@ -130,5 +130,38 @@ impl Solid for Stored<'_> {
 
     fn exterior(&self, _: &Frame) -> Tag {
         self.0.exterior()
+    }
+}
+
+/// As [`Stored`], for whoever needs a solid that owns its tree.
+impl Solid for Octree {
+    type Part = StoredPart;
+    type Scratch = ();
+
+    fn root(&self, scratch: &mut (), frame: &Frame) -> Result<Verdict<StoredPart>, Error> {
+        Stored(*self.view()).root(scratch, frame)
+    }
+
+    fn split(
+        &self,
+        scratch: &mut (),
+        cube: &Cube<'_>,
+        part: &StoredPart,
+    ) -> Result<[Verdict<StoredPart>; 8], Error> {
+        Stored(*self.view()).split(scratch, cube, part)
+    }
+
+    fn split64(
+        &self,
+        scratch: &mut (),
+        cube: &Cube<'_>,
+        part: &StoredPart,
+        parts: &mut Vec<(u8, StoredPart)>,
+    ) -> Result<Planes, Error> {
+        Stored(*self.view()).split64(scratch, cube, part, parts)
+    }
+
+    fn exterior(&self, frame: &Frame) -> Tag {
+        Stored(*self.view()).exterior(frame)
     }
 }

@@ -9,6 +9,7 @@ use leafless::{
     Control, FillRule, Frame, Membership, MeshSolid, Octree, Rule, TriangleMesh, build, difference, file,
 };
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::time::Instant;
 
 /// Makes a flanged, ribbed and drilled part and a tool to cut it with, writes both as STL files, reads them back,
@@ -46,14 +47,14 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         let report = mesh.report().of(stl.display())?;
         let bodies = counted(report.bodies, "body", "bodies");
         row("  read it, weld it", &format!("{} triangles, {bodies}, closed", count(report.triangles)), time)?;
-        meshes.push((name, mesh));
+        meshes.push((name, Arc::new(mesh)));
     }
 
     let frame = around(&meshes)?;
     let mut solids = Vec::new();
     for (name, mesh) in &meshes {
         let (octree, time) = fallible(|| {
-            let solid = MeshSolid::new(mesh, &frame, FillRule::NonZero)?;
+            let solid = MeshSolid::new(mesh.clone(), &frame, FillRule::NonZero)?;
             build(&solid, &frame, Rule::Certified, &control)
         })
         .of(name)?;
@@ -130,7 +131,7 @@ fn folder(asked: Option<&Path>) -> Result<PathBuf, Failure> {
 }
 
 /// The cube around both meshes.
-fn around(meshes: &[(&str, TriangleMesh)]) -> Result<Frame, Failure> {
+fn around(meshes: &[(&str, Arc<TriangleMesh>)]) -> Result<Frame, Failure> {
     let (mut min, mut max) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
     for (_, mesh) in meshes {
         let (low, high) = mesh.bounds();

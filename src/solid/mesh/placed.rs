@@ -8,6 +8,7 @@ use super::surface::TriangleMesh;
 use crate::error::Error;
 use crate::lattice::Frame;
 use crate::lattice::exact::{floor, two_diff, two_product};
+use alloc::sync::Arc;
 use alloc::vec::Vec;
 
 /// Bound of the relative error of one rounded subtraction and one rounded division: 2^-52 and some more.
@@ -30,9 +31,9 @@ pub(super) struct Vertex {
 }
 
 /// A mesh on the lattice of a frame.
-pub(super) struct Placed<'m> {
+pub(super) struct Placed {
     pub(super) frame: Frame,
-    pub(super) mesh: &'m TriangleMesh,
+    pub(super) mesh: Arc<TriangleMesh>,
     /// How far the surface may lie from the mesh, in finest cells: what was moved to close hair cracks.
     displacement: f64,
     vertices: Vec<Vertex>,
@@ -41,8 +42,8 @@ pub(super) struct Placed<'m> {
 /// The three corners of a triangle.
 pub(super) type Corners<'p> = [&'p Vertex; 3];
 
-impl<'m> Placed<'m> {
-    pub(super) fn new(mesh: &'m TriangleMesh, frame: &Frame) -> Result<Placed<'m>, Error> {
+impl Placed {
+    pub(super) fn new(mesh: Arc<TriangleMesh>, frame: &Frame) -> Result<Placed, Error> {
         let mut vertices = Vec::new();
         vertices.try_reserve_exact(mesh.vertices().len()).map_err(|_| Error::OutOfMemory)?;
         vertices.extend(mesh.vertices().iter().map(|&vertex| place(frame, vertex)));
@@ -104,7 +105,7 @@ pub(super) fn ranks(corners: &Corners<'_>, axis: usize) -> (i32, i32) {
 
 /// The box around a triangle, outward by what its corners may be off; exact where that is zero.
 #[inline(always)]
-pub(super) fn bounds(placed: &Placed<'_>, corners: &Corners<'_>) -> ([f64; 3], [f64; 3]) {
+pub(super) fn bounds(placed: &Placed, corners: &Corners<'_>) -> ([f64; 3], [f64; 3]) {
     let mut min = [f64::INFINITY; 3];
     let mut max = [f64::NEG_INFINITY; 3];
     for corner in corners {
@@ -122,7 +123,7 @@ pub(super) fn bounds(placed: &Placed<'_>, corners: &Corners<'_>) -> ([f64; 3], [
 }
 
 /// The largest error among the corners' positions, and the largest magnitude that goes into their arithmetic.
-pub(super) fn accuracy(placed: &Placed<'_>, corners: &Corners<'_>) -> (f64, f64) {
+pub(super) fn accuracy(placed: &Placed, corners: &Corners<'_>) -> (f64, f64) {
     let mut error = 0f32;
     let mut magnitude = placed.frame.cells() as f64;
     for corner in corners {
@@ -135,14 +136,14 @@ pub(super) fn accuracy(placed: &Placed<'_>, corners: &Corners<'_>) -> (f64, f64)
 }
 
 /// The same when it is not the mesh that counts but the surface that it stands for.
-pub(super) fn surface_accuracy(placed: &Placed<'_>, corners: &Corners<'_>) -> (f64, f64) {
+pub(super) fn surface_accuracy(placed: &Placed, corners: &Corners<'_>) -> (f64, f64) {
     let (error, magnitude) = accuracy(placed, corners);
     (error + placed.displacement, magnitude)
 }
 
 /// Whether determinants of the corners and lattice points are the surface's, without rounding.
 #[inline(always)]
-pub(super) fn is_exact(placed: &Placed<'_>, corners: &Corners<'_>) -> bool {
+pub(super) fn is_exact(placed: &Placed, corners: &Corners<'_>) -> bool {
     placed.displacement == 0.0 && are_short(corners)
 }
 

@@ -44,7 +44,7 @@ impl Default for Scan {
 /// A block: its lowest cell, the triangles that may cut it, and the winding number of its lowest centre.
 #[derive(Clone, Copy)]
 pub(super) struct Task<'t> {
-    pub(super) placed: &'t Placed<'t>,
+    pub(super) placed: &'t Placed,
     pub(super) at: [i32; 3],
     pub(super) triangles: &'t [u32],
     pub(super) winding: i32,

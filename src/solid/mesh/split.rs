@@ -10,6 +10,7 @@ use crate::lattice::{Cell, Cube, Frame};
 use crate::octree::{Block, Tag};
 use crate::solid::{Scratch, Solid, Verdict};
 use alloc::boxed::Box;
+use alloc::sync::Arc;
 use alloc::vec::Vec;
 
 /// A closed triangle mesh as a solid on the lattice of one frame.
@@ -19,13 +20,13 @@ use alloc::vec::Vec;
 /// let vertices = vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 /// let mesh = TriangleMesh::new(vertices, vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]])?;
 /// let frame = Frame::new([0.0; 3], 1.0, 6)?;
-/// let solid = MeshSolid::new(&mesh, &frame, FillRule::NonZero)?;
+/// let solid = MeshSolid::new(mesh, &frame, FillRule::NonZero)?;
 /// let tree = build(&solid, &frame, Rule::Certified, &Control::default())?;
 /// assert!(tree.statistics().volume().contains(1.0 / 6.0));
 /// # Ok::<(), leafless::Error>(())
 /// ```
-pub struct MeshSolid<'m> {
-    placed: Placed<'m>,
+pub struct MeshSolid {
+    placed: Placed,
     fill: FillRule,
 }
 
@@ -57,14 +58,20 @@ impl Scratch for MeshScratch {
     }
 }
 
-impl<'m> MeshSolid<'m> {
-    /// A closed mesh on the lattice of `frame`; time and memory linear in the mesh. A mesh that reaches beyond
+impl MeshSolid {
+    /// A closed mesh on the lattice of `frame`; time and memory linear in the mesh, which is shared (an
+    /// `Arc`) or taken over. A mesh that reaches beyond
     /// the universe is clipped by it, which [`exterior`](Solid::exterior) tells.
     ///
     /// # Errors
     /// [`Error::Mesh`] if the mesh is empty, not closed or (for [`FillRule::NonZero`]) not consistently
     /// oriented.
-    pub fn new(mesh: &'m TriangleMesh, frame: &Frame, fill: FillRule) -> Result<MeshSolid<'m>, Error> {
+    pub fn new(
+        mesh: impl Into<Arc<TriangleMesh>>,
+        frame: &Frame,
+        fill: FillRule,
+    ) -> Result<MeshSolid, Error> {
+        let mesh = mesh.into();
         mesh.check_closed(fill)?;
         Ok(MeshSolid { placed: Placed::new(mesh, frame)?, fill })
     }
@@ -141,7 +148,7 @@ fn extent(cell: Cell, depth: u8) -> ([i32; 3], i32) {
     (cell.first_at(depth).at.map(|a| a as i32), 1 << (depth - cell.level))
 }
 
-impl Solid for MeshSolid<'_> {
+impl Solid for MeshSolid {
     type Part = MeshPart;
     type Scratch = MeshScratch;
 
@@ -240,9 +247,9 @@ impl Solid for MeshSolid<'_> {
         Ok(true)
     }
 
-    fn sample(&self, _: &mut MeshScratch, _: &Cube<'_>, part: &MeshPart) -> Option<bool> {
+    fn sample(&self, _: &mut MeshScratch, _: &Cube<'_>, part: &MeshPart) -> Result<Option<bool>, Error> {
         // A finest cell's lowest centre is its only one.
-        Some(self.is_inside(part.winding))
+        Ok(Some(self.is_inside(part.winding)))
     }
 
     fn exterior(&self, frame: &Frame) -> Tag {
@@ -274,7 +281,7 @@ impl Solid for MeshSolid<'_> {
 }
 
 /// Which of the children of edge `half` of the cell at `at` a triangle cuts.
-fn children_cut(placed: &Placed<'_>, corners: &Corners<'_>, at: [i32; 3], half: i32, height: u8) -> u8 {
+fn children_cut(placed: &Placed, corners: &Corners<'_>, at: [i32; 3], half: i32, height: u8) -> u8 {
     let (min, max) = bounds(placed, corners);
     let mut candidates = 0xFFu8;
     let mut strictly = true;

@@ -1,0 +1,2092 @@
+/*
+ * Leafless: a solid-modelling kernel on leaf-free octrees.
+ *
+ * Generated from the sources by cbindgen; do not edit. SPDX-License-Identifier: MIT OR Apache-2.0
+ *
+ * What holds for all functions:
+ *
+ * - A function that can fail returns a leafless_status. LEAFLESS_OK is 0. leafless_last_error has the message of
+ *   the last failure in the calling thread.
+ * - Results are written to the last parameters, and only on success: after a failure they are as they were, but for
+ *   the contents of buffers. No parameter is both read and written.
+ * - General errors, which the functions do not list again: LEAFLESS_E_NULL if a pointer is NULL that the function
+ *   does not say may be; LEAFLESS_E_ARGUMENT if one is misaligned for what it points to; LEAFLESS_E_PANIC if the
+ *   library has a defect, which never ends the host program and leaves all objects usable.
+ * - Objects are opaque handles. What _new, _open and the like return is a reference; _ref gives one more; _free
+ *   gives one back, and takes NULL. References may be given back in any order: what an object needs of another it
+ *   shares. Pointers from _peek functions belong to the object.
+ * - Threads: calls whose handle parameters are pointers to const may run at once, on the same object too. Other
+ *   calls need the object for themselves. Different objects never interfere. Nothing global is changed.
+ * - Structs with a field struct_size begin with sizeof of themselves, and all their other fields may be zero.
+ *   Programs that were compiled with an older, shorter struct go on working.
+ * - Numbers for which there is an enum come in as uint32_t and are checked.
+ * - Texts are UTF-8 of a given length in bytes; paths too, on every platform.
+ * - Coordinates whose names end in _model are in model units, those in _cells in finest cells. "3 numbers" are x, y
+ *   and z.
+ * - Buffers that are not known to be large enough are filled in two steps: with a NULL buffer the function tells the
+ *   number of elements, then it fills. Capacities count elements.
+ * - Functions of the host get their context first, return 0 to go on, and must not throw or longjmp through the
+ *   library.
+ *
+ * The doc block of a function says, in this order: what it is for, which buffers it needs, what it results in, its
+ * errors, who owns what, in which threads it may run, what it makes of untrusted input, and since which version of
+ * the library it exists. Before version 0.1 all of it may still change.
+ */
+
+
+#ifndef LEAFLESS_H
+#define LEAFLESS_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+/** Version of the library that this header belongs to: major * 1000000 + minor * 1000 + patch. */
+#define LEAFLESS_VERSION \
+    (LEAFLESS_VERSION_MAJOR * 1000000 + LEAFLESS_VERSION_MINOR * 1000 + LEAFLESS_VERSION_PATCH)
+
+/** Whether the library that is linked fits this header: the same binary interface, and not older. */
+#define LEAFLESS_COMPATIBLE() (leafless_abi() == LEAFLESS_ABI && leafless_version() >= LEAFLESS_VERSION)
+
+/**
+ * Major version of the library that this header belongs to.
+ */
+#define LEAFLESS_VERSION_MAJOR 0
+
+/**
+ * Minor version of the library that this header belongs to.
+ */
+#define LEAFLESS_VERSION_MINOR 0
+
+/**
+ * Patch level of the library that this header belongs to.
+ */
+#define LEAFLESS_VERSION_PATCH 1
+
+/**
+ * Number of the binary interface: programs and libraries of one number fit together. 0 until the release 0.1,
+ * which means that nothing is promised yet.
+ */
+#define LEAFLESS_ABI 0
+
+/**
+ * What a function returns. Codes are never renumbered and never used for something else; new ones may be added
+ * at the end.
+ */
+enum leafless_status
+#ifdef __cplusplus
+  : int32_t
+#endif // __cplusplus
+ {
+    /**
+     * Done.
+     */
+    LEAFLESS_OK = 0,
+    /**
+     * A pointer that must not be NULL is.
+     */
+    LEAFLESS_E_NULL = 1,
+    /**
+     * An argument is out of its range, not a number, or misaligned.
+     */
+    LEAFLESS_E_ARGUMENT = 2,
+    /**
+     * A text is not UTF-8, or a path holds a NUL.
+     */
+    LEAFLESS_E_UTF8 = 3,
+    /**
+     * A buffer is too small for what would be written to it.
+     */
+    LEAFLESS_E_BUFFER = 4,
+    /**
+     * Operands lie on different frames, or a solid belongs to another frame.
+     */
+    LEAFLESS_E_FRAME = 5,
+    /**
+     * The sampled rule was asked of a solid that cannot decide single points.
+     */
+    LEAFLESS_E_NOT_SAMPLED = 6,
+    /**
+     * A mesh does not bound a solid.
+     */
+    LEAFLESS_E_MESH = 7,
+    /**
+     * A mesh file cannot be read.
+     */
+    LEAFLESS_E_MESH_FILE = 8,
+    /**
+     * The bytes are no Leafless file, or a damaged one.
+     */
+    LEAFLESS_E_FORMAT = 9,
+    /**
+     * The file needs a newer version of the library.
+     */
+    LEAFLESS_E_VERSION = 10,
+    /**
+     * The arrays of an octree contradict each other.
+     */
+    LEAFLESS_E_DAMAGED = 11,
+    /**
+     * More nodes or bytes than leafless_options allows.
+     */
+    LEAFLESS_E_LIMIT = 12,
+    /**
+     * An allocation failed.
+     */
+    LEAFLESS_E_NO_MEMORY = 13,
+    /**
+     * The host asked to stop.
+     */
+    LEAFLESS_E_CANCELLED = 14,
+    /**
+     * A function of the host ended the work by what it returned.
+     */
+    LEAFLESS_E_CALLBACK = 15,
+    /**
+     * The operating system refused to read or write.
+     */
+    LEAFLESS_E_IO = 16,
+    /**
+     * A defect of the library. What it worked on is as before; the message says where to report it.
+     */
+    LEAFLESS_E_PANIC = 17,
+};
+#ifndef __cplusplus
+typedef int32_t leafless_status;
+#endif // __cplusplus
+
+/**
+ * What is known of a cell.
+ */
+enum leafless_tag
+#ifdef __cplusplus
+  : uint8_t
+#endif // __cplusplus
+ {
+    /**
+     * Proven outside of the solid.
+     */
+    LEAFLESS_TAG_EMPTY = 0,
+    /**
+     * Cut and split: the cell has a node.
+     */
+    LEAFLESS_TAG_BRANCH = 1,
+    /**
+     * Not decided.
+     */
+    LEAFLESS_TAG_PARTIAL = 2,
+    /**
+     * Proven to lie in the solid.
+     */
+    LEAFLESS_TAG_FULL = 3,
+};
+#ifndef __cplusplus
+typedef uint8_t leafless_tag;
+#endif // __cplusplus
+
+/**
+ * The answer to a point query.
+ */
+enum leafless_membership
+#ifdef __cplusplus
+  : uint8_t
+#endif // __cplusplus
+ {
+    /**
+     * Proven outside.
+     */
+    LEAFLESS_OUTSIDE = 0,
+    /**
+     * Proven inside.
+     */
+    LEAFLESS_INSIDE = 1,
+    /**
+     * In a PARTIAL cell, outside of the universe, or not a number.
+     */
+    LEAFLESS_UNDECIDED = 2,
+};
+#ifndef __cplusplus
+typedef uint8_t leafless_membership;
+#endif // __cplusplus
+
+/**
+ * The answer to a box query. Each is proven, but for the last.
+ */
+enum leafless_region
+#ifdef __cplusplus
+  : uint8_t
+#endif // __cplusplus
+ {
+    /**
+     * The interiors of box and solid are disjoint.
+     */
+    LEAFLESS_REGION_OUTSIDE = 0,
+    /**
+     * The box lies in the solid.
+     */
+    LEAFLESS_REGION_INSIDE = 1,
+    /**
+     * Part of the box lies inside, part outside.
+     */
+    LEAFLESS_REGION_CROSSING = 2,
+    /**
+     * None of these could be proven at the octree's depth.
+     */
+    LEAFLESS_REGION_UNDECIDED = 3,
+};
+#ifndef __cplusplus
+typedef uint8_t leafless_region;
+#endif // __cplusplus
+
+/**
+ * Which points a closed surface encloses.
+ */
+enum leafless_fill
+#ifdef __cplusplus
+  : uint32_t
+#endif // __cplusplus
+ {
+    /**
+     * Points that the surface winds around, in either sense and any number of times: overlapping bodies are
+     * united. The triangles must be consistently oriented.
+     */
+    LEAFLESS_FILL_NON_ZERO = 0,
+    /**
+     * Points from which a ray crosses the surface an odd number of times: the overlap of two bodies is outside.
+     * Orientation does not matter.
+     */
+    LEAFLESS_FILL_EVEN_ODD = 1,
+};
+#ifndef __cplusplus
+typedef uint32_t leafless_fill;
+#endif // __cplusplus
+
+/**
+ * What becomes of finest cells that are not decided.
+ */
+enum leafless_rule
+#ifdef __cplusplus
+  : uint32_t
+#endif // __cplusplus
+ {
+    /**
+     * They stay PARTIAL: FULL is proven full, EMPTY proven empty.
+     */
+    LEAFLESS_RULE_CERTIFIED = 0,
+    /**
+     * Their centre decides.
+     */
+    LEAFLESS_RULE_SAMPLED = 1,
+    /**
+     * EMPTY: the result lies in the solid.
+     */
+    LEAFLESS_RULE_INNER = 2,
+    /**
+     * FULL: the result covers the solid.
+     */
+    LEAFLESS_RULE_OUTER = 3,
+};
+#ifndef __cplusplus
+typedef uint32_t leafless_rule;
+#endif // __cplusplus
+
+/**
+ * What a host promises of its shape outside of the universe that it is asked about.
+ */
+enum leafless_exterior
+#ifdef __cplusplus
+  : uint32_t
+#endif // __cplusplus
+ {
+    /**
+     * Nothing: the shape counts as clipped by the universe.
+     */
+    LEAFLESS_EXTERIOR_UNKNOWN = 0,
+    /**
+     * The shape ends inside of the universe.
+     */
+    LEAFLESS_EXTERIOR_EMPTY = 1,
+    /**
+     * Everything outside of the universe belongs to the shape.
+     */
+    LEAFLESS_EXTERIOR_FULL = 2,
+};
+#ifndef __cplusplus
+typedef uint32_t leafless_exterior;
+#endif // __cplusplus
+
+/**
+ * A switch to stop long operations from any thread, and to ask how far they are.
+ *
+ * All its functions may be called at once from any number of threads.
+ */
+typedef struct leafless_control leafless_control;
+
+/**
+ * A position in an octree that moves along its links, one level at a step. At first it stands on the universe.
+ *
+ * Moving changes it: while one thread moves a cursor, no other may use it. Threads may have a cursor each.
+ */
+typedef struct leafless_cursor leafless_cursor;
+
+/**
+ * A surface of triangles with shared vertices. Vertices at equal places are welded; whether the mesh is closed is
+ * not implied.
+ *
+ * Immutable: all its functions may be called at once from any number of threads, but leafless_mesh_free needs
+ * the reference that it gives back for itself.
+ */
+typedef struct leafless_mesh leafless_mesh;
+
+/**
+ * A leaf-free octree, in memory or mapped from a file.
+ *
+ * Immutable: all its functions may be called at once from any number of threads, but leafless_octree_free needs
+ * the reference that it gives back for itself.
+ */
+typedef struct leafless_octree leafless_octree;
+
+/**
+ * Point queries that remember the way to the last answer: for points that lie near each other, such as along a
+ * line or in scan order.
+ *
+ * Every call changes it: only one thread may use a cursor at a time. Threads may have a cursor each.
+ */
+typedef struct leafless_point_cursor leafless_point_cursor;
+
+/**
+ * Anything that has a shape: it can split a cell of space into eight classified ones.
+ *
+ * Immutable: all its functions may be called at once from any number of threads, but leafless_solid_free needs
+ * the reference that it gives back for itself.
+ */
+typedef struct leafless_solid leafless_solid;
+
+/**
+ * Hears how far an operation is, with the fraction done (0 to 1); returns 0 to go on, anything else to cancel.
+ * It is called from any of the operation's threads, also from two at once; with `threads` = 1 from the calling
+ * thread only. It must return: no exception, no longjmp.
+ */
+typedef int32_t (*leafless_progress_fn)(void *ctx, double fraction);
+
+/**
+ * How a long operation may proceed. Where a function takes options, NULL means the defaults. All fields but the
+ * first may be zero, which is their default; leafless_options_init sets them so. No option changes a result.
+ */
+typedef struct leafless_options {
+    /**
+     * sizeof(leafless_options).
+     */
+    uint32_t struct_size;
+    /**
+     * Threads to use; 0 means as many as the machine has processors.
+     */
+    uint32_t threads;
+    /**
+     * Refuse results of more octree nodes than this; 0 means no limit.
+     */
+    uint64_t max_nodes;
+    /**
+     * Refuse results whose working form is larger than this many bytes; 0 means no limit.
+     */
+    uint64_t max_bytes;
+    /**
+     * Hears of the progress; optional.
+     */
+    leafless_progress_fn progress;
+    /**
+     * What `progress` is called with.
+     */
+    void *progress_ctx;
+    /**
+     * Ends the operation when it is cancelled, and can be asked for the progress; optional. Give operations that
+     * run at once a control each, or their progress is mixed up.
+     */
+    const struct leafless_control *control;
+} leafless_options;
+
+/**
+ * Where a tree lies: the cube [origin, origin + edge]³ in model units, cut into 2^depth cells per axis.
+ *
+ * A coordinate of the origin is 0 or of a magnitude between 2^-256 and 2^256, the edge between 2^-256 and
+ * 2^256, the depth 1 to 20. The lattice planes are the real numbers origin + i·edge/2^depth, whether or not
+ * doubles can represent them: comparisons with them are exact.
+ */
+typedef struct leafless_frame {
+    /**
+     * Lower corner of the universe.
+     */
+    double origin[3];
+    /**
+     * Edge length of the universe.
+     */
+    double edge;
+    /**
+     * Levels below the universe.
+     */
+    uint32_t depth;
+} leafless_frame;
+
+/**
+ * An interval that contains the truth: lower ≤ truth ≤ upper.
+ */
+typedef struct leafless_interval {
+    /**
+     * Proven lower bound.
+     */
+    double lower;
+    /**
+     * Proven upper bound.
+     */
+    double upper;
+} leafless_interval;
+
+/**
+ * What was found while a mesh was taken in, and how its triangles hang together.
+ */
+typedef struct leafless_mesh_report {
+    /**
+     * Triangles that were handed in: triangles + degenerate.
+     */
+    uint64_t facets_read;
+    /**
+     * Triangles of the mesh.
+     */
+    uint64_t triangles;
+    /**
+     * Vertices of the mesh, all at different places.
+     */
+    uint64_t vertices;
+    /**
+     * Vertices that were handed in and lay on an earlier one.
+     */
+    uint64_t welded;
+    /**
+     * Triangles that were dropped because two of their corners lie at one place.
+     */
+    uint64_t degenerate;
+    /**
+     * Edges that an odd number of triangles use. A mesh is closed if there is none.
+     */
+    uint64_t boundary_edges;
+    /**
+     * Edges that an even number of triangles use, but not half of them in each direction. A closed mesh is
+     * consistently oriented if there is none.
+     */
+    uint64_t misoriented_edges;
+    /**
+     * Edges that more than two triangles use, for instance where two bodies touch. They do no harm.
+     */
+    uint64_t non_manifold_edges;
+    /**
+     * Sets of triangles that hang together over edges.
+     */
+    uint64_t bodies;
+    /**
+     * Vertices that leafless_mesh_sewn moved onto another one.
+     */
+    uint64_t sewn;
+    /**
+     * The farthest that any of them was moved along an axis, in model units.
+     */
+    double displacement_model;
+} leafless_mesh_report;
+
+/**
+ * Classifies the box [min, max] (3 numbers each, model units) for the host's own shape: LEAFLESS_TAG_EMPTY or
+ * LEAFLESS_TAG_FULL if that is proven for all of the box, LEAFLESS_TAG_PARTIAL to be asked about its eight parts.
+ * Anything else ends the operation with LEAFLESS_E_CALLBACK and the number in the message; so use a negative
+ * number for the host's own errors.
+ *
+ * It is called from several threads at once, unless the operation's options say `threads` = 1, and must give the
+ * same answer to the same box. It must return: no exception, no longjmp. It may call this library.
+ */
+typedef int32_t (*leafless_classify_fn)(void *ctx, const double *min, const double *max);
+
+/**
+ * Decides a point (3 numbers, model units) for the host's own shape: 1 inside, 0 outside; anything else ends the
+ * operation with LEAFLESS_E_CALLBACK. Else as leafless_classify_fn.
+ */
+typedef int32_t (*leafless_contains_fn)(void *ctx, const double *point);
+
+/**
+ * Called once, when nothing uses `ctx` any more, in the thread that gave back the last reference.
+ */
+typedef void (*leafless_destroy_fn)(void *ctx);
+
+/**
+ * The host's own shape. All fields but the first may be zero; `classify` must be set.
+ */
+typedef struct leafless_callbacks {
+    /**
+     * sizeof(leafless_callbacks).
+     */
+    uint32_t struct_size;
+    /**
+     * A leafless_exterior.
+     */
+    uint32_t exterior;
+    /**
+     * Classifies boxes.
+     */
+    leafless_classify_fn classify;
+    /**
+     * Decides points: LEAFLESS_RULE_SAMPLED needs it; optional.
+     */
+    leafless_contains_fn contains;
+    /**
+     * Called when `ctx` is not needed any more; optional.
+     */
+    leafless_destroy_fn destroy;
+    /**
+     * What the functions are called with.
+     */
+    void *ctx;
+} leafless_callbacks;
+
+/**
+ * What can be said of an octree at once.
+ */
+typedef struct leafless_octree_info {
+    /**
+     * Where it lies, and its depth.
+     */
+    struct leafless_frame frame;
+    /**
+     * Array elements without bricks; each holds two levels.
+     */
+    uint64_t elements;
+    /**
+     * Array elements of the deepest level.
+     */
+    uint64_t bricks;
+    /**
+     * The tag of the whole universe; BRANCH if it is cut.
+     */
+    leafless_tag root;
+    /**
+     * What is known of the space outside of the universe; never BRANCH.
+     */
+    leafless_tag exterior;
+    /**
+     * Whether nothing is undecided.
+     */
+    bool is_binary;
+    /**
+     * Whether the solid is not known to end inside of the universe: volumes then concern the part inside.
+     */
+    bool is_clipped;
+} leafless_octree_info;
+
+/**
+ * Counts and certified volumes. The volume is that of the part inside of the universe.
+ */
+typedef struct leafless_statistics {
+    /**
+     * Internal nodes: cells that are cut and split.
+     */
+    uint64_t nodes;
+    /**
+     * EMPTY cells.
+     */
+    uint64_t empty;
+    /**
+     * FULL cells.
+     */
+    uint64_t full;
+    /**
+     * PARTIAL cells.
+     */
+    uint64_t partial;
+    /**
+     * Volume that is surely solid, in finest cells.
+     */
+    uint64_t lower_cells;
+    /**
+     * Volume that is possibly solid, in finest cells.
+     */
+    uint64_t upper_cells;
+    /**
+     * The same two in cubic model units, rounded outward.
+     */
+    struct leafless_interval volume_model;
+} leafless_statistics;
+
+/**
+ * Where a cursor stands.
+ */
+typedef struct leafless_cursor_state {
+    /**
+     * The cell's place among those of its level, per axis.
+     */
+    uint32_t cell[3];
+    /**
+     * The cell's level; 0 is the universe.
+     */
+    uint32_t level;
+    /**
+     * The cell's tag.
+     */
+    leafless_tag tag;
+    /**
+     * Of a BRANCH the tags of its children, in octant order (bit 0 of the octant is x, bit 1 y, bit 2 z); else
+     * eight times the cell's own.
+     */
+    leafless_tag children[8];
+} leafless_cursor_state;
+
+/**
+ * What header and section table of a file say.
+ */
+typedef struct leafless_probe {
+    /**
+     * Major version of the format.
+     */
+    uint32_t major;
+    /**
+     * Minor version of the format.
+     */
+    uint32_t minor;
+    /**
+     * Where the octree lies, and its depth.
+     */
+    struct leafless_frame frame;
+    /**
+     * Array elements without bricks.
+     */
+    uint64_t elements;
+    /**
+     * Array elements of the deepest level.
+     */
+    uint64_t bricks;
+    /**
+     * Length of the file in bytes.
+     */
+    uint64_t file_length;
+    /**
+     * Sections of the file.
+     */
+    uint64_t sections;
+    /**
+     * The tag of the whole universe; BRANCH if it is cut.
+     */
+    leafless_tag root;
+    /**
+     * What is known of the space outside of the universe; never BRANCH.
+     */
+    leafless_tag exterior;
+    /**
+     * Whether nothing is undecided.
+     */
+    bool is_binary;
+} leafless_probe;
+
+/**
+ * A section of a file.
+ */
+typedef struct leafless_section {
+    /**
+     * Number of its kind.
+     */
+    uint32_t kind;
+    /**
+     * Whether a reader must know the kind to read the file.
+     */
+    bool is_required;
+    /**
+     * Name of its kind, NUL-terminated; empty if this library does not know it.
+     */
+    char name[24];
+    /**
+     * Where it begins in the file, in bytes.
+     */
+    uint64_t offset;
+    /**
+     * Its length in bytes.
+     */
+    uint64_t length;
+    /**
+     * Its length in elements.
+     */
+    uint64_t count;
+} leafless_section;
+
+/**
+ * Takes bytes of a file in order: all `count` of them, and returns 0; anything else ends the writing with
+ * LEAFLESS_E_CALLBACK. It is called in the calling thread. It must return: no exception, no longjmp.
+ */
+typedef int32_t (*leafless_write_fn)(void *ctx, const uint8_t *bytes, size_t count);
+
+#ifdef __cplusplus
+extern "C" {
+#endif // __cplusplus
+
+/**
+ * The version of the library that is linked: major · 1 000 000 + minor · 1000 + patch, as LEAFLESS_VERSION.
+ *
+ * - Buffers: none.
+ * - Result: the number.
+ * - Errors: none.
+ * - Ownership: nothing changes hands.
+ * - Threads: any.
+ * - Untrusted input: none.
+ * - Since: 0.1
+ */
+uint32_t leafless_version(void);
+
+/**
+ * The version of the library that is linked, as a text such as "0.1.0".
+ *
+ * - Buffers: none.
+ * - Result: a NUL-terminated text, never NULL.
+ * - Errors: none.
+ * - Ownership: the text is static; do not free it.
+ * - Threads: any.
+ * - Untrusted input: none.
+ * - Since: 0.1
+ */
+const char *leafless_version_string(void);
+
+/**
+ * The number of the binary interface of the library that is linked; compare it with LEAFLESS_ABI, or call
+ * leafless_check.
+ *
+ * - Buffers: none.
+ * - Result: the number.
+ * - Errors: none.
+ * - Ownership: nothing changes hands.
+ * - Threads: any.
+ * - Untrusted input: none.
+ * - Since: 0.1
+ */
+uint32_t leafless_abi(void);
+
+/**
+ * The name of a status, such as "LEAFLESS_E_NULL".
+ *
+ * - Buffers: none.
+ * - Result: a NUL-terminated text, never NULL; "LEAFLESS_E_UNKNOWN" for a number that is no status.
+ * - Errors: none.
+ * - Ownership: the text is static; do not free it.
+ * - Threads: any.
+ * - Untrusted input: any number.
+ * - Since: 0.1
+ */
+const char *leafless_status_name(int32_t status);
+
+/**
+ * The message of the last failure in the calling thread: a sentence that a user can act on, in UTF-8. Calls
+ * that succeed leave it as it is; before the first failure it is empty.
+ *
+ * - Buffers: `message`, `capacity` bytes; may be NULL if `capacity` is 0.
+ * - Result: the message's length in bytes, without the terminating NUL, also if not all of it was written; at
+ *   most 511. What is written is cut at a character and NUL-terminated.
+ * - Errors: none.
+ * - Ownership: the message is copied.
+ * - Threads: any; every thread has its own message.
+ * - Untrusted input: none.
+ * - Since: 0.1
+ */
+size_t leafless_last_error(char *message, size_t capacity);
+
+/**
+ * The status of the last failure in the calling thread, LEAFLESS_OK before the first.
+ *
+ * - Buffers: none.
+ * - Result: the status.
+ * - Errors: none.
+ * - Ownership: nothing changes hands.
+ * - Threads: any; every thread has its own status.
+ * - Untrusted input: none.
+ * - Since: 0.1
+ */
+leafless_status leafless_last_status(void);
+
+#if defined(LEAFLESS_TEST)
+/**
+ * Panics inside, to show what becomes of it: only in libraries that are built for tests.
+ *
+ * - Buffers: none.
+ * - Result: LEAFLESS_E_PANIC.
+ * - Errors: none.
+ * - Ownership: nothing changes hands.
+ * - Threads: any.
+ * - Untrusted input: none.
+ * - Since: 0.1
+ */
+leafless_status leafless_test_panic(void);
+#endif
+
+/**
+ * Sets options to their defaults.
+ *
+ * - Buffers: `options`, one struct, need not be initialised.
+ * - Result: `*options`.
+ * - Errors: only the general ones.
+ * - Ownership: nothing changes hands.
+ * - Threads: any.
+ * - Untrusted input: none.
+ * - Since: 0.1
+ */
+leafless_status leafless_options_init(struct leafless_options *options);
+
+/**
+ * Makes a control.
+ *
+ * - Buffers: `control`, one pointer.
+ * - Result: `*control`, not cancelled.
+ * - Errors: only the general ones.
+ * - Ownership: give `*control` back with leafless_control_free, not before the operations that use it are done.
+ * - Threads: any.
+ * - Untrusted input: none.
+ * - Since: 0.1
+ */
+leafless_status leafless_control_new(struct leafless_control **control);
+
+/**
+ * Gives back a control.
+ *
+ * - Buffers: `control`, a handle or NULL, which does nothing.
+ * - Result: none.
+ * - Errors: none.
+ * - Ownership: the handle is gone.
+ * - Threads: no other call may use the handle.
+ * - Untrusted input: none.
+ * - Since: 0.1
+ */
+void leafless_control_free(struct leafless_control *control);
+
+/**
+ * Ends the operations that run with this control: they return LEAFLESS_E_CANCELLED soon, and so do later ones
+ * until leafless_control_reset.
+ *
+ * - Buffers: `control`, a handle.
+ * - Result: none; returns at once.
+ * - Errors: only the general ones.
+ * - Ownership: nothing changes hands.
+ * - Threads: any.
+ * - Untrusted input: none.
+ * - Since: 0.1
+ */
+leafless_status leafless_control_cancel(const struct leafless_control *control);
+
+/**
+ * Makes a cancelled control usable again.
+ *
+ * - Buffers: `control`, a handle.
+ * - Result: none.
+ * - Errors: only the general ones.
+ * - Ownership: nothing changes hands.
+ * - Threads: any, but operations that have not noticed the cancelling yet may go on.
+ * - Untrusted input: none.
+ * - Since: 0.1
+ */
+leafless_status leafless_control_reset(const struct leafless_control *control);
+
+/**
+ * Whether a control was cancelled, and how far the operation is that runs with it.
+ *
+ * - Buffers: `control`, a handle; `cancelled` and `fraction`, one each, each may be NULL.
+ * - Result: `*cancelled`; `*fraction`, 0 to 1.
+ * - Errors: only the general ones.
+ * - Ownership: nothing changes hands.
+ * - Threads: any.
+ * - Untrusted input: none.
+ * - Since: 0.1
+ */
+leafless_status leafless_control_state(const struct leafless_control *control,
+                                       bool *cancelled,
+                                       double *fraction);
+
+/**
+ * Checks a frame's fields.
+ *
+ * - Buffers: `frame`, one struct.
+ * - Result: LEAFLESS_OK if the frame can be used.
+ * - Errors: LEAFLESS_E_ARGUMENT, with the field that is out of range in the message.
+ * - Ownership: nothing changes hands.
+ * - Threads: any.
+ * - Untrusted input: any values.
+ * - Since: 0.1
+ */
+leafless_status leafless_frame_check(const struct leafless_frame *frame);
+
+/**
+ * The default frame of a shape: the cube of edge L·(1 + 1/32) around its centre, L being its longest extent; the
+ * same universe at every depth.
+ *
+ * - Buffers: `min` and `max`, 3 numbers each (model units); `frame`, one struct.
+ * - Result: `*frame`.
+ * - Errors: LEAFLESS_E_MESH if the longest extent is 0; LEAFLESS_E_ARGUMENT if a bound is not a finite number in
+ *   range, or so far from the origin that doubles cannot resolve the cube.
+ * - Ownership: nothing changes hands.
+ * - Threads: any.
+ * - Untrusted input: any values.
+ * - Since: 0.1
+ *
+ */
+leafless_status leafless_frame_around(const double min[3],
+                                      const double max[3],
+                                      uint32_t depth,
+                                      struct leafless_frame *frame);
+
+/**
+ * The edge length of a finest cell: edge / 2^depth, exactly.
+ *
+ * - Buffers: `frame`, one struct; `cell_size_model`, one number.
+ * - Result: `*cell_size_model`, in model units.
+ * - Errors: LEAFLESS_E_ARGUMENT as leafless_frame_check.
+ * - Ownership: nothing changes hands.
+ * - Threads: any.
+ * - Untrusted input: any values.
+ * - Since: 0.1
+ */
+leafless_status leafless_frame_cell_size(const struct leafless_frame *frame, double *cell_size_model);
+
+/**
+ * The finest cell that a point lies in. A point on a plane between two cells belongs to the upper one, on the
+ * universe's upper face to the last; the comparison is exact.
+ *
+ * - Buffers: `frame`, one struct; `point_model`, 3 numbers; `cell`, room for 3.
+ * - Result: `cell`, each below 2^depth.
+ * - Errors: LEAFLESS_E_ARGUMENT as leafless_frame_check, and if the point is outside of the universe or not a
+ *   number.
+ * - Ownership: nothing changes hands.
+ * - Threads: any.
+ * - Untrusted input: any values.
+ * - Since: 0.1
+ *
+ */
+leafless_status leafless_frame_cell_of(const struct leafless_frame *frame,
+                                       const double point_model[3],
+                                       uint32_t cell[3]);
+
+/**
+ * Where a lattice plane lies: the tightest interval of doubles that contains it.
+ *
+ * - Buffers: `frame`, one struct; `plane_model`, one struct.
+ * - Result: `*plane_model`; lower = upper if the plane is a double.
+ * - Errors: LEAFLESS_E_ARGUMENT as leafless_frame_check, if `axis` is not 0 to 2, or `index` beyond 2^depth.
+ * - Ownership: nothing changes hands.
+ * - Threads: any.
+ * - Untrusted input: any values.
+ * - Since: 0.1
+ */
+leafless_status leafless_frame_plane(const struct leafless_frame *frame,
+                                     uint32_t axis,
+                                     uint32_t index,
+                                     struct leafless_interval *plane_model);
+
+/**
+ * Makes a mesh of arrays. Equal vertices are welded, triangles with two corners at one place dropped and counted;
+ * coordinates below 2^-256 count as zero. Seen from outside of the solid the corners turn counter-clockwise.
+ *
+ * - Buffers: `vertices`, `vertex_count` vertices of 3 numbers (model units), the first numbers of two vertices
+ *   `vertex_stride` bytes apart (a multiple of 8, at least 24; 0 means 24); `triangles`, 3 · `triangle_count`
+ *   indices of vertices. Each may be NULL if its count is 0.
+ * - Result: `*mesh`.
+ * - Errors: LEAFLESS_E_MESH if a coordinate is infinite, not a number, or beyond ±2^256, if an index is out of
+ *   range, or if there are more than 2^32 - 1 vertices or triangles; LEAFLESS_E_NO_MEMORY.
+ * - Ownership: the arrays are copied; give `*mesh` back with leafless_mesh_free.
+ * - Threads: any.
+ * - Untrusted input: any values in the arrays.
+ * - Since: 0.1
+ */
+leafless_status leafless_mesh_new(const double *vertices,
+                                  uint64_t vertex_count,
+                                  uint64_t vertex_stride,
+                                  const uint32_t *triangles,
+                                  uint64_t triangle_count,
+                                  struct leafless_mesh **mesh);
+
+/**
+ * Reads a binary or ASCII STL file; which of the two is found out from the bytes.
+ *
+ * - Buffers: `path`, `path_length` bytes of UTF-8.
+ * - Result: `*mesh`, welded as by leafless_mesh_new; not checked to be closed.
+ * - Errors: LEAFLESS_E_MESH_FILE with the line or the facet in the message; LEAFLESS_E_MESH; LEAFLESS_E_IO;
+ *   LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY.
+ * - Ownership: give `*mesh` back with leafless_mesh_free.
+ * - Threads: any.
+ * - Untrusted input: any file; memory is at most a small multiple of its length.
+ * - Since: 0.1
+ */
+leafless_status leafless_mesh_read_stl(const char *path, size_t path_length, struct leafless_mesh **mesh);
+
+/**
+ * As leafless_mesh_read_stl for a file in memory.
+ *
+ * - Buffers: `bytes`, `length` bytes; may be NULL if there are none.
+ * - Result: `*mesh`, welded as by leafless_mesh_new; not checked to be closed.
+ * - Errors: LEAFLESS_E_MESH_FILE with the line or the facet in the message; LEAFLESS_E_MESH;
+ *   LEAFLESS_E_NO_MEMORY.
+ * - Ownership: the bytes are not kept; give `*mesh` back with leafless_mesh_free.
+ * - Threads: any.
+ * - Untrusted input: any bytes; memory is at most a small multiple of their number.
+ * - Since: 0.1
+ */
+leafless_status leafless_mesh_from_stl(const uint8_t *bytes, uint64_t length, struct leafless_mesh **mesh);
+
+/**
+ * Writes a binary STL file into memory: 84 + 50 t bytes. Coordinates are rounded to 32 bits.
+ *
+ * - Buffers: `bytes`, room for `capacity` bytes, or NULL to ask for the length only.
+ * - Result: `*length`, the length of the file; the file in `bytes`.
+ * - Errors: LEAFLESS_E_BUFFER if the capacity is too small; LEAFLESS_E_ARGUMENT if a coordinate is beyond the
+ *   range of 32-bit floating point numbers; LEAFLESS_E_NO_MEMORY.
+ * - Ownership: nothing changes hands.
+ * - Threads: any.
+ * - Untrusted input: none.
+ * - Since: 0.1
+ */
+leafless_status leafless_mesh_to_stl(const struct leafless_mesh *mesh,
+                                     uint8_t *bytes,
+                                     uint64_t capacity,
+                                     uint64_t *length);
+
+/**
+ * One more reference to a mesh.
+ *
+ * - Buffers: `mesh`, a handle; `reference`, one pointer.
+ * - Result: `*reference`, equal to `mesh`.
+ * - Errors: only the general ones.
+ * - Ownership: give each reference back with leafless_mesh_free.
+ * - Threads: any.
+ * - Untrusted input: none.
+ * - Since: 0.1
+ */
+leafless_status leafless_mesh_ref(const struct leafless_mesh *mesh, struct leafless_mesh **reference);
+
+/**
+ * Gives back a reference to a mesh; with the last one the mesh is gone. Solids made of it stay.
+ *
+ * - Buffers: `mesh`, a handle or NULL, which does nothing.
+ * - Result: none.
+ * - Errors: none.
+ * - Ownership: the reference is gone.
+ * - Threads: any; no other call may use this reference.
+ * - Untrusted input: none.
+ * - Since: 0.1
+ */
+void leafless_mesh_free(struct leafless_mesh *mesh);
+
+/**
+ * How many vertices and triangles a mesh has.
+ *
+ * - Buffers: `vertex_count` and `triangle_count`, one number each.
+ * - Result: both.
+ * - Errors: only the general ones.
+ * - Ownership: nothing changes hands.
+ * - Threads: any.
+ * - Untrusted input: none.
+ * - Since: 0.1
+ */
+leafless_status leafless_mesh_counts(const struct leafless_mesh *mesh,
+                                     uint64_t *vertex_count,
+                                     uint64_t *triangle_count);
+
+/**
+ * Copies the arrays of a mesh; leafless_mesh_counts tells their lengths.
+ *
+ * - Buffers: `vertices`, room for `vertex_capacity` vertices of 3 numbers; `triangles`, room for
+ *   `triangle_capacity` triangles of 3 indices. Each may be NULL if it is not wanted.
+ * - Result: both arrays.
+ * - Errors: LEAFLESS_E_BUFFER if a capacity is too small; then neither is written.
+ * - Ownership: nothing changes hands.
+ * - Threads: any.
+ * - Untrusted input: none.
+ * - Since: 0.1
+ */
+leafless_status leafless_mesh_copy(const struct leafless_mesh *mesh,
+                                   double *vertices,
+                                   uint64_t vertex_capacity,
+                                   uint32_t *triangles,
+                                   uint64_t triangle_capacity);
+
+/**
+ * The bounding box of a mesh's triangles.
+ *
+ * - Buffers: `min` and `max`, room for 3 numbers each.
+ * - Result: both corners, in model units.
+ * - Errors: LEAFLESS_E_MESH if the mesh has no triangle.
+ * - Ownership: nothing changes hands.
+ * - Threads: any.
+ * - Untrusted input: none.
+ * - Since: 0.1
+ *
+ */
+leafless_status leafless_mesh_bounds(const struct leafless_mesh *mesh, double min[3], double max[3]);
+
+/**
+ * The volume that a mesh encloses, by the divergence theorem: overlaps count twice, bodies that are inside out
+ * negative. Of an open mesh it has no meaning. Rounded; the certified volume is that of an octree.
+ *
+ * - Buffers: `volume_model`, one number.
+ * - Result: `*volume_model`, in cubic model units.
+ * - Errors: only the general ones.
+ * - Ownership: nothing changes hands.
+ * - Threads: any.
+ * - Untrusted input: none.
+ * - Since: 0.1
+ */
+leafless_status leafless_mesh_volume(const struct leafless_mesh *mesh,
+                                     double *volume_model);
+
+/**
+ * What was found when a mesh was made, and how its triangles hang together. The first call analyses the edges,
+ * later ones are free.
+ *
+ * - Buffers: `report`, one struct.
+ * - Result: `*report`.
+ * - Errors: LEAFLESS_E_NO_MEMORY.
+ * - Ownership: nothing changes hands.
+ * - Threads: any.
+ * - Untrusted input: none.
+ * - Since: 0.1
+ */
+leafless_status leafless_mesh_describe(const struct leafless_mesh *mesh,
+                                       struct leafless_mesh_report *report);
+
+/**
+ * Checks that a mesh bounds a solid. Self-intersections, overlaps, nested and inside-out bodies are all allowed.
+ *
+ * - Buffers: none. `fill` is a leafless_fill.
+ * - Result: LEAFLESS_OK if it does.
+ * - Errors: LEAFLESS_E_MESH if the mesh is empty, not closed, or (LEAFLESS_FILL_NON_ZERO) not consistently
+ *   oriented; LEAFLESS_E_NO_MEMORY.
+ * - Ownership: nothing changes hands.
+ * - Threads: any.
+ * - Untrusted input: any mesh.
+ * - Since: 0.1
+ */
+leafless_status leafless_mesh_check_closed(const struct leafless_mesh *mesh,
+                                           uint32_t fill);
+
+/**
+ * The mesh with hair cracks closed: vertices at open edges that lie within 2^-24 of the extent of each other
+ * become one. Verdicts about solids made of it stay proven: the distance is added outward.
+ *
+ * - Buffers: `sewn`, one pointer.
+ * - Result: `*sewn`; leafless_mesh_describe tells how many vertices moved and how far.
+ * - Errors: LEAFLESS_E_NO_MEMORY.
+ * - Ownership: `mesh` stays as it is; give `*sewn` back with leafless_mesh_free.
+ * - Threads: any.
+ * - Untrusted input: any mesh.
+ * - Since: 0.1
+ */
+leafless_status leafless_mesh_sewn(const struct leafless_mesh *mesh, struct leafless_mesh **sewn);
+
+/**
+ * The mesh under an affine map: x' = M x + t, rounded. A reflection turns it inside out. The moved vertices count
+ * as the truth, whatever cracks were closed before.
+ *
+ * - Buffers: `matrix`, 12 numbers: three rows of M and t, (m00 m01 m02 t0, m10 …); `moved`, one pointer.
+ * - Result: `*moved`, welded as by leafless_mesh_new.
+ * - Errors: LEAFLESS_E_ARGUMENT if a number of the matrix is not finite; LEAFLESS_E_MESH if a vertex leaves
+ *   ±2^256; LEAFLESS_E_NO_MEMORY.
+ * - Ownership: `mesh` stays as it is; give `*moved` back with leafless_mesh_free.
+ * - Threads: any.
+ * - Untrusted input: any numbers.
+ * - Since: 0.1
+ *
+ */
+leafless_status leafless_mesh_transformed(const struct leafless_mesh *mesh,
+                                          const double matrix[12],
+                                          struct leafless_mesh **moved);
+
+/**
+ * The mesh moved by a vector, rounded. What leafless_mesh_sewn has found stays known.
+ *
+ * - Buffers: `offset_model`, 3 numbers; `moved`, one pointer.
+ * - Result: `*moved`.
+ * - Errors: LEAFLESS_E_ARGUMENT if a number of the offset is not finite; LEAFLESS_E_MESH if a vertex leaves
+ *   ±2^256; LEAFLESS_E_NO_MEMORY.
+ * - Ownership: `mesh` stays as it is; give `*moved` back with leafless_mesh_free.
+ * - Threads: any.
+ * - Untrusted input: any numbers.
+ * - Since: 0.1
+ *
+ */
+leafless_status leafless_mesh_translated(const struct leafless_mesh *mesh,
+                                         const double offset_model[3],
+                                         struct leafless_mesh **moved);
+
+/**
+ * The ball of all points at most `radius` from `centre`. Its verdicts are exact.
+ *
+ * - Buffers: `centre_model`, 3 numbers; `solid`, one pointer.
+ * - Result: `*solid`.
+ * - Errors: LEAFLESS_E_ARGUMENT if the radius is not between 2^-256 and 2^256, or a coordinate neither 0 nor of
+ *   such a magnitude.
+ * - Ownership: give `*solid` back with leafless_solid_free.
+ * - Threads: any.
+ * - Untrusted input: any numbers.
+ * - Since: 0.1
+ *
+ */
+leafless_status leafless_solid_new_ball(const double centre_model[3],
+                                        double radius_model,
+                                        struct leafless_solid **solid);
+
+/**
+ * The box [min, max] with faces parallel to the lattice. Its verdicts are exact, so a face on a lattice plane
+ * leaves nothing undecided.
+ *
+ * - Buffers: `min_model` and `max_model`, 3 numbers each; `solid`, one pointer.
+ * - Result: `*solid`.
+ * - Errors: LEAFLESS_E_ARGUMENT if min ≥ max on an axis, or a coordinate is neither 0 nor of a magnitude between
+ *   2^-256 and 2^256.
+ * - Ownership: give `*solid` back with leafless_solid_free.
+ * - Threads: any.
+ * - Untrusted input: any numbers.
+ * - Since: 0.1
+ *
+ */
+leafless_status leafless_solid_new_box(const double min_model[3],
+                                       const double max_model[3],
+                                       struct leafless_solid **solid);
+
+/**
+ * The half-space of the points p with normal · p + offset ≥ 0. Its verdicts are exact.
+ *
+ * - Buffers: `normal`, 3 numbers, of any length and pointing into the solid; `solid`, one pointer.
+ * - Result: `*solid`.
+ * - Errors: LEAFLESS_E_ARGUMENT if the normal is zero, or a coefficient neither 0 nor of a magnitude between
+ *   2^-256 and 2^256.
+ * - Ownership: give `*solid` back with leafless_solid_free.
+ * - Threads: any.
+ * - Untrusted input: any numbers.
+ * - Since: 0.1
+ *
+ */
+leafless_status leafless_solid_new_halfspace(const double normal[3],
+                                             double offset,
+                                             struct leafless_solid **solid);
+
+/**
+ * What a closed mesh encloses, on the lattice of one frame: the solid can be built on that frame only. A mesh
+ * that reaches beyond the universe is clipped by it.
+ *
+ * - Buffers: `frame`, one struct; `solid`, one pointer. `fill` is a leafless_fill.
+ * - Result: `*solid`. Time and memory are linear in the mesh.
+ * - Errors: LEAFLESS_E_MESH if the mesh is empty, not closed, or (LEAFLESS_FILL_NON_ZERO) not consistently
+ *   oriented; LEAFLESS_E_ARGUMENT as leafless_frame_check; LEAFLESS_E_NO_MEMORY.
+ * - Ownership: the solid shares the mesh, which may be freed; give `*solid` back with leafless_solid_free.
+ * - Threads: any.
+ * - Untrusted input: any mesh.
+ * - Since: 0.1
+ */
+leafless_status leafless_solid_new_mesh(const struct leafless_mesh *mesh,
+                                        const struct leafless_frame *frame,
+                                        uint32_t fill,
+                                        struct leafless_solid **solid);
+
+/**
+ * The host's own shape.
+ *
+ * - Buffers: `callbacks`, one struct, which is copied; `solid`, one pointer.
+ * - Result: `*solid`.
+ * - Errors: LEAFLESS_E_NULL if `classify` is NULL; LEAFLESS_E_ARGUMENT if `exterior` is no leafless_exterior.
+ *   After an error `destroy` is not called.
+ * - Ownership: `ctx` must live until `destroy` is called with it; give `*solid` back with leafless_solid_free.
+ * - Threads: any; in which the functions are called, leafless_classify_fn says.
+ * - Untrusted input: any answers.
+ * - Since: 0.1
+ */
+leafless_status leafless_solid_new_callbacks(const struct leafless_callbacks *callbacks,
+                                             struct leafless_solid **solid);
+
+/**
+ * A stored octree as a solid on its own universe. Built to fewer levels it is cut there, built to more its
+ * PARTIAL cells stay undecided.
+ *
+ * - Buffers: `solid`, one pointer.
+ * - Result: `*solid`.
+ * - Errors: only the general ones; building it returns LEAFLESS_E_DAMAGED if the octree was mapped unverified
+ *   and its links are damaged.
+ * - Ownership: the solid shares the octree, which may be freed; give `*solid` back with leafless_solid_free.
+ * - Threads: any.
+ * - Untrusted input: any octree.
+ * - Since: 0.1
+ */
+leafless_status leafless_octree_as_solid(const struct leafless_octree *octree, struct leafless_solid **solid);
+
+/**
+ * One more reference to a solid.
+ *
+ * - Buffers: `solid`, a handle; `reference`, one pointer.
+ * - Result: `*reference`, equal to `solid`.
+ * - Errors: only the general ones.
+ * - Ownership: give each reference back with leafless_solid_free.
+ * - Threads: any.
+ * - Untrusted input: none.
+ * - Since: 0.1
+ */
+leafless_status leafless_solid_ref(const struct leafless_solid *solid, struct leafless_solid **reference);
+
+/**
+ * Gives back a reference to a solid; with the last one the solid is gone. Octrees built from it stay.
+ *
+ * - Buffers: `solid`, a handle or NULL, which does nothing.
+ * - Result: none.
+ * - Errors: none.
+ * - Ownership: the reference is gone.
+ * - Threads: any; no other call may use this reference.
+ * - Untrusted input: none.
+ * - Since: 0.1
+ */
+void leafless_solid_free(struct leafless_solid *solid);
+
+/**
+ * Builds the octree of a solid to the depth of a frame. The result is the same bit for bit for any number of
+ * threads.
+ *
+ * - Buffers: `frame`, one struct; `options`, one struct or NULL; `octree`, one pointer. `rule` is a leafless_rule.
+ * - Result: `*octree`.
+ * - Errors: LEAFLESS_E_FRAME if the solid belongs to another frame; LEAFLESS_E_NOT_SAMPLED if
+ *   LEAFLESS_RULE_SAMPLED is asked of a solid that cannot decide points; LEAFLESS_E_CALLBACK;
+ *   LEAFLESS_E_DAMAGED; LEAFLESS_E_ARGUMENT; LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
+ * - Ownership: give `*octree` back with leafless_octree_free.
+ * - Threads: any; uses as many as `options` says.
+ * - Untrusted input: any solid; set `max_bytes` where the depth or the solid is not your own choice.
+ * - Since: 0.1
+ */
+leafless_status leafless_octree_build(const struct leafless_solid *solid,
+                                      const struct leafless_frame *frame,
+                                      uint32_t rule,
+                                      const struct leafless_options *options,
+                                      struct leafless_octree **octree);
+
+/**
+ * The octree whose whole universe has one tag.
+ *
+ * - Buffers: `frame`, one struct; `octree`, one pointer. `tag` and `exterior` are leafless_tags, not BRANCH: what
+ *   is known of the universe, and of the space around it.
+ * - Result: `*octree`.
+ * - Errors: LEAFLESS_E_ARGUMENT.
+ * - Ownership: give `*octree` back with leafless_octree_free.
+ * - Threads: any.
+ * - Untrusted input: any numbers.
+ * - Since: 0.1
+ */
+leafless_status leafless_octree_uniform(const struct leafless_frame *frame,
+                                        uint32_t tag,
+                                        uint32_t exterior,
+                                        struct leafless_octree **octree);
+
+/**
+ * The octree with its PARTIAL cells resolved: EMPTY under LEAFLESS_RULE_INNER, FULL under LEAFLESS_RULE_OUTER.
+ *
+ * - Buffers: `options`, one struct or NULL; `resolved`, one pointer. `rule` is a leafless_rule.
+ * - Result: `*resolved`.
+ * - Errors: LEAFLESS_E_NOT_SAMPLED under LEAFLESS_RULE_SAMPLED if a cell is PARTIAL, because a stored octree knows
+ *   no more about it; LEAFLESS_E_DAMAGED; LEAFLESS_E_ARGUMENT; LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED;
+ *   LEAFLESS_E_NO_MEMORY.
+ * - Ownership: `octree` stays as it is; give `*resolved` back with leafless_octree_free.
+ * - Threads: any; uses as many as `options` says.
+ * - Untrusted input: any octree.
+ * - Since: 0.1
+ */
+leafless_status leafless_octree_resolve(const struct leafless_octree *octree,
+                                        uint32_t rule,
+                                        const struct leafless_options *options,
+                                        struct leafless_octree **resolved);
+
+/**
+ * The same octree with its bricks encoded as a file would have them, through a dictionary where that is shorter.
+ * Everything works on it as on any other.
+ *
+ * - Buffers: `compacted`, one pointer.
+ * - Result: `*compacted`.
+ * - Errors: LEAFLESS_E_DAMAGED if a brick cannot be read; LEAFLESS_E_NO_MEMORY.
+ * - Ownership: `octree` stays as it is; give `*compacted` back with leafless_octree_free.
+ * - Threads: any.
+ * - Untrusted input: any octree.
+ * - Since: 0.1
+ */
+leafless_status leafless_octree_compact(const struct leafless_octree *octree,
+                                        struct leafless_octree **compacted);
+
+/**
+ * One more reference to an octree.
+ *
+ * - Buffers: `octree`, a handle; `reference`, one pointer.
+ * - Result: `*reference`, equal to `octree`.
+ * - Errors: only the general ones.
+ * - Ownership: give each reference back with leafless_octree_free.
+ * - Threads: any.
+ * - Untrusted input: none.
+ * - Since: 0.1
+ */
+leafless_status leafless_octree_ref(const struct leafless_octree *octree, struct leafless_octree **reference);
+
+/**
+ * Gives back a reference to an octree. With the last one the octree is gone, and with it the mapping of its file,
+ * unless a cursor or a solid still shares it.
+ *
+ * - Buffers: `octree`, a handle or NULL, which does nothing.
+ * - Result: none.
+ * - Errors: none.
+ * - Ownership: the reference is gone.
+ * - Threads: any; no other call may use this reference.
+ * - Untrusted input: none.
+ * - Since: 0.1
+ */
+void leafless_octree_free(struct leafless_octree *octree);
+
+/**
+ * What can be said of an octree at once. O(1).
+ *
+ * - Buffers: `info`, one struct.
+ * - Result: `*info`.
+ * - Errors: only the general ones.
+ * - Ownership: nothing changes hands.
+ * - Threads: any.
+ * - Untrusted input: any octree.
+ * - Since: 0.1
+ */
+leafless_status leafless_octree_describe(const struct leafless_octree *octree,
+                                         struct leafless_octree_info *info);
+
+/**
+ * Counts over all levels, and the certified volume. O(depth) once the counts are known, which for an octree from
+ * a file they are and for a new one takes one pass over its arrays.
+ *
+ * - Buffers: `statistics`, one struct.
+ * - Result: `*statistics`.
+ * - Errors: only the general ones.
+ * - Ownership: nothing changes hands.
+ * - Threads: any.
+ * - Untrusted input: any octree; of one that was mapped unverified the numbers may be wrong.
+ * - Since: 0.1
+ */
+leafless_status leafless_octree_statistics(const struct leafless_octree *octree,
+                                           struct leafless_statistics *statistics);
+
+/**
+ * Counts of each level, and the certified volumes of the tree cut there. Entry 0 is the universe, entry `depth`
+ * the finest cells.
+ *
+ * - Buffers: `levels`, room for `capacity` structs, or NULL to ask for the count only; `count`, one number.
+ * - Result: `*count`, depth + 1; the levels.
+ * - Errors: LEAFLESS_E_BUFFER if the capacity is too small.
+ * - Ownership: nothing changes hands.
+ * - Threads: any.
+ * - Untrusted input: any octree; of one that was mapped unverified the numbers may be wrong.
+ * - Since: 0.1
+ */
+leafless_status leafless_octree_levels(const struct leafless_octree *octree,
+                                       struct leafless_statistics *levels,
+                                       uint64_t capacity,
+                                       uint64_t *count);
+
+/**
+ * Checks that an octree is well-formed and canonical: O(n). Those that the library makes, opens or maps verified
+ * are; the bytes that checksums cover are not looked at here, see leafless_bytes_verify.
+ *
+ * - Buffers: none.
+ * - Result: LEAFLESS_OK if it is.
+ * - Errors: LEAFLESS_E_DAMAGED, with the first damage in the message.
+ * - Ownership: nothing changes hands.
+ * - Threads: any.
+ * - Untrusted input: any octree.
+ * - Since: 0.1
+ */
+leafless_status leafless_octree_check(const struct leafless_octree *octree);
+
+/**
+ * Whether two octrees have the same cells with the same tags on the same frame. Metadata does not count. O(n).
+ *
+ * - Buffers: `equal`, one truth value.
+ * - Result: `*equal`.
+ * - Errors: only the general ones.
+ * - Ownership: nothing changes hands.
+ * - Threads: any.
+ * - Untrusted input: any octrees.
+ * - Since: 0.1
+ */
+leafless_status leafless_octree_equal(const struct leafless_octree *a,
+                                      const struct leafless_octree *b,
+                                      bool *equal);
+
+/**
+ * The octree with one more fact in its metadata, or with another value of one; the arrays are shared. Names in
+ * use: "name", "units", "source", "rule".
+ *
+ * - Buffers: `key` and `value`, `key_length` and `value_length` bytes of UTF-8; `named`, one pointer.
+ * - Result: `*named`.
+ * - Errors: LEAFLESS_E_UTF8.
+ * - Ownership: the texts are copied; `octree` stays as it is; give `*named` back with leafless_octree_free.
+ * - Threads: any.
+ * - Untrusted input: any texts; all of an octree's metadata may take 1 MiB in a file.
+ * - Since: 0.1
+ */
+leafless_status leafless_octree_with_metadata(const struct leafless_octree *octree,
+                                              const char *key,
+                                              size_t key_length,
+                                              const char *value,
+                                              size_t value_length,
+                                              struct leafless_octree **named);
+
+/**
+ * The value of a fact in an octree's metadata.
+ *
+ * - Buffers: `key`, `key_length` bytes of UTF-8; `value` and `value_length`, one each.
+ * - Result: `*value`, not NUL-terminated; NULL if there is no such fact. `*value_length`, in bytes.
+ * - Errors: LEAFLESS_E_UTF8.
+ * - Ownership: the text belongs to the octree and lives as long as the reference `octree`.
+ * - Threads: any.
+ * - Untrusted input: any octree.
+ * - Since: 0.1
+ */
+leafless_status leafless_octree_peek_metadata(const struct leafless_octree *octree,
+                                              const char *key,
+                                              size_t key_length,
+                                              const char **value,
+                                              size_t *value_length);
+
+/**
+ * A fact of an octree's metadata by its place among all, which stand by ascending key.
+ *
+ * - Buffers: `count`, one number; `key`, `key_length`, `value`, `value_length`, one each, all four NULL to ask
+ *   for the count only.
+ * - Result: `*count`, the number of all facts; key and value, not NUL-terminated, with their lengths in bytes.
+ * - Errors: LEAFLESS_E_ARGUMENT if there is no fact `index`, unless only the count is asked for.
+ * - Ownership: the texts belong to the octree and live as long as the reference `octree`.
+ * - Threads: any.
+ * - Untrusted input: any octree.
+ * - Since: 0.1
+ */
+leafless_status leafless_octree_peek_metadata_at(const struct leafless_octree *octree,
+                                                 uint64_t index,
+                                                 uint64_t *count,
+                                                 const char **key,
+                                                 size_t *key_length,
+                                                 const char **value,
+                                                 size_t *value_length);
+
+/**
+ * Every point of `a` and of `b`. Exact, and the same bit for bit for any number of threads; never larger than
+ * both operands together.
+ *
+ * - Buffers: `options`, one struct or NULL; `result`, one pointer.
+ * - Result: `*result`, without metadata.
+ * - Errors: LEAFLESS_E_FRAME if the frames differ; LEAFLESS_E_DAMAGED; LEAFLESS_E_ARGUMENT; LEAFLESS_E_LIMIT;
+ *   LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
+ * - Ownership: the operands stay as they are; give `*result` back with leafless_octree_free.
+ * - Threads: any; uses as many as `options` says.
+ * - Untrusted input: any octrees; damage in ones that were mapped unverified is an error or reads as PARTIAL.
+ * - Since: 0.1
+ */
+leafless_status leafless_octree_union(const struct leafless_octree *a,
+                                      const struct leafless_octree *b,
+                                      const struct leafless_options *options,
+                                      struct leafless_octree **result);
+
+/**
+ * The points that `a` and `b` have in common.
+ *
+ * - Buffers: as leafless_octree_union.
+ * - Result: as leafless_octree_union.
+ * - Errors: as leafless_octree_union.
+ * - Ownership: as leafless_octree_union.
+ * - Threads: any; uses as many as `options` says.
+ * - Untrusted input: as leafless_octree_union.
+ * - Since: 0.1
+ */
+leafless_status leafless_octree_intersection(const struct leafless_octree *a,
+                                             const struct leafless_octree *b,
+                                             const struct leafless_options *options,
+                                             struct leafless_octree **result);
+
+/**
+ * `a` without `b`.
+ *
+ * - Buffers: as leafless_octree_union.
+ * - Result: as leafless_octree_union.
+ * - Errors: as leafless_octree_union.
+ * - Ownership: as leafless_octree_union.
+ * - Threads: any; uses as many as `options` says.
+ * - Untrusted input: as leafless_octree_union.
+ * - Since: 0.1
+ */
+leafless_status leafless_octree_difference(const struct leafless_octree *a,
+                                           const struct leafless_octree *b,
+                                           const struct leafless_options *options,
+                                           struct leafless_octree **result);
+
+/**
+ * The points of just one of `a` and `b`.
+ *
+ * - Buffers: as leafless_octree_union.
+ * - Result: as leafless_octree_union.
+ * - Errors: as leafless_octree_union.
+ * - Ownership: as leafless_octree_union.
+ * - Threads: any; uses as many as `options` says.
+ * - Untrusted input: as leafless_octree_union.
+ * - Since: 0.1
+ */
+leafless_status leafless_octree_xor(const struct leafless_octree *a,
+                                    const struct leafless_octree *b,
+                                    const struct leafless_options *options,
+                                    struct leafless_octree **result);
+
+/**
+ * Everything but `octree`, inside of its universe and out.
+ *
+ * - Buffers: as leafless_octree_union.
+ * - Result: as leafless_octree_union.
+ * - Errors: as leafless_octree_union.
+ * - Ownership: as leafless_octree_union.
+ * - Threads: any; uses as many as `options` says.
+ * - Untrusted input: as leafless_octree_union.
+ * - Since: 0.1
+ */
+leafless_status leafless_octree_complement(const struct leafless_octree *octree,
+                                           const struct leafless_options *options,
+                                           struct leafless_octree **result);
+
+/**
+ * The union of any number of octrees, at least one. Limits and progress of `options` concern each of its steps.
+ *
+ * - Buffers: `octrees`, `count` handles; `options`, one struct or NULL; `result`, one pointer.
+ * - Result: as leafless_octree_union.
+ * - Errors: as leafless_octree_union, and LEAFLESS_E_ARGUMENT if `count` is 0.
+ * - Ownership: as leafless_octree_union.
+ * - Threads: any; uses as many as `options` says.
+ * - Untrusted input: as leafless_octree_union.
+ * - Since: 0.1
+ */
+leafless_status leafless_octree_union_of(const struct leafless_octree *const *octrees,
+                                         uint64_t count,
+                                         const struct leafless_options *options,
+                                         struct leafless_octree **result);
+
+/**
+ * The intersection of any number of octrees, at least one.
+ *
+ * - Buffers: as leafless_octree_union_of.
+ * - Result: as leafless_octree_union.
+ * - Errors: as leafless_octree_union_of.
+ * - Ownership: as leafless_octree_union.
+ * - Threads: any; uses as many as `options` says.
+ * - Untrusted input: as leafless_octree_union.
+ * - Since: 0.1
+ */
+leafless_status leafless_octree_intersection_of(const struct leafless_octree *const *octrees,
+                                                uint64_t count,
+                                                const struct leafless_options *options,
+                                                struct leafless_octree **result);
+
+/**
+ * The points that lie in an odd number of octrees, at least one.
+ *
+ * - Buffers: as leafless_octree_union_of.
+ * - Result: as leafless_octree_union.
+ * - Errors: as leafless_octree_union_of.
+ * - Ownership: as leafless_octree_union.
+ * - Threads: any; uses as many as `options` says.
+ * - Untrusted input: as leafless_octree_union.
+ * - Since: 0.1
+ */
+leafless_status leafless_octree_xor_of(const struct leafless_octree *const *octrees,
+                                       uint64_t count,
+                                       const struct leafless_options *options,
+                                       struct leafless_octree **result);
+
+/**
+ * Whether the solid contains a point. A point on the boundary may be answered either way; one that is outside of
+ * the universe or not a number is undecided. At most ⌈depth/2⌉ array elements are read.
+ *
+ * - Buffers: `point_model`, 3 numbers; `membership`, one.
+ * - Result: `*membership`.
+ * - Errors: only the general ones.
+ * - Ownership: nothing changes hands.
+ * - Threads: any.
+ * - Untrusted input: any octree, any numbers; damage reads as undecided.
+ * - Since: 0.1
+ *
+ */
+leafless_status leafless_octree_contains(const struct leafless_octree *octree,
+                                         const double point_model[3],
+                                         leafless_membership *membership);
+
+/**
+ * As leafless_octree_contains for many points at once, which is faster than one by one.
+ *
+ * - Buffers: `points_model`, `count` points of 3 numbers; `memberships`, room for `count`. Both may be NULL if
+ *   `count` is 0.
+ * - Result: `memberships[i]` for point i.
+ * - Errors: only the general ones.
+ * - Ownership: nothing changes hands.
+ * - Threads: any; works in the calling thread.
+ * - Untrusted input: any octree, any numbers; damage reads as undecided.
+ * - Since: 0.1
+ */
+leafless_status leafless_octree_contains_many(const struct leafless_octree *octree,
+                                              const double *points_model,
+                                              uint64_t count,
+                                              leafless_membership *memberships);
+
+/**
+ * The tag of a finest cell.
+ *
+ * - Buffers: `cell`, 3 numbers; `tag`, one.
+ * - Result: `*tag`: EMPTY, FULL or PARTIAL; PARTIAL if a coordinate is not below 2^depth.
+ * - Errors: only the general ones.
+ * - Ownership: nothing changes hands.
+ * - Threads: any.
+ * - Untrusted input: any octree, any numbers; damage reads as PARTIAL.
+ * - Since: 0.1
+ *
+ */
+leafless_status leafless_octree_tag_at(const struct leafless_octree *octree,
+                                       const uint32_t cell[3],
+                                       leafless_tag *tag);
+
+/**
+ * How a box lies to the solid; what of it lies outside of the universe is undecided.
+ *
+ * - Buffers: `min_model` and `max_model`, 3 numbers each; `region`, one.
+ * - Result: `*region`.
+ * - Errors: LEAFLESS_E_ARGUMENT if min > max on an axis, or a coordinate is not a number.
+ * - Ownership: nothing changes hands.
+ * - Threads: any.
+ * - Untrusted input: any octree, any numbers; no array element is read twice; damage reads as undecided.
+ * - Since: 0.1
+ *
+ */
+leafless_status leafless_octree_classify_box(const struct leafless_octree *octree,
+                                             const double min_model[3],
+                                             const double max_model[3],
+                                             leafless_region *region);
+
+/**
+ * Makes a point cursor.
+ *
+ * - Buffers: `cursor`, one pointer.
+ * - Result: `*cursor`.
+ * - Errors: only the general ones.
+ * - Ownership: the cursor shares the octree, which may be freed; give `*cursor` back with
+ *   leafless_point_cursor_free.
+ * - Threads: any.
+ * - Untrusted input: any octree.
+ * - Since: 0.1
+ */
+leafless_status leafless_point_cursor_new(const struct leafless_octree *octree,
+                                          struct leafless_point_cursor **cursor);
+
+/**
+ * Gives back a point cursor.
+ *
+ * - Buffers: `cursor`, a handle or NULL, which does nothing.
+ * - Result: none.
+ * - Errors: none.
+ * - Ownership: the handle is gone.
+ * - Threads: no other call may use the handle.
+ * - Untrusted input: none.
+ * - Since: 0.1
+ */
+void leafless_point_cursor_free(struct leafless_point_cursor *cursor);
+
+/**
+ * As leafless_octree_contains.
+ *
+ * - Buffers: `point_model`, 3 numbers; `membership`, one.
+ * - Result: `*membership`.
+ * - Errors: only the general ones.
+ * - Ownership: nothing changes hands.
+ * - Threads: no other call may use the cursor.
+ * - Untrusted input: any octree, any numbers; damage reads as undecided.
+ * - Since: 0.1
+ *
+ */
+leafless_status leafless_point_cursor_contains(struct leafless_point_cursor *cursor,
+                                               const double point_model[3],
+                                               leafless_membership *membership);
+
+/**
+ * As leafless_octree_tag_at.
+ *
+ * - Buffers: `cell`, 3 numbers; `tag`, one.
+ * - Result: `*tag`: EMPTY, FULL or PARTIAL; PARTIAL if a coordinate is not below 2^depth.
+ * - Errors: only the general ones.
+ * - Ownership: nothing changes hands.
+ * - Threads: no other call may use the cursor.
+ * - Untrusted input: any octree, any numbers; damage reads as PARTIAL.
+ * - Since: 0.1
+ *
+ */
+leafless_status leafless_point_cursor_tag_at(struct leafless_point_cursor *cursor,
+                                             const uint32_t cell[3],
+                                             leafless_tag *tag);
+
+/**
+ * Makes a cursor that stands on the universe.
+ *
+ * - Buffers: `cursor`, one pointer.
+ * - Result: `*cursor`.
+ * - Errors: only the general ones.
+ * - Ownership: the cursor shares the octree, which may be freed; give `*cursor` back with leafless_cursor_free.
+ * - Threads: any.
+ * - Untrusted input: any octree.
+ * - Since: 0.1
+ */
+leafless_status leafless_cursor_new(const struct leafless_octree *octree,
+                                    struct leafless_cursor **cursor);
+
+/**
+ * Gives back a cursor.
+ *
+ * - Buffers: `cursor`, a handle or NULL, which does nothing.
+ * - Result: none.
+ * - Errors: none.
+ * - Ownership: the handle is gone.
+ * - Threads: no other call may use the handle.
+ * - Untrusted input: none.
+ * - Since: 0.1
+ */
+void leafless_cursor_free(struct leafless_cursor *cursor);
+
+/**
+ * Where a cursor stands.
+ *
+ * - Buffers: `state`, one struct.
+ * - Result: `*state`.
+ * - Errors: only the general ones.
+ * - Ownership: nothing changes hands.
+ * - Threads: any, while nobody moves the cursor.
+ * - Untrusted input: any octree.
+ * - Since: 0.1
+ */
+leafless_status leafless_cursor_read(const struct leafless_cursor *cursor,
+                                     struct leafless_cursor_state *state);
+
+/**
+ * Moves a cursor to a child of its cell. On a cell that is no BRANCH it stays where it is.
+ *
+ * - Buffers: `moved`, one truth value, or NULL. `octant` is 0 to 7.
+ * - Result: `*moved`, whether the cell is a BRANCH.
+ * - Errors: LEAFLESS_E_ARGUMENT if `octant` is not 0 to 7.
+ * - Ownership: nothing changes hands.
+ * - Threads: no other call may use the cursor.
+ * - Untrusted input: any octree; damage reads as PARTIAL, so that a walk visits every cell at most once.
+ * - Since: 0.1
+ */
+leafless_status leafless_cursor_descend(struct leafless_cursor *cursor, uint32_t octant, bool *moved);
+
+/**
+ * Moves a cursor to the parent of its cell. On the universe it stays where it is.
+ *
+ * - Buffers: `moved`, one truth value, or NULL.
+ * - Result: `*moved`, whether there is a parent.
+ * - Errors: only the general ones.
+ * - Ownership: nothing changes hands.
+ * - Threads: no other call may use the cursor.
+ * - Untrusted input: any octree.
+ * - Since: 0.1
+ */
+leafless_status leafless_cursor_ascend(struct leafless_cursor *cursor, bool *moved);
+
+/**
+ * What a file says of itself, without looking at more than header and section table. Whether the rest is good is
+ * not known then.
+ *
+ * - Buffers: `path`, `path_length` bytes of UTF-8; `probe`, one struct; `sections`, room for `capacity` structs,
+ *   or NULL if they are not wanted.
+ * - Result: `*probe`; as many sections as it says.
+ * - Errors: LEAFLESS_E_FORMAT; LEAFLESS_E_VERSION; LEAFLESS_E_IO; LEAFLESS_E_BUFFER; LEAFLESS_E_UTF8;
+ *   LEAFLESS_E_NO_MEMORY.
+ * - Ownership: nothing changes hands.
+ * - Threads: any.
+ * - Untrusted input: any file.
+ * - Since: 0.1
+ */
+leafless_status leafless_file_probe(const char *path,
+                                    size_t path_length,
+                                    struct leafless_probe *probe,
+                                    struct leafless_section *sections,
+                                    uint64_t capacity);
+
+/**
+ * As leafless_file_probe for the first bytes of a file in memory, or all of them.
+ *
+ * - Buffers: `bytes`, `length` bytes, may be NULL if there are none; `probe`, one struct; `sections`, room for
+ *   `capacity` structs, or NULL if they are not wanted.
+ * - Result: `*probe`; as many sections as it says.
+ * - Errors: LEAFLESS_E_FORMAT, also if the bytes end before the section table does; LEAFLESS_E_VERSION;
+ *   LEAFLESS_E_BUFFER; LEAFLESS_E_NO_MEMORY.
+ * - Ownership: nothing changes hands.
+ * - Threads: any.
+ * - Untrusted input: any bytes.
+ * - Since: 0.1
+ */
+leafless_status leafless_bytes_probe(const uint8_t *bytes,
+                                     uint64_t length,
+                                     struct leafless_probe *probe,
+                                     struct leafless_section *sections,
+                                     uint64_t capacity);
+
+/**
+ * Checks everything that the format promises of a whole file in memory: O(n).
+ *
+ * - Buffers: `bytes`, `length` bytes on an address that is a multiple of 8; may be NULL if there are none.
+ * - Result: LEAFLESS_OK if the file is good.
+ * - Errors: LEAFLESS_E_FORMAT; LEAFLESS_E_VERSION; LEAFLESS_E_DAMAGED; LEAFLESS_E_ARGUMENT if the bytes are
+ *   misaligned; LEAFLESS_E_NO_MEMORY.
+ * - Ownership: nothing changes hands.
+ * - Threads: any.
+ * - Untrusted input: any bytes.
+ * - Since: 0.1
+ */
+leafless_status leafless_bytes_verify(const uint8_t *bytes, uint64_t length);
+
+/**
+ * Reads a file into memory and verifies all of it: the plain way, and the one for files that may not be trusted.
+ * Later changes of the file do not matter.
+ *
+ * - Buffers: `path`, `path_length` bytes of UTF-8; `octree`, one pointer.
+ * - Result: `*octree`.
+ * - Errors: LEAFLESS_E_FORMAT; LEAFLESS_E_VERSION; LEAFLESS_E_DAMAGED; LEAFLESS_E_IO; LEAFLESS_E_UTF8;
+ *   LEAFLESS_E_NO_MEMORY.
+ * - Ownership: give `*octree` back with leafless_octree_free.
+ * - Threads: any.
+ * - Untrusted input: any file; memory is at most a small multiple of its length.
+ * - Since: 0.1
+ */
+leafless_status leafless_octree_open(const char *path,
+                                     size_t path_length,
+                                     struct leafless_octree **octree);
+
+/**
+ * Maps a file into memory and looks at its header, section table, bounds, level table and metadata only: some
+ * microseconds for a file of any size. What queries touch is read when they do. Of a file that is damaged
+ * elsewhere queries answer undecided or wrong, but stay in bounds and end.
+ *
+ * While the octree, a cursor or a solid of it lives, nobody may make the file shorter: reading beyond its new end
+ * raises SIGBUS, which by default ends the process. Nobody should write to it either: answers may then be wrong.
+ * Removing the file, or replacing it by renaming another over it, as leafless_octree_save does, is harmless.
+ *
+ * - Buffers: `path`, `path_length` bytes of UTF-8; `octree`, one pointer.
+ * - Result: `*octree`.
+ * - Errors: LEAFLESS_E_FORMAT; LEAFLESS_E_VERSION; LEAFLESS_E_DAMAGED if the level table contradicts the header;
+ *   LEAFLESS_E_ARGUMENT if there is no regular file; LEAFLESS_E_IO; LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY.
+ * - Ownership: give `*octree` back with leafless_octree_free.
+ * - Threads: any.
+ * - Untrusted input: any contents, but only where nobody else can change the file; else leafless_octree_open.
+ * - Since: 0.1
+ */
+leafless_status leafless_octree_map(const char *path,
+                                    size_t path_length,
+                                    struct leafless_octree **octree);
+
+/**
+ * As leafless_octree_map, but verifies all of the file first, in one scan.
+ *
+ * - Buffers: `path`, `path_length` bytes of UTF-8; `octree`, one pointer.
+ * - Result: `*octree`.
+ * - Errors: as leafless_octree_open, and LEAFLESS_E_ARGUMENT if there is no regular file.
+ * - Ownership: give `*octree` back with leafless_octree_free.
+ * - Threads: any.
+ * - Untrusted input: any contents, but only where nobody else can change the file; else leafless_octree_open.
+ * - Since: 0.1
+ */
+leafless_status leafless_octree_map_verified(const char *path,
+                                             size_t path_length,
+                                             struct leafless_octree **octree);
+
+/**
+ * The octree in the bytes of a whole file, copied and verified as by leafless_octree_open.
+ *
+ * - Buffers: `bytes`, `length` bytes, may be NULL if there are none; `octree`, one pointer.
+ * - Result: `*octree`.
+ * - Errors: LEAFLESS_E_FORMAT; LEAFLESS_E_VERSION; LEAFLESS_E_DAMAGED; LEAFLESS_E_NO_MEMORY.
+ * - Ownership: the bytes are not kept; give `*octree` back with leafless_octree_free.
+ * - Threads: any.
+ * - Untrusted input: any bytes; memory is at most a small multiple of their number.
+ * - Since: 0.1
+ */
+leafless_status leafless_octree_from_bytes(const uint8_t *bytes,
+                                           uint64_t length,
+                                           struct leafless_octree **octree);
+
+/**
+ * The octree in the bytes of a whole file, used where they lie, and checked as little as by leafless_octree_map;
+ * call leafless_bytes_verify first where they may be damaged. For files that are part of a program, or that the
+ * host maps itself.
+ *
+ * - Buffers: `bytes`, `length` bytes on an address that is a multiple of 8; `octree`, one pointer.
+ * - Result: `*octree`.
+ * - Errors: LEAFLESS_E_FORMAT; LEAFLESS_E_VERSION; LEAFLESS_E_DAMAGED if the level table contradicts the header;
+ *   LEAFLESS_E_ARGUMENT if the bytes are misaligned; LEAFLESS_E_NO_MEMORY.
+ * - Ownership: the bytes stay the host's. They must stay, unchanged, until the last reference to the octree and to
+ *   every cursor and solid made of it is given back. Give `*octree` back with leafless_octree_free.
+ * - Threads: any.
+ * - Untrusted input: any bytes, as leafless_octree_map.
+ * - Since: 0.1
+ */
+leafless_status leafless_octree_view_bytes(const uint8_t *bytes,
+                                           uint64_t length,
+                                           struct leafless_octree **octree);
+
+/**
+ * Saves an octree: at any moment, also after a crash or a power failure, there is the old file or the new one,
+ * each complete. Equal octrees with equal metadata give equal bytes.
+ *
+ * The bytes go to a temporary file in the same directory, which is then renamed over the old file. A symbolic link
+ * is followed; what is no regular file, such as a pipe, is written to directly.
+ *
+ * - Buffers: `path`, `path_length` bytes of UTF-8.
+ * - Result: LEAFLESS_OK once the file is on the disk.
+ * - Errors: LEAFLESS_E_IO; LEAFLESS_E_DAMAGED if the octree was mapped unverified and is damaged;
+ *   LEAFLESS_E_ARGUMENT if the metadata take more than 1 MiB; LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY. The old file
+ *   is then as it was.
+ * - Ownership: nothing changes hands.
+ * - Threads: any.
+ * - Untrusted input: any octree.
+ * - Since: 0.1
+ */
+leafless_status leafless_octree_save(const struct leafless_octree *octree,
+                                     const char *path,
+                                     size_t path_length);
+
+/**
+ * The bytes of an octree's file, in memory. Asking for the length takes as long as filling.
+ *
+ * - Buffers: `bytes`, room for `capacity` bytes, or NULL to ask for the length only; `length`, one number.
+ * - Result: `*length`, the length of the file; the file in `bytes`.
+ * - Errors: LEAFLESS_E_BUFFER if the capacity is too small; LEAFLESS_E_DAMAGED if the octree was mapped unverified
+ *   and is damaged; LEAFLESS_E_ARGUMENT if the metadata take more than 1 MiB; LEAFLESS_E_NO_MEMORY.
+ * - Ownership: nothing changes hands.
+ * - Threads: any.
+ * - Untrusted input: any octree.
+ * - Since: 0.1
+ */
+leafless_status leafless_octree_to_bytes(const struct leafless_octree *octree,
+                                         uint8_t *bytes,
+                                         uint64_t capacity,
+                                         uint64_t *length);
+
+/**
+ * Writes an octree's file through a function of the host, in a few large pieces; the file is never in memory as a
+ * whole.
+ *
+ * - Buffers: none.
+ * - Result: LEAFLESS_OK once `write` has taken all bytes.
+ * - Errors: LEAFLESS_E_CALLBACK with what `write` returned in the message; LEAFLESS_E_NULL if it is NULL;
+ *   LEAFLESS_E_DAMAGED if the octree was mapped unverified and is damaged; LEAFLESS_E_ARGUMENT if the metadata
+ *   take more than 1 MiB; LEAFLESS_E_NO_MEMORY. The last three come before anything is written.
+ * - Ownership: nothing changes hands.
+ * - Threads: any.
+ * - Untrusted input: any octree.
+ * - Since: 0.1
+ */
+leafless_status leafless_octree_write(const struct leafless_octree *octree,
+                                      leafless_write_fn write,
+                                      void *ctx);
+
+#ifdef __cplusplus
+}  // extern "C"
+#endif  // __cplusplus
+
+#endif  /* LEAFLESS_H */

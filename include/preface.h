@@ -1,0 +1,34 @@
+/*
+ * Leafless: a solid-modelling kernel on leaf-free octrees.
+ *
+ * Generated from the sources by cbindgen; do not edit. SPDX-License-Identifier: MIT OR Apache-2.0
+ *
+ * What holds for all functions:
+ *
+ * - A function that can fail returns a leafless_status. LEAFLESS_OK is 0. leafless_last_error has the message of
+ *   the last failure in the calling thread.
+ * - Results are written to the last parameters, and only on success: after a failure they are as they were, but for
+ *   the contents of buffers. No parameter is both read and written.
+ * - General errors, which the functions do not list again: LEAFLESS_E_NULL if a pointer is NULL that the function
+ *   does not say may be; LEAFLESS_E_ARGUMENT if one is misaligned for what it points to; LEAFLESS_E_PANIC if the
+ *   library has a defect, which never ends the host program and leaves all objects usable.
+ * - Objects are opaque handles. What _new, _open and the like return is a reference; _ref gives one more; _free
+ *   gives one back, and takes NULL. References may be given back in any order: what an object needs of another it
+ *   shares. Pointers from _peek functions belong to the object.
+ * - Threads: calls whose handle parameters are pointers to const may run at once, on the same object too. Other
+ *   calls need the object for themselves. Different objects never interfere. Nothing global is changed.
+ * - Structs with a field struct_size begin with sizeof of themselves, and all their other fields may be zero.
+ *   Programs that were compiled with an older, shorter struct go on working.
+ * - Numbers for which there is an enum come in as uint32_t and are checked.
+ * - Texts are UTF-8 of a given length in bytes; paths too, on every platform.
+ * - Coordinates whose names end in _model are in model units, those in _cells in finest cells. "3 numbers" are x, y
+ *   and z.
+ * - Buffers that are not known to be large enough are filled in two steps: with a NULL buffer the function tells the
+ *   number of elements, then it fills. Capacities count elements.
+ * - Functions of the host get their context first, return 0 to go on, and must not throw or longjmp through the
+ *   library.
+ *
+ * The doc block of a function says, in this order: what it is for, which buffers it needs, what it results in, its
+ * errors, who owns what, in which threads it may run, what it makes of untrusted input, and since which version of
+ * the library it exists. Before version 0.1 all of it may still change.
+ */

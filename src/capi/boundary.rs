@@ -1,0 +1,364 @@
+//! What every function of the interface does first and last: check pointers, catch panics, keep the message.
+
+use super::status::leafless_status;
+use crate::error::Error;
+use alloc::boxed::Box;
+use alloc::sync::Arc;
+use core::any::Any;
+use core::ffi::c_char;
+use core::fmt::{self, Display, Write};
+use core::mem::size_of;
+use core::ptr::NonNull;
+use std::cell::RefCell;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+/// Why a call fails.
+pub(super) enum Failure {
+    Null { name: &'static str },
+    Argument { name: &'static str, problem: &'static str },
+    Utf8 { name: &'static str },
+    Buffer { name: &'static str, needed: u64, capacity: u64 },
+    Library(Error),
+}
+
+impl<E: Into<Error>> From<E> for Failure {
+    fn from(error: E) -> Failure {
+        Failure::Library(error.into())
+    }
+}
+
+impl Display for Failure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Failure::Null { name } => write!(f, "{name}: must not be NULL"),
+            Failure::Argument { name, problem } => write!(f, "{name}: {problem}"),
+            Failure::Utf8 { name } => write!(f, "{name}: is not UTF-8"),
+            Failure::Buffer { name, needed, capacity } => {
+                write!(f, "{name}: has a capacity of {capacity}, and {needed} is needed")
+            }
+            Failure::Library(error) => write!(f, "{error}"),
+        }
+    }
+}
+
+/// Runs the body of a function.
+///
+/// A panic does not reach the host. Nothing that survives it can be half-changed: handles are immutable but for
+/// atomic flags and cursors, and a cursor's position is checked at every step.
+#[inline(always)]
+pub(super) fn guard(body: impl FnOnce() -> Result<(), Failure>) -> leafless_status {
+    match catch_unwind(AssertUnwindSafe(body)) {
+        Ok(Ok(())) => leafless_status::LEAFLESS_OK,
+        Ok(Err(failure)) => refused(failure),
+        Err(payload) => panicked(payload),
+    }
+}
+
+/// As [`guard`] for functions that have nothing to refuse, such as `_free`.
+pub(super) fn guard_free(body: impl FnOnce()) {
+    if let Err(payload) = catch_unwind(AssertUnwindSafe(body)) {
+        panicked(payload);
+    }
+}
+
+#[cold]
+fn refused(failure: Failure) -> leafless_status {
+    let status = leafless_status::from(&failure);
+    keep(status, &failure);
+    status
+}
+
+#[cold]
+fn panicked(payload: Box<dyn Any + Send>) -> leafless_status {
+    let text = match (payload.downcast_ref::<&str>(), payload.downcast_ref::<alloc::string::String>()) {
+        (Some(text), _) => text,
+        (_, Some(text)) => text.as_str(),
+        _ => "no message",
+    };
+    let status = leafless_status::LEAFLESS_E_PANIC;
+    keep(status, &format_args!("a defect of the library, please report it: {text}"));
+    status
+}
+
+/// The last failure of a thread. Of fixed size, so that a failure for want of memory can be told.
+struct Last {
+    status: leafless_status,
+    length: usize,
+    text: [u8; 511],
+}
+
+std::thread_local! {
+    static LAST: RefCell<Last> =
+        const { RefCell::new(Last { status: leafless_status::LEAFLESS_OK, length: 0, text: [0; 511] }) };
+}
+
+/// The largest length up to `most` at which `text` can be cut between characters.
+pub(super) fn cut(text: &str, most: usize) -> usize {
+    (0..=most.min(text.len())).rev().find(|&length| text.is_char_boundary(length)).unwrap_or(0)
+}
+
+impl Write for Last {
+    fn write_str(&mut self, text: &str) -> fmt::Result {
+        let length = cut(text, self.text.len() - self.length);
+        self.text[self.length..self.length + length].copy_from_slice(&text.as_bytes()[..length]);
+        self.length += length;
+        if length < text.len() { Err(fmt::Error) } else { Ok(()) }
+    }
+}
+
+fn keep(status: leafless_status, text: &dyn Display) {
+    // Nothing below fails in this thread, so the cell is not borrowed twice.
+    LAST.with_borrow_mut(|last| {
+        (last.status, last.length) = (status, 0);
+        // What does not fit is cut off.
+        let _ = write!(last, "{text}");
+    });
+}
+
+pub(super) fn last_message<R>(read: impl FnOnce(&str) -> R) -> R {
+    // Texts are cut between characters.
+    LAST.with_borrow(|last| read(core::str::from_utf8(&last.text[..last.length]).unwrap_or_default()))
+}
+
+pub(super) fn last_status() -> leafless_status {
+    LAST.with_borrow(|last| last.status)
+}
+
+#[inline(always)]
+fn checked<T>(pointer: *const T, name: &'static str) -> Result<(), Failure> {
+    if pointer.is_null() {
+        return Err(Failure::Null { name });
+    }
+    if !pointer.is_aligned() {
+        return Err(Failure::Argument { name, problem: "is misaligned for its type" });
+    }
+    Ok(())
+}
+
+/// What `pointer` points to.
+///
+/// # Safety
+/// Unless it is NULL or misaligned, it points to a `T` that stays and does not change during the call.
+#[inline(always)]
+pub(super) unsafe fn shared<'a, T>(pointer: *const T, name: &'static str) -> Result<&'a T, Failure> {
+    checked(pointer, name)?;
+    // SAFETY: neither NULL nor misaligned; the rest the caller promises.
+    Ok(unsafe { &*pointer })
+}
+
+/// What `pointer` points to.
+///
+/// # Safety
+/// As [`shared`], and nothing else uses it during the call.
+#[inline(always)]
+pub(super) unsafe fn exclusive<'a, T>(pointer: *mut T, name: &'static str) -> Result<&'a mut T, Failure> {
+    checked(pointer, name)?;
+    // SAFETY: neither NULL nor misaligned; the rest the caller promises.
+    Ok(unsafe { &mut *pointer })
+}
+
+/// The `N` numbers at `pointer`.
+///
+/// # Safety
+/// Unless it is NULL or misaligned, it points to that many.
+#[inline(always)]
+pub(super) unsafe fn array<T: Copy, const N: usize>(
+    pointer: *const T,
+    name: &'static str,
+) -> Result<[T; N], Failure> {
+    checked(pointer, name)?;
+    // SAFETY: neither NULL nor misaligned; the rest the caller promises.
+    Ok(unsafe { *pointer.cast() })
+}
+
+/// The `count` elements at `pointer`, which may be NULL if there is none.
+///
+/// # Safety
+/// Unless it is NULL or misaligned, it points to that many, which stay and do not change during the call.
+pub(super) unsafe fn slice<'a, T>(
+    pointer: *const T,
+    count: u64,
+    name: &'static str,
+) -> Result<&'a [T], Failure> {
+    if count == 0 {
+        return Ok(&[]);
+    }
+    let count = length::<T>(pointer, count, name)?;
+    // SAFETY: neither NULL nor misaligned, and not longer than memory can be; the rest the caller promises.
+    Ok(unsafe { core::slice::from_raw_parts(pointer, count) })
+}
+
+fn length<T>(pointer: *const T, count: u64, name: &'static str) -> Result<usize, Failure> {
+    checked(pointer, name)?;
+    let most = isize::MAX as usize / size_of::<T>().max(1);
+    match usize::try_from(count) {
+        Ok(count) if count <= most => Ok(count),
+        _ => Err(Failure::Argument { name, problem: "has more elements than memory can hold" }),
+    }
+}
+
+/// The UTF-8 text of `length` bytes at `pointer`, which may be NULL if there is none.
+///
+/// # Safety
+/// As [`slice`].
+pub(super) unsafe fn text<'a>(
+    pointer: *const c_char,
+    length: usize,
+    name: &'static str,
+) -> Result<&'a str, Failure> {
+    // SAFETY: the caller's promise is that of `slice`.
+    let bytes = unsafe { slice(pointer.cast(), length as u64, name)? };
+    core::str::from_utf8(bytes).map_err(|_| Failure::Utf8 { name })
+}
+
+/// The path of `length` bytes of UTF-8 at `pointer`.
+///
+/// # Safety
+/// As [`slice`].
+pub(super) unsafe fn path<'a>(pointer: *const c_char, length: usize) -> Result<&'a str, Failure> {
+    checked(pointer, "path")?;
+    // SAFETY: the caller's promise is that of `slice`.
+    let path = unsafe { text(pointer, length, "path")? };
+    if path.is_empty() {
+        return Err(Failure::Argument { name: "path", problem: "is empty" });
+    }
+    if path.contains('\0') {
+        return Err(Failure::Argument { name: "path", problem: "holds a NUL" });
+    }
+    Ok(path)
+}
+
+/// A place for a result, checked before the work begins and written once it is done.
+pub(super) struct Out<T>(NonNull<T>);
+
+/// # Safety
+/// Unless it is NULL or misaligned, `pointer` points to room for a `T` that nothing else uses during the call.
+#[inline(always)]
+pub(super) unsafe fn out<T>(pointer: *mut T, name: &'static str) -> Result<Out<T>, Failure> {
+    checked(pointer, name)?;
+    NonNull::new(pointer).map(Out).ok_or(Failure::Null { name })
+}
+
+impl<T> Out<T> {
+    #[inline(always)]
+    pub(super) fn write(self, value: T) -> Result<(), Failure> {
+        // SAFETY: promised to `out`. What lay there is not dropped: it may be uninitialised.
+        unsafe { self.0.write(value) };
+        Ok(())
+    }
+}
+
+/// A buffer for many elements, which may be absent to ask how many there are.
+pub(super) struct Buffer<T> {
+    name: &'static str,
+    start: *mut T,
+    capacity: u64,
+}
+
+/// # Safety
+/// Unless it is NULL or misaligned, `start` points to room for `capacity` elements that nothing else uses during
+/// the call.
+pub(super) unsafe fn buffer<T>(
+    start: *mut T,
+    capacity: u64,
+    name: &'static str,
+) -> Result<Buffer<T>, Failure> {
+    if capacity > 0 || !start.is_null() {
+        length(start, capacity, name)?;
+    }
+    Ok(Buffer { name, start, capacity })
+}
+
+impl<T: Copy> Buffer<T> {
+    /// Whether elements are wanted, and not only their number.
+    pub(super) fn wanted(&self) -> bool {
+        !self.start.is_null()
+    }
+
+    /// Refuses if there is a buffer, but not for `count` elements.
+    pub(super) fn check(&self, count: usize) -> Result<(), Failure> {
+        if self.wanted() && count as u64 > self.capacity {
+            let (name, capacity) = (self.name, self.capacity);
+            return Err(Failure::Buffer { name, needed: count as u64, capacity });
+        }
+        Ok(())
+    }
+
+    /// Fills the buffer, if there is one.
+    pub(super) fn fill(&self, elements: &[T]) -> Result<(), Failure> {
+        self.check(elements.len())?;
+        if self.wanted() {
+            // SAFETY: promised to `buffer`, and there is room for them.
+            unsafe { core::ptr::copy_nonoverlapping(elements.as_ptr(), self.start, elements.len()) };
+        }
+        Ok(())
+    }
+}
+
+/// A struct of the host that begins with its own size: older hosts have shorter ones, newer ones longer.
+///
+/// # Safety
+/// All-zero bytes are a `T`.
+pub(super) unsafe trait Sized32: Copy {}
+
+/// The host's struct, or the default (all zero) if it is NULL. What an older host does not have yet is zero; what
+/// this library does not know yet must be.
+///
+/// # Safety
+/// Unless it is NULL or misaligned, `pointer` points to as many bytes as its first four say.
+pub(super) unsafe fn sized<T: Sized32>(pointer: *const T, name: &'static str) -> Result<T, Failure> {
+    const LARGEST: usize = 4096;
+    // SAFETY: a promise of the trait.
+    let mut known: T = unsafe { core::mem::zeroed() };
+    if pointer.is_null() {
+        return Ok(known);
+    }
+    checked(pointer, name)?;
+    // SAFETY: the caller promises four bytes, and then as many as they say.
+    let given = unsafe {
+        let size = pointer.cast::<u32>().read() as usize;
+        if !(size_of::<u32>()..=LARGEST).contains(&size) {
+            return Err(Failure::Argument {
+                name,
+                problem: "has no sensible struct_size; was it initialised?",
+            });
+        }
+        core::slice::from_raw_parts(pointer.cast::<u8>(), size)
+    };
+    let (given, unknown) = given.split_at(given.len().min(size_of::<T>()));
+    if unknown.iter().any(|&byte| byte != 0) {
+        let problem = "has fields that this version of the library does not know";
+        return Err(Failure::Argument { name, problem });
+    }
+    // SAFETY: not longer than `known`; the fields are numbers, pointers and functions that the host has set.
+    unsafe { core::ptr::copy_nonoverlapping(given.as_ptr(), (&raw mut known).cast(), given.len()) };
+    Ok(known)
+}
+
+/// A new handle with one reference.
+pub(super) fn handle<T>(value: T) -> *mut T {
+    Arc::into_raw(Arc::new(value)).cast_mut()
+}
+
+/// One more share of what a handle stands for.
+///
+/// # Safety
+/// The handle is alive and came from [`handle`].
+pub(super) unsafe fn share<T>(handle: &T) -> Arc<T> {
+    // SAFETY: `handle` came from `Arc::into_raw`.
+    unsafe {
+        Arc::increment_strong_count(handle);
+        Arc::from_raw(handle)
+    }
+}
+
+/// Gives back one reference.
+///
+/// # Safety
+/// The handle is NULL, or alive and came from [`handle`]; the reference is the caller's.
+pub(super) unsafe fn release<T>(handle: *mut T) {
+    if !handle.is_null() {
+        // SAFETY: `handle` came from `Arc::into_raw`.
+        guard_free(|| drop(unsafe { Arc::from_raw(handle.cast_const()) }));
+    }
+}

@@ -1,0 +1,176 @@
+//! Frames: where a tree lies in model space, and how fine it is.
+
+use super::boundary::{Failure, array, guard, out, shared};
+use super::status::leafless_status;
+use crate::lattice::{Frame, Interval};
+
+/// Where a tree lies: the cube [origin, origin + edge]³ in model units, cut into 2^depth cells per axis.
+///
+/// A coordinate of the origin is 0 or of a magnitude between 2^-256 and 2^256, the edge between 2^-256 and
+/// 2^256, the depth 1 to 20. The lattice planes are the real numbers origin + i·edge/2^depth, whether or not
+/// doubles can represent them: comparisons with them are exact.
+#[derive(Clone, Copy)]
+#[repr(C)]
+pub struct leafless_frame {
+    /// Lower corner of the universe.
+    pub origin: [f64; 3],
+    /// Edge length of the universe.
+    pub edge: f64,
+    /// Levels below the universe.
+    pub depth: u32,
+}
+
+impl From<&Frame> for leafless_frame {
+    fn from(frame: &Frame) -> leafless_frame {
+        leafless_frame { origin: frame.origin(), edge: frame.edge(), depth: frame.depth() as u32 }
+    }
+}
+
+/// A depth that is out of range stays so.
+fn depth(depth: u32) -> u8 {
+    u8::try_from(depth).unwrap_or(u8::MAX)
+}
+
+/// The frame at `pointer`.
+///
+/// # Safety
+/// As [`shared`].
+pub(super) unsafe fn frame(pointer: *const leafless_frame) -> Result<Frame, Failure> {
+    // SAFETY: the caller's promise.
+    let frame = unsafe { shared(pointer, "frame")? };
+    Ok(Frame::new(frame.origin, frame.edge, depth(frame.depth))?)
+}
+
+/// An interval that contains the truth: lower ≤ truth ≤ upper.
+#[derive(Clone, Copy)]
+#[repr(C)]
+pub struct leafless_interval {
+    /// Proven lower bound.
+    pub lower: f64,
+    /// Proven upper bound.
+    pub upper: f64,
+}
+
+impl From<Interval> for leafless_interval {
+    fn from(interval: Interval) -> leafless_interval {
+        leafless_interval { lower: interval.lower, upper: interval.upper }
+    }
+}
+
+/// Checks a frame's fields.
+///
+/// - Buffers: `frame`, one struct.
+/// - Result: LEAFLESS_OK if the frame can be used.
+/// - Errors: LEAFLESS_E_ARGUMENT, with the field that is out of range in the message.
+/// - Ownership: nothing changes hands.
+/// - Threads: any.
+/// - Untrusted input: any values.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_frame_check(frame: *const leafless_frame) -> leafless_status {
+    guard(|| unsafe { self::frame(frame).map(|_| ()) })
+}
+
+/// The default frame of a shape: the cube of edge L·(1 + 1/32) around its centre, L being its longest extent; the
+/// same universe at every depth.
+///
+/// - Buffers: `min` and `max`, 3 numbers each (model units); `frame`, one struct.
+/// - Result: `*frame`.
+/// - Errors: LEAFLESS_E_MESH if the longest extent is 0; LEAFLESS_E_ARGUMENT if a bound is not a finite number in
+///   range, or so far from the origin that doubles cannot resolve the cube.
+/// - Ownership: nothing changes hands.
+/// - Threads: any.
+/// - Untrusted input: any values.
+/// - Since: 0.1
+///
+/// cbindgen:ptrs-as-arrays=[[min; 3], [max; 3]]
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_frame_around(
+    min: *const f64,
+    max: *const f64,
+    depth: u32,
+    frame: *mut leafless_frame,
+) -> leafless_status {
+    guard(|| unsafe {
+        let (min, max) = (array(min, "min")?, array(max, "max")?);
+        let frame = out(frame, "frame")?;
+        frame.write((&Frame::around(min, max, self::depth(depth))?).into())
+    })
+}
+
+/// The edge length of a finest cell: edge / 2^depth, exactly.
+///
+/// - Buffers: `frame`, one struct; `cell_size_model`, one number.
+/// - Result: `*cell_size_model`, in model units.
+/// - Errors: LEAFLESS_E_ARGUMENT as leafless_frame_check.
+/// - Ownership: nothing changes hands.
+/// - Threads: any.
+/// - Untrusted input: any values.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_frame_cell_size(
+    frame: *const leafless_frame,
+    cell_size_model: *mut f64,
+) -> leafless_status {
+    guard(|| unsafe {
+        let frame = self::frame(frame)?;
+        out(cell_size_model, "cell_size_model")?.write(frame.cell_size())
+    })
+}
+
+/// The finest cell that a point lies in. A point on a plane between two cells belongs to the upper one, on the
+/// universe's upper face to the last; the comparison is exact.
+///
+/// - Buffers: `frame`, one struct; `point_model`, 3 numbers; `cell`, room for 3.
+/// - Result: `cell`, each below 2^depth.
+/// - Errors: LEAFLESS_E_ARGUMENT as leafless_frame_check, and if the point is outside of the universe or not a
+///   number.
+/// - Ownership: nothing changes hands.
+/// - Threads: any.
+/// - Untrusted input: any values.
+/// - Since: 0.1
+///
+/// cbindgen:ptrs-as-arrays=[[point_model; 3], [cell; 3]]
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_frame_cell_of(
+    frame: *const leafless_frame,
+    point_model: *const f64,
+    cell: *mut u32,
+) -> leafless_status {
+    guard(|| unsafe {
+        let frame = self::frame(frame)?;
+        let point = array(point_model, "point_model")?;
+        let cell = out(cell.cast::<[u32; 3]>(), "cell")?;
+        let problem = "lies outside of the universe, or is not a number";
+        cell.write(frame.cell_of(point).ok_or(Failure::Argument { name: "point_model", problem })?)
+    })
+}
+
+/// Where a lattice plane lies: the tightest interval of doubles that contains it.
+///
+/// - Buffers: `frame`, one struct; `plane_model`, one struct.
+/// - Result: `*plane_model`; lower = upper if the plane is a double.
+/// - Errors: LEAFLESS_E_ARGUMENT as leafless_frame_check, if `axis` is not 0 to 2, or `index` beyond 2^depth.
+/// - Ownership: nothing changes hands.
+/// - Threads: any.
+/// - Untrusted input: any values.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_frame_plane(
+    frame: *const leafless_frame,
+    axis: u32,
+    index: u32,
+    plane_model: *mut leafless_interval,
+) -> leafless_status {
+    guard(|| unsafe {
+        let frame = self::frame(frame)?;
+        let plane = out(plane_model, "plane_model")?;
+        if axis > 2 {
+            return Err(Failure::Argument { name: "axis", problem: "must be 0, 1 or 2" });
+        }
+        if index > frame.cells() {
+            return Err(Failure::Argument { name: "index", problem: "must be 0 to 2^depth" });
+        }
+        plane.write(frame.plane(axis as usize, index).into())
+    })
+}

@@ -1,0 +1,473 @@
+//! Triangle meshes, and the STL files they come in.
+
+use super::boundary::{Failure, array, buffer, guard, handle, out, path, release, share, shared, slice};
+use super::status::leafless_status;
+use crate::error::Error;
+use crate::file::{read_stl, write_stl};
+use crate::solid::{FillRule, TriangleMesh};
+use alloc::sync::Arc;
+use alloc::vec::Vec;
+use core::ffi::c_char;
+
+/// A surface of triangles with shared vertices. Vertices at equal places are welded; whether the mesh is closed is
+/// not implied.
+///
+/// Immutable: all its functions may be called at once from any number of threads, but leafless_mesh_free needs
+/// the reference that it gives back for itself.
+pub struct leafless_mesh {
+    pub(super) mesh: Arc<TriangleMesh>,
+}
+
+/// Which points a closed surface encloses.
+#[derive(Clone, Copy)]
+#[repr(u32)]
+pub enum leafless_fill {
+    /// Points that the surface winds around, in either sense and any number of times: overlapping bodies are
+    /// united. The triangles must be consistently oriented.
+    LEAFLESS_FILL_NON_ZERO = 0,
+    /// Points from which a ray crosses the surface an odd number of times: the overlap of two bodies is outside.
+    /// Orientation does not matter.
+    LEAFLESS_FILL_EVEN_ODD = 1,
+}
+
+pub(super) fn fill_rule(fill: u32) -> Result<FillRule, Failure> {
+    match fill {
+        _ if fill == leafless_fill::LEAFLESS_FILL_NON_ZERO as u32 => Ok(FillRule::NonZero),
+        _ if fill == leafless_fill::LEAFLESS_FILL_EVEN_ODD as u32 => Ok(FillRule::EvenOdd),
+        _ => Err(Failure::Argument { name: "fill", problem: "is no leafless_fill" }),
+    }
+}
+
+/// What was found while a mesh was taken in, and how its triangles hang together.
+#[derive(Clone, Copy)]
+#[repr(C)]
+pub struct leafless_mesh_report {
+    /// Triangles that were handed in: triangles + degenerate.
+    pub facets_read: u64,
+    /// Triangles of the mesh.
+    pub triangles: u64,
+    /// Vertices of the mesh, all at different places.
+    pub vertices: u64,
+    /// Vertices that were handed in and lay on an earlier one.
+    pub welded: u64,
+    /// Triangles that were dropped because two of their corners lie at one place.
+    pub degenerate: u64,
+    /// Edges that an odd number of triangles use. A mesh is closed if there is none.
+    pub boundary_edges: u64,
+    /// Edges that an even number of triangles use, but not half of them in each direction. A closed mesh is
+    /// consistently oriented if there is none.
+    pub misoriented_edges: u64,
+    /// Edges that more than two triangles use, for instance where two bodies touch. They do no harm.
+    pub non_manifold_edges: u64,
+    /// Sets of triangles that hang together over edges.
+    pub bodies: u64,
+    /// Vertices that leafless_mesh_sewn moved onto another one.
+    pub sewn: u64,
+    /// The farthest that any of them was moved along an axis, in model units.
+    pub displacement_model: f64,
+}
+
+fn give(mesh: TriangleMesh) -> *mut leafless_mesh {
+    handle(leafless_mesh { mesh: Arc::new(mesh) })
+}
+
+/// Makes a mesh of arrays. Equal vertices are welded, triangles with two corners at one place dropped and counted;
+/// coordinates below 2^-256 count as zero. Seen from outside of the solid the corners turn counter-clockwise.
+///
+/// - Buffers: `vertices`, `vertex_count` vertices of 3 numbers (model units), the first numbers of two vertices
+///   `vertex_stride` bytes apart (a multiple of 8, at least 24; 0 means 24); `triangles`, 3 · `triangle_count`
+///   indices of vertices. Each may be NULL if its count is 0.
+/// - Result: `*mesh`.
+/// - Errors: LEAFLESS_E_MESH if a coordinate is infinite, not a number, or beyond ±2^256, if an index is out of
+///   range, or if there are more than 2^32 - 1 vertices or triangles; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: the arrays are copied; give `*mesh` back with leafless_mesh_free.
+/// - Threads: any.
+/// - Untrusted input: any values in the arrays.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_mesh_new(
+    vertices: *const f64,
+    vertex_count: u64,
+    vertex_stride: u64,
+    triangles: *const u32,
+    triangle_count: u64,
+    mesh: *mut *mut leafless_mesh,
+) -> leafless_status {
+    guard(|| unsafe {
+        const PACKED: u64 = size_of::<[f64; 3]>() as u64;
+        let stride = if vertex_stride == 0 { PACKED } else { vertex_stride };
+        if stride < PACKED || stride % size_of::<f64>() as u64 != 0 {
+            let problem = "must be a multiple of 8, and 0 or at least 24";
+            return Err(Failure::Argument { name: "vertex_stride", problem });
+        }
+        // From the first number of the first vertex to the last of the last.
+        let step = stride / size_of::<f64>() as u64;
+        let numbers = match vertex_count {
+            0 => Some(0),
+            count => (count - 1).checked_mul(step).and_then(|sum| sum.checked_add(3)),
+        };
+        let corners = triangle_count.checked_mul(3);
+        let numbers = slice(vertices, numbers.unwrap_or(u64::MAX), "vertices")?;
+        let corners = slice(triangles, corners.unwrap_or(u64::MAX), "triangles")?;
+        let mesh = out(mesh, "mesh")?;
+        let mut own_vertices = Vec::new();
+        own_vertices.try_reserve_exact(vertex_count as usize).map_err(|_| Error::OutOfMemory)?;
+        own_vertices.extend(numbers.chunks(step as usize).map(|vertex| [vertex[0], vertex[1], vertex[2]]));
+        let mut own_triangles = Vec::new();
+        own_triangles.try_reserve_exact(triangle_count as usize).map_err(|_| Error::OutOfMemory)?;
+        own_triangles.extend(corners.as_chunks().0.iter().copied());
+        mesh.write(give(TriangleMesh::new(own_vertices, own_triangles)?))
+    })
+}
+
+/// Reads a binary or ASCII STL file; which of the two is found out from the bytes.
+///
+/// - Buffers: `path`, `path_length` bytes of UTF-8.
+/// - Result: `*mesh`, welded as by leafless_mesh_new; not checked to be closed.
+/// - Errors: LEAFLESS_E_MESH_FILE with the line or the facet in the message; LEAFLESS_E_MESH; LEAFLESS_E_IO;
+///   LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: give `*mesh` back with leafless_mesh_free.
+/// - Threads: any.
+/// - Untrusted input: any file; memory is at most a small multiple of its length.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_mesh_read_stl(
+    path: *const c_char,
+    path_length: usize,
+    mesh: *mut *mut leafless_mesh,
+) -> leafless_status {
+    guard(|| unsafe {
+        let path = self::path(path, path_length)?;
+        let mesh = out(mesh, "mesh")?;
+        mesh.write(give(read_stl(&std::fs::read(path)?)?))
+    })
+}
+
+/// As leafless_mesh_read_stl for a file in memory.
+///
+/// - Buffers: `bytes`, `length` bytes; may be NULL if there are none.
+/// - Result: `*mesh`, welded as by leafless_mesh_new; not checked to be closed.
+/// - Errors: LEAFLESS_E_MESH_FILE with the line or the facet in the message; LEAFLESS_E_MESH;
+///   LEAFLESS_E_NO_MEMORY.
+/// - Ownership: the bytes are not kept; give `*mesh` back with leafless_mesh_free.
+/// - Threads: any.
+/// - Untrusted input: any bytes; memory is at most a small multiple of their number.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_mesh_from_stl(
+    bytes: *const u8,
+    length: u64,
+    mesh: *mut *mut leafless_mesh,
+) -> leafless_status {
+    guard(|| unsafe {
+        let bytes = slice(bytes, length, "bytes")?;
+        let mesh = out(mesh, "mesh")?;
+        mesh.write(give(read_stl(bytes)?))
+    })
+}
+
+/// Writes a binary STL file into memory: 84 + 50 t bytes. Coordinates are rounded to 32 bits.
+///
+/// - Buffers: `bytes`, room for `capacity` bytes, or NULL to ask for the length only.
+/// - Result: `*length`, the length of the file; the file in `bytes`.
+/// - Errors: LEAFLESS_E_BUFFER if the capacity is too small; LEAFLESS_E_ARGUMENT if a coordinate is beyond the
+///   range of 32-bit floating point numbers; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: nothing changes hands.
+/// - Threads: any.
+/// - Untrusted input: none.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_mesh_to_stl(
+    mesh: *const leafless_mesh,
+    bytes: *mut u8,
+    capacity: u64,
+    length: *mut u64,
+) -> leafless_status {
+    guard(|| unsafe {
+        let mesh = &shared(mesh, "mesh")?.mesh;
+        let bytes = buffer(bytes, capacity, "bytes")?;
+        let length = out(length, "length")?;
+        let file = write_stl(mesh)?;
+        bytes.fill(&file)?;
+        length.write(file.len() as u64)
+    })
+}
+
+/// One more reference to a mesh.
+///
+/// - Buffers: `mesh`, a handle; `reference`, one pointer.
+/// - Result: `*reference`, equal to `mesh`.
+/// - Errors: only the general ones.
+/// - Ownership: give each reference back with leafless_mesh_free.
+/// - Threads: any.
+/// - Untrusted input: none.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_mesh_ref(
+    mesh: *const leafless_mesh,
+    reference: *mut *mut leafless_mesh,
+) -> leafless_status {
+    guard(|| unsafe {
+        let mesh = shared(mesh, "mesh")?;
+        let reference = out(reference, "reference")?;
+        reference.write(Arc::into_raw(share(mesh)).cast_mut())
+    })
+}
+
+/// Gives back a reference to a mesh; with the last one the mesh is gone. Solids made of it stay.
+///
+/// - Buffers: `mesh`, a handle or NULL, which does nothing.
+/// - Result: none.
+/// - Errors: none.
+/// - Ownership: the reference is gone.
+/// - Threads: any; no other call may use this reference.
+/// - Untrusted input: none.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_mesh_free(mesh: *mut leafless_mesh) {
+    // SAFETY: the caller's promise.
+    unsafe { release(mesh) }
+}
+
+/// How many vertices and triangles a mesh has.
+///
+/// - Buffers: `vertex_count` and `triangle_count`, one number each.
+/// - Result: both.
+/// - Errors: only the general ones.
+/// - Ownership: nothing changes hands.
+/// - Threads: any.
+/// - Untrusted input: none.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_mesh_counts(
+    mesh: *const leafless_mesh,
+    vertex_count: *mut u64,
+    triangle_count: *mut u64,
+) -> leafless_status {
+    guard(|| unsafe {
+        let mesh = &shared(mesh, "mesh")?.mesh;
+        let vertex_count = out(vertex_count, "vertex_count")?;
+        let triangle_count = out(triangle_count, "triangle_count")?;
+        vertex_count.write(mesh.vertices().len() as u64)?;
+        triangle_count.write(mesh.triangles().len() as u64)
+    })
+}
+
+/// Copies the arrays of a mesh; leafless_mesh_counts tells their lengths.
+///
+/// - Buffers: `vertices`, room for `vertex_capacity` vertices of 3 numbers; `triangles`, room for
+///   `triangle_capacity` triangles of 3 indices. Each may be NULL if it is not wanted.
+/// - Result: both arrays.
+/// - Errors: LEAFLESS_E_BUFFER if a capacity is too small; then neither is written.
+/// - Ownership: nothing changes hands.
+/// - Threads: any.
+/// - Untrusted input: none.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_mesh_copy(
+    mesh: *const leafless_mesh,
+    vertices: *mut f64,
+    vertex_capacity: u64,
+    triangles: *mut u32,
+    triangle_capacity: u64,
+) -> leafless_status {
+    guard(|| unsafe {
+        let mesh = &shared(mesh, "mesh")?.mesh;
+        let vertices = buffer(vertices.cast::<[f64; 3]>(), vertex_capacity, "vertices")?;
+        let triangles = buffer(triangles.cast::<[u32; 3]>(), triangle_capacity, "triangles")?;
+        triangles.check(mesh.triangles().len())?;
+        vertices.fill(mesh.vertices())?;
+        triangles.fill(mesh.triangles())
+    })
+}
+
+/// The bounding box of a mesh's triangles.
+///
+/// - Buffers: `min` and `max`, room for 3 numbers each.
+/// - Result: both corners, in model units.
+/// - Errors: LEAFLESS_E_MESH if the mesh has no triangle.
+/// - Ownership: nothing changes hands.
+/// - Threads: any.
+/// - Untrusted input: none.
+/// - Since: 0.1
+///
+/// cbindgen:ptrs-as-arrays=[[min; 3], [max; 3]]
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_mesh_bounds(
+    mesh: *const leafless_mesh,
+    min: *mut f64,
+    max: *mut f64,
+) -> leafless_status {
+    guard(|| unsafe {
+        let mesh = &shared(mesh, "mesh")?.mesh;
+        let (min, max) = (out(min.cast(), "min")?, out(max.cast(), "max")?);
+        if mesh.triangles().is_empty() {
+            return Err(crate::error::MeshError::Empty.into());
+        }
+        let (low, high): ([f64; 3], [f64; 3]) = mesh.bounds();
+        min.write(low)?;
+        max.write(high)
+    })
+}
+
+/// The volume that a mesh encloses, by the divergence theorem: overlaps count twice, bodies that are inside out
+/// negative. Of an open mesh it has no meaning. Rounded; the certified volume is that of an octree.
+///
+/// - Buffers: `volume_model`, one number.
+/// - Result: `*volume_model`, in cubic model units.
+/// - Errors: only the general ones.
+/// - Ownership: nothing changes hands.
+/// - Threads: any.
+/// - Untrusted input: none.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_mesh_volume(
+    mesh: *const leafless_mesh,
+    volume_model: *mut f64,
+) -> leafless_status {
+    guard(|| unsafe {
+        let mesh = &shared(mesh, "mesh")?.mesh;
+        out(volume_model, "volume_model")?.write(mesh.volume())
+    })
+}
+
+/// What was found when a mesh was made, and how its triangles hang together. The first call analyses the edges,
+/// later ones are free.
+///
+/// - Buffers: `report`, one struct.
+/// - Result: `*report`.
+/// - Errors: LEAFLESS_E_NO_MEMORY.
+/// - Ownership: nothing changes hands.
+/// - Threads: any.
+/// - Untrusted input: none.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_mesh_describe(
+    mesh: *const leafless_mesh,
+    report: *mut leafless_mesh_report,
+) -> leafless_status {
+    guard(|| unsafe {
+        let mesh = &shared(mesh, "mesh")?.mesh;
+        let report = out(report, "report")?;
+        let found = mesh.report()?;
+        report.write(leafless_mesh_report {
+            facets_read: found.facets_read,
+            triangles: found.triangles,
+            vertices: found.vertices,
+            welded: found.welded,
+            degenerate: found.degenerate,
+            boundary_edges: found.boundary_edges,
+            misoriented_edges: found.misoriented_edges,
+            non_manifold_edges: found.non_manifold_edges,
+            bodies: found.bodies,
+            sewn: found.sewn,
+            displacement_model: found.displacement,
+        })
+    })
+}
+
+/// Checks that a mesh bounds a solid. Self-intersections, overlaps, nested and inside-out bodies are all allowed.
+///
+/// - Buffers: none. `fill` is a leafless_fill.
+/// - Result: LEAFLESS_OK if it does.
+/// - Errors: LEAFLESS_E_MESH if the mesh is empty, not closed, or (LEAFLESS_FILL_NON_ZERO) not consistently
+///   oriented; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: nothing changes hands.
+/// - Threads: any.
+/// - Untrusted input: any mesh.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_mesh_check_closed(
+    mesh: *const leafless_mesh,
+    fill: u32,
+) -> leafless_status {
+    guard(|| unsafe {
+        let mesh = &shared(mesh, "mesh")?.mesh;
+        Ok(mesh.check_closed(fill_rule(fill)?)?)
+    })
+}
+
+/// The mesh with hair cracks closed: vertices at open edges that lie within 2^-24 of the extent of each other
+/// become one. Verdicts about solids made of it stay proven: the distance is added outward.
+///
+/// - Buffers: `sewn`, one pointer.
+/// - Result: `*sewn`; leafless_mesh_describe tells how many vertices moved and how far.
+/// - Errors: LEAFLESS_E_NO_MEMORY.
+/// - Ownership: `mesh` stays as it is; give `*sewn` back with leafless_mesh_free.
+/// - Threads: any.
+/// - Untrusted input: any mesh.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_mesh_sewn(
+    mesh: *const leafless_mesh,
+    sewn: *mut *mut leafless_mesh,
+) -> leafless_status {
+    guard(|| unsafe {
+        let mesh = &shared(mesh, "mesh")?.mesh;
+        let sewn = out(sewn, "sewn")?;
+        sewn.write(give(TriangleMesh::clone(mesh).sewn()?))
+    })
+}
+
+/// The mesh under an affine map: x' = M x + t, rounded. A reflection turns it inside out. The moved vertices count
+/// as the truth, whatever cracks were closed before.
+///
+/// - Buffers: `matrix`, 12 numbers: three rows of M and t, (m00 m01 m02 t0, m10 …); `moved`, one pointer.
+/// - Result: `*moved`, welded as by leafless_mesh_new.
+/// - Errors: LEAFLESS_E_ARGUMENT if a number of the matrix is not finite; LEAFLESS_E_MESH if a vertex leaves
+///   ±2^256; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: `mesh` stays as it is; give `*moved` back with leafless_mesh_free.
+/// - Threads: any.
+/// - Untrusted input: any numbers.
+/// - Since: 0.1
+///
+/// cbindgen:ptrs-as-arrays=[[matrix; 12]]
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_mesh_transformed(
+    mesh: *const leafless_mesh,
+    matrix: *const f64,
+    moved: *mut *mut leafless_mesh,
+) -> leafless_status {
+    guard(|| unsafe {
+        let mesh = &shared(mesh, "mesh")?.mesh;
+        let matrix: [[f64; 4]; 3] = array(matrix.cast(), "matrix")?;
+        let moved = out(moved, "moved")?;
+        if matrix.iter().flatten().any(|number| !number.is_finite()) {
+            return Err(Failure::Argument { name: "matrix", problem: "has a number that is not finite" });
+        }
+        let row = |[a, b, c, t]: [f64; 4], [x, y, z]: [f64; 3]| a * x + b * y + c * z + t;
+        moved.write(give(mesh.transformed(|vertex| matrix.map(|m| row(m, vertex)))?))
+    })
+}
+
+/// The mesh moved by a vector, rounded. What leafless_mesh_sewn has found stays known.
+///
+/// - Buffers: `offset_model`, 3 numbers; `moved`, one pointer.
+/// - Result: `*moved`.
+/// - Errors: LEAFLESS_E_ARGUMENT if a number of the offset is not finite; LEAFLESS_E_MESH if a vertex leaves
+///   ±2^256; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: `mesh` stays as it is; give `*moved` back with leafless_mesh_free.
+/// - Threads: any.
+/// - Untrusted input: any numbers.
+/// - Since: 0.1
+///
+/// cbindgen:ptrs-as-arrays=[[offset_model; 3]]
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_mesh_translated(
+    mesh: *const leafless_mesh,
+    offset_model: *const f64,
+    moved: *mut *mut leafless_mesh,
+) -> leafless_status {
+    guard(|| unsafe {
+        let mesh = &shared(mesh, "mesh")?.mesh;
+        let offset: [f64; 3] = array(offset_model, "offset_model")?;
+        let moved = out(moved, "moved")?;
+        if offset.iter().any(|number| !number.is_finite()) {
+            return Err(Failure::Argument {
+                name: "offset_model",
+                problem: "has a number that is not finite",
+            });
+        }
+        moved.write(give(mesh.translated(offset)?))
+    })
+}

@@ -1,0 +1,45 @@
+//! The C interface: what `include/leafless.h` declares.
+//!
+//! Every function is a few lines: check what came from outside, call the one function of the library that does
+//! the work, hand its result over. The header's preface states the rules that hold for all of them; `boundary`
+//! enforces these, and the doc blocks here become the header's.
+//!
+//! | file | section of the header |
+//! |---|---|
+//! | `version` | versions of library and interface |
+//! | `status` | status codes, messages |
+//! | `control` | options, cancelling, progress |
+//! | `frame` | frames, intervals |
+//! | `mesh` | triangle meshes, STL |
+//! | `solid` | solids: primitives, meshes, octrees, the host's own |
+//! | `octree` | octrees: making, reading off, statistics, metadata |
+//! | `set_algebra` | Booleans |
+//! | `query` | points, boxes, cursors |
+//! | `file` | files and their bytes |
+
+#![allow(unsafe_code, non_camel_case_types)]
+// What callers must keep to is said in the doc blocks in C's terms, and once for all in the header's preface.
+#![allow(clippy::missing_safety_doc)]
+
+mod boundary;
+mod control;
+mod file;
+mod frame;
+mod mesh;
+mod octree;
+mod query;
+mod set_algebra;
+mod solid;
+mod status;
+mod version;
+
+pub use control::*;
+pub use file::*;
+pub use frame::*;
+pub use mesh::*;
+pub use octree::*;
+pub use query::*;
+pub use set_algebra::*;
+pub use solid::*;
+pub use status::*;
+pub use version::*;

@@ -1,0 +1,458 @@
+//! Octrees: building them, what they hold, and the facts that travel with them.
+
+use super::boundary::{Failure, buffer, guard, handle, out, release, share, shared, text};
+use super::control::{controlled, leafless_options};
+use super::frame::{frame, leafless_frame, leafless_interval};
+use super::solid::{leafless_solid, leafless_tag, settled_tag};
+use super::status::leafless_status;
+use crate::octree::{Octree, Rule, Tag};
+use crate::op::{build, compact, resolve};
+use alloc::sync::Arc;
+use alloc::vec::Vec;
+use core::ffi::c_char;
+
+/// A leaf-free octree, in memory or mapped from a file.
+///
+/// Immutable: all its functions may be called at once from any number of threads, but leafless_octree_free needs
+/// the reference that it gives back for itself.
+pub struct leafless_octree {
+    pub(super) octree: Octree,
+}
+
+/// What becomes of finest cells that are not decided.
+#[derive(Clone, Copy)]
+#[repr(u32)]
+pub enum leafless_rule {
+    /// They stay PARTIAL: FULL is proven full, EMPTY proven empty.
+    LEAFLESS_RULE_CERTIFIED = 0,
+    /// Their centre decides.
+    LEAFLESS_RULE_SAMPLED = 1,
+    /// EMPTY: the result lies in the solid.
+    LEAFLESS_RULE_INNER = 2,
+    /// FULL: the result covers the solid.
+    LEAFLESS_RULE_OUTER = 3,
+}
+use leafless_rule::*;
+
+fn rule(rule: u32) -> Result<Rule, Failure> {
+    match rule {
+        _ if rule == LEAFLESS_RULE_CERTIFIED as u32 => Ok(Rule::Certified),
+        _ if rule == LEAFLESS_RULE_SAMPLED as u32 => Ok(Rule::Sampled),
+        _ if rule == LEAFLESS_RULE_INNER as u32 => Ok(Rule::Inner),
+        _ if rule == LEAFLESS_RULE_OUTER as u32 => Ok(Rule::Outer),
+        _ => Err(Failure::Argument { name: "rule", problem: "is no leafless_rule" }),
+    }
+}
+
+/// What can be said of an octree at once.
+#[derive(Clone, Copy)]
+#[repr(C)]
+pub struct leafless_octree_info {
+    /// Where it lies, and its depth.
+    pub frame: leafless_frame,
+    /// Array elements without bricks; each holds two levels.
+    pub elements: u64,
+    /// Array elements of the deepest level.
+    pub bricks: u64,
+    /// The tag of the whole universe; BRANCH if it is cut.
+    pub root: leafless_tag,
+    /// What is known of the space outside of the universe; never BRANCH.
+    pub exterior: leafless_tag,
+    /// Whether nothing is undecided.
+    pub is_binary: bool,
+    /// Whether the solid is not known to end inside of the universe: volumes then concern the part inside.
+    pub is_clipped: bool,
+}
+
+/// Counts and certified volumes. The volume is that of the part inside of the universe.
+#[derive(Clone, Copy)]
+#[repr(C)]
+pub struct leafless_statistics {
+    /// Internal nodes: cells that are cut and split.
+    pub nodes: u64,
+    /// EMPTY cells.
+    pub empty: u64,
+    /// FULL cells.
+    pub full: u64,
+    /// PARTIAL cells.
+    pub partial: u64,
+    /// Volume that is surely solid, in finest cells.
+    pub lower_cells: u64,
+    /// Volume that is possibly solid, in finest cells.
+    pub upper_cells: u64,
+    /// The same two in cubic model units, rounded outward.
+    pub volume_model: leafless_interval,
+}
+
+pub(super) fn give(octree: Octree) -> *mut leafless_octree {
+    handle(leafless_octree { octree })
+}
+
+/// Builds the octree of a solid to the depth of a frame. The result is the same bit for bit for any number of
+/// threads.
+///
+/// - Buffers: `frame`, one struct; `options`, one struct or NULL; `octree`, one pointer. `rule` is a leafless_rule.
+/// - Result: `*octree`.
+/// - Errors: LEAFLESS_E_FRAME if the solid belongs to another frame; LEAFLESS_E_NOT_SAMPLED if
+///   LEAFLESS_RULE_SAMPLED is asked of a solid that cannot decide points; LEAFLESS_E_CALLBACK;
+///   LEAFLESS_E_DAMAGED; LEAFLESS_E_ARGUMENT; LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: give `*octree` back with leafless_octree_free.
+/// - Threads: any; uses as many as `options` says.
+/// - Untrusted input: any solid; set `max_bytes` where the depth or the solid is not your own choice.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_octree_build(
+    solid: *const leafless_solid,
+    frame: *const leafless_frame,
+    rule: u32,
+    options: *const leafless_options,
+    octree: *mut *mut leafless_octree,
+) -> leafless_status {
+    guard(|| unsafe {
+        let solid = &shared(solid, "solid")?.solid;
+        let frame = self::frame(frame)?;
+        let rule = self::rule(rule)?;
+        let octree = out(octree, "octree")?;
+        octree.write(give(controlled(options, |control| build(solid, &frame, rule, control))?))
+    })
+}
+
+/// The octree whose whole universe has one tag.
+///
+/// - Buffers: `frame`, one struct; `octree`, one pointer. `tag` and `exterior` are leafless_tags, not BRANCH: what
+///   is known of the universe, and of the space around it.
+/// - Result: `*octree`.
+/// - Errors: LEAFLESS_E_ARGUMENT.
+/// - Ownership: give `*octree` back with leafless_octree_free.
+/// - Threads: any.
+/// - Untrusted input: any numbers.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_octree_uniform(
+    frame: *const leafless_frame,
+    tag: u32,
+    exterior: u32,
+    octree: *mut *mut leafless_octree,
+) -> leafless_status {
+    guard(|| unsafe {
+        let frame = self::frame(frame)?;
+        let tag = settled_tag(tag.into(), "tag")?;
+        let exterior = settled_tag(exterior.into(), "exterior")?;
+        let octree = out(octree, "octree")?;
+        octree.write(give(Octree::uniform(frame, tag, exterior)?))
+    })
+}
+
+/// The octree with its PARTIAL cells resolved: EMPTY under LEAFLESS_RULE_INNER, FULL under LEAFLESS_RULE_OUTER.
+///
+/// - Buffers: `options`, one struct or NULL; `resolved`, one pointer. `rule` is a leafless_rule.
+/// - Result: `*resolved`.
+/// - Errors: LEAFLESS_E_NOT_SAMPLED under LEAFLESS_RULE_SAMPLED if a cell is PARTIAL, because a stored octree knows
+///   no more about it; LEAFLESS_E_DAMAGED; LEAFLESS_E_ARGUMENT; LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED;
+///   LEAFLESS_E_NO_MEMORY.
+/// - Ownership: `octree` stays as it is; give `*resolved` back with leafless_octree_free.
+/// - Threads: any; uses as many as `options` says.
+/// - Untrusted input: any octree.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_octree_resolve(
+    octree: *const leafless_octree,
+    rule: u32,
+    options: *const leafless_options,
+    resolved: *mut *mut leafless_octree,
+) -> leafless_status {
+    guard(|| unsafe {
+        let octree = &shared(octree, "octree")?.octree;
+        let rule = self::rule(rule)?;
+        let resolved = out(resolved, "resolved")?;
+        resolved.write(give(controlled(options, |control| resolve(octree.view(), rule, control))?))
+    })
+}
+
+/// The same octree with its bricks encoded as a file would have them, through a dictionary where that is shorter.
+/// Everything works on it as on any other.
+///
+/// - Buffers: `compacted`, one pointer.
+/// - Result: `*compacted`.
+/// - Errors: LEAFLESS_E_DAMAGED if a brick cannot be read; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: `octree` stays as it is; give `*compacted` back with leafless_octree_free.
+/// - Threads: any.
+/// - Untrusted input: any octree.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_octree_compact(
+    octree: *const leafless_octree,
+    compacted: *mut *mut leafless_octree,
+) -> leafless_status {
+    guard(|| unsafe {
+        let octree = &shared(octree, "octree")?.octree;
+        let compacted = out(compacted, "compacted")?;
+        let compact = compact(octree.view())?.with_metadata(octree.metadata().clone());
+        compacted.write(give(compact))
+    })
+}
+
+/// One more reference to an octree.
+///
+/// - Buffers: `octree`, a handle; `reference`, one pointer.
+/// - Result: `*reference`, equal to `octree`.
+/// - Errors: only the general ones.
+/// - Ownership: give each reference back with leafless_octree_free.
+/// - Threads: any.
+/// - Untrusted input: none.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_octree_ref(
+    octree: *const leafless_octree,
+    reference: *mut *mut leafless_octree,
+) -> leafless_status {
+    guard(|| unsafe {
+        let octree = shared(octree, "octree")?;
+        let reference = out(reference, "reference")?;
+        reference.write(Arc::into_raw(share(octree)).cast_mut())
+    })
+}
+
+/// Gives back a reference to an octree. With the last one the octree is gone, and with it the mapping of its file,
+/// unless a cursor or a solid still shares it.
+///
+/// - Buffers: `octree`, a handle or NULL, which does nothing.
+/// - Result: none.
+/// - Errors: none.
+/// - Ownership: the reference is gone.
+/// - Threads: any; no other call may use this reference.
+/// - Untrusted input: none.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_octree_free(octree: *mut leafless_octree) {
+    // SAFETY: the caller's promise.
+    unsafe { release(octree) }
+}
+
+/// What can be said of an octree at once. O(1).
+///
+/// - Buffers: `info`, one struct.
+/// - Result: `*info`.
+/// - Errors: only the general ones.
+/// - Ownership: nothing changes hands.
+/// - Threads: any.
+/// - Untrusted input: any octree.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_octree_describe(
+    octree: *const leafless_octree,
+    info: *mut leafless_octree_info,
+) -> leafless_status {
+    guard(|| unsafe {
+        let view = shared(octree, "octree")?.octree.view();
+        out(info, "info")?.write(leafless_octree_info {
+            frame: view.frame().into(),
+            elements: view.element_count(),
+            bricks: view.brick_count(),
+            root: view.root_tag().into(),
+            exterior: view.exterior().into(),
+            is_binary: view.is_binary(),
+            is_clipped: view.is_clipped(),
+        })
+    })
+}
+
+/// Counts over all levels, and the certified volume. O(depth) once the counts are known, which for an octree from
+/// a file they are and for a new one takes one pass over its arrays.
+///
+/// - Buffers: `statistics`, one struct.
+/// - Result: `*statistics`.
+/// - Errors: only the general ones.
+/// - Ownership: nothing changes hands.
+/// - Threads: any.
+/// - Untrusted input: any octree; of one that was mapped unverified the numbers may be wrong.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_octree_statistics(
+    octree: *const leafless_octree,
+    statistics: *mut leafless_statistics,
+) -> leafless_status {
+    guard(|| unsafe {
+        let found = shared(octree, "octree")?.octree.statistics();
+        let (lower_cells, upper_cells) = found.volume_cells();
+        out(statistics, "statistics")?.write(leafless_statistics {
+            nodes: found.nodes(),
+            empty: found.cells(Tag::Empty),
+            full: found.cells(Tag::Full),
+            partial: found.cells(Tag::Partial),
+            lower_cells,
+            upper_cells,
+            volume_model: found.volume().into(),
+        })
+    })
+}
+
+/// Counts of each level, and the certified volumes of the tree cut there. Entry 0 is the universe, entry `depth`
+/// the finest cells.
+///
+/// - Buffers: `levels`, room for `capacity` structs, or NULL to ask for the count only; `count`, one number.
+/// - Result: `*count`, depth + 1; the levels.
+/// - Errors: LEAFLESS_E_BUFFER if the capacity is too small.
+/// - Ownership: nothing changes hands.
+/// - Threads: any.
+/// - Untrusted input: any octree; of one that was mapped unverified the numbers may be wrong.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_octree_levels(
+    octree: *const leafless_octree,
+    levels: *mut leafless_statistics,
+    capacity: u64,
+    count: *mut u64,
+) -> leafless_status {
+    guard(|| unsafe {
+        let octree = &shared(octree, "octree")?.octree;
+        let levels = buffer(levels, capacity, "levels")?;
+        let count = out(count, "count")?;
+        let found: Vec<leafless_statistics> = (octree.statistics().levels().iter())
+            .map(|level| leafless_statistics {
+                nodes: level.nodes,
+                empty: level.empty,
+                full: level.full,
+                partial: level.partial,
+                lower_cells: level.lower_cells,
+                upper_cells: level.upper_cells,
+                volume_model: level.volume.into(),
+            })
+            .collect();
+        levels.fill(&found)?;
+        count.write(found.len() as u64)
+    })
+}
+
+/// Checks that an octree is well-formed and canonical: O(n). Those that the library makes, opens or maps verified
+/// are; the bytes that checksums cover are not looked at here, see leafless_bytes_verify.
+///
+/// - Buffers: none.
+/// - Result: LEAFLESS_OK if it is.
+/// - Errors: LEAFLESS_E_DAMAGED, with the first damage in the message.
+/// - Ownership: nothing changes hands.
+/// - Threads: any.
+/// - Untrusted input: any octree.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_octree_check(octree: *const leafless_octree) -> leafless_status {
+    guard(|| unsafe { Ok(shared(octree, "octree")?.octree.view().check()?) })
+}
+
+/// Whether two octrees have the same cells with the same tags on the same frame. Metadata does not count. O(n).
+///
+/// - Buffers: `equal`, one truth value.
+/// - Result: `*equal`.
+/// - Errors: only the general ones.
+/// - Ownership: nothing changes hands.
+/// - Threads: any.
+/// - Untrusted input: any octrees.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_octree_equal(
+    a: *const leafless_octree,
+    b: *const leafless_octree,
+    equal: *mut bool,
+) -> leafless_status {
+    guard(|| unsafe {
+        let (a, b) = (shared(a, "a")?, shared(b, "b")?);
+        out(equal, "equal")?.write(a.octree == b.octree)
+    })
+}
+
+/// The octree with one more fact in its metadata, or with another value of one; the arrays are shared. Names in
+/// use: "name", "units", "source", "rule".
+///
+/// - Buffers: `key` and `value`, `key_length` and `value_length` bytes of UTF-8; `named`, one pointer.
+/// - Result: `*named`.
+/// - Errors: LEAFLESS_E_UTF8.
+/// - Ownership: the texts are copied; `octree` stays as it is; give `*named` back with leafless_octree_free.
+/// - Threads: any.
+/// - Untrusted input: any texts; all of an octree's metadata may take 1 MiB in a file.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_octree_with_metadata(
+    octree: *const leafless_octree,
+    key: *const c_char,
+    key_length: usize,
+    value: *const c_char,
+    value_length: usize,
+    named: *mut *mut leafless_octree,
+) -> leafless_status {
+    guard(|| unsafe {
+        let octree = &shared(octree, "octree")?.octree;
+        let (key, value) = (text(key, key_length, "key")?, text(value, value_length, "value")?);
+        let named = out(named, "named")?;
+        let mut metadata = octree.metadata().clone();
+        metadata.insert(key, value);
+        named.write(give(octree.with_metadata(metadata)))
+    })
+}
+
+/// The value of a fact in an octree's metadata.
+///
+/// - Buffers: `key`, `key_length` bytes of UTF-8; `value` and `value_length`, one each.
+/// - Result: `*value`, not NUL-terminated; NULL if there is no such fact. `*value_length`, in bytes.
+/// - Errors: LEAFLESS_E_UTF8.
+/// - Ownership: the text belongs to the octree and lives as long as the reference `octree`.
+/// - Threads: any.
+/// - Untrusted input: any octree.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_octree_peek_metadata(
+    octree: *const leafless_octree,
+    key: *const c_char,
+    key_length: usize,
+    value: *mut *const c_char,
+    value_length: *mut usize,
+) -> leafless_status {
+    guard(|| unsafe {
+        let octree = &shared(octree, "octree")?.octree;
+        let key = text(key, key_length, "key")?;
+        let (value, value_length) = (out(value, "value")?, out(value_length, "value_length")?);
+        let found = octree.metadata().get(key);
+        value.write(found.map_or(core::ptr::null(), |found| found.as_ptr().cast()))?;
+        value_length.write(found.map_or(0, str::len))
+    })
+}
+
+/// A fact of an octree's metadata by its place among all, which stand by ascending key.
+///
+/// - Buffers: `count`, one number; `key`, `key_length`, `value`, `value_length`, one each, all four NULL to ask
+///   for the count only.
+/// - Result: `*count`, the number of all facts; key and value, not NUL-terminated, with their lengths in bytes.
+/// - Errors: LEAFLESS_E_ARGUMENT if there is no fact `index`, unless only the count is asked for.
+/// - Ownership: the texts belong to the octree and live as long as the reference `octree`.
+/// - Threads: any.
+/// - Untrusted input: any octree.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_octree_peek_metadata_at(
+    octree: *const leafless_octree,
+    index: u64,
+    count: *mut u64,
+    key: *mut *const c_char,
+    key_length: *mut usize,
+    value: *mut *const c_char,
+    value_length: *mut usize,
+) -> leafless_status {
+    guard(|| unsafe {
+        let octree = &shared(octree, "octree")?.octree;
+        let count = out(count, "count")?;
+        let facts = octree.metadata().iter();
+        let number = octree.metadata().iter().count() as u64;
+        if key.is_null() && key_length.is_null() && value.is_null() && value_length.is_null() {
+            return count.write(number);
+        }
+        let (key, key_length) = (out(key, "key")?, out(key_length, "key_length")?);
+        let (value, value_length) = (out(value, "value")?, out(value_length, "value_length")?);
+        let mut there = facts.skip(usize::try_from(index).unwrap_or(usize::MAX));
+        let missing = Failure::Argument { name: "index", problem: "is not below the number of facts" };
+        let (found_key, found_value) = there.next().ok_or(missing)?;
+        key.write(found_key.as_ptr().cast())?;
+        key_length.write(found_key.len())?;
+        value.write(found_value.as_ptr().cast())?;
+        value_length.write(found_value.len())?;
+        count.write(number)
+    })
+}

@@ -1,0 +1,171 @@
+//! Status codes, and the message of the last failure in a thread.
+
+use super::boundary::{self, Failure};
+use crate::error::{Error, FormatError};
+use core::ffi::{CStr, c_char};
+
+/// What a function returns. Codes are never renumbered and never used for something else; new ones may be added
+/// at the end.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[repr(i32)]
+pub enum leafless_status {
+    /// Done.
+    LEAFLESS_OK = 0,
+    /// A pointer that must not be NULL is.
+    LEAFLESS_E_NULL = 1,
+    /// An argument is out of its range, not a number, or misaligned.
+    LEAFLESS_E_ARGUMENT = 2,
+    /// A text is not UTF-8, or a path holds a NUL.
+    LEAFLESS_E_UTF8 = 3,
+    /// A buffer is too small for what would be written to it.
+    LEAFLESS_E_BUFFER = 4,
+    /// Operands lie on different frames, or a solid belongs to another frame.
+    LEAFLESS_E_FRAME = 5,
+    /// The sampled rule was asked of a solid that cannot decide single points.
+    LEAFLESS_E_NOT_SAMPLED = 6,
+    /// A mesh does not bound a solid.
+    LEAFLESS_E_MESH = 7,
+    /// A mesh file cannot be read.
+    LEAFLESS_E_MESH_FILE = 8,
+    /// The bytes are no Leafless file, or a damaged one.
+    LEAFLESS_E_FORMAT = 9,
+    /// The file needs a newer version of the library.
+    LEAFLESS_E_VERSION = 10,
+    /// The arrays of an octree contradict each other.
+    LEAFLESS_E_DAMAGED = 11,
+    /// More nodes or bytes than leafless_options allows.
+    LEAFLESS_E_LIMIT = 12,
+    /// An allocation failed.
+    LEAFLESS_E_NO_MEMORY = 13,
+    /// The host asked to stop.
+    LEAFLESS_E_CANCELLED = 14,
+    /// A function of the host ended the work by what it returned.
+    LEAFLESS_E_CALLBACK = 15,
+    /// The operating system refused to read or write.
+    LEAFLESS_E_IO = 16,
+    /// A defect of the library. What it worked on is as before; the message says where to report it.
+    LEAFLESS_E_PANIC = 17,
+}
+use leafless_status::*;
+
+const ALL: [(leafless_status, &CStr); 18] = [
+    (LEAFLESS_OK, c"LEAFLESS_OK"),
+    (LEAFLESS_E_NULL, c"LEAFLESS_E_NULL"),
+    (LEAFLESS_E_ARGUMENT, c"LEAFLESS_E_ARGUMENT"),
+    (LEAFLESS_E_UTF8, c"LEAFLESS_E_UTF8"),
+    (LEAFLESS_E_BUFFER, c"LEAFLESS_E_BUFFER"),
+    (LEAFLESS_E_FRAME, c"LEAFLESS_E_FRAME"),
+    (LEAFLESS_E_NOT_SAMPLED, c"LEAFLESS_E_NOT_SAMPLED"),
+    (LEAFLESS_E_MESH, c"LEAFLESS_E_MESH"),
+    (LEAFLESS_E_MESH_FILE, c"LEAFLESS_E_MESH_FILE"),
+    (LEAFLESS_E_FORMAT, c"LEAFLESS_E_FORMAT"),
+    (LEAFLESS_E_VERSION, c"LEAFLESS_E_VERSION"),
+    (LEAFLESS_E_DAMAGED, c"LEAFLESS_E_DAMAGED"),
+    (LEAFLESS_E_LIMIT, c"LEAFLESS_E_LIMIT"),
+    (LEAFLESS_E_NO_MEMORY, c"LEAFLESS_E_NO_MEMORY"),
+    (LEAFLESS_E_CANCELLED, c"LEAFLESS_E_CANCELLED"),
+    (LEAFLESS_E_CALLBACK, c"LEAFLESS_E_CALLBACK"),
+    (LEAFLESS_E_IO, c"LEAFLESS_E_IO"),
+    (LEAFLESS_E_PANIC, c"LEAFLESS_E_PANIC"),
+];
+
+impl From<&Failure> for leafless_status {
+    fn from(failure: &Failure) -> leafless_status {
+        match failure {
+            Failure::Null { .. } => LEAFLESS_E_NULL,
+            Failure::Argument { .. } => LEAFLESS_E_ARGUMENT,
+            Failure::Utf8 { .. } => LEAFLESS_E_UTF8,
+            Failure::Buffer { .. } => LEAFLESS_E_BUFFER,
+            Failure::Library(error) => match error {
+                Error::Argument { .. } => LEAFLESS_E_ARGUMENT,
+                Error::FrameMismatch => LEAFLESS_E_FRAME,
+                Error::NotSampled => LEAFLESS_E_NOT_SAMPLED,
+                Error::Mesh(_) => LEAFLESS_E_MESH,
+                Error::MeshFile(_) => LEAFLESS_E_MESH_FILE,
+                Error::Format(FormatError::Version { .. } | FormatError::Required { .. }) => {
+                    LEAFLESS_E_VERSION
+                }
+                // Not the file, but where the host has put it.
+                Error::Format(FormatError::Alignment) => LEAFLESS_E_ARGUMENT,
+                Error::Format(_) => LEAFLESS_E_FORMAT,
+                Error::Damaged(_) => LEAFLESS_E_DAMAGED,
+                Error::Limit { .. } => LEAFLESS_E_LIMIT,
+                Error::OutOfMemory => LEAFLESS_E_NO_MEMORY,
+                Error::Cancelled => LEAFLESS_E_CANCELLED,
+                Error::Callback { .. } => LEAFLESS_E_CALLBACK,
+                Error::Io(error) if error.kind() == std::io::ErrorKind::OutOfMemory => LEAFLESS_E_NO_MEMORY,
+                Error::Io(_) => LEAFLESS_E_IO,
+            },
+        }
+    }
+}
+
+/// The name of a status, such as "LEAFLESS_E_NULL".
+///
+/// - Buffers: none.
+/// - Result: a NUL-terminated text, never NULL; "LEAFLESS_E_UNKNOWN" for a number that is no status.
+/// - Errors: none.
+/// - Ownership: the text is static; do not free it.
+/// - Threads: any.
+/// - Untrusted input: any number.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub extern "C" fn leafless_status_name(status: i32) -> *const c_char {
+    let named = ALL.iter().find(|(known, _)| *known as i32 == status);
+    named.map_or(c"LEAFLESS_E_UNKNOWN", |(_, name)| name).as_ptr()
+}
+
+/// The message of the last failure in the calling thread: a sentence that a user can act on, in UTF-8. Calls
+/// that succeed leave it as it is; before the first failure it is empty.
+///
+/// - Buffers: `message`, `capacity` bytes; may be NULL if `capacity` is 0.
+/// - Result: the message's length in bytes, without the terminating NUL, also if not all of it was written; at
+///   most 511. What is written is cut at a character and NUL-terminated.
+/// - Errors: none.
+/// - Ownership: the message is copied.
+/// - Threads: any; every thread has its own message.
+/// - Untrusted input: none.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_last_error(message: *mut c_char, capacity: usize) -> usize {
+    boundary::last_message(|text| {
+        if !message.is_null() && capacity > 0 {
+            let length = boundary::cut(text, capacity - 1);
+            // SAFETY: the caller has `capacity` bytes there; the message is this thread's own.
+            unsafe {
+                core::ptr::copy_nonoverlapping(text.as_ptr(), message.cast(), length);
+                message.add(length).write(0);
+            }
+        }
+        text.len()
+    })
+}
+
+/// The status of the last failure in the calling thread, LEAFLESS_OK before the first.
+///
+/// - Buffers: none.
+/// - Result: the status.
+/// - Errors: none.
+/// - Ownership: nothing changes hands.
+/// - Threads: any; every thread has its own status.
+/// - Untrusted input: none.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub extern "C" fn leafless_last_status() -> leafless_status {
+    boundary::last_status()
+}
+
+/// Panics inside, to show what becomes of it: only in libraries that are built for tests.
+///
+/// - Buffers: none.
+/// - Result: LEAFLESS_E_PANIC.
+/// - Errors: none.
+/// - Ownership: nothing changes hands.
+/// - Threads: any.
+/// - Untrusted input: none.
+/// - Since: 0.1
+#[cfg(feature = "capi-test")]
+#[unsafe(no_mangle)]
+pub extern "C" fn leafless_test_panic() -> leafless_status {
+    boundary::guard(|| panic!("as the test wanted"))
+}

@@ -1,0 +1,80 @@
+//! `include/leafless.h` is what `src/capi` says. After a change of the interface,
+//!
+//! ```text
+//! LEAFLESS_BLESS=1 cargo test --test header
+//! ```
+//!
+//! writes it anew.
+
+use std::path::Path;
+
+fn folder() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+/// The files of the interface, as the header's sections follow each other.
+const SECTIONS: [&str; 10] =
+    ["version", "status", "control", "frame", "mesh", "solid", "octree", "set_algebra", "query", "file"];
+
+fn generated() -> String {
+    let mut config = cbindgen::Config::from_file(folder().join("include/cbindgen.toml")).unwrap();
+    config.header = Some(std::fs::read_to_string(folder().join("include/preface.h")).unwrap());
+    let mut builder = cbindgen::Builder::new().with_config(config);
+    for section in SECTIONS {
+        builder = builder.with_src(folder().join("src/capi").join(section).with_extension("rs"));
+    }
+    let mut header = Vec::new();
+    builder.generate().unwrap().write(&mut header);
+    String::from_utf8(header).unwrap()
+}
+
+#[test]
+fn the_header_is_current() {
+    let path = folder().join("include/leafless.h");
+    let generated = generated();
+    if std::env::var_os("LEAFLESS_BLESS").is_some() {
+        std::fs::write(&path, &generated).unwrap();
+    }
+    let committed = std::fs::read_to_string(&path).unwrap_or_default();
+    assert!(
+        committed == generated,
+        "include/leafless.h is not what src/capi says: LEAFLESS_BLESS=1 cargo test --test header"
+    );
+}
+
+/// The header's functions with their doc blocks.
+fn functions(header: &str) -> Vec<(&str, &str)> {
+    let blocks = header.split("/**").skip(1).filter_map(|block| block.split_once("*/"));
+    let functions = blocks.filter_map(|(doc, code)| {
+        let declaration = code.trim_start().lines().next()?;
+        let name = declaration.split_once('(')?.0.rsplit([' ', '*']).next()?;
+        (name.starts_with("leafless_") && !declaration.starts_with("typedef")).then_some((name, doc))
+    });
+    functions.collect()
+}
+
+#[test]
+fn every_doc_block_has_the_fixed_order() {
+    let header = generated();
+    let functions = functions(&header);
+    for (name, doc) in &functions {
+        let lines: Vec<&str> = doc.lines().filter_map(|line| line.trim_start().strip_prefix("* ")).collect();
+        assert!(lines[0].ends_with(['.', ',']) || lines.len() > 8, "{name} has no purpose: {}", lines[0]);
+        let heads: Vec<&str> =
+            lines.iter().filter_map(|line| Some(line.strip_prefix("- ")?.split_once(':')?.0)).collect();
+        let order = ["Buffers", "Result", "Errors", "Ownership", "Threads", "Untrusted input", "Since"];
+        assert_eq!(heads, order, "{name}");
+    }
+    // The sources export just these.
+    let sources: usize = SECTIONS
+        .iter()
+        .map(|section| {
+            let path = folder().join("src/capi").join(section).with_extension("rs");
+            std::fs::read_to_string(path).unwrap().matches("#[unsafe(no_mangle)]").count()
+        })
+        .sum();
+    assert_eq!(functions.len(), sources);
+    let files = std::fs::read_dir(folder().join("src/capi")).unwrap().count();
+    // And `mod.rs` and `boundary.rs`, which export nothing.
+    assert_eq!(files, SECTIONS.len() + 2);
+}
