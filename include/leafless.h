@@ -373,7 +373,7 @@ typedef int32_t (*leafless_progress_fn)(void *ctx, double fraction);
  * How a long operation may proceed. Where a function takes options, NULL means the defaults. All fields but the
  * first may be zero, which is their default; leafless_options_init sets them so. No option changes a result.
  */
-typedef struct leafless_options {
+typedef struct {
     /**
      * sizeof(leafless_options).
      */
@@ -402,7 +402,7 @@ typedef struct leafless_options {
      * Ends the operation when it is cancelled, and can be asked for the progress; optional. Give operations that
      * run at once a control each, or their progress is mixed up.
      */
-    const struct leafless_control *control;
+    const leafless_control *control;
 } leafless_options;
 
 /**
@@ -412,7 +412,7 @@ typedef struct leafless_options {
  * 2^256, the depth 1 to 20. The lattice planes are the real numbers origin + i·edge/2^depth, whether or not
  * doubles can represent them: comparisons with them are exact.
  */
-typedef struct leafless_frame {
+typedef struct {
     /**
      * Lower corner of the universe.
      */
@@ -430,7 +430,7 @@ typedef struct leafless_frame {
 /**
  * An interval that contains the truth: lower ≤ truth ≤ upper.
  */
-typedef struct leafless_interval {
+typedef struct {
     /**
      * Proven lower bound.
      */
@@ -444,7 +444,7 @@ typedef struct leafless_interval {
 /**
  * What was found while a mesh was taken in, and how its triangles hang together.
  */
-typedef struct leafless_mesh_report {
+typedef struct {
     /**
      * Triangles that were handed in: triangles + degenerate.
      */
@@ -517,7 +517,7 @@ typedef void (*leafless_destroy_fn)(void *ctx);
 /**
  * The host's own shape. All fields but the first may be zero; `classify` must be set.
  */
-typedef struct leafless_callbacks {
+typedef struct {
     /**
      * sizeof(leafless_callbacks).
      */
@@ -547,11 +547,11 @@ typedef struct leafless_callbacks {
 /**
  * What can be said of an octree at once.
  */
-typedef struct leafless_octree_info {
+typedef struct {
     /**
      * Where it lies, and its depth.
      */
-    struct leafless_frame frame;
+    leafless_frame frame;
     /**
      * Array elements without bricks; each holds two levels.
      */
@@ -581,7 +581,7 @@ typedef struct leafless_octree_info {
 /**
  * Counts and certified volumes. The volume is that of the part inside of the universe.
  */
-typedef struct leafless_statistics {
+typedef struct {
     /**
      * Internal nodes: cells that are cut and split.
      */
@@ -609,13 +609,13 @@ typedef struct leafless_statistics {
     /**
      * The same two in cubic model units, rounded outward.
      */
-    struct leafless_interval volume_model;
+    leafless_interval volume_model;
 } leafless_statistics;
 
 /**
  * Where a cursor stands.
  */
-typedef struct leafless_cursor_state {
+typedef struct {
     /**
      * The cell's place among those of its level, per axis.
      */
@@ -638,7 +638,7 @@ typedef struct leafless_cursor_state {
 /**
  * What header and section table of a file say.
  */
-typedef struct leafless_probe {
+typedef struct {
     /**
      * Major version of the format.
      */
@@ -650,7 +650,7 @@ typedef struct leafless_probe {
     /**
      * Where the octree lies, and its depth.
      */
-    struct leafless_frame frame;
+    leafless_frame frame;
     /**
      * Array elements without bricks.
      */
@@ -684,7 +684,7 @@ typedef struct leafless_probe {
 /**
  * A section of a file.
  */
-typedef struct leafless_section {
+typedef struct {
     /**
      * Number of its kind.
      */
@@ -828,7 +828,7 @@ leafless_status leafless_test_panic(void);
  * - Untrusted input: none.
  * - Since: 0.1
  */
-leafless_status leafless_options_init(struct leafless_options *options);
+leafless_status leafless_options_init(leafless_options *options);
 
 /**
  * Makes a control.
@@ -841,7 +841,7 @@ leafless_status leafless_options_init(struct leafless_options *options);
  * - Untrusted input: none.
  * - Since: 0.1
  */
-leafless_status leafless_control_new(struct leafless_control **control);
+leafless_status leafless_control_new(leafless_control **control);
 
 /**
  * Gives back a control.
@@ -854,7 +854,7 @@ leafless_status leafless_control_new(struct leafless_control **control);
  * - Untrusted input: none.
  * - Since: 0.1
  */
-void leafless_control_free(struct leafless_control *control);
+void leafless_control_free(leafless_control *control);
 
 /**
  * Ends the operations that run with this control: they return LEAFLESS_E_CANCELLED soon, and so do later ones
@@ -868,7 +868,7 @@ void leafless_control_free(struct leafless_control *control);
  * - Untrusted input: none.
  * - Since: 0.1
  */
-leafless_status leafless_control_cancel(const struct leafless_control *control);
+leafless_status leafless_control_cancel(const leafless_control *control);
 
 /**
  * Makes a cancelled control usable again.
@@ -881,7 +881,7 @@ leafless_status leafless_control_cancel(const struct leafless_control *control);
  * - Untrusted input: none.
  * - Since: 0.1
  */
-leafless_status leafless_control_reset(const struct leafless_control *control);
+leafless_status leafless_control_reset(const leafless_control *control);
 
 /**
  * Whether a control was cancelled, and how far the operation is that runs with it.
@@ -894,9 +894,7 @@ leafless_status leafless_control_reset(const struct leafless_control *control);
  * - Untrusted input: none.
  * - Since: 0.1
  */
-leafless_status leafless_control_state(const struct leafless_control *control,
-                                       bool *cancelled,
-                                       double *fraction);
+leafless_status leafless_control_state(const leafless_control *control, bool *cancelled, double *fraction);
 
 /**
  * Checks a frame's fields.
@@ -909,7 +907,7 @@ leafless_status leafless_control_state(const struct leafless_control *control,
  * - Untrusted input: any values.
  * - Since: 0.1
  */
-leafless_status leafless_frame_check(const struct leafless_frame *frame);
+leafless_status leafless_frame_check(const leafless_frame *frame);
 
 /**
  * The default frame of a shape: the cube of edge L·(1 + 1/32) around its centre, L being its longest extent; the
@@ -928,7 +926,7 @@ leafless_status leafless_frame_check(const struct leafless_frame *frame);
 leafless_status leafless_frame_around(const double min[3],
                                       const double max[3],
                                       uint32_t depth,
-                                      struct leafless_frame *frame);
+                                      leafless_frame *frame);
 
 /**
  * The edge length of a finest cell: edge / 2^depth, exactly.
@@ -941,7 +939,7 @@ leafless_status leafless_frame_around(const double min[3],
  * - Untrusted input: any values.
  * - Since: 0.1
  */
-leafless_status leafless_frame_cell_size(const struct leafless_frame *frame, double *cell_size_model);
+leafless_status leafless_frame_cell_size(const leafless_frame *frame, double *cell_size_model);
 
 /**
  * The finest cell that a point lies in. A point on a plane between two cells belongs to the upper one, on the
@@ -957,7 +955,7 @@ leafless_status leafless_frame_cell_size(const struct leafless_frame *frame, dou
  * - Since: 0.1
  *
  */
-leafless_status leafless_frame_cell_of(const struct leafless_frame *frame,
+leafless_status leafless_frame_cell_of(const leafless_frame *frame,
                                        const double point_model[3],
                                        uint32_t cell[3]);
 
@@ -972,10 +970,10 @@ leafless_status leafless_frame_cell_of(const struct leafless_frame *frame,
  * - Untrusted input: any values.
  * - Since: 0.1
  */
-leafless_status leafless_frame_plane(const struct leafless_frame *frame,
+leafless_status leafless_frame_plane(const leafless_frame *frame,
                                      uint32_t axis,
                                      uint32_t index,
-                                     struct leafless_interval *plane_model);
+                                     leafless_interval *plane_model);
 
 /**
  * Makes a mesh of arrays. Equal vertices are welded, triangles with two corners at one place dropped and counted;
@@ -997,7 +995,7 @@ leafless_status leafless_mesh_new(const double *vertices,
                                   uint64_t vertex_stride,
                                   const uint32_t *triangles,
                                   uint64_t triangle_count,
-                                  struct leafless_mesh **mesh);
+                                  leafless_mesh **mesh);
 
 /**
  * Reads a binary or ASCII STL file; which of the two is found out from the bytes.
@@ -1011,7 +1009,7 @@ leafless_status leafless_mesh_new(const double *vertices,
  * - Untrusted input: any file; memory is at most a small multiple of its length.
  * - Since: 0.1
  */
-leafless_status leafless_mesh_read_stl(const char *path, size_t path_length, struct leafless_mesh **mesh);
+leafless_status leafless_mesh_read_stl(const char *path, size_t path_length, leafless_mesh **mesh);
 
 /**
  * As leafless_mesh_read_stl for a file in memory.
@@ -1025,7 +1023,7 @@ leafless_status leafless_mesh_read_stl(const char *path, size_t path_length, str
  * - Untrusted input: any bytes; memory is at most a small multiple of their number.
  * - Since: 0.1
  */
-leafless_status leafless_mesh_from_stl(const uint8_t *bytes, uint64_t length, struct leafless_mesh **mesh);
+leafless_status leafless_mesh_from_stl(const uint8_t *bytes, uint64_t length, leafless_mesh **mesh);
 
 /**
  * Writes a binary STL file into memory: 84 + 50 t bytes. Coordinates are rounded to 32 bits.
@@ -1039,7 +1037,7 @@ leafless_status leafless_mesh_from_stl(const uint8_t *bytes, uint64_t length, st
  * - Untrusted input: none.
  * - Since: 0.1
  */
-leafless_status leafless_mesh_to_stl(const struct leafless_mesh *mesh,
+leafless_status leafless_mesh_to_stl(const leafless_mesh *mesh,
                                      uint8_t *bytes,
                                      uint64_t capacity,
                                      uint64_t *length);
@@ -1055,7 +1053,7 @@ leafless_status leafless_mesh_to_stl(const struct leafless_mesh *mesh,
  * - Untrusted input: none.
  * - Since: 0.1
  */
-leafless_status leafless_mesh_ref(const struct leafless_mesh *mesh, struct leafless_mesh **reference);
+leafless_status leafless_mesh_ref(const leafless_mesh *mesh, leafless_mesh **reference);
 
 /**
  * Gives back a reference to a mesh; with the last one the mesh is gone. Solids made of it stay.
@@ -1068,7 +1066,7 @@ leafless_status leafless_mesh_ref(const struct leafless_mesh *mesh, struct leafl
  * - Untrusted input: none.
  * - Since: 0.1
  */
-void leafless_mesh_free(struct leafless_mesh *mesh);
+void leafless_mesh_free(leafless_mesh *mesh);
 
 /**
  * How many vertices and triangles a mesh has.
@@ -1081,7 +1079,7 @@ void leafless_mesh_free(struct leafless_mesh *mesh);
  * - Untrusted input: none.
  * - Since: 0.1
  */
-leafless_status leafless_mesh_counts(const struct leafless_mesh *mesh,
+leafless_status leafless_mesh_counts(const leafless_mesh *mesh,
                                      uint64_t *vertex_count,
                                      uint64_t *triangle_count);
 
@@ -1097,7 +1095,7 @@ leafless_status leafless_mesh_counts(const struct leafless_mesh *mesh,
  * - Untrusted input: none.
  * - Since: 0.1
  */
-leafless_status leafless_mesh_copy(const struct leafless_mesh *mesh,
+leafless_status leafless_mesh_copy(const leafless_mesh *mesh,
                                    double *vertices,
                                    uint64_t vertex_capacity,
                                    uint32_t *triangles,
@@ -1115,7 +1113,7 @@ leafless_status leafless_mesh_copy(const struct leafless_mesh *mesh,
  * - Since: 0.1
  *
  */
-leafless_status leafless_mesh_bounds(const struct leafless_mesh *mesh, double min[3], double max[3]);
+leafless_status leafless_mesh_bounds(const leafless_mesh *mesh, double min[3], double max[3]);
 
 /**
  * The volume that a mesh encloses, by the divergence theorem: overlaps count twice, bodies that are inside out
@@ -1129,7 +1127,7 @@ leafless_status leafless_mesh_bounds(const struct leafless_mesh *mesh, double mi
  * - Untrusted input: none.
  * - Since: 0.1
  */
-leafless_status leafless_mesh_volume(const struct leafless_mesh *mesh,
+leafless_status leafless_mesh_volume(const leafless_mesh *mesh,
                                      double *volume_model);
 
 /**
@@ -1144,8 +1142,8 @@ leafless_status leafless_mesh_volume(const struct leafless_mesh *mesh,
  * - Untrusted input: none.
  * - Since: 0.1
  */
-leafless_status leafless_mesh_describe(const struct leafless_mesh *mesh,
-                                       struct leafless_mesh_report *report);
+leafless_status leafless_mesh_describe(const leafless_mesh *mesh,
+                                       leafless_mesh_report *report);
 
 /**
  * Checks that a mesh bounds a solid. Self-intersections, overlaps, nested and inside-out bodies are all allowed.
@@ -1159,7 +1157,7 @@ leafless_status leafless_mesh_describe(const struct leafless_mesh *mesh,
  * - Untrusted input: any mesh.
  * - Since: 0.1
  */
-leafless_status leafless_mesh_check_closed(const struct leafless_mesh *mesh,
+leafless_status leafless_mesh_check_closed(const leafless_mesh *mesh,
                                            uint32_t fill);
 
 /**
@@ -1174,7 +1172,7 @@ leafless_status leafless_mesh_check_closed(const struct leafless_mesh *mesh,
  * - Untrusted input: any mesh.
  * - Since: 0.1
  */
-leafless_status leafless_mesh_sewn(const struct leafless_mesh *mesh, struct leafless_mesh **sewn);
+leafless_status leafless_mesh_sewn(const leafless_mesh *mesh, leafless_mesh **sewn);
 
 /**
  * The mesh under an affine map: x' = M x + t, rounded. A reflection turns it inside out. The moved vertices count
@@ -1190,9 +1188,9 @@ leafless_status leafless_mesh_sewn(const struct leafless_mesh *mesh, struct leaf
  * - Since: 0.1
  *
  */
-leafless_status leafless_mesh_transformed(const struct leafless_mesh *mesh,
+leafless_status leafless_mesh_transformed(const leafless_mesh *mesh,
                                           const double matrix[12],
-                                          struct leafless_mesh **moved);
+                                          leafless_mesh **moved);
 
 /**
  * The mesh moved by a vector, rounded. What leafless_mesh_sewn has found stays known.
@@ -1207,9 +1205,9 @@ leafless_status leafless_mesh_transformed(const struct leafless_mesh *mesh,
  * - Since: 0.1
  *
  */
-leafless_status leafless_mesh_translated(const struct leafless_mesh *mesh,
+leafless_status leafless_mesh_translated(const leafless_mesh *mesh,
                                          const double offset_model[3],
-                                         struct leafless_mesh **moved);
+                                         leafless_mesh **moved);
 
 /**
  * The ball of all points at most `radius` from `centre`. Its verdicts are exact.
@@ -1226,7 +1224,7 @@ leafless_status leafless_mesh_translated(const struct leafless_mesh *mesh,
  */
 leafless_status leafless_solid_new_ball(const double centre_model[3],
                                         double radius_model,
-                                        struct leafless_solid **solid);
+                                        leafless_solid **solid);
 
 /**
  * The box [min, max] with faces parallel to the lattice. Its verdicts are exact, so a face on a lattice plane
@@ -1244,7 +1242,7 @@ leafless_status leafless_solid_new_ball(const double centre_model[3],
  */
 leafless_status leafless_solid_new_box(const double min_model[3],
                                        const double max_model[3],
-                                       struct leafless_solid **solid);
+                                       leafless_solid **solid);
 
 /**
  * The half-space of the points p with normal · p + offset ≥ 0. Its verdicts are exact.
@@ -1259,9 +1257,7 @@ leafless_status leafless_solid_new_box(const double min_model[3],
  * - Since: 0.1
  *
  */
-leafless_status leafless_solid_new_halfspace(const double normal[3],
-                                             double offset,
-                                             struct leafless_solid **solid);
+leafless_status leafless_solid_new_halfspace(const double normal[3], double offset, leafless_solid **solid);
 
 /**
  * What a closed mesh encloses, on the lattice of one frame: the solid can be built on that frame only. A mesh
@@ -1276,10 +1272,10 @@ leafless_status leafless_solid_new_halfspace(const double normal[3],
  * - Untrusted input: any mesh.
  * - Since: 0.1
  */
-leafless_status leafless_solid_new_mesh(const struct leafless_mesh *mesh,
-                                        const struct leafless_frame *frame,
+leafless_status leafless_solid_new_mesh(const leafless_mesh *mesh,
+                                        const leafless_frame *frame,
                                         uint32_t fill,
-                                        struct leafless_solid **solid);
+                                        leafless_solid **solid);
 
 /**
  * The host's own shape.
@@ -1293,8 +1289,8 @@ leafless_status leafless_solid_new_mesh(const struct leafless_mesh *mesh,
  * - Untrusted input: any answers.
  * - Since: 0.1
  */
-leafless_status leafless_solid_new_callbacks(const struct leafless_callbacks *callbacks,
-                                             struct leafless_solid **solid);
+leafless_status leafless_solid_new_callbacks(const leafless_callbacks *callbacks,
+                                             leafless_solid **solid);
 
 /**
  * A stored octree as a solid on its own universe. Built to fewer levels it is cut there, built to more its
@@ -1309,7 +1305,7 @@ leafless_status leafless_solid_new_callbacks(const struct leafless_callbacks *ca
  * - Untrusted input: any octree.
  * - Since: 0.1
  */
-leafless_status leafless_octree_as_solid(const struct leafless_octree *octree, struct leafless_solid **solid);
+leafless_status leafless_octree_as_solid(const leafless_octree *octree, leafless_solid **solid);
 
 /**
  * One more reference to a solid.
@@ -1322,7 +1318,7 @@ leafless_status leafless_octree_as_solid(const struct leafless_octree *octree, s
  * - Untrusted input: none.
  * - Since: 0.1
  */
-leafless_status leafless_solid_ref(const struct leafless_solid *solid, struct leafless_solid **reference);
+leafless_status leafless_solid_ref(const leafless_solid *solid, leafless_solid **reference);
 
 /**
  * Gives back a reference to a solid; with the last one the solid is gone. Octrees built from it stay.
@@ -1335,7 +1331,7 @@ leafless_status leafless_solid_ref(const struct leafless_solid *solid, struct le
  * - Untrusted input: none.
  * - Since: 0.1
  */
-void leafless_solid_free(struct leafless_solid *solid);
+void leafless_solid_free(leafless_solid *solid);
 
 /**
  * Builds the octree of a solid to the depth of a frame. The result is the same bit for bit for any number of
@@ -1351,11 +1347,11 @@ void leafless_solid_free(struct leafless_solid *solid);
  * - Untrusted input: any solid; set `max_bytes` where the depth or the solid is not your own choice.
  * - Since: 0.1
  */
-leafless_status leafless_octree_build(const struct leafless_solid *solid,
-                                      const struct leafless_frame *frame,
+leafless_status leafless_octree_build(const leafless_solid *solid,
+                                      const leafless_frame *frame,
                                       uint32_t rule,
-                                      const struct leafless_options *options,
-                                      struct leafless_octree **octree);
+                                      const leafless_options *options,
+                                      leafless_octree **octree);
 
 /**
  * The octree whose whole universe has one tag.
@@ -1369,10 +1365,10 @@ leafless_status leafless_octree_build(const struct leafless_solid *solid,
  * - Untrusted input: any numbers.
  * - Since: 0.1
  */
-leafless_status leafless_octree_uniform(const struct leafless_frame *frame,
+leafless_status leafless_octree_uniform(const leafless_frame *frame,
                                         uint32_t tag,
                                         uint32_t exterior,
-                                        struct leafless_octree **octree);
+                                        leafless_octree **octree);
 
 /**
  * The octree with its PARTIAL cells resolved: EMPTY under LEAFLESS_RULE_INNER, FULL under LEAFLESS_RULE_OUTER.
@@ -1387,10 +1383,10 @@ leafless_status leafless_octree_uniform(const struct leafless_frame *frame,
  * - Untrusted input: any octree.
  * - Since: 0.1
  */
-leafless_status leafless_octree_resolve(const struct leafless_octree *octree,
+leafless_status leafless_octree_resolve(const leafless_octree *octree,
                                         uint32_t rule,
-                                        const struct leafless_options *options,
-                                        struct leafless_octree **resolved);
+                                        const leafless_options *options,
+                                        leafless_octree **resolved);
 
 /**
  * The same octree with its bricks encoded as a file would have them, through a dictionary where that is shorter.
@@ -1404,8 +1400,8 @@ leafless_status leafless_octree_resolve(const struct leafless_octree *octree,
  * - Untrusted input: any octree.
  * - Since: 0.1
  */
-leafless_status leafless_octree_compact(const struct leafless_octree *octree,
-                                        struct leafless_octree **compacted);
+leafless_status leafless_octree_compact(const leafless_octree *octree,
+                                        leafless_octree **compacted);
 
 /**
  * One more reference to an octree.
@@ -1418,7 +1414,7 @@ leafless_status leafless_octree_compact(const struct leafless_octree *octree,
  * - Untrusted input: none.
  * - Since: 0.1
  */
-leafless_status leafless_octree_ref(const struct leafless_octree *octree, struct leafless_octree **reference);
+leafless_status leafless_octree_ref(const leafless_octree *octree, leafless_octree **reference);
 
 /**
  * Gives back a reference to an octree. With the last one the octree is gone, and with it the mapping of its file,
@@ -1432,7 +1428,7 @@ leafless_status leafless_octree_ref(const struct leafless_octree *octree, struct
  * - Untrusted input: none.
  * - Since: 0.1
  */
-void leafless_octree_free(struct leafless_octree *octree);
+void leafless_octree_free(leafless_octree *octree);
 
 /**
  * What can be said of an octree at once. O(1).
@@ -1445,8 +1441,7 @@ void leafless_octree_free(struct leafless_octree *octree);
  * - Untrusted input: any octree.
  * - Since: 0.1
  */
-leafless_status leafless_octree_describe(const struct leafless_octree *octree,
-                                         struct leafless_octree_info *info);
+leafless_status leafless_octree_describe(const leafless_octree *octree, leafless_octree_info *info);
 
 /**
  * Counts over all levels, and the certified volume. O(depth) once the counts are known, which for an octree from
@@ -1460,8 +1455,8 @@ leafless_status leafless_octree_describe(const struct leafless_octree *octree,
  * - Untrusted input: any octree; of one that was mapped unverified the numbers may be wrong.
  * - Since: 0.1
  */
-leafless_status leafless_octree_statistics(const struct leafless_octree *octree,
-                                           struct leafless_statistics *statistics);
+leafless_status leafless_octree_statistics(const leafless_octree *octree,
+                                           leafless_statistics *statistics);
 
 /**
  * Counts of each level, and the certified volumes of the tree cut there. Entry 0 is the universe, entry `depth`
@@ -1475,8 +1470,8 @@ leafless_status leafless_octree_statistics(const struct leafless_octree *octree,
  * - Untrusted input: any octree; of one that was mapped unverified the numbers may be wrong.
  * - Since: 0.1
  */
-leafless_status leafless_octree_levels(const struct leafless_octree *octree,
-                                       struct leafless_statistics *levels,
+leafless_status leafless_octree_levels(const leafless_octree *octree,
+                                       leafless_statistics *levels,
                                        uint64_t capacity,
                                        uint64_t *count);
 
@@ -1492,7 +1487,7 @@ leafless_status leafless_octree_levels(const struct leafless_octree *octree,
  * - Untrusted input: any octree.
  * - Since: 0.1
  */
-leafless_status leafless_octree_check(const struct leafless_octree *octree);
+leafless_status leafless_octree_check(const leafless_octree *octree);
 
 /**
  * Whether two octrees have the same cells with the same tags on the same frame. Metadata does not count. O(n).
@@ -1505,8 +1500,8 @@ leafless_status leafless_octree_check(const struct leafless_octree *octree);
  * - Untrusted input: any octrees.
  * - Since: 0.1
  */
-leafless_status leafless_octree_equal(const struct leafless_octree *a,
-                                      const struct leafless_octree *b,
+leafless_status leafless_octree_equal(const leafless_octree *a,
+                                      const leafless_octree *b,
                                       bool *equal);
 
 /**
@@ -1521,12 +1516,12 @@ leafless_status leafless_octree_equal(const struct leafless_octree *a,
  * - Untrusted input: any texts; all of an octree's metadata may take 1 MiB in a file.
  * - Since: 0.1
  */
-leafless_status leafless_octree_with_metadata(const struct leafless_octree *octree,
+leafless_status leafless_octree_with_metadata(const leafless_octree *octree,
                                               const char *key,
                                               size_t key_length,
                                               const char *value,
                                               size_t value_length,
-                                              struct leafless_octree **named);
+                                              leafless_octree **named);
 
 /**
  * The value of a fact in an octree's metadata.
@@ -1539,7 +1534,7 @@ leafless_status leafless_octree_with_metadata(const struct leafless_octree *octr
  * - Untrusted input: any octree.
  * - Since: 0.1
  */
-leafless_status leafless_octree_peek_metadata(const struct leafless_octree *octree,
+leafless_status leafless_octree_peek_metadata(const leafless_octree *octree,
                                               const char *key,
                                               size_t key_length,
                                               const char **value,
@@ -1557,7 +1552,7 @@ leafless_status leafless_octree_peek_metadata(const struct leafless_octree *octr
  * - Untrusted input: any octree.
  * - Since: 0.1
  */
-leafless_status leafless_octree_peek_metadata_at(const struct leafless_octree *octree,
+leafless_status leafless_octree_peek_metadata_at(const leafless_octree *octree,
                                                  uint64_t index,
                                                  uint64_t *count,
                                                  const char **key,
@@ -1578,10 +1573,10 @@ leafless_status leafless_octree_peek_metadata_at(const struct leafless_octree *o
  * - Untrusted input: any octrees; damage in ones that were mapped unverified is an error or reads as PARTIAL.
  * - Since: 0.1
  */
-leafless_status leafless_octree_union(const struct leafless_octree *a,
-                                      const struct leafless_octree *b,
-                                      const struct leafless_options *options,
-                                      struct leafless_octree **result);
+leafless_status leafless_octree_union(const leafless_octree *a,
+                                      const leafless_octree *b,
+                                      const leafless_options *options,
+                                      leafless_octree **result);
 
 /**
  * The points that `a` and `b` have in common.
@@ -1594,10 +1589,10 @@ leafless_status leafless_octree_union(const struct leafless_octree *a,
  * - Untrusted input: as leafless_octree_union.
  * - Since: 0.1
  */
-leafless_status leafless_octree_intersection(const struct leafless_octree *a,
-                                             const struct leafless_octree *b,
-                                             const struct leafless_options *options,
-                                             struct leafless_octree **result);
+leafless_status leafless_octree_intersection(const leafless_octree *a,
+                                             const leafless_octree *b,
+                                             const leafless_options *options,
+                                             leafless_octree **result);
 
 /**
  * `a` without `b`.
@@ -1610,10 +1605,10 @@ leafless_status leafless_octree_intersection(const struct leafless_octree *a,
  * - Untrusted input: as leafless_octree_union.
  * - Since: 0.1
  */
-leafless_status leafless_octree_difference(const struct leafless_octree *a,
-                                           const struct leafless_octree *b,
-                                           const struct leafless_options *options,
-                                           struct leafless_octree **result);
+leafless_status leafless_octree_difference(const leafless_octree *a,
+                                           const leafless_octree *b,
+                                           const leafless_options *options,
+                                           leafless_octree **result);
 
 /**
  * The points of just one of `a` and `b`.
@@ -1626,10 +1621,10 @@ leafless_status leafless_octree_difference(const struct leafless_octree *a,
  * - Untrusted input: as leafless_octree_union.
  * - Since: 0.1
  */
-leafless_status leafless_octree_xor(const struct leafless_octree *a,
-                                    const struct leafless_octree *b,
-                                    const struct leafless_options *options,
-                                    struct leafless_octree **result);
+leafless_status leafless_octree_xor(const leafless_octree *a,
+                                    const leafless_octree *b,
+                                    const leafless_options *options,
+                                    leafless_octree **result);
 
 /**
  * Everything but `octree`, inside of its universe and out.
@@ -1642,9 +1637,9 @@ leafless_status leafless_octree_xor(const struct leafless_octree *a,
  * - Untrusted input: as leafless_octree_union.
  * - Since: 0.1
  */
-leafless_status leafless_octree_complement(const struct leafless_octree *octree,
-                                           const struct leafless_options *options,
-                                           struct leafless_octree **result);
+leafless_status leafless_octree_complement(const leafless_octree *octree,
+                                           const leafless_options *options,
+                                           leafless_octree **result);
 
 /**
  * The union of any number of octrees, at least one. Limits and progress of `options` concern each of its steps.
@@ -1657,10 +1652,10 @@ leafless_status leafless_octree_complement(const struct leafless_octree *octree,
  * - Untrusted input: as leafless_octree_union.
  * - Since: 0.1
  */
-leafless_status leafless_octree_union_of(const struct leafless_octree *const *octrees,
+leafless_status leafless_octree_union_of(const leafless_octree *const *octrees,
                                          uint64_t count,
-                                         const struct leafless_options *options,
-                                         struct leafless_octree **result);
+                                         const leafless_options *options,
+                                         leafless_octree **result);
 
 /**
  * The intersection of any number of octrees, at least one.
@@ -1673,10 +1668,10 @@ leafless_status leafless_octree_union_of(const struct leafless_octree *const *oc
  * - Untrusted input: as leafless_octree_union.
  * - Since: 0.1
  */
-leafless_status leafless_octree_intersection_of(const struct leafless_octree *const *octrees,
+leafless_status leafless_octree_intersection_of(const leafless_octree *const *octrees,
                                                 uint64_t count,
-                                                const struct leafless_options *options,
-                                                struct leafless_octree **result);
+                                                const leafless_options *options,
+                                                leafless_octree **result);
 
 /**
  * The points that lie in an odd number of octrees, at least one.
@@ -1689,10 +1684,10 @@ leafless_status leafless_octree_intersection_of(const struct leafless_octree *co
  * - Untrusted input: as leafless_octree_union.
  * - Since: 0.1
  */
-leafless_status leafless_octree_xor_of(const struct leafless_octree *const *octrees,
+leafless_status leafless_octree_xor_of(const leafless_octree *const *octrees,
                                        uint64_t count,
-                                       const struct leafless_options *options,
-                                       struct leafless_octree **result);
+                                       const leafless_options *options,
+                                       leafless_octree **result);
 
 /**
  * Whether the solid contains a point. A point on the boundary may be answered either way; one that is outside of
@@ -1707,7 +1702,7 @@ leafless_status leafless_octree_xor_of(const struct leafless_octree *const *octr
  * - Since: 0.1
  *
  */
-leafless_status leafless_octree_contains(const struct leafless_octree *octree,
+leafless_status leafless_octree_contains(const leafless_octree *octree,
                                          const double point_model[3],
                                          leafless_membership *membership);
 
@@ -1723,7 +1718,7 @@ leafless_status leafless_octree_contains(const struct leafless_octree *octree,
  * - Untrusted input: any octree, any numbers; damage reads as undecided.
  * - Since: 0.1
  */
-leafless_status leafless_octree_contains_many(const struct leafless_octree *octree,
+leafless_status leafless_octree_contains_many(const leafless_octree *octree,
                                               const double *points_model,
                                               uint64_t count,
                                               leafless_membership *memberships);
@@ -1740,7 +1735,7 @@ leafless_status leafless_octree_contains_many(const struct leafless_octree *octr
  * - Since: 0.1
  *
  */
-leafless_status leafless_octree_tag_at(const struct leafless_octree *octree,
+leafless_status leafless_octree_tag_at(const leafless_octree *octree,
                                        const uint32_t cell[3],
                                        leafless_tag *tag);
 
@@ -1756,7 +1751,7 @@ leafless_status leafless_octree_tag_at(const struct leafless_octree *octree,
  * - Since: 0.1
  *
  */
-leafless_status leafless_octree_classify_box(const struct leafless_octree *octree,
+leafless_status leafless_octree_classify_box(const leafless_octree *octree,
                                              const double min_model[3],
                                              const double max_model[3],
                                              leafless_region *region);
@@ -1773,8 +1768,7 @@ leafless_status leafless_octree_classify_box(const struct leafless_octree *octre
  * - Untrusted input: any octree.
  * - Since: 0.1
  */
-leafless_status leafless_point_cursor_new(const struct leafless_octree *octree,
-                                          struct leafless_point_cursor **cursor);
+leafless_status leafless_point_cursor_new(const leafless_octree *octree, leafless_point_cursor **cursor);
 
 /**
  * Gives back a point cursor.
@@ -1787,7 +1781,7 @@ leafless_status leafless_point_cursor_new(const struct leafless_octree *octree,
  * - Untrusted input: none.
  * - Since: 0.1
  */
-void leafless_point_cursor_free(struct leafless_point_cursor *cursor);
+void leafless_point_cursor_free(leafless_point_cursor *cursor);
 
 /**
  * As leafless_octree_contains.
@@ -1801,7 +1795,7 @@ void leafless_point_cursor_free(struct leafless_point_cursor *cursor);
  * - Since: 0.1
  *
  */
-leafless_status leafless_point_cursor_contains(struct leafless_point_cursor *cursor,
+leafless_status leafless_point_cursor_contains(leafless_point_cursor *cursor,
                                                const double point_model[3],
                                                leafless_membership *membership);
 
@@ -1817,7 +1811,7 @@ leafless_status leafless_point_cursor_contains(struct leafless_point_cursor *cur
  * - Since: 0.1
  *
  */
-leafless_status leafless_point_cursor_tag_at(struct leafless_point_cursor *cursor,
+leafless_status leafless_point_cursor_tag_at(leafless_point_cursor *cursor,
                                              const uint32_t cell[3],
                                              leafless_tag *tag);
 
@@ -1832,8 +1826,8 @@ leafless_status leafless_point_cursor_tag_at(struct leafless_point_cursor *curso
  * - Untrusted input: any octree.
  * - Since: 0.1
  */
-leafless_status leafless_cursor_new(const struct leafless_octree *octree,
-                                    struct leafless_cursor **cursor);
+leafless_status leafless_cursor_new(const leafless_octree *octree,
+                                    leafless_cursor **cursor);
 
 /**
  * Gives back a cursor.
@@ -1846,7 +1840,7 @@ leafless_status leafless_cursor_new(const struct leafless_octree *octree,
  * - Untrusted input: none.
  * - Since: 0.1
  */
-void leafless_cursor_free(struct leafless_cursor *cursor);
+void leafless_cursor_free(leafless_cursor *cursor);
 
 /**
  * Where a cursor stands.
@@ -1859,8 +1853,7 @@ void leafless_cursor_free(struct leafless_cursor *cursor);
  * - Untrusted input: any octree.
  * - Since: 0.1
  */
-leafless_status leafless_cursor_read(const struct leafless_cursor *cursor,
-                                     struct leafless_cursor_state *state);
+leafless_status leafless_cursor_read(const leafless_cursor *cursor, leafless_cursor_state *state);
 
 /**
  * Moves a cursor to a child of its cell. On a cell that is no BRANCH it stays where it is.
@@ -1873,7 +1866,7 @@ leafless_status leafless_cursor_read(const struct leafless_cursor *cursor,
  * - Untrusted input: any octree; damage reads as PARTIAL, so that a walk visits every cell at most once.
  * - Since: 0.1
  */
-leafless_status leafless_cursor_descend(struct leafless_cursor *cursor, uint32_t octant, bool *moved);
+leafless_status leafless_cursor_descend(leafless_cursor *cursor, uint32_t octant, bool *moved);
 
 /**
  * Moves a cursor to the parent of its cell. On the universe it stays where it is.
@@ -1886,7 +1879,7 @@ leafless_status leafless_cursor_descend(struct leafless_cursor *cursor, uint32_t
  * - Untrusted input: any octree.
  * - Since: 0.1
  */
-leafless_status leafless_cursor_ascend(struct leafless_cursor *cursor, bool *moved);
+leafless_status leafless_cursor_ascend(leafless_cursor *cursor, bool *moved);
 
 /**
  * What a file says of itself, without looking at more than header and section table. Whether the rest is good is
@@ -1904,8 +1897,8 @@ leafless_status leafless_cursor_ascend(struct leafless_cursor *cursor, bool *mov
  */
 leafless_status leafless_file_probe(const char *path,
                                     size_t path_length,
-                                    struct leafless_probe *probe,
-                                    struct leafless_section *sections,
+                                    leafless_probe *probe,
+                                    leafless_section *sections,
                                     uint64_t capacity);
 
 /**
@@ -1923,8 +1916,8 @@ leafless_status leafless_file_probe(const char *path,
  */
 leafless_status leafless_bytes_probe(const uint8_t *bytes,
                                      uint64_t length,
-                                     struct leafless_probe *probe,
-                                     struct leafless_section *sections,
+                                     leafless_probe *probe,
+                                     leafless_section *sections,
                                      uint64_t capacity);
 
 /**
@@ -1956,7 +1949,7 @@ leafless_status leafless_bytes_verify(const uint8_t *bytes, uint64_t length);
  */
 leafless_status leafless_octree_open(const char *path,
                                      size_t path_length,
-                                     struct leafless_octree **octree);
+                                     leafless_octree **octree);
 
 /**
  * Maps a file into memory and looks at its header, section table, bounds, level table and metadata only: some
@@ -1978,7 +1971,7 @@ leafless_status leafless_octree_open(const char *path,
  */
 leafless_status leafless_octree_map(const char *path,
                                     size_t path_length,
-                                    struct leafless_octree **octree);
+                                    leafless_octree **octree);
 
 /**
  * As leafless_octree_map, but verifies all of the file first, in one scan.
@@ -1991,9 +1984,7 @@ leafless_status leafless_octree_map(const char *path,
  * - Untrusted input: any contents, but only where nobody else can change the file; else leafless_octree_open.
  * - Since: 0.1
  */
-leafless_status leafless_octree_map_verified(const char *path,
-                                             size_t path_length,
-                                             struct leafless_octree **octree);
+leafless_status leafless_octree_map_verified(const char *path, size_t path_length, leafless_octree **octree);
 
 /**
  * The octree in the bytes of a whole file, copied and verified as by leafless_octree_open.
@@ -2006,9 +1997,7 @@ leafless_status leafless_octree_map_verified(const char *path,
  * - Untrusted input: any bytes; memory is at most a small multiple of their number.
  * - Since: 0.1
  */
-leafless_status leafless_octree_from_bytes(const uint8_t *bytes,
-                                           uint64_t length,
-                                           struct leafless_octree **octree);
+leafless_status leafless_octree_from_bytes(const uint8_t *bytes, uint64_t length, leafless_octree **octree);
 
 /**
  * The octree in the bytes of a whole file, used where they lie, and checked as little as by leafless_octree_map;
@@ -2027,7 +2016,7 @@ leafless_status leafless_octree_from_bytes(const uint8_t *bytes,
  */
 leafless_status leafless_octree_view_bytes(const uint8_t *bytes,
                                            uint64_t length,
-                                           struct leafless_octree **octree);
+                                           leafless_octree **octree);
 
 /**
  * Saves an octree: at any moment, also after a crash or a power failure, there is the old file or the new one,
@@ -2046,7 +2035,7 @@ leafless_status leafless_octree_view_bytes(const uint8_t *bytes,
  * - Untrusted input: any octree.
  * - Since: 0.1
  */
-leafless_status leafless_octree_save(const struct leafless_octree *octree,
+leafless_status leafless_octree_save(const leafless_octree *octree,
                                      const char *path,
                                      size_t path_length);
 
@@ -2062,7 +2051,7 @@ leafless_status leafless_octree_save(const struct leafless_octree *octree,
  * - Untrusted input: any octree.
  * - Since: 0.1
  */
-leafless_status leafless_octree_to_bytes(const struct leafless_octree *octree,
+leafless_status leafless_octree_to_bytes(const leafless_octree *octree,
                                          uint8_t *bytes,
                                          uint64_t capacity,
                                          uint64_t *length);
@@ -2081,7 +2070,7 @@ leafless_status leafless_octree_to_bytes(const struct leafless_octree *octree,
  * - Untrusted input: any octree.
  * - Since: 0.1
  */
-leafless_status leafless_octree_write(const struct leafless_octree *octree,
+leafless_status leafless_octree_write(const leafless_octree *octree,
                                       leafless_write_fn write,
                                       void *ctx);
 
