@@ -357,7 +357,11 @@ impl Head {
         let frame = frame.map_err(|refused| match refused {
             Error::Argument { name: "depth", .. } => illegal("depth", header.depth),
             Error::Argument { name: "edge", .. } => illegal("edge", header.edge),
-            _ => illegal("origin", header.origin[0]),
+            _ => {
+                // The first coordinate that is refused by itself.
+                let alone = |&bits: &u64| Frame::new([f64::from_bits(bits); 3], 1.0, 1).is_err();
+                illegal("origin", header.origin.into_iter().find(alone).unwrap_or_default())
+            }
         })?;
         for (value, normal) in header.origin.into_iter().zip(frame.origin()) {
             demand("origin", value, normal.to_bits())?;
@@ -457,11 +461,12 @@ fn segments(bricks: u64, shift: u8) -> u64 {
 }
 
 /// Whether the signature is there but for what a transfer in text mode does to line ends: whatever stands
-/// between the letters and the end-of-file mark are still line ends.
+/// between the letters and the end-of-file mark, and after it, are still line ends.
 fn is_text_mode(bytes: &[u8]) -> bool {
     let Some(rest) = bytes.strip_prefix(b"\x89LFL") else { return false };
-    let ends = rest.iter().take(4).take_while(|&&byte| byte == b'\r' || byte == b'\n').count();
-    ends > 0 && rest.get(ends) == Some(&0x1A)
+    let is_end = |byte: &u8| *byte == b'\r' || *byte == b'\n';
+    let ends = rest.iter().take(4).take_while(|byte| is_end(byte)).count();
+    ends > 0 && rest.get(ends) == Some(&0x1A) && rest.get(ends + 1).is_some_and(is_end)
 }
 
 /// Where the known sections lie. Every one that the header makes necessary is there with its length, they
