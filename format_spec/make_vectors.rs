@@ -1,0 +1,1476 @@
+//! Makes the test vectors of the file format: small files, valid and invalid, and what a reader must say of each.
+//!
+//! ```sh
+//! cargo run --release --example make_vectors -- format_spec/vectors
+//! ```
+//!
+//! What is expected of the valid files does not come from the library's readers: tags come from the shapes that
+//! the files were made from, counts from a plain recursion over them, and the cells of points from integers.
+
+use leafless::{Cell, Control, Cube, Error, Frame, Metadata, Octree, Rule, Solid, Tag, Verdict, build, file};
+use num_bigint::{BigInt, Sign};
+use std::cmp::Reverse;
+use std::collections::BTreeMap;
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+
+fn main() -> std::io::Result<()> {
+    let Some(folder) = std::env::args_os().nth(1) else {
+        eprintln!("usage: make_vectors FOLDER");
+        std::process::exit(2);
+    };
+    for (path, bytes) in files() {
+        let path = Path::new(&folder).join(path);
+        if let Some(folder) = path.parent() {
+            std::fs::create_dir_all(folder)?;
+        }
+        std::fs::write(path, bytes)?;
+    }
+    Ok(())
+}
+
+/// All files of the folder, by their paths in it.
+pub fn files() -> Vec<(PathBuf, Vec<u8>)> {
+    let (valid, invalid) = (valid(), invalid());
+    let mut files = vec![(PathBuf::from("README.md"), readme(&valid, &invalid).into_bytes())];
+    for vector in &valid {
+        files.push((format!("valid/{}.lfl", vector.name).into(), vector.bytes.clone()));
+        files.push((format!("valid/{}.txt", vector.name).into(), vector.facts().into_bytes()));
+    }
+    for vector in &invalid {
+        files.push((format!("invalid/{}.lfl", vector.name).into(), vector.bytes.clone()));
+        files.push((format!("invalid/{}.txt", vector.name).into(), vector.facts().into_bytes()));
+    }
+    files
+}
+
+// ---- shapes ---------------------------------------------------------------------------------------------
+
+/// What a tree is made from: the tag of a cell, BRANCH where it is to be cut.
+type Shape = Box<dyn Fn(Cell) -> Tag + Sync>;
+
+/// A shape in a frame.
+struct Model {
+    frame: Frame,
+    exterior: Tag,
+    metadata: Metadata,
+    shape: Shape,
+}
+
+impl Solid for Model {
+    type Part = ();
+    type Scratch = ();
+
+    fn root(&self, _: &mut (), _: &Frame) -> Result<Verdict<()>, Error> {
+        Ok(self.verdict(Cell::ROOT))
+    }
+
+    fn split(&self, _: &mut (), cube: &Cube<'_>, _: &()) -> Result<[Verdict<()>; 8], Error> {
+        Ok([0, 1, 2, 3, 4, 5, 6, 7].map(|k| self.verdict(cube.cell.child(k))))
+    }
+
+    fn exterior(&self, _: &Frame) -> Tag {
+        self.exterior
+    }
+}
+
+impl Model {
+    fn new(origin: [f64; 3], edge: f64, depth: u8, shape: impl Fn(Cell) -> Tag + Sync + 'static) -> Model {
+        let frame = Frame::new(origin, edge, depth).expect("a frame in range");
+        Model { frame, exterior: Tag::Empty, metadata: Metadata::new(), shape: Box::new(shape) }
+    }
+
+    /// One in which lattice coordinates are model coordinates.
+    fn plain(depth: u8, shape: impl Fn(Cell) -> Tag + Sync + 'static) -> Model {
+        Model::new([0.0; 3], (1u32 << depth) as f64, depth, shape)
+    }
+
+    fn exterior(mut self, exterior: Tag) -> Model {
+        self.exterior = exterior;
+        self
+    }
+
+    fn fact(mut self, key: &str, value: &str) -> Model {
+        self.metadata.insert(key, value);
+        self
+    }
+
+    fn verdict(&self, cell: Cell) -> Verdict<()> {
+        match (self.shape)(cell) {
+            Tag::Empty => Verdict::Empty,
+            Tag::Full => Verdict::Full,
+            Tag::Partial => Verdict::Undecided,
+            Tag::Branch => Verdict::Partial(()),
+        }
+    }
+
+    fn octree(&self) -> Octree {
+        let octree = build(self, &self.frame, Rule::Certified, &Control::threads(1)).expect("a tree");
+        octree.with_metadata(self.metadata.clone())
+    }
+
+    /// The tag of a finest cell.
+    fn finest(&self, at: [u32; 3]) -> Tag {
+        let depth = self.frame.depth();
+        let on = |level: u8| Cell { level, at: at.map(|a| a >> (depth - level)) };
+        let tags = (0..=depth).map(|level| (self.shape)(on(level)));
+        tags.into_iter().find(|&tag| tag != Tag::Branch).expect("the finest cells are not cut")
+    }
+
+    /// The canonical tag of a cell; what is below it is added to `levels`, the cell itself is not.
+    fn count(&self, cell: Cell, levels: &mut [[u64; 3]]) -> Tag {
+        let tag = (self.shape)(cell);
+        if tag != Tag::Branch {
+            return tag;
+        }
+        let mut below = vec![[0; 3]; levels.len()];
+        let mut children = [Tag::Empty; 8];
+        for (k, child) in (0..).zip(&mut children) {
+            *child = self.count(cell.child(k), &mut below);
+            let counts = &mut below[cell.level as usize + 1];
+            match child {
+                Tag::Branch => counts[0] += 1,
+                Tag::Full => counts[1] += 1,
+                Tag::Partial => counts[2] += 1,
+                Tag::Empty => {}
+            }
+        }
+        if children[0] != Tag::Branch && children.iter().all(|&child| child == children[0]) {
+            return children[0];
+        }
+        for (sum, below) in levels.iter_mut().flatten().zip(below.iter().flatten()) {
+            *sum += below;
+        }
+        Tag::Branch
+    }
+
+    /// The universe's tag and the level table: nodes, FULL and PARTIAL cells.
+    fn levels(&self) -> (Tag, Vec<[u64; 3]>) {
+        let mut levels = vec![[0; 3]; self.frame.depth() as usize + 1];
+        let root = self.count(Cell::ROOT, &mut levels);
+        levels[0] = [Tag::Branch, Tag::Full, Tag::Partial].map(|tag| (root == tag) as u64);
+        (root, levels)
+    }
+}
+
+/// A shape given by its finest cells.
+fn cells(depth: u8, tag: impl Fn([u32; 3]) -> Tag + Sync + 'static) -> impl Fn(Cell) -> Tag + Sync {
+    move |cell| if cell.level < depth { Tag::Branch } else { tag(cell.at) }
+}
+
+/// All coordinates of the finest cells in `low..high`.
+fn cuboid(depth: u8, low: u32, high: u32) -> impl Fn(Cell) -> Tag + Sync {
+    cells(depth, move |at| solid(at.iter().all(|a| (low..high).contains(a))))
+}
+
+fn solid(inside: bool) -> Tag {
+    if inside { Tag::Full } else { Tag::Empty }
+}
+
+fn mix(mut x: u64) -> u64 {
+    x = (x ^ x >> 30).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+    x = (x ^ x >> 27).wrapping_mul(0x94D0_49BB_1331_11EB);
+    x ^ x >> 31
+}
+
+/// Another tree for every seed, with coarse and fine cells of the given tags.
+fn noise(depth: u8, seed: u64, tags: &'static [Tag]) -> impl Fn(Cell) -> Tag + Sync {
+    move |cell| {
+        let hash = cell.at.iter().fold(mix(seed + 1 + cell.level as u64), |hash, &a| mix(hash ^ a as u64));
+        let split = if cell.level == 0 { 256 } else { 110 };
+        if cell.level < depth && hash % 256 < split {
+            return Tag::Branch;
+        }
+        tags[(hash >> 32) as usize % tags.len()]
+    }
+}
+
+const BINARY: &[Tag] = &[Tag::Empty, Tag::Full];
+const CERTIFIED: &[Tag] = &[Tag::Empty, Tag::Full, Tag::Partial];
+
+/// A certified ball: cells of the lattice against integers.
+fn ball(depth: u8) -> impl Fn(Cell) -> Tag + Sync {
+    cells(depth, move |at| {
+        let (centre, radius) = (1i64 << (depth - 1), (1i64 << (depth - 1)) - 1);
+        let near = |a: u32| (a as i64 - centre).abs().min((a as i64 + 1 - centre).abs()).pow(2);
+        let far = |a: u32| (a as i64 - centre).abs().max((a as i64 + 1 - centre).abs()).pow(2);
+        let sum = |f: &dyn Fn(u32) -> i64| at.iter().map(|&a| f(a)).sum::<i64>();
+        match (sum(&far) <= radius.pow(2), sum(&near) >= radius.pow(2)) {
+            (true, _) => Tag::Full,
+            (_, true) => Tag::Empty,
+            _ => Tag::Partial,
+        }
+    })
+}
+
+/// The finest cells `marks` have tags of their own, everything else is EMPTY: long branches, nothing beside them.
+fn sparse(depth: u8, marks: &'static [([u32; 3], Tag)]) -> impl Fn(Cell) -> Tag + Sync {
+    move |cell| {
+        let below = |at: [u32; 3]| at.map(|a| a >> (depth - cell.level)) == cell.at;
+        match marks.iter().find(|(at, _)| below(*at)) {
+            Some((_, tag)) if cell.level == depth => *tag,
+            Some(_) => Tag::Branch,
+            None => Tag::Empty,
+        }
+    }
+}
+
+/// The tree of the example in the specification.
+fn example() -> Model {
+    let shape = cells(3, |[x, y, z]| match (x >> 2) | (y >> 2) << 1 | (z >> 2) << 2 {
+        0 => Tag::Full,
+        1 => [Tag::Full, Tag::Full, Tag::Partial, Tag::Empty][x as usize % 4],
+        2 => Tag::Partial,
+        7 => solid([x % 4, y % 4, z % 4] == [3, 1, 2]),
+        _ => Tag::Empty,
+    });
+    Model::new([-1.0, 0.0, 0.5], 4.0, 3, shape).fact("units", "mm")
+}
+
+/// Depth 5, binary: faces away from the bricks' own make many bricks of few kinds, hence a dictionary.
+fn coded() -> Model {
+    Model::plain(5, cuboid(5, 2, 29))
+}
+
+/// Depth 6: decided in the elements, so that there is no brick.
+fn without_bricks(tags: &'static [Tag]) -> Model {
+    let shape = noise(4, 11, tags);
+    Model::plain(6, move |cell| shape(cell))
+}
+
+// ---- valid vectors --------------------------------------------------------------------------------------
+
+/// A file that must be read, and what is in it.
+pub struct Valid {
+    /// Name of the file without its ending.
+    pub name: &'static str,
+    /// What it is there for.
+    pub about: &'static str,
+    /// Whether it is what a writer should make of the tree.
+    pub canonical: bool,
+    /// The file.
+    pub bytes: Vec<u8>,
+    model: Model,
+}
+
+/// All valid vectors.
+pub fn valid() -> Vec<Valid> {
+    let mut vectors = vec![];
+    let mut add = |name, about, model: Model| {
+        let bytes = file::to_bytes(&model.octree()).expect("a file");
+        vectors.push(Valid { name, about, canonical: true, bytes, model });
+    };
+    add("example", "the example of the specification", example());
+
+    add("uniform-empty", "a universe that is EMPTY: no elements, no bricks", Model::plain(1, |_| Tag::Empty));
+    let full = Model::plain(20, |_| Tag::Full).exterior(Tag::Full);
+    add("uniform-full", "a universe that is FULL, at the greatest depth; exterior FULL", full);
+    let partial = Model::plain(4, |_| Tag::Partial).exterior(Tag::Partial);
+    add("uniform-partial", "a universe that is PARTIAL: two planes, but no brick; exterior PARTIAL", partial);
+
+    let half = Model::plain(1, cells(1, |[x, _, _]| solid(x == 0)));
+    add("depth-1", "the lower half along x: one brick, of which 8 cells exist", half);
+    let all =
+        |tags: &'static [Tag]| move |[x, y, z]: [u32; 3]| tags[(x + 2 * y + 4 * z) as usize % tags.len()];
+    let depth_1 = Model::plain(1, cells(1, all(CERTIFIED)));
+    add("depth-1-certified", "one brick of two planes, of which 8 cells exist", depth_1);
+    add("depth-2", "one brick, all of which exists", Model::plain(2, noise(2, 3, BINARY)));
+    add("depth-2-certified", "one brick of two planes", Model::plain(2, cells(2, all(CERTIFIED))));
+    add("depth-3", "odd depth: the root element begins half-way", Model::plain(3, noise(3, 1, BINARY)));
+    add("depth-4", "one element and raw bricks of one plane", Model::plain(4, noise(4, 2, BINARY)));
+    let depth_4 = Model::plain(4, noise(4, 4, CERTIFIED));
+    add("depth-4-certified", "one element and raw bricks of two planes", depth_4);
+    add("depth-5-certified", "two levels of elements, odd depth", Model::plain(5, noise(5, 8, CERTIFIED)));
+    let marks: &[_] = &[
+        ([0; 3], Tag::Full),
+        ([1_048_575; 3], Tag::Full),
+        ([524_287; 3], Tag::Full),
+        ([524_288; 3], Tag::Partial),
+        ([1, 1_000_000, 77_777], Tag::Full),
+        ([1, 1_000_000, 77_778], Tag::Partial),
+    ];
+    let model = Model::new([0.0; 3], 1.0, 20, sparse(20, marks));
+    add("depth-20", "the greatest depth: six finest cells at the end of long branches", model);
+    let marks: &[_] = &[([0, 0, 524_287], Tag::Full), ([262_144, 5, 6], Tag::Full)];
+    add("depth-19", "the greatest odd depth: two finest cells", Model::plain(19, sparse(19, marks)));
+
+    let about = "decided in elements, so that there is no brick; one plane";
+    add("without-bricks", about, without_bricks(BINARY));
+    let about = "PARTIAL cells in elements, and no brick: two planes of nothing";
+    add("without-bricks-certified", about, without_bricks(CERTIFIED));
+    let shape = |cell: Cell| {
+        let die = |of: u64| cell.at.iter().fold(cell.level as u64, |hash, &a| mix(hash ^ a as u64)) % of;
+        match cell.level {
+            0..=4 if cell.at[0] << (4 - cell.level) > 4 => Tag::Empty,
+            0..=5 | 7 => Tag::Branch,
+            6 if die(4000) == 0 => Tag::Branch,
+            _ => solid(die(2) == 0),
+        }
+    };
+    add("many-elements", "more than 1024 elements: two numbers in `base`", Model::plain(8, shape));
+
+    add("dictionary", "bricks of one plane through a dictionary", coded());
+    let about = "bricks of two planes through a dictionary";
+    add("dictionary-certified", about, Model::plain(6, ball(6)));
+
+    let complement = Model::plain(3, cells(3, |at| solid(at != [2, 3, 4]))).exterior(Tag::Full);
+    add("exterior-full", "all of space but one finest cell", complement);
+    let clipped = Model::plain(3, cells(3, |[x, _, _]| solid(x < 5))).exterior(Tag::Partial);
+    add("exterior-partial", "a solid that may go on outside of the universe", clipped);
+
+    let depth_2 = || noise(2, 3, CERTIFIED);
+    let frame = |origin: [f64; 3], edge: f64| Model::new(origin, edge, 2, depth_2());
+    add("frame-negative", "a universe with negative coordinates only", frame([-9.0, -5.5, -1e6], 4.0));
+    let (tiny, huge) = (f64::from_bits((1023 - 256) << 52), f64::from_bits((1023 + 256) << 52));
+    add("frame-tiny", "the smallest edge and coordinates, 2^-256", frame([tiny, -tiny, 0.0], tiny));
+    add("frame-huge", "the largest edge and coordinates, 2^256", frame([-huge, huge, 0.0], huge));
+    let about =
+        "an edge far below what doubles can tell at the origin: all planes of x lie between two doubles";
+    add("frame-lost", about, frame([1e30, 0.0, 0.0], 1e-3));
+    let marks: &[_] = &[
+        ([0; 3], Tag::Full),
+        ([349_525, 700_000, 12_345], Tag::Full),
+        ([349_526, 700_000, 12_345], Tag::Partial),
+        ([1_048_575; 3], Tag::Full),
+    ];
+    let thirds = Model::new([0.1, -7.3, 1e5 / 3.0], 10.0 / 3.0, 20, sparse(20, marks));
+    add("frame-thirds", "neither planes nor cell size are representable in few bits", thirds);
+
+    let model = || Model::plain(3, noise(3, 5, CERTIFIED));
+    let facts = model()
+        .fact("", "an empty key")
+        .fact("empty", "")
+        .fact("name", "Flansch Ø 120, 法兰")
+        .fact("units", "mm")
+        .fact("unit", "a prefix of the next key");
+    add("metadata", "five facts: empty texts, other alphabets", facts);
+
+    let mut unusual = |name, about, model: Model, change: &dyn Fn(Parts) -> Vec<u8>| {
+        let bytes = change(Parts::of(&model));
+        vectors.push(Valid { name, about, canonical: false, bytes, model });
+    };
+    let about = "a section of an unknown kind that is not required";
+    unusual("unknown-section", about, model(), &|mut parts| {
+        parts.sections.push(Section::new(1000, 2, 0, b"colours!".to_vec()));
+        parts.bytes()
+    });
+    let about =
+        "minor version 7, with optional flags, reserved fields and section flags that 0.0 does not know";
+    unusual("newer-minor", about, model(), &|mut parts| {
+        put(&mut parts.head, 10, 7, 2);
+        put(&mut parts.head, 20, 0x8000_0001, 4);
+        put(&mut parts.head, 70, 0xABCD, 2);
+        parts.head[104..124].fill(0x55);
+        parts.sections.push(Section::new(16, 1, 6, b"tomorrow".to_vec()));
+        parts.sections[0].flags |= 0x10;
+        parts.bytes()
+    });
+    unusual("unusual-raw", "raw bricks where a dictionary would be shorter", coded(), &|parts| {
+        parts.decoded().bytes()
+    });
+    unusual("unusual-dictionary", "a dictionary where raw bricks are shorter", example(), &|parts| {
+        parts.encoded().bytes()
+    });
+    let about = "more padding between sections than alignment needs";
+    unusual("unusual-padding", about, example(), &|mut parts| {
+        parts.sections.iter_mut().for_each(|section| section.gap = 64);
+        parts.bytes()
+    });
+    unusual("unusual-order", "sections in descending order of kinds", example(), &|mut parts| {
+        parts.sections.reverse();
+        parts.bytes()
+    });
+    vectors
+}
+
+impl Valid {
+    /// What a reader must find, as the lines of a text; `README.md` explains them.
+    pub fn facts(&self) -> String {
+        let (bytes, model) = (&self.bytes, &self.model);
+        let (frame, (root, levels)) = (&model.frame, model.levels());
+        let depth = frame.depth();
+        let mut text = String::new();
+        let mut line = |key: &str, value: &dyn std::fmt::Display| {
+            writeln!(text, "{key}: {value}").expect("strings grow");
+        };
+        line("about", &self.about);
+        line("canonical", &if self.canonical { "yes" } else { "no" });
+        line("length", &bytes.len());
+        line("version", &format!("{}.{}", number(bytes, 8, 2), number(bytes, 10, 2)));
+        let [x, y, z] = frame.origin();
+        line("origin", &format!("{} {} {}", hex(x), hex(y), hex(z)));
+        line("origin-decimal", &format!("{x:?} {y:?} {z:?}"));
+        line("edge", &hex(frame.edge()));
+        line("edge-decimal", &format!("{:?}", frame.edge()));
+        line("depth", &depth);
+        line("root", &name(root));
+        line("exterior", &name(model.exterior));
+        let partial: u64 = levels.iter().map(|counts| counts[2]).sum();
+        line("planes", &if partial == 0 { 1 } else { 2 });
+        line("encoding", &["raw", "dictionary"][number(bytes, 68, 1) as usize]);
+        line("shift", &number(bytes, 69, 1));
+        // The nodes of every second level, the finest of which are bricks.
+        let own = |level: usize| level == 0 || (level + depth as usize).is_multiple_of(2);
+        let last = (depth as usize).saturating_sub(2);
+        let nodes = |range: std::ops::Range<usize>| -> u64 {
+            range.filter(|&level| own(level)).map(|level| levels[level][0]).sum()
+        };
+        line("elements", &nodes(0..last));
+        line("bricks", &nodes(last..depth as usize));
+        line("entries", &number(bytes, 88, 8));
+        let kinds = (0..number(bytes, 96, 4) as usize).map(|i| number(bytes, 128 + 40 * i, 4).to_string());
+        line("sections", &kinds.collect::<Vec<_>>().join(" "));
+        for (level, [nodes, full, partial]) in levels.iter().enumerate() {
+            line("level", &format!("{level} {nodes} {full} {partial}"));
+        }
+        let volume = |i: usize| -> u64 { (0..).zip(&levels).map(|(l, n)| n[i] << (3 * (depth - l))).sum() };
+        line("cells", &format!("{} {}", volume(1), volume(1) + volume(2)));
+        for (key, value) in model.metadata.iter() {
+            line("metadata", &format!("{key}\t{value}"));
+        }
+        for point in points(frame) {
+            let answer = match cell_of(frame, point).map(|at| model.finest(at)) {
+                Some(Tag::Full) => "inside",
+                Some(Tag::Empty) => "outside",
+                _ => "undecided",
+            };
+            line("point", &format!("{} {} {} {answer}", hex(point[0]), hex(point[1]), hex(point[2])));
+        }
+        text
+    }
+}
+
+/// The name of a tag in the specification.
+pub fn name(tag: Tag) -> &'static str {
+    match tag {
+        Tag::Empty => "EMPTY",
+        Tag::Branch => "BRANCH",
+        Tag::Partial => "PARTIAL",
+        Tag::Full => "FULL",
+    }
+}
+
+/// A double as C writes it with `%a`: without loss, and `strtod` reads it.
+pub fn hex(value: f64) -> String {
+    let sign = if value.is_sign_negative() { "-" } else { "" };
+    if value.is_nan() {
+        return "nan".into();
+    }
+    if value.is_infinite() {
+        return format!("{sign}inf");
+    }
+    let (bits, one) = (value.to_bits(), 1u64 << 52);
+    let (exponent, fraction) = ((bits >> 52 & 0x7FF) as i64, bits & (one - 1));
+    let (lead, exponent) = match (exponent, fraction) {
+        (0, 0) => (0, 0),
+        (0, _) => (0, -1022),
+        _ => (1, exponent - 1023),
+    };
+    let digits = format!("{fraction:013x}");
+    let digits = digits.trim_end_matches('0');
+    let dot = if digits.is_empty() { "" } else { "." };
+    format!("{sign}0x{lead}{dot}{digits}p{exponent:+}")
+}
+
+// ---- points ---------------------------------------------------------------------------------------------
+
+/// A double as a multiple of 2^-1074.
+fn integer(value: f64) -> BigInt {
+    let bits = value.to_bits();
+    let (exponent, fraction) = (bits >> 52 & 0x7FF, bits & ((1 << 52) - 1));
+    let magnitude = match exponent {
+        0 => BigInt::from(fraction),
+        _ => BigInt::from(fraction | 1 << 52) << (exponent - 1),
+    };
+    if value.is_sign_negative() { -magnitude } else { magnitude }
+}
+
+/// The finest cell that contains a point, by the specification's rule, in integers.
+fn cell_of(frame: &Frame, point: [f64; 3]) -> Option<[u32; 3]> {
+    let mut at = [0; 3];
+    for axis in 0..3 {
+        if !point[axis].is_finite() {
+            return None;
+        }
+        let above = (integer(point[axis]) - integer(frame.origin()[axis])) << frame.depth();
+        if above.sign() == Sign::Minus {
+            return None;
+        }
+        let (edge, cells) = (integer(frame.edge()), BigInt::from(frame.cells()));
+        let on_upper_face = above == &edge * &cells;
+        let cell = if on_upper_face { cells.clone() - 1 } else { above / edge };
+        if cell >= cells {
+            return None;
+        }
+        at[axis] = u32::try_from(cell).expect("at most 2^20");
+    }
+    Some(at)
+}
+
+/// Points inside of cells, on planes and next to them, on the universe's faces, and outside.
+fn points(frame: &Frame) -> Vec<[f64; 3]> {
+    let (origin, edge, cells) = (frame.origin(), frame.edge(), frame.cells());
+    let size = edge / cells as f64;
+    // Rounded; which cell it is in is found out in integers.
+    let at = |t: [f64; 3]| [0, 1, 2].map(|axis| origin[axis] + t[axis] * size);
+    let end = cells as f64;
+    let mut points = vec![
+        at([0.0; 3]),
+        at([end; 3]),
+        at([end / 2.0; 3]),
+        at([end / 2.0; 3]).map(f64::next_down),
+        at([end / 2.0; 3]).map(f64::next_up),
+        at([0.5; 3]),
+        at([end - 0.5; 3]),
+        at([end / 2.0 - 0.5; 3]),
+        at([end / 2.0 + 0.5; 3]),
+        at([0.5, end - 0.5, end / 4.0 + 0.25]),
+        // The cells that the sparse trees mark.
+        at([1.25, 1_000_000.75, 77_777.5].map(|t| t % end)),
+        at([1.25, 1_000_000.75, 77_778.0].map(|t| t % end)),
+        at([349_525.0, 700_000.0, 12_345.0].map(|t| t % end)),
+        at([349_525.5, 700_000.5, 12_345.5].map(|t| t % end)),
+        at([349_526.5, 700_000.5, 12_345.5].map(|t| t % end)),
+        at([0.5, 0.5, 524_287.5].map(|t| t % end)),
+        at([262_144.0, 5.0, 6.0].map(|t| t % end)),
+        at([2.5, 3.5, 4.5]),
+        // Those of the specification's example.
+        [2.5, 2.5, 3.5],
+        [2.0, 1.0, 1.0],
+        [3.0, 4.0, 4.5],
+        [3.1, 2.0, 3.5],
+    ];
+    for i in 0..9 {
+        let random = |n: u64| (mix(1000 + 10 * i + n) % (4 * cells as u64)) as f64 / 4.0;
+        points.push(at([random(0), random(1), random(2)]));
+    }
+    let mut low = at([0.5; 3]);
+    low[1] = origin[1].next_down();
+    let mut high = at([end - 0.5; 3]);
+    high[2] = at([end; 3])[2].next_up();
+    points.extend([low, high, at([-1.0, 0.5, 0.5]), at([0.5, 0.5, end + 1.0])]);
+    points.extend([[f64::NAN, 0.0, 0.0], [0.0, f64::INFINITY, 0.0], [0.0, 0.0, -1e300], [-0.0; 3]]);
+    points
+}
+
+// ---- bytes ----------------------------------------------------------------------------------------------
+
+/// A little-endian number of `length` bytes.
+pub fn number(bytes: &[u8], at: usize, length: usize) -> u64 {
+    let mut raw = [0; 8];
+    raw[..length].copy_from_slice(&bytes[at..at + length]);
+    u64::from_le_bytes(raw)
+}
+
+/// Writes a little-endian number of `length` bytes.
+pub fn put(bytes: &mut [u8], at: usize, value: u64, length: usize) {
+    bytes[at..at + length].copy_from_slice(&value.to_le_bytes()[..length]);
+}
+
+/// Sets the checksums of all sections that lie in the file, of the table and of the header.
+pub fn seal(bytes: &mut [u8]) {
+    for at in entries(bytes) {
+        let (start, length) = (number(bytes, at + 8, 8), number(bytes, at + 16, 8));
+        let end = usize::try_from(start.saturating_add(length)).unwrap_or(usize::MAX);
+        if let Some(section) = bytes.get(start as usize..end) {
+            let crc = crc32fast::hash(section);
+            put(bytes, at + 32, crc.into(), 4);
+        }
+    }
+    seal_head(bytes);
+}
+
+/// Sets the checksums of the table and of the header.
+pub fn seal_head(bytes: &mut [u8]) {
+    let end = 128 + 40 * number(bytes, 96, 4) as usize;
+    if let Some(table) = bytes.get(128..end) {
+        let crc = crc32fast::hash(table);
+        put(bytes, 100, crc.into(), 4);
+    }
+    let crc = crc32fast::hash(&bytes[..124]);
+    put(bytes, 124, crc.into(), 4);
+}
+
+/// Where the entries of the section table are.
+fn entries(bytes: &[u8]) -> impl Iterator<Item = usize> + use<> {
+    let end = bytes.len();
+    (0..number(bytes, 96, 4) as usize).map(|i| 128 + 40 * i).take_while(move |at| at + 40 <= end)
+}
+
+/// Where the table's entry of a kind is.
+fn entry(bytes: &[u8], kind: u64) -> usize {
+    entries(bytes).find(|&at| number(bytes, at, 4) == kind).expect("a section of this kind")
+}
+
+/// Where the section of a kind begins.
+fn offset(bytes: &[u8], kind: u64) -> usize {
+    number(bytes, entry(bytes, kind) + 8, 8) as usize
+}
+
+/// A file in pieces.
+struct Parts {
+    head: Vec<u8>,
+    sections: Vec<Section>,
+}
+
+struct Section {
+    kind: u64,
+    size: u64,
+    flags: u64,
+    bytes: Vec<u8>,
+    /// Zeros before it, besides those of the alignment.
+    gap: usize,
+}
+
+impl Section {
+    fn new(kind: u64, size: u64, flags: u64, bytes: Vec<u8>) -> Section {
+        Section { kind, size, flags, bytes, gap: 0 }
+    }
+}
+
+impl Parts {
+    fn of(model: &Model) -> Parts {
+        let bytes = file::to_bytes(&model.octree()).expect("a file");
+        let section = |at: usize| {
+            let field = |offset, length| number(&bytes, at + offset, length);
+            let (start, length) = (field(8, 8) as usize, field(16, 8) as usize);
+            Section::new(field(0, 4), field(4, 4), field(36, 4), bytes[start..start + length].to_vec())
+        };
+        Parts { head: bytes[..128].to_vec(), sections: entries(&bytes).map(section).collect() }
+    }
+
+    fn section(&mut self, kind: u64) -> &mut Section {
+        self.sections.iter_mut().find(|section| section.kind == kind).expect("a section of this kind")
+    }
+
+    fn take(&mut self, kind: u64) -> Section {
+        let at = self.sections.iter().position(|section| section.kind == kind);
+        self.sections.remove(at.expect("a section of this kind"))
+    }
+
+    /// The file, with right offsets and checksums.
+    fn bytes(&self) -> Vec<u8> {
+        let mut bytes = self.head.clone();
+        bytes.resize(128 + 40 * self.sections.len(), 0);
+        for (i, section) in self.sections.iter().enumerate() {
+            let start = bytes.len().next_multiple_of(64) + section.gap;
+            bytes.resize(start, 0);
+            bytes.extend_from_slice(&section.bytes);
+            let length = section.bytes.len() as u64;
+            let fields = [
+                (0, section.kind, 4),
+                (4, section.size, 4),
+                (8, start as u64, 8),
+                (16, length, 8),
+                (24, length / section.size, 8),
+                (36, section.flags, 4),
+            ];
+            for (at, value, size) in fields {
+                put(&mut bytes, 128 + 40 * i + at, value, size);
+            }
+        }
+        let length = bytes.len() as u64;
+        put(&mut bytes, 24, length, 8);
+        put(&mut bytes, 96, self.sections.len() as u64, 4);
+        seal(&mut bytes);
+        bytes
+    }
+
+    /// The same with raw bricks.
+    fn decoded(mut self) -> Parts {
+        let (indices, entries) = (self.take(5), self.take(6));
+        self.take(7);
+        let entry = |index: &[u8]| {
+            let at = (number(index, 0, 2) * entries.size) as usize;
+            entries.bytes[at..at + entries.size as usize].to_vec()
+        };
+        let bricks = indices.bytes.chunks(2).flat_map(entry).collect();
+        self.sections.insert(0, Section::new(4, entries.size, 1, bricks));
+        self.sections.sort_by_key(|section| section.kind);
+        self.head[68..70].fill(0);
+        put(&mut self.head, 88, 0, 8);
+        self
+    }
+
+    /// The same, bricks of one plane through a dictionary, with segments of 2^16 bricks.
+    fn in_small_segments(mut self) -> Parts {
+        let (shift, entries, starts) = (self.head[69], self.take(6).bytes, self.take(7).bytes);
+        let indices = self.take(5).bytes;
+        let brick = |b: usize| {
+            let start = number(&starts, 8 * (b >> shift), 8);
+            number(&entries, 8 * (start + number(&indices, 2 * b, 2)) as usize, 8)
+        };
+        let bricks: Vec<u64> = (0..indices.len() / 2).map(brick).collect();
+        let (mut indices, mut entries, mut starts) = (vec![], vec![], vec![]);
+        for segment in bricks.chunks(1 << 16) {
+            let mut uses = BTreeMap::new();
+            segment.iter().for_each(|brick| *uses.entry(brick).or_insert(0) += 1);
+            let mut order: Vec<_> = uses.into_iter().map(|(brick, uses)| (Reverse(uses), *brick)).collect();
+            order.sort();
+            let place: BTreeMap<_, _> = order.iter().zip(0u16..).map(|((_, brick), i)| (*brick, i)).collect();
+            starts.extend((entries.len() as u64 / 8).to_le_bytes());
+            entries.extend(order.iter().flat_map(|(_, brick)| brick.to_le_bytes()));
+            indices.extend(segment.iter().flat_map(|brick| place[brick].to_le_bytes()));
+        }
+        self.head[69] = 16;
+        put(&mut self.head, 88, entries.len() as u64 / 8, 8);
+        let sections = [(5, 2, indices), (6, 8, entries), (7, 8, starts)];
+        self.sections.extend(sections.map(|(kind, size, bytes)| Section::new(kind, size, 1, bytes)));
+        self.sections.sort_by_key(|section| section.kind);
+        self
+    }
+
+    /// The same with all bricks through a dictionary of one segment; all bricks are different.
+    fn encoded(mut self) -> Parts {
+        let raw = self.take(4);
+        let mut bricks: Vec<_> = raw.bytes.chunks(raw.size as usize).collect();
+        let value = |brick: &&[u8]| (number(brick, 0, 8), number(brick, brick.len() - 8, 8));
+        bricks.sort_by_key(value);
+        bricks.dedup();
+        let place = |brick: &[u8]| bricks.iter().position(|&entry| entry == brick).expect("an entry") as u16;
+        let indices =
+            raw.bytes.chunks(raw.size as usize).flat_map(|brick| place(brick).to_le_bytes()).collect();
+        assert_eq!(bricks.len() * raw.size as usize, raw.bytes.len(), "each entry is used once");
+        self.head[68..70].copy_from_slice(&[1, 63]);
+        put(&mut self.head, 88, bricks.len() as u64, 8);
+        let entries = Section::new(6, raw.size, 1, bricks.concat());
+        self.sections.extend([Section::new(5, 2, 1, indices), entries, Section::new(7, 8, 1, vec![0; 8])]);
+        self.sections.sort_by_key(|section| section.kind);
+        self
+    }
+}
+
+// ---- invalid vectors ------------------------------------------------------------------------------------
+
+/// The weakest way in that refuses a file; all stronger ones do as well, all weaker ones let it in.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Way {
+    /// Header and section table.
+    Probing,
+    /// What the arrays' bounds rest on.
+    Plain,
+    /// The same with the metadata.
+    Metadata,
+    /// Everything.
+    Verification,
+}
+
+impl Way {
+    /// Its name in the texts.
+    pub fn name(self) -> &'static str {
+        match self {
+            Way::Probing => "probing",
+            Way::Plain => "plain",
+            Way::Metadata => "metadata",
+            Way::Verification => "verification",
+        }
+    }
+}
+
+/// A file that must be refused.
+pub struct Invalid {
+    /// Name of the file without its ending: the rule, and which case of it.
+    pub name: String,
+    /// Name of the rule in the specification.
+    pub rule: &'static str,
+    /// What is wrong.
+    pub about: &'static str,
+    /// Who must refuse it.
+    pub way: Way,
+    /// The error by which the library refuses it, as its `Debug` text.
+    pub error: String,
+    /// The same for readers that know the number of the file's bytes, where they are refused by that before.
+    pub error_of_length: Option<String>,
+    /// The file.
+    pub bytes: Vec<u8>,
+}
+
+impl Invalid {
+    /// What a reader must do, as the lines of a text; `README.md` explains them.
+    pub fn facts(&self) -> String {
+        let mut text = format!("about: {}\nrule: {}\n", self.about, self.rule);
+        text += &format!("refused-by: {}\nerror: {}\n", self.way.name(), self.error);
+        if let Some(error) = &self.error_of_length {
+            text += &format!("error-of-length: {error}\n");
+        }
+        text
+    }
+}
+
+/// All invalid vectors.
+pub fn invalid() -> Vec<Invalid> {
+    let mut list = List { way: Way::Probing, vectors: vec![] };
+    header(&mut list);
+    table(&mut list);
+    before_use(&mut list);
+    verification(&mut list);
+    list.vectors
+}
+
+struct List {
+    way: Way,
+    vectors: Vec<Invalid>,
+}
+
+impl List {
+    /// A vector of `rule`; the case `of` it goes to the file's name.
+    fn add(
+        &mut self,
+        rule: &'static str,
+        of: &str,
+        about: &'static str,
+        error: impl Into<String>,
+        bytes: Vec<u8>,
+    ) {
+        let name = if of.is_empty() { rule.to_owned() } else { format!("{rule}-{of}") };
+        let error = error.into();
+        self.vectors.push(Invalid { name, rule, about, way: self.way, error, error_of_length: None, bytes });
+    }
+
+    /// The last vector is shorter than its header says.
+    fn but_length(&mut self, expected: usize) {
+        let last = self.vectors.last_mut().expect("a vector");
+        last.error_of_length = Some(length(expected, last.bytes.len()));
+    }
+}
+
+fn field(name: &str, value: u64) -> String {
+    format!("Format(Field {{ name: {name:?}, value: {value} }})")
+}
+
+fn length(expected: usize, found: usize) -> String {
+    format!("Format(Length {{ expected: {expected}, found: {found} }})")
+}
+
+fn section(name: &str) -> String {
+    format!("Format(Section {{ name: {name:?} }})")
+}
+
+fn checksum(name: &str) -> String {
+    format!("Format(Checksum {{ name: {name:?} }})")
+}
+
+fn required(name: &str, value: u64) -> String {
+    format!("Format(Required {{ name: {name:?}, value: {value} }})")
+}
+
+fn link(element: u64) -> String {
+    format!("Damaged(Link {{ element: {element} }})")
+}
+
+fn levels(level: u64) -> String {
+    format!("Damaged(LevelTable {{ level: {level} }})")
+}
+
+fn entry_order(entry: u64) -> String {
+    format!("Damaged(DictionaryOrder {{ entry: {entry} }})")
+}
+
+fn good(model: &Model) -> Vec<u8> {
+    file::to_bytes(&model.octree()).expect("a file")
+}
+
+/// `bytes` with one number changed, and right checksums.
+fn with(bytes: &[u8], at: usize, value: u64, length: usize) -> Vec<u8> {
+    changed(bytes, |bytes| put(bytes, at, value, length))
+}
+
+fn changed(bytes: &[u8], change: impl FnOnce(&mut Vec<u8>)) -> Vec<u8> {
+    let mut bytes = bytes.to_vec();
+    change(&mut bytes);
+    seal(&mut bytes);
+    bytes
+}
+
+/// Names of the known sections, by kind.
+const KINDS: [(u64, &str); 9] = [
+    (1, "planes"),
+    (2, "rel"),
+    (3, "base"),
+    (4, "bricks"),
+    (5, "brick indices"),
+    (6, "dictionary entries"),
+    (7, "dictionary segments"),
+    (8, "level table"),
+    (9, "metadata"),
+];
+
+/// §10.1, the header.
+fn header(list: &mut List) {
+    let (raw, coded) = (good(&example()), good(&coded()));
+    let uniform = good(&Model::plain(4, |_| Tag::Full));
+    let flat = good(&Model::plain(2, noise(2, 3, BINARY)));
+    let all = raw.len();
+
+    let transfer = |from: &str, to: &str| {
+        let mut out = vec![];
+        let mut rest = &raw[..];
+        while let Some(at) = rest.windows(from.len()).position(|window| window == from.as_bytes()) {
+            out.extend_from_slice(&rest[..at]);
+            out.extend_from_slice(to.as_bytes());
+            rest = &rest[at + from.len()..];
+        }
+        out.extend_from_slice(rest);
+        out
+    };
+    let text = "Format(TextMode)";
+    list.add("header-text-mode", "dos-to-unix", "CR LF became LF", text, transfer("\r\n", "\n"));
+    list.add("header-text-mode", "unix-to-dos", "LF became CR LF", text, transfer("\n", "\r\n"));
+    list.add("header-text-mode", "unix-to-mac", "LF became CR", text, transfer("\n", "\r"));
+    let magic = "Format(Magic)";
+    list.add("header-magic", "", "the first byte lost its highest bit", magic, with(&raw, 0, 0x09, 1));
+    list.add("header-magic", "last", "the last byte of the magic is another", magic, with(&raw, 7, 0x0B, 1));
+    list.add(
+        "header-magic",
+        "short",
+        "three bytes that are not the magic's",
+        magic,
+        b"\x89LF".map(|b| b ^ 1).to_vec(),
+    );
+    list.add("header-short", "empty", "no byte at all", length(128, 0), vec![]);
+    list.add("header-short", "magic", "a part of the magic", length(128, 5), raw[..5].to_vec());
+    list.add("header-short", "", "one byte less than a header", length(128, 127), raw[..127].to_vec());
+    let version = |major, minor| format!("Format(Version {{ major: {major}, minor: {minor} }})");
+    list.add("header-major", "", "major version 1", version(1, 0), with(&raw, 8, 1, 2));
+    let mut other = with(&raw, 8, 0xFFFF, 2);
+    put(&mut other, 10, 3, 2);
+    list.add(
+        "header-major",
+        "crc",
+        "another major version, whose checksum is somewhere else",
+        version(65535, 3),
+        other,
+    );
+    let mut wrong = raw.clone();
+    wrong[124] ^= 1;
+    list.add("header-crc", "", "a bit of the checksum is flipped", checksum("the header"), wrong);
+    let mut wrong = raw.clone();
+    wrong[40] ^= 1;
+    list.add("header-crc", "field", "a bit of the origin is flipped", checksum("the header"), wrong);
+
+    let mut one = |rule, of: &str, about, name: &str, at, value: u64, length| {
+        list.add(rule, of, about, field(name, value), with(&raw, at, value, length));
+    };
+    one("header-length", "", "a longer header", "header length", 12, 136, 4);
+    one("header-optional-flags", "", "an unknown flag of version 0.0", "optional flags", 20, 1, 4);
+    one("header-reserved", "", "the reserved number", "reserved field", 70, 1, 2);
+    one("header-reserved", "first", "the first of the reserved bytes", "reserved field", 104, 1, 1);
+    one("header-reserved", "last", "the last of the reserved bytes", "reserved field", 123, 0x80, 1);
+    let beyond = f64::from_bits((1023 + 256) << 52).next_up().to_bits();
+    let below = f64::from_bits((1023 - 256) << 52).next_down().to_bits();
+    one("header-origin", "nan", "x is not a number", "origin", 32, f64::NAN.to_bits(), 8);
+    one("header-origin", "infinite", "z is infinite", "origin", 48, f64::INFINITY.to_bits(), 8);
+    one("header-origin", "negative-zero", "y is -0", "origin", 40, (-0f64).to_bits(), 8);
+    one("header-origin", "large", "y is more than 2^256", "origin", 40, beyond, 8);
+    one("header-origin", "small", "z is less than 2^-256, and not 0", "origin", 48, below, 8);
+    one("header-edge", "zero", "0", "edge", 56, 0, 8);
+    one("header-edge", "negative", "-4", "edge", 56, (-4f64).to_bits(), 8);
+    one("header-edge", "nan", "not a number", "edge", 56, f64::NAN.to_bits(), 8);
+    one("header-edge", "large", "more than 2^256", "edge", 56, beyond, 8);
+    one("header-edge", "small", "less than 2^-256", "edge", 56, below, 8);
+    one("header-depth", "zero", "no level", "depth", 64, 0, 1);
+    one("header-depth", "large", "21 levels", "depth", 64, 21, 1);
+    one("header-root", "", "a tag of three bits", "root tag", 65, 4, 1);
+    one("header-exterior", "branch", "BRANCH", "exterior", 66, 1, 1);
+    one("header-exterior", "large", "a tag of three bits", "exterior", 66, 4, 1);
+    one("header-brick-planes", "zero", "no plane", "planes of a brick", 67, 0, 1);
+    one("header-brick-planes", "large", "three planes", "planes of a brick", 67, 3, 1);
+    one("header-encoding", "", "an unknown encoding", "brick encoding", 68, 2, 1);
+    one("header-raw-shift", "", "a segment shift of raw bricks", "segment shift", 69, 63, 1);
+    one("header-raw-entries", "", "a dictionary entry of raw bricks", "dictionary entries", 88, 1, 8);
+    one("header-section-count", "zero", "no section", "section count", 96, 0, 4);
+    one("header-section-count", "large", "4097 sections", "section count", 96, 4097, 4);
+    one("header-file-length", "", "the file ends with the table", "file length", 24, 368, 8);
+    let flags = required("flags", 4);
+    list.add("header-required-flags", "", "a required flag", flags, with(&raw, 16, 4, 4));
+    let newer = changed(&raw, |bytes| {
+        put(bytes, 10, 1, 2);
+        put(bytes, 16, 1 << 31, 4);
+    });
+    let flags = required("flags", 1 << 31);
+    list.add("header-required-flags", "newer", "a required flag of a newer minor version", flags, newer);
+
+    let mut one = |rule, of: &str, about, name: &str, at, value: u64, length| {
+        list.add(rule, of, about, field(name, value), with(&coded, at, value, length));
+    };
+    let bricks = number(&coded, 80, 8);
+    one("header-shift", "small", "segments of 2^15 bricks", "segment shift", 69, 15, 1);
+    one("header-shift", "single", "one segment, and the shift is 16", "segment shift", 69, 16, 1);
+    one("header-shift", "large", "a shift of 64", "segment shift", 69, 64, 1);
+    one("header-entries", "zero", "no entry", "dictionary entries", 88, 0, 8);
+    one("header-entries", "large", "more entries than bricks", "dictionary entries", 88, bricks + 1, 8);
+    let none = changed(&coded, |bytes| put(bytes, 80, 0, 8));
+    list.add("header-shift", "none", "one segment of no bricks", field("segment shift", 63), none);
+    let bytes = with(&flat, 72, 1, 8);
+    list.add("header-elements", "flat", "an element at depth 2", field("elements", 1), bytes);
+    let bytes = with(&uniform, 72, 3, 8);
+    list.add(
+        "header-elements",
+        "uniform",
+        "elements of a universe that is FULL",
+        field("elements", 3),
+        bytes,
+    );
+    let bytes = with(&uniform, 80, 2, 8);
+    list.add("header-bricks", "", "bricks of a universe that is FULL", field("bricks", 2), bytes);
+
+    list.add("table-short", "none", "nothing behind the header", length(368, 128), raw[..128].to_vec());
+    list.but_length(all);
+    list.add("table-short", "", "one byte less than the table", length(368, 367), raw[..367].to_vec());
+    list.but_length(all);
+    let mut wrong = raw.clone();
+    wrong[100] ^= 1;
+    seal_header(&mut wrong);
+    list.add("table-crc", "", "a bit of the checksum is flipped", checksum("the section table"), wrong);
+    let mut wrong = raw;
+    wrong[128 + 36] ^= 2;
+    list.add("table-crc", "entry", "a bit of an entry is flipped", checksum("the section table"), wrong);
+}
+
+/// Sets the header's checksum only.
+fn seal_header(bytes: &mut [u8]) {
+    let crc = crc32fast::hash(&bytes[..124]);
+    put(bytes, 124, crc.into(), 4);
+}
+
+/// §10.1, the section table.
+fn table(list: &mut List) {
+    let (raw, coded) = (good(&example()), good(&coded()));
+    let end = raw.len() as u64;
+    let at = |kind| entry(&raw, kind);
+    let mut one = |rule, of: &str, about, name: &str, at, value: u64, length| {
+        list.add(rule, of, about, field(name, value), with(&raw, at, value, length));
+    };
+    one("section-flags", "", "an unknown flag of version 0.0", "section flags", at(1) + 36, 3, 4);
+    one("section-length", "product", "not count times size", "section length", at(1) + 16, 17, 8);
+    one("section-alignment", "", "on a multiple of 32", "section offset", at(2) + 8, 0x1A0, 8);
+    one("section-overlap", "table", "a section in the table", "section offset", at(1) + 8, 0x140, 8);
+    one(
+        "section-overlap",
+        "header",
+        "a section at the beginning of the file",
+        "section offset",
+        at(1) + 8,
+        0,
+        8,
+    );
+    one("section-overlap", "same", "two sections in one place", "section offset", at(2) + 8, 0x180, 8);
+    one("section-kind", "", "kind 0", "section kind", at(9), 0, 4);
+    one("section-required", "", "planes that are not required", "section flags", at(1) + 36, 0, 4);
+    one("section-required", "metadata", "metadata that are", "section flags", at(9) + 36, 1, 4);
+    let many = |count: u64| {
+        changed(&raw, |bytes| {
+            put(bytes, at(9) + 16, count, 8);
+            put(bytes, at(9) + 24, count, 8);
+        })
+    };
+    list.add("section-length", "zero", "an empty section", field("section length", 0), many(0));
+    let wide = changed(&raw, |bytes| {
+        put(bytes, at(1) + 24, 1 << 60, 8);
+        put(bytes, at(1) + 16, 0, 8);
+    });
+    list.add("section-length", "overflow", "count times size is 2^64", field("section length", 0), wide);
+    list.add("section-beyond", "", "one byte more than the file has", field("section length", 16), many(16));
+    let far = with(&raw, at(9) + 8, u64::MAX - 63, 8);
+    let far = changed(&far, |bytes| {
+        put(bytes, at(9) + 16, 64, 8);
+        put(bytes, at(9) + 24, 64, 8);
+    });
+    list.add("section-beyond", "overflow", "its end is 2^64", field("section length", 64), far);
+    let unknown = with(&raw, at(1), 20, 4);
+    list.add("section-unknown", "", "a required section of kind 20", required("section", 20), unknown);
+    let newer = changed(&raw, |bytes| {
+        put(bytes, 10, 1, 2);
+        put(bytes, at(8), u32::MAX as u64, 4);
+    });
+    let error = required("section", u32::MAX as u64);
+    list.add("section-unknown", "newer", "a required section of a newer minor version", error, newer);
+    let mut parts = Parts::of(&example());
+    parts.sections.push(Section::new(9, 1, 0, b"\0\0\0\0\0\0\0\0".to_vec()));
+    list.add("section-twice", "metadata", "metadata stand twice", section("metadata"), parts.bytes());
+    let mut parts = Parts::of(&example());
+    let again = parts.section(1).bytes.clone();
+    parts.sections.push(Section::new(1, 16, 1, again));
+    list.add("section-twice", "", "planes stand twice", section("planes"), parts.bytes());
+
+    for (kind, name) in KINDS {
+        let base = if (5..=7).contains(&kind) { &coded } else { &raw };
+        let at = entry(base, kind);
+        let of = name.replace(' ', "-");
+        let (size, length) = (number(base, at + 4, 4), number(base, at + 16, 8));
+        let other = changed(base, |bytes| {
+            // Twice the size of an element, or of metadata all of them as one.
+            let size = if kind == 9 { length } else { size / 2 };
+            put(bytes, at + 4, size, 4);
+            put(bytes, at + 24, length / size, 8);
+        });
+        list.add("section-size", &of, "elements of another size", section(name), other);
+        if kind == 9 {
+            continue;
+        }
+        let mut parts = Parts::of(&if (5..=7).contains(&kind) { self::coded() } else { example() });
+        let whole = parts.section(kind);
+        whole.bytes.extend(vec![0; whole.size as usize]);
+        list.add("section-count", &of, "one element too many", section(name), parts.bytes());
+        parts.take(kind);
+        list.add("section-missing", &of, "it is absent", section(name), parts.bytes());
+    }
+    let mut parts = Parts::of(&example());
+    parts.sections.push(Section::new(5, 2, 1, vec![0, 0]));
+    let about = "a section of dictionaries where bricks are raw";
+    list.add("section-count", "zero", about, section("brick indices"), parts.bytes());
+    let bytes = with(&raw, 72, 1 << 40, 8);
+    list.add("section-count", "header", "2^40 elements in the header", section("planes"), bytes);
+    let bytes = with(&raw, 67, 1, 1);
+    let about = "one plane in the header, two in the section";
+    list.add("section-size", "header", about, section("bricks"), bytes);
+
+    // A megabyte of metadata, of which only the beginning is there.
+    let length = (1 << 20) + 1;
+    let long = changed(&raw, |bytes| {
+        put(bytes, at(9) + 16, length, 8);
+        put(bytes, at(9) + 24, length, 8);
+        put(bytes, 24, 768 + length, 8);
+    });
+    let about = "metadata of 2^20 + 1 bytes, which the file does not have";
+    list.add("section-metadata-length", "", about, field("section length", length), long);
+    list.but_length(768 + length as usize);
+
+    let longer = changed(&raw, |bytes| {
+        bytes.push(0);
+        put(bytes, 24, end + 1, 8);
+    });
+    let error = self::length(end as usize, end as usize + 1);
+    list.add("section-end", "", "a byte after the last section, which the header counts", error, longer);
+}
+
+/// §10.2.
+fn before_use(list: &mut List) {
+    let (raw, coded) = (good(&example()), good(&coded()));
+    let uniform = good(&Model::plain(4, |_| Tag::Full));
+    let end = raw.len();
+    list.way = Way::Plain;
+    let short = raw[..end - 1].to_vec();
+    list.add("file-length", "short", "the last byte is missing", length(end, end - 1), short);
+    let about = "everything behind the table is missing";
+    list.add("file-length", "table", about, length(end, 368), raw[..368].to_vec());
+    let long = [&raw[..], b"\0"].concat();
+    list.add("file-length", "long", "a byte too many", length(end, end + 1), long);
+
+    // Entry l of the level table.
+    let nodes = |bytes: &[u8], level: usize| offset(bytes, 8) + 24 * level;
+    let level = |bytes: &[u8], level, value| with(bytes, nodes(bytes, level), value, 8);
+    let about = "no node for the universe, which is BRANCH";
+    list.add("level-table-root", "none", about, levels(0), level(&raw, 0, 0));
+    list.add("level-table-root", "two", "two nodes for the universe", levels(0), level(&raw, 0, 2));
+    let about = "a node for the universe, which is FULL";
+    list.add("level-table-root", "uniform", about, levels(0), level(&uniform, 0, 1));
+    let about = "one node more than there are elements and bricks";
+    list.add("level-table-starts", "", about, levels(1), level(&raw, 1, 3));
+    list.add("level-table-starts", "overflow", "2^64 - 1 nodes", levels(1), level(&raw, 1, u64::MAX));
+    let about = "a node less than there are elements and bricks";
+    list.add("level-table-sum", "", about, levels(3), level(&raw, 1, 1));
+    let moved = changed(&coded, |bytes| {
+        for (level, change) in [(1, -1), (3, 1)] {
+            let at = nodes(bytes, level);
+            let sum = number(bytes, at, 8).wrapping_add_signed(change);
+            put(bytes, at, sum, 8);
+        }
+    });
+    let about = "a node counted among the bricks' instead of the elements'";
+    list.add("level-table-sum", "moved", about, levels(5), moved);
+    let none = changed(&good(&Model::plain(2, noise(2, 3, BINARY))), |bytes| put(bytes, 65, 3, 1));
+    // Its brick contradicts the root tag first.
+    list.way = Way::Probing;
+    list.add("header-bricks", "root", "a brick, and the universe is FULL", field("bricks", 1), none);
+
+    list.way = Way::Metadata;
+    let mut text = |of: &str, about, bytes: &[u8]| {
+        let mut parts = Parts::of(&example());
+        parts.section(9).bytes = bytes.to_vec();
+        list.add("metadata-text", of, about, "Format(Metadata)", parts.bytes());
+    };
+    text("key-length", "a key that is longer than the section", b"\x09\0\0\0\0\0\0\0unitsmm");
+    text("value-length", "a value that is longer than the section", b"\x05\0\0\0\x03\0\0\0unitsmm");
+    text("huge-length", "lengths whose sum is beyond 32 bits", b"\xFF\xFF\xFF\xFF\xFF\xFF\xFF\xFFunitsmm");
+    text("rest", "seven bytes, too few for another two lengths", b"\x01\0\0\0\0\0\0\0k\0\0\0\0\0\0\0");
+    text("key-utf-8", "a key that is no UTF-8", b"\x01\0\0\0\x01\0\0\0\xFFv");
+    text("value-utf-8", "a value that is no UTF-8", b"\x01\0\0\0\x01\0\0\0k\xC3");
+    text("overlong", "a slash in two bytes", b"\x01\0\0\0\x02\0\0\0k\xC0\xAF");
+    text("surrogate", "half of a surrogate pair", b"\x01\0\0\0\x03\0\0\0k\xED\xA0\x80");
+    text("descending", "keys that descend", b"\x01\0\0\0\0\0\0\0b\x01\0\0\0\0\0\0\0a");
+    text("twice", "a key that stands twice", b"\x01\0\0\0\0\0\0\0a\x01\0\0\0\0\0\0\0a");
+}
+
+/// §10.3.
+fn verification(list: &mut List) {
+    list.way = Way::Verification;
+    let (raw, coded) = (good(&example()), good(&coded()));
+    for (of, at) in [("table", 368), ("between", 0x1C2), ("last", 0x2FF)] {
+        let error = field("padding", 1);
+        list.add("padding", of, "a byte between sections is not 0", error, with(&raw, at, 1, 1));
+    }
+    for (kind, name) in KINDS {
+        let base = if (5..=7).contains(&kind) { &coded } else { &raw };
+        let mut wrong = base.clone();
+        let at = entry(base, kind) + 32;
+        wrong[at] ^= 1;
+        seal_head(&mut wrong);
+        let of = name.replace(' ', "-");
+        list.add("section-crc", &of, "a bit of the checksum is flipped", checksum(name), wrong);
+    }
+    let mut parts = Parts::of(&example());
+    parts.sections.push(Section::new(1000, 2, 0, b"colours!".to_vec()));
+    let mut wrong = parts.bytes();
+    *wrong.last_mut().expect("a byte") ^= 1;
+    let about = "a bit of an unknown section is flipped";
+    list.add("section-crc", "unknown", about, checksum("an unknown section"), wrong);
+
+    links(list);
+    elements(list);
+    dictionaries(list);
+    bricks(list);
+
+    let one_plane = good(&without_bricks(BINARY));
+    let partial = good(&Model::plain(4, |_| Tag::Partial));
+    let planes = offset(&one_plane, 1);
+    // The first FULL cell of the root's without children.
+    let full = number(&one_plane, planes, 8) & number(&one_plane, planes + 8, 8);
+    let cell = full & full.wrapping_neg();
+    let lower = number(&one_plane, planes, 8) & !cell;
+    let missing = with(&one_plane, planes, lower, 8);
+    let about = "a PARTIAL cell, and bricks have one plane";
+    list.add("planes-missing", "", about, "Damaged(MissingPlane)", missing);
+    let about = "the universe is PARTIAL, and bricks have one plane";
+    list.add("planes-missing", "root", about, "Damaged(MissingPlane)", with(&partial, 67, 1, 1));
+    let about = "two planes, and there is no PARTIAL cell";
+    list.add("planes-needless", "", about, "Damaged(NeedlessPlane)", with(&one_plane, 67, 2, 1));
+    let mut parts = Parts::of(&Model::plain(2, noise(2, 3, BINARY)));
+    parts.head[67] = 2;
+    let two = parts.section(4);
+    two.bytes = [&two.bytes[..], &two.bytes].concat();
+    two.size = 16;
+    let about = "bricks of two planes that are the same";
+    list.add("planes-needless", "bricks", about, "Damaged(NeedlessPlane)", parts.bytes());
+
+    let table = offset(&raw, 8);
+    for (of, about, at, level) in [
+        ("nodes", "internal nodes of a level that no start depends on", 48, 2),
+        ("full", "FULL cells", 24 + 8, 1),
+        ("partial", "PARTIAL cells", 72 + 16, 3),
+        ("finest-nodes", "nodes on the finest level", 72, 3),
+        ("root", "a universe that is cut and FULL", 8, 0),
+    ] {
+        let wrong = with(&raw, table + at, number(&raw, table + at, 8) + 1, 8);
+        list.add("level-table-counts", of, about, levels(level), wrong);
+    }
+}
+
+fn links(list: &mut List) {
+    let (raw, coded) = (good(&example()), good(&coded()));
+    let count = |level, expected, found| {
+        format!("Damaged(Count {{ level: {level}, expected: {expected}, found: {found} }})")
+    };
+    // The BRANCH cell 7 of the root becomes EMPTY.
+    let fewer = with(&raw, offset(&raw, 1), 0x03, 8);
+    list.add("element-count", "bricks", "two bricks for one BRANCH cell", count(1, 1, 2), fewer);
+    let planes = offset(&coded, 1);
+    let fewer = with(&coded, planes, number(&coded, planes, 8) & !0x80, 8);
+    list.add("element-count", "", "eight elements for seven BRANCH cells", count(1, 7, 8), fewer);
+    let more = with(&raw, offset(&raw, 1), 0x93, 8);
+    list.add("element-count", "few", "two bricks for three BRANCH cells", count(1, 3, 2), more);
+
+    let (rel, base) = (offset(&coded, 2), offset(&coded, 3));
+    let near = with(&coded, rel + 2, number(&coded, rel + 2, 2) + 1, 2);
+    list.add("element-link", "rel", "the children of element 1 are one further", link(1), near);
+    let back = with(&coded, base, 0, 8);
+    list.add("element-link", "base", "the children of element 0 begin with itself", link(0), back);
+    let split = changed(&coded, |bytes| {
+        put(bytes, base, 0, 8);
+        for n in 0..9 {
+            let sum = number(bytes, rel + 2 * n, 2) + 1;
+            put(bytes, rel + 2 * n, sum, 2);
+        }
+    });
+    let about = "the sums are right, but rel[0] is not 0";
+    list.add("element-link", "first-rel", about, link(0), split);
+    let far = with(&coded, base, u64::MAX, 8);
+    list.add("element-link", "overflow", "the children of element 0 begin at 2^64 - 1", link(0), far);
+}
+
+fn elements(list: &mut List) {
+    let raw = good(&example());
+    let planes = offset(&raw, 1);
+    let padding = "Damaged(Padding)";
+    let outside = changed(&raw, |bytes| {
+        bytes[planes + 1] = 1;
+        bytes[planes + 9] = 1;
+    });
+    list.add("element-padding", "", "cell 8 of the root is FULL at depth 3", padding, outside);
+    let outside = with(&raw, planes + 15, 0x80, 1);
+    list.add("element-padding", "partial", "cell 63 of the root is PARTIAL at depth 3", padding, outside);
+
+    let uniform = |index| format!("Damaged(Uniform {{ index: {index} }})");
+    let flat = good(&Model::plain(4, cells(4, |at| solid(at[0] > 3))));
+    assert_eq!((number(&flat, 72, 8), number(&flat, 80, 8)), (1, 0), "one element, no brick");
+    let planes = offset(&flat, 1);
+    for (of, about, [lower, upper]) in [
+        ("empty", "all cells of the root are EMPTY", [0, 0]),
+        ("full", "all cells of the root are FULL", [u64::MAX; 2]),
+        ("partial", "all cells of the root are PARTIAL", [0, u64::MAX]),
+    ] {
+        let same = changed(&flat, |bytes| {
+            put(bytes, planes, lower, 8);
+            put(bytes, planes + 8, upper, 8);
+        });
+        list.add("element-uniform", of, about, uniform(0), same);
+    }
+    let odd = good(&Model::plain(3, cells(3, |at| solid(at[0] > 3))));
+    let same = changed(&odd, |bytes| {
+        let planes = offset(bytes, 1);
+        put(bytes, planes, 0xFF, 8);
+        put(bytes, planes + 8, 0xFF, 8);
+    });
+    let about = "all cells that the root has at depth 3 are FULL";
+    list.add("element-uniform", "odd", about, uniform(0), same);
+    let deeper = good(&without_bricks(BINARY));
+    let last = number(&deeper, 72, 8) - 1;
+    let same = changed(&deeper, |bytes| {
+        let planes = offset(bytes, 1) + 16 * last as usize;
+        bytes[planes..planes + 16].fill(0);
+    });
+    list.add("element-uniform", "", "all cells of the last element are EMPTY", uniform(last), same);
+}
+
+fn dictionaries(list: &mut List) {
+    let coded = good(&coded());
+    let bricks = number(&coded, 80, 8);
+    let count = number(&coded, 88, 8);
+    let (indices, entries, segments) = (offset(&coded, 5), offset(&coded, 6), offset(&coded, 7));
+    let index = |bytes: &[u8], b: u64| number(bytes, indices + 2 * b as usize, 2);
+    let uses = |i: u64| (0..bricks).filter(|&b| index(&coded, b) == i).count();
+    let damaged = |brick| format!("Damaged(Dictionary {{ brick: {brick} }})");
+    let about = "the first segment does not begin with the first entry";
+    list.add("dictionary-range", "start", about, damaged(0), with(&coded, segments, 1, 8));
+    let about = "the segment begins beyond the entries";
+    list.add("dictionary-range", "beyond", about, damaged(0), with(&coded, segments, count + 1, 8));
+    let about = "the last brick's index is the number of entries";
+    let beyond = with(&coded, indices + 2 * (bricks as usize - 1), count, 2);
+    list.add("dictionary-index", "", about, damaged(bricks - 1), beyond);
+    let about = "the first brick's index is 65535";
+    list.add("dictionary-index", "large", about, damaged(0), with(&coded, indices, 0xFFFF, 2));
+
+    // Bricks of other values would be other trees; here only their spelling matters, and that comes first.
+    let unused = changed(&coded, |bytes| {
+        for b in 0..bricks {
+            if index(bytes, b) == count - 1 {
+                put(bytes, indices + 2 * b as usize, 0, 2);
+            }
+        }
+    });
+    list.add("dictionary-unused", "", "no brick uses the last entry", entry_order(count - 1), unused);
+    let swapped = |i: u64, j: u64| {
+        changed(&coded, |bytes| {
+            let at = |i: u64| entries + 8 * i as usize;
+            let (a, b) = (number(bytes, at(i), 8), number(bytes, at(j), 8));
+            put(bytes, at(i), b, 8);
+            put(bytes, at(j), a, 8);
+            for b in 0..bricks {
+                let renamed = match index(bytes, b) {
+                    old if old == i => j,
+                    old if old == j => i,
+                    old => old,
+                };
+                put(bytes, indices + 2 * b as usize, renamed, 2);
+            }
+        })
+    };
+    let step = (1..count).find(|&i| uses(i - 1) != uses(i)).expect("different frequencies");
+    let about = "an entry that is used less often comes first";
+    list.add("dictionary-order", "frequency", about, entry_order(step), swapped(step - 1, step));
+    let tie = (1..count).find(|&i| uses(i - 1) == uses(i)).expect("entries that are used equally often");
+    let about = "of entries that are used equally often the larger comes first";
+    list.add("dictionary-order", "value", about, entry_order(tie), swapped(tie - 1, tie));
+    let same = changed(&coded, |bytes| {
+        let value = number(bytes, entries + 8 * (step as usize - 1), 8);
+        put(bytes, entries + 8 * step as usize, value, 8);
+    });
+    let about = "an entry stands twice";
+    list.add("dictionary-duplicate", "", about, entry_order(step), same);
+}
+
+fn bricks(list: &mut List) {
+    let depth_1 = good(&Model::plain(1, cells(1, |[x, _, _]| solid(x == 0))));
+    let outside = with(&depth_1, offset(&depth_1, 4), 0x155, 8);
+    list.add("brick-padding", "", "cell 8 of the brick is FULL at depth 1", "Damaged(Padding)", outside);
+    let uniform = |index| format!("Damaged(Uniform {{ index: {index} }})");
+    let all = with(&depth_1, offset(&depth_1, 4), 0xFF, 8);
+    let about = "all cells that the brick has at depth 1 are FULL";
+    list.add("brick-uniform", "depth-1", about, uniform(0), all);
+    let raw = good(&example());
+    let bricks = offset(&raw, 4);
+    let empty = changed(&raw, |bytes| bytes[bricks + 16..bricks + 32].fill(0));
+    list.add("brick-uniform", "empty", "all cells of the second brick are EMPTY", uniform(2), empty);
+    let partial = changed(&raw, |bytes| {
+        bytes[bricks..bricks + 8].fill(0);
+        bytes[bricks + 8..bricks + 16].fill(0xFF);
+    });
+    list.add("brick-uniform", "partial", "all cells of the first brick are PARTIAL", uniform(1), partial);
+    let branch = |brick| format!("Damaged(BrickBranch {{ brick: {brick} }})");
+    let cut = with(&raw, bricks + 16, 1, 1);
+    list.add("brick-branch", "", "a cell of the second brick is BRANCH", branch(1), cut);
+    let depth_2 = good(&Model::plain(2, noise(2, 3, CERTIFIED)));
+    let all = changed(&depth_2, |bytes| {
+        let at = offset(bytes, 4);
+        put(bytes, at, u64::MAX, 8);
+        put(bytes, at + 8, 0, 8);
+    });
+    list.add("brick-branch", "all", "all cells of the only brick are BRANCH", branch(0), all);
+}
+
+// ---- what is too large for the folder -------------------------------------------------------------------
+
+fn many() -> Model {
+    Model::plain(8, |cell| {
+        let [x, y, z] = cell.at;
+        if cell.level < 8 {
+            return Tag::Branch;
+        }
+        let morton = |at: [u32; 3], bits: u32| {
+            (0..3 * bits).fold(0u64, |m, i| m | (at[i as usize % 3] as u64 >> (i / 3) & 1) << i)
+        };
+        let brick = morton([x >> 2, y >> 2, z >> 2], 6);
+        let value = mix((brick >> 16) * 100_000 + brick % 25_000);
+        solid(value >> morton([x & 3, y & 3, z & 3], 2) & 1 != 0)
+    })
+}
+
+/// A file of 64³ bricks, of 25 000 kinds in every block of 2^16: two dictionary segments of 2^17 bricks.
+#[allow(dead_code)]
+pub fn many_bricks() -> Vec<u8> {
+    good(&many())
+}
+
+/// The same tree with four segments of 2^16 bricks.
+#[allow(dead_code)]
+pub fn many_bricks_in_small_segments() -> Vec<u8> {
+    Parts::of(&many()).in_small_segments().bytes()
+}
+
+// ---- what lists them ------------------------------------------------------------------------------------
+
+fn readme(valid: &[Valid], invalid: &[Invalid]) -> String {
+    let mut text = String::from(include_str!("vectors.md"));
+    text += "\n## Valid\n\n| file | what it is there for |\n|---|---|\n";
+    for vector in valid {
+        let mark = if vector.canonical { "" } else { " (not canonical)" };
+        writeln!(text, "| [{0}](valid/{0}.txt) | {1}{mark} |", vector.name, vector.about)
+            .expect("strings grow");
+    }
+    text += "\n## Invalid\n\n| file | what is wrong | refused by |\n|---|---|---|\n";
+    for vector in invalid {
+        let (name, about, way) = (&vector.name, vector.about, vector.way.name());
+        writeln!(text, "| [{name}](invalid/{name}.txt) | {about} | {way} |").expect("strings grow");
+    }
+    text
+}
