@@ -27,99 +27,29 @@
 //!
 //! # The format
 //!
-//! Version 0.0. **Until major version 1 the format may change from release to release.** All numbers are
-//! little-endian, doubles are IEEE 754 binary64, and a CRC32 is that of zlib and PNG (polynomial
-//! 0xEDB88320). The name of a file ends in `.lfl`.
+//! Version 0.0. **Until major version 1 the format may change from release to release.**
 //!
-//! A file is a header, a section table, and sections. Every section begins on a multiple of 64 bytes; the
-//! bytes between are zero; the file ends with its last section.
+//! A file is a header of 128 bytes, a table of sections, and the sections: the arrays of an
+//! [`OctreeRef`](crate::OctreeRef), each on a multiple of 64 bytes, all numbers little-endian. Header, table and
+//! every section have a CRC32. The name of a file ends in `.lfl`.
 //!
-//! ## Header
-//!
-//! | offset | type | field | value |
-//! |---|---|---|---|
-//! | 0 | 8 bytes | magic | `89 4C 46 4C 0D 0A 1A 0A` |
-//! | 8 | u16 | major version | 0; any other is refused |
-//! | 10 | u16 | minor version | 0; newer ones are readable |
-//! | 12 | u32 | header length | 128 |
-//! | 16 | u32 | required flags | 0; a reader refuses what it does not know |
-//! | 20 | u32 | optional flags | 0 |
-//! | 24 | u64 | file length | in bytes |
-//! | 32 | 3 × f64 | origin | lower corner of the universe; each 0 (not −0) or of a magnitude of 2^-256 to 2^256 |
-//! | 56 | f64 | edge | of the universe; 2^-256 to 2^256 |
-//! | 64 | u8 | depth | 1 to 20 |
-//! | 65 | u8 | root tag | 0 EMPTY, 1 BRANCH, 2 PARTIAL, 3 FULL |
-//! | 66 | u8 | exterior | the same codes, not BRANCH |
-//! | 67 | u8 | planes of a brick | 2 if any cell of the tree is PARTIAL, else 1 |
-//! | 68 | u8 | brick encoding | 0 raw, 1 dictionary |
-//! | 69 | u8 | segment shift | 0 if raw; 16 to 62, or 63 if there is one segment |
-//! | 70 | u16 | reserved | 0 |
-//! | 72 | u64 | elements | without bricks; 0 up to depth 2, and unless the root is BRANCH |
-//! | 80 | u64 | bricks | 0 unless the root is BRANCH |
-//! | 88 | u64 | dictionary entries | 0 if raw |
-//! | 96 | u32 | sections | 1 to 4096 |
-//! | 100 | u32 | section table CRC32 | of all its bytes |
-//! | 104 | 20 bytes | reserved | 0 |
-//! | 124 | u32 | header CRC32 | of the bytes before it |
-//!
-//! A reader that meets a newer minor version does not look at reserved fields and optional flags.
-//!
-//! ## Section table
-//!
-//! It follows the header: 40 bytes a section, in the order in which they lie in the file.
-//!
-//! | offset | type | field |
-//! |---|---|---|
-//! | 0 | u32 | kind; 0 is illegal |
-//! | 4 | u32 | bytes of an element |
-//! | 8 | u64 | offset in the file, a multiple of 64 |
-//! | 16 | u64 | length in bytes: count × bytes of an element; never 0 |
-//! | 24 | u64 | count of elements |
-//! | 32 | u32 | CRC32 of the section |
-//! | 36 | u32 | flags; bit 0: required |
-//!
-//! A reader skips sections of unknown kinds, unless they are required: then it refuses the file.
-//!
-//! ## Sections
-//!
-//! A section that would have no elements is absent. All but the metadata have the required flag; no known
-//! kind may stand twice. Kinds 16 to 31 are reserved for channels, 32 to 47 for tri-dexel models.
-//!
-//! | kind | name | element | count |
+//! | kind | section | element | count |
 //! |---|---|---|---|
 //! | 1 | planes | u64 lower, u64 upper | elements |
 //! | 2 | rel | u16 | elements |
 //! | 3 | base | u64 | ⌈elements / 1024⌉ |
-//! | 4 | bricks | u64 lower (1 plane), or u64 lower, u64 upper (2 planes) | bricks, if raw |
-//! | 5 | brick indices | u16 | bricks, if dictionary |
-//! | 6 | dictionary entries | as kind 4 | dictionary entries |
-//! | 7 | dictionary segments | u64 | ⌈bricks / 2^shift⌉, if dictionary; 1 if the shift is 63 |
-//! | 8 | level table | u64 nodes, u64 full, u64 partial | depth + 1 |
+//! | 4 | bricks | one or two u64 | bricks, if raw |
+//! | 5 | brick indices | u16 | bricks, if through a dictionary |
+//! | 6 | dictionary entries | one or two u64 | dictionary entries |
+//! | 7 | dictionary segments | u64 | segments of the dictionary |
+//! | 8 | level table | three u64 | depth + 1 |
 //! | 9 | metadata | byte | at most 2^20 |
 //!
-//! [`OctreeRef`](crate::OctreeRef) explains elements, bricks, and how a child is found through `base` and
-//! `rel`; [`Planes`](crate::Planes) and [`Tag`](crate::Tag) what the bits mean. In short:
+//! Other kinds are for later versions: a reader skips a section that it does not know, unless it is required.
 //!
-//! * Bit c of `lower` and `upper` is the tag of cell c of an element, in Morton order (bits x, y, z, x, y, z
-//!   of c from the lowest): EMPTY 00, FULL 11, PARTIAL lower 0 upper 1, BRANCH lower 1 upper 0.
-//! * An element describes two octree levels. It is stored only if its cells do not all have one tag that is
-//!   not BRANCH. Of an odd depth the root's element uses cells 0 to 7 only, the others are EMPTY.
-//! * Elements lie level by level, within a level in Morton order. The children of element n, one for each of
-//!   its BRANCH cells in ascending order, have the indices from base\[⌊n / 1024⌋\] + rel\[n\] on; rel is 0
-//!   for every 1024th element. For elements without children both are counted through.
-//! * The deepest elements are bricks, which have no BRANCH. Their indices go on after those of the elements.
-//! * Brick b through a dictionary is entry segments\[b >> shift\] + indices\[b\]. The entries of a segment
-//!   end where those of the next begin; within a segment they differ, stand by descending frequency in the
-//!   segment, then by ascending value (lower, then upper), and all are used; at most 65 536.
-//! * A writer takes the encoding that needs the fewest bytes of kinds 4 to 7: raw, one segment, segments of
-//!   2^k bricks by descending k from the largest that makes two segments down to 16; the first in this order
-//!   where sizes tie. Readers take any.
-//! * The level table counts, for each octree level from 0, the universe, to the depth: internal nodes, FULL
-//!   cells, PARTIAL cells of the canonical octree. The elements of element level e are the nodes of octree
-//!   level 2e (even depth) or 2e − 1 (odd depth; for e = 0, level 0): that is how readers know where a level
-//!   begins. These sums must give the header's elements and bricks.
-//! * Metadata are facts one after another: u32 length of the key, u32 length of the value, key, value, both
-//!   UTF-8, the keys ascending by bytes.
+//! The specification is `format_spec/specification.md` in the source of this crate: every field, every check and
+//! its reason. Beside it lie test vectors, the reasons for the design, and the list of what readers accept
+//! although the writer never writes it.
 
 mod exchange;
 mod layout;

@@ -39,7 +39,7 @@ pub struct Probe {
 #[non_exhaustive]
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Section {
-    /// Number of its kind; see the [table](super#sections).
+    /// Number of its kind; see the [table](super#the-format).
     pub kind: u32,
     /// Name of its kind, if this library knows it.
     pub name: Option<&'static str>,
