@@ -46,6 +46,12 @@ impl Node {
 /// A position in an octree that moves along its links, one octree level at a step. It needs no allocation,
 /// and an octree of any odd or even depth looks the same through it.
 ///
+/// Over bytes that nobody has checked a walk is bounded too. In a sound tree the elements of a level ascend
+/// with their cells in Morton order, and a cursor compares each element that it enters with the last one of
+/// the level: a link that contradicts this order leads nowhere, and its cell reads as PARTIAL. So a walk that
+/// takes the octants of every cell in ascending order meets no element twice. (Whether a damaged link is
+/// noticed depends on where the cursor has been before.)
+///
 /// ```
 /// use leafless::{Ball, Control, Cursor, Frame, Rule, Tag, build};
 /// let frame = Frame::new([0.0; 3], 1.0, 5)?;
@@ -62,16 +68,26 @@ pub struct Cursor<'a> {
     tree: OctreeRef<'a>,
     cell: Cell,
     tag: Tag,
+    /// The octants from the universe to the cell, three bits each: the cell's place in Morton order.
+    morton: u64,
     /// Elements from the root to the one that describes the current cell's children.
     path: [(usize, Planes); MAX_ELEMENT_LEVELS],
+    /// The last element that was entered on each level: the Morton index of its own cell, and its index.
+    entered: [Option<(u64, usize)>; MAX_ELEMENT_LEVELS],
 }
 
 impl<'a> Cursor<'a> {
     /// A cursor on the universe.
     pub fn new(tree: &OctreeRef<'a>) -> Cursor<'a> {
         let partial = (usize::MAX, Planes::uniform(Tag::Partial));
-        let mut cursor =
-            Cursor { tree: *tree, cell: Cell::ROOT, tag: tree.root, path: [partial; MAX_ELEMENT_LEVELS] };
+        let mut cursor = Cursor {
+            tree: *tree,
+            cell: Cell::ROOT,
+            tag: tree.root,
+            morton: 0,
+            path: [partial; MAX_ELEMENT_LEVELS],
+            entered: [None; MAX_ELEMENT_LEVELS],
+        };
         if cursor.tag == Tag::Branch {
             cursor.enter(0, 0);
         }
@@ -102,6 +118,7 @@ impl<'a> Cursor<'a> {
         let Some(node) = self.node().filter(|_| octant < 8) else { return false };
         let (e, half) = self.position(self.cell.level);
         self.cell = self.cell.child(octant);
+        self.morton = self.morton << 3 | octant as u64;
         self.tag = node.tag(octant);
         if let (Tag::Branch, Some(k)) = (self.tag, half) {
             let (n, planes) = self.path[e];
@@ -120,6 +137,7 @@ impl<'a> Cursor<'a> {
             return false;
         }
         self.cell = self.cell.parent();
+        self.morton >>= 3;
         self.tag = Tag::Branch;
         true
     }
@@ -138,9 +156,16 @@ impl<'a> Cursor<'a> {
         (padded / 2, k)
     }
 
+    /// Enters the element `index` of level `e`, which describes the current cell, unless it is damaged or
+    /// stands out of order.
     fn enter(&mut self, e: usize, index: usize) {
-        match self.tree.entry(index) {
-            Some(planes) => self.path[e] = (index, planes),
+        let ordered =
+            self.entered[e].is_none_or(|(morton, last)| self.morton.cmp(&morton) == index.cmp(&last));
+        match self.tree.entry(index).filter(|_| ordered) {
+            Some(planes) => {
+                self.path[e] = (index, planes);
+                self.entered[e] = Some((self.morton, index));
+            }
             None => self.tag = Tag::Partial,
         }
     }
