@@ -1,0 +1,434 @@
+//! A file taken apart into header and sections, and put together again: written from the specification, and
+//! on purpose without the library's own code.
+
+/// Length of the header.
+pub const HEADER: usize = 128;
+/// Length of an entry of the section table.
+pub const ENTRY: usize = 40;
+/// The first eight bytes.
+pub const MAGIC: [u8; 8] = *b"\x89LFL\r\n\x1a\n";
+
+/// Kinds of sections.
+pub const PLANES: u32 = 1;
+pub const REL: u32 = 2;
+pub const BASE: u32 = 3;
+pub const BRICKS: u32 = 4;
+pub const INDICES: u32 = 5;
+pub const ENTRIES: u32 = 6;
+pub const SEGMENTS: u32 = 7;
+pub const LEVELS: u32 = 8;
+pub const METADATA: u32 = 9;
+
+/// Fields of the header: offset and length.
+pub const HEADER_FIELDS: [(usize, usize); 26] = [
+    (0, 8),
+    (8, 2),
+    (10, 2),
+    (12, 4),
+    (16, 4),
+    (20, 4),
+    (24, 8),
+    (32, 8),
+    (40, 8),
+    (48, 8),
+    (56, 8),
+    (64, 1),
+    (65, 1),
+    (66, 1),
+    (67, 1),
+    (68, 1),
+    (69, 1),
+    (70, 2),
+    (72, 8),
+    (80, 8),
+    (88, 8),
+    (96, 4),
+    (100, 4),
+    (104, 8),
+    (116, 8),
+    (124, 4),
+];
+
+/// Fields of an entry of the section table.
+pub const ENTRY_FIELDS: [(usize, usize); 7] = [(0, 4), (4, 4), (8, 8), (16, 8), (24, 8), (32, 4), (36, 4)];
+
+/// The number in the `length` bytes from `at` on.
+pub fn number(bytes: &[u8], at: usize, length: usize) -> u64 {
+    let mut raw = [0; 8];
+    raw[..length].copy_from_slice(&bytes[at..at + length]);
+    u64::from_le_bytes(raw)
+}
+
+/// Writes the number `value` into the `length` bytes from `at` on.
+pub fn put(bytes: &mut [u8], at: usize, value: u64, length: usize) {
+    bytes[at..at + length].copy_from_slice(&value.to_le_bytes()[..length]);
+}
+
+/// A section: its entry in the table as it stands there, and its bytes.
+#[derive(Clone)]
+pub struct Section {
+    pub entry: [u8; ENTRY],
+    pub bytes: Vec<u8>,
+}
+
+impl Section {
+    /// A section of `kind` whose entry has no place yet.
+    pub fn new(kind: u32, bytes: Vec<u8>) -> Section {
+        let mut entry = [0; ENTRY];
+        put(&mut entry, 0, kind.into(), 4);
+        put(&mut entry, 4, 1, 4);
+        put(&mut entry, 36, (1..=LEVELS).contains(&kind).into(), 4);
+        Section { entry, bytes }
+    }
+
+    pub fn kind(&self) -> u32 {
+        number(&self.entry, 0, 4) as u32
+    }
+}
+
+/// A file in parts.
+#[derive(Clone)]
+pub struct File {
+    pub header: [u8; HEADER],
+    pub sections: Vec<Section>,
+}
+
+/// What is made right when a file is put together.
+#[derive(Clone, Copy)]
+pub struct Repairs {
+    /// The tree itself: as many elements and bricks as the branches demand, and the links to them.
+    pub links: bool,
+    /// The dictionary of bricks.
+    pub dictionary: bool,
+    /// The level table.
+    pub levels: bool,
+    /// Element sizes and counts, in the entries and in the header.
+    pub counts: bool,
+    /// Offsets and lengths, also of the file.
+    pub places: bool,
+    /// Checksums of sections, of the table, of the header.
+    pub checksums: [bool; 3],
+}
+
+impl Repairs {
+    pub const ALL: Repairs = Repairs {
+        links: true,
+        dictionary: true,
+        levels: true,
+        counts: true,
+        places: true,
+        checksums: [true; 3],
+    };
+    pub const NONE: Repairs = Repairs {
+        links: false,
+        dictionary: false,
+        levels: false,
+        counts: false,
+        places: false,
+        checksums: [false; 3],
+    };
+    /// Whatever says where things are, and the checksums, but nothing of the tree.
+    pub const FRAME: Repairs = Repairs { links: false, dictionary: false, levels: false, ..Repairs::ALL };
+}
+
+/// Sections that are looked at; files may have more.
+const MOST_SECTIONS: usize = 64;
+/// Elements and bricks that a repaired tree may have.
+const MOST_ENTRIES: usize = 600;
+
+impl File {
+    /// The parts of `bytes`, if there are a signature and a header. Sections that lie elsewhere than in the
+    /// file are empty.
+    pub fn parse(bytes: &[u8]) -> Option<File> {
+        let header: [u8; HEADER] = *bytes.first_chunk()?;
+        if header[..8] != MAGIC {
+            return None;
+        }
+        let count = number(&header, 96, 4) as usize;
+        let table = bytes[HEADER..].chunks_exact(ENTRY).take(count.min(MOST_SECTIONS));
+        let sections = table.map(|entry| {
+            let (start, length) = (number(entry, 8, 8), number(entry, 16, 8));
+            let range = start as usize..start.saturating_add(length) as usize;
+            let mut section = Section { entry: [0; ENTRY], bytes: vec![] };
+            section.entry.copy_from_slice(entry);
+            section.bytes = bytes.get(range).unwrap_or(&[]).to_vec();
+            section
+        });
+        Some(File { header, sections: sections.collect() })
+    }
+
+    /// The section of a kind, the first if there are several.
+    pub fn section(&mut self, kind: u32) -> Option<&mut Section> {
+        self.sections.iter_mut().find(|section| section.kind() == kind)
+    }
+
+    fn bytes(&self, kind: u32) -> &[u8] {
+        self.sections.iter().find(|section| section.kind() == kind).map_or(&[], |section| &section.bytes)
+    }
+
+    /// Makes `bytes` the section of a kind; none if they are empty.
+    fn set(&mut self, kind: u32, bytes: Vec<u8>) {
+        if bytes.is_empty() {
+            self.sections.retain(|section| section.kind() != kind);
+        } else if let Some(section) = self.section(kind) {
+            section.bytes = bytes;
+        } else {
+            let at = self.sections.iter().position(|section| section.kind() > kind);
+            self.sections.insert(at.unwrap_or(self.sections.len()), Section::new(kind, bytes));
+        }
+    }
+
+    fn words(&self, kind: u32) -> Vec<u64> {
+        self.bytes(kind).chunks_exact(8).map(|word| number(word, 0, 8)).collect()
+    }
+
+    fn set_words(&mut self, kind: u32, words: &[u64]) {
+        self.set(kind, words.iter().flat_map(|word| word.to_le_bytes()).collect());
+    }
+
+    /// Bytes of a brick according to the header.
+    pub fn brick_size(&self) -> usize {
+        if self.header[67] == 2 { 16 } else { 8 }
+    }
+
+    /// Whether bricks go through a dictionary, according to the header.
+    pub fn coded(&self) -> bool {
+        self.header[68] == 1
+    }
+
+    fn depth(&self) -> Option<usize> {
+        Some(self.header[64] as usize).filter(|depth| (1..=20).contains(depth))
+    }
+
+    /// The bricks, whether or not they go through a dictionary.
+    fn decoded(&self) -> Vec<Vec<u8>> {
+        let size = self.brick_size();
+        if !self.coded() {
+            return self.bytes(BRICKS).chunks_exact(size).map(<[u8]>::to_vec).collect();
+        }
+        let entries: Vec<&[u8]> = self.bytes(ENTRIES).chunks_exact(size).collect();
+        let indices = self.bytes(INDICES).chunks_exact(2).map(|index| number(index, 0, 2) as usize);
+        indices.filter_map(|index| entries.get(index % entries.len().max(1))).map(|e| e.to_vec()).collect()
+    }
+
+    /// Stores bricks: raw, or through one dictionary.
+    fn encode(&mut self, bricks: &[Vec<u8>], coded: bool) {
+        for kind in [BRICKS, INDICES, ENTRIES, SEGMENTS] {
+            self.set(kind, vec![]);
+        }
+        let coded = coded && !bricks.is_empty();
+        (self.header[68], self.header[69]) = if coded { (1, 63) } else { (0, 0) };
+        put(&mut self.header, 88, 0, 8);
+        if !coded {
+            return self.set(BRICKS, bricks.concat());
+        }
+        let value = |brick: &[u8]| -> Vec<u64> { brick.chunks(8).map(|word| number(word, 0, 8)).collect() };
+        let mut entries: Vec<(usize, Vec<u64>, &Vec<u8>)> = vec![];
+        for brick in bricks {
+            match entries.iter_mut().find(|(_, _, entry)| *entry == brick) {
+                Some((count, _, _)) => *count += 1,
+                None => entries.push((1, value(brick), brick)),
+            }
+        }
+        entries.sort_by(|a, b| b.0.cmp(&a.0).then_with(|| a.1.cmp(&b.1)));
+        let index = |brick| entries.iter().position(|(_, _, entry)| *entry == brick).unwrap_or(0) as u16;
+        let indices = bricks.iter().flat_map(|brick| index(brick).to_le_bytes()).collect();
+        let entries = entries.iter().flat_map(|(_, _, entry)| entry.iter().copied()).collect();
+        self.set(INDICES, indices);
+        self.set(ENTRIES, entries);
+        self.set_words(SEGMENTS, &[0]);
+    }
+
+    /// Gives the bricks `planes` planes instead of those that they have.
+    pub fn convert_bricks(&mut self, planes: u8) {
+        let bricks = self.decoded();
+        let converted: Vec<Vec<u8>> = match (self.header[67], planes) {
+            (1, 2) => bricks.iter().map(|brick| brick.repeat(2)).collect(),
+            (2, 1) => bricks.iter().map(|brick| brick[..8].to_vec()).collect(),
+            _ => return,
+        };
+        self.header[67] = planes;
+        self.encode(&converted, self.coded());
+    }
+
+    /// Makes the tree one that hangs together, starting from its planes: drops and repeats elements and bricks
+    /// until there are as many as the branches demand, and ranks the children.
+    fn repair_links(&mut self) {
+        let Some(depth) = self.depth() else { return };
+        let levels = depth.div_ceil(2);
+        if self.header[65] != 1 {
+            for kind in PLANES..=BASE {
+                self.set(kind, vec![]);
+            }
+            return self.encode(&[], false);
+        }
+        let mut planes: Vec<[u64; 2]> =
+            self.words(PLANES).chunks_exact(2).map(|pair| [pair[0], pair[1]]).collect();
+        let known = planes.len();
+        let mut next = 1;
+        let mut end = 0;
+        let (mut rel, mut base) = (vec![], vec![]);
+        for _ in 1..levels {
+            let first = end;
+            end = next;
+            for n in first..end {
+                if n >= planes.len() {
+                    planes.push(if known == 0 { [1, 0] } else { planes[n % known] });
+                }
+                let [lower, upper] = &mut planes[n];
+                if n == 0 && depth % 2 == 1 {
+                    (*lower, *upper) = (*lower & 0xFF, *upper & 0xFF);
+                }
+                let branches = (*lower & !*upper).count_ones() as usize;
+                if next + branches > MOST_ENTRIES {
+                    *upper |= *lower;
+                }
+                if n % 1024 == 0 {
+                    base.push(next as u64);
+                }
+                rel.extend_from_slice(&((next as u64 - base[n / 1024]) as u16).to_le_bytes());
+                next += (*lower & !*upper).count_ones() as usize;
+            }
+        }
+        planes.truncate(end);
+        self.set_words(PLANES, &planes.concat());
+        self.set(REL, rel);
+        self.set_words(BASE, &base);
+        let mut bricks = self.decoded();
+        if bricks.is_empty() {
+            bricks.push([&[0x0Fu8; 8][..], &[0x1Fu8; 8][..]].concat()[..self.brick_size()].to_vec());
+        }
+        if levels == 1 && depth % 2 == 1 {
+            for word in bricks[0].chunks_mut(8) {
+                word[1..].fill(0);
+            }
+        }
+        let bricks: Vec<Vec<u8>> = bricks.iter().cycle().take(next - end).cloned().collect();
+        self.encode(&bricks, self.coded());
+    }
+
+    /// Sorts the dictionary anew.
+    fn repair_dictionary(&mut self) {
+        if self.coded() {
+            let bricks = self.decoded();
+            self.encode(&bricks, true);
+        }
+    }
+
+    /// Counts the levels, element by element. Where links are wrong, the level table tells where levels begin
+    /// and is taken as it is.
+    fn repair_levels(&mut self) {
+        let Some(depth) = self.depth() else { return };
+        let levels = depth.div_ceil(2);
+        let mut counts = vec![[0u64; 3]; depth + 1];
+        let root = self.header[65];
+        if root != 1 {
+            counts[0] = [0, (root == 3) as u64, (root == 2) as u64];
+            return self.set_words(LEVELS, &counts.concat());
+        }
+        let planes = self.words(PLANES);
+        let bricks = self.decoded();
+        let two = self.brick_size() == 16;
+        let (mut first, mut end) = (0, 1);
+        for e in 0..levels {
+            let mut children = 0;
+            for n in first..end {
+                let [lower, upper] = if e + 1 < levels {
+                    let Some(pair) = planes.get(2 * n..2 * n + 2) else { break };
+                    [pair[0], pair[1]]
+                } else {
+                    let Some(brick) = bricks.get(n - first) else { break };
+                    [number(brick, 0, 8), number(brick, if two { 8 } else { 0 }, 8)]
+                };
+                children += (lower & !upper).count_ones() as usize;
+                let half = depth % 2 == 1 && e == 0;
+                let level = if depth.is_multiple_of(2) { 2 * e } else { (2 * e).max(1) - 1 };
+                let cells = if half { level + 1 } else { level + 2 };
+                counts[level][0] += 1;
+                for octant in 0..if half { 1 } else { 8 } {
+                    match ((lower >> (8 * octant)) as u8, (upper >> (8 * octant)) as u8) {
+                        (0, 0) if !half => {}
+                        (0xFF, 0xFF) if !half => counts[cells - 1][1] += 1,
+                        (0, 0xFF) if !half => counts[cells - 1][2] += 1,
+                        (lower, upper) => {
+                            counts[cells - 1][0] += !half as u64;
+                            counts[cells][1] += (lower & upper).count_ones() as u64;
+                            counts[cells][2] += (!lower & upper).count_ones() as u64;
+                        }
+                    }
+                }
+            }
+            (first, end) = (end, end + children);
+        }
+        self.set_words(LEVELS, &counts.concat());
+    }
+
+    fn repair_counts(&mut self) {
+        let brick = self.brick_size();
+        for section in &mut self.sections {
+            let size = match section.kind() {
+                PLANES => 16,
+                REL | INDICES => 2,
+                BASE | SEGMENTS => 8,
+                BRICKS | ENTRIES => brick,
+                LEVELS => 24,
+                METADATA => 1,
+                _ => number(&section.entry, 4, 4).max(1) as usize,
+            };
+            section.bytes.truncate(section.bytes.len() / size * size);
+            put(&mut section.entry, 4, size as u64, 4);
+        }
+        self.sections.retain(|section| !section.bytes.is_empty());
+        let bricks = self.bytes(BRICKS).len() / brick + self.bytes(INDICES).len() / 2;
+        let counts = [self.bytes(PLANES).len() / 16, bricks, self.bytes(ENTRIES).len() / brick];
+        for (at, count) in [72, 80, 88].into_iter().zip(counts) {
+            put(&mut self.header, at, count as u64, 8);
+        }
+        put(&mut self.header, 96, self.sections.len() as u64, 4);
+    }
+
+    /// The file. What is not repaired stands there as it stood.
+    pub fn assemble(mut self, repairs: &Repairs) -> Vec<u8> {
+        if repairs.links {
+            self.repair_links();
+        }
+        if repairs.dictionary {
+            self.repair_dictionary();
+        }
+        if repairs.levels {
+            self.repair_levels();
+        }
+        if repairs.counts {
+            self.repair_counts();
+        }
+        let mut bytes = vec![0; HEADER + ENTRY * self.sections.len()];
+        for (i, section) in self.sections.iter_mut().enumerate() {
+            bytes.resize(bytes.len().next_multiple_of(64), 0);
+            let entry = &mut section.entry;
+            if repairs.places {
+                let size = number(entry, 4, 4).max(1);
+                put(entry, 8, bytes.len() as u64, 8);
+                put(entry, 16, section.bytes.len() as u64, 8);
+                put(entry, 24, section.bytes.len() as u64 / size, 8);
+            }
+            if repairs.checksums[0] {
+                put(entry, 32, crc32fast::hash(&section.bytes).into(), 4);
+            }
+            bytes[HEADER + ENTRY * i..][..ENTRY].copy_from_slice(entry);
+            bytes.extend_from_slice(&section.bytes);
+        }
+        if repairs.places {
+            put(&mut self.header, 24, bytes.len() as u64, 8);
+        }
+        bytes[..HEADER].copy_from_slice(&self.header);
+        if repairs.checksums[1] {
+            let crc = crc32fast::hash(&bytes[HEADER..HEADER + ENTRY * self.sections.len()]);
+            put(&mut bytes, 100, crc.into(), 4);
+        }
+        if repairs.checksums[2] {
+            let crc = crc32fast::hash(&bytes[..124]);
+            put(&mut bytes, 124, crc.into(), 4);
+        }
+        bytes
+    }
+}

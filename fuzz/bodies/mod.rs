@@ -1,0 +1,103 @@
+//! What the fuzz targets do, and how they change their inputs. The test suite includes these files too.
+#![allow(dead_code, unused_imports)]
+
+pub mod layout;
+mod mutator;
+mod queries;
+pub mod seeds;
+mod set_algebra;
+mod ways_in;
+
+pub use mutator::{mutate_file, mutate_pair};
+pub use queries::queries;
+pub use set_algebra::set_algebra;
+pub use ways_in::ways_in;
+
+use leafless::{Control, Cursor, Tag};
+
+/// One thread, which is what most work of this size gets.
+pub const CONTROL: Control<'static> =
+    Control { threads: 1, max_nodes: None, max_bytes: None, cancel: None, progress: None };
+
+/// Numbers that only look random (splitmix64): the same for a seed everywhere.
+pub struct Random(pub u64);
+
+impl Random {
+    pub fn next(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let mut x = self.0;
+        x = (x ^ x >> 30).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        x = (x ^ x >> 27).wrapping_mul(0x94D0_49BB_1331_11EB);
+        x ^ x >> 31
+    }
+
+    /// A number below `end`, 0 if that is 0.
+    pub fn below(&mut self, end: usize) -> usize {
+        if end == 0 { 0 } else { (self.next() % end as u64) as usize }
+    }
+
+    /// True once in `n` times.
+    pub fn one_in(&mut self, n: usize) -> bool {
+        self.below(n) == 0
+    }
+}
+
+/// Bytes on an address that is a multiple of 8.
+pub struct Aligned(Vec<u64>, usize);
+
+impl Aligned {
+    pub fn new(bytes: &[u8]) -> Aligned {
+        let mut words = vec![0u64; bytes.len().div_ceil(8)];
+        bytemuck::cast_slice_mut::<u64, u8>(&mut words)[..bytes.len()].copy_from_slice(bytes);
+        Aligned(words, bytes.len())
+    }
+
+    pub fn bytes(&self) -> &[u8] {
+        &bytemuck::cast_slice::<u64, u8>(&self.0)[..self.1]
+    }
+
+    pub fn bytes_mut(&mut self) -> &mut [u8] {
+        &mut bytemuck::cast_slice_mut::<u64, u8>(&mut self.0)[..self.1]
+    }
+}
+
+/// An input that consists of two parts: the length of the first in four bytes, the first, the second.
+pub fn halves(data: &[u8]) -> Option<(&[u8], &[u8])> {
+    let (length, rest) = data.split_first_chunk::<4>()?;
+    rest.split_at_checked(u32::from_le_bytes(*length) as usize)
+}
+
+/// The input whose [`halves`] these are.
+pub fn joined(first: &[u8], second: &[u8]) -> Vec<u8> {
+    [&(first.len() as u32).to_le_bytes()[..], first, second].concat()
+}
+
+/// What a walk over all cells meets.
+pub struct Walked {
+    /// Cells that the cursor stood on.
+    pub steps: u64,
+    /// EMPTY, BRANCH, PARTIAL and FULL cells per level.
+    pub cells: [[u64; 4]; 21],
+}
+
+/// Walks over the whole tree, octants in ascending order.
+pub fn walk(mut cursor: Cursor<'_>) -> Walked {
+    let mut walked = Walked { steps: 0, cells: [[0; 4]; 21] };
+    // The octant that comes next on each level.
+    let mut next = vec![0u8];
+    let mut note = |cursor: &Cursor<'_>| {
+        walked.steps += 1;
+        walked.cells[cursor.cell().level as usize][cursor.tag() as usize] += 1;
+    };
+    note(&cursor);
+    while let Some(octant) = next.pop() {
+        if cursor.tag() == Tag::Branch && octant < 8 {
+            assert!(cursor.descend(octant) && cursor.node().is_some() == (cursor.tag() == Tag::Branch));
+            note(&cursor);
+            next.extend([octant + 1, 0]);
+        } else {
+            assert_eq!(cursor.ascend(), !next.is_empty());
+        }
+    }
+    walked
+}

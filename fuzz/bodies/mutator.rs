@@ -1,0 +1,260 @@
+//! Changes of files that know what a file is: without them hardly any input would get past the checksums.
+
+use super::layout::{
+    BASE, ENTRIES, ENTRY_FIELDS, File, HEADER_FIELDS, INDICES, LEVELS, METADATA, PLANES, REL, Repairs,
+    SEGMENTS, Section, number, put,
+};
+use super::{Random, halves, joined};
+
+/// Changes the first `size` of `data` without knowing anything, to at most `max` bytes; returns how many there
+/// are now. libFuzzer's own mutation, or what stands in for it in a test.
+pub type Blind<'b> = &'b mut dyn FnMut(&mut [u8], usize, usize) -> usize;
+
+/// Changes the file in the first `size` bytes of `data`, to at most `max` bytes.
+pub fn mutate_file(data: &mut [u8], size: usize, max: usize, seed: u32, blind: Blind<'_>) -> usize {
+    let mut random = Random(seed.into());
+    match changed(&data[..size], max, &mut random, blind) {
+        Some(bytes) => replace(data, &bytes, max).unwrap_or(size),
+        None => blind(data, size, max),
+    }
+}
+
+/// Changes an input of two parts: the first a file; the second a file, too, or anything.
+pub fn mutate_pair(data: &mut [u8], size: usize, max: usize, seed: u32, blind: Blind<'_>) -> usize {
+    let mut random = Random(seed.into());
+    let Some((first, second)) = halves(&data[..size]).filter(|_| !random.one_in(32)) else {
+        return blind(data, size, max);
+    };
+    let (mut first, mut second) = (first.to_vec(), second.to_vec());
+    let room = max.saturating_sub(4 + first.len().min(second.len()));
+    match random.below(8) {
+        0 => second = first.clone(),
+        1..4 => first = changed(&first, room, &mut random, blind).unwrap_or(first),
+        _ => second = changed(&second, room, &mut random, blind).unwrap_or_else(|| grown(second, blind)),
+    }
+    // Trees on different lattices are refused before anything happens.
+    if let (Some(a), Some(mut b)) = (File::parse(&first), File::parse(&second))
+        && a.header[32..65] != b.header[32..65]
+        && !random.one_in(16)
+    {
+        b.header[32..65].copy_from_slice(&a.header[32..65]);
+        second = b.assemble(&repairs(&mut random));
+    }
+    replace(data, &joined(&first, &second), max).unwrap_or(size)
+}
+
+fn replace(data: &mut [u8], bytes: &[u8], max: usize) -> Option<usize> {
+    if bytes.is_empty() || bytes.len() > max {
+        return None;
+    }
+    data.get_mut(..bytes.len())?.copy_from_slice(bytes);
+    Some(bytes.len())
+}
+
+/// `bytes` after a blind change.
+fn grown(mut bytes: Vec<u8>, blind: Blind<'_>) -> Vec<u8> {
+    let size = bytes.len();
+    let most = size + 32;
+    bytes.resize(most, 0);
+    let size = blind(&mut bytes, size, most);
+    bytes.truncate(size.min(most));
+    bytes
+}
+
+/// Each repair with a high probability; the deeper ones less often, so that damage gets that far.
+fn repairs(random: &mut Random) -> Repairs {
+    let mut often = || !random.one_in(24);
+    let mut repairs = Repairs {
+        counts: often(),
+        places: often(),
+        checksums: [often(), often(), often()],
+        ..Repairs::FRAME
+    };
+    match random.below(4) {
+        0 => {}
+        1 => repairs.levels = true,
+        _ => {
+            repairs.links = true;
+            repairs.dictionary = !random.one_in(8);
+            repairs.levels = !random.one_in(8);
+        }
+    }
+    repairs
+}
+
+/// The file in `bytes` after a few changes; `None` if there is none, or a blind change is due.
+fn changed(bytes: &[u8], max: usize, random: &mut Random, blind: Blind<'_>) -> Option<Vec<u8>> {
+    let mut file = File::parse(bytes).filter(|_| !random.one_in(12))?;
+    for _ in 0..1 + random.below(3) {
+        change(&mut file, random, blind);
+    }
+    let repairs = repairs(random);
+    let mut bytes = file.assemble(&repairs);
+    if random.one_in(64) {
+        // Between sections, or behind the last one.
+        match random.below(3) {
+            0 => bytes.push(0),
+            1 => drop(bytes.pop()),
+            _ => {
+                let at = random.below(bytes.len());
+                bytes[at] ^= 1 << random.below(8);
+            }
+        }
+    }
+    (bytes.len() <= max).then_some(bytes)
+}
+
+/// A number that is likely to be on one side of some border.
+fn number_near(old: u64, random: &mut Random) -> u64 {
+    match random.below(12) {
+        0 => 0,
+        1 => 1,
+        2 => old.wrapping_add(1),
+        3 => old.wrapping_sub(1),
+        4 => u64::MAX,
+        5 => 1 << random.below(64),
+        6 => (1u64 << random.below(64)).wrapping_sub(1),
+        7 => old ^ 1 << random.below(64),
+        8 => old.wrapping_add(64),
+        9 => random.below(32) as u64,
+        10 => random.next(),
+        _ => random.below(1 << 12) as u64,
+    }
+}
+
+fn change_field(bytes: &mut [u8], fields: &[(usize, usize)], random: &mut Random) {
+    let (at, length) = fields[random.below(fields.len())];
+    let old = number(bytes, at, length);
+    put(bytes, at, number_near(old, random), length);
+}
+
+/// Changes one of the numbers of `length` bytes that a section consists of.
+fn change_number(file: &mut File, kind: u32, length: usize, random: &mut Random) {
+    if let Some(section) = file.section(kind)
+        && section.bytes.len() >= length
+    {
+        let at = length * random.below(section.bytes.len() / length);
+        let others = section.bytes.len() / length;
+        let other = number(&section.bytes, length * random.below(others), length);
+        let old = number(&section.bytes, at, length);
+        let new = if random.one_in(3) { other } else { number_near(old, random) };
+        put(&mut section.bytes, at, new, length);
+    }
+}
+
+/// Gives one cell of the planes or bricks another tag.
+fn change_tag(file: &mut File, random: &mut Random) {
+    let kind = if random.one_in(2) {
+        PLANES
+    } else if file.coded() {
+        ENTRIES
+    } else {
+        super::layout::BRICKS
+    };
+    let planes = if kind == PLANES { 2 } else { file.brick_size() / 8 };
+    let Some(section) = file.section(kind).filter(|section| section.bytes.len() >= 8 * planes) else { return };
+    let at = 8 * planes * random.below(section.bytes.len() / (8 * planes));
+    // Near the first cells more often: of an odd depth the root has eight.
+    let cell = if random.one_in(2) { random.below(8) } else { random.below(64) };
+    for plane in 0..planes {
+        if random.one_in(2) {
+            section.bytes[at + 8 * plane + cell / 8] ^= 1 << (cell % 8);
+        }
+    }
+}
+
+/// Grows, shrinks, doubles, moves or removes a section.
+fn change_extent(file: &mut File, random: &mut Random) {
+    if file.sections.is_empty() {
+        return;
+    }
+    let i = random.below(file.sections.len());
+    let section = &mut file.sections[i];
+    match random.below(7) {
+        0 => {
+            let length = random.below(section.bytes.len() + 1);
+            section.bytes.truncate(length);
+        }
+        1 => {
+            let size = number(&section.entry, 4, 4).clamp(1, 24) as usize;
+            let length = section.bytes.len().saturating_sub(size);
+            section.bytes.truncate(length);
+        }
+        2 => {
+            let size = (number(&section.entry, 4, 4).clamp(1, 24) as usize).min(section.bytes.len());
+            section.bytes.extend_from_within(..size);
+        }
+        3 => {
+            let again = section.bytes.len().min(512);
+            section.bytes.extend_from_within(..again);
+        }
+        4 => {
+            let copy = section.clone();
+            file.sections.insert(i, copy);
+        }
+        5 => drop(file.sections.remove(i)),
+        _ => {
+            let kind = random.below(48) as u32;
+            let mut section = Section::new(kind, vec![7; 1 + random.below(40)]);
+            put(&mut section.entry, 36, random.below(3) as u64 / 2, 4);
+            let at = random.below(file.sections.len() + 1);
+            file.sections.insert(at, section);
+        }
+    }
+}
+
+/// Adds facts, or changes the length of one.
+fn change_metadata(file: &mut File, random: &mut Random) {
+    match file.section(METADATA) {
+        Some(section) if random.one_in(2) => {
+            let at = 4 * random.below(section.bytes.len() / 4);
+            if section.bytes.len() >= at + 4 {
+                let old = number(&section.bytes, at, 4);
+                put(&mut section.bytes, at, number_near(old, random), 4);
+            }
+        }
+        Some(section) => section.bytes.extend_from_slice(b"\x02\0\0\0\x01\0\0\0zzv"),
+        None => {
+            let facts = b"\x01\0\0\0\x02\0\0\0k\xC3\x98\x02\0\0\0\0\0\0\0kk".to_vec();
+            file.sections.push(Section::new(METADATA, facts));
+        }
+    }
+}
+
+/// One change.
+fn change(file: &mut File, random: &mut Random, blind: Blind<'_>) {
+    match random.below(24) {
+        0 => change_field(&mut file.header, &HEADER_FIELDS, random),
+        // Depth, tags, bricks and counts, which the rest hangs on.
+        1 => change_field(&mut file.header, &HEADER_FIELDS[11..21], random),
+        2 => file.header[64] = 1 + random.below(20) as u8,
+        3 => {
+            let depth = file.header[64];
+            file.header[64] = if random.one_in(2) { depth.saturating_add(2) } else { depth.saturating_sub(2) };
+        }
+        4 => file.header[65 + random.below(2)] = random.below(4) as u8,
+        5 => file.convert_bricks(3 - file.header[67].clamp(1, 2)),
+        6 => {
+            if !file.sections.is_empty() {
+                let i = random.below(file.sections.len());
+                change_field(&mut file.sections[i].entry, &ENTRY_FIELDS, random);
+            }
+        }
+        7 | 8 => {
+            if !file.sections.is_empty() {
+                let i = random.below(file.sections.len());
+                let bytes = std::mem::take(&mut file.sections[i].bytes);
+                file.sections[i].bytes = grown(bytes, blind);
+            }
+        }
+        9 | 10 => change_extent(file, random),
+        11 | 12 => change_number(file, REL, 2, random),
+        13 => change_number(file, BASE, 8, random),
+        14 | 15 => change_number(file, LEVELS, 8, random),
+        16 => change_number(file, INDICES, 2, random),
+        17 => change_number(file, SEGMENTS, 8, random),
+        18 => change_number(file, ENTRIES, 8, random),
+        19 => change_metadata(file, random),
+        _ => change_tag(file, random),
+    }
+}

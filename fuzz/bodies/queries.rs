@@ -1,0 +1,137 @@
+//! Everything that a tree can be asked, whatever its bytes: no panic, bounded work, and where several ways
+//! lead to one answer it is the same.
+
+use super::{Aligned, Random, halves, walk};
+use leafless::{
+    Cell, Cube, Cursor, Frame, Membership, OctreeRef, PointCursor, Region, Solid, Stored, Tag, Verdict, file,
+};
+
+/// Asks the tree in the first half of `data` what the second half says.
+pub fn queries(data: &[u8]) {
+    let Some((bytes, questions)) = halves(data) else { return };
+    let aligned = Aligned::new(bytes);
+    if let Ok(tree) = file::view(aligned.bytes()) {
+        ask(&tree, questions, file::verify(aligned.bytes()).is_ok());
+    }
+}
+
+/// Asks `tree` everything.
+pub fn ask(tree: &OctreeRef<'_>, questions: &[u8], verified: bool) {
+    let points = points(tree.frame(), questions);
+    ask_points(tree, &points);
+    ask_boxes(tree, &points);
+    replay(tree, &points);
+    if verified {
+        tree.check().expect("it is verified");
+    } else {
+        let _ = tree.check();
+    }
+    // An element has 8 + 64 cells at the most.
+    let steps = walk(Cursor::new(tree)).steps;
+    assert!(steps <= 1 + 72 * (tree.element_count() + tree.brick_count()), "{steps} steps");
+}
+
+/// At most this many points are asked for.
+const MOST_POINTS: usize = 48;
+
+/// Points in and around the universe, on lattice planes and next to them, and absurd ones.
+pub fn points(frame: &Frame, questions: &[u8]) -> Vec<[f64; 3]> {
+    let mut random = Random(crc32fast::hash(questions).into());
+    let mut coordinate = |axis: usize, code: u8, value: u16| {
+        let plane = frame.plane(axis, value as u32 % (frame.cells() + 1));
+        match code % 16 {
+            0 => f64::from_bits(random.next()),
+            1 => [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, f64::MAX, -0.0][value as usize % 5],
+            2 => plane.lower,
+            3 => plane.upper.next_up(),
+            4 => plane.lower.next_down(),
+            5 => frame.origin()[axis] + frame.edge(),
+            _ => frame.origin()[axis] + frame.edge() * (value as f64 / 60_000.0 - 0.05),
+        }
+    };
+    let mut points = vec![];
+    for raw in questions.chunks_exact(9).take(MOST_POINTS) {
+        points.push([0, 1, 2].map(|k| coordinate(k, raw[3 * k], u16::from_le_bytes([raw[3 * k + 1], raw[3 * k + 2]]))));
+    }
+    for value in 0..16u16 {
+        points.push([0, 1, 2].map(|axis| coordinate(axis, 6, value.wrapping_mul(4000 + 777 * axis as u16))));
+    }
+    points
+}
+
+fn ask_points(tree: &OctreeRef<'_>, points: &[[f64; 3]]) {
+    let mut answers = vec![Membership::Inside; points.len()];
+    tree.contains_many(points, &mut answers).expect("as many answers as points");
+    let mut remembering = PointCursor::new(tree);
+    for (&point, &answer) in points.iter().zip(&answers) {
+        assert_eq!((tree.contains(point), remembering.contains(point)), (answer, answer), "{point:?}");
+        let Some(at) = tree.frame().cell_of(point) else {
+            assert_eq!(answer, Membership::Undecided);
+            continue;
+        };
+        let tag = tree.tag_at(at);
+        assert_eq!((Membership::from(tag), remembering.tag_at(at)), (answer, tag));
+        // The same cell, level by level.
+        let mut cursor = Cursor::new(tree);
+        while cursor.tag() == Tag::Branch {
+            let below = tree.frame().depth() - cursor.cell().level - 1;
+            let octant = (0..3).fold(0, |octant, axis| octant | (at[axis] >> below & 1) << axis);
+            assert!(cursor.descend(octant as u8));
+        }
+        assert_eq!(cursor.tag(), tag, "{at:?}");
+    }
+    for at in [[u32::MAX; 3], [0, 0, tree.frame().cells()]] {
+        assert_eq!((tree.tag_at(at), remembering.tag_at(at)), (Tag::Partial, Tag::Partial));
+    }
+}
+
+fn ask_boxes(tree: &OctreeRef<'_>, points: &[[f64; 3]]) {
+    for corners in points.chunks_exact(2) {
+        let min = [0, 1, 2].map(|axis: usize| corners[0][axis].min(corners[1][axis]));
+        let max = [0, 1, 2].map(|axis: usize| corners[0][axis].max(corners[1][axis]));
+        let Ok(region) = tree.classify_box(min, max) else {
+            assert!(corners.iter().flatten().any(|c| c.is_nan()));
+            continue;
+        };
+        for &point in points {
+            // The cell of a point strictly inside of the box has more in common with it than a face.
+            if (0..3).all(|axis| min[axis] < point[axis] && point[axis] < max[axis]) {
+                match tree.contains(point) {
+                    Membership::Inside => assert_ne!(region, Region::Outside),
+                    Membership::Outside => assert_ne!(region, Region::Inside),
+                    Membership::Undecided => {
+                        assert!(region == Region::Undecided || region == Region::Crossing)
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// The tree as a solid: the splits from the root to a cell lead to its tag.
+fn replay(tree: &OctreeRef<'_>, points: &[[f64; 3]]) {
+    let solid = Stored::new(tree);
+    let frame = tree.frame();
+    let Ok(root) = solid.root(&mut (), frame) else { return };
+    for &point in points {
+        let Some(at) = frame.cell_of(point) else { continue };
+        let mut verdict = root;
+        let mut cell = Cell::ROOT;
+        let mut parts = vec![];
+        while let Verdict::Partial(part) = verdict {
+            let below = frame.depth() - cell.level - 1;
+            let octant = (0..3).fold(0, |octant, axis| octant | (at[axis] >> below & 1) << axis) as u8;
+            let cube = Cube { frame, cell };
+            let children = solid.split(&mut (), &cube, &part).expect("nothing is allocated");
+            if below > 0 {
+                parts.clear();
+                let planes = solid.split64(&mut (), &cube, &part, &mut parts).expect("enough memory");
+                assert_eq!(planes.branch(), 0);
+                assert!(parts.iter().all(|&(c, _)| planes.partial() >> c & 1 != 0));
+            }
+            verdict = children[octant as usize];
+            cell = cell.child(octant);
+        }
+        assert_eq!(verdict.tag(), tree.tag_at(at), "{at:?}");
+    }
+}

@@ -1,0 +1,114 @@
+//! Small files of every kind, made by the library.
+
+use super::layout::{File, Repairs, Section, put};
+use super::{CONTROL, Random, joined};
+use leafless::{
+    AxisBox, Ball, Cube, Error, Frame, Metadata, Octree, Rule, Solid, Tag, Verdict, build, file,
+};
+
+/// A different tree for every seed, with coarse and fine cells of every tag.
+pub struct Noise(pub u64);
+
+impl Solid for Noise {
+    type Part = ();
+    type Scratch = ();
+    fn root(&self, _: &mut (), _: &Frame) -> Result<Verdict<()>, Error> {
+        Ok(Verdict::Partial(()))
+    }
+    fn split(&self, _: &mut (), cube: &Cube<'_>, _: &()) -> Result<[Verdict<()>; 8], Error> {
+        Ok([0, 1, 2, 3, 4, 5, 6, 7].map(|k| {
+            let cell = cube.child(k).cell;
+            let [x, y, z] = cell.at.map(u64::from);
+            let mut random = Random(self.0 ^ x << 40 ^ y << 20 ^ z ^ (cell.level as u64) << 60);
+            let split = if cell.level < 3 { 90 } else { 30 };
+            match random.below(256) {
+                die if die < split => Verdict::Partial(()),
+                die => [Verdict::Empty, Verdict::Full, Verdict::Undecided][die % 3],
+            }
+        }))
+    }
+}
+
+/// Bytes of the largest file: small ones are changed faster.
+const MOST: usize = 6000;
+
+/// The frame of all seeds but for its depth.
+pub fn frame(depth: u8) -> Frame {
+    Frame::new([0.0; 3], 32.0, depth).expect("a legal frame")
+}
+
+fn noise(depth: u8, seed: u64, rule: Rule) -> Octree {
+    build(&Noise(seed), &frame(depth), rule, &CONTROL).expect("no limits")
+}
+
+fn facts() -> Metadata {
+    let mut metadata = Metadata::new();
+    metadata.insert("units", "mm");
+    metadata.insert("name", "Flansch Ø 120");
+    metadata
+}
+
+/// Small trees of every kind.
+pub fn trees() -> Vec<Octree> {
+    let mut trees = vec![];
+    for (depth, tag) in [(1, Tag::Empty), (2, Tag::Full), (9, Tag::Partial), (20, Tag::Full)] {
+        trees.push(Octree::uniform(frame(depth), tag, tag).expect("no branch"));
+    }
+    for depth in 1..=7 {
+        trees.push(noise(depth, depth.into(), Rule::Certified));
+        trees.push(noise(depth, 100 + depth as u64, Rule::Inner).with_metadata(facts()));
+    }
+    let cuboid = AxisBox::new([2.0; 3], [29.0; 3]).expect("a box");
+    let corner = AxisBox::new([0.0; 3], [1.0; 3]).expect("a box");
+    let ball = Ball::new([15.0, 16.0, 17.0], 12.0).expect("a ball");
+    let small = Ball::new([3.0; 3], 0.001).expect("a ball");
+    let certified = Rule::Certified;
+    trees.extend([
+        build(&cuboid, &frame(5), Rule::Sampled, &CONTROL).expect("no limits"),
+        build(&cuboid, &frame(4), certified, &CONTROL).expect("no limits"),
+        build(&ball, &frame(5), certified, &CONTROL).expect("no limits"),
+        build(&ball, &frame(6), Rule::Sampled, &CONTROL).expect("no limits"),
+        build(&corner, &frame(11), certified, &CONTROL).expect("no limits"),
+        build(&small, &frame(20), certified, &CONTROL).expect("no limits"),
+    ]);
+    trees
+}
+
+/// Their files, and some that a later version might write.
+pub fn files() -> Vec<Vec<u8>> {
+    let mut files: Vec<_> =
+        trees().iter().map(|tree| file::to_bytes(tree).expect("a good tree")).collect();
+    let newer = |tree: usize, change: &dyn Fn(&mut File)| {
+        let mut file = File::parse(&files[tree]).expect("a file");
+        change(&mut file);
+        file.assemble(&Repairs::FRAME)
+    };
+    let more = [
+        newer(6, &|file| {
+            put(&mut file.header, 10, 3, 2);
+            put(&mut file.header, 20, 1, 4);
+            file.header[110] = 9;
+        }),
+        newer(9, &|file| file.sections.push(Section::new(17, b"colours!".to_vec()))),
+    ];
+    files.extend(more);
+    files.retain(|file| file.len() <= MOST);
+    files
+}
+
+/// Inputs of two parts: a file and questions, or two files on one lattice.
+pub fn pairs() -> Vec<Vec<u8>> {
+    let files = files();
+    let mut random = Random(1);
+    let mut pairs = vec![];
+    for a in &files {
+        for b in &files {
+            if a[32..65] == b[32..65] && a.len() + b.len() < 12_000 {
+                pairs.push(joined(a, b));
+            }
+        }
+        let questions: Vec<u8> = (0..96).map(|_| random.next() as u8).collect();
+        pairs.push(joined(a, &questions));
+    }
+    pairs
+}

@@ -1,0 +1,151 @@
+//! The set algebra of trees that nobody has verified: no panic, bounded work and results, and of verified
+//! operands the right ones.
+
+use super::{Aligned, CONTROL, halves, queries};
+use leafless::{
+    Control, Error, Octree, OctreeRef, Rule, Solid, Stored, Tag, build, compact, complement, difference, file,
+    intersection, intersection_of, resolve, union, union_of, xor, xor_of,
+};
+
+/// Combines the trees in the two halves of `data`.
+pub fn set_algebra(data: &[u8]) {
+    let Some((first, second)) = halves(data) else { return };
+    let (first, second) = (Aligned::new(first), Aligned::new(second));
+    let Ok(a) = file::view(first.bytes()) else { return };
+    let sure = file::verify(first.bytes()).is_ok();
+    alone(&a, sure);
+    match file::view(second.bytes()) {
+        Ok(b) => together(&a, &b, sure && file::verify(second.bytes()).is_ok()),
+        Err(_) => together(&a, &a, sure),
+    }
+}
+
+/// Elements and bricks.
+fn size(tree: &OctreeRef<'_>) -> u64 {
+    tree.element_count() + tree.brick_count()
+}
+
+/// Kleene's logic.
+type Logic = fn(Option<bool>, Option<bool>) -> Option<bool>;
+
+fn and(a: Option<bool>, b: Option<bool>) -> Option<bool> {
+    match (a, b) {
+        (Some(false), _) | (_, Some(false)) => Some(false),
+        (Some(true), Some(true)) => Some(true),
+        _ => None,
+    }
+}
+
+fn not(a: Option<bool>) -> Option<bool> {
+    a.map(|a| !a)
+}
+
+fn decided(tag: Tag) -> Option<bool> {
+    match tag {
+        Tag::Empty => Some(false),
+        Tag::Full => Some(true),
+        Tag::Partial | Tag::Branch => None,
+    }
+}
+
+/// What holds of every result, `most` being the elements and bricks that it may have.
+fn sound(result: Result<Octree, Error>, most: u64, sure: bool) -> Option<Octree> {
+    let tree = match result {
+        Ok(tree) => tree,
+        Err(Error::Damaged(_)) if !sure => return None,
+        Err(refused) => panic!("{refused}"),
+    };
+    assert!(size(tree.view()) <= most, "{} of {most}", size(tree.view()));
+    if sure {
+        tree.view().check().expect("of good operands comes a good result");
+    }
+    // Its links are its own, whatever the operands' were.
+    let links = Stored::new(tree.view()).root(&mut (), tree.frame());
+    assert!(!matches!(links, Err(Error::Damaged(_))));
+    let _ = (tree.statistics(), tree.view().check());
+    Some(tree)
+}
+
+/// What is done with one tree.
+fn alone(a: &OctreeRef<'_>, sure: bool) {
+    let n = size(a);
+    let inverse = sound(complement(a, &CONTROL), n, sure);
+    // A copy has the links of the original, good or bad.
+    let same = compact(a).inspect(|same| assert_eq!(size(same.view()), n)).ok();
+    let copy = sound(resolve(a, Rule::Certified, &CONTROL), n, sure);
+    let inner = sound(resolve(a, Rule::Inner, &CONTROL), n, sure);
+    let outer = sound(resolve(a, Rule::Outer, &CONTROL), n, sure);
+    let sampled = resolve(a, Rule::Sampled, &CONTROL);
+    let frame = a.frame();
+    for depth in [frame.depth().saturating_sub(1).max(1), (frame.depth() + 1).min(20)] {
+        let other = frame.with_depth(depth).expect("a legal depth");
+        // Of the other parity, an element is spread over up to nine.
+        sound(build(&Stored::new(a), &other, Rule::Certified, &CONTROL), 9 * n + 9, sure);
+    }
+    let threads = Control { threads: 2, ..CONTROL };
+    if crc32fast::hash(&n.to_le_bytes()).is_multiple_of(16) {
+        sound(build(&Stored::new(a), frame, Rule::Certified, &threads), n, sure);
+    }
+    if !sure {
+        return;
+    }
+    let back = inverse.as_ref().map(|inverse| complement(inverse.view(), &CONTROL));
+    let back = back.expect("a good tree has a complement").expect("and that one, too");
+    let [same, copy] = [same, copy].map(|tree| tree.expect("a good tree can be copied"));
+    assert!(back == same && copy == same);
+    assert_eq!(sampled.is_ok(), a.is_binary());
+    let [inner, outer] = [inner, outer].map(|tree| tree.expect("a good tree can be resolved"));
+    assert!(inner.view().is_binary() && outer.view().is_binary());
+    for at in cells(a) {
+        let [tag, least, most] = [a, inner.view(), outer.view()].map(|tree| tree.tag_at(at));
+        match tag {
+            Tag::Partial => assert_eq!((least, most), (Tag::Empty, Tag::Full)),
+            tag => assert_eq!((least, most), (tag, tag)),
+        }
+    }
+}
+
+/// Some finest cells.
+fn cells(tree: &OctreeRef<'_>) -> Vec<[u32; 3]> {
+    let frame = tree.frame();
+    let seed = [tree.element_count(), tree.brick_count()].map(u64::to_le_bytes).concat().repeat(27);
+    let points = queries::points(frame, &seed);
+    points.into_iter().filter_map(|point| frame.cell_of(point)).chain([[0; 3]]).collect()
+}
+
+/// What is done with two trees.
+fn together(a: &OctreeRef<'_>, b: &OctreeRef<'_>, sure: bool) {
+    if a.frame() != b.frame() {
+        assert!(matches!(union(a, b, &CONTROL), Err(Error::FrameMismatch)));
+        return;
+    }
+    let most = size(a) + size(b);
+    type Binary = fn(&OctreeRef<'_>, &OctreeRef<'_>, &Control<'_>) -> Result<Octree, Error>;
+    let both: Logic = and;
+    let operations: [(Binary, Logic); 4] = [
+        (union, |a, b| not(and(not(a), not(b)))),
+        (intersection, both),
+        (difference, |a, b| and(a, not(b))),
+        (xor, |a, b| a.zip(b).map(|(a, b)| a ^ b)),
+    ];
+    for (operation, logic) in operations {
+        let result = sound(operation(a, b, &CONTROL), most, sure);
+        let turned = sound(operation(b, a, &CONTROL), most, sure);
+        let alike = sound(operation(a, a, &CONTROL), 2 * size(a), false);
+        // What comes of damaged operands is as good as any other operand.
+        if let (Some(result), Some(turned)) = (&result, &turned) {
+            let most = size(result.view()) + size(turned.view());
+            sound(operation(result.view(), turned.view(), &CONTROL), most, sure);
+        }
+        let _ = alike.map(|tree| file::to_bytes(&tree));
+        let Some(result) = result.filter(|_| sure) else { continue };
+        for at in cells(a) {
+            let expected = logic(decided(a.tag_at(at)), decided(b.tag_at(at)));
+            assert_eq!(decided(result.view().tag_at(at)), expected, "{at:?}");
+        }
+    }
+    let trees = [*a, *b, *a];
+    for operation in [union_of, intersection_of, xor_of] {
+        sound(operation(&trees, &CONTROL), most + size(a), sure);
+    }
+}

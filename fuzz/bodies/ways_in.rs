@@ -1,0 +1,112 @@
+//! Any bytes through every way in: none panics, and all agree.
+
+use super::{Aligned, walk};
+use leafless::{Cursor, Error, Octree, Tag, file};
+use std::path::PathBuf;
+
+/// What became of an attempt, as a text that can be compared.
+fn outcome<T>(result: &Result<T, Error>) -> Result<(), String> {
+    result.as_ref().map(|_| ()).map_err(Error::to_string)
+}
+
+/// Reads `data` in every way.
+pub fn ways_in(data: &[u8]) {
+    let aligned = Aligned::new(data);
+    let bytes = aligned.bytes();
+    let probed = file::probe_bytes(bytes);
+    let viewed = file::view(bytes);
+    let verified = outcome(&file::verify(bytes));
+    let copied = file::from_bytes(bytes);
+    match (&probed, file::probe_from(bytes)) {
+        (Ok(a), Ok(b)) => assert_eq!(a, &b),
+        (Err(a), Err(b)) => assert_eq!(a.to_string(), b.to_string()),
+        (a, b) => panic!("{a:?} and {b:?}"),
+    }
+    // Each way in demands what the one before it does, and then more.
+    assert_eq!(outcome(&copied), verified);
+    if let Err(refused) = outcome(&viewed) {
+        assert_eq!(verified, Err(refused));
+    }
+    if let (Err(refused), Err(again)) = (outcome(&probed), outcome(&viewed)) {
+        assert!(refused == again || data.len() >= 128, "{refused}, {again}");
+    }
+    if let Ok(tree) = &viewed {
+        let probe = probed.as_ref().expect("what can be viewed can be probed");
+        assert_eq!(probe.file_len, data.len() as u64);
+        assert_eq!((&probe.frame, probe.root, probe.exterior), (tree.frame(), tree.root_tag(), tree.exterior()));
+        assert_eq!((probe.elements, probe.bricks), (tree.element_count(), tree.brick_count()));
+        assert_eq!(probe.binary, tree.is_binary());
+    }
+    if let Ok(tree) = &copied {
+        good(tree);
+    }
+    // A real file costs more than all of this, so only some inputs become one.
+    if crc32fast::hash(data).is_multiple_of(8) {
+        through_a_file(data, &outcome(&probed), &outcome(&viewed), &verified);
+    }
+}
+
+/// What holds of every verified tree.
+fn good(tree: &Octree) {
+    let written = file::to_bytes(tree).expect("a verified tree can be written");
+    let back = file::from_bytes(&written).expect("what was written can be read");
+    assert!(&back == tree && back.metadata() == tree.metadata());
+    assert_eq!(file::to_bytes(&back).expect("a verified tree can be written"), written);
+    // What the statistics say is what a walk over all cells meets.
+    let walked = walk(Cursor::new(tree.view()));
+    let statistics = tree.statistics();
+    let depth = tree.frame().depth();
+    assert_eq!(statistics.levels().len(), depth as usize + 1);
+    let (mut lower, mut upper) = (0, 0);
+    for (level, cells) in statistics.levels().iter().zip(walked.cells) {
+        let found = [level.empty, level.nodes, level.partial, level.full];
+        assert_eq!(found, cells, "level {}", level.level);
+        let volume = 1u64 << (3 * (depth - level.level));
+        lower += volume * cells[Tag::Full as usize];
+        upper += volume * (cells[Tag::Full as usize] + cells[Tag::Partial as usize]);
+    }
+    assert_eq!(statistics.volume_cells(), (lower, upper));
+}
+
+/// A file for this process alone, in memory where there is such a place.
+pub fn scratch_file() -> PathBuf {
+    let memory = PathBuf::from("/dev/shm");
+    let directory = if memory.is_dir() { memory } else { std::env::temp_dir() };
+    let thread = std::thread::current().id();
+    directory.join(format!("leafless-fuzz-{}-{thread:?}.lfl", std::process::id()))
+}
+
+/// The same by the ways in that need a file.
+fn through_a_file(
+    data: &[u8],
+    probed: &Result<(), String>,
+    viewed: &Result<(), String>,
+    verified: &Result<(), String>,
+) {
+    let path = scratch_file();
+    std::fs::write(&path, data).expect("a place for a file");
+    let found = outcome(&file::probe(&path));
+    // Of a path the length is known, too.
+    assert!(&found == probed || (probed.is_ok() && viewed.is_err()), "{found:?}, {probed:?}");
+    assert_eq!(&outcome(&file::open(&path)), verified);
+    {
+        // SAFETY: nobody else knows the file, and it is removed only when the trees are gone.
+        #[allow(unsafe_code)]
+        let (mapped, scanned) = unsafe { (file::map(&path), file::map_verified(&path)) };
+        assert_eq!(&outcome(&scanned), verified);
+        if verified.is_ok() || viewed.is_err() {
+            assert_eq!(&outcome(&mapped), viewed);
+        }
+        if let Ok(tree) = &mapped {
+            // Whatever a level table says, statistics are made of it without a panic.
+            let statistics = tree.statistics();
+            let _ = (statistics.volume(), statistics.nodes(), statistics.cells(Tag::Full));
+            assert_eq!(tree, tree);
+            assert!(file::to_bytes(tree).is_err() || tree.view().check().is_ok());
+        }
+        if let Ok(tree) = &scanned {
+            good(tree);
+        }
+    }
+    std::fs::remove_file(&path).expect("the file that was written");
+}
