@@ -156,11 +156,14 @@ impl<'a> OctreeRef<'a> {
         usize::try_from(base.checked_add(rel as u64)?).ok()
     }
 
-    /// Index of the child in cell `c` of element `n`, whose BRANCH cells are `branch`.
+    /// Index of the child in cell `c` of element `n`, whose BRANCH cells are `branch`. Nothing is known of it
+    /// before it is compared with a level or a window: wild sums wrap, as they do in the point queries, so that
+    /// all that follow single links agree also where these are damaged.
     #[inline(always)]
     pub(crate) fn child(&self, n: usize, branch: u64, c: u32) -> Option<usize> {
+        let (base, rel) = (*self.base.get(n >> 10)?, *self.rel.get(n)?);
         let rank = (branch & ((1u64 << c) - 1)).count_ones() as usize;
-        self.first_child(n)?.checked_add(rank)
+        Some((base as usize).wrapping_add(rel as usize).wrapping_add(rank))
     }
 
     /// Where the children of the elements of level `e` from `n` on begin; `n` may be one past the level.
