@@ -43,7 +43,13 @@ pub enum Error {
         /// The limit that the caller set.
         limit: u64,
     },
-    /// An allocation failed.
+    /// An allocation failed, in the library or in the operating system.
+    ///
+    /// Every allocation whose size depends on an input or a result is asked for in a way that can be refused,
+    /// and this is the refusal. What remains is small and of bounded size, below 4 KiB a piece: counted
+    /// references, the numbers per level behind statistics, what the standard library and `tempfile` need to
+    /// handle a path, and what threads cost. If even that cannot be had, the process ends, as Rust programs
+    /// do. (So it does where an allocator refuses to make a piece of memory smaller, which none is known to.)
     #[error("out of memory")]
     OutOfMemory,
     /// The caller asked to stop.
@@ -58,7 +64,18 @@ pub enum Error {
     /// The operating system refused to read or write.
     #[cfg(feature = "std")]
     #[error(transparent)]
-    Io(#[from] std::io::Error),
+    Io(std::io::Error),
+}
+
+#[cfg(feature = "std")]
+impl From<std::io::Error> for Error {
+    fn from(error: std::io::Error) -> Error {
+        // Reading into memory and mapping can run out of it, too.
+        match error.kind() {
+            std::io::ErrorKind::OutOfMemory => Error::OutOfMemory,
+            _ => Error::Io(error),
+        }
+    }
 }
 
 /// Why a triangle mesh does not bound a solid.

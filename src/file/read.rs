@@ -142,7 +142,7 @@ pub fn view(bytes: &[u8]) -> Result<OctreeRef<'_>, Error> {
 pub fn verify(bytes: &[u8]) -> Result<(), Error> {
     let (layout, tree) = viewed(bytes)?;
     verify_contents(&layout, bytes)?;
-    Ok(tree.check()?)
+    tree.check()
 }
 
 /// The tree in `bytes`, a whole file, copied and [verified](verify). The bytes may have any alignment, and
@@ -232,20 +232,20 @@ pub(super) fn viewed(bytes: &[u8]) -> Result<(Layout, OctreeRef<'_>), Error> {
 }
 
 /// The facts that the file carries along.
-pub(super) fn metadata(layout: &Layout, bytes: &[u8]) -> Result<Metadata, FormatError> {
-    Metadata::from_bytes(layout.table.bytes(bytes, Kind::Metadata)?).ok_or(FormatError::Metadata)
+pub(super) fn metadata(layout: &Layout, bytes: &[u8]) -> Result<Metadata, Error> {
+    Metadata::from_bytes(layout.table.bytes(bytes, Kind::Metadata)?)
 }
 
 /// Everything but the tree itself: checksums, padding, metadata. The bytes are still in the file's order.
-pub(super) fn verify_contents(layout: &Layout, bytes: &[u8]) -> Result<Metadata, FormatError> {
+pub(super) fn verify_contents(layout: &Layout, bytes: &[u8]) -> Result<Metadata, Error> {
     let mut end = layout.head.table_range().end as u64;
     for entry in entries(layout.head.table(bytes)?) {
         let padding = section(bytes, &(end..entry.offset))?;
         if let Some(&byte) = padding.iter().find(|&&byte| byte != 0) {
-            return Err(FormatError::Field { name: "padding", value: byte.into() });
+            return Err(FormatError::Field { name: "padding", value: byte.into() }.into());
         }
         if crc32fast::hash(section(bytes, &entry.range())?) != entry.crc {
-            return Err(FormatError::Checksum { name: entry.name() });
+            return Err(FormatError::Checksum { name: entry.name() }.into());
         }
         end = entry.range().end;
     }

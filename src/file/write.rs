@@ -228,10 +228,10 @@ fn assemble(
     let tree = octree.view();
     // Thereby the links, too, are the ones that the planes determine.
     tree.check()?;
-    let metadata = octree.metadata().to_bytes();
-    if metadata.len() as u64 > MAX_METADATA {
+    if octree.metadata().len_in_file() as u64 > MAX_METADATA {
         return Err(Error::Argument { name: "metadata", problem: "must not take more than 1 MiB in a file" });
     }
+    let metadata = octree.metadata().to_bytes()?;
     let encoded = dictionary::encode(&tree.bricks)?;
     let bricks = encoded.as_ref().map_or(tree.bricks, OwnedBricks::view);
     let mut header = Header {

@@ -6,7 +6,7 @@ use super::writer::Writer;
 use crate::error::Error;
 use crate::lattice::morton;
 use alloc::boxed::Box;
-use alloc::vec;
+use alloc::vec::Vec;
 
 /// How PARTIAL cells of the finest level are resolved when a tree is built.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
@@ -42,9 +42,11 @@ pub struct Block {
 
 impl Block {
     /// An empty block whose PARTIAL cells are to be resolved by `rule`.
-    pub fn new(rule: Rule) -> Block {
-        let words = || vec![0u64; 4096].try_into().unwrap_or_else(|_| unreachable!());
-        Block { rule, lower: words(), upper: words() }
+    ///
+    /// # Errors
+    /// [`Error::OutOfMemory`].
+    pub fn new(rule: Rule) -> Result<Block, Error> {
+        Ok(Block { rule, lower: zeros()?, upper: zeros()? })
     }
 
     /// How PARTIAL cells must be resolved by whoever fills the block: only under [`Rule::Certified`] may
@@ -140,6 +142,14 @@ impl Block {
         }
         writer.put(e, element)
     }
+}
+
+/// One value for each column of a block.
+pub(crate) fn zeros<T: Copy + Default>() -> Result<Box<[T; 4096]>, Error> {
+    let mut values = Vec::new();
+    values.try_reserve_exact(4096).map_err(|_| Error::OutOfMemory)?;
+    values.resize(4096, T::default());
+    values.try_into().map_err(|_| Error::OutOfMemory)
 }
 
 /// Sixteen columns: what holds for all of them, and for any.

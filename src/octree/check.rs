@@ -4,7 +4,7 @@ use super::dictionary;
 use super::tag::Tag;
 use super::view::OctreeRef;
 use super::word::Planes;
-use crate::error::Damage;
+use crate::error::{Damage, Error};
 
 impl OctreeRef<'_> {
     /// Checks everything that a well-formed tree promises: children where level order puts them, nothing
@@ -12,9 +12,10 @@ impl OctreeRef<'_> {
     /// a true level table. The trees that the library makes pass by construction. O(n).
     ///
     /// # Errors
-    /// The first [`Damage`] found, in this order, which matters because each step relies on the one before:
-    /// links level by level, then elements, then bricks, then what is derived from them.
-    pub fn check(&self) -> Result<(), Damage> {
+    /// [`Error::Damaged`] with the first [`Damage`] found, in this order, which matters because each step relies
+    /// on the one before: links level by level, then elements, then bricks, then what is derived from them.
+    /// [`Error::OutOfMemory`]: a dictionary's entries are counted and sorted, at most 65 536 at a time.
+    pub fn check(&self) -> Result<(), Error> {
         self.check_links()?;
         let real = |index: usize| if index == 0 { self.root_cells() } else { !0 };
         let mut undecided = 0;
@@ -29,12 +30,12 @@ impl OctreeRef<'_> {
             undecided |= planes.partial();
             check_element(index, planes, real(index))?;
             if planes.branch() != 0 {
-                return Err(Damage::BrickBranch { brick: b as u64 });
+                return Err(Damage::BrickBranch { brick: b as u64 }.into());
             }
         }
         match (self.root == Tag::Partial || undecided != 0, self.bricks.one_plane()) {
-            (true, true) => return Err(Damage::MissingPlane),
-            (false, false) => return Err(Damage::NeedlessPlane),
+            (true, true) => return Err(Damage::MissingPlane.into()),
+            (false, false) => return Err(Damage::NeedlessPlane.into()),
             _ => {}
         }
         if let Some(table) = self.table {
@@ -42,7 +43,7 @@ impl OctreeRef<'_> {
             let wrong =
                 (0..counts.len().max(table.len())).find(|&level| counts.get(level) != table.get(level));
             if let Some(level) = wrong {
-                return Err(Damage::LevelTable { level: level as u8 });
+                return Err(Damage::LevelTable { level: level as u8 }.into());
             }
         }
         Ok(())

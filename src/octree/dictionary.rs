@@ -8,9 +8,8 @@
 use super::brick::{Brick, BrickArray, Bricks, OwnedArray, OwnedBricks};
 use super::view::OctreeRef;
 use crate::error::{Damage, Error};
-use alloc::vec;
 use alloc::vec::Vec;
-use hashbrown::{HashMap, HashSet};
+use hashbrown::HashMap;
 
 /// Most entries that a 16-bit index can name.
 const MOST: usize = 1 << 16;
@@ -101,16 +100,19 @@ fn segmented<T: Brick>(raw: &[T], shift: u8) -> Result<Segmented<T>, Error> {
                 if fresh == MOST {
                     return Ok(Segmented::TooManyEntries);
                 }
+                counts.try_reserve(1).map_err(|_| Error::OutOfMemory)?;
+                distinct.try_reserve(1).map_err(|_| Error::OutOfMemory)?;
                 counts.push(0);
                 distinct.push(brick);
             }
             counts[index] += 1;
             indices.push(index as u16);
         }
-        let mut order: Vec<u16> = (0..=u16::MAX).take(distinct.len()).collect();
+        let mut order: Vec<u16> = with_capacity(distinct.len())?;
+        order.extend((0..=u16::MAX).take(distinct.len()));
         let key = |&i: &u16| (core::cmp::Reverse(counts[i as usize]), distinct[i as usize]);
         order.sort_unstable_by_key(key);
-        let mut rename = vec![0u16; order.len()];
+        let mut rename = zeros::<u16>(order.len())?;
         for (new, &old) in order.iter().enumerate() {
             rename[old as usize] = new as u16;
         }
@@ -132,20 +134,29 @@ fn with_capacity<T>(count: usize) -> Result<Vec<T>, Error> {
     Ok(vec)
 }
 
+fn zeros<T: Copy + Default>(count: usize) -> Result<Vec<T>, Error> {
+    let mut vec = with_capacity(count)?;
+    vec.resize(count, T::default());
+    Ok(vec)
+}
+
 /// Checks that the dictionary, if there is one, is the one that the bricks determine.
-pub(crate) fn check(tree: &OctreeRef<'_>) -> Result<(), Damage> {
+///
+/// # Errors
+/// [`Error::Damaged`]; [`Error::OutOfMemory`], because entries are counted and sorted, a segment at a time.
+pub(crate) fn check(tree: &OctreeRef<'_>) -> Result<(), Error> {
     match &tree.bricks {
         Bricks::One(bricks) => check_array(bricks),
         Bricks::Two(bricks) => check_array(bricks),
     }
 }
 
-fn check_array<T: Brick>(bricks: &BrickArray<'_, T>) -> Result<(), Damage> {
+fn check_array<T: Brick>(bricks: &BrickArray<'_, T>) -> Result<(), Error> {
     let BrickArray::Dictionary { indices, entries, segments, shift } = *bricks else { return Ok(()) };
     // Segments longer than the address space are one segment.
     let length = 1usize.checked_shl(shift.into()).unwrap_or(usize::MAX);
     if segments.len() != indices.len().div_ceil(length) {
-        return Err(Damage::Dictionary { brick: 0 });
+        return Err(Damage::Dictionary { brick: 0 }.into());
     }
     let mut expected = 0;
     for (s, indices) in indices.chunks(length).enumerate() {
@@ -154,30 +165,41 @@ fn check_array<T: Brick>(bricks: &BrickArray<'_, T>) -> Result<(), Damage> {
         let range = segments[s] as usize..usize::try_from(end).unwrap_or(usize::MAX);
         let own = entries.get(range).filter(|own| own.len() <= MOST).ok_or(Damage::Dictionary { brick })?;
         if segments[s] != expected {
-            return Err(Damage::Dictionary { brick });
+            return Err(Damage::Dictionary { brick }.into());
         }
-        let mut counts = vec![0u64; own.len()];
+        let mut counts = zeros::<u64>(own.len())?;
         for (b, &index) in indices.iter().enumerate() {
             match counts.get_mut(index as usize) {
                 Some(count) => *count += 1,
-                None => return Err(Damage::Dictionary { brick: brick + b as u64 }),
+                None => return Err(Damage::Dictionary { brick: brick + b as u64 }.into()),
             }
         }
-        let mut distinct = HashSet::with_capacity(own.len());
+        let misplaced = |i: usize| Err(Damage::DictionaryOrder { entry: expected + i as u64 }.into());
         let key = |i: usize| (core::cmp::Reverse(counts[i]), own[i]);
-        for i in 0..own.len() {
-            if counts[i] == 0 || (i > 0 && key(i - 1) >= key(i)) || !distinct.insert(own[i]) {
-                return Err(Damage::DictionaryOrder { entry: expected + i as u64 });
-            }
+        if let Some(i) = (0..own.len()).find(|&i| counts[i] == 0 || (i > 0 && key(i - 1) >= key(i))) {
+            return misplaced(i);
+        }
+        // Equal entries of different frequency do not stand side by side.
+        let mut sorted = with_capacity(own.len())?;
+        sorted.extend_from_slice(own);
+        sorted.sort_unstable();
+        if let Some(twice) = sorted.windows(2).find(|pair| pair[0] == pair[1]) {
+            let last = own.iter().rposition(|entry| entry == &twice[0]);
+            return misplaced(last.unwrap_or(0));
         }
         expected = end;
     }
-    if expected == entries.len() as u64 { Ok(()) } else { Err(Damage::DictionaryOrder { entry: expected }) }
+    if expected == entries.len() as u64 {
+        Ok(())
+    } else {
+        Err(Damage::DictionaryOrder { entry: expected }.into())
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use alloc::vec;
 
     fn indices(coded: &OwnedArray<u64>) -> (&[u16], &[u64], &[u64], u8) {
         match coded {
@@ -195,7 +217,7 @@ mod tests {
         let (found, entries, segments, shift) = indices(&coded);
         assert_eq!((entries, segments, shift), (&[1, 5, 7, 9][..], &[0][..], WHOLE));
         assert_eq!(&found[..8], &[3, 1, 1, 2, 2, 0, 0, 0]);
-        assert_eq!(check_array(&coded.view()), Ok(()));
+        check_array(&coded.view()).unwrap();
         let mut back = Vec::new();
         assert!(coded.view().extend(0..raw.len(), &mut back, |brick| brick));
         assert_eq!(back, raw);
@@ -216,7 +238,7 @@ mod tests {
         let (_, entries, segments, shift) = indices(&coded);
         assert_eq!((shift, segments.len()), (16, 4));
         assert!(entries.len() > 100_000);
-        assert_eq!(check_array(&coded.view()), Ok(()));
+        check_array(&coded.view()).unwrap();
         for b in [0, 49_999, 65_535, 65_536, 131_071, 131_072, 199_999] {
             assert_eq!(coded.view().get(b), Some(raw[b]));
         }
@@ -231,7 +253,11 @@ mod tests {
             let mut parts = good.clone();
             change(&mut parts);
             let (indices, entries, segments, shift) = parts;
-            check_array(&OwnedArray::Dictionary { indices, entries, segments, shift }.view())
+            match check_array(&OwnedArray::Dictionary { indices, entries, segments, shift }.view()) {
+                Ok(()) => Ok(()),
+                Err(Error::Damaged(damage)) => Err(damage),
+                Err(other) => panic!("{other}"),
+            }
         };
         assert_eq!(verdict(&|_| ()), Ok(()));
         assert_eq!(verdict(&|d| d.0[0] = 2), Err(Damage::Dictionary { brick: 0 }));

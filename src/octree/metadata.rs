@@ -1,6 +1,6 @@
 //! Key–value facts that travel with a tree.
 
-use alloc::collections::BTreeMap;
+use crate::error::{Error, FormatError};
 use alloc::string::String;
 use alloc::vec::Vec;
 
@@ -8,7 +8,10 @@ use alloc::vec::Vec;
 ///
 /// Names in use: `name`, `units`, `source` (a fingerprint of what the tree was made from), `rule`.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub struct Metadata(BTreeMap<String, String>);
+pub struct Metadata(Vec<(String, String)>);
+
+/// Bytes of the two lengths before a fact in a file.
+const LENGTHS: usize = 2 * size_of::<u32>();
 
 impl Metadata {
     /// No facts.
@@ -18,12 +21,16 @@ impl Metadata {
 
     /// Sets `key` to `value`.
     pub fn insert(&mut self, key: impl Into<String>, value: impl Into<String>) {
-        self.0.insert(key.into(), value.into());
+        let (key, value) = (key.into(), value.into());
+        match self.find(&key) {
+            Ok(at) => self.0[at].1 = value,
+            Err(at) => self.0.insert(at, (key, value)),
+        }
     }
 
     /// The value of `key`.
     pub fn get(&self, key: &str) -> Option<&str> {
-        self.0.get(key).map(String::as_str)
+        self.find(key).ok().and_then(|at| self.0.get(at)).map(|(_, value)| value.as_str())
     }
 
     /// All facts, by ascending key.
@@ -36,40 +43,100 @@ impl Metadata {
         self.0.is_empty()
     }
 
-    /// The bytes in a file: per fact the lengths of key and value as little-endian u32, then both texts.
-    pub(crate) fn to_bytes(&self) -> Vec<u8> {
+    /// Where `key` is, or where it belongs.
+    fn find(&self, key: &str) -> Result<usize, usize> {
+        self.0.binary_search_by(|(known, _)| known.as_str().cmp(key))
+    }
+
+    /// Bytes that they take in a file.
+    pub(crate) fn len_in_file(&self) -> usize {
+        self.iter().map(|(key, value)| LENGTHS + key.len() + value.len()).sum()
+    }
+
+    /// The bytes in a file: per fact the lengths of key and value as little-endian u32, then both texts. There
+    /// must not be 4 GiB of them.
+    ///
+    /// # Errors
+    /// [`Error::OutOfMemory`].
+    pub(crate) fn to_bytes(&self) -> Result<Vec<u8>, Error> {
         let mut bytes = Vec::new();
+        bytes.try_reserve_exact(self.len_in_file()).map_err(|_| Error::OutOfMemory)?;
         for (key, value) in self.iter() {
             bytes.extend_from_slice(&(key.len() as u32).to_le_bytes());
             bytes.extend_from_slice(&(value.len() as u32).to_le_bytes());
             bytes.extend_from_slice(key.as_bytes());
             bytes.extend_from_slice(value.as_bytes());
         }
-        bytes
+        Ok(bytes)
     }
 
-    /// Reads [`to_bytes`](Self::to_bytes); `None` unless the keys ascend and everything is UTF-8 and used up.
-    pub(crate) fn from_bytes(mut bytes: &[u8]) -> Option<Metadata> {
-        fn text<'a>(bytes: &mut &'a [u8], length: u32) -> Option<&'a str> {
-            let (text, rest) = bytes.split_at_checked(usize::try_from(length).ok()?)?;
-            *bytes = rest;
-            core::str::from_utf8(text).ok()
-        }
-        fn length(bytes: &mut &[u8]) -> Option<u32> {
-            let (length, rest) = bytes.split_first_chunk()?;
-            *bytes = rest;
-            Some(u32::from_le_bytes(*length))
-        }
-        let mut metadata = Metadata::new();
-        while !bytes.is_empty() {
-            let (key, value) = (length(&mut bytes)?, length(&mut bytes)?);
-            let (key, value) = (text(&mut bytes, key)?, text(&mut bytes, value)?);
-            if metadata.0.last_key_value().is_some_and(|(last, _)| last.as_str() >= key) {
-                return None;
+    /// Reads [`to_bytes`](Self::to_bytes). Takes at most six times the memory of `bytes`.
+    ///
+    /// # Errors
+    /// [`FormatError::Metadata`] unless the keys ascend and everything is UTF-8 and used up;
+    /// [`Error::OutOfMemory`].
+    pub(crate) fn from_bytes(bytes: &[u8]) -> Result<Metadata, Error> {
+        // Everything is looked at before anything is allocated.
+        let mut last = None;
+        let mut count = 0;
+        for fact in Facts(bytes) {
+            let (key, _) = fact.ok_or(FormatError::Metadata)?;
+            if last.is_some_and(|last| last >= key) {
+                return Err(FormatError::Metadata.into());
             }
-            metadata.insert(key, value);
+            last = Some(key);
+            count += 1;
         }
-        Some(metadata)
+        let mut facts = Vec::new();
+        facts.try_reserve_exact(count).map_err(|_| Error::OutOfMemory)?;
+        for (key, value) in Facts(bytes).flatten() {
+            facts.push((copy(key)?, copy(value)?));
+        }
+        Ok(Metadata(facts))
+    }
+}
+
+fn copy(text: &str) -> Result<String, Error> {
+    let mut copy = String::new();
+    copy.try_reserve_exact(text.len()).map_err(|_| Error::OutOfMemory)?;
+    copy.push_str(text);
+    Ok(copy)
+}
+
+/// The facts in the bytes of a file; `None`, and no more, where they cannot be read.
+struct Facts<'a>(&'a [u8]);
+
+impl<'a> Facts<'a> {
+    fn length(&mut self) -> Option<usize> {
+        let (length, rest) = self.0.split_first_chunk()?;
+        self.0 = rest;
+        usize::try_from(u32::from_le_bytes(*length)).ok()
+    }
+
+    fn text(&mut self, length: usize) -> Option<&'a str> {
+        let (text, rest) = self.0.split_at_checked(length)?;
+        self.0 = rest;
+        core::str::from_utf8(text).ok()
+    }
+
+    fn fact(&mut self) -> Option<(&'a str, &'a str)> {
+        let (key, value) = (self.length()?, self.length()?);
+        Some((self.text(key)?, self.text(value)?))
+    }
+}
+
+impl<'a> Iterator for Facts<'a> {
+    type Item = Option<(&'a str, &'a str)>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        if self.0.is_empty() {
+            return None;
+        }
+        let fact = self.fact();
+        if fact.is_none() {
+            self.0 = &[];
+        }
+        Some(fact)
     }
 }
 
@@ -82,14 +149,21 @@ mod tests {
         let mut metadata = Metadata::new();
         metadata.insert("units", "mm");
         metadata.insert("name", "Flansch Ø 120");
-        let bytes = metadata.to_bytes();
-        assert_eq!(Metadata::from_bytes(&bytes), Some(metadata));
-        assert_eq!(Metadata::from_bytes(&[]), Some(Metadata::new()));
+        assert_eq!((metadata.get("units"), metadata.get("unit")), (Some("mm"), None));
+        let bytes = metadata.to_bytes().unwrap();
+        assert_eq!(bytes.len(), metadata.len_in_file());
+        assert_eq!(Metadata::from_bytes(&bytes).unwrap(), metadata);
+        assert_eq!(Metadata::from_bytes(&[]).unwrap(), Metadata::new());
+        metadata.insert("units", "inch");
+        metadata.insert("a", "first");
+        let facts = [("a", "first"), ("name", "Flansch Ø 120"), ("units", "inch")];
+        assert!(metadata.iter().eq(facts));
         for cut in 1..bytes.len() {
             let first = 8 + 4 + "Flansch Ø 120".len();
-            assert_eq!(Metadata::from_bytes(&bytes[..cut]).is_some(), cut == first, "{cut}");
+            assert_eq!(Metadata::from_bytes(&bytes[..cut]).is_ok(), cut == first, "{cut}");
         }
         let twice = [&bytes[..], &bytes[..]].concat();
-        assert_eq!(Metadata::from_bytes(&twice), None);
+        let refused = Metadata::from_bytes(&twice);
+        assert!(matches!(refused, Err(Error::Format(FormatError::Metadata))));
     }
 }

@@ -399,6 +399,7 @@ impl Kernel<'_> {
         use alloc::vec::Vec;
         use rayon::prelude::*;
         let mut tasks = Vec::new();
+        tasks.try_reserve_exact(open.count_ones() as usize).map_err(|_| Error::OutOfMemory)?;
         for c in (0..64).filter(|c| open >> c & 1 != 0) {
             let children = self.children(&mut walk.windows, sources, planes, c, 1)?;
             let mut windows = walk.windows.clone();

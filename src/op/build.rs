@@ -34,7 +34,7 @@ pub fn build<S: Solid>(solid: &S, frame: &Frame, rule: Rule, control: &Control<'
     // Shallow trees are made faster than threads.
     control.run(element_levels(frame.depth()) > 3, |parallel| {
         let builder = Builder { solid, frame, rule, levels: element_levels(frame.depth()), parallel };
-        let mut worker = Worker::<S>::new(rule);
+        let mut worker = Worker::<S>::new();
         let mut writer = Writer::new(&job, frame.depth(), rule.is_binary());
         let root = solid.root(&mut worker.scratch, frame)?;
         if !matches!(root, Verdict::Partial(_)) {
@@ -81,12 +81,13 @@ struct Builder<'a, S> {
 struct Worker<S: Solid> {
     scratch: S::Scratch,
     parts: Vec<(u8, S::Part)>,
-    block: Block,
+    /// Made when a cell is first small enough for it.
+    block: Option<Block>,
 }
 
 impl<S: Solid> Worker<S> {
-    fn new(rule: Rule) -> Worker<S> {
-        Worker { scratch: S::Scratch::default(), parts: Vec::new(), block: Block::new(rule) }
+    fn new() -> Worker<S> {
+        Worker { scratch: S::Scratch::default(), parts: Vec::new(), block: None }
     }
 }
 
@@ -102,11 +103,15 @@ impl<S: Solid> Builder<'_, S> {
     ) -> Result<Tag, Error> {
         writer.job().check()?;
         let cube = Cube { frame: self.frame, cell };
-        if cell.level + BLOCK_LEVELS == self.frame.depth()
-            && self.solid.fill(&mut worker.scratch, &cube, part, &mut worker.block)?
-        {
-            self.progress(e, writer);
-            return worker.block.write(e, writer);
+        if cell.level + BLOCK_LEVELS == self.frame.depth() {
+            let block = match &mut worker.block {
+                Some(block) => block,
+                none => none.insert(Block::new(self.rule)?),
+            };
+            if self.solid.fill(&mut worker.scratch, &cube, part, block)? {
+                self.progress(e, writer);
+                return block.write(e, writer);
+            }
         }
         let mark = worker.scratch.mark();
         let first = worker.parts.len();
@@ -141,6 +146,7 @@ impl<S: Solid> Builder<'_, S> {
         for (k, child) in (0u8..).zip(self.solid.split(&mut worker.scratch, cube, part)?) {
             planes.set(k as u32, child.tag());
             if let Verdict::Partial(part) = child {
+                worker.parts.try_reserve(1).map_err(|_| Error::OutOfMemory)?;
                 worker.parts.push((k, part));
             }
         }
@@ -230,20 +236,17 @@ impl<S: Solid> Builder<'_, S> {
         let from = &worker.scratch;
         let done = worker.parts[first..]
             .par_iter()
-            .map_init(
-                || Worker::<S>::new(self.rule),
-                |worker, (c, part)| {
-                    let mark = worker.scratch.mark();
-                    let part = self.solid.hand_over(from, part, &mut worker.scratch)?;
-                    let mut subtree = subtrees.sibling();
-                    let tag = self.cell(e + 1, self.at(e, cube, *c), &part, worker, &mut subtree)?;
-                    worker.scratch.release(mark);
-                    if e == 1 {
-                        subtrees.job().advance(self.weight(e));
-                    }
-                    Ok((*c, tag, subtree))
-                },
-            )
+            .map_init(Worker::<S>::new, |worker, (c, part)| {
+                let mark = worker.scratch.mark();
+                let part = self.solid.hand_over(from, part, &mut worker.scratch)?;
+                let mut subtree = subtrees.sibling();
+                let tag = self.cell(e + 1, self.at(e, cube, *c), &part, worker, &mut subtree)?;
+                worker.scratch.release(mark);
+                if e == 1 {
+                    subtrees.job().advance(self.weight(e));
+                }
+                Ok((*c, tag, subtree))
+            })
             .collect::<Result<Vec<_>, Error>>()?;
         done.into_iter().map(|(c, tag, subtree)| writer.append(subtree).map(|()| (c, tag))).collect()
     }

@@ -9,9 +9,9 @@ use super::overlap::Overlap;
 use super::placed::{Placed, ranks};
 use super::surface::FillRule;
 use crate::error::Error;
+use crate::octree::block::zeros;
 use crate::octree::{Block, Rule};
 use alloc::boxed::Box;
-use alloc::vec;
 use alloc::vec::Vec;
 
 const SIZE: usize = 64;
@@ -31,16 +31,6 @@ pub(super) struct Scan {
     changes: Vec<i32>,
 }
 
-fn zeros<T: Clone + Default>() -> Box<[T; COLUMNS]> {
-    vec![T::default(); COLUMNS].try_into().unwrap_or_else(|_| unreachable!())
-}
-
-impl Default for Scan {
-    fn default() -> Scan {
-        Scan { cut: zeros(), low: zeros(), high: zeros(), floor: zeros(), changes: Vec::new() }
-    }
-}
-
 /// A block: its lowest cell, the triangles that may cut it, and the winding number of its lowest centre.
 #[derive(Clone, Copy)]
 pub(super) struct Task<'t> {
@@ -52,6 +42,10 @@ pub(super) struct Task<'t> {
 }
 
 impl Scan {
+    pub(super) fn new() -> Result<Scan, Error> {
+        Ok(Scan { cut: zeros()?, low: zeros()?, high: zeros()?, floor: zeros()?, changes: Vec::new() })
+    }
+
     /// Fills `block` by its rule.
     pub(super) fn fill(&mut self, task: Task<'_>, block: &mut Block) -> Result<(), Error> {
         let rule = block.rule();

@@ -53,7 +53,9 @@ impl TriangleMesh {
                 }
                 None => {
                     kept.try_reserve(1).map_err(|_| Error::OutOfMemory)?;
-                    kept.entry(home).or_default().push(vertex);
+                    let neighbours = kept.entry(home).or_default();
+                    neighbours.try_reserve(1).map_err(|_| Error::OutOfMemory)?;
+                    neighbours.push(vertex);
                 }
             }
         }

@@ -243,7 +243,11 @@ impl Solid for MeshSolid {
         let (at, _) = extent(cube.cell, self.placed.frame.depth());
         let triangles = &scratch.triangles[part.first..part.first + part.count];
         let task = Task { placed: &self.placed, at, triangles, winding: part.winding, fill: self.fill };
-        scratch.scan.get_or_insert_default().fill(task, block)?;
+        let scan = match &mut scratch.scan {
+            Some(scan) => scan,
+            none => none.insert(Box::new(Scan::new()?)),
+        };
+        scan.fill(task, block)?;
         Ok(true)
     }
 
