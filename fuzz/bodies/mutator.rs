@@ -152,7 +152,9 @@ fn change_tag(file: &mut File, random: &mut Random) {
         super::layout::BRICKS
     };
     let planes = if kind == PLANES { 2 } else { file.brick_size() / 8 };
-    let Some(section) = file.section(kind).filter(|section| section.bytes.len() >= 8 * planes) else { return };
+    let Some(section) = file.section(kind).filter(|section| section.bytes.len() >= 8 * planes) else {
+        return;
+    };
     let at = 8 * planes * random.below(section.bytes.len() / (8 * planes));
     // Near the first cells more often: of an odd depth the root has eight.
     let cell = if random.one_in(2) { random.below(8) } else { random.below(64) };
@@ -230,7 +232,8 @@ fn change(file: &mut File, random: &mut Random, blind: Blind<'_>) {
         2 => file.header[64] = 1 + random.below(20) as u8,
         3 => {
             let depth = file.header[64];
-            file.header[64] = if random.one_in(2) { depth.saturating_add(2) } else { depth.saturating_sub(2) };
+            file.header[64] =
+                if random.one_in(2) { depth.saturating_add(2) } else { depth.saturating_sub(2) };
         }
         4 => file.header[65 + random.below(2)] = random.below(4) as u8,
         5 => file.convert_bricks(3 - file.header[67].clamp(1, 2)),

@@ -51,7 +51,10 @@ pub fn points(frame: &Frame, questions: &[u8]) -> Vec<[f64; 3]> {
     };
     let mut points = vec![];
     for raw in questions.chunks_exact(9).take(MOST_POINTS) {
-        points.push([0, 1, 2].map(|k| coordinate(k, raw[3 * k], u16::from_le_bytes([raw[3 * k + 1], raw[3 * k + 2]]))));
+        points.push(
+            [0, 1, 2]
+                .map(|k| coordinate(k, raw[3 * k], u16::from_le_bytes([raw[3 * k + 1], raw[3 * k + 2]]))),
+        );
     }
     for value in 0..16u16 {
         points.push([0, 1, 2].map(|axis| coordinate(axis, 6, value.wrapping_mul(4000 + 777 * axis as u16))));

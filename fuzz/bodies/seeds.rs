@@ -2,9 +2,7 @@
 
 use super::layout::{File, Repairs, Section, put};
 use super::{CONTROL, Random, joined};
-use leafless::{
-    AxisBox, Ball, Cube, Error, Frame, Metadata, Octree, Rule, Solid, Tag, Verdict, build, file,
-};
+use leafless::{AxisBox, Ball, Cube, Error, Frame, Metadata, Octree, Rule, Solid, Tag, Verdict, build, file};
 
 /// A different tree for every seed, with coarse and fine cells of every tag.
 pub struct Noise(pub u64);
@@ -76,8 +74,7 @@ pub fn trees() -> Vec<Octree> {
 
 /// Their files, and some that a later version might write.
 pub fn files() -> Vec<Vec<u8>> {
-    let mut files: Vec<_> =
-        trees().iter().map(|tree| file::to_bytes(tree).expect("a good tree")).collect();
+    let mut files: Vec<_> = trees().iter().map(|tree| file::to_bytes(tree).expect("a good tree")).collect();
     let newer = |tree: usize, change: &dyn Fn(&mut File)| {
         let mut file = File::parse(&files[tree]).expect("a file");
         change(&mut file);

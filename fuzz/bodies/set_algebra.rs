@@ -3,8 +3,8 @@
 
 use super::{Aligned, CONTROL, halves, queries};
 use leafless::{
-    Control, Error, Octree, OctreeRef, Rule, Solid, Stored, Tag, build, compact, complement, difference, file,
-    intersection, intersection_of, resolve, union, union_of, xor, xor_of,
+    Control, Error, Octree, OctreeRef, Rule, Solid, Stored, Tag, build, compact, complement, difference,
+    file, intersection, intersection_of, resolve, union, union_of, xor, xor_of,
 };
 
 /// Combines the trees in the two halves of `data`.
