@@ -25,6 +25,7 @@
  *   and z.
  * - Buffers that are not known to be large enough are filled in two steps: with a NULL buffer the function tells the
  *   number of elements, then it fills. Capacities count elements.
+ * - Buffers and results of one call must not overlap.
  * - Functions of the host get their context first, return 0 to go on, and must not throw or longjmp through the
  *   library.
  *

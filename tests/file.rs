@@ -304,6 +304,8 @@ fn every_way_in_gives_the_tree_back() {
         let view = file::view(aligned.bytes()).unwrap();
         same(&compact(&view).unwrap().with_metadata(tree.metadata().clone()));
         file::verify(aligned.bytes()).unwrap();
+        // What lives as long as the program needs no copy.
+        same(&file::from_static(Box::leak(Box::new(Aligned::new(&bytes))).bytes()).unwrap());
 
         let probe = file::probe(&path).unwrap();
         assert_eq!(probe, file::probe_bytes(&bytes).unwrap());

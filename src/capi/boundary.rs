@@ -1,15 +1,15 @@
 //! What every function of the interface does first and last: check pointers, catch panics, keep the message.
 
-use super::status::leafless_status;
-use crate::error::Error;
+use super::status::keep;
+use super::status::leafless_status::{self, *};
+use crate::error::{Error, FormatError};
 use alloc::boxed::Box;
 use alloc::sync::Arc;
 use core::any::Any;
 use core::ffi::c_char;
-use core::fmt::{self, Display, Write};
+use core::fmt::{self, Display};
 use core::mem::size_of;
 use core::ptr::NonNull;
-use std::cell::RefCell;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 /// Why a call fails.
@@ -37,6 +37,36 @@ impl Display for Failure {
                 write!(f, "{name}: has a capacity of {capacity}, and {needed} is needed")
             }
             Failure::Library(error) => write!(f, "{error}"),
+        }
+    }
+}
+
+impl From<&Failure> for leafless_status {
+    fn from(failure: &Failure) -> leafless_status {
+        match failure {
+            Failure::Null { .. } => LEAFLESS_E_NULL,
+            Failure::Argument { .. } => LEAFLESS_E_ARGUMENT,
+            Failure::Utf8 { .. } => LEAFLESS_E_UTF8,
+            Failure::Buffer { .. } => LEAFLESS_E_BUFFER,
+            Failure::Library(error) => match error {
+                Error::Argument { .. } => LEAFLESS_E_ARGUMENT,
+                Error::FrameMismatch => LEAFLESS_E_FRAME,
+                Error::NotSampled => LEAFLESS_E_NOT_SAMPLED,
+                Error::Mesh(_) => LEAFLESS_E_MESH,
+                Error::MeshFile(_) => LEAFLESS_E_MESH_FILE,
+                Error::Format(FormatError::Version { .. } | FormatError::Required { .. }) => {
+                    LEAFLESS_E_VERSION
+                }
+                // Not the file, but where the host has put it.
+                Error::Format(FormatError::Alignment) => LEAFLESS_E_ARGUMENT,
+                Error::Format(_) => LEAFLESS_E_FORMAT,
+                Error::Damaged(_) => LEAFLESS_E_DAMAGED,
+                Error::Limit { .. } => LEAFLESS_E_LIMIT,
+                Error::OutOfMemory => LEAFLESS_E_NO_MEMORY,
+                Error::Cancelled => LEAFLESS_E_CANCELLED,
+                Error::Callback { .. } => LEAFLESS_E_CALLBACK,
+                Error::Io(_) => LEAFLESS_E_IO,
+            },
         }
     }
 }
@@ -78,50 +108,6 @@ fn panicked(payload: Box<dyn Any + Send>) -> leafless_status {
     let status = leafless_status::LEAFLESS_E_PANIC;
     keep(status, &format_args!("a defect of the library, please report it: {text}"));
     status
-}
-
-/// The last failure of a thread. Of fixed size, so that a failure for want of memory can be told.
-struct Last {
-    status: leafless_status,
-    length: usize,
-    text: [u8; 511],
-}
-
-std::thread_local! {
-    static LAST: RefCell<Last> =
-        const { RefCell::new(Last { status: leafless_status::LEAFLESS_OK, length: 0, text: [0; 511] }) };
-}
-
-/// The largest length up to `most` at which `text` can be cut between characters.
-pub(super) fn cut(text: &str, most: usize) -> usize {
-    (0..=most.min(text.len())).rev().find(|&length| text.is_char_boundary(length)).unwrap_or(0)
-}
-
-impl Write for Last {
-    fn write_str(&mut self, text: &str) -> fmt::Result {
-        let length = cut(text, self.text.len() - self.length);
-        self.text[self.length..self.length + length].copy_from_slice(&text.as_bytes()[..length]);
-        self.length += length;
-        if length < text.len() { Err(fmt::Error) } else { Ok(()) }
-    }
-}
-
-fn keep(status: leafless_status, text: &dyn Display) {
-    // Nothing below fails in this thread, so the cell is not borrowed twice.
-    LAST.with_borrow_mut(|last| {
-        (last.status, last.length) = (status, 0);
-        // What does not fit is cut off.
-        let _ = write!(last, "{text}");
-    });
-}
-
-pub(super) fn last_message<R>(read: impl FnOnce(&str) -> R) -> R {
-    // Texts are cut between characters.
-    LAST.with_borrow(|last| read(core::str::from_utf8(&last.text[..last.length]).unwrap_or_default()))
-}
-
-pub(super) fn last_status() -> leafless_status {
-    LAST.with_borrow(|last| last.status)
 }
 
 #[inline(always)]
@@ -361,4 +347,19 @@ pub(super) unsafe fn release<T>(handle: *mut T) {
         // SAFETY: `handle` came from `Arc::into_raw`.
         guard_free(|| drop(unsafe { Arc::from_raw(handle.cast_const()) }));
     }
+}
+
+/// Panics inside, to show what becomes of it: only in libraries that are built for tests.
+///
+/// - Buffers: none.
+/// - Result: LEAFLESS_E_PANIC.
+/// - Errors: none.
+/// - Ownership: nothing changes hands.
+/// - Threads: any.
+/// - Untrusted input: none.
+/// - Since: 0.1
+#[cfg(feature = "capi-test")]
+#[unsafe(no_mangle)]
+pub extern "C" fn leafless_test_panic() -> leafless_status {
+    guard(|| panic!("as the test wanted"))
 }

@@ -2,11 +2,11 @@
 
 use super::boundary::{Failure, buffer, guard, out, path, shared, slice};
 use super::frame::leafless_frame;
-use super::octree::{give, leafless_octree};
-use super::solid::leafless_tag;
+use super::octree::{give, leafless_octree, leafless_tag};
 use super::status::leafless_status;
 use crate::error::Error;
 use crate::file::{self, Probe, Section};
+use crate::octree::Octree;
 use alloc::vec::Vec;
 use core::ffi::{c_char, c_void};
 use std::io;
@@ -174,6 +174,40 @@ pub unsafe extern "C" fn leafless_bytes_verify(bytes: *const u8, length: u64) ->
     guard(|| unsafe { Ok(file::verify(slice(bytes, length, "bytes")?)?) })
 }
 
+/// Gives the octree that `open` finds at a path.
+///
+/// # Safety
+/// As [`path`] and [`out`].
+unsafe fn opened(
+    path: *const c_char,
+    path_length: usize,
+    octree: *mut *mut leafless_octree,
+    open: impl FnOnce(&str) -> Result<Octree, Error>,
+) -> leafless_status {
+    guard(|| unsafe {
+        let path = self::path(path, path_length)?;
+        let octree = out(octree, "octree")?;
+        octree.write(give(open(path)?))
+    })
+}
+
+/// Gives the octree that `open` finds in bytes, which stay as long as it says.
+///
+/// # Safety
+/// As [`slice`] and [`out`].
+unsafe fn found_in<'a>(
+    bytes: *const u8,
+    length: u64,
+    octree: *mut *mut leafless_octree,
+    open: impl FnOnce(&'a [u8]) -> Result<Octree, Error>,
+) -> leafless_status {
+    guard(|| unsafe {
+        let bytes = slice(bytes, length, "bytes")?;
+        let octree = out(octree, "octree")?;
+        octree.write(give(open(bytes)?))
+    })
+}
+
 /// Reads a file into memory and verifies all of it: the plain way, and the one for files that may not be trusted.
 /// Later changes of the file do not matter.
 ///
@@ -191,11 +225,8 @@ pub unsafe extern "C" fn leafless_octree_open(
     path_length: usize,
     octree: *mut *mut leafless_octree,
 ) -> leafless_status {
-    guard(|| unsafe {
-        let path = self::path(path, path_length)?;
-        let octree = out(octree, "octree")?;
-        octree.write(give(file::open(path)?))
-    })
+    // SAFETY: the caller's promise.
+    unsafe { opened(path, path_length, octree, |path| file::open(path)) }
 }
 
 /// Maps a file into memory and looks at its header, section table, bounds, level table and metadata only: some
@@ -220,11 +251,8 @@ pub unsafe extern "C" fn leafless_octree_map(
     path_length: usize,
     octree: *mut *mut leafless_octree,
 ) -> leafless_status {
-    guard(|| unsafe {
-        let path = self::path(path, path_length)?;
-        let octree = out(octree, "octree")?;
-        octree.write(give(file::map(path)?))
-    })
+    // SAFETY: the caller's promise, which includes that of the mapping.
+    unsafe { opened(path, path_length, octree, |path| file::map(path)) }
 }
 
 /// As leafless_octree_map, but verifies all of the file first, in one scan.
@@ -242,11 +270,8 @@ pub unsafe extern "C" fn leafless_octree_map_verified(
     path_length: usize,
     octree: *mut *mut leafless_octree,
 ) -> leafless_status {
-    guard(|| unsafe {
-        let path = self::path(path, path_length)?;
-        let octree = out(octree, "octree")?;
-        octree.write(give(file::map_verified(path)?))
-    })
+    // SAFETY: the caller's promise, which includes that of the mapping.
+    unsafe { opened(path, path_length, octree, |path| file::map_verified(path)) }
 }
 
 /// The octree in the bytes of a whole file, copied and verified as by leafless_octree_open.
@@ -264,11 +289,8 @@ pub unsafe extern "C" fn leafless_octree_from_bytes(
     length: u64,
     octree: *mut *mut leafless_octree,
 ) -> leafless_status {
-    guard(|| unsafe {
-        let bytes = slice(bytes, length, "bytes")?;
-        let octree = out(octree, "octree")?;
-        octree.write(give(file::from_bytes(bytes)?))
-    })
+    // SAFETY: the caller's promise.
+    unsafe { found_in(bytes, length, octree, file::from_bytes) }
 }
 
 /// The octree in the bytes of a whole file, used where they lie, and checked as little as by leafless_octree_map;
@@ -290,12 +312,8 @@ pub unsafe extern "C" fn leafless_octree_view_bytes(
     length: u64,
     octree: *mut *mut leafless_octree,
 ) -> leafless_status {
-    guard(|| unsafe {
-        // The host promises that the bytes outlive the octree and all that is made of it.
-        let bytes: &'static [u8] = slice(bytes, length, "bytes")?;
-        let octree = out(octree, "octree")?;
-        octree.write(give(file::from_static(bytes)?))
-    })
+    // SAFETY: the caller's promise, by which the bytes outlive the octree and all that is made of it.
+    unsafe { found_in::<'static>(bytes, length, octree, file::from_static) }
 }
 
 /// Saves an octree: at any moment, also after a crash or a power failure, there is the old file or the new one,

@@ -11,9 +11,9 @@
 //! | `control` | options, cancelling, progress |
 //! | `frame` | frames, intervals |
 //! | `mesh` | triangle meshes, STL |
+//! | `octree` | octrees: describing, statistics, metadata |
 //! | `solid` | solids: primitives, meshes, octrees, the host's own |
-//! | `octree` | octrees: making, reading off, statistics, metadata |
-//! | `set_algebra` | Booleans |
+//! | `op` | building, resolving, Booleans |
 //! | `query` | points, boxes, cursors |
 //! | `file` | files and their bytes |
 
@@ -27,19 +27,21 @@ mod file;
 mod frame;
 mod mesh;
 mod octree;
+mod op;
 mod query;
-mod set_algebra;
 mod solid;
 mod status;
 mod version;
 
+#[cfg(feature = "capi-test")]
+pub use boundary::leafless_test_panic;
 pub use control::*;
 pub use file::*;
 pub use frame::*;
 pub use mesh::*;
 pub use octree::*;
+pub use op::*;
 pub use query::*;
-pub use set_algebra::*;
 pub use solid::*;
 pub use status::*;
 pub use version::*;

@@ -1,12 +1,9 @@
-//! Octrees: building them, what they hold, and the facts that travel with them.
+//! Octrees: what they hold, and the facts that travel with them.
 
 use super::boundary::{Failure, buffer, guard, handle, out, release, share, shared, text};
-use super::control::{controlled, leafless_options};
 use super::frame::{frame, leafless_frame, leafless_interval};
-use super::solid::{leafless_solid, leafless_tag, settled_tag};
 use super::status::leafless_status;
-use crate::octree::{Octree, Rule, Tag};
-use crate::op::{build, compact, resolve};
+use crate::octree::{Octree, Tag};
 use alloc::sync::Arc;
 use alloc::vec::Vec;
 use core::ffi::c_char;
@@ -19,28 +16,39 @@ pub struct leafless_octree {
     pub(super) octree: Octree,
 }
 
-/// What becomes of finest cells that are not decided.
+/// What is known of a cell.
 #[derive(Clone, Copy)]
-#[repr(u32)]
-pub enum leafless_rule {
-    /// They stay PARTIAL: FULL is proven full, EMPTY proven empty.
-    LEAFLESS_RULE_CERTIFIED = 0,
-    /// Their centre decides.
-    LEAFLESS_RULE_SAMPLED = 1,
-    /// EMPTY: the result lies in the solid.
-    LEAFLESS_RULE_INNER = 2,
-    /// FULL: the result covers the solid.
-    LEAFLESS_RULE_OUTER = 3,
+#[repr(u8)]
+pub enum leafless_tag {
+    /// Proven outside of the solid.
+    LEAFLESS_TAG_EMPTY = 0,
+    /// Cut and split: the cell has a node.
+    LEAFLESS_TAG_BRANCH = 1,
+    /// Not decided.
+    LEAFLESS_TAG_PARTIAL = 2,
+    /// Proven to lie in the solid.
+    LEAFLESS_TAG_FULL = 3,
 }
-use leafless_rule::*;
+use leafless_tag::*;
 
-fn rule(rule: u32) -> Result<Rule, Failure> {
-    match rule {
-        _ if rule == LEAFLESS_RULE_CERTIFIED as u32 => Ok(Rule::Certified),
-        _ if rule == LEAFLESS_RULE_SAMPLED as u32 => Ok(Rule::Sampled),
-        _ if rule == LEAFLESS_RULE_INNER as u32 => Ok(Rule::Inner),
-        _ if rule == LEAFLESS_RULE_OUTER as u32 => Ok(Rule::Outer),
-        _ => Err(Failure::Argument { name: "rule", problem: "is no leafless_rule" }),
+impl From<Tag> for leafless_tag {
+    fn from(tag: Tag) -> leafless_tag {
+        match tag {
+            Tag::Empty => LEAFLESS_TAG_EMPTY,
+            Tag::Branch => LEAFLESS_TAG_BRANCH,
+            Tag::Partial => LEAFLESS_TAG_PARTIAL,
+            Tag::Full => LEAFLESS_TAG_FULL,
+        }
+    }
+}
+
+/// The tag with this number, if it is EMPTY, PARTIAL or FULL.
+pub(super) fn settled_tag(tag: i64, name: &'static str) -> Result<Tag, Failure> {
+    match tag {
+        _ if tag == LEAFLESS_TAG_EMPTY as i64 => Ok(Tag::Empty),
+        _ if tag == LEAFLESS_TAG_PARTIAL as i64 => Ok(Tag::Partial),
+        _ if tag == LEAFLESS_TAG_FULL as i64 => Ok(Tag::Full),
+        _ => Err(Failure::Argument { name, problem: "must be EMPTY, PARTIAL or FULL" }),
     }
 }
 
@@ -84,37 +92,11 @@ pub struct leafless_statistics {
     pub volume_model: leafless_interval,
 }
 
+/// Bytes that all metadata may take in a file.
+const MOST_METADATA: usize = 1 << 20;
+
 pub(super) fn give(octree: Octree) -> *mut leafless_octree {
     handle(leafless_octree { octree })
-}
-
-/// Builds the octree of a solid to the depth of a frame. The result is the same bit for bit for any number of
-/// threads.
-///
-/// - Buffers: `frame`, one struct; `options`, one struct or NULL; `octree`, one pointer. `rule` is a leafless_rule.
-/// - Result: `*octree`.
-/// - Errors: LEAFLESS_E_FRAME if the solid belongs to another frame; LEAFLESS_E_NOT_SAMPLED if
-///   LEAFLESS_RULE_SAMPLED is asked of a solid that cannot decide points; LEAFLESS_E_CALLBACK;
-///   LEAFLESS_E_DAMAGED; LEAFLESS_E_ARGUMENT; LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: give `*octree` back with leafless_octree_free.
-/// - Threads: any; uses as many as `options` says.
-/// - Untrusted input: any solid; set `max_bytes` where the depth or the solid is not your own choice.
-/// - Since: 0.1
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn leafless_octree_build(
-    solid: *const leafless_solid,
-    frame: *const leafless_frame,
-    rule: u32,
-    options: *const leafless_options,
-    octree: *mut *mut leafless_octree,
-) -> leafless_status {
-    guard(|| unsafe {
-        let solid = &shared(solid, "solid")?.solid;
-        let frame = self::frame(frame)?;
-        let rule = self::rule(rule)?;
-        let octree = out(octree, "octree")?;
-        octree.write(give(controlled(options, |control| build(solid, &frame, rule, control))?))
-    })
 }
 
 /// The octree whose whole universe has one tag.
@@ -140,55 +122,6 @@ pub unsafe extern "C" fn leafless_octree_uniform(
         let exterior = settled_tag(exterior.into(), "exterior")?;
         let octree = out(octree, "octree")?;
         octree.write(give(Octree::uniform(frame, tag, exterior)?))
-    })
-}
-
-/// The octree with its PARTIAL cells resolved: EMPTY under LEAFLESS_RULE_INNER, FULL under LEAFLESS_RULE_OUTER.
-///
-/// - Buffers: `options`, one struct or NULL; `resolved`, one pointer. `rule` is a leafless_rule.
-/// - Result: `*resolved`.
-/// - Errors: LEAFLESS_E_NOT_SAMPLED under LEAFLESS_RULE_SAMPLED if a cell is PARTIAL, because a stored octree knows
-///   no more about it; LEAFLESS_E_DAMAGED; LEAFLESS_E_ARGUMENT; LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED;
-///   LEAFLESS_E_NO_MEMORY.
-/// - Ownership: `octree` stays as it is; give `*resolved` back with leafless_octree_free.
-/// - Threads: any; uses as many as `options` says.
-/// - Untrusted input: any octree.
-/// - Since: 0.1
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn leafless_octree_resolve(
-    octree: *const leafless_octree,
-    rule: u32,
-    options: *const leafless_options,
-    resolved: *mut *mut leafless_octree,
-) -> leafless_status {
-    guard(|| unsafe {
-        let octree = &shared(octree, "octree")?.octree;
-        let rule = self::rule(rule)?;
-        let resolved = out(resolved, "resolved")?;
-        resolved.write(give(controlled(options, |control| resolve(octree.view(), rule, control))?))
-    })
-}
-
-/// The same octree with its bricks encoded as a file would have them, through a dictionary where that is shorter.
-/// Everything works on it as on any other.
-///
-/// - Buffers: `compacted`, one pointer.
-/// - Result: `*compacted`.
-/// - Errors: LEAFLESS_E_DAMAGED if a brick cannot be read; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: `octree` stays as it is; give `*compacted` back with leafless_octree_free.
-/// - Threads: any.
-/// - Untrusted input: any octree.
-/// - Since: 0.1
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn leafless_octree_compact(
-    octree: *const leafless_octree,
-    compacted: *mut *mut leafless_octree,
-) -> leafless_status {
-    guard(|| unsafe {
-        let octree = &shared(octree, "octree")?.octree;
-        let compacted = out(compacted, "compacted")?;
-        let compact = compact(octree.view())?.with_metadata(octree.metadata().clone());
-        compacted.write(give(compact))
     })
 }
 
@@ -365,7 +298,7 @@ pub unsafe extern "C" fn leafless_octree_equal(
 ///
 /// - Buffers: `key` and `value`, `key_length` and `value_length` bytes of UTF-8; `named`, one pointer.
 /// - Result: `*named`.
-/// - Errors: LEAFLESS_E_UTF8.
+/// - Errors: LEAFLESS_E_UTF8; LEAFLESS_E_ARGUMENT if key and value are longer than 1 MiB.
 /// - Ownership: the texts are copied; `octree` stays as it is; give `*named` back with leafless_octree_free.
 /// - Threads: any.
 /// - Untrusted input: any texts; all of an octree's metadata may take 1 MiB in a file.
@@ -383,6 +316,12 @@ pub unsafe extern "C" fn leafless_octree_with_metadata(
         let octree = &shared(octree, "octree")?.octree;
         let (key, value) = (text(key, key_length, "key")?, text(value, value_length, "value")?);
         let named = out(named, "named")?;
+        if key.len() + value.len() > MOST_METADATA {
+            return Err(Failure::Argument {
+                name: "value",
+                problem: "must not be longer than 1 MiB with its key",
+            });
+        }
         let mut metadata = octree.metadata().clone();
         metadata.insert(key, value);
         named.write(give(octree.with_metadata(metadata)))

@@ -1,8 +1,7 @@
 //! Queries: points, boxes, and cursors that remember where they are.
 
 use super::boundary::{Failure, array, exclusive, guard, guard_free, out, share, shared, slice};
-use super::octree::leafless_octree;
-use super::solid::leafless_tag;
+use super::octree::{leafless_octree, leafless_tag};
 use super::status::leafless_status;
 use crate::octree::Cursor;
 use crate::query::{Membership, PointCursor, Region};

@@ -3,7 +3,7 @@
 use super::boundary::{Failure, Sized32, array, guard, handle, out, release, share, shared, sized};
 use super::frame::{frame, leafless_frame};
 use super::mesh::{fill_rule, leafless_mesh};
-use super::octree::leafless_octree;
+use super::octree::{leafless_octree, settled_tag};
 use super::status::leafless_status;
 use crate::error::Error;
 use crate::octree::Tag;
@@ -17,42 +17,6 @@ use core::ffi::c_void;
 /// the reference that it gives back for itself.
 pub struct leafless_solid {
     pub(super) solid: AnySolid,
-}
-
-/// What is known of a cell.
-#[derive(Clone, Copy)]
-#[repr(u8)]
-pub enum leafless_tag {
-    /// Proven outside of the solid.
-    LEAFLESS_TAG_EMPTY = 0,
-    /// Cut and split: the cell has a node.
-    LEAFLESS_TAG_BRANCH = 1,
-    /// Not decided.
-    LEAFLESS_TAG_PARTIAL = 2,
-    /// Proven to lie in the solid.
-    LEAFLESS_TAG_FULL = 3,
-}
-use leafless_tag::*;
-
-impl From<Tag> for leafless_tag {
-    fn from(tag: Tag) -> leafless_tag {
-        match tag {
-            Tag::Empty => LEAFLESS_TAG_EMPTY,
-            Tag::Branch => LEAFLESS_TAG_BRANCH,
-            Tag::Partial => LEAFLESS_TAG_PARTIAL,
-            Tag::Full => LEAFLESS_TAG_FULL,
-        }
-    }
-}
-
-/// The tag with this number, if it is EMPTY, PARTIAL or FULL.
-pub(super) fn settled_tag(tag: i64, name: &'static str) -> Result<Tag, Failure> {
-    match tag {
-        _ if tag == LEAFLESS_TAG_EMPTY as i64 => Ok(Tag::Empty),
-        _ if tag == LEAFLESS_TAG_PARTIAL as i64 => Ok(Tag::Partial),
-        _ if tag == LEAFLESS_TAG_FULL as i64 => Ok(Tag::Full),
-        _ => Err(Failure::Argument { name, problem: "must be EMPTY, PARTIAL or FULL" }),
-    }
 }
 
 /// What a host promises of its shape outside of the universe that it is asked about.

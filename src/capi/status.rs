@@ -1,8 +1,8 @@
 //! Status codes, and the message of the last failure in a thread.
 
-use super::boundary::{self, Failure};
-use crate::error::{Error, FormatError};
 use core::ffi::{CStr, c_char};
+use core::fmt::{self, Display, Write};
+use std::cell::RefCell;
 
 /// What a function returns. Codes are never renumbered and never used for something else; new ones may be added
 /// at the end.
@@ -69,35 +69,39 @@ const ALL: [(leafless_status, &CStr); 18] = [
     (LEAFLESS_E_PANIC, c"LEAFLESS_E_PANIC"),
 ];
 
-impl From<&Failure> for leafless_status {
-    fn from(failure: &Failure) -> leafless_status {
-        match failure {
-            Failure::Null { .. } => LEAFLESS_E_NULL,
-            Failure::Argument { .. } => LEAFLESS_E_ARGUMENT,
-            Failure::Utf8 { .. } => LEAFLESS_E_UTF8,
-            Failure::Buffer { .. } => LEAFLESS_E_BUFFER,
-            Failure::Library(error) => match error {
-                Error::Argument { .. } => LEAFLESS_E_ARGUMENT,
-                Error::FrameMismatch => LEAFLESS_E_FRAME,
-                Error::NotSampled => LEAFLESS_E_NOT_SAMPLED,
-                Error::Mesh(_) => LEAFLESS_E_MESH,
-                Error::MeshFile(_) => LEAFLESS_E_MESH_FILE,
-                Error::Format(FormatError::Version { .. } | FormatError::Required { .. }) => {
-                    LEAFLESS_E_VERSION
-                }
-                // Not the file, but where the host has put it.
-                Error::Format(FormatError::Alignment) => LEAFLESS_E_ARGUMENT,
-                Error::Format(_) => LEAFLESS_E_FORMAT,
-                Error::Damaged(_) => LEAFLESS_E_DAMAGED,
-                Error::Limit { .. } => LEAFLESS_E_LIMIT,
-                Error::OutOfMemory => LEAFLESS_E_NO_MEMORY,
-                Error::Cancelled => LEAFLESS_E_CANCELLED,
-                Error::Callback { .. } => LEAFLESS_E_CALLBACK,
-                Error::Io(error) if error.kind() == std::io::ErrorKind::OutOfMemory => LEAFLESS_E_NO_MEMORY,
-                Error::Io(_) => LEAFLESS_E_IO,
-            },
-        }
+/// The last failure of a thread. Of fixed size, so that a failure for want of memory can be told.
+struct Last {
+    status: leafless_status,
+    length: usize,
+    text: [u8; 511],
+}
+
+std::thread_local! {
+    static LAST: RefCell<Last> =
+        const { RefCell::new(Last { status: leafless_status::LEAFLESS_OK, length: 0, text: [0; 511] }) };
+}
+
+/// The largest length up to `most` at which `text` can be cut between characters.
+fn cut(text: &str, most: usize) -> usize {
+    (0..=most.min(text.len())).rev().find(|&length| text.is_char_boundary(length)).unwrap_or(0)
+}
+
+impl Write for Last {
+    fn write_str(&mut self, text: &str) -> fmt::Result {
+        let length = cut(text, self.text.len() - self.length);
+        self.text[self.length..self.length + length].copy_from_slice(&text.as_bytes()[..length]);
+        self.length += length;
+        if length < text.len() { Err(fmt::Error) } else { Ok(()) }
     }
+}
+
+pub(super) fn keep(status: leafless_status, text: &dyn Display) {
+    // Nothing below fails in this thread, so the cell is not borrowed twice.
+    LAST.with_borrow_mut(|last| {
+        (last.status, last.length) = (status, 0);
+        // What does not fit is cut off.
+        let _ = write!(last, "{text}");
+    });
 }
 
 /// The name of a status, such as "LEAFLESS_E_NULL".
@@ -128,9 +132,11 @@ pub extern "C" fn leafless_status_name(status: i32) -> *const c_char {
 /// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_last_error(message: *mut c_char, capacity: usize) -> usize {
-    boundary::last_message(|text| {
+    LAST.with_borrow(|last| {
+        // Texts are cut between characters.
+        let text = core::str::from_utf8(&last.text[..last.length]).unwrap_or_default();
         if !message.is_null() && capacity > 0 {
-            let length = boundary::cut(text, capacity - 1);
+            let length = cut(text, capacity - 1);
             // SAFETY: the caller has `capacity` bytes there; the message is this thread's own.
             unsafe {
                 core::ptr::copy_nonoverlapping(text.as_ptr(), message.cast(), length);
@@ -152,20 +158,5 @@ pub unsafe extern "C" fn leafless_last_error(message: *mut c_char, capacity: usi
 /// - Since: 0.1
 #[unsafe(no_mangle)]
 pub extern "C" fn leafless_last_status() -> leafless_status {
-    boundary::last_status()
-}
-
-/// Panics inside, to show what becomes of it: only in libraries that are built for tests.
-///
-/// - Buffers: none.
-/// - Result: LEAFLESS_E_PANIC.
-/// - Errors: none.
-/// - Ownership: nothing changes hands.
-/// - Threads: any.
-/// - Untrusted input: none.
-/// - Since: 0.1
-#[cfg(feature = "capi-test")]
-#[unsafe(no_mangle)]
-pub extern "C" fn leafless_test_panic() -> leafless_status {
-    boundary::guard(|| panic!("as the test wanted"))
+    LAST.with_borrow(|last| last.status)
 }

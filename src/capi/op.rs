@@ -1,14 +1,119 @@
-//! The set algebra of octrees.
+//! From solids to octrees, and from octrees to others: building, resolving, set algebra.
 
 use super::boundary::{Failure, guard, out, shared, slice};
 use super::control::{controlled, leafless_options};
+use super::frame::{frame, leafless_frame};
 use super::octree::{give, leafless_octree};
+use super::solid::leafless_solid;
 use super::status::leafless_status;
 use crate::control::Control;
 use crate::error::Error;
-use crate::octree::{Octree, OctreeRef};
-use crate::op;
+use crate::octree::{Octree, OctreeRef, Rule};
+use crate::op::{self, build, compact, resolve};
 use alloc::vec::Vec;
+
+/// What becomes of finest cells that are not decided.
+#[derive(Clone, Copy)]
+#[repr(u32)]
+pub enum leafless_rule {
+    /// They stay PARTIAL: FULL is proven full, EMPTY proven empty.
+    LEAFLESS_RULE_CERTIFIED = 0,
+    /// Their centre decides.
+    LEAFLESS_RULE_SAMPLED = 1,
+    /// EMPTY: the result lies in the solid.
+    LEAFLESS_RULE_INNER = 2,
+    /// FULL: the result covers the solid.
+    LEAFLESS_RULE_OUTER = 3,
+}
+use leafless_rule::*;
+
+fn rule(rule: u32) -> Result<Rule, Failure> {
+    match rule {
+        _ if rule == LEAFLESS_RULE_CERTIFIED as u32 => Ok(Rule::Certified),
+        _ if rule == LEAFLESS_RULE_SAMPLED as u32 => Ok(Rule::Sampled),
+        _ if rule == LEAFLESS_RULE_INNER as u32 => Ok(Rule::Inner),
+        _ if rule == LEAFLESS_RULE_OUTER as u32 => Ok(Rule::Outer),
+        _ => Err(Failure::Argument { name: "rule", problem: "is no leafless_rule" }),
+    }
+}
+
+/// Builds the octree of a solid to the depth of a frame. The result is the same bit for bit for any number of
+/// threads.
+///
+/// - Buffers: `frame`, one struct; `options`, one struct or NULL; `octree`, one pointer. `rule` is a leafless_rule.
+/// - Result: `*octree`.
+/// - Errors: LEAFLESS_E_FRAME if the solid belongs to another frame; LEAFLESS_E_NOT_SAMPLED if
+///   LEAFLESS_RULE_SAMPLED is asked of a solid that cannot decide points; LEAFLESS_E_CALLBACK;
+///   LEAFLESS_E_DAMAGED; LEAFLESS_E_ARGUMENT; LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: give `*octree` back with leafless_octree_free.
+/// - Threads: any; uses as many as `options` says.
+/// - Untrusted input: any solid; set `max_bytes` where the depth or the solid is not your own choice.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_octree_build(
+    solid: *const leafless_solid,
+    frame: *const leafless_frame,
+    rule: u32,
+    options: *const leafless_options,
+    octree: *mut *mut leafless_octree,
+) -> leafless_status {
+    guard(|| unsafe {
+        let solid = &shared(solid, "solid")?.solid;
+        let frame = self::frame(frame)?;
+        let rule = self::rule(rule)?;
+        let octree = out(octree, "octree")?;
+        octree.write(give(controlled(options, |control| build(solid, &frame, rule, control))?))
+    })
+}
+
+/// The octree with its PARTIAL cells resolved: EMPTY under LEAFLESS_RULE_INNER, FULL under LEAFLESS_RULE_OUTER.
+///
+/// - Buffers: `options`, one struct or NULL; `resolved`, one pointer. `rule` is a leafless_rule.
+/// - Result: `*resolved`.
+/// - Errors: LEAFLESS_E_NOT_SAMPLED under LEAFLESS_RULE_SAMPLED if a cell is PARTIAL, because a stored octree knows
+///   no more about it; LEAFLESS_E_DAMAGED; LEAFLESS_E_ARGUMENT; LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED;
+///   LEAFLESS_E_NO_MEMORY.
+/// - Ownership: `octree` stays as it is; give `*resolved` back with leafless_octree_free.
+/// - Threads: any; uses as many as `options` says.
+/// - Untrusted input: any octree.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_octree_resolve(
+    octree: *const leafless_octree,
+    rule: u32,
+    options: *const leafless_options,
+    resolved: *mut *mut leafless_octree,
+) -> leafless_status {
+    guard(|| unsafe {
+        let octree = &shared(octree, "octree")?.octree;
+        let rule = self::rule(rule)?;
+        let resolved = out(resolved, "resolved")?;
+        resolved.write(give(controlled(options, |control| resolve(octree.view(), rule, control))?))
+    })
+}
+
+/// The same octree with its bricks encoded as a file would have them, through a dictionary where that is shorter.
+/// Everything works on it as on any other.
+///
+/// - Buffers: `compacted`, one pointer.
+/// - Result: `*compacted`.
+/// - Errors: LEAFLESS_E_DAMAGED if a brick cannot be read; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: `octree` stays as it is; give `*compacted` back with leafless_octree_free.
+/// - Threads: any.
+/// - Untrusted input: any octree.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_octree_compact(
+    octree: *const leafless_octree,
+    compacted: *mut *mut leafless_octree,
+) -> leafless_status {
+    guard(|| unsafe {
+        let octree = &shared(octree, "octree")?.octree;
+        let compacted = out(compacted, "compacted")?;
+        let compact = compact(octree.view())?.with_metadata(octree.metadata().clone());
+        compacted.write(give(compact))
+    })
+}
 
 type Binary = fn(&OctreeRef<'_>, &OctreeRef<'_>, &Control<'_>) -> Result<Octree, Error>;
 type Nary = fn(&[OctreeRef<'_>], &Control<'_>) -> Result<Octree, Error>;
