@@ -234,8 +234,7 @@ fn coded() -> Model {
 
 /// Depth 6: decided in the elements, so that there is no brick.
 fn without_bricks(tags: &'static [Tag]) -> Model {
-    let shape = noise(4, 11, tags);
-    Model::plain(6, move |cell| shape(cell))
+    Model::plain(6, noise(4, 11, tags))
 }
 
 // ---- valid vectors --------------------------------------------------------------------------------------
