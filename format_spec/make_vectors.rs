@@ -1282,6 +1282,16 @@ fn links(list: &mut List) {
     let (rel, base) = (offset(&coded, 2), offset(&coded, 3));
     let near = with(&coded, rel + 2, number(&coded, rel + 2, 2) + 1, 2);
     list.add("element-link", "rel", "the children of element 1 are one further", link(1), near);
+    let both = changed(&coded, |bytes| {
+        let sum = number(bytes, rel + 2, 2) + 1;
+        put(bytes, rel + 2, sum, 2);
+        // The last BRANCH cell of the last element becomes EMPTY.
+        let (lower, upper) = (number(bytes, planes + 128, 8), number(bytes, planes + 136, 8));
+        let last = 1 << (lower & !upper).ilog2();
+        put(bytes, planes + 128, lower & !last, 8);
+    });
+    let about = "the children of element 1 are one further, and there is a brick too many, which comes later";
+    list.add("element-link", "first", about, link(1), both);
     let back = with(&coded, base, 0, 8);
     list.add("element-link", "base", "the children of element 0 begin with itself", link(0), back);
     let split = changed(&coded, |bytes| {
@@ -1390,8 +1400,11 @@ fn dictionaries(list: &mut List) {
     let tie = (1..count).find(|&i| uses(i - 1) == uses(i)).expect("entries that are used equally often");
     let about = "of entries that are used equally often the larger comes first";
     list.add("dictionary-order", "value", about, entry_order(tie), swapped(tie - 1, tie));
-    // In the place of an entry of other frequency, where its value does not disturb the order.
     let value = |i: u64| number(&coded, entries + 8 * i as usize, 8);
+    let same = with(&coded, entries + 8 * tie as usize, value(tie - 1), 8);
+    let about = "an entry that is used as often as the one before it is the same";
+    list.add("dictionary-order", "same", about, entry_order(tie), same);
+    // In the place of an entry of other frequency, where its value does not disturb the order.
     let fits = |&(i, j): &(u64, u64)| {
         uses(i) != uses(j)
             && (uses(j - 1) != uses(j) || value(j - 1) < value(i))
