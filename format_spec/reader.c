@@ -1,0 +1,1223 @@
+/*
+ * A reader of files of the Leafless format, version 0.0, in C99 and nothing but its library.
+ *
+ * It is written from specification.md alone, whose sections the comments name (§), and is meant to be read beside it:
+ * each rule of §10 stands here once, under its name, in the order in which the specification lists it. It favours
+ * being evident over being fast; yet every operation has the complexity that the specification promises.
+ *
+ * As a program:
+ *
+ *     cc -std=c99 -O2 -o reader reader.c
+ *     reader [--probe | --plain | --metadata] FILE...    prints what the files say, in the form of vectors/valid/NAME.txt
+ *     reader [--plain | --metadata] --points FILE        reads lines `x y z`, prints inside, outside or undecided
+ *     reader [--plain | --metadata] --volume FILE...     prints the volume in cubic model units, rounded outwards
+ *
+ * The option says how much is checked (§10): §10.1; also §10.2 without the metadata; also the metadata; without any
+ * option all. The exit code is 0, or 1 if a file is refused (`refused: RULE`), or 2 for wrong usage and failing input.
+ *
+ * As a library: compile with LEAFLESS_READER_NO_MAIN, or include this file after defining it. The bytes of a file must
+ * stay as they are while its reader is used. Nothing is kept anywhere else, so nothing needs to be released.
+ *
+ * No byte order, alignment or layout of structures is assumed, and no floating-point arithmetic is done: doubles are
+ * taken apart and put together as 64 bits. The platform's `double` must be IEEE 754 binary64, in the byte order of its
+ * 64-bit integers.
+ */
+
+#include <float.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#if FLT_RADIX != 2 || DBL_MANT_DIG != 53 || DBL_MAX_EXP != 1024
+#error "double is not IEEE 754 binary64"
+#endif
+
+/* ---- Interface ------------------------------------------------------------------------------------------------- */
+
+enum { LFL_MAX_DEPTH = 20, LFL_KINDS = 10 };
+
+/* §2.2. The last is no tag: it says that the bytes on the way to a cell are damaged (§6). */
+enum lfl_tag { LFL_EMPTY = 0, LFL_BRANCH = 1, LFL_PARTIAL = 2, LFL_FULL = 3, LFL_DAMAGED = 4 };
+
+/* §7.1 */
+enum lfl_answer { LFL_OUTSIDE, LFL_INSIDE, LFL_UNDECIDED };
+
+/* §4: an entry of the section table. */
+struct lfl_section {
+    uint32_t kind, element_size, crc, flags;
+    uint64_t offset, length, count;
+};
+
+/* §5.3: an entry of the level table. */
+struct lfl_level {
+    uint64_t nodes, full, partial;
+};
+
+/* §5.4: a fact. Neither text has a terminator; both may contain any byte until the metadata have been checked. */
+struct lfl_fact {
+    const unsigned char *key, *value;
+    size_t key_length, value_length;
+};
+
+struct lfl_reader {
+    const unsigned char *bytes;
+    size_t length;
+
+    /* §3 */
+    unsigned major, minor;
+    uint64_t file_length;
+    uint64_t origin[3], edge; /* the bits of the f64 */
+    unsigned depth, root, exterior, brick_planes, encoding, shift;
+    uint64_t elements, bricks, entries;
+    uint32_t section_count;
+
+    /* §4: the sections of known kinds, by kind; of those that are absent the count is 0. */
+    struct lfl_section section[LFL_KINDS];
+
+    /* §2.3: L. §5.3: start[0] to start[L]. */
+    unsigned levels;
+    uint64_t start[LFL_MAX_DEPTH / 2 + 1];
+};
+
+/* These return 1, or 0 after setting *error to the name of the rule that refuses the file. After a refusal by
+   lfl_probe or lfl_open the reader must not be used. */
+int lfl_probe(const void *bytes, size_t length, struct lfl_reader *reader, const char **error); /* §10.1 */
+int lfl_open(const void *bytes, size_t length, struct lfl_reader *reader, const char **error);  /* and §10.2 */
+int lfl_check_metadata(const struct lfl_reader *reader, const char **error); /* `metadata-text` of §10.2 */
+int lfl_verify(const struct lfl_reader *reader, const char **error);         /* §10.3, or lfl_out_of_memory */
+
+extern const char lfl_out_of_memory[];
+
+/* All of the following need a reader from lfl_open; none of them needs more. */
+
+/* Entry `index`, less than reader->section_count, of the section table (§4). After lfl_probe, too. */
+struct lfl_section lfl_section(const struct lfl_reader *reader, uint32_t index);
+
+/* Entry `level`, at most reader->depth, of the level table (§5.3). */
+struct lfl_level lfl_level(const struct lfl_reader *reader, unsigned level);
+
+/* The fact at *position, which begins as 0 and is moved on (§5.4): 1; at the end 0; -1 if the lengths are damaged. */
+int lfl_metadata(const struct lfl_reader *reader, uint64_t *position, struct lfl_fact *fact);
+
+/* The tag of a finest cell (§6); each coordinate must be less than 2^depth. Never BRANCH. */
+enum lfl_tag lfl_cell_tag(const struct lfl_reader *reader, uint32_t x, uint32_t y, uint32_t z);
+
+/* The finest cell in which a coordinate lies on an axis, 0 to 2 (§7.1): 1, or 0 if it lies in none. Exact. */
+int lfl_cell(const struct lfl_reader *reader, unsigned axis, double coordinate, uint32_t *cell);
+
+/* Does the solid contain the point (§7.1)? Exact for each f64. */
+enum lfl_answer lfl_contains(const struct lfl_reader *reader, double x, double y, double z);
+
+/* V and W of §7.2 in finest cells. On a file that was not verified they saturate. */
+void lfl_volume_cells(const struct lfl_reader *reader, uint64_t *lower, uint64_t *upper);
+
+/* The same in cubic model units, the first rounded down, the second up. */
+void lfl_volume(const struct lfl_reader *reader, double *lower, double *upper);
+
+/* ---- §1 Words and conventions ----------------------------------------------------------------------------------- */
+
+const char lfl_out_of_memory[] = "out of memory";
+
+/* Each function that checks returns NULL or the name of the first rule that refuses the file. */
+#define REFUSE_IF(condition, rule) \
+    do {                           \
+        if (condition)             \
+            return (rule);         \
+    } while (0)
+
+static uint64_t little_endian(const unsigned char *p, unsigned bytes)
+{
+    uint64_t value = 0;
+    while (bytes-- > 0)
+        value = value << 8 | p[bytes];
+    return value;
+}
+
+static unsigned u16(const unsigned char *p) { return (unsigned)little_endian(p, 2); }
+static uint32_t u32(const unsigned char *p) { return (uint32_t)little_endian(p, 4); }
+static uint64_t u64(const unsigned char *p) { return little_endian(p, 8); }
+
+static int all_zero(const unsigned char *p, size_t length)
+{
+    size_t i;
+    for (i = 0; i < length; i++) {
+        if (p[i] != 0)
+            return 0;
+    }
+    return 1;
+}
+
+static unsigned popcount(uint64_t w)
+{
+    unsigned count = 0;
+    for (; w != 0; w &= w - 1)
+        count++;
+    return count;
+}
+
+static uint64_t quotient_up(uint64_t a, uint64_t b) { return a / b + (a % b != 0); }
+
+static uint32_t crc32(const unsigned char *p, size_t length)
+{
+    uint32_t table[256], crc = 0xFFFFFFFF;
+    unsigned i, bit;
+    for (i = 0; i < 256; i++) {
+        table[i] = i;
+        for (bit = 0; bit < 8; bit++)
+            table[i] = table[i] >> 1 ^ (table[i] & 1 ? 0xEDB88320 : 0);
+    }
+    for (; length > 0; length--, p++)
+        crc = crc >> 8 ^ table[(crc ^ *p) & 0xFF];
+    return crc ^ 0xFFFFFFFF;
+}
+
+/* ---- §2 What a file says ---------------------------------------------------------------------------------------- */
+
+/* §2.2, §2.3: the tags of 64 cells. */
+struct words {
+    uint64_t lower, upper;
+};
+
+static uint64_t branch_cells(struct words w) { return w.lower & ~w.upper; }
+static uint64_t partial_cells(struct words w) { return ~w.lower & w.upper; }
+static uint64_t full_cells(struct words w) { return w.lower & w.upper; }
+
+static enum lfl_tag tag_of(struct words w, unsigned c)
+{
+    return (enum lfl_tag)((w.lower >> c & 1) + 2 * (w.upper >> c & 1));
+}
+
+/* Whether all of the cells in `mask` have the same tag, which is not BRANCH (§8). */
+static int is_uniform(struct words w, uint64_t mask)
+{
+    uint64_t lower = w.lower & mask, upper = w.upper & mask;
+    return (lower == 0 && upper == 0) || (lower == 0 && upper == mask) || (lower == mask && upper == mask);
+}
+
+static unsigned morton(uint32_t x, uint32_t y, uint32_t z)
+{
+    return (unsigned)((x & 1) | (y & 1) << 1 | (z & 1) << 2 | (x & 2) << 2 | (y & 2) << 3 | (z & 2) << 4);
+}
+
+/* p of §2.3: 1 for odd depth, where the universe is octant 0 of the root element. */
+static unsigned parity(const struct lfl_reader *r) { return r->depth % 2; }
+
+/* The cells that exist in an element of an element level: 0 to 7 in the root of an odd depth, else all. */
+static uint64_t existing_cells(const struct lfl_reader *r, unsigned element_level)
+{
+    return element_level == 0 && parity(r) == 1 ? 0xFF : UINT64_MAX;
+}
+
+/* ---- Doubles as integers ---------------------------------------------------------------------------------------- */
+
+/* A finite f64 is (-1)^negative · mantissa · 2^exponent, with -1074 ≤ exponent ≤ 971. */
+struct dyadic {
+    int negative, finite;
+    uint64_t mantissa;
+    int exponent;
+};
+
+static struct dyadic take_apart(uint64_t bits)
+{
+    struct dyadic d;
+    int biased = (int)(bits >> 52 & 0x7FF);
+    d.negative = bits >> 63 != 0;
+    d.finite = biased != 0x7FF;
+    d.mantissa = bits & ((UINT64_C(1) << 52) - 1);
+    if (biased != 0)
+        d.mantissa |= UINT64_C(1) << 52;
+    d.exponent = (biased != 0 ? biased : 1) - 1075;
+    return d;
+}
+
+/* Natural numbers of up to 2112 bits. As multiples of 2^-1074, all f64 and a few times the greatest are such numbers,
+   since 2^1024 / 2^-1074 = 2^2098. */
+enum { LIMBS = 66, UNIT_EXPONENT = -1074 };
+
+struct natural {
+    uint32_t limb[LIMBS]; /* the least significant first */
+};
+
+/* sum += value · 2^shift, which must not exceed the range. */
+static void natural_add(struct natural *sum, uint64_t value, unsigned shift)
+{
+    uint64_t carry = (value & 0xFFFFFFFF) << shift % 32, high = (value >> 32) << shift % 32;
+    size_t i;
+    for (i = shift / 32; i < LIMBS && (carry != 0 || high != 0); i++) {
+        carry += sum->limb[i]; /* less than 2^63 + 2^32 */
+        sum->limb[i] = (uint32_t)(carry & 0xFFFFFFFF);
+        carry = (carry >> 32) + high;
+        high = 0;
+    }
+}
+
+static struct natural natural_product(const struct natural *a, uint64_t b)
+{
+    struct natural product = {{0}};
+    unsigned i;
+    for (i = 0; i < LIMBS; i++) {
+        natural_add(&product, a->limb[i] * (b & 0xFFFFFFFF), 32 * i);
+        natural_add(&product, a->limb[i] * (b >> 32), 32 * (i + 1));
+    }
+    return product;
+}
+
+static int natural_compare(const struct natural *a, const struct natural *b)
+{
+    size_t i;
+    for (i = LIMBS; i-- > 0;) {
+        if (a->limb[i] != b->limb[i])
+            return a->limb[i] < b->limb[i] ? -1 : 1;
+    }
+    return 0;
+}
+
+static unsigned natural_bit(const struct natural *a, int bit) { return a->limb[bit / 32] >> bit % 32 & 1; }
+
+/* a · 2^exponent as a double, rounded down or up. Unless a is 0, this must be far from the least and greatest f64. */
+static double natural_round(const struct natural *a, int exponent, int up)
+{
+    uint64_t mantissa = 0, bits;
+    int top = 32 * LIMBS - 1, bit, rest = 0;
+    double value;
+    while (top >= 0 && !natural_bit(a, top))
+        top--;
+    if (top < 0)
+        return 0.0;
+    for (bit = top; bit > top - 53; bit--)
+        mantissa = mantissa << 1 | (bit >= 0 ? natural_bit(a, bit) : 0);
+    for (; bit >= 0 && !rest; bit--)
+        rest = natural_bit(a, bit) != 0;
+    exponent += top - 52;
+    if (up && rest && ++mantissa >> 53 != 0) {
+        mantissa >>= 1;
+        exponent++;
+    }
+    bits = (uint64_t)(exponent + 1075) << 52 | (mantissa & ((UINT64_C(1) << 52) - 1));
+    memcpy(&value, &bits, sizeof value);
+    return value;
+}
+
+/* ---- §5 Sections ------------------------------------------------------------------------------------------------ */
+
+enum {
+    KIND_PLANES = 1,
+    KIND_REL,
+    KIND_BASE,
+    KIND_BRICKS,
+    KIND_BRICK_INDICES,
+    KIND_DICTIONARY_ENTRIES,
+    KIND_DICTIONARY_SEGMENTS,
+    KIND_LEVEL_TABLE,
+    KIND_METADATA
+};
+
+enum { RAW = 0, DICTIONARY = 1, ONE_SEGMENT = 63, MAX_METADATA = 1 << 20, MAX_SEGMENT_ENTRIES = 1 << 16 };
+
+static int is_known(uint32_t kind) { return kind >= KIND_PLANES && kind <= KIND_METADATA; }
+
+/* The columns of §5's table. The count is 0 where the section must be absent. */
+static void demanded(const struct lfl_reader *r, uint32_t kind, uint32_t *element_size, uint64_t *count)
+{
+    int dictionary = r->encoding == DICTIONARY;
+    *element_size = 8 * r->brick_planes;
+    switch (kind) {
+    case KIND_PLANES: *element_size = 16, *count = r->elements; break;
+    case KIND_REL: *element_size = 2, *count = r->elements; break;
+    case KIND_BASE: *element_size = 8, *count = quotient_up(r->elements, 1024); break;
+    case KIND_BRICKS: *count = dictionary ? 0 : r->bricks; break;
+    case KIND_BRICK_INDICES: *element_size = 2, *count = dictionary ? r->bricks : 0; break;
+    case KIND_DICTIONARY_ENTRIES: *count = r->entries; break;
+    case KIND_DICTIONARY_SEGMENTS:
+        *element_size = 8, *count = dictionary ? quotient_up(r->bricks, UINT64_C(1) << r->shift) : 0;
+        break;
+    case KIND_LEVEL_TABLE: *element_size = 24, *count = r->depth + 1; break;
+    default: *element_size = 1, *count = 1; break; /* metadata: 1 to 2^20, see `section-metadata-length` */
+    }
+}
+
+/* An element of a section. The index must be less than the section's count. */
+static const unsigned char *item(const struct lfl_reader *r, unsigned kind, uint64_t index)
+{
+    const struct lfl_section *section = &r->section[kind];
+    return r->bytes + (size_t)section->offset + (size_t)(index * section->element_size);
+}
+
+/* §5.1 */
+static struct words element(const struct lfl_reader *r, uint64_t n)
+{
+    const unsigned char *p = item(r, KIND_PLANES, n);
+    struct words w = {0, 0};
+    w.lower = u64(p);
+    w.upper = u64(p + 8);
+    return w;
+}
+
+/* §2.4: base[n / 1024] + rel[n]. Returns 0 if the sum overflows. */
+static int first_child(const struct lfl_reader *r, uint64_t n, uint64_t *child)
+{
+    uint64_t base = u64(item(r, KIND_BASE, n / 1024)), rel = u16(item(r, KIND_REL, n));
+    *child = base + rel;
+    return rel <= UINT64_MAX - base;
+}
+
+/* §5.2: entry `index` of the bricks or of the dictionary. */
+static struct words brick_entry(const struct lfl_reader *r, unsigned kind, uint64_t index)
+{
+    const unsigned char *p = item(r, kind, index);
+    struct words w = {0, 0};
+    w.lower = u64(p);
+    w.upper = r->brick_planes == 2 ? u64(p + 8) : w.lower;
+    return w;
+}
+
+/* §5.2: brick b. Returns 0 if its index leads outside of the dictionary (§6). */
+static int brick(const struct lfl_reader *r, uint64_t b, struct words *w)
+{
+    uint64_t segment, index;
+    if (r->encoding == RAW) {
+        *w = brick_entry(r, KIND_BRICKS, b);
+        return 1;
+    }
+    segment = u64(item(r, KIND_DICTIONARY_SEGMENTS, b >> r->shift));
+    index = u16(item(r, KIND_BRICK_INDICES, b));
+    if (segment >= r->entries || index >= r->entries - segment)
+        return 0;
+    *w = brick_entry(r, KIND_DICTIONARY_ENTRIES, segment + index);
+    return 1;
+}
+
+/* §5.3 */
+struct lfl_level lfl_level(const struct lfl_reader *r, unsigned level)
+{
+    const unsigned char *p = item(r, KIND_LEVEL_TABLE, level);
+    struct lfl_level entry;
+    entry.nodes = u64(p);
+    entry.full = u64(p + 8);
+    entry.partial = u64(p + 16);
+    return entry;
+}
+
+/* §5.3: the octree level whose nodes are the elements of element level e. */
+static unsigned level_of(const struct lfl_reader *r, unsigned e) { return e == 0 ? 0 : 2 * e - parity(r); }
+
+/* §5.4 */
+int lfl_metadata(const struct lfl_reader *r, uint64_t *position, struct lfl_fact *fact)
+{
+    uint64_t rest = r->section[KIND_METADATA].length, key_length, value_length;
+    const unsigned char *p;
+    if (*position >= rest)
+        return 0;
+    p = item(r, KIND_METADATA, *position);
+    rest -= *position;
+    if (rest < 8)
+        return -1;
+    key_length = u32(p);
+    value_length = u32(p + 4);
+    if (key_length + value_length > rest - 8) /* the sum of two u32 does not overflow */
+        return -1;
+    fact->key = p + 8;
+    fact->key_length = (size_t)key_length;
+    fact->value = fact->key + fact->key_length;
+    fact->value_length = (size_t)value_length;
+    *position += 8 + key_length + value_length;
+    return 1;
+}
+
+/* UTF-8 in the shortest form, without surrogates. */
+static int is_utf8(const unsigned char *p, size_t length)
+{
+    size_t i = 0;
+    while (i < length) {
+        unsigned lead = p[i++], more, k;
+        uint32_t c, least;
+        if (lead < 0x80)
+            continue;
+        if (lead >= 0xC0 && lead < 0xE0)
+            more = 1, least = 0x80, c = lead & 0x1F;
+        else if (lead >= 0xE0 && lead < 0xF0)
+            more = 2, least = 0x800, c = lead & 0x0F;
+        else if (lead >= 0xF0 && lead < 0xF8)
+            more = 3, least = 0x10000, c = lead & 0x07;
+        else
+            return 0;
+        if (length - i < more)
+            return 0;
+        for (k = 0; k < more; k++, i++) {
+            if ((p[i] & 0xC0) != 0x80)
+                return 0;
+            c = c << 6 | (p[i] & 0x3F);
+        }
+        if (c < least || c > 0x10FFFF || (c >= 0xD800 && c <= 0xDFFF))
+            return 0;
+    }
+    return 1;
+}
+
+/* Whether key a stands before key b: byte by byte, a prefix before what it begins. */
+static int ascends(const struct lfl_fact *a, const struct lfl_fact *b)
+{
+    size_t common = a->key_length < b->key_length ? a->key_length : b->key_length;
+    int order = memcmp(a->key, b->key, common);
+    return order < 0 || (order == 0 && a->key_length < b->key_length);
+}
+
+/* ---- §10.1 Header and section table ----------------------------------------------------------------------------- */
+
+static const unsigned char magic[8] = {0x89, 0x4C, 0x46, 0x4C, 0x0D, 0x0A, 0x1A, 0x0A};
+
+/* Whether bytes that do not begin with the magic begin with what a transfer in text mode makes of it. */
+static int is_text_mode(const unsigned char *p, size_t length)
+{
+    size_t i = 4;
+    if (length < 4 || memcmp(p, magic, 4) != 0)
+        return 0;
+    while (i < length && i < 8 && (p[i] == 0x0D || p[i] == 0x0A))
+        i++;
+    return i > 4 && length - i >= 2 && p[i] == 0x1A && (p[i + 1] == 0x0D || p[i + 1] == 0x0A);
+}
+
+/* Illegal are NaN, the infinities, and magnitudes outside of 2^-256 to 2^256. So is zero, which callers except. */
+static int is_illegal(uint64_t bits)
+{
+    uint64_t magnitude = bits & UINT64_MAX >> 1; /* ordered as the magnitudes are, the infinity and NaN above all */
+    return magnitude < (uint64_t)(1023 - 256) << 52 || magnitude > (uint64_t)(1023 + 256) << 52;
+}
+
+static uint64_t end_of_table(const struct lfl_reader *r) { return 128 + 40 * (uint64_t)r->section_count; }
+
+static const char *check_header(struct lfl_reader *r)
+{
+    const unsigned char *h = r->bytes;
+    size_t beginning = r->length < 8 ? r->length : 8;
+    int is_magic = beginning == 0 || memcmp(h, magic, beginning) == 0, i;
+
+    REFUSE_IF(!is_magic && is_text_mode(h, r->length), "header-text-mode");
+    REFUSE_IF(!is_magic, "header-magic");
+    REFUSE_IF(r->length < 128, "header-short");
+
+    /* §3 */
+    r->major = u16(h + 8);
+    r->minor = u16(h + 10);
+    r->file_length = u64(h + 24);
+    for (i = 0; i < 3; i++)
+        r->origin[i] = u64(h + 32 + 8 * i);
+    r->edge = u64(h + 56);
+    r->depth = h[64];
+    r->root = h[65];
+    r->exterior = h[66];
+    r->brick_planes = h[67];
+    r->encoding = h[68];
+    r->shift = h[69];
+    r->elements = u64(h + 72);
+    r->bricks = u64(h + 80);
+    r->entries = u64(h + 88);
+    r->section_count = u32(h + 96);
+
+    REFUSE_IF(r->major != 0, "header-major");
+    REFUSE_IF(crc32(h, 124) != u32(h + 124), "header-crc");
+    REFUSE_IF(u32(h + 12) != 128, "header-length");
+    REFUSE_IF(u32(h + 16) != 0, "header-required-flags");
+    REFUSE_IF(u32(h + 20) != 0 && r->minor == 0, "header-optional-flags");
+    REFUSE_IF((u16(h + 70) != 0 || !all_zero(h + 104, 20)) && r->minor == 0, "header-reserved");
+    for (i = 0; i < 3; i++)
+        REFUSE_IF(r->origin[i] != 0 && is_illegal(r->origin[i]), "header-origin");
+    REFUSE_IF(r->edge >> 63 != 0 || is_illegal(r->edge), "header-edge");
+    REFUSE_IF(r->depth < 1 || r->depth > LFL_MAX_DEPTH, "header-depth");
+    REFUSE_IF(r->root > 3, "header-root");
+    REFUSE_IF(r->exterior == 1 || r->exterior > 3, "header-exterior");
+    REFUSE_IF(r->brick_planes != 1 && r->brick_planes != 2, "header-brick-planes");
+    REFUSE_IF(r->encoding != RAW && r->encoding != DICTIONARY, "header-encoding");
+    REFUSE_IF(r->encoding == RAW && r->shift != 0, "header-raw-shift");
+    REFUSE_IF(r->encoding == RAW && r->entries != 0, "header-raw-entries");
+    if (r->encoding == DICTIONARY) {
+        REFUSE_IF(r->shift < 16 || r->shift > ONE_SEGMENT, "header-shift");
+        REFUSE_IF(r->shift == ONE_SEGMENT && r->bricks == 0, "header-shift");
+        REFUSE_IF(r->shift < ONE_SEGMENT && r->bricks >= 1 && r->bricks <= UINT64_C(1) << r->shift, "header-shift");
+        REFUSE_IF(r->entries == 0 || r->entries > r->bricks, "header-entries");
+    }
+    REFUSE_IF(r->elements != 0 && (r->depth <= 2 || r->root != LFL_BRANCH), "header-elements");
+    REFUSE_IF(r->bricks != 0 && r->root != LFL_BRANCH, "header-bricks");
+    REFUSE_IF(r->section_count == 0 || r->section_count > 4096, "header-section-count");
+    REFUSE_IF(r->file_length <= end_of_table(r), "header-file-length");
+    return NULL;
+}
+
+/* §4 */
+struct lfl_section lfl_section(const struct lfl_reader *r, uint32_t index)
+{
+    const unsigned char *p = r->bytes + 128 + 40 * (size_t)index;
+    struct lfl_section s;
+    s.kind = u32(p);
+    s.element_size = u32(p + 4);
+    s.offset = u64(p + 8);
+    s.length = u64(p + 16);
+    s.count = u64(p + 24);
+    s.crc = u32(p + 32);
+    s.flags = u32(p + 36);
+    return s;
+}
+
+static const char *check_section(struct lfl_reader *r, struct lfl_section s, uint64_t previous_end)
+{
+    int known = is_known(s.kind);
+    uint32_t element_size;
+    uint64_t count;
+
+    REFUSE_IF(s.flags >> 1 != 0 && r->minor == 0, "section-flags");
+    REFUSE_IF(s.length == 0, "section-length");
+    REFUSE_IF(s.element_size == 0 || s.count > UINT64_MAX / s.element_size, "section-length");
+    REFUSE_IF(s.length != s.count * s.element_size, "section-length");
+    REFUSE_IF(s.offset % 64 != 0, "section-alignment");
+    REFUSE_IF(s.offset < previous_end, "section-overlap");
+    REFUSE_IF(s.offset > r->file_length || s.length > r->file_length - s.offset, "section-beyond");
+    REFUSE_IF(s.kind == 0, "section-kind");
+    REFUSE_IF(!known && s.flags & 1, "section-unknown");
+    if (!known)
+        return NULL;
+    demanded(r, s.kind, &element_size, &count);
+    REFUSE_IF(r->section[s.kind].count != 0, "section-twice");
+    REFUSE_IF(s.element_size != element_size, "section-size");
+    REFUSE_IF(s.kind != KIND_METADATA && s.count != count, "section-count");
+    REFUSE_IF(s.kind == KIND_METADATA && s.length > MAX_METADATA, "section-metadata-length");
+    REFUSE_IF((s.flags & 1) != (s.kind != KIND_METADATA), "section-required");
+    r->section[s.kind] = s;
+    return NULL;
+}
+
+static const char *check_table(struct lfl_reader *r)
+{
+    uint64_t end = end_of_table(r), count;
+    uint32_t i, element_size;
+    const char *error;
+
+    REFUSE_IF(r->length < end, "table-short");
+    REFUSE_IF(crc32(r->bytes + 128, (size_t)end - 128) != u32(r->bytes + 100), "table-crc");
+    for (i = 0; i < r->section_count; i++) {
+        struct lfl_section s = lfl_section(r, i);
+        error = check_section(r, s, end);
+        REFUSE_IF(error != NULL, error);
+        end = s.offset + s.length;
+    }
+    for (i = KIND_PLANES; i < KIND_METADATA; i++) {
+        demanded(r, i, &element_size, &count);
+        REFUSE_IF(count != 0 && r->section[i].count == 0, "section-missing");
+    }
+    REFUSE_IF(end != r->file_length, "section-end");
+    return NULL;
+}
+
+/* ---- §10.2 Before the arrays are used --------------------------------------------------------------------------- */
+
+static const char *check_level_table(struct lfl_reader *r)
+{
+    uint64_t all = r->elements + r->bricks; /* no overflow: there are sections of so many elements */
+    unsigned e;
+
+    REFUSE_IF(lfl_level(r, 0).nodes != (r->root == LFL_BRANCH), "level-table-root");
+    r->levels = (r->depth + 1) / 2;
+    r->start[0] = 0;
+    for (e = 0; e < r->levels; e++) {
+        uint64_t nodes = lfl_level(r, level_of(r, e)).nodes;
+        REFUSE_IF(nodes > all - r->start[e], "level-table-starts");
+        r->start[e + 1] = r->start[e] + nodes;
+    }
+    REFUSE_IF(r->start[r->levels - 1] != r->elements || r->start[r->levels] != all, "level-table-sum");
+    return NULL;
+}
+
+static const char *check_metadata(const struct lfl_reader *r)
+{
+    struct lfl_fact fact, previous;
+    uint64_t position = 0;
+    int first = 1, found;
+    while ((found = lfl_metadata(r, &position, &fact)) > 0) {
+        REFUSE_IF(!is_utf8(fact.key, fact.key_length), "metadata-text");
+        REFUSE_IF(!is_utf8(fact.value, fact.value_length), "metadata-text");
+        REFUSE_IF(!first && !ascends(&previous, &fact), "metadata-text");
+        previous = fact;
+        first = 0;
+    }
+    REFUSE_IF(found < 0, "metadata-text");
+    return NULL;
+}
+
+static const char *check_all_before_use(const void *bytes, size_t length, struct lfl_reader *r, int probing)
+{
+    const char *error;
+    memset(r, 0, sizeof *r);
+    r->bytes = bytes;
+    r->length = length;
+    error = check_header(r);
+    if (error == NULL && !probing && length != r->file_length)
+        error = "file-length"; /* all bytes are at hand, so it is looked at before the table */
+    if (error == NULL)
+        error = check_table(r);
+    if (error == NULL && !probing)
+        error = check_level_table(r);
+    return error;
+}
+
+int lfl_probe(const void *bytes, size_t length, struct lfl_reader *r, const char **error)
+{
+    return (*error = check_all_before_use(bytes, length, r, 1)) == NULL;
+}
+
+int lfl_open(const void *bytes, size_t length, struct lfl_reader *r, const char **error)
+{
+    return (*error = check_all_before_use(bytes, length, r, 0)) == NULL;
+}
+
+int lfl_check_metadata(const struct lfl_reader *r, const char **error) { return (*error = check_metadata(r)) == NULL; }
+
+/* ---- §10.3 Verification ----------------------------------------------------------------------------------------- */
+
+static const char *verify_sections(const struct lfl_reader *r)
+{
+    size_t end = (size_t)end_of_table(r);
+    uint32_t i;
+    for (i = 0; i < r->section_count; i++) {
+        struct lfl_section s = lfl_section(r, i);
+        size_t offset = (size_t)s.offset, length = (size_t)s.length;
+        REFUSE_IF(!all_zero(r->bytes + end, offset - end), "padding");
+        REFUSE_IF(crc32(r->bytes + offset, length) != s.crc, "section-crc");
+        end = offset + length;
+    }
+    return NULL;
+}
+
+/* §2.4. Element level by element level: the number of children, then the links to them. */
+static const char *verify_links(const struct lfl_reader *r)
+{
+    unsigned e;
+    for (e = 0; e + 1 < r->levels; e++) {
+        uint64_t n, child = r->start[e + 1], linked, branches = 0;
+        for (n = r->start[e]; n < r->start[e + 1]; n++)
+            branches += popcount(branch_cells(element(r, n)));
+        REFUSE_IF(branches != r->start[e + 2] - r->start[e + 1], "element-count");
+        for (n = r->start[e]; n < r->start[e + 1]; n++) {
+            REFUSE_IF(!first_child(r, n, &linked) || linked != child, "element-link");
+            REFUSE_IF(n % 1024 == 0 && u16(item(r, KIND_REL, n)) != 0, "element-link");
+            child += popcount(branch_cells(element(r, n)));
+        }
+    }
+    return NULL;
+}
+
+/* §5.3: adds what an element or brick of element level e holds: octants on one octree level, cells on the next. */
+static void count_cells(const struct lfl_reader *r, unsigned e, struct words w, struct lfl_level *counts)
+{
+    struct lfl_level *octants = &counts[2 * e + 1 - parity(r)], *cells = octants + 1;
+    unsigned k;
+    for (k = 0; k < 8; k++) {
+        uint64_t octant = UINT64_C(0xFF) << 8 * k;
+        if (is_uniform(w, octant)) {
+            octants->full += (full_cells(w) & octant) != 0;
+            octants->partial += (partial_cells(w) & octant) != 0;
+        } else {
+            octants->nodes++;
+            cells->nodes += popcount(branch_cells(w) & octant);
+            cells->full += popcount(full_cells(w) & octant);
+            cells->partial += popcount(partial_cells(w) & octant);
+        }
+    }
+}
+
+static const char *verify_elements(const struct lfl_reader *r, struct lfl_level *counts)
+{
+    unsigned e;
+    uint64_t n;
+    for (e = 0; e + 1 < r->levels; e++) {
+        uint64_t existing = existing_cells(r, e);
+        for (n = r->start[e]; n < r->start[e + 1]; n++) {
+            struct words w = element(r, n);
+            REFUSE_IF((w.lower | w.upper) & ~existing, "element-padding");
+            REFUSE_IF(is_uniform(w, existing), "element-uniform");
+            count_cells(r, e, w, counts);
+        }
+    }
+    return NULL;
+}
+
+static int compare_words(const void *a, const void *b)
+{
+    const struct words *v = a, *w = b;
+    if (v->lower != w->lower)
+        return v->lower < w->lower ? -1 : 1;
+    return v->upper < w->upper ? -1 : v->upper > w->upper;
+}
+
+/* §5.2: one segment, with room for the number of uses and for copies of its entries. */
+static const char *verify_segment(const struct lfl_reader *r, uint64_t s, uint64_t begin, uint64_t end, uint32_t *uses,
+                                  struct words *sorted)
+{
+    uint64_t first = s << r->shift, b, i, size = end - begin;
+    uint64_t bricks = r->bricks - first;
+    if (bricks > UINT64_C(1) << r->shift)
+        bricks = UINT64_C(1) << r->shift;
+
+    for (i = 0; i < size; i++) {
+        uses[i] = 0;
+        sorted[i] = brick_entry(r, KIND_DICTIONARY_ENTRIES, begin + i);
+    }
+    for (b = first; b < first + bricks; b++) {
+        unsigned index = u16(item(r, KIND_BRICK_INDICES, b));
+        REFUSE_IF(index >= size, "dictionary-index");
+        if (uses[index] < UINT32_MAX)
+            uses[index]++;
+    }
+    for (i = 0; i < size; i++)
+        REFUSE_IF(uses[i] == 0, "dictionary-unused");
+    for (i = 1; i < size; i++) {
+        REFUSE_IF(uses[i - 1] < uses[i], "dictionary-order");
+        REFUSE_IF(uses[i - 1] == uses[i] && compare_words(&sorted[i - 1], &sorted[i]) > 0, "dictionary-order");
+    }
+    if (size > 1)
+        qsort(sorted, (size_t)size, sizeof *sorted, compare_words);
+    for (i = 1; i < size; i++)
+        REFUSE_IF(compare_words(&sorted[i - 1], &sorted[i]) == 0, "dictionary-duplicate");
+    return NULL;
+}
+
+static const char *verify_dictionary(const struct lfl_reader *r)
+{
+    uint64_t s, segments = r->section[KIND_DICTIONARY_SEGMENTS].count, previous_end = 0;
+    size_t room = (size_t)(r->entries < MAX_SEGMENT_ENTRIES ? r->entries : MAX_SEGMENT_ENTRIES);
+    uint32_t *uses;
+    struct words *sorted;
+    const char *error = NULL;
+    if (r->encoding == RAW)
+        return NULL;
+
+    uses = malloc(room * sizeof *uses);
+    sorted = malloc(room * sizeof *sorted);
+    if (uses == NULL || sorted == NULL)
+        error = lfl_out_of_memory;
+    for (s = 0; s < segments && error == NULL; s++) {
+        uint64_t begin = u64(item(r, KIND_DICTIONARY_SEGMENTS, s)), end = r->entries;
+        if (s + 1 < segments)
+            end = u64(item(r, KIND_DICTIONARY_SEGMENTS, s + 1));
+        if (begin != previous_end || end < begin || end > r->entries || end - begin > MAX_SEGMENT_ENTRIES)
+            error = "dictionary-range";
+        else
+            error = verify_segment(r, s, begin, end, uses, sorted);
+        previous_end = end;
+    }
+    free(sorted);
+    free(uses);
+    return error;
+}
+
+static const char *verify_bricks(const struct lfl_reader *r, struct lfl_level *counts)
+{
+    unsigned e = r->levels - 1;
+    uint64_t existing = existing_cells(r, e), b;
+    for (b = 0; b < r->bricks; b++) {
+        struct words w;
+        REFUSE_IF(!brick(r, b, &w), "dictionary-index"); /* never: the segments have been verified */
+        REFUSE_IF((w.lower | w.upper) & ~existing, "brick-padding");
+        REFUSE_IF(is_uniform(w, existing), "brick-uniform");
+        REFUSE_IF(branch_cells(w) != 0, "brick-branch");
+        count_cells(r, e, w, counts);
+    }
+    return NULL;
+}
+
+/* What follows from all elements and bricks: the number of planes, and the level table. */
+static const char *verify_counts(const struct lfl_reader *r, const struct lfl_level *counts)
+{
+    int any_partial = 0;
+    unsigned l;
+    for (l = 0; l <= r->depth; l++)
+        any_partial |= counts[l].partial != 0;
+    REFUSE_IF(r->brick_planes == 1 && any_partial, "planes-missing");
+    REFUSE_IF(r->brick_planes == 2 && !any_partial, "planes-needless");
+    for (l = 0; l <= r->depth; l++) {
+        struct lfl_level given = lfl_level(r, l);
+        REFUSE_IF(given.nodes != counts[l].nodes, "level-table-counts");
+        REFUSE_IF(given.full != counts[l].full, "level-table-counts");
+        REFUSE_IF(given.partial != counts[l].partial, "level-table-counts");
+    }
+    return NULL;
+}
+
+static const char *verify(const struct lfl_reader *r)
+{
+    struct lfl_level counts[LFL_MAX_DEPTH + 1];
+    const char *error;
+    memset(counts, 0, sizeof counts);
+    /* The universe itself. Of odd depth its node is counted as octant 0 of the root element. */
+    counts[0].nodes = r->root == LFL_BRANCH && parity(r) == 0;
+    counts[0].full = r->root == LFL_FULL;
+    counts[0].partial = r->root == LFL_PARTIAL;
+
+    if ((error = verify_sections(r)) != NULL || (error = check_metadata(r)) != NULL ||
+        (error = verify_links(r)) != NULL || (error = verify_elements(r, counts)) != NULL ||
+        (error = verify_dictionary(r)) != NULL || (error = verify_bricks(r, counts)) != NULL)
+        return error;
+    return verify_counts(r, counts);
+}
+
+int lfl_verify(const struct lfl_reader *r, const char **error) { return (*error = verify(r)) == NULL; }
+
+/* ---- §6 Finding a cell ------------------------------------------------------------------------------------------ */
+
+enum lfl_tag lfl_cell_tag(const struct lfl_reader *r, uint32_t x, uint32_t y, uint32_t z)
+{
+    struct words w;
+    enum lfl_tag tag;
+    uint64_t n = 0;
+    unsigned e, c;
+    if (r->root != LFL_BRANCH)
+        return (enum lfl_tag)r->root;
+    for (e = 0; e + 1 < r->levels; e++) {
+        unsigned s = 2 * (r->levels - 1 - e);
+        uint64_t child;
+        c = morton(x >> s, y >> s, z >> s);
+        w = element(r, n);
+        tag = tag_of(w, c);
+        if (tag != LFL_BRANCH)
+            return tag;
+        if (!first_child(r, n, &child))
+            return LFL_DAMAGED;
+        n = child + popcount(branch_cells(w) & ((UINT64_C(1) << c) - 1)); /* wraps to a small number, if at all */
+        if (n < child || n < r->start[e + 1] || n >= r->start[e + 2])
+            return LFL_DAMAGED;
+    }
+    if (!brick(r, n - r->elements, &w))
+        return LFL_DAMAGED;
+    tag = tag_of(w, morton(x, y, z));
+    return tag == LFL_BRANCH ? LFL_DAMAGED : tag;
+}
+
+/* ---- §7 Questions and answers ----------------------------------------------------------------------------------- */
+
+/* sum += d · factor, for a d that is not negative, or for the opposite of one that is. The factor is less than 2^32. */
+static void add_multiple(struct natural *sum, struct dyadic d, uint64_t factor)
+{
+    unsigned shift = (unsigned)(d.exponent - UNIT_EXPONENT);
+    natural_add(sum, (d.mantissa & 0xFFFFFFFF) * factor, shift);
+    natural_add(sum, (d.mantissa >> 32) * factor, shift + 32);
+}
+
+/*
+ * Compares v with the lattice plane i of an axis, which is the real number origin + i · edge / 2^depth: the result is
+ * negative, zero or positive. The summands are moved to the sides on which they are positive:
+ *
+ *     v⁺ + origin⁻   ?   v⁻ + origin⁺ + i · edge / 2^depth
+ *
+ * All are natural multiples of 2^-1074 (edge / 2^depth, of 53 bits, is at least 2^-276), so nothing is ever rounded.
+ */
+static int compare_with_plane(const struct lfl_reader *r, unsigned axis, struct dyadic v, uint64_t i)
+{
+    struct natural left = {{0}}, right = {{0}};
+    struct dyadic origin = take_apart(r->origin[axis]), h = take_apart(r->edge);
+    h.exponent -= (int)r->depth;
+    add_multiple(v.negative ? &right : &left, v, 1);
+    add_multiple(origin.negative ? &left : &right, origin, 1);
+    add_multiple(&right, h, i);
+    return natural_compare(&left, &right);
+}
+
+int lfl_cell(const struct lfl_reader *r, unsigned axis, double coordinate, uint32_t *cell)
+{
+    uint32_t low = 0, high = (uint32_t)1 << r->depth;
+    uint64_t bits;
+    struct dyadic v;
+    int last;
+    memcpy(&bits, &coordinate, sizeof bits);
+    v = take_apart(bits);
+    if (!v.finite || compare_with_plane(r, axis, v, low) < 0)
+        return 0;
+    last = compare_with_plane(r, axis, v, high);
+    if (last > 0)
+        return 0;
+    if (last == 0) /* the universe's upper face belongs to the last cell */
+        low = high - 1;
+    while (high - low > 1) { /* plane low ≤ v < plane high */
+        uint32_t middle = low + (high - low) / 2;
+        if (compare_with_plane(r, axis, v, middle) >= 0)
+            low = middle;
+        else
+            high = middle;
+    }
+    *cell = low;
+    return 1;
+}
+
+enum lfl_answer lfl_contains(const struct lfl_reader *r, double x, double y, double z)
+{
+    uint32_t i, j, k;
+    if (!lfl_cell(r, 0, x, &i) || !lfl_cell(r, 1, y, &j) || !lfl_cell(r, 2, z, &k))
+        return LFL_UNDECIDED;
+    switch (lfl_cell_tag(r, i, j, k)) {
+    case LFL_EMPTY: return LFL_OUTSIDE;
+    case LFL_FULL: return LFL_INSIDE;
+    default: return LFL_UNDECIDED; /* PARTIAL, or damaged (§10.4) */
+    }
+}
+
+/* sum + count · 8^levels, or 2^64 - 1 if that is greater. */
+static uint64_t saturating_sum(uint64_t sum, uint64_t count, unsigned levels)
+{
+    uint64_t cells = UINT64_C(1) << 3 * levels;
+    return count > (UINT64_MAX - sum) / cells ? UINT64_MAX : sum + count * cells;
+}
+
+void lfl_volume_cells(const struct lfl_reader *r, uint64_t *lower, uint64_t *upper)
+{
+    unsigned l;
+    *lower = *upper = 0;
+    for (l = 0; l <= r->depth; l++) {
+        struct lfl_level level = lfl_level(r, l);
+        *lower = saturating_sum(*lower, level.full, r->depth - l);
+        *upper = saturating_sum(*upper, level.full, r->depth - l);
+        *upper = saturating_sum(*upper, level.partial, r->depth - l);
+    }
+}
+
+/* cells · h³ with h = edge / 2^depth: exactly, as an integer of at most 64 + 3 · 53 bits, and then rounded once. */
+static double cubic_units(const struct lfl_reader *r, uint64_t cells, int up)
+{
+    struct natural volume = {{0}};
+    struct dyadic edge = take_apart(r->edge);
+    int i;
+    natural_add(&volume, cells, 0);
+    for (i = 0; i < 3; i++)
+        volume = natural_product(&volume, edge.mantissa);
+    return natural_round(&volume, 3 * (edge.exponent - (int)r->depth), up);
+}
+
+void lfl_volume(const struct lfl_reader *r, double *lower, double *upper)
+{
+    uint64_t surely, possibly;
+    lfl_volume_cells(r, &surely, &possibly);
+    *lower = cubic_units(r, surely, 0);
+    *upper = cubic_units(r, possibly, 1);
+}
+
+/* ---- The program ------------------------------------------------------------------------------------------------ */
+
+#ifndef LEAFLESS_READER_NO_MAIN
+
+#include <inttypes.h>
+#include <stdio.h>
+
+enum { OK = 0, REFUSED = 1, FAILED = 2 };
+enum checks { PROBE, PLAIN, METADATA, ALL };
+enum question { FACTS, POINTS, VOLUME };
+
+/* As C99's %a, but in the one form that has the first bit before the point and no zeros at the end. */
+static void print_double(uint64_t bits)
+{
+    uint64_t fraction = bits & ((UINT64_C(1) << 52) - 1);
+    int digits = 13;
+    if (bits << 1 == 0) {
+        printf("0x0p+0");
+        return;
+    }
+    for (; digits > 0 && (fraction & 15) == 0; digits--)
+        fraction >>= 4;
+    printf("%s0x1%s", bits >> 63 ? "-" : "", digits > 0 ? "." : "");
+    if (digits > 0)
+        printf("%0*" PRIx64, digits, fraction);
+    printf("p%+d", (int)(bits >> 52 & 0x7FF) - 1023); /* origins, edges and volumes are normal numbers */
+}
+
+/* Control characters could do things to a terminal, and are printed as \xHH. */
+static void print_text(const unsigned char *p, size_t length)
+{
+    size_t i;
+    for (i = 0; i < length; i++) {
+        int control = p[i] < 0x20 || p[i] == 0x7F;
+        int second = i > 0 && p[i - 1] == 0xC2 && p[i] < 0xA0; /* U+0080 to U+009F */
+        int first = p[i] == 0xC2 && i + 1 < length && p[i + 1] < 0xA0;
+        if (control || first || second)
+            printf("\\x%02X", p[i]);
+        else
+            putchar(p[i]);
+    }
+}
+
+static void print_facts(const struct lfl_reader *r, enum checks checks)
+{
+    static const char *const tags[] = {"EMPTY", "BRANCH", "PARTIAL", "FULL"};
+    struct lfl_fact fact;
+    uint64_t position = 0, lower, upper;
+    uint32_t i;
+
+    printf("length: %" PRIu64 "\n", r->file_length);
+    printf("version: %u.%u\n", r->major, r->minor);
+    printf("origin:");
+    for (i = 0; i < 3; i++) {
+        putchar(' ');
+        print_double(r->origin[i]);
+    }
+    printf("\nedge: ");
+    print_double(r->edge);
+    printf("\ndepth: %u\n", r->depth);
+    printf("root: %s\n", tags[r->root]);
+    printf("exterior: %s\n", tags[r->exterior]);
+    printf("planes: %u\n", r->brick_planes);
+    printf("encoding: %s\n", r->encoding == RAW ? "raw" : "dictionary");
+    printf("shift: %u\n", r->shift);
+    printf("elements: %" PRIu64 "\n", r->elements);
+    printf("bricks: %" PRIu64 "\n", r->bricks);
+    printf("entries: %" PRIu64 "\n", r->entries);
+    printf("sections:");
+    for (i = 0; i < r->section_count; i++)
+        printf(" %" PRIu32, lfl_section(r, i).kind);
+    putchar('\n');
+    if (checks == PROBE)
+        return;
+    for (i = 0; i <= r->depth; i++) {
+        struct lfl_level level = lfl_level(r, i);
+        printf("level: %" PRIu32 " %" PRIu64 " %" PRIu64 " %" PRIu64 "\n", i, level.nodes, level.full, level.partial);
+    }
+    lfl_volume_cells(r, &lower, &upper);
+    printf("cells: %" PRIu64 " %" PRIu64 "\n", lower, upper);
+    while (checks >= METADATA && lfl_metadata(r, &position, &fact) > 0) {
+        printf("metadata: ");
+        print_text(fact.key, fact.key_length);
+        putchar('\t');
+        print_text(fact.value, fact.value_length);
+        putchar('\n');
+    }
+}
+
+static void print_volume(const struct lfl_reader *r)
+{
+    double volume[2];
+    uint64_t bits;
+    lfl_volume(r, &volume[0], &volume[1]);
+    printf("volume: ");
+    memcpy(&bits, &volume[0], sizeof bits);
+    print_double(bits);
+    putchar(' ');
+    memcpy(&bits, &volume[1], sizeof bits);
+    print_double(bits);
+    putchar('\n');
+}
+
+static int answer_points(const struct lfl_reader *r)
+{
+    static const char *const answers[] = {"outside", "inside", "undecided"};
+    char line[1024];
+    while (fgets(line, sizeof line, stdin) != NULL) {
+        double v[3];
+        char *p = line, *end;
+        int i;
+        for (i = 0; i < 3; i++, p = end) {
+            v[i] = strtod(p, &end);
+            if (end == p)
+                break;
+        }
+        if (i < 3 || p[strspn(p, " \t\r\n")] != '\0') {
+            fprintf(stderr, "not a point: %s", line);
+            return FAILED;
+        }
+        puts(answers[lfl_contains(r, v[0], v[1], v[2])]);
+    }
+    return ferror(stdin) ? FAILED : OK;
+}
+
+/* The bytes of a file and then of nothing; to be freed. NULL if it cannot be read. */
+static unsigned char *read_file(const char *path, size_t *length)
+{
+    FILE *file = fopen(path, "rb");
+    size_t room = 1 << 16;
+    unsigned char *bytes = malloc(room), *more;
+    *length = 0;
+    while (file != NULL && bytes != NULL) {
+        *length += fread(bytes + *length, 1, room - *length, file);
+        if (*length < room)
+            break; /* the end, or an error */
+        more = room <= SIZE_MAX / 2 ? realloc(bytes, room *= 2) : NULL;
+        if (more == NULL)
+            free(bytes);
+        bytes = more;
+    }
+    if (file == NULL || ferror(file)) {
+        free(bytes);
+        bytes = NULL;
+    }
+    if (file != NULL)
+        fclose(file);
+    return bytes;
+}
+
+static int read_one(const char *path, enum checks checks, enum question question)
+{
+    struct lfl_reader reader;
+    size_t length;
+    const char *error;
+    unsigned char *bytes = read_file(path, &length);
+    int code = OK, passed;
+    if (bytes == NULL) {
+        fprintf(stderr, "cannot read %s\n", path);
+        return FAILED;
+    }
+    passed = checks == PROBE ? lfl_probe(bytes, length, &reader, &error) : lfl_open(bytes, length, &reader, &error);
+    if (passed && checks == METADATA)
+        passed = lfl_check_metadata(&reader, &error);
+    if (passed && checks == ALL)
+        passed = lfl_verify(&reader, &error);
+
+    if (!passed && error == lfl_out_of_memory) {
+        fprintf(stderr, "%s\n", error);
+        code = FAILED;
+    } else if (!passed) {
+        printf("refused: %s\n", error);
+        code = REFUSED;
+    } else if (question == POINTS) {
+        code = answer_points(&reader);
+    } else if (question == VOLUME) {
+        print_volume(&reader);
+    } else {
+        print_facts(&reader, checks);
+    }
+    free(bytes);
+    return code;
+}
+
+int main(int argc, char **argv)
+{
+    enum checks checks = ALL;
+    enum question question = FACTS;
+    int i = 1, files, code = OK;
+    for (; i < argc && strncmp(argv[i], "--", 2) == 0; i++) {
+        if (strcmp(argv[i], "--probe") == 0)
+            checks = PROBE;
+        else if (strcmp(argv[i], "--plain") == 0)
+            checks = PLAIN;
+        else if (strcmp(argv[i], "--metadata") == 0)
+            checks = METADATA;
+        else if (strcmp(argv[i], "--points") == 0)
+            question = POINTS;
+        else if (strcmp(argv[i], "--volume") == 0)
+            question = VOLUME;
+        else
+            break;
+    }
+    files = argc - i;
+    if (files < 1 || argv[i][0] == '-' || (question == POINTS && files > 1) || (question != FACTS && checks == PROBE)) {
+        fprintf(stderr, "usage: reader [--probe | --plain | --metadata] FILE...\n"
+                        "       reader [--plain | --metadata] --points FILE\n"
+                        "       reader [--plain | --metadata] --volume FILE...\n");
+        return FAILED;
+    }
+    for (; i < argc; i++) {
+        int one;
+        if (files > 1)
+            printf("file: %s\n", argv[i]);
+        one = read_one(argv[i], checks, question);
+        if (one > code)
+            code = one;
+    }
+    if (fflush(stdout) != 0 || ferror(stdout))
+        code = FAILED;
+    return code;
+}
+
+#endif
