@@ -1,14 +1,14 @@
 /*
  * A reader of files of the Leafless format, version 0.0, in C99 and nothing but its library.
  *
- * It is written from specification.md alone, whose sections the comments name (§), and is meant to be read beside it:
- * each rule of §10 stands here once, under its name, in the order in which the specification lists it. It favours
- * being evident over being fast; yet every operation has the complexity that the specification promises.
+ * It is meant to be read beside specification.md, whose sections the comments name (§): each rule of §10 stands here
+ * under its name, in the order in which the specification lists it. It favours being evident over being fast; yet every
+ * check takes no more than the work that the specification promises.
  *
  * As a program:
  *
  *     cc -std=c99 -O2 -o reader reader.c
- *     reader [--probe | --plain | --metadata] FILE...    prints what the files say, in the form of vectors/valid/NAME.txt
+ *     reader [--probe | --plain | --metadata] FILE...    prints what the files say, as vectors/valid/NAME.txt does
  *     reader [--plain | --metadata] --points FILE        reads lines `x y z`, prints inside, outside or undecided
  *     reader [--plain | --metadata] --volume FILE...     prints the volume in cubic model units, rounded outwards
  *
@@ -16,7 +16,7 @@
  * option all. The exit code is 0, or 1 if a file is refused (`refused: RULE`), or 2 for wrong usage and failing input.
  *
  * As a library: compile with LEAFLESS_READER_NO_MAIN, or include this file after defining it. The bytes of a file must
- * stay as they are while its reader is used. Nothing is kept anywhere else, so nothing needs to be released.
+ * stay as they are while its reader is used. Only lfl_verify allocates memory, at most 1.3 MB, and releases it itself.
  *
  * No byte order, alignment or layout of structures is assumed, and no floating-point arithmetic is done: doubles are
  * taken apart and put together as 64 bits. The platform's `double` must be IEEE 754 binary64, in the byte order of its
@@ -231,6 +231,13 @@ static struct dyadic take_apart(uint64_t bits)
     return d;
 }
 
+static double from_bits(uint64_t bits)
+{
+    double value;
+    memcpy(&value, &bits, sizeof value);
+    return value;
+}
+
 /* Natural numbers of up to 2112 bits. As multiples of 2^-1074, all f64 and a few times the greatest are such numbers,
    since 2^1024 / 2^-1074 = 2^2098. */
 enum { LIMBS = 66, UNIT_EXPONENT = -1074 };
@@ -278,9 +285,8 @@ static unsigned natural_bit(const struct natural *a, int bit) { return a->limb[b
 /* a · 2^exponent as a double, rounded down or up. Unless a is 0, this must be far from the least and greatest f64. */
 static double natural_round(const struct natural *a, int exponent, int up)
 {
-    uint64_t mantissa = 0, bits;
+    uint64_t mantissa = 0;
     int top = 32 * LIMBS - 1, bit, rest = 0;
-    double value;
     while (top >= 0 && !natural_bit(a, top))
         top--;
     if (top < 0)
@@ -294,9 +300,7 @@ static double natural_round(const struct natural *a, int exponent, int up)
         mantissa >>= 1;
         exponent++;
     }
-    bits = (uint64_t)(exponent + 1075) << 52 | (mantissa & ((UINT64_C(1) << 52) - 1));
-    memcpy(&value, &bits, sizeof value);
-    return value;
+    return from_bits((uint64_t)(exponent + 1075) << 52 | (mantissa & ((UINT64_C(1) << 52) - 1)));
 }
 
 /* ---- §5 Sections ------------------------------------------------------------------------------------------------ */
@@ -354,12 +358,10 @@ static struct words element(const struct lfl_reader *r, uint64_t n)
     return w;
 }
 
-/* §2.4: base[n / 1024] + rel[n]. Returns 0 if the sum overflows. */
-static int first_child(const struct lfl_reader *r, uint64_t n, uint64_t *child)
+/* §2.4. Of damaged bytes the sum may wrap around; whoever uses it compares it with something (§6, §10.3). */
+static uint64_t first_child(const struct lfl_reader *r, uint64_t n)
 {
-    uint64_t base = u64(item(r, KIND_BASE, n / 1024)), rel = u16(item(r, KIND_REL, n));
-    *child = base + rel;
-    return rel <= UINT64_MAX - base;
+    return u64(item(r, KIND_BASE, n / 1024)) + u16(item(r, KIND_REL, n));
 }
 
 /* §5.2: entry `index` of the bricks or of the dictionary. */
@@ -687,19 +689,16 @@ static const char *verify_sections(const struct lfl_reader *r)
     return NULL;
 }
 
-/* §2.4. Element level by element level: the number of children, then the links to them. */
 static const char *verify_links(const struct lfl_reader *r)
 {
+    uint64_t n, next = r->root == LFL_BRANCH;
     unsigned e;
-    for (e = 0; e + 1 < r->levels; e++) {
-        uint64_t n, child = r->start[e + 1], linked, branches = 0;
-        for (n = r->start[e]; n < r->start[e + 1]; n++)
-            branches += popcount(branch_cells(element(r, n)));
-        REFUSE_IF(branches != r->start[e + 2] - r->start[e + 1], "element-count");
-        for (n = r->start[e]; n < r->start[e + 1]; n++) {
-            REFUSE_IF(!first_child(r, n, &linked) || linked != child, "element-link");
+    for (e = 0; e < r->levels; e++) {
+        REFUSE_IF(r->start[e + 1] != next, "element-count");
+        for (n = r->start[e]; e + 1 < r->levels && n < r->start[e + 1]; n++) {
+            REFUSE_IF(first_child(r, n) != next, "element-link");
             REFUSE_IF(n % 1024 == 0 && u16(item(r, KIND_REL, n)) != 0, "element-link");
-            child += popcount(branch_cells(element(r, n)));
+            next += popcount(branch_cells(element(r, n)));
         }
     }
     return NULL;
@@ -750,7 +749,7 @@ static int compare_words(const void *a, const void *b)
 
 /* §5.2: one segment, with room for the number of uses and for copies of its entries. */
 static const char *verify_segment(const struct lfl_reader *r, uint64_t s, uint64_t begin, uint64_t end, uint32_t *uses,
-                                  struct words *sorted)
+                                  struct words *values)
 {
     uint64_t first = s << r->shift, b, i, size = end - begin;
     uint64_t bricks = r->bricks - first;
@@ -759,7 +758,7 @@ static const char *verify_segment(const struct lfl_reader *r, uint64_t s, uint64
 
     for (i = 0; i < size; i++) {
         uses[i] = 0;
-        sorted[i] = brick_entry(r, KIND_DICTIONARY_ENTRIES, begin + i);
+        values[i] = brick_entry(r, KIND_DICTIONARY_ENTRIES, begin + i);
     }
     for (b = first; b < first + bricks; b++) {
         unsigned index = u16(item(r, KIND_BRICK_INDICES, b));
@@ -771,12 +770,12 @@ static const char *verify_segment(const struct lfl_reader *r, uint64_t s, uint64
         REFUSE_IF(uses[i] == 0, "dictionary-unused");
     for (i = 1; i < size; i++) {
         REFUSE_IF(uses[i - 1] < uses[i], "dictionary-order");
-        REFUSE_IF(uses[i - 1] == uses[i] && compare_words(&sorted[i - 1], &sorted[i]) > 0, "dictionary-order");
+        REFUSE_IF(uses[i - 1] == uses[i] && compare_words(&values[i - 1], &values[i]) >= 0, "dictionary-order");
     }
-    if (size > 1)
-        qsort(sorted, (size_t)size, sizeof *sorted, compare_words);
+    if (size > 0)
+        qsort(values, (size_t)size, sizeof *values, compare_words);
     for (i = 1; i < size; i++)
-        REFUSE_IF(compare_words(&sorted[i - 1], &sorted[i]) == 0, "dictionary-duplicate");
+        REFUSE_IF(compare_words(&values[i - 1], &values[i]) == 0, "dictionary-duplicate");
     return NULL;
 }
 
@@ -785,14 +784,14 @@ static const char *verify_dictionary(const struct lfl_reader *r)
     uint64_t s, segments = r->section[KIND_DICTIONARY_SEGMENTS].count, previous_end = 0;
     size_t room = (size_t)(r->entries < MAX_SEGMENT_ENTRIES ? r->entries : MAX_SEGMENT_ENTRIES);
     uint32_t *uses;
-    struct words *sorted;
+    struct words *values;
     const char *error = NULL;
     if (r->encoding == RAW)
         return NULL;
 
     uses = malloc(room * sizeof *uses);
-    sorted = malloc(room * sizeof *sorted);
-    if (uses == NULL || sorted == NULL)
+    values = malloc(room * sizeof *values);
+    if (uses == NULL || values == NULL)
         error = lfl_out_of_memory;
     for (s = 0; s < segments && error == NULL; s++) {
         uint64_t begin = u64(item(r, KIND_DICTIONARY_SEGMENTS, s)), end = r->entries;
@@ -801,10 +800,10 @@ static const char *verify_dictionary(const struct lfl_reader *r)
         if (begin != previous_end || end < begin || end > r->entries || end - begin > MAX_SEGMENT_ENTRIES)
             error = "dictionary-range";
         else
-            error = verify_segment(r, s, begin, end, uses, sorted);
+            error = verify_segment(r, s, begin, end, uses, values);
         previous_end = end;
     }
-    free(sorted);
+    free(values);
     free(uses);
     return error;
 }
@@ -873,16 +872,13 @@ enum lfl_tag lfl_cell_tag(const struct lfl_reader *r, uint32_t x, uint32_t y, ui
         return (enum lfl_tag)r->root;
     for (e = 0; e + 1 < r->levels; e++) {
         unsigned s = 2 * (r->levels - 1 - e);
-        uint64_t child;
         c = morton(x >> s, y >> s, z >> s);
         w = element(r, n);
         tag = tag_of(w, c);
         if (tag != LFL_BRANCH)
             return tag;
-        if (!first_child(r, n, &child))
-            return LFL_DAMAGED;
-        n = child + popcount(branch_cells(w) & ((UINT64_C(1) << c) - 1)); /* wraps to a small number, if at all */
-        if (n < child || n < r->start[e + 1] || n >= r->start[e + 2])
+        n = first_child(r, n) + popcount(branch_cells(w) & ((UINT64_C(1) << c) - 1));
+        if (n < r->start[e + 1] || n >= r->start[e + 2])
             return LFL_DAMAGED;
     }
     if (!brick(r, n - r->elements, &w))
@@ -893,7 +889,7 @@ enum lfl_tag lfl_cell_tag(const struct lfl_reader *r, uint32_t x, uint32_t y, ui
 
 /* ---- §7 Questions and answers ----------------------------------------------------------------------------------- */
 
-/* sum += d · factor, for a d that is not negative, or for the opposite of one that is. The factor is less than 2^32. */
+/* sum += |d| · factor, for a factor less than 2^32. */
 static void add_multiple(struct natural *sum, struct dyadic d, uint64_t factor)
 {
     unsigned shift = (unsigned)(d.exponent - UNIT_EXPONENT);
@@ -1008,23 +1004,6 @@ enum { OK = 0, REFUSED = 1, FAILED = 2 };
 enum checks { PROBE, PLAIN, METADATA, ALL };
 enum question { FACTS, POINTS, VOLUME };
 
-/* As C99's %a, but in the one form that has the first bit before the point and no zeros at the end. */
-static void print_double(uint64_t bits)
-{
-    uint64_t fraction = bits & ((UINT64_C(1) << 52) - 1);
-    int digits = 13;
-    if (bits << 1 == 0) {
-        printf("0x0p+0");
-        return;
-    }
-    for (; digits > 0 && (fraction & 15) == 0; digits--)
-        fraction >>= 4;
-    printf("%s0x1%s", bits >> 63 ? "-" : "", digits > 0 ? "." : "");
-    if (digits > 0)
-        printf("%0*" PRIx64, digits, fraction);
-    printf("p%+d", (int)(bits >> 52 & 0x7FF) - 1023); /* origins, edges and volumes are normal numbers */
-}
-
 /* Control characters could do things to a terminal, and are printed as \xHH. */
 static void print_text(const unsigned char *p, size_t length)
 {
@@ -1049,14 +1028,9 @@ static void print_facts(const struct lfl_reader *r, enum checks checks)
 
     printf("length: %" PRIu64 "\n", r->file_length);
     printf("version: %u.%u\n", r->major, r->minor);
-    printf("origin:");
-    for (i = 0; i < 3; i++) {
-        putchar(' ');
-        print_double(r->origin[i]);
-    }
-    printf("\nedge: ");
-    print_double(r->edge);
-    printf("\ndepth: %u\n", r->depth);
+    printf("origin: %a %a %a\n", from_bits(r->origin[0]), from_bits(r->origin[1]), from_bits(r->origin[2]));
+    printf("edge: %a\n", from_bits(r->edge));
+    printf("depth: %u\n", r->depth);
     printf("root: %s\n", tags[r->root]);
     printf("exterior: %s\n", tags[r->exterior]);
     printf("planes: %u\n", r->brick_planes);
@@ -1088,16 +1062,9 @@ static void print_facts(const struct lfl_reader *r, enum checks checks)
 
 static void print_volume(const struct lfl_reader *r)
 {
-    double volume[2];
-    uint64_t bits;
-    lfl_volume(r, &volume[0], &volume[1]);
-    printf("volume: ");
-    memcpy(&bits, &volume[0], sizeof bits);
-    print_double(bits);
-    putchar(' ');
-    memcpy(&bits, &volume[1], sizeof bits);
-    print_double(bits);
-    putchar('\n');
+    double lower, upper;
+    lfl_volume(r, &lower, &upper);
+    printf("volume: %a %a\n", lower, upper);
 }
 
 static int answer_points(const struct lfl_reader *r)
@@ -1113,7 +1080,7 @@ static int answer_points(const struct lfl_reader *r)
             if (end == p)
                 break;
         }
-        if (i < 3 || p[strspn(p, " \t\r\n")] != '\0') {
+        if (i < 3 || p[strspn(p, " \t\r\n")] != '\0' || (strchr(p, '\n') == NULL && !feof(stdin))) {
             fprintf(stderr, "not a point: %s", line);
             return FAILED;
         }
