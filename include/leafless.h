@@ -25,6 +25,7 @@
  *   and z.
  * - Buffers that are not known to be large enough are filled in two steps: with a NULL buffer the function tells the
  *   number of elements, then it fills. Capacities count elements.
+ * - Buffers and results of one call must not overlap.
  * - Functions of the host get their context first, return 0 to go on, and must not throw or longjmp through the
  *   library.
  *
@@ -493,58 +494,6 @@ typedef struct {
 } leafless_mesh_report;
 
 /**
- * Classifies the box [min, max] (3 numbers each, model units) for the host's own shape: LEAFLESS_TAG_EMPTY or
- * LEAFLESS_TAG_FULL if that is proven for all of the box, LEAFLESS_TAG_PARTIAL to be asked about its eight parts.
- * Anything else ends the operation with LEAFLESS_E_CALLBACK and the number in the message; so use a negative
- * number for the host's own errors.
- *
- * It is called from several threads at once, unless the operation's options say `threads` = 1, and must give the
- * same answer to the same box. It must return: no exception, no longjmp. It may call this library.
- */
-typedef int32_t (*leafless_classify_fn)(void *ctx, const double *min, const double *max);
-
-/**
- * Decides a point (3 numbers, model units) for the host's own shape: 1 inside, 0 outside; anything else ends the
- * operation with LEAFLESS_E_CALLBACK. Else as leafless_classify_fn.
- */
-typedef int32_t (*leafless_contains_fn)(void *ctx, const double *point);
-
-/**
- * Called once, when nothing uses `ctx` any more, in the thread that gave back the last reference.
- */
-typedef void (*leafless_destroy_fn)(void *ctx);
-
-/**
- * The host's own shape. All fields but the first may be zero; `classify` must be set.
- */
-typedef struct {
-    /**
-     * sizeof(leafless_callbacks).
-     */
-    uint32_t struct_size;
-    /**
-     * A leafless_exterior.
-     */
-    uint32_t exterior;
-    /**
-     * Classifies boxes.
-     */
-    leafless_classify_fn classify;
-    /**
-     * Decides points: LEAFLESS_RULE_SAMPLED needs it; optional.
-     */
-    leafless_contains_fn contains;
-    /**
-     * Called when `ctx` is not needed any more; optional.
-     */
-    leafless_destroy_fn destroy;
-    /**
-     * What the functions are called with.
-     */
-    void *ctx;
-} leafless_callbacks;
-
-/**
  * What can be said of an octree at once.
  */
 typedef struct {
@@ -611,6 +560,58 @@ typedef struct {
      */
     leafless_interval volume_model;
 } leafless_statistics;
+
+/**
+ * Classifies the box [min, max] (3 numbers each, model units) for the host's own shape: LEAFLESS_TAG_EMPTY or
+ * LEAFLESS_TAG_FULL if that is proven for all of the box, LEAFLESS_TAG_PARTIAL to be asked about its eight parts.
+ * Anything else ends the operation with LEAFLESS_E_CALLBACK and the number in the message; so use a negative
+ * number for the host's own errors.
+ *
+ * It is called from several threads at once, unless the operation's options say `threads` = 1, and must give the
+ * same answer to the same box. It must return: no exception, no longjmp. It may call this library.
+ */
+typedef int32_t (*leafless_classify_fn)(void *ctx, const double *min, const double *max);
+
+/**
+ * Decides a point (3 numbers, model units) for the host's own shape: 1 inside, 0 outside; anything else ends the
+ * operation with LEAFLESS_E_CALLBACK. Else as leafless_classify_fn.
+ */
+typedef int32_t (*leafless_contains_fn)(void *ctx, const double *point);
+
+/**
+ * Called once, when nothing uses `ctx` any more, in the thread that gave back the last reference.
+ */
+typedef void (*leafless_destroy_fn)(void *ctx);
+
+/**
+ * The host's own shape. All fields but the first may be zero; `classify` must be set.
+ */
+typedef struct {
+    /**
+     * sizeof(leafless_callbacks).
+     */
+    uint32_t struct_size;
+    /**
+     * A leafless_exterior.
+     */
+    uint32_t exterior;
+    /**
+     * Classifies boxes.
+     */
+    leafless_classify_fn classify;
+    /**
+     * Decides points: LEAFLESS_RULE_SAMPLED needs it; optional.
+     */
+    leafless_contains_fn contains;
+    /**
+     * Called when `ctx` is not needed any more; optional.
+     */
+    leafless_destroy_fn destroy;
+    /**
+     * What the functions are called with.
+     */
+    void *ctx;
+} leafless_callbacks;
 
 /**
  * Where a cursor stands.
@@ -1210,6 +1211,180 @@ leafless_status leafless_mesh_translated(const leafless_mesh *mesh,
                                          leafless_mesh **moved);
 
 /**
+ * The octree whose whole universe has one tag.
+ *
+ * - Buffers: `frame`, one struct; `octree`, one pointer. `tag` and `exterior` are leafless_tags, not BRANCH: what
+ *   is known of the universe, and of the space around it.
+ * - Result: `*octree`.
+ * - Errors: LEAFLESS_E_ARGUMENT.
+ * - Ownership: give `*octree` back with leafless_octree_free.
+ * - Threads: any.
+ * - Untrusted input: any numbers.
+ * - Since: 0.1
+ */
+leafless_status leafless_octree_uniform(const leafless_frame *frame,
+                                        uint32_t tag,
+                                        uint32_t exterior,
+                                        leafless_octree **octree);
+
+/**
+ * One more reference to an octree.
+ *
+ * - Buffers: `octree`, a handle; `reference`, one pointer.
+ * - Result: `*reference`, equal to `octree`.
+ * - Errors: only the general ones.
+ * - Ownership: give each reference back with leafless_octree_free.
+ * - Threads: any.
+ * - Untrusted input: none.
+ * - Since: 0.1
+ */
+leafless_status leafless_octree_ref(const leafless_octree *octree, leafless_octree **reference);
+
+/**
+ * Gives back a reference to an octree. With the last one the octree is gone, and with it the mapping of its file,
+ * unless a cursor or a solid still shares it.
+ *
+ * - Buffers: `octree`, a handle or NULL, which does nothing.
+ * - Result: none.
+ * - Errors: none.
+ * - Ownership: the reference is gone.
+ * - Threads: any; no other call may use this reference.
+ * - Untrusted input: none.
+ * - Since: 0.1
+ */
+void leafless_octree_free(leafless_octree *octree);
+
+/**
+ * What can be said of an octree at once. O(1).
+ *
+ * - Buffers: `info`, one struct.
+ * - Result: `*info`.
+ * - Errors: only the general ones.
+ * - Ownership: nothing changes hands.
+ * - Threads: any.
+ * - Untrusted input: any octree.
+ * - Since: 0.1
+ */
+leafless_status leafless_octree_describe(const leafless_octree *octree, leafless_octree_info *info);
+
+/**
+ * Counts over all levels, and the certified volume. O(depth) once the counts are known, which for an octree from
+ * a file they are and for a new one takes one pass over its arrays.
+ *
+ * - Buffers: `statistics`, one struct.
+ * - Result: `*statistics`.
+ * - Errors: only the general ones.
+ * - Ownership: nothing changes hands.
+ * - Threads: any.
+ * - Untrusted input: any octree; of one that was mapped unverified the numbers may be wrong.
+ * - Since: 0.1
+ */
+leafless_status leafless_octree_statistics(const leafless_octree *octree,
+                                           leafless_statistics *statistics);
+
+/**
+ * Counts of each level, and the certified volumes of the tree cut there. Entry 0 is the universe, entry `depth`
+ * the finest cells.
+ *
+ * - Buffers: `levels`, room for `capacity` structs, or NULL to ask for the count only; `count`, one number.
+ * - Result: `*count`, depth + 1; the levels.
+ * - Errors: LEAFLESS_E_BUFFER if the capacity is too small.
+ * - Ownership: nothing changes hands.
+ * - Threads: any.
+ * - Untrusted input: any octree; of one that was mapped unverified the numbers may be wrong.
+ * - Since: 0.1
+ */
+leafless_status leafless_octree_levels(const leafless_octree *octree,
+                                       leafless_statistics *levels,
+                                       uint64_t capacity,
+                                       uint64_t *count);
+
+/**
+ * Checks that an octree is well-formed and canonical: O(n). Those that the library makes, opens or maps verified
+ * are; the bytes that checksums cover are not looked at here, see leafless_bytes_verify.
+ *
+ * - Buffers: none.
+ * - Result: LEAFLESS_OK if it is.
+ * - Errors: LEAFLESS_E_DAMAGED, with the first damage in the message.
+ * - Ownership: nothing changes hands.
+ * - Threads: any.
+ * - Untrusted input: any octree.
+ * - Since: 0.1
+ */
+leafless_status leafless_octree_check(const leafless_octree *octree);
+
+/**
+ * Whether two octrees have the same cells with the same tags on the same frame. Metadata does not count. O(n).
+ *
+ * - Buffers: `equal`, one truth value.
+ * - Result: `*equal`.
+ * - Errors: only the general ones.
+ * - Ownership: nothing changes hands.
+ * - Threads: any.
+ * - Untrusted input: any octrees.
+ * - Since: 0.1
+ */
+leafless_status leafless_octree_equal(const leafless_octree *a,
+                                      const leafless_octree *b,
+                                      bool *equal);
+
+/**
+ * The octree with one more fact in its metadata, or with another value of one; the arrays are shared. Names in
+ * use: "name", "units", "source", "rule".
+ *
+ * - Buffers: `key` and `value`, `key_length` and `value_length` bytes of UTF-8; `named`, one pointer.
+ * - Result: `*named`.
+ * - Errors: LEAFLESS_E_UTF8; LEAFLESS_E_ARGUMENT if key and value are longer than 1 MiB.
+ * - Ownership: the texts are copied; `octree` stays as it is; give `*named` back with leafless_octree_free.
+ * - Threads: any.
+ * - Untrusted input: any texts; all of an octree's metadata may take 1 MiB in a file.
+ * - Since: 0.1
+ */
+leafless_status leafless_octree_with_metadata(const leafless_octree *octree,
+                                              const char *key,
+                                              size_t key_length,
+                                              const char *value,
+                                              size_t value_length,
+                                              leafless_octree **named);
+
+/**
+ * The value of a fact in an octree's metadata.
+ *
+ * - Buffers: `key`, `key_length` bytes of UTF-8; `value` and `value_length`, one each.
+ * - Result: `*value`, not NUL-terminated; NULL if there is no such fact. `*value_length`, in bytes.
+ * - Errors: LEAFLESS_E_UTF8.
+ * - Ownership: the text belongs to the octree and lives as long as the reference `octree`.
+ * - Threads: any.
+ * - Untrusted input: any octree.
+ * - Since: 0.1
+ */
+leafless_status leafless_octree_peek_metadata(const leafless_octree *octree,
+                                              const char *key,
+                                              size_t key_length,
+                                              const char **value,
+                                              size_t *value_length);
+
+/**
+ * A fact of an octree's metadata by its place among all, which stand by ascending key.
+ *
+ * - Buffers: `count`, one number; `key`, `key_length`, `value`, `value_length`, one each, all four NULL to ask
+ *   for the count only.
+ * - Result: `*count`, the number of all facts; key and value, not NUL-terminated, with their lengths in bytes.
+ * - Errors: LEAFLESS_E_ARGUMENT if there is no fact `index`, unless only the count is asked for.
+ * - Ownership: the texts belong to the octree and live as long as the reference `octree`.
+ * - Threads: any.
+ * - Untrusted input: any octree.
+ * - Since: 0.1
+ */
+leafless_status leafless_octree_peek_metadata_at(const leafless_octree *octree,
+                                                 uint64_t index,
+                                                 uint64_t *count,
+                                                 const char **key,
+                                                 size_t *key_length,
+                                                 const char **value,
+                                                 size_t *value_length);
+
+/**
  * The ball of all points at most `radius` from `centre`. Its verdicts are exact.
  *
  * - Buffers: `centre_model`, 3 numbers; `solid`, one pointer.
@@ -1354,23 +1529,6 @@ leafless_status leafless_octree_build(const leafless_solid *solid,
                                       leafless_octree **octree);
 
 /**
- * The octree whose whole universe has one tag.
- *
- * - Buffers: `frame`, one struct; `octree`, one pointer. `tag` and `exterior` are leafless_tags, not BRANCH: what
- *   is known of the universe, and of the space around it.
- * - Result: `*octree`.
- * - Errors: LEAFLESS_E_ARGUMENT.
- * - Ownership: give `*octree` back with leafless_octree_free.
- * - Threads: any.
- * - Untrusted input: any numbers.
- * - Since: 0.1
- */
-leafless_status leafless_octree_uniform(const leafless_frame *frame,
-                                        uint32_t tag,
-                                        uint32_t exterior,
-                                        leafless_octree **octree);
-
-/**
  * The octree with its PARTIAL cells resolved: EMPTY under LEAFLESS_RULE_INNER, FULL under LEAFLESS_RULE_OUTER.
  *
  * - Buffers: `options`, one struct or NULL; `resolved`, one pointer. `rule` is a leafless_rule.
@@ -1402,163 +1560,6 @@ leafless_status leafless_octree_resolve(const leafless_octree *octree,
  */
 leafless_status leafless_octree_compact(const leafless_octree *octree,
                                         leafless_octree **compacted);
-
-/**
- * One more reference to an octree.
- *
- * - Buffers: `octree`, a handle; `reference`, one pointer.
- * - Result: `*reference`, equal to `octree`.
- * - Errors: only the general ones.
- * - Ownership: give each reference back with leafless_octree_free.
- * - Threads: any.
- * - Untrusted input: none.
- * - Since: 0.1
- */
-leafless_status leafless_octree_ref(const leafless_octree *octree, leafless_octree **reference);
-
-/**
- * Gives back a reference to an octree. With the last one the octree is gone, and with it the mapping of its file,
- * unless a cursor or a solid still shares it.
- *
- * - Buffers: `octree`, a handle or NULL, which does nothing.
- * - Result: none.
- * - Errors: none.
- * - Ownership: the reference is gone.
- * - Threads: any; no other call may use this reference.
- * - Untrusted input: none.
- * - Since: 0.1
- */
-void leafless_octree_free(leafless_octree *octree);
-
-/**
- * What can be said of an octree at once. O(1).
- *
- * - Buffers: `info`, one struct.
- * - Result: `*info`.
- * - Errors: only the general ones.
- * - Ownership: nothing changes hands.
- * - Threads: any.
- * - Untrusted input: any octree.
- * - Since: 0.1
- */
-leafless_status leafless_octree_describe(const leafless_octree *octree, leafless_octree_info *info);
-
-/**
- * Counts over all levels, and the certified volume. O(depth) once the counts are known, which for an octree from
- * a file they are and for a new one takes one pass over its arrays.
- *
- * - Buffers: `statistics`, one struct.
- * - Result: `*statistics`.
- * - Errors: only the general ones.
- * - Ownership: nothing changes hands.
- * - Threads: any.
- * - Untrusted input: any octree; of one that was mapped unverified the numbers may be wrong.
- * - Since: 0.1
- */
-leafless_status leafless_octree_statistics(const leafless_octree *octree,
-                                           leafless_statistics *statistics);
-
-/**
- * Counts of each level, and the certified volumes of the tree cut there. Entry 0 is the universe, entry `depth`
- * the finest cells.
- *
- * - Buffers: `levels`, room for `capacity` structs, or NULL to ask for the count only; `count`, one number.
- * - Result: `*count`, depth + 1; the levels.
- * - Errors: LEAFLESS_E_BUFFER if the capacity is too small.
- * - Ownership: nothing changes hands.
- * - Threads: any.
- * - Untrusted input: any octree; of one that was mapped unverified the numbers may be wrong.
- * - Since: 0.1
- */
-leafless_status leafless_octree_levels(const leafless_octree *octree,
-                                       leafless_statistics *levels,
-                                       uint64_t capacity,
-                                       uint64_t *count);
-
-/**
- * Checks that an octree is well-formed and canonical: O(n). Those that the library makes, opens or maps verified
- * are; the bytes that checksums cover are not looked at here, see leafless_bytes_verify.
- *
- * - Buffers: none.
- * - Result: LEAFLESS_OK if it is.
- * - Errors: LEAFLESS_E_DAMAGED, with the first damage in the message.
- * - Ownership: nothing changes hands.
- * - Threads: any.
- * - Untrusted input: any octree.
- * - Since: 0.1
- */
-leafless_status leafless_octree_check(const leafless_octree *octree);
-
-/**
- * Whether two octrees have the same cells with the same tags on the same frame. Metadata does not count. O(n).
- *
- * - Buffers: `equal`, one truth value.
- * - Result: `*equal`.
- * - Errors: only the general ones.
- * - Ownership: nothing changes hands.
- * - Threads: any.
- * - Untrusted input: any octrees.
- * - Since: 0.1
- */
-leafless_status leafless_octree_equal(const leafless_octree *a,
-                                      const leafless_octree *b,
-                                      bool *equal);
-
-/**
- * The octree with one more fact in its metadata, or with another value of one; the arrays are shared. Names in
- * use: "name", "units", "source", "rule".
- *
- * - Buffers: `key` and `value`, `key_length` and `value_length` bytes of UTF-8; `named`, one pointer.
- * - Result: `*named`.
- * - Errors: LEAFLESS_E_UTF8.
- * - Ownership: the texts are copied; `octree` stays as it is; give `*named` back with leafless_octree_free.
- * - Threads: any.
- * - Untrusted input: any texts; all of an octree's metadata may take 1 MiB in a file.
- * - Since: 0.1
- */
-leafless_status leafless_octree_with_metadata(const leafless_octree *octree,
-                                              const char *key,
-                                              size_t key_length,
-                                              const char *value,
-                                              size_t value_length,
-                                              leafless_octree **named);
-
-/**
- * The value of a fact in an octree's metadata.
- *
- * - Buffers: `key`, `key_length` bytes of UTF-8; `value` and `value_length`, one each.
- * - Result: `*value`, not NUL-terminated; NULL if there is no such fact. `*value_length`, in bytes.
- * - Errors: LEAFLESS_E_UTF8.
- * - Ownership: the text belongs to the octree and lives as long as the reference `octree`.
- * - Threads: any.
- * - Untrusted input: any octree.
- * - Since: 0.1
- */
-leafless_status leafless_octree_peek_metadata(const leafless_octree *octree,
-                                              const char *key,
-                                              size_t key_length,
-                                              const char **value,
-                                              size_t *value_length);
-
-/**
- * A fact of an octree's metadata by its place among all, which stand by ascending key.
- *
- * - Buffers: `count`, one number; `key`, `key_length`, `value`, `value_length`, one each, all four NULL to ask
- *   for the count only.
- * - Result: `*count`, the number of all facts; key and value, not NUL-terminated, with their lengths in bytes.
- * - Errors: LEAFLESS_E_ARGUMENT if there is no fact `index`, unless only the count is asked for.
- * - Ownership: the texts belong to the octree and live as long as the reference `octree`.
- * - Threads: any.
- * - Untrusted input: any octree.
- * - Since: 0.1
- */
-leafless_status leafless_octree_peek_metadata_at(const leafless_octree *octree,
-                                                 uint64_t index,
-                                                 uint64_t *count,
-                                                 const char **key,
-                                                 size_t *key_length,
-                                                 const char **value,
-                                                 size_t *value_length);
 
 /**
  * Every point of `a` and of `b`. Exact, and the same bit for bit for any number of threads; never larger than
