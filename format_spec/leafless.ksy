@@ -1,0 +1,945 @@
+# The file format of Leafless, version 0.0, as a Kaitai Struct description. The specification is specification.md
+# beside this file; where the two differ, that one is right.
+#
+# Every `valid` is a rule of §10 of the specification, except those that are marked "implied": these follow from rules
+# that a description cannot state. What it does not state: checksums, links, the counts of the level table but for the
+# implied ones, order and use of dictionary entries, and `planes-needless`. So a file that can be read through this
+# description need not be valid.
+#
+# Instances are read when they are asked for, and only then are their rules applied; check_ksy.py asks for all. Fields
+# of no bytes, such as `end_of_header`, carry rules about several fields. Derived values are cast because Kaitai takes
+# the result of an operation as 32 bits wide in some languages; where even a cast does not help (JavaScript), `lower`,
+# `upper` and what is derived from them are not exact, but no rule depends on them.
+meta:
+  id: leafless
+  title: Leafless octree file
+  file-extension: lfl
+  license: MIT OR Apache-2.0
+  ks-version: '0.11'
+  encoding: UTF-8
+  endian: le
+doc: |
+  One octree of a solid, which can be mapped into memory and queried where it lies. Every cell of the tree is EMPTY
+  (outside of the solid), FULL (inside), PARTIAL (undecided), or BRANCH: it is then cut into eight children. Only BRANCH
+  cells are stored. One entry, an element, describes two levels at once: 64 cells of two bits. Elements of the deepest
+  level, called bricks, have no BRANCH cells and lie in an array of their own.
+
+  The file is a header, a table of sections, and the sections, with zero bytes between them.
+doc-ref: specification.md
+seq:
+  - id: header
+    type: header
+    doc: The first 128 bytes.
+    doc-ref: specification.md §3
+  - id: sections
+    type: section(_index)
+    repeat: expr
+    repeat-expr: header.num_sections
+    doc: The section table. Sections lie in the file in this order.
+    doc-ref: specification.md §4
+instances:
+  find_planes:
+    type: finder(section_kind::planes)
+    doc: The place of the section `planes` in the table.
+  find_rel:
+    type: finder(section_kind::rel)
+    doc: The place of the section `rel` in the table.
+  find_base:
+    type: finder(section_kind::base)
+    doc: The place of the section `base` in the table.
+  find_bricks:
+    type: finder(section_kind::bricks)
+    doc: The place of the section `bricks` in the table.
+  find_brick_indices:
+    type: finder(section_kind::brick_indices)
+    doc: The place of the section `brick indices` in the table.
+  find_dictionary_entries:
+    type: finder(section_kind::dictionary_entries)
+    doc: The place of the section `dictionary entries` in the table.
+  find_dictionary_segments:
+    type: finder(section_kind::dictionary_segments)
+    doc: The place of the section `dictionary segments` in the table.
+  find_level_table:
+    type: finder(section_kind::level_table)
+    doc: The place of the section `level table` in the table.
+  find_metadata:
+    type: finder(section_kind::metadata)
+    doc: The place of the section `metadata` in the table.
+  planes:
+    pos: find_planes.section.ofs_body
+    size: find_planes.section.len_body
+    type: planes
+    if: find_planes.is_found
+    doc: The elements; absent if there are none.
+  rel:
+    pos: find_rel.section.ofs_body
+    size: find_rel.section.len_body
+    type: rel
+    if: find_rel.is_found
+    doc: Links of single elements; absent if there are no elements.
+  base:
+    pos: find_base.section.ofs_body
+    size: find_base.section.len_body
+    type: base
+    if: find_base.is_found
+    doc: Links of blocks of 1024 elements; absent if there are no elements.
+  bricks:
+    pos: find_bricks.section.ofs_body
+    size: find_bricks.section.len_body
+    type: bricks
+    if: find_bricks.is_found
+    doc: Bricks that are stored raw; absent if there are none.
+  brick_indices:
+    pos: find_brick_indices.section.ofs_body
+    size: find_brick_indices.section.len_body
+    type: brick_indices
+    if: find_brick_indices.is_found
+    doc: For each brick its dictionary entry; absent if bricks are raw.
+  dictionary_entries:
+    pos: find_dictionary_entries.section.ofs_body
+    size: find_dictionary_entries.section.len_body
+    type: bricks
+    if: find_dictionary_entries.is_found
+    doc: The bricks that differ, segment by segment; absent if bricks are raw.
+  dictionary_segments:
+    pos: find_dictionary_segments.section.ofs_body
+    size: find_dictionary_segments.section.len_body
+    type: dictionary_segments
+    if: find_dictionary_segments.is_found
+    doc: Where the entries of each segment begin; absent if bricks are raw.
+  level_table:
+    pos: find_level_table.section.ofs_body
+    size: find_level_table.section.len_body
+    type: level_table
+    doc: Counts of cells of every octree level. It is always there.
+  metadata:
+    pos: find_metadata.section.ofs_body
+    size: find_metadata.section.len_body
+    type: metadata
+    if: find_metadata.is_found
+    doc: Facts about the solid; absent if there are none.
+types:
+  header:
+    doc: What the file is, and how much there is of everything. All else is checked against it.
+    doc-ref: specification.md §3
+    seq:
+      - id: magic
+        contents: [0x89, LFL, 0x0d, 0x0a, 0x1a, 0x0a]
+        doc: |
+          A byte that is not ASCII, three letters, CR LF, the end-of-file mark of DOS, LF: a transfer that changes bytes
+          of text changes it. (Rule `header-magic`, and with it `header-text-mode`.)
+      - id: version_major
+        type: u2
+        valid: 0
+        doc: Files of another major version need another reader. (`header-major`)
+      - id: version_minor
+        type: u2
+        doc: Files of newer minor versions are read; in these, flags and reserved fields are not looked at.
+      - id: len_header
+        type: u4
+        valid: 128
+        doc: Bytes of the header. (`header-length`)
+      - id: required_flags
+        type: u4
+        valid: 0
+        doc: What a reader must understand; nothing is defined. (`header-required-flags`)
+      - id: optional_flags
+        type: u4
+        valid:
+          expr: _ == 0 or version_minor != 0
+        doc: What a reader may ignore; nothing is defined. (`header-optional-flags`)
+      - id: len_file
+        type: u8
+        doc: Bytes of the file, which ends with its last section.
+      - id: origin_x
+        size: 8
+        type: coordinate
+        doc: Lower corner of the universe along x, in model units.
+      - id: origin_y
+        size: 8
+        type: coordinate
+        doc: The same along y.
+      - id: origin_z
+        size: 8
+        type: coordinate
+        doc: The same along z.
+      - id: edge
+        type: f8
+        valid:
+          min: 8.636168555094445e-78
+          max: 1.157920892373162e+77
+        doc: Edge of the universe, a cube, in model units; 2^-256 to 2^256. (`header-edge`)
+      - id: depth
+        type: u1
+        valid:
+          min: 1
+          max: 20
+        doc: The level of the finest cells, of which there are 2^depth along each axis. (`header-depth`)
+      - id: root_tag
+        type: u1
+        enum: tag
+        valid:
+          in-enum: true
+        doc: The tag of the universe. If it is not BRANCH, it says all, and nothing else is stored. (`header-root`)
+      - id: exterior
+        type: u1
+        enum: tag
+        valid:
+          any-of:
+            - tag::empty
+            - tag::partial
+            - tag::full
+        doc: The tag of the space outside of the universe. (`header-exterior`)
+      - id: num_brick_planes
+        type: u1
+        valid:
+          expr: _ == 2 or (_ == 1 and root_tag != tag::partial)
+        doc: |
+          Words of a brick: 1 in a binary tree, 2 in a tree with any PARTIAL cell, even if it has no bricks.
+          (`header-brick-planes`; `planes-missing` as far as it is about the root tag)
+      - id: brick_encoding
+        type: u1
+        enum: brick_encoding
+        valid:
+          in-enum: true
+        doc: How bricks are stored. (`header-encoding`)
+      - id: segment_shift
+        type: u1
+        valid:
+          expr: 'has_dictionary ? _ >= 16 and _ <= 63 : _ == 0'
+        doc: |
+          With a dictionary: a segment is 2^shift bricks, and 63 stands for a single segment of all bricks. Else 0.
+          (`header-raw-shift`, `header-shift`)
+      - id: reserved1
+        type: u2
+        valid:
+          expr: _ == 0 or version_minor != 0
+        doc: Zero. (`header-reserved`)
+      - id: num_elements
+        type: u8
+        valid:
+          expr: _ == 0 or (depth > 2 and root_tag == tag::branch)
+        doc: Number of elements without bricks. (`header-elements`)
+      - id: num_bricks
+        type: u8
+        valid:
+          expr: >-
+            (_ == 0 or root_tag == tag::branch)
+            and (not has_dictionary or (_ > 0 and (segment_shift == 63 or ((_ - 1) >> segment_shift) > 0)))
+        doc: |
+          Number of bricks. With a dictionary there is at least one, and with a shift below 63 they fill more than one
+          segment. (`header-bricks`, `header-shift`)
+      - id: num_dictionary_entries
+        type: u8
+        valid:
+          expr: 'has_dictionary ? _ >= 1 and _ <= num_bricks : _ == 0'
+        doc: Number of dictionary entries in all segments. (`header-raw-entries`, `header-entries`)
+      - id: num_sections
+        type: u4
+        valid:
+          expr: _ >= 1 and _ <= 4096 and len_file > 128 + 40 * _
+        doc: Number of entries of the section table. (`header-section-count`, `header-file-length`)
+      - id: section_table_crc32
+        type: u4
+        doc: CRC32 of the section table, 40 · `num_sections` bytes. (`table-crc`, which is not checked here)
+      - id: reserved2
+        type: u1
+        repeat: expr
+        repeat-expr: 20
+        valid:
+          expr: _ == 0 or version_minor != 0
+        doc: Zero. (`header-reserved`)
+      - id: header_crc32
+        type: u4
+        doc: CRC32 of the 124 bytes before. (`header-crc`, which is not checked here)
+      - id: end_of_header
+        size: 0
+        valid:
+          expr: len_file == _root._io.size
+        doc: No bytes. The file is as long as it says. (`file-length`)
+    instances:
+      is_binary:
+        value: num_brick_planes == 1
+        doc: Whether no cell is PARTIAL. The other trees are certified ones.
+      has_dictionary:
+        value: brick_encoding == brick_encoding::dictionary
+        doc: Whether bricks are stored through a dictionary.
+      parity:
+        value: depth % 2
+        doc: 1 if the depth is odd. The root element then begins half-way, and only its octant 0 is in the universe.
+      num_element_levels:
+        value: (depth + 1) / 2
+        doc: Element levels, with that of the bricks, which is the last.
+      num_raw_bricks:
+        value: '(has_dictionary ? 0 : num_bricks).as<u8>'
+        doc: Entries of the section `bricks`.
+      num_indexed_bricks:
+        value: '(has_dictionary ? num_bricks : 0).as<u8>'
+        doc: Entries of the section `brick indices`.
+      num_segments:
+        value: '(not has_dictionary ? 0 : segment_shift == 63 ? 1 : ((num_bricks - 1) >> segment_shift) + 1).as<u8>'
+        doc: Segments of the dictionary.
+      num_blocks:
+        value: '(num_elements == 0 ? 0 : (num_elements - 1) / 1024 + 1).as<u8>'
+        doc: Entries of the section `base`, one for every 1024 elements.
+      len_brick:
+        value: 8 * num_brick_planes
+        doc: Bytes of a brick.
+      len_table_end:
+        value: 128 + 40 * num_sections
+        doc: Where the section table ends.
+      kinds_demanded:
+        value: |
+          0b1_0000_0000 | (num_elements > 0 ? 0b1110 : 0)
+          | (num_bricks == 0 ? 0 : has_dictionary ? 0b1110_0000 : 0b1_0000)
+        doc: |
+          Bit k is set if the section of kind k must be there: the level table always, planes, rel and base if there are
+          elements, and for bricks either those or indices, entries and segments.
+  coordinate:
+    doc: |
+      A coordinate of the origin: zero, or of a magnitude of 2^-256 to 2^256. Negative zero is illegal.
+      (`header-origin`)
+    seq:
+      - id: value
+        type: f8
+        valid:
+          expr: >-
+            (_ >= 8.636168555094445e-78 and _ <= 1.157920892373162e+77)
+            or (_ <= -8.636168555094445e-78 and _ >= -1.157920892373162e+77)
+            or (_ == 0.0 and sign_byte == 0)
+        doc: The coordinate, in model units.
+    instances:
+      sign_byte:
+        pos: 7
+        type: u1
+        doc: The byte whose highest bit is the sign. It tells the two zeros apart, which compare as equal.
+  section:
+    doc: One entry of the section table.
+    doc-ref: specification.md §4
+    params:
+      - id: index
+        type: s4
+        doc: The place in the table.
+    seq:
+      - id: kind_code
+        type: u4
+        valid:
+          expr: _ != 0 and (not is_known or (kinds_before >> _ & 1) == 0)
+        doc: What the section holds. No known kind stands twice. (`section-kind`, `section-twice`)
+      - id: len_element
+        type: u4
+        valid:
+          expr: not is_known or _ == len_element_demanded
+        doc: Bytes of one element of the section. (`section-size`)
+      - id: ofs_body
+        type: u8
+        valid:
+          expr: _ % 64 == 0 and _ >= previous_end and _ <= _root.header.len_file
+        doc: |
+          Where the section begins in the file. (`section-alignment`, `section-overlap`, and `section-beyond` without
+          its length)
+      - id: len_body
+        type: u8
+        valid:
+          min: 1
+          max: _root.header.len_file - ofs_body
+        doc: Bytes of the section. (`section-beyond`, `section-length`)
+      - id: num_elements
+        type: u8
+        valid:
+          expr: >-
+            len_element > 0 and len_body % len_element == 0 and _ == len_body / len_element
+            and (not is_known or kind == section_kind::metadata or _ == num_elements_demanded)
+            and (kind != section_kind::metadata or _ <= 1048576)
+        doc: |
+          Number of the section's elements. A section that would have none is absent. (`section-length`,
+          `section-count`, `section-metadata-length`)
+      - id: body_crc32
+        type: u4
+        doc: CRC32 of the section's bytes. (`section-crc`, which is not checked here)
+      - id: flags
+        type: u4
+        valid:
+          expr: >-
+            (_ < 2 or _root.header.version_minor != 0)
+            and (is_known ? is_required == (kind != section_kind::metadata) : not is_required)
+        doc: |
+          Bit 0: a reader that does not know the kind must refuse the file. The others are zero. (`section-flags`,
+          `section-unknown`, `section-required`)
+      - id: end_of_table
+        size: 0
+        if: is_last
+        valid:
+          expr: >-
+            (kinds_before_next & _root.header.kinds_demanded) == _root.header.kinds_demanded
+            and body_end == _root.header.len_file
+        doc: |
+          No bytes. What is known after the last entry: all sections that must be there are, and the file ends with
+          the last one. (`section-missing`, `section-end`)
+    instances:
+      is_known:
+        value: kind_code >= 1 and kind_code <= 9
+        doc: Whether this description knows the kind.
+      kind:
+        value: kind_code
+        enum: section_kind
+        doc: The kind by name, if it is known. (What else it is depends on the language.)
+      is_required:
+        value: (flags & 1) != 0
+        doc: Whether a reader that does not know the kind must refuse the file.
+      is_last:
+        value: index == _root.header.num_sections.as<s4> - 1
+        doc: Whether this is the last entry of the table.
+      previous_end:
+        value: '(index == 0 ? _root.header.len_table_end : _root.sections[index - 1].body_end).as<u8>'
+        doc: Where the table or the previous section ends, and the padding begins.
+      body_end:
+        value: (ofs_body + len_body).as<u8>
+        doc: Where the section ends.
+      kinds_before:
+        value: '(index == 0 ? 0 : _root.sections[index - 1].kinds_before_next).as<u4>'
+        doc: Bit k is set if a section before this one has the known kind k.
+      kinds_before_next:
+        value: '(kinds_before | (is_known ? 1 << kind_code : 0)).as<u4>'
+        doc: The same with this section.
+      len_element_demanded:
+        value: |
+          kind == section_kind::planes ? 16
+          : kind == section_kind::rel ? 2
+          : kind == section_kind::base ? 8
+          : kind == section_kind::bricks ? _root.header.len_brick
+          : kind == section_kind::brick_indices ? 2
+          : kind == section_kind::dictionary_entries ? _root.header.len_brick
+          : kind == section_kind::dictionary_segments ? 8
+          : kind == section_kind::level_table ? 24
+          : 1
+        doc: The element size of a known kind.
+        doc-ref: specification.md §5
+      num_elements_demanded:
+        value: |
+          (kind == section_kind::planes ? _root.header.num_elements
+          : kind == section_kind::rel ? _root.header.num_elements
+          : kind == section_kind::base ? _root.header.num_blocks
+          : kind == section_kind::bricks ? _root.header.num_raw_bricks
+          : kind == section_kind::brick_indices ? _root.header.num_indexed_bricks
+          : kind == section_kind::dictionary_entries ? _root.header.num_dictionary_entries
+          : kind == section_kind::dictionary_segments ? _root.header.num_segments
+          : _root.header.depth + 1).as<u8>
+        doc: The number of elements that a known kind must have; metadata may have any.
+        doc-ref: specification.md §5
+      padding:
+        io: _root._io
+        pos: previous_end
+        type: u1
+        repeat: expr
+        repeat-expr: ofs_body - previous_end
+        valid: 0
+        doc: The bytes before the section. (`padding`)
+      body:
+        io: _root._io
+        pos: ofs_body
+        size: len_body
+        doc: The bytes of the section. For those of known kinds see the instances of the file.
+        doc-ref: specification.md §5
+  finder:
+    doc: A search for the section of one kind. It reads nothing of the file.
+    params:
+      - id: kind
+        type: u4
+        enum: section_kind
+        doc: The kind.
+    seq:
+      - id: steps
+        type: finder_step(_index, kind)
+        repeat: until
+        repeat-until: _.is_found or _.section.is_last
+        doc: Entries of the section table up to the one that is searched for.
+    instances:
+      is_found:
+        value: steps.last.is_found
+        doc: Whether there is such a section.
+      section:
+        value: steps.last.section
+        if: is_found
+        doc: The entry of the section table.
+  finder_step:
+    doc: One entry of the section table in a search.
+    params:
+      - id: index
+        type: s4
+        doc: The place in the table.
+      - id: kind
+        type: u4
+        enum: section_kind
+        doc: The kind that is searched for.
+    instances:
+      section:
+        value: _root.sections[index]
+        doc: The entry.
+      is_found:
+        value: section.kind == kind
+        doc: Whether it is of that kind.
+  planes:
+    doc: The elements, level by level; within a level in the order of their parents and of the cells of each parent.
+    doc-ref: specification.md §2.3, §2.4, §5.1
+    seq:
+      - id: elements
+        size: 16
+        type: element(2, _index == 0 and _root.header.parity == 1, false)
+        repeat: eos
+        doc: Element n has the index n.
+  element:
+    doc: |
+      An element or a brick: the tags of 64 cells, two levels below the cell to which it belongs. They are numbered in
+      Morton order, so that the cells 8k to 8k + 7 are the children of octant k. Of an element, each BRANCH cell has an
+      element or brick of its own; a brick has no BRANCH cells, and its cells are finest cells.
+    doc-ref: specification.md §2.3, §5.2
+    params:
+      - id: num_planes
+        type: u1
+        doc: With one plane the upper bits are the lower bits, so that a cell is FULL or EMPTY.
+      - id: is_half
+        type: bool
+        doc: Whether only the cells 0 to 7 exist, the octants of the universe, as in the root of an odd depth.
+      - id: is_brick
+        type: bool
+        doc: Whether this is a brick.
+    seq:
+      - id: lower_octants
+        type: u1
+        repeat: expr
+        repeat-expr: 8
+        valid:
+          expr: _index == 0 or not is_half or _ == 0
+        doc: |
+          The lower bits of the tags, "surely solid": of cell 8k + i bit i of byte k. Cells that do not exist are EMPTY.
+          (`element-padding`, `brick-padding`)
+      - id: upper_octants
+        type: u1
+        repeat: expr
+        repeat-expr: 8
+        if: num_planes == 2
+        valid:
+          expr: >-
+            (_index == 0 or not is_half or _ == 0)
+            and (not is_brick or (lower_octants[_index] & _) == lower_octants[_index])
+            and (not _root.header.is_binary or (lower_octants[_index] & _) == _)
+        doc: |
+          The upper bits of the tags, "possibly solid". Cells that do not exist are EMPTY (`element-padding`,
+          `brick-padding`), no cell of a brick is BRANCH (`brick-branch`), and none of a binary tree is PARTIAL
+          (`planes-missing`).
+      - id: end_of_element
+        size: 0
+        valid:
+          expr: >-
+            not (lower_bytes == none and upper_bytes == none) and not (lower_bytes == none and upper_bytes == all)
+            and not (lower_bytes == all and upper_bytes == all)
+        doc: |
+          No bytes. The cells that exist do not all have one tag other than BRANCH. (`element-uniform`,
+          `brick-uniform`)
+    instances:
+      ofs_upper:
+        value: 'num_planes == 2 ? 8 : 0'
+        doc: Where the upper bits begin.
+      lower:
+        pos: 0
+        type: u8
+        doc: The lower bits as one word. Bit c is that of cell c.
+      upper:
+        pos: ofs_upper
+        type: u8
+        doc: The upper bits as one word.
+      lower_bytes:
+        pos: 0
+        size: 8
+        doc: The lower bits as bytes.
+      upper_bytes:
+        pos: ofs_upper
+        size: 8
+        doc: The upper bits as bytes.
+      none:
+        value: '[0, 0, 0, 0, 0, 0, 0, 0].as<bytes>'
+        doc: The bits of no cell.
+      all:
+        value: >-
+          (is_half ? [0xff, 0, 0, 0, 0, 0, 0, 0].as<bytes>
+          : [0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff].as<bytes>).as<bytes>
+        doc: The bits of all cells that exist.
+      branch:
+        value: (lower & ~upper).as<u8>
+        doc: The BRANCH cells. Bit c is set if cell c is one.
+      partial:
+        value: (upper & ~lower).as<u8>
+        doc: The PARTIAL cells.
+      full:
+        value: (lower & upper).as<u8>
+        doc: The FULL cells.
+      octants:
+        type: >-
+          octant(_index, lower_octants[_index],
+          num_planes == 2 ? upper_octants[_index] : lower_octants[_index])
+        repeat: expr
+        repeat-expr: 8
+        doc: The eight octants, which the element does not store as such.
+      cells:
+        type: >-
+          cell(_index, lower_octants[_index / 8] >> _index % 8 & 1,
+          (num_planes == 2 ? upper_octants[_index / 8] : lower_octants[_index / 8]) >> _index % 8 & 1)
+        repeat: expr
+        repeat-expr: 64
+        doc: The 64 cells.
+  octant:
+    doc: |
+      An octant of the cell to which an element belongs. It reads nothing of the file. In the root of an odd depth only
+      octant 0 exists, and is the universe.
+    doc-ref: specification.md §2.3
+    params:
+      - id: index
+        type: u1
+        doc: Bit 0 is set in the upper half along x, bit 1 along y, bit 2 along z.
+      - id: lower
+        type: u1
+        doc: The lower bits of its eight children.
+      - id: upper
+        type: u1
+        doc: The upper bits of its eight children.
+    instances:
+      tag:
+        value: |
+          lower == 0 and upper == 0 ? tag::empty
+          : lower == 0 and upper == 0xff ? tag::partial
+          : lower == 0xff and upper == 0xff ? tag::full
+          : tag::branch
+        doc: The tag that all children have, if it is not BRANCH; else BRANCH, and the octant is a node of the octree.
+  cell:
+    doc: One cell of an element or brick. It reads nothing of the file.
+    doc-ref: specification.md §2.2, §2.3
+    params:
+      - id: index
+        type: u1
+        doc: The number of the cell, whose bits are z1 y1 x1 z0 y0 x0 (Morton order).
+      - id: lower
+        type: u1
+        doc: The lower bit of its tag.
+      - id: upper
+        type: u1
+        doc: The upper bit of its tag.
+    instances:
+      x:
+        value: (index & 1) + (index >> 2 & 2)
+        doc: Place along x in the block of 4 · 4 · 4 cells.
+      y:
+        value: (index >> 1 & 1) + (index >> 3 & 2)
+        doc: Place along y.
+      z:
+        value: (index >> 2 & 1) + (index >> 4 & 2)
+        doc: Place along z.
+      tag:
+        value: lower + 2 * upper
+        enum: tag
+        doc: The tag of the cell.
+  rel:
+    doc: |
+      First children of elements, as differences. The first child of element n, that is the element or brick of its
+      first BRANCH cell, has the index base[n / 1024] + rel[n]; its other children follow in the order of their cells.
+      Bricks are numbered on from the number of elements.
+    doc-ref: specification.md §2.4, §5.1
+    seq:
+      - id: values
+        type: rel_value(_index)
+        repeat: eos
+        doc: One for each element.
+  rel_value:
+    doc: The difference of one element.
+    doc-ref: specification.md §2.4
+    params:
+      - id: index
+        type: s4
+        doc: The index of the element.
+    seq:
+      - id: value
+        type: u2
+        valid:
+          expr: _ == 0 or index % 1024 != 0
+        doc: What is added to the value of the block. The first element of each block has 0. (`element-link`, in part)
+    instances:
+      first_child:
+        value: (_root.base.values[index / 1024] + value).as<u8>
+        doc: The index of the element's first child, or of what would be it.
+  base:
+    doc: First children of the elements 0, 1024, 2048 and so on.
+    doc-ref: specification.md §2.4, §5.1
+    seq:
+      - id: values
+        type: u8
+        repeat: eos
+        doc: One for each block of 1024 elements.
+  bricks:
+    doc: Bricks, or dictionary entries, which are bricks as well.
+    doc-ref: specification.md §5.2
+    seq:
+      - id: bricks
+        size: _root.header.len_brick
+        type: element(_root.header.num_brick_planes, _root.header.depth == 1, true)
+        repeat: eos
+        doc: The bricks in the order of their cells, or the entries.
+  brick_indices:
+    doc: For each brick its entry among those of its segment.
+    doc-ref: specification.md §5.2
+    seq:
+      - id: indices
+        type: brick_index(_index)
+        repeat: eos
+        doc: One for each brick.
+  brick_index:
+    doc: The dictionary entry of one brick.
+    doc-ref: specification.md §5.2
+    params:
+      - id: index
+        type: s4
+        doc: The number of the brick.
+    seq:
+      - id: value
+        type: u2
+        valid:
+          expr: _ < segment.num_entries
+        doc: The entry, counted from the segment's first one. (`dictionary-index`)
+    instances:
+      segment:
+        value: >-
+          _root.dictionary_segments.segments[_root.header.segment_shift == 63 ? 0
+          : index >> _root.header.segment_shift]
+        doc: The segment of the brick.
+      brick:
+        value: _root.dictionary_entries.bricks[segment.first + value]
+        doc: The brick.
+  dictionary_segments:
+    doc: Where the dictionary entries of each segment begin.
+    doc-ref: specification.md §5.2
+    seq:
+      - id: segments
+        type: dictionary_segment(_index)
+        repeat: eos
+        doc: Segment s is that of the bricks s · 2^shift to (s + 1) · 2^shift − 1.
+  dictionary_segment:
+    doc: The dictionary entries of one segment.
+    doc-ref: specification.md §5.2
+    params:
+      - id: index
+        type: s4
+        doc: The number of the segment.
+    seq:
+      - id: first
+        type: u8
+        valid:
+          expr: >-
+            index == 0 ? _ == 0
+            : _ >= _parent.segments[index - 1].first and _ - _parent.segments[index - 1].first <= 65536
+        doc: The segment's first entry; the last one lies before that of the next segment. (`dictionary-range`)
+      - id: end_of_segments
+        size: 0
+        if: is_last
+        valid:
+          expr: first <= _root.header.num_dictionary_entries and _root.header.num_dictionary_entries - first <= 65536
+        doc: No bytes. The entries of the last segment end with the last entry. (`dictionary-range`)
+    instances:
+      is_last:
+        value: index == _root.header.num_segments.as<s4> - 1
+        doc: Whether this is the last segment.
+      end:
+        value: '(is_last ? _root.header.num_dictionary_entries : _parent.segments[index + 1].first).as<u8>'
+        doc: Where the segment's entries end.
+      num_entries:
+        value: (end - first).as<u8>
+        doc: Number of the segment's entries.
+  level_table:
+    doc: |
+      Counts of cells of every octree level, from 0, the universe, to the depth, the finest cells. A cell counts on its
+      level if its parent is BRANCH; so eight cells of one octant with the same tag count as the octant.
+    doc-ref: specification.md §5.3
+    seq:
+      - id: levels
+        type: level(_index)
+        repeat: eos
+        doc: Entry l is that of octree level l.
+      - id: element_levels
+        type: element_level(_index)
+        repeat: expr
+        repeat-expr: _root.header.num_element_levels
+        doc: Where each element level begins. These are derived from the levels, and read nothing.
+    instances:
+      num_full_cells:
+        value: levels.last.full_cells
+        doc: Volume that is FULL, in finest cells.
+        doc-ref: specification.md §7.2
+      num_possible_cells:
+        value: levels.last.possible_cells
+        doc: Volume that is FULL or PARTIAL, in finest cells.
+        doc-ref: specification.md §7.2
+  level:
+    doc: The cells of one octree level.
+    doc-ref: specification.md §5.3
+    params:
+      - id: index
+        type: s4
+        doc: The octree level.
+    seq:
+      - id: num_nodes
+        type: u8
+        valid:
+          expr: >-
+            index == 0 ? _ == (_root.header.root_tag == tag::branch ? 1 : 0)
+            : index < _root.header.depth or _ == 0
+        doc: |
+          BRANCH cells. (`level-table-root`; implied: finest cells are never BRANCH.)
+      - id: num_full
+        type: u8
+        valid:
+          expr: 'index != 0 or _ == (_root.header.root_tag == tag::full ? 1 : 0)'
+        doc: FULL cells. (Implied for level 0.)
+      - id: num_partial
+        type: u8
+        valid:
+          expr: >-
+            (index != 0 or _ == (_root.header.root_tag == tag::partial ? 1 : 0))
+            and (_ == 0 or not _root.header.is_binary)
+        doc: PARTIAL cells. (Implied for level 0 and for binary trees.)
+    instances:
+      num_empty:
+        value: >-
+          ((index == 0 ? 1 : 8 * _parent.levels[index - 1].num_nodes) - num_nodes - num_full - num_partial).as<u8>
+        doc: EMPTY cells.
+      full_cells:
+        value: '(num_full + (index == 0 ? 0 : 8 * _parent.levels[index - 1].full_cells.as<u8>)).as<u8>'
+        doc: Volume that is FULL on this level and above, in cells of this level.
+      possible_cells:
+        value: |
+          (num_full + num_partial + (index == 0 ? 0 : 8 * _parent.levels[index - 1].possible_cells.as<u8>)).as<u8>
+        doc: Volume that is FULL or PARTIAL on this level and above, in cells of this level.
+  element_level:
+    doc: |
+      One level of elements; the last one is that of the bricks. Its elements belong to the BRANCH cells of one octree
+      level.
+    doc-ref: specification.md §2.3, §5.3
+    params:
+      - id: index
+        type: s4
+        doc: The element level.
+    seq:
+      - id: end_of_level
+        size: 0
+        valid:
+          expr: >-
+            num_elements <= num_all - first
+            and (index != num_levels - 1 or (first == _root.header.num_elements and end - num_all == 0))
+        doc: |
+          No bytes. Elements end where bricks begin, and these end with the last one. (`level-table-starts`,
+          `level-table-sum`)
+    instances:
+      num_levels:
+        value: _root.header.num_element_levels
+        doc: The number of element levels.
+      num_all:
+        value: (_root.header.num_elements + _root.header.num_bricks).as<u8>
+        doc: The number of elements and bricks.
+      octree_level:
+        value: 'index == 0 ? 0 : 2 * index - _root.header.parity'
+        doc: The octree level of the cells to which the elements belong; for the root of odd depth, the universe's.
+      num_elements:
+        value: _parent.levels[octree_level].num_nodes
+        doc: The number of elements of this level.
+      first:
+        value: '(index == 0 ? 0 : _parent.element_levels[index - 1].end).as<u8>'
+        doc: The index of the first element of this level.
+      end:
+        value: (first + num_elements).as<u8>
+        doc: The index behind the last one.
+  metadata:
+    doc: |
+      Facts about the solid. They change nothing about what the rest of the file means. In use are the keys `name`,
+      `units` (the unit of length of the model), `source` (a fingerprint of what the tree was made from) and `rule` (how
+      undecided cells were resolved).
+    doc-ref: specification.md §5.4
+    seq:
+      - id: facts
+        type: fact(_index)
+        repeat: eos
+        doc: The facts, which fill the section.
+  fact:
+    doc: A key and a value.
+    doc-ref: specification.md §5.4
+    params:
+      - id: index
+        type: s4
+        doc: The place among the facts.
+    seq:
+      - id: len_key
+        type: u4
+        doc: Bytes of the key.
+      - id: len_value
+        type: u4
+        doc: Bytes of the value.
+      - id: key_bytes
+        size: len_key
+        valid:
+          expr: index == 0 or _ > _parent.facts[index - 1].key_bytes
+        doc: The key as it is stored. Keys ascend byte by byte. (`metadata-text`)
+      - id: value_bytes
+        size: len_value
+        doc: The value as it is stored.
+    instances:
+      key:
+        value: key_bytes.to_s("UTF-8")
+        doc: The key. (`metadata-text` refuses what is no UTF-8; whether this does depends on the language.)
+      value:
+        value: value_bytes.to_s("UTF-8")
+        doc: The value.
+enums:
+  tag:
+    0:
+      id: empty
+      doc: Outside, the cell's interior and the solid's have no point in common.
+    1:
+      id: branch
+      doc: Cut, its eight children have tags of their own.
+    2:
+      id: partial
+      doc: Not decided, the cell may be outside, inside, or cut.
+    3:
+      id: full
+      doc: Inside, the whole cell belongs to the solid.
+  brick_encoding:
+    0:
+      id: raw
+      doc: Bricks lie one after another.
+    1:
+      id: dictionary
+      doc: Each brick is an index into the bricks that differ.
+  section_kind:
+    1:
+      id: planes
+      doc: Elements, 16 bytes each.
+    2:
+      id: rel
+      doc: Links of single elements, 2 bytes each.
+    3:
+      id: base
+      doc: Links of blocks of 1024 elements, 8 bytes each.
+    4:
+      id: bricks
+      doc: Raw bricks, 8 or 16 bytes each.
+    5:
+      id: brick_indices
+      doc: Dictionary entries of bricks, 2 bytes each.
+    6:
+      id: dictionary_entries
+      doc: Bricks that differ, 8 or 16 bytes each.
+    7:
+      id: dictionary_segments
+      doc: First entries of segments, 8 bytes each.
+    8:
+      id: level_table
+      doc: Counts of cells of each octree level, 24 bytes each.
+    9:
+      id: metadata
+      doc: Keys and values.
