@@ -10,8 +10,8 @@
  * - Results are written to the last parameters, and only on success: after a failure they are as they were, but for
  *   the contents of buffers. No parameter is both read and written.
  * - General errors, which the functions do not list again: LEAFLESS_E_NULL if a pointer is NULL that the function
- *   does not say may be; LEAFLESS_E_ARGUMENT if one is misaligned for what it points to; LEAFLESS_E_PANIC if the
- *   library has a defect, which never ends the host program and leaves all objects usable.
+ *   does not say may be; LEAFLESS_E_ARGUMENT if one is misaligned for what it points to, or a path is empty;
+ *   LEAFLESS_E_PANIC if the library has a defect, which never ends the host program and leaves all objects usable.
  * - Objects are opaque handles. What _new, _open and the like return is a reference; _ref gives one more; _free
  *   gives one back, and takes NULL. References may be given back in any order: what an object needs of another it
  *   shares. Pointers from _peek functions belong to the object.
@@ -20,11 +20,12 @@
  * - Structs with a field struct_size begin with sizeof of themselves, and all their other fields may be zero.
  *   Programs that were compiled with an older, shorter struct go on working.
  * - Numbers for which there is an enum come in as uint32_t and are checked.
- * - Texts are UTF-8 of a given length in bytes; paths too, on every platform.
+ * - Texts are UTF-8 of a given length in bytes, and may be NULL if it is 0; paths are, too, on every platform, but
+ *   never empty.
  * - Coordinates whose names end in _model are in model units, those in _cells in finest cells. "3 numbers" are x, y
  *   and z.
- * - Buffers that are not known to be large enough are filled in two steps: with a NULL buffer the function tells the
- *   number of elements, then it fills. Capacities count elements.
+ * - Buffers that are not known to be large enough are filled in two steps: with a NULL buffer and the capacity 0 the
+ *   function tells the number of elements, then it fills. Capacities count elements.
  * - Buffers and results of one call must not overlap.
  * - Functions of the host get their context first, return 0 to go on, and must not throw or longjmp through the
  *   library.
@@ -749,8 +750,8 @@ uint32_t leafless_version(void);
 const char *leafless_version_string(void);
 
 /**
- * The number of the binary interface of the library that is linked; compare it with LEAFLESS_ABI, or call
- * leafless_check.
+ * The number of the binary interface of the library that is linked; compare it with LEAFLESS_ABI, or use
+ * LEAFLESS_COMPATIBLE, which compares the version too.
  *
  * - Buffers: none.
  * - Result: the number.

@@ -8,7 +8,7 @@ use alloc::sync::Arc;
 use core::any::Any;
 use core::ffi::c_char;
 use core::fmt::{self, Display};
-use core::mem::size_of;
+use core::mem::{align_of, size_of};
 use core::ptr::NonNull;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
@@ -17,6 +17,7 @@ pub(super) enum Failure {
     Null { name: &'static str },
     Argument { name: &'static str, problem: &'static str },
     Utf8 { name: &'static str },
+    Nul { name: &'static str },
     Buffer { name: &'static str, needed: u64, capacity: u64 },
     Library(Error),
 }
@@ -33,6 +34,7 @@ impl Display for Failure {
             Failure::Null { name } => write!(f, "{name}: must not be NULL"),
             Failure::Argument { name, problem } => write!(f, "{name}: {problem}"),
             Failure::Utf8 { name } => write!(f, "{name}: is not UTF-8"),
+            Failure::Nul { name } => write!(f, "{name}: holds a NUL"),
             Failure::Buffer { name, needed, capacity } => {
                 write!(f, "{name}: has a capacity of {capacity}, and {needed} is needed")
             }
@@ -46,7 +48,7 @@ impl From<&Failure> for leafless_status {
         match failure {
             Failure::Null { .. } => LEAFLESS_E_NULL,
             Failure::Argument { .. } => LEAFLESS_E_ARGUMENT,
-            Failure::Utf8 { .. } => LEAFLESS_E_UTF8,
+            Failure::Utf8 { .. } | Failure::Nul { .. } => LEAFLESS_E_UTF8,
             Failure::Buffer { .. } => LEAFLESS_E_BUFFER,
             Failure::Library(error) => match error {
                 Error::Argument { .. } => LEAFLESS_E_ARGUMENT,
@@ -209,7 +211,7 @@ pub(super) unsafe fn path<'a>(pointer: *const c_char, length: usize) -> Result<&
         return Err(Failure::Argument { name: "path", problem: "is empty" });
     }
     if path.contains('\0') {
-        return Err(Failure::Argument { name: "path", problem: "holds a NUL" });
+        return Err(Failure::Nul { name: "path" });
     }
     Ok(path)
 }
@@ -303,7 +305,9 @@ pub(super) unsafe fn sized<T: Sized32>(pointer: *const T, name: &'static str) ->
     // SAFETY: the caller promises four bytes, and then as many as they say.
     let given = unsafe {
         let size = pointer.cast::<u32>().read() as usize;
-        if !(size_of::<u32>()..=LARGEST).contains(&size) {
+        // No version's struct ends within a field: its size is a multiple of its alignment. So half a pointer
+        // is never taken for one.
+        if !(size_of::<u32>()..=LARGEST).contains(&size) || !size.is_multiple_of(align_of::<T>()) {
             return Err(Failure::Argument {
                 name,
                 problem: "has no sensible struct_size; was it initialised?",

@@ -47,8 +47,8 @@ pub extern "C" fn leafless_version_string() -> *const c_char {
     TEXT.as_ptr()
 }
 
-/// The number of the binary interface of the library that is linked; compare it with LEAFLESS_ABI, or call
-/// leafless_check.
+/// The number of the binary interface of the library that is linked; compare it with LEAFLESS_ABI, or use
+/// LEAFLESS_COMPATIBLE, which compares the version too.
 ///
 /// - Buffers: none.
 /// - Result: the number.
