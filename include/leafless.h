@@ -2076,6 +2076,25 @@ leafless_status leafless_octree_write(const leafless_octree *octree,
                                       leafless_write_fn write,
                                       void *ctx);
 
+#if defined(LEAFLESS_TEST)
+/**
+ * What the library was built with, to be compared with what C makes of this header: only in libraries that are
+ * built for tests. One line for each struct with its size, for each field with its offset and size, and for each
+ * constant with its value.
+ *
+ * - Buffers: `text`, `capacity` bytes; may be NULL if `capacity` is 0.
+ * - Result: the text's length in bytes, without the terminating NUL, also if not all of it was written. What is
+ *   written is NUL-terminated.
+ * - Errors: none.
+ * - Ownership: the text is copied.
+ * - Threads: any.
+ * - Untrusted input: none.
+ * - Since: 0.1
+ */
+size_t leafless_test_layout(char *text,
+                            size_t capacity);
+#endif
+
 #ifdef __cplusplus
 }  // extern "C"
 #endif  // __cplusplus

@@ -13,8 +13,10 @@ fn folder() -> &'static Path {
 }
 
 /// The files of the interface, as the header's sections follow each other.
-const SECTIONS: [&str; 11] =
-    ["version", "status", "boundary", "control", "frame", "mesh", "octree", "solid", "op", "query", "file"];
+const SECTIONS: [&str; 12] = [
+    "version", "status", "boundary", "control", "frame", "mesh", "octree", "solid", "op", "query", "file",
+    "layout",
+];
 
 fn generated() -> String {
     let mut config = cbindgen::Config::from_file(folder().join("include/cbindgen.toml")).unwrap();

@@ -16,6 +16,7 @@
 //! | `op` | building, resolving, Booleans |
 //! | `query` | points, boxes, cursors |
 //! | `file` | files and their bytes |
+//! | `layout` | for tests: what the structs look like |
 
 #![allow(unsafe_code, non_camel_case_types)]
 // What callers must keep to is said in the doc blocks in C's terms, and once for all in the header's preface.
@@ -25,6 +26,8 @@ mod boundary;
 mod control;
 mod file;
 mod frame;
+#[cfg(feature = "capi-test")]
+mod layout;
 mod mesh;
 mod octree;
 mod op;
@@ -38,6 +41,8 @@ pub use boundary::leafless_test_panic;
 pub use control::*;
 pub use file::*;
 pub use frame::*;
+#[cfg(feature = "capi-test")]
+pub use layout::*;
 pub use mesh::*;
 pub use octree::*;
 pub use op::*;

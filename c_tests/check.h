@@ -1,0 +1,118 @@
+/* What the programs here have in common: checks that say what failed and where, and a few octrees. C99 and C++11. */
+#ifndef CHECK_H
+#define CHECK_H
+
+#include <leafless.h>
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define CHECK(condition) ((condition) ? (void)0 : check_failed(__FILE__, __LINE__, #condition))
+#define OK(call) check_status(__FILE__, __LINE__, #call, (call), LEAFLESS_OK)
+#define FAILS(status, call) check_status(__FILE__, __LINE__, #call, (call), (status))
+#define COUNT(array) (sizeof(array) / sizeof(array)[0])
+
+static inline void check_failed(const char *file, int line, const char *what) {
+    fprintf(stderr, "%s:%d: %s\n", file, line, what);
+    exit(1);
+}
+
+static inline void check_status(const char *file, int line, const char *call, int32_t found, int32_t expected) {
+    char message[512] = "";
+    if (found == expected) {
+        return;
+    }
+    (void)leafless_last_error(message, sizeof message);
+    fprintf(stderr, "%s:%d: %s\n  is %s, should be %s; last error: %s\n", file, line, call,
+            leafless_status_name(found), leafless_status_name(expected), message);
+    exit(1);
+}
+
+static inline leafless_frame check_frame(uint32_t depth) {
+    leafless_frame frame = {{-1.0, -1.0, -1.0}, 2.0, 0};
+    frame.depth = depth;
+    return frame;
+}
+
+/* The ball of radius 0.75 around the origin. */
+static inline leafless_solid *check_ball_solid(void) {
+    const double centre[3] = {0.0, 0.0, 0.0};
+    leafless_solid *solid = NULL;
+    OK(leafless_solid_new_ball(centre, 0.75, &solid));
+    return solid;
+}
+
+static inline leafless_octree *check_ball(uint32_t depth, uint32_t rule) {
+    const leafless_frame frame = check_frame(depth);
+    leafless_solid *solid = check_ball_solid();
+    leafless_octree *octree = NULL;
+    OK(leafless_octree_build(solid, &frame, rule, NULL, &octree));
+    leafless_solid_free(solid);
+    return octree;
+}
+
+static inline leafless_octree *check_box(uint32_t depth, double low, double high) {
+    const leafless_frame frame = check_frame(depth);
+    const double min[3] = {low, low, low}, max[3] = {high, high, high};
+    leafless_solid *solid = NULL;
+    leafless_octree *octree = NULL;
+    OK(leafless_solid_new_box(min, max, &solid));
+    OK(leafless_octree_build(solid, &frame, LEAFLESS_RULE_CERTIFIED, NULL, &octree));
+    leafless_solid_free(solid);
+    return octree;
+}
+
+static inline bool check_same(const leafless_octree *a, const leafless_octree *b) {
+    bool equal = false;
+    OK(leafless_octree_equal(a, b, &equal));
+    return equal;
+}
+
+/* The cube [0, 1]³: corners in octant order, two triangles a face, seen from outside counter-clockwise. */
+static const double CHECK_CUBE[8][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0},
+                                        {0, 0, 1}, {1, 0, 1}, {0, 1, 1}, {1, 1, 1}};
+static const uint32_t CHECK_CUBE_TRIANGLES[12][3] = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6},
+                                                     {0, 1, 5}, {0, 5, 4}, {2, 6, 7}, {2, 7, 3},
+                                                     {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
+
+static inline leafless_mesh *check_cube(void) {
+    leafless_mesh *mesh = NULL;
+    OK(leafless_mesh_new(&CHECK_CUBE[0][0], 8, 0, &CHECK_CUBE_TRIANGLES[0][0], 12, &mesh));
+    return mesh;
+}
+
+/* A whole file in memory, on an address that is good for anything. */
+static inline uint8_t *check_bytes(const leafless_octree *octree, uint64_t *length) {
+    uint8_t *bytes;
+    OK(leafless_octree_to_bytes(octree, NULL, 0, length));
+    bytes = (uint8_t *)malloc((size_t)*length);
+    CHECK(bytes != NULL);
+    OK(leafless_octree_to_bytes(octree, bytes, *length, length));
+    return bytes;
+}
+
+static inline void check_write(const char *path, const void *bytes, size_t length) {
+    FILE *file = fopen(path, "wb");
+    CHECK(file != NULL);
+    CHECK(fwrite(bytes, 1, length, file) == length);
+    CHECK(fclose(file) == 0);
+}
+
+static inline uint8_t *check_read(const char *path, size_t *length) {
+    FILE *file = fopen(path, "rb");
+    uint8_t *bytes;
+    long end;
+    CHECK(file != NULL);
+    CHECK(fseek(file, 0, SEEK_END) == 0);
+    end = ftell(file);
+    CHECK(end >= 0 && fseek(file, 0, SEEK_SET) == 0);
+    *length = (size_t)end;
+    bytes = (uint8_t *)malloc(*length + 1);
+    CHECK(bytes != NULL && fread(bytes, 1, *length, file) == *length);
+    CHECK(fclose(file) == 0);
+    return bytes;
+}
+
+#endif

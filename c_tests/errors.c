@@ -1,0 +1,347 @@
+/* Every status once, with its name and its message, and with the result left as it was. */
+#define _POSIX_C_SOURCE 200809L
+#include "check.h"
+
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+static bool seen[64];
+
+/* The last call failed so: status, message, and everything that tells of it. */
+static void failed(leafless_status expected, const char *name, const char *part) {
+    char message[512], shorter[8], one[1] = {'x'};
+    size_t length = leafless_last_error(message, sizeof message);
+    seen[expected] = true;
+    CHECK(leafless_last_status() == expected);
+    CHECK(strcmp(leafless_status_name(expected), name) == 0);
+    CHECK(length == strlen(message) && length > 0 && length <= 511);
+    if (strstr(message, part) == NULL) {
+        fprintf(stderr, "%s: \"%s\" does not say \"%s\"\n", name, message, part);
+        exit(1);
+    }
+    /* A buffer that is too short gets a terminated beginning, and the whole length is told all the same. */
+    CHECK(leafless_last_error(NULL, 0) == length);
+    CHECK(leafless_last_error(shorter, sizeof shorter) == length);
+    CHECK(strlen(shorter) <= 7 && strncmp(shorter, message, strlen(shorter)) == 0);
+    CHECK(leafless_last_error(one, 1) == length && one[0] == '\0');
+}
+
+static leafless_octree *const UNTOUCHED = (leafless_octree *)(uintptr_t)0x5a5a5a58;
+
+static int32_t gives_up(void *ctx, const uint8_t *bytes, size_t count) {
+    (void)ctx;
+    (void)bytes;
+    (void)count;
+    return -4711;
+}
+
+static int32_t stops(void *ctx, double fraction) {
+    (void)ctx;
+    (void)fraction;
+    return 1;
+}
+
+/* Places in a file, from the format's specification. */
+enum {
+    MAJOR_VERSION = 8,
+    SECTION_COUNT = 96,
+    TABLE_CRC = 100,
+    HEADER_CRC = 124,
+    TABLE = 128,
+    ENTRY = 40,
+    ENTRY_OFFSET = 8,
+    ENTRY_LENGTH = 16,
+    ENTRY_CRC = 32
+};
+
+static uint64_t number(const uint8_t *bytes, size_t size) {
+    uint64_t value = 0;
+    while (size-- > 0) {
+        value = value << 8 | bytes[size];
+    }
+    return value;
+}
+
+/* Writes the checksum that zlib and PNG have too. */
+static void write_crc(uint8_t *to, const uint8_t *bytes, size_t length) {
+    uint32_t crc = 0xffffffffu;
+    size_t i;
+    int bit;
+    for (i = 0; i < length; i++) {
+        crc ^= bytes[i];
+        for (bit = 0; bit < 8; bit++) {
+            crc = crc >> 1 ^ (crc & 1 ? 0xedb88320u : 0);
+        }
+    }
+    crc = ~crc;
+    for (i = 0; i < 4; i++) {
+        to[i] = (uint8_t)(crc >> 8 * i);
+    }
+}
+
+static void make_checksums_right(uint8_t *file) {
+    const size_t sections = (size_t)number(file + SECTION_COUNT, 4);
+    size_t i;
+    for (i = 0; i < sections; i++) {
+        uint8_t *entry = file + TABLE + ENTRY * i;
+        write_crc(entry + ENTRY_CRC, file + number(entry + ENTRY_OFFSET, 8), (size_t)number(entry + ENTRY_LENGTH, 8));
+    }
+    write_crc(file + TABLE_CRC, file + TABLE, ENTRY * sections);
+    write_crc(file + HEADER_CRC, file, HEADER_CRC);
+}
+
+/* Work under a limit of memory, in a process of its own: exits with the status that the work returned, or 99. */
+static int with_memory(rlim_t bytes, leafless_status (*work)(void)) {
+    int status;
+    pid_t child = fork();
+    CHECK(child >= 0);
+    if (child == 0) {
+        struct rlimit limit;
+        limit.rlim_cur = limit.rlim_max = bytes;
+        if (setrlimit(RLIMIT_AS, &limit) != 0) {
+            _exit(99);
+        }
+        _exit(work());
+    }
+    CHECK(waitpid(child, &status, 0) == child);
+    if (!WIFEXITED(status)) {
+        fprintf(stderr, "with %lu bytes: signal %d\n", (unsigned long)bytes, WTERMSIG(status));
+        exit(1);
+    }
+    return WEXITSTATUS(status);
+}
+
+static leafless_status deep_ball(void) {
+    const leafless_frame frame = check_frame(9);
+    leafless_solid *solid = check_ball_solid();
+    leafless_octree *octree = UNTOUCHED;
+    leafless_options options;
+    leafless_status status;
+    OK(leafless_options_init(&options));
+    options.threads = 1;
+    status = leafless_octree_build(solid, &frame, LEAFLESS_RULE_CERTIFIED, &options, &octree);
+    if (status == LEAFLESS_OK) {
+        leafless_octree_free(octree);
+    } else if (octree != UNTOUCHED) {
+        return LEAFLESS_E_PANIC;
+    } else if (status != leafless_last_status() || leafless_last_error(NULL, 0) == 0) {
+        return LEAFLESS_E_PANIC;
+    }
+    leafless_solid_free(solid);
+    return status;
+}
+
+static long address_space(void) {
+    FILE *file = fopen("/proc/self/statm", "r");
+    long pages = -1;
+    if (file == NULL) {
+        return -1;
+    }
+    if (fscanf(file, "%ld", &pages) != 1) {
+        pages = -1;
+    }
+    fclose(file);
+    return pages < 0 ? -1 : pages * sysconf(_SC_PAGESIZE);
+}
+
+int main(int argc, char **argv) {
+    /* Sanitizers and valgrind need address space beyond any limit; what allocators refuse by themselves is tested
+       with them too. */
+    const bool limited = argc > 1 && strcmp(argv[1], "limited") == 0;
+    const leafless_frame frame = check_frame(4), other = check_frame(5);
+    leafless_octree *ball = check_ball(4, LEAFLESS_RULE_CERTIFIED), *finer = check_ball(5, LEAFLESS_RULE_CERTIFIED);
+    leafless_octree *octree = UNTOUCHED;
+    leafless_mesh *mesh = (leafless_mesh *)UNTOUCHED, *cube = check_cube();
+    leafless_solid *solid = NULL;
+    leafless_options options;
+    leafless_control *control = NULL;
+    uint64_t length = 0, count = 77;
+    uint8_t *bytes = check_bytes(ball, &length), buffer[16];
+    leafless_statistics levels[2];
+    size_t i;
+
+    /* The names of all, and of what is none. */
+    CHECK(strcmp(leafless_status_name(LEAFLESS_OK), "LEAFLESS_OK") == 0);
+    CHECK(strcmp(leafless_status_name(-1), "LEAFLESS_E_UNKNOWN") == 0);
+    CHECK(strcmp(leafless_status_name(18), "LEAFLESS_E_UNKNOWN") == 0);
+    CHECK(strcmp(leafless_status_name(INT32_MIN), "LEAFLESS_E_UNKNOWN") == 0);
+    CHECK(leafless_last_status() == LEAFLESS_OK);
+    seen[LEAFLESS_OK] = true;
+
+    FAILS(LEAFLESS_E_NULL, leafless_octree_union(ball, NULL, NULL, &octree));
+    failed(LEAFLESS_E_NULL, "LEAFLESS_E_NULL", "b: must not be NULL");
+    /* What succeeds leaves the message alone. */
+    OK(leafless_octree_check(ball));
+    CHECK(leafless_last_status() == LEAFLESS_E_NULL);
+
+    FAILS(LEAFLESS_E_ARGUMENT, leafless_octree_build(check_ball_solid(), &frame, 4, NULL, &octree));
+    failed(LEAFLESS_E_ARGUMENT, "LEAFLESS_E_ARGUMENT", "rule");
+
+    FAILS(LEAFLESS_E_UTF8, leafless_octree_open("\xff", 1, &octree));
+    failed(LEAFLESS_E_UTF8, "LEAFLESS_E_UTF8", "path: is not UTF-8");
+    FAILS(LEAFLESS_E_UTF8, leafless_octree_with_metadata(ball, "\xc3", 1, "", 0, &octree));
+    FAILS(LEAFLESS_E_UTF8, leafless_octree_with_metadata(ball, "k", 1, "\xed\xa0\x80", 3, &octree));
+
+    FAILS(LEAFLESS_E_BUFFER, leafless_octree_to_bytes(ball, buffer, sizeof buffer, &count));
+    failed(LEAFLESS_E_BUFFER, "LEAFLESS_E_BUFFER", "16");
+    FAILS(LEAFLESS_E_BUFFER, leafless_octree_levels(ball, levels, 2, &count));
+    CHECK(count == 77);
+
+    FAILS(LEAFLESS_E_FRAME, leafless_octree_union(ball, finer, NULL, &octree));
+    failed(LEAFLESS_E_FRAME, "LEAFLESS_E_FRAME", "different frames");
+
+    FAILS(LEAFLESS_E_NOT_SAMPLED, leafless_octree_resolve(ball, LEAFLESS_RULE_SAMPLED, NULL, &octree));
+    failed(LEAFLESS_E_NOT_SAMPLED, "LEAFLESS_E_NOT_SAMPLED", "single points");
+
+    {
+        const double bad[3] = {0.0, INFINITY, 0.0};
+        const uint32_t beyond[3] = {0, 1, 8};
+        leafless_mesh *open = NULL;
+        FAILS(LEAFLESS_E_MESH, leafless_mesh_new(bad, 1, 0, NULL, 0, &mesh));
+        failed(LEAFLESS_E_MESH, "LEAFLESS_E_MESH", "vertex 0");
+        FAILS(LEAFLESS_E_MESH, leafless_mesh_new(&CHECK_CUBE[0][0], 8, 0, beyond, 1, &mesh));
+        failed(LEAFLESS_E_MESH, "LEAFLESS_E_MESH", "triangle 0 refers to vertex 8");
+        OK(leafless_mesh_new(&CHECK_CUBE[0][0], 8, 0, &CHECK_CUBE_TRIANGLES[0][0], 11, &open));
+        FAILS(LEAFLESS_E_MESH, leafless_mesh_check_closed(open, LEAFLESS_FILL_EVEN_ODD));
+        failed(LEAFLESS_E_MESH, "LEAFLESS_E_MESH", "3 edges");
+        FAILS(LEAFLESS_E_MESH, leafless_solid_new_mesh(open, &frame, LEAFLESS_FILL_NON_ZERO, &solid));
+        CHECK(solid == NULL);
+        leafless_mesh_free(open);
+    }
+
+    FAILS(LEAFLESS_E_MESH_FILE, leafless_mesh_from_stl((const uint8_t *)"solid\nfacet normal 0 0 0\nouter hoop\n", 36, &mesh));
+    failed(LEAFLESS_E_MESH_FILE, "LEAFLESS_E_MESH_FILE", "line 3");
+    FAILS(LEAFLESS_E_MESH_FILE, leafless_mesh_from_stl(NULL, 0, &mesh));
+    CHECK(mesh == (leafless_mesh *)UNTOUCHED);
+
+    FAILS(LEAFLESS_E_FORMAT, leafless_octree_from_bytes((const uint8_t *)"no file at all, but of some length, more than a header"
+        " has, and so on, and so on, and so on, and so on, and so on, and so on, and so on, and so on", 128, &octree));
+    failed(LEAFLESS_E_FORMAT, "LEAFLESS_E_FORMAT", "not a Leafless file");
+    FAILS(LEAFLESS_E_FORMAT, leafless_octree_from_bytes(bytes, length - 1, &octree));
+    failed(LEAFLESS_E_FORMAT, "LEAFLESS_E_FORMAT", "bytes");
+
+    {
+        uint8_t *altered = (uint8_t *)malloc((size_t)length);
+        leafless_probe probe;
+        leafless_section sections[8];
+        CHECK(altered != NULL);
+        memcpy(altered, bytes, (size_t)length);
+        altered[MAJOR_VERSION] = 3;
+        make_checksums_right(altered);
+        FAILS(LEAFLESS_E_VERSION, leafless_octree_from_bytes(altered, length, &octree));
+        failed(LEAFLESS_E_VERSION, "LEAFLESS_E_VERSION", "3.0");
+        check_write("newer.lfl", altered, (size_t)length);
+        FAILS(LEAFLESS_E_VERSION, leafless_octree_open("newer.lfl", 9, &octree));
+        FAILS(LEAFLESS_E_VERSION, leafless_octree_map("newer.lfl", 9, &octree));
+
+        /* All checksums right, but the cells of the first brick are all EMPTY, so it should not be there. A brick
+           of a certified octree has two planes of 64 bits. */
+        memcpy(altered, bytes, (size_t)length);
+        OK(leafless_bytes_probe(bytes, length, &probe, sections, COUNT(sections)));
+        for (i = 0; i < probe.sections; i++) {
+            if (strcmp(sections[i].name, "bricks") == 0) {
+                memset(altered + sections[i].offset, 0, 16);
+            }
+        }
+        make_checksums_right(altered);
+        FAILS(LEAFLESS_E_DAMAGED, leafless_bytes_verify(altered, length));
+        failed(LEAFLESS_E_DAMAGED, "LEAFLESS_E_DAMAGED", "the octree is damaged");
+        FAILS(LEAFLESS_E_DAMAGED, leafless_octree_from_bytes(altered, length, &octree));
+        check_write("damaged.lfl", altered, (size_t)length);
+        FAILS(LEAFLESS_E_DAMAGED, leafless_octree_open("damaged.lfl", 11, &octree));
+        FAILS(LEAFLESS_E_DAMAGED, leafless_octree_map_verified("damaged.lfl", 11, &octree));
+        CHECK(octree == UNTOUCHED);
+        OK(leafless_octree_map("damaged.lfl", 11, &octree));
+        FAILS(LEAFLESS_E_DAMAGED, leafless_octree_check(octree));
+        leafless_octree_free(octree);
+        octree = UNTOUCHED;
+        free(altered);
+    }
+
+    OK(leafless_options_init(&options));
+    options.max_nodes = 10;
+    FAILS(LEAFLESS_E_LIMIT, leafless_octree_complement(ball, &options, &octree));
+    failed(LEAFLESS_E_LIMIT, "LEAFLESS_E_LIMIT", "10 nodes");
+    solid = check_ball_solid();
+    FAILS(LEAFLESS_E_LIMIT, leafless_octree_build(solid, &frame, LEAFLESS_RULE_CERTIFIED, &options, &octree));
+    options.max_nodes = 0;
+    options.max_bytes = 100;
+    FAILS(LEAFLESS_E_LIMIT, leafless_octree_build(solid, &frame, LEAFLESS_RULE_CERTIFIED, &options, &octree));
+    failed(LEAFLESS_E_LIMIT, "LEAFLESS_E_LIMIT", "100 bytes");
+
+    /* 3 TB of vertices: nobody's allocator grants that, and nothing is read before. */
+    if (limited) {
+        struct rlimit limit, old;
+        CHECK(getrlimit(RLIMIT_AS, &old) == 0);
+        limit = old;
+        limit.rlim_cur = (rlim_t)1 << 32;
+        CHECK(setrlimit(RLIMIT_AS, &limit) == 0);
+        FAILS(LEAFLESS_E_NO_MEMORY, leafless_mesh_new(&CHECK_CUBE[0][0], (uint64_t)1 << 37, 0, NULL, 0, &mesh));
+        CHECK(setrlimit(RLIMIT_AS, &old) == 0);
+    } else {
+        FAILS(LEAFLESS_E_NO_MEMORY, leafless_mesh_new(&CHECK_CUBE[0][0], (uint64_t)1 << 37, 0, NULL, 0, &mesh));
+    }
+    failed(LEAFLESS_E_NO_MEMORY, "LEAFLESS_E_NO_MEMORY", "memory");
+    CHECK(mesh == (leafless_mesh *)UNTOUCHED);
+    if (limited) {
+        /* Memory that runs out half-way, at many places. */
+        int refused = 0, done = 0;
+        long more;
+        CHECK(address_space() > 0);
+        for (more = 0; more < 8192; more += 256) {
+            const int status = with_memory((rlim_t)address_space() + ((rlim_t)more << 10), deep_ball);
+            refused += status == LEAFLESS_E_NO_MEMORY;
+            done += status == LEAFLESS_OK;
+            if (status != LEAFLESS_OK && status != LEAFLESS_E_NO_MEMORY) {
+                fprintf(stderr, "with %ld KiB more: %s\n", more, leafless_status_name(status));
+                return 1;
+            }
+        }
+        CHECK(refused > 0 && done > 0);
+    }
+
+    OK(leafless_options_init(&options));
+    OK(leafless_control_new(&control));
+    OK(leafless_control_cancel(control));
+    options.control = control;
+    FAILS(LEAFLESS_E_CANCELLED, leafless_octree_union(ball, ball, &options, &octree));
+    failed(LEAFLESS_E_CANCELLED, "LEAFLESS_E_CANCELLED", "cancelled");
+    OK(leafless_options_init(&options));
+    options.progress = stops;
+    FAILS(LEAFLESS_E_CANCELLED, leafless_octree_build(solid, &other, LEAFLESS_RULE_CERTIFIED, &options, &octree));
+
+    FAILS(LEAFLESS_E_CALLBACK, leafless_octree_write(ball, gives_up, NULL));
+    failed(LEAFLESS_E_CALLBACK, "LEAFLESS_E_CALLBACK", "-4711");
+
+    FAILS(LEAFLESS_E_IO, leafless_octree_open("no/such/file", 12, &octree));
+    failed(LEAFLESS_E_IO, "LEAFLESS_E_IO", "No such file");
+    FAILS(LEAFLESS_E_IO, leafless_octree_map("no/such/file", 12, &octree));
+    FAILS(LEAFLESS_E_IO, leafless_octree_save(ball, "no/such/file", 12));
+    FAILS(LEAFLESS_E_IO, leafless_mesh_read_stl("no/such/file", 12, &mesh));
+    /* A device that is always full. */
+    if (access("/dev/full", W_OK) == 0) {
+        FAILS(LEAFLESS_E_IO, leafless_octree_save(ball, "/dev/full", 9));
+        failed(LEAFLESS_E_IO, "LEAFLESS_E_IO", "space");
+    }
+
+    FAILS(LEAFLESS_E_PANIC, leafless_test_panic());
+    failed(LEAFLESS_E_PANIC, "LEAFLESS_E_PANIC", "as the test wanted");
+
+    CHECK(octree == UNTOUCHED && mesh == (leafless_mesh *)UNTOUCHED);
+    for (i = 0; strcmp(leafless_status_name((int32_t)i), "LEAFLESS_E_UNKNOWN") != 0; i++) {
+        if (!seen[i]) {
+            fprintf(stderr, "%s was never provoked\n", leafless_status_name((int32_t)i));
+            return 1;
+        }
+    }
+    CHECK(i == 18);
+
+    free(bytes);
+    leafless_control_free(control);
+    leafless_solid_free(solid);
+    leafless_mesh_free(cube);
+    leafless_octree_free(ball);
+    leafless_octree_free(finer);
+    return 0;
+}

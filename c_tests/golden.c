@@ -1,0 +1,215 @@
+/* The test vectors of the format's specification, read by the library through C. Arguments: files whose names end in
+   .lfl, each with a .txt beside it that says what must come of it (format_spec/vectors/README.md). */
+#include "check.h"
+
+static size_t valid, invalid, points;
+
+/* The rest of a line after "key: ", or NULL if it has another key. */
+static const char *value_of(const char *line, const char *key) {
+    const size_t length = strlen(key);
+    return strncmp(line, key, length) == 0 && strncmp(line + length, ": ", 2) == 0 ? line + length + 2 : NULL;
+}
+
+static const char *tag_name(leafless_tag tag) {
+    static const char *const NAMES[] = {"EMPTY", "BRANCH", "PARTIAL", "FULL"};
+    return NAMES[tag];
+}
+
+static void numbers(const char *text, double *out, size_t count) {
+    char *end;
+    size_t i;
+    for (i = 0; i < count; i++) {
+        out[i] = strtod(text, &end);
+        CHECK(end != text);
+        text = end;
+    }
+}
+
+static uint64_t whole(const char *text, char **end) {
+    return (uint64_t)strtoull(text, end, 10);
+}
+
+static void check_fact(const char *line, const leafless_octree *octree, const leafless_probe *probe,
+                       const leafless_section *sections, uint64_t *metadata) {
+    static const char *const ANSWERS[] = {"outside", "inside", "undecided"};
+    leafless_octree_info info;
+    leafless_statistics all, levels[32];
+    const char *value;
+    char *end;
+    double parsed[3];
+    uint64_t count, i;
+    OK(leafless_octree_describe(octree, &info));
+    if ((value = value_of(line, "length")) != NULL) {
+        CHECK(probe->file_length == whole(value, &end));
+    } else if ((value = value_of(line, "version")) != NULL) {
+        CHECK(probe->major == whole(value, &end) && *end == '.' && probe->minor == whole(end + 1, &end));
+    } else if ((value = value_of(line, "origin")) != NULL || (value = value_of(line, "origin-decimal")) != NULL) {
+        numbers(value, parsed, 3);
+        CHECK(memcmp(parsed, info.frame.origin, sizeof parsed) == 0);
+        CHECK(memcmp(parsed, probe->frame.origin, sizeof parsed) == 0);
+    } else if ((value = value_of(line, "edge")) != NULL || (value = value_of(line, "edge-decimal")) != NULL) {
+        numbers(value, parsed, 1);
+        CHECK(parsed[0] == info.frame.edge && parsed[0] == probe->frame.edge);
+    } else if ((value = value_of(line, "depth")) != NULL) {
+        CHECK(info.frame.depth == whole(value, &end) && probe->frame.depth == info.frame.depth);
+    } else if ((value = value_of(line, "root")) != NULL) {
+        CHECK(strcmp(value, tag_name(info.root)) == 0 && probe->root == info.root);
+    } else if ((value = value_of(line, "exterior")) != NULL) {
+        CHECK(strcmp(value, tag_name(info.exterior)) == 0 && probe->exterior == info.exterior);
+    } else if ((value = value_of(line, "planes")) != NULL) {
+        CHECK(info.is_binary == (whole(value, &end) == 1) && probe->is_binary == info.is_binary);
+    } else if ((value = value_of(line, "elements")) != NULL) {
+        CHECK(info.elements == whole(value, &end) && probe->elements == info.elements);
+    } else if ((value = value_of(line, "bricks")) != NULL) {
+        CHECK(info.bricks == whole(value, &end) && probe->bricks == info.bricks);
+    } else if ((value = value_of(line, "sections")) != NULL) {
+        for (i = 0; i < probe->sections; i++) {
+            CHECK(sections[i].kind == whole(value, &end));
+            value = end;
+        }
+        CHECK(*value == '\0');
+    } else if ((value = value_of(line, "level")) != NULL) {
+        OK(leafless_octree_levels(octree, levels, COUNT(levels), &count));
+        i = whole(value, &end);
+        CHECK(i < count && levels[i].nodes == whole(end, &end));
+        /* The file counts the cells of a level, the library those of the tree cut there. */
+        (void)whole(end, &end);
+    } else if ((value = value_of(line, "cells")) != NULL) {
+        OK(leafless_octree_statistics(octree, &all));
+        CHECK(all.lower_cells == whole(value, &end) && all.upper_cells == whole(end, &end));
+    } else if ((value = value_of(line, "metadata")) != NULL) {
+        const char *key, *found, *tab = strchr(value, '\t');
+        size_t key_length, found_length;
+        CHECK(tab != NULL);
+        OK(leafless_octree_peek_metadata_at(octree, (*metadata)++, &count, &key, &key_length, &found, &found_length));
+        CHECK(key_length == (size_t)(tab - value) && memcmp(key, value, key_length) == 0);
+        CHECK(found_length == strlen(tab + 1) && memcmp(found, tab + 1, found_length) == 0);
+    } else if ((value = value_of(line, "point")) != NULL) {
+        leafless_membership answer;
+        numbers(value, parsed, 3);
+        OK(leafless_octree_contains(octree, parsed, &answer));
+        CHECK(strcmp(strrchr(value, ' ') + 1, ANSWERS[answer]) == 0);
+        points++;
+    }
+}
+
+static void read_valid(const char *path, char *text) {
+    leafless_octree *octrees[5];
+    leafless_probe probe;
+    leafless_section sections[32];
+    size_t length, i;
+    uint8_t *bytes = check_read(path, &length);
+    char *line;
+    uint64_t metadata[5] = {0, 0, 0, 0, 0}, count;
+    OK(leafless_file_probe(path, strlen(path), &probe, sections, COUNT(sections)));
+    OK(leafless_bytes_verify(bytes, length));
+    OK(leafless_octree_open(path, strlen(path), &octrees[0]));
+    OK(leafless_octree_map(path, strlen(path), &octrees[1]));
+    OK(leafless_octree_map_verified(path, strlen(path), &octrees[2]));
+    OK(leafless_octree_from_bytes(bytes, length, &octrees[3]));
+    OK(leafless_octree_view_bytes(bytes, length, &octrees[4]));
+    CHECK(probe.file_length == length);
+    for (line = strtok(text, "\n"); line != NULL; line = strtok(NULL, "\n")) {
+        const char *canonical = value_of(line, "canonical");
+        for (i = 0; i < COUNT(octrees); i++) {
+            check_fact(line, octrees[i], &probe, sections, &metadata[i]);
+        }
+        if (canonical != NULL && strcmp(canonical, "yes") == 0) {
+            uint64_t again_length;
+            uint8_t *again = check_bytes(octrees[0], &again_length);
+            CHECK(again_length == length && memcmp(again, bytes, length) == 0);
+            free(again);
+        }
+    }
+    for (i = 0; i < COUNT(octrees); i++) {
+        OK(leafless_octree_check(octrees[i]));
+        CHECK(check_same(octrees[0], octrees[i]));
+        OK(leafless_octree_peek_metadata_at(octrees[i], 0, &count, NULL, NULL, NULL, NULL));
+        CHECK(count == metadata[i]);
+    }
+    for (i = 0; i < COUNT(octrees); i++) {
+        leafless_octree_free(octrees[i]);
+    }
+    free(bytes);
+    valid++;
+}
+
+static void one_of(leafless_status status) {
+    CHECK(status == LEAFLESS_E_FORMAT || status == LEAFLESS_E_VERSION || status == LEAFLESS_E_DAMAGED);
+}
+
+static void read_invalid(const char *path, char *text) {
+    leafless_octree *octree = NULL;
+    leafless_probe probe;
+    size_t length;
+    uint8_t *bytes = check_read(path, &length);
+    const char *by = NULL;
+    bool wrong_length = false, version = false;
+    char *line;
+    int level;
+    leafless_status status;
+    for (line = strtok(text, "\n"); line != NULL; line = strtok(NULL, "\n")) {
+        by = value_of(line, "refused-by") != NULL ? value_of(line, "refused-by") : by;
+        wrong_length = wrong_length || value_of(line, "error-of-length") != NULL ||
+                       (value_of(line, "error") != NULL && strncmp(value_of(line, "error"), "Format(Length", 13) == 0);
+        if (value_of(line, "error") != NULL) {
+            version = strncmp(value_of(line, "error"), "Format(Version", 14) == 0 ||
+                      strncmp(value_of(line, "error"), "Format(Required", 15) == 0;
+        }
+    }
+    CHECK(by != NULL);
+    level = strcmp(by, "probing") == 0      ? 0
+            : strcmp(by, "plain") == 0      ? 1
+            : strcmp(by, "metadata") == 0   ? 2
+            : strcmp(by, "verification") == 0 ? 3
+                                              : -1;
+    CHECK(level >= 0);
+    status = leafless_bytes_probe(bytes, length, &probe, NULL, 0);
+    if (level == 0) {
+        one_of(status);
+        CHECK(!version || status == LEAFLESS_E_VERSION);
+    } else {
+        CHECK(status == LEAFLESS_OK);
+    }
+    status = leafless_octree_map(path, strlen(path), &octree);
+    if (level <= 2) {
+        one_of(status);
+        CHECK(octree == NULL);
+        one_of(leafless_octree_view_bytes(bytes, length, &octree));
+    } else {
+        CHECK(status == LEAFLESS_OK && octree != NULL && !wrong_length);
+        leafless_octree_free(octree);
+        octree = NULL;
+    }
+    one_of(leafless_octree_open(path, strlen(path), &octree));
+    one_of(leafless_octree_map_verified(path, strlen(path), &octree));
+    one_of(leafless_octree_from_bytes(bytes, length, &octree));
+    one_of(leafless_bytes_verify(bytes, length));
+    CHECK(octree == NULL);
+    free(bytes);
+    invalid++;
+}
+
+int main(int argc, char **argv) {
+    int i;
+    for (i = 1; i < argc; i++) {
+        char beside[1024];
+        size_t length;
+        char *text;
+        CHECK(strlen(argv[i]) < sizeof beside && strcmp(argv[i] + strlen(argv[i]) - 4, ".lfl") == 0);
+        strcpy(beside, argv[i]);
+        strcpy(beside + strlen(beside) - 4, ".txt");
+        text = (char *)check_read(beside, &length);
+        text[length] = '\0';
+        fprintf(stderr, "%s\n", argv[i]);
+        if (strstr(text, "refused-by: ") != NULL) {
+            read_invalid(argv[i], text);
+        } else {
+            read_valid(argv[i], text);
+        }
+        free(text);
+    }
+    printf("%lu valid with %lu points, %lu invalid\n", (unsigned long)valid, (unsigned long)points,
+           (unsigned long)invalid);
+    return 0;
+}

@@ -1,0 +1,114 @@
+//! What stands in the header, read as text.
+
+pub struct Function {
+    pub name: String,
+    /// Parameters that are pointers or functions.
+    pub pointers: Vec<String>,
+}
+
+#[derive(Default)]
+pub struct Header {
+    pub functions: Vec<Function>,
+    /// Structs whose fields are public.
+    pub structs: Vec<(String, Vec<String>)>,
+    /// Enumerators, and macros that are numbers.
+    pub values: Vec<String>,
+    /// Everything else that has a name: opaque structs, enumerations, function types, other macros.
+    others: Vec<String>,
+}
+
+/// The text without comments.
+fn code(text: &str) -> String {
+    let mut code = String::new();
+    let mut rest = text;
+    while let Some((before, comment)) = rest.split_once("/*") {
+        code.push_str(before);
+        rest = comment.split_once("*/").expect("a closed comment").1;
+    }
+    code.push_str(rest);
+    code.lines().map(|line| line.split("//").next().unwrap_or_default()).collect::<Vec<_>>().join("\n")
+}
+
+/// The last name in a declarator, without what stands in brackets behind it.
+fn declared(declarator: &str) -> &str {
+    let name = declarator.split('[').next().unwrap_or_default().trim();
+    name.rsplit(|c: char| !(c.is_alphanumeric() || c == '_')).next().unwrap_or_default()
+}
+
+impl Header {
+    pub fn read(text: &str) -> Header {
+        let code = code(text);
+        let mut header = Header::default();
+        for line in code.lines() {
+            if let Some(rest) = line.strip_prefix("#define ") {
+                let (name, value) = rest.split_once(char::is_whitespace).unwrap_or((rest, ""));
+                let name = name.split('(').next().unwrap();
+                if value.trim().parse::<i64>().is_ok() {
+                    header.values.push(name.to_string());
+                } else {
+                    header.others.push(name.to_string());
+                }
+            }
+        }
+        let plain: String = code
+            .lines()
+            .filter(|line| !line.trim_start().starts_with(['#', '\\']))
+            .collect::<Vec<_>>()
+            .join("\n");
+        let mut rest = plain.as_str();
+        while let Some(end) = rest.find([';', '{']) {
+            let declaration = rest[..end].trim();
+            if rest[end..].starts_with('{') && !declaration.ends_with("\"C\"") {
+                let (body, after) = rest[end + 1..].split_once('}').expect("a closed body");
+                if declaration.contains("enum ") {
+                    header.others.push(declaration.split_whitespace().nth(1).unwrap().to_string());
+                    let names = body.split(',').filter_map(|value| value.split('=').next());
+                    header
+                        .values
+                        .extend(names.map(|name| name.trim().to_string()).filter(|name| !name.is_empty()));
+                } else {
+                    let fields =
+                        body.split(';').map(declared).filter(|name| !name.is_empty()).map(str::to_string);
+                    let name = declared(after.split(';').next().unwrap_or_default());
+                    header.structs.push((name.to_string(), fields.collect()));
+                }
+                rest = after.split_once(';').expect("a semicolon after a body").1;
+                continue;
+            }
+            rest = &rest[end + 1..];
+            if declaration.starts_with("typedef ") {
+                let name = match declaration.split_once("(*") {
+                    Some((_, function)) => function.split_once(')').unwrap().0,
+                    None => declared(declaration),
+                };
+                header.others.push(name.to_string());
+            } else if let Some((before, parameters)) = declaration.split_once('(') {
+                let pointers =
+                    parameters.trim_end_matches(')').split(',').map(str::trim).filter(|parameter| {
+                        parameter.contains('*') || parameter.contains('[') || parameter.contains("_fn ")
+                    });
+                let pointers = pointers.map(declared).map(str::to_string).collect();
+                header.functions.push(Function { name: declared(before).to_string(), pointers });
+            }
+        }
+        header
+    }
+
+    pub fn names(&self) -> impl Iterator<Item = &str> {
+        let functions = self.functions.iter().map(|function| function.name.as_str());
+        let structs = self.structs.iter().map(|(name, _)| name.as_str());
+        functions.chain(structs).chain(self.values.iter().chain(&self.others).map(String::as_str))
+    }
+}
+
+/// All words that begin with the prefix.
+pub fn words(text: &str) -> Vec<String> {
+    let mut words: Vec<String> = text
+        .split(|c: char| !(c.is_alphanumeric() || c == '_'))
+        .filter(|word| word.starts_with("leafless_") || word.starts_with("LEAFLESS_"))
+        .map(str::to_string)
+        .collect();
+    words.sort();
+    words.dedup();
+    words
+}

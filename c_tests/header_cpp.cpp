@@ -1,0 +1,29 @@
+// The header stands alone, before any other, and may be included twice.
+#include <leafless.h>
+#include <leafless.h>
+
+#include <type_traits>
+
+// Enumerations have the size that the structs and the library count on.
+static_assert(std::is_same<std::underlying_type<leafless_status>::type, int32_t>::value, "leafless_status");
+static_assert(std::is_same<std::underlying_type<leafless_tag>::type, uint8_t>::value, "leafless_tag");
+static_assert(std::is_same<std::underlying_type<leafless_membership>::type, uint8_t>::value, "leafless_membership");
+static_assert(std::is_same<std::underlying_type<leafless_region>::type, uint8_t>::value, "leafless_region");
+static_assert(std::is_same<std::underlying_type<leafless_rule>::type, uint32_t>::value, "leafless_rule");
+static_assert(std::is_standard_layout<leafless_octree_info>::value, "leafless_octree_info");
+static_assert(std::is_trivial<leafless_options>::value, "leafless_options");
+
+int main() {
+    leafless_frame frame = {{0.0, 0.0, 0.0}, 1.0, 4};
+    leafless_octree *octree = nullptr;
+    // Enumerators convert to the numbers that functions take.
+    if (leafless_octree_uniform(&frame, LEAFLESS_TAG_FULL, LEAFLESS_TAG_EMPTY, &octree) != LEAFLESS_OK) {
+        return 1;
+    }
+    leafless_octree_info info;
+    if (leafless_octree_describe(octree, &info) != LEAFLESS_OK) {
+        return 2;
+    }
+    leafless_octree_free(octree);
+    return info.root == LEAFLESS_TAG_FULL && info.frame.depth == 4 && LEAFLESS_COMPATIBLE() ? 0 : 3;
+}

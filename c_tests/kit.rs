@@ -1,0 +1,328 @@
+//! Builds the libraries, compiles programs against them, runs these.
+
+use crate::check::{Check, runtime_archive};
+use crate::header::Header;
+use crate::{root, text};
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+use std::sync::OnceLock;
+use std::time::{Duration, Instant};
+
+#[derive(Clone, Copy)]
+pub enum Standard {
+    C(&'static str),
+    Cpp(&'static str),
+}
+
+impl Standard {
+    pub fn extension(self) -> &'static str {
+        match self {
+            Standard::C(_) => "c",
+            Standard::Cpp(_) => "cpp",
+        }
+    }
+}
+
+#[derive(Clone, Copy, PartialEq)]
+pub enum Link {
+    Static,
+    Shared,
+}
+
+pub struct Kit {
+    pub check: Check,
+    /// What programs with the static library must be linked to, as rustc tells.
+    pub native_libraries: String,
+    folder: PathBuf,
+    triple: String,
+    runtime: Option<PathBuf>,
+}
+
+/// The libraries are built once, however many tests ask.
+pub fn kit() -> &'static Kit {
+    static KIT: OnceLock<Result<Kit, String>> = OnceLock::new();
+    match KIT.get_or_init(Kit::new) {
+        Ok(kit) => kit,
+        Err(problem) => panic!("{problem}"),
+    }
+}
+
+/// The lines of all `sh` blocks, those that a backslash continues as one.
+pub fn documented(text: &str) -> Vec<String> {
+    let blocks = text.split("```sh\n").skip(1).filter_map(|block| block.split_once("```"));
+    let joined: String = blocks.map(|(block, _)| block.replace("\\\n", " ")).collect();
+    joined
+        .lines()
+        .map(|line| line.split_whitespace().collect::<Vec<_>>().join(" "))
+        .filter(|line| !line.is_empty())
+        .collect()
+}
+
+/// A command as it could be typed, without its environment.
+fn line(command: &Command) -> String {
+    let words = std::iter::once(command.get_program()).chain(command.get_args());
+    words.map(|word| word.to_string_lossy()).collect::<Vec<_>>().join(" ")
+}
+
+fn output(command: &mut Command) -> Result<(String, String), String> {
+    let told = command.output().map_err(|error| format!("{}: {error}", line(command)))?;
+    let (out, err) = (String::from_utf8_lossy(&told.stdout), String::from_utf8_lossy(&told.stderr));
+    match told.status.success() {
+        true => Ok((out.into(), err.into())),
+        false => Err(format!("{}: {}\n{out}{err}", line(command), told.status)),
+    }
+}
+
+impl Kit {
+    fn new() -> Result<Kit, String> {
+        let check = Check::from_environment()?;
+        let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("c_api").join(check.name());
+        let mut kit =
+            Kit { check, native_libraries: String::new(), folder, triple: String::new(), runtime: None };
+        let (version, _) = output(kit.rust("rustc").arg("-vV"))?;
+        kit.triple =
+            version.lines().find_map(|line| line.strip_prefix("host: ")).ok_or("rustc has no host")?.into();
+        for standard in [Standard::C(""), Standard::Cpp("")] {
+            // Asked before the long work: without a compiler these tests have failed.
+            output(kit.compiler(standard)?.arg("--version")).map_err(|problem| {
+                format!("a compiler for C and one for C++ are needed, such as gcc and g++ (or set CC and CXX): {problem}")
+            })?;
+        }
+        kit.write_lists()?;
+        kit.build()?;
+        if let Some(runtime) = check.runtime() {
+            kit.runtime = Some(runtime_archive(&mut kit.rust("rustc"), runtime)?);
+        }
+        Ok(kit)
+    }
+
+    /// The toolchain that builds the library.
+    fn rust(&self, program: &str) -> Command {
+        let mut command = match (self.check.rust_flags(), program) {
+            (Some(_), _) => {
+                let mut command = Command::new("rustup");
+                command.args(["run", "nightly", program]);
+                command
+            }
+            (None, "cargo") => Command::new(env!("CARGO")),
+            (None, _) => Command::new(std::env::var_os("RUSTC").unwrap_or_else(|| program.into())),
+        };
+        // What cargo has set for this very test is not meant for the library.
+        for variable in ["CARGO_TARGET_DIR", "CARGO_BUILD_TARGET_DIR", "RUSTFLAGS", "CARGO_ENCODED_RUSTFLAGS"]
+        {
+            command.env_remove(variable);
+        }
+        if self.check.rust_flags().is_some() {
+            command.env_remove("RUSTC").env_remove("CARGO").env_remove("RUSTUP_TOOLCHAIN");
+        }
+        command.current_dir(root()).env("CARGO_TARGET_DIR", self.folder.join("target"));
+        if let Some(flags) = self.check.rust_flags() {
+            command.env("RUSTFLAGS", flags);
+        }
+        command
+    }
+
+    /// Builds both libraries as `include/README.md` says, with the function that panics.
+    fn build(&mut self) -> Result<(), String> {
+        let commands = documented(&text("include/README.md"));
+        for kind in ["staticlib", "cdylib"] {
+            let line = commands.iter().find(|line| line.starts_with("cargo ") && line.contains(kind));
+            let line = line.ok_or_else(|| format!("include/README.md has no command for the {kind}"))?;
+            let mut words =
+                line.split_whitespace().map(|word| if word == "capi" { "capi-test" } else { word });
+            words.next();
+            if kind == "cdylib" && self.check.runtime().is_some() {
+                // A shared library with a runtime of its own would be a second one.
+                continue;
+            }
+            let mut command = self.rust("cargo");
+            command.args(words);
+            if self.check.rust_flags().is_some() {
+                // Build scripts and macros run on the host, without a sanitizer.
+                let place = command.get_args().position(|word| word == "--").unwrap_or(usize::MAX);
+                let mut arguments: Vec<_> = command.get_args().map(|word| word.to_os_string()).collect();
+                let place = place.min(arguments.len());
+                arguments.splice(place..place, ["--target".into(), self.triple.clone().into()]);
+                command = self.rust("cargo");
+                // `rustup run nightly cargo` stands in front already.
+                let own = command.get_args().count();
+                command.args(arguments.split_off(own));
+            }
+            let (_, told) = output(&mut command)?;
+            if kind == "staticlib" {
+                let list = told.lines().find_map(|line| line.split_once("native-static-libs: "));
+                self.native_libraries = list.ok_or("rustc names no native libraries")?.1.trim().into();
+            }
+        }
+        let (library, name) =
+            (self.release().join("libleafless.so"), self.release().join("libleafless.so.0"));
+        if library.exists() && !name.exists() {
+            std::os::unix::fs::symlink("libleafless.so", name).map_err(|error| error.to_string())?;
+        }
+        Ok(())
+    }
+
+    /// `symbols.h` and `layout.h`, which are made of the header.
+    fn write_lists(&self) -> Result<(), String> {
+        let header = Header::read(&text("include/leafless.h"));
+        let mut symbols = String::new();
+        for function in &header.functions {
+            let _ = writeln!(symbols, "FUNCTION({})", function.name);
+        }
+        let mut layout = String::new();
+        for (name, fields) in &header.structs {
+            let _ = writeln!(layout, "STRUCT({name})");
+            for field in fields {
+                let _ = writeln!(layout, "FIELD({name}, {field})");
+            }
+        }
+        for value in &header.values {
+            let _ = writeln!(layout, "VALUE({value})");
+        }
+        let folder = self.folder("lists");
+        for (name, text) in [("symbols.h", symbols), ("layout.h", layout)] {
+            std::fs::write(folder.join(name), text).map_err(|error| error.to_string())?;
+        }
+        Ok(())
+    }
+
+    /// Where the libraries are.
+    pub fn release(&self) -> PathBuf {
+        let target = self.folder.join("target");
+        if self.check.rust_flags().is_some() {
+            target.join(&self.triple).join("release")
+        } else {
+            target.join("release")
+        }
+    }
+
+    /// An existing folder for files of a test.
+    pub fn folder(&self, name: &str) -> PathBuf {
+        let folder = self.folder.join(name);
+        std::fs::create_dir_all(&folder).unwrap_or_else(|error| panic!("{}: {error}", folder.display()));
+        folder
+    }
+
+    fn compiler(&self, standard: Standard) -> Result<Command, String> {
+        let mut build = cc::Build::new();
+        build.target(&self.triple).host(&self.triple).opt_level(1).debug(true).out_dir(&self.folder);
+        build.cargo_metadata(false).cpp(matches!(standard, Standard::Cpp(_)));
+        let tool = build.try_get_compiler().map_err(|error| format!("there is no compiler: {error}"))?;
+        let mut command = Command::new(tool.path());
+        command.args(tool.args());
+        Ok(command)
+    }
+
+    pub fn compile(&self, name: &str, sources: &[PathBuf], standard: Standard, link: Link) -> PathBuf {
+        self.try_compile(name, sources, standard, link).unwrap_or_else(|problem| panic!("{problem}"))
+    }
+
+    /// A program of these sources, in a folder of its own.
+    pub fn try_compile(
+        &self,
+        name: &str,
+        sources: &[PathBuf],
+        standard: Standard,
+        link: Link,
+    ) -> Result<PathBuf, String> {
+        // With a sanitizer's runtime there is the static library only.
+        let link = if self.runtime.is_some() { Link::Static } else { link };
+        let (Standard::C(year) | Standard::Cpp(year)) = standard;
+        let folder =
+            self.folder(&format!("{name}-{year}-{}", if link == Link::Static { "static" } else { "shared" }));
+        let program = folder.join(name);
+        let mut command = self.compiler(standard)?;
+        command.current_dir(&folder).arg(format!("-std={year}")).args([
+            "-Wall",
+            "-Wextra",
+            "-pedantic",
+            "-Werror",
+        ]);
+        if matches!(standard, Standard::C(_)) {
+            command.arg("-Wstrict-prototypes");
+        }
+        command.args(self.check.compiler_flags()).arg("-DLEAFLESS_TEST");
+        command.arg("-I").arg(root().join("include")).arg("-I").arg(root().join("c_tests"));
+        command.arg("-I").arg(self.folder("lists"));
+        if self.runtime.is_some() {
+            // The compiler's own runtime stays out.
+            let mut objects = Vec::new();
+            for source in sources {
+                let object = folder.join(source.file_stem().unwrap_or_default()).with_extension("o");
+                let mut one = Command::new(command.get_program());
+                one.args(command.get_args())
+                    .current_dir(&folder)
+                    .arg("-c")
+                    .arg(source)
+                    .arg("-o")
+                    .arg(&object);
+                output(&mut one)?;
+                objects.push(object);
+            }
+            command = self.compiler(standard)?;
+            command.current_dir(&folder).args(objects);
+        } else {
+            command.args(sources);
+        }
+        let release = self.release();
+        match link {
+            Link::Static => {
+                command.arg(release.join("libleafless.a"));
+                if let Some(runtime) = &self.runtime {
+                    command
+                        .arg("-Wl,--whole-archive")
+                        .arg(runtime)
+                        .args(["-Wl,--no-whole-archive", "-rdynamic"]);
+                }
+                command.args(self.native_libraries.split_whitespace());
+            }
+            Link::Shared => {
+                command.arg("-L").arg(&release).arg("-lleafless").arg("-lm").arg("-pthread");
+                command.arg(format!("-Wl,-rpath,{}", release.display()));
+            }
+        }
+        output(command.arg("-o").arg(&program))?;
+        Ok(program)
+    }
+
+    pub fn run(&self, program: &Path, arguments: &[&str]) -> String {
+        self.try_run(program, arguments).unwrap_or_else(|problem| panic!("{problem}"))
+    }
+
+    /// What a program prints, run in the folder where it is; it has a minute.
+    pub fn try_run(&self, program: &Path, arguments: &[&str]) -> Result<String, String> {
+        let folder = program.parent().ok_or("a program without a folder")?;
+        let printed = folder.join("stdout");
+        let problems = folder.join("stderr");
+        let file =
+            |path: &Path| std::fs::File::create(path).map_err(|error| format!("{}: {error}", path.display()));
+        let mut command = self.check.command(program, &root().join("c_tests/thread.supp"));
+        // Where cargo keeps libraries for this very test, no program shall look.
+        command.args(arguments).current_dir(folder).stdin(Stdio::null()).env_remove("LD_LIBRARY_PATH");
+        command.stdout(file(&printed)?).stderr(file(&problems)?);
+        let mut child = command.spawn().map_err(|error| format!("{}: {error}", line(&command)))?;
+        let patience = Duration::from_secs(60) * self.check.patience();
+        let start = Instant::now();
+        let status = loop {
+            match child.try_wait().map_err(|error| error.to_string())? {
+                Some(status) => break Some(status),
+                None if start.elapsed() > patience => {
+                    let _ = child.kill();
+                    let _ = child.wait();
+                    break None;
+                }
+                None => std::thread::sleep(Duration::from_millis(5)),
+            }
+        };
+        let read =
+            |path: &Path| String::from_utf8_lossy(&std::fs::read(path).unwrap_or_default()).into_owned();
+        match status {
+            Some(status) if status.success() => Ok(read(&printed)),
+            Some(status) => {
+                Err(format!("{}: {status}\n{}{}", program.display(), read(&printed), read(&problems)))
+            }
+            None => Err(format!("{}: not done after {patience:?}\n{}", program.display(), read(&problems))),
+        }
+    }
+}

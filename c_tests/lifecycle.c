@@ -1,0 +1,362 @@
+/* Everything once, from the first call to the last _free: the way a host program would do it. */
+#include "check.h"
+
+static void text_equals(const char *text, size_t length, const char *expected) {
+    CHECK(text != NULL && length == strlen(expected) && memcmp(text, expected, length) == 0);
+}
+
+static void frames(void) {
+    const double min[3] = {0.0, 1.0, 2.0}, max[3] = {32.0, 2.0, 4.0}, inside[3] = {0.5, -0.5, -1.0};
+    leafless_frame frame;
+    leafless_interval plane;
+    double size;
+    uint32_t cell[3];
+
+    OK(leafless_frame_around(min, max, 8, &frame));
+    CHECK(frame.edge == 33.0 && frame.depth == 8 && frame.origin[0] == -0.5);
+    OK(leafless_frame_check(&frame));
+
+    frame = check_frame(3);
+    OK(leafless_frame_cell_size(&frame, &size));
+    CHECK(size == 0.25);
+    OK(leafless_frame_cell_of(&frame, inside, cell));
+    CHECK(cell[0] == 6 && cell[1] == 2 && cell[2] == 0);
+    OK(leafless_frame_plane(&frame, 0, 8, &plane));
+    CHECK(plane.lower == 1.0 && plane.upper == 1.0);
+
+    /* Planes that no double can represent lie between two. */
+    frame.edge = 0x1.0000000000001p+0;
+    frame.origin[0] = 0x1p-30;
+    frame.depth = 20;
+    OK(leafless_frame_plane(&frame, 0, 3, &plane));
+    CHECK(plane.lower < plane.upper && nextafter(plane.lower, plane.upper) == plane.upper);
+}
+
+static void meshes(void) {
+    leafless_mesh *cube = check_cube(), *twice = NULL, *moved = NULL, *again = NULL, *sewn = NULL, *reference = NULL;
+    const double matrix[12] = {2, 0, 0, 10, 0, 2, 0, 20, 0, 0, 2, 30}, offset[3] = {1, 2, 3};
+    leafless_mesh_report report;
+    double min[3], max[3], volume, vertices[8][3];
+    uint64_t vertex_count, triangle_count, length;
+    uint32_t triangles[12][3];
+    uint8_t *stl;
+
+    OK(leafless_mesh_counts(cube, &vertex_count, &triangle_count));
+    CHECK(vertex_count == 8 && triangle_count == 12);
+    OK(leafless_mesh_copy(cube, &vertices[0][0], 8, &triangles[0][0], 12));
+    CHECK(memcmp(vertices, CHECK_CUBE, sizeof vertices) == 0);
+    CHECK(memcmp(triangles, CHECK_CUBE_TRIANGLES, sizeof triangles) == 0);
+    OK(leafless_mesh_bounds(cube, min, max));
+    CHECK(min[0] == 0 && min[1] == 0 && min[2] == 0 && max[0] == 1 && max[1] == 1 && max[2] == 1);
+    OK(leafless_mesh_volume(cube, &volume));
+    CHECK(volume == 1.0);
+    OK(leafless_mesh_check_closed(cube, LEAFLESS_FILL_NON_ZERO));
+    OK(leafless_mesh_describe(cube, &report));
+    CHECK(report.facets_read == 12 && report.triangles == 12 && report.vertices == 8 && report.welded == 0);
+    CHECK(report.boundary_edges == 0 && report.bodies == 1 && report.sewn == 0 && report.displacement_model == 0.0);
+
+    /* Vertices with something else between them, some of them equal. */
+    {
+        double strided[9][5];
+        uint32_t other[12][3];
+        int i, j;
+        for (i = 0; i < 9; i++) {
+            for (j = 0; j < 5; j++) {
+                strided[i][j] = j < 3 ? CHECK_CUBE[i % 8][j] : NAN;
+            }
+        }
+        memcpy(other, CHECK_CUBE_TRIANGLES, sizeof other);
+        other[0][0] = 8;
+        OK(leafless_mesh_new(&strided[0][0], 9, sizeof strided[0], &other[0][0], 12, &twice));
+        OK(leafless_mesh_describe(twice, &report));
+        CHECK(report.vertices == 8 && report.welded == 1 && report.boundary_edges == 0);
+    }
+
+    OK(leafless_mesh_transformed(cube, matrix, &moved));
+    OK(leafless_mesh_bounds(moved, min, max));
+    CHECK(min[0] == 10 && min[1] == 20 && min[2] == 30 && max[0] == 12 && max[1] == 22 && max[2] == 32);
+    leafless_mesh_free(moved);
+    OK(leafless_mesh_translated(cube, offset, &moved));
+    OK(leafless_mesh_bounds(moved, min, max));
+    CHECK(min[0] == 1 && min[1] == 2 && min[2] == 3);
+    OK(leafless_mesh_sewn(moved, &sewn));
+
+    OK(leafless_mesh_to_stl(cube, NULL, 0, &length));
+    CHECK(length == 84 + 50 * 12);
+    stl = (uint8_t *)malloc((size_t)length);
+    CHECK(stl != NULL);
+    OK(leafless_mesh_to_stl(cube, stl, length, &length));
+    OK(leafless_mesh_from_stl(stl, length, &again));
+    OK(leafless_mesh_volume(again, &volume));
+    CHECK(volume == 1.0);
+    leafless_mesh_free(again);
+    check_write("cube.stl", stl, (size_t)length);
+    free(stl);
+    OK(leafless_mesh_read_stl("cube.stl", strlen("cube.stl"), &again));
+    OK(leafless_mesh_volume(again, &volume));
+    CHECK(volume == 1.0);
+
+    OK(leafless_mesh_ref(cube, &reference));
+    CHECK(reference == cube);
+    leafless_mesh_free(cube);
+    OK(leafless_mesh_volume(reference, &volume));
+    leafless_mesh_free(reference);
+    leafless_mesh_free(twice);
+    leafless_mesh_free(moved);
+    leafless_mesh_free(again);
+    leafless_mesh_free(sewn);
+
+    /* A mesh of nothing is a mesh. */
+    OK(leafless_mesh_new(NULL, 0, 0, NULL, 0, &cube));
+    leafless_mesh_free(cube);
+}
+
+static void solids(void) {
+    const leafless_frame frame = check_frame(5);
+    const double min[3] = {0, 0, 0}, max[3] = {1, 1, 1}, up[3] = {0, 0, 2};
+    leafless_mesh *mesh = check_cube();
+    leafless_solid *solid = NULL, *reference = NULL;
+    leafless_octree *box = NULL, *cube = NULL, *half = NULL, *slab = NULL, *cut = NULL;
+    leafless_statistics statistics;
+    leafless_octree_info info;
+
+    OK(leafless_solid_new_box(min, max, &solid));
+    OK(leafless_octree_build(solid, &frame, LEAFLESS_RULE_CERTIFIED, NULL, &box));
+    leafless_solid_free(solid);
+
+    /* A solid keeps its mesh. */
+    OK(leafless_solid_new_mesh(mesh, &frame, LEAFLESS_FILL_NON_ZERO, &solid));
+    leafless_mesh_free(mesh);
+    OK(leafless_solid_ref(solid, &reference));
+    CHECK(reference == solid);
+    leafless_solid_free(solid);
+    OK(leafless_octree_build(reference, &frame, LEAFLESS_RULE_SAMPLED, NULL, &cube));
+    leafless_solid_free(reference);
+    CHECK(check_same(box, cube));
+
+    OK(leafless_solid_new_halfspace(up, 0.5, &solid));
+    OK(leafless_octree_build(solid, &frame, LEAFLESS_RULE_INNER, NULL, &half));
+    leafless_solid_free(solid);
+    OK(leafless_octree_statistics(half, &statistics));
+    CHECK(statistics.volume_model.lower == 5.0 && statistics.volume_model.upper == 5.0);
+    OK(leafless_octree_describe(half, &info));
+    CHECK(info.is_binary && info.is_clipped && info.exterior == LEAFLESS_TAG_PARTIAL);
+
+    /* A stored octree is a solid again, and the solid keeps it. */
+    OK(leafless_octree_as_solid(half, &solid));
+    leafless_octree_free(half);
+    OK(leafless_octree_build(solid, &frame, LEAFLESS_RULE_CERTIFIED, NULL, &slab));
+    leafless_solid_free(solid);
+
+    OK(leafless_octree_difference(box, slab, NULL, &cut));
+    OK(leafless_octree_statistics(cut, &statistics));
+    CHECK(statistics.volume_model.lower == 0.0 && statistics.volume_model.upper == 0.0);
+    leafless_octree_free(box);
+    leafless_octree_free(cube);
+    leafless_octree_free(slab);
+    leafless_octree_free(cut);
+}
+
+static void set_algebra(void) {
+    leafless_octree *a = check_box(4, -0.75, 0.25), *b = check_box(4, -0.25, 0.75), *r[8];
+    const leafless_octree *both[3];
+    leafless_statistics s;
+    leafless_options options;
+    size_t i;
+    double volume[8];
+    OK(leafless_options_init(&options));
+    options.threads = 1;
+    both[0] = a;
+    both[1] = b;
+    both[2] = a;
+    OK(leafless_octree_union(a, b, &options, &r[0]));
+    OK(leafless_octree_intersection(a, b, &options, &r[1]));
+    OK(leafless_octree_difference(a, b, &options, &r[2]));
+    OK(leafless_octree_xor(a, b, &options, &r[3]));
+    OK(leafless_octree_complement(a, &options, &r[4]));
+    OK(leafless_octree_union_of(both, 3, &options, &r[5]));
+    OK(leafless_octree_intersection_of(both, 3, &options, &r[6]));
+    OK(leafless_octree_xor_of(both, 3, &options, &r[7]));
+    for (i = 0; i < 8; i++) {
+        OK(leafless_octree_statistics(r[i], &s));
+        OK(leafless_octree_check(r[i]));
+        CHECK(s.volume_model.lower == s.volume_model.upper);
+        volume[i] = s.volume_model.lower;
+    }
+    CHECK(volume[0] == 1.875 && volume[1] == 0.125 && volume[2] == 0.875 && volume[3] == 1.75 && volume[4] == 7.0);
+    CHECK(check_same(r[0], r[5]) && check_same(r[1], r[6]) && check_same(b, r[7]));
+    CHECK(!check_same(a, b));
+    /* In the order in which they came, which is not that in which they were made. */
+    leafless_octree_free(a);
+    for (i = 0; i < 8; i++) {
+        leafless_octree_free(r[i]);
+    }
+    leafless_octree_free(b);
+}
+
+static void queries(void) {
+    leafless_octree *octree = check_ball(6, LEAFLESS_RULE_CERTIFIED);
+    const double points[4][3] = {{0, 0, 0}, {0.9, 0.9, 0.9}, {0.43, 0.43, 0.43}, {0, 0, NAN}};
+    const double low[3] = {-0.1, -0.1, -0.1}, high[3] = {0.1, 0.1, 0.1}, far[3] = {0.95, 0.95, 0.95}, out[3] = {1, 1, 1};
+    const uint32_t middle[3] = {32, 32, 32}, corner[3] = {0, 63, 0}, beyond[3] = {64, 0, 0};
+    leafless_membership one, many[4];
+    leafless_region region;
+    leafless_tag tag;
+    leafless_point_cursor *near = NULL;
+    leafless_cursor *cursor = NULL;
+    leafless_cursor_state state;
+    bool moved;
+    int i;
+
+    OK(leafless_octree_contains_many(octree, &points[0][0], 4, many));
+    CHECK(many[0] == LEAFLESS_INSIDE && many[1] == LEAFLESS_OUTSIDE);
+    CHECK(many[2] == LEAFLESS_UNDECIDED && many[3] == LEAFLESS_UNDECIDED);
+    OK(leafless_octree_contains_many(octree, NULL, 0, NULL));
+    OK(leafless_point_cursor_new(octree, &near));
+    for (i = 0; i < 4; i++) {
+        OK(leafless_octree_contains(octree, points[i], &one));
+        CHECK(one == many[i]);
+        OK(leafless_point_cursor_contains(near, points[i], &one));
+        CHECK(one == many[i]);
+    }
+    OK(leafless_octree_tag_at(octree, middle, &tag));
+    CHECK(tag == LEAFLESS_TAG_FULL);
+    OK(leafless_octree_tag_at(octree, corner, &tag));
+    CHECK(tag == LEAFLESS_TAG_EMPTY);
+    OK(leafless_octree_tag_at(octree, beyond, &tag));
+    CHECK(tag == LEAFLESS_TAG_PARTIAL);
+    OK(leafless_octree_classify_box(octree, low, high, &region));
+    CHECK(region == LEAFLESS_REGION_INSIDE);
+    OK(leafless_octree_classify_box(octree, far, out, &region));
+    CHECK(region == LEAFLESS_REGION_OUTSIDE);
+    OK(leafless_octree_classify_box(octree, low, out, &region));
+    CHECK(region == LEAFLESS_REGION_CROSSING);
+
+    OK(leafless_cursor_new(octree, &cursor));
+    /* Cursors keep the octree. */
+    leafless_octree_free(octree);
+    OK(leafless_point_cursor_tag_at(near, middle, &tag));
+    CHECK(tag == LEAFLESS_TAG_FULL);
+    leafless_point_cursor_free(near);
+
+    OK(leafless_cursor_read(cursor, &state));
+    CHECK(state.level == 0 && state.tag == LEAFLESS_TAG_BRANCH && state.children[7] == LEAFLESS_TAG_BRANCH);
+    OK(leafless_cursor_ascend(cursor, &moved));
+    CHECK(!moved);
+    OK(leafless_cursor_descend(cursor, 7, &moved));
+    CHECK(moved);
+    OK(leafless_cursor_descend(cursor, 0, NULL));
+    OK(leafless_cursor_read(cursor, &state));
+    CHECK(state.level == 2 && state.cell[0] == 2 && state.cell[1] == 2 && state.cell[2] == 2);
+    CHECK(state.tag == LEAFLESS_TAG_BRANCH || state.tag == LEAFLESS_TAG_FULL);
+    OK(leafless_cursor_ascend(cursor, NULL));
+    OK(leafless_cursor_descend(cursor, 0, &moved));
+    /* Down to a cell that is no branch: there is no way further. */
+    for (i = 0; i < 20 && moved; i++) {
+        OK(leafless_cursor_descend(cursor, 0, &moved));
+    }
+    OK(leafless_cursor_read(cursor, &state));
+    CHECK(!moved && state.tag != LEAFLESS_TAG_BRANCH && state.children[3] == state.tag);
+    leafless_cursor_free(cursor);
+}
+
+static void octrees(void) {
+    leafless_octree *ball = check_ball(6, LEAFLESS_RULE_CERTIFIED), *inner = NULL, *outer = NULL, *compact = NULL;
+    leafless_octree *named = NULL, *full = NULL, *reference = NULL, *more = NULL;
+    leafless_statistics s, t, levels[7];
+    leafless_octree_info info;
+    leafless_frame frame = check_frame(6);
+    const char *key, *value;
+    size_t key_length, value_length;
+    uint64_t count;
+    const double truth = 4.0 / 3.0 * 3.14159265358979323846 * 0.75 * 0.75 * 0.75;
+
+    OK(leafless_octree_describe(ball, &info));
+    CHECK(memcmp(&info.frame.origin, &frame.origin, sizeof frame.origin) == 0 && info.frame.edge == 2.0);
+    CHECK(info.root == LEAFLESS_TAG_BRANCH && info.exterior == LEAFLESS_TAG_EMPTY && !info.is_binary && !info.is_clipped);
+    CHECK(info.elements > 0 && info.bricks > 0);
+    OK(leafless_octree_statistics(ball, &s));
+    CHECK(s.volume_model.lower < truth && truth < s.volume_model.upper && s.lower_cells < s.upper_cells);
+    CHECK(s.empty + s.full + s.partial == 7 * s.nodes + 1);
+    OK(leafless_octree_levels(ball, NULL, 0, &count));
+    CHECK(count == 7);
+    OK(leafless_octree_levels(ball, levels, 7, &count));
+    CHECK(levels[6].lower_cells == s.lower_cells && levels[0].nodes == 1 && levels[6].nodes == 0);
+
+    OK(leafless_octree_resolve(ball, LEAFLESS_RULE_INNER, NULL, &inner));
+    OK(leafless_octree_statistics(inner, &t));
+    CHECK(t.lower_cells == s.lower_cells && t.upper_cells == s.lower_cells && t.partial == 0);
+    OK(leafless_octree_resolve(ball, LEAFLESS_RULE_OUTER, NULL, &outer));
+    OK(leafless_octree_statistics(outer, &t));
+    CHECK(t.lower_cells == s.upper_cells);
+    OK(leafless_octree_compact(ball, &compact));
+    CHECK(check_same(ball, compact));
+    OK(leafless_octree_check(compact));
+
+    OK(leafless_octree_peek_metadata(ball, "units", 5, &value, &value_length));
+    CHECK(value == NULL && value_length == 0);
+    OK(leafless_octree_with_metadata(ball, "units", 5, "mm", 2, &named));
+    OK(leafless_octree_with_metadata(named, "name", 4, "", 0, &more));
+    CHECK(check_same(ball, more));
+    OK(leafless_octree_peek_metadata(more, "units", 5, &value, &value_length));
+    text_equals(value, value_length, "mm");
+    OK(leafless_octree_peek_metadata(more, "name", 4, &value, &value_length));
+    text_equals(value, value_length, "");
+    OK(leafless_octree_peek_metadata_at(more, 77, &count, NULL, NULL, NULL, NULL));
+    CHECK(count == 2);
+    OK(leafless_octree_peek_metadata_at(more, 1, &count, &key, &key_length, &value, &value_length));
+    text_equals(key, key_length, "units");
+    text_equals(value, value_length, "mm");
+
+    OK(leafless_octree_uniform(&frame, LEAFLESS_TAG_FULL, LEAFLESS_TAG_PARTIAL, &full));
+    OK(leafless_octree_statistics(full, &t));
+    CHECK(t.full == 1 && t.lower_cells == 64 * 64 * 64 && t.volume_model.lower == 8.0);
+
+    OK(leafless_octree_ref(ball, &reference));
+    CHECK(reference == ball);
+    leafless_octree_free(ball);
+    OK(leafless_octree_check(reference));
+    leafless_octree_free(reference);
+    /* What was made of it does not need it. */
+    OK(leafless_octree_check(more));
+    leafless_octree_free(named);
+    OK(leafless_octree_check(more));
+    leafless_octree_free(more);
+    leafless_octree_free(inner);
+    leafless_octree_free(outer);
+    leafless_octree_free(compact);
+    leafless_octree_free(full);
+}
+
+static void controls(void) {
+    leafless_control *control = NULL;
+    bool cancelled = true;
+    double fraction = -1.0;
+    OK(leafless_control_new(&control));
+    OK(leafless_control_state(control, &cancelled, &fraction));
+    CHECK(!cancelled && fraction == 0.0);
+    OK(leafless_control_cancel(control));
+    OK(leafless_control_state(control, &cancelled, NULL));
+    CHECK(cancelled);
+    OK(leafless_control_reset(control));
+    OK(leafless_control_state(control, &cancelled, NULL));
+    CHECK(!cancelled);
+    OK(leafless_control_state(control, NULL, NULL));
+    leafless_control_free(control);
+}
+
+int main(void) {
+    char none[4] = "xyz";
+    /* Before anything failed there is no message. */
+    CHECK(leafless_last_status() == LEAFLESS_OK);
+    CHECK(leafless_last_error(NULL, 0) == 0 && leafless_last_error(none, sizeof none) == 0 && none[0] == '\0');
+    frames();
+    meshes();
+    solids();
+    set_algebra();
+    queries();
+    octrees();
+    controls();
+    CHECK(leafless_last_status() == LEAFLESS_OK);
+    return 0;
+}

@@ -1,0 +1,429 @@
+//! C and C++ programs against `include/leafless.h` and the libraries that `include/README.md` says how to build.
+//!
+//! ```text
+//! cargo test --release --test c_api
+//! LEAFLESS_C_CHECK=valgrind cargo test --release --test c_api     # also: address, address-all, thread
+//! ```
+//!
+//! The libraries are built by the commands that `include/README.md` documents, into a target folder of their own.
+//! Every program is compiled and linked as a user would do it, and run; `README.md` here tells what each is for.
+
+#![cfg(unix)]
+
+mod check;
+mod header;
+mod kit;
+
+use header::Header;
+use kit::{Kit, Link, Standard, kit};
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+const C99: Standard = Standard::C("c99");
+const CPP17: Standard = Standard::Cpp("c++17");
+
+fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+fn text(path: impl AsRef<Path>) -> String {
+    let path = root().join(path);
+    std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
+}
+
+fn header() -> Header {
+    Header::read(&text("include/leafless.h"))
+}
+
+/// Compiles a program of this folder, runs it, and returns what it prints.
+fn run(name: &str, standard: Standard, link: Link, arguments: &[&str]) -> String {
+    let kit = kit();
+    let source = root().join("c_tests").join(format!("{name}.{}", standard.extension()));
+    let program = kit.compile(name, &[source], standard, link);
+    kit.run(&program, arguments)
+}
+
+/// The programs are documented to be complete: no file of the folder is left out.
+#[test]
+fn every_file_is_used() {
+    let driver = text("c_tests/main.rs");
+    for entry in std::fs::read_dir(root().join("c_tests")).unwrap() {
+        let path = entry.unwrap().path();
+        let stem = path.file_stem().unwrap().to_str().unwrap();
+        if matches!(path.extension().and_then(|end| end.to_str()), Some("c" | "cpp")) {
+            assert!(driver.contains(&format!("\"{stem}\"")), "nobody runs {}", path.display());
+        }
+    }
+}
+
+// --- The header -------------------------------------------------------------------------------------------------
+
+#[test]
+fn header_in_all_standards() {
+    for standard in ["c99", "c11", "c17"] {
+        run("header_c", Standard::C(standard), Link::Static, &[]);
+    }
+    for standard in ["c++11", "c++14", "c++17", "c++20"] {
+        run("header_cpp", Standard::Cpp(standard), Link::Static, &[]);
+    }
+}
+
+#[test]
+fn header_in_two_files() {
+    let sources = ["include_twice_a", "include_twice_b"].map(|name| root().join(format!("c_tests/{name}.c")));
+    let program = kit().compile("include_twice", &sources, C99, Link::Static);
+    kit().run(&program, &[]);
+}
+
+/// What the header's texts speak of, it declares.
+#[test]
+fn header_speaks_of_nothing_else() {
+    let header = header();
+    for word in header::words(&text("include/leafless.h")) {
+        let known = header.names().any(|name| name == word || word.strip_suffix('s') == Some(name));
+        // The guard, what tests define, and the name of what is no status.
+        let other = ["LEAFLESS_H", "LEAFLESS_TEST", "LEAFLESS_E_UNKNOWN"].contains(&word.as_str());
+        assert!(known || other, "the header speaks of {word}");
+    }
+}
+
+#[test]
+fn symbols() {
+    let header = header();
+    let mut names: Vec<&str> = header.functions.iter().map(|function| function.name.as_str()).collect();
+    for link in [Link::Static, Link::Shared] {
+        let printed = run("symbols", C99, link, &[]);
+        let mut found: Vec<&str> = printed.lines().collect();
+        found.sort_unstable();
+        names.sort_unstable();
+        assert_eq!(found, names);
+    }
+}
+
+#[test]
+fn layout() {
+    let header = header();
+    let c = run("layout", C99, Link::Static, &[]);
+    let rust = run("layout", C99, Link::Static, &["rust"]);
+    let sorted = |text: &str| {
+        let mut lines: Vec<String> = text.lines().map(str::to_string).collect();
+        lines.sort();
+        lines
+    };
+    assert_eq!(sorted(&c), sorted(&rust));
+    let lines =
+        header.structs.iter().map(|(_, fields)| 1 + fields.len()).sum::<usize>() + header.values.len();
+    assert_eq!(c.lines().count(), lines);
+    // Some that everybody knows, so that the comparison is one.
+    assert!(c.lines().any(|line| line == "leafless_frame 40"), "{c}");
+    assert!(c.lines().any(|line| line == "LEAFLESS_E_PANIC 17"), "{c}");
+    assert!(lines > 100, "{lines}");
+}
+
+#[test]
+fn version() {
+    run("version", C99, Link::Static, &[env!("CARGO_PKG_VERSION")]);
+    run("version", C99, Link::Shared, &[env!("CARGO_PKG_VERSION")]);
+}
+
+// --- What the functions do --------------------------------------------------------------------------------------
+
+#[test]
+fn lifecycle() {
+    run("lifecycle", C99, Link::Static, &[]);
+    run("lifecycle", C99, Link::Shared, &[]);
+}
+
+#[test]
+fn errors() {
+    let limit = if kit().check.limits_memory() { "limited" } else { "unlimited" };
+    run("errors", C99, Link::Static, &[limit]);
+}
+
+#[test]
+fn panic() {
+    run("panic", C99, Link::Static, &[]);
+    run("panic", C99, Link::Shared, &[]);
+}
+
+#[test]
+fn null() {
+    // Each pointer that goes in or out is tried: the program names all of them.
+    let source = text("c_tests/null.c");
+    let flat = source.split_whitespace().collect::<Vec<_>>().join(" ");
+    for function in &header().functions {
+        for parameter in &function.pointers {
+            let name = &function.name;
+            let tried = ["NULL_POINTER", "MAY_BE_NULL"]
+                .iter()
+                .any(|check| flat.contains(&format!("{check}({name}, {parameter},")));
+            let family = ["BINARY", "NARY", "OPTIONS"].iter().any(|family| {
+                flat.contains(&format!("{family}({name}"))
+                    && ["a", "b", "octrees", "options", "result"].contains(&parameter.as_str())
+            });
+            let freed = name.ends_with("_free") && flat.contains(&format!("{name}(NULL)"));
+            // The host's own, which the library does not look at; and texts, whose buffers may be absent.
+            let own = matches!(name.as_str(), "leafless_last_error" | "leafless_test_layout");
+            assert!(
+                tried || family || freed || own,
+                "c_tests/null.c does not try {name} without {parameter}"
+            );
+        }
+    }
+    run("null", C99, Link::Static, &[]);
+}
+
+#[test]
+fn buffers() {
+    run("buffers", C99, Link::Static, &[]);
+}
+
+#[test]
+fn options() {
+    run("options", C99, Link::Static, &[]);
+}
+
+#[test]
+fn callback() {
+    run("callback", C99, Link::Static, &[]);
+}
+
+#[test]
+fn cancel() {
+    run("cancel", CPP17, Link::Static, &[]);
+}
+
+#[test]
+fn threads() {
+    run("threads", CPP17, Link::Static, &[]);
+    run("threads", CPP17, Link::Shared, &[]);
+}
+
+#[test]
+fn map() {
+    run("map", C99, Link::Static, &[]);
+}
+
+#[test]
+fn golden() {
+    let folder = root().join("format_spec/vectors");
+    if !folder.exists() {
+        eprintln!("SKIPPED: there are no vectors in {}", folder.display());
+        return;
+    }
+    let mut files: Vec<PathBuf> = ["valid", "invalid"]
+        .iter()
+        .flat_map(|kind| std::fs::read_dir(folder.join(kind)).unwrap())
+        .map(|entry| entry.unwrap().path())
+        .filter(|path| path.extension().is_some_and(|end| end == "lfl"))
+        .collect();
+    files.sort();
+    let arguments: Vec<&str> = files.iter().map(|path| path.to_str().unwrap()).collect();
+    let told = run("golden", C99, Link::Static, &arguments);
+    let numbers: Vec<usize> = told.split_whitespace().filter_map(|word| word.parse().ok()).collect();
+    let [valid, points, invalid] = numbers[..] else { panic!("{told}") };
+    assert_eq!(valid + invalid, files.len());
+    assert!(valid > 20 && points > 500 && invalid > 50, "{told}");
+}
+
+/// A smoke test: figures come from more points, see the file.
+#[test]
+fn boundary() {
+    let told = run("boundary", C99, Link::Static, &["10000"]);
+    assert_eq!(told.lines().filter(|line| line.contains(" ns")).count(), 3, "{told}");
+}
+
+// --- What users read --------------------------------------------------------------------------------------------
+
+/// The first block of a language in a text.
+fn block(text: &str, language: &str) -> String {
+    let opening = format!("```{language}\n");
+    let (_, rest) = text.split_once(&opening).unwrap_or_else(|| panic!("there is no block in {language}"));
+    rest.split_once("```").unwrap().0.to_string()
+}
+
+#[test]
+fn readme() {
+    let example = block(&text("README.md"), "c");
+    assert!(example.lines().count() <= 45, "{} lines", example.lines().count());
+    let source = kit().folder("readme").join("readme.c");
+    std::fs::write(&source, example).unwrap();
+    for link in [Link::Static, Link::Shared] {
+        let program = kit().compile("readme", std::slice::from_ref(&source), C99, link);
+        let told = kit().run(&program, &[]);
+        assert!(told.contains("volume"), "{told}");
+    }
+}
+
+#[test]
+fn examples() {
+    let examples = [("c/voxelise.c", C99), ("cpp/cut_stock.cpp", CPP17)];
+    for (name, standard) in examples {
+        let source = root().join("examples").join(name);
+        let stem = source.file_stem().unwrap().to_str().unwrap().to_string();
+        let program = kit().compile(&stem, &[source], standard, Link::Static);
+        let told = kit().run(&program, &[]);
+        assert!(told.lines().count() >= 5, "{told}");
+    }
+}
+
+/// The command lines of `include/README.md` work word by word.
+#[test]
+fn documented_commands() {
+    let kit = kit();
+    if !kit.check.is_plain() {
+        return;
+    }
+    let folder = kit.folder("documented");
+    let release = kit.release();
+    // The repository as the commands see it.
+    std::fs::create_dir_all(folder.join("target")).unwrap();
+    for (name, place) in [
+        ("include", root().join("include")),
+        ("examples", root().join("examples")),
+        ("target/release", release.clone()),
+    ] {
+        let link = folder.join(name);
+        let _ = std::fs::remove_file(&link);
+        std::os::unix::fs::symlink(place, link).unwrap();
+    }
+    let mut compiled = 0;
+    for line in kit::documented(&text("include/README.md")) {
+        if line.starts_with("cargo ") {
+            continue;
+        }
+        let shell = |line: &str| {
+            let mut shell = Command::new("sh");
+            shell.arg("-c").arg(line).current_dir(&folder).env_remove("LD_LIBRARY_PATH").output().unwrap()
+        };
+        let made = shell(&line);
+        assert!(made.status.success(), "{line}\n{}", String::from_utf8_lossy(&made.stderr));
+        if line.starts_with("gcc ") || line.starts_with("g++ ") {
+            assert!(made.stderr.is_empty(), "{line}\n{}", String::from_utf8_lossy(&made.stderr));
+            let program = line.split_whitespace().last().unwrap();
+            let ran = shell(&format!("./{program}"));
+            assert!(ran.status.success(), "{line}\n{}", String::from_utf8_lossy(&ran.stderr));
+            assert!(!ran.stdout.is_empty());
+            compiled += 1;
+        }
+    }
+    // A C program with each library, and a C++ program.
+    assert!(compiled >= 3, "{compiled}");
+}
+
+// --- The libraries ----------------------------------------------------------------------------------------------
+
+#[test]
+fn native_libraries_are_documented() {
+    let kit = kit();
+    let documented = kit::documented(&text("include/README.md"));
+    let line = documented
+        .iter()
+        .find(|line| line.contains("libleafless.a "))
+        .expect("a line for the static library");
+    let list = line.split_once("libleafless.a ").unwrap().1.split(" -o ").next().unwrap();
+    assert_eq!(list.trim(), kit.native_libraries, "include/README.md and rustc name different libraries");
+}
+
+/// Lines of a tool's output, as words.
+fn table(program: &str, arguments: &[&str], file: &Path) -> Vec<Vec<String>> {
+    let told = Command::new(program).args(arguments).arg(file).output();
+    let told = told.unwrap_or_else(|error| panic!("{program} (of binutils) cannot be run: {error}"));
+    assert!(told.status.success(), "{program}: {}", String::from_utf8_lossy(&told.stderr));
+    String::from_utf8_lossy(&told.stdout)
+        .lines()
+        .map(|line| line.split_whitespace().map(str::to_string).collect())
+        .collect()
+}
+
+fn sorted_functions() -> Vec<String> {
+    let mut names: Vec<String> = header().functions.into_iter().map(|function| function.name).collect();
+    names.sort();
+    names
+}
+
+/// The shared library exports the header's functions, and nothing else.
+#[test]
+#[cfg(target_os = "linux")]
+fn shared_library_exports_the_header() {
+    if !kit().check.is_plain() {
+        return;
+    }
+    let library = kit().release().join("libleafless.so");
+    let mut names: Vec<String> = table("nm", &["-D", "--defined-only"], &library)
+        .into_iter()
+        .filter_map(|mut line| line.pop())
+        .collect();
+    names.sort();
+    assert_eq!(names, sorted_functions());
+    let soname =
+        table("readelf", &["-dW"], &library).into_iter().find(|line| line.iter().any(|w| w == "(SONAME)"));
+    assert_eq!(soname.expect("a SONAME").last().unwrap(), "[libleafless.so.0]");
+}
+
+/// Whatever of the static library another library could clash with is Rust's own, or has the prefix.
+#[test]
+#[cfg(target_os = "linux")]
+fn static_library_has_no_other_names() {
+    if !kit().check.is_plain() {
+        return;
+    }
+    let library = kit().release().join("libleafless.a");
+    // Strong and global; hidden ones and weak ones give way.
+    let mut ours = Vec::new();
+    for object in elf_symbols(&library) {
+        let name = object.as_str();
+        let mangled = name.starts_with("_R") || name.starts_with("_ZN");
+        let runtime =
+            name.starts_with("__rust") || name == "rust_eh_personality" || name == "rust_begin_unwind";
+        if name.starts_with("leafless_") {
+            ours.push(object);
+        } else {
+            assert!(mangled || runtime, "libleafless.a defines {name}");
+        }
+    }
+    ours.sort();
+    assert_eq!(ours, sorted_functions());
+}
+
+/// The names of an archive's symbols that are global, defined, and neither weak nor hidden.
+#[cfg(target_os = "linux")]
+fn elf_symbols(archive: &Path) -> Vec<String> {
+    // Num: Value Size Type Bind Vis Ndx Name
+    table("readelf", &["-sW"], archive)
+        .into_iter()
+        .filter(|words| {
+            words.len() == 8 && words[4] == "GLOBAL" && words[5] == "DEFAULT" && words[6] != "UND"
+        })
+        .filter_map(|mut words| words.pop())
+        .collect()
+}
+
+/// With a sanitizer, it is really there.
+#[test]
+fn sanitizer_is_in() {
+    let kit = kit();
+    if let Some(symbol) = kit.check.symbol() {
+        let source = root().join("c_tests/header_c.c");
+        let program = kit.compile("sanitizer", &[source], C99, Link::Static);
+        let names = table("nm", &["-a"], &program);
+        assert!(names.iter().any(|line| line.last().is_some_and(|name| name == symbol)), "no {symbol}");
+    }
+}
+
+/// The kit itself: what fails is seen to fail.
+#[test]
+fn a_failing_program_fails() {
+    let kit: &Kit = kit();
+    let folder = kit.folder("failing");
+    let write = |name: &str, source: &str| {
+        let path = folder.join(name);
+        std::fs::write(&path, source).unwrap();
+        path
+    };
+    let bad = write("bad.c", "#include \"check.h\"\nint main(void) { CHECK(1 == 2); return 0; }\n");
+    let warns = write("warns.c", "#include <leafless.h>\nint main() { int unused; return 0; }\n");
+    let program = kit.compile("failing", &[bad], C99, Link::Static);
+    assert!(kit.try_run(&program, &[]).is_err());
+    assert!(kit.try_compile("warning", &[warns], C99, Link::Static).is_err());
+}

@@ -1,0 +1,628 @@
+/* What every function makes of pointers that are NULL or misaligned, and of numbers out of range: a status, each
+   parameter by itself, and nothing is written. The driver counts these against the header: each pointer parameter
+   of each function stands here as NULL_POINTER(function, parameter) or MAY_BE_NULL(function, parameter). */
+#include "check.h"
+
+#define WRONG(bytes) ((void *)((char *)(bytes) + 1))
+
+/* `call` with the parameter NULL is refused; `wrong`, the same with it misaligned, too. */
+#define NULL_POINTER(function, parameter, call) refused(LEAFLESS_E_NULL, #function, #parameter, (call))
+#define MISALIGNED(function, parameter, call) refused(LEAFLESS_E_ARGUMENT, #function, #parameter, (call))
+#define MAY_BE_NULL(function, parameter, call) refused(LEAFLESS_OK, #function, #parameter, (call))
+#define BAD_NUMBER(function, parameter, call) refused(LEAFLESS_E_ARGUMENT, #function, #parameter, (call))
+
+static void *const UNTOUCHED = (void *)(uintptr_t)0x5a5a5a58;
+
+static void refused(leafless_status expected, const char *function, const char *parameter, leafless_status found) {
+    char message[512];
+    if (found != expected) {
+        fprintf(stderr, "%s with a bad `%s`: %s instead of %s\n", function, parameter, leafless_status_name(found),
+                leafless_status_name(expected));
+        exit(1);
+    }
+    if (expected != LEAFLESS_OK) {
+        CHECK(leafless_last_status() == expected);
+        (void)leafless_last_error(message, sizeof message);
+        if (strstr(message, parameter) == NULL) {
+            fprintf(stderr, "%s with a bad `%s` says only \"%s\"\n", function, parameter, message);
+            exit(1);
+        }
+    }
+}
+
+/* Room for anything, all 0x5a, of which no function may change a byte here. */
+static double room[64];
+
+static void *fresh(void) {
+    memset(room, 0x5a, sizeof room);
+    return room;
+}
+
+static void untouched(void) {
+    const unsigned char *bytes = (const unsigned char *)room;
+    size_t i;
+    for (i = 0; i < sizeof room; i++) {
+        CHECK(bytes[i] == 0x5a);
+    }
+}
+
+static int32_t classify(void *ctx, const double *min, const double *max) {
+    (void)ctx;
+    return min[0] >= 0.0 ? LEAFLESS_TAG_FULL : max[0] <= 0.0 ? LEAFLESS_TAG_EMPTY : LEAFLESS_TAG_PARTIAL;
+}
+
+static int32_t take(void *ctx, const uint8_t *bytes, size_t count) {
+    (void)ctx;
+    (void)bytes;
+    (void)count;
+    return 0;
+}
+
+static leafless_frame frame = {{-1, -1, -1}, 2, 4};
+static leafless_octree *octree;
+static leafless_mesh *mesh;
+static leafless_solid *solid;
+static leafless_control *control;
+static leafless_cursor *cursor;
+static leafless_point_cursor *point_cursor;
+static leafless_options options;
+static const double point[3] = {0, 0, 0}, above[3] = {1, 1, 1};
+
+static void null_pointers(void) {
+    void *out = fresh();
+    void *never = UNTOUCHED;
+    leafless_octree **result = (leafless_octree **)&never;
+    leafless_mesh **mesh_result = (leafless_mesh **)&never;
+    leafless_solid **solid_result = (leafless_solid **)&never;
+    const leafless_octree *list[2];
+    leafless_callbacks callbacks;
+    const uint32_t cell[3] = {0, 0, 0};
+    const uint32_t one_triangle[3] = {0, 1, 2};
+    const double matrix[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
+    uint64_t length = 0;
+    uint8_t *bytes = check_bytes(octree, &length);
+    double wanted[8][3];
+    uint32_t indices[12][3];
+    uint64_t number, other;
+    const char *text;
+    size_t text_length;
+    bool flag;
+    double real;
+
+    memset(&callbacks, 0, sizeof callbacks);
+    callbacks.struct_size = sizeof callbacks;
+    callbacks.classify = classify;
+
+    NULL_POINTER(leafless_options_init, options, leafless_options_init(NULL));
+    NULL_POINTER(leafless_control_new, control, leafless_control_new(NULL));
+    NULL_POINTER(leafless_control_cancel, control, leafless_control_cancel(NULL));
+    NULL_POINTER(leafless_control_reset, control, leafless_control_reset(NULL));
+    NULL_POINTER(leafless_control_state, control, leafless_control_state(NULL, (bool *)out, (double *)out));
+    MAY_BE_NULL(leafless_control_state, cancelled, leafless_control_state(control, NULL, &real));
+    MAY_BE_NULL(leafless_control_state, fraction, leafless_control_state(control, &flag, NULL));
+
+    NULL_POINTER(leafless_frame_check, frame, leafless_frame_check(NULL));
+    NULL_POINTER(leafless_frame_around, min, leafless_frame_around(NULL, above, 4, (leafless_frame *)out));
+    NULL_POINTER(leafless_frame_around, max, leafless_frame_around(point, NULL, 4, (leafless_frame *)out));
+    NULL_POINTER(leafless_frame_around, frame, leafless_frame_around(point, above, 4, NULL));
+    NULL_POINTER(leafless_frame_cell_size, frame, leafless_frame_cell_size(NULL, (double *)out));
+    NULL_POINTER(leafless_frame_cell_size, cell_size_model, leafless_frame_cell_size(&frame, NULL));
+    NULL_POINTER(leafless_frame_cell_of, frame, leafless_frame_cell_of(NULL, point, (uint32_t *)out));
+    NULL_POINTER(leafless_frame_cell_of, point_model, leafless_frame_cell_of(&frame, NULL, (uint32_t *)out));
+    NULL_POINTER(leafless_frame_cell_of, cell, leafless_frame_cell_of(&frame, point, NULL));
+    NULL_POINTER(leafless_frame_plane, frame, leafless_frame_plane(NULL, 0, 0, (leafless_interval *)out));
+    NULL_POINTER(leafless_frame_plane, plane_model, leafless_frame_plane(&frame, 0, 0, NULL));
+
+    NULL_POINTER(leafless_mesh_new, vertices, leafless_mesh_new(NULL, 3, 0, one_triangle, 1, mesh_result));
+    NULL_POINTER(leafless_mesh_new, triangles, leafless_mesh_new(&CHECK_CUBE[0][0], 8, 0, NULL, 1, mesh_result));
+    NULL_POINTER(leafless_mesh_new, mesh, leafless_mesh_new(&CHECK_CUBE[0][0], 8, 0, one_triangle, 1, NULL));
+    NULL_POINTER(leafless_mesh_read_stl, path, leafless_mesh_read_stl(NULL, 3, mesh_result));
+    NULL_POINTER(leafless_mesh_read_stl, path, leafless_mesh_read_stl(NULL, 0, mesh_result));
+    NULL_POINTER(leafless_mesh_read_stl, mesh, leafless_mesh_read_stl("x", 1, NULL));
+    NULL_POINTER(leafless_mesh_from_stl, bytes, leafless_mesh_from_stl(NULL, 84, mesh_result));
+    NULL_POINTER(leafless_mesh_from_stl, mesh, leafless_mesh_from_stl(bytes, 84, NULL));
+    NULL_POINTER(leafless_mesh_to_stl, mesh, leafless_mesh_to_stl(NULL, NULL, 0, (uint64_t *)out));
+    NULL_POINTER(leafless_mesh_to_stl, bytes, leafless_mesh_to_stl(mesh, NULL, 1000, (uint64_t *)out));
+    MAY_BE_NULL(leafless_mesh_to_stl, bytes, leafless_mesh_to_stl(mesh, NULL, 0, &number));
+    NULL_POINTER(leafless_mesh_to_stl, length, leafless_mesh_to_stl(mesh, (uint8_t *)out, sizeof room, NULL));
+    NULL_POINTER(leafless_mesh_ref, mesh, leafless_mesh_ref(NULL, mesh_result));
+    NULL_POINTER(leafless_mesh_ref, reference, leafless_mesh_ref(mesh, NULL));
+    NULL_POINTER(leafless_mesh_counts, mesh, leafless_mesh_counts(NULL, (uint64_t *)out, (uint64_t *)out + 1));
+    NULL_POINTER(leafless_mesh_counts, vertex_count, leafless_mesh_counts(mesh, NULL, (uint64_t *)out));
+    NULL_POINTER(leafless_mesh_counts, triangle_count, leafless_mesh_counts(mesh, (uint64_t *)out, NULL));
+    NULL_POINTER(leafless_mesh_copy, mesh, leafless_mesh_copy(NULL, (double *)out, 1, NULL, 0));
+    NULL_POINTER(leafless_mesh_copy, vertices, leafless_mesh_copy(mesh, NULL, 8, NULL, 0));
+    NULL_POINTER(leafless_mesh_copy, triangles, leafless_mesh_copy(mesh, NULL, 0, NULL, 12));
+    MAY_BE_NULL(leafless_mesh_copy, vertices, leafless_mesh_copy(mesh, NULL, 0, &indices[0][0], 12));
+    MAY_BE_NULL(leafless_mesh_copy, triangles, leafless_mesh_copy(mesh, &wanted[0][0], 8, NULL, 0));
+    NULL_POINTER(leafless_mesh_bounds, mesh, leafless_mesh_bounds(NULL, (double *)out, (double *)out + 3));
+    NULL_POINTER(leafless_mesh_bounds, min, leafless_mesh_bounds(mesh, NULL, (double *)out));
+    NULL_POINTER(leafless_mesh_bounds, max, leafless_mesh_bounds(mesh, (double *)out, NULL));
+    NULL_POINTER(leafless_mesh_volume, mesh, leafless_mesh_volume(NULL, (double *)out));
+    NULL_POINTER(leafless_mesh_volume, volume_model, leafless_mesh_volume(mesh, NULL));
+    NULL_POINTER(leafless_mesh_describe, mesh, leafless_mesh_describe(NULL, (leafless_mesh_report *)out));
+    NULL_POINTER(leafless_mesh_describe, report, leafless_mesh_describe(mesh, NULL));
+    NULL_POINTER(leafless_mesh_check_closed, mesh, leafless_mesh_check_closed(NULL, 0));
+    NULL_POINTER(leafless_mesh_sewn, mesh, leafless_mesh_sewn(NULL, mesh_result));
+    NULL_POINTER(leafless_mesh_sewn, sewn, leafless_mesh_sewn(mesh, NULL));
+    NULL_POINTER(leafless_mesh_transformed, mesh, leafless_mesh_transformed(NULL, matrix, mesh_result));
+    NULL_POINTER(leafless_mesh_transformed, matrix, leafless_mesh_transformed(mesh, NULL, mesh_result));
+    NULL_POINTER(leafless_mesh_transformed, moved, leafless_mesh_transformed(mesh, matrix, NULL));
+    NULL_POINTER(leafless_mesh_translated, mesh, leafless_mesh_translated(NULL, point, mesh_result));
+    NULL_POINTER(leafless_mesh_translated, offset_model, leafless_mesh_translated(mesh, NULL, mesh_result));
+    NULL_POINTER(leafless_mesh_translated, moved, leafless_mesh_translated(mesh, point, NULL));
+
+    NULL_POINTER(leafless_solid_new_ball, centre_model, leafless_solid_new_ball(NULL, 1, solid_result));
+    NULL_POINTER(leafless_solid_new_ball, solid, leafless_solid_new_ball(point, 1, NULL));
+    NULL_POINTER(leafless_solid_new_box, min_model, leafless_solid_new_box(NULL, above, solid_result));
+    NULL_POINTER(leafless_solid_new_box, max_model, leafless_solid_new_box(point, NULL, solid_result));
+    NULL_POINTER(leafless_solid_new_box, solid, leafless_solid_new_box(point, above, NULL));
+    NULL_POINTER(leafless_solid_new_halfspace, normal, leafless_solid_new_halfspace(NULL, 1, solid_result));
+    NULL_POINTER(leafless_solid_new_halfspace, solid, leafless_solid_new_halfspace(above, 1, NULL));
+    NULL_POINTER(leafless_solid_new_mesh, mesh, leafless_solid_new_mesh(NULL, &frame, 0, solid_result));
+    NULL_POINTER(leafless_solid_new_mesh, frame, leafless_solid_new_mesh(mesh, NULL, 0, solid_result));
+    NULL_POINTER(leafless_solid_new_mesh, solid, leafless_solid_new_mesh(mesh, &frame, 0, NULL));
+    NULL_POINTER(leafless_solid_new_callbacks, callbacks, leafless_solid_new_callbacks(NULL, solid_result));
+    NULL_POINTER(leafless_solid_new_callbacks, solid, leafless_solid_new_callbacks(&callbacks, NULL));
+    callbacks.classify = NULL;
+    refused(LEAFLESS_E_NULL, "leafless_solid_new_callbacks", "callbacks.classify",
+            leafless_solid_new_callbacks(&callbacks, solid_result));
+    NULL_POINTER(leafless_octree_as_solid, octree, leafless_octree_as_solid(NULL, solid_result));
+    NULL_POINTER(leafless_octree_as_solid, solid, leafless_octree_as_solid(octree, NULL));
+    NULL_POINTER(leafless_solid_ref, solid, leafless_solid_ref(NULL, solid_result));
+    NULL_POINTER(leafless_solid_ref, reference, leafless_solid_ref(solid, NULL));
+
+    NULL_POINTER(leafless_octree_build, solid, leafless_octree_build(NULL, &frame, 0, NULL, result));
+    NULL_POINTER(leafless_octree_build, frame, leafless_octree_build(solid, NULL, 0, NULL, result));
+    NULL_POINTER(leafless_octree_build, octree, leafless_octree_build(solid, &frame, 0, NULL, NULL));
+    NULL_POINTER(leafless_octree_uniform, frame, leafless_octree_uniform(NULL, 0, 0, result));
+    NULL_POINTER(leafless_octree_uniform, octree, leafless_octree_uniform(&frame, 0, 0, NULL));
+    NULL_POINTER(leafless_octree_resolve, octree, leafless_octree_resolve(NULL, 2, NULL, result));
+    NULL_POINTER(leafless_octree_resolve, resolved, leafless_octree_resolve(octree, 2, NULL, NULL));
+    NULL_POINTER(leafless_octree_compact, octree, leafless_octree_compact(NULL, result));
+    NULL_POINTER(leafless_octree_compact, compacted, leafless_octree_compact(octree, NULL));
+    NULL_POINTER(leafless_octree_ref, octree, leafless_octree_ref(NULL, result));
+    NULL_POINTER(leafless_octree_ref, reference, leafless_octree_ref(octree, NULL));
+    NULL_POINTER(leafless_octree_describe, octree, leafless_octree_describe(NULL, (leafless_octree_info *)out));
+    NULL_POINTER(leafless_octree_describe, info, leafless_octree_describe(octree, NULL));
+    NULL_POINTER(leafless_octree_statistics, octree, leafless_octree_statistics(NULL, (leafless_statistics *)out));
+    NULL_POINTER(leafless_octree_statistics, statistics, leafless_octree_statistics(octree, NULL));
+    NULL_POINTER(leafless_octree_levels, octree, leafless_octree_levels(NULL, NULL, 0, (uint64_t *)out));
+    NULL_POINTER(leafless_octree_levels, levels, leafless_octree_levels(octree, NULL, 5, (uint64_t *)out));
+    MAY_BE_NULL(leafless_octree_levels, levels, leafless_octree_levels(octree, NULL, 0, &number));
+    NULL_POINTER(leafless_octree_levels, count, leafless_octree_levels(octree, NULL, 0, NULL));
+    NULL_POINTER(leafless_octree_check, octree, leafless_octree_check(NULL));
+    NULL_POINTER(leafless_octree_equal, a, leafless_octree_equal(NULL, octree, (bool *)out));
+    NULL_POINTER(leafless_octree_equal, b, leafless_octree_equal(octree, NULL, (bool *)out));
+    NULL_POINTER(leafless_octree_equal, equal, leafless_octree_equal(octree, octree, NULL));
+
+    NULL_POINTER(leafless_octree_with_metadata, octree, leafless_octree_with_metadata(NULL, "a", 1, "b", 1, result));
+    NULL_POINTER(leafless_octree_with_metadata, key, leafless_octree_with_metadata(octree, NULL, 1, "b", 1, result));
+    NULL_POINTER(leafless_octree_with_metadata, value, leafless_octree_with_metadata(octree, "a", 1, NULL, 1, result));
+    NULL_POINTER(leafless_octree_with_metadata, named, leafless_octree_with_metadata(octree, "a", 1, "b", 1, NULL));
+    NULL_POINTER(leafless_octree_peek_metadata, octree,
+                 leafless_octree_peek_metadata(NULL, "a", 1, (const char **)out, (size_t *)out + 1));
+    NULL_POINTER(leafless_octree_peek_metadata, key,
+                 leafless_octree_peek_metadata(octree, NULL, 1, (const char **)out, (size_t *)out + 1));
+    NULL_POINTER(leafless_octree_peek_metadata, value,
+                 leafless_octree_peek_metadata(octree, "a", 1, NULL, (size_t *)out));
+    NULL_POINTER(leafless_octree_peek_metadata, value_length,
+                 leafless_octree_peek_metadata(octree, "a", 1, (const char **)out, NULL));
+    NULL_POINTER(leafless_octree_peek_metadata_at, octree,
+                 leafless_octree_peek_metadata_at(NULL, 0, (uint64_t *)out, NULL, NULL, NULL, NULL));
+    NULL_POINTER(leafless_octree_peek_metadata_at, count,
+                 leafless_octree_peek_metadata_at(octree, 0, NULL, NULL, NULL, NULL, NULL));
+    NULL_POINTER(leafless_octree_peek_metadata_at, key,
+                 leafless_octree_peek_metadata_at(octree, 0, (uint64_t *)out, NULL, (size_t *)out + 1,
+                                                  (const char **)out + 2, (size_t *)out + 3));
+    NULL_POINTER(leafless_octree_peek_metadata_at, key_length,
+                 leafless_octree_peek_metadata_at(octree, 0, (uint64_t *)out, (const char **)out + 1, NULL,
+                                                  (const char **)out + 2, (size_t *)out + 3));
+    NULL_POINTER(leafless_octree_peek_metadata_at, value,
+                 leafless_octree_peek_metadata_at(octree, 0, (uint64_t *)out, (const char **)out + 1,
+                                                  (size_t *)out + 2, NULL, (size_t *)out + 3));
+    NULL_POINTER(leafless_octree_peek_metadata_at, value_length,
+                 leafless_octree_peek_metadata_at(octree, 0, (uint64_t *)out, (const char **)out + 1,
+                                                  (size_t *)out + 2, (const char **)out + 3, NULL));
+
+#define BINARY(function)                                                                                         \
+    NULL_POINTER(function, a, function(NULL, octree, NULL, result));                                             \
+    NULL_POINTER(function, b, function(octree, NULL, NULL, result));                                             \
+    NULL_POINTER(function, result, function(octree, octree, NULL, NULL))
+    BINARY(leafless_octree_union);
+    BINARY(leafless_octree_intersection);
+    BINARY(leafless_octree_difference);
+    BINARY(leafless_octree_xor);
+    NULL_POINTER(leafless_octree_complement, octree, leafless_octree_complement(NULL, NULL, result));
+    NULL_POINTER(leafless_octree_complement, result, leafless_octree_complement(octree, NULL, NULL));
+    list[0] = octree;
+    list[1] = octree;
+#define NARY(function)                                                                                           \
+    list[1] = octree;                                                                                            \
+    NULL_POINTER(function, octrees, function(NULL, 2, NULL, result));                                            \
+    NULL_POINTER(function, result, function(list, 2, NULL, NULL));                                               \
+    BAD_NUMBER(function, count, function(list, 0, NULL, result));                                                \
+    BAD_NUMBER(function, count, function(NULL, 0, NULL, result));                                                \
+    list[1] = NULL;                                                                                              \
+    NULL_POINTER(function, octrees, function(list, 2, NULL, result))
+    NARY(leafless_octree_union_of);
+    NARY(leafless_octree_intersection_of);
+    NARY(leafless_octree_xor_of);
+
+    NULL_POINTER(leafless_octree_contains, octree, leafless_octree_contains(NULL, point, (leafless_membership *)out));
+    NULL_POINTER(leafless_octree_contains, point_model,
+                 leafless_octree_contains(octree, NULL, (leafless_membership *)out));
+    NULL_POINTER(leafless_octree_contains, membership, leafless_octree_contains(octree, point, NULL));
+    NULL_POINTER(leafless_octree_contains_many, octree,
+                 leafless_octree_contains_many(NULL, point, 1, (leafless_membership *)out));
+    NULL_POINTER(leafless_octree_contains_many, octree, leafless_octree_contains_many(NULL, NULL, 0, NULL));
+    NULL_POINTER(leafless_octree_contains_many, points_model,
+                 leafless_octree_contains_many(octree, NULL, 1, (leafless_membership *)out));
+    NULL_POINTER(leafless_octree_contains_many, memberships, leafless_octree_contains_many(octree, point, 1, NULL));
+    NULL_POINTER(leafless_octree_tag_at, octree, leafless_octree_tag_at(NULL, cell, (leafless_tag *)out));
+    NULL_POINTER(leafless_octree_tag_at, cell, leafless_octree_tag_at(octree, NULL, (leafless_tag *)out));
+    NULL_POINTER(leafless_octree_tag_at, tag, leafless_octree_tag_at(octree, cell, NULL));
+    NULL_POINTER(leafless_octree_classify_box, octree,
+                 leafless_octree_classify_box(NULL, point, above, (leafless_region *)out));
+    NULL_POINTER(leafless_octree_classify_box, min_model,
+                 leafless_octree_classify_box(octree, NULL, above, (leafless_region *)out));
+    NULL_POINTER(leafless_octree_classify_box, max_model,
+                 leafless_octree_classify_box(octree, point, NULL, (leafless_region *)out));
+    NULL_POINTER(leafless_octree_classify_box, region, leafless_octree_classify_box(octree, point, above, NULL));
+    NULL_POINTER(leafless_point_cursor_new, octree, leafless_point_cursor_new(NULL, (leafless_point_cursor **)out));
+    NULL_POINTER(leafless_point_cursor_new, cursor, leafless_point_cursor_new(octree, NULL));
+    NULL_POINTER(leafless_point_cursor_contains, cursor,
+                 leafless_point_cursor_contains(NULL, point, (leafless_membership *)out));
+    NULL_POINTER(leafless_point_cursor_contains, point_model,
+                 leafless_point_cursor_contains(point_cursor, NULL, (leafless_membership *)out));
+    NULL_POINTER(leafless_point_cursor_contains, membership, leafless_point_cursor_contains(point_cursor, point, NULL));
+    NULL_POINTER(leafless_point_cursor_tag_at, cursor, leafless_point_cursor_tag_at(NULL, cell, (leafless_tag *)out));
+    NULL_POINTER(leafless_point_cursor_tag_at, cell,
+                 leafless_point_cursor_tag_at(point_cursor, NULL, (leafless_tag *)out));
+    NULL_POINTER(leafless_point_cursor_tag_at, tag, leafless_point_cursor_tag_at(point_cursor, cell, NULL));
+    NULL_POINTER(leafless_cursor_new, octree, leafless_cursor_new(NULL, (leafless_cursor **)out));
+    NULL_POINTER(leafless_cursor_new, cursor, leafless_cursor_new(octree, NULL));
+    NULL_POINTER(leafless_cursor_read, cursor, leafless_cursor_read(NULL, (leafless_cursor_state *)out));
+    NULL_POINTER(leafless_cursor_read, state, leafless_cursor_read(cursor, NULL));
+    NULL_POINTER(leafless_cursor_descend, cursor, leafless_cursor_descend(NULL, 0, (bool *)out));
+    MAY_BE_NULL(leafless_cursor_descend, moved, leafless_cursor_descend(cursor, 0, NULL));
+    NULL_POINTER(leafless_cursor_ascend, cursor, leafless_cursor_ascend(NULL, (bool *)out));
+    MAY_BE_NULL(leafless_cursor_ascend, moved, leafless_cursor_ascend(cursor, NULL));
+
+    NULL_POINTER(leafless_file_probe, path, leafless_file_probe(NULL, 1, (leafless_probe *)out, NULL, 0));
+    NULL_POINTER(leafless_file_probe, probe, leafless_file_probe("x", 1, NULL, NULL, 0));
+    NULL_POINTER(leafless_file_probe, sections, leafless_file_probe("x", 1, (leafless_probe *)out, NULL, 4));
+    NULL_POINTER(leafless_bytes_probe, bytes, leafless_bytes_probe(NULL, length, (leafless_probe *)out, NULL, 0));
+    NULL_POINTER(leafless_bytes_probe, probe, leafless_bytes_probe(bytes, length, NULL, NULL, 0));
+    NULL_POINTER(leafless_bytes_probe, sections, leafless_bytes_probe(bytes, length, (leafless_probe *)out, NULL, 4));
+    NULL_POINTER(leafless_bytes_verify, bytes, leafless_bytes_verify(NULL, length));
+    NULL_POINTER(leafless_octree_open, path, leafless_octree_open(NULL, 1, result));
+    NULL_POINTER(leafless_octree_open, octree, leafless_octree_open("x", 1, NULL));
+    NULL_POINTER(leafless_octree_map, path, leafless_octree_map(NULL, 1, result));
+    NULL_POINTER(leafless_octree_map, octree, leafless_octree_map("x", 1, NULL));
+    NULL_POINTER(leafless_octree_map_verified, path, leafless_octree_map_verified(NULL, 1, result));
+    NULL_POINTER(leafless_octree_map_verified, octree, leafless_octree_map_verified("x", 1, NULL));
+    NULL_POINTER(leafless_octree_from_bytes, bytes, leafless_octree_from_bytes(NULL, length, result));
+    NULL_POINTER(leafless_octree_from_bytes, octree, leafless_octree_from_bytes(bytes, length, NULL));
+    NULL_POINTER(leafless_octree_view_bytes, bytes, leafless_octree_view_bytes(NULL, length, result));
+    NULL_POINTER(leafless_octree_view_bytes, octree, leafless_octree_view_bytes(bytes, length, NULL));
+    NULL_POINTER(leafless_octree_save, octree, leafless_octree_save(NULL, "x", 1));
+    NULL_POINTER(leafless_octree_save, path, leafless_octree_save(octree, NULL, 1));
+    NULL_POINTER(leafless_octree_to_bytes, octree, leafless_octree_to_bytes(NULL, NULL, 0, (uint64_t *)out));
+    NULL_POINTER(leafless_octree_to_bytes, bytes, leafless_octree_to_bytes(octree, NULL, length, (uint64_t *)out));
+    MAY_BE_NULL(leafless_octree_to_bytes, bytes, leafless_octree_to_bytes(octree, NULL, 0, &number));
+    NULL_POINTER(leafless_octree_to_bytes, length, leafless_octree_to_bytes(octree, NULL, 0, NULL));
+    NULL_POINTER(leafless_octree_write, octree, leafless_octree_write(NULL, take, NULL));
+    NULL_POINTER(leafless_octree_write, write, leafless_octree_write(octree, NULL, NULL));
+    MAY_BE_NULL(leafless_octree_write, ctx, leafless_octree_write(octree, take, NULL));
+
+    /* Nothing was written, and there is no file where nothing could be saved. */
+    untouched();
+    CHECK(never == UNTOUCHED);
+    refused(LEAFLESS_E_IO, "leafless_octree_open", "", leafless_octree_open("x", 1, result));
+
+    /* Texts of no bytes may be NULL, and so may options; and what there is nothing of. */
+    MAY_BE_NULL(leafless_octree_with_metadata, key, leafless_octree_with_metadata(octree, NULL, 0, NULL, 0, result));
+    leafless_octree_free(*result);
+    MAY_BE_NULL(leafless_octree_peek_metadata, key,
+                leafless_octree_peek_metadata(octree, NULL, 0, &text, &text_length));
+    MAY_BE_NULL(leafless_octree_build, options, leafless_octree_build(solid, &frame, 0, NULL, result));
+    leafless_octree_free(*result);
+    MAY_BE_NULL(leafless_octree_resolve, options, leafless_octree_resolve(octree, 2, NULL, result));
+    leafless_octree_free(*result);
+    MAY_BE_NULL(leafless_octree_complement, options, leafless_octree_complement(octree, NULL, result));
+    leafless_octree_free(*result);
+    list[1] = octree;
+#define OPTIONS(function, first, second)                                                                         \
+    MAY_BE_NULL(function, options, function(first, second, NULL, result));                                       \
+    leafless_octree_free(*result)
+    OPTIONS(leafless_octree_union, octree, octree);
+    OPTIONS(leafless_octree_intersection, octree, octree);
+    OPTIONS(leafless_octree_difference, octree, octree);
+    OPTIONS(leafless_octree_xor, octree, octree);
+    OPTIONS(leafless_octree_union_of, list, 2);
+    OPTIONS(leafless_octree_intersection_of, list, 2);
+    OPTIONS(leafless_octree_xor_of, list, 2);
+    refused(LEAFLESS_E_FORMAT, "leafless_bytes_verify", "", leafless_bytes_verify(NULL, 0));
+    refused(LEAFLESS_E_FORMAT, "leafless_octree_from_bytes", "", leafless_octree_from_bytes(NULL, 0, result));
+    refused(LEAFLESS_E_FORMAT, "leafless_octree_view_bytes", "", leafless_octree_view_bytes(NULL, 0, result));
+    refused(LEAFLESS_E_MESH_FILE, "leafless_mesh_from_stl", "", leafless_mesh_from_stl(NULL, 0, mesh_result));
+
+    /* Nothing happens. */
+    leafless_control_free(NULL);
+    leafless_mesh_free(NULL);
+    leafless_solid_free(NULL);
+    leafless_octree_free(NULL);
+    leafless_cursor_free(NULL);
+    leafless_point_cursor_free(NULL);
+    CHECK(leafless_last_error(NULL, 0) > 0);
+    CHECK(leafless_last_error(NULL, 100) > 0);
+    (void)other;
+    free(bytes);
+}
+
+/* One byte beside the right address, for every type that has an alignment. */
+static void misaligned(void) {
+    void *out = fresh();
+    void *never = UNTOUCHED;
+    leafless_octree **result = (leafless_octree **)&never;
+    leafless_mesh **mesh_result = (leafless_mesh **)&never;
+    leafless_solid **solid_result = (leafless_solid **)&never;
+    const double *numbers = (const double *)WRONG(CHECK_CUBE);
+    const uint32_t *cell = (const uint32_t *)WRONG(CHECK_CUBE);
+    const leafless_frame *bad_frame = (const leafless_frame *)WRONG(&frame);
+    const leafless_octree *bad_octree = (const leafless_octree *)WRONG(octree), *list[1];
+    uint64_t length = 0;
+    uint8_t *bytes = check_bytes(octree, &length), *beside = (uint8_t *)malloc((size_t)length + 1);
+    leafless_options bad_control;
+    CHECK(beside != NULL);
+    memcpy(beside + 1, bytes, (size_t)length);
+
+    MISALIGNED(leafless_options_init, options, leafless_options_init((leafless_options *)WRONG(out)));
+    MISALIGNED(leafless_control_new, control, leafless_control_new((leafless_control **)WRONG(out)));
+    MISALIGNED(leafless_control_cancel, control, leafless_control_cancel((leafless_control *)WRONG(control)));
+    MISALIGNED(leafless_control_state, fraction, leafless_control_state(control, (bool *)out, (double *)WRONG(out)));
+    MISALIGNED(leafless_frame_check, frame, leafless_frame_check(bad_frame));
+    MISALIGNED(leafless_frame_around, min, leafless_frame_around(numbers, above, 4, (leafless_frame *)out));
+    MISALIGNED(leafless_frame_around, max, leafless_frame_around(point, numbers, 4, (leafless_frame *)out));
+    MISALIGNED(leafless_frame_around, frame, leafless_frame_around(point, above, 4, (leafless_frame *)WRONG(out)));
+    MISALIGNED(leafless_frame_cell_size, cell_size_model, leafless_frame_cell_size(&frame, (double *)WRONG(out)));
+    MISALIGNED(leafless_frame_cell_of, cell, leafless_frame_cell_of(&frame, point, (uint32_t *)WRONG(out)));
+    MISALIGNED(leafless_frame_plane, plane_model, leafless_frame_plane(&frame, 0, 0, (leafless_interval *)WRONG(out)));
+    MISALIGNED(leafless_mesh_new, vertices, leafless_mesh_new(numbers, 1, 0, NULL, 0, mesh_result));
+    MISALIGNED(leafless_mesh_new, triangles, leafless_mesh_new(NULL, 0, 0, cell, 1, mesh_result));
+    MISALIGNED(leafless_mesh_new, mesh, leafless_mesh_new(NULL, 0, 0, NULL, 0, (leafless_mesh **)WRONG(out)));
+    MISALIGNED(leafless_mesh_counts, vertex_count,
+               leafless_mesh_counts(mesh, (uint64_t *)WRONG(out), (uint64_t *)out));
+    MISALIGNED(leafless_mesh_copy, vertices, leafless_mesh_copy(mesh, (double *)WRONG(out), 8, NULL, 0));
+    MISALIGNED(leafless_mesh_copy, triangles, leafless_mesh_copy(mesh, NULL, 0, (uint32_t *)WRONG(out), 12));
+    MISALIGNED(leafless_mesh_bounds, max, leafless_mesh_bounds(mesh, (double *)out, (double *)WRONG(out)));
+    MISALIGNED(leafless_mesh_describe, report, leafless_mesh_describe(mesh, (leafless_mesh_report *)WRONG(out)));
+    MISALIGNED(leafless_mesh_transformed, matrix, leafless_mesh_transformed(mesh, numbers, mesh_result));
+    MISALIGNED(leafless_mesh_translated, mesh,
+               leafless_mesh_translated((leafless_mesh *)WRONG(mesh), point, mesh_result));
+    MISALIGNED(leafless_solid_new_ball, centre_model, leafless_solid_new_ball(numbers, 1, solid_result));
+    MISALIGNED(leafless_solid_new_ball, solid, leafless_solid_new_ball(point, 1, (leafless_solid **)WRONG(out)));
+    MISALIGNED(leafless_octree_build, solid,
+               leafless_octree_build((leafless_solid *)WRONG(solid), &frame, 0, NULL, result));
+    MISALIGNED(leafless_octree_build, options,
+               leafless_octree_build(solid, &frame, 0, (leafless_options *)WRONG(&options), result));
+    MISALIGNED(leafless_octree_build, octree,
+               leafless_octree_build(solid, &frame, 0, NULL, (leafless_octree **)WRONG(out)));
+    bad_control = options;
+    bad_control.control = (leafless_control *)WRONG(control);
+    refused(LEAFLESS_E_ARGUMENT, "leafless_octree_build", "options.control",
+            leafless_octree_build(solid, &frame, 0, &bad_control, result));
+    MISALIGNED(leafless_octree_describe, octree, leafless_octree_describe(bad_octree, (leafless_octree_info *)out));
+    MISALIGNED(leafless_octree_describe, info, leafless_octree_describe(octree, (leafless_octree_info *)WRONG(out)));
+    MISALIGNED(leafless_octree_levels, levels,
+               leafless_octree_levels(octree, (leafless_statistics *)WRONG(out), 5, (uint64_t *)out));
+    MISALIGNED(leafless_octree_union, b, leafless_octree_union(octree, bad_octree, NULL, result));
+    list[0] = bad_octree;
+    MISALIGNED(leafless_octree_union_of, octrees, leafless_octree_union_of(list, 1, NULL, result));
+    MISALIGNED(leafless_octree_union_of, octrees,
+               leafless_octree_union_of((const leafless_octree *const *)WRONG(list), 1, NULL, result));
+    MISALIGNED(leafless_octree_contains, point_model,
+               leafless_octree_contains(octree, numbers, (leafless_membership *)out));
+    MISALIGNED(leafless_octree_contains_many, points_model,
+               leafless_octree_contains_many(octree, numbers, 1, (leafless_membership *)out));
+    MISALIGNED(leafless_octree_tag_at, cell, leafless_octree_tag_at(octree, cell, (leafless_tag *)out));
+    MISALIGNED(leafless_octree_classify_box, max_model,
+               leafless_octree_classify_box(octree, point, numbers, (leafless_region *)out));
+    MISALIGNED(leafless_cursor_read, cursor,
+               leafless_cursor_read((leafless_cursor *)WRONG(cursor), (leafless_cursor_state *)out));
+    MISALIGNED(leafless_cursor_read, state, leafless_cursor_read(cursor, (leafless_cursor_state *)WRONG(out)));
+    MISALIGNED(leafless_bytes_probe, probe, leafless_bytes_probe(bytes, length, (leafless_probe *)WRONG(out), NULL, 0));
+    MISALIGNED(leafless_bytes_probe, sections,
+               leafless_bytes_probe(bytes, length, (leafless_probe *)out, (leafless_section *)WRONG(out), 4));
+    MISALIGNED(leafless_octree_to_bytes, length, leafless_octree_to_bytes(octree, NULL, 0, (uint64_t *)WRONG(out)));
+
+    /* Bytes of files: copies may lie anywhere, what is used in place may not. */
+    refused(LEAFLESS_E_ARGUMENT, "leafless_bytes_verify", "", leafless_bytes_verify(beside + 1, length));
+    refused(LEAFLESS_E_ARGUMENT, "leafless_octree_view_bytes", "",
+            leafless_octree_view_bytes(beside + 1, length, result));
+    untouched();
+    CHECK(never == UNTOUCHED);
+    OK(leafless_octree_from_bytes(beside + 1, length, result));
+    CHECK(check_same(*result, octree));
+    leafless_octree_free(*result);
+    free(beside);
+    free(bytes);
+}
+
+/* Every number that is not in its range, in every place of every function that takes numbers. */
+static void numbers(void) {
+    static const double not_finite[] = {NAN, -NAN, INFINITY, -INFINITY};
+    static const double not_in_range[] = {NAN, INFINITY, -INFINITY, 1e300, -1e300, 0x1.8p256, 1e-300, -1e-300, 4e-324};
+    static const uint32_t not_a_depth[] = {0, 21, 22, 255, 256, 257, 65536 + 4, UINT32_MAX};
+    static const uint32_t not_a_tag[] = {1, 4, 255, 256, 256 + 3, UINT32_MAX};
+    static const uint32_t not_a_rule[] = {4, 255, 256, UINT32_MAX};
+    void *out = fresh();
+    void *never = UNTOUCHED;
+    leafless_octree **result = (leafless_octree **)&never;
+    leafless_mesh **mesh_result = (leafless_mesh **)&never;
+    leafless_solid **solid_result = (leafless_solid **)&never;
+    leafless_frame bad;
+    leafless_callbacks callbacks;
+    size_t i, axis;
+
+    for (i = 0; i < COUNT(not_a_depth); i++) {
+        bad = frame;
+        bad.depth = not_a_depth[i];
+        BAD_NUMBER(leafless_frame_check, depth, leafless_frame_check(&bad));
+        BAD_NUMBER(leafless_frame_around, depth, leafless_frame_around(point, above, bad.depth, (leafless_frame *)out));
+        BAD_NUMBER(leafless_octree_build, depth, leafless_octree_build(solid, &bad, 0, NULL, result));
+    }
+    for (i = 0; i < COUNT(not_in_range); i++) {
+        bad = frame;
+        bad.edge = not_in_range[i];
+        BAD_NUMBER(leafless_frame_check, edge, leafless_frame_check(&bad));
+        BAD_NUMBER(leafless_octree_uniform, edge, leafless_octree_uniform(&bad, 0, 0, result));
+        BAD_NUMBER(leafless_frame_cell_size, edge, leafless_frame_cell_size(&bad, (double *)out));
+        BAD_NUMBER(leafless_frame_cell_of, edge, leafless_frame_cell_of(&bad, point, (uint32_t *)out));
+        BAD_NUMBER(leafless_frame_plane, edge, leafless_frame_plane(&bad, 0, 0, (leafless_interval *)out));
+        BAD_NUMBER(leafless_solid_new_mesh, edge, leafless_solid_new_mesh(mesh, &bad, 0, solid_result));
+        BAD_NUMBER(leafless_solid_new_ball, radius, leafless_solid_new_ball(point, not_in_range[i], solid_result));
+        BAD_NUMBER(leafless_solid_new_halfspace, offset,
+                   leafless_solid_new_halfspace(above, not_in_range[i], solid_result));
+        for (axis = 0; axis < 3; axis++) {
+            double numbers[3] = {-0.5, -0.5, -0.5}, normal[3] = {1, 1, 1}, high[3] = {0.5, 0.5, 0.5};
+            bad = frame;
+            bad.origin[axis] = not_in_range[i];
+            numbers[axis] = not_in_range[i];
+            normal[axis] = not_in_range[i];
+            BAD_NUMBER(leafless_frame_check, origin, leafless_frame_check(&bad));
+            BAD_NUMBER(leafless_solid_new_ball, centre, leafless_solid_new_ball(numbers, 1, solid_result));
+            BAD_NUMBER(leafless_solid_new_halfspace, normal, leafless_solid_new_halfspace(normal, 1, solid_result));
+            refused(LEAFLESS_E_ARGUMENT, "leafless_solid_new_box", "",
+                    leafless_solid_new_box(numbers, above, solid_result));
+            high[axis] = not_in_range[i];
+            refused(LEAFLESS_E_ARGUMENT, "leafless_solid_new_box", "",
+                    leafless_solid_new_box(point, high, solid_result));
+        }
+    }
+    for (i = 0; i < COUNT(not_finite); i++) {
+        for (axis = 0; axis < 12; axis++) {
+            double matrix[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
+            matrix[axis] = not_finite[i];
+            BAD_NUMBER(leafless_mesh_transformed, matrix, leafless_mesh_transformed(mesh, matrix, mesh_result));
+        }
+        for (axis = 0; axis < 3; axis++) {
+            double vector[3] = {0, 0, 0}, vertex[3] = {0, 0, 0};
+            vector[axis] = not_finite[i];
+            vertex[axis] = not_finite[i];
+            BAD_NUMBER(leafless_mesh_translated, offset_model, leafless_mesh_translated(mesh, vector, mesh_result));
+            refused(LEAFLESS_E_MESH, "leafless_mesh_new", "vertex 0",
+                    leafless_mesh_new(vertex, 1, 0, NULL, 0, mesh_result));
+            refused(LEAFLESS_E_ARGUMENT, "leafless_frame_around", "",
+                    leafless_frame_around(vector, above, 4, (leafless_frame *)out));
+            BAD_NUMBER(leafless_frame_cell_of, point_model, leafless_frame_cell_of(&frame, vector, (uint32_t *)out));
+        }
+    }
+    {
+        const double huge[3] = {0, 0x1.8p256, 0}, to_huge[12] = {0x1p300, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
+        const double outside[3] = {0, 0, nextafter(1.0, 2.0)}, near[3] = {1, 1, 1}, nan[3] = {0, NAN, 0};
+        const double numbers_of_mesh[6] = {0, 0, 0, 1, 1, 1};
+        refused(LEAFLESS_E_MESH, "leafless_mesh_new", "vertex 0", leafless_mesh_new(huge, 1, 0, NULL, 0, mesh_result));
+        refused(LEAFLESS_E_MESH, "leafless_mesh_transformed", "vertex",
+                leafless_mesh_transformed(mesh, to_huge, mesh_result));
+        refused(LEAFLESS_E_MESH, "leafless_mesh_translated", "vertex",
+                leafless_mesh_translated(mesh, huge, mesh_result));
+        refused(LEAFLESS_E_MESH, "leafless_frame_around", "extent",
+                leafless_frame_around(near, near, 4, (leafless_frame *)out));
+        refused(LEAFLESS_E_ARGUMENT, "leafless_frame_around", "",
+                leafless_frame_around(above, point, 4, (leafless_frame *)out));
+        BAD_NUMBER(leafless_frame_cell_of, point_model, leafless_frame_cell_of(&frame, outside, (uint32_t *)out));
+        BAD_NUMBER(leafless_octree_classify_box, min,
+                   leafless_octree_classify_box(octree, above, point, (leafless_region *)out));
+        refused(LEAFLESS_E_ARGUMENT, "leafless_octree_classify_box", "",
+                leafless_octree_classify_box(octree, nan, above, (leafless_region *)out));
+        refused(LEAFLESS_E_ARGUMENT, "leafless_octree_classify_box", "",
+                leafless_octree_classify_box(octree, point, nan, (leafless_region *)out));
+        refused(LEAFLESS_E_ARGUMENT, "leafless_solid_new_box", "", leafless_solid_new_box(above, above, solid_result));
+        refused(LEAFLESS_E_ARGUMENT, "leafless_solid_new_halfspace", "normal",
+                leafless_solid_new_halfspace(point, 1, solid_result));
+        /* Strides: too short, no multiple of 8, or so long that the array would be longer than memory. */
+        BAD_NUMBER(leafless_mesh_new, vertex_stride, leafless_mesh_new(numbers_of_mesh, 2, 8, NULL, 0, mesh_result));
+        BAD_NUMBER(leafless_mesh_new, vertex_stride, leafless_mesh_new(numbers_of_mesh, 2, 25, NULL, 0, mesh_result));
+        BAD_NUMBER(leafless_mesh_new, vertex_stride, leafless_mesh_new(numbers_of_mesh, 2, 28, NULL, 0, mesh_result));
+        BAD_NUMBER(leafless_mesh_new, vertices,
+                   leafless_mesh_new(numbers_of_mesh, 3, UINT64_MAX - 7, NULL, 0, mesh_result));
+        BAD_NUMBER(leafless_mesh_new, vertices,
+                   leafless_mesh_new(numbers_of_mesh, UINT64_MAX, 24, NULL, 0, mesh_result));
+        BAD_NUMBER(leafless_mesh_new, vertices,
+                   leafless_mesh_new(numbers_of_mesh, UINT64_MAX, UINT64_MAX - 7, NULL, 0, mesh_result));
+        BAD_NUMBER(leafless_mesh_new, triangles,
+                   leafless_mesh_new(numbers_of_mesh, 2, 0, (const uint32_t *)(const void *)CHECK_CUBE, UINT64_MAX,
+                                     mesh_result));
+        BAD_NUMBER(leafless_mesh_new, triangles,
+                   leafless_mesh_new(numbers_of_mesh, 2, 0, (const uint32_t *)(const void *)CHECK_CUBE,
+                                     UINT64_MAX / 3 + 1, mesh_result));
+    }
+    for (i = 0; i < COUNT(not_a_tag); i++) {
+        BAD_NUMBER(leafless_octree_uniform, tag, leafless_octree_uniform(&frame, not_a_tag[i], 0, result));
+        BAD_NUMBER(leafless_octree_uniform, exterior, leafless_octree_uniform(&frame, 0, not_a_tag[i], result));
+    }
+    for (i = 0; i < COUNT(not_a_rule); i++) {
+        BAD_NUMBER(leafless_octree_build, rule, leafless_octree_build(solid, &frame, not_a_rule[i], NULL, result));
+        BAD_NUMBER(leafless_octree_resolve, rule, leafless_octree_resolve(octree, not_a_rule[i], NULL, result));
+        BAD_NUMBER(leafless_mesh_check_closed, fill, leafless_mesh_check_closed(mesh, not_a_rule[i] - 2));
+        BAD_NUMBER(leafless_solid_new_mesh, fill, leafless_solid_new_mesh(mesh, &frame, not_a_rule[i], solid_result));
+        memset(&callbacks, 0, sizeof callbacks);
+        callbacks.struct_size = sizeof callbacks;
+        callbacks.classify = classify;
+        callbacks.exterior = not_a_rule[i] - 1;
+        BAD_NUMBER(leafless_solid_new_callbacks, exterior, leafless_solid_new_callbacks(&callbacks, solid_result));
+    }
+    BAD_NUMBER(leafless_frame_plane, axis, leafless_frame_plane(&frame, 3, 0, (leafless_interval *)out));
+    BAD_NUMBER(leafless_frame_plane, axis, leafless_frame_plane(&frame, UINT32_MAX, 0, (leafless_interval *)out));
+    BAD_NUMBER(leafless_frame_plane, index, leafless_frame_plane(&frame, 0, 17, (leafless_interval *)out));
+    BAD_NUMBER(leafless_frame_plane, index, leafless_frame_plane(&frame, 2, UINT32_MAX, (leafless_interval *)out));
+    BAD_NUMBER(leafless_cursor_descend, octant, leafless_cursor_descend(cursor, 8, (bool *)out));
+    BAD_NUMBER(leafless_cursor_descend, octant, leafless_cursor_descend(cursor, 256, (bool *)out));
+    BAD_NUMBER(leafless_cursor_descend, octant, leafless_cursor_descend(cursor, UINT32_MAX, (bool *)out));
+    refused(LEAFLESS_E_ARGUMENT, "leafless_octree_peek_metadata_at", "index",
+            leafless_octree_peek_metadata_at(octree, 0, (uint64_t *)out, (const char **)out + 1, (size_t *)out + 2,
+                                             (const char **)out + 3, (size_t *)out + 4));
+    refused(LEAFLESS_E_ARGUMENT, "leafless_octree_peek_metadata_at", "index",
+            leafless_octree_peek_metadata_at(octree, UINT64_MAX, (uint64_t *)out, (const char **)out + 1,
+                                             (size_t *)out + 2, (const char **)out + 3, (size_t *)out + 4));
+
+    /* Paths: none, with a NUL, no UTF-8. */
+    refused(LEAFLESS_E_ARGUMENT, "leafless_octree_open", "path", leafless_octree_open("x", 0, result));
+    {
+        const leafless_status status = leafless_octree_open("a\0b", 3, result);
+        CHECK(status == LEAFLESS_E_UTF8);
+        CHECK(leafless_octree_map("a\0b", 3, result) == LEAFLESS_E_UTF8);
+        CHECK(leafless_octree_save(octree, "a\0b", 3) == LEAFLESS_E_UTF8);
+        CHECK(leafless_mesh_read_stl("a\0b", 3, mesh_result) == LEAFLESS_E_UTF8);
+        CHECK(leafless_octree_save(octree, "a\xff", 2) == LEAFLESS_E_UTF8);
+        CHECK(leafless_file_probe("a\xff", 2, (leafless_probe *)out, NULL, 0) == LEAFLESS_E_UTF8);
+    }
+    refused(LEAFLESS_E_ARGUMENT, "leafless_octree_map", "path", leafless_octree_map(".", 1, result));
+
+    untouched();
+    CHECK(never == UNTOUCHED);
+}
+
+int main(void) {
+    octree = check_ball(4, LEAFLESS_RULE_CERTIFIED);
+    mesh = check_cube();
+    solid = check_ball_solid();
+    OK(leafless_control_new(&control));
+    OK(leafless_cursor_new(octree, &cursor));
+    OK(leafless_point_cursor_new(octree, &point_cursor));
+    OK(leafless_options_init(&options));
+    null_pointers();
+    misaligned();
+    numbers();
+    /* All of it is as good as ever. */
+    OK(leafless_octree_check(octree));
+    leafless_point_cursor_free(point_cursor);
+    leafless_cursor_free(cursor);
+    leafless_control_free(control);
+    leafless_solid_free(solid);
+    leafless_mesh_free(mesh);
+    leafless_octree_free(octree);
+    return 0;
+}

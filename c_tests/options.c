@@ -1,0 +1,167 @@
+/* Structs that begin with their own size: older programs have shorter ones, newer programs longer ones. */
+#include "check.h"
+
+static leafless_solid *solid;
+static leafless_frame frame;
+static leafless_octree *expected;
+
+static void accepted(const void *options) {
+    leafless_octree *octree = NULL;
+    OK(leafless_octree_build(solid, &frame, LEAFLESS_RULE_CERTIFIED, (const leafless_options *)options, &octree));
+    CHECK(check_same(octree, expected));
+    leafless_octree_free(octree);
+}
+
+static void refused(const void *options, const char *why) {
+    leafless_octree *octree = NULL;
+    char message[512];
+    FAILS(LEAFLESS_E_ARGUMENT,
+          leafless_octree_build(solid, &frame, LEAFLESS_RULE_CERTIFIED, (const leafless_options *)options, &octree));
+    CHECK(octree == NULL);
+    (void)leafless_last_error(message, sizeof message);
+    CHECK(strstr(message, "options") != NULL && strstr(message, why) != NULL);
+}
+
+/* What this header's struct may be in a later one. */
+typedef struct newer_options {
+    leafless_options known;
+    uint64_t unknown[4];
+} newer_options;
+
+static int32_t full(void *ctx, const double *min, const double *max) {
+    (void)ctx;
+    (void)min;
+    (void)max;
+    return LEAFLESS_TAG_FULL;
+}
+
+static int32_t count(void *ctx, double fraction) {
+    (void)fraction;
+    ++*(int *)ctx;
+    return 0;
+}
+
+int main(void) {
+    leafless_options options;
+    newer_options newer;
+    size_t size, i;
+
+    frame = check_frame(5);
+    solid = check_ball_solid();
+    expected = check_ball(5, LEAFLESS_RULE_CERTIFIED);
+    accepted(NULL);
+
+    /* From zeros by hand, and by leafless_options_init out of whatever lay there. */
+    memset(&options, 0, sizeof options);
+    options.struct_size = sizeof options;
+    accepted(&options);
+    memset(&options, 0xee, sizeof options);
+    OK(leafless_options_init(&options));
+    CHECK(options.struct_size == sizeof options && options.threads == 0 && options.max_nodes == 0);
+    CHECK(options.max_bytes == 0 && options.progress == NULL && options.progress_ctx == NULL && options.control == NULL);
+    accepted(&options);
+    options.threads = 3;
+    options.max_nodes = UINT64_MAX;
+    options.max_bytes = UINT64_MAX;
+    accepted(&options);
+
+    /* Never initialised: a size that makes no sense. */
+    memset(&options, 0, sizeof options);
+    refused(&options, "struct_size");
+    for (i = 1; i < 256; i++) {
+        memset(&options, (int)i, sizeof options);
+        refused(&options, "struct_size");
+    }
+    OK(leafless_options_init(&options));
+    for (size = 0; size < 4; size++) {
+        options.struct_size = (uint32_t)size;
+        refused(&options, "struct_size");
+    }
+    options.struct_size = UINT32_MAX;
+    refused(&options, "struct_size");
+    options.struct_size = 1 << 20;
+    refused(&options, "struct_size");
+
+    /* Older, shorter ones: what they do not have is not read, and is as if zero. */
+    {
+        int calls = 0;
+        OK(leafless_options_init(&options));
+        options.progress = count;
+        options.progress_ctx = &calls;
+        options.max_nodes = 1;
+        options.control = (const leafless_control *)(uintptr_t)0x5a5a5a58;
+        options.struct_size = offsetof(leafless_options, max_nodes);
+        accepted(&options);
+        CHECK(calls == 0);
+        options.max_nodes = 0;
+        options.struct_size = offsetof(leafless_options, control);
+        accepted(&options);
+        CHECK(calls > 0);
+        /* On the heap, so that memory checkers see what is read beyond the end. */
+        for (size = 8; size <= sizeof options; size += 8) {
+            void *exact = malloc(size);
+            leafless_options zeros;
+            CHECK(exact != NULL);
+            memset(&zeros, 0, sizeof zeros);
+            zeros.struct_size = (uint32_t)size;
+            memcpy(exact, &zeros, size);
+            accepted(exact);
+            free(exact);
+        }
+        /* No struct of any version ends within a field: half a pointer is none. */
+        options.control = NULL;
+        for (size = 4; size < sizeof options; size++) {
+            if (size % 8 != 0) {
+                options.struct_size = (uint32_t)size;
+                refused(&options, "struct_size");
+            }
+        }
+    }
+
+    /* Newer, longer ones: what this library does not know must not be asked for. */
+    memset(&newer, 0, sizeof newer);
+    newer.known.struct_size = sizeof newer;
+    accepted(&newer);
+    for (i = 0; i < sizeof newer.unknown; i++) {
+        memset(newer.unknown, 0, sizeof newer.unknown);
+        ((unsigned char *)newer.unknown)[i] = 1;
+        refused(&newer, "does not know");
+    }
+    /* Beyond the size that it says it may hold anything. */
+    newer.known.struct_size = sizeof newer.known;
+    accepted(&newer);
+
+    /* The same for callbacks. */
+    {
+        leafless_callbacks callbacks;
+        struct {
+            leafless_callbacks known;
+            uint64_t unknown;
+        } longer;
+        leafless_solid *all = NULL;
+        memset(&callbacks, 0, sizeof callbacks);
+        callbacks.classify = full;
+        for (size = 0; size < 4; size++) {
+            callbacks.struct_size = (uint32_t)size;
+            FAILS(LEAFLESS_E_ARGUMENT, leafless_solid_new_callbacks(&callbacks, &all));
+        }
+        callbacks.struct_size = offsetof(leafless_callbacks, classify);
+        FAILS(LEAFLESS_E_NULL, leafless_solid_new_callbacks(&callbacks, &all));
+        callbacks.struct_size = offsetof(leafless_callbacks, contains);
+        OK(leafless_solid_new_callbacks(&callbacks, &all));
+        leafless_solid_free(all);
+        all = NULL;
+        memset(&longer, 0, sizeof longer);
+        longer.known = callbacks;
+        longer.known.struct_size = sizeof longer;
+        longer.unknown = 1;
+        FAILS(LEAFLESS_E_ARGUMENT, leafless_solid_new_callbacks(&longer.known, &all));
+        CHECK(all == NULL);
+        longer.unknown = 0;
+        OK(leafless_solid_new_callbacks(&longer.known, &all));
+        leafless_solid_free(all);
+    }
+    leafless_octree_free(expected);
+    leafless_solid_free(solid);
+    return 0;
+}

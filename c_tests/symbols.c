@@ -1,0 +1,28 @@
+/* Every function of the header exists in the library. symbols.h is made of the header: FUNCTION(name) for each. */
+#include "check.h"
+
+typedef void (*any_function)(void);
+
+static const struct {
+    const char *name;
+    any_function address;
+} FUNCTIONS[] = {
+#define FUNCTION(name) {#name, (any_function)name},
+#include "symbols.h"
+#undef FUNCTION
+};
+
+int main(void) {
+    size_t i, j;
+    for (i = 0; i < COUNT(FUNCTIONS); i++) {
+        CHECK(FUNCTIONS[i].address != NULL);
+        for (j = 0; j < i; j++) {
+            if (FUNCTIONS[i].address == FUNCTIONS[j].address) {
+                fprintf(stderr, "%s is %s\n", FUNCTIONS[i].name, FUNCTIONS[j].name);
+                return 1;
+            }
+        }
+        printf("%s\n", FUNCTIONS[i].name);
+    }
+    return 0;
+}

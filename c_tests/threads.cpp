@@ -1,0 +1,236 @@
+// Eight threads read one octree, take references and give them back, and fail each for itself.
+#include "check.h"
+
+#include <atomic>
+#include <string>
+#include <thread>
+#include <vector>
+
+namespace {
+
+constexpr int THREADS = 8;
+constexpr int POINTS = 2000;
+
+template <typename Work>
+void in_all_threads(const Work &work) {
+    std::atomic<int> ready{0};
+    std::vector<std::thread> threads;
+    for (int number = 0; number < THREADS; number++) {
+        threads.emplace_back([&, number] {
+            // All at once.
+            ready++;
+            while (ready < THREADS) {
+                std::this_thread::yield();
+            }
+            work(number);
+        });
+    }
+    for (std::thread &thread : threads) {
+        thread.join();
+    }
+}
+
+std::vector<double> points() {
+    std::vector<double> numbers;
+    uint64_t state = 7;
+    for (int i = 0; i < 3 * POINTS; i++) {
+        state = state * 6364136223846793005u + 1442695040888963407u;
+        numbers.push_back(double(state >> 11) / 9007199254740992.0 * 2.2 - 1.1);
+    }
+    return numbers;
+}
+
+// `octree` is read in every way there is; its statistics are not known yet.
+void reads(const leafless_octree *octree) {
+    const std::vector<double> numbers = points();
+    std::vector<leafless_membership> expected(POINTS);
+    OK(leafless_octree_contains_many(octree, numbers.data(), POINTS, expected.data()));
+    leafless_statistics statistics[THREADS];
+    in_all_threads([&](int number) {
+        OK(leafless_octree_statistics(octree, &statistics[number]));
+        std::vector<leafless_membership> found(POINTS);
+        OK(leafless_octree_contains_many(octree, numbers.data(), POINTS, found.data()));
+        CHECK(found == expected);
+        leafless_point_cursor *near = nullptr;
+        OK(leafless_point_cursor_new(octree, &near));
+        for (int i = 0; i < POINTS; i++) {
+            leafless_membership one, other;
+            OK(leafless_octree_contains(octree, &numbers[3 * i], &one));
+            OK(leafless_point_cursor_contains(near, &numbers[3 * i], &other));
+            CHECK(one == expected[i] && other == expected[i]);
+            if (i % 16 == number) {
+                leafless_region region;
+                const double *const p = &numbers[3 * i];
+                const double low[3] = {p[0] - 0.1, p[1] - 0.1, p[2] - 0.1};
+                OK(leafless_octree_classify_box(octree, low, p, &region));
+                CHECK(region != LEAFLESS_REGION_INSIDE || expected[i] != LEAFLESS_OUTSIDE);
+            }
+        }
+        leafless_point_cursor_free(near);
+
+        // A walk over all cells down to a level: as many as the counts say.
+        leafless_cursor *cursor = nullptr;
+        OK(leafless_cursor_new(octree, &cursor));
+        uint64_t cells = 0, branches = 0;
+        unsigned path[4] = {0, 0, 0, 0};
+        int level = 0;
+        for (;;) {
+            leafless_cursor_state state;
+            bool moved = false;
+            if (level < 4 && path[level] < 8) {
+                OK(leafless_cursor_descend(cursor, path[level]++, &moved));
+                if (moved) {
+                    OK(leafless_cursor_read(cursor, &state));
+                    CHECK(int(state.level) == level + 1);
+                    cells++;
+                    branches += state.tag == LEAFLESS_TAG_BRANCH;
+                    if (++level < 4) {
+                        path[level] = 0;
+                    }
+                }
+            } else {
+                OK(leafless_cursor_ascend(cursor, &moved));
+                if (!moved) {
+                    break;
+                }
+                level--;
+            }
+        }
+        leafless_cursor_free(cursor);
+        leafless_statistics levels[32];
+        uint64_t count = 0;
+        OK(leafless_octree_levels(octree, levels, 32, &count));
+        uint64_t nodes = 0;
+        for (int l = 1; l <= 4; l++) {
+            nodes += levels[l].nodes;
+        }
+        CHECK(cells > 0 && branches > 0 && nodes > 0);
+        OK(leafless_octree_check(octree));
+
+        // Booleans of it, each with threads of its own.
+        leafless_options options;
+        OK(leafless_options_init(&options));
+        options.threads = 1 + number % 2;
+        leafless_octree *complement = nullptr, *nothing = nullptr;
+        OK(leafless_octree_complement(octree, &options, &complement));
+        OK(leafless_octree_difference(octree, octree, &options, &nothing));
+        leafless_octree_free(complement);
+        leafless_octree_free(nothing);
+    });
+    for (const leafless_statistics &each : statistics) {
+        CHECK(each.nodes == statistics[0].nodes && each.lower_cells == statistics[0].lower_cells);
+    }
+}
+
+// Every thread takes references and gives back its own, and whoever comes last frees the octree.
+void references() {
+    leafless_octree *octree = check_ball(5, LEAFLESS_RULE_CERTIFIED);
+    leafless_octree *own[THREADS];
+    for (leafless_octree *&reference : own) {
+        OK(leafless_octree_ref(octree, &reference));
+    }
+    leafless_octree_free(octree);
+    in_all_threads([&](int number) {
+        for (int i = 0; i < 1000; i++) {
+            leafless_octree *again = nullptr;
+            OK(leafless_octree_ref(own[number], &again));
+            leafless_octree_free(again);
+        }
+        leafless_cursor *cursor = nullptr;
+        OK(leafless_cursor_new(own[number], &cursor));
+        leafless_octree_free(own[number]);
+        OK(leafless_cursor_descend(cursor, 3, nullptr));
+        leafless_cursor_free(cursor);
+    });
+}
+
+std::atomic<int> destroyed{0};
+
+void gone(void *) {
+    destroyed++;
+}
+
+int32_t half(void *, const double *min, const double *max) {
+    return min[0] >= 0.0 ? LEAFLESS_TAG_FULL : max[0] <= 0.0 ? LEAFLESS_TAG_EMPTY : LEAFLESS_TAG_PARTIAL;
+}
+
+// A solid and a mesh in all threads; the host's context goes once, with the last reference.
+void solids() {
+    leafless_callbacks callbacks = {};
+    callbacks.struct_size = sizeof callbacks;
+    callbacks.classify = half;
+    callbacks.destroy = gone;
+    leafless_solid *solid = nullptr;
+    OK(leafless_solid_new_callbacks(&callbacks, &solid));
+    leafless_mesh *mesh = check_cube();
+    leafless_solid *own[THREADS];
+    leafless_octree *built[THREADS];
+    for (leafless_solid *&reference : own) {
+        OK(leafless_solid_ref(solid, &reference));
+    }
+    leafless_solid_free(solid);
+    in_all_threads([&](int number) {
+        const leafless_frame frame = check_frame(4);
+        leafless_options options;
+        OK(leafless_options_init(&options));
+        options.threads = 1 + number % 3;
+        OK(leafless_octree_build(own[number], &frame, LEAFLESS_RULE_CERTIFIED, &options, &built[number]));
+        leafless_mesh_report report;
+        // Its edges are analysed once, by whoever asks first.
+        OK(leafless_mesh_describe(mesh, &report));
+        CHECK(report.bodies == 1 && report.boundary_edges == 0);
+        leafless_solid *cube = nullptr;
+        OK(leafless_solid_new_mesh(mesh, &frame, LEAFLESS_FILL_NON_ZERO, &cube));
+        leafless_solid_free(cube);
+        leafless_solid_free(own[number]);
+    });
+    CHECK(destroyed == 1);
+    for (leafless_octree *octree : built) {
+        CHECK(check_same(octree, built[0]));
+    }
+    for (leafless_octree *octree : built) {
+        leafless_octree_free(octree);
+    }
+    leafless_mesh_free(mesh);
+}
+
+// Every thread has its own last error.
+void messages() {
+    leafless_octree *octree = check_ball(3, LEAFLESS_RULE_CERTIFIED);
+    FAILS(LEAFLESS_E_NULL, leafless_octree_check(nullptr));
+    in_all_threads([&](int number) {
+        CHECK(leafless_last_status() == LEAFLESS_OK && leafless_last_error(nullptr, 0) == 0);
+        for (int i = 0; i < 500; i++) {
+            leafless_octree *result = nullptr;
+            char message[512];
+            const std::string path = "no/such/file/of/thread/" + std::to_string(number);
+            if (number % 2 == 0) {
+                FAILS(LEAFLESS_E_IO, leafless_octree_open(path.data(), path.size(), &result));
+            } else {
+                FAILS(LEAFLESS_E_ARGUMENT, leafless_octree_resolve(octree, 99, nullptr, &result));
+            }
+            const leafless_status expected = number % 2 == 0 ? LEAFLESS_E_IO : LEAFLESS_E_ARGUMENT;
+            CHECK(leafless_last_status() == expected);
+            CHECK(leafless_last_error(message, sizeof message) == strlen(message));
+            CHECK(strstr(message, number % 2 == 0 ? "No such file" : "rule") != nullptr);
+        }
+    });
+    CHECK(leafless_last_status() == LEAFLESS_E_NULL);
+    leafless_octree_free(octree);
+}
+
+}  // namespace
+
+int main() {
+    leafless_octree *octree = check_ball(6, LEAFLESS_RULE_CERTIFIED), *mapped = nullptr;
+    reads(octree);
+    OK(leafless_octree_save(octree, "threads.lfl", 11));
+    leafless_octree_free(octree);
+    OK(leafless_octree_map("threads.lfl", 11, &mapped));
+    reads(mapped);
+    leafless_octree_free(mapped);
+    references();
+    solids();
+    messages();
+    return 0;
+}

@@ -1,0 +1,105 @@
+//! What this library takes the header's structs and constants for: for its own tests.
+
+use super::*;
+use core::ffi::c_char;
+use core::fmt::{self, Write};
+use core::mem::{offset_of, size_of};
+
+/// The size of what a field holds.
+const fn size_at<S, F>(_: fn(&S) -> &F) -> usize {
+    size_of::<F>()
+}
+
+macro_rules! structs {
+    ($to:ident; $($name:ident { $($field:ident),* })*) => {
+        $(
+            writeln!($to, "{} {}", stringify!($name), size_of::<$name>())?;
+            $(writeln!(
+                $to,
+                "{}.{} {} {}",
+                stringify!($name),
+                stringify!($field),
+                offset_of!($name, $field),
+                size_at(|all: &$name| &all.$field)
+            )?;)*
+        )*
+    };
+}
+
+macro_rules! values {
+    ($to:ident; $($name:ident { $($value:ident),* })*) => {
+        $($(writeln!($to, "{} {}", stringify!($value), $name::$value as i64)?;)*)*
+    };
+}
+
+fn write_all(to: &mut dyn Write) -> fmt::Result {
+    structs! { to;
+        leafless_options { struct_size, threads, max_nodes, max_bytes, progress, progress_ctx, control }
+        leafless_frame { origin, edge, depth }
+        leafless_interval { lower, upper }
+        leafless_mesh_report {
+            facets_read, triangles, vertices, welded, degenerate, boundary_edges, misoriented_edges,
+            non_manifold_edges, bodies, sewn, displacement_model
+        }
+        leafless_callbacks { struct_size, exterior, classify, contains, destroy, ctx }
+        leafless_octree_info { frame, elements, bricks, root, exterior, is_binary, is_clipped }
+        leafless_statistics { nodes, empty, full, partial, lower_cells, upper_cells, volume_model }
+        leafless_cursor_state { cell, level, tag, children }
+        leafless_probe {
+            major, minor, frame, elements, bricks, file_length, sections, root, exterior, is_binary
+        }
+        leafless_section { kind, is_required, name, offset, length, count }
+    }
+    values! { to;
+        leafless_status {
+            LEAFLESS_OK, LEAFLESS_E_NULL, LEAFLESS_E_ARGUMENT, LEAFLESS_E_UTF8, LEAFLESS_E_BUFFER,
+            LEAFLESS_E_FRAME, LEAFLESS_E_NOT_SAMPLED, LEAFLESS_E_MESH, LEAFLESS_E_MESH_FILE,
+            LEAFLESS_E_FORMAT, LEAFLESS_E_VERSION, LEAFLESS_E_DAMAGED, LEAFLESS_E_LIMIT,
+            LEAFLESS_E_NO_MEMORY, LEAFLESS_E_CANCELLED, LEAFLESS_E_CALLBACK, LEAFLESS_E_IO, LEAFLESS_E_PANIC
+        }
+        leafless_tag { LEAFLESS_TAG_EMPTY, LEAFLESS_TAG_BRANCH, LEAFLESS_TAG_PARTIAL, LEAFLESS_TAG_FULL }
+        leafless_membership { LEAFLESS_OUTSIDE, LEAFLESS_INSIDE, LEAFLESS_UNDECIDED }
+        leafless_region {
+            LEAFLESS_REGION_OUTSIDE, LEAFLESS_REGION_INSIDE, LEAFLESS_REGION_CROSSING,
+            LEAFLESS_REGION_UNDECIDED
+        }
+        leafless_fill { LEAFLESS_FILL_NON_ZERO, LEAFLESS_FILL_EVEN_ODD }
+        leafless_rule {
+            LEAFLESS_RULE_CERTIFIED, LEAFLESS_RULE_SAMPLED, LEAFLESS_RULE_INNER, LEAFLESS_RULE_OUTER
+        }
+        leafless_exterior { LEAFLESS_EXTERIOR_UNKNOWN, LEAFLESS_EXTERIOR_EMPTY, LEAFLESS_EXTERIOR_FULL }
+    }
+    writeln!(to, "LEAFLESS_VERSION_MAJOR {LEAFLESS_VERSION_MAJOR}")?;
+    writeln!(to, "LEAFLESS_VERSION_MINOR {LEAFLESS_VERSION_MINOR}")?;
+    writeln!(to, "LEAFLESS_VERSION_PATCH {LEAFLESS_VERSION_PATCH}")?;
+    writeln!(to, "LEAFLESS_ABI {LEAFLESS_ABI}")
+}
+
+/// What the library was built with, to be compared with what C makes of this header: only in libraries that are
+/// built for tests. One line for each struct with its size, for each field with its offset and size, and for each
+/// constant with its value.
+///
+/// - Buffers: `text`, `capacity` bytes; may be NULL if `capacity` is 0.
+/// - Result: the text's length in bytes, without the terminating NUL, also if not all of it was written. What is
+///   written is NUL-terminated.
+/// - Errors: none.
+/// - Ownership: the text is copied.
+/// - Threads: any.
+/// - Untrusted input: none.
+/// - Since: 0.1
+#[cfg(feature = "capi-test")]
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_test_layout(text: *mut c_char, capacity: usize) -> usize {
+    let mut all = alloc::string::String::new();
+    // A string takes all that is written to it.
+    let _ = write_all(&mut all);
+    if !text.is_null() && capacity > 0 {
+        let length = all.len().min(capacity - 1);
+        // SAFETY: the caller has `capacity` bytes there; all of the text is ASCII.
+        unsafe {
+            core::ptr::copy_nonoverlapping(all.as_ptr(), text.cast(), length);
+            text.add(length).write(0);
+        }
+    }
+    all.len()
+}
