@@ -46,10 +46,10 @@ pub enum Error {
     /// An allocation failed, in the library or in the operating system.
     ///
     /// Every allocation whose size depends on an input or a result is asked for in a way that can be refused,
-    /// and this is the refusal. What remains is small and of bounded size, below 4 KiB a piece: counted
-    /// references, the numbers per level behind statistics, what the standard library and `tempfile` need to
-    /// handle a path, and what threads cost. If even that cannot be had, the process ends, as Rust programs
-    /// do. (So it does where an allocator refuses to make a piece of memory smaller, which none is known to.)
+    /// and this is the refusal. What remains is small, at most 2 KiB a piece: counted references, the numbers
+    /// per level behind statistics, exact signs, what the standard library and `tempfile` need to handle a
+    /// path; and what threads cost. If even that cannot be had, the process ends, as Rust programs do. (So it
+    /// does where an allocator refuses to make a piece of memory smaller, which none is known to.)
     #[error("out of memory")]
     OutOfMemory,
     /// The caller asked to stop.

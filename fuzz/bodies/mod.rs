@@ -8,10 +8,10 @@ pub mod seeds;
 mod set_algebra;
 mod ways_in;
 
-pub use mutator::{mutate_file, mutate_pair};
+pub use mutator::{changed, mutate_file, mutate_pair, repairs};
 pub use queries::queries;
-pub use set_algebra::set_algebra;
-pub use ways_in::ways_in;
+pub use set_algebra::{set_algebra, threads};
+pub use ways_in::{read_in_all_ways, ways_in};
 
 use leafless::{Control, Cursor, Tag};
 

@@ -13,7 +13,7 @@ pub type Blind<'b> = &'b mut dyn FnMut(&mut [u8], usize, usize) -> usize;
 /// Changes the file in the first `size` bytes of `data`, to at most `max` bytes.
 pub fn mutate_file(data: &mut [u8], size: usize, max: usize, seed: u32, blind: Blind<'_>) -> usize {
     let mut random = Random(seed.into());
-    match changed(&data[..size], max, &mut random, blind) {
+    match changed_or_blind(&data[..size], max, &mut random, blind) {
         Some(bytes) => replace(data, &bytes, max).unwrap_or(size),
         None => blind(data, size, max),
     }
@@ -29,8 +29,11 @@ pub fn mutate_pair(data: &mut [u8], size: usize, max: usize, seed: u32, blind: B
     let room = max.saturating_sub(4 + first.len().min(second.len()));
     match random.below(8) {
         0 => second = first.clone(),
-        1..4 => first = changed(&first, room, &mut random, blind).unwrap_or(first),
-        _ => second = changed(&second, room, &mut random, blind).unwrap_or_else(|| grown(second, blind)),
+        1..4 => first = changed_or_blind(&first, room, &mut random, blind).unwrap_or(first),
+        _ => {
+            second =
+                changed_or_blind(&second, room, &mut random, blind).unwrap_or_else(|| grown(second, blind));
+        }
     }
     // Trees on different lattices are refused before anything happens.
     if let (Some(a), Some(mut b)) = (File::parse(&first), File::parse(&second))
@@ -62,7 +65,7 @@ fn grown(mut bytes: Vec<u8>, blind: Blind<'_>) -> Vec<u8> {
 }
 
 /// Each repair with a high probability; the deeper ones less often, so that damage gets that far.
-fn repairs(random: &mut Random) -> Repairs {
+pub fn repairs(random: &mut Random) -> Repairs {
     let mut often = || !random.one_in(24);
     let mut repairs = Repairs {
         counts: often(),
@@ -82,14 +85,23 @@ fn repairs(random: &mut Random) -> Repairs {
     repairs
 }
 
-/// The file in `bytes` after a few changes; `None` if there is none, or a blind change is due.
-fn changed(bytes: &[u8], max: usize, random: &mut Random, blind: Blind<'_>) -> Option<Vec<u8>> {
-    let mut file = File::parse(bytes).filter(|_| !random.one_in(12))?;
+/// The file in `bytes` after a few changes, and repaired as far as `repairs` say; `None` if there is none.
+pub fn changed(bytes: &[u8], random: &mut Random, blind: Blind<'_>, repairs: &Repairs) -> Option<Vec<u8>> {
+    let mut file = File::parse(bytes)?;
     for _ in 0..1 + random.below(3) {
         change(&mut file, random, blind);
     }
+    Some(file.assemble(repairs))
+}
+
+/// The file in `bytes` after a few changes; `None` if there is none, it becomes too long, or a blind change is
+/// due.
+fn changed_or_blind(bytes: &[u8], max: usize, random: &mut Random, blind: Blind<'_>) -> Option<Vec<u8>> {
+    if random.one_in(12) {
+        return None;
+    }
     let repairs = repairs(random);
-    let mut bytes = file.assemble(&repairs);
+    let mut bytes = changed(bytes, random, blind, &repairs)?;
     if random.one_in(64) {
         // Between sections, or behind the last one.
         match random.below(3) {

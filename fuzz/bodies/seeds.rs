@@ -109,3 +109,9 @@ pub fn pairs() -> Vec<Vec<u8>> {
     }
     pairs
 }
+
+/// Whether a file has a section of a kind that nobody knows.
+pub fn has_unknown_section(bytes: &[u8]) -> bool {
+    let file = File::parse(bytes).expect("a file");
+    file.sections.iter().any(|section| !(1..=9).contains(&section.kind()))
+}

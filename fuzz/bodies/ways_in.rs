@@ -9,8 +9,14 @@ fn outcome<T>(result: &Result<T, Error>) -> Result<(), String> {
     result.as_ref().map(|_| ()).map_err(Error::to_string)
 }
 
-/// Reads `data` in every way.
+/// Reads `data` in every way. A real file costs more than all the others, so only some inputs become one.
 pub fn ways_in(data: &[u8]) {
+    read_in_all_ways(data, crc32fast::hash(data).is_multiple_of(8));
+}
+
+/// Reads `data` in every way, also by the ways in that need a file if `as_a_file`; whether it is verified as
+/// good.
+pub fn read_in_all_ways(data: &[u8], as_a_file: bool) -> bool {
     let aligned = Aligned::new(data);
     let bytes = aligned.bytes();
     let probed = file::probe_bytes(bytes);
@@ -43,10 +49,10 @@ pub fn ways_in(data: &[u8]) {
     if let Ok(tree) = &copied {
         good(tree);
     }
-    // A real file costs more than all of this, so only some inputs become one.
-    if crc32fast::hash(data).is_multiple_of(8) {
+    if as_a_file {
         through_a_file(data, &outcome(&probed), &outcome(&viewed), &verified);
     }
+    verified.is_ok()
 }
 
 /// What holds of every verified tree.

@@ -1,0 +1,548 @@
+//! What happens when an allocation or a write fails, each of them in turn: an error, no abort, the old file as
+//! it was, and no other file left.
+//!
+//! The allocator of this test program refuses the n-th request of a thread. Where that ends the process,
+//! because the request was one of those small ones that cannot be refused (see `Error::OutOfMemory`), it is
+//! a child process, and how much was asked for is read from its last words.
+
+#![cfg(all(feature = "mmap", unix))]
+
+#[path = "../fuzz/bodies/mod.rs"]
+mod bodies;
+
+use bodies::{Aligned, Random};
+use leafless::{
+    AnySolid, AxisBox, Ball, Callback, Control, Error, FillRule, Frame, MeshSolid, Metadata, Octree, Rule,
+    Stored, TriangleMesh, Verdict, build, compact, complement, difference, file, intersection, resolve,
+    union, union_of, xor,
+};
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::cell::Cell;
+use std::io::{self, Write};
+use std::path::Path;
+use std::process::Command;
+use std::sync::Arc;
+
+// ---- an allocator that can be told to fail --------------------------------------------------------------
+
+thread_local! {
+    /// Requests of this thread until one is refused; 0 when none is to be.
+    static LEFT: Cell<u64> = const { Cell::new(0) };
+    /// Whether all requests behind that one are refused, too.
+    static FOR_GOOD: Cell<bool> = const { Cell::new(false) };
+    /// Bytes up to which a request is always granted.
+    static SPARED: Cell<usize> = const { Cell::new(0) };
+    /// Requests refused.
+    static REFUSED: Cell<u64> = const { Cell::new(0) };
+    /// Bytes held by what this thread asked for since it was last set to zero, and the most of it.
+    static HELD: Cell<[i64; 2]> = const { Cell::new([0; 2]) };
+}
+
+struct Failing;
+
+fn refuses(size: usize) -> bool {
+    LEFT.with(|left| match left.get() {
+        0 => false,
+        _ if size <= SPARED.get() => false,
+        1 => {
+            if !FOR_GOOD.get() {
+                left.set(0);
+            }
+            REFUSED.set(REFUSED.get() + 1);
+            true
+        }
+        n => {
+            left.set(n - 1);
+            false
+        }
+    })
+}
+
+fn hold(bytes: i64) {
+    let [held, most] = HELD.get();
+    HELD.set([held + bytes, most.max(held + bytes)]);
+}
+
+// SAFETY: memory comes from the system's allocator and goes back to it.
+unsafe impl GlobalAlloc for Failing {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        if refuses(layout.size()) {
+            return std::ptr::null_mut();
+        }
+        hold(layout.size() as i64);
+        // SAFETY: as the caller promises.
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn alloc_zeroed(&self, layout: Layout) -> *mut u8 {
+        if refuses(layout.size()) {
+            return std::ptr::null_mut();
+        }
+        hold(layout.size() as i64);
+        // SAFETY: as the caller promises.
+        unsafe { System.alloc_zeroed(layout) }
+    }
+
+    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
+        hold(-(layout.size() as i64));
+        // SAFETY: as the caller promises.
+        unsafe { System.dealloc(pointer, layout) }
+    }
+
+    unsafe fn realloc(&self, pointer: *mut u8, layout: Layout, size: usize) -> *mut u8 {
+        // No allocator fails to give memory back.
+        if size > layout.size() && refuses(size) {
+            return std::ptr::null_mut();
+        }
+        hold(size as i64 - layout.size() as i64);
+        // SAFETY: as the caller promises.
+        unsafe { System.realloc(pointer, layout, size) }
+    }
+}
+
+#[global_allocator]
+static ALLOCATOR: Failing = Failing;
+
+/// Runs `work` with its n-th request of more than `spared` bytes refused, and all behind it if `for_good`; tells
+/// how many were.
+fn refusing<R>(n: u64, spared: usize, for_good: bool, work: impl FnOnce() -> R) -> (R, u64) {
+    FOR_GOOD.set(for_good);
+    SPARED.set(spared);
+    REFUSED.set(0);
+    LEFT.set(n);
+    let result = work();
+    LEFT.set(0);
+    (result, REFUSED.get())
+}
+
+/// The most bytes that `work` held at once, beyond what there was before.
+fn most_held<R>(work: impl FnOnce() -> R) -> (R, usize) {
+    HELD.set([0; 2]);
+    let result = work();
+    (result, HELD.get()[1] as usize)
+}
+
+// ---- what is tried --------------------------------------------------------------------------------------
+
+const CONTROL: Control<'static> =
+    Control { threads: 1, max_nodes: None, max_bytes: None, cancel: None, progress: None };
+
+fn frame() -> Frame {
+    Frame::new([0.0; 3], 32.0, 6).unwrap()
+}
+
+fn ball(x: f64, rule: Rule) -> Octree {
+    build(&Ball::new([x, 16.0, 16.0], 9.0).unwrap(), &frame(), rule, &CONTROL).unwrap()
+}
+
+fn facts() -> Metadata {
+    let mut metadata = Metadata::new();
+    metadata.insert("units", "mm");
+    metadata.insert("name", "Flansch Ø 120");
+    metadata
+}
+
+/// A closed surface: a cube whose faces are cut into squares. Facets that share corners only by position.
+fn facets() -> Vec<[[f64; 3]; 3]> {
+    const N: i32 = 6;
+    let mut facets = vec![];
+    for axis in 0..3 {
+        for (side, outward) in [(0, false), (N, true)] {
+            for i in 0..N {
+                for j in 0..N {
+                    let corner = |i: i32, j: i32| {
+                        let mut at = [0.0; 3];
+                        at[axis] = side as f64;
+                        at[(axis + 1) % 3] = i as f64;
+                        at[(axis + 2) % 3] = j as f64;
+                        at.map(|x| 3.3 + 2.9 * x)
+                    };
+                    let square = [corner(i, j), corner(i + 1, j), corner(i + 1, j + 1), corner(i, j + 1)];
+                    for [a, b, c] in [[0, 1, 2], [0, 2, 3]] {
+                        facets.push(if outward {
+                            [square[a], square[b], square[c]]
+                        } else {
+                            [square[a], square[c], square[b]]
+                        });
+                    }
+                }
+            }
+        }
+    }
+    facets
+}
+
+/// A mesh whose faces do not quite meet.
+fn cracked() -> TriangleMesh {
+    let mut facets = facets();
+    let count = facets.len();
+    for facet in &mut facets[count / 2..] {
+        for corner in facet {
+            corner[2] += 1e-15;
+        }
+    }
+    TriangleMesh::from_facets(facets).unwrap()
+}
+
+/// Everything that allocates, by name. It may fail, and nothing but memory may be a reason.
+type Operation = Box<dyn Fn() -> Result<(), Error>>;
+
+fn operations(directory: &Path) -> Vec<(&'static str, Operation)> {
+    let (a, b) = (ball(14.0, Rule::Certified), ball(19.0, Rule::Certified));
+    let binary = ball(15.0, Rule::Sampled);
+    let coded = compact(a.view()).unwrap().with_metadata(facts());
+    let bytes = file::to_bytes(&coded).unwrap();
+    let (closed, cracked) = (Arc::new(TriangleMesh::from_facets(facets()).unwrap()), Arc::new(cracked()));
+    let facets = facets();
+    let stl = file::write_stl(&closed).unwrap();
+    let path = directory.join("tree.lfl");
+    let mut operations: Vec<(&'static str, Operation)> = vec![];
+    macro_rules! operation {
+        ($name:literal, [$($kept:ident),*], $result:expr) => {{
+            $(let $kept = $kept.clone();)*
+            #[allow(clippy::redundant_closure_call)]
+            operations.push(($name, Box::new(move || (|| $result)().map(drop))));
+        }};
+    }
+    operation!("build", [], build(&Ball::new([15.0; 3], 9.0)?, &frame(), Rule::Certified, &CONTROL));
+    operation!("build sampled", [], build(&Ball::new([15.0; 3], 9.0)?, &frame(), Rule::Sampled, &CONTROL));
+    operation!("build odd", [], {
+        let frame = frame().with_depth(5)?;
+        build(&AxisBox::new([1.1; 3], [22.0; 3])?, &frame, Rule::Outer, &CONTROL)
+    });
+    operation!("build erased", [], {
+        let solid = AnySolid::new(Ball::new([15.0; 3], 9.0)?);
+        build(&solid, &frame(), Rule::Certified, &CONTROL)
+    });
+    operation!("build callback", [], {
+        let slab = Callback::new(|min, max| match (min[2], max[2]) {
+            (low, high) if high <= 3.3 || low >= 9.1 => Ok(Verdict::Empty),
+            (low, high) if low >= 3.3 && high <= 9.1 => Ok(Verdict::Full),
+            _ => Ok(Verdict::Partial(())),
+        });
+        build(&slab, &frame(), Rule::Certified, &CONTROL)
+    });
+    operation!("build mesh", [closed], {
+        let solid = MeshSolid::new(closed.clone(), &frame(), FillRule::NonZero)?;
+        build(&solid, &frame(), Rule::Certified, &CONTROL)
+    });
+    operation!("build mesh deep", [closed], {
+        let frame = frame().with_depth(7)?;
+        build(&MeshSolid::new(closed.clone(), &frame, FillRule::EvenOdd)?, &frame, Rule::Sampled, &CONTROL)
+    });
+    operation!("build stored", [a], build(&Stored::new(a.view()), &frame(), Rule::Inner, &CONTROL));
+    operation!("mesh of facets", [facets], TriangleMesh::from_facets(&*facets));
+    operation!("mesh report", [closed], closed.translated([1.0; 3])?.report());
+    operation!("sew", [cracked], cracked.transformed(|corner| corner)?.sewn());
+    operation!("read STL", [stl], file::read_stl(&stl));
+    operation!("write STL", [closed], file::write_stl(&closed));
+    operation!("union", [a, b], union(a.view(), b.view(), &CONTROL));
+    operation!("intersection", [a, b], intersection(a.view(), b.view(), &CONTROL));
+    operation!("difference", [coded, binary], difference(coded.view(), binary.view(), &CONTROL));
+    operation!("xor", [binary, b], xor(b.view(), binary.view(), &CONTROL));
+    operation!("complement", [coded], complement(coded.view(), &CONTROL));
+    operation!("union of three", [a, b, binary], {
+        union_of(&[*a.view(), *b.view(), *binary.view()], &CONTROL)
+    });
+    operation!("resolve", [a], resolve(a.view(), Rule::Outer, &CONTROL));
+    operation!("compact", [a], compact(a.view()));
+    operation!("compact again", [coded], compact(coded.view()));
+    operation!("check", [coded], coded.view().check());
+    operation!("statistics", [a], complement(a.view(), &CONTROL).map(|tree| tree.statistics()));
+    operation!("to bytes", [b], file::to_bytes(&b.with_metadata(facts())));
+    operation!("to bytes again", [coded], file::to_bytes(&coded));
+    operation!("write", [binary], file::write_to(&binary, io::sink()));
+    operation!("save", [binary, path], file::save(&binary, &path));
+    operation!("probe bytes", [bytes], file::probe_bytes(&bytes));
+    operation!("from bytes", [bytes], file::from_bytes(&bytes));
+    operation!("probe", [path], file::probe(&path));
+    operation!("open", [path], file::open(&path));
+    // SAFETY: nobody else knows the file, and saving replaces it.
+    operation!("map", [path], unsafe { file::map(&path) });
+    // SAFETY: as before.
+    operation!("map verified", [path], unsafe { file::map_verified(&path) });
+    operations
+}
+
+/// Bytes of the largest request that may end the process.
+const SMALL: u64 = 2048;
+
+/// What the children are told: which operation, from which request on, how large a request must be to count,
+/// and whether all behind it fail too.
+const TASK: &str = "LEAFLESS_TEST_FAILING";
+
+fn names(directory: &Path) -> Vec<String> {
+    let entries = std::fs::read_dir(directory).unwrap();
+    let mut names: Vec<_> = entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+    names.sort();
+    names
+}
+
+/// The file that is there before anything is tried.
+fn old_file() -> Vec<u8> {
+    file::to_bytes(&compact(ball(14.0, Rule::Certified).view()).unwrap().with_metadata(facts())).unwrap()
+}
+
+/// What the other tests start in a directory of its own; nothing by itself.
+#[test]
+fn child() {
+    let Ok(task) = std::env::var(TASK) else { return };
+    let [name, first, spared, for_good] = task.split(',').collect::<Vec<_>>()[..] else { panic!("{task}") };
+    let (first, for_good): (u64, bool) = (first.parse().unwrap(), for_good.parse().unwrap());
+    let spared = spared.parse().unwrap();
+    let directory = std::env::current_dir().unwrap();
+    let path = directory.join("tree.lfl");
+    let old = old_file();
+    std::fs::write(&path, &old).unwrap();
+    let operations = operations(&directory);
+    let (_, operation) = operations.iter().find(|(known, _)| *known == name).unwrap();
+    let mut out = 0;
+    for n in first.. {
+        eprintln!("request {n}");
+        let (result, refused) = refusing(n, spared, for_good, operation);
+        let found = std::fs::read(&path).unwrap();
+        assert_eq!(names(&directory), ["tree.lfl"]);
+        match result {
+            Ok(()) if name == "save" => {
+                assert!(found != old);
+                std::fs::write(&path, &old).unwrap();
+            }
+            Ok(()) => assert!(found == old),
+            Err(Error::OutOfMemory) => {
+                assert!(refused > 0 && found == old);
+                out += 1;
+            }
+            Err(other) => panic!("{other}"),
+        }
+        if refused == 0 {
+            eprintln!("survived {out} of {n}");
+            return;
+        }
+    }
+}
+
+/// Runs an operation until no request of more than `spared` bytes is left that could be refused. Returns how
+/// many came back as an error, and how many ended the process. If these are many, requests are left out.
+fn try_all(name: &str, spared: u64, for_good: bool) -> (u64, u64) {
+    let directory = tempfile::tempdir().unwrap();
+    let (mut first, mut errors) = (1, 0);
+    let mut fatal = 0;
+    loop {
+        let mut command = Command::new(std::env::current_exe().unwrap());
+        command.args(["--exact", "child", "--nocapture"]).current_dir(directory.path());
+        // What a process says before it ends needs memory for a backtrace.
+        command.env("RUST_BACKTRACE", "0");
+        let output = command.env(TASK, format!("{name},{first},{spared},{for_good}")).output().unwrap();
+        let text = String::from_utf8_lossy(&output.stderr);
+        let number = |line: Option<&str>, prefix: &str| -> Option<u64> {
+            line?.strip_prefix(prefix)?.split(' ').next()?.parse().ok()
+        };
+        if output.status.success() {
+            let survived = number(text.lines().rfind(|line| line.starts_with("survived ")), "survived ");
+            return (errors + survived.unwrap_or_else(|| panic!("{name}: {text}")), fatal);
+        }
+        // The first complaint counts; where all requests are refused it may be followed by others.
+        let request = text.lines().rfind(|line| line.starts_with("request "));
+        let refused = text.lines().find(|line| line.starts_with("memory allocation of "));
+        let (Some(n), Some(size)) = (number(request, "request "), number(refused, "memory allocation of "))
+        else {
+            panic!("{name}: {text}")
+        };
+        assert!(size <= SMALL, "{name}: request {n} is one of {size} bytes and cannot be refused");
+        errors += n - first;
+        fatal += 1;
+        first = if fatal < 12 { n + 1 } else { n + 1 + n / 2 };
+        // What a process leaves behind that was ended.
+        for name in names(directory.path()) {
+            assert!(name == "tree.lfl" || name.starts_with(".leafless-"));
+            std::fs::remove_file(directory.path().join(name)).unwrap();
+        }
+    }
+}
+
+/// Runs all operations; tells how many requests came back as an error, and how many ended a process.
+fn try_every_operation(spared: u64) -> (u64, u64) {
+    let directory = tempfile::tempdir().unwrap();
+    std::fs::write(directory.path().join("tree.lfl"), old_file()).unwrap();
+    let mut total = (0, 0);
+    for (name, _) in operations(directory.path()) {
+        for for_good in [false, true] {
+            let (errors, fatal) = try_all(name, spared, for_good);
+            println!("{name}: {errors} errors, {fatal} fatal");
+            total = (total.0 + errors, total.1 + fatal);
+        }
+    }
+    total
+}
+
+#[test]
+fn no_request_of_more_than_two_kibibytes_is_fatal() {
+    let (errors, fatal) = try_every_operation(SMALL);
+    assert!(errors > 200 && fatal == 0, "{errors} errors, {fatal} fatal");
+}
+
+#[test]
+fn small_requests_that_are_fatal_are_small() {
+    let (errors, _) = try_every_operation(0);
+    assert!(errors > 500, "{errors} errors");
+}
+
+// ---- no more memory than an input is worth ---------------------------------------------------------------
+
+/// Bytes that reading, and making a tree, may need whatever the input.
+const READING: usize = 4 << 10;
+const MAKING: usize = 128 << 10;
+
+/// Notes in `worst` how many times its input `work` held beyond what is `fixed`.
+fn weigh<R>(worst: &mut f64, fixed: usize, input: usize, work: impl FnOnce() -> R) {
+    let (_, held) = most_held(work);
+    *worst = worst.max(held.saturating_sub(fixed) as f64 / input as f64);
+}
+
+/// What `file` and `OctreeRef` promise for bytes that nobody has checked.
+#[test]
+fn memory_is_a_small_multiple_of_the_input() {
+    let mut inputs = bodies::seeds::files();
+    let (mut random, small) = (Random(11), inputs.len());
+    let facts = |count: usize| {
+        let mut metadata = Metadata::new();
+        (0..count).for_each(|i| metadata.insert(format!("{i:x}"), ""));
+        Octree::uniform(frame(), leafless::Tag::Full, leafless::Tag::Full).unwrap().with_metadata(metadata)
+    };
+    let tree = |rule| compact(ball(14.0, rule).view()).unwrap();
+    let large = [facts(60_000), tree(Rule::Certified), tree(Rule::Outer), dictionary()];
+    inputs.extend(large.map(|tree| file::to_bytes(&tree).unwrap()));
+    let mut worst = [0.0; 6];
+    for round in 0..4000 {
+        let base = if round < inputs.len() { round } else { random.below(small) };
+        let mut data = inputs[base].clone();
+        if round >= inputs.len() {
+            let (size, max) = (data.len(), data.len() + 4096);
+            data.resize(max, 0);
+            let size = bodies::mutate_file(&mut data, size, max, round as u32, &mut |_, size, _| size);
+            data.truncate(size);
+        }
+        let aligned = Aligned::new(&data);
+        let bytes = aligned.bytes();
+        let length = bytes.len();
+        weigh(&mut worst[0], READING, length, || file::probe_bytes(bytes));
+        let (view, held) = most_held(|| file::view(bytes));
+        assert_eq!(held, 0, "a view allocates nothing");
+        weigh(&mut worst[1], READING, length, || file::verify(bytes));
+        weigh(&mut worst[2], READING, length, || file::from_bytes(bytes));
+        let Ok(tree) = view else { continue };
+        let (_, held) = most_held(|| bodies::walk(leafless::Cursor::new(&tree)).steps);
+        assert!(held < READING);
+        weigh(&mut worst[3], MAKING, length, || complement(&tree, &CONTROL));
+        weigh(&mut worst[4], MAKING, 2 * length, || union(&tree, &tree, &CONTROL));
+        weigh(&mut worst[5], MAKING, length, || resolve(&tree, Rule::Outer, &CONTROL));
+    }
+    println!("{worst:.2?}");
+    for (worst, stated) in worst.into_iter().zip([2.0, 6.0, 6.0, 32.0, 32.0, 32.0]) {
+        assert!(worst <= stated, "{worst} times the input, not {stated}");
+    }
+}
+
+/// A tree of many bricks of few kinds: nothing is shorter in a file, and nothing grows more when it is copied.
+fn dictionary() -> Octree {
+    let frame = frame().with_depth(8).unwrap();
+    let cuboid = AxisBox::new([3.3; 3], [29.2; 3]).unwrap();
+    compact(build(&cuboid, &frame, Rule::Certified, &CONTROL).unwrap().view()).unwrap()
+}
+
+// ---- writes that fail ------------------------------------------------------------------------------------
+
+/// Takes `left` calls, each of at most `most` bytes, every second one interrupted; then fails.
+struct Unreliable {
+    left: usize,
+    most: usize,
+    interrupted: bool,
+    taken: Vec<u8>,
+    failure: fn() -> io::Result<usize>,
+}
+
+impl Write for Unreliable {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.interrupted = !self.interrupted;
+        if self.interrupted {
+            return Err(io::ErrorKind::Interrupted.into());
+        }
+        if self.left == 0 {
+            return (self.failure)();
+        }
+        self.left -= 1;
+        let count = bytes.len().min(self.most);
+        self.taken.extend_from_slice(&bytes[..count]);
+        Ok(count)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        if self.left == 0 { (self.failure)().map(drop) } else { Ok(()) }
+    }
+}
+
+#[test]
+fn each_write_may_fail_or_be_short_or_interrupted() {
+    let tree = ball(15.0, Rule::Certified);
+    let bytes = file::to_bytes(&tree).unwrap();
+    type Failure = (fn() -> io::Result<usize>, io::ErrorKind);
+    let failures: [Failure; 3] = [
+        (|| Err(io::ErrorKind::StorageFull.into()), io::ErrorKind::StorageFull),
+        (|| Err(io::ErrorKind::BrokenPipe.into()), io::ErrorKind::BrokenPipe),
+        (|| Ok(0), io::ErrorKind::WriteZero),
+    ];
+    for (failure, kind) in failures {
+        for most in [1, 7, 1000, usize::MAX] {
+            for left in (0..40).chain([bytes.len() / most.min(bytes.len()) + 60, usize::MAX]) {
+                let out = Unreliable { left, most, interrupted: false, taken: vec![], failure };
+                let mut out = out;
+                match file::write_to(&tree, &mut out) {
+                    Ok(()) => assert_eq!(out.taken, bytes),
+                    Err(Error::Io(error)) => {
+                        assert_eq!((error.kind(), out.left), (kind, 0));
+                        assert!(bytes.starts_with(&out.taken));
+                    }
+                    Err(other) => panic!("{other}"),
+                }
+                assert!(left != usize::MAX || out.taken == bytes);
+            }
+        }
+    }
+    // Every piece may be the last one that is taken, and flushing may fail, too.
+    let failing = |left| {
+        let failure: fn() -> io::Result<usize> = || Err(io::ErrorKind::StorageFull.into());
+        let mut out = Unreliable { left, most: usize::MAX, interrupted: false, taken: vec![], failure };
+        (file::write_to(&tree, &mut out).is_err(), out.taken.len())
+    };
+    let pieces = (0..).find(|&left| failing(left).1 == bytes.len()).unwrap();
+    assert!(pieces > 3 && failing(pieces).0 && !failing(pieces + 1).0);
+}
+
+/// A file-size limit by which the system ends the process: nobody can clean up then, but the old file stays.
+#[test]
+fn a_process_that_is_ended_while_it_saves_leaves_the_old_file() {
+    use std::os::unix::process::ExitStatusExt;
+    let directory = tempfile::tempdir().unwrap();
+    let mut shell = Command::new("sh");
+    shell.args(["-c", "ulimit -c 0; ulimit -f 4; exec \"$0\" \"$@\""]).arg(std::env::current_exe().unwrap());
+    shell.args(["--exact", "limited_child", "--nocapture"]).current_dir(directory.path());
+    let path = directory.path().join("tree.lfl");
+    std::fs::write(&path, old_file()).unwrap();
+    let status = shell.env(TASK, "limited").output().unwrap().status;
+    assert!(status.signal().is_some(), "{status}");
+    assert_eq!(std::fs::read(&path).unwrap(), old_file());
+    for name in names(directory.path()) {
+        assert!(name == "tree.lfl" || name.starts_with(".leafless-"), "{name}");
+    }
+}
+
+/// What that test starts; nothing by itself.
+#[test]
+fn limited_child() {
+    if std::env::var(TASK).is_ok_and(|task| task == "limited") {
+        let tree = dictionary();
+        assert!(file::to_bytes(&tree).unwrap().len() > 4096);
+        let _ = file::save(&tree, "tree.lfl");
+        unreachable!("the limit is smaller than the file");
+    }
+}
