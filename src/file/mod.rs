@@ -25,6 +25,28 @@
 //! # Ok::<(), leafless::Error>(())
 //! ```
 //!
+//! # Files from strangers
+//!
+//! Whatever the bytes, none of this panics, reads beyond them, or goes on for ever:
+//!
+//! * [`open`], [`from_bytes`], [`map_verified`] and [`verify`] accept nothing but a well-formed tree with right
+//!   checksums; everything that follows is then what it would be of a tree that was just built. They need O(n)
+//!   time, and memory for at most six times the length of the file (once for the copy; the rest only for files
+//!   that are all metadata). `open` asks for no more than the length that a regular file has; of a pipe or
+//!   device it takes memory as the bytes arrive.
+//! * [`probe`] needs O(sections), at most 4096 of them, and twice the section table's memory. [`view`] allocates
+//!   nothing; [`map`] only for the metadata, which are at most 1 MiB, six times their length.
+//! * After [`view`] or [`map`] nothing has looked at the tree itself. Point queries read at most ten elements
+//!   and allocate nothing. A box query, a walk with a [`Cursor`](crate::Cursor) and a Boolean meet every element
+//!   at most once; a tree is built from a stored one only once all of its links are checked. What is damaged
+//!   reads as PARTIAL or makes an operation return [`Error::Damaged`](crate::Error::Damaged). The result of a
+//!   Boolean never has more elements than its operands together, and the work takes at most 32 times their
+//!   memory (their bricks may be 16-bit indices) and 128 KiB a thread. Statistics are the level table's word.
+//! * Answers about damaged bytes are only this: safe. A changed tag with a right checksum is another tree, and
+//!   checksums are no signatures: who may have made a file must be known by other means.
+//!
+//! The files in `fuzz/` and the tests `hostile` and `failing` of this crate try to show the contrary.
+//!
 //! # The format
 //!
 //! Version 0.0. **Until major version 1 the format may change from release to release.**
