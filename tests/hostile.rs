@@ -337,10 +337,31 @@ fn changed_files_get_past_the_checks() {
 }
 
 #[test]
-#[ignore = "takes minutes"]
+#[ignore = "a hundred thousand damaged and as many changed files"]
 fn hundred_thousand() {
-    damage_files(50_000, 2);
-    println!("{:?}", change_files(50_000, 8));
+    damage_files(100_000, 2);
+    println!("{:?}", change_files(100_000, 8));
+}
+
+/// Bytes that live as long as the program are read where they lie, and their metadata, too.
+#[test]
+fn bytes_that_live_for_ever() {
+    let files = seeds::files();
+    let mut random = Random(9);
+    for _ in 0..400 {
+        let data = mutated(&files[random.below(files.len())], &mut random);
+        let words: &'static [u64] = Aligned::new(&data).leak();
+        let bytes = &bytemuck::cast_slice(words)[..data.len()];
+        match (file::view(bytes), file::from_static(bytes)) {
+            (Ok(view), Ok(tree)) => {
+                assert_eq!(tree.view().brick_count(), view.brick_count());
+                let _ = (tree.statistics(), file::to_bytes(&tree));
+            }
+            (Ok(_), Err(refused)) => assert!(matches!(refused, Error::Format(FormatError::Metadata))),
+            (Err(refused), Err(again)) => assert_eq!(refused.to_string(), again.to_string()),
+            (Err(refused), Ok(_)) => panic!("{refused}"),
+        }
+    }
 }
 
 #[test]

@@ -56,6 +56,11 @@ impl Aligned {
         &bytemuck::cast_slice::<u64, u8>(&self.0)[..self.1]
     }
 
+    /// The words that the bytes lie in, for ever.
+    pub fn leak(self) -> &'static [u64] {
+        self.0.leak()
+    }
+
     pub fn bytes_mut(&mut self) -> &mut [u8] {
         &mut bytemuck::cast_slice_mut::<u64, u8>(&mut self.0)[..self.1]
     }
