@@ -32,7 +32,7 @@ int main(int argc, char **argv) {
     leafless_octree *ball = check_ball(10, LEAFLESS_RULE_CERTIFIED);
     double *points = (double *)malloc(3 * count * sizeof(double));
     leafless_membership *answers = (leafless_membership *)malloc(count);
-    leafless_membership answer = LEAFLESS_UNDECIDED;
+    leafless_membership answer = LEAFLESS_MEMBERSHIP_UNDECIDED;
     leafless_point_cursor *cursor = NULL;
     double times[3][ROUNDS];
     size_t i, inside[3] = {0, 0, 0};
@@ -50,7 +50,7 @@ int main(int argc, char **argv) {
         inside[0] = inside[1] = inside[2] = 0;
         for (i = 0; i < count; i++) {
             leafless_octree_contains(ball, points + 3 * i, &answer);
-            inside[0] += answer == LEAFLESS_INSIDE;
+            inside[0] += answer == LEAFLESS_MEMBERSHIP_INSIDE;
         }
         times[0][round] = now() - start;
 
@@ -58,7 +58,7 @@ int main(int argc, char **argv) {
         leafless_octree_contains_many(ball, points, count, answers);
         times[1][round] = now() - start;
         for (i = 0; i < count; i++) {
-            inside[1] += answers[i] == LEAFLESS_INSIDE;
+            inside[1] += answers[i] == LEAFLESS_MEMBERSHIP_INSIDE;
         }
 
         start = now();
@@ -67,7 +67,7 @@ int main(int argc, char **argv) {
             const size_t line = i / 1000 * 1000;
             const double point[3] = {((double)(i % 1000) + 0.5) / 500.0 - 1.0, points[3 * line], points[3 * line + 1]};
             leafless_point_cursor_contains(cursor, point, &answer);
-            inside[2] += answer == LEAFLESS_INSIDE;
+            inside[2] += answer == LEAFLESS_MEMBERSHIP_INSIDE;
         }
         times[2][round] = now() - start;
         CHECK(inside[0] == inside[1]);

@@ -185,9 +185,9 @@ int main(void) {
         const double points[3][3] = {{0, 0, 0}, {0.99, 0.99, 0.99}, {2, 2, 2}};
         leafless_membership *answers = (leafless_membership *)guarded(3);
         OK(leafless_octree_contains_many(octree, &points[0][0], 2, answers));
-        CHECK(answers[0] == LEAFLESS_INSIDE && answers[1] == LEAFLESS_OUTSIDE && answers[2] == 0xc3);
+        CHECK(answers[0] == LEAFLESS_MEMBERSHIP_INSIDE && answers[1] == LEAFLESS_MEMBERSHIP_OUTSIDE && answers[2] == 0xc3);
         OK(leafless_octree_contains_many(octree, &points[0][0], 3, answers));
-        CHECK(answers[2] == LEAFLESS_UNDECIDED);
+        CHECK(answers[2] == LEAFLESS_MEMBERSHIP_UNDECIDED);
         intact((unsigned char *)answers, 3);
         release((unsigned char *)answers);
     }

@@ -24,7 +24,7 @@ int32_t watch(void *ctx, double fraction) {
 
 leafless_options watched(Watch &watched_by) {
     leafless_options options;
-    OK(leafless_options_init(&options));
+    OK(leafless_options_init(&options, sizeof options));
     options.threads = 1;
     options.progress = watch;
     options.progress_ctx = &watched_by;
@@ -126,7 +126,7 @@ void another_thread_cancels(uint32_t threads) {
     leafless_control *control = nullptr;
     OK(leafless_control_new(&control));
     leafless_options options;
-    OK(leafless_options_init(&options));
+    OK(leafless_options_init(&options, sizeof options));
     options.threads = threads;
     options.control = control;
 
@@ -192,9 +192,57 @@ void callback_cancels_the_control() {
     leafless_solid_free(solid);
 }
 
+thread_local int depth = 0;
+
+struct Inner {
+    leafless_solid *ball;
+    std::atomic<long> calls{0};
+    std::atomic<bool> entered_again{false};
+};
+
+// A classifier that builds an octree of its own each time it is asked about a large box.
+int32_t builds(void *ctx, const double *min, const double *max) {
+    Inner &inner = *static_cast<Inner *>(ctx);
+    inner.calls++;
+    if (depth != 0) inner.entered_again = true;
+    depth++;
+    if (max[0] - min[0] > 0.2) {
+        const leafless_frame frame = check_frame(7);
+        leafless_octree *octree = nullptr;
+        OK(leafless_octree_build(inner.ball, &frame, LEAFLESS_RULE_CERTIFIED, nullptr, &octree));
+        leafless_octree_free(octree);
+    }
+    depth--;
+    return max[0] <= 0.3 ? LEAFLESS_TAG_EMPTY : min[0] >= 0.3 ? LEAFLESS_TAG_FULL : LEAFLESS_TAG_PARTIAL;
+}
+
+// While the library runs a function of the host, it does not call that again in the same thread.
+void functions_are_not_entered_again() {
+    const leafless_frame frame = check_frame(7);
+    Inner inner;
+    inner.ball = check_ball_solid();
+    leafless_callbacks callbacks;
+    OK(leafless_callbacks_init(&callbacks, sizeof callbacks));
+    callbacks.classify = builds;
+    callbacks.ctx = &inner;
+    leafless_solid *solid = nullptr;
+    OK(leafless_solid_new_callbacks(&callbacks, &solid));
+    leafless_options options;
+    OK(leafless_options_init(&options, sizeof options));
+    options.threads = 4;
+    leafless_octree *octree = nullptr;
+    OK(leafless_octree_build(solid, &frame, LEAFLESS_RULE_CERTIFIED, &options, &octree));
+    CHECK(inner.calls > 100);
+    CHECK(!inner.entered_again);
+    leafless_octree_free(octree);
+    leafless_solid_free(solid);
+    leafless_solid_free(inner.ball);
+}
+
 }  // namespace
 
 int main() {
+    functions_are_not_entered_again();
     progress_is_monotone();
     callback_cancels();
     another_thread_cancels(1);

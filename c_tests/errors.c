@@ -29,7 +29,7 @@ static void failed(leafless_status expected, const char *name, const char *part)
 
 static leafless_octree *const UNTOUCHED = (leafless_octree *)(uintptr_t)0x5a5a5a58;
 
-static int32_t gives_up(void *ctx, const uint8_t *bytes, size_t count) {
+static int32_t gives_up(void *ctx, const uint8_t *bytes, uint64_t count) {
     (void)ctx;
     (void)bytes;
     (void)count;
@@ -118,7 +118,7 @@ static leafless_status deep_ball(void) {
     leafless_octree *octree = UNTOUCHED;
     leafless_options options;
     leafless_status status;
-    OK(leafless_options_init(&options));
+    OK(leafless_options_init(&options, sizeof options));
     options.threads = 1;
     status = leafless_octree_build(solid, &frame, LEAFLESS_RULE_CERTIFIED, &options, &octree);
     if (status == LEAFLESS_OK) {
@@ -259,7 +259,7 @@ int main(int argc, char **argv) {
         free(altered);
     }
 
-    OK(leafless_options_init(&options));
+    OK(leafless_options_init(&options, sizeof options));
     options.max_nodes = 10;
     FAILS(LEAFLESS_E_LIMIT, leafless_octree_complement(ball, &options, &octree));
     failed(LEAFLESS_E_LIMIT, "LEAFLESS_E_LIMIT", "10 nodes");
@@ -301,13 +301,13 @@ int main(int argc, char **argv) {
         CHECK(refused > 0 && done > 0);
     }
 
-    OK(leafless_options_init(&options));
+    OK(leafless_options_init(&options, sizeof options));
     OK(leafless_control_new(&control));
     OK(leafless_control_cancel(control));
     options.control = control;
     FAILS(LEAFLESS_E_CANCELLED, leafless_octree_union(ball, ball, &options, &octree));
     failed(LEAFLESS_E_CANCELLED, "LEAFLESS_E_CANCELLED", "cancelled");
-    OK(leafless_options_init(&options));
+    OK(leafless_options_init(&options, sizeof options));
     options.progress = stops;
     FAILS(LEAFLESS_E_CANCELLED, leafless_octree_build(solid, &other, LEAFLESS_RULE_CERTIFIED, &options, &octree));
 

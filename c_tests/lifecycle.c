@@ -164,7 +164,7 @@ static void set_algebra(void) {
     leafless_options options;
     size_t i;
     double volume[8];
-    OK(leafless_options_init(&options));
+    OK(leafless_options_init(&options, sizeof options));
     options.threads = 1;
     both[0] = a;
     both[1] = b;
@@ -209,8 +209,8 @@ static void queries(void) {
     int i;
 
     OK(leafless_octree_contains_many(octree, &points[0][0], 4, many));
-    CHECK(many[0] == LEAFLESS_INSIDE && many[1] == LEAFLESS_OUTSIDE);
-    CHECK(many[2] == LEAFLESS_UNDECIDED && many[3] == LEAFLESS_UNDECIDED);
+    CHECK(many[0] == LEAFLESS_MEMBERSHIP_INSIDE && many[1] == LEAFLESS_MEMBERSHIP_OUTSIDE);
+    CHECK(many[2] == LEAFLESS_MEMBERSHIP_UNDECIDED && many[3] == LEAFLESS_MEMBERSHIP_UNDECIDED);
     OK(leafless_octree_contains_many(octree, NULL, 0, NULL));
     OK(leafless_point_cursor_new(octree, &near));
     for (i = 0; i < 4; i++) {
@@ -262,7 +262,7 @@ static void queries(void) {
 
 static void octrees(void) {
     leafless_octree *ball = check_ball(6, LEAFLESS_RULE_CERTIFIED), *inner = NULL, *outer = NULL, *compact = NULL;
-    leafless_octree *named = NULL, *full = NULL, *reference = NULL, *more = NULL;
+    leafless_octree *fewer = NULL, *named = NULL, *full = NULL, *reference = NULL, *more = NULL;
     leafless_statistics s, t, levels[7];
     leafless_octree_info info;
     leafless_frame frame = check_frame(6);
@@ -307,6 +307,20 @@ static void octrees(void) {
     OK(leafless_octree_peek_metadata_at(more, 1, &count, &key, &key_length, &value, &value_length));
     text_equals(key, key_length, "units");
     text_equals(value, value_length, "mm");
+
+    OK(leafless_octree_without_metadata(more, "units", 5, &fewer));
+    OK(leafless_octree_peek_metadata_at(fewer, 0, &count, &key, &key_length, &value, &value_length));
+    CHECK(count == 1);
+    text_equals(key, key_length, "name");
+    leafless_octree_free(fewer);
+    OK(leafless_octree_without_metadata(more, "no such fact", 12, &fewer));
+    OK(leafless_octree_peek_metadata_at(fewer, 0, &count, NULL, NULL, NULL, NULL));
+    CHECK(count == 2);
+    leafless_octree_free(fewer);
+    OK(leafless_octree_without_metadata(more, NULL, 0, &fewer));
+    OK(leafless_octree_peek_metadata_at(fewer, 0, &count, NULL, NULL, NULL, NULL));
+    CHECK(count == 0 && check_same(fewer, more));
+    leafless_octree_free(fewer);
 
     OK(leafless_octree_uniform(&frame, LEAFLESS_TAG_FULL, LEAFLESS_TAG_PARTIAL, &full));
     OK(leafless_octree_statistics(full, &t));

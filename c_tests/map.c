@@ -19,7 +19,7 @@ typedef struct sink {
     size_t fails_at;
 } sink;
 
-static int32_t writes(void *ctx, const uint8_t *bytes, size_t count) {
+static int32_t writes(void *ctx, const uint8_t *bytes, uint64_t count) {
     sink *s = (sink *)ctx;
     if (s->calls++ == s->fails_at || s->length + count > s->capacity) {
         return 77;
@@ -43,7 +43,7 @@ static void ask_everything(const leafless_octree *octree) {
     OK(leafless_octree_classify_box(octree, low, high, &region));
     OK(leafless_octree_statistics(octree, &statistics));
     OK(leafless_octree_describe(octree, &info));
-    OK(leafless_options_init(&options));
+    OK(leafless_options_init(&options, sizeof options));
     options.threads = 1;
     if (leafless_octree_complement(octree, &options, &result) == LEAFLESS_OK) {
         leafless_octree_free(result);
@@ -267,6 +267,7 @@ static void removed_and_replaced(void) {
 static void what_cannot_be_saved(void) {
     enum { MIB = 1 << 20 };
     leafless_octree *ball = check_ball(5, LEAFLESS_RULE_CERTIFIED), *half = NULL, *big = NULL, *old = NULL;
+    const size_t rest = MIB - (8 + 4 + MIB / 2) - (8 + 4);
     char *much = (char *)malloc(MIB);
     uint64_t length = 77;
     CHECK(much != NULL);
@@ -274,11 +275,21 @@ static void what_cannot_be_saved(void) {
     FAILS(LEAFLESS_E_ARGUMENT, leafless_octree_with_metadata(ball, "much", 4, much, MIB, &big));
     CHECK(big == NULL);
     OK(leafless_octree_with_metadata(ball, "much", 4, much, MIB / 2, &half));
-    OK(leafless_octree_with_metadata(half, "more", 4, much, MIB / 2, &big));
+    /* What has been taken can be saved, to the last byte; another value takes the place of the old one. */
+    FAILS(LEAFLESS_E_ARGUMENT, leafless_octree_with_metadata(half, "more", 4, much, rest + 1, &big));
+    CHECK(big == NULL);
+    OK(leafless_octree_with_metadata(half, "more", 4, much, rest, &big));
+    OK(leafless_octree_save(big, PATH("big.lfl")));
+    OK(leafless_octree_to_bytes(big, NULL, 0, &length));
+    CHECK(length > MIB);
+    OK(leafless_octree_open(PATH("big.lfl"), &old));
+    CHECK(check_same(old, ball));
+    leafless_octree_free(old);
+    leafless_octree_free(big);
+    old = big = NULL;
+    length = 77;
+    OK(leafless_octree_with_metadata(half, "much", 4, much, MIB - 12, &big));
     OK(leafless_octree_save(ball, PATH("kept.lfl")));
-    FAILS(LEAFLESS_E_ARGUMENT, leafless_octree_save(big, PATH("kept.lfl")));
-    FAILS(LEAFLESS_E_ARGUMENT, leafless_octree_to_bytes(big, NULL, 0, &length));
-    FAILS(LEAFLESS_E_ARGUMENT, leafless_octree_write(big, writes, NULL));
     FAILS(LEAFLESS_E_IO, leafless_octree_save(ball, PATH("kept.lfl/below")));
     FAILS(LEAFLESS_E_IO, leafless_octree_save(ball, PATH(".")));
     CHECK(length == 77);

@@ -51,7 +51,7 @@ static int32_t classify(void *ctx, const double *min, const double *max) {
     return min[0] >= 0.0 ? LEAFLESS_TAG_FULL : max[0] <= 0.0 ? LEAFLESS_TAG_EMPTY : LEAFLESS_TAG_PARTIAL;
 }
 
-static int32_t take(void *ctx, const uint8_t *bytes, size_t count) {
+static int32_t take(void *ctx, const uint8_t *bytes, uint64_t count) {
     (void)ctx;
     (void)bytes;
     (void)count;
@@ -93,7 +93,8 @@ static void null_pointers(void) {
     callbacks.struct_size = sizeof callbacks;
     callbacks.classify = classify;
 
-    NULL_POINTER(leafless_options_init, options, leafless_options_init(NULL));
+    NULL_POINTER(leafless_options_init, options, leafless_options_init(NULL, sizeof(leafless_options)));
+    NULL_POINTER(leafless_callbacks_init, callbacks, leafless_callbacks_init(NULL, sizeof(leafless_callbacks)));
     NULL_POINTER(leafless_control_new, control, leafless_control_new(NULL));
     NULL_POINTER(leafless_control_cancel, control, leafless_control_cancel(NULL));
     NULL_POINTER(leafless_control_reset, control, leafless_control_reset(NULL));
@@ -102,8 +103,8 @@ static void null_pointers(void) {
     MAY_BE_NULL(leafless_control_state, fraction, leafless_control_state(control, &flag, NULL));
 
     NULL_POINTER(leafless_frame_check, frame, leafless_frame_check(NULL));
-    NULL_POINTER(leafless_frame_around, min, leafless_frame_around(NULL, above, 4, (leafless_frame *)out));
-    NULL_POINTER(leafless_frame_around, max, leafless_frame_around(point, NULL, 4, (leafless_frame *)out));
+    NULL_POINTER(leafless_frame_around, min_model, leafless_frame_around(NULL, above, 4, (leafless_frame *)out));
+    NULL_POINTER(leafless_frame_around, max_model, leafless_frame_around(point, NULL, 4, (leafless_frame *)out));
     NULL_POINTER(leafless_frame_around, frame, leafless_frame_around(point, above, 4, NULL));
     NULL_POINTER(leafless_frame_cell_size, frame, leafless_frame_cell_size(NULL, (double *)out));
     NULL_POINTER(leafless_frame_cell_size, cell_size_model, leafless_frame_cell_size(&frame, NULL));
@@ -136,8 +137,8 @@ static void null_pointers(void) {
     MAY_BE_NULL(leafless_mesh_copy, vertices, leafless_mesh_copy(mesh, NULL, 0, &indices[0][0], 12));
     MAY_BE_NULL(leafless_mesh_copy, triangles, leafless_mesh_copy(mesh, &wanted[0][0], 8, NULL, 0));
     NULL_POINTER(leafless_mesh_bounds, mesh, leafless_mesh_bounds(NULL, (double *)out, (double *)out + 3));
-    NULL_POINTER(leafless_mesh_bounds, min, leafless_mesh_bounds(mesh, NULL, (double *)out));
-    NULL_POINTER(leafless_mesh_bounds, max, leafless_mesh_bounds(mesh, (double *)out, NULL));
+    NULL_POINTER(leafless_mesh_bounds, min_model, leafless_mesh_bounds(mesh, NULL, (double *)out));
+    NULL_POINTER(leafless_mesh_bounds, max_model, leafless_mesh_bounds(mesh, (double *)out, NULL));
     NULL_POINTER(leafless_mesh_volume, mesh, leafless_mesh_volume(NULL, (double *)out));
     NULL_POINTER(leafless_mesh_volume, volume_model, leafless_mesh_volume(mesh, NULL));
     NULL_POINTER(leafless_mesh_describe, mesh, leafless_mesh_describe(NULL, (leafless_mesh_report *)out));
@@ -199,6 +200,8 @@ static void null_pointers(void) {
     NULL_POINTER(leafless_octree_with_metadata, octree, leafless_octree_with_metadata(NULL, "a", 1, "b", 1, result));
     NULL_POINTER(leafless_octree_with_metadata, key, leafless_octree_with_metadata(octree, NULL, 1, "b", 1, result));
     NULL_POINTER(leafless_octree_with_metadata, value, leafless_octree_with_metadata(octree, "a", 1, NULL, 1, result));
+    NULL_POINTER(leafless_octree_without_metadata, octree, leafless_octree_without_metadata(NULL, "a", 1, result));
+    NULL_POINTER(leafless_octree_without_metadata, unnamed, leafless_octree_without_metadata(octree, "a", 1, NULL));
     NULL_POINTER(leafless_octree_with_metadata, named, leafless_octree_with_metadata(octree, "a", 1, "b", 1, NULL));
     NULL_POINTER(leafless_octree_peek_metadata, octree,
                  leafless_octree_peek_metadata(NULL, "a", 1, (const char **)out, (size_t *)out + 1));
@@ -322,6 +325,7 @@ static void null_pointers(void) {
     refused(LEAFLESS_E_IO, "leafless_octree_open", "", leafless_octree_open("x", 1, result));
 
     /* Texts of no bytes may be NULL, and so may options; and what there is nothing of. */
+    MAY_BE_NULL(leafless_octree_without_metadata, key, leafless_octree_without_metadata(octree, NULL, 0, result));
     MAY_BE_NULL(leafless_octree_with_metadata, key, leafless_octree_with_metadata(octree, NULL, 0, NULL, 0, result));
     leafless_octree_free(*result);
     MAY_BE_NULL(leafless_octree_peek_metadata, key,
@@ -378,13 +382,14 @@ static void misaligned(void) {
     CHECK(beside != NULL);
     memcpy(beside + 1, bytes, (size_t)length);
 
-    MISALIGNED(leafless_options_init, options, leafless_options_init((leafless_options *)WRONG(out)));
+    MISALIGNED(leafless_options_init, options, leafless_options_init((leafless_options *)WRONG(out), sizeof(leafless_options)));
     MISALIGNED(leafless_control_new, control, leafless_control_new((leafless_control **)WRONG(out)));
     MISALIGNED(leafless_control_cancel, control, leafless_control_cancel((leafless_control *)WRONG(control)));
     MISALIGNED(leafless_control_state, fraction, leafless_control_state(control, (bool *)out, (double *)WRONG(out)));
     MISALIGNED(leafless_frame_check, frame, leafless_frame_check(bad_frame));
-    MISALIGNED(leafless_frame_around, min, leafless_frame_around(numbers, above, 4, (leafless_frame *)out));
-    MISALIGNED(leafless_frame_around, max, leafless_frame_around(point, numbers, 4, (leafless_frame *)out));
+    MISALIGNED(leafless_callbacks_init, callbacks, leafless_callbacks_init((leafless_callbacks *)WRONG(out), sizeof(leafless_callbacks)));
+    MISALIGNED(leafless_frame_around, min_model, leafless_frame_around(numbers, above, 4, (leafless_frame *)out));
+    MISALIGNED(leafless_frame_around, max_model, leafless_frame_around(point, numbers, 4, (leafless_frame *)out));
     MISALIGNED(leafless_frame_around, frame, leafless_frame_around(point, above, 4, (leafless_frame *)WRONG(out)));
     MISALIGNED(leafless_frame_cell_size, cell_size_model, leafless_frame_cell_size(&frame, (double *)WRONG(out)));
     MISALIGNED(leafless_frame_cell_of, cell, leafless_frame_cell_of(&frame, point, (uint32_t *)WRONG(out)));
@@ -396,7 +401,7 @@ static void misaligned(void) {
                leafless_mesh_counts(mesh, (uint64_t *)WRONG(out), (uint64_t *)out));
     MISALIGNED(leafless_mesh_copy, vertices, leafless_mesh_copy(mesh, (double *)WRONG(out), 8, NULL, 0));
     MISALIGNED(leafless_mesh_copy, triangles, leafless_mesh_copy(mesh, NULL, 0, (uint32_t *)WRONG(out), 12));
-    MISALIGNED(leafless_mesh_bounds, max, leafless_mesh_bounds(mesh, (double *)out, (double *)WRONG(out)));
+    MISALIGNED(leafless_mesh_bounds, max_model, leafless_mesh_bounds(mesh, (double *)out, (double *)WRONG(out)));
     MISALIGNED(leafless_mesh_describe, report, leafless_mesh_describe(mesh, (leafless_mesh_report *)WRONG(out)));
     MISALIGNED(leafless_mesh_transformed, matrix, leafless_mesh_transformed(mesh, numbers, mesh_result));
     MISALIGNED(leafless_mesh_translated, mesh,
@@ -612,7 +617,7 @@ int main(void) {
     OK(leafless_control_new(&control));
     OK(leafless_cursor_new(octree, &cursor));
     OK(leafless_point_cursor_new(octree, &point_cursor));
-    OK(leafless_options_init(&options));
+    OK(leafless_options_init(&options, sizeof options));
     null_pointers();
     misaligned();
     numbers();

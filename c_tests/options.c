@@ -43,6 +43,7 @@ static int32_t count(void *ctx, double fraction) {
 
 int main(void) {
     leafless_options options;
+    leafless_callbacks callbacks;
     newer_options newer;
     size_t size, i;
 
@@ -56,10 +57,27 @@ int main(void) {
     options.struct_size = sizeof options;
     accepted(&options);
     memset(&options, 0xee, sizeof options);
-    OK(leafless_options_init(&options));
+    OK(leafless_options_init(&options, sizeof options));
     CHECK(options.struct_size == sizeof options && options.threads == 0 && options.max_nodes == 0);
     CHECK(options.max_bytes == 0 && options.progress == NULL && options.progress_ctx == NULL && options.control == NULL);
     accepted(&options);
+    /* An older program's struct is not written beyond its end. */
+    for (size = 8; size < sizeof options; size += 8) {
+        memset(&options, 0xee, sizeof options);
+        OK(leafless_options_init(&options, size));
+        CHECK(options.struct_size == size);
+        for (i = size; i < sizeof options; i++) {
+            CHECK(((const unsigned char *)&options)[i] == 0xee);
+        }
+    }
+    for (size = 0; size < 8; size++) {
+        FAILS(LEAFLESS_E_ARGUMENT, leafless_options_init(&options, size));
+    }
+    FAILS(LEAFLESS_E_ARGUMENT, leafless_options_init(&options, SIZE_MAX));
+    FAILS(LEAFLESS_E_ARGUMENT, leafless_callbacks_init(&callbacks, sizeof callbacks + 1));
+    OK(leafless_callbacks_init(&callbacks, sizeof callbacks));
+    CHECK(callbacks.struct_size == sizeof callbacks && callbacks.classify == NULL && callbacks.ctx == NULL);
+    OK(leafless_options_init(&options, sizeof options));
     options.threads = 3;
     options.max_nodes = UINT64_MAX;
     options.max_bytes = UINT64_MAX;
@@ -72,7 +90,7 @@ int main(void) {
         memset(&options, (int)i, sizeof options);
         refused(&options, "struct_size");
     }
-    OK(leafless_options_init(&options));
+    OK(leafless_options_init(&options, sizeof options));
     for (size = 0; size < 4; size++) {
         options.struct_size = (uint32_t)size;
         refused(&options, "struct_size");
@@ -85,7 +103,7 @@ int main(void) {
     /* Older, shorter ones: what they do not have is not read, and is as if zero. */
     {
         int calls = 0;
-        OK(leafless_options_init(&options));
+        OK(leafless_options_init(&options, sizeof options));
         options.progress = count;
         options.progress_ctx = &calls;
         options.max_nodes = 1;

@@ -63,7 +63,7 @@ void reads(const leafless_octree *octree) {
                 const double *const p = &numbers[3 * i];
                 const double low[3] = {p[0] - 0.1, p[1] - 0.1, p[2] - 0.1};
                 OK(leafless_octree_classify_box(octree, low, p, &region));
-                CHECK(region != LEAFLESS_REGION_INSIDE || expected[i] != LEAFLESS_OUTSIDE);
+                CHECK(region != LEAFLESS_REGION_INSIDE || expected[i] != LEAFLESS_MEMBERSHIP_OUTSIDE);
             }
         }
         leafless_point_cursor_free(near);
@@ -109,7 +109,7 @@ void reads(const leafless_octree *octree) {
 
         // Booleans of it, each with threads of its own.
         leafless_options options;
-        OK(leafless_options_init(&options));
+        OK(leafless_options_init(&options, sizeof options));
         options.threads = 1 + number % 2;
         leafless_octree *complement = nullptr, *nothing = nullptr;
         OK(leafless_octree_complement(octree, &options, &complement));
@@ -172,7 +172,7 @@ void solids() {
     in_all_threads([&](int number) {
         const leafless_frame frame = check_frame(4);
         leafless_options options;
-        OK(leafless_options_init(&options));
+        OK(leafless_options_init(&options, sizeof options));
         options.threads = 1 + number % 3;
         OK(leafless_octree_build(own[number], &frame, LEAFLESS_RULE_CERTIFIED, &options, &built[number]));
         leafless_mesh_report report;

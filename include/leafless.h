@@ -10,16 +10,25 @@
  * - Results are written to the last parameters, and only on success: after a failure they are as they were, but for
  *   the contents of buffers. No parameter is both read and written.
  * - General errors, which the functions do not list again: LEAFLESS_E_NULL if a pointer is NULL that the function
- *   does not say may be; LEAFLESS_E_ARGUMENT if one is misaligned for what it points to, or a path is empty;
- *   LEAFLESS_E_PANIC if the library has a defect, which never ends the host program and leaves all objects usable.
+ *   does not say may be; LEAFLESS_E_ARGUMENT if one is misaligned for what it points to, if a count is more than
+ *   memory can hold, a number none of its enum, a path empty, or a struct_size not sensible or with fields set that
+ *   this library does not know; LEAFLESS_E_PANIC if the library has a defect. That never ends the host program and
+ *   leaves all objects usable; Rust's message about it also goes to stderr.
+ * - Memory whose size depends on an input or a result can be refused, and is then LEAFLESS_E_NO_MEMORY. What remains
+ *   is below 4 KiB a piece; if even that cannot be had, the process ends.
  * - Objects are opaque handles. What _new, _open and the like return is a reference; _ref gives one more; _free
  *   gives one back, and takes NULL. References may be given back in any order: what an object needs of another it
  *   shares. Pointers from _peek functions belong to the object.
  * - Threads: calls whose handle parameters are pointers to const may run at once, on the same object too. Other
- *   calls need the object for themselves. Different objects never interfere. Nothing global is changed.
+ *   calls need the object for themselves; but _free needs only its own reference, others may be in use meanwhile.
+ *   Different objects never interfere. Nothing global is changed. No thread of the library outlives the call that
+ *   started it.
  * - Structs with a field struct_size begin with sizeof of themselves, and all their other fields may be zero.
  *   Programs that were compiled with an older, shorter struct go on working.
- * - Numbers for which there is an enum come in as uint32_t and are checked.
+ *   Other structs are fixed for one LEAFLESS_ABI.
+ * - Numbers for which there is an enum come in as uint32_t and are checked. As types of your own variables write
+ *   leafless_tag, not enum leafless_tag: in C only the former has the size that the library writes.
+ * - Lengths of texts and structs are size_t, all other lengths and counts uint64_t.
  * - Texts are UTF-8 of a given length in bytes, and may be NULL if it is 0; paths are, too, on every platform, but
  *   never empty.
  * - Coordinates whose names end in _model are in model units, those in _cells in finest cells. "3 numbers" are x, y
@@ -47,8 +56,11 @@
 #define LEAFLESS_VERSION \
     (LEAFLESS_VERSION_MAJOR * 1000000 + LEAFLESS_VERSION_MINOR * 1000 + LEAFLESS_VERSION_PATCH)
 
-/** Whether the library that is linked fits this header: the same binary interface, and not older. */
-#define LEAFLESS_COMPATIBLE() (leafless_abi() == LEAFLESS_ABI && leafless_version() >= LEAFLESS_VERSION)
+/** Whether the library that is linked fits this header: the same binary interface, and not older. Before 0.1, where
+ *  nothing is promised, the same version. */
+#define LEAFLESS_COMPATIBLE() \
+    (leafless_abi() == LEAFLESS_ABI && \
+     (LEAFLESS_ABI > 0 ? leafless_version() >= LEAFLESS_VERSION : leafless_version() == LEAFLESS_VERSION))
 
 /**
  * Major version of the library that this header belongs to.
@@ -70,6 +82,16 @@
  * which means that nothing is promised yet.
  */
 #define LEAFLESS_ABI 0
+
+/**
+ * Major version of the file format that this library writes, and the only one that it reads.
+ */
+#define LEAFLESS_FORMAT_MAJOR 0
+
+/**
+ * Minor version of the file format that this library writes; it reads newer ones, too.
+ */
+#define LEAFLESS_FORMAT_MINOR 0
 
 /**
  * What a function returns. Codes are never renumbered and never used for something else; new ones may be added
@@ -137,11 +159,11 @@ enum leafless_status
      */
     LEAFLESS_E_NO_MEMORY = 13,
     /**
-     * The host asked to stop.
+     * The host asked to stop, through a control or from a function that hears of progress.
      */
     LEAFLESS_E_CANCELLED = 14,
     /**
-     * A function of the host ended the work by what it returned.
+     * A function of the host, other than one that hears of progress, ended the work by what it returned.
      */
     LEAFLESS_E_CALLBACK = 15,
     /**
@@ -149,7 +171,7 @@ enum leafless_status
      */
     LEAFLESS_E_IO = 16,
     /**
-     * A defect of the library. What it worked on is as before; the message says where to report it.
+     * A defect of the library, please report it with the message. What the function worked on is as before.
      */
     LEAFLESS_E_PANIC = 17,
 };
@@ -197,15 +219,15 @@ enum leafless_membership
     /**
      * Proven outside.
      */
-    LEAFLESS_OUTSIDE = 0,
+    LEAFLESS_MEMBERSHIP_OUTSIDE = 0,
     /**
      * Proven inside.
      */
-    LEAFLESS_INSIDE = 1,
+    LEAFLESS_MEMBERSHIP_INSIDE = 1,
     /**
      * In a PARTIAL cell, outside of the universe, or not a number.
      */
-    LEAFLESS_UNDECIDED = 2,
+    LEAFLESS_MEMBERSHIP_UNDECIDED = 2,
 };
 #ifndef __cplusplus
 typedef uint8_t leafless_membership;
@@ -365,9 +387,12 @@ typedef struct leafless_point_cursor leafless_point_cursor;
 typedef struct leafless_solid leafless_solid;
 
 /**
- * Hears how far an operation is, with the fraction done (0 to 1); returns 0 to go on, anything else to cancel.
- * It is called from any of the operation's threads, also from two at once; with `threads` = 1 from the calling
- * thread only. It must return: no exception, no longjmp.
+ * Hears how far an operation is, with the fraction done (0 to 1); returns 0 to go on. Anything else ends the
+ * operation with LEAFLESS_E_CANCELLED, unless it is already done, and cancels the `control` of its options, if there
+ * is one, until leafless_control_reset.
+ *
+ * It is called from any of the operation's threads, also from two at once and then not in ascending order; with
+ * `threads` = 1 from the calling thread only. It must return: no exception, no longjmp. It may call this library.
  */
 typedef int32_t (*leafless_progress_fn)(void *ctx, double fraction);
 
@@ -381,7 +406,8 @@ typedef struct {
      */
     uint32_t struct_size;
     /**
-     * Threads to use; 0 means as many as the machine has processors.
+     * Threads to use; 0 means as many as the machine has processors, numbers beyond 1024 mean 1024. Inside of a
+     * function that the library calls it is always 1.
      */
     uint32_t threads;
     /**
@@ -568,8 +594,9 @@ typedef struct {
  * Anything else ends the operation with LEAFLESS_E_CALLBACK and the number in the message; so use a negative
  * number for the host's own errors.
  *
- * It is called from several threads at once, unless the operation's options say `threads` = 1, and must give the
- * same answer to the same box. It must return: no exception, no longjmp. It may call this library.
+ * It is called from several threads at once, which may all be the library's own, unless the operation's options say
+ * `threads` = 1; and it must give the same answer to the same box. It must return: no exception, no longjmp. It may
+ * call this library.
  */
 typedef int32_t (*leafless_classify_fn)(void *ctx, const double *min, const double *max);
 
@@ -580,7 +607,8 @@ typedef int32_t (*leafless_classify_fn)(void *ctx, const double *min, const doub
 typedef int32_t (*leafless_contains_fn)(void *ctx, const double *point);
 
 /**
- * Called once, when nothing uses `ctx` any more, in the thread that gave back the last reference.
+ * Called once, when nothing uses `ctx` any more, in the thread that gave back the last reference. It must return: no
+ * exception, no longjmp. It may call this library.
  */
 typedef void (*leafless_destroy_fn)(void *ctx);
 
@@ -715,9 +743,10 @@ typedef struct {
 
 /**
  * Takes bytes of a file in order: all `count` of them, and returns 0; anything else ends the writing with
- * LEAFLESS_E_CALLBACK. It is called in the calling thread. It must return: no exception, no longjmp.
+ * LEAFLESS_E_CALLBACK. It is called in the calling thread. It must return: no exception, no longjmp. It may call this
+ * library.
  */
-typedef int32_t (*leafless_write_fn)(void *ctx, const uint8_t *bytes, size_t count);
+typedef int32_t (*leafless_write_fn)(void *ctx, const uint8_t *bytes, uint64_t count);
 
 #ifdef __cplusplus
 extern "C" {
@@ -822,15 +851,16 @@ leafless_status leafless_test_panic(void);
 /**
  * Sets options to their defaults.
  *
- * - Buffers: `options`, one struct, need not be initialised.
+ * - Buffers: `options`, one struct of `struct_size` bytes, which is sizeof(leafless_options); need not be
+ *   initialised.
  * - Result: `*options`.
- * - Errors: only the general ones.
+ * - Errors: LEAFLESS_E_ARGUMENT if `struct_size` cannot be right.
  * - Ownership: nothing changes hands.
  * - Threads: any.
  * - Untrusted input: none.
  * - Since: 0.1
  */
-leafless_status leafless_options_init(leafless_options *options);
+leafless_status leafless_options_init(leafless_options *options, size_t struct_size);
 
 /**
  * Makes a control.
@@ -915,18 +945,18 @@ leafless_status leafless_frame_check(const leafless_frame *frame);
  * The default frame of a shape: the cube of edge L·(1 + 1/32) around its centre, L being its longest extent; the
  * same universe at every depth.
  *
- * - Buffers: `min` and `max`, 3 numbers each (model units); `frame`, one struct.
+ * - Buffers: `min_model` and `max_model`, 3 numbers each; `frame`, one struct.
  * - Result: `*frame`.
- * - Errors: LEAFLESS_E_MESH if the longest extent is 0; LEAFLESS_E_ARGUMENT if a bound is not a finite number in
- *   range, or so far from the origin that doubles cannot resolve the cube.
+ * - Errors: LEAFLESS_E_MESH if the longest extent is 0; LEAFLESS_E_ARGUMENT if min > max on an axis, if `depth` is
+ *   not 1 to 20, or if a bound is not a finite number in range, or so far from the origin that doubles cannot resolve the cube.
  * - Ownership: nothing changes hands.
  * - Threads: any.
  * - Untrusted input: any values.
  * - Since: 0.1
  *
  */
-leafless_status leafless_frame_around(const double min[3],
-                                      const double max[3],
+leafless_status leafless_frame_around(const double min_model[3],
+                                      const double max_model[3],
                                       uint32_t depth,
                                       leafless_frame *frame);
 
@@ -982,11 +1012,13 @@ leafless_status leafless_frame_plane(const leafless_frame *frame,
  * coordinates below 2^-256 count as zero. Seen from outside of the solid the corners turn counter-clockwise.
  *
  * - Buffers: `vertices`, `vertex_count` vertices of 3 numbers (model units), the first numbers of two vertices
- *   `vertex_stride` bytes apart (a multiple of 8, at least 24; 0 means 24); `triangles`, 3 · `triangle_count`
+ *   `vertex_stride` bytes apart (a multiple of 8, at least 24; 0 means 24; what lies between them must not change during the call, either);
+ *   `triangles`, 3 · `triangle_count`
  *   indices of vertices. Each may be NULL if its count is 0.
  * - Result: `*mesh`.
  * - Errors: LEAFLESS_E_MESH if a coordinate is infinite, not a number, or beyond ±2^256, if an index is out of
- *   range, or if there are more than 2^32 - 1 vertices or triangles; LEAFLESS_E_NO_MEMORY.
+ *   range, or if there are more than 2^32 - 1 vertices or triangles; LEAFLESS_E_ARGUMENT if the stride is wrong;
+ *   LEAFLESS_E_NO_MEMORY.
  * - Ownership: the arrays are copied; give `*mesh` back with leafless_mesh_free.
  * - Threads: any.
  * - Untrusted input: any values in the arrays.
@@ -1106,8 +1138,8 @@ leafless_status leafless_mesh_copy(const leafless_mesh *mesh,
 /**
  * The bounding box of a mesh's triangles.
  *
- * - Buffers: `min` and `max`, room for 3 numbers each.
- * - Result: both corners, in model units.
+ * - Buffers: `min_model` and `max_model`, room for 3 numbers each.
+ * - Result: both corners.
  * - Errors: LEAFLESS_E_MESH if the mesh has no triangle.
  * - Ownership: nothing changes hands.
  * - Threads: any.
@@ -1115,7 +1147,7 @@ leafless_status leafless_mesh_copy(const leafless_mesh *mesh,
  * - Since: 0.1
  *
  */
-leafless_status leafless_mesh_bounds(const leafless_mesh *mesh, double min[3], double max[3]);
+leafless_status leafless_mesh_bounds(const leafless_mesh *mesh, double min_model[3], double max_model[3]);
 
 /**
  * The volume that a mesh encloses, by the divergence theorem: overlaps count twice, bodies that are inside out
@@ -1153,7 +1185,7 @@ leafless_status leafless_mesh_describe(const leafless_mesh *mesh,
  * - Buffers: none. `fill` is a leafless_fill.
  * - Result: LEAFLESS_OK if it does.
  * - Errors: LEAFLESS_E_MESH if the mesh is empty, not closed, or (LEAFLESS_FILL_NON_ZERO) not consistently
- *   oriented; LEAFLESS_E_NO_MEMORY.
+ *   oriented; LEAFLESS_E_ARGUMENT if `fill` is no leafless_fill; LEAFLESS_E_NO_MEMORY.
  * - Ownership: nothing changes hands.
  * - Threads: any.
  * - Untrusted input: any mesh.
@@ -1243,7 +1275,7 @@ leafless_status leafless_octree_ref(const leafless_octree *octree, leafless_octr
 
 /**
  * Gives back a reference to an octree. With the last one the octree is gone, and with it the mapping of its file,
- * unless a cursor or a solid still shares it.
+ * unless a cursor, a solid, or an octree with other metadata still shares it.
  *
  * - Buffers: `octree`, a handle or NULL, which does nothing.
  * - Result: none.
@@ -1306,7 +1338,7 @@ leafless_status leafless_octree_levels(const leafless_octree *octree,
  *
  * - Buffers: none.
  * - Result: LEAFLESS_OK if it is.
- * - Errors: LEAFLESS_E_DAMAGED, with the first damage in the message.
+ * - Errors: LEAFLESS_E_DAMAGED, with the first damage in the message; LEAFLESS_E_NO_MEMORY.
  * - Ownership: nothing changes hands.
  * - Threads: any.
  * - Untrusted input: any octree.
@@ -1335,10 +1367,12 @@ leafless_status leafless_octree_equal(const leafless_octree *a,
  *
  * - Buffers: `key` and `value`, `key_length` and `value_length` bytes of UTF-8; `named`, one pointer.
  * - Result: `*named`.
- * - Errors: LEAFLESS_E_UTF8; LEAFLESS_E_ARGUMENT if key and value are longer than 1 MiB.
- * - Ownership: the texts are copied; `octree` stays as it is; give `*named` back with leafless_octree_free.
+ * - Errors: LEAFLESS_E_UTF8; LEAFLESS_E_ARGUMENT if all facts would take more than 1 MiB in a file, 8 bytes and the
+ *   two texts each; LEAFLESS_E_NO_MEMORY.
+ * - Ownership: the texts are copied. `*named` shares the arrays of `octree`, which may be freed: what must outlive
+ *   `octree`, such as bytes that it views, must outlive `*named` too. Give that back with leafless_octree_free.
  * - Threads: any.
- * - Untrusted input: any texts; all of an octree's metadata may take 1 MiB in a file.
+ * - Untrusted input: any texts.
  * - Since: 0.1
  */
 leafless_status leafless_octree_with_metadata(const leafless_octree *octree,
@@ -1347,6 +1381,22 @@ leafless_status leafless_octree_with_metadata(const leafless_octree *octree,
                                               const char *value,
                                               size_t value_length,
                                               leafless_octree **named);
+
+/**
+ * The octree with one fact less in its metadata, or with none; the arrays are shared.
+ *
+ * - Buffers: `key`, `key_length` bytes of UTF-8, or NULL for all facts; `unnamed`, one pointer.
+ * - Result: `*unnamed`; a fact that is not there need not be.
+ * - Errors: LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY.
+ * - Ownership: as leafless_octree_with_metadata.
+ * - Threads: any.
+ * - Untrusted input: any texts.
+ * - Since: 0.1
+ */
+leafless_status leafless_octree_without_metadata(const leafless_octree *octree,
+                                                 const char *key,
+                                                 size_t key_length,
+                                                 leafless_octree **unnamed);
 
 /**
  * The value of a fact in an octree's metadata.
@@ -1442,7 +1492,7 @@ leafless_status leafless_solid_new_halfspace(const double normal[3], double offs
  * - Buffers: `frame`, one struct; `solid`, one pointer. `fill` is a leafless_fill.
  * - Result: `*solid`. Time and memory are linear in the mesh.
  * - Errors: LEAFLESS_E_MESH if the mesh is empty, not closed, or (LEAFLESS_FILL_NON_ZERO) not consistently
- *   oriented; LEAFLESS_E_ARGUMENT as leafless_frame_check; LEAFLESS_E_NO_MEMORY.
+ *   oriented; LEAFLESS_E_ARGUMENT as leafless_frame_check, or if `fill` is no leafless_fill; LEAFLESS_E_NO_MEMORY.
  * - Ownership: the solid shares the mesh, which may be freed; give `*solid` back with leafless_solid_free.
  * - Threads: any.
  * - Untrusted input: any mesh.
@@ -1452,6 +1502,20 @@ leafless_status leafless_solid_new_mesh(const leafless_mesh *mesh,
                                         const leafless_frame *frame,
                                         uint32_t fill,
                                         leafless_solid **solid);
+
+/**
+ * Sets callbacks to their defaults; `classify` must then be set.
+ *
+ * - Buffers: `callbacks`, one struct of `struct_size` bytes, which is sizeof(leafless_callbacks); need not be
+ *   initialised.
+ * - Result: `*callbacks`.
+ * - Errors: LEAFLESS_E_ARGUMENT if `struct_size` cannot be right.
+ * - Ownership: nothing changes hands.
+ * - Threads: any.
+ * - Untrusted input: none.
+ * - Since: 0.1
+ */
+leafless_status leafless_callbacks_init(leafless_callbacks *callbacks, size_t struct_size);
 
 /**
  * The host's own shape.
@@ -1533,7 +1597,7 @@ leafless_status leafless_octree_build(const leafless_solid *solid,
  * The octree with its PARTIAL cells resolved: EMPTY under LEAFLESS_RULE_INNER, FULL under LEAFLESS_RULE_OUTER.
  *
  * - Buffers: `options`, one struct or NULL; `resolved`, one pointer. `rule` is a leafless_rule.
- * - Result: `*resolved`.
+ * - Result: `*resolved`, without metadata.
  * - Errors: LEAFLESS_E_NOT_SAMPLED under LEAFLESS_RULE_SAMPLED if a cell is PARTIAL, because a stored octree knows
  *   no more about it; LEAFLESS_E_DAMAGED; LEAFLESS_E_ARGUMENT; LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED;
  *   LEAFLESS_E_NO_MEMORY.
@@ -1552,7 +1616,7 @@ leafless_status leafless_octree_resolve(const leafless_octree *octree,
  * Everything works on it as on any other.
  *
  * - Buffers: `compacted`, one pointer.
- * - Result: `*compacted`.
+ * - Result: `*compacted`, with the same metadata.
  * - Errors: LEAFLESS_E_DAMAGED if a brick cannot be read; LEAFLESS_E_NO_MEMORY.
  * - Ownership: `octree` stays as it is; give `*compacted` back with leafless_octree_free.
  * - Threads: any.
@@ -1904,7 +1968,8 @@ leafless_status leafless_file_probe(const char *path,
                                     uint64_t capacity);
 
 /**
- * As leafless_file_probe for the first bytes of a file in memory, or all of them.
+ * As leafless_file_probe for the first bytes of a file in memory, or all of them: 128 and 40 for each section. 488
+ * suffice for every file that this library writes, 163 968 for any.
  *
  * - Buffers: `bytes`, `length` bytes, may be NULL if there are none; `probe`, one struct; `sections`, room for
  *   `capacity` structs, or NULL if they are not wanted.
@@ -1958,8 +2023,9 @@ leafless_status leafless_octree_open(const char *path,
  * microseconds for a file of any size. What queries touch is read when they do. Of a file that is damaged
  * elsewhere queries answer undecided or wrong, but stay in bounds and end.
  *
- * While the octree, a cursor or a solid of it lives, nobody may make the file shorter: reading beyond its new end
- * raises SIGBUS, which by default ends the process. Nobody should write to it either: answers may then be wrong.
+ * While the octree lives, or a cursor, a solid or an octree with other metadata that shares it, nobody may make the
+ * file shorter: reading beyond its new end raises SIGBUS, which by default ends the process. Nobody may write to it
+ * either: answers may then be wrong, and nothing more is promised.
  * Removing the file, or replacing it by renaming another over it, as leafless_octree_save does, is harmless.
  *
  * - Buffers: `path`, `path_length` bytes of UTF-8; `octree`, one pointer.
@@ -1976,7 +2042,8 @@ leafless_status leafless_octree_map(const char *path,
                                     leafless_octree **octree);
 
 /**
- * As leafless_octree_map, but verifies all of the file first, in one scan.
+ * As leafless_octree_map, but verifies all of the file first, in one scan. Who writes to the file afterwards undoes
+ * that.
  *
  * - Buffers: `path`, `path_length` bytes of UTF-8; `octree`, one pointer.
  * - Result: `*octree`.
@@ -1986,7 +2053,9 @@ leafless_status leafless_octree_map(const char *path,
  * - Untrusted input: any contents, but only where nobody else can change the file; else leafless_octree_open.
  * - Since: 0.1
  */
-leafless_status leafless_octree_map_verified(const char *path, size_t path_length, leafless_octree **octree);
+leafless_status leafless_octree_map_verified(const char *path,
+                                             size_t path_length,
+                                             leafless_octree **octree);
 
 /**
  * The octree in the bytes of a whole file, copied and verified as by leafless_octree_open.
@@ -2010,8 +2079,9 @@ leafless_status leafless_octree_from_bytes(const uint8_t *bytes, uint64_t length
  * - Result: `*octree`.
  * - Errors: LEAFLESS_E_FORMAT; LEAFLESS_E_VERSION; LEAFLESS_E_DAMAGED if the level table contradicts the header;
  *   LEAFLESS_E_ARGUMENT if the bytes are misaligned; LEAFLESS_E_NO_MEMORY.
- * - Ownership: the bytes stay the host's. They must stay, unchanged, until the last reference to the octree and to
- *   every cursor and solid made of it is given back. Give `*octree` back with leafless_octree_free.
+ * - Ownership: the bytes stay the host's. They must stay, unchanged, until the last reference is given back to the
+ *   octree, to every octree that leafless_octree_with_metadata or leafless_octree_without_metadata made of it, and to
+ *   every cursor and solid of these. Give `*octree` back with leafless_octree_free.
  * - Threads: any.
  * - Untrusted input: any bytes, as leafless_octree_map.
  * - Since: 0.1
@@ -2024,14 +2094,17 @@ leafless_status leafless_octree_view_bytes(const uint8_t *bytes,
  * Saves an octree: at any moment, also after a crash or a power failure, there is the old file or the new one,
  * each complete. Equal octrees with equal metadata give equal bytes.
  *
- * The bytes go to a temporary file in the same directory, which is then renamed over the old file. A symbolic link
- * is followed; what is no regular file, such as a pipe, is written to directly.
+ * The bytes go to a temporary file in the same directory, which is synchronised with the disk and then renamed over
+ * the old file; a process that is killed meanwhile may leave a file `.leafless-….tmp` behind. A file that is replaced
+ * keeps its permissions, its other hard links keep the old contents. A symbolic link is followed. What is no regular
+ * file, such as a pipe, is written to directly; a pipe that nobody reads raises SIGPIPE, and a file beyond the
+ * process's limit SIGXFSZ, if the host has not ignored them.
  *
  * - Buffers: `path`, `path_length` bytes of UTF-8.
  * - Result: LEAFLESS_OK once the file is on the disk.
  * - Errors: LEAFLESS_E_IO; LEAFLESS_E_DAMAGED if the octree was mapped unverified and is damaged;
  *   LEAFLESS_E_ARGUMENT if the metadata take more than 1 MiB; LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY. The old file
- *   is then as it was.
+ *   is then as it was; only if the very last step fails, synchronising the directory, the new one is in place.
  * - Ownership: nothing changes hands.
  * - Threads: any.
  * - Untrusted input: any octree.

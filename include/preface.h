@@ -10,16 +10,25 @@
  * - Results are written to the last parameters, and only on success: after a failure they are as they were, but for
  *   the contents of buffers. No parameter is both read and written.
  * - General errors, which the functions do not list again: LEAFLESS_E_NULL if a pointer is NULL that the function
- *   does not say may be; LEAFLESS_E_ARGUMENT if one is misaligned for what it points to, or a path is empty;
- *   LEAFLESS_E_PANIC if the library has a defect, which never ends the host program and leaves all objects usable.
+ *   does not say may be; LEAFLESS_E_ARGUMENT if one is misaligned for what it points to, if a count is more than
+ *   memory can hold, a number none of its enum, a path empty, or a struct_size not sensible or with fields set that
+ *   this library does not know; LEAFLESS_E_PANIC if the library has a defect. That never ends the host program and
+ *   leaves all objects usable; Rust's message about it also goes to stderr.
+ * - Memory whose size depends on an input or a result can be refused, and is then LEAFLESS_E_NO_MEMORY. What remains
+ *   is below 4 KiB a piece; if even that cannot be had, the process ends.
  * - Objects are opaque handles. What _new, _open and the like return is a reference; _ref gives one more; _free
  *   gives one back, and takes NULL. References may be given back in any order: what an object needs of another it
  *   shares. Pointers from _peek functions belong to the object.
  * - Threads: calls whose handle parameters are pointers to const may run at once, on the same object too. Other
- *   calls need the object for themselves. Different objects never interfere. Nothing global is changed.
+ *   calls need the object for themselves; but _free needs only its own reference, others may be in use meanwhile.
+ *   Different objects never interfere. Nothing global is changed. No thread of the library outlives the call that
+ *   started it.
  * - Structs with a field struct_size begin with sizeof of themselves, and all their other fields may be zero.
  *   Programs that were compiled with an older, shorter struct go on working.
- * - Numbers for which there is an enum come in as uint32_t and are checked.
+ *   Other structs are fixed for one LEAFLESS_ABI.
+ * - Numbers for which there is an enum come in as uint32_t and are checked. As types of your own variables write
+ *   leafless_tag, not enum leafless_tag: in C only the former has the size that the library writes.
+ * - Lengths of texts and structs are size_t, all other lengths and counts uint64_t.
  * - Texts are UTF-8 of a given length in bytes, and may be NULL if it is 0; paths are, too, on every platform, but
  *   never empty.
  * - Coordinates whose names end in _model are in model units, those in _cells in finest cells. "3 numbers" are x, y

@@ -3,14 +3,18 @@
 use crate::error::Error;
 use core::sync::atomic::{AtomicBool, AtomicUsize, Ordering::Relaxed};
 
+/// Most threads that an operation starts.
+#[cfg(feature = "parallel")]
+const MOST_THREADS: usize = 1024;
+
 /// How a long operation may proceed. The default has no limit, uses all processors and reports to nobody.
 ///
 /// No field changes a result: an operation either returns what it would have returned without them, bit for
 /// bit, or an error. (Which damage to unverified bytes is noticed may depend on the number of threads.)
 #[derive(Clone, Copy, Default)]
 pub struct Control<'a> {
-    /// Threads to use; 0 means as many as the machine has processors. Without the feature `parallel` there
-    /// is always one.
+    /// Threads to use; 0 means as many as the machine has processors, numbers beyond 1024 mean 1024. Without the
+    /// feature `parallel`, and where the system refuses to start threads, there is one: the calling thread.
     pub threads: usize,
     /// Refuse results of more than this many octree nodes with [`Error::Limit`].
     pub max_nodes: Option<u64>,
@@ -41,21 +45,32 @@ impl Control<'_> {
 
     /// Runs `work` where parallel iterators use the threads that were asked for, if the work is `worth`
     /// starting them; `work` is told whether there is more than one.
-    pub(crate) fn run<R: Send>(&self, worth: bool, work: impl FnOnce(bool) -> R + Send) -> Result<R, Error> {
+    pub(crate) fn run<R: Send>(&self, worth: bool, work: impl FnOnce(bool) -> R + Send) -> R {
         #[cfg(feature = "parallel")]
-        if worth {
+        let work = if worth {
             let threads = match self.threads {
                 0 => std::thread::available_parallelism().map_or(1, |n| n.get()),
-                n => n,
+                n => n.min(MOST_THREADS),
             };
+            let mut work = Some(work);
             if threads > 1 {
-                let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-                let pool = pool.map_err(|refused| Error::Io(std::io::Error::other(refused)))?;
-                return Ok(pool.install(|| work(true)));
+                // Joined at the end: no thread outlives the call.
+                let builder = rayon::ThreadPoolBuilder::new().num_threads(threads);
+                let done = builder.build_scoped(
+                    |thread| thread.run(),
+                    |pool| work.take().map(|work| pool.install(|| work(true))),
+                );
+                if let Ok(Some(done)) = done {
+                    return done;
+                }
             }
-        }
+            // The pool takes the work only once it stands.
+            work.unwrap_or_else(|| unreachable!("work was taken and not done"))
+        } else {
+            work
+        };
         let _ = worth;
-        Ok(work(false))
+        work(false)
     }
 }
 

@@ -216,6 +216,17 @@ pub(super) unsafe fn path<'a>(pointer: *const c_char, length: usize) -> Result<&
     Ok(path)
 }
 
+/// What the header says of handles and threads.
+const _: () = {
+    const fn shared_by_threads<T: Send + Sync>() {}
+    shared_by_threads::<super::leafless_control>();
+    shared_by_threads::<super::leafless_mesh>();
+    shared_by_threads::<super::leafless_octree>();
+    shared_by_threads::<super::leafless_solid>();
+    shared_by_threads::<super::leafless_cursor>();
+    shared_by_threads::<super::leafless_point_cursor>();
+};
+
 /// A place for a result, checked before the work begins and written once it is done.
 pub(super) struct Out<T>(NonNull<T>);
 
@@ -289,13 +300,19 @@ impl<T: Copy> Buffer<T> {
 /// All-zero bytes are a `T`.
 pub(super) unsafe trait Sized32: Copy {}
 
+/// Whether a host's struct can have this size. No version's ends within a field: its size is a multiple of its
+/// alignment. So half a pointer is never taken for one.
+fn sensible<T>(size: usize) -> bool {
+    const LARGEST: usize = 4096;
+    (size_of::<u32>()..=LARGEST).contains(&size) && size.is_multiple_of(align_of::<T>())
+}
+
 /// The host's struct, or the default (all zero) if it is NULL. What an older host does not have yet is zero; what
 /// this library does not know yet must be.
 ///
 /// # Safety
 /// Unless it is NULL or misaligned, `pointer` points to as many bytes as its first four say.
 pub(super) unsafe fn sized<T: Sized32>(pointer: *const T, name: &'static str) -> Result<T, Failure> {
-    const LARGEST: usize = 4096;
     // SAFETY: a promise of the trait.
     let mut known: T = unsafe { core::mem::zeroed() };
     if pointer.is_null() {
@@ -305,9 +322,7 @@ pub(super) unsafe fn sized<T: Sized32>(pointer: *const T, name: &'static str) ->
     // SAFETY: the caller promises four bytes, and then as many as they say.
     let given = unsafe {
         let size = pointer.cast::<u32>().read() as usize;
-        // No version's struct ends within a field: its size is a multiple of its alignment. So half a pointer
-        // is never taken for one.
-        if !(size_of::<u32>()..=LARGEST).contains(&size) || !size.is_multiple_of(align_of::<T>()) {
+        if !sensible::<T>(size) {
             return Err(Failure::Argument {
                 name,
                 problem: "has no sensible struct_size; was it initialised?",
@@ -325,20 +340,59 @@ pub(super) unsafe fn sized<T: Sized32>(pointer: *const T, name: &'static str) ->
     Ok(known)
 }
 
+/// Makes the host's struct of `size` bytes its default: its size, and zeros.
+///
+/// # Safety
+/// Unless it is NULL or misaligned, `pointer` points to room for `size` bytes.
+pub(super) unsafe fn initialise<T: Sized32>(
+    pointer: *mut T,
+    size: usize,
+    name: &'static str,
+) -> Result<(), Failure> {
+    checked(pointer, name)?;
+    if !sensible::<T>(size) {
+        return Err(Failure::Argument { name: "struct_size", problem: "must be sizeof of the struct" });
+    }
+    // SAFETY: the caller's promise; all-zero bytes are a `T`, and its first field is its size.
+    unsafe {
+        pointer.cast::<u8>().write_bytes(0, size);
+        pointer.cast::<u32>().write(size as u32);
+    }
+    Ok(())
+}
+
 /// A new handle with one reference.
 pub(super) fn handle<T>(value: T) -> *mut T {
     Arc::into_raw(Arc::new(value)).cast_mut()
 }
 
-/// One more share of what a handle stands for.
+/// One more share of what a handle stands for. Never through a reference: the count lies beside what that covers.
 ///
 /// # Safety
-/// The handle is alive and came from [`handle`].
-pub(super) unsafe fn share<T>(handle: &T) -> Arc<T> {
+/// The handle is NULL or misaligned, or alive and came from [`handle`].
+pub(super) unsafe fn share<T>(handle: *const T, name: &'static str) -> Result<Arc<T>, Failure> {
+    checked(handle, name)?;
     // SAFETY: `handle` came from `Arc::into_raw`.
-    unsafe {
+    Ok(unsafe {
         Arc::increment_strong_count(handle);
         Arc::from_raw(handle)
+    })
+}
+
+/// Writes one more reference to a handle.
+///
+/// # Safety
+/// As [`share`] and [`out`].
+pub(super) unsafe fn refer<T>(
+    handle: *const T,
+    name: &'static str,
+    reference: *mut *mut T,
+) -> Result<(), Failure> {
+    checked(handle, name)?;
+    // SAFETY: the caller's promises.
+    unsafe {
+        let reference = out(reference, "reference")?;
+        reference.write(Arc::into_raw(share(handle, name)?).cast_mut())
     }
 }
 

@@ -1,6 +1,6 @@
 //! Options of long operations: threads, limits, progress; cancelling from another thread.
 
-use super::boundary::{Failure, Sized32, guard, handle, out, release, shared, sized};
+use super::boundary::{Failure, Sized32, guard, handle, initialise, out, release, shared, sized};
 use super::status::leafless_status;
 use crate::control::Control;
 use crate::error::Error;
@@ -16,9 +16,12 @@ pub struct leafless_control {
     fraction: AtomicU64,
 }
 
-/// Hears how far an operation is, with the fraction done (0 to 1); returns 0 to go on, anything else to cancel.
-/// It is called from any of the operation's threads, also from two at once; with `threads` = 1 from the calling
-/// thread only. It must return: no exception, no longjmp.
+/// Hears how far an operation is, with the fraction done (0 to 1); returns 0 to go on. Anything else ends the
+/// operation with LEAFLESS_E_CANCELLED, unless it is already done, and cancels the `control` of its options, if there
+/// is one, until leafless_control_reset.
+///
+/// It is called from any of the operation's threads, also from two at once and then not in ascending order; with
+/// `threads` = 1 from the calling thread only. It must return: no exception, no longjmp. It may call this library.
 pub type leafless_progress_fn = Option<unsafe extern "C" fn(ctx: *mut c_void, fraction: f64) -> i32>;
 
 /// How a long operation may proceed. Where a function takes options, NULL means the defaults. All fields but the
@@ -28,7 +31,8 @@ pub type leafless_progress_fn = Option<unsafe extern "C" fn(ctx: *mut c_void, fr
 pub struct leafless_options {
     /// sizeof(leafless_options).
     pub struct_size: u32,
-    /// Threads to use; 0 means as many as the machine has processors.
+    /// Threads to use; 0 means as many as the machine has processors, numbers beyond 1024 mean 1024. Inside of a
+    /// function that the library calls it is always 1.
     pub threads: u32,
     /// Refuse results of more octree nodes than this; 0 means no limit.
     pub max_nodes: u64,
@@ -90,7 +94,9 @@ pub(super) unsafe fn controlled<R>(
     let limit = |most: u64| (most != 0).then_some(most);
     control.fraction.store(0, Relaxed);
     Ok(operation(&Control {
-        threads: options.threads as usize,
+        // A thread of the library that waited for others would meanwhile take up other work of theirs, and call the
+        // host's function again in the midst of a call.
+        threads: if rayon::current_thread_index().is_some() { 1 } else { options.threads as usize },
         max_nodes: limit(options.max_nodes),
         max_bytes: limit(options.max_bytes),
         cancel: Some(&control.cancelled),
@@ -100,26 +106,20 @@ pub(super) unsafe fn controlled<R>(
 
 /// Sets options to their defaults.
 ///
-/// - Buffers: `options`, one struct, need not be initialised.
+/// - Buffers: `options`, one struct of `struct_size` bytes, which is sizeof(leafless_options); need not be
+///   initialised.
 /// - Result: `*options`.
-/// - Errors: only the general ones.
+/// - Errors: LEAFLESS_E_ARGUMENT if `struct_size` cannot be right.
 /// - Ownership: nothing changes hands.
 /// - Threads: any.
 /// - Untrusted input: none.
 /// - Since: 0.1
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn leafless_options_init(options: *mut leafless_options) -> leafless_status {
-    guard(|| unsafe {
-        out(options, "options")?.write(leafless_options {
-            struct_size: size_of::<leafless_options>() as u32,
-            threads: 0,
-            max_nodes: 0,
-            max_bytes: 0,
-            progress: None,
-            progress_ctx: core::ptr::null_mut(),
-            control: core::ptr::null(),
-        })
-    })
+pub unsafe extern "C" fn leafless_options_init(
+    options: *mut leafless_options,
+    struct_size: usize,
+) -> leafless_status {
+    guard(|| unsafe { initialise(options, struct_size, "options") })
 }
 
 /// Makes a control.

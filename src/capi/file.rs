@@ -11,6 +11,15 @@ use alloc::vec::Vec;
 use core::ffi::{c_char, c_void};
 use std::io;
 
+/// Major version of the file format that this library writes, and the only one that it reads.
+pub const LEAFLESS_FORMAT_MAJOR: u32 = 0;
+/// Minor version of the file format that this library writes; it reads newer ones, too.
+pub const LEAFLESS_FORMAT_MINOR: u32 = 0;
+const _: () = {
+    assert!(LEAFLESS_FORMAT_MAJOR == file::MAJOR as u32);
+    assert!(LEAFLESS_FORMAT_MINOR == file::MINOR as u32);
+};
+
 /// What header and section table of a file say.
 #[derive(Clone, Copy)]
 #[repr(C)]
@@ -103,7 +112,10 @@ unsafe fn hand_out(
     // SAFETY: the caller's promises.
     let (probe, sections) = unsafe { (out(probe, "probe")?, buffer(sections, capacity, "sections")?) };
     let found = found()?;
-    let list: Vec<leafless_section> = found.sections.iter().map(leafless_section::from).collect();
+    sections.check(found.sections.len())?;
+    let mut list = Vec::new();
+    list.try_reserve_exact(found.sections.len()).map_err(|_| Error::OutOfMemory)?;
+    list.extend(found.sections.iter().map(leafless_section::from));
     sections.fill(&list)?;
     probe.write((&found).into())
 }
@@ -134,7 +146,8 @@ pub unsafe extern "C" fn leafless_file_probe(
     })
 }
 
-/// As leafless_file_probe for the first bytes of a file in memory, or all of them.
+/// As leafless_file_probe for the first bytes of a file in memory, or all of them: 128 and 40 for each section. 488
+/// suffice for every file that this library writes, 163 968 for any.
 ///
 /// - Buffers: `bytes`, `length` bytes, may be NULL if there are none; `probe`, one struct; `sections`, room for
 ///   `capacity` structs, or NULL if they are not wanted.
@@ -233,8 +246,9 @@ pub unsafe extern "C" fn leafless_octree_open(
 /// microseconds for a file of any size. What queries touch is read when they do. Of a file that is damaged
 /// elsewhere queries answer undecided or wrong, but stay in bounds and end.
 ///
-/// While the octree, a cursor or a solid of it lives, nobody may make the file shorter: reading beyond its new end
-/// raises SIGBUS, which by default ends the process. Nobody should write to it either: answers may then be wrong.
+/// While the octree lives, or a cursor, a solid or an octree with other metadata that shares it, nobody may make the
+/// file shorter: reading beyond its new end raises SIGBUS, which by default ends the process. Nobody may write to it
+/// either: answers may then be wrong, and nothing more is promised.
 /// Removing the file, or replacing it by renaming another over it, as leafless_octree_save does, is harmless.
 ///
 /// - Buffers: `path`, `path_length` bytes of UTF-8; `octree`, one pointer.
@@ -255,7 +269,8 @@ pub unsafe extern "C" fn leafless_octree_map(
     unsafe { opened(path, path_length, octree, |path| file::map(path)) }
 }
 
-/// As leafless_octree_map, but verifies all of the file first, in one scan.
+/// As leafless_octree_map, but verifies all of the file first, in one scan. Who writes to the file afterwards undoes
+/// that.
 ///
 /// - Buffers: `path`, `path_length` bytes of UTF-8; `octree`, one pointer.
 /// - Result: `*octree`.
@@ -301,8 +316,9 @@ pub unsafe extern "C" fn leafless_octree_from_bytes(
 /// - Result: `*octree`.
 /// - Errors: LEAFLESS_E_FORMAT; LEAFLESS_E_VERSION; LEAFLESS_E_DAMAGED if the level table contradicts the header;
 ///   LEAFLESS_E_ARGUMENT if the bytes are misaligned; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: the bytes stay the host's. They must stay, unchanged, until the last reference to the octree and to
-///   every cursor and solid made of it is given back. Give `*octree` back with leafless_octree_free.
+/// - Ownership: the bytes stay the host's. They must stay, unchanged, until the last reference is given back to the
+///   octree, to every octree that leafless_octree_with_metadata or leafless_octree_without_metadata made of it, and to
+///   every cursor and solid of these. Give `*octree` back with leafless_octree_free.
 /// - Threads: any.
 /// - Untrusted input: any bytes, as leafless_octree_map.
 /// - Since: 0.1
@@ -319,14 +335,16 @@ pub unsafe extern "C" fn leafless_octree_view_bytes(
 /// Saves an octree: at any moment, also after a crash or a power failure, there is the old file or the new one,
 /// each complete. Equal octrees with equal metadata give equal bytes.
 ///
-/// The bytes go to a temporary file in the same directory, which is then renamed over the old file. A symbolic link
-/// is followed; what is no regular file, such as a pipe, is written to directly.
+/// The bytes go to a temporary file in the same directory, which is synchronised with the disk and then renamed over
+/// the old file; a process that is killed meanwhile may leave a file `.leafless-….tmp` behind. A file that is replaced
+/// keeps its permissions, its other hard links keep the old contents. A symbolic link is followed. What is no regular
+/// file, such as a pipe, is written to directly; a pipe that nobody reads raises SIGPIPE, and a file beyond the
+/// process's limit SIGXFSZ, if the host has not ignored them.
 ///
 /// - Buffers: `path`, `path_length` bytes of UTF-8.
 /// - Result: LEAFLESS_OK once the file is on the disk.
-/// - Errors: LEAFLESS_E_IO; LEAFLESS_E_DAMAGED if the octree was mapped unverified and is damaged;
-///   LEAFLESS_E_ARGUMENT if the metadata take more than 1 MiB; LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY. The old file
-///   is then as it was.
+/// - Errors: LEAFLESS_E_IO; LEAFLESS_E_DAMAGED if the octree was mapped unverified and is damaged; LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY. The old file
+///   is then as it was; only if the very last step fails, synchronising the directory, the new one is in place.
 /// - Ownership: nothing changes hands.
 /// - Threads: any.
 /// - Untrusted input: any octree.
@@ -348,7 +366,7 @@ pub unsafe extern "C" fn leafless_octree_save(
 /// - Buffers: `bytes`, room for `capacity` bytes, or NULL to ask for the length only; `length`, one number.
 /// - Result: `*length`, the length of the file; the file in `bytes`.
 /// - Errors: LEAFLESS_E_BUFFER if the capacity is too small; LEAFLESS_E_DAMAGED if the octree was mapped unverified
-///   and is damaged; LEAFLESS_E_ARGUMENT if the metadata take more than 1 MiB; LEAFLESS_E_NO_MEMORY.
+///   and is damaged; LEAFLESS_E_NO_MEMORY.
 /// - Ownership: nothing changes hands.
 /// - Threads: any.
 /// - Untrusted input: any octree.
@@ -371,13 +389,14 @@ pub unsafe extern "C" fn leafless_octree_to_bytes(
 }
 
 /// Takes bytes of a file in order: all `count` of them, and returns 0; anything else ends the writing with
-/// LEAFLESS_E_CALLBACK. It is called in the calling thread. It must return: no exception, no longjmp.
+/// LEAFLESS_E_CALLBACK. It is called in the calling thread. It must return: no exception, no longjmp. It may call this
+/// library.
 pub type leafless_write_fn =
-    Option<unsafe extern "C" fn(ctx: *mut c_void, bytes: *const u8, count: usize) -> i32>;
+    Option<unsafe extern "C" fn(ctx: *mut c_void, bytes: *const u8, count: u64) -> i32>;
 
 /// Hands bytes to the host.
 struct Sink {
-    write: unsafe extern "C" fn(*mut c_void, *const u8, usize) -> i32,
+    write: unsafe extern "C" fn(*mut c_void, *const u8, u64) -> i32,
     ctx: *mut c_void,
     code: i32,
 }
@@ -385,7 +404,7 @@ struct Sink {
 impl io::Write for Sink {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         // SAFETY: as the host gave it, with its own context.
-        self.code = unsafe { (self.write)(self.ctx, bytes.as_ptr(), bytes.len()) };
+        self.code = unsafe { (self.write)(self.ctx, bytes.as_ptr(), bytes.len() as u64) };
         if self.code == 0 { Ok(bytes.len()) } else { Err(io::ErrorKind::Other.into()) }
     }
 
@@ -400,8 +419,7 @@ impl io::Write for Sink {
 /// - Buffers: none.
 /// - Result: LEAFLESS_OK once `write` has taken all bytes.
 /// - Errors: LEAFLESS_E_CALLBACK with what `write` returned in the message; LEAFLESS_E_NULL if it is NULL;
-///   LEAFLESS_E_DAMAGED if the octree was mapped unverified and is damaged; LEAFLESS_E_ARGUMENT if the metadata
-///   take more than 1 MiB; LEAFLESS_E_NO_MEMORY. The last three come before anything is written.
+///   LEAFLESS_E_DAMAGED if the octree was mapped unverified and is damaged; LEAFLESS_E_NO_MEMORY. The last two come before anything is written.
 /// - Ownership: nothing changes hands.
 /// - Threads: any.
 /// - Untrusted input: any octree.

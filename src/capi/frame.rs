@@ -74,25 +74,25 @@ pub unsafe extern "C" fn leafless_frame_check(frame: *const leafless_frame) -> l
 /// The default frame of a shape: the cube of edge L·(1 + 1/32) around its centre, L being its longest extent; the
 /// same universe at every depth.
 ///
-/// - Buffers: `min` and `max`, 3 numbers each (model units); `frame`, one struct.
+/// - Buffers: `min_model` and `max_model`, 3 numbers each; `frame`, one struct.
 /// - Result: `*frame`.
-/// - Errors: LEAFLESS_E_MESH if the longest extent is 0; LEAFLESS_E_ARGUMENT if a bound is not a finite number in
-///   range, or so far from the origin that doubles cannot resolve the cube.
+/// - Errors: LEAFLESS_E_MESH if the longest extent is 0; LEAFLESS_E_ARGUMENT if min > max on an axis, if `depth` is
+///   not 1 to 20, or if a bound is not a finite number in range, or so far from the origin that doubles cannot resolve the cube.
 /// - Ownership: nothing changes hands.
 /// - Threads: any.
 /// - Untrusted input: any values.
 /// - Since: 0.1
 ///
-/// cbindgen:ptrs-as-arrays=[[min; 3], [max; 3]]
+/// cbindgen:ptrs-as-arrays=[[min_model; 3], [max_model; 3]]
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_frame_around(
-    min: *const f64,
-    max: *const f64,
+    min_model: *const f64,
+    max_model: *const f64,
     depth: u32,
     frame: *mut leafless_frame,
 ) -> leafless_status {
     guard(|| unsafe {
-        let (min, max) = (array(min, "min")?, array(max, "max")?);
+        let (min, max) = (array(min_model, "min_model")?, array(max_model, "max_model")?);
         let frame = out(frame, "frame")?;
         frame.write((&Frame::around(min, max, self::depth(depth))?).into())
     })

@@ -1,6 +1,6 @@
 //! Triangle meshes, and the STL files they come in.
 
-use super::boundary::{Failure, array, buffer, guard, handle, out, path, release, share, shared, slice};
+use super::boundary::{Failure, array, buffer, guard, handle, out, path, refer, release, shared, slice};
 use super::status::leafless_status;
 use crate::error::Error;
 use crate::file::{read_stl, write_stl};
@@ -75,11 +75,13 @@ fn give(mesh: TriangleMesh) -> *mut leafless_mesh {
 /// coordinates below 2^-256 count as zero. Seen from outside of the solid the corners turn counter-clockwise.
 ///
 /// - Buffers: `vertices`, `vertex_count` vertices of 3 numbers (model units), the first numbers of two vertices
-///   `vertex_stride` bytes apart (a multiple of 8, at least 24; 0 means 24); `triangles`, 3 · `triangle_count`
+///   `vertex_stride` bytes apart (a multiple of 8, at least 24; 0 means 24; what lies between them must not change during the call, either);
+///   `triangles`, 3 · `triangle_count`
 ///   indices of vertices. Each may be NULL if its count is 0.
 /// - Result: `*mesh`.
 /// - Errors: LEAFLESS_E_MESH if a coordinate is infinite, not a number, or beyond ±2^256, if an index is out of
-///   range, or if there are more than 2^32 - 1 vertices or triangles; LEAFLESS_E_NO_MEMORY.
+///   range, or if there are more than 2^32 - 1 vertices or triangles; LEAFLESS_E_ARGUMENT if the stride is wrong;
+///   LEAFLESS_E_NO_MEMORY.
 /// - Ownership: the arrays are copied; give `*mesh` back with leafless_mesh_free.
 /// - Threads: any.
 /// - Untrusted input: any values in the arrays.
@@ -101,10 +103,12 @@ pub unsafe extern "C" fn leafless_mesh_new(
             return Err(Failure::Argument { name: "vertex_stride", problem });
         }
         // From the first number of the first vertex to the last of the last.
-        let step = stride / size_of::<f64>() as u64;
+        let Ok(step) = usize::try_from(stride / size_of::<f64>() as u64) else {
+            return Err(Failure::Argument { name: "vertex_stride", problem: "is longer than memory" });
+        };
         let numbers = match vertex_count {
             0 => Some(0),
-            count => (count - 1).checked_mul(step).and_then(|sum| sum.checked_add(3)),
+            count => (count - 1).checked_mul(step as u64).and_then(|sum| sum.checked_add(3)),
         };
         let corners = triangle_count.checked_mul(3);
         let numbers = slice(vertices, numbers.unwrap_or(u64::MAX), "vertices")?;
@@ -112,7 +116,7 @@ pub unsafe extern "C" fn leafless_mesh_new(
         let mesh = out(mesh, "mesh")?;
         let mut own_vertices = Vec::new();
         own_vertices.try_reserve_exact(vertex_count as usize).map_err(|_| Error::OutOfMemory)?;
-        own_vertices.extend(numbers.chunks(step as usize).map(|vertex| [vertex[0], vertex[1], vertex[2]]));
+        own_vertices.extend(numbers.chunks(step).map(|vertex| [vertex[0], vertex[1], vertex[2]]));
         let mut own_triangles = Vec::new();
         own_triangles.try_reserve_exact(triangle_count as usize).map_err(|_| Error::OutOfMemory)?;
         own_triangles.extend(corners.as_chunks().0.iter().copied());
@@ -207,11 +211,7 @@ pub unsafe extern "C" fn leafless_mesh_ref(
     mesh: *const leafless_mesh,
     reference: *mut *mut leafless_mesh,
 ) -> leafless_status {
-    guard(|| unsafe {
-        let mesh = shared(mesh, "mesh")?;
-        let reference = out(reference, "reference")?;
-        reference.write(Arc::into_raw(share(mesh)).cast_mut())
-    })
+    guard(|| unsafe { refer(mesh, "mesh", reference) })
 }
 
 /// Gives back a reference to a mesh; with the last one the mesh is gone. Solids made of it stay.
@@ -283,24 +283,25 @@ pub unsafe extern "C" fn leafless_mesh_copy(
 
 /// The bounding box of a mesh's triangles.
 ///
-/// - Buffers: `min` and `max`, room for 3 numbers each.
-/// - Result: both corners, in model units.
+/// - Buffers: `min_model` and `max_model`, room for 3 numbers each.
+/// - Result: both corners.
 /// - Errors: LEAFLESS_E_MESH if the mesh has no triangle.
 /// - Ownership: nothing changes hands.
 /// - Threads: any.
 /// - Untrusted input: none.
 /// - Since: 0.1
 ///
-/// cbindgen:ptrs-as-arrays=[[min; 3], [max; 3]]
+/// cbindgen:ptrs-as-arrays=[[min_model; 3], [max_model; 3]]
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_mesh_bounds(
     mesh: *const leafless_mesh,
-    min: *mut f64,
-    max: *mut f64,
+    min_model: *mut f64,
+    max_model: *mut f64,
 ) -> leafless_status {
     guard(|| unsafe {
         let mesh = &shared(mesh, "mesh")?.mesh;
-        let (min, max) = (out(min.cast(), "min")?, out(max.cast(), "max")?);
+        let min = out(min_model.cast(), "min_model")?;
+        let max = out(max_model.cast(), "max_model")?;
         if mesh.triangles().is_empty() {
             return Err(crate::error::MeshError::Empty.into());
         }
@@ -371,7 +372,7 @@ pub unsafe extern "C" fn leafless_mesh_describe(
 /// - Buffers: none. `fill` is a leafless_fill.
 /// - Result: LEAFLESS_OK if it does.
 /// - Errors: LEAFLESS_E_MESH if the mesh is empty, not closed, or (LEAFLESS_FILL_NON_ZERO) not consistently
-///   oriented; LEAFLESS_E_NO_MEMORY.
+///   oriented; LEAFLESS_E_ARGUMENT if `fill` is no leafless_fill; LEAFLESS_E_NO_MEMORY.
 /// - Ownership: nothing changes hands.
 /// - Threads: any.
 /// - Untrusted input: any mesh.
@@ -405,7 +406,7 @@ pub unsafe extern "C" fn leafless_mesh_sewn(
     guard(|| unsafe {
         let mesh = &shared(mesh, "mesh")?.mesh;
         let sewn = out(sewn, "sewn")?;
-        sewn.write(give(TriangleMesh::clone(mesh).sewn()?))
+        sewn.write(give(mesh.try_clone()?.sewn()?))
     })
 }
 

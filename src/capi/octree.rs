@@ -1,10 +1,9 @@
 //! Octrees: what they hold, and the facts that travel with them.
 
-use super::boundary::{Failure, buffer, guard, handle, out, release, share, shared, text};
+use super::boundary::{Failure, buffer, guard, handle, out, refer, release, shared, text};
 use super::frame::{frame, leafless_frame, leafless_interval};
 use super::status::leafless_status;
-use crate::octree::{Octree, Tag};
-use alloc::sync::Arc;
+use crate::octree::{Metadata, Octree, Tag};
 use alloc::vec::Vec;
 use core::ffi::c_char;
 
@@ -92,9 +91,6 @@ pub struct leafless_statistics {
     pub volume_model: leafless_interval,
 }
 
-/// Bytes that all metadata may take in a file.
-const MOST_METADATA: usize = 1 << 20;
-
 pub(super) fn give(octree: Octree) -> *mut leafless_octree {
     handle(leafless_octree { octree })
 }
@@ -139,15 +135,11 @@ pub unsafe extern "C" fn leafless_octree_ref(
     octree: *const leafless_octree,
     reference: *mut *mut leafless_octree,
 ) -> leafless_status {
-    guard(|| unsafe {
-        let octree = shared(octree, "octree")?;
-        let reference = out(reference, "reference")?;
-        reference.write(Arc::into_raw(share(octree)).cast_mut())
-    })
+    guard(|| unsafe { refer(octree, "octree", reference) })
 }
 
 /// Gives back a reference to an octree. With the last one the octree is gone, and with it the mapping of its file,
-/// unless a cursor or a solid still shares it.
+/// unless a cursor, a solid, or an octree with other metadata still shares it.
 ///
 /// - Buffers: `octree`, a handle or NULL, which does nothing.
 /// - Result: none.
@@ -262,7 +254,7 @@ pub unsafe extern "C" fn leafless_octree_levels(
 ///
 /// - Buffers: none.
 /// - Result: LEAFLESS_OK if it is.
-/// - Errors: LEAFLESS_E_DAMAGED, with the first damage in the message.
+/// - Errors: LEAFLESS_E_DAMAGED, with the first damage in the message; LEAFLESS_E_NO_MEMORY.
 /// - Ownership: nothing changes hands.
 /// - Threads: any.
 /// - Untrusted input: any octree.
@@ -298,10 +290,12 @@ pub unsafe extern "C" fn leafless_octree_equal(
 ///
 /// - Buffers: `key` and `value`, `key_length` and `value_length` bytes of UTF-8; `named`, one pointer.
 /// - Result: `*named`.
-/// - Errors: LEAFLESS_E_UTF8; LEAFLESS_E_ARGUMENT if key and value are longer than 1 MiB.
-/// - Ownership: the texts are copied; `octree` stays as it is; give `*named` back with leafless_octree_free.
+/// - Errors: LEAFLESS_E_UTF8; LEAFLESS_E_ARGUMENT if all facts would take more than 1 MiB in a file, 8 bytes and the
+///   two texts each; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: the texts are copied. `*named` shares the arrays of `octree`, which may be freed: what must outlive
+///   `octree`, such as bytes that it views, must outlive `*named` too. Give that back with leafless_octree_free.
 /// - Threads: any.
-/// - Untrusted input: any texts; all of an octree's metadata may take 1 MiB in a file.
+/// - Untrusted input: any texts.
 /// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_octree_with_metadata(
@@ -316,15 +310,34 @@ pub unsafe extern "C" fn leafless_octree_with_metadata(
         let octree = &shared(octree, "octree")?.octree;
         let (key, value) = (text(key, key_length, "key")?, text(value, value_length, "value")?);
         let named = out(named, "named")?;
-        if key.len() + value.len() > MOST_METADATA {
-            return Err(Failure::Argument {
-                name: "value",
-                problem: "must not be longer than 1 MiB with its key",
-            });
-        }
-        let mut metadata = octree.metadata().clone();
-        metadata.insert(key, value);
+        let metadata = octree.metadata().changed(key, Some(value))?;
         named.write(give(octree.with_metadata(metadata)))
+    })
+}
+
+/// The octree with one fact less in its metadata, or with none; the arrays are shared.
+///
+/// - Buffers: `key`, `key_length` bytes of UTF-8, or NULL for all facts; `unnamed`, one pointer.
+/// - Result: `*unnamed`; a fact that is not there need not be.
+/// - Errors: LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: as leafless_octree_with_metadata.
+/// - Threads: any.
+/// - Untrusted input: any texts.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_octree_without_metadata(
+    octree: *const leafless_octree,
+    key: *const c_char,
+    key_length: usize,
+    unnamed: *mut *mut leafless_octree,
+) -> leafless_status {
+    guard(|| unsafe {
+        let octree = &shared(octree, "octree")?.octree;
+        let all = key.is_null();
+        let key = if all { "" } else { text(key, key_length, "key")? };
+        let unnamed = out(unnamed, "unnamed")?;
+        let metadata = if all { Metadata::new() } else { octree.metadata().changed(key, None)? };
+        unnamed.write(give(octree.with_metadata(metadata)))
     })
 }
 

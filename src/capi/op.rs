@@ -69,7 +69,7 @@ pub unsafe extern "C" fn leafless_octree_build(
 /// The octree with its PARTIAL cells resolved: EMPTY under LEAFLESS_RULE_INNER, FULL under LEAFLESS_RULE_OUTER.
 ///
 /// - Buffers: `options`, one struct or NULL; `resolved`, one pointer. `rule` is a leafless_rule.
-/// - Result: `*resolved`.
+/// - Result: `*resolved`, without metadata.
 /// - Errors: LEAFLESS_E_NOT_SAMPLED under LEAFLESS_RULE_SAMPLED if a cell is PARTIAL, because a stored octree knows
 ///   no more about it; LEAFLESS_E_DAMAGED; LEAFLESS_E_ARGUMENT; LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED;
 ///   LEAFLESS_E_NO_MEMORY.
@@ -96,7 +96,7 @@ pub unsafe extern "C" fn leafless_octree_resolve(
 /// Everything works on it as on any other.
 ///
 /// - Buffers: `compacted`, one pointer.
-/// - Result: `*compacted`.
+/// - Result: `*compacted`, with the same metadata.
 /// - Errors: LEAFLESS_E_DAMAGED if a brick cannot be read; LEAFLESS_E_NO_MEMORY.
 /// - Ownership: `octree` stays as it is; give `*compacted` back with leafless_octree_free.
 /// - Threads: any.
@@ -110,7 +110,7 @@ pub unsafe extern "C" fn leafless_octree_compact(
     guard(|| unsafe {
         let octree = &shared(octree, "octree")?.octree;
         let compacted = out(compacted, "compacted")?;
-        let compact = compact(octree.view())?.with_metadata(octree.metadata().clone());
+        let compact = compact(octree.view())?.with_metadata_of(octree);
         compacted.write(give(compact))
     })
 }

@@ -15,20 +15,20 @@ use yoke::Yoke;
 #[repr(u8)]
 pub enum leafless_membership {
     /// Proven outside.
-    LEAFLESS_OUTSIDE = 0,
+    LEAFLESS_MEMBERSHIP_OUTSIDE = 0,
     /// Proven inside.
-    LEAFLESS_INSIDE = 1,
+    LEAFLESS_MEMBERSHIP_INSIDE = 1,
     /// In a PARTIAL cell, outside of the universe, or not a number.
-    LEAFLESS_UNDECIDED = 2,
+    LEAFLESS_MEMBERSHIP_UNDECIDED = 2,
 }
 
 impl From<Membership> for leafless_membership {
     #[inline(always)]
     fn from(membership: Membership) -> leafless_membership {
         match membership {
-            Membership::Outside => leafless_membership::LEAFLESS_OUTSIDE,
-            Membership::Inside => leafless_membership::LEAFLESS_INSIDE,
-            Membership::Undecided => leafless_membership::LEAFLESS_UNDECIDED,
+            Membership::Outside => leafless_membership::LEAFLESS_MEMBERSHIP_OUTSIDE,
+            Membership::Inside => leafless_membership::LEAFLESS_MEMBERSHIP_INSIDE,
+            Membership::Undecided => leafless_membership::LEAFLESS_MEMBERSHIP_UNDECIDED,
         }
     }
 }
@@ -37,9 +37,9 @@ impl From<Membership> for leafless_membership {
 const _: () = {
     assert!(size_of::<Membership>() == size_of::<leafless_membership>());
     assert!(align_of::<Membership>() == align_of::<leafless_membership>());
-    assert!(Membership::Outside as u8 == leafless_membership::LEAFLESS_OUTSIDE as u8);
-    assert!(Membership::Inside as u8 == leafless_membership::LEAFLESS_INSIDE as u8);
-    assert!(Membership::Undecided as u8 == leafless_membership::LEAFLESS_UNDECIDED as u8);
+    assert!(Membership::Outside as u8 == leafless_membership::LEAFLESS_MEMBERSHIP_OUTSIDE as u8);
+    assert!(Membership::Inside as u8 == leafless_membership::LEAFLESS_MEMBERSHIP_INSIDE as u8);
+    assert!(Membership::Undecided as u8 == leafless_membership::LEAFLESS_MEMBERSHIP_UNDECIDED as u8);
 };
 
 /// The answer to a box query. Each is proven, but for the last.
@@ -196,7 +196,7 @@ pub unsafe extern "C" fn leafless_point_cursor_new(
     cursor: *mut *mut leafless_point_cursor,
 ) -> leafless_status {
     guard(|| unsafe {
-        let octree = share(shared(octree, "octree")?);
+        let octree = share(octree, "octree")?;
         let cursor = out(cursor, "cursor")?;
         let yoke = Yoke::attach_to_cart(octree, |handle| PointCursor::new(handle.octree.view()));
         cursor.write(Box::into_raw(Box::new(leafless_point_cursor(yoke))))
@@ -305,7 +305,7 @@ pub unsafe extern "C" fn leafless_cursor_new(
     cursor: *mut *mut leafless_cursor,
 ) -> leafless_status {
     guard(|| unsafe {
-        let octree = share(shared(octree, "octree")?);
+        let octree = share(octree, "octree")?;
         let cursor = out(cursor, "cursor")?;
         let yoke = Yoke::attach_to_cart(octree, |handle| Cursor::new(handle.octree.view()));
         cursor.write(Box::into_raw(Box::new(leafless_cursor(yoke))))

@@ -1,6 +1,8 @@
 //! Solids: everything that can split a cell.
 
-use super::boundary::{Failure, Sized32, array, guard, handle, out, release, share, shared, sized};
+use super::boundary::{
+    Failure, Sized32, array, guard, handle, initialise, out, refer, release, shared, sized,
+};
 use super::frame::{frame, leafless_frame};
 use super::mesh::{fill_rule, leafless_mesh};
 use super::octree::{leafless_octree, settled_tag};
@@ -37,8 +39,9 @@ use leafless_exterior::*;
 /// Anything else ends the operation with LEAFLESS_E_CALLBACK and the number in the message; so use a negative
 /// number for the host's own errors.
 ///
-/// It is called from several threads at once, unless the operation's options say `threads` = 1, and must give the
-/// same answer to the same box. It must return: no exception, no longjmp. It may call this library.
+/// It is called from several threads at once, which may all be the library's own, unless the operation's options say
+/// `threads` = 1; and it must give the same answer to the same box. It must return: no exception, no longjmp. It may
+/// call this library.
 pub type leafless_classify_fn =
     Option<unsafe extern "C" fn(ctx: *mut c_void, min: *const f64, max: *const f64) -> i32>;
 
@@ -46,7 +49,8 @@ pub type leafless_classify_fn =
 /// operation with LEAFLESS_E_CALLBACK. Else as leafless_classify_fn.
 pub type leafless_contains_fn = Option<unsafe extern "C" fn(ctx: *mut c_void, point: *const f64) -> i32>;
 
-/// Called once, when nothing uses `ctx` any more, in the thread that gave back the last reference.
+/// Called once, when nothing uses `ctx` any more, in the thread that gave back the last reference. It must return: no
+/// exception, no longjmp. It may call this library.
 pub type leafless_destroy_fn = Option<unsafe extern "C" fn(ctx: *mut c_void)>;
 
 /// The host's own shape. All fields but the first may be zero; `classify` must be set.
@@ -197,7 +201,7 @@ pub unsafe extern "C" fn leafless_solid_new_halfspace(
 /// - Buffers: `frame`, one struct; `solid`, one pointer. `fill` is a leafless_fill.
 /// - Result: `*solid`. Time and memory are linear in the mesh.
 /// - Errors: LEAFLESS_E_MESH if the mesh is empty, not closed, or (LEAFLESS_FILL_NON_ZERO) not consistently
-///   oriented; LEAFLESS_E_ARGUMENT as leafless_frame_check; LEAFLESS_E_NO_MEMORY.
+///   oriented; LEAFLESS_E_ARGUMENT as leafless_frame_check, or if `fill` is no leafless_fill; LEAFLESS_E_NO_MEMORY.
 /// - Ownership: the solid shares the mesh, which may be freed; give `*solid` back with leafless_solid_free.
 /// - Threads: any.
 /// - Untrusted input: any mesh.
@@ -216,6 +220,24 @@ pub unsafe extern "C" fn leafless_solid_new_mesh(
         let solid = out(solid, "solid")?;
         solid.write(give(MeshSolid::new(mesh, &frame, fill)?))
     })
+}
+
+/// Sets callbacks to their defaults; `classify` must then be set.
+///
+/// - Buffers: `callbacks`, one struct of `struct_size` bytes, which is sizeof(leafless_callbacks); need not be
+///   initialised.
+/// - Result: `*callbacks`.
+/// - Errors: LEAFLESS_E_ARGUMENT if `struct_size` cannot be right.
+/// - Ownership: nothing changes hands.
+/// - Threads: any.
+/// - Untrusted input: none.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_callbacks_init(
+    callbacks: *mut leafless_callbacks,
+    struct_size: usize,
+) -> leafless_status {
+    guard(|| unsafe { initialise(callbacks, struct_size, "callbacks") })
 }
 
 /// The host's own shape.
@@ -303,11 +325,7 @@ pub unsafe extern "C" fn leafless_solid_ref(
     solid: *const leafless_solid,
     reference: *mut *mut leafless_solid,
 ) -> leafless_status {
-    guard(|| unsafe {
-        let solid = shared(solid, "solid")?;
-        let reference = out(reference, "reference")?;
-        reference.write(Arc::into_raw(share(solid)).cast_mut())
-    })
+    guard(|| unsafe { refer(solid, "solid", reference) })
 }
 
 /// Gives back a reference to a solid; with the last one the solid is gone. Octrees built from it stay.

@@ -37,13 +37,13 @@ pub enum leafless_status {
     LEAFLESS_E_LIMIT = 12,
     /// An allocation failed.
     LEAFLESS_E_NO_MEMORY = 13,
-    /// The host asked to stop.
+    /// The host asked to stop, through a control or from a function that hears of progress.
     LEAFLESS_E_CANCELLED = 14,
-    /// A function of the host ended the work by what it returned.
+    /// A function of the host, other than one that hears of progress, ended the work by what it returned.
     LEAFLESS_E_CALLBACK = 15,
     /// The operating system refused to read or write.
     LEAFLESS_E_IO = 16,
-    /// A defect of the library. What it worked on is as before; the message says where to report it.
+    /// A defect of the library, please report it with the message. What the function worked on is as before.
     LEAFLESS_E_PANIC = 17,
 }
 use leafless_status::*;

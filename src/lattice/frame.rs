@@ -59,9 +59,15 @@ impl Frame {
     /// centre, L being its longest extent; the same universe at every depth.
     ///
     /// # Errors
-    /// [`MeshError::NoExtent`] if L is zero; [`Error::Argument`] if a bound is not a finite number in range, or
-    /// lies so far from the origin that the cube around it cannot be told in doubles.
+    /// [`MeshError::NoExtent`] if L is zero; [`Error::Argument`] if min > max on an axis, if a bound is not a finite number in range, or lies so
+    /// from the origin that the cube around it cannot be told in doubles.
     pub fn around(min: [f64; 3], max: [f64; 3], depth: u8) -> Result<Frame, Error> {
+        if (0..3).any(|axis| min[axis] > max[axis] || min[axis].is_nan() || max[axis].is_nan()) {
+            return Err(Error::Argument {
+                name: "bounds",
+                problem: "must be numbers with min ≤ max on every axis",
+            });
+        }
         let extent = |axis: usize| max[axis] - min[axis];
         let longest = extent(0).max(extent(1)).max(extent(2));
         if longest == 0.0 {

@@ -10,6 +10,9 @@ use alloc::vec::Vec;
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Metadata(Vec<(String, String)>);
 
+/// Bytes that all facts together may take in a file; part of the format.
+pub(crate) const MOST: usize = 1 << 20;
+
 /// Bytes of the two lengths before a fact in a file.
 const LENGTHS: usize = 2 * size_of::<u32>();
 
@@ -26,6 +29,35 @@ impl Metadata {
             Ok(at) => self.0[at].1 = value,
             Err(at) => self.0.insert(at, (key, value)),
         }
+    }
+
+    /// Removes `key`; its value, if it was there.
+    pub fn remove(&mut self, key: &str) -> Option<String> {
+        self.find(key).ok().map(|at| self.0.remove(at).1)
+    }
+
+    /// A copy, in which `key` has another value or, for `None`, does not occur.
+    ///
+    /// # Errors
+    /// [`Error::Argument`] if the copy would not fit into a file; [`Error::OutOfMemory`].
+    #[cfg(feature = "capi")]
+    pub(crate) fn changed(&self, key: &str, value: Option<&str>) -> Result<Metadata, Error> {
+        let kept = || self.iter().filter(|(known, _)| *known != key);
+        let length: usize = kept().map(|(key, value)| LENGTHS + key.len() + value.len()).sum();
+        if value.is_some_and(|value| length + LENGTHS + key.len() + value.len() > MOST) {
+            let problem = "must not take more than 1 MiB in a file";
+            return Err(Error::Argument { name: "metadata", problem });
+        }
+        let mut facts = Vec::new();
+        facts.try_reserve_exact(self.0.len() + 1).map_err(|_| Error::OutOfMemory)?;
+        for (key, value) in kept() {
+            facts.push((copy(key)?, copy(value)?));
+        }
+        let mut changed = Metadata(facts);
+        if let Some(value) = value {
+            changed.insert(copy(key)?, copy(value)?);
+        }
+        Ok(changed)
     }
 
     /// The value of `key`.

@@ -9,7 +9,7 @@ pub(crate) mod brick;
 mod check;
 mod cursor;
 pub(crate) mod dictionary;
-mod metadata;
+pub(crate) mod metadata;
 #[allow(clippy::module_inception)]
 pub(crate) mod octree;
 pub(crate) mod stats;

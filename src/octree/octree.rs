@@ -190,6 +190,12 @@ impl Octree {
         &self.metadata
     }
 
+    /// The same tree with the metadata of another, which are shared.
+    #[cfg(feature = "capi")]
+    pub(crate) fn with_metadata_of(&self, other: &Octree) -> Octree {
+        Octree { metadata: other.metadata.clone(), ..self.clone() }
+    }
+
     /// The same tree with other metadata; the arrays are shared.
     #[must_use]
     pub fn with_metadata(&self, metadata: Metadata) -> Octree {

@@ -254,7 +254,7 @@ fn combine_above(entries: u64, kernel: Kernel<'_>, control: &Control<'_>) -> Res
         });
         let exterior = kernel.words(exterior).complement_if(kernel.flip).tag(0);
         writer.finish(*a.frame(), root, exterior)
-    })?
+    })
 }
 
 impl Kernel<'_> {

@@ -47,7 +47,7 @@ pub fn build<S: Solid>(solid: &S, frame: &Frame, rule: Rule, control: &Control<'
             Verdict::Partial(part) => builder.cell(0, Cell::ROOT, &part, &mut worker, &mut writer)?,
         };
         writer.finish(*frame, tag, solid.exterior(frame))
-    })?
+    })
 }
 
 /// The tree with its PARTIAL cells resolved: EMPTY under [`Rule::Inner`], FULL under [`Rule::Outer`].

@@ -273,6 +273,22 @@ impl TriangleMesh {
         self.displacement
     }
 
+    /// A copy.
+    ///
+    /// # Errors
+    /// [`Error::OutOfMemory`].
+    #[cfg(feature = "capi")]
+    pub(crate) fn try_clone(&self) -> Result<Self, Error> {
+        fn copy<T: Copy>(of: &[T]) -> Result<Vec<T>, Error> {
+            let mut copy = Vec::new();
+            copy.try_reserve_exact(of.len()).map_err(|_| Error::OutOfMemory)?;
+            copy.extend_from_slice(of);
+            Ok(copy)
+        }
+        let (vertices, triangles) = (copy(&self.vertices)?, copy(&self.triangles)?);
+        Ok(Self { vertices, triangles, topology: OnceBox::new(), ..*self })
+    }
+
     /// The vertices at open edges, ascending.
     pub(super) fn open_vertices(&self) -> Result<&[u32], Error> {
         Ok(&self.topology()?.open_vertices)
