@@ -80,7 +80,19 @@ static leafless_status triangles(void *buffer, uint64_t capacity, uint64_t *coun
     return status;
 }
 
-static void check(two_step function, size_t element) {
+/* Whether two arrays are the same but for the bytes of each element from `padding` on, up to a multiple of 8. */
+static bool same(const unsigned char *a, const unsigned char *b, size_t count, size_t element, size_t padding) {
+    size_t i;
+    for (i = 0; i < count * element; i++) {
+        if ((i % element < padding || i % element >= (padding + 7) / 8 * 8) && a[i] != b[i]) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/* `padding` is where an element has bytes that belong to no field, or its size. */
+static void check(two_step function, size_t element, size_t padding) {
     uint64_t needed = 0, count, capacity;
     unsigned char *first;
     OK(function(NULL, 0, &needed));
@@ -106,7 +118,7 @@ static void check(two_step function, size_t element) {
             } else {
                 /* The same again; what is beyond stays as it was. */
                 size_t i;
-                CHECK(memcmp(first, buffer, (size_t)needed * element) == 0);
+                CHECK(same(first, buffer, (size_t)needed, element, padding));
                 for (i = 0; i < element; i++) {
                     CHECK(buffer[(size_t)needed * element + i] == 0xc3);
                 }
@@ -119,18 +131,19 @@ static void check(two_step function, size_t element) {
 }
 
 int main(void) {
+    const size_t named = offsetof(leafless_section, name) + sizeof(((leafless_section *)0)->name);
     octree = check_ball(4, LEAFLESS_RULE_CERTIFIED);
     mesh = check_cube();
     bytes = check_bytes(octree, &length);
     check_write("buffers.lfl", bytes, (size_t)length);
 
-    check(octree_bytes, 1);
-    check(stl_bytes, 1);
-    check(levels, sizeof(leafless_statistics));
-    check(sections, sizeof(leafless_section));
-    check(file_sections, sizeof(leafless_section));
-    check(vertices, 3 * sizeof(double));
-    check(triangles, 3 * sizeof(uint32_t));
+    check(octree_bytes, 1, 1);
+    check(stl_bytes, 1, 1);
+    check(levels, sizeof(leafless_statistics), sizeof(leafless_statistics));
+    check(sections, sizeof(leafless_section), named);
+    check(file_sections, sizeof(leafless_section), named);
+    check(vertices, 3 * sizeof(double), 3 * sizeof(double));
+    check(triangles, 3 * sizeof(uint32_t), 3 * sizeof(uint32_t));
 
     /* If one of two buffers is too small, the other is not written either. */
     {

@@ -89,7 +89,8 @@ impl Check {
         }
     }
 
-    pub fn command(self, program: &Path, suppressions: &Path) -> Command {
+    /// How a program is run; `folder` has the suppressions.
+    pub fn command(self, program: &Path, folder: &Path) -> Command {
         let mut command = match self {
             Check::Valgrind => {
                 let mut command = Command::new("valgrind");
@@ -99,12 +100,15 @@ impl Check {
                     "--leak-check=full",
                     "--errors-for-leak-kinds=definite,indirect,possible",
                 ]);
-                command.arg(program);
+                command
+                    .arg(format!("--suppressions={}", folder.join("valgrind.supp").display()))
+                    .arg(program);
                 command
             }
             _ => Command::new(program),
         };
-        let thread = format!("halt_on_error=1:exitcode=9:suppressions={}", suppressions.display());
+        let thread =
+            format!("halt_on_error=1:exitcode=9:suppressions={}", folder.join("thread.supp").display());
         command
             .env("ASAN_OPTIONS", "detect_leaks=1:allocator_may_return_null=1:detect_stack_use_after_return=1")
             .env("UBSAN_OPTIONS", "print_stacktrace=1")

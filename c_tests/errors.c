@@ -175,7 +175,8 @@ int main(int argc, char **argv) {
     OK(leafless_octree_check(ball));
     CHECK(leafless_last_status() == LEAFLESS_E_NULL);
 
-    FAILS(LEAFLESS_E_ARGUMENT, leafless_octree_build(check_ball_solid(), &frame, 4, NULL, &octree));
+    solid = check_ball_solid();
+    FAILS(LEAFLESS_E_ARGUMENT, leafless_octree_build(solid, &frame, 4, NULL, &octree));
     failed(LEAFLESS_E_ARGUMENT, "LEAFLESS_E_ARGUMENT", "rule");
 
     FAILS(LEAFLESS_E_UTF8, leafless_octree_open("\xff", 1, &octree));
@@ -198,6 +199,7 @@ int main(int argc, char **argv) {
         const double bad[3] = {0.0, INFINITY, 0.0};
         const uint32_t beyond[3] = {0, 1, 8};
         leafless_mesh *open = NULL;
+        leafless_solid *none = NULL;
         FAILS(LEAFLESS_E_MESH, leafless_mesh_new(bad, 1, 0, NULL, 0, &mesh));
         failed(LEAFLESS_E_MESH, "LEAFLESS_E_MESH", "vertex 0");
         FAILS(LEAFLESS_E_MESH, leafless_mesh_new(&CHECK_CUBE[0][0], 8, 0, beyond, 1, &mesh));
@@ -205,8 +207,8 @@ int main(int argc, char **argv) {
         OK(leafless_mesh_new(&CHECK_CUBE[0][0], 8, 0, &CHECK_CUBE_TRIANGLES[0][0], 11, &open));
         FAILS(LEAFLESS_E_MESH, leafless_mesh_check_closed(open, LEAFLESS_FILL_EVEN_ODD));
         failed(LEAFLESS_E_MESH, "LEAFLESS_E_MESH", "3 edges");
-        FAILS(LEAFLESS_E_MESH, leafless_solid_new_mesh(open, &frame, LEAFLESS_FILL_NON_ZERO, &solid));
-        CHECK(solid == NULL);
+        FAILS(LEAFLESS_E_MESH, leafless_solid_new_mesh(open, &frame, LEAFLESS_FILL_NON_ZERO, &none));
+        CHECK(none == NULL);
         leafless_mesh_free(open);
     }
 
@@ -263,7 +265,6 @@ int main(int argc, char **argv) {
     options.max_nodes = 10;
     FAILS(LEAFLESS_E_LIMIT, leafless_octree_complement(ball, &options, &octree));
     failed(LEAFLESS_E_LIMIT, "LEAFLESS_E_LIMIT", "10 nodes");
-    solid = check_ball_solid();
     FAILS(LEAFLESS_E_LIMIT, leafless_octree_build(solid, &frame, LEAFLESS_RULE_CERTIFIED, &options, &octree));
     options.max_nodes = 0;
     options.max_bytes = 100;

@@ -116,7 +116,7 @@ impl Kit {
         if self.check.rust_flags().is_some() {
             command.env_remove("RUSTC").env_remove("CARGO").env_remove("RUSTUP_TOOLCHAIN");
         }
-        command.current_dir(root()).env("CARGO_TARGET_DIR", self.folder.join("target"));
+        command.current_dir(root()).env("CARGO_TARGET_DIR", self.target());
         if let Some(flags) = self.check.rust_flags() {
             command.env("RUSTFLAGS", flags);
         }
@@ -187,9 +187,15 @@ impl Kit {
         Ok(())
     }
 
+    /// The target folder of the libraries: one for all checks that look from outside.
+    fn target(&self) -> PathBuf {
+        let flags = self.check.rust_flags().map(|_| self.check.name());
+        Path::new(env!("CARGO_TARGET_TMPDIR")).join("c_api").join(flags.unwrap_or("plain")).join("target")
+    }
+
     /// Where the libraries are.
     pub fn release(&self) -> PathBuf {
-        let target = self.folder.join("target");
+        let target = self.target();
         if self.check.rust_flags().is_some() {
             target.join(&self.triple).join("release")
         } else {
@@ -297,7 +303,7 @@ impl Kit {
         let problems = folder.join("stderr");
         let file =
             |path: &Path| std::fs::File::create(path).map_err(|error| format!("{}: {error}", path.display()));
-        let mut command = self.check.command(program, &root().join("c_tests/thread.supp"));
+        let mut command = self.check.command(program, &root().join("c_tests"));
         // Where cargo keeps libraries for this very test, no program shall look.
         command.args(arguments).current_dir(folder).stdin(Stdio::null()).env_remove("LD_LIBRARY_PATH");
         command.stdout(file(&printed)?).stderr(file(&problems)?);
