@@ -2102,8 +2102,7 @@ leafless_status leafless_octree_view_bytes(const uint8_t *bytes,
  *
  * - Buffers: `path`, `path_length` bytes of UTF-8.
  * - Result: LEAFLESS_OK once the file is on the disk.
- * - Errors: LEAFLESS_E_IO; LEAFLESS_E_DAMAGED if the octree was mapped unverified and is damaged;
- *   LEAFLESS_E_ARGUMENT if the metadata take more than 1 MiB; LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY. The old file
+ * - Errors: LEAFLESS_E_IO; LEAFLESS_E_DAMAGED if the octree was mapped unverified and is damaged; LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY. The old file
  *   is then as it was; only if the very last step fails, synchronising the directory, the new one is in place.
  * - Ownership: nothing changes hands.
  * - Threads: any.
@@ -2120,7 +2119,7 @@ leafless_status leafless_octree_save(const leafless_octree *octree,
  * - Buffers: `bytes`, room for `capacity` bytes, or NULL to ask for the length only; `length`, one number.
  * - Result: `*length`, the length of the file; the file in `bytes`.
  * - Errors: LEAFLESS_E_BUFFER if the capacity is too small; LEAFLESS_E_DAMAGED if the octree was mapped unverified
- *   and is damaged; LEAFLESS_E_ARGUMENT if the metadata take more than 1 MiB; LEAFLESS_E_NO_MEMORY.
+ *   and is damaged; LEAFLESS_E_NO_MEMORY.
  * - Ownership: nothing changes hands.
  * - Threads: any.
  * - Untrusted input: any octree.
@@ -2138,8 +2137,7 @@ leafless_status leafless_octree_to_bytes(const leafless_octree *octree,
  * - Buffers: none.
  * - Result: LEAFLESS_OK once `write` has taken all bytes.
  * - Errors: LEAFLESS_E_CALLBACK with what `write` returned in the message; LEAFLESS_E_NULL if it is NULL;
- *   LEAFLESS_E_DAMAGED if the octree was mapped unverified and is damaged; LEAFLESS_E_ARGUMENT if the metadata
- *   take more than 1 MiB; LEAFLESS_E_NO_MEMORY. The last three come before anything is written.
+ *   LEAFLESS_E_DAMAGED if the octree was mapped unverified and is damaged; LEAFLESS_E_NO_MEMORY. The last two come before anything is written.
  * - Ownership: nothing changes hands.
  * - Threads: any.
  * - Untrusted input: any octree.
