@@ -254,6 +254,31 @@ fn of_a_sound_tree_a_cursor_sees_all_in_any_order() {
     }
 }
 
+/// Parts are plain numbers, which a caller may get wrong.
+#[test]
+fn parts_that_are_made_up_lead_nowhere() {
+    use leafless::{Cell, Cube, Solid, Stored, StoredPart, Verdict};
+    for tree in seeds::trees() {
+        let solid = Stored::new(tree.view());
+        let cube = Cube { frame: tree.frame(), cell: Cell::ROOT };
+        for level in [0, 1, 4, 9, 10, 11, 255] {
+            for index in [0, 1, 7, 1 << 20, usize::MAX] {
+                for octant in [0, 7, 8, 32, 255] {
+                    let parts =
+                        [StoredPart::Element { level, index }, StoredPart::Octant { level, index, octant }];
+                    for part in parts {
+                        let children = solid.split(&mut (), &cube, &part).unwrap();
+                        let planes = solid.split64(&mut (), &cube, &part, &mut vec![]).unwrap();
+                        let nowhere = level > 9 || index > 1 << 19;
+                        assert!(!nowhere || children.iter().all(|child| matches!(child, Verdict::Undecided)));
+                        assert!(!nowhere || planes == leafless::Planes::uniform(leafless::Tag::Partial));
+                    }
+                }
+            }
+        }
+    }
+}
+
 /// Found by fuzzing: a link that is right modulo 2^64 was followed by the point queries, and by nobody else.
 #[test]
 fn links_whose_sums_wrap_lead_to_the_same_for_all() {

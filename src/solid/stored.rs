@@ -43,10 +43,11 @@ impl<'a> Stored<'a> {
     }
 
     /// Links are followed from parents to children only, and the level rises with each: whatever the bytes,
-    /// a descent ends.
+    /// a descent ends. A part that somebody made up leads nowhere.
     fn entry(&self, level: u8, index: usize) -> Planes {
-        let tree = &self.0;
-        let entry = if tree.on_level(index, level as usize) { tree.entry(index) } else { None };
+        let (tree, level) = (&self.0, level as usize);
+        let on_level = level < tree.levels() && tree.on_level(index, level);
+        let entry = if on_level { tree.entry(index) } else { None };
         entry.unwrap_or(Planes::uniform(Tag::Partial))
     }
 
@@ -101,7 +102,7 @@ impl Solid for Stored<'_> {
             }
             StoredPart::Octant { level, index, octant } => {
                 let planes = self.entry(level, index);
-                OCTANTS.map(|k| self.cell(level, index, planes, (8 * octant + k) as u32))
+                OCTANTS.map(|k| self.cell(level, index, planes, (8 * (octant & 7) + k) as u32))
             }
         })
     }
