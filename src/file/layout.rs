@@ -33,7 +33,8 @@ pub(super) const SECTION_ALIGNMENT: u64 = 64;
 pub(super) const MAX_SECTIONS: u32 = 4096;
 
 /// Most bytes that the metadata may take; part of the format. It bounds the work of mapping a file.
-pub(super) const MAX_METADATA: u64 = crate::octree::metadata::MOST as u64;
+pub(super) const MAX_METADATA: u64 = 1 << 20;
+const _: () = assert!(MAX_METADATA == crate::octree::metadata::MOST as u64);
 
 /// Raw bricks, one after another; part of the format.
 pub(super) const ENCODING_RAW: u8 = 0;
