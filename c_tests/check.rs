@@ -107,8 +107,10 @@ impl Check {
             }
             _ => Command::new(program),
         };
-        let thread =
-            format!("halt_on_error=1:exitcode=9:suppressions={}", folder.join("thread.supp").display());
+        let thread = format!(
+            "halt_on_error=1:exitcode=9:allocator_may_return_null=1:suppressions={}",
+            folder.join("thread.supp").display()
+        );
         command
             .env("ASAN_OPTIONS", "detect_leaks=1:allocator_may_return_null=1:detect_stack_use_after_return=1")
             .env("UBSAN_OPTIONS", "print_stacktrace=1")

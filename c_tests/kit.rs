@@ -268,6 +268,13 @@ impl Kit {
             }
             command = self.compiler(standard)?;
             command.current_dir(&folder).args(objects);
+            if self.check == Check::Thread {
+                let object = folder.join("futex.o");
+                let mut futex = self.compiler(Standard::C(""))?;
+                futex.arg("-c").arg(root().join("c_tests/futex.c")).arg("-o").arg(&object);
+                output(&mut futex)?;
+                command.arg(object);
+            }
         } else {
             command.args(sources);
         }
