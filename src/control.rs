@@ -54,13 +54,25 @@ impl Control<'_> {
             };
             let mut work = Some(work);
             if threads > 1 {
-                // Joined at the end: no thread outlives the call.
-                let builder = rayon::ThreadPoolBuilder::new().num_threads(threads);
-                let done = builder.build_scoped(
-                    |thread| thread.run(),
-                    |pool| work.take().map(|work| pool.install(|| work(true))),
-                );
-                if let Ok(Some(done)) = done {
+                // All are joined, and not only done with their work, as a scope alone sees to: no thread outlives the
+                // call, not even by what it tidies up at its end.
+                let done = std::thread::scope(|scope| {
+                    let mut joinable = alloc::vec::Vec::new();
+                    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).spawn_handler(|thread| {
+                        joinable.push(std::thread::Builder::new().spawn_scoped(scope, || thread.run())?);
+                        Ok(())
+                    });
+                    let done = pool.build().ok().and_then(|pool| {
+                        let work = work.take()?;
+                        Some(pool.install(|| work(true)))
+                    });
+                    for thread in joinable {
+                        // A panic in one has reached `install`.
+                        let _ = thread.join();
+                    }
+                    done
+                });
+                if let Some(done) = done {
                     return done;
                 }
             }
