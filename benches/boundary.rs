@@ -79,16 +79,16 @@ fn boundary(criterion: &mut Criterion) {
     let cursor_contains: CursorContains = black_box(leafless_point_cursor_contains);
     // SAFETY of all calls below: living handles, arrays as long as is said.
     let one_of_c = |point: &[f64; 3]| {
-        let mut answer = leafless_membership::LEAFLESS_UNDECIDED;
+        let mut answer = leafless_membership::LEAFLESS_MEMBERSHIP_UNDECIDED;
         unsafe { contains(c, point.as_ptr(), &mut answer) };
         answer as u8
     };
     let near_of_c = |point: &[f64; 3]| {
-        let mut answer = leafless_membership::LEAFLESS_UNDECIDED;
+        let mut answer = leafless_membership::LEAFLESS_MEMBERSHIP_UNDECIDED;
         unsafe { cursor_contains(cursor_of_c, point.as_ptr(), &mut answer) };
         answer as u8
     };
-    let mut answers = vec![leafless_membership::LEAFLESS_UNDECIDED; POINTS];
+    let mut answers = vec![leafless_membership::LEAFLESS_MEMBERSHIP_UNDECIDED; POINTS];
     let mut memberships = vec![Membership::Undecided; POINTS];
     for point in points.iter().step_by(97) {
         assert_eq!(one_of_c(point), rust.contains(*point) as u8);

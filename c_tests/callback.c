@@ -83,6 +83,17 @@ static void gone(void *ctx) {
     ((host *)ctx)->destroyed++;
 }
 
+/* May call the library: here it gives back what the context holds. */
+static void gone_with_all(void *ctx) {
+    host *h = (host *)ctx;
+    leafless_octree *complement = NULL;
+    OK(leafless_octree_complement(h->octree, NULL, &complement));
+    leafless_octree_free(complement);
+    leafless_octree_free(h->octree);
+    FAILS(LEAFLESS_E_NULL, leafless_octree_check(NULL));
+    h->destroyed++;
+}
+
 static leafless_callbacks callbacks_of(host *h) {
     leafless_callbacks callbacks;
     memset(&callbacks, 0, sizeof callbacks);
@@ -241,6 +252,7 @@ static void may_call_the_library(void) {
     h.octree = check_ball(5, LEAFLESS_RULE_CERTIFIED);
     callbacks.classify = asks;
     callbacks.contains = NULL;
+    callbacks.destroy = gone_with_all;
     OK(leafless_solid_new_callbacks(&callbacks, &solid));
     h.self = solid;
     OK(leafless_octree_build(solid, &frame, LEAFLESS_RULE_CERTIFIED, &options, &octree));
@@ -248,7 +260,6 @@ static void may_call_the_library(void) {
     CHECK(check_same(octree, h.octree));
     leafless_octree_free(octree);
     leafless_solid_free(solid);
-    leafless_octree_free(h.octree);
     CHECK(h.destroyed == 1);
 }
 

@@ -2,6 +2,7 @@
 #include "check.h"
 
 #include <atomic>
+#include <chrono>
 #include <string>
 #include <thread>
 #include <vector>
@@ -219,9 +220,79 @@ void messages() {
     leafless_octree_free(octree);
 }
 
+// Threads of this process, or 0 where that cannot be told.
+long threads_of_the_process() {
+    long threads = 0;
+    if (FILE *status = fopen("/proc/self/status", "r")) {
+        char line[256];
+        while (fgets(line, sizeof line, status) != nullptr) {
+            if (sscanf(line, "Threads: %ld", &threads) == 1) {
+                break;
+            }
+        }
+        fclose(status);
+    }
+    return threads;
+}
+
+// Whether there are as many threads as there were; the system may count a thread for a moment after it was joined.
+bool back_to(long before) {
+    for (int tries = 0; tries < 1000 && threads_of_the_process() != before; tries++) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    return threads_of_the_process() == before;
+}
+
+int32_t asks_back(void *ctx, double fraction) {
+    const leafless_control *control = static_cast<const leafless_control *>(ctx);
+    bool cancelled = true;
+    double found = -1.0;
+    // A function that hears of progress may call the library.
+    OK(leafless_control_state(control, &cancelled, &found));
+    CHECK(!cancelled && found >= 0.0 && found <= 1.0 && fraction >= 0.0 && fraction <= 1.0);
+    return 0;
+}
+
+// The result is the same for any number of threads, and none of them stays.
+void numbers_of_threads(const std::vector<uint32_t> &numbers) {
+    const leafless_frame frame = check_frame(7);
+    leafless_solid *solid = check_ball_solid();
+    const long before = threads_of_the_process();
+    leafless_octree *expected = check_ball(7, LEAFLESS_RULE_CERTIFIED);
+    leafless_control *control = nullptr;
+    OK(leafless_control_new(&control));
+    for (const uint32_t threads : numbers) {
+        leafless_options options;
+        OK(leafless_options_init(&options, sizeof options));
+        options.threads = threads;
+        options.control = control;
+        options.progress = asks_back;
+        options.progress_ctx = control;
+        leafless_octree *octree = nullptr, *both = nullptr;
+        OK(leafless_octree_build(solid, &frame, LEAFLESS_RULE_CERTIFIED, &options, &octree));
+        OK(leafless_octree_union(octree, expected, &options, &both));
+        CHECK(check_same(octree, expected) && check_same(both, expected));
+        leafless_octree_free(octree);
+        leafless_octree_free(both);
+        if (!back_to(before)) {
+            fprintf(stderr, "with %u threads %ld stay\n", threads, threads_of_the_process() - before);
+            exit(1);
+        }
+    }
+    leafless_control_free(control);
+    leafless_octree_free(expected);
+    leafless_solid_free(solid);
+}
+
 }  // namespace
 
-int main() {
+int main(int argc, char **) {
+    std::vector<uint32_t> numbers = {1, 2, 3, 8};
+    if (argc > 1) {
+        // More than checkers can bear.
+        numbers.push_back(UINT32_MAX);
+    }
+    numbers_of_threads(numbers);
     leafless_octree *octree = check_ball(6, LEAFLESS_RULE_CERTIFIED), *mapped = nullptr;
     reads(octree);
     OK(leafless_octree_save(octree, "threads.lfl", 11));
