@@ -326,6 +326,7 @@ static void null_pointers(void) {
 
     /* Texts of no bytes may be NULL, and so may options; and what there is nothing of. */
     MAY_BE_NULL(leafless_octree_without_metadata, key, leafless_octree_without_metadata(octree, NULL, 0, result));
+    leafless_octree_free(*result);
     MAY_BE_NULL(leafless_octree_with_metadata, key, leafless_octree_with_metadata(octree, NULL, 0, NULL, 0, result));
     leafless_octree_free(*result);
     MAY_BE_NULL(leafless_octree_peek_metadata, key,
