@@ -1,6 +1,6 @@
 /* What a point query costs through the C interface: one by one, in a batch, and with a cursor along lines.
  *
- *     LEAFLESS_BOUNDARY_POINTS=1000000 ./boundary     or     ./boundary 1000000
+ *     ./boundary [POINTS]
  *
  * include/README.md tells how to build it: gcc -O2 c_tests/boundary.c -Iinclude target/release/libleafless.a ...
  * benches/boundary.rs measures the same ball and points from Rust. */
