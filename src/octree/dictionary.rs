@@ -9,7 +9,7 @@ use super::brick::{Brick, BrickArray, Bricks, OwnedArray, OwnedBricks};
 use super::view::OctreeRef;
 use crate::error::{Damage, Error};
 use alloc::vec::Vec;
-use hashbrown::HashMap;
+use hashbrown::{HashMap, HashSet};
 
 /// Most entries that a 16-bit index can name.
 const MOST: usize = 1 << 16;
@@ -143,7 +143,7 @@ fn zeros<T: Copy + Default>(count: usize) -> Result<Vec<T>, Error> {
 /// Checks that the dictionary, if there is one, is the one that the bricks determine.
 ///
 /// # Errors
-/// [`Error::Damaged`]; [`Error::OutOfMemory`], because entries are counted and sorted, a segment at a time.
+/// [`Error::Damaged`]; [`Error::OutOfMemory`], because entries are counted and compared, a segment at a time.
 pub(crate) fn check(tree: &OctreeRef<'_>) -> Result<(), Error> {
     match &tree.bricks {
         Bricks::One(bricks) => check_array(bricks),
@@ -174,18 +174,13 @@ fn check_array<T: Brick>(bricks: &BrickArray<'_, T>) -> Result<(), Error> {
                 None => return Err(Damage::Dictionary { brick: brick + b as u64 }.into()),
             }
         }
-        let misplaced = |i: usize| Err(Damage::DictionaryOrder { entry: expected + i as u64 }.into());
+        let mut distinct = HashSet::new();
+        distinct.try_reserve(own.len()).map_err(|_| Error::OutOfMemory)?;
         let key = |i: usize| (core::cmp::Reverse(counts[i]), own[i]);
-        if let Some(i) = (0..own.len()).find(|&i| counts[i] == 0 || (i > 0 && key(i - 1) >= key(i))) {
-            return misplaced(i);
-        }
         // Equal entries of different frequency do not stand side by side.
-        let mut sorted = with_capacity(own.len())?;
-        sorted.extend_from_slice(own);
-        sorted.sort_unstable();
-        if let Some(twice) = sorted.windows(2).find(|pair| pair[0] == pair[1]) {
-            let last = own.iter().rposition(|entry| entry == &twice[0]);
-            return misplaced(last.unwrap_or(0));
+        let right = |i: usize, fresh: bool| fresh && counts[i] != 0 && (i == 0 || key(i - 1) < key(i));
+        if let Some(i) = (0..own.len()).find(|&i| !right(i, distinct.insert(own[i]))) {
+            return Err(Damage::DictionaryOrder { entry: expected + i as u64 }.into());
         }
         expected = end;
     }
