@@ -15,7 +15,7 @@
  *   this library does not know; LEAFLESS_E_PANIC if the library has a defect. That never ends the host program and
  *   leaves all objects usable; Rust's message about it also goes to stderr.
  * - Memory whose size depends on an input or a result can be refused, and is then LEAFLESS_E_NO_MEMORY. What remains
- *   is below 4 KiB a piece; if even that cannot be had, the process ends.
+ *   is at most 2 KiB a piece, and what threads cost; if even that cannot be had, the process ends.
  * - Objects are opaque handles. What _new, _open and the like return is a reference; _ref gives one more; _free
  *   gives one back, and takes NULL. References may be given back in any order: what an object needs of another it
  *   shares. Pointers from _peek functions belong to the object.

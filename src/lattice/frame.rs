@@ -59,8 +59,8 @@ impl Frame {
     /// centre, L being its longest extent; the same universe at every depth.
     ///
     /// # Errors
-    /// [`MeshError::NoExtent`] if L is zero; [`Error::Argument`] if min > max on an axis, if a bound is not a finite number in range, or lies so
-    /// from the origin that the cube around it cannot be told in doubles.
+    /// [`MeshError::NoExtent`] if L is zero; [`Error::Argument`] if min > max on an axis, if a bound is not a finite
+    /// number in range, or lies so far from the origin that the cube around it cannot be told in doubles.
     pub fn around(min: [f64; 3], max: [f64; 3], depth: u8) -> Result<Frame, Error> {
         if (0..3).any(|axis| min[axis] > max[axis] || min[axis].is_nan() || max[axis].is_nan()) {
             return Err(Error::Argument {

@@ -241,7 +241,8 @@ fn copy_raw(bricks: &Bricks<'_>) -> Result<OwnedBricks, Error> {
     })
 }
 
-fn try_copy<T: Copy>(slice: &[T]) -> Result<Vec<T>, Error> {
+/// A copy of a slice, whose memory can be refused.
+pub(crate) fn try_copy<T: Copy>(slice: &[T]) -> Result<Vec<T>, Error> {
     let mut copy = Vec::new();
     copy.try_reserve_exact(slice.len()).map_err(|_| Error::OutOfMemory)?;
     copy.extend_from_slice(slice);

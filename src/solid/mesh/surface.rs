@@ -22,6 +22,7 @@ use once_cell::race::OnceBox;
 use super::topology::Topology;
 use crate::error::{Error, MeshError};
 use crate::lattice::{LARGEST, SMALLEST};
+use crate::octree::try_copy;
 
 /// Which points a closed surface encloses.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
@@ -255,10 +256,7 @@ impl TriangleMesh {
         let mut vertices = Vec::new();
         vertices.try_reserve_exact(self.vertices.len()).map_err(|_| Error::OutOfMemory)?;
         vertices.extend(self.vertices.iter().copied().map(f));
-        let mut triangles = Vec::new();
-        triangles.try_reserve_exact(self.triangles.len()).map_err(|_| Error::OutOfMemory)?;
-        triangles.extend_from_slice(&self.triangles);
-        Self::new(vertices, triangles)
+        Self::new(vertices, try_copy(&self.triangles)?)
     }
 
     /// The mesh moved by `offset`: [`transformed`](Self::transformed) by a rounded sum.
@@ -279,13 +277,7 @@ impl TriangleMesh {
     /// [`Error::OutOfMemory`].
     #[cfg(feature = "capi")]
     pub(crate) fn try_clone(&self) -> Result<Self, Error> {
-        fn copy<T: Copy>(of: &[T]) -> Result<Vec<T>, Error> {
-            let mut copy = Vec::new();
-            copy.try_reserve_exact(of.len()).map_err(|_| Error::OutOfMemory)?;
-            copy.extend_from_slice(of);
-            Ok(copy)
-        }
-        let (vertices, triangles) = (copy(&self.vertices)?, copy(&self.triangles)?);
+        let (vertices, triangles) = (try_copy(&self.vertices)?, try_copy(&self.triangles)?);
         Ok(Self { vertices, triangles, topology: OnceBox::new(), ..*self })
     }
 
