@@ -3,6 +3,10 @@
 
 #![cfg(feature = "std")]
 
+#[path = "../fuzz/bodies/aligned.rs"]
+mod aligned;
+
+use aligned::Aligned;
 use leafless::{
     Ball, Control, Cube, Cursor, Error, FormatError, Frame, Metadata, Octree, OctreeRef, PointCursor, Rule,
     Solid, Stored, Tag, Verdict, build, compact, complement, difference, file, intersection, union, xor,
@@ -131,25 +135,6 @@ fn small_files() -> Vec<Vec<u8>> {
 }
 
 // ---- bytes ----------------------------------------------------------------------------------------------
-
-/// Bytes on an address that is a multiple of 8.
-struct Aligned(Vec<u64>, usize);
-
-impl Aligned {
-    fn new(bytes: &[u8]) -> Aligned {
-        let mut words = vec![0u64; bytes.len().div_ceil(8)];
-        bytemuck::cast_slice_mut::<u64, u8>(&mut words)[..bytes.len()].copy_from_slice(bytes);
-        Aligned(words, bytes.len())
-    }
-
-    fn bytes(&self) -> &[u8] {
-        &bytemuck::cast_slice::<u64, u8>(&self.0)[..self.1]
-    }
-
-    fn bytes_mut(&mut self) -> &mut [u8] {
-        &mut bytemuck::cast_slice_mut::<u64, u8>(&mut self.0)[..self.1]
-    }
-}
 
 fn number(bytes: &[u8], at: usize, length: usize) -> u64 {
     let mut raw = [0; 8];

@@ -7,6 +7,10 @@
 #[path = "../format_spec/make_vectors.rs"]
 mod make_vectors;
 
+#[path = "../fuzz/bodies/aligned.rs"]
+mod aligned;
+
+use aligned::Aligned;
 use leafless::{Error, FormatError, Frame, Membership, Octree, OctreeRef, PointCursor, file};
 use make_vectors::{Way, hex, name, number};
 use std::collections::BTreeSet;
@@ -19,21 +23,6 @@ fn folder() -> PathBuf {
 
 fn specification() -> String {
     fs::read_to_string(folder().join("specification.md")).unwrap()
-}
-
-/// Bytes on an address that is a multiple of 8.
-struct Aligned(Vec<u64>, usize);
-
-impl Aligned {
-    fn new(bytes: &[u8]) -> Aligned {
-        let mut words = vec![0u64; bytes.len().div_ceil(8)];
-        bytemuck::cast_slice_mut::<u64, u8>(&mut words)[..bytes.len()].copy_from_slice(bytes);
-        Aligned(words, bytes.len())
-    }
-
-    fn bytes(&self) -> &[u8] {
-        &bytemuck::cast_slice::<u64, u8>(&self.0)[..self.1]
-    }
 }
 
 // ---- the folder -----------------------------------------------------------------------------------------

@@ -1,6 +1,7 @@
 //! What the fuzz targets do, and how they change their inputs. The test suite includes these files too.
 #![allow(dead_code, unused_imports)]
 
+mod aligned;
 pub mod layout;
 mod mutator;
 mod queries;
@@ -8,6 +9,7 @@ pub mod seeds;
 mod set_algebra;
 mod ways_in;
 
+pub use aligned::Aligned;
 pub use mutator::{changed, mutate_file, mutate_pair, repairs};
 pub use queries::queries;
 pub use set_algebra::{set_algebra, threads};
@@ -39,30 +41,6 @@ impl Random {
     /// True once in `n` times.
     pub fn one_in(&mut self, n: usize) -> bool {
         self.below(n) == 0
-    }
-}
-
-/// Bytes on an address that is a multiple of 8.
-pub struct Aligned(Vec<u64>, usize);
-
-impl Aligned {
-    pub fn new(bytes: &[u8]) -> Aligned {
-        let mut words = vec![0u64; bytes.len().div_ceil(8)];
-        bytemuck::cast_slice_mut::<u64, u8>(&mut words)[..bytes.len()].copy_from_slice(bytes);
-        Aligned(words, bytes.len())
-    }
-
-    pub fn bytes(&self) -> &[u8] {
-        &bytemuck::cast_slice::<u64, u8>(&self.0)[..self.1]
-    }
-
-    /// The words that the bytes lie in, for ever.
-    pub fn leak(self) -> &'static [u64] {
-        self.0.leak()
-    }
-
-    pub fn bytes_mut(&mut self) -> &mut [u8] {
-        &mut bytemuck::cast_slice_mut::<u64, u8>(&mut self.0)[..self.1]
     }
 }
 
