@@ -21,6 +21,10 @@ pub(super) struct Topology {
     pub bodies: u64,
     /// The vertices of the boundary edges, ascending.
     pub open_vertices: Vec<u32>,
+    /// The surface's boundary as a chain: each edge that more triangles run along in one direction than in the other,
+    /// in that direction, as often as there are more. Of a surface whose triangles cancel each other's edges it is
+    /// empty; otherwise every vertex begins as many of these edges as it ends.
+    pub boundary: Vec<[u32; 2]>,
 }
 
 impl Topology {
@@ -59,6 +63,7 @@ impl Topology {
             non_manifold_edges: 0,
             bodies: 0,
             open_vertices: Vec::new(),
+            boundary: Vec::new(),
         };
         let mut bodies = DisjointSets::new(triangles.len())?;
         for low in 0..vertices {
@@ -83,6 +88,11 @@ impl Topology {
                     result.misoriented_edges += 1;
                 }
                 result.non_manifold_edges += u64::from(edge.len() > 2);
+                let high = (edge[0] >> 32) as u32;
+                let directed = if 2 * forward > edge.len() { [low as u32, high] } else { [high, low as u32] };
+                let excess = (2 * forward).abs_diff(edge.len());
+                result.boundary.try_reserve(excess).map_err(|_| Error::OutOfMemory)?;
+                result.boundary.extend(core::iter::repeat_n(directed, excess));
             }
         }
         result.bodies = bodies.count;
