@@ -148,7 +148,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 
     let (mesh, source) = read_mesh(&input)?;
     let fill = arguments.fill.into();
-    mesh.check_closed(fill).map_err(|error| hint(&input, error))?;
+    if fill == FillRule::EvenOdd {
+        mesh.check_closed(fill).map_err(|error| hint(&input, error))?;
+    }
     let mesh_report = mesh.report().of(&input)?;
     let (min, max) = mesh.bounds();
     let frame = match &arguments.bounds {

@@ -7,6 +7,7 @@
 //! other cell is wholly on one side, and which side is an exact integer, the winding number of its lowest
 //! centre, carried from cell to cell along lines that count the triangles they pierce.
 
+mod boundary;
 mod crossing;
 mod overlap;
 mod placed;
@@ -15,6 +16,7 @@ mod sew;
 mod split;
 mod surface;
 mod topology;
+mod winding;
 
 pub use split::{MeshPart, MeshScratch, MeshSolid};
 pub(crate) use surface::FacetWelder;

@@ -4,7 +4,9 @@
 //! a double, as lattice-aligned parts have it), and with its exact *ranks* among the planes of cell centres.
 //! Bulk work is done on these; whatever they leave open is decided exactly on the original coordinates.
 
+use super::boundary::Loops;
 use super::surface::TriangleMesh;
+use super::winding::Caps;
 use crate::error::Error;
 use crate::lattice::Frame;
 use crate::lattice::exact::{floor, two_diff, two_product};
@@ -37,28 +39,55 @@ pub(super) struct Placed {
     /// How far the surface may lie from the mesh, in finest cells: what was moved to close hair cracks.
     displacement: f64,
     vertices: Vec<Vertex>,
+    /// What closes the surface. Its triangles are numbered on from the mesh's.
+    pub(super) caps: Caps,
 }
 
 /// The three corners of a triangle.
 pub(super) type Corners<'p> = [&'p Vertex; 3];
 
 impl Placed {
-    pub(super) fn new(mesh: Arc<TriangleMesh>, frame: &Frame) -> Result<Placed, Error> {
+    /// The mesh with caps over the loops of its boundary.
+    pub(super) fn new(mesh: Arc<TriangleMesh>, frame: &Frame, loops: &Loops) -> Result<Placed, Error> {
         let mut vertices = Vec::new();
         vertices.try_reserve_exact(mesh.vertices().len()).map_err(|_| Error::OutOfMemory)?;
         vertices.extend(mesh.vertices().iter().map(|&vertex| place(frame, vertex)));
         let displacement = mesh.displacement() / frame.cell_size() * (1.0 + 4.0 * f64::EPSILON);
-        Ok(Placed { frame: *frame, mesh, displacement, vertices })
+        let caps = Caps::new(loops, &vertices, displacement)?;
+        Ok(Placed { frame: *frame, mesh, displacement, vertices, caps })
+    }
+
+    /// How many triangles the surface and its caps have.
+    pub(super) fn count(&self) -> u32 {
+        (self.mesh.triangles().len() + self.caps.triangles().len()) as u32
+    }
+
+    pub(super) fn is_cap(&self, triangle: u32) -> bool {
+        triangle as usize >= self.mesh.triangles().len()
+    }
+
+    #[inline(always)]
+    pub(super) fn vertex(&self, vertex: u32) -> &Vertex {
+        &self.vertices[vertex as usize]
+    }
+
+    #[inline(always)]
+    fn triangle(&self, triangle: u32) -> [u32; 3] {
+        let of_mesh = self.mesh.triangles();
+        match of_mesh.get(triangle as usize) {
+            Some(&triangle) => triangle,
+            None => self.caps.triangles()[triangle as usize - of_mesh.len()],
+        }
     }
 
     #[inline(always)]
     pub(super) fn corners(&self, triangle: u32) -> Corners<'_> {
-        self.mesh.triangles()[triangle as usize].map(|vertex| &self.vertices[vertex as usize])
+        self.triangle(triangle).map(|vertex| self.vertex(vertex))
     }
 
     /// The corners as the mesh has them, in model units.
     pub(super) fn original(&self, triangle: u32) -> [[f64; 3]; 3] {
-        self.mesh.triangles()[triangle as usize].map(|vertex| self.mesh.vertices()[vertex as usize])
+        self.triangle(triangle).map(|vertex| self.mesh.vertices()[vertex as usize])
     }
 }
 

@@ -50,11 +50,16 @@ impl Scan {
     pub(super) fn fill(&mut self, task: Task<'_>, block: &mut Block) -> Result<(), Error> {
         let rule = block.rule();
         self.wind_floor(&task);
-        if !self.wind(&task) {
+        if self.wind(&task) {
+            let columns = self.low.iter_mut().zip(self.high.iter());
+            match task.fill {
+                FillRule::NonZero => columns.for_each(|(low, high)| *low |= high),
+                // Of −1, 0, 1, 2 those with different bits.
+                FillRule::Positive => columns.for_each(|(low, high)| *low ^= high),
+                FillRule::EvenOdd => {}
+            }
+        } else {
             self.wind_counting(&task)?;
-        }
-        if task.fill == FillRule::NonZero {
-            self.low.iter_mut().zip(self.high.iter()).for_each(|(low, high)| *low |= high);
         }
         let inside = &self.low;
         let (lower, upper) = block.planes_mut();
@@ -140,7 +145,8 @@ impl Scan {
         misfit == 0
     }
 
-    /// The same with full counters, for blocks where shells overlap several times.
+    /// The same with full counters, for blocks where shells overlap several times; the lower bits are then
+    /// what lies inside.
     #[cold]
     fn wind_counting(&mut self, task: &Task<'_>) -> Result<(), Error> {
         self.changes.clear();
@@ -150,13 +156,12 @@ impl Scan {
         for_crossings(task, |column, z, step| changes[column * SIZE + z as usize] += step);
         for (column, changes) in changes.chunks_exact(SIZE).enumerate() {
             let mut winding = self.floor[column];
-            let (mut odd, mut more) = (0u64, 0u64);
+            let mut inside = 0;
             for (z, change) in changes.iter().enumerate() {
                 winding += change;
-                odd |= (winding as u64 & 1) << z;
-                more |= ((winding >> 1 != 0) as u64) << z;
+                inside |= (task.fill.encloses(winding) as u64) << z;
             }
-            (self.low[column], self.high[column]) = (odd, more);
+            self.low[column] = inside;
         }
         Ok(())
     }

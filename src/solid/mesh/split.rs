@@ -1,11 +1,13 @@
 //! Splitting the cells of a mesh.
 
+use super::boundary::Loops;
 use super::crossing::Projection;
 use super::overlap::Overlap;
 use super::placed::{Corners, Placed, bounds, ranks};
 use super::scan::{Scan, Task};
 use super::surface::{FillRule, TriangleMesh};
-use crate::error::Error;
+use crate::error::{Error, MeshError};
+use crate::lattice::exact::floor;
 use crate::lattice::{Cell, Cube, Frame};
 use crate::octree::{Block, Tag};
 use crate::solid::{Scratch, Solid, Verdict};
@@ -13,7 +15,11 @@ use alloc::boxed::Box;
 use alloc::sync::Arc;
 use alloc::vec::Vec;
 
-/// A closed triangle mesh as a solid on the lattice of one frame.
+/// A triangle mesh as a solid on the lattice of one frame.
+///
+/// Any mesh will do. Where it is closed, what it encloses is exact. Where it is not, [`FillRule`] says by which convention
+/// a point is inside; a cell is FULL or EMPTY if that is proven for all of its points, and around holes stay
+/// PARTIAL cells which no triangle cuts: [`TriangleMesh::report`] tells whether to expect them.
 ///
 /// ```
 /// use leafless::{Control, FillRule, Frame, MeshSolid, Rule, TriangleMesh, build};
@@ -36,7 +42,11 @@ pub struct MeshPart {
     /// Where the triangles lie in the scratch memory.
     first: usize,
     count: usize,
+    /// Of the surface with its caps; without them if that is settled.
     winding: i32,
+    /// Whether the surface's winding number in the cell is `winding`, up to less than one half: always if there are no
+    /// caps.
+    settled: bool,
 }
 
 /// Lists of triangles, one for each cell on the way down, and what a block is scanned with.
@@ -59,38 +69,98 @@ impl Scratch for MeshScratch {
 }
 
 impl MeshSolid {
-    /// A closed mesh on the lattice of `frame`; time and memory linear in the mesh, which is shared (an
-    /// `Arc`) or taken over. A mesh that reaches beyond
-    /// the universe is clipped by it, which [`exterior`](Solid::exterior) tells.
+    /// A mesh on the lattice of `frame`; time and memory linear in the mesh, which is shared (an `Arc`) or taken
+    /// over. (Boundaries are sorted: n log n in the number of their edges.) A mesh that reaches beyond the universe is
+    /// clipped by it, which [`exterior`](Solid::exterior) tells.
     ///
     /// # Errors
-    /// [`Error::Mesh`] if the mesh is empty, not closed or (for [`FillRule::NonZero`]) not consistently
-    /// oriented.
+    /// [`Error::Mesh`] if the mesh is empty, or, for [`FillRule::EvenOdd`], if an odd number of triangles meet on an
+    /// edge; [`Error::OutOfMemory`].
     pub fn new(
         mesh: impl Into<Arc<TriangleMesh>>,
         frame: &Frame,
         fill: FillRule,
     ) -> Result<MeshSolid, Error> {
         let mesh = mesh.into();
-        mesh.check_closed(fill)?;
-        Ok(MeshSolid { placed: Placed::new(mesh, frame)?, fill })
+        let loops = match fill {
+            FillRule::EvenOdd => {
+                mesh.check_closed(fill)?;
+                Loops::default()
+            }
+            FillRule::NonZero | FillRule::Positive if mesh.triangles().is_empty() => {
+                return Err(MeshError::Empty.into());
+            }
+            FillRule::NonZero | FillRule::Positive => mesh.loops()?,
+        };
+        Ok(MeshSolid { placed: Placed::new(mesh, frame, &loops)?, fill })
     }
 
-    fn is_inside(&self, winding: i32) -> bool {
-        match self.fill {
-            FillRule::NonZero => winding != 0,
-            FillRule::EvenOdd => winding % 2 != 0,
+    /// What is known of a cell of edge `size` that `triangles` cut.
+    #[inline]
+    fn verdict(&self, triangles: &[u32], at: [i32; 3], size: i32, part: MeshPart) -> Verdict<MeshPart> {
+        let part = if part.settled { part } else { self.settled(triangles, at, size, part) };
+        if part.settled {
+            return if part.count > 0 {
+                Verdict::Partial(part)
+            } else if self.fill.encloses(part.winding) {
+                Verdict::Full
+            } else {
+                Verdict::Empty
+            };
         }
+        let is_cut = triangles.first().is_some_and(|&first| !self.placed.is_cap(first));
+        if size == 1 && !is_cut {
+            let (certain, inside) = self.sampled(at, part.winding);
+            if certain {
+                return if inside { Verdict::Full } else { Verdict::Empty };
+            }
+        }
+        Verdict::Partial(part)
     }
 
-    fn verdict(&self, part: MeshPart) -> Verdict<MeshPart> {
-        if part.count > 0 {
-            Verdict::Partial(part)
-        } else if self.is_inside(part.winding) {
-            Verdict::Full
-        } else {
-            Verdict::Empty
+    /// The part of a cell, with the winding number of the caps taken off if that is the same integer throughout
+    /// the cell, up to less than one half.
+    #[cold]
+    fn settled(&self, triangles: &[u32], at: [i32; 3], size: i32, part: MeshPart) -> MeshPart {
+        // On a cap its winding number jumps.
+        if size == 1 || triangles.last().is_some_and(|&last| self.placed.is_cap(last)) {
+            return part;
         }
+        let radius = size as f64 * HALF_DIAGONAL;
+        let middle = at.map(|a| a as f64 + size as f64 / 2.0);
+        for far in FAR {
+            let caps = self.placed.caps.at(&self.placed, middle, radius, far, None);
+            let nearest = floor(caps.value + 0.5);
+            let room = 0.5 - (caps.value - nearest as f64).abs();
+            let change = caps.slope * radius;
+            if change + caps.error < room {
+                return MeshPart { winding: part.winding - nearest as i32, settled: true, ..part };
+            }
+            if !(change < room + caps.error) {
+                // It does change, or may: no better sum helps.
+                break;
+            }
+        }
+        part
+    }
+
+    /// Whether the centre of a finest cell is inside, and whether that is certain for the whole cell, if nothing cuts
+    /// it; `winding` is the centre's of surface and caps.
+    #[cold]
+    fn sampled(&self, at: [i32; 3], winding: i32) -> (bool, bool) {
+        let centre = at.map(|a| a as f64 + 0.5);
+        let mut result = (false, false);
+        for far in FAR {
+            let caps = self.placed.caps.at(&self.placed, centre, HALF_DIAGONAL, far, Some(at));
+            let own = winding as f64 - caps.value;
+            let above = if self.fill == FillRule::Positive { own - 0.5 } else { own.abs() - 0.5 };
+            let certain = above.abs() > caps.error + caps.slope * HALF_DIAGONAL;
+            result = (certain, above >= 0.0);
+            if certain || above.abs() > caps.error && !(above.abs() > caps.slope * HALF_DIAGONAL) {
+                break;
+            }
+        }
+        result
     }
 
     /// Winding numbers of the lowest centres of a cell's eight children of edge `half`, the cell's own being
@@ -143,6 +213,54 @@ impl MeshSolid {
     }
 }
 
+impl MeshSolid {
+    /// Whether the winding number is proven less than one half in magnitude everywhere outside of the universe, which holds
+    /// the whole surface: a harmonic function that vanishes at infinity takes its extremes on the faces.
+    fn is_quiet_outside(&self) -> bool {
+        let caps = &self.placed.caps;
+        if caps.triangles().is_empty() {
+            return true;
+        }
+        let cells = self.placed.frame.cells() as f64;
+        let mut evaluations = 0;
+        // A square on each face: the face, its lowest corner, its edge.
+        let mut squares: Vec<(usize, [f64; 2], f64)> = Vec::new();
+        if squares.try_reserve(6 + 3 * QUIET_EVALUATIONS).is_err() {
+            return false;
+        }
+        squares.extend((0..6).map(|face| (face, [0.0; 2], cells)));
+        while let Some((face, corner, size)) = squares.pop() {
+            let (w, height) = (face / 2, if face % 2 == 0 { 0.0 } else { cells });
+            let middle = corner.map(|x| x + size / 2.0);
+            let mut point = [height; 3];
+            (point[(w + 1) % 3], point[(w + 2) % 3]) = (middle[0], middle[1]);
+            let radius = size * core::f64::consts::FRAC_1_SQRT_2;
+            let seen = caps.at(&self.placed, point, radius, FAR[1], None);
+            if seen.value.abs() + seen.error + seen.slope * radius < 0.5 {
+                continue;
+            }
+            evaluations += 1;
+            if evaluations > QUIET_EVALUATIONS || !(seen.value.abs() - seen.error < 0.5) {
+                return false;
+            }
+            for k in 0..4 {
+                let step = |bit: usize| if k >> bit & 1 != 0 { size / 2.0 } else { 0.0 };
+                squares.push((face, [corner[0] + step(0), corner[1] + step(1)], size / 2.0));
+            }
+        }
+        true
+    }
+}
+
+/// How many squares of the universe's faces are divided at most to learn what is outside.
+const QUIET_EVALUATIONS: usize = 2048;
+
+/// Half the diagonal of a cube of edge 1, rounded up.
+const HALF_DIAGONAL: f64 = 0.866_025_404;
+
+/// At how many times its size a group of caps is far, from the first try to the last.
+const FAR: [f64; 3] = [3.0, 12.0, 96.0];
+
 /// The lowest finest cell of `cell`, and its edge in finest cells.
 fn extent(cell: Cell, depth: u8) -> ([i32; 3], i32) {
     (cell.first_at(depth).at.map(|a| a as i32), 1 << (depth - cell.level))
@@ -157,11 +275,11 @@ impl Solid for MeshSolid {
             return Err(Error::FrameMismatch);
         }
         let first = scratch.triangles.len();
-        let count = self.placed.mesh.triangles().len();
-        scratch.triangles.try_reserve(count).map_err(|_| Error::OutOfMemory)?;
+        let count = self.placed.count();
+        scratch.triangles.try_reserve(count as usize).map_err(|_| Error::OutOfMemory)?;
         let size = frame.cells() as f64;
         let mut winding = 0;
-        for triangle in 0..count as u32 {
+        for triangle in 0..count {
             let corners = self.placed.corners(triangle);
             // The winding number is zero at infinity: follow the lowest centre's line along x from there.
             let spans = |axis: usize| {
@@ -182,8 +300,10 @@ impl Solid for MeshSolid {
                 scratch.triangles.push(triangle);
             }
         }
-        let count = scratch.triangles.len() - first;
-        Ok(self.verdict(MeshPart { first, count, winding }))
+        let triangles = &scratch.triangles[first..];
+        let settled = self.placed.caps.triangles().is_empty();
+        let part = MeshPart { first, count: triangles.len(), winding, settled };
+        Ok(self.verdict(triangles, [0; 3], frame.cells() as i32, part))
     }
 
     fn split(
@@ -229,7 +349,10 @@ impl Solid for MeshSolid {
             }
         }
         Ok([0, 1, 2, 3, 4, 5, 6, 7].map(|k: usize| {
-            self.verdict(MeshPart { first: firsts[k], count: counts[k], winding: windings[k] })
+            let (first, count, settled) = (firsts[k], counts[k], part.settled);
+            let at = [0, 1, 2].map(|axis| at[axis] + if k >> axis & 1 != 0 { half } else { 0 });
+            let part = MeshPart { first, count, winding: windings[k], settled };
+            self.verdict(&triangles[first..first + count], at, half, part)
         }))
     }
 
@@ -240,6 +363,9 @@ impl Solid for MeshSolid {
         part: &MeshPart,
         block: &mut Block,
     ) -> Result<bool, Error> {
+        if !part.settled {
+            return Ok(false);
+        }
         let (at, _) = extent(cube.cell, self.placed.frame.depth());
         let triangles = &scratch.triangles[part.first..part.first + part.count];
         let task = Task { placed: &self.placed, at, triangles, winding: part.winding, fill: self.fill };
@@ -251,9 +377,12 @@ impl Solid for MeshSolid {
         Ok(true)
     }
 
-    fn sample(&self, _: &mut MeshScratch, _: &Cube<'_>, part: &MeshPart) -> Result<Option<bool>, Error> {
+    fn sample(&self, _: &mut MeshScratch, cube: &Cube<'_>, part: &MeshPart) -> Result<Option<bool>, Error> {
         // A finest cell's lowest centre is its only one.
-        Ok(Some(self.is_inside(part.winding)))
+        Ok(Some(match part.settled {
+            true => self.fill.encloses(part.winding),
+            false => self.sampled(extent(cube.cell, self.placed.frame.depth()).0, part.winding).1,
+        }))
     }
 
     fn exterior(&self, frame: &Frame) -> Tag {
@@ -268,7 +397,7 @@ impl Solid for MeshSolid {
             let (min, max) = (outward(min[axis], -margin), outward(max[axis], margin));
             frame.side(axis, min, 0) >= 0 && frame.side(axis, max, 2 * frame.cells() as i64) <= 0
         };
-        if (0..3).all(within) { Tag::Empty } else { Tag::Partial }
+        if (0..3).all(within) && self.is_quiet_outside() { Tag::Empty } else { Tag::Partial }
     }
 
     fn hand_over(

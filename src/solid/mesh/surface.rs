@@ -19,21 +19,42 @@ use glam::DVec3;
 use hashbrown::{DefaultHashBuilder, HashTable};
 use once_cell::race::OnceBox;
 
+use super::boundary::Loops;
 use super::topology::Topology;
 use crate::error::{Error, MeshError};
 use crate::lattice::{LARGEST, SMALLEST};
 use crate::octree::try_copy;
 
-/// Which points a closed surface encloses.
+/// Which points a surface encloses.
+///
+/// The *winding number* of a surface at a point is the solid angle at which it is seen from there, over 4π,
+/// counted positive where the inner side is seen. Of a closed surface it is an integer. Where a surface has holes,
+/// fins, or triangles turned over, it is a fraction, and the rules are a convention: they take the nearest
+/// integer, so that a hole is closed by the surface from which half of all directions lead out.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum FillRule {
-    /// Points that the surface winds around, in either sense and any number of times. Overlapping bodies are
-    /// united; the triangles must be consistently oriented.
+    /// Points whose winding number is at least ½ in magnitude: those that the surface winds around, in either
+    /// sense and any number of times. Overlapping bodies are united, and a body that is inside out is a body.
     #[default]
     NonZero,
     /// Points from which a ray crosses the surface an odd number of times. The overlap of two bodies is
-    /// outside; orientation does not matter.
+    /// outside; orientation does not matter. An even number of triangles must meet on every edge.
     EvenOdd,
+    /// Points whose winding number is at least ½. A body that is inside out is a cavity: it takes away from bodies
+    /// that it overlaps.
+    Positive,
+}
+
+impl FillRule {
+    /// Whether points of a winding number are enclosed.
+    #[inline(always)]
+    pub(super) fn encloses(self, winding: i32) -> bool {
+        match self {
+            FillRule::NonZero => winding != 0,
+            FillRule::EvenOdd => winding % 2 != 0,
+            FillRule::Positive => winding > 0,
+        }
+    }
 }
 
 /// What was found while a mesh was taken in, and how its triangles hang together.
@@ -225,9 +246,9 @@ impl TriangleMesh {
 
     /// Checks that the mesh bounds a solid under `rule`.
     ///
-    /// For [`FillRule::EvenOdd`] an even number of triangles must meet on every edge, for
-    /// [`FillRule::NonZero`] half of them must also run in each direction. Self-intersections, overlaps,
-    /// nested and inside-out bodies are all allowed.
+    /// For [`FillRule::EvenOdd`] an even number of triangles must meet on every edge; for the others half of them
+    /// must also run in each direction, and then every winding number is an integer. Self-intersections,
+    /// overlaps, nested and inside-out bodies are all allowed.
     ///
     /// Costs as [`report`](Self::report). Fails with [`MeshError::Empty`], [`MeshError::Open`],
     /// [`MeshError::Unoriented`] (tested in this order) or [`Error::OutOfMemory`].
@@ -240,10 +261,10 @@ impl TriangleMesh {
             return Err(MeshError::Open { edges: topology.boundary_edges }.into());
         }
         match rule {
-            FillRule::NonZero if topology.misoriented_edges > 0 => {
+            FillRule::NonZero | FillRule::Positive if topology.misoriented_edges > 0 => {
                 Err(MeshError::Unoriented { edges: topology.misoriented_edges }.into())
             }
-            FillRule::NonZero | FillRule::EvenOdd => Ok(()),
+            FillRule::NonZero | FillRule::Positive | FillRule::EvenOdd => Ok(()),
         }
     }
 
@@ -279,6 +300,11 @@ impl TriangleMesh {
     pub(crate) fn try_clone(&self) -> Result<Self, Error> {
         let (vertices, triangles) = (try_copy(&self.vertices)?, try_copy(&self.triangles)?);
         Ok(Self { vertices, triangles, topology: OnceBox::new(), ..*self })
+    }
+
+    /// The loops of the surface's boundary, in the direction of its triangles.
+    pub(super) fn loops(&self) -> Result<Loops, Error> {
+        Loops::of(&self.topology()?.boundary)
     }
 
     /// The vertices at open edges, ascending.

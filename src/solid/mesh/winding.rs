@@ -1,0 +1,328 @@
+//! Winding numbers of open surfaces.
+//!
+//! The *winding number* of a surface at a point is the solid angle at which it is seen from there, with a sign,
+//! over 4π (Jacobson, Kavan and Sorkine-Hornung 2013). Of a closed surface it is an integer. What an open one lacks are
+//! surfaces over the loops of its boundary, *caps*. Surface and caps together are closed, so that their winding
+//! number N is found exactly, as an integer, by counting what lines pierce. The surface's own is then N − c with c
+//! the winding number of the caps alone: a sum over as many triangles as the boundary has edges, and not over
+//! the whole surface. Which caps are chosen does not matter, because their jumps cancel.
+//!
+//! The caps' winding number is a sum of solid angles (van Oosterom and Strackee 1983), in which a far group of
+//! triangles is replaced by the first two terms of its expansion (Barill, Dickson, Schmidt, Levin and
+//! Jacobson 2018), here with a bound of what that leaves out. The distance at which a group is far is a parameter:
+//! whoever needs a smaller error asks again.
+//!
+//! Away from the surface the winding number is smooth, and its slope is at most Σ ∫ ds / (4π·distance²) over the
+//! edges of the *boundary* (the law of Biot and Savart): that bounds it on whole cells.
+
+use super::boundary::Loops;
+use super::crossing::Projection;
+use super::placed::{Placed, Vertex, ranks};
+use crate::error::Error;
+use alloc::vec::Vec;
+use core::f64::consts::PI;
+use glam::{DMat3, DVec3};
+
+/// Triangles that are summed one by one.
+const LEAF: usize = 4;
+
+/// Triangles that close a surface, in the order of a tree of bounding spheres.
+#[derive(Default)]
+pub(super) struct Caps {
+    triangles: Vec<[u32; 3]>,
+    /// Bit i: the edge from corner i to corner i + 1 is one of the surface's boundary.
+    rims: Vec<u8>,
+    nodes: Vec<Node>,
+    /// How far the boundary may lie from where its vertices are placed, in finest cells.
+    wobble: f64,
+    /// Bound of the error of a vertex's position per axis.
+    error: f64,
+}
+
+/// A group of caps, all that the tree has below it.
+#[derive(Clone, Copy)]
+struct Node {
+    /// A sphere around them.
+    centre: DVec3,
+    radius: f64,
+    /// ∫ dA.
+    area: DVec3,
+    /// ∫ dA ⊗ (y − centre).
+    moment: DMat3,
+    /// ∫ |dA|, and ∫ |y − centre|² |dA|.
+    size: f64,
+    spread: f64,
+    /// Length of the boundary's edges.
+    rim: f64,
+    first: u32,
+    end: u32,
+    /// The node after the last one below this; the next one if this is a leaf.
+    skip: u32,
+}
+
+/// What is known of the caps' winding number in a ball.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Winding {
+    /// At its centre, and a bound of its error.
+    pub(super) value: f64,
+    pub(super) error: f64,
+    /// Bound of the change per finest cell, wherever no cap is passed; infinite or not a number if nothing is known.
+    pub(super) slope: f64,
+}
+
+impl Caps {
+    /// Caps over the loops of a surface's boundary, whose vertices are given with their places.
+    ///
+    /// O(n log n) in the boundary's edges, of which there are never fewer than caps; 40 to 100 bytes for each.
+    pub(super) fn new(loops: &Loops, vertices: &[Vertex], displacement: f64) -> Result<Caps, Error> {
+        let count = loops.iter().map(|walk| walk.len() - 2).sum::<usize>();
+        let mut caps = Caps::default();
+        caps.triangles.try_reserve_exact(count).map_err(|_| Error::OutOfMemory)?;
+        caps.rims.try_reserve_exact(count).map_err(|_| Error::OutOfMemory)?;
+        if u32::try_from(count).is_err() {
+            return Err(Error::OutOfMemory);
+        }
+        let mut slots = Vec::new();
+        slots.try_reserve_exact(count).map_err(|_| Error::OutOfMemory)?;
+        let mut error = 0f32;
+        for walk in loops.iter() {
+            for &vertex in walk {
+                error = vertices[vertex as usize].error.into_iter().fold(error, f32::max);
+            }
+            // The loop backward, so that its edges cancel those of the surface. By halves, not as a fan: most caps
+            // are then as small as the edges that they lie at, and groups of them are far from most places.
+            halve(walk.len(), &mut |[a, b, c], rims| {
+                slots.push((([a, b, c]).map(|corner| walk[corner]), rims));
+            });
+        }
+        caps.error = error as f64;
+        caps.wobble = 2.0 * (caps.error + displacement);
+        caps.nodes
+            .try_reserve_exact(2 * count.div_ceil(LEAF).next_power_of_two())
+            .map_err(|_| Error::OutOfMemory)?;
+        let at = |vertex: u32| DVec3::from(vertices[vertex as usize].at);
+        if count > 0 {
+            caps.grow(&mut slots, 0, &at)?;
+        }
+        caps.triangles.extend(slots.iter().map(|slot| slot.0));
+        caps.rims.extend(slots.iter().map(|slot| slot.1));
+        Ok(caps)
+    }
+
+    /// Adds the subtree of `slots`, the first of which is number `first`, and puts them in its order.
+    fn grow(
+        &mut self,
+        slots: &mut [([u32; 3], u8)],
+        first: usize,
+        at: &impl Fn(u32) -> DVec3,
+    ) -> Result<(), Error> {
+        let node = Node::around(slots, first, at);
+        let index = self.nodes.len();
+        self.nodes.try_reserve(1).map_err(|_| Error::OutOfMemory)?;
+        self.nodes.push(node);
+        if slots.len() > LEAF {
+            // Halves, so that the depth is the logarithm whatever the coordinates are.
+            let centroid = |slot: &([u32; 3], u8)| slot.0.iter().map(|&v| at(v)).sum::<DVec3>();
+            let (low, high) = (slots.iter().map(centroid))
+                .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)));
+            let extent = (high - low).to_array();
+            let axis = (0..3).fold(0, |best, axis| if extent[axis] > extent[best] { axis } else { best });
+            let middle = slots.len() / 2;
+            slots.select_nth_unstable_by(middle, |a, b| {
+                // Equal centroids are told apart by their corners: the order is the same on every machine.
+                centroid(a)[axis].total_cmp(&centroid(b)[axis]).then(a.0.cmp(&b.0))
+            });
+            let (low, high) = slots.split_at_mut(middle);
+            self.grow(low, first, at)?;
+            self.grow(high, first + middle, at)?;
+        }
+        self.nodes[index].skip = self.nodes.len() as u32;
+        Ok(())
+    }
+
+    pub(super) fn triangles(&self) -> &[[u32; 3]] {
+        &self.triangles
+    }
+
+    /// The winding number around `point`, and its slope within `radius` of it (both in finest cells from the frame's
+    /// origin). A group is far if its distance is at least `far` times its size. If the point is a cell's centre,
+    /// `cell` says so: of a centre on a cap, it decides by the symbolic shift.
+    ///
+    /// The error is bounded, whatever `far` is; it falls with its square.
+    pub(super) fn at(
+        &self,
+        placed: &Placed,
+        point: [f64; 3],
+        radius: f64,
+        far: f64,
+        cell: Option<[i32; 3]>,
+    ) -> Winding {
+        let p = DVec3::from(point);
+        let radius = radius + self.wobble;
+        let mut sum = Winding { value: 0.0, error: 0.0, slope: 0.0 };
+        let mut next = 0;
+        while let Some(node) = self.nodes.get(next) {
+            let towards = node.centre - p;
+            let distance = towards.length();
+            let (gap, clear) = (distance - node.radius, distance - node.radius - radius);
+            // The second condition keeps the slope's bound within a small factor of what the single edges give.
+            if gap >= far * node.radius && clear >= 2.0 * node.radius && clear > 0.0 {
+                node.add(towards, distance, gap, &mut sum);
+                sum.slope += node.rim / (clear * clear);
+                next = node.skip as usize;
+                continue;
+            }
+            if node.skip as usize == next + 1 {
+                for cap in node.first as usize..node.end as usize {
+                    self.add(placed, cap, p, radius, cell, &mut sum);
+                }
+            }
+            next += 1;
+        }
+        let slope = sum.slope * (1.0 + 1e-6) / (4.0 * PI);
+        // Where the boundary wobbles, the winding number changes as if the point did.
+        let error = sum.error * (1.0 + 1e-6) + if self.wobble > 0.0 { slope * self.wobble } else { 0.0 };
+        Winding { value: sum.value, error: error + 1e-12, slope }
+    }
+
+    fn add(
+        &self,
+        placed: &Placed,
+        cap: usize,
+        p: DVec3,
+        radius: f64,
+        cell: Option<[i32; 3]>,
+        sum: &mut Winding,
+    ) {
+        let triangle = self.triangles[cap];
+        let corners = triangle.map(|vertex| DVec3::from(placed.vertex(vertex).at) - p);
+        let lengths = corners.map(DVec3::length);
+        let [a, b, c] = [0, 1, 2].map(|i| corners[i] / lengths[i]);
+        // Half the solid angle is the argument of (real, imaginary).
+        let imaginary = a.dot(b.cross(c));
+        let real = 1.0 + a.dot(b) + b.dot(c) + c.dot(a);
+        let (modulus, wrong) = (
+            DVec3::new(real, imaginary, 0.0).length(),
+            64.0 * f64::EPSILON + 8.0 * self.error * lengths.iter().map(|length| 1.0 / length).sum::<f64>(),
+        );
+        // Also false for NaN.
+        if modulus >= 2.0 * wrong {
+            let mut angle = libm::atan2(imaginary, real);
+            if real < 0.0 && imaginary.abs() <= wrong {
+                match cell.and_then(|cell| self.side(placed, cap, cell)) {
+                    Some(side) => angle = side * angle.abs(),
+                    None => sum.error += 1.0,
+                }
+            }
+            sum.value += angle / (2.0 * PI);
+            sum.error += wrong / (3.0 * modulus);
+        } else {
+            sum.error += 1.0;
+        }
+        for i in (0..3).filter(|i| self.rims[cap] >> i & 1 != 0) {
+            let (from, to) = (corners[i], corners[(i + 1) % 3]);
+            let edge = to - from;
+            let length = edge.length();
+            let along =
+                if length > 0.0 { (-from.dot(edge) / (length * length)).clamp(0.0, 1.0) } else { 0.0 };
+            let distance = (from + along * edge).length() * (1.0 - 1e-9) - 1e-9 * length.min(1.0) - radius;
+            // ∫ ds / distance² along the edge, and at most along its whole line.
+            let share = if distance > 0.0 { (length / distance).min(PI) / distance } else { f64::INFINITY };
+            sum.slope += share;
+        }
+    }
+
+    /// On which side of a cap the centre of a cell lies that is over it: 1 if the cap faces away from it.
+    #[cold]
+    fn side(&self, placed: &Placed, cap: usize, cell: [i32; 3]) -> Option<f64> {
+        let triangle = (placed.mesh.triangles().len() + cap) as u32;
+        let corners = placed.corners(triangle);
+        (0..3).find_map(|w| {
+            let (u, v) = [(1, 2), (0, 2), (0, 1)][w];
+            let (first, end) = ranks(&corners, v);
+            let within = first <= cell[v] && cell[v] < end;
+            let mut seen = Projection::new(placed, triangle, corners, w);
+            let span = within.then(|| seen.span(cell[v])).flatten()?;
+            let over = span.first <= cell[u] && cell[u] < span.end;
+            over.then(|| {
+                let is_above = cell[w] >= seen.above(cell[u], cell[v], span.step);
+                // A step of −1: the cap faces up.
+                if is_above == (span.step < 0) { -1.0 } else { 1.0 }
+            })
+        })
+    }
+}
+
+impl Node {
+    fn around(slots: &[([u32; 3], u8)], first: usize, at: &impl Fn(u32) -> DVec3) -> Node {
+        let corners = || slots.iter().flat_map(|slot| slot.0).map(at);
+        let (low, high) = corners()
+            .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)));
+        let centre = low.midpoint(high);
+        let mut node = Node {
+            centre,
+            radius: corners().fold(0.0, |radius: f64, p| radius.max((p - centre).length())) * (1.0 + 1e-9),
+            area: DVec3::ZERO,
+            moment: DMat3::ZERO,
+            size: 0.0,
+            spread: 0.0,
+            rim: 0.0,
+            first: first as u32,
+            end: (first + slots.len()) as u32,
+            skip: 0,
+        };
+        for &(triangle, rims) in slots {
+            let [a, b, c] = triangle.map(|vertex| at(vertex) - centre);
+            let area = (b - a).cross(c - a) / 2.0;
+            let size = area.length();
+            let middle = a + b + c;
+            node.area += area;
+            // Columns are area · s.x, area · s.y, area · s.z.
+            node.moment += DMat3::from_cols(area * middle.x, area * middle.y, area * middle.z) * (1.0 / 3.0);
+            node.size += size;
+            node.spread += size / 12.0
+                * (a.length_squared() + b.length_squared() + c.length_squared() + middle.length_squared());
+            for (i, (from, to)) in [(a, b), (b, c), (c, a)].into_iter().enumerate() {
+                if rims >> i & 1 != 0 {
+                    node.rim += (to - from).length();
+                }
+            }
+        }
+        node
+    }
+
+    /// Adds the group's winding number as seen from afar.
+    fn add(&self, towards: DVec3, distance: f64, gap: f64, sum: &mut Winding) {
+        let inverse = 1.0 / distance;
+        let direction = towards * inverse;
+        // The kernel y/|y|³ at the centre, and its first derivative (1 − 3 d dᵀ)/|y|³.
+        let first = self.area.dot(direction) * inverse * inverse;
+        let trace = self.moment.x_axis.x + self.moment.y_axis.y + self.moment.z_axis.z;
+        let along = direction.dot(self.moment * direction);
+        let second = (trace - 3.0 * along) * inverse * inverse * inverse;
+        sum.value += (first + second) / (4.0 * PI);
+        // Its second derivative is at most 6/|y|⁴ (harmonic: the symmetric form's norm is its value along d); the
+        // last term is for what is rounded.
+        let square = gap * gap;
+        sum.error += (3.0 * self.spread / square + 1e-11 * self.size) / square / (4.0 * PI);
+    }
+}
+
+/// The triangles of a polygon with `corners` corners, by halves; `found` gets the corners of each, descending, and
+/// which edges are the polygon's.
+fn halve(corners: usize, found: &mut impl FnMut([usize; 3], u8)) {
+    fn part(first: usize, last: usize, closing: bool, found: &mut impl FnMut([usize; 3], u8)) {
+        if last - first < 2 {
+            return;
+        }
+        let middle = first.midpoint(last);
+        let is_edge = |a: usize, b: usize| (b - a == 1) as u8;
+        found(
+            [last, middle, first],
+            is_edge(middle, last) | is_edge(first, middle) << 1 | (closing as u8) << 2,
+        );
+        part(first, middle, false, found);
+        part(middle, last, false, found);
+    }
+    part(0, corners - 1, true, found);
+}
