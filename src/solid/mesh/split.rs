@@ -6,9 +6,10 @@ use super::overlap::Overlap;
 use super::placed::{Corners, Placed, bounds, ranks};
 use super::scan::{Scan, Task};
 use super::surface::{FillRule, TriangleMesh};
+use super::winding::{Local, Range};
 use crate::error::{Error, MeshError};
 use crate::lattice::exact::floor;
-use crate::lattice::{Cell, Cube, Frame};
+use crate::lattice::{Cell, Cube, Frame, MAX_DEPTH};
 use crate::octree::{Block, Tag};
 use crate::solid::{Scratch, Solid, Verdict};
 use alloc::boxed::Box;
@@ -44,6 +45,10 @@ pub struct MeshPart {
     count: usize,
     /// Of the surface with its caps; without them if that is settled.
     winding: i32,
+    /// The caps' own, which is not an integer, is known from its first order around the cell of this level that holds this
+    /// one, or not at all; at the lowest centre it is that and this integer.
+    level: u8,
+    branch: i32,
     /// Whether the surface's winding number in the cell is `winding`, up to less than one half: always if there are no
     /// caps.
     settled: bool,
@@ -55,8 +60,13 @@ pub struct MeshScratch {
     triangles: Vec<u32>,
     /// Bit k: the triangle belongs to child k.
     masks: Vec<u8>,
+    /// The caps' winding number around the latest cells.
+    locals: Locals,
     scan: Option<Box<Scan>>,
 }
+
+/// By level the lower corner of a cell and what is known around its middle.
+type Locals = [Option<([i32; 3], Local)>; MAX_DEPTH as usize + 1];
 
 impl Scratch for MeshScratch {
     fn mark(&self) -> usize {
@@ -95,79 +105,162 @@ impl MeshSolid {
         Ok(MeshSolid { placed: Placed::new(mesh, frame, &loops)?, fill })
     }
 
-    /// What is known of a cell of edge `size` that `triangles` cut.
+    /// What is known of a cell that these triangles cut.
     #[inline]
-    fn verdict(&self, triangles: &[u32], at: [i32; 3], size: i32, part: MeshPart) -> Verdict<MeshPart> {
-        let part = if part.settled { part } else { self.settled(triangles, at, size, part) };
-        if part.settled {
-            return if part.count > 0 {
-                Verdict::Partial(part)
-            } else if self.fill.encloses(part.winding) {
-                Verdict::Full
-            } else {
-                Verdict::Empty
-            };
+    fn verdict(
+        &self,
+        locals: &mut Locals,
+        triangles: &[u32],
+        at: [i32; 3],
+        size: i32,
+        part: MeshPart,
+    ) -> Verdict<MeshPart> {
+        if !part.settled {
+            return self.open_verdict(locals, triangles, at, size, part);
         }
+        if part.count > 0 {
+            Verdict::Partial(part)
+        } else if self.fill.encloses(part.winding) {
+            Verdict::Full
+        } else {
+            Verdict::Empty
+        }
+    }
+
+    /// The same where the caps' winding number is not known to be near one integer.
+    #[cold]
+    fn open_verdict(
+        &self,
+        locals: &mut Locals,
+        triangles: &[u32],
+        at: [i32; 3],
+        size: i32,
+        mut part: MeshPart,
+    ) -> Verdict<MeshPart> {
         let is_cut = triangles.first().is_some_and(|&first| !self.placed.is_cap(first));
-        if size == 1 && !is_cut {
-            let (certain, inside) = self.sampled(at, part.winding);
-            if certain {
-                return if inside { Verdict::Full } else { Verdict::Empty };
-            }
+        let is_capped = triangles.last().is_some_and(|&last| self.placed.is_cap(last));
+        if is_cut && (size == 1 || is_capped) {
+            // Only what its parts are can be decided.
+            return Verdict::Partial(part);
         }
-        Verdict::Partial(part)
+        let mut is_fresh = false;
+        loop {
+            let range = self.caps_over(locals, at, size, part);
+            let change = range.change + range.doubt;
+            if !is_capped {
+                let nearest = floor(range.value + 0.5);
+                if (range.value - nearest as f64).abs() + change < 0.5 {
+                    let winding = part.winding - nearest as i32;
+                    let part = MeshPart { winding, settled: true, ..part };
+                    return self.verdict(locals, triangles, at, size, part);
+                }
+            }
+            if !is_cut {
+                let excess = self.excess(part.winding as f64 - range.value);
+                if excess.abs() > change {
+                    return if excess > 0.0 { Verdict::Full } else { Verdict::Empty };
+                }
+            }
+            // Also false for NaN.
+            let is_sharp = range.doubt <= 0.5 * range.change;
+            if is_sharp || is_fresh {
+                return Verdict::Partial(part);
+            }
+            part = self.localised(locals, at, size, part);
+            is_fresh = true;
+        }
     }
 
-    /// The part of a cell, with the winding number of the caps taken off if that is the same integer throughout
-    /// the cell, up to less than one half.
-    #[cold]
-    fn settled(&self, triangles: &[u32], at: [i32; 3], size: i32, part: MeshPart) -> MeshPart {
-        // On a cap its winding number jumps.
-        if size == 1 || triangles.last().is_some_and(|&last| self.placed.is_cap(last)) {
-            return part;
+    /// By how much a winding number is inside.
+    fn excess(&self, winding: f64) -> f64 {
+        match self.fill {
+            FillRule::Positive => winding - 0.5,
+            FillRule::NonZero | FillRule::EvenOdd => winding.abs() - 0.5,
         }
-        let radius = size as f64 * HALF_DIAGONAL;
-        let middle = at.map(|a| a as f64 + size as f64 / 2.0);
-        for far in FAR {
-            let caps = self.placed.caps.at(&self.placed, middle, radius, far, None);
-            let nearest = floor(caps.value + 0.5);
-            let room = 0.5 - (caps.value - nearest as f64).abs();
-            let change = caps.slope * radius;
-            if change + caps.error < room {
-                return MeshPart { winding: part.winding - nearest as i32, settled: true, ..part };
-            }
-            if !(change < room + caps.error) {
-                // It does change, or may: no better sum helps.
-                break;
-            }
-        }
-        part
     }
 
-    /// Whether the centre of a finest cell is inside, and whether that is certain for the whole cell, if nothing cuts
-    /// it; `winding` is the centre's of surface and caps.
-    #[cold]
-    fn sampled(&self, at: [i32; 3], winding: i32) -> (bool, bool) {
-        let centre = at.map(|a| a as f64 + 0.5);
-        let mut result = (false, false);
-        for far in FAR {
-            let caps = self.placed.caps.at(&self.placed, centre, HALF_DIAGONAL, far, Some(at));
-            let own = winding as f64 - caps.value;
-            let above = if self.fill == FillRule::Positive { own - 0.5 } else { own.abs() - 0.5 };
-            let certain = above.abs() > caps.error + caps.slope * HALF_DIAGONAL;
-            result = (certain, above >= 0.0);
-            if certain || above.abs() > caps.error && !(above.abs() > caps.slope * HALF_DIAGONAL) {
-                break;
+    fn level(&self, size: i32) -> u8 {
+        self.placed.frame.depth() - size.trailing_zeros() as u8
+    }
+
+    /// Range of the caps' winding number over a cell, continued from the cell's lowest centre through caps.
+    fn caps_over(&self, locals: &mut Locals, at: [i32; 3], size: i32, part: MeshPart) -> Range {
+        if part.level == NOWHERE {
+            return Range { value: 0.0, change: 0.0, doubt: f64::INFINITY };
+        }
+        let range = self.local(locals, part.level, at).over(at, size);
+        Range { value: range.value + part.branch as f64, ..range }
+    }
+
+    /// The same at the lowest centre.
+    fn caps_at(&self, locals: &mut Locals, at: [i32; 3], part: MeshPart) -> Range {
+        if part.level == NOWHERE {
+            return Range { value: 0.0, change: 0.0, doubt: f64::INFINITY };
+        }
+        let range = self.local(locals, part.level, at).at_centre(at);
+        Range { value: range.value + part.branch as f64, ..range }
+    }
+
+    /// The caps' winding number around the cell of `level` that holds `at`: a function of that cell alone, kept until the
+    /// next cell of the level is asked for.
+    fn local(&self, locals: &mut Locals, level: u8, at: [i32; 3]) -> Local {
+        let size = 1 << (self.placed.frame.depth() - level);
+        let corner = at.map(|a| a & -size);
+        match &locals[level as usize] {
+            Some((kept, local)) if *kept == corner => *local,
+            _ => {
+                let middle = corner.map(|a| a as f64 + size as f64 / 2.0);
+                let radius = size as f64 * HALF_DIAGONAL;
+                // As good as the first order is, or will be in the cells of the finest level.
+                let enough = |local: &Local| (local.within(1.0).change / 8.0).min(ENOUGH);
+                let cell = (size == 1).then_some(corner);
+                let local = self.placed.caps.local(&self.placed, middle, radius, enough, cell);
+                locals[level as usize] = Some((corner, local));
+                local
             }
         }
-        result
+    }
+
+    /// The part with the caps' winding number as it is around this cell itself.
+    fn localised(&self, locals: &mut Locals, at: [i32; 3], size: i32, part: MeshPart) -> MeshPart {
+        let level = self.level(size);
+        if size == 1 {
+            // Made for the cell's centre, on whose side of the caps it is right.
+            return MeshPart { level, branch: 0, ..part };
+        }
+        let here = self.local(locals, level, at).at_centre(at);
+        let mut known = self.caps_at(locals, at, part);
+        if !(known.doubt < SURE) {
+            let centre = at.map(|a| a as f64 + 0.5);
+            known = self.placed.caps.local(&self.placed, centre, 0.0, |_| SURE / 2.0, Some(at)).at_centre(at);
+        }
+        if known.doubt < SURE && here.doubt < SURE {
+            MeshPart { level, branch: floor(known.value - here.value + 0.5) as i32, ..part }
+        } else {
+            MeshPart { level: NOWHERE, ..part }
+        }
+    }
+
+    /// Whether the centre of a finest cell is inside.
+    fn sampled(&self, locals: &mut Locals, at: [i32; 3], part: MeshPart) -> bool {
+        if part.settled {
+            return self.fill.encloses(part.winding);
+        }
+        let mut caps = self.caps_at(locals, at, part);
+        let excess = |caps: Range| self.excess(part.winding as f64 - caps.value);
+        if !(excess(caps).abs() > caps.doubt) {
+            let centre = at.map(|a| a as f64 + 0.5);
+            let enough = |local: &Local| excess(local.at_centre(at)).abs();
+            caps = self.placed.caps.local(&self.placed, centre, 0.0, enough, Some(at)).at_centre(at);
+        }
+        excess(caps) >= 0.0
     }
 
     /// Winding numbers of the lowest centres of a cell's eight children of edge `half`, the cell's own being
-    /// that of child 0.
-    fn windings(&self, triangles: &[u32], at: [i32; 3], half: i32, own: i32) -> [i32; 8] {
+    /// that of child 0, and what of the difference caps make.
+    fn windings(&self, triangles: &[u32], at: [i32; 3], half: i32, own: i32) -> [[i32; 8]; 2] {
         // What changes on the ways along x, y and z, by the child at whose lowest centre the way begins.
-        let mut steps = [0; 8];
+        let mut steps = [[0; 8]; 2];
         let next = at.map(|a| a + half);
         for &triangle in triangles {
             let corners = self.placed.corners(triangle);
@@ -180,7 +273,10 @@ impl MeshSolid {
                 if let Some(span) = seen.span(v).filter(|span| span.first <= u && u < span.end) {
                     let above = seen.above(u, v, span.step);
                     if at[w] < above && above <= next[w] {
-                        steps[child] += span.step;
+                        steps[0][child] += span.step;
+                        if self.placed.is_cap(triangle) {
+                            steps[1][child] += span.step;
+                        }
                     }
                 }
             };
@@ -203,13 +299,14 @@ impl MeshSolid {
                 }
             }
         }
-        let mut windings = [own; 8];
-        windings[1] = own + steps[1];
-        for child in 2..8 {
-            // The way to children 2 and 3 begins at 0 and 1, to 4 … 7 at 0 … 3.
-            windings[child] = windings[child - if child < 4 { 2 } else { 4 }] + steps[child];
+        for steps in &mut steps {
+            for child in 2..8 {
+                // The way to children 2 and 3 begins at 0 and 1, to 4 … 7 at 0 … 3.
+                steps[child] += steps[child - if child < 4 { 2 } else { 4 }];
+            }
         }
-        windings
+        let [all, caps] = steps;
+        [all.map(|step| own + step), caps]
     }
 }
 
@@ -235,12 +332,13 @@ impl MeshSolid {
             let mut point = [height; 3];
             (point[(w + 1) % 3], point[(w + 2) % 3]) = (middle[0], middle[1]);
             let radius = size * core::f64::consts::FRAC_1_SQRT_2;
-            let seen = caps.at(&self.placed, point, radius, FAR[1], None);
-            if seen.value.abs() + seen.error + seen.slope * radius < 0.5 {
+            let around = caps.local(&self.placed, point, radius, |_| ENOUGH, None);
+            let seen = around.within(radius);
+            if seen.value.abs() + seen.change + seen.doubt < 0.5 {
                 continue;
             }
             evaluations += 1;
-            if evaluations > QUIET_EVALUATIONS || !(seen.value.abs() - seen.error < 0.5) {
+            if evaluations > QUIET_EVALUATIONS || !(seen.value.abs() < 0.5) {
                 return false;
             }
             for k in 0..4 {
@@ -258,8 +356,14 @@ const QUIET_EVALUATIONS: usize = 2048;
 /// Half the diagonal of a cube of edge 1, rounded up.
 const HALF_DIAGONAL: f64 = 0.866_025_404;
 
-/// At how many times its size a group of caps is far, from the first try to the last.
-const FAR: [f64; 3] = [3.0, 12.0, 96.0];
+/// An error of winding numbers that is of no account.
+const ENOUGH: f64 = 1.0 / 256.0;
+
+/// Two winding numbers that are known so well differ by the nearest integer, if they should differ by an integer.
+const SURE: f64 = 0.2;
+
+/// In place of a level: nothing is known.
+const NOWHERE: u8 = u8::MAX;
 
 /// The lowest finest cell of `cell`, and its edge in finest cells.
 fn extent(cell: Cell, depth: u8) -> ([i32; 3], i32) {
@@ -302,8 +406,8 @@ impl Solid for MeshSolid {
         }
         let triangles = &scratch.triangles[first..];
         let settled = self.placed.caps.triangles().is_empty();
-        let part = MeshPart { first, count: triangles.len(), winding, settled };
-        Ok(self.verdict(triangles, [0; 3], frame.cells() as i32, part))
+        let part = MeshPart { first, count: triangles.len(), winding, level: NOWHERE, branch: 0, settled };
+        Ok(self.verdict(&mut scratch.locals, triangles, [0; 3], frame.cells() as i32, part))
     }
 
     fn split(
@@ -317,9 +421,9 @@ impl Solid for MeshSolid {
         let (at, size) = extent(cube.cell, depth);
         let half = size / 2;
         let height = depth - cube.cell.level - 1;
-        let MeshScratch { triangles, masks, .. } = scratch;
+        let MeshScratch { triangles, masks, locals, .. } = scratch;
         let range = part.first..part.first + part.count;
-        let windings = self.windings(&triangles[range.clone()], at, half, part.winding);
+        let [windings, jumps] = self.windings(&triangles[range.clone()], at, half, part.winding);
 
         masks.clear();
         masks.try_reserve(part.count).map_err(|_| Error::OutOfMemory)?;
@@ -349,10 +453,11 @@ impl Solid for MeshSolid {
             }
         }
         Ok([0, 1, 2, 3, 4, 5, 6, 7].map(|k: usize| {
-            let (first, count, settled) = (firsts[k], counts[k], part.settled);
+            let (first, count) = (firsts[k], counts[k]);
             let at = [0, 1, 2].map(|axis| at[axis] + if k >> axis & 1 != 0 { half } else { 0 });
-            let part = MeshPart { first, count, winding: windings[k], settled };
-            self.verdict(&triangles[first..first + count], at, half, part)
+            let branch = part.branch + jumps[k];
+            let part = MeshPart { first, count, winding: windings[k], branch, ..*part };
+            self.verdict(locals, &triangles[first..first + count], at, half, part)
         }))
     }
 
@@ -377,12 +482,15 @@ impl Solid for MeshSolid {
         Ok(true)
     }
 
-    fn sample(&self, _: &mut MeshScratch, cube: &Cube<'_>, part: &MeshPart) -> Result<Option<bool>, Error> {
+    fn sample(
+        &self,
+        scratch: &mut MeshScratch,
+        cube: &Cube<'_>,
+        part: &MeshPart,
+    ) -> Result<Option<bool>, Error> {
         // A finest cell's lowest centre is its only one.
-        Ok(Some(match part.settled {
-            true => self.fill.encloses(part.winding),
-            false => self.sampled(extent(cube.cell, self.placed.frame.depth()).0, part.winding).1,
-        }))
+        let (at, _) = extent(cube.cell, self.placed.frame.depth());
+        Ok(Some(self.sampled(&mut scratch.locals, at, *part)))
     }
 
     fn exterior(&self, frame: &Frame) -> Tag {

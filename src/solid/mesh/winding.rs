@@ -12,8 +12,9 @@
 //! Jacobson 2018), here with a bound of what that leaves out. The distance at which a group is far is a parameter:
 //! whoever needs a smaller error asks again.
 //!
-//! Away from the surface the winding number is smooth, and its slope is at most Σ ∫ ds / (4π·distance²) over the
-//! edges of the *boundary* (the law of Biot and Savart): that bounds it on whole cells.
+//! Away from the surface the winding number is smooth. Its gradient is the magnetic field of a current along the
+//! *boundary* (the law of Biot and Savart), and its second derivative at most Σ ∫ 2 ds / (4π·distance³) over the
+//! boundary's edges. One sum thus bounds it on a whole cell, and serves many cells inside of that.
 
 use super::boundary::Loops;
 use super::crossing::Projection;
@@ -21,10 +22,13 @@ use super::placed::{Placed, Vertex, ranks};
 use crate::error::Error;
 use alloc::vec::Vec;
 use core::f64::consts::PI;
-use glam::{DMat3, DVec3};
+use glam::{DMat3, DVec2, DVec3};
 
 /// Triangles that are summed one by one.
 const LEAF: usize = 4;
+
+/// At how many times its size a group of triangles is far, from the first try to the last.
+const FAR: [f64; 3] = [3.0, 12.0, 96.0];
 
 /// Triangles that close a surface, in the order of a tree of bounding spheres.
 #[derive(Default)]
@@ -52,6 +56,8 @@ struct Node {
     /// ∫ |dA|, and ∫ |y − centre|² |dA|.
     size: f64,
     spread: f64,
+    /// Bound of ∫ |y − centre| |dA|.
+    arm: f64,
     /// Length of the boundary's edges.
     rim: f64,
     first: u32,
@@ -60,14 +66,65 @@ struct Node {
     skip: u32,
 }
 
-/// What is known of the caps' winding number in a ball.
+/// The caps' winding number in a ball around a point, to first order. It jumps by an integer on every cap; this is its
+/// smooth continuation from the point.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Winding {
-    /// At its centre, and a bound of its error.
+pub(super) struct Local {
+    point: DVec3,
+    value: f64,
+    gradient: DVec3,
+    /// Bounds of the value's error, of the gradient's, and of the second derivative anywhere in the ball; infinite or not
+    /// a number if nothing is known.
+    error: f64,
+    slant: f64,
+    bend: f64,
+}
+
+/// A range of winding numbers.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Range {
+    /// Around this,
     pub(super) value: f64,
-    pub(super) error: f64,
-    /// Bound of the change per finest cell, wherever no cap is passed; infinite or not a number if nothing is known.
-    pub(super) slope: f64,
+    /// that much off for its slope, and
+    pub(super) change: f64,
+    /// that much more at most for what is not known.
+    pub(super) doubt: f64,
+}
+
+impl Local {
+    /// Before anything was summed.
+    fn zero(point: DVec3) -> Local {
+        Local { point, value: 0.0, gradient: DVec3::ZERO, error: 0.0, slant: 0.0, bend: 0.0 }
+    }
+
+    /// In the ball of the given radius around the point it was made for.
+    pub(super) fn within(&self, radius: f64) -> Range {
+        let change = self.gradient.length() * radius;
+        Range { value: self.value, change, doubt: self.doubt(radius) }
+    }
+
+    /// In a cube with the lower corner `at`, which must lie in the ball it was made for.
+    pub(super) fn over(&self, at: [i32; 3], size: i32) -> Range {
+        let half = size as f64 / 2.0;
+        let middle = DVec3::from(at.map(|a| a as f64 + half)) - self.point;
+        let gradient = self.gradient.abs();
+        Range {
+            value: self.value + self.gradient.dot(middle),
+            change: half * (gradient.x + gradient.y + gradient.z),
+            doubt: self.doubt((middle.abs() + half).length()),
+        }
+    }
+
+    /// At the centre of a cell.
+    pub(super) fn at_centre(&self, cell: [i32; 3]) -> Range {
+        let to = DVec3::from(cell.map(|a| a as f64 + 0.5)) - self.point;
+        Range { value: self.value + self.gradient.dot(to), change: 0.0, doubt: self.doubt(to.length()) }
+    }
+
+    fn doubt(&self, distance: f64) -> f64 {
+        // The last factor outweighs the roundings of those who compute with this.
+        (self.error + (self.slant + 0.5 * self.bend * distance) * distance) * (1.0 + 1e-9) + 1e-12
+    }
 }
 
 impl Caps {
@@ -144,72 +201,88 @@ impl Caps {
         &self.triangles
     }
 
-    /// The winding number around `point`, and its slope within `radius` of it (both in finest cells from the frame's
-    /// origin). A group is far if its distance is at least `far` times its size. If the point is a cell's centre,
-    /// `cell` says so: of a centre on a cap, it decides by the symbolic shift.
+    /// The winding number around `point`, within `radius` of it (both in finest cells from the frame's origin).
     ///
-    /// The error is bounded, whatever `far` is; it falls with its square.
-    pub(super) fn at(
+    /// Sums more and more exactly until the error is at most `enough`, or no more than a few triangles are taken
+    /// together; it is bounded in any case. If the point is a cell's centre, `cell` says so, and the value is the one
+    /// on that side of every cap on which the symbolic shift puts the centre. Otherwise a point on a cap may
+    /// get the value of either side.
+    pub(super) fn local(
         &self,
         placed: &Placed,
         point: [f64; 3],
         radius: f64,
-        far: f64,
+        enough: impl Fn(&Local) -> f64,
         cell: Option<[i32; 3]>,
-    ) -> Winding {
-        let p = DVec3::from(point);
+    ) -> Local {
+        let point = DVec3::from(point);
+        let mut local = Local::zero(point);
+        for far in FAR {
+            local = self.sum(placed, point, radius, far, cell);
+            if local.error <= enough(&local) {
+                break;
+            }
+        }
+        local
+    }
+
+    /// The sum in which a group is far if its distance is at least `far` times its size.
+    fn sum(&self, placed: &Placed, point: DVec3, radius: f64, far: f64, cell: Option<[i32; 3]>) -> Local {
         let radius = radius + self.wobble;
-        let mut sum = Winding { value: 0.0, error: 0.0, slope: 0.0 };
+        let mut sum = Local::zero(point);
         let mut next = 0;
         while let Some(node) = self.nodes.get(next) {
-            let towards = node.centre - p;
+            let towards = node.centre - point;
             let distance = towards.length();
             let (gap, clear) = (distance - node.radius, distance - node.radius - radius);
-            // The second condition keeps the slope's bound within a small factor of what the single edges give.
-            if gap >= far * node.radius && clear >= 2.0 * node.radius && clear > 0.0 {
-                node.add(towards, distance, gap, &mut sum);
-                sum.slope += node.rim / (clear * clear);
+            if gap >= far * node.radius && clear > node.radius {
+                node.add(towards, distance, gap, clear, &mut sum);
                 next = node.skip as usize;
                 continue;
             }
             if node.skip as usize == next + 1 {
                 for cap in node.first as usize..node.end as usize {
-                    self.add(placed, cap, p, radius, cell, &mut sum);
+                    self.add(placed, cap, radius, cell, &mut sum);
                 }
             }
             next += 1;
         }
-        let slope = sum.slope * (1.0 + 1e-6) / (4.0 * PI);
-        // Where the boundary wobbles, the winding number changes as if the point did.
-        let error = sum.error * (1.0 + 1e-6) + if self.wobble > 0.0 { slope * self.wobble } else { 0.0 };
-        Winding { value: sum.value, error: error + 1e-12, slope }
+        let scale = 1.0 / (4.0 * PI);
+        let up = scale * (1.0 + 1e-6);
+        let mut local = Local {
+            gradient: sum.gradient * scale,
+            slant: sum.slant * up,
+            bend: sum.bend * up,
+            error: sum.error * (1.0 + 1e-6),
+            ..sum
+        };
+        if self.wobble > 0.0 {
+            // Where the boundary wobbles, the winding number changes as if the point did.
+            local.error += self.wobble * (local.gradient.length() + local.slant + local.bend * radius);
+        }
+        local
     }
 
-    fn add(
-        &self,
-        placed: &Placed,
-        cap: usize,
-        p: DVec3,
-        radius: f64,
-        cell: Option<[i32; 3]>,
-        sum: &mut Winding,
-    ) {
-        let triangle = self.triangles[cap];
-        let corners = triangle.map(|vertex| DVec3::from(placed.vertex(vertex).at) - p);
+    /// Adds one cap.
+    fn add(&self, placed: &Placed, cap: usize, radius: f64, cell: Option<[i32; 3]>, sum: &mut Local) {
+        let corners = self.triangles[cap].map(|vertex| DVec3::from(placed.vertex(vertex).at) - sum.point);
         let lengths = corners.map(DVec3::length);
-        let [a, b, c] = [0, 1, 2].map(|i| corners[i] / lengths[i]);
+        let inverses = lengths.map(|length| 1.0 / length);
+        let [a, b, c] = [0, 1, 2].map(|i| corners[i] * inverses[i]);
+        let (ab, bc, ca) = (a.dot(b), b.dot(c), c.dot(a));
         // Half the solid angle is the argument of (real, imaginary).
         let imaginary = a.dot(b.cross(c));
-        let real = 1.0 + a.dot(b) + b.dot(c) + c.dot(a);
-        let (modulus, wrong) = (
-            DVec3::new(real, imaginary, 0.0).length(),
-            64.0 * f64::EPSILON + 8.0 * self.error * lengths.iter().map(|length| 1.0 / length).sum::<f64>(),
-        );
+        let real = 1.0 + ab + bc + ca;
+        let modulus = DVec2::new(real, imaginary).length();
+        let wrong = 64.0 * f64::EPSILON + 8.0 * self.error * (inverses[0] + inverses[1] + inverses[2]);
         // Also false for NaN.
         if modulus >= 2.0 * wrong {
             let mut angle = libm::atan2(imaginary, real);
-            if real < 0.0 && imaginary.abs() <= wrong {
-                match cell.and_then(|cell| self.side(placed, cap, cell)) {
+            if real < 0.0
+                && imaginary.abs() <= wrong
+                && let Some(cell) = cell
+            {
+                match self.side(placed, cap, cell) {
                     Some(side) => angle = side * angle.abs(),
                     None => sum.error += 1.0,
                 }
@@ -219,16 +292,11 @@ impl Caps {
         } else {
             sum.error += 1.0;
         }
-        for i in (0..3).filter(|i| self.rims[cap] >> i & 1 != 0) {
-            let (from, to) = (corners[i], corners[(i + 1) % 3]);
-            let edge = to - from;
-            let length = edge.length();
-            let along =
-                if length > 0.0 { (-from.dot(edge) / (length * length)).clamp(0.0, 1.0) } else { 0.0 };
-            let distance = (from + along * edge).length() * (1.0 - 1e-9) - 1e-9 * length.min(1.0) - radius;
-            // ∫ ds / distance² along the edge, and at most along its whole line.
-            let share = if distance > 0.0 { (length / distance).min(PI) / distance } else { f64::INFINITY };
-            sum.slope += share;
+        for (i, cosine) in [ab, bc, ca].into_iter().enumerate() {
+            if self.rims[cap] >> i & 1 != 0 {
+                let j = (i + 1) % 3;
+                sum.add_rim([corners[i], corners[j]], [lengths[i], lengths[j]], cosine, radius);
+            }
         }
     }
 
@@ -266,6 +334,7 @@ impl Node {
             moment: DMat3::ZERO,
             size: 0.0,
             spread: 0.0,
+            arm: 0.0,
             rim: 0.0,
             first: first as u32,
             end: (first + slots.len()) as u32,
@@ -288,23 +357,51 @@ impl Node {
                 }
             }
         }
+        node.arm = node.size * node.radius;
         node
     }
 
-    /// Adds the group's winding number as seen from afar.
-    fn add(&self, towards: DVec3, distance: f64, gap: f64, sum: &mut Winding) {
+    /// Adds the group's winding number as seen from afar: `gap` is the distance of its sphere from the point, `clear`
+    /// from the ball around that.
+    fn add(&self, towards: DVec3, distance: f64, gap: f64, clear: f64, sum: &mut Local) {
         let inverse = 1.0 / distance;
         let direction = towards * inverse;
+        let (square, cube) = (inverse * inverse, inverse * inverse * inverse);
         // The kernel y/|y|³ at the centre, and its first derivative (1 − 3 d dᵀ)/|y|³.
-        let first = self.area.dot(direction) * inverse * inverse;
+        let facing = self.area.dot(direction);
         let trace = self.moment.x_axis.x + self.moment.y_axis.y + self.moment.z_axis.z;
         let along = direction.dot(self.moment * direction);
-        let second = (trace - 3.0 * along) * inverse * inverse * inverse;
-        sum.value += (first + second) / (4.0 * PI);
-        // Its second derivative is at most 6/|y|⁴ (harmonic: the symmetric form's norm is its value along d); the
-        // last term is for what is rounded.
-        let square = gap * gap;
-        sum.error += (3.0 * self.spread / square + 1e-11 * self.size) / square / (4.0 * PI);
+        sum.value += (facing * square + (trace - 3.0 * along) * cube) / (4.0 * PI);
+        sum.gradient += (direction * (3.0 * facing) - self.area) * cube;
+        // Its n-th derivative is at most (n + 1)!/|y|ⁿ⁺²: it is that of 1/|y|, which is harmonic and largest along d.
+        // (The terms with 1e-11 are for what is rounded.)
+        let near = 1.0 / (gap * gap);
+        sum.error += (3.0 * self.spread * near + 1e-11 * self.size) * near / (4.0 * PI);
+        sum.slant += 6.0 * self.arm * near * near + 1e-11 * self.size * near / gap;
+        sum.bend += (2.0 * self.rim).min(6.0 * self.size / clear) / (clear * clear * clear);
+    }
+}
+
+impl Local {
+    /// Adds what an edge of the boundary does to the derivatives, times 4π. The gradient is the magnetic field of a current
+    /// along the edge.
+    fn add_rim(&mut self, [from, to]: [DVec3; 2], [start, end]: [f64; 2], cosine: f64, radius: f64) {
+        let edge = to - from;
+        let length = edge.length();
+        let along = if length > 0.0 { (-from.dot(edge) / (length * length)).clamp(0.0, 1.0) } else { 0.0 };
+        let distance = (from + along * edge).length() * (1.0 - 1e-9) - 1e-9 * length.min(1.0) - radius;
+        // Also true for NaN.
+        if !(distance > 0.0) {
+            self.bend = f64::INFINITY;
+            return;
+        }
+        let open = 1.0 + cosine;
+        let strength = (start + end) / (start * end * open);
+        let field = from.cross(to) * (strength / (start * end));
+        self.gradient += field;
+        self.slant += 64.0 * f64::EPSILON * (field.length() / open + strength);
+        // ∫ 2 ds / distance³ along the edge, and at most along its whole line.
+        self.bend += 2.0 * (length / distance).min(2.0) / (distance * distance);
     }
 }
 
