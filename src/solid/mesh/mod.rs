@@ -9,6 +9,7 @@
 
 mod boundary;
 mod crossing;
+mod open;
 mod overlap;
 mod placed;
 mod scan;

@@ -2,14 +2,13 @@
 
 use super::boundary::Loops;
 use super::crossing::Projection;
+use super::open::{Branch, Surroundings};
 use super::overlap::Overlap;
 use super::placed::{Corners, Placed, bounds, ranks};
 use super::scan::{Scan, Task};
 use super::surface::{FillRule, TriangleMesh};
-use super::winding::{Local, Range};
 use crate::error::{Error, MeshError};
-use crate::lattice::exact::floor;
-use crate::lattice::{Cell, Cube, Frame, MAX_DEPTH};
+use crate::lattice::{Cell, Cube, Frame};
 use crate::octree::{Block, Tag};
 use crate::solid::{Scratch, Solid, Verdict};
 use alloc::boxed::Box;
@@ -33,8 +32,8 @@ use alloc::vec::Vec;
 /// # Ok::<(), leafless::Error>(())
 /// ```
 pub struct MeshSolid {
-    placed: Placed,
-    fill: FillRule,
+    pub(super) placed: Placed,
+    pub(super) fill: FillRule,
 }
 
 /// What is remembered of a cell: the triangles that cut it, and the winding number of its lowest centre.
@@ -42,16 +41,12 @@ pub struct MeshSolid {
 pub struct MeshPart {
     /// Where the triangles lie in the scratch memory.
     first: usize,
-    count: usize,
-    /// Of the surface with its caps; without them if that is settled.
-    winding: i32,
-    /// The caps' own, which is not an integer, is known from its first order around the cell of this level that holds this
-    /// one, or not at all; at the lowest centre it is that and this integer.
-    level: u8,
-    branch: i32,
-    /// Whether the surface's winding number in the cell is `winding`, up to less than one half: always if there are no
-    /// caps.
-    settled: bool,
+    pub(super) count: usize,
+    /// Of the surface with its caps; of the surface alone if `caps` is None.
+    pub(super) winding: i32,
+    /// What is known of the caps' winding number, which is not an integer. None if the surface's own rounds to
+    /// `winding` throughout the cell, but for what the triangles that cut it change: always if there are no caps.
+    pub(super) caps: Option<Branch>,
 }
 
 /// Lists of triangles, one for each cell on the way down, and what a block is scanned with.
@@ -60,13 +55,9 @@ pub struct MeshScratch {
     triangles: Vec<u32>,
     /// Bit k: the triangle belongs to child k.
     masks: Vec<u8>,
-    /// The caps' winding number around the latest cells.
-    locals: Locals,
+    surroundings: Surroundings,
     scan: Option<Box<Scan>>,
 }
-
-/// By level the lower corner of a cell and what is known around its middle.
-type Locals = [Option<([i32; 3], Local)>; MAX_DEPTH as usize + 1];
 
 impl Scratch for MeshScratch {
     fn mark(&self) -> usize {
@@ -109,15 +100,19 @@ impl MeshSolid {
     #[inline]
     fn verdict(
         &self,
-        locals: &mut Locals,
+        surroundings: &mut Surroundings,
         triangles: &[u32],
         at: [i32; 3],
         size: i32,
         part: MeshPart,
-    ) -> Verdict<MeshPart> {
-        if !part.settled {
-            return self.open_verdict(locals, triangles, at, size, part);
+    ) -> Result<Verdict<MeshPart>, Error> {
+        match part.caps {
+            Some(_) => self.open_verdict(surroundings, triangles, at, size, part),
+            None => Ok(self.closed_verdict(part)),
         }
+    }
+
+    pub(super) fn closed_verdict(&self, part: MeshPart) -> Verdict<MeshPart> {
         if part.count > 0 {
             Verdict::Partial(part)
         } else if self.fill.encloses(part.winding) {
@@ -125,135 +120,6 @@ impl MeshSolid {
         } else {
             Verdict::Empty
         }
-    }
-
-    /// The same where the caps' winding number is not known to be near one integer.
-    #[cold]
-    fn open_verdict(
-        &self,
-        locals: &mut Locals,
-        triangles: &[u32],
-        at: [i32; 3],
-        size: i32,
-        mut part: MeshPart,
-    ) -> Verdict<MeshPart> {
-        let is_cut = triangles.first().is_some_and(|&first| !self.placed.is_cap(first));
-        let is_capped = triangles.last().is_some_and(|&last| self.placed.is_cap(last));
-        if is_cut && (size == 1 || is_capped) {
-            // Only what its parts are can be decided.
-            return Verdict::Partial(part);
-        }
-        let mut is_fresh = false;
-        loop {
-            let range = self.caps_over(locals, at, size, part);
-            let change = range.change + range.doubt;
-            if !is_capped {
-                let nearest = floor(range.value + 0.5);
-                if (range.value - nearest as f64).abs() + change < 0.5 {
-                    let winding = part.winding - nearest as i32;
-                    let part = MeshPart { winding, settled: true, ..part };
-                    return self.verdict(locals, triangles, at, size, part);
-                }
-            }
-            if !is_cut {
-                let excess = self.excess(part.winding as f64 - range.value);
-                if excess.abs() > change {
-                    return if excess > 0.0 { Verdict::Full } else { Verdict::Empty };
-                }
-            }
-            // Also false for NaN.
-            let is_sharp = range.doubt <= 0.5 * range.change;
-            if is_sharp || is_fresh {
-                return Verdict::Partial(part);
-            }
-            part = self.localised(locals, at, size, part);
-            is_fresh = true;
-        }
-    }
-
-    /// By how much a winding number is inside.
-    fn excess(&self, winding: f64) -> f64 {
-        match self.fill {
-            FillRule::Positive => winding - 0.5,
-            FillRule::NonZero | FillRule::EvenOdd => winding.abs() - 0.5,
-        }
-    }
-
-    fn level(&self, size: i32) -> u8 {
-        self.placed.frame.depth() - size.trailing_zeros() as u8
-    }
-
-    /// Range of the caps' winding number over a cell, continued from the cell's lowest centre through caps.
-    fn caps_over(&self, locals: &mut Locals, at: [i32; 3], size: i32, part: MeshPart) -> Range {
-        if part.level == NOWHERE {
-            return Range { value: 0.0, change: 0.0, doubt: f64::INFINITY };
-        }
-        let range = self.local(locals, part.level, at).over(at, size);
-        Range { value: range.value + part.branch as f64, ..range }
-    }
-
-    /// The same at the lowest centre.
-    fn caps_at(&self, locals: &mut Locals, at: [i32; 3], part: MeshPart) -> Range {
-        if part.level == NOWHERE {
-            return Range { value: 0.0, change: 0.0, doubt: f64::INFINITY };
-        }
-        let range = self.local(locals, part.level, at).at_centre(at);
-        Range { value: range.value + part.branch as f64, ..range }
-    }
-
-    /// The caps' winding number around the cell of `level` that holds `at`: a function of that cell alone, kept until the
-    /// next cell of the level is asked for.
-    fn local(&self, locals: &mut Locals, level: u8, at: [i32; 3]) -> Local {
-        let size = 1 << (self.placed.frame.depth() - level);
-        let corner = at.map(|a| a & -size);
-        match &locals[level as usize] {
-            Some((kept, local)) if *kept == corner => *local,
-            _ => {
-                let middle = corner.map(|a| a as f64 + size as f64 / 2.0);
-                let radius = size as f64 * HALF_DIAGONAL;
-                // As good as the first order is, or will be in the cells of the finest level.
-                let enough = |local: &Local| (local.within(1.0).change / 8.0).min(ENOUGH);
-                let cell = (size == 1).then_some(corner);
-                let local = self.placed.caps.local(&self.placed, middle, radius, enough, cell);
-                locals[level as usize] = Some((corner, local));
-                local
-            }
-        }
-    }
-
-    /// The part with the caps' winding number as it is around this cell itself.
-    fn localised(&self, locals: &mut Locals, at: [i32; 3], size: i32, part: MeshPart) -> MeshPart {
-        let level = self.level(size);
-        if size == 1 {
-            // Made for the cell's centre, on whose side of the caps it is right.
-            return MeshPart { level, branch: 0, ..part };
-        }
-        let here = self.local(locals, level, at).at_centre(at);
-        let mut known = self.caps_at(locals, at, part);
-        if !(known.doubt < SURE) {
-            let centre = at.map(|a| a as f64 + 0.5);
-            known = self.placed.caps.local(&self.placed, centre, 0.0, |_| SURE / 2.0, Some(at)).at_centre(at);
-        }
-        if known.doubt < SURE && here.doubt < SURE {
-            MeshPart { level, branch: floor(known.value - here.value + 0.5) as i32, ..part }
-        } else {
-            MeshPart { level: NOWHERE, ..part }
-        }
-    }
-
-    /// Whether the centre of a finest cell is inside.
-    fn sampled(&self, locals: &mut Locals, at: [i32; 3], part: MeshPart) -> bool {
-        if part.settled {
-            return self.fill.encloses(part.winding);
-        }
-        let mut caps = self.caps_at(locals, at, part);
-        let excess = |caps: Range| self.excess(part.winding as f64 - caps.value);
-        if !(excess(caps).abs() > caps.doubt) {
-            let centre = at.map(|a| a as f64 + 0.5);
-            let enough = |local: &Local| excess(local.at_centre(at)).abs();
-            caps = self.placed.caps.local(&self.placed, centre, 0.0, enough, Some(at)).at_centre(at);
-        }
-        excess(caps) >= 0.0
     }
 
     /// Winding numbers of the lowest centres of a cell's eight children of edge `half`, the cell's own being
@@ -310,61 +176,6 @@ impl MeshSolid {
     }
 }
 
-impl MeshSolid {
-    /// Whether the winding number is proven less than one half in magnitude everywhere outside of the universe, which holds
-    /// the whole surface: a harmonic function that vanishes at infinity takes its extremes on the faces.
-    fn is_quiet_outside(&self) -> bool {
-        let caps = &self.placed.caps;
-        if caps.triangles().is_empty() {
-            return true;
-        }
-        let cells = self.placed.frame.cells() as f64;
-        let mut evaluations = 0;
-        // A square on each face: the face, its lowest corner, its edge.
-        let mut squares: Vec<(usize, [f64; 2], f64)> = Vec::new();
-        if squares.try_reserve(6 + 3 * QUIET_EVALUATIONS).is_err() {
-            return false;
-        }
-        squares.extend((0..6).map(|face| (face, [0.0; 2], cells)));
-        while let Some((face, corner, size)) = squares.pop() {
-            let (w, height) = (face / 2, if face % 2 == 0 { 0.0 } else { cells });
-            let middle = corner.map(|x| x + size / 2.0);
-            let mut point = [height; 3];
-            (point[(w + 1) % 3], point[(w + 2) % 3]) = (middle[0], middle[1]);
-            let radius = size * core::f64::consts::FRAC_1_SQRT_2;
-            let around = caps.local(&self.placed, point, radius, |_| ENOUGH, None);
-            let seen = around.within(radius);
-            if seen.value.abs() + seen.change + seen.doubt < 0.5 {
-                continue;
-            }
-            evaluations += 1;
-            if evaluations > QUIET_EVALUATIONS || !(seen.value.abs() < 0.5) {
-                return false;
-            }
-            for k in 0..4 {
-                let step = |bit: usize| if k >> bit & 1 != 0 { size / 2.0 } else { 0.0 };
-                squares.push((face, [corner[0] + step(0), corner[1] + step(1)], size / 2.0));
-            }
-        }
-        true
-    }
-}
-
-/// How many squares of the universe's faces are divided at most to learn what is outside.
-const QUIET_EVALUATIONS: usize = 2048;
-
-/// Half the diagonal of a cube of edge 1, rounded up.
-const HALF_DIAGONAL: f64 = 0.866_025_404;
-
-/// An error of winding numbers that is of no account.
-const ENOUGH: f64 = 1.0 / 256.0;
-
-/// Two winding numbers that are known so well differ by the nearest integer, if they should differ by an integer.
-const SURE: f64 = 0.2;
-
-/// In place of a level: nothing is known.
-const NOWHERE: u8 = u8::MAX;
-
 /// The lowest finest cell of `cell`, and its edge in finest cells.
 fn extent(cell: Cell, depth: u8) -> ([i32; 3], i32) {
     (cell.first_at(depth).at.map(|a| a as i32), 1 << (depth - cell.level))
@@ -405,9 +216,9 @@ impl Solid for MeshSolid {
             }
         }
         let triangles = &scratch.triangles[first..];
-        let settled = self.placed.caps.triangles().is_empty();
-        let part = MeshPart { first, count: triangles.len(), winding, level: NOWHERE, branch: 0, settled };
-        Ok(self.verdict(&mut scratch.locals, triangles, [0; 3], frame.cells() as i32, part))
+        let caps = if self.placed.caps.is_empty() { None } else { Some(Branch::UNKNOWN) };
+        let part = MeshPart { first, count: triangles.len(), winding, caps };
+        self.verdict(&mut scratch.surroundings, triangles, [0; 3], frame.cells() as i32, part)
     }
 
     fn split(
@@ -421,7 +232,7 @@ impl Solid for MeshSolid {
         let (at, size) = extent(cube.cell, depth);
         let half = size / 2;
         let height = depth - cube.cell.level - 1;
-        let MeshScratch { triangles, masks, locals, .. } = scratch;
+        let MeshScratch { triangles, masks, surroundings, .. } = scratch;
         let range = part.first..part.first + part.count;
         let [windings, jumps] = self.windings(&triangles[range.clone()], at, half, part.winding);
 
@@ -452,13 +263,15 @@ impl Solid for MeshSolid {
                 next[k] += 1;
             }
         }
-        Ok([0, 1, 2, 3, 4, 5, 6, 7].map(|k: usize| {
+        let mut verdicts = [Verdict::Undecided; 8];
+        for (k, verdict) in verdicts.iter_mut().enumerate() {
             let (first, count) = (firsts[k], counts[k]);
             let at = [0, 1, 2].map(|axis| at[axis] + if k >> axis & 1 != 0 { half } else { 0 });
-            let branch = part.branch + jumps[k];
-            let part = MeshPart { first, count, winding: windings[k], branch, ..*part };
-            self.verdict(locals, &triangles[first..first + count], at, half, part)
-        }))
+            let caps = part.caps.map(|branch| branch.plus(jumps[k]));
+            let part = MeshPart { first, count, winding: windings[k], caps };
+            *verdict = self.verdict(surroundings, &triangles[first..first + count], at, half, part)?;
+        }
+        Ok(verdicts)
     }
 
     fn fill(
@@ -468,7 +281,7 @@ impl Solid for MeshSolid {
         part: &MeshPart,
         block: &mut Block,
     ) -> Result<bool, Error> {
-        if !part.settled {
+        if part.caps.is_some() {
             return Ok(false);
         }
         let (at, _) = extent(cube.cell, self.placed.frame.depth());
@@ -490,7 +303,10 @@ impl Solid for MeshSolid {
     ) -> Result<Option<bool>, Error> {
         // A finest cell's lowest centre is its only one.
         let (at, _) = extent(cube.cell, self.placed.frame.depth());
-        Ok(Some(self.sampled(&mut scratch.locals, at, *part)))
+        match part.caps {
+            Some(_) => self.open_sample(&mut scratch.surroundings, at, *part).map(Some),
+            None => Ok(Some(self.fill.encloses(part.winding))),
+        }
     }
 
     fn exterior(&self, frame: &Frame) -> Tag {

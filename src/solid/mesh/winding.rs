@@ -27,8 +27,10 @@ use glam::{DMat3, DVec2, DVec3};
 /// Triangles that are summed one by one.
 const LEAF: usize = 4;
 
-/// At how many times its size a group of triangles is far, from the first try to the last.
-const FAR: [f64; 3] = [3.0, 12.0, 96.0];
+const SCALE: f64 = 1.0 / (4.0 * PI);
+
+/// What a group of triangles may add to the error when it is taken together.
+const ENOUGH: f64 = 1.0 / 16384.0;
 
 /// Triangles that close a surface, in the order of a tree of bounding spheres.
 #[derive(Default)]
@@ -68,7 +70,7 @@ struct Node {
 
 /// The caps' winding number in a ball around a point, to first order. It jumps by an integer on every cap; this is its
 /// smooth continuation from the point.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Local {
     point: DVec3,
     value: f64,
@@ -78,6 +80,14 @@ pub(super) struct Local {
     error: f64,
     slant: f64,
     bend: f64,
+}
+
+/// Which groups of caps are far from a ball, and which are not.
+#[derive(Default)]
+pub(super) struct Nearby {
+    far: Local,
+    /// Nodes, none below another.
+    near: Vec<u32>,
 }
 
 /// A range of winding numbers.
@@ -91,12 +101,16 @@ pub(super) struct Range {
     pub(super) doubt: f64,
 }
 
-impl Local {
-    /// Before anything was summed.
-    fn zero(point: DVec3) -> Local {
-        Local { point, value: 0.0, gradient: DVec3::ZERO, error: 0.0, slant: 0.0, bend: 0.0 }
-    }
+impl Range {
+    /// Nothing is known.
+    pub(super) const UNKNOWN: Range = Range { value: 0.0, change: 0.0, doubt: f64::INFINITY };
 
+    pub(super) fn plus(self, step: i32) -> Range {
+        Range { value: self.value + step as f64, ..self }
+    }
+}
+
+impl Local {
     /// In the ball of the given radius around the point it was made for.
     pub(super) fn within(&self, radius: f64) -> Range {
         let change = self.gradient.length() * radius;
@@ -122,8 +136,22 @@ impl Local {
     }
 
     fn doubt(&self, distance: f64) -> f64 {
-        // The last factor outweighs the roundings of those who compute with this.
-        (self.error + (self.slant + 0.5 * self.bend * distance) * distance) * (1.0 + 1e-9) + 1e-12
+        // The factor outweighs the roundings of all these bounds.
+        (self.error + (self.slant + 0.5 * self.bend * distance) * distance) * (1.0 + 1e-6) + 1e-12
+    }
+
+    /// The same around another point of the ball.
+    fn moved_to(&self, point: DVec3) -> Local {
+        let step = point - self.point;
+        let distance = step.length();
+        Local {
+            point,
+            value: self.value + self.gradient.dot(step),
+            gradient: self.gradient,
+            error: self.error + (self.slant + 0.5 * self.bend * distance) * distance,
+            slant: self.slant + self.bend * distance,
+            bend: self.bend,
+        }
     }
 }
 
@@ -197,74 +225,102 @@ impl Caps {
         Ok(())
     }
 
+    pub(super) fn is_empty(&self) -> bool {
+        self.triangles.is_empty()
+    }
+
     pub(super) fn triangles(&self) -> &[[u32; 3]] {
         &self.triangles
     }
 
-    /// The winding number around `point`, within `radius` of it (both in finest cells from the frame's origin).
+    /// What is near and what is far of a ball, before anything is known.
+    pub(super) fn everything(&self) -> Result<Nearby, Error> {
+        let mut all = Nearby { far: Local::default(), near: Vec::new() };
+        if !self.nodes.is_empty() {
+            all.near.try_reserve(1).map_err(|_| Error::OutOfMemory)?;
+            all.near.push(0);
+        }
+        Ok(all)
+    }
+
+    /// What is near and what is far of the ball of `radius` around `point`, which lies in that of `outer`.
+    pub(super) fn nearby(
+        &self,
+        outer: &Nearby,
+        point: [f64; 3],
+        radius: f64,
+        inner: &mut Nearby,
+    ) -> Result<(), Error> {
+        inner.far = outer.far.moved_to(DVec3::from(point));
+        inner.near.clear();
+        for &item in &outer.near {
+            let mut next = item as usize;
+            while next < self.nodes[item as usize].skip as usize {
+                let node = &self.nodes[next];
+                if node.add(radius + self.wobble, ENOUGH, &mut inner.far) {
+                    next = node.skip as usize;
+                } else if node.radius <= radius || node.skip as usize == next + 1 {
+                    inner.near.try_reserve(1).map_err(|_| Error::OutOfMemory)?;
+                    inner.near.push(next as u32);
+                    next = node.skip as usize;
+                } else {
+                    next += 1;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// The winding number around `point` to first order, within `radius` of it (both in finest cells from the frame's
+    /// origin), which lies in the ball of `nearby`; a group adds at most `enough` to its error. `None` if the boundary passes
+    /// through the ball.
     ///
-    /// Sums more and more exactly until the error is at most `enough`, or no more than a few triangles are taken
-    /// together; it is bounded in any case. If the point is a cell's centre, `cell` says so, and the value is the one
-    /// on that side of every cap on which the symbolic shift puts the centre. Otherwise a point on a cap may
-    /// get the value of either side.
+    /// If the point is a cell's centre, `cell` says so, and the value is the one on that side of every cap on which
+    /// the symbolic shift puts the centre. Otherwise a point on a cap may get the value of either side.
     pub(super) fn local(
         &self,
         placed: &Placed,
+        nearby: &Nearby,
         point: [f64; 3],
         radius: f64,
-        enough: impl Fn(&Local) -> f64,
+        enough: f64,
         cell: Option<[i32; 3]>,
-    ) -> Local {
-        let point = DVec3::from(point);
-        let mut local = Local::zero(point);
-        for far in FAR {
-            local = self.sum(placed, point, radius, far, cell);
-            if local.error <= enough(&local) {
-                break;
-            }
-        }
-        local
-    }
-
-    /// The sum in which a group is far if its distance is at least `far` times its size.
-    fn sum(&self, placed: &Placed, point: DVec3, radius: f64, far: f64, cell: Option<[i32; 3]>) -> Local {
+    ) -> Option<Local> {
         let radius = radius + self.wobble;
-        let mut sum = Local::zero(point);
-        let mut next = 0;
-        while let Some(node) = self.nodes.get(next) {
-            let towards = node.centre - point;
-            let distance = towards.length();
-            let (gap, clear) = (distance - node.radius, distance - node.radius - radius);
-            if gap >= far * node.radius && clear > node.radius {
-                node.add(towards, distance, gap, clear, &mut sum);
-                next = node.skip as usize;
-                continue;
-            }
-            if node.skip as usize == next + 1 {
-                for cap in node.first as usize..node.end as usize {
-                    self.add(placed, cap, radius, cell, &mut sum);
+        let mut local = nearby.far.moved_to(DVec3::from(point));
+        for &item in &nearby.near {
+            let mut next = item as usize;
+            while next < self.nodes[item as usize].skip as usize {
+                let node = &self.nodes[next];
+                if node.add(radius, enough, &mut local) {
+                    next = node.skip as usize;
+                    continue;
                 }
+                if node.skip as usize == next + 1 {
+                    for cap in node.first as usize..node.end as usize {
+                        self.add(placed, cap, radius, cell, &mut local)?;
+                    }
+                }
+                next += 1;
             }
-            next += 1;
         }
-        let scale = 1.0 / (4.0 * PI);
-        let up = scale * (1.0 + 1e-6);
-        let mut local = Local {
-            gradient: sum.gradient * scale,
-            slant: sum.slant * up,
-            bend: sum.bend * up,
-            error: sum.error * (1.0 + 1e-6),
-            ..sum
-        };
         if self.wobble > 0.0 {
             // Where the boundary wobbles, the winding number changes as if the point did.
             local.error += self.wobble * (local.gradient.length() + local.slant + local.bend * radius);
         }
-        local
+        Some(local)
     }
 
     /// Adds one cap.
-    fn add(&self, placed: &Placed, cap: usize, radius: f64, cell: Option<[i32; 3]>, sum: &mut Local) {
+    #[inline]
+    fn add(
+        &self,
+        placed: &Placed,
+        cap: usize,
+        radius: f64,
+        cell: Option<[i32; 3]>,
+        sum: &mut Local,
+    ) -> Option<()> {
         let corners = self.triangles[cap].map(|vertex| DVec3::from(placed.vertex(vertex).at) - sum.point);
         let lengths = corners.map(DVec3::length);
         let inverses = lengths.map(|length| 1.0 / length);
@@ -295,9 +351,10 @@ impl Caps {
         for (i, cosine) in [ab, bc, ca].into_iter().enumerate() {
             if self.rims[cap] >> i & 1 != 0 {
                 let j = (i + 1) % 3;
-                sum.add_rim([corners[i], corners[j]], [lengths[i], lengths[j]], cosine, radius);
+                sum.add_rim([corners[i], corners[j]], [lengths[i], lengths[j]], cosine, radius)?;
             }
         }
+        Some(())
     }
 
     /// On which side of a cap the centre of a cell lies that is over it: 1 if the cap faces away from it.
@@ -361,47 +418,69 @@ impl Node {
         node
     }
 
-    /// Adds the group's winding number as seen from afar: `gap` is the distance of its sphere from the point, `clear`
-    /// from the ball around that.
-    fn add(&self, towards: DVec3, distance: f64, gap: f64, clear: f64, sum: &mut Local) {
+    /// Adds the group's winding number as seen from afar to what is known of the ball of `radius` around a point, if that
+    /// adds at most `enough` to the error anywhere in it.
+    #[inline]
+    fn add(&self, radius: f64, enough: f64, sum: &mut Local) -> bool {
+        let towards = self.centre - sum.point;
+        let distance = towards.length();
+        let (gap, clear) = (distance - self.radius, distance - self.radius - radius);
+        // Also true for NaN.
+        if !(clear > self.radius) {
+            return false;
+        }
+        // The n-th derivative of the kernel y/|y|³ is at most (n + 1)!/|y|ⁿ⁺²: it is one of 1/|y|, which is harmonic, so
+        // that it is largest along y. (The terms with 1e-11 are for what is rounded.)
+        let near = 1.0 / (gap * gap);
+        let error = SCALE * (3.0 * self.spread * near + 1e-11 * self.size) * near;
+        let slant = SCALE * (6.0 * self.arm * near * near + 1e-11 * self.size * near / gap);
+        let bend = SCALE * (2.0 * self.rim).min(6.0 * self.size / clear) / (clear * clear * clear);
+        if !(error + (slant + 0.5 * bend * radius) * radius <= enough) {
+            return false;
+        }
         let inverse = 1.0 / distance;
         let direction = towards * inverse;
         let (square, cube) = (inverse * inverse, inverse * inverse * inverse);
-        // The kernel y/|y|³ at the centre, and its first derivative (1 − 3 d dᵀ)/|y|³.
+        // The kernel at the centre, and its first derivative (1 − 3 d dᵀ)/|y|³.
         let facing = self.area.dot(direction);
         let trace = self.moment.x_axis.x + self.moment.y_axis.y + self.moment.z_axis.z;
         let along = direction.dot(self.moment * direction);
-        sum.value += (facing * square + (trace - 3.0 * along) * cube) / (4.0 * PI);
-        sum.gradient += (direction * (3.0 * facing) - self.area) * cube;
-        // Its n-th derivative is at most (n + 1)!/|y|ⁿ⁺²: it is that of 1/|y|, which is harmonic and largest along d.
-        // (The terms with 1e-11 are for what is rounded.)
-        let near = 1.0 / (gap * gap);
-        sum.error += (3.0 * self.spread * near + 1e-11 * self.size) * near / (4.0 * PI);
-        sum.slant += 6.0 * self.arm * near * near + 1e-11 * self.size * near / gap;
-        sum.bend += (2.0 * self.rim).min(6.0 * self.size / clear) / (clear * clear * clear);
+        sum.value += SCALE * (facing * square + (trace - 3.0 * along) * cube);
+        sum.gradient += (direction * (3.0 * facing) - self.area) * (SCALE * cube);
+        sum.error += error;
+        sum.slant += slant;
+        sum.bend += bend;
+        true
     }
 }
 
 impl Local {
-    /// Adds what an edge of the boundary does to the derivatives, times 4π. The gradient is the magnetic field of a current
-    /// along the edge.
-    fn add_rim(&mut self, [from, to]: [DVec3; 2], [start, end]: [f64; 2], cosine: f64, radius: f64) {
+    /// Adds what an edge of the boundary does to the derivatives. The gradient is the magnetic field of a current
+    /// along the edge. `None` if the edge passes through the ball.
+    #[inline]
+    fn add_rim(
+        &mut self,
+        [from, to]: [DVec3; 2],
+        [start, end]: [f64; 2],
+        cosine: f64,
+        radius: f64,
+    ) -> Option<()> {
         let edge = to - from;
         let length = edge.length();
         let along = if length > 0.0 { (-from.dot(edge) / (length * length)).clamp(0.0, 1.0) } else { 0.0 };
         let distance = (from + along * edge).length() * (1.0 - 1e-9) - 1e-9 * length.min(1.0) - radius;
         // Also true for NaN.
         if !(distance > 0.0) {
-            self.bend = f64::INFINITY;
-            return;
+            return None;
         }
         let open = 1.0 + cosine;
-        let strength = (start + end) / (start * end * open);
+        let strength = SCALE * (start + end) / (start * end * open);
         let field = from.cross(to) * (strength / (start * end));
         self.gradient += field;
         self.slant += 64.0 * f64::EPSILON * (field.length() / open + strength);
         // ∫ 2 ds / distance³ along the edge, and at most along its whole line.
-        self.bend += 2.0 * (length / distance).min(2.0) / (distance * distance);
+        self.bend += SCALE * 2.0 * (length / distance).min(2.0) / (distance * distance);
+        Some(())
     }
 }
 

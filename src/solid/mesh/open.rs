@@ -1,0 +1,290 @@
+//! Cells of an open surface.
+//!
+//! What is counted along lines is the winding number of the surface *and its caps*. Here the caps' own is taken off: around
+//! the middle of a cell it is known to first order, with bounds of what that neglects, and jumps by an integer on every
+//! cap. Three things follow for a cell:
+//!
+//! * If no cap cuts it, and the caps' winding number stays between two halves of odd integers, the surface's own is the integer
+//!   that remains, up to less than one half. The cell and all below it are then as those of a closed surface.
+//! * If the surface does not cut it, its winding number is continuous in the cell, caps or not, and may be bounded away
+//!   from what the fill rule asks for: FULL or EMPTY.
+//! * Else its children are asked. A finest cell near a hole, that nothing cuts, may stay PARTIAL.
+
+use super::placed::Placed;
+use super::split::{MeshPart, MeshSolid};
+use super::surface::FillRule;
+use super::winding::{Local, Nearby, Range};
+use crate::error::Error;
+use crate::lattice::MAX_DEPTH;
+use crate::lattice::exact::floor;
+use crate::solid::Verdict;
+use alloc::vec::Vec;
+
+/// Half the diagonal of a cube of edge 1, rounded up.
+const HALF_DIAGONAL: f64 = 0.866_025_404;
+
+/// Two winding numbers that are known so well differ by the nearest integer, if they should differ by an integer.
+const SURE: f64 = 0.2;
+
+/// Error that a group of caps may add to a cell's first order.
+const ENOUGH: f64 = 1.0 / 4096.0;
+
+/// Error that a group of caps may add if a centre's side hangs on it.
+const LEAST: f64 = 1.0 / 1073741824.0;
+
+/// How many squares of the universe's faces are divided at most to learn what is outside.
+const MOST_SQUARES: usize = 2048;
+
+/// Which of its values the caps' winding number takes at a cell's lowest centre.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Branch {
+    /// That of the first order around the cell of this level which holds this one
+    level: u8,
+    /// and so much more.
+    step: i32,
+}
+
+impl Branch {
+    /// Nothing is known.
+    pub(super) const UNKNOWN: Branch = Branch { level: u8::MAX, step: 0 };
+
+    /// Beyond caps.
+    pub(super) fn plus(self, jump: i32) -> Branch {
+        Branch { step: self.step + jump, ..self }
+    }
+}
+
+/// What is near the latest cell of each level: functions of the cell alone, kept for those below it.
+#[derive(Default)]
+pub(super) struct Surroundings {
+    levels: [Surrounding; MAX_DEPTH as usize + 1],
+}
+
+#[derive(Default)]
+struct Surrounding {
+    /// Lower corner of the cell.
+    corner: Option<[i32; 3]>,
+    nearby: Nearby,
+    /// Around its middle, once asked for: none if the boundary passes close by.
+    local: Option<Option<Local>>,
+}
+
+impl Surroundings {
+    /// What is near the cell of `level` that holds `at`.
+    fn nearby(&mut self, placed: &Placed, level: u8, at: [i32; 3]) -> Result<&mut Surrounding, Error> {
+        let size = |level: u8| 1 << (placed.frame.depth() - level);
+        let corner = |level: u8| at.map(|a| a & -size(level));
+        let known = (0..=level).rev().find(|&l| self.levels[l as usize].corner == Some(corner(l)));
+        for l in known.map_or(0, |l| l + 1)..=level {
+            let (outer, inner) = self.levels.split_at_mut(l as usize);
+            let inner = &mut inner[0];
+            inner.corner = None;
+            inner.local = None;
+            let radius = size(l) as f64 * HALF_DIAGONAL;
+            let middle = middle(corner(l), size(l));
+            match outer.last() {
+                Some(outer) => placed.caps.nearby(&outer.nearby, middle, radius, &mut inner.nearby)?,
+                None => placed.caps.nearby(&placed.caps.everything()?, middle, radius, &mut inner.nearby)?,
+            }
+            inner.corner = Some(corner(l));
+        }
+        Ok(&mut self.levels[level as usize])
+    }
+
+    /// The caps' winding number around the middle of the cell of `level` that holds `at`; of a finest cell on that side
+    /// of every cap on which its centre counts.
+    fn local(&mut self, placed: &Placed, level: u8, at: [i32; 3]) -> Result<Option<Local>, Error> {
+        let surrounding = self.nearby(placed, level, at)?;
+        if let Some(local) = surrounding.local {
+            return Ok(local);
+        }
+        let size = 1 << (placed.frame.depth() - level);
+        let corner = at.map(|a| a & -size);
+        let radius = size as f64 * HALF_DIAGONAL;
+        let cell = (size == 1).then_some(corner);
+        let nearby = &surrounding.nearby;
+        let local = placed.caps.local(placed, nearby, middle(corner, size), radius, ENOUGH, cell);
+        surrounding.local = Some(local);
+        Ok(local)
+    }
+
+    /// The caps' winding number at the centre of a finest cell, seen from the cell of `level` that holds it.
+    fn at_centre(&mut self, placed: &Placed, level: u8, at: [i32; 3], enough: f64) -> Result<Range, Error> {
+        let nearby = &self.nearby(placed, level, at)?.nearby;
+        let local = placed.caps.local(placed, nearby, middle(at, 1), 0.0, enough, Some(at));
+        Ok(local.map_or(Range::UNKNOWN, |local| local.within(0.0)))
+    }
+}
+
+fn middle(corner: [i32; 3], size: i32) -> [f64; 3] {
+    corner.map(|a| a as f64 + size as f64 / 2.0)
+}
+
+impl MeshSolid {
+    /// What is known of a cell in which the caps' winding number is not known to be near one integer.
+    #[cold]
+    pub(super) fn open_verdict(
+        &self,
+        surroundings: &mut Surroundings,
+        triangles: &[u32],
+        at: [i32; 3],
+        size: i32,
+        mut part: MeshPart,
+    ) -> Result<Verdict<MeshPart>, Error> {
+        let is_cut = triangles.first().is_some_and(|&first| !self.placed.is_cap(first));
+        let is_capped = triangles.last().is_some_and(|&last| self.placed.is_cap(last));
+        if is_cut && (size == 1 || is_capped) {
+            return Ok(Verdict::Partial(part));
+        }
+        let mut is_fresh = false;
+        loop {
+            let caps = self.caps_over(surroundings, at, size, part)?;
+            let change = caps.change + caps.doubt;
+            if !is_capped {
+                let nearest = floor(caps.value + 0.5);
+                if (caps.value - nearest as f64).abs() + change < 0.5 {
+                    part.winding -= nearest as i32;
+                    part.caps = None;
+                    return Ok(self.closed_verdict(part));
+                }
+            }
+            if !is_cut {
+                let excess = self.excess(part.winding as f64 - caps.value);
+                if excess.abs() > change {
+                    return Ok(if excess > 0.0 { Verdict::Full } else { Verdict::Empty });
+                }
+            }
+            // Also false for NaN.
+            let is_sharp = caps.doubt <= 0.5 * caps.change;
+            if is_sharp || is_fresh {
+                return Ok(Verdict::Partial(part));
+            }
+            part.caps = Some(self.branch(surroundings, at, size, part)?);
+            is_fresh = true;
+        }
+    }
+
+    /// Whether the centre of a finest cell is inside.
+    #[cold]
+    pub(super) fn open_sample(
+        &self,
+        surroundings: &mut Surroundings,
+        at: [i32; 3],
+        part: MeshPart,
+    ) -> Result<bool, Error> {
+        let depth = self.placed.frame.depth();
+        let excess = |caps: Range| self.excess(part.winding as f64 - caps.value);
+        let mut caps = self.caps_at(surroundings, at, part)?;
+        for (level, enough) in [(depth, ENOUGH), (0, LEAST)] {
+            if excess(caps).abs() > caps.doubt {
+                break;
+            }
+            caps = surroundings.at_centre(&self.placed, level, at, enough)?;
+        }
+        Ok(excess(caps) >= 0.0)
+    }
+
+    /// By how much a winding number exceeds what the fill rule asks for.
+    fn excess(&self, winding: f64) -> f64 {
+        match self.fill {
+            FillRule::Positive => winding - 0.5,
+            FillRule::NonZero | FillRule::EvenOdd => winding.abs() - 0.5,
+        }
+    }
+
+    /// The caps' winding number over a cell, continued from its lowest centre through caps.
+    fn caps_over(
+        &self,
+        surroundings: &mut Surroundings,
+        at: [i32; 3],
+        size: i32,
+        part: MeshPart,
+    ) -> Result<Range, Error> {
+        self.known(surroundings, at, part, |local| local.over(at, size))
+    }
+
+    /// The caps' winding number at a cell's lowest centre.
+    fn caps_at(&self, surroundings: &mut Surroundings, at: [i32; 3], part: MeshPart) -> Result<Range, Error> {
+        self.known(surroundings, at, part, |local| local.at_centre(at))
+    }
+
+    fn known(
+        &self,
+        surroundings: &mut Surroundings,
+        at: [i32; 3],
+        part: MeshPart,
+        range: impl Fn(&Local) -> Range,
+    ) -> Result<Range, Error> {
+        let Some(Branch { level: level @ 0..=MAX_DEPTH, step }) = part.caps else {
+            return Ok(Range::UNKNOWN);
+        };
+        let local = surroundings.local(&self.placed, level, at)?;
+        Ok(local.map_or(Range::UNKNOWN, |local| range(&local).plus(step)))
+    }
+
+    /// The branch of the caps' winding number as it is around this cell itself.
+    fn branch(
+        &self,
+        surroundings: &mut Surroundings,
+        at: [i32; 3],
+        size: i32,
+        part: MeshPart,
+    ) -> Result<Branch, Error> {
+        let level = self.placed.frame.depth() - size.trailing_zeros() as u8;
+        let Some(here) = surroundings.local(&self.placed, level, at)? else {
+            return Ok(Branch::UNKNOWN);
+        };
+        if size == 1 {
+            return Ok(Branch { level, step: 0 });
+        }
+        let here = here.at_centre(at);
+        let mut there = self.caps_at(surroundings, at, part)?;
+        if !(there.doubt < SURE) {
+            there = surroundings.at_centre(&self.placed, level, at, ENOUGH)?;
+        }
+        if here.doubt < SURE && there.doubt < SURE {
+            Ok(Branch { level, step: floor(there.value - here.value + 0.5) as i32 })
+        } else {
+            Ok(Branch::UNKNOWN)
+        }
+    }
+
+    /// Whether the winding number is proven less than one half in magnitude everywhere outside of the universe, which holds
+    /// the whole surface: a harmonic function that vanishes at infinity takes its extremes on the faces.
+    pub(super) fn is_quiet_outside(&self) -> bool {
+        let caps = &self.placed.caps;
+        if caps.is_empty() {
+            return true;
+        }
+        let cells = self.placed.frame.cells() as f64;
+        let Ok(everything) = caps.everything() else { return false };
+        // A square on each face: the face, its lowest corner, its edge.
+        let mut squares: Vec<(usize, [f64; 2], f64)> = Vec::new();
+        if squares.try_reserve(6 + 3 * MOST_SQUARES).is_err() {
+            return false;
+        }
+        squares.extend((0..6).map(|face| (face, [0.0; 2], cells)));
+        let mut divided = 0;
+        while let Some((face, corner, size)) = squares.pop() {
+            let (w, height) = (face / 2, if face % 2 == 0 { 0.0 } else { cells });
+            let half = size / 2.0;
+            let mut point = [height; 3];
+            (point[(w + 1) % 3], point[(w + 2) % 3]) = (corner[0] + half, corner[1] + half);
+            let radius = half * core::f64::consts::SQRT_2;
+            let seen = caps.local(&self.placed, &everything, point, radius, ENOUGH, None);
+            let seen = seen.map_or(Range::UNKNOWN, |local| local.within(radius));
+            if seen.value.abs() + seen.change + seen.doubt < 0.5 {
+                continue;
+            }
+            divided += 1;
+            if divided > MOST_SQUARES {
+                return false;
+            }
+            squares.extend((0..4).map(|k| {
+                let step = |bit: usize| if k >> bit & 1 != 0 { half } else { 0.0 };
+                (face, [corner[0] + step(0), corner[1] + step(1)], half)
+            }));
+        }
+        true
+    }
+}
