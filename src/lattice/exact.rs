@@ -37,6 +37,15 @@ pub fn two_product(a: f64, b: f64) -> (f64, f64) {
     (product, al * bl - (((product - ah * bh) - al * bh) - ah * bl))
 }
 
+/// The square root, correctly rounded, hence the same everywhere. (glam's lengths call a function for it.)
+#[inline(always)]
+pub fn sqrt(x: f64) -> f64 {
+    #[cfg(feature = "std")]
+    return x.sqrt();
+    #[cfg(not(feature = "std"))]
+    return libm::sqrt(x);
+}
+
 /// The largest double ≤ `a · b`.
 pub fn product_down(a: f64, b: f64) -> f64 {
     let (product, error) = two_product(a, b);

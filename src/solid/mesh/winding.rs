@@ -20,9 +20,10 @@ use super::boundary::Loops;
 use super::crossing::Projection;
 use super::placed::{Placed, Vertex, ranks};
 use crate::error::Error;
+use crate::lattice::exact::sqrt;
 use alloc::vec::Vec;
 use core::f64::consts::PI;
-use glam::{DMat3, DVec2, DVec3};
+use glam::{DMat3, DVec3};
 
 /// Triangles that are summed one by one.
 const LEAF: usize = 4;
@@ -113,7 +114,7 @@ impl Range {
 impl Local {
     /// In the ball of the given radius around the point it was made for.
     pub(super) fn within(&self, radius: f64) -> Range {
-        let change = self.gradient.length() * radius;
+        let change = length(self.gradient) * radius;
         Range { value: self.value, change, doubt: self.doubt(radius) }
     }
 
@@ -125,14 +126,14 @@ impl Local {
         Range {
             value: self.value + self.gradient.dot(middle),
             change: half * (gradient.x + gradient.y + gradient.z),
-            doubt: self.doubt((middle.abs() + half).length()),
+            doubt: self.doubt(length(middle.abs() + half)),
         }
     }
 
     /// At the centre of a cell.
     pub(super) fn at_centre(&self, cell: [i32; 3]) -> Range {
         let to = DVec3::from(cell.map(|a| a as f64 + 0.5)) - self.point;
-        Range { value: self.value + self.gradient.dot(to), change: 0.0, doubt: self.doubt(to.length()) }
+        Range { value: self.value + self.gradient.dot(to), change: 0.0, doubt: self.doubt(length(to)) }
     }
 
     fn doubt(&self, distance: f64) -> f64 {
@@ -143,7 +144,7 @@ impl Local {
     /// The same around another point of the ball.
     fn moved_to(&self, point: DVec3) -> Local {
         let step = point - self.point;
-        let distance = step.length();
+        let distance = length(step);
         Local {
             point,
             value: self.value + self.gradient.dot(step),
@@ -306,7 +307,7 @@ impl Caps {
         }
         if self.wobble > 0.0 {
             // Where the boundary wobbles, the winding number changes as if the point did.
-            local.error += self.wobble * (local.gradient.length() + local.slant + local.bend * radius);
+            local.error += self.wobble * (length(local.gradient) + local.slant + local.bend * radius);
         }
         Some(local)
     }
@@ -322,14 +323,14 @@ impl Caps {
         sum: &mut Local,
     ) -> Option<()> {
         let corners = self.triangles[cap].map(|vertex| DVec3::from(placed.vertex(vertex).at) - sum.point);
-        let lengths = corners.map(DVec3::length);
+        let lengths = corners.map(length);
         let inverses = lengths.map(|length| 1.0 / length);
         let [a, b, c] = [0, 1, 2].map(|i| corners[i] * inverses[i]);
         let (ab, bc, ca) = (a.dot(b), b.dot(c), c.dot(a));
         // Half the solid angle is the argument of (real, imaginary).
         let imaginary = a.dot(b.cross(c));
         let real = 1.0 + ab + bc + ca;
-        let modulus = DVec2::new(real, imaginary).length();
+        let modulus = sqrt(real * real + imaginary * imaginary);
         let wrong = 64.0 * f64::EPSILON + 8.0 * self.error * (inverses[0] + inverses[1] + inverses[2]);
         // Also false for NaN.
         if modulus >= 2.0 * wrong {
@@ -386,7 +387,7 @@ impl Node {
         let centre = low.midpoint(high);
         let mut node = Node {
             centre,
-            radius: corners().fold(0.0, |radius: f64, p| radius.max((p - centre).length())) * (1.0 + 1e-9),
+            radius: corners().fold(0.0, |radius: f64, p| radius.max(length(p - centre))) * (1.0 + 1e-9),
             area: DVec3::ZERO,
             moment: DMat3::ZERO,
             size: 0.0,
@@ -400,7 +401,7 @@ impl Node {
         for &(triangle, rims) in slots {
             let [a, b, c] = triangle.map(|vertex| at(vertex) - centre);
             let area = (b - a).cross(c - a) / 2.0;
-            let size = area.length();
+            let size = length(area);
             let middle = a + b + c;
             node.area += area;
             // Columns are area · s.x, area · s.y, area · s.z.
@@ -410,7 +411,7 @@ impl Node {
                 * (a.length_squared() + b.length_squared() + c.length_squared() + middle.length_squared());
             for (i, (from, to)) in [(a, b), (b, c), (c, a)].into_iter().enumerate() {
                 if rims >> i & 1 != 0 {
-                    node.rim += (to - from).length();
+                    node.rim += length(to - from);
                 }
             }
         }
@@ -423,7 +424,7 @@ impl Node {
     #[inline]
     fn add(&self, radius: f64, enough: f64, sum: &mut Local) -> bool {
         let towards = self.centre - sum.point;
-        let distance = towards.length();
+        let distance = length(towards);
         let (gap, clear) = (distance - self.radius, distance - self.radius - radius);
         // Also true for NaN.
         if !(clear > self.radius) {
@@ -466,9 +467,9 @@ impl Local {
         radius: f64,
     ) -> Option<()> {
         let edge = to - from;
-        let length = edge.length();
+        let length = self::length(edge);
         let along = if length > 0.0 { (-from.dot(edge) / (length * length)).clamp(0.0, 1.0) } else { 0.0 };
-        let distance = (from + along * edge).length() * (1.0 - 1e-9) - 1e-9 * length.min(1.0) - radius;
+        let distance = self::length(from + along * edge) * (1.0 - 1e-9) - 1e-9 * length.min(1.0) - radius;
         // Also true for NaN.
         if !(distance > 0.0) {
             return None;
@@ -477,11 +478,16 @@ impl Local {
         let strength = SCALE * (start + end) / (start * end * open);
         let field = from.cross(to) * (strength / (start * end));
         self.gradient += field;
-        self.slant += 64.0 * f64::EPSILON * (field.length() / open + strength);
+        self.slant += 64.0 * f64::EPSILON * (self::length(field) / open + strength);
         // ∫ 2 ds / distance³ along the edge, and at most along its whole line.
         self.bend += SCALE * 2.0 * (length / distance).min(2.0) / (distance * distance);
         Some(())
     }
+}
+
+#[inline(always)]
+fn length(v: DVec3) -> f64 {
+    sqrt(v.length_squared())
 }
 
 /// The triangles of a polygon with `corners` corners, by halves; `found` gets the corners of each, descending, and
