@@ -27,7 +27,7 @@ const HALF_DIAGONAL: f64 = 0.866_025_404;
 const SURE: f64 = 0.2;
 
 /// Error that a group of caps may add to a cell's first order.
-const ENOUGH: f64 = 1.0 / 4096.0;
+const ENOUGH: f64 = 1.0 / 16384.0;
 
 /// Error that a group of caps may add if a centre's side hangs on it.
 const LEAST: f64 = 1.0 / 1073741824.0;
@@ -159,7 +159,7 @@ impl MeshSolid {
             if is_sharp || is_fresh {
                 return Ok(Verdict::Partial(part));
             }
-            part.caps = Some(self.branch(surroundings, at, size, part)?);
+            part.caps = Some(self.branch(surroundings, at, size, is_capped, part)?);
             is_fresh = true;
         }
     }
@@ -228,6 +228,7 @@ impl MeshSolid {
         surroundings: &mut Surroundings,
         at: [i32; 3],
         size: i32,
+        is_capped: bool,
         part: MeshPart,
     ) -> Result<Branch, Error> {
         let level = self.placed.frame.depth() - size.trailing_zeros() as u8;
@@ -235,6 +236,10 @@ impl MeshSolid {
             return Ok(Branch::UNKNOWN);
         };
         if size == 1 {
+            return Ok(Branch { level, step: 0 });
+        }
+        if !is_capped {
+            // No cap between the middle, which is on none, and the lowest centre.
             return Ok(Branch { level, step: 0 });
         }
         let here = here.at_centre(at);
