@@ -12,13 +12,16 @@ mod crossing;
 mod open;
 mod overlap;
 mod placed;
+mod report;
 mod scan;
 mod sew;
 mod split;
 mod surface;
 mod topology;
+mod weld;
 mod winding;
 
+pub use report::MeshReport;
 pub use split::{MeshPart, MeshScratch, MeshSolid};
-pub(crate) use surface::FacetWelder;
-pub use surface::{FillRule, MeshReport, TriangleMesh};
+pub use surface::{FillRule, TriangleMesh};
+pub(crate) use weld::FacetWelder;

@@ -13,16 +13,14 @@ use alloc::boxed::Box;
 use alloc::vec::Vec;
 use core::borrow::Borrow;
 use core::fmt;
-use core::hash::{BuildHasher, Hasher};
 
 use glam::DVec3;
-use hashbrown::{DefaultHashBuilder, HashTable};
 use once_cell::race::OnceBox;
 
 use super::boundary::Loops;
 use super::topology::Topology;
+use super::weld::{FacetWelder, Places, is_proper, normalised};
 use crate::error::{Error, MeshError};
-use crate::lattice::{LARGEST, SMALLEST};
 use crate::octree::try_copy;
 
 /// Which points a surface encloses.
@@ -57,36 +55,6 @@ impl FillRule {
     }
 }
 
-/// What was found while a mesh was taken in, and how its triangles hang together.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct MeshReport {
-    /// Triangles that were handed in, `triangles` + `degenerate`.
-    pub facets_read: u64,
-    /// Triangles of the mesh.
-    pub triangles: u64,
-    /// Vertices of the mesh, all at different places. Some may be used by no triangle.
-    pub vertices: u64,
-    /// Vertices that were handed in and lay on an earlier one: of a triangle soup that was not
-    /// sewn, 3 `facets_read` - `vertices`.
-    pub welded: u64,
-    /// Triangles that were dropped because two of their corners lie at one place.
-    pub degenerate: u64,
-    /// Edges that an odd number of triangles use. A mesh is closed if there is none.
-    pub boundary_edges: u64,
-    /// Edges that an even number of triangles use, but not half of them in each direction. A closed mesh is
-    /// consistently oriented if there is none.
-    pub misoriented_edges: u64,
-    /// Edges that more than two triangles use, for instance where two bodies touch. They do no harm.
-    pub non_manifold_edges: u64,
-    /// Sets of triangles that hang together over edges. Bodies that touch only in single vertices count
-    /// separately, and so does the outer from the inner surface of a hollow body.
-    pub bodies: u64,
-    /// Vertices that [`sewn`](TriangleMesh::sewn) moved onto another one.
-    pub sewn: u64,
-    /// The farthest that any of them was moved along an axis, in model units.
-    pub displacement: f64,
-}
-
 /// A surface of triangles with shared vertices.
 ///
 /// Coordinates are finite and at most 2^256 in magnitude, those below 2^-256 count as zero, no two vertices are
@@ -98,9 +66,9 @@ pub struct MeshReport {
 pub struct TriangleMesh {
     vertices: Vec<[f64; 3]>,
     triangles: Vec<[u32; 3]>,
-    welded: u64,
-    degenerate: u64,
-    sewn: u64,
+    pub(super) welded: u64,
+    pub(super) degenerate: u64,
+    pub(super) sewn: u64,
     displacement: f64,
     topology: OnceBox<Topology>,
 }
@@ -151,15 +119,18 @@ impl TriangleMesh {
         let read = triangles.len();
         triangles.retain(is_proper);
         let (welded, degenerate) = ((given - kept) as u64, (read - triangles.len()) as u64);
-        Ok(Self {
-            vertices,
-            triangles,
-            welded,
-            degenerate,
-            sewn: 0,
-            displacement: 0.0,
-            topology: OnceBox::new(),
-        })
+        Ok(Self::from_welded(vertices, triangles, welded, degenerate))
+    }
+
+    /// The mesh of vertices that are all different and triangles of three different ones each.
+    pub(super) fn from_welded(
+        vertices: Vec<[f64; 3]>,
+        triangles: Vec<[u32; 3]>,
+        welded: u64,
+        degenerate: u64,
+    ) -> Self {
+        let topology = OnceBox::new();
+        Self { vertices, triangles, welded, degenerate, sewn: 0, displacement: 0.0, topology }
     }
 
     /// A mesh of separate triangles, each given by its three corners. Vertices have the order of their first
@@ -219,29 +190,6 @@ impl TriangleMesh {
             })
             .sum();
         six_fold / 6.0
-    }
-
-    /// What was found when the mesh was made, and how its triangles hang together.
-    ///
-    /// The first call of this or of [`check_closed`](Self::check_closed) analyses the edges, in O(t + v) time
-    /// and with 28 bytes per triangle and 8 per vertex of scratch memory; later calls are free. Fails with
-    /// [`Error::OutOfMemory`].
-    pub fn report(&self) -> Result<MeshReport, Error> {
-        let topology = self.topology()?;
-        let triangles = self.triangles.len() as u64;
-        Ok(MeshReport {
-            facets_read: triangles + self.degenerate,
-            triangles,
-            vertices: self.vertices.len() as u64,
-            welded: self.welded,
-            degenerate: self.degenerate,
-            boundary_edges: topology.boundary_edges,
-            misoriented_edges: topology.misoriented_edges,
-            non_manifold_edges: topology.non_manifold_edges,
-            bodies: topology.bodies,
-            sewn: self.sewn,
-            displacement: self.displacement,
-        })
     }
 
     /// Checks that the mesh bounds a solid under `rule`.
@@ -345,7 +293,7 @@ impl TriangleMesh {
         DVec3::from(self.vertices[vertex as usize])
     }
 
-    fn topology(&self) -> Result<&Topology, Error> {
+    pub(super) fn topology(&self) -> Result<&Topology, Error> {
         self.topology.get_or_try_init(|| Topology::of(&self.triangles, self.vertices.len()).map(Box::new))
     }
 }
@@ -359,147 +307,11 @@ impl fmt::Debug for TriangleMesh {
     }
 }
 
-/// Takes in a triangle soup one facet at a time, so that readers need not store it.
-pub(crate) struct FacetWelder {
-    places: Places,
-    vertices: Vec<[f64; 3]>,
-    triangles: Vec<[u32; 3]>,
-    facets: u64,
-}
-
-impl FacetWelder {
-    /// A welder with room for about `facets` facets; `facets` must be backed by data that exists.
-    pub fn with_capacity(facets: usize) -> Result<Self, Error> {
-        // A closed mesh has about half as many vertices as triangles; a soup that welds worse makes it grow.
-        let vertices = facets / 2 + facets / 16;
-        let mut welder = Self {
-            places: Places::with_capacity(vertices)?,
-            vertices: Vec::new(),
-            triangles: Vec::new(),
-            facets: 0,
-        };
-        welder.vertices.try_reserve_exact(vertices).map_err(|_| Error::OutOfMemory)?;
-        welder.triangles.try_reserve_exact(facets).map_err(|_| Error::OutOfMemory)?;
-        Ok(welder)
-    }
-
-    /// Adds a facet. Fails as [`TriangleMesh::from_facets`] does.
-    #[inline]
-    pub fn push(&mut self, facet: &[[f64; 3]; 3]) -> Result<(), Error> {
-        let mut triangle = [0; 3];
-        for ((index, &corner), k) in triangle.iter_mut().zip(facet).zip(0..) {
-            *index = self.weld(normalised(corner, self.facets * 3 + k)?)?;
-        }
-        self.facets += 1;
-        if is_proper(&triangle) {
-            if u32::try_from(self.triangles.len()).map_or(true, |count| count == u32::MAX) {
-                return Err(MeshError::TooMany.into());
-            }
-            self.triangles.try_reserve(1).map_err(|_| Error::OutOfMemory)?;
-            self.triangles.push(triangle);
-        }
-        Ok(())
-    }
-
-    /// The mesh of all facets added.
-    pub fn finish(self) -> TriangleMesh {
-        let welded = self.facets * 3 - self.vertices.len() as u64;
-        let degenerate = self.facets - self.triangles.len() as u64;
-        let (vertices, triangles) = (self.vertices, self.triangles);
-        TriangleMesh {
-            vertices,
-            triangles,
-            welded,
-            degenerate,
-            sewn: 0,
-            displacement: 0.0,
-            topology: OnceBox::new(),
-        }
-    }
-
-    #[inline]
-    fn weld(&mut self, vertex: [f64; 3]) -> Result<u32, Error> {
-        let hash = self.places.hash(&vertex);
-        if let Some(index) = self.places.find(hash, &vertex, &self.vertices) {
-            return Ok(index);
-        }
-        let index = u32::try_from(self.vertices.len()).map_err(|_| MeshError::TooMany)?;
-        if index == u32::MAX {
-            return Err(MeshError::TooMany.into());
-        }
-        self.vertices.try_reserve(1).map_err(|_| Error::OutOfMemory)?;
-        self.places.insert(hash, index, &self.vertices)?;
-        self.vertices.push(vertex);
-        Ok(index)
-    }
-}
-
-/// A hash table of vertex indices by position. The positions stay in the caller's vector, so a slot is 4 bytes;
-/// the hash is seeded, and no result depends on it.
-struct Places {
-    table: HashTable<u32>,
-    hasher: DefaultHashBuilder,
-}
-
-impl Places {
-    fn with_capacity(len: usize) -> Result<Self, Error> {
-        let mut table = HashTable::new();
-        table.try_reserve(len, |_| 0).map_err(|_| Error::OutOfMemory)?;
-        Ok(Self { table, hasher: DefaultHashBuilder::default() })
-    }
-
-    #[inline]
-    fn hash(&self, vertex: &[f64; 3]) -> u64 {
-        hash(&self.hasher, vertex)
-    }
-
-    #[inline]
-    fn find(&self, hash: u64, vertex: &[f64; 3], vertices: &[[f64; 3]]) -> Option<u32> {
-        // Comparing numbers is comparing bits here: there is neither -0.0 nor NaN.
-        self.table.find(hash, |&i| vertices[i as usize] == *vertex).copied()
-    }
-
-    /// Adds an index whose position is not in the table yet; those of all others must be in `vertices`.
-    #[inline]
-    fn insert(&mut self, hash_of_index: u64, index: u32, vertices: &[[f64; 3]]) -> Result<(), Error> {
-        let Self { table, hasher } = self;
-        let rehash = |&i: &u32| hash(hasher, &vertices[i as usize]);
-        table.try_reserve(1, rehash).map_err(|_| Error::OutOfMemory)?;
-        table.insert_unique(hash_of_index, index, rehash);
-        Ok(())
-    }
-}
-
-#[inline]
-fn hash(builder: &DefaultHashBuilder, vertex: &[f64; 3]) -> u64 {
-    let mut hasher = builder.build_hasher();
-    vertex.iter().for_each(|x| hasher.write_u64(x.to_bits()));
-    hasher.finish()
-}
-
-/// The vertex with -0.0 turned into 0.0, or why it is refused.
-#[inline]
-fn normalised(vertex: [f64; 3], index: u64) -> Result<[f64; 3], MeshError> {
-    // False for NaN as well.
-    if vertex.iter().all(|x| x.abs() <= LARGEST) {
-        // Products of three coordinates must not underflow, because signs of determinants are exact. (This
-        // also turns -0.0 into 0.0.)
-        Ok(vertex.map(|x| if x.abs() < SMALLEST { 0.0 } else { x }))
-    } else if vertex.iter().all(|x| x.is_finite()) {
-        Err(MeshError::TooLarge { vertex: index })
-    } else {
-        Err(MeshError::NotFinite { vertex: index })
-    }
-}
-
-#[inline]
-fn is_proper(&[a, b, c]: &[u32; 3]) -> bool {
-    a != b && b != c && c != a
-}
-
 #[cfg(test)]
 mod tests {
+    use super::super::report::MeshReport;
     use super::*;
+    use crate::lattice::LARGEST;
     use alloc::vec;
 
     /// A tetrahedron of volume 1/6, seen from outside counter-clockwise.
