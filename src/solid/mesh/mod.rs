@@ -12,6 +12,8 @@ mod crossing;
 mod open;
 mod overlap;
 mod placed;
+#[cfg(feature = "std")]
+mod polygon;
 mod report;
 mod scan;
 mod sew;
@@ -21,6 +23,9 @@ mod topology;
 mod weld;
 mod winding;
 
+#[cfg(feature = "std")]
+#[allow(unused_imports)]
+pub(crate) use polygon::triangulate_facet;
 pub use report::MeshReport;
 pub use split::{MeshPart, MeshScratch, MeshSolid};
 pub use surface::{FillRule, TriangleMesh};
