@@ -26,6 +26,9 @@ pub enum Error {
     /// A triangle mesh that does not bound a solid.
     #[error(transparent)]
     Mesh(#[from] MeshError),
+    /// Arrays that do not describe solids of plane faces.
+    #[error(transparent)]
+    Polyhedron(#[from] PolyhedronError),
     /// A mesh file that cannot be read.
     #[error(transparent)]
     MeshFile(#[from] MeshFileError),
@@ -48,7 +51,8 @@ pub enum Error {
     /// Every allocation whose size depends on an input or a result is asked for in a way that can be refused,
     /// and this is the refusal. What remains is small, at most 2 KiB a piece: counted references, the numbers
     /// per level behind statistics, exact signs, what the standard library and `tempfile` need to handle a
-    /// path; and what threads cost. If even that cannot be had, the process ends, as Rust programs do. (So it
+    /// path; what threads cost; and polygons that are no fans, which another crate triangulates: about 320 bytes a
+    /// corner are asked for, and given back, before it begins. If even that cannot be had, the process ends, as Rust programs do. (So it
     /// does where an allocator refuses to make a piece of memory smaller, which none is known to.)
     #[error("out of memory")]
     OutOfMemory,
@@ -124,6 +128,156 @@ pub enum MeshError {
     Unoriented {
         /// Edges on which an even number of triangles meet whose directions do not cancel.
         edges: u64,
+    },
+}
+
+/// Why arrays do not describe solids of plane faces. Loops, faces and shells are counted from 0 through all solids.
+#[non_exhaustive]
+#[derive(Debug, Clone, Copy, PartialEq, Error)]
+pub enum PolyhedronError {
+    /// An array of offsets does not begin with 0, does not rise, or does not end at the length of what it
+    /// divides.
+    #[error(
+        "the offsets of the {array} are wrong at index {index}: they must rise from 0 to the count of {parts}"
+    )]
+    Offsets {
+        /// `"loops"`, `"faces"`, `"shells"` or `"solids"`.
+        array: &'static str,
+        /// `"corners"`, `"loops"`, `"faces"` or `"shells"`.
+        parts: &'static str,
+        /// Index of the first offset that is wrong.
+        index: u64,
+    },
+    /// A loop has one or two corners.
+    #[error("loop {index} has {corners} corners, and three are the fewest")]
+    FewCorners {
+        /// Index of the loop.
+        index: u64,
+        /// How many it has.
+        corners: u64,
+    },
+    /// A corner names a vertex that does not exist.
+    #[error("corner {corner} refers to vertex {vertex}, but there are only {vertices}")]
+    Vertex {
+        /// Index into the array of corners.
+        corner: u64,
+        /// The vertex that it names.
+        vertex: u64,
+        /// How many vertices there are.
+        vertices: u64,
+    },
+    /// Two consecutive corners of a loop are one vertex or lie at one place.
+    #[error("face {face} has an edge without length from vertex {from} to vertex {to}")]
+    NoLength {
+        /// Index of the face.
+        face: u64,
+        /// The corner's vertex.
+        from: u64,
+        /// The vertex of the next corner.
+        to: u64,
+    },
+    /// An edge of a face is no edge of another face of its shell.
+    #[error(
+        "shell {shell} is open: the edge of face {face} from vertex {from} to vertex {to} has no counterpart"
+    )]
+    Open {
+        /// Index of the shell.
+        shell: u64,
+        /// Index of the face.
+        face: u64,
+        /// Vertex at which the edge begins, in the direction of the face's loop.
+        from: u64,
+        /// Vertex at which it ends.
+        to: u64,
+    },
+    /// Two faces of a shell run along their common edge in the same direction.
+    #[error(
+        "shell {shell} is not consistently oriented: face {face} and face {other} run in the same direction from \
+         vertex {from} to vertex {to}"
+    )]
+    Unoriented {
+        /// Index of the shell.
+        shell: u64,
+        /// Index of the face.
+        face: u64,
+        /// Index of the other face.
+        other: u64,
+        /// Vertex at which the edge begins.
+        from: u64,
+        /// Vertex at which it ends.
+        to: u64,
+    },
+    /// More than two faces of a shell meet on an edge.
+    #[error(
+        "on the edge of face {face} from vertex {from} to vertex {to}, {uses} faces of shell {shell} meet"
+    )]
+    NonManifold {
+        /// Index of the shell.
+        shell: u64,
+        /// Index of the face.
+        face: u64,
+        /// Vertex at which the edge begins, in the direction of the face's loop.
+        from: u64,
+        /// Vertex at which it ends.
+        to: u64,
+        /// How often the shell's loops run along the edge.
+        uses: u64,
+    },
+    /// The outer loop of a face encloses no area.
+    #[error("face {face} has no area")]
+    Flat {
+        /// Index of the face.
+        face: u64,
+    },
+    /// The corners of a face do not lie in a plane.
+    #[error(
+        "face {face} is not plane: its corners lie up to {deviation} beside a plane, where {tolerance} is allowed"
+    )]
+    NotPlane {
+        /// Index of the face.
+        face: u64,
+        /// Half the distance between two planes, parallel to the face, that have all its corners between them,
+        /// in model units.
+        deviation: f64,
+        /// The most that is allowed.
+        tolerance: f64,
+    },
+    /// Two edges of a face cross, or a vertex of it lies within one of its edges.
+    #[error("the edge of face {face} from vertex {from} to vertex {to} meets another edge of the face")]
+    Crossing {
+        /// Index of the face.
+        face: u64,
+        /// Vertex at which the edge begins.
+        from: u64,
+        /// Vertex at which it ends.
+        to: u64,
+    },
+    /// A loop of a face lies on the wrong side of another one: a hole outside of the outer loop, within another
+    /// hole, or one that turns as the outer loop does.
+    #[error(
+        "the loops of face {face} do not enclose one area: holes must lie within the outer loop and turn against it"
+    )]
+    Loops {
+        /// Index of the face.
+        face: u64,
+    },
+    /// The first shell of a solid encloses a negative volume, or none: its loops turn clockwise, seen from outside.
+    #[error("shell {shell} bounds its solid from outside, but is inside out")]
+    InsideOut {
+        /// Index of the shell.
+        shell: u64,
+    },
+    /// A further shell of a solid encloses a positive volume, or none: its loops turn clockwise, seen from the void.
+    #[error("shell {shell} bounds a void, but is not inside out")]
+    VoidOutward {
+        /// Index of the shell.
+        shell: u64,
+    },
+    /// A void reaches out of its solid's first shell.
+    #[error("shell {shell} bounds a void that does not lie within its solid")]
+    VoidOutside {
+        /// Index of the shell.
+        shell: u64,
     },
 }
 

@@ -59,7 +59,7 @@ mod query;
 mod solid;
 
 pub use control::Control;
-pub use error::{Damage, Error, FormatError, MeshError, MeshFileError};
+pub use error::{Damage, Error, FormatError, MeshError, MeshFileError, PolyhedronError};
 pub use lattice::{Cell, Cube, Frame, Interval, MAX_DEPTH};
 pub use octree::{
     Block, Cursor, LevelStatistics, Metadata, Node, Octree, OctreeRef, Planes, Rule, Statistics, Tag,
@@ -73,6 +73,9 @@ pub use solid::{
     AnySolid, AxisBox, Ball, Callback, ErasedPart, ErasedScratch, FillRule, HalfSpace, MeshPart, MeshReport,
     MeshScratch, MeshSolid, Scratch, Solid, Stored, StoredPart, TriangleMesh, Verdict,
 };
+
+#[cfg(feature = "std")]
+pub use solid::{Polyhedron, PolyhedronArrays};
 
 /// The README's example is compiled and run.
 #[cfg(all(doctest, feature = "mmap"))]

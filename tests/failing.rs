@@ -12,9 +12,9 @@ mod bodies;
 
 use bodies::{Aligned, Random};
 use leafless::{
-    AnySolid, AxisBox, Ball, Callback, Control, Error, FillRule, Frame, MeshSolid, Metadata, Octree, Rule,
-    Stored, TriangleMesh, Verdict, build, compact, complement, difference, file, intersection, resolve,
-    union, union_of, xor,
+    AnySolid, AxisBox, Ball, Callback, Control, Error, FillRule, Frame, MeshSolid, Metadata, Octree,
+    Polyhedron, PolyhedronArrays, Rule, Stored, TriangleMesh, Verdict, build, compact, complement,
+    difference, file, intersection, resolve, union, union_of, xor,
 };
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
@@ -184,6 +184,28 @@ fn cracked() -> TriangleMesh {
     TriangleMesh::from_facets(facets).unwrap()
 }
 
+/// A prism over a zigzag band of `corners` corners, an even number, which is nowhere a fan.
+fn band(corners: u32) -> (Vec<[f64; 3]>, [Vec<u32>; 5]) {
+    let half = corners / 2;
+    let along = |k: u32| [f64::from(k), f64::from(k % 2) * 0.75];
+    let there = (0..half).map(along);
+    let back = (0..half).rev().map(|k| [along(k)[0], along(k)[1] + 0.25]);
+    let vertices = there.chain(back).flat_map(|[x, y]| [[x, y, 0.0], [x, y, 1.0]]).collect();
+    let mut list: Vec<u32> =
+        (0..corners).rev().map(|k| 2 * k).chain((0..corners).map(|k| 2 * k + 1)).collect();
+    for k in 0..corners {
+        let next = (k + 1) % corners;
+        list.extend([2 * k, 2 * next, 2 * next + 1, 2 * k + 1]);
+    }
+    let loops = [0, corners].into_iter().chain((0..=corners).map(|k| 2 * corners + 4 * k)).collect();
+    (vertices, [list, loops, (0..corners + 3).collect(), vec![0, corners + 2], vec![0, 1]])
+}
+
+fn polyhedron((vertices, lists): &(Vec<[f64; 3]>, [Vec<u32>; 5])) -> Result<Polyhedron, Error> {
+    let [corners, loops, faces, shells, solids] = lists;
+    Polyhedron::new(&PolyhedronArrays { vertices, corners, loops, faces, shells, solids })
+}
+
 /// Everything that allocates, by name. It may fail, and nothing but memory may be a reason.
 type Operation = Box<dyn Fn() -> Result<(), Error>>;
 
@@ -233,6 +255,8 @@ fn operations(directory: &Path) -> Vec<(&'static str, Operation)> {
     operation!("build stored", [a], build(&Stored::new(a.view()), &frame(), Rule::Inner, &CONTROL));
     operation!("mesh of facets", [facets], TriangleMesh::from_facets(&*facets));
     operation!("mesh report", [closed], closed.translated([1.0; 3])?.report());
+    // Faces of few corners: the crate that triangulates faces cannot be refused memory.
+    operation!("polyhedron", [], polyhedron(&band(12)));
     operation!("sew", [cracked], cracked.transformed(|corner| corner)?.sewn());
     operation!("read STL", [stl], file::read_stl(&stl));
     operation!("write STL", [closed], file::write_stl(&closed));
@@ -441,6 +465,20 @@ fn memory_is_a_small_multiple_of_the_input() {
     println!("{worst:.2?}");
     for (worst, stated) in worst.into_iter().zip([2.0, 6.0, 6.0, 32.0, 32.0, 32.0, 32.0]) {
         assert!(worst <= stated, "{worst} times the input, not {stated}");
+    }
+}
+
+/// What `Polyhedron` promises. The part of the triangulation is asked for before it begins.
+#[test]
+fn memory_of_polyhedra_is_a_small_multiple_of_their_corners() {
+    for corners in [2_000, 50_000] {
+        let arrays = band(corners);
+        let (made, held) = most_held(|| polyhedron(&arrays));
+        assert_eq!(made.unwrap().mesh().triangles().len() as u32, 4 * corners - 4);
+        // The prism has six times as many corners.
+        let allowed = (MAKING as u32 + 320 * corners + 100 * 6 * corners) as usize;
+        assert!(held <= allowed, "{held} bytes, not {allowed}");
+        println!("{} bytes a corner of the face", held / corners as usize);
     }
 }
 

@@ -18,6 +18,8 @@ pub use erased::{AnySolid, ErasedPart, ErasedScratch};
 pub use halfspace::HalfSpace;
 pub(crate) use mesh::FacetWelder;
 pub use mesh::{FillRule, MeshPart, MeshReport, MeshScratch, MeshSolid, TriangleMesh};
+#[cfg(feature = "std")]
+pub use mesh::{Polyhedron, PolyhedronArrays};
 pub use primitive::{AxisBox, Ball};
 pub use stored::{Stored, StoredPart};
 

@@ -14,6 +14,8 @@ mod overlap;
 mod placed;
 #[cfg(feature = "std")]
 mod polygon;
+#[cfg(feature = "std")]
+mod polyhedron;
 mod report;
 mod scan;
 mod sew;
@@ -26,6 +28,8 @@ mod winding;
 #[cfg(feature = "std")]
 #[allow(unused_imports)]
 pub(crate) use polygon::triangulate_facet;
+#[cfg(feature = "std")]
+pub use polyhedron::{Polyhedron, PolyhedronArrays};
 pub use report::MeshReport;
 pub use split::{MeshPart, MeshScratch, MeshSolid};
 pub use surface::{FillRule, TriangleMesh};

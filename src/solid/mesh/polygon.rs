@@ -13,8 +13,6 @@
 //!
 //! `spade` links the standard library through one of its dependencies, so all of this needs the feature `std`.
 
-#![allow(dead_code)]
-
 use alloc::vec::Vec;
 
 use robust::{Coord, orient2d};
@@ -22,10 +20,11 @@ use spade::handles::{FixedFaceHandle, FixedVertexHandle, PossiblyOuterTag};
 use spade::{ConstrainedDelaunayTriangulation, HierarchyHintGenerator, Point2, Triangulation};
 
 use crate::error::Error;
+use crate::lattice::exact::two_product;
 
 /// Bytes that a triangulation takes for each corner, at most, all its parts counted. They are asked for and given
 /// back before it begins, because the crate that does it cannot be refused memory.
-const BYTES_PER_CORNER: usize = 512;
+const BYTES_PER_CORNER: usize = 320;
 
 /// Why a polygon has no triangulation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -78,6 +77,7 @@ pub(crate) fn triangulate(
 /// whether it was a triangulation.
 ///
 /// A loop of fewer than three corners adds nothing. Corners must be vertices. Fails with [`Error::OutOfMemory`].
+#[allow(dead_code)]
 pub(crate) fn triangulate_facet(
     vertices: &[[f64; 3]],
     corners: &[u32],
@@ -165,7 +165,10 @@ pub(super) fn normal(vertices: &[[f64; 3]], corners: &[u32]) -> Option<[f64; 3]>
         let q = from_origin(corner)?;
         for axis in 0..3 {
             let [u, v] = [(axis + 1) % 3, (axis + 2) % 3];
-            sum[axis] += p[u] * q[v] - p[v] * q[u];
+            // The normal of a sliver must not drown in the errors of products that cancel.
+            let (left, left_error) = two_product(p[u], q[v]);
+            let (right, right_error) = two_product(p[v], q[u]);
+            sum[axis] += (left - right) + (left_error - right_error);
         }
         p = q;
     }
