@@ -9,7 +9,7 @@ use alloc::vec::Vec;
 use crate::error::Error;
 
 /// What the edges of a mesh say.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub(super) struct Topology {
     /// Edges that an odd number of triangles use.
     pub boundary_edges: u64,
@@ -17,14 +17,26 @@ pub(super) struct Topology {
     pub misoriented_edges: u64,
     /// Edges that more than two triangles use.
     pub non_manifold_edges: u64,
+    /// Triangles whose corners an earlier one has in the same direction.
+    pub duplicate: u64,
+    /// Pairs of triangles that have the same corners in opposite directions.
+    pub opposite: u64,
     /// Sets of triangles that hang together over edges.
     pub bodies: u64,
     /// The vertices of the boundary edges, ascending.
     pub open_vertices: Vec<u32>,
     /// The surface's boundary as a chain: each edge that more triangles run along in one direction than in the other,
-    /// in that direction, as often as there are more. Of a surface whose triangles cancel each other's edges it is
-    /// empty; otherwise every vertex begins as many of these edges as it ends.
+    /// in that direction, as often as there are more, one behind the other. Of a surface whose triangles cancel
+    /// each other's edges it is empty; otherwise every vertex begins as many of these edges as it ends.
     pub boundary: Vec<[u32; 2]>,
+}
+
+/// Which triangles hang together.
+pub(super) struct Bodies {
+    /// The number of the body that each triangle belongs to. Bodies are numbered by their first triangles.
+    pub of_triangles: Vec<u32>,
+    /// For each edge whose triangles do not cancel each other there, one of these triangles.
+    pub torn: Vec<u32>,
 }
 
 impl Topology {
@@ -33,73 +45,187 @@ impl Topology {
     /// O(t + v) time on ordinary meshes, O(t log t) when many edges share one vertex; 28 bytes per triangle
     /// and 8 bytes per vertex of scratch memory. Fails with [`Error::OutOfMemory`].
     pub fn of(triangles: &[[u32; 3]], vertices: usize) -> Result<Self, Error> {
-        let uses = triangles.len().checked_mul(3).ok_or(Error::OutOfMemory)?;
-        // Slot v + 1 counts first, then holds the place where the next use of vertex v goes, and at last the
-        // end of v's list, which is the start of the list of v + 1.
-        let mut ends: Vec<usize> = filled(vertices.checked_add(2).ok_or(Error::OutOfMemory)?, 0)?;
-        for &[a, b, c] in triangles {
-            ends[a.min(b) as usize + 2] += 1;
-            ends[b.min(c) as usize + 2] += 1;
-            ends[c.min(a) as usize + 2] += 1;
-        }
-        let mut sum = 0;
-        for end in &mut ends {
-            sum += *end;
-            *end = sum;
-        }
-        // One use is (higher vertex, triangle). Its direction is looked up in the triangle, since 65 bits do
-        // not fit.
-        let mut lists: Vec<u64> = filled(uses, 0)?;
-        for (t, &[a, b, c]) in triangles.iter().enumerate() {
-            for (from, to) in [(a, b), (b, c), (c, a)] {
-                let place = &mut ends[from.min(to) as usize + 1];
-                lists[*place] = u64::from(from.max(to)) << 32 | t as u64;
-                *place += 1;
+        Ok(Self::with_bodies(triangles, vertices)?.0)
+    }
+
+    /// As [`of`](Self::of), and tells which triangles hang together.
+    pub fn with_bodies(triangles: &[[u32; 3]], vertices: usize) -> Result<(Self, Bodies), Error> {
+        let mut result = Self::default();
+        let mut torn = Vec::new();
+        let mut coincident = Coincident::default();
+        let mut sets = DisjointSets::new(triangles.len())?;
+        for_each_edge(triangles, vertices, |edge| {
+            edge.triangles().for_each(|t| sets.unite(edge.first(), t));
+            coincident.on(edge, triangles)?;
+            result.duplicate += coincident.duplicate.len() as u64;
+            result.opposite += coincident.opposite.len() as u64;
+            result.non_manifold_edges += u64::from(edge.count() > 2);
+            let excess = edge.excess();
+            if edge.is_open() {
+                result.boundary_edges += 1;
+                result.open_vertices.try_reserve(2).map_err(|_| Error::OutOfMemory)?;
+                result.open_vertices.extend([edge.low, edge.high]);
+            } else if excess != 0 {
+                result.misoriented_edges += 1;
             }
-        }
-        let mut result = Self {
-            boundary_edges: 0,
-            misoriented_edges: 0,
-            non_manifold_edges: 0,
-            bodies: 0,
-            open_vertices: Vec::new(),
-            boundary: Vec::new(),
-        };
-        let mut bodies = DisjointSets::new(triangles.len())?;
-        for low in 0..vertices {
-            let list = &mut lists[ends[low]..ends[low + 1]];
-            list.sort_unstable();
-            for edge in list.chunk_by(|a, b| a >> 32 == b >> 32) {
-                let (mut forward, mut first) = (0, None);
-                for &item in edge {
-                    let t = item as u32;
-                    forward +=
-                        usize::from(is_forward(triangles[t as usize], low as u32, (item >> 32) as u32));
-                    match first {
-                        None => first = Some(t),
-                        Some(other) => bodies.unite(other, t),
-                    }
-                }
-                if edge.len() % 2 == 1 {
-                    result.boundary_edges += 1;
-                    result.open_vertices.try_reserve(2).map_err(|_| Error::OutOfMemory)?;
-                    result.open_vertices.extend([low as u32, (edge[0] >> 32) as u32]);
-                } else if 2 * forward != edge.len() {
-                    result.misoriented_edges += 1;
-                }
-                result.non_manifold_edges += u64::from(edge.len() > 2);
-                let high = (edge[0] >> 32) as u32;
-                let directed = if 2 * forward > edge.len() { [low as u32, high] } else { [high, low as u32] };
-                let excess = (2 * forward).abs_diff(edge.len());
-                result.boundary.try_reserve(excess).map_err(|_| Error::OutOfMemory)?;
-                result.boundary.extend(core::iter::repeat_n(directed, excess));
+            if excess != 0 {
+                torn.try_reserve(1).map_err(|_| Error::OutOfMemory)?;
+                torn.push(edge.first());
+                let directed = if excess > 0 { [edge.low, edge.high] } else { [edge.high, edge.low] };
+                result.boundary.try_reserve(excess.unsigned_abs()).map_err(|_| Error::OutOfMemory)?;
+                result.boundary.extend(core::iter::repeat_n(directed, excess.unsigned_abs()));
             }
-        }
-        result.bodies = bodies.count;
+            Ok(())
+        })?;
         result.open_vertices.sort_unstable();
         result.open_vertices.dedup();
-        Ok(result)
+        let of_triangles = sets.numbers();
+        result.bodies = of_triangles.iter().max().map_or(0, |&last| u64::from(last) + 1);
+        Ok((result, Bodies { of_triangles, torn }))
     }
+}
+
+/// An edge with all triangles that use it.
+pub(super) struct Edge<'a> {
+    /// The lower one of its vertices.
+    pub low: u32,
+    /// The higher one.
+    pub high: u32,
+    /// How many triangles run from `low` to `high`.
+    forward: usize,
+    /// High vertices and triangles, ascending.
+    uses: &'a [u64],
+}
+
+impl Edge<'_> {
+    /// How many triangles use it.
+    pub fn count(&self) -> usize {
+        self.uses.len()
+    }
+
+    /// The triangles, ascending.
+    pub fn triangles(&self) -> impl Iterator<Item = u32> {
+        self.uses.iter().map(|&item| item as u32)
+    }
+
+    /// The first of them.
+    pub fn first(&self) -> u32 {
+        self.uses[0] as u32
+    }
+
+    /// Whether they are an odd number.
+    pub fn is_open(&self) -> bool {
+        self.uses.len() % 2 == 1
+    }
+
+    /// How many more triangles run from `low` to `high` than back.
+    pub fn excess(&self) -> isize {
+        2 * self.forward as isize - self.uses.len() as isize
+    }
+}
+
+/// Calls `visit` with each edge, in the order of the lower vertices, then the higher ones. Costs as
+/// [`Topology::of`], but for 4 bytes per triangle.
+#[inline(always)]
+pub(super) fn for_each_edge(
+    triangles: &[[u32; 3]],
+    vertices: usize,
+    mut visit: impl FnMut(&Edge) -> Result<(), Error>,
+) -> Result<(), Error> {
+    let uses = triangles.len().checked_mul(3).ok_or(Error::OutOfMemory)?;
+    // Slot v + 1 counts first, then holds the place where the next use of vertex v goes, and at last the
+    // end of v's list, which is the start of the list of v + 1.
+    let mut ends: Vec<usize> = filled(vertices.checked_add(2).ok_or(Error::OutOfMemory)?, 0)?;
+    for &[a, b, c] in triangles {
+        ends[a.min(b) as usize + 2] += 1;
+        ends[b.min(c) as usize + 2] += 1;
+        ends[c.min(a) as usize + 2] += 1;
+    }
+    let mut sum = 0;
+    for end in &mut ends {
+        sum += *end;
+        *end = sum;
+    }
+    // One use is (higher vertex, triangle). Its direction is looked up in the triangle, since 65 bits do
+    // not fit.
+    let mut lists: Vec<u64> = filled(uses, 0)?;
+    for (t, &[a, b, c]) in triangles.iter().enumerate() {
+        for (from, to) in [(a, b), (b, c), (c, a)] {
+            let place = &mut ends[from.min(to) as usize + 1];
+            lists[*place] = u64::from(from.max(to)) << 32 | t as u64;
+            *place += 1;
+        }
+    }
+    for low in 0..vertices {
+        let list = &mut lists[ends[low]..ends[low + 1]];
+        list.sort_unstable();
+        let low = low as u32;
+        for uses in list.chunk_by(|a, b| a >> 32 == b >> 32) {
+            let high = (uses[0] >> 32) as u32;
+            let forward = uses.iter().filter(|&&item| is_forward(triangles[item as u32 as usize], low, high));
+            visit(&Edge { low, high, forward: forward.count(), uses })?;
+        }
+    }
+    Ok(())
+}
+
+/// Finds triangles with the same three corners. Each is found on one of its edges, the one between its lowest and
+/// its highest vertex.
+#[derive(Default)]
+pub(super) struct Coincident {
+    /// Of the last edge: triangles whose corners an earlier one has in the same direction, ascending by their
+    /// corners.
+    pub duplicate: Vec<u32>,
+    /// Of the last edge: the later triangles of pairs in opposite directions.
+    pub opposite: Vec<u32>,
+    /// Triangles by their third corner and direction.
+    sorted: Vec<(u32, bool, u32)>,
+}
+
+impl Coincident {
+    /// Looks at an edge.
+    #[inline]
+    pub fn on(&mut self, edge: &Edge, triangles: &[[u32; 3]]) -> Result<(), Error> {
+        self.duplicate.clear();
+        self.opposite.clear();
+        match *edge.uses {
+            [_] => Ok(()),
+            // By far the most frequent: two triangles, which have different third corners.
+            [a, b]
+                if third(edge, triangles[a as u32 as usize]) != third(edge, triangles[b as u32 as usize]) =>
+            {
+                Ok(())
+            }
+            _ => self.among(edge, triangles),
+        }
+    }
+
+    #[cold]
+    fn among(&mut self, edge: &Edge, triangles: &[[u32; 3]]) -> Result<(), Error> {
+        self.sorted.clear();
+        for list in [&mut self.duplicate, &mut self.opposite] {
+            list.try_reserve(edge.count()).map_err(|_| Error::OutOfMemory)?;
+        }
+        self.sorted.try_reserve(edge.count()).map_err(|_| Error::OutOfMemory)?;
+        self.sorted.extend(edge.triangles().filter_map(|t| {
+            let triangle = triangles[t as usize];
+            let third = third(edge, triangle);
+            let here = edge.low < third && third < edge.high;
+            here.then(|| (third, is_forward(triangle, edge.low, edge.high), t))
+        }));
+        self.sorted.sort_unstable();
+        for same in self.sorted.chunk_by(|a, b| a.0 == b.0) {
+            let (back, forth) = same.split_at(same.partition_point(|&(_, forward, _)| !forward));
+            self.duplicate.extend(back.iter().skip(1).chain(forth.iter().skip(1)).map(|&(.., t)| t));
+            self.opposite.extend(back.iter().zip(forth).map(|(a, b)| a.2.max(b.2)));
+        }
+        Ok(())
+    }
+}
+
+/// The corner of a triangle that is not on the edge.
+fn third(edge: &Edge, [a, b, c]: [u32; 3]) -> u32 {
+    a ^ b ^ c ^ edge.low ^ edge.high
 }
 
 /// Whether the triangle runs from `from` to `to`; both must be corners of it.
@@ -116,10 +242,7 @@ fn filled<T: Clone>(len: usize, value: T) -> Result<Vec<T>, Error> {
 }
 
 /// Union-find. The root of a set is its least member, so that every link leads downwards.
-struct DisjointSets {
-    parents: Vec<u32>,
-    count: u64,
-}
+struct DisjointSets(Vec<u32>);
 
 impl DisjointSets {
     /// `len` sets of one member each; `len` is at most 2^32 - 1.
@@ -127,18 +250,18 @@ impl DisjointSets {
         let mut parents = Vec::new();
         parents.try_reserve_exact(len).map_err(|_| Error::OutOfMemory)?;
         parents.extend((0..len).map(|i| i as u32));
-        Ok(Self { parents, count: len as u64 })
+        Ok(Self(parents))
     }
 
     fn root(&mut self, mut i: u32) -> u32 {
         loop {
-            let parent = self.parents[i as usize];
+            let parent = self.0[i as usize];
             if parent == i {
                 return i;
             }
             // Path halving: keeps the paths short without a second walk.
-            let grandparent = self.parents[parent as usize];
-            self.parents[i as usize] = grandparent;
+            let grandparent = self.0[parent as usize];
+            self.0[i as usize] = grandparent;
             i = grandparent;
         }
     }
@@ -146,9 +269,24 @@ impl DisjointSets {
     fn unite(&mut self, a: u32, b: u32) {
         let (a, b) = (self.root(a), self.root(b));
         if a != b {
-            self.parents[a.max(b) as usize] = a.min(b);
-            self.count -= 1;
+            self.0[a.max(b) as usize] = a.min(b);
         }
+    }
+
+    /// The number of each member's set. Sets are numbered by their least members.
+    fn numbers(mut self) -> Vec<u32> {
+        let mut count = 0;
+        for i in 0..self.0.len() {
+            let parent = self.0[i] as usize;
+            // Lower ones hold their numbers already.
+            if parent == i {
+                self.0[i] = count;
+                count += 1;
+            } else {
+                self.0[i] = self.0[parent];
+            }
+        }
+        self.0
     }
 }
 
