@@ -288,6 +288,20 @@ pub enum MeshFileError {
     /// The file has no byte at all.
     #[error("the file is empty")]
     Empty,
+    /// Neither the content nor the name tells the format.
+    #[error("what format this is can be told neither from the content nor from the name")]
+    UnknownFormat,
+    /// The file uses, or is, something that this library, or this build of it, cannot read.
+    #[error("{what} cannot be read")]
+    Unsupported {
+        /// What the file uses or is.
+        what: &'static str,
+    },
+    /// A conversion of units was asked for, but the file does not say in which unit its numbers are.
+    #[error(
+        "the file does not say in which unit its numbers are, so they cannot be converted unless it is given"
+    )]
+    UnknownUnit,
     /// A binary STL whose length contradicts its facet count.
     #[error(
         "this is no ASCII STL and no whole binary one: {facets} facets, as it seems to say, need {expected} bytes \

@@ -80,7 +80,9 @@ mod map;
 mod read;
 mod write;
 
-pub use exchange::{read_stl, write_stl};
+#[cfg(feature = "std")]
+pub use exchange::open_mesh;
+pub use exchange::{LengthUnit, MeshFile, MeshFormat, MeshOptions, read_mesh, read_stl, write_stl};
 pub use layout::{MAGIC, MAJOR, MINOR};
 #[cfg(feature = "mmap")]
 pub use map::{map, map_verified};

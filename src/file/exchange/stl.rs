@@ -54,11 +54,10 @@ pub fn read_stl(bytes: &[u8]) -> Result<TriangleMesh, Error> {
         return Err(MeshFileError::Empty.into());
     }
     let count = bytes.get(HEADER - 4..HEADER).and_then(|b| <[u8; 4]>::try_from(b).ok());
-    if let Some(count) = count {
-        let exact = binary_length(u32::from_le_bytes(count)) == bytes.len() as u64;
-        if exact || count.contains(&0) || !begins_with_solid(bytes) {
-            return read_binary(u32::from_le_bytes(count), bytes);
-        }
+    if let Some(count) = count
+        && (is_binary_of_exact_length(bytes) || count.contains(&0) || !begins_with_solid(bytes))
+    {
+        return read_binary(u32::from_le_bytes(count), bytes);
     }
     // Shorter than any binary file, or text.
     read_ascii(bytes)
@@ -103,6 +102,12 @@ fn normal(corners: [[f64; 3]; 3]) -> [f64; 3] {
     // Scaled to about 1, lest the squares overflow or vanish.
     let unit = |v: DVec3| (v / v.abs().max_element()).normalize_or_zero();
     unit(unit(b - a).cross(unit(c - a))).to_array()
+}
+
+/// Whether the file has just the length that a binary STL with its facet count has.
+pub(super) fn is_binary_of_exact_length(bytes: &[u8]) -> bool {
+    let count = bytes.get(HEADER - 4..HEADER).and_then(|b| <[u8; 4]>::try_from(b).ok());
+    count.is_some_and(|count| binary_length(u32::from_le_bytes(count)) == bytes.len() as u64)
 }
 
 fn binary_length(facets: u32) -> u64 {

@@ -228,6 +228,17 @@ impl TriangleMesh {
         Self::new(vertices, try_copy(&self.triangles)?)
     }
 
+    /// The mesh with `f` applied to every coordinate. What was found when it was taken in is still part of the
+    /// report.
+    ///
+    /// O(v + t), in place. Fails as [`new`](Self::new) does.
+    pub(crate) fn scaled(self, f: impl Fn(f64) -> f64) -> Result<Self, Error> {
+        let Self { mut vertices, triangles, welded, degenerate, .. } = self;
+        vertices.as_flattened_mut().iter_mut().for_each(|x| *x = f(*x));
+        let mesh = Self::new(vertices, triangles)?;
+        Ok(Self { welded: welded + mesh.welded, degenerate: degenerate + mesh.degenerate, ..mesh })
+    }
+
     /// The mesh moved by `offset`: [`transformed`](Self::transformed) by a rounded sum.
     pub fn translated(&self, offset: [f64; 3]) -> Result<Self, Error> {
         let moved = self.transformed(|p| (DVec3::from(p) + DVec3::from(offset)).to_array())?;
