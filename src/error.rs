@@ -3,6 +3,9 @@
 //! One enum for the whole crate. Each variant carries what was found, and its text is a sentence that a
 //! user can act on; names of files are added by whoever knows them.
 
+use alloc::boxed::Box;
+use core::fmt;
+
 use thiserror::Error;
 
 /// Why an operation was refused. Nothing is changed, and nothing half-made is returned, when one occurs.
@@ -32,6 +35,9 @@ pub enum Error {
     /// A mesh file that cannot be read.
     #[error(transparent)]
     MeshFile(#[from] MeshFileError),
+    /// A 3MF package that cannot be read.
+    #[error(transparent)]
+    Package(#[from] PackageError),
     /// The bytes are not a Leafless file, or a damaged one.
     #[error(transparent)]
     Format(#[from] FormatError),
@@ -330,6 +336,56 @@ pub enum MeshFileError {
         facet: u64,
     },
 }
+
+/// Why a 3MF package cannot be read: what is wrong where.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct PackageError {
+    part: Box<str>,
+    line: u64,
+    offset: u64,
+    problem: Box<str>,
+}
+
+impl PackageError {
+    #[cfg(feature = "threemf")]
+    pub(crate) fn new(part: impl Into<Box<str>>, place: (u64, u64), problem: impl Into<Box<str>>) -> Self {
+        let (line, offset) = place;
+        Self { part: part.into(), line, offset, problem: problem.into() }
+    }
+
+    /// Name of the part of the package, shortened if it is very long. Empty for the package as a whole.
+    pub fn part(&self) -> &str {
+        &self.part
+    }
+
+    /// Line in the decompressed part, counted from 1; 0 for the part as a whole.
+    pub fn line(&self) -> u64 {
+        self.line
+    }
+
+    /// Bytes of the decompressed part before the element or the place in question.
+    pub fn offset(&self) -> u64 {
+        self.offset
+    }
+
+    /// What is wrong, as a sentence without its subject or with one of its own.
+    pub fn problem(&self) -> &str {
+        &self.problem
+    }
+}
+
+impl fmt::Display for PackageError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { part, line, offset, problem } = self;
+        match (&**part, line) {
+            ("", _) => f.write_str(problem),
+            (_, 0) => write!(f, "{part} {problem}"),
+            _ => write!(f, "{part}, line {line}, byte {offset}: {problem}"),
+        }
+    }
+}
+
+impl core::error::Error for PackageError {}
 
 /// Why bytes are not a readable Leafless file.
 #[non_exhaustive]

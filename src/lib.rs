@@ -59,7 +59,7 @@ mod query;
 mod solid;
 
 pub use control::Control;
-pub use error::{Damage, Error, FormatError, MeshError, MeshFileError, PolyhedronError};
+pub use error::{Damage, Error, FormatError, MeshError, MeshFileError, PackageError, PolyhedronError};
 pub use lattice::{Cell, Cube, Frame, Interval, MAX_DEPTH};
 pub use octree::{
     Block, Cursor, LevelStatistics, Metadata, Node, Octree, OctreeRef, Planes, Rule, Statistics, Tag,

@@ -9,6 +9,9 @@
 
 #[path = "../fuzz/bodies/mod.rs"]
 mod bodies;
+#[cfg(feature = "threemf")]
+#[path = "common/zip.rs"]
+mod zip;
 
 use bodies::{Aligned, Random};
 use leafless::{
@@ -259,6 +262,29 @@ fn operations(directory: &Path) -> Vec<(&'static str, Operation)> {
     operation!("polyhedron", [], polyhedron(&band(12)));
     operation!("sew", [cracked], cracked.transformed(|corner| corner)?.sewn());
     operation!("read STL", [stl], file::read_stl(&stl));
+    operation!("read mesh", [stl], {
+        let (unit, target) = (Some(file::LengthUnit::Inch), Some(file::LengthUnit::Millimetre));
+        file::read_mesh(&stl, &file::MeshOptions { unit, target, ..Default::default() })
+    });
+    #[cfg(feature = "threemf")]
+    {
+        // Many objects, one of them in another part, placed along a chain.
+        let mut resources = zip::tetrahedron(1, "");
+        for id in 2..200 {
+            resources += &zip::tetrahedron(1000 + id, "");
+            resources += &format!(
+                "<object id=\"{id}\"><components><component objectid=\"{}\"/><component objectid=\"{}\" \
+                 transform=\"1 0 0 0 1 0 0 0 1 {id} 0 0\"/></components></object>",
+                id - 1,
+                1000 + id
+            );
+        }
+        let items = "<item objectid=\"199\"/><item objectid=\"1\" p:path=\"/b.model\"/>";
+        let mut entries = zip::package(zip::model("", &resources, items));
+        entries.push(zip::Entry::deflated("b.model", zip::model("", &zip::tetrahedron(1, ""), "")));
+        let package = zip::zip(&entries);
+        operation!("read 3MF", [package], file::read_mesh(&package, &Default::default()));
+    }
     operation!("write STL", [closed], file::write_stl(&closed));
     operation!("union", [a, b], union(a.view(), b.view(), &CONTROL));
     operation!("intersection", [a, b], intersection(a.view(), b.view(), &CONTROL));

@@ -55,7 +55,7 @@ impl From<&Failure> for leafless_status {
                 Error::FrameMismatch => LEAFLESS_E_FRAME,
                 Error::NotSampled => LEAFLESS_E_NOT_SAMPLED,
                 Error::Mesh(_) | Error::Polyhedron(_) => LEAFLESS_E_MESH,
-                Error::MeshFile(_) => LEAFLESS_E_MESH_FILE,
+                Error::MeshFile(_) | Error::Package(_) => LEAFLESS_E_MESH_FILE,
                 Error::Format(FormatError::Version { .. } | FormatError::Required { .. }) => {
                     LEAFLESS_E_VERSION
                 }

@@ -2,6 +2,8 @@
 
 mod detect;
 mod stl;
+#[cfg(feature = "threemf")]
+mod threemf;
 mod unit;
 
 use core::fmt;
@@ -149,7 +151,17 @@ fn read(bytes: &[u8], extension: Option<&str>, options: &MeshOptions) -> Result<
         .ok_or(MeshFileError::UnknownFormat)?;
     let (mesh, own_unit, skipped) = match format {
         MeshFormat::Stl => (read_stl(bytes)?, None, 0),
-        MeshFormat::Obj | MeshFormat::Ply | MeshFormat::Off | MeshFormat::ThreeMf => {
+        #[cfg(feature = "threemf")]
+        MeshFormat::ThreeMf => {
+            let threemf::Built { mesh, unit, skipped } = threemf::read(bytes)?;
+            (mesh, Some(unit), skipped)
+        }
+        #[cfg(not(feature = "threemf"))]
+        MeshFormat::ThreeMf => {
+            let what = "3MF, for which the library was built without the feature `threemf`,";
+            return Err(MeshFileError::Unsupported { what }.into());
+        }
+        MeshFormat::Obj | MeshFormat::Ply | MeshFormat::Off => {
             return Err(MeshFileError::Unsupported { what: "this format" }.into());
         }
     };
