@@ -3,6 +3,8 @@
 #![cfg(feature = "cli")]
 
 mod common;
+#[path = "common/zip.rs"]
+mod zip;
 
 use leafless::{Membership, TriangleMesh, file};
 use serde_json::Value;
@@ -184,7 +186,7 @@ fn wrong_usage_is_one_line_and_code_2() {
     let before = place.files();
     for (line, words) in [
         ("voxelise a", &["voxelise", "voxelize"][..]),
-        ("voxelize", &["IN.stl", "--output", "--depth"]),
+        ("voxelize", &["MESH", "--output", "--depth"]),
         ("voxelize cube.stl -o out.lfl", &["--depth"]),
         ("voxelize cube.stl --depth 5", &["--output"]),
         ("voxelize cube.stl -o out.lfl --depth 0", &["--depth", "0"]),
@@ -192,6 +194,13 @@ fn wrong_usage_is_one_line_and_code_2() {
         ("voxelize cube.stl -o out.lfl --depth five", &["--depth", "five"]),
         ("voxelize cube.stl -o out.lfl --depth 5 --rule exact", &["--rule", "certified", "sampled"]),
         ("voxelize cube.stl -o out.lfl --depth 5 --fill odd", &["--fill", "evenodd"]),
+        ("voxelize cube.stl -o out.lfl --depth 5 --format step", &["--format", "step", "3mf"]),
+        ("voxelize cube.stl -o out.lfl --depth 5 --unit yard", &["--unit", "yard", "mm"]),
+        ("voxelize cube.stl -o out.lfl --depth 5 --to parsec", &["--to", "parsec", "mm"]),
+        ("voxelize cube.stl -o out.lfl --depth 5 --scale 0", &["--scale", "positive"]),
+        ("voxelize cube.stl -o out.lfl --depth 5 --scale -2", &["--scale", "positive"]),
+        ("voxelize cube.stl -o out.lfl --depth 5 --scale inf", &["--scale", "positive"]),
+        ("info cube.stl --scale nan", &["--scale", "positive"]),
         ("voxelize cube.stl -o out.lfl --depth 5 --threads -1", &["-1"]),
         ("voxelize cube.stl -o out.lfl --depth 5 --threads 9999", &["--threads", "1024"]),
         ("voxelize cube.stl -o out.lfl --depth 5 --bounds 1,2,3", &["--bounds", "four numbers"]),
@@ -341,9 +350,7 @@ fn meshes_that_are_refused() {
     place.run("voxelize cube.stl -o solid.lfl --depth 3").good();
     let before = place.files();
     for (name, words) in [
-        ("open.stl", &["not closed", "3 edges"][..]),
-        ("turned.stl", &["oriented", "--fill evenodd"]),
-        ("empty.stl", &["empty"]),
+        ("empty.stl", &["empty"][..]),
         ("none.stl", &["no triangle"]),
         ("dot.stl", &["no triangle"]),
         ("text.stl", &[]),
@@ -357,9 +364,143 @@ fn meshes_that_are_refused() {
         place.run(&format!("voxelize {name} -o out.lfl --depth 4")).bad(1, &words);
     }
     place.run_with("voxelize - -o out.lfl --depth 4", b"").bad(1, &["standard input", "empty"]);
+    let words = ["open.stl", "not closed", "3 edges", "--fill nonzero"];
+    place.run("voxelize open.stl -o out.lfl --depth 4 --fill evenodd").bad(1, &words);
+    let words = ["open.stl", "unit"];
+    place.run("voxelize open.stl -o out.lfl --depth 4 --to mm").bad(1, &words);
+    place.run("voxelize cube.stl -o out.lfl --depth 4 --format 3mf").bad(1, &["cube.stl", "ZIP"]);
+    place.run("voxelize cube.stl -o out.lfl --depth 4 --scale 1e77").bad(1, &["cube.stl", "2^256"]);
     assert_eq!(place.files(), before);
     // By the even-odd rule orientation does not matter.
     place.run("voxelize turned.stl -o out.lfl --depth 4 --fill evenodd").good();
+}
+
+#[test]
+fn open_meshes_are_taken_with_a_warning() {
+    let place = Place::new();
+    let cube = block([1.0; 3], [3.0; 3]);
+    let mut facets: Vec<_> =
+        cube.triangles().iter().map(|t| t.map(|v| cube.vertices()[v as usize])).collect();
+    let [a, b, c] = facets.pop().unwrap();
+    place.write("open.stl", stl(&TriangleMesh::from_facets(&facets).unwrap()));
+    facets.push([a, c, b]);
+    place.write("turned.stl", stl(&TriangleMesh::from_facets(&facets).unwrap()));
+    for (name, words, boundary, misoriented) in [
+        ("open.stl", &["warning", "open along 3 edges", "winding number"][..], 3, 0),
+        ("turned.stl", &["warning", "facing changes across 3 inner edges"], 0, 3),
+    ] {
+        for fill in ["", "--fill positive", "--fill non-zero"] {
+            let run = place.run(&format!("voxelize {name} -o out.lfl --depth 4 {fill} --json"));
+            assert_eq!(run.code, Some(0), "{run:?}");
+            let start = format!("leafless: {name}: warning: ");
+            assert!(run.errors.lines().all(|line| line.starts_with(&start)), "{run:?}");
+            // What is inside before the hole may reach beyond the bounds.
+            let clipped = run.json()["clipped"].as_bool().unwrap();
+            assert_eq!(run.errors.contains("go on outside of the bounds"), clipped, "{run:?}");
+            assert_eq!(run.errors.lines().count(), 1 + usize::from(clipped), "{run:?}");
+            for word in words {
+                assert!(run.errors.contains(word), "{word}: {run:?}");
+            }
+            let json = run.json();
+            let (lower, upper) = volume(&json);
+            let undecided = json["undecided_volume"].as_f64().unwrap();
+            assert!((undecided - (upper - lower)).abs() < 1e-12, "{undecided} {lower} {upper}");
+            assert_eq!(json["mesh"]["boundary_edges"], boundary);
+            assert_eq!(json["mesh"]["misoriented_edges"], misoriented);
+            // A twelfth of the surface is missing, and most of the cube decided nevertheless.
+            assert!(lower > 2.0 && lower < 8.0 && 8.0 <= upper && upper < 14.0, "{lower} {upper}");
+        }
+        let info = place.run(&format!("info {name} --json")).good().json();
+        assert_eq!((&info["closed"], &info["volume"]), (&false.into(), &Value::Null));
+        assert!(place.run(&format!("info {name}")).good().text().contains(words[1]));
+    }
+}
+
+/// `part.3mf`: in inches, a tetrahedron of edge 1 and its mirror image, and a support.
+fn package() -> Vec<u8> {
+    let resources = zip::tetrahedron(1, "") + &zip::tetrahedron(2, "type=\"support\"");
+    let items = "<item objectid=\"1\"/><item objectid=\"2\"/>
+        <item objectid=\"1\" transform=\"-1 0 0 0 1 0 0 0 1 -1 0 0\"/>";
+    zip::zip(&zip::package(zip::model("unit=\"inch\"", &resources, items)))
+}
+
+#[test]
+fn packages_end_to_end() {
+    let place = Place::new();
+    place.write("part.3mf", package());
+    let run = place.run("voxelize part.3mf -o part.lfl --depth 6 --to mm").good();
+    for words in ["8 triangles", "2 bodies", "1 object that is no solid left out"] {
+        assert!(run.text().contains(words), "{run:?}");
+    }
+    let json = place.run("voxelize part.3mf -o part.lfl --depth 6 --to mm --json").good().json();
+    assert_eq!((&json["format"], &json["unit"], &json["skipped"]), (&"3mf".into(), &"mm".into(), &1.into()));
+    assert_eq!(json["fill"], "positive");
+    let (lower, upper) = volume(&json);
+    let truth = 25.4_f64.powi(3) / 3.0;
+    assert!(lower < truth && truth < upper && upper - lower < truth, "{lower} {truth} {upper}");
+    let solid = place.run("info part.lfl --json").good().json();
+    assert_eq!(solid["metadata"]["unit"], "mm");
+    assert!(place.run("info part.lfl").good().text().contains("unit"));
+    // Without a name, by the content.
+    place.run_with("voxelize - -o other.lfl --depth 6 --to mm", &package()).good();
+    assert_eq!(file::open(place.path("other.lfl")).unwrap(), file::open(place.path("part.lfl")).unwrap());
+    place.run("voxelize part.3mf -o inch.lfl --depth 6").good();
+    assert_eq!(place.run("info inch.lfl --json").good().json()["metadata"]["unit"], "in");
+
+    place.write("damaged.3mf", &package()[..400]);
+    place.run("voxelize damaged.3mf -o out.lfl --depth 4").bad(1, &["damaged.3mf", "ZIP"]);
+    let model = zip::model("", &zip::tetrahedron(1, "").replace("v1=\"1\"", "v1=\"9\""), "");
+    place.write("wrong.3mf", zip::zip(&zip::package(model)));
+    let words = ["wrong.3mf: 3D/3dmodel.model, line 17, byte ", "v1=\"9\" is no vertex"];
+    place.run("voxelize wrong.3mf -o out.lfl --depth 4").bad(1, &words);
+    assert!(!place.files().contains(&"out.lfl".to_owned()));
+}
+
+#[test]
+fn units_and_scale() {
+    let place = meshes();
+    let run = |options: &str| {
+        let line = format!("voxelize cube.stl -o out.lfl --depth 3 --json {options}");
+        let json = place.run(&line).good().json();
+        let metadata = json["metadata"].get("unit").cloned();
+        (json["edge"].as_f64().unwrap(), json["unit"].clone(), metadata)
+    };
+    // The edge of the frame is 33/32 of the cube's, which is 2.
+    assert_eq!(run(""), (2.0625, Value::Null, None));
+    assert_eq!(run("--unit cm"), (2.0625, "cm".into(), Some("cm".into())));
+    assert_eq!(run("--unit cm --to Millimetres"), (20.625, "mm".into(), Some("mm".into())));
+    assert_eq!(run("--scale 4"), (8.25, Value::Null, None));
+    assert_eq!(run("--unit mm --to cm --scale 10"), (2.0625, "cm".into(), Some("cm".into())));
+    let info = place.run("info cube.stl --unit in --to mm --json").good().json();
+    assert_eq!(info["max"], serde_json::json!([76.2, 76.2, 76.2]));
+}
+
+#[test]
+fn info_of_meshes() {
+    let place = meshes();
+    let info = place.run("info cube.stl --json").good().json();
+    let expected = ["bytes", "closed", "format", "max", "mesh", "min", "skipped", "unit", "volume"];
+    assert_eq!(keys(&info), expected);
+    assert_eq!(
+        (&info["format"], &info["unit"], &info["closed"]),
+        (&"stl".into(), &Value::Null, &true.into())
+    );
+    assert_eq!((info["volume"].as_f64(), &info["bytes"]), (Some(8.0), &place.bytes("cube.stl").len().into()));
+    assert_eq!((&info["mesh"]["triangles"], &info["mesh"]["bodies"]), (&12.into(), &1.into()));
+    let voxelized = place.run("voxelize cube.stl -o out.lfl --depth 3 --json").good().json();
+    assert_eq!(info["mesh"], voxelized["mesh"]);
+    let text = place.run("info cube.stl").good();
+    for words in ["STL", "unknown", "1 to 3", "yes", "8", "12"] {
+        assert!(text.text().contains(words), "{words}: {text:?}");
+    }
+    let piped = place.run_with("info -", &place.bytes("cube.stl")).good();
+    assert_eq!(piped.text(), text.text());
+    place.write("package", package());
+    assert!(place.run("info package").good().text().contains("3MF"));
+    place.write("text.obj", "v 1 2\n");
+    place.run("info text.obj").bad(1, &["text.obj: "]);
+    place.write("notes.txt", "a text that is neither of both\n");
+    place.run("info notes.txt").bad(1, &["notes.txt: ", "not a Leafless file"]);
 }
 
 #[test]

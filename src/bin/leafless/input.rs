@@ -52,6 +52,15 @@ impl Input {
         }
     }
 
+    /// Whether this is a regular file with the signature of solids. Nothing is taken from a pipe.
+    pub fn begins_as_solid(&self) -> bool {
+        let mut start = [0; file::MAGIC.len()];
+        self.path().filter(|path| path.is_file()).is_some_and(|path| {
+            let read = std::fs::File::open(path).and_then(|mut file| file.read_exact(&mut start));
+            read.is_ok() && start == file::MAGIC
+        })
+    }
+
     /// The octree in the file, and the file's length. A regular file is mapped and, unless `verified` is asked
     /// for, hardly read; what comes through a pipe is read and verified in any case.
     pub fn octree(&self, verified: bool) -> Result<(Octree, u64), Failure> {

@@ -1,4 +1,4 @@
-//! `leafless`: solids from STL files to queries, on the command line.
+//! `leafless`: solids from mesh files to queries, on the command line.
 //!
 //! One file per subcommand. Every failure is one line on standard error that names the file; the exit code is
 //! 0 for success, 1 for failure, 2 for wrong usage.
@@ -11,6 +11,7 @@ mod demo;
 mod failure;
 mod info;
 mod input;
+mod mesh;
 mod output;
 mod part;
 mod progress;
@@ -23,7 +24,7 @@ use clap::{Parser, Subcommand};
 use failure::Failure;
 use std::process::ExitCode;
 
-/// Turns closed meshes into solids, cuts and joins them exactly, and answers questions about them.
+/// Turns meshes into solids, cuts and joins them exactly, and answers questions about them.
 ///
 /// A solid is kept as an octree in a file (.lfl) that is queried where it lies, without loading it. Unless another
 /// rule is asked for, answers are certified: what is called inside or outside is proven, and a volume is an interval
@@ -40,9 +41,9 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Command {
-    /// Make a solid from a closed mesh in an STL file
+    /// Make a solid from a mesh (STL, OBJ, PLY, OFF, 3MF)
     Voxelize(voxelize::Arguments),
-    /// Show what a solid consists of: depth, nodes, cells, volume
+    /// Show what a solid consists of (depth, nodes, cells, volume), or a mesh (bodies, holes, defects)
     Info(info::Arguments),
     /// Check a file completely: exit code 0 if it is good, 1 with the reason if not
     Verify(verify::Arguments),

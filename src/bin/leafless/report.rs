@@ -13,6 +13,13 @@ pub struct Volume {
     upper: f64,
 }
 
+impl Volume {
+    /// How much is undecided.
+    pub fn width(&self) -> f64 {
+        self.upper - self.lower
+    }
+}
+
 impl From<Interval> for Volume {
     fn from(interval: Interval) -> Volume {
         Volume { lower: interval.lower, upper: interval.upper }
@@ -48,7 +55,7 @@ pub struct Info {
     pub nodes: u64,
     pub classical_nodes: u64,
     cells: Cells,
-    volume: Volume,
+    pub volume: Volume,
     pub bytes: u64,
     /// Absent (null) where there is no node.
     pub bytes_per_node: Option<f64>,

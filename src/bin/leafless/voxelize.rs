@@ -1,15 +1,14 @@
-//! `leafless voxelize`: from an STL file to a solid.
+//! `leafless voxelize`: from a mesh file to a solid.
 
 use crate::failure::{Failure, Of};
 use crate::input::Input;
+use crate::mesh::{Reading, format_name, openness};
 use crate::output::{self, Output, count, counted, number, seconds};
 use crate::progress::watched;
 use crate::report::{Info, Mesh};
 use clap::{Args, ValueEnum};
-use leafless::{
-    Error, FillRule, Frame, MeshError, MeshReport, MeshSolid, Metadata, Octree, Rule, TriangleMesh, build,
-    file,
-};
+use leafless::file::{LengthUnit, MeshFile, MeshFormat};
+use leafless::{Error, FillRule, Frame, MeshError, MeshReport, MeshSolid, Metadata, Octree, Rule, build};
 use serde::Serialize;
 use std::ffi::OsString;
 use std::fmt::Write;
@@ -19,15 +18,17 @@ use std::time::Instant;
 /// the certified rule every cell is proven inside, proven outside, or undecided because the surface may pass
 /// through it; no such cell is ever missed.
 ///
-/// The mesh must be closed: every edge shared by an even number of triangles that face the same side. Bodies may
-/// overlap. Vertices that differ by no more than single precision can tell are joined, and it is reported how many.
+/// The mesh should be closed: every edge shared by an even number of triangles that face the same side. Where it has
+/// holes, or facets that are turned round, the winding number decides what is inside, and cells near them may stay
+/// undecided; a warning says so. Bodies may overlap. Vertices that differ by no more than single precision can tell
+/// are joined, and it is reported how many.
 ///
-/// The file records the input's name, length and checksum, and the rule. Equal input gives equal bytes, for any
+/// The file records the input's name, length and checksum, the rule, and the unit if it is known. Equal input gives equal bytes, for any
 /// number of threads.
 #[derive(Args)]
 pub struct Arguments {
-    /// Mesh (STL, binary or ASCII), or `-` for standard input
-    #[arg(value_name = "IN.stl")]
+    /// Mesh (STL, OBJ, PLY, OFF or 3MF), or `-` for standard input
+    #[arg(value_name = "MESH")]
     input: OsString,
     /// File to write, or `-` for standard output, whose summary then goes to standard error; it is written whole
     /// or not at all
@@ -40,10 +41,12 @@ pub struct Arguments {
     /// What becomes of the finest cells that the surface passes through
     #[arg(long, value_enum, default_value_t = RuleName::Certified)]
     rule: RuleName,
-    /// Which points count as inside
-    #[arg(long, value_enum, default_value_t = FillName::Nonzero)]
-    fill: FillName,
-    /// Lower corner and edge length of the cube to cut into cells, in the mesh's units. Solids can be combined if
+    /// Which points count as inside. Without it: positive for 3MF, as that format demands, and nonzero for all others
+    #[arg(long, value_enum)]
+    fill: Option<FillName>,
+    #[command(flatten)]
+    reading: Reading,
+    /// Lower corner and edge length of the cube to cut into cells, in the units of the converted and scaled mesh. Solids can be combined if
     /// they were given the same bounds and depth. What sticks out is cut off, and reported. Without it: the cube
     /// around the middle of the mesh, its edge 33/32 of the mesh's longest extent
     #[arg(long, value_name = "X0,Y0,Z0,EDGE", value_parser = bounds, allow_hyphen_values = true)]
@@ -82,9 +85,13 @@ impl From<RuleName> for Rule {
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
 enum FillName {
-    /// Those that the surface winds around: overlapping bodies are joined
+    /// Those that the surface winds around, in either sense: overlapping bodies are joined
+    #[value(alias = "non-zero")]
     Nonzero,
-    /// Those that it winds around an odd number of times: overlaps are holes
+    /// Those that it winds around in the positive sense: bodies that are inside out take away from others
+    Positive,
+    /// Those that it winds around an odd number of times: overlaps are holes. Needs a closed mesh
+    #[value(alias = "even-odd")]
     Evenodd,
 }
 
@@ -92,6 +99,7 @@ impl From<FillName> for FillRule {
     fn from(name: FillName) -> FillRule {
         match name {
             FillName::Nonzero => FillRule::NonZero,
+            FillName::Positive => FillRule::Positive,
             FillName::Evenodd => FillRule::EvenOdd,
         }
     }
@@ -130,8 +138,15 @@ struct Report {
     output: String,
     rule: String,
     fill: String,
+    format: &'static str,
+    /// Absent (null) where nobody knows it.
+    unit: Option<&'static str>,
+    /// Objects of a 3MF that are no solids.
+    skipped: u64,
     timings: Timings,
     mesh: Mesh,
+    /// Volume of the undecided cells.
+    undecided_volume: f64,
     #[serde(flatten)]
     info: Info,
 }
@@ -146,12 +161,18 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         return Err(Failure::of(&output, "is the mesh itself, which is not overwritten"));
     }
 
-    let (mesh, source) = read_mesh(&input)?;
-    let fill = arguments.fill.into();
-    if fill == FillRule::EvenOdd {
-        mesh.check_closed(fill).map_err(|error| hint(&input, error))?;
+    let (MeshFile { mesh, format, unit, skipped, .. }, source) = arguments.reading.read(&input)?;
+    let fill = arguments.fill.unwrap_or(match format {
+        MeshFormat::ThreeMf => FillName::Positive,
+        _ => FillName::Nonzero,
+    });
+    if let FillName::Evenodd = fill {
+        mesh.check_closed(fill.into()).map_err(|error| hint(&input, error))?;
     }
     let mesh_report = mesh.report().of(&input)?;
+    if mesh_report.triangles == 0 {
+        return Err(Failure::of(&input, MeshError::Empty));
+    }
     let (min, max) = mesh.bounds();
     let frame = match &arguments.bounds {
         Some(bounds) => bounds.with_depth(arguments.depth),
@@ -161,17 +182,25 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let read = start.elapsed().as_secs_f64();
 
     let building = Instant::now();
-    let solid = MeshSolid::new(mesh, &frame, fill).of(&input)?;
+    let solid = MeshSolid::new(mesh, &frame, fill.into()).of(&input)?;
     let octree = watched("voxelize", arguments.threads, |control| {
         build(&solid, &frame, arguments.rule.into(), control)
     });
-    let octree = octree.of(&input)?.with_metadata(facts(&input, source, arguments.rule));
+    let octree = octree.of(&input)?.with_metadata(facts(&input, source, arguments.rule, unit));
     let build = building.elapsed().as_secs_f64();
 
     let saving = Instant::now();
     let bytes = output.save(&octree)?;
     let save = saving.elapsed().as_secs_f64();
 
+    if let Some(how) = openness(&mesh_report)
+        && !matches!(fill, FillName::Evenodd)
+    {
+        let whole = "the mesh does not bound a solid";
+        output::complain(&format!(
+            "{input}: warning: {whole}: {how}; the winding number decides what is inside"
+        ));
+    }
     if octree.view().is_clipped() {
         output::complain(&format!("{input}: warning: {}", clipping(&frame, min, max)));
     }
@@ -182,45 +211,41 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             input: input.to_string(),
             output: output.to_string(),
             rule: name_of(arguments.rule),
-            fill: name_of(arguments.fill),
+            fill: name_of(fill),
+            format: format_name(format),
+            unit: unit.map(LengthUnit::symbol),
+            skipped,
             timings,
             mesh: mesh_report.into(),
+            undecided_volume: info.volume.width(),
             info,
         };
         return output.report(&output::json(&report)?);
     }
-    output.report(&summary(&input, &output, arguments.rule, &mesh_report, &octree, &info, &timings))
-}
-
-/// The mesh in a file, hair cracks closed, and a fingerprint of the file.
-fn read_mesh(input: &Input) -> Result<(TriangleMesh, String), Failure> {
-    let bytes = input.read()?;
-    if bytes.starts_with(&file::MAGIC) {
-        return Err(Failure::of(input, "this is a solid already, not a mesh"));
-    }
-    let source = format!("crc32:{:08x} bytes:{}", crc32fast::hash(&bytes), bytes.len());
-    let mesh = file::read_stl(&bytes).of(input)?;
-    drop(bytes);
-    Ok((mesh.sewn().of(input)?, source))
+    let read = (&mesh_report, skipped);
+    output.report(&summary(&input, &output, arguments.rule, read, &octree, &info, &timings))
 }
 
 /// What is wrong with the mesh, and what the user might do about it.
 fn hint(input: &Input, error: Error) -> Failure {
     let hint = match error {
-        Error::Mesh(MeshError::Unoriented { .. }) => " (--fill evenodd does not depend on it)",
+        Error::Mesh(MeshError::Open { .. }) => " (--fill nonzero and positive take open meshes)",
         _ => "",
     };
     Failure::of(input, format_args!("{error}{hint}"))
 }
 
 /// What the solid's file says of its making: nothing that differs from run to run.
-fn facts(input: &Input, source: String, rule: RuleName) -> Metadata {
+fn facts(input: &Input, source: String, rule: RuleName, unit: Option<LengthUnit>) -> Metadata {
     let mut metadata = Metadata::new();
     if let Some(stem) = input.path().and_then(|path| path.file_stem()) {
         metadata.insert("name", stem.to_string_lossy());
     }
     metadata.insert("source", source);
     metadata.insert("rule", name_of(rule));
+    if let Some(unit) = unit {
+        metadata.insert("unit", unit.symbol());
+    }
     metadata
 }
 
@@ -229,9 +254,9 @@ fn name_of(value: impl ValueEnum) -> String {
     value.to_possible_value().map_or_else(String::new, |value| value.get_name().to_owned())
 }
 
-/// Where the mesh sticks out of the bounds.
+/// Where the mesh sticks out of the bounds. If it does not, it is open, and what it encloses may.
 fn clipping(frame: &Frame, min: [f64; 3], max: [f64; 3]) -> String {
-    let mut text = String::from("the mesh sticks out of the bounds and was cut off");
+    let mut text = String::new();
     for (axis, name) in ["x", "y", "z"].iter().enumerate() {
         let start = frame.origin()[axis];
         let end = start + frame.edge();
@@ -240,14 +265,17 @@ fn clipping(frame: &Frame, min: [f64; 3], max: [f64; 3]) -> String {
             let _ = write!(text, "; {name} from {from} to {to}, bounds {start} to {end}");
         }
     }
-    text
+    if text.is_empty() {
+        return "what the open mesh encloses may go on outside of the bounds, where it was cut off".into();
+    }
+    format!("the mesh sticks out of the bounds and was cut off{text}")
 }
 
 fn summary(
     input: &Input,
     output: &Output,
     rule: RuleName,
-    mesh: &MeshReport,
+    (mesh, skipped): (&MeshReport, u64),
     octree: &Octree,
     info: &Info,
     timings: &Timings,
@@ -264,6 +292,13 @@ fn summary(
     if mesh.sewn > 0 {
         let moved = counted(mesh.sewn, "vertex", "vertices");
         let _ = write!(text, ", {moved} moved by {} or less to close hair cracks", number(mesh.displacement));
+    }
+    if skipped > 0 {
+        let _ = write!(
+            text,
+            ", {} left out",
+            counted(skipped, "object that is no solid", "objects that are no solids")
+        );
     }
     let frame = octree.frame();
     let _ = write!(

@@ -1,0 +1,190 @@
+//! Meshes from files of any format: the options of reading them, and what is told of them.
+
+use crate::failure::{Failure, Of};
+use crate::input::Input;
+use crate::output::{self, count, counted, number};
+use crate::report::Mesh;
+use clap::{Args, ValueEnum};
+use leafless::file::{self, LengthUnit, MeshFile, MeshFormat, MeshOptions};
+use leafless::{MeshReport, TriangleMesh};
+use serde::Serialize;
+use std::fmt::Write;
+
+/// How a mesh file is to be taken.
+#[derive(Args)]
+pub struct Reading {
+    /// Format of the mesh file. Without it the content tells, and the extension of the name
+    #[arg(long, value_enum)]
+    format: Option<FormatName>,
+    /// Unit of the numbers in the mesh file: um, mm, cm, m, in or ft. Without it that of a 3MF is known, and those of
+    /// other formats are not
+    #[arg(long, value_name = "UNIT", value_parser = unit)]
+    unit: Option<LengthUnit>,
+    /// Unit to convert the mesh to
+    #[arg(long, value_name = "UNIT", value_parser = unit)]
+    to: Option<LengthUnit>,
+    /// Factor to scale the mesh by besides
+    #[arg(long, value_name = "FACTOR", default_value_t = 1.0, value_parser = scale, allow_hyphen_values = true)]
+    scale: f64,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum FormatName {
+    Stl,
+    Obj,
+    Ply,
+    Off,
+    #[value(name = "3mf")]
+    ThreeMf,
+}
+
+impl From<FormatName> for MeshFormat {
+    fn from(name: FormatName) -> MeshFormat {
+        match name {
+            FormatName::Stl => MeshFormat::Stl,
+            FormatName::Obj => MeshFormat::Obj,
+            FormatName::Ply => MeshFormat::Ply,
+            FormatName::Off => MeshFormat::Off,
+            FormatName::ThreeMf => MeshFormat::ThreeMf,
+        }
+    }
+}
+
+fn unit(text: &str) -> Result<LengthUnit, String> {
+    text.parse().map_err(|_| "expected um, mm, cm, m, in or ft".into())
+}
+
+fn scale(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(factor) if factor > 0.0 && f64::is_finite(factor) => Ok(factor),
+        _ => Err("expected a positive number".into()),
+    }
+}
+
+impl Reading {
+    /// The format of a file with these bytes, if it is known to be a mesh.
+    pub fn format_of(&self, input: &Input, bytes: &[u8]) -> Option<MeshFormat> {
+        let extension = input.path().and_then(|path| path.extension()?.to_str());
+        self.format.map(MeshFormat::from).or_else(|| MeshFormat::detect(bytes, extension))
+    }
+
+    /// The mesh in a file, hair cracks closed, and a fingerprint of the file.
+    pub fn read(&self, input: &Input) -> Result<(MeshFile, String), Failure> {
+        let bytes = input.read()?;
+        if bytes.starts_with(&file::MAGIC) {
+            return Err(Failure::of(input, "this is a solid already, not a mesh"));
+        }
+        let source = format!("crc32:{:08x} bytes:{}", crc32fast::hash(&bytes), bytes.len());
+        Ok((self.mesh(input, &bytes)?, source))
+    }
+
+    /// The mesh in these bytes of a file, hair cracks closed.
+    pub fn mesh(&self, input: &Input, bytes: &[u8]) -> Result<MeshFile, Failure> {
+        let (format, unit, target) = (self.format_of(input, bytes), self.unit, self.to);
+        let options = MeshOptions { format, unit, target, scale: self.scale };
+        let mut file = file::read_mesh(bytes, &options).of(input)?;
+        file.mesh = file.mesh.sewn().of(input)?;
+        Ok(file)
+    }
+}
+
+/// The name of a format, as the user writes it.
+pub fn format_name(format: MeshFormat) -> &'static str {
+    format.extension()
+}
+
+/// Where a mesh is open or its facing contradicts itself, in words; `None` for one that bounds a solid.
+pub fn openness(report: &MeshReport) -> Option<String> {
+    let (open, turned) = (report.boundary_edges, report.misoriented_edges);
+    let facing = || format!("its facing changes across {}", counted(turned, "inner edge", "inner edges"));
+    match (open, turned) {
+        (0, 0) => None,
+        (0, _) => Some(facing()),
+        (_, 0) => Some(format!("it is open along {}", counted(open, "edge", "edges"))),
+        _ => Some(format!("it is open along {}, and {}", counted(open, "edge", "edges"), facing())),
+    }
+}
+
+/// What `info` tells of a mesh.
+#[derive(Serialize)]
+pub struct Info {
+    format: &'static str,
+    unit: Option<&'static str>,
+    bytes: u64,
+    min: [f64; 3],
+    max: [f64; 3],
+    /// By the divergence theorem; absent (null) for a mesh that bounds no solid.
+    volume: Option<f64>,
+    closed: bool,
+    /// Objects of a 3MF that are no solids.
+    skipped: u64,
+    mesh: Mesh,
+}
+
+impl Info {
+    pub fn new(input: &Input, file: &MeshFile, bytes: u64) -> Result<Info, Failure> {
+        let report = file.mesh.report().of(input)?;
+        let closed = openness(&report).is_none() && report.triangles > 0;
+        let (min, max) = file.mesh.bounds();
+        Ok(Info {
+            format: format_name(file.format),
+            unit: file.unit.map(LengthUnit::symbol),
+            bytes,
+            min,
+            max,
+            volume: closed.then(|| file.mesh.volume()),
+            closed,
+            skipped: file.skipped,
+            mesh: report.into(),
+        })
+    }
+
+    /// The same for people.
+    pub fn text(&self, mesh: &TriangleMesh, input: &Input) -> Result<String, Failure> {
+        let report = mesh.report().of(input)?;
+        let mut text = String::new();
+        let mut line = |name: &str, value: String| {
+            // Writing to a string does not fail.
+            let _ = writeln!(text, "{name:<16}{value}");
+        };
+        line("format", self.format.to_uppercase());
+        line("unit", self.unit.unwrap_or("unknown").into());
+        for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
+            line(name, format!("{} to {}", number(self.min[axis]), number(self.max[axis])));
+        }
+        let state = match openness(&report) {
+            _ if report.triangles == 0 => "no: there is no triangle".to_owned(),
+            None => "yes".to_owned(),
+            Some(how) => format!("no: {how}"),
+        };
+        line("closed", state);
+        line("volume", self.volume.map_or("-".to_owned(), number));
+        for (name, value) in [
+            ("triangles", report.triangles),
+            ("vertices", report.vertices),
+            ("bodies", report.bodies),
+            ("boundary edges", report.boundary_edges),
+            ("misoriented", report.misoriented_edges),
+            ("non-manifold", report.non_manifold_edges),
+            ("degenerate", report.degenerate),
+            ("welded", report.welded),
+        ] {
+            line(name, count(value));
+        }
+        if report.sewn > 0 {
+            line("sewn", format!("{}, moved by {} or less", count(report.sewn), number(report.displacement)));
+        }
+        if self.skipped > 0 {
+            line("left out", counted(self.skipped, "object that is no solid", "objects that are no solids"));
+        }
+        line("bytes", count(self.bytes));
+        Ok(text)
+    }
+}
+
+/// Prints what is known of a mesh.
+pub fn tell(input: &Input, file: &MeshFile, bytes: u64, json: bool) -> Result<(), Failure> {
+    let info = Info::new(input, file, bytes)?;
+    let text = if json { output::json(&info)? } else { info.text(&file.mesh, input)? };
+    output::print(text.as_bytes())
+}
