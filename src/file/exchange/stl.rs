@@ -124,16 +124,21 @@ fn read_binary(count: u32, bytes: &[u8]) -> Result<TriangleMesh, Error> {
         return Err(wrong_length.into());
     }
     let mut welder = FacetWelder::with_capacity(body.len() / FACET)?;
-    for (index, facet) in body.chunks_exact(FACET).enumerate() {
-        let mut corners = [[0.0; 3]; 3];
-        // The first 12 bytes are the normal.
-        for (x, b) in corners.as_flattened_mut().iter_mut().zip(facet[12..].chunks_exact(4)) {
-            *x = f64::from(f32::from_le_bytes([b[0], b[1], b[2], b[3]]));
+    // Several at a time weld faster than one by one.
+    const TOGETHER: usize = 8;
+    let mut facets = [[[0.0; 3]; 3]; TOGETHER];
+    for (start, bytes) in (0_u64..).step_by(TOGETHER).zip(body.chunks(TOGETHER * FACET)) {
+        let facets = &mut facets[..bytes.len() / FACET];
+        for ((facet, corners), index) in bytes.chunks_exact(FACET).zip(facets.iter_mut()).zip(start..) {
+            // The first 12 bytes are the normal.
+            for (x, b) in corners.as_flattened_mut().iter_mut().zip(facet[12..].chunks_exact(4)) {
+                *x = f64::from(f32::from_le_bytes([b[0], b[1], b[2], b[3]]));
+            }
+            if !corners.as_flattened().iter().all(|x| x.is_finite()) {
+                return Err(MeshFileError::NotFinite { facet: index }.into());
+            }
         }
-        if !corners.as_flattened().iter().all(|x| x.is_finite()) {
-            return Err(MeshFileError::NotFinite { facet: index as u64 }.into());
-        }
-        welder.push(&corners)?;
+        welder.extend(facets)?;
     }
     Ok(welder.finish())
 }

@@ -19,7 +19,7 @@ use once_cell::race::OnceBox;
 
 use super::boundary::Loops;
 use super::topology::Topology;
-use super::weld::{FacetWelder, Places, is_proper, normalised};
+use super::weld::{FacetWelder, NOWHERE, Places, is_proper, normalised};
 use crate::error::{Error, MeshError};
 use crate::octree::try_copy;
 
@@ -99,18 +99,22 @@ impl TriangleMesh {
         let mut new_indices = Vec::new();
         new_indices.try_reserve_exact(given).map_err(|_| Error::OutOfMemory)?;
         let mut kept = 0;
-        for i in 0..given {
-            let vertex = vertices[i];
-            let hash = places.hash(&vertex);
-            new_indices.push(match places.find(hash, &vertex, &vertices) {
-                Some(index) => index,
-                None => {
-                    places.insert(hash, kept as u32, &vertices)?;
-                    vertices[kept] = vertex;
-                    kept += 1;
-                    kept as u32 - 1
+        let mut batch = [[0.0; 3]; Places::BATCH];
+        for start in (0..given).step_by(Places::BATCH) {
+            let batch = &mut batch[..(given - start).min(Places::BATCH)];
+            batch.copy_from_slice(&vertices[start..start + batch.len()]);
+            let lookup = places.look_up(batch, &vertices);
+            for (k, &vertex) in batch.iter().enumerate() {
+                let mut index = lookup.found[k];
+                if index == NOWHERE {
+                    index = places.find_or_insert(lookup.hashes[k], &vertex, kept as u32, &vertices)?;
+                    if index == kept as u32 {
+                        vertices[kept] = vertex;
+                        kept += 1;
+                    }
                 }
-            });
+                new_indices.push(index);
+            }
         }
         vertices.truncate(kept);
         if kept < given {
