@@ -321,7 +321,7 @@ pub enum MeshFileError {
         /// Length of the file.
         found: u64,
     },
-    /// An ASCII STL departs from the grammar.
+    /// A text departs from the grammar of its format.
     #[error("line {line}: expected {expected}")]
     Syntax {
         /// Line, counted from 1.
@@ -329,7 +329,17 @@ pub enum MeshFileError {
         /// What should have stood there.
         expected: &'static str,
     },
-    /// A coordinate of a binary file is infinite or not a number.
+    /// In a text a face names a vertex that does not exist.
+    #[error("line {line}: there is no vertex {index}, because the number of vertices is {vertices}")]
+    Index {
+        /// Line, counted from 1.
+        line: u64,
+        /// The vertex as the file names it: counted as the format does.
+        index: i64,
+        /// How many vertices there are; for an index that counts backwards, how many come before it.
+        vertices: u64,
+    },
+    /// A coordinate of a binary STL is infinite or not a number.
     #[error("facet {facet} has a coordinate that is infinite or not a number")]
     NotFinite {
         /// Index of the facet, counted from 0.

@@ -1,8 +1,14 @@
 //! Formats of other programs.
 
 mod any;
+mod decimal;
 mod detect;
+mod obj;
+mod polygons;
 mod stl;
+#[cfg(test)]
+mod tests;
+mod text;
 #[cfg(feature = "threemf")]
 mod threemf;
 mod unit;
@@ -10,5 +16,6 @@ mod unit;
 #[cfg(feature = "std")]
 pub use any::open_mesh;
 pub use any::{MeshFile, MeshFormat, MeshOptions, read_mesh};
+pub use obj::read_obj;
 pub use stl::{read_stl, write_stl};
 pub use unit::LengthUnit;
