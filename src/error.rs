@@ -339,6 +339,24 @@ pub enum MeshFileError {
         /// How many vertices there are; for an index that counts backwards, how many come before it.
         vertices: u64,
     },
+    /// A binary file departs from its format.
+    #[error("byte {offset}: expected {expected}")]
+    Binary {
+        /// Where, in bytes from the beginning of the file.
+        offset: u64,
+        /// What should have stood there.
+        expected: &'static str,
+    },
+    /// In a binary file a face names a vertex that does not exist.
+    #[error("byte {offset}: there is no vertex {index}, because the number of vertices is {vertices}")]
+    BinaryIndex {
+        /// Where, in bytes from the beginning of the file.
+        offset: u64,
+        /// The vertex that is named, counted from 0.
+        index: i64,
+        /// How many vertices there are.
+        vertices: u64,
+    },
     /// A coordinate of a binary STL is infinite or not a number.
     #[error("facet {facet} has a coordinate that is infinite or not a number")]
     NotFinite {

@@ -4,6 +4,7 @@ mod any;
 mod decimal;
 mod detect;
 mod obj;
+mod ply;
 mod polygons;
 mod stl;
 #[cfg(test)]
@@ -17,5 +18,6 @@ mod unit;
 pub use any::open_mesh;
 pub use any::{MeshFile, MeshFormat, MeshOptions, read_mesh};
 pub use obj::read_obj;
+pub use ply::read_ply;
 pub use stl::{read_stl, write_stl};
 pub use unit::LengthUnit;

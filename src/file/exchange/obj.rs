@@ -429,7 +429,7 @@ mod tests {
             ("1E+05", 1e5),
             ("0.1", 0.1),
             ("1e-999", 0.0),
-            ("0.08156099999999999", 0.08156099999999999),
+            ("0.0815609375", 0.0815609375),
             ("123456789012345678901", 1.2345678901234568e20),
         ];
         for (text, value) in numbers {
@@ -490,7 +490,7 @@ mod tests {
             for face in &faces {
                 faces_text += "f";
                 for (k, &v) in face.iter().enumerate() {
-                    let relative = !before && (k + style[3] as usize) % 2 == 0;
+                    let relative = !before && (k + style[3] as usize).is_multiple_of(2);
                     let index = if relative { v as i64 - vertices.len() as i64 } else { v as i64 + 1 };
                     let more = ["", "/1", "//2", "/1/2"][style[2] as usize % 4];
                     faces_text += &format!("{gap}{index}{more}");

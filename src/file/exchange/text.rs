@@ -34,7 +34,7 @@ impl<'a> Text<'a> {
     /// Goes on with `rest`, which must be an end of [`rest`](Self::rest).
     #[inline]
     pub fn continue_with(&mut self, rest: &'a [u8]) {
-        debug_assert!(self.rest.ends_with(rest));
+        debug_assert!(rest.len() <= self.rest.len());
         self.rest = rest;
     }
 
@@ -62,6 +62,12 @@ impl<'a> Text<'a> {
             [b'\r', b'\n', rest @ ..] | [_, rest @ ..] => rest,
             [] => &[],
         };
+    }
+
+    /// Whether all has been taken.
+    #[inline]
+    pub fn is_at_end(&self) -> bool {
+        self.rest.is_empty()
     }
 
     /// Whether the line, or the text, ends here.
