@@ -83,7 +83,8 @@ mod write;
 #[cfg(feature = "std")]
 pub use exchange::open_mesh;
 pub use exchange::{
-    LengthUnit, MeshFile, MeshFormat, MeshOptions, read_mesh, read_obj, read_ply, read_stl, write_stl,
+    LengthUnit, MeshFile, MeshFormat, MeshOptions, read_mesh, read_obj, read_off, read_ply, read_stl,
+    write_stl,
 };
 pub use layout::{MAGIC, MAJOR, MINOR};
 #[cfg(feature = "mmap")]

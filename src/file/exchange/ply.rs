@@ -20,8 +20,9 @@
 
 use alloc::vec::Vec;
 
+use super::bytes::{Bytes, TOO_LONG, TOO_SHORT};
 use super::polygons::{Polygons, push};
-use super::text::{Text, is_space};
+use super::text::Text;
 use crate::error::{Error, MeshFileError};
 use crate::solid::TriangleMesh;
 
@@ -189,7 +190,7 @@ impl<'a> Header<'a> {
             [] => {}
             _ => return Err(text.error("a line end behind `end_header`").into()),
         }
-        Ok(Self { encoding, elements, length: bytes.len() - text.rest().len() })
+        Ok(Self { encoding, elements, length: text.taken() })
     }
 }
 
@@ -232,14 +233,11 @@ trait Source: Copy {
     /// The error that something else than what comes next was expected.
     fn error(&self, expected: &'static str) -> MeshFileError;
 
-    /// The error that the index that comes next is one of no vertex.
-    fn index_error(&self, index: i64, vertices: u64) -> MeshFileError;
-
     /// At most how many elements may still come that have each at least so many `values`, of `bytes` together.
     fn at_most(&self, values: usize, bytes: usize) -> usize;
 
     /// Takes a finite number.
-    fn number(&mut self, kind: Kind) -> Result<f64, MeshFileError>;
+    fn coordinate(&mut self, kind: Kind) -> Result<f64, MeshFileError>;
 
     /// Takes the length of a list.
     fn count(&mut self, kind: Kind) -> Result<u64, MeshFileError>;
@@ -319,7 +317,7 @@ fn read_elements<S: Source>(elements: &[Element], mut source: S) -> Result<Trian
                         let bytes = count.checked_mul(kind.size() as u64);
                         source.skip(count, bytes.ok_or_else(|| before.error(TOO_SHORT))?)?;
                     }
-                    Step::Coordinate { axis, kind } => vertex[axis] = source.number(kind)?,
+                    Step::Coordinate { axis, kind } => vertex[axis] = source.coordinate(kind)?,
                     Step::Indices(list) => {
                         let before = source;
                         let count = source.count(list.count)?;
@@ -348,8 +346,6 @@ fn read_elements<S: Source>(elements: &[Element], mut source: S) -> Result<Trian
 }
 
 const STRIP: &str = "strips of at least three vertices";
-const TOO_SHORT: &str = "more data: the file is shorter than its header says";
-const TOO_LONG: &str = "the end of the file: it is longer than its header says";
 
 /// How to read an element; no step if it has no properties.
 fn steps(element: &Element) -> Result<Vec<Step>, Error> {
@@ -430,20 +426,15 @@ impl Source for Text<'_> {
         Text::error(&next, if next.is_at_end() { TOO_SHORT } else { expected })
     }
 
-    #[cold]
-    fn index_error(&self, index: i64, vertices: u64) -> MeshFileError {
-        MeshFileError::Index { line: self.line(), index, vertices }
-    }
-
     fn at_most(&self, values: usize, _: usize) -> usize {
         // Behind each value but the last one stands something.
         self.rest().len().div_ceil(2) / values.max(1)
     }
 
     #[inline]
-    fn number(&mut self, _: Kind) -> Result<f64, MeshFileError> {
+    fn coordinate(&mut self, _: Kind) -> Result<f64, MeshFileError> {
         self.skip_space();
-        Text::number(self).ok_or_else(|| Source::error(self, "a finite number"))
+        self.number().ok_or_else(|| Source::error(self, "a finite number"))
     }
 
     #[inline]
@@ -471,7 +462,11 @@ impl Source for Text<'_> {
             self.skip_space();
             let start = *self;
             let index = self.integer().ok_or_else(|| Source::error(&start, "the index of a vertex"))?;
-            let index = vertex(index, of, vertices).ok_or_else(|| start.index_error(index, vertices))?;
+            let index = vertex(index, of, vertices).ok_or_else(|| MeshFileError::Index {
+                line: start.line(),
+                index,
+                vertices,
+            })?;
             push(out, index)?;
         }
         Ok(())
@@ -501,93 +496,43 @@ fn vertex(index: i64, of: &Indices, vertices: u64) -> Option<u32> {
 
 // ---- binary ---------------------------------------------------------------------------------------------
 
-#[derive(Clone, Copy)]
-struct Bytes<'a, const BIG: bool> {
-    all: &'a [u8],
-    rest: &'a [u8],
-}
-
-impl<'a, const BIG: bool> Bytes<'a, BIG> {
-    fn new(all: &'a [u8], taken: usize) -> Self {
-        Self { all, rest: all.get(taken..).unwrap_or(&[]) }
-    }
-
-    fn offset(&self) -> u64 {
-        (self.all.len() - self.rest.len()) as u64
-    }
-
-    #[inline]
-    fn take(&mut self, length: u64) -> Result<&'a [u8], MeshFileError> {
-        let taken = usize::try_from(length).ok().and_then(|length| self.rest.split_at_checked(length));
-        let (taken, rest) = taken.ok_or_else(|| self.too_short())?;
-        self.rest = rest;
-        Ok(taken)
-    }
-
-    #[inline]
-    fn take_chunk<const N: usize>(&mut self) -> Result<[u8; N], MeshFileError> {
-        let (chunk, rest) = self.rest.split_first_chunk::<N>().ok_or_else(|| self.too_short())?;
-        self.rest = rest;
-        Ok(in_order::<BIG, N>(*chunk))
-    }
-
-    #[cold]
-    fn too_short(&self) -> MeshFileError {
-        MeshFileError::Binary { offset: self.all.len() as u64, expected: TOO_SHORT }
-    }
-
-    fn read_indices<const N: usize>(
-        &self,
-        out: &mut Vec<u32>,
-        items: &[u8],
-        of: &Indices,
-        vertices: u64,
-        value: impl Fn([u8; N]) -> i64,
-    ) -> Result<(), Error> {
-        out.try_reserve(items.len() / N).map_err(|_| Error::OutOfMemory)?;
-        for (k, item) in items.as_chunks::<N>().0.iter().enumerate() {
-            let index = value(in_order::<BIG, N>(*item));
-            let Some(index) = vertex(index, of, vertices) else {
-                let at = Self { rest: self.rest.get(k * N..).unwrap_or(&[]), ..*self };
-                return Err(at.index_error(index, vertices).into());
-            };
-            out.push(index);
-        }
-        Ok(())
-    }
-}
-
-/// A number's bytes in little-endian order.
+/// Adds the indices that `items` are, which come next in `source`.
 #[inline]
-fn in_order<const BIG: bool, const N: usize>(mut bytes: [u8; N]) -> [u8; N] {
-    if BIG {
-        bytes.reverse();
+fn read_indices<const BIG: bool, const N: usize>(
+    source: &Bytes<BIG>,
+    out: &mut Vec<u32>,
+    items: &[u8],
+    of: &Indices,
+    vertices: u64,
+    value: impl Fn([u8; N]) -> i64,
+) -> Result<(), Error> {
+    out.try_reserve(items.len() / N).map_err(|_| Error::OutOfMemory)?;
+    for (k, item) in items.as_chunks::<N>().0.iter().enumerate() {
+        let index = value(Bytes::<BIG>::in_order(*item));
+        let Some(index) = vertex(index, of, vertices) else {
+            return Err(source.index_error(k * N, index, vertices).into());
+        };
+        out.push(index);
     }
-    bytes
+    Ok(())
 }
 
 impl<const BIG: bool> Source for Bytes<'_, BIG> {
-    #[cold]
     fn error(&self, expected: &'static str) -> MeshFileError {
-        MeshFileError::Binary { offset: self.offset(), expected }
-    }
-
-    #[cold]
-    fn index_error(&self, index: i64, vertices: u64) -> MeshFileError {
-        MeshFileError::BinaryIndex { offset: self.offset(), index, vertices }
+        Bytes::error(self, expected)
     }
 
     fn at_most(&self, _: usize, bytes: usize) -> usize {
-        self.rest.len() / bytes.max(1)
+        self.rest().len() / bytes.max(1)
     }
 
     #[inline]
-    fn number(&mut self, kind: Kind) -> Result<f64, MeshFileError> {
+    fn coordinate(&mut self, kind: Kind) -> Result<f64, MeshFileError> {
         let start = *self;
         let number = match kind {
-            Kind::F32 => f64::from(f32::from_le_bytes(self.take_chunk()?)),
-            Kind::F64 => f64::from_le_bytes(self.take_chunk()?),
-            _ => return self.integer(kind).map(|integer| integer as f64),
+            Kind::F32 => f64::from(f32::from_le_bytes(self.number()?)),
+            Kind::F64 => f64::from_le_bytes(self.number()?),
+            _ => return integer(self, kind).map(|integer| integer as f64),
         };
         if number.is_finite() { Ok(number) } else { Err(start.error("a finite number")) }
     }
@@ -595,7 +540,7 @@ impl<const BIG: bool> Source for Bytes<'_, BIG> {
     #[inline]
     fn count(&mut self, kind: Kind) -> Result<u64, MeshFileError> {
         let start = *self;
-        u64::try_from(self.integer(kind)?).map_err(|_| start.error("the length of a list"))
+        u64::try_from(integer(self, kind)?).map_err(|_| start.error("the length of a list"))
     }
 
     #[inline]
@@ -609,12 +554,12 @@ impl<const BIG: bool> Source for Bytes<'_, BIG> {
         // No overflow: a length has at most 32 bits.
         let items = self.take(count * of.kind.size() as u64)?;
         match of.kind {
-            Kind::I8 => start.read_indices(out, items, of, vertices, |b| i8::from_le_bytes(b).into()),
-            Kind::U8 => start.read_indices(out, items, of, vertices, |b| u8::from_le_bytes(b).into()),
-            Kind::I16 => start.read_indices(out, items, of, vertices, |b| i16::from_le_bytes(b).into()),
-            Kind::U16 => start.read_indices(out, items, of, vertices, |b| u16::from_le_bytes(b).into()),
-            Kind::I32 => start.read_indices(out, items, of, vertices, |b| i32::from_le_bytes(b).into()),
-            Kind::U32 => start.read_indices(out, items, of, vertices, |b| u32::from_le_bytes(b).into()),
+            Kind::I8 => read_indices(&start, out, items, of, vertices, |b| i8::from_le_bytes(b).into()),
+            Kind::U8 => read_indices(&start, out, items, of, vertices, |b| u8::from_le_bytes(b).into()),
+            Kind::I16 => read_indices(&start, out, items, of, vertices, |b| i16::from_le_bytes(b).into()),
+            Kind::U16 => read_indices(&start, out, items, of, vertices, |b| u16::from_le_bytes(b).into()),
+            Kind::I32 => read_indices(&start, out, items, of, vertices, |b| i32::from_le_bytes(b).into()),
+            Kind::U32 => read_indices(&start, out, items, of, vertices, |b| u32::from_le_bytes(b).into()),
             Kind::F32 | Kind::F64 => Err(start.error("integers").into()),
         }
     }
@@ -625,27 +570,21 @@ impl<const BIG: bool> Source for Bytes<'_, BIG> {
     }
 
     fn end_file(&mut self) -> Result<(), MeshFileError> {
-        if self.rest.iter().all(|&byte| is_space(byte) || matches!(byte, 0 | 0x1A)) {
-            Ok(())
-        } else {
-            Err(self.error(TOO_LONG))
-        }
+        self.end()
     }
 }
 
-impl<const BIG: bool> Bytes<'_, BIG> {
-    #[inline]
-    fn integer(&mut self, kind: Kind) -> Result<i64, MeshFileError> {
-        Ok(match kind {
-            Kind::I8 => i8::from_le_bytes(self.take_chunk()?).into(),
-            Kind::U8 => u8::from_le_bytes(self.take_chunk()?).into(),
-            Kind::I16 => i16::from_le_bytes(self.take_chunk()?).into(),
-            Kind::U16 => u16::from_le_bytes(self.take_chunk()?).into(),
-            Kind::I32 => i32::from_le_bytes(self.take_chunk()?).into(),
-            Kind::U32 => u32::from_le_bytes(self.take_chunk()?).into(),
-            Kind::F32 | Kind::F64 => return Err(self.error("an integer")),
-        })
-    }
+#[inline]
+fn integer<const BIG: bool>(source: &mut Bytes<BIG>, kind: Kind) -> Result<i64, MeshFileError> {
+    Ok(match kind {
+        Kind::I8 => i8::from_le_bytes(source.number()?).into(),
+        Kind::U8 => u8::from_le_bytes(source.number()?).into(),
+        Kind::I16 => i16::from_le_bytes(source.number()?).into(),
+        Kind::U16 => u16::from_le_bytes(source.number()?).into(),
+        Kind::I32 => i32::from_le_bytes(source.number()?).into(),
+        Kind::U32 => u32::from_le_bytes(source.number()?).into(),
+        Kind::F32 | Kind::F64 => return Err(source.error("an integer")),
+    })
 }
 
 #[cfg(test)]

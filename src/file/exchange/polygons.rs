@@ -40,7 +40,7 @@ impl Polygons {
     }
 
     fn push_fan(&mut self, first: u32, others: &[u32]) -> Result<(), Error> {
-        let count = others.len().saturating_sub(1);
+        let Some(count) = others.len().checked_sub(1).filter(|&count| count > 0) else { return Ok(()) };
         let start = u32::try_from(self.triangles.len()).map_err(|_| MeshError::TooMany)?;
         let fan = [start, u32::try_from(count).map_err(|_| MeshError::TooMany)?];
         self.triangles.try_reserve(count).map_err(|_| Error::OutOfMemory)?;

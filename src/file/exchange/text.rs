@@ -25,6 +25,11 @@ impl<'a> Text<'a> {
         Self { all: bytes, rest: bytes }
     }
 
+    /// How many bytes of the file have been taken.
+    pub fn taken(&self) -> usize {
+        self.all.len() - self.rest.len()
+    }
+
     /// What has not been taken yet.
     #[inline]
     pub fn rest(&self) -> &'a [u8] {
@@ -114,7 +119,7 @@ impl<'a> Text<'a> {
     /// are counted only for errors.
     #[cold]
     pub fn line(&self) -> u64 {
-        let mut taken = self.all.len() - self.rest.len();
+        let mut taken = self.taken();
         if self.rest.iter().all(|&b| is_space(b)) {
             taken = self.all[..taken].iter().rposition(|&b| !is_space(b)).map_or(0, |last| last + 1);
         }
