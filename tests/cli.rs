@@ -456,6 +456,56 @@ fn packages_end_to_end() {
     assert!(!place.files().contains(&"out.lfl".to_owned()));
 }
 
+/// A mesh as OBJ, OFF and ASCII PLY.
+fn texts(mesh: &TriangleMesh) -> [(&'static str, String); 3] {
+    let lines = |start: &str| -> String {
+        mesh.vertices().iter().map(|[x, y, z]| format!("{start}{x} {y} {z}\n")).collect()
+    };
+    let faces = |start: &str, first: u32| -> String {
+        (mesh.triangles().iter().map(|t| t.map(|v| v + first)))
+            .map(|[a, b, c]| format!("{start} {a} {b} {c}\n"))
+            .collect()
+    };
+    let (v, t) = (mesh.vertices().len(), mesh.triangles().len());
+    let properties = "property double x\nproperty double y\nproperty double z\n";
+    [
+        ("obj", format!("# a mesh\n{}{}", lines("v "), faces("f", 1))),
+        ("off", format!("OFF\n{v} {t} 0\n{}{}", lines(""), faces("3", 0))),
+        (
+            "ply",
+            format!(
+                "ply\nformat ascii 1.0\nelement vertex {v}\n{properties}element face {t}\n\
+                 property list uchar int vertex_indices\nend_header\n{}{}",
+                lines(""),
+                faces("3", 0)
+            ),
+        ),
+    ]
+}
+
+#[test]
+fn all_formats_give_the_same_solid() {
+    let place = meshes();
+    place.run("voxelize cube.stl -o stl.lfl --depth 5").good();
+    let expected = file::open(place.path("stl.lfl")).unwrap();
+    for (format, text) in texts(&block([1.0; 3], [3.0; 3])) {
+        place.write(&format!("cube.{format}"), &text);
+        // By name, by content, and because the user says so.
+        place.write("nameless", &text);
+        for line in [format!("cube.{format}"), "nameless".into(), format!("nameless --format {format}")] {
+            let json = place.run(&format!("voxelize {line} -o out.lfl --depth 5 --json")).good().json();
+            assert_eq!(json["format"], format);
+            assert_eq!(file::open(place.path("out.lfl")).unwrap(), expected);
+        }
+        place.run_with("voxelize - -o out.lfl --depth 5", text.as_bytes()).good();
+        assert_eq!(file::open(place.path("out.lfl")).unwrap(), expected);
+        let info = place.run(&format!("info cube.{format} --json")).good().json();
+        assert_eq!((&info["format"], info["volume"].as_f64()), (&format.into(), Some(8.0)));
+        place.write("cut", &text[..text.len() / 2]);
+        place.run(&format!("voxelize cut -o out.lfl --depth 5 --format {format}")).bad(1, &["cut: "]);
+    }
+}
+
 #[test]
 fn units_and_scale() {
     let place = meshes();

@@ -3,6 +3,9 @@
 use core::fmt;
 
 use super::detect;
+use super::obj::read_obj;
+use super::off::read_off;
+use super::ply::read_ply;
 use super::stl::read_stl;
 #[cfg(feature = "threemf")]
 use super::threemf;
@@ -147,6 +150,9 @@ fn read(bytes: &[u8], extension: Option<&str>, options: &MeshOptions) -> Result<
         .ok_or(MeshFileError::UnknownFormat)?;
     let (mesh, own_unit, skipped) = match format {
         MeshFormat::Stl => (read_stl(bytes)?, None, 0),
+        MeshFormat::Obj => (read_obj(bytes)?, None, 0),
+        MeshFormat::Ply => (read_ply(bytes)?, None, 0),
+        MeshFormat::Off => (read_off(bytes)?, None, 0),
         #[cfg(feature = "threemf")]
         MeshFormat::ThreeMf => {
             let threemf::Built { mesh, unit, skipped } = threemf::read(bytes)?;
@@ -156,9 +162,6 @@ fn read(bytes: &[u8], extension: Option<&str>, options: &MeshOptions) -> Result<
         MeshFormat::ThreeMf => {
             let what = "3MF, for which the library was built without the feature `threemf`,";
             return Err(MeshFileError::Unsupported { what }.into());
-        }
-        MeshFormat::Obj | MeshFormat::Ply | MeshFormat::Off => {
-            return Err(MeshFileError::Unsupported { what: "this format" }.into());
         }
     };
     let unit = options.unit.or(own_unit);
@@ -235,6 +238,43 @@ mod tests {
         assert_eq!(scaled.bounds(), ([0.0; 3], [2.0, 2.0, 0.0]));
         let flat = mesh.scaled(|_| 0.0).unwrap().report().unwrap();
         assert_eq!((flat.facets_read, flat.degenerate, flat.vertices, flat.welded), (3, 3, 1, 8));
+    }
+
+    #[test]
+    fn each_format_is_read() {
+        let obj = b"# one triangle\nv 0 0 0\nv 2 0 0\nv 0 2 0\nf 1 2 3\n";
+        let off = b"OFF\n3 1 3\n0 0 0\n2 0 0\n0 2 0\n3 0 1 2\n";
+        let ply = b"ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n\
+            element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n2 0 0\n0 2 0\n3 0 1 2\n";
+        for (bytes, format) in
+            [(&obj[..], MeshFormat::Obj), (&off[..], MeshFormat::Off), (&ply[..], MeshFormat::Ply)]
+        {
+            let file = read_mesh(bytes, &with(Some(Inch), Some(Foot), 1.0)).unwrap();
+            assert_eq!((file.format, file.unit), (format, Some(Foot)));
+            assert_eq!(file.mesh.vertices()[1], [2.0 / 12.0, 0.0, 0.0]);
+            assert_eq!(file.mesh.triangles(), [[0, 1, 2]]);
+        }
+    }
+
+    /// Every model file has the format that its name says, by its content alone.
+    #[cfg(feature = "std")]
+    #[test]
+    fn model_files() {
+        let Some(folder) = std::env::var_os("LEAFLESS_MODELS") else {
+            std::println!("SKIPPED: LEAFLESS_MODELS is not set");
+            return;
+        };
+        let mut count = 0;
+        for entry in std::fs::read_dir(folder).unwrap() {
+            let path = entry.unwrap().path();
+            let extension = path.extension().and_then(|extension| extension.to_str()).unwrap_or("");
+            let Some(format) = MeshFormat::from_extension(extension) else { continue };
+            assert_eq!(MeshFormat::detect(&std::fs::read(&path).unwrap(), None), Some(format), "{path:?}");
+            let file = open_mesh(&path, &MeshOptions::default()).unwrap();
+            assert!(file.format == format && !file.mesh.triangles().is_empty(), "{path:?}");
+            count += 1;
+        }
+        assert!(count >= 12);
     }
 
     #[test]
