@@ -77,10 +77,28 @@ static const uint32_t CHECK_CUBE_TRIANGLES[12][3] = {{0, 2, 3}, {0, 3, 1}, {4, 5
                                                      {0, 1, 5}, {0, 5, 4}, {2, 6, 7}, {2, 7, 3},
                                                      {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
 
-static inline leafless_mesh *check_cube(void) {
+/* Vertices of double and indices of uint32_t, without gaps. */
+static inline leafless_mesh_arrays check_arrays(const void *vertices, uint64_t vertex_count, const void *indices,
+                                                uint64_t triangle_count) {
+    leafless_mesh_arrays arrays;
+    OK(leafless_mesh_arrays_init(&arrays, sizeof arrays));
+    arrays.vertices = vertices;
+    arrays.vertex_count = vertex_count;
+    arrays.indices = indices;
+    arrays.triangle_count = triangle_count;
+    return arrays;
+}
+
+/* A mesh of the cube's first triangles. */
+static inline leafless_mesh *check_some_of_cube(uint64_t triangle_count) {
+    const leafless_mesh_arrays arrays = check_arrays(CHECK_CUBE, 8, CHECK_CUBE_TRIANGLES, triangle_count);
     leafless_mesh *mesh = NULL;
-    OK(leafless_mesh_new(&CHECK_CUBE[0][0], 8, 0, &CHECK_CUBE_TRIANGLES[0][0], 12, &mesh));
+    OK(leafless_mesh_new(&arrays, &mesh));
     return mesh;
+}
+
+static inline leafless_mesh *check_cube(void) {
+    return check_some_of_cube(12);
 }
 
 /* A whole file in memory, on an address that is good for anything. */

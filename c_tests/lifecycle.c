@@ -59,6 +59,7 @@ static void meshes(void) {
     {
         double strided[9][5];
         uint32_t other[12][3];
+        leafless_mesh_arrays arrays = check_arrays(strided, 9, other, 12);
         int i, j;
         for (i = 0; i < 9; i++) {
             for (j = 0; j < 5; j++) {
@@ -67,7 +68,8 @@ static void meshes(void) {
         }
         memcpy(other, CHECK_CUBE_TRIANGLES, sizeof other);
         other[0][0] = 8;
-        OK(leafless_mesh_new(&strided[0][0], 9, sizeof strided[0], &other[0][0], 12, &twice));
+        arrays.vertex_stride = sizeof strided[0];
+        OK(leafless_mesh_new(&arrays, &twice));
         OK(leafless_mesh_describe(twice, &report));
         CHECK(report.vertices == 8 && report.welded == 1 && report.boundary_edges == 0);
     }
@@ -107,8 +109,11 @@ static void meshes(void) {
     leafless_mesh_free(sewn);
 
     /* A mesh of nothing is a mesh. */
-    OK(leafless_mesh_new(NULL, 0, 0, NULL, 0, &cube));
-    leafless_mesh_free(cube);
+    {
+        const leafless_mesh_arrays nothing = check_arrays(NULL, 0, NULL, 0);
+        OK(leafless_mesh_new(&nothing, &cube));
+        leafless_mesh_free(cube);
+    }
 }
 
 static void solids(void) {

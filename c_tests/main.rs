@@ -182,6 +182,11 @@ fn buffers() {
 }
 
 #[test]
+fn arrays() {
+    run("arrays", C99, Link::Static, &[]);
+}
+
+#[test]
 fn options() {
     run("options", C99, Link::Static, &[]);
 }

@@ -77,7 +77,7 @@ static void null_pointers(void) {
     const leafless_octree *list[2];
     leafless_callbacks callbacks;
     const uint32_t cell[3] = {0, 0, 0};
-    const uint32_t one_triangle[3] = {0, 1, 2};
+    const leafless_mesh_arrays arrays = check_arrays(CHECK_CUBE, 8, CHECK_CUBE_TRIANGLES, 12);
     const double matrix[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
     uint64_t length = 0;
     uint8_t *bytes = check_bytes(octree, &length);
@@ -114,9 +114,9 @@ static void null_pointers(void) {
     NULL_POINTER(leafless_frame_plane, frame, leafless_frame_plane(NULL, 0, 0, (leafless_interval *)out));
     NULL_POINTER(leafless_frame_plane, plane_model, leafless_frame_plane(&frame, 0, 0, NULL));
 
-    NULL_POINTER(leafless_mesh_new, vertices, leafless_mesh_new(NULL, 3, 0, one_triangle, 1, mesh_result));
-    NULL_POINTER(leafless_mesh_new, triangles, leafless_mesh_new(&CHECK_CUBE[0][0], 8, 0, NULL, 1, mesh_result));
-    NULL_POINTER(leafless_mesh_new, mesh, leafless_mesh_new(&CHECK_CUBE[0][0], 8, 0, one_triangle, 1, NULL));
+    NULL_POINTER(leafless_mesh_arrays_init, arrays, leafless_mesh_arrays_init(NULL, sizeof(leafless_mesh_arrays)));
+    NULL_POINTER(leafless_mesh_new, arrays, leafless_mesh_new(NULL, mesh_result));
+    NULL_POINTER(leafless_mesh_new, mesh, leafless_mesh_new(&arrays, NULL));
     NULL_POINTER(leafless_mesh_read_stl, path, leafless_mesh_read_stl(NULL, 3, mesh_result));
     NULL_POINTER(leafless_mesh_read_stl, path, leafless_mesh_read_stl(NULL, 0, mesh_result));
     NULL_POINTER(leafless_mesh_read_stl, mesh, leafless_mesh_read_stl("x", 1, NULL));
@@ -375,6 +375,7 @@ static void misaligned(void) {
     leafless_solid **solid_result = (leafless_solid **)&never;
     const double *numbers = (const double *)WRONG(CHECK_CUBE);
     const uint32_t *cell = (const uint32_t *)WRONG(CHECK_CUBE);
+    const leafless_mesh_arrays arrays = check_arrays(CHECK_CUBE, 8, CHECK_CUBE_TRIANGLES, 12);
     const leafless_frame *bad_frame = (const leafless_frame *)WRONG(&frame);
     const leafless_octree *bad_octree = (const leafless_octree *)WRONG(octree), *list[1];
     uint64_t length = 0;
@@ -395,9 +396,11 @@ static void misaligned(void) {
     MISALIGNED(leafless_frame_cell_size, cell_size_model, leafless_frame_cell_size(&frame, (double *)WRONG(out)));
     MISALIGNED(leafless_frame_cell_of, cell, leafless_frame_cell_of(&frame, point, (uint32_t *)WRONG(out)));
     MISALIGNED(leafless_frame_plane, plane_model, leafless_frame_plane(&frame, 0, 0, (leafless_interval *)WRONG(out)));
-    MISALIGNED(leafless_mesh_new, vertices, leafless_mesh_new(numbers, 1, 0, NULL, 0, mesh_result));
-    MISALIGNED(leafless_mesh_new, triangles, leafless_mesh_new(NULL, 0, 0, cell, 1, mesh_result));
-    MISALIGNED(leafless_mesh_new, mesh, leafless_mesh_new(NULL, 0, 0, NULL, 0, (leafless_mesh **)WRONG(out)));
+    MISALIGNED(leafless_mesh_arrays_init, arrays,
+               leafless_mesh_arrays_init((leafless_mesh_arrays *)WRONG(out), sizeof(leafless_mesh_arrays)));
+    MISALIGNED(leafless_mesh_new, arrays,
+               leafless_mesh_new((const leafless_mesh_arrays *)WRONG(&arrays), mesh_result));
+    MISALIGNED(leafless_mesh_new, mesh, leafless_mesh_new(&arrays, (leafless_mesh **)WRONG(out)));
     MISALIGNED(leafless_mesh_counts, vertex_count,
                leafless_mesh_counts(mesh, (uint64_t *)WRONG(out), (uint64_t *)out));
     MISALIGNED(leafless_mesh_copy, vertices, leafless_mesh_copy(mesh, (double *)WRONG(out), 8, NULL, 0));
@@ -514,12 +517,9 @@ static void numbers(void) {
             BAD_NUMBER(leafless_mesh_transformed, matrix, leafless_mesh_transformed(mesh, matrix, mesh_result));
         }
         for (axis = 0; axis < 3; axis++) {
-            double vector[3] = {0, 0, 0}, vertex[3] = {0, 0, 0};
+            double vector[3] = {0, 0, 0};
             vector[axis] = not_finite[i];
-            vertex[axis] = not_finite[i];
             BAD_NUMBER(leafless_mesh_translated, offset_model, leafless_mesh_translated(mesh, vector, mesh_result));
-            refused(LEAFLESS_E_MESH, "leafless_mesh_new", "vertex 0",
-                    leafless_mesh_new(vertex, 1, 0, NULL, 0, mesh_result));
             refused(LEAFLESS_E_ARGUMENT, "leafless_frame_around", "",
                     leafless_frame_around(vector, above, 4, (leafless_frame *)out));
             BAD_NUMBER(leafless_frame_cell_of, point_model, leafless_frame_cell_of(&frame, vector, (uint32_t *)out));
@@ -528,8 +528,6 @@ static void numbers(void) {
     {
         const double huge[3] = {0, 0x1.8p256, 0}, to_huge[12] = {0x1p300, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
         const double outside[3] = {0, 0, nextafter(1.0, 2.0)}, near[3] = {1, 1, 1}, nan[3] = {0, NAN, 0};
-        const double numbers_of_mesh[6] = {0, 0, 0, 1, 1, 1};
-        refused(LEAFLESS_E_MESH, "leafless_mesh_new", "vertex 0", leafless_mesh_new(huge, 1, 0, NULL, 0, mesh_result));
         refused(LEAFLESS_E_MESH, "leafless_mesh_transformed", "vertex",
                 leafless_mesh_transformed(mesh, to_huge, mesh_result));
         refused(LEAFLESS_E_MESH, "leafless_mesh_translated", "vertex",
@@ -548,22 +546,6 @@ static void numbers(void) {
         refused(LEAFLESS_E_ARGUMENT, "leafless_solid_new_box", "", leafless_solid_new_box(above, above, solid_result));
         refused(LEAFLESS_E_ARGUMENT, "leafless_solid_new_halfspace", "normal",
                 leafless_solid_new_halfspace(point, 1, solid_result));
-        /* Strides: too short, no multiple of 8, or so long that the array would be longer than memory. */
-        BAD_NUMBER(leafless_mesh_new, vertex_stride, leafless_mesh_new(numbers_of_mesh, 2, 8, NULL, 0, mesh_result));
-        BAD_NUMBER(leafless_mesh_new, vertex_stride, leafless_mesh_new(numbers_of_mesh, 2, 25, NULL, 0, mesh_result));
-        BAD_NUMBER(leafless_mesh_new, vertex_stride, leafless_mesh_new(numbers_of_mesh, 2, 28, NULL, 0, mesh_result));
-        BAD_NUMBER(leafless_mesh_new, vertices,
-                   leafless_mesh_new(numbers_of_mesh, 3, UINT64_MAX - 7, NULL, 0, mesh_result));
-        BAD_NUMBER(leafless_mesh_new, vertices,
-                   leafless_mesh_new(numbers_of_mesh, UINT64_MAX, 24, NULL, 0, mesh_result));
-        BAD_NUMBER(leafless_mesh_new, vertices,
-                   leafless_mesh_new(numbers_of_mesh, UINT64_MAX, UINT64_MAX - 7, NULL, 0, mesh_result));
-        BAD_NUMBER(leafless_mesh_new, triangles,
-                   leafless_mesh_new(numbers_of_mesh, 2, 0, (const uint32_t *)(const void *)CHECK_CUBE, UINT64_MAX,
-                                     mesh_result));
-        BAD_NUMBER(leafless_mesh_new, triangles,
-                   leafless_mesh_new(numbers_of_mesh, 2, 0, (const uint32_t *)(const void *)CHECK_CUBE,
-                                     UINT64_MAX / 3 + 1, mesh_result));
     }
     for (i = 0; i < COUNT(not_a_tag); i++) {
         BAD_NUMBER(leafless_octree_uniform, tag, leafless_octree_uniform(&frame, not_a_tag[i], 0, result));

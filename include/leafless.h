@@ -286,6 +286,52 @@ typedef uint32_t leafless_fill;
 #endif // __cplusplus
 
 /**
+ * What the coordinates of vertices are.
+ */
+enum leafless_vertex_type
+#ifdef __cplusplus
+  : uint32_t
+#endif // __cplusplus
+ {
+    /**
+     * double.
+     */
+    LEAFLESS_VERTEX_F64 = 0,
+    /**
+     * float.
+     */
+    LEAFLESS_VERTEX_F32 = 1,
+};
+#ifndef __cplusplus
+typedef uint32_t leafless_vertex_type;
+#endif // __cplusplus
+
+/**
+ * What the indices of vertices are.
+ */
+enum leafless_index_type
+#ifdef __cplusplus
+  : uint32_t
+#endif // __cplusplus
+ {
+    /**
+     * uint32_t.
+     */
+    LEAFLESS_INDEX_U32 = 0,
+    /**
+     * uint64_t.
+     */
+    LEAFLESS_INDEX_U64 = 1,
+    /**
+     * uint16_t.
+     */
+    LEAFLESS_INDEX_U16 = 2,
+};
+#ifndef __cplusplus
+typedef uint32_t leafless_index_type;
+#endif // __cplusplus
+
+/**
  * What becomes of finest cells that are not decided.
  */
 enum leafless_rule
@@ -519,6 +565,55 @@ typedef struct {
      */
     double displacement_model;
 } leafless_mesh_report;
+
+/**
+ * The arrays that a mesh is made of: vertices of three coordinates, and triangles of three indices. They need not
+ * be aligned, and may lie among other data, such as normals, which are not read. All fields but the first may be
+ * zero, which is their default; leafless_mesh_arrays_init sets them so.
+ */
+typedef struct {
+    /**
+     * sizeof(leafless_mesh_arrays).
+     */
+    uint32_t struct_size;
+    /**
+     * A leafless_vertex_type.
+     */
+    uint32_t vertex_type;
+    /**
+     * The first vertex. May be NULL if there is none.
+     */
+    const void *vertices;
+    /**
+     * Number of vertices.
+     */
+    uint64_t vertex_count;
+    /**
+     * Bytes from one vertex to the next; 0 means that they follow each other without a gap.
+     */
+    uint64_t vertex_stride;
+    /**
+     * The first triangle: three indices, counted from 0. NULL if there is none, or if every three vertices are
+     * one.
+     */
+    const void *indices;
+    /**
+     * Number of triangles. Where every three vertices are one, this must be a third of `vertex_count`.
+     */
+    uint64_t triangle_count;
+    /**
+     * Bytes from one triangle to the next; 0 means that they follow each other without a gap.
+     */
+    uint64_t triangle_stride;
+    /**
+     * A leafless_index_type.
+     */
+    uint32_t index_type;
+    /**
+     * What the coordinates are multiplied by to become model units: above 0, or 0, which means 1.
+     */
+    double scale;
+} leafless_mesh_arrays;
 
 /**
  * What can be said of an octree at once.
@@ -1008,30 +1103,6 @@ leafless_status leafless_frame_plane(const leafless_frame *frame,
                                      leafless_interval *plane_model);
 
 /**
- * Makes a mesh of arrays. Equal vertices are welded, triangles with two corners at one place dropped and counted;
- * coordinates below 2^-256 count as zero. Seen from outside of the solid the corners turn counter-clockwise.
- *
- * - Buffers: `vertices`, `vertex_count` vertices of 3 numbers (model units), the first numbers of two vertices
- *   `vertex_stride` bytes apart (a multiple of 8, at least 24; 0 means 24; what lies between them must not change during the call, either);
- *   `triangles`, 3 · `triangle_count`
- *   indices of vertices. Each may be NULL if its count is 0.
- * - Result: `*mesh`.
- * - Errors: LEAFLESS_E_MESH if a coordinate is infinite, not a number, or beyond ±2^256, if an index is out of
- *   range, or if there are more than 2^32 - 1 vertices or triangles; LEAFLESS_E_ARGUMENT if the stride is wrong;
- *   LEAFLESS_E_NO_MEMORY.
- * - Ownership: the arrays are copied; give `*mesh` back with leafless_mesh_free.
- * - Threads: any.
- * - Untrusted input: any values in the arrays.
- * - Since: 0.1
- */
-leafless_status leafless_mesh_new(const double *vertices,
-                                  uint64_t vertex_count,
-                                  uint64_t vertex_stride,
-                                  const uint32_t *triangles,
-                                  uint64_t triangle_count,
-                                  leafless_mesh **mesh);
-
-/**
  * Reads a binary or ASCII STL file; which of the two is found out from the bytes.
  *
  * - Buffers: `path`, `path_length` bytes of UTF-8.
@@ -1242,6 +1313,39 @@ leafless_status leafless_mesh_transformed(const leafless_mesh *mesh,
 leafless_status leafless_mesh_translated(const leafless_mesh *mesh,
                                          const double offset_model[3],
                                          leafless_mesh **moved);
+
+/**
+ * Sets arrays to their defaults: none.
+ *
+ * - Buffers: `arrays`, one struct of `struct_size` bytes, which is sizeof(leafless_mesh_arrays); need not be
+ *   initialised.
+ * - Result: `*arrays`.
+ * - Errors: LEAFLESS_E_ARGUMENT if `struct_size` cannot be right.
+ * - Ownership: nothing changes hands.
+ * - Threads: any.
+ * - Untrusted input: none.
+ * - Since: 0.1
+ */
+leafless_status leafless_mesh_arrays_init(leafless_mesh_arrays *arrays, size_t struct_size);
+
+/**
+ * Makes a mesh of arrays. Equal vertices are welded, triangles with two corners at one place dropped and counted;
+ * coordinates below 2^-256 count as zero. Seen from outside of the solid the corners turn counter-clockwise.
+ *
+ * - Buffers: `arrays`, one struct; what its pointers lead to must not change during the call. `mesh`, one pointer.
+ * - Result: `*mesh`; not checked to be closed.
+ * - Errors: LEAFLESS_E_MESH if a coordinate is infinite, not a number, or beyond ±2^256, or if an index is out of
+ *   range, with the index of the vertex or triangle in the message, or if there are more than 2^32 - 1 vertices or
+ *   triangles; LEAFLESS_E_ARGUMENT if a type, a stride or the scale is none, or `indices` NULL though there are
+ *   triangles and not three vertices for each; LEAFLESS_E_NO_MEMORY.
+ * - Ownership: the arrays are only read during the call, once and in their order, and may be freed after it: the
+ *   mesh has its own. Give `*mesh` back with leafless_mesh_free.
+ * - Threads: any.
+ * - Untrusted input: any values in the arrays.
+ * - Since: 0.1
+ */
+leafless_status leafless_mesh_new(const leafless_mesh_arrays *arrays,
+                                  leafless_mesh **mesh);
 
 /**
  * The octree whose whole universe has one tag.

@@ -13,8 +13,19 @@ fn folder() -> &'static Path {
 }
 
 /// The files of the interface, as the header's sections follow each other.
-const SECTIONS: [&str; 12] = [
-    "version", "status", "boundary", "control", "frame", "mesh", "octree", "solid", "op", "query", "file",
+const SECTIONS: [&str; 13] = [
+    "version",
+    "status",
+    "boundary",
+    "control",
+    "frame",
+    "mesh",
+    "mesh_arrays",
+    "octree",
+    "solid",
+    "op",
+    "query",
+    "file",
     "layout",
 ];
 

@@ -27,6 +27,11 @@ int main(void) {
     static const char *const ANSWERS[] = {"outside", "inside", "undecided"};
     static const double POINTS[3][3] = {{2, 2, 2}, {12, 15, 6}, {39, 1, 19}};
     const double centre[3] = {12, 15, 8};
+    const leafless_mesh_arrays arrays = {.struct_size = sizeof arrays,
+                                         .vertices = CORNERS,
+                                         .vertex_count = 6,
+                                         .indices = TRIANGLES,
+                                         .triangle_count = 8};
     leafless_mesh *mesh = NULL;
     leafless_solid *wedge_solid = NULL, *hole_solid = NULL;
     leafless_octree *wedge = NULL, *hole = NULL, *drilled = NULL, *named = NULL, *mapped = NULL;
@@ -36,7 +41,7 @@ int main(void) {
     int i, exit_code = 1;
 
     /* Everything that is to be combined lies on one frame: here 2^8 cells along the edge of the wedge's cube. */
-    if (leafless_mesh_new(&CORNERS[0][0], 6, 0, &TRIANGLES[0][0], 8, &mesh) != LEAFLESS_OK ||
+    if (leafless_mesh_new(&arrays, &mesh) != LEAFLESS_OK ||
         leafless_mesh_bounds(mesh, min, max) != LEAFLESS_OK ||
         leafless_frame_around(min, max, 8, &frame) != LEAFLESS_OK ||
         leafless_solid_new_mesh(mesh, &frame, LEAFLESS_FILL_NON_ZERO, &wedge_solid) != LEAFLESS_OK ||

@@ -6,8 +6,9 @@ use crate::error::{Error, FormatError};
 use alloc::boxed::Box;
 use alloc::sync::Arc;
 use core::any::Any;
-use core::ffi::c_char;
+use core::ffi::{c_char, c_void};
 use core::fmt::{self, Display};
+use core::marker::PhantomData;
 use core::mem::{align_of, size_of};
 use core::ptr::NonNull;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -182,6 +183,63 @@ fn length<T>(pointer: *const T, count: u64, name: &'static str) -> Result<usize,
     match usize::try_from(count) {
         Ok(count) if count <= most => Ok(count),
         _ => Err(Failure::Argument { name, problem: "has more elements than memory can hold" }),
+    }
+}
+
+/// Elements in memory of the host, at equal distances and on any address. Nothing between them is read.
+#[derive(Clone, Copy)]
+pub(super) struct Strided<'a, T> {
+    start: *const u8,
+    stride: usize,
+    len: usize,
+    host: PhantomData<&'a T>,
+}
+
+/// The `count` elements from `start` on, `stride` bytes from one's beginning to the next's; 0 means without a gap.
+/// `start` may be NULL if there is none. The names are those of `start` and `stride`.
+///
+/// # Safety
+/// Any bytes are a `T`. `start` is NULL, or that many elements lie there, and stay and do not change during the call.
+pub(super) unsafe fn strided<'a, T>(
+    start: *const c_void,
+    count: u64,
+    stride: u64,
+    names: [&'static str; 2],
+) -> Result<Strided<'a, T>, Failure> {
+    let size = size_of::<T>() as u64;
+    let stride = if stride == 0 { size } else { stride };
+    if stride < size {
+        let problem = "must be 0 or at least the size of an element";
+        return Err(Failure::Argument { name: names[1], problem });
+    }
+    if count == 0 {
+        return Ok(Strided { start: NonNull::dangling().as_ptr(), stride: 0, len: 0, host: PhantomData });
+    }
+    // From the first byte of the first element to the last of the last.
+    let span = stride.checked_mul(count - 1).and_then(|before| before.checked_add(size));
+    length::<u8>(start.cast(), span.unwrap_or(u64::MAX), names[0])?;
+    // Both fit, as the span does; but of a single element the stride need not, and is not used.
+    let stride = usize::try_from(stride).unwrap_or(0);
+    Ok(Strided { start: start.cast(), stride, len: count as usize, host: PhantomData })
+}
+
+impl<T: Copy> Strided<'_, T> {
+    pub(super) fn len(&self) -> usize {
+        self.len
+    }
+
+    /// The element with this index, which there must be.
+    #[inline(always)]
+    pub(super) fn at(&self, index: usize) -> T {
+        assert!(index < self.len, "index {index} of {}", self.len);
+        // SAFETY: one of the elements that `strided` was promised; where it begins is less than their span, which is
+        // no longer than memory can be.
+        unsafe { self.start.add(index * self.stride).cast::<T>().read_unaligned() }
+    }
+
+    /// All elements in their order.
+    pub(super) fn iter(&self) -> impl Iterator<Item = T> + '_ {
+        (0..self.len).map(|index| self.at(index))
     }
 }
 

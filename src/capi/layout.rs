@@ -41,6 +41,10 @@ fn write_all(to: &mut dyn Write) -> fmt::Result {
             facets_read, triangles, vertices, welded, degenerate, boundary_edges, misoriented_edges,
             non_manifold_edges, bodies, sewn, displacement_model
         }
+        leafless_mesh_arrays {
+            struct_size, vertex_type, vertices, vertex_count, vertex_stride, indices, triangle_count,
+            triangle_stride, index_type, scale
+        }
         leafless_callbacks { struct_size, exterior, classify, contains, destroy, ctx }
         leafless_octree_info { frame, elements, bricks, root, exterior, is_binary, is_clipped }
         leafless_statistics { nodes, empty, full, partial, lower_cells, upper_cells, volume_model }
@@ -64,6 +68,8 @@ fn write_all(to: &mut dyn Write) -> fmt::Result {
             LEAFLESS_REGION_UNDECIDED
         }
         leafless_fill { LEAFLESS_FILL_NON_ZERO, LEAFLESS_FILL_EVEN_ODD }
+        leafless_vertex_type { LEAFLESS_VERTEX_F64, LEAFLESS_VERTEX_F32 }
+        leafless_index_type { LEAFLESS_INDEX_U32, LEAFLESS_INDEX_U64, LEAFLESS_INDEX_U16 }
         leafless_rule {
             LEAFLESS_RULE_CERTIFIED, LEAFLESS_RULE_SAMPLED, LEAFLESS_RULE_INNER, LEAFLESS_RULE_OUTER
         }

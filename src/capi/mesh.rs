@@ -1,12 +1,10 @@
-//! Triangle meshes, and the STL files they come in.
+//! Triangle meshes: what they are like, what becomes of them, and the STL files they come in.
 
 use super::boundary::{Failure, array, buffer, guard, handle, out, path, refer, release, shared, slice};
 use super::status::leafless_status;
-use crate::error::Error;
 use crate::file::{read_stl, write_stl};
 use crate::solid::{FillRule, TriangleMesh};
 use alloc::sync::Arc;
-use alloc::vec::Vec;
 use core::ffi::c_char;
 
 /// A surface of triangles with shared vertices. Vertices at equal places are welded; whether the mesh is closed is
@@ -67,61 +65,8 @@ pub struct leafless_mesh_report {
     pub displacement_model: f64,
 }
 
-fn give(mesh: TriangleMesh) -> *mut leafless_mesh {
+pub(super) fn give(mesh: TriangleMesh) -> *mut leafless_mesh {
     handle(leafless_mesh { mesh: Arc::new(mesh) })
-}
-
-/// Makes a mesh of arrays. Equal vertices are welded, triangles with two corners at one place dropped and counted;
-/// coordinates below 2^-256 count as zero. Seen from outside of the solid the corners turn counter-clockwise.
-///
-/// - Buffers: `vertices`, `vertex_count` vertices of 3 numbers (model units), the first numbers of two vertices
-///   `vertex_stride` bytes apart (a multiple of 8, at least 24; 0 means 24; what lies between them must not change during the call, either);
-///   `triangles`, 3 · `triangle_count`
-///   indices of vertices. Each may be NULL if its count is 0.
-/// - Result: `*mesh`.
-/// - Errors: LEAFLESS_E_MESH if a coordinate is infinite, not a number, or beyond ±2^256, if an index is out of
-///   range, or if there are more than 2^32 - 1 vertices or triangles; LEAFLESS_E_ARGUMENT if the stride is wrong;
-///   LEAFLESS_E_NO_MEMORY.
-/// - Ownership: the arrays are copied; give `*mesh` back with leafless_mesh_free.
-/// - Threads: any.
-/// - Untrusted input: any values in the arrays.
-/// - Since: 0.1
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn leafless_mesh_new(
-    vertices: *const f64,
-    vertex_count: u64,
-    vertex_stride: u64,
-    triangles: *const u32,
-    triangle_count: u64,
-    mesh: *mut *mut leafless_mesh,
-) -> leafless_status {
-    guard(|| unsafe {
-        const PACKED: u64 = size_of::<[f64; 3]>() as u64;
-        let stride = if vertex_stride == 0 { PACKED } else { vertex_stride };
-        if stride < PACKED || stride % size_of::<f64>() as u64 != 0 {
-            let problem = "must be a multiple of 8, and 0 or at least 24";
-            return Err(Failure::Argument { name: "vertex_stride", problem });
-        }
-        // From the first number of the first vertex to the last of the last.
-        let Ok(step) = usize::try_from(stride / size_of::<f64>() as u64) else {
-            return Err(Failure::Argument { name: "vertex_stride", problem: "is longer than memory" });
-        };
-        let numbers = match vertex_count {
-            0 => Some(0),
-            count => (count - 1).checked_mul(step as u64).and_then(|sum| sum.checked_add(3)),
-        };
-        let corners = triangle_count.checked_mul(3);
-        let numbers = slice(vertices, numbers.unwrap_or(u64::MAX), "vertices")?;
-        let corners = slice(triangles, corners.unwrap_or(u64::MAX), "triangles")?;
-        let mesh = out(mesh, "mesh")?;
-        let mut own_vertices = Vec::new();
-        own_vertices.try_reserve_exact(vertex_count as usize).map_err(|_| Error::OutOfMemory)?;
-        own_vertices.extend(numbers.chunks(step).map(|vertex| [vertex[0], vertex[1], vertex[2]]));
-        let mut own_triangles = Vec::new();
-        own_triangles.try_reserve_exact(triangle_count as usize).map_err(|_| Error::OutOfMemory)?;
-        own_triangles.extend(corners.as_chunks().0.iter().copied());
-        mesh.write(give(TriangleMesh::new(own_vertices, own_triangles)?))
-    })
 }
 
 /// Reads a binary or ASCII STL file; which of the two is found out from the bytes.

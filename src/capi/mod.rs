@@ -11,6 +11,7 @@
 //! | `control` | options, cancelling, progress |
 //! | `frame` | frames, intervals |
 //! | `mesh` | triangle meshes, STL |
+//! | `mesh_arrays` | triangle meshes from the host's arrays |
 //! | `octree` | octrees: describing, statistics, metadata |
 //! | `solid` | solids: primitives, meshes, octrees, the host's own |
 //! | `op` | building, resolving, Booleans |
@@ -29,6 +30,7 @@ mod frame;
 #[cfg(feature = "capi-test")]
 mod layout;
 mod mesh;
+mod mesh_arrays;
 mod octree;
 mod op;
 mod query;
@@ -44,6 +46,7 @@ pub use frame::*;
 #[cfg(feature = "capi-test")]
 pub use layout::*;
 pub use mesh::*;
+pub use mesh_arrays::*;
 pub use octree::*;
 pub use op::*;
 pub use query::*;
