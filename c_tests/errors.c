@@ -208,7 +208,7 @@ int main(int argc, char **argv) {
         failed(LEAFLESS_E_MESH, "LEAFLESS_E_MESH", "triangle 0 refers to vertex 8");
         FAILS(LEAFLESS_E_MESH, leafless_mesh_check_closed(open, LEAFLESS_FILL_EVEN_ODD));
         failed(LEAFLESS_E_MESH, "LEAFLESS_E_MESH", "3 edges");
-        FAILS(LEAFLESS_E_MESH, leafless_solid_new_mesh(open, &frame, LEAFLESS_FILL_NON_ZERO, &none));
+        FAILS(LEAFLESS_E_MESH, leafless_solid_new_mesh(open, &frame, LEAFLESS_FILL_EVEN_ODD, &none));
         CHECK(none == NULL);
         leafless_mesh_free(open);
     }

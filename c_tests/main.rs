@@ -187,6 +187,11 @@ fn arrays() {
 }
 
 #[test]
+fn open_meshes() {
+    run("open_mesh", C99, Link::Static, &[]);
+}
+
+#[test]
 fn options() {
     run("options", C99, Link::Static, &[]);
 }

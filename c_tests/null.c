@@ -554,8 +554,8 @@ static void numbers(void) {
     for (i = 0; i < COUNT(not_a_rule); i++) {
         BAD_NUMBER(leafless_octree_build, rule, leafless_octree_build(solid, &frame, not_a_rule[i], NULL, result));
         BAD_NUMBER(leafless_octree_resolve, rule, leafless_octree_resolve(octree, not_a_rule[i], NULL, result));
-        BAD_NUMBER(leafless_mesh_check_closed, fill, leafless_mesh_check_closed(mesh, not_a_rule[i] - 2));
-        BAD_NUMBER(leafless_solid_new_mesh, fill, leafless_solid_new_mesh(mesh, &frame, not_a_rule[i], solid_result));
+        BAD_NUMBER(leafless_mesh_check_closed, fill, leafless_mesh_check_closed(mesh, not_a_rule[i] - 1));
+        BAD_NUMBER(leafless_solid_new_mesh, fill, leafless_solid_new_mesh(mesh, &frame, not_a_rule[i] - 1, solid_result));
         memset(&callbacks, 0, sizeof callbacks);
         callbacks.struct_size = sizeof callbacks;
         callbacks.classify = classify;

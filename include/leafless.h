@@ -263,7 +263,12 @@ typedef uint8_t leafless_region;
 #endif // __cplusplus
 
 /**
- * Which points a closed surface encloses.
+ * Which points a surface encloses.
+ *
+ * The winding number of a surface at a point is the solid angle at which it is seen from there, over 4π, counted
+ * positive where the inner side is seen. Of a closed surface it is an integer. Where a surface has holes, fins, or
+ * triangles turned over, it is a fraction, and the nearest integer decides by convention: a hole is closed by the
+ * surface from which half of all directions lead out.
  */
 enum leafless_fill
 #ifdef __cplusplus
@@ -271,15 +276,20 @@ enum leafless_fill
 #endif // __cplusplus
  {
     /**
-     * Points that the surface winds around, in either sense and any number of times: overlapping bodies are
-     * united. The triangles must be consistently oriented.
+     * Points whose winding number is at least 1/2 in magnitude: overlapping bodies are united, and a body that is
+     * inside out is a body.
      */
     LEAFLESS_FILL_NON_ZERO = 0,
     /**
      * Points from which a ray crosses the surface an odd number of times: the overlap of two bodies is outside.
-     * Orientation does not matter.
+     * Orientation does not matter. An even number of triangles must meet on every edge.
      */
     LEAFLESS_FILL_EVEN_ODD = 1,
+    /**
+     * Points whose winding number is at least 1/2: a body that is inside out is a cavity, and takes away from
+     * bodies that it overlaps.
+     */
+    LEAFLESS_FILL_POSITIVE = 2,
 };
 #ifndef __cplusplus
 typedef uint32_t leafless_fill;
@@ -401,7 +411,7 @@ typedef struct leafless_cursor leafless_cursor;
 
 /**
  * A surface of triangles with shared vertices. Vertices at equal places are welded; whether the mesh is closed is
- * not implied.
+ * not implied, and need not be.
  *
  * Immutable: all its functions may be called at once from any number of threads, but leafless_mesh_free needs
  * the reference that it gives back for itself.
@@ -1251,11 +1261,13 @@ leafless_status leafless_mesh_describe(const leafless_mesh *mesh,
                                        leafless_mesh_report *report);
 
 /**
- * Checks that a mesh bounds a solid. Self-intersections, overlaps, nested and inside-out bodies are all allowed.
+ * Checks that a mesh has no hole, so that every point that is not on it is clearly inside or outside: an even number
+ * of triangles meet on every edge, and but for LEAFLESS_FILL_EVEN_ODD half of them run in each direction.
+ * Self-intersections, overlaps, nested and inside-out bodies are all allowed. Solids need not pass this.
  *
  * - Buffers: none. `fill` is a leafless_fill.
- * - Result: LEAFLESS_OK if it does.
- * - Errors: LEAFLESS_E_MESH if the mesh is empty, not closed, or (LEAFLESS_FILL_NON_ZERO) not consistently
+ * - Result: LEAFLESS_OK if it is so.
+ * - Errors: LEAFLESS_E_MESH if the mesh is empty, not closed, or (but for LEAFLESS_FILL_EVEN_ODD) not consistently
  *   oriented; LEAFLESS_E_ARGUMENT if `fill` is no leafless_fill; LEAFLESS_E_NO_MEMORY.
  * - Ownership: nothing changes hands.
  * - Threads: any.
@@ -1590,13 +1602,17 @@ leafless_status leafless_solid_new_box(const double min_model[3],
 leafless_status leafless_solid_new_halfspace(const double normal[3], double offset, leafless_solid **solid);
 
 /**
- * What a closed mesh encloses, on the lattice of one frame: the solid can be built on that frame only. A mesh
- * that reaches beyond the universe is clipped by it.
+ * What a mesh encloses, on the lattice of one frame: the solid can be built on that frame only. A mesh that reaches
+ * beyond the universe is clipped by it.
+ *
+ * Where the mesh is closed, what it encloses is exact. Around holes leafless_fill says by which convention a point is
+ * inside: a cell is FULL or EMPTY if that is proven for all of its points, and others are PARTIAL though no triangle
+ * cuts them. leafless_mesh_describe tells whether to expect them.
  *
  * - Buffers: `frame`, one struct; `solid`, one pointer. `fill` is a leafless_fill.
- * - Result: `*solid`. Time and memory are linear in the mesh.
- * - Errors: LEAFLESS_E_MESH if the mesh is empty, not closed, or (LEAFLESS_FILL_NON_ZERO) not consistently
- *   oriented; LEAFLESS_E_ARGUMENT as leafless_frame_check, or if `fill` is no leafless_fill; LEAFLESS_E_NO_MEMORY.
+ * - Result: `*solid`. Time and memory are linear in the mesh (n log n in the edges of its boundary).
+ * - Errors: LEAFLESS_E_MESH if the mesh is empty, or (LEAFLESS_FILL_EVEN_ODD) an odd number of triangles meet on an
+ *   edge; LEAFLESS_E_ARGUMENT as leafless_frame_check, or if `fill` is no leafless_fill; LEAFLESS_E_NO_MEMORY.
  * - Ownership: the solid shares the mesh, which may be freed; give `*solid` back with leafless_solid_free.
  * - Threads: any.
  * - Untrusted input: any mesh.

@@ -8,7 +8,7 @@ use alloc::sync::Arc;
 use core::ffi::c_char;
 
 /// A surface of triangles with shared vertices. Vertices at equal places are welded; whether the mesh is closed is
-/// not implied.
+/// not implied, and need not be.
 ///
 /// Immutable: all its functions may be called at once from any number of threads, but leafless_mesh_free needs
 /// the reference that it gives back for itself.
@@ -16,22 +16,31 @@ pub struct leafless_mesh {
     pub(super) mesh: Arc<TriangleMesh>,
 }
 
-/// Which points a closed surface encloses.
+/// Which points a surface encloses.
+///
+/// The winding number of a surface at a point is the solid angle at which it is seen from there, over 4π, counted
+/// positive where the inner side is seen. Of a closed surface it is an integer. Where a surface has holes, fins, or
+/// triangles turned over, it is a fraction, and the nearest integer decides by convention: a hole is closed by the
+/// surface from which half of all directions lead out.
 #[derive(Clone, Copy)]
 #[repr(u32)]
 pub enum leafless_fill {
-    /// Points that the surface winds around, in either sense and any number of times: overlapping bodies are
-    /// united. The triangles must be consistently oriented.
+    /// Points whose winding number is at least 1/2 in magnitude: overlapping bodies are united, and a body that is
+    /// inside out is a body.
     LEAFLESS_FILL_NON_ZERO = 0,
     /// Points from which a ray crosses the surface an odd number of times: the overlap of two bodies is outside.
-    /// Orientation does not matter.
+    /// Orientation does not matter. An even number of triangles must meet on every edge.
     LEAFLESS_FILL_EVEN_ODD = 1,
+    /// Points whose winding number is at least 1/2: a body that is inside out is a cavity, and takes away from
+    /// bodies that it overlaps.
+    LEAFLESS_FILL_POSITIVE = 2,
 }
 
 pub(super) fn fill_rule(fill: u32) -> Result<FillRule, Failure> {
     match fill {
         _ if fill == leafless_fill::LEAFLESS_FILL_NON_ZERO as u32 => Ok(FillRule::NonZero),
         _ if fill == leafless_fill::LEAFLESS_FILL_EVEN_ODD as u32 => Ok(FillRule::EvenOdd),
+        _ if fill == leafless_fill::LEAFLESS_FILL_POSITIVE as u32 => Ok(FillRule::Positive),
         _ => Err(Failure::Argument { name: "fill", problem: "is no leafless_fill" }),
     }
 }
@@ -312,11 +321,13 @@ pub unsafe extern "C" fn leafless_mesh_describe(
     })
 }
 
-/// Checks that a mesh bounds a solid. Self-intersections, overlaps, nested and inside-out bodies are all allowed.
+/// Checks that a mesh has no hole, so that every point that is not on it is clearly inside or outside: an even number
+/// of triangles meet on every edge, and but for LEAFLESS_FILL_EVEN_ODD half of them run in each direction.
+/// Self-intersections, overlaps, nested and inside-out bodies are all allowed. Solids need not pass this.
 ///
 /// - Buffers: none. `fill` is a leafless_fill.
-/// - Result: LEAFLESS_OK if it does.
-/// - Errors: LEAFLESS_E_MESH if the mesh is empty, not closed, or (LEAFLESS_FILL_NON_ZERO) not consistently
+/// - Result: LEAFLESS_OK if it is so.
+/// - Errors: LEAFLESS_E_MESH if the mesh is empty, not closed, or (but for LEAFLESS_FILL_EVEN_ODD) not consistently
 ///   oriented; LEAFLESS_E_ARGUMENT if `fill` is no leafless_fill; LEAFLESS_E_NO_MEMORY.
 /// - Ownership: nothing changes hands.
 /// - Threads: any.

@@ -195,13 +195,17 @@ pub unsafe extern "C" fn leafless_solid_new_halfspace(
     })
 }
 
-/// What a closed mesh encloses, on the lattice of one frame: the solid can be built on that frame only. A mesh
-/// that reaches beyond the universe is clipped by it.
+/// What a mesh encloses, on the lattice of one frame: the solid can be built on that frame only. A mesh that reaches
+/// beyond the universe is clipped by it.
+///
+/// Where the mesh is closed, what it encloses is exact. Around holes leafless_fill says by which convention a point is
+/// inside: a cell is FULL or EMPTY if that is proven for all of its points, and others are PARTIAL though no triangle
+/// cuts them. leafless_mesh_describe tells whether to expect them.
 ///
 /// - Buffers: `frame`, one struct; `solid`, one pointer. `fill` is a leafless_fill.
-/// - Result: `*solid`. Time and memory are linear in the mesh.
-/// - Errors: LEAFLESS_E_MESH if the mesh is empty, not closed, or (LEAFLESS_FILL_NON_ZERO) not consistently
-///   oriented; LEAFLESS_E_ARGUMENT as leafless_frame_check, or if `fill` is no leafless_fill; LEAFLESS_E_NO_MEMORY.
+/// - Result: `*solid`. Time and memory are linear in the mesh (n log n in the edges of its boundary).
+/// - Errors: LEAFLESS_E_MESH if the mesh is empty, or (LEAFLESS_FILL_EVEN_ODD) an odd number of triangles meet on an
+///   edge; LEAFLESS_E_ARGUMENT as leafless_frame_check, or if `fill` is no leafless_fill; LEAFLESS_E_NO_MEMORY.
 /// - Ownership: the solid shares the mesh, which may be freed; give `*solid` back with leafless_solid_free.
 /// - Threads: any.
 /// - Untrusted input: any mesh.
