@@ -348,6 +348,10 @@ impl Caps {
             sum.error += wrong / (3.0 * modulus);
         } else {
             sum.error += 1.0;
+            if let Some(cell) = cell {
+                // No proof, because the centre may lie beside the edge; but the best guess, and exact on it.
+                sum.value += self.on_edge(placed, cap, cell, corners) / (2.0 * PI);
+            }
         }
         for (i, cosine) in [ab, bc, ca].into_iter().enumerate() {
             if self.rims[cap] >> i & 1 != 0 {
@@ -356,6 +360,34 @@ impl Caps {
             }
         }
         Some(())
+    }
+
+    /// Half the solid angle of a cap on whose edge the centre of a cell lies, as seen from where the symbolic shift puts the
+    /// centre: that of a half-plane. (Zero in a corner, where the surface has a vertex.) `corners` are relative to the
+    /// centre.
+    #[cold]
+    fn on_edge(&self, placed: &Placed, cap: usize, cell: [i32; 3], corners: [DVec3; 3]) -> f64 {
+        let units = corners.map(DVec3::normalize_or_zero);
+        // Of that edge the ends lie in opposite directions.
+        let cosines = [0, 1, 2].map(|i| units[i].dot(units[(i + 1) % 3]));
+        let i = (0..3).fold(0, |least, i| if cosines[i] < cosines[least] { i } else { least });
+        if cosines[i] >= -0.99 {
+            return 0.0;
+        }
+        let along = (corners[(i + 1) % 3] - corners[i]).normalize_or_zero();
+        let inward = corners[(i + 2) % 3].reject_from_normalized(along).normalize_or_zero();
+        // Along x first; along y if that leads along the edge.
+        let shift = DVec3::AXES.map(|axis| axis.reject_from_normalized(along));
+        let Some(shift) = shift.into_iter().find(|shift| shift.length() > 1e-9) else {
+            return 0.0;
+        };
+        let (sine, cosine) = (shift.dot(along.cross(inward)), shift.dot(inward));
+        if sine.abs() > 1e-9 * shift.length() {
+            return -sine.signum() * (PI - libm::atan2(sine.abs(), cosine));
+        }
+        // Within the cap's plane; out of the cap nothing of it is seen.
+        let side = if cosine > 0.0 { self.side(placed, cap, cell) } else { None };
+        side.unwrap_or(0.0) * PI
     }
 
     /// On which side of a cap the centre of a cell lies that is over it: 1 if the cap faces away from it.
