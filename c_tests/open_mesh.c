@@ -2,7 +2,7 @@
    leafless_fill; against the definition, a sum of solid angles. */
 #include "check.h"
 
-enum { DEPTH = 6, POINTS = 20000, MOST = 64 };
+enum { DEPTH = 6, CELLS = 1 << DEPTH, POINTS = 5000, MOST = 64 };
 
 typedef struct surface {
     double vertices[MOST][3];
@@ -113,6 +113,25 @@ static leafless_octree *built(const surface *all, uint32_t fill, uint32_t rule) 
     return octree;
 }
 
+/* Whether the sampled octree is right about the centre of the cell that a point lies in. */
+static void centre_agrees(const surface *all, uint32_t fill, const leafless_octree *sampled, const double *point) {
+    leafless_membership verdict = 77;
+    double centre[3];
+    uint32_t axis;
+    for (axis = 0; axis < 3; axis++) {
+        centre[axis] = (floor(point[axis] * (CELLS / 2)) + 0.5) / (CELLS / 2);
+    }
+    OK(leafless_octree_contains(sampled, centre, &verdict));
+    if (on_face(all, centre)) {
+        return;
+    }
+    if (verdict == LEAFLESS_MEMBERSHIP_INSIDE) {
+        CHECK(inside_by(all, centre, fill) > -1e-9);
+    } else {
+        CHECK(verdict == LEAFLESS_MEMBERSHIP_OUTSIDE && inside_by(all, centre, fill) < 1e-9);
+    }
+}
+
 /* What the certified octree says is never wrong, the sampled one is right about the centres of cells, and the
    volume lies between the bounds. Returns how many points are left open. */
 static uint32_t agrees(const surface *all, uint32_t fill) {
@@ -125,14 +144,12 @@ static uint32_t agrees(const surface *all, uint32_t fill) {
     CHECK(bounds.volume_model.lower <= estimate.volume_model.lower);
     CHECK(bounds.volume_model.upper >= estimate.volume_model.upper);
     for (i = 0; i < POINTS; i++) {
-        leafless_membership verdict = 77, verdict_of_cell = 77;
-        double point[3], centre[3];
+        leafless_membership verdict = 77;
+        double point[3];
         for (axis = 0; axis < 3; axis++) {
             point[axis] = 2.0 * next_random() - 1.0;
-            centre[axis] = (floor(point[axis] * (1 << (DEPTH - 1))) + 0.5) / (1 << (DEPTH - 1));
         }
         OK(leafless_octree_contains(certified, point, &verdict));
-        OK(leafless_octree_contains(sampled, centre, &verdict_of_cell));
         if (verdict == LEAFLESS_MEMBERSHIP_INSIDE) {
             CHECK(inside_by(all, point, fill) > -1e-9);
         } else if (verdict == LEAFLESS_MEMBERSHIP_OUTSIDE) {
@@ -141,14 +158,18 @@ static uint32_t agrees(const surface *all, uint32_t fill) {
             CHECK(verdict == LEAFLESS_MEMBERSHIP_UNDECIDED);
             open++;
         }
-        if (on_face(all, centre)) {
-            continue;
+        centre_agrees(all, fill, sampled, point);
+    }
+    /* Along the diagonals of the universe. */
+    for (i = 0; i < 4 * CELLS; i++) {
+        double point[3];
+        for (axis = 0; axis < 3; axis++) {
+            point[axis] = (2 * (i % CELLS) + 1.0) / CELLS - 1.0;
+            if ((i / CELLS) >> axis & 1) {
+                point[axis] = -point[axis];
+            }
         }
-        if (verdict_of_cell == LEAFLESS_MEMBERSHIP_INSIDE) {
-            CHECK(inside_by(all, centre, fill) > -1e-9);
-        } else {
-            CHECK(verdict_of_cell == LEAFLESS_MEMBERSHIP_OUTSIDE && inside_by(all, centre, fill) < 1e-9);
-        }
+        centre_agrees(all, fill, sampled, point);
     }
     leafless_octree_free(sampled);
     leafless_octree_free(certified);
