@@ -216,8 +216,10 @@ static void no_indices(void) {
 }
 
 static void scales(void) {
+    static const double GOOD[] = {1.0, 25.4, 0.001, 0x1p-256, 0x1p256};
+    static const double BAD[] = {-1.0, NAN, INFINITY, -INFINITY, -0x1p-1000, 0x1p-257, 0x1.8p256};
+    static const double LONG[2][3] = {{0, 0, 0}, {0x1p200, 0, 0}};
     leafless_mesh_arrays arrays = check_arrays(CHECK_CUBE, 8, CHECK_CUBE_TRIANGLES, 12);
-    static const double GOOD[] = {1.0, 25.4, 0.001, 0x1p-100}, BAD[] = {-1.0, NAN, INFINITY, -INFINITY, -0x1p-1000};
     size_t i;
     is_cube(&arrays);
     for (i = 0; i < COUNT(GOOD); i++) {
@@ -233,7 +235,8 @@ static void scales(void) {
         arrays.scale = BAD[i];
         refused(LEAFLESS_E_ARGUMENT, &arrays, "arrays.scale");
     }
-    arrays.scale = 0x1p300;
+    arrays = check_arrays(LONG, 2, NULL, 0);
+    arrays.scale = 0x1p57;
     refused(LEAFLESS_E_MESH, &arrays, "vertex 1 ");
 }
 

@@ -213,9 +213,10 @@ int main(int argc, char **argv) {
         leafless_mesh_free(open);
     }
 
-    FAILS(LEAFLESS_E_MESH_FILE, leafless_mesh_from_stl((const uint8_t *)"solid\nfacet normal 0 0 0\nouter hoop\n", 36, &mesh));
+    FAILS(LEAFLESS_E_MESH_FILE, leafless_mesh_from_bytes((const uint8_t *)"solid\nfacet normal 0 0 0\nouter hoop\n", 36,
+                                                         NULL, NULL, &mesh));
     failed(LEAFLESS_E_MESH_FILE, "LEAFLESS_E_MESH_FILE", "line 3");
-    FAILS(LEAFLESS_E_MESH_FILE, leafless_mesh_from_stl(NULL, 0, &mesh));
+    FAILS(LEAFLESS_E_MESH_FILE, leafless_mesh_from_bytes(NULL, 0, NULL, NULL, &mesh));
     CHECK(mesh == (leafless_mesh *)UNTOUCHED);
 
     FAILS(LEAFLESS_E_FORMAT, leafless_octree_from_bytes((const uint8_t *)"no file at all, but of some length, more than a header"
@@ -321,7 +322,7 @@ int main(int argc, char **argv) {
     failed(LEAFLESS_E_IO, "LEAFLESS_E_IO", "No such file");
     FAILS(LEAFLESS_E_IO, leafless_octree_map("no/such/file", 12, &octree));
     FAILS(LEAFLESS_E_IO, leafless_octree_save(ball, "no/such/file", 12));
-    FAILS(LEAFLESS_E_IO, leafless_mesh_read_stl("no/such/file", 12, &mesh));
+    FAILS(LEAFLESS_E_IO, leafless_mesh_open("no/such/file", 12, NULL, NULL, &mesh));
     /* A device that is always full. */
     if (access("/dev/full", W_OK) == 0) {
         FAILS(LEAFLESS_E_IO, leafless_octree_save(ball, "/dev/full", 9));

@@ -88,13 +88,13 @@ static void meshes(void) {
     stl = (uint8_t *)malloc((size_t)length);
     CHECK(stl != NULL);
     OK(leafless_mesh_to_stl(cube, stl, length, &length));
-    OK(leafless_mesh_from_stl(stl, length, &again));
+    OK(leafless_mesh_from_bytes(stl, length, NULL, NULL, &again));
     OK(leafless_mesh_volume(again, &volume));
     CHECK(volume == 1.0);
     leafless_mesh_free(again);
     check_write("cube.stl", stl, (size_t)length);
     free(stl);
-    OK(leafless_mesh_read_stl("cube.stl", strlen("cube.stl"), &again));
+    OK(leafless_mesh_open("cube.stl", strlen("cube.stl"), NULL, NULL, &again));
     OK(leafless_mesh_volume(again, &volume));
     CHECK(volume == 1.0);
 

@@ -187,6 +187,11 @@ fn arrays() {
 }
 
 #[test]
+fn mesh_files() {
+    run("mesh_file", C99, Link::Static, &[]);
+}
+
+#[test]
 fn open_meshes() {
     run("open_mesh", C99, Link::Static, &[]);
 }

@@ -78,6 +78,9 @@ static void null_pointers(void) {
     leafless_callbacks callbacks;
     const uint32_t cell[3] = {0, 0, 0};
     const leafless_mesh_arrays arrays = check_arrays(CHECK_CUBE, 8, CHECK_CUBE_TRIANGLES, 12);
+    leafless_mesh_options mesh_options;
+    leafless_mesh_source *source = (leafless_mesh_source *)out, found;
+    uint8_t stl[84 + 50 * 12];
     const double matrix[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
     uint64_t length = 0;
     uint8_t *bytes = check_bytes(octree, &length);
@@ -92,6 +95,9 @@ static void null_pointers(void) {
     memset(&callbacks, 0, sizeof callbacks);
     callbacks.struct_size = sizeof callbacks;
     callbacks.classify = classify;
+    OK(leafless_mesh_options_init(&mesh_options, sizeof mesh_options));
+    OK(leafless_mesh_to_stl(mesh, stl, sizeof stl, &number));
+    check_write("null.stl", stl, sizeof stl);
 
     NULL_POINTER(leafless_options_init, options, leafless_options_init(NULL, sizeof(leafless_options)));
     NULL_POINTER(leafless_callbacks_init, callbacks, leafless_callbacks_init(NULL, sizeof(leafless_callbacks)));
@@ -117,11 +123,15 @@ static void null_pointers(void) {
     NULL_POINTER(leafless_mesh_arrays_init, arrays, leafless_mesh_arrays_init(NULL, sizeof(leafless_mesh_arrays)));
     NULL_POINTER(leafless_mesh_new, arrays, leafless_mesh_new(NULL, mesh_result));
     NULL_POINTER(leafless_mesh_new, mesh, leafless_mesh_new(&arrays, NULL));
-    NULL_POINTER(leafless_mesh_read_stl, path, leafless_mesh_read_stl(NULL, 3, mesh_result));
-    NULL_POINTER(leafless_mesh_read_stl, path, leafless_mesh_read_stl(NULL, 0, mesh_result));
-    NULL_POINTER(leafless_mesh_read_stl, mesh, leafless_mesh_read_stl("x", 1, NULL));
-    NULL_POINTER(leafless_mesh_from_stl, bytes, leafless_mesh_from_stl(NULL, 84, mesh_result));
-    NULL_POINTER(leafless_mesh_from_stl, mesh, leafless_mesh_from_stl(bytes, 84, NULL));
+    NULL_POINTER(leafless_mesh_options_init, options,
+                 leafless_mesh_options_init(NULL, sizeof(leafless_mesh_options)));
+    NULL_POINTER(leafless_mesh_open, path, leafless_mesh_open(NULL, 3, &mesh_options, source, mesh_result));
+    NULL_POINTER(leafless_mesh_open, path, leafless_mesh_open(NULL, 0, &mesh_options, source, mesh_result));
+    NULL_POINTER(leafless_mesh_open, mesh, leafless_mesh_open("null.stl", 8, &mesh_options, source, NULL));
+    NULL_POINTER(leafless_mesh_from_bytes, bytes,
+                 leafless_mesh_from_bytes(NULL, 84, &mesh_options, source, mesh_result));
+    NULL_POINTER(leafless_mesh_from_bytes, mesh,
+                 leafless_mesh_from_bytes(stl, sizeof stl, &mesh_options, source, NULL));
     NULL_POINTER(leafless_mesh_to_stl, mesh, leafless_mesh_to_stl(NULL, NULL, 0, (uint64_t *)out));
     NULL_POINTER(leafless_mesh_to_stl, bytes, leafless_mesh_to_stl(mesh, NULL, 1000, (uint64_t *)out));
     MAY_BE_NULL(leafless_mesh_to_stl, bytes, leafless_mesh_to_stl(mesh, NULL, 0, &number));
@@ -341,6 +351,16 @@ static void null_pointers(void) {
 #define OPTIONS(function, first, second)                                                                         \
     MAY_BE_NULL(function, options, function(first, second, NULL, result));                                       \
     leafless_octree_free(*result)
+    MAY_BE_NULL(leafless_mesh_open, options, leafless_mesh_open("null.stl", 8, NULL, &found, mesh_result));
+    leafless_mesh_free(*mesh_result);
+    MAY_BE_NULL(leafless_mesh_open, source, leafless_mesh_open("null.stl", 8, &mesh_options, NULL, mesh_result));
+    leafless_mesh_free(*mesh_result);
+    MAY_BE_NULL(leafless_mesh_from_bytes, options,
+                leafless_mesh_from_bytes(stl, sizeof stl, NULL, &found, mesh_result));
+    leafless_mesh_free(*mesh_result);
+    MAY_BE_NULL(leafless_mesh_from_bytes, source,
+                leafless_mesh_from_bytes(stl, sizeof stl, &mesh_options, NULL, mesh_result));
+    leafless_mesh_free(*mesh_result);
     OPTIONS(leafless_octree_union, octree, octree);
     OPTIONS(leafless_octree_intersection, octree, octree);
     OPTIONS(leafless_octree_difference, octree, octree);
@@ -351,7 +371,8 @@ static void null_pointers(void) {
     refused(LEAFLESS_E_FORMAT, "leafless_bytes_verify", "", leafless_bytes_verify(NULL, 0));
     refused(LEAFLESS_E_FORMAT, "leafless_octree_from_bytes", "", leafless_octree_from_bytes(NULL, 0, result));
     refused(LEAFLESS_E_FORMAT, "leafless_octree_view_bytes", "", leafless_octree_view_bytes(NULL, 0, result));
-    refused(LEAFLESS_E_MESH_FILE, "leafless_mesh_from_stl", "", leafless_mesh_from_stl(NULL, 0, mesh_result));
+    refused(LEAFLESS_E_MESH_FILE, "leafless_mesh_from_bytes", "",
+            leafless_mesh_from_bytes(NULL, 0, NULL, source, mesh_result));
 
     /* Nothing happens. */
     leafless_control_free(NULL);
@@ -398,6 +419,14 @@ static void misaligned(void) {
     MISALIGNED(leafless_frame_plane, plane_model, leafless_frame_plane(&frame, 0, 0, (leafless_interval *)WRONG(out)));
     MISALIGNED(leafless_mesh_arrays_init, arrays,
                leafless_mesh_arrays_init((leafless_mesh_arrays *)WRONG(out), sizeof(leafless_mesh_arrays)));
+    MISALIGNED(leafless_mesh_options_init, options,
+               leafless_mesh_options_init((leafless_mesh_options *)WRONG(out), sizeof(leafless_mesh_options)));
+    MISALIGNED(leafless_mesh_from_bytes, options,
+               leafless_mesh_from_bytes(bytes, length, (const leafless_mesh_options *)WRONG(out), NULL, mesh_result));
+    MISALIGNED(leafless_mesh_from_bytes, source,
+               leafless_mesh_from_bytes(bytes, length, NULL, (leafless_mesh_source *)WRONG(out), mesh_result));
+    MISALIGNED(leafless_mesh_open, mesh,
+               leafless_mesh_open("null.stl", 8, NULL, NULL, (leafless_mesh **)WRONG(out)));
     MISALIGNED(leafless_mesh_new, arrays,
                leafless_mesh_new((const leafless_mesh_arrays *)WRONG(&arrays), mesh_result));
     MISALIGNED(leafless_mesh_new, mesh, leafless_mesh_new(&arrays, (leafless_mesh **)WRONG(out)));
@@ -583,7 +612,7 @@ static void numbers(void) {
         CHECK(status == LEAFLESS_E_UTF8);
         CHECK(leafless_octree_map("a\0b", 3, result) == LEAFLESS_E_UTF8);
         CHECK(leafless_octree_save(octree, "a\0b", 3) == LEAFLESS_E_UTF8);
-        CHECK(leafless_mesh_read_stl("a\0b", 3, mesh_result) == LEAFLESS_E_UTF8);
+        CHECK(leafless_mesh_open("a\0b", 3, NULL, NULL, mesh_result) == LEAFLESS_E_UTF8);
         CHECK(leafless_octree_save(octree, "a\xff", 2) == LEAFLESS_E_UTF8);
         CHECK(leafless_file_probe("a\xff", 2, (leafless_probe *)out, NULL, 0) == LEAFLESS_E_UTF8);
     }

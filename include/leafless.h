@@ -180,6 +180,84 @@ typedef int32_t leafless_status;
 #endif // __cplusplus
 
 /**
+ * The formats of mesh files that can be read.
+ */
+enum leafless_mesh_format
+#ifdef __cplusplus
+  : uint32_t
+#endif // __cplusplus
+ {
+    /**
+     * To be found out from the file's content and, where that is not clear, its name.
+     */
+    LEAFLESS_MESH_FORMAT_ANY = 0,
+    /**
+     * STL, binary or ASCII; which of the two is always found out.
+     */
+    LEAFLESS_MESH_FORMAT_STL = 1,
+    /**
+     * Wavefront OBJ.
+     */
+    LEAFLESS_MESH_FORMAT_OBJ = 2,
+    /**
+     * Stanford PLY, binary or ASCII.
+     */
+    LEAFLESS_MESH_FORMAT_PLY = 3,
+    /**
+     * Geomview OFF.
+     */
+    LEAFLESS_MESH_FORMAT_OFF = 4,
+    /**
+     * 3MF, the 3D Manufacturing Format.
+     */
+    LEAFLESS_MESH_FORMAT_3MF = 5,
+};
+#ifndef __cplusplus
+typedef uint32_t leafless_mesh_format;
+#endif // __cplusplus
+
+/**
+ * Units of length. Coordinates have none: what an unknown unit means is up to the host.
+ */
+enum leafless_unit
+#ifdef __cplusplus
+  : uint32_t
+#endif // __cplusplus
+ {
+    /**
+     * Not known.
+     */
+    LEAFLESS_UNIT_UNKNOWN = 0,
+    /**
+     * 1/1000 of a millimetre.
+     */
+    LEAFLESS_UNIT_MICROMETRE = 1,
+    /**
+     * The millimetre.
+     */
+    LEAFLESS_UNIT_MILLIMETRE = 2,
+    /**
+     * 10 millimetres.
+     */
+    LEAFLESS_UNIT_CENTIMETRE = 3,
+    /**
+     * 1000 millimetres.
+     */
+    LEAFLESS_UNIT_METRE = 4,
+    /**
+     * 25.4 millimetres.
+     */
+    LEAFLESS_UNIT_INCH = 5,
+    /**
+     * 12 inches.
+     */
+    LEAFLESS_UNIT_FOOT = 6,
+};
+#ifndef __cplusplus
+typedef uint32_t leafless_unit;
+#endif // __cplusplus
+
+/**
  * What is known of a cell.
  */
 enum leafless_tag
@@ -620,10 +698,57 @@ typedef struct {
      */
     uint32_t index_type;
     /**
-     * What the coordinates are multiplied by to become model units: above 0, or 0, which means 1.
+     * What the coordinates are multiplied by to become model units: 2^-256 to 2^256, or 0, which means 1.
      */
     double scale;
 } leafless_mesh_arrays;
+
+/**
+ * How a mesh file is to be taken. NULL means the defaults. All fields but the first may be zero, which is their
+ * default; leafless_mesh_options_init sets them so.
+ */
+typedef struct {
+    /**
+     * sizeof(leafless_mesh_options).
+     */
+    uint32_t struct_size;
+    /**
+     * The file's format, a leafless_mesh_format.
+     */
+    uint32_t format;
+    /**
+     * The unit of the numbers in the file, a leafless_unit. LEAFLESS_UNIT_UNKNOWN means what the file says, which only
+     * a 3MF does; anything else overrides that.
+     */
+    uint32_t unit;
+    /**
+     * The unit that the mesh shall have, a leafless_unit. LEAFLESS_UNIT_UNKNOWN means that of the file.
+     */
+    uint32_t target;
+    /**
+     * What all coordinates are multiplied by besides: 2^-256 to 2^256, or 0, which means 1.
+     */
+    double scale;
+} leafless_mesh_options;
+
+/**
+ * What a mesh file says besides the mesh.
+ */
+typedef struct {
+    /**
+     * The file's format.
+     */
+    leafless_mesh_format format;
+    /**
+     * The unit of the mesh, converted but not scaled, if it is known.
+     */
+    leafless_unit unit;
+    /**
+     * Instances of objects that are not meant to be solid, such as supports in a 3MF, and that the mesh does not
+     * contain.
+     */
+    uint64_t skipped;
+} leafless_mesh_source;
 
 /**
  * What can be said of an octree at once.
@@ -1113,51 +1238,6 @@ leafless_status leafless_frame_plane(const leafless_frame *frame,
                                      leafless_interval *plane_model);
 
 /**
- * Reads a binary or ASCII STL file; which of the two is found out from the bytes.
- *
- * - Buffers: `path`, `path_length` bytes of UTF-8.
- * - Result: `*mesh`, welded as by leafless_mesh_new; not checked to be closed.
- * - Errors: LEAFLESS_E_MESH_FILE with the line or the facet in the message; LEAFLESS_E_MESH; LEAFLESS_E_IO;
- *   LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY.
- * - Ownership: give `*mesh` back with leafless_mesh_free.
- * - Threads: any.
- * - Untrusted input: any file; memory is at most a small multiple of its length.
- * - Since: 0.1
- */
-leafless_status leafless_mesh_read_stl(const char *path, size_t path_length, leafless_mesh **mesh);
-
-/**
- * As leafless_mesh_read_stl for a file in memory.
- *
- * - Buffers: `bytes`, `length` bytes; may be NULL if there are none.
- * - Result: `*mesh`, welded as by leafless_mesh_new; not checked to be closed.
- * - Errors: LEAFLESS_E_MESH_FILE with the line or the facet in the message; LEAFLESS_E_MESH;
- *   LEAFLESS_E_NO_MEMORY.
- * - Ownership: the bytes are not kept; give `*mesh` back with leafless_mesh_free.
- * - Threads: any.
- * - Untrusted input: any bytes; memory is at most a small multiple of their number.
- * - Since: 0.1
- */
-leafless_status leafless_mesh_from_stl(const uint8_t *bytes, uint64_t length, leafless_mesh **mesh);
-
-/**
- * Writes a binary STL file into memory: 84 + 50 t bytes. Coordinates are rounded to 32 bits.
- *
- * - Buffers: `bytes`, room for `capacity` bytes, or NULL to ask for the length only.
- * - Result: `*length`, the length of the file; the file in `bytes`.
- * - Errors: LEAFLESS_E_BUFFER if the capacity is too small; LEAFLESS_E_ARGUMENT if a coordinate is beyond the
- *   range of 32-bit floating point numbers; LEAFLESS_E_NO_MEMORY.
- * - Ownership: nothing changes hands.
- * - Threads: any.
- * - Untrusted input: none.
- * - Since: 0.1
- */
-leafless_status leafless_mesh_to_stl(const leafless_mesh *mesh,
-                                     uint8_t *bytes,
-                                     uint64_t capacity,
-                                     uint64_t *length);
-
-/**
  * One more reference to a mesh.
  *
  * - Buffers: `mesh`, a handle; `reference`, one pointer.
@@ -1358,6 +1438,77 @@ leafless_status leafless_mesh_arrays_init(leafless_mesh_arrays *arrays, size_t s
  */
 leafless_status leafless_mesh_new(const leafless_mesh_arrays *arrays,
                                   leafless_mesh **mesh);
+
+/**
+ * Sets options for mesh files to their defaults.
+ *
+ * - Buffers: `options`, one struct of `struct_size` bytes, which is sizeof(leafless_mesh_options); need not be
+ *   initialised.
+ * - Result: `*options`.
+ * - Errors: LEAFLESS_E_ARGUMENT if `struct_size` cannot be right.
+ * - Ownership: nothing changes hands.
+ * - Threads: any.
+ * - Untrusted input: none.
+ * - Since: 0.1
+ */
+leafless_status leafless_mesh_options_init(leafless_mesh_options *options,
+                                           size_t struct_size);
+
+/**
+ * Reads a mesh file. Everything in it becomes one mesh, welded as by leafless_mesh_new.
+ *
+ * - Buffers: `path`, `path_length` bytes of UTF-8; `options`, one struct, or NULL; `source`, one struct, or NULL if it
+ *   is not wanted; `mesh`, one pointer.
+ * - Result: `*mesh`, not checked to be closed; `*source`.
+ * - Errors: LEAFLESS_E_MESH_FILE, with the line, facet or byte in the message, if the file cannot be read, if its
+ *   format is not known, or if `target` is given and nobody says from which unit; LEAFLESS_E_MESH, with the vertex,
+ *   if a coordinate is beyond ±2^256 once it is scaled; LEAFLESS_E_ARGUMENT if the format or a unit is none, or the
+ *   scale out of range; LEAFLESS_E_IO; LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY.
+ * - Ownership: give `*mesh` back with leafless_mesh_free.
+ * - Threads: any.
+ * - Untrusted input: any file; memory is at most a small multiple of its length.
+ * - Since: 0.1
+ */
+leafless_status leafless_mesh_open(const char *path,
+                                   size_t path_length,
+                                   const leafless_mesh_options *options,
+                                   leafless_mesh_source *source,
+                                   leafless_mesh **mesh);
+
+/**
+ * As leafless_mesh_open for a file in memory, of whose name nothing is known.
+ *
+ * - Buffers: `bytes`, `length` bytes; may be NULL if there are none. `options`, one struct, or NULL; `source`, one
+ *   struct, or NULL if it is not wanted; `mesh`, one pointer.
+ * - Result: `*mesh`, not checked to be closed; `*source`.
+ * - Errors: as leafless_mesh_open, but those of paths.
+ * - Ownership: the bytes are not kept; give `*mesh` back with leafless_mesh_free.
+ * - Threads: any.
+ * - Untrusted input: any bytes; memory is at most a small multiple of their number.
+ * - Since: 0.1
+ */
+leafless_status leafless_mesh_from_bytes(const uint8_t *bytes,
+                                         uint64_t length,
+                                         const leafless_mesh_options *options,
+                                         leafless_mesh_source *source,
+                                         leafless_mesh **mesh);
+
+/**
+ * Writes a binary STL file into memory: 84 + 50 t bytes. Coordinates are rounded to 32 bits.
+ *
+ * - Buffers: `bytes`, room for `capacity` bytes, or NULL to ask for the length only.
+ * - Result: `*length`, the length of the file; the file in `bytes`.
+ * - Errors: LEAFLESS_E_BUFFER if the capacity is too small; LEAFLESS_E_ARGUMENT if a coordinate is beyond the
+ *   range of 32-bit floating point numbers; LEAFLESS_E_NO_MEMORY.
+ * - Ownership: nothing changes hands.
+ * - Threads: any.
+ * - Untrusted input: none.
+ * - Since: 0.1
+ */
+leafless_status leafless_mesh_to_stl(const leafless_mesh *mesh,
+                                     uint8_t *bytes,
+                                     uint64_t capacity,
+                                     uint64_t *length);
 
 /**
  * The octree whose whole universe has one tag.

@@ -13,7 +13,7 @@ fn folder() -> &'static Path {
 }
 
 /// The files of the interface, as the header's sections follow each other.
-const SECTIONS: [&str; 13] = [
+const SECTIONS: [&str; 14] = [
     "version",
     "status",
     "boundary",
@@ -21,6 +21,7 @@ const SECTIONS: [&str; 13] = [
     "frame",
     "mesh",
     "mesh_arrays",
+    "mesh_file",
     "octree",
     "solid",
     "op",

@@ -45,6 +45,8 @@ fn write_all(to: &mut dyn Write) -> fmt::Result {
             struct_size, vertex_type, vertices, vertex_count, vertex_stride, indices, triangle_count,
             triangle_stride, index_type, scale
         }
+        leafless_mesh_options { struct_size, format, unit, target, scale }
+        leafless_mesh_source { format, unit, skipped }
         leafless_callbacks { struct_size, exterior, classify, contains, destroy, ctx }
         leafless_octree_info { frame, elements, bricks, root, exterior, is_binary, is_clipped }
         leafless_statistics { nodes, empty, full, partial, lower_cells, upper_cells, volume_model }
@@ -70,6 +72,14 @@ fn write_all(to: &mut dyn Write) -> fmt::Result {
         leafless_fill { LEAFLESS_FILL_NON_ZERO, LEAFLESS_FILL_EVEN_ODD, LEAFLESS_FILL_POSITIVE }
         leafless_vertex_type { LEAFLESS_VERTEX_F64, LEAFLESS_VERTEX_F32 }
         leafless_index_type { LEAFLESS_INDEX_U32, LEAFLESS_INDEX_U64, LEAFLESS_INDEX_U16 }
+        leafless_mesh_format {
+            LEAFLESS_MESH_FORMAT_ANY, LEAFLESS_MESH_FORMAT_STL, LEAFLESS_MESH_FORMAT_OBJ,
+            LEAFLESS_MESH_FORMAT_PLY, LEAFLESS_MESH_FORMAT_OFF, LEAFLESS_MESH_FORMAT_3MF
+        }
+        leafless_unit {
+            LEAFLESS_UNIT_UNKNOWN, LEAFLESS_UNIT_MICROMETRE, LEAFLESS_UNIT_MILLIMETRE,
+            LEAFLESS_UNIT_CENTIMETRE, LEAFLESS_UNIT_METRE, LEAFLESS_UNIT_INCH, LEAFLESS_UNIT_FOOT
+        }
         leafless_rule {
             LEAFLESS_RULE_CERTIFIED, LEAFLESS_RULE_SAMPLED, LEAFLESS_RULE_INNER, LEAFLESS_RULE_OUTER
         }

@@ -1,11 +1,9 @@
-//! Triangle meshes: what they are like, what becomes of them, and the STL files they come in.
+//! Triangle meshes: what they are like, and what becomes of them.
 
 use super::boundary::{Failure, array, buffer, guard, handle, out, path, refer, release, shared, slice};
 use super::status::leafless_status;
-use crate::file::{read_stl, write_stl};
 use crate::solid::{FillRule, TriangleMesh};
 use alloc::sync::Arc;
-use core::ffi::c_char;
 
 /// A surface of triangles with shared vertices. Vertices at equal places are welded; whether the mesh is closed is
 /// not implied, and need not be.
@@ -76,79 +74,6 @@ pub struct leafless_mesh_report {
 
 pub(super) fn give(mesh: TriangleMesh) -> *mut leafless_mesh {
     handle(leafless_mesh { mesh: Arc::new(mesh) })
-}
-
-/// Reads a binary or ASCII STL file; which of the two is found out from the bytes.
-///
-/// - Buffers: `path`, `path_length` bytes of UTF-8.
-/// - Result: `*mesh`, welded as by leafless_mesh_new; not checked to be closed.
-/// - Errors: LEAFLESS_E_MESH_FILE with the line or the facet in the message; LEAFLESS_E_MESH; LEAFLESS_E_IO;
-///   LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: give `*mesh` back with leafless_mesh_free.
-/// - Threads: any.
-/// - Untrusted input: any file; memory is at most a small multiple of its length.
-/// - Since: 0.1
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn leafless_mesh_read_stl(
-    path: *const c_char,
-    path_length: usize,
-    mesh: *mut *mut leafless_mesh,
-) -> leafless_status {
-    guard(|| unsafe {
-        let path = self::path(path, path_length)?;
-        let mesh = out(mesh, "mesh")?;
-        mesh.write(give(read_stl(&std::fs::read(path)?)?))
-    })
-}
-
-/// As leafless_mesh_read_stl for a file in memory.
-///
-/// - Buffers: `bytes`, `length` bytes; may be NULL if there are none.
-/// - Result: `*mesh`, welded as by leafless_mesh_new; not checked to be closed.
-/// - Errors: LEAFLESS_E_MESH_FILE with the line or the facet in the message; LEAFLESS_E_MESH;
-///   LEAFLESS_E_NO_MEMORY.
-/// - Ownership: the bytes are not kept; give `*mesh` back with leafless_mesh_free.
-/// - Threads: any.
-/// - Untrusted input: any bytes; memory is at most a small multiple of their number.
-/// - Since: 0.1
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn leafless_mesh_from_stl(
-    bytes: *const u8,
-    length: u64,
-    mesh: *mut *mut leafless_mesh,
-) -> leafless_status {
-    guard(|| unsafe {
-        let bytes = slice(bytes, length, "bytes")?;
-        let mesh = out(mesh, "mesh")?;
-        mesh.write(give(read_stl(bytes)?))
-    })
-}
-
-/// Writes a binary STL file into memory: 84 + 50 t bytes. Coordinates are rounded to 32 bits.
-///
-/// - Buffers: `bytes`, room for `capacity` bytes, or NULL to ask for the length only.
-/// - Result: `*length`, the length of the file; the file in `bytes`.
-/// - Errors: LEAFLESS_E_BUFFER if the capacity is too small; LEAFLESS_E_ARGUMENT if a coordinate is beyond the
-///   range of 32-bit floating point numbers; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: nothing changes hands.
-/// - Threads: any.
-/// - Untrusted input: none.
-/// - Since: 0.1
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn leafless_mesh_to_stl(
-    mesh: *const leafless_mesh,
-    bytes: *mut u8,
-    capacity: u64,
-    length: *mut u64,
-) -> leafless_status {
-    guard(|| unsafe {
-        let mesh = &shared(mesh, "mesh")?.mesh;
-        let bytes = buffer(bytes, capacity, "bytes")?;
-        let length = out(length, "length")?;
-        let file = write_stl(mesh)?;
-        bytes.fill(&file)?;
-        length.write(file.len() as u64)
-    })
 }
 
 /// One more reference to a mesh.

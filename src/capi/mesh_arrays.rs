@@ -4,6 +4,7 @@ use super::boundary::{Failure, Sized32, guard, initialise, out, sized, strided};
 use super::mesh::{give, leafless_mesh};
 use super::status::leafless_status;
 use crate::error::{Error, MeshError};
+use crate::lattice::{LARGEST, SMALLEST};
 use crate::solid::TriangleMesh;
 use alloc::vec::Vec;
 use core::ffi::c_void;
@@ -55,7 +56,7 @@ pub struct leafless_mesh_arrays {
     pub triangle_stride: u64,
     /// A leafless_index_type.
     pub index_type: u32,
-    /// What the coordinates are multiplied by to become model units: above 0, or 0, which means 1.
+    /// What the coordinates are multiplied by to become model units: 2^-256 to 2^256, or 0, which means 1.
     pub scale: f64,
 }
 
@@ -84,9 +85,9 @@ impl leafless_mesh_arrays {
     unsafe fn mesh_of<T: Copy + Into<f64>>(&self) -> Result<TriangleMesh, Failure> {
         let scale = match self.scale {
             0.0 => 1.0,
-            scale if scale > 0.0 && scale.is_finite() => scale,
+            scale if (SMALLEST..=LARGEST).contains(&scale) => scale,
             _ => {
-                let problem = "must be finite and not negative";
+                let problem = "must be 0 or between 2^-256 and 2^256";
                 return Err(Failure::Argument { name: "arrays.scale", problem });
             }
         };

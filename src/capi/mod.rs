@@ -10,8 +10,9 @@
 //! | `status` | status codes, messages |
 //! | `control` | options, cancelling, progress |
 //! | `frame` | frames, intervals |
-//! | `mesh` | triangle meshes, STL |
+//! | `mesh` | triangle meshes |
 //! | `mesh_arrays` | triangle meshes from the host's arrays |
+//! | `mesh_file` | mesh files, units |
 //! | `octree` | octrees: describing, statistics, metadata |
 //! | `solid` | solids: primitives, meshes, octrees, the host's own |
 //! | `op` | building, resolving, Booleans |
@@ -31,6 +32,7 @@ mod frame;
 mod layout;
 mod mesh;
 mod mesh_arrays;
+mod mesh_file;
 mod octree;
 mod op;
 mod query;
@@ -47,6 +49,7 @@ pub use frame::*;
 pub use layout::*;
 pub use mesh::*;
 pub use mesh_arrays::*;
+pub use mesh_file::*;
 pub use octree::*;
 pub use op::*;
 pub use query::*;
