@@ -197,6 +197,11 @@ fn open_meshes() {
 }
 
 #[test]
+fn polyhedra() {
+    run("polyhedron", C99, Link::Static, &[]);
+}
+
+#[test]
 fn options() {
     run("options", C99, Link::Static, &[]);
 }

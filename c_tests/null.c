@@ -78,6 +78,9 @@ static void null_pointers(void) {
     leafless_callbacks callbacks;
     const uint32_t cell[3] = {0, 0, 0};
     const leafless_mesh_arrays arrays = check_arrays(CHECK_CUBE, 8, CHECK_CUBE_TRIANGLES, 12);
+    static const uint32_t faces[] = {0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3}, loops[] = {0, 3, 6, 9, 12};
+    static const double corners[4][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    leafless_polyhedron_arrays polyhedron;
     leafless_mesh_options mesh_options;
     leafless_mesh_source *source = (leafless_mesh_source *)out, found;
     uint8_t stl[84 + 50 * 12];
@@ -96,6 +99,13 @@ static void null_pointers(void) {
     callbacks.struct_size = sizeof callbacks;
     callbacks.classify = classify;
     OK(leafless_mesh_options_init(&mesh_options, sizeof mesh_options));
+    OK(leafless_polyhedron_arrays_init(&polyhedron, sizeof polyhedron));
+    polyhedron.vertices = corners;
+    polyhedron.vertex_count = 4;
+    polyhedron.corners = faces;
+    polyhedron.corner_count = 12;
+    polyhedron.loops = loops;
+    polyhedron.loop_count = 4;
     OK(leafless_mesh_to_stl(mesh, stl, sizeof stl, &number));
     check_write("null.stl", stl, sizeof stl);
 
@@ -123,6 +133,12 @@ static void null_pointers(void) {
     NULL_POINTER(leafless_mesh_arrays_init, arrays, leafless_mesh_arrays_init(NULL, sizeof(leafless_mesh_arrays)));
     NULL_POINTER(leafless_mesh_new, arrays, leafless_mesh_new(NULL, mesh_result));
     NULL_POINTER(leafless_mesh_new, mesh, leafless_mesh_new(&arrays, NULL));
+    NULL_POINTER(leafless_polyhedron_arrays_init, arrays,
+                 leafless_polyhedron_arrays_init(NULL, sizeof(leafless_polyhedron_arrays)));
+    NULL_POINTER(leafless_mesh_from_polyhedron, arrays,
+                 leafless_mesh_from_polyhedron(NULL, (double *)out, mesh_result));
+    NULL_POINTER(leafless_mesh_from_polyhedron, mesh,
+                 leafless_mesh_from_polyhedron(&polyhedron, (double *)out, NULL));
     NULL_POINTER(leafless_mesh_options_init, options,
                  leafless_mesh_options_init(NULL, sizeof(leafless_mesh_options)));
     NULL_POINTER(leafless_mesh_open, path, leafless_mesh_open(NULL, 3, &mesh_options, source, mesh_result));
@@ -351,6 +367,9 @@ static void null_pointers(void) {
 #define OPTIONS(function, first, second)                                                                         \
     MAY_BE_NULL(function, options, function(first, second, NULL, result));                                       \
     leafless_octree_free(*result)
+    MAY_BE_NULL(leafless_mesh_from_polyhedron, deviation_model,
+                leafless_mesh_from_polyhedron(&polyhedron, NULL, mesh_result));
+    leafless_mesh_free(*mesh_result);
     MAY_BE_NULL(leafless_mesh_open, options, leafless_mesh_open("null.stl", 8, NULL, &found, mesh_result));
     leafless_mesh_free(*mesh_result);
     MAY_BE_NULL(leafless_mesh_open, source, leafless_mesh_open("null.stl", 8, &mesh_options, NULL, mesh_result));
@@ -419,6 +438,10 @@ static void misaligned(void) {
     MISALIGNED(leafless_frame_plane, plane_model, leafless_frame_plane(&frame, 0, 0, (leafless_interval *)WRONG(out)));
     MISALIGNED(leafless_mesh_arrays_init, arrays,
                leafless_mesh_arrays_init((leafless_mesh_arrays *)WRONG(out), sizeof(leafless_mesh_arrays)));
+    MISALIGNED(leafless_polyhedron_arrays_init, arrays,
+               leafless_polyhedron_arrays_init((leafless_polyhedron_arrays *)WRONG(out), sizeof(leafless_polyhedron_arrays)));
+    MISALIGNED(leafless_mesh_from_polyhedron, arrays,
+               leafless_mesh_from_polyhedron((const leafless_polyhedron_arrays *)WRONG(out), NULL, mesh_result));
     MISALIGNED(leafless_mesh_options_init, options,
                leafless_mesh_options_init((leafless_mesh_options *)WRONG(out), sizeof(leafless_mesh_options)));
     MISALIGNED(leafless_mesh_from_bytes, options,

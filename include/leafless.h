@@ -751,6 +751,94 @@ typedef struct {
 } leafless_mesh_source;
 
 /**
+ * Solids that plane faces bound, as boundary representations have them: solids of shells of faces of loops of
+ * corners.
+ *
+ * Each level is an array of offsets into the level below, one more than there are parts: part k goes from offset k
+ * up to, but not including, offset k + 1. So each array begins with 0, rises, and ends at the number of parts below.
+ * Loops turn counter-clockwise as seen from outside of the solid's material, and holes of a face against its outer loop.
+ * Corners and offsets are of one type, without gaps, and need not be aligned. All fields but the first may be zero,
+ * which is their default; leafless_polyhedron_arrays_init sets them so.
+ */
+typedef struct {
+    /**
+     * sizeof(leafless_polyhedron_arrays).
+     */
+    uint32_t struct_size;
+    /**
+     * A leafless_vertex_type.
+     */
+    uint32_t vertex_type;
+    /**
+     * The first vertex: three coordinates. May be NULL if there is none.
+     */
+    const void *vertices;
+    /**
+     * Number of vertices.
+     */
+    uint64_t vertex_count;
+    /**
+     * Bytes from one vertex to the next; 0 means that they follow each other without a gap.
+     */
+    uint64_t vertex_stride;
+    /**
+     * The corners of all loops, one loop behind the other: indices of vertices, counted from 0.
+     */
+    const void *corners;
+    /**
+     * Number of corners.
+     */
+    uint64_t corner_count;
+    /**
+     * Offsets of the loops in the corners. A loop has at least three; its last edge leads back to the first.
+     */
+    const void *loops;
+    /**
+     * Number of loops.
+     */
+    uint64_t loop_count;
+    /**
+     * Offsets of the faces in the loops: the first loop of a face is its outer one, the others are holes. NULL, with
+     * a count of 0, means that each loop is a face.
+     */
+    const void *faces;
+    /**
+     * Number of faces.
+     */
+    uint64_t face_count;
+    /**
+     * Offsets of the shells in the faces. NULL, with a count of 0, means that all faces are one shell.
+     */
+    const void *shells;
+    /**
+     * Number of shells.
+     */
+    uint64_t shell_count;
+    /**
+     * Offsets of the solids in the shells: the first shell of a solid bounds it from outside, the others are voids.
+     * NULL, with a count of 0, means that all shells are one solid.
+     */
+    const void *solids;
+    /**
+     * Number of solids.
+     */
+    uint64_t solid_count;
+    /**
+     * A leafless_index_type: that of corners and offsets.
+     */
+    uint32_t index_type;
+    /**
+     * What the coordinates are multiplied by to become model units: 2^-256 to 2^256, or 0, which means 1.
+     */
+    double scale;
+    /**
+     * How far corners may lie beside the plane of their face, in model units: half the distance of two planes
+     * parallel to the face that have all its corners between them. 0 means 10^-9 of the longest extent.
+     */
+    double tolerance_model;
+} leafless_polyhedron_arrays;
+
+/**
  * What can be said of an octree at once.
  */
 typedef struct {
@@ -1509,6 +1597,47 @@ leafless_status leafless_mesh_to_stl(const leafless_mesh *mesh,
                                      uint8_t *bytes,
                                      uint64_t capacity,
                                      uint64_t *length);
+
+/**
+ * Sets arrays to their defaults: none.
+ *
+ * - Buffers: `arrays`, one struct of `struct_size` bytes, which is sizeof(leafless_polyhedron_arrays); need not be
+ *   initialised.
+ * - Result: `*arrays`.
+ * - Errors: LEAFLESS_E_ARGUMENT if `struct_size` cannot be right.
+ * - Ownership: nothing changes hands.
+ * - Threads: any.
+ * - Untrusted input: none.
+ * - Since: 0.1
+ */
+leafless_status leafless_polyhedron_arrays_init(leafless_polyhedron_arrays *arrays,
+                                                size_t struct_size);
+
+/**
+ * Checks solids of plane faces and makes a closed, consistently oriented mesh of them. Where a face is not plane to the
+ * last digit, its triangles say from then on where the surface is.
+ *
+ * Each edge of a loop is run through once more in its shell, in the opposite direction; vertices at one place are two
+ * vertices there, so that shells may touch. The first shell of a solid encloses a positive volume, its voids
+ * negative ones within it. Faces that cut through each other and solids that overlap are let through: a mesh has a
+ * meaning for them.
+ *
+ * - Buffers: `arrays`, one struct; what its pointers lead to must not change during the call. `deviation_model`, one
+ *   number, or NULL if it is not wanted; `mesh`, one pointer.
+ * - Result: `*mesh`; `*deviation_model`, how far a corner lies beside the plane of its face at most.
+ * - Errors: LEAFLESS_E_MESH, with the numbers of loop, face, shell or vertices in the message, if the arrays are
+ *   not such solids, if a coordinate is infinite, not a number, or beyond ±2^256, if there is no solid, or if there
+ *   are more than 2^32 - 1 of anything; LEAFLESS_E_ARGUMENT if a type, a stride, the scale or the tolerance is none;
+ *   LEAFLESS_E_NO_MEMORY.
+ * - Ownership: the arrays are only read during the call, and may be freed after it; give `*mesh` back with
+ *   leafless_mesh_free.
+ * - Threads: any.
+ * - Untrusted input: any values in the arrays.
+ * - Since: 0.1
+ */
+leafless_status leafless_mesh_from_polyhedron(const leafless_polyhedron_arrays *arrays,
+                                              double *deviation_model,
+                                              leafless_mesh **mesh);
 
 /**
  * The octree whose whole universe has one tag.

@@ -13,7 +13,7 @@ fn folder() -> &'static Path {
 }
 
 /// The files of the interface, as the header's sections follow each other.
-const SECTIONS: [&str; 14] = [
+const SECTIONS: [&str; 15] = [
     "version",
     "status",
     "boundary",
@@ -22,6 +22,7 @@ const SECTIONS: [&str; 14] = [
     "mesh",
     "mesh_arrays",
     "mesh_file",
+    "polyhedron",
     "octree",
     "solid",
     "op",

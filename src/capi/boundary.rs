@@ -236,10 +236,19 @@ impl<T: Copy> Strided<'_, T> {
         // no longer than memory can be.
         unsafe { self.start.add(index * self.stride).cast::<T>().read_unaligned() }
     }
+}
 
-    /// All elements in their order.
-    pub(super) fn iter(&self) -> impl Iterator<Item = T> + '_ {
-        (0..self.len).map(|index| self.at(index))
+impl<'a, T> Strided<'a, T> {
+    /// The elements themselves, if they follow each other without a gap where their type can lie.
+    pub(super) fn as_slice(&self) -> Option<&'a [T]> {
+        if self.len == 0 {
+            return Some(&[]);
+        }
+        let start = self.start.cast::<T>();
+        let is_packed = self.stride == size_of::<T>() || self.len == 1;
+        // SAFETY: promised to `strided`: that many elements, which stay and do not change during the call. Their span is
+        // no longer than memory can be.
+        (is_packed && start.is_aligned()).then(|| unsafe { core::slice::from_raw_parts(start, self.len) })
     }
 }
 

@@ -45,6 +45,10 @@ fn write_all(to: &mut dyn Write) -> fmt::Result {
             struct_size, vertex_type, vertices, vertex_count, vertex_stride, indices, triangle_count,
             triangle_stride, index_type, scale
         }
+        leafless_polyhedron_arrays {
+            struct_size, vertex_type, vertices, vertex_count, vertex_stride, corners, corner_count, loops, loop_count,
+            faces, face_count, shells, shell_count, solids, solid_count, index_type, scale, tolerance_model
+        }
         leafless_mesh_options { struct_size, format, unit, target, scale }
         leafless_mesh_source { format, unit, skipped }
         leafless_callbacks { struct_size, exterior, classify, contains, destroy, ctx }

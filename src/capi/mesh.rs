@@ -1,6 +1,6 @@
 //! Triangle meshes: what they are like, and what becomes of them.
 
-use super::boundary::{Failure, array, buffer, guard, handle, out, path, refer, release, shared, slice};
+use super::boundary::{Failure, array, buffer, guard, handle, out, refer, release, shared};
 use super::status::leafless_status;
 use crate::solid::{FillRule, TriangleMesh};
 use alloc::sync::Arc;

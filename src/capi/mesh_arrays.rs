@@ -1,13 +1,16 @@
 //! Triangle meshes from arrays as host programs have them.
 
-use super::boundary::{Failure, Sized32, guard, initialise, out, sized, strided};
+use super::boundary::{Failure, Sized32, Strided, guard, initialise, out, sized, strided};
 use super::mesh::{give, leafless_mesh};
 use super::status::leafless_status;
 use crate::error::{Error, MeshError};
 use crate::lattice::{LARGEST, SMALLEST};
 use crate::solid::TriangleMesh;
+use alloc::borrow::Cow;
 use alloc::vec::Vec;
 use core::ffi::c_void;
+use leafless_index_type::*;
+use leafless_vertex_type::*;
 
 /// What the coordinates of vertices are.
 #[derive(Clone, Copy)]
@@ -63,27 +66,33 @@ pub struct leafless_mesh_arrays {
 // SAFETY: numbers and pointers.
 unsafe impl Sized32 for leafless_mesh_arrays {}
 
-impl leafless_mesh_arrays {
-    /// # Safety
-    /// The arrays are what the fields say, and do not change during the call.
-    unsafe fn mesh(&self) -> Result<TriangleMesh, Failure> {
-        // SAFETY: the caller's promise.
-        unsafe {
-            match self.vertex_type {
-                known if known == leafless_vertex_type::LEAFLESS_VERTEX_F64 as u32 => self.mesh_of::<f64>(),
-                known if known == leafless_vertex_type::LEAFLESS_VERTEX_F32 as u32 => self.mesh_of::<f32>(),
-                _ => {
-                    let problem = "is no leafless_vertex_type";
-                    Err(Failure::Argument { name: "arrays.vertex_type", problem })
-                }
-            }
-        }
-    }
+/// Vertices of the host.
+#[derive(Clone, Copy)]
+pub(super) struct Vertices<'a> {
+    numbers: Numbers<'a>,
+    scale: f64,
+}
 
+#[derive(Clone, Copy)]
+enum Numbers<'a> {
+    F64(Strided<'a, [f64; 3]>),
+    F32(Strided<'a, [f32; 3]>),
+}
+
+/// What a host says of its vertices.
+pub(super) struct GivenVertices {
+    pub start: *const c_void,
+    pub count: u64,
+    pub stride: u64,
+    pub kind: u32,
+    pub scale: f64,
+}
+
+impl<'a> Vertices<'a> {
     /// # Safety
-    /// As [`mesh`](Self::mesh).
-    unsafe fn mesh_of<T: Copy + Into<f64>>(&self) -> Result<TriangleMesh, Failure> {
-        let scale = match self.scale {
+    /// The array is what `given` says, and does not change during the call.
+    pub(super) unsafe fn new(given: GivenVertices) -> Result<Vertices<'a>, Failure> {
+        let scale = match given.scale {
             0.0 => 1.0,
             scale if (SMALLEST..=LARGEST).contains(&scale) => scale,
             _ => {
@@ -92,69 +101,166 @@ impl leafless_mesh_arrays {
             }
         };
         let names = ["arrays.vertices", "arrays.vertex_stride"];
+        let GivenVertices { start, count, stride, .. } = given;
         // SAFETY: the caller's promise; any bytes are numbers.
-        let vertices =
-            unsafe { strided::<[T; 3]>(self.vertices, self.vertex_count, self.vertex_stride, names)? };
-        let position = |vertex: [T; 3]| vertex.map(|x| x.into() * scale);
-        // SAFETY: the caller's promise.
-        let triangles = unsafe {
-            match self.index_type {
-                known if known == leafless_index_type::LEAFLESS_INDEX_U16 as u32 => {
-                    self.triangles::<u16>()?
+        let numbers = unsafe {
+            match given.kind {
+                known if known == LEAFLESS_VERTEX_F64 as u32 => {
+                    Numbers::F64(strided(start, count, stride, names)?)
                 }
-                known if known == leafless_index_type::LEAFLESS_INDEX_U32 as u32 => {
-                    self.triangles::<u32>()?
+                known if known == LEAFLESS_VERTEX_F32 as u32 => {
+                    Numbers::F32(strided(start, count, stride, names)?)
                 }
-                known if known == leafless_index_type::LEAFLESS_INDEX_U64 as u32 => {
-                    self.triangles::<u64>()?
+                _ => {
+                    let problem = "is no leafless_vertex_type";
+                    return Err(Failure::Argument { name: "arrays.vertex_type", problem });
+                }
+            }
+        };
+        if u32::try_from(count).is_err() {
+            return Err(MeshError::TooMany.into());
+        }
+        Ok(Vertices { numbers, scale })
+    }
+
+    fn len(&self) -> usize {
+        match &self.numbers {
+            Numbers::F64(numbers) => numbers.len(),
+            Numbers::F32(numbers) => numbers.len(),
+        }
+    }
+
+    /// The vertex in model units.
+    #[inline(always)]
+    fn at(&self, index: usize) -> [f64; 3] {
+        let vertex = match &self.numbers {
+            Numbers::F64(numbers) => numbers.at(index),
+            Numbers::F32(numbers) => numbers.at(index).map(f64::from),
+        };
+        vertex.map(|x| x * self.scale)
+    }
+
+    /// A copy of all of them.
+    fn copied(&self) -> Result<Vec<[f64; 3]>, Error> {
+        let mut own = Vec::new();
+        own.try_reserve_exact(self.len()).map_err(|_| Error::OutOfMemory)?;
+        own.extend((0..self.len()).map(|index| self.at(index)));
+        Ok(own)
+    }
+
+    /// The host's own if the library would have them just so, or a copy.
+    pub(super) fn get(&self) -> Result<Cow<'a, [[f64; 3]]>, Error> {
+        match self.numbers {
+            Numbers::F64(numbers) if self.scale == 1.0 => match numbers.as_slice() {
+                Some(numbers) => Ok(Cow::Borrowed(numbers)),
+                None => self.copied().map(Cow::Owned),
+            },
+            _ => self.copied().map(Cow::Owned),
+        }
+    }
+}
+
+/// Indices of the host, in groups of N.
+#[derive(Clone, Copy)]
+pub(super) enum Indices<'a, const N: usize> {
+    U16(Strided<'a, [u16; N]>),
+    U32(Strided<'a, [u32; N]>),
+    U64(Strided<'a, [u64; N]>),
+}
+
+impl<const N: usize> Indices<'_, N> {
+    /// # Safety
+    /// `start`, `count` and `stride` as [`strided`] wants them; `kind` is what lies there.
+    pub(super) unsafe fn new(
+        start: *const c_void,
+        count: u64,
+        stride: u64,
+        kind: u32,
+        names: [&'static str; 2],
+    ) -> Result<Self, Failure> {
+        // SAFETY: the caller's promise; any bytes are numbers.
+        unsafe {
+            match kind {
+                known if known == LEAFLESS_INDEX_U16 as u32 => {
+                    Ok(Indices::U16(strided(start, count, stride, names)?))
+                }
+                known if known == LEAFLESS_INDEX_U32 as u32 => {
+                    Ok(Indices::U32(strided(start, count, stride, names)?))
+                }
+                known if known == LEAFLESS_INDEX_U64 as u32 => {
+                    Ok(Indices::U64(strided(start, count, stride, names)?))
                 }
                 _ => {
                     let problem = "is no leafless_index_type";
-                    return Err(Failure::Argument { name: "arrays.index_type", problem });
+                    Err(Failure::Argument { name: "arrays.index_type", problem })
                 }
             }
-        };
-        let Some(triangles) = triangles else {
-            let facet = |t| [3 * t, 3 * t + 1, 3 * t + 2].map(|corner| position(vertices.at(corner)));
-            return Ok(TriangleMesh::from_facets((0..self.triangle_count as usize).map(facet))?);
-        };
-        let mut own = Vec::new();
-        own.try_reserve_exact(vertices.len()).map_err(|_| Error::OutOfMemory)?;
-        own.extend(vertices.iter().map(position));
-        Ok(TriangleMesh::new(own, triangles)?)
+        }
     }
 
-    /// The triangles as the library has them, or none if every three vertices are one.
-    ///
-    /// # Safety
-    /// As [`mesh`](Self::mesh).
-    unsafe fn triangles<T: Copy + Into<u64>>(&self) -> Result<Option<Vec<[u32; 3]>>, Failure> {
-        if self.indices.is_null() && self.triangle_count > 0 {
-            if self.triangle_count.checked_mul(3) != Some(self.vertex_count) {
-                let problem = "may be NULL only if there are three vertices for each triangle";
-                return Err(Failure::Argument { name: "arrays.indices", problem });
-            }
-            return Ok(None);
+    pub(super) fn len(&self) -> usize {
+        match self {
+            Indices::U16(indices) => indices.len(),
+            Indices::U32(indices) => indices.len(),
+            Indices::U64(indices) => indices.len(),
         }
+    }
+
+    /// A group.
+    #[inline(always)]
+    pub(super) fn at(&self, index: usize) -> [u64; N] {
+        match self {
+            Indices::U16(indices) => indices.at(index).map(u64::from),
+            Indices::U32(indices) => indices.at(index).map(u64::from),
+            Indices::U64(indices) => indices.at(index),
+        }
+    }
+}
+
+impl leafless_mesh_arrays {
+    /// # Safety
+    /// The arrays are what the fields say, and do not change during the call.
+    unsafe fn mesh(&self) -> Result<TriangleMesh, Failure> {
+        let given = GivenVertices {
+            start: self.vertices,
+            count: self.vertex_count,
+            stride: self.vertex_stride,
+            kind: self.vertex_type,
+            scale: self.scale,
+        };
+        let is_soup = self.indices.is_null() && self.triangle_count > 0;
+        if is_soup && self.triangle_count.checked_mul(3) != Some(self.vertex_count) {
+            let problem = "may be NULL only if there are three vertices for each triangle";
+            return Err(Failure::Argument { name: "arrays.indices", problem });
+        }
+        let triangle_count = if is_soup { 0 } else { self.triangle_count };
         let names = ["arrays.indices", "arrays.triangle_stride"];
-        // SAFETY: the caller's promise; any bytes are numbers.
-        let given =
-            unsafe { strided::<[T; 3]>(self.indices, self.triangle_count, self.triangle_stride, names)? };
-        let vertices = self.vertex_count;
-        if u32::try_from(vertices.max(self.triangle_count)).is_err() {
+        // SAFETY: the caller's promise.
+        let (vertices, indices) = unsafe {
+            let (stride, kind) = (self.triangle_stride, self.index_type);
+            let indices = Indices::<3>::new(self.indices, triangle_count, stride, kind, names)?;
+            (Vertices::new(given)?, indices)
+        };
+        if is_soup {
+            let facet = |t| [3 * t, 3 * t + 1, 3 * t + 2].map(|corner| vertices.at(corner));
+            return Ok(TriangleMesh::from_facets((0..vertices.len() / 3).map(facet))?);
+        }
+        if u32::try_from(triangle_count).is_err() {
             return Err(MeshError::TooMany.into());
         }
         let mut triangles = Vec::new();
-        triangles.try_reserve_exact(given.len()).map_err(|_| Error::OutOfMemory)?;
-        for (corners, triangle) in given.iter().zip(0..) {
-            let corners: [u64; 3] = corners.map(T::into);
-            if let Some(&vertex) = corners.iter().find(|&&vertex| vertex >= vertices) {
-                return Err(MeshError::Index { triangle, vertex, vertices }.into());
+        triangles.try_reserve_exact(indices.len()).map_err(|_| Error::OutOfMemory)?;
+        let count = vertices.len() as u64;
+        for triangle in 0..indices.len() {
+            let corners = indices.at(triangle);
+            if let Some(&vertex) = corners.iter().find(|&&vertex| vertex >= count) {
+                let triangle = triangle as u64;
+                return Err(MeshError::Index { triangle, vertex, vertices: count }.into());
             }
             // Less than the number of vertices, which 32 bits can hold.
             triangles.push(corners.map(|vertex| vertex as u32));
         }
-        Ok(Some(triangles))
+        Ok(TriangleMesh::new(vertices.copied()?, triangles)?)
     }
 }
 

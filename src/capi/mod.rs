@@ -13,6 +13,7 @@
 //! | `mesh` | triangle meshes |
 //! | `mesh_arrays` | triangle meshes from the host's arrays |
 //! | `mesh_file` | mesh files, units |
+//! | `polyhedron` | triangle meshes from faces with holes, shells and voids |
 //! | `octree` | octrees: describing, statistics, metadata |
 //! | `solid` | solids: primitives, meshes, octrees, the host's own |
 //! | `op` | building, resolving, Booleans |
@@ -35,6 +36,7 @@ mod mesh_arrays;
 mod mesh_file;
 mod octree;
 mod op;
+mod polyhedron;
 mod query;
 mod solid;
 mod status;
@@ -52,6 +54,7 @@ pub use mesh_arrays::*;
 pub use mesh_file::*;
 pub use octree::*;
 pub use op::*;
+pub use polyhedron::*;
 pub use query::*;
 pub use solid::*;
 pub use status::*;
