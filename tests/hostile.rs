@@ -87,7 +87,13 @@ const SEEDS: &str = "LEAFLESS_SEEDS";
 fn write_seeds() {
     let Some(directory) = std::env::var_os(SEEDS) else { panic!("{SEEDS} must name a directory") };
     let pairs = seeds::pairs();
-    for (target, inputs) in [("ways_in", &seeds::files()), ("queries", &pairs), ("set_algebra", &pairs)] {
+    let inputs = [
+        ("ways_in", &seeds::files()),
+        ("queries", &pairs),
+        ("set_algebra", &pairs),
+        ("meshes", &bodies::meshes::seeds()),
+    ];
+    for (target, inputs) in inputs {
         let directory = Path::new(&directory).join(target);
         std::fs::create_dir_all(&directory).unwrap();
         for (i, input) in inputs.iter().enumerate() {
@@ -188,6 +194,44 @@ fn every_byte_and_the_first_bits_flipped() {
     }
     println!("{viewed} viewed, {verified} verified");
     assert!(viewed > 1000 && verified > 100, "{viewed} viewed, {verified} verified");
+}
+
+// ---- files of meshes ------------------------------------------------------------------------------------
+
+#[test]
+fn mesh_files_cut_and_changed() {
+    let seeds = bodies::meshes::seeds();
+    let mut random = Random(13);
+    let (mut read, mut inputs) = (0, 0);
+    for seed in &seeds {
+        (0..=seed.len()).for_each(|length| bodies::meshes::meshes(&seed[..length]));
+    }
+    for _ in 0..30_000 {
+        let mut data = seeds[random.below(seeds.len())].clone();
+        for _ in 0..1 + random.below(3) {
+            let (at, from) = (random.below(data.len()), random.below(data.len()));
+            match random.below(4) {
+                _ if data.is_empty() => {}
+                // A word becomes another one, a line is lost or comes again.
+                0 | 1 if data[at].is_ascii_digit() => data[at] = b"0123456789-. \n/"[random.below(15)],
+                2 => {
+                    let line = data.split_inclusive(|&b| b == b'\n').nth(from % 16).unwrap_or(&[]).to_vec();
+                    let before = data[..at].iter().rposition(|&b| b == b'\n').map_or(0, |end| end + 1);
+                    data.splice(before..before, line);
+                }
+                _ => {
+                    let size = data.len();
+                    data.resize(size + 4, 0);
+                    let changed = blind(&mut random, &mut data, size, size + 4);
+                    data.truncate(changed);
+                }
+            }
+        }
+        bodies::meshes::meshes(&data);
+        read += bodies::meshes::READERS.iter().any(|(_, read)| read(&data).is_ok()) as usize;
+        inputs += 1;
+    }
+    assert!(read > inputs / 8 && read < inputs / 2, "{read} of {inputs} were read");
 }
 
 // ---- links ----------------------------------------------------------------------------------------------

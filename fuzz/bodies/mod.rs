@@ -3,6 +3,7 @@
 
 mod aligned;
 pub mod layout;
+pub mod meshes;
 mod mutator;
 mod queries;
 pub mod seeds;
