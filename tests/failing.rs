@@ -175,6 +175,22 @@ fn facets() -> Vec<[[f64; 3]; 3]> {
     facets
 }
 
+/// An OBJ of faces with many corners, some of them not convex, before their vertices.
+fn polygons() -> String {
+    const N: u32 = 40;
+    let mut text = String::from("mtllib of a name that nobody looks for\n");
+    for k in 0..20 {
+        let corners: String = (1..=N).map(|i| format!(" {}", i + N * k)).collect();
+        text += &format!("f{corners}\n");
+    }
+    for k in 0..20 * N {
+        let angle = std::f64::consts::TAU * f64::from(k % N) / f64::from(N);
+        let radius = if k % 80 < N || k % 2 == 0 { 3.0 } else { 2.0 };
+        text += &format!("v {} {} {}\n", radius * angle.cos(), radius * angle.sin(), k / N);
+    }
+    text
+}
+
 /// A mesh whose faces do not quite meet.
 fn cracked() -> TriangleMesh {
     let mut facets = facets();
@@ -286,6 +302,22 @@ fn operations(directory: &Path) -> Vec<(&'static str, Operation)> {
         operation!("read 3MF", [package], file::read_mesh(&package, &Default::default()));
     }
     operation!("write STL", [closed], file::write_stl(&closed));
+    for (k, (write, read)) in bodies::meshes::WRITERS.into_iter().enumerate() {
+        const NAMES: [&str; bodies::meshes::WRITERS.len()] = [
+            "read OBJ",
+            "read OBJ again",
+            "read OFF",
+            "read OFF again",
+            "read PLY",
+            "read PLY little",
+            "read PLY big",
+            "read PLY strips",
+        ];
+        let bytes = write(&closed);
+        operations.push((NAMES[k], Box::new(move || read(&bytes).map(drop))));
+    }
+    let polygons = polygons();
+    operation!("read polygons", [polygons], file::read_obj(polygons.as_bytes()));
     operation!("union", [a, b], union(a.view(), b.view(), &CONTROL));
     operation!("intersection", [a, b], intersection(a.view(), b.view(), &CONTROL));
     operation!("difference", [coded, binary], difference(coded.view(), binary.view(), &CONTROL));
@@ -506,6 +538,46 @@ fn memory_of_polyhedra_is_a_small_multiple_of_their_corners() {
         assert!(held <= allowed, "{held} bytes, not {allowed}");
         println!("{} bytes a corner of the face", held / corners as usize);
     }
+}
+
+/// What the readers of meshes promise.
+#[test]
+fn meshes_take_a_small_multiple_of_their_files() {
+    let mesh = TriangleMesh::from_facets(facets()).unwrap();
+    let mut files: Vec<(Vec<u8>, bodies::meshes::Reader)> = vec![];
+    for (write, read) in bodies::meshes::WRITERS {
+        files.push((write(&mesh), read));
+    }
+    files.push((file::write_stl(&mesh).unwrap(), file::read_stl));
+    files.push((polygons().into_bytes(), file::read_obj));
+    // What takes the least text for each vertex, face and corner; and claims of what is not there.
+    files.push(("v 0 0 0\n".repeat(5000).into_bytes(), file::read_obj));
+    let vertices: String = (0..9999).map(|i| format!("v 0 0 {i}\n")).collect();
+    files.push((vertices.into_bytes(), file::read_obj));
+    files.push((("f 1 1 1\n".repeat(5000) + "v 0 0 0").into_bytes(), file::read_obj));
+    files.push((("f 1 1 1 1\n".repeat(5000) + "v 0 0 0").into_bytes(), file::read_obj));
+    files.push((format!("v 0 0 0\nf{}\n", " 1".repeat(5000)).into_bytes(), file::read_obj));
+    files.push((format!("1 5000\n0 0 0\n{}", "3 0 0 0\n".repeat(5000)).into_bytes(), file::read_off));
+    files.push((format!("4000000000 5000\n{}", "0 0 0\n".repeat(5000)).into_bytes(), file::read_off));
+    files.push((format!("1 4000000000\n0 0 0\n{}", "4 0 0 0 0\n".repeat(5000)).into_bytes(), file::read_off));
+    let header = "ply\nformat binary_little_endian 1.0\nelement vertex 20000\nproperty char x\nproperty char y\n\
+                  property char z\nelement face 4000000000\nproperty list uchar uchar vertex_index\nend_header\n";
+    let vertices = (0..20_000u32).flat_map(|i| [i as u8, (i >> 8) as u8, (i >> 16) as u8]);
+    let both = header.bytes().chain(vertices.clone()).chain([3, 0, 1, 2].repeat(5000));
+    files.push((both.collect(), file::read_ply));
+    let only_vertices = header.replace("4000000000", "0");
+    files.push((only_vertices.bytes().chain(vertices).collect(), file::read_ply));
+    let strip = "ply\nformat binary_big_endian 1.0\nelement vertex 1\nproperty char x\nproperty char y\nproperty char z\n\
+                 element tristrips 1\nproperty list ushort char vertex_index\nend_header\n\0\0\0\x7F\0";
+    files.push((strip.bytes().chain([0; 0x7F00]).collect(), file::read_ply));
+    let mut worst = 0f64;
+    for (bytes, read) in &files {
+        let mut most = 0.0;
+        weigh(&mut most, READING, bytes.len(), || read(bytes));
+        println!("{most:.1} times {} bytes", bytes.len());
+        worst = worst.max(most);
+    }
+    assert!(worst <= 24.0, "{worst} times the file");
 }
 
 /// A tree of many bricks of few kinds: nothing is shorter in a file, and nothing grows more when it is copied.

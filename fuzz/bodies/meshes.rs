@@ -2,15 +2,17 @@
 
 use leafless::{Error, TriangleMesh, file};
 
-type Read = fn(&[u8]) -> Result<TriangleMesh, Error>;
-type Write = fn(&TriangleMesh) -> Vec<u8>;
+/// A function that reads a mesh.
+pub type Reader = fn(&[u8]) -> Result<TriangleMesh, Error>;
+/// A function that writes one.
+pub type Writer = fn(&TriangleMesh) -> Vec<u8>;
 
 /// All readers of single files.
-pub const READERS: [(&str, Read); 4] =
+pub const READERS: [(&str, Reader); 4] =
     [("STL", file::read_stl), ("OBJ", file::read_obj), ("PLY", file::read_ply), ("OFF", file::read_off)];
 
 /// Writers of several dialects, and the reader of each.
-pub const WRITERS: [(Write, Read); 8] = [
+pub const WRITERS: [(Writer, Reader); 8] = [
     (obj, file::read_obj),
     (obj_from_behind, file::read_obj),
     (off, file::read_off),
