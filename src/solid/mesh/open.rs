@@ -1,7 +1,7 @@
 //! Cells of an open surface.
 //!
 //! What is counted along lines is the winding number of the surface *and its caps*. Here the caps' own is taken off: around
-//! the middle of a cell it is known to first order, with bounds of what that neglects, and jumps by an integer on every
+//! the middle of a cell it is known to second order, with bounds of what that neglects, and jumps by an integer on every
 //! cap. Three things follow for a cell:
 //!
 //! * If no cap cuts it, and the caps' winding number stays between two halves of odd integers, the surface's own is the integer
@@ -13,8 +13,7 @@
 use super::placed::Placed;
 use super::split::{MeshPart, MeshSolid};
 use super::surface::FillRule;
-use super::winding::{Local, Nearby, Range};
-use crate::error::Error;
+use super::winding::{Local, Range};
 use crate::lattice::MAX_DEPTH;
 use crate::lattice::exact::floor;
 use crate::solid::Verdict;
@@ -26,7 +25,7 @@ const HALF_DIAGONAL: f64 = 0.866_025_404;
 /// Two winding numbers that are known so well differ by the nearest integer, if they should differ by an integer.
 const SURE: f64 = 0.2;
 
-/// Error that a group of caps may add to a cell's first order.
+/// Error that a group of caps may add in a cell.
 const ENOUGH: f64 = 1.0 / 16384.0;
 
 /// Error that a group of caps may add if a centre's side hangs on it.
@@ -38,7 +37,7 @@ const MOST_SQUARES: usize = 2048;
 /// Which of its values the caps' winding number takes at a cell's lowest centre.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Branch {
-    /// That of the first order around the cell of this level which holds this one
+    /// That of the expansion around the cell of this level which holds this one
     level: u8,
     /// and so much more.
     step: i32,
@@ -54,66 +53,38 @@ impl Branch {
     }
 }
 
-/// What is near the latest cell of each level: functions of the cell alone, kept for those below it.
+/// The caps' winding number around the latest cell of each level that it was asked for: a function of the cell alone,
+/// kept for those below it.
 #[derive(Default)]
 pub(super) struct Surroundings {
-    levels: [Surrounding; MAX_DEPTH as usize + 1],
-}
-
-#[derive(Default)]
-struct Surrounding {
-    /// Lower corner of the cell.
-    corner: Option<[i32; 3]>,
-    nearby: Nearby,
-    /// Around its middle, once asked for: none if the boundary passes close by.
-    local: Option<Option<Local>>,
+    /// The cell's lower corner, and what is known unless the boundary passes close by.
+    levels: [Option<([i32; 3], Option<Local>)>; MAX_DEPTH as usize + 1],
 }
 
 impl Surroundings {
-    /// What is near the cell of `level` that holds `at`.
-    fn nearby(&mut self, placed: &Placed, level: u8, at: [i32; 3]) -> Result<&mut Surrounding, Error> {
-        let size = |level: u8| 1 << (placed.frame.depth() - level);
-        let corner = |level: u8| at.map(|a| a & -size(level));
-        let known = (0..=level).rev().find(|&l| self.levels[l as usize].corner == Some(corner(l)));
-        for l in known.map_or(0, |l| l + 1)..=level {
-            let (outer, inner) = self.levels.split_at_mut(l as usize);
-            let inner = &mut inner[0];
-            inner.corner = None;
-            inner.local = None;
-            let radius = size(l) as f64 * HALF_DIAGONAL;
-            let middle = middle(corner(l), size(l));
-            match outer.last() {
-                Some(outer) => placed.caps.nearby(&outer.nearby, middle, radius, &mut inner.nearby)?,
-                None => placed.caps.nearby(&placed.caps.everything()?, middle, radius, &mut inner.nearby)?,
-            }
-            inner.corner = Some(corner(l));
-        }
-        Ok(&mut self.levels[level as usize])
-    }
-
     /// The caps' winding number around the middle of the cell of `level` that holds `at`; of a finest cell on that side
     /// of every cap on which its centre counts.
-    fn local(&mut self, placed: &Placed, level: u8, at: [i32; 3]) -> Result<Option<Local>, Error> {
-        let surrounding = self.nearby(placed, level, at)?;
-        if let Some(local) = surrounding.local {
-            return Ok(local);
-        }
+    fn local(&mut self, placed: &Placed, level: u8, at: [i32; 3]) -> Option<Local> {
         let size = 1 << (placed.frame.depth() - level);
         let corner = at.map(|a| a & -size);
+        let slot = &mut self.levels[level as usize];
+        if let Some((kept, local)) = slot
+            && *kept == corner
+        {
+            return *local;
+        }
         let radius = size as f64 * HALF_DIAGONAL;
         let cell = (size == 1).then_some(corner);
-        let nearby = &surrounding.nearby;
-        let local = placed.caps.local(placed, nearby, middle(corner, size), radius, ENOUGH, cell);
-        surrounding.local = Some(local);
-        Ok(local)
+        let local = placed.caps.local(placed, middle(corner, size), radius, ENOUGH, cell);
+        *slot = Some((corner, local));
+        local
     }
+}
 
-    /// The caps' winding number at the centre of a finest cell, seen from the cell of `level` that holds it.
-    fn at_centre(&mut self, placed: &Placed, level: u8, at: [i32; 3], enough: f64) -> Result<Range, Error> {
-        let nearby = &self.nearby(placed, level, at)?.nearby;
-        let local = placed.caps.local(placed, nearby, middle(at, 1), 0.0, enough, Some(at));
-        Ok(local.map_or(Range::UNKNOWN, |local| local.within(0.0)))
-    }
+/// The caps' winding number at the centre of a finest cell.
+fn at_centre(placed: &Placed, at: [i32; 3], enough: f64) -> Range {
+    let local = placed.caps.local(placed, middle(at, 1), 0.0, enough, Some(at));
+    local.map_or(Range::UNKNOWN, |local| local.within(0.0))
 }
 
 fn middle(corner: [i32; 3], size: i32) -> [f64; 3] {
@@ -130,58 +101,52 @@ impl MeshSolid {
         at: [i32; 3],
         size: i32,
         mut part: MeshPart,
-    ) -> Result<Verdict<MeshPart>, Error> {
+    ) -> Verdict<MeshPart> {
         let is_cut = triangles.first().is_some_and(|&first| !self.placed.is_cap(first));
         let is_capped = triangles.last().is_some_and(|&last| self.placed.is_cap(last));
         if is_cut && (size == 1 || is_capped) {
-            return Ok(Verdict::Partial(part));
+            return Verdict::Partial(part);
         }
         let mut is_fresh = false;
         loop {
-            let caps = self.caps_over(surroundings, at, size, part)?;
+            let caps = self.caps_over(surroundings, at, size, part);
             let change = caps.change + caps.doubt;
             if !is_capped {
                 let nearest = floor(caps.value + 0.5);
                 if (caps.value - nearest as f64).abs() + change < 0.5 {
                     part.winding -= nearest as i32;
                     part.caps = None;
-                    return Ok(self.closed_verdict(part));
+                    return self.closed_verdict(part);
                 }
             }
             if !is_cut {
                 let excess = self.excess(part.winding as f64 - caps.value);
                 if excess.abs() > change {
-                    return Ok(if excess > 0.0 { Verdict::Full } else { Verdict::Empty });
+                    return if excess > 0.0 { Verdict::Full } else { Verdict::Empty };
                 }
             }
             // Also false for NaN.
             let is_sharp = caps.doubt <= 0.5 * caps.change;
             if is_sharp || is_fresh {
-                return Ok(Verdict::Partial(part));
+                return Verdict::Partial(part);
             }
-            part.caps = Some(self.branch(surroundings, at, size, is_capped, part)?);
+            part.caps = Some(self.branch(surroundings, at, size, is_capped, part));
             is_fresh = true;
         }
     }
 
     /// Whether the centre of a finest cell is inside.
     #[cold]
-    pub(super) fn open_sample(
-        &self,
-        surroundings: &mut Surroundings,
-        at: [i32; 3],
-        part: MeshPart,
-    ) -> Result<bool, Error> {
-        let depth = self.placed.frame.depth();
+    pub(super) fn open_sample(&self, surroundings: &mut Surroundings, at: [i32; 3], part: MeshPart) -> bool {
         let excess = |caps: Range| self.excess(part.winding as f64 - caps.value);
-        let mut caps = self.caps_at(surroundings, at, part)?;
-        for (level, enough) in [(depth, ENOUGH), (0, LEAST)] {
+        let mut caps = self.caps_at(surroundings, at, part);
+        for enough in [ENOUGH, LEAST] {
             if excess(caps).abs() > caps.doubt {
                 break;
             }
-            caps = surroundings.at_centre(&self.placed, level, at, enough)?;
+            caps = at_centre(&self.placed, at, enough);
         }
-        Ok(excess(caps) >= 0.0)
+        excess(caps) >= 0.0
     }
 
     /// By how much a winding number exceeds what the fill rule asks for.
@@ -193,18 +158,12 @@ impl MeshSolid {
     }
 
     /// The caps' winding number over a cell, continued from its lowest centre through caps.
-    fn caps_over(
-        &self,
-        surroundings: &mut Surroundings,
-        at: [i32; 3],
-        size: i32,
-        part: MeshPart,
-    ) -> Result<Range, Error> {
+    fn caps_over(&self, surroundings: &mut Surroundings, at: [i32; 3], size: i32, part: MeshPart) -> Range {
         self.known(surroundings, at, part, |local| local.over(at, size))
     }
 
     /// The caps' winding number at a cell's lowest centre.
-    fn caps_at(&self, surroundings: &mut Surroundings, at: [i32; 3], part: MeshPart) -> Result<Range, Error> {
+    fn caps_at(&self, surroundings: &mut Surroundings, at: [i32; 3], part: MeshPart) -> Range {
         self.known(surroundings, at, part, |local| local.at_centre(at))
     }
 
@@ -214,12 +173,12 @@ impl MeshSolid {
         at: [i32; 3],
         part: MeshPart,
         range: impl Fn(&Local) -> Range,
-    ) -> Result<Range, Error> {
+    ) -> Range {
         let Some(Branch { level: level @ 0..=MAX_DEPTH, step }) = part.caps else {
-            return Ok(Range::UNKNOWN);
+            return Range::UNKNOWN;
         };
-        let local = surroundings.local(&self.placed, level, at)?;
-        Ok(local.map_or(Range::UNKNOWN, |local| range(&local).plus(step)))
+        let local = surroundings.local(&self.placed, level, at);
+        local.map_or(Range::UNKNOWN, |local| range(&local).plus(step))
     }
 
     /// The branch of the caps' winding number as it is around this cell itself.
@@ -230,27 +189,25 @@ impl MeshSolid {
         size: i32,
         is_capped: bool,
         part: MeshPart,
-    ) -> Result<Branch, Error> {
+    ) -> Branch {
         let level = self.placed.frame.depth() - size.trailing_zeros() as u8;
-        let Some(here) = surroundings.local(&self.placed, level, at)? else {
-            return Ok(Branch::UNKNOWN);
-        };
+        let Some(here) = surroundings.local(&self.placed, level, at) else { return Branch::UNKNOWN };
         if size == 1 {
-            return Ok(Branch { level, step: 0 });
+            return Branch { level, step: 0 };
         }
         if !is_capped {
             // No cap between the middle, which is on none, and the lowest centre.
-            return Ok(Branch { level, step: 0 });
+            return Branch { level, step: 0 };
         }
         let here = here.at_centre(at);
-        let mut there = self.caps_at(surroundings, at, part)?;
+        let mut there = self.caps_at(surroundings, at, part);
         if !(there.doubt < SURE) {
-            there = surroundings.at_centre(&self.placed, level, at, ENOUGH)?;
+            there = at_centre(&self.placed, at, ENOUGH);
         }
         if here.doubt < SURE && there.doubt < SURE {
-            Ok(Branch { level, step: floor(there.value - here.value + 0.5) as i32 })
+            Branch { level, step: floor(there.value - here.value + 0.5) as i32 }
         } else {
-            Ok(Branch::UNKNOWN)
+            Branch::UNKNOWN
         }
     }
 
@@ -262,7 +219,6 @@ impl MeshSolid {
             return true;
         }
         let cells = self.placed.frame.cells() as f64;
-        let Ok(everything) = caps.everything() else { return false };
         // A square on each face: the face, its lowest corner, its edge.
         let mut squares: Vec<(usize, [f64; 2], f64)> = Vec::new();
         if squares.try_reserve(6 + 3 * MOST_SQUARES).is_err() {
@@ -276,7 +232,7 @@ impl MeshSolid {
             let mut point = [height; 3];
             (point[(w + 1) % 3], point[(w + 2) % 3]) = (corner[0] + half, corner[1] + half);
             let radius = half * core::f64::consts::SQRT_2;
-            let seen = caps.local(&self.placed, &everything, point, radius, ENOUGH, None);
+            let seen = caps.local(&self.placed, point, radius, ENOUGH, None);
             let seen = seen.map_or(Range::UNKNOWN, |local| local.within(radius));
             if seen.value.abs() + seen.change + seen.doubt < 0.5 {
                 continue;

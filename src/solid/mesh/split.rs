@@ -105,10 +105,10 @@ impl MeshSolid {
         at: [i32; 3],
         size: i32,
         part: MeshPart,
-    ) -> Result<Verdict<MeshPart>, Error> {
+    ) -> Verdict<MeshPart> {
         match part.caps {
             Some(_) => self.open_verdict(surroundings, triangles, at, size, part),
-            None => Ok(self.closed_verdict(part)),
+            None => self.closed_verdict(part),
         }
     }
 
@@ -218,7 +218,7 @@ impl Solid for MeshSolid {
         let triangles = &scratch.triangles[first..];
         let caps = if self.placed.caps.is_empty() { None } else { Some(Branch::UNKNOWN) };
         let part = MeshPart { first, count: triangles.len(), winding, caps };
-        self.verdict(&mut scratch.surroundings, triangles, [0; 3], frame.cells() as i32, part)
+        Ok(self.verdict(&mut scratch.surroundings, triangles, [0; 3], frame.cells() as i32, part))
     }
 
     fn split(
@@ -269,7 +269,7 @@ impl Solid for MeshSolid {
             let at = [0, 1, 2].map(|axis| at[axis] + if k >> axis & 1 != 0 { half } else { 0 });
             let caps = part.caps.map(|branch| branch.plus(jumps[k]));
             let part = MeshPart { first, count, winding: windings[k], caps };
-            *verdict = self.verdict(surroundings, &triangles[first..first + count], at, half, part)?;
+            *verdict = self.verdict(surroundings, &triangles[first..first + count], at, half, part);
         }
         Ok(verdicts)
     }
@@ -303,10 +303,10 @@ impl Solid for MeshSolid {
     ) -> Result<Option<bool>, Error> {
         // A finest cell's lowest centre is its only one.
         let (at, _) = extent(cube.cell, self.placed.frame.depth());
-        match part.caps {
-            Some(_) => self.open_sample(&mut scratch.surroundings, at, *part).map(Some),
-            None => Ok(Some(self.fill.encloses(part.winding))),
-        }
+        Ok(Some(match part.caps {
+            Some(_) => self.open_sample(&mut scratch.surroundings, at, *part),
+            None => self.fill.encloses(part.winding),
+        }))
     }
 
     fn exterior(&self, frame: &Frame) -> Tag {

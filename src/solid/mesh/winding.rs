@@ -13,8 +13,8 @@
 //! whoever needs a smaller error asks again.
 //!
 //! Away from the surface the winding number is smooth. Its gradient is the magnetic field of a current along the
-//! *boundary* (the law of Biot and Savart), and its second derivative at most Σ ∫ 2 ds / (4π·distance³) over the
-//! boundary's edges. One sum thus bounds it on a whole cell, and serves many cells inside of that.
+//! *boundary* (the law of Biot and Savart), so that derivatives are sums over the boundary's edges; the third is at most
+//! Σ ∫ 6 ds / (4π·distance⁴). One expansion thus bounds it on a whole cell, and serves many cells inside of that.
 
 use super::boundary::Loops;
 use super::crossing::Projection;
@@ -29,9 +29,6 @@ use glam::{DMat3, DVec3};
 const LEAF: usize = 4;
 
 const SCALE: f64 = 1.0 / (4.0 * PI);
-
-/// What a group of triangles may add to the error when it is taken together.
-const ENOUGH: f64 = 1.0 / 16384.0;
 
 /// Triangles that close a surface, in the order of a tree of bounding spheres.
 #[derive(Default)]
@@ -59,36 +56,33 @@ struct Node {
     /// ∫ |dA|, and ∫ |y − centre|² |dA|.
     size: f64,
     spread: f64,
-    /// Bound of ∫ |y − centre| |dA|.
-    arm: f64,
-    /// Length of the boundary's edges.
+    /// ∫ |ds| of the boundary's edges, ∫ ds, and ∫ ds ⊗ (y − centre).
     rim: f64,
+    current: DVec3,
+    currents: DMat3,
     first: u32,
     end: u32,
     /// The node after the last one below this; the next one if this is a leaf.
     skip: u32,
 }
 
-/// The caps' winding number in a ball around a point, to first order. It jumps by an integer on every cap; this is its
+/// The caps' winding number in a ball around a point, to second order. It jumps by an integer on every cap; this is its
 /// smooth continuation from the point.
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Copy)]
 pub(super) struct Local {
     point: DVec3,
     value: f64,
     gradient: DVec3,
-    /// Bounds of the value's error, of the gradient's, and of the second derivative anywhere in the ball; infinite or not
-    /// a number if nothing is known.
+    /// Symmetric only up to rounding.
+    hessian: DMat3,
+    /// Bounds of the errors of value, gradient and second derivative.
     error: f64,
     slant: f64,
     bend: f64,
-}
-
-/// Which groups of caps are far from a ball, and which are not.
-#[derive(Default)]
-pub(super) struct Nearby {
-    far: Local,
-    /// Nodes, none below another.
-    near: Vec<u32>,
+    /// Two bounds of the third derivative anywhere in the ball: by what the boundary's edges add, and by what
+    /// the caps add. Of wide holes the first is the smaller, of hair cracks the second.
+    by_rims: f64,
+    by_areas: f64,
 }
 
 /// A range of winding numbers.
@@ -114,7 +108,7 @@ impl Range {
 impl Local {
     /// In the ball of the given radius around the point it was made for.
     pub(super) fn within(&self, radius: f64) -> Range {
-        let change = length(self.gradient) * radius;
+        let change = (length(self.gradient) + 0.5 * sum_of_magnitudes(self.hessian) * radius) * radius;
         Range { value: self.value, change, doubt: self.doubt(radius) }
     }
 
@@ -122,10 +116,13 @@ impl Local {
     pub(super) fn over(&self, at: [i32; 3], size: i32) -> Range {
         let half = size as f64 / 2.0;
         let middle = DVec3::from(at.map(|a| a as f64 + half)) - self.point;
-        let gradient = self.gradient.abs();
+        let symmetric = (self.hessian + self.hessian.transpose()) * 0.5;
+        let bent = symmetric * middle;
+        let gradient = (self.gradient + bent).abs();
+        let change = gradient.x + gradient.y + gradient.z + 0.5 * half * sum_of_magnitudes(symmetric);
         Range {
-            value: self.value + self.gradient.dot(middle),
-            change: half * (gradient.x + gradient.y + gradient.z),
+            value: self.value + (self.gradient + 0.5 * bent).dot(middle),
+            change: half * change,
             doubt: self.doubt(length(middle.abs() + half)),
         }
     }
@@ -133,26 +130,15 @@ impl Local {
     /// At the centre of a cell.
     pub(super) fn at_centre(&self, cell: [i32; 3]) -> Range {
         let to = DVec3::from(cell.map(|a| a as f64 + 0.5)) - self.point;
-        Range { value: self.value + self.gradient.dot(to), change: 0.0, doubt: self.doubt(length(to)) }
+        let value = self.value + (self.gradient + 0.5 * (self.hessian * to)).dot(to);
+        Range { value, change: 0.0, doubt: self.doubt(length(to)) }
     }
 
     fn doubt(&self, distance: f64) -> f64 {
+        let jerk = self.by_rims.min(self.by_areas);
+        let (bend, slant) = (0.5 * self.bend * distance, self.slant);
         // The factor outweighs the roundings of all these bounds.
-        (self.error + (self.slant + 0.5 * self.bend * distance) * distance) * (1.0 + 1e-6) + 1e-12
-    }
-
-    /// The same around another point of the ball.
-    fn moved_to(&self, point: DVec3) -> Local {
-        let step = point - self.point;
-        let distance = length(step);
-        Local {
-            point,
-            value: self.value + self.gradient.dot(step),
-            gradient: self.gradient,
-            error: self.error + (self.slant + 0.5 * self.bend * distance) * distance,
-            slant: self.slant + self.bend * distance,
-            bend: self.bend,
-        }
+        (self.error + (slant + bend + jerk / 6.0 * distance * distance) * distance) * (1.0 + 1e-6) + 1e-12
     }
 }
 
@@ -234,80 +220,50 @@ impl Caps {
         &self.triangles
     }
 
-    /// What is near and what is far of a ball, before anything is known.
-    pub(super) fn everything(&self) -> Result<Nearby, Error> {
-        let mut all = Nearby { far: Local::default(), near: Vec::new() };
-        if !self.nodes.is_empty() {
-            all.near.try_reserve(1).map_err(|_| Error::OutOfMemory)?;
-            all.near.push(0);
-        }
-        Ok(all)
-    }
-
-    /// What is near and what is far of the ball of `radius` around `point`, which lies in that of `outer`.
-    pub(super) fn nearby(
-        &self,
-        outer: &Nearby,
-        point: [f64; 3],
-        radius: f64,
-        inner: &mut Nearby,
-    ) -> Result<(), Error> {
-        inner.far = outer.far.moved_to(DVec3::from(point));
-        inner.near.clear();
-        for &item in &outer.near {
-            let mut next = item as usize;
-            while next < self.nodes[item as usize].skip as usize {
-                let node = &self.nodes[next];
-                if node.add(radius + self.wobble, ENOUGH, &mut inner.far) {
-                    next = node.skip as usize;
-                } else if node.radius <= radius || node.skip as usize == next + 1 {
-                    inner.near.try_reserve(1).map_err(|_| Error::OutOfMemory)?;
-                    inner.near.push(next as u32);
-                    next = node.skip as usize;
-                } else {
-                    next += 1;
-                }
-            }
-        }
-        Ok(())
-    }
-
-    /// The winding number around `point` to first order, within `radius` of it (both in finest cells from the frame's
-    /// origin), which lies in the ball of `nearby`; a group adds at most `enough` to its error. `None` if the boundary passes
-    /// through the ball.
+    /// The winding number around `point` to second order, within `radius` of it (both in finest cells from the frame's
+    /// origin). A group of caps that is taken together adds at most `enough` to the error. `None` if the boundary
+    /// passes through the ball. Of a ball without radius there is only the value.
     ///
     /// If the point is a cell's centre, `cell` says so, and the value is the one on that side of every cap on which
     /// the symbolic shift puts the centre. Otherwise a point on a cap may get the value of either side.
     pub(super) fn local(
         &self,
         placed: &Placed,
-        nearby: &Nearby,
         point: [f64; 3],
         radius: f64,
         enough: f64,
         cell: Option<[i32; 3]>,
     ) -> Option<Local> {
-        let radius = radius + self.wobble;
-        let mut local = nearby.far.moved_to(DVec3::from(point));
-        for &item in &nearby.near {
-            let mut next = item as usize;
-            while next < self.nodes[item as usize].skip as usize {
-                let node = &self.nodes[next];
-                if node.add(radius, enough, &mut local) {
-                    next = node.skip as usize;
-                    continue;
-                }
-                if node.skip as usize == next + 1 {
-                    for cap in node.first as usize..node.end as usize {
-                        self.add(placed, cap, radius, cell, &mut local)?;
-                    }
-                }
-                next += 1;
+        let reach = if radius > 0.0 { radius + self.wobble } else { 0.0 };
+        let mut local = Local {
+            point: DVec3::from(point),
+            value: 0.0,
+            gradient: DVec3::ZERO,
+            hessian: DMat3::ZERO,
+            error: 0.0,
+            slant: 0.0,
+            bend: 0.0,
+            by_rims: 0.0,
+            by_areas: 0.0,
+        };
+        let mut next = 0;
+        while let Some(node) = self.nodes.get(next) {
+            if node.add(reach, enough, &mut local) {
+                next = node.skip as usize;
+                continue;
             }
+            if node.skip as usize == next + 1 {
+                for cap in node.first as usize..node.end as usize {
+                    self.add(placed, cap, reach, cell, &mut local)?;
+                }
+            }
+            next += 1;
         }
-        if self.wobble > 0.0 {
+        if self.wobble > 0.0 && radius > 0.0 {
             // Where the boundary wobbles, the winding number changes as if the point did.
-            local.error += self.wobble * (length(local.gradient) + local.slant + local.bend * radius);
+            let jerk = local.by_rims.min(local.by_areas);
+            let bend = sum_of_magnitudes(local.hessian) + local.bend + 0.5 * jerk * reach;
+            local.error += self.wobble * (length(local.gradient) + local.slant + bend * reach);
         }
         Some(local)
     }
@@ -353,6 +309,20 @@ impl Caps {
                 sum.value += self.on_edge(placed, cap, cell, corners) / (2.0 * PI);
             }
         }
+        if radius == 0.0 {
+            // Only the value counts.
+            return Some(());
+        }
+        let [first, second, third] = corners;
+        let middle = (first + second + third) / 3.0;
+        let reach = corners.iter().fold(0.0, |most: f64, corner| most.max(length(*corner - middle)));
+        let clear = length(middle) * (1.0 - 1e-9) - reach - radius;
+        sum.by_areas += if clear > 0.0 {
+            let size = length((second - first).cross(third - first)) / 2.0;
+            SCALE * 24.0 * size / (clear * clear * clear * clear * clear)
+        } else {
+            f64::INFINITY
+        };
         for (i, cosine) in [ab, bc, ca].into_iter().enumerate() {
             if self.rims[cap] >> i & 1 != 0 {
                 let j = (i + 1) % 3;
@@ -424,8 +394,9 @@ impl Node {
             moment: DMat3::ZERO,
             size: 0.0,
             spread: 0.0,
-            arm: 0.0,
             rim: 0.0,
+            current: DVec3::ZERO,
+            currents: DMat3::ZERO,
             first: first as u32,
             end: (first + slots.len()) as u32,
             skip: 0,
@@ -443,11 +414,13 @@ impl Node {
                 * (a.length_squared() + b.length_squared() + c.length_squared() + middle.length_squared());
             for (i, (from, to)) in [(a, b), (b, c), (c, a)].into_iter().enumerate() {
                 if rims >> i & 1 != 0 {
-                    node.rim += length(to - from);
+                    let (edge, middle) = (to - from, from.midpoint(to));
+                    node.rim += length(edge);
+                    node.current += edge;
+                    node.currents += DMat3::from_cols(edge * middle.x, edge * middle.y, edge * middle.z);
                 }
             }
         }
-        node.arm = node.size * node.radius;
         node
     }
 
@@ -464,25 +437,36 @@ impl Node {
         }
         // The n-th derivative of the kernel y/|y|³ is at most (n + 1)!/|y|ⁿ⁺²: it is one of 1/|y|, which is harmonic, so
         // that it is largest along y. (The terms with 1e-11 are for what is rounded.)
-        let near = 1.0 / (gap * gap);
-        let error = SCALE * (3.0 * self.spread * near + 1e-11 * self.size) * near;
-        let slant = SCALE * (6.0 * self.arm * near * near + 1e-11 * self.size * near / gap);
-        let bend = SCALE * (2.0 * self.rim).min(6.0 * self.size / clear) / (clear * clear * clear);
-        if !(error + (slant + 0.5 * bend * radius) * radius <= enough) {
+        let (near, close) = (SCALE / (gap * gap), SCALE / (clear * clear * clear * clear));
+        let error = (3.0 * self.spread / (gap * gap) + 1e-11 * self.size) * near;
+        let slant = (3.0 * self.radius * self.radius / (gap * gap) + 1e-11) * self.rim * near;
+        let bend = (6.0 * self.radius / gap + 1e-11) * self.rim * near / gap;
+        let (by_rims, by_areas) = (6.0 * self.rim * close, 24.0 * self.size * close / clear);
+        let jerk = by_rims.max(by_areas);
+        if !(error + (slant + (0.5 * bend + jerk / 6.0 * radius) * radius) * radius <= enough) {
             return false;
         }
         let inverse = 1.0 / distance;
         let direction = towards * inverse;
-        let (square, cube) = (inverse * inverse, inverse * inverse * inverse);
+        let (square, cube) = (SCALE * inverse * inverse, SCALE * inverse * inverse * inverse);
         // The kernel at the centre, and its first derivative (1 − 3 d dᵀ)/|y|³.
         let facing = self.area.dot(direction);
-        let trace = self.moment.x_axis.x + self.moment.y_axis.y + self.moment.z_axis.z;
         let along = direction.dot(self.moment * direction);
-        sum.value += SCALE * (facing * square + (trace - 3.0 * along) * cube);
-        sum.gradient += (direction * (3.0 * facing) - self.area) * (SCALE * cube);
+        sum.value += facing * square + (trace(self.moment) - 3.0 * along) * cube;
+        // ∫ y/|y|³ × ds with the same two terms.
+        let turned = curl(self.currents);
+        let slid = self.currents * direction;
+        sum.gradient +=
+            direction.cross(self.current) * square + (turned - 3.0 * direction.cross(slid)) * cube;
+        // The first of them once more differentiated: −(v − 3 d (d·v))/|y|³ × ds for a step v.
+        let columns =
+            DVec3::AXES.map(|v| (3.0 * direction.dot(v) * direction - v).cross(self.current) * cube);
+        sum.hessian += DMat3::from_cols(columns[0], columns[1], columns[2]);
         sum.error += error;
         sum.slant += slant;
         sum.bend += bend;
+        sum.by_rims += by_rims;
+        sum.by_areas += by_areas;
         true
     }
 }
@@ -507,14 +491,44 @@ impl Local {
             return None;
         }
         let open = 1.0 + cosine;
-        let strength = SCALE * (start + end) / (start * end * open);
-        let field = from.cross(to) * (strength / (start * end));
-        self.gradient += field;
-        self.slant += 64.0 * f64::EPSILON * (self::length(field) / open + strength);
-        // ∫ 2 ds / distance³ along the edge, and at most along its whole line.
-        self.bend += SCALE * 2.0 * (length / distance).min(2.0) / (distance * distance);
+        let (both, product) = (start + end, start * end);
+        let strength = SCALE * both / (product * product * open);
+        let field = from.cross(to);
+        self.gradient += field * strength;
+        // Along v the derivative of `field` is edge × v, that of `strength` is `weaker` · v.
+        let (a, b) = (from / start, to / end);
+        let mixed = a * end + b * start;
+        let weaker =
+            strength * ((mixed * (1.0 + 1.0 / open) + (from + to) / open) / product - (a + b) / both);
+        let columns = DVec3::AXES.map(|v| edge.cross(v) * strength);
+        self.hessian += DMat3::from_cols(
+            columns[0] + field * weaker.x,
+            columns[1] + field * weaker.y,
+            columns[2] + field * weaker.z,
+        );
+        let size = self::length(field) * strength;
+        let rounding = 256.0 * f64::EPSILON * (size / open + strength * product);
+        self.slant += rounding;
+        self.bend += rounding * (both / product) / open;
+        // ∫ 6 ds / distance⁴ along the edge, and at most along its whole line.
+        let square = distance * distance;
+        self.by_rims += SCALE * 6.0 * (length / distance).min(PI / 2.0) / (square * distance);
         Some(())
     }
+}
+
+fn trace(m: DMat3) -> f64 {
+    m.x_axis.x + m.y_axis.y + m.z_axis.z
+}
+
+/// ∫ s × ds of ∫ ds ⊗ s.
+fn curl(m: DMat3) -> DVec3 {
+    DVec3::new(m.y_axis.z - m.z_axis.y, m.z_axis.x - m.x_axis.z, m.x_axis.y - m.y_axis.x)
+}
+
+fn sum_of_magnitudes(m: DMat3) -> f64 {
+    let sums = m.x_axis.abs() + m.y_axis.abs() + m.z_axis.abs();
+    sums.x + sums.y + sums.z
 }
 
 #[inline(always)]
@@ -539,4 +553,75 @@ fn halve(corners: usize, found: &mut impl FnMut([usize; 3], u8)) {
         part(middle, last, false, found);
     }
     part(0, corners - 1, true, found);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::split::MeshSolid;
+    use super::super::surface::{FillRule, TriangleMesh};
+    use super::*;
+    use crate::lattice::Frame;
+
+    /// A cone without its base: `corners` corners at height 3 around the axis through (8, 8), of about radius 5, its top
+    /// at height 13. In a frame of 16 cells.
+    fn cone(corners: u32) -> MeshSolid {
+        let mut vertices = alloc::vec![[8.0, 8.0, 13.0]];
+        for i in 0..corners {
+            let angle = 2.0 * PI * f64::from(i) / f64::from(corners);
+            let radius = 5.0 + 0.5 * libm::sin(5.0 * angle);
+            let height = 3.0 + 0.3 * libm::cos(3.0 * angle);
+            vertices.push([8.0 + radius * libm::cos(angle), 8.0 + radius * libm::sin(angle), height]);
+        }
+        let triangles = (0..corners).map(|i| [0, 1 + i, 1 + (i + 1) % corners]).collect();
+        let mesh = TriangleMesh::new(vertices, triangles).unwrap();
+        MeshSolid::new(mesh, &Frame::new([0.0; 3], 16.0, 4).unwrap(), FillRule::NonZero).unwrap()
+    }
+
+    fn local(solid: &MeshSolid, point: DVec3, radius: f64, enough: f64) -> Option<Local> {
+        solid.placed.caps.local(&solid.placed, point.to_array(), radius, enough, None)
+    }
+
+    #[test]
+    fn expansions_hold_what_they_promise() {
+        let mut state = 1u64;
+        let mut random = || {
+            state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+            (state >> 11) as f64 / (1u64 << 53) as f64
+        };
+        for corners in [3, 4, 7, 24, 100, 400] {
+            let solid = cone(corners);
+            let (mut known, mut taken) = (0, 0);
+            for _ in 0..2000 {
+                let point = DVec3::new(random(), random(), random()) * 24.0 - 4.0;
+                let radius = 4.0 * random() * random();
+                for enough in [0.0, 1e-6, 1e-3, 1e-1] {
+                    let Some(around) = local(&solid, point, radius, enough) else { continue };
+                    known += 1;
+                    let step = DVec3::new(random(), random(), random()) * 2.0 - 1.0;
+                    let step = step * (radius * random() / length(step));
+                    let there = local(&solid, point + step, 0.0, 0.0).unwrap();
+                    assert!(there.doubt(0.0) < 1e-9);
+                    let bent = around.hessian * step;
+                    let guess = around.value + (around.gradient + 0.5 * bent).dot(step);
+                    // Caps may lie between the two points.
+                    let off = guess - there.value;
+                    let off = (off - libm::round(off)).abs();
+                    let doubt = around.doubt(length(step)) + 1e-9;
+                    assert!(off <= doubt, "{corners} {point} {radius} {step} {enough}: {off} {doubt}");
+                    taken += usize::from(doubt < 0.5);
+                }
+            }
+            assert!(known > 5000 && taken > 4000, "{known} {taken}");
+        }
+    }
+
+    #[test]
+    fn far_away_a_hole_is_a_dipole() {
+        let solid = cone(100);
+        let above = local(&solid, DVec3::new(8.0, 8.0, 1000.0), 1.0, 1e-9).unwrap();
+        // Its cap faces down: seen from above the inner side.
+        let expected = 1e-6 * PI * 25.0 / (4.0 * PI);
+        assert!((above.value - expected).abs() < 0.02 * expected, "{} {expected}", above.value);
+        assert!((above.gradient.z + 2e-3 * expected).abs() < 1e-4 * expected, "{}", above.gradient);
+    }
 }
