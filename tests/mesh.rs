@@ -1,15 +1,18 @@
 //! Triangle meshes as solids, against oracles in exact integers that share nothing with the library.
 
 mod common;
+#[path = "mesh/descended.rs"]
+mod descended;
 #[path = "mesh/oracle.rs"]
 mod oracle;
 #[path = "mesh/shapes.rs"]
 mod shapes;
 
 use common::{Random, alone, cases, lattice_frame, model};
+use descended::Descended;
 use leafless::{
-    AnySolid, Control, Cube, Error, FillRule, Frame, Membership, MeshError, MeshPart, MeshScratch, MeshSolid,
-    Octree, Rule, Solid, Tag, TriangleMesh, Verdict, build, difference, file,
+    AnySolid, Control, Error, FillRule, Frame, Membership, MeshError, MeshSolid, Octree, Rule, Solid, Tag,
+    TriangleMesh, build, difference, file,
 };
 use oracle::{Contact, Oracle, PointOracle};
 use proptest::prelude::*;
@@ -17,44 +20,6 @@ use shapes::*;
 
 const FILLS: [FillRule; 2] = [FillRule::NonZero, FillRule::EvenOdd];
 const RULES: [Rule; 4] = [Rule::Certified, Rule::Sampled, Rule::Inner, Rule::Outer];
-
-/// A mesh that is only ever split, never scanned in blocks.
-struct Descended<'a>(&'a MeshSolid);
-
-impl Solid for Descended<'_> {
-    type Part = MeshPart;
-    type Scratch = MeshScratch;
-    fn root(&self, scratch: &mut MeshScratch, frame: &Frame) -> Result<Verdict<MeshPart>, Error> {
-        self.0.root(scratch, frame)
-    }
-    fn split(
-        &self,
-        scratch: &mut MeshScratch,
-        cube: &Cube<'_>,
-        part: &MeshPart,
-    ) -> Result<[Verdict<MeshPart>; 8], Error> {
-        self.0.split(scratch, cube, part)
-    }
-    fn sample(
-        &self,
-        scratch: &mut MeshScratch,
-        cube: &Cube<'_>,
-        part: &MeshPart,
-    ) -> Result<Option<bool>, Error> {
-        self.0.sample(scratch, cube, part)
-    }
-    fn exterior(&self, frame: &Frame) -> Tag {
-        self.0.exterior(frame)
-    }
-    fn hand_over(
-        &self,
-        from: &MeshScratch,
-        part: &MeshPart,
-        to: &mut MeshScratch,
-    ) -> Result<MeshPart, Error> {
-        self.0.hand_over(from, part, to)
-    }
-}
 
 /// All four trees of a mesh, shown to be the same by scanning blocks and by descent, and for any number of
 /// threads.

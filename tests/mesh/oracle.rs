@@ -1,6 +1,9 @@
 //! What a mesh says of the cells of a frame, by definition and in integers: slow, and without a rounding that
 //! counts. A sign that doubles show far beyond any rounding error is taken from them, all others are exact.
 
+// Each test program uses its own part of this.
+#![allow(dead_code)]
+
 use leafless::{FillRule, Frame, TriangleMesh};
 use num_bigint::{BigInt, Sign};
 
@@ -267,6 +270,7 @@ impl Oracle {
         match fill {
             FillRule::NonZero => winding != 0,
             FillRule::EvenOdd => winding.rem_euclid(2) == 1,
+            FillRule::Positive => winding > 0,
         }
     }
 }
@@ -369,8 +373,8 @@ fn side(a: [f64; 3], b: [f64; 3], p: [f64; 3]) -> i32 {
     })
 }
 
-/// Exactly: on which side of the triangle's plane `p` lies.
-fn over(corners: [[f64; 3]; 3], p: [f64; 3]) -> i32 {
+/// Exactly: on which side of the triangle's plane `p` lies, 1 where the normal points.
+pub fn over(corners: [[f64; 3]; 3], p: [f64; 3]) -> i32 {
     let [a, b, c] = corners;
     let size = corners.iter().flatten().chain(&p).fold(0.0, |most: f64, x| most.max(x.abs()));
     let edge = |to: [f64; 3]| [0, 1, 2].map(|i| to[i] - a[i]);
@@ -382,6 +386,13 @@ fn over(corners: [[f64; 3]; 3], p: [f64; 3]) -> i32 {
         let normal = cross(&edge(&b), &edge(&c));
         sign(&(0..3).map(|i| &normal[i] * (&p[i] - &a[i])).sum())
     })
+}
+
+/// Exactly: on which side of the triangle's plane (ε, ε², ε³) leads away from it; 0 for a triangle without area.
+pub fn facing(corners: [[f64; 3]; 3]) -> i32 {
+    let [a, b, c] = common(corners);
+    let edge = |to: [BigInt; 3]| [0, 1, 2].map(|i| &to[i] - &a[i]);
+    cross(&edge(b), &edge(c)).iter().map(sign).find(|&s| s != 0).unwrap_or(0)
 }
 
 /// Points as integers of one unit.

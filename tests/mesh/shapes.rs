@@ -1,5 +1,8 @@
 //! Closed meshes of many kinds, as triangle soups.
 
+// Each test program uses its own part of this.
+#![allow(dead_code)]
+
 use crate::common::Random;
 use leafless::TriangleMesh;
 
