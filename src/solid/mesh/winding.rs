@@ -23,7 +23,7 @@ use crate::error::Error;
 use crate::lattice::exact::sqrt;
 use alloc::vec::Vec;
 use core::f64::consts::PI;
-use glam::{DMat3, DVec3};
+use glam::{DMat3, DVec2, DVec3};
 
 /// Triangles that are summed one by one.
 const LEAF: usize = 4;
@@ -36,6 +36,8 @@ pub(super) struct Caps {
     triangles: Vec<[u32; 3]>,
     /// Bit i: the edge from corner i to corner i + 1 is one of the surface's boundary.
     rims: Vec<u8>,
+    /// Area and longest edge of each.
+    sizes: Vec<[f64; 2]>,
     nodes: Vec<Node>,
     /// How far the boundary may lie from where its vertices are placed, in finest cells.
     wobble: f64,
@@ -178,6 +180,13 @@ impl Caps {
         }
         caps.triangles.extend(slots.iter().map(|slot| slot.0));
         caps.rims.extend(slots.iter().map(|slot| slot.1));
+        caps.sizes.try_reserve_exact(count).map_err(|_| Error::OutOfMemory)?;
+        caps.sizes.extend(slots.iter().map(|slot| {
+            let [a, b, c] = slot.0.map(at);
+            let edges = [b - a, c - b, a - c];
+            let longest = edges.iter().fold(0.0, |most: f64, edge| most.max(length(*edge)));
+            [length(edges[0].cross(edges[2])) / 2.0, longest * (1.0 + 1e-9)]
+        }));
         Ok(caps)
     }
 
@@ -246,6 +255,7 @@ impl Caps {
             by_rims: 0.0,
             by_areas: 0.0,
         };
+        let mut turned = DVec2::X;
         let mut next = 0;
         while let Some(node) = self.nodes.get(next) {
             if node.add(reach, enough, &mut local) {
@@ -254,11 +264,12 @@ impl Caps {
             }
             if node.skip as usize == next + 1 {
                 for cap in node.first as usize..node.end as usize {
-                    self.add(placed, cap, reach, cell, &mut local)?;
+                    self.add(placed, cap, reach, cell, &mut local, &mut turned)?;
                 }
             }
             next += 1;
         }
+        local.value += libm::atan2(turned.y, turned.x) / (2.0 * PI);
         if self.wobble > 0.0 && radius > 0.0 {
             // Where the boundary wobbles, the winding number changes as if the point did.
             let jerk = local.by_rims.min(local.by_areas);
@@ -268,7 +279,7 @@ impl Caps {
         Some(local)
     }
 
-    /// Adds one cap.
+    /// Adds one cap; half its solid angle to the value or to the argument of `turned`, a complex number of modulus 1.
     #[inline]
     fn add(
         &self,
@@ -277,6 +288,7 @@ impl Caps {
         radius: f64,
         cell: Option<[i32; 3]>,
         sum: &mut Local,
+        turned: &mut DVec2,
     ) -> Option<()> {
         let corners = self.triangles[cap].map(|vertex| DVec3::from(placed.vertex(vertex).at) - sum.point);
         let lengths = corners.map(length);
@@ -290,18 +302,27 @@ impl Caps {
         let wrong = 64.0 * f64::EPSILON + 8.0 * self.error * (inverses[0] + inverses[1] + inverses[2]);
         // Also false for NaN.
         if modulus >= 2.0 * wrong {
-            let mut angle = libm::atan2(imaginary, real);
-            if real < 0.0
-                && imaginary.abs() <= wrong
-                && let Some(cell) = cell
-            {
-                match self.side(placed, cap, cell) {
-                    Some(side) => angle = side * angle.abs(),
-                    None => sum.error += 1.0,
+            let inverse = 1.0 / modulus;
+            let direction = DVec2::new(real, imaginary) * inverse;
+            if real > 0.0 && turned.x > 0.0 {
+                // Two angles of less than a right one: their sum is told by the product of the directions.
+                *turned = turned.rotate(direction);
+            } else if real > 0.0 {
+                sum.value += libm::atan2(turned.y, turned.x) / (2.0 * PI);
+                *turned = direction;
+            } else {
+                let mut angle = libm::atan2(imaginary, real);
+                if imaginary.abs() <= wrong
+                    && let Some(cell) = cell
+                {
+                    match self.side(placed, cap, cell) {
+                        Some(side) => angle = side * angle.abs(),
+                        None => sum.error += 1.0,
+                    }
                 }
+                sum.value += angle / (2.0 * PI);
             }
-            sum.value += angle / (2.0 * PI);
-            sum.error += wrong / (3.0 * modulus);
+            sum.error += wrong * inverse;
         } else {
             sum.error += 1.0;
             if let Some(cell) = cell {
@@ -313,16 +334,11 @@ impl Caps {
             // Only the value counts.
             return Some(());
         }
-        let [first, second, third] = corners;
-        let middle = (first + second + third) / 3.0;
-        let reach = corners.iter().fold(0.0, |most: f64, corner| most.max(length(*corner - middle)));
-        let clear = length(middle) * (1.0 - 1e-9) - reach - radius;
-        sum.by_areas += if clear > 0.0 {
-            let size = length((second - first).cross(third - first)) / 2.0;
-            SCALE * 24.0 * size / (clear * clear * clear * clear * clear)
-        } else {
-            f64::INFINITY
-        };
+        // A triangle is nowhere farther from its farthest corner than its longest edge.
+        let [size, longest] = self.sizes[cap];
+        let clear = lengths[0].max(lengths[1]).max(lengths[2]) * (1.0 - 1e-9) - longest - radius;
+        let power = clear * clear * clear * clear * clear;
+        sum.by_areas += if clear > 0.0 { SCALE * 24.0 * size / power } else { f64::INFINITY };
         for (i, cosine) in [ab, bc, ca].into_iter().enumerate() {
             if self.rims[cap] >> i & 1 != 0 {
                 let j = (i + 1) % 3;
@@ -439,6 +455,9 @@ impl Node {
         // that it is largest along y. (The terms with 1e-11 are for what is rounded.)
         let (near, close) = (SCALE / (gap * gap), SCALE / (clear * clear * clear * clear));
         let error = (3.0 * self.spread / (gap * gap) + 1e-11 * self.size) * near;
+        if !(error <= enough) {
+            return false;
+        }
         let slant = (3.0 * self.radius * self.radius / (gap * gap) + 1e-11) * self.rim * near;
         let bend = (6.0 * self.radius / gap + 1e-11) * self.rim * near / gap;
         let (by_rims, by_areas) = (6.0 * self.rim * close, 24.0 * self.size * close / clear);
