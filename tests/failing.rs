@@ -274,6 +274,8 @@ fn operations(directory: &Path) -> Vec<(&'static str, Operation)> {
     operation!("build stored", [a], build(&Stored::new(a.view()), &frame(), Rule::Inner, &CONTROL));
     operation!("mesh of facets", [facets], TriangleMesh::from_facets(&*facets));
     operation!("mesh report", [closed], closed.translated([1.0; 3])?.report());
+    operation!("mesh defects", [cracked], cracked.defects(9));
+    operation!("open mesh report", [cracked], cracked.transformed(|corner| corner)?.report());
     // Faces of few corners: the crate that triangulates faces cannot be refused memory.
     operation!("polyhedron", [], polyhedron(&band(12)));
     operation!("sew", [cracked], cracked.transformed(|corner| corner)?.sewn());

@@ -17,7 +17,12 @@ pub use callback::Callback;
 pub use erased::{AnySolid, ErasedPart, ErasedScratch};
 pub use halfspace::HalfSpace;
 pub(crate) use mesh::FacetWelder;
-pub use mesh::{FillRule, MeshPart, MeshReport, MeshScratch, MeshSolid, TriangleMesh};
+#[cfg(feature = "std")]
+#[allow(unused_imports)]
+pub(crate) use mesh::triangulate_facet;
+pub use mesh::{
+    DefectKind, FillRule, MeshDefect, MeshPart, MeshReport, MeshScratch, MeshSolid, TriangleMesh,
+};
 #[cfg(feature = "std")]
 pub use mesh::{Polyhedron, PolyhedronArrays};
 pub use primitive::{AxisBox, Ball};

@@ -9,6 +9,7 @@
 
 mod boundary;
 mod crossing;
+mod defects;
 mod open;
 mod overlap;
 mod placed;
@@ -25,6 +26,7 @@ mod topology;
 mod weld;
 mod winding;
 
+pub use defects::{DefectKind, MeshDefect};
 #[cfg(feature = "std")]
 #[allow(unused_imports)]
 pub(crate) use polygon::triangulate_facet;

@@ -18,6 +18,7 @@ use glam::DVec3;
 use once_cell::race::OnceBox;
 
 use super::boundary::Loops;
+use super::report::Details;
 use super::topology::Topology;
 use super::weld::{FacetWelder, NOWHERE, Places, is_proper, normalised};
 use crate::error::{Error, MeshError};
@@ -70,7 +71,8 @@ pub struct TriangleMesh {
     pub(super) degenerate: u64,
     pub(super) sewn: u64,
     displacement: f64,
-    topology: OnceBox<Topology>,
+    pub(super) topology: OnceBox<Topology>,
+    pub(super) details: OnceBox<Details>,
 }
 
 impl TriangleMesh {
@@ -133,8 +135,16 @@ impl TriangleMesh {
         welded: u64,
         degenerate: u64,
     ) -> Self {
-        let topology = OnceBox::new();
-        Self { vertices, triangles, welded, degenerate, sewn: 0, displacement: 0.0, topology }
+        Self {
+            vertices,
+            triangles,
+            welded,
+            degenerate,
+            sewn: 0,
+            displacement: 0.0,
+            topology: OnceBox::new(),
+            details: OnceBox::new(),
+        }
     }
 
     /// A mesh of separate triangles, each given by its three corners. Vertices have the order of their first
@@ -202,7 +212,8 @@ impl TriangleMesh {
     /// must also run in each direction, and then every winding number is an integer. Self-intersections,
     /// overlaps, nested and inside-out bodies are all allowed.
     ///
-    /// Costs as [`report`](Self::report). Fails with [`MeshError::Empty`], [`MeshError::Open`],
+    /// The first call analyses the edges, in O(t + v) time and with 28 bytes per triangle and 8 per vertex of
+    /// scratch memory; later calls are free. Fails with [`MeshError::Empty`], [`MeshError::Open`],
     /// [`MeshError::Unoriented`] (tested in this order) or [`Error::OutOfMemory`].
     pub fn check_closed(&self, rule: FillRule) -> Result<(), Error> {
         if self.triangles.is_empty() {
@@ -262,7 +273,7 @@ impl TriangleMesh {
     #[cfg(feature = "capi")]
     pub(crate) fn try_clone(&self) -> Result<Self, Error> {
         let (vertices, triangles) = (try_copy(&self.vertices)?, try_copy(&self.triangles)?);
-        Ok(Self { vertices, triangles, topology: OnceBox::new(), ..*self })
+        Ok(Self { vertices, triangles, topology: OnceBox::new(), details: OnceBox::new(), ..*self })
     }
 
     /// The loops of the surface's boundary, in the direction of its triangles.
@@ -301,10 +312,11 @@ impl TriangleMesh {
         self.sewn += moves.len() as u64;
         self.displacement = self.displacement.max(displacement);
         self.topology = OnceBox::new();
+        self.details = OnceBox::new();
         Ok(self)
     }
 
-    fn position(&self, vertex: u32) -> DVec3 {
+    pub(super) fn position(&self, vertex: u32) -> DVec3 {
         DVec3::from(self.vertices[vertex as usize])
     }
 
@@ -363,8 +375,14 @@ mod tests {
             degenerate: 0,
             boundary_edges: 0,
             misoriented_edges: 0,
+            boundary_loops: 0,
             non_manifold_edges: 0,
+            duplicate: 0,
+            opposite: 0,
+            flat: 0,
             bodies: 1,
+            open_bodies: 0,
+            inside_out_bodies: 0,
             sewn: 0,
             displacement: 0.0,
         };

@@ -57,8 +57,6 @@ impl Topology {
         for_each_edge(triangles, vertices, |edge| {
             edge.triangles().for_each(|t| sets.unite(edge.first(), t));
             coincident.on(edge, triangles)?;
-            result.duplicate += coincident.duplicate.len() as u64;
-            result.opposite += coincident.opposite.len() as u64;
             result.non_manifold_edges += u64::from(edge.count() > 2);
             let excess = edge.excess();
             if edge.is_open() {
@@ -77,6 +75,7 @@ impl Topology {
             }
             Ok(())
         })?;
+        (result.duplicate, result.opposite) = (coincident.duplicate, coincident.opposite);
         result.open_vertices.sort_unstable();
         result.open_vertices.dedup();
         let of_triangles = sets.numbers();
@@ -173,11 +172,12 @@ pub(super) fn for_each_edge(
 /// its highest vertex.
 #[derive(Default)]
 pub(super) struct Coincident {
-    /// Of the last edge: triangles whose corners an earlier one has in the same direction, ascending by their
-    /// corners.
-    pub duplicate: Vec<u32>,
-    /// Of the last edge: the later triangles of pairs in opposite directions.
-    pub opposite: Vec<u32>,
+    /// Triangles, found on all edges so far, whose corners an earlier one has in the same direction.
+    pub duplicate: u64,
+    /// Pairs in opposite directions.
+    pub opposite: u64,
+    /// Of the last edge: triangles whose corners an earlier one has, in whatever direction.
+    pub repeated: Vec<u32>,
     /// Triangles by their third corner and direction.
     sorted: Vec<(u32, bool, u32)>,
 }
@@ -186,8 +186,7 @@ impl Coincident {
     /// Looks at an edge.
     #[inline]
     pub fn on(&mut self, edge: &Edge, triangles: &[[u32; 3]]) -> Result<(), Error> {
-        self.duplicate.clear();
-        self.opposite.clear();
+        self.repeated.clear();
         match *edge.uses {
             [_] => Ok(()),
             // By far the most frequent: two triangles, which have different third corners.
@@ -203,9 +202,7 @@ impl Coincident {
     #[cold]
     fn among(&mut self, edge: &Edge, triangles: &[[u32; 3]]) -> Result<(), Error> {
         self.sorted.clear();
-        for list in [&mut self.duplicate, &mut self.opposite] {
-            list.try_reserve(edge.count()).map_err(|_| Error::OutOfMemory)?;
-        }
+        self.repeated.try_reserve(edge.count()).map_err(|_| Error::OutOfMemory)?;
         self.sorted.try_reserve(edge.count()).map_err(|_| Error::OutOfMemory)?;
         self.sorted.extend(edge.triangles().filter_map(|t| {
             let triangle = triangles[t as usize];
@@ -215,9 +212,12 @@ impl Coincident {
         }));
         self.sorted.sort_unstable();
         for same in self.sorted.chunk_by(|a, b| a.0 == b.0) {
-            let (back, forth) = same.split_at(same.partition_point(|&(_, forward, _)| !forward));
-            self.duplicate.extend(back.iter().skip(1).chain(forth.iter().skip(1)).map(|&(.., t)| t));
-            self.opposite.extend(back.iter().zip(forth).map(|(a, b)| a.2.max(b.2)));
+            let back = same.partition_point(|&(_, forward, _)| !forward);
+            let forth = same.len() - back;
+            self.duplicate += (back.saturating_sub(1) + forth.saturating_sub(1)) as u64;
+            self.opposite += back.min(forth) as u64;
+            let first = same.iter().map(|&(.., t)| t).min();
+            self.repeated.extend(same.iter().map(|&(.., t)| t).filter(|&t| Some(t) != first));
         }
         Ok(())
     }
@@ -242,11 +242,11 @@ fn filled<T: Clone>(len: usize, value: T) -> Result<Vec<T>, Error> {
 }
 
 /// Union-find. The root of a set is its least member, so that every link leads downwards.
-struct DisjointSets(Vec<u32>);
+pub(super) struct DisjointSets(Vec<u32>);
 
 impl DisjointSets {
     /// `len` sets of one member each; `len` is at most 2^32 - 1.
-    fn new(len: usize) -> Result<Self, Error> {
+    pub fn new(len: usize) -> Result<Self, Error> {
         let mut parents = Vec::new();
         parents.try_reserve_exact(len).map_err(|_| Error::OutOfMemory)?;
         parents.extend((0..len).map(|i| i as u32));
@@ -266,7 +266,7 @@ impl DisjointSets {
         }
     }
 
-    fn unite(&mut self, a: u32, b: u32) {
+    pub fn unite(&mut self, a: u32, b: u32) {
         let (a, b) = (self.root(a), self.root(b));
         if a != b {
             self.0[a.max(b) as usize] = a.min(b);
@@ -274,7 +274,7 @@ impl DisjointSets {
     }
 
     /// The number of each member's set. Sets are numbered by their least members.
-    fn numbers(mut self) -> Vec<u32> {
+    pub fn numbers(mut self) -> Vec<u32> {
         let mut count = 0;
         for i in 0..self.0.len() {
             let parent = self.0[i] as usize;

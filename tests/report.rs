@@ -1,0 +1,350 @@
+//! What is told about meshes, and where their defects lie, against the definitions.
+
+mod common;
+
+use leafless::{DefectKind, MeshDefect, MeshReport, TriangleMesh};
+use std::collections::{BTreeMap, BTreeSet};
+
+struct Random(u64);
+
+impl Random {
+    fn below(&mut self, bound: u32) -> u32 {
+        self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        ((self.0 >> 33) % u64::from(bound)) as u32
+    }
+}
+
+/// A unit cube from `low`, as twelve triangles.
+fn cube(low: [f64; 3]) -> Vec<[[f64; 3]; 3]> {
+    let corner = |k: usize| [0, 1, 2].map(|axis| low[axis] + f64::from((k >> axis & 1) as u8));
+    let faces = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+    let facets = faces.into_iter().flat_map(|[a, b, c, d]| [[a, b, c], [a, c, d]]);
+    facets.map(|facet| facet.map(corner)).collect()
+}
+
+fn turned(facets: &[[[f64; 3]; 3]]) -> Vec<[[f64; 3]; 3]> {
+    facets.iter().map(|&[a, b, c]| [a, c, b]).collect()
+}
+
+fn mesh(facets: &[Vec<[[f64; 3]; 3]>]) -> TriangleMesh {
+    TriangleMesh::from_facets(facets.concat()).unwrap()
+}
+
+/// The counts of a mesh that are its own, and not those of how it came in.
+fn counts(mesh: &TriangleMesh) -> [u64; 10] {
+    let MeshReport {
+        boundary_edges,
+        boundary_loops,
+        misoriented_edges,
+        non_manifold_edges,
+        duplicate,
+        opposite,
+        flat,
+        bodies,
+        open_bodies,
+        inside_out_bodies,
+        ..
+    } = mesh.report().unwrap();
+    [
+        boundary_edges,
+        boundary_loops,
+        misoriented_edges,
+        non_manifold_edges,
+        duplicate,
+        opposite,
+        flat,
+        bodies,
+        open_bodies,
+        inside_out_bodies,
+    ]
+}
+
+#[test]
+fn known_meshes() {
+    let a = cube([0.0; 3]);
+    let b = cube([5.0, 0.0, 0.0]);
+    assert_eq!(counts(&mesh(std::slice::from_ref(&a))), [0, 0, 0, 0, 0, 0, 0, 1, 0, 0]);
+    assert_eq!(counts(&mesh(&[a.clone(), turned(&b)])), [0, 0, 0, 0, 0, 0, 0, 2, 0, 1]);
+    // Two holes: a triangle's and a square's, in different sides.
+    let holed = a[1..10].to_vec();
+    assert_eq!(counts(&mesh(&[holed.clone(), b.clone()])), [7, 2, 0, 0, 0, 0, 0, 2, 1, 0]);
+    // The two triangles that meet in a corner only: two loops, not one in the shape of an eight.
+    let corner = [&a[1..6], &a[7..]].concat();
+    assert_eq!(counts(&mesh(&[corner])), [6, 2, 0, 0, 0, 0, 0, 1, 1, 0]);
+    // One facet turned over.
+    let mut one = a.clone();
+    one[0].swap(0, 1);
+    assert_eq!(counts(&mesh(&[one])), [0, 0, 3, 0, 0, 0, 0, 1, 1, 0]);
+    // One facet twice, thrice, and once more from the other side.
+    let again = |facets: &[[[f64; 3]; 3]]| counts(&mesh(&[a.clone(), facets.to_vec()]));
+    assert_eq!(again(&a[..1]), [3, 1, 0, 3, 1, 0, 0, 1, 1, 0]);
+    assert_eq!(again(&[a[0], a[0]]), [0, 0, 3, 3, 2, 0, 0, 1, 1, 0]);
+    assert_eq!(again(&turned(&a[..1])), [3, 1, 0, 3, 0, 1, 0, 1, 1, 0]);
+    assert_eq!(again(&[a[0], turned(&a)[0]]), [0, 0, 0, 3, 1, 1, 0, 1, 0, 0]);
+    // Walls without thickness enclose nothing, and are not inside out.
+    for k in 0..12 {
+        let [x, y, z] = a[k];
+        for wall in [vec![[x, y, z], [y, x, z]], vec![[y, z, x], [x, z, y]]] {
+            let wall = TriangleMesh::from_facets(wall).unwrap();
+            let wall = wall.transformed(|p| p.map(|x| x * 0.1 + 0.7)).unwrap();
+            assert_eq!(counts(&wall), [0, 0, 0, 0, 0, 1, 0, 1, 0, 0]);
+        }
+    }
+    // A facet without area that closes a T.
+    let [p, q, r] = a[0];
+    let middle = [0, 1, 2].map(|axis| (p[axis] + q[axis]) / 2.0);
+    let split = [vec![[p, middle, r], [middle, q, r], [p, q, middle]], a[1..].to_vec()].concat();
+    assert_eq!(counts(&mesh(&[split])), [0, 0, 0, 0, 0, 0, 1, 1, 0, 0]);
+    assert_eq!(counts(&TriangleMesh::new(vec![], vec![]).unwrap()), [0; 10]);
+    // Two cubes that share an edge, and two that share a corner.
+    assert_eq!(counts(&mesh(&[a.clone(), cube([1.0, 1.0, 0.0])])), [0, 0, 0, 1, 0, 0, 0, 1, 0, 0]);
+    assert_eq!(counts(&mesh(&[a.clone(), cube([1.0, 1.0, 1.0])])), [0, 0, 0, 0, 0, 0, 0, 2, 0, 0]);
+}
+
+#[test]
+fn the_order_of_questions_does_not_matter() {
+    let facets = [cube([0.0; 3])[1..].to_vec(), turned(&cube([3.0; 3]))].concat();
+    let [first, second] = [(); 2].map(|()| TriangleMesh::from_facets(&facets).unwrap());
+    let report = first.report().unwrap();
+    assert!(second.check_closed(leafless::FillRule::NonZero).is_err());
+    assert_eq!(second.report().unwrap(), report);
+    assert_eq!(second.clone().report().unwrap(), report);
+    // What is made of a mesh is looked at anew.
+    let closed = second.transformed(|[x, y, z]| [x, y, 3.0 * f64::from(z >= 3.0)]).unwrap();
+    assert_ne!(closed.report().unwrap(), report);
+}
+
+#[test]
+fn known_places() {
+    let a = cube([0.0; 3]);
+    let mut far = cube([10.0, 20.0, 30.0]);
+    // A hole of one triangle, one of two, and a facet turned over elsewhere.
+    far.remove(0);
+    let holed = [&a[..4], &a[6..]].concat();
+    let mut odd = cube([50.0; 3]);
+    odd[7].swap(1, 2);
+    let soup = mesh(&[far, holed, odd, cube([-5.0; 3]), cube([-5.0; 3])]);
+    let defects = soup.defects(100).unwrap();
+    let shapes: Vec<_> = defects.iter().map(|d| (d.kind, d.count, d.bounds)).collect();
+    use DefectKind::*;
+    assert_eq!(
+        shapes,
+        [
+            // Both as large; the one of four edges first.
+            (Hole, 4, ([0.0, 0.0, 0.0], [1.0, 0.0, 1.0])),
+            (Hole, 3, ([10.0, 20.0, 30.0], [11.0, 21.0, 30.0])),
+            (Misoriented, 3, ([50.0, 51.0, 50.0], [51.0, 51.0, 51.0])),
+            (Duplicate, 12, ([-5.0; 3], [-4.0; 3])),
+            (NonManifold, 18, ([-5.0; 3], [-4.0; 3])),
+        ]
+    );
+    assert_eq!(defects[0].length, 4.0);
+    assert!((defects[1].length - (2.0 + 2f64.sqrt())).abs() < 1e-15);
+    assert_eq!((defects[3].length, defects[3].extent()), (0.0, 1.0));
+    for limit in 0..7 {
+        assert_eq!(soup.defects(limit).unwrap(), defects[..limit.min(5)]);
+    }
+    assert_eq!(mesh(&[a]).defects(9).unwrap(), []);
+}
+
+/// All sets of items that hang together over vertices.
+fn clusters(items: &[Vec<u32>]) -> Vec<Vec<usize>> {
+    let mut label: Vec<usize> = (0..items.len()).collect();
+    loop {
+        let mut changed = false;
+        for i in 0..items.len() {
+            for j in 0..items.len() {
+                if label[j] < label[i] && items[i].iter().any(|v| items[j].contains(v)) {
+                    label[i] = label[j];
+                    changed = true;
+                }
+            }
+        }
+        if !changed {
+            break;
+        }
+    }
+    let sets = (0..items.len()).map(|set| (0..items.len()).filter(|&i| label[i] == set).collect());
+    sets.filter(|set: &Vec<usize>| !set.is_empty()).collect()
+}
+
+/// The report's counts and the defects but for holes, by their definitions.
+fn slow(mesh: &TriangleMesh) -> ([u64; 10], Vec<MeshDefect>) {
+    let (vertices, triangles) = (mesh.vertices(), mesh.triangles());
+    let mut edges: BTreeMap<(u32, u32), Vec<(usize, bool)>> = BTreeMap::new();
+    let mut sets: BTreeMap<Vec<u32>, [Vec<usize>; 2]> = BTreeMap::new();
+    for (t, &[a, b, c]) in triangles.iter().enumerate() {
+        for (x, y) in [(a, b), (b, c), (c, a)] {
+            edges.entry((x.min(y), x.max(y))).or_default().push((t, x < y));
+        }
+        let mut sorted = vec![a, b, c];
+        sorted.sort();
+        let even = [[a, b, c], [b, c, a], [c, a, b]].contains(&[sorted[0], sorted[1], sorted[2]]);
+        sets.entry(sorted).or_default()[usize::from(even)].push(t);
+    }
+    let excess =
+        |uses: &Vec<(usize, bool)>| 2 * uses.iter().filter(|u| u.1).count() as i64 - uses.len() as i64;
+    let pick = |test: &dyn Fn(&Vec<(usize, bool)>) -> bool| -> Vec<Vec<u32>> {
+        edges.iter().filter(|(_, uses)| test(uses)).map(|(&(a, b), _)| vec![a, b]).collect()
+    };
+    let open = pick(&|uses| uses.len() % 2 == 1);
+    let misoriented = pick(&|uses| uses.len() % 2 == 0 && excess(uses) != 0);
+    let non_manifold = pick(&|uses| uses.len() > 2);
+    let (mut duplicate, mut opposite, mut repeated) = (0, 0, vec![]);
+    for (corners, [back, forth]) in &sets {
+        duplicate += back.len().max(1) + forth.len().max(1) - 2;
+        opposite += back.len().min(forth.len());
+        repeated.extend(std::iter::repeat_n(corners.clone(), back.len() + forth.len() - 1));
+    }
+    // Coordinates are small integers.
+    let cross = |t: &[u32; 3]| {
+        let [a, b, c] = t.map(|v| vertices[v as usize]);
+        let [u, v]: [[f64; 3]; 2] = [b, c].map(|p| std::array::from_fn(|k| p[k] - a[k]));
+        [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]]
+    };
+    let flat: Vec<Vec<u32>> = triangles.iter().filter(|t| cross(t) == [0.0; 3]).map(|t| t.to_vec()).collect();
+    // Bodies hang together over edges.
+    let of_edges = |t: &[u32; 3]| -> Vec<u32> {
+        let number = |a: u32, b: u32| edges.keys().position(|&k| k == (a.min(b), a.max(b))).unwrap() as u32;
+        vec![number(t[0], t[1]), number(t[1], t[2]), number(t[2], t[0])]
+    };
+    let bodies = clusters(&triangles.iter().map(of_edges).collect::<Vec<_>>());
+    let (mut open_bodies, mut inside_out) = (0, 0);
+    for body in &bodies {
+        let torn = |uses: &Vec<(usize, bool)>| excess(uses) != 0 && uses.iter().any(|u| body.contains(&u.0));
+        if edges.values().any(torn) {
+            open_bodies += 1;
+        } else {
+            let volume = |&t: &usize| {
+                let a = vertices[triangles[t][0] as usize];
+                cross(&triangles[t]).iter().zip(a).map(|(n, a)| n * a).sum::<f64>()
+            };
+            inside_out += u64::from(body.iter().map(volume).sum::<f64>() < 0.0);
+        }
+    }
+    let mut defects = vec![];
+    for (kind, items) in [
+        (DefectKind::Misoriented, &misoriented),
+        (DefectKind::Duplicate, &repeated),
+        (DefectKind::NonManifold, &non_manifold),
+        (DefectKind::Flat, &flat),
+    ] {
+        for set in clusters(items) {
+            defects.push(defect(vertices, kind, &set.iter().map(|&i| items[i].clone()).collect::<Vec<_>>()));
+        }
+    }
+    let counts = [
+        open.len(),
+        0,
+        misoriented.len(),
+        non_manifold.len(),
+        duplicate,
+        opposite,
+        flat.len(),
+        bodies.len(),
+        open_bodies,
+        inside_out as usize,
+    ];
+    (counts.map(|count| count as u64), defects)
+}
+
+fn defect(vertices: &[[f64; 3]], kind: DefectKind, items: &[Vec<u32>]) -> MeshDefect {
+    let places: Vec<[f64; 3]> = items.iter().flatten().map(|&v| vertices[v as usize]).collect();
+    let extreme = |pick: fn(f64, f64) -> f64| {
+        [0, 1, 2].map(|axis| places.iter().map(|p| p[axis]).reduce(pick).unwrap())
+    };
+    let length = |item: &Vec<u32>| match item[..] {
+        [a, b] => {
+            let [a, b] = [a, b].map(|v| vertices[v as usize]);
+            (0..3).map(|k| (a[k] - b[k]).powi(2)).sum::<f64>().sqrt()
+        }
+        _ => 0.0,
+    };
+    let length = items.iter().map(length).sum();
+    MeshDefect { kind, bounds: (extreme(f64::min), extreme(f64::max)), count: items.len() as u64, length }
+}
+
+#[test]
+fn random_soups_agree_with_the_definitions() {
+    let mut random = Random(5);
+    let (mut seen, mut holes) = (BTreeSet::new(), 0);
+    for round in 0..600 {
+        let size = 2 + round % 3;
+        let corner = |random: &mut Random| [0; 3].map(|_: i32| f64::from(random.below(size)));
+        let mut facets: Vec<[[f64; 3]; 3]> = (0..1 + random.below(30))
+            .map(|_| [corner(&mut random), corner(&mut random), corner(&mut random)])
+            .collect();
+        if round % 2 == 0 {
+            // Closed bodies with little damage.
+            facets.truncate(random.below(3) as usize);
+            for _ in 0..1 + random.below(4) {
+                let at = [0; 3].map(|_: i32| f64::from(random.below(4)));
+                facets.extend(if random.below(2) == 0 { cube(at) } else { turned(&cube(at)) });
+            }
+            if random.below(2) == 0 {
+                facets.remove(random.below(facets.len() as u32) as usize);
+            }
+        }
+        let mesh = TriangleMesh::from_facets(&facets).unwrap();
+        let (mut expected, mut others) = slow(&mesh);
+        let defects = mesh.defects(usize::MAX).unwrap();
+        // Holes: each is a closed walk, and together they have all open edges.
+        let loops: Vec<_> = defects.iter().filter(|d| d.kind == DefectKind::Hole).collect();
+        assert!(loops.iter().all(|hole| hole.count >= 3));
+        assert_eq!(loops.iter().map(|hole| hole.count).sum::<u64>(), expected[0]);
+        expected[1] = loops.len() as u64;
+        assert_eq!(counts(&mesh), expected, "{facets:?}");
+        holes += loops.len();
+        // The others one by one, but for the rounding of lengths.
+        let mut found: Vec<_> = defects.iter().filter(|d| d.kind != DefectKind::Hole).copied().collect();
+        for list in [&mut found, &mut others] {
+            list.iter_mut().for_each(|d| d.length = (d.length * 1e6).round());
+            let key = |d: &MeshDefect| format!("{:?}", (d.kind, d.bounds, d.count, d.length));
+            list.sort_by_key(key);
+        }
+        assert_eq!(found, others, "{facets:?}");
+        seen.extend(defects.iter().map(|d| d.kind));
+        // The order, and that it does not depend on the order of facets.
+        for pair in defects.windows(2) {
+            let order = pair[0].kind.cmp(&pair[1].kind);
+            let order = order.then(pair[1].extent().total_cmp(&pair[0].extent()));
+            let order = order.then(pair[1].count.cmp(&pair[0].count));
+            let place = |d: &MeshDefect| format!("{:?}", d.bounds);
+            assert!(order.then(place(&pair[0]).cmp(&place(&pair[1]))).is_le(), "{pair:?}");
+        }
+    }
+    assert!(seen.len() == 5 && holes > 500, "{seen:?} {holes}");
+}
+
+#[test]
+fn a_real_file_of_several_bodies() {
+    let Some(path) = common::model("multibody.stl") else { return };
+    let mesh = leafless::file::read_stl(&std::fs::read(path).unwrap()).unwrap();
+    assert_eq!(counts(&mesh), [0, 0, 12, 0, 0, 0, 0, 2, 2, 0]);
+    let defects = mesh.defects(10).unwrap();
+    assert!(defects.iter().all(|d| d.kind == DefectKind::Misoriented));
+    assert_eq!(defects.iter().map(|d| d.count).sum::<u64>(), 12);
+}
+
+#[test]
+fn a_real_file_with_holes() {
+    let Some(path) = common::model("stanford-bunny.obj") else { return };
+    let text = std::fs::read_to_string(path).unwrap();
+    let numbers = |key: &str| -> Vec<Vec<f64>> {
+        let lines = text.lines().filter_map(|line| line.strip_prefix(key));
+        let number = |word: &str| word.split('/').next().unwrap().parse().unwrap();
+        lines.map(|line| line.split_whitespace().map(number).collect()).collect()
+    };
+    let vertices = numbers("v ").iter().map(|v| [v[0], v[1], v[2]]).collect();
+    let triangles = numbers("f ").iter().map(|f| [f[0], f[1], f[2]].map(|v| v as u32 - 1)).collect();
+    let mesh = TriangleMesh::new(vertices, triangles).unwrap();
+    let report = mesh.report().unwrap();
+    assert_eq!((report.triangles, report.boundary_edges, report.boundary_loops), (69451, 223, 5));
+    assert_eq!((report.misoriented_edges, report.bodies, report.open_bodies), (0, 1, 1));
+    let holes = mesh.defects(5).unwrap();
+    assert!(holes.iter().all(|hole| hole.kind == DefectKind::Hole));
+    assert_eq!(holes.iter().map(|hole| hole.count).sum::<u64>(), 223);
+    // The four large ones lie in the base.
+    let high: Vec<bool> = holes.iter().map(|hole| hole.bounds.1[1] > 0.04).collect();
+    assert_eq!(high, [false, false, false, false, true]);
+}
