@@ -528,6 +528,29 @@ fn memory_is_a_small_multiple_of_the_input() {
     }
 }
 
+/// What `TriangleMesh` promises.
+#[test]
+fn memory_of_reports_is_that_of_the_edges() {
+    let grid: u32 = 200;
+    let vertices: Vec<[f64; 3]> =
+        (0..grid * grid).map(|k| [f64::from(k / grid), f64::from(k % grid), f64::from(k % 7)]).collect();
+    let squares = (0..grid * (grid - 1)).filter(|k| k % grid != grid - 1);
+    let triangles: Vec<[u32; 3]> =
+        squares.flat_map(|k| [[k, k + grid, k + 1], [k + 1, k + grid, k + grid + 1]]).collect();
+    let (many, edges) = (triangles.len(), 8 * vertices.len());
+    let mesh = TriangleMesh::new(vertices, triangles).unwrap();
+    let fixed = 64 << 10;
+    for (work, most) in [
+        (&(|| drop(mesh.clone().check_closed(FillRule::NonZero))) as &dyn Fn(), 28 * many + edges),
+        (&|| drop(mesh.clone().report()), 28 * many + edges),
+        (&|| drop(mesh.clone().defects(3)), 24 * many + edges),
+    ] {
+        let (_, held) = most_held(work);
+        let (_, copied) = most_held(|| mesh.clone());
+        assert!(held <= copied + most + fixed, "{held} bytes, {copied} of them a copy, not {most}");
+    }
+}
+
 /// What `Polyhedron` promises. The part of the triangulation is asked for before it begins.
 #[test]
 fn memory_of_polyhedra_is_a_small_multiple_of_their_corners() {

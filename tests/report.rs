@@ -329,15 +329,7 @@ fn a_real_file_of_several_bodies() {
 #[test]
 fn a_real_file_with_holes() {
     let Some(path) = common::model("stanford-bunny.obj") else { return };
-    let text = std::fs::read_to_string(path).unwrap();
-    let numbers = |key: &str| -> Vec<Vec<f64>> {
-        let lines = text.lines().filter_map(|line| line.strip_prefix(key));
-        let number = |word: &str| word.split('/').next().unwrap().parse().unwrap();
-        lines.map(|line| line.split_whitespace().map(number).collect()).collect()
-    };
-    let vertices = numbers("v ").iter().map(|v| [v[0], v[1], v[2]]).collect();
-    let triangles = numbers("f ").iter().map(|f| [f[0], f[1], f[2]].map(|v| v as u32 - 1)).collect();
-    let mesh = TriangleMesh::new(vertices, triangles).unwrap();
+    let mesh = leafless::file::read_obj(&std::fs::read(path).unwrap()).unwrap();
     let report = mesh.report().unwrap();
     assert_eq!((report.triangles, report.boundary_edges, report.boundary_loops), (69451, 223, 5));
     assert_eq!((report.misoriented_edges, report.bodies, report.open_bodies), (0, 1, 1));
@@ -347,4 +339,35 @@ fn a_real_file_with_holes() {
     // The four large ones lie in the base.
     let high: Vec<bool> = holes.iter().map(|hole| hole.bounds.1[1] > 0.04).collect();
     assert_eq!(high, [false, false, false, false, true]);
+}
+
+#[test]
+fn real_files() {
+    let known = [
+        ("angle_block.STL", [166, 37, 0, 0, 0, 0, 0, 1, 1, 0]),
+        ("bunny-closed.stl", [0, 0, 0, 0, 0, 0, 0, 1, 0, 0]),
+        ("busted.STL", [0, 0, 0, 0, 0, 0, 0, 1, 0, 0]),
+        ("featuretype.STL", [576, 16, 0, 0, 0, 0, 0, 1, 1, 0]),
+        ("plate_holes.STL", [0, 0, 0, 0, 0, 0, 0, 1, 0, 0]),
+        ("fandisk.obj", [0, 0, 0, 0, 0, 0, 0, 1, 0, 0]),
+        ("rocker-arm.obj", [0, 0, 0, 0, 0, 0, 0, 1, 0, 0]),
+        ("spot.obj", [0, 0, 0, 0, 0, 0, 0, 1, 0, 0]),
+        // Bodies that touch each other in edges, and none that is open.
+        ("cycloidal.ply", [0, 0, 0, 242, 0, 0, 0, 112, 0, 0]),
+    ];
+    for (name, expected) in known {
+        let Some(path) = common::model(name) else { return };
+        let bytes = std::fs::read(path).unwrap();
+        let mesh = match name.split_once('.').unwrap().1 {
+            "obj" => leafless::file::read_obj(&bytes),
+            "ply" => leafless::file::read_ply(&bytes),
+            _ => leafless::file::read_stl(&bytes),
+        };
+        let mesh = mesh.unwrap();
+        assert_eq!(counts(&mesh), expected, "{name}");
+        let defects = mesh.defects(usize::MAX).unwrap();
+        let of = |kind| defects.iter().filter(move |d: &&MeshDefect| d.kind == kind);
+        assert_eq!(of(DefectKind::Hole).count() as u64, expected[1], "{name}");
+        assert_eq!(of(DefectKind::NonManifold).map(|d| d.count).sum::<u64>(), expected[3], "{name}");
+    }
 }
