@@ -168,10 +168,13 @@ fn clusters(items: &[Vec<u32>]) -> Vec<Vec<usize>> {
     sets.filter(|set: &Vec<usize>| !set.is_empty()).collect()
 }
 
+/// The triangles that use an edge, and whether they run from its lower vertex to its higher one.
+type Uses = Vec<(usize, bool)>;
+
 /// The report's counts and the defects but for holes, by their definitions.
 fn slow(mesh: &TriangleMesh) -> ([u64; 10], Vec<MeshDefect>) {
     let (vertices, triangles) = (mesh.vertices(), mesh.triangles());
-    let mut edges: BTreeMap<(u32, u32), Vec<(usize, bool)>> = BTreeMap::new();
+    let mut edges: BTreeMap<(u32, u32), Uses> = BTreeMap::new();
     let mut sets: BTreeMap<Vec<u32>, [Vec<usize>; 2]> = BTreeMap::new();
     for (t, &[a, b, c]) in triangles.iter().enumerate() {
         for (x, y) in [(a, b), (b, c), (c, a)] {
@@ -182,9 +185,8 @@ fn slow(mesh: &TriangleMesh) -> ([u64; 10], Vec<MeshDefect>) {
         let even = [[a, b, c], [b, c, a], [c, a, b]].contains(&[sorted[0], sorted[1], sorted[2]]);
         sets.entry(sorted).or_default()[usize::from(even)].push(t);
     }
-    let excess =
-        |uses: &Vec<(usize, bool)>| 2 * uses.iter().filter(|u| u.1).count() as i64 - uses.len() as i64;
-    let pick = |test: &dyn Fn(&Vec<(usize, bool)>) -> bool| -> Vec<Vec<u32>> {
+    let excess = |uses: &Uses| 2 * uses.iter().filter(|u| u.1).count() as i64 - uses.len() as i64;
+    let pick = |test: &dyn Fn(&Uses) -> bool| -> Vec<Vec<u32>> {
         edges.iter().filter(|(_, uses)| test(uses)).map(|(&(a, b), _)| vec![a, b]).collect()
     };
     let open = pick(&|uses| uses.len() % 2 == 1);
@@ -211,7 +213,7 @@ fn slow(mesh: &TriangleMesh) -> ([u64; 10], Vec<MeshDefect>) {
     let bodies = clusters(&triangles.iter().map(of_edges).collect::<Vec<_>>());
     let (mut open_bodies, mut inside_out) = (0, 0);
     for body in &bodies {
-        let torn = |uses: &Vec<(usize, bool)>| excess(uses) != 0 && uses.iter().any(|u| body.contains(&u.0));
+        let torn = |uses: &Uses| excess(uses) != 0 && uses.iter().any(|u| body.contains(&u.0));
         if edges.values().any(torn) {
             open_bodies += 1;
         } else {
