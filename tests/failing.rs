@@ -575,6 +575,23 @@ fn meshes_take_a_small_multiple_of_their_files() {
     }
     files.push((file::write_stl(&mesh).unwrap(), file::read_stl));
     files.push((polygons().into_bytes(), file::read_obj));
+    // A face that is not convex, of many corners.
+    let comb: String = (0..9000).map(|i| format!("v {} {} 0\n", i / 2, i % 2 * (1 + i / 2 % 2))).collect();
+    let face: String = (1..=9000).map(|i| format!(" {i}")).collect();
+    files.push((format!("{comb}v 9 -1 0\nf{face} 9001\n").into_bytes(), file::read_obj));
+    let winding =
+        (0..100u8).flat_map(|x| (1..=100).map(move |y| [x, if x % 2 == 0 { y } else { 101 - y }, 0]));
+    let corners: Vec<[u8; 3]> = winding.chain([[101, 0, 0], [0, 0, 0]]).collect();
+    let face = [corners.len() as u16].into_iter().chain(0..corners.len() as u16).flat_map(u16::to_le_bytes);
+    let header = format!(
+        "ply\nformat binary_little_endian 1.0\nelement vertex {}\nproperty char x\nproperty char y\nproperty char z\n\
+         element face 1\nproperty list ushort ushort vertex_index\nend_header\n",
+        corners.len()
+    );
+    files.push((
+        header.bytes().chain(corners.iter().flatten().copied()).chain(face).collect(),
+        file::read_ply,
+    ));
     // What takes the least text for each vertex, face and corner; and claims of what is not there.
     files.push(("v 0 0 0\n".repeat(5000).into_bytes(), file::read_obj));
     let vertices: String = (0..9999).map(|i| format!("v 0 0 {i}\n")).collect();
@@ -602,7 +619,7 @@ fn meshes_take_a_small_multiple_of_their_files() {
         println!("{most:.1} times {} bytes", bytes.len());
         worst = worst.max(most);
     }
-    assert!(worst <= 24.0, "{worst} times the file");
+    assert!(worst <= 128.0 && worst > 64.0, "{worst} times the file");
 }
 
 /// A tree of many bricks of few kinds: nothing is shorter in a file, and nothing grows more when it is copied.

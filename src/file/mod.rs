@@ -80,12 +80,9 @@ mod map;
 mod read;
 mod write;
 
+pub use exchange::{LengthUnit, MeshFile, MeshFormat, MeshOptions, read_mesh, read_stl, write_stl};
 #[cfg(feature = "std")]
-pub use exchange::open_mesh;
-pub use exchange::{
-    LengthUnit, MeshFile, MeshFormat, MeshOptions, read_mesh, read_obj, read_off, read_ply, read_stl,
-    write_stl,
-};
+pub use exchange::{open_mesh, read_obj, read_off, read_ply};
 pub use layout::{MAGIC, MAJOR, MINOR};
 #[cfg(feature = "mmap")]
 pub use map::{map, map_verified};

@@ -18,7 +18,6 @@ pub use erased::{AnySolid, ErasedPart, ErasedScratch};
 pub use halfspace::HalfSpace;
 pub(crate) use mesh::FacetWelder;
 #[cfg(feature = "std")]
-#[allow(unused_imports)]
 pub(crate) use mesh::triangulate_facet;
 pub use mesh::{
     DefectKind, FillRule, MeshDefect, MeshPart, MeshReport, MeshScratch, MeshSolid, TriangleMesh,

@@ -3,13 +3,12 @@
 use core::fmt;
 
 use super::detect;
-use super::obj::read_obj;
-use super::off::read_off;
-use super::ply::read_ply;
 use super::stl::read_stl;
 #[cfg(feature = "threemf")]
 use super::threemf;
 use super::unit::{Factor, LengthUnit};
+#[cfg(feature = "std")]
+use super::{read_obj, read_off, read_ply};
 use crate::error::{Error, MeshFileError};
 use crate::solid::TriangleMesh;
 
@@ -19,11 +18,11 @@ use crate::solid::TriangleMesh;
 pub enum MeshFormat {
     /// STL, binary or ASCII.
     Stl,
-    /// Wavefront OBJ.
+    /// Wavefront OBJ. Reading it needs the feature `std`.
     Obj,
-    /// Stanford PLY, ASCII or binary.
+    /// Stanford PLY, ASCII or binary. Reading it needs the feature `std`.
     Ply,
-    /// Geomview OFF.
+    /// Geomview OFF. Reading it needs the feature `std`.
     Off,
     /// 3MF, the 3D Manufacturing Format. Reading it needs the feature `threemf`.
     ThreeMf,
@@ -150,9 +149,17 @@ fn read(bytes: &[u8], extension: Option<&str>, options: &MeshOptions) -> Result<
         .ok_or(MeshFileError::UnknownFormat)?;
     let (mesh, own_unit, skipped) = match format {
         MeshFormat::Stl => (read_stl(bytes)?, None, 0),
+        #[cfg(feature = "std")]
         MeshFormat::Obj => (read_obj(bytes)?, None, 0),
+        #[cfg(feature = "std")]
         MeshFormat::Ply => (read_ply(bytes)?, None, 0),
+        #[cfg(feature = "std")]
         MeshFormat::Off => (read_off(bytes)?, None, 0),
+        #[cfg(not(feature = "std"))]
+        MeshFormat::Obj | MeshFormat::Ply | MeshFormat::Off => {
+            let what = "polygons, for which the library was built without the feature `std`,";
+            return Err(MeshFileError::Unsupported { what }.into());
+        }
         #[cfg(feature = "threemf")]
         MeshFormat::ThreeMf => {
             let threemf::Built { mesh, unit, skipped } = threemf::read(bytes)?;

@@ -27,11 +27,12 @@ use crate::solid::TriangleMesh;
 
 /// Reads an OBJ file; all of its groups and objects become one mesh.
 ///
-/// Polygons are cut into triangles, which keep the order of the faces. Equal vertices are welded, and triangles
-/// that two equal vertices make degenerate are dropped and counted, as in [`TriangleMesh::new`]. That the mesh is
-/// closed is not checked. Of a file without faces the mesh has no triangles.
+/// Triangles keep the order of the faces. A face of more than three corners is cut into triangles that do not leave
+/// it; only where that cannot be, because its edges cross or it has no area, into the fan around its first corner.
+/// Equal vertices are welded, and triangles that two equal vertices make degenerate are dropped and counted, as in
+/// [`TriangleMesh::new`]. That the mesh is closed is not checked. Of a file without faces the mesh has no triangles.
 ///
-/// O(n). Memory is at most 40 bytes per byte of the file. Fails with [`MeshFileError::Empty`],
+/// O(n), or O(n log n) for faces that are not convex. Memory is at most 128 times the length of the file. Fails with [`MeshFileError::Empty`],
 /// [`MeshFileError::Syntax`], [`MeshFileError::Index`], [`MeshError::TooLarge`](crate::MeshError::TooLarge),
 /// [`MeshError::TooMany`](crate::MeshError::TooMany) or [`Error::OutOfMemory`].
 pub fn read_obj(bytes: &[u8]) -> Result<TriangleMesh, Error> {

@@ -28,7 +28,6 @@ mod winding;
 
 pub use defects::{DefectKind, MeshDefect};
 #[cfg(feature = "std")]
-#[allow(unused_imports)]
 pub(crate) use polygon::triangulate_facet;
 #[cfg(feature = "std")]
 pub use polyhedron::{Polyhedron, PolyhedronArrays};
