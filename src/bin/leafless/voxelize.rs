@@ -46,9 +46,9 @@ pub struct Arguments {
     fill: Option<FillName>,
     #[command(flatten)]
     reading: Reading,
-    /// Lower corner and edge length of the cube to cut into cells, in the units of the converted and scaled mesh. Solids can be combined if
-    /// they were given the same bounds and depth. What sticks out is cut off, and reported. Without it: the cube
-    /// around the middle of the mesh, its edge 33/32 of the mesh's longest extent
+    /// Lower corner and edge length of the cube to cut into cells, in the units of the mesh once it is converted and
+    /// scaled. Solids can be combined if they were given the same bounds and depth. What sticks out is cut off, and
+    /// reported. Without it: the cube around the middle of the mesh, its edge 33/32 of the mesh's longest extent
     #[arg(long, value_name = "X0,Y0,Z0,EDGE", value_parser = bounds, allow_hyphen_values = true)]
     bounds: Option<Frame>,
     /// Threads to use; 0: as many as there are processors. The result is the same

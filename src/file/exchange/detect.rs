@@ -67,7 +67,8 @@ fn is_off_keyword(word: &[u8]) -> bool {
     for prefix in [&b"ST"[..], b"C", b"N", b"4", b"n"] {
         rest = rest.strip_prefix(prefix).unwrap_or(rest);
     }
-    rest == b"OFF"
+    // The counts may follow at once.
+    rest.strip_prefix(b"OFF").is_some_and(|counts| counts.iter().all(u8::is_ascii_digit))
 }
 
 /// The words of the first line that is neither blank nor a comment.
@@ -99,6 +100,7 @@ mod tests {
                 (b"OFF\n8 6 12\n", MeshFormat::Off),
                 (b"# a comment\n\n  COFF 8 6 12", MeshFormat::Off),
                 (b"STCN4OFF\n", MeshFormat::Off),
+                (b"OFF8 6 12\n", MeshFormat::Off),
                 (b"OFF BINARY\n\0\0\0\x08", MeshFormat::Off),
             ] {
                 assert_eq!(MeshFormat::detect(bytes, extension), Some(format), "{bytes:?} {extension:?}");

@@ -4,15 +4,15 @@
 //! `[Content_Types].xml` must be there and not call it something else. Components and items of the build may refer
 //! to objects in other model parts by the production extension's `path`, from the root model only.
 //!
-//! **What is built.** The items of the build in the root model, each an object that is a mesh or consists of
-//! placed components, which are objects again. All their triangles become one mesh in the unit of the root model.
-//! An object that is reached several times stands there several times. A transform that mirrors also turns the
-//! triangles round, so that a volume keeps its sign. Objects of the types `support`, `solidsupport` and `surface`
-//! are left out, and counted; the type of an object of components has no meaning; a build that reaches an object of
-//! type `other` is refused. Objects that the build does not reach are not built. Metadata, materials, textures and
-//! triangle sets are ignored, and so are extensions that the model does not require. The fill rule of 3MF is
-//! `FillRule::Positive` for each object, and the union of the objects: the mesh as a whole differs from that only
-//! where an object that is inside out overlaps another one.
+//! **What is built.** The items of the build in the root model, each an object that is a mesh or consists of placed
+//! components, which are objects again. All their triangles become one mesh in the unit of the root model. An object
+//! that is reached several times stands there several times. A transform that mirrors also turns the triangles round,
+//! so that a volume keeps its sign. Objects of all types but `model` (`support`, `solidsupport`, `surface`, and
+//! `other`, which a build should not reach, but slicers put their modifiers there) are left out, and counted; the
+//! type of an object of components has no meaning. Objects that the build does not reach are not built. Metadata,
+//! materials, textures and triangle sets are ignored, and so are extensions that the model does not require. The fill
+//! rule of 3MF is `FillRule::Positive` for each object, and the union of the objects: the mesh as a whole differs
+//! from that only where an object that is inside out overlaps another one.
 //!
 //! **What is refused.** Damaged archives, parts that are encrypted, packages with keys for protected content, models
 //! that require an extension other than production, materials and triangle sets; document type declarations,
@@ -68,9 +68,6 @@ pub(super) fn read(bytes: &[u8]) -> Result<Built, Error> {
     let mut sum = Total::default();
     for item in &models.items {
         let total = target(&totals, item);
-        if total.reaches_other {
-            return Err(error(&package, item, "the build reaches an object of type `other`"));
-        }
         if total.reaches_unknown {
             let problem = "the build reaches an object that is neither a mesh nor made of components";
             return Err(error(&package, item, problem));
@@ -143,7 +140,6 @@ struct Total {
     /// Placements that a walk through it meets.
     placed: u64,
     skipped: u64,
-    reaches_other: bool,
     reaches_unknown: bool,
 }
 
@@ -153,7 +149,6 @@ impl Total {
         self.triangles = self.triangles.saturating_add(other.triangles);
         self.placed = self.placed.saturating_add(other.placed);
         self.skipped = self.skipped.saturating_add(other.skipped);
-        self.reaches_other |= other.reaches_other;
         self.reaches_unknown |= other.reaches_unknown;
     }
 }
@@ -172,8 +167,7 @@ fn totals_of_objects(models: &Models, own: usize) -> Result<Vec<Total>, Error> {
                     total.add(&target(&totals, component));
                 }
             }
-            (_, Purpose::Other) => total.reaches_other = true,
-            (_, Purpose::NotSolid) => total.skipped = 1,
+            (_, Purpose::Other) => total.skipped = 1,
             (Shape::Unknown, Purpose::Model) => total.reaches_unknown = true,
             (Shape::Mesh(_, triangles), Purpose::Model) if triangles.is_empty() => {}
             (Shape::Mesh(vertices, triangles), Purpose::Model) => {

@@ -35,9 +35,7 @@ pub(super) struct Object {
 pub(super) enum Purpose {
     /// To be a solid.
     Model,
-    /// To support one, or to be a mere surface.
-    NotSolid,
-    /// To be referred to by other things than the build.
+    /// To support one, to be a mere surface, or something else.
     Other,
 }
 
@@ -176,8 +174,7 @@ impl Models {
                 ("", "type") => {
                     purpose = match attribute.value.trim_ascii() {
                         "model" => Purpose::Model,
-                        "solidsupport" | "support" | "surface" => Purpose::NotSolid,
-                        "other" => Purpose::Other,
+                        "solidsupport" | "support" | "surface" | "other" => Purpose::Other,
                         _ => return Err(xml.attribute_error(&attribute, "is no type of objects")),
                     };
                 }
