@@ -244,11 +244,18 @@ fn voxelize_reports_and_records() {
         [
             "bodies",
             "boundary_edges",
+            "boundary_loops",
+            "defects",
             "degenerate",
             "displacement",
+            "duplicate",
             "facets_read",
+            "flat",
+            "inside_out_bodies",
             "misoriented_edges",
             "non_manifold_edges",
+            "open_bodies",
+            "opposite",
             "sewn",
             "triangles",
             "vertices",
@@ -256,6 +263,7 @@ fn voxelize_reports_and_records() {
         ]
     );
     assert_eq!((&json["mesh"]["triangles"], &json["mesh"]["welded"]), (&12.into(), &28.into()));
+    assert_eq!(json["mesh"]["defects"], serde_json::json!([]));
     assert_eq!((&json["input"], &json["output"]), (&"cube.stl".into(), &"cube.lfl".into()));
     assert_eq!((&json["rule"], &json["fill"]), (&"certified".into(), &"nonzero".into()));
     assert_eq!(json["clipped"], false);
@@ -386,7 +394,7 @@ fn open_meshes_are_taken_with_a_warning() {
     facets.push([a, c, b]);
     place.write("turned.stl", stl(&TriangleMesh::from_facets(&facets).unwrap()));
     for (name, words, boundary, misoriented) in [
-        ("open.stl", &["warning", "open along 3 edges", "winding number"][..], 3, 0),
+        ("open.stl", &["warning", "open along 3 edges in 1 loop", "winding number"][..], 3, 0),
         ("turned.stl", &["warning", "facing changes across 3 inner edges"], 0, 3),
     ] {
         for fill in ["", "--fill positive", "--fill non-zero"] {
@@ -412,7 +420,17 @@ fn open_meshes_are_taken_with_a_warning() {
         }
         let info = place.run(&format!("info {name} --json")).good().json();
         assert_eq!((&info["closed"], &info["volume"]), (&false.into(), &Value::Null));
-        assert!(place.run(&format!("info {name}")).good().text().contains(words[1]));
+        let text = place.run(&format!("info {name}")).good();
+        assert!(text.text().contains(words[1]) && text.text().contains("defect"), "{text:?}");
+        // The triangle that is missing or turned, on the upper side.
+        let defects = info["mesh"]["defects"].as_array().unwrap();
+        let kind = if boundary > 0 { "hole" } else { "misoriented" };
+        assert_eq!(defects.len(), 1);
+        assert_eq!((&defects[0]["kind"], &defects[0]["count"]), (&kind.into(), &3.into()));
+        let (min, max) = (serde_json::json!([1.0, 1.0, 3.0]), serde_json::json!([3.0, 3.0, 3.0]));
+        assert_eq!((&defects[0]["min"], &defects[0]["max"]), (&min, &max));
+        let length = defects[0]["length"].as_f64().unwrap();
+        assert!((length - (4.0 + 8.0_f64.sqrt())).abs() < 1e-12, "{length}");
     }
 }
 

@@ -3,7 +3,7 @@
 use crate::failure::{Failure, Of};
 use crate::input::Input;
 use crate::output::{self, count, counted, number};
-use crate::report::Mesh;
+use crate::report::{Defect, Mesh};
 use clap::{Args, ValueEnum};
 use leafless::file::{self, LengthUnit, MeshFile, MeshFormat, MeshOptions};
 use leafless::{MeshReport, TriangleMesh};
@@ -97,11 +97,15 @@ pub fn format_name(format: MeshFormat) -> &'static str {
 pub fn openness(report: &MeshReport) -> Option<String> {
     let (open, turned) = (report.boundary_edges, report.misoriented_edges);
     let facing = || format!("its facing changes across {}", counted(turned, "inner edge", "inner edges"));
+    let opening = || {
+        let loops = counted(report.boundary_loops, "loop", "loops");
+        format!("it is open along {} in {loops}", counted(open, "edge", "edges"))
+    };
     match (open, turned) {
         (0, 0) => None,
         (0, _) => Some(facing()),
-        (_, 0) => Some(format!("it is open along {}", counted(open, "edge", "edges"))),
-        _ => Some(format!("it is open along {}, and {}", counted(open, "edge", "edges"), facing())),
+        (_, 0) => Some(opening()),
+        _ => Some(format!("{}, and {}", opening(), facing())),
     }
 }
 
@@ -135,7 +139,7 @@ impl Info {
             volume: closed.then(|| file.mesh.volume()),
             closed,
             skipped: file.skipped,
-            mesh: report.into(),
+            mesh: Mesh::new(&file.mesh).of(input)?,
         })
     }
 
@@ -163,9 +167,15 @@ impl Info {
             ("triangles", report.triangles),
             ("vertices", report.vertices),
             ("bodies", report.bodies),
+            ("open", report.open_bodies),
+            ("inside out", report.inside_out_bodies),
             ("boundary edges", report.boundary_edges),
+            ("boundary loops", report.boundary_loops),
             ("misoriented", report.misoriented_edges),
             ("non-manifold", report.non_manifold_edges),
+            ("duplicate", report.duplicate),
+            ("opposite", report.opposite),
+            ("flat", report.flat),
             ("degenerate", report.degenerate),
             ("welded", report.welded),
         ] {
@@ -178,6 +188,10 @@ impl Info {
             line("left out", counted(self.skipped, "object that is no solid", "objects that are no solids"));
         }
         line("bytes", count(self.bytes));
+        if !self.mesh.defects.is_empty() {
+            text.push('\n');
+            text.push_str(&Defect::table(&self.mesh.defects));
+        }
         Ok(text)
     }
 }

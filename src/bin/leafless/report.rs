@@ -1,7 +1,7 @@
 //! What is told of a solid, for programs (JSON) and for people.
 
 use crate::output::{count, interval, number};
-use leafless::{Interval, MeshReport, Octree, Statistics, Tag};
+use leafless::{DefectKind, Error, Interval, MeshDefect, MeshReport, Octree, Statistics, Tag, TriangleMesh};
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -162,29 +162,94 @@ pub struct Mesh {
     welded: u64,
     degenerate: u64,
     boundary_edges: u64,
+    boundary_loops: u64,
     misoriented_edges: u64,
     non_manifold_edges: u64,
+    duplicate: u64,
+    opposite: u64,
+    flat: u64,
     bodies: u64,
+    open_bodies: u64,
+    inside_out_bodies: u64,
     sewn: u64,
     displacement: f64,
+    pub defects: Vec<Defect>,
 }
 
-impl From<MeshReport> for Mesh {
-    fn from(report: MeshReport) -> Mesh {
-        Mesh {
+/// One of the worst places.
+#[derive(Serialize)]
+pub struct Defect {
+    kind: &'static str,
+    count: u64,
+    length: f64,
+    min: [f64; 3],
+    max: [f64; 3],
+}
+
+/// Defects that are told of.
+const DEFECTS: usize = 10;
+
+impl Mesh {
+    pub fn new(mesh: &TriangleMesh) -> Result<Mesh, Error> {
+        let report = mesh.report()?;
+        let MeshReport { boundary_edges, misoriented_edges, non_manifold_edges, .. } = report;
+        let faults = [boundary_edges, misoriented_edges, non_manifold_edges, report.duplicate, report.flat];
+        // Looking for them takes time.
+        let is_faultless = faults == [0; 5] && report.opposite == 0;
+        let defects = if is_faultless { Vec::new() } else { mesh.defects(DEFECTS)? };
+        Ok(Mesh {
             facets_read: report.facets_read,
             triangles: report.triangles,
             vertices: report.vertices,
             welded: report.welded,
             degenerate: report.degenerate,
-            boundary_edges: report.boundary_edges,
-            misoriented_edges: report.misoriented_edges,
-            non_manifold_edges: report.non_manifold_edges,
+            boundary_edges,
+            boundary_loops: report.boundary_loops,
+            misoriented_edges,
+            non_manifold_edges,
+            duplicate: report.duplicate,
+            opposite: report.opposite,
+            flat: report.flat,
             bodies: report.bodies,
+            open_bodies: report.open_bodies,
+            inside_out_bodies: report.inside_out_bodies,
             sewn: report.sewn,
             displacement: report.displacement,
-        }
+            defects: defects.iter().map(Defect::new).collect(),
+        })
     }
+}
+
+impl Defect {
+    fn new(defect: &MeshDefect) -> Defect {
+        let kind = match defect.kind {
+            DefectKind::Hole => "hole",
+            DefectKind::Misoriented => "misoriented",
+            DefectKind::NonManifold => "non-manifold",
+            DefectKind::Duplicate => "duplicate",
+            DefectKind::Flat => "flat",
+            _ => "other",
+        };
+        let (min, max) = defect.bounds;
+        Defect { kind, count: defect.count, length: defect.length, min, max }
+    }
+
+    /// The same for people, in columns.
+    pub fn table(defects: &[Defect]) -> String {
+        let rows: Vec<_> = (defects.iter())
+            .map(|defect| {
+                let [from, to] = [defect.min, defect.max].map(|corner| corner.map(short).join(" "));
+                [defect.kind.to_owned(), count(defect.count), short(defect.length), from, to]
+            })
+            .collect();
+        table(&["defect", "count", "length", "from", "to"].map(str::to_owned), &rows)
+    }
+}
+
+/// A number for a table: six digits tell where to look.
+fn short(x: f64) -> String {
+    let rounded: f64 = format!("{x:.5e}").parse().unwrap_or(x);
+    number(rounded)
 }
 
 /// Lines whose columns are aligned to the right.

@@ -173,6 +173,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     if mesh_report.triangles == 0 {
         return Err(Failure::of(&input, MeshError::Empty));
     }
+    // The mesh is about to be taken over.
+    let told = if arguments.json { Some(Mesh::new(&mesh).of(&input)?) } else { None };
     let (min, max) = mesh.bounds();
     let frame = match &arguments.bounds {
         Some(bounds) => bounds.with_depth(arguments.depth),
@@ -206,7 +208,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     let timings = Timings { read, build, save, total: start.elapsed().as_secs_f64() };
     let info = Info::new(&octree, bytes);
-    if arguments.json {
+    if let Some(mesh) = told {
         let report = Report {
             input: input.to_string(),
             output: output.to_string(),
@@ -216,7 +218,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             unit: unit.map(LengthUnit::symbol),
             skipped,
             timings,
-            mesh: mesh_report.into(),
+            mesh,
             undecided_volume: info.volume.width(),
             info,
         };
