@@ -267,6 +267,7 @@ fn models_that_are_refused() {
         ("v1=\"1\"", "", "lacks"),
         ("object id=\"1\"", "object", "no id"),
         ("object id=\"1\"", "object id=\"1\" type=\"solid\"", "no type"),
+        ("object id=\"1\"", "object id=\"1\" s:meshresolution=\"lowres\"", "not the true shape"),
         ("item objectid=\"1\"", "item objectid=\"2\"", "not defined before"),
         ("item objectid=\"1\"", "item", "no objectid"),
         ("item objectid=\"1\"", "item objectid=\"1\" transform=\"1 0 0\"", "twelve"),
@@ -294,6 +295,8 @@ fn models_that_are_refused() {
     }
     assert_refused(&good.replace("UTF-8", "UTF-16"), 1, "encoding");
     assert_refused("", 1, "no element");
+    let no_build = good.replace("<build>", "<other>").replace("</build>", "</other>");
+    assert_refused(&no_build, no_build.lines().count() as u64 + 1, "no build");
     assert_refused("<html/>", 1, "no 3MF model");
     assert_refused("<model xmlns=\"urn:other\"/>", 1, "no 3MF model");
     let twice = tetrahedron(1, "") + &tetrahedron(1, "");

@@ -17,7 +17,8 @@
 //! **What is refused.** Damaged archives, parts that are encrypted, packages with keys for protected content, models
 //! that require an extension other than production, materials and triangle sets; document type declarations,
 //! encodings other than UTF-8; objects that are referred to before they are defined (which makes circles impossible)
-//! or defined twice, indices of vertices that do not exist, numbers that are not finite.
+//! or defined twice, meshes that only stand for something finer (`lowres`, `obfuscated`), models without a build,
+//! indices of vertices that do not exist, numbers that are not finite.
 //!
 //! **Memory.** Decompressed, the parts that are read may together be 64 times as long as the file and 16 MiB; what is
 //! read of them takes at most twenty times their length (of meshes three times). Instances may come to 2^25 vertices

@@ -97,6 +97,7 @@ impl Models {
         let name = package.name(part);
         let mut xml = Xml::new(&name, text);
         let mut unit = LengthUnit::Millimetre;
+        let mut has_build = false;
         // As deep as the reader allows.
         let mut nodes = Vec::new();
         nodes.try_reserve_exact(64).map_err(|_| Error::OutOfMemory)?;
@@ -121,7 +122,10 @@ impl Models {
                     Node::Skipped
                 }
                 (Some(Node::Model), "resources") if core => Node::Resources,
-                (Some(Node::Model), "build") if core && is_root => Node::Build,
+                (Some(Node::Model), "build") if core && is_root => {
+                    has_build = true;
+                    Node::Build
+                }
                 (Some(Node::Resources), "object") if core => {
                     self.read_object(&xml, &element, part)?;
                     Node::Object
@@ -162,6 +166,9 @@ impl Models {
                 nodes.push(node);
             }
         }
+        if is_root && !has_build {
+            return Err(xml.error(text.len(), "the model has no build"));
+        }
         Ok(unit)
     }
 
@@ -177,6 +184,10 @@ impl Models {
                         "solidsupport" | "support" | "surface" | "other" => Purpose::Other,
                         _ => return Err(xml.attribute_error(&attribute, "is no type of objects")),
                     };
+                }
+                // Of the slice and the production extension, which the model may not even say that it requires.
+                (_, "meshresolution" | "modelresolution") if attribute.value.trim_ascii() != "fullres" => {
+                    return Err(xml.attribute_error(&attribute, "says that the mesh is not the true shape"));
                 }
                 _ => {}
             }
