@@ -1,12 +1,12 @@
 //! 3MF packages: what is read from them, and every way in which they are refused.
 
-#[path = "common/zip.rs"]
-mod zip;
+#[path = "../fuzz/bodies/packages.rs"]
+mod packages;
 
 use leafless::file::{LengthUnit, MeshFile, MeshFormat, MeshOptions, read_mesh};
 use leafless::{Error, FillRule, PackageError};
+use packages::zip::{CONTENT_TYPES, Entry, RELATIONSHIPS, model, package, tetrahedron, zip};
 use proptest::prelude::*;
-use zip::{CONTENT_TYPES, Entry, RELATIONSHIPS, model, package, tetrahedron, zip};
 
 #[track_caller]
 fn read(bytes: &[u8]) -> MeshFile {
@@ -472,6 +472,33 @@ fn truncated_and_changed() {
                 assert_eq!(file.mesh.triangles().len(), 4, "{at}");
             }
         }
+    }
+}
+
+/// What the fuzzer begins with is read, and has all that there is to be changed.
+#[test]
+fn seeds_of_the_fuzzer() {
+    let seeds = packages::seeds();
+    seeds.iter().for_each(|seed| packages::packages(seed));
+    let options = MeshOptions::default();
+    let whole = seeds.iter().filter(|seed| read_mesh(seed, &options).is_ok()).count();
+    assert_eq!(whole, 2, "packages");
+    let pieces: Vec<_> = seeds[0].split(|&b| b == 0).collect();
+    let mut entries = package(pieces[0]);
+    entries.push(Entry::stored("b.model", pieces[1]));
+    let file = read(&zip(&entries));
+    assert_eq!((file.unit, file.mesh.triangles().len()), (Some(LengthUnit::Inch), 12));
+}
+
+/// Writes the seeds for fuzzing into the folder that `LEAFLESS_SEEDS` names.
+#[test]
+#[ignore = "a tool: see fuzz/README.md"]
+fn write_seeds() {
+    let folder = std::env::var_os("LEAFLESS_SEEDS").expect("LEAFLESS_SEEDS names a folder");
+    let folder = std::path::Path::new(&folder).join("packages");
+    std::fs::create_dir_all(&folder).unwrap();
+    for (k, seed) in packages::seeds().iter().enumerate() {
+        std::fs::write(folder.join(format!("{k}")), seed).unwrap();
     }
 }
 
