@@ -26,7 +26,7 @@ static void release(unsigned char *buffer) {
 typedef leafless_status (*two_step)(void *buffer, uint64_t capacity, uint64_t *count);
 
 static leafless_octree *octree;
-static leafless_mesh *mesh;
+static leafless_mesh *mesh, *holed;
 static uint8_t *bytes;
 static uint64_t length;
 
@@ -69,6 +69,10 @@ static leafless_status vertices(void *buffer, uint64_t capacity, uint64_t *count
         OK(leafless_mesh_counts(mesh, count, &other));
     }
     return status;
+}
+
+static leafless_status defects(void *buffer, uint64_t capacity, uint64_t *count) {
+    return leafless_mesh_defects(holed, UINT64_MAX, (leafless_mesh_defect *)buffer, capacity, count);
 }
 
 static leafless_status triangles(void *buffer, uint64_t capacity, uint64_t *count) {
@@ -132,8 +136,10 @@ static void check(two_step function, size_t element, size_t padding) {
 
 int main(void) {
     const size_t named = offsetof(leafless_section, name) + sizeof(((leafless_section *)0)->name);
+    const size_t kind = offsetof(leafless_mesh_defect, kind) + sizeof(leafless_defect);
     octree = check_ball(4, LEAFLESS_RULE_CERTIFIED);
     mesh = check_cube();
+    holed = check_some_of_cube(7);
     bytes = check_bytes(octree, &length);
     check_write("buffers.lfl", bytes, (size_t)length);
 
@@ -143,6 +149,7 @@ int main(void) {
     check(sections, sizeof(leafless_section), named);
     check(file_sections, sizeof(leafless_section), named);
     check(vertices, 3 * sizeof(double), 3 * sizeof(double));
+    check(defects, sizeof(leafless_mesh_defect), kind);
     check(triangles, 3 * sizeof(uint32_t), 3 * sizeof(uint32_t));
 
     /* If one of two buffers is too small, the other is not written either. */
@@ -205,6 +212,7 @@ int main(void) {
         release((unsigned char *)answers);
     }
     free(bytes);
+    leafless_mesh_free(holed);
     leafless_mesh_free(mesh);
     leafless_octree_free(octree);
     return 0;

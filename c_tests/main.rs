@@ -187,6 +187,11 @@ fn arrays() {
 }
 
 #[test]
+fn mesh_reports() {
+    run("mesh_report", C99, Link::Static, &[]);
+}
+
+#[test]
 fn mesh_files() {
     run("mesh_file", C99, Link::Static, &[]);
 }

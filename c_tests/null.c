@@ -169,6 +169,11 @@ static void null_pointers(void) {
     NULL_POINTER(leafless_mesh_volume, volume_model, leafless_mesh_volume(mesh, NULL));
     NULL_POINTER(leafless_mesh_describe, mesh, leafless_mesh_describe(NULL, (leafless_mesh_report *)out));
     NULL_POINTER(leafless_mesh_describe, report, leafless_mesh_describe(mesh, NULL));
+    NULL_POINTER(leafless_mesh_defects, mesh, leafless_mesh_defects(NULL, 9, NULL, 0, (uint64_t *)out));
+    NULL_POINTER(leafless_mesh_defects, defects, leafless_mesh_defects(mesh, 9, NULL, 9, (uint64_t *)out));
+    MAY_BE_NULL(leafless_mesh_defects, defects, leafless_mesh_defects(mesh, 9, NULL, 0, &number));
+    NULL_POINTER(leafless_mesh_defects, count,
+                 leafless_mesh_defects(mesh, 9, (leafless_mesh_defect *)out, 2, NULL));
     NULL_POINTER(leafless_mesh_check_closed, mesh, leafless_mesh_check_closed(NULL, 0));
     NULL_POINTER(leafless_mesh_sewn, mesh, leafless_mesh_sewn(NULL, mesh_result));
     NULL_POINTER(leafless_mesh_sewn, sewn, leafless_mesh_sewn(mesh, NULL));
@@ -459,6 +464,9 @@ static void misaligned(void) {
     MISALIGNED(leafless_mesh_copy, triangles, leafless_mesh_copy(mesh, NULL, 0, (uint32_t *)WRONG(out), 12));
     MISALIGNED(leafless_mesh_bounds, max_model, leafless_mesh_bounds(mesh, (double *)out, (double *)WRONG(out)));
     MISALIGNED(leafless_mesh_describe, report, leafless_mesh_describe(mesh, (leafless_mesh_report *)WRONG(out)));
+    MISALIGNED(leafless_mesh_defects, defects,
+               leafless_mesh_defects(mesh, 9, (leafless_mesh_defect *)WRONG(out), 2, (uint64_t *)out));
+    MISALIGNED(leafless_mesh_defects, count, leafless_mesh_defects(mesh, 9, NULL, 0, (uint64_t *)WRONG(out)));
     MISALIGNED(leafless_mesh_transformed, matrix, leafless_mesh_transformed(mesh, numbers, mesh_result));
     MISALIGNED(leafless_mesh_translated, mesh,
                leafless_mesh_translated((leafless_mesh *)WRONG(mesh), point, mesh_result));

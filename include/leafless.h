@@ -180,6 +180,39 @@ typedef int32_t leafless_status;
 #endif // __cplusplus
 
 /**
+ * What is wrong with a part of a mesh, the most harmful first.
+ */
+enum leafless_defect
+#ifdef __cplusplus
+  : uint32_t
+#endif // __cplusplus
+ {
+    /**
+     * A loop of edges that an odd number of triangles use: around a hole, or around a sheet.
+     */
+    LEAFLESS_DEFECT_HOLE = 0,
+    /**
+     * Edges that an even number of triangles use, but not half of them in each direction.
+     */
+    LEAFLESS_DEFECT_MISORIENTED = 1,
+    /**
+     * Triangles with the same corners as an earlier one, in the same or the opposite direction.
+     */
+    LEAFLESS_DEFECT_DUPLICATE = 2,
+    /**
+     * Edges that more than two triangles use. They do no harm.
+     */
+    LEAFLESS_DEFECT_NON_MANIFOLD = 3,
+    /**
+     * Triangles without area. They do no harm.
+     */
+    LEAFLESS_DEFECT_FLAT = 4,
+};
+#ifndef __cplusplus
+typedef uint32_t leafless_defect;
+#endif // __cplusplus
+
+/**
  * The formats of mesh files that can be read.
  */
 enum leafless_mesh_format
@@ -632,6 +665,10 @@ typedef struct {
      */
     uint64_t boundary_edges;
     /**
+     * Loops of these edges, without vertices that occur twice: the holes of the surface and the rims of sheets.
+     */
+    uint64_t boundary_loops;
+    /**
      * Edges that an even number of triangles use, but not half of them in each direction. A closed mesh is
      * consistently oriented if there is none.
      */
@@ -641,9 +678,31 @@ typedef struct {
      */
     uint64_t non_manifold_edges;
     /**
-     * Sets of triangles that hang together over edges.
+     * Triangles that repeat an earlier one, in the same direction. They count as often as they occur.
+     */
+    uint64_t duplicate;
+    /**
+     * Pairs of triangles with the same corners in opposite directions: walls without thickness. The two cancel
+     * each other.
+     */
+    uint64_t opposite;
+    /**
+     * Triangles without area whose corners are three different vertices. They do no harm.
+     */
+    uint64_t flat;
+    /**
+     * Sets of triangles that hang together over edges. Bodies that touch only in single vertices count separately, and
+     * so does the outer from the inner surface of a hollow body.
      */
     uint64_t bodies;
+    /**
+     * Bodies that are open or not consistently oriented.
+     */
+    uint64_t open_bodies;
+    /**
+     * Other bodies that enclose a negative volume: cavities, and bodies that are inside out.
+     */
+    uint64_t inside_out_bodies;
     /**
      * Vertices that leafless_mesh_sewn moved onto another one.
      */
@@ -653,6 +712,33 @@ typedef struct {
      */
     double displacement_model;
 } leafless_mesh_report;
+
+/**
+ * A part of a mesh that is not as it should be: one loop of a hole, or, of the other kinds, edges or triangles that hang
+ * together over common vertices.
+ */
+typedef struct {
+    /**
+     * The least coordinates of all its vertices.
+     */
+    double min_model[3];
+    /**
+     * The greatest coordinates of all its vertices.
+     */
+    double max_model[3];
+    /**
+     * The edges' lengths, added up; 0 where triangles are counted.
+     */
+    double length_model;
+    /**
+     * Edges; or triangles of LEAFLESS_DEFECT_DUPLICATE and LEAFLESS_DEFECT_FLAT.
+     */
+    uint64_t count;
+    /**
+     * What is wrong.
+     */
+    leafless_defect kind;
+} leafless_mesh_defect;
 
 /**
  * The arrays that a mesh is made of: vertices of three coordinates, and triangles of three indices. They need not
@@ -1427,6 +1513,24 @@ leafless_status leafless_mesh_volume(const leafless_mesh *mesh,
  */
 leafless_status leafless_mesh_describe(const leafless_mesh *mesh,
                                        leafless_mesh_report *report);
+
+/**
+ * Where a mesh is not as it should be, the worst first: in the order of leafless_defect, and those of one kind by the
+ * longest side of their boxes, then by count, then by position.
+ *
+ * - Buffers: `defects`, room for `capacity` of them, or NULL to ask for their number only.
+ * - Result: `*count`, how many there are, but not more than `limit`; the worst ones in `defects`.
+ * - Errors: LEAFLESS_E_BUFFER if the capacity is too small; LEAFLESS_E_NO_MEMORY.
+ * - Ownership: nothing changes hands.
+ * - Threads: any. Each call analyses the mesh.
+ * - Untrusted input: any mesh.
+ * - Since: 0.1
+ */
+leafless_status leafless_mesh_defects(const leafless_mesh *mesh,
+                                      uint64_t limit,
+                                      leafless_mesh_defect *defects,
+                                      uint64_t capacity,
+                                      uint64_t *count);
 
 /**
  * Checks that a mesh has no hole, so that every point that is not on it is clearly inside or outside: an even number

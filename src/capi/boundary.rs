@@ -359,6 +359,21 @@ impl<T: Copy> Buffer<T> {
         }
         Ok(())
     }
+
+    /// Fills the buffer, if there is one, with what elements of the library are in C.
+    pub(super) fn fill_with<'e, E>(&self, elements: &'e [E]) -> Result<(), Failure>
+    where
+        T: From<&'e E>,
+    {
+        self.check(elements.len())?;
+        if self.wanted() {
+            for (index, element) in elements.iter().enumerate() {
+                // SAFETY: promised to `buffer`, and there is room for them.
+                unsafe { self.start.add(index).write(element.into()) };
+            }
+        }
+        Ok(())
+    }
 }
 
 /// A struct of the host that begins with its own size: older hosts have shorter ones, newer ones longer.

@@ -38,9 +38,11 @@ fn write_all(to: &mut dyn Write) -> fmt::Result {
         leafless_frame { origin, edge, depth }
         leafless_interval { lower, upper }
         leafless_mesh_report {
-            facets_read, triangles, vertices, welded, degenerate, boundary_edges, misoriented_edges,
-            non_manifold_edges, bodies, sewn, displacement_model
+            facets_read, triangles, vertices, welded, degenerate, boundary_edges, boundary_loops, misoriented_edges,
+            non_manifold_edges, duplicate, opposite, flat, bodies, open_bodies, inside_out_bodies, sewn,
+            displacement_model
         }
+        leafless_mesh_defect { min_model, max_model, length_model, count, kind }
         leafless_mesh_arrays {
             struct_size, vertex_type, vertices, vertex_count, vertex_stride, indices, triangle_count,
             triangle_stride, index_type, scale
@@ -83,6 +85,10 @@ fn write_all(to: &mut dyn Write) -> fmt::Result {
         leafless_unit {
             LEAFLESS_UNIT_UNKNOWN, LEAFLESS_UNIT_MICROMETRE, LEAFLESS_UNIT_MILLIMETRE,
             LEAFLESS_UNIT_CENTIMETRE, LEAFLESS_UNIT_METRE, LEAFLESS_UNIT_INCH, LEAFLESS_UNIT_FOOT
+        }
+        leafless_defect {
+            LEAFLESS_DEFECT_HOLE, LEAFLESS_DEFECT_MISORIENTED, LEAFLESS_DEFECT_DUPLICATE,
+            LEAFLESS_DEFECT_NON_MANIFOLD, LEAFLESS_DEFECT_FLAT
         }
         leafless_rule {
             LEAFLESS_RULE_CERTIFIED, LEAFLESS_RULE_SAMPLED, LEAFLESS_RULE_INNER, LEAFLESS_RULE_OUTER

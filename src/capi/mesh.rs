@@ -2,7 +2,7 @@
 
 use super::boundary::{Failure, array, buffer, guard, handle, out, refer, release, shared};
 use super::status::leafless_status;
-use crate::solid::{FillRule, TriangleMesh};
+use crate::solid::{DefectKind, FillRule, MeshDefect, TriangleMesh};
 use alloc::sync::Arc;
 
 /// A surface of triangles with shared vertices. Vertices at equal places are welded; whether the mesh is closed is
@@ -59,17 +59,82 @@ pub struct leafless_mesh_report {
     pub degenerate: u64,
     /// Edges that an odd number of triangles use. A mesh is closed if there is none.
     pub boundary_edges: u64,
+    /// Loops of these edges, without vertices that occur twice: the holes of the surface and the rims of sheets.
+    pub boundary_loops: u64,
     /// Edges that an even number of triangles use, but not half of them in each direction. A closed mesh is
     /// consistently oriented if there is none.
     pub misoriented_edges: u64,
     /// Edges that more than two triangles use, for instance where two bodies touch. They do no harm.
     pub non_manifold_edges: u64,
-    /// Sets of triangles that hang together over edges.
+    /// Triangles that repeat an earlier one, in the same direction. They count as often as they occur.
+    pub duplicate: u64,
+    /// Pairs of triangles with the same corners in opposite directions: walls without thickness. The two cancel
+    /// each other.
+    pub opposite: u64,
+    /// Triangles without area whose corners are three different vertices. They do no harm.
+    pub flat: u64,
+    /// Sets of triangles that hang together over edges. Bodies that touch only in single vertices count separately, and
+    /// so does the outer from the inner surface of a hollow body.
     pub bodies: u64,
+    /// Bodies that are open or not consistently oriented.
+    pub open_bodies: u64,
+    /// Other bodies that enclose a negative volume: cavities, and bodies that are inside out.
+    pub inside_out_bodies: u64,
     /// Vertices that leafless_mesh_sewn moved onto another one.
     pub sewn: u64,
     /// The farthest that any of them was moved along an axis, in model units.
     pub displacement_model: f64,
+}
+
+/// What is wrong with a part of a mesh, the most harmful first.
+#[derive(Clone, Copy)]
+#[repr(u32)]
+pub enum leafless_defect {
+    /// A loop of edges that an odd number of triangles use: around a hole, or around a sheet.
+    LEAFLESS_DEFECT_HOLE = 0,
+    /// Edges that an even number of triangles use, but not half of them in each direction.
+    LEAFLESS_DEFECT_MISORIENTED = 1,
+    /// Triangles with the same corners as an earlier one, in the same or the opposite direction.
+    LEAFLESS_DEFECT_DUPLICATE = 2,
+    /// Edges that more than two triangles use. They do no harm.
+    LEAFLESS_DEFECT_NON_MANIFOLD = 3,
+    /// Triangles without area. They do no harm.
+    LEAFLESS_DEFECT_FLAT = 4,
+}
+
+/// A part of a mesh that is not as it should be: one loop of a hole, or, of the other kinds, edges or triangles that hang
+/// together over common vertices.
+#[derive(Clone, Copy)]
+#[repr(C)]
+pub struct leafless_mesh_defect {
+    /// The least coordinates of all its vertices.
+    pub min_model: [f64; 3],
+    /// The greatest coordinates of all its vertices.
+    pub max_model: [f64; 3],
+    /// The edges' lengths, added up; 0 where triangles are counted.
+    pub length_model: f64,
+    /// Edges; or triangles of LEAFLESS_DEFECT_DUPLICATE and LEAFLESS_DEFECT_FLAT.
+    pub count: u64,
+    /// What is wrong.
+    pub kind: leafless_defect,
+}
+
+impl From<&MeshDefect> for leafless_mesh_defect {
+    fn from(defect: &MeshDefect) -> leafless_mesh_defect {
+        leafless_mesh_defect {
+            min_model: defect.bounds.0,
+            max_model: defect.bounds.1,
+            length_model: defect.length,
+            count: defect.count,
+            kind: match defect.kind {
+                DefectKind::Hole => leafless_defect::LEAFLESS_DEFECT_HOLE,
+                DefectKind::Misoriented => leafless_defect::LEAFLESS_DEFECT_MISORIENTED,
+                DefectKind::Duplicate => leafless_defect::LEAFLESS_DEFECT_DUPLICATE,
+                DefectKind::NonManifold => leafless_defect::LEAFLESS_DEFECT_NON_MANIFOLD,
+                DefectKind::Flat => leafless_defect::LEAFLESS_DEFECT_FLAT,
+            },
+        }
+    }
 }
 
 pub(super) fn give(mesh: TriangleMesh) -> *mut leafless_mesh {
@@ -237,12 +302,46 @@ pub unsafe extern "C" fn leafless_mesh_describe(
             welded: found.welded,
             degenerate: found.degenerate,
             boundary_edges: found.boundary_edges,
+            boundary_loops: found.boundary_loops,
             misoriented_edges: found.misoriented_edges,
             non_manifold_edges: found.non_manifold_edges,
+            duplicate: found.duplicate,
+            opposite: found.opposite,
+            flat: found.flat,
             bodies: found.bodies,
+            open_bodies: found.open_bodies,
+            inside_out_bodies: found.inside_out_bodies,
             sewn: found.sewn,
             displacement_model: found.displacement,
         })
+    })
+}
+
+/// Where a mesh is not as it should be, the worst first: in the order of leafless_defect, and those of one kind by the
+/// longest side of their boxes, then by count, then by position.
+///
+/// - Buffers: `defects`, room for `capacity` of them, or NULL to ask for their number only.
+/// - Result: `*count`, how many there are, but not more than `limit`; the worst ones in `defects`.
+/// - Errors: LEAFLESS_E_BUFFER if the capacity is too small; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: nothing changes hands.
+/// - Threads: any. Each call analyses the mesh.
+/// - Untrusted input: any mesh.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_mesh_defects(
+    mesh: *const leafless_mesh,
+    limit: u64,
+    defects: *mut leafless_mesh_defect,
+    capacity: u64,
+    count: *mut u64,
+) -> leafless_status {
+    guard(|| unsafe {
+        let mesh = &shared(mesh, "mesh")?.mesh;
+        let defects = buffer(defects, capacity, "defects")?;
+        let count = out(count, "count")?;
+        let found = mesh.defects(usize::try_from(limit).unwrap_or(usize::MAX))?;
+        defects.fill_with(&found)?;
+        count.write(found.len() as u64)
     })
 }
 

@@ -1,0 +1,150 @@
+/* What is told about meshes that are not as they should be: counts, and where. */
+#include "check.h"
+
+/* The cube [0, 1]^3 and 12 more triangles at most, of which the tests make what they need. */
+typedef struct surface {
+    double vertices[24][3];
+    uint32_t triangles[24][3];
+    uint32_t vertex_count, triangle_count;
+} surface;
+
+static surface cube(void) {
+    surface all;
+    memcpy(all.vertices, CHECK_CUBE, sizeof CHECK_CUBE);
+    memcpy(all.triangles, CHECK_CUBE_TRIANGLES, sizeof CHECK_CUBE_TRIANGLES);
+    all.vertex_count = 8;
+    all.triangle_count = 12;
+    return all;
+}
+
+static void add_triangle(surface *all, uint32_t a, uint32_t b, uint32_t c) {
+    uint32_t *triangle = all->triangles[all->triangle_count++];
+    triangle[0] = a, triangle[1] = b, triangle[2] = c;
+}
+
+static uint32_t add_vertex(surface *all, double x, double y, double z) {
+    double *vertex = all->vertices[all->vertex_count];
+    vertex[0] = x, vertex[1] = y, vertex[2] = z;
+    return all->vertex_count++;
+}
+
+static leafless_mesh *made(const surface *all) {
+    const leafless_mesh_arrays arrays =
+        check_arrays(all->vertices, all->vertex_count, all->triangles, all->triangle_count);
+    leafless_mesh *mesh = NULL;
+    OK(leafless_mesh_new(&arrays, &mesh));
+    return mesh;
+}
+
+/* The report; and of the defects, of which there must be `count`, the first. */
+static leafless_mesh_report told(const surface *all, uint64_t count, leafless_mesh_defect *first) {
+    leafless_mesh *mesh = made(all);
+    leafless_mesh_defect defects[8];
+    leafless_mesh_report report;
+    uint64_t found = 77, limit;
+    OK(leafless_mesh_describe(mesh, &report));
+    CHECK(report.facets_read == all->triangle_count && report.triangles + report.degenerate == all->triangle_count);
+    OK(leafless_mesh_defects(mesh, UINT64_MAX, NULL, 0, &found));
+    CHECK(found == count && count <= COUNT(defects));
+    memset(defects, 0xc3, sizeof defects);
+    OK(leafless_mesh_defects(mesh, UINT64_MAX, defects, COUNT(defects), &found));
+    CHECK(found == count);
+    *first = defects[0];
+    /* The worst ones alone are the first of all. */
+    for (limit = 0; limit <= count; limit++) {
+        leafless_mesh_defect some[8];
+        memset(some, 0xc3, sizeof some);
+        OK(leafless_mesh_defects(mesh, limit, some, limit, &found));
+        CHECK(found == limit && memcmp(some, defects, (size_t)limit * sizeof *some) == 0);
+    }
+    if (count > 0) {
+        FAILS(LEAFLESS_E_BUFFER, leafless_mesh_defects(mesh, count, defects, count - 1, &found));
+    }
+    leafless_mesh_free(mesh);
+    return report;
+}
+
+static bool box(const leafless_mesh_defect *defect, double x, double y, double z, double to_x, double to_y, double to_z) {
+    const double *min = defect->min_model, *max = defect->max_model;
+    return min[0] == x && min[1] == y && min[2] == z && max[0] == to_x && max[1] == to_y && max[2] == to_z;
+}
+
+int main(void) {
+    leafless_mesh_defect defect;
+    leafless_mesh_report report;
+    surface all = cube();
+
+    /* Nothing is wrong. */
+    report = told(&all, 0, &defect);
+    CHECK(report.bodies == 1 && report.open_bodies == 0 && report.inside_out_bodies == 0 && report.boundary_loops == 0);
+    CHECK(report.boundary_edges == 0 && report.misoriented_edges == 0 && report.non_manifold_edges == 0);
+    CHECK(report.duplicate == 0 && report.opposite == 0 && report.flat == 0 && report.degenerate == 0);
+
+    /* A hole: the last triangle is (1, 7, 5) on the side x = 1, with a diagonal and two edges. */
+    all.triangle_count = 11;
+    report = told(&all, 1, &defect);
+    CHECK(report.boundary_edges == 3 && report.boundary_loops == 1 && report.bodies == 1 && report.open_bodies == 1);
+    CHECK(defect.kind == LEAFLESS_DEFECT_HOLE && defect.count == 3 && box(&defect, 1, 0, 0, 1, 1, 1));
+    CHECK(fabs(defect.length_model - (2.0 + sqrt(2.0))) < 1e-12);
+
+    /* The whole side, and the opposite one: two holes. */
+    all.triangle_count = 8;
+    report = told(&all, 2, &defect);
+    CHECK(report.boundary_edges == 8 && report.boundary_loops == 2 && report.bodies == 1 && report.open_bodies == 1);
+    CHECK(defect.kind == LEAFLESS_DEFECT_HOLE && defect.count == 4 && defect.length_model == 4.0);
+    CHECK(box(&defect, 0, 0, 0, 0, 1, 1));
+
+    /* A triangle turned over. */
+    all = cube();
+    all.triangles[0][0] = 2, all.triangles[0][1] = 0;
+    report = told(&all, 1, &defect);
+    CHECK(report.misoriented_edges == 3 && report.boundary_edges == 0 && report.open_bodies == 1);
+    CHECK(defect.kind == LEAFLESS_DEFECT_MISORIENTED && defect.count == 3 && box(&defect, 0, 0, 0, 1, 1, 0));
+
+    /* All of it turned over. */
+    all = cube();
+    {
+        uint32_t i;
+        for (i = 0; i < 12; i++) {
+            const uint32_t first = all.triangles[i][0];
+            all.triangles[i][0] = all.triangles[i][1];
+            all.triangles[i][1] = first;
+        }
+    }
+    report = told(&all, 0, &defect);
+    CHECK(report.bodies == 1 && report.open_bodies == 0 && report.inside_out_bodies == 1);
+
+    /* A triangle twice: on its edges three meet. */
+    all = cube();
+    add_triangle(&all, 2, 3, 0);
+    report = told(&all, 3, &defect);
+    CHECK(report.duplicate == 1 && report.opposite == 0 && report.boundary_edges == 3 && report.non_manifold_edges == 3);
+    CHECK(defect.kind == LEAFLESS_DEFECT_HOLE);
+    /* And a third time, turned over: once it is there too often, and once taken away. */
+    add_triangle(&all, 3, 2, 0);
+    report = told(&all, 2, &defect);
+    CHECK(report.duplicate == 1 && report.opposite == 1 && report.boundary_edges == 0 && report.misoriented_edges == 0);
+    CHECK(defect.kind == LEAFLESS_DEFECT_DUPLICATE && defect.count == 2 && defect.length_model == 0.0);
+    CHECK(box(&defect, 0, 0, 0, 1, 1, 0));
+
+    /* A sheet far from it, and a triangle without area in its edge; one with two corners at one place is none. */
+    all = cube();
+    {
+        const uint32_t a = add_vertex(&all, 5, 5, 5), b = add_vertex(&all, 9, 5, 5), c = add_vertex(&all, 5, 8, 5);
+        const uint32_t middle = add_vertex(&all, 7, 5, 5), again = add_vertex(&all, 5, 5, 5);
+        add_triangle(&all, a, b, c);
+        add_triangle(&all, a, middle, b);
+        add_triangle(&all, a, again, c);
+    }
+    report = told(&all, 2, &defect);
+    CHECK(report.flat == 1 && report.degenerate == 1 && report.welded == 1 && report.bodies == 2);
+    CHECK(report.open_bodies == 1 && report.boundary_edges == 4 && report.boundary_loops == 1);
+    CHECK(defect.kind == LEAFLESS_DEFECT_HOLE && defect.count == 4 && box(&defect, 5, 5, 5, 9, 8, 5));
+    CHECK(defect.length_model == 12.0);
+
+    /* Nothing at all. */
+    all.triangle_count = 0;
+    report = told(&all, 0, &defect);
+    CHECK(report.bodies == 0 && report.triangles == 0);
+    return 0;
+}
