@@ -15,7 +15,8 @@
  *   this library does not know; LEAFLESS_E_PANIC if the library has a defect. That never ends the host program and
  *   leaves all objects usable; Rust's message about it also goes to stderr.
  * - Memory whose size depends on an input or a result can be refused, and is then LEAFLESS_E_NO_MEMORY. What remains
- *   is at most 2 KiB a piece, and what threads cost; if even that cannot be had, the process ends.
+ *   is at most 2 KiB a piece, what threads cost, and what polygons with holes or dents are triangulated with, for which
+ *   as much was asked for, and given back, before; if even that cannot be had, the process ends.
  * - Objects are opaque handles. What _new, _open and the like return is a reference; _ref gives one more; _free
  *   gives one back, and takes NULL. References may be given back in any order: what an object needs of another it
  *   shares. Pointers from _peek functions belong to the object.
@@ -241,7 +242,7 @@ enum leafless_mesh_format
      */
     LEAFLESS_MESH_FORMAT_OFF = 4,
     /**
-     * 3MF, the 3D Manufacturing Format.
+     * 3MF, the 3D Manufacturing Format. What it means by its surfaces is LEAFLESS_FILL_POSITIVE.
      */
     LEAFLESS_MESH_FORMAT_3MF = 5,
 };
@@ -1647,18 +1648,20 @@ leafless_status leafless_mesh_options_init(leafless_mesh_options *options,
                                            size_t struct_size);
 
 /**
- * Reads a mesh file. Everything in it becomes one mesh, welded as by leafless_mesh_new.
+ * Reads a mesh file. Everything in it becomes one mesh, welded as by leafless_mesh_new; polygons become triangles.
  *
  * - Buffers: `path`, `path_length` bytes of UTF-8; `options`, one struct, or NULL; `source`, one struct, or NULL if it
  *   is not wanted; `mesh`, one pointer.
  * - Result: `*mesh`, not checked to be closed; `*source`.
- * - Errors: LEAFLESS_E_MESH_FILE, with the line, facet or byte in the message, if the file cannot be read, if its
+ * - Errors: LEAFLESS_E_MESH_FILE, with the part, line, facet or byte in the message, if the file cannot be read, if its
  *   format is not known, or if `target` is given and nobody says from which unit; LEAFLESS_E_MESH, with the vertex,
  *   if a coordinate is beyond ±2^256 once it is scaled; LEAFLESS_E_ARGUMENT if the format or a unit is none, or the
  *   scale out of range; LEAFLESS_E_IO; LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY.
  * - Ownership: give `*mesh` back with leafless_mesh_free.
  * - Threads: any.
- * - Untrusted input: any file; memory is at most a small multiple of its length.
+ * - Untrusted input: any file. Memory is at most a small multiple of its length; of a 3MF, which is compressed, of 64
+ *   times its length and 16 MiB, and its instances may come to 2^25 vertices and 2^25 triangles, or to as many as the
+ *   file has.
  * - Since: 0.1
  */
 leafless_status leafless_mesh_open(const char *path,
@@ -1676,7 +1679,7 @@ leafless_status leafless_mesh_open(const char *path,
  * - Errors: as leafless_mesh_open, but those of paths.
  * - Ownership: the bytes are not kept; give `*mesh` back with leafless_mesh_free.
  * - Threads: any.
- * - Untrusted input: any bytes; memory is at most a small multiple of their number.
+ * - Untrusted input: any bytes; memory as for leafless_mesh_open.
  * - Since: 0.1
  */
 leafless_status leafless_mesh_from_bytes(const uint8_t *bytes,

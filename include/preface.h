@@ -15,7 +15,8 @@
  *   this library does not know; LEAFLESS_E_PANIC if the library has a defect. That never ends the host program and
  *   leaves all objects usable; Rust's message about it also goes to stderr.
  * - Memory whose size depends on an input or a result can be refused, and is then LEAFLESS_E_NO_MEMORY. What remains
- *   is at most 2 KiB a piece, and what threads cost; if even that cannot be had, the process ends.
+ *   is at most 2 KiB a piece, what threads cost, and what polygons with holes or dents are triangulated with, for which
+ *   as much was asked for, and given back, before; if even that cannot be had, the process ends.
  * - Objects are opaque handles. What _new, _open and the like return is a reference; _ref gives one more; _free
  *   gives one back, and takes NULL. References may be given back in any order: what an object needs of another it
  *   shares. Pointers from _peek functions belong to the object.

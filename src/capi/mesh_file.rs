@@ -22,7 +22,7 @@ pub enum leafless_mesh_format {
     LEAFLESS_MESH_FORMAT_PLY = 3,
     /// Geomview OFF.
     LEAFLESS_MESH_FORMAT_OFF = 4,
-    /// 3MF, the 3D Manufacturing Format.
+    /// 3MF, the 3D Manufacturing Format. What it means by its surfaces is LEAFLESS_FILL_POSITIVE.
     LEAFLESS_MESH_FORMAT_3MF = 5,
 }
 
@@ -186,18 +186,20 @@ pub unsafe extern "C" fn leafless_mesh_options_init(
     guard(|| unsafe { initialise(options, struct_size, "options") })
 }
 
-/// Reads a mesh file. Everything in it becomes one mesh, welded as by leafless_mesh_new.
+/// Reads a mesh file. Everything in it becomes one mesh, welded as by leafless_mesh_new; polygons become triangles.
 ///
 /// - Buffers: `path`, `path_length` bytes of UTF-8; `options`, one struct, or NULL; `source`, one struct, or NULL if it
 ///   is not wanted; `mesh`, one pointer.
 /// - Result: `*mesh`, not checked to be closed; `*source`.
-/// - Errors: LEAFLESS_E_MESH_FILE, with the line, facet or byte in the message, if the file cannot be read, if its
+/// - Errors: LEAFLESS_E_MESH_FILE, with the part, line, facet or byte in the message, if the file cannot be read, if its
 ///   format is not known, or if `target` is given and nobody says from which unit; LEAFLESS_E_MESH, with the vertex,
 ///   if a coordinate is beyond ±2^256 once it is scaled; LEAFLESS_E_ARGUMENT if the format or a unit is none, or the
 ///   scale out of range; LEAFLESS_E_IO; LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY.
 /// - Ownership: give `*mesh` back with leafless_mesh_free.
 /// - Threads: any.
-/// - Untrusted input: any file; memory is at most a small multiple of its length.
+/// - Untrusted input: any file. Memory is at most a small multiple of its length; of a 3MF, which is compressed, of 64
+///   times its length and 16 MiB, and its instances may come to 2^25 vertices and 2^25 triangles, or to as many as the
+///   file has.
 /// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_mesh_open(
@@ -223,7 +225,7 @@ pub unsafe extern "C" fn leafless_mesh_open(
 /// - Errors: as leafless_mesh_open, but those of paths.
 /// - Ownership: the bytes are not kept; give `*mesh` back with leafless_mesh_free.
 /// - Threads: any.
-/// - Untrusted input: any bytes; memory is at most a small multiple of their number.
+/// - Untrusted input: any bytes; memory as for leafless_mesh_open.
 /// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_mesh_from_bytes(
