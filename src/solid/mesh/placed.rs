@@ -39,6 +39,8 @@ pub(super) struct Placed {
     /// How far the surface may lie from the mesh, in finest cells: what was moved to close hair cracks.
     displacement: f64,
     vertices: Vec<Vertex>,
+    /// The vertices' ranks once more, close together: all that is looked at of most triangles.
+    ranks: Vec<[i32; 3]>,
     /// What closes the surface. Its triangles are numbered on from the mesh's.
     pub(super) caps: Caps,
 }
@@ -52,9 +54,12 @@ impl Placed {
         let mut vertices = Vec::new();
         vertices.try_reserve_exact(mesh.vertices().len()).map_err(|_| Error::OutOfMemory)?;
         vertices.extend(mesh.vertices().iter().map(|&vertex| place(frame, vertex)));
+        let mut ranks = Vec::new();
+        ranks.try_reserve_exact(vertices.len()).map_err(|_| Error::OutOfMemory)?;
+        ranks.extend(vertices.iter().map(|vertex| vertex.rank));
         let displacement = mesh.displacement() / frame.cell_size() * (1.0 + 4.0 * f64::EPSILON);
         let caps = Caps::new(loops, &vertices, displacement)?;
-        Ok(Placed { frame: *frame, mesh, displacement, vertices, caps })
+        Ok(Placed { frame: *frame, mesh, displacement, vertices, ranks, caps })
     }
 
     /// How many triangles the surface and its caps have.
@@ -83,6 +88,21 @@ impl Placed {
     #[inline(always)]
     pub(super) fn corners(&self, triangle: u32) -> Corners<'_> {
         self.triangle(triangle).map(|vertex| self.vertex(vertex))
+    }
+
+    /// The lowest and the highest ranks of a triangle's corners.
+    #[inline(always)]
+    pub(super) fn rank_box(&self, triangle: u32) -> [[i32; 3]; 2] {
+        let [a, b, c] = self.triangle(triangle).map(|vertex| self.ranks[vertex as usize]);
+        let least = |axis: usize| a[axis].min(b[axis]).min(c[axis]);
+        let most = |axis: usize| a[axis].max(b[axis]).max(c[axis]);
+        [[least(0), least(1), least(2)], [most(0), most(1), most(2)]]
+    }
+
+    /// Whether the surface lies less than half a cell from the mesh: a vertex of a lower rank than k is then below the
+    /// plane k, one of a higher rank above it.
+    pub(super) fn ranks_tell(&self) -> bool {
+        self.displacement < 0.25
     }
 
     /// The corners as the mesh has them, in model units.

@@ -122,57 +122,51 @@ impl MeshSolid {
         }
     }
 
-    /// Winding numbers of the lowest centres of a cell's eight children of edge `half`, the cell's own being
-    /// that of child 0, and what of the difference caps make.
-    fn windings(&self, triangles: &[u32], at: [i32; 3], half: i32, own: i32) -> [[i32; 8]; 2] {
-        // What changes on the ways along x, y and z, by the child at whose lowest centre the way begins.
-        let mut steps = [[0; 8]; 2];
+    /// Adds to `steps` by how much a triangle changes the winding number on the ways along x, y and z to the lowest
+    /// centres of a cell's children of edge `half`, by the child that the way leads to.
+    #[inline]
+    fn pierce(
+        &self,
+        triangle: u32,
+        [low, high]: [[i32; 3]; 2],
+        at: [i32; 3],
+        half: i32,
+        steps: &mut [[i32; 8]; 2],
+    ) {
         let next = at.map(|a| a + half);
-        for &triangle in triangles {
-            let corners = self.placed.corners(triangle);
-            let ranges = [ranks(&corners, 0), ranks(&corners, 1), ranks(&corners, 2)];
-            let spans = |axis: usize, k: i32| ranges[axis].0 <= k && k < ranges[axis].1;
-            // The way along an axis leads from `at` to `next`: it passes the triangle between two ranks.
-            let reaches = |axis: usize| ranges[axis].0 <= next[axis] && ranges[axis].1 > at[axis];
-            let mut pierce = |w: usize, u: i32, v: i32, child: usize| {
-                let mut seen = Projection::new(&self.placed, triangle, corners, w);
-                if let Some(span) = seen.span(v).filter(|span| span.first <= u && u < span.end) {
-                    let above = seen.above(u, v, span.step);
-                    if at[w] < above && above <= next[w] {
-                        steps[0][child] += span.step;
-                        if self.placed.is_cap(triangle) {
-                            steps[1][child] += span.step;
-                        }
-                    }
-                }
-            };
-            let [x, y, z] = at;
-            if reaches(0) && spans(1, y) && spans(2, z) {
-                pierce(0, y, z, 1);
-            }
-            if reaches(1) && spans(2, z) {
-                for (child, x) in [(2, x), (3, next[0])] {
-                    if spans(0, x) {
-                        pierce(1, x, z, child);
+        let spans = |axis: usize, k: i32| low[axis] <= k && k < high[axis];
+        // The way along an axis leads from `at` to `next`: it passes the triangle between two ranks.
+        let reaches = |axis: usize| low[axis] <= next[axis] && high[axis] > at[axis];
+        let mut pierce = |w: usize, u: i32, v: i32, child: usize| {
+            let mut seen = Projection::new(&self.placed, triangle, self.placed.corners(triangle), w);
+            if let Some(span) = seen.span(v).filter(|span| span.first <= u && u < span.end) {
+                let above = seen.above(u, v, span.step);
+                if at[w] < above && above <= next[w] {
+                    steps[0][child] += span.step;
+                    if self.placed.is_cap(triangle) {
+                        steps[1][child] += span.step;
                     }
                 }
             }
-            if reaches(2) {
-                for (child, x, y) in [(4, x, y), (5, next[0], y), (6, x, next[1]), (7, next[0], next[1])] {
-                    if spans(0, x) && spans(1, y) {
-                        pierce(2, x, y, child);
-                    }
+        };
+        let [x, y, z] = at;
+        if reaches(0) && spans(1, y) && spans(2, z) {
+            pierce(0, y, z, 1);
+        }
+        if reaches(1) && spans(2, z) {
+            for (child, x) in [(2, x), (3, next[0])] {
+                if spans(0, x) {
+                    pierce(1, x, z, child);
                 }
             }
         }
-        for steps in &mut steps {
-            for child in 2..8 {
-                // The way to children 2 and 3 begins at 0 and 1, to 4 … 7 at 0 … 3.
-                steps[child] += steps[child - if child < 4 { 2 } else { 4 }];
+        if reaches(2) {
+            for (child, x, y) in [(4, x, y), (5, next[0], y), (6, x, next[1]), (7, next[0], next[1])] {
+                if spans(0, x) && spans(1, y) {
+                    pierce(2, x, y, child);
+                }
             }
         }
-        let [all, caps] = steps;
-        [all.map(|step| own + step), caps]
     }
 }
 
@@ -234,14 +228,18 @@ impl Solid for MeshSolid {
         let height = depth - cube.cell.level - 1;
         let MeshScratch { triangles, masks, surroundings, .. } = scratch;
         let range = part.first..part.first + part.count;
-        let [windings, jumps] = self.windings(&triangles[range.clone()], at, half, part.winding);
 
         masks.clear();
         masks.try_reserve(part.count).map_err(|_| Error::OutOfMemory)?;
         let mut counts = [0; 8];
-        for &triangle in &triangles[range.clone()] {
-            let corners = self.placed.corners(triangle);
-            let mask = children_cut(&self.placed, &corners, at, half, height);
+        let mut steps = [[0; 8]; 2];
+        for &triangle in &triangles[range] {
+            let ranks = self.placed.rank_box(triangle);
+            self.pierce(triangle, ranks, at, half, &mut steps);
+            let mask = match only_child(ranks, at, half) {
+                Some(mask) if self.placed.ranks_tell() && height > 0 => mask,
+                _ => children_cut(&self.placed, &self.placed.corners(triangle), at, half, height),
+            };
             masks.push(mask);
             counts.iter_mut().enumerate().for_each(|(k, count)| *count += (mask >> k & 1) as usize);
         }
@@ -263,12 +261,19 @@ impl Solid for MeshSolid {
                 next[k] += 1;
             }
         }
+        for steps in &mut steps {
+            for child in 2..8 {
+                // The way to children 2 and 3 begins at 0 and 1, to 4 … 7 at 0 … 3.
+                steps[child] += steps[child - if child < 4 { 2 } else { 4 }];
+            }
+        }
+        let [steps, jumps] = steps;
         let mut verdicts = [Verdict::Undecided; 8];
         for (k, verdict) in verdicts.iter_mut().enumerate() {
             let (first, count) = (firsts[k], counts[k]);
             let at = [0, 1, 2].map(|axis| at[axis] + if k >> axis & 1 != 0 { half } else { 0 });
             let caps = part.caps.map(|branch| branch.plus(jumps[k]));
-            let part = MeshPart { first, count, winding: windings[k], caps };
+            let part = MeshPart { first, count, winding: part.winding + steps[k], caps };
             *verdict = self.verdict(surroundings, &triangles[first..first + count], at, half, part);
         }
         Ok(verdicts)
@@ -335,6 +340,24 @@ impl Solid for MeshSolid {
         to.triangles.extend_from_slice(&from.triangles[part.first..part.first + part.count]);
         Ok(MeshPart { first, ..*part })
     }
+}
+
+/// The child of edge `half` of the cell at `at` in whose interior a triangle lies, if its ranks tell: what
+/// [`children_cut`] would find, without a look at the corners.
+#[inline(always)]
+fn only_child([low, high]: [[i32; 3]; 2], at: [i32; 3], half: i32) -> Option<u8> {
+    let mut mask = 0xFFu8;
+    for (axis, upper) in [0b1010_1010u8, 0b1100_1100, 0b1111_0000].into_iter().enumerate() {
+        let (bottom, middle, top) = (at[axis], at[axis] + half, at[axis] + 2 * half);
+        if low[axis] > bottom && high[axis] < middle {
+            mask &= !upper;
+        } else if low[axis] > middle && high[axis] < top {
+            mask &= upper;
+        } else {
+            return None;
+        }
+    }
+    Some(mask)
 }
 
 /// Which of the children of edge `half` of the cell at `at` a triangle cuts.
