@@ -170,6 +170,9 @@ impl MeshSolid {
     }
 }
 
+/// How many triangles are looked at together.
+const BATCH: usize = 64;
+
 /// The lowest finest cell of `cell`, and its edge in finest cells.
 fn extent(cell: Cell, depth: u8) -> ([i32; 3], i32) {
     (cell.first_at(depth).at.map(|a| a as i32), 1 << (depth - cell.level))
@@ -233,15 +236,21 @@ impl Solid for MeshSolid {
         masks.try_reserve(part.count).map_err(|_| Error::OutOfMemory)?;
         let mut counts = [0; 8];
         let mut steps = [[0; 8]; 2];
-        for &triangle in &triangles[range] {
-            let ranks = self.placed.rank_box(triangle);
-            self.pierce(triangle, ranks, at, half, &mut steps);
-            let mask = match only_child(ranks, at, half) {
-                Some(mask) if self.placed.ranks_tell() && height > 0 => mask,
-                _ => children_cut(&self.placed, &self.placed.corners(triangle), at, half, height),
-            };
-            masks.push(mask);
-            counts.iter_mut().enumerate().for_each(|(k, count)| *count += (mask >> k & 1) as usize);
+        let mut boxes = [[[0; 3]; 2]; BATCH];
+        for batch in triangles[range].chunks(BATCH) {
+            // Memory is slow: many are asked for before the first is looked at.
+            for (ranks, &triangle) in boxes.iter_mut().zip(batch) {
+                *ranks = self.placed.rank_box(triangle);
+            }
+            for (&ranks, &triangle) in boxes.iter().zip(batch) {
+                self.pierce(triangle, ranks, at, half, &mut steps);
+                let mask = match only_child(ranks, at, half) {
+                    Some(mask) if self.placed.ranks_tell() && height > 0 => mask,
+                    _ => children_cut(&self.placed, &self.placed.corners(triangle), at, half, height),
+                };
+                masks.push(mask);
+                counts.iter_mut().enumerate().for_each(|(k, count)| *count += (mask >> k & 1) as usize);
+            }
         }
         let top = triangles.len();
         triangles.try_reserve(counts.iter().sum()).map_err(|_| Error::OutOfMemory)?;
