@@ -565,6 +565,42 @@ fn memory_of_polyhedra_is_a_small_multiple_of_their_corners() {
     }
 }
 
+/// What the reader of 3MF promises of parts whose instances come to nothing.
+#[cfg(feature = "threemf")]
+#[test]
+fn packages_take_twenty_times_their_parts() {
+    let vertices: String = (0..9999).map(|i| format!("<vertex x=\"{i}\" y=\"0\" z=\"0\"/>")).collect();
+    let triangles = "<triangle v1=\"0\" v2=\"1\" v3=\"2\"/>".repeat(9000);
+    let mesh = format!(
+        "<object id=\"1\"><mesh><vertices>{vertices}</vertices><triangles>{triangles}</triangles></mesh></object>"
+    );
+    let empty = "<object id=\"1\"><mesh/></object>";
+    let components = "<component objectid=\"1\"/>".repeat(9000);
+    let components = format!("{empty}<object id=\"2\"><components>{components}</components></object>");
+    let objects: String = (1..9000).map(|id| format!("<object id=\"{id}\"/>")).collect();
+    let items = "<item objectid=\"1\"/>";
+    let mut worst = 0.0_f64;
+    for (name, most, text) in [
+        ("mesh", 8.0, zip::model("", &mesh, items)),
+        ("components", 20.0, zip::model("", &components, "<item objectid=\"2\"/>")),
+        ("objects", 20.0, zip::model("", &objects, "")),
+        ("items", 20.0, zip::model("", empty, &items.repeat(9000))),
+    ] {
+        let package = zip::zip(&[
+            zip::Entry::stored("[Content_Types].xml", zip::CONTENT_TYPES),
+            zip::Entry::stored("_rels/.rels", zip::RELATIONSHIPS),
+            zip::Entry::stored("3D/3dmodel.model", &text),
+        ]);
+        let (result, held) = most_held(|| file::read_mesh(&package, &Default::default()));
+        result.unwrap();
+        let times = held as f64 / text.len() as f64;
+        println!("{name}: {times:.1} times {} bytes", text.len());
+        assert!(times < most, "{name}: {times}");
+        worst = worst.max(times);
+    }
+    assert!(worst > 1.0, "{worst}");
+}
+
 /// What the readers of meshes promise.
 #[test]
 fn meshes_take_a_small_multiple_of_their_files() {
