@@ -177,15 +177,18 @@ fn facets() -> Vec<[[f64; 3]; 3]> {
 
 /// An OBJ of faces with many corners, some of them not convex, before their vertices.
 fn polygons() -> String {
-    const N: u32 = 40;
+    const FACES: u32 = 60;
+    // Few corners: the crate that triangulates faces cannot be refused memory.
+    const N: u32 = 12;
     let mut text = String::from("mtllib of a name that nobody looks for\n");
-    for k in 0..20 {
+    for k in 0..FACES {
         let corners: String = (1..=N).map(|i| format!(" {}", i + N * k)).collect();
         text += &format!("f{corners}\n");
     }
-    for k in 0..20 * N {
+    for k in 0..FACES * N {
         let angle = std::f64::consts::TAU * f64::from(k % N) / f64::from(N);
-        let radius = if k % 80 < N || k % 2 == 0 { 3.0 } else { 2.0 };
+        // Every other one is a star.
+        let radius = if k % (2 * N) < N || k % 2 == 0 { 3.0 } else { 2.0 };
         text += &format!("v {} {} {}\n", radius * angle.cos(), radius * angle.sin(), k / N);
     }
     text

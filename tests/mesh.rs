@@ -726,12 +726,19 @@ fn meshes_that_bound_nothing_are_refused() {
         assert_eq!(refusal(&whole, fill), None);
         assert_eq!(refusal(&Soup::new(), fill), Some(MeshError::Empty));
         assert_eq!(refusal(&vec![[[1.0; 3], [1.0; 3], [2.0; 3]]], fill), Some(MeshError::Empty));
-        assert_eq!(refusal(&whole[1..].to_vec(), fill), Some(MeshError::Open { edges: 3 }));
+        // Where the winding number decides, open surfaces bound something, too.
+        let expected = (fill == FillRule::EvenOdd).then_some(MeshError::Open { edges: 3 });
+        assert_eq!(refusal(&whole[1..].to_vec(), fill), expected);
     }
     let mut turned = whole.clone();
     turned[4].swap(0, 1);
-    assert_eq!(refusal(&turned, FillRule::NonZero), Some(MeshError::Unoriented { edges: 3 }));
-    assert_eq!(refusal(&turned, FillRule::EvenOdd), None);
+    assert_eq!(
+        mesh(&turned).check_closed(FillRule::NonZero).unwrap_err().to_string(),
+        MeshError::Unoriented { edges: 3 }.to_string()
+    );
+    for fill in FILLS {
+        assert_eq!(refusal(&turned, fill), None);
+    }
     // Which way the triangles face does not matter then.
     let other = Frame::new([0.3; 3], 11.0, 6).unwrap();
     for frame in [frame, other] {

@@ -201,7 +201,8 @@ impl MeshSolid {
         }
         let here = here.at_centre(at);
         let mut there = self.caps_at(surroundings, at, part);
-        if !(there.doubt < SURE) {
+        let is_known = there.doubt < SURE;
+        if !is_known {
             there = at_centre(&self.placed, at, ENOUGH);
         }
         if here.doubt < SURE && there.doubt < SURE {

@@ -447,22 +447,24 @@ impl Node {
         let towards = self.centre - sum.point;
         let distance = length(towards);
         let (gap, clear) = (distance - self.radius, distance - self.radius - radius);
-        // Also true for NaN.
-        if !(clear > self.radius) {
+        let is_apart = clear > self.radius;
+        if !is_apart {
             return false;
         }
         // The n-th derivative of the kernel y/|y|³ is at most (n + 1)!/|y|ⁿ⁺²: it is one of 1/|y|, which is harmonic, so
         // that it is largest along y. (The terms with 1e-11 are for what is rounded.)
         let (near, close) = (SCALE / (gap * gap), SCALE / (clear * clear * clear * clear));
         let error = (3.0 * self.spread / (gap * gap) + 1e-11 * self.size) * near;
-        if !(error <= enough) {
+        let is_exact = error <= enough;
+        if !is_exact {
             return false;
         }
         let slant = (3.0 * self.radius * self.radius / (gap * gap) + 1e-11) * self.rim * near;
         let bend = (6.0 * self.radius / gap + 1e-11) * self.rim * near / gap;
         let (by_rims, by_areas) = (6.0 * self.rim * close, 24.0 * self.size * close / clear);
         let jerk = by_rims.max(by_areas);
-        if !(error + (slant + (0.5 * bend + jerk / 6.0 * radius) * radius) * radius <= enough) {
+        let is_smooth = error + (slant + (0.5 * bend + jerk / 6.0 * radius) * radius) * radius <= enough;
+        if !is_smooth {
             return false;
         }
         let inverse = 1.0 / distance;
@@ -505,8 +507,8 @@ impl Local {
         let length = self::length(edge);
         let along = if length > 0.0 { (-from.dot(edge) / (length * length)).clamp(0.0, 1.0) } else { 0.0 };
         let distance = self::length(from + along * edge) * (1.0 - 1e-9) - 1e-9 * length.min(1.0) - radius;
-        // Also true for NaN.
-        if !(distance > 0.0) {
+        let is_apart = distance > 0.0;
+        if !is_apart {
             return None;
         }
         let open = 1.0 + cosine;
