@@ -1,11 +1,13 @@
 //! Triangle meshes as solids.
 //!
-//! The truth for a closed mesh is the set of points with a non-zero winding number (or an odd one, on
-//! request), so that overlapping bodies, nested shells and shells turned inside out have a meaning.
+//! The truth is the set of points with a non-zero winding number (or a positive or an odd one, on request), so
+//! that overlapping bodies, nested shells and shells turned inside out have a meaning. Where a mesh is not closed the
+//! winding number is not an integer, and the nearest one decides: a convention, and said to be one.
 //!
-//! Classification is certified: the cells that a triangle cuts stay PARTIAL and none is ever missed, every
-//! other cell is wholly on one side, and which side is an exact integer, the winding number of its lowest
-//! centre, carried from cell to cell along lines that count the triangles they pierce.
+//! Classification is certified: the cells that a triangle cuts stay PARTIAL and none is ever missed. Every other cell of a
+//! closed mesh is wholly on one side, and which side is an exact integer, the winding number of its lowest centre,
+//! carried from cell to cell along lines that count the triangles they pierce. An open mesh is closed by caps for that
+//! (`boundary`), whose own winding number is then taken off with bounds of its error and its slope (`winding`, `open`).
 
 mod boundary;
 mod crossing;
