@@ -2,7 +2,7 @@
    leafless_fill; against the definition, a sum of solid angles. */
 #include "check.h"
 
-enum { DEPTH = 6, CELLS = 1 << DEPTH, POINTS = 5000, MOST = 64 };
+enum { DEPTH = 6, CELLS = 1 << DEPTH, POINTS = 2000, MOST = 64 };
 
 typedef struct surface {
     double vertices[MOST][3];
@@ -238,11 +238,12 @@ static void damaged(const surface *closed, uint32_t fill) {
     CHECK(agrees(&mesh, fill) < few);
     for (i = 0; i < 8; i++) {
         remove_triangle(&mesh, 0);
-        (void)agrees(&mesh, fill);
+        if (i % 4 == 3) {
+            (void)agrees(&mesh, fill);
+        }
     }
     mesh = *closed;
     turn_over(&mesh, 5);
-    (void)agrees(&mesh, fill);
     turn_over(&mesh, 10);
     (void)agrees(&mesh, fill);
 }

@@ -11,7 +11,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { AROUND = 48, UP = 12, DEPTH = 8, WORST = 10 };
+enum { AROUND = 48, UP = 12, DEPTH = 7, WORST = 10 };
 
 /* What scanners write: a place and a colour. */
 typedef struct {
