@@ -286,6 +286,41 @@ void numbers_of_threads(const std::vector<uint32_t> &numbers) {
     leafless_solid_free(solid);
 }
 
+// An open mesh of which nobody has asked anything yet; and its octree is the same for any number of threads.
+void open_mesh() {
+    const leafless_frame frame = check_frame(6);
+    leafless_mesh *mesh = check_some_of_cube(9);
+    leafless_octree *octrees[THREADS] = {};
+    in_all_threads([&](int number) {
+        leafless_mesh_report report;
+        leafless_mesh_defect defect;
+        uint64_t count = 0;
+        const bool asks_first = number % 2 == 0;
+        if (asks_first) {
+            OK(leafless_mesh_describe(mesh, &report));
+        }
+        OK(leafless_mesh_defects(mesh, 1, &defect, 1, &count));
+        CHECK(count == 1 && defect.kind == LEAFLESS_DEFECT_HOLE);
+        FAILS(LEAFLESS_E_MESH, leafless_mesh_check_closed(mesh, LEAFLESS_FILL_NON_ZERO));
+        leafless_solid *solid = nullptr;
+        OK(leafless_solid_new_mesh(mesh, &frame, LEAFLESS_FILL_NON_ZERO, &solid));
+        leafless_options options;
+        OK(leafless_options_init(&options, sizeof options));
+        options.threads = uint32_t(number) % 4 + 1;
+        OK(leafless_octree_build(solid, &frame, LEAFLESS_RULE_CERTIFIED, &options, &octrees[number]));
+        leafless_solid_free(solid);
+        OK(leafless_mesh_describe(mesh, &report));
+        CHECK(report.boundary_edges > 0 && report.open_bodies == 1 && report.triangles == 9);
+    });
+    for (leafless_octree *octree : octrees) {
+        CHECK(check_same(octree, octrees[0]));
+    }
+    for (leafless_octree *octree : octrees) {
+        leafless_octree_free(octree);
+    }
+    leafless_mesh_free(mesh);
+}
+
 }  // namespace
 
 int main(int argc, char **) {
@@ -304,6 +339,7 @@ int main(int argc, char **) {
     leafless_octree_free(mapped);
     references();
     solids();
+    open_mesh();
     messages();
     return 0;
 }
