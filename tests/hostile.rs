@@ -120,8 +120,12 @@ fn the_seeds_are_good() {
 #[test]
 fn what_the_fuzzer_found_interesting() {
     type Body = fn(&[u8]);
-    let targets: [(&str, Body); 3] =
-        [("ways_in", bodies::ways_in), ("queries", bodies::queries), ("set_algebra", bodies::set_algebra)];
+    let targets: [(&str, Body); 4] = [
+        ("ways_in", bodies::ways_in),
+        ("queries", bodies::queries),
+        ("set_algebra", bodies::set_algebra),
+        ("meshes", bodies::meshes::meshes),
+    ];
     for (target, body) in targets {
         let corpus = Path::new(env!("CARGO_MANIFEST_DIR")).join("fuzz/corpus").join(target);
         let mut count = 0;
