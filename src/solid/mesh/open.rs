@@ -25,8 +25,9 @@ const HALF_DIAGONAL: f64 = 0.866_025_404;
 /// Two winding numbers that are known so well differ by the nearest integer, if they should differ by an integer.
 const SURE: f64 = 0.2;
 
-/// Error that a group of caps may add in a cell.
+/// Error that a group of caps may add in a cell, and in one that no others inherit from.
 const ENOUGH: f64 = 1.0 / 16384.0;
+const ENOUGH_FOR_ITSELF: f64 = 1.0 / 1024.0;
 
 /// Error that a group of caps may add if a centre's side hangs on it.
 const LEAST: f64 = 1.0 / 1073741824.0;
@@ -74,8 +75,8 @@ impl Surroundings {
             return *local;
         }
         let radius = size as f64 * HALF_DIAGONAL;
-        let cell = (size == 1).then_some(corner);
-        let local = placed.caps.local(placed, middle(corner, size), radius, ENOUGH, cell);
+        let (enough, cell) = if size > 1 { (ENOUGH, None) } else { (ENOUGH_FOR_ITSELF, Some(corner)) };
+        let local = placed.caps.local(placed, middle(corner, size), radius, enough, cell);
         *slot = Some((corner, local));
         local
     }
