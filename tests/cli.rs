@@ -416,7 +416,7 @@ fn open_meshes_are_taken_with_a_warning() {
             assert_eq!(json["mesh"]["boundary_edges"], boundary);
             assert_eq!(json["mesh"]["misoriented_edges"], misoriented);
             // A twelfth of the surface is missing, and most of the cube decided nevertheless.
-            assert!(lower > 2.0 && lower < 8.0 && 8.0 <= upper && upper < 14.0, "{lower} {upper}");
+            assert!(lower > 2.0 && lower < 8.0 && (8.0..14.0).contains(&upper), "{lower} {upper}");
         }
         let info = place.run(&format!("info {name} --json")).good().json();
         assert_eq!((&info["closed"], &info["volume"]), (&false.into(), &Value::Null));
