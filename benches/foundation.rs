@@ -4,9 +4,9 @@
 //! LEAFLESS_MODELS=/path/to/models cargo bench --bench foundation
 //! ```
 //!
-//! The models are `featuretype.STL` (a machined part, 3 476 triangles) and `bunny-closed.stl` (a scan, 69 674
-//! triangles); without them a part that the library makes itself takes their place. Figures measured with this
-//! file, and what limits them, stand in `benches/README.md`.
+//! The models are `featuretype.STL` (a machined part, 3 476 triangles), `bunny-closed.stl` (a scan, 69 674
+//! triangles) and `stanford-bunny.obj` (the same with holes); without them a part that the library makes itself
+//! takes their place. Figures measured with this file, and what limits them, stand in `benches/README.md`.
 
 use criterion::{BatchSize, Criterion, Throughput, criterion_group, criterion_main};
 use leafless::{
@@ -26,7 +26,12 @@ fn model(name: &str) -> Vec<u8> {
         Some(folder) => std::fs::read(Path::new(&folder).join(name)).expect(name),
         None => {
             eprintln!("SKIPPED {name}: LEAFLESS_MODELS is not set; a generated mesh takes its place");
-            file::write_stl(&torus(if name.starts_with("bunny") { 187 } else { 42 })).expect("a torus")
+            let mut torus = torus(if name.contains("bunny") { 187 } else { 42 });
+            if name.starts_with("stanford") {
+                torus = TriangleMesh::new(torus.vertices().into(), torus.triangles()[400..].into())
+                    .expect("a torus");
+            }
+            file::write_stl(&torus).expect("a torus")
         }
     }
 }
@@ -48,7 +53,8 @@ fn torus(n: u32) -> TriangleMesh {
 }
 
 fn mesh(bytes: &[u8]) -> Arc<TriangleMesh> {
-    Arc::new(file::read_stl(bytes).and_then(TriangleMesh::sewn).expect("a closed mesh"))
+    let file = file::read_mesh(bytes, &file::MeshOptions::default()).expect("a mesh");
+    Arc::new(file.mesh.sewn().expect("a mesh"))
 }
 
 fn frame(mesh: &TriangleMesh) -> Frame {
@@ -57,20 +63,48 @@ fn frame(mesh: &TriangleMesh) -> Frame {
 }
 
 fn octree(mesh: &Arc<TriangleMesh>, frame: &Frame, rule: Rule) -> Octree {
-    let solid = MeshSolid::new(mesh.clone(), frame, FillRule::NonZero).expect("a closed mesh");
+    let solid = MeshSolid::new(mesh.clone(), frame, FillRule::NonZero).expect("a mesh");
     build(&solid, frame, rule, &Control::threads(1)).expect("an octree")
 }
 
 fn voxelise(c: &mut Criterion) {
     let mut group = c.benchmark_group("voxelise 1024³");
     group.sample_size(20);
-    for name in ["featuretype.STL", "bunny-closed.stl"] {
+    for name in ["featuretype.STL", "bunny-closed.stl", "stanford-bunny.obj"] {
         let bytes = model(name);
         group.bench_function(format!("{name} read"), |b| b.iter(|| mesh(black_box(&bytes))));
         let mesh = mesh(&bytes);
         let frame = frame(&mesh);
         for rule in [Rule::Sampled, Rule::Certified] {
             group.bench_function(format!("{name} {rule:?}"), |b| b.iter(|| octree(&mesh, &frame, rule)));
+        }
+    }
+    group.finish();
+}
+
+/// A mesh of five million triangles, as large as cells of the finest level or smaller: from the mesh in memory to the
+/// octree, on one and on two threads.
+fn large(c: &mut Criterion) {
+    let mut group = c.benchmark_group("five million triangles, 1024³");
+    group.sample_size(10);
+    let mesh = Arc::new(torus(1582));
+    let frame = frame(&mesh);
+    let threads: &[usize] = if cfg!(feature = "parallel") { &[1, 2] } else { &[1] };
+    for rule in [Rule::Sampled, Rule::Certified] {
+        for &threads in threads {
+            group.bench_function(format!("{rule:?}, {threads}"), |b| {
+                // Of a mesh that was never looked at.
+                let fresh =
+                    || TriangleMesh::new(mesh.vertices().into(), mesh.triangles().into()).expect("a mesh");
+                b.iter_batched(
+                    fresh,
+                    |mesh| {
+                        let solid = MeshSolid::new(mesh, &frame, FillRule::NonZero).expect("a mesh");
+                        build(&solid, &frame, rule, &Control::threads(threads)).expect("an octree")
+                    },
+                    BatchSize::PerIteration,
+                );
+            });
         }
     }
     group.finish();
@@ -182,5 +216,5 @@ fn files(c: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, voxelise, booleans, queries, files);
+criterion_group!(benches, voxelise, large, booleans, queries, files);
 criterion_main!(benches);

@@ -33,8 +33,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     } else {
         let bytes = input.read()?;
         if !bytes.starts_with(&file::MAGIC) && arguments.reading.format_of(&input, &bytes).is_some() {
-            let mesh = arguments.reading.mesh(&input, &bytes)?;
-            return mesh::tell(&input, &mesh, bytes.len() as u64, arguments.json);
+            let length = bytes.len() as u64;
+            let mesh = arguments.reading.mesh(&input, bytes)?;
+            return mesh::tell(&input, &mesh, length, arguments.json);
         }
         (file::from_bytes(&bytes).of(&input)?, bytes.len() as u64)
     };

@@ -75,14 +75,16 @@ impl Reading {
             return Err(Failure::of(input, "this is a solid already, not a mesh"));
         }
         let source = format!("crc32:{:08x} bytes:{}", crc32fast::hash(&bytes), bytes.len());
-        Ok((self.mesh(input, &bytes)?, source))
+        Ok((self.mesh(input, bytes)?, source))
     }
 
     /// The mesh in these bytes of a file, hair cracks closed.
-    pub fn mesh(&self, input: &Input, bytes: &[u8]) -> Result<MeshFile, Failure> {
-        let (format, unit, target) = (self.format_of(input, bytes), self.unit, self.to);
+    pub fn mesh(&self, input: &Input, bytes: Vec<u8>) -> Result<MeshFile, Failure> {
+        let (format, unit, target) = (self.format_of(input, &bytes), self.unit, self.to);
         let options = MeshOptions { format, unit, target, scale: self.scale };
-        let mut file = file::read_mesh(bytes, &options).of(input)?;
+        let mut file = file::read_mesh(&bytes, &options).of(input)?;
+        // Sewing needs memory of its own.
+        drop(bytes);
         file.mesh = file.mesh.sewn().of(input)?;
         Ok(file)
     }

@@ -63,6 +63,11 @@ impl Loops {
         Ok(loops)
     }
 
+    /// How many triangles it takes to fill them all.
+    pub(super) fn caps(&self) -> usize {
+        self.vertices.len() - 2 * self.ends.len()
+    }
+
     pub(super) fn iter(&self) -> impl Iterator<Item = &[u32]> {
         let starts = core::iter::once(0).chain(self.ends.iter().copied());
         starts.zip(&self.ends).map(|(start, &end)| &self.vertices[start..end])

@@ -7,7 +7,7 @@
 use super::boundary::Loops;
 use super::surface::TriangleMesh;
 use super::winding::Caps;
-use crate::error::Error;
+use crate::error::{Error, MeshError};
 use crate::lattice::Frame;
 use crate::lattice::exact::{floor, two_diff, two_product};
 use alloc::sync::Arc;
@@ -49,7 +49,8 @@ pub(super) struct Placed {
 pub(super) type Corners<'p> = [&'p Vertex; 3];
 
 impl Placed {
-    /// The mesh with caps over the loops of its boundary.
+    /// The mesh with caps over the loops of its boundary. Fails with [`MeshError::TooMany`] (of both together) or
+    /// [`Error::OutOfMemory`].
     pub(super) fn new(mesh: Arc<TriangleMesh>, frame: &Frame, loops: &Loops) -> Result<Placed, Error> {
         let mut vertices = Vec::new();
         vertices.try_reserve_exact(mesh.vertices().len()).map_err(|_| Error::OutOfMemory)?;
@@ -58,6 +59,9 @@ impl Placed {
         ranks.try_reserve_exact(vertices.len()).map_err(|_| Error::OutOfMemory)?;
         ranks.extend(vertices.iter().map(|vertex| vertex.rank));
         let displacement = mesh.displacement() / frame.cell_size() * (1.0 + 4.0 * f64::EPSILON);
+        if u32::try_from(mesh.triangles().len() + loops.caps()).is_err() {
+            return Err(MeshError::TooMany.into());
+        }
         let caps = Caps::new(loops, &vertices, displacement)?;
         Ok(Placed { frame: *frame, mesh, displacement, vertices, ranks, caps })
     }

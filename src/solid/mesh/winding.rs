@@ -149,13 +149,10 @@ impl Caps {
     ///
     /// O(n log n) in the boundary's edges, of which there are never fewer than caps; 40 to 100 bytes for each.
     pub(super) fn new(loops: &Loops, vertices: &[Vertex], displacement: f64) -> Result<Caps, Error> {
-        let count = loops.iter().map(|walk| walk.len() - 2).sum::<usize>();
+        let count = loops.caps();
         let mut caps = Caps::default();
         caps.triangles.try_reserve_exact(count).map_err(|_| Error::OutOfMemory)?;
         caps.rims.try_reserve_exact(count).map_err(|_| Error::OutOfMemory)?;
-        if u32::try_from(count).is_err() {
-            return Err(Error::OutOfMemory);
-        }
         let mut slots = Vec::new();
         slots.try_reserve_exact(count).map_err(|_| Error::OutOfMemory)?;
         let mut error = 0f32;
