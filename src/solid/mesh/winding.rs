@@ -345,18 +345,33 @@ impl Caps {
         Some(())
     }
 
-    /// Half the solid angle of a cap on whose edge the centre of a cell lies, as seen from where the symbolic shift puts the
-    /// centre: that of a half-plane. (Zero in a corner, where the surface has a vertex.) `corners` are relative to the
-    /// centre.
+    /// Half the solid angle of a cap on whose edge or corner the centre of a cell lies, as seen from where the symbolic
+    /// shift puts the centre: that of a half-plane or of a sector. `corners` are relative to the centre.
     #[cold]
     fn on_edge(&self, placed: &Placed, cap: usize, cell: [i32; 3], corners: [DVec3; 3]) -> f64 {
         let units = corners.map(DVec3::normalize_or_zero);
-        // Of that edge the ends lie in opposite directions.
-        let cosines = [0, 1, 2].map(|i| units[i].dot(units[(i + 1) % 3]));
-        let i = (0..3).fold(0, |least, i| if cosines[i] < cosines[least] { i } else { least });
-        if cosines[i] >= -0.99 {
-            return 0.0;
-        }
+        let i = if let Some(apex) = units.iter().position(|unit| *unit == DVec3::ZERO) {
+            let (first, last) = ((apex + 1) % 3, (apex + 2) % 3);
+            let (u, v) = (units[first], units[last]);
+            // The shift is along x, so that the apex is seen along −x, and all else of the sector where it is.
+            let (imaginary, real) = (-u.cross(v).x, 1.0 - u.x + u.dot(v) - v.x);
+            if sqrt(real * real + imaginary * imaginary) > 1e-12 {
+                let angle = libm::atan2(imaginary, real);
+                let is_over = real < 0.0 && imaginary.abs() <= 1e-9;
+                let side = if is_over { self.side(placed, cap, cell) } else { None };
+                return side.map_or(angle, |side| side * angle.abs());
+            }
+            // Unless an edge leads along x: then the shifted centre is on that.
+            if u.x > v.x { apex } else { last }
+        } else {
+            // Of that edge the ends lie in opposite directions.
+            let cosines = [0, 1, 2].map(|i| units[i].dot(units[(i + 1) % 3]));
+            let i = (0..3).fold(0, |least, i| if cosines[i] < cosines[least] { i } else { least });
+            if cosines[i] >= -0.99 {
+                return 0.0;
+            }
+            i
+        };
         let along = (corners[(i + 1) % 3] - corners[i]).normalize_or_zero();
         let inward = corners[(i + 2) % 3].reject_from_normalized(along).normalize_or_zero();
         // Along x first; along y if that leads along the edge.
