@@ -129,10 +129,25 @@ impl MeshSolid {
             // Also false for NaN.
             let is_sharp = caps.doubt <= 0.5 * caps.change;
             if is_sharp || is_fresh {
-                return Verdict::Partial(part);
+                // What only the error keeps open is worth a better sum.
+                let excess = self.excess(part.winding as f64 - caps.value).abs();
+                let is_close = size == 1 && !is_cut && caps.doubt < 0.5 && excess > caps.change;
+                return if is_close { self.close_verdict(at, part) } else { Verdict::Partial(part) };
             }
             part.caps = Some(self.branch(surroundings, at, size, is_capped, part));
             is_fresh = true;
+        }
+    }
+
+    /// What is known of a finest cell that nothing cuts, of the best sum.
+    fn close_verdict(&self, at: [i32; 3], part: MeshPart) -> Verdict<MeshPart> {
+        let local = self.placed.caps.local(&self.placed, middle(at, 1), HALF_DIAGONAL, LEAST, Some(at));
+        let caps = local.map_or(Range::UNKNOWN, |local| local.over(at, 1));
+        let excess = self.excess(part.winding as f64 - caps.value);
+        match excess.abs() > caps.change + caps.doubt {
+            true if excess > 0.0 => Verdict::Full,
+            true => Verdict::Empty,
+            false => Verdict::Partial(part),
         }
     }
 
