@@ -1,4 +1,5 @@
-//! Shapes to be damaged, and shapes that are open from the first.
+//! Shapes to be damaged, and shapes that are open from the first. A `detail` of one more means twice as many facets each
+//! way.
 
 use crate::common::Random;
 use crate::shapes::*;
@@ -66,16 +67,16 @@ fn grid(n: usize, m: usize, at: impl Fn(f64, f64) -> [f64; 3]) -> Soup {
 }
 
 /// A wavy sheet without thickness.
-pub fn sheet(centre: [f64; 3], size: f64, wave: f64) -> Soup {
-    grid(12, 12, |u, v| {
+pub fn sheet(centre: [f64; 3], size: f64, wave: f64, detail: usize) -> Soup {
+    grid(6 << detail, 6 << detail, |u, v| {
         let height = wave * ((TAU * u).sin() + (2.0 * TAU * v).cos());
         [centre[0] + size * (u - 0.5), centre[1] + size * (v - 0.5), centre[2] + height]
     })
 }
 
 /// A Möbius strip: no orientation fits its seam.
-pub fn moebius(centre: [f64; 3], radius: f64, width: f64) -> Soup {
-    grid(48, 4, |u, v| {
+pub fn moebius(centre: [f64; 3], radius: f64, width: f64, detail: usize) -> Soup {
+    grid(24 << detail, 4, |u, v| {
         // The last row of vertices is the first one turned over, to the bit.
         let (u, v) = if u == 1.0 { (0.0, 1.0 - v) } else { (u, v) };
         let (turn, side) = (TAU * u, (v - 0.5) * width);
@@ -85,9 +86,9 @@ pub fn moebius(centre: [f64; 3], radius: f64, width: f64) -> Soup {
 }
 
 /// Klein's bottle as a twisted figure of eight: closed, it intersects itself, and no orientation fits.
-pub fn klein(centre: [f64; 3], radius: f64) -> Soup {
+pub fn klein(centre: [f64; 3], radius: f64, detail: usize) -> Soup {
     // The parameters are dyadic, so that the seams meet to the bit.
-    grid(32, 16, |u, v| {
+    grid(16 << detail, 8 << detail, |u, v| {
         let v = if v == 1.0 { 0.0 } else { v };
         let (u, v) = if u == 1.0 { (0.0, if v == 0.0 { 0.0 } else { 1.0 - v }) } else { (u, v) };
         let (turn, around) = (TAU * u, TAU * v);
@@ -107,8 +108,8 @@ pub fn bowl(centre: [f64; 3], radius: f64, times: usize) -> Soup {
 
 /// A band that winds around its axis several times, so that the winding number within is large, and fractional
 /// nearly everywhere.
-pub fn spiral(centre: [f64; 3], radius: f64, turns: f64, height: f64) -> Soup {
-    grid(72, 4, |u, v| {
+pub fn spiral(centre: [f64; 3], radius: f64, turns: f64, height: f64, detail: usize) -> Soup {
+    grid(36 << detail, 4, |u, v| {
         let angle = TAU * turns * u;
         let r = radius * (0.4 + 0.6 * u);
         [centre[0] + r * angle.cos(), centre[1] + r * angle.sin(), centre[2] + height * (v - 0.5)]
@@ -116,8 +117,8 @@ pub fn spiral(centre: [f64; 3], radius: f64, turns: f64, height: f64) -> Soup {
 }
 
 /// A pipe without its ends.
-pub fn pipe(centre: [f64; 3], radius: f64, height: f64) -> Soup {
-    grid(24, 6, |u, v| {
+pub fn pipe(centre: [f64; 3], radius: f64, height: f64, detail: usize) -> Soup {
+    grid(12 << detail, 3 << detail, |u, v| {
         let angle = if u == 1.0 { 0.0 } else { TAU * u };
         [centre[0] + radius * angle.cos(), centre[1] + radius * angle.sin(), centre[2] + height * (v - 0.5)]
     })
