@@ -18,9 +18,10 @@ mod oracle;
 mod shapes;
 mod soup;
 
-use common::Random;
+use common::{Random, alone};
 use descended::Descended;
-use leafless::{FillRule, Frame, MeshSolid, Tag};
+use leafless::file::{MeshOptions, open_mesh, write_to};
+use leafless::{Control, FillRule, Frame, MeshSolid, Octree, Rule, Tag, build};
 use oracle::PointOracle;
 use shapes::*;
 use soup::check::{Case, Effort, Findings, around_centre, examine, is_inside, trees};
@@ -353,4 +354,348 @@ fn every_centre_of_an_aligned_block_without_some_faces() {
     );
     // In the plane of a face that is missing, one half is exactly right.
     assert!(skipped * 20 < asked, "{skipped} of {asked} skipped");
+}
+
+/// How `soup` lies to the universe of a frame.
+#[test]
+fn holes_and_meshes_outside_of_the_universe() {
+    let mut random = Random(12);
+    let centre = [16.0, 16.2, 15.9];
+    let soups = [
+        ("patch", damaged(&sphere(centre, 11.0, 2), Damage::RemovePatch, &mut random, 1.0, false)),
+        ("half", damaged(&torus(centre, 8.0, 4.0, 16, 8), Damage::RemoveHalf, &mut random, 1.0, false)),
+        ("bowl", bowl([16.0, 16.0, 20.0], 12.0, 2)),
+        ("doubled", damaged(&bowl(centre, 12.0, 2), Damage::DuplicateAll, &mut random, 1.0, false)),
+        ("turned", inside_out(bowl([16.0, 16.0, 20.0], 12.0, 2))),
+        ("pipe", pipe(centre, 8.0, 22.0, 0)),
+        ("sheet", sheet(centre, 24.0, 1.5, 0)),
+    ];
+    let frames = [
+        // Parts of it, by the faces, an edge and a corner; a cube within; one beside; one that sees it from afar; and
+        // one in which it is a speck.
+        ([16.1, 0.0, 0.0], 32.0),
+        ([0.0, 0.0, 16.05], 32.0),
+        ([-16.0, -16.1, 0.0], 32.3),
+        ([16.0, 16.0, 16.0], 20.0),
+        ([12.0, 12.5, 11.0], 7.0),
+        ([14.0, 14.0, 20.5], 4.0),
+        ([40.0, 10.0, 10.0], 9.0),
+        ([1e4, -3e5, 7.0], 1e3),
+        ([-500.0, -300.0, -400.0], 1000.0),
+    ];
+    let mut total = Findings::default();
+    for (i, (name, soup)) in soups.iter().enumerate() {
+        for (j, &(origin, edge)) in frames.iter().enumerate() {
+            let depth = if j % 3 == i % 3 { 5 } else { 4 };
+            let frame = Frame::new(origin, edge, depth).unwrap();
+            let what = format!("{name} in {origin:?} + {edge}");
+            total.add(verify(&what, soup, &frame, RULES[(i + j) % 2], false, LIGHT));
+        }
+    }
+    // Far from the origin, where doubles are coarse.
+    for far in [1e5, 1e9] {
+        for (name, soup) in &soups {
+            let soup = moved(soup, |[x, y, z]| [x + far, y - far, z + 3.0 * far]);
+            let frame = Frame::new([far + 1.0, 1.5 - far, 3.0 * far + 0.25], 30.0, 4).unwrap();
+            total.add(verify(&format!("{name} {far} away"), &soup, &frame, FillRule::NonZero, false, LIGHT));
+        }
+    }
+    total.judge();
+}
+
+#[test]
+fn any_number_of_threads_and_blocks_or_not() {
+    let mut random = Random(21);
+    let centre = [16.1, 15.9, 16.2];
+    let kinds = [
+        Damage::RemovePatch,
+        Damage::RemoveFew,
+        Damage::FlipOne,
+        Damage::DuplicateOne,
+        Damage::Stack,
+        Damage::Nest,
+    ];
+    for (i, damage) in kinds.into_iter().enumerate() {
+        let (soup, aligned) = match i % 3 {
+            0 => (sphere(centre, 12.0, 2), false),
+            1 => (refined(&tube([4.0, 4.0, 8.0], [28.0, 28.0, 24.0], 8.0), 1), true),
+            _ => (torus(centre, 9.0, 4.0, 20, 12), false),
+        };
+        let soup = damaged(&soup, damage, &mut random, 1.0, aligned);
+        // At depth 8 blocks are scanned below nodes that are handed from thread to thread.
+        let frame = if aligned { Frame::new([0.0; 3], 32.0, 8).unwrap() } else { odd_frame(&soup, 7) };
+        let solid = solid(&soup, &frame, RULES[i % 2]);
+        for rule in [Rule::Certified, Rule::Sampled] {
+            let tree = build(&solid, &frame, rule, &alone()).unwrap();
+            for threads in [2, 4] {
+                let threaded = build(&solid, &frame, rule, &Control::threads(threads)).unwrap();
+                assert!(threaded == tree, "{damage:?} {rule:?}: {threads} threads");
+                assert!(bytes(&threaded) == bytes(&tree), "{damage:?} {rule:?}: other bytes");
+            }
+            let descended = build(&Descended(&solid), &frame, rule, &alone()).unwrap();
+            assert!(descended == tree, "{damage:?} {rule:?}: by scan and by descent differ");
+        }
+    }
+}
+
+fn bytes(tree: &Octree) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    write_to(tree, &mut bytes).unwrap();
+    bytes
+}
+
+/// A certified and a sampled tree.
+fn both(soup: &Soup, frame: &Frame) -> [Octree; 2] {
+    let solid = solid(soup, frame, FillRule::NonZero);
+    [Rule::Certified, Rule::Sampled].map(|rule| build(&solid, frame, rule, &Control::threads(2)).unwrap())
+}
+
+/// Removes single facets of a soup that is closed, and holds the trees against the intact one's.
+///
+/// Where the winding number is an integer n, without a facet seen at the solid angle Ω it is n ± Ω/4π, and |Ω| < 2π
+/// away from the facet: no winding number crosses ½. So
+///
+/// * the sampled cells are the same, unless their centre is on the facet;
+/// * decided cells never turn from FULL to EMPTY or back;
+/// * beyond d + 2h of the facet, d its diameter and h half the diagonal of a cell, finest cells are decided as they were:
+///   all of the cell is then d + h away, so that Ω ≤ (√3/4) d²/(d + h)², |w − n| < 0.035; and it changes in the
+///   cell by at most 3d h/(4π (d + h)²) ≤ 3/16π < 0.06, both far from ½.
+fn remove_single_facets(name: &str, soup: &Soup, depth: u8, times: usize, random: &mut Random) {
+    let frame = odd_frame(soup, depth);
+    let [intact, sampled] = both(soup, &frame);
+    let half_diagonal = 0.866_025_5 * frame.cell_size();
+    let mut changed = 0;
+    for _ in 0..times {
+        let mut spoiled = soup.clone();
+        let gone = spoiled.swap_remove(random.below(soup.len() as u64) as usize);
+        let edge = |i: usize| {
+            let (a, b) = (gone[i], gone[(i + 1) % 3]);
+            (0..3).map(|axis| (a[axis] - b[axis]).powi(2)).sum::<f64>().sqrt()
+        };
+        let reach = edge(0).max(edge(1)).max(edge(2)) + 2.0 * half_diagonal;
+        let trees = both(&spoiled, &frame);
+        let mut truth = Soupy::new(&spoiled);
+        let n = frame.cells();
+        for (kind, [before, after]) in [[&intact, &trees[0]], [&sampled, &trees[1]]].into_iter().enumerate() {
+            if kind == 1 {
+                assert!(before == after, "{name}: sampled cells changed without {gone:?}");
+                continue;
+            }
+            for at in (0..n).flat_map(|z| (0..n).flat_map(move |y| (0..n).map(move |x| [x, y, z]))) {
+                let tags = [before.view().tag_at(at), after.view().tag_at(at)];
+                if tags[0] == tags[1] {
+                    continue;
+                }
+                changed += 1;
+                let distance = soup::winding::distance(gone, soup::check::centre(&frame, at));
+                assert!(tags.contains(&Tag::Partial), "{name} {at:?}: {tags:?} without {gone:?}");
+                assert!(distance <= reach, "{name} {at:?}: {tags:?} at {distance} of {gone:?}, {reach}");
+                // Where a facet is gone that lay between the numbers 0 and 1, it still bounds the solid.
+                let is_within = distance < 0.5 * frame.cell_size() && tags[1] != Tag::Partial;
+                let between = |winding: f64| (0.05..0.95).contains(&winding.abs());
+                assert!(
+                    !(is_within && between(truth.at(soup::check::centre(&frame, at)).value)),
+                    "{name} {at:?}: {tags:?} on {gone:?}"
+                );
+            }
+        }
+    }
+    println!("{name}: {changed} certified cells changed by {times} facets");
+}
+
+#[test]
+fn a_facet_that_is_gone_changes_little_and_only_near_it() {
+    let mut random = Random(31);
+    remove_single_facets("sphere", &sphere([16.1, 15.9, 16.2], 11.3, 3), 6, 4, &mut random);
+    remove_single_facets("torus", &torus([16.0; 3], 9.0, 4.0, 28, 16), 6, 4, &mut random);
+    remove_single_facets("block", &turned(&block([4.0; 3], [28.0, 20.0, 16.0])), 6, 4, &mut random);
+    remove_single_facets("tube", &turned(&tube([4.0; 3], [28.0, 28.0, 16.0], 6.0)), 6, 4, &mut random);
+    let wound =
+        [sphere([16.0; 3], 11.0, 2), inside_out(sphere([15.0; 3], 7.0, 2)), sphere([19.0; 3], 9.0, 2)];
+    remove_single_facets("wound", &wound.concat(), 6, 4, &mut random);
+    if let Some(soup) = read("featuretype.STL") {
+        remove_single_facets("featuretype", &soup, 7, 3, &mut random);
+    }
+}
+
+/// A model as it is in the file, facet by facet.
+fn read(name: &str) -> Option<Soup> {
+    let mesh = open_mesh(common::model(name)?, &MeshOptions::default()).unwrap().mesh;
+    let vertices = mesh.vertices();
+    Some(mesh.triangles().iter().map(|t| t.map(|v| vertices[v as usize])).collect())
+}
+
+/// What is undecided lies around a surface: that of the mesh, or the membrane over its holes on which the winding
+/// number is ½. Cells of half the edge hold half as much of it.
+#[test]
+fn what_is_undecided_halves_with_every_level() {
+    let mut random = Random(41);
+    let ball = sphere([16.1, 15.9, 16.2], 11.3, 3);
+    let soups = [
+        ("patch", damaged(&ball, Damage::RemovePatch, &mut random, 1.0, false)),
+        ("few", damaged(&ball, Damage::RemoveFew, &mut random, 1.0, false)),
+        ("half", damaged(&ball, Damage::RemoveHalf, &mut random, 1.0, false)),
+        ("flipped", damaged(&ball, Damage::FlipHalf, &mut random, 1.0, false)),
+        ("bowl", bowl([16.3, 16.1, 20.2], 12.0, 3)),
+        ("block", turned(&block([4.0; 3], [28.0, 20.0, 16.0])[2..].to_vec())),
+    ];
+    for (name, soup) in &soups {
+        let frame = odd_frame(soup, 7);
+        let tree = &both(soup, &frame)[0];
+        let statistics = tree.statistics();
+        let open: Vec<f64> =
+            statistics.levels().iter().map(|level| level.volume.upper - level.volume.lower).collect();
+        for pair in open[4..].windows(2) {
+            let ratio = pair[1] / pair[0];
+            assert!((0.4..0.6).contains(&ratio), "{name}: {ratio}, {open:?}");
+        }
+        println!("{name}: {:?}", open[4..].windows(2).map(|pair| pair[1] / pair[0]).collect::<Vec<_>>());
+        // Neither more of it than a layer of cells on the surface and on membranes no larger than it.
+        let area: f64 = soup.iter().map(|f| area(f)).sum();
+        let layer = open[7] / (area * frame.cell_size());
+        assert!((1.0..4.5).contains(&layer), "{name}: a layer of {layer} cells");
+    }
+}
+
+fn area([a, b, c]: &[[f64; 3]; 3]) -> f64 {
+    let side = |to: &[f64; 3]| [0, 1, 2].map(|axis| to[axis] - a[axis]);
+    let (u, v) = (side(b), side(c));
+    let cross = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
+    cross.iter().map(|x| x * x).sum::<f64>().sqrt() / 2.0
+}
+
+/// Models, as they are and damaged.
+fn models(names: &[(&str, u8)], kinds: &[Damage], effort: Effort) {
+    let mut random = Random(51);
+    let mut total = Findings::default();
+    for &(name, depth) in names {
+        let Some(soup) = read(name) else { return };
+        for (i, &damage) in kinds.iter().enumerate() {
+            let frame = odd_frame(&soup, depth);
+            let spoiled = damaged(&soup, damage, &mut random, frame.cell_size(), false);
+            let what = format!("{name} {damage:?}");
+            total.add(verify(&what, &spoiled, &frame, RULES[i % 2], false, effort));
+        }
+    }
+    println!(
+        "{} asked, {} skipped; {} clear, {} open",
+        total.asked, total.skipped, total.clear, total.clear_open
+    );
+    total.judge();
+}
+
+#[test]
+fn models_as_they_come() {
+    let kinds = [Damage::Intact, Damage::RemoveFew, Damage::FlipOne, Damage::RemovePatch];
+    let names = [("multibody.stl", 5), ("wallhole.obj", 5), ("busted.STL", 5), ("featuretype.STL", 5)];
+    models(&names, &kinds, Effort { points: 300, centres: 300, corners: 60, shares: 80 });
+}
+
+#[test]
+#[ignore = "takes many minutes"]
+fn more_models() {
+    let kinds = [
+        Damage::Intact,
+        Damage::RemoveFew,
+        Damage::RemovePatch,
+        Damage::FlipTenth,
+        Damage::DuplicateFifth,
+        Damage::Nest,
+        Damage::Overlap,
+    ];
+    let effort = Effort { points: 2000, centres: 2000, corners: 400, shares: 400 };
+    let small = [
+        ("multibody.stl", 7),
+        ("wallhole.obj", 7),
+        ("busted.STL", 6),
+        ("featuretype.STL", 6),
+        ("spot.obj", 6),
+    ];
+    models(&small, &kinds, effort);
+    let large = [("cycloidal.ply", 6), ("stanford-bunny.obj", 6)];
+    models(&large, &[Damage::Intact, Damage::RemovePatch], Effort { points: 400, centres: 400, ..LIGHT });
+}
+
+/// The sampled volume, relative to another.
+fn off(name: &str, soup: &Soup, frame: &Frame, intact: f64) -> f64 {
+    let volume = both(soup, frame)[1].statistics().volume().lower;
+    println!("{name}: {volume}, {:.4} % off", 100.0 * (volume / intact - 1.0));
+    (volume / intact - 1.0).abs()
+}
+
+/// Holes that are small against the part cost little of its volume. One facet costs nothing at all, so nothing is off but
+/// by rounding; several that hang together lose about what the membrane over them cuts off.
+fn holes_cost_little(name: &str, soup: &Soup, depth: u8, share: f64, random: &mut Random) {
+    let frame = odd_frame(soup, depth);
+    let intact = both(soup, &frame)[1].statistics().volume().lower;
+    for (count, most) in [(1, 1e-9), (10, 0.005), ((soup.len() as f64 * share) as usize, 0.005)] {
+        let mut spoiled = soup.clone();
+        damage::remove(&mut spoiled, random, count);
+        let off = off(&format!("{name} without {count}"), &spoiled, &frame, intact);
+        assert!(off < most, "{name} without {count}: {off}");
+    }
+}
+
+#[test]
+fn small_holes_cost_little_volume() {
+    let mut random = Random(61);
+    holes_cost_little("sphere", &sphere([16.1, 15.9, 16.2], 11.3, 3), 6, 0.02, &mut random);
+    holes_cost_little("torus", &torus([16.0; 3], 9.0, 4.0, 40, 24), 6, 0.02, &mut random);
+}
+
+#[test]
+#[ignore = "takes many minutes"]
+fn small_holes_cost_little_volume_of_models() {
+    let mut random = Random(62);
+    for name in ["featuretype.STL", "plate_holes.STL", "angle_block.STL", "busted.STL", "fandisk.obj"] {
+        let Some(soup) = read(name) else { return };
+        holes_cost_little(name, &soup, 9, 0.01, &mut random);
+    }
+    let (Some(closed), Some(open)) = (read("bunny-closed.stl"), read("stanford-bunny.obj")) else { return };
+    let frame = odd_frame(&closed, 9);
+    let intact = both(&closed, &frame)[1].statistics().volume().lower;
+    // Its five holes are as wide as a tenth of its base.
+    assert!(off("bunny as scanned", &open, &frame, intact) < 0.005);
+    holes_cost_little("bunny", &closed, 9, 0.01, &mut random);
+}
+
+/// How long five million triangles take. (No test of anything but a few points.)
+#[test]
+#[ignore = "takes minutes, and some gigabytes"]
+fn five_million_triangles() {
+    let mut random = Random(71);
+    let whole = torus([16.0, 16.1, 15.9], 9.0, 4.0, 2500, 1000);
+    for (name, share) in [("closed", 0.0), ("a patch", -1.0), ("a thousandth", 0.001), ("a hundredth", 0.01)]
+    {
+        let mut soup = whole.clone();
+        if share < 0.0 {
+            soup = damaged(&soup, Damage::RemovePatch, &mut random, 0.0, false);
+        } else {
+            let count = (share * soup.len() as f64) as usize;
+            damage::remove(&mut soup, &mut random, count);
+        }
+        let frame = Frame::new([0.013, 0.021, 0.034], 32.0, 9).unwrap();
+        let start = std::time::Instant::now();
+        let mesh = mesh(&soup);
+        let welded = start.elapsed();
+        let solid = MeshSolid::new(mesh, &frame, FillRule::NonZero).unwrap();
+        let placed = start.elapsed();
+        let tree = build(&solid, &frame, Rule::Certified, &Control::threads(2)).unwrap();
+        println!(
+            "{name} of {}: welded {:.1} s, placed {:.1} s, certified at depth 9 in {:.1} s, volume {:?}",
+            soup.len(),
+            welded.as_secs_f64(),
+            (placed - welded).as_secs_f64(),
+            (start.elapsed() - placed).as_secs_f64(),
+            tree.statistics().volume()
+        );
+        let mut truth = Soupy::new(&soup);
+        for _ in 0..20 {
+            let p = [0; 3].map(|_: i32| random.between(0.1, 32.0));
+            let tag = tree.view().tag_at(frame.cell_of(p).unwrap());
+            if let Some(inside) = is_inside(FillRule::NonZero, truth.at(p), 1e-6) {
+                assert_ne!(tag, if inside { Tag::Empty } else { Tag::Full }, "{p:?}");
+            }
+        }
+    }
 }
