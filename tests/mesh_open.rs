@@ -575,7 +575,7 @@ fn what_is_undecided_halves_with_every_level() {
         }
         println!("{name}: {:?}", open[4..].windows(2).map(|pair| pair[1] / pair[0]).collect::<Vec<_>>());
         // Neither more of it than a layer of cells on the surface and on membranes no larger than it.
-        let area: f64 = soup.iter().map(|f| area(f)).sum();
+        let area: f64 = soup.iter().map(area).sum();
         let layer = open[7] / (area * frame.cell_size());
         assert!((1.0..4.5).contains(&layer), "{name}: a layer of {layer} cells");
     }
