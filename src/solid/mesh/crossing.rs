@@ -17,7 +17,7 @@ use super::placed::{Corners, Placed, accuracy, are_short, ranks};
 pub(super) struct Projection<'p> {
     placed: &'p Placed,
     triangle: u32,
-    corners: Corners<'p>,
+    corners: Corners,
     axes: Axes,
     /// Per edge (from corner i to corner i + 1) its advance along u per unit of v, and a bound of the error of
     /// where a row meets it.
@@ -60,7 +60,7 @@ pub(super) struct Span {
 }
 
 impl<'p> Projection<'p> {
-    pub(super) fn new(placed: &'p Placed, triangle: u32, corners: Corners<'p>, w: usize) -> Projection<'p> {
+    pub(super) fn new(placed: &'p Placed, triangle: u32, corners: Corners, w: usize) -> Projection<'p> {
         let axes = [Axes { u: 1, v: 2, w: 0 }, Axes { u: 0, v: 2, w: 1 }, Axes { u: 0, v: 1, w: 2 }][w];
         let (error, magnitude) = accuracy(placed, &corners);
         let error = error + 4.0 * f64::EPSILON * magnitude;

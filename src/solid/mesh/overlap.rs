@@ -44,7 +44,7 @@ const OTHERS: [(usize, usize); 3] = [(1, 2), (0, 2), (0, 1)];
 impl Overlap {
     /// Prepares the test of a triangle against cubes of edge `size` (in finest cells), `height` levels above the
     /// finest.
-    pub(super) fn new(placed: &Placed, corners: &Corners<'_>, size: f64, height: u8) -> Overlap {
+    pub(super) fn new(placed: &Placed, corners: &Corners, size: f64, height: u8) -> Overlap {
         let (min, max) = bounds(placed, corners);
         let [a, b, c] = corners.map(|corner| corner.at);
         let thickest = (0..3).fold(1.0, |most: f64, axis| most.max(max[axis] - min[axis]));

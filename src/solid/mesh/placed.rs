@@ -38,32 +38,67 @@ pub(super) struct Placed {
     pub(super) mesh: Arc<TriangleMesh>,
     /// How far the surface may lie from the mesh, in finest cells: what was moved to close hair cracks.
     displacement: f64,
-    vertices: Vec<Vertex>,
-    /// The vertices' ranks once more, close together: all that is looked at of most triangles.
-    ranks: Vec<[i32; 3]>,
+    vertices: Vertices,
     /// What closes the surface. Its triangles are numbered on from the mesh's.
     pub(super) caps: Caps,
 }
 
+/// The vertices, field by field: of most triangles only the ranks are looked at. 37 bytes each.
+#[derive(Default)]
+struct Vertices {
+    at: Vec<[f64; 3]>,
+    ranks: Vec<[i32; 3]>,
+    /// Bit of an axis: the position is exact. Bit 3: it is short.
+    flags: Vec<u8>,
+}
+
+const SHORT: u8 = 1 << 3;
+
+impl Vertices {
+    fn new(mesh: &TriangleMesh, frame: &Frame) -> Result<Vertices, Error> {
+        let mut vertices = Vertices::default();
+        let count = mesh.vertices().len();
+        vertices.at.try_reserve_exact(count).map_err(|_| Error::OutOfMemory)?;
+        vertices.ranks.try_reserve_exact(count).map_err(|_| Error::OutOfMemory)?;
+        vertices.flags.try_reserve_exact(count).map_err(|_| Error::OutOfMemory)?;
+        for &vertex in mesh.vertices() {
+            let (at, rank, flags) = place(frame, vertex);
+            vertices.at.push(at);
+            vertices.ranks.push(rank);
+            vertices.flags.push(flags);
+        }
+        Ok(vertices)
+    }
+
+    #[inline(always)]
+    fn get(&self, vertex: u32) -> Vertex {
+        let (at, flags) = (self.at[vertex as usize], self.flags[vertex as usize]);
+        let error = |axis: usize| if flags >> axis & 1 != 0 { 0.0 } else { error_of(at[axis]) };
+        let rank = self.ranks[vertex as usize];
+        Vertex { at, error: [error(0), error(1), error(2)], rank, short: flags & SHORT != 0 }
+    }
+}
+
+/// Bound of the error of a position that was rounded.
+#[inline(always)]
+fn error_of(at: f64) -> f32 {
+    (at.abs() as f32 * UNIT).max(UNIT)
+}
+
 /// The three corners of a triangle.
-pub(super) type Corners<'p> = [&'p Vertex; 3];
+pub(super) type Corners = [Vertex; 3];
 
 impl Placed {
     /// The mesh with caps over the loops of its boundary. Fails with [`MeshError::TooMany`] (of both together) or
     /// [`Error::OutOfMemory`].
     pub(super) fn new(mesh: Arc<TriangleMesh>, frame: &Frame, loops: &Loops) -> Result<Placed, Error> {
-        let mut vertices = Vec::new();
-        vertices.try_reserve_exact(mesh.vertices().len()).map_err(|_| Error::OutOfMemory)?;
-        vertices.extend(mesh.vertices().iter().map(|&vertex| place(frame, vertex)));
-        let mut ranks = Vec::new();
-        ranks.try_reserve_exact(vertices.len()).map_err(|_| Error::OutOfMemory)?;
-        ranks.extend(vertices.iter().map(|vertex| vertex.rank));
+        let vertices = Vertices::new(&mesh, frame)?;
         let displacement = mesh.displacement() / frame.cell_size() * (1.0 + 4.0 * f64::EPSILON);
         if u32::try_from(mesh.triangles().len() + loops.caps()).is_err() {
             return Err(MeshError::TooMany.into());
         }
-        let caps = Caps::new(loops, &vertices, displacement)?;
-        Ok(Placed { frame: *frame, mesh, displacement, vertices, ranks, caps })
+        let caps = Caps::new(loops, |vertex| vertices.get(vertex), displacement)?;
+        Ok(Placed { frame: *frame, mesh, displacement, vertices, caps })
     }
 
     /// How many triangles the surface and its caps have.
@@ -75,9 +110,10 @@ impl Placed {
         triangle as usize >= self.mesh.triangles().len()
     }
 
+    /// A vertex's position.
     #[inline(always)]
-    pub(super) fn vertex(&self, vertex: u32) -> &Vertex {
-        &self.vertices[vertex as usize]
+    pub(super) fn at(&self, vertex: u32) -> [f64; 3] {
+        self.vertices.at[vertex as usize]
     }
 
     #[inline(always)]
@@ -90,14 +126,14 @@ impl Placed {
     }
 
     #[inline(always)]
-    pub(super) fn corners(&self, triangle: u32) -> Corners<'_> {
-        self.triangle(triangle).map(|vertex| self.vertex(vertex))
+    pub(super) fn corners(&self, triangle: u32) -> Corners {
+        self.triangle(triangle).map(|vertex| self.vertices.get(vertex))
     }
 
     /// The lowest and the highest ranks of a triangle's corners.
     #[inline(always)]
     pub(super) fn rank_box(&self, triangle: u32) -> [[i32; 3]; 2] {
-        let [a, b, c] = self.triangle(triangle).map(|vertex| self.ranks[vertex as usize]);
+        let [a, b, c] = self.triangle(triangle).map(|vertex| self.vertices.ranks[vertex as usize]);
         let least = |axis: usize| a[axis].min(b[axis]).min(c[axis]);
         let most = |axis: usize| a[axis].max(b[axis]).max(c[axis]);
         [[least(0), least(1), least(2)], [most(0), most(1), most(2)]]
@@ -115,24 +151,26 @@ impl Placed {
     }
 }
 
-fn place(frame: &Frame, vertex: [f64; 3]) -> Vertex {
+/// A vertex's position, ranks and flags.
+fn place(frame: &Frame, vertex: [f64; 3]) -> ([f64; 3], [i32; 3], u8) {
     let depth = frame.depth() as i32;
-    let mut placed = Vertex { at: [0.0; 3], error: [0.0; 3], rank: [0; 3], short: depth <= 14 };
     // With `grain` bits behind the point, a 3 × 3 determinant of differences needs 3·(depth + grain + 1) + 3
     // bits: 51.
     let grain = (1u64 << (15 - depth.min(14))) as f64;
+    let (mut position, mut ranks, mut exact, mut short) = ([0.0; 3], [0; 3], 0, depth <= 14);
     for axis in 0..3 {
         let (offset, lost) = two_diff(vertex[axis], frame.origin()[axis]);
         // Division finds the exact quotient if it is a double; a product with the reciprocal may miss it.
         let at = offset / frame.cell_size();
-        let exact = two_product(at, frame.cell_size()) == (offset, lost);
-        placed.at[axis] = at;
-        placed.error[axis] = if exact { 0.0 } else { (at.abs() as f32 * UNIT).max(UNIT) };
+        let is_exact = two_product(at, frame.cell_size()) == (offset, lost);
+        let error = if is_exact { 0.0 } else { error_of(at) };
         let steps = at * grain;
-        placed.short &= exact && at.abs() <= frame.cells() as f64 && steps == floor(steps) as f64;
-        placed.rank[axis] = rank(frame, axis, vertex[axis], at, placed.error[axis] as f64);
+        short &= is_exact && at.abs() <= frame.cells() as f64 && steps == floor(steps) as f64;
+        position[axis] = at;
+        ranks[axis] = rank(frame, axis, vertex[axis], at, error as f64);
+        exact |= (is_exact as u8) << axis;
     }
-    placed
+    (position, ranks, exact | if short { SHORT } else { 0 })
 }
 
 /// The least k with k + ½ ≥ position, exactly.
@@ -151,14 +189,14 @@ fn rank(frame: &Frame, axis: usize, original: f64, at: f64, error: f64) -> i32 {
 /// The range of plane indices `first..end` between the lowest and the highest corner along `axis`: a line of
 /// centres at k can meet the triangle only if k lies in it.
 #[inline(always)]
-pub(super) fn ranks(corners: &Corners<'_>, axis: usize) -> (i32, i32) {
+pub(super) fn ranks(corners: &Corners, axis: usize) -> (i32, i32) {
     let [a, b, c] = [corners[0].rank[axis], corners[1].rank[axis], corners[2].rank[axis]];
     (a.min(b).min(c), a.max(b).max(c))
 }
 
 /// The box around a triangle, outward by what its corners may be off; exact where that is zero.
 #[inline(always)]
-pub(super) fn bounds(placed: &Placed, corners: &Corners<'_>) -> ([f64; 3], [f64; 3]) {
+pub(super) fn bounds(placed: &Placed, corners: &Corners) -> ([f64; 3], [f64; 3]) {
     let mut min = [f64::INFINITY; 3];
     let mut max = [f64::NEG_INFINITY; 3];
     for corner in corners {
@@ -176,7 +214,7 @@ pub(super) fn bounds(placed: &Placed, corners: &Corners<'_>) -> ([f64; 3], [f64;
 }
 
 /// The largest error among the corners' positions, and the largest magnitude that goes into their arithmetic.
-pub(super) fn accuracy(placed: &Placed, corners: &Corners<'_>) -> (f64, f64) {
+pub(super) fn accuracy(placed: &Placed, corners: &Corners) -> (f64, f64) {
     let mut error = 0f32;
     let mut magnitude = placed.frame.cells() as f64;
     for corner in corners {
@@ -189,19 +227,19 @@ pub(super) fn accuracy(placed: &Placed, corners: &Corners<'_>) -> (f64, f64) {
 }
 
 /// The same when it is not the mesh that counts but the surface that it stands for.
-pub(super) fn surface_accuracy(placed: &Placed, corners: &Corners<'_>) -> (f64, f64) {
+pub(super) fn surface_accuracy(placed: &Placed, corners: &Corners) -> (f64, f64) {
     let (error, magnitude) = accuracy(placed, corners);
     (error + placed.displacement, magnitude)
 }
 
 /// Whether determinants of the corners and lattice points are the surface's, without rounding.
 #[inline(always)]
-pub(super) fn is_exact(placed: &Placed, corners: &Corners<'_>) -> bool {
+pub(super) fn is_exact(placed: &Placed, corners: &Corners) -> bool {
     placed.displacement == 0.0 && are_short(corners)
 }
 
 /// Whether determinants of the corners and cell centres come out without rounding.
 #[inline(always)]
-pub(super) fn are_short(corners: &Corners<'_>) -> bool {
+pub(super) fn are_short(corners: &Corners) -> bool {
     corners.iter().all(|corner| corner.short)
 }

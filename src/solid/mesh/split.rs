@@ -370,7 +370,7 @@ fn only_child([low, high]: [[i32; 3]; 2], at: [i32; 3], half: i32) -> Option<u8>
 }
 
 /// Which of the children of edge `half` of the cell at `at` a triangle cuts.
-fn children_cut(placed: &Placed, corners: &Corners<'_>, at: [i32; 3], half: i32, height: u8) -> u8 {
+fn children_cut(placed: &Placed, corners: &Corners, at: [i32; 3], half: i32, height: u8) -> u8 {
     let (min, max) = bounds(placed, corners);
     let mut candidates = 0xFFu8;
     let mut strictly = true;

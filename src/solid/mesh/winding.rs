@@ -148,7 +148,11 @@ impl Caps {
     /// Caps over the loops of a surface's boundary, whose vertices are given with their places.
     ///
     /// O(n log n) in the boundary's edges, of which there are never fewer than caps; 40 to 100 bytes for each.
-    pub(super) fn new(loops: &Loops, vertices: &[Vertex], displacement: f64) -> Result<Caps, Error> {
+    pub(super) fn new(
+        loops: &Loops,
+        place: impl Fn(u32) -> Vertex,
+        displacement: f64,
+    ) -> Result<Caps, Error> {
         let count = loops.caps();
         let mut caps = Caps::default();
         caps.triangles.try_reserve_exact(count).map_err(|_| Error::OutOfMemory)?;
@@ -158,7 +162,7 @@ impl Caps {
         let mut error = 0f32;
         for walk in loops.iter() {
             for &vertex in walk {
-                error = vertices[vertex as usize].error.into_iter().fold(error, f32::max);
+                error = place(vertex).error.into_iter().fold(error, f32::max);
             }
             // The loop backward, so that its edges cancel those of the surface. By halves, not as a fan: most caps
             // are then as small as the edges that they lie at, and groups of them are far from most places.
@@ -171,7 +175,7 @@ impl Caps {
         caps.nodes
             .try_reserve_exact(2 * count.div_ceil(LEAF).next_power_of_two())
             .map_err(|_| Error::OutOfMemory)?;
-        let at = |vertex: u32| DVec3::from(vertices[vertex as usize].at);
+        let at = |vertex: u32| DVec3::from(place(vertex).at);
         if count > 0 {
             caps.grow(&mut slots, 0, &at)?;
         }
@@ -287,7 +291,7 @@ impl Caps {
         sum: &mut Local,
         turned: &mut DVec2,
     ) -> Option<()> {
-        let corners = self.triangles[cap].map(|vertex| DVec3::from(placed.vertex(vertex).at) - sum.point);
+        let corners = self.triangles[cap].map(|vertex| DVec3::from(placed.at(vertex)) - sum.point);
         let lengths = corners.map(length);
         let inverses = lengths.map(|length| 1.0 / length);
         let [a, b, c] = [0, 1, 2].map(|i| corners[i] * inverses[i]);
