@@ -35,6 +35,9 @@ const LEAST: f64 = 1.0 / 1073741824.0;
 /// How many squares of the universe's faces are divided at most to learn what is outside.
 const MOST_SQUARES: usize = 2048;
 
+/// How many caps are looked at for that at most, about.
+const MOST_CAPS: usize = 1 << 22;
+
 /// Which of its values the caps' winding number takes at a cell's lowest centre.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Branch {
@@ -58,6 +61,8 @@ impl Branch {
 /// kept for those below it.
 #[derive(Default)]
 pub(super) struct Surroundings {
+    /// The solid that it is about.
+    owner: usize,
     /// The cell's lower corner, and what is known unless the boundary passes close by.
     levels: [Option<([i32; 3], Option<Local>)>; MAX_DEPTH as usize + 1],
 }
@@ -66,6 +71,9 @@ impl Surroundings {
     /// The caps' winding number around the middle of the cell of `level` that holds `at`; of a finest cell on that side
     /// of every cap on which its centre counts.
     fn local(&mut self, placed: &Placed, level: u8, at: [i32; 3]) -> Option<Local> {
+        if self.owner != placed.identity {
+            *self = Surroundings { owner: placed.identity, ..Surroundings::default() };
+        }
         let size = 1 << (placed.frame.depth() - level);
         let corner = at.map(|a| a & -size);
         let slot = &mut self.levels[level as usize];
@@ -113,8 +121,9 @@ impl MeshSolid {
             let caps = self.caps_over(surroundings, at, size, part);
             let change = caps.change + caps.doubt;
             if !is_capped {
-                let nearest = floor(caps.value + 0.5);
-                if (caps.value - nearest as f64).abs() + change < 0.5 {
+                // (What is not known may be no number at all.)
+                let nearest = if change < 0.5 { floor(caps.value + 0.5) } else { 0 };
+                if change < 0.5 && (caps.value - nearest as f64).abs() + change < 0.5 {
                     part.winding -= nearest as i32;
                     part.caps = None;
                     return self.closed_verdict(part);
@@ -126,7 +135,8 @@ impl MeshSolid {
                     return if excess > 0.0 { Verdict::Full } else { Verdict::Empty };
                 }
             }
-            // Also false for NaN.
+            // What is known from above is no worse than half of what a better sum could not tell either. (Also false
+            // for NaN.)
             let is_sharp = caps.doubt <= 0.5 * caps.change;
             if is_sharp || is_fresh {
                 // What only the error keeps open is worth a better sum.
@@ -242,6 +252,8 @@ impl MeshSolid {
             return false;
         }
         squares.extend((0..6).map(|face| (face, [0.0; 2], cells)));
+        // The more caps, the longer does each take.
+        let most = (MOST_CAPS / caps.triangles().len()).clamp(1, MOST_SQUARES);
         let mut divided = 0;
         while let Some((face, corner, size)) = squares.pop() {
             let (w, height) = (face / 2, if face % 2 == 0 { 0.0 } else { cells });
@@ -255,7 +267,8 @@ impl MeshSolid {
                 continue;
             }
             divided += 1;
-            if divided > MOST_SQUARES {
+            // In vain, too, if the middle shows the contrary.
+            if divided > most || seen.doubt < 0.5 && seen.value.abs() >= 0.5 {
                 return false;
             }
             squares.extend((0..4).map(|k| {

@@ -58,6 +58,8 @@ struct Node {
     /// ∫ |dA|, and ∫ |y − centre|² |dA|.
     size: f64,
     spread: f64,
+    /// Bound of what is rounded in these sums, as an area.
+    rounding: f64,
     /// ∫ |ds| of the boundary's edges, ∫ ds, and ∫ ds ⊗ (y − centre).
     rim: f64,
     current: DVec3,
@@ -85,6 +87,9 @@ pub(super) struct Local {
     /// the caps add. Of wide holes the first is the smaller, of hair cracks the second.
     by_rims: f64,
     by_areas: f64,
+    /// Bound of the change, anywhere in the ball, per distance by which every vertex of the boundary may be misplaced,
+    /// each in a direction of its own.
+    by_wobble: f64,
 }
 
 /// A range of winding numbers.
@@ -147,7 +152,7 @@ impl Local {
 impl Caps {
     /// Caps over the loops of a surface's boundary, whose vertices are given with their places.
     ///
-    /// O(n log n) in the boundary's edges, of which there are never fewer than caps; 40 to 100 bytes for each.
+    /// O(n log n) in the boundary's edges, of which there are never fewer than caps; some 250 bytes for each cap.
     pub(super) fn new(
         loops: &Loops,
         place: impl Fn(u32) -> Vertex,
@@ -212,7 +217,7 @@ impl Caps {
             let middle = slots.len() / 2;
             slots.select_nth_unstable_by(middle, |a, b| {
                 // Equal centroids are told apart by their corners: the order is the same on every machine.
-                centroid(a)[axis].total_cmp(&centroid(b)[axis]).then(a.0.cmp(&b.0))
+                centroid(a)[axis].total_cmp(&centroid(b)[axis]).then(a.cmp(b))
             });
             let (low, high) = slots.split_at_mut(middle);
             self.grow(low, first, at)?;
@@ -255,6 +260,7 @@ impl Caps {
             bend: 0.0,
             by_rims: 0.0,
             by_areas: 0.0,
+            by_wobble: 0.0,
         };
         let mut turned = DVec2::X;
         let mut next = 0;
@@ -271,12 +277,7 @@ impl Caps {
             next += 1;
         }
         local.value += libm::atan2(turned.y, turned.x) / (2.0 * PI);
-        if self.wobble > 0.0 && radius > 0.0 {
-            // Where the boundary wobbles, the winding number changes as if the point did.
-            let jerk = local.by_rims.min(local.by_areas);
-            let bend = sum_of_magnitudes(local.hessian) + local.bend + 0.5 * jerk * reach;
-            local.error += self.wobble * (length(local.gradient) + local.slant + bend * reach);
-        }
+        local.error += self.wobble * local.by_wobble;
         Some(local)
     }
 
@@ -323,7 +324,7 @@ impl Caps {
                 }
                 sum.value += angle / (2.0 * PI);
             }
-            sum.error += wrong * inverse;
+            sum.error += wrong * inverse + f64::EPSILON * sum.value.abs();
         } else {
             sum.error += 1.0;
             if let Some(cell) = cell {
@@ -432,6 +433,7 @@ impl Node {
             first: first as u32,
             end: (first + slots.len()) as u32,
             skip: 0,
+            rounding: 0.0,
         };
         for &(triangle, rims) in slots {
             let [a, b, c] = triangle.map(|vertex| at(vertex) - centre);
@@ -453,6 +455,16 @@ impl Node {
                 }
             }
         }
+        // Of every addition, and of areas of slivers.
+        let count = slots.len() as f64;
+        node.rounding =
+            16.0 * f64::EPSILON * (count + 16.0) * (node.size + node.radius * node.radius * count);
+        node.size += node.rounding;
+        // What additions round, and areas of slivers.
+        let count = slots.len() as f64;
+        let slivers = count * node.radius * node.radius;
+        node.rounding = 16.0 * f64::EPSILON * ((count + 16.0) * node.size + slivers);
+        node.size += node.rounding;
         node
     }
 
@@ -470,7 +482,7 @@ impl Node {
         // The n-th derivative of the kernel y/|y|³ is at most (n + 1)!/|y|ⁿ⁺²: it is one of 1/|y|, which is harmonic, so
         // that it is largest along y. (The terms with 1e-11 are for what is rounded.)
         let (near, close) = (SCALE / (gap * gap), SCALE / (clear * clear * clear * clear));
-        let error = (3.0 * self.spread / (gap * gap) + 1e-11 * self.size) * near;
+        let error = (3.0 * self.spread / (gap * gap) + self.rounding) * near;
         let is_exact = error <= enough;
         if !is_exact {
             return false;
@@ -499,11 +511,12 @@ impl Node {
         let columns =
             DVec3::AXES.map(|v| (3.0 * direction.dot(v) * direction - v).cross(self.current) * cube);
         sum.hessian += DMat3::from_cols(columns[0], columns[1], columns[2]);
-        sum.error += error;
+        sum.error += error + f64::EPSILON * sum.value.abs();
         sum.slant += slant;
         sum.bend += bend;
         sum.by_rims += by_rims;
         sum.by_areas += by_areas;
+        sum.by_wobble += SCALE * self.rim / (clear * clear);
         true
     }
 }
@@ -522,18 +535,26 @@ impl Local {
         let edge = to - from;
         let length = self::length(edge);
         let along = if length > 0.0 { (-from.dot(edge) / (length * length)).clamp(0.0, 1.0) } else { 0.0 };
-        let distance = self::length(from + along * edge) * (1.0 - 1e-9) - 1e-9 * length.min(1.0) - radius;
+        let distance =
+            self::length(from + along * edge) * (1.0 - 1e-9) - 8.0 * f64::EPSILON * (start + end) - radius;
         let is_apart = distance > 0.0;
         if !is_apart {
             return None;
         }
-        let open = 1.0 + cosine;
         let (both, product) = (start + end, start * end);
-        let strength = SCALE * both / (product * product * open);
+        let (a, b) = (from / start, to / end);
         let field = from.cross(to);
+        let unit = a.cross(b);
+        // 1 + cosine, also of an edge so close by that its ends lie in opposite directions.
+        let open = if cosine < 0.0 { unit.length_squared() / (1.0 - cosine) } else { 1.0 + cosine };
+        let sine = self::length(unit);
+        let is_told = cosine >= 0.0 || sine > 1e-12;
+        if !is_told {
+            return None;
+        }
+        let strength = SCALE * both / product / (product * open);
         self.gradient += field * strength;
         // Along v the derivative of `field` is edge × v, that of `strength` is `weaker` · v.
-        let (a, b) = (from / start, to / end);
         let mixed = a * end + b * start;
         let weaker =
             strength * ((mixed * (1.0 + 1.0 / open) + (from + to) / open) / product - (a + b) / both);
@@ -544,11 +565,13 @@ impl Local {
             columns[2] + field * weaker.z,
         );
         let size = self::length(field) * strength;
-        let rounding = 256.0 * f64::EPSILON * (size / open + strength * product);
+        let rounding =
+            256.0 * f64::EPSILON * (if cosine < 0.0 { size / sine } else { size } + strength * product);
         self.slant += rounding;
-        self.bend += rounding * (both / product) / open;
+        self.bend += rounding * (both / product) / open.min(1.0);
         // ∫ 6 ds / distance⁴ along the edge, and at most along its whole line.
         let square = distance * distance;
+        self.by_wobble += SCALE * (length / distance).min(PI) / distance;
         self.by_rims += SCALE * 6.0 * (length / distance).min(PI / 2.0) / (square * distance);
         Some(())
     }
