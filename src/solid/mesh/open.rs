@@ -149,9 +149,10 @@ impl MeshSolid {
         }
     }
 
-    /// What is known of a finest cell that nothing cuts, of the best sum.
+    /// What is known of a finest cell that nothing cuts, of a better sum.
     fn close_verdict(&self, at: [i32; 3], part: MeshPart) -> Verdict<MeshPart> {
-        let local = self.placed.caps.local(&self.placed, middle(at, 1), HALF_DIAGONAL, LEAST, Some(at));
+        let local =
+            self.placed.caps.local(&self.placed, middle(at, 1), HALF_DIAGONAL, ENOUGH / 16.0, Some(at));
         let caps = local.map_or(Range::UNKNOWN, |local| local.over(at, 1));
         let excess = self.excess(part.winding as f64 - caps.value);
         match excess.abs() > caps.change + caps.doubt {

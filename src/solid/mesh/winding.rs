@@ -45,6 +45,9 @@ pub(super) struct Caps {
     error: f64,
 }
 
+/// A cap and its rims.
+type Slot = ([u32; 3], u8);
+
 /// A group of caps, all that the tree has below it.
 #[derive(Clone, Copy)]
 struct Node {
@@ -197,27 +200,30 @@ impl Caps {
     }
 
     /// Adds the subtree of `slots`, the first of which is number `first`, and puts them in its order.
-    fn grow(
-        &mut self,
-        slots: &mut [([u32; 3], u8)],
-        first: usize,
-        at: &impl Fn(u32) -> DVec3,
-    ) -> Result<(), Error> {
+    fn grow(&mut self, slots: &mut [Slot], first: usize, at: &impl Fn(u32) -> DVec3) -> Result<(), Error> {
         let node = Node::around(slots, first, at);
         let index = self.nodes.len();
         self.nodes.try_reserve(1).map_err(|_| Error::OutOfMemory)?;
         self.nodes.push(node);
         if slots.len() > LEAF {
-            // Halves, so that the depth is the logarithm whatever the coordinates are.
-            let centroid = |slot: &([u32; 3], u8)| slot.0.iter().map(|&v| at(v)).sum::<DVec3>();
+            // Halves, so that the depth is the logarithm whatever the coordinates are: of near and far ones along the
+            // longest extent, or, where the largest are larger than that, of small and large ones.
+            let centroid = |slot: &Slot| slot.0.iter().map(|&v| at(v)).sum::<DVec3>() / 3.0;
+            let size = |slot: &Slot| {
+                let [a, b, c] = slot.0.map(at);
+                (b - a).length_squared().max((c - b).length_squared()).max((a - c).length_squared())
+            };
             let (low, high) = (slots.iter().map(centroid))
                 .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)));
             let extent = (high - low).to_array();
             let axis = (0..3).fold(0, |best, axis| if extent[axis] > extent[best] { axis } else { best });
+            let largest = slots.iter().map(size).fold(0.0, f64::max);
+            let is_mixed = largest > extent[axis] * extent[axis];
+            let key = |slot: &Slot| if is_mixed { size(slot) } else { centroid(slot)[axis] };
             let middle = slots.len() / 2;
             slots.select_nth_unstable_by(middle, |a, b| {
-                // Equal centroids are told apart by their corners: the order is the same on every machine.
-                centroid(a)[axis].total_cmp(&centroid(b)[axis]).then(a.cmp(b))
+                // Equal ones are told apart by their corners: the halves are the same on every machine.
+                key(a).total_cmp(&key(b)).then(a.cmp(b))
             });
             let (low, high) = slots.split_at_mut(middle);
             self.grow(low, first, at)?;
@@ -415,7 +421,7 @@ impl Caps {
 }
 
 impl Node {
-    fn around(slots: &[([u32; 3], u8)], first: usize, at: &impl Fn(u32) -> DVec3) -> Node {
+    fn around(slots: &[Slot], first: usize, at: &impl Fn(u32) -> DVec3) -> Node {
         let corners = || slots.iter().flat_map(|slot| slot.0).map(at);
         let (low, high) = corners()
             .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)));
