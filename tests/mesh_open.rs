@@ -485,6 +485,8 @@ fn both(soup: &Soup, frame: &Frame) -> [Octree; 2] {
 ///   all of the cell is then d + h away, so that Ω ≤ (√3/4) d²/(d + h)², |w − n| < 0.035; and it changes in the
 ///   cell by at most 3d h/(4π (d + h)²) ≤ 3/16π < 0.06, both far from ½.
 fn remove_single_facets(name: &str, soup: &Soup, depth: u8, times: usize, random: &mut Random) {
+    // (Some models that are taken for closed have cracks as wide as a rounding.)
+    assert!(Boundary::of(soup).0.is_empty(), "{name} is not closed");
     let frame = odd_frame(soup, depth);
     let [intact, sampled] = both(soup, &frame);
     let half_diagonal = 0.866_025_5 * frame.cell_size();
@@ -537,8 +539,10 @@ fn a_facet_that_is_gone_changes_little_and_only_near_it() {
     let wound =
         [sphere([16.0; 3], 11.0, 2), inside_out(sphere([15.0; 3], 7.0, 2)), sphere([19.0; 3], 9.0, 2)];
     remove_single_facets("wound", &wound.concat(), 6, 4, &mut random);
-    if let Some(soup) = read("featuretype.STL") {
-        remove_single_facets("featuretype", &soup, 7, 3, &mut random);
+    for (name, depth) in [("busted.STL", 6), ("bunny-closed.stl", 7)] {
+        if let Some(soup) = read(name) {
+            remove_single_facets(name, &soup, depth, 2, &mut random);
+        }
     }
 }
 
