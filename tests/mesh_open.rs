@@ -3,10 +3,10 @@
 //! The truth of a soup is the set of points with |w| ≥ ½ (or w ≥ ½), w being the sum of the solid angles of all its
 //! triangles over 4π. Damaged variants of many shapes are built, and every kind of verdict is held against that sum.
 //!
-//! The heavier sets, of many more variants, deeper trees and more points:
+//! The heavier sets, of many more variants, deeper trees, more points, and five million triangles:
 //!
 //! ```text
-//! cargo test --release --test mesh_open -- --ignored --nocapture
+//! LEAFLESS_MODELS=/path/to/models cargo test --release --test mesh_open -- --ignored --nocapture --test-threads 1
 //! ```
 
 mod common;
