@@ -25,9 +25,8 @@ const HALF_DIAGONAL: f64 = 0.866_025_404;
 /// Two winding numbers that are known so well differ by the nearest integer, if they should differ by an integer.
 const SURE: f64 = 0.2;
 
-/// Error that a group of caps may add in a cell, and in one that no others inherit from.
+/// Error that a group of caps may add in a cell.
 const ENOUGH: f64 = 1.0 / 16384.0;
-const ENOUGH_FOR_ITSELF: f64 = 1.0 / 1024.0;
 
 /// Error that a group of caps may add if a centre's side hangs on it.
 const LEAST: f64 = 1.0 / 1073741824.0;
@@ -83,8 +82,8 @@ impl Surroundings {
             return *local;
         }
         let radius = size as f64 * HALF_DIAGONAL;
-        let (enough, cell) = if size > 1 { (ENOUGH, None) } else { (ENOUGH_FOR_ITSELF, Some(corner)) };
-        let local = placed.caps.local(placed, middle(corner, size), radius, enough, cell);
+        let cell = (size == 1).then_some(corner);
+        let local = placed.caps.local(placed, middle(corner, size), radius, ENOUGH, cell);
         *slot = Some((corner, local));
         local
     }
@@ -141,7 +140,7 @@ impl MeshSolid {
             if is_sharp || is_fresh {
                 // What only the error keeps open is worth a better sum.
                 let excess = self.excess(part.winding as f64 - caps.value).abs();
-                let is_close = size == 1 && !is_cut && caps.doubt < 0.5 && excess > caps.change;
+                let is_close = size == 1 && !is_cut && caps.doubt < 2.0 && excess > caps.change;
                 return if is_close { self.close_verdict(at, part) } else { Verdict::Partial(part) };
             }
             part.caps = Some(self.branch(surroundings, at, size, is_capped, part));
