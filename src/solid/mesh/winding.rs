@@ -36,13 +36,40 @@ pub(super) struct Caps {
     triangles: Vec<[u32; 3]>,
     /// Bit i: the edge from corner i to corner i + 1 is one of the surface's boundary.
     rims: Vec<u8>,
-    /// Area and longest edge of each.
-    sizes: Vec<[f64; 2]>,
+    sizes: Vec<Size>,
     nodes: Vec<Node>,
     /// How far the boundary may lie from where its vertices are placed, in finest cells.
     wobble: f64,
     /// Bound of the error of a vertex's position per axis.
     error: f64,
+}
+
+/// What does not depend on where a cap is seen from.
+#[derive(Clone, Copy)]
+struct Size {
+    area: f64,
+    edges: [f64; 3],
+    /// Of the edges, rounded up.
+    longest: f64,
+}
+
+/// A corner as seen from a point.
+#[derive(Clone, Copy)]
+struct End {
+    at: DVec3,
+    distance: f64,
+    /// One over the distance.
+    inverse: f64,
+    direction: DVec3,
+}
+
+impl End {
+    #[inline(always)]
+    fn new(at: DVec3) -> End {
+        let distance = length(at);
+        let inverse = 1.0 / distance;
+        End { at, distance, inverse, direction: at * inverse }
+    }
 }
 
 /// A cap and its rims.
@@ -192,9 +219,9 @@ impl Caps {
         caps.sizes.try_reserve_exact(count).map_err(|_| Error::OutOfMemory)?;
         caps.sizes.extend(slots.iter().map(|slot| {
             let [a, b, c] = slot.0.map(at);
-            let edges = [b - a, c - b, a - c];
-            let longest = edges.iter().fold(0.0, |most: f64, edge| most.max(length(*edge)));
-            [length(edges[0].cross(edges[2])) / 2.0, longest * (1.0 + 1e-9)]
+            let edges = [b - a, c - b, a - c].map(length);
+            let longest = edges.iter().copied().fold(0.0, f64::max) * (1.0 + 1e-9);
+            Size { area: length((b - a).cross(c - a)) / 2.0, edges, longest }
         }));
         Ok(caps)
     }
@@ -298,16 +325,15 @@ impl Caps {
         sum: &mut Local,
         turned: &mut DVec2,
     ) -> Option<()> {
-        let corners = self.triangles[cap].map(|vertex| DVec3::from(placed.at(vertex)) - sum.point);
-        let lengths = corners.map(length);
-        let inverses = lengths.map(|length| 1.0 / length);
-        let [a, b, c] = [0, 1, 2].map(|i| corners[i] * inverses[i]);
+        let ends = self.triangles[cap].map(|vertex| End::new(DVec3::from(placed.at(vertex)) - sum.point));
+        let [a, b, c] = ends.map(|end| end.direction);
         let (ab, bc, ca) = (a.dot(b), b.dot(c), c.dot(a));
         // Half the solid angle is the argument of (real, imaginary).
         let imaginary = a.dot(b.cross(c));
         let real = 1.0 + ab + bc + ca;
         let modulus = sqrt(real * real + imaginary * imaginary);
-        let wrong = 64.0 * f64::EPSILON + 8.0 * self.error * (inverses[0] + inverses[1] + inverses[2]);
+        let [near, far, farther] = ends.map(|end| end.inverse);
+        let wrong = 64.0 * f64::EPSILON + 8.0 * self.error * (near + far + farther);
         // Also false for NaN.
         if modulus >= 2.0 * wrong {
             let inverse = 1.0 / modulus;
@@ -335,7 +361,7 @@ impl Caps {
             sum.error += 1.0;
             if let Some(cell) = cell {
                 // No proof, because the centre may lie beside the edge; but the best guess, and exact on it.
-                sum.value += self.on_edge(placed, cap, cell, corners) / (2.0 * PI);
+                sum.value += self.on_edge(placed, cap, cell, ends.map(|end| end.at)) / (2.0 * PI);
             }
         }
         if radius == 0.0 {
@@ -343,14 +369,15 @@ impl Caps {
             return Some(());
         }
         // A triangle is nowhere farther from its farthest corner than its longest edge.
-        let [size, longest] = self.sizes[cap];
-        let clear = lengths[0].max(lengths[1]).max(lengths[2]) * (1.0 - 1e-9) - longest - radius;
-        let power = clear * clear * clear * clear * clear;
-        sum.by_areas += if clear > 0.0 { SCALE * 24.0 * size / power } else { f64::INFINITY };
+        let Size { area, edges, longest } = self.sizes[cap];
+        let farthest = ends.iter().fold(0.0, |most: f64, end| most.max(end.distance));
+        let inverse = 1.0 / (farthest * (1.0 - 1e-9) - longest - radius);
+        let square = inverse * inverse;
+        sum.by_areas +=
+            if inverse > 0.0 { SCALE * 24.0 * area * square * square * inverse } else { f64::INFINITY };
         for (i, cosine) in [ab, bc, ca].into_iter().enumerate() {
             if self.rims[cap] >> i & 1 != 0 {
-                let j = (i + 1) % 3;
-                sum.add_rim([corners[i], corners[j]], [lengths[i], lengths[j]], cosine, radius)?;
+                sum.add_rim([ends[i], ends[(i + 1) % 3]], cosine, edges[i], radius)?;
             }
         }
         Some(())
@@ -487,15 +514,19 @@ impl Node {
         }
         // The n-th derivative of the kernel y/|y|³ is at most (n + 1)!/|y|ⁿ⁺²: it is one of 1/|y|, which is harmonic, so
         // that it is largest along y. (The terms with 1e-11 are for what is rounded.)
-        let (near, close) = (SCALE / (gap * gap), SCALE / (clear * clear * clear * clear));
-        let error = (3.0 * self.spread / (gap * gap) + self.rounding) * near;
+        let per_gap = 1.0 / gap;
+        let near = SCALE * per_gap * per_gap;
+        let error = (3.0 * self.spread * per_gap * per_gap + self.rounding) * near;
         let is_exact = error <= enough;
         if !is_exact {
             return false;
         }
-        let slant = (3.0 * self.radius * self.radius / (gap * gap) + 1e-11) * self.rim * near;
-        let bend = (6.0 * self.radius / gap + 1e-11) * self.rim * near / gap;
-        let (by_rims, by_areas) = (6.0 * self.rim * close, 24.0 * self.size * close / clear);
+        let wide = self.radius * per_gap;
+        let slant = (3.0 * wide * wide + 1e-11) * self.rim * near;
+        let bend = (6.0 * wide + 1e-11) * self.rim * near * per_gap;
+        let per_clear = 1.0 / clear;
+        let close = SCALE * per_clear * per_clear * per_clear * per_clear;
+        let (by_rims, by_areas) = (6.0 * self.rim * close, 24.0 * self.size * close * per_clear);
         let jerk = by_rims.max(by_areas);
         let is_smooth = error + (slant + (0.5 * bend + jerk / 6.0 * radius) * radius) * radius <= enough;
         if !is_smooth {
@@ -531,54 +562,49 @@ impl Local {
     /// Adds what an edge of the boundary does to the derivatives. The gradient is the magnetic field of a current
     /// along the edge. `None` if the edge passes through the ball.
     #[inline]
-    fn add_rim(
-        &mut self,
-        [from, to]: [DVec3; 2],
-        [start, end]: [f64; 2],
-        cosine: f64,
-        radius: f64,
-    ) -> Option<()> {
-        let edge = to - from;
-        let length = self::length(edge);
-        let along = if length > 0.0 { (-from.dot(edge) / (length * length)).clamp(0.0, 1.0) } else { 0.0 };
-        let distance =
-            self::length(from + along * edge) * (1.0 - 1e-9) - 8.0 * f64::EPSILON * (start + end) - radius;
+    fn add_rim(&mut self, [from, to]: [End; 2], cosine: f64, length: f64, radius: f64) -> Option<()> {
+        let (a, b) = (from.direction, to.direction);
+        let (both, inverse_product) = (from.distance + to.distance, from.inverse * to.inverse);
+        let edge = to.at - from.at;
+        let along = if length > 0.0 { (-from.at.dot(edge) / (length * length)).clamp(0.0, 1.0) } else { 0.0 };
+        let nearest = self::length(from.at + along * edge);
+        let distance = nearest * (1.0 - 1e-9) - 8.0 * f64::EPSILON * both - radius;
+        // What is no number fails such a test, too.
         let is_apart = distance > 0.0;
         if !is_apart {
             return None;
         }
-        let (both, product) = (start + end, start * end);
-        let (a, b) = (from / start, to / end);
-        let field = from.cross(to);
-        let unit = a.cross(b);
+        let field = a.cross(b);
+        let square = field.length_squared();
+        let sine = sqrt(square);
         // 1 + cosine, also of an edge so close by that its ends lie in opposite directions.
-        let open = if cosine < 0.0 { unit.length_squared() / (1.0 - cosine) } else { 1.0 + cosine };
-        let sine = self::length(unit);
+        let open = if cosine < 0.0 { square / (1.0 - cosine) } else { 1.0 + cosine };
         let is_told = cosine >= 0.0 || sine > 1e-12;
         if !is_told {
             return None;
         }
-        let strength = SCALE * both / product / (product * open);
+        let inverse_open = 1.0 / open;
+        let strength = SCALE * both * inverse_product * inverse_open;
         self.gradient += field * strength;
-        // Along v the derivative of `field` is edge × v, that of `strength` is `weaker` · v.
-        let mixed = a * end + b * start;
+        // Along v the derivative of from × to is edge × v, that of `strength` over both distances is `weaker` · v.
+        let mixed = (a * to.distance + b * from.distance) * inverse_product;
         let weaker =
-            strength * ((mixed * (1.0 + 1.0 / open) + (from + to) / open) / product - (a + b) / both);
-        let columns = DVec3::AXES.map(|v| edge.cross(v) * strength);
+            strength * (mixed + (a + b) * (both * inverse_product * inverse_open) - (a + b) * (1.0 / both));
+        let turning = edge * (strength * inverse_product);
         self.hessian += DMat3::from_cols(
-            columns[0] + field * weaker.x,
-            columns[1] + field * weaker.y,
-            columns[2] + field * weaker.z,
+            DVec3::new(0.0, turning.z, -turning.y) + field * weaker.x,
+            DVec3::new(-turning.z, 0.0, turning.x) + field * weaker.y,
+            DVec3::new(turning.y, -turning.x, 0.0) + field * weaker.z,
         );
-        let size = self::length(field) * strength;
-        let rounding =
-            256.0 * f64::EPSILON * (if cosine < 0.0 { size / sine } else { size } + strength * product);
+        // Of the field's direction, and of `open`.
+        let rounding = 256.0 * f64::EPSILON * strength * if cosine < 0.0 { 2.0 } else { 1.0 + sine };
         self.slant += rounding;
-        self.bend += rounding * (both / product) / open.min(1.0);
+        self.bend += rounding * both * inverse_product * inverse_open.max(1.0);
         // ∫ 6 ds / distance⁴ along the edge, and at most along its whole line.
-        let square = distance * distance;
-        self.by_wobble += SCALE * (length / distance).min(PI) / distance;
-        self.by_rims += SCALE * 6.0 * (length / distance).min(PI / 2.0) / (square * distance);
+        let inverse = 1.0 / distance;
+        let angle = length * inverse;
+        self.by_wobble += SCALE * angle.min(PI) * inverse;
+        self.by_rims += SCALE * 6.0 * angle.min(PI / 2.0) * inverse * inverse * inverse;
         Some(())
     }
 }
