@@ -26,7 +26,7 @@ const HALF_DIAGONAL: f64 = 0.866_025_404;
 const SURE: f64 = 0.2;
 
 /// Error that a group of caps may add in a cell.
-const ENOUGH: f64 = 1.0 / 16384.0;
+const ENOUGH: f64 = 1.0 / 4096.0;
 
 /// Error that a group of caps may add if a centre's side hangs on it.
 const LEAST: f64 = 1.0 / 1073741824.0;
