@@ -363,7 +363,7 @@ int main(int argc, char **argv) {
     if (limited) {
         /* Memory that runs out half-way, at many places. */
         runs_out(deep_ball, 0, 8192, 256);
-        runs_out(open_sheet, 0, 5120, 320);
+        runs_out(open_sheet, 0, 2560, 160);
     }
 
     OK(leafless_options_init(&options, sizeof options));
