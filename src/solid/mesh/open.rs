@@ -4,8 +4,8 @@
 //! the middle of a cell it is known to second order, with bounds of what that neglects, and jumps by an integer on every
 //! cap. Three things follow for a cell:
 //!
-//! * If no cap cuts it, and the caps' winding number stays between two halves of odd integers, the surface's own is the integer
-//!   that remains, up to less than one half. The cell and all below it are then as those of a closed surface.
+//! * If no cap cuts it, and the caps' winding number stays within one half of an integer, the surface's own is what remains,
+//!   an integer, up to less than one half. The cell and all below it are then as those of a closed surface.
 //! * If the surface does not cut it, its winding number is continuous in the cell, caps or not, and may be bounded away
 //!   from what the fill rule asks for: FULL or EMPTY.
 //! * Else its children are asked. A finest cell near a hole, that nothing cuts, may stay PARTIAL.
@@ -22,7 +22,8 @@ use alloc::vec::Vec;
 /// Half the diagonal of a cube of edge 1, rounded up.
 const HALF_DIAGONAL: f64 = 0.866_025_404;
 
-/// Two winding numbers that are known so well differ by the nearest integer, if they should differ by an integer.
+/// Two winding numbers that are known so well, both together to less than one half, differ by the nearest integer if
+/// they should differ by an integer.
 const SURE: f64 = 0.2;
 
 /// Error that a group of caps may add in a cell.

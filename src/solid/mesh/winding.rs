@@ -298,13 +298,13 @@ impl Caps {
         let mut turned = DVec2::X;
         let mut next = 0;
         while let Some(node) = self.nodes.get(next) {
-            if node.add(reach, enough, &mut local) {
+            if node.add_from_afar(reach, enough, &mut local) {
                 next = node.skip as usize;
                 continue;
             }
             if node.skip as usize == next + 1 {
                 for cap in node.first as usize..node.end as usize {
-                    self.add(placed, cap, reach, cell, &mut local, &mut turned)?;
+                    self.add_cap(placed, cap, reach, cell, &mut local, &mut turned)?;
                 }
             }
             next += 1;
@@ -316,7 +316,7 @@ impl Caps {
 
     /// Adds one cap; half its solid angle to the value or to the argument of `turned`, a complex number of modulus 1.
     #[inline]
-    fn add(
+    fn add_cap(
         &self,
         placed: &Placed,
         cap: usize,
@@ -504,16 +504,17 @@ impl Node {
     /// Adds the group's winding number as seen from afar to what is known of the ball of `radius` around a point, if that
     /// adds at most `enough` to the error anywhere in it.
     #[inline]
-    fn add(&self, radius: f64, enough: f64, sum: &mut Local) -> bool {
+    fn add_from_afar(&self, radius: f64, enough: f64, sum: &mut Local) -> bool {
         let towards = self.centre - sum.point;
         let distance = length(towards);
         let (gap, clear) = (distance - self.radius, distance - self.radius - radius);
+        // (What is no number fails this and all tests below.)
         let is_apart = clear > self.radius;
         if !is_apart {
             return false;
         }
         // The n-th derivative of the kernel y/|y|³ is at most (n + 1)!/|y|ⁿ⁺²: it is one of 1/|y|, which is harmonic, so
-        // that it is largest along y. (The terms with 1e-11 are for what is rounded.)
+        // that it is largest along y. (`rounding` and the terms with 1e-11 are for what is rounded.)
         let per_gap = 1.0 / gap;
         let near = SCALE * per_gap * per_gap;
         let error = (3.0 * self.spread * per_gap * per_gap + self.rounding) * near;
