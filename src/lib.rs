@@ -60,7 +60,7 @@ mod solid;
 
 pub use control::Control;
 pub use error::{Damage, Error, FormatError, MeshError, MeshFileError, PackageError, PolyhedronError};
-pub use lattice::{Cell, Cube, Frame, Interval, MAX_DEPTH};
+pub use lattice::{Affine, Cell, Cube, Frame, Interval, MAX_DEPTH};
 pub use octree::{
     Block, Cursor, LevelStatistics, Metadata, Node, Octree, OctreeRef, Planes, Rule, Statistics, Tag,
 };

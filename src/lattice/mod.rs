@@ -17,6 +17,7 @@
 //!        x
 //! ```
 
+mod affine;
 mod cell;
 mod cube;
 pub(crate) mod exact;
@@ -24,6 +25,7 @@ mod frame;
 mod interval;
 pub(crate) mod morton;
 
+pub use affine::Affine;
 pub use cell::Cell;
 pub use cube::Cube;
 pub use frame::Frame;

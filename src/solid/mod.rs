@@ -65,6 +65,11 @@ pub trait Scratch: Default + Send + Sync {
 
     /// Back to an earlier height.
     fn release(&mut self, mark: usize);
+
+    /// Half-spaces that were evaluated with this memory so far, each at a point or over a box; never falls.
+    fn evaluations(&self) -> u64 {
+        0
+    }
 }
 
 /// For solids whose parts stand alone.

@@ -1,0 +1,108 @@
+//! Affine maps of model space.
+
+use super::exact::{grow, sign, two_product};
+use crate::error::Error;
+
+/// Entries beyond ±2^64 are refused, and so are those but zero below 2^-64.
+const LARGEST: f64 = 18_446_744_073_709_551_616.0;
+
+/// The invertible affine map p ↦ M p + t, which places a shape: row i of `[M | t]` gives coordinate i of the image.
+/// The map is that of exactly these doubles; nothing is normalised or rounded.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Affine {
+    rows: [[f64; 4]; 3],
+}
+
+impl Affine {
+    /// The map that moves nothing.
+    pub const IDENTITY: Affine =
+        Affine { rows: [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]] };
+
+    /// The map with the rows of `[M | t]`.
+    ///
+    /// # Errors
+    /// [`Error::Argument`] if an entry is not zero and not of a magnitude between 2^-64 and 2^64, or M is singular
+    /// (which is decided exactly).
+    pub fn new(rows: [[f64; 4]; 3]) -> Result<Affine, Error> {
+        let refuse = |problem| Err(Error::Argument { name: "placement", problem });
+        if !rows.iter().flatten().all(|&c| c == 0.0 || (1.0 / LARGEST..=LARGEST).contains(&c.abs())) {
+            return refuse("every entry must be zero or of a magnitude between 2^-64 and 2^64");
+        }
+        let map = Affine { rows: rows.map(|row| row.map(|c| c + 0.0)) };
+        if map.orientation() == 0 {
+            return refuse("the matrix is singular");
+        }
+        Ok(map)
+    }
+
+    /// The map that moves everything by `offset`.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub fn translation(offset: [f64; 3]) -> Result<Affine, Error> {
+        let mut rows = Affine::IDENTITY.rows;
+        for axis in 0..3 {
+            rows[axis][3] = offset[axis];
+        }
+        Affine::new(rows)
+    }
+
+    /// The rows of `[M | t]`.
+    pub fn rows(&self) -> &[[f64; 4]; 3] {
+        &self.rows
+    }
+
+    /// Whether this is the map that moves nothing.
+    pub fn is_identity(&self) -> bool {
+        *self == Affine::IDENTITY
+    }
+
+    /// 1 if the map keeps orientation, −1 if it mirrors, 0 if M is singular: the exact sign of the determinant.
+    pub fn orientation(&self) -> i32 {
+        // Six products of three doubles, four terms each, none of which leaves the range of doubles.
+        let m = &self.rows;
+        let mut terms = [0.0; 25];
+        let mut count = 0;
+        for (i, j, k, plus) in [
+            (0, 1, 2, 1.0),
+            (1, 2, 0, 1.0),
+            (2, 0, 1, 1.0),
+            (0, 2, 1, -1.0),
+            (1, 0, 2, -1.0),
+            (2, 1, 0, -1.0),
+        ] {
+            let (high, low) = two_product(m[0][i], m[1][j]);
+            for part in [low, high] {
+                let (high, low) = two_product(part, plus * m[2][k]);
+                count = grow(&mut terms, count, low);
+                count = grow(&mut terms, count, high);
+            }
+        }
+        if count == 0 { 0 } else { sign(terms[count - 1]) }
+    }
+
+    /// The image of a point, rounded: each coordinate is off by at most 2^-50 times the sum of the magnitudes of its
+    /// four summands.
+    pub fn apply(&self, p: [f64; 3]) -> [f64; 3] {
+        self.rows.map(|[x, y, z, t]| ((x * p[0] + y * p[1]) + z * p[2]) + t)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn orientation_is_exact() {
+        let of = |m: [[f64; 3]; 3]| Affine { rows: m.map(|[a, b, c]| [a, b, c, 7.0]) }.orientation();
+        assert_eq!(of([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]), 1);
+        assert_eq!(of([[0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]]), -1);
+        let e = f64::EPSILON;
+        // (1 + e)(1 − e) − 1 = −e².
+        assert_eq!(of([[1.0 + e, 1.0, 0.0], [1.0, 1.0 - e, 0.0], [0.0, 0.0, 1e18]]), -1);
+        assert_eq!(of([[1.0 + e, 1.0, 0.0], [1.0 + e, 1.0, 0.0], [0.0, 0.0, 1.0]]), 0);
+        assert_eq!(of([[0.1, 0.2, 0.3], [0.2, 0.4, 0.6], [1.0, 5.0, 7.0]]), 0);
+        assert!(Affine::new([[0.0; 4]; 3]).is_err());
+        assert!(Affine::translation([f64::NAN, 0.0, 0.0]).is_err());
+    }
+}
