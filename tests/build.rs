@@ -5,8 +5,8 @@ mod common;
 use common::exact::Definition;
 use common::{Dense, Random, Shape, alone, assert_is, cases, lattice_frame, positions, shapes};
 use leafless::{
-    AnySolid, AxisBox, Ball, Block, Callback, Cell, Control, Cube, Error, Frame, HalfSpace, Interval, Octree,
-    Rule, Scratch, Solid, Stored, Tag, Verdict, build, compact, complement, resolve, union_of,
+    AnySolid, AxisBox, Ball, Block, Callback, Cell, Control, Csg, Cube, Error, Frame, Interval, Octree, Rule,
+    Scratch, Solid, Stored, Tag, Verdict, build, compact, complement, resolve, union_of,
 };
 use proptest::prelude::*;
 use std::sync::Mutex;
@@ -24,7 +24,7 @@ fn made<S: Solid>(solid: &S, frame: &Frame, rule: Rule) -> Octree {
 fn shape(definition: Definition) -> AnySolid {
     match definition {
         Definition::Ball { centre, radius } => AnySolid::new(Ball::new(centre, radius).unwrap()),
-        Definition::HalfSpace { normal, offset } => AnySolid::new(HalfSpace::new(normal, offset).unwrap()),
+        Definition::HalfSpace { normal, offset } => AnySolid::new(Csg::half_space(normal, offset).unwrap()),
         Definition::Box { min, max } => AnySolid::new(AxisBox::new(min, max).unwrap()),
     }
 }
@@ -59,7 +59,7 @@ fn assert_exact(definition: Definition, frame: &Frame) {
         let same = match definition {
             Definition::Ball { centre, radius } => made(&Ball::new(centre, radius).unwrap(), frame, rule),
             Definition::HalfSpace { normal, offset } => {
-                made(&HalfSpace::new(normal, offset).unwrap(), frame, rule)
+                made(&Csg::half_space(normal, offset).unwrap(), frame, rule)
             }
             Definition::Box { min, max } => made(&AxisBox::new(min, max).unwrap(), frame, rule),
         };
@@ -262,7 +262,7 @@ fn planes_through_the_lattice() {
             for normal in [[1.0, -1.0, 0.0], [-1.0, 1.0, 0.0], [0.0, 0.3, -0.3], [-2.5, 0.0, 2.5]] {
                 assert_exact(Definition::HalfSpace { normal, offset: 0.0 }, &level);
             }
-            let tree = made(&HalfSpace::new([1.0, -1.0, 0.0], 0.0).unwrap(), &level, Rule::Certified);
+            let tree = made(&Csg::half_space([1.0, -1.0, 0.0], 0.0).unwrap(), &level, Rule::Certified);
             for at in positions(depth) {
                 let expected = match at[0].cmp(&at[1]) {
                     std::cmp::Ordering::Less => Tag::Empty,
@@ -446,7 +446,7 @@ fn threads_do_not_change_results() {
                 assert_eq!(threads_agree(&AnySolid::new(ball), &frame, rule), tree);
             }
             if depth < 8 {
-                threads_agree(&HalfSpace::new([1.0, 0.2, -0.7], -0.3).unwrap(), &frame, rule);
+                threads_agree(&Csg::half_space([1.0, 0.2, -0.7], -0.3).unwrap(), &frame, rule);
                 threads_agree(&AxisBox::new([0.2, 0.3, -0.2], [0.7, 0.6, 0.3]).unwrap(), &frame, rule);
             }
             if rule != Rule::Sampled {
@@ -853,11 +853,11 @@ fn shapes_refuse_what_is_no_shape() {
         assert!(matches!(Ball::new([0.0, x, 0.0], 1.0), Err(Error::Argument { name: "centre", .. })));
         assert!(matches!(Ball::new([0.0; 3], x), Err(Error::Argument { name: "radius", .. })));
         assert!(matches!(AxisBox::new([-x.abs(), 0.0, 0.0], [1.0; 3]), Err(Error::Argument { .. })));
-        assert!(matches!(HalfSpace::new([x, 1.0, 0.0], 0.0), Err(Error::Argument { name: "normal", .. })));
-        assert!(matches!(HalfSpace::new([0.0, 1.0, 0.0], x), Err(Error::Argument { name: "offset", .. })));
+        assert!(matches!(Csg::half_space([x, 1.0, 0.0], 0.0), Err(Error::Argument { name: "normal", .. })));
+        assert!(matches!(Csg::half_space([0.0, 1.0, 0.0], x), Err(Error::Argument { name: "offset", .. })));
     }
     assert!(Ball::new([0.0; 3], 0.0).is_err() && Ball::new([0.0; 3], -1.0).is_err());
-    assert!(HalfSpace::new([0.0, -0.0, 0.0], 1.0).is_err());
+    assert!(Csg::half_space([0.0, -0.0, 0.0], 1.0).is_err());
     for max in [[1.0, 0.0, 1.0], [1.0, -1.0, 1.0]] {
         assert!(matches!(AxisBox::new([0.0; 3], max), Err(Error::Argument { name: "max", .. })));
     }

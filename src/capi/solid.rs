@@ -9,7 +9,7 @@ use super::octree::{leafless_octree, settled_tag};
 use super::status::leafless_status;
 use crate::error::Error;
 use crate::octree::Tag;
-use crate::solid::{AnySolid, AxisBox, Ball, Callback, HalfSpace, MeshSolid, Solid, Verdict};
+use crate::solid::{AnySolid, AxisBox, Ball, Callback, Csg, MeshSolid, Solid, Verdict};
 use alloc::sync::Arc;
 use core::ffi::c_void;
 
@@ -191,7 +191,7 @@ pub unsafe extern "C" fn leafless_solid_new_halfspace(
     guard(|| unsafe {
         let normal = array(normal, "normal")?;
         let solid = out(solid, "solid")?;
-        solid.write(give(HalfSpace::new(normal, offset)?))
+        solid.write(give(Csg::half_space(normal, offset)?))
     })
 }
 

@@ -6,16 +6,16 @@
 //! none knows the others.
 
 mod callback;
+mod csg;
 mod erased;
 mod exact;
-mod halfspace;
 mod mesh;
 mod primitive;
 mod stored;
 
 pub use callback::Callback;
+pub use csg::{Csg, CsgPart, CsgScratch, HalfSpace, Touch};
 pub use erased::{AnySolid, ErasedPart, ErasedScratch};
-pub use halfspace::HalfSpace;
 pub(crate) use mesh::FacetWelder;
 #[cfg(feature = "std")]
 pub(crate) use mesh::triangulate_facet;

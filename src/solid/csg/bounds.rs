@@ -1,0 +1,67 @@
+//! What one half-space says of the eight children of a cell.
+
+use crate::lattice::Cell;
+use wide::f64x4;
+
+/// The eight children of a cell in unit coordinates: the universe is [0, 1]³.
+pub(super) struct Octants {
+    /// The cell's lower corner; one lane an axis, the last is 0.
+    pub(super) low: f64x4,
+    /// Edge of a child.
+    pub(super) half: f64,
+}
+
+impl Octants {
+    /// The children of `cell`.
+    #[inline(always)]
+    pub(super) fn of(cell: Cell) -> Octants {
+        let edge = edge(cell.level as u32);
+        let [x, y, z] = cell.at.map(|i| i as f64 * edge);
+        Octants { low: f64x4::new([x, y, z, 0.0]), half: 0.5 * edge }
+    }
+
+    /// [0, 2]³, whose first child is the universe.
+    pub(super) fn of_universe() -> Octants {
+        Octants { low: f64x4::ZERO, half: 1.0 }
+    }
+
+    /// The lower and the upper corner of child `k`.
+    pub(super) fn octant(&self, k: u32) -> ([f64; 3], [f64; 3]) {
+        let low = self.low.to_array();
+        let at = [0, 1, 2].map(|axis| low[axis] + (k >> axis & 1) as f64 * self.half);
+        (at, at.map(|t| t + self.half))
+    }
+}
+
+/// 2^-level.
+fn edge(level: u32) -> f64 {
+    f64::from_bits((1023 - level as u64) << 52)
+}
+
+/// The centre of a cell.
+pub(super) fn centre(cell: Cell) -> [f64; 3] {
+    let half = edge(cell.level as u32 + 1);
+    cell.at.map(|i| (2 * i as u64 + 1) as f64 * half)
+}
+
+/// For which of the eight children (bit k) f ≥ 0 is proven, and for which f ≤ 0.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Sides {
+    pub(super) inside: u8,
+    pub(super) outside: u8,
+}
+
+impl Sides {
+    /// From the least and the greatest values, which are off by less than `error`; and the children of which they
+    /// leave a side open.
+    #[inline(always)]
+    pub(super) fn with_error(least: [f64x4; 2], most: [f64x4; 2], error: f64) -> (Sides, u8) {
+        let (above, below) = (f64x4::splat(error), f64x4::splat(-error));
+        let mask = |[a, b]: [f64x4; 2]| (a.to_bitmask() | b.to_bitmask() << 4) as u8;
+        let inside = mask(least.map(|v| v.simd_ge(above)));
+        let outside = mask(most.map(|v| v.simd_le(below)));
+        let doubt =
+            mask(least.map(|v| v.simd_gt(below))) & !inside | mask(most.map(|v| v.simd_lt(above))) & !outside;
+        (Sides { inside, outside }, doubt)
+    }
+}

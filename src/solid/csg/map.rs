@@ -1,0 +1,90 @@
+//! Exact affine maps.
+
+use super::dyadic::Dyadic;
+use crate::error::Error;
+use crate::lattice::{Affine, Frame};
+
+/// Most bits that an entry may take: some hundred rotations inside of each other.
+const MOST_BITS: u64 = 1 << 14;
+
+/// The map x ↦ (R x + r) / w, exactly: from the universe's unit coordinates into the space of a shape that stands
+/// under any number of placements.
+#[derive(Debug, Clone)]
+pub(super) struct ExactMap {
+    /// Rows of `[R | r]`.
+    pub(super) rows: [[Dyadic; 4]; 3],
+    /// Not zero.
+    pub(super) w: Dyadic,
+}
+
+impl ExactMap {
+    /// From unit coordinates, in which the universe is [0, 1]³, to model space.
+    pub(super) fn from_universe(frame: &Frame) -> ExactMap {
+        let edge = Dyadic::new(frame.edge());
+        let rows = [0, 1, 2].map(|i| {
+            let mut row = [0, 1, 2, 3].map(|_| Dyadic::zero());
+            row[i] = edge.clone();
+            row[3] = Dyadic::new(frame.origin()[i]);
+            row
+        });
+        ExactMap { rows, w: Dyadic::new(1.0) }
+    }
+
+    /// The map into the space of a shape that `placement` puts into this map's target. With M and t of the placement
+    /// it is x ↦ adj(M) (R x + r − w t) / (w det M).
+    ///
+    /// # Errors
+    /// [`Error::Limit`] if the exact entries become too long.
+    pub(super) fn into_placed(&self, placement: &Affine) -> Result<ExactMap, Error> {
+        let m = placement.rows().map(|row| row.map(Dyadic::new));
+        let minor = |i: usize, j: usize| {
+            // Cofactor (i, j), with its sign, by cyclic indices.
+            let ([a, b], [c, d]) = ([(i + 1) % 3, (i + 2) % 3], [(j + 1) % 3, (j + 2) % 3]);
+            &(&m[a][c] * &m[b][d]) - &(&m[a][d] * &m[b][c])
+        };
+        let cofactors = [0, 1, 2].map(|i| [0, 1, 2].map(|j| minor(i, j)));
+        let determinant = dot(&[&m[0][0], &m[0][1], &m[0][2]], &[0, 1, 2].map(|j| &cofactors[0][j]));
+        let moved = [0, 1, 2].map(|i| {
+            let mut row = self.rows[i].clone();
+            row[3] = &row[3] - &(&self.w * &m[i][3]);
+            row
+        });
+        // The adjugate is the cofactors' transpose.
+        let rows = [0, 1, 2].map(|i| {
+            [0, 1, 2, 3].map(|j| {
+                dot(&[0, 1, 2].map(|k| &cofactors[k][i]), &[&moved[0][j], &moved[1][j], &moved[2][j]])
+            })
+        });
+        let map = ExactMap { rows, w: &self.w * &determinant };
+        if map.rows.iter().flatten().chain([&map.w]).any(|entry| entry.bits() > MOST_BITS) {
+            return Err(Error::Limit { what: "bits of nested placements", limit: MOST_BITS });
+        }
+        Ok(map)
+    }
+}
+
+fn dot(a: &[&Dyadic; 3], b: &[&Dyadic; 3]) -> Dyadic {
+    &(&(a[0] * b[0]) + &(a[1] * b[1])) + &(a[2] * b[2])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn inverse_of_a_placement() {
+        let frame = Frame::new([1.0, 2.0, 3.0], 8.0, 3).unwrap();
+        let placement =
+            Affine::new([[0.0, -2.0, 0.5, 3.0], [1.0, 0.25, 0.0, -1.0], [0.0, 4.0, 1.0, 7.0]]).unwrap();
+        let map = ExactMap::from_universe(&frame).into_placed(&placement).unwrap();
+        // A point of the shape, its image, and the image's unit coordinates.
+        let local = [0.5, -3.0, 2.0];
+        let image = placement.apply(local);
+        let unit = [0, 1, 2].map(|i| Dyadic::new((image[i] - frame.origin()[i]) / 8.0));
+        for i in 0..3 {
+            let row = &map.rows[i];
+            let value = &dot(&[&row[0], &row[1], &row[2]], &[&unit[0], &unit[1], &unit[2]]) + &row[3];
+            assert_eq!(value, &map.w * &Dyadic::new(local[i]), "{i}");
+        }
+    }
+}

@@ -1,0 +1,301 @@
+//! Polynomials of degree two: planes and quadrics.
+
+use super::bounds::{Octants, Sides};
+use super::dyadic::Dyadic;
+use super::map::ExactMap;
+use crate::lattice::exact::sign;
+use alloc::boxed::Box;
+use core::cmp::Ordering;
+use wide::f64x4;
+
+/// Which products of (x, y, z, 1) the coefficients of a quadric belong to: squares, mixed products, linear terms, 1.
+const PAIRS: [(usize, usize); 10] =
+    [(0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (0, 2), (0, 3), (1, 3), (2, 3), (3, 3)];
+
+/// Where a coefficient is in [`PAIRS`].
+const fn place(a: usize, b: usize) -> usize {
+    [[0, 3, 5, 6], [3, 1, 4, 7], [5, 4, 2, 8], [6, 7, 8, 9]][a][b]
+}
+
+/// The exact coefficients of a polynomial of degree two.
+pub(super) type Coefficients = [Dyadic; 10];
+
+/// The polynomial that has the sign of `given` at the image of its argument: `given` ∘ `map`, times w².
+fn substitute(given: &Coefficients, map: &ExactMap) -> Coefficients {
+    let zero = Dyadic::zero();
+    let entry = |i: usize, j: usize| match (i, j) {
+        (3, 3) => &map.w,
+        (3, _) => &zero,
+        _ => &map.rows[i][j],
+    };
+    PAIRS.map(|(j, k)| {
+        let mut sum = Dyadic::zero();
+        for ((a, b), coefficient) in PAIRS.iter().zip(given).filter(|(_, c)| !c.is_zero()) {
+            let mut product = entry(*a, j) * entry(*b, k);
+            if j != k {
+                product = &product + &(entry(*a, k) * entry(*b, j));
+            }
+            sum = &sum + &(coefficient * &product);
+        }
+        sum
+    })
+}
+
+/// A quadric on a universe, in unit coordinates.
+pub(super) struct Quadric {
+    exact: Box<Coefficients>,
+    form: Form,
+}
+
+enum Form {
+    /// Without mixed products: the extremes over a box are those along each axis.
+    Separable(Separable),
+    /// With mixed products.
+    Mixed(Mixed),
+}
+
+/// f = constant + Σ (square tᵢ + linear) tᵢ; one lane an axis.
+struct Separable {
+    constant: f64,
+    linear: f64x4,
+    square: f64x4,
+    /// Where the parabola of an axis has its vertex, and its value there: as `least` for one that opens upward, as
+    /// `most` for one that opens downward, else infinite.
+    vertex: f64x4,
+    least: f64x4,
+    most: f64x4,
+    /// More than the error of any value on [−1, 2]³; zero if they have none on the lattice.
+    error: f64,
+}
+
+/// All ten coefficients, in the order of [`PAIRS`].
+struct Mixed {
+    c: [f64; 10],
+    /// Over a cube of half edge h around a point the quadratic part alone lies in h² times this.
+    squares: (f64, f64),
+    error: f64,
+}
+
+impl Quadric {
+    /// The quadric `given` as the map shows it on the universe, whose lattice has 2^depth cells.
+    pub(super) fn new(given: &Coefficients, map: &ExactMap, depth: u8) -> Quadric {
+        let exact = substitute(given, map);
+        // Only the sign counts: the largest coefficient is brought to a magnitude of one.
+        let scale = -exact.iter().filter_map(Dyadic::magnitude).max().unwrap_or(0);
+        let exact = exact.map(|c| c.shifted(scale));
+        let c = exact.each_ref().map(Dyadic::rounded);
+        // Magnitudes of all terms on [−1, 2]³, where no value is larger.
+        let size: f64 = 4.0 * c.iter().map(|c| c.abs()).sum::<f64>();
+        let form = if exact[3..6].iter().all(Dyadic::is_zero) {
+            Form::Separable(Separable::new(&exact, c, size, depth))
+        } else {
+            let [least, most] = [f64::min as fn(f64, f64) -> f64, f64::max].map(|extreme| {
+                c[..3].iter().map(|&c| extreme(c, 0.0)).sum::<f64>()
+                    + c[3..6].iter().map(|c| extreme(c.abs(), -c.abs())).sum::<f64>()
+            });
+            // A term is rounded at most twenty times.
+            Form::Mixed(Mixed { c, squares: (least, most), error: 64.0 * f64::EPSILON * size })
+        };
+        Quadric { exact: Box::new(exact), form }
+    }
+
+    /// For which of the eight cells the polynomial is proven not negative, and not positive.
+    #[inline(always)]
+    pub(super) fn sides(&self, at: &Octants) -> Sides {
+        match &self.form {
+            Form::Separable(separable) => {
+                let (sides, doubt) = separable.sides(at);
+                if doubt == 0 { sides } else { self.settle(at, sides, doubt) }
+            }
+            Form::Mixed(mixed) => mixed.sides(at),
+        }
+    }
+
+    /// Decides exactly what rounding leaves open.
+    #[cold]
+    fn settle(&self, at: &Octants, mut sides: Sides, doubt: u8) -> Sides {
+        for k in (0..8).filter(|k| doubt >> k & 1 != 0) {
+            let (low, high) = at.octant(k);
+            if self.extreme_sign(low, high, Ordering::Less) >= 0 {
+                sides.inside |= 1 << k;
+            }
+            if self.extreme_sign(low, high, Ordering::Greater) <= 0 {
+                sides.outside |= 1 << k;
+            }
+        }
+        sides
+    }
+
+    /// Exact sign of the least (`Less`) or the greatest value over a box, without mixed products.
+    fn extreme_sign(&self, low: [f64; 3], high: [f64; 3], which: Ordering) -> i32 {
+        let mut sum = self.exact[place(3, 3)].clone();
+        let mut vertices: [Option<(Dyadic, Dyadic)>; 3] = [None, None, None];
+        for axis in 0..3 {
+            let (square, linear) = (&self.exact[place(axis, axis)], &self.exact[place(axis, 3)]);
+            let along = |t: f64| {
+                let t = Dyadic::new(t);
+                (&(&(square * &t) + linear) * &t, (&(&square.shifted(1) * &t) + linear).sign())
+            };
+            let ((at_low, slope_low), (at_high, slope_high)) = (along(low[axis]), along(high[axis]));
+            let bends = square.sign() == if which == Ordering::Less { 1 } else { -1 };
+            if bends && slope_low * slope_high < 0 {
+                // −linear² / (4 square), a fraction.
+                vertices[axis] = Some((-&(linear * linear), square.shifted(2)));
+            } else {
+                sum = &sum + if at_low.compare(&at_high) == which { &at_low } else { &at_high };
+            }
+        }
+        // Over a common denominator, whose sign counts.
+        let mut denominator = Dyadic::new(1.0);
+        for (numerator, own) in vertices.iter().flatten() {
+            sum = &(&sum * own) + &(numerator * &denominator);
+            denominator = &denominator * own;
+        }
+        sum.sign() * denominator.sign()
+    }
+
+    /// Exact sign at a point of [−1, 2]³.
+    #[inline]
+    pub(super) fn sign_at(&self, t: [f64; 3]) -> i32 {
+        let (value, error) = match &self.form {
+            Form::Separable(separable) => (separable.value(t), separable.error),
+            Form::Mixed(mixed) => (mixed.value(t), mixed.error),
+        };
+        if value > error || value < -error || error == 0.0 { sign(value) } else { self.exact_sign_at(t) }
+    }
+
+    #[cold]
+    fn exact_sign_at(&self, t: [f64; 3]) -> i32 {
+        let t = [Dyadic::new(t[0]), Dyadic::new(t[1]), Dyadic::new(t[2]), Dyadic::new(1.0)];
+        let terms = PAIRS.iter().zip(self.exact.iter()).filter(|(_, c)| !c.is_zero());
+        terms.fold(Dyadic::zero(), |sum, (&(a, b), c)| &sum + &(c * &(&t[a] * &t[b]))).sign()
+    }
+
+    /// The sign that the shift (ε, ε², ε³) gives at a zero, to first order.
+    #[cold]
+    pub(super) fn shifted_sign_at(&self, t: [f64; 3]) -> i32 {
+        let t = [Dyadic::new(t[0]), Dyadic::new(t[1]), Dyadic::new(t[2]), Dyadic::new(1.0)];
+        let slope = |axis: usize| {
+            let sum = (0..4)
+                .fold(Dyadic::zero(), |sum, other| &sum + &(&self.exact[place(axis, other)] * &t[other]));
+            // The square counts twice.
+            (&sum + &(&self.exact[place(axis, axis)] * &t[axis])).sign()
+        };
+        (0..3).map(slope).find(|&sign| sign != 0).unwrap_or(0)
+    }
+}
+
+impl Separable {
+    fn new(exact: &Coefficients, c: [f64; 10], size: f64, depth: u8) -> Separable {
+        let (mut vertex, mut least, mut most) =
+            ([f64::INFINITY; 4], [f64::INFINITY; 4], [f64::NEG_INFINITY; 4]);
+        // What all values are multiples of, where coordinates are of a cell's centre. A vertex is exact if it is one.
+        let grain = exact.iter().filter_map(Dyadic::grain).min().unwrap_or(0) - 2 * (depth as i64 + 1);
+        let mut is_exact = exact.iter().all(|c| c.exactly().is_some());
+        let mut size = size;
+        for axis in 0..3 {
+            let (square, linear) = (c[place(axis, axis)], c[place(axis, 3)]);
+            let at = -linear / (2.0 * square);
+            // Rounding may take a vertex out of the universe only if the ends' values are as good.
+            if square == 0.0 || !(-1.0..=2.0).contains(&at) {
+                continue;
+            }
+            let value = 0.5 * linear * at;
+            let t = Dyadic::new(at);
+            let double = &exact[place(axis, axis)].shifted(1);
+            let exactly = &exact[place(axis, 3)] * &t.shifted(-1);
+            is_exact &= (&(double * &t) + &exact[place(axis, 3)]).is_zero()
+                && exactly == Dyadic::new(value)
+                && exactly.grain().is_none_or(|bit| bit >= grain);
+            vertex[axis] = at;
+            *if square > 0.0 { &mut least[axis] } else { &mut most[axis] } = value;
+            size += value.abs();
+        }
+        // With nothing finer than the grain and nothing beyond 2^53 of it, nothing is rounded.
+        is_exact &= Dyadic::new(size).magnitude().is_none_or(|m| m + 1 - grain <= 53);
+        Separable {
+            constant: c[place(3, 3)],
+            linear: f64x4::new([c[place(0, 3)], c[place(1, 3)], c[place(2, 3)], 0.0]),
+            square: f64x4::new([c[0], c[1], c[2], 0.0]),
+            vertex: f64x4::new(vertex),
+            least: f64x4::new(least),
+            most: f64x4::new(most),
+            // A term is rounded at most eight times.
+            error: if is_exact { 0.0 } else { 32.0 * f64::EPSILON * size },
+        }
+    }
+
+    /// The sides of the eight cells, and those for which rounding leaves a side open.
+    #[inline(always)]
+    fn sides(&self, at: &Octants) -> (Sides, u8) {
+        let low = at.low;
+        let middle = low + at.half;
+        let high = middle + at.half;
+        let along = |t: f64x4| (self.square * t + self.linear) * t;
+        let (a, b, c) = (along(low), along(middle), along(high));
+        let first = low.simd_lt(self.vertex) & self.vertex.simd_lt(middle);
+        let second = middle.simd_le(self.vertex) & self.vertex.simd_lt(high);
+        let (up, down) = (f64x4::splat(f64::INFINITY), f64x4::splat(f64::NEG_INFINITY));
+        let least = [(a, b, first), (b, c, second)]
+            .map(|(a, b, inside)| a.fast_min(b).fast_min(inside.select(self.least, up)).to_array());
+        let most = [(a, b, first), (b, c, second)]
+            .map(|(a, b, inside)| a.fast_max(b).fast_max(inside.select(self.most, down)).to_array());
+        // Four cells of one z at a time: x changes first, then y.
+        let sums = |[first, second]: [[f64; 4]; 2]| {
+            let x = f64x4::new([first[0], second[0], first[0], second[0]]);
+            let y = f64x4::new([first[1], first[1], second[1], second[1]]);
+            let xy = (f64x4::splat(self.constant) + x) + y;
+            [xy + f64x4::splat(first[2]), xy + f64x4::splat(second[2])]
+        };
+        Sides::with_error(sums(least), sums(most), self.error)
+    }
+
+    #[inline(always)]
+    fn value(&self, t: [f64; 3]) -> f64 {
+        let t = f64x4::new([t[0], t[1], t[2], 0.0]);
+        let [x, y, z, _] = ((self.square * t + self.linear) * t).to_array();
+        ((self.constant + x) + y) + z
+    }
+}
+
+impl Mixed {
+    /// Taylor's formula about each centre: exact but for what the axes have in common.
+    #[inline(always)]
+    fn sides(&self, at: &Octants) -> Sides {
+        let [xx, yy, zz, xy, yz, zx, x1, y1, z1, constant] = self.c.map(f64x4::splat);
+        let [low_x, low_y, low_z, _] = at.low.to_array();
+        let half = at.half;
+        let quarter = 0.5 * half;
+        let (x_a, y_a) = (low_x + quarter, low_y + quarter);
+        let (x_b, y_b) = (x_a + half, y_a + half);
+        let x = f64x4::new([x_a, x_b, x_a, x_b]);
+        let y = f64x4::new([y_a, y_a, y_b, y_b]);
+        let two = f64x4::splat(2.0);
+        let reach = f64x4::splat(quarter);
+        let (square_least, square_most) = (
+            f64x4::splat(quarter * quarter * self.squares.0),
+            f64x4::splat(quarter * quarter * self.squares.1),
+        );
+        let ranges = [low_z + quarter, low_z + quarter + half].map(|z| {
+            let z = f64x4::splat(z);
+            let (mixed_x, mixed_y) = (xy * y + zx * z, xy * x + yz * z);
+            let (from_x, from_y, from_z) = (xx * x, yy * y, zz * z);
+            let value = constant
+                + (from_x + (x1 + xy * y)) * x
+                + (from_y + (y1 + yz * z)) * y
+                + (from_z + (z1 + zx * x)) * z;
+            let slopes = (two * from_x + (x1 + mixed_x)).abs()
+                + (two * from_y + (y1 + mixed_y)).abs()
+                + (two * from_z + (z1 + (zx * x + yz * y))).abs();
+            let spread = slopes * reach;
+            (value - spread + square_least, value + spread + square_most)
+        });
+        Sides::with_error([ranges[0].0, ranges[1].0], [ranges[0].1, ranges[1].1], self.error).0
+    }
+
+    fn value(&self, t: [f64; 3]) -> f64 {
+        let [xx, yy, zz, xy, yz, zx, x1, y1, z1, constant] = self.c;
+        let [x, y, z] = t;
+        constant + (xx * x + (x1 + xy * y)) * x + (yy * y + (y1 + yz * z)) * y + (zz * z + (z1 + zx * x)) * z
+    }
+}
