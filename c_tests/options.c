@@ -59,7 +59,8 @@ int main(void) {
     memset(&options, 0xee, sizeof options);
     OK(leafless_options_init(&options, sizeof options));
     CHECK(options.struct_size == sizeof options && options.threads == 0 && options.max_nodes == 0);
-    CHECK(options.max_bytes == 0 && options.progress == NULL && options.progress_ctx == NULL && options.control == NULL);
+    CHECK(options.max_bytes == 0 && options.max_splits == 0 && options.progress == NULL);
+    CHECK(options.progress_ctx == NULL && options.control == NULL);
     accepted(&options);
     /* An older program's struct is not written beyond its end. */
     for (size = 8; size < sizeof options; size += 8) {
@@ -81,6 +82,7 @@ int main(void) {
     options.threads = 3;
     options.max_nodes = UINT64_MAX;
     options.max_bytes = UINT64_MAX;
+    options.max_splits = UINT64_MAX;
     accepted(&options);
 
     /* Never initialised: a size that makes no sense. */

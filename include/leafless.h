@@ -566,7 +566,8 @@ typedef int32_t (*leafless_progress_fn)(void *ctx, double fraction);
 
 /**
  * How a long operation may proceed. Where a function takes options, NULL means the defaults. All fields but the
- * first may be zero, which is their default; leafless_options_init sets them so. No option changes a result.
+ * first may be zero, which is their default; leafless_options_init sets them so. No option but `max_splits` changes a
+ * result.
  */
 typedef struct {
     /**
@@ -586,6 +587,11 @@ typedef struct {
      * Refuse results whose working form is larger than this many bytes; 0 means no limit.
      */
     uint64_t max_bytes;
+    /**
+     * Split at most this many cells; 0 means no limit. Only functions that split on demand heed it, and say so: with
+     * it spent they stop, and keep or return what they have; it is no error.
+     */
+    uint64_t max_splits;
     /**
      * Hears of the progress; optional.
      */

@@ -9,8 +9,8 @@ const MOST_THREADS: usize = 1024;
 
 /// How a long operation may proceed. The default has no limit, uses all processors and reports to nobody.
 ///
-/// No field changes a result: an operation either returns what it would have returned without them, bit for
-/// bit, or an error. (Which damage to unverified bytes is noticed may depend on the number of threads.)
+/// No field but `max_splits` changes a result: an operation either returns what it would have returned without
+/// them, bit for bit, or an error. (Which damage to unverified bytes is noticed may depend on the number of threads.)
 #[derive(Clone, Copy, Default)]
 pub struct Control<'a> {
     /// Threads to use; 0 means as many as the machine has processors, numbers beyond 1024 mean 1024. Without the
@@ -20,6 +20,9 @@ pub struct Control<'a> {
     pub max_nodes: Option<u64>,
     /// Refuse results whose working form is larger than this many bytes with [`Error::Limit`].
     pub max_bytes: Option<u64>,
+    /// Split at most this many cells. Only operations that split on demand heed it, and say so: with it spent they
+    /// stop, and keep or return what they have; it is no error.
+    pub max_splits: Option<u64>,
     /// Setting this flag, from any thread, ends the operation with [`Error::Cancelled`].
     pub cancel: Option<&'a AtomicBool>,
     /// Called now and then, from any of the threads, with the fraction done (0 to 1).
@@ -32,6 +35,7 @@ impl core::fmt::Debug for Control<'_> {
             .field("threads", &self.threads)
             .field("max_nodes", &self.max_nodes)
             .field("max_bytes", &self.max_bytes)
+            .field("max_splits", &self.max_splits)
             .field("cancel", &self.cancel)
             .finish_non_exhaustive()
     }

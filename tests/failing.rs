@@ -128,7 +128,7 @@ fn most_held<R>(work: impl FnOnce() -> R) -> (R, usize) {
 // ---- what is tried --------------------------------------------------------------------------------------
 
 const CONTROL: Control<'static> =
-    Control { threads: 1, max_nodes: None, max_bytes: None, cancel: None, progress: None };
+    Control { threads: 1, max_nodes: None, max_bytes: None, max_splits: None, cancel: None, progress: None };
 
 fn frame() -> Frame {
     Frame::new([0.0; 3], 32.0, 6).unwrap()

@@ -20,7 +20,7 @@ use leafless::{Control, Cursor, Tag};
 
 /// One thread, which is what most work of this size gets.
 pub const CONTROL: Control<'static> =
-    Control { threads: 1, max_nodes: None, max_bytes: None, cancel: None, progress: None };
+    Control { threads: 1, max_nodes: None, max_bytes: None, max_splits: None, cancel: None, progress: None };
 
 /// Numbers that only look random (splitmix64): the same for a seed everywhere.
 pub struct Random(pub u64);

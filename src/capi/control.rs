@@ -25,7 +25,8 @@ pub struct leafless_control {
 pub type leafless_progress_fn = Option<unsafe extern "C" fn(ctx: *mut c_void, fraction: f64) -> i32>;
 
 /// How a long operation may proceed. Where a function takes options, NULL means the defaults. All fields but the
-/// first may be zero, which is their default; leafless_options_init sets them so. No option changes a result.
+/// first may be zero, which is their default; leafless_options_init sets them so. No option but `max_splits` changes a
+/// result.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_options {
@@ -38,6 +39,9 @@ pub struct leafless_options {
     pub max_nodes: u64,
     /// Refuse results whose working form is larger than this many bytes; 0 means no limit.
     pub max_bytes: u64,
+    /// Split at most this many cells; 0 means no limit. Only functions that split on demand heed it, and say so: with
+    /// it spent they stop, and keep or return what they have; it is no error.
+    pub max_splits: u64,
     /// Hears of the progress; optional.
     pub progress: leafless_progress_fn,
     /// What `progress` is called with.
@@ -99,6 +103,7 @@ pub(super) unsafe fn controlled<R>(
         threads: if rayon::current_thread_index().is_some() { 1 } else { options.threads as usize },
         max_nodes: limit(options.max_nodes),
         max_bytes: limit(options.max_bytes),
+        max_splits: limit(options.max_splits),
         cancel: Some(&control.cancelled),
         progress: Some(&progress),
     })?)

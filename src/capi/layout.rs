@@ -34,7 +34,7 @@ macro_rules! values {
 
 fn write_all(to: &mut dyn Write) -> fmt::Result {
     structs! { to;
-        leafless_options { struct_size, threads, max_nodes, max_bytes, progress, progress_ctx, control }
+        leafless_options { struct_size, threads, max_nodes, max_bytes, max_splits, progress, progress_ctx, control }
         leafless_frame { origin, edge, depth }
         leafless_interval { lower, upper }
         leafless_mesh_report {
