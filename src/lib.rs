@@ -71,8 +71,8 @@ pub use op::{
 pub use query::{Membership, PointCursor, Region};
 pub use solid::{
     AnySolid, AxisBox, Ball, Callback, Csg, CsgPart, CsgScratch, DefectKind, ErasedPart, ErasedScratch,
-    FillRule, HalfSpace, MeshDefect, MeshPart, MeshReport, MeshScratch, MeshSolid, Scratch, Solid, Stored,
-    StoredPart, Touch, TriangleMesh, Verdict,
+    FillRule, Fingerprint, Fingerprinter, HalfSpace, MeshDefect, MeshPart, MeshReport, MeshScratch,
+    MeshSolid, Scratch, Solid, Stored, StoredPart, Touch, TriangleMesh, Verdict,
 };
 
 #[cfg(feature = "std")]

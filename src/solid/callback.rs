@@ -1,6 +1,6 @@
 //! A host program's own shape, through two functions.
 
-use super::{Solid, Verdict};
+use super::{Fingerprint, Solid, Verdict};
 use crate::error::Error;
 use crate::lattice::{Cell, Cube, Frame};
 use crate::octree::Tag;
@@ -29,6 +29,7 @@ pub struct Callback<'a, F> {
     classify: F,
     contains: Option<Contains<'a>>,
     exterior: Tag,
+    fingerprint: Option<Fingerprint>,
 }
 
 impl<'a, F: Fn([f64; 3], [f64; 3]) -> Result<Verdict<()>, Error> + Sync> Callback<'a, F> {
@@ -38,7 +39,7 @@ impl<'a, F: Fn([f64; 3], [f64; 3]) -> Result<Verdict<()>, Error> + Sync> Callbac
     /// answer to the same box. An error, such as [`Error::Callback`], ends the operation and is what that
     /// returns.
     pub fn new(classify: F) -> Callback<'a, F> {
-        Callback { classify, contains: None, exterior: Tag::Partial }
+        Callback { classify, contains: None, exterior: Tag::Partial, fingerprint: None }
     }
 
     /// The same solid with a function that decides single points (model units): the sampled rule needs it.
@@ -56,6 +57,13 @@ impl<'a, F: Fn([f64; 3], [f64; 3]) -> Result<Verdict<()>, Error> + Sync> Callbac
     #[must_use]
     pub fn with_exterior(mut self, exterior: Tag) -> Callback<'a, F> {
         self.exterior = if exterior == Tag::Branch { Tag::Partial } else { exterior };
+        self
+    }
+
+    /// The same solid with a fingerprint: the promise that every shape that is given this one is the same.
+    #[must_use]
+    pub fn with_fingerprint(mut self, fingerprint: Fingerprint) -> Callback<'a, F> {
+        self.fingerprint = Some(fingerprint);
         self
     }
 
@@ -93,5 +101,9 @@ impl<F: Fn([f64; 3], [f64; 3]) -> Result<Verdict<()>, Error> + Sync> Solid for C
 
     fn exterior(&self, _: &Frame) -> Tag {
         self.exterior
+    }
+
+    fn fingerprint(&self) -> Option<Fingerprint> {
+        self.fingerprint
     }
 }

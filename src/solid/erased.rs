@@ -3,7 +3,7 @@
 //! [`Solid`] has associated types so that loops over it compile to tight code. Programs that hold shapes of
 //! different kinds in one place (the C interface first of all) use [`AnySolid`], which is a `Solid` itself.
 
-use super::{Scratch, Solid, Verdict};
+use super::{Fingerprint, Scratch, Solid, Verdict};
 use crate::error::Error;
 use crate::lattice::{Cube, Frame};
 use crate::octree::{Block, Tag};
@@ -127,6 +127,7 @@ trait Erased: Send + Sync {
         part: ErasedPart,
     ) -> Result<Option<bool>, Error>;
     fn exterior(&self, frame: &Frame) -> Tag;
+    fn fingerprint(&self) -> Option<Fingerprint>;
     fn hand_over(
         &self,
         from: &ErasedScratch,
@@ -197,6 +198,10 @@ impl<S: Solid<Part: 'static, Scratch: 'static> + Send + 'static> Erased for S {
         Solid::exterior(self, frame)
     }
 
+    fn fingerprint(&self) -> Option<Fingerprint> {
+        Solid::fingerprint(self)
+    }
+
     fn hand_over(
         &self,
         from: &ErasedScratch,
@@ -253,6 +258,10 @@ impl Solid for AnySolid {
 
     fn exterior(&self, frame: &Frame) -> Tag {
         self.0.exterior(frame)
+    }
+
+    fn fingerprint(&self) -> Option<Fingerprint> {
+        self.0.fingerprint()
     }
 
     fn hand_over(

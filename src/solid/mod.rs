@@ -9,6 +9,7 @@ mod callback;
 mod csg;
 mod erased;
 mod exact;
+mod fingerprint;
 mod mesh;
 mod primitive;
 mod stored;
@@ -16,6 +17,7 @@ mod stored;
 pub use callback::Callback;
 pub use csg::{Csg, CsgPart, CsgScratch, HalfSpace, Touch};
 pub use erased::{AnySolid, ErasedPart, ErasedScratch};
+pub use fingerprint::{Fingerprint, Fingerprinter};
 pub(crate) use mesh::FacetWelder;
 #[cfg(feature = "std")]
 pub(crate) use mesh::triangulate_facet;
@@ -167,6 +169,12 @@ pub trait Solid: Sync {
     fn exterior(&self, frame: &Frame) -> Tag {
         let _ = frame;
         Tag::Partial
+    }
+
+    /// What tells this solid from others: two with the same fingerprint give the same verdicts. `None`, the default,
+    /// if nothing does; then an octree that was refined on demand cannot be taken up again with it.
+    fn fingerprint(&self) -> Option<Fingerprint> {
+        None
     }
 
     /// Copies a part with what it refers to into the scratch memory of another thread.

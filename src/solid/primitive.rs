@@ -1,7 +1,7 @@
 //! Shapes that end: the ball and the axis-aligned box.
 
 use super::exact::{Expansion, certain};
-use super::{Solid, Verdict, is_moderate};
+use super::{Fingerprint, Fingerprinter, Solid, Verdict, is_moderate};
 use crate::error::Error;
 use crate::lattice::exact::{sign_of_sum, two_product};
 use crate::lattice::{Cell, Cube, Frame};
@@ -114,6 +114,10 @@ impl Solid for Ball {
         });
         if inside { Tag::Empty } else { Tag::Partial }
     }
+
+    fn fingerprint(&self) -> Option<Fingerprint> {
+        Some(Fingerprinter::new("ball").numbers(&self.centre).numbers(&[self.radius]).finish())
+    }
 }
 
 /// A box with faces parallel to the lattice. Verdicts are exact for the corners given, so a face that lies
@@ -182,5 +186,9 @@ impl Solid for AxisBox {
             self.min[axis] >= origin && sign_of_sum(&[origin, frame.edge(), -self.max[axis]]) >= 0
         });
         if inside { Tag::Empty } else { Tag::Partial }
+    }
+
+    fn fingerprint(&self) -> Option<Fingerprint> {
+        Some(Fingerprinter::new("box").numbers(&self.min).numbers(&self.max).finish())
     }
 }

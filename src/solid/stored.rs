@@ -1,6 +1,6 @@
 //! A stored octree as a solid.
 
-use super::{Solid, Verdict, split_twice};
+use super::{Fingerprint, Fingerprinter, Solid, Verdict, split_twice};
 use crate::error::Error;
 use crate::lattice::{Cube, Frame};
 use crate::octree::view::starts_half_way;
@@ -132,6 +132,23 @@ impl Solid for Stored<'_> {
     fn exterior(&self, _: &Frame) -> Tag {
         self.0.exterior()
     }
+
+    /// Of what is stored, however its bricks are encoded. O(n).
+    fn fingerprint(&self) -> Option<Fingerprint> {
+        let (tree, frame) = (&self.0, self.0.frame());
+        // Of a brick that cannot be read a cell would be a branch.
+        let bricks =
+            (0..tree.bricks.len()).map(|b| tree.bricks.get(b).unwrap_or(Planes::uniform(Tag::Branch)));
+        let words = |planes: Planes| [planes.lower, planes.upper];
+        let count = |entries: usize| 2 * entries as u64;
+        let all = Fingerprinter::new("octree")
+            .numbers(&frame.origin())
+            .numbers(&[frame.edge()])
+            .integers(&[frame.depth().into(), tree.root_tag() as u64, tree.exterior() as u64])
+            .words(count(tree.planes.len()), tree.planes.iter().copied().flat_map(words))
+            .words(count(tree.bricks.len()), bricks.flat_map(words));
+        Some(all.finish())
+    }
 }
 
 /// As [`Stored`], for whoever needs a solid that owns its tree.
@@ -164,5 +181,9 @@ impl Solid for Octree {
 
     fn exterior(&self, frame: &Frame) -> Tag {
         Stored(*self.view()).exterior(frame)
+    }
+
+    fn fingerprint(&self) -> Option<Fingerprint> {
+        Stored(*self.view()).fingerprint()
     }
 }

@@ -10,7 +10,7 @@ use super::surface::{FillRule, TriangleMesh};
 use crate::error::{Error, MeshError};
 use crate::lattice::{Cell, Cube, Frame};
 use crate::octree::{Block, Tag};
-use crate::solid::{Scratch, Solid, Verdict};
+use crate::solid::{Fingerprint, Fingerprinter, Scratch, Solid, Verdict};
 use alloc::boxed::Box;
 use alloc::sync::Arc;
 use alloc::vec::Vec;
@@ -336,6 +336,19 @@ impl Solid for MeshSolid {
             frame.side(axis, min, 0) >= 0 && frame.side(axis, max, 2 * frame.cells() as i64) <= 0
         };
         if (0..3).all(within) && self.is_quiet_outside() { Tag::Empty } else { Tag::Partial }
+    }
+
+    /// Of the mesh and of its lattice, because bounds are computed in finest cells. O(v + t).
+    fn fingerprint(&self) -> Option<Fingerprint> {
+        let Placed { frame, mesh, .. } = &self.placed;
+        let (vertices, triangles) = (mesh.vertices().as_flattened(), mesh.triangles().as_flattened());
+        let all = Fingerprinter::new("mesh")
+            .integers(&[self.fill as u64, frame.depth().into()])
+            .numbers(&frame.origin())
+            .numbers(&[frame.edge(), mesh.displacement()])
+            .numbers(vertices)
+            .words(triangles.len() as u64, triangles.iter().map(|&index| index.into()));
+        Some(all.finish())
     }
 
     fn hand_over(
