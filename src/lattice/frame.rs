@@ -171,6 +171,29 @@ impl Frame {
         self.cell_of_exactly(point)
     }
 
+    /// First and last finest cell along `axis` whose interior meets `[min, max]` (numbers, min ≤ max), and whether some
+    /// of that lies outside of the universe; `None` if all of it does.
+    pub(crate) fn cells_between(&self, axis: usize, min: f64, max: f64) -> Option<(u32, u32, bool)> {
+        let cells = self.cells();
+        // Far outside the comparison with a plane needs no exactness, and must not overflow.
+        const FAR: f64 = f64::from_bits((1023 + 400) << 52);
+        let (min, max) = (min.clamp(-FAR, FAR), max.clamp(-FAR, FAR));
+        let (low, high) = (0, 2 * cells as i64);
+        // What has thickness and only touches the universe has no cell in common with it; what has none may lie
+        // in the face.
+        let thick = (min < max) as i32;
+        if self.side(axis, max, low) < thick || self.side(axis, min, high) > -thick {
+            return None;
+        }
+        let (below, above) = (self.side(axis, min, low) < 0, self.side(axis, max, high) > 0);
+        let first = if below { 0 } else { self.cell_at(axis, min)? };
+        let mut last = if above { cells - 1 } else { self.cell_at(axis, max)? };
+        if last > first && self.side(axis, max, 2 * last as i64) == 0 {
+            last -= 1;
+        }
+        Some((first, last, below || above))
+    }
+
     /// The rounded-down lattice coordinate of `x`, and whether rounding errors cannot have changed it. What is
     /// outside of the universe comes out as a number that is no cell, or as unsure.
     #[inline(always)]

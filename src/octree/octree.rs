@@ -175,7 +175,7 @@ impl Octree {
     /// # Ok::<(), leafless::Error>(())
     /// ```
     pub fn statistics(&self) -> Statistics {
-        Statistics::new(self.view(), self.counts())
+        Statistics::new(self.frame(), self.counts())
     }
 
     pub(crate) fn counts(&self) -> &[LevelCounts] {

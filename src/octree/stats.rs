@@ -37,8 +37,7 @@ pub struct Statistics {
 }
 
 impl Statistics {
-    pub(crate) fn new(tree: &OctreeRef<'_>, counts: &[LevelCounts]) -> Statistics {
-        let frame = tree.frame();
+    pub(crate) fn new(frame: &Frame, counts: &[LevelCounts]) -> Statistics {
         let depth = frame.depth();
         let mut levels = Vec::with_capacity(counts.len());
         let (mut lower, mut undecided) = (0u64, 0u64);

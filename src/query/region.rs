@@ -1,7 +1,7 @@
 //! How does a box lie to the solid?
 
 use crate::error::Error;
-use crate::lattice::{Frame, morton};
+use crate::lattice::morton;
 use crate::octree::view::{OctreeRef, Windows};
 use crate::octree::{Octree, Planes, Tag};
 
@@ -54,7 +54,7 @@ impl OctreeRef<'_> {
             partial: false,
         };
         for axis in 0..3 {
-            let Some((first, last, outside)) = range(&self.frame, axis, min[axis], max[axis]) else {
+            let Some((first, last, outside)) = self.frame.cells_between(axis, min[axis], max[axis]) else {
                 return Ok(Region::Undecided);
             };
             (search.first[axis], search.last[axis]) = (first, last);
@@ -110,29 +110,6 @@ impl Search<'_, '_> {
             }
         }
     }
-}
-
-/// First and last finest cell along `axis` whose interior meets `[min, max]`, and whether some of it lies
-/// outside of the universe; `None` if all of it does.
-fn range(frame: &Frame, axis: usize, min: f64, max: f64) -> Option<(u32, u32, bool)> {
-    let cells = frame.cells();
-    // Far outside the comparison with a plane needs no exactness, and must not overflow.
-    const FAR: f64 = f64::from_bits((1023 + 400) << 52);
-    let (min, max) = (min.clamp(-FAR, FAR), max.clamp(-FAR, FAR));
-    let (low, high) = (0, 2 * cells as i64);
-    // What has thickness and only touches the universe has no cell in common with it; what has none may lie
-    // in the face.
-    let thick = (min < max) as i32;
-    if frame.side(axis, max, low) < thick || frame.side(axis, min, high) > -thick {
-        return None;
-    }
-    let (below, above) = (frame.side(axis, min, low) < 0, frame.side(axis, max, high) > 0);
-    let first = if below { 0 } else { frame.cell_at(axis, min)? };
-    let mut last = if above { cells - 1 } else { frame.cell_at(axis, max)? };
-    if last > first && frame.side(axis, max, 2 * last as i64) == 0 {
-        last -= 1;
-    }
-    Some((first, last, below || above))
 }
 
 impl Octree {
