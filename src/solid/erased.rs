@@ -49,6 +49,7 @@ impl<S: Solid> Typed<S> {
 trait Slot: Any + Send + Sync {
     fn mark(&self) -> usize;
     fn release(&mut self, mark: usize);
+    fn evaluations(&self) -> u64;
     fn as_any(&self) -> &dyn Any;
     fn as_any_mut(&mut self) -> &mut dyn Any;
 }
@@ -61,6 +62,10 @@ impl<S: Solid<Part: 'static, Scratch: 'static> + 'static> Slot for Typed<S> {
     fn release(&mut self, mark: usize) {
         self.parts.truncate(mark);
         self.scratch.release(self.parts.last().map_or(0, |&(_, height)| height));
+    }
+
+    fn evaluations(&self) -> u64 {
+        self.scratch.evaluations()
     }
 
     fn as_any(&self) -> &dyn Any {
@@ -81,6 +86,10 @@ impl Scratch for ErasedScratch {
         if let Some(slot) = &mut self.0 {
             slot.release(mark);
         }
+    }
+
+    fn evaluations(&self) -> u64 {
+        self.0.as_ref().map_or(0, |slot| slot.evaluations())
     }
 }
 
