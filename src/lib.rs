@@ -72,7 +72,8 @@ pub use query::{Membership, PointCursor, Region};
 pub use solid::{
     AnySolid, AxisBox, Ball, Callback, Csg, CsgPart, CsgScratch, DefectKind, ErasedPart, ErasedScratch,
     FillRule, Fingerprint, Fingerprinter, HalfSpace, MeshDefect, MeshPart, MeshReport, MeshScratch,
-    MeshSolid, Scratch, Solid, Stored, StoredPart, Touch, TriangleMesh, Verdict,
+    MeshSolid, Scratch, Solid, Stored, StoredPart, Touch, Transform, TransformPart, TransformScratch,
+    TriangleMesh, Verdict,
 };
 
 #[cfg(feature = "std")]

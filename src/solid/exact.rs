@@ -49,6 +49,11 @@ impl Expansion {
         product
     }
 
+    /// The number rounded: off by 2^-52 of itself at the most.
+    pub(crate) fn estimate(&self) -> f64 {
+        self.0.iter().sum()
+    }
+
     /// −1, 0 or 1.
     pub(crate) fn sign(&self) -> i32 {
         self.0.last().map_or(0, |&term| sign(term))

@@ -13,6 +13,7 @@ mod fingerprint;
 mod mesh;
 mod primitive;
 mod stored;
+mod transform;
 
 pub use callback::Callback;
 pub use csg::{Csg, CsgPart, CsgScratch, HalfSpace, Touch};
@@ -28,6 +29,7 @@ pub use mesh::{
 pub use mesh::{Polyhedron, PolyhedronArrays};
 pub use primitive::{AxisBox, Ball};
 pub use stored::{Stored, StoredPart};
+pub use transform::{Transform, TransformPart, TransformScratch};
 
 use crate::error::Error;
 use crate::lattice::{Cube, Frame, LARGEST, SMALLEST};
@@ -189,6 +191,62 @@ pub trait Solid: Sync {
     ) -> Result<Self::Part, Error> {
         let _ = (from, to);
         Ok(part.clone())
+    }
+}
+
+/// A solid that is borrowed.
+impl<S: Solid> Solid for &S {
+    type Part = S::Part;
+    type Scratch = S::Scratch;
+
+    fn root(&self, scratch: &mut S::Scratch, frame: &Frame) -> Result<Verdict<S::Part>, Error> {
+        (**self).root(scratch, frame)
+    }
+
+    fn split(
+        &self,
+        scratch: &mut S::Scratch,
+        cube: &Cube<'_>,
+        part: &S::Part,
+    ) -> Result<[Verdict<S::Part>; 8], Error> {
+        (**self).split(scratch, cube, part)
+    }
+
+    fn split64(
+        &self,
+        scratch: &mut S::Scratch,
+        cube: &Cube<'_>,
+        part: &S::Part,
+        parts: &mut Vec<(u8, S::Part)>,
+    ) -> Result<Planes, Error> {
+        (**self).split64(scratch, cube, part, parts)
+    }
+
+    fn fill(
+        &self,
+        scratch: &mut S::Scratch,
+        cube: &Cube<'_>,
+        part: &S::Part,
+        block: &mut Block,
+    ) -> Result<bool, Error> {
+        (**self).fill(scratch, cube, part, block)
+    }
+
+    fn sample(
+        &self,
+        scratch: &mut S::Scratch,
+        cube: &Cube<'_>,
+        part: &S::Part,
+    ) -> Result<Option<bool>, Error> {
+        (**self).sample(scratch, cube, part)
+    }
+
+    fn exterior(&self, frame: &Frame) -> Tag {
+        (**self).exterior(frame)
+    }
+
+    fn hand_over(&self, from: &S::Scratch, part: &S::Part, to: &mut S::Scratch) -> Result<S::Part, Error> {
+        (**self).hand_over(from, part, to)
     }
 }
 
