@@ -10,6 +10,8 @@ mod extent;
 mod halfspace;
 mod map;
 mod points;
+#[allow(dead_code)] // Until prisms use it.
+mod polygon;
 mod primitive;
 mod program;
 mod quadric;
