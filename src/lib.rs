@@ -70,10 +70,10 @@ pub use op::{
 };
 pub use query::{Membership, PointCursor, Region};
 pub use solid::{
-    AnySolid, AxisBox, Ball, Callback, Csg, CsgPart, CsgScratch, DefectKind, ErasedPart, ErasedScratch,
-    FillRule, Fingerprint, Fingerprinter, HalfSpace, MeshDefect, MeshPart, MeshReport, MeshScratch,
-    MeshSolid, Scratch, Solid, Stored, StoredPart, Touch, Transform, TransformPart, TransformScratch,
-    TriangleMesh, Verdict,
+    AnySolid, AxisBox, Ball, Callback, Counted, Csg, CsgPart, CsgScratch, DefectKind, ErasedPart,
+    ErasedScratch, FillRule, Fingerprint, Fingerprinter, HalfSpace, MeshDefect, MeshPart, MeshReport,
+    MeshScratch, MeshSolid, Scratch, Solid, Stored, StoredPart, Touch, Transform, TransformPart,
+    TransformScratch, TriangleMesh, Verdict,
 };
 
 #[cfg(feature = "std")]

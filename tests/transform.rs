@@ -6,7 +6,7 @@ mod common;
 use common::exact::Exact;
 use common::{Dense, Random, alone, lattice_frame, positions, shapes};
 use leafless::{
-    Affine, AnySolid, AxisBox, Ball, Cell, Control, Cube, Error, Frame, HalfSpace, Octree, Rule, Solid, Tag,
+    Affine, AnySolid, AxisBox, Ball, Cell, Control, Csg, Cube, Error, Frame, Octree, Rule, Solid, Tag,
     Transform, Verdict, build,
 };
 use proptest::prelude::*;
@@ -362,7 +362,7 @@ fn what_lies_outside_of_the_own_universe_is_known_as_the_solid_tells() {
     let own = Frame::new([0.0; 3], 1.0, 4).unwrap();
     let frame = Frame::new([-2.0; 3], 4.0, 4).unwrap();
     // A half-space goes on outside, which nobody knows there.
-    let half = HalfSpace::new([1.0, 0.0, 0.0], -0.5).unwrap();
+    let half = Csg::half_space([1.0, 0.0, 0.0], -0.5).unwrap();
     let tree =
         build(&Transform::new(half, &own, &Affine::IDENTITY), &frame, Rule::Certified, &alone()).unwrap();
     assert_eq!(tree.view().tag_at([0, 0, 0]), Tag::Partial);

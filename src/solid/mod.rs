@@ -6,6 +6,7 @@
 //! none knows the others.
 
 mod callback;
+mod counted;
 mod csg;
 mod erased;
 mod exact;
@@ -16,6 +17,7 @@ mod stored;
 mod transform;
 
 pub use callback::Callback;
+pub use counted::Counted;
 pub use csg::{Csg, CsgPart, CsgScratch, HalfSpace, Touch};
 pub use erased::{AnySolid, ErasedPart, ErasedScratch};
 pub use fingerprint::{Fingerprint, Fingerprinter};
@@ -247,6 +249,10 @@ impl<S: Solid> Solid for &S {
 
     fn hand_over(&self, from: &S::Scratch, part: &S::Part, to: &mut S::Scratch) -> Result<S::Part, Error> {
         (**self).hand_over(from, part, to)
+    }
+
+    fn fingerprint(&self) -> Option<Fingerprint> {
+        (**self).fingerprint()
     }
 }
 

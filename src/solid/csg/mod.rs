@@ -66,6 +66,10 @@ pub struct Csg {
 /// A node of an expression, with boxes around what it stands for and around the complement of that.
 struct Node {
     kind: Kind,
+    /// Half-spaces, other solids and operations that it comes to when it is written out.
+    size: u64,
+    /// Whether other solids occur in it.
+    mixed: bool,
     extent: Extent,
     opposite: Extent,
 }
@@ -89,7 +93,16 @@ enum Join {
 
 impl Csg {
     fn new(kind: Kind, extent: Extent, opposite: Extent) -> Csg {
-        Csg { root: Arc::new(Node { kind, extent, opposite }), touch: Touch::Exact }
+        let (size, mixed) = match &kind {
+            Kind::HalfSpace(_) => (1, false),
+            Kind::Solid(_) => (1, true),
+            Kind::Complement(part) | Kind::Placed(part, _) => (part.size, part.mixed),
+            Kind::Join(_, parts) => (
+                parts.iter().fold(1, |sum: u64, part| sum.saturating_add(part.size)),
+                parts.iter().any(|part| part.mixed),
+            ),
+        };
+        Csg { root: Arc::new(Node { kind, size, mixed, extent, opposite }), touch: Touch::Exact }
     }
 
     fn join(join: Join, parts: impl IntoIterator<Item = Csg>) -> Result<Csg, Error> {
@@ -172,14 +185,21 @@ impl Csg {
         Csg::new(Kind::Complement(self.root.clone()), self.root.opposite, self.root.extent)
     }
 
-    /// The solid moved by `placement`, exactly: of half-spaces nothing is rounded.
-    #[must_use]
-    pub fn placed(&self, placement: &Affine) -> Csg {
+    /// The solid moved by `placement`, exactly: nothing is rounded.
+    ///
+    /// # Errors
+    /// [`Error::Argument`] if other solids occur in the expression: those a [`Transform`](crate::Transform) moves, one
+    /// by one.
+    pub fn placed(&self, placement: &Affine) -> Result<Csg, Error> {
         if placement.is_identity() {
-            return self.clone();
+            return Ok(self.clone());
+        }
+        if self.root.mixed {
+            let problem = "cannot move solids that are not made of half-spaces";
+            return Err(Error::Argument { name: "placement", problem });
         }
         let (extent, opposite) = (self.root.extent.placed(placement), self.root.opposite.placed(placement));
-        Csg::new(Kind::Placed(self.root.clone(), *placement), extent, opposite)
+        Ok(Csg::new(Kind::Placed(self.root.clone(), *placement), extent, opposite))
     }
 
     /// The same solid by another rule of touching. It holds for the whole expression; parts of a later expression

@@ -30,10 +30,14 @@ pub(super) enum Op {
     Primitive { count: u32 },
 }
 
-/// Most operands of an operation, and most half-spaces.
-const MOST: usize = 1 << 27;
+/// Most half-spaces, other solids and operations of an expression that is written out. (A few hundred bytes each; a
+/// node that contains another twice, which contains another twice … soon comes to more.)
+const MOST: u64 = 1 << 24;
 
 impl Word {
+    /// The greatest index or count that a word can hold.
+    pub(super) const MOST: u32 = (1 << 28) - 1;
+
     pub(super) fn new(op: Op) -> Word {
         let word = |tag: u32, complement: bool, value: u32| tag | (complement as u32) << 3 | value << 4;
         Word(match op {
@@ -106,6 +110,9 @@ pub(super) fn push<T>(list: &mut Vec<T>, value: T) -> Result<(), Error> {
 impl Program {
     /// Time and memory are linear in the expression, written out: a node that occurs twice counts twice.
     pub(super) fn new(csg: &Csg, frame: &Frame) -> Result<Program, Error> {
+        if csg.root.size > MOST {
+            return Err(Error::Limit { what: "half-spaces and operations", limit: MOST });
+        }
         let paper = csg.touch == Touch::Paper;
         let mut program = Program { paper, half_spaces: Vec::new(), solids: Vec::new(), words: Vec::new() };
         let mut tasks = Vec::new();
@@ -177,7 +184,7 @@ impl Program {
     }
 
     fn join(&mut self, join: Join, complement: bool, count: usize) -> Result<(), Error> {
-        let count = within_limit(count)?;
+        let count = count as u32;
         push(&mut self.words, Word::new(Op::Join { join, complement, count }))
     }
 
@@ -188,7 +195,7 @@ impl Program {
         map: &ExactMap,
         frame: &Frame,
     ) -> Result<(), Error> {
-        let index = within_limit(self.half_spaces.len())?;
+        let index = self.half_spaces.len() as u32;
         push(&mut self.half_spaces, half_space.0.on(map, frame))?;
         push(&mut self.words, Word::new(Op::HalfSpace { index, complement }))
     }
@@ -204,13 +211,13 @@ impl Program {
         for half_space in half_spaces {
             self.half_space(half_space, false, map, frame)?;
         }
-        let count = within_limit(self.words.len() - before)?;
+        let count = (self.words.len() - before) as u32;
         push(&mut self.words, Word::new(Op::Primitive { count }))?;
         if complement { self.join(Join::Parity, true, 1) } else { Ok(()) }
     }
 
     fn solid(&mut self, solid: &AnySolid, complement: bool) -> Result<(), Error> {
-        let index = within_limit(self.solids.len())?;
+        let index = self.solids.len() as u32;
         push(&mut self.solids, solid.clone())?;
         push(&mut self.words, Word::new(Op::Solid { index, complement }))
     }
@@ -227,12 +234,4 @@ impl Node {
 
 fn all_half_spaces(parts: &[Arc<Node>]) -> bool {
     !parts.is_empty() && parts.iter().all(|part| part.half_space().is_some())
-}
-
-fn within_limit(count: usize) -> Result<u32, Error> {
-    if count < MOST {
-        Ok(count as u32)
-    } else {
-        Err(Error::Limit { what: "half-spaces and operands of an expression", limit: MOST as u64 })
-    }
 }

@@ -57,6 +57,15 @@ struct Slot {
     height: usize,
 }
 
+impl Slot {
+    /// Keeps a slot; returns its index, which a word can hold.
+    fn keep(slots: &mut Vec<Slot>, slot: Slot) -> Result<u32, Error> {
+        let index = u32::try_from(slots.len()).ok().filter(|&index| index <= Word::MOST);
+        push(slots, slot)?;
+        index.ok_or(Error::OutOfMemory)
+    }
+}
+
 /// What another solid says of eight cells, and the height of its scratch memory before.
 struct Answer {
     solid: u32,
@@ -300,8 +309,8 @@ impl CsgScratch {
                     answers += 1;
                     Some(match verdicts[k as usize] {
                         Verdict::Partial(part) => {
-                            let index = self.slots.len() as u32;
-                            push(&mut self.slots, Slot { solid, part, words: first, height })?;
+                            let slot = Slot { solid, part, words: first, height };
+                            let index = Slot::keep(&mut self.slots, slot)?;
                             hopeful = true;
                             Op::Solid { index, complement }
                         }
@@ -499,8 +508,8 @@ impl Solid for Csg {
                     let (source, target) = (solid as usize, &mut to.scratches[solid as usize]);
                     let height = target.mark();
                     let part = program.solids[source].hand_over(&from.scratches[source], &part, target)?;
-                    let index = to.slots.len() as u32;
-                    push(&mut to.slots, Slot { solid, part, words: to.words.len(), height })?;
+                    let slot = Slot { solid, part, words: to.words.len(), height };
+                    let index = Slot::keep(&mut to.slots, slot)?;
                     Word::new(Op::Solid { index, complement })
                 }
                 _ => *word,
