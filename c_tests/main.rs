@@ -217,6 +217,11 @@ fn callback() {
 }
 
 #[test]
+fn solid_geometry() {
+    run("csg", C99, Link::Static, &[]);
+}
+
+#[test]
 fn cancel() {
     run("cancel", CPP17, Link::Static, &[]);
 }

@@ -75,6 +75,7 @@ static void null_pointers(void) {
     leafless_mesh **mesh_result = (leafless_mesh **)&never;
     leafless_solid **solid_result = (leafless_solid **)&never;
     const leafless_octree *list[2];
+    const leafless_solid *solids[2];
     leafless_callbacks callbacks;
     const uint32_t cell[3] = {0, 0, 0};
     const leafless_mesh_arrays arrays = check_arrays(CHECK_CUBE, 8, CHECK_CUBE_TRIANGLES, 12);
@@ -191,6 +192,37 @@ static void null_pointers(void) {
     NULL_POINTER(leafless_solid_new_box, solid, leafless_solid_new_box(point, above, NULL));
     NULL_POINTER(leafless_solid_new_halfspace, normal, leafless_solid_new_halfspace(NULL, 1, solid_result));
     NULL_POINTER(leafless_solid_new_halfspace, solid, leafless_solid_new_halfspace(above, 1, NULL));
+    NULL_POINTER(leafless_solid_new_quadric, coefficients, leafless_solid_new_quadric(NULL, solid_result));
+    NULL_POINTER(leafless_solid_new_quadric, solid, leafless_solid_new_quadric(matrix, NULL));
+    NULL_POINTER(leafless_solid_new_ellipsoid, centre_model,
+                 leafless_solid_new_ellipsoid(NULL, above, solid_result));
+    NULL_POINTER(leafless_solid_new_ellipsoid, radii_model,
+                 leafless_solid_new_ellipsoid(point, NULL, solid_result));
+    NULL_POINTER(leafless_solid_new_ellipsoid, solid, leafless_solid_new_ellipsoid(point, above, NULL));
+    NULL_POINTER(leafless_solid_new_cylinder, solid, leafless_solid_new_cylinder(1, 0, 1, NULL));
+    NULL_POINTER(leafless_solid_new_frustum, solid, leafless_solid_new_frustum(1, 0, 0, 1, NULL));
+    solids[0] = solids[1] = solid;
+#define JOIN(function)                                                                                               \
+    NULL_POINTER(function, solids, function(NULL, 2, solid_result));                                                 \
+    NULL_POINTER(function, solid, function(solids, 2, NULL));                                                        \
+    solids[1] = NULL;                                                                                                \
+    refused(LEAFLESS_E_NULL, #function, "solids", function(solids, 2, solid_result));                                \
+    solids[1] = solid
+    JOIN(leafless_solid_union);
+    JOIN(leafless_solid_intersection);
+    JOIN(leafless_solid_xor);
+#undef JOIN
+    NULL_POINTER(leafless_solid_difference, a, leafless_solid_difference(NULL, solid, solid_result));
+    NULL_POINTER(leafless_solid_difference, b, leafless_solid_difference(solid, NULL, solid_result));
+    NULL_POINTER(leafless_solid_difference, solid, leafless_solid_difference(solid, solid, NULL));
+    NULL_POINTER(leafless_solid_complement, operand, leafless_solid_complement(NULL, solid_result));
+    NULL_POINTER(leafless_solid_complement, solid, leafless_solid_complement(solid, NULL));
+    NULL_POINTER(leafless_solid_placed, operand, leafless_solid_placed(NULL, matrix, solid_result));
+    NULL_POINTER(leafless_solid_placed, matrix, leafless_solid_placed(solid, NULL, solid_result));
+    NULL_POINTER(leafless_solid_placed, solid, leafless_solid_placed(solid, matrix, NULL));
+    NULL_POINTER(leafless_solid_with_touch, operand, leafless_solid_with_touch(NULL, 0, solid_result));
+    NULL_POINTER(leafless_solid_with_touch, solid, leafless_solid_with_touch(solid, 0, NULL));
+    BAD_NUMBER(leafless_solid_with_touch, touch, leafless_solid_with_touch(solid, 7, solid_result));
     NULL_POINTER(leafless_solid_new_mesh, mesh, leafless_solid_new_mesh(NULL, &frame, 0, solid_result));
     NULL_POINTER(leafless_solid_new_mesh, frame, leafless_solid_new_mesh(mesh, NULL, 0, solid_result));
     NULL_POINTER(leafless_solid_new_mesh, solid, leafless_solid_new_mesh(mesh, &frame, 0, NULL));

@@ -1945,56 +1945,6 @@ leafless_status leafless_octree_peek_metadata_at(const leafless_octree *octree,
                                                  size_t *value_length);
 
 /**
- * The ball of all points at most `radius` from `centre`. Its verdicts are exact.
- *
- * - Buffers: `centre_model`, 3 numbers; `solid`, one pointer.
- * - Result: `*solid`.
- * - Errors: LEAFLESS_E_ARGUMENT if the radius is not between 2^-256 and 2^256, or a coordinate neither 0 nor of
- *   such a magnitude.
- * - Ownership: give `*solid` back with leafless_solid_free.
- * - Threads: any.
- * - Untrusted input: any numbers.
- * - Since: 0.1
- *
- */
-leafless_status leafless_solid_new_ball(const double centre_model[3],
-                                        double radius_model,
-                                        leafless_solid **solid);
-
-/**
- * The box [min, max] with faces parallel to the lattice. Its verdicts are exact, so a face on a lattice plane
- * leaves nothing undecided.
- *
- * - Buffers: `min_model` and `max_model`, 3 numbers each; `solid`, one pointer.
- * - Result: `*solid`.
- * - Errors: LEAFLESS_E_ARGUMENT if min ≥ max on an axis, or a coordinate is neither 0 nor of a magnitude between
- *   2^-256 and 2^256.
- * - Ownership: give `*solid` back with leafless_solid_free.
- * - Threads: any.
- * - Untrusted input: any numbers.
- * - Since: 0.1
- *
- */
-leafless_status leafless_solid_new_box(const double min_model[3],
-                                       const double max_model[3],
-                                       leafless_solid **solid);
-
-/**
- * The half-space of the points p with normal · p + offset ≥ 0. Its verdicts are exact.
- *
- * - Buffers: `normal`, 3 numbers, of any length and pointing into the solid; `solid`, one pointer.
- * - Result: `*solid`.
- * - Errors: LEAFLESS_E_ARGUMENT if the normal is zero, or a coefficient neither 0 nor of a magnitude between
- *   2^-256 and 2^256.
- * - Ownership: give `*solid` back with leafless_solid_free.
- * - Threads: any.
- * - Untrusted input: any numbers.
- * - Since: 0.1
- *
- */
-leafless_status leafless_solid_new_halfspace(const double normal[3], double offset, leafless_solid **solid);
-
-/**
  * What a mesh encloses, on the lattice of one frame: the solid can be built on that frame only. A mesh that reaches
  * beyond the universe is clipped by it.
  *
@@ -2085,6 +2035,236 @@ leafless_status leafless_solid_ref(const leafless_solid *solid, leafless_solid *
  * - Since: 0.1
  */
 void leafless_solid_free(leafless_solid *solid);
+
+/**
+ * The ball of all points at most `radius` from `centre`. Its verdicts are exact.
+ *
+ * - Buffers: `centre_model`, 3 numbers; `solid`, one pointer.
+ * - Result: `*solid`.
+ * - Errors: LEAFLESS_E_ARGUMENT if the radius is not between 2^-256 and 2^256, or a coordinate neither 0 nor of
+ *   such a magnitude.
+ * - Ownership: give `*solid` back with leafless_solid_free.
+ * - Threads: any.
+ * - Untrusted input: any numbers.
+ * - Since: 0.1
+ *
+ */
+leafless_status leafless_solid_new_ball(const double centre_model[3],
+                                        double radius_model,
+                                        leafless_solid **solid);
+
+/**
+ * The box [min, max] with faces parallel to the lattice. Its verdicts are exact, so a face on a lattice plane
+ * leaves nothing undecided.
+ *
+ * - Buffers: `min_model` and `max_model`, 3 numbers each; `solid`, one pointer.
+ * - Result: `*solid`.
+ * - Errors: LEAFLESS_E_ARGUMENT if min ≥ max on an axis, or a coordinate is neither 0 nor of a magnitude between
+ *   2^-256 and 2^256.
+ * - Ownership: give `*solid` back with leafless_solid_free.
+ * - Threads: any.
+ * - Untrusted input: any numbers.
+ * - Since: 0.1
+ *
+ */
+leafless_status leafless_solid_new_box(const double min_model[3],
+                                       const double max_model[3],
+                                       leafless_solid **solid);
+
+/**
+ * The half-space of the points p with normal · p + offset ≥ 0. Its verdicts are exact.
+ *
+ * - Buffers: `normal`, 3 numbers, of any length and pointing into the solid; `solid`, one pointer.
+ * - Result: `*solid`.
+ * - Errors: LEAFLESS_E_ARGUMENT if the normal is zero, or a coefficient neither 0 nor of a magnitude between
+ *   2^-256 and 2^256.
+ * - Ownership: give `*solid` back with leafless_solid_free.
+ * - Threads: any.
+ * - Untrusted input: any numbers.
+ * - Since: 0.1
+ *
+ */
+leafless_status leafless_solid_new_halfspace(const double normal[3], double offset, leafless_solid **solid);
+
+/**
+ * The points p with a x² + b y² + c z² + d xy + e yz + f zx + g x + h y + i z + j ≥ 0, of which the ten coefficients
+ * are a to j. Its signs are exact.
+ *
+ * - Buffers: `coefficients`, 10 numbers; `solid`, one pointer.
+ * - Result: `*solid`.
+ * - Errors: LEAFLESS_E_ARGUMENT if all coefficients but the last are 0, or one is neither 0 nor of a magnitude
+ *   between 2^-256 and 2^256.
+ * - Ownership: give `*solid` back with leafless_solid_free.
+ * - Threads: any.
+ * - Untrusted input: any numbers.
+ * - Since: 0.1
+ *
+ */
+leafless_status leafless_solid_new_quadric(const double coefficients[10],
+                                           leafless_solid **solid);
+
+/**
+ * The ellipsoid around `centre` with the semi-axes `radii` along x, y and z. Its verdicts are exact.
+ *
+ * - Buffers: `centre_model` and `radii_model`, 3 numbers each; `solid`, one pointer.
+ * - Result: `*solid`.
+ * - Errors: LEAFLESS_E_ARGUMENT if a radius is not between 2^-256 and 2^256, or a coordinate neither 0 nor of such a
+ *   magnitude.
+ * - Ownership: give `*solid` back with leafless_solid_free.
+ * - Threads: any.
+ * - Untrusted input: any numbers.
+ * - Since: 0.1
+ *
+ */
+leafless_status leafless_solid_new_ellipsoid(const double centre_model[3],
+                                             const double radii_model[3],
+                                             leafless_solid **solid);
+
+/**
+ * The cylinder of `radius` around the z axis between z = `low` and z = `high`. Its verdicts are exact.
+ *
+ * - Buffers: `solid`, one pointer.
+ * - Result: `*solid`.
+ * - Errors: LEAFLESS_E_ARGUMENT if the radius is not between 2^-256 and 2^256, a coordinate neither 0 nor of such a
+ *   magnitude, or `low` not less than `high`.
+ * - Ownership: give `*solid` back with leafless_solid_free.
+ * - Threads: any.
+ * - Untrusted input: any numbers.
+ * - Since: 0.1
+ */
+leafless_status leafless_solid_new_cylinder(double radius_model,
+                                            double low_model,
+                                            double high_model,
+                                            leafless_solid **solid);
+
+/**
+ * The frustum of a cone around the z axis: of radius `bottom` at z = `low` and `top` at z = `high`. One of the radii
+ * may be 0, which makes a cone. Its verdicts are exact.
+ *
+ * - Buffers: `solid`, one pointer.
+ * - Result: `*solid`.
+ * - Errors: LEAFLESS_E_ARGUMENT if both radii are 0 or one is not between 2^-256 and 2^256, a coordinate neither 0
+ *   nor of such a magnitude, or `low` not less than `high`.
+ * - Ownership: give `*solid` back with leafless_solid_free.
+ * - Threads: any.
+ * - Untrusted input: any numbers.
+ * - Since: 0.1
+ */
+leafless_status leafless_solid_new_frustum(double bottom_model,
+                                           double top_model,
+                                           double low_model,
+                                           double high_model,
+                                           leafless_solid **solid);
+
+/**
+ * What at least one of the solids contains; nothing, if there is none. No tree is built: the result asks its
+ * operands about each cell that it is asked about, and expressions of half-spaces join into one.
+ *
+ * - Buffers: `solids`, `count` pointers, or NULL if there is none; `solid`, one pointer.
+ * - Result: `*solid`.
+ * - Errors: LEAFLESS_E_NULL, also of an element; LEAFLESS_E_NO_MEMORY.
+ * - Ownership: the operands are shared and may be freed; give `*solid` back with leafless_solid_free.
+ * - Threads: any.
+ * - Untrusted input: any solids.
+ * - Since: 0.1
+ */
+leafless_status leafless_solid_union(const leafless_solid *const *solids,
+                                     uint64_t count,
+                                     leafless_solid **solid);
+
+/**
+ * What all of the solids contain; everything, if there is none. No tree is built: the result asks its operands about
+ * each cell that it is asked about, and expressions of half-spaces join into one.
+ *
+ * - Buffers: `solids`, `count` pointers, or NULL if there is none; `solid`, one pointer.
+ * - Result: `*solid`.
+ * - Errors: LEAFLESS_E_NULL, also of an element; LEAFLESS_E_NO_MEMORY.
+ * - Ownership: the operands are shared and may be freed; give `*solid` back with leafless_solid_free.
+ * - Threads: any.
+ * - Untrusted input: any solids.
+ * - Since: 0.1
+ */
+leafless_status leafless_solid_intersection(const leafless_solid *const *solids,
+                                            uint64_t count,
+                                            leafless_solid **solid);
+
+/**
+ * What an odd number of the solids contain: of two, what is in one and not in the other. No tree is built: the
+ * result asks its operands about each cell that it is asked about, and expressions of half-spaces join into one.
+ *
+ * - Buffers: `solids`, `count` pointers, or NULL if there is none; `solid`, one pointer.
+ * - Result: `*solid`.
+ * - Errors: LEAFLESS_E_NULL, also of an element; LEAFLESS_E_NO_MEMORY.
+ * - Ownership: the operands are shared and may be freed; give `*solid` back with leafless_solid_free.
+ * - Threads: any.
+ * - Untrusted input: any solids.
+ * - Since: 0.1
+ */
+leafless_status leafless_solid_xor(const leafless_solid *const *solids,
+                                   uint64_t count,
+                                   leafless_solid **solid);
+
+/**
+ * What `a` contains and `b` does not. No tree is built.
+ *
+ * - Buffers: `solid`, one pointer.
+ * - Result: `*solid`.
+ * - Errors: LEAFLESS_E_NULL; LEAFLESS_E_NO_MEMORY.
+ * - Ownership: the operands are shared and may be freed; give `*solid` back with leafless_solid_free.
+ * - Threads: any.
+ * - Untrusted input: any solids.
+ * - Since: 0.1
+ */
+leafless_status leafless_solid_difference(const leafless_solid *a,
+                                          const leafless_solid *b,
+                                          leafless_solid **solid);
+
+/**
+ * What `operand` does not contain. A solid and its complement share their boundary.
+ *
+ * - Buffers: `solid`, one pointer.
+ * - Result: `*solid`.
+ * - Errors: LEAFLESS_E_NULL.
+ * - Ownership: the operand is shared and may be freed; give `*solid` back with leafless_solid_free.
+ * - Threads: any.
+ * - Untrusted input: any solids.
+ * - Since: 0.1
+ */
+leafless_status leafless_solid_complement(const leafless_solid *operand, leafless_solid **solid);
+
+/**
+ * An expression of half-spaces moved by an affine map, exactly: nothing is rounded. (Solids of other kinds are moved
+ * by leafless_solid_new_transform.)
+ *
+ * - Buffers: `matrix`, 12 numbers, the rows of [M | t], where a point p goes to M p + t; `solid`, one pointer.
+ * - Result: `*solid`.
+ * - Errors: LEAFLESS_E_ARGUMENT if an entry is neither 0 nor of a magnitude between 2^-64 and 2^64, M is singular,
+ *   or solids that are not made of half-spaces occur in `operand`.
+ * - Ownership: the operand is shared and may be freed; give `*solid` back with leafless_solid_free.
+ * - Threads: any.
+ * - Untrusted input: any solids and numbers.
+ * - Since: 0.1
+ *
+ */
+leafless_status leafless_solid_placed(const leafless_solid *operand,
+                                      const double matrix[12],
+                                      leafless_solid **solid);
+
+/**
+ * The same solid by another rule of touching, which holds for the whole expression. What joins it to others follows
+ * its own rule.
+ *
+ * - Buffers: `solid`, one pointer. `touch` is a leafless_touch.
+ * - Result: `*solid`.
+ * - Errors: LEAFLESS_E_NULL; LEAFLESS_E_ARGUMENT if `touch` is no leafless_touch.
+ * - Ownership: the operand is shared and may be freed; give `*solid` back with leafless_solid_free.
+ * - Threads: any.
+ * - Untrusted input: any solids.
+ * - Since: 0.1
+ */
+leafless_status leafless_solid_with_touch(const leafless_solid *operand,
+                                          uint32_t touch,
+                                          leafless_solid **solid);
 
 /**
  * Builds the octree of a solid to the depth of a frame. The result is the same bit for bit for any number of

@@ -13,7 +13,7 @@ fn folder() -> &'static Path {
 }
 
 /// The files of the interface, as the header's sections follow each other.
-const SECTIONS: [&str; 15] = [
+const SECTIONS: &[&str] = &[
     "version",
     "status",
     "boundary",
@@ -25,6 +25,7 @@ const SECTIONS: [&str; 15] = [
     "polyhedron",
     "octree",
     "solid",
+    "csg",
     "op",
     "query",
     "file",

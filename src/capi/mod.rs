@@ -27,6 +27,7 @@
 
 mod boundary;
 mod control;
+mod csg;
 mod file;
 mod frame;
 #[cfg(feature = "capi-test")]
@@ -45,6 +46,7 @@ mod version;
 #[cfg(feature = "capi-test")]
 pub use boundary::leafless_test_panic;
 pub use control::*;
+pub use csg::*;
 pub use file::*;
 pub use frame::*;
 #[cfg(feature = "capi-test")]

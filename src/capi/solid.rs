@@ -1,15 +1,13 @@
 //! Solids: everything that can split a cell.
 
-use super::boundary::{
-    Failure, Sized32, array, guard, handle, initialise, out, refer, release, shared, sized,
-};
+use super::boundary::{Failure, Sized32, guard, handle, initialise, out, refer, release, shared, sized};
 use super::frame::{frame, leafless_frame};
 use super::mesh::{fill_rule, leafless_mesh};
 use super::octree::{leafless_octree, settled_tag};
 use super::status::leafless_status;
 use crate::error::Error;
 use crate::octree::Tag;
-use crate::solid::{AnySolid, AxisBox, Ball, Callback, Csg, MeshSolid, Solid, Verdict};
+use crate::solid::{AnySolid, Callback, MeshSolid, Solid, Verdict};
 use alloc::sync::Arc;
 use core::ffi::c_void;
 
@@ -115,84 +113,11 @@ impl Host {
     }
 }
 
-fn give<S: Solid<Part: 'static, Scratch: 'static> + Send + 'static>(solid: S) -> *mut leafless_solid {
+/// A handle of a solid.
+pub(super) fn give<S: Solid<Part: 'static, Scratch: 'static> + Send + 'static>(
+    solid: S,
+) -> *mut leafless_solid {
     handle(leafless_solid { solid: AnySolid::new(solid) })
-}
-
-/// The ball of all points at most `radius` from `centre`. Its verdicts are exact.
-///
-/// - Buffers: `centre_model`, 3 numbers; `solid`, one pointer.
-/// - Result: `*solid`.
-/// - Errors: LEAFLESS_E_ARGUMENT if the radius is not between 2^-256 and 2^256, or a coordinate neither 0 nor of
-///   such a magnitude.
-/// - Ownership: give `*solid` back with leafless_solid_free.
-/// - Threads: any.
-/// - Untrusted input: any numbers.
-/// - Since: 0.1
-///
-/// cbindgen:ptrs-as-arrays=[[centre_model; 3]]
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn leafless_solid_new_ball(
-    centre_model: *const f64,
-    radius_model: f64,
-    solid: *mut *mut leafless_solid,
-) -> leafless_status {
-    guard(|| unsafe {
-        let centre = array(centre_model, "centre_model")?;
-        let solid = out(solid, "solid")?;
-        solid.write(give(Ball::new(centre, radius_model)?))
-    })
-}
-
-/// The box [min, max] with faces parallel to the lattice. Its verdicts are exact, so a face on a lattice plane
-/// leaves nothing undecided.
-///
-/// - Buffers: `min_model` and `max_model`, 3 numbers each; `solid`, one pointer.
-/// - Result: `*solid`.
-/// - Errors: LEAFLESS_E_ARGUMENT if min ≥ max on an axis, or a coordinate is neither 0 nor of a magnitude between
-///   2^-256 and 2^256.
-/// - Ownership: give `*solid` back with leafless_solid_free.
-/// - Threads: any.
-/// - Untrusted input: any numbers.
-/// - Since: 0.1
-///
-/// cbindgen:ptrs-as-arrays=[[min_model; 3], [max_model; 3]]
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn leafless_solid_new_box(
-    min_model: *const f64,
-    max_model: *const f64,
-    solid: *mut *mut leafless_solid,
-) -> leafless_status {
-    guard(|| unsafe {
-        let (min, max) = (array(min_model, "min_model")?, array(max_model, "max_model")?);
-        let solid = out(solid, "solid")?;
-        solid.write(give(AxisBox::new(min, max)?))
-    })
-}
-
-/// The half-space of the points p with normal · p + offset ≥ 0. Its verdicts are exact.
-///
-/// - Buffers: `normal`, 3 numbers, of any length and pointing into the solid; `solid`, one pointer.
-/// - Result: `*solid`.
-/// - Errors: LEAFLESS_E_ARGUMENT if the normal is zero, or a coefficient neither 0 nor of a magnitude between
-///   2^-256 and 2^256.
-/// - Ownership: give `*solid` back with leafless_solid_free.
-/// - Threads: any.
-/// - Untrusted input: any numbers.
-/// - Since: 0.1
-///
-/// cbindgen:ptrs-as-arrays=[[normal; 3]]
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn leafless_solid_new_halfspace(
-    normal: *const f64,
-    offset: f64,
-    solid: *mut *mut leafless_solid,
-) -> leafless_status {
-    guard(|| unsafe {
-        let normal = array(normal, "normal")?;
-        let solid = out(solid, "solid")?;
-        solid.write(give(Csg::half_space(normal, offset)?))
-    })
 }
 
 /// What a mesh encloses, on the lattice of one frame: the solid can be built on that frame only. A mesh that reaches

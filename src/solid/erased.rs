@@ -29,6 +29,11 @@ impl AnySolid {
     pub fn new<S: Solid<Part: 'static, Scratch: 'static> + Send + 'static>(solid: S) -> AnySolid {
         AnySolid(Arc::new(solid))
     }
+
+    /// The solid behind the type, if it is of this one.
+    pub fn get<S: Any>(&self) -> Option<&S> {
+        self.0.as_any().downcast_ref()
+    }
 }
 
 /// The typed scratch memory behind an [`ErasedScratch`]: the solid's own, and the parts that were handed out,
@@ -115,6 +120,7 @@ impl ErasedScratch {
 
 /// The object-safe face of a solid.
 trait Erased: Send + Sync {
+    fn as_any(&self) -> &dyn Any;
     fn root(&self, scratch: &mut ErasedScratch, frame: &Frame) -> Result<Verdict<ErasedPart>, Error>;
     fn split(
         &self,
@@ -146,6 +152,10 @@ trait Erased: Send + Sync {
 }
 
 impl<S: Solid<Part: 'static, Scratch: 'static> + Send + 'static> Erased for S {
+    fn as_any(&self) -> &dyn Any {
+        self
+    }
+
     fn root(&self, scratch: &mut ErasedScratch, frame: &Frame) -> Result<Verdict<ErasedPart>, Error> {
         let typed = scratch.typed::<S>();
         Ok(match Solid::root(self, &mut typed.scratch, frame)? {

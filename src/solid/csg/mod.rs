@@ -142,8 +142,12 @@ impl Csg {
         Csg::new(Kind::Join(Join::Intersection, Vec::new()), Extent::Unbounded, Extent::Nothing)
     }
 
-    /// Any other solid. It is asked in whatever frame the whole is asked in, which it must be able to answer.
+    /// Any solid. It is asked in whatever frame the whole is asked in, which it must be able to answer. If it is an
+    /// expression itself, this is that.
     pub fn solid(solid: AnySolid) -> Csg {
+        if let Some(csg) = solid.get::<Csg>() {
+            return csg.clone();
+        }
         Csg::new(Kind::Solid(solid), Extent::Unbounded, Extent::Unbounded)
     }
 

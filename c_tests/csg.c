@@ -1,0 +1,139 @@
+/* Constructive solid geometry: primitives, their joins and placements, and what they refuse. */
+#include "check.h"
+
+static const leafless_frame frame = {{-2, -2, -2}, 4, 6};
+static const double origin[3] = {0, 0, 0};
+
+static leafless_statistics statistics_of(const leafless_solid *solid, uint32_t rule) {
+    leafless_octree *octree = NULL;
+    leafless_statistics statistics;
+    OK(leafless_octree_build(solid, &frame, rule, NULL, &octree));
+    OK(leafless_octree_statistics(octree, &statistics));
+    leafless_octree_free(octree);
+    return statistics;
+}
+
+/* The certified volume contains the truth and is not idle. */
+static void has_volume(leafless_solid *solid, double truth) {
+    const leafless_statistics found = statistics_of(solid, LEAFLESS_RULE_CERTIFIED);
+    CHECK(found.volume_model.lower <= truth && truth <= found.volume_model.upper);
+    CHECK(found.volume_model.upper - found.volume_model.lower < 4.0);
+    leafless_solid_free(solid);
+}
+
+static leafless_solid *ball(double radius) {
+    leafless_solid *solid = NULL;
+    OK(leafless_solid_new_ball(origin, radius, &solid));
+    return solid;
+}
+
+int main(void) {
+    const double pi = 3.14159265358979323846;
+    const double low[3] = {-1, -1, -1}, high[3] = {1, 1, 1}, radii[3] = {1, 1.5, 0.5};
+    /* 1 - x^2 - y^2 - z^2 + xy, an ellipsoid: det of the form is 3/4. */
+    const double quadric[10] = {-1, -1, -1, 1, 0, 0, 0, 0, 0, 1};
+    /* Half the size, turned about z, moved. */
+    const double matrix[12] = {0.4, -0.3, 0, 0.2, 0.3, 0.4, 0, -0.1, 0, 0, 0.5, 0.3};
+    const double singular[12] = {1, 0, 0, 0, 1, 0, 0, 0, 0, 0, 1, 0};
+    leafless_solid *a = NULL, *b = NULL, *c = NULL, *deep = NULL;
+    const leafless_solid *parts[3];
+    leafless_statistics exact, paper;
+    int i;
+
+    OK(leafless_solid_new_quadric(quadric, &a));
+    has_volume(a, 4.0 / 3.0 * pi / sqrt(0.75));
+    OK(leafless_solid_new_ellipsoid(origin, radii, &a));
+    has_volume(a, 4.0 / 3.0 * pi * 0.75);
+    OK(leafless_solid_new_cylinder(1, -1, 1.5, &a));
+    has_volume(a, pi * 2.5);
+    OK(leafless_solid_new_frustum(1.5, 0.5, -1, 1, &a));
+    has_volume(a, 2.0 / 3.0 * pi * (2.25 + 0.75 + 0.25));
+    OK(leafless_solid_new_frustum(0, 1, 0, 1.5, &a));
+    has_volume(a, pi * 0.5);
+
+    /* A box minus a ball, and the like; the operands are freed at once. */
+    OK(leafless_solid_new_box(low, high, &a));
+    b = ball(1);
+    OK(leafless_solid_difference(a, b, &c));
+    has_volume(c, 8 - 4.0 / 3.0 * pi);
+    parts[0] = a, parts[1] = b, parts[2] = a;
+    OK(leafless_solid_union(parts, 3, &c));
+    has_volume(c, 8);
+    OK(leafless_solid_intersection(parts, 2, &c));
+    has_volume(c, 4.0 / 3.0 * pi);
+    OK(leafless_solid_xor(parts, 2, &c));
+    has_volume(c, 8 - 4.0 / 3.0 * pi);
+    OK(leafless_solid_complement(b, &c));
+    leafless_solid_free(b);
+    parts[1] = c;
+    OK(leafless_solid_intersection(parts, 2, &b));
+    leafless_solid_free(c);
+    OK(leafless_solid_placed(b, matrix, &c));
+    leafless_solid_free(b);
+    has_volume(c, (8 - 4.0 / 3.0 * pi) / 8);
+    OK(leafless_solid_union(NULL, 0, &c));
+    has_volume(c, 0);
+    OK(leafless_solid_intersection(NULL, 0, &c));
+    CHECK(statistics_of(c, LEAFLESS_RULE_CERTIFIED).volume_model.lower == 64);
+    leafless_solid_free(c);
+
+    /* Solids of any kind join; they cannot be placed. */
+    {
+        leafless_octree *octree = NULL;
+        OK(leafless_octree_build(a, &frame, LEAFLESS_RULE_CERTIFIED, NULL, &octree));
+        OK(leafless_octree_as_solid(octree, &b));
+        leafless_octree_free(octree);
+        c = ball(1);
+        OK(leafless_solid_difference(b, c, &deep));
+        leafless_solid_free(c);
+        FAILS(LEAFLESS_E_ARGUMENT, leafless_solid_placed(deep, matrix, &c));
+        leafless_solid_free(b);
+        has_volume(deep, 8 - 4.0 / 3.0 * pi);
+    }
+
+    /* A chain of a hundred thousand is freed and built without recursion. */
+    deep = ball(1);
+    for (i = 0; i < 100000; i++) {
+        OK(leafless_solid_complement(deep, &b));
+        leafless_solid_free(deep);
+        deep = b;
+    }
+    has_volume(deep, 4.0 / 3.0 * pi);
+    /* What doubles again and again has a limit. */
+    deep = ball(1);
+    for (i = 0; i < 60; i++) {
+        parts[0] = parts[1] = deep;
+        OK(leafless_solid_union(parts, 2, &b));
+        leafless_solid_free(deep);
+        deep = b;
+    }
+    {
+        leafless_octree *octree = NULL;
+        FAILS(LEAFLESS_E_LIMIT, leafless_octree_build(deep, &frame, LEAFLESS_RULE_CERTIFIED, NULL, &octree));
+    }
+    leafless_solid_free(deep);
+
+    /* The published rule counts cells that only touch. */
+    b = ball(1);
+    OK(leafless_solid_with_touch(b, LEAFLESS_TOUCH_PAPER, &c));
+    exact = statistics_of(b, LEAFLESS_RULE_CERTIFIED);
+    paper = statistics_of(c, LEAFLESS_RULE_CERTIFIED);
+    CHECK(exact.lower_cells == paper.lower_cells && exact.upper_cells < paper.upper_cells);
+    CHECK(statistics_of(b, LEAFLESS_RULE_SAMPLED).partial == 0);
+    leafless_solid_free(c);
+
+    FAILS(LEAFLESS_E_ARGUMENT, leafless_solid_placed(b, singular, &c));
+    FAILS(LEAFLESS_E_ARGUMENT, leafless_solid_new_cylinder(0, 0, 1, &c));
+    FAILS(LEAFLESS_E_ARGUMENT, leafless_solid_new_cylinder(1, 1, 1, &c));
+    FAILS(LEAFLESS_E_ARGUMENT, leafless_solid_new_cylinder(NAN, 0, 1, &c));
+    FAILS(LEAFLESS_E_ARGUMENT, leafless_solid_new_frustum(0, 0, 0, 1, &c));
+    FAILS(LEAFLESS_E_ARGUMENT, leafless_solid_new_frustum(-1, 1, 0, 1, &c));
+    FAILS(LEAFLESS_E_ARGUMENT, leafless_solid_new_ellipsoid(origin, origin, &c));
+    {
+        const double constant[10] = {0, 0, 0, 0, 0, 0, 0, 0, 0, 1};
+        FAILS(LEAFLESS_E_ARGUMENT, leafless_solid_new_quadric(constant, &c));
+    }
+    leafless_solid_free(b);
+    leafless_solid_free(a);
+    return 0;
+}
