@@ -52,7 +52,8 @@ pub struct CsgScratch {
 struct Slot {
     solid: u32,
     part: ErasedPart,
-    /// The number of words when it was made, and the height of the solid's own scratch memory before.
+    /// The number of words when its cell's were begun (words may be taken back until the cell's are complete, and then
+    /// there are more), and the height of the solid's own scratch memory before.
     words: usize,
     height: usize,
 }
@@ -309,7 +310,7 @@ impl CsgScratch {
                     answers += 1;
                     Some(match verdicts[k as usize] {
                         Verdict::Partial(part) => {
-                            let slot = Slot { solid, part, words: first, height };
+                            let slot = Slot { solid, part, words: start, height };
                             let index = Slot::keep(&mut self.slots, slot)?;
                             hopeful = true;
                             Op::Solid { index, complement }
