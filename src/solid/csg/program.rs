@@ -116,8 +116,10 @@ impl Program {
         let paper = csg.touch == Touch::Paper;
         let mut program = Program { paper, half_spaces: Vec::new(), solids: Vec::new(), words: Vec::new() };
         let mut tasks = Vec::new();
-        // How many operands stand before each pending join: their number when it was begun.
+        // Operands so far; a pending join knows how many there were when it was begun.
         let mut operands = 0;
+        // Which joins are pending, and whether their complements are meant.
+        let mut joins: Vec<(Join, bool)> = Vec::new();
         let map = Arc::new(ExactMap::from_universe(frame));
         push(&mut tasks, Task::Write { node: &csg.root, complement: false, map })?;
         while let Some(task) = tasks.pop() {
@@ -125,6 +127,7 @@ impl Program {
                 Task::Join { join, complement, start } => {
                     let count = operands - start;
                     operands = start + 1;
+                    joins.pop();
                     // One operand is itself.
                     if count != 1 || (join == Join::Parity && complement) {
                         program.join(join, complement, count)?;
@@ -164,12 +167,10 @@ impl Program {
                             (&join, false) => (join, false, false),
                         };
                         // An operand of the same operation joins its operands to ours.
-                        let same = |task: Option<&Task<'_>>| matches!(task, Some(Task::Join { join: above, complement: false, .. }) if *above == join);
-                        let flat = !outer && !paper && {
-                            let above = tasks.iter().rev().find(|task| matches!(task, Task::Join { .. }));
-                            same(above) && !parts.is_empty()
-                        };
+                        let flat =
+                            !outer && !paper && !parts.is_empty() && joins.last() == Some(&(join, false));
                         if !flat {
+                            push(&mut joins, (join, outer))?;
                             push(&mut tasks, Task::Join { join, complement: outer, start: operands })?;
                         }
                         tasks.try_reserve(parts.len()).map_err(|_| Error::OutOfMemory)?;
