@@ -1,6 +1,9 @@
 //! Constructive solid geometry: the published tables.
 
-use leafless::{Cell, Csg, Cube, Error, Frame, HalfSpace, Scratch, Solid, Touch, Verdict};
+use leafless::{
+    AnySolid, AxisBox, Cell, Control, Csg, Cube, Error, Frame, HalfSpace, Rule, Scratch, Solid, Tag, Touch,
+    Verdict, build,
+};
 
 /// Cells that were split above each level and the volumes of FULL, and of FULL and PARTIAL cells, of a full descent.
 fn table(solid: &Csg, frame: &Frame) -> Vec<(u64, f64, f64)> {
@@ -143,4 +146,34 @@ fn a_box_on_the_lattice_is_exact_at_every_level() {
         let truth = half * 128.0 * half;
         assert!(rows[1..].iter().all(|&(_, lower, upper)| (lower, upper) == (truth, truth)), "{rows:?}");
     }
+}
+
+#[test]
+fn what_is_known_around_the_universe() {
+    let frame = Frame::new([0.0; 3], 128.0, 6).unwrap();
+    let outside = |solid: &Csg| solid.exterior(&frame);
+    let ball = sphere().unwrap();
+    assert_eq!((outside(&ball), outside(&ball.complement())), (Tag::Empty, Tag::Full));
+    assert_eq!(outside(&Csg::ball([64.0; 3], 64.1).unwrap()), Tag::Partial);
+    assert_eq!(outside(&Csg::half_space([1.0, 0.0, 0.0], -1.0).unwrap()), Tag::Partial);
+    assert_eq!((outside(&Csg::empty()), outside(&Csg::everything())), (Tag::Empty, Tag::Full));
+    // Another solid knows more than its bounds.
+    let other = Csg::solid(AnySolid::new(AxisBox::new([1.0; 3], [2.0; 3]).unwrap()));
+    assert_eq!((outside(&other), outside(&other.complement())), (Tag::Empty, Tag::Full));
+    let unknown = Csg::half_space([0.1, 0.2, 0.3], 0.0).unwrap();
+    let cases = [
+        (Csg::union_of([other.clone(), ball.clone()]), Tag::Empty),
+        (Csg::union_of([other.clone(), ball.complement()]), Tag::Full),
+        (Csg::intersection_of([other.clone(), unknown.clone()]), Tag::Empty),
+        (Csg::union_of([other.clone(), unknown.clone()]), Tag::Partial),
+        (Csg::xor_of([other.complement(), ball.clone()]), Tag::Full),
+        (Csg::xor_of([other.complement(), other.complement()]), Tag::Empty),
+        (Csg::xor_of([other.complement(), unknown]), Tag::Partial),
+        (other.difference(&ball), Tag::Empty),
+    ];
+    for (solid, expected) in cases {
+        assert_eq!(outside(&solid.unwrap()), expected);
+    }
+    let octree = build(&other, &frame, Rule::Certified, &Control::default()).unwrap();
+    assert!(octree.view().exterior() == Tag::Empty);
 }

@@ -1,6 +1,11 @@
 //! Boxes that contain a solid and its complement.
 
-use crate::lattice::Affine;
+use super::{Join, Kind, Node};
+use crate::lattice::exact::sign_of_sum;
+use crate::lattice::{Affine, Frame};
+use crate::octree::Tag;
+use crate::solid::Solid;
+use alloc::vec::Vec;
 
 /// What a solid surely does not reach beyond, in model units.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -14,6 +19,18 @@ pub(super) enum Extent {
 }
 
 impl Extent {
+    /// Whether the solid surely lies in the universe.
+    fn within(self, frame: &Frame) -> bool {
+        match self {
+            Extent::Nothing => true,
+            Extent::Unbounded => false,
+            Extent::Box(min, max) => (0..3).all(|axis| {
+                let origin = frame.origin()[axis];
+                min[axis] >= origin && sign_of_sum(&[origin, frame.edge(), -max[axis]]) >= 0
+            }),
+        }
+    }
+
     /// Of the union of two solids.
     pub(super) fn hull(self, other: Extent) -> Extent {
         match (self, other) {
@@ -58,5 +75,68 @@ impl Extent {
             (min[i], max[i]) = (least - error, most + error);
         }
         if min.iter().chain(&max).all(|c| c.is_finite()) { Extent::Box(min, max) } else { Extent::Unbounded }
+    }
+}
+
+impl Node {
+    /// What is known of the space around the universe; `None` if memory runs out.
+    pub(super) fn exterior(&self, frame: &Frame) -> Option<Tag> {
+        // Operands first; each operation then takes its own from the end.
+        let (mut tasks, mut tags) = (Vec::new(), Vec::new());
+        let mut next = Some((self, false));
+        while let Some((node, operands_done)) = next.take().or_else(|| tasks.pop()) {
+            tags.try_reserve(1).ok()?;
+            if node.extent.within(frame) {
+                tags.push(Tag::Empty);
+            } else if node.opposite.within(frame) {
+                tags.push(Tag::Full);
+            } else {
+                match &node.kind {
+                    // Of half-spaces the boxes say all that is known.
+                    _ if !node.mixed => tags.push(Tag::Partial),
+                    Kind::Solid(solid) => tags.push(solid.exterior(frame)),
+                    Kind::Join(_, parts) if !operands_done => {
+                        tasks.try_reserve(parts.len() + 1).ok()?;
+                        tasks.push((node, true));
+                        tasks.extend(parts.iter().map(|part| (&**part, false)));
+                    }
+                    Kind::Complement(part) if !operands_done => {
+                        tasks.try_reserve(1).ok()?;
+                        tasks.push((node, true));
+                        next = Some((part, false));
+                    }
+                    Kind::Join(join, parts) => {
+                        let first = tags.len() - parts.len();
+                        let tag = join.of_tags(&tags[first..]);
+                        tags.truncate(first);
+                        tags.push(tag);
+                    }
+                    Kind::Complement(_) => {
+                        let operand = tags.pop()?;
+                        tags.push(operand.complement());
+                    }
+                    Kind::HalfSpace(_) | Kind::Placed(..) => tags.push(Tag::Partial),
+                }
+            }
+        }
+        tags.pop()
+    }
+}
+
+impl Join {
+    /// Of operands that are EMPTY, FULL or PARTIAL.
+    fn of_tags(self, operands: &[Tag]) -> Tag {
+        let any = |tag| operands.contains(&tag);
+        match self {
+            Join::Intersection if any(Tag::Empty) => Tag::Empty,
+            Join::Union if any(Tag::Full) => Tag::Full,
+            _ if any(Tag::Partial) => Tag::Partial,
+            Join::Intersection => Tag::Full,
+            Join::Union => Tag::Empty,
+            Join::Parity => {
+                let odd = operands.iter().filter(|&&tag| tag == Tag::Full).count() % 2 != 0;
+                if odd { Tag::Full } else { Tag::Empty }
+            }
+        }
     }
 }

@@ -195,12 +195,12 @@ impl Csg {
     /// [`Error::Argument`] if other solids occur in the expression: those a [`Transform`](crate::Transform) moves, one
     /// by one.
     pub fn placed(&self, placement: &Affine) -> Result<Csg, Error> {
-        if placement.is_identity() {
-            return Ok(self.clone());
-        }
         if self.root.mixed {
             let problem = "cannot move solids that are not made of half-spaces";
             return Err(Error::Argument { name: "placement", problem });
+        }
+        if placement.is_identity() {
+            return Ok(Csg { root: self.root.clone(), touch: Touch::Exact });
         }
         let (extent, opposite) = (self.root.extent.placed(placement), self.root.opposite.placed(placement));
         Ok(Csg::new(Kind::Placed(self.root.clone(), *placement), extent, opposite))

@@ -3,6 +3,7 @@
 use super::dyadic::Dyadic;
 use super::{Csg, HalfSpace};
 use crate::error::Error;
+use crate::lattice::exact::two_sum;
 use crate::solid::is_moderate;
 
 /// Refuses a length that is not between 2^-256 and 2^256.
@@ -22,6 +23,12 @@ fn coordinates(name: &'static str, values: &[f64]) -> Result<(), Error> {
         let problem = "every coordinate must be zero or of a magnitude between 2^-256 and 2^256";
         Err(Error::Argument { name, problem })
     }
+}
+
+/// The largest double that is not greater than a + b.
+fn sum_down(a: f64, b: f64) -> f64 {
+    let (sum, error) = two_sum(a, b);
+    if error < 0.0 { sum.next_down() } else { sum }
 }
 
 /// The half-space below (`side` −1) or above (1) a coordinate.
@@ -82,8 +89,8 @@ impl Csg {
             c[9] = &c[9] + &(&weight * &at.pow(2));
             c[axis] = weight;
         }
-        let min = [0, 1, 2].map(|axis| (centre[axis] - radii[axis]).next_down());
-        let max = [0, 1, 2].map(|axis| (centre[axis] + radii[axis]).next_up());
+        let min = [0, 1, 2].map(|axis| sum_down(centre[axis], -radii[axis]));
+        let max = [0, 1, 2].map(|axis| -sum_down(-centre[axis], -radii[axis]));
         Ok(Csg::from(HalfSpace::exactly(c)).within(min, max))
     }
 

@@ -30,9 +30,9 @@ pub(super) enum Op {
     Primitive { count: u32 },
 }
 
-/// Most half-spaces, other solids and operations of an expression that is written out. (A few hundred bytes each; a
-/// node that contains another twice, which contains another twice … soon comes to more.)
-const MOST: u64 = 1 << 24;
+/// Most half-spaces, other solids and operations of an expression that is written out. (A half-space takes a kilobyte,
+/// and a node that contains another twice, which contains another twice …, soon comes to more than there is.)
+const MOST: u64 = 1 << 22;
 
 impl Word {
     /// The greatest index or count that a word can hold.

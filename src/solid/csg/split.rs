@@ -1,11 +1,9 @@
 //! A CSG expression as a solid: the split of a cell.
 
 use super::bounds::{Octants, Sides, centre};
-use super::extent::Extent;
 use super::program::{Op, Program, Word, push};
 use super::{Csg, Join, points};
 use crate::error::Error;
-use crate::lattice::exact::sign_of_sum;
 use crate::lattice::{Cube, Frame};
 use crate::octree::{Planes, Tag};
 use crate::solid::{ErasedPart, ErasedScratch, Scratch, Solid, Verdict};
@@ -295,7 +293,8 @@ impl CsgScratch {
         self.open.try_reserve(part.len as usize).map_err(|_| Error::OutOfMemory)?;
         self.words.try_reserve(part.len as usize).map_err(|_| Error::OutOfMemory)?;
         let (mut answers, mut hopeful) = (0, false);
-        for i in 0..part.len as usize {
+        // One mask a word: a part that means nothing has none.
+        for i in 0..self.masks.len() {
             let op = self.words[part.start as usize + i].op();
             let kleene = self.masks[i];
             let mut first = self.words.len();
@@ -474,21 +473,7 @@ impl Solid for Csg {
     }
 
     fn exterior(&self, frame: &Frame) -> Tag {
-        let within = |extent| match extent {
-            Extent::Nothing => true,
-            Extent::Unbounded => false,
-            Extent::Box(min, max) => (0..3).all(|axis| {
-                let origin = frame.origin()[axis];
-                min[axis] >= origin && sign_of_sum(&[origin, frame.edge(), -max[axis]]) >= 0
-            }),
-        };
-        if within(self.root.extent) {
-            Tag::Empty
-        } else if within(self.root.opposite) {
-            Tag::Full
-        } else {
-            Tag::Partial
-        }
+        self.root.exterior(frame).unwrap_or(Tag::Partial)
     }
 
     fn hand_over(&self, from: &CsgScratch, part: &CsgPart, to: &mut CsgScratch) -> Result<CsgPart, Error> {
