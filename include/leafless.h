@@ -175,6 +175,10 @@ enum leafless_status
      * A defect of the library, please report it with the message. What the function worked on is as before.
      */
     LEAFLESS_E_PANIC = 17,
+    /**
+     * An octree that is to be refined was made from another solid.
+     */
+    LEAFLESS_E_SOURCE = 18,
 };
 #ifndef __cplusplus
 typedef int32_t leafless_status;

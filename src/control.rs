@@ -16,9 +16,9 @@ pub struct Control<'a> {
     /// Threads to use; 0 means as many as the machine has processors, numbers beyond 1024 mean 1024. Without the
     /// feature `parallel`, and where the system refuses to start threads, there is one: the calling thread.
     pub threads: usize,
-    /// Refuse results of more than this many octree nodes with [`Error::Limit`].
+    /// Refuse results of more than this many octree nodes with [`Error::Limit`]. (What is refined on demand stops there.)
     pub max_nodes: Option<u64>,
-    /// Refuse results whose working form is larger than this many bytes with [`Error::Limit`].
+    /// Refuse results whose working form is larger than this many bytes with [`Error::Limit`]. (As above.)
     pub max_bytes: Option<u64>,
     /// Split at most this many cells. Only operations that split on demand heed it, and say so: with it spent they
     /// stop, and keep or return what they have; it is no error.

@@ -8,7 +8,8 @@ use core::fmt;
 
 use thiserror::Error;
 
-/// Why an operation was refused. Nothing is changed, and nothing half-made is returned, when one occurs.
+/// Why an operation was refused. Nothing is changed, and nothing half-made is returned, when one occurs. (An octree
+/// that is refined on demand keeps what was found out before.)
 #[non_exhaustive]
 #[derive(Debug, Error)]
 pub enum Error {
@@ -23,6 +24,11 @@ pub enum Error {
     /// Two operands do not lie on one lattice.
     #[error("the operands lie on different frames (origin, edge and depth must be the same)")]
     FrameMismatch,
+    /// An octree that is to be refined was made from another solid than this one.
+    #[error(
+        "the octree was not made from this solid: its fingerprint, or what it says of a cell, is another"
+    )]
+    SourceMismatch,
     /// The producer cannot decide the centre of a cell, so the sampled rule cannot be used on it.
     #[error("this solid cannot decide single points, which the sampled rule needs")]
     NotSampled,

@@ -34,7 +34,7 @@
 //! | `lattice` | cells, cubes, frames: integers and model space |
 //! | `octree` | tags, the word algebra, views, the writer, checks, statistics |
 //! | `solid` | what can split a cell: one file a producer |
-//! | `op` | building, and the set algebra of stored trees |
+//! | `op` | building, splitting on demand, and the set algebra of stored trees |
 //! | `query` | points and boxes |
 //! | `file` | the file format, and meshes from other programs |
 //! | `capi` | the C interface |
@@ -65,8 +65,8 @@ pub use octree::{
     Block, Cursor, LevelStatistics, Metadata, Node, Octree, OctreeRef, Planes, Rule, Statistics, Tag,
 };
 pub use op::{
-    build, compact, complement, difference, intersection, intersection_of, resolve, union, union_of, xor,
-    xor_of,
+    LazyOctree, Refined, Zone, build, compact, complement, difference, intersection, intersection_of,
+    resolve, union, union_of, xor, xor_of,
 };
 pub use query::{Membership, PointCursor, Region};
 pub use solid::{

@@ -15,9 +15,9 @@ mod zip;
 
 use bodies::{Aligned, Random};
 use leafless::{
-    AnySolid, AxisBox, Ball, Callback, Control, Error, FillRule, Frame, MeshSolid, Metadata, Octree,
-    Polyhedron, PolyhedronArrays, Rule, Stored, TriangleMesh, Verdict, build, compact, complement,
-    difference, file, intersection, resolve, union, union_of, xor,
+    AnySolid, AxisBox, Ball, Callback, Control, Error, FillRule, Frame, LazyOctree, MeshSolid, Metadata,
+    Octree, Polyhedron, PolyhedronArrays, Rule, Stored, TriangleMesh, Verdict, Zone, build, compact,
+    complement, difference, file, intersection, resolve, union, union_of, xor,
 };
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
@@ -275,6 +275,17 @@ fn operations(directory: &Path) -> Vec<(&'static str, Operation)> {
         build(&MeshSolid::new(closed.clone(), &frame, FillRule::EvenOdd)?, &frame, Rule::Sampled, &CONTROL)
     });
     operation!("build stored", [a], build(&Stored::new(a.view()), &frame(), Rule::Inner, &CONTROL));
+    operation!("refine", [closed], {
+        let solid = || MeshSolid::new(closed.clone(), &frame(), FillRule::NonZero);
+        let mut lazy = LazyOctree::new(solid()?, &frame())?;
+        let found = lazy.refine(&Zone::Whole, 5, &CONTROL).and_then(|_| lazy.freeze(&CONTROL));
+        if found.is_err() {
+            // What it was before the refusal is an octree, too, and goes on.
+            lazy.refine(&Zone::Point([12.0; 3]), 6, &CONTROL)?;
+            lazy.freeze(&CONTROL)?.view().check()?;
+        }
+        LazyOctree::resume(&found?, solid()?, &frame(), &CONTROL).map(drop)
+    });
     operation!("mesh of facets", [facets], TriangleMesh::from_facets(&*facets));
     operation!("mesh report", [closed], closed.translated([1.0; 3])?.report());
     operation!("mesh defects", [cracked], cracked.defects(9));

@@ -54,6 +54,7 @@ impl From<&Failure> for leafless_status {
             Failure::Library(error) => match error {
                 Error::Argument { .. } => LEAFLESS_E_ARGUMENT,
                 Error::FrameMismatch => LEAFLESS_E_FRAME,
+                Error::SourceMismatch => LEAFLESS_E_SOURCE,
                 Error::NotSampled => LEAFLESS_E_NOT_SAMPLED,
                 Error::Mesh(_) | Error::Polyhedron(_) => LEAFLESS_E_MESH,
                 Error::MeshFile(_) | Error::Package(_) => LEAFLESS_E_MESH_FILE,

@@ -45,10 +45,12 @@ pub enum leafless_status {
     LEAFLESS_E_IO = 16,
     /// A defect of the library, please report it with the message. What the function worked on is as before.
     LEAFLESS_E_PANIC = 17,
+    /// An octree that is to be refined was made from another solid.
+    LEAFLESS_E_SOURCE = 18,
 }
 use leafless_status::*;
 
-const ALL: [(leafless_status, &CStr); 18] = [
+const ALL: [(leafless_status, &CStr); 19] = [
     (LEAFLESS_OK, c"LEAFLESS_OK"),
     (LEAFLESS_E_NULL, c"LEAFLESS_E_NULL"),
     (LEAFLESS_E_ARGUMENT, c"LEAFLESS_E_ARGUMENT"),
@@ -67,6 +69,7 @@ const ALL: [(leafless_status, &CStr); 18] = [
     (LEAFLESS_E_CALLBACK, c"LEAFLESS_E_CALLBACK"),
     (LEAFLESS_E_IO, c"LEAFLESS_E_IO"),
     (LEAFLESS_E_PANIC, c"LEAFLESS_E_PANIC"),
+    (LEAFLESS_E_SOURCE, c"LEAFLESS_E_SOURCE"),
 ];
 
 /// The last failure of a thread. Of fixed size, so that a failure for want of memory can be told.

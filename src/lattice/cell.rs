@@ -28,6 +28,13 @@ impl Cell {
         Cell { level: self.level.saturating_sub(1), at: self.at.map(|a| a >> 1) }
     }
 
+    /// The cell of `level` (at most this cell's own) that contains this one.
+    #[inline]
+    pub(crate) fn ancestor(self, level: u8) -> Cell {
+        debug_assert!(level <= self.level);
+        Cell { level, at: self.at.map(|a| a >> (self.level - level)) }
+    }
+
     /// Which child of its parent this cell is.
     #[inline]
     pub fn octant(self) -> u8 {

@@ -2,8 +2,11 @@
 
 use crate::dispatch::{Hot, with_popcount};
 use crate::error::Error;
+use crate::lattice::Cell;
 use crate::octree::view::{MAX_ELEMENT_LEVELS, OctreeRef};
 use crate::octree::{Octree, Planes, Tag};
+use crate::op::LazyOctree;
+use crate::solid::Solid;
 use yoke::Yokeable;
 
 /// The answer to a point query.
@@ -283,6 +286,15 @@ impl<'a> PointCursor<'a> {
         }
         self.reached = e;
         settled(tree.finest(self.path[e], at))
+    }
+}
+
+impl<S: Solid> LazyOctree<S> {
+    /// Whether the solid contains `point` (model units), as far as cells have been split. A point on the boundary may be
+    /// answered either way. O(depth).
+    pub fn contains(&self, point: [f64; 3]) -> Membership {
+        let level = self.frame().depth();
+        self.frame().cell_of(point).map_or(Membership::Undecided, |at| self.tag(Cell { level, at }).into())
     }
 }
 
