@@ -36,6 +36,8 @@
 //! | `solid` | what can split a cell: one file a producer |
 //! | `op` | building, splitting on demand, and the set algebra of stored trees |
 //! | `query` | points and boxes |
+//! | `op` | building, and the set algebra of stored trees |
+//! | `query` | points and boxes, measures |
 //! | `file` | the file format, and meshes from other programs |
 //! | `capi` | the C interface |
 
@@ -68,7 +70,7 @@ pub use op::{
     LazyOctree, Refined, Zone, build, compact, complement, difference, intersection, intersection_of,
     resolve, union, union_of, xor, xor_of,
 };
-pub use query::{Membership, PointCursor, Region};
+pub use query::{Measured, Measures, Membership, PointCursor, Region, measure};
 pub use solid::{
     AnySolid, AxisBox, Ball, Callback, Counted, Csg, CsgPart, CsgScratch, DefectKind, ErasedPart,
     ErasedScratch, FillRule, Fingerprint, Fingerprinter, HalfSpace, MeshDefect, MeshPart, MeshReport,

@@ -1,0 +1,372 @@
+//! Splitting the largest undecided cells first.
+//!
+//! Cells of one level are equally large, so this goes level by level, and all cells of a level are kept with their
+//! parts for the next: the *front*. Once it is long, memory matters more than splits, and it stays as it is: each
+//! pass walks depth first through what lies below it, to a deeper level than the one before, and keeps nothing but
+//! the moments of the cells that it ends at.
+
+use super::Measured;
+use super::moments::{Moments, Tally};
+use crate::control::{Control, Job, WHOLE};
+use crate::error::Error;
+use crate::lattice::{Cell, Cube, Frame};
+use crate::solid::{Scratch, Solid, Verdict};
+use alloc::vec::Vec;
+use core::ops::AddAssign;
+
+/// A longer front is not split further, but walked through.
+const LONG_FRONT: usize = 1 << 16;
+
+/// Cells of the front that have their scratch memory in common, and that one thread takes on at once.
+const CHUNK: usize = 1 << 8;
+
+/// What was found.
+pub(super) struct Walked {
+    /// Of the FULL cells, about the lattice's origin.
+    pub(super) full: Moments,
+    /// Of the undecided cells.
+    pub(super) open: Moments,
+    pub(super) measured: Measured,
+    pub(super) level: u8,
+    pub(super) splits: u64,
+    pub(super) evaluations: u64,
+}
+
+/// Moments of FULL and of undecided cells.
+#[derive(Clone, Copy, Default)]
+struct Found {
+    full: Moments,
+    open: Moments,
+}
+
+impl AddAssign for Found {
+    fn add_assign(&mut self, other: Found) {
+        self.full += other.full;
+        self.open += other.open;
+    }
+}
+
+/// Adds up FULL and undecided cells.
+struct Tallies {
+    full: Tally,
+    open: Tally,
+}
+
+impl Tallies {
+    fn new(frame: &Frame) -> Tallies {
+        Tallies { full: Tally::new(frame.depth()), open: Tally::new(frame.depth()) }
+    }
+
+    fn finish(self) -> Found {
+        Found { full: self.full.finish(), open: self.open.finish() }
+    }
+}
+
+/// Neighbouring cells of the front, in Morton order.
+struct Chunk<S: Solid> {
+    scratch: S::Scratch,
+    cells: Vec<(Cell, S::Part)>,
+    /// The cells themselves, or what the last whole pass has found below them.
+    found: Found,
+}
+
+impl<S: Solid> Chunk<S> {
+    /// Cells with parts in this scratch memory.
+    fn new(scratch: S::Scratch, cells: Vec<(Cell, S::Part)>, frame: &Frame) -> Chunk<S> {
+        let mut tallies = Tallies::new(frame);
+        cells.iter().for_each(|&(cell, _)| tallies.open.add(cell));
+        Chunk { scratch, cells, found: tallies.finish() }
+    }
+}
+
+/// Splits `solid` until one of the reasons to end is met.
+pub(super) fn walk<S: Solid>(
+    solid: &S,
+    frame: &Frame,
+    tolerance: f64,
+    control: &Control<'_>,
+) -> Result<Walked, Error> {
+    let job = Job::new(control);
+    job.check()?;
+    // Shallow walks are done faster than threads are made.
+    control.run(frame.depth() > 5, |parallel| {
+        let walk = Walk { solid, frame, tolerance, max_splits: control.max_splits, job: &job, parallel };
+        walk.run()
+    })
+}
+
+struct Walk<'a, S> {
+    solid: &'a S,
+    frame: &'a Frame,
+    tolerance: f64,
+    max_splits: Option<u64>,
+    job: &'a Job<'a>,
+    #[cfg_attr(not(feature = "parallel"), allow(dead_code))]
+    parallel: bool,
+}
+
+impl<S: Solid> Walk<'_, S> {
+    fn run(&self) -> Result<Walked, Error> {
+        let budget = self.max_splits.unwrap_or(u64::MAX);
+        let (mut settled, mut front) = self.root()?;
+        let (mut level, mut left, mut evaluations) = (0, budget, 0);
+        // Whether all of the front was split, and whether the last pass ended at cells that can be.
+        let (mut whole, mut splittable) = (true, true);
+        let mut unreported = WHOLE;
+        let measured = loop {
+            let found = total(settled, &front);
+            let length: usize = front.iter().map(|chunk| chunk.cells.len()).sum();
+            if self.is_met(&found) {
+                break Measured::Tolerance;
+            }
+            if whole && (length == 0 || !splittable) {
+                break Measured::Exhausted;
+            }
+            if left == 0 {
+                break Measured::Budget;
+            }
+            let share = unreported / 2;
+            unreported -= share;
+            if length <= LONG_FRONT {
+                whole = length as u64 <= left;
+                let (found, next) = self.split(&mut front, &mut left)?;
+                settled += found;
+                evaluations += count_evaluations(&front);
+                front = next;
+                level += whole as u8;
+                self.job.advance(share);
+            } else {
+                let target = self.target(&found, level);
+                match self.deepen(&mut front, target, &mut left, share)? {
+                    Some(more) => (splittable, level) = (more, target),
+                    None => whole = false,
+                }
+            }
+        };
+        self.job.advance(unreported);
+        let Found { full, open } = total(settled, &front);
+        evaluations += count_evaluations(&front);
+        Ok(Walked { full, open, measured, level, splits: budget - left, evaluations })
+    }
+
+    /// What is settled at once, and the first front.
+    fn root(&self) -> Result<(Found, Vec<Chunk<S>>), Error> {
+        let mut scratch = S::Scratch::default();
+        let mut settled = Tallies::new(self.frame);
+        let mut cells = Vec::new();
+        match self.solid.root(&mut scratch, self.frame)? {
+            Verdict::Empty => {}
+            Verdict::Full => settled.full.add(Cell::ROOT),
+            Verdict::Undecided => settled.open.add(Cell::ROOT),
+            Verdict::Partial(part) => {
+                cells.try_reserve_exact(1).map_err(|_| Error::OutOfMemory)?;
+                cells.push((Cell::ROOT, part));
+            }
+        }
+        let mut front = Vec::new();
+        front.try_reserve_exact(1).map_err(|_| Error::OutOfMemory)?;
+        front.push(Chunk::new(scratch, cells, self.frame));
+        Ok((settled.finish(), front))
+    }
+
+    fn is_met(&self, found: &Found) -> bool {
+        let (full, open) = (found.full.volume as f64, found.open.volume as f64);
+        open <= self.tolerance * (full + 0.5 * open)
+    }
+
+    /// The level for the next pass: where the tolerance will be met if each level halves what is undecided. Under a
+    /// budget it is the next one, so that the budget does not end half-way to a deep one.
+    fn target(&self, found: &Found, level: u8) -> u8 {
+        let mut expected = *found;
+        let mut target = level + 1;
+        while target < self.frame.depth() && self.max_splits.is_none() {
+            expected.open.volume /= 2;
+            expected.full.volume += expected.open.volume / 2;
+            if self.is_met(&expected) {
+                break;
+            }
+            target += 1;
+        }
+        target
+    }
+
+    /// Splits the cells of the front, as many as may be: what is settled by it, and the new front.
+    fn split(&self, front: &mut [Chunk<S>], left: &mut u64) -> Result<(Found, Vec<Chunk<S>>), Error> {
+        let mut tasks = Vec::new();
+        tasks.try_reserve_exact(front.len()).map_err(|_| Error::OutOfMemory)?;
+        for chunk in front {
+            let count = (*left).min(chunk.cells.len() as u64) as usize;
+            *left -= count as u64;
+            tasks.push((chunk, count));
+        }
+        let mut settled = Found::default();
+        let mut next = Vec::new();
+        for (found, chunks) in self.each(tasks, |(chunk, count)| self.split_chunk(chunk, count))? {
+            settled += found;
+            next.try_reserve(chunks.len()).map_err(|_| Error::OutOfMemory)?;
+            next.extend(chunks);
+        }
+        Ok((settled, next))
+    }
+
+    /// Splits the first `count` cells of a chunk; the others are settled as undecided.
+    fn split_chunk(&self, chunk: &mut Chunk<S>, count: usize) -> Result<(Found, Vec<Chunk<S>>), Error> {
+        let mut settled = Tallies::new(self.frame);
+        let mut next: Vec<Chunk<S>> = Vec::new();
+        let (mut scratch, mut cells) = (S::Scratch::default(), Vec::new());
+        for (i, (cell, part)) in chunk.cells.iter().enumerate() {
+            if i >= count {
+                settled.open.add(*cell);
+                continue;
+            }
+            self.job.check()?;
+            let mark = chunk.scratch.mark();
+            let cube = Cube { frame: self.frame, cell: *cell };
+            for (octant, verdict) in (0..8).zip(self.solid.split(&mut chunk.scratch, &cube, part)?) {
+                let child = cell.child(octant);
+                match verdict {
+                    Verdict::Empty => {}
+                    Verdict::Full => settled.full.add(child),
+                    Verdict::Partial(part) if child.level < self.frame.depth() => {
+                        let part = self.solid.hand_over(&chunk.scratch, &part, &mut scratch)?;
+                        cells.try_reserve(1).map_err(|_| Error::OutOfMemory)?;
+                        cells.push((child, part));
+                    }
+                    Verdict::Undecided | Verdict::Partial(_) => settled.open.add(child),
+                }
+            }
+            chunk.scratch.release(mark);
+            if cells.len() >= CHUNK || i + 1 == count && !cells.is_empty() {
+                let (scratch, cells) = (core::mem::take(&mut scratch), core::mem::take(&mut cells));
+                next.try_reserve(1).map_err(|_| Error::OutOfMemory)?;
+                next.push(Chunk::new(scratch, cells, self.frame));
+            }
+        }
+        Ok((settled.finish(), next))
+    }
+
+    /// Walks through what lies below the front, to cells of level `target`: whether any of these can be split.
+    /// `None` if the budget has ended it. (Under a budget one thread has to do it, as what it leaves depends on the
+    /// order.)
+    fn deepen(
+        &self,
+        front: &mut [Chunk<S>],
+        target: u8,
+        left: &mut u64,
+        share: usize,
+    ) -> Result<Option<bool>, Error> {
+        let each = share / front.len().max(1);
+        self.job.advance(share - each * front.len());
+        if self.max_splits.is_some() {
+            let mut splittable = false;
+            for chunk in front {
+                match self.deepen_chunk(chunk, target, left)? {
+                    Some(more) => splittable |= more,
+                    None => return Ok(None),
+                }
+                self.job.advance(each);
+            }
+            return Ok(Some(splittable));
+        }
+        let mut tasks = Vec::new();
+        tasks.try_reserve_exact(front.len()).map_err(|_| Error::OutOfMemory)?;
+        tasks.extend(front);
+        let done = self.each(tasks, |chunk| {
+            let mut own = u64::MAX;
+            let more = self.deepen_chunk(chunk, target, &mut own)?;
+            self.job.advance(each);
+            Ok((more, u64::MAX - own))
+        })?;
+        *left -= done.iter().map(|&(_, splits)| splits).sum::<u64>();
+        Ok(Some(done.iter().any(|&(more, _)| more == Some(true))))
+    }
+
+    /// As [`deepen`](Self::deepen) below one chunk, which stays as it was if the budget ends it.
+    fn deepen_chunk(&self, chunk: &mut Chunk<S>, target: u8, left: &mut u64) -> Result<Option<bool>, Error> {
+        let mark = chunk.scratch.mark();
+        let mut pass = Pass { target, found: Tallies::new(self.frame), splittable: false };
+        for (cell, part) in &chunk.cells {
+            if !self.descend(&mut chunk.scratch, *cell, part, &mut pass, left)? {
+                chunk.scratch.release(mark);
+                return Ok(None);
+            }
+        }
+        chunk.found = pass.found.finish();
+        Ok(Some(pass.splittable))
+    }
+
+    /// Splits a cell and what lies below it, down to the pass's target; `false` if the budget has ended it. The
+    /// recursion is as deep as the frame at the most, 20 levels.
+    fn descend(
+        &self,
+        scratch: &mut S::Scratch,
+        cell: Cell,
+        part: &S::Part,
+        pass: &mut Pass,
+        left: &mut u64,
+    ) -> Result<bool, Error> {
+        if *left == 0 {
+            return Ok(false);
+        }
+        *left -= 1;
+        self.job.check()?;
+        let mark = scratch.mark();
+        let cube = Cube { frame: self.frame, cell };
+        for (octant, verdict) in (0..8).zip(self.solid.split(scratch, &cube, part)?) {
+            let child = cell.child(octant);
+            match verdict {
+                Verdict::Empty => {}
+                Verdict::Full => pass.found.full.add(child),
+                Verdict::Partial(part) if child.level < pass.target => {
+                    if !self.descend(scratch, child, &part, pass, left)? {
+                        return Ok(false);
+                    }
+                }
+                Verdict::Partial(_) => {
+                    pass.splittable |= child.level < self.frame.depth();
+                    pass.found.open.add(child);
+                }
+                Verdict::Undecided => pass.found.open.add(child),
+            }
+        }
+        scratch.release(mark);
+        Ok(true)
+    }
+
+    /// Does all tasks: the results in their order.
+    fn each<T: Send, R: Send>(
+        &self,
+        tasks: Vec<T>,
+        work: impl Fn(T) -> Result<R, Error> + Send + Sync,
+    ) -> Result<Vec<R>, Error> {
+        #[cfg(feature = "parallel")]
+        if self.parallel && tasks.len() > 1 {
+            use rayon::prelude::*;
+            return tasks.into_par_iter().map(work).collect();
+        }
+        let mut done = Vec::new();
+        done.try_reserve_exact(tasks.len()).map_err(|_| Error::OutOfMemory)?;
+        for task in tasks {
+            done.push(work(task)?);
+        }
+        Ok(done)
+    }
+}
+
+/// One walk below a chunk.
+struct Pass {
+    target: u8,
+    found: Tallies,
+    /// Whether a cell at the target can be split.
+    splittable: bool,
+}
+
+fn total<S: Solid>(settled: Found, front: &[Chunk<S>]) -> Found {
+    let mut total = settled;
+    front.iter().for_each(|chunk| total += chunk.found);
+    total
+}
+
+fn count_evaluations<S: Solid>(front: &[Chunk<S>]) -> u64 {
+    front.iter().map(|chunk| chunk.scratch.evaluations()).sum()
+}
