@@ -89,7 +89,11 @@ impl Known<'_> {
     /// About the solid's own centroid.
     pub(super) fn inertia_about_centroid(&self) -> Tensor {
         let [full, all] = [self.full, self.all()].map(|m| second_about_centroid(&m));
-        self.tensor(&full, &all, [0, 1, 2].map(|axis| all[axis].minus(full[axis]).upper))
+        let spread = match self.open.volume {
+            0 => [0.0; 3],
+            _ => [0, 1, 2].map(|axis| all[axis].minus(full[axis]).upper),
+        };
+        self.tensor(&full, &all, spread)
     }
 
     /// ∫ x xᵀ about the model's origin, in the units of [`Moments`] but for the factor 3.
