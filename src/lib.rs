@@ -71,6 +71,10 @@ pub use op::{
     resolve, union, union_of, xor, xor_of,
 };
 pub use query::{Measured, Measures, Membership, PointCursor, Region, measure};
+pub use query::{
+    Clearance, Interference, Membership, Overlap, PointCursor, Region, clearance, interference,
+    interference_of,
+};
 pub use solid::{
     AnySolid, AxisBox, Ball, Callback, Counted, Csg, CsgPart, CsgScratch, DefectKind, ErasedPart,
     ErasedScratch, FillRule, Fingerprint, Fingerprinter, HalfSpace, MeshDefect, MeshPart, MeshReport,

@@ -58,7 +58,7 @@ impl Statistics {
                 partial: count.partial,
                 lower_cells: lower,
                 upper_cells: upper,
-                volume: volume(frame, lower, upper),
+                volume: volume_of(frame, lower, upper),
             });
             above = Some(count.nodes);
         }
@@ -99,7 +99,7 @@ impl Statistics {
 }
 
 /// Numbers of finest cells as cubic model units, rounded outward.
-fn volume(frame: &Frame, lower: u64, upper: u64) -> Interval {
+pub(crate) fn volume_of(frame: &Frame, lower: u64, upper: u64) -> Interval {
     let size = frame.cell_size();
     let down = |cells: f64| product_down(product_down(product_down(cells, size), size), size);
     let up = |cells: f64| product_up(product_up(product_up(cells, size), size), size);

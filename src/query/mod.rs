@@ -5,5 +5,24 @@ mod point;
 mod region;
 
 pub use measure::{Measured, Measures, measure};
+//! Questions: such as a stored octree answers in place, and such as any solids answer.
+
+mod clearance;
+mod interference;
+mod point;
+mod region;
+
+pub use clearance::{Clearance, clearance};
+pub use interference::{Interference, Overlap, interference, interference_of};
 pub use point::{Membership, PointCursor};
 pub use region::Region;
+
+use crate::error::Error;
+
+/// Refuses what cannot be the width of an interval.
+fn check_tolerance(tolerance: f64) -> Result<(), Error> {
+    if tolerance >= 0.0 {
+        return Ok(());
+    }
+    Err(Error::Argument { name: "tolerance", problem: "must be a number, and not negative" })
+}

@@ -1,0 +1,274 @@
+//! How far apart are two solids?
+//!
+//! Pairs of cells, one of either solid, are taken in the order of the distance below which nothing of theirs can lie.
+//! Of a pair the larger cell that is cut is split, each cell once only however many pairs it is in. Two FULL cells
+//! bound the distance from above, and what lies further apart than the least such bound is never looked at again.
+
+use crate::control::{Control, Job, WHOLE};
+use crate::error::Error;
+use crate::lattice::exact::{product_down, product_up, sqrt, two_product};
+use crate::lattice::{Cell, Cube, Frame, Interval};
+use crate::octree::Tag;
+use crate::solid::{Scratch, Solid, Verdict};
+use alloc::collections::BinaryHeap;
+use alloc::vec::Vec;
+use core::cmp::Reverse;
+
+/// What is known of the distance between two solids inside of the universe of a frame.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Clearance {
+    /// The least distance between points of the two, in model units: 0 if they touch or overlap. The upper bound is
+    /// infinite as long as one of them has no cell that is proven to be full, and the lower one too if one of them is
+    /// proven to be empty.
+    pub distance: Interval,
+    /// Cells of the first and of the second solid with points that are no further apart than the upper bound.
+    pub nearest: Option<[Cell; 2]>,
+    /// Cells that were split, of the first solid and of the second.
+    pub splits: [u64; 2],
+    /// Half-spaces that were evaluated.
+    pub evaluations: u64,
+    /// Whether one of the solids may go on outside of the universe, of which nothing is said.
+    pub clipped: bool,
+}
+
+/// The distance between `a` and `b`, each as it is in the universe of `frame`: of a solid under a placement, hand over
+/// a [`Transform`](crate::Transform). The work ends when the interval is no wider than `tolerance` (model units), at the
+/// frame's depth, or once `control.max_splits` cells of both are split, with what is known by then.
+///
+/// About twice the diagonal of a finest cell is what can be had for any solids; less may take all pairs of cells near a
+/// contact. Memory is linear in the splits and in the pairs that are not decided. One thread.
+///
+/// # Errors
+/// [`Error::Argument`] if `tolerance` is negative or not a number; what the solids refuse; [`Error::OutOfMemory`], and
+/// [`Error::Cancelled`].
+///
+/// ```
+/// use leafless::{Ball, Control, Frame, clearance};
+/// let frame = Frame::new([0.0; 3], 128.0, 10)?;
+/// let (a, b) = (Ball::new([50.0; 3], 30.0)?, Ball::new([86.0; 3], 30.0)?);
+/// let found = clearance(&a, &b, &frame, 0.5, &Control::default())?;
+/// assert!(found.distance.contains(36.0 * 3f64.sqrt() - 60.0) && found.distance.width() <= 0.5);
+/// # Ok::<(), leafless::Error>(())
+/// ```
+pub fn clearance<A: Solid, B: Solid>(
+    a: &A,
+    b: &B,
+    frame: &Frame,
+    tolerance: f64,
+    control: &Control<'_>,
+) -> Result<Clearance, Error> {
+    super::check_tolerance(tolerance)?;
+    let job = Job::new(control);
+    job.check()?;
+    let mut search = Search::new(a, b, frame)?;
+    search.run(tolerance, control.max_splits.unwrap_or(u64::MAX), &job)?;
+    job.advance(WHOLE);
+    Ok(search.found())
+}
+
+/// What is known of a cell.
+enum Known<P> {
+    Full,
+    Undecided,
+    Part(P),
+    /// Split, into those nodes that are not EMPTY.
+    Split {
+        first: usize,
+        count: usize,
+    },
+}
+
+/// A cell that is not EMPTY.
+struct Node<P> {
+    cell: Cell,
+    known: Known<P>,
+}
+
+/// The cells of a solid that were looked at.
+struct Cells<'s, S: Solid> {
+    solid: &'s S,
+    frame: &'s Frame,
+    scratch: S::Scratch,
+    nodes: Vec<Node<S::Part>>,
+    splits: u64,
+}
+
+impl<'s, S: Solid> Cells<'s, S> {
+    fn new(solid: &'s S, frame: &'s Frame) -> Result<Self, Error> {
+        let mut cells = Cells { solid, frame, scratch: S::Scratch::default(), nodes: Vec::new(), splits: 0 };
+        let root = solid.root(&mut cells.scratch, frame)?;
+        cells.add(Cell::ROOT, root)?;
+        Ok(cells)
+    }
+
+    fn add(&mut self, cell: Cell, verdict: Verdict<S::Part>) -> Result<(), Error> {
+        let known = match verdict {
+            Verdict::Empty => return Ok(()),
+            Verdict::Full => Known::Full,
+            Verdict::Undecided => Known::Undecided,
+            // No finer cells are asked for.
+            Verdict::Partial(_) if cell.level == self.frame.depth() => Known::Undecided,
+            Verdict::Partial(part) => Known::Part(part),
+        };
+        self.nodes.try_reserve(1).map_err(|_| Error::OutOfMemory)?;
+        self.nodes.push(Node { cell, known });
+        Ok(())
+    }
+
+    fn is_full(&self, node: usize) -> bool {
+        matches!(self.nodes[node].known, Known::Full)
+    }
+
+    /// Whether there are finer cells.
+    fn can_be_split(&self, node: usize) -> bool {
+        matches!(self.nodes[node].known, Known::Part(_) | Known::Split { .. })
+    }
+
+    /// The children of a node that can be split; those of no other.
+    fn children(&mut self, node: usize) -> Result<core::ops::Range<usize>, Error> {
+        let Node { cell, known } = &self.nodes[node];
+        let cell = *cell;
+        if let Known::Part(part) = known {
+            self.splits += 1;
+            let children = self.solid.split(&mut self.scratch, &Cube { frame: self.frame, cell }, part)?;
+            let first = self.nodes.len();
+            for (octant, child) in (0..8).zip(children) {
+                self.add(cell.child(octant), child)?;
+            }
+            self.nodes[node].known = Known::Split { first, count: self.nodes.len() - first };
+        }
+        Ok(match self.nodes[node].known {
+            Known::Split { first, count } => first..first + count,
+            _ => 0..0,
+        })
+    }
+
+    /// Splits that asking for the children costs.
+    fn cost(&self, node: usize) -> u64 {
+        matches!(self.nodes[node].known, Known::Part(_)) as u64
+    }
+
+    /// The least and the greatest coordinates, in finest cells.
+    fn extent(&self, node: usize) -> ([u32; 3], [u32; 3]) {
+        Cube { frame: self.frame, cell: self.nodes[node].cell }.planes()
+    }
+
+    fn level(&self, node: usize) -> u8 {
+        self.nodes[node].cell.level
+    }
+}
+
+/// A pair of nodes: the square of the least distance, in finest cells, then that of the greatest.
+type Pair = Reverse<(u64, u64, usize, usize)>;
+
+/// What is under way.
+struct Search<'s, A: Solid, B: Solid> {
+    a: Cells<'s, A>,
+    b: Cells<'s, B>,
+    open: BinaryHeap<Pair>,
+    /// The least square of the least distance in a pair that no more will be known of.
+    settled: Option<u64>,
+    /// The least square of a distance that is not exceeded, and the nodes.
+    reached: Option<(u64, [usize; 2])>,
+}
+
+impl<'s, A: Solid, B: Solid> Search<'s, A, B> {
+    fn new(a: &'s A, b: &'s B, frame: &'s Frame) -> Result<Self, Error> {
+        let (a, b) = (Cells::new(a, frame)?, Cells::new(b, frame)?);
+        let mut search = Search { a, b, open: BinaryHeap::new(), settled: None, reached: None };
+        if !search.a.nodes.is_empty() && !search.b.nodes.is_empty() {
+            search.meet(0, 0)?;
+        }
+        Ok(search)
+    }
+
+    fn run(&mut self, tolerance: f64, mut splits: u64, job: &Job<'_>) -> Result<(), Error> {
+        while let Some(&Reverse((least, _, a, b))) = self.open.peek() {
+            job.check()?;
+            if self.is_beyond(least) || self.distance().width() <= tolerance {
+                break;
+            }
+            // The larger one, so that neither is split without need.
+            let first =
+                self.a.can_be_split(a) && (!self.b.can_be_split(b) || self.a.level(a) <= self.b.level(b));
+            let cost = if first { self.a.cost(a) } else { self.b.cost(b) };
+            if cost > splits {
+                break;
+            }
+            splits -= cost;
+            self.open.pop();
+            if first {
+                for child in self.a.children(a)? {
+                    self.meet(child, b)?;
+                }
+            } else {
+                for child in self.b.children(b)? {
+                    self.meet(a, child)?;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether nothing at this distance can lower the upper bound.
+    fn is_beyond(&self, least: u64) -> bool {
+        self.reached.is_some_and(|(reached, _)| least >= reached)
+    }
+
+    /// Takes in a pair.
+    fn meet(&mut self, a: usize, b: usize) -> Result<(), Error> {
+        let ((low_a, high_a), (low_b, high_b)) = (self.a.extent(a), self.b.extent(b));
+        let (mut least, mut greatest) = (0, 0);
+        for axis in 0..3 {
+            let gap = low_b[axis].saturating_sub(high_a[axis]).max(low_a[axis].saturating_sub(high_b[axis]));
+            let span = high_a[axis].max(high_b[axis]) - low_a[axis].min(low_b[axis]);
+            least += gap as u64 * gap as u64;
+            greatest += span as u64 * span as u64;
+        }
+        if self.is_beyond(least) {
+            return Ok(());
+        }
+        if self.a.is_full(a) && self.b.is_full(b) {
+            self.reached = Some((least, [a, b]));
+        }
+        if self.a.can_be_split(a) || self.b.can_be_split(b) {
+            self.open.try_reserve(1).map_err(|_| Error::OutOfMemory)?;
+            self.open.push(Reverse((least, greatest, a, b)));
+        } else {
+            self.settled = Some(self.settled.map_or(least, |settled| settled.min(least)));
+        }
+        Ok(())
+    }
+
+    fn distance(&self) -> Interval {
+        let open = self.open.peek().map(|&Reverse((least, ..))| least);
+        let reached = self.reached.map(|(reached, _)| reached);
+        let least = [open, self.settled, reached].into_iter().flatten().min();
+        let size = self.a.frame.cell_size();
+        Interval {
+            lower: least.map_or(f64::INFINITY, |square| product_down(root(square).lower, size)),
+            upper: reached.map_or(f64::INFINITY, |square| product_up(root(square).upper, size)),
+        }
+    }
+
+    fn found(self) -> Clearance {
+        let frame = self.a.frame;
+        Clearance {
+            distance: self.distance(),
+            nearest: self.reached.map(|(_, [a, b])| [self.a.nodes[a].cell, self.b.nodes[b].cell]),
+            splits: [self.a.splits, self.b.splits],
+            evaluations: self.a.scratch.evaluations() + self.b.scratch.evaluations(),
+            clipped: self.a.solid.exterior(frame) != Tag::Empty || self.b.solid.exterior(frame) != Tag::Empty,
+        }
+    }
+}
+
+/// The root of an integer below 2^53.
+fn root(square: u64) -> Interval {
+    let square = square as f64;
+    let root = sqrt(square);
+    match two_product(root, root) {
+        exact if exact == (square, 0.0) => Interval::exactly(root),
+        _ => Interval { lower: root.next_down(), upper: root.next_up() },
+    }
+}
