@@ -70,10 +70,9 @@ pub use op::{
     LazyOctree, Refined, Zone, build, compact, complement, difference, intersection, intersection_of,
     resolve, union, union_of, xor, xor_of,
 };
-pub use query::{Measured, Measures, Membership, PointCursor, Region, measure};
 pub use query::{
-    Clearance, Interference, Membership, Overlap, PointCursor, Region, clearance, interference,
-    interference_of,
+    Clearance, Interference, Measured, Measures, Membership, Overlap, PointCursor, Region, clearance,
+    interference, interference_of, measure,
 };
 pub use solid::{
     AnySolid, AxisBox, Ball, Callback, Counted, Csg, CsgPart, CsgScratch, DefectKind, ErasedPart,

@@ -89,8 +89,10 @@ fn a_shaft_in_a_ring() {
     println!("shaft in ring: {distance:?}");
     assert!(distance.distance.contains(4.0) && distance.distance.lower > 0.0, "{distance:?}");
     // Of its own length the shaft ends inside, so that nothing outside matters to the overlap.
-    let shaft =
-        Csg::cylinder(20.0, 10.0, 120.0).unwrap().placed(&Affine::translation([64.0, 64.0, 0.0]).unwrap());
+    let shaft = Csg::cylinder(20.0, 10.0, 120.0)
+        .unwrap()
+        .placed(&Affine::translation([64.0, 64.0, 0.0]).unwrap())
+        .unwrap();
     let found = interference(&shaft, &ring, &frame, PROOF, &alone()).unwrap();
     assert_eq!((found.verdict, found.clipped), (Overlap::Disjoint, false));
     // A shaft that is too thick.
@@ -112,7 +114,7 @@ fn a_block_in_a_pocket() {
         let touching = clearance(&block, &stock, &frame, 0.0, &alone()).unwrap();
         assert_eq!((touching.distance.lower, touching.distance.upper), (0.0, 0.0));
         // Pushed by 6: it stands 4 × 48 × 48 in the wall.
-        let pushed = block.placed(&Affine::translation([6.0, 0.0, 0.0]).unwrap());
+        let pushed = block.placed(&Affine::translation([6.0, 0.0, 0.0]).unwrap()).unwrap();
         let found = interference(&pushed, &stock, &frame, PROOF, &alone()).unwrap();
         println!("pushed block, depth {depth}: {:?}", found.splits);
         assert_eq!(found.verdict, Overlap::Overlapping);
@@ -372,7 +374,8 @@ fn random_trees_in_random_places() {
         for tolerance in [PROOF, 0.05] {
             let control = up_to(20_000);
             let found =
-                interference(&first, &second.placed(&placement), &frame, tolerance, &control).unwrap();
+                interference(&first, &second.placed(&placement).unwrap(), &frame, tolerance, &control)
+                    .unwrap();
             check_points(&found, &frame, &mut random, sides, &text);
             counts[found.verdict as usize] += 1;
             let moved = Transform::new(&second, &own, &placement);
@@ -384,7 +387,8 @@ fn random_trees_in_random_places() {
             );
             assert!(!one_is_wrong, "{text}: {found:?} {blurred:?}");
         }
-        let near = clearance(&first, &second.placed(&placement), &frame, 0.25, &up_to(4000)).unwrap();
+        let near =
+            clearance(&first, &second.placed(&placement).unwrap(), &frame, 0.25, &up_to(4000)).unwrap();
         let mut inside = [Vec::new(), Vec::new()];
         for _ in 0..20_000 {
             let p = [0; 3].map(|_| random.between(-4.0, 4.0));

@@ -5,7 +5,7 @@ mod common;
 
 use common::{Dense, Random, alone, assert_is, cases, lattice_frame, noise, positions, shapes};
 use leafless::{
-    AnySolid, AxisBox, Ball, Callback, Cell, Control, Cube, Error, FillRule, Fingerprint, Frame, HalfSpace,
+    AnySolid, AxisBox, Ball, Callback, Cell, Control, Csg, Cube, Error, FillRule, Fingerprint, Frame,
     LazyOctree, Membership, MeshSolid, Metadata, Octree, Refined, Rule, Scratch, Solid, Stored, Tag,
     TriangleMesh, Verdict, Zone, build, compact, file,
 };
@@ -410,7 +410,7 @@ fn solids(frame: &Frame) -> Vec<AnySolid> {
     vec![
         AnySolid::new(Ball::new([0.4, 0.5, 0.6], 0.37).unwrap()),
         AnySolid::new(AxisBox::new([0.25, 0.1, 0.3], [0.75, 0.5, 0.9]).unwrap()),
-        AnySolid::new(HalfSpace::new([1.0, 2.0, -0.5], -1.2).unwrap()),
+        AnySolid::new(Csg::half_space([1.0, 2.0, -0.5], -1.2).unwrap()),
         AnySolid::new(MeshSolid::new(tetrahedron(), frame, FillRule::NonZero).unwrap()),
         AnySolid::new(MeshSolid::new(open, frame, FillRule::NonZero).unwrap()),
         AnySolid::new(stored),
@@ -994,8 +994,8 @@ fn fingerprints_tell_solids_apart() {
         ball([0.5; 3], 0.3),
         AxisBox::new([0.0; 3], [1.0; 3]).unwrap().fingerprint().unwrap(),
         AxisBox::new([0.0; 3], [1.0, 1.0, 2.0]).unwrap().fingerprint().unwrap(),
-        HalfSpace::new([1.0, 0.0, 0.0], 0.5).unwrap().fingerprint().unwrap(),
-        HalfSpace::new([0.0, 1.0, 0.0], 0.5).unwrap().fingerprint().unwrap(),
+        Csg::half_space([1.0, 0.0, 0.0], 0.5).unwrap().fingerprint().unwrap(),
+        Csg::half_space([0.0, 1.0, 0.0], 0.5).unwrap().fingerprint().unwrap(),
         of(&|frame| mesh(FillRule::NonZero, frame), &frame),
         of(&|frame| mesh(FillRule::EvenOdd, frame), &frame),
         of(&|frame| mesh(FillRule::NonZero, frame), &unit_frame(6)),

@@ -1,19 +1,14 @@
-//! Questions: about points and boxes, which a stored octree answers in place, and measures of any solid.
-
-mod measure;
-mod point;
-mod region;
-
-pub use measure::{Measured, Measures, measure};
 //! Questions: such as a stored octree answers in place, and such as any solids answer.
 
 mod clearance;
 mod interference;
+mod measure;
 mod point;
 mod region;
 
 pub use clearance::{Clearance, clearance};
 pub use interference::{Interference, Overlap, interference, interference_of};
+pub use measure::{Measured, Measures, measure};
 pub use point::{Membership, PointCursor};
 pub use region::Region;
 
