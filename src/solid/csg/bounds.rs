@@ -25,12 +25,38 @@ impl Octants {
         Octants { low: f64x4::ZERO, half: 1.0 }
     }
 
+    /// The centres of the children, those of the lower and of the upper z, and half their edge.
+    #[inline(always)]
+    pub(super) fn centres(&self) -> ([[f64x4; 3]; 2], f64) {
+        let [low_x, low_y, low_z, _] = self.low.to_array();
+        let quarter = 0.5 * self.half;
+        let (x, y, z) = (low_x + quarter, low_y + quarter, low_z + quarter);
+        let xs = f64x4::new([x, x + self.half, x, x + self.half]);
+        let ys = f64x4::new([y, y, y + self.half, y + self.half]);
+        ([z, z + self.half].map(|z| [xs, ys, f64x4::splat(z)]), quarter)
+    }
+
+    /// Which of the eight are children: of the universe, which is the first itself, no other.
+    pub(super) fn all(&self) -> u8 {
+        if self.half == 1.0 { 1 } else { 0xFF }
+    }
+
     /// The lower and the upper corner of child `k`.
     pub(super) fn octant(&self, k: u32) -> ([f64; 3], [f64; 3]) {
         let low = self.low.to_array();
         let at = [0, 1, 2].map(|axis| low[axis] + (k >> axis & 1) as f64 * self.half);
         (at, at.map(|t| t + self.half))
     }
+}
+
+/// For each child the sum of `constant` and a value an axis, which are given for the lower and the upper half.
+#[inline(always)]
+pub(super) fn sums(constant: f64, halves: [f64x4; 2]) -> [f64x4; 2] {
+    let [first, second] = halves.map(|values| values.to_array());
+    let x = f64x4::new([first[0], second[0], first[0], second[0]]);
+    let y = f64x4::new([first[1], first[1], second[1], second[1]]);
+    let xy = (f64x4::splat(constant) + x) + y;
+    [xy + f64x4::splat(first[2]), xy + f64x4::splat(second[2])]
 }
 
 /// 2^-level.

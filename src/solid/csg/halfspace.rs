@@ -2,17 +2,22 @@
 
 use super::bounds::{Octants, Sides};
 use super::dyadic::Dyadic;
+use super::host::{Host, PlacedHost};
 use super::map::ExactMap;
+use super::power::{PlacedPowers, Powers};
 use super::quadric::{Coefficients, Quadric};
+use super::torus::{PlacedTorus, Torus};
 use crate::error::Error;
-use crate::lattice::Frame;
-use crate::solid::is_moderate;
+use crate::lattice::exact::sign;
+use crate::lattice::{Frame, Interval};
+use crate::solid::{Fingerprint, is_moderate};
 use alloc::boxed::Box;
 use alloc::sync::Arc;
 
 /// The points with f(x, y, z) ≥ 0, for one function f. Cheap to clone.
 ///
-/// f is that of exactly the doubles given, and its signs are exact: no rounding decides anything.
+/// f is that of exactly the doubles given, and its signs are exact: no rounding decides anything. (Of a host program's
+/// function it is the program that answers for the signs.)
 #[derive(Clone)]
 pub struct HalfSpace(pub(super) Arc<Surface>);
 
@@ -20,7 +25,13 @@ pub struct HalfSpace(pub(super) Arc<Surface>);
 pub(super) enum Surface {
     /// Of degree one or two.
     Quadric(Box<Coefficients>),
+    Powers(Powers),
+    Torus(Torus),
+    Host(Arc<Host>),
 }
+
+/// The largest exponent of a power.
+const LARGEST_EXPONENT: u32 = 64;
 
 impl HalfSpace {
     /// `normal` · p + `offset` ≥ 0; the normal, of any length, points into the half-space.
@@ -58,6 +69,118 @@ impl HalfSpace {
         Ok(HalfSpace::exactly(coefficients.map(Dyadic::new)))
     }
 
+    /// A (x − a)^n + B (y − b)^m + C (z − c)^k + `constant` ≥ 0, for the `terms` (A, a, n), (B, b, m) and (C, c, k). A
+    /// coefficient 0 leaves a term out.
+    ///
+    /// Least and greatest values over a cell are exact under placements that take axes to axes, and bounded outward
+    /// under others.
+    ///
+    /// # Errors
+    /// [`Error::Argument`] if all coefficients are zero, an exponent is not 1 to 64, or a number is not zero and not of
+    /// a magnitude between 2^-256 and 2^256.
+    pub fn power(terms: [(f64, f64, u32); 3], constant: f64) -> Result<HalfSpace, Error> {
+        let problem = "every number must be zero or of a magnitude between 2^-256 and 2^256";
+        let moderate = |c: f64| c == 0.0 || is_moderate(c);
+        if !terms.iter().all(|&(coefficient, centre, _)| moderate(coefficient) && moderate(centre)) {
+            return Err(Error::Argument { name: "terms", problem });
+        }
+        if !moderate(constant) {
+            return Err(Error::Argument { name: "constant", problem });
+        }
+        if !terms.iter().all(|&(.., exponent)| (1..=LARGEST_EXPONENT).contains(&exponent)) {
+            return Err(Error::Argument { name: "terms", problem: "every exponent must be 1 to 64" });
+        }
+        if terms.iter().all(|&(coefficient, ..)| coefficient == 0.0) {
+            let problem = "must have a coefficient that is not zero: the function would be constant";
+            return Err(Error::Argument { name: "terms", problem });
+        }
+        let is_quadratic =
+            |&(coefficient, _, exponent): &(f64, f64, u32)| coefficient == 0.0 || exponent <= 2;
+        if !terms.iter().all(is_quadratic) {
+            return Ok(HalfSpace(Arc::new(Surface::Powers(Powers { terms, constant }))));
+        }
+        let mut c = [0.0; 10].map(Dyadic::new);
+        c[9] = Dyadic::new(constant);
+        for (axis, (coefficient, centre, exponent)) in terms.into_iter().enumerate() {
+            let (coefficient, centre) = (Dyadic::new(coefficient), Dyadic::new(centre));
+            let times_centre = &coefficient * &centre;
+            if exponent == 1 {
+                c[9] = &c[9] - &times_centre;
+                c[6 + axis] = coefficient;
+            } else {
+                c[9] = &c[9] + &(&times_centre * &centre);
+                c[6 + axis] = -&times_centre.shifted(1);
+                c[axis] = coefficient;
+            }
+        }
+        Ok(HalfSpace::exactly(c))
+    }
+
+    /// The torus around the z axis: all points at most `minor` from the circle of radius `major` in the plane z = 0. So
+    /// where `minor` is greater than `major`, the ring being closed in the middle, there is no hollow core.
+    ///
+    /// # Errors
+    /// [`Error::Argument`] if a radius is not between 2^-256 and 2^256; `major` may be 0, which makes a ball.
+    pub fn torus(major: f64, minor: f64) -> Result<HalfSpace, Error> {
+        let problem = "must be between 2^-256 and 2^256";
+        for (name, radius) in [("minor", minor), ("major", if major == 0.0 { 1.0 } else { major })] {
+            if !(radius > 0.0 && is_moderate(radius)) {
+                return Err(Error::Argument { name, problem });
+            }
+        }
+        if major == 0.0 {
+            let mut c = [0.0; 10].map(Dyadic::new);
+            c[..3].fill(Dyadic::new(-1.0));
+            c[9] = Dyadic::new(minor).pow(2);
+            return Ok(HalfSpace::exactly(c));
+        }
+        Ok(HalfSpace(Arc::new(Surface::Torus(Torus { major, minor }))))
+    }
+
+    /// A half-space that a host program supplies: by f's `value` at a point and its `range` over a box (lower and upper
+    /// corner), in model units; under a placement, in the space of the half-space.
+    ///
+    /// A range must contain all values that f has in the box. It alone proves anything: a cell is FULL if it is nowhere
+    /// negative over a box around the cell (the cell itself, where its corners are doubles), and EMPTY if it is nowhere
+    /// positive. Values, which are asked for first, keep a cell from it that has vertices on both sides, so they
+    /// need not be exact; they decide single points, at the point's rounded image, where zero is inside. A value that is
+    /// not a number, and a range with a NaN or with `lower > upper`, decide nothing.
+    ///
+    /// Both functions are called from several threads at once, and must give the same answer to the same question. An
+    /// error, such as [`Error::Callback`], ends the operation and is what that returns. The `fingerprint` is the
+    /// promise that functions that are given the same one are the same; without one no expression that contains the
+    /// half-space has a fingerprint.
+    ///
+    /// ```
+    /// use leafless::{Control, Csg, Frame, HalfSpace, Interval, Rule, build};
+    /// // z ≤ exp(−x²), which over a box is least and greatest where |x| is.
+    /// let hill = HalfSpace::host(
+    ///     |[x, _, z]| Ok((-x * x).exp() - z),
+    ///     |min, max| {
+    ///         let far = min[0].abs().max(max[0].abs());
+    ///         let near = if min[0] <= 0.0 && max[0] >= 0.0 { 0.0 } else { min[0].abs().min(max[0].abs()) };
+    ///         // Some last places for what is rounded.
+    ///         Ok(Interval {
+    ///             lower: (-far * far).exp() - max[2] - 1e-14,
+    ///             upper: (-near * near).exp() - min[2] + 1e-14,
+    ///         })
+    ///     },
+    ///     None,
+    /// );
+    /// let part = Csg::intersection_of([hill.into(), Csg::cuboid([-1.0, 0.0, 0.0], [1.0, 1.0, 2.0])?])?;
+    /// let tree = build(&part, &Frame::new([-1.0; 3], 2.0, 6)?, Rule::Certified, &Control::default())?;
+    /// assert!(tree.statistics().volume().contains(1.493648));
+    /// # Ok::<(), leafless::Error>(())
+    /// ```
+    pub fn host(
+        value: impl Fn([f64; 3]) -> Result<f64, Error> + Send + Sync + 'static,
+        range: impl Fn([f64; 3], [f64; 3]) -> Result<Interval, Error> + Send + Sync + 'static,
+        fingerprint: Option<Fingerprint>,
+    ) -> HalfSpace {
+        let host = Host { value: Box::new(value), range: Box::new(range), fingerprint };
+        HalfSpace(Arc::new(Surface::Host(Arc::new(host))))
+    }
+
     /// Of coefficients in the order of [`quadric`](Self::quadric) that need not be doubles, of which one but the last
     /// is not zero.
     pub(super) fn exactly(coefficients: Coefficients) -> HalfSpace {
@@ -68,6 +191,9 @@ impl HalfSpace {
 /// A half-space on a universe: f in unit coordinates, times something positive.
 pub(super) enum Placed {
     Quadric(Quadric),
+    Powers(Box<PlacedPowers>),
+    Torus(Box<PlacedTorus>),
+    Host(Box<PlacedHost>),
 }
 
 impl Surface {
@@ -75,35 +201,67 @@ impl Surface {
     pub(super) fn on(&self, map: &ExactMap, frame: &Frame) -> Placed {
         match self {
             Surface::Quadric(coefficients) => Placed::Quadric(Quadric::new(coefficients, map, frame.depth())),
+            Surface::Powers(powers) => Placed::Powers(Box::new(PlacedPowers::new(powers, map))),
+            Surface::Torus(torus) => Placed::Torus(Box::new(PlacedTorus::new(torus, map))),
+            Surface::Host(host) => Placed::Host(Box::new(PlacedHost::new(host, map, frame))),
         }
     }
 }
 
 impl Placed {
-    /// For which of the eight cells f is proven not negative, and not positive.
+    /// For which of the cells `wanted` f is proven not negative, and not positive; counts the evaluations.
     #[inline(always)]
-    pub(super) fn sides(&self, at: &Octants) -> Sides {
+    pub(super) fn sides(&self, at: &Octants, wanted: u8, evaluations: &mut u64) -> Result<Sides, Error> {
         match self {
+            Placed::Quadric(quadric) => {
+                *evaluations += wanted.count_ones() as u64;
+                Ok(quadric.sides(at))
+            }
+            _ => self.sides_of_others(at, wanted, evaluations),
+        }
+    }
+
+    /// Of those that are not quadrics, which are the fastest by far.
+    #[inline(never)]
+    fn sides_of_others(&self, at: &Octants, wanted: u8, evaluations: &mut u64) -> Result<Sides, Error> {
+        if let Placed::Host(host) = self {
+            return host.sides(at, wanted, evaluations);
+        }
+        *evaluations += wanted.count_ones() as u64;
+        Ok(match self {
             Placed::Quadric(quadric) => quadric.sides(at),
-        }
+            Placed::Powers(powers) => powers.sides(at),
+            Placed::Torus(torus) => torus.sides(at),
+            Placed::Host(_) => Sides { inside: 0, outside: 0 },
+        })
     }
 
-    /// Exact sign of f at a point of the universe.
+    /// Exact sign of f at a point of the universe; `None` if the host does not know it.
     #[inline]
-    pub(super) fn sign_at(&self, t: [f64; 3]) -> i32 {
-        match self {
+    pub(super) fn sign_at(&self, t: [f64; 3]) -> Result<Option<i32>, Error> {
+        Ok(Some(match self {
             Placed::Quadric(quadric) => quadric.sign_at(t),
-        }
+            Placed::Powers(powers) => powers.sign_at(t),
+            Placed::Torus(torus) => torus.sign_at(t),
+            Placed::Host(host) => return Ok(host.value_at(t)?.map(sign)),
+        }))
     }
 
-    /// Whether the centre `t` of a cell is inside, shifted by (ε, ε², ε³) if it lies on the surface.
+    /// Whether the centre `t` of a cell is inside, shifted by (ε, ε², ε³) if it lies on the surface; `None` if the host
+    /// does not know.
     #[inline]
-    pub(super) fn contains(&self, t: [f64; 3]) -> bool {
-        match self.sign_at(t) {
-            0 => match self {
-                Placed::Quadric(quadric) => quadric.shifted_sign_at(t) > 0,
+    pub(super) fn contains(&self, t: [f64; 3]) -> Result<Option<bool>, Error> {
+        let sign = match self.sign_at(t)? {
+            Some(0) => match self {
+                Placed::Quadric(quadric) => quadric.shifted_sign_at(t),
+                Placed::Powers(powers) => powers.shifted_sign_at(t),
+                Placed::Torus(torus) => torus.shifted_sign_at(t),
+                // Which way the function goes is not known.
+                Placed::Host(_) => 1,
             },
-            sign => sign > 0,
-        }
+            Some(sign) => sign,
+            None => return Ok(None),
+        };
+        Ok(Some(sign > 0))
     }
 }

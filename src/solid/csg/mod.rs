@@ -8,14 +8,18 @@ mod bounds;
 mod dyadic;
 mod extent;
 mod halfspace;
+mod host;
+mod linear;
 mod map;
 mod points;
 #[allow(dead_code)] // Until prisms use it.
 mod polygon;
+mod power;
 mod primitive;
 mod program;
 mod quadric;
 mod split;
+mod torus;
 
 pub use halfspace::HalfSpace;
 pub use split::{CsgPart, CsgScratch};

@@ -1,6 +1,7 @@
 //! The 27-point test.
 
 use super::bounds::Octants;
+use crate::error::Error;
 
 /// The points that the eight children of a cell have as vertices, by their place on each axis (0 lower end, 1 middle,
 /// 2 upper end), those of most children first: the centre, centres of faces, middles of edges, corners.
@@ -41,24 +42,31 @@ const fn owners(point: [u8; 3]) -> u8 {
     mask
 }
 
-/// Asks `inside` about the vertices of the children in the published order, each at most once, and no further than it
+/// Asks `inside` about the vertices of the children `wanted` in the published order, each at most once, and no further than it
 /// takes to find an inner and an outer vertex of each child. Returns which children have an inner vertex and which an
 /// outer one; a vertex for which the answer is `None` is neither.
-pub(super) fn vertices(at: &Octants, mut inside: impl FnMut([f64; 3]) -> Option<bool>) -> (u8, u8) {
+///
+/// # Errors
+/// The first one of `inside`.
+pub(super) fn vertices(
+    at: &Octants,
+    wanted: u8,
+    mut inside: impl FnMut([f64; 3]) -> Result<Option<bool>, Error>,
+) -> Result<(u8, u8), Error> {
     let low = at.low.to_array();
     let (mut inner, mut outer) = (0, 0);
     for point in POINTS {
-        let owners = owners(point);
+        let owners = owners(point) & wanted;
         if owners & !(inner & outer) == 0 {
             continue;
         }
-        match inside([0, 1, 2].map(|axis| low[axis] + point[axis] as f64 * at.half)) {
+        match inside([0, 1, 2].map(|axis| low[axis] + point[axis] as f64 * at.half))? {
             Some(true) => inner |= owners,
             Some(false) => outer |= owners,
             None => {}
         }
     }
-    (inner, outer)
+    Ok((inner, outer))
 }
 
 #[cfg(test)]
@@ -83,18 +91,20 @@ mod tests {
         let at = Octants::of(Cell::ROOT);
         let mut asked = 0;
         // A centre outside, two opposite faces inside: three points decide eight children.
-        let sides = vertices(&at, |[_, _, z]| {
+        let sides = vertices(&at, 0xFF, |[_, _, z]| {
             asked += 1;
-            Some(z != 0.5)
-        });
+            Ok(Some(z != 0.5))
+        })
+        .unwrap();
         assert_eq!(sides, (0xFF, 0xFF));
         assert!(asked <= 7, "{asked}");
         asked = 0;
         assert_eq!(
-            vertices(&at, |_| {
+            vertices(&at, 0xFF, |_| {
                 asked += 1;
-                Some(true)
-            }),
+                Ok(Some(true))
+            })
+            .unwrap(),
             (0xFF, 0)
         );
         assert_eq!(asked, 27);

@@ -195,9 +195,8 @@ impl CsgScratch {
                 self.words.get(part.start as usize).map(|word| word.op())
             {
                 if !program.paper {
-                    self.evaluations += 8;
-                    let kleene = Kleene::of(program.half_spaces[index as usize].sides(at), complement);
-                    return Ok(Cells { kleene, parts: [part; 8] });
+                    let sides = program.half_spaces[index as usize].sides(at, 0xFF, &mut self.evaluations)?;
+                    return Ok(Cells { kleene: Kleene::of(sides, complement), parts: [part; 8] });
                 }
             }
         }
@@ -242,8 +241,7 @@ impl CsgScratch {
                 // Their primitive classifies them.
                 Op::HalfSpace { .. } if program.paper => Kleene::UNKNOWN,
                 Op::HalfSpace { index, complement } => {
-                    *evaluations += 8;
-                    Kleene::of(program.half_spaces[index as usize].sides(at), complement)
+                    Kleene::of(program.half_spaces[index as usize].sides(at, 0xFF, evaluations)?, complement)
                 }
                 Op::Solid { index, complement } => {
                     let answer = match ask {
@@ -275,7 +273,7 @@ impl CsgScratch {
                 Op::Primitive { count } => {
                     let first = i - count as usize;
                     operands.truncate(operands.len() - count as usize);
-                    primitive_by_paper(program, &words[first..i], at, evaluations)
+                    primitive_by_paper(program, &words[first..i], at, evaluations)?
                 }
             };
             somewhere |= kleene.decided();
@@ -348,30 +346,40 @@ impl CsgScratch {
 
 /// A primitive as the method was published: the vertices of the children first, a vertex on the surface being inside;
 /// then half-space by half-space the children whose vertices agree.
-fn primitive_by_paper(program: &Program, words: &[Word], at: &Octants, evaluations: &mut u64) -> Kleene {
+fn primitive_by_paper(
+    program: &Program,
+    words: &[Word],
+    at: &Octants,
+    evaluations: &mut u64,
+) -> Result<Kleene, Error> {
     let half_spaces = || {
         words.iter().filter_map(|word| match word.op() {
             Op::HalfSpace { index, .. } => Some(&program.half_spaces[index as usize]),
             _ => None,
         })
     };
-    let (inner, outer) = points::vertices(at, |t| {
-        Some(half_spaces().all(|half_space| {
+    let (inner, outer) = points::vertices(at, at.all(), |t| {
+        let mut inside = Some(true);
+        for half_space in half_spaces() {
             *evaluations += 1;
-            half_space.sign_at(t) >= 0
-        }))
-    });
+            match half_space.sign_at(t)? {
+                Some(sign) if sign < 0 => return Ok(Some(false)),
+                Some(_) => {}
+                None => inside = None,
+            }
+        }
+        Ok(inside)
+    })?;
     let (black, white) = (!outer, !inner);
     let (mut inside, mut outside) = (0xFF, 0);
     if black | white != 0 {
         for half_space in half_spaces() {
-            *evaluations += (black | white).count_ones() as u64;
-            let sides = half_space.sides(at);
+            let sides = half_space.sides(at, black | white, evaluations)?;
             inside &= sides.inside;
             outside |= sides.outside;
         }
     }
-    Kleene { lower: black & inside, upper: !(white & outside) }
+    Ok(Kleene { lower: black & inside, upper: !(white & outside) })
 }
 
 impl Csg {
@@ -537,7 +545,8 @@ impl CsgScratch {
             let kleene = match word.op() {
                 Op::HalfSpace { index, complement } => {
                     *evaluations += 1;
-                    all(program.half_spaces[index as usize].contains(centre)).complemented(complement)
+                    let inside = program.half_spaces[index as usize].contains(centre)?;
+                    inside.map_or(Kleene::UNKNOWN, all).complemented(complement)
                 }
                 Op::Solid { index, complement } => {
                     let Slot { solid, part, .. } = slots[index as usize];

@@ -1,0 +1,111 @@
+//! Half-spaces that a host program supplies.
+
+use super::bounds::{Octants, Sides};
+use super::dyadic::Dyadic;
+use super::map::ExactMap;
+use super::points;
+use crate::error::Error;
+use crate::lattice::{Frame, Interval};
+use crate::solid::Fingerprint;
+use alloc::boxed::Box;
+use alloc::sync::Arc;
+
+type Value = dyn Fn([f64; 3]) -> Result<f64, Error> + Send + Sync;
+type Range = dyn Fn([f64; 3], [f64; 3]) -> Result<Interval, Error> + Send + Sync;
+
+/// A function of the host, by its values at points and its ranges over boxes.
+pub(super) struct Host {
+    pub(super) value: Box<Value>,
+    pub(super) range: Box<Range>,
+    pub(super) fingerprint: Option<Fingerprint>,
+}
+
+/// A function of the host on a universe.
+pub(super) struct PlacedHost {
+    host: Arc<Host>,
+    /// The map into the function's space: rows of `[R | r]`, and more than the error of each coordinate of an image.
+    rows: [[f64; 4]; 3],
+    errors: [f64; 3],
+}
+
+impl PlacedHost {
+    /// The function as the map shows it on the universe of `frame`.
+    pub(super) fn new(host: &Arc<Host>, map: &ExactMap, frame: &Frame) -> PlacedHost {
+        // w = divisor · 2^shift, the divisor being of a magnitude of one.
+        let shift = map.w.magnitude().unwrap_or(0);
+        let divisor = map.w.shifted(-shift).rounded();
+        let exact_divisor = map.w.bits() == 1;
+        let mut errors = [0.0; 3];
+        let rows = [0, 1, 2].map(|i| {
+            let exact = map.rows[i].each_ref().map(|c| c.shifted(-shift));
+            let row = exact.each_ref().map(|c| c.rounded() / divisor);
+            let size: f64 = row.iter().map(|c| c.abs()).sum();
+            // What all values are multiples of, where coordinates are of a cell's centre.
+            let grain =
+                exact.iter().filter_map(Dyadic::grain).min().unwrap_or(0) - (frame.depth() as i64 + 1);
+            let is_exact = exact_divisor
+                && exact.iter().all(|c| c.exactly().is_some())
+                && size.is_finite()
+                && Dyadic::new(size).magnitude().is_none_or(|m| m + 1 - grain <= 53);
+            // A term is rounded at most eight times.
+            errors[i] = if is_exact { 0.0 } else { 16.0 * f64::EPSILON * size + f64::MIN_POSITIVE };
+            row
+        });
+        PlacedHost { host: host.clone(), rows, errors }
+    }
+
+    /// The image of a point, rounded.
+    fn image(&self, t: [f64; 3]) -> [f64; 3] {
+        self.rows.map(|[a, b, c, d]| ((a * t[0] + b * t[1]) + c * t[2]) + d)
+    }
+
+    /// A box around the image of a box.
+    fn image_of_box(&self, low: [f64; 3], high: [f64; 3]) -> ([f64; 3], [f64; 3]) {
+        let end = |i: usize, upper: bool| {
+            let row = self.rows[i];
+            let corner = [0, 1, 2].map(|k| if (row[k] > 0.0) == upper { high[k] } else { low[k] });
+            let at = ((row[0] * corner[0] + row[1] * corner[1]) + row[2] * corner[2]) + row[3];
+            if upper { at + self.errors[i] } else { at - self.errors[i] }
+        };
+        ([0, 1, 2].map(|i| end(i, false)), [0, 1, 2].map(|i| end(i, true)))
+    }
+
+    /// For which of the cells `wanted` the function is said to be nowhere negative, and nowhere positive. A cell with an
+    /// inner and an outer vertex is neither, and its range is not asked for.
+    pub(super) fn sides(&self, at: &Octants, wanted: u8, evaluations: &mut u64) -> Result<Sides, Error> {
+        let wanted = wanted & at.all();
+        let mut sides = Sides { inside: 0, outside: 0 };
+        let (inner, outer) = points::vertices(at, wanted, |t| {
+            *evaluations += 1;
+            let value = self.value_at(t)?;
+            Ok(value.filter(|&value| value != 0.0).map(|value| value > 0.0))
+        })?;
+        for k in (0..8).filter(|k| (wanted & !(inner & outer)) >> k & 1 != 0) {
+            let (low, high) = at.octant(k);
+            let (min, max) = self.image_of_box(low, high);
+            if !min.iter().chain(&max).all(|c| c.is_finite()) {
+                continue;
+            }
+            *evaluations += 1;
+            let Interval { lower, upper } = (self.host.range)(min, max)?;
+            // A function that is zero everywhere, or a range that is none, decides nothing.
+            if lower >= 0.0 && upper > 0.0 && lower <= upper && outer >> k & 1 == 0 {
+                sides.inside |= 1 << k;
+            }
+            if upper <= 0.0 && lower < 0.0 && lower <= upper && inner >> k & 1 == 0 {
+                sides.outside |= 1 << k;
+            }
+        }
+        Ok(sides)
+    }
+
+    /// The value at a point; `None` if the host does not know.
+    pub(super) fn value_at(&self, t: [f64; 3]) -> Result<Option<f64>, Error> {
+        let image = self.image(t);
+        if !image.iter().all(|c| c.is_finite()) {
+            return Ok(None);
+        }
+        let value = (self.host.value)(image)?;
+        Ok(Some(value).filter(|value| !value.is_nan()))
+    }
+}

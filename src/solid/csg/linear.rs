@@ -1,0 +1,57 @@
+//! Linear functions of the unit coordinates.
+
+use super::dyadic::Dyadic;
+use wide::f64x4;
+
+/// f(x, y, z) = a x + b y + c z + d: exactly, and rounded.
+pub(super) struct Linear {
+    pub(super) exact: [Dyadic; 4],
+    pub(super) c: [f64; 4],
+    /// More than the error of a rounded value on the universe, and of the coordinates for which it is exact.
+    pub(super) error: f64,
+}
+
+impl Linear {
+    /// The function with the coefficients a to d, which are neither all zero nor, rounded, near the ends of the range of
+    /// doubles.
+    pub(super) fn new(exact: [Dyadic; 4]) -> Linear {
+        let c = exact.each_ref().map(Dyadic::rounded);
+        // Coefficients, products and sums are rounded: each term at most six times.
+        let error = 8.0 * f64::EPSILON * c.iter().map(|c| c.abs()).sum::<f64>();
+        Linear { exact, c, error }
+    }
+
+    /// The exponent of the largest coefficient.
+    pub(super) fn magnitude(exact: &[Dyadic; 4]) -> i64 {
+        exact.iter().filter_map(Dyadic::magnitude).max().unwrap_or(0)
+    }
+
+    /// The axis on which alone the function depends, if there is one.
+    pub(super) fn axis(&self) -> Option<usize> {
+        let mut axes = (0..3).filter(|&axis| !self.exact[axis].is_zero());
+        axes.next().filter(|_| axes.next().is_none())
+    }
+
+    #[inline(always)]
+    pub(super) fn value(&self, [x, y, z]: [f64; 3]) -> f64 {
+        let [a, b, c, d] = self.c;
+        ((a * x + b * y) + c * z) + d
+    }
+
+    /// The values at four points.
+    #[inline(always)]
+    pub(super) fn values(&self, [x, y, z]: [f64x4; 3]) -> f64x4 {
+        let [a, b, c, d] = self.c.map(f64x4::splat);
+        ((a * x + b * y) + c * z) + d
+    }
+
+    /// How far values differ from that at the centre of a cube of half edge 1.
+    #[inline(always)]
+    pub(super) fn reach(&self) -> f64 {
+        (self.c[0].abs() + self.c[1].abs()) + self.c[2].abs()
+    }
+
+    pub(super) fn exactly_at(&self, t: &[Dyadic; 3]) -> Dyadic {
+        (0..3).fold(self.exact[3].clone(), |sum, axis| &sum + &(&self.exact[axis] * &t[axis]))
+    }
+}
