@@ -7,12 +7,12 @@
 mod bounds;
 mod dyadic;
 mod extent;
+mod faceted;
 mod halfspace;
 mod host;
 mod linear;
 mod map;
 mod points;
-#[allow(dead_code)] // Until prisms use it.
 mod polygon;
 mod power;
 mod primitive;

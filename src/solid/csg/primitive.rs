@@ -1,4 +1,4 @@
-//! Named primitives: intersections of half-spaces.
+//! Named primitives that are round, and the box.
 
 use super::dyadic::Dyadic;
 use super::{Csg, HalfSpace};
@@ -7,7 +7,7 @@ use crate::lattice::exact::two_sum;
 use crate::solid::is_moderate;
 
 /// Refuses a length that is not between 2^-256 and 2^256.
-fn length(name: &'static str, value: f64) -> Result<(), Error> {
+pub(super) fn length(name: &'static str, value: f64) -> Result<(), Error> {
     if value > 0.0 && is_moderate(value) {
         Ok(())
     } else {
@@ -16,7 +16,7 @@ fn length(name: &'static str, value: f64) -> Result<(), Error> {
 }
 
 /// Refuses coordinates that are not zero and not of such a magnitude.
-fn coordinates(name: &'static str, values: &[f64]) -> Result<(), Error> {
+pub(super) fn coordinates(name: &'static str, values: &[f64]) -> Result<(), Error> {
     if values.iter().all(|&c| c == 0.0 || is_moderate(c)) {
         Ok(())
     } else {
@@ -39,7 +39,7 @@ fn axis_plane(axis: usize, side: f64, at: f64) -> HalfSpace {
 }
 
 /// Between two coordinates of an axis.
-fn slab(axis: usize, low: f64, high: f64) -> [Csg; 2] {
+pub(super) fn slab(axis: usize, low: f64, high: f64) -> [Csg; 2] {
     [axis_plane(axis, 1.0, low).into(), axis_plane(axis, -1.0, high).into()]
 }
 
@@ -143,5 +143,16 @@ impl Csg {
         let [bottom, top] = slab(2, low, high);
         let parts = Csg::intersection_of([cone.into(), bottom, top])?;
         Ok(parts.within([-radius, -radius, low], [radius, radius, high]))
+    }
+
+    /// The torus around the z axis: all points at most `minor` from the circle of radius `major` in the plane z = 0
+    /// (model units). See [`HalfSpace::torus`].
+    ///
+    /// # Errors
+    /// As [`HalfSpace::torus`].
+    pub fn torus(major: f64, minor: f64) -> Result<Csg, Error> {
+        let outer = (major + minor).next_up();
+        let torus = Csg::from(HalfSpace::torus(major, minor)?);
+        Ok(torus.within([-outer, -outer, -minor], [outer, outer, minor]))
     }
 }

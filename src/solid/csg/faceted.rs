@@ -1,0 +1,97 @@
+//! Named primitives with plane faces.
+
+use super::dyadic::Dyadic;
+use super::polygon::{Term, convex_differences};
+use super::primitive::{coordinates, length, slab};
+use super::{Csg, HalfSpace};
+use crate::error::Error;
+use alloc::vec::Vec;
+
+/// The half-space over the half-plane a x + b y + c ≥ 0.
+fn upright_plane(a: Dyadic, b: Dyadic, c: Dyadic) -> HalfSpace {
+    let mut all = [0.0; 10].map(Dyadic::new);
+    (all[6], all[7], all[9]) = (a, b, c);
+    HalfSpace::exactly(all)
+}
+
+impl Csg {
+    /// The right angular wedge: the box between the origin and `size` (model units) whose face at y = `size[1]` is
+    /// narrowed, or widened, to 0 ≤ x ≤ `top`; 0 makes that face an edge. (So it is defined by STEP, ISO 10303-42, where
+    /// `top` is called `ltx`.)
+    ///
+    /// # Errors
+    /// [`Error::Argument`] if a size, or `top` unless it is 0, is not between 2^-256 and 2^256.
+    pub fn wedge(size: [f64; 3], top: f64) -> Result<Csg, Error> {
+        for extent in size {
+            length("size", extent)?;
+        }
+        if top != 0.0 {
+            length("top", top)?;
+        }
+        // x ≤ dx + (top − dx) y / dy.
+        let [dx, dy, end] = [size[0], size[1], top].map(Dyadic::new);
+        let slanted = upright_plane(-&dy, &end - &dx, &dx * &dy);
+        let [front, _] = slab(0, 0.0, size[0]);
+        let sides = [1, 2].into_iter().flat_map(|axis| slab(axis, 0.0, size[axis]));
+        let parts = Csg::intersection_of([front, slanted.into()].into_iter().chain(sides))?;
+        Ok(parts.within([0.0; 3], [size[0].max(top), size[1], size[2]]))
+    }
+
+    /// The prism over a simple polygon in the xy plane, between z = `low` and z = `high` (model units). The polygon's
+    /// corners are given in order, in either direction of rotation; the last is joined to the first. The planes
+    /// through its edges are exact.
+    ///
+    /// O(n log n) time for outlines whose edges are short and which do not spiral, O(n²) at worst.
+    ///
+    /// # Errors
+    /// [`Error::Argument`] if the outline touches or crosses itself or encloses nothing, a coordinate is not zero and not
+    /// of a magnitude between 2^-256 and 2^256, or `low` not less than `high`; [`Error::OutOfMemory`].
+    pub fn prism(polygon: &[[f64; 2]], low: f64, high: f64) -> Result<Csg, Error> {
+        coordinates("height", &[low, high])?;
+        if low >= high {
+            return Err(Error::Argument { name: "high", problem: "must be greater than low" });
+        }
+        let mut operands: Vec<Csg> = Vec::new();
+        for term in convex_differences(polygon)? {
+            let operand = match term {
+                Term::Edge([from, to]) => {
+                    let [[ax, ay], [bx, by]] = [from, to].map(|i| polygon[i].map(Dyadic::new));
+                    let (along_x, along_y) = (&bx - &ax, &by - &ay);
+                    let offset = &(&along_y * &ax) - &(&along_x * &ay);
+                    upright_plane(-&along_y, along_x, offset).into()
+                }
+                Term::All(count) => Csg::intersection_of(operands.drain(operands.len() - count..))?,
+                Term::Any(count) => Csg::union_of(operands.drain(operands.len() - count..))?,
+            };
+            operands.try_reserve(1).map_err(|_| Error::OutOfMemory)?;
+            operands.push(operand);
+        }
+        operands.try_reserve(2).map_err(|_| Error::OutOfMemory)?;
+        operands.extend(slab(2, low, high));
+        let (mut min, mut max) =
+            ([f64::INFINITY, f64::INFINITY, low], [f64::NEG_INFINITY, f64::NEG_INFINITY, high]);
+        for corner in polygon {
+            for axis in 0..2 {
+                (min[axis], max[axis]) = (min[axis].min(corner[axis]), max[axis].max(corner[axis]));
+            }
+        }
+        Ok(Csg::intersection_of(operands)?.within(min, max))
+    }
+
+    /// The convex polyhedron of the points p with `normal` · p + `offset` ≥ 0 for all `planes` (normal, offset); the
+    /// normals, of any length, point inward. It may be unbounded, or empty. O(planes).
+    ///
+    /// # Errors
+    /// [`Error::Argument`] if there is no plane; as [`HalfSpace::plane`]; [`Error::OutOfMemory`].
+    pub fn convex(planes: &[([f64; 3], f64)]) -> Result<Csg, Error> {
+        if planes.is_empty() {
+            return Err(Error::Argument { name: "planes", problem: "must not be empty" });
+        }
+        let mut parts = Vec::new();
+        parts.try_reserve_exact(planes.len()).map_err(|_| Error::OutOfMemory)?;
+        for &(normal, offset) in planes {
+            parts.push(Csg::half_space(normal, offset)?);
+        }
+        Csg::intersection_of(parts)
+    }
+}
