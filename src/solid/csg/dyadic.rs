@@ -3,6 +3,7 @@
 //! Every double is one, and sums and products of them are again. They decide what floating point with an error bound
 //! leaves open, and turn given coefficients into those that are evaluated; all of it is cold.
 
+use alloc::vec::Vec;
 use core::cmp::Ordering;
 use core::ops::{Add, Mul, Neg, Sub};
 use num_bigint::{BigInt, Sign};
@@ -75,6 +76,11 @@ impl Dyadic {
     /// Bits of the mantissa.
     pub(super) fn bits(&self) -> u64 {
         self.mantissa.bits()
+    }
+
+    /// The mantissa's bytes, in two's complement from the lowest on, and the exponent.
+    pub(super) fn bytes(&self) -> (Vec<u8>, i64) {
+        (self.mantissa.to_signed_bytes_le(), self.exponent)
     }
 
     /// The double towards zero whose error is less than 2^-52 of it, or less than 2^-1020; infinite beyond the doubles.

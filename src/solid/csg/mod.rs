@@ -8,6 +8,7 @@ mod bounds;
 mod dyadic;
 mod extent;
 mod faceted;
+mod fingerprint;
 mod halfspace;
 mod host;
 mod linear;

@@ -32,7 +32,7 @@ pub(super) enum Op {
 
 /// Most half-spaces, other solids and operations of an expression that is written out. (A half-space takes a kilobyte,
 /// and a node that contains another twice, which contains another twice …, soon comes to more than there is.)
-const MOST: u64 = 1 << 22;
+pub(super) const MOST: u64 = 1 << 22;
 
 impl Word {
     /// The greatest index or count that a word can hold.

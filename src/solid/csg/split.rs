@@ -6,7 +6,7 @@ use super::{Csg, Join, points};
 use crate::error::Error;
 use crate::lattice::{Cube, Frame};
 use crate::octree::{Planes, Tag};
-use crate::solid::{ErasedPart, ErasedScratch, Scratch, Solid, Verdict};
+use crate::solid::{ErasedPart, ErasedScratch, Fingerprint, Scratch, Solid, Verdict};
 use alloc::sync::Arc;
 use alloc::vec::Vec;
 use core::ops::Range;
@@ -482,6 +482,10 @@ impl Solid for Csg {
 
     fn exterior(&self, frame: &Frame) -> Tag {
         self.root.exterior(frame).unwrap_or(Tag::Partial)
+    }
+
+    fn fingerprint(&self) -> Option<Fingerprint> {
+        self.fingerprint_of_expression()
     }
 
     fn hand_over(&self, from: &CsgScratch, part: &CsgPart, to: &mut CsgScratch) -> Result<CsgPart, Error> {
