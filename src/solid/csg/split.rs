@@ -405,6 +405,8 @@ impl Solid for Csg {
         let program = Program::new(self, frame)?;
         scratch.words.clear();
         scratch.slots.clear();
+        // What the others counted stays counted.
+        scratch.evaluations = scratch.evaluations();
         scratch.scratches.clear();
         scratch.scratches.try_reserve(program.solids.len()).map_err(|_| Error::OutOfMemory)?;
         scratch.scratches.resize_with(program.solids.len(), ErasedScratch::default);
