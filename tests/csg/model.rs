@@ -1,0 +1,297 @@
+//! Expressions by their definition: which side of the surface a point is on, in exact arithmetic and with no cell in
+//! sight.
+
+use crate::common::exact::Exact;
+use leafless::{
+    Affine, AnySolid, AxisBox, Ball, Callback, Csg, Error, FillRule, Frame, HalfSpace, MeshSolid, Octree,
+    Tag, Transform, TriangleMesh, Verdict,
+};
+
+/// A point (x, y, z)/w with w ≠ 0, so that the inverse of a placement needs no division.
+pub type Point = [Exact; 4];
+
+/// A point and its neighbours a unit of the lattice's space before and behind it on each axis.
+pub struct Probe {
+    pub at: Point,
+    pub around: [[Point; 2]; 3],
+}
+
+#[derive(Clone, Debug)]
+pub enum Model {
+    Plane([f64; 3], f64),
+    Quadric([f64; 10]),
+    Cuboid([f64; 3], [f64; 3]),
+    Ellipsoid([f64; 3], [f64; 3]),
+    /// Radii at the bottom and at the top, and where these are.
+    Frustum([f64; 2], [f64; 2]),
+    Union(Vec<Model>),
+    Intersection(Vec<Model>),
+    Xor(Vec<Model>),
+    Difference(Box<[Model; 2]>),
+    Complement(Box<Model>),
+    Placed(Box<Model>, Affine),
+    Other(Other),
+}
+
+/// What is no half-space.
+#[derive(Clone, Debug)]
+pub enum Other {
+    Cuboid([f64; 3], [f64; 3]),
+    Ball([f64; 3], f64),
+    /// lower ≤ z ≤ upper, which a callback tells.
+    Slab(f64, f64),
+    /// A tetrahedron as a mesh.
+    Tetrahedron([[f64; 3]; 4]),
+    Octree(Octree),
+    /// Moved, on a frame of its own.
+    Moved(Box<Other>, Frame, Affine),
+    /// An expression behind the common face.
+    Model(Box<Model>),
+}
+
+fn exact(x: f64) -> Exact {
+    Exact::from(x)
+}
+
+fn sum(terms: impl IntoIterator<Item = Exact>) -> Exact {
+    terms.into_iter().fold(exact(0.0), |sum, term| sum.plus(&term))
+}
+
+/// a · b for two doubles and a point's coordinates.
+fn times(a: f64, b: &Exact) -> Exact {
+    exact(a).times(b)
+}
+
+pub fn determinant(m: [[Exact; 3]; 3]) -> Exact {
+    let minor = |a: usize, b: usize| m[1][a].times(&m[2][b]).minus(&m[1][b].times(&m[2][a]));
+    sum([m[0][0].times(&minor(1, 2)), m[0][1].times(&minor(2, 0)), m[0][2].times(&minor(0, 1))])
+}
+
+/// The point that `placement` takes to `p`, by Cramer's rule.
+fn original(placement: &Affine, p: &Point) -> Point {
+    let m = placement.rows().map(|row| [row[0], row[1], row[2]].map(exact));
+    let moved = [0, 1, 2].map(|i| p[i].minus(&times(placement.rows()[i][3], &p[3])));
+    let replaced = |column: usize| {
+        let mut m = m.clone();
+        (0..3).for_each(|i| m[i][column] = moved[i].clone());
+        determinant(m)
+    };
+    [replaced(0), replaced(1), replaced(2), p[3].times(&determinant(m))]
+}
+
+/// On which side of each half-space of a box a point is, and so on: values of the sign of f, all times w².
+fn cuboid(min: [f64; 3], max: [f64; 3], p: &Point) -> Vec<Exact> {
+    let sides = (0..3)
+        .flat_map(|axis| [p[axis].minus(&times(min[axis], &p[3])), times(max[axis], &p[3]).minus(&p[axis])]);
+    sides.map(|side| side.times(&p[3])).collect()
+}
+
+fn ellipsoid(centre: [f64; 3], radii: [f64; 3], p: &Point) -> Exact {
+    // 1 − Σ ((x − c) / r)², times all r².
+    let square = |x: &Exact| x.times(x);
+    let r = radii.map(|r| square(&exact(r)));
+    let distances = (0..3).map(|axis| square(&p[axis].minus(&times(centre[axis], &p[3]))));
+    let weighted =
+        distances.enumerate().map(|(axis, d)| d.times(&r[(axis + 1) % 3]).times(&r[(axis + 2) % 3]));
+    square(&p[3]).times(&r[0]).times(&r[1]).times(&r[2]).minus(&sum(weighted))
+}
+
+fn slab([low, high]: [f64; 2], p: &Point) -> [Exact; 2] {
+    [p[2].minus(&times(low, &p[3])).times(&p[3]), times(high, &p[3]).minus(&p[2]).times(&p[3])]
+}
+
+fn frustum(radii: [f64; 2], heights: [f64; 2], p: &Point) -> Vec<Exact> {
+    // The radius at p, times the height, and both times w.
+    let [below, above] = [times(heights[1], &p[3]).minus(&p[2]), p[2].minus(&times(heights[0], &p[3]))];
+    let radius = times(radii[0], &below).plus(&times(radii[1], &above));
+    let height = exact(heights[1]).minus(&exact(heights[0]));
+    let [x, y] = [p[0].times(&height), p[1].times(&height)];
+    let mantle = radius.times(&radius).minus(&x.times(&x)).minus(&y.times(&y));
+    let [bottom, top] = slab(heights, p);
+    vec![mantle, bottom, top]
+}
+
+fn quadric(c: [f64; 10], p: &Point) -> Exact {
+    let pairs = [(0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3), (3, 3)];
+    sum(pairs.iter().zip(c).filter(|(_, c)| *c != 0.0).map(|(&(a, b), c)| times(c, &p[a].times(&p[b]))))
+}
+
+/// For each face of a tetrahedron on which side of it p is, the inside being positive.
+fn tetrahedron(corners: [[f64; 3]; 4], p: &Point) -> Vec<Exact> {
+    let corners = corners.map(|corner| {
+        let [x, y, z] = corner.map(exact);
+        [x, y, z, exact(1.0)]
+    });
+    let volume = |a: &Point, b: &Point, c: &Point, d: &Point| {
+        // The determinant of the differences to d, times the weights: all but d's are 1.
+        let row = |q: &Point| [0, 1, 2].map(|i| q[i].times(&d[3]).minus(&d[i]));
+        determinant([row(a), row(b), row(c)])
+    };
+    (0..4)
+        .map(|k| {
+            let [a, b, c] = [1, 2, 3].map(|i| &corners[(k + i) % 4]);
+            let value = volume(a, b, c, p).times(&volume(a, b, c, &corners[k]));
+            // Each row has a factor w.
+            value.times(&p[3])
+        })
+        .collect()
+}
+
+impl Model {
+    /// The expression, as it is asked on `frame`.
+    pub fn csg(&self, frame: &Frame) -> Result<Csg, Error> {
+        let all =
+            |parts: &[Model]| parts.iter().map(|part| part.csg(frame)).collect::<Result<Vec<_>, Error>>();
+        Ok(match self {
+            Model::Plane(normal, offset) => Csg::half_space(*normal, *offset)?,
+            Model::Quadric(c) => HalfSpace::quadric(*c)?.into(),
+            Model::Cuboid(min, max) => Csg::cuboid(*min, *max)?,
+            Model::Ellipsoid(centre, [r, s, t]) if r == s && s == t => Csg::ball(*centre, *r)?,
+            Model::Ellipsoid(centre, radii) => Csg::ellipsoid(*centre, *radii)?,
+            Model::Frustum([r, s], [low, high]) if r == s => Csg::cylinder(*r, *low, *high)?,
+            Model::Frustum([r, s], [low, high]) => Csg::frustum(*r, *s, *low, *high)?,
+            Model::Union(parts) => Csg::union_of(all(parts)?)?,
+            Model::Intersection(parts) => Csg::intersection_of(all(parts)?)?,
+            Model::Xor(parts) => Csg::xor_of(all(parts)?)?,
+            Model::Difference(pair) => pair[0].csg(frame)?.difference(&pair[1].csg(frame)?)?,
+            Model::Complement(part) => part.csg(frame)?.complement(),
+            Model::Placed(part, placement) => part.csg(frame)?.placed(placement)?,
+            Model::Other(other) => Csg::solid(other.solid(frame)?),
+        })
+    }
+
+    /// The functions of the half-spaces of a primitive at a point, times something positive.
+    fn values(&self, p: &Point) -> Vec<Exact> {
+        match self {
+            Model::Plane(normal, offset) => {
+                let terms = (0..3).map(|axis| times(normal[axis], &p[axis]));
+                vec![sum(terms).plus(&times(*offset, &p[3])).times(&p[3])]
+            }
+            Model::Quadric(c) => vec![quadric(*c, p)],
+            Model::Cuboid(min, max) => cuboid(*min, *max, p),
+            Model::Ellipsoid(centre, radii) => vec![ellipsoid(*centre, *radii, p)],
+            Model::Frustum(radii, heights) => frustum(*radii, *heights, p),
+            _ => panic!("not a primitive"),
+        }
+    }
+
+    /// 1 if a point lies in the interior, −1 if it lies outside, 0 on the boundary or if the definition does not tell.
+    pub fn sign(&self, p: &Point) -> i32 {
+        match self {
+            Model::Union(parts) => parts.iter().map(|part| part.sign(p)).max().unwrap_or(-1),
+            Model::Intersection(parts) => parts.iter().map(|part| part.sign(p)).min().unwrap_or(1),
+            Model::Xor(parts) => parts.iter().fold(-1, |sign, part| -sign * part.sign(p)),
+            Model::Difference(pair) => pair[0].sign(p).min(-pair[1].sign(p)),
+            Model::Complement(part) => -part.sign(p),
+            Model::Placed(part, placement) => part.sign(&original(placement, p)),
+            Model::Other(other) => other.sign(p),
+            primitive => lowest(primitive.values(p)),
+        }
+    }
+
+    /// Whether a point lies inside, all points being shifted by (ε, ε², ε³); `None` if the definition does not tell.
+    pub fn sampled(&self, probe: &Probe) -> Option<bool> {
+        let all = |parts: &[Model]| parts.iter().map(|part| part.sampled(probe)).collect::<Option<Vec<_>>>();
+        Some(match self {
+            Model::Union(parts) => all(parts)?.contains(&true),
+            Model::Intersection(parts) => !all(parts)?.contains(&false),
+            Model::Xor(parts) => all(parts)?.iter().fold(false, |odd, &inside| odd != inside),
+            Model::Difference(pair) => pair[0].sampled(probe)? && !pair[1].sampled(probe)?,
+            Model::Complement(part) => !part.sampled(probe)?,
+            Model::Placed(part, placement) => {
+                let local = |p: &Point| original(placement, p);
+                let around = probe.around.each_ref().map(|pair| pair.each_ref().map(local));
+                part.sampled(&Probe { at: local(&probe.at), around })?
+            }
+            Model::Other(other) => match other.sign(&probe.at) {
+                0 => return None,
+                sign => sign > 0,
+            },
+            primitive => {
+                // Of polynomials of degree two the central difference is the derivative.
+                let at = primitive.values(&probe.at);
+                let around = probe.around.each_ref().map(|pair| pair.each_ref().map(|p| primitive.values(p)));
+                (0..at.len()).all(|i| match at[i].sign() {
+                    0 => {
+                        let slope = |[before, behind]: &[Vec<Exact>; 2]| behind[i].minus(&before[i]).sign();
+                        around.iter().map(slope).find(|&sign| sign != 0) == Some(1)
+                    }
+                    sign => sign > 0,
+                })
+            }
+        })
+    }
+}
+
+fn lowest(values: Vec<Exact>) -> i32 {
+    values.iter().map(Exact::sign).min().unwrap_or(1)
+}
+
+impl Other {
+    pub fn solid(&self, frame: &Frame) -> Result<AnySolid, Error> {
+        Ok(match self {
+            Other::Cuboid(min, max) => AnySolid::new(AxisBox::new(*min, *max)?),
+            Other::Ball(centre, radius) => AnySolid::new(Ball::new(*centre, *radius)?),
+            &Other::Slab(low, high) => AnySolid::new(
+                Callback::new(move |min, max| {
+                    Ok(match (min[2], max[2]) {
+                        (a, b) if b <= low || a >= high => Verdict::Empty,
+                        (a, b) if a >= low && b <= high => Verdict::Full,
+                        _ => Verdict::Partial(()),
+                    })
+                })
+                .with_contains(move |p| Ok(low <= p[2] && p[2] < high)),
+            ),
+            Other::Tetrahedron(corners) => {
+                let faces = vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];
+                let mesh = TriangleMesh::new(corners.to_vec(), faces)?;
+                AnySolid::new(MeshSolid::new(mesh, frame, FillRule::NonZero)?)
+            }
+            Other::Octree(tree) => AnySolid::new(tree.clone()),
+            Other::Moved(other, own, placement) => {
+                AnySolid::new(Transform::new(other.solid(own)?, own, placement))
+            }
+            Other::Model(model) => AnySolid::new(model.csg(frame)?),
+        })
+    }
+
+    fn sign(&self, p: &Point) -> i32 {
+        lowest(match self {
+            Other::Cuboid(min, max) => cuboid(*min, *max, p),
+            Other::Ball(centre, radius) => vec![ellipsoid(*centre, [*radius; 3], p)],
+            Other::Slab(low, high) => slab([*low, *high], p).to_vec(),
+            Other::Tetrahedron(corners) => tetrahedron(*corners, p),
+            Other::Octree(tree) => return stored(tree, p),
+            Other::Moved(other, _, placement) => return other.sign(&original(placement, p)),
+            Other::Model(model) => return model.sign(p),
+        })
+    }
+}
+
+/// What the cells of a tree say that a point touches, if they agree.
+fn stored(tree: &Octree, p: &Point) -> i32 {
+    let frame = tree.frame();
+    let mut ranges = [[0; 2]; 3];
+    for axis in 0..3 {
+        // The sign of p − plane i, times w².
+        let side = |i: u32| p[axis].minus(&Exact::plane(frame, axis, i).times(&p[3])).times(&p[3]).sign();
+        let n = frame.cells();
+        if side(0) <= 0 || side(n) >= 0 {
+            return 0;
+        }
+        let (mut low, mut high) = (0, n);
+        while high - low > 1 {
+            let middle = low.midpoint(high);
+            *if side(middle) >= 0 { &mut low } else { &mut high } = middle;
+        }
+        ranges[axis] = [if side(low) == 0 { low - 1 } else { low }, low];
+    }
+    let [x, y, z] = ranges;
+    let cells = (0..8).map(|corner| [x[corner & 1], y[corner >> 1 & 1], z[corner >> 2]]);
+    let signs = cells.map(|at| match tree.view().tag_at(at) {
+        Tag::Empty => -1,
+        Tag::Full => 1,
+        _ => 0,
+    });
+    signs.reduce(|a, b| if a == b { a } else { 0 }).unwrap_or(0)
+}

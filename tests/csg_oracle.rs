@@ -1,0 +1,110 @@
+//! Constructive solid geometry against exact arithmetic that knows nothing of cells.
+
+mod common;
+
+#[path = "csg/laws.rs"]
+mod laws;
+#[path = "csg/model.rs"]
+mod model;
+#[path = "csg/points.rs"]
+mod points;
+#[path = "csg/random.rs"]
+mod random;
+
+use common::{Random, alone, lattice_frame};
+use leafless::{Frame, Rule, Tag, build};
+use model::Model;
+use points::{Found, Judge, centre};
+use random::Maker;
+
+/// Frames whose planes are integers, exact doubles, no doubles at all; far from the origin, tiny.
+fn frames(depth: u8) -> [Frame; 5] {
+    let frame = |origin, edge| Frame::new(origin, edge, depth).unwrap();
+    [
+        lattice_frame(depth),
+        frame([-1.0; 3], 2.0),
+        frame([0.1, -7.3, 1e5 / 3.0], 10.0 / 3.0),
+        frame([1e9 + 0.1, -3.3e8, 0.7], 0.044),
+        frame([-1e-20 / 3.0, 1e-20, 0.0], 3e-20),
+    ]
+}
+
+/// Random points in `models` random models each, made by `make`.
+fn no_lies(models: u64, points: u64, others: bool, make: impl Fn(&mut Maker<'_>) -> Model) {
+    let mut found = Found::default();
+    let mut made = 0;
+    for seed in 0.. {
+        let mut random = Random(seed);
+        let depth = 1 + random.below(6) as u8;
+        let frame = frames(depth)[random.below(5) as usize];
+        let aligned = random.below(2) == 0;
+        let mut maker = Maker { random: &mut random, frame, aligned, others };
+        let model = make(&mut maker);
+        // What the ranges of arguments do not admit.
+        let Ok(csg) = model.csg(&frame) else { continue };
+        let tree = build(&csg, &frame, Rule::Certified, &alone()).unwrap();
+        let mut judge = Judge { model: &model, tree: &tree, bounds: csg.bounds(), found };
+        judge.ask(points, &mut random);
+        found = judge.found;
+        made += 1;
+        if made == models {
+            assert!(seed < 2 * models, "most models are refused");
+            break;
+        }
+    }
+    println!("{models} models: {found:?}");
+    let all = models * points;
+    assert!(found.inside > all / 8 && found.outside > all / 8 && found.decided > all / 8, "{found:?}");
+}
+
+#[test]
+fn primitives_do_not_lie() {
+    no_lies(400, 50, false, |maker| maker.primitive());
+}
+
+#[test]
+fn expressions_do_not_lie() {
+    no_lies(150, 60, false, |maker| maker.expression(3));
+}
+
+#[test]
+fn placements_do_not_lie() {
+    no_lies(200, 60, false, |maker| {
+        let part = maker.expression(1);
+        let inner = Model::Placed(Box::new(part), maker.placement());
+        Model::Placed(Box::new(inner), maker.placement())
+    });
+}
+
+#[test]
+fn expressions_with_other_solids_do_not_lie() {
+    no_lies(150, 60, true, |maker| maker.expression(3));
+}
+
+/// The sampled rule is the exact decision at cell centres.
+fn sampled(models: u64, make: impl Fn(&mut Maker<'_>) -> Model) {
+    let mut boundary = 0;
+    for seed in 0..models {
+        let mut random = Random(seed ^ 0xABCD);
+        let frame = frames(1 + random.below(3) as u8)[random.below(5) as usize];
+        let aligned = random.below(4) != 0;
+        let mut maker = Maker { random: &mut random, frame, aligned, others: false };
+        let model = make(&mut maker);
+        let Ok(csg) = model.csg(&frame) else { continue };
+        let tree = build(&csg, &frame, Rule::Sampled, &alone()).unwrap();
+        for at in common::positions(frame.depth()) {
+            let probe = centre(&frame, at);
+            boundary += (model.sign(&probe.at) == 0) as u64;
+            let expected = if model.sampled(&probe).unwrap() { Tag::Full } else { Tag::Empty };
+            assert_eq!(tree.view().tag_at(at), expected, "{at:?}\n{frame:?}\n{model:#?}");
+        }
+    }
+    println!("{boundary} centres on the surface");
+    assert!(boundary > models / 2);
+}
+
+#[test]
+fn samples_are_exact() {
+    sampled(150, |maker| maker.primitive());
+    sampled(60, |maker| maker.expression(2));
+}
