@@ -2,6 +2,10 @@
 
 mod common;
 
+#[path = "csg/exactness.rs"]
+mod exactness;
+#[path = "csg/extremes.rs"]
+mod extremes;
 #[path = "csg/laws.rs"]
 mod laws;
 #[path = "csg/model.rs"]
@@ -57,6 +61,13 @@ fn no_lies(models: u64, points: u64, others: bool, make: impl Fn(&mut Maker<'_>)
     assert!(found.inside > all / 8 && found.outside > all / 8 && found.decided > all / 8, "{found:?}");
 }
 
+/// An expression placed twice.
+fn placed(maker: &mut Maker<'_>) -> Model {
+    let part = maker.expression(1);
+    let inner = Model::Placed(Box::new(part), maker.placement());
+    Model::Placed(Box::new(inner), maker.placement())
+}
+
 #[test]
 fn primitives_do_not_lie() {
     no_lies(400, 50, false, |maker| maker.primitive());
@@ -69,16 +80,21 @@ fn expressions_do_not_lie() {
 
 #[test]
 fn placements_do_not_lie() {
-    no_lies(200, 60, false, |maker| {
-        let part = maker.expression(1);
-        let inner = Model::Placed(Box::new(part), maker.placement());
-        Model::Placed(Box::new(inner), maker.placement())
-    });
+    no_lies(200, 60, false, placed);
 }
 
 #[test]
 fn expressions_with_other_solids_do_not_lie() {
     no_lies(150, 60, true, |maker| maker.expression(3));
+}
+
+#[test]
+#[ignore = "minutes"]
+fn a_million_points_of_each_kind() {
+    no_lies(10_000, 100, false, |maker| maker.primitive());
+    no_lies(10_000, 100, false, |maker| maker.expression(4));
+    no_lies(10_000, 100, false, placed);
+    no_lies(10_000, 100, true, |maker| maker.expression(4));
 }
 
 /// The sampled rule is the exact decision at cell centres.
