@@ -10,6 +10,8 @@ mod extremes;
 mod laws;
 #[path = "csg/model.rs"]
 mod model;
+#[path = "csg/paper.rs"]
+mod paper;
 #[path = "csg/points.rs"]
 mod points;
 #[path = "csg/random.rs"]

@@ -243,7 +243,7 @@ fn evaluations_behind_the_common_face_count() {
     build(&counted, &frame, Rule::Certified, &alone()).unwrap();
     let mut nested = ball.clone();
     for _ in 0..3 {
-        nested = Csg::solid(AnySolid::new(nested));
+        nested = Csg::solid(AnySolid::new(Counted::new(nested)));
         let again = Counted::new(&nested);
         build(&again, &frame, Rule::Certified, &alone()).unwrap();
         assert_eq!(again.splits(), counted.splits());

@@ -3,8 +3,8 @@
 
 use crate::common::exact::Exact;
 use leafless::{
-    Affine, AnySolid, AxisBox, Ball, Callback, Csg, Error, FillRule, Frame, HalfSpace, MeshSolid, Octree,
-    Tag, Transform, TriangleMesh, Verdict,
+    Affine, AnySolid, AxisBox, Ball, Callback, Counted, Csg, Error, FillRule, Frame, HalfSpace, MeshSolid,
+    Octree, Tag, Transform, TriangleMesh, Verdict,
 };
 
 /// A point (x, y, z)/w with w ≠ 0, so that the inverse of a placement needs no division.
@@ -251,7 +251,8 @@ impl Other {
             Other::Moved(other, own, placement) => {
                 AnySolid::new(Transform::new(other.solid(own)?, own, placement))
             }
-            Other::Model(model) => AnySolid::new(model.csg(frame)?),
+            // An expression alone would become part of the one that it stands in.
+            Other::Model(model) => AnySolid::new(Counted::new(model.csg(frame)?)),
         })
     }
 
