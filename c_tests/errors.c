@@ -236,7 +236,7 @@ int main(int argc, char **argv) {
     /* The names of all, and of what is none. */
     CHECK(strcmp(leafless_status_name(LEAFLESS_OK), "LEAFLESS_OK") == 0);
     CHECK(strcmp(leafless_status_name(-1), "LEAFLESS_E_UNKNOWN") == 0);
-    CHECK(strcmp(leafless_status_name(18), "LEAFLESS_E_UNKNOWN") == 0);
+    CHECK(strcmp(leafless_status_name(19), "LEAFLESS_E_UNKNOWN") == 0);
     CHECK(strcmp(leafless_status_name(INT32_MIN), "LEAFLESS_E_UNKNOWN") == 0);
     CHECK(leafless_last_status() == LEAFLESS_OK);
     seen[LEAFLESS_OK] = true;
@@ -393,6 +393,13 @@ int main(int argc, char **argv) {
     FAILS(LEAFLESS_E_PANIC, leafless_test_panic());
     failed(LEAFLESS_E_PANIC, "LEAFLESS_E_PANIC", "as the test wanted");
 
+    {
+        leafless_lazy *lazy = NULL;
+        FAILS(LEAFLESS_E_SOURCE, leafless_lazy_resume(ball, solid, &frame, NULL, &lazy));
+        failed(LEAFLESS_E_SOURCE, "LEAFLESS_E_SOURCE", "fingerprint");
+        CHECK(lazy == NULL);
+    }
+
     CHECK(octree == UNTOUCHED && mesh == (leafless_mesh *)UNTOUCHED);
     for (i = 0; strcmp(leafless_status_name((int32_t)i), "LEAFLESS_E_UNKNOWN") != 0; i++) {
         if (!seen[i]) {
@@ -400,7 +407,7 @@ int main(int argc, char **argv) {
             return 1;
         }
     }
-    CHECK(i == 18);
+    CHECK(i == 19);
 
     free(bytes);
     leafless_control_free(control);

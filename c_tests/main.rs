@@ -207,6 +207,11 @@ fn polyhedra() {
 }
 
 #[test]
+fn lazy() {
+    run("lazy", C99, Link::Static, &[]);
+}
+
+#[test]
 fn options() {
     run("options", C99, Link::Static, &[]);
 }

@@ -685,6 +685,113 @@ static void numbers(void) {
     CHECK(never == UNTOUCHED);
 }
 
+/* All of an octree that is split on demand. */
+static void lazy_octrees(void) {
+    void *out = fresh(), *never = UNTOUCHED;
+    leafless_octree **result = (leafless_octree **)&never;
+    leafless_lazy **made = (leafless_lazy **)&never, *lazy = NULL;
+    leafless_tag *tags = (leafless_tag *)out, tag;
+    bool *flag = (bool *)out, done;
+    uint64_t *count = (uint64_t *)out, number;
+    const uint32_t universe[3] = {0, 0, 0};
+    const double *numbers = (const double *)WRONG(point);
+    const uint32_t *cell = (const uint32_t *)WRONG(universe);
+    leafless_lazy_counts *counts = (leafless_lazy_counts *)out;
+    leafless_statistics *statistics = (leafless_statistics *)out;
+    leafless_membership *membership = (leafless_membership *)out;
+    leafless_octree *frozen = NULL;
+
+    OK(leafless_lazy_new(solid, &frame, &lazy));
+    NULL_POINTER(leafless_lazy_new, solid, leafless_lazy_new(NULL, &frame, made));
+    NULL_POINTER(leafless_lazy_new, frame, leafless_lazy_new(solid, NULL, made));
+    NULL_POINTER(leafless_lazy_new, lazy, leafless_lazy_new(solid, &frame, NULL));
+    NULL_POINTER(leafless_lazy_resume, octree, leafless_lazy_resume(NULL, solid, &frame, NULL, made));
+    NULL_POINTER(leafless_lazy_resume, solid, leafless_lazy_resume(octree, NULL, &frame, NULL, made));
+    NULL_POINTER(leafless_lazy_resume, frame, leafless_lazy_resume(octree, solid, NULL, NULL, made));
+    NULL_POINTER(leafless_lazy_resume, lazy, leafless_lazy_resume(octree, solid, &frame, NULL, NULL));
+    NULL_POINTER(leafless_lazy_split, lazy, leafless_lazy_split(NULL, universe, 0, tags));
+    NULL_POINTER(leafless_lazy_split, cell, leafless_lazy_split(lazy, NULL, 0, tags));
+    NULL_POINTER(leafless_lazy_split, tags, leafless_lazy_split(lazy, universe, 0, NULL));
+    NULL_POINTER(leafless_lazy_refine, lazy, leafless_lazy_refine(NULL, 1, NULL, flag));
+    NULL_POINTER(leafless_lazy_refine_box, lazy, leafless_lazy_refine_box(NULL, point, above, 1, NULL, flag));
+    NULL_POINTER(leafless_lazy_refine_box, min_model, leafless_lazy_refine_box(lazy, NULL, above, 1, NULL, flag));
+    NULL_POINTER(leafless_lazy_refine_box, max_model, leafless_lazy_refine_box(lazy, point, NULL, 1, NULL, flag));
+    NULL_POINTER(leafless_lazy_refine_point, lazy, leafless_lazy_refine_point(NULL, point, 1, NULL, flag));
+    NULL_POINTER(leafless_lazy_refine_point, point_model, leafless_lazy_refine_point(lazy, NULL, 1, NULL, flag));
+    NULL_POINTER(leafless_lazy_refine_ray, lazy, leafless_lazy_refine_ray(NULL, point, above, 0, 1, 1, NULL, flag));
+    NULL_POINTER(leafless_lazy_refine_ray, origin_model,
+                 leafless_lazy_refine_ray(lazy, NULL, above, 0, 1, 1, NULL, flag));
+    NULL_POINTER(leafless_lazy_refine_ray, direction_model,
+                 leafless_lazy_refine_ray(lazy, point, NULL, 0, 1, 1, NULL, flag));
+    NULL_POINTER(leafless_lazy_tag, lazy, leafless_lazy_tag(NULL, universe, 0, tags, flag));
+    NULL_POINTER(leafless_lazy_tag, cell, leafless_lazy_tag(lazy, NULL, 0, tags, flag));
+    NULL_POINTER(leafless_lazy_tag, tag, leafless_lazy_tag(lazy, universe, 0, NULL, flag));
+    NULL_POINTER(leafless_lazy_contains, lazy, leafless_lazy_contains(NULL, point, membership));
+    NULL_POINTER(leafless_lazy_contains, point_model, leafless_lazy_contains(lazy, NULL, membership));
+    NULL_POINTER(leafless_lazy_contains, membership, leafless_lazy_contains(lazy, point, NULL));
+    NULL_POINTER(leafless_lazy_statistics, lazy, leafless_lazy_statistics(NULL, statistics));
+    NULL_POINTER(leafless_lazy_statistics, statistics, leafless_lazy_statistics(lazy, NULL));
+    NULL_POINTER(leafless_lazy_count, lazy, leafless_lazy_count(NULL, counts));
+    NULL_POINTER(leafless_lazy_count, counts, leafless_lazy_count(lazy, NULL));
+    NULL_POINTER(leafless_lazy_levels, lazy, leafless_lazy_levels(NULL, NULL, 0, count));
+    NULL_POINTER(leafless_lazy_levels, levels, leafless_lazy_levels(lazy, NULL, 5, count));
+    NULL_POINTER(leafless_lazy_levels, count, leafless_lazy_levels(lazy, NULL, 0, NULL));
+    NULL_POINTER(leafless_lazy_splits, lazy, leafless_lazy_splits(NULL, NULL, 0, count));
+    NULL_POINTER(leafless_lazy_splits, splits, leafless_lazy_splits(lazy, NULL, 4, count));
+    NULL_POINTER(leafless_lazy_splits, count, leafless_lazy_splits(lazy, NULL, 0, NULL));
+    NULL_POINTER(leafless_lazy_freeze, lazy, leafless_lazy_freeze(NULL, NULL, result));
+    NULL_POINTER(leafless_lazy_freeze, octree, leafless_lazy_freeze(lazy, NULL, NULL));
+
+    MISALIGNED(leafless_lazy_new, lazy, leafless_lazy_new(solid, &frame, (leafless_lazy **)WRONG(out)));
+    MISALIGNED(leafless_lazy_split, lazy, leafless_lazy_split((leafless_lazy *)WRONG(lazy), universe, 0, tags));
+    MISALIGNED(leafless_lazy_split, cell, leafless_lazy_split(lazy, cell, 0, tags));
+    MISALIGNED(leafless_lazy_refine, options,
+               leafless_lazy_refine(lazy, 1, (const leafless_options *)WRONG(&options), flag));
+    MISALIGNED(leafless_lazy_refine_box, min_model, leafless_lazy_refine_box(lazy, numbers, above, 1, NULL, flag));
+    MISALIGNED(leafless_lazy_refine_box, max_model, leafless_lazy_refine_box(lazy, point, numbers, 1, NULL, flag));
+    MISALIGNED(leafless_lazy_refine_point, point_model, leafless_lazy_refine_point(lazy, numbers, 1, NULL, flag));
+    MISALIGNED(leafless_lazy_refine_ray, origin_model,
+               leafless_lazy_refine_ray(lazy, numbers, above, 0, 1, 1, NULL, flag));
+    MISALIGNED(leafless_lazy_refine_ray, direction_model,
+               leafless_lazy_refine_ray(lazy, point, numbers, 0, 1, 1, NULL, flag));
+    MISALIGNED(leafless_lazy_tag, cell, leafless_lazy_tag(lazy, cell, 0, tags, flag));
+    MISALIGNED(leafless_lazy_contains, point_model, leafless_lazy_contains(lazy, numbers, membership));
+    MISALIGNED(leafless_lazy_statistics, statistics,
+               leafless_lazy_statistics(lazy, (leafless_statistics *)WRONG(out)));
+    MISALIGNED(leafless_lazy_count, counts, leafless_lazy_count(lazy, (leafless_lazy_counts *)WRONG(out)));
+    MISALIGNED(leafless_lazy_levels, levels, leafless_lazy_levels(lazy, (leafless_statistics *)WRONG(out), 5, count));
+    MISALIGNED(leafless_lazy_splits, splits, leafless_lazy_splits(lazy, (uint64_t *)WRONG(out), 4, count));
+    MISALIGNED(leafless_lazy_freeze, octree, leafless_lazy_freeze(lazy, NULL, (leafless_octree **)WRONG(out)));
+
+    BAD_NUMBER(leafless_lazy_split, cell, leafless_lazy_split(lazy, universe, 4, tags));
+    BAD_NUMBER(leafless_lazy_split, cell, leafless_lazy_split(lazy, universe, UINT32_MAX, tags));
+    BAD_NUMBER(leafless_lazy_refine, level, leafless_lazy_refine(lazy, 5, NULL, flag));
+    BAD_NUMBER(leafless_lazy_refine_box, max, leafless_lazy_refine_box(lazy, above, point, 1, NULL, flag));
+    BAD_NUMBER(leafless_lazy_refine_ray, direction, leafless_lazy_refine_ray(lazy, above, point, 0, 1, 1, NULL, flag));
+    BAD_NUMBER(leafless_lazy_refine_ray, to, leafless_lazy_refine_ray(lazy, point, above, 1, NAN, 1, NULL, flag));
+    untouched();
+    CHECK(never == UNTOUCHED);
+
+    MAY_BE_NULL(leafless_lazy_refine, options, leafless_lazy_refine(lazy, 1, NULL, &done));
+    MAY_BE_NULL(leafless_lazy_refine, done, leafless_lazy_refine(lazy, 1, &options, NULL));
+    MAY_BE_NULL(leafless_lazy_refine_box, options, leafless_lazy_refine_box(lazy, point, above, 1, NULL, &done));
+    MAY_BE_NULL(leafless_lazy_refine_box, done, leafless_lazy_refine_box(lazy, point, above, 1, &options, NULL));
+    MAY_BE_NULL(leafless_lazy_refine_point, options, leafless_lazy_refine_point(lazy, point, 1, NULL, &done));
+    MAY_BE_NULL(leafless_lazy_refine_point, done, leafless_lazy_refine_point(lazy, point, 1, &options, NULL));
+    MAY_BE_NULL(leafless_lazy_refine_ray, options, leafless_lazy_refine_ray(lazy, point, above, 0, 1, 1, NULL, &done));
+    MAY_BE_NULL(leafless_lazy_refine_ray, done, leafless_lazy_refine_ray(lazy, point, above, 0, 1, 1, &options, NULL));
+    MAY_BE_NULL(leafless_lazy_tag, can_split, leafless_lazy_tag(lazy, universe, 0, &tag, NULL));
+    MAY_BE_NULL(leafless_lazy_levels, levels, leafless_lazy_levels(lazy, NULL, 0, &number));
+    MAY_BE_NULL(leafless_lazy_splits, splits, leafless_lazy_splits(lazy, NULL, 0, &number));
+    MAY_BE_NULL(leafless_lazy_freeze, options, leafless_lazy_freeze(lazy, NULL, &frozen));
+    leafless_lazy_free(lazy);
+    lazy = NULL;
+    MAY_BE_NULL(leafless_lazy_resume, options, leafless_lazy_resume(frozen, solid, &frame, NULL, &lazy));
+    leafless_lazy_free(lazy);
+    leafless_octree_free(frozen);
+    leafless_lazy_free(NULL);
+}
+
 int main(void) {
     octree = check_ball(4, LEAFLESS_RULE_CERTIFIED);
     mesh = check_cube();
@@ -696,6 +803,7 @@ int main(void) {
     null_pointers();
     misaligned();
     numbers();
+    lazy_octrees();
     /* All of it is as good as ever. */
     OK(leafless_octree_check(octree));
     leafless_point_cursor_free(point_cursor);

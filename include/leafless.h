@@ -526,6 +526,15 @@ typedef struct leafless_control leafless_control;
 typedef struct leafless_cursor leafless_cursor;
 
 /**
+ * An octree of a solid that is not built in one go: a cell is split when somebody asks for it, and what was split is
+ * remembered. FULL and EMPTY cells are proven; cells that nobody has split yet are PARTIAL.
+ *
+ * Splitting and refining change it: while one thread does so, no other may use it, and neither may the host's functions
+ * that it asks about a cell. Otherwise its other functions may be called at once from any number of threads.
+ */
+typedef struct leafless_lazy leafless_lazy;
+
+/**
  * A surface of triangles with shared vertices. Vertices at equal places are welded; whether the mesh is closed is
  * not implied, and need not be.
  *
@@ -1055,6 +1064,11 @@ typedef struct {
      * What the functions are called with.
      */
     void *ctx;
+    /**
+     * Any number but 0, of 128 bits, that tells the shape from others, such as a hash of what it is made of: octrees
+     * that leafless_lazy_freeze makes remember it, and are taken up again by no other shape. Optional.
+     */
+    uint64_t fingerprint[2];
 } leafless_callbacks;
 
 /**
@@ -1079,6 +1093,28 @@ typedef struct {
      */
     leafless_tag children[8];
 } leafless_cursor_state;
+
+/**
+ * What the work on an octree came to.
+ */
+typedef struct {
+    /**
+     * Cells that were split, as it happened: also those that were merged again. Nothing is counted twice.
+     */
+    uint64_t splits;
+    /**
+     * Splits that the solid was asked for anew, because cells below were to be split.
+     */
+    uint64_t replays;
+    /**
+     * Half-spaces that were evaluated for all of that, each at a point or over a box.
+     */
+    uint64_t evaluations;
+    /**
+     * Bytes that the split cells take.
+     */
+    uint64_t bytes;
+} leafless_lazy_counts;
 
 /**
  * What header and section table of a file say.
@@ -2643,6 +2679,272 @@ leafless_status leafless_cursor_descend(leafless_cursor *cursor, uint32_t octant
  * - Since: 0.1
  */
 leafless_status leafless_cursor_ascend(leafless_cursor *cursor, bool *moved);
+
+/**
+ * An octree of which only the universe is known. No cell will ever be finer than the frame's depth, which costs nothing
+ * until they are asked for.
+ *
+ * - Buffers: `frame`, one struct; `lazy`, one pointer.
+ * - Result: `*lazy`.
+ * - Errors: LEAFLESS_E_FRAME if the solid belongs to another frame; LEAFLESS_E_CALLBACK; LEAFLESS_E_DAMAGED;
+ *   LEAFLESS_E_ARGUMENT; LEAFLESS_E_NO_MEMORY.
+ * - Ownership: the octree shares the solid, which may be freed; give `*lazy` back with leafless_lazy_free.
+ * - Threads: any.
+ * - Untrusted input: any solid.
+ * - Since: 0.1
+ */
+leafless_status leafless_lazy_new(const leafless_solid *solid,
+                                  const leafless_frame *frame,
+                                  leafless_lazy **lazy);
+
+/**
+ * Takes up an octree that leafless_lazy_freeze made of the same solid, which is known by its fingerprint; `frame` may be
+ * deeper than the octree's. Whatever else the octree holds is believed, as far as the solid's splits do not contradict
+ * it. Splits are counted from zero.
+ *
+ * - Buffers: `frame`, one struct; `options`, one struct or NULL; `lazy`, one pointer.
+ * - Result: `*lazy`. O(n).
+ * - Errors: LEAFLESS_E_SOURCE if the octree does not hold the solid's fingerprint; LEAFLESS_E_ARGUMENT if the solid has
+ *   none, or the octree is deeper than the frame; LEAFLESS_E_FRAME if it lies on another universe, or the solid
+ *   belongs to another frame; LEAFLESS_E_DAMAGED; LEAFLESS_E_CALLBACK; LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED;
+ *   LEAFLESS_E_NO_MEMORY.
+ * - Ownership: `octree` stays as it is; `*lazy` shares the solid, which may be freed; give it back with
+ *   leafless_lazy_free.
+ * - Threads: any.
+ * - Untrusted input: any octree; set `max_bytes` where it is not your own.
+ * - Since: 0.1
+ */
+leafless_status leafless_lazy_resume(const leafless_octree *octree,
+                                     const leafless_solid *solid,
+                                     const leafless_frame *frame,
+                                     const leafless_options *options,
+                                     leafless_lazy **lazy);
+
+/**
+ * Gives back a lazy octree.
+ *
+ * - Buffers: `lazy`, a handle or NULL, which does nothing.
+ * - Result: none.
+ * - Errors: none.
+ * - Ownership: the handle is gone.
+ * - Threads: no other call may use the handle.
+ * - Untrusted input: none.
+ * - Since: 0.1
+ */
+void leafless_lazy_free(leafless_lazy *lazy);
+
+/**
+ * Splits a PARTIAL cell. A cell that was split before, is decided, or that splitting does not help costs nothing.
+ *
+ * - Buffers: `cell`, 3 numbers, the cell's place among those of its level; `tags`, room for 8.
+ * - Result: the tags of its children in octant order (bit 0 of the octant is x, bit 1 y, bit 2 z).
+ * - Errors: LEAFLESS_E_ARGUMENT if the cell is none of the frame's, lies at its depth, or in a cell that is still to be
+ *   split; LEAFLESS_E_SOURCE if the solid contradicts what the octree holds; LEAFLESS_E_CALLBACK;
+ *   LEAFLESS_E_NO_MEMORY.
+ * - Ownership: nothing changes hands.
+ * - Threads: no other call may use the handle.
+ * - Untrusted input: any solid, any numbers.
+ * - Since: 0.1
+ *
+ */
+leafless_status leafless_lazy_split(leafless_lazy *lazy,
+                                    const uint32_t cell[3],
+                                    uint32_t level,
+                                    leafless_tag tags[8]);
+
+/**
+ * Splits all cells down to `level`, those that can be. Limits in `options` (`max_splits`; `max_nodes` and `max_bytes` of
+ * all that the octree then holds) end the work, not the octree; coarser cells are then split before finer ones.
+ *
+ * - Buffers: `options`, one struct or NULL; `done`, one truth value, or NULL.
+ * - Result: `*done`, whether no limit was reached first.
+ * - Errors: LEAFLESS_E_ARGUMENT if `level` is beyond the frame's depth; LEAFLESS_E_SOURCE if the solid contradicts what
+ *   the octree holds; LEAFLESS_E_CALLBACK; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY. What was split before stays so.
+ * - Ownership: nothing changes hands.
+ * - Threads: no other call may use the handle; uses the calling thread alone.
+ * - Untrusted input: any solid; set limits where the level or the solid is not your own choice.
+ * - Since: 0.1
+ */
+leafless_status leafless_lazy_refine(leafless_lazy *lazy,
+                                     uint32_t level,
+                                     const leafless_options *options,
+                                     bool *done);
+
+/**
+ * As leafless_lazy_refine, for the cells that have more than their surface in common with the box [min, max]; of a box
+ * without thickness, for those that it lies in.
+ *
+ * - Buffers: `min_model` and `max_model`, 3 numbers each; `options`, one struct or NULL; `done`, one truth value, or
+ *   NULL.
+ * - Result: `*done`, whether no limit was reached first.
+ * - Errors: as leafless_lazy_refine; LEAFLESS_E_ARGUMENT also if min > max on an axis, or a coordinate is not a number.
+ * - Ownership: nothing changes hands.
+ * - Threads: no other call may use the handle; uses the calling thread alone.
+ * - Untrusted input: any solid, any numbers; set limits where the level or the solid is not your own choice.
+ * - Since: 0.1
+ *
+ */
+leafless_status leafless_lazy_refine_box(leafless_lazy *lazy,
+                                         const double min_model[3],
+                                         const double max_model[3],
+                                         uint32_t level,
+                                         const leafless_options *options,
+                                         bool *done);
+
+/**
+ * As leafless_lazy_refine, for the cells that contain a point: one of each level.
+ *
+ * - Buffers: `point_model`, 3 numbers; `options`, one struct or NULL; `done`, one truth value, or NULL.
+ * - Result: `*done`, whether no limit was reached first.
+ * - Errors: as leafless_lazy_refine.
+ * - Ownership: nothing changes hands.
+ * - Threads: no other call may use the handle; uses the calling thread alone.
+ * - Untrusted input: any solid, any numbers.
+ * - Since: 0.1
+ *
+ */
+leafless_status leafless_lazy_refine_point(leafless_lazy *lazy,
+                                           const double point_model[3],
+                                           uint32_t level,
+                                           const leafless_options *options,
+                                           bool *done);
+
+/**
+ * As leafless_lazy_refine, for all cells that the points origin + t·direction with from ≤ t ≤ to touch. Limits leave
+ * those unsplit that the ray comes to last.
+ *
+ * - Buffers: `origin_model` and `direction_model`, 3 numbers each; `options`, one struct or NULL; `done`, one truth
+ *   value, or NULL.
+ * - Result: `*done`, whether no limit was reached first.
+ * - Errors: as leafless_lazy_refine; LEAFLESS_E_ARGUMENT also if a coordinate is neither 0 nor of a magnitude between
+ *   2^-256 and 2^256, the direction is zero, or not from ≤ to (both may be infinite).
+ * - Ownership: nothing changes hands.
+ * - Threads: no other call may use the handle; uses the calling thread alone.
+ * - Untrusted input: any solid, any numbers; set limits where the level or the solid is not your own choice.
+ * - Since: 0.1
+ *
+ */
+leafless_status leafless_lazy_refine_ray(leafless_lazy *lazy,
+                                         const double origin_model[3],
+                                         const double direction_model[3],
+                                         double from,
+                                         double to,
+                                         uint32_t level,
+                                         const leafless_options *options,
+                                         bool *done);
+
+/**
+ * What is known of a cell. In a cell that is decided, or was not split yet, there are only cells like it.
+ *
+ * - Buffers: `cell`, 3 numbers, the cell's place among those of its level; `tag`, one; `can_split`, one truth value, or
+ *   NULL.
+ * - Result: `*tag`; BRANCH if the cell was split and its children differ; PARTIAL if it is none of the frame's.
+ *   `*can_split`, whether leafless_lazy_split would ask the solid: the cell is PARTIAL, its parent was split, it is
+ *   above the frame's depth, and the solid did not say that splitting does not help.
+ * - Errors: only the general ones.
+ * - Ownership: nothing changes hands.
+ * - Threads: any, while nobody changes the octree.
+ * - Untrusted input: any numbers.
+ * - Since: 0.1
+ *
+ */
+leafless_status leafless_lazy_tag(const leafless_lazy *lazy,
+                                  const uint32_t cell[3],
+                                  uint32_t level,
+                                  leafless_tag *tag,
+                                  bool *can_split);
+
+/**
+ * Whether the solid contains a point, as far as cells have been split. A point on the boundary may be answered either
+ * way.
+ *
+ * - Buffers: `point_model`, 3 numbers; `membership`, one.
+ * - Result: `*membership`.
+ * - Errors: only the general ones.
+ * - Ownership: nothing changes hands.
+ * - Threads: any, while nobody changes the octree.
+ * - Untrusted input: any numbers.
+ * - Since: 0.1
+ *
+ */
+leafless_status leafless_lazy_contains(const leafless_lazy *lazy,
+                                       const double point_model[3],
+                                       leafless_membership *membership);
+
+/**
+ * Counts over all levels, and the certified volume, as far as cells have been split. O(depth).
+ *
+ * - Buffers: `statistics`, one struct.
+ * - Result: `*statistics`. A cell counts as a node also if its eight children are PARTIAL.
+ * - Errors: only the general ones.
+ * - Ownership: nothing changes hands.
+ * - Threads: any, while nobody changes the octree.
+ * - Untrusted input: none.
+ * - Since: 0.1
+ */
+leafless_status leafless_lazy_statistics(const leafless_lazy *lazy, leafless_statistics *statistics);
+
+/**
+ * What the work came to so far.
+ *
+ * - Buffers: `counts`, one struct.
+ * - Result: `*counts`.
+ * - Errors: only the general ones.
+ * - Ownership: nothing changes hands.
+ * - Threads: any, while nobody changes the octree.
+ * - Untrusted input: none.
+ * - Since: 0.1
+ */
+leafless_status leafless_lazy_count(const leafless_lazy *lazy, leafless_lazy_counts *counts);
+
+/**
+ * Counts of each level, and the certified volumes of the octree cut there. Entry 0 is the universe, entry `depth` the
+ * finest cells.
+ *
+ * - Buffers: `levels`, room for `capacity` structs, or NULL to ask for the count only; `count`, one number.
+ * - Result: `*count`, depth + 1; the levels.
+ * - Errors: LEAFLESS_E_BUFFER if the capacity is too small.
+ * - Ownership: nothing changes hands.
+ * - Threads: any, while nobody changes the octree.
+ * - Untrusted input: none.
+ * - Since: 0.1
+ */
+leafless_status leafless_lazy_levels(const leafless_lazy *lazy,
+                                     leafless_statistics *levels,
+                                     uint64_t capacity,
+                                     uint64_t *count);
+
+/**
+ * How many cells of each level were split, as it happened. Entry 0 is the universe.
+ *
+ * - Buffers: `splits`, room for `capacity` numbers, or NULL to ask for the count only; `count`, one number.
+ * - Result: `*count`, the frame's depth; the numbers.
+ * - Errors: LEAFLESS_E_BUFFER if the capacity is too small.
+ * - Ownership: nothing changes hands.
+ * - Threads: any, while nobody changes the octree.
+ * - Untrusted input: none.
+ * - Since: 0.1
+ */
+leafless_status leafless_lazy_splits(const leafless_lazy *lazy,
+                                     uint64_t *splits,
+                                     uint64_t capacity,
+                                     uint64_t *count);
+
+/**
+ * The octree as it is now: canonical, and what is not split is PARTIAL. As the fact "source" it holds the solid's
+ * fingerprint, if there is one: saved or not, leafless_lazy_resume takes it up again.
+ *
+ * - Buffers: `options`, one struct or NULL; `octree`, one pointer.
+ * - Result: `*octree`.
+ * - Errors: LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
+ * - Ownership: give `*octree` back with leafless_octree_free.
+ * - Threads: any, while nobody changes the octree; uses as many as `options` says.
+ * - Untrusted input: none.
+ * - Since: 0.1
+ */
+leafless_status leafless_lazy_freeze(const leafless_lazy *lazy,
+                                     const leafless_options *options,
+                                     leafless_octree **octree);
 
 /**
  * What a file says of itself, without looking at more than header and section table. Whether the rest is good is

@@ -28,6 +28,7 @@ const SECTIONS: &[&str] = &[
     "csg",
     "op",
     "query",
+    "lazy",
     "file",
     "layout",
 ];

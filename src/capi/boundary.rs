@@ -78,7 +78,8 @@ impl From<&Failure> for leafless_status {
 /// Runs the body of a function.
 ///
 /// A panic does not reach the host. Nothing that survives it can be half-changed: handles are immutable but for
-/// atomic flags and cursors, and a cursor's position is checked at every step.
+/// atomic flags, cursors and lazy octrees. A cursor's position is checked at every step; a lazy octree changes only once
+/// the solid has answered.
 #[inline(always)]
 pub(super) fn guard(body: impl FnOnce() -> Result<(), Failure>) -> leafless_status {
     match catch_unwind(AssertUnwindSafe(body)) {
@@ -291,6 +292,7 @@ const _: () = {
     shared_by_threads::<super::leafless_mesh>();
     shared_by_threads::<super::leafless_octree>();
     shared_by_threads::<super::leafless_solid>();
+    shared_by_threads::<super::leafless_lazy>();
     shared_by_threads::<super::leafless_cursor>();
     shared_by_threads::<super::leafless_point_cursor>();
 };

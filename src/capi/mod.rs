@@ -18,6 +18,7 @@
 //! | `solid` | solids: primitives, meshes, octrees, the host's own |
 //! | `op` | building, resolving, Booleans |
 //! | `query` | points, boxes, cursors |
+//! | `lazy` | octrees that are split on demand |
 //! | `file` | files and their bytes |
 //! | `layout` | for tests: what the structs look like |
 
@@ -32,6 +33,7 @@ mod file;
 mod frame;
 #[cfg(feature = "capi-test")]
 mod layout;
+mod lazy;
 mod mesh;
 mod mesh_arrays;
 mod mesh_file;
@@ -51,6 +53,7 @@ pub use file::*;
 pub use frame::*;
 #[cfg(feature = "capi-test")]
 pub use layout::*;
+pub use lazy::*;
 pub use mesh::*;
 pub use mesh_arrays::*;
 pub use mesh_file::*;

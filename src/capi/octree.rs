@@ -3,8 +3,7 @@
 use super::boundary::{Failure, buffer, guard, handle, out, refer, release, shared, text};
 use super::frame::{frame, leafless_frame, leafless_interval};
 use super::status::leafless_status;
-use crate::octree::{Metadata, Octree, Tag};
-use alloc::vec::Vec;
+use crate::octree::{LevelStatistics, Metadata, Octree, Statistics, Tag};
 use core::ffi::c_char;
 
 /// A leaf-free octree, in memory or mapped from a file.
@@ -89,6 +88,35 @@ pub struct leafless_statistics {
     pub upper_cells: u64,
     /// The same two in cubic model units, rounded outward.
     pub volume_model: leafless_interval,
+}
+
+impl From<&Statistics> for leafless_statistics {
+    fn from(statistics: &Statistics) -> leafless_statistics {
+        let (lower_cells, upper_cells) = statistics.volume_cells();
+        leafless_statistics {
+            nodes: statistics.nodes(),
+            empty: statistics.cells(Tag::Empty),
+            full: statistics.cells(Tag::Full),
+            partial: statistics.cells(Tag::Partial),
+            lower_cells,
+            upper_cells,
+            volume_model: statistics.volume().into(),
+        }
+    }
+}
+
+impl From<&LevelStatistics> for leafless_statistics {
+    fn from(level: &LevelStatistics) -> leafless_statistics {
+        leafless_statistics {
+            nodes: level.nodes,
+            empty: level.empty,
+            full: level.full,
+            partial: level.partial,
+            lower_cells: level.lower_cells,
+            upper_cells: level.upper_cells,
+            volume_model: level.volume.into(),
+        }
+    }
 }
 
 pub(super) fn give(octree: Octree) -> *mut leafless_octree {
@@ -199,16 +227,7 @@ pub unsafe extern "C" fn leafless_octree_statistics(
 ) -> leafless_status {
     guard(|| unsafe {
         let found = shared(octree, "octree")?.octree.statistics();
-        let (lower_cells, upper_cells) = found.volume_cells();
-        out(statistics, "statistics")?.write(leafless_statistics {
-            nodes: found.nodes(),
-            empty: found.cells(Tag::Empty),
-            full: found.cells(Tag::Full),
-            partial: found.cells(Tag::Partial),
-            lower_cells,
-            upper_cells,
-            volume_model: found.volume().into(),
-        })
+        out(statistics, "statistics")?.write((&found).into())
     })
 }
 
@@ -233,19 +252,9 @@ pub unsafe extern "C" fn leafless_octree_levels(
         let octree = &shared(octree, "octree")?.octree;
         let levels = buffer(levels, capacity, "levels")?;
         let count = out(count, "count")?;
-        let found: Vec<leafless_statistics> = (octree.statistics().levels().iter())
-            .map(|level| leafless_statistics {
-                nodes: level.nodes,
-                empty: level.empty,
-                full: level.full,
-                partial: level.partial,
-                lower_cells: level.lower_cells,
-                upper_cells: level.upper_cells,
-                volume_model: level.volume.into(),
-            })
-            .collect();
-        levels.fill(&found)?;
-        count.write(found.len() as u64)
+        let found = octree.statistics();
+        levels.fill_with(found.levels())?;
+        count.write(found.levels().len() as u64)
     })
 }
 

@@ -7,7 +7,7 @@ use super::octree::{leafless_octree, settled_tag};
 use super::status::leafless_status;
 use crate::error::Error;
 use crate::octree::Tag;
-use crate::solid::{AnySolid, Callback, MeshSolid, Solid, Verdict};
+use crate::solid::{AnySolid, Callback, Fingerprint, MeshSolid, Solid, Verdict};
 use alloc::sync::Arc;
 use core::ffi::c_void;
 
@@ -67,6 +67,9 @@ pub struct leafless_callbacks {
     pub destroy: leafless_destroy_fn,
     /// What the functions are called with.
     pub ctx: *mut c_void,
+    /// Any number but 0, of 128 bits, that tells the shape from others, such as a hash of what it is made of: octrees
+    /// that leafless_lazy_freeze makes remember it, and are taken up again by no other shape. Optional.
+    pub fingerprint: [u64; 2],
 }
 
 // SAFETY: numbers, a pointer, and optional functions.
@@ -203,6 +206,8 @@ pub unsafe extern "C" fn leafless_solid_new_callbacks(
         };
         let solid = out(solid, "solid")?;
         let decides_points = callbacks.contains.is_some();
+        let fingerprint = (callbacks.fingerprint != [0; 2])
+            .then(|| Fingerprint::of_bytes(bytemuck::bytes_of(&callbacks.fingerprint.map(u64::to_le))));
         // From here on the host's context is ours.
         let host = Arc::new(Host(callbacks));
         let classify = {
@@ -210,6 +215,9 @@ pub unsafe extern "C" fn leafless_solid_new_callbacks(
             move |min, max| host.classify(min, max)
         };
         let mut callback = Callback::new(classify).with_exterior(exterior);
+        if let Some(fingerprint) = fingerprint {
+            callback = callback.with_fingerprint(fingerprint);
+        }
         if decides_points {
             callback = callback.with_contains(move |point| host.contains(point));
         }

@@ -1,0 +1,300 @@
+/* Octrees that are split on demand: cell by cell, in zones, within limits; frozen, saved and taken up again. */
+#include "check.h"
+
+#define DEPTH 6
+
+static leafless_frame frame;
+static leafless_octree *built;
+
+static leafless_octree *frozen(const leafless_lazy *lazy) {
+    leafless_octree *octree = NULL;
+    OK(leafless_lazy_freeze(lazy, NULL, &octree));
+    OK(leafless_octree_check(octree));
+    return octree;
+}
+
+static bool is_built(const leafless_lazy *lazy) {
+    leafless_octree *octree = frozen(lazy);
+    const bool same = check_same(octree, built);
+    leafless_octree_free(octree);
+    return same;
+}
+
+static leafless_lazy_counts counts_of(const leafless_lazy *lazy) {
+    leafless_lazy_counts counts;
+    OK(leafless_lazy_count(lazy, &counts));
+    return counts;
+}
+
+static leafless_membership at(const leafless_lazy *lazy, double x, double y, double z) {
+    const double point[3] = {x, y, z};
+    leafless_membership membership;
+    OK(leafless_lazy_contains(lazy, point, &membership));
+    return membership;
+}
+
+/* The host descends by itself, to all cells that are not decided. */
+static void cell_by_cell(const leafless_solid *solid) {
+    leafless_lazy *lazy = NULL;
+    uint32_t (*queue)[4] = (uint32_t (*)[4])malloc(sizeof *queue << 18);
+    uint64_t first = 0, end = 1, splits[DEPTH], count = 0, sum = 0, i;
+    leafless_statistics levels[DEPTH + 1], all, of_octree[DEPTH + 1];
+    CHECK(queue != NULL);
+    memset(queue[0], 0, sizeof queue[0]);
+    OK(leafless_lazy_new(solid, &frame, &lazy));
+    while (first < end) {
+        const uint32_t *cell = queue[first++];
+        leafless_tag tags[8], tag, again[8];
+        bool can_split = false;
+        uint32_t k;
+        OK(leafless_lazy_tag(lazy, cell, cell[3], &tag, &can_split));
+        CHECK(tag == LEAFLESS_TAG_PARTIAL && can_split);
+        OK(leafless_lazy_split(lazy, cell, cell[3], tags));
+        OK(leafless_lazy_split(lazy, cell, cell[3], again));
+        CHECK(memcmp(tags, again, sizeof tags) == 0);
+        OK(leafless_lazy_tag(lazy, cell, cell[3], &tag, &can_split));
+        CHECK(!can_split);
+        for (k = 0; k < 8; k++) {
+            if (tags[k] == LEAFLESS_TAG_PARTIAL && cell[3] + 1 < DEPTH) {
+                CHECK(end < (uint64_t)1 << 18);
+                queue[end][0] = 2 * cell[0] + (k & 1);
+                queue[end][1] = 2 * cell[1] + (k >> 1 & 1);
+                queue[end][2] = 2 * cell[2] + (k >> 2 & 1);
+                queue[end++][3] = cell[3] + 1;
+            }
+        }
+    }
+    CHECK(is_built(lazy));
+    CHECK(counts_of(lazy).splits == end && counts_of(lazy).bytes > 0);
+    OK(leafless_lazy_splits(lazy, NULL, 0, &count));
+    CHECK(count == DEPTH);
+    FAILS(LEAFLESS_E_BUFFER, leafless_lazy_splits(lazy, splits, DEPTH - 1, &count));
+    OK(leafless_lazy_splits(lazy, splits, DEPTH, &count));
+    for (i = 0; i < DEPTH; i++) {
+        sum += splits[i];
+    }
+    CHECK(sum == end && splits[0] == 1);
+    OK(leafless_lazy_levels(lazy, NULL, 0, &count));
+    CHECK(count == DEPTH + 1);
+    FAILS(LEAFLESS_E_BUFFER, leafless_lazy_levels(lazy, levels, DEPTH, &count));
+    OK(leafless_lazy_levels(lazy, levels, DEPTH + 1, &count));
+    OK(leafless_octree_levels(built, of_octree, DEPTH + 1, &count));
+    for (i = 0; i <= DEPTH; i++) {
+        CHECK(levels[i].lower_cells == of_octree[i].lower_cells && levels[i].upper_cells == of_octree[i].upper_cells);
+        CHECK(levels[i].volume_model.lower == of_octree[i].volume_model.lower);
+        CHECK(levels[i].nodes >= of_octree[i].nodes);
+    }
+    OK(leafless_lazy_statistics(lazy, &all));
+    CHECK(all.lower_cells == of_octree[DEPTH].lower_cells && all.upper_cells == of_octree[DEPTH].upper_cells);
+    CHECK(all.nodes == sum);
+    leafless_lazy_free(lazy);
+    free(queue);
+}
+
+static void zones(const leafless_solid *solid) {
+    const double min[3] = {-1, -1, -1}, middle[3] = {1, 1, 0}, edge[3] = {0.75, 0, 0};
+    const double origin[3] = {-2, 0.1, 0.2}, along[3] = {1, 0, 0}, nowhere[3] = {0, 0, 0};
+    const uint32_t universe[3] = {0, 0, 0}, outside[3] = {2, 0, 0}, finest[3] = {1, 2, 3};
+    leafless_lazy *lazy = NULL;
+    leafless_tag tags[8], tag = LEAFLESS_TAG_FULL;
+    bool done = false, can_split = true;
+    leafless_statistics before, after;
+
+    OK(leafless_lazy_new(solid, &frame, &lazy));
+    CHECK(at(lazy, 0, 0, 0) == LEAFLESS_MEMBERSHIP_UNDECIDED);
+    OK(leafless_lazy_refine_point(lazy, edge, DEPTH, NULL, &done));
+    CHECK(done && counts_of(lazy).splits <= DEPTH && counts_of(lazy).replays == 0);
+    OK(leafless_lazy_refine_ray(lazy, origin, along, 0, INFINITY, DEPTH, NULL, &done));
+    CHECK(done && at(lazy, 0, 0.1, 0.2) == LEAFLESS_MEMBERSHIP_INSIDE);
+    CHECK(at(lazy, -0.9, 0.1, 0.2) == LEAFLESS_MEMBERSHIP_OUTSIDE);
+    OK(leafless_lazy_refine_box(lazy, min, middle, DEPTH, NULL, NULL));
+    OK(leafless_lazy_statistics(lazy, &before));
+    OK(leafless_lazy_refine_box(lazy, min, middle, DEPTH, NULL, &done));
+    OK(leafless_lazy_statistics(lazy, &after));
+    CHECK(done && memcmp(&before, &after, sizeof before) == 0);
+    OK(leafless_lazy_refine(lazy, DEPTH, NULL, &done));
+    CHECK(done && is_built(lazy));
+
+    OK(leafless_lazy_tag(lazy, outside, 1, &tag, NULL));
+    CHECK(tag == LEAFLESS_TAG_PARTIAL);
+    OK(leafless_lazy_tag(lazy, universe, UINT32_MAX, &tag, &can_split));
+    CHECK(tag == LEAFLESS_TAG_PARTIAL && !can_split);
+    FAILS(LEAFLESS_E_ARGUMENT, leafless_lazy_split(lazy, outside, 1, tags));
+    FAILS(LEAFLESS_E_ARGUMENT, leafless_lazy_split(lazy, finest, DEPTH, tags));
+    FAILS(LEAFLESS_E_ARGUMENT, leafless_lazy_split(lazy, universe, 256, tags));
+    FAILS(LEAFLESS_E_ARGUMENT, leafless_lazy_refine(lazy, DEPTH + 1, NULL, &done));
+    FAILS(LEAFLESS_E_ARGUMENT, leafless_lazy_refine(lazy, 256, NULL, &done));
+    FAILS(LEAFLESS_E_ARGUMENT, leafless_lazy_refine_box(lazy, middle, min, DEPTH, NULL, &done));
+    FAILS(LEAFLESS_E_ARGUMENT, leafless_lazy_refine_ray(lazy, origin, nowhere, 0, 1, DEPTH, NULL, &done));
+    FAILS(LEAFLESS_E_ARGUMENT, leafless_lazy_refine_ray(lazy, origin, along, 1, 0, DEPTH, NULL, &done));
+    FAILS(LEAFLESS_E_ARGUMENT, leafless_lazy_refine_ray(lazy, origin, along, NAN, 0, DEPTH, NULL, &done));
+    leafless_lazy_free(lazy);
+}
+
+static int32_t stops(void *ctx, double fraction) {
+    (void)fraction;
+    return ++*(int *)ctx > 3;
+}
+
+static void limits(const leafless_solid *solid) {
+    leafless_options options;
+    leafless_control *control = NULL;
+    leafless_octree *octree = NULL;
+    leafless_lazy *lazy = NULL;
+    bool done = true;
+    uint64_t calls = 0;
+    int reports = 0;
+
+    OK(leafless_lazy_new(solid, &frame, &lazy));
+    OK(leafless_options_init(&options, sizeof options));
+    options.max_splits = 100;
+    for (;;) {
+        OK(leafless_lazy_refine(lazy, DEPTH, &options, &done));
+        if (done) {
+            break;
+        }
+        calls++;
+        CHECK(counts_of(lazy).splits == 100 * calls);
+    }
+    CHECK(calls > 5 && is_built(lazy));
+    leafless_lazy_free(lazy);
+
+    OK(leafless_lazy_new(solid, &frame, &lazy));
+    options.max_splits = 0;
+    options.max_nodes = 50;
+    OK(leafless_lazy_refine(lazy, DEPTH, &options, &done));
+    CHECK(!done && counts_of(lazy).splits == 50);
+    options.max_nodes = 0;
+    options.max_bytes = 6400;
+    OK(leafless_lazy_refine(lazy, DEPTH, &options, &done));
+    CHECK(!done && counts_of(lazy).bytes <= 6400 && counts_of(lazy).splits > 50);
+    options.max_bytes = 0;
+
+    /* Cancelled, it keeps what it has, and goes on. */
+    OK(leafless_control_new(&control));
+    options.control = control;
+    options.progress = stops;
+    options.progress_ctx = &reports;
+    FAILS(LEAFLESS_E_CANCELLED, leafless_lazy_refine(lazy, DEPTH, &options, &done));
+    FAILS(LEAFLESS_E_CANCELLED, leafless_lazy_freeze(lazy, &options, &octree));
+    CHECK(octree == NULL);
+    OK(leafless_control_reset(control));
+    options.progress = NULL;
+    OK(leafless_lazy_refine(lazy, DEPTH, &options, &done));
+    CHECK(done && is_built(lazy));
+    leafless_lazy_free(lazy);
+    leafless_control_free(control);
+}
+
+/* A slab -0.3 <= z <= 0.4 of the host's, which counts what it is asked. */
+static int32_t slab(void *ctx, const double *min, const double *max) {
+    ++*(uint64_t *)ctx;
+    if (max[2] <= -0.3 || min[2] >= 0.4) {
+        return LEAFLESS_TAG_EMPTY;
+    }
+    return min[2] >= -0.3 && max[2] <= 0.4 ? LEAFLESS_TAG_FULL : LEAFLESS_TAG_PARTIAL;
+}
+
+static int32_t gives_up(void *ctx, const double *min, const double *max) {
+    if (*(uint64_t *)ctx > 100) {
+        return -7;
+    }
+    return slab(ctx, min, max);
+}
+
+static void taken_up(const leafless_solid *ball) {
+    const double point[3] = {0.7, 0.1, 0.1};
+    leafless_frame deep = frame;
+    leafless_callbacks callbacks;
+    leafless_solid *solid = NULL, *other = NULL, *nameless = NULL;
+    leafless_lazy *lazy = NULL, *never = NULL;
+    leafless_octree *octree, *loaded = NULL, *direct, *resumed;
+    uint64_t asked = 0, length;
+    uint8_t *bytes;
+    const char *source = NULL;
+    size_t source_length = 0;
+
+    OK(leafless_callbacks_init(&callbacks, sizeof callbacks));
+    callbacks.classify = slab;
+    callbacks.ctx = &asked;
+    OK(leafless_solid_new_callbacks(&callbacks, &nameless));
+    callbacks.fingerprint[1] = 0x123456789abcdef0;
+    OK(leafless_solid_new_callbacks(&callbacks, &solid));
+    callbacks.fingerprint[0] = 1;
+    OK(leafless_solid_new_callbacks(&callbacks, &other));
+
+    OK(leafless_lazy_new(solid, &frame, &lazy));
+    OK(leafless_lazy_refine(lazy, 3, NULL, NULL));
+    OK(leafless_lazy_refine_point(lazy, point, 6, NULL, NULL));
+    CHECK(asked == 1 + 8 * (counts_of(lazy).splits + counts_of(lazy).replays));
+    octree = frozen(lazy);
+    OK(leafless_octree_peek_metadata(octree, "source", 6, &source, &source_length));
+    CHECK(source_length == 37 && memcmp(source, "xxh3:", 5) == 0);
+    bytes = check_bytes(octree, &length);
+    leafless_octree_free(octree);
+    OK(leafless_octree_from_bytes(bytes, length, &loaded));
+    free(bytes);
+
+    /* By what made it, and by nothing else. */
+    FAILS(LEAFLESS_E_SOURCE, leafless_lazy_resume(loaded, other, &frame, NULL, &never));
+    FAILS(LEAFLESS_E_SOURCE, leafless_lazy_resume(loaded, ball, &frame, NULL, &never));
+    FAILS(LEAFLESS_E_ARGUMENT, leafless_lazy_resume(loaded, nameless, &frame, NULL, &never));
+    FAILS(LEAFLESS_E_SOURCE, leafless_lazy_resume(built, ball, &frame, NULL, &never));
+    deep.depth = DEPTH - 1;
+    FAILS(LEAFLESS_E_ARGUMENT, leafless_lazy_resume(loaded, solid, &deep, NULL, &never));
+    deep = frame;
+    deep.edge = 4;
+    FAILS(LEAFLESS_E_FRAME, leafless_lazy_resume(loaded, solid, &deep, NULL, &never));
+    deep = check_frame(20);
+    CHECK(never == NULL);
+    OK(leafless_lazy_resume(loaded, solid, &deep, NULL, &never));
+    OK(leafless_lazy_refine_point(never, point, 20, NULL, NULL));
+    CHECK(at(never, 0.7, 0.1, 0.1) == LEAFLESS_MEMBERSHIP_INSIDE);
+    leafless_lazy_free(never);
+    never = NULL;
+    OK(leafless_lazy_resume(loaded, solid, &frame, NULL, &never));
+    CHECK(counts_of(never).splits == 0);
+    /* The octree shares its solid. */
+    leafless_solid_free(solid);
+    leafless_octree_free(loaded);
+    OK(leafless_lazy_refine(lazy, DEPTH, NULL, NULL));
+    OK(leafless_lazy_refine(never, DEPTH, NULL, NULL));
+    CHECK(counts_of(never).splits < counts_of(lazy).splits);
+    direct = frozen(lazy);
+    resumed = frozen(never);
+    CHECK(check_same(direct, resumed));
+    leafless_octree_free(direct);
+    leafless_octree_free(resumed);
+    leafless_lazy_free(lazy);
+    leafless_lazy_free(never);
+    leafless_solid_free(other);
+    leafless_solid_free(nameless);
+
+    /* The host gives up in between. */
+    callbacks.classify = gives_up;
+    OK(leafless_solid_new_callbacks(&callbacks, &solid));
+    asked = 0;
+    OK(leafless_lazy_new(solid, &frame, &lazy));
+    FAILS(LEAFLESS_E_CALLBACK, leafless_lazy_refine(lazy, DEPTH, NULL, NULL));
+    FAILS(LEAFLESS_E_CALLBACK, leafless_lazy_refine(lazy, DEPTH, NULL, NULL));
+    CHECK(counts_of(lazy).splits > 0);
+    asked = 0;
+    octree = frozen(lazy);
+    leafless_octree_free(octree);
+    leafless_lazy_free(lazy);
+    leafless_solid_free(solid);
+}
+
+int main(void) {
+    leafless_solid *solid = check_ball_solid();
+    frame = check_frame(DEPTH);
+    built = check_ball(DEPTH, LEAFLESS_RULE_CERTIFIED);
+    cell_by_cell(solid);
+    zones(solid);
+    limits(solid);
+    taken_up(solid);
+    leafless_octree_free(built);
+    leafless_solid_free(solid);
+    leafless_lazy_free(NULL);
+    return 0;
+}
