@@ -71,8 +71,8 @@ pub use op::{
     resolve, union, union_of, xor, xor_of,
 };
 pub use query::{
-    Clearance, Interference, Measured, Measures, Membership, Overlap, PointCursor, Region, clearance,
-    interference, interference_of, measure,
+    Clearance, Extent, Interference, Measured, Measures, Membership, Overlap, PointCursor, Region,
+    bounding_box, clearance, interference, interference_of, measure,
 };
 pub use solid::{
     AnySolid, AxisBox, Ball, Callback, Counted, Csg, CsgPart, CsgScratch, DefectKind, ErasedPart,

@@ -5,8 +5,9 @@ mod common;
 use common::exact::Exact;
 use common::{Dense, DenseSolid, Random, alone, cases, model, positions, shapes};
 use leafless::{
-    AnySolid, AxisBox, Ball, Callback, Control, Cube, Error, FillRule, Frame, Interval, Measured, Measures,
-    MeshSolid, Rule, Scratch, Solid, Tag, TriangleMesh, Verdict, build, complement, file, measure,
+    AnySolid, AxisBox, Ball, Callback, Control, Cube, Error, Extent, FillRule, Frame, Interval, Measured,
+    Measures, MeshSolid, Rule, Scratch, Solid, Tag, TriangleMesh, Verdict, bounding_box, build, complement,
+    file, measure,
 };
 use proptest::prelude::*;
 use std::f64::consts::PI;
@@ -656,4 +657,130 @@ fn a_mesh_against_the_divergence_theorem() {
         assert!(depth < 9 || width < 0.1, "{width}");
         println!("depth {depth}: {:?} in {} splits", measures.volume, measures.splits);
     }
+}
+
+// --- Bounding boxes ----------------------------------------------------------------------------------------------
+
+/// The corners of all finest cells for which `tag` holds, in planes.
+fn hull(dense: &Dense, tag: impl Fn(Tag) -> bool) -> Option<[[u32; 3]; 2]> {
+    let cells: Vec<[u32; 3]> = positions(dense.depth).filter(|&at| tag(dense.at(at))).collect();
+    let of = |axis: usize| cells.iter().map(move |at| at[axis]);
+    (!cells.is_empty()).then(|| {
+        [[0, 1, 2].map(|axis| of(axis).min().unwrap()), [0, 1, 2].map(|axis| of(axis).max().unwrap() + 1)]
+    })
+}
+
+proptest! {
+    #![proptest_config(cases(300))]
+
+    #[test]
+    fn boxes_of_cells(shape in shapes(1..=4), seed: u64, budget in 0..60u64) {
+        let dense = shape.dense();
+        let mut random = Random(seed);
+        let frame = frame(&mut random, shape.depth);
+        let solid = DenseSolid { dense: &dense, exterior: Tag::Empty };
+        let extent = bounding_box(&solid, &frame, 0.0, &alone()).unwrap();
+        let outer = hull(&dense, |tag| tag != Tag::Empty);
+        let inner = hull(&dense, |tag| tag == Tag::Full);
+        prop_assert_eq!(extent.corners.is_some(), outer.is_some());
+        prop_assert_eq!(extent.occupied, inner.is_some());
+        if let (Some(corners), Some(outer)) = (extent.corners, outer) {
+            // What may be, for every choice of the undecided.
+            let latest = inner.unwrap_or([outer[1], outer[0]]);
+            for axis in 0..3 {
+                let plane = |i: u32| frame.plane(axis, i);
+                let [min, max] = [corners[0][axis], corners[1][axis]];
+                let [first, last] = [plane(outer[0][axis]), plane(outer[1][axis])];
+                let [near, far] = [plane(latest[0][axis]), plane(latest[1][axis])];
+                prop_assert!(min.lower <= first.lower && min.upper >= near.upper);
+                prop_assert!(max.upper >= last.upper && max.lower <= far.lower);
+                // As narrow as can be, or no wider than a cell.
+                let cell = frame.cell_size() + 1e-9;
+                prop_assert!((min.lower, min.upper) == (first.lower, near.upper) || min.width() <= cell);
+                prop_assert!((max.lower, max.upper) == (far.lower, last.upper) || max.width() <= cell);
+            }
+        }
+        // A budget only makes it wider.
+        let control = Control { max_splits: Some(budget), ..alone() };
+        let rough = bounding_box(&solid, &frame, 0.0, &control).unwrap();
+        prop_assert!(rough.splits <= budget && (extent.occupied || !rough.occupied));
+        match (rough.corners, extent.corners) {
+            (None, None) | (Some(_), None) => {}
+            (None, Some(_)) => prop_assert!(false, "a solid was lost"),
+            (Some(rough), Some(fine)) => {
+                for axis in 0..3 {
+                    prop_assert!(rough[0][axis].lower <= fine[0][axis].lower);
+                    prop_assert!(rough[1][axis].upper >= fine[1][axis].upper);
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn boxes_of_balls_and_blocks() {
+    let mut random = Random(23);
+    for (depth, tolerance) in [(1, 0.0), (2, 0.0), (5, 0.0), (10, 0.0), (20, 0.02), (20, 0.001)] {
+        let frame = Frame::new([-2.0, -2.1, -2.2], 4.3, depth).unwrap();
+        for _ in 0..10 {
+            let centre = [0, 1, 2].map(|_| random.between(-0.5, 0.5));
+            let radius = random.between(0.8, 1.2);
+            let [min, max] = [-1.0, 1.0].map(|sign| centre.map(|c| c + sign * radius));
+            let ball = AnySolid::new(Ball::new(centre, radius).unwrap());
+            let block = AnySolid::new(AxisBox::new(min, max).unwrap());
+            for (solid, most) in [(ball, 3e4), (block, 2e5)] {
+                if (depth, most) == (10, 2e5) || (tolerance, most) == (0.001, 2e5) {
+                    continue;
+                }
+                let extent = bounding_box(&solid, &frame, tolerance, &Control::default()).unwrap();
+                let corners = extent.corners.unwrap();
+                let wide = tolerance.max(frame.cell_size()) + 1e-15;
+                for axis in 0..3 {
+                    assert_contains(corners[0][axis], min[axis], 1.0);
+                    assert_contains(corners[1][axis], max[axis], 1.0);
+                    for corner in corners {
+                        assert!(depth < 10 || corner[axis].width() <= wide, "{depth} {extent:?}");
+                    }
+                }
+                assert!(
+                    depth < 10 || extent.occupied && extent.measured == Measured::Tolerance,
+                    "{depth} {tolerance} {extent:?}"
+                );
+                assert!(!extent.clipped);
+                assert!((extent.splits as f64) < most, "{depth} {tolerance} {extent:?}");
+                let same: Extent = bounding_box(&solid, &frame, tolerance, &Control::threads(3)).unwrap();
+                assert_eq!(same, extent);
+            }
+        }
+    }
+    // On the lattice nothing is left open.
+    let frame = Frame::new([-4.0; 3], 8.0, 20).unwrap();
+    let solid = AxisBox::new([-2.0, -1.0, 0.0], [2.0, 3.0, 1.0]).unwrap();
+    let extent = bounding_box(&solid, &frame, 0.0, &Control::default()).unwrap();
+    let corners = [[-2.0, -1.0, 0.0], [2.0, 3.0, 1.0]].map(|corner| corner.map(Interval::exactly));
+    assert_eq!(extent.corners, Some(corners));
+    assert!(extent.splits < 200, "{extent:?}");
+}
+
+#[test]
+fn boxes_of_what_is_empty_or_unknown() {
+    let frame = Frame::new([0.0; 3], 1.0, 4).unwrap();
+    let control = Control::default();
+    let far = Ball::new([9.0; 3], 1.0).unwrap();
+    let extent = bounding_box(&far, &frame, 0.0, &control).unwrap();
+    assert_eq!((extent.corners, extent.occupied, extent.splits), (None, false, 0));
+    let doubtful = Callback::new(|_, _| Ok(Verdict::Partial(()))).with_exterior(Tag::Empty);
+    let extent = bounding_box(&doubtful, &frame, 0.0, &control).unwrap();
+    let all = Interval { lower: 0.0, upper: 1.0 };
+    assert_eq!((extent.corners, extent.measured), (Some([[all; 3]; 2]), Measured::Exhausted));
+    assert!(!extent.occupied && !extent.clipped);
+    let limited = Control { max_splits: Some(100), ..control };
+    let extent = bounding_box(&doubtful, &frame, 0.0, &limited).unwrap();
+    assert_eq!((extent.corners, extent.measured), (Some([[all; 3]; 2]), Measured::Budget));
+    assert!(extent.splits <= 100);
+    let cancel = AtomicBool::new(true);
+    let cancelled = Control { cancel: Some(&cancel), ..control };
+    assert!(bounding_box(&far, &frame, -1.0, &control).is_err());
+    assert!(bounding_box(&far, &frame, f64::NAN, &control).is_err());
+    assert!(matches!(bounding_box(&far, &frame, 0.0, &cancelled), Err(Error::Cancelled)));
 }

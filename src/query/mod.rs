@@ -1,12 +1,14 @@
 //! Questions: such as a stored octree answers in place, and such as any solids answer.
 
 mod clearance;
+mod extent;
 mod interference;
 mod measure;
 mod point;
 mod region;
 
 pub use clearance::{Clearance, clearance};
+pub use extent::{Extent, bounding_box};
 pub use interference::{Interference, Overlap, interference, interference_of};
 pub use measure::{Measured, Measures, measure};
 pub use point::{Membership, PointCursor};
