@@ -415,5 +415,26 @@ fn parts_that_nobody_made_lead_nowhere() {
     let mut other = Default::default();
     let verdicts = solid.split(&mut other, &cube, &part).unwrap();
     assert!(verdicts.iter().all(|verdict| !matches!(verdict.tag(), Tag::Full | Tag::Empty)));
+    // Memory that has no such part.
+    solid.root(&mut other, &own).unwrap();
+    let mut far = Default::default();
+    let Verdict::Partial(deep) = deepest(&solid, &mut far, &own) else { panic!("a ball has a surface") };
+    let verdicts = solid.split(&mut other, &cube, &deep).unwrap();
+    assert!(verdicts.iter().all(|verdict| !matches!(verdict.tag(), Tag::Full | Tag::Empty)));
     let _: &Octree = &build(&solid, &own, Rule::Certified, &alone()).unwrap();
+}
+
+/// A part of a cell that is reached by some splits.
+fn deepest<S: Solid>(solid: &S, scratch: &mut S::Scratch, frame: &Frame) -> Verdict<S::Part> {
+    let mut verdict = solid.root(scratch, frame).unwrap();
+    let mut cell = Cell::ROOT;
+    while cell.level < 3 {
+        let Verdict::Partial(part) = &verdict else { break };
+        let children = solid.split(scratch, &Cube { frame, cell }, part).unwrap();
+        let partial = |child: &Verdict<S::Part>| matches!(child, Verdict::Partial(_));
+        let octant = children.iter().position(partial).unwrap();
+        cell = cell.child(octant as u8);
+        verdict = children.into_iter().nth(octant).unwrap();
+    }
+    verdict
 }

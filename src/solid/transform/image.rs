@@ -1,0 +1,335 @@
+//! Boxes of one lattice as seen from another.
+
+use crate::lattice::exact::{floor, sqrt, two_product};
+use crate::lattice::{Affine, Cube, Frame};
+use crate::solid::exact::Expansion;
+
+/// From the lattice of one frame to that of another, in finest cells: u = linear · k + offset.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct LatticeMap {
+    linear: [[f64; 3]; 3],
+    offset: [f64; 3],
+    /// How far what [`image`](Self::image) computes for boxes of the universe may be off. Zero: not at all.
+    pub(super) error: [f64; 3],
+}
+
+impl LatticeMap {
+    /// The map p ↦ linear · (p − before) + after of model space. `linear` may be off by 5 · 2^-53, relatively, in each
+    /// entry; none of it is if the map is `monomial`, and then its entries are powers of two, one a row.
+    fn new(
+        linear: &[[f64; 3]; 3],
+        before: [f64; 3],
+        after: [f64; 3],
+        monomial: bool,
+        from: &Frame,
+        to: &Frame,
+    ) -> LatticeMap {
+        let (step, cell) = (from.cell_size(), to.cell_size());
+        let mut map = LatticeMap { linear: [[0.0; 3]; 3], offset: [0.0; 3], error: [0.0; 3] };
+        let mut exact = monomial;
+        for i in 0..3 {
+            let (mut offset, mut size) = (after[i] - to.origin()[i], after[i].abs() + to.origin()[i].abs());
+            let mut reach = 0.0;
+            for j in 0..3 {
+                let entry = linear[i][j] * step / cell;
+                map.linear[i][j] = entry;
+                reach += entry.abs() * from.cells() as f64;
+                exact &= is_short(entry * from.cells() as f64)
+                    && two_product(entry, cell) == (linear[i][j] * step, 0.0);
+                offset += linear[i][j] * (from.origin()[j] - before[j]);
+                size += linear[i][j].abs() * (from.origin()[j].abs() + before[j].abs());
+            }
+            map.offset[i] = offset / cell;
+            // Every sum below has a dozen roundings at the most, each relative to this size; the entries bring five
+            // more.
+            map.error[i] = 32.0 * f64::EPSILON * (reach + size / cell);
+        }
+        if exact && (0..3).all(|i| map.offset_is_exact(i, &linear[i], before, after[i], from, to)) {
+            map.error = [0.0; 3];
+        }
+        map
+    }
+
+    /// Whether the offset on an axis of a monomial map is one with which no sum is rounded; corrects it if so.
+    fn offset_is_exact(
+        &mut self,
+        i: usize,
+        linear: &[f64; 3],
+        before: [f64; 3],
+        after: f64,
+        from: &Frame,
+        to: &Frame,
+    ) -> bool {
+        let products = (0..3).flat_map(|j| [linear[j] * from.origin()[j], -(linear[j] * before[j])]);
+        let sum = Expansion::sum(products.chain([after, -to.origin()[i]]));
+        let offset = sum.estimate() / to.cell_size();
+        let (product, error) = two_product(offset, to.cell_size());
+        self.offset[i] = offset;
+        is_short(offset) && sum.minus(&Expansion::sum([error, product])).sign() == 0
+    }
+
+    /// The box around the image of a cube with this corner and edge (or half of both) of the source lattice, without
+    /// the error.
+    #[inline(always)]
+    pub(super) fn image(&self, corner: [f64; 3], edge: f64) -> ([f64; 3], [f64; 3]) {
+        let (mut low, mut high) = ([0.0; 3], [0.0; 3]);
+        for i in 0..3 {
+            let [a, b, c] = self.linear[i];
+            let half = 0.5 * edge;
+            let centre =
+                a * (corner[0] + half) + b * (corner[1] + half) + c * (corner[2] + half) + self.offset[i];
+            let radius = (a.abs() + b.abs() + c.abs()) * half;
+            (low[i], high[i]) = (centre - radius, centre + radius);
+        }
+        (low, high)
+    }
+
+    /// The same with the error.
+    #[inline(always)]
+    pub(super) fn around(&self, corner: [f64; 3], edge: f64) -> ([f64; 3], [f64; 3]) {
+        let (mut low, mut high) = self.image(corner, edge);
+        for i in 0..3 {
+            (low[i], high[i]) = (low[i] - self.error[i], high[i] + self.error[i]);
+        }
+        (low, high)
+    }
+
+    /// The edge of the cells that the image of a unit cube is to be covered with: the cube's longest image, or half of
+    /// that again and again while a few dozen cells will do.
+    fn grain(&self) -> f64 {
+        const MOST: f64 = 32.0;
+        let square = |j: usize| (0..3).map(|i| self.linear[i][j] * self.linear[i][j]).sum::<f64>();
+        // Rounding must not make what is equal a little larger.
+        let mut edge = sqrt(square(0).max(square(1)).max(square(2))) * (1.0 + 1e-9);
+        let extents = self.linear.map(|[a, b, c]| a.abs() + b.abs() + c.abs());
+        let count = |edge: f64| extents.iter().map(|extent| extent / edge + 1.0).product::<f64>();
+        let halvings = if self.is_exact() { 0 } else { 64 };
+        for _ in 0..halvings {
+            if count(0.5 * edge) > MOST {
+                break;
+            }
+            edge *= 0.5;
+        }
+        edge
+    }
+
+    pub(super) fn is_exact(&self) -> bool {
+        self.error == [0.0; 3]
+    }
+
+    /// Whether the map is an offset of whole cells.
+    pub(super) fn keeps_centres(&self) -> bool {
+        const UNIT: [[f64; 3]; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+        self.is_exact() && self.linear == UNIT && self.offset.iter().all(|&c| c == floor(c) as f64)
+    }
+}
+
+/// Whether sums and halves of a few such numbers are doubles: at most 2^28, and a multiple of 2^-12.
+fn is_short(value: f64) -> bool {
+    const GRAIN: f64 = 4096.0;
+    let steps = value * GRAIN;
+    value.abs() <= (1u64 << 28) as f64 && steps == floor(steps) as f64
+}
+
+/// Both ways between the lattice of a frame and that of the solid.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Maps {
+    pub(super) inward: LatticeMap,
+    pub(super) outward: LatticeMap,
+    /// The largest cells to cover a finest cell's inverse image with.
+    grain: f64,
+}
+
+impl Maps {
+    pub(super) fn new(placement: &Affine, inverse: &[[f64; 3]; 3], frame: &Frame, own: &Frame) -> Maps {
+        let rows = placement.rows();
+        let linear = rows.map(|[x, y, z, _]| [x, y, z]);
+        let offset = rows.map(|[_, _, _, t]| t);
+        let monomial = is_monomial(&linear);
+        let inward = LatticeMap::new(inverse, offset, [0.0; 3], monomial, frame, own);
+        let outward = LatticeMap::new(&linear, [0.0; 3], offset, monomial, own, frame);
+        Maps { inward, outward, grain: inward.grain() }
+    }
+}
+
+/// What cells of the solid's own frame are held against.
+pub(super) trait Target {
+    /// Which of up to eight things (bit k: thing k) the cell touches with this corner and edge.
+    fn touched(&self, corner: [f64; 3], edge: f64) -> u8;
+
+    /// The same of its eight children.
+    fn touched_by_children(&self, corner: [f64; 3], edge: f64) -> [u8; 8] {
+        let half = 0.5 * edge;
+        [0, 1, 2, 3, 4, 5, 6, 7].map(|octant: u8| {
+            self.touched([0, 1, 2].map(|axis| corner[axis] + (octant >> axis & 1) as f64 * half), half)
+        })
+    }
+}
+
+/// The inverse images of the eight children of a cube, or of a single one.
+///
+/// A cell touches those whose inner points neither a plane of its lattice nor one of the frame's separates from its
+/// own. A number that is none separates nothing.
+pub(super) struct Images<'m> {
+    maps: &'m Maps,
+    /// Boxes around them.
+    low: [[f64; 8]; 3],
+    high: [[f64; 8]; 3],
+    /// The planes that bound the children, in the frame's finest cells.
+    planes: [[f64; 3]; 3],
+    /// The largest cells to cover them with.
+    pub(super) grain: f64,
+}
+
+impl<'m> Images<'m> {
+    /// The images of the children of a cube (`parts` = 2), or of the cube itself (1), then eight times.
+    pub(super) fn new(maps: &'m Maps, cube: &Cube<'_>, parts: u32) -> Images<'m> {
+        let (lower, upper) = cube.planes();
+        let edge = (upper[0] - lower[0]) as f64 / parts as f64;
+        let planes = [0, 1, 2].map(|axis| {
+            let low = lower[axis] as f64;
+            [low, low + edge, upper[axis] as f64]
+        });
+        let grain = maps.grain * edge;
+        let mut images = Images { maps, low: [[0.0; 8]; 3], high: [[0.0; 8]; 3], planes, grain };
+        for k in 0..8 {
+            let corner = [0, 1, 2].map(|axis| planes[axis][if parts == 2 { k >> axis & 1 } else { 0 }]);
+            let (low, high) = maps.inward.around(corner, edge);
+            for axis in 0..3 {
+                (images.low[axis][k], images.high[axis][k]) = (low[axis], high[axis]);
+            }
+        }
+        images
+    }
+
+    /// Those that may reach beyond the universe of this many cells. A number that is none may.
+    pub(super) fn reach_beyond(&self, cells: f64) -> u8 {
+        (0..8).fold(0, |beyond, k| {
+            let inside = (0..3).all(|axis| self.low[axis][k] >= 0.0 && self.high[axis][k] <= cells);
+            beyond | (!inside as u8) << k
+        })
+    }
+
+    /// Those whose boxes reach between two planes of the solid's lattice.
+    #[inline(always)]
+    fn between(&self, axis: usize, low: f64, high: f64) -> u8 {
+        let mut apart = 0;
+        for k in 0..8 {
+            apart |= ((self.low[axis][k] >= high || self.high[axis][k] <= low) as u8) << k;
+        }
+        !apart
+    }
+
+    /// Those that the frame's planes do not separate from a cell with this image.
+    #[inline(always)]
+    fn beside(&self, low: [f64; 3], high: [f64; 3]) -> u8 {
+        const UPPER: [u8; 3] = [0xAA, 0xCC, 0xF0];
+        let mut touched = 0xFF;
+        for axis in 0..3 {
+            let [first, middle, last] = self.planes[axis];
+            if low[axis] >= middle || high[axis] <= first {
+                touched &= UPPER[axis];
+            }
+            if low[axis] >= last || high[axis] <= middle {
+                touched &= !UPPER[axis];
+            }
+        }
+        touched
+    }
+}
+
+impl Target for Images<'_> {
+    fn touched(&self, corner: [f64; 3], edge: f64) -> u8 {
+        let touched =
+            (0..3).fold(0xFF, |all, axis| all & self.between(axis, corner[axis], corner[axis] + edge));
+        if touched == 0 || self.maps.inward.is_exact() {
+            return touched;
+        }
+        let (low, high) = self.maps.outward.around(corner, edge);
+        touched & self.beside(low, high)
+    }
+
+    fn touched_by_children(&self, corner: [f64; 3], edge: f64) -> [u8; 8] {
+        // Children share their planes, and their images differ by an offset.
+        let half = 0.5 * edge;
+        let halves = [0, 1, 2].map(|axis| {
+            let middle = corner[axis] + half;
+            [self.between(axis, corner[axis], middle), self.between(axis, middle, corner[axis] + edge)]
+        });
+        let outward = &self.maps.outward;
+        let (low, high) = outward.around(corner, half);
+        let mut touched = [0; 8];
+        for (octant, touched) in touched.iter_mut().enumerate() {
+            let upper = [0, 1, 2].map(|axis| octant >> axis & 1);
+            *touched = halves[0][upper[0]] & halves[1][upper[1]] & halves[2][upper[2]];
+            if *touched != 0 && !self.maps.inward.is_exact() {
+                let step = outward.linear.map(|[a, b, c]| {
+                    a * (upper[0] as f64 * half) + b * (upper[1] as f64 * half) + c * (upper[2] as f64 * half)
+                });
+                let moved = |box_end: [f64; 3]| [0, 1, 2].map(|i| box_end[i] + step[i]);
+                *touched &= self.beside(moved(low), moved(high));
+            }
+        }
+        touched
+    }
+}
+
+/// The inverse image of a point: a cell touches it if it may hold it. Where there is no error, what lies on a plane goes
+/// where the shift of all centres by (ε, ε², ε³) leads.
+pub(super) struct Point<'m> {
+    pub(super) map: &'m LatticeMap,
+    pub(super) at: [f64; 3],
+}
+
+impl Point<'_> {
+    /// Whether it may lie beyond the universe of this many cells, as a bit.
+    pub(super) fn reaches_beyond(&self, cells: f64) -> u8 {
+        !(0..3).all(|axis| {
+            let (x, error) = (self.at[axis], self.map.error[axis]);
+            x - error >= 0.0 && x + error <= cells
+        }) as u8
+    }
+}
+
+impl Target for Point<'_> {
+    fn touched(&self, corner: [f64; 3], edge: f64) -> u8 {
+        let holds = (0..3).all(|axis| {
+            let (x, error) = (self.at[axis], self.map.error[axis]);
+            let (low, high) = (corner[axis], corner[axis] + edge);
+            if error != 0.0 {
+                return !(x + error < low || x - error > high);
+            }
+            match self.map.linear[axis].iter().find(|&&c| c != 0.0) {
+                Some(&c) if c < 0.0 => low < x && x <= high,
+                _ => low <= x && x < high,
+            }
+        });
+        holds as u8
+    }
+}
+
+/// Whether a matrix has one entry a row, and that a power of two. (It is not singular.)
+fn is_monomial(linear: &[[f64; 3]; 3]) -> bool {
+    const MANTISSA: u64 = (1 << 52) - 1;
+    linear.iter().all(|row| {
+        let mut entries = row.iter().filter(|&&c| c != 0.0);
+        entries.next().is_some_and(|c| c.to_bits() & MANTISSA == 0) && entries.next().is_none()
+    })
+}
+
+/// The inverse of the linear part, each entry off by 5 · 2^-53 of itself at the most: quotients of a minor and the
+/// determinant, both of which come from exact sums.
+pub(super) fn inverse(placement: &Affine) -> [[f64; 3]; 3] {
+    let m = placement.rows();
+    let minor = |i: usize, j: usize| {
+        let (r, s) = ((i + 1) % 3, (i + 2) % 3);
+        let (c, d) = ((j + 1) % 3, (j + 2) % 3);
+        let (plus, minus) = (two_product(m[r][c], m[s][d]), two_product(m[r][d], m[s][c]));
+        Expansion::sum([plus.1, -minus.1, plus.0, -minus.0])
+    };
+    let cofactors = [0, 1, 2].map(|i| [0, 1, 2].map(|j| minor(i, j)));
+    let determinant = (0..3)
+        .fold(Expansion::default(), |sum, j| sum.plus(&cofactors[0][j].times(&Expansion::sum([m[0][j]]))));
+    let determinant = determinant.estimate();
+    [0, 1, 2].map(|i| [0, 1, 2].map(|j| cofactors[j][i].estimate() / determinant))
+}
