@@ -227,6 +227,11 @@ fn solid_geometry() {
 }
 
 #[test]
+fn interferences() {
+    run("interference", C99, Link::Static, &[]);
+}
+
+#[test]
 fn cancel() {
     run("cancel", CPP17, Link::Static, &[]);
 }

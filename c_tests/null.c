@@ -220,6 +220,37 @@ static void null_pointers(void) {
     NULL_POINTER(leafless_solid_placed, operand, leafless_solid_placed(NULL, matrix, solid_result));
     NULL_POINTER(leafless_solid_placed, matrix, leafless_solid_placed(solid, NULL, solid_result));
     NULL_POINTER(leafless_solid_placed, solid, leafless_solid_placed(solid, matrix, NULL));
+    NULL_POINTER(leafless_solid_new_transform, operand,
+                 leafless_solid_new_transform(NULL, &frame, matrix, solid_result));
+    NULL_POINTER(leafless_solid_new_transform, own, leafless_solid_new_transform(solid, NULL, matrix, solid_result));
+    NULL_POINTER(leafless_solid_new_transform, matrix, leafless_solid_new_transform(solid, &frame, NULL, solid_result));
+    NULL_POINTER(leafless_solid_new_transform, solid, leafless_solid_new_transform(solid, &frame, matrix, NULL));
+    NULL_POINTER(leafless_solid_interfere, a,
+                 leafless_solid_interfere(NULL, solid, &frame, 0, NULL, (leafless_interference *)out));
+    NULL_POINTER(leafless_solid_interfere, b,
+                 leafless_solid_interfere(solid, NULL, &frame, 0, NULL, (leafless_interference *)out));
+    NULL_POINTER(leafless_solid_interfere, frame,
+                 leafless_solid_interfere(solid, solid, NULL, 0, NULL, (leafless_interference *)out));
+    NULL_POINTER(leafless_solid_interfere, interference, leafless_solid_interfere(solid, solid, &frame, 0, NULL, NULL));
+    NULL_POINTER(leafless_solid_interfere_many, a,
+                 leafless_solid_interfere_many(NULL, solid, &frame, matrix, 1, &frame, 0, NULL, (leafless_interference *)out));
+    NULL_POINTER(leafless_solid_interfere_many, b,
+                 leafless_solid_interfere_many(solid, NULL, &frame, matrix, 1, &frame, 0, NULL, (leafless_interference *)out));
+    NULL_POINTER(leafless_solid_interfere_many, own,
+                 leafless_solid_interfere_many(solid, solid, NULL, matrix, 1, &frame, 0, NULL, (leafless_interference *)out));
+    NULL_POINTER(leafless_solid_interfere_many, matrices,
+                 leafless_solid_interfere_many(solid, solid, &frame, NULL, 1, &frame, 0, NULL, (leafless_interference *)out));
+    NULL_POINTER(leafless_solid_interfere_many, frame,
+                 leafless_solid_interfere_many(solid, solid, &frame, matrix, 1, NULL, 0, NULL, (leafless_interference *)out));
+    NULL_POINTER(leafless_solid_interfere_many, interferences,
+                 leafless_solid_interfere_many(solid, solid, &frame, matrix, 1, &frame, 0, NULL, NULL));
+    NULL_POINTER(leafless_solid_clearance, a,
+                 leafless_solid_clearance(NULL, solid, &frame, 0, NULL, (leafless_clearance *)out));
+    NULL_POINTER(leafless_solid_clearance, b,
+                 leafless_solid_clearance(solid, NULL, &frame, 0, NULL, (leafless_clearance *)out));
+    NULL_POINTER(leafless_solid_clearance, frame,
+                 leafless_solid_clearance(solid, solid, NULL, 0, NULL, (leafless_clearance *)out));
+    NULL_POINTER(leafless_solid_clearance, clearance, leafless_solid_clearance(solid, solid, &frame, 0, NULL, NULL));
     NULL_POINTER(leafless_solid_with_touch, operand, leafless_solid_with_touch(NULL, 0, solid_result));
     NULL_POINTER(leafless_solid_with_touch, solid, leafless_solid_with_touch(solid, 0, NULL));
     BAD_NUMBER(leafless_solid_with_touch, touch, leafless_solid_with_touch(solid, 7, solid_result));
@@ -394,6 +425,20 @@ static void null_pointers(void) {
     leafless_octree_free(*result);
     MAY_BE_NULL(leafless_octree_peek_metadata, key,
                 leafless_octree_peek_metadata(octree, NULL, 0, &text, &text_length));
+    {
+        leafless_interference found;
+        leafless_clearance near;
+        MAY_BE_NULL(leafless_solid_interfere, options,
+                    leafless_solid_interfere(solid, solid, &frame, 0, NULL, &found));
+        MAY_BE_NULL(leafless_solid_interfere_many, options,
+                    leafless_solid_interfere_many(solid, solid, &frame, matrix, 1, &frame, 0, NULL, &found));
+        MAY_BE_NULL(leafless_solid_interfere_many, matrices,
+                    leafless_solid_interfere_many(solid, solid, &frame, NULL, 0, &frame, 0, NULL, &found));
+        MAY_BE_NULL(leafless_solid_interfere_many, interferences,
+                    leafless_solid_interfere_many(solid, solid, &frame, NULL, 0, &frame, 0, NULL, NULL));
+        MAY_BE_NULL(leafless_solid_clearance, options,
+                    leafless_solid_clearance(solid, solid, &frame, 1, NULL, &near));
+    }
     MAY_BE_NULL(leafless_octree_build, options, leafless_octree_build(solid, &frame, 0, NULL, result));
     leafless_octree_free(*result);
     MAY_BE_NULL(leafless_octree_resolve, options, leafless_octree_resolve(octree, 2, NULL, result));
@@ -504,6 +549,19 @@ static void misaligned(void) {
                leafless_mesh_translated((leafless_mesh *)WRONG(mesh), point, mesh_result));
     MISALIGNED(leafless_solid_new_ball, centre_model, leafless_solid_new_ball(numbers, 1, solid_result));
     MISALIGNED(leafless_solid_new_ball, solid, leafless_solid_new_ball(point, 1, (leafless_solid **)WRONG(out)));
+    MISALIGNED(leafless_solid_interfere_many, matrices,
+               leafless_solid_interfere_many(solid, solid, &frame, (const double *)WRONG(point), 1, &frame, 0, NULL,
+                                             (leafless_interference *)out));
+    MISALIGNED(leafless_solid_interfere_many, interferences,
+               leafless_solid_interfere_many(solid, solid, &frame, room, 0, &frame, 0, NULL,
+                                             (leafless_interference *)WRONG(out)));
+    MISALIGNED(leafless_solid_interfere_many, own,
+               leafless_solid_interfere_many(solid, solid, (leafless_frame *)WRONG(&frame), room, 0, &frame, 0, NULL,
+                                             (leafless_interference *)out));
+    MISALIGNED(leafless_solid_interfere, interference,
+               leafless_solid_interfere(solid, solid, &frame, 0, NULL, (leafless_interference *)WRONG(out)));
+    MISALIGNED(leafless_solid_clearance, clearance,
+               leafless_solid_clearance(solid, solid, &frame, 0, NULL, (leafless_clearance *)WRONG(out)));
     MISALIGNED(leafless_octree_build, solid,
                leafless_octree_build((leafless_solid *)WRONG(solid), &frame, 0, NULL, result));
     MISALIGNED(leafless_octree_build, options,
@@ -654,6 +712,10 @@ static void numbers(void) {
         callbacks.exterior = not_a_rule[i] - 1;
         BAD_NUMBER(leafless_solid_new_callbacks, exterior, leafless_solid_new_callbacks(&callbacks, solid_result));
     }
+    BAD_NUMBER(leafless_solid_interfere, tolerance,
+               leafless_solid_interfere(solid, solid, &frame, -1, NULL, (leafless_interference *)out));
+    BAD_NUMBER(leafless_solid_clearance, tolerance,
+               leafless_solid_clearance(solid, solid, &frame, -1, NULL, (leafless_clearance *)out));
     BAD_NUMBER(leafless_frame_plane, axis, leafless_frame_plane(&frame, 3, 0, (leafless_interval *)out));
     BAD_NUMBER(leafless_frame_plane, axis, leafless_frame_plane(&frame, UINT32_MAX, 0, (leafless_interval *)out));
     BAD_NUMBER(leafless_frame_plane, index, leafless_frame_plane(&frame, 0, 17, (leafless_interval *)out));

@@ -512,6 +512,31 @@ typedef uint32_t leafless_exterior;
 #endif // __cplusplus
 
 /**
+ * Whether the interiors of two solids have points in common.
+ */
+enum leafless_overlap
+#ifdef __cplusplus
+  : uint32_t
+#endif // __cplusplus
+ {
+    /**
+     * Proven: they have none. The solids may touch.
+     */
+    LEAFLESS_OVERLAP_DISJOINT = 0,
+    /**
+     * Proven: a cell lies in both.
+     */
+    LEAFLESS_OVERLAP_OVERLAPPING = 1,
+    /**
+     * Not decided at the frame's depth, or before the splits were spent.
+     */
+    LEAFLESS_OVERLAP_UNDECIDED = 2,
+};
+#ifndef __cplusplus
+typedef uint32_t leafless_overlap;
+#endif // __cplusplus
+
+/**
  * A switch to stop long operations from any thread, and to ask how far they are.
  *
  * All its functions may be called at once from any number of threads.
@@ -1115,6 +1140,95 @@ typedef struct {
      */
     uint64_t bytes;
 } leafless_lazy_counts;
+ * What is known of two solids inside of the universe of a frame.
+ */
+typedef struct {
+    /**
+     * The volume of what they have in common, in cubic model units.
+     */
+    leafless_interval volume_model;
+    /**
+     * Cells of the first solid that were split.
+     */
+    uint64_t splits_a;
+    /**
+     * Cells of the second solid that were split.
+     */
+    uint64_t splits_b;
+    /**
+     * Half-spaces that were evaluated.
+     */
+    uint64_t evaluations;
+    /**
+     * A leafless_overlap.
+     */
+    uint32_t verdict;
+    /**
+     * The finest level of which cells were looked at.
+     */
+    uint32_t level;
+    /**
+     * A cell that lies in both, if they are proven to overlap: its position in cells of its level; else zeros.
+     */
+    uint32_t witness[3];
+    /**
+     * The level of that cell.
+     */
+    uint32_t witness_level;
+    /**
+     * Whether both solids may go on outside of the universe, of which nothing is said.
+     */
+    bool is_clipped;
+} leafless_interference;
+
+/**
+ * What is known of the distance between two solids inside of the universe of a frame.
+ */
+typedef struct {
+    /**
+     * The least distance between points of the two, in model units: 0 if they touch or overlap. The upper bound is
+     * infinite as long as one of them has no cell that is proven to be full, and the lower one too if one of them is
+     * proven to be empty.
+     */
+    leafless_interval distance_model;
+    /**
+     * Cells of the first solid that were split.
+     */
+    uint64_t splits_a;
+    /**
+     * Cells of the second solid that were split.
+     */
+    uint64_t splits_b;
+    /**
+     * Half-spaces that were evaluated.
+     */
+    uint64_t evaluations;
+    /**
+     * If `has_nearest`, cells of the first and of the second solid with points that are no further apart than the upper
+     * bound: the position of the first in cells of its level; else zeros.
+     */
+    uint32_t nearest_a[3];
+    /**
+     * The level of that cell.
+     */
+    uint32_t nearest_a_level;
+    /**
+     * The position of the second.
+     */
+    uint32_t nearest_b[3];
+    /**
+     * The level of that cell.
+     */
+    uint32_t nearest_b_level;
+    /**
+     * Whether the upper bound is finite.
+     */
+    bool has_nearest;
+    /**
+     * Whether one of the solids may go on outside of the universe, of which nothing is said.
+     */
+    bool is_clipped;
+} leafless_clearance;
 
 /**
  * What header and section table of a file say.
@@ -2945,6 +3059,99 @@ leafless_status leafless_lazy_splits(const leafless_lazy *lazy,
 leafless_status leafless_lazy_freeze(const leafless_lazy *lazy,
                                      const leafless_options *options,
                                      leafless_octree **octree);
+ * A solid, known on a frame of its own, under an affine map.
+ *
+ * A cell is FULL or EMPTY if all the cells of the solid's own frame are that its inverse image touches: cells of about
+ * its size, or larger ones that are decided. So a surface that is not parallel to the lattice blurs by about a cell,
+ * down to the depth of the solid's own frame; rounding is outward. Where the map takes lattice planes to lattice planes
+ * nothing blurs. What sticks out of the solid's own universe is undecided, unless the solid is proven to end inside.
+ * (Half-spaces and what is made of them are moved exactly by leafless_solid_placed.)
+ *
+ * - Buffers: `own`, one struct; `matrix`, 12 numbers, the rows of [M | t], where a point p goes to M p + t; `solid`,
+ *   one pointer.
+ * - Result: `*solid`.
+ * - Errors: LEAFLESS_E_ARGUMENT as leafless_frame_check, or if an entry is neither 0 nor of a magnitude between 2^-64
+ *   and 2^64, or M is singular. Asking the result returns LEAFLESS_E_FRAME if `operand` belongs to another frame than
+ *   `own`.
+ * - Ownership: the operand is shared and may be freed; give `*solid` back with leafless_solid_free.
+ * - Threads: any.
+ * - Untrusted input: any solid and numbers.
+ * - Since: 0.1
+ *
+ */
+leafless_status leafless_solid_new_transform(const leafless_solid *operand,
+                                             const leafless_frame *own,
+                                             const double matrix[12],
+                                             leafless_solid **solid);
+
+/**
+ * Whether two solids overlap, as they are in the universe of a frame. Once an overlap is proven its volume is refined
+ * until the interval is no wider than `tolerance_model` cubic model units; infinity ends the work with the proof.
+ *
+ * Only cells of one solid are split where the other one is. The work ends at the frame's depth, or once `max_splits`
+ * cells of both are split, with what is known by then.
+ *
+ * - Buffers: `frame`, one struct; `options`, one struct or NULL; `interference`, one struct.
+ * - Result: `*interference`.
+ * - Errors: LEAFLESS_E_FRAME if a solid belongs to another frame; LEAFLESS_E_ARGUMENT as leafless_frame_check, or if
+ *   the tolerance is negative or not a number; LEAFLESS_E_CALLBACK; LEAFLESS_E_DAMAGED; LEAFLESS_E_CANCELLED;
+ *   LEAFLESS_E_NO_MEMORY.
+ * - Ownership: nothing changes hands.
+ * - Threads: any; works in the calling thread.
+ * - Untrusted input: any solids; set `max_splits` where the depth or the solids are not your own choice.
+ * - Since: 0.1
+ */
+leafless_status leafless_solid_interfere(const leafless_solid *a,
+                                         const leafless_solid *b,
+                                         const leafless_frame *frame,
+                                         double tolerance_model,
+                                         const leafless_options *options,
+                                         leafless_interference *interference);
+
+/**
+ * As leafless_solid_interfere of `a` with `b` under each of many affine maps, as leafless_solid_new_transform makes
+ * them. `max_splits` concerns each of them. The results are the same for any number of threads.
+ *
+ * - Buffers: `own`, one struct, the frame of `b`; `matrices`, `count` times 12 numbers; `frame`, one struct, that of
+ *   `a`; `options`, one struct or NULL; `interferences`, room for `count`. `matrices` and `interferences` may be NULL if
+ *   `count` is 0.
+ * - Result: `interferences[i]` for map i.
+ * - Errors: as leafless_solid_interfere and leafless_solid_new_transform; nothing is then written.
+ * - Ownership: nothing changes hands.
+ * - Threads: any; uses as many as `options` says.
+ * - Untrusted input: as leafless_solid_interfere, and any numbers.
+ * - Since: 0.1
+ */
+leafless_status leafless_solid_interfere_many(const leafless_solid *a,
+                                              const leafless_solid *b,
+                                              const leafless_frame *own,
+                                              const double *matrices,
+                                              uint64_t count,
+                                              const leafless_frame *frame,
+                                              double tolerance_model,
+                                              const leafless_options *options,
+                                              leafless_interference *interferences);
+
+/**
+ * The distance between two solids, as they are in the universe of a frame. The work ends when the interval is no wider
+ * than `tolerance_model` (model units), at the frame's depth, or once `max_splits` cells of both are split, with what is
+ * known by then. About twice the diagonal of a finest cell is what can be had for any solids; less may take all pairs of
+ * cells near a contact.
+ *
+ * - Buffers: `frame`, one struct; `options`, one struct or NULL; `clearance`, one struct.
+ * - Result: `*clearance`.
+ * - Errors: as leafless_solid_interfere.
+ * - Ownership: nothing changes hands.
+ * - Threads: any; works in the calling thread.
+ * - Untrusted input: as leafless_solid_interfere.
+ * - Since: 0.1
+ */
+leafless_status leafless_solid_clearance(const leafless_solid *a,
+                                         const leafless_solid *b,
+                                         const leafless_frame *frame,
+                                         double tolerance_model,
+                                         const leafless_options *options,
+                                         leafless_clearance *clearance);
 
 /**
  * What a file says of itself, without looking at more than header and section table. Whether the rest is good is

@@ -29,6 +29,7 @@ const SECTIONS: &[&str] = &[
     "op",
     "query",
     "lazy",
+    "interference",
     "file",
     "layout",
 ];

@@ -31,13 +31,22 @@ fn depth(depth: u32) -> u8 {
     u8::try_from(depth).unwrap_or(u8::MAX)
 }
 
-/// The frame at `pointer`.
+/// The frame at `pointer`, the parameter `frame`.
 ///
 /// # Safety
 /// As [`shared`].
 pub(super) unsafe fn frame(pointer: *const leafless_frame) -> Result<Frame, Failure> {
     // SAFETY: the caller's promise.
-    let frame = unsafe { shared(pointer, "frame")? };
+    unsafe { frame_of(pointer, "frame") }
+}
+
+/// The frame at `pointer`.
+///
+/// # Safety
+/// As [`shared`].
+pub(super) unsafe fn frame_of(pointer: *const leafless_frame, name: &'static str) -> Result<Frame, Failure> {
+    // SAFETY: the caller's promise.
+    let frame = unsafe { shared(pointer, name)? };
     Ok(Frame::new(frame.origin, frame.edge, depth(frame.depth))?)
 }
 

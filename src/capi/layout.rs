@@ -57,6 +57,13 @@ fn write_all(to: &mut dyn Write) -> fmt::Result {
         leafless_octree_info { frame, elements, bricks, root, exterior, is_binary, is_clipped }
         leafless_statistics { nodes, empty, full, partial, lower_cells, upper_cells, volume_model }
         leafless_lazy_counts { splits, replays, evaluations, bytes }
+        leafless_interference {
+            volume_model, splits_a, splits_b, evaluations, verdict, level, witness, witness_level, is_clipped
+        }
+        leafless_clearance {
+            distance_model, splits_a, splits_b, evaluations, nearest_a, nearest_a_level, nearest_b, nearest_b_level,
+            has_nearest, is_clipped
+        }
         leafless_cursor_state { cell, level, tag, children }
         leafless_probe {
             major, minor, frame, elements, bricks, file_length, sections, root, exterior, is_binary
@@ -78,6 +85,7 @@ fn write_all(to: &mut dyn Write) -> fmt::Result {
             LEAFLESS_REGION_UNDECIDED
         }
         leafless_touch { LEAFLESS_TOUCH_EXACT, LEAFLESS_TOUCH_PAPER }
+        leafless_overlap { LEAFLESS_OVERLAP_DISJOINT, LEAFLESS_OVERLAP_OVERLAPPING, LEAFLESS_OVERLAP_UNDECIDED }
         leafless_fill { LEAFLESS_FILL_NON_ZERO, LEAFLESS_FILL_EVEN_ODD, LEAFLESS_FILL_POSITIVE }
         leafless_vertex_type { LEAFLESS_VERTEX_F64, LEAFLESS_VERTEX_F32 }
         leafless_index_type { LEAFLESS_INDEX_U32, LEAFLESS_INDEX_U64, LEAFLESS_INDEX_U16 }

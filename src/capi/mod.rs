@@ -19,6 +19,7 @@
 //! | `op` | building, resolving, Booleans |
 //! | `query` | points, boxes, cursors |
 //! | `lazy` | octrees that are split on demand |
+//! | `interference` | solids under affine maps; overlap and distance of two solids |
 //! | `file` | files and their bytes |
 //! | `layout` | for tests: what the structs look like |
 
@@ -31,6 +32,7 @@ mod control;
 mod csg;
 mod file;
 mod frame;
+mod interference;
 #[cfg(feature = "capi-test")]
 mod layout;
 mod lazy;
@@ -51,6 +53,7 @@ pub use control::*;
 pub use csg::*;
 pub use file::*;
 pub use frame::*;
+pub use interference::*;
 #[cfg(feature = "capi-test")]
 pub use layout::*;
 pub use lazy::*;
