@@ -1140,6 +1140,8 @@ typedef struct {
      */
     uint64_t bytes;
 } leafless_lazy_counts;
+
+/**
  * What is known of two solids inside of the universe of a frame.
  */
 typedef struct {
@@ -3059,6 +3061,8 @@ leafless_status leafless_lazy_splits(const leafless_lazy *lazy,
 leafless_status leafless_lazy_freeze(const leafless_lazy *lazy,
                                      const leafless_options *options,
                                      leafless_octree **octree);
+
+/**
  * A solid, known on a frame of its own, under an affine map.
  *
  * A cell is FULL or EMPTY if all the cells of the solid's own frame are that its inverse image touches: cells of about
