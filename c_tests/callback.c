@@ -94,6 +94,28 @@ static void gone_with_all(void *ctx) {
     h->destroyed++;
 }
 
+static int32_t balls(void *ctx, const double *boxes, uint64_t count, int32_t *tags) {
+    uint64_t i;
+    for (i = 0; i < count; i++) {
+        tags[i] = ball(ctx, boxes + 6 * i, boxes + 6 * i + 3);
+    }
+    return ((host *)ctx)->answer;
+}
+
+static int32_t in_balls(void *ctx, const double *points, uint64_t count, int32_t *inside) {
+    uint64_t i;
+    for (i = 0; i < count; i++) {
+        inside[i] = in_ball(ctx, points + 3 * i);
+    }
+    return ((host *)ctx)->answer;
+}
+
+/* Sets nothing. */
+static int32_t lazy_balls(void *ctx, const double *boxes, uint64_t count, int32_t *tags) {
+    (void)ctx, (void)boxes, (void)count, (void)tags;
+    return 0;
+}
+
 static leafless_callbacks callbacks_of(host *h) {
     leafless_callbacks callbacks;
     memset(&callbacks, 0, sizeof callbacks);
@@ -263,8 +285,39 @@ static void may_call_the_library(void) {
     CHECK(h.destroyed == 1);
 }
 
+/* Many at once: the same octrees, in fewer calls; errors, and tags that are not set, end the work. */
+static void many_at_once(void) {
+    static const uint32_t rules[] = {LEAFLESS_RULE_CERTIFIED, LEAFLESS_RULE_SAMPLED};
+    const leafless_frame frame = check_frame(6);
+    const leafless_options options = one_thread();
+    size_t i;
+    for (i = 0; i < COUNT(rules); i++) {
+        host h = {0.75, 0, 0, 0, 0, NULL, NULL};
+        leafless_callbacks callbacks = callbacks_of(&h);
+        leafless_solid *solid = NULL;
+        leafless_octree *own = NULL, *known = check_ball(6, rules[i]);
+        callbacks.classify_many = balls;
+        callbacks.contains_many = in_balls;
+        callbacks.contains = NULL;
+        OK(leafless_solid_new_callbacks(&callbacks, &solid));
+        OK(leafless_octree_build(solid, &frame, rules[i], &options, &own));
+        CHECK(check_same(own, known));
+        leafless_octree_free(own);
+        own = NULL;
+        h.answer = -17;
+        FAILS(LEAFLESS_E_CALLBACK, leafless_octree_build(solid, &frame, rules[i], &options, &own));
+        leafless_solid_free(solid);
+        callbacks.classify_many = lazy_balls;
+        OK(leafless_solid_new_callbacks(&callbacks, &solid));
+        FAILS(LEAFLESS_E_CALLBACK, leafless_octree_build(solid, &frame, rules[i], &options, &own));
+        leafless_solid_free(solid);
+        leafless_octree_free(known);
+    }
+}
+
 int main(void) {
     equals_the_library();
+    many_at_once();
     is_destroyed_once();
     garbage_is_refused();
     may_call_the_library();

@@ -27,6 +27,103 @@ static leafless_solid *ball(double radius) {
     return solid;
 }
 
+/* z <= x y, which over a box is least and greatest at corners; on this frame nothing is rounded. */
+static int32_t saddle_value(void *ctx, const double *p, double *value) {
+    ++*(int *)ctx;
+    *value = p[0] * p[1] - p[2];
+    return 0;
+}
+
+static int32_t saddle_range(void *ctx, const double *min, const double *max, leafless_interval *range) {
+    const double xy[4] = {min[0] * min[1], min[0] * max[1], max[0] * min[1], max[0] * max[1]};
+    double least = xy[0], most = xy[0];
+    int i;
+    ++*(int *)ctx;
+    for (i = 1; i < 4; i++) {
+        least = xy[i] < least ? xy[i] : least;
+        most = xy[i] > most ? xy[i] : most;
+    }
+    range->lower = least - max[2];
+    range->upper = most - min[2];
+    return 0;
+}
+
+static int32_t failing_range(void *ctx, const double *min, const double *max, leafless_interval *range) {
+    (void)ctx, (void)min, (void)max, (void)range;
+    return -42;
+}
+
+static void gone(void *ctx) {
+    *(int *)ctx = -1;
+}
+
+static void functions(void) {
+    const double low[3] = {-1, -1, -1}, high[3] = {1, 1, 1};
+    int calls = 0;
+    leafless_function function;
+    leafless_solid *a = NULL, *b = NULL, *c = NULL;
+    const leafless_solid *parts[2];
+    leafless_octree *octree = NULL;
+    char message[512];
+    OK(leafless_function_init(&function, sizeof function));
+    function.value = saddle_value;
+    function.range = saddle_range;
+    function.destroy = gone;
+    function.ctx = &calls;
+    OK(leafless_solid_new_function(&function, &a));
+    OK(leafless_solid_new_box(low, high, &b));
+    parts[0] = a, parts[1] = b;
+    OK(leafless_solid_intersection(parts, 2, &c));
+    leafless_solid_free(b);
+    CHECK(statistics_of(c, LEAFLESS_RULE_SAMPLED).partial == 0);
+    has_volume(c, 4);
+    CHECK(calls > 1000);
+    leafless_solid_free(a);
+    CHECK(calls == -1);
+    function.range = failing_range;
+    OK(leafless_solid_new_function(&function, &a));
+    FAILS(LEAFLESS_E_CALLBACK, leafless_octree_build(a, &frame, LEAFLESS_RULE_CERTIFIED, NULL, &octree));
+    leafless_last_error(message, sizeof message);
+    CHECK(strstr(message, "-42") != NULL);
+    leafless_solid_free(a);
+}
+
+static void other_primitives(void) {
+    const double pi = 3.14159265358979323846;
+    const double weights[3] = {-1, -1, -1}, centre[3] = {0, 0, 0}, size[3] = {1, 1.5, 0.5};
+    const uint32_t exponents[3] = {4, 4, 4}, too_high[3] = {4, 65, 4};
+    /* An L, clockwise. */
+    const double polygon[6][2] = {{0, 0}, {0, 2}, {1, 2}, {1, 1}, {2, 1}, {2, 0}};
+    const double crossing[4][2] = {{0, 0}, {1, 1}, {1, 0}, {0, 1}};
+    /* The octahedron |x| + |y| + |z| <= 1. */
+    double planes[8][4];
+    leafless_solid *a = NULL;
+    int i;
+    OK(leafless_solid_new_power(weights, centre, exponents, 1, &a));
+    /* 8 gamma(5/4)^3 / gamma(7/4) */
+    has_volume(a, 6.48200);
+    OK(leafless_solid_new_torus(1.25, 0.5, &a));
+    has_volume(a, 2 * pi * pi * 1.25 * 0.25);
+    OK(leafless_solid_new_wedge(size, 0.25, &a));
+    has_volume(a, 0.5 * 1.5 * (1 + 0.25) / 2);
+    OK(leafless_solid_new_prism(&polygon[0][0], 6, -1, 1, &a));
+    has_volume(a, 6);
+    for (i = 0; i < 8; i++) {
+        planes[i][0] = i & 1 ? 1 : -1, planes[i][1] = i & 2 ? 1 : -1, planes[i][2] = i & 4 ? 1 : -1;
+        planes[i][3] = 1;
+    }
+    OK(leafless_solid_new_convex(&planes[0][0], 8, &a));
+    has_volume(a, 4.0 / 3.0);
+    FAILS(LEAFLESS_E_ARGUMENT, leafless_solid_new_power(weights, centre, too_high, 1, &a));
+    FAILS(LEAFLESS_E_ARGUMENT, leafless_solid_new_power(centre, centre, exponents, 1, &a));
+    FAILS(LEAFLESS_E_ARGUMENT, leafless_solid_new_torus(1, 0, &a));
+    FAILS(LEAFLESS_E_ARGUMENT, leafless_solid_new_wedge(size, -1, &a));
+    FAILS(LEAFLESS_E_ARGUMENT, leafless_solid_new_prism(&crossing[0][0], 4, 0, 1, &a));
+    FAILS(LEAFLESS_E_ARGUMENT, leafless_solid_new_prism(&polygon[0][0], 2, 0, 1, &a));
+    FAILS(LEAFLESS_E_ARGUMENT, leafless_solid_new_prism(&polygon[0][0], 6, 1, 0, &a));
+    FAILS(LEAFLESS_E_ARGUMENT, leafless_solid_new_convex(NULL, 0, &a));
+}
+
 int main(void) {
     const double pi = 3.14159265358979323846;
     const double low[3] = {-1, -1, -1}, high[3] = {1, 1, 1}, radii[3] = {1, 1.5, 0.5};
@@ -40,6 +137,8 @@ int main(void) {
     leafless_statistics exact, paper;
     int i;
 
+    functions();
+    other_primitives();
     OK(leafless_solid_new_quadric(quadric, &a));
     has_volume(a, 4.0 / 3.0 * pi / sqrt(0.75));
     OK(leafless_solid_new_ellipsoid(origin, radii, &a));

@@ -51,6 +51,19 @@ static int32_t classify(void *ctx, const double *min, const double *max) {
     return min[0] >= 0.0 ? LEAFLESS_TAG_FULL : max[0] <= 0.0 ? LEAFLESS_TAG_EMPTY : LEAFLESS_TAG_PARTIAL;
 }
 
+static int32_t value(void *ctx, const double *at, double *result) {
+    (void)ctx;
+    *result = at[0];
+    return 0;
+}
+
+static int32_t range(void *ctx, const double *min, const double *max, leafless_interval *result) {
+    (void)ctx;
+    result->lower = min[0];
+    result->upper = max[0];
+    return 0;
+}
+
 static int32_t take(void *ctx, const uint8_t *bytes, uint64_t count) {
     (void)ctx;
     (void)bytes;
@@ -76,6 +89,9 @@ static void null_pointers(void) {
     leafless_solid **solid_result = (leafless_solid **)&never;
     const leafless_octree *list[2];
     const leafless_solid *solids[2];
+    const uint32_t exponents[3] = {2, 4, 3};
+    const double triangle[6] = {0, 0, 1, 0, 0, 1};
+    leafless_function function;
     leafless_callbacks callbacks;
     const uint32_t cell[3] = {0, 0, 0};
     const leafless_mesh_arrays arrays = check_arrays(CHECK_CUBE, 8, CHECK_CUBE_TRIANGLES, 12);
@@ -201,6 +217,34 @@ static void null_pointers(void) {
     NULL_POINTER(leafless_solid_new_ellipsoid, solid, leafless_solid_new_ellipsoid(point, above, NULL));
     NULL_POINTER(leafless_solid_new_cylinder, solid, leafless_solid_new_cylinder(1, 0, 1, NULL));
     NULL_POINTER(leafless_solid_new_frustum, solid, leafless_solid_new_frustum(1, 0, 0, 1, NULL));
+    NULL_POINTER(leafless_solid_new_power, coefficients,
+                 leafless_solid_new_power(NULL, point, exponents, 1, solid_result));
+    NULL_POINTER(leafless_solid_new_power, centre_model,
+                 leafless_solid_new_power(above, NULL, exponents, 1, solid_result));
+    NULL_POINTER(leafless_solid_new_power, exponents,
+                 leafless_solid_new_power(above, point, NULL, 1, solid_result));
+    NULL_POINTER(leafless_solid_new_power, solid, leafless_solid_new_power(above, point, exponents, 1, NULL));
+    NULL_POINTER(leafless_solid_new_torus, solid, leafless_solid_new_torus(2, 1, NULL));
+    NULL_POINTER(leafless_solid_new_wedge, size_model, leafless_solid_new_wedge(NULL, 1, solid_result));
+    NULL_POINTER(leafless_solid_new_wedge, solid, leafless_solid_new_wedge(above, 1, NULL));
+    NULL_POINTER(leafless_solid_new_prism, polygon_model, leafless_solid_new_prism(NULL, 3, 0, 1, solid_result));
+    NULL_POINTER(leafless_solid_new_prism, solid, leafless_solid_new_prism(triangle, 3, 0, 1, NULL));
+    NULL_POINTER(leafless_solid_new_convex, planes, leafless_solid_new_convex(NULL, 3, solid_result));
+    NULL_POINTER(leafless_solid_new_convex, solid, leafless_solid_new_convex(matrix, 3, NULL));
+    NULL_POINTER(leafless_function_init, function, leafless_function_init(NULL, sizeof(leafless_function)));
+    NULL_POINTER(leafless_solid_new_function, function, leafless_solid_new_function(NULL, solid_result));
+    memset(&function, 0, sizeof function);
+    function.struct_size = sizeof function;
+    refused(LEAFLESS_E_NULL, "leafless_solid_new_function", "function.value",
+            leafless_solid_new_function(&function, solid_result));
+    function.value = value;
+    refused(LEAFLESS_E_NULL, "leafless_solid_new_function", "function.range",
+            leafless_solid_new_function(&function, solid_result));
+    function.range = range;
+    NULL_POINTER(leafless_solid_new_function, solid, leafless_solid_new_function(&function, NULL));
+    function.reserved = 1;
+    refused(LEAFLESS_E_ARGUMENT, "leafless_solid_new_function", "function.reserved",
+            leafless_solid_new_function(&function, solid_result));
     solids[0] = solids[1] = solid;
 #define JOIN(function)                                                                                               \
     NULL_POINTER(function, solids, function(NULL, 2, solid_result));                                                 \

@@ -26,6 +26,7 @@ const SECTIONS: &[&str] = &[
     "octree",
     "solid",
     "csg",
+    "host",
     "op",
     "query",
     "lazy",

@@ -238,6 +238,139 @@ pub unsafe extern "C" fn leafless_solid_new_frustum(
     })
 }
 
+/// The points p with A (x − a)^n + B (y − b)^m + C (z − c)^k + `constant` ≥ 0. Its signs are exact.
+///
+/// - Buffers: `coefficients` A, B, C, `centre_model` a, b, c, and `exponents` n, m, k, 3 numbers each; `solid`, one
+///   pointer.
+/// - Result: `*solid`.
+/// - Errors: LEAFLESS_E_ARGUMENT if all coefficients are 0, an exponent is not 1 to 64, or a number neither 0 nor of
+///   a magnitude between 2^-256 and 2^256.
+/// - Ownership: give `*solid` back with leafless_solid_free.
+/// - Threads: any.
+/// - Untrusted input: any numbers.
+/// - Since: 0.1
+///
+/// cbindgen:ptrs-as-arrays=[[coefficients; 3], [centre_model; 3], [exponents; 3]]
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_solid_new_power(
+    coefficients: *const f64,
+    centre_model: *const f64,
+    exponents: *const u32,
+    constant: f64,
+    solid: *mut *mut leafless_solid,
+) -> leafless_status {
+    guard(|| unsafe {
+        let coefficients: [f64; 3] = array(coefficients, "coefficients")?;
+        let centre: [f64; 3] = array(centre_model, "centre_model")?;
+        let exponents: [u32; 3] = array(exponents, "exponents")?;
+        let terms = [0, 1, 2].map(|i| (coefficients[i], centre[i], exponents[i]));
+        let solid = out(solid, "solid")?;
+        solid.write(give(Csg::from(HalfSpace::power(terms, constant)?)))
+    })
+}
+
+/// The torus around the z axis: all points at most `minor` from the circle of radius `major` in the plane z = 0;
+/// where `minor` is greater, there is no hollow core.
+///
+/// - Buffers: `solid`, one pointer.
+/// - Result: `*solid`.
+/// - Errors: LEAFLESS_E_ARGUMENT if a radius is not between 2^-256 and 2^256; `major` may be 0, which makes a ball.
+/// - Ownership: give `*solid` back with leafless_solid_free.
+/// - Threads: any.
+/// - Untrusted input: any numbers.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_solid_new_torus(
+    major_model: f64,
+    minor_model: f64,
+    solid: *mut *mut leafless_solid,
+) -> leafless_status {
+    guard(|| unsafe {
+        let solid = out(solid, "solid")?;
+        solid.write(give(Csg::torus(major_model, minor_model)?))
+    })
+}
+
+/// The right angular wedge: the box between the origin and `size` whose face at the greatest y is narrowed, or
+/// widened, to 0 ≤ x ≤ `top`; 0 makes that face an edge. (So it is defined by STEP, ISO 10303-42.)
+///
+/// - Buffers: `size_model`, 3 numbers; `solid`, one pointer.
+/// - Result: `*solid`.
+/// - Errors: LEAFLESS_E_ARGUMENT if a size, or `top` unless it is 0, is not between 2^-256 and 2^256.
+/// - Ownership: give `*solid` back with leafless_solid_free.
+/// - Threads: any.
+/// - Untrusted input: any numbers.
+/// - Since: 0.1
+///
+/// cbindgen:ptrs-as-arrays=[[size_model; 3]]
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_solid_new_wedge(
+    size_model: *const f64,
+    top_model: f64,
+    solid: *mut *mut leafless_solid,
+) -> leafless_status {
+    guard(|| unsafe {
+        let size = array(size_model, "size_model")?;
+        let solid = out(solid, "solid")?;
+        solid.write(give(Csg::wedge(size, top_model)?))
+    })
+}
+
+/// The prism over a simple polygon in the xy plane, between z = `low` and z = `high`. The polygon's corners are given
+/// in order, in either direction of rotation; the last is joined to the first. The planes through its edges are
+/// exact.
+///
+/// - Buffers: `polygon_model`, `count` points of 2 numbers each; `solid`, one pointer.
+/// - Result: `*solid`.
+/// - Errors: LEAFLESS_E_ARGUMENT if the outline touches or crosses itself or encloses nothing, a coordinate is
+///   neither 0 nor of a magnitude between 2^-256 and 2^256, or `low` not less than `high`; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: give `*solid` back with leafless_solid_free.
+/// - Threads: any.
+/// - Untrusted input: any numbers.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_solid_new_prism(
+    polygon_model: *const f64,
+    count: u64,
+    low_model: f64,
+    high_model: f64,
+    solid: *mut *mut leafless_solid,
+) -> leafless_status {
+    guard(|| unsafe {
+        let polygon = slice(polygon_model.cast::<[f64; 2]>(), count, "polygon_model")?;
+        let solid = out(solid, "solid")?;
+        solid.write(give(Csg::prism(polygon, low_model, high_model)?))
+    })
+}
+
+/// The convex polyhedron of the points p with normal · p + offset ≥ 0 for all of the planes. It may be unbounded, or
+/// empty.
+///
+/// - Buffers: `planes`, `count` of 4 numbers each: the normal, of any length and pointing inward, and the offset;
+///   `solid`, one pointer.
+/// - Result: `*solid`.
+/// - Errors: LEAFLESS_E_ARGUMENT if there is no plane, a normal is zero, or a number neither 0 nor of a magnitude
+///   between 2^-256 and 2^256; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: give `*solid` back with leafless_solid_free.
+/// - Threads: any.
+/// - Untrusted input: any numbers.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_solid_new_convex(
+    planes: *const f64,
+    count: u64,
+    solid: *mut *mut leafless_solid,
+) -> leafless_status {
+    guard(|| unsafe {
+        let given = slice(planes.cast::<[f64; 4]>(), count, "planes")?;
+        let mut planes = Vec::new();
+        planes.try_reserve_exact(given.len()).map_err(|_| Error::OutOfMemory)?;
+        planes.extend(given.iter().map(|&[x, y, z, offset]| ([x, y, z], offset)));
+        let solid = out(solid, "solid")?;
+        solid.write(give(Csg::convex(&planes)?))
+    })
+}
+
 /// What at least one of the solids contains; nothing, if there is none. No tree is built: the result asks its
 /// operands about each cell that it is asked about, and expressions of half-spaces join into one.
 ///

@@ -53,7 +53,10 @@ fn write_all(to: &mut dyn Write) -> fmt::Result {
         }
         leafless_mesh_options { struct_size, format, unit, target, scale }
         leafless_mesh_source { format, unit, skipped }
-        leafless_callbacks { struct_size, exterior, classify, contains, destroy, ctx, fingerprint }
+        leafless_callbacks {
+            struct_size, exterior, classify, contains, destroy, ctx, fingerprint, classify_many, contains_many
+        }
+        leafless_function { struct_size, reserved, value, range, destroy, ctx, fingerprint }
         leafless_octree_info { frame, elements, bricks, root, exterior, is_binary, is_clipped }
         leafless_statistics { nodes, empty, full, partial, lower_cells, upper_cells, volume_model }
         leafless_lazy_counts { splits, replays, evaluations, bytes }

@@ -32,6 +32,7 @@ mod control;
 mod csg;
 mod file;
 mod frame;
+mod host;
 mod interference;
 #[cfg(feature = "capi-test")]
 mod layout;
@@ -53,6 +54,7 @@ pub use control::*;
 pub use csg::*;
 pub use file::*;
 pub use frame::*;
+pub use host::*;
 pub use interference::*;
 #[cfg(feature = "capi-test")]
 pub use layout::*;

@@ -265,6 +265,12 @@ impl<S: Solid> Builder<'_, S> {
         if planes.partial().count_ones() as usize != worker.parts.len() - first {
             return Err(Error::NotSampled);
         }
+        if self.levels > 1 || !starts_half_way(self.frame.depth()) {
+            let parts = &worker.parts[first..];
+            let inside = self.solid.sample64(&mut worker.scratch, cube, parts)?.ok_or(Error::NotSampled)?;
+            return Ok(Planes::binary(planes.full() | inside & planes.partial()));
+        }
+        // The only element is a root that starts half-way: its cells are children.
         let mut result = planes;
         for i in first..worker.parts.len() {
             let (c, part) = worker.parts[i].clone();

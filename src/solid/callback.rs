@@ -1,4 +1,4 @@
-//! A host program's own shape, through two functions.
+//! A host program's own shape, through its functions.
 
 use super::{Fingerprint, Solid, Verdict};
 use crate::error::Error;
@@ -6,8 +6,12 @@ use crate::lattice::{Cell, Cube, Frame};
 use crate::octree::Tag;
 use alloc::boxed::Box;
 
-/// Decides single points, where the host can.
-type Contains<'a> = Box<dyn Fn([f64; 3]) -> Result<bool, Error> + Send + Sync + 'a>;
+/// Decides points, where the host can.
+type Contains<'a> = Box<dyn Fn(&[[f64; 3]], &mut [bool]) -> Result<(), Error> + Send + Sync + 'a>;
+
+/// Classifies many boxes at once.
+type ClassifyMany<'a> =
+    Box<dyn Fn(&[[[f64; 3]; 2]], &mut [Verdict<()>]) -> Result<(), Error> + Send + Sync + 'a>;
 
 /// A shape that a host program classifies: how a B-rep kernel, a distance field, or a simulation takes part.
 ///
@@ -27,6 +31,7 @@ type Contains<'a> = Box<dyn Fn([f64; 3]) -> Result<bool, Error> + Send + Sync + 
 /// ```
 pub struct Callback<'a, F> {
     classify: F,
+    classify_many: Option<ClassifyMany<'a>>,
     contains: Option<Contains<'a>>,
     exterior: Tag,
     fingerprint: Option<Fingerprint>,
@@ -39,14 +44,41 @@ impl<'a, F: Fn([f64; 3], [f64; 3]) -> Result<Verdict<()>, Error> + Sync> Callbac
     /// answer to the same box. An error, such as [`Error::Callback`], ends the operation and is what that
     /// returns.
     pub fn new(classify: F) -> Callback<'a, F> {
-        Callback { classify, contains: None, exterior: Tag::Partial, fingerprint: None }
+        Callback { classify, classify_many: None, contains: None, exterior: Tag::Partial, fingerprint: None }
+    }
+
+    /// The same solid with a function that classifies several boxes (lower and upper corner each) at once, for hosts
+    /// that do that faster than one by one; its answers must be those of the single form. It gets as many verdicts to
+    /// set as there are boxes, all of them undecided.
+    #[must_use]
+    pub fn with_classify_many(
+        mut self,
+        classify: impl Fn(&[[[f64; 3]; 2]], &mut [Verdict<()>]) -> Result<(), Error> + Send + Sync + 'a,
+    ) -> Callback<'a, F> {
+        self.classify_many = Some(Box::new(classify));
+        self
     }
 
     /// The same solid with a function that decides single points (model units): the sampled rule needs it.
     #[must_use]
     pub fn with_contains(
-        mut self,
+        self,
         contains: impl Fn([f64; 3]) -> Result<bool, Error> + Send + Sync + 'a,
+    ) -> Callback<'a, F> {
+        self.with_contains_many(move |points, inside| {
+            for (point, inside) in points.iter().zip(inside) {
+                *inside = contains(*point)?;
+            }
+            Ok(())
+        })
+    }
+
+    /// As [`with_contains`](Self::with_contains), for several points at once. It gets as many answers to set as there
+    /// are points.
+    #[must_use]
+    pub fn with_contains_many(
+        mut self,
+        contains: impl Fn(&[[f64; 3]], &mut [bool]) -> Result<(), Error> + Send + Sync + 'a,
     ) -> Callback<'a, F> {
         self.contains = Some(Box::new(contains));
         self
@@ -83,6 +115,11 @@ impl<F: Fn([f64; 3], [f64; 3]) -> Result<Verdict<()>, Error> + Sync> Solid for C
 
     fn split(&self, _: &mut (), cube: &Cube<'_>, _: &()) -> Result<[Verdict<()>; 8], Error> {
         let mut verdicts = [Verdict::Undecided; 8];
+        if let Some(classify) = &self.classify_many {
+            let boxes = [0, 1, 2, 3, 4, 5, 6, 7].map(|octant| <[_; 2]>::from(cube.child(octant).bounds()));
+            classify(&boxes, &mut verdicts)?;
+            return Ok(verdicts);
+        }
         for (octant, verdict) in (0..8).zip(&mut verdicts) {
             *verdict = self.verdict(&cube.child(octant))?;
         }
@@ -90,13 +127,23 @@ impl<F: Fn([f64; 3], [f64; 3]) -> Result<Verdict<()>, Error> + Sync> Solid for C
     }
 
     fn sample(&self, _: &mut (), cube: &Cube<'_>, _: &()) -> Result<Option<bool>, Error> {
-        let frame = cube.frame;
-        let size = frame.cell_size();
-        let mut centre = frame.origin();
-        for axis in 0..3 {
-            centre[axis] += (cube.cell.at[axis] as f64 + 0.5) * size;
+        let Some(contains) = &self.contains else { return Ok(None) };
+        let mut inside = [false];
+        contains(&[centre(cube)], &mut inside)?;
+        Ok(Some(inside[0]))
+    }
+
+    fn sample64(&self, _: &mut (), cube: &Cube<'_>, parts: &[(u8, ())]) -> Result<Option<u64>, Error> {
+        let Some(contains) = &self.contains else { return Ok(None) };
+        let (mut points, mut inside) = ([[0.0; 3]; 64], [false; 64]);
+        let parts = parts.get(..64).unwrap_or(parts);
+        for ((c, ()), point) in parts.iter().zip(&mut points) {
+            *point = centre(&cube.child(c >> 3).child(c & 7));
         }
-        self.contains.as_ref().map(|contains| contains(centre)).transpose()
+        let count = parts.len();
+        contains(&points[..count], &mut inside[..count])?;
+        let bits = parts.iter().zip(inside).map(|((c, ()), inside)| (inside as u64) << (c & 63));
+        Ok(Some(bits.fold(0, |all, bit| all | bit)))
     }
 
     fn exterior(&self, _: &Frame) -> Tag {
@@ -106,4 +153,15 @@ impl<F: Fn([f64; 3], [f64; 3]) -> Result<Verdict<()>, Error> + Sync> Solid for C
     fn fingerprint(&self) -> Option<Fingerprint> {
         self.fingerprint
     }
+}
+
+/// The centre of a cell of the frame's depth.
+fn centre(cube: &Cube<'_>) -> [f64; 3] {
+    let frame = cube.frame;
+    let size = frame.cell_size();
+    let mut centre = frame.origin();
+    for axis in 0..3 {
+        centre[axis] += (cube.cell.at[axis] as f64 + 0.5) * size;
+    }
+    centre
 }

@@ -78,6 +78,15 @@ impl<S: Solid> Solid for Counted<S> {
         self.count(scratch, |scratch| self.solid.sample(scratch, cube, part))
     }
 
+    fn sample64(
+        &self,
+        scratch: &mut S::Scratch,
+        cube: &Cube<'_>,
+        parts: &[(u8, S::Part)],
+    ) -> Result<Option<u64>, Error> {
+        self.count(scratch, |scratch| self.solid.sample64(scratch, cube, parts))
+    }
+
     fn exterior(&self, frame: &Frame) -> Tag {
         self.solid.exterior(frame)
     }

@@ -6,7 +6,7 @@
 use super::{Fingerprint, Scratch, Solid, Verdict};
 use crate::error::Error;
 use crate::lattice::{Cube, Frame};
-use crate::octree::{Block, Tag};
+use crate::octree::{Block, Planes, Tag};
 use alloc::boxed::Box;
 use alloc::sync::Arc;
 use alloc::vec::Vec;
@@ -41,6 +41,8 @@ impl AnySolid {
 struct Typed<S: Solid> {
     scratch: S::Scratch,
     parts: Vec<(S::Part, usize)>,
+    /// Those of an element on their way in or out.
+    passing: Vec<(u8, S::Part)>,
 }
 
 impl<S: Solid> Typed<S> {
@@ -103,7 +105,11 @@ impl ErasedScratch {
     /// mean nothing here.
     fn typed<S: Solid<Part: 'static, Scratch: 'static> + 'static>(&mut self) -> &mut Typed<S> {
         if !self.0.as_ref().is_some_and(|slot| slot.as_any().is::<Typed<S>>()) {
-            self.0 = Some(Box::new(Typed::<S> { scratch: S::Scratch::default(), parts: Vec::new() }));
+            self.0 = Some(Box::new(Typed::<S> {
+                scratch: S::Scratch::default(),
+                parts: Vec::new(),
+                passing: Vec::new(),
+            }));
         }
         let slot = self.0.as_mut().and_then(|slot| slot.as_any_mut().downcast_mut());
         slot.unwrap_or_else(|| unreachable!("the slot was just made for this type"))
@@ -128,6 +134,19 @@ trait Erased: Send + Sync {
         cube: &Cube<'_>,
         part: ErasedPart,
     ) -> Result<[Verdict<ErasedPart>; 8], Error>;
+    fn split64(
+        &self,
+        scratch: &mut ErasedScratch,
+        cube: &Cube<'_>,
+        part: ErasedPart,
+        parts: &mut Vec<(u8, ErasedPart)>,
+    ) -> Result<Planes, Error>;
+    fn sample64(
+        &self,
+        scratch: &mut ErasedScratch,
+        cube: &Cube<'_>,
+        parts: &[(u8, ErasedPart)],
+    ) -> Result<Option<u64>, Error>;
     fn fill(
         &self,
         scratch: &mut ErasedScratch,
@@ -186,6 +205,46 @@ impl<S: Solid<Part: 'static, Scratch: 'static> + Send + 'static> Erased for S {
             };
         }
         Ok(verdicts)
+    }
+
+    fn split64(
+        &self,
+        scratch: &mut ErasedScratch,
+        cube: &Cube<'_>,
+        part: ErasedPart,
+        parts: &mut Vec<(u8, ErasedPart)>,
+    ) -> Result<Planes, Error> {
+        let typed = scratch.typed::<S>();
+        let Some((part, _)) = typed.parts.get(part.0).cloned() else {
+            return Ok(Planes::uniform(Tag::Partial));
+        };
+        typed.passing.clear();
+        let planes = Solid::split64(self, &mut typed.scratch, cube, &part, &mut typed.passing)?;
+        parts.try_reserve(typed.passing.len()).map_err(|_| Error::OutOfMemory)?;
+        typed.parts.try_reserve(typed.passing.len()).map_err(|_| Error::OutOfMemory)?;
+        let Typed { scratch, parts: kept, passing } = typed;
+        let height = scratch.mark();
+        for (c, part) in passing.drain(..) {
+            kept.push((part, height));
+            parts.push((c, ErasedPart(kept.len() - 1)));
+        }
+        Ok(planes)
+    }
+
+    fn sample64(
+        &self,
+        scratch: &mut ErasedScratch,
+        cube: &Cube<'_>,
+        parts: &[(u8, ErasedPart)],
+    ) -> Result<Option<u64>, Error> {
+        let Typed { scratch, parts: kept, passing } = scratch.typed::<S>();
+        passing.clear();
+        passing.try_reserve(parts.len()).map_err(|_| Error::OutOfMemory)?;
+        for (c, part) in parts {
+            let Some((part, _)) = kept.get(part.0) else { return Ok(None) };
+            passing.push((*c, part.clone()));
+        }
+        Solid::sample64(self, scratch, cube, passing)
     }
 
     fn fill(
@@ -254,6 +313,25 @@ impl Solid for AnySolid {
         part: &ErasedPart,
     ) -> Result<[Verdict<ErasedPart>; 8], Error> {
         self.0.split(scratch, cube, *part)
+    }
+
+    fn split64(
+        &self,
+        scratch: &mut ErasedScratch,
+        cube: &Cube<'_>,
+        part: &ErasedPart,
+        parts: &mut Vec<(u8, ErasedPart)>,
+    ) -> Result<Planes, Error> {
+        self.0.split64(scratch, cube, *part, parts)
+    }
+
+    fn sample64(
+        &self,
+        scratch: &mut ErasedScratch,
+        cube: &Cube<'_>,
+        parts: &[(u8, ErasedPart)],
+    ) -> Result<Option<u64>, Error> {
+        self.0.sample64(scratch, cube, parts)
     }
 
     fn fill(

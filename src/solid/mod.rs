@@ -168,6 +168,29 @@ pub trait Solid: Sync {
         Ok(None)
     }
 
+    /// Samples many at once, the grain of storage: of those 64 grandchildren of a cell whose parts are given, with
+    /// their index, bit c says whether the centre of cell c lies in the solid. The grandchildren have the frame's depth.
+    ///
+    /// # Errors
+    /// As [`sample`](Self::sample).
+    fn sample64(
+        &self,
+        scratch: &mut Self::Scratch,
+        cube: &Cube<'_>,
+        parts: &[(u8, Self::Part)],
+    ) -> Result<Option<u64>, Error> {
+        let mut inside = 0;
+        for (c, part) in parts {
+            let cube = cube.child(c >> 3).child(c & 7);
+            match self.sample(scratch, &cube, part)? {
+                Some(true) => inside |= 1 << (c & 63),
+                Some(false) => {}
+                None => return Ok(None),
+            }
+        }
+        Ok(Some(inside))
+    }
+
     /// What is known of the space around the universe: EMPTY if the solid is proven to end inside, FULL if
     /// the space is proven solid, else PARTIAL.
     fn exterior(&self, frame: &Frame) -> Tag {
@@ -241,6 +264,15 @@ impl<S: Solid> Solid for &S {
         part: &S::Part,
     ) -> Result<Option<bool>, Error> {
         (**self).sample(scratch, cube, part)
+    }
+
+    fn sample64(
+        &self,
+        scratch: &mut S::Scratch,
+        cube: &Cube<'_>,
+        parts: &[(u8, S::Part)],
+    ) -> Result<Option<u64>, Error> {
+        (**self).sample64(scratch, cube, parts)
     }
 
     fn exterior(&self, frame: &Frame) -> Tag {

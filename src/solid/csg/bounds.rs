@@ -59,6 +59,12 @@ pub(super) fn sums(constant: f64, halves: [f64x4; 2]) -> [f64x4; 2] {
     [xy + f64x4::splat(first[2]), xy + f64x4::splat(second[2])]
 }
 
+/// One bit for each child for which a comparison holds.
+#[inline(always)]
+pub(super) fn mask([a, b]: [f64x4; 2]) -> u8 {
+    (a.to_bitmask() | b.to_bitmask() << 4) as u8
+}
+
 /// 2^-level.
 fn edge(level: u32) -> f64 {
     f64::from_bits((1023 - level as u64) << 52)
@@ -83,7 +89,6 @@ impl Sides {
     #[inline(always)]
     pub(super) fn with_error(least: [f64x4; 2], most: [f64x4; 2], error: f64) -> (Sides, u8) {
         let (above, below) = (f64x4::splat(error), f64x4::splat(-error));
-        let mask = |[a, b]: [f64x4; 2]| (a.to_bitmask() | b.to_bitmask() << 4) as u8;
         let inside = mask(least.map(|v| v.simd_ge(above)));
         let outside = mask(most.map(|v| v.simd_le(below)));
         let doubt =

@@ -236,6 +236,15 @@ impl Placed {
         })
     }
 
+    /// In which of the eight cells the centre is surely inside, and in which surely outside, where that is had at once.
+    #[inline(always)]
+    pub(super) fn centres(&self, at: &Octants) -> (u8, u8) {
+        match self {
+            Placed::Quadric(quadric) => quadric.centres(at),
+            _ => (0, 0),
+        }
+    }
+
     /// Exact sign of f at a point of the universe; `None` if the host does not know it.
     #[inline]
     pub(super) fn sign_at(&self, t: [f64; 3]) -> Result<Option<i32>, Error> {

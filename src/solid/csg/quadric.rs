@@ -1,6 +1,6 @@
 //! Polynomials of degree two: planes and quadrics.
 
-use super::bounds::{Octants, Sides};
+use super::bounds::{Octants, Sides, mask, sums};
 use super::dyadic::Dyadic;
 use super::map::ExactMap;
 use crate::lattice::exact::sign;
@@ -111,6 +111,18 @@ impl Quadric {
         }
     }
 
+    /// In which of the eight cells the centre is surely inside, and in which surely outside; on the surface, and where
+    /// rounding leaves it open, it is neither.
+    #[inline(always)]
+    pub(super) fn centres(&self, at: &Octants) -> (u8, u8) {
+        let (values, error) = match &self.form {
+            Form::Separable(separable) => (separable.centres(at), separable.error),
+            Form::Mixed(mixed) => (at.centres().0.map(|centre| mixed.value(centre)), mixed.error),
+        };
+        let (above, below) = (f64x4::splat(error), f64x4::splat(-error));
+        (mask(values.map(|v| v.simd_gt(above))), mask(values.map(|v| v.simd_lt(below))))
+    }
+
     /// Decides exactly what rounding leaves open.
     #[cold]
     fn settle(&self, at: &Octants, mut sides: Sides, doubt: u8) -> Sides {
@@ -159,7 +171,7 @@ impl Quadric {
     pub(super) fn sign_at(&self, t: [f64; 3]) -> i32 {
         let (value, error) = match &self.form {
             Form::Separable(separable) => (separable.value(t), separable.error),
-            Form::Mixed(mixed) => (mixed.value(t), mixed.error),
+            Form::Mixed(mixed) => (mixed.value(t.map(f64x4::splat)).to_array()[0], mixed.error),
         };
         if value > error || value < -error || error == 0.0 { sign(value) } else { self.exact_sign_at(t) }
     }
@@ -237,17 +249,17 @@ impl Separable {
         let second = middle.simd_le(self.vertex) & self.vertex.simd_lt(high);
         let (up, down) = (f64x4::splat(f64::INFINITY), f64x4::splat(f64::NEG_INFINITY));
         let least = [(a, b, first), (b, c, second)]
-            .map(|(a, b, inside)| a.fast_min(b).fast_min(inside.select(self.least, up)).to_array());
+            .map(|(a, b, inside)| a.fast_min(b).fast_min(inside.select(self.least, up)));
         let most = [(a, b, first), (b, c, second)]
-            .map(|(a, b, inside)| a.fast_max(b).fast_max(inside.select(self.most, down)).to_array());
-        // Four cells of one z at a time: x changes first, then y.
-        let sums = |[first, second]: [[f64; 4]; 2]| {
-            let x = f64x4::new([first[0], second[0], first[0], second[0]]);
-            let y = f64x4::new([first[1], first[1], second[1], second[1]]);
-            let xy = (f64x4::splat(self.constant) + x) + y;
-            [xy + f64x4::splat(first[2]), xy + f64x4::splat(second[2])]
-        };
-        Sides::with_error(sums(least), sums(most), self.error)
+            .map(|(a, b, inside)| a.fast_max(b).fast_max(inside.select(self.most, down)));
+        Sides::with_error(sums(self.constant, least), sums(self.constant, most), self.error)
+    }
+
+    /// The values at the centres of the eight cells.
+    #[inline(always)]
+    fn centres(&self, at: &Octants) -> [f64x4; 2] {
+        let first = at.low + 0.5 * at.half;
+        sums(self.constant, [first, first + at.half].map(|t| (self.square * t + self.linear) * t))
     }
 
     #[inline(always)]
@@ -262,28 +274,18 @@ impl Mixed {
     /// Taylor's formula about each centre: exact but for what the axes have in common.
     #[inline(always)]
     fn sides(&self, at: &Octants) -> Sides {
-        let [xx, yy, zz, xy, yz, zx, x1, y1, z1, constant] = self.c.map(f64x4::splat);
-        let [low_x, low_y, low_z, _] = at.low.to_array();
-        let half = at.half;
-        let quarter = 0.5 * half;
-        let (x_a, y_a) = (low_x + quarter, low_y + quarter);
-        let (x_b, y_b) = (x_a + half, y_a + half);
-        let x = f64x4::new([x_a, x_b, x_a, x_b]);
-        let y = f64x4::new([y_a, y_a, y_b, y_b]);
+        let [xx, yy, zz, xy, yz, zx, x1, y1, z1, _] = self.c.map(f64x4::splat);
+        let (centres, quarter) = at.centres();
         let two = f64x4::splat(2.0);
         let reach = f64x4::splat(quarter);
         let (square_least, square_most) = (
             f64x4::splat(quarter * quarter * self.squares.0),
             f64x4::splat(quarter * quarter * self.squares.1),
         );
-        let ranges = [low_z + quarter, low_z + quarter + half].map(|z| {
-            let z = f64x4::splat(z);
+        let ranges = centres.map(|[x, y, z]| {
+            let value = self.value([x, y, z]);
             let (mixed_x, mixed_y) = (xy * y + zx * z, xy * x + yz * z);
             let (from_x, from_y, from_z) = (xx * x, yy * y, zz * z);
-            let value = constant
-                + (from_x + (x1 + xy * y)) * x
-                + (from_y + (y1 + yz * z)) * y
-                + (from_z + (z1 + zx * x)) * z;
             let slopes = (two * from_x + (x1 + mixed_x)).abs()
                 + (two * from_y + (y1 + mixed_y)).abs()
                 + (two * from_z + (z1 + (zx * x + yz * y))).abs();
@@ -293,9 +295,10 @@ impl Mixed {
         Sides::with_error([ranges[0].0, ranges[1].0], [ranges[0].1, ranges[1].1], self.error).0
     }
 
-    fn value(&self, t: [f64; 3]) -> f64 {
-        let [xx, yy, zz, xy, yz, zx, x1, y1, z1, constant] = self.c;
-        let [x, y, z] = t;
+    /// The values at four points.
+    #[inline(always)]
+    fn value(&self, [x, y, z]: [f64x4; 3]) -> f64x4 {
+        let [xx, yy, zz, xy, yz, zx, x1, y1, z1, constant] = self.c.map(f64x4::splat);
         constant + (xx * x + (x1 + xy * y)) * x + (yy * y + (y1 + yz * z)) * y + (zz * z + (z1 + zx * x)) * z
     }
 }

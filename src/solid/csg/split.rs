@@ -482,6 +482,16 @@ impl Solid for Csg {
         Ok(inside.flatten())
     }
 
+    fn sample64(
+        &self,
+        scratch: &mut CsgScratch,
+        cube: &Cube<'_>,
+        parts: &[(u8, CsgPart)],
+    ) -> Result<Option<u64>, Error> {
+        let inside = Csg::with_program(scratch, |scratch, program| scratch.contained(program, cube, parts))?;
+        Ok(inside.flatten())
+    }
+
     fn exterior(&self, frame: &Frame) -> Tag {
         self.root.exterior(frame).unwrap_or(Tag::Partial)
     }
@@ -533,6 +543,47 @@ impl Kleene {
 }
 
 impl CsgScratch {
+    /// Which of the given grandchildren of a cell have their centre inside; `None` if that cannot be told.
+    fn contained(
+        &mut self,
+        program: &Program,
+        cube: &Cube<'_>,
+        parts: &[(u8, CsgPart)],
+    ) -> Result<Option<u64>, Error> {
+        let mut all = 0;
+        for octant in parts.chunk_by(|a, b| a.0 >> 3 == b.0 >> 3) {
+            let child = cube.child(octant[0].0 >> 3);
+            // The centres of cells that one half-space cuts are had at once.
+            let first = octant[0].1;
+            let (mut inside, mut outside) = (0, 0);
+            if first.len == 1 && octant.len() > 1 && octant.iter().all(|(_, part)| part.start == first.start)
+            {
+                if let Some(Op::HalfSpace { index, complement }) =
+                    self.words.get(first.start as usize).map(|word| word.op())
+                {
+                    (inside, outside) = program.half_spaces[index as usize].centres(&Octants::of(child.cell));
+                    self.evaluations += octant.len() as u64;
+                    if complement {
+                        (inside, outside) = (outside, inside);
+                    }
+                }
+            }
+            for &(c, part) in octant {
+                let bit = 1u8 << (c & 7);
+                if (inside | outside) & bit == 0 {
+                    let cell = child.child(c & 7);
+                    match self.contains(program, part, &cell, centre(cell.cell))? {
+                        Some(true) => inside |= bit,
+                        Some(false) => {}
+                        None => return Ok(None),
+                    }
+                }
+                all |= ((inside >> (c & 7) & 1) as u64) << (c & 63);
+            }
+        }
+        Ok(Some(all))
+    }
+
     /// Whether the centre of a cell lies inside, by the cell's words; `None` if that cannot be told.
     fn contains(
         &mut self,
