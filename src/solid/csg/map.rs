@@ -4,7 +4,8 @@ use super::dyadic::Dyadic;
 use crate::error::Error;
 use crate::lattice::{Affine, Frame};
 
-/// Most bits that an entry may take: some hundred rotations inside of each other.
+/// Most bits that an entry may take, and most powers of two between one and w: some hundred rotations inside of each
+/// other.
 const MOST_BITS: u64 = 1 << 14;
 
 /// The map x ↦ (R x + r) / w, exactly: from the universe's unit coordinates into the space of a shape that stands
@@ -55,8 +56,15 @@ impl ExactMap {
                 dot(&[0, 1, 2].map(|k| &cofactors[k][i]), &[&moved[0][j], &moved[1][j], &moved[2][j]])
             })
         });
-        let map = ExactMap { rows, w: &self.w * &determinant };
-        if map.rows.iter().flatten().chain([&map.w]).any(|entry| entry.bits() > MOST_BITS) {
+        // With w of a magnitude of one, sums of entries and products are as long as the entries are apart.
+        let w = &self.w * &determinant;
+        let scale = -w.magnitude().unwrap_or(0);
+        let map = ExactMap { rows: rows.map(|row| row.map(|c| c.shifted(scale))), w: w.shifted(scale) };
+        let too_long = |entry: &Dyadic| {
+            let far = entry.magnitude().is_some_and(|m| m.unsigned_abs() > MOST_BITS);
+            far || entry.bits() > MOST_BITS
+        };
+        if map.rows.iter().flatten().chain([&map.w]).any(too_long) {
             return Err(Error::Limit { what: "bits of nested placements", limit: MOST_BITS });
         }
         Ok(map)
@@ -86,5 +94,20 @@ mod tests {
             let value = &dot(&[&row[0], &row[1], &row[2]], &[&unit[0], &unit[1], &unit[2]]) + &row[3];
             assert_eq!(value, &map.w * &Dyadic::new(local[i]), "{i}");
         }
+    }
+
+    #[test]
+    fn what_is_too_far_apart() {
+        let frame = Frame::new([1.0; 3], 8.0, 3).unwrap();
+        let nested = |scales: [f64; 3], count: usize| {
+            let mut rows = [[0.0; 4]; 3];
+            (0..3).for_each(|i| rows[i][i] = scales[i]);
+            let placement = Affine::new(rows).unwrap();
+            (0..count).try_fold(ExactMap::from_universe(&frame), |map, _| map.into_placed(&placement))
+        };
+        let (large, small) = (2f64.powi(60), 2f64.powi(-60));
+        assert!(nested([large, 1.0, small], 200).is_ok());
+        assert!(matches!(nested([large, 1.0, small], 300), Err(Error::Limit { .. })));
+        assert!(nested([-1.0, 1.0, 1.0], 10_000).is_ok());
     }
 }
