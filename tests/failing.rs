@@ -15,9 +15,9 @@ mod zip;
 
 use bodies::{Aligned, Random};
 use leafless::{
-    AnySolid, AxisBox, Ball, Callback, Control, Error, FillRule, Frame, LazyOctree, MeshSolid, Metadata,
-    Octree, Polyhedron, PolyhedronArrays, Rule, Stored, TriangleMesh, Verdict, Zone, build, compact,
-    complement, difference, file, intersection, resolve, union, union_of, xor,
+    Affine, AnySolid, AxisBox, Ball, Callback, Control, Csg, Error, FillRule, Frame, HalfSpace, LazyOctree,
+    MeshSolid, Metadata, Octree, Polyhedron, PolyhedronArrays, Rule, Stored, TriangleMesh, Verdict, Zone,
+    build, compact, complement, difference, file, intersection, resolve, union, union_of, xor,
 };
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
@@ -265,6 +265,19 @@ fn operations(directory: &Path) -> Vec<(&'static str, Operation)> {
             _ => Ok(Verdict::Partial(())),
         });
         build(&slab, &frame(), Rule::Certified, &CONTROL)
+    });
+    // A comb of 400 teeth, a torus, and a power that is turned.
+    let tooth = |i: u32| [[i as f64 / 40.0, 1.0], [(i as f64 + 0.5) / 40.0, 1.5 + (i % 7) as f64]];
+    let comb =
+        [&[[0.0, 0.0]][..], (0..400).flat_map(tooth).collect::<Vec<_>>().as_slice(), &[[11.0, 0.0]]].concat();
+    operation!("build CSG", [comb], {
+        let turned = Affine::new([[6.0, -8.0, 0.0, 15.0], [8.0, 6.0, 0.0, 15.0], [0.0, 0.0, 9.0, 15.0]])?;
+        let rounded = Csg::from(HalfSpace::power([(-1.0, 0.0, 6); 3], 1.0)?).placed(&turned)?;
+        let all =
+            Csg::union_of([Csg::prism(&comb, 2.0, 20.0)?, rounded])?.difference(&Csg::torus(9.0, 4.0)?)?;
+        // A refusal of memory means that there is none, too.
+        let _ = leafless::Solid::fingerprint(&all);
+        build(&all, &frame(), Rule::Certified, &CONTROL)
     });
     operation!("build mesh", [closed], {
         let solid = MeshSolid::new(closed.clone(), &frame(), FillRule::NonZero)?;

@@ -250,9 +250,10 @@ impl Drop for Node {
             kind,
             Kind::Join(Join::Union, Vec::new()),
         ) {
-            Kind::Join(_, parts) => rest.extend(parts),
-            Kind::Complement(part) | Kind::Placed(part, _) => rest.push(part),
-            Kind::HalfSpace(_) | Kind::Solid(_) => {}
+            // Where there is no memory for the list, recursion has to do.
+            Kind::Join(_, parts) if rest.try_reserve(parts.len()).is_ok() => rest.extend(parts),
+            Kind::Complement(part) | Kind::Placed(part, _) if rest.try_reserve(1).is_ok() => rest.push(part),
+            _ => {}
         };
         take(&mut self.kind, &mut rest);
         while let Some(node) = rest.pop() {
