@@ -581,6 +581,67 @@ fn far_away_and_out_of_range() {
 }
 
 #[test]
+fn bounds_of_convex_polyhedra() {
+    let mut random = Random(11);
+    let sum = |a: [f64; 3], b: [f64; 3]| (0..3).map(|axis| a[axis] * b[axis]).sum::<f64>();
+    for i in 0..300 {
+        // Planes that touch a ball, or pass by, around a centre; and their corners by trial of all triples.
+        let centre = [0, 1, 2].map(|_| random.between(-10.0, 10.0));
+        let planes: Vec<([f64; 3], f64)> = (0..4 + i % 10)
+            .map(|_| {
+                let normal = [0, 1, 2].map(|_| random.between(-1.0, 1.0));
+                let length = sum(normal, normal).sqrt();
+                (normal, random.between(0.5, 1.0) * length - sum(normal, centre))
+            })
+            .collect();
+        let mut corners = Vec::new();
+        for a in 0..planes.len() {
+            for b in 0..a {
+                for c in 0..b {
+                    let n = [a, b, c].map(|k| planes[k].0);
+                    let cross = |u: [f64; 3], v: [f64; 3]| {
+                        [0, 1, 2].map(|i| u[(i + 1) % 3] * v[(i + 2) % 3] - u[(i + 2) % 3] * v[(i + 1) % 3])
+                    };
+                    let volume = sum(n[0], cross(n[1], n[2]));
+                    let parts = [cross(n[1], n[2]), cross(n[2], n[0]), cross(n[0], n[1])];
+                    let offsets = [a, b, c].map(|k| planes[k].1);
+                    let corner = [0, 1, 2]
+                        .map(|axis| -(0..3).map(|k| parts[k][axis] * offsets[k]).sum::<f64>() / volume);
+                    if planes.iter().all(|&(normal, offset)| sum(normal, corner) + offset > -1e-9) {
+                        corners.push(corner);
+                    }
+                }
+            }
+        }
+        // It is bounded if nothing of its cone of directions is left.
+        let bounds = Csg::convex(&planes).unwrap().bounds();
+        let far = (0..2000).any(|_| {
+            let direction = [0, 1, 2].map(|_| random.between(-1.0, 1.0));
+            planes.iter().all(|&(normal, _)| sum(normal, direction) > 0.0)
+        });
+        assert!(!(far && bounds.is_some()), "{planes:?}");
+        let Some((min, max)) = bounds else { continue };
+        for axis in 0..3 {
+            let of = |pick: fn(f64, f64) -> f64| corners.iter().map(|c| c[axis]).reduce(pick).unwrap();
+            let (low, high) = (of(f64::min), of(f64::max));
+            let near = |a: f64, b: f64| (a - b).abs() < 1e-6 * (1.0 + b.abs());
+            assert!(near(min[axis], low) && near(max[axis], high), "{min:?} {max:?} {low} {high} {planes:?}");
+        }
+    }
+    // Exactly the box, whatever the length of the normals; and beyond it no cell.
+    let unit = |axis: usize, c: f64| [0, 1, 2].map(|k| if k == axis { c } else { 0.0 });
+    let planes: Vec<_> = (0..3).flat_map(|k| [(unit(k, 3.0), 0.75), (unit(k, -1e-9), 1e-9)]).collect();
+    let cube = Csg::convex(&planes).unwrap();
+    let (min, max) = cube.bounds().unwrap();
+    assert!(min.iter().all(|&c| (-0.2500001..=-0.25).contains(&c)), "{min:?}");
+    assert!(max.iter().all(|&c| (1.0..=1.0000001).contains(&c)), "{max:?}");
+    assert_eq!(cube.exterior(&Frame::new([-2.0; 3], 4.0, 3).unwrap()), leafless::Tag::Empty);
+    // Without end, or empty.
+    assert!(Csg::convex(&planes[..5]).unwrap().bounds().is_none());
+    assert!(Csg::convex(&[(unit(0, 1.0), -1.0), (unit(0, -1.0), -1.0)]).unwrap().bounds().is_none());
+}
+
+#[test]
 fn what_is_refused() {
     let refused = |result: Result<Csg, Error>, parameter: &str| match result {
         Err(Error::Argument { name, .. }) => assert_eq!(name, parameter),

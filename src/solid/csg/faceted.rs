@@ -3,7 +3,7 @@
 use super::dyadic::Dyadic;
 use super::polygon::{Term, convex_differences};
 use super::primitive::{coordinates, length, slab};
-use super::{Csg, HalfSpace};
+use super::{Csg, HalfSpace, support};
 use crate::error::Error;
 use alloc::vec::Vec;
 
@@ -79,7 +79,8 @@ impl Csg {
     }
 
     /// The convex polyhedron of the points p with `normal` · p + `offset` ≥ 0 for all `planes` (normal, offset); the
-    /// normals, of any length, point inward. It may be unbounded, or empty. O(planes).
+    /// normals, of any length, point inward. It may be unbounded, or empty; then it has no [`bounds`](Csg::bounds).
+    /// O(planes).
     ///
     /// # Errors
     /// [`Error::Argument`] if there is no plane; as [`HalfSpace::plane`]; [`Error::OutOfMemory`].
@@ -92,6 +93,10 @@ impl Csg {
         for &(normal, offset) in planes {
             parts.push(Csg::half_space(normal, offset)?);
         }
-        Csg::intersection_of(parts)
+        let polyhedron = Csg::intersection_of(parts)?;
+        Ok(match support::box_around(planes)? {
+            Some((min, max)) => polyhedron.within(min, max),
+            None => polyhedron,
+        })
     }
 }

@@ -20,6 +20,7 @@ mod primitive;
 mod program;
 mod quadric;
 mod split;
+mod support;
 mod torus;
 
 pub use halfspace::HalfSpace;
