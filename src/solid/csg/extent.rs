@@ -1,5 +1,6 @@
 //! Boxes that contain a solid and its complement.
 
+use super::program::MOST;
 use super::{Join, Kind, Node};
 use crate::lattice::exact::sign_of_sum;
 use crate::lattice::{Affine, Frame};
@@ -94,6 +95,8 @@ impl Node {
                 match &node.kind {
                     // Of half-spaces the boxes say all that is known.
                     _ if !node.mixed => tags.push(Tag::Partial),
+                    // Nor is it worth as much time as the expression, which is refused, too.
+                    _ if node.size > MOST => tags.push(Tag::Partial),
                     Kind::Solid(solid) => tags.push(solid.exterior(frame)),
                     Kind::Join(_, parts) if !operands_done => {
                         tasks.try_reserve(parts.len() + 1).ok()?;

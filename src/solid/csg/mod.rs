@@ -72,7 +72,7 @@ pub struct Csg {
 /// A node of an expression, with boxes around what it stands for and around the complement of that.
 struct Node {
     kind: Kind,
-    /// Half-spaces, other solids and operations that it comes to when it is written out.
+    /// Half-spaces, other solids, operations and placements that it comes to when it is written out.
     size: u64,
     /// Whether other solids occur in it.
     mixed: bool,
@@ -102,7 +102,7 @@ impl Csg {
         let (size, mixed) = match &kind {
             Kind::HalfSpace(_) => (1, false),
             Kind::Solid(_) => (1, true),
-            Kind::Complement(part) | Kind::Placed(part, _) => (part.size, part.mixed),
+            Kind::Complement(part) | Kind::Placed(part, _) => (part.size.saturating_add(1), part.mixed),
             Kind::Join(_, parts) => (
                 parts.iter().fold(1, |sum: u64, part| sum.saturating_add(part.size)),
                 parts.iter().any(|part| part.mixed),

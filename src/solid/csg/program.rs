@@ -30,7 +30,7 @@ pub(super) enum Op {
     Primitive { count: u32 },
 }
 
-/// Most half-spaces, other solids and operations of an expression that is written out. (A half-space takes a kilobyte,
+/// Most half-spaces, other solids, operations and placements of an expression that is written out. (A half-space takes a kilobyte,
 /// and a node that contains another twice, which contains another twice …, soon comes to more than there is.)
 pub(super) const MOST: u64 = 1 << 22;
 
@@ -111,7 +111,7 @@ impl Program {
     /// Time and memory are linear in the expression, written out: a node that occurs twice counts twice.
     pub(super) fn new(csg: &Csg, frame: &Frame) -> Result<Program, Error> {
         if csg.root.size > MOST {
-            return Err(Error::Limit { what: "half-spaces and operations", limit: MOST });
+            return Err(Error::Limit { what: "half-spaces, operations and placements", limit: MOST });
         }
         let paper = csg.touch == Touch::Paper;
         let mut program = Program { paper, half_spaces: Vec::new(), solids: Vec::new(), words: Vec::new() };
