@@ -6,6 +6,8 @@ mod common;
 mod exactness;
 #[path = "csg/extremes.rs"]
 mod extremes;
+#[path = "csg/hostile.rs"]
+mod hostile;
 #[path = "csg/laws.rs"]
 mod laws;
 #[path = "csg/model.rs"]
