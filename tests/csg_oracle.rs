@@ -106,8 +106,8 @@ fn sampled(models: u64, make: impl Fn(&mut Maker<'_>) -> Model) {
     let mut boundary = 0;
     for seed in 0..models {
         let mut random = Random(seed ^ 0xABCD);
-        let frame = frames(1 + random.below(3) as u8)[random.below(5) as usize];
         let aligned = random.below(4) != 0;
+        let frame = frames(1 + random.below(3) as u8)[random.below(if aligned { 2 } else { 5 }) as usize];
         let mut maker = Maker { random: &mut random, frame, aligned, others: false };
         let model = make(&mut maker);
         let Ok(csg) = model.csg(&frame) else { continue };
@@ -115,16 +115,17 @@ fn sampled(models: u64, make: impl Fn(&mut Maker<'_>) -> Model) {
         for at in common::positions(frame.depth()) {
             let probe = centre(&frame, at);
             boundary += (model.sign(&probe.at) == 0) as u64;
-            let expected = if model.sampled(&probe).unwrap() { Tag::Full } else { Tag::Empty };
+            let Some(inside) = model.sampled(&probe) else { continue };
+            let expected = if inside { Tag::Full } else { Tag::Empty };
             assert_eq!(tree.view().tag_at(at), expected, "{at:?}\n{frame:?}\n{model:#?}");
         }
     }
     println!("{boundary} centres on the surface");
-    assert!(boundary > models / 2);
+    assert!(boundary > models / 4);
 }
 
 #[test]
 fn samples_are_exact() {
     sampled(150, |maker| maker.primitive());
-    sampled(60, |maker| maker.expression(2));
+    sampled(120, |maker| maker.expression(2));
 }

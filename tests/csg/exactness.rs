@@ -1,13 +1,13 @@
 //! Of planes and quadrics without mixed products the verdicts are the best possible ones, at every level.
 
-use super::extremes::Separable;
+use super::extremes::{Powers, Separable, Torus, Truth};
 use crate::common::Random;
 use crate::common::exact::Exact;
-use leafless::{Cell, Csg, CsgScratch, Cube, Frame, HalfSpace, Solid, Verdict};
+use leafless::{Affine, Cell, Csg, CsgScratch, Cube, Frame, HalfSpace, Solid, Verdict};
 
 /// Descends towards `target` (in finest cells) and away from it, and compares all verdicts on the way; returns how many
 /// levels were reached.
-fn compare(solid: &Csg, truth: &Separable, frame: &Frame, target: [u32; 3], random: &mut Random) -> u8 {
+fn compare(solid: &Csg, truth: &Truth, frame: &Frame, target: [u32; 3], random: &mut Random) -> u8 {
     let mut scratch = CsgScratch::default();
     let mut verdict = solid.root(&mut scratch, frame).unwrap();
     assert_eq!(verdict.tag(), truth.tag(frame, Cell::ROOT), "universe {frame:?} {truth:?}");
@@ -69,7 +69,7 @@ fn model(frame: &Frame, at: [u32; 3]) -> [f64; 3] {
     [0, 1, 2].map(|axis| frame.plane(axis, at[axis]).lower)
 }
 
-fn run(count: u64, make: impl Fn(&Frame, [u32; 3], &mut Random) -> Option<(Csg, Separable)>) {
+fn run(count: u64, make: impl Fn(&Frame, [u32; 3], &mut Random) -> Option<(Csg, Truth)>) {
     let (mut levels, mut models) = (0, 0);
     for seed in 0..count {
         let mut random = Random(seed ^ 0x5EED);
@@ -84,12 +84,13 @@ fn run(count: u64, make: impl Fn(&Frame, [u32; 3], &mut Random) -> Option<(Csg, 
     assert!(models > count / 4 && levels > models, "{models} models, {levels} levels");
 }
 
-fn half_space(c: [f64; 10]) -> Option<(Csg, Separable)> {
+fn half_space(c: [f64; 10]) -> Option<(Csg, Truth)> {
     let half_space = HalfSpace::quadric(c).ok()?;
-    Some((half_space.into(), Separable::new([c[0], c[1], c[2], c[6], c[7], c[8], c[9]])))
+    let truth = Separable::new([c[0], c[1], c[2], c[6], c[7], c[8], c[9]]);
+    Some((half_space.into(), Truth::Separable(truth)))
 }
 
-fn planes(frame: &Frame, target: [u32; 3], random: &mut Random) -> Option<(Csg, Separable)> {
+fn planes(frame: &Frame, target: [u32; 3], random: &mut Random) -> Option<(Csg, Truth)> {
     let mut c = [0.0; 10];
     let scale = 2f64.powi(random.below(400) as i32 - 200);
     let wild = random.below(3) == 0;
@@ -109,7 +110,7 @@ fn planes(frame: &Frame, target: [u32; 3], random: &mut Random) -> Option<(Csg, 
 }
 
 /// About a centre on the lattice, touching or nearly touching a vertex.
-fn quadrics(frame: &Frame, target: [u32; 3], random: &mut Random) -> Option<(Csg, Separable)> {
+fn quadrics(frame: &Frame, target: [u32; 3], random: &mut Random) -> Option<(Csg, Truth)> {
     let p = model(frame, target);
     let centre = model(frame, vertex(frame, random));
     let mut c = [0.0; 10];
@@ -138,7 +139,7 @@ fn quadrics(frame: &Frame, target: [u32; 3], random: &mut Random) -> Option<(Csg
 }
 
 /// Any ten numbers of magnitudes between 2^-256 and 2^256.
-fn anything(frame: &Frame, _: [u32; 3], random: &mut Random) -> Option<(Csg, Separable)> {
+fn anything(frame: &Frame, _: [u32; 3], random: &mut Random) -> Option<(Csg, Truth)> {
     let mut c = [0.0; 10];
     // Not so wild that no surface meets the universe: the terms are of like magnitudes there, more or less.
     let size = frame.origin().iter().fold(frame.edge(), |size, c| size.max(c.abs()));
@@ -154,7 +155,7 @@ fn anything(frame: &Frame, _: [u32; 3], random: &mut Random) -> Option<(Csg, Sep
 }
 
 /// The named ones, whose coefficients are no doubles.
-fn ellipsoids(frame: &Frame, target: [u32; 3], random: &mut Random) -> Option<(Csg, Separable)> {
+fn ellipsoids(frame: &Frame, target: [u32; 3], random: &mut Random) -> Option<(Csg, Truth)> {
     let p = model(frame, target);
     let middle = vertex(frame, random);
     let centre = model(frame, middle);
@@ -176,7 +177,61 @@ fn ellipsoids(frame: &Frame, target: [u32; 3], random: &mut Random) -> Option<(C
         truth.linear[axis] = weight.times(&at).times(&Exact::from(2.0));
         truth.constant = truth.constant.minus(&weight.times(&at).times(&at));
     }
-    Some((solid, truth))
+    Some((solid, Truth::Separable(truth)))
+}
+
+/// About a centre on the lattice, through a vertex of it or nearly so.
+fn powers(frame: &Frame, target: [u32; 3], random: &mut Random) -> Option<(Csg, Truth)> {
+    let p = model(frame, target);
+    let centre = model(frame, vertex(frame, random));
+    let largest = [4, 10, 64][random.below(3) as usize];
+    // Of a magnitude of one in the universe.
+    let size = 2f64.powi(frame.edge().log2().ceil() as i32);
+    let terms = [0, 1, 2].map(|axis| {
+        let exponent = 1 + random.below(largest) as u32;
+        let coefficient = match random.below(3) {
+            0 => random.between(-1.0, 1.0),
+            1 => 0.0,
+            _ => random.below(5) as f64 - 2.0,
+        };
+        (coefficient / size.powi(exponent as i32), centre[axis], exponent)
+    });
+    let along = |axis: usize| terms[axis].0 * (p[axis] - centre[axis]).powi(terms[axis].2 as i32);
+    let mut constant = -(along(0) + along(1) + along(2));
+    if random.below(3) == 0 {
+        constant = if random.below(2) == 0 { constant.next_up() } else { constant.next_down() };
+    }
+    let half_space = HalfSpace::power(terms, constant).ok()?;
+    Some((half_space.into(), Truth::Powers(Powers { terms, constant })))
+}
+
+/// About a centre on the lattice, touching a vertex or an edge of it.
+fn tori(frame: &Frame, target: [u32; 3], random: &mut Random) -> Option<(Csg, Truth)> {
+    let p = model(frame, target);
+    let centre = model(frame, vertex(frame, random));
+    let cell = frame.cell_size();
+    let distance = (p[0] - centre[0]).abs();
+    let height = (p[2] - centre[2]).abs();
+    let [mut major, mut minor] = [0; 2].map(|_| random.between(0.05, 0.6) * frame.edge());
+    match random.below(4) {
+        0 => major = (distance - minor).abs(),
+        1 => (major, minor) = (distance, height),
+        2 => (major, minor) = ((major / cell).ceil() * cell, (minor / cell).ceil() * cell),
+        _ => minor = major,
+    }
+    let torus = HalfSpace::torus(major, minor).ok()?;
+    let placed = Csg::from(torus).placed(&Affine::translation(centre).ok()?).ok()?;
+    Some((placed, Truth::Torus(Torus { centre, major, minor })))
+}
+
+#[test]
+fn powers_are_exact() {
+    run(800, powers);
+}
+
+#[test]
+fn tori_are_exact() {
+    run(800, tori);
 }
 
 #[test]
@@ -202,4 +257,6 @@ fn many_half_spaces_are_exact() {
     run(100_000, quadrics);
     run(100_000, anything);
     run(50_000, ellipsoids);
+    run(50_000, powers);
+    run(50_000, tori);
 }

@@ -72,10 +72,92 @@ impl Separable {
             total.above.sign()
         })
     }
+}
 
+/// Σ coefficient · (t − centre)^exponent + constant, as given.
+#[derive(Clone, Debug)]
+pub struct Powers {
+    pub terms: [(f64, f64, u32); 3],
+    pub constant: f64,
+}
+
+impl Powers {
+    fn signs(&self, frame: &Frame, cell: Cell) -> [i32; 2] {
+        let bounds = corners(frame, cell);
+        [-1, 1].map(|way| {
+            let constant = Exact::from(self.constant);
+            let total = (0..3).fold(constant, |sum, axis| {
+                let (coefficient, centre, exponent) = self.terms[axis];
+                let base = bounds[axis].each_ref().map(|end| end.minus(&Exact::from(centre)));
+                let weighted = |base: &Exact| {
+                    (0..exponent).fold(Exact::from(coefficient), |product, _| product.times(base))
+                };
+                let mut ends = vec![weighted(&base[0]), weighted(&base[1])];
+                // Between ends of different signs the power is zero somewhere, which is the least or the greatest of
+                // an even one, and between the ends of an odd one.
+                if base[0].sign() * base[1].sign() < 0 {
+                    ends.push(Exact::from(0.0));
+                }
+                let extreme = ends.into_iter().reduce(if way > 0 { Exact::max } else { Exact::min });
+                sum.plus(&extreme.unwrap())
+            });
+            total.sign()
+        })
+    }
+}
+
+/// minor² − (ρ − major)² − z² with ρ² = (x − cx)² + (y − cy)², z from cz.
+#[derive(Clone, Debug)]
+pub struct Torus {
+    pub centre: [f64; 3],
+    pub major: f64,
+    pub minor: f64,
+}
+
+impl Torus {
+    fn signs(&self, frame: &Frame, cell: Cell) -> [i32; 2] {
+        let square = |x: &Exact| x.times(x);
+        let bounds = corners(frame, cell);
+        // The least and the greatest square on each axis.
+        let [x, y, z] = [0, 1, 2].map(|axis| {
+            let [a, b] = bounds[axis].each_ref().map(|end| end.minus(&Exact::from(self.centre[axis])));
+            let across = a.sign() * b.sign() < 0;
+            let [a, b] = [square(&a), square(&b)];
+            [if across { Exact::from(0.0) } else { a.clone().min(b.clone()) }, a.max(b)]
+        });
+        let [near, far] = [x[0].plus(&y[0]), x[1].plus(&y[1])];
+        let (major, minor) = (square(&Exact::from(self.major)), square(&Exact::from(self.minor)));
+        let sign = |rho: &Exact, z: &Exact| {
+            // 2 major ρ − rest.
+            let rest = rho.plus(z).plus(&major).minus(&minor);
+            match rest.sign() {
+                -1 => 1,
+                _ => Exact::from(4.0).times(&major).times(rho).minus(&square(&rest)).sign(),
+            }
+        };
+        // Where ρ is nearest to the ring's radius.
+        let best = major.clone().max(near.clone()).min(far.clone());
+        [sign(&near, &z[1]).min(sign(&far, &z[1])), sign(&best, &z[0])]
+    }
+}
+
+/// A function whose extremes over boxes are known.
+#[derive(Clone, Debug)]
+pub enum Truth {
+    Separable(Separable),
+    Powers(Powers),
+    Torus(Torus),
+}
+
+impl Truth {
     /// The best possible verdict.
     pub fn tag(&self, frame: &Frame, cell: Cell) -> Tag {
-        match self.signs(frame, cell) {
+        let signs = match self {
+            Truth::Separable(separable) => separable.signs(frame, cell),
+            Truth::Powers(powers) => powers.signs(frame, cell),
+            Truth::Torus(torus) => torus.signs(frame, cell),
+        };
+        match signs {
             [0 | 1, _] => Tag::Full,
             [_, 0 | -1] => Tag::Empty,
             _ => Tag::Partial,

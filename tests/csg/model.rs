@@ -3,18 +3,23 @@
 
 use crate::common::exact::Exact;
 use leafless::{
-    Affine, AnySolid, AxisBox, Ball, Callback, Counted, Csg, Error, FillRule, Frame, HalfSpace, MeshSolid,
-    Octree, Tag, Transform, TriangleMesh, Verdict,
+    Affine, AnySolid, AxisBox, Ball, Callback, Counted, Csg, Error, FillRule, Frame, HalfSpace, Interval,
+    MeshSolid, Octree, Tag, Transform, TriangleMesh, Verdict,
 };
 
 /// A point (x, y, z)/w with w ≠ 0, so that the inverse of a placement needs no division.
 pub type Point = [Exact; 4];
 
-/// A point and its neighbours a unit of the lattice's space before and behind it on each axis.
+/// A point, and the point (ε, ε², ε³) beside it: ε = 2^-20000, and, which is as good, 2^-23000 and 2^-26000. Where a
+/// function is zero and has a slope, its value there has the sign that the slope says; where it has none, its value is
+/// far smaller.
 pub struct Probe {
     pub at: Point,
-    pub around: [[Point; 2]; 3],
+    pub beside: Point,
 }
+
+/// What no value beside a zero with a slope is smaller than, nor one without a slope larger, of the functions here.
+const SLOPE: i64 = -32_000;
 
 #[derive(Clone, Debug)]
 pub enum Model {
@@ -24,6 +29,14 @@ pub enum Model {
     Ellipsoid([f64; 3], [f64; 3]),
     /// Radii at the bottom and at the top, and where these are.
     Frustum([f64; 2], [f64; 2]),
+    Power([(f64, f64, u32); 3], f64),
+    Torus(f64, f64),
+    /// Sizes, and the length of the narrow face.
+    Wedge([f64; 3], f64),
+    Prism(Vec<[f64; 2]>, [f64; 2]),
+    Convex(Vec<([f64; 3], f64)>),
+    /// A ball that a host program knows.
+    Host([f64; 3], f64),
     Union(Vec<Model>),
     Intersection(Vec<Model>),
     Xor(Vec<Model>),
@@ -116,6 +129,83 @@ fn quadric(c: [f64; 10], p: &Point) -> Exact {
     sum(pairs.iter().zip(c).filter(|(_, c)| *c != 0.0).map(|(&(a, b), c)| times(c, &p[a].times(&p[b]))))
 }
 
+fn plane(normal: [f64; 3], offset: f64, p: &Point) -> Exact {
+    let terms = (0..3).map(|axis| times(normal[axis], &p[axis]));
+    sum(terms).plus(&times(offset, &p[3])).times(&p[3])
+}
+
+fn power(base: &Exact, exponent: u32) -> Exact {
+    (0..exponent).fold(exact(1.0), |product, _| product.times(base))
+}
+
+fn powers(terms: &[(f64, f64, u32); 3], constant: f64, p: &Point) -> Exact {
+    // An even power of w makes all terms of one degree.
+    let degree = terms.iter().map(|term| term.2).max().unwrap().next_multiple_of(2);
+    let along = terms.iter().enumerate().map(|(axis, &(coefficient, centre, exponent))| {
+        let base = p[axis].minus(&times(centre, &p[3]));
+        times(coefficient, &power(&base, exponent)).times(&power(&p[3], degree - exponent))
+    });
+    sum(along).plus(&times(constant, &power(&p[3], degree)))
+}
+
+/// Of the sign of minor² − (ρ − major)² − z² = 2 major ρ − rest.
+fn torus(major: f64, minor: f64, p: &Point) -> Exact {
+    let square = |x: &Exact| x.times(x);
+    let rho = square(&p[0]).plus(&square(&p[1]));
+    let radii = square(&exact(major)).minus(&square(&exact(minor)));
+    let rest = rho.plus(&square(&p[2])).plus(&radii.times(&square(&p[3])));
+    if rest.sign() < 0 {
+        return exact(1.0);
+    }
+    times(4.0, &square(&times(major, &p[3])).times(&rho)).minus(&square(&rest))
+}
+
+/// On which side of a polygon's outline a point is, by the edges that a ray crosses.
+fn inside(polygon: &[[f64; 2]], p: &Point) -> i32 {
+    // Everything times |w|.
+    let sign = p[3].sign();
+    let w = times(sign as f64, &p[3]);
+    let [x, y] = [0, 1].map(|axis| times(sign as f64, &p[axis]));
+    let mut crossings = 0;
+    for (i, a) in polygon.iter().enumerate() {
+        let b = &polygon[(i + 1) % polygon.len()];
+        let [ax, ay, bx, by] = [a[0], a[1], b[0], b[1]].map(|c| times(c, &w));
+        let cross = bx.minus(&ax).times(&y.minus(&ay)).minus(&by.minus(&ay).times(&x.minus(&ax))).sign();
+        let apart = |a: &Exact, b: &Exact, c: &Exact| a.minus(c).sign() * b.minus(c).sign() > 0;
+        if cross == 0 && !apart(&ax, &bx, &x) && !apart(&ay, &by, &y) {
+            return 0;
+        }
+        let [from, to] = [ay.minus(&y).sign() > 0, by.minus(&y).sign() > 0];
+        if from != to && (cross > 0) == to {
+            crossings += 1;
+        }
+    }
+    if crossings % 2 == 1 { 1 } else { -1 }
+}
+
+/// A ball by its values and its ranges.
+fn host(centre: [f64; 3], radius: f64) -> HalfSpace {
+    // Distances to the nearest and to the farthest point on an axis, squared and relative to the squares around; some
+    // last places for what is rounded.
+    let value = move |near: [f64; 3]| radius * radius - near.iter().map(|d| d * d).sum::<f64>();
+    let slack = |size: f64| 64.0 * f64::EPSILON * size;
+    HalfSpace::host(
+        move |p| Ok(value([0, 1, 2].map(|axis| p[axis] - centre[axis]))),
+        move |min, max| {
+            let ends = |axis: usize| [min[axis] - centre[axis], max[axis] - centre[axis]];
+            let far = [0, 1, 2].map(|axis| ends(axis).iter().fold(0.0, |far: f64, d| far.max(d.abs())));
+            let near = [0, 1, 2].map(|axis| match ends(axis) {
+                [low, high] if low > 0.0 || high < 0.0 => low.abs().min(high.abs()),
+                _ => 0.0,
+            });
+            let coordinates = min.iter().chain(&max).chain(&centre).chain([&radius]);
+            let size = coordinates.map(|c| c * c).sum::<f64>();
+            Ok(Interval { lower: value(far) - slack(size), upper: value(near) + slack(size) })
+        },
+        None,
+    )
+}
+
 /// For each face of a tetrahedron on which side of it p is, the inside being positive.
 fn tetrahedron(corners: [[f64; 3]; 4], p: &Point) -> Vec<Exact> {
     let corners = corners.map(|corner| {
@@ -150,6 +240,12 @@ impl Model {
             Model::Ellipsoid(centre, radii) => Csg::ellipsoid(*centre, *radii)?,
             Model::Frustum([r, s], [low, high]) if r == s => Csg::cylinder(*r, *low, *high)?,
             Model::Frustum([r, s], [low, high]) => Csg::frustum(*r, *s, *low, *high)?,
+            Model::Power(terms, constant) => HalfSpace::power(*terms, *constant)?.into(),
+            Model::Torus(major, minor) => Csg::torus(*major, *minor)?,
+            Model::Wedge(size, top) => Csg::wedge(*size, *top)?,
+            Model::Prism(polygon, [low, high]) => Csg::prism(polygon, *low, *high)?,
+            Model::Convex(planes) => Csg::convex(planes)?,
+            &Model::Host(centre, radius) => host(centre, radius).into(),
             Model::Union(parts) => Csg::union_of(all(parts)?)?,
             Model::Intersection(parts) => Csg::intersection_of(all(parts)?)?,
             Model::Xor(parts) => Csg::xor_of(all(parts)?)?,
@@ -163,14 +259,25 @@ impl Model {
     /// The functions of the half-spaces of a primitive at a point, times something positive.
     fn values(&self, p: &Point) -> Vec<Exact> {
         match self {
-            Model::Plane(normal, offset) => {
-                let terms = (0..3).map(|axis| times(normal[axis], &p[axis]));
-                vec![sum(terms).plus(&times(*offset, &p[3])).times(&p[3])]
-            }
+            Model::Plane(normal, offset) => vec![plane(*normal, *offset, p)],
             Model::Quadric(c) => vec![quadric(*c, p)],
             Model::Cuboid(min, max) => cuboid(*min, *max, p),
             Model::Ellipsoid(centre, radii) => vec![ellipsoid(*centre, *radii, p)],
             Model::Frustum(radii, heights) => frustum(*radii, *heights, p),
+            Model::Power(terms, constant) => vec![powers(terms, *constant, p)],
+            Model::Torus(major, minor) => vec![torus(*major, *minor, p)],
+            Model::Wedge(size, top) => {
+                let [dx, dy] = [size[0], size[1]].map(exact);
+                // dx dy + (top − dx) y − dy x.
+                let slant = exact(*top).minus(&dx).times(&p[1]).minus(&dy.times(&p[0]));
+                let slant = slant.plus(&dx.times(&dy).times(&p[3])).times(&p[3]);
+                let far = size[0].max(*top);
+                [vec![slant], cuboid([0.0; 3], [far * 2.0, size[1], size[2]], p)].concat()
+            }
+            Model::Convex(planes) => {
+                planes.iter().map(|&(normal, offset)| plane(normal, offset, p)).collect()
+            }
+            Model::Host(centre, radius) => vec![ellipsoid(*centre, [*radius; 3], p)],
             _ => panic!("not a primitive"),
         }
     }
@@ -185,6 +292,7 @@ impl Model {
             Model::Complement(part) => -part.sign(p),
             Model::Placed(part, placement) => part.sign(&original(placement, p)),
             Model::Other(other) => other.sign(p),
+            Model::Prism(polygon, heights) => inside(polygon, p).min(lowest(slab(*heights, p).to_vec())),
             primitive => lowest(primitive.values(p)),
         }
     }
@@ -199,23 +307,27 @@ impl Model {
             Model::Difference(pair) => pair[0].sampled(probe)? && !pair[1].sampled(probe)?,
             Model::Complement(part) => !part.sampled(probe)?,
             Model::Placed(part, placement) => {
-                let local = |p: &Point| original(placement, p);
-                let around = probe.around.each_ref().map(|pair| pair.each_ref().map(local));
-                part.sampled(&Probe { at: local(&probe.at), around })?
+                let [at, beside] = [&probe.at, &probe.beside].map(|p| original(placement, p));
+                part.sampled(&Probe { at, beside })?
             }
             Model::Other(other) => match other.sign(&probe.at) {
                 0 => return None,
                 sign => sign > 0,
             },
+            // A host's function is rounded.
+            Model::Host(..) => return None,
+            Model::Prism(..) => match self.sign(&probe.at) {
+                0 => return None,
+                sign => sign > 0,
+            },
+            // Of its zeros those on the axis are too special.
+            Model::Torus(..) if self.sign(&probe.at) == 0 && probe.at[..2].iter().all(|c| c.sign() == 0) => {
+                return None;
+            }
             primitive => {
-                // Of polynomials of degree two the central difference is the derivative.
-                let at = primitive.values(&probe.at);
-                let around = probe.around.each_ref().map(|pair| pair.each_ref().map(|p| primitive.values(p)));
-                (0..at.len()).all(|i| match at[i].sign() {
-                    0 => {
-                        let slope = |[before, behind]: &[Vec<Exact>; 2]| behind[i].minus(&before[i]).sign();
-                        around.iter().map(slope).find(|&sign| sign != 0) == Some(1)
-                    }
+                let [at, beside] = [&probe.at, &probe.beside].map(|p| primitive.values(p));
+                at.iter().zip(&beside).all(|(at, beside)| match at.sign() {
+                    0 => beside.minus(&Exact::power_of_two(SLOPE)).sign() > 0,
                     sign => sign > 0,
                 })
             }

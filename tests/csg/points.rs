@@ -127,15 +127,13 @@ impl Judge<'_> {
     }
 }
 
-/// The centre of a finest cell, and the points a cell before and behind it on each axis.
+/// The centre of a finest cell, and the point beside it.
 pub fn centre(frame: &Frame, at: [u32; 3]) -> Probe {
     let middle = at.map(|i| ((2 * i as i64) + 1) << (STEPS - 1));
-    let around = [0, 1, 2].map(|axis| {
-        [-1, 1].map(|way| {
-            let mut next = middle;
-            next[axis] += way << STEPS;
-            point(frame, next)
-        })
-    });
-    Probe { at: point(frame, middle), around }
+    let at = point(frame, middle);
+    let mut beside = at.clone();
+    for (axis, coordinate) in beside[..3].iter_mut().enumerate() {
+        *coordinate = coordinate.plus(&Exact::power_of_two(-20_000 - 3000 * axis as i64));
+    }
+    Probe { at, beside }
 }

@@ -46,13 +46,18 @@ impl Maker<'_> {
         (min, min.map(|c| c + self.length()))
     }
 
-    pub fn plane(&mut self) -> Model {
+    fn half_space(&mut self) -> ([f64; 3], f64) {
         let normal = [self.factor(), self.factor(), self.factor()];
         if normal == [0.0; 3] {
-            return self.plane();
+            return self.half_space();
         }
         let p = self.point();
-        Model::Plane(normal, -(0..3).map(|axis| normal[axis] * p[axis]).sum::<f64>())
+        (normal, -(0..3).map(|axis| normal[axis] * p[axis]).sum::<f64>())
+    }
+
+    pub fn plane(&mut self) -> Model {
+        let (normal, offset) = self.half_space();
+        Model::Plane(normal, offset)
     }
 
     /// Through a random point, about a random centre.
@@ -78,7 +83,7 @@ impl Maker<'_> {
     }
 
     pub fn primitive(&mut self) -> Model {
-        match self.below(8) {
+        match self.below(13) {
             0 => self.plane(),
             1 => self.quadric(false),
             2 => self.quadric(true),
@@ -88,24 +93,72 @@ impl Maker<'_> {
             }
             4 => Model::Ellipsoid(self.point(), [self.length(); 3]),
             5 => Model::Ellipsoid(self.point(), [self.length(), self.length(), self.length()]),
-            kind => {
+            6 => self.power(),
+            7 => Model::Convex((0..2 + self.below(6)).map(|_| self.half_space()).collect()),
+            8 => Model::Host(self.point(), self.length()),
+            9 => {
+                let (major, other) = (self.length(), self.length());
+                let minor = if self.below(3) == 0 { major } else { other };
+                self.moved(Model::Torus(major, minor))
+            }
+            10 => {
+                let size = [self.length(), self.length(), self.length()];
+                let top = if self.below(3) == 0 { 0.0 } else { self.length() };
+                self.moved(Model::Wedge(size, top))
+            }
+            11 => self.prism(),
+            _ => {
                 let (radius, low) = (self.length(), self.coordinate(2));
-                let other =
-                    [radius, 0.0, self.length()][if kind == 6 { 0 } else { 1 + self.below(2) as usize }];
-                let mut radii = [radius, other];
+                let mut radii = [radius, [radius, 0.0, self.length()][self.below(3) as usize]];
                 if self.below(2) == 0 {
                     radii.reverse();
                 }
-                // Around the z axis, which is moved to where the universe is.
-                let mut rows = *Affine::IDENTITY.rows();
-                (0..2).for_each(|axis| rows[axis][3] = self.coordinate(axis));
                 let frustum = Model::Frustum(radii, [low, low + self.length()]);
-                match Affine::new(rows) {
-                    Ok(placement) => Model::Placed(Box::new(frustum), placement),
-                    Err(_) => frustum,
-                }
+                self.moved(frustum)
             }
         }
+    }
+
+    /// From around the origin to where the universe is.
+    fn moved(&mut self, model: Model) -> Model {
+        match Affine::translation(self.point()) {
+            Ok(placement) => Model::Placed(Box::new(model), placement),
+            Err(_) => model,
+        }
+    }
+
+    /// Through a random point, of moderate size in the universe.
+    pub fn power(&mut self) -> Model {
+        let (centre, through) = (self.point(), self.point());
+        let terms = [0, 1, 2].map(|axis| {
+            let exponent = 1 + self.below(6) as u32;
+            let size = 2f64.powi(self.frame.edge().log2().round() as i32);
+            (self.factor() / size.powi(exponent as i32), centre[axis], exponent)
+        });
+        let along = |axis: usize| {
+            let (coefficient, centre, exponent) = terms[axis];
+            coefficient * (through[axis] - centre).powi(exponent as i32)
+        };
+        Model::Power(terms, -(along(0) + along(1) + along(2)))
+    }
+
+    fn prism(&mut self) -> Model {
+        let (middle, low) = (self.point(), self.coordinate(2));
+        let corners = 3 + self.below(8);
+        let polygon = (0..corners).map(|i| {
+            let (sin, cos) = (std::f64::consts::TAU * i as f64 / corners as f64).sin_cos();
+            let radius = self.length();
+            let grid = |axis: usize, by: f64| match self.aligned {
+                // To whole cells, from a corner of the universe.
+                true => {
+                    let (origin, cell) = (self.frame.origin()[axis], self.frame.cell_size());
+                    origin + ((middle[axis] + by - origin) / cell).round() * cell
+                }
+                false => middle[axis] + by,
+            };
+            [grid(0, radius * cos), grid(1, radius * sin)]
+        });
+        Model::Prism(polygon.collect(), [low, low + self.length()])
     }
 
     /// One that leaves the universe about where it is.
