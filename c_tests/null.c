@@ -799,8 +799,9 @@ static void lazy_octrees(void) {
     leafless_tag *tags = (leafless_tag *)out, tag;
     bool *flag = (bool *)out, done;
     uint64_t *count = (uint64_t *)out, number;
-    const uint32_t universe[3] = {0, 0, 0};
-    const double *numbers = (const double *)WRONG(point);
+    /* Room for what is read beside them. */
+    const uint32_t universe[4] = {0, 0, 0, 0};
+    const double room[4] = {0, 0, 0, 0}, *numbers = (const double *)WRONG(room);
     const uint32_t *cell = (const uint32_t *)WRONG(universe);
     leafless_lazy_counts *counts = (leafless_lazy_counts *)out;
     leafless_statistics *statistics = (leafless_statistics *)out;
