@@ -1,9 +1,10 @@
 //! Everything that a tree can be asked, whatever its bytes: no panic, bounded work, and where several ways
 //! lead to one answer it is the same.
 
-use super::{Aligned, Random, halves, walk};
+use super::{Aligned, CONTROL, Random, halves, walk};
 use leafless::{
-    Cell, Cube, Cursor, Frame, Membership, OctreeRef, PointCursor, Region, Solid, Stored, Tag, Verdict, file,
+    Cell, Control, Cube, Cursor, Frame, LazyOctree, Membership, OctreeRef, PointCursor, Region, Rule, Solid,
+    Stored, Tag, Verdict, Zone, build, file,
 };
 
 /// Asks the tree in the first half of `data` what the second half says.
@@ -21,6 +22,7 @@ pub fn ask(tree: &OctreeRef<'_>, questions: &[u8], verified: bool) {
     ask_points(tree, &points);
     ask_boxes(tree, &points);
     replay(tree, &points);
+    on_demand(tree, &points);
     if verified {
         tree.check().expect("it is verified");
     } else {
@@ -137,4 +139,45 @@ fn replay(tree: &OctreeRef<'_>, points: &[[f64; 3]]) {
         }
         assert_eq!(verdict.tag(), tree.tag_at(at), "{at:?}");
     }
+}
+
+/// The tree as a solid that is split on demand: what comes out lies between nothing and the tree, and is well-formed.
+fn on_demand(tree: &OctreeRef<'_>, points: &[[f64; 3]]) {
+    let frame = tree.frame();
+    let Ok(mut lazy) = LazyOctree::new(Stored::new(tree), frame) else { return };
+    for (k, pair) in points.chunks_exact(2).enumerate() {
+        let level = (k * 5) as u8 % (frame.depth() + 1);
+        let (from, to) = ([0.0, 0.5, f64::NEG_INFINITY][k % 3], [1.0, f64::INFINITY][k % 2]);
+        let zone = match k % 4 {
+            0 => Zone::Point(pair[0]),
+            1 => Zone::Ray { origin: pair[0], direction: pair[1], from, to },
+            2 => Zone::Box {
+                min: [0, 1, 2].map(|axis: usize| pair[0][axis].min(pair[1][axis])),
+                max: [0, 1, 2].map(|axis: usize| pair[0][axis].max(pair[1][axis])),
+            },
+            _ => Zone::Box { min: pair[0], max: pair[1] },
+        };
+        let max_splits = if k % 3 == 0 { Some(20) } else { None };
+        // Numbers that are none are refused.
+        let _ = lazy.refine(&zone, level, &Control { max_splits, ..CONTROL });
+        let at = pair[0].map(|c| c.to_bits() as u32 >> (32 - level.clamp(1, 20)));
+        let cell = Cell { level, at };
+        if lazy.can_split(cell) {
+            lazy.split(cell).expect("it can be split");
+            assert!(!lazy.can_split(cell));
+        }
+    }
+    for &point in points {
+        let found = lazy.contains(point);
+        assert!(found == Membership::Undecided || found == tree.contains(point));
+    }
+    let nodes = lazy.statistics().nodes();
+    assert!(nodes <= lazy.splits() && nodes <= 9 * (tree.element_count() + tree.brick_count()));
+    let frozen = lazy.freeze(&CONTROL).expect("enough memory");
+    frozen.view().check().expect("it is well-formed");
+    assert_eq!(lazy.statistics().volume(), frozen.statistics().volume());
+    lazy.refine(&Zone::Whole, frame.depth(), &CONTROL).expect("enough memory");
+    let whole = lazy.freeze(&CONTROL).expect("enough memory");
+    let built = build(&Stored::new(tree), frame, Rule::Certified, &CONTROL).expect("enough memory");
+    assert!(whole == built);
 }
