@@ -43,7 +43,7 @@ impl Late<'_> {
     fn says(&self, cell: Cell) -> Verdict<()> {
         let agreed = self.dense.tag_of(cell);
         let sees = cell.level == self.dense.depth
-            || noise(self.seed, cell.at.map(|a| a + 977 * u32::from(cell.level))) % 3 > 0;
+            || !noise(self.seed, cell.at.map(|a| a + 977 * u32::from(cell.level))).is_multiple_of(3);
         match agreed.filter(|_| sees) {
             Some(Tag::Empty) => Verdict::Empty,
             Some(Tag::Full) => Verdict::Full,
@@ -425,9 +425,18 @@ fn solids(frame: &Frame) -> Vec<AnySolid> {
     ]
 }
 
+/// A function that classifies boxes.
+type Classify<'a> = Box<dyn Fn([f64; 3], [f64; 3]) -> Result<Verdict<()>, Error> + Send + Sync + 'a>;
+
+fn callback<'a>(
+    classify: impl Fn([f64; 3], [f64; 3]) -> Result<Verdict<()>, Error> + Send + Sync + 'a,
+) -> Callback<'a, Classify<'a>> {
+    Callback::new(Box::new(classify))
+}
+
 /// The slab 0.3 ≤ z ≤ 0.7, known through boxes.
-fn slab() -> Callback<'static, impl Fn([f64; 3], [f64; 3]) -> Result<Verdict<()>, Error> + Sync> {
-    Callback::new(|min, max| {
+fn slab() -> Callback<'static, Classify<'static>> {
+    callback(|min, max| {
         Ok(match (min[2], max[2]) {
             (low, high) if high <= 0.3 || low >= 0.7 => Verdict::Empty,
             (low, high) if low >= 0.3 && high <= 0.7 => Verdict::Full,
@@ -596,10 +605,8 @@ fn round(min: [f64; 3], max: [f64; 3]) -> Verdict<()> {
 }
 
 /// The same; every box that is asked about is noted.
-fn noted<'a>(
-    asked: &'a Mutex<Vec<([f64; 3], [f64; 3])>>,
-) -> Callback<'a, impl Fn([f64; 3], [f64; 3]) -> Result<Verdict<()>, Error> + Sync> {
-    Callback::new(move |min, max| {
+fn noted(asked: &Mutex<Vec<([f64; 3], [f64; 3])>>) -> Callback<'_, Classify<'_>> {
+    callback(move |min, max| {
         asked.lock().unwrap().push((min, max));
         Ok(round(min, max))
     })
