@@ -212,6 +212,11 @@ fn lazy() {
 }
 
 #[test]
+fn measures() {
+    run("measure", C99, Link::Static, &[]);
+}
+
+#[test]
 fn options() {
     run("options", C99, Link::Static, &[]);
 }

@@ -104,6 +104,8 @@ static void null_pointers(void) {
     const double matrix[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
     uint64_t length = 0;
     uint8_t *bytes = check_bytes(octree, &length);
+    leafless_measures measures;
+    leafless_extent extent;
     double wanted[8][3];
     uint32_t indices[12][3];
     uint64_t number, other;
@@ -483,6 +485,18 @@ static void null_pointers(void) {
         MAY_BE_NULL(leafless_solid_clearance, options,
                     leafless_solid_clearance(solid, solid, &frame, 1, NULL, &near));
     }
+    NULL_POINTER(leafless_solid_measure, solid,
+                 leafless_solid_measure(NULL, &frame, 0, NULL, (leafless_measures *)out));
+    NULL_POINTER(leafless_solid_measure, frame,
+                 leafless_solid_measure(solid, NULL, 0, NULL, (leafless_measures *)out));
+    NULL_POINTER(leafless_solid_measure, measures, leafless_solid_measure(solid, &frame, 0, NULL, NULL));
+    MAY_BE_NULL(leafless_solid_measure, options, leafless_solid_measure(solid, &frame, 0, NULL, &measures));
+    NULL_POINTER(leafless_solid_bounding_box, solid,
+                 leafless_solid_bounding_box(NULL, &frame, 0, NULL, (leafless_extent *)out));
+    NULL_POINTER(leafless_solid_bounding_box, frame,
+                 leafless_solid_bounding_box(solid, NULL, 0, NULL, (leafless_extent *)out));
+    NULL_POINTER(leafless_solid_bounding_box, extent, leafless_solid_bounding_box(solid, &frame, 0, NULL, NULL));
+    MAY_BE_NULL(leafless_solid_bounding_box, options, leafless_solid_bounding_box(solid, &frame, 0, NULL, &extent));
     MAY_BE_NULL(leafless_octree_build, options, leafless_octree_build(solid, &frame, 0, NULL, result));
     leafless_octree_free(*result);
     MAY_BE_NULL(leafless_octree_resolve, options, leafless_octree_resolve(octree, 2, NULL, result));
@@ -606,6 +620,12 @@ static void misaligned(void) {
                leafless_solid_interfere(solid, solid, &frame, 0, NULL, (leafless_interference *)WRONG(out)));
     MISALIGNED(leafless_solid_clearance, clearance,
                leafless_solid_clearance(solid, solid, &frame, 0, NULL, (leafless_clearance *)WRONG(out)));
+    MISALIGNED(leafless_solid_measure, solid,
+               leafless_solid_measure((leafless_solid *)WRONG(solid), &frame, 0, NULL, (leafless_measures *)out));
+    MISALIGNED(leafless_solid_measure, measures,
+               leafless_solid_measure(solid, &frame, 0, NULL, (leafless_measures *)WRONG(out)));
+    MISALIGNED(leafless_solid_bounding_box, extent,
+               leafless_solid_bounding_box(solid, &frame, 0, NULL, (leafless_extent *)WRONG(out)));
     MISALIGNED(leafless_octree_build, solid,
                leafless_octree_build((leafless_solid *)WRONG(solid), &frame, 0, NULL, result));
     MISALIGNED(leafless_octree_build, options,
@@ -675,6 +695,10 @@ static void numbers(void) {
         BAD_NUMBER(leafless_frame_check, depth, leafless_frame_check(&bad));
         BAD_NUMBER(leafless_frame_around, depth, leafless_frame_around(point, above, bad.depth, (leafless_frame *)out));
         BAD_NUMBER(leafless_octree_build, depth, leafless_octree_build(solid, &bad, 0, NULL, result));
+        BAD_NUMBER(leafless_solid_measure, depth,
+                   leafless_solid_measure(solid, &bad, 0, NULL, (leafless_measures *)out));
+        BAD_NUMBER(leafless_solid_bounding_box, depth,
+                   leafless_solid_bounding_box(solid, &bad, 0, NULL, (leafless_extent *)out));
     }
     for (i = 0; i < COUNT(not_in_range); i++) {
         bad = frame;

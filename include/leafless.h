@@ -379,6 +379,32 @@ typedef uint8_t leafless_region;
 #endif // __cplusplus
 
 /**
+ * Why measuring ended.
+ */
+enum leafless_measured
+#ifdef __cplusplus
+  : uint32_t
+#endif // __cplusplus
+ {
+    /**
+     * What was asked for is known well enough.
+     */
+    LEAFLESS_MEASURED_TOLERANCE = 0,
+    /**
+     * `max_splits` of the options is spent.
+     */
+    LEAFLESS_MEASURED_BUDGET = 1,
+    /**
+     * No cell is left that could be split: what is undecided has the size of the frame's finest cells, or the solid
+     * itself knows no more about it, as an octree does of its PARTIAL cells.
+     */
+    LEAFLESS_MEASURED_EXHAUSTED = 2,
+};
+#ifndef __cplusplus
+typedef uint32_t leafless_measured;
+#endif // __cplusplus
+
+/**
  * Which points a surface encloses.
  *
  * The winding number of a surface at a point is the solid angle at which it is seen from there, over 4π, counted
@@ -1231,6 +1257,92 @@ typedef struct {
      */
     bool is_clipped;
 } leafless_clearance;
+
+/**
+ * Mass properties of a solid of density 1. All intervals contain the truth. All of it concerns the part inside of the
+ * universe; unless `is_clipped` says otherwise, that is the whole solid.
+ */
+typedef struct {
+    /**
+     * Volume.
+     */
+    leafless_interval volume_model;
+    /**
+     * Centroid; all numbers unless `has_centroid`.
+     */
+    leafless_interval centroid_model[3];
+    /**
+     * Tensor of inertia about the model's origin, row by row: the integral of |p|²δij - pi·pj over the points p of the
+     * solid. So products of inertia are negative where the product of the coordinates is mostly positive.
+     */
+    leafless_interval inertia_origin_model[9];
+    /**
+     * The same about the solid's own centroid, wherever in the interval that lies.
+     */
+    leafless_interval inertia_centroid_model[9];
+    /**
+     * How many times a cell was split.
+     */
+    uint64_t splits;
+    /**
+     * Evaluations of half-spaces, for solids that count them.
+     */
+    uint64_t evaluations;
+    /**
+     * Every undecided cell of a lower level was split, if the solid could.
+     */
+    uint32_t level;
+    /**
+     * Why it ended.
+     */
+    leafless_measured measured;
+    /**
+     * Whether a cell is proven full: else the solid may be empty, and nothing is known of a centroid.
+     */
+    bool has_centroid;
+    /**
+     * Whether the solid may go on outside of the universe, or does.
+     */
+    bool is_clipped;
+} leafless_measures;
+
+/**
+ * What is proven of a solid's bounding box inside of the universe.
+ */
+typedef struct {
+    /**
+     * Lower corner; all numbers if `is_empty`.
+     */
+    leafless_interval min_model[3];
+    /**
+     * Upper corner; all numbers if `is_empty`.
+     */
+    leafless_interval max_model[3];
+    /**
+     * How many times a cell was split.
+     */
+    uint64_t splits;
+    /**
+     * Evaluations of half-spaces, for solids that count them.
+     */
+    uint64_t evaluations;
+    /**
+     * Why it ended.
+     */
+    leafless_measured measured;
+    /**
+     * Whether the solid is proven to be empty.
+     */
+    bool is_empty;
+    /**
+     * Whether it is proven not to be. If neither is proven, the corners are those of what the solid may be.
+     */
+    bool is_occupied;
+    /**
+     * Whether the solid may go on outside of the universe, or does.
+     */
+    bool is_clipped;
+} leafless_extent;
 
 /**
  * What header and section table of a file say.
@@ -3156,6 +3268,48 @@ leafless_status leafless_solid_clearance(const leafless_solid *a,
                                          double tolerance_model,
                                          const leafless_options *options,
                                          leafless_clearance *clearance);
+
+/**
+ * Measures a solid in the universe of a frame, without building an octree: the largest undecided cells are split
+ * first, until the width of the volume's interval is at most `tolerance` times its middle, `max_splits` of the
+ * options is spent, or nothing is left to split at the frame's depth. The result is the same bit for bit for any number
+ * of threads.
+ *
+ * - Buffers: `frame`, one struct; `options`, one struct or NULL, of which `max_nodes` and `max_bytes` do not matter;
+ *   `measures`, one struct.
+ * - Result: `*measures`.
+ * - Errors: LEAFLESS_E_ARGUMENT, also if `tolerance` is negative or not a number; LEAFLESS_E_FRAME if the solid belongs
+ *   to another frame; LEAFLESS_E_CALLBACK; LEAFLESS_E_DAMAGED; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
+ * - Ownership: nothing changes hands.
+ * - Threads: any; uses as many as `options` says.
+ * - Untrusted input: any solid; set `max_splits` where the depth or the solid is not your own choice.
+ * - Since: 0.1
+ */
+leafless_status leafless_solid_measure(const leafless_solid *solid,
+                                       const leafless_frame *frame,
+                                       double tolerance,
+                                       const leafless_options *options,
+                                       leafless_measures *measures);
+
+/**
+ * The bounding box of a solid in the universe of a frame: each of its sides until the interval is at most
+ * `tolerance_model` or one finest cell wide, `max_splits` of the options is spent, or nothing is left to split. Only
+ * cells that may reach beyond what is proven solid are split. With n the universe's edge over the tolerance that takes
+ * some n splits for a curved side and, unless it lies on a plane of the lattice, n² for a flat one.
+ *
+ * - Buffers: as leafless_solid_measure; `extent`, one struct.
+ * - Result: `*extent`.
+ * - Errors: as leafless_solid_measure, with `tolerance_model` for `tolerance`.
+ * - Ownership: nothing changes hands.
+ * - Threads: any; works in the calling thread.
+ * - Untrusted input: as leafless_solid_measure.
+ * - Since: 0.1
+ */
+leafless_status leafless_solid_bounding_box(const leafless_solid *solid,
+                                            const leafless_frame *frame,
+                                            double tolerance_model,
+                                            const leafless_options *options,
+                                            leafless_extent *extent);
 
 /**
  * What a file says of itself, without looking at more than header and section table. Whether the rest is good is

@@ -35,9 +35,7 @@
 //! | `octree` | tags, the word algebra, views, the writer, checks, statistics |
 //! | `solid` | what can split a cell: one file a producer |
 //! | `op` | building, splitting on demand, and the set algebra of stored trees |
-//! | `query` | points and boxes |
-//! | `op` | building, and the set algebra of stored trees |
-//! | `query` | points and boxes, measures |
+//! | `query` | points and boxes, measures, interference |
 //! | `file` | the file format, and meshes from other programs |
 //! | `capi` | the C interface |
 

@@ -31,6 +31,7 @@ const SECTIONS: &[&str] = &[
     "query",
     "lazy",
     "interference",
+    "measure",
     "file",
     "layout",
 ];

@@ -67,6 +67,13 @@ fn write_all(to: &mut dyn Write) -> fmt::Result {
             distance_model, splits_a, splits_b, evaluations, nearest_a, nearest_a_level, nearest_b, nearest_b_level,
             has_nearest, is_clipped
         }
+        leafless_measures {
+            volume_model, centroid_model, inertia_origin_model, inertia_centroid_model, splits, evaluations, level,
+            measured, has_centroid, is_clipped
+        }
+        leafless_extent {
+            min_model, max_model, splits, evaluations, measured, is_empty, is_occupied, is_clipped
+        }
         leafless_cursor_state { cell, level, tag, children }
         leafless_probe {
             major, minor, frame, elements, bricks, file_length, sections, root, exterior, is_binary
@@ -89,6 +96,9 @@ fn write_all(to: &mut dyn Write) -> fmt::Result {
         }
         leafless_touch { LEAFLESS_TOUCH_EXACT, LEAFLESS_TOUCH_PAPER }
         leafless_overlap { LEAFLESS_OVERLAP_DISJOINT, LEAFLESS_OVERLAP_OVERLAPPING, LEAFLESS_OVERLAP_UNDECIDED }
+        leafless_measured {
+            LEAFLESS_MEASURED_TOLERANCE, LEAFLESS_MEASURED_BUDGET, LEAFLESS_MEASURED_EXHAUSTED
+        }
         leafless_fill { LEAFLESS_FILL_NON_ZERO, LEAFLESS_FILL_EVEN_ODD, LEAFLESS_FILL_POSITIVE }
         leafless_vertex_type { LEAFLESS_VERTEX_F64, LEAFLESS_VERTEX_F32 }
         leafless_index_type { LEAFLESS_INDEX_U32, LEAFLESS_INDEX_U64, LEAFLESS_INDEX_U16 }

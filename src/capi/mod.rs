@@ -20,6 +20,7 @@
 //! | `query` | points, boxes, cursors |
 //! | `lazy` | octrees that are split on demand |
 //! | `interference` | solids under affine maps; overlap and distance of two solids |
+//! | `measure` | volume, centroid, inertia, bounding boxes of solids |
 //! | `file` | files and their bytes |
 //! | `layout` | for tests: what the structs look like |
 
@@ -37,6 +38,7 @@ mod interference;
 #[cfg(feature = "capi-test")]
 mod layout;
 mod lazy;
+mod measure;
 mod mesh;
 mod mesh_arrays;
 mod mesh_file;
@@ -59,6 +61,7 @@ pub use interference::*;
 #[cfg(feature = "capi-test")]
 pub use layout::*;
 pub use lazy::*;
+pub use measure::*;
 pub use mesh::*;
 pub use mesh_arrays::*;
 pub use mesh_file::*;

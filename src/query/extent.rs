@@ -1,6 +1,6 @@
 //! Where a solid begins and ends along each axis.
 
-use super::Measured;
+use super::{Measured, check_tolerance};
 use crate::control::{Control, Job, WHOLE};
 use crate::error::Error;
 use crate::lattice::{Cell, Cube, Frame, Interval, MAX_DEPTH};
@@ -59,9 +59,7 @@ pub fn bounding_box<S: Solid>(
     tolerance: f64,
     control: &Control<'_>,
 ) -> Result<Extent, Error> {
-    if tolerance.is_nan() || tolerance < 0.0 {
-        return Err(Error::Argument { name: "tolerance", problem: "must be a number not below 0" });
-    }
+    check_tolerance(tolerance)?;
     let job = Job::new(control);
     // The cast rounds down, and saturates.
     let goal = ((tolerance / frame.cell_size()) as u32).max(1);

@@ -4,6 +4,7 @@ mod bounds;
 mod moments;
 mod walk;
 
+use super::check_tolerance;
 use crate::control::Control;
 use crate::error::Error;
 use crate::lattice::{Frame, Interval};
@@ -65,7 +66,7 @@ pub struct Measures {
 /// are bounded by means of the undecided cells' second moments (Loewner's order; Scarf 1958).
 ///
 /// # Errors
-/// [`Error::Argument`] if `tolerance` is negative, infinite or not a number; what the solid refuses, as
+/// [`Error::Argument`] if `tolerance` is negative or not a number; what the solid refuses, as
 /// [`build`](crate::build); [`Error::Cancelled`]; [`Error::OutOfMemory`].
 ///
 /// ```
@@ -83,9 +84,7 @@ pub fn measure<S: Solid>(
     tolerance: f64,
     control: &Control<'_>,
 ) -> Result<Measures, Error> {
-    if !(tolerance >= 0.0 && tolerance.is_finite()) {
-        return Err(Error::Argument { name: "tolerance", problem: "must be a finite number not below 0" });
-    }
+    check_tolerance(tolerance)?;
     let walked = walk::walk(solid, frame, tolerance, control)?;
     let known = Known { frame, full: walked.full, open: walked.open };
     Ok(Measures {

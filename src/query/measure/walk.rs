@@ -171,7 +171,7 @@ impl<S: Solid> Walk<'_, S> {
 
     fn is_met(&self, found: &Found) -> bool {
         let (full, open) = (found.full.volume as f64, found.open.volume as f64);
-        open <= self.tolerance * (full + 0.5 * open)
+        open == 0.0 || open <= self.tolerance * (full + 0.5 * open)
     }
 
     /// The level for the next pass: where the tolerance will be met if each level halves what is undecided. Under a

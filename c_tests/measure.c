@@ -1,0 +1,163 @@
+/* What is proven of solids without an octree: volume, centroid, inertia, bounding box. */
+#include "check.h"
+
+static const double PI = 3.14159265358979323846;
+
+static bool holds(leafless_interval interval, double value) {
+    return interval.lower <= value + 1e-12 && value - 1e-12 <= interval.upper;
+}
+
+static int32_t stop(void *ctx, double fraction) {
+    double *last = (double *)ctx;
+    CHECK(fraction >= *last && fraction <= 1.0);
+    *last = fraction;
+    return 0;
+}
+
+static int32_t refuse(void *ctx, double fraction) {
+    (void)ctx;
+    (void)fraction;
+    return 1;
+}
+
+static int32_t fails(void *ctx, const double *min, const double *max) {
+    (void)ctx;
+    (void)min;
+    (void)max;
+    return -7;
+}
+
+static int32_t doubts(void *ctx, const double *min, const double *max) {
+    (void)ctx;
+    (void)min;
+    (void)max;
+    return LEAFLESS_TAG_PARTIAL;
+}
+
+/* The ball of radius 0.75 around the origin. */
+static void ball(void) {
+    const leafless_frame frame = check_frame(20);
+    const double volume = 4.0 / 3.0 * PI * 0.75 * 0.75 * 0.75, inertia = 0.4 * volume * 0.75 * 0.75;
+    leafless_solid *solid = check_ball_solid();
+    leafless_options options;
+    leafless_measures measures, again;
+    leafless_extent extent;
+    double last = 0.0;
+    int i;
+    OK(leafless_solid_measure(solid, &frame, 0.05, NULL, &measures));
+    CHECK(measures.volume_model.lower < volume && volume < measures.volume_model.upper);
+    CHECK(measures.volume_model.upper - measures.volume_model.lower <= 0.05 * measures.volume_model.upper);
+    CHECK(measures.measured == LEAFLESS_MEASURED_TOLERANCE && measures.has_centroid && !measures.is_clipped);
+    CHECK(measures.splits > 1000 && measures.level >= 6 && measures.level < 12);
+    for (i = 0; i < 3; i++) {
+        CHECK(holds(measures.centroid_model[i], 0.0));
+    }
+    for (i = 0; i < 9; i++) {
+        CHECK(holds(measures.inertia_origin_model[i], i % 4 == 0 ? inertia : 0.0));
+        CHECK(holds(measures.inertia_centroid_model[i], i % 4 == 0 ? inertia : 0.0));
+    }
+
+    OK(leafless_options_init(&options, sizeof options));
+    options.threads = 1;
+    options.progress = stop;
+    options.progress_ctx = &last;
+    OK(leafless_solid_measure(solid, &frame, 0.05, &options, &again));
+    CHECK(last == 1.0 && again.splits == measures.splits && again.level == measures.level);
+    CHECK(again.volume_model.lower == measures.volume_model.lower);
+    CHECK(again.centroid_model[1].upper == measures.centroid_model[1].upper);
+    options.max_splits = 65;
+    last = 0.0;
+    OK(leafless_solid_measure(solid, &frame, 0.0, &options, &again));
+    CHECK(again.measured == LEAFLESS_MEASURED_BUDGET && again.splits == 65 && last == 1.0);
+    CHECK(again.volume_model.lower < volume && volume < again.volume_model.upper);
+
+    options.max_splits = 0;
+    last = 0.0;
+    OK(leafless_solid_bounding_box(solid, &frame, 0.01, &options, &extent));
+    CHECK(extent.measured == LEAFLESS_MEASURED_TOLERANCE && last == 1.0 && extent.splits < 20000);
+    CHECK(extent.is_occupied && !extent.is_empty && !extent.is_clipped);
+    for (i = 0; i < 3; i++) {
+        CHECK(holds(extent.min_model[i], -0.75) && holds(extent.max_model[i], 0.75));
+        CHECK(extent.max_model[i].upper - extent.max_model[i].lower <= 0.0100001);
+    }
+
+    /* Nothing is written when it fails. */
+    options.progress = refuse;
+    memset(&again, 0x5a, sizeof again);
+    FAILS(LEAFLESS_E_CANCELLED, leafless_solid_measure(solid, &frame, 0.0, &options, &again));
+    FAILS(LEAFLESS_E_CANCELLED, leafless_solid_bounding_box(solid, &frame, 0.0, &options, &extent));
+    FAILS(LEAFLESS_E_ARGUMENT, leafless_solid_measure(solid, &frame, -1.0, NULL, &again));
+    FAILS(LEAFLESS_E_ARGUMENT, leafless_solid_measure(solid, &frame, NAN, NULL, &again));
+    FAILS(LEAFLESS_E_ARGUMENT, leafless_solid_bounding_box(solid, &frame, NAN, NULL, &extent));
+    for (i = 0; i < (int)sizeof again; i++) {
+        CHECK(((const unsigned char *)&again)[i] == 0x5a);
+    }
+    CHECK(extent.splits < 20000);
+    leafless_solid_free(solid);
+}
+
+/* A box that lies on the lattice, directly, and as an octree. */
+static void block(void) {
+    const leafless_frame frame = check_frame(5);
+    leafless_octree *octree = check_box(5, -0.5, 0.25);
+    leafless_solid *solid = NULL;
+    leafless_measures measures;
+    leafless_extent extent;
+    int i;
+    OK(leafless_octree_as_solid(octree, &solid));
+    OK(leafless_solid_measure(solid, &frame, 0.0, NULL, &measures));
+    OK(leafless_solid_bounding_box(solid, &frame, 0.0, NULL, &extent));
+    CHECK(measures.volume_model.lower == 0.421875 && measures.volume_model.upper == 0.421875);
+    for (i = 0; i < 3; i++) {
+        CHECK(measures.centroid_model[i].lower == -0.125 && measures.centroid_model[i].upper == -0.125);
+        CHECK(extent.min_model[i].lower == -0.5 && extent.min_model[i].upper == -0.5);
+        CHECK(extent.max_model[i].lower == 0.25 && extent.max_model[i].upper == 0.25);
+    }
+    /* An octree on another frame is none on this. */
+    {
+        const leafless_frame other = {{0, 0, 0}, 1, 5};
+        FAILS(LEAFLESS_E_FRAME, leafless_solid_measure(solid, &other, 0.0, NULL, &measures));
+        FAILS(LEAFLESS_E_FRAME, leafless_solid_bounding_box(solid, &other, 0.0, NULL, &extent));
+    }
+    leafless_solid_free(solid);
+    leafless_octree_free(octree);
+}
+
+/* The host's own shapes: one that fails, and one that knows nothing. */
+static void host(void) {
+    const leafless_frame frame = check_frame(3);
+    leafless_callbacks callbacks;
+    leafless_solid *solid = NULL;
+    leafless_measures measures;
+    leafless_extent extent;
+    OK(leafless_callbacks_init(&callbacks, sizeof callbacks));
+    callbacks.classify = fails;
+    OK(leafless_solid_new_callbacks(&callbacks, &solid));
+    FAILS(LEAFLESS_E_CALLBACK, leafless_solid_measure(solid, &frame, 0.0, NULL, &measures));
+    FAILS(LEAFLESS_E_CALLBACK, leafless_solid_bounding_box(solid, &frame, 0.0, NULL, &extent));
+    leafless_solid_free(solid);
+    callbacks.classify = doubts;
+    OK(leafless_solid_new_callbacks(&callbacks, &solid));
+    OK(leafless_solid_measure(solid, &frame, 0.0, NULL, &measures));
+    CHECK(measures.volume_model.lower == 0.0 && measures.volume_model.upper == 8.0);
+    CHECK(measures.measured == LEAFLESS_MEASURED_EXHAUSTED && !measures.has_centroid && measures.is_clipped);
+    CHECK(measures.centroid_model[2].lower == -INFINITY && measures.centroid_model[2].upper == INFINITY);
+    OK(leafless_solid_bounding_box(solid, &frame, 0.0, NULL, &extent));
+    CHECK(!extent.is_empty && !extent.is_occupied && extent.is_clipped);
+    CHECK(extent.min_model[0].lower == -1.0 && extent.min_model[0].upper == 1.0);
+    leafless_solid_free(solid);
+    {
+        const double far[3] = {9, 9, 9};
+        OK(leafless_solid_new_ball(far, 1, &solid));
+        OK(leafless_solid_bounding_box(solid, &frame, 0.0, NULL, &extent));
+        CHECK(extent.is_empty && !extent.is_occupied && extent.max_model[0].upper == INFINITY);
+        leafless_solid_free(solid);
+    }
+}
+
+int main(void) {
+    ball();
+    block();
+    host();
+    return 0;
+}

@@ -1,0 +1,181 @@
+//! Measures of solids: volume, centroid, inertia, bounding box.
+
+use super::boundary::{guard, out, shared};
+use super::control::{controlled, leafless_options};
+use super::frame::{frame, leafless_frame, leafless_interval};
+use super::solid::leafless_solid;
+use super::status::leafless_status;
+use crate::lattice::Interval;
+use crate::query::{Extent, Measured, Measures, bounding_box, measure};
+
+/// Why measuring ended.
+#[derive(Clone, Copy)]
+#[repr(u32)]
+pub enum leafless_measured {
+    /// What was asked for is known well enough.
+    LEAFLESS_MEASURED_TOLERANCE = 0,
+    /// `max_splits` of the options is spent.
+    LEAFLESS_MEASURED_BUDGET = 1,
+    /// No cell is left that could be split: what is undecided has the size of the frame's finest cells, or the solid
+    /// itself knows no more about it, as an octree does of its PARTIAL cells.
+    LEAFLESS_MEASURED_EXHAUSTED = 2,
+}
+use leafless_measured::*;
+
+impl From<Measured> for leafless_measured {
+    fn from(measured: Measured) -> leafless_measured {
+        match measured {
+            Measured::Tolerance => LEAFLESS_MEASURED_TOLERANCE,
+            Measured::Budget => LEAFLESS_MEASURED_BUDGET,
+            Measured::Exhausted => LEAFLESS_MEASURED_EXHAUSTED,
+        }
+    }
+}
+
+/// Mass properties of a solid of density 1. All intervals contain the truth. All of it concerns the part inside of the
+/// universe; unless `is_clipped` says otherwise, that is the whole solid.
+#[derive(Clone, Copy)]
+#[repr(C)]
+pub struct leafless_measures {
+    /// Volume.
+    pub volume_model: leafless_interval,
+    /// Centroid; all numbers unless `has_centroid`.
+    pub centroid_model: [leafless_interval; 3],
+    /// Tensor of inertia about the model's origin, row by row: the integral of |p|²δij - pi·pj over the points p of the
+    /// solid. So products of inertia are negative where the product of the coordinates is mostly positive.
+    pub inertia_origin_model: [leafless_interval; 9],
+    /// The same about the solid's own centroid, wherever in the interval that lies.
+    pub inertia_centroid_model: [leafless_interval; 9],
+    /// How many times a cell was split.
+    pub splits: u64,
+    /// Evaluations of half-spaces, for solids that count them.
+    pub evaluations: u64,
+    /// Every undecided cell of a lower level was split, if the solid could.
+    pub level: u32,
+    /// Why it ended.
+    pub measured: leafless_measured,
+    /// Whether a cell is proven full: else the solid may be empty, and nothing is known of a centroid.
+    pub has_centroid: bool,
+    /// Whether the solid may go on outside of the universe, or does.
+    pub is_clipped: bool,
+}
+
+/// What is proven of a solid's bounding box inside of the universe.
+#[derive(Clone, Copy)]
+#[repr(C)]
+pub struct leafless_extent {
+    /// Lower corner; all numbers if `is_empty`.
+    pub min_model: [leafless_interval; 3],
+    /// Upper corner; all numbers if `is_empty`.
+    pub max_model: [leafless_interval; 3],
+    /// How many times a cell was split.
+    pub splits: u64,
+    /// Evaluations of half-spaces, for solids that count them.
+    pub evaluations: u64,
+    /// Why it ended.
+    pub measured: leafless_measured,
+    /// Whether the solid is proven to be empty.
+    pub is_empty: bool,
+    /// Whether it is proven not to be. If neither is proven, the corners are those of what the solid may be.
+    pub is_occupied: bool,
+    /// Whether the solid may go on outside of the universe, or does.
+    pub is_clipped: bool,
+}
+
+const ANY: Interval = Interval { lower: f64::NEG_INFINITY, upper: f64::INFINITY };
+
+fn row_by_row(tensor: [[Interval; 3]; 3]) -> [leafless_interval; 9] {
+    core::array::from_fn(|k| tensor[k / 3][k % 3].into())
+}
+
+impl From<Measures> for leafless_measures {
+    fn from(measures: Measures) -> leafless_measures {
+        leafless_measures {
+            volume_model: measures.volume.into(),
+            centroid_model: measures.centroid.unwrap_or([ANY; 3]).map(Into::into),
+            inertia_origin_model: row_by_row(measures.inertia_about_origin),
+            inertia_centroid_model: row_by_row(measures.inertia_about_centroid),
+            splits: measures.splits,
+            evaluations: measures.evaluations,
+            level: measures.level.into(),
+            measured: measures.measured.into(),
+            has_centroid: measures.centroid.is_some(),
+            is_clipped: measures.clipped,
+        }
+    }
+}
+
+impl From<Extent> for leafless_extent {
+    fn from(extent: Extent) -> leafless_extent {
+        let [min, max] = extent.corners.unwrap_or([[ANY; 3]; 2]);
+        leafless_extent {
+            min_model: min.map(Into::into),
+            max_model: max.map(Into::into),
+            splits: extent.splits,
+            evaluations: extent.evaluations,
+            measured: extent.measured.into(),
+            is_empty: extent.corners.is_none(),
+            is_occupied: extent.occupied,
+            is_clipped: extent.clipped,
+        }
+    }
+}
+
+/// Measures a solid in the universe of a frame, without building an octree: the largest undecided cells are split
+/// first, until the width of the volume's interval is at most `tolerance` times its middle, `max_splits` of the
+/// options is spent, or nothing is left to split at the frame's depth. The result is the same bit for bit for any number
+/// of threads.
+///
+/// - Buffers: `frame`, one struct; `options`, one struct or NULL, of which `max_nodes` and `max_bytes` do not matter;
+///   `measures`, one struct.
+/// - Result: `*measures`.
+/// - Errors: LEAFLESS_E_ARGUMENT, also if `tolerance` is negative or not a number; LEAFLESS_E_FRAME if the solid belongs
+///   to another frame; LEAFLESS_E_CALLBACK; LEAFLESS_E_DAMAGED; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: nothing changes hands.
+/// - Threads: any; uses as many as `options` says.
+/// - Untrusted input: any solid; set `max_splits` where the depth or the solid is not your own choice.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_solid_measure(
+    solid: *const leafless_solid,
+    frame: *const leafless_frame,
+    tolerance: f64,
+    options: *const leafless_options,
+    measures: *mut leafless_measures,
+) -> leafless_status {
+    guard(|| unsafe {
+        let solid = &shared(solid, "solid")?.solid;
+        let frame = self::frame(frame)?;
+        let measures = out(measures, "measures")?;
+        measures.write(controlled(options, |control| measure(solid, &frame, tolerance, control))?.into())
+    })
+}
+
+/// The bounding box of a solid in the universe of a frame: each of its sides until the interval is at most
+/// `tolerance_model` or one finest cell wide, `max_splits` of the options is spent, or nothing is left to split. Only
+/// cells that may reach beyond what is proven solid are split. With n the universe's edge over the tolerance that takes
+/// some n splits for a curved side and, unless it lies on a plane of the lattice, n² for a flat one.
+///
+/// - Buffers: as leafless_solid_measure; `extent`, one struct.
+/// - Result: `*extent`.
+/// - Errors: as leafless_solid_measure, with `tolerance_model` for `tolerance`.
+/// - Ownership: nothing changes hands.
+/// - Threads: any; works in the calling thread.
+/// - Untrusted input: as leafless_solid_measure.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_solid_bounding_box(
+    solid: *const leafless_solid,
+    frame: *const leafless_frame,
+    tolerance_model: f64,
+    options: *const leafless_options,
+    extent: *mut leafless_extent,
+) -> leafless_status {
+    guard(|| unsafe {
+        let solid = &shared(solid, "solid")?.solid;
+        let frame = self::frame(frame)?;
+        let extent = out(extent, "extent")?;
+        let found = controlled(options, |control| bounding_box(solid, &frame, tolerance_model, control))?;
+        extent.write(found.into())
+    })
+}
