@@ -11,11 +11,13 @@ mod demo;
 mod failure;
 mod info;
 mod input;
+mod interfere;
 mod mesh;
 mod output;
 mod part;
 mod progress;
 mod report;
+mod source;
 mod verify;
 mod voxelize;
 
@@ -59,6 +61,8 @@ enum Command {
     Complement(boolean::ComplementArguments),
     /// Say of points on standard input whether the solid contains them
     Contains(contains::Arguments),
+    /// Say whether two solids or meshes overlap, by how much, and how far they are apart
+    Interfere(interfere::Arguments),
     /// Show the main job end to end on a mechanical part that the program makes itself
     Demo(demo::Arguments),
 }
@@ -78,6 +82,7 @@ fn main() -> ExitCode {
         Command::Xor(arguments) => boolean::run(boolean::Operation::Xor, arguments),
         Command::Complement(arguments) => boolean::run_complement(arguments),
         Command::Contains(arguments) => contains::run(arguments),
+        Command::Interfere(arguments) => interfere::run(arguments),
         Command::Demo(arguments) => demo::run(arguments),
     };
     match result {

@@ -15,6 +15,7 @@ mod defects;
 mod open;
 mod overlap;
 mod placed;
+mod placement;
 #[cfg(feature = "std")]
 mod polygon;
 #[cfg(feature = "std")]

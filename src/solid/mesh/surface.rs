@@ -266,6 +266,18 @@ impl TriangleMesh {
         self.displacement
     }
 
+    /// The same with its triangles facing the other way.
+    pub(super) fn turn_round(&mut self) {
+        self.triangles.iter_mut().for_each(|[_, b, c]| core::mem::swap(b, c));
+        self.topology = OnceBox::new();
+        self.details = OnceBox::new();
+    }
+
+    /// The same with a surface that lies within this distance of it.
+    pub(super) fn displaced(self, displacement: f64) -> Self {
+        Self { displacement, ..self }
+    }
+
     /// A copy.
     ///
     /// # Errors

@@ -248,6 +248,36 @@ impl<S: Solid> Transform<S> {
         met
     }
 
+    /// Whether cells that are not EMPTY (not FULL, if `hollow`) may reach beyond the universe of `frame`: some cells that
+    /// do are split to see.
+    fn reaches_beyond(&self, frame: &Frame, hollow: bool) -> Result<bool, Error> {
+        const MOST: usize = 512;
+        let outward = self.maps(frame).outward;
+        let cells = frame.cells() as f64;
+        let mut scratch = S::Scratch::default();
+        let mut open = Vec::new();
+        open.try_reserve(8 * MOST).map_err(|_| Error::OutOfMemory)?;
+        open.push((Cell::ROOT, self.solid.root(&mut scratch, &self.own)?));
+        let mut left = MOST;
+        while let Some((cell, verdict)) = open.pop() {
+            let (corner, edge) = self.extent(cell);
+            let (low, high) = outward.around(corner, edge);
+            if verdict.tag() == if hollow { Tag::Full } else { Tag::Empty }
+                || (0..3).all(|axis| low[axis] >= 0.0 && high[axis] <= cells)
+            {
+                continue;
+            }
+            let Verdict::Partial(part) = verdict else { return Ok(true) };
+            if cell.level == self.own.depth() || left == 0 {
+                return Ok(true);
+            }
+            left -= 1;
+            let children = self.solid.split(&mut scratch, &Cube { frame: &self.own, cell }, &part)?;
+            open.extend((0..8).map(|octant| cell.child(octant)).zip(children));
+        }
+        Ok(false)
+    }
+
     fn maps(&self, frame: &Frame) -> Maps {
         Maps::new(&self.placement, &self.inverse, frame, &self.own)
     }
@@ -316,10 +346,12 @@ impl<S: Solid> Solid for Transform<S> {
     }
 
     fn exterior(&self, frame: &Frame) -> Tag {
-        let maps = self.maps(frame);
-        let (low, high) = maps.outward.around([0.0; 3], self.own.cells() as f64);
-        let inside = (0..3).all(|axis| low[axis] >= 0.0 && high[axis] <= frame.cells() as f64);
-        if inside { self.solid.exterior(&self.own) } else { Tag::Partial }
+        match self.solid.exterior(&self.own) {
+            // What is FULL around its own universe must be so around the frame's.
+            Tag::Full if self.reaches_beyond(frame, true).is_ok_and(|beyond| !beyond) => Tag::Full,
+            Tag::Empty if self.reaches_beyond(frame, false).is_ok_and(|beyond| !beyond) => Tag::Empty,
+            _ => Tag::Partial,
+        }
     }
 
     fn fingerprint(&self) -> Option<Fingerprint> {

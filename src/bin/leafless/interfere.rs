@@ -1,0 +1,237 @@
+//! `leafless interfere`: do two solids overlap, and how far are they apart?
+
+use crate::failure::{Failure, Of};
+use crate::input::Input;
+use crate::mesh::Reading;
+use crate::output::{self, count, interval, number};
+use crate::report::Volume;
+use crate::source::Source;
+use clap::Args;
+use leafless::{
+    Affine, AnySolid, Clearance, Control, Cube, Error, Frame, Interference, Interval, Overlap, clearance,
+    interference,
+};
+use serde::Serialize;
+use std::ffi::OsString;
+use std::fmt::Write;
+
+/// Says whether two solids have inner points in common: `disjoint` and `overlapping` are proven, `undecided` is what
+/// the depth, or the number of splits, does not decide. Solids that touch are disjoint, and their clearance is 0.
+///
+/// The volume that the solids have in common and the clearance, the least distance between them, are intervals that hold
+/// the true ones. An upper bound of the clearance needs cells that are proven to be inside; where there are none it is
+/// infinite (null in JSON).
+#[derive(Args)]
+pub struct Arguments {
+    /// First solid (.lfl) or mesh (STL, OBJ, PLY, OFF, 3MF), or `-` for standard input
+    #[arg(value_name = "A")]
+    a: OsString,
+    /// Second solid or mesh
+    #[arg(value_name = "B")]
+    b: OsString,
+    /// Where the second solid is moved to first: the rows of the matrix [M | t], 12 numbers, or 16 with a last row
+    /// 0 0 0 1, in brackets or not
+    #[arg(long, value_name = "MATRIX", value_parser = matrix, allow_hyphen_values = true)]
+    place_b: Option<Affine>,
+    /// Levels to look at, 1 to 20. Without it: as many as the first solid has, or 10 for a mesh
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=leafless::MAX_DEPTH as i64))]
+    depth: Option<u8>,
+    /// Cells to split at most, for each of the three answers
+    #[arg(long, value_name = "N", default_value_t = 100_000)]
+    splits: u64,
+    #[command(flatten)]
+    reading: Reading,
+    /// Print one JSON object
+    #[arg(long)]
+    json: bool,
+}
+
+fn matrix(text: &str) -> Result<Affine, String> {
+    let words = text.split(|c: char| c.is_whitespace() || "[],;".contains(c)).filter(|word| !word.is_empty());
+    let numbers: Result<Vec<f64>, _> = words.map(str::parse).collect();
+    let m = match numbers.as_deref() {
+        Ok(m @ [.., a, b, c, d]) if m.len() == 16 && [*a, *b, *c, *d] == [0.0, 0.0, 0.0, 1.0] => &m[..12],
+        Ok(m) if m.len() == 12 => m,
+        _ => return Err("expected 12 numbers, the rows of [M | t], or 16 with a last row 0 0 0 1".into()),
+    };
+    let row = |i: usize| [m[4 * i], m[4 * i + 1], m[4 * i + 2], m[4 * i + 3]];
+    Affine::new([row(0), row(1), row(2)]).map_err(|error| error.to_string())
+}
+
+/// A cell in the units of the model.
+#[derive(Serialize)]
+struct Witness {
+    level: u8,
+    at: [u32; 3],
+    min: [f64; 3],
+    max: [f64; 3],
+}
+
+#[derive(Serialize)]
+struct Report {
+    a: String,
+    b: String,
+    verdict: &'static str,
+    overlap: Volume,
+    clearance: Volume,
+    witness: Option<Witness>,
+    /// Of both, for the verdict.
+    splits: u64,
+    splits_a: u64,
+    splits_b: u64,
+    evaluations: u64,
+    /// The finest level of which cells were looked at for the verdict.
+    level: u8,
+    depth: u8,
+    origin: [f64; 3],
+    edge: f64,
+    /// Whether a solid may go on outside of the cube that was looked at.
+    clipped: bool,
+}
+
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let inputs = [&arguments.a, &arguments.b].map(|name| Input::from(&**name));
+    if inputs.iter().all(|input| input.path().is_none()) {
+        return Err(Failure::Usage("only one of the solids can be standard input".into()));
+    }
+    let [a, b] = &inputs;
+    let placement = arguments.place_b.unwrap_or(Affine::IDENTITY);
+    let (first, second) = (Source::read(a, &arguments.reading)?, Source::read(b, &arguments.reading)?);
+    let frame = common_frame(&first, &second, &placement, arguments.depth).of(a)?;
+    let (first, second) =
+        (first.placed(a, &Affine::IDENTITY, &frame)?, second.placed(b, &placement, &frame)?);
+    let control = Control { max_splits: Some(arguments.splits), ..Control::default() };
+    let (found, near) = ask(&first, &second, &frame, &control).map_err(|error| Failure::of(a, error))?;
+    let report = Report::new(&inputs, &frame, &found, &near);
+    let text = if arguments.json { output::json(&report)? } else { text(&found, &near, &report) };
+    output::print(text.as_bytes())
+}
+
+/// The cube that holds both: of a solid its own, as often doubled as it takes, so that its cells stay whole.
+fn common_frame(a: &Source, b: &Source, placement: &Affine, depth: Option<u8>) -> Result<Frame, Error> {
+    let (mut min, mut max) = a.bounds();
+    let (low, high) = b.bounds();
+    for k in 0..8 {
+        let corner = placement.apply([0, 1, 2].map(|axis| if k >> axis & 1 == 0 { low } else { high }[axis]));
+        for axis in 0..3 {
+            min[axis] = min[axis].min(corner[axis]);
+            max[axis] = max[axis].max(corner[axis]);
+        }
+    }
+    let Some(own) = a.own_frame() else { return Frame::around(min, max, depth.unwrap_or(10)) };
+    let mut frame = match depth {
+        Some(depth) => own.with_depth(depth)?,
+        None => *own,
+    };
+    while frame.depth() < leafless::MAX_DEPTH {
+        let (origin, edge) = (frame.origin(), frame.edge());
+        if (0..3).all(|axis| min[axis] >= origin[axis] && max[axis] <= origin[axis] + edge) {
+            break;
+        }
+        // Towards the side where more is missing.
+        let grown = [0, 1, 2].map(|axis| {
+            let above = max[axis] - (origin[axis] + edge) >= origin[axis] - min[axis];
+            if above { origin[axis] } else { origin[axis] - edge }
+        });
+        frame = Frame::new(grown, 2.0 * edge, frame.depth() + 1)?;
+    }
+    Ok(frame)
+}
+
+/// The verdict; then how much, or how far.
+fn ask(
+    a: &AnySolid,
+    b: &AnySolid,
+    frame: &Frame,
+    control: &Control<'_>,
+) -> Result<(Interference, Clearance), Error> {
+    let mut found = interference(a, b, frame, f64::INFINITY, control)?;
+    if found.verdict == Overlap::Overlapping {
+        found.volume = interference(a, b, frame, 0.0, control)?.volume;
+        let near = Clearance {
+            distance: Interval::exactly(0.0),
+            nearest: None,
+            splits: [0, 0],
+            evaluations: 0,
+            clipped: found.clipped,
+        };
+        return Ok((found, near));
+    }
+    Ok((found, clearance(a, b, frame, 4.0 * frame.cell_size(), control)?))
+}
+
+impl Report {
+    fn new([a, b]: &[Input; 2], frame: &Frame, found: &Interference, near: &Clearance) -> Report {
+        Report {
+            a: a.to_string(),
+            b: b.to_string(),
+            verdict: match found.verdict {
+                Overlap::Disjoint => "disjoint",
+                Overlap::Overlapping => "overlapping",
+                Overlap::Undecided => "undecided",
+            },
+            overlap: found.volume.into(),
+            clearance: near.distance.into(),
+            witness: found.witness.map(|cell| {
+                let (min, max) = Cube { frame, cell }.bounds();
+                Witness { level: cell.level, at: cell.at, min, max }
+            }),
+            splits: found.splits.iter().sum(),
+            splits_a: found.splits[0],
+            splits_b: found.splits[1],
+            evaluations: found.evaluations,
+            level: found.level,
+            depth: frame.depth(),
+            origin: frame.origin(),
+            edge: frame.edge(),
+            clipped: near.clipped,
+        }
+    }
+}
+
+/// The same for people.
+fn text(found: &Interference, near: &Clearance, report: &Report) -> String {
+    let mut text = String::new();
+    let mut line = |name: &str, value: String| {
+        // Writing to a string does not fail.
+        let _ = writeln!(text, "{name:<16}{value}");
+    };
+    line("verdict", report.verdict.into());
+    line("overlap", interval(found.volume));
+    line("clearance", interval(near.distance));
+    if let Some(Witness { min, max, .. }) = &report.witness {
+        line("witness", format!("{} to {}", min.map(number).join(" "), max.map(number).join(" ")));
+    }
+    let [a, b] = found.splits.map(count);
+    line("splits", format!("{} ({a} and {b})", count(report.splits)));
+    if report.clipped {
+        line("bounds", "a solid may go on outside of the cube that was looked at".into());
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn matrices_as_people_write_them() {
+        let expected = Affine::translation([1.0, -2.5, 3.0]).unwrap();
+        for text in [
+            "1,0,0,1,0,1,0,-2.5,0,0,1,3",
+            "1 0 0 1  0 1 0 -2.5  0 0 1 3",
+            "[[1, 0, 0, 1], [0, 1, 0, -2.5], [0, 0, 1, 3], [0, 0, 0, 1]]",
+        ] {
+            assert_eq!(matrix(text), Ok(expected));
+        }
+        for text in [
+            "",
+            "1 2 3",
+            "1 0 0 1 0 1 0 0 0 0 1 x",
+            "1 0 0 0 1 0 0 0 0 0 1 0",
+            "1 0 0 1 0 1 0 1 0 0 1 1 0 0 0 2",
+        ] {
+            assert!(matrix(text).is_err(), "{text}");
+        }
+    }
+}
