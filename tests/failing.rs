@@ -18,6 +18,10 @@ use leafless::{
     Affine, AnySolid, AxisBox, Ball, Callback, Control, Csg, Error, FillRule, Frame, HalfSpace, LazyOctree,
     MeshSolid, Metadata, Octree, Polyhedron, PolyhedronArrays, Rule, Stored, TriangleMesh, Verdict, Zone,
     build, compact, complement, difference, file, intersection, resolve, union, union_of, xor,
+    Affine, AnySolid, AxisBox, Ball, Callback, Control, Error, FillRule, Frame, LazyOctree, MeshSolid,
+    Metadata, Octree, Polyhedron, PolyhedronArrays, Rule, Stored, Transform, TriangleMesh, Verdict, Zone,
+    build, clearance, compact, complement, difference, file, interference_of, intersection, resolve, union,
+    union_of, xor,
 };
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
@@ -298,6 +302,17 @@ fn operations(directory: &Path) -> Vec<(&'static str, Operation)> {
             lazy.freeze(&CONTROL)?.view().check()?;
         }
         LazyOctree::resume(&found?, solid()?, &frame(), &CONTROL).map(drop)
+    });
+    operation!("interference", [a], {
+        let turn = Affine::new([[0.8, -0.6, 0.0, 9.0], [0.6, 0.8, 0.0, -6.0], [0.0, 0.0, 1.0, 0.25]])?;
+        interference_of(&Ball::new([15.0; 3], 9.0)?, &a, &frame(), &[turn; 2], &frame(), 0.0, &CONTROL)
+    });
+    operation!("clearance", [a], {
+        let moved = Transform::new(&a, &frame(), &Affine::translation([7.0, 9.0, 0.1])?);
+        clearance(&a, &moved, &frame(), 0.0, &Control { max_splits: Some(3000), ..CONTROL })
+    });
+    operation!("mesh placed", [closed], {
+        closed.placed(&Affine::new([[0.0, 1.1, 0.0, 9.0], [1.0, 0.0, 0.0, -6.0], [0.0, 0.0, 1.0, 0.25]])?)
     });
     operation!("mesh of facets", [facets], TriangleMesh::from_facets(&*facets));
     operation!("mesh report", [closed], closed.translated([1.0; 3])?.report());

@@ -3,11 +3,11 @@
 
 mod common;
 
-use common::{Random, alone, model};
+use common::{Dense, Random, alone, model};
 use leafless::{
     Affine, AnySolid, AxisBox, Ball, Cell, Clearance, Control, Csg, Cube, Error, FillRule, Frame, HalfSpace,
-    Interference, MeshSolid, Octree, Overlap, Rule, Solid, Transform, build, clearance, file, interference,
-    interference_of, intersection,
+    Interference, MeshSolid, Octree, Overlap, Rule, Solid, Tag, Transform, TriangleMesh, build, clearance,
+    file, interference, interference_of, intersection,
 };
 use std::f64::consts::PI;
 use std::sync::atomic::AtomicBool;
@@ -516,6 +516,47 @@ fn nothing_everything_and_the_same() {
     let leaf = Csg::cuboid([1.0, 1.0, 1.0], [2.0, 2.0, 1.001]).unwrap();
     let found = clearance(&ball, &leaf, &frame, 0.0, &alone()).unwrap();
     assert_eq!((found.distance.lower, found.distance.upper, found.nearest), (0.0, f64::INFINITY, None));
+}
+
+/// A mesh is moved by its vertices: what is said of it never contradicts what its own cells say.
+#[test]
+fn a_mesh_in_other_places() {
+    let corners = [[0.0, 0.0, 0.0], [3.0, 0.1, 0.0], [0.2, 2.0, 0.0], [0.7, 0.3, 2.5]];
+    let faces = vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];
+    let mesh = TriangleMesh::new(corners.to_vec(), faces).unwrap();
+    let own = Frame::new([-4.0; 3], 8.0, 9).unwrap();
+    let frame = Frame::new([-5.0, -5.5, -6.0], 11.0, 6).unwrap();
+    let mut random = Random(9);
+    for case in 0..20 {
+        let mut placement = rigid(&mut random, 1.5);
+        if case % 3 == 0 {
+            // A reflection, and larger.
+            placement =
+                Affine::new(placement.rows().map(|[a, b, c, t]| [1.25 * a, -1.25 * b, 1.25 * c, t])).unwrap();
+        }
+        let volume = mesh.volume() * if case % 3 == 0 { 1.25f64.powi(3) } else { 1.0 };
+        let placed = mesh.placed(&placement).unwrap();
+        assert!(placed.displacement() > 0.0 && placed.displacement() < 1e-13);
+        for fill in [FillRule::Positive, FillRule::NonZero] {
+            let moved = MeshSolid::new(placed.clone(), &frame, fill).unwrap();
+            let solid = MeshSolid::new(mesh.clone(), &own, fill).unwrap();
+            let by_cells = Transform::new(&solid, &own, &placement);
+            let [x, y] = [
+                build(&moved, &frame, Rule::Certified, &alone()).unwrap(),
+                build(&by_cells, &frame, Rule::Certified, &alone()).unwrap(),
+            ];
+            for tree in [&x, &y] {
+                assert!(tree.statistics().volume().contains(volume), "{case}");
+                assert_eq!(tree.view().exterior(), Tag::Empty);
+            }
+            // Cells that one proves the other one proves, too, or leaves open; and moved vertices blur less.
+            for (a, b) in Dense::of(x.view()).tags.iter().zip(&Dense::of(y.view()).tags) {
+                let contradiction = matches!((a, b), (Tag::Full, Tag::Empty) | (Tag::Empty, Tag::Full));
+                assert!(!contradiction, "{case}");
+            }
+            assert!(x.statistics().volume().width() <= y.statistics().volume().width());
+        }
+    }
 }
 
 /// The part against itself, as a mesh and as a stored octree, in random places.
