@@ -18,6 +18,9 @@ impl Affine {
     pub const IDENTITY: Affine =
         Affine { rows: [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]] };
 
+    /// The problem that [`new`](Self::new) has with matrices that are not invertible.
+    pub(crate) const SINGULAR: &str = "the matrix is singular";
+
     /// The map with the rows of `[M | t]`.
     ///
     /// # Errors
@@ -30,7 +33,7 @@ impl Affine {
         }
         let map = Affine { rows: rows.map(|row| row.map(|c| c + 0.0)) };
         if map.orientation() == 0 {
-            return refuse("the matrix is singular");
+            return refuse(Affine::SINGULAR);
         }
         Ok(map)
     }

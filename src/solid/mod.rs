@@ -19,6 +19,8 @@ mod transform;
 pub use callback::Callback;
 pub use counted::Counted;
 pub use csg::{Csg, CsgPart, CsgScratch, HalfSpace, Touch};
+#[cfg(feature = "scene")]
+pub(crate) use csg::{Figure, wedge};
 pub use erased::{AnySolid, ErasedPart, ErasedScratch};
 pub use fingerprint::{Fingerprint, Fingerprinter};
 pub(crate) use mesh::FacetWelder;

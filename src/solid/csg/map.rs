@@ -19,6 +19,13 @@ pub(super) struct ExactMap {
 }
 
 impl ExactMap {
+    /// The map that moves nothing.
+    #[cfg(feature = "scene")]
+    pub(super) fn identity() -> ExactMap {
+        let rows = [0, 1, 2].map(|i| [0, 1, 2, 3].map(|j| Dyadic::new(if i == j { 1.0 } else { 0.0 })));
+        ExactMap { rows, w: Dyadic::new(1.0) }
+    }
+
     /// From unit coordinates, in which the universe is [0, 1]³, to model space.
     pub(super) fn from_universe(frame: &Frame) -> ExactMap {
         let edge = Dyadic::new(frame.edge());

@@ -8,6 +8,8 @@ mod bounds;
 mod dyadic;
 mod extent;
 mod faceted;
+#[cfg(feature = "scene")]
+mod figure;
 mod fingerprint;
 mod halfspace;
 mod host;
@@ -23,6 +25,8 @@ mod split;
 mod support;
 mod torus;
 
+#[cfg(feature = "scene")]
+pub(crate) use figure::{Figure, wedge};
 pub use halfspace::HalfSpace;
 pub use split::{CsgPart, CsgScratch};
 
@@ -229,7 +233,7 @@ impl Csg {
     }
 
     /// The same solid, which is known to lie in a box.
-    fn within(mut self, min: [f64; 3], max: [f64; 3]) -> Csg {
+    pub(crate) fn within(mut self, min: [f64; 3], max: [f64; 3]) -> Csg {
         if let Some(node) = Arc::get_mut(&mut self.root) {
             node.extent = node.extent.common(Extent::Box(min, max));
         }

@@ -32,7 +32,7 @@ fn sum_down(a: f64, b: f64) -> f64 {
 }
 
 /// The half-space below (`side` −1) or above (1) a coordinate.
-fn axis_plane(axis: usize, side: f64, at: f64) -> HalfSpace {
+pub(super) fn axis_plane(axis: usize, side: f64, at: f64) -> HalfSpace {
     let mut c = [0.0; 10];
     (c[6 + axis], c[9]) = (side, -side * at);
     HalfSpace::exactly(c.map(Dyadic::new))

@@ -21,7 +21,7 @@ const fn place(a: usize, b: usize) -> usize {
 pub(super) type Coefficients = [Dyadic; 10];
 
 /// The polynomial that has the sign of `given` at the image of its argument: `given` ∘ `map`, times w².
-fn substitute(given: &Coefficients, map: &ExactMap) -> Coefficients {
+pub(super) fn substitute(given: &Coefficients, map: &ExactMap) -> Coefficients {
     let zero = Dyadic::zero();
     let entry = |i: usize, j: usize| match (i, j) {
         (3, 3) => &map.w,
