@@ -44,6 +44,9 @@ pub enum Error {
     /// A 3MF package that cannot be read.
     #[error(transparent)]
     Package(#[from] PackageError),
+    /// A scene that cannot be read.
+    #[error(transparent)]
+    Scene(#[from] SceneError),
     /// The bytes are not a Leafless file, or a damaged one.
     #[error(transparent)]
     Format(#[from] FormatError),
@@ -420,6 +423,44 @@ impl fmt::Display for PackageError {
 }
 
 impl core::error::Error for PackageError {}
+
+/// Why a scene cannot be read: what is wrong where.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct SceneError {
+    line: u64,
+    column: u64,
+    problem: Box<str>,
+}
+
+impl SceneError {
+    #[cfg(feature = "scene")]
+    pub(crate) fn new((line, column): (u64, u64), problem: impl Into<Box<str>>) -> Self {
+        Self { line, column, problem: problem.into() }
+    }
+
+    /// Line, counted from 1.
+    pub fn line(&self) -> u64 {
+        self.line
+    }
+
+    /// Column in characters, counted from 1.
+    pub fn column(&self) -> u64 {
+        self.column
+    }
+
+    /// What is wrong there.
+    pub fn problem(&self) -> &str {
+        &self.problem
+    }
+}
+
+impl fmt::Display for SceneError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "line {}, column {}: {}", self.line, self.column, self.problem)
+    }
+}
+
+impl core::error::Error for SceneError {}
 
 /// Why bytes are not a readable Leafless file.
 #[non_exhaustive]

@@ -59,7 +59,9 @@ mod query;
 mod solid;
 
 pub use control::Control;
-pub use error::{Damage, Error, FormatError, MeshError, MeshFileError, PackageError, PolyhedronError};
+pub use error::{
+    Damage, Error, FormatError, MeshError, MeshFileError, PackageError, PolyhedronError, SceneError,
+};
 pub use lattice::{Affine, Cell, Cube, Frame, Interval, MAX_DEPTH};
 pub use octree::{
     Block, Cursor, LevelStatistics, Metadata, Node, Octree, OctreeRef, Planes, Rule, Statistics, Tag,

@@ -99,6 +99,8 @@ mod layout;
 #[cfg(feature = "mmap")]
 mod map;
 mod read;
+#[cfg(feature = "scene")]
+mod scene;
 mod write;
 
 pub use exchange::{LengthUnit, MeshFile, MeshFormat, MeshOptions, read_mesh, read_stl, write_stl};
@@ -110,6 +112,8 @@ pub use map::{map, map_verified};
 pub use read::{Probe, Section, from_bytes, from_static, probe_bytes, verify, view};
 #[cfg(feature = "std")]
 pub use read::{open, probe, probe_from};
+#[cfg(feature = "scene")]
+pub use scene::{Scene, open_scene, read_scene};
 pub use write::to_bytes;
 #[cfg(feature = "std")]
 pub use write::{save, write_to};

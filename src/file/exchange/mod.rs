@@ -34,5 +34,7 @@ pub use obj::read_obj;
 pub use off::read_off;
 #[cfg(feature = "std")]
 pub use ply::read_ply;
+#[cfg(feature = "scene")]
+pub(super) use polygons::Polygons;
 pub use stl::{read_stl, write_stl};
 pub use unit::LengthUnit;

@@ -14,7 +14,7 @@ use crate::solid::{TriangleMesh, triangulate_facet};
 /// A face of n corners is stored as the n - 2 triangles of a fan, and if n is more than three it is noted: how it is
 /// cut is decided once all vertices are there.
 #[derive(Default)]
-pub(super) struct Polygons {
+pub(in crate::file) struct Polygons {
     pub vertices: Vec<[f64; 3]>,
     triangles: Vec<[u32; 3]>,
     /// Of each face that is no triangle its first triangle and the number of its triangles.
