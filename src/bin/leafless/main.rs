@@ -7,12 +7,14 @@
 
 mod boolean;
 mod contains;
+mod csg;
 mod demo;
 mod failure;
 mod info;
 mod input;
 mod interfere;
 mod mesh;
+mod model;
 mod output;
 mod part;
 mod progress;
@@ -45,6 +47,8 @@ struct Arguments {
 enum Command {
     /// Make a solid from a mesh (STL, OBJ, PLY, OFF, 3MF)
     Voxelize(voxelize::Arguments),
+    /// Make a solid from a scene: primitives and set operations, as OpenSCAD exports them (.csg)
+    Csg(csg::Arguments),
     /// Show what a solid consists of (depth, nodes, cells, volume), or a mesh (bodies, holes, defects)
     Info(info::Arguments),
     /// Check a file completely: exit code 0 if it is good, 1 with the reason if not
@@ -74,6 +78,7 @@ fn main() -> ExitCode {
     };
     let result = match &arguments.command {
         Command::Voxelize(arguments) => voxelize::run(arguments),
+        Command::Csg(arguments) => csg::run(arguments),
         Command::Info(arguments) => info::run(arguments),
         Command::Verify(arguments) => verify::run(arguments),
         Command::Union(arguments) => boolean::run(boolean::Operation::Union, arguments),

@@ -40,6 +40,9 @@ struct Cells {
 struct Level {
     level: u8,
     nodes: u64,
+    /// Cells above the level that were split on the way, where that was counted.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    splits: Option<u64>,
     lower: f64,
     upper: f64,
 }
@@ -85,6 +88,7 @@ impl Info {
                 .map(|level| Level {
                     level: level.level,
                     nodes: level.nodes,
+                    splits: None,
                     lower: level.volume.lower,
                     upper: level.volume.upper,
                 })
@@ -94,6 +98,14 @@ impl Info {
                 .iter()
                 .map(|(key, value)| (key.to_owned(), value.to_owned()))
                 .collect(),
+        }
+    }
+
+    /// Notes how many cells of each level were split while the tree was built; the canonical tree forgets those splits
+    /// whose eight children agree.
+    pub fn note_splits(&mut self, splits: &[u64]) {
+        for level in &mut self.levels {
+            level.splits = Some(splits.iter().take(level.level.into()).sum());
         }
     }
 

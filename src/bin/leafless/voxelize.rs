@@ -61,7 +61,7 @@ pub struct Arguments {
 }
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
-enum RuleName {
+pub enum RuleName {
     /// They stay undecided: volumes are intervals that hold the truth
     Certified,
     /// They are inside if their centre is
@@ -106,7 +106,7 @@ impl From<FillName> for FillRule {
 }
 
 /// The universe of `--bounds`; its depth is a placeholder.
-fn bounds(text: &str) -> Result<Frame, String> {
+pub fn bounds(text: &str) -> Result<Frame, String> {
     let numbers: Result<Vec<f64>, _> = text.split(',').map(|number| number.trim().parse()).collect();
     match numbers.as_deref() {
         Ok(&[x, y, z, edge]) => Frame::new([x, y, z], edge, 1).map_err(|error| error.to_string()),
@@ -252,7 +252,7 @@ fn facts(input: &Input, source: String, rule: RuleName, unit: Option<LengthUnit>
 }
 
 /// The name of an option's value, as the user writes it.
-fn name_of(value: impl ValueEnum) -> String {
+pub fn name_of(value: impl ValueEnum) -> String {
     value.to_possible_value().map_or_else(String::new, |value| value.get_name().to_owned())
 }
 

@@ -1,0 +1,183 @@
+//! `leafless csg`: from a scene to a solid.
+
+use crate::failure::{Failure, Of};
+use crate::input::Input;
+use crate::model::{frame_of, read_scene};
+use crate::output::{self, Output, count, number, seconds};
+use crate::progress::watched;
+use crate::report::Info;
+use crate::voxelize::{RuleName, bounds, name_of, threads};
+use clap::{Args, ValueEnum};
+use leafless::{Counted, Frame, Metadata, Octree, Touch, build};
+use serde::Serialize;
+use std::ffi::OsString;
+use std::time::Instant;
+
+/// Splits space where the surface of a scene passes, down to cells of 2^-N of its extent. By the certified rule every
+/// cell is proven inside, proven outside, or undecided.
+///
+/// A scene is a text in the language of the CSG dumps that OpenSCAD writes (`openscad -o part.csg part.scad`): group
+/// union difference intersection multmatrix color render cube sphere cylinder polyhedron linear_extrude rotate_extrude
+/// square circle polygon, import of meshes, and some of ours: halfspace([a,b,c,d]) power([A,a,n1],[B,b,n2],[C,c,n3],R)
+/// quadric([10 numbers]) torus(major,minor) mesh("file.stl") octree("file.lfl"). Curved surfaces are exact: no facets.
+///
+/// The file records the scene's name, length and checksum, and the rule. Equal input gives equal bytes, for any number of
+/// threads.
+#[derive(Args)]
+pub struct Arguments {
+    /// Scene (.csg), or `-` for standard input
+    #[arg(value_name = "SCENE")]
+    input: OsString,
+    /// File to write, or `-` for standard output, whose summary then goes to standard error; it is written whole
+    /// or not at all
+    #[arg(short, long, value_name = "OUT.lfl")]
+    output: OsString,
+    /// Levels of the octree, 1 to 20: each halves the cells, and the error, and makes the file some four times as
+    /// long
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=leafless::MAX_DEPTH as i64))]
+    depth: u8,
+    /// What becomes of the finest cells that the surface passes through
+    #[arg(long, value_enum, default_value_t = RuleName::Certified)]
+    rule: RuleName,
+    /// What counts as touching
+    #[arg(long, value_enum, default_value_t = TouchName::Exact)]
+    touch: TouchName,
+    /// Lower corner and edge length of the cube to cut into cells, in the units of the scene. Solids can be combined
+    /// if they were given the same bounds and depth. What sticks out is cut off, and reported. Without it: the cube
+    /// around the middle of the scene's bounds, its edge 33/32 of their longest extent
+    #[arg(long, value_name = "X0,Y0,Z0,EDGE", value_parser = bounds, allow_hyphen_values = true)]
+    bounds: Option<Frame>,
+    /// Threads to use; 0: as many as there are processors. The result is the same
+    #[arg(long, default_value_t = 0, value_name = "N", value_parser = threads)]
+    threads: usize,
+    /// Print one JSON object with timings, splits, evaluations of half-spaces and the volume, level by level (on standard
+    /// error if the solid goes to standard output)
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum TouchName {
+    /// Contact is not overlap: a cell that the solid touches from outside is empty
+    Exact,
+    /// As in the paper that the method comes from: such a cell is undecided
+    Paper,
+}
+
+/// Seconds.
+#[derive(Serialize)]
+struct Timings {
+    read: f64,
+    build: f64,
+    save: f64,
+    total: f64,
+}
+
+#[derive(Serialize)]
+struct Report {
+    input: String,
+    output: String,
+    rule: String,
+    touch: String,
+    timings: Timings,
+    /// Cells that were split.
+    splits: u64,
+    /// Half-spaces that were evaluated, at a point or over a box.
+    evaluations: u64,
+    /// Volume of the undecided cells.
+    undecided_volume: f64,
+    #[serde(flatten)]
+    info: Info,
+}
+
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let start = Instant::now();
+    let (input, output) = (Input::from(&*arguments.input), Output::from(&*arguments.output));
+    output.check()?;
+    if let (Some(from), Some(to)) = (input.path(), output.path())
+        && from.canonicalize().is_ok_and(|from| to.canonicalize().is_ok_and(|to| from == to))
+    {
+        return Err(Failure::of(&output, "is the scene itself, which is not overwritten"));
+    }
+    let (scene, source) = read_scene(&input)?;
+    let frame = frame_of(&input, &scene, arguments.bounds.as_ref(), arguments.depth)?;
+    let touch = match arguments.touch {
+        TouchName::Exact => Touch::Exact,
+        TouchName::Paper => Touch::Paper,
+    };
+    let solid = Counted::new(scene.solid(&frame).of(&input)?.with_touch(touch));
+    let read = start.elapsed().as_secs_f64();
+
+    let building = Instant::now();
+    let octree =
+        watched("csg", arguments.threads, |control| build(&solid, &frame, arguments.rule.into(), control));
+    let octree = octree.of(&input)?.with_metadata(facts(&input, source, arguments));
+    let build = building.elapsed().as_secs_f64();
+
+    let saving = Instant::now();
+    let bytes = output.save(&octree)?;
+    let save = saving.elapsed().as_secs_f64();
+
+    if octree.view().is_clipped() {
+        let warning = "the solid may go on outside of the bounds, where it was cut off";
+        output::complain(&format!("{input}: warning: {warning}"));
+    }
+    let mut info = Info::new(&octree, bytes);
+    info.note_splits(&solid.splits());
+    let report = Report {
+        input: input.to_string(),
+        output: output.to_string(),
+        rule: name_of(arguments.rule),
+        touch: name_of(arguments.touch),
+        timings: Timings { read, build, save, total: start.elapsed().as_secs_f64() },
+        splits: solid.splits().iter().sum(),
+        evaluations: solid.evaluations(),
+        undecided_volume: info.volume.width(),
+        info,
+    };
+    output.report(&if arguments.json { output::json(&report)? } else { summary(&report, &octree) })
+}
+
+/// What the solid's file says of its making: nothing that differs from run to run.
+fn facts(input: &Input, source: String, arguments: &Arguments) -> Metadata {
+    let mut metadata = Metadata::new();
+    if let Some(stem) = input.path().and_then(|path| path.file_stem()) {
+        metadata.insert("name", stem.to_string_lossy());
+    }
+    metadata.insert("source", source);
+    metadata.insert("rule", name_of(arguments.rule));
+    if let TouchName::Paper = arguments.touch {
+        metadata.insert("touch", name_of(arguments.touch));
+    }
+    metadata
+}
+
+fn summary(report: &Report, octree: &Octree) -> String {
+    let (frame, info) = (octree.frame(), &report.info);
+    let [read, build, save, total] =
+        [report.timings.read, report.timings.build, report.timings.save, report.timings.total].map(seconds);
+    format!(
+        "{}: {} octree of depth {}, cells of {}\n\
+         volume  {}{}\n\
+         splits  {}, {} evaluations of half-spaces\n\
+         nodes   {} (a classical octree has {})\n\
+         bytes   {}{}\n\
+         time    {total}: read {read}, build {build}, save {save}\n",
+        report.output,
+        report.rule,
+        frame.depth(),
+        number(frame.cell_size()),
+        info.volume_text(),
+        match (octree.view().is_binary(), octree.view().is_clipped()) {
+            (true, _) => " (of the cells)",
+            (false, false) => " (the true one lies between)",
+            (false, true) => " (that of the part inside of the bounds lies between)",
+        },
+        count(report.splits),
+        count(report.evaluations),
+        count(info.nodes),
+        count(info.classical_nodes),
+        count(info.bytes),
+        info.bytes_per_node.map_or(String::new(), |each| format!(", {each:.2} a node")),
+    )
+}
