@@ -291,6 +291,14 @@ int main(int argc, char **argv) {
     FAILS(LEAFLESS_E_MESH_FILE, leafless_mesh_from_bytes(NULL, 0, NULL, NULL, &mesh));
     CHECK(mesh == (leafless_mesh *)UNTOUCHED);
 
+    {
+        static const char text[] = "group() {\n  cube(size = [1, 2]);\n}";
+        leafless_scene *scene = (leafless_scene *)UNTOUCHED;
+        FAILS(LEAFLESS_E_SCENE, leafless_scene_from_bytes((const uint8_t *)text, sizeof text - 1, NULL, 0, &scene));
+        failed(LEAFLESS_E_SCENE, "LEAFLESS_E_SCENE", "line 2, column 15: expected 3 items");
+        CHECK(scene == (leafless_scene *)UNTOUCHED);
+    }
+
     FAILS(LEAFLESS_E_FORMAT, leafless_octree_from_bytes((const uint8_t *)"no file at all, but of some length, more than a header"
         " has, and so on, and so on, and so on, and so on, and so on, and so on, and so on, and so on", 128, &octree));
     failed(LEAFLESS_E_FORMAT, "LEAFLESS_E_FORMAT", "not a Leafless file");

@@ -209,6 +209,8 @@ fn polyhedra() {
 #[test]
 fn lazy() {
     run("lazy", C99, Link::Static, &[]);
+fn scenes() {
+    run("scene", C99, Link::Static, &[]);
 }
 
 #[test]

@@ -74,6 +74,7 @@ static int32_t take(void *ctx, const uint8_t *bytes, uint64_t count) {
 static leafless_frame frame = {{-1, -1, -1}, 2, 4};
 static leafless_octree *octree;
 static leafless_mesh *mesh;
+static leafless_scene *scene;
 static leafless_solid *solid;
 static leafless_control *control;
 static leafless_cursor *cursor;
@@ -86,6 +87,7 @@ static void null_pointers(void) {
     void *never = UNTOUCHED;
     leafless_octree **result = (leafless_octree **)&never;
     leafless_mesh **mesh_result = (leafless_mesh **)&never;
+    leafless_scene **scene_result = (leafless_scene **)&never;
     leafless_solid **solid_result = (leafless_solid **)&never;
     const leafless_octree *list[2];
     const leafless_solid *solids[2];
@@ -300,6 +302,26 @@ static void null_pointers(void) {
     NULL_POINTER(leafless_solid_with_touch, operand, leafless_solid_with_touch(NULL, 0, solid_result));
     NULL_POINTER(leafless_solid_with_touch, solid, leafless_solid_with_touch(solid, 0, NULL));
     BAD_NUMBER(leafless_solid_with_touch, touch, leafless_solid_with_touch(solid, 7, solid_result));
+    NULL_POINTER(leafless_scene_open, path, leafless_scene_open(NULL, 3, scene_result));
+    NULL_POINTER(leafless_scene_open, path, leafless_scene_open(NULL, 0, scene_result));
+    NULL_POINTER(leafless_scene_open, scene, leafless_scene_open("null.csg", 8, NULL));
+    NULL_POINTER(leafless_scene_from_bytes, bytes, leafless_scene_from_bytes(NULL, 4, NULL, 0, scene_result));
+    MAY_BE_NULL(leafless_scene_from_bytes, bytes, leafless_scene_from_bytes(NULL, 0, NULL, 0, &scene));
+    leafless_scene_free(scene);
+    MAY_BE_NULL(leafless_scene_from_bytes, folder,
+                leafless_scene_from_bytes((const uint8_t *)"cube();", 7, NULL, 0, &scene));
+    NULL_POINTER(leafless_scene_from_bytes, scene,
+                 leafless_scene_from_bytes((const uint8_t *)"cube();", 7, NULL, 0, NULL));
+    NULL_POINTER(leafless_scene_bounds, scene, leafless_scene_bounds(NULL, (double *)out, (double *)out + 3));
+    NULL_POINTER(leafless_scene_bounds, min_model, leafless_scene_bounds(scene, NULL, (double *)out));
+    NULL_POINTER(leafless_scene_bounds, max_model, leafless_scene_bounds(scene, (double *)out, NULL));
+    NULL_POINTER(leafless_scene_ref, scene, leafless_scene_ref(NULL, scene_result));
+    NULL_POINTER(leafless_scene_ref, reference, leafless_scene_ref(scene, NULL));
+    NULL_POINTER(leafless_solid_new_scene, scene, leafless_solid_new_scene(NULL, &frame, solid_result));
+    NULL_POINTER(leafless_solid_new_scene, frame, leafless_solid_new_scene(scene, NULL, solid_result));
+    NULL_POINTER(leafless_solid_new_scene, solid, leafless_solid_new_scene(scene, &frame, NULL));
+    leafless_scene_free(scene);
+    leafless_scene_free(NULL);
     NULL_POINTER(leafless_solid_new_mesh, mesh, leafless_solid_new_mesh(NULL, &frame, 0, solid_result));
     NULL_POINTER(leafless_solid_new_mesh, frame, leafless_solid_new_mesh(mesh, NULL, 0, solid_result));
     NULL_POINTER(leafless_solid_new_mesh, solid, leafless_solid_new_mesh(mesh, &frame, 0, NULL));

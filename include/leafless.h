@@ -179,6 +179,10 @@ enum leafless_status
      * An octree that is to be refined was made from another solid.
      */
     LEAFLESS_E_SOURCE = 18,
+    /**
+     * A scene cannot be read.
+     */
+    LEAFLESS_E_SCENE = 19,
 };
 #ifndef __cplusplus
 typedef int32_t leafless_status;
@@ -609,6 +613,21 @@ typedef struct leafless_octree leafless_octree;
  * Every call changes it: only one thread may use a cursor at a time. Threads may have a cursor each.
  */
 typedef struct leafless_point_cursor leafless_point_cursor;
+
+/**
+ * What a text describes: set operations on primitives, swept figures, meshes and octrees.
+ *
+ * The language is that of the CSG dumps which OpenSCAD exports (group union difference intersection multmatrix color
+ * render cube sphere cylinder polyhedron linear_extrude rotate_extrude square circle polygon, and import of meshes), with
+ * these calls besides: halfspace([a, b, c, d]), which is a x + b y + c z + d ≥ 0, quadric([10 numbers]),
+ * power([A, a, n1], [B, b, n2], [C, c, n3], R), torus(major, minor), mesh("file.stl") and octree("file.lfl"). Curved
+ * shapes are exact, without facets. What is not supported (hull, minkowski, text, projection and others) is refused
+ * by name.
+ *
+ * Immutable: all its functions may be called at once from any number of threads, but leafless_scene_free needs the
+ * reference that it gives back for itself.
+ */
+typedef struct leafless_scene leafless_scene;
 
 /**
  * Anything that has a shape: it can split a cell of space into eight classified ones.
@@ -2533,6 +2552,99 @@ leafless_status leafless_solid_placed(const leafless_solid *operand,
 leafless_status leafless_solid_with_touch(const leafless_solid *operand,
                                           uint32_t touch,
                                           leafless_solid **solid);
+
+/**
+ * Reads a scene from a file. Files that it names are looked for beside it.
+ *
+ * - Buffers: `path`, `path_length` bytes of UTF-8; `scene`, one pointer.
+ * - Result: `*scene`.
+ * - Errors: LEAFLESS_E_SCENE, with line and column in the message, for whatever is wrong with the text or a file that
+ *   it names; LEAFLESS_E_IO if the file itself cannot be read; LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY.
+ * - Ownership: give `*scene` back with leafless_scene_free.
+ * - Threads: any.
+ * - Untrusted input: any text; nesting costs memory, not stack, and memory is linear in the text and in the files that it
+ *   names. It may name any file, by absolute paths too, which is then read as a mesh or an octree.
+ * - Since: 0.1
+ */
+leafless_status leafless_scene_open(const char *path,
+                                    size_t path_length,
+                                    leafless_scene **scene);
+
+/**
+ * As leafless_scene_open for a text in memory, in UTF-8. Files that it names are looked for in `folder`.
+ *
+ * - Buffers: `bytes`, `length` bytes; may be NULL if there are none. `folder`, `folder_length` bytes of UTF-8; NULL if
+ *   the scene may name no files. `scene`, one pointer.
+ * - Result: `*scene`.
+ * - Errors: as leafless_scene_open, but LEAFLESS_E_IO; of names of files, if there is no folder, LEAFLESS_E_SCENE.
+ * - Ownership: the bytes are not kept; give `*scene` back with leafless_scene_free.
+ * - Threads: any.
+ * - Untrusted input: any bytes, as for leafless_scene_open.
+ * - Since: 0.1
+ */
+leafless_status leafless_scene_from_bytes(const uint8_t *bytes,
+                                          uint64_t length,
+                                          const char *folder,
+                                          size_t folder_length,
+                                          leafless_scene **scene);
+
+/**
+ * One more reference to a scene.
+ *
+ * - Buffers: `scene`, a handle; `reference`, one pointer.
+ * - Result: `*reference`, equal to `scene`.
+ * - Errors: only the general ones.
+ * - Ownership: give each reference back with leafless_scene_free.
+ * - Threads: any.
+ * - Untrusted input: none.
+ * - Since: 0.1
+ */
+leafless_status leafless_scene_ref(const leafless_scene *scene, leafless_scene **reference);
+
+/**
+ * Gives back a reference to a scene; with the last one the scene is gone. Solids made of it stay.
+ *
+ * - Buffers: `scene`, a handle or NULL, which does nothing.
+ * - Result: none.
+ * - Errors: none.
+ * - Ownership: the reference is gone.
+ * - Threads: any; no other call may use this reference.
+ * - Untrusted input: none.
+ * - Since: 0.1
+ */
+void leafless_scene_free(leafless_scene *scene);
+
+/**
+ * A box that holds the solid of a scene. It may be larger than the solid.
+ *
+ * - Buffers: `min_model` and `max_model`, 3 numbers each.
+ * - Result: both.
+ * - Errors: LEAFLESS_E_ARGUMENT if none is known: the scene is empty, or may be unbounded; LEAFLESS_E_NO_MEMORY.
+ * - Ownership: nothing changes hands.
+ * - Threads: any.
+ * - Untrusted input: none.
+ * - Since: 0.1
+ *
+ */
+leafless_status leafless_scene_bounds(const leafless_scene *scene,
+                                      double min_model[3],
+                                      double max_model[3]);
+
+/**
+ * The solid of a scene, to be built on this frame. If there are neither meshes nor octrees in it, it can be built on any.
+ *
+ * - Buffers: `frame`, one struct; `solid`, one pointer.
+ * - Result: `*solid`.
+ * - Errors: LEAFLESS_E_ARGUMENT as leafless_frame_check; LEAFLESS_E_LIMIT if a mesh or octree is within more than 256
+ *   matrices; LEAFLESS_E_NO_MEMORY.
+ * - Ownership: give `*solid` back with leafless_solid_free.
+ * - Threads: any.
+ * - Untrusted input: any scene.
+ * - Since: 0.1
+ */
+leafless_status leafless_solid_new_scene(const leafless_scene *scene,
+                                         const leafless_frame *frame,
+                                         leafless_solid **solid);
 
 /**
  * Builds the octree of a solid to the depth of a frame. The result is the same bit for bit for any number of

@@ -27,6 +27,7 @@ const SECTIONS: &[&str] = &[
     "solid",
     "csg",
     "host",
+    "scene",
     "op",
     "query",
     "lazy",

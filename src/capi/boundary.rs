@@ -58,6 +58,7 @@ impl From<&Failure> for leafless_status {
                 Error::NotSampled => LEAFLESS_E_NOT_SAMPLED,
                 Error::Mesh(_) | Error::Polyhedron(_) => LEAFLESS_E_MESH,
                 Error::MeshFile(_) | Error::Package(_) => LEAFLESS_E_MESH_FILE,
+                Error::Scene(_) => LEAFLESS_E_SCENE,
                 Error::Format(FormatError::Version { .. } | FormatError::Required { .. }) => {
                     LEAFLESS_E_VERSION
                 }
@@ -291,6 +292,7 @@ const _: () = {
     shared_by_threads::<super::leafless_control>();
     shared_by_threads::<super::leafless_mesh>();
     shared_by_threads::<super::leafless_octree>();
+    shared_by_threads::<super::leafless_scene>();
     shared_by_threads::<super::leafless_solid>();
     shared_by_threads::<super::leafless_lazy>();
     shared_by_threads::<super::leafless_cursor>();

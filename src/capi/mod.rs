@@ -16,6 +16,7 @@
 //! | `polyhedron` | triangle meshes from faces with holes, shells and voids |
 //! | `octree` | octrees: describing, statistics, metadata |
 //! | `solid` | solids: primitives, meshes, octrees, the host's own |
+//! | `scene` | scenes in the language of OpenSCAD's CSG dumps |
 //! | `op` | building, resolving, Booleans |
 //! | `query` | points, boxes, cursors |
 //! | `lazy` | octrees that are split on demand |
@@ -46,6 +47,7 @@ mod octree;
 mod op;
 mod polyhedron;
 mod query;
+mod scene;
 mod solid;
 mod status;
 mod version;
@@ -69,6 +71,7 @@ pub use octree::*;
 pub use op::*;
 pub use polyhedron::*;
 pub use query::*;
+pub use scene::*;
 pub use solid::*;
 pub use status::*;
 pub use version::*;

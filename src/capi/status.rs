@@ -47,10 +47,12 @@ pub enum leafless_status {
     LEAFLESS_E_PANIC = 17,
     /// An octree that is to be refined was made from another solid.
     LEAFLESS_E_SOURCE = 18,
+    /// A scene cannot be read.
+    LEAFLESS_E_SCENE = 19,
 }
 use leafless_status::*;
 
-const ALL: [(leafless_status, &CStr); 19] = [
+const ALL: [(leafless_status, &CStr); 20] = [
     (LEAFLESS_OK, c"LEAFLESS_OK"),
     (LEAFLESS_E_NULL, c"LEAFLESS_E_NULL"),
     (LEAFLESS_E_ARGUMENT, c"LEAFLESS_E_ARGUMENT"),
@@ -70,6 +72,7 @@ const ALL: [(leafless_status, &CStr); 19] = [
     (LEAFLESS_E_IO, c"LEAFLESS_E_IO"),
     (LEAFLESS_E_PANIC, c"LEAFLESS_E_PANIC"),
     (LEAFLESS_E_SOURCE, c"LEAFLESS_E_SOURCE"),
+    (LEAFLESS_E_SCENE, c"LEAFLESS_E_SCENE"),
 ];
 
 /// The last failure of a thread. Of fixed size, so that a failure for want of memory can be told.
