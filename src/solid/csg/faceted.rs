@@ -51,6 +51,19 @@ impl Csg {
         if low >= high {
             return Err(Error::Argument { name: "high", problem: "must be greater than low" });
         }
+        let (mut min, mut max) =
+            ([f64::INFINITY, f64::INFINITY, low], [f64::NEG_INFINITY, f64::NEG_INFINITY, high]);
+        for corner in polygon {
+            for axis in 0..2 {
+                (min[axis], max[axis]) = (min[axis].min(corner[axis]), max[axis].max(corner[axis]));
+            }
+        }
+        let [bottom, top] = slab(2, low, high);
+        Ok(Csg::intersection_of([Csg::column(polygon)?, bottom, top])?.within(min, max))
+    }
+
+    /// The prism that has no ends.
+    pub(super) fn column(polygon: &[[f64; 2]]) -> Result<Csg, Error> {
         let mut operands: Vec<Csg> = Vec::new();
         for term in convex_differences(polygon)? {
             let operand = match term {
@@ -66,16 +79,7 @@ impl Csg {
             operands.try_reserve(1).map_err(|_| Error::OutOfMemory)?;
             operands.push(operand);
         }
-        operands.try_reserve(2).map_err(|_| Error::OutOfMemory)?;
-        operands.extend(slab(2, low, high));
-        let (mut min, mut max) =
-            ([f64::INFINITY, f64::INFINITY, low], [f64::NEG_INFINITY, f64::NEG_INFINITY, high]);
-        for corner in polygon {
-            for axis in 0..2 {
-                (min[axis], max[axis]) = (min[axis].min(corner[axis]), max[axis].max(corner[axis]));
-            }
-        }
-        Ok(Csg::intersection_of(operands)?.within(min, max))
+        Ok(operands.pop().unwrap_or_else(Csg::empty))
     }
 
     /// The convex polyhedron of the points p with `normal` · p + `offset` ≥ 0 for all `planes` (normal, offset); the

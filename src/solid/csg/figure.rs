@@ -7,10 +7,10 @@
 use super::dyadic::Dyadic;
 use super::halfspace::{HalfSpace, Surface};
 use super::map::ExactMap;
-use super::polygon::{Term, convex_differences};
 use super::primitive::slab;
 use super::program::push;
 use super::quadric::substitute;
+use super::torus::Torus;
 use super::{Csg, Join, Kind, Node};
 use crate::error::Error;
 use crate::lattice::Affine;
@@ -70,15 +70,7 @@ impl Figure {
     /// # Errors
     /// As [`convex_differences`].
     pub(crate) fn polygon(points: &[[f64; 2]]) -> Result<Figure, Error> {
-        let mut operands = Vec::new();
-        for term in convex_differences(points)? {
-            let operand = match term {
-                Term::Edge([from, to]) => left_of(points[from], points[to]).into(),
-                Term::All(count) => Csg::intersection_of(operands.drain(operands.len() - count..))?,
-                Term::Any(count) => Csg::union_of(operands.drain(operands.len() - count..))?,
-            };
-            push(&mut operands, operand)?;
-        }
+        let csg = Csg::column(points)?;
         let limit = |axis: usize, least: bool| {
             let of = points.iter().map(|point| point[axis]);
             Dyadic::new(if least {
@@ -89,7 +81,6 @@ impl Figure {
         };
         let extent =
             Rectangle { min: [limit(0, true), limit(1, true)], max: [limit(0, false), limit(1, false)] };
-        let Some(csg) = operands.pop() else { return Ok(Figure::nothing()) };
         Ok(Figure { csg, extent: Some(extent), core: None })
     }
 
@@ -207,7 +198,9 @@ impl Figure {
             match task {
                 Task::Map(node, map) => match &node.kind {
                     Kind::HalfSpace(half_space) => {
-                        let Surface::Quadric(coefficients) = &*half_space.0;
+                        let Surface::Quadric(coefficients) = &*half_space.0 else {
+                            return refuse("figure", "must consist of half-planes and conics");
+                        };
                         let [xx, yy, _, xy, _, _, x, y, _, one] = substitute(coefficients, &map);
                         push(&mut images, image([xx, yy, xy, x, y, one])?)?;
                     }
@@ -224,8 +217,7 @@ impl Figure {
                             push(&mut tasks, Task::Map(part, map.clone()))?;
                         }
                     }
-                    // No figure has one.
-                    Kind::Solid(_) => return refuse("figure", "must consist of half-planes"),
+                    Kind::Solid(_) => return refuse("figure", "must consist of half-planes and conics"),
                 },
                 Task::Join(join, count) => {
                     let joined = Csg::join(join, images.drain(images.len() - count..))?;
@@ -240,15 +232,6 @@ impl Figure {
         }
         Ok(images.pop().unwrap_or_else(Csg::empty))
     }
-}
-
-/// The half-plane to the left of a line, as a half-space.
-fn left_of(from: [f64; 2], to: [f64; 2]) -> HalfSpace {
-    let ([ax, ay], [bx, by]) = (from.map(Dyadic::new), to.map(Dyadic::new));
-    let zero = Dyadic::zero;
-    let constant = &(&ax * &by) - &(&bx * &ay);
-    let [x, y] = [&ay - &by, &bx - &ax];
-    HalfSpace::exactly([zero(), zero(), zero(), zero(), zero(), zero(), x, y, zero(), constant])
 }
 
 /// What a half-plane or conic becomes if x and y are divided by the two scales (each the `height`-th part of a linear
@@ -347,7 +330,14 @@ fn ring(square: Dyadic, x: Dyadic, y: Dyadic, one: Dyadic) -> Result<Csg, Error>
         let c = [square.clone(), square.clone(), square, zero(), zero(), zero(), zero(), zero(), y, one];
         return Ok(HalfSpace::exactly(c).into());
     }
-    refuse("figure", "has a circle beside the axis")
+    if x.sign() < 0 {
+        return refuse("figure", "has a circle whose centre lies beyond the axis");
+    }
+    // With A = −square > 0, and ρ² = x² + y², A (ρ² + z²) ≤ x ρ + y z + 1. That is, times 4 A and with each square
+    // completed, (2 A ρ − x)² + (2 A z − y)² ≤ x² + y² + 4 A.
+    let scale = -&square.shifted(1);
+    let square = &(&x.pow(2) + &y.pow(2)) + &(&scale * &one).shifted(1);
+    Ok(HalfSpace::ring(Torus { major: x, square, scale, shift: -&y }).into())
 }
 
 /// The smallest rectangle around figures.

@@ -3,6 +3,7 @@
 use super::dyadic::Dyadic;
 use super::halfspace::{HalfSpace, Surface};
 use super::program::push;
+use super::torus::Torus;
 use super::{Csg, Join, Kind, Node, program};
 use crate::solid::{Fingerprint, Fingerprinter, Solid};
 use alloc::vec::Vec;
@@ -66,7 +67,9 @@ impl HalfSpace {
                     .map(|(coefficient, centre, exponent)| [coefficient, centre, exponent as f64]);
                 Fingerprinter::new("powers").numbers(terms.as_flattened()).numbers(&[powers.constant])
             }
-            Surface::Torus(torus) => Fingerprinter::new("torus").numbers(&[torus.major, torus.minor]),
+            Surface::Torus(Torus { major, square, scale, shift }) => [major, square, scale, shift]
+                .iter()
+                .fold(Fingerprinter::new("torus"), |all, c| c.taken_in(all)),
             Surface::Host(host) => Fingerprinter::new("host half-space").part(host.fingerprint?),
         };
         Some(all.finish())

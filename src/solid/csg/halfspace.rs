@@ -134,7 +134,13 @@ impl HalfSpace {
             c[9] = Dyadic::new(minor).pow(2);
             return Ok(HalfSpace::exactly(c));
         }
-        Ok(HalfSpace(Arc::new(Surface::Torus(Torus { major, minor }))))
+        let [major, minor, scale, shift] = [major, minor, 1.0, 0.0].map(Dyadic::new);
+        Ok(HalfSpace::ring(Torus { major, square: minor.pow(2), scale, shift }))
+    }
+
+    /// Of a torus whose numbers need not be doubles.
+    pub(super) fn ring(torus: Torus) -> HalfSpace {
+        HalfSpace(Arc::new(Surface::Torus(torus)))
     }
 
     /// A half-space that a host program supplies: by f's `value` at a point and its `range` over a box (lower and upper

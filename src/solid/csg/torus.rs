@@ -8,10 +8,13 @@ use crate::lattice::exact::{sign, sqrt};
 use core::cmp::Ordering;
 use wide::f64x4;
 
-/// The points at most `minor` from the circle of radius `major` around the z axis in the plane z = 0.
+/// The points (x, y, z) for which (`scale` x, `scale` y, `scale` z + `shift`) is at most √`square` from the circle of
+/// radius `major` > 0 around the z axis in the plane z = 0.
 pub(super) struct Torus {
-    pub(super) major: f64,
-    pub(super) minor: f64,
+    pub(super) major: Dyadic,
+    pub(super) square: Dyadic,
+    pub(super) scale: Dyadic,
+    pub(super) shift: Dyadic,
 }
 
 /// A torus on a universe, in its own space times something positive. With ρ² = x² + y²,
@@ -23,7 +26,8 @@ pub(super) struct PlacedTorus {
     /// major² − minor².
     gap: Dyadic,
     major: f64,
-    minor: f64,
+    /// minor².
+    square: f64,
     /// Half the diagonal of a cube's image, the cube being of half edge 1: its length squared, and the length of its
     /// projection along z.
     diagonal: f64,
@@ -38,11 +42,14 @@ impl PlacedTorus {
     /// The torus as the map shows it on the universe.
     pub(super) fn new(given: &Torus, map: &ExactMap) -> PlacedTorus {
         let w = if map.w.sign() < 0 { -&map.w } else { map.w.clone() };
-        let [major, minor] = [given.major, given.minor].map(|radius| &w * &Dyadic::new(radius));
-        let sizes = map.rows.each_ref().map(Linear::magnitude);
-        let scale = -sizes.into_iter().chain(major.magnitude()).chain(minor.magnitude()).max().unwrap_or(0);
-        let [major, minor] = [major.shifted(scale), minor.shifted(scale)];
-        let lines = map.rows.each_ref().map(|row| Linear::new(row.each_ref().map(|c| c.shifted(scale))));
+        let (major, square) = (&w * &given.major, &w.pow(2) * &given.square);
+        let mut rows = map.rows.each_ref().map(|row| row.each_ref().map(|c| c * &given.scale));
+        rows[2][3] = &rows[2][3] + &(&map.w * &given.shift);
+        let sizes = rows.each_ref().map(Linear::magnitude);
+        let minor = square.magnitude().map(|power| power.div_euclid(2) + 1);
+        let scale = -sizes.into_iter().chain(major.magnitude()).chain(minor).max().unwrap_or(0);
+        let (major, square) = (major.shifted(scale), square.shifted(2 * scale));
+        let lines = rows.each_ref().map(|row| Linear::new(row.each_ref().map(|c| c.shifted(scale))));
         let mut diagonal: f64 = 0.0;
         let mut radius: f64 = 0.0;
         for signs in [[1.0, 1.0, 1.0], [-1.0, 1.0, 1.0], [1.0, -1.0, 1.0], [1.0, 1.0, -1.0]] {
@@ -50,12 +57,12 @@ impl PlacedTorus {
             diagonal = diagonal.max(x * x + y * y + z * z);
             radius = radius.max(x * x + y * y);
         }
-        let size = lines.iter().flat_map(|line| line.c).chain([major.rounded(), minor.rounded()]);
+        let size = lines.iter().flat_map(|line| line.c).chain([major.rounded(), sqrt(square.rounded())]);
         let size: f64 = size.map(f64::abs).sum();
         PlacedTorus {
-            gap: &major.pow(2) - &minor.pow(2),
+            gap: &major.pow(2) - &square,
             major: major.rounded(),
-            minor: minor.rounded(),
+            square: square.rounded(),
             diagonal,
             radius: sqrt(radius),
             aligned: lines.iter().all(|line| line.axis().is_some()),
@@ -94,11 +101,10 @@ impl PlacedTorus {
             (near * near, far * far)
         });
         let [x, y, z] = squares;
-        let (major, minor) = (f64x4::splat(self.major), f64x4::splat(self.minor));
+        let (major, square) = (f64x4::splat(self.major), f64x4::splat(self.square));
         let (inward, outward) = (roots(x.0 + y.0) - major, roots(x.1 + y.1) - major);
         let near = inward.fast_max(-outward).fast_max(zero);
         let far = outward.fast_max(-inward);
-        let square = minor * minor;
         (square - far * far - z.1, square - near * near - z.0)
     }
 
@@ -112,7 +118,7 @@ impl PlacedTorus {
         let [x, y, z] = self.lines.each_ref().map(|line| line.values(centre));
         let rho = roots(x * x + y * y);
         let off = rho - splat(self.major);
-        let value = splat(self.minor * self.minor) - off * off - z * z;
+        let value = splat(self.square) - off * off - z * z;
         // On the axis any direction will do for the tangent, and none.
         let share = rho.simd_gt(zero).select(off / rho, zero);
         let (slope_x, slope_y) = (x * share, y * share);
@@ -171,7 +177,7 @@ impl PlacedTorus {
     pub(super) fn sign_at(&self, t: [f64; 3]) -> i32 {
         let [x, y, z] = self.lines.each_ref().map(|line| line.value(t));
         let off = sqrt(x * x + y * y) - self.major;
-        let value = self.minor * self.minor - off * off - z * z;
+        let value = self.square - off * off - z * z;
         if value.abs() > self.error { sign(value) } else { self.exact_sign_at(t) }
     }
 
