@@ -97,11 +97,16 @@ fn half_spaces() {
     let corner = "cube(8, true);";
     let half = volume(&format!("intersection() {{ {corner} halfspace([2, 0, 0, -1]); }}"));
     assert_eq!((half.lower, half.upper), (224.0, 224.0));
-    check(
-        &format!("intersection() {{ {corner} quadric([-1, -1, -1, 0, 0, 0, 0, 0, 0, 9]); }}"),
-        PI * 36.0,
-        PI * 36.0,
-    );
+    let ball = "quadric([-1, -1, -1, 0, 0, 0, 0, 0, 0, 9]);";
+    check(&format!("intersection() {{ {corner} {ball} }}"), PI * 36.0, PI * 36.0);
+    let ball = "power([-1, 0, 2], [-1, 0, 2], [-1, 0, 2], 9);";
+    check(&format!("intersection() {{ {corner} {ball} }}"), PI * 36.0, PI * 36.0);
+    // x⁴ + y⁴ + z⁴ ≤ 81: 8 · 27 · Γ(5/4)³ / Γ(7/4).
+    let rounded = "power([-1, 0, 4], [-1, 0, 4], [-1, 0, 4], 81);";
+    let truth = 216.0 * 0.906_402_477_055_477f64.powi(3) / 0.919_062_526_848_883;
+    check(&format!("intersection() {{ {corner} {rounded} }}"), truth, 150.0);
+    check("torus(5, 2);", 2.0 * PI * PI * 5.0 * 4.0, 4.0 * PI * PI * 10.0);
+    check("torus(major = 4, minor = 1);", 2.0 * PI * PI * 4.0, 4.0 * PI * PI * 4.0);
 }
 
 #[test]
@@ -153,6 +158,7 @@ fn nothing() {
         "rotate_extrude(angle = 0) square(1);",
         "rotate_extrude();",
         "polyhedron(points = [], faces = []);",
+        "linear_extrude(height = 1) polygon(points = undef, paths = undef, convexity = 1);",
         "polyhedron(points = [[0,0,0],[1,0,0],[0,0,0]], faces = [[0,1,2]]);",
         "multmatrix([[1,0,0,0],[0,1,0,0],[0,0,0,0],[0,0,0,1]]) cube(2);",
         "intersection();",
@@ -244,6 +250,17 @@ fn bodies_of_revolution() {
     check(&format!("{whole} {half}"), PI * 256.0 / 3.0, PI * 64.0);
     let half = format!("intersection() {{ circle(4); {} }}", at(0.0, -5.0, "square([5, 10]);"));
     check(&format!("{whole} {half}"), PI * 256.0 / 3.0, PI * 64.0);
+    // Rings: circles that are moved, turned, scaled.
+    same(&format!("{whole} {}", at(5.0, 0.0, "circle(2);")), "torus(5, 2);");
+    same(&format!("{whole} {}", at(-5.0, 0.0, "circle(2);")), "torus(5, 2);");
+    let raised = "multmatrix([[1,0,0,0],[0,1,0,0],[0,0,1,1.5],[0,0,0,1]])";
+    same(&format!("{whole} {}", at(5.0, 1.5, "circle(2);")), &format!("{raised} torus(5, 2);"));
+    let turned =
+        "multmatrix([[0.6, -0.8, 0, 4.1], [0.8, 0.6, 0, -1.3], [0, 0, 1, 0], [0, 0, 0, 1]]) circle(2);";
+    let turned = format!("{whole} multmatrix([[0.7,0,0,0.3],[0,0.7,0,0],[0,0,1,0],[0,0,0,1]]) {turned}");
+    check(&turned, 2.0 * PI * PI * (4.1 * 0.7 + 0.3) * 1.96, 4.0 * PI * PI * 4.0);
+    let ring = format!("difference() {{ {} {} }}", at(2.0, -2.0, "square(4);"), at(4.0, 0.0, "circle(1.5);"));
+    check(&format!("{whole} {ring}"), 2.0 * PI * 4.0 * (16.0 - PI * 2.25), 300.0);
     // Parts of a turn.
     let block = at(2.0, -1.0, "square([3, 2]);");
     for (angle, start) in [(90, 0), (180, 30), (270, 45), (37, 11), (-37, 11), (-200, 5), (359, 1), (1, -720)]
@@ -437,6 +454,17 @@ fn errors_say_where() {
         ("rotate_extrude() sphere(1);", (1, 1), "takes figures of the plane"),
         ("linear_extrude(height = 1, twist = 90) square(1);", (1, 1), "without `twist`"),
         ("linear_extrude(height = 1, scale = [1, 2]) circle(1);", (1, 1), "the same along x and y"),
+        (
+            "rotate_extrude() difference() { square(4); multmatrix([[1,0,0,-1],[0,1,0,0],[0,0,1,0],[0,0,0,1]]) \
+             circle(2); }",
+            (1, 1),
+            "beyond the axis",
+        ),
+        ("power([1, 0, 0.5], [0, 0, 1], [0, 0, 1], 1);", (1, 14), "expected a whole number"),
+        ("power([1, 0, 65], [0, 0, 1], [0, 0, 1], 1);", (1, 1), "exponent"),
+        ("power([1, 0, 2], [0, 0, 1], [0, 0, 1]);", (1, 1), "`constant` is missing"),
+        ("torus(2, 0);", (1, 1), "`torus` cannot be had"),
+        ("torus(2);", (1, 1), "`minor` is missing"),
         ("rotate_extrude() circle(1);", (1, 1), "on one side of the axis"),
         (
             "rotate_extrude() multmatrix([[1,0,0,9],[0,2,0,0],[0,0,1,0],[0,0,0,1]]) circle(1);",

@@ -353,7 +353,7 @@ impl Checker<'_> {
 
     fn polygon(&self, call: &Call<'_>) -> Result<Shape, Error> {
         let given = Given::new(self.tree, call, ["points", "paths"], &["convexity"])?;
-        let item = given.required(0)?;
+        let Some(item) = given.optional(0) else { return Ok(Figure::nothing().into()) };
         let points = item.points::<2>()?;
         let figure = |item: &Item<'_>, points: &[[f64; 2]]| {
             Figure::polygon(points).map_err(|error| match error {
@@ -407,9 +407,12 @@ impl Checker<'_> {
 
     fn polyhedron(&self, call: &Call<'_>) -> Result<Node, Error> {
         let given = Given::new(self.tree, call, ["points", "faces"], &["convexity"])?;
+        let (Some(points), Some(faces)) = (given.optional(0), given.optional(1)) else {
+            return Ok(Node::Solid(Csg::empty()));
+        };
         let mut polygons = Polygons::default();
-        polygons.vertices = given.required(0)?.points()?;
-        for face in given.required(1)?.items()? {
+        polygons.vertices = points.points()?;
+        for face in faces.items()? {
             polygons.push_face(&face.indices(polygons.vertices.len())?)?;
         }
         let mesh = self.at(call, polygons.finish())?;
@@ -437,13 +440,13 @@ impl Checker<'_> {
             *term = (factor.number()?, centre.number()?, exponent.index()?);
         }
         let constant = given.required(3)?.number()?;
-        Ok(Node::Solid(self.at(call, stub_power(terms, constant))?.into()))
+        Ok(Node::Solid(self.at(call, HalfSpace::power(terms, constant))?.into()))
     }
 
     fn torus(&self, call: &Call<'_>) -> Result<Node, Error> {
         let given = Given::new(self.tree, call, ["major", "minor"], &[])?;
         let (major, minor) = (given.required(0)?.number()?, given.required(1)?.number()?);
-        Ok(Node::Solid(self.at(call, stub_torus(major, minor))?))
+        Ok(Node::Solid(self.at(call, Csg::torus(major, minor))?))
     }
 }
 
@@ -492,11 +495,4 @@ impl Checker<'_> {
         let file = Given::new(self.tree, call, ["file"], &[])?.required(0)?;
         Ok(Node::Octree(Box::new(self.read(&file, |path| crate::file::open(path))?)))
     }
-}
-
-fn stub_power(_: [(f64, f64, u32); 3], _: f64) -> Result<HalfSpace, Error> {
-    Err(Error::Argument { name: "power", problem: "later" })
-}
-fn stub_torus(_: f64, _: f64) -> Result<Csg, Error> {
-    Err(Error::Argument { name: "torus", problem: "later" })
 }
