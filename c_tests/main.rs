@@ -209,6 +209,9 @@ fn polyhedra() {
 #[test]
 fn lazy() {
     run("lazy", C99, Link::Static, &[]);
+}
+
+#[test]
 fn scenes() {
     run("scene", C99, Link::Static, &[]);
 }
