@@ -236,7 +236,7 @@ int main(int argc, char **argv) {
     /* The names of all, and of what is none. */
     CHECK(strcmp(leafless_status_name(LEAFLESS_OK), "LEAFLESS_OK") == 0);
     CHECK(strcmp(leafless_status_name(-1), "LEAFLESS_E_UNKNOWN") == 0);
-    CHECK(strcmp(leafless_status_name(19), "LEAFLESS_E_UNKNOWN") == 0);
+    CHECK(strcmp(leafless_status_name(20), "LEAFLESS_E_UNKNOWN") == 0);
     CHECK(strcmp(leafless_status_name(INT32_MIN), "LEAFLESS_E_UNKNOWN") == 0);
     CHECK(leafless_last_status() == LEAFLESS_OK);
     seen[LEAFLESS_OK] = true;
@@ -415,7 +415,7 @@ int main(int argc, char **argv) {
             return 1;
         }
     }
-    CHECK(i == 19);
+    CHECK(i == 20);
 
     free(bytes);
     leafless_control_free(control);
