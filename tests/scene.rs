@@ -2,6 +2,9 @@
 
 #![cfg(feature = "scene")]
 
+#[path = "../fuzz/bodies/scenes.rs"]
+mod scenes;
+
 use leafless::file::{read_scene, write_stl};
 use leafless::{Control, Error, Frame, Interval, Membership, Octree, Rule, TriangleMesh, build};
 use std::f64::consts::PI;
@@ -533,39 +536,65 @@ fn many() {
 
 #[test]
 fn truncated_and_changed_texts_are_answered() {
-    let text = "difference() {\n\tcube(size = [4, 4, 4], center = true);\n\tmultmatrix([[1, 0, 0, 1.5e-1], [0, 1, 0, 0], \
-        [0, 0, 1, 0], [0, 0, 0, 1]]) { // comment\n\t\tlinear_extrude(height = 2) polygon(points = [[0, 0], [1, 0], \
-        [0, 1]], paths = [[0, 1, 2]], convexity = 1); /* \"ü\" */ color(\"a\\\"b\") rotate_extrude(angle = 90) \
-        square(2); }\n}\n";
-    assert!(read_scene(text, None).is_ok());
-    for end in (0..text.len()).filter(|&end| text.is_char_boundary(end)) {
-        let _ = read_scene(&text[..end], None);
+    for text in &scenes::SEEDS[..8] {
+        assert!(scenes::scenes(text.as_bytes()), "{text}");
     }
-    let mut state = 7u64;
-    let mut random = move |n: usize| {
-        state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-        (state >> 33) as usize % n
-    };
-    let pieces = [
+    assert!(!scenes::scenes(scenes::SEEDS[8].as_bytes()));
+    for text in scenes::SEEDS {
+        (0..text.len()).for_each(|end| drop(read_scene(&text.as_bytes()[..end], None)));
+    }
+    let mut random = Random(7);
+    const PIECES: [&str; 20] = [
         "(", ")", "[", "]", "{", "}", ";", ",", "=", "\"", "1e300", "-", "nan", "undef", "cube", "\\", "/*",
         "//", "%", "é",
     ];
+    let mut read = 0;
     for _ in 0..20_000 {
-        let mut changed: Vec<char> = text.chars().collect();
-        for _ in 0..1 + random(3) {
-            let at = random(changed.len());
-            match random(3) {
-                0 => changed[at] = pieces[random(pieces.len())].chars().next().unwrap(),
+        let mut changed = scenes::SEEDS[random.below(scenes::SEEDS.len())].as_bytes().to_vec();
+        for _ in 0..1 + random.below(3) {
+            let (at, piece) = (random.below(changed.len()), PIECES[random.below(PIECES.len())]);
+            match random.below(4) {
+                0 => changed[at] = piece.as_bytes()[0],
                 1 => drop(changed.remove(at)),
+                2 => drop(changed.splice(at..at, piece.bytes())),
+                // Other numbers.
                 _ => {
-                    changed.splice(at..at, pieces[random(pieces.len())].chars());
+                    let digits = changed.iter().filter(|byte| byte.is_ascii_digit()).count();
+                    let which = random.below(digits);
+                    let digit = changed.iter_mut().filter(|byte| byte.is_ascii_digit()).nth(which);
+                    digit.into_iter().for_each(|digit| *digit = b"0123456789.-"[random.below(12)]);
                 }
             }
         }
-        let changed: String = changed.into_iter().collect();
-        match read_scene(&changed, None) {
-            Ok(_) | Err(Error::Scene(_)) => {}
-            Err(error) => panic!("{error}: {changed}"),
-        }
+        read += usize::from(scenes::scenes(&changed));
+    }
+    assert!(read > 1500, "{read}");
+}
+
+#[test]
+#[ignore = "writes the seeds for the fuzzer"]
+fn write_seeds() {
+    let folder = std::env::var_os("LEAFLESS_SEEDS").expect("LEAFLESS_SEEDS must name a directory");
+    let folder = Path::new(&folder).join("scenes");
+    std::fs::create_dir_all(&folder).unwrap();
+    for (i, seed) in scenes::SEEDS.iter().enumerate() {
+        std::fs::write(folder.join(format!("seed-{i:03}")), seed).unwrap();
+    }
+}
+
+/// Numbers that only look random (splitmix64).
+struct Random(u64);
+
+impl Random {
+    fn next(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let mut x = self.0;
+        x = (x ^ x >> 30).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        x = (x ^ x >> 27).wrapping_mul(0x94D0_49BB_1331_11EB);
+        x ^ x >> 31
+    }
+
+    fn below(&mut self, end: usize) -> usize {
+        if end == 0 { 0 } else { (self.next() % end as u64) as usize }
     }
 }
