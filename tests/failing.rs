@@ -16,12 +16,9 @@ mod zip;
 use bodies::{Aligned, Random};
 use leafless::{
     Affine, AnySolid, AxisBox, Ball, Callback, Control, Csg, Error, FillRule, Frame, HalfSpace, LazyOctree,
-    MeshSolid, Metadata, Octree, Polyhedron, PolyhedronArrays, Rule, Stored, TriangleMesh, Verdict, Zone,
-    build, compact, complement, difference, file, intersection, resolve, union, union_of, xor,
-    Affine, AnySolid, AxisBox, Ball, Callback, Control, Error, FillRule, Frame, LazyOctree, MeshSolid,
-    Metadata, Octree, Polyhedron, PolyhedronArrays, Rule, Stored, Transform, TriangleMesh, Verdict, Zone,
-    build, clearance, compact, complement, difference, file, interference_of, intersection, resolve, union,
-    union_of, xor,
+    MeshSolid, Metadata, Octree, Polyhedron, PolyhedronArrays, Rule, Stored, Transform, TriangleMesh,
+    Verdict, Zone, build, clearance, compact, complement, difference, file, interference_of, intersection,
+    resolve, union, union_of, xor,
 };
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;

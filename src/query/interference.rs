@@ -104,7 +104,7 @@ pub fn interference_of<A: Solid, B: Solid>(
         let b = Transform::new(b, own, placement);
         let found = Search::new(a, &b, frame, control.max_splits).run(tolerance, &job)?;
         job.advance(WHOLE / placements.len());
-        Ok(found)
+        Ok::<_, Error>(found)
     };
     let mut found = Vec::new();
     found.try_reserve_exact(placements.len()).map_err(|_| Error::OutOfMemory)?;
@@ -123,7 +123,7 @@ pub fn interference_of<A: Solid, B: Solid>(
         for placement in placements {
             found.push(one(placement)?);
         }
-        Ok(found)
+        Ok::<_, Error>(found)
     })
 }
 
@@ -386,7 +386,7 @@ impl<'s, A: Solid, B: Solid> Search<'s, A, B> {
             let (Some(a), Some(b)) = (a, b) else { continue };
             let cell = pair.cell.child(k as u8);
             let rank = if searching {
-                likely_a[k] * likely_b[k] * DECAY.powi(cell.level as i32)
+                likely_a[k] * likely_b[k] * decay(cell.level)
             } else {
                 size(cell)
             };
@@ -418,8 +418,11 @@ impl<'s, A: Solid, B: Solid> Search<'s, A, B> {
     }
 }
 
-/// What a level costs in the search for an overlap: without it the search would never come back from a contact.
-const DECAY: f64 = 0.8;
+/// What a cell's level costs in the search for an overlap: without it the search would never come back from a contact.
+/// (A product of its own: the library's powers differ between platforms, and the order of the search with them.)
+fn decay(level: u8) -> f64 {
+    (0..level).fold(1.0, |product, _| product * 0.8)
+}
 
 /// The order of cells by size.
 fn size(cell: Cell) -> f64 {
