@@ -171,6 +171,7 @@ fn help_and_version() {
         "xor",
         "complement",
         "contains",
+        "measure",
         "demo",
     ];
     for command in commands {
@@ -217,6 +218,11 @@ fn wrong_usage_is_one_line_and_code_2() {
         ("xor - - -o out.lfl", &["standard input"]),
         ("complement cube.lfl slab.lfl -o out.lfl", &["slab.lfl"]),
         ("contains -", &["standard input"]),
+        ("measure", &["FILE"]),
+        ("measure cube.lfl --tolerance -1", &["--tolerance", "not below 0"]),
+        ("measure cube.lfl --tolerance nan", &["--tolerance", "not below 0"]),
+        ("measure cube.lfl --splits -1", &["-1"]),
+        ("measure cube.lfl --depth 21", &["--depth", "21"]),
         ("demo a b", &["b"]),
     ] {
         place.run(line).bad(2, words);
@@ -756,6 +762,90 @@ fn info_has_the_promised_keys() {
     assert_eq!((&whole["nodes"], &whole["bytes_per_node"]), (&0.into(), &Value::Null));
     assert_eq!((&whole["classical_nodes"], volume(&whole)), (&1.into(), (1.0, 1.0)));
     assert!(place.run("info whole.lfl").good().text().contains("- a node"));
+}
+
+#[test]
+fn measure_tells_what_is_proven() {
+    let place = solids();
+    let told = place.run("measure cube.lfl --json").good().json();
+    let expected = [
+        "centroid",
+        "clipped",
+        "depth",
+        "edge",
+        "evaluations",
+        "inertia",
+        "inertia_about_origin",
+        "input",
+        "level",
+        "max",
+        "measured",
+        "min",
+        "origin",
+        "splits",
+        "volume",
+    ];
+    assert_eq!(keys(&told), expected);
+    let ends = |value: &Value| {
+        assert_eq!(keys(value), ["lower", "upper"]);
+        [value["lower"].clone(), value["upper"].clone()]
+    };
+    assert_eq!(volume(&told), (8.0, 8.0));
+    assert_eq!(
+        ends(&told["centroid"]),
+        [serde_json::json!([2.0, 2.0, 2.0]), serde_json::json!([2.0, 2.0, 2.0])]
+    );
+    assert_eq!(ends(&told["min"])[1], serde_json::json!([1.0, 1.0, 1.0]));
+    assert_eq!(ends(&told["max"])[0], serde_json::json!([3.0, 3.0, 3.0]));
+    for end in ends(&told["inertia"]) {
+        for (i, row) in end.as_array().unwrap().iter().enumerate() {
+            for (j, value) in row.as_array().unwrap().iter().enumerate() {
+                let exact = if i == j { 16.0 / 3.0 } else { 0.0 };
+                assert!((value.as_f64().unwrap() - exact).abs() < 1e-14, "{told}");
+            }
+        }
+    }
+    // 8 · (2² + 2²) more than about the centroid, and −8 · 2 · 2.
+    let [lower, upper] = ends(&told["inertia_about_origin"]);
+    assert!(lower[0][0].as_f64() <= Some(112.0 / 3.0) && upper[0][0].as_f64() >= Some(112.0 / 3.0));
+    assert_eq!((&lower[0][1], &upper[1][0]), (&(-32.0).into(), &(-32.0).into()));
+    assert_eq!((&told["measured"], &told["clipped"]), (&"tolerance".into(), &false.into()));
+    let text = place.run("measure cube.lfl").good();
+    for line in ["volume          8 to 8\n", "centroid z      2 to 2\n", "about origin xy -32 to -32\n"] {
+        assert!(text.text().contains(line), "{text:?}");
+    }
+
+    // A mesh is measured as well as is asked for, and no better.
+    let rough = place.run("measure cube.stl --tolerance 0.2 --json").good().json();
+    let (lower, upper) = volume(&rough);
+    assert!(lower < 8.0 && 8.0 < upper && upper - lower < 0.2 * upper && upper - lower > 0.02);
+    assert_eq!((&rough["depth"], &rough["measured"]), (&20.into(), &"tolerance".into()));
+    let few = place.run("measure cube.stl --splits 100 --json").good().json();
+    assert_eq!((&few["splits"], &few["measured"]), (&100.into(), &"budget".into()));
+    assert!(
+        place.run("measure cube.stl --splits 100").good().text().contains("splits          100, to level ")
+    );
+    let shallow = place.run("measure cube.stl --depth 3 --tolerance 0 --json").good().json();
+    assert_eq!((&shallow["level"], &shallow["measured"]), (&3.into(), &"exhausted".into()));
+    let one = place.run("measure cube.stl --tolerance 0.1 --threads 1 --json").good();
+    let two = place.run("measure cube.stl --tolerance 0.1 --threads 2 --json").good();
+    assert_eq!(one.text(), two.text());
+
+    // A file knows no more than it was made with, and says so.
+    place.run("voxelize cube.stl -o rough.lfl --depth 4").good();
+    let text = place.run("measure rough.lfl --tolerance 0.001").good();
+    assert!(text.text().contains("and the file knows no more"), "{text:?}");
+    let told = place.run("measure rough.lfl --tolerance 0 --json").good().json();
+    let info = place.run("info rough.lfl --json").good().json();
+    assert_eq!((volume(&told), &told["measured"]), (volume(&info), &"exhausted".into()));
+    let clipped = place.run("voxelize cube.stl -o clipped.lfl --depth 4 --bounds 2,2,2,2");
+    assert_eq!(clipped.code, Some(0));
+    assert!(place.run("measure clipped.lfl").good().text().contains("clipped"));
+    place.run("complement cube.lfl -o outside.lfl").good();
+    assert!(place.run("measure outside.lfl").good().text().contains("clipped"));
+    place.run("measure missing.stl").bad(1, &["missing.stl"]);
+    place.write("damaged.lfl", &place.bytes("cube.lfl")[..500]);
+    place.run("measure damaged.lfl").bad(1, &["damaged.lfl"]);
 }
 
 #[test]

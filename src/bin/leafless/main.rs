@@ -13,6 +13,7 @@ mod failure;
 mod info;
 mod input;
 mod interfere;
+mod measure;
 mod mesh;
 mod model;
 mod output;
@@ -67,6 +68,8 @@ enum Command {
     Contains(contains::Arguments),
     /// Say whether two solids or meshes overlap, by how much, and how far they are apart
     Interfere(interfere::Arguments),
+    /// Volume, centroid, inertia and bounds of a solid or a mesh, as intervals that hold the true ones
+    Measure(measure::Arguments),
     /// Show the main job end to end on a mechanical part that the program makes itself
     Demo(demo::Arguments),
 }
@@ -88,6 +91,7 @@ fn main() -> ExitCode {
         Command::Complement(arguments) => boolean::run_complement(arguments),
         Command::Contains(arguments) => contains::run(arguments),
         Command::Interfere(arguments) => interfere::run(arguments),
+        Command::Measure(arguments) => measure::run(arguments),
         Command::Demo(arguments) => demo::run(arguments),
     };
     match result {

@@ -1,7 +1,7 @@
 //! Long work: a bar for whoever waits at a terminal, and an end before memory runs out.
 
 use indicatif::{ProgressBar, ProgressStyle};
-use leafless::{Control, Error, Octree};
+use leafless::{Control, Error};
 use std::io::IsTerminal;
 use std::sync::OnceLock;
 use std::time::{Duration, Instant};
@@ -14,11 +14,11 @@ const STEPS: u64 = 1000;
 /// Runs `work` on so many threads (0: one a processor), with a progress bar called `label` once it has taken
 /// more than a second, if standard error is a terminal. Says so, instead of being killed for it, when the solid
 /// outgrows the free memory.
-pub fn watched(
+pub fn watched<R>(
     label: &'static str,
     threads: usize,
-    work: impl FnOnce(&Control<'_>) -> Result<Octree, Error>,
-) -> Result<Octree, String> {
+    work: impl FnOnce(&Control<'_>) -> Result<R, Error>,
+) -> Result<R, String> {
     let start = Instant::now();
     let bar = OnceLock::new();
     let show = |done: f64| {

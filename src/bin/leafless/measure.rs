@@ -1,0 +1,194 @@
+//! `leafless measure`: volume, centroid, inertia and bounds of a solid.
+
+use crate::failure::{Failure, Of};
+use crate::input::Input;
+use crate::mesh::Reading;
+use crate::output::{self, count, interval};
+use crate::progress::watched;
+use crate::report::Volume;
+use crate::source::Source;
+use crate::voxelize::threads;
+use clap::Args;
+use leafless::{
+    Affine, Control, Extent, Frame, Interval, MAX_DEPTH, Measured, Measures, bounding_box, measure,
+};
+use serde::Serialize;
+use std::ffi::OsString;
+use std::fmt::Write;
+
+/// Measures a solid of density 1 without making an octree of it: the largest undecided cells are split first, until the
+/// volume is known well enough. All numbers are intervals that hold the true ones.
+///
+/// A solid from a file (.lfl) knows no more about its undecided cells, so its own bounds are told, as well as it was
+/// made; a mesh is split as deep as it takes.
+#[derive(Args)]
+pub struct Arguments {
+    /// Solid (.lfl) or mesh (STL, OBJ, PLY, OFF, 3MF), or `-` for standard input
+    file: OsString,
+    /// How wide the interval of the volume may be, relative to its middle; 0 goes on to the depth. Without it: 0.01, or 0
+    /// if --splits is given
+    #[arg(long, value_name = "T", value_parser = tolerance, allow_hyphen_values = true)]
+    tolerance: Option<f64>,
+    /// Cells to split at most
+    #[arg(long, value_name = "N")]
+    splits: Option<u64>,
+    /// Deepest level to split to, 1 to 20. Without it: as deep as the solid is, or 20 for a mesh
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=MAX_DEPTH as i64))]
+    depth: Option<u8>,
+    #[command(flatten)]
+    reading: Reading,
+    /// Threads to use; 0: as many as there are processors. The result is the same
+    #[arg(long, default_value_t = 0, value_name = "N", value_parser = threads)]
+    threads: usize,
+    /// Print one JSON object
+    #[arg(long)]
+    json: bool,
+}
+
+fn tolerance(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(tolerance) if tolerance >= 0.0 && f64::is_finite(tolerance) => Ok(tolerance),
+        _ => Err("expected a number not below 0".into()),
+    }
+}
+
+/// Sides of the bounding box are told to this part of the universe's edge, unless a greater tolerance is asked for.
+const SIDES: f64 = 0.001;
+
+/// Lower and upper bounds of the elements of a vector or a matrix.
+#[derive(Serialize)]
+struct Bounds<T> {
+    lower: T,
+    upper: T,
+}
+
+impl From<[Interval; 3]> for Bounds<[f64; 3]> {
+    fn from(vector: [Interval; 3]) -> Bounds<[f64; 3]> {
+        Bounds { lower: vector.map(|x| x.lower), upper: vector.map(|x| x.upper) }
+    }
+}
+
+impl From<[[Interval; 3]; 3]> for Bounds<[[f64; 3]; 3]> {
+    fn from(matrix: [[Interval; 3]; 3]) -> Bounds<[[f64; 3]; 3]> {
+        let of = |end: fn(Interval) -> f64| matrix.map(|row| row.map(end));
+        Bounds { lower: of(|x| x.lower), upper: of(|x| x.upper) }
+    }
+}
+
+#[derive(Serialize)]
+struct Report {
+    input: String,
+    volume: Volume,
+    /// Absent (null) if nothing is proven to be inside.
+    centroid: Option<Bounds<[f64; 3]>>,
+    /// About the centroid.
+    inertia: Bounds<[[f64; 3]; 3]>,
+    inertia_about_origin: Bounds<[[f64; 3]; 3]>,
+    /// Corners of the bounding box; absent (null) if the solid is proven empty.
+    min: Option<Bounds<[f64; 3]>>,
+    max: Option<Bounds<[f64; 3]>>,
+    /// Why it ended.
+    measured: &'static str,
+    /// Without those for the bounding box.
+    splits: u64,
+    evaluations: u64,
+    level: u8,
+    depth: u8,
+    origin: [f64; 3],
+    edge: f64,
+    clipped: bool,
+}
+
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let input = Input::from(&*arguments.file);
+    let source = Source::read(&input, &arguments.reading)?;
+    let (min, max) = source.bounds();
+    let is_stored = source.own_frame().is_some();
+    let frame = match (source.own_frame(), arguments.depth) {
+        (Some(frame), None) => Ok(*frame),
+        (Some(frame), Some(depth)) => frame.with_depth(depth),
+        (None, depth) => Frame::around(min, max, depth.unwrap_or(MAX_DEPTH)),
+    };
+    let frame = frame.of(&input)?;
+    let solid = source.placed(&input, &Affine::IDENTITY, &frame)?;
+    let tolerance = arguments.tolerance.unwrap_or(if arguments.splits.is_some() { 0.0 } else { 0.01 });
+    let found = watched("measure", arguments.threads, |control| {
+        let control = Control { max_splits: arguments.splits, ..*control };
+        let measures = measure(&solid, &frame, tolerance, &control)?;
+        let quiet = Control { progress: None, ..control };
+        let extent = bounding_box(&solid, &frame, tolerance.max(SIDES) * frame.edge(), &quiet)?;
+        Ok((measures, extent))
+    });
+    let (measures, extent) = found.of(&input)?;
+    let text = if arguments.json {
+        output::json(&report(&input, &frame, &measures, &extent))?
+    } else {
+        text(&measures, &extent, is_stored)
+    };
+    output::print(text.as_bytes())
+}
+
+fn report(input: &Input, frame: &Frame, measures: &Measures, extent: &Extent) -> Report {
+    Report {
+        input: input.to_string(),
+        volume: measures.volume.into(),
+        centroid: measures.centroid.map(Into::into),
+        inertia: measures.inertia_about_centroid.into(),
+        inertia_about_origin: measures.inertia_about_origin.into(),
+        min: extent.corners.map(|[min, _]| min.into()),
+        max: extent.corners.map(|[_, max]| max.into()),
+        measured: match measures.measured {
+            Measured::Tolerance => "tolerance",
+            Measured::Budget => "budget",
+            Measured::Exhausted => "exhausted",
+        },
+        splits: measures.splits,
+        evaluations: measures.evaluations,
+        level: measures.level,
+        depth: frame.depth(),
+        origin: frame.origin(),
+        edge: frame.edge(),
+        clipped: measures.clipped,
+    }
+}
+
+/// The same for people.
+fn text(measures: &Measures, extent: &Extent, is_stored: bool) -> String {
+    let mut text = String::new();
+    let mut line = |name: &str, value: String| {
+        // Writing to a string does not fail.
+        let _ = writeln!(text, "{name:<16}{value}");
+    };
+    line("volume", interval(measures.volume));
+    for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
+        if let Some(centroid) = measures.centroid {
+            line(&format!("centroid {name}"), interval(centroid[axis]));
+        }
+    }
+    for (name, tensor) in
+        [("inertia", &measures.inertia_about_centroid), ("about origin", &measures.inertia_about_origin)]
+    {
+        for (i, j, axes) in
+            [(0, 0, "xx"), (1, 1, "yy"), (2, 2, "zz"), (0, 1, "xy"), (0, 2, "xz"), (1, 2, "yz")]
+        {
+            line(&format!("{name} {axes}"), interval(tensor[i][j]));
+        }
+    }
+    if let Some([min, max]) = extent.corners {
+        for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
+            line(&format!("least {name}"), interval(min[axis]));
+            line(&format!("greatest {name}"), interval(max[axis]));
+        }
+    }
+    let ended = match (measures.measured, is_stored) {
+        (Measured::Tolerance, _) => "",
+        (Measured::Budget, _) => ", which were all that may be split",
+        (Measured::Exhausted, true) => ", and the file knows no more",
+        (Measured::Exhausted, false) => ", and there is nothing left to split at this depth",
+    };
+    line("splits", format!("{}, to level {}{ended}", count(measures.splits), measures.level));
+    if measures.clipped {
+        line("clipped", "this is the part inside of the bounds; the solid may go on outside".into());
+    }
+    text
+}
