@@ -17,11 +17,8 @@ use bodies::{Aligned, Random};
 use leafless::{
     Affine, AnySolid, AxisBox, Ball, Callback, Control, Csg, Error, FillRule, Frame, HalfSpace, LazyOctree,
     MeshSolid, Metadata, Octree, Polyhedron, PolyhedronArrays, Rule, Stored, Transform, TriangleMesh,
-    Verdict, Zone, build, clearance, compact, complement, difference, file, interference_of, intersection,
-    resolve, union, union_of, xor,
-    AnySolid, AxisBox, Ball, Callback, Control, Error, FillRule, Frame, LazyOctree, MeshSolid, Metadata,
-    Octree, Polyhedron, PolyhedronArrays, Rule, Stored, TriangleMesh, Verdict, Zone, bounding_box, build,
-    compact, complement, difference, file, intersection, measure, resolve, union, union_of, xor,
+    Verdict, Zone, bounding_box, build, clearance, compact, complement, difference, file, interference_of,
+    intersection, measure, resolve, union, union_of, xor,
 };
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;

@@ -385,11 +385,7 @@ impl<'s, A: Solid, B: Solid> Search<'s, A, B> {
         for (k, (a, b)) in of_a.into_iter().zip(of_b).enumerate() {
             let (Some(a), Some(b)) = (a, b) else { continue };
             let cell = pair.cell.child(k as u8);
-            let rank = if searching {
-                likely_a[k] * likely_b[k] * decay(cell.level)
-            } else {
-                size(cell)
-            };
+            let rank = if searching { likely_a[k] * likely_b[k] * decay(cell.level) } else { size(cell) };
             self.meet(cell, a, b, rank)?;
         }
         Ok(())

@@ -13,6 +13,7 @@ mod figure;
 mod fingerprint;
 mod halfspace;
 mod host;
+mod kleene;
 mod linear;
 mod map;
 mod points;
@@ -21,6 +22,7 @@ mod power;
 mod primitive;
 mod program;
 mod quadric;
+mod scratch;
 mod split;
 mod support;
 mod torus;
@@ -28,7 +30,7 @@ mod torus;
 #[cfg(feature = "scene")]
 pub(crate) use figure::{Figure, wedge};
 pub use halfspace::HalfSpace;
-pub use split::{CsgPart, CsgScratch};
+pub use scratch::{CsgPart, CsgScratch};
 
 use crate::error::Error;
 use crate::lattice::Affine;
