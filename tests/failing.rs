@@ -284,6 +284,10 @@ fn operations(directory: &Path) -> Vec<(&'static str, Operation)> {
         let solid = MeshSolid::new(closed.clone(), &frame(), FillRule::NonZero)?;
         build(&solid, &frame(), Rule::Certified, &CONTROL)
     });
+    operation!("build mesh erased", [closed], {
+        let solid = AnySolid::new(MeshSolid::new(closed.clone(), &frame(), FillRule::NonZero)?);
+        build(&solid, &frame(), Rule::Certified, &CONTROL)
+    });
     operation!("build mesh deep", [closed], {
         let frame = frame().with_depth(7)?;
         build(&MeshSolid::new(closed.clone(), &frame, FillRule::EvenOdd)?, &frame, Rule::Sampled, &CONTROL)

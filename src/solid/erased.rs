@@ -61,26 +61,27 @@ trait Slot: Any + Send + Sync {
     fn as_any_mut(&mut self) -> &mut dyn Any;
 }
 
-impl<S: Solid<Part: 'static, Scratch: 'static> + 'static> Slot for Typed<S> {
+impl<S: Solid<Part: 'static, Scratch: 'static> + 'static> Slot for [Typed<S>; 1] {
     fn mark(&self) -> usize {
-        self.parts.len()
+        self[0].parts.len()
     }
 
     fn release(&mut self, mark: usize) {
-        self.parts.truncate(mark);
-        self.scratch.release(self.parts.last().map_or(0, |&(_, height)| height));
+        let [Typed { scratch, parts, .. }] = self;
+        parts.truncate(mark);
+        scratch.release(parts.last().map_or(0, |&(_, height)| height));
     }
 
     fn evaluations(&self) -> u64 {
-        self.scratch.evaluations()
+        self[0].scratch.evaluations()
     }
 
     fn as_any(&self) -> &dyn Any {
-        self
+        &self[0]
     }
 
     fn as_any_mut(&mut self) -> &mut dyn Any {
-        self
+        &mut self[0]
     }
 }
 
@@ -103,16 +104,18 @@ impl Scratch for ErasedScratch {
 impl ErasedScratch {
     /// The scratch memory as that of `S`. One that another kind of solid left behind is replaced: its parts
     /// mean nothing here.
-    fn typed<S: Solid<Part: 'static, Scratch: 'static> + 'static>(&mut self) -> &mut Typed<S> {
+    fn typed<S: Solid<Part: 'static, Scratch: 'static> + 'static>(&mut self) -> Result<&mut Typed<S>, Error> {
         if !self.0.as_ref().is_some_and(|slot| slot.as_any().is::<Typed<S>>()) {
-            self.0 = Some(Box::new(Typed::<S> {
-                scratch: S::Scratch::default(),
-                parts: Vec::new(),
-                passing: Vec::new(),
-            }));
+            // Some solids' memory is large from the beginning: by way of a vector it can be refused.
+            let mut slot = Vec::new();
+            slot.try_reserve_exact(1).map_err(|_| Error::OutOfMemory)?;
+            slot.push(Typed::<S> { scratch: S::Scratch::default(), parts: Vec::new(), passing: Vec::new() });
+            let slot: Box<[Typed<S>; 1]> =
+                slot.into_boxed_slice().try_into().map_err(|_| Error::OutOfMemory)?;
+            self.0 = Some(slot);
         }
         let slot = self.0.as_mut().and_then(|slot| slot.as_any_mut().downcast_mut());
-        slot.unwrap_or_else(|| unreachable!("the slot was just made for this type"))
+        Ok(slot.unwrap_or_else(|| unreachable!("the slot was just made for this type")))
     }
 
     fn part<S: Solid<Part: 'static, Scratch: 'static> + 'static>(
@@ -176,7 +179,7 @@ impl<S: Solid<Part: 'static, Scratch: 'static> + Send + 'static> Erased for S {
     }
 
     fn root(&self, scratch: &mut ErasedScratch, frame: &Frame) -> Result<Verdict<ErasedPart>, Error> {
-        let typed = scratch.typed::<S>();
+        let typed = scratch.typed::<S>()?;
         Ok(match Solid::root(self, &mut typed.scratch, frame)? {
             Verdict::Empty => Verdict::Empty,
             Verdict::Full => Verdict::Full,
@@ -192,7 +195,7 @@ impl<S: Solid<Part: 'static, Scratch: 'static> + Send + 'static> Erased for S {
         part: ErasedPart,
     ) -> Result<[Verdict<ErasedPart>; 8], Error> {
         const UNDECIDED: Verdict<ErasedPart> = Verdict::Undecided;
-        let typed = scratch.typed::<S>();
+        let typed = scratch.typed::<S>()?;
         let mut verdicts = [UNDECIDED; 8];
         let Some((part, _)) = typed.parts.get(part.0).cloned() else { return Ok(verdicts) };
         for (verdict, child) in verdicts.iter_mut().zip(Solid::split(self, &mut typed.scratch, cube, &part)?)
@@ -214,7 +217,7 @@ impl<S: Solid<Part: 'static, Scratch: 'static> + Send + 'static> Erased for S {
         part: ErasedPart,
         parts: &mut Vec<(u8, ErasedPart)>,
     ) -> Result<Planes, Error> {
-        let typed = scratch.typed::<S>();
+        let typed = scratch.typed::<S>()?;
         let Some((part, _)) = typed.parts.get(part.0).cloned() else {
             return Ok(Planes::uniform(Tag::Partial));
         };
@@ -237,7 +240,7 @@ impl<S: Solid<Part: 'static, Scratch: 'static> + Send + 'static> Erased for S {
         cube: &Cube<'_>,
         parts: &[(u8, ErasedPart)],
     ) -> Result<Option<u64>, Error> {
-        let Typed { scratch, parts: kept, passing } = scratch.typed::<S>();
+        let Typed { scratch, parts: kept, passing } = scratch.typed::<S>()?;
         passing.clear();
         passing.try_reserve(parts.len()).map_err(|_| Error::OutOfMemory)?;
         for (c, part) in parts {
@@ -254,7 +257,7 @@ impl<S: Solid<Part: 'static, Scratch: 'static> + Send + 'static> Erased for S {
         part: ErasedPart,
         block: &mut Block,
     ) -> Result<bool, Error> {
-        let typed = scratch.typed::<S>();
+        let typed = scratch.typed::<S>()?;
         match typed.parts.get(part.0).cloned() {
             Some((part, _)) => Solid::fill(self, &mut typed.scratch, cube, &part, block),
             None => Ok(false),
@@ -267,7 +270,7 @@ impl<S: Solid<Part: 'static, Scratch: 'static> + Send + 'static> Erased for S {
         cube: &Cube<'_>,
         part: ErasedPart,
     ) -> Result<Option<bool>, Error> {
-        let typed = scratch.typed::<S>();
+        let typed = scratch.typed::<S>()?;
         let Some((part, _)) = typed.parts.get(part.0).cloned() else { return Ok(None) };
         Solid::sample(self, &mut typed.scratch, cube, &part)
     }
@@ -286,7 +289,7 @@ impl<S: Solid<Part: 'static, Scratch: 'static> + Send + 'static> Erased for S {
         part: ErasedPart,
         to: &mut ErasedScratch,
     ) -> Result<ErasedPart, Error> {
-        let to = to.typed::<S>();
+        let to = to.typed::<S>()?;
         match from.part::<S>(part) {
             Some((from, part)) => {
                 let part = Solid::hand_over(self, from, part, &mut to.scratch)?;
