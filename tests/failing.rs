@@ -19,6 +19,9 @@ use leafless::{
     MeshSolid, Metadata, Octree, Polyhedron, PolyhedronArrays, Rule, Stored, Transform, TriangleMesh,
     Verdict, Zone, bounding_box, build, clearance, compact, complement, difference, file, interference_of,
     intersection, measure, resolve, union, union_of, xor,
+    AnySolid, AxisBox, Ball, Callback, Control, Error, FillRule, Frame, LazyOctree, MeshSolid, Metadata,
+    Octree, Polyhedron, PolyhedronArrays, Rule, Stored, TriangleMesh, Verdict, Zone, bounding_box, build,
+    compact, complement, difference, file, intersection, measure, resolve, union, union_of, xor,
 };
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
