@@ -239,8 +239,9 @@ pub unsafe extern "C" fn leafless_solid_interfere_many(
 
 /// The distance between two solids, as they are in the universe of a frame. The work ends when the interval is no wider
 /// than `tolerance_model` (model units), at the frame's depth, or once `max_splits` cells of both are split, with what is
-/// known by then. About twice the diagonal of a finest cell is what can be had for any solids; less may take all pairs of
-/// cells near a contact.
+/// known by then; a cell whose children are looked at again, next to another one, counts once more. About twice the
+/// diagonal of a finest cell is what can be had for any solids. The work grows with the area where the distance is about
+/// the least one, and with the distance, both measured in cells as large as the tolerance.
 ///
 /// - Buffers: `frame`, one struct; `options`, one struct or NULL; `clearance`, one struct.
 /// - Result: `*clearance`.

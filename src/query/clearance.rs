@@ -1,8 +1,13 @@
 //! How far apart are two solids?
 //!
-//! Pairs of cells, one of either solid, are taken in the order of the distance below which nothing of theirs can lie.
-//! Of a pair the larger cell that is cut is split, each cell once only however many pairs it is in. Two FULL cells
-//! bound the distance from above, and what lies further apart than the least such bound is never looked at again.
+//! Every cell of the first solid has with it those cells of the second that may be nearest to it. The cell whose nearest
+//! companion is least far away comes first: of the two the larger one that is cut is split, each cell of either solid
+//! once only however many others it is compared with. Two FULL cells bound the distance from above, and what lies further
+//! apart than the least such bound is forgotten. Such a bound is what the search begins with: by first going where the
+//! cells are small and near.
+//!
+//! (The companions make the difference to a heap of pairs: of two faces that are parallel all the pairs that lie a little
+//! askew would have to be looked at, and a cell needs its nearest companion only.)
 
 use crate::control::{Control, Job, WHOLE};
 use crate::error::Error;
@@ -12,7 +17,7 @@ use crate::octree::Tag;
 use crate::solid::{Scratch, Solid, Verdict};
 use alloc::collections::BinaryHeap;
 use alloc::vec::Vec;
-use core::cmp::Reverse;
+use core::cmp::{Ordering, Reverse};
 
 /// What is known of the distance between two solids inside of the universe of a frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -33,10 +38,12 @@ pub struct Clearance {
 
 /// The distance between `a` and `b`, each as it is in the universe of `frame`: of a solid under a placement, hand over
 /// a [`Transform`](crate::Transform). The work ends when the interval is no wider than `tolerance` (model units), at the
-/// frame's depth, or once `control.max_splits` cells of both are split, with what is known by then.
+/// frame's depth, or once `control.max_splits` cells of both are split, with what is known by then; a cell whose children
+/// are looked at again, next to another one, counts once more, because that is where the work is.
 ///
-/// About twice the diagonal of a finest cell is what can be had for any solids; less may take all pairs of cells near a
-/// contact. Memory is linear in the splits and in the pairs that are not decided. One thread.
+/// About twice the diagonal of a finest cell is what can be had for any solids. The work grows with the area where the
+/// distance is about the least one, and with the distance, both measured in cells as large as the tolerance. Memory
+/// is linear in the splits and in what is compared. One thread.
 ///
 /// # Errors
 /// [`Error::Argument`] if `tolerance` is negative or not a number; what the solids refuse; [`Error::OutOfMemory`], and
@@ -143,11 +150,6 @@ impl<'s, S: Solid> Cells<'s, S> {
         })
     }
 
-    /// Splits that asking for the children costs.
-    fn cost(&self, node: usize) -> u64 {
-        matches!(self.nodes[node].known, Known::Part(_)) as u64
-    }
-
     /// The least and the greatest coordinates, in finest cells.
     fn extent(&self, node: usize) -> ([u32; 3], [u32; 3]) {
         Cube { frame: self.frame, cell: self.nodes[node].cell }.planes()
@@ -158,14 +160,60 @@ impl<'s, S: Solid> Cells<'s, S> {
     }
 }
 
-/// A pair of nodes: the square of the least distance, in finest cells, then that of the greatest.
-type Pair = Reverse<(u64, u64, usize, usize)>;
+/// How far a cell of the second solid is from one of the first: the squares of the least distance, in finest cells, and
+/// of the greatest; and the node.
+type Companion = (u64, u64, usize);
+
+/// A cell of the first solid with those of the second that may be nearest to it.
+struct Group {
+    /// The lesser comes first; among equals, what was met later, which is finer.
+    rank: ([u64; 2], Reverse<u64>),
+    node: usize,
+    nearest: Companion,
+    companions: Vec<Companion>,
+}
+
+impl Group {
+    /// Puts it in its place by the greatest distance from its nearest companion, or the least.
+    fn rank(&mut self, diving: bool) {
+        let (least, greatest, _) = self.nearest;
+        self.rank.0 = if diving { [greatest, least] } else { [least, greatest] };
+    }
+}
+
+impl Ord for Group {
+    fn cmp(&self, other: &Self) -> Ordering {
+        // A heap has the greatest first.
+        other.rank.cmp(&self.rank)
+    }
+}
+
+impl PartialOrd for Group {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl PartialEq for Group {
+    fn eq(&self, other: &Self) -> bool {
+        self.rank == other.rank
+    }
+}
+
+impl Eq for Group {}
+
+/// Steps of the search for a first upper bound.
+const DIVE: u64 = 4096;
 
 /// What is under way.
 struct Search<'s, A: Solid, B: Solid> {
     a: Cells<'s, A>,
     b: Cells<'s, B>,
-    open: BinaryHeap<Pair>,
+    open: BinaryHeap<Group>,
+    /// Whether small cells that are near come first.
+    diving: bool,
+    /// Groups that were met.
+    met: u64,
     /// The least square of the least distance in a pair that no more will be known of.
     settled: Option<u64>,
     /// The least square of a distance that is not exceeded, and the nodes.
@@ -175,36 +223,48 @@ struct Search<'s, A: Solid, B: Solid> {
 impl<'s, A: Solid, B: Solid> Search<'s, A, B> {
     fn new(a: &'s A, b: &'s B, frame: &'s Frame) -> Result<Self, Error> {
         let (a, b) = (Cells::new(a, frame)?, Cells::new(b, frame)?);
-        let mut search = Search { a, b, open: BinaryHeap::new(), settled: None, reached: None };
+        let mut search =
+            Search { a, b, open: BinaryHeap::new(), diving: true, met: 0, settled: None, reached: None };
         if !search.a.nodes.is_empty() && !search.b.nodes.is_empty() {
-            search.meet(0, 0)?;
+            search.meet(0, [0])?;
         }
         Ok(search)
     }
 
-    fn run(&mut self, tolerance: f64, mut splits: u64, job: &Job<'_>) -> Result<(), Error> {
-        while let Some(&Reverse((least, _, a, b))) = self.open.peek() {
+    fn run(&mut self, tolerance: f64, mut left: u64, job: &Job<'_>) -> Result<(), Error> {
+        let mut dive = DIVE.min(left / 2);
+        while let Some(Group { nearest: (least, _, b), node: a, .. }) = self.open.peek() {
             job.check()?;
-            if self.is_beyond(least) || self.distance().width() <= tolerance {
+            let (least, a, b) = (*least, *a, *b);
+            if self.diving && (dive == 0 || self.reached.is_some()) {
+                self.least_first();
+                continue;
+            }
+            dive = dive.saturating_sub(1);
+            if !self.diving && (self.is_beyond(least) || self.distance(Some(least)).width() <= tolerance) {
+                break;
+            }
+            // The lower bound is what it will be, and there is no sign of an upper one.
+            if !self.diving && self.reached.is_none() && self.settled.is_some_and(|settled| settled <= least)
+            {
                 break;
             }
             // The larger one, so that neither is split without need.
             let first =
                 self.a.can_be_split(a) && (!self.b.can_be_split(b) || self.a.level(a) <= self.b.level(b));
-            let cost = if first { self.a.cost(a) } else { self.b.cost(b) };
-            if cost > splits {
+            if left == 0 {
                 break;
             }
-            splits -= cost;
-            self.open.pop();
+            left -= 1;
+            let Some(group) = self.open.pop() else { break };
+            let companions = group.companions.iter().map(|&(.., node)| node);
             if first {
                 for child in self.a.children(a)? {
-                    self.meet(child, b)?;
+                    self.meet(child, companions.clone())?;
                 }
             } else {
-                for child in self.b.children(b)? {
-                    self.meet(a, child)?;
-                }
+                let children = self.b.children(b)?;
+                self.meet(a, companions.filter(|&node| node != b).chain(children))?;
             }
         }
         Ok(())
@@ -215,33 +275,54 @@ impl<'s, A: Solid, B: Solid> Search<'s, A, B> {
         self.reached.is_some_and(|(reached, _)| least >= reached)
     }
 
-    /// Takes in a pair.
-    fn meet(&mut self, a: usize, b: usize) -> Result<(), Error> {
-        let ((low_a, high_a), (low_b, high_b)) = (self.a.extent(a), self.b.extent(b));
-        let (mut least, mut greatest) = (0, 0);
-        for axis in 0..3 {
-            let gap = low_b[axis].saturating_sub(high_a[axis]).max(low_a[axis].saturating_sub(high_b[axis]));
-            let span = high_a[axis].max(high_b[axis]) - low_a[axis].min(low_b[axis]);
-            least += gap as u64 * gap as u64;
-            greatest += span as u64 * span as u64;
+    /// Takes in a cell of the first solid with companions.
+    fn meet(&mut self, a: usize, nodes: impl IntoIterator<Item = usize>) -> Result<(), Error> {
+        let (low_a, high_a) = self.a.extent(a);
+        let (full, can_be_split) = (self.a.is_full(a), self.a.can_be_split(a));
+        let mut companions: Vec<Companion> = Vec::new();
+        for b in nodes {
+            let (low_b, high_b) = self.b.extent(b);
+            let (mut least, mut greatest) = (0, 0);
+            for axis in 0..3 {
+                let gap =
+                    low_b[axis].saturating_sub(high_a[axis]).max(low_a[axis].saturating_sub(high_b[axis]));
+                let span = high_a[axis].max(high_b[axis]) - low_a[axis].min(low_b[axis]);
+                least += gap as u64 * gap as u64;
+                greatest += span as u64 * span as u64;
+            }
+            if self.is_beyond(least) {
+                continue;
+            }
+            if full && self.b.is_full(b) {
+                self.reached = Some((least, [a, b]));
+            }
+            if can_be_split || self.b.can_be_split(b) {
+                companions.try_reserve(1).map_err(|_| Error::OutOfMemory)?;
+                companions.push((least, greatest, b));
+            } else {
+                self.settled = Some(self.settled.map_or(least, |settled| settled.min(least)));
+            }
         }
-        if self.is_beyond(least) {
-            return Ok(());
-        }
-        if self.a.is_full(a) && self.b.is_full(b) {
-            self.reached = Some((least, [a, b]));
-        }
-        if self.a.can_be_split(a) || self.b.can_be_split(b) {
+        if let Some(&nearest) = companions.iter().min() {
             self.open.try_reserve(1).map_err(|_| Error::OutOfMemory)?;
-            self.open.push(Reverse((least, greatest, a, b)));
-        } else {
-            self.settled = Some(self.settled.map_or(least, |settled| settled.min(least)));
+            let mut group = Group { rank: ([0; 2], Reverse(self.met)), node: a, nearest, companions };
+            group.rank(self.diving);
+            self.open.push(group);
+            self.met += 1;
         }
         Ok(())
     }
 
-    fn distance(&self) -> Interval {
-        let open = self.open.peek().map(|&Reverse((least, ..))| least);
+    /// Ends the search for an upper bound.
+    fn least_first(&mut self) {
+        self.diving = false;
+        let mut open = core::mem::take(&mut self.open).into_vec();
+        open.iter_mut().for_each(|group| group.rank(false));
+        self.open = open.into();
+    }
+
+    /// What is known if this is the least distance in the groups.
+    fn distance(&self, open: Option<u64>) -> Interval {
         let reached = self.reached.map(|(reached, _)| reached);
         let least = [open, self.settled, reached].into_iter().flatten().min();
         let size = self.a.frame.cell_size();
@@ -254,7 +335,7 @@ impl<'s, A: Solid, B: Solid> Search<'s, A, B> {
     fn found(self) -> Clearance {
         let frame = self.a.frame;
         Clearance {
-            distance: self.distance(),
+            distance: self.distance(self.open.iter().map(|group| group.nearest.0).min()),
             nearest: self.reached.map(|(_, [a, b])| [self.a.nodes[a].cell, self.b.nodes[b].cell]),
             splits: [self.a.splits, self.b.splits],
             evaluations: self.a.scratch.evaluations() + self.b.scratch.evaluations(),
