@@ -2,7 +2,7 @@
 
 use super::program::MOST;
 use super::{Join, Kind, Node};
-use crate::lattice::exact::sign_of_sum;
+use crate::lattice::exact::{sign_of_sum, two_product, two_sum};
 use crate::lattice::{Affine, Frame};
 use crate::octree::Tag;
 use crate::solid::Solid;
@@ -67,12 +67,18 @@ impl Extent {
         let (mut min, mut max) = ([0.0; 3], [0.0; 3]);
         for (i, row) in placement.rows().iter().enumerate() {
             let (mut least, mut most, mut size) = (row[3], row[3], row[3].abs());
+            // Where nothing is rounded; in numbers this small errors get lost.
+            let is_tellable = |c: f64| c == 0.0 || c.abs() > 1e-100;
+            let mut is_exact = low.iter().chain(&high).all(|&end| is_tellable(end));
             for axis in 0..3 {
-                let (a, b) = (row[axis] * low[axis], row[axis] * high[axis]);
-                (least, most, size) = (least + a.min(b), most + a.max(b), size + a.abs().max(b.abs()));
+                let [a, b] = [low[axis], high[axis]].map(|end| two_product(row[axis], end));
+                let (a, b) = if a.0 <= b.0 { (a, b) } else { (b, a) };
+                let (lower, upper) = (two_sum(least, a.0), two_sum(most, b.0));
+                is_exact &= [a.1, b.1, lower.1, upper.1] == [0.0; 4];
+                (least, most, size) = (lower.0, upper.0, size + a.0.abs().max(b.0.abs()));
             }
             // Each summand is rounded at most six times.
-            let error = 16.0 * f64::EPSILON * size + f64::MIN_POSITIVE;
+            let error = if is_exact { 0.0 } else { 16.0 * f64::EPSILON * size + f64::MIN_POSITIVE };
             (min[i], max[i]) = (least - error, most + error);
         }
         if min.iter().chain(&max).all(|c| c.is_finite()) { Extent::Box(min, max) } else { Extent::Unbounded }
