@@ -163,6 +163,7 @@ fn help_and_version() {
     let help = place.run("--help").good();
     let commands = [
         "voxelize",
+        "csg",
         "info",
         "verify",
         "union",
@@ -203,6 +204,10 @@ fn wrong_usage_is_one_line_and_code_2() {
         ("voxelize cube.stl -o out.lfl --depth 5 --scale inf", &["--scale", "positive"]),
         ("info cube.stl --scale nan", &["--scale", "positive"]),
         ("voxelize cube.stl -o out.lfl --depth 5 --threads -1", &["-1"]),
+        ("csg part.csg -o out.lfl", &["--depth"]),
+        ("csg part.csg --depth 5", &["--output"]),
+        ("csg part.csg -o out.lfl --depth 5 --touch hard", &["--touch", "exact", "paper"]),
+        ("csg part.csg -o out.lfl --depth 5 --bounds 1,2,3", &["--bounds", "four numbers"]),
         ("voxelize cube.stl -o out.lfl --depth 5 --threads 9999", &["--threads", "1024"]),
         ("voxelize cube.stl -o out.lfl --depth 5 --bounds 1,2,3", &["--bounds", "four numbers"]),
         ("voxelize cube.stl -o out.lfl --depth 5 --bounds 1,2,3,x", &["--bounds", "four numbers"]),
@@ -387,6 +392,76 @@ fn meshes_that_are_refused() {
     assert_eq!(place.files(), before);
     // By the even-odd rule orientation does not matter.
     place.run("voxelize turned.stl -o out.lfl --depth 4 --fill evenodd").good();
+}
+
+/// The figures that were published for the sphere, from a scene.
+#[test]
+fn a_scene_becomes_a_solid() {
+    let place = Place::new();
+    let moved = "multmatrix([[1, 0, 0, 64], [0, 1, 0, 64], [0, 0, 1, 64], [0, 0, 0, 1]])";
+    place.write(
+        "sphere.csg",
+        format!("// a ball\n{moved} {{\n\tsphere($fn = 0, $fa = 12, $fs = 2, r = 64);\n}}\n"),
+    );
+    let line = "csg sphere.csg -o sphere.lfl --depth 6 --bounds 0,0,0,128 --touch paper --json";
+    let report = place.run(line).good().json();
+    let figures = [
+        (3, 65, 557_056.0, 1_671_168.0),
+        (4, 337, 802_816.0, 1_396_736.0),
+        (5, 1497, 946_176.0, 1_250_816.0),
+        (6, 6257, 1_021_056.0, 1_174_912.0),
+    ];
+    for (level, splits, lower, upper) in figures {
+        let found = &report["levels"][level];
+        assert_eq!(found["level"], level);
+        assert_eq!((found["splits"].as_u64(), found["lower"].as_f64()), (Some(splits), Some(lower)));
+        assert_eq!(found["upper"].as_f64(), Some(upper));
+    }
+    assert_eq!(report["splits"], 6257);
+    assert!(report["evaluations"].as_u64().unwrap() > 6257);
+    assert_eq!((&report["touch"], &report["rule"]), (&"paper".into(), &"certified".into()));
+    let info = place.run("info sphere.lfl --json").good().json();
+    assert_eq!(volume(&info), (1_021_056.0, 1_174_912.0));
+    assert_eq!(info["clipped"], false);
+    assert_eq!((&info["metadata"]["name"], &info["metadata"]["touch"]), (&"sphere".into(), &"paper".into()));
+
+    // Without bounds, in words, from standard input, with files beside it.
+    place.write("cube.stl", stl(&block([1.0; 3], [3.0; 3])));
+    let scene = b"difference() { cube(4); mesh(\"cube.stl\"); octree(\"small.lfl\"); }";
+    place.run_with("csg - -o small.lfl --depth 4 --bounds 0,0,0,8", b"cube([2, 1, 1]);").good();
+    place.write("part.csg", scene);
+    let told = place.run("csg part.csg -o part.lfl --depth 5").good();
+    for word in ["certified octree of depth 5", "volume", "splits", "evaluations", "nodes", "bytes", "time"] {
+        assert!(told.text().contains(word), "{told:?}");
+    }
+    let report = place.run("csg part.csg -o part.lfl --depth 5 --bounds 0,0,0,8 --json").good().json();
+    let (lower, upper) = volume(&report);
+    assert!(lower <= 64.0 - 8.0 - 2.0 && 64.0 - 8.0 - 2.0 <= upper && upper - lower < 4.0, "{lower} {upper}");
+    let bytes = place.bytes("part.lfl");
+    for threads in [1, 3] {
+        place.run(&format!("csg part.csg -o part.lfl --depth 5 --bounds 0,0,0,8 --threads {threads}")).good();
+        assert_eq!(place.bytes("part.lfl"), bytes);
+    }
+    let inner =
+        place.run("csg sphere.csg -o inner.lfl --depth 4 --bounds 0,0,0,128 --rule inner --json").good();
+    assert_eq!(volume(&inner.json()), (802_816.0, 802_816.0));
+
+    // What is wrong with scenes.
+    let before = place.files();
+    place.write("bad.csg", "group() {\n  cube(size = [1, 2]);\n}\n");
+    place.run("csg bad.csg -o out.lfl --depth 4").bad(1, &["bad.csg: line 2, column 15: expected 3 items"]);
+    place.write("bad.csg", "halfspace([1, 0, 0, 0]);");
+    place.run("csg bad.csg -o out.lfl --depth 4").bad(1, &["bad.csg", "--bounds"]);
+    place.write("bad.csg", "\n mesh(\"none.stl\");");
+    place.run("csg bad.csg -o out.lfl --depth 4").bad(1, &["bad.csg: line 2, column 7: none.stl: "]);
+    place.run("csg part.lfl -o out.lfl --depth 4").bad(1, &["part.lfl", "a solid already"]);
+    place.run("csg part.csg -o part.csg --depth 4").bad(1, &["part.csg", "not overwritten"]);
+    place.run("csg none.csg -o out.lfl --depth 4").bad(1, &["none.csg"]);
+    std::fs::remove_file(place.path("bad.csg")).unwrap();
+    assert_eq!(place.files(), before);
+    // A scene that sticks out is told of.
+    let out = place.run("csg sphere.csg -o out.lfl --depth 4 --bounds 0,0,0,100");
+    assert!(out.code == Some(0) && out.errors.contains("outside of the bounds"), "{out:?}");
 }
 
 #[test]

@@ -138,7 +138,8 @@ fn stand_in<'a>(
     (min, max): ([f64; 3], [f64; 3]),
     placements: impl Iterator<Item = &'a Affine>,
 ) -> Result<Csg, Error> {
-    placed(Csg::everything().within(min, max), placements)
+    // Only its bounds count, and that those of its complement are not known.
+    placed(Csg::half_space([1.0, 0.0, 0.0], 0.0)?.within(min, max), placements)
 }
 
 fn mesh_leaf<'a>(
