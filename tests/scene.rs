@@ -292,6 +292,8 @@ fn bounds() {
     assert_eq!(of("rotate_extrude() square([4, 5]);"), Some(([-4.0, -4.0, 0.0], [4.0, 4.0, 5.0])));
     assert_eq!(of("difference() { cube(4); halfspace([1, 0, 0, 0]); }"), Some(([0.0; 3], [4.0; 3])));
     assert_eq!(of("intersection() { halfspace([1, 0, 0, 0]); cube(4); }"), Some(([0.0; 3], [4.0; 3])));
+    let tetrahedron = "polyhedron([[0, 0, 0], [4, 0, 0], [0, 5, 0], [0, 0, 6]], [[0, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]]);";
+    assert_eq!(of(&format!("difference() {{ cube(4); {tetrahedron} }}")), Some(([0.0; 3], [4.0; 3])));
     assert_eq!(of("halfspace([1, 0, 0, 0]);"), None);
     assert_eq!(of(""), None);
     let tetrahedron = "polyhedron([[0, 0, 0], [4, 0, 0], [0, 5, 0], [0, 0, 6]], [[0, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]]);";
@@ -302,6 +304,215 @@ fn bounds() {
         assert!((min[axis] - [-5.0, 0.0, 1.0][axis]).abs() < 1e-12, "{min:?}");
         assert!((max[axis] - [0.0, 4.0, 7.0][axis]).abs() < 1e-12, "{max:?}");
     }
+}
+
+// ---- random scenes against an evaluation of their points --------------------------------------------------
+
+/// A figure, or a solid, as a tree.
+enum Shape {
+    Square([f64; 2]),
+    Disc(f64),
+    Polygon(Vec<[f64; 2]>),
+    Cube([f64; 3]),
+    Ball(f64),
+    Frustum(f64, [f64; 2]),
+    Torus([f64; 2]),
+    HalfSpace([f64; 4]),
+    Prism { of: Box<Shape>, height: f64, scale: [f64; 2], lean: f64 },
+    Turned { of: Box<Shape>, angle: f64, start: f64 },
+    Placed([[f64; 4]; 3], Box<Shape>),
+    Joined(&'static str, Vec<Shape>),
+}
+
+impl Shape {
+    fn text(&self) -> String {
+        match self {
+            Shape::Square([x, y]) => format!("square([{x}, {y}], center = true);"),
+            Shape::Disc(r) => format!("circle(r = {r});"),
+            Shape::Polygon(points) => format!("polygon(points = {points:?}, paths = undef);"),
+            Shape::Cube(size) => format!("cube({size:?}, center = true);"),
+            Shape::Ball(r) => format!("sphere(r = {r});"),
+            Shape::Frustum(h, [a, b]) => format!("cylinder(h = {h}, r1 = {a}, r2 = {b});"),
+            Shape::Torus([major, minor]) => format!("torus({major}, {minor});"),
+            Shape::HalfSpace(plane) => format!("halfspace({plane:?});"),
+            Shape::Prism { of, height, scale, lean } => {
+                let v = [*lean, 0.0, 1.0];
+                format!("linear_extrude(height = {height}, scale = {scale:?}, v = {v:?}) {}", of.text())
+            }
+            Shape::Turned { of, angle, start } => {
+                format!("rotate_extrude(angle = {angle}, start = {start}) {}", of.text())
+            }
+            Shape::Placed([x, y, z], of) => {
+                format!("multmatrix([{x:?}, {y:?}, {z:?}, [0, 0, 0, 1]]) {}", of.text())
+            }
+            Shape::Joined(name, parts) => {
+                format!("{name}() {{ {} }}", parts.iter().map(Shape::text).collect::<String>())
+            }
+        }
+    }
+
+    /// Whether a point is inside, in rounded arithmetic.
+    fn holds(&self, p: [f64; 3]) -> bool {
+        let [x, y, z] = p;
+        match self {
+            Shape::Square([a, b]) => x.abs() <= a / 2.0 && y.abs() <= b / 2.0,
+            Shape::Disc(r) => x.hypot(y) <= *r,
+            Shape::Polygon(points) => {
+                let mut inside = false;
+                for (i, a) in points.iter().enumerate() {
+                    let b = points[(i + 1) % points.len()];
+                    let crosses = (a[1] > y) != (b[1] > y);
+                    inside ^= crosses && x < (b[0] - a[0]) * (y - a[1]) / (b[1] - a[1]) + a[0];
+                }
+                inside
+            }
+            Shape::Cube(size) => (0..3).all(|axis| p[axis].abs() <= size[axis] / 2.0),
+            Shape::Ball(r) => x.hypot(y).hypot(z) <= *r,
+            Shape::Frustum(h, [a, b]) => (0.0..=*h).contains(&z) && x.hypot(y) <= a + (b - a) * z / h,
+            Shape::Torus([major, minor]) => (x.hypot(y) - major).hypot(z) <= *minor,
+            Shape::HalfSpace([a, b, c, d]) => a * x + b * y + c * z + d >= 0.0,
+            Shape::Prism { of, height, scale, lean } => {
+                let [a, b] = scale.map(|scale| 1.0 + (scale - 1.0) * z / height);
+                (0.0..=*height).contains(&z) && of.holds([(x - lean * z) / a, y / b, 0.0])
+            }
+            Shape::Turned { of, angle, start } => {
+                let from = if *angle < 0.0 { start + angle } else { *start };
+                let turn = (y.atan2(x).to_degrees() - from).rem_euclid(360.0);
+                turn <= angle.abs() && of.holds([x.hypot(y), z, 0.0])
+            }
+            Shape::Placed(rows, of) => {
+                let [a, b, c] = rows.map(|row| [row[0], row[1], row[2]]);
+                let cross = |u: [f64; 3], v: [f64; 3]| {
+                    [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]]
+                };
+                let columns = [cross(b, c), cross(c, a), cross(a, b)];
+                let determinant: f64 = (0..3).map(|k| a[k] * columns[0][k]).sum();
+                let q = [x - rows[0][3], y - rows[1][3], z - rows[2][3]];
+                of.holds([0, 1, 2].map(|k| (0..3).map(|i| columns[i][k] * q[i]).sum::<f64>() / determinant))
+            }
+            Shape::Joined("intersection", parts) => parts.iter().all(|part| part.holds(p)),
+            Shape::Joined("difference", parts) => {
+                parts[0].holds(p) && !parts[1..].iter().any(|part| part.holds(p))
+            }
+            Shape::Joined(_, parts) => parts.iter().any(|part| part.holds(p)),
+        }
+    }
+
+    /// Numbers with one decimal, hardly any of them a double.
+    fn number(random: &mut Random, low: f64, high: f64) -> f64 {
+        let tenths = ((high - low) * 10.0) as usize + 1;
+        ((low * 10.0).round() + random.below(tenths) as f64) / 10.0
+    }
+
+    fn joined(random: &mut Random, depth: u32, part: fn(&mut Random, u32) -> Shape) -> Shape {
+        let name = ["union", "intersection", "difference"][random.below(3)];
+        Shape::Joined(name, (0..1 + random.below(3)).map(|_| part(random, depth - 1)).collect())
+    }
+
+    /// A placement whose dump has six digits, as OpenSCAD writes it.
+    fn placed(random: &mut Random, is_flat: bool, of: Shape) -> Shape {
+        let number = |random: &mut Random, low, high| Self::number(random, low, high);
+        let (sin, cos) = number(random, -3.1, 3.1).sin_cos();
+        let [sin, cos] = [sin, cos].map(|c| (c * 1e6).round() / 1e6);
+        let scale = if random.below(3) == 0 { number(random, 0.5, 1.5) } else { 1.0 };
+        let t = [0; 3].map(|_| number(random, -2.0, 2.0));
+        let rows = match random.below(if is_flat { 1 } else { 3 }) {
+            0 => [[scale * cos, -sin, 0.0, t[0]], [scale * sin, cos, 0.0, t[1]], [0.0, 0.0, 1.0, t[2]]],
+            1 => [[scale, 0.0, 0.0, t[0]], [0.0, cos, -sin, t[1]], [0.0, sin, cos, t[2]]],
+            _ => [[cos, 0.3, sin, t[0]], [0.0, scale, 0.2, t[1]], [-sin, 0.0, cos, t[2]]],
+        };
+        Shape::Placed(rows, Box::new(of))
+    }
+
+    fn figure(random: &mut Random, depth: u32) -> Shape {
+        let number = |random: &mut Random, low, high| Self::number(random, low, high);
+        match random.below(if depth == 0 { 4 } else { 8 }) {
+            0 => Shape::Square([number(random, 1.0, 6.0), number(random, 1.0, 6.0)]),
+            1 => Shape::Disc(number(random, 0.5, 4.0)),
+            // Around the origin, and so simple.
+            2 | 3 => {
+                let n = 3 + random.below(8);
+                let corner = |i: usize| {
+                    let (sin, cos) = (i as f64 * std::f64::consts::TAU / n as f64).sin_cos();
+                    let radius = number(random, 1.0, 5.0);
+                    [radius * cos, radius * sin].map(|c| (c * 100.0).round() / 100.0)
+                };
+                Shape::Polygon((0..n).map(corner).collect())
+            }
+            4 | 5 => {
+                let of = Self::figure(random, depth - 1);
+                Self::placed(random, true, of)
+            }
+            _ => Self::joined(random, depth, Self::figure),
+        }
+    }
+
+    /// A figure on the right side of the y axis.
+    fn profile(random: &mut Random, depth: u32) -> Shape {
+        let number = |random: &mut Random, low, high| Self::number(random, low, high);
+        let (x, y) = (number(random, 3.0, 5.0), number(random, -2.0, 2.0));
+        let moved = |scale: f64| [[scale, 0.0, 0.0, x], [0.0, scale, 0.0, y], [0.0, 0.0, 1.0, 0.0]];
+        let of = match random.below(if depth == 0 { 3 } else { 5 }) {
+            0 => Shape::Disc(number(random, 0.5, 2.0)),
+            1 => Shape::Square([number(random, 0.5, 4.0), number(random, 0.5, 4.0)]),
+            2 => Shape::Polygon(vec![[-2.1, 0.3], [0.2, -1.7], [1.9, 0.1], [0.4, 0.2], [-0.3, 2.2]]),
+            _ => return Self::joined(random, depth, Self::profile),
+        };
+        Shape::Placed(moved(number(random, 0.7, 1.3)), Box::new(of))
+    }
+
+    fn solid(random: &mut Random, depth: u32) -> Shape {
+        let number = |random: &mut Random, low, high| Self::number(random, low, high);
+        match random.below(if depth == 0 { 8 } else { 13 }) {
+            0 => Shape::Cube([0; 3].map(|_| number(random, 1.0, 7.0))),
+            1 => Shape::Ball(number(random, 1.0, 5.0)),
+            2 => {
+                Shape::Frustum(number(random, 1.0, 6.0), [number(random, 0.1, 4.0), number(random, 0.0, 4.0)])
+            }
+            3 => Shape::Torus([number(random, 1.5, 4.0), number(random, 0.5, 2.0)]),
+            4 => Shape::HalfSpace([0; 4].map(|_| number(random, 0.1, 2.0))),
+            5 | 6 => {
+                let of = Box::new(Self::figure(random, depth));
+                let uniform = number(random, 0.0, 1.5);
+                let scale = if random.below(2) == 0 { [1.0; 2] } else { [uniform; 2] };
+                Shape::Prism { of, height: number(random, 1.0, 5.0), scale, lean: number(random, -1.0, 1.0) }
+            }
+            7 => {
+                let of = Box::new(Self::profile(random, depth));
+                let angle = if random.below(3) == 0 { 360.0 } else { number(random, -350.0, 350.0) + 0.01 };
+                Shape::Turned { of, angle, start: number(random, -90.0, 90.0) }
+            }
+            8 | 9 => {
+                let of = Self::solid(random, depth - 1);
+                Self::placed(random, false, of)
+            }
+            _ => Self::joined(random, depth, Self::solid),
+        }
+    }
+}
+
+#[test]
+fn points_never_contradict_cells() {
+    let frame = Frame::new([-8.0; 3], 16.0, 5).unwrap();
+    let mut random = Random(11);
+    let (mut decided, mut inside, mut asked) = (0, 0, 0);
+    for _ in 0..400 {
+        let shape = Shape::solid(&mut random, 3);
+        let text = shape.text();
+        let tree = tree(&text, &frame);
+        for _ in 0..2000 {
+            let point = [0; 3].map(|_| (random.next() >> 11) as f64 / (1u64 << 53) as f64 * 16.0 - 8.0);
+            asked += 1;
+            let answer = tree.contains(point);
+            if answer != Membership::Undecided {
+                decided += 1;
+                inside += usize::from(answer == Membership::Inside);
+                assert_eq!(answer == Membership::Inside, shape.holds(point), "{point:?}: {text}");
+            }
+        }
+    }
+    // It tries something.
+    assert!(decided > asked * 3 / 4 && inside > asked / 50, "{decided} and {inside} of {asked}");
 }
 
 // ---- files and meshes ---------------------------------------------------------------------------------------
