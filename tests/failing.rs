@@ -366,6 +366,23 @@ fn operations(directory: &Path) -> Vec<(&'static str, Operation)> {
     }
     let polygons = polygons();
     operation!("read polygons", [polygons], file::read_obj(polygons.as_bytes()));
+    #[cfg(feature = "scene")]
+    {
+        let text: String = (0..40)
+            .map(|i| format!("multmatrix([[1,0,0,{i}],[0,1,0,0],[0,0,1,0],[0,0,0,1]]) sphere(r = 0.3);\n"))
+            .chain((0..3).map(|i| {
+                let points: String = (0..60).map(|k| format!("[{k}, {}], ", k * k + i)).collect();
+                format!("linear_extrude(height = 1) polygon(points = [{points}], paths = undef);\n")
+            }))
+            .chain([
+                "polyhedron([[0,0,0],[4,0,0],[0,4,0],[0,0,4]], [[0,1,2],[0,3,1],[0,2,3],[1,3,2]]);".into()
+            ])
+            .collect();
+        let scene = file::read_scene(&text, None).unwrap();
+        operation!("read a scene", [text], file::read_scene(&text, None));
+        operation!("solid of a scene", [scene], scene.solid(&Frame::new([0.0; 3], 64.0, 3)?));
+        operation!("bounds of a scene", [scene], scene.bounds());
+    }
     operation!("union", [a, b], union(a.view(), b.view(), &CONTROL));
     operation!("intersection", [a, b], intersection(a.view(), b.view(), &CONTROL));
     operation!("difference", [coded, binary], difference(coded.view(), binary.view(), &CONTROL));
