@@ -504,6 +504,19 @@ fn contact_decides() {
     // Of 8 × 8 × 2 cells the 16 in the hole, which touches the circle of radius 1, stay outside only where that
     // leaves a whole cell out.
     assert!(cells[0].upper <= 16.0 && cells[0].lower >= 0.0, "{cells:?}");
+    // Moved by less than floating point can tell, it reaches into the cells above.
+    for (up, expected) in [(0.0, Membership::Outside), (2f64.powi(-60), Membership::Undecided)] {
+        let moved = torus.placed(&Affine::translation([0.0, 0.0, up]).unwrap()).unwrap();
+        let tree = built(&moved, &Frame::new([-2.0; 3], 4.0, 3).unwrap());
+        assert_eq!(tree.contains([1.25, 0.75, 0.75]), expected, "{up}");
+    }
+    // The tip of a spindle, in the middle of a cell's face.
+    for (down, expected) in [(0.0, Membership::Inside), (-2f64.powi(-60), Membership::Undecided)] {
+        let moved = Affine::translation([0.5, 0.5, down]).unwrap();
+        let spindle = Csg::torus(1.5, 2.5).unwrap().placed(&moved).unwrap();
+        let tree = built(&spindle, &Frame::new([-4.0; 3], 8.0, 3).unwrap());
+        assert_eq!(tree.contains([0.5, 0.5, 1.5]), expected, "{down}");
+    }
     let spindle = volume_on_lattice(Csg::torus(0.5, 1.0).unwrap(), 3);
     assert!(spindle.lower > 0.0, "no hollow core: {spindle:?}");
     // The inner circle passes through (3, 4) and (5, 0) exactly.

@@ -178,8 +178,8 @@ impl PlacedPowers {
     }
 
     /// Bounds where the axes are mixed. As each term depends on one quantity u alone, its remainder after the
-    /// linear part of Taylor's formula about the centre has its extremes at the ends of u's range, at the centre,
-    /// and, of odd powers, opposite the centre.
+    /// linear part of Taylor's formula about the centre has its extremes at the centre and at the ends of u's range.
+    /// (That of an odd power has one more, opposite the centre, which the farther end exceeds.)
     fn bounds(&self, at: &Octants) -> Sides {
         let (halves, reach) = at.centres();
         let ranges = halves.map(|centre| {
@@ -205,11 +205,6 @@ impl PlacedPowers {
                 let rests = [(at_low - there) + step, (at_high - there) - step];
                 let (mut floor, mut ceiling) =
                     (zero.fast_min(rests[0]).fast_min(rests[1]), zero.fast_max(rests[0]).fast_max(rests[1]));
-                if odd {
-                    let within = splat(2.0) * middle.abs();
-                    let opposite = within.simd_le(spread).select((n + n - splat(2.0)) * there, zero);
-                    (floor, ceiling) = (floor.fast_min(opposite), ceiling.fast_max(opposite));
-                }
                 // The term itself.
                 let (mut bottom, mut top) = (at_low.fast_min(at_high), at_low.fast_max(at_high));
                 if !odd {
@@ -225,8 +220,8 @@ impl PlacedPowers {
                 for axis in 0..3 {
                     slopes[axis] += weight * slope * splat(line.c[axis]);
                 }
-                // With e the error of the line, which more than makes up for roundings relative to it, no part is off by
-                // more than some n² (n² e) |u|^(n − 1).
+                // With e the error of the line, which is more than the roundings of u, and |u| at its greatest, all parts
+                // together are off by less than 17 n² e |u|^(n − 1).
                 let farthest = middle.abs() + spread + splat(line.error);
                 let share = 32.0 * (*exponent as f64) * (*exponent as f64) * line.error;
                 error += (weight * splat(share)).abs() * power(farthest, exponent - 1);
