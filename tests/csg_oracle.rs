@@ -2,6 +2,8 @@
 
 mod common;
 
+#[path = "../fuzz/bodies/csg.rs"]
+mod any_bytes;
 #[path = "csg/exactness.rs"]
 mod exactness;
 #[path = "csg/extremes.rs"]
@@ -128,4 +130,29 @@ fn sampled(models: u64, make: impl Fn(&mut Maker<'_>) -> Model) {
 fn samples_are_exact() {
     sampled(150, |maker| maker.primitive());
     sampled(120, |maker| maker.expression(2));
+}
+
+/// What the fuzz target does, on inputs that are the same every time.
+fn any_bytes(count: u64) {
+    for seed in 0..count {
+        let mut random = Random(seed);
+        let length = 1 + random.below(120) as usize;
+        // Mostly moderate numbers.
+        let mut byte = || if random.below(20) == 0 { random.below(256) } else { 40 + random.below(100) };
+        let data: Vec<u8> = (0..length).map(|_| byte() as u8).collect();
+        // A thread that fails says what it was given.
+        let result = std::panic::catch_unwind(|| any_bytes::csg(&data));
+        assert!(result.is_ok(), "input {seed}: {data:?}");
+    }
+}
+
+#[test]
+fn any_bytes_are_expressions() {
+    any_bytes(400);
+}
+
+#[test]
+#[ignore = "minutes"]
+fn more_bytes_are_expressions() {
+    any_bytes(100_000);
 }

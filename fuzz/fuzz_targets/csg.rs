@@ -1,0 +1,18 @@
+//! Any bytes as expressions of half-spaces, against exact arithmetic.
+#![no_main]
+
+#[path = "../bodies/csg.rs"]
+mod csg;
+#[allow(dead_code)]
+#[path = "../../tests/common/exact.rs"]
+mod exact;
+#[allow(dead_code)]
+#[path = "../../tests/csg/model.rs"]
+mod model;
+
+/// Where the test suite has it.
+mod common {
+    pub use crate::exact;
+}
+
+libfuzzer_sys::fuzz_target!(|data: &[u8]| csg::csg(data));
