@@ -19,9 +19,6 @@ use leafless::{
     MeshSolid, Metadata, Octree, Polyhedron, PolyhedronArrays, Rule, Stored, Transform, TriangleMesh,
     Verdict, Zone, bounding_box, build, clearance, compact, complement, difference, file, interference_of,
     intersection, measure, resolve, union, union_of, xor,
-    AnySolid, AxisBox, Ball, Callback, Control, Error, FillRule, Frame, LazyOctree, MeshSolid, Metadata,
-    Octree, Polyhedron, PolyhedronArrays, Rule, Stored, TriangleMesh, Verdict, Zone, bounding_box, build,
-    compact, complement, difference, file, intersection, measure, resolve, union, union_of, xor,
 };
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
@@ -398,11 +395,11 @@ fn operations(directory: &Path) -> Vec<(&'static str, Operation)> {
     operation!("statistics", [a], complement(a.view(), &CONTROL).map(|tree| tree.statistics()));
     operation!("measure", [], measure(&Ball::new([15.0; 3], 9.0)?, &frame(), 0.0, &CONTROL));
     operation!("measure a mesh", [closed], {
-        let solid = AnySolid::new(MeshSolid::new(closed, &frame(), FillRule::NonZero)?);
+        let solid = AnySolid::new(MeshSolid::new(closed.clone(), &frame(), FillRule::NonZero)?);
         measure(&solid, &frame(), 0.0, &CONTROL)
     });
     operation!("bounding box", [closed], {
-        let solid = AnySolid::new(MeshSolid::new(closed, &frame(), FillRule::NonZero)?);
+        let solid = AnySolid::new(MeshSolid::new(closed.clone(), &frame(), FillRule::NonZero)?);
         bounding_box(&solid, &frame(), 0.0, &CONTROL)
     });
     operation!("to bytes", [b], file::to_bytes(&b.with_metadata(facts())));
