@@ -400,6 +400,11 @@ fn operations(directory: &Path) -> Vec<(&'static str, Operation)> {
     });
     operation!("bounding box", [closed], {
         let solid = AnySolid::new(MeshSolid::new(closed.clone(), &frame(), FillRule::NonZero)?);
+        let solid = MeshSolid::new(closed.clone(), &frame(), FillRule::NonZero)?;
+        measure(&solid, &frame(), 0.0, &CONTROL)
+    });
+    operation!("bounding box", [closed], {
+        let solid = MeshSolid::new(closed.clone(), &frame(), FillRule::NonZero)?;
         bounding_box(&solid, &frame(), 0.0, &CONTROL)
     });
     operation!("to bytes", [b], file::to_bytes(&b.with_metadata(facts())));

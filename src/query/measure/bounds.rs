@@ -192,7 +192,8 @@ fn farthest(
         let root = sqrt(w * (q - 2.0 * c * p + c * c * w));
         let excess = m - c * v + 0.5 * (about + root);
         let step = excess / (v + 0.5 * w + 0.5 * w * about / root);
-        if !(step.abs() > 1e-12 * (1.0 + c.abs())) || !(c + step).is_finite() {
+        let is_worth_it = step.abs() > 1e-12 * (1.0 + c.abs());
+        if !is_worth_it || !(c + step).is_finite() {
             break;
         }
         c += step;
