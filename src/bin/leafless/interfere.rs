@@ -5,7 +5,8 @@ use crate::input::Input;
 use crate::mesh::Reading;
 use crate::output::{self, count, interval, number};
 use crate::report::Volume;
-use crate::source::Source;
+use crate::source::{Corners, Source};
+use crate::voxelize::bounds;
 use clap::Args;
 use leafless::{
     Affine, AnySolid, Clearance, Control, Cube, Error, Frame, Interference, Interval, Overlap, clearance,
@@ -23,19 +24,22 @@ use std::fmt::Write;
 /// infinite (null in JSON).
 #[derive(Args)]
 pub struct Arguments {
-    /// First solid (.lfl) or mesh (STL, OBJ, PLY, OFF, 3MF), or `-` for standard input
+    /// First solid (.lfl), mesh (STL, OBJ, PLY, OFF, 3MF) or scene (.csg), or `-` for standard input
     #[arg(value_name = "A")]
     a: OsString,
-    /// Second solid or mesh
+    /// Second solid, mesh or scene
     #[arg(value_name = "B")]
     b: OsString,
     /// Where the second solid is moved to first: the rows of the matrix [M | t], 12 numbers, or 16 with a last row
     /// 0 0 0 1, in brackets or not
     #[arg(long, value_name = "MATRIX", value_parser = matrix, allow_hyphen_values = true)]
     place_b: Option<Affine>,
-    /// Levels to look at, 1 to 20. Without it: as many as the first solid has, or 10 for a mesh
+    /// Levels to look at, 1 to 20. Without it: as many as the first solid has, or 10 for a mesh or scene
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=leafless::MAX_DEPTH as i64))]
     depth: Option<u8>,
+    /// Lower corner and edge length of the cube to look at. Without it: the cube around both
+    #[arg(long, value_name = "X0,Y0,Z0,EDGE", value_parser = bounds, allow_hyphen_values = true)]
+    bounds: Option<Frame>,
     /// Cells to split at most, for each of the three answers
     #[arg(long, value_name = "N", default_value_t = 100_000)]
     splits: u64,
@@ -97,7 +101,13 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let [a, b] = &inputs;
     let placement = arguments.place_b.unwrap_or(Affine::IDENTITY);
     let (first, second) = (Source::read(a, &arguments.reading)?, Source::read(b, &arguments.reading)?);
-    let frame = common_frame(&first, &second, &placement, arguments.depth).of(a)?;
+    let frame = match &arguments.bounds {
+        Some(bounds) => bounds.with_depth(arguments.depth.unwrap_or(10)).of(a)?,
+        None => {
+            let both = (first.bounds(a)?, second.bounds(b)?);
+            common_frame(first.own_frame(), both, &placement, arguments.depth).of(a)?
+        }
+    };
     let (first, second) =
         (first.placed(a, &Affine::IDENTITY, &frame)?, second.placed(b, &placement, &frame)?);
     let control = Control { max_splits: Some(arguments.splits), ..Control::default() };
@@ -108,9 +118,12 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 /// The cube that holds both: of a solid its own, as often doubled as it takes, so that its cells stay whole.
-fn common_frame(a: &Source, b: &Source, placement: &Affine, depth: Option<u8>) -> Result<Frame, Error> {
-    let (mut min, mut max) = a.bounds();
-    let (low, high) = b.bounds();
+fn common_frame(
+    own: Option<&Frame>,
+    ((mut min, mut max), (low, high)): (Corners, Corners),
+    placement: &Affine,
+    depth: Option<u8>,
+) -> Result<Frame, Error> {
     for k in 0..8 {
         let corner = placement.apply([0, 1, 2].map(|axis| if k >> axis & 1 == 0 { low } else { high }[axis]));
         for axis in 0..3 {
@@ -118,7 +131,7 @@ fn common_frame(a: &Source, b: &Source, placement: &Affine, depth: Option<u8>) -
             max[axis] = max[axis].max(corner[axis]);
         }
     }
-    let Some(own) = a.own_frame() else { return Frame::around(min, max, depth.unwrap_or(10)) };
+    let Some(own) = own else { return Frame::around(min, max, depth.unwrap_or(10)) };
     let mut frame = match depth {
         Some(depth) => own.with_depth(depth)?,
         None => *own,

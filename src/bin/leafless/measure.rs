@@ -7,7 +7,7 @@ use crate::output::{self, count, interval};
 use crate::progress::watched;
 use crate::report::Volume;
 use crate::source::Source;
-use crate::voxelize::threads;
+use crate::voxelize::{bounds, threads};
 use clap::Args;
 use leafless::{
     Affine, Control, Extent, Frame, Interval, MAX_DEPTH, Measured, Measures, bounding_box, measure,
@@ -20,10 +20,10 @@ use std::fmt::Write;
 /// volume is known well enough. All numbers are intervals that hold the true ones.
 ///
 /// A solid from a file (.lfl) knows no more about its undecided cells, so its own bounds are told, as well as it was
-/// made; a mesh is split as deep as it takes.
+/// made; a mesh or a scene is split as deep as it takes.
 #[derive(Args)]
 pub struct Arguments {
-    /// Solid (.lfl) or mesh (STL, OBJ, PLY, OFF, 3MF), or `-` for standard input
+    /// Solid (.lfl), mesh (STL, OBJ, PLY, OFF, 3MF) or scene (.csg), or `-` for standard input
     file: OsString,
     /// How wide the interval of the volume may be, relative to its middle; 0 goes on to the depth. Without it: 0.01, or 0
     /// if --splits is given
@@ -32,9 +32,12 @@ pub struct Arguments {
     /// Cells to split at most
     #[arg(long, value_name = "N")]
     splits: Option<u64>,
-    /// Deepest level to split to, 1 to 20. Without it: as deep as the solid is, or 20 for a mesh
+    /// Deepest level to split to, 1 to 20. Without it: as deep as the solid is, or 20 for a mesh or scene
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=MAX_DEPTH as i64))]
     depth: Option<u8>,
+    /// Lower corner and edge length of the cube to measure in, for a mesh or scene. Without it: the cube around it
+    #[arg(long, value_name = "X0,Y0,Z0,EDGE", value_parser = bounds, allow_hyphen_values = true)]
+    bounds: Option<Frame>,
     #[command(flatten)]
     reading: Reading,
     /// Threads to use; 0: as many as there are processors. The result is the same
@@ -102,12 +105,23 @@ struct Report {
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let input = Input::from(&*arguments.file);
     let source = Source::read(&input, &arguments.reading)?;
-    let (min, max) = source.bounds();
+    if let (Some(_), Some(_)) = (source.own_frame(), &arguments.bounds) {
+        return Err(Failure::Usage("--bounds is for meshes and scenes: a solid has its own".into()));
+    }
     let is_stored = source.own_frame().is_some();
     let frame = match (source.own_frame(), arguments.depth) {
         (Some(frame), None) => Ok(*frame),
         (Some(frame), Some(depth)) => frame.with_depth(depth),
-        (None, depth) => Frame::around(min, max, depth.unwrap_or(MAX_DEPTH)),
+        (None, depth) => {
+            let depth = depth.unwrap_or(MAX_DEPTH);
+            match &arguments.bounds {
+                Some(bounds) => bounds.with_depth(depth),
+                None => {
+                    let (min, max) = source.bounds(&input)?;
+                    Frame::around(min, max, depth)
+                }
+            }
+        }
     };
     let frame = frame.of(&input)?;
     let solid = source.placed(&input, &Affine::IDENTITY, &frame)?;

@@ -23,10 +23,13 @@ pub fn frame_of(input: &Input, scene: &Scene, bounds: Option<&Frame>, depth: u8)
     if let Some(bounds) = bounds {
         return bounds.with_depth(depth).of(input);
     }
-    match scene.bounds().of(input)? {
-        Some((min, max)) => Frame::around(min, max, depth).of(input),
-        None => {
-            Err(Failure::of(input, "is empty, or reaches nobody knows how far: give --bounds X0,Y0,Z0,EDGE"))
-        }
-    }
+    let (min, max) = bounds_of(input, scene)?;
+    Frame::around(min, max, depth).of(input)
+}
+
+/// Corners of a box around a scene.
+pub fn bounds_of(input: &Input, scene: &Scene) -> Result<([f64; 3], [f64; 3]), Failure> {
+    scene.bounds().of(input)?.ok_or_else(|| {
+        Failure::of(input, "is empty, or reaches nobody knows how far: give --bounds X0,Y0,Z0,EDGE")
+    })
 }

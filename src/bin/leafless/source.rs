@@ -3,9 +3,14 @@
 use crate::failure::{Failure, Of};
 use crate::input::Input;
 use crate::mesh::{Reading, openness};
+use crate::model::{bounds_of, read_scene};
 use crate::output;
-use leafless::file::MeshFormat;
+use leafless::file::{MeshFormat, Scene};
 use leafless::{Affine, AnySolid, FillRule, Frame, MeshSolid, Octree, Transform, TriangleMesh, file};
+use std::path::Path;
+
+/// Of a box, the lower and the upper one.
+pub type Corners = ([f64; 3], [f64; 3]);
 
 /// What was read.
 pub enum Source {
@@ -13,6 +18,8 @@ pub enum Source {
     Octree(Octree),
     /// A mesh, and which points count as inside.
     Mesh(TriangleMesh, FillRule),
+    /// A scene.
+    Scene(Scene),
 }
 
 impl Source {
@@ -20,6 +27,13 @@ impl Source {
     pub fn read(input: &Input, reading: &Reading) -> Result<Source, Failure> {
         if input.begins_as_solid() {
             return Ok(Source::Octree(input.octree(true)?.0));
+        }
+        if input
+            .path()
+            .and_then(Path::extension)
+            .is_some_and(|extension| extension.eq_ignore_ascii_case("csg"))
+        {
+            return Ok(Source::Scene(read_scene(input)?.0));
         }
         let bytes = input.read()?;
         if bytes.starts_with(&file::MAGIC) {
@@ -43,19 +57,20 @@ impl Source {
     pub fn own_frame(&self) -> Option<&Frame> {
         match self {
             Source::Octree(octree) => Some(octree.frame()),
-            Source::Mesh(..) => None,
+            Source::Mesh(..) | Source::Scene(_) => None,
         }
     }
 
-    /// Corners of what is around the solid: its universe, or the bounds of the mesh.
-    pub fn bounds(&self) -> ([f64; 3], [f64; 3]) {
-        match self {
+    /// Corners of what is around the solid: its universe, or the bounds of the mesh or the scene.
+    pub fn bounds(&self, input: &Input) -> Result<Corners, Failure> {
+        Ok(match self {
             Source::Octree(octree) => {
                 let frame = octree.frame();
                 (frame.origin(), frame.origin().map(|low| low + frame.edge()))
             }
             Source::Mesh(mesh, _) => mesh.bounds(),
-        }
+            Source::Scene(scene) => bounds_of(input, scene)?,
+        })
     }
 
     /// The solid under a placement, to be asked about cells of `frame`. A mesh is moved by its vertices, so that nothing
@@ -72,6 +87,10 @@ impl Source {
             Source::Mesh(mesh, fill) => {
                 let mesh = if placement.is_identity() { mesh } else { mesh.placed(placement).of(input)? };
                 AnySolid::new(MeshSolid::new(mesh, frame, fill).of(input)?)
+            }
+            Source::Scene(scene) => {
+                let scene = scene.placed(placement).of(input)?;
+                AnySolid::new(scene.solid(frame).of(input)?)
             }
         })
     }

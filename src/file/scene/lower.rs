@@ -6,7 +6,7 @@ use alloc::vec::Vec;
 use super::grammar::push;
 use super::{Node, Scene};
 use crate::error::Error;
-use crate::lattice::exact::{two_product, two_sum};
+use crate::lattice::exact::two_sum;
 use crate::lattice::{Affine, Frame, MAX_DEPTH};
 use crate::octree::Octree;
 use crate::solid::{AnySolid, Csg, FillRule, MeshSolid, Transform, TriangleMesh};
@@ -26,13 +26,23 @@ impl Scene {
 
     /// The solid, to be asked on this frame. Solids of scenes without meshes and octrees can be asked on any.
     ///
-    /// Under a placement that is not exact for the coordinates of a mesh, and for octrees under any, verdicts blur by
-    /// about a cell: see [`Transform`].
+    /// Verdicts of octrees under a placement blur by about a cell: see [`Transform`].
     ///
     /// # Errors
     /// As [`MeshSolid::new`]; [`Error::OutOfMemory`].
     pub fn solid(&self, frame: &Frame) -> Result<Csg, Error> {
         self.lower(Some(frame))
+    }
+
+    /// The scene moved as a whole.
+    ///
+    /// # Errors
+    /// [`Error::OutOfMemory`].
+    pub fn placed(mut self, placement: &Affine) -> Result<Scene, Error> {
+        if let Some(whole) = self.nodes.len().checked_sub(1) {
+            push(&mut self.nodes, Node::Placed(whole, *placement))?;
+        }
+        Ok(self)
     }
 
     /// The solid; without a frame boxes take the place of meshes and octrees.
@@ -149,18 +159,23 @@ fn mesh_leaf<'a>(
     frame: Option<&Frame>,
 ) -> Result<Csg, Error> {
     let Some(frame) = frame else { return stand_in(mesh.bounds(), placements) };
-    // As long as nothing is rounded, the vertices are placed.
+    // By how much its vertices are rounded, the mesh knows.
     let mut mesh = mesh.clone();
-    let mut placements = placements.peekable();
-    while let Some(exact) = placements.peek().and_then(|placement| exact_image(&mesh, fill, placement)) {
-        mesh = exact?;
-        placements.next();
+    for placement in placements {
+        mesh = Arc::new(mesh.placed(placement)?);
     }
-    let bounds = mesh.bounds();
-    let is_closed = mesh.check_closed(fill).is_ok();
-    let own = if placements.peek().is_some() { own_frame(bounds, frame)? } else { *frame };
-    let solid = AnySolid::new(MeshSolid::new(mesh, &own, fill)?);
-    leaf(solid, is_closed, bounds, &own, placements, frame)
+    let ((min, max), is_closed) = (outer_bounds(&mesh), mesh.check_closed(fill).is_ok());
+    let csg = Csg::solid(AnySolid::new(MeshSolid::new(mesh, frame, fill)?));
+    Ok(if is_closed { csg.within(min, max) } else { csg })
+}
+
+/// The bounds of a mesh, and of all that it may stand for.
+fn outer_bounds(mesh: &TriangleMesh) -> Corners {
+    let ((min, max), off) = (mesh.bounds(), mesh.displacement());
+    if off == 0.0 {
+        return (min, max);
+    }
+    (min.map(|c| (c - off).next_down()), max.map(|c| (c + off).next_up()))
 }
 
 fn octree_leaf<'a>(
@@ -217,36 +232,4 @@ fn own_frame((min, max): Corners, frame: &Frame) -> Result<Frame, Error> {
     let own = Frame::around(min, max, 1)?;
     let fits = |&depth: &u8| own.edge() / f64::from(1u32 << depth) <= frame.cell_size();
     own.with_depth((1..=MAX_DEPTH).find(fits).unwrap_or(MAX_DEPTH))
-}
-
-/// The mesh under a placement, if that can be had without rounding.
-fn exact_image(
-    mesh: &TriangleMesh,
-    fill: FillRule,
-    placement: &Affine,
-) -> Option<Result<Arc<TriangleMesh>, Error>> {
-    // A mirrored mesh is inside out.
-    let keeps_sides = fill != FillRule::Positive || placement.orientation() > 0;
-    let is_exact =
-        keeps_sides && mesh.vertices().iter().all(|&vertex| exact_point(placement, vertex).is_some());
-    is_exact
-        .then(|| mesh.transformed(|vertex| exact_point(placement, vertex).unwrap_or(vertex)).map(Arc::new))
-}
-
-/// The image of a point, if no operation is rounded.
-fn exact_point(placement: &Affine, point: [f64; 3]) -> Option<[f64; 3]> {
-    let mut image = [0.0; 3];
-    for (coordinate, row) in image.iter_mut().zip(placement.rows()) {
-        let mut sum = row[3];
-        for axis in 0..3 {
-            let (product, product_error) = two_product(row[axis], point[axis]);
-            let (next, sum_error) = two_sum(sum, product);
-            if product_error != 0.0 || sum_error != 0.0 {
-                return None;
-            }
-            sum = next;
-        }
-        *coordinate = sum;
-    }
-    Some(image)
 }
