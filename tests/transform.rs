@@ -6,8 +6,8 @@ mod common;
 use common::exact::Exact;
 use common::{Dense, Random, alone, lattice_frame, positions, shapes};
 use leafless::{
-    Affine, AnySolid, AxisBox, Ball, Cell, Control, Csg, Cube, Error, Frame, Octree, Rule, Solid, Tag,
-    Transform, Verdict, build,
+    Affine, AnySolid, AxisBox, Ball, Cell, Control, Csg, Cube, Error, Frame, LazyOctree, Octree, Rule, Solid,
+    Tag, Transform, Verdict, Zone, build,
 };
 use proptest::prelude::*;
 use std::f64::consts::PI;
@@ -398,6 +398,40 @@ fn extreme_numbers_prove_nothing_wrong() {
                 assert!(exact.agrees(to, at, tree.view().tag_at(at)), "{at:?} {from:?} {to:?}");
             }
         }
+    }
+}
+
+/// Planes of the frame lie next to planes of the solid's lattice, so near that sums of their coordinates are rounded.
+#[test]
+fn what_rounds_is_not_taken_for_exact() {
+    let size = 256.0 - 2f64.powi(-32);
+    let origin = 2f64.powi(14) - (2f64.powi(28) - 2f64.powi(-12));
+    let frame = Frame::new([origin; 3], size * 2f64.powi(20), 20).unwrap();
+    let own = Frame::new([0.0; 3], 2f64.powi(14), 14).unwrap();
+    for j in 1..64 {
+        let max = [16384.0 - 256.0 * (j - 1) as f64, 16384.0, 16384.0];
+        let solid = Transform::new(AxisBox::new([0.0; 3], max).unwrap(), &own, &Affine::IDENTITY);
+        let at = [(1 << 20) - j; 3];
+        let middle = origin + (at[0] as f64 + 0.5) * size;
+        let mut lazy = LazyOctree::new(&solid, &frame).unwrap();
+        lazy.refine(&Zone::Point([middle; 3]), 20, &alone()).unwrap();
+        let tag = lazy.tag(Cell { level: 20, at });
+        let exact = Placed::new(&Affine::IDENTITY, [0.0; 3], max);
+        assert!(exact.agrees(&frame, at, tag), "{j}: {tag:?}");
+    }
+}
+
+#[test]
+fn centres_on_the_faces_of_the_own_universe_are_decided() {
+    let own = Frame::new([0.0; 3], 1.0, 4).unwrap();
+    let cube = AxisBox::new([0.0; 3], [1.0; 3]).unwrap();
+    let mirror = Affine::new([[-1.0, 0.0, 0.0, 1.0], [0.0, -1.0, 0.0, 1.0], [0.0, 0.0, 1.0, 0.0]]).unwrap();
+    // All the cells at the cube's surface have their centres on it.
+    let frame = Frame::new([-0.5625; 3], 2.0, 4).unwrap();
+    for placement in [Affine::IDENTITY, mirror] {
+        let tree = build(&Transform::new(cube, &own, &placement), &frame, Rule::Sampled, &alone()).unwrap();
+        let truth = build(&cube, &frame, Rule::Sampled, &alone()).unwrap();
+        assert_eq!(Dense::of(tree.view()), Dense::of(truth.view()), "{placement:?}");
     }
 }
 

@@ -1,7 +1,7 @@
 //! Boxes of one lattice as seen from another.
 
 use crate::lattice::exact::{floor, sqrt, two_product};
-use crate::lattice::{Affine, Cube, Frame};
+use crate::lattice::{Affine, Cube, Frame, MAX_DEPTH};
 use crate::solid::exact::Expansion;
 
 /// From the lattice of one frame to that of another, in finest cells: u = linear · k + offset.
@@ -34,8 +34,7 @@ impl LatticeMap {
                 let entry = linear[i][j] * step / cell;
                 map.linear[i][j] = entry;
                 reach += entry.abs() * from.cells() as f64;
-                exact &= is_short(entry * from.cells() as f64)
-                    && two_product(entry, cell) == (linear[i][j] * step, 0.0);
+                exact &= two_product(entry, cell) == (linear[i][j] * step, 0.0);
                 offset += linear[i][j] * (from.origin()[j] - before[j]);
                 size += linear[i][j].abs() * (from.origin()[j].abs() + before[j].abs());
             }
@@ -65,7 +64,8 @@ impl LatticeMap {
         let offset = sum.estimate() / to.cell_size();
         let (product, error) = two_product(offset, to.cell_size());
         self.offset[i] = offset;
-        is_short(offset) && sum.minus(&Expansion::sum([error, product])).sign() == 0
+        let span = self.linear[i].iter().map(|entry| entry.abs()).sum::<f64>() * from.cells() as f64;
+        are_sums_exact(span, offset) && sum.minus(&Expansion::sum([error, product])).sign() == 0
     }
 
     /// The box around the image of a cube with this corner and edge (or half of both) of the source lattice, without
@@ -124,12 +124,28 @@ impl LatticeMap {
     }
 }
 
-/// Whether sums and halves of a few such numbers are doubles: at most 2^28, and a multiple of 2^-12.
-fn is_short(value: f64) -> bool {
-    const GRAIN: f64 = 4096.0;
-    let steps = value * GRAIN;
-    value.abs() <= (1u64 << 28) as f64 && steps == floor(steps) as f64
+/// Whether all coordinates of the images of cells are doubles, and of their halves, where the universe's image spans
+/// `span` cells: they are multiples of a power of two, and smaller than 2^53 of it. That does not depend on the depth.
+fn are_sums_exact(span: f64, offset: f64) -> bool {
+    const STEP: f64 = 1.0 / (2u64 << MAX_DEPTH) as f64;
+    const MOST: f64 = (1u64 << 53) as f64;
+    let grain = lowest_bit(span * STEP).min(lowest_bit(offset));
+    span + offset.abs() <= MOST * grain
 }
+
+/// The largest power of two that a number is a multiple of.
+fn lowest_bit(x: f64) -> f64 {
+    if x == 0.0 {
+        return f64::INFINITY;
+    }
+    // Without its last bit it is a double, too, and so is the difference.
+    let bits = x.abs().to_bits();
+    let without = if bits & MANTISSA == 0 { 0 } else { bits & (bits - 1) };
+    x.abs() - f64::from_bits(without)
+}
+
+/// The bits of a double that say nothing of its magnitude.
+const MANTISSA: u64 = (1 << 52) - 1;
 
 /// Both ways between the lattice of a frame and that of the solid.
 #[derive(Debug, Clone, Copy)]
@@ -284,6 +300,10 @@ pub(super) struct Point<'m> {
 impl Point<'_> {
     /// Whether it may lie beyond the universe of this many cells, as a bit.
     pub(super) fn reaches_beyond(&self, cells: f64) -> u8 {
+        if self.map.is_exact() {
+            // What no cell holds: of the universe's faces, too, the shift decides.
+            return (self.touched([0.0; 3], cells) == 0) as u8;
+        }
         !(0..3).all(|axis| {
             let (x, error) = (self.at[axis], self.map.error[axis]);
             x - error >= 0.0 && x + error <= cells
@@ -310,7 +330,6 @@ impl Target for Point<'_> {
 
 /// Whether a matrix has one entry a row, and that a power of two. (It is not singular.)
 fn is_monomial(linear: &[[f64; 3]; 3]) -> bool {
-    const MANTISSA: u64 = (1 << 52) - 1;
     linear.iter().all(|row| {
         let mut entries = row.iter().filter(|&&c| c != 0.0);
         entries.next().is_some_and(|c| c.to_bits() & MANTISSA == 0) && entries.next().is_none()
