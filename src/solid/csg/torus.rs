@@ -17,6 +17,9 @@ pub(super) struct Torus {
     pub(super) shift: Dyadic,
 }
 
+/// As good as on the axis: 2^-400.
+const NEAR: f64 = f64::from_bits((1023 - 400) << 52);
+
 /// A torus on a universe, in its own space times something positive. With ρ² = x² + y²,
 /// f = minor² − (ρ − major)² − z² = 2 major ρ − (ρ² + z² + gap).
 pub(super) struct PlacedTorus {
@@ -119,8 +122,8 @@ impl PlacedTorus {
         let rho = roots(x * x + y * y);
         let off = rho - splat(self.major);
         let value = splat(self.square) - off * off - z * z;
-        // On the axis any direction will do for the tangent, and none.
-        let share = rho.simd_gt(zero).select(off / rho, zero);
+        // On the axis any direction will do for the tangent, and none; nearby squares lose the direction's length.
+        let share = rho.simd_gt(splat(NEAR)).select(off / rho, zero);
         let (slope_x, slope_y) = (x * share, y * share);
         let slopes = [0, 1, 2].map(|axis| {
             let [a, b, c] = self.lines.each_ref().map(|line| splat(line.c[axis]));
@@ -232,6 +235,7 @@ fn roots(values: f64x4) -> f64x4 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::lattice::Cell;
 
     #[test]
     fn signs_with_roots() {
@@ -241,5 +245,23 @@ mod tests {
         assert_eq!(of(3.0, -1.0, 9.0f64.next_up()), -1);
         assert_eq!((of(0.0, -1.0, 2.0), of(1.0, -1.0, 0.0), of(0.0, 1.0, 0.0)), (-1, 1, 0));
         assert_eq!((of(1.0, 1.0, 2.0), of(-1.0, -1.0, 2.0)), (1, -1));
+    }
+
+    #[test]
+    fn as_near_to_the_axis_as_squares_underflow() {
+        // The centre of cell (300, 300, 200) lies on z = ½ and 1.2 · 2^-536 off the axis; x and z change together.
+        let [u, w] = [300.5, 200.5].map(|i| i / 512.0);
+        let (steep, flat) = (77.0 / 32.0, 2f64.powi(-10));
+        let rows = [
+            [1.0, -1.0, 0.0, 1.2 * 2f64.powi(-536)],
+            [0.0, 0.0, 1.0, -w],
+            [flat + steep, flat - steep, 0.0, 0.5 - 2.0 * flat * u],
+        ];
+        let map = ExactMap { rows: rows.map(|row| row.map(Dyadic::new)), w: Dyadic::new(1.0) };
+        let [major, square, scale, shift] = [1.0, 1.25 + 6e-5, 1.0, 0.0].map(Dyadic::new);
+        let torus = PlacedTorus::new(&Torus { major, square, scale, shift }, &map);
+        assert_eq!(torus.sign_at([301.0, 300.0, 200.0].map(|i| i / 512.0)), -1);
+        let parent = Cell { level: 8, at: [150, 150, 100] };
+        assert_eq!(torus.sides(&Octants::of(parent)).inside & 1, 0, "with a corner outside");
     }
 }
