@@ -13,6 +13,9 @@ use alloc::sync::Arc;
 type Value = dyn Fn([f64; 3]) -> Result<f64, Error> + Send + Sync;
 type Range = dyn Fn([f64; 3], [f64; 3]) -> Result<Interval, Error> + Send + Sync;
 
+/// The exponent of the least double: nothing finer is exact.
+const LOWEST: i64 = -1074;
+
 /// A function of the host, by its values at points and its ranges over boxes.
 pub(super) struct Host {
     pub(super) value: Box<Value>,
@@ -44,6 +47,7 @@ impl PlacedHost {
             let grain =
                 exact.iter().filter_map(Dyadic::grain).min().unwrap_or(0) - (frame.depth() as i64 + 1);
             let is_exact = exact_divisor
+                && grain >= LOWEST
                 && exact.iter().all(|c| c.exactly().is_some())
                 && size.is_finite()
                 && Dyadic::new(size).magnitude().is_none_or(|m| m + 1 - grain <= 53);
