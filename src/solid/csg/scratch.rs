@@ -212,7 +212,8 @@ impl CsgScratch {
     ) -> Result<Cells, Error> {
         let (kleene, somewhere) = self.verdicts(program, part, at, ask)?;
         let mut cells = Cells { kleene, parts: [CsgPart::HOPELESS; 8] };
-        for k in (0..8).filter(|k| kleene.partial() >> k & 1 != 0) {
+        let open = kleene.partial() & at.all();
+        for k in (0..8).filter(|k| open >> k & 1 != 0) {
             let unchanged = self.answers.is_empty() && somewhere >> k & 1 == 0;
             cells.parts[k as usize] = if unchanged { part } else { self.reduced(part, k)? };
         }
