@@ -3,8 +3,8 @@
 //! Every cell of the first solid has with it those cells of the second that may be nearest to it. The cell whose nearest
 //! companion is least far away comes first: of the two the larger one that is cut is split, each cell of either solid
 //! once only however many others it is compared with. Two FULL cells bound the distance from above, and what lies further
-//! apart than the least such bound is forgotten. Such a bound is what the search begins with: by first going where the
-//! cells are small and near.
+//! apart than the least such bound is forgotten. Such a bound is what the search begins with, and ends with if its budget
+//! does: by going where the cells are small and near.
 //!
 //! (The companions make the difference to a heap of pairs: of two faces that are parallel all the pairs that lie a little
 //! askew would have to be looked at, and a cell needs its nearest companion only.)
@@ -231,34 +231,60 @@ impl<'s, A: Solid, B: Solid> Search<'s, A, B> {
         Ok(search)
     }
 
-    fn run(&mut self, tolerance: f64, mut left: u64, job: &Job<'_>) -> Result<(), Error> {
-        let mut dive = DIVE.min(left / 2);
-        while let Some(Group { nearest: (least, _, b), node: a, .. }) = self.open.peek() {
-            job.check()?;
-            let (least, a, b) = (*least, *a, *b);
-            if self.diving && (dive == 0 || self.reached.is_some()) {
-                self.least_first();
-                continue;
-            }
-            dive = dive.saturating_sub(1);
-            if !self.diving && (self.is_beyond(least) || self.distance(Some(least)).width() <= tolerance) {
-                break;
-            }
-            // The lower bound is what it will be, and there is no sign of an upper one.
-            if !self.diving && self.reached.is_none() && self.settled.is_some_and(|settled| settled <= least)
-            {
-                break;
-            }
-            // The larger one, so that neither is split without need.
-            let first =
-                self.a.can_be_split(a) && (!self.b.can_be_split(b) || self.a.level(a) <= self.b.level(b));
-            if left == 0 {
+    fn run(&mut self, tolerance: f64, budget: u64, job: &Job<'_>) -> Result<(), Error> {
+        let reserve = if budget == u64::MAX { 0 } else { budget / 8 };
+        let mut left = budget;
+        for _ in 0..DIVE.min(budget / 4) {
+            if self.reached.is_some() || !self.step(job)? {
                 break;
             }
             left -= 1;
-            let Some(group) = self.open.pop() else { break };
-            let companions = group.companions.iter().map(|&(.., node)| node);
-            if first {
+        }
+        self.order(false);
+        while let Some(least) = self.open.peek().map(|group| group.nearest.0) {
+            // The lower bound may be what it will be without a sign of an upper one.
+            let hopeless = self.reached.is_none() && self.settled.is_some_and(|settled| settled <= least);
+            if hopeless || self.is_beyond(least) || self.distance(Some(least)).width() <= tolerance {
+                break;
+            }
+            if left <= reserve {
+                return self.finish(tolerance, least, left, job);
+            }
+            self.step(job)?;
+            left -= 1;
+        }
+        Ok(())
+    }
+
+    /// What remains goes into the upper bound, while the lower one stays.
+    fn finish(&mut self, tolerance: f64, least: u64, left: u64, job: &Job<'_>) -> Result<(), Error> {
+        self.order(true);
+        for _ in 0..left {
+            if self.distance(Some(least)).width() <= tolerance || !self.step(job)? {
+                break;
+            }
+        }
+        Ok(())
+    }
+
+    /// Puts small cells that are near first, or those that may be least far away.
+    fn order(&mut self, diving: bool) {
+        self.diving = diving;
+        let mut open = core::mem::take(&mut self.open).into_vec();
+        open.iter_mut().for_each(|group| group.rank(diving));
+        self.open = open.into();
+    }
+
+    /// Splits a cell of the first group; false if there is none.
+    fn step(&mut self, job: &Job<'_>) -> Result<bool, Error> {
+        job.check()?;
+        while let Some(Group { node: a, nearest: (least, _, b), companions, .. }) = self.open.pop() {
+            if self.is_beyond(least) {
+                continue;
+            }
+            let companions = companions.iter().map(|&(.., node)| node);
+            // The larger one, so that neither is split without need.
+            if self.a.can_be_split(a) && (!self.b.can_be_split(b) || self.a.level(a) <= self.b.level(b)) {
                 for child in self.a.children(a)? {
                     self.meet(child, companions.clone())?;
                 }
@@ -266,8 +292,9 @@ impl<'s, A: Solid, B: Solid> Search<'s, A, B> {
                 let children = self.b.children(b)?;
                 self.meet(a, companions.filter(|&node| node != b).chain(children))?;
             }
+            return Ok(true);
         }
-        Ok(())
+        Ok(false)
     }
 
     /// Whether nothing at this distance can lower the upper bound.
@@ -311,14 +338,6 @@ impl<'s, A: Solid, B: Solid> Search<'s, A, B> {
             self.met += 1;
         }
         Ok(())
-    }
-
-    /// Ends the search for an upper bound.
-    fn least_first(&mut self) {
-        self.diving = false;
-        let mut open = core::mem::take(&mut self.open).into_vec();
-        open.iter_mut().for_each(|group| group.rank(false));
-        self.open = open.into();
     }
 
     /// What is known if this is the least distance in the groups.
