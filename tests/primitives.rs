@@ -32,7 +32,7 @@ fn pow(base: &Exact, n: u32) -> Exact {
         _ => {
             let half = pow(base, n / 2);
             let even = half.times(&half);
-            if n % 2 == 0 { even } else { even.times(base) }
+            if n.is_multiple_of(2) { even } else { even.times(base) }
         }
     }
 }

@@ -195,6 +195,7 @@ impl HalfSpace {
 }
 
 /// A half-space on a universe: f in unit coordinates, times something positive.
+#[allow(clippy::large_enum_variant)] // Nearly all are quadrics, which are not worth a step more.
 pub(super) enum Placed {
     Quadric(Quadric),
     Powers(Box<PlacedPowers>),

@@ -9,6 +9,8 @@ use crate::lattice::exact::sqrt;
 use alloc::vec::Vec;
 
 type Plane = ([f64; 3], f64);
+/// The lower and the upper corner of a box.
+type Corners = ([f64; 3], [f64; 3]);
 
 /// Most steps of the simplex method: some ten are usual.
 const MOST_STEPS: usize = 1000;
@@ -30,7 +32,7 @@ fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
 ///
 /// # Errors
 /// [`Error::OutOfMemory`].
-pub(super) fn box_around(planes: &[Plane]) -> Result<Option<([f64; 3], [f64; 3])>, Error> {
+pub(super) fn box_around(planes: &[Plane]) -> Result<Option<Corners>, Error> {
     // Unit normals, and offsets up to one.
     let mut rows: Vec<Plane> = Vec::new();
     rows.try_reserve_exact(planes.len() + 3).map_err(|_| Error::OutOfMemory)?;
@@ -78,7 +80,7 @@ fn best_planes(rows: &[Plane], direction: [f64; 3]) -> Option<[usize; 3]> {
         let height = |row: &Plane| dot(row.0, corner) + row.1;
         let lowest = (0..rows.len()).min_by(|&a, &b| height(&rows[a]).total_cmp(&height(&rows[b])))?;
         let size = 1.0 + dot(corner.map(f64::abs), [1.0; 3]);
-        if !(height(&rows[lowest]) < -NOTHING * size) {
+        if height(&rows[lowest]) >= -NOTHING * size {
             return Some(basis);
         }
         // The plane enters; the one leaves whose share, −dual · direction, is used up first.
