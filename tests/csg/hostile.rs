@@ -14,7 +14,7 @@ fn soon<T>(work: impl FnOnce() -> T) -> T {
     let start = Instant::now();
     let result = work();
     let taken = start.elapsed();
-    assert!(taken < Duration::from_secs(30), "{taken:?}");
+    assert!(taken < Duration::from_secs(120), "{taken:?}");
     result
 }
 
