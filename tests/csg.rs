@@ -1,8 +1,8 @@
 //! Constructive solid geometry: the published tables.
 
 use leafless::{
-    AnySolid, AxisBox, Cell, Control, Csg, Cube, Error, Frame, HalfSpace, Rule, Scratch, Solid, Tag, Touch,
-    Verdict, build,
+    Affine, AnySolid, AxisBox, Cell, Control, Csg, Cube, Error, Frame, HalfSpace, Interval, Rule, Scratch,
+    Solid, Tag, Touch, Transform, Verdict, build,
 };
 
 /// Cells that were split above each level and the volumes of FULL, and of FULL and PARTIAL cells, of a full descent.
@@ -176,4 +176,26 @@ fn what_is_known_around_the_universe() {
     }
     let octree = build(&other, &frame, Rule::Certified, &Control::default()).unwrap();
     assert!(octree.view().exterior() == Tag::Empty);
+}
+
+#[test]
+fn solids_within_each_other_have_an_end() {
+    let frame = Frame::new([0.0; 3], 4.0, 3).unwrap();
+    let nested = |times: u32| {
+        let innermost = AnySolid::new(AxisBox::new([1.0; 3], [2.0; 3]).unwrap());
+        let place = |solid: AnySolid| AnySolid::new(Transform::new(solid, &frame, &Affine::IDENTITY));
+        Csg::solid((1..times).fold(innermost, |solid, _| place(solid)))
+    };
+    let volume = |solid: &Csg| {
+        build(solid, &frame, Rule::Certified, &Control::default()).map(|tree| tree.statistics().volume())
+    };
+    assert_eq!(volume(&nested(64)).unwrap(), Interval::exactly(1.0));
+    assert!(matches!(volume(&nested(65)), Err(Error::Limit { limit: 64, .. })));
+    assert!(matches!(volume(&nested(20_000)), Err(Error::Limit { limit: 64, .. })));
+    // An expression of expressions is one.
+    let mut csg = nested(1);
+    for _ in 0..20_000 {
+        csg = Csg::solid(AnySolid::new(csg));
+    }
+    assert_eq!((csg.nesting(), volume(&csg).unwrap()), (1, Interval::exactly(1.0)));
 }

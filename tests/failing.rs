@@ -395,11 +395,6 @@ fn operations(directory: &Path) -> Vec<(&'static str, Operation)> {
     operation!("statistics", [a], complement(a.view(), &CONTROL).map(|tree| tree.statistics()));
     operation!("measure", [], measure(&Ball::new([15.0; 3], 9.0)?, &frame(), 0.0, &CONTROL));
     operation!("measure a mesh", [closed], {
-        let solid = AnySolid::new(MeshSolid::new(closed.clone(), &frame(), FillRule::NonZero)?);
-        measure(&solid, &frame(), 0.0, &CONTROL)
-    });
-    operation!("bounding box", [closed], {
-        let solid = AnySolid::new(MeshSolid::new(closed.clone(), &frame(), FillRule::NonZero)?);
         let solid = MeshSolid::new(closed.clone(), &frame(), FillRule::NonZero)?;
         measure(&solid, &frame(), 0.0, &CONTROL)
     });

@@ -9,7 +9,7 @@ use super::status::leafless_status;
 use crate::error::Error;
 use crate::lattice::Cell;
 use crate::query::{Clearance, Interference, Overlap, clearance, interference, interference_of};
-use crate::solid::Transform;
+use crate::solid::{MOST_NESTED, Solid, Transform};
 use alloc::vec::Vec;
 
 /// Whether the interiors of two solids have points in common.
@@ -134,7 +134,7 @@ impl From<&Clearance> for leafless_clearance {
 ///   one pointer.
 /// - Result: `*solid`.
 /// - Errors: LEAFLESS_E_ARGUMENT as leafless_frame_check, or if an entry is neither 0 nor of a magnitude between 2^-64
-///   and 2^64, or M is singular. Asking the result returns LEAFLESS_E_FRAME if `operand` belongs to another frame than
+///   and 2^64, or M is singular; LEAFLESS_E_LIMIT if too many transforms lie within each other. Asking the result returns LEAFLESS_E_FRAME if `operand` belongs to another frame than
 ///   `own`.
 /// - Ownership: the operand is shared and may be freed; give `*solid` back with leafless_solid_free.
 /// - Threads: any.
@@ -153,6 +153,11 @@ pub unsafe extern "C" fn leafless_solid_new_transform(
         let operand = &shared(operand, "operand")?.solid;
         let own = frame_of(own, "own")?;
         let placement = placement(matrix)?;
+        if operand.nesting() >= MOST_NESTED {
+            return Err(
+                Error::Limit { what: "transforms within each other", limit: MOST_NESTED.into() }.into()
+            );
+        }
         let solid = out(solid, "solid")?;
         solid.write(give(Transform::new(operand.clone(), &own, &placement)))
     })

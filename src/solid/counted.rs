@@ -91,6 +91,10 @@ impl<S: Solid> Solid for Counted<S> {
         self.solid.exterior(frame)
     }
 
+    fn nesting(&self) -> u32 {
+        self.solid.nesting()
+    }
+
     fn fingerprint(&self) -> Option<Fingerprint> {
         self.solid.fingerprint()
     }

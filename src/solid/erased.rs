@@ -12,9 +12,15 @@ use alloc::sync::Arc;
 use alloc::vec::Vec;
 use core::any::Any;
 
+/// Most solids within each other; see [`Solid::nesting`].
+pub(crate) const MOST_NESTED: u32 = 64;
+
 /// Any solid, shared. Costs an indirect call a split.
 #[derive(Clone)]
-pub struct AnySolid(Arc<dyn Erased>);
+pub struct AnySolid {
+    solid: Arc<dyn Erased>,
+    nesting: u32,
+}
 
 /// A part of an [`AnySolid`]: its place among the parts that the scratch memory keeps.
 #[derive(Debug, Clone, Copy)]
@@ -27,12 +33,13 @@ pub struct ErasedScratch(Option<Box<dyn Slot>>);
 impl AnySolid {
     /// Wraps a solid.
     pub fn new<S: Solid<Part: 'static, Scratch: 'static> + Send + 'static>(solid: S) -> AnySolid {
-        AnySolid(Arc::new(solid))
+        let nesting = solid.nesting().saturating_add(1);
+        AnySolid { solid: Arc::new(solid), nesting }
     }
 
     /// The solid behind the type, if it is of this one.
     pub fn get<S: Any>(&self) -> Option<&S> {
-        self.0.as_any().downcast_ref()
+        self.solid.as_any().downcast_ref()
     }
 }
 
@@ -306,7 +313,10 @@ impl Solid for AnySolid {
     type Scratch = ErasedScratch;
 
     fn root(&self, scratch: &mut ErasedScratch, frame: &Frame) -> Result<Verdict<ErasedPart>, Error> {
-        self.0.root(scratch, frame)
+        if self.nesting > MOST_NESTED {
+            return Err(Error::Limit { what: "solids within each other", limit: MOST_NESTED.into() });
+        }
+        self.solid.root(scratch, frame)
     }
 
     fn split(
@@ -315,7 +325,7 @@ impl Solid for AnySolid {
         cube: &Cube<'_>,
         part: &ErasedPart,
     ) -> Result<[Verdict<ErasedPart>; 8], Error> {
-        self.0.split(scratch, cube, *part)
+        self.solid.split(scratch, cube, *part)
     }
 
     fn split64(
@@ -325,7 +335,7 @@ impl Solid for AnySolid {
         part: &ErasedPart,
         parts: &mut Vec<(u8, ErasedPart)>,
     ) -> Result<Planes, Error> {
-        self.0.split64(scratch, cube, *part, parts)
+        self.solid.split64(scratch, cube, *part, parts)
     }
 
     fn sample64(
@@ -334,7 +344,7 @@ impl Solid for AnySolid {
         cube: &Cube<'_>,
         parts: &[(u8, ErasedPart)],
     ) -> Result<Option<u64>, Error> {
-        self.0.sample64(scratch, cube, parts)
+        self.solid.sample64(scratch, cube, parts)
     }
 
     fn fill(
@@ -344,7 +354,7 @@ impl Solid for AnySolid {
         part: &ErasedPart,
         block: &mut Block,
     ) -> Result<bool, Error> {
-        self.0.fill(scratch, cube, *part, block)
+        self.solid.fill(scratch, cube, *part, block)
     }
 
     fn sample(
@@ -353,15 +363,19 @@ impl Solid for AnySolid {
         cube: &Cube<'_>,
         part: &ErasedPart,
     ) -> Result<Option<bool>, Error> {
-        self.0.sample(scratch, cube, *part)
+        self.solid.sample(scratch, cube, *part)
     }
 
     fn exterior(&self, frame: &Frame) -> Tag {
-        self.0.exterior(frame)
+        self.solid.exterior(frame)
+    }
+
+    fn nesting(&self) -> u32 {
+        self.nesting
     }
 
     fn fingerprint(&self) -> Option<Fingerprint> {
-        self.0.fingerprint()
+        self.solid.fingerprint()
     }
 
     fn hand_over(
@@ -370,6 +384,6 @@ impl Solid for AnySolid {
         part: &ErasedPart,
         to: &mut ErasedScratch,
     ) -> Result<ErasedPart, Error> {
-        self.0.hand_over(from, *part, to)
+        self.solid.hand_over(from, *part, to)
     }
 }

@@ -21,6 +21,8 @@ pub use counted::Counted;
 pub use csg::{Csg, CsgPart, CsgScratch, HalfSpace, Touch};
 #[cfg(feature = "scene")]
 pub(crate) use csg::{Figure, wedge};
+#[cfg(feature = "capi")]
+pub(crate) use erased::MOST_NESTED;
 pub use erased::{AnySolid, ErasedPart, ErasedScratch};
 pub use fingerprint::{Fingerprint, Fingerprinter};
 pub(crate) use mesh::FacetWelder;
@@ -200,6 +202,13 @@ pub trait Solid: Sync {
         Tag::Partial
     }
 
+    /// How many [`AnySolid`]s lie within each other here: 0 for a solid that consists of no others. Questions go from
+    /// one to the next, so that there is an end to what the stack holds: an [`AnySolid`] with more than 64 within each
+    /// other has no [root](Self::root).
+    fn nesting(&self) -> u32 {
+        0
+    }
+
     /// What tells this solid from others: two with the same fingerprint give the same verdicts. `None`, the default,
     /// if nothing does; then an octree that was refined on demand cannot be taken up again with it.
     fn fingerprint(&self) -> Option<Fingerprint> {
@@ -283,6 +292,10 @@ impl<S: Solid> Solid for &S {
 
     fn hand_over(&self, from: &S::Scratch, part: &S::Part, to: &mut S::Scratch) -> Result<S::Part, Error> {
         (**self).hand_over(from, part, to)
+    }
+
+    fn nesting(&self) -> u32 {
+        (**self).nesting()
     }
 
     fn fingerprint(&self) -> Option<Fingerprint> {

@@ -34,7 +34,7 @@ pub use scratch::{CsgPart, CsgScratch};
 
 use crate::error::Error;
 use crate::lattice::Affine;
-use crate::solid::AnySolid;
+use crate::solid::{AnySolid, Solid};
 use alloc::sync::Arc;
 use alloc::vec::Vec;
 use extent::Extent;
@@ -80,8 +80,9 @@ struct Node {
     kind: Kind,
     /// Half-spaces, other solids, operations and placements that it comes to when it is written out.
     size: u64,
-    /// Whether other solids occur in it.
+    /// Whether other solids occur in it, and how many of them within each other.
     mixed: bool,
+    nesting: u32,
     extent: Extent,
     opposite: Extent,
 }
@@ -105,16 +106,20 @@ enum Join {
 
 impl Csg {
     fn new(kind: Kind, extent: Extent, opposite: Extent) -> Csg {
-        let (size, mixed) = match &kind {
-            Kind::HalfSpace(_) => (1, false),
-            Kind::Solid(_) => (1, true),
-            Kind::Complement(part) | Kind::Placed(part, _) => (part.size.saturating_add(1), part.mixed),
+        let (size, mixed, nesting) = match &kind {
+            Kind::HalfSpace(_) => (1, false, 0),
+            Kind::Solid(solid) => (1, true, solid.nesting()),
+            Kind::Complement(part) | Kind::Placed(part, _) => {
+                (part.size.saturating_add(1), part.mixed, part.nesting)
+            }
             Kind::Join(_, parts) => (
                 parts.iter().fold(1, |sum: u64, part| sum.saturating_add(part.size)),
                 parts.iter().any(|part| part.mixed),
+                parts.iter().map(|part| part.nesting).max().unwrap_or(0),
             ),
         };
-        Csg { root: Arc::new(Node { kind, size, mixed, extent, opposite }), touch: Touch::Exact }
+        let node = Node { kind, size, mixed, nesting, extent, opposite };
+        Csg { root: Arc::new(node), touch: Touch::Exact }
     }
 
     fn join(join: Join, parts: impl IntoIterator<Item = Csg>) -> Result<Csg, Error> {

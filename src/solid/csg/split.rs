@@ -94,6 +94,10 @@ impl Solid for Csg {
         self.root.exterior(frame).unwrap_or(Tag::Partial)
     }
 
+    fn nesting(&self) -> u32 {
+        self.root.nesting
+    }
+
     fn fingerprint(&self) -> Option<Fingerprint> {
         self.fingerprint_of_expression()
     }

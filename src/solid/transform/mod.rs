@@ -354,6 +354,10 @@ impl<S: Solid> Solid for Transform<S> {
         }
     }
 
+    fn nesting(&self) -> u32 {
+        self.solid.nesting()
+    }
+
     fn fingerprint(&self) -> Option<Fingerprint> {
         let [x, y, z] = self.own.origin();
         let frame = [x, y, z, self.own.edge(), self.own.depth() as f64];
