@@ -561,6 +561,7 @@ fn files_beside_the_scene() {
     check(&format!("{turned} {turned} mesh(\"block.stl\");"), 2.0, 14.0);
     check(&format!("{turned} difference() {{ cube(3); {turned} mesh(\"block.stl\"); }}"), 26.1, 60.0);
     check(&format!("{turned} octree(\"part.lfl\");"), 56.0, 90.0);
+    check(&format!("{turned} {moved} octree(\"part.lfl\");"), 112.0, 320.0);
     check("multmatrix([[1,0,0,-4],[0,1,0,0],[0,0,1,1],[0,0,0,1]]) octree(\"part.lfl\");", 56.0, 0.0);
 
     for (text, place, words) in [
@@ -727,6 +728,9 @@ fn nesting() {
     let scene = read_scene(&(turned.repeat(2000) + "cube(2);"), None).unwrap();
     let solid = scene.solid(&frame).unwrap();
     assert!(matches!(build(&solid, &frame, Rule::Certified, &Control::default()), Err(Error::Limit { .. })));
+    let (_, _, problem) =
+        refusal(&format!("linear_extrude(height = 1) {} square(2);", turned.repeat(100_000)));
+    assert!(problem.contains("limit"), "{problem}");
     let tetrahedron = "polyhedron([[0, 0, 0], [4, 0, 0], [0, 5, 0], [0, 0, 6]], [[0, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]]);";
     let scene = read_scene(&(turned.repeat(2000) + tetrahedron), None).unwrap();
     assert!(matches!(scene.solid(&frame), Err(Error::Limit { .. })));

@@ -46,6 +46,11 @@
 //! extension other than production, materials and triangle sets is refused, as are encryption and document
 //! type declarations.
 //!
+//! # Scenes
+//!
+//! `read_scene` and `open_scene` (with the feature `scene`) read texts in the language of OpenSCAD's CSG dumps. What it has,
+//! and what it means, stands at `Scene`.
+//!
 //! # Files from strangers
 //!
 //! Whatever the bytes, none of this panics, reads beyond them, or goes on for ever:

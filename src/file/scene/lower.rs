@@ -26,7 +26,7 @@ impl Scene {
 
     /// The solid, to be asked on this frame. Solids of scenes without meshes and octrees can be asked on any.
     ///
-    /// Verdicts of octrees under a placement blur by about a cell: see [`Transform`].
+    /// Octrees that are placed, or lie on another frame, blur by about a cell: see [`Transform`].
     ///
     /// # Errors
     /// As [`MeshSolid::new`]; [`Error::OutOfMemory`].
@@ -155,27 +155,12 @@ fn stand_in<'a>(
 fn mesh_leaf<'a>(
     mesh: &Arc<TriangleMesh>,
     fill: FillRule,
-    placements: impl Iterator<Item = &'a Affine>,
+    mut placements: impl Iterator<Item = &'a Affine>,
     frame: Option<&Frame>,
 ) -> Result<Csg, Error> {
     let Some(frame) = frame else { return stand_in(mesh.bounds(), placements) };
-    // By how much its vertices are rounded, the mesh knows.
-    let mut mesh = mesh.clone();
-    for placement in placements {
-        mesh = Arc::new(mesh.placed(placement)?);
-    }
-    let ((min, max), is_closed) = (outer_bounds(&mesh), mesh.check_closed(fill).is_ok());
-    let csg = Csg::solid(AnySolid::new(MeshSolid::new(mesh, frame, fill)?));
-    Ok(if is_closed { csg.within(min, max) } else { csg })
-}
-
-/// The bounds of a mesh, and of all that it may stand for.
-fn outer_bounds(mesh: &TriangleMesh) -> Corners {
-    let ((min, max), off) = (mesh.bounds(), mesh.displacement());
-    if off == 0.0 {
-        return (min, max);
-    }
-    (min.map(|c| (c - off).next_down()), max.map(|c| (c + off).next_up()))
+    let mesh = placements.try_fold(mesh.clone(), |mesh, placement| mesh.placed(placement).map(Arc::new))?;
+    Ok(Csg::solid(AnySolid::new(MeshSolid::new(mesh, frame, fill)?)))
 }
 
 fn octree_leaf<'a>(
@@ -183,51 +168,29 @@ fn octree_leaf<'a>(
     placements: impl Iterator<Item = &'a Affine>,
     frame: Option<&Frame>,
 ) -> Result<Csg, Error> {
-    let own = octree.frame();
+    let mut own = *octree.frame();
     let top = own.origin().map(|low| match two_sum(low, own.edge()) {
         (sum, error) if error > 0.0 => sum.next_up(),
         (sum, _) => sum,
     });
-    let bounds = (own.origin(), top);
+    let mut bounds = (own.origin(), top);
     let Some(frame) = frame else { return stand_in(bounds, placements) };
-    leaf(AnySolid::new(octree.clone()), !octree.view().is_clipped(), bounds, own, placements, frame)
-}
-
-/// A solid that is known on a frame of its own, as it is on another. What counts lies within `bounds`, and all of it if it
-/// `is_bounded`.
-fn leaf<'a>(
-    solid: AnySolid,
-    is_bounded: bool,
-    bounds: Corners,
-    own: &Frame,
-    placements: impl Iterator<Item = &'a Affine>,
-    frame: &Frame,
-) -> Result<Csg, Error> {
-    let within = |solid, (min, max)| {
-        let csg = Csg::solid(solid);
-        if is_bounded { csg.within(min, max) } else { csg }
-    };
+    let mut solid = AnySolid::new(octree.clone());
     let mut placements = placements.peekable();
-    if placements.peek().is_none() {
-        let is_same = own == frame;
-        let solid =
-            if is_same { solid } else { AnySolid::new(Transform::new(solid, own, &Affine::IDENTITY)) };
-        return Ok(within(solid, bounds));
+    if placements.peek().is_none() && own != *frame {
+        solid = AnySolid::new(Transform::new(solid, &own, &Affine::IDENTITY));
     }
-    let (mut solid, mut own, mut bounds) = (solid, *own, bounds);
     while let Some(placement) = placements.next() {
         bounds = stand_in(bounds, core::iter::once(placement))?.bounds().unwrap_or(bounds);
         solid = AnySolid::new(Transform::new(solid, &own, placement));
         if placements.peek().is_some() {
-            // A transform does not know of itself that it ends inside of a frame.
-            solid = AnySolid::new(within(solid, bounds));
             own = own_frame(bounds, frame)?;
         }
     }
-    Ok(within(solid, bounds))
+    Ok(Csg::solid(solid))
 }
 
-/// A frame for a solid that is to be placed on another one, whose cells are no larger than that one's.
+/// A frame for an octree that is to be placed again, whose cells are no larger than those of the last one.
 fn own_frame((min, max): Corners, frame: &Frame) -> Result<Frame, Error> {
     let own = Frame::around(min, max, 1)?;
     let fits = |&depth: &u8| own.edge() / f64::from(1u32 << depth) <= frame.cell_size();

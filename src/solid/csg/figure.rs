@@ -6,7 +6,7 @@
 
 use super::dyadic::Dyadic;
 use super::halfspace::{HalfSpace, Surface};
-use super::map::ExactMap;
+use super::map::{ExactMap, MOST_BITS};
 use super::primitive::slab;
 use super::program::push;
 use super::quadric::substitute;
@@ -118,7 +118,7 @@ impl Figure {
     /// The figure under the map of the plane with the rows of `[M | t]`; nothing, if it maps onto a line.
     ///
     /// # Errors
-    /// As [`Affine::new`].
+    /// As [`Affine::new`]; [`Error::Limit`] if exact coordinates become too long.
     pub(crate) fn placed(&self, rows: [[f64; 3]; 2]) -> Result<Figure, Error> {
         let [[a, b, s], [c, d, t]] = rows;
         let placement = match Affine::new([[a, b, 0.0, s], [c, d, 0.0, t], [0.0, 0.0, 1.0, 0.0]]) {
@@ -128,6 +128,9 @@ impl Figure {
         let keeps_axes = b == 0.0 && c == 0.0 || a == 0.0 && d == 0.0;
         let core = self.core.as_ref().filter(|_| keeps_axes).map(|core| core.placed(rows));
         let extent = self.extent.as_ref().map(|extent| extent.placed(rows));
+        if extent.as_ref().is_some_and(|extent| extent.bits() > MOST_BITS) {
+            return Err(Error::Limit { what: "bits of nested placements", limit: MOST_BITS });
+        }
         Ok(Figure { csg: self.csg.placed(&placement)?, extent, core })
     }
 
@@ -402,6 +405,11 @@ impl Rectangle {
             self = self.proper()?;
         }
         Some(self)
+    }
+
+    /// Bits of the longest coordinate.
+    fn bits(&self) -> u64 {
+        self.min.iter().chain(&self.max).map(Dyadic::bits).max().unwrap_or(0)
     }
 
     /// The smallest rectangle around the image under `[M | t]`.

@@ -6,7 +6,7 @@ use crate::lattice::{Affine, Frame};
 
 /// Most bits that an entry may take, and most powers of two between one and w: some hundred rotations inside of each
 /// other.
-const MOST_BITS: u64 = 1 << 14;
+pub(super) const MOST_BITS: u64 = 1 << 14;
 
 /// The map x ↦ (R x + r) / w, exactly: from the universe's unit coordinates into the space of a shape that stands
 /// under any number of placements.
