@@ -1107,6 +1107,19 @@ typedef int32_t (*leafless_contains_fn)(void *ctx, const double *point);
 typedef void (*leafless_destroy_fn)(void *ctx);
 
 /**
+ * Classifies `count` boxes (6 numbers each: min, then max) at once, for hosts that do that faster than one by one:
+ * sets `tags` to what leafless_classify_fn would answer. 0, or the number of the host's own error, which ends the
+ * operation with LEAFLESS_E_CALLBACK. Else as leafless_classify_fn.
+ */
+typedef int32_t (*leafless_classify_many_fn)(void *ctx, const double *boxes, uint64_t count, int32_t *tags);
+
+/**
+ * Decides `count` points (3 numbers each) at once: sets each of `inside` to 1 or 0. 0, or the number of the host's own
+ * error. Else as leafless_contains_fn.
+ */
+typedef int32_t (*leafless_contains_many_fn)(void *ctx, const double *points, uint64_t count, int32_t *inside);
+
+/**
  * The host's own shape. All fields but the first may be zero; `classify` must be set.
  */
 typedef struct {
@@ -1139,7 +1152,61 @@ typedef struct {
      * that leafless_lazy_freeze makes remember it, and are taken up again by no other shape. Optional.
      */
     uint64_t fingerprint[2];
+    /**
+     * Classifies many boxes at once; optional, and `classify` must be set all the same.
+     */
+    leafless_classify_many_fn classify_many;
+    /**
+     * Decides many points at once; optional, with or without `contains`.
+     */
+    leafless_contains_many_fn contains_many;
 } leafless_callbacks;
+
+/**
+ * The value of the host's function at a point (3 numbers, model units): sets `*value`. 0, or the number of the host's
+ * own error, which ends the operation with LEAFLESS_E_CALLBACK. Else as leafless_classify_fn.
+ */
+typedef int32_t (*leafless_value_fn)(void *ctx, const double *point, double *value);
+
+/**
+ * An interval that contains all values of the host's function over the box [min, max] (3 numbers each, model units):
+ * sets `*range`. Else as leafless_value_fn.
+ */
+typedef int32_t (*leafless_range_fn)(void *ctx, const double *min, const double *max, leafless_interval *range);
+
+/**
+ * A half-space of the host: the points where its function is not negative. `value` and `range` must be set.
+ */
+typedef struct {
+    /**
+     * sizeof(leafless_function).
+     */
+    uint32_t struct_size;
+    /**
+     * Zero.
+     */
+    uint32_t reserved;
+    /**
+     * The function's value at a point; NaN where it has none. Only its sign counts.
+     */
+    leafless_value_fn value;
+    /**
+     * Its range over a box. It alone proves that a cell lies inside or outside. A NaN, or lower > upper, proves nothing.
+     */
+    leafless_range_fn range;
+    /**
+     * Called when `ctx` is not needed any more; optional.
+     */
+    leafless_destroy_fn destroy;
+    /**
+     * What the functions are called with.
+     */
+    void *ctx;
+    /**
+     * As in leafless_callbacks.
+     */
+    uint64_t fingerprint[2];
+} leafless_function;
 
 /**
  * Where a cursor stands.
@@ -2254,35 +2321,6 @@ leafless_status leafless_solid_new_mesh(const leafless_mesh *mesh,
                                         leafless_solid **solid);
 
 /**
- * Sets callbacks to their defaults; `classify` must then be set.
- *
- * - Buffers: `callbacks`, one struct of `struct_size` bytes, which is sizeof(leafless_callbacks); need not be
- *   initialised.
- * - Result: `*callbacks`.
- * - Errors: LEAFLESS_E_ARGUMENT if `struct_size` cannot be right.
- * - Ownership: nothing changes hands.
- * - Threads: any.
- * - Untrusted input: none.
- * - Since: 0.1
- */
-leafless_status leafless_callbacks_init(leafless_callbacks *callbacks, size_t struct_size);
-
-/**
- * The host's own shape.
- *
- * - Buffers: `callbacks`, one struct, which is copied; `solid`, one pointer.
- * - Result: `*solid`.
- * - Errors: LEAFLESS_E_NULL if `classify` is NULL; LEAFLESS_E_ARGUMENT if `exterior` is no leafless_exterior.
- *   After an error `destroy` is not called.
- * - Ownership: `ctx` must live until `destroy` is called with it; give `*solid` back with leafless_solid_free.
- * - Threads: any; in which the functions are called, leafless_classify_fn says.
- * - Untrusted input: any answers.
- * - Since: 0.1
- */
-leafless_status leafless_solid_new_callbacks(const leafless_callbacks *callbacks,
-                                             leafless_solid **solid);
-
-/**
  * A stored octree as a solid on its own universe. Built to fewer levels it is cut there, built to more its
  * PARTIAL cells stay undecided.
  *
@@ -2444,6 +2482,97 @@ leafless_status leafless_solid_new_frustum(double bottom_model,
                                            leafless_solid **solid);
 
 /**
+ * The points p with A (x − a)^n + B (y − b)^m + C (z − c)^k + `constant` ≥ 0. Its signs are exact.
+ *
+ * - Buffers: `coefficients` A, B, C, `centre_model` a, b, c, and `exponents` n, m, k, 3 numbers each; `solid`, one
+ *   pointer.
+ * - Result: `*solid`.
+ * - Errors: LEAFLESS_E_ARGUMENT if all coefficients are 0, an exponent is not 1 to 64, or a number neither 0 nor of
+ *   a magnitude between 2^-256 and 2^256.
+ * - Ownership: give `*solid` back with leafless_solid_free.
+ * - Threads: any.
+ * - Untrusted input: any numbers.
+ * - Since: 0.1
+ *
+ */
+leafless_status leafless_solid_new_power(const double coefficients[3],
+                                         const double centre_model[3],
+                                         const uint32_t exponents[3],
+                                         double constant,
+                                         leafless_solid **solid);
+
+/**
+ * The torus around the z axis: all points at most `minor` from the circle of radius `major` in the plane z = 0;
+ * where `minor` is greater, there is no hollow core.
+ *
+ * - Buffers: `solid`, one pointer.
+ * - Result: `*solid`.
+ * - Errors: LEAFLESS_E_ARGUMENT if a radius is not between 2^-256 and 2^256; `major` may be 0, which makes a ball.
+ * - Ownership: give `*solid` back with leafless_solid_free.
+ * - Threads: any.
+ * - Untrusted input: any numbers.
+ * - Since: 0.1
+ */
+leafless_status leafless_solid_new_torus(double major_model,
+                                         double minor_model,
+                                         leafless_solid **solid);
+
+/**
+ * The right angular wedge: the box between the origin and `size` whose face at the greatest y is narrowed, or
+ * widened, to 0 ≤ x ≤ `top`; 0 makes that face an edge. (So it is defined by STEP, ISO 10303-42.)
+ *
+ * - Buffers: `size_model`, 3 numbers; `solid`, one pointer.
+ * - Result: `*solid`.
+ * - Errors: LEAFLESS_E_ARGUMENT if a size, or `top` unless it is 0, is not between 2^-256 and 2^256.
+ * - Ownership: give `*solid` back with leafless_solid_free.
+ * - Threads: any.
+ * - Untrusted input: any numbers.
+ * - Since: 0.1
+ *
+ */
+leafless_status leafless_solid_new_wedge(const double size_model[3],
+                                         double top_model,
+                                         leafless_solid **solid);
+
+/**
+ * The prism over a simple polygon in the xy plane, between z = `low` and z = `high`. The polygon's corners are given
+ * in order, in either direction of rotation; the last is joined to the first. The planes through its edges are
+ * exact.
+ *
+ * - Buffers: `polygon_model`, `count` points of 2 numbers each; `solid`, one pointer.
+ * - Result: `*solid`.
+ * - Errors: LEAFLESS_E_ARGUMENT if the outline touches or crosses itself or encloses nothing, a coordinate is
+ *   neither 0 nor of a magnitude between 2^-256 and 2^256, or `low` not less than `high`; LEAFLESS_E_NO_MEMORY.
+ * - Ownership: give `*solid` back with leafless_solid_free.
+ * - Threads: any.
+ * - Untrusted input: any numbers.
+ * - Since: 0.1
+ */
+leafless_status leafless_solid_new_prism(const double *polygon_model,
+                                         uint64_t count,
+                                         double low_model,
+                                         double high_model,
+                                         leafless_solid **solid);
+
+/**
+ * The convex polyhedron of the points p with normal · p + offset ≥ 0 for all of the planes. It may be unbounded, or
+ * empty.
+ *
+ * - Buffers: `planes`, `count` of 4 numbers each: the normal, of any length and pointing inward, and the offset;
+ *   `solid`, one pointer.
+ * - Result: `*solid`.
+ * - Errors: LEAFLESS_E_ARGUMENT if there is no plane, a normal is zero, or a number neither 0 nor of a magnitude
+ *   between 2^-256 and 2^256; LEAFLESS_E_NO_MEMORY.
+ * - Ownership: give `*solid` back with leafless_solid_free.
+ * - Threads: any.
+ * - Untrusted input: any numbers.
+ * - Since: 0.1
+ */
+leafless_status leafless_solid_new_convex(const double *planes,
+                                          uint64_t count,
+                                          leafless_solid **solid);
+
+/**
  * What at least one of the solids contains; nothing, if there is none. No tree is built: the result asks its
  * operands about each cell that it is asked about, and expressions of half-spaces join into one.
  *
@@ -2552,6 +2681,64 @@ leafless_status leafless_solid_placed(const leafless_solid *operand,
 leafless_status leafless_solid_with_touch(const leafless_solid *operand,
                                           uint32_t touch,
                                           leafless_solid **solid);
+
+/**
+ * Sets callbacks to their defaults; `classify` must then be set.
+ *
+ * - Buffers: `callbacks`, one struct of `struct_size` bytes, which is sizeof(leafless_callbacks); need not be
+ *   initialised.
+ * - Result: `*callbacks`.
+ * - Errors: LEAFLESS_E_ARGUMENT if `struct_size` cannot be right.
+ * - Ownership: nothing changes hands.
+ * - Threads: any.
+ * - Untrusted input: none.
+ * - Since: 0.1
+ */
+leafless_status leafless_callbacks_init(leafless_callbacks *callbacks, size_t struct_size);
+
+/**
+ * The host's own shape.
+ *
+ * - Buffers: `callbacks`, one struct, which is copied; `solid`, one pointer.
+ * - Result: `*solid`.
+ * - Errors: LEAFLESS_E_NULL if `classify` is NULL; LEAFLESS_E_ARGUMENT if `exterior` is no leafless_exterior.
+ *   After an error `destroy` is not called.
+ * - Ownership: `ctx` must live until `destroy` is called with it; give `*solid` back with leafless_solid_free.
+ * - Threads: any; in which the functions are called, leafless_classify_fn says.
+ * - Untrusted input: any answers.
+ * - Since: 0.1
+ */
+leafless_status leafless_solid_new_callbacks(const leafless_callbacks *callbacks,
+                                             leafless_solid **solid);
+
+/**
+ * Sets a function to its defaults; `value` and `range` must then be set.
+ *
+ * - Buffers: `function`, one struct of `struct_size` bytes, which is sizeof(leafless_function); need not be
+ *   initialised.
+ * - Result: `*function`.
+ * - Errors: LEAFLESS_E_ARGUMENT if `struct_size` cannot be right.
+ * - Ownership: nothing changes hands.
+ * - Threads: any.
+ * - Untrusted input: none.
+ * - Since: 0.1
+ */
+leafless_status leafless_function_init(leafless_function *function, size_t struct_size);
+
+/**
+ * A half-space of the host. It joins others, and may be placed: then its functions are asked in its own space, about the
+ * box around a cell's inverse image and about the rounded inverse image of a point.
+ *
+ * - Buffers: `function`, one struct, which is copied; `solid`, one pointer.
+ * - Result: `*solid`.
+ * - Errors: LEAFLESS_E_NULL if `value` or `range` is NULL; LEAFLESS_E_ARGUMENT. After an error `destroy` is not called.
+ * - Ownership: `ctx` must live until `destroy` is called with it; give `*solid` back with leafless_solid_free.
+ * - Threads: any; in which the functions are called, leafless_classify_fn says.
+ * - Untrusted input: any answers.
+ * - Since: 0.1
+ */
+leafless_status leafless_solid_new_function(const leafless_function *function,
+                                            leafless_solid **solid);
 
 /**
  * Reads a scene from a file. Files that it names are looked for beside it.
@@ -3363,8 +3550,9 @@ leafless_status leafless_solid_interfere_many(const leafless_solid *a,
 /**
  * The distance between two solids, as they are in the universe of a frame. The work ends when the interval is no wider
  * than `tolerance_model` (model units), at the frame's depth, or once `max_splits` cells of both are split, with what is
- * known by then. About twice the diagonal of a finest cell is what can be had for any solids; less may take all pairs of
- * cells near a contact.
+ * known by then; a cell whose children are looked at again, next to another one, counts once more. About twice the
+ * diagonal of a finest cell is what can be had for any solids. The work grows with the area where the distance is about
+ * the least one, and with the distance, both measured in cells as large as the tolerance.
  *
  * - Buffers: `frame`, one struct; `options`, one struct or NULL; `clearance`, one struct.
  * - Result: `*clearance`.
