@@ -147,7 +147,8 @@ fn deep_placements_end_in_a_limit() {
 fn doubled_over_and_over() {
     let frame = lattice_frame(4);
     let solid = Csg::solid(AnySolid::new(AxisBox::new([1.0; 3], [3.0; 3]).unwrap()));
-    let joins: [fn([Csg; 2]) -> Result<Csg, Error>; 3] =
+    type Join = fn([Csg; 2]) -> Result<Csg, Error>;
+    let joins: [Join; 3] =
         [|pair| Csg::union_of(pair), |pair| Csg::intersection_of(pair), |pair| Csg::xor_of(pair)];
     for start in [ball(8.0), solid, Csg::empty()] {
         for join in joins {

@@ -203,11 +203,12 @@ fn the_complement_is_the_complement() {
     });
 }
 
-type Operation = fn(Csg, Csg) -> Csg;
+/// Of expressions, and of points.
+type Operation = (fn(Csg, Csg) -> Csg, fn(bool, bool) -> bool);
 
 #[test]
 fn booleans_are_those_of_the_trees() {
-    let operations: [(Operation, fn(bool, bool) -> bool); 4] = [
+    let operations: [Operation; 4] = [
         (|a, b| Csg::union_of([a, b]).unwrap(), |a, b| a | b),
         (|a, b| Csg::intersection_of([a, b]).unwrap(), |a, b| a & b),
         (|a, b| a.difference(&b).unwrap(), |a, b| a & !b),

@@ -22,6 +22,7 @@ pub struct Probe {
 const SLOPE: i64 = -32_000;
 
 #[derive(Clone, Debug)]
+#[allow(clippy::large_enum_variant)] // There are few.
 pub enum Model {
     Plane([f64; 3], f64),
     Quadric([f64; 10]),

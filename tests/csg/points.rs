@@ -48,7 +48,7 @@ impl Judge<'_> {
             _ => return sign,
         };
         let end = (frame.cells() as i64) << STEPS;
-        let ranges = at.map(|k| [(k + (1 << STEPS) - 1 >> STEPS) - 1, k >> STEPS]);
+        let ranges = at.map(|k| [((k + (1 << STEPS) - 1) >> STEPS) - 1, k >> STEPS]);
         for corner in 0..8 {
             let cell = [0, 1, 2].map(|axis| ranges[axis][corner >> axis & 1]);
             let inside = cell.iter().all(|&i| (0..frame.cells() as i64).contains(&i));
@@ -63,16 +63,13 @@ impl Judge<'_> {
                 self.model
             );
         }
-        if sign > 0 {
-            if let Some((min, max)) = self.bounds {
-                for axis in 0..3 {
-                    assert!(
-                        p[axis].minus(&Exact::from(min[axis])).sign() >= 0
-                            && p[axis].minus(&Exact::from(max[axis])).sign() <= 0,
-                        "{at:?} beyond {min:?}, {max:?}\n{frame:?}\n{:#?}",
-                        self.model
-                    );
-                }
+        if sign > 0
+            && let Some((min, max)) = self.bounds
+        {
+            for axis in 0..3 {
+                let above = p[axis].minus(&Exact::from(min[axis])).sign() >= 0;
+                let below = p[axis].minus(&Exact::from(max[axis])).sign() <= 0;
+                assert!(above && below, "{at:?} beyond {min:?}, {max:?}\n{frame:?}\n{:#?}", self.model);
             }
         }
         sign
@@ -88,7 +85,7 @@ impl Judge<'_> {
                 0 => cell,
                 1 => cell + (1 << (STEPS - 1)),
                 2 => cell + ((random.below(2) as i64) << (STEPS - 1)),
-                3 => (random.below(3 * n << STEPS)) as i64 - ((n as i64) << STEPS),
+                3 => (random.below((3 * n) << STEPS)) as i64 - ((n as i64) << STEPS),
                 4 if random.below(2) == 0 => cell,
                 5 => cell + random.below(3) as i64 - 1,
                 _ => cell + random.below(1 << STEPS) as i64,
