@@ -14,7 +14,7 @@ use leafless::{
 };
 use std::hint::black_box;
 
-#[path = "peers/scene.rs"]
+#[path = "peers/src/scene.rs"]
 mod scene;
 
 fn universe(depth: u8) -> Frame {

@@ -44,7 +44,8 @@ impl<S: Solid> Counted<S> {
     fn count<T>(&self, scratch: &mut S::Scratch, work: impl FnOnce(&mut S::Scratch) -> T) -> T {
         let before = scratch.evaluations();
         let result = work(scratch);
-        self.evaluations.fetch_add(scratch.evaluations() - before, Relaxed);
+        // (Less than before, if it is another solid's memory that this one replaced.)
+        self.evaluations.fetch_add(scratch.evaluations().saturating_sub(before), Relaxed);
         result
     }
 }

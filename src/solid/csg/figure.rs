@@ -208,7 +208,7 @@ impl Figure {
                         push(&mut images, image([xx, yy, xy, x, y, one])?)?;
                     }
                     Kind::Placed(part, placement) => {
-                        push(&mut tasks, Task::Map(part, Arc::new(map.into_placed(placement)?)))?;
+                        push(&mut tasks, Task::Map(part, Arc::new(map.of_placed(placement)?)))?;
                     }
                     Kind::Complement(part) => {
                         push(&mut tasks, Task::Complement)?;

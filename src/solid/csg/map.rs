@@ -43,7 +43,7 @@ impl ExactMap {
     ///
     /// # Errors
     /// [`Error::Limit`] if the exact entries become too long.
-    pub(super) fn into_placed(&self, placement: &Affine) -> Result<ExactMap, Error> {
+    pub(super) fn of_placed(&self, placement: &Affine) -> Result<ExactMap, Error> {
         let m = placement.rows().map(|row| row.map(Dyadic::new));
         let minor = |i: usize, j: usize| {
             // Cofactor (i, j), with its sign, by cyclic indices.
@@ -91,7 +91,7 @@ mod tests {
         let frame = Frame::new([1.0, 2.0, 3.0], 8.0, 3).unwrap();
         let placement =
             Affine::new([[0.0, -2.0, 0.5, 3.0], [1.0, 0.25, 0.0, -1.0], [0.0, 4.0, 1.0, 7.0]]).unwrap();
-        let map = ExactMap::from_universe(&frame).into_placed(&placement).unwrap();
+        let map = ExactMap::from_universe(&frame).of_placed(&placement).unwrap();
         // A point of the shape, its image, and the image's unit coordinates.
         let local = [0.5, -3.0, 2.0];
         let image = placement.apply(local);
@@ -110,7 +110,7 @@ mod tests {
             let mut rows = [[0.0; 4]; 3];
             (0..3).for_each(|i| rows[i][i] = scales[i]);
             let placement = Affine::new(rows).unwrap();
-            (0..count).try_fold(ExactMap::from_universe(&frame), |map, _| map.into_placed(&placement))
+            (0..count).try_fold(ExactMap::from_universe(&frame), |map, _| map.of_placed(&placement))
         };
         let (large, small) = (2f64.powi(60), 2f64.powi(-60));
         assert!(nested([large, 1.0, small], 200).is_ok());

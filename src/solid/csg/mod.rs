@@ -128,15 +128,15 @@ impl Csg {
             nodes.try_reserve(1).map_err(|_| Error::OutOfMemory)?;
             nodes.push(part.root);
         }
-        let hull = |of: fn(&Node) -> Extent| nodes.iter().map(|n| of(n)).fold(Extent::Nothing, Extent::hull);
-        let common =
-            |of: fn(&Node) -> Extent| nodes.iter().map(|n| of(n)).fold(Extent::Unbounded, Extent::common);
-        let (own, other): (fn(&Node) -> Extent, fn(&Node) -> Extent) = (|n| n.extent, |n| n.opposite);
+        let (none, all) = ((Extent::Nothing, Extent::Unbounded), (Extent::Unbounded, Extent::Nothing));
+        let boxes = nodes.iter().map(|node| (node.extent, node.opposite));
         let (extent, opposite) = match join {
-            Join::Intersection => (common(own), hull(other)),
-            Join::Union => (hull(own), common(other)),
-            Join::Parity if nodes.len() == 1 => (hull(own), hull(other)),
-            Join::Parity => (hull(own), Extent::Unbounded),
+            Join::Union => boxes.fold(none, |a, b| (a.0.hull(b.0), a.1.common(b.1))),
+            Join::Intersection => boxes.fold(all, |a, b| (a.0.common(b.0), a.1.hull(b.1))),
+            Join::Parity => match &nodes[..] {
+                [one] => (one.extent, one.opposite),
+                _ => (boxes.fold(none, |a, b| (a.0.hull(b.0), a.1)).0, Extent::Unbounded),
+            },
         };
         Ok(Csg::new(Kind::Join(join, nodes), extent, opposite))
     }

@@ -401,7 +401,7 @@ mod tests {
         let n = 20_000;
         let zigzag = |i: usize, turns: f64| {
             let (sin, cos) = libm::sincos(turns * core::f64::consts::TAU * i as f64 / n as f64);
-            let radius = if i % 2 == 0 { 1.0 } else { 0.9 };
+            let radius = if i.is_multiple_of(2) { 1.0 } else { 0.9 };
             [radius * cos, radius * sin]
         };
         let star: Vec<_> = (0..n).map(|i| zigzag(i, 1.0)).collect();

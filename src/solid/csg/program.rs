@@ -138,7 +138,7 @@ impl Program {
                         push(&mut tasks, Task::Write { node: part, complement: !complement, map })?;
                     }
                     Kind::Placed(part, placement) => {
-                        let map = Arc::new(map.into_placed(placement)?);
+                        let map = Arc::new(map.of_placed(placement)?);
                         push(&mut tasks, Task::Write { node: part, complement, map })?;
                     }
                     Kind::HalfSpace(half_space) => {

@@ -189,15 +189,14 @@ impl CsgScratch {
         ask: Ask<'_, '_>,
     ) -> Result<Cells, Error> {
         // Most cells are cut by one half-space: they share its word.
-        if part.len == 1 {
-            if let Some(Op::HalfSpace { index, complement }) =
+        if part.len == 1
+            && !program.paper
+            && let Some(Op::HalfSpace { index, complement }) =
                 self.words.get(part.start as usize).map(|word| word.op())
-            {
-                if !program.paper {
-                    let sides = program.half_spaces[index as usize].sides(at, 0xFF, &mut self.evaluations)?;
-                    return Ok(Cells { kleene: Kleene::of(sides, complement), parts: [part; 8] });
-                }
-            }
+        {
+            let half_space = &program.half_spaces[index as usize];
+            let sides = half_space.sides(at, 0xFF, &mut self.evaluations)?;
+            return Ok(Cells { kleene: Kleene::of(sides, complement), parts: [part; 8] });
         }
         self.cells_by_words(program, part, at, ask)
     }
@@ -396,16 +395,16 @@ impl CsgScratch {
             // The centres of cells that one half-space cuts are had at once.
             let first = octant[0].1;
             let (mut inside, mut outside) = (0, 0);
-            if first.len == 1 && octant.len() > 1 && octant.iter().all(|(_, part)| part.start == first.start)
-            {
-                if let Some(Op::HalfSpace { index, complement }) =
+            if first.len == 1
+                && octant.len() > 1
+                && octant.iter().all(|(_, part)| part.start == first.start)
+                && let Some(Op::HalfSpace { index, complement }) =
                     self.words.get(first.start as usize).map(|word| word.op())
-                {
-                    (inside, outside) = program.half_spaces[index as usize].centres(&Octants::of(child.cell));
-                    self.evaluations += octant.len() as u64;
-                    if complement {
-                        (inside, outside) = (outside, inside);
-                    }
+            {
+                (inside, outside) = program.half_spaces[index as usize].centres(&Octants::of(child.cell));
+                self.evaluations += octant.len() as u64;
+                if complement {
+                    (inside, outside) = (outside, inside);
                 }
             }
             for &(c, part) in octant {

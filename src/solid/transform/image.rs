@@ -103,11 +103,9 @@ impl LatticeMap {
         let mut edge = sqrt(square(0).max(square(1)).max(square(2))) * (1.0 + 1e-9);
         let extents = self.linear.map(|[a, b, c]| a.abs() + b.abs() + c.abs());
         let count = |edge: f64| extents.iter().map(|extent| extent / edge + 1.0).product::<f64>();
-        let halvings = if self.is_exact() { 0 } else { 64 };
-        for _ in 0..halvings {
-            if count(0.5 * edge) > MOST {
-                break;
-            }
+        // Where nothing blurs, cells of the shortest image are as good as any smaller ones.
+        let least = if self.is_exact() { sqrt(square(0).min(square(1)).min(square(2))) } else { 0.0 };
+        while 0.5 * edge >= least && count(0.5 * edge) <= MOST {
             edge *= 0.5;
         }
         edge
