@@ -68,7 +68,7 @@ impl Figure {
     /// The simple polygon with these corners, in either direction.
     ///
     /// # Errors
-    /// As [`convex_differences`].
+    /// As [`Csg::prism`].
     pub(crate) fn polygon(points: &[[f64; 2]]) -> Result<Figure, Error> {
         let csg = Csg::column(points)?;
         let limit = |axis: usize, least: bool| {
