@@ -12,7 +12,7 @@ mod model;
 
 /// Where the test suite has it.
 mod common {
-    pub use crate::exact;
+    pub(crate) use crate::exact;
 }
 
 libfuzzer_sys::fuzz_target!(|data: &[u8]| csg::csg(data));
