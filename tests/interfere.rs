@@ -41,7 +41,7 @@ fn solids_and_meshes() {
     let frame = Frame::new([-1.0; 3], 8.0, 7).unwrap();
     let solid = AxisBox::new([0.0; 3], [4.0, 2.0, 2.0]).unwrap();
     let tree = build(&solid, &frame, Rule::Certified, &Control::default()).unwrap();
-    file::save(&tree, &path.join("a.lfl")).unwrap();
+    file::save(&tree, path.join("a.lfl")).unwrap();
     for a in ["a.lfl", "a.stl"] {
         for b in ["a.lfl", "a.stl"] {
             // In place: the whole of it. The frame around the meshes has no planes where their faces are.

@@ -15,7 +15,7 @@ pub type Corners = ([f64; 3], [f64; 3]);
 /// What was read.
 pub enum Source {
     /// A solid (.lfl).
-    Octree(Octree),
+    Octree(Box<Octree>),
     /// A mesh, and which points count as inside.
     Mesh(TriangleMesh, FillRule),
     /// A scene.
@@ -26,7 +26,7 @@ impl Source {
     /// Reads a solid or a mesh. Answers about a solid are proven, so its file is verified.
     pub fn read(input: &Input, reading: &Reading) -> Result<Source, Failure> {
         if input.begins_as_solid() {
-            return Ok(Source::Octree(input.octree(true)?.0));
+            return Ok(Source::Octree(Box::new(input.octree(true)?.0)));
         }
         if input
             .path()
@@ -37,7 +37,7 @@ impl Source {
         }
         let bytes = input.read()?;
         if bytes.starts_with(&file::MAGIC) {
-            return Ok(Source::Octree(file::from_bytes(&bytes).of(input)?));
+            return Ok(Source::Octree(Box::new(file::from_bytes(&bytes).of(input)?)));
         }
         let read = reading.mesh(input, bytes)?;
         let fill = match read.format {
@@ -78,11 +78,11 @@ impl Source {
     pub fn placed(self, input: &Input, placement: &Affine, frame: &Frame) -> Result<AnySolid, Failure> {
         Ok(match self {
             Source::Octree(octree) if placement.is_identity() && octree.frame().same_universe(frame) => {
-                AnySolid::new(octree)
+                AnySolid::new(*octree)
             }
             Source::Octree(octree) => {
                 let own = *octree.frame();
-                AnySolid::new(Transform::new(octree, &own, placement))
+                AnySolid::new(Transform::new(*octree, &own, placement))
             }
             Source::Mesh(mesh, fill) => {
                 let mesh = if placement.is_identity() { mesh } else { mesh.placed(placement).of(input)? };

@@ -11,7 +11,7 @@ use alloc::sync::Arc;
 use alloc::vec::Vec;
 use core::ops::Range;
 
-/// What a [`Csg`] remembers about a cell: the words of its expression that are still open there.
+/// What a [`Csg`](super::Csg) remembers about a cell: the words of its expression that are still open there.
 #[derive(Debug, Clone, Copy)]
 pub struct CsgPart {
     start: u32,
@@ -27,7 +27,7 @@ impl CsgPart {
     }
 }
 
-/// Scratch memory of a [`Csg`].
+/// Scratch memory of a [`Csg`](super::Csg).
 #[derive(Default)]
 pub struct CsgScratch {
     program: Option<Arc<Program>>,
@@ -77,12 +77,14 @@ pub(super) struct Cells {
     pub(super) kleene: Kleene,
     pub(super) parts: [CsgPart; 8],
 }
+
 /// An operand while the words of a child are written: decided there, or written from a word on.
 #[derive(Clone, Copy)]
 enum Operand {
     Decided(bool),
     Open(usize),
 }
+
 impl Scratch for CsgScratch {
     fn mark(&self) -> usize {
         self.words.len()
@@ -337,7 +339,7 @@ impl CsgScratch {
         if !hopeful {
             return Ok(CsgPart::HOPELESS);
         }
-        // Two billion words are eight gigabytes.
+        // More words than that take seventeen gigabytes.
         let end = u32::try_from(self.words.len()).map_err(|_| Error::OutOfMemory)?;
         Ok(CsgPart { start: start as u32, len: end - start as u32 })
     }
