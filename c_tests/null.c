@@ -265,6 +265,12 @@ static void null_pointers(void) {
     NULL_POINTER(leafless_solid_difference, solid, leafless_solid_difference(solid, solid, NULL));
     NULL_POINTER(leafless_solid_complement, operand, leafless_solid_complement(NULL, solid_result));
     NULL_POINTER(leafless_solid_complement, solid, leafless_solid_complement(solid, NULL));
+    NULL_POINTER(leafless_solid_union, solids, leafless_solid_union(NULL, 1, solid_result));
+    NULL_POINTER(leafless_solid_union, solid, leafless_solid_union(NULL, 0, NULL));
+    NULL_POINTER(leafless_solid_intersection, solids, leafless_solid_intersection(NULL, 1, solid_result));
+    NULL_POINTER(leafless_solid_intersection, solid, leafless_solid_intersection(NULL, 0, NULL));
+    NULL_POINTER(leafless_solid_xor, solids, leafless_solid_xor(NULL, 1, solid_result));
+    NULL_POINTER(leafless_solid_xor, solid, leafless_solid_xor(NULL, 0, NULL));
     NULL_POINTER(leafless_solid_placed, operand, leafless_solid_placed(NULL, matrix, solid_result));
     NULL_POINTER(leafless_solid_placed, matrix, leafless_solid_placed(solid, NULL, solid_result));
     NULL_POINTER(leafless_solid_placed, solid, leafless_solid_placed(solid, matrix, NULL));

@@ -567,6 +567,29 @@ typedef uint32_t leafless_overlap;
 #endif // __cplusplus
 
 /**
+ * What counts as touching: when a cell that meets the boundary of an expression of half-spaces, but not its interior,
+ * is EMPTY.
+ */
+enum leafless_touch
+#ifdef __cplusplus
+  : uint32_t
+#endif // __cplusplus
+ {
+    /**
+     * Contact is not overlap: a cell is EMPTY if the interiors are disjoint.
+     */
+    LEAFLESS_TOUCH_EXACT = 0,
+    /**
+     * A vertex on the surface counts as inside, so that a cell that touches a primitive with a vertex from outside is
+     * PARTIAL. It reproduces published tables and is no better for anything else.
+     */
+    LEAFLESS_TOUCH_PAPER = 1,
+};
+#ifndef __cplusplus
+typedef uint32_t leafless_touch;
+#endif // __cplusplus
+
+/**
  * A switch to stop long operations from any thread, and to ask how far they are.
  *
  * All its functions may be called at once from any number of threads.
@@ -3486,7 +3509,7 @@ leafless_status leafless_lazy_freeze(const leafless_lazy *lazy,
  *   one pointer.
  * - Result: `*solid`.
  * - Errors: LEAFLESS_E_ARGUMENT as leafless_frame_check, or if an entry is neither 0 nor of a magnitude between 2^-64
- *   and 2^64, or M is singular. Asking the result returns LEAFLESS_E_FRAME if `operand` belongs to another frame than
+ *   and 2^64, or M is singular; LEAFLESS_E_LIMIT if too many transforms lie within each other. Asking the result returns LEAFLESS_E_FRAME if `operand` belongs to another frame than
  *   `own`.
  * - Ownership: the operand is shared and may be freed; give `*solid` back with leafless_solid_free.
  * - Threads: any.
