@@ -160,9 +160,10 @@ fn null() {
             let tried = ["NULL_POINTER", "MAY_BE_NULL"]
                 .iter()
                 .any(|check| flat.contains(&format!("{check}({name}, {parameter},")));
-            let family = ["BINARY", "NARY", "OPTIONS"].iter().any(|family| {
+            let family = ["BINARY", "NARY", "OPTIONS", "JOIN"].iter().any(|family| {
                 flat.contains(&format!("{family}({name}"))
-                    && ["a", "b", "octrees", "options", "result"].contains(&parameter.as_str())
+                    && ["a", "b", "octrees", "options", "result", "solids", "solid"]
+                        .contains(&parameter.as_str())
             });
             let freed = name.ends_with("_free") && flat.contains(&format!("{name}(NULL)"));
             // The host's own, which the library does not look at; and texts, whose buffers may be absent.
