@@ -542,29 +542,6 @@ typedef uint32_t leafless_exterior;
 #endif // __cplusplus
 
 /**
- * What counts as touching: when a cell that meets the boundary of an expression of half-spaces, but not its interior,
- * is EMPTY.
- */
-enum leafless_touch
-#ifdef __cplusplus
-  : uint32_t
-#endif // __cplusplus
- {
-    /**
-     * Contact is not overlap: a cell is EMPTY if the interiors are disjoint.
-     */
-    LEAFLESS_TOUCH_EXACT = 0,
-    /**
-     * A vertex on the surface counts as inside, so that a cell that touches a primitive with a vertex from outside is
-     * PARTIAL. It reproduces published tables and is no better for anything else.
-     */
-    LEAFLESS_TOUCH_PAPER = 1,
-};
-#ifndef __cplusplus
-typedef uint32_t leafless_touch;
-#endif // __cplusplus
-
-/**
  * Whether the interiors of two solids have points in common.
  */
 enum leafless_overlap
