@@ -308,7 +308,7 @@ fn readme() {
 
 #[test]
 fn examples() {
-    let examples = [("c/voxelise.c", C99), ("c/scan.c", C99), ("cpp/cut_stock.cpp", CPP17)];
+    let examples = [("c/voxelise.c", C99), ("c/scan.c", C99), ("c/fit.c", C99), ("cpp/cut_stock.cpp", CPP17)];
     for (name, standard) in examples {
         let source = root().join("examples").join(name);
         let stem = source.file_stem().unwrap().to_str().unwrap().to_string();

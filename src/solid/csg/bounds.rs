@@ -1,6 +1,7 @@
 //! What one half-space says of the eight children of a cell.
 
 use crate::lattice::Cell;
+use core::cmp::Ordering;
 use wide::f64x4;
 
 /// The eight children of a cell in unit coordinates: the universe is [0, 1]³.
@@ -94,5 +95,26 @@ impl Sides {
         let doubt =
             mask(least.map(|v| v.simd_gt(below))) & !inside | mask(most.map(|v| v.simd_lt(above))) & !outside;
         (Sides { inside, outside }, doubt)
+    }
+
+    /// The same with what was left open, for the children `doubt`, decided by the exact sign of the least (`Less`) and
+    /// of the greatest value over a box (lower and upper corner).
+    #[cold]
+    pub(super) fn settled(
+        mut self,
+        at: &Octants,
+        doubt: u8,
+        extreme_sign: impl Fn([f64; 3], [f64; 3], Ordering) -> i32,
+    ) -> Sides {
+        for k in (0..8).filter(|k| doubt >> k & 1 != 0) {
+            let (low, high) = at.octant(k);
+            if extreme_sign(low, high, Ordering::Less) >= 0 {
+                self.inside |= 1 << k;
+            }
+            if extreme_sign(low, high, Ordering::Greater) <= 0 {
+                self.outside |= 1 << k;
+            }
+        }
+        self
     }
 }

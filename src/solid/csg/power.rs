@@ -98,25 +98,13 @@ impl PlacedPowers {
         match &self.aligned {
             Some(aligned) => {
                 let (sides, doubt) = aligned.sides(at);
-                if doubt == 0 { sides } else { self.settle(at, sides, doubt) }
+                if doubt == 0 {
+                    return sides;
+                }
+                sides.settled(at, doubt, |low, high, which| self.extreme_sign(low, high, which))
             }
             None => self.bounds(at),
         }
-    }
-
-    /// Decides exactly what rounding leaves open, if each term depends on one axis.
-    #[cold]
-    fn settle(&self, at: &Octants, mut sides: Sides, doubt: u8) -> Sides {
-        for k in (0..8).filter(|k| doubt >> k & 1 != 0) {
-            let (low, high) = at.octant(k);
-            if self.extreme_sign(low, high, Ordering::Less) >= 0 {
-                sides.inside |= 1 << k;
-            }
-            if self.extreme_sign(low, high, Ordering::Greater) <= 0 {
-                sides.outside |= 1 << k;
-            }
-        }
-        sides
     }
 
     /// Exact sign of the least (`Less`) or the greatest value over a box, if each term depends on one axis.

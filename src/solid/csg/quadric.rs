@@ -105,7 +105,10 @@ impl Quadric {
         match &self.form {
             Form::Separable(separable) => {
                 let (sides, doubt) = separable.sides(at);
-                if doubt == 0 { sides } else { self.settle(at, sides, doubt) }
+                if doubt == 0 {
+                    return sides;
+                }
+                sides.settled(at, doubt, |low, high, which| self.extreme_sign(low, high, which))
             }
             Form::Mixed(mixed) => mixed.sides(at),
         }
@@ -121,21 +124,6 @@ impl Quadric {
         };
         let (above, below) = (f64x4::splat(error), f64x4::splat(-error));
         (mask(values.map(|v| v.simd_gt(above))), mask(values.map(|v| v.simd_lt(below))))
-    }
-
-    /// Decides exactly what rounding leaves open.
-    #[cold]
-    fn settle(&self, at: &Octants, mut sides: Sides, doubt: u8) -> Sides {
-        for k in (0..8).filter(|k| doubt >> k & 1 != 0) {
-            let (low, high) = at.octant(k);
-            if self.extreme_sign(low, high, Ordering::Less) >= 0 {
-                sides.inside |= 1 << k;
-            }
-            if self.extreme_sign(low, high, Ordering::Greater) <= 0 {
-                sides.outside |= 1 << k;
-            }
-        }
-        sides
     }
 
     /// Exact sign of the least (`Less`) or the greatest value over a box, without mixed products.

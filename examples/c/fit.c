@@ -1,0 +1,89 @@
+/* Does the shaft go into the housing? Solids of half-spaces, asked without any octree: their volume and centre of mass,
+ * whether they overlap at each of a row of positions, how far apart they are, and by how much they collide.
+ *
+ *     fit
+ *
+ * include/README.md tells how to build it.
+ */
+#include <leafless.h>
+
+#include <math.h>
+#include <stdio.h>
+
+enum { POSITIONS = 9, DEPTH = 12 };
+
+/* A block of 120 with a bore of radius 20.5 and, a little off its axis, a narrower one for the end of the shaft. */
+static leafless_status housing(leafless_solid **result) {
+    const double low[3] = {-60, -60, -60}, high[3] = {60, 60, 60};
+    leafless_solid *block = NULL, *bore = NULL, *seat = NULL, *both = NULL;
+    leafless_status s = leafless_solid_new_box(low, high, &block);
+    if (!s) s = leafless_solid_new_cylinder(20.5, -20, 61, &bore);
+    if (!s) s = leafless_solid_new_cylinder(12, -61, -20, &seat);
+    if (!s) {
+        const leafless_solid *holes[2];
+        holes[0] = bore, holes[1] = seat;
+        s = leafless_solid_union(holes, 2, &both);
+    }
+    if (!s) s = leafless_solid_difference(block, both, result);
+    leafless_solid_free(both), leafless_solid_free(seat), leafless_solid_free(bore), leafless_solid_free(block);
+    return s;
+}
+
+/* A shaft of radius 20 with a journal of radius 11.5, tilted by the angle whose tangent is `slope`. */
+static leafless_status shaft(double slope, double height, leafless_solid **result) {
+    const double length = sqrt(1 + slope * slope), c = 1 / length, d = slope / length;
+    const double matrix[12] = {c, 0, d, 0, 0, 1, 0, 0, -d, 0, c, height};
+    leafless_solid *thick = NULL, *thin = NULL, *both = NULL;
+    leafless_status s = leafless_solid_new_cylinder(20, 0, 90, &thick);
+    if (!s) s = leafless_solid_new_cylinder(11.5, -35, 1, &thin);
+    if (!s) {
+        const leafless_solid *parts[2];
+        parts[0] = thick, parts[1] = thin;
+        s = leafless_solid_union(parts, 2, &both);
+    }
+    if (!s) s = leafless_solid_placed(both, matrix, result);
+    leafless_solid_free(both), leafless_solid_free(thin), leafless_solid_free(thick);
+    return s;
+}
+
+int main(void) {
+    static const char *const verdicts[] = {"disjoint", "overlapping", "undecided"};
+    const leafless_frame frame = {{-128, -128, -128}, 256, DEPTH};
+    leafless_solid *fixed = NULL, *moving = NULL;
+    leafless_measures measures;
+    leafless_options options;
+    leafless_status s = leafless_options_init(&options, sizeof options);
+    int i;
+    options.max_splits = 20000; /* for each question */
+    if (!s) s = housing(&fixed);
+    if (!s) s = leafless_solid_measure(fixed, &frame, 0.02, NULL, &measures);
+    if (!s) {
+        printf("housing: volume %.0f to %.0f", measures.volume_model.lower, measures.volume_model.upper);
+        printf(", centre of mass at z = %.2f to %.2f\n", measures.centroid_model[2].lower,
+               measures.centroid_model[2].upper);
+    }
+    for (i = 0; !s && i < POSITIONS; i++) {
+        /* Lowered until it rests on the step at z = -20, and beyond, a little askew in the end. */
+        const double height = 60 - 10 * i, slope = i == POSITIONS - 2 ? 0.01 : 0;
+        leafless_interference found;
+        leafless_clearance near;
+        s = shaft(slope, height, &moving);
+        if (!s) s = leafless_solid_interfere(moving, fixed, &frame, 10, &options, &found);
+        if (!s) s = leafless_solid_clearance(moving, fixed, &frame, 0.25, &options, &near);
+        if (!s) {
+            printf("at %3.0f: %-11s overlap %6.1f to %7.1f, clearance %.2f to %.2f, %llu splits\n", height,
+                   verdicts[found.verdict], found.volume_model.lower, found.volume_model.upper,
+                   near.distance_model.lower, near.distance_model.upper,
+                   (unsigned long long)(found.splits_a + found.splits_b));
+        }
+        leafless_solid_free(moving);
+        moving = NULL;
+    }
+    leafless_solid_free(fixed);
+    if (s) {
+        char message[512];
+        leafless_last_error(message, sizeof message);
+        fprintf(stderr, "%s\n", message);
+    }
+    return s != LEAFLESS_OK;
+}
