@@ -105,7 +105,11 @@ impl LatticeMap {
         let count = |edge: f64| extents.iter().map(|extent| extent / edge + 1.0).product::<f64>();
         // Where nothing blurs, cells of the shortest image are as good as any smaller ones.
         let least = if self.is_exact() { sqrt(square(0).min(square(1)).min(square(2))) } else { 0.0 };
-        while 0.5 * edge >= least && count(0.5 * edge) <= MOST {
+        // (More than so many are needed only where the map is far beyond what doubles resolve.)
+        for _ in 0..64 {
+            if 0.5 * edge < least || count(0.5 * edge) > MOST {
+                break;
+            }
             edge *= 0.5;
         }
         edge
