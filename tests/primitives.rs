@@ -503,7 +503,8 @@ fn contact_decides() {
     assert_eq!(cells[0], cells[1]);
     // Of 8 × 8 × 2 cells the 16 in the hole, which touches the circle of radius 1, stay outside only where that
     // leaves a whole cell out.
-    assert!(cells[0].upper <= 16.0 && cells[0].lower >= 0.0, "{cells:?}");
+    let truth = 2.0 * std::f64::consts::PI.powi(2) * 1.5 * 0.25;
+    assert!(cells[0].upper <= 16.0 && cells[0].contains(truth), "{cells:?}");
     // Moved by less than floating point can tell, it reaches into the cells above.
     for (up, expected) in [(0.0, Membership::Outside), (2f64.powi(-60), Membership::Undecided)] {
         let moved = torus.placed(&Affine::translation([0.0, 0.0, up]).unwrap()).unwrap();
@@ -578,7 +579,7 @@ fn far_away_and_out_of_range() {
     for (origin, edge) in [
         ([-huge / 2.0; 3], huge),
         ([0.0; 3], 1.0 / huge),
-        ([1e30; 3], 1.0),
+        ([1e9; 3], 1.0),
         ([1.0 - 1.0 / 1024.0; 3], 1.0 / 512.0),
     ] {
         let frame = Frame::new(origin, edge, 6).unwrap();
