@@ -9,6 +9,7 @@
 mod scene;
 
 use fidget::context::Tree;
+use fidget::shape::BoundShape;
 use leafless::{Control, Frame, Rule, build};
 use std::time::Instant;
 
@@ -23,10 +24,12 @@ fn function() -> Tree {
         shape = cut(shape, within(a).max(within(b)));
     }
     for (cx, cy) in scene::along_z() {
+        let (cx, cy) = (cx as f32, cy as f32);
         let distance = (square(x.clone() - cx) + square(y.clone() - cy)).sqrt();
         shape = cut(shape, distance - 0.1);
     }
     for (cz, cy) in scene::along_x() {
+        let (cz, cy) = (cz as f32, cy as f32);
         let distance = (square(z.clone() - cz) + square(y.clone() - cy)).sqrt();
         shape = cut(shape, distance - 0.08);
     }
@@ -40,7 +43,7 @@ fn median(mut times: Vec<f64>) -> f64 {
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let solid = scene::solid()?;
-    let peer = fidget::jit::JitShape::from(function());
+    let peer = BoundShape::try_from(fidget::jit::JitShape::from(function()))?;
     let control = Control::threads(1);
     println!("depth  fidget ms  sampled ms  ratio  certified ms  ratio");
     for depth in [7u8, 8, 9] {
