@@ -76,7 +76,7 @@ pub fn bounding_box<S: Solid>(
         job.advance(WHOLE / 6 + if side == 0 { WHOLE % 6 } else { 0 });
     }
     // Both are nowhere if the solid is empty, and the difference is large if nothing is proven FULL.
-    let wide = (0..6).any(|side| search.inner[side] - search.outer[side] > goal);
+    let wide = (0..6).any(|side| search.inner[side].saturating_sub(search.outer[side]) > goal);
     Ok(Extent {
         corners: search.corners(),
         occupied: search.inner[0] != NOWHERE,
@@ -91,7 +91,7 @@ pub fn bounding_box<S: Solid>(
     })
 }
 
-/// Farther than any plane.
+/// Farther than any plane. (Differences saturate: a host that contradicts itself may put a solid before its bounds.)
 const NOWHERE: u32 = u32::MAX;
 
 /// Sides are numbered: 0 to 2 the lower ones along x, y and z, 3 to 5 the upper ones. What lies at a side is told by
@@ -125,7 +125,7 @@ impl<S: Solid> Search<'_, S> {
             let next = open.queue.peek().copied();
             let start = next.map_or(NOWHERE, |Reverse((start, ..))| start);
             self.outer[side] = self.inner[side].min(open.stuck).min(start);
-            let is_known = self.inner[side] - self.outer[side] <= self.goal;
+            let is_known = self.inner[side].saturating_sub(self.outer[side]) <= self.goal;
             let Some(Reverse((_, _, index))) = next.filter(|_| !is_known) else { return Ok(true) };
             if *left == 0 {
                 return Ok(false);
@@ -175,7 +175,7 @@ impl<S: Solid> Search<'_, S> {
         for axis in 0..3 {
             // With nothing proven FULL, each side may be wherever the solid may be.
             let reach = |side: usize, other: usize| match self.inner[side] {
-                NOWHERE => self.frame.cells() - self.outer[other],
+                NOWHERE => self.frame.cells().saturating_sub(self.outer[other]),
                 inner => inner,
             };
             let (near, far) = (axis, axis + 3);
@@ -184,8 +184,8 @@ impl<S: Solid> Search<'_, S> {
             corners[0][axis] =
                 Interval { lower: plane(self.outer[near]).lower, upper: plane(reach(near, far)).upper };
             corners[1][axis] = Interval {
-                lower: plane(cells - reach(far, near)).lower,
-                upper: plane(cells - self.outer[far]).upper,
+                lower: plane(cells.saturating_sub(reach(far, near))).lower,
+                upper: plane(cells.saturating_sub(self.outer[far])).upper,
             };
         }
         Some(corners)

@@ -379,6 +379,8 @@ impl<'s, A: Solid, B: Solid> Search<'s, A, B> {
         let cube = Cube { frame: self.frame, cell: pair.cell };
         let (of_a, likely_a) = self.a.split(&cube, &pair.a)?;
         if of_a.iter().all(Option::is_none) {
+            // The other one need not be split, and is not.
+            self.left += pair.b.is_part() as u64;
             return Ok(());
         }
         let (of_b, likely_b) = self.b.split(&cube, &pair.b)?;
