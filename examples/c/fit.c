@@ -12,13 +12,13 @@
 
 enum { POSITIONS = 9, DEPTH = 12 };
 
-/* A block of 120 with a bore of radius 20.5 and, a little off its axis, a narrower one for the end of the shaft. */
+/* A block of 120 with a bore of radius 22, and below it a narrower one for the end of the shaft. */
 static leafless_status housing(leafless_solid **result) {
     const double low[3] = {-60, -60, -60}, high[3] = {60, 60, 60};
     leafless_solid *block = NULL, *bore = NULL, *seat = NULL, *both = NULL;
     leafless_status s = leafless_solid_new_box(low, high, &block);
-    if (!s) s = leafless_solid_new_cylinder(20.5, -20, 61, &bore);
-    if (!s) s = leafless_solid_new_cylinder(12, -61, -20, &seat);
+    if (!s) s = leafless_solid_new_cylinder(22, -20, 61, &bore);
+    if (!s) s = leafless_solid_new_cylinder(13, -61, -20, &seat);
     if (!s) {
         const leafless_solid *holes[2];
         holes[0] = bore, holes[1] = seat;
@@ -54,7 +54,7 @@ int main(void) {
     leafless_options options;
     leafless_status s = leafless_options_init(&options, sizeof options);
     int i;
-    options.max_splits = 20000; /* for each question */
+    options.max_splits = 200000; /* for each question */
     if (!s) s = housing(&fixed);
     if (!s) s = leafless_solid_measure(fixed, &frame, 0.02, NULL, &measures);
     if (!s) {
@@ -64,7 +64,7 @@ int main(void) {
     }
     for (i = 0; !s && i < POSITIONS; i++) {
         /* Lowered until it rests on the step at z = -20, and beyond, a little askew in the end. */
-        const double height = 60 - 10 * i, slope = i == POSITIONS - 2 ? 0.01 : 0;
+        const double height = 60 - 10 * i, slope = i == POSITIONS - 2 ? 0.05 : 0;
         leafless_interference found;
         leafless_clearance near;
         s = shaft(slope, height, &moving);

@@ -2,10 +2,10 @@
 
 use crate::failure::{Failure, Of};
 use crate::input::Input;
-use crate::model::{frame_of, read_scene};
 use crate::output::{self, Output, count, number, seconds};
 use crate::progress::watched;
 use crate::report::Info;
+use crate::scene::{frame_of, read_scene};
 use crate::voxelize::{RuleName, bounds, name_of, threads};
 use clap::{Args, ValueEnum};
 use leafless::{Counted, Frame, Metadata, Octree, Touch, build};

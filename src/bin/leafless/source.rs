@@ -3,8 +3,8 @@
 use crate::failure::{Failure, Of};
 use crate::input::Input;
 use crate::mesh::{Reading, openness};
-use crate::model::{bounds_of, read_scene};
 use crate::output;
+use crate::scene::{bounds_of, read_scene};
 use leafless::file::{MeshFormat, Scene};
 use leafless::{Affine, AnySolid, FillRule, Frame, MeshSolid, Octree, Transform, TriangleMesh, file};
 use std::path::Path;

@@ -3,6 +3,7 @@
 use super::Join;
 use super::bounds::Sides;
 use crate::octree::Tag;
+use alloc::vec::Vec;
 
 /// The verdicts of eight cells: bit k of `lower` says that cell k is surely solid, of `upper` that it is possibly.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -48,7 +49,15 @@ impl Kleene {
         self.upper & !self.lower
     }
 
-    pub(super) fn join(join: Join, operands: &[Kleene]) -> Kleene {
+    /// Takes the last `count` operands, and joins them.
+    pub(super) fn join_last(operands: &mut Vec<Kleene>, join: Join, count: u32) -> Kleene {
+        let first = operands.len() - count as usize;
+        let kleene = Kleene::join(join, &operands[first..]);
+        operands.truncate(first);
+        kleene
+    }
+
+    fn join(join: Join, operands: &[Kleene]) -> Kleene {
         let fold = |start, step: fn(Kleene, Kleene) -> Kleene| operands.iter().copied().fold(start, step);
         match join {
             Join::Intersection => fold(Kleene::FULL, Kleene::and),

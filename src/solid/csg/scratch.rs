@@ -266,10 +266,7 @@ impl CsgScratch {
                 }
                 Op::Unknown => Kleene::UNKNOWN,
                 Op::Join { join, complement, count } => {
-                    let first = operands.len() - count as usize;
-                    let kleene = Kleene::join(join, &operands[first..]).complemented(complement);
-                    operands.truncate(first);
-                    kleene
+                    Kleene::join_last(operands, join, count).complemented(complement)
                 }
                 Op::Primitive { count } => {
                     let first = i - count as usize;
@@ -453,17 +450,9 @@ impl CsgScratch {
                 }
                 Op::Unknown => Kleene::UNKNOWN,
                 Op::Join { join, complement, count } => {
-                    let first = operands.len() - count as usize;
-                    let kleene = Kleene::join(join, &operands[first..]).complemented(complement);
-                    operands.truncate(first);
-                    kleene
+                    Kleene::join_last(operands, join, count).complemented(complement)
                 }
-                Op::Primitive { count } => {
-                    let first = operands.len() - count as usize;
-                    let kleene = Kleene::join(Join::Intersection, &operands[first..]);
-                    operands.truncate(first);
-                    kleene
-                }
+                Op::Primitive { count } => Kleene::join_last(operands, Join::Intersection, count),
             };
             operands.push(kleene);
         }
