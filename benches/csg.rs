@@ -10,28 +10,32 @@
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use leafless::{
-    Cell, Control, Csg, CsgPart, CsgScratch, Cube, Error, Frame, HalfSpace, Rule, Solid, Verdict, build,
+    Cell, Classifier, Control, Csg, Error, Frame, HalfSpace, Rule, Solid, Verdict, Worker, build,
 };
 use std::hint::black_box;
 
 #[path = "peers/src/scene.rs"]
 mod scene;
 
+type CsgWorker = <<Csg as Solid>::Classifier as Classifier>::Worker;
+type CsgPart = <CsgWorker as Worker>::Part;
+
 fn universe(depth: u8) -> Frame {
     Frame::new([-1.0; 3], 2.0, depth).expect("a good frame")
 }
 
 /// The PARTIAL cells of a level.
-fn partial(solid: &Csg, frame: &Frame, level: u8) -> (CsgScratch, Vec<(Cell, CsgPart)>) {
-    let mut scratch = CsgScratch::default();
-    let mut cells = match solid.root(&mut scratch, frame).expect("a root") {
+fn partial(solid: &Csg, frame: &Frame, level: u8) -> (CsgWorker, Vec<(Cell, CsgPart)>) {
+    let classifier = solid.on(frame, &Control::threads(1)).expect("an expression on the frame");
+    let mut worker = classifier.worker().expect("a worker");
+    let mut cells = match worker.root().expect("a root") {
         Verdict::Partial(part) => vec![(Cell::ROOT, part)],
         _ => Vec::new(),
     };
     for _ in 0..level {
         let mut next = Vec::new();
         for (cell, part) in cells {
-            let children = solid.split(&mut scratch, &Cube { frame, cell }, &part).expect("a split");
+            let children = worker.split(cell, &part).expect("a split");
             next.extend((0..8).zip(children).filter_map(|(k, child)| match child {
                 Verdict::Partial(part) => Some((cell.child(k), part)),
                 _ => None,
@@ -39,7 +43,7 @@ fn partial(solid: &Csg, frame: &Frame, level: u8) -> (CsgScratch, Vec<(Cell, Csg
         }
         cells = next;
     }
-    (scratch, cells)
+    (worker, cells)
 }
 
 fn splits(c: &mut Criterion) {
@@ -56,12 +60,12 @@ fn splits(c: &mut Criterion) {
     let frame = universe(9);
     for (name, solid) in kinds {
         let solid = solid.expect("a good half-space");
-        let (mut scratch, cells) = partial(&solid, &frame, 8);
+        let (mut worker, cells) = partial(&solid, &frame, 8);
         group.throughput(Throughput::Elements(cells.len() as u64));
         group.bench_function(name, |b| {
             b.iter(|| {
                 let split = |&(cell, part): &(Cell, CsgPart)| {
-                    let children = solid.split(&mut scratch, &Cube { frame: &frame, cell }, &part);
+                    let children = worker.split(cell, &part);
                     matches!(children.expect("a split")[3], Verdict::Partial(_)) as usize
                 };
                 cells.iter().map(split).sum::<usize>()

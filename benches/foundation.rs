@@ -63,7 +63,7 @@ fn frame(mesh: &TriangleMesh) -> Frame {
 }
 
 fn octree(mesh: &Arc<TriangleMesh>, frame: &Frame, rule: Rule) -> Octree {
-    let solid = MeshSolid::new(mesh.clone(), frame, FillRule::NonZero).expect("a mesh");
+    let solid = MeshSolid::new(mesh.clone(), FillRule::NonZero).expect("a mesh");
     build(&solid, frame, rule, &Control::threads(1)).expect("an octree")
 }
 
@@ -99,7 +99,7 @@ fn large(c: &mut Criterion) {
                 b.iter_batched(
                     fresh,
                     |mesh| {
-                        let solid = MeshSolid::new(mesh, &frame, FillRule::NonZero).expect("a mesh");
+                        let solid = MeshSolid::new(mesh, FillRule::NonZero).expect("a mesh");
                         build(&solid, &frame, rule, &Control::threads(threads)).expect("an octree")
                     },
                     BatchSize::PerIteration,

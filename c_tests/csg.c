@@ -124,6 +124,189 @@ static void other_primitives(void) {
     FAILS(LEAFLESS_E_ARGUMENT, leafless_solid_new_convex(NULL, 0, &a));
 }
 
+static leafless_solid *placed(const leafless_solid *operand, const double *matrix, leafless_motion expected) {
+    leafless_solid *solid = NULL;
+    leafless_motion motion = 77;
+    OK(leafless_solid_placed(operand, matrix, &motion, &solid));
+    CHECK(motion == expected);
+    return solid;
+}
+
+/* The inner and outer bounds of a solid's volume have one value. */
+static void has_exactly(leafless_solid *solid, double truth) {
+    const leafless_statistics found = statistics_of(solid, LEAFLESS_RULE_CERTIFIED);
+    CHECK(found.volume_model.lower == truth && found.volume_model.upper == truth);
+    leafless_solid_free(solid);
+}
+
+static leafless_solid *joined(leafless_status (*join)(const leafless_solid *const *, uint64_t, leafless_solid **),
+                              const leafless_solid *a, const leafless_solid *b) {
+    const leafless_solid *parts[2];
+    leafless_solid *solid = NULL;
+    parts[0] = a, parts[1] = b;
+    OK(join(parts, 2, &solid));
+    return solid;
+}
+
+/* What is told about moving a solid of each kind, and of all of them in one; and where they are then. */
+static void motions(void) {
+    /* A quarter turn about x, half the size, and an offset of whole cells. */
+    const double exact[12] = {0.5, 0, 0, 0.25, 0, 0, -0.5, 0.5, 0, 0.5, 0, -0.75};
+    /* Turned by the angle whose cosine is 0.8, half the size, moved. */
+    const double turn[12] = {0.4, -0.3, 0, 0.2, 0.3, 0.4, 0, -0.1, 0, 0, 0.5, 0.3};
+    const double low[3] = {-1, -1, -1}, high[3] = {1, 1, 1}, above[3] = {0.25, 0.25, 0.55};
+    const double outside[3] = {-1.5, 1.5, 1.5};
+    const double ends[2][3] = {{-1.5, -0.5, -0.5}, {-1.25, 0.5, 0.5}};
+    leafless_mesh *mesh = check_cube();
+    leafless_octree *octree = NULL, *direct = NULL, *moved = NULL;
+    leafless_solid *box = NULL, *end = NULL, *meshed = NULL, *stored = NULL, *two = NULL, *all = NULL, *not_all = NULL;
+    leafless_solid *a = NULL, *b = NULL;
+    leafless_membership answers[2];
+    OK(leafless_solid_new_box(low, high, &box));
+    OK(leafless_solid_new_box(ends[0], ends[1], &end));
+    OK(leafless_solid_new_mesh(mesh, LEAFLESS_FILL_NON_ZERO, &meshed));
+    leafless_mesh_free(mesh);
+    OK(leafless_octree_build(end, &frame, LEAFLESS_RULE_CERTIFIED, NULL, &octree));
+    OK(leafless_octree_as_solid(octree, &stored));
+    leafless_octree_free(octree);
+
+    /* Where no number is rounded and cells are the images of cells, each is moved without loss. */
+    has_exactly(placed(box, exact, LEAFLESS_MOTION_EXACT), 1);
+    has_volume(placed(meshed, exact, LEAFLESS_MOTION_VERTICES), 0.125);
+    has_exactly(placed(stored, exact, LEAFLESS_MOTION_CONSERVATIVE), 0.25 / 8);
+    a = placed(stored, exact, LEAFLESS_MOTION_CONSERVATIVE);
+    b = placed(end, exact, LEAFLESS_MOTION_EXACT);
+    OK(leafless_octree_build(a, &frame, LEAFLESS_RULE_CERTIFIED, NULL, &moved));
+    OK(leafless_octree_build(b, &frame, LEAFLESS_RULE_CERTIFIED, NULL, &direct));
+    CHECK(check_same(moved, direct));
+    leafless_octree_free(moved);
+    leafless_octree_free(direct);
+    leafless_solid_free(a);
+    leafless_solid_free(b);
+    /* The moved mesh is the cube [0, 1]^3 under the map. */
+    {
+        const double cube_low[3] = {0.25, 0, -0.75}, cube_high[3] = {0.75, 0.5, -0.25};
+        a = placed(meshed, exact, LEAFLESS_MOTION_VERTICES);
+        OK(leafless_solid_new_box(cube_low, cube_high, &b));
+        OK(leafless_octree_build(a, &frame, LEAFLESS_RULE_SAMPLED, NULL, &moved));
+        OK(leafless_octree_build(b, &frame, LEAFLESS_RULE_SAMPLED, NULL, &direct));
+        CHECK(check_same(moved, direct));
+        leafless_octree_free(moved);
+        leafless_octree_free(direct);
+        leafless_solid_free(b);
+        /* Moved again it is a mesh still. */
+        has_volume(placed(a, turn, LEAFLESS_MOTION_VERTICES), 1.0 / 64);
+        leafless_solid_free(a);
+    }
+
+    /* The worst of all parts is told, under whatever joins them. */
+    two = joined(leafless_solid_union, box, meshed);
+    all = joined(leafless_solid_union, two, stored);
+    OK(leafless_solid_complement(all, &not_all));
+    has_volume(placed(box, turn, LEAFLESS_MOTION_EXACT), 1);
+    has_volume(placed(meshed, turn, LEAFLESS_MOTION_VERTICES), 0.125);
+    has_volume(placed(stored, turn, LEAFLESS_MOTION_CONSERVATIVE), 0.25 / 8);
+    has_volume(placed(two, turn, LEAFLESS_MOTION_VERTICES), 1);
+    has_volume(placed(all, turn, LEAFLESS_MOTION_CONSERVATIVE), 1 + 0.25 / 8);
+    a = placed(not_all, turn, LEAFLESS_MOTION_CONSERVATIVE);
+    b = placed(a, exact, LEAFLESS_MOTION_CONSERVATIVE);
+    OK(leafless_solid_contains(a, &frame, above, 1, NULL, answers));
+    OK(leafless_solid_contains(a, &frame, outside, 1, NULL, answers + 1));
+    CHECK(answers[0] == LEAFLESS_MEMBERSHIP_OUTSIDE && answers[1] == LEAFLESS_MEMBERSHIP_INSIDE);
+    leafless_solid_free(b);
+    leafless_solid_free(a);
+    /* Nobody has to hear of it. */
+    OK(leafless_solid_placed(all, turn, NULL, &a));
+    leafless_solid_free(all);
+    leafless_solid_free(two);
+    has_volume(a, 1 + 0.25 / 8);
+    leafless_solid_free(not_all);
+    leafless_solid_free(stored);
+    leafless_solid_free(meshed);
+    leafless_solid_free(end);
+    leafless_solid_free(box);
+}
+
+static uint64_t evaluations_of(const leafless_solid *solid) {
+    uint64_t count = UINT64_MAX;
+    OK(leafless_solid_evaluations(solid, &count));
+    return count;
+}
+
+static void build_alone(const leafless_solid *solid) {
+    leafless_options options;
+    leafless_octree *octree = NULL;
+    OK(leafless_options_init(&options, sizeof options));
+    options.threads = 1;
+    OK(leafless_octree_build(solid, &frame, LEAFLESS_RULE_CERTIFIED, &options, &octree));
+    leafless_octree_free(octree);
+}
+
+/* Each expression counts what is evaluated for it, and nothing else. */
+static void evaluations(void) {
+    const double low[3] = {-1, -1, -1}, high[3] = {1, 1, 1}, at[3] = {0.3, 0.2, 0.95};
+    leafless_solid *box = NULL, *round = ball(1.125), *both, *again, *other = NULL, *reference = NULL;
+    leafless_mesh *mesh = check_cube();
+    leafless_octree *octree = NULL;
+    leafless_membership answer;
+    leafless_region region;
+    leafless_interference overlap;
+    leafless_measures measures;
+    uint64_t built, asked;
+    OK(leafless_solid_new_box(low, high, &box));
+    both = joined(leafless_solid_intersection, box, round);
+    again = joined(leafless_solid_intersection, box, round);
+    CHECK(evaluations_of(both) == 0 && evaluations_of(box) == 0);
+    build_alone(both);
+    built = evaluations_of(both);
+    CHECK(built > 1000 && evaluations_of(box) == 0 && evaluations_of(round) == 0 && evaluations_of(again) == 0);
+    /* The same work is the same count; on the same frame a second time, at most that. */
+    build_alone(again);
+    CHECK(evaluations_of(again) == built);
+    build_alone(both);
+    asked = evaluations_of(both);
+    CHECK(asked > built && asked <= 2 * built);
+    /* References are one solid. */
+    OK(leafless_solid_ref(both, &reference));
+    OK(leafless_solid_contains(reference, &frame, at, 1, NULL, &answer));
+    CHECK(answer == LEAFLESS_MEMBERSHIP_INSIDE && evaluations_of(both) > asked);
+    CHECK(evaluations_of(both) - asked < 1000 && evaluations_of(reference) == evaluations_of(both));
+    leafless_solid_free(reference);
+    asked = evaluations_of(both);
+    OK(leafless_solid_classify_box(both, &frame, low, at, NULL, &region));
+    CHECK(region == LEAFLESS_REGION_CROSSING && evaluations_of(both) > asked);
+    asked = evaluations_of(both);
+    OK(leafless_solid_measure(both, &frame, 0.1, NULL, &measures));
+    CHECK(evaluations_of(both) > asked);
+    asked = evaluations_of(both);
+    OK(leafless_solid_interfere(both, round, &frame, 0, NULL, &overlap));
+    CHECK(evaluations_of(both) > asked && evaluations_of(round) > 0 && evaluations_of(box) == 0);
+    /* What is moved, joined or taken for a part counts for itself. */
+    asked = evaluations_of(both);
+    OK(leafless_solid_complement(both, &other));
+    (void)statistics_of(other, LEAFLESS_RULE_CERTIFIED);
+    CHECK(evaluations_of(both) == asked && evaluations_of(other) > 1000);
+    leafless_solid_free(other);
+
+    /* Solids of other kinds have none to count. */
+    OK(leafless_solid_new_mesh(mesh, LEAFLESS_FILL_NON_ZERO, &other));
+    (void)statistics_of(other, LEAFLESS_RULE_CERTIFIED);
+    CHECK(evaluations_of(other) == 0);
+    leafless_solid_free(other);
+    OK(leafless_octree_build(both, &frame, LEAFLESS_RULE_CERTIFIED, NULL, &octree));
+    OK(leafless_octree_as_solid(octree, &other));
+    asked = evaluations_of(both);
+    (void)statistics_of(other, LEAFLESS_RULE_CERTIFIED);
+    CHECK(evaluations_of(other) == 0 && evaluations_of(both) == asked);
+    leafless_solid_free(other);
+    leafless_octree_free(octree);
+    leafless_mesh_free(mesh);
+    leafless_solid_free(again);
+    leafless_solid_free(both);
+    leafless_solid_free(round);
+    leafless_solid_free(box);
+}
+
 int main(void) {
     const double pi = 3.14159265358979323846;
     const double low[3] = {-1, -1, -1}, high[3] = {1, 1, 1}, radii[3] = {1, 1.5, 0.5};
@@ -139,6 +322,8 @@ int main(void) {
 
     functions();
     other_primitives();
+    motions();
+    evaluations();
     OK(leafless_solid_new_quadric(quadric, &a));
     has_volume(a, 4.0 / 3.0 * pi / sqrt(0.75));
     OK(leafless_solid_new_ellipsoid(origin, radii, &a));
@@ -167,7 +352,7 @@ int main(void) {
     parts[1] = c;
     OK(leafless_solid_intersection(parts, 2, &b));
     leafless_solid_free(c);
-    OK(leafless_solid_placed(b, matrix, &c));
+    OK(leafless_solid_placed(b, matrix, NULL, &c));
     leafless_solid_free(b);
     has_volume(c, (8 - 4.0 / 3.0 * pi) / 8);
     OK(leafless_solid_union(NULL, 0, &c));
@@ -176,7 +361,7 @@ int main(void) {
     CHECK(statistics_of(c, LEAFLESS_RULE_CERTIFIED).volume_model.lower == 64);
     leafless_solid_free(c);
 
-    /* Solids of any kind join; they cannot be placed. */
+    /* Solids of any kind join, and are placed together. */
     {
         leafless_octree *octree = NULL;
         OK(leafless_octree_build(a, &frame, LEAFLESS_RULE_CERTIFIED, NULL, &octree));
@@ -185,9 +370,10 @@ int main(void) {
         c = ball(1);
         OK(leafless_solid_difference(b, c, &deep));
         leafless_solid_free(c);
-        FAILS(LEAFLESS_E_ARGUMENT, leafless_solid_placed(deep, matrix, &c));
         leafless_solid_free(b);
+        b = placed(deep, matrix, LEAFLESS_MOTION_CONSERVATIVE);
         has_volume(deep, 8 - 4.0 / 3.0 * pi);
+        has_volume(b, (8 - 4.0 / 3.0 * pi) / 8);
     }
 
     /* A chain of a hundred thousand is freed and built without recursion. */
@@ -221,7 +407,7 @@ int main(void) {
     CHECK(statistics_of(b, LEAFLESS_RULE_SAMPLED).partial == 0);
     leafless_solid_free(c);
 
-    FAILS(LEAFLESS_E_ARGUMENT, leafless_solid_placed(b, singular, &c));
+    FAILS(LEAFLESS_E_ARGUMENT, leafless_solid_placed(b, singular, NULL, &c));
     FAILS(LEAFLESS_E_ARGUMENT, leafless_solid_new_cylinder(0, 0, 1, &c));
     FAILS(LEAFLESS_E_ARGUMENT, leafless_solid_new_cylinder(1, 1, 1, &c));
     FAILS(LEAFLESS_E_ARGUMENT, leafless_solid_new_cylinder(NAN, 0, 1, &c));

@@ -36,6 +36,14 @@ static int32_t gives_up(void *ctx, const uint8_t *bytes, uint64_t count) {
     return -4711;
 }
 
+static int32_t knows_nothing(void *ctx, const double *points, uint64_t count, double *distances) {
+    (void)ctx;
+    (void)points;
+    (void)count;
+    (void)distances;
+    return -815;
+}
+
 static int32_t stops(void *ctx, double fraction) {
     (void)ctx;
     (void)fraction;
@@ -176,7 +184,7 @@ static leafless_status open_sheet(void) {
         status = leafless_mesh_describe(mesh, &report);
     }
     if (status == LEAFLESS_OK) {
-        status = leafless_solid_new_mesh(mesh, &frame, LEAFLESS_FILL_NON_ZERO, &solid);
+        status = leafless_solid_new_mesh(mesh, LEAFLESS_FILL_NON_ZERO, &solid);
     }
     if (status == LEAFLESS_OK) {
         status = leafless_octree_build(solid, &frame, LEAFLESS_RULE_CERTIFIED, &options, &octree);
@@ -263,6 +271,27 @@ int main(int argc, char **argv) {
 
     FAILS(LEAFLESS_E_FRAME, leafless_octree_union(ball, finer, NULL, &octree));
     failed(LEAFLESS_E_FRAME, "LEAFLESS_E_FRAME", "different frames");
+    {
+        /* A stored octree is known on its own universe only, whatever it is asked; a mesh on any. */
+        const leafless_frame apart = {{0, 0, 0}, 1, 4};
+        const double centre[3] = {0.5, 0.5, 0.5}, corner[3] = {0.75, 0.75, 0.75};
+        leafless_solid *stored = NULL, *meshed = NULL;
+        leafless_membership membership = 77;
+        leafless_region region = 77;
+        OK(leafless_octree_as_solid(ball, &stored));
+        FAILS(LEAFLESS_E_FRAME, leafless_octree_build(stored, &apart, LEAFLESS_RULE_CERTIFIED, NULL, &octree));
+        FAILS(LEAFLESS_E_FRAME, leafless_solid_contains(stored, &apart, centre, 1, NULL, &membership));
+        FAILS(LEAFLESS_E_FRAME, leafless_solid_classify_box(stored, &apart, centre, corner, NULL, &region));
+        failed(LEAFLESS_E_FRAME, "LEAFLESS_E_FRAME", "different frames");
+        CHECK(region == 77);
+        OK(leafless_solid_new_mesh(cube, LEAFLESS_FILL_NON_ZERO, &meshed));
+        OK(leafless_solid_contains(meshed, &apart, centre, 1, NULL, &membership));
+        CHECK(membership == LEAFLESS_MEMBERSHIP_INSIDE);
+        OK(leafless_solid_classify_box(meshed, &other, centre, corner, NULL, &region));
+        CHECK(region == LEAFLESS_REGION_INSIDE);
+        leafless_solid_free(meshed);
+        leafless_solid_free(stored);
+    }
 
     FAILS(LEAFLESS_E_NOT_SAMPLED, leafless_octree_resolve(ball, LEAFLESS_RULE_SAMPLED, NULL, &octree));
     failed(LEAFLESS_E_NOT_SAMPLED, "LEAFLESS_E_NOT_SAMPLED", "single points");
@@ -280,9 +309,27 @@ int main(int argc, char **argv) {
         failed(LEAFLESS_E_MESH, "LEAFLESS_E_MESH", "triangle 0 refers to vertex 8");
         FAILS(LEAFLESS_E_MESH, leafless_mesh_check_closed(open, LEAFLESS_FILL_EVEN_ODD));
         failed(LEAFLESS_E_MESH, "LEAFLESS_E_MESH", "3 edges");
-        FAILS(LEAFLESS_E_MESH, leafless_solid_new_mesh(open, &frame, LEAFLESS_FILL_EVEN_ODD, &none));
-        CHECK(none == NULL);
+        FAILS(LEAFLESS_E_MESH, leafless_solid_new_mesh(open, LEAFLESS_FILL_EVEN_ODD, &none));
         leafless_mesh_free(open);
+        {
+            /* Moved beyond the numbers that meshes may have, which end at 2^256. */
+            const double larger[12] = {0x1p60, 0, 0, 0, 0, 0x1p60, 0, 0, 0, 0, 0x1p60, 0};
+            leafless_solid *rest = NULL, *moved = NULL;
+            leafless_motion motion = 77;
+            int i;
+            OK(leafless_solid_new_mesh(cube, LEAFLESS_FILL_NON_ZERO, &rest));
+            for (i = 0; i < 4; i++) {
+                OK(leafless_solid_placed(rest, larger, NULL, &moved));
+                leafless_solid_free(rest);
+                rest = moved;
+                moved = NULL;
+            }
+            FAILS(LEAFLESS_E_MESH, leafless_solid_placed(rest, larger, &motion, &moved));
+            failed(LEAFLESS_E_MESH, "LEAFLESS_E_MESH", "vertex");
+            CHECK(moved == NULL && motion == 77);
+            leafless_solid_free(rest);
+        }
+        CHECK(none == NULL);
     }
 
     FAILS(LEAFLESS_E_MESH_FILE, leafless_mesh_from_bytes((const uint8_t *)"solid\nfacet normal 0 0 0\nouter hoop\n", 36,
@@ -384,6 +431,27 @@ int main(int argc, char **argv) {
     options.progress = stops;
     FAILS(LEAFLESS_E_CANCELLED, leafless_octree_build(solid, &other, LEAFLESS_RULE_CERTIFIED, &options, &octree));
 
+    {
+        /* Whoever asks a solid can be stopped, and hears of the host's own errors. */
+        const double at[3] = {0.7, 0.2, 0.1}, beside[3] = {0.8, 0.3, 0.2};
+        leafless_callbacks callbacks;
+        leafless_solid *host = NULL;
+        leafless_membership membership = 77;
+        leafless_region region = 77;
+        options.progress = NULL;
+        options.control = control;
+        FAILS(LEAFLESS_E_CANCELLED, leafless_solid_contains(solid, &other, at, 1, &options, &membership));
+        FAILS(LEAFLESS_E_CANCELLED, leafless_solid_classify_box(solid, &other, at, beside, &options, &region));
+        OK(leafless_callbacks_init(&callbacks, sizeof callbacks));
+        callbacks.distance_many = knows_nothing;
+        OK(leafless_solid_new_callbacks(&callbacks, &host));
+        FAILS(LEAFLESS_E_CALLBACK, leafless_solid_contains(host, &other, at, 1, NULL, &membership));
+        failed(LEAFLESS_E_CALLBACK, "LEAFLESS_E_CALLBACK", "-815");
+        FAILS(LEAFLESS_E_CALLBACK, leafless_solid_classify_box(host, &other, at, beside, NULL, &region));
+        failed(LEAFLESS_E_CALLBACK, "LEAFLESS_E_CALLBACK", "-815");
+        CHECK(region == 77);
+        leafless_solid_free(host);
+    }
     FAILS(LEAFLESS_E_CALLBACK, leafless_octree_write(ball, gives_up, NULL));
     failed(LEAFLESS_E_CALLBACK, "LEAFLESS_E_CALLBACK", "-4711");
 

@@ -130,14 +130,35 @@ static void solids(void) {
     leafless_solid_free(solid);
 
     /* A solid keeps its mesh. */
-    OK(leafless_solid_new_mesh(mesh, &frame, LEAFLESS_FILL_NON_ZERO, &solid));
+    OK(leafless_solid_new_mesh(mesh, LEAFLESS_FILL_NON_ZERO, &solid));
     leafless_mesh_free(mesh);
     OK(leafless_solid_ref(solid, &reference));
     CHECK(reference == solid);
     leafless_solid_free(solid);
     OK(leafless_octree_build(reference, &frame, LEAFLESS_RULE_SAMPLED, NULL, &cube));
-    leafless_solid_free(reference);
     CHECK(check_same(box, cube));
+    /* It answers by itself, on any frame, and can be moved. */
+    {
+        const leafless_frame deep = {{-4, -4, -4}, 16, 20};
+        const double at[2][3] = {{0.5, 0.5, 0.999}, {0.5, 0.5, 1.001}}, matrix[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 9};
+        leafless_membership answers[2];
+        leafless_region region;
+        leafless_motion motion;
+        leafless_solid *moved = NULL;
+        uint64_t evaluations = 77;
+        OK(leafless_solid_contains(reference, &deep, at[0], 2, NULL, answers));
+        CHECK(answers[0] == LEAFLESS_MEMBERSHIP_INSIDE && answers[1] == LEAFLESS_MEMBERSHIP_OUTSIDE);
+        OK(leafless_solid_classify_box(reference, &frame, min, max, NULL, &region));
+        CHECK(region == LEAFLESS_REGION_INSIDE);
+        OK(leafless_solid_placed(reference, matrix, &motion, &moved));
+        CHECK(motion == LEAFLESS_MOTION_VERTICES);
+        OK(leafless_solid_contains(moved, &deep, at[0], 2, NULL, answers));
+        CHECK(answers[0] == LEAFLESS_MEMBERSHIP_OUTSIDE && answers[1] == LEAFLESS_MEMBERSHIP_OUTSIDE);
+        OK(leafless_solid_evaluations(moved, &evaluations));
+        CHECK(evaluations == 0);
+        leafless_solid_free(moved);
+    }
+    leafless_solid_free(reference);
 
     OK(leafless_solid_new_halfspace(up, 0.5, &solid));
     OK(leafless_octree_build(solid, &frame, LEAFLESS_RULE_INNER, NULL, &half));

@@ -223,6 +223,11 @@ fn measures() {
 }
 
 #[test]
+fn probes() {
+    run("probe", C99, Link::Static, &[]);
+}
+
+#[test]
 fn options() {
     run("options", C99, Link::Static, &[]);
 }

@@ -51,6 +51,16 @@ static int32_t classify(void *ctx, const double *min, const double *max) {
     return min[0] >= 0.0 ? LEAFLESS_TAG_FULL : max[0] <= 0.0 ? LEAFLESS_TAG_EMPTY : LEAFLESS_TAG_PARTIAL;
 }
 
+static int32_t classify_many(void *ctx, const double *boxes, uint64_t count, int32_t *tags) {
+    (void)ctx, (void)boxes, (void)count, (void)tags;
+    return 0;
+}
+
+static int32_t distance_many(void *ctx, const double *points, uint64_t count, double *distances) {
+    (void)ctx, (void)points, (void)count, (void)distances;
+    return 0;
+}
+
 static int32_t value(void *ctx, const double *at, double *result) {
     (void)ctx;
     *result = at[0];
@@ -271,9 +281,13 @@ static void null_pointers(void) {
     NULL_POINTER(leafless_solid_intersection, solid, leafless_solid_intersection(NULL, 0, NULL));
     NULL_POINTER(leafless_solid_xor, solids, leafless_solid_xor(NULL, 1, solid_result));
     NULL_POINTER(leafless_solid_xor, solid, leafless_solid_xor(NULL, 0, NULL));
-    NULL_POINTER(leafless_solid_placed, operand, leafless_solid_placed(NULL, matrix, solid_result));
-    NULL_POINTER(leafless_solid_placed, matrix, leafless_solid_placed(solid, NULL, solid_result));
-    NULL_POINTER(leafless_solid_placed, solid, leafless_solid_placed(solid, matrix, NULL));
+    NULL_POINTER(leafless_solid_placed, operand,
+                 leafless_solid_placed(NULL, matrix, (leafless_motion *)out, solid_result));
+    NULL_POINTER(leafless_solid_placed, matrix,
+                 leafless_solid_placed(solid, NULL, (leafless_motion *)out, solid_result));
+    NULL_POINTER(leafless_solid_placed, solid, leafless_solid_placed(solid, matrix, (leafless_motion *)out, NULL));
+    NULL_POINTER(leafless_solid_evaluations, solid, leafless_solid_evaluations(NULL, (uint64_t *)out));
+    NULL_POINTER(leafless_solid_evaluations, evaluations, leafless_solid_evaluations(solid, NULL));
     NULL_POINTER(leafless_solid_new_transform, operand,
                  leafless_solid_new_transform(NULL, &frame, matrix, solid_result));
     NULL_POINTER(leafless_solid_new_transform, own, leafless_solid_new_transform(solid, NULL, matrix, solid_result));
@@ -328,14 +342,21 @@ static void null_pointers(void) {
     NULL_POINTER(leafless_solid_new_scene, solid, leafless_solid_new_scene(scene, &frame, NULL));
     leafless_scene_free(scene);
     leafless_scene_free(NULL);
-    NULL_POINTER(leafless_solid_new_mesh, mesh, leafless_solid_new_mesh(NULL, &frame, 0, solid_result));
-    NULL_POINTER(leafless_solid_new_mesh, frame, leafless_solid_new_mesh(mesh, NULL, 0, solid_result));
-    NULL_POINTER(leafless_solid_new_mesh, solid, leafless_solid_new_mesh(mesh, &frame, 0, NULL));
+    NULL_POINTER(leafless_solid_new_mesh, mesh, leafless_solid_new_mesh(NULL, 0, solid_result));
+    NULL_POINTER(leafless_solid_new_mesh, solid, leafless_solid_new_mesh(mesh, 0, NULL));
     NULL_POINTER(leafless_solid_new_callbacks, callbacks, leafless_solid_new_callbacks(NULL, solid_result));
     NULL_POINTER(leafless_solid_new_callbacks, solid, leafless_solid_new_callbacks(&callbacks, NULL));
     callbacks.classify = NULL;
     refused(LEAFLESS_E_NULL, "leafless_solid_new_callbacks", "callbacks.classify",
             leafless_solid_new_callbacks(&callbacks, solid_result));
+    callbacks.classify_many = classify_many;
+    refused(LEAFLESS_E_NULL, "leafless_solid_new_callbacks", "callbacks.classify",
+            leafless_solid_new_callbacks(&callbacks, solid_result));
+    callbacks.distance_many = distance_many;
+    refused(LEAFLESS_E_NULL, "leafless_solid_new_callbacks", "callbacks.classify",
+            leafless_solid_new_callbacks(&callbacks, solid_result));
+    callbacks.classify_many = NULL;
+    NULL_POINTER(leafless_solid_new_callbacks, solid, leafless_solid_new_callbacks(&callbacks, NULL));
     NULL_POINTER(leafless_octree_as_solid, octree, leafless_octree_as_solid(NULL, solid_result));
     NULL_POINTER(leafless_octree_as_solid, solid, leafless_octree_as_solid(octree, NULL));
     NULL_POINTER(leafless_solid_ref, solid, leafless_solid_ref(NULL, solid_result));
@@ -440,6 +461,26 @@ static void null_pointers(void) {
     NULL_POINTER(leafless_octree_classify_box, max_model,
                  leafless_octree_classify_box(octree, point, NULL, (leafless_region *)out));
     NULL_POINTER(leafless_octree_classify_box, region, leafless_octree_classify_box(octree, point, above, NULL));
+    NULL_POINTER(leafless_solid_contains, solid,
+                 leafless_solid_contains(NULL, &frame, point, 1, NULL, (leafless_membership *)out));
+    NULL_POINTER(leafless_solid_contains, solid, leafless_solid_contains(NULL, &frame, NULL, 0, NULL, NULL));
+    NULL_POINTER(leafless_solid_contains, frame,
+                 leafless_solid_contains(solid, NULL, point, 1, NULL, (leafless_membership *)out));
+    NULL_POINTER(leafless_solid_contains, frame, leafless_solid_contains(solid, NULL, NULL, 0, NULL, NULL));
+    NULL_POINTER(leafless_solid_contains, points_model,
+                 leafless_solid_contains(solid, &frame, NULL, 1, NULL, (leafless_membership *)out));
+    NULL_POINTER(leafless_solid_contains, memberships,
+                 leafless_solid_contains(solid, &frame, point, 1, NULL, NULL));
+    NULL_POINTER(leafless_solid_classify_box, solid,
+                 leafless_solid_classify_box(NULL, &frame, point, above, NULL, (leafless_region *)out));
+    NULL_POINTER(leafless_solid_classify_box, frame,
+                 leafless_solid_classify_box(solid, NULL, point, above, NULL, (leafless_region *)out));
+    NULL_POINTER(leafless_solid_classify_box, min_model,
+                 leafless_solid_classify_box(solid, &frame, NULL, above, NULL, (leafless_region *)out));
+    NULL_POINTER(leafless_solid_classify_box, max_model,
+                 leafless_solid_classify_box(solid, &frame, point, NULL, NULL, (leafless_region *)out));
+    NULL_POINTER(leafless_solid_classify_box, region,
+                 leafless_solid_classify_box(solid, &frame, point, above, NULL, NULL));
     NULL_POINTER(leafless_point_cursor_new, octree, leafless_point_cursor_new(NULL, (leafless_point_cursor **)out));
     NULL_POINTER(leafless_point_cursor_new, cursor, leafless_point_cursor_new(octree, NULL));
     NULL_POINTER(leafless_point_cursor_contains, cursor,
@@ -512,6 +553,26 @@ static void null_pointers(void) {
                     leafless_solid_interfere_many(solid, solid, &frame, NULL, 0, &frame, 0, NULL, NULL));
         MAY_BE_NULL(leafless_solid_clearance, options,
                     leafless_solid_clearance(solid, solid, &frame, 1, NULL, &near));
+    }
+    {
+        leafless_membership membership;
+        leafless_region region;
+        leafless_motion motion = 77;
+        MAY_BE_NULL(leafless_solid_contains, options,
+                    leafless_solid_contains(solid, &frame, point, 1, NULL, &membership));
+        CHECK(membership == LEAFLESS_MEMBERSHIP_INSIDE);
+        MAY_BE_NULL(leafless_solid_contains, points_model,
+                    leafless_solid_contains(solid, &frame, NULL, 0, &options, &membership));
+        MAY_BE_NULL(leafless_solid_contains, memberships,
+                    leafless_solid_contains(solid, &frame, NULL, 0, &options, NULL));
+        MAY_BE_NULL(leafless_solid_classify_box, options,
+                    leafless_solid_classify_box(solid, &frame, point, above, NULL, &region));
+        CHECK(region == LEAFLESS_REGION_CROSSING);
+        MAY_BE_NULL(leafless_solid_placed, motion, leafless_solid_placed(solid, matrix, NULL, solid_result));
+        leafless_solid_free(*solid_result);
+        OK(leafless_solid_placed(solid, matrix, &motion, solid_result));
+        CHECK(motion == LEAFLESS_MOTION_EXACT);
+        leafless_solid_free(*solid_result);
     }
     NULL_POINTER(leafless_solid_measure, solid,
                  leafless_solid_measure(NULL, &frame, 0, NULL, (leafless_measures *)out));
@@ -586,6 +647,7 @@ static void misaligned(void) {
     const leafless_mesh_arrays arrays = check_arrays(CHECK_CUBE, 8, CHECK_CUBE_TRIANGLES, 12);
     const leafless_frame *bad_frame = (const leafless_frame *)WRONG(&frame);
     const leafless_octree *bad_octree = (const leafless_octree *)WRONG(octree), *list[1];
+    const double matrix[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
     uint64_t length = 0;
     uint8_t *bytes = check_bytes(octree, &length), *beside = (uint8_t *)malloc((size_t)length + 1);
     leafless_options bad_control;
@@ -680,6 +742,29 @@ static void misaligned(void) {
     MISALIGNED(leafless_octree_tag_at, cell, leafless_octree_tag_at(octree, cell, (leafless_tag *)out));
     MISALIGNED(leafless_octree_classify_box, max_model,
                leafless_octree_classify_box(octree, point, numbers, (leafless_region *)out));
+    MISALIGNED(leafless_solid_contains, solid,
+               leafless_solid_contains((leafless_solid *)WRONG(solid), &frame, point, 1, NULL,
+                                       (leafless_membership *)out));
+    MISALIGNED(leafless_solid_contains, frame,
+               leafless_solid_contains(solid, bad_frame, point, 1, NULL, (leafless_membership *)out));
+    MISALIGNED(leafless_solid_contains, points_model,
+               leafless_solid_contains(solid, &frame, numbers, 1, NULL, (leafless_membership *)out));
+    MISALIGNED(leafless_solid_classify_box, frame,
+               leafless_solid_classify_box(solid, bad_frame, point, above, NULL, (leafless_region *)out));
+    MISALIGNED(leafless_solid_classify_box, min_model,
+               leafless_solid_classify_box(solid, &frame, numbers, above, NULL, (leafless_region *)out));
+    MISALIGNED(leafless_solid_classify_box, max_model,
+               leafless_solid_classify_box(solid, &frame, point, numbers, NULL, (leafless_region *)out));
+    MISALIGNED(leafless_solid_classify_box, options,
+               leafless_solid_classify_box(solid, &frame, point, above, (leafless_options *)WRONG(&options),
+                                           (leafless_region *)out));
+    MISALIGNED(leafless_solid_evaluations, evaluations, leafless_solid_evaluations(solid, (uint64_t *)WRONG(out)));
+    MISALIGNED(leafless_solid_placed, matrix,
+               leafless_solid_placed(solid, numbers, (leafless_motion *)out, solid_result));
+    MISALIGNED(leafless_solid_placed, motion,
+               leafless_solid_placed(solid, matrix, (leafless_motion *)WRONG(out), solid_result));
+    MISALIGNED(leafless_solid_placed, solid,
+               leafless_solid_placed(solid, matrix, (leafless_motion *)out, (leafless_solid **)WRONG(out)));
     MISALIGNED(leafless_cursor_read, cursor,
                leafless_cursor_read((leafless_cursor *)WRONG(cursor), (leafless_cursor_state *)out));
     MISALIGNED(leafless_cursor_read, state, leafless_cursor_read(cursor, (leafless_cursor_state *)WRONG(out)));
@@ -727,6 +812,11 @@ static void numbers(void) {
                    leafless_solid_measure(solid, &bad, 0, NULL, (leafless_measures *)out));
         BAD_NUMBER(leafless_solid_bounding_box, depth,
                    leafless_solid_bounding_box(solid, &bad, 0, NULL, (leafless_extent *)out));
+        BAD_NUMBER(leafless_solid_contains, depth,
+                   leafless_solid_contains(solid, &bad, point, 1, NULL, (leafless_membership *)out));
+        BAD_NUMBER(leafless_solid_contains, depth, leafless_solid_contains(solid, &bad, NULL, 0, NULL, NULL));
+        BAD_NUMBER(leafless_solid_classify_box, depth,
+                   leafless_solid_classify_box(solid, &bad, point, above, NULL, (leafless_region *)out));
     }
     for (i = 0; i < COUNT(not_in_range); i++) {
         bad = frame;
@@ -736,7 +826,10 @@ static void numbers(void) {
         BAD_NUMBER(leafless_frame_cell_size, edge, leafless_frame_cell_size(&bad, (double *)out));
         BAD_NUMBER(leafless_frame_cell_of, edge, leafless_frame_cell_of(&bad, point, (uint32_t *)out));
         BAD_NUMBER(leafless_frame_plane, edge, leafless_frame_plane(&bad, 0, 0, (leafless_interval *)out));
-        BAD_NUMBER(leafless_solid_new_mesh, edge, leafless_solid_new_mesh(mesh, &bad, 0, solid_result));
+        BAD_NUMBER(leafless_solid_contains, edge,
+                   leafless_solid_contains(solid, &bad, point, 1, NULL, (leafless_membership *)out));
+        BAD_NUMBER(leafless_solid_classify_box, edge,
+                   leafless_solid_classify_box(solid, &bad, point, above, NULL, (leafless_region *)out));
         BAD_NUMBER(leafless_solid_new_ball, radius, leafless_solid_new_ball(point, not_in_range[i], solid_result));
         BAD_NUMBER(leafless_solid_new_halfspace, offset,
                    leafless_solid_new_halfspace(above, not_in_range[i], solid_result));
@@ -761,6 +854,8 @@ static void numbers(void) {
             double matrix[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
             matrix[axis] = not_finite[i];
             BAD_NUMBER(leafless_mesh_transformed, matrix, leafless_mesh_transformed(mesh, matrix, mesh_result));
+            refused(LEAFLESS_E_ARGUMENT, "leafless_solid_placed", "entry",
+                    leafless_solid_placed(solid, matrix, (leafless_motion *)out, solid_result));
         }
         for (axis = 0; axis < 3; axis++) {
             double vector[3] = {0, 0, 0};
@@ -789,6 +884,12 @@ static void numbers(void) {
                 leafless_octree_classify_box(octree, nan, above, (leafless_region *)out));
         refused(LEAFLESS_E_ARGUMENT, "leafless_octree_classify_box", "",
                 leafless_octree_classify_box(octree, point, nan, (leafless_region *)out));
+        BAD_NUMBER(leafless_solid_classify_box, min,
+                   leafless_solid_classify_box(solid, &frame, above, point, NULL, (leafless_region *)out));
+        refused(LEAFLESS_E_ARGUMENT, "leafless_solid_classify_box", "number",
+                leafless_solid_classify_box(solid, &frame, nan, above, NULL, (leafless_region *)out));
+        refused(LEAFLESS_E_ARGUMENT, "leafless_solid_classify_box", "number",
+                leafless_solid_classify_box(solid, &frame, point, nan, NULL, (leafless_region *)out));
         refused(LEAFLESS_E_ARGUMENT, "leafless_solid_new_box", "", leafless_solid_new_box(above, above, solid_result));
         refused(LEAFLESS_E_ARGUMENT, "leafless_solid_new_halfspace", "normal",
                 leafless_solid_new_halfspace(point, 1, solid_result));
@@ -801,7 +902,7 @@ static void numbers(void) {
         BAD_NUMBER(leafless_octree_build, rule, leafless_octree_build(solid, &frame, not_a_rule[i], NULL, result));
         BAD_NUMBER(leafless_octree_resolve, rule, leafless_octree_resolve(octree, not_a_rule[i], NULL, result));
         BAD_NUMBER(leafless_mesh_check_closed, fill, leafless_mesh_check_closed(mesh, not_a_rule[i] - 1));
-        BAD_NUMBER(leafless_solid_new_mesh, fill, leafless_solid_new_mesh(mesh, &frame, not_a_rule[i] - 1, solid_result));
+        BAD_NUMBER(leafless_solid_new_mesh, fill, leafless_solid_new_mesh(mesh, not_a_rule[i] - 1, solid_result));
         memset(&callbacks, 0, sizeof callbacks);
         callbacks.struct_size = sizeof callbacks;
         callbacks.classify = classify;

@@ -35,6 +35,11 @@ static int32_t full(void *ctx, const double *min, const double *max) {
     return LEAFLESS_TAG_FULL;
 }
 
+static int32_t distance(void *ctx, const double *points, uint64_t count, double *distances) {
+    (void)ctx, (void)points, (void)count, (void)distances;
+    return -1;
+}
+
 static int32_t count(void *ctx, double fraction) {
     (void)fraction;
     ++*(int *)ctx;
@@ -78,6 +83,7 @@ int main(void) {
     FAILS(LEAFLESS_E_ARGUMENT, leafless_callbacks_init(&callbacks, sizeof callbacks + 1));
     OK(leafless_callbacks_init(&callbacks, sizeof callbacks));
     CHECK(callbacks.struct_size == sizeof callbacks && callbacks.classify == NULL && callbacks.ctx == NULL);
+    CHECK(callbacks.classify_many == NULL && callbacks.contains_many == NULL && callbacks.distance_many == NULL);
     OK(leafless_options_init(&options, sizeof options));
     options.threads = 3;
     options.max_nodes = UINT64_MAX;
@@ -179,6 +185,27 @@ int main(void) {
         CHECK(all == NULL);
         longer.unknown = 0;
         OK(leafless_solid_new_callbacks(&longer.known, &all));
+        leafless_solid_free(all);
+        all = NULL;
+        /* A program of before there were distances: what lies where they are now is not called. */
+        callbacks.distance_many = distance;
+        callbacks.struct_size = offsetof(leafless_callbacks, distance_many);
+        {
+            leafless_octree *octree = NULL;
+            leafless_statistics statistics;
+            OK(leafless_solid_new_callbacks(&callbacks, &all));
+            OK(leafless_octree_build(all, &frame, LEAFLESS_RULE_CERTIFIED, NULL, &octree));
+            OK(leafless_octree_statistics(octree, &statistics));
+            CHECK(statistics.full == 1 && statistics.volume_model.lower == 8.0);
+            leafless_octree_free(octree);
+            leafless_solid_free(all);
+            all = NULL;
+        }
+        callbacks.classify = NULL;
+        FAILS(LEAFLESS_E_NULL, leafless_solid_new_callbacks(&callbacks, &all));
+        CHECK(all == NULL);
+        callbacks.struct_size = sizeof callbacks;
+        OK(leafless_solid_new_callbacks(&callbacks, &all));
         leafless_solid_free(all);
     }
     leafless_octree_free(expected);

@@ -153,7 +153,7 @@ static void block_with_a_hole(void) {
     OK(leafless_mesh_describe(mesh, &report));
     /* Euler: of genus 1 are V - E + F = 0, so twice as many triangles as vertices. */
     CHECK(report.triangles == 32 && report.vertices == 16 && report.bodies == 1 && report.boundary_edges == 0);
-    OK(leafless_solid_new_mesh(mesh, &frame, LEAFLESS_FILL_NON_ZERO, &solid));
+    OK(leafless_solid_new_mesh(mesh, LEAFLESS_FILL_NON_ZERO, &solid));
     OK(leafless_octree_build(solid, &frame, LEAFLESS_RULE_CERTIFIED, NULL, &octree));
     OK(leafless_octree_statistics(octree, &statistics));
     CHECK(statistics.volume_model.lower <= 24.0 && 24.0 <= statistics.volume_model.upper);

@@ -1,6 +1,7 @@
-// Eight threads read one octree, take references and give them back, and fail each for itself.
+// Eight threads read one octree, ask one solid, take references and give them back, and fail each for itself.
 #include "check.h"
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <string>
@@ -181,7 +182,7 @@ void solids() {
         OK(leafless_mesh_describe(mesh, &report));
         CHECK(report.bodies == 1 && report.boundary_edges == 0);
         leafless_solid *cube = nullptr;
-        OK(leafless_solid_new_mesh(mesh, &frame, LEAFLESS_FILL_NON_ZERO, &cube));
+        OK(leafless_solid_new_mesh(mesh, LEAFLESS_FILL_NON_ZERO, &cube));
         leafless_solid_free(cube);
         leafless_solid_free(own[number]);
     });
@@ -303,7 +304,7 @@ void open_mesh() {
         CHECK(count == 1 && defect.kind == LEAFLESS_DEFECT_HOLE);
         FAILS(LEAFLESS_E_MESH, leafless_mesh_check_closed(mesh, LEAFLESS_FILL_NON_ZERO));
         leafless_solid *solid = nullptr;
-        OK(leafless_solid_new_mesh(mesh, &frame, LEAFLESS_FILL_NON_ZERO, &solid));
+        OK(leafless_solid_new_mesh(mesh, LEAFLESS_FILL_NON_ZERO, &solid));
         leafless_options options;
         OK(leafless_options_init(&options, sizeof options));
         options.threads = uint32_t(number) % 4 + 1;
@@ -319,6 +320,123 @@ void open_mesh() {
         leafless_octree_free(octree);
     }
     leafless_mesh_free(mesh);
+}
+
+// What a solid says on one frame.
+struct Answers {
+    std::vector<leafless_membership> memberships = std::vector<leafless_membership>(POINTS);
+    std::vector<leafless_region> regions;
+    leafless_interval volume = {};
+    uint64_t splits = 0;
+    leafless_interval box[6] = {};
+    uint64_t cells[2] = {};
+
+    bool operator==(const Answers &other) const {
+        return memberships == other.memberships && regions == other.regions &&
+               memcmp(&volume, &other.volume, sizeof volume) == 0 && splits == other.splits &&
+               memcmp(box, other.box, sizeof box) == 0 && memcmp(cells, other.cells, sizeof cells) == 0;
+    }
+};
+
+Answers ask(const leafless_solid *solid, const leafless_frame &frame, uint32_t threads) {
+    static const std::vector<double> numbers = points();
+    Answers answers;
+    leafless_options options;
+    OK(leafless_options_init(&options, sizeof options));
+    options.threads = threads;
+    OK(leafless_solid_contains(solid, &frame, numbers.data(), POINTS, &options, answers.memberships.data()));
+    for (int i = 0; i < POINTS; i += 50) {
+        const double *const p = &numbers[3 * i];
+        const double high[3] = {p[0] + 0.2, p[1] + 0.1, p[2] + 0.3};
+        leafless_region region;
+        OK(leafless_solid_classify_box(solid, &frame, p, high, &options, &region));
+        answers.regions.push_back(region);
+    }
+    leafless_measures measures;
+    OK(leafless_solid_measure(solid, &frame, 0.05, &options, &measures));
+    answers.volume = measures.volume_model;
+    answers.splits = measures.splits;
+    leafless_extent extent;
+    OK(leafless_solid_bounding_box(solid, &frame, 0.1, &options, &extent));
+    std::copy(extent.min_model, extent.min_model + 3, answers.box);
+    std::copy(extent.max_model, extent.max_model + 3, answers.box + 3);
+    leafless_octree *octree = nullptr;
+    OK(leafless_octree_build(solid, &frame, LEAFLESS_RULE_CERTIFIED, &options, &octree));
+    leafless_statistics statistics;
+    OK(leafless_octree_statistics(octree, &statistics));
+    answers.cells[0] = statistics.lower_cells;
+    answers.cells[1] = statistics.upper_cells;
+    leafless_octree_free(octree);
+    return answers;
+}
+
+// Threads ask one solid on one frame, and on frames of their own: what it keeps of the last one is never another's.
+// `solid_of` makes the same solid anew.
+template <typename Make>
+void on_frames(const Make &solid_of) {
+    const leafless_frame frames[] = {
+        {{-1, -1, -1}, 2, 5}, {{-1, -1, -1}, 2, 4}, {{-1.25, -1, -1.125}, 2.5, 5}, {{-1, -1, -1}, 2, 3}};
+    std::vector<Answers> expected;
+    for (const leafless_frame &frame : frames) {
+        leafless_solid *const alone = solid_of();
+        expected.push_back(ask(alone, frame, 1));
+        leafless_solid_free(alone);
+    }
+    CHECK(!(expected[0] == expected[1]) && !(expected[0] == expected[2]));
+    leafless_solid *const solid = solid_of();
+    // Nobody has prepared it yet.
+    in_all_threads([&](int number) {
+        for (int i = 0; i < 3; i++) {
+            CHECK(ask(solid, frames[0], 1 + uint32_t(number) % 2) == expected[0]);
+        }
+    });
+    in_all_threads([&](int number) {
+        for (size_t i = 0; i < 8; i++) {
+            const size_t f = (i * (1 + size_t(number) % 3) + size_t(number)) % expected.size();
+            CHECK(ask(solid, frames[f], 1 + uint32_t(number) % 2) == expected[f]);
+        }
+    });
+    // What is kept for one frame serves while the solid goes on to others, and after it is gone.
+    leafless_lazy *lazy = nullptr;
+    OK(leafless_lazy_new(solid, &frames[0], &lazy));
+    CHECK(ask(solid, frames[1], 1) == expected[1]);
+    leafless_solid_free(solid);
+    OK(leafless_lazy_refine(lazy, 5, nullptr, nullptr));
+    leafless_octree *octree = nullptr;
+    OK(leafless_lazy_freeze(lazy, nullptr, &octree));
+    leafless_lazy_free(lazy);
+    leafless_statistics statistics;
+    OK(leafless_octree_statistics(octree, &statistics));
+    CHECK(statistics.lower_cells == expected[0].cells[0] && statistics.upper_cells == expected[0].cells[1]);
+    leafless_octree_free(octree);
+}
+
+void one_solid() {
+    const double turn[12] = {0.8, -0.6, 0, 0.1, 0.6, 0.8, 0, -0.5, 0, 0, 1, -0.4};
+    leafless_mesh *const cube = check_cube(), *const open = check_some_of_cube(11);
+    for (const leafless_mesh *mesh : {cube, open}) {
+        on_frames([&] {
+            leafless_mesh *moved = nullptr;
+            leafless_solid *solid = nullptr;
+            OK(leafless_mesh_transformed(mesh, turn, &moved));
+            OK(leafless_solid_new_mesh(moved, LEAFLESS_FILL_NON_ZERO, &solid));
+            leafless_mesh_free(moved);
+            return solid;
+        });
+    }
+    // An expression that holds a mesh, moved.
+    on_frames([&] {
+        leafless_solid *solid = nullptr, *ball = check_ball_solid(), *both = nullptr, *moved = nullptr;
+        OK(leafless_solid_new_mesh(cube, LEAFLESS_FILL_NON_ZERO, &solid));
+        OK(leafless_solid_difference(solid, ball, &both));
+        OK(leafless_solid_placed(both, turn, nullptr, &moved));
+        leafless_solid_free(both);
+        leafless_solid_free(ball);
+        leafless_solid_free(solid);
+        return moved;
+    });
+    leafless_mesh_free(open);
+    leafless_mesh_free(cube);
 }
 
 }  // namespace
@@ -340,6 +458,7 @@ int main(int argc, char **) {
     references();
     solids();
     open_mesh();
+    one_solid();
     messages();
     return 0;
 }

@@ -7,12 +7,15 @@
 //! What is expected of the valid files does not come from the library's readers: tags come from the shapes that
 //! the files were made from, counts from a plain recursion over them, and the cells of points from integers.
 
-use leafless::{Cell, Control, Cube, Error, Frame, Metadata, Octree, Rule, Solid, Tag, Verdict, build, file};
+use leafless::{
+    Cell, Classifier, Control, Error, Frame, Metadata, Octree, Rule, Solid, Tag, Verdict, Worker, build, file,
+};
 use num_bigint::{BigInt, Sign};
 use std::cmp::Reverse;
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 fn main() -> std::io::Result<()> {
     let Some(folder) = std::env::args_os().nth(1) else {
@@ -47,9 +50,10 @@ pub fn files() -> Vec<(PathBuf, Vec<u8>)> {
 // ---- shapes ---------------------------------------------------------------------------------------------
 
 /// What a tree is made from: the tag of a cell, BRANCH where it is to be cut.
-type Shape = Box<dyn Fn(Cell) -> Tag + Sync>;
+type Shape = Arc<dyn Fn(Cell) -> Tag + Send + Sync>;
 
-/// A shape in a frame.
+/// A shape in a frame: solid, handle and worker.
+#[derive(Clone)]
 struct Model {
     frame: Frame,
     exterior: Tag,
@@ -58,30 +62,58 @@ struct Model {
 }
 
 impl Solid for Model {
-    type Part = ();
-    type Scratch = ();
+    type Classifier = Model;
 
-    fn root(&self, _: &mut (), _: &Frame) -> Result<Verdict<()>, Error> {
-        Ok(self.verdict(Cell::ROOT))
+    fn on(&self, frame: &Frame, _: &Control<'_>) -> Result<Model, Error> {
+        Ok(Model { frame: *frame, ..self.clone() })
+    }
+}
+
+impl Classifier for Model {
+    type Worker = Model;
+
+    fn frame(&self) -> &Frame {
+        &self.frame
     }
 
-    fn split(&self, _: &mut (), cube: &Cube<'_>, _: &()) -> Result<[Verdict<()>; 8], Error> {
-        Ok([0, 1, 2, 3, 4, 5, 6, 7].map(|k| self.verdict(cube.cell.child(k))))
+    fn worker(&self) -> Result<Model, Error> {
+        Ok(self.clone())
     }
 
-    fn exterior(&self, _: &Frame) -> Tag {
+    fn exterior(&self) -> Tag {
         self.exterior
     }
 }
 
+impl Worker for Model {
+    type Part = ();
+
+    fn frame(&self) -> &Frame {
+        &self.frame
+    }
+
+    fn root(&mut self) -> Result<Verdict<()>, Error> {
+        Ok(self.verdict(Cell::ROOT))
+    }
+
+    fn split(&mut self, cell: Cell, _: &()) -> Result<[Verdict<()>; 8], Error> {
+        Ok([0, 1, 2, 3, 4, 5, 6, 7].map(|k| self.verdict(cell.child(k))))
+    }
+}
+
 impl Model {
-    fn new(origin: [f64; 3], edge: f64, depth: u8, shape: impl Fn(Cell) -> Tag + Sync + 'static) -> Model {
+    fn new(
+        origin: [f64; 3],
+        edge: f64,
+        depth: u8,
+        shape: impl Fn(Cell) -> Tag + Send + Sync + 'static,
+    ) -> Model {
         let frame = Frame::new(origin, edge, depth).expect("a frame in range");
-        Model { frame, exterior: Tag::Empty, metadata: Metadata::new(), shape: Box::new(shape) }
+        Model { frame, exterior: Tag::Empty, metadata: Metadata::new(), shape: Arc::new(shape) }
     }
 
     /// One in which lattice coordinates are model coordinates.
-    fn plain(depth: u8, shape: impl Fn(Cell) -> Tag + Sync + 'static) -> Model {
+    fn plain(depth: u8, shape: impl Fn(Cell) -> Tag + Send + Sync + 'static) -> Model {
         Model::new([0.0; 3], (1u32 << depth) as f64, depth, shape)
     }
 

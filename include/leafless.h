@@ -329,6 +329,32 @@ typedef uint8_t leafless_tag;
 #endif // __cplusplus
 
 /**
+ * What an affine map does to a solid.
+ */
+enum leafless_motion
+#ifdef __cplusplus
+  : uint32_t
+#endif // __cplusplus
+ {
+    /**
+     * Nothing is rounded: half-spaces, and what is made of them.
+     */
+    LEAFLESS_MOTION_EXACT = 0,
+    /**
+     * The vertices of a mesh are moved and rounded, by some 10^-16 of their coordinates; what is proven allows for that.
+     */
+    LEAFLESS_MOTION_VERTICES = 1,
+    /**
+     * As leafless_solid_new_transform does, on a frame that is chosen for the solid: a surface that is not parallel to the
+     * lattice blurs by about a cell. Where cells are the images of cells, nothing blurs.
+     */
+    LEAFLESS_MOTION_CONSERVATIVE = 2,
+};
+#ifndef __cplusplus
+typedef uint32_t leafless_motion;
+#endif // __cplusplus
+
+/**
  * The answer to a point query.
  */
 enum leafless_membership
@@ -655,8 +681,14 @@ typedef struct leafless_scene leafless_scene;
 /**
  * Anything that has a shape: it can split a cell of space into eight classified ones.
  *
- * Immutable: all its functions may be called at once from any number of threads, but leafless_solid_free needs
- * the reference that it gives back for itself.
+ * To answer about cells of a frame a solid is prepared for it, which takes time in proportion to the model: a mesh is
+ * brought onto the lattice, an expression is written out, all links of an octree are checked. It keeps the last frame
+ * that it was prepared for, so that a second question on the same frame costs none of that; another frame takes its
+ * place. (It keeps the last frame of its own only: what is made of it prepares it anew.)
+ *
+ * Immutable otherwise: all its functions may be called at once from any number of threads, but leafless_solid_free needs
+ * the reference that it gives back for itself. Threads that ask on different frames at the same time prepare it again
+ * and again: give each a solid of its own.
  */
 typedef struct leafless_solid leafless_solid;
 
@@ -1143,7 +1175,17 @@ typedef int32_t (*leafless_classify_many_fn)(void *ctx, const double *boxes, uin
 typedef int32_t (*leafless_contains_many_fn)(void *ctx, const double *points, uint64_t count, int32_t *inside);
 
 /**
- * The host's own shape. All fields but the first may be zero; `classify` must be set.
+ * Bounds the distances of `count` points (3 numbers each, model units) from the surface of the host's own shape: sets each
+ * of `distances_model` to a number whose magnitude is at most that distance, negative inside and positive outside; 0, or
+ * what is no number, says nothing. 0, or the number of the host's own error. Else as leafless_classify_fn.
+ */
+typedef int32_t (*leafless_distance_many_fn)(void *ctx,
+                                             const double *points,
+                                             uint64_t count,
+                                             double *distances_model);
+
+/**
+ * The host's own shape. All fields but the first may be zero; `classify` or `distance_many` must be set.
  */
 typedef struct {
     /**
@@ -1176,13 +1218,19 @@ typedef struct {
      */
     uint64_t fingerprint[2];
     /**
-     * Classifies many boxes at once; optional, and `classify` must be set all the same.
+     * Classifies many boxes at once, as many as the work has at hand; optional, and `classify` must be set all the same.
      */
     leafless_classify_many_fn classify_many;
     /**
      * Decides many points at once; optional, with or without `contains`.
      */
     leafless_contains_many_fn contains_many;
+    /**
+     * Bounds the distances of points from the surface; optional. It is asked about the middles of cells before boxes are
+     * classified, and a cell whose middle is further from the surface than its corners is decided. With it `classify` is
+     * optional.
+     */
+    leafless_distance_many_fn distance_many;
 } leafless_callbacks;
 
 /**
@@ -1267,10 +1315,6 @@ typedef struct {
      */
     uint64_t replays;
     /**
-     * Half-spaces that were evaluated for all of that, each at a point or over a box.
-     */
-    uint64_t evaluations;
-    /**
      * Bytes that the split cells take.
      */
     uint64_t bytes;
@@ -1292,10 +1336,6 @@ typedef struct {
      * Cells of the second solid that were split.
      */
     uint64_t splits_b;
-    /**
-     * Half-spaces that were evaluated.
-     */
-    uint64_t evaluations;
     /**
      * A leafless_overlap.
      */
@@ -1336,10 +1376,6 @@ typedef struct {
      * Cells of the second solid that were split.
      */
     uint64_t splits_b;
-    /**
-     * Half-spaces that were evaluated.
-     */
-    uint64_t evaluations;
     /**
      * If `has_nearest`, cells of the first and of the second solid with points that are no further apart than the upper
      * bound: the position of the first in cells of its level; else zeros.
@@ -1394,10 +1430,6 @@ typedef struct {
      */
     uint64_t splits;
     /**
-     * Evaluations of half-spaces, for solids that count them.
-     */
-    uint64_t evaluations;
-    /**
      * Every undecided cell of a lower level was split, if the solid could.
      */
     uint32_t level;
@@ -1431,10 +1463,6 @@ typedef struct {
      * How many times a cell was split.
      */
     uint64_t splits;
-    /**
-     * Evaluations of half-spaces, for solids that count them.
-     */
-    uint64_t evaluations;
     /**
      * Why it ended.
      */
@@ -2322,24 +2350,22 @@ leafless_status leafless_octree_peek_metadata_at(const leafless_octree *octree,
                                                  size_t *value_length);
 
 /**
- * What a mesh encloses, on the lattice of one frame: the solid can be built on that frame only. A mesh that reaches
- * beyond the universe is clipped by it.
+ * What a mesh encloses. On a frame whose universe it reaches beyond it is clipped by that.
  *
  * Where the mesh is closed, what it encloses is exact. Around holes leafless_fill says by which convention a point is
  * inside: a cell is FULL or EMPTY if that is proven for all of its points, and others are PARTIAL though no triangle
  * cuts them. leafless_mesh_describe tells whether to expect them.
  *
- * - Buffers: `frame`, one struct; `solid`, one pointer. `fill` is a leafless_fill.
- * - Result: `*solid`. Time and memory are linear in the mesh (n log n in the edges of its boundary).
+ * - Buffers: `solid`, one pointer. `fill` is a leafless_fill.
+ * - Result: `*solid`. Time is linear in the mesh (n log n in the edges of its boundary).
  * - Errors: LEAFLESS_E_MESH if the mesh is empty, or (LEAFLESS_FILL_EVEN_ODD) an odd number of triangles meet on an
- *   edge; LEAFLESS_E_ARGUMENT as leafless_frame_check, or if `fill` is no leafless_fill; LEAFLESS_E_NO_MEMORY.
+ *   edge; LEAFLESS_E_ARGUMENT if `fill` is no leafless_fill; LEAFLESS_E_NO_MEMORY.
  * - Ownership: the solid shares the mesh, which may be freed; give `*solid` back with leafless_solid_free.
  * - Threads: any.
  * - Untrusted input: any mesh.
  * - Since: 0.1
  */
 leafless_status leafless_solid_new_mesh(const leafless_mesh *mesh,
-                                        const leafless_frame *frame,
                                         uint32_t fill,
                                         leafless_solid **solid);
 
@@ -2357,6 +2383,22 @@ leafless_status leafless_solid_new_mesh(const leafless_mesh *mesh,
  * - Since: 0.1
  */
 leafless_status leafless_octree_as_solid(const leafless_octree *octree, leafless_solid **solid);
+
+/**
+ * Half-spaces that were evaluated so far, each at a point or over a box, for a solid that is made of half-spaces (see
+ * leafless_solid_new_halfspace and what follows it) and perhaps others: by calls that have returned, and by lazy
+ * octrees and the like that are given back. What else is made of the solid counts for itself.
+ *
+ * - Buffers: `evaluations`, one number.
+ * - Result: `*evaluations`; 0 for solids of other kinds.
+ * - Errors: only the general ones.
+ * - Ownership: nothing changes hands.
+ * - Threads: any.
+ * - Untrusted input: any solid.
+ * - Since: 0.1
+ */
+leafless_status leafless_solid_evaluations(const leafless_solid *solid,
+                                           uint64_t *evaluations);
 
 /**
  * One more reference to a solid.
@@ -2672,13 +2714,14 @@ leafless_status leafless_solid_difference(const leafless_solid *a,
 leafless_status leafless_solid_complement(const leafless_solid *operand, leafless_solid **solid);
 
 /**
- * An expression of half-spaces moved by an affine map, exactly: nothing is rounded. (Solids of other kinds are moved
- * by leafless_solid_new_transform.)
+ * A solid moved by an affine map, in the best way that its kind knows: half-spaces exactly, meshes by their vertices, others
+ * as leafless_solid_new_transform; of an expression each part in its own way.
  *
- * - Buffers: `matrix`, 12 numbers, the rows of [M | t], where a point p goes to M p + t; `solid`, one pointer.
- * - Result: `*solid`.
- * - Errors: LEAFLESS_E_ARGUMENT if an entry is neither 0 nor of a magnitude between 2^-64 and 2^64, M is singular,
- *   or solids that are not made of half-spaces occur in `operand`.
+ * - Buffers: `matrix`, 12 numbers, the rows of [M | t], where a point p goes to M p + t; `motion`, one leafless_motion
+ *   or NULL; `solid`, one pointer.
+ * - Result: `*solid`; `*motion`, the worst that a map does to any part (the identity does nothing).
+ * - Errors: LEAFLESS_E_ARGUMENT if an entry is neither 0 nor of a magnitude between 2^-64 and 2^64, or M is singular;
+ *   LEAFLESS_E_MESH if a mesh is moved beyond the numbers that meshes may have; LEAFLESS_E_NO_MEMORY.
  * - Ownership: the operand is shared and may be freed; give `*solid` back with leafless_solid_free.
  * - Threads: any.
  * - Untrusted input: any solids and numbers.
@@ -2687,6 +2730,7 @@ leafless_status leafless_solid_complement(const leafless_solid *operand, leafles
  */
 leafless_status leafless_solid_placed(const leafless_solid *operand,
                                       const double matrix[12],
+                                      leafless_motion *motion,
                                       leafless_solid **solid);
 
 /**
@@ -2724,7 +2768,8 @@ leafless_status leafless_callbacks_init(leafless_callbacks *callbacks, size_t st
  *
  * - Buffers: `callbacks`, one struct, which is copied; `solid`, one pointer.
  * - Result: `*solid`.
- * - Errors: LEAFLESS_E_NULL if `classify` is NULL; LEAFLESS_E_ARGUMENT if `exterior` is no leafless_exterior.
+ * - Errors: LEAFLESS_E_NULL if `classify` is NULL, unless `distance_many` is set and `classify_many` is not;
+ *   LEAFLESS_E_ARGUMENT if `exterior` is no leafless_exterior.
  *   After an error `destroy` is not called.
  * - Ownership: `ctx` must live until `destroy` is called with it; give `*solid` back with leafless_solid_free.
  * - Threads: any; in which the functions are called, leafless_classify_fn says.
@@ -3104,6 +3149,51 @@ leafless_status leafless_octree_classify_box(const leafless_octree *octree,
                                              const double min_model[3],
                                              const double max_model[3],
                                              leafless_region *region);
+
+/**
+ * Whether a solid contains points, without an octree: a point in a cell of the frame that is undecided at the frame's depth,
+ * outside of the universe, or not a number is undecided. A point on the boundary may be answered either way. The host's
+ * own `contains` is asked first, where there is one; for others at most one cell a level is split a point, and points
+ * near each other share the way.
+ *
+ * - Buffers: `frame`, one struct; `points_model`, `count` points of 3 numbers; `options`, one struct or NULL, of which
+ *   limits do not matter; `memberships`, room for `count`. `points_model` and `memberships` may be NULL if `count` is 0.
+ * - Result: `memberships[i]` for point i; the same for any number of threads.
+ * - Errors: LEAFLESS_E_FRAME if the solid belongs to another frame; LEAFLESS_E_ARGUMENT as leafless_frame_check;
+ *   LEAFLESS_E_CALLBACK; LEAFLESS_E_DAMAGED; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
+ * - Ownership: nothing changes hands.
+ * - Threads: any; uses as many as `options` says.
+ * - Untrusted input: any solid, any numbers.
+ * - Since: 0.1
+ */
+leafless_status leafless_solid_contains(const leafless_solid *solid,
+                                        const leafless_frame *frame,
+                                        const double *points_model,
+                                        uint64_t count,
+                                        const leafless_options *options,
+                                        leafless_membership *memberships);
+
+/**
+ * How a box lies to a solid, without an octree, as far as cells of the frame tell; what of the box lies outside of the
+ * universe is undecided. The work ends as soon as the answer is known, or once `max_splits` cells are split.
+ *
+ * - Buffers: `frame`, one struct; `min_model` and `max_model`, 3 numbers each; `options`, one struct or NULL; `region`,
+ *   one.
+ * - Result: `*region`.
+ * - Errors: LEAFLESS_E_ARGUMENT if min > max on an axis, or a coordinate is not a number; else as
+ *   leafless_solid_contains.
+ * - Ownership: nothing changes hands.
+ * - Threads: any; works in the calling thread.
+ * - Untrusted input: any solid, any numbers; set `max_splits` where the depth or the solid is not your own choice.
+ * - Since: 0.1
+ *
+ */
+leafless_status leafless_solid_classify_box(const leafless_solid *solid,
+                                            const leafless_frame *frame,
+                                            const double min_model[3],
+                                            const double max_model[3],
+                                            const leafless_options *options,
+                                            leafless_region *region);
 
 /**
  * Makes a point cursor.
@@ -3503,7 +3593,7 @@ leafless_status leafless_lazy_freeze(const leafless_lazy *lazy,
  * its size, or larger ones that are decided. So a surface that is not parallel to the lattice blurs by about a cell,
  * down to the depth of the solid's own frame; rounding is outward. Where the map takes lattice planes to lattice planes
  * nothing blurs. What sticks out of the solid's own universe is undecided, unless the solid is proven to end inside.
- * (Half-spaces and what is made of them are moved exactly by leafless_solid_placed.)
+ * (leafless_solid_placed moves a solid in the best way that its kind knows, and chooses a frame where it takes one.)
  *
  * - Buffers: `own`, one struct; `matrix`, 12 numbers, the rows of [M | t], where a point p goes to M p + t; `solid`,
  *   one pointer.

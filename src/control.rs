@@ -47,6 +47,16 @@ impl Control<'_> {
         Control { threads, ..Control::default() }
     }
 
+    /// Whether the caller cancelled.
+    pub fn is_cancelled(&self) -> bool {
+        self.cancel.is_some_and(|flag| flag.load(Relaxed))
+    }
+
+    /// Refuses when the caller cancelled.
+    pub(crate) fn check(&self) -> Result<(), Error> {
+        if self.is_cancelled() { Err(Error::Cancelled) } else { Ok(()) }
+    }
+
     /// Runs `work` where parallel iterators use the threads that were asked for, if the work is `worth`
     /// starting them; `work` is told whether there is more than one.
     pub(crate) fn run<R: Send>(&self, worth: bool, work: impl FnOnce(bool) -> R + Send) -> R {
@@ -106,6 +116,11 @@ impl<'a> Job<'a> {
         Job { control, nodes: AtomicUsize::new(0), bytes: AtomicUsize::new(0), done: AtomicUsize::new(0) }
     }
 
+    /// Whom it runs under.
+    pub(crate) fn control(&self) -> &'a Control<'a> {
+        self.control
+    }
+
     /// Whether octree nodes must be counted.
     pub(crate) fn counts_nodes(&self) -> bool {
         self.control.max_nodes.is_some()
@@ -127,10 +142,7 @@ impl<'a> Job<'a> {
 
     /// Refuses when the caller cancelled.
     pub(crate) fn check(&self) -> Result<(), Error> {
-        match self.control.cancel {
-            Some(flag) if flag.load(Relaxed) => Err(Error::Cancelled),
-            _ => Ok(()),
-        }
+        self.control.check()
     }
 
     /// Reports `parts` of [`WHOLE`] as done.

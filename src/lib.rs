@@ -4,7 +4,8 @@
 //! Three ideas carry everything:
 //!
 //! 1. **A solid is what can split a cell.** Primitives, triangle meshes, stored octrees and a host program's
-//!    callback are all a [`Solid`]; whatever wants a shape only calls [`Solid::split`].
+//!    callback are all a [`Solid`]; whatever wants a shape puts it on a frame ([`Solid::on`]) and only calls
+//!    [`Worker::split`].
 //! 2. **Certified.** inner ⊆ true ⊆ outer: a FULL cell is proven inside, an EMPTY one proven outside, and doubt
 //!    stays PARTIAL through every operation. So a volume is an interval that contains the truth. (Whoever wants
 //!    a plain yes or no builds by another [`Rule`], and then the answers are about the tree, not the shape.)
@@ -62,7 +63,7 @@ pub use control::Control;
 pub use error::{
     Damage, Error, FormatError, MeshError, MeshFileError, PackageError, PolyhedronError, SceneError,
 };
-pub use lattice::{Affine, Cell, Cube, Frame, Interval, MAX_DEPTH};
+pub use lattice::{Affine, Bounds, Cell, Cube, Frame, Interval, MAX_DEPTH};
 pub use octree::{
     Block, Cursor, LevelStatistics, Metadata, Node, Octree, OctreeRef, Planes, Rule, Statistics, Tag,
 };
@@ -72,17 +73,17 @@ pub use op::{
 };
 pub use query::{
     Clearance, Extent, Interference, Measured, Measures, Membership, Overlap, PointCursor, Region,
-    bounding_box, clearance, interference, interference_of, measure,
+    bounding_box, classify_box, clearance, contains, interference, interference_of, measure,
 };
 pub use solid::{
-    AnySolid, AxisBox, Ball, Callback, Counted, Csg, CsgPart, CsgScratch, DefectKind, ErasedPart,
-    ErasedScratch, FillRule, Fingerprint, Fingerprinter, HalfSpace, MeshDefect, MeshPart, MeshReport,
-    MeshScratch, MeshSolid, Scratch, Solid, Stored, StoredPart, Touch, Transform, TransformPart,
-    TransformScratch, TriangleMesh, Verdict,
+    AnyClassifier, AnySolid, AnyWorker, AxisBox, Ball, Callback, Classifier, Counted, Crossing, Csg,
+    DefectKind, Enclosure, Erasable, FillRule, Fingerprint, Fingerprinter, HalfSpace, MeshDefect, MeshReport,
+    MeshSolid, Motion, Segment, Slab, SlabJoin, Solid, Stored, Subtree, Touch, Transform, TriangleMesh,
+    Verdict, Worker,
 };
 
 #[cfg(feature = "std")]
-pub use solid::{Polyhedron, PolyhedronArrays};
+pub use solid::{Polyhedron, PolyhedronArrays, Prepared};
 
 /// The README's example is compiled and run.
 #[cfg(all(doctest, feature = "mmap"))]

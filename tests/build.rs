@@ -2,15 +2,16 @@
 
 mod common;
 
+use common::cubes::Cubes;
 use common::exact::Definition;
 use common::{Dense, Random, Shape, alone, assert_is, cases, lattice_frame, positions, shapes};
 use leafless::{
-    AnySolid, AxisBox, Ball, Block, Callback, Cell, Control, Csg, Cube, Error, Frame, Interval, Octree, Rule,
-    Scratch, Solid, Stored, Tag, Verdict, build, compact, complement, resolve, union_of,
+    AnySolid, AxisBox, Ball, Block, Callback, Cell, Classifier, Control, Csg, Cube, Error, Frame, Interval,
+    Octree, Rule, Solid, Stored, Tag, Verdict, Worker, build, compact, complement, resolve, union_of,
 };
 use proptest::prelude::*;
-use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::{Arc, Mutex};
 
 const RULES: [Rule; 4] = [Rule::Certified, Rule::Sampled, Rule::Inner, Rule::Outer];
 
@@ -69,19 +70,17 @@ fn assert_exact(definition: Definition, frame: &Frame) {
 }
 
 /// Verdicts by splitting from the root, into an array: no builder.
-fn descend<S: Solid>(solid: &S, frame: &Frame) -> Dense {
-    fn walk<S: Solid>(solid: &S, scratch: &mut S::Scratch, cube: Cube<'_>, part: &S::Part, out: &mut Dense) {
-        let mark = scratch.mark();
-        let children = solid.split(scratch, &cube, part).unwrap();
+fn descend(worker: &mut impl Worker) -> Dense {
+    fn walk<W: Worker>(worker: &mut W, cell: Cell, part: &W::Part, out: &mut Dense) {
+        let mark = worker.mark();
+        let children = worker.split(cell, part).unwrap();
         for (k, child) in (0..).zip(&children) {
-            let cube = cube.child(k);
+            let cell = cell.child(k);
             match child {
-                Verdict::Partial(part) if cube.cell.level < out.depth => {
-                    walk(solid, scratch, cube, part, out)
-                }
+                Verdict::Partial(part) if cell.level < out.depth => walk(worker, cell, part, out),
                 verdict => {
-                    let edge = 1 << (out.depth - cube.cell.level);
-                    let [x, y, z] = cube.cell.at.map(|a| a * edge);
+                    let edge = 1 << (out.depth - cell.level);
+                    let [x, y, z] = cell.at.map(|a| a * edge);
                     for z in z..z + edge {
                         for y in y..y + edge {
                             (x..x + edge).for_each(|x| out.set([x, y, z], verdict.tag()));
@@ -90,66 +89,70 @@ fn descend<S: Solid>(solid: &S, frame: &Frame) -> Dense {
                 }
             }
         }
-        scratch.release(mark);
+        worker.release(mark);
     }
-    let mut scratch = S::Scratch::default();
-    let root = solid.root(&mut scratch, frame).unwrap();
-    let mut out = Dense::uniform(frame.depth(), root.tag());
+    let root = worker.root().unwrap();
+    let mut out = Dense::uniform(worker.frame().depth(), root.tag());
     if let Verdict::Partial(part) = root {
-        walk(solid, &mut scratch, Cube { frame, cell: Cell::ROOT }, &part, &mut out);
+        walk(worker, Cell::ROOT, &part, &mut out);
     }
     out
 }
 
-/// The verdict of one cell by replaying the splits on the way to it, with `scratch` as it is found.
-fn replay<S: Solid>(solid: &S, scratch: &mut S::Scratch, frame: &Frame, cell: Cell) -> Tag {
-    let mut cube = Cube { frame, cell: Cell::ROOT };
-    let mut verdict = solid.root(scratch, frame).unwrap();
-    for level in 1..=cell.level {
+/// The verdict of one cell by replaying the splits on the way to it, with the worker's memory as it is found.
+fn replay(worker: &mut impl Worker, cell: Cell) -> Tag {
+    let mut verdict = worker.root().unwrap();
+    for level in 0..cell.level {
         let Verdict::Partial(part) = verdict else { break };
-        let at = cell.at.map(|a| a >> (cell.level - level));
-        let octant = Cell { level, at }.octant();
+        let above = |level: u8| Cell { level, at: cell.at.map(|a| a >> (cell.level - level)) };
+        let octant = above(level + 1).octant();
         let [mut a, mut b] =
-            [solid.split(scratch, &cube, &part).unwrap(), solid.split(scratch, &cube, &part).unwrap()];
+            [worker.split(above(level), &part).unwrap(), worker.split(above(level), &part).unwrap()];
         assert!(a.iter().zip(&b).all(|(a, b)| a.tag() == b.tag()), "asked twice");
+        if let Some(part) = worker.recall(above(level)) {
+            let again = worker.split(above(level), &part).unwrap();
+            assert!(a.iter().zip(&again).all(|(a, b)| a.tag() == b.tag()), "asked without the way");
+        }
         // Either answer's part must do, whatever was asked in between.
         a.swap(octant as usize, 0);
         b.swap(octant as usize, 0);
         let [a, ..] = a;
         let [b, ..] = b;
-        verdict = if level % 2 == 0 { a } else { b };
-        cube = cube.child(octant);
+        verdict = if level % 2 == 0 { b } else { a };
     }
     verdict.tag()
 }
 
-/// The three laws, `truth` being what the solid says of the finest cells.
+/// The laws, `truth` being what the solid says of the finest cells.
 fn laws<S: Solid>(solid: &S, frame: &Frame, truth: &Dense) {
-    assert_eq!(&descend(solid, frame), truth);
+    let classifier = solid.on(frame, &alone()).unwrap();
+    assert_eq!(classifier.frame(), frame);
+    let fresh = || classifier.worker().unwrap();
+    assert_eq!(fresh().frame(), frame);
+    assert_eq!(&descend(&mut fresh()), truth);
     assert_eq!(&Dense::of(made(solid, frame, Rule::Certified).view()), truth);
     let mut random = Random(frame.depth() as u64);
-    let mut used = S::Scratch::default();
+    let mut used = fresh();
     for _ in 0..60 {
         let at = [0; 3].map(|_| random.below(frame.cells() as u64) as u32);
         let cell = Cell { level: frame.depth(), at };
-        assert_eq!(replay(solid, &mut used, frame, cell), truth.at(at));
-        assert_eq!(replay(solid, &mut S::Scratch::default(), frame, cell), truth.at(at));
+        assert_eq!(replay(&mut used, cell), truth.at(at));
+        assert_eq!(replay(&mut fresh(), cell), truth.at(at));
         if random.below(8) == 0 {
             used.release(0);
         }
     }
-    // Parts mean the same in the scratch memory of another thread, and there among others.
-    let mut here = S::Scratch::default();
-    if let Verdict::Partial(part) = solid.root(&mut here, frame).unwrap() {
-        let cube = Cube { frame, cell: Cell::ROOT };
-        let children = solid.split(&mut here, &cube, &part).unwrap();
+    // Parts mean the same in the memory of another thread's worker, and there among others.
+    let mut here = fresh();
+    if let Verdict::Partial(part) = here.root().unwrap() {
+        let children = here.split(Cell::ROOT, &part).unwrap();
         let cells = if frame.depth() > 1 { &children[..] } else { &[] };
         for (k, child) in (0..).zip(cells) {
             if let Verdict::Partial(part) = child {
-                let part = solid.hand_over(&here, part, &mut used).unwrap();
-                let there = solid.split(&mut used, &cube.child(k), &part).unwrap();
-                let Verdict::Partial(again) = child else { unreachable!() };
-                let stayed = solid.split(&mut here, &cube.child(k), again).unwrap();
+                let cell = Cell::ROOT.child(k);
+                let handed = used.hand_over(&here, part).unwrap();
+                let there = used.split(cell, &handed).unwrap();
+                let stayed = here.split(cell, part).unwrap();
                 assert!(there.iter().zip(&stayed).all(|(a, b)| a.tag() == b.tag()));
             }
         }
@@ -458,19 +461,24 @@ fn threads_do_not_change_results() {
 
 /// A union of balls whose parts are lists in scratch memory: the balls that still cut the cell. Parts that
 /// refer to released memory would be noticed, as would one that another part overwrites.
+#[derive(Clone)]
 struct Crowd(Vec<Ball>);
 
-#[derive(Default)]
-struct Lists(Vec<u32>);
+/// A ball on a frame.
+type PlacedBall = <Ball as Solid>::Classifier;
 
-impl Scratch for Lists {
-    fn mark(&self) -> usize {
-        self.0.len()
-    }
-    fn release(&mut self, mark: usize) {
-        assert!(mark <= self.0.len(), "released to a height that was never reached");
-        self.0.truncate(mark);
-    }
+/// The balls on a frame.
+#[derive(Clone)]
+struct CrowdOnFrame {
+    balls: Arc<[PlacedBall]>,
+    frame: Frame,
+}
+
+/// The balls, and the lists.
+struct Lists {
+    balls: Vec<<PlacedBall as Classifier>::Worker>,
+    frame: Frame,
+    lists: Vec<u32>,
 }
 
 impl Crowd {
@@ -482,36 +490,58 @@ impl Crowd {
         };
         Crowd((0..count).map(ball).collect())
     }
-
-    fn keep(lists: &mut Lists, balls: &[u32]) -> (u32, u32) {
-        let start = lists.0.len() as u32;
-        lists.0.extend_from_slice(balls);
-        (start, lists.0.len() as u32)
-    }
 }
 
 impl Solid for Crowd {
-    type Part = (u32, u32);
-    type Scratch = Lists;
+    type Classifier = CrowdOnFrame;
 
-    fn root(&self, lists: &mut Lists, _: &Frame) -> Result<Verdict<(u32, u32)>, Error> {
-        // The test's balls all cut the universe.
-        let all: Vec<u32> = (0..self.0.len() as u32).collect();
-        Ok(Verdict::Partial(Crowd::keep(lists, &all)))
+    fn on(&self, frame: &Frame, control: &Control<'_>) -> Result<CrowdOnFrame, Error> {
+        let balls: Result<_, Error> = self.0.iter().map(|ball| ball.on(frame, control)).collect();
+        Ok(CrowdOnFrame { balls: balls?, frame: *frame })
+    }
+}
+
+impl Classifier for CrowdOnFrame {
+    type Worker = Lists;
+
+    fn frame(&self) -> &Frame {
+        &self.frame
     }
 
-    fn split(
-        &self,
-        lists: &mut Lists,
-        cube: &Cube<'_>,
-        &(start, end): &(u32, u32),
-    ) -> Result<[Verdict<(u32, u32)>; 8], Error> {
-        let active = lists.0[start as usize..end as usize].to_vec();
+    fn worker(&self) -> Result<Lists, Error> {
+        let balls: Result<_, Error> = self.balls.iter().map(Classifier::worker).collect();
+        Ok(Lists { balls: balls?, frame: self.frame, lists: Vec::new() })
+    }
+}
+
+impl Lists {
+    fn keep(&mut self, balls: &[u32]) -> (u32, u32) {
+        let start = self.lists.len() as u32;
+        self.lists.extend_from_slice(balls);
+        (start, self.lists.len() as u32)
+    }
+}
+
+impl Worker for Lists {
+    type Part = (u32, u32);
+
+    fn frame(&self) -> &Frame {
+        &self.frame
+    }
+
+    fn root(&mut self) -> Result<Verdict<(u32, u32)>, Error> {
+        // The test's balls all cut the universe.
+        let all: Vec<u32> = (0..self.balls.len() as u32).collect();
+        Ok(Verdict::Partial(self.keep(&all)))
+    }
+
+    fn split(&mut self, cell: Cell, &(start, end): &(u32, u32)) -> Result<[Verdict<(u32, u32)>; 8], Error> {
+        let active = self.lists[start as usize..end as usize].to_vec();
         assert!(active.is_sorted() && !active.is_empty(), "not a list that was handed out");
         let mut cut: [Vec<u32>; 8] = Default::default();
         let mut full = [false; 8];
         for &ball in &active {
-            let verdicts = self.0[ball as usize].split(&mut (), cube, &())?;
+            let verdicts = self.balls[ball as usize].split(cell, &())?;
             for (k, verdict) in verdicts.iter().enumerate() {
                 match verdict {
                     Verdict::Full => full[k] = true,
@@ -523,23 +553,27 @@ impl Solid for Crowd {
         Ok([0, 1, 2, 3, 4, 5, 6, 7].map(|k| match (full[k], cut[k].is_empty()) {
             (true, _) => Verdict::Full,
             (_, true) => Verdict::Empty,
-            _ => Verdict::Partial(Crowd::keep(lists, &cut[k])),
+            _ => Verdict::Partial(self.keep(&cut[k])),
         }))
     }
 
-    fn sample(
-        &self,
-        lists: &mut Lists,
-        cube: &Cube<'_>,
-        &(start, end): &(u32, u32),
-    ) -> Result<Option<bool>, Error> {
-        let active = &lists.0[start as usize..end as usize];
-        let inside = |&ball: &u32| matches!(self.0[ball as usize].sample(&mut (), cube, &()), Ok(Some(true)));
-        Ok(Some(active.iter().any(inside)))
+    fn mark(&self) -> usize {
+        self.lists.len()
     }
 
-    fn hand_over(&self, from: &Lists, part: &(u32, u32), to: &mut Lists) -> Result<(u32, u32), Error> {
-        Ok(Crowd::keep(to, &from.0[part.0 as usize..part.1 as usize]))
+    fn release(&mut self, mark: usize) {
+        assert!(mark <= self.lists.len(), "released to a height that was never reached");
+        self.lists.truncate(mark);
+    }
+
+    fn hand_over(&mut self, from: &Self, part: &(u32, u32)) -> Result<(u32, u32), Error> {
+        Ok(self.keep(&from.lists[part.0 as usize..part.1 as usize]))
+    }
+
+    fn sample(&mut self, cell: Cell, &(start, end): &(u32, u32)) -> Result<Option<bool>, Error> {
+        let Lists { balls, lists, .. } = self;
+        let inside = |&ball: &u32| matches!(balls[ball as usize].sample(cell, &()), Ok(Some(true)));
+        Ok(Some(lists[start as usize..end as usize].iter().any(inside)))
     }
 }
 
@@ -558,50 +592,90 @@ fn parts_in_scratch_memory_survive_what_the_builder_does() {
                 assert_eq!(tree.view().tag_at(at), union.view().tag_at(at), "{rule:?} {at:?}");
             }
             assert_eq!(tree.statistics(), union.statistics());
-            let erased = AnySolid::new(Crowd(crowd.0.clone()));
+            let erased = AnySolid::new(crowd.clone());
             assert_eq!(threads_agree(&erased, &frame, rule), tree);
             assert_eq!(made(&AnySolid::new(erased), &frame, rule), tree);
         }
         if depth <= 4 {
             let truth = Dense::of(made(&crowd, &frame, Rule::Certified).view());
             laws(&crowd, &frame, &truth);
-            laws(&AnySolid::new(Crowd(crowd.0.clone())), &frame, &truth);
+            laws(&AnySolid::new(crowd.clone()), &frame, &truth);
         }
     }
 }
 
-/// A solid that fills blocks at once, by looking them up in a tree that was built without.
+/// A solid that fills blocks at once, by looking them up in trees that were built without.
+#[derive(Clone)]
 struct Bulk<'a> {
     ball: Ball,
-    answer: &'a Octree,
-    filled: AtomicU64,
+    certified: &'a Octree,
+    sampled: &'a Octree,
+    /// What the builder resolves by, and so asks for.
+    rule: Rule,
+    filled: &'a AtomicU64,
 }
 
-impl Solid for Bulk<'_> {
+/// The same on a frame: handle and worker.
+#[derive(Clone)]
+struct BulkOnFrame<'a> {
+    bulk: Bulk<'a>,
+    ball: PlacedBall,
+}
+
+impl<'a> Solid for Bulk<'a> {
+    type Classifier = BulkOnFrame<'a>;
+
+    fn on(&self, frame: &Frame, control: &Control<'_>) -> Result<BulkOnFrame<'a>, Error> {
+        Ok(BulkOnFrame { bulk: self.clone(), ball: self.ball.on(frame, control)? })
+    }
+}
+
+impl Classifier for BulkOnFrame<'_> {
+    type Worker = Self;
+
+    fn frame(&self) -> &Frame {
+        Classifier::frame(&self.ball)
+    }
+
+    fn worker(&self) -> Result<Self, Error> {
+        Ok(self.clone())
+    }
+
+    fn exterior(&self) -> Tag {
+        self.ball.exterior()
+    }
+}
+
+impl Worker for BulkOnFrame<'_> {
     type Part = ();
-    type Scratch = ();
 
-    fn root(&self, scratch: &mut (), frame: &Frame) -> Result<Verdict<()>, Error> {
-        self.ball.root(scratch, frame)
+    fn frame(&self) -> &Frame {
+        Classifier::frame(&self.ball)
     }
 
-    fn split(&self, scratch: &mut (), cube: &Cube<'_>, part: &()) -> Result<[Verdict<()>; 8], Error> {
-        self.ball.split(scratch, cube, part)
+    fn root(&mut self) -> Result<Verdict<()>, Error> {
+        self.ball.root()
     }
 
-    fn fill(&self, _: &mut (), cube: &Cube<'_>, _: &(), block: &mut Block) -> Result<bool, Error> {
-        let (low, high) = cube.planes();
+    fn split(&mut self, cell: Cell, part: &()) -> Result<[Verdict<()>; 8], Error> {
+        self.ball.split(cell, part)
+    }
+
+    fn fill(&mut self, cell: Cell, _: &(), block: &mut Block) -> Result<bool, Error> {
+        let (low, high) = Cube { frame: Worker::frame(self), cell }.planes();
         assert_eq!([0, 1, 2].map(|axis| high[axis] - low[axis]), [64; 3]);
         // Some blocks are left to descent.
-        if (cube.cell.at[0] + cube.cell.at[1]) % 3 == 2 {
+        if (cell.at[0] + cell.at[1]) % 3 == 2 {
             return Ok(false);
         }
-        self.filled.fetch_add(1, Ordering::Relaxed);
-        let mut cursor = leafless::PointCursor::new(self.answer.view());
-        let (lower, upper) = block.planes_mut();
-        for y in 0..64 {
-            for x in 0..64 {
-                let word = (x + 64 * y) as usize;
+        self.bulk.filled.fetch_add(1, Ordering::Relaxed);
+        let rows = || (0..64).flat_map(|y| (0..64).map(move |x| (x, y, (x + 64 * y) as usize)));
+        let is_sampled = self.bulk.rule == Rule::Sampled;
+        assert_eq!(block.planes_mut().is_some(), !is_sampled);
+        assert_eq!(block.centres_mut().is_some(), is_sampled);
+        if let Some((lower, upper)) = block.planes_mut() {
+            let mut cursor = leafless::PointCursor::new(self.bulk.certified.view());
+            for (x, y, word) in rows() {
                 (lower[word], upper[word]) = (0, 0);
                 for z in 0..64 {
                     let tag = cursor.tag_at([low[0] + x, low[1] + y, low[2] + z]);
@@ -610,16 +684,21 @@ impl Solid for Bulk<'_> {
                 }
             }
         }
-        assert_eq!(block.rule().is_binary(), self.answer.view().is_binary());
+        if let Some(centres) = block.centres_mut() {
+            let mut cursor = leafless::PointCursor::new(self.bulk.sampled.view());
+            for (x, y, word) in rows() {
+                centres[word] = 0;
+                for z in 0..64 {
+                    let tag = cursor.tag_at([low[0] + x, low[1] + y, low[2] + z]);
+                    centres[word] |= ((tag == Tag::Full) as u64) << z;
+                }
+            }
+        }
         Ok(true)
     }
 
-    fn sample(&self, scratch: &mut (), cube: &Cube<'_>, part: &()) -> Result<Option<bool>, Error> {
-        self.ball.sample(scratch, cube, part)
-    }
-
-    fn exterior(&self, frame: &Frame) -> Tag {
-        self.ball.exterior(frame)
+    fn sample(&mut self, cell: Cell, part: &()) -> Result<Option<bool>, Error> {
+        self.ball.sample(cell, part)
     }
 }
 
@@ -628,11 +707,13 @@ fn blocks_give_what_descent_gives() {
     for depth in 6..=8 {
         let frame = Frame::new([0.1, 0.2, -0.3], 0.77, depth).unwrap();
         let ball = Ball::new([0.45, 0.55, 0.1], 0.31).unwrap();
+        let [certified, sampled] = [Rule::Certified, Rule::Sampled].map(|rule| made(&ball, &frame, rule));
         for rule in RULES {
             let answer = made(&ball, &frame, rule);
-            let bulk = Bulk { ball, answer: &answer, filled: AtomicU64::new(0) };
+            let filled = AtomicU64::new(0);
+            let bulk = Bulk { ball, certified: &certified, sampled: &sampled, rule, filled: &filled };
             assert_eq!(threads_agree(&bulk, &frame, rule), answer);
-            assert!(bulk.filled.load(Ordering::Relaxed) > 0);
+            assert!(filled.load(Ordering::Relaxed) > 0);
         }
     }
 }
@@ -691,7 +772,7 @@ proptest! {
             })
         };
         let callback = Callback::new(classify);
-        assert_eq!(callback.exterior(&frame), Tag::Partial);
+        assert_eq!(callback.on(&frame, &alone()).unwrap().exterior(), Tag::Partial);
         assert_is(&threads_agree(&callback, &frame, Rule::Certified), &dense);
         laws(&callback, &frame, &dense);
         for tag in [Tag::Empty, Tag::Full, Tag::Branch] {
@@ -924,23 +1005,21 @@ fn a_build_stops_when_it_is_told_to() {
 
 #[test]
 fn errors_of_a_solid_end_the_build() {
-    struct Failing(AtomicU64);
-    impl Solid for Failing {
-        type Part = ();
-        type Scratch = ();
-        fn root(&self, _: &mut (), _: &Frame) -> Result<Verdict<()>, Error> {
-            Ok(Verdict::Partial(()))
-        }
-        fn split(&self, _: &mut (), _: &Cube<'_>, _: &()) -> Result<[Verdict<()>; 8], Error> {
+    #[derive(Clone)]
+    struct Failing<'a>(&'a AtomicU64);
+    impl Cubes for Failing<'_> {
+        fn verdict(&self, _: &Cube<'_>) -> Result<Verdict<()>, Error> {
+            // The universe, and a thousand cells that were split.
             match self.0.fetch_add(1, Ordering::Relaxed) {
-                1000 => Err(Error::OutOfMemory),
-                _ => Ok([Verdict::Partial(()); 8]),
+                8001 => Err(Error::OutOfMemory),
+                _ => Ok(Verdict::Partial(())),
             }
         }
     }
+    solid_of_cubes!(Failing<'a>: 'a);
     for threads in [1, 2, 16] {
         let refused = build(
-            &Failing(AtomicU64::new(0)),
+            &Failing(&AtomicU64::new(0)),
             &lattice_frame(6),
             Rule::Certified,
             &Control::threads(threads),

@@ -435,6 +435,9 @@ fn a_scene_becomes_a_solid() {
         assert!(told.text().contains(word), "{told:?}");
     }
     let report = place.run("csg part.csg -o part.lfl --depth 5 --bounds 0,0,0,8 --json").good().json();
+    // What a mesh and an octree do in bulk is not counted.
+    assert!(report["splits"].is_null() && report["evaluations"].as_u64().unwrap() > 0);
+    assert!(report["levels"].as_array().unwrap().iter().all(|level| level.get("splits").is_none()));
     let (lower, upper) = volume(&report);
     assert!(lower <= 64.0 - 8.0 - 2.0 && 64.0 - 8.0 - 2.0 <= upper && upper - lower < 4.0, "{lower} {upper}");
     let bytes = place.bytes("part.lfl");

@@ -37,8 +37,8 @@ fn odd(depth: u8) -> Frame {
     Frame::new([-1.1, -1.3, -0.9], 2.3, depth).unwrap()
 }
 
-fn of_mesh(mesh: &Arc<TriangleMesh>, frame: &Frame, fill: FillRule) -> AnySolid {
-    AnySolid::new(MeshSolid::new(mesh.clone(), frame, fill).unwrap())
+fn of_mesh(mesh: &Arc<TriangleMesh>, fill: FillRule) -> AnySolid {
+    AnySolid::new(MeshSolid::new(mesh.clone(), fill).unwrap())
 }
 
 fn transformed(solid: AnySolid, own: &Frame, placement: &Affine) -> AnySolid {
@@ -197,7 +197,7 @@ fn corpus() -> Vec<Entry> {
         ("open torus positive", &open, FillRule::Positive, &[5, 6]),
     ] {
         let mesh = mesh.clone();
-        add(name, depths, unit, Box::new(move |frame| of_mesh(&mesh, frame, fill)));
+        add(name, depths, unit, Box::new(move |_| of_mesh(&mesh, fill)));
     }
     // Other solids within expressions, transforms, stored octrees.
     let mesh = closed.clone();
@@ -205,24 +205,22 @@ fn corpus() -> Vec<Entry> {
         "mesh in csg",
         &[4, 6, 7],
         unit,
-        Box::new(move |frame| AnySolid::new(Csg::solid(of_mesh(&mesh, frame, FillRule::NonZero)))),
+        Box::new(move |_| AnySolid::new(Csg::solid(of_mesh(&mesh, FillRule::NonZero)))),
     );
     let mesh = closed.clone();
     add(
         "mesh complement",
         &[6, 7],
         unit,
-        Box::new(move |frame| {
-            AnySolid::new(Csg::solid(of_mesh(&mesh, frame, FillRule::NonZero)).complement())
-        }),
+        Box::new(move |_| AnySolid::new(Csg::solid(of_mesh(&mesh, FillRule::NonZero)).complement())),
     );
     let mesh = closed.clone();
     add(
         "mesh less cylinder",
         &[5, 6, 7],
         unit,
-        Box::new(move |frame| {
-            let mesh = Csg::solid(of_mesh(&mesh, frame, FillRule::NonZero));
+        Box::new(move |_| {
+            let mesh = Csg::solid(of_mesh(&mesh, FillRule::NonZero));
             AnySolid::new(mesh.difference(&Csg::cuboid([0.1; 3], [0.9; 3]).unwrap()).unwrap())
         }),
     );
@@ -233,7 +231,7 @@ fn corpus() -> Vec<Entry> {
         unit,
         Box::new(move |frame| {
             let own = unit(frame.depth() + 1);
-            transformed(of_mesh(&mesh, &own, FillRule::NonZero), &own, &turned())
+            transformed(of_mesh(&mesh, FillRule::NonZero), &own, &turned())
         }),
     );
     let mesh = closed.clone();
@@ -243,7 +241,7 @@ fn corpus() -> Vec<Entry> {
         unit,
         Box::new(move |frame| {
             let by = Affine::translation([frame.cell_size() * 3.0, 0.0, -2.0 * frame.cell_size()]).unwrap();
-            transformed(of_mesh(&mesh, frame, FillRule::NonZero), frame, &by)
+            transformed(of_mesh(&mesh, FillRule::NonZero), frame, &by)
         }),
     );
     add(
@@ -295,7 +293,7 @@ fn corpus() -> Vec<Entry> {
             name: name.into(),
             frame: Box::new(move |depth| Frame::around(min, max, depth).unwrap()),
             depths: depths.to_vec(),
-            make: Box::new(move |frame| of_mesh(&mesh, frame, FillRule::NonZero)),
+            make: Box::new(move |_| of_mesh(&mesh, FillRule::NonZero)),
         });
     }
     all

@@ -1,22 +1,32 @@
-//! Constructive solid geometry: the published tables.
+//! Constructive solid geometry: the published tables, and what costs what.
+
+mod common;
+
+#[path = "csg/hierarchy.rs"]
+mod hierarchy;
+#[path = "csg/passing.rs"]
+mod passing;
+#[path = "csg/poses.rs"]
+mod poses;
 
 use leafless::{
-    Affine, AnySolid, AxisBox, Cell, Control, Csg, Cube, Error, Frame, HalfSpace, Interval, Rule, Scratch,
-    Solid, Tag, Touch, Transform, Verdict, build,
+    Affine, AnySolid, AxisBox, Cell, Classifier, Control, Csg, Error, Frame, HalfSpace, Interval, Rule,
+    Solid, Tag, Touch, Transform, Verdict, Worker, build,
 };
+
+type CsgWorker = <<Csg as Solid>::Classifier as Classifier>::Worker;
+type CsgPart = <CsgWorker as Worker>::Part;
 
 /// Cells that were split above each level and the volumes of FULL, and of FULL and PARTIAL cells, of a full descent.
 fn table(solid: &Csg, frame: &Frame) -> Vec<(u64, f64, f64)> {
-    struct Descent<'a> {
-        solid: &'a Csg,
-        frame: &'a Frame,
-        scratch: <Csg as Solid>::Scratch,
+    struct Descent {
+        worker: CsgWorker,
         rows: Vec<(u64, f64, f64)>,
     }
-    impl Descent<'_> {
-        fn cell(&mut self, cell: Cell, verdict: Verdict<<Csg as Solid>::Part>) {
+    impl Descent {
+        fn cell(&mut self, cell: Cell, verdict: Verdict<CsgPart>) {
             let level = cell.level as usize;
-            let volume = (self.frame.edge() / (1u64 << level) as f64).powi(3);
+            let volume = (self.worker.frame().edge() / (1u64 << level) as f64).powi(3);
             match verdict {
                 Verdict::Empty => {}
                 Verdict::Full => (level..self.rows.len()).for_each(|l| {
@@ -28,25 +38,20 @@ fn table(solid: &Csg, frame: &Frame) -> Vec<(u64, f64, f64)> {
                     self.rows[level].2 += volume;
                     if level + 1 < self.rows.len() {
                         (level + 1..self.rows.len()).for_each(|l| self.rows[l].0 += 1);
-                        let mark = self.scratch.mark();
-                        let cube = Cube { frame: self.frame, cell };
-                        let children = self.solid.split(&mut self.scratch, &cube, &part).unwrap();
+                        let mark = self.worker.mark();
+                        let children = self.worker.split(cell, &part).unwrap();
                         for (k, child) in (0..8).zip(children) {
                             self.cell(cell.child(k), child);
                         }
-                        self.scratch.release(mark);
+                        self.worker.release(mark);
                     }
                 }
             }
         }
     }
-    let mut descent = Descent {
-        solid,
-        frame,
-        scratch: Default::default(),
-        rows: vec![(0, 0.0, 0.0); frame.depth() as usize + 1],
-    };
-    let root = solid.root(&mut descent.scratch, frame).unwrap();
+    let worker = solid.on(frame, &Control::default()).unwrap().worker().unwrap();
+    let mut descent = Descent { worker, rows: vec![(0, 0.0, 0.0); frame.depth() as usize + 1] };
+    let root = descent.worker.root().unwrap();
     descent.cell(Cell::ROOT, root);
     descent.rows
 }
@@ -151,7 +156,7 @@ fn a_box_on_the_lattice_is_exact_at_every_level() {
 #[test]
 fn what_is_known_around_the_universe() {
     let frame = Frame::new([0.0; 3], 128.0, 6).unwrap();
-    let outside = |solid: &Csg| solid.exterior(&frame);
+    let outside = |solid: &Csg| solid.on(&frame, &Control::default()).unwrap().exterior();
     let ball = sphere().unwrap();
     assert_eq!((outside(&ball), outside(&ball.complement())), (Tag::Empty, Tag::Full));
     assert_eq!(outside(&Csg::ball([64.0; 3], 64.1).unwrap()), Tag::Partial);

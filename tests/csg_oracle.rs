@@ -20,9 +20,11 @@ mod paper;
 mod points;
 #[path = "csg/random.rs"]
 mod random;
+#[path = "csg/tables.rs"]
+mod tables;
 
 use common::{Random, alone, lattice_frame};
-use leafless::{Frame, Rule, Tag, build};
+use leafless::{Frame, Rule, Solid, Tag, build};
 use model::Model;
 use points::{Found, Judge, centre};
 use random::Maker;
@@ -95,11 +97,17 @@ fn expressions_with_other_solids_do_not_lie() {
 }
 
 #[test]
+fn placements_of_other_solids_do_not_lie() {
+    no_lies(100, 60, true, placed);
+}
+
+#[test]
 #[ignore = "minutes"]
 fn a_million_points_of_each_kind() {
     no_lies(10_000, 100, false, |maker| maker.primitive());
     no_lies(10_000, 100, false, |maker| maker.expression(4));
     no_lies(10_000, 100, false, placed);
+    no_lies(10_000, 100, true, placed);
     no_lies(10_000, 100, true, |maker| maker.expression(4));
 }
 

@@ -16,9 +16,9 @@ mod zip;
 use bodies::{Aligned, Random};
 use leafless::{
     Affine, AnySolid, AxisBox, Ball, Callback, Control, Csg, Error, FillRule, Frame, HalfSpace, LazyOctree,
-    MeshSolid, Metadata, Octree, Polyhedron, PolyhedronArrays, Rule, Stored, Transform, TriangleMesh,
-    Verdict, Zone, bounding_box, build, clearance, compact, complement, difference, file, interference_of,
-    intersection, measure, resolve, union, union_of, xor,
+    Membership, MeshSolid, Metadata, Octree, Polyhedron, PolyhedronArrays, Rule, Stored, Transform,
+    TriangleMesh, Verdict, Zone, bounding_box, build, classify_box, clearance, compact, complement, contains,
+    difference, file, interference_of, intersection, measure, resolve, union, union_of, xor,
 };
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
@@ -281,20 +281,20 @@ fn operations(directory: &Path) -> Vec<(&'static str, Operation)> {
         build(&all, &frame(), Rule::Certified, &CONTROL)
     });
     operation!("build mesh", [closed], {
-        let solid = MeshSolid::new(closed.clone(), &frame(), FillRule::NonZero)?;
+        let solid = MeshSolid::new(closed.clone(), FillRule::NonZero)?;
         build(&solid, &frame(), Rule::Certified, &CONTROL)
     });
     operation!("build mesh erased", [closed], {
-        let solid = AnySolid::new(MeshSolid::new(closed.clone(), &frame(), FillRule::NonZero)?);
+        let solid = AnySolid::new(MeshSolid::new(closed.clone(), FillRule::NonZero)?);
         build(&solid, &frame(), Rule::Certified, &CONTROL)
     });
     operation!("build mesh deep", [closed], {
         let frame = frame().with_depth(7)?;
-        build(&MeshSolid::new(closed.clone(), &frame, FillRule::EvenOdd)?, &frame, Rule::Sampled, &CONTROL)
+        build(&MeshSolid::new(closed.clone(), FillRule::EvenOdd)?, &frame, Rule::Sampled, &CONTROL)
     });
     operation!("build stored", [a], build(&Stored::new(a.view()), &frame(), Rule::Inner, &CONTROL));
     operation!("refine", [closed], {
-        let solid = || MeshSolid::new(closed.clone(), &frame(), FillRule::NonZero);
+        let solid = || MeshSolid::new(closed.clone(), FillRule::NonZero);
         let mut lazy = LazyOctree::new(solid()?, &frame())?;
         let found = lazy.refine(&Zone::Whole, 5, &CONTROL).and_then(|_| lazy.freeze(&CONTROL));
         if found.is_err() {
@@ -395,12 +395,21 @@ fn operations(directory: &Path) -> Vec<(&'static str, Operation)> {
     operation!("statistics", [a], complement(a.view(), &CONTROL).map(|tree| tree.statistics()));
     operation!("measure", [], measure(&Ball::new([15.0; 3], 9.0)?, &frame(), 0.0, &CONTROL));
     operation!("measure a mesh", [closed], {
-        let solid = MeshSolid::new(closed.clone(), &frame(), FillRule::NonZero)?;
+        let solid = MeshSolid::new(closed.clone(), FillRule::NonZero)?;
         measure(&solid, &frame(), 0.0, &CONTROL)
     });
     operation!("bounding box", [closed], {
-        let solid = MeshSolid::new(closed.clone(), &frame(), FillRule::NonZero)?;
+        let solid = MeshSolid::new(closed.clone(), FillRule::NonZero)?;
         bounding_box(&solid, &frame(), 0.0, &CONTROL)
+    });
+    operation!("points of a mesh", [closed], {
+        let points: [[f64; 3]; 64] = std::array::from_fn(|i| [i as f64 / 4.0, 7.7, 9.1 + i as f64 / 9.0]);
+        let solid = MeshSolid::new(closed.clone(), FillRule::NonZero)?;
+        contains(&solid, &frame(), &points, &mut [Membership::Undecided; 64], &CONTROL)
+    });
+    operation!("box of a mesh", [closed], {
+        let solid = MeshSolid::new(closed.clone(), FillRule::NonZero)?;
+        classify_box(&solid, &frame(), [7.1; 3], [16.0; 3], &CONTROL)
     });
     operation!("to bytes", [b], file::to_bytes(&b.with_metadata(facts())));
     operation!("to bytes again", [coded], file::to_bytes(&coded));

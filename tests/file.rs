@@ -5,11 +5,13 @@
 
 #[path = "../fuzz/bodies/aligned.rs"]
 mod aligned;
+mod common;
 
 use aligned::Aligned;
+use common::cubes::Cubes;
 use leafless::{
     Ball, Control, Cube, Cursor, Error, FormatError, Frame, Metadata, Octree, OctreeRef, PointCursor, Rule,
-    Solid, Stored, Tag, Verdict, build, compact, complement, difference, file, intersection, union, xor,
+    Stored, Tag, Verdict, build, compact, complement, difference, file, intersection, union, xor,
 };
 use std::path::Path;
 
@@ -22,56 +24,45 @@ fn mix(mut x: u64) -> u64 {
 }
 
 /// A different tree for every seed, with coarse and fine cells of every tag.
+#[derive(Clone)]
 struct Noise(u64);
 
-impl Noise {
-    fn verdict(&self, cube: &Cube<'_>) -> Verdict<()> {
+impl Cubes for Noise {
+    fn verdict(&self, cube: &Cube<'_>) -> Result<Verdict<()>, Error> {
         let cell = cube.cell;
+        if cell.level == 0 {
+            return Ok(Verdict::Partial(()));
+        }
         let hash = cell.at.iter().fold(mix(self.0 + cell.level as u64), |hash, &a| mix(hash ^ a as u64));
         let split = if cell.level < 3 { 170 } else { 45 };
-        match hash % 256 {
+        Ok(match hash % 256 {
             die if die < split => Verdict::Partial(()),
             die => [Verdict::Empty, Verdict::Full, Verdict::Undecided][(die % 3) as usize],
-        }
-    }
-}
-
-impl Solid for Noise {
-    type Part = ();
-    type Scratch = ();
-    fn root(&self, _: &mut (), _: &Frame) -> Result<Verdict<()>, Error> {
-        Ok(Verdict::Partial(()))
-    }
-    fn split(&self, _: &mut (), cube: &Cube<'_>, _: &()) -> Result<[Verdict<()>; 8], Error> {
-        Ok([0, 1, 2, 3, 4, 5, 6, 7].map(|k| self.verdict(&cube.child(k))))
+        })
     }
 }
 
 /// 64³ bricks of 25 000 kinds in every block of 2^16: too many for one dictionary, few enough for several.
+#[derive(Clone)]
 struct ManyBricks;
 
-impl Solid for ManyBricks {
-    type Part = ();
-    type Scratch = ();
-    fn root(&self, _: &mut (), _: &Frame) -> Result<Verdict<()>, Error> {
-        Ok(Verdict::Partial(()))
-    }
-    fn split(&self, _: &mut (), cube: &Cube<'_>, _: &()) -> Result<[Verdict<()>; 8], Error> {
-        Ok([0, 1, 2, 3, 4, 5, 6, 7].map(|k| {
-            let cell = cube.child(k).cell;
-            if cell.level < 8 {
-                return Verdict::Partial(());
-            }
-            let morton = |at: [u32; 3], bits: u32| {
-                (0..3 * bits).fold(0u64, |m, i| m | (at[i as usize % 3] as u64 >> (i / 3) & 1) << i)
-            };
-            let brick = morton(cell.at.map(|a| a >> 2), 6);
-            let bit = morton(cell.at.map(|a| a & 3), 2);
-            let value = mix((brick >> 16) * 100_000 + brick % 25_000);
-            if value >> bit & 1 != 0 { Verdict::Full } else { Verdict::Empty }
-        }))
+impl Cubes for ManyBricks {
+    fn verdict(&self, cube: &Cube<'_>) -> Result<Verdict<()>, Error> {
+        let cell = cube.cell;
+        if cell.level < 8 {
+            return Ok(Verdict::Partial(()));
+        }
+        let morton = |at: [u32; 3], bits: u32| {
+            (0..3 * bits).fold(0u64, |m, i| m | (at[i as usize % 3] as u64 >> (i / 3) & 1) << i)
+        };
+        let brick = morton(cell.at.map(|a| a >> 2), 6);
+        let bit = morton(cell.at.map(|a| a & 3), 2);
+        let value = mix((brick >> 16) * 100_000 + brick % 25_000);
+        Ok(if value >> bit & 1 != 0 { Verdict::Full } else { Verdict::Empty })
     }
 }
+
+solid_of_cubes!(Noise, ManyBricks);
 
 fn frame(depth: u8) -> Frame {
     Frame::new([0.1, -2.5, 1e3], 3.3, depth).unwrap()

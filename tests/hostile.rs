@@ -302,28 +302,36 @@ fn of_a_sound_tree_a_cursor_sees_all_in_any_order() {
     }
 }
 
-/// Parts are plain numbers, which a caller may get wrong.
+/// Parts of one tree, which a caller may mistake for those of another.
 #[test]
-fn parts_that_are_made_up_lead_nowhere() {
-    use leafless::{Cell, Cube, Solid, Stored, StoredPart, Verdict};
-    for tree in seeds::trees() {
-        let solid = Stored::new(tree.view());
-        let cube = Cube { frame: tree.frame(), cell: Cell::ROOT };
-        for level in [0, 1, 4, 9, 10, 11, 255] {
-            for index in [0, 1, 7, 1 << 20, usize::MAX] {
-                for octant in [0, 7, 8, 32, 255] {
-                    let parts =
-                        [StoredPart::Element { level, index }, StoredPart::Octant { level, index, octant }];
-                    for part in parts {
-                        let children = solid.split(&mut (), &cube, &part).unwrap();
-                        let planes = solid.split64(&mut (), &cube, &part, &mut vec![]).unwrap();
-                        let nowhere = level > 9 || index > 1 << 19;
-                        assert!(!nowhere || children.iter().all(|child| matches!(child, Verdict::Undecided)));
-                        assert!(!nowhere || planes == leafless::Planes::uniform(leafless::Tag::Partial));
-                    }
-                }
-            }
+fn parts_of_another_tree_lead_nowhere() {
+    use leafless::{Cell, Classifier, Solid, Stored, Verdict, Worker};
+    let trees = seeds::trees();
+    let on_frames =
+        trees.iter().map(|tree| Stored::new(tree.view()).on(tree.frame(), &bodies::CONTROL).unwrap());
+    let mut workers: Vec<_> = on_frames.map(|classifier| classifier.worker().unwrap()).collect();
+    let mut parts = vec![];
+    for worker in &mut workers {
+        // Some on each level.
+        let mut open = vec![(Cell::ROOT, worker.root().unwrap())];
+        for _ in 0..40 {
+            let Some((cell, verdict)) = open.pop() else { break };
+            let Verdict::Partial(part) = verdict else { continue };
+            parts.push(part);
+            open.extend((0..8).map(|k| cell.child(k)).zip(worker.split(cell, &part).unwrap()));
         }
+    }
+    assert!(parts.len() > 100);
+    for (tree, worker) in trees.iter().zip(&mut workers) {
+        let mut nowhere = 0;
+        for part in &parts {
+            let children = worker.split(Cell::ROOT, part).unwrap();
+            let planes = worker.split64(Cell::ROOT, part, &mut vec![]).unwrap();
+            assert_eq!(planes.branch(), 0);
+            nowhere += children.iter().all(|child| matches!(child, Verdict::Undecided)) as usize;
+        }
+        // A tree without elements has no place where a part could lie.
+        assert!(tree.view().element_count() + tree.view().brick_count() > 0 || nowhere == parts.len());
     }
 }
 

@@ -33,10 +33,14 @@ fn two_balls_take_eighty_splits_at_most() {
         let frame = published(depth);
         let ball = |at| Csg::ball([at; 3], 30.0).unwrap();
         let plain = |at| Ball::new([at; 3], 30.0).unwrap();
-        let apart = interference(&ball(50.0), &ball(86.0), &frame, PROOF, &alone()).unwrap();
+        let balls = [50.0, 86.0, 83.0].map(ball);
+        let apart = interference(&balls[0], &balls[1], &frame, PROOF, &alone()).unwrap();
+        assert!(balls[..2].iter().all(|ball| ball.evaluations() > 0));
         assert_eq!((apart.verdict, apart.witness, apart.clipped), (Overlap::Disjoint, None, false));
         assert_eq!((apart.volume.lower, apart.volume.upper), (0.0, 0.0));
-        let over = interference(&ball(50.0), &ball(83.0), &frame, PROOF, &alone()).unwrap();
+        let before = balls[0].evaluations();
+        let over = interference(&balls[0], &balls[2], &frame, PROOF, &alone()).unwrap();
+        assert!(balls[0].evaluations() > before && balls[2].evaluations() > 0);
         assert_eq!(over.verdict, Overlap::Overlapping);
         println!("depth {depth}: {:?} disjoint, {:?} overlapping", apart.splits, over.splits);
         assert!(splits(&apart) <= 80 && splits(&over) <= 80, "{apart:?} {over:?}");
@@ -66,7 +70,6 @@ fn two_balls_take_eighty_splits_at_most() {
                 (expected.verdict, expected.witness, expected.splits)
             );
         }
-        assert!(apart.evaluations > 0 && over.evaluations > 0);
     }
 }
 
@@ -538,8 +541,8 @@ fn a_mesh_in_other_places() {
         let placed = mesh.placed(&placement).unwrap();
         assert!(placed.displacement() > 0.0 && placed.displacement() < 1e-13);
         for fill in [FillRule::Positive, FillRule::NonZero] {
-            let moved = MeshSolid::new(placed.clone(), &frame, fill).unwrap();
-            let solid = MeshSolid::new(mesh.clone(), &own, fill).unwrap();
+            let moved = MeshSolid::new(placed.clone(), fill).unwrap();
+            let solid = MeshSolid::new(mesh.clone(), fill).unwrap();
             let by_cells = Transform::new(&solid, &own, &placement);
             let [x, y] = [
                 build(&moved, &frame, Rule::Certified, &alone()).unwrap(),
@@ -569,7 +572,7 @@ fn a_mesh_against_itself() {
     let around = Frame::around(min, max, 7).unwrap();
     let extent = [0, 1, 2].map(|axis| max[axis] - min[axis]);
     let longest = extent.iter().copied().fold(0.0, f64::max);
-    let solid = MeshSolid::new(mesh, &around, FillRule::NonZero).unwrap();
+    let solid = MeshSolid::new(mesh, FillRule::NonZero).unwrap();
     let tree = build(&solid, &around, Rule::Certified, &Control::default()).unwrap();
     // In its own place it overlaps itself wholly.
     let found = interference(&solid, &tree, &around, 0.0, &up_to(2_000_000)).unwrap();

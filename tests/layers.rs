@@ -19,7 +19,8 @@ const LAYERS: [&[&str]; 8] = [
 ];
 
 /// Modules of `solid` that its producers share. Every other one is a producer, which no other may use.
-const SHARED: [&str; 3] = ["exact", "erased", "fingerprint"];
+const SHARED: [&str; 8] =
+    ["exact", "erased", "fingerprint", "forward", "enclosure", "motion", "prepared", "subtree"];
 
 fn layer(module: &str) -> Option<usize> {
     LAYERS.iter().position(|layer| layer.contains(&module))

@@ -2,7 +2,7 @@
 //! values at every depth.
 
 use glam::{DMat3, DVec3};
-use leafless::{Affine, Control, Csg, Error, Frame, Interval, measure};
+use leafless::{Affine, Bounds, Control, Csg, Error, Frame, Interval, Solid, measure};
 use std::f64::consts::PI;
 
 /// A solid with its volume, its centroid, and ∫ (p − c)(p − c)ᵀ about that.
@@ -185,7 +185,7 @@ fn intervals_hold_the_formulas() {
             };
             let (about_centroid, about_origin) =
                 (inertia(spread), inertia(spread + volume * outer(centroid)));
-            let (min, max) = placed.bounds().expect("a bounded primitive");
+            let Bounds { min, max } = placed.bounds().expect("a bounded primitive");
             let mut widths = Vec::new();
             for depth in 1..=6 {
                 let found =

@@ -5,12 +5,13 @@ mod common;
 use common::exact::Exact;
 use common::{Dense, DenseSolid, Random, alone, cases, model, positions, shapes};
 use leafless::{
-    AnySolid, AxisBox, Ball, Callback, Control, Cube, Error, Extent, FillRule, Frame, Interval, Measured,
-    Measures, MeshSolid, Rule, Scratch, Solid, Tag, TriangleMesh, Verdict, bounding_box, build, complement,
-    file, measure,
+    AnySolid, AxisBox, Ball, Callback, Cell, Classifier, Control, Error, Extent, FillRule, Frame, Interval,
+    Measured, Measures, MeshSolid, Rule, Solid, Tag, TriangleMesh, Verdict, Worker, bounding_box, build,
+    complement, file, measure,
 };
 use proptest::prelude::*;
 use std::f64::consts::PI;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
 
 const PAIRS: [(usize, usize); 6] = [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)];
@@ -434,90 +435,116 @@ fn budgets_are_kept_and_not_wasted() {
 /// A solid that counts, and whose parts lie in scratch memory; a part that is not what it should be is noticed.
 struct Counting {
     ball: Ball,
-    calls: AtomicU64,
+    calls: Arc<AtomicU64>,
 }
 
-#[derive(Default)]
+impl Counting {
+    fn new(ball: Ball) -> Counting {
+        Counting { ball, calls: Arc::default() }
+    }
+}
+
+type BallOnFrame = <Ball as Solid>::Classifier;
+
+#[derive(Clone)]
+struct CountingOnFrame {
+    ball: BallOnFrame,
+    calls: Arc<AtomicU64>,
+}
+
 struct Stack {
+    ball: <BallOnFrame as Classifier>::Worker,
+    calls: Arc<AtomicU64>,
     values: Vec<[u32; 4]>,
-    evaluations: u64,
 }
 
-impl Scratch for Stack {
-    fn mark(&self) -> usize {
-        self.values.len()
-    }
-    fn release(&mut self, mark: usize) {
-        assert!(mark <= self.values.len());
-        self.values.truncate(mark);
-    }
-    fn evaluations(&self) -> u64 {
-        self.evaluations
-    }
-}
-
-fn key(cube: &Cube<'_>) -> [u32; 4] {
-    let [x, y, z] = cube.cell.at;
-    [x, y, z, cube.cell.level as u32]
+fn key(cell: Cell) -> [u32; 4] {
+    let [x, y, z] = cell.at;
+    [x, y, z, cell.level as u32]
 }
 
 impl Solid for Counting {
-    type Part = usize;
-    type Scratch = Stack;
+    type Classifier = CountingOnFrame;
 
-    fn root(&self, scratch: &mut Stack, frame: &Frame) -> Result<Verdict<usize>, Error> {
-        scratch.values.push([0; 4]);
-        Ok(match Solid::root(&self.ball, &mut (), frame)? {
-            Verdict::Partial(()) => Verdict::Partial(scratch.values.len() - 1),
+    fn on(&self, frame: &Frame, control: &Control<'_>) -> Result<CountingOnFrame, Error> {
+        Ok(CountingOnFrame { ball: self.ball.on(frame, control)?, calls: self.calls.clone() })
+    }
+}
+
+impl Classifier for CountingOnFrame {
+    type Worker = Stack;
+
+    fn frame(&self) -> &Frame {
+        Classifier::frame(&self.ball)
+    }
+
+    fn worker(&self) -> Result<Stack, Error> {
+        Ok(Stack { ball: self.ball.worker()?, calls: self.calls.clone(), values: Vec::new() })
+    }
+}
+
+impl Worker for Stack {
+    type Part = usize;
+
+    fn frame(&self) -> &Frame {
+        Worker::frame(&self.ball)
+    }
+
+    fn root(&mut self) -> Result<Verdict<usize>, Error> {
+        self.values.push([0; 4]);
+        Ok(match self.ball.root()? {
+            Verdict::Partial(_) => Verdict::Partial(self.values.len() - 1),
             _ => Verdict::Undecided,
         })
     }
 
-    fn split(
-        &self,
-        scratch: &mut Stack,
-        cube: &Cube<'_>,
-        part: &usize,
-    ) -> Result<[Verdict<usize>; 8], Error> {
-        assert_eq!(scratch.values[*part], key(cube));
+    fn split(&mut self, cell: Cell, part: &usize) -> Result<[Verdict<usize>; 8], Error> {
+        assert_eq!(self.values[*part], key(cell));
         self.calls.fetch_add(1, Relaxed);
-        scratch.evaluations += 3;
         let mut octant = 0;
-        Ok(self.ball.split(&mut (), cube, &())?.map(|verdict| {
+        Ok(self.ball.split(cell, &())?.map(|verdict| {
             octant += 1;
             match verdict {
                 Verdict::Empty => Verdict::Empty,
                 Verdict::Full => Verdict::Full,
                 Verdict::Undecided => Verdict::Undecided,
                 Verdict::Partial(()) => {
-                    scratch.values.push(key(&cube.child(octant - 1)));
-                    Verdict::Partial(scratch.values.len() - 1)
+                    self.values.push(key(cell.child(octant - 1)));
+                    Verdict::Partial(self.values.len() - 1)
                 }
             }
         }))
     }
 
-    fn hand_over(&self, from: &Stack, part: &usize, to: &mut Stack) -> Result<usize, Error> {
-        to.values.push(from.values[*part]);
-        Ok(to.values.len() - 1)
+    fn mark(&self) -> usize {
+        self.values.len()
+    }
+
+    fn release(&mut self, mark: usize) {
+        assert!(mark <= self.values.len());
+        self.values.truncate(mark);
+    }
+
+    fn hand_over(&mut self, from: &Stack, part: &usize) -> Result<usize, Error> {
+        self.values.push(from.values[*part]);
+        Ok(self.values.len() - 1)
     }
 }
 
 #[test]
-fn splits_and_evaluations_are_counted_as_they_happen() {
+fn splits_are_counted_as_they_happen() {
     let ball = Ball::new([0.01, 0.02, 0.03], 0.9).unwrap();
     for (depth, max_splits) in [(4, None), (9, None), (10, Some(77)), (20, Some(300_000))] {
         let frame = Frame::new([-1.0; 3], 2.0, depth).unwrap();
         for threads in [1, 4] {
             let control = Control { max_splits, threads, ..Control::default() };
             let plain = measure(&ball, &frame, 0.0, &control).unwrap();
-            let solid = Counting { ball, calls: AtomicU64::new(0) };
+            let solid = Counting::new(ball);
             let counted = measure(&solid, &frame, 0.0, &control).unwrap();
             assert_eq!((counted.volume, counted.splits), (plain.volume, plain.splits));
             assert_eq!(counted.splits, solid.calls.load(Relaxed));
-            assert_eq!(counted.evaluations, 3 * counted.splits);
             assert!(counted.clipped && !plain.clipped);
-            let any = AnySolid::new(Counting { ball, calls: AtomicU64::new(0) });
+            let any = AnySolid::new(Counting::new(ball));
             assert_eq!(measure(&any, &frame, 0.0, &control).unwrap(), counted);
         }
     }
@@ -648,7 +675,7 @@ fn a_mesh_against_the_divergence_theorem() {
     let sums = sums_of(&mesh);
     for depth in [3, 6, 9] {
         let frame = Frame::around(min, max, depth).unwrap();
-        let solid = MeshSolid::new(mesh.clone(), &frame, FillRule::NonZero).unwrap();
+        let solid = MeshSolid::new(mesh.clone(), FillRule::NonZero).unwrap();
         let measures = measure(&solid, &frame, 0.0, &Control::default()).unwrap();
         contains_all(&measures, &sums).unwrap();
         assert!(!measures.clipped);

@@ -11,8 +11,8 @@ mod shapes;
 use common::{Random, alone, cases, lattice_frame, model};
 use descended::Descended;
 use leafless::{
-    AnySolid, Control, Error, FillRule, Frame, Membership, MeshError, MeshSolid, Octree, Rule, Solid, Tag,
-    TriangleMesh, build, difference, file,
+    AnySolid, Classifier, Control, Error, FillRule, Frame, Membership, MeshError, MeshSolid, Octree, Rule,
+    Solid, Tag, TriangleMesh, build, difference, file,
 };
 use oracle::{Contact, Oracle, PointOracle};
 use proptest::prelude::*;
@@ -24,7 +24,7 @@ const RULES: [Rule; 4] = [Rule::Certified, Rule::Sampled, Rule::Inner, Rule::Out
 /// All four trees of a mesh, shown to be the same by scanning blocks and by descent, and for any number of
 /// threads.
 fn trees(what: &str, mesh: &TriangleMesh, frame: &Frame, fill: FillRule) -> [Octree; 4] {
-    let solid = MeshSolid::new(mesh.clone(), frame, fill).unwrap();
+    let solid = MeshSolid::new(mesh.clone(), fill).unwrap();
     RULES.map(|rule| {
         let tree = build(&solid, frame, rule, &alone()).unwrap();
         tree.view().check().unwrap();
@@ -102,7 +102,8 @@ fn verify(what: &str, soup: &Soup, frame: &Frame) {
 /// The exterior is EMPTY if and only if no vertex is beyond the universe.
 fn exterior(soup: &Soup, frame: &Frame) -> Tag {
     let mesh = mesh(soup);
-    MeshSolid::new(mesh.clone(), frame, FillRule::NonZero).unwrap().exterior(frame)
+    let solid = MeshSolid::new(mesh.clone(), FillRule::NonZero).unwrap();
+    solid.on(frame, &alone()).unwrap().exterior()
 }
 
 fn join(soups: &[Soup]) -> Soup {
@@ -506,7 +507,7 @@ fn assert_sampled(what: &str, mesh: &TriangleMesh, depth: u8) {
     let frame = around(mesh, depth);
     let windings = Oracle::new(mesh, &frame).windings();
     for &fill in fills(mesh) {
-        let solid = MeshSolid::new(mesh.clone(), &frame, fill).unwrap();
+        let solid = MeshSolid::new(mesh.clone(), fill).unwrap();
         let tree = build(&solid, &frame, Rule::Sampled, &Control::default()).unwrap();
         let n = frame.cells();
         for (i, &winding) in windings.iter().enumerate() {
@@ -528,7 +529,7 @@ fn parts_are_certified_and_converge() {
         let mut before: Option<f64> = None;
         for depth in 6..=10 {
             let frame = around(&mesh, depth);
-            let solid = MeshSolid::new(mesh.clone(), &frame, FillRule::NonZero).unwrap();
+            let solid = MeshSolid::new(mesh.clone(), FillRule::NonZero).unwrap();
             let tree = |rule| build(&solid, &frame, rule, &Control::default()).unwrap();
             let [certified, sampled, inner, outer] = RULES.map(tree);
             let interval = certified.statistics().volume();
@@ -582,7 +583,7 @@ fn the_erased_solid_is_the_same() {
     for depth in [5, 6, 8] {
         let frame = around(mesh, depth);
         for fill in FILLS {
-            let solid = || MeshSolid::new(mesh.clone(), &frame, fill).unwrap();
+            let solid = || MeshSolid::new(mesh.clone(), fill).unwrap();
             let trees = trees("erased", mesh, &frame, fill);
             let any = AnySolid::new(solid());
             for (rule, tree) in RULES.into_iter().zip(&trees) {
@@ -608,7 +609,7 @@ fn points_never_contradict(what: &str, mesh: &TriangleMesh, points: usize) {
     let (min, max) = mesh.bounds();
     for depth in [6, 9] {
         let frame = around(mesh, depth);
-        let solid = MeshSolid::new(mesh.clone(), &frame, FillRule::NonZero).unwrap();
+        let solid = MeshSolid::new(mesh.clone(), FillRule::NonZero).unwrap();
         let tree = build(&solid, &frame, Rule::Certified, &Control::default()).unwrap();
         let mut random = Random(depth as u64);
         let mut counts = [0usize; 3];
@@ -678,13 +679,13 @@ fn hair_cracks_keep_every_variant_inside() {
                 Frame::new([-1.25 + 0.125 / (1 << depth) as f64; 3], 2.5, depth).unwrap(),
             ] {
                 verify_with("sewn", &sewn, &frame, &FILLS);
-                let solid = MeshSolid::new(sewn.clone(), &frame, FillRule::NonZero).unwrap();
+                let solid = MeshSolid::new(sewn.clone(), FillRule::NonZero).unwrap();
                 let tree = |rule| build(&solid, &frame, rule, &alone()).unwrap();
                 let (inner, outer) = (tree(Rule::Inner), tree(Rule::Outer));
                 // Both ways to close the cracks: every noisy coordinate as it is, and none.
                 for closed in [base.clone(), moved(&base, |p| p.map(|x| if x == 0.0 { noise } else { x }))] {
                     let closed = mesh(&closed);
-                    let solid = MeshSolid::new(closed.clone(), &frame, FillRule::NonZero).unwrap();
+                    let solid = MeshSolid::new(closed.clone(), FillRule::NonZero).unwrap();
                     let tree = |rule| build(&solid, &frame, rule, &alone()).unwrap();
                     let within = |a: &Octree, b: &Octree| {
                         let left = difference(a.view(), b.view(), &alone()).unwrap();
@@ -715,7 +716,7 @@ fn meshes_that_bound_nothing_are_refused() {
     let frame = lattice_frame(4);
     let refusal = |soup: &Soup, fill| {
         let mesh = mesh(soup);
-        match MeshSolid::new(mesh.clone(), &frame, fill) {
+        match MeshSolid::new(mesh.clone(), fill) {
             Ok(_) => None,
             Err(Error::Mesh(error)) => Some(error),
             Err(error) => panic!("{error}"),
@@ -749,8 +750,12 @@ fn meshes_that_bound_nothing_are_refused() {
         assert!(whole == turned);
         verify_with("turned", &mesh(&block([2.0; 3], [9.0; 3])), &frame, &[FillRule::EvenOdd]);
     }
-    // Another frame than the one it was made for.
+    // One solid serves any frame.
     let mesh = mesh(&whole);
-    let solid = MeshSolid::new(mesh.clone(), &frame, FillRule::NonZero).unwrap();
-    assert!(matches!(build(&solid, &other, Rule::Certified, &alone()), Err(Error::FrameMismatch)));
+    let solid = MeshSolid::new(mesh.clone(), FillRule::NonZero).unwrap();
+    for frame in [frame, other, frame] {
+        for (rule, tree) in RULES.into_iter().zip(trees("another frame", &mesh, &frame, FillRule::NonZero)) {
+            assert!(build(&solid, &frame, rule, &alone()).unwrap() == tree);
+        }
+    }
 }

@@ -99,13 +99,13 @@ fn shapes_of_all_kinds(detail: usize) -> Vec<(&'static str, Soup, bool)> {
     ]
 }
 
-fn solid(soup: &Soup, frame: &Frame, fill: FillRule) -> MeshSolid {
-    MeshSolid::new(mesh(soup), frame, fill).unwrap()
+fn solid(soup: &Soup, fill: FillRule) -> MeshSolid {
+    MeshSolid::new(mesh(soup), fill).unwrap()
 }
 
 /// Everything about one soup on one frame.
 fn verify(name: &str, soup: &Soup, frame: &Frame, fill: FillRule, aligned: bool, effort: Effort) -> Findings {
-    let solid = solid(soup, frame, fill);
+    let solid = solid(soup, fill);
     let all = trees(&solid, frame);
     let case = Case { name: name.into(), soup, frame: *frame, fill, aligned };
     let mut findings = examine(&case, &all, effort, frame.depth() as u64);
@@ -355,7 +355,7 @@ fn every_centre_of_an_aligned_block_without_some_faces() {
             (0..12).filter(|facet| faces >> (facet / 2) & 1 != 0).map(|facet| whole[facet]).collect();
         let mut truth = Soupy::new(&soup);
         for fill in RULES {
-            let tree = &trees(&solid(&soup, &frame, fill), &frame)[1];
+            let tree = &trees(&solid(&soup, fill), &frame)[1];
             for at in common::positions(4) {
                 let winding = around_centre(&mut truth, &frame, at, true);
                 let found = tree.view().tag_at(at) == Tag::Full;
@@ -448,7 +448,7 @@ fn any_number_of_threads_and_blocks_or_not() {
         let soup = damaged(&soup, damage, &mut random, 1.0, aligned);
         // At depth 8 blocks are scanned below nodes that are handed from thread to thread.
         let frame = if aligned { Frame::new([0.0; 3], 32.0, 8).unwrap() } else { odd_frame(&soup, 7) };
-        let solid = solid(&soup, &frame, RULES[i % 2]);
+        let solid = solid(&soup, RULES[i % 2]);
         for rule in [Rule::Certified, Rule::Sampled] {
             let tree = build(&solid, &frame, rule, &alone()).unwrap();
             for threads in [2, 4] {
@@ -470,7 +470,7 @@ fn bytes(tree: &Octree) -> Vec<u8> {
 
 /// A certified and a sampled tree.
 fn both(soup: &Soup, frame: &Frame) -> [Octree; 2] {
-    let solid = solid(soup, frame, FillRule::NonZero);
+    let solid = solid(soup, FillRule::NonZero);
     [Rule::Certified, Rule::Sampled].map(|rule| build(&solid, frame, rule, &Control::threads(2)).unwrap())
 }
 
@@ -706,7 +706,7 @@ fn five_million_triangles() {
         let start = std::time::Instant::now();
         let mesh = mesh(&soup);
         let welded = start.elapsed();
-        let solid = MeshSolid::new(mesh, &frame, FillRule::NonZero).unwrap();
+        let solid = MeshSolid::new(mesh, FillRule::NonZero).unwrap();
         let placed = start.elapsed();
         let tree = build(&solid, &frame, Rule::Certified, &Control::threads(2)).unwrap();
         println!(

@@ -1,8 +1,8 @@
 //! Open meshes at the edge of what doubles can tell: boundary edges that pass close by and end far away, sewn meshes
-//! whose vertices moved in directions of their own, scratch memory that serves several solids.
+//! whose vertices moved in directions of their own, workers that are used again.
 
 use leafless::{
-    Control, FillRule, Frame, MeshScratch, MeshSolid, Rule, Scratch, Solid, Tag, TriangleMesh, build,
+    Classifier, Control, FillRule, Frame, MeshSolid, Rule, Solid, Tag, TriangleMesh, Worker, build,
 };
 
 type Point = [f64; 3];
@@ -37,7 +37,7 @@ fn winding(vertices: &[Point], triangles: &[[u32; 3]], point: Point) -> f64 {
 fn faults(vertices: &[Point], triangles: &[[u32; 3]]) -> (usize, usize) {
     let frame = Frame::new([0.0; 3], 64.0, 6).unwrap();
     let mesh = TriangleMesh::new(vertices.to_vec(), triangles.to_vec()).unwrap();
-    let solid = MeshSolid::new(mesh, &frame, FillRule::NonZero).unwrap();
+    let solid = MeshSolid::new(mesh, FillRule::NonZero).unwrap();
     let tree = build(&solid, &frame, Rule::Certified, &Control::default()).unwrap();
     let (mut wrong, mut partial) = (0, 0);
     for cell in 0..64 * 64 * 64u32 {
@@ -135,7 +135,7 @@ fn sewn_vertices_move_each_in_its_own_direction() {
     assert!(mesh.displacement() > 0.09);
     let (sewn_vertices, sewn_triangles) = (mesh.vertices().to_vec(), mesh.triangles().to_vec());
     let frame = Frame::new([120.0; 3], 16.0, 4).unwrap();
-    let solid = MeshSolid::new(mesh, &frame, FillRule::NonZero).unwrap();
+    let solid = MeshSolid::new(mesh, FillRule::NonZero).unwrap();
     let tree = build(&solid, &frame, Rule::Certified, &Control::default()).unwrap();
     let mut differ = 0;
     for cell in 0..16 * 16 * 16u32 {
@@ -156,11 +156,11 @@ fn sewn_vertices_move_each_in_its_own_direction() {
 }
 
 #[test]
-fn scratch_memory_may_serve_several_solids() {
+fn a_worker_knows_nothing_of_other_solids() {
     let frame = Frame::new([0.0; 3], 1.0, 3).unwrap();
     let solid = |vertices, triangles| {
         let mesh = TriangleMesh::new(vertices, triangles).unwrap();
-        MeshSolid::new(mesh, &frame, FillRule::NonZero).unwrap()
+        MeshSolid::new(mesh, FillRule::NonZero).unwrap()
     };
     let far = solid(vec![[900.0; 3], [901.0, 900.0, 900.0], [900.0, 901.0, 900.0]], vec![[0, 1, 2]]);
     // The universe lies above a box without a lid, taken twice: at a winding number of about 0.9.
@@ -181,12 +181,14 @@ fn scratch_memory_may_serve_several_solids() {
         [2, 4, 6],
     ];
     let near = solid(corners.collect(), [box_faces.clone(), box_faces].concat());
-    let tag = |scratch: &mut MeshScratch| near.root(scratch, &frame).unwrap().tag();
-    assert_eq!(tag(&mut MeshScratch::default()), Tag::Full);
-    let mut shared = MeshScratch::default();
+    // Each is asked again while the other one's scratch memory is in use, and after its own was released.
+    let [near, far] = [near, far].map(|solid| solid.on(&frame, &Control::default()).unwrap());
+    assert_eq!(near.worker().unwrap().root().unwrap().tag(), Tag::Full);
+    let (mut near, mut far) = (near.worker().unwrap(), far.worker().unwrap());
     for _ in 0..2 {
-        assert_eq!(far.root(&mut shared, &frame).unwrap().tag(), Tag::Empty);
-        shared.release(0);
-        assert_eq!(tag(&mut shared), Tag::Full);
+        assert_eq!(far.root().unwrap().tag(), Tag::Empty);
+        far.release(0);
+        assert_eq!(near.root().unwrap().tag(), Tag::Full);
+        near.release(0);
     }
 }

@@ -7,8 +7,8 @@ mod common;
 
 use common::exact::Exact;
 use leafless::{
-    Affine, Control, Csg, CsgScratch, Cube, Error, Fingerprint, Frame, HalfSpace, Interval, Membership,
-    Octree, Rule, Scratch, Solid, Touch, Verdict, build,
+    Affine, Bounds, Classifier, Control, Csg, Error, Fingerprint, Frame, HalfSpace, Interval, Membership,
+    Octree, Rule, Solid, Touch, Verdict, Worker, build,
 };
 use std::f64::consts::PI;
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
@@ -146,7 +146,10 @@ fn shapes() -> Vec<Shape> {
     let mut add = |name, solid: Csg, volume: Option<f64>, bounds, side: Side| {
         if let Some(known) = solid.bounds() {
             let (min, max): ([f64; 3], [f64; 3]) = bounds;
-            assert!((0..3).all(|axis| known.0[axis] <= min[axis] && max[axis] <= known.1[axis]), "{name}");
+            assert!(
+                (0..3).all(|axis| known.min[axis] <= min[axis] && max[axis] <= known.max[axis]),
+                "{name}"
+            );
         }
         shapes.push(Shape { name, solid, side, volume, bounds });
     };
@@ -634,7 +637,7 @@ fn bounds_of_convex_polyhedra() {
             planes.iter().all(|&(normal, _)| sum(normal, direction) > 0.0)
         });
         assert!(!(far && bounds.is_some()), "{planes:?}");
-        let Some((min, max)) = bounds else { continue };
+        let Some(Bounds { min, max }) = bounds else { continue };
         for axis in 0..3 {
             let of = |pick: fn(f64, f64) -> f64| corners.iter().map(|c| c[axis]).reduce(pick).unwrap();
             let (low, high) = (of(f64::min), of(f64::max));
@@ -646,10 +649,11 @@ fn bounds_of_convex_polyhedra() {
     let unit = |axis: usize, c: f64| [0, 1, 2].map(|k| if k == axis { c } else { 0.0 });
     let planes: Vec<_> = (0..3).flat_map(|k| [(unit(k, 3.0), 0.75), (unit(k, -1e-9), 1e-9)]).collect();
     let cube = Csg::convex(&planes).unwrap();
-    let (min, max) = cube.bounds().unwrap();
+    let Bounds { min, max } = cube.bounds().unwrap();
     assert!(min.iter().all(|&c| (-0.2500001..=-0.25).contains(&c)), "{min:?}");
     assert!(max.iter().all(|&c| (1.0..=1.0000001).contains(&c)), "{max:?}");
-    assert_eq!(cube.exterior(&Frame::new([-2.0; 3], 4.0, 3).unwrap()), leafless::Tag::Empty);
+    let around = Frame::new([-2.0; 3], 4.0, 3).unwrap();
+    assert_eq!(cube.on(&around, &Control::default()).unwrap().exterior(), leafless::Tag::Empty);
     // Without end, or empty.
     assert!(Csg::convex(&planes[..5]).unwrap().bounds().is_none());
     assert!(Csg::convex(&[(unit(0, 1.0), -1.0), (unit(0, -1.0), -1.0)]).unwrap().bounds().is_none());
@@ -765,12 +769,14 @@ fn a_host_is_asked_no_more_than_needed() {
     );
     let solid = Csg::from(slope);
     let frame = Frame::new([0.0; 3], 1.0, 3).unwrap();
-    let mut scratch = CsgScratch::default();
-    let Verdict::Partial(part) = solid.root(&mut scratch, &frame).unwrap() else { panic!() };
+    let mut worker = solid.on(&frame, &Control::default()).unwrap().worker().unwrap();
+    let Verdict::Partial(part) = worker.root().unwrap() else { panic!() };
     assert!(points.lock().unwrap().iter().flatten().all(|c| (0.0..=1.0).contains(c)), "beyond the universe");
     assert!(boxes.lock().unwrap().is_empty(), "the vertices have decided");
-    let before = (points.lock().unwrap().len(), scratch.evaluations());
-    solid.split(&mut scratch, &Cube { frame: &frame, cell: leafless::Cell::ROOT }, &part).unwrap();
+    let before = (points.lock().unwrap().len(), solid.evaluations());
+    assert_eq!(before.1, before.0 as u64);
+    worker.split(leafless::Cell::ROOT, &part).unwrap();
+    drop(worker);
     let mut split: Vec<[u64; 3]> =
         points.lock().unwrap()[before.0..].iter().map(|p| p.map(f64::to_bits)).collect();
     let asked = split.len();
@@ -783,7 +789,7 @@ fn a_host_is_asked_no_more_than_needed() {
     // The upper four only: the lower four have vertices on both sides.
     assert_eq!(boxes.len(), 4);
     assert!(boxes.iter().all(|(min, _)| min[2] == 0.5));
-    assert_eq!(scratch.evaluations() - before.1, (asked + boxes.len()) as u64);
+    assert_eq!(solid.evaluations() - before.1, (asked + boxes.len()) as u64);
 }
 
 #[test]

@@ -2,11 +2,13 @@
 
 mod common;
 
-use common::{Dense, Random, Shape, alone, assert_is, cases, lattice_frame, positions, shapes};
+use common::{Dense, DenseSolid, Random, Shape, alone, assert_is, cases, lattice_frame, positions, shapes};
 use leafless::{
-    Ball, Cell, Cursor, Error, Frame, Membership, Octree, PointCursor, Region, Rule, Tag, build, compact,
+    AnySolid, AxisBox, Ball, Callback, Cell, Control, Counted, Csg, Cursor, Error, Frame, Membership, Octree,
+    PointCursor, Region, Rule, Solid, Stored, Tag, Verdict, build, classify_box, compact, contains,
 };
 use proptest::prelude::*;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 fn membership(tag: Tag) -> Membership {
     match tag {
@@ -121,27 +123,33 @@ proptest! {
         let n = (1u64 << dense.depth) as f64;
         let mut random = Random(seed);
         for _ in 0..300 {
-            let (mut min, mut max) = ([0.0; 3], [0.0; 3]);
-            let kind = random.below(6);
-            for axis in 0..3 {
-                let mut end = || match random.below(8) {
-                    0..=3 => random.below(n as u64 + 1) as f64,
-                    4 | 5 => random.between(0.0, n),
-                    6 if kind < 3 => [-1.0, 0.0, n, n + 1.0][random.below(4) as usize],
-                    7 if kind < 3 => [f64::NEG_INFINITY, f64::INFINITY, -1e300, 1e300][random.below(4) as usize],
-                    _ => random.between(-0.2 * n, 1.2 * n).clamp(0.0, n),
-                };
-                let (a, b) = (end(), end());
-                (min[axis], max[axis]) = (a.min(b), a.max(b));
-                if random.below(12) == 0 {
-                    max[axis] = min[axis];
-                }
-            }
+            let (min, max) = a_box(n, &mut random);
             let wanted = region(&dense, min, max);
             assert_eq!(tree.classify_box(min, max).unwrap(), wanted, "{min:?} {max:?}");
             assert_eq!(coded.classify_box(min, max).unwrap(), wanted);
         }
     }
+}
+
+/// A box in the cube [0, n]³ or beside it: with faces on planes and between them, thin ones, and absurd ones.
+fn a_box(n: f64, random: &mut Random) -> ([f64; 3], [f64; 3]) {
+    let (mut min, mut max) = ([0.0; 3], [0.0; 3]);
+    let kind = random.below(6);
+    for axis in 0..3 {
+        let mut end = || match random.below(8) {
+            0..=3 => random.below(n as u64 + 1) as f64,
+            4 | 5 => random.between(0.0, n),
+            6 if kind < 3 => [-1.0, 0.0, n, n + 1.0][random.below(4) as usize],
+            7 if kind < 3 => [f64::NEG_INFINITY, f64::INFINITY, -1e300, 1e300][random.below(4) as usize],
+            _ => random.between(-0.2 * n, 1.2 * n).clamp(0.0, n),
+        };
+        let (a, b) = (end(), end());
+        (min[axis], max[axis]) = (a.min(b), a.max(b));
+        if random.below(12) == 0 {
+            max[axis] = min[axis];
+        }
+    }
+    (min, max)
 }
 
 /// The answer for a box, cell by cell. A box without thickness along an axis is one cell thick: in the cell
@@ -268,6 +276,272 @@ fn batches_on_a_tree_of_many_levels() {
         }
         assert!(answers.contains(&Membership::Inside) && answers.contains(&Membership::Outside));
     }
+}
+
+// ---- any solid, without an octree -----------------------------------------------------------------------
+
+/// Answers for points, in one call.
+fn located<S: Solid>(solid: &S, frame: &Frame, points: &[[f64; 3]], threads: usize) -> Vec<Membership> {
+    let mut answers = vec![Membership::Inside; points.len()];
+    contains(solid, frame, points, &mut answers, &Control::threads(threads)).unwrap();
+    answers
+}
+
+/// Points in lattice coordinates as points of a frame.
+fn points_on(frame: &Frame, seed: u64, count: usize) -> Vec<[f64; 3]> {
+    let mut points = points(frame.depth(), seed, count);
+    for point in &mut points {
+        *point = [0, 1, 2].map(|axis| frame.origin()[axis] + point[axis] * frame.cell_size());
+    }
+    points
+}
+
+/// What a solid says of points and boxes is what its octree says of them.
+fn octree_agrees<S: Solid>(solid: &S, frame: &Frame, seed: u64, count: usize) {
+    let tree = build(solid, frame, Rule::Certified, &alone()).unwrap();
+    points_agree(solid, &tree, seed, count);
+    boxes_agree(solid, &tree, seed);
+}
+
+fn points_agree<S: Solid>(solid: &S, tree: &Octree, seed: u64, count: usize) {
+    let points = points_on(tree.frame(), seed, count);
+    let wanted: Vec<Membership> = points.iter().map(|&point| tree.contains(point)).collect();
+    for threads in [1, 2] {
+        assert_eq!(located(solid, tree.frame(), &points, threads), wanted, "{threads} threads");
+        for count in [0, 1, 2, 33] {
+            let few = located(solid, tree.frame(), &points[..count], threads);
+            assert_eq!(few, wanted[..count], "{threads} threads");
+        }
+    }
+    for (&point, &wanted) in points.iter().zip(&wanted).take(150) {
+        assert_eq!(located(solid, tree.frame(), &[point], 1), [wanted], "{point:?}");
+    }
+}
+
+fn boxes_agree<S: Solid>(solid: &S, tree: &Octree, seed: u64) {
+    let frame = tree.frame();
+    let mut random = Random(seed);
+    let on = |at: [f64; 3]| [0, 1, 2].map(|axis| frame.origin()[axis] + at[axis] * frame.cell_size());
+    for _ in 0..100 {
+        let (min, max) = a_box(frame.cells() as f64, &mut random);
+        let (min, max) = (on(min), on(max));
+        let ask = |control: &Control<'_>| classify_box(solid, frame, min, max, control).unwrap();
+        let wanted = tree.classify_box(min, max).unwrap();
+        let found = ask(&Control::default());
+        assert_eq!(found, wanted, "{min:?} {max:?}");
+        // A budget takes proofs away, makes none, and a larger one takes away less.
+        let mut known = false;
+        for most in [0, 1, 2, 5, 20, 100] {
+            let found = ask(&Control { max_splits: Some(most), ..alone() });
+            assert!(found == wanted || found == Region::Undecided && !known, "{most}: {found:?} {wanted:?}");
+            known = found != Region::Undecided;
+        }
+        if tree.view().root_tag() == Tag::Branch {
+            assert_eq!(ask(&Control { max_splits: Some(0), ..alone() }), Region::Undecided);
+        }
+    }
+}
+
+/// A dense array as a function of boxes.
+fn as_callback(dense: &Dense, frame: Frame) -> impl Solid {
+    Callback::new(move |min, max| {
+        let at = |axis: usize, x: f64| ((x - frame.origin()[axis]) / frame.cell_size()).round() as u32;
+        let edge = at(0, max[0]) - at(0, min[0]);
+        let level = dense.depth - edge.trailing_zeros() as u8;
+        Ok(match dense.tag_of(Cell { level, at: [0, 1, 2].map(|axis| at(axis, min[axis]) / edge) }) {
+            Some(Tag::Empty) => Verdict::Empty,
+            Some(Tag::Full) => Verdict::Full,
+            Some(_) => Verdict::Undecided,
+            None => Verdict::Partial(()),
+        })
+    })
+}
+
+proptest! {
+    #![proptest_config(cases(60))]
+
+    #[test]
+    fn any_solid_knows_its_points_and_boxes(shape in shapes(1..=5), seed in any::<u64>()) {
+        let dense = shape.dense();
+        let frame = lattice_frame(dense.depth);
+        let tree = dense.octree();
+        let solid = DenseSolid { dense: &dense, exterior: Tag::Empty };
+        // By the dense array itself.
+        let points = points(dense.depth, seed, 500);
+        let wanted: Vec<Membership> = points.iter().map(|&point| expected(&dense, point)).collect();
+        assert_eq!(located(&solid, &frame, &points, 1), wanted);
+        let mut random = Random(seed);
+        for _ in 0..if dense.depth < 5 { 50 } else { 5 } {
+            let (min, max) = a_box(frame.cells() as f64, &mut random);
+            let found = classify_box(&solid, &frame, min, max, &alone()).unwrap();
+            assert_eq!(found, region(&dense, min, max), "{min:?} {max:?}");
+        }
+        // By the octree.
+        octree_agrees(&solid, &frame, seed, 300);
+        octree_agrees(&as_callback(&dense, frame), &frame, seed, 300);
+        octree_agrees(&tree, &frame, seed, 300);
+        let coded = compact(tree.view()).unwrap();
+        octree_agrees(&AnySolid::new(coded), &frame, seed, 300);
+        // Cut at a level, and finer than it is.
+        for depth in [dense.depth.saturating_sub(1).max(1), dense.depth + 2] {
+            octree_agrees(&Stored::new(tree.view()), &frame.with_depth(depth).unwrap(), seed, 200);
+        }
+    }
+
+    #[test]
+    fn any_shape_knows_its_points_and_boxes(
+        centre in [-0.3..0.3f64, -0.3..0.3, -0.3..0.3], radius in 0.1..0.6f64, depth in 1..=6u8, seed in any::<u64>(),
+    ) {
+        let ball = Ball::new(centre, radius).unwrap();
+        let csg = Csg::ball(centre, radius).unwrap();
+        let corner = AxisBox::new(centre, [0.7; 3]).unwrap();
+        let bitten = csg.difference(&Csg::half_space([0.5, -1.0, 0.25], 0.1).unwrap()).unwrap();
+        let mixed = Csg::xor_of([bitten.clone(), Csg::solid(AnySolid::new(corner))]).unwrap();
+        // Planes that are doubles, and planes that are not.
+        for frame in [Frame::new([-0.5; 3], 1.0, depth).unwrap(), Frame::new([-0.6, -0.7, -0.1], 1.3, depth).unwrap()] {
+            octree_agrees(&ball, &frame, seed, 300);
+            octree_agrees(&bitten, &frame, seed, 300);
+            octree_agrees(&mixed, &frame, seed, 300);
+            octree_agrees(&AnySolid::new(mixed.complement()), &frame, seed, 300);
+        }
+    }
+}
+
+#[test]
+fn many_points_of_any_solid_are_those_of_its_octree() {
+    // Enough for several threads.
+    let frame = Frame::new([-1.0, 0.3, 20.0], 2.0 / 3.0, 8).unwrap();
+    let centre = [-0.7, 0.6, 20.3];
+    let ball = Ball::new(centre, 0.29).unwrap();
+    let tree = build(&ball, &frame, Rule::Certified, &alone()).unwrap();
+    let csg = Csg::ball(centre, 0.29).unwrap();
+    points_agree(&ball, &tree, 1, 20_000);
+    points_agree(&csg, &build(&csg, &frame, Rule::Certified, &alone()).unwrap(), 2, 20_000);
+    points_agree(&tree, &tree, 3, 20_000);
+    points_agree(
+        &AnySolid::new(csg.clone()),
+        &build(&csg, &frame, Rule::Certified, &alone()).unwrap(),
+        4,
+        20_000,
+    );
+}
+
+#[test]
+fn what_a_solid_knows_of_points_comes_first() {
+    let frame = lattice_frame(3);
+    let asked = AtomicU64::new(0);
+    let inside = |point: [f64; 3]| point[0] + 2.0 * point[1] > 9.3;
+    let solid = Callback::new(|_, _| Ok(Verdict::Partial(()))).with_contains(|point| {
+        asked.fetch_add(1, Ordering::Relaxed);
+        Ok(inside(point))
+    });
+    for count in [1, 100, 20_000] {
+        let points = points(3, count as u64, count);
+        for threads in [1, 2] {
+            asked.store(0, Ordering::Relaxed);
+            let answers = located(&solid, &frame, &points, threads);
+            let mut known = 0;
+            for (&point, answer) in points.iter().zip(answers) {
+                let wanted = match (frame.cell_of(point), inside(point)) {
+                    (None, _) => Membership::Undecided,
+                    (_, true) => Membership::Inside,
+                    (_, false) => Membership::Outside,
+                };
+                assert_eq!(answer, wanted, "{point:?}");
+                known += (answer != Membership::Undecided) as u64;
+            }
+            // Points that are none of the universe's are not asked about.
+            assert_eq!(asked.load(Ordering::Relaxed), known);
+        }
+    }
+}
+
+#[test]
+fn points_cost_no_more_splits_than_their_way() {
+    let frame = Frame::new([-2.0; 3], 4.0, 20).unwrap();
+    let ball = Counted::new(Csg::ball([0.0; 3], 1.0).unwrap());
+    let splits = || ball.splits().iter().sum::<u64>();
+    assert_eq!(located(&ball, &frame, &[[0.3, 0.4, 0.8]; 200], 1), [Membership::Inside; 200]);
+    let one = splits();
+    assert!((1..=20).contains(&one), "{one}");
+    // Neighbours share the way, in whatever order they come.
+    let points: Vec<[f64; 3]> = (0..1000u32)
+        .map(|i| [1.0, f64::from(i * 577 % 1000) * 1e-6, f64::from(i * 311 % 1000) * 1e-6])
+        .collect();
+    located(&ball, &frame, &points, 1);
+    let all = splits() - one;
+    assert!(all < 10_000, "{all}");
+    // A box is done as soon as the answer is known.
+    let before = splits();
+    let crossing = classify_box(&ball, &frame, [-1.5; 3], [1.5; 3], &alone()).unwrap();
+    assert!(crossing == Region::Crossing && splits() - before < 60, "{crossing:?} {}", splits() - before);
+    for most in [0, 1, 7, 1000] {
+        let before = splits();
+        let control = Control { max_splits: Some(most), ..alone() };
+        // A box whose face lies on the surface.
+        classify_box(&ball, &frame, [1.0, -0.5, -0.5], [1.5, 0.5, 0.5], &control).unwrap();
+        assert!(splits() - before <= most);
+    }
+}
+
+#[test]
+fn a_budget_of_nothing_proves_nothing_of_a_cut_universe() {
+    let frame = lattice_frame(5);
+    let ball = Csg::ball([16.0; 3], 12.0).unwrap();
+    let none = Control { max_splits: Some(0), ..alone() };
+    for (min, max, wanted) in [
+        ([2.0, 12.0, 12.0], [9.0, 20.0, 20.0], Region::Crossing),
+        ([14.0; 3], [18.0; 3], Region::Inside),
+        ([0.0; 3], [3.0; 3], Region::Outside),
+    ] {
+        assert_eq!(classify_box(&ball, &frame, min, max, &alone()).unwrap(), wanted);
+        assert_eq!(classify_box(&ball, &frame, min, max, &none).unwrap(), Region::Undecided);
+    }
+    // What is decided without a split needs no budget.
+    let far = Csg::ball([99.0; 3], 12.0).unwrap();
+    assert_eq!(classify_box(&far, &frame, [0.0; 3], [32.0; 3], &none).unwrap(), Region::Outside);
+    assert_eq!(classify_box(&far.complement(), &frame, [0.0; 3], [32.0; 3], &none).unwrap(), Region::Inside);
+}
+
+#[test]
+fn what_is_refused_of_any_solid() {
+    let frame = lattice_frame(4);
+    let ball = Ball::new([8.0; 3], 5.0).unwrap();
+    for (min, max) in [
+        ([0.0, 1.0, 0.0], [1.0, 0.5, 1.0]),
+        ([f64::NAN, 0.0, 0.0], [1.0; 3]),
+        ([0.0; 3], [1.0, 1.0, f64::NAN]),
+        ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]),
+    ] {
+        let refused = classify_box(&ball, &frame, min, max, &alone());
+        assert!(matches!(refused, Err(Error::Argument { name: "max", .. })));
+    }
+    let points = [[0.5; 3]; 17];
+    for count in [0, 16, 18] {
+        let mut answers = vec![Membership::Inside; count];
+        let refused = contains(&ball, &frame, &points, &mut answers, &alone());
+        assert!(matches!(refused, Err(Error::Argument { name: "answers", .. })));
+        assert!(answers.iter().all(|&answer| answer == Membership::Inside), "nothing is half-done");
+    }
+    let mut answers = [Membership::Inside; 17];
+    // What the solid refuses.
+    let tree = Dense::uniform(3, Tag::Full).octree();
+    let refused = contains(&tree, &frame, &points, &mut answers, &alone());
+    assert!(matches!(refused, Err(Error::FrameMismatch)));
+    let refused = classify_box(&tree, &frame, [0.0; 3], [1.0; 3], &alone());
+    assert!(matches!(refused, Err(Error::FrameMismatch)));
+    // A host that stops the work.
+    let failing = Callback::new(|_, _| Err(Error::Callback { code: 3 }));
+    let refused = contains(&failing, &frame, &points, &mut answers, &alone());
+    assert!(matches!(refused, Err(Error::Callback { code: 3 })));
+    let refused = classify_box(&failing, &frame, [0.0; 3], [1.0; 3], &alone());
+    assert!(matches!(refused, Err(Error::Callback { code: 3 })));
+    // A flag that is set.
+    let flag = AtomicBool::new(true);
+    let control = Control { cancel: Some(&flag), ..alone() };
+    assert!(matches!(contains(&ball, &frame, &points, &mut answers, &control), Err(Error::Cancelled)));
+    let refused = classify_box(&ball, &frame, [3.0; 3], [9.0; 3], &control);
+    assert!(matches!(refused, Err(Error::Cancelled)));
 }
 
 #[test]

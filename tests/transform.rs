@@ -6,8 +6,8 @@ mod common;
 use common::exact::Exact;
 use common::{Dense, Random, alone, lattice_frame, positions, shapes};
 use leafless::{
-    Affine, AnySolid, AxisBox, Ball, Cell, Control, Csg, Cube, Error, Frame, LazyOctree, Octree, Rule, Solid,
-    Tag, Transform, Verdict, Zone, build,
+    Affine, AnySolid, AxisBox, Ball, Cell, Control, Csg, Error, Frame, LazyOctree, Rule, Tag, Transform,
+    Zone, build,
 };
 use proptest::prelude::*;
 use std::f64::consts::PI;
@@ -433,42 +433,4 @@ fn centres_on_the_faces_of_the_own_universe_are_decided() {
         let truth = build(&cube, &frame, Rule::Sampled, &alone()).unwrap();
         assert_eq!(Dense::of(tree.view()), Dense::of(truth.view()), "{placement:?}");
     }
-}
-
-#[test]
-fn parts_that_nobody_made_lead_nowhere() {
-    let own = Frame::new([0.0; 3], 1.0, 4).unwrap();
-    let ball = Ball::new([0.5; 3], 0.25).unwrap();
-    let solid = Transform::new(ball, &own, &Affine::IDENTITY);
-    let mut scratch = Default::default();
-    let Verdict::Partial(part) = solid.root(&mut scratch, &own).unwrap() else {
-        panic!("a ball is not a cube")
-    };
-    let cube = Cube { frame: &own, cell: Cell::ROOT };
-    // Memory that has not seen the part.
-    let mut other = Default::default();
-    let verdicts = solid.split(&mut other, &cube, &part).unwrap();
-    assert!(verdicts.iter().all(|verdict| !matches!(verdict.tag(), Tag::Full | Tag::Empty)));
-    // Memory that has no such part.
-    solid.root(&mut other, &own).unwrap();
-    let mut far = Default::default();
-    let Verdict::Partial(deep) = deepest(&solid, &mut far, &own) else { panic!("a ball has a surface") };
-    let verdicts = solid.split(&mut other, &cube, &deep).unwrap();
-    assert!(verdicts.iter().all(|verdict| !matches!(verdict.tag(), Tag::Full | Tag::Empty)));
-    let _: &Octree = &build(&solid, &own, Rule::Certified, &alone()).unwrap();
-}
-
-/// A part of a cell that is reached by some splits.
-fn deepest<S: Solid>(solid: &S, scratch: &mut S::Scratch, frame: &Frame) -> Verdict<S::Part> {
-    let mut verdict = solid.root(scratch, frame).unwrap();
-    let mut cell = Cell::ROOT;
-    while cell.level < 3 {
-        let Verdict::Partial(part) = &verdict else { break };
-        let children = solid.split(scratch, &Cube { frame, cell }, part).unwrap();
-        let partial = |child: &Verdict<S::Part>| matches!(child, Verdict::Partial(_));
-        let octant = children.iter().position(partial).unwrap();
-        cell = cell.child(octant as u8);
-        verdict = children.into_iter().nth(octant).unwrap();
-    }
-    verdict
 }

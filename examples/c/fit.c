@@ -41,7 +41,7 @@ static leafless_status shaft(double slope, double height, leafless_solid **resul
         parts[0] = thick, parts[1] = thin;
         s = leafless_solid_union(parts, 2, &both);
     }
-    if (!s) s = leafless_solid_placed(both, matrix, result);
+    if (!s) s = leafless_solid_placed(both, matrix, NULL, result);
     leafless_solid_free(both), leafless_solid_free(thin), leafless_solid_free(thick);
     return s;
 }

@@ -114,7 +114,7 @@ int main(int argc, char **argv) {
        holds for each point of a cell; near the holes more cells stay undecided than the surface cuts. */
     if (!s) s = leafless_mesh_bounds(mesh, min, max);
     if (!s) s = leafless_frame_around(min, max, DEPTH, &frame);
-    if (!s) s = leafless_solid_new_mesh(mesh, &frame, LEAFLESS_FILL_NON_ZERO, &solid);
+    if (!s) s = leafless_solid_new_mesh(mesh, LEAFLESS_FILL_NON_ZERO, &solid);
     if (!s) s = leafless_octree_build(solid, &frame, LEAFLESS_RULE_CERTIFIED, NULL, &certified);
     if (!s) s = leafless_octree_build(solid, &frame, LEAFLESS_RULE_SAMPLED, NULL, &sampled);
     if (!s) s = leafless_octree_statistics(certified, &bounds);

@@ -2,22 +2,58 @@
 
 use super::layout::{File, Repairs, Section, put};
 use super::{CONTROL, Random, joined};
-use leafless::{AxisBox, Ball, Cube, Error, Frame, Metadata, Octree, Rule, Solid, Tag, Verdict, build, file};
+use leafless::{
+    AxisBox, Ball, Cell, Classifier, Control, Error, Frame, Metadata, Octree, Rule, Solid, Tag, Verdict,
+    Worker, build, file,
+};
 
 /// A different tree for every seed, with coarse and fine cells of every tag.
+#[derive(Clone, Copy)]
 pub struct Noise(pub u64);
 
+/// The same on a frame: handle and worker.
+#[derive(Clone, Copy)]
+pub struct NoiseOnFrame {
+    noise: Noise,
+    frame: Frame,
+}
+
 impl Solid for Noise {
+    type Classifier = NoiseOnFrame;
+
+    fn on(&self, frame: &Frame, _: &Control<'_>) -> Result<NoiseOnFrame, Error> {
+        Ok(NoiseOnFrame { noise: *self, frame: *frame })
+    }
+}
+
+impl Classifier for NoiseOnFrame {
+    type Worker = NoiseOnFrame;
+
+    fn frame(&self) -> &Frame {
+        &self.frame
+    }
+
+    fn worker(&self) -> Result<NoiseOnFrame, Error> {
+        Ok(*self)
+    }
+}
+
+impl Worker for NoiseOnFrame {
     type Part = ();
-    type Scratch = ();
-    fn root(&self, _: &mut (), _: &Frame) -> Result<Verdict<()>, Error> {
+
+    fn frame(&self) -> &Frame {
+        &self.frame
+    }
+
+    fn root(&mut self) -> Result<Verdict<()>, Error> {
         Ok(Verdict::Partial(()))
     }
-    fn split(&self, _: &mut (), cube: &Cube<'_>, _: &()) -> Result<[Verdict<()>; 8], Error> {
+
+    fn split(&mut self, cell: Cell, _: &()) -> Result<[Verdict<()>; 8], Error> {
         Ok([0, 1, 2, 3, 4, 5, 6, 7].map(|k| {
-            let cell = cube.child(k).cell;
+            let cell = cell.child(k);
             let [x, y, z] = cell.at.map(u64::from);
-            let mut random = Random(self.0 ^ x << 40 ^ y << 20 ^ z ^ (cell.level as u64) << 60);
+            let mut random = Random(self.noise.0 ^ x << 40 ^ y << 20 ^ z ^ (cell.level as u64) << 60);
             let split = if cell.level < 3 { 90 } else { 30 };
             match random.below(256) {
                 die if die < split => Verdict::Partial(()),

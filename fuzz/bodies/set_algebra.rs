@@ -74,7 +74,7 @@ fn sound(result: Result<Octree, Error>, most: u64, sure: bool) -> Option<Octree>
         tree.view().check().expect("of good operands comes a good result");
     }
     // Its links are its own, whatever the operands' were.
-    let links = Stored::new(tree.view()).root(&mut (), tree.frame());
+    let links = Stored::new(tree.view()).on(tree.frame(), &CONTROL);
     assert!(!matches!(links, Err(Error::Damaged(_))));
     let _ = (tree.statistics(), tree.view().check());
     Some(tree)

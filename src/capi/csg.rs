@@ -1,11 +1,11 @@
 //! Constructive solid geometry: half-spaces, primitives, and the set operations that join solids.
 
 use super::boundary::{Failure, array, guard, out, shared, slice};
-use super::solid::{give, leafless_solid};
+use super::solid::{give, give_any, leafless_solid};
 use super::status::leafless_status;
 use crate::error::Error;
 use crate::lattice::Affine;
-use crate::solid::{Csg, HalfSpace, Touch};
+use crate::solid::{Csg, HalfSpace, Motion, Solid, Touch};
 use alloc::vec::Vec;
 
 /// What counts as touching: when a cell that meets the boundary of an expression of half-spaces, but not its interior,
@@ -35,7 +35,7 @@ fn touch(touch: u32) -> Result<Touch, Failure> {
 /// As [`shared`].
 unsafe fn operand(solid: *const leafless_solid, name: &'static str) -> Result<Csg, Failure> {
     // SAFETY: as the caller promises.
-    Ok(Csg::solid(unsafe { shared(solid, name)? }.solid.clone()))
+    Ok(Csg::solid(unsafe { shared(solid, name)? }.solid.solid().clone()))
 }
 
 /// An array of solids as expressions.
@@ -483,13 +483,38 @@ pub unsafe extern "C" fn leafless_solid_complement(
     })
 }
 
-/// An expression of half-spaces moved by an affine map, exactly: nothing is rounded. (Solids of other kinds are moved
-/// by leafless_solid_new_transform.)
+/// What an affine map does to a solid.
+#[derive(Clone, Copy)]
+#[repr(u32)]
+pub enum leafless_motion {
+    /// Nothing is rounded: half-spaces, and what is made of them.
+    LEAFLESS_MOTION_EXACT = 0,
+    /// The vertices of a mesh are moved and rounded, by some 10^-16 of their coordinates; what is proven allows for that.
+    LEAFLESS_MOTION_VERTICES = 1,
+    /// As leafless_solid_new_transform does, on a frame that is chosen for the solid: a surface that is not parallel to the
+    /// lattice blurs by about a cell. Where cells are the images of cells, nothing blurs.
+    LEAFLESS_MOTION_CONSERVATIVE = 2,
+}
+use leafless_motion::*;
+
+impl From<Motion> for leafless_motion {
+    fn from(motion: Motion) -> leafless_motion {
+        match motion {
+            Motion::Exact => LEAFLESS_MOTION_EXACT,
+            Motion::Vertices => LEAFLESS_MOTION_VERTICES,
+            Motion::Conservative => LEAFLESS_MOTION_CONSERVATIVE,
+        }
+    }
+}
+
+/// A solid moved by an affine map, in the best way that its kind knows: half-spaces exactly, meshes by their vertices, others
+/// as leafless_solid_new_transform; of an expression each part in its own way.
 ///
-/// - Buffers: `matrix`, 12 numbers, the rows of [M | t], where a point p goes to M p + t; `solid`, one pointer.
-/// - Result: `*solid`.
-/// - Errors: LEAFLESS_E_ARGUMENT if an entry is neither 0 nor of a magnitude between 2^-64 and 2^64, M is singular,
-///   or solids that are not made of half-spaces occur in `operand`.
+/// - Buffers: `matrix`, 12 numbers, the rows of [M | t], where a point p goes to M p + t; `motion`, one leafless_motion
+///   or NULL; `solid`, one pointer.
+/// - Result: `*solid`; `*motion`, the worst that a map does to any part (the identity does nothing).
+/// - Errors: LEAFLESS_E_ARGUMENT if an entry is neither 0 nor of a magnitude between 2^-64 and 2^64, or M is singular;
+///   LEAFLESS_E_MESH if a mesh is moved beyond the numbers that meshes may have; LEAFLESS_E_NO_MEMORY.
 /// - Ownership: the operand is shared and may be freed; give `*solid` back with leafless_solid_free.
 /// - Threads: any.
 /// - Untrusted input: any solids and numbers.
@@ -500,13 +525,19 @@ pub unsafe extern "C" fn leafless_solid_complement(
 pub unsafe extern "C" fn leafless_solid_placed(
     operand: *const leafless_solid,
     matrix: *const f64,
+    motion: *mut leafless_motion,
     solid: *mut *mut leafless_solid,
 ) -> leafless_status {
     guard(|| unsafe {
-        let operand = self::operand(operand, "operand")?;
+        let operand = shared(operand, "operand")?.solid.solid();
         let placement = self::placement(matrix)?;
+        let motion = if motion.is_null() { None } else { Some(out(motion, "motion")?) };
         let solid = out(solid, "solid")?;
-        solid.write(give(operand.placed(&placement)?))
+        let placed = operand.placed(&placement)?;
+        if let Some(motion) = motion {
+            motion.write(operand.motion().into())?;
+        }
+        solid.write(give_any(placed))
     })
 }
 

@@ -10,6 +10,7 @@ use crate::lattice::Interval;
 use crate::octree::Tag;
 use crate::solid::{Callback, Csg, Fingerprint, HalfSpace, Verdict};
 use alloc::sync::Arc;
+use alloc::vec::Vec;
 use core::ffi::c_void;
 
 /// What a host promises of its shape outside of the universe that it is asked about.
@@ -51,11 +52,18 @@ pub type leafless_classify_many_fn =
 pub type leafless_contains_many_fn =
     Option<unsafe extern "C" fn(ctx: *mut c_void, points: *const f64, count: u64, inside: *mut i32) -> i32>;
 
+/// Bounds the distances of `count` points (3 numbers each, model units) from the surface of the host's own shape: sets each
+/// of `distances_model` to a number whose magnitude is at most that distance, negative inside and positive outside; 0, or
+/// what is no number, says nothing. 0, or the number of the host's own error. Else as leafless_classify_fn.
+pub type leafless_distance_many_fn = Option<
+    unsafe extern "C" fn(ctx: *mut c_void, points: *const f64, count: u64, distances_model: *mut f64) -> i32,
+>;
+
 /// Called once, when nothing uses `ctx` any more, in the thread that gave back the last reference. It must return: no
 /// exception, no longjmp. It may call this library.
 pub type leafless_destroy_fn = Option<unsafe extern "C" fn(ctx: *mut c_void)>;
 
-/// The host's own shape. All fields but the first may be zero; `classify` must be set.
+/// The host's own shape. All fields but the first may be zero; `classify` or `distance_many` must be set.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_callbacks {
@@ -74,10 +82,14 @@ pub struct leafless_callbacks {
     /// Any number but 0, of 128 bits, that tells the shape from others, such as a hash of what it is made of: octrees
     /// that leafless_lazy_freeze makes remember it, and are taken up again by no other shape. Optional.
     pub fingerprint: [u64; 2],
-    /// Classifies many boxes at once; optional, and `classify` must be set all the same.
+    /// Classifies many boxes at once, as many as the work has at hand; optional, and `classify` must be set all the same.
     pub classify_many: leafless_classify_many_fn,
     /// Decides many points at once; optional, with or without `contains`.
     pub contains_many: leafless_contains_many_fn,
+    /// Bounds the distances of points from the surface; optional. It is asked about the middles of cells before boxes are
+    /// classified, and a cell whose middle is further from the surface than its corners is decided. With it `classify` is
+    /// optional.
+    pub distance_many: leafless_distance_many_fn,
 }
 
 // SAFETY: numbers, a pointer, and optional functions.
@@ -129,7 +141,7 @@ fn done(code: i32) -> Result<(), Error> {
 // they are told of.
 impl Host {
     fn classify(&self, min: [f64; 3], max: [f64; 3]) -> Result<Verdict<()>, Error> {
-        let Some(classify) = self.0.classify else { return Ok(Verdict::Undecided) };
+        let Some(classify) = self.0.classify else { return Ok(Verdict::Partial(())) };
         // SAFETY: as above.
         verdict(unsafe { classify(self.0.ctx, min.as_ptr(), max.as_ptr()) })
     }
@@ -137,41 +149,49 @@ impl Host {
     fn classify_many(&self, boxes: &[[[f64; 3]; 2]], verdicts: &mut [Verdict<()>]) -> Result<(), Error> {
         let Some(classify) = self.0.classify_many else { return Ok(()) };
         // A tag that is not set is none.
-        let mut tags = [i32::MIN; 8];
-        for (boxes, verdicts) in boxes.chunks(tags.len()).zip(verdicts.chunks_mut(tags.len())) {
-            tags.fill(i32::MIN);
-            // SAFETY: as above.
-            done(unsafe {
-                classify(self.0.ctx, boxes.as_ptr().cast(), boxes.len() as u64, tags.as_mut_ptr())
-            })?;
-            for (to, &tag) in verdicts.iter_mut().zip(&tags) {
-                *to = verdict(tag)?;
-            }
+        let mut tags = filled(i32::MIN, boxes.len())?;
+        // SAFETY: as above.
+        done(unsafe { classify(self.0.ctx, boxes.as_ptr().cast(), boxes.len() as u64, tags.as_mut_ptr()) })?;
+        for (to, &tag) in verdicts.iter_mut().zip(&tags) {
+            *to = verdict(tag)?;
         }
         Ok(())
     }
 
+    fn distances(&self, points: &[[f64; 3]], distances: &mut [f64]) -> Result<(), Error> {
+        let Some(distance) = self.0.distance_many else { return Ok(()) };
+        // SAFETY: as above.
+        done(unsafe {
+            distance(self.0.ctx, points.as_ptr().cast(), points.len() as u64, distances.as_mut_ptr())
+        })
+    }
+
     fn contains(&self, points: &[[f64; 3]], inside: &mut [bool]) -> Result<(), Error> {
-        let mut answers = [i32::MIN; 64];
-        for (points, inside) in points.chunks(answers.len()).zip(inside.chunks_mut(answers.len())) {
-            answers.fill(i32::MIN);
-            if let Some(contains) = self.0.contains_many {
-                let count = points.len() as u64;
+        let mut answers = filled(i32::MIN, points.len())?;
+        if let Some(contains) = self.0.contains_many {
+            let count = points.len() as u64;
+            // SAFETY: as above.
+            done(unsafe { contains(self.0.ctx, points.as_ptr().cast(), count, answers.as_mut_ptr()) })?;
+        } else if let Some(contains) = self.0.contains {
+            for (answer, point) in answers.iter_mut().zip(points) {
                 // SAFETY: as above.
-                done(unsafe { contains(self.0.ctx, points.as_ptr().cast(), count, answers.as_mut_ptr()) })?;
-            } else if let Some(contains) = self.0.contains {
-                for (answer, point) in answers.iter_mut().zip(points) {
-                    // SAFETY: as above.
-                    *answer = unsafe { contains(self.0.ctx, point.as_ptr()) };
-                    membership(*answer)?;
-                }
+                *answer = unsafe { contains(self.0.ctx, point.as_ptr()) };
+                membership(*answer)?;
             }
-            for (to, &answer) in inside.iter_mut().zip(&answers) {
-                *to = membership(answer)?;
-            }
+        }
+        for (to, &answer) in inside.iter_mut().zip(&answers) {
+            *to = membership(answer)?;
         }
         Ok(())
     }
+}
+
+/// So many of a number.
+fn filled(value: i32, count: usize) -> Result<Vec<i32>, Error> {
+    let mut values = Vec::new();
+    values.try_reserve_exact(count).map_err(|_| Error::OutOfMemory)?;
+    values.resize(count, value);
+    Ok(values)
 }
 
 /// The fingerprint that a host gives, unless it is 0.
@@ -201,7 +221,8 @@ pub unsafe extern "C" fn leafless_callbacks_init(
 ///
 /// - Buffers: `callbacks`, one struct, which is copied; `solid`, one pointer.
 /// - Result: `*solid`.
-/// - Errors: LEAFLESS_E_NULL if `classify` is NULL; LEAFLESS_E_ARGUMENT if `exterior` is no leafless_exterior.
+/// - Errors: LEAFLESS_E_NULL if `classify` is NULL, unless `distance_many` is set and `classify_many` is not;
+///   LEAFLESS_E_ARGUMENT if `exterior` is no leafless_exterior.
 ///   After an error `destroy` is not called.
 /// - Ownership: `ctx` must live until `destroy` is called with it; give `*solid` back with leafless_solid_free.
 /// - Threads: any; in which the functions are called, leafless_classify_fn says.
@@ -217,7 +238,9 @@ pub unsafe extern "C" fn leafless_solid_new_callbacks(
             return Err(Failure::Null { name: "callbacks" });
         }
         let callbacks = sized(callbacks, "callbacks")?;
-        if callbacks.classify.is_none() {
+        if callbacks.classify.is_none()
+            && (callbacks.distance_many.is_none() || callbacks.classify_many.is_some())
+        {
             return Err(Failure::Null { name: "callbacks.classify" });
         }
         let exterior = match callbacks.exterior {
@@ -230,8 +253,8 @@ pub unsafe extern "C" fn leafless_solid_new_callbacks(
             }
         };
         let solid = out(solid, "solid")?;
-        let decides_points = callbacks.contains.is_some() || callbacks.contains_many.is_some();
         let has_many = callbacks.classify_many.is_some();
+        let has_distance = callbacks.distance_many.is_some();
         let fingerprint = fingerprint(callbacks.fingerprint);
         // From here on the host's context is ours.
         let host = Arc::new(Host(callbacks));
@@ -248,8 +271,18 @@ pub unsafe extern "C" fn leafless_solid_new_callbacks(
             callback =
                 callback.with_classify_many(move |boxes, verdicts| host.classify_many(boxes, verdicts));
         }
-        if decides_points {
+        if has_distance {
+            let host = host.clone();
+            callback = callback.with_distance(move |points, distances| host.distances(points, distances));
+        }
+        if callbacks.contains_many.is_some() {
             callback = callback.with_contains_many(move |points, inside| host.contains(points, inside));
+        } else if callbacks.contains.is_some() {
+            callback = callback.with_contains(move |point| {
+                let mut inside = [false];
+                host.contains(&[point], &mut inside)?;
+                Ok(inside[0])
+            });
         }
         solid.write(give(callback))
     })

@@ -9,7 +9,7 @@ use super::status::leafless_status;
 use crate::error::Error;
 use crate::lattice::Cell;
 use crate::query::{Clearance, Interference, Overlap, clearance, interference, interference_of};
-use crate::solid::{MOST_NESTED, Solid, Transform};
+use crate::solid::{MOST_NESTED, Transform};
 use alloc::vec::Vec;
 
 /// Whether the interiors of two solids have points in common.
@@ -44,8 +44,6 @@ pub struct leafless_interference {
     pub splits_a: u64,
     /// Cells of the second solid that were split.
     pub splits_b: u64,
-    /// Half-spaces that were evaluated.
-    pub evaluations: u64,
     /// A leafless_overlap.
     pub verdict: u32,
     /// The finest level of which cells were looked at.
@@ -65,7 +63,6 @@ impl From<&Interference> for leafless_interference {
             volume_model: found.volume.into(),
             splits_a: found.splits[0],
             splits_b: found.splits[1],
-            evaluations: found.evaluations,
             verdict: leafless_overlap::from(found.verdict) as u32,
             level: found.level.into(),
             witness: witness.at,
@@ -87,8 +84,6 @@ pub struct leafless_clearance {
     pub splits_a: u64,
     /// Cells of the second solid that were split.
     pub splits_b: u64,
-    /// Half-spaces that were evaluated.
-    pub evaluations: u64,
     /// If `has_nearest`, cells of the first and of the second solid with points that are no further apart than the upper
     /// bound: the position of the first in cells of its level; else zeros.
     pub nearest_a: [u32; 3],
@@ -111,7 +106,6 @@ impl From<&Clearance> for leafless_clearance {
             distance_model: found.distance.into(),
             splits_a: found.splits[0],
             splits_b: found.splits[1],
-            evaluations: found.evaluations,
             nearest_a: a.at,
             nearest_a_level: a.level.into(),
             nearest_b: b.at,
@@ -128,7 +122,7 @@ impl From<&Clearance> for leafless_clearance {
 /// its size, or larger ones that are decided. So a surface that is not parallel to the lattice blurs by about a cell,
 /// down to the depth of the solid's own frame; rounding is outward. Where the map takes lattice planes to lattice planes
 /// nothing blurs. What sticks out of the solid's own universe is undecided, unless the solid is proven to end inside.
-/// (Half-spaces and what is made of them are moved exactly by leafless_solid_placed.)
+/// (leafless_solid_placed moves a solid in the best way that its kind knows, and chooses a frame where it takes one.)
 ///
 /// - Buffers: `own`, one struct; `matrix`, 12 numbers, the rows of [M | t], where a point p goes to M p + t; `solid`,
 ///   one pointer.
@@ -150,7 +144,7 @@ pub unsafe extern "C" fn leafless_solid_new_transform(
     solid: *mut *mut leafless_solid,
 ) -> leafless_status {
     guard(|| unsafe {
-        let operand = &shared(operand, "operand")?.solid;
+        let operand = shared(operand, "operand")?.solid.solid();
         let own = frame_of(own, "own")?;
         let placement = placement(matrix)?;
         if operand.nesting() >= MOST_NESTED {

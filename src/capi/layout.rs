@@ -54,25 +54,25 @@ fn write_all(to: &mut dyn Write) -> fmt::Result {
         leafless_mesh_options { struct_size, format, unit, target, scale }
         leafless_mesh_source { format, unit, skipped }
         leafless_callbacks {
-            struct_size, exterior, classify, contains, destroy, ctx, fingerprint, classify_many, contains_many
+            struct_size, exterior, classify, contains, destroy, ctx, fingerprint, classify_many, contains_many, distance_many
         }
         leafless_function { struct_size, reserved, value, range, destroy, ctx, fingerprint }
         leafless_octree_info { frame, elements, bricks, root, exterior, is_binary, is_clipped }
         leafless_statistics { nodes, empty, full, partial, lower_cells, upper_cells, volume_model }
-        leafless_lazy_counts { splits, replays, evaluations, bytes }
+        leafless_lazy_counts { splits, replays, bytes }
         leafless_interference {
-            volume_model, splits_a, splits_b, evaluations, verdict, level, witness, witness_level, is_clipped
+            volume_model, splits_a, splits_b, verdict, level, witness, witness_level, is_clipped
         }
         leafless_clearance {
-            distance_model, splits_a, splits_b, evaluations, nearest_a, nearest_a_level, nearest_b, nearest_b_level,
+            distance_model, splits_a, splits_b, nearest_a, nearest_a_level, nearest_b, nearest_b_level,
             has_nearest, is_clipped
         }
         leafless_measures {
-            volume_model, centroid_model, inertia_origin_model, inertia_centroid_model, splits, evaluations, level,
+            volume_model, centroid_model, inertia_origin_model, inertia_centroid_model, splits, level,
             measured, has_centroid, is_clipped
         }
         leafless_extent {
-            min_model, max_model, splits, evaluations, measured, is_empty, is_occupied, is_clipped
+            min_model, max_model, splits, measured, is_empty, is_occupied, is_clipped
         }
         leafless_cursor_state { cell, level, tag, children }
         leafless_probe {
@@ -95,6 +95,7 @@ fn write_all(to: &mut dyn Write) -> fmt::Result {
             LEAFLESS_REGION_UNDECIDED
         }
         leafless_touch { LEAFLESS_TOUCH_EXACT, LEAFLESS_TOUCH_PAPER }
+        leafless_motion { LEAFLESS_MOTION_EXACT, LEAFLESS_MOTION_VERTICES, LEAFLESS_MOTION_CONSERVATIVE }
         leafless_overlap { LEAFLESS_OVERLAP_DISJOINT, LEAFLESS_OVERLAP_OVERLAPPING, LEAFLESS_OVERLAP_UNDECIDED }
         leafless_measured {
             LEAFLESS_MEASURED_TOLERANCE, LEAFLESS_MEASURED_BUDGET, LEAFLESS_MEASURED_EXHAUSTED

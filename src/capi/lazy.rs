@@ -9,7 +9,7 @@ use super::solid::leafless_solid;
 use super::status::leafless_status;
 use crate::lattice::Cell;
 use crate::op::{LazyOctree, Refined, Zone};
-use crate::solid::AnySolid;
+use crate::solid::Prepared;
 use alloc::boxed::Box;
 use alloc::vec::Vec;
 
@@ -18,7 +18,7 @@ use alloc::vec::Vec;
 ///
 /// Splitting and refining change it: while one thread does so, no other may use it, and neither may the host's functions
 /// that it asks about a cell. Otherwise its other functions may be called at once from any number of threads.
-pub struct leafless_lazy(LazyOctree<AnySolid>);
+pub struct leafless_lazy(LazyOctree<Prepared>);
 
 /// What the work on an octree came to.
 #[derive(Clone, Copy)]
@@ -28,8 +28,6 @@ pub struct leafless_lazy_counts {
     pub splits: u64,
     /// Splits that the solid was asked for anew, because cells below were to be split.
     pub replays: u64,
-    /// Half-spaces that were evaluated for all of that, each at a point or over a box.
-    pub evaluations: u64,
     /// Bytes that the split cells take.
     pub bytes: u64,
 }
@@ -49,7 +47,7 @@ fn level(level: u32) -> u8 {
     u8::try_from(level).unwrap_or(u8::MAX)
 }
 
-fn new(lazy: LazyOctree<AnySolid>) -> *mut leafless_lazy {
+fn new(lazy: LazyOctree<Prepared>) -> *mut leafless_lazy {
     Box::into_raw(Box::new(leafless_lazy(lazy)))
 }
 
@@ -380,7 +378,6 @@ pub unsafe extern "C" fn leafless_lazy_count(
         out(counts, "counts")?.write(leafless_lazy_counts {
             splits: lazy.splits(),
             replays: lazy.replays(),
-            evaluations: lazy.evaluations(),
             bytes: lazy.bytes(),
         })
     })

@@ -48,8 +48,6 @@ pub struct leafless_measures {
     pub inertia_centroid_model: [leafless_interval; 9],
     /// How many times a cell was split.
     pub splits: u64,
-    /// Evaluations of half-spaces, for solids that count them.
-    pub evaluations: u64,
     /// Every undecided cell of a lower level was split, if the solid could.
     pub level: u32,
     /// Why it ended.
@@ -70,8 +68,6 @@ pub struct leafless_extent {
     pub max_model: [leafless_interval; 3],
     /// How many times a cell was split.
     pub splits: u64,
-    /// Evaluations of half-spaces, for solids that count them.
-    pub evaluations: u64,
     /// Why it ended.
     pub measured: leafless_measured,
     /// Whether the solid is proven to be empty.
@@ -96,7 +92,6 @@ impl From<Measures> for leafless_measures {
             inertia_origin_model: row_by_row(measures.inertia_about_origin),
             inertia_centroid_model: row_by_row(measures.inertia_about_centroid),
             splits: measures.splits,
-            evaluations: measures.evaluations,
             level: measures.level.into(),
             measured: measures.measured.into(),
             has_centroid: measures.centroid.is_some(),
@@ -112,7 +107,6 @@ impl From<Extent> for leafless_extent {
             min_model: min.map(Into::into),
             max_model: max.map(Into::into),
             splits: extent.splits,
-            evaluations: extent.evaluations,
             measured: extent.measured.into(),
             is_empty: extent.corners.is_none(),
             is_occupied: extent.occupied,

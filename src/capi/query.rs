@@ -1,10 +1,13 @@
 //! Queries: points, boxes, and cursors that remember where they are.
 
 use super::boundary::{Failure, array, exclusive, guard, guard_free, out, share, shared, slice};
+use super::control::{controlled, leafless_options};
+use super::frame::{frame, leafless_frame};
 use super::octree::{leafless_octree, leafless_tag};
+use super::solid::leafless_solid;
 use super::status::leafless_status;
 use crate::octree::Cursor;
-use crate::query::{Membership, PointCursor, Region};
+use crate::query::{Membership, PointCursor, Region, classify_box, contains};
 use alloc::boxed::Box;
 use alloc::sync::Arc;
 use core::mem::{align_of, size_of};
@@ -171,6 +174,77 @@ pub unsafe extern "C" fn leafless_octree_classify_box(
         let (min, max) = (array(min_model, "min_model")?, array(max_model, "max_model")?);
         let region = out(region, "region")?;
         region.write(octree.classify_box(min, max)?.into())
+    })
+}
+
+/// Whether a solid contains points, without an octree: a point in a cell of the frame that is undecided at the frame's depth,
+/// outside of the universe, or not a number is undecided. A point on the boundary may be answered either way. The host's
+/// own `contains` is asked first, where there is one; for others at most one cell a level is split a point, and points
+/// near each other share the way.
+///
+/// - Buffers: `frame`, one struct; `points_model`, `count` points of 3 numbers; `options`, one struct or NULL, of which
+///   limits do not matter; `memberships`, room for `count`. `points_model` and `memberships` may be NULL if `count` is 0.
+/// - Result: `memberships[i]` for point i; the same for any number of threads.
+/// - Errors: LEAFLESS_E_FRAME if the solid belongs to another frame; LEAFLESS_E_ARGUMENT as leafless_frame_check;
+///   LEAFLESS_E_CALLBACK; LEAFLESS_E_DAMAGED; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: nothing changes hands.
+/// - Threads: any; uses as many as `options` says.
+/// - Untrusted input: any solid, any numbers.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_solid_contains(
+    solid: *const leafless_solid,
+    frame: *const leafless_frame,
+    points_model: *const f64,
+    count: u64,
+    options: *const leafless_options,
+    memberships: *mut leafless_membership,
+) -> leafless_status {
+    guard(|| unsafe {
+        let solid = &shared(solid, "solid")?.solid;
+        let frame = self::frame(frame)?;
+        let points: &[[f64; 3]] = slice(points_model.cast(), count, "points_model")?;
+        if points.is_empty() {
+            return Ok(());
+        }
+        out(memberships, "memberships")?;
+        // Every byte must be an answer before there is a slice of answers.
+        memberships.cast::<u8>().write_bytes(Membership::Undecided as u8, points.len());
+        let answers = core::slice::from_raw_parts_mut(memberships.cast::<Membership>(), points.len());
+        controlled(options, |control| contains(solid, &frame, points, answers, control))
+    })
+}
+
+/// How a box lies to a solid, without an octree, as far as cells of the frame tell; what of the box lies outside of the
+/// universe is undecided. The work ends as soon as the answer is known, or once `max_splits` cells are split.
+///
+/// - Buffers: `frame`, one struct; `min_model` and `max_model`, 3 numbers each; `options`, one struct or NULL; `region`,
+///   one.
+/// - Result: `*region`.
+/// - Errors: LEAFLESS_E_ARGUMENT if min > max on an axis, or a coordinate is not a number; else as
+///   leafless_solid_contains.
+/// - Ownership: nothing changes hands.
+/// - Threads: any; works in the calling thread.
+/// - Untrusted input: any solid, any numbers; set `max_splits` where the depth or the solid is not your own choice.
+/// - Since: 0.1
+///
+/// cbindgen:ptrs-as-arrays=[[min_model; 3], [max_model; 3]]
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_solid_classify_box(
+    solid: *const leafless_solid,
+    frame: *const leafless_frame,
+    min_model: *const f64,
+    max_model: *const f64,
+    options: *const leafless_options,
+    region: *mut leafless_region,
+) -> leafless_status {
+    guard(|| unsafe {
+        let solid = &shared(solid, "solid")?.solid;
+        let frame = self::frame(frame)?;
+        let (min, max) = (array(min_model, "min_model")?, array(max_model, "max_model")?);
+        let region = out(region, "region")?;
+        let found = controlled(options, |control| classify_box(solid, &frame, min, max, control))?;
+        region.write(found.into())
     })
 }
 

@@ -18,6 +18,7 @@
 //! ```
 
 mod affine;
+mod bounds;
 mod cell;
 mod cube;
 pub(crate) mod exact;
@@ -26,6 +27,7 @@ mod interval;
 pub(crate) mod morton;
 
 pub use affine::Affine;
+pub use bounds::Bounds;
 pub use cell::Cell;
 pub use cube::Cube;
 pub use frame::Frame;

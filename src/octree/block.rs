@@ -32,46 +32,78 @@ impl Rule {
 /// Levels of a block: 64³ cells are six octree levels, three elements.
 pub(crate) const BLOCK_LEVELS: u8 = 6;
 
-/// A cube of 64³ finest cells as bit columns along z: what a [`Solid`](crate::Solid) fills that can classify
-/// many cells at once. Bit k of word x + 64·y is the cell (x, y, k).
+/// A cube of 64³ finest cells as bit columns along z: what a [`Worker`](crate::Worker) fills that can classify
+/// many cells at once. Bit k of word x + 64·y is the cell (x, y, k). Whoever makes a block says what is wanted: the
+/// certified planes, the centres, or both.
 pub struct Block {
-    rule: Rule,
-    lower: Box<[u64; 4096]>,
-    upper: Box<[u64; 4096]>,
+    planes: Option<[Columns; 2]>,
+    centres: Option<Columns>,
 }
 
+/// One word for each column.
+type Columns = Box<[u64; 4096]>;
+
 impl Block {
-    /// An empty block whose PARTIAL cells are to be resolved by `rule`.
+    /// An empty block for which is asked what `planes` and `centres` say.
     ///
     /// # Errors
     /// [`Error::OutOfMemory`].
-    pub fn new(rule: Rule) -> Result<Block, Error> {
-        Ok(Block { rule, lower: zeros()?, upper: zeros()? })
+    pub fn new(planes: bool, centres: bool) -> Result<Block, Error> {
+        let planes = if planes { Some([zeros()?, zeros()?]) } else { None };
+        Ok(Block { planes, centres: if centres { Some(zeros()?) } else { None } })
     }
 
-    /// How PARTIAL cells must be resolved by whoever fills the block: only under [`Rule::Certified`] may
-    /// the two planes differ.
-    pub fn rule(&self) -> Rule {
-        self.rule
+    /// What a rule needs.
+    pub(crate) fn for_rule(rule: Rule) -> Result<Block, Error> {
+        Block::new(rule != Rule::Sampled, rule == Rule::Sampled)
     }
 
-    /// Surely solid cells.
-    pub fn lower(&self) -> &[u64; 4096] {
-        &self.lower
+    /// The planes of the surely and of the possibly solid cells, to be filled if they are asked for; a cell that is surely
+    /// solid must be possibly solid too.
+    pub fn planes_mut(&mut self) -> Option<(&mut [u64; 4096], &mut [u64; 4096])> {
+        self.planes.as_mut().map(|[lower, upper]| (&mut **lower, &mut **upper))
     }
 
-    /// Possibly solid cells.
-    pub fn upper(&self) -> &[u64; 4096] {
-        &self.upper
+    /// Which centres of cells lie inside, to be filled if that is asked for: of decided cells, too.
+    pub fn centres_mut(&mut self) -> Option<&mut [u64; 4096]> {
+        self.centres.as_deref_mut()
     }
 
-    /// Both planes, to be filled; a cell that is surely solid must be possibly solid too.
-    pub fn planes_mut(&mut self) -> (&mut [u64; 4096], &mut [u64; 4096]) {
-        (&mut self.lower, &mut self.upper)
+    /// Makes all of it that of the complement.
+    pub fn complement(&mut self) {
+        if let Some([lower, upper]) = &mut self.planes {
+            core::mem::swap(lower, upper);
+            lower.iter_mut().chain(upper.iter_mut()).for_each(|word| *word = !*word);
+        }
+        if let Some(centres) = &mut self.centres {
+            centres.iter_mut().for_each(|word| *word = !*word);
+        }
     }
 
-    /// Writes the block as three levels of elements, `e` being the first; returns the block's tag.
-    pub(crate) fn write(&self, e: usize, writer: &mut Writer<'_>) -> Result<Tag, Error> {
+    /// Writes the block by a rule as three levels of elements, `e` being the first; returns the block's tag. The
+    /// planes must be there, or for [`Rule::Sampled`] the centres; what is not counts as undecided, or as outside.
+    pub(crate) fn write(&self, rule: Rule, e: usize, writer: &mut Writer<'_>) -> Result<Tag, Error> {
+        let planes = self.planes.as_ref().map(|[lower, upper]| (&**lower, &**upper));
+        let resolved = match rule {
+            Rule::Certified => planes,
+            Rule::Inner => planes.map(|(lower, _)| (lower, lower)),
+            Rule::Outer => planes.map(|(_, upper)| (upper, upper)),
+            Rule::Sampled => self.centres.as_deref().map(|centres| (centres, centres)),
+        };
+        let (lower, upper) = resolved.unwrap_or_else(|| unreachable!("a block has what its rule needs"));
+        Cells { binary: rule.is_binary(), lower, upper }.write(e, writer)
+    }
+}
+
+/// The cells of a block, resolved.
+struct Cells<'b> {
+    binary: bool,
+    lower: &'b [u64; 4096],
+    upper: &'b [u64; 4096],
+}
+
+impl Cells<'_> {
+    fn write(&self, e: usize, writer: &mut Writer<'_>) -> Result<Tag, Error> {
         let tiles = self.tiles();
         let mut block = Planes::uniform(Tag::Empty);
         for c in 0..64 {
@@ -84,7 +116,7 @@ impl Block {
     /// What the 4 × 4 columns of each tile have in common, which decides most bricks.
     fn tiles(&self) -> [Tile; 256] {
         let mut tiles = [Tile { all: Planes::uniform(Tag::Full), any: Planes::uniform(Tag::Empty) }; 256];
-        let binary = self.rule.is_binary();
+        let binary = self.binary;
         for (row, columns) in self.lower.chunks_exact(4).enumerate() {
             let upper = if binary { columns } else { &self.upper[4 * row..4 * row + 4] };
             // Sixteen quadruples of columns to a row of 64, four rows to a row of tiles.
@@ -134,8 +166,8 @@ impl Block {
                 Tag::Partial
             } else {
                 let column = (4 * y * 64 + 4 * x) as usize;
-                let lower = gather(&self.lower, column, shift);
-                let upper = if self.rule.is_binary() { lower } else { gather(&self.upper, column, shift) };
+                let lower = gather(self.lower, column, shift);
+                let upper = if self.binary { lower } else { gather(self.upper, column, shift) };
                 writer.put(e + 1, Planes { lower, upper })?
             };
             element.set(c, tag);

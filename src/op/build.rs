@@ -1,13 +1,14 @@
 //! From any solid to an octree.
 
+use super::gathered::{self, Gathered};
 use crate::control::{Control, Job, WHOLE};
 use crate::error::Error;
-use crate::lattice::{Cell, Cube, Frame, morton};
+use crate::lattice::{Cell, Frame, morton};
 use crate::octree::block::BLOCK_LEVELS;
-use crate::octree::view::{element_levels, starts_half_way};
+use crate::octree::view::{OctreeRef, Windows, element_levels, starts_half_way};
 use crate::octree::writer::Writer;
-use crate::octree::{Block, Octree, OctreeRef, Planes, Rule, Tag};
-use crate::solid::{Scratch, Solid, Stored, Verdict};
+use crate::octree::{Block, Octree, Planes, Rule, Tag};
+use crate::solid::{Classifier, Solid, Stored, Subtree, Verdict, Worker};
 use alloc::vec::Vec;
 
 /// Builds the octree of `solid` to the depth of `frame`, its undecided finest cells resolved by `rule`.
@@ -16,7 +17,8 @@ use alloc::vec::Vec;
 /// in the nodes that are visited.
 ///
 /// # Errors
-/// What the solid refuses ([`Error::FrameMismatch`] for stored trees), [`Error::NotSampled`] under
+/// What the solid refuses ([`Error::FrameMismatch`] for stored trees, [`Error::Damaged`] for unverified ones),
+/// [`Error::NotSampled`] under
 /// [`Rule::Sampled`] if the solid cannot decide points, and what `control` asks for.
 ///
 /// ```
@@ -29,14 +31,25 @@ use alloc::vec::Vec;
 /// # Ok::<(), leafless::Error>(())
 /// ```
 pub fn build<S: Solid>(solid: &S, frame: &Frame, rule: Rule, control: &Control<'_>) -> Result<Octree, Error> {
+    build_on(&solid.on(frame, control)?, rule, control)
+}
+
+/// As [`build`], of a solid that is on its frame already.
+pub(crate) fn build_on<C: Classifier>(
+    classifier: &C,
+    rule: Rule,
+    control: &Control<'_>,
+) -> Result<Octree, Error> {
     let job = Job::new(control);
     job.check()?;
-    // Shallow trees are made faster than threads.
-    control.run(element_levels(frame.depth()) > 3, |parallel| {
-        let builder = Builder { solid, frame, rule, levels: element_levels(frame.depth()), parallel };
-        let mut worker = Worker::<S>::new();
+    let frame = *classifier.frame();
+    let mut hand = Hand::new(classifier)?;
+    // Shallow trees are made faster than threads, unless it is somebody else who takes the time.
+    let worth = element_levels(frame.depth()) > 3 || hand.worker.likes_many();
+    control.run(worth, |parallel| {
+        let builder = Builder { classifier, frame, rule, levels: element_levels(frame.depth()), parallel };
         let mut writer = Writer::new(&job, frame.depth(), rule.is_binary());
-        let root = solid.root(&mut worker.scratch, frame)?;
+        let root = hand.worker.root()?;
         if !matches!(root, Verdict::Partial(_)) {
             job.advance(WHOLE);
         }
@@ -44,9 +57,9 @@ pub fn build<S: Solid>(solid: &S, frame: &Frame, rule: Rule, control: &Control<'
             Verdict::Empty => Tag::Empty,
             Verdict::Full => Tag::Full,
             Verdict::Undecided => builder.resolve_all(Planes::uniform(Tag::Partial))?.tag(0),
-            Verdict::Partial(part) => builder.cell(0, Cell::ROOT, &part, &mut worker, &mut writer)?,
+            Verdict::Partial(part) => builder.cell(0, Cell::ROOT, &part, &mut hand, &mut writer)?,
         };
-        writer.finish(*frame, tag, solid.exterior(frame))
+        writer.finish(frame, tag, classifier.exterior())
     })
 }
 
@@ -68,99 +81,98 @@ pub fn compact(tree: &OctreeRef<'_>) -> Result<Octree, Error> {
     Octree::recoded(tree)
 }
 
-struct Builder<'a, S> {
-    solid: &'a S,
-    frame: &'a Frame,
+struct Builder<'a, C> {
+    classifier: &'a C,
+    frame: Frame,
     rule: Rule,
     levels: usize,
     #[cfg_attr(not(feature = "parallel"), allow(dead_code))]
     parallel: bool,
 }
 
-/// What one thread needs: the solid's scratch memory, a stack of parts, a block.
-struct Worker<S: Solid> {
-    scratch: S::Scratch,
-    parts: Vec<(u8, S::Part)>,
+/// The parts of a classifier's cells.
+type Part<C> = <<C as Classifier>::Worker as Worker>::Part;
+
+/// What one thread needs: a worker, a stack of parts, a block.
+struct Hand<C: Classifier> {
+    worker: C::Worker,
+    parts: Vec<(u8, Part<C>)>,
     /// Made when a cell is first small enough for it.
     block: Option<Block>,
 }
 
-impl<S: Solid> Worker<S> {
-    fn new() -> Worker<S> {
-        Worker { scratch: S::Scratch::default(), parts: Vec::new(), block: None }
+impl<C: Classifier> Hand<C> {
+    fn new(classifier: &C) -> Result<Hand<C>, Error> {
+        Ok(Hand { worker: classifier.worker()?, parts: Vec::new(), block: None })
     }
 }
 
-impl<S: Solid> Builder<'_, S> {
+impl<C: Classifier> Builder<'_, C> {
     /// Writes the subtree of a PARTIAL cell, which element level `e` describes; returns its tag.
     fn cell(
         &self,
         e: usize,
         cell: Cell,
-        part: &S::Part,
-        worker: &mut Worker<S>,
+        part: &Part<C>,
+        hand: &mut Hand<C>,
         writer: &mut Writer<'_>,
     ) -> Result<Tag, Error> {
         writer.job().check()?;
-        let cube = Cube { frame: self.frame, cell };
+        if hand.worker.likes_many() && cell.level + gathered::LEVELS >= self.frame.depth() {
+            return self.gathered(e, cell, part, hand, writer);
+        }
         if cell.level + BLOCK_LEVELS == self.frame.depth() {
-            let block = match &mut worker.block {
+            let block = match &mut hand.block {
                 Some(block) => block,
-                none => none.insert(Block::new(self.rule)?),
+                none => none.insert(Block::for_rule(self.rule)?),
             };
-            if self.solid.fill(&mut worker.scratch, &cube, part, block)? {
+            if hand.worker.fill(cell, part, block)? {
                 self.progress(e, writer);
-                return block.write(e, writer);
+                return block.write(self.rule, e, writer);
             }
         }
-        let mark = worker.scratch.mark();
-        let first = worker.parts.len();
-        let planes = self.split(e, &cube, part, worker)?;
+        let mark = hand.worker.mark();
+        let first = hand.parts.len();
+        let planes = self.split(e, cell, part, hand)?;
         let tag = if e + 1 == self.levels {
-            let planes = self.resolve_finest(planes, &cube, first, worker)?;
+            let planes = self.resolve_finest(planes, cell, first, hand)?;
             self.progress(e, writer);
             writer.put(e, planes)?
         } else {
-            let planes = self.children(e, &cube, planes, first, worker, writer)?;
+            let planes = self.children(e, cell, planes, first, hand, writer)?;
             writer.put(e, planes)?
         };
-        worker.parts.truncate(first);
-        worker.scratch.release(mark);
+        hand.parts.truncate(first);
+        hand.worker.release(mark);
         Ok(tag)
     }
 
     /// The cells of an element: two levels of the solid, or one for a root that starts half-way.
-    fn split(
-        &self,
-        e: usize,
-        cube: &Cube<'_>,
-        part: &S::Part,
-        worker: &mut Worker<S>,
-    ) -> Result<Planes, Error> {
+    fn split(&self, e: usize, cell: Cell, part: &Part<C>, hand: &mut Hand<C>) -> Result<Planes, Error> {
         if e > 0 || !starts_half_way(self.frame.depth()) {
-            let planes = self.solid.split64(&mut worker.scratch, cube, part, &mut worker.parts)?;
+            let planes = hand.worker.split64(cell, part, &mut hand.parts)?;
             // Nothing is a branch yet; a solid that says so is not believed.
             return Ok(Planes { lower: planes.full(), upper: planes.lower | planes.upper });
         }
         let mut planes = Planes::uniform(Tag::Empty);
-        for (k, child) in (0u8..).zip(self.solid.split(&mut worker.scratch, cube, part)?) {
+        for (k, child) in (0u8..).zip(hand.worker.split(cell, part)?) {
             planes.set(k as u32, child.tag());
             if let Verdict::Partial(part) = child {
-                worker.parts.try_reserve(1).map_err(|_| Error::OutOfMemory)?;
-                worker.parts.push((k, part));
+                hand.parts.try_reserve(1).map_err(|_| Error::OutOfMemory)?;
+                hand.parts.push((k, part));
             }
         }
         Ok(planes)
     }
 
     /// The cell `c` of the element of level `e` at `cube`.
-    fn at(&self, e: usize, cube: &Cube<'_>, c: u8) -> Cell {
+    fn at(&self, e: usize, cell: Cell, c: u8) -> Cell {
         if e == 0 && starts_half_way(self.frame.depth()) {
-            return cube.cell.child(c);
+            return cell.child(c);
         }
         let [x, y, z] = morton::position(c as u32);
-        let [cx, cy, cz] = cube.cell.at.map(|a| 4 * a);
-        Cell { level: cube.cell.level + 2, at: [cx + x, cy + y, cz + z] }
+        let [cx, cy, cz] = cell.at.map(|a| 4 * a);
+        Cell { level: cell.level + 2, at: [cx + x, cy + y, cz + z] }
     }
 
     /// Cells that an element of level `e` has in the universe.
@@ -186,13 +198,13 @@ impl<S: Solid> Builder<'_, S> {
     fn children(
         &self,
         e: usize,
-        cube: &Cube<'_>,
+        cell: Cell,
         planes: Planes,
         first: usize,
-        worker: &mut Worker<S>,
+        hand: &mut Hand<C>,
         writer: &mut Writer<'_>,
     ) -> Result<Planes, Error> {
-        let splittable = worker.parts[first..].iter().fold(0u64, |mask, &(c, _)| mask | 1 << c);
+        let splittable = hand.parts[first..].iter().fold(0u64, |mask, &(c, _)| mask | 1 << c);
         let hopeless = planes.partial() & !splittable;
         let mut result = if hopeless == 0 {
             planes
@@ -205,20 +217,36 @@ impl<S: Solid> Builder<'_, S> {
             writer.job().advance(decided * self.weight(e));
         }
         #[cfg(feature = "parallel")]
-        if self.parallel && e < 2 && e + 3 < self.levels && splittable.count_ones() > 1 {
-            for (c, tag) in self.children_parallel(e, cube, first, worker, writer)? {
+        if self.parallel
+            && e < 2
+            && (e + 3 < self.levels || hand.worker.likes_many())
+            && splittable.count_ones() > 1
+        {
+            for (c, tag) in self.children_parallel(e, cell, first, hand, writer)? {
                 result.set(c as u32, tag);
             }
             return Ok(result);
         }
-        for i in first..worker.parts.len() {
-            let (c, part) = worker.parts[i].clone();
-            let tag = self.cell(e + 1, self.at(e, cube, c), &part, worker, writer)?;
+        let mut run: Option<Run> = None;
+        for i in first..hand.parts.len() {
+            let (c, part) = hand.parts[i].clone();
+            // Stored subtrees are copied, neighbours together.
+            if let Some(subtree) = self.stored(e + 1, &part, &hand.worker) {
+                result.set(c as u32, Tag::Branch);
+                match &mut run {
+                    Some(run) if self.goes_on(run, &subtree, hand) => run.count += 1,
+                    _ => self.copy(run.replace(Run { first: i, level: e + 1, count: 1 }), hand, writer)?,
+                }
+                continue;
+            }
+            self.copy(run.take(), hand, writer)?;
+            let tag = self.cell(e + 1, self.at(e, cell, c), &part, hand, writer)?;
             result.set(c as u32, tag);
             if e == 1 {
                 writer.job().advance(self.weight(e));
             }
         }
+        self.copy(run, hand, writer)?;
         Ok(result)
     }
 
@@ -226,27 +254,38 @@ impl<S: Solid> Builder<'_, S> {
     fn children_parallel(
         &self,
         e: usize,
-        cube: &Cube<'_>,
+        cell: Cell,
         first: usize,
-        worker: &Worker<S>,
+        hand: &Hand<C>,
         writer: &mut Writer<'_>,
     ) -> Result<Vec<(u8, Tag)>, Error> {
         use rayon::prelude::*;
         let subtrees = &*writer;
-        let from = &worker.scratch;
-        let done = worker.parts[first..]
+        let from = &hand.worker;
+        let done = hand.parts[first..]
             .par_iter()
-            .map_init(Worker::<S>::new, |worker, (c, part)| {
-                let mark = worker.scratch.mark();
-                let part = self.solid.hand_over(from, part, &mut worker.scratch)?;
-                let mut subtree = subtrees.sibling();
-                let tag = self.cell(e + 1, self.at(e, cube, *c), &part, worker, &mut subtree)?;
-                worker.scratch.release(mark);
-                if e == 1 {
-                    subtrees.job().advance(self.weight(e));
-                }
-                Ok((*c, tag, subtree))
-            })
+            .map_init(
+                || None,
+                |own, (c, part)| {
+                    let mut subtree = subtrees.sibling();
+                    if let Some(stored) = self.stored(e + 1, part, from) {
+                        copy(&stored, 1, &mut subtree)?;
+                        return Ok((*c, Tag::Branch, subtree));
+                    }
+                    let hand = match own {
+                        Some(hand) => hand,
+                        none => none.insert(Hand::new(self.classifier)?),
+                    };
+                    let mark = hand.worker.mark();
+                    let part = hand.worker.hand_over(from, part)?;
+                    let tag = self.cell(e + 1, self.at(e, cell, *c), &part, hand, &mut subtree)?;
+                    hand.worker.release(mark);
+                    if e == 1 {
+                        subtree.job().advance(self.weight(e));
+                    }
+                    Ok((*c, tag, subtree))
+                },
+            )
             .collect::<Result<Vec<_>, Error>>()?;
         done.into_iter().map(|(c, tag, subtree)| writer.append(subtree).map(|()| (c, tag))).collect()
     }
@@ -255,27 +294,27 @@ impl<S: Solid> Builder<'_, S> {
     fn resolve_finest(
         &self,
         planes: Planes,
-        cube: &Cube<'_>,
+        cell: Cell,
         first: usize,
-        worker: &mut Worker<S>,
+        hand: &mut Hand<C>,
     ) -> Result<Planes, Error> {
         if self.rule != Rule::Sampled {
             return self.resolve_all(planes);
         }
-        if planes.partial().count_ones() as usize != worker.parts.len() - first {
+        if planes.partial().count_ones() as usize != hand.parts.len() - first {
             return Err(Error::NotSampled);
         }
         if self.levels > 1 || !starts_half_way(self.frame.depth()) {
-            let parts = &worker.parts[first..];
-            let inside = self.solid.sample64(&mut worker.scratch, cube, parts)?.ok_or(Error::NotSampled)?;
+            let parts = &hand.parts[first..];
+            let inside = hand.worker.sample64(cell, parts)?.ok_or(Error::NotSampled)?;
             return Ok(Planes::binary(planes.full() | inside & planes.partial()));
         }
         // The only element is a root that starts half-way: its cells are children.
         let mut result = planes;
-        for i in first..worker.parts.len() {
-            let (c, part) = worker.parts[i].clone();
-            let cube = Cube { frame: self.frame, cell: self.at(self.levels - 1, cube, c) };
-            let inside = self.solid.sample(&mut worker.scratch, &cube, &part)?.ok_or(Error::NotSampled)?;
+        for i in first..hand.parts.len() {
+            let (c, part) = hand.parts[i].clone();
+            let centre = self.at(self.levels - 1, cell, c);
+            let inside = hand.worker.sample(centre, &part)?.ok_or(Error::NotSampled)?;
             result.set(c as u32, if inside { Tag::Full } else { Tag::Empty });
         }
         Ok(result)
@@ -291,4 +330,67 @@ impl<S: Solid> Builder<'_, S> {
             Rule::Sampled => Err(Error::NotSampled),
         }
     }
+
+    /// Writes the subtree of a PARTIAL cell of which the solid is asked level by level.
+    fn gathered(
+        &self,
+        e: usize,
+        cell: Cell,
+        part: &Part<C>,
+        hand: &mut Hand<C>,
+        writer: &mut Writer<'_>,
+    ) -> Result<Tag, Error> {
+        // Below the root threads have cells of their own.
+        let threads = if self.parallel && e == 0 { gathered::threads() } else { 1 };
+        let (centres, job) = (self.rule == Rule::Sampled, writer.job());
+        let asked = (cell, part.clone());
+        let known = Gathered::new(self.classifier, &mut hand.worker, asked, centres, job, threads)?;
+        let builder = Builder {
+            classifier: &&known,
+            frame: self.frame,
+            rule: self.rule,
+            levels: self.levels,
+            parallel: false,
+        };
+        builder.cell(e, cell, &0, &mut Hand::new(&&known)?, writer)
+    }
+
+    /// The stored subtree of a PARTIAL cell that element level `e` describes, if it can be copied as it is.
+    fn stored<'w>(&self, e: usize, part: &Part<C>, worker: &'w C::Worker) -> Option<Subtree<'w>> {
+        let subtree = worker.subtree(part)?;
+        let good = subtree.level == e
+            && *subtree.tree.frame() == self.frame
+            && (self.rule == Rule::Certified || subtree.tree.is_binary());
+        good.then_some(subtree)
+    }
+
+    /// Whether a subtree comes next to those of a run.
+    fn goes_on(&self, run: &Run, next: &Subtree<'_>, hand: &Hand<C>) -> bool {
+        self.stored(run.level, &hand.parts[run.first].1, &hand.worker).is_some_and(|first| {
+            let same = core::ptr::eq(first.tree.planes.as_ptr(), next.tree.planes.as_ptr());
+            same && (next.index, next.flip) == (first.index + run.count, first.flip)
+        })
+    }
+
+    /// Copies the subtrees of a run.
+    fn copy(&self, run: Option<Run>, hand: &Hand<C>, writer: &mut Writer<'_>) -> Result<(), Error> {
+        let Some(Run { first, level, count }) = run else { return Ok(()) };
+        match self.stored(level, &hand.parts[first].1, &hand.worker) {
+            Some(subtree) => copy(&subtree, count, writer),
+            None => Ok(()),
+        }
+    }
+}
+
+/// Neighbouring stored subtrees that are copied together: the place of the first one's part, their element level.
+struct Run {
+    first: usize,
+    level: usize,
+    count: usize,
+}
+
+/// Copies `count` neighbouring subtrees of a stored octree, all links of which were checked when it was put on the frame.
+fn copy(first: &Subtree<'_>, count: usize, writer: &mut Writer<'_>) -> Result<(), Error> {
+    let &Subtree { tree, level, index, flip } = first;
+    writer.copy(&tree, &mut Windows::new(&tree), index, level, index..index + count, flip)
 }

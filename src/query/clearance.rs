@@ -14,7 +14,8 @@ use crate::error::Error;
 use crate::lattice::exact::{product_down, product_up, sqrt, two_product};
 use crate::lattice::{Cell, Cube, Frame, Interval};
 use crate::octree::Tag;
-use crate::solid::{Scratch, Solid, Verdict};
+use crate::op::split_one;
+use crate::solid::{Classifier, Solid, Verdict, Worker};
 use alloc::collections::BinaryHeap;
 use alloc::vec::Vec;
 use core::cmp::{Ordering, Reverse};
@@ -30,14 +31,12 @@ pub struct Clearance {
     pub nearest: Option<[Cell; 2]>,
     /// Cells that were split, of the first solid and of the second.
     pub splits: [u64; 2],
-    /// Half-spaces that were evaluated.
-    pub evaluations: u64,
     /// Whether one of the solids may go on outside of the universe, of which nothing is said.
     pub clipped: bool,
 }
 
-/// The distance between `a` and `b`, each as it is in the universe of `frame`: of a solid under a placement, hand over
-/// a [`Transform`](crate::Transform). The work ends when the interval is no wider than `tolerance` (model units), at the
+/// The distance between `a` and `b`, each as it is in the universe of `frame`: a solid under a placement is moved first
+/// (see [`AnySolid::placed`](crate::AnySolid::placed)). The work ends when the interval is no wider than `tolerance` (model units), at the
 /// frame's depth, or once `control.max_splits` cells of both are split, with what is known by then; a cell whose children
 /// are looked at again, next to another one, counts once more, because that is where the work is.
 ///
@@ -67,7 +66,8 @@ pub fn clearance<A: Solid, B: Solid>(
     super::check_tolerance(tolerance)?;
     let job = Job::new(control);
     job.check()?;
-    let mut search = Search::new(a, b, frame)?;
+    let (a, b) = (a.on(frame, control)?, b.on(frame, control)?);
+    let mut search = Search::new(&a, &b)?;
     search.run(tolerance, control.max_splits.unwrap_or(u64::MAX), &job)?;
     job.advance(WHOLE);
     Ok(search.found())
@@ -92,29 +92,34 @@ struct Node<P> {
 }
 
 /// The cells of a solid that were looked at.
-struct Cells<'s, S: Solid> {
-    solid: &'s S,
-    frame: &'s Frame,
-    scratch: S::Scratch,
-    nodes: Vec<Node<S::Part>>,
+struct Cells<'s, C: Classifier> {
+    classifier: &'s C,
+    worker: C::Worker,
+    nodes: Vec<Node<Part<C>>>,
     splits: u64,
 }
 
-impl<'s, S: Solid> Cells<'s, S> {
-    fn new(solid: &'s S, frame: &'s Frame) -> Result<Self, Error> {
-        let mut cells = Cells { solid, frame, scratch: S::Scratch::default(), nodes: Vec::new(), splits: 0 };
-        let root = solid.root(&mut cells.scratch, frame)?;
+type Part<C> = <<C as Classifier>::Worker as Worker>::Part;
+
+impl<'s, C: Classifier> Cells<'s, C> {
+    fn new(classifier: &'s C) -> Result<Self, Error> {
+        let mut cells = Cells { classifier, worker: classifier.worker()?, nodes: Vec::new(), splits: 0 };
+        let root = cells.worker.root()?;
         cells.add(Cell::ROOT, root)?;
         Ok(cells)
     }
 
-    fn add(&mut self, cell: Cell, verdict: Verdict<S::Part>) -> Result<(), Error> {
+    fn frame(&self) -> &'s Frame {
+        self.classifier.frame()
+    }
+
+    fn add(&mut self, cell: Cell, verdict: Verdict<Part<C>>) -> Result<(), Error> {
         let known = match verdict {
             Verdict::Empty => return Ok(()),
             Verdict::Full => Known::Full,
             Verdict::Undecided => Known::Undecided,
             // No finer cells are asked for.
-            Verdict::Partial(_) if cell.level == self.frame.depth() => Known::Undecided,
+            Verdict::Partial(_) if cell.level == self.frame().depth() => Known::Undecided,
             Verdict::Partial(part) => Known::Part(part),
         };
         self.nodes.try_reserve(1).map_err(|_| Error::OutOfMemory)?;
@@ -132,12 +137,12 @@ impl<'s, S: Solid> Cells<'s, S> {
     }
 
     /// The children of a node that can be split; those of no other.
-    fn children(&mut self, node: usize) -> Result<core::ops::Range<usize>, Error> {
+    fn children(&mut self, node: usize, control: &Control<'_>) -> Result<core::ops::Range<usize>, Error> {
         let Node { cell, known } = &self.nodes[node];
         let cell = *cell;
         if let Known::Part(part) = known {
             self.splits += 1;
-            let children = self.solid.split(&mut self.scratch, &Cube { frame: self.frame, cell }, part)?;
+            let children = split_one(&mut self.worker, cell, part, control)?;
             let first = self.nodes.len();
             for (octant, child) in (0..8).zip(children) {
                 self.add(cell.child(octant), child)?;
@@ -152,7 +157,7 @@ impl<'s, S: Solid> Cells<'s, S> {
 
     /// The least and the greatest coordinates, in finest cells.
     fn extent(&self, node: usize) -> ([u32; 3], [u32; 3]) {
-        Cube { frame: self.frame, cell: self.nodes[node].cell }.planes()
+        Cube { frame: self.frame(), cell: self.nodes[node].cell }.planes()
     }
 
     fn level(&self, node: usize) -> u8 {
@@ -206,7 +211,7 @@ impl Eq for Group {}
 const DIVE: u64 = 4096;
 
 /// What is under way.
-struct Search<'s, A: Solid, B: Solid> {
+struct Search<'s, A: Classifier, B: Classifier> {
     a: Cells<'s, A>,
     b: Cells<'s, B>,
     open: BinaryHeap<Group>,
@@ -220,9 +225,9 @@ struct Search<'s, A: Solid, B: Solid> {
     reached: Option<(u64, [usize; 2])>,
 }
 
-impl<'s, A: Solid, B: Solid> Search<'s, A, B> {
-    fn new(a: &'s A, b: &'s B, frame: &'s Frame) -> Result<Self, Error> {
-        let (a, b) = (Cells::new(a, frame)?, Cells::new(b, frame)?);
+impl<'s, A: Classifier, B: Classifier> Search<'s, A, B> {
+    fn new(a: &'s A, b: &'s B) -> Result<Self, Error> {
+        let (a, b) = (Cells::new(a)?, Cells::new(b)?);
         let mut search =
             Search { a, b, open: BinaryHeap::new(), diving: true, met: 0, settled: None, reached: None };
         if !search.a.nodes.is_empty() && !search.b.nodes.is_empty() {
@@ -285,11 +290,11 @@ impl<'s, A: Solid, B: Solid> Search<'s, A, B> {
             let companions = companions.iter().map(|&(.., node)| node);
             // The larger one, so that neither is split without need.
             if self.a.can_be_split(a) && (!self.b.can_be_split(b) || self.a.level(a) <= self.b.level(b)) {
-                for child in self.a.children(a)? {
+                for child in self.a.children(a, job.control())? {
                     self.meet(child, companions.clone())?;
                 }
             } else {
-                let children = self.b.children(b)?;
+                let children = self.b.children(b, job.control())?;
                 self.meet(a, companions.filter(|&node| node != b).chain(children))?;
             }
             return Ok(true);
@@ -344,7 +349,7 @@ impl<'s, A: Solid, B: Solid> Search<'s, A, B> {
     fn distance(&self, open: Option<u64>) -> Interval {
         let reached = self.reached.map(|(reached, _)| reached);
         let least = [open, self.settled, reached].into_iter().flatten().min();
-        let size = self.a.frame.cell_size();
+        let size = self.a.frame().cell_size();
         Interval {
             lower: least.map_or(f64::INFINITY, |square| product_down(root(square).lower, size)),
             upper: reached.map_or(f64::INFINITY, |square| product_up(root(square).upper, size)),
@@ -352,13 +357,11 @@ impl<'s, A: Solid, B: Solid> Search<'s, A, B> {
     }
 
     fn found(self) -> Clearance {
-        let frame = self.a.frame;
         Clearance {
             distance: self.distance(self.open.iter().map(|group| group.nearest.0).min()),
             nearest: self.reached.map(|(_, [a, b])| [self.a.nodes[a].cell, self.b.nodes[b].cell]),
             splits: [self.a.splits, self.b.splits],
-            evaluations: self.a.scratch.evaluations() + self.b.scratch.evaluations(),
-            clipped: self.a.solid.exterior(frame) != Tag::Empty || self.b.solid.exterior(frame) != Tag::Empty,
+            clipped: self.a.classifier.exterior() != Tag::Empty || self.b.classifier.exterior() != Tag::Empty,
         }
     }
 }

@@ -5,7 +5,8 @@ use crate::control::{Control, Job, WHOLE};
 use crate::error::Error;
 use crate::lattice::{Cell, Cube, Frame, Interval, MAX_DEPTH};
 use crate::octree::Tag;
-use crate::solid::{Scratch, Solid, Verdict};
+use crate::op::split_one;
+use crate::solid::{Classifier, Solid, Verdict, Worker};
 use alloc::collections::BinaryHeap;
 use alloc::vec::Vec;
 use core::cmp::Reverse;
@@ -26,8 +27,6 @@ pub struct Extent {
     pub measured: Measured,
     /// How many times a cell was split.
     pub splits: u64,
-    /// Evaluations of half-spaces, for solids that count them.
-    pub evaluations: u64,
 }
 
 /// The bounding box of `solid` in the universe of `frame`: each of its sides until the interval is at most `tolerance`
@@ -63,16 +62,18 @@ pub fn bounding_box<S: Solid>(
     let job = Job::new(control);
     // The cast rounds down, and saturates.
     let goal = ((tolerance / frame.cell_size()) as u32).max(1);
-    let mut search = Search { solid, frame, job: &job, goal, inner: [NOWHERE; 6], outer: [NOWHERE; 6] };
+    let classifier = solid.on(frame, control)?;
+    let mut search = Search { frame, job: &job, goal, inner: [NOWHERE; 6], outer: [NOWHERE; 6] };
     let budget = control.max_splits.unwrap_or(u64::MAX);
-    let (mut left, mut evaluations, mut unfinished) = (budget, 0, false);
+    let (mut left, mut unfinished) = (budget, false);
+    let mut worker = classifier.worker()?;
+    let mark = worker.mark();
     for side in 0..6 {
         let share = left / (6 - side as u64);
         let mut own = share;
-        let mut scratch = S::Scratch::default();
-        unfinished |= !search.side(side, &mut scratch, &mut own)?;
+        unfinished |= !search.side(side, &mut worker, &mut own)?;
+        worker.release(mark);
         left -= share - own;
-        evaluations += scratch.evaluations();
         job.advance(WHOLE / 6 + if side == 0 { WHOLE % 6 } else { 0 });
     }
     // Both are nowhere if the solid is empty, and the difference is large if nothing is proven FULL.
@@ -80,14 +81,13 @@ pub fn bounding_box<S: Solid>(
     Ok(Extent {
         corners: search.corners(),
         occupied: search.inner[0] != NOWHERE,
-        clipped: solid.exterior(frame) != Tag::Empty,
+        clipped: classifier.exterior() != Tag::Empty,
         measured: match (wide, unfinished) {
             (false, _) => Measured::Tolerance,
             (true, true) => Measured::Budget,
             (true, false) => Measured::Exhausted,
         },
         splits: budget - left,
-        evaluations,
     })
 }
 
@@ -96,8 +96,7 @@ const NOWHERE: u32 = u32::MAX;
 
 /// Sides are numbered: 0 to 2 the lower ones along x, y and z, 3 to 5 the upper ones. What lies at a side is told by
 /// its distance from the universe's face there, in finest cells.
-struct Search<'a, S> {
-    solid: &'a S,
+struct Search<'a> {
     frame: &'a Frame,
     job: &'a Job<'a>,
     /// How many finest cells an interval may be wide.
@@ -108,7 +107,7 @@ struct Search<'a, S> {
     outer: [u32; 6],
 }
 
-impl<S: Solid> Search<'_, S> {
+impl Search<'_> {
     /// Where a cell begins, seen from a side.
     fn start(&self, side: usize, cell: Cell) -> u32 {
         let (lower, upper) = Cube { frame: self.frame, cell }.planes();
@@ -116,10 +115,10 @@ impl<S: Solid> Search<'_, S> {
     }
 
     /// Splits the cells that begin first, and of those the smallest. `false` if the budget has ended it.
-    fn side(&mut self, side: usize, scratch: &mut S::Scratch, left: &mut u64) -> Result<bool, Error> {
+    fn side<W: Worker>(&mut self, side: usize, worker: &mut W, left: &mut u64) -> Result<bool, Error> {
         self.job.check()?;
         let mut open = Open { cells: Vec::new(), queue: BinaryHeap::new(), stuck: NOWHERE };
-        let root = self.solid.root(scratch, self.frame)?;
+        let root = worker.root()?;
         self.note(side, Cell::ROOT, root, &mut open)?;
         loop {
             let next = open.queue.peek().copied();
@@ -134,19 +133,19 @@ impl<S: Solid> Search<'_, S> {
             self.job.check()?;
             open.queue.pop();
             let (cell, part) = open.cells[index].clone();
-            let children = self.solid.split(scratch, &Cube { frame: self.frame, cell }, &part)?;
+            let children = split_one(worker, cell, &part, self.job.control())?;
             for (octant, verdict) in (0..8).zip(children) {
                 self.note(side, cell.child(octant), verdict, &mut open)?;
             }
         }
     }
 
-    fn note(
+    fn note<P>(
         &mut self,
         side: usize,
         cell: Cell,
-        verdict: Verdict<S::Part>,
-        open: &mut Open<S::Part>,
+        verdict: Verdict<P>,
+        open: &mut Open<P>,
     ) -> Result<(), Error> {
         let start = self.start(side, cell);
         match verdict {

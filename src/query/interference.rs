@@ -10,10 +10,11 @@
 
 use crate::control::{Control, Job, WHOLE};
 use crate::error::Error;
-use crate::lattice::{Affine, Cell, Cube, Frame, Interval};
+use crate::lattice::{Affine, Cell, Frame, Interval};
 use crate::octree::Tag;
 use crate::octree::stats::volume_of;
-use crate::solid::{Scratch, Solid, Transform, Verdict};
+use crate::op::{gathered, split_one};
+use crate::solid::{Classifier, Solid, TransformClassifier, Verdict, Worker};
 use alloc::collections::BinaryHeap;
 use alloc::vec::Vec;
 use core::cmp::Ordering;
@@ -41,20 +42,19 @@ pub struct Interference {
     pub volume: Interval,
     /// Cells that were split, of the first solid and of the second.
     pub splits: [u64; 2],
-    /// Half-spaces that were evaluated.
-    pub evaluations: u64,
     /// The finest level of which cells were looked at.
     pub level: u8,
     /// Whether both solids may go on outside of the universe, of which nothing is said.
     pub clipped: bool,
 }
 
-/// Whether `a` and `b` overlap, each as it is in the universe of `frame`: of a solid under a placement, hand over a
-/// [`Transform`]. Once an overlap is proven its volume is refined until the interval is no wider than `tolerance` (cubic
+/// Whether `a` and `b` overlap, each as it is in the universe of `frame`: a solid under a placement is moved first (see
+/// [`AnySolid::placed`](crate::AnySolid::placed)). Once an overlap is proven its volume is refined until the interval is no wider than `tolerance` (cubic
 /// model units); infinity ends the work with the proof.
 ///
 /// The work ends at the frame's depth, or once `control.max_splits` cells of both are split, with what is known by then.
-/// Memory is linear in the cells that are not decided. One thread.
+/// Memory is linear in the cells that are not decided. One thread; a host program's shape is asked about several cells at
+/// once, by as many threads as `control` allows.
 ///
 /// # Errors
 /// [`Error::Argument`] if `tolerance` is negative or not a number; what the solids refuse; [`Error::OutOfMemory`], and
@@ -78,14 +78,19 @@ pub fn interference<A: Solid, B: Solid>(
 ) -> Result<Interference, Error> {
     super::check_tolerance(tolerance)?;
     let job = Job::new(control);
-    let found = Search::new(a, b, frame, control.max_splits).run(tolerance, &job)?;
+    let (a, b) = (a.on(frame, control)?, b.on(frame, control)?);
+    let mut search = Search::new(&a, &b, control.max_splits)?;
+    let found = control.run(search.likes_many(), |parallel| {
+        search.threads = if parallel { gathered::threads() } else { 1 };
+        search.run(tolerance, &job)
+    })?;
     job.advance(WHOLE);
     Ok(found)
 }
 
 /// As [`interference`] of `a` with `b` under each of the `placements`, in their order; the first of both is known on
-/// `frame`, the second on its `own` frame. The same for any number of threads; `control.max_splits` concerns each
-/// placement.
+/// `frame`, the second on its `own` frame, and both are prepared once. The same for any number of threads;
+/// `control.max_splits` concerns each placement.
 ///
 /// # Errors
 /// As [`interference`].
@@ -100,9 +105,12 @@ pub fn interference_of<A: Solid, B: Solid>(
 ) -> Result<Vec<Interference>, Error> {
     super::check_tolerance(tolerance)?;
     let job = Job::new(control);
+    let bounds = b.bounds();
+    let (a, b) = (a.on(frame, control)?, b.on(own, control)?);
     let one = |placement: &Affine| {
-        let b = Transform::new(b, own, placement);
-        let found = Search::new(a, &b, frame, control.max_splits).run(tolerance, &job)?;
+        let around = bounds.and_then(|bounds| bounds.placed(placement));
+        let b = TransformClassifier::new(b.clone(), placement, frame, around);
+        let found = Search::new(&a, &b, control.max_splits)?.run(tolerance, &job)?;
         job.advance(WHOLE / placements.len());
         Ok::<_, Error>(found)
     };
@@ -188,62 +196,106 @@ impl<P, Q> PartialEq for Pair<P, Q> {
 
 impl<P, Q> Eq for Pair<P, Q> {}
 
-/// One of the solids with its memory.
-struct Side<'s, S: Solid> {
-    solid: &'s S,
-    scratch: S::Scratch,
+/// One of the solids with its worker.
+struct Side<'s, C: Classifier> {
+    classifier: &'s C,
+    worker: C::Worker,
     splits: u64,
-    /// Of memory that is gone.
-    evaluations: u64,
     /// Height of the memory when all parts in it were last in use.
     used: usize,
 }
 
-impl<'s, S: Solid> Side<'s, S> {
-    fn new(solid: &'s S) -> Self {
-        Side { solid, scratch: S::Scratch::default(), splits: 0, evaluations: 0, used: 0 }
+type Part<C> = <<C as Classifier>::Worker as Worker>::Part;
+
+impl<'s, C: Classifier> Side<'s, C> {
+    fn new(classifier: &'s C) -> Result<Self, Error> {
+        Ok(Side { classifier, worker: classifier.worker()?, splits: 0, used: 0 })
     }
 
     /// The children, EMPTY ones as None, and how likely it is for each that it lies in the solid.
-    fn split(&mut self, cube: &Cube<'_>, known: &Known<S::Part>) -> Result<Children<S::Part>, Error> {
+    fn split(
+        &mut self,
+        cell: Cell,
+        known: &Known<Part<C>>,
+        control: &Control<'_>,
+    ) -> Result<Children<Part<C>>, Error> {
         Ok(match known {
             Known::Full => ([const { Some(Known::Full) }; 8], [1.0; 8]),
             Known::Undecided => ([const { Some(Known::Undecided) }; 8], [0.0; 8]),
             Known::Part(part) => {
                 self.splits += 1;
-                let children = self.solid.split(&mut self.scratch, cube, part)?;
-                let tags = [0, 1, 2, 3, 4, 5, 6, 7].map(|k: usize| children[k].tag());
-                (children.map(Known::new), likelihoods(&tags))
+                let children = split_one(&mut self.worker, cell, part, control)?;
+                known_children(children)
             }
         })
     }
 
+    /// The children of several cells, where the solid is better asked about them at once.
+    fn split_many<'k>(
+        &mut self,
+        cells: impl Iterator<Item = (Cell, &'k Known<Part<C>>)>,
+        threads: usize,
+        control: &Control<'_>,
+    ) -> Result<Vec<Children<Part<C>>>, Error>
+    where
+        Part<C>: 'k,
+    {
+        let (mut all, mut asked, mut places) = (Vec::new(), Vec::new(), Vec::new());
+        for (cell, known) in cells {
+            all.try_reserve(1).map_err(|_| Error::OutOfMemory)?;
+            asked.try_reserve(1).map_err(|_| Error::OutOfMemory)?;
+            places.try_reserve(1).map_err(|_| Error::OutOfMemory)?;
+            match known {
+                Known::Part(part) if self.worker.likes_many() => {
+                    asked.push((cell, part.clone()));
+                    places.push(all.len());
+                    all.push(([const { None }; 8], [0.0; 8]));
+                }
+                known => all.push(self.split(cell, known, control)?),
+            }
+        }
+        self.splits += asked.len() as u64;
+        let found =
+            gathered::each(self.classifier, &mut self.worker, &asked, threads, |own, cells, verdicts| {
+                own.split_many(cells, control, verdicts)
+            })?;
+        for (place, children) in places.into_iter().zip(found) {
+            all[place] = known_children(children);
+        }
+        Ok(all)
+    }
+
     /// Whether most of the memory is held by parts that are not in use any more.
     fn is_wasteful(&self) -> bool {
-        self.scratch.mark() > 4 * self.used + 4096
+        self.worker.mark() > 4 * self.used + 4096
     }
 
     /// Moves parts into memory of their own.
-    fn keep<'k>(&mut self, parts: impl Iterator<Item = &'k mut Known<S::Part>>) -> Result<(), Error>
+    fn keep<'k>(&mut self, parts: impl Iterator<Item = &'k mut Known<Part<C>>>) -> Result<(), Error>
     where
-        S::Part: 'k,
+        Part<C>: 'k,
     {
-        let mut scratch = S::Scratch::default();
+        let mut worker = self.classifier.worker()?;
         for known in parts {
             if let Known::Part(part) = known {
-                *part = self.solid.hand_over(&self.scratch, part, &mut scratch)?;
+                *part = worker.hand_over(&self.worker, part)?;
             }
         }
-        self.evaluations += self.scratch.evaluations();
-        self.used = scratch.mark();
-        self.scratch = scratch;
+        self.used = worker.mark();
+        self.worker = worker;
         Ok(())
     }
-
-    fn evaluations(&self) -> u64 {
-        self.evaluations + self.scratch.evaluations()
-    }
 }
+
+/// What is known of eight siblings.
+fn known_children<P>(verdicts: [Verdict<P>; 8]) -> Children<P> {
+    let tags = [0, 1, 2, 3, 4, 5, 6, 7].map(|k: usize| verdicts[k].tag());
+    (verdicts.map(Known::new), likelihoods(&tags))
+}
+
+/// Pairs of which a host program's shape is asked at once. (It does not depend on the threads, and so the result does
+/// not either.)
+const GATHERED: usize = 16;
 
 type Children<P> = ([Option<Known<P>>; 8], [f64; 8]);
 
@@ -263,14 +315,17 @@ fn likelihoods(tags: &[Tag; 8]) -> [f64; 8] {
     })
 }
 
+/// Pairs of the cells of two classifiers.
+type Pairs<A, B> = Vec<Pair<Part<A>, Part<B>>>;
+
 /// What is under way.
-struct Search<'s, A: Solid, B: Solid> {
+struct Search<'s, A: Classifier, B: Classifier> {
     frame: &'s Frame,
     a: Side<'s, A>,
     b: Side<'s, B>,
     /// Splits that may still be made.
     left: u64,
-    open: BinaryHeap<Pair<A::Part, B::Part>>,
+    open: BinaryHeap<Pair<Part<A>, Part<B>>>,
     /// Pairs that were met.
     met: u64,
     /// In finest cells: what is FULL of both, open, and not to be decided.
@@ -279,14 +334,16 @@ struct Search<'s, A: Solid, B: Solid> {
     undecided: u64,
     witness: Option<Cell>,
     level: u8,
+    /// Threads that may ask a host program.
+    threads: usize,
 }
 
-impl<'s, A: Solid, B: Solid> Search<'s, A, B> {
-    fn new(a: &'s A, b: &'s B, frame: &'s Frame, splits: Option<u64>) -> Self {
-        Search {
-            frame,
-            a: Side::new(a),
-            b: Side::new(b),
+impl<'s, A: Classifier, B: Classifier> Search<'s, A, B> {
+    fn new(a: &'s A, b: &'s B, splits: Option<u64>) -> Result<Self, Error> {
+        Ok(Search {
+            frame: a.frame(),
+            a: Side::new(a)?,
+            b: Side::new(b)?,
             left: splits.unwrap_or(u64::MAX),
             open: BinaryHeap::new(),
             met: 0,
@@ -295,13 +352,19 @@ impl<'s, A: Solid, B: Solid> Search<'s, A, B> {
             undecided: 0,
             witness: None,
             level: 0,
-        }
+            threads: 1,
+        })
+    }
+
+    /// Whether a solid is better asked about several cells at once.
+    fn likes_many(&self) -> bool {
+        self.a.worker.likes_many() || self.b.worker.likes_many()
     }
 
     fn run(mut self, tolerance: f64, job: &Job<'_>) -> Result<Interference, Error> {
         job.check()?;
-        if let Some(a) = Known::new(self.a.solid.root(&mut self.a.scratch, self.frame)?)
-            && let Some(b) = Known::new(self.b.solid.root(&mut self.b.scratch, self.frame)?)
+        if let Some(a) = Known::new(self.a.worker.root()?)
+            && let Some(b) = Known::new(self.b.worker.root()?)
         {
             self.meet(Cell::ROOT, a, b, 1.0)?;
         }
@@ -323,7 +386,12 @@ impl<'s, A: Solid, B: Solid> Search<'s, A, B> {
             }
             self.left -= splits;
             self.waiting -= self.cells(pair.cell);
-            self.split(&pair, searching)?;
+            if self.likes_many() {
+                let pairs = self.gather(pair)?;
+                self.split_many(pairs, searching, job.control())?;
+            } else {
+                self.split(&pair, searching, job.control())?;
+            }
             self.tidy()?;
         }
         Ok(self.found())
@@ -341,9 +409,8 @@ impl<'s, A: Solid, B: Solid> Search<'s, A, B> {
             witness: self.witness,
             volume: self.volume(),
             splits: [self.a.splits, self.b.splits],
-            evaluations: self.a.evaluations() + self.b.evaluations(),
             level: self.level,
-            clipped: open(self.a.solid.exterior(self.frame)) && open(self.b.solid.exterior(self.frame)),
+            clipped: open(self.a.classifier.exterior()) && open(self.b.classifier.exterior()),
         }
     }
 
@@ -357,7 +424,7 @@ impl<'s, A: Solid, B: Solid> Search<'s, A, B> {
     }
 
     /// Takes in a cell in which neither is EMPTY.
-    fn meet(&mut self, cell: Cell, a: Known<A::Part>, b: Known<B::Part>, rank: f64) -> Result<(), Error> {
+    fn meet(&mut self, cell: Cell, a: Known<Part<A>>, b: Known<Part<B>>, rank: f64) -> Result<(), Error> {
         let cells = self.cells(cell);
         self.level = self.level.max(cell.level);
         if a.is_full() && b.is_full() {
@@ -375,18 +442,77 @@ impl<'s, A: Solid, B: Solid> Search<'s, A, B> {
         Ok(())
     }
 
-    fn split(&mut self, pair: &Pair<A::Part, B::Part>, searching: bool) -> Result<(), Error> {
-        let cube = Cube { frame: self.frame, cell: pair.cell };
-        let (of_a, likely_a) = self.a.split(&cube, &pair.a)?;
+    fn split(
+        &mut self,
+        pair: &Pair<Part<A>, Part<B>>,
+        searching: bool,
+        control: &Control<'_>,
+    ) -> Result<(), Error> {
+        let (of_a, likely_a) = self.a.split(pair.cell, &pair.a, control)?;
         if of_a.iter().all(Option::is_none) {
             // The other one need not be split, and is not.
             self.left += pair.b.is_part() as u64;
             return Ok(());
         }
-        let (of_b, likely_b) = self.b.split(&cube, &pair.b)?;
+        let of_b = self.b.split(pair.cell, &pair.b, control)?;
+        self.meet_children(pair.cell, (of_a, likely_a), of_b, searching)
+    }
+
+    /// Takes up the pairs that come next, after a first one.
+    fn gather(&mut self, first: Pair<Part<A>, Part<B>>) -> Result<Pairs<A, B>, Error> {
+        let mut pairs = Vec::new();
+        pairs.try_reserve_exact(GATHERED).map_err(|_| Error::OutOfMemory)?;
+        pairs.push(first);
+        while pairs.len() < GATHERED
+            && let Some(pair) = self.open.pop()
+        {
+            let splits = pair.a.is_part() as u64 + pair.b.is_part() as u64;
+            if splits > self.left {
+                self.open.push(pair);
+                break;
+            }
+            self.left -= splits;
+            self.waiting -= self.cells(pair.cell);
+            pairs.push(pair);
+        }
+        Ok(pairs)
+    }
+
+    /// As [`split`](Self::split) of several pairs, each solid being asked about all of its cells at once.
+    fn split_many(
+        &mut self,
+        mut pairs: Pairs<A, B>,
+        searching: bool,
+        control: &Control<'_>,
+    ) -> Result<(), Error> {
+        let mut of_a =
+            self.a.split_many(pairs.iter().map(|pair| (pair.cell, &pair.a)), self.threads, control)?;
+        for i in (0..pairs.len()).rev() {
+            if of_a[i].0.iter().all(Option::is_none) {
+                // The other one need not be split, and is not.
+                self.left += pairs[i].b.is_part() as u64;
+                pairs.remove(i);
+                of_a.remove(i);
+            }
+        }
+        let of_b = self.b.split_many(pairs.iter().map(|pair| (pair.cell, &pair.b)), self.threads, control)?;
+        for ((pair, of_a), of_b) in pairs.iter().zip(of_a).zip(of_b) {
+            self.meet_children(pair.cell, of_a, of_b, searching)?;
+        }
+        Ok(())
+    }
+
+    /// Takes in the children of a cell.
+    fn meet_children(
+        &mut self,
+        parent: Cell,
+        (of_a, likely_a): Children<Part<A>>,
+        (of_b, likely_b): Children<Part<B>>,
+        searching: bool,
+    ) -> Result<(), Error> {
         for (k, (a, b)) in of_a.into_iter().zip(of_b).enumerate() {
             let (Some(a), Some(b)) = (a, b) else { continue };
-            let cell = pair.cell.child(k as u8);
+            let cell = parent.child(k as u8);
             let rank = if searching { likely_a[k] * likely_b[k] * decay(cell.level) } else { size(cell) };
             self.meet(cell, a, b, rank)?;
         }

@@ -5,6 +5,7 @@ mod extent;
 mod interference;
 mod measure;
 mod point;
+mod probe;
 mod region;
 
 pub use clearance::{Clearance, clearance};
@@ -12,6 +13,7 @@ pub use extent::{Extent, bounding_box};
 pub use interference::{Interference, Overlap, interference, interference_of};
 pub use measure::{Measured, Measures, measure};
 pub use point::{Membership, PointCursor};
+pub use probe::{classify_box, contains};
 pub use region::Region;
 
 use crate::error::Error;

@@ -1,17 +1,26 @@
 //! A host program's own shape, through its functions.
 
-use super::{Fingerprint, Solid, Verdict};
+use super::{Classifier, Fingerprint, OCTANTS, Solid, Verdict, Worker};
+use crate::control::Control;
 use crate::error::Error;
-use crate::lattice::{Cell, Cube, Frame};
+use crate::lattice::exact::sqrt;
+use crate::lattice::{Bounds, Cell, Cube, Frame};
 use crate::octree::Tag;
 use alloc::boxed::Box;
+use alloc::sync::Arc;
+use alloc::vec::Vec;
+
+/// A box in model units: lower and upper corner.
+type Corners = [[f64; 3]; 2];
 
 /// Decides points, where the host can.
 type Contains<'a> = Box<dyn Fn(&[[f64; 3]], &mut [bool]) -> Result<(), Error> + Send + Sync + 'a>;
 
 /// Classifies many boxes at once.
-type ClassifyMany<'a> =
-    Box<dyn Fn(&[[[f64; 3]; 2]], &mut [Verdict<()>]) -> Result<(), Error> + Send + Sync + 'a>;
+type ClassifyMany<'a> = Box<dyn Fn(&[Corners], &mut [Verdict<()>]) -> Result<(), Error> + Send + Sync + 'a>;
+
+/// Bounds the distances of points from the surface.
+type Distance<'a> = Box<dyn Fn(&[[f64; 3]], &mut [f64]) -> Result<(), Error> + Send + Sync + 'a>;
 
 /// A shape that a host program classifies: how a B-rep kernel, a distance field, or a simulation takes part.
 ///
@@ -29,22 +38,45 @@ type ClassifyMany<'a> =
 /// assert_eq!(tree.statistics().volume(), leafless::Interval::exactly(0.25));
 /// # Ok::<(), leafless::Error>(())
 /// ```
-pub struct Callback<'a, F> {
+pub struct Callback<'a, F>(Arc<Functions<'a, F>>);
+
+struct Functions<'a, F> {
     classify: F,
     classify_many: Option<ClassifyMany<'a>>,
     contains: Option<Contains<'a>>,
+    /// Whether that takes them one by one.
+    contains_one: bool,
+    distance: Option<Distance<'a>>,
     exterior: Tag,
+    bounds: Option<Bounds>,
     fingerprint: Option<Fingerprint>,
 }
 
-impl<'a, F: Fn([f64; 3], [f64; 3]) -> Result<Verdict<()>, Error> + Sync> Callback<'a, F> {
+/// A handle that nobody else has yet.
+const SHARED: &str = "a callback is put on frames only once it is complete";
+
+impl<'a, F: Fn([f64; 3], [f64; 3]) -> Result<Verdict<()>, Error> + Send + Sync> Callback<'a, F> {
     /// A solid from a function that classifies the box `(min, max)` in model units. The box contains the
     /// cell (it is the cell itself on frames whose lattice planes are doubles), and FULL and EMPTY must be
     /// proven for all of it. The function is called from several threads at once, and must give the same
     /// answer to the same box. An error, such as [`Error::Callback`], ends the operation and is what that
     /// returns.
     pub fn new(classify: F) -> Callback<'a, F> {
-        Callback { classify, classify_many: None, contains: None, exterior: Tag::Partial, fingerprint: None }
+        Callback(Arc::new(Functions {
+            classify,
+            classify_many: None,
+            contains: None,
+            contains_one: false,
+            distance: None,
+            exterior: Tag::Partial,
+            bounds: None,
+            fingerprint: None,
+        }))
+    }
+
+    fn with(mut self, set: impl FnOnce(&mut Functions<'a, F>)) -> Callback<'a, F> {
+        set(Arc::get_mut(&mut self.0).expect(SHARED));
+        self
     }
 
     /// The same solid with a function that classifies several boxes (lower and upper corner each) at once, for hosts
@@ -52,11 +84,10 @@ impl<'a, F: Fn([f64; 3], [f64; 3]) -> Result<Verdict<()>, Error> + Sync> Callbac
     /// set as there are boxes, all of them undecided.
     #[must_use]
     pub fn with_classify_many(
-        mut self,
-        classify: impl Fn(&[[[f64; 3]; 2]], &mut [Verdict<()>]) -> Result<(), Error> + Send + Sync + 'a,
+        self,
+        classify: impl Fn(&[Corners], &mut [Verdict<()>]) -> Result<(), Error> + Send + Sync + 'a,
     ) -> Callback<'a, F> {
-        self.classify_many = Some(Box::new(classify));
-        self
+        self.with(|functions| functions.classify_many = Some(Box::new(classify)))
     }
 
     /// The same solid with a function that decides single points (model units): the sampled rule needs it.
@@ -71,74 +102,241 @@ impl<'a, F: Fn([f64; 3], [f64; 3]) -> Result<Verdict<()>, Error> + Sync> Callbac
             }
             Ok(())
         })
+        .with(|functions| functions.contains_one = true)
     }
 
     /// As [`with_contains`](Self::with_contains), for several points at once. It gets as many answers to set as there
     /// are points.
     #[must_use]
     pub fn with_contains_many(
-        mut self,
+        self,
         contains: impl Fn(&[[f64; 3]], &mut [bool]) -> Result<(), Error> + Send + Sync + 'a,
     ) -> Callback<'a, F> {
-        self.contains = Some(Box::new(contains));
-        self
+        self.with(|functions| {
+            functions.contains = Some(Box::new(contains));
+            functions.contains_one = false;
+        })
+    }
+
+    /// The same solid with a function that bounds distances: of each point (model units) it sets a number whose magnitude
+    /// is at most the point's distance from the surface, negative where the point lies inside and positive where it lies
+    /// outside; 0, or what is no number, says nothing. It is asked first: a cell whose middle is further from the surface
+    /// than its corners is decided, and the box is not classified.
+    #[must_use]
+    pub fn with_distance(
+        self,
+        distance: impl Fn(&[[f64; 3]], &mut [f64]) -> Result<(), Error> + Send + Sync + 'a,
+    ) -> Callback<'a, F> {
+        self.with(|functions| functions.distance = Some(Box::new(distance)))
     }
 
     /// The same solid with a promise about the space around the universe: EMPTY if the shape ends inside.
     /// Without it the shape counts as clipped by the universe. BRANCH means PARTIAL.
     #[must_use]
-    pub fn with_exterior(mut self, exterior: Tag) -> Callback<'a, F> {
-        self.exterior = if exterior == Tag::Branch { Tag::Partial } else { exterior };
-        self
+    pub fn with_exterior(self, exterior: Tag) -> Callback<'a, F> {
+        self.with(|functions| {
+            functions.exterior = if exterior == Tag::Branch { Tag::Partial } else { exterior };
+        })
+    }
+
+    /// The same solid with a promise that it lies in a box. On frames whose universe holds the box the shape then ends
+    /// inside, whatever else was promised of the space around.
+    #[must_use]
+    pub fn with_bounds(self, bounds: Bounds) -> Callback<'a, F> {
+        self.with(|functions| functions.bounds = Some(bounds))
     }
 
     /// The same solid with a fingerprint: the promise that every shape that is given this one is the same.
     #[must_use]
-    pub fn with_fingerprint(mut self, fingerprint: Fingerprint) -> Callback<'a, F> {
-        self.fingerprint = Some(fingerprint);
-        self
-    }
-
-    fn verdict(&self, cube: &Cube<'_>) -> Result<Verdict<()>, Error> {
-        let (min, max) = cube.bounds();
-        (self.classify)(min, max)
+    pub fn with_fingerprint(self, fingerprint: Fingerprint) -> Callback<'a, F> {
+        self.with(|functions| functions.fingerprint = Some(fingerprint))
     }
 }
 
-impl<F: Fn([f64; 3], [f64; 3]) -> Result<Verdict<()>, Error> + Sync> Solid for Callback<'_, F> {
-    type Part = ();
-    type Scratch = ();
+impl<'a, F: Fn([f64; 3], [f64; 3]) -> Result<Verdict<()>, Error> + Send + Sync> Solid for Callback<'a, F> {
+    type Classifier = OnFrame<'a, F>;
 
-    fn root(&self, _: &mut (), frame: &Frame) -> Result<Verdict<()>, Error> {
-        self.verdict(&Cube { frame, cell: Cell::ROOT })
+    fn on(&self, frame: &Frame, _: &Control<'_>) -> Result<OnFrame<'a, F>, Error> {
+        Ok(OnFrame { functions: self.0.clone(), frame: *frame })
     }
 
-    fn split(&self, _: &mut (), cube: &Cube<'_>, _: &()) -> Result<[Verdict<()>; 8], Error> {
+    fn bounds(&self) -> Option<Bounds> {
+        self.0.bounds
+    }
+
+    fn fingerprint(&self) -> Option<Fingerprint> {
+        self.0.fingerprint
+    }
+}
+
+/// A host's shape on a frame: handle and worker.
+pub struct OnFrame<'a, F> {
+    functions: Arc<Functions<'a, F>>,
+    frame: Frame,
+}
+
+impl<F> Clone for OnFrame<'_, F> {
+    fn clone(&self) -> Self {
+        OnFrame { functions: self.functions.clone(), frame: self.frame }
+    }
+}
+
+impl<'a, F: Fn([f64; 3], [f64; 3]) -> Result<Verdict<()>, Error> + Send + Sync> Classifier
+    for OnFrame<'a, F>
+{
+    type Worker = OnFrame<'a, F>;
+
+    fn frame(&self) -> &Frame {
+        &self.frame
+    }
+
+    fn worker(&self) -> Result<OnFrame<'a, F>, Error> {
+        Ok(self.clone())
+    }
+
+    fn exterior(&self) -> Tag {
+        match self.functions.bounds {
+            Some(bounds) if bounds.is_within(&self.frame) => Tag::Empty,
+            _ => self.functions.exterior,
+        }
+    }
+}
+
+impl<F: Fn([f64; 3], [f64; 3]) -> Result<Verdict<()>, Error> + Send + Sync> OnFrame<'_, F> {
+    /// What the host says of cells: of all that its distances leave open. With an error comes how many of the cells are
+    /// known from the first on.
+    fn classify(
+        &self,
+        cells: &[Cell],
+        control: &Control<'_>,
+        verdicts: &mut [Verdict<()>],
+    ) -> Result<(), (usize, Error)> {
+        // The host is never asked about nothing.
+        if cells.is_empty() {
+            return Ok(());
+        }
+        verdicts.fill(Verdict::Partial(()));
+        let open = self.by_distance(cells, verdicts).map_err(|error| (0, error))?;
+        let boxed = |i: usize| <Corners>::from(Cube { frame: &self.frame, cell: cells[i] }.bounds());
+        let Some(classify_many) = &self.functions.classify_many else {
+            for i in open {
+                // A cancel waits for one call at the most.
+                control.check().map_err(|error| (i, error))?;
+                let [min, max] = boxed(i);
+                verdicts[i] = (self.functions.classify)(min, max).map_err(|error| (i, error))?;
+            }
+            return Ok(());
+        };
+        if open.is_empty() {
+            return Ok(());
+        }
+        let (mut boxes, mut answers) = (Vec::new(), Vec::new());
+        boxes.try_reserve_exact(open.len()).map_err(|_| (0, Error::OutOfMemory))?;
+        answers.try_reserve_exact(open.len()).map_err(|_| (0, Error::OutOfMemory))?;
+        boxes.extend(open.iter().map(|&i| boxed(i)));
+        answers.resize(open.len(), Verdict::Undecided);
+        control.check().and_then(|()| classify_many(&boxes, &mut answers)).map_err(|error| (0, error))?;
+        open.into_iter().zip(answers).for_each(|(i, answer)| verdicts[i] = answer);
+        Ok(())
+    }
+
+    /// Decides cells by the distances of their middles; returns those that this leaves open.
+    fn by_distance(&self, cells: &[Cell], verdicts: &mut [Verdict<()>]) -> Result<Vec<usize>, Error> {
+        let mut open = Vec::new();
+        open.try_reserve_exact(cells.len()).map_err(|_| Error::OutOfMemory)?;
+        let Some(distance) = &self.functions.distance else {
+            open.extend(0..cells.len());
+            return Ok(open);
+        };
+        let (mut points, mut found) = (Vec::new(), Vec::new());
+        points.try_reserve_exact(cells.len()).map_err(|_| Error::OutOfMemory)?;
+        found.try_reserve_exact(cells.len()).map_err(|_| Error::OutOfMemory)?;
+        points.extend(cells.iter().map(|&cell| {
+            let (min, max) = Cube { frame: &self.frame, cell }.bounds();
+            [0, 1, 2].map(|axis| min[axis] + 0.5 * (max[axis] - min[axis]))
+        }));
+        found.resize(cells.len(), f64::NAN);
+        distance(&points, &mut found)?;
+        for (i, (&cell, found)) in cells.iter().zip(found).enumerate() {
+            let (min, max) = Cube { frame: &self.frame, cell }.bounds();
+            // The corner that is farthest from the middle, each step rounded up by far less than a part in 2^48.
+            let reach = |axis: usize| (max[axis] - points[i][axis]).max(points[i][axis] - min[axis]);
+            let square = (0..3).map(|axis| reach(axis) * reach(axis)).sum::<f64>();
+            let radius = sqrt(square) * (1.0 + 16.0 * f64::EPSILON) + f64::MIN_POSITIVE;
+            if found >= radius {
+                verdicts[i] = Verdict::Empty;
+            } else if found <= -radius {
+                verdicts[i] = Verdict::Full;
+            } else {
+                open.push(i);
+            }
+        }
+        Ok(open)
+    }
+}
+
+impl<F: Fn([f64; 3], [f64; 3]) -> Result<Verdict<()>, Error> + Send + Sync> Worker for OnFrame<'_, F> {
+    type Part = ();
+
+    fn frame(&self) -> &Frame {
+        &self.frame
+    }
+
+    fn root(&mut self) -> Result<Verdict<()>, Error> {
+        let mut verdict = [Verdict::Undecided];
+        self.classify(&[Cell::ROOT], &Control::default(), &mut verdict).map_err(|(_, error)| error)?;
+        Ok(verdict[0])
+    }
+
+    fn split(&mut self, cell: Cell, _: &()) -> Result<[Verdict<()>; 8], Error> {
         let mut verdicts = [Verdict::Undecided; 8];
-        if let Some(classify) = &self.classify_many {
-            let boxes = [0, 1, 2, 3, 4, 5, 6, 7].map(|octant| <[_; 2]>::from(cube.child(octant).bounds()));
-            classify(&boxes, &mut verdicts)?;
-            return Ok(verdicts);
-        }
-        for (octant, verdict) in (0..8).zip(&mut verdicts) {
-            *verdict = self.verdict(&cube.child(octant))?;
-        }
+        let children = OCTANTS.map(|octant| cell.child(octant));
+        self.classify(&children, &Control::default(), &mut verdicts).map_err(|(_, error)| error)?;
         Ok(verdicts)
     }
 
-    fn sample(&self, _: &mut (), cube: &Cube<'_>, _: &()) -> Result<Option<bool>, Error> {
-        let Some(contains) = &self.contains else { return Ok(None) };
-        let mut inside = [false];
-        contains(&[centre(cube)], &mut inside)?;
-        Ok(Some(inside[0]))
+    fn recall(&mut self, _: Cell) -> Option<()> {
+        Some(())
     }
 
-    fn sample64(&self, _: &mut (), cube: &Cube<'_>, parts: &[(u8, ())]) -> Result<Option<u64>, Error> {
-        let Some(contains) = &self.contains else { return Ok(None) };
+    fn likes_many(&self) -> bool {
+        true
+    }
+
+    fn split_many(
+        &mut self,
+        cells: &[(Cell, ())],
+        control: &Control<'_>,
+        verdicts: &mut Vec<[Verdict<()>; 8]>,
+    ) -> Result<(), Error> {
+        let mut children = Vec::new();
+        children.try_reserve_exact(8 * cells.len()).map_err(|_| Error::OutOfMemory)?;
+        children.extend(cells.iter().flat_map(|(cell, ())| OCTANTS.map(|octant| cell.child(octant))));
+        let first = verdicts.len();
+        verdicts.try_reserve(cells.len()).map_err(|_| Error::OutOfMemory)?;
+        verdicts.resize(first + cells.len(), [Verdict::Undecided; 8]);
+        let done = self.classify(&children, control, verdicts[first..].as_flattened_mut());
+        done.map_err(|(known, error)| {
+            verdicts.truncate(first + known / 8);
+            error
+        })
+    }
+
+    fn sample(&mut self, cell: Cell, _: &()) -> Result<Option<bool>, Error> {
+        let mut inside = [None];
+        self.inside(&[centre(&self.frame, cell)], &mut inside)?;
+        Ok(inside[0])
+    }
+
+    fn sample64(&mut self, cell: Cell, parts: &[(u8, ())]) -> Result<Option<u64>, Error> {
+        let Some(contains) = &self.functions.contains else { return Ok(None) };
+        if parts.is_empty() {
+            return Ok(Some(0));
+        }
         let (mut points, mut inside) = ([[0.0; 3]; 64], [false; 64]);
         let parts = parts.get(..64).unwrap_or(parts);
         for ((c, ()), point) in parts.iter().zip(&mut points) {
-            *point = centre(&cube.child(c >> 3).child(c & 7));
+            *point = centre(&self.frame, cell.child(c >> 3).child(c & 7));
         }
         let count = parts.len();
         contains(&points[..count], &mut inside[..count])?;
@@ -146,22 +344,47 @@ impl<F: Fn([f64; 3], [f64; 3]) -> Result<Verdict<()>, Error> + Sync> Solid for C
         Ok(Some(bits.fold(0, |all, bit| all | bit)))
     }
 
-    fn exterior(&self, _: &Frame) -> Tag {
-        self.exterior
+    fn sample_many(
+        &mut self,
+        cells: &[(Cell, ())],
+        control: &Control<'_>,
+        inside: &mut Vec<Option<bool>>,
+    ) -> Result<(), Error> {
+        control.check()?;
+        let mut points = Vec::new();
+        points.try_reserve_exact(cells.len()).map_err(|_| Error::OutOfMemory)?;
+        points.extend(cells.iter().map(|(cell, ())| centre(&self.frame, *cell)));
+        let first = inside.len();
+        inside.try_reserve(cells.len()).map_err(|_| Error::OutOfMemory)?;
+        inside.resize(first + cells.len(), None);
+        // A function that decides one point at a time is cancelled between pieces.
+        let piece = if self.functions.contains_one { 1 } else { cells.len().max(1) };
+        for (points, inside) in points.chunks(piece).zip(inside[first..].chunks_mut(piece)) {
+            control.check()?;
+            self.inside(points, inside)?;
+        }
+        Ok(())
     }
 
-    fn fingerprint(&self) -> Option<Fingerprint> {
-        self.fingerprint
+    fn inside(&mut self, points: &[[f64; 3]], answers: &mut [Option<bool>]) -> Result<(), Error> {
+        let Some(contains) = self.functions.contains.as_ref().filter(|_| !points.is_empty()) else {
+            return Ok(());
+        };
+        let mut inside = Vec::new();
+        inside.try_reserve_exact(points.len()).map_err(|_| Error::OutOfMemory)?;
+        inside.resize(points.len(), false);
+        contains(points, &mut inside)?;
+        answers.iter_mut().zip(inside).for_each(|(answer, inside)| *answer = Some(inside));
+        Ok(())
     }
 }
 
 /// The centre of a cell of the frame's depth.
-fn centre(cube: &Cube<'_>) -> [f64; 3] {
-    let frame = cube.frame;
+fn centre(frame: &Frame, cell: Cell) -> [f64; 3] {
     let size = frame.cell_size();
     let mut centre = frame.origin();
     for axis in 0..3 {
-        centre[axis] += (cube.cell.at[axis] as f64 + 0.5) * size;
+        centre[axis] += (cell.at[axis] as f64 + 0.5) * size;
     }
     centre
 }

@@ -1,13 +1,16 @@
 //! A solid that counts what it is asked.
 
-use super::{Fingerprint, Scratch, Solid, Verdict};
+use super::forward::{forward_solid, forward_worker};
+use super::{Classifier, Solid, Verdict, Worker};
+use crate::control::Control;
 use crate::error::Error;
-use crate::lattice::{Cube, Frame, MAX_DEPTH};
+use crate::lattice::{Cell, Frame, MAX_DEPTH};
 use crate::octree::Tag;
+use alloc::sync::Arc;
 use core::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
-/// A solid that counts its splits, level by level, and the half-spaces that were evaluated for them. It answers as the
-/// solid that it wraps; bulk production is turned off, so that every split is counted.
+/// A solid that counts how often it is put on a frame, and its splits, level by level. It answers as the solid that it
+/// wraps; bulk production is turned off, so that every split is counted.
 ///
 /// ```
 /// use leafless::{Control, Counted, Csg, Frame, Rule, build};
@@ -20,87 +23,91 @@ use core::sync::atomic::{AtomicU64, Ordering::Relaxed};
 #[derive(Debug)]
 pub struct Counted<S> {
     solid: S,
+    counts: Arc<Counts>,
+}
+
+#[derive(Debug, Default)]
+struct Counts {
     splits: [AtomicU64; MAX_DEPTH as usize],
-    evaluations: AtomicU64,
+    frames: AtomicU64,
 }
 
 impl<S: Solid> Counted<S> {
     /// Counts from zero.
     pub fn new(solid: S) -> Counted<S> {
-        Counted { solid, splits: Default::default(), evaluations: AtomicU64::new(0) }
+        Counted { solid, counts: Arc::default() }
+    }
+
+    /// The solid that is counted.
+    pub fn solid(&self) -> &S {
+        &self.solid
     }
 
     /// How many cells of each level were split so far.
     pub fn splits(&self) -> [u64; MAX_DEPTH as usize] {
-        self.splits.each_ref().map(|count| count.load(Relaxed))
+        self.counts.splits.each_ref().map(|count| count.load(Relaxed))
     }
 
-    /// How many half-spaces were evaluated so far, each at a point or over a box.
-    pub fn evaluations(&self) -> u64 {
-        self.evaluations.load(Relaxed)
-    }
-
-    /// Adds what `work` evaluates.
-    fn count<T>(&self, scratch: &mut S::Scratch, work: impl FnOnce(&mut S::Scratch) -> T) -> T {
-        let before = scratch.evaluations();
-        let result = work(scratch);
-        // (Less than before, if it is another solid's memory that this one replaced.)
-        self.evaluations.fetch_add(scratch.evaluations().saturating_sub(before), Relaxed);
-        result
+    /// How often the solid was put on a frame.
+    pub fn frames(&self) -> u64 {
+        self.counts.frames.load(Relaxed)
     }
 }
 
 impl<S: Solid> Solid for Counted<S> {
-    type Part = S::Part;
-    type Scratch = S::Scratch;
+    type Classifier = CountedClassifier<S::Classifier>;
 
-    fn root(&self, scratch: &mut S::Scratch, frame: &Frame) -> Result<Verdict<S::Part>, Error> {
-        self.count(scratch, |scratch| self.solid.root(scratch, frame))
+    fn on(&self, frame: &Frame, control: &Control<'_>) -> Result<Self::Classifier, Error> {
+        self.counts.frames.fetch_add(1, Relaxed);
+        Ok(CountedClassifier { inner: self.solid.on(frame, control)?, counts: self.counts.clone() })
     }
 
-    fn split(
-        &self,
-        scratch: &mut S::Scratch,
-        cube: &Cube<'_>,
-        part: &S::Part,
-    ) -> Result<[Verdict<S::Part>; 8], Error> {
-        if let Some(count) = self.splits.get(cube.cell.level as usize) {
+    forward_solid!(@description self => self.solid);
+}
+
+/// A counted solid on a frame.
+#[derive(Debug, Clone)]
+pub struct CountedClassifier<C> {
+    inner: C,
+    counts: Arc<Counts>,
+}
+
+impl<C: Classifier> Classifier for CountedClassifier<C> {
+    type Worker = CountedWorker<C::Worker>;
+
+    fn frame(&self) -> &Frame {
+        self.inner.frame()
+    }
+
+    fn worker(&self) -> Result<Self::Worker, Error> {
+        Ok(CountedWorker { inner: self.inner.worker()?, counts: self.counts.clone() })
+    }
+
+    fn exterior(&self) -> Tag {
+        self.inner.exterior()
+    }
+}
+
+/// A worker whose splits are counted.
+pub struct CountedWorker<W> {
+    inner: W,
+    counts: Arc<Counts>,
+}
+
+impl<W: Worker> Worker for CountedWorker<W> {
+    type Part = W::Part;
+
+    fn split(&mut self, cell: Cell, part: &W::Part) -> Result<[Verdict<W::Part>; 8], Error> {
+        if let Some(count) = self.counts.splits.get(cell.level as usize) {
             count.fetch_add(1, Relaxed);
         }
-        self.count(scratch, |scratch| self.solid.split(scratch, cube, part))
+        self.inner.split(cell, part)
     }
 
-    fn sample(
-        &self,
-        scratch: &mut S::Scratch,
-        cube: &Cube<'_>,
-        part: &S::Part,
-    ) -> Result<Option<bool>, Error> {
-        self.count(scratch, |scratch| self.solid.sample(scratch, cube, part))
+    fn hand_over(&mut self, from: &Self, part: &W::Part) -> Result<W::Part, Error> {
+        self.inner.hand_over(&from.inner, part)
     }
 
-    fn sample64(
-        &self,
-        scratch: &mut S::Scratch,
-        cube: &Cube<'_>,
-        parts: &[(u8, S::Part)],
-    ) -> Result<Option<u64>, Error> {
-        self.count(scratch, |scratch| self.solid.sample64(scratch, cube, parts))
-    }
-
-    fn exterior(&self, frame: &Frame) -> Tag {
-        self.solid.exterior(frame)
-    }
-
-    fn nesting(&self) -> u32 {
-        self.solid.nesting()
-    }
-
-    fn fingerprint(&self) -> Option<Fingerprint> {
-        self.solid.fingerprint()
-    }
-
-    fn hand_over(&self, from: &S::Scratch, part: &S::Part, to: &mut S::Scratch) -> Result<S::Part, Error> {
-        self.solid.hand_over(from, part, to)
-    }
+    forward_worker!(memory W::Part, self => self.inner);
+    forward_worker!(answers W::Part, self => self.inner);
 }

@@ -1,39 +1,59 @@
 //! Solids of any kind behind one type.
 //!
 //! [`Solid`] has associated types so that loops over it compile to tight code. Programs that hold shapes of
-//! different kinds in one place (the C interface first of all) use [`AnySolid`], which is a `Solid` itself.
+//! different kinds in one place (the C interface first of all) use [`AnySolid`], which is a `Solid` itself. Each of the
+//! three traits has an object-safe face here, whose methods have no defaults: none can be forgotten.
 
-use super::{Fingerprint, Scratch, Solid, Verdict};
+use super::forward::{forward_solid, forward_worker};
+use super::{
+    Classifier, Counted, Crossing, Csg, Enclosure, Fingerprint, Motion, Segment, Solid, Subtree, Transform,
+    Verdict, Worker,
+};
+use crate::control::Control;
 use crate::error::Error;
-use crate::lattice::{Cube, Frame};
+use crate::lattice::{Affine, Bounds, Cell, Frame};
 use crate::octree::{Block, Planes, Tag};
 use alloc::boxed::Box;
 use alloc::sync::Arc;
 use alloc::vec::Vec;
 use core::any::Any;
 
-/// Most solids within each other; see [`Solid::nesting`].
+/// Most solids within each other; see [`AnySolid::nesting`].
 pub(crate) const MOST_NESTED: u32 = 64;
 
 /// Any solid, shared. Costs an indirect call a split.
 #[derive(Clone)]
 pub struct AnySolid {
-    solid: Arc<dyn Erased>,
+    solid: Arc<dyn ErasedSolid>,
     nesting: u32,
 }
 
-/// A part of an [`AnySolid`]: its place among the parts that the scratch memory keeps.
+/// Any solid on a frame.
+#[derive(Clone)]
+pub struct AnyClassifier(Arc<dyn ErasedClassifier>);
+
+/// A worker on any solid.
+pub struct AnyWorker(Box<dyn ErasedWorker>);
+
+/// A part of an [`AnySolid`]: its place among the parts that the worker keeps.
 #[derive(Debug, Clone, Copy)]
 pub struct ErasedPart(usize);
 
-/// Scratch memory of an [`AnySolid`], made by the solid when it is first used.
-#[derive(Default)]
-pub struct ErasedScratch(Option<Box<dyn Slot>>);
+/// A solid whose worker can be kept behind one type.
+pub trait Erasable:
+    Solid<Classifier: Classifier<Worker: Worker<Part: 'static> + 'static> + 'static> + 'static
+{
+}
+
+impl<S: Solid<Classifier: Classifier<Worker: Worker<Part: 'static> + 'static> + 'static> + 'static> Erasable
+    for S
+{
+}
 
 impl AnySolid {
     /// Wraps a solid.
-    pub fn new<S: Solid<Part: 'static, Scratch: 'static> + Send + 'static>(solid: S) -> AnySolid {
-        let nesting = solid.nesting().saturating_add(1);
+    pub fn new<S: Erasable>(solid: S) -> AnySolid {
+        let nesting = nesting_in(&solid).saturating_add(1);
         AnySolid { solid: Arc::new(solid), nesting }
     }
 
@@ -41,199 +61,312 @@ impl AnySolid {
     pub fn get<S: Any>(&self) -> Option<&S> {
         self.solid.as_any().downcast_ref()
     }
-}
 
-/// The typed scratch memory behind an [`ErasedScratch`]: the solid's own, and the parts that were handed out,
-/// each with the height that the solid's own then had.
-struct Typed<S: Solid> {
-    scratch: S::Scratch,
-    parts: Vec<(S::Part, usize)>,
-    /// Those of an element on their way in or out.
-    passing: Vec<(u8, S::Part)>,
-}
-
-impl<S: Solid> Typed<S> {
-    fn hand_out(&mut self, part: S::Part) -> Result<ErasedPart, Error> {
-        self.parts.try_reserve(1).map_err(|_| Error::OutOfMemory)?;
-        self.parts.push((part, self.scratch.mark()));
-        Ok(ErasedPart(self.parts.len() - 1))
+    /// How many `AnySolid`s lie within each other here, this one included. Questions go from one to the next, so
+    /// that there is an end to what the stack holds: one with more than 64 within each other cannot be put on a frame.
+    /// (It counts those within expressions, and within transforms, counters and the like of `AnySolid` or `Csg`; any other
+    /// solid counts as one that consists of no others.)
+    pub fn nesting(&self) -> u32 {
+        self.nesting
     }
 }
 
-trait Slot: Any + Send + Sync {
-    fn mark(&self) -> usize;
-    fn release(&mut self, mark: usize);
-    fn evaluations(&self) -> u64;
-    fn as_any(&self) -> &dyn Any;
-    fn as_any_mut(&mut self) -> &mut dyn Any;
+impl AnySolid {
+    /// The solid as its kind moves it, if it can.
+    pub(super) fn placed_by_kind(&self, placement: &Affine) -> Result<Option<AnySolid>, Error> {
+        if self.nesting > MOST_NESTED {
+            return Ok(None);
+        }
+        self.solid.placed(placement)
+    }
+
+    /// What tells a solid and its clones from others, as long as they are there.
+    pub(super) fn address(&self) -> usize {
+        Arc::as_ptr(&self.solid).cast::<()>() as usize
+    }
 }
 
-impl<S: Solid<Part: 'static, Scratch: 'static> + 'static> Slot for [Typed<S>; 1] {
+/// How many `AnySolid`s lie within each other in a solid of a kind that holds some.
+fn nesting_in(solid: &dyn Any) -> u32 {
+    fn of<S: Any>(solid: &dyn Any, nesting: impl Fn(&S) -> u32) -> Option<u32> {
+        solid.downcast_ref().map(nesting)
+    }
+    None.or_else(|| of(solid, Csg::nesting))
+        .or_else(|| of(solid, AnySolid::nesting))
+        .or_else(|| of(solid, |moved: &Transform<AnySolid>| moved.solid().nesting()))
+        .or_else(|| of(solid, |moved: &Transform<Csg>| moved.solid().nesting()))
+        .or_else(|| of(solid, |counted: &Counted<AnySolid>| counted.solid().nesting()))
+        .or_else(|| of(solid, |counted: &Counted<Csg>| counted.solid().nesting()))
+        .or_else(|| nesting_in_prepared(solid))
+        .unwrap_or(0)
+}
+
+fn nesting_in_prepared(solid: &dyn Any) -> Option<u32> {
+    #[cfg(feature = "std")]
+    return solid.downcast_ref().map(|prepared: &super::Prepared| prepared.solid().nesting());
+    #[cfg(not(feature = "std"))]
+    None::<u32>.filter(|_| solid.is::<()>())
+}
+
+// ---- the object-safe faces ------------------------------------------------------------------------------
+
+trait ErasedSolid: Send + Sync {
+    fn as_any(&self) -> &dyn Any;
+    fn on(&self, frame: &Frame, control: &Control<'_>) -> Result<AnyClassifier, Error>;
+    fn bounds(&self) -> Option<Bounds>;
+    fn home(&self) -> Option<Frame>;
+    fn fingerprint(&self) -> Option<Fingerprint>;
+    fn placed(&self, placement: &Affine) -> Result<Option<AnySolid>, Error>;
+    fn motion(&self) -> Motion;
+}
+
+impl<S: Erasable> ErasedSolid for S {
+    fn as_any(&self) -> &dyn Any {
+        self
+    }
+
+    fn on(&self, frame: &Frame, control: &Control<'_>) -> Result<AnyClassifier, Error> {
+        Ok(AnyClassifier(Arc::new(Solid::on(self, frame, control)?)))
+    }
+
+    fn bounds(&self) -> Option<Bounds> {
+        Solid::bounds(self)
+    }
+
+    fn home(&self) -> Option<Frame> {
+        Solid::home(self)
+    }
+
+    fn fingerprint(&self) -> Option<Fingerprint> {
+        Solid::fingerprint(self)
+    }
+
+    fn placed(&self, placement: &Affine) -> Result<Option<AnySolid>, Error> {
+        Ok(Solid::placed(self, placement)?.map(AnySolid::new))
+    }
+
+    fn motion(&self) -> Motion {
+        Solid::motion(self)
+    }
+}
+
+impl Solid for AnySolid {
+    type Classifier = AnyClassifier;
+
+    fn on(&self, frame: &Frame, control: &Control<'_>) -> Result<AnyClassifier, Error> {
+        if self.nesting > MOST_NESTED {
+            return Err(Error::Limit { what: "solids within each other", limit: MOST_NESTED.into() });
+        }
+        self.solid.on(frame, control)
+    }
+
+    fn placed(&self, placement: &Affine) -> Result<Option<AnySolid>, Error> {
+        AnySolid::placed(self, placement).map(Some)
+    }
+
+    forward_solid!(@description self => Shallow(self));
+}
+
+/// What a solid says of itself, unless too many lie within each other: no answer goes deeper than the stack.
+struct Shallow<'s>(&'s AnySolid);
+
+impl Shallow<'_> {
+    fn known(&self) -> Option<&dyn ErasedSolid> {
+        (self.0.nesting <= MOST_NESTED).then_some(&*self.0.solid)
+    }
+
+    fn bounds(&self) -> Option<Bounds> {
+        self.known()?.bounds()
+    }
+
+    fn home(&self) -> Option<Frame> {
+        self.known()?.home()
+    }
+
+    fn fingerprint(&self) -> Option<Fingerprint> {
+        self.known()?.fingerprint()
+    }
+
+    fn motion(&self) -> Motion {
+        self.known().map_or(Motion::Conservative, |solid| solid.motion())
+    }
+}
+
+trait ErasedClassifier: Send + Sync {
+    fn frame(&self) -> &Frame;
+    fn worker(&self) -> Result<AnyWorker, Error>;
+    fn exterior(&self) -> Tag;
+}
+
+impl<C: Classifier<Worker: Worker<Part: 'static> + 'static>> ErasedClassifier for C {
+    fn frame(&self) -> &Frame {
+        Classifier::frame(self)
+    }
+
+    fn worker(&self) -> Result<AnyWorker, Error> {
+        let typed = Typed { worker: Classifier::worker(self)?, parts: Vec::new(), passing: Vec::new() };
+        // Some workers are large from the beginning.
+        let mut one = Vec::new();
+        one.try_reserve_exact(1).map_err(|_| Error::OutOfMemory)?;
+        one.push(typed);
+        let one: Box<[_; 1]> = one.into_boxed_slice().try_into().map_err(|_| Error::OutOfMemory)?;
+        Ok(AnyWorker(one))
+    }
+
+    fn exterior(&self) -> Tag {
+        Classifier::exterior(self)
+    }
+}
+
+impl Classifier for AnyClassifier {
+    type Worker = AnyWorker;
+
+    fn frame(&self) -> &Frame {
+        self.0.frame()
+    }
+
+    fn worker(&self) -> Result<AnyWorker, Error> {
+        self.0.worker()
+    }
+
+    fn exterior(&self) -> Tag {
+        self.0.exterior()
+    }
+}
+
+/// A worker, and the parts that were handed out, each with the height that the worker's memory then had.
+struct Typed<W: Worker> {
+    worker: W,
+    parts: Vec<(W::Part, usize)>,
+    /// Those of an element on their way in or out.
+    passing: Vec<(u8, W::Part)>,
+}
+
+impl<W: Worker> Typed<W> {
+    fn hand_out(&mut self, part: W::Part) -> Result<ErasedPart, Error> {
+        self.parts.try_reserve(1).map_err(|_| Error::OutOfMemory)?;
+        self.parts.push((part, self.worker.mark()));
+        Ok(ErasedPart(self.parts.len() - 1))
+    }
+
+    fn hand_out_eight(&mut self, verdicts: [Verdict<W::Part>; 8]) -> Result<[Verdict<ErasedPart>; 8], Error> {
+        let mut erased = [const { Verdict::Undecided }; 8];
+        for (erased, verdict) in erased.iter_mut().zip(verdicts) {
+            *erased = verdict.try_map(|part| self.hand_out(part))?;
+        }
+        Ok(erased)
+    }
+
+    /// Cells with the worker's own parts.
+    fn own(&self, cells: &[(Cell, ErasedPart)]) -> Result<Vec<(Cell, W::Part)>, Error> {
+        let mut own = Vec::new();
+        own.try_reserve_exact(cells.len()).map_err(|_| Error::OutOfMemory)?;
+        own.extend(cells.iter().map(|(cell, part)| (*cell, self.part(part))));
+        Ok(own)
+    }
+
+    fn part(&self, part: &ErasedPart) -> W::Part {
+        self.parts[part.0].0.clone()
+    }
+}
+
+trait ErasedWorker: Send + Sync {
+    fn as_any(&self) -> &dyn Any;
+    fn frame(&self) -> &Frame;
+    fn root(&mut self) -> Result<Verdict<ErasedPart>, Error>;
+    fn mark(&self) -> usize;
+    fn release(&mut self, mark: usize);
+    fn hand_over(&mut self, from: &AnyWorker, part: &ErasedPart) -> Result<ErasedPart, Error>;
+    fn recall(&mut self, cell: Cell) -> Option<ErasedPart>;
+    fn split(&mut self, cell: Cell, part: &ErasedPart) -> Result<[Verdict<ErasedPart>; 8], Error>;
+    fn split64(
+        &mut self,
+        cell: Cell,
+        part: &ErasedPart,
+        parts: &mut Vec<(u8, ErasedPart)>,
+    ) -> Result<Planes, Error>;
+    fn likes_many(&self) -> bool;
+    fn split_many(
+        &mut self,
+        cells: &[(Cell, ErasedPart)],
+        control: &Control<'_>,
+        verdicts: &mut Vec<[Verdict<ErasedPart>; 8]>,
+    ) -> Result<(), Error>;
+    fn sample_many(
+        &mut self,
+        cells: &[(Cell, ErasedPart)],
+        control: &Control<'_>,
+        inside: &mut Vec<Option<bool>>,
+    ) -> Result<(), Error>;
+    fn fill(&mut self, cell: Cell, part: &ErasedPart, block: &mut Block) -> Result<bool, Error>;
+    fn subtree(&self, part: &ErasedPart) -> Option<Subtree<'_>>;
+    fn sample(&mut self, cell: Cell, part: &ErasedPart) -> Result<Option<bool>, Error>;
+    fn sample64(&mut self, cell: Cell, parts: &[(u8, ErasedPart)]) -> Result<Option<u64>, Error>;
+    fn inside(&mut self, points: &[[f64; 3]], answers: &mut [Option<bool>]) -> Result<(), Error>;
+    fn enclosure(&mut self, cell: Cell, part: &ErasedPart) -> Result<Option<Enclosure>, Error>;
+    fn crossing(
+        &mut self,
+        cell: Cell,
+        part: &ErasedPart,
+        segment: &Segment,
+    ) -> Result<Option<Crossing>, Error>;
+}
+
+// (An array of one, because a box of that can be made by way of a vector, whose memory can be refused.)
+impl<W: Worker<Part: 'static> + 'static> ErasedWorker for [Typed<W>; 1] {
+    fn as_any(&self) -> &dyn Any {
+        &self[0]
+    }
+
+    fn frame(&self) -> &Frame {
+        self[0].worker.frame()
+    }
+
+    fn root(&mut self) -> Result<Verdict<ErasedPart>, Error> {
+        self[0].worker.root()?.try_map(|part| self[0].hand_out(part))
+    }
+
     fn mark(&self) -> usize {
         self[0].parts.len()
     }
 
     fn release(&mut self, mark: usize) {
-        let [Typed { scratch, parts, .. }] = self;
-        parts.truncate(mark);
-        scratch.release(parts.last().map_or(0, |&(_, height)| height));
+        self[0].parts.truncate(mark);
+        self[0].worker.release(self[0].parts.last().map_or(0, |&(_, height)| height));
     }
 
-    fn evaluations(&self) -> u64 {
-        self[0].scratch.evaluations()
+    fn hand_over(&mut self, from: &AnyWorker, part: &ErasedPart) -> Result<ErasedPart, Error> {
+        let Some(from) = from.0.as_any().downcast_ref::<Typed<W>>() else {
+            panic!("a part can only be handed over between workers of one classifier");
+        };
+        let part = self[0].worker.hand_over(&from.worker, &from.parts[part.0].0)?;
+        self[0].hand_out(part)
     }
 
-    fn as_any(&self) -> &dyn Any {
-        &self[0]
+    fn recall(&mut self, cell: Cell) -> Option<ErasedPart> {
+        let part = self[0].worker.recall(cell)?;
+        self[0].hand_out(part).ok()
     }
 
-    fn as_any_mut(&mut self) -> &mut dyn Any {
-        &mut self[0]
-    }
-}
-
-impl Scratch for ErasedScratch {
-    fn mark(&self) -> usize {
-        self.0.as_ref().map_or(0, |slot| slot.mark())
-    }
-
-    fn release(&mut self, mark: usize) {
-        if let Some(slot) = &mut self.0 {
-            slot.release(mark);
-        }
-    }
-
-    fn evaluations(&self) -> u64 {
-        self.0.as_ref().map_or(0, |slot| slot.evaluations())
-    }
-}
-
-impl ErasedScratch {
-    /// The scratch memory as that of `S`. One that another kind of solid left behind is replaced: its parts
-    /// mean nothing here.
-    fn typed<S: Solid<Part: 'static, Scratch: 'static> + 'static>(&mut self) -> Result<&mut Typed<S>, Error> {
-        if !self.0.as_ref().is_some_and(|slot| slot.as_any().is::<Typed<S>>()) {
-            // Some solids' memory is large from the beginning: by way of a vector it can be refused.
-            let mut slot = Vec::new();
-            slot.try_reserve_exact(1).map_err(|_| Error::OutOfMemory)?;
-            slot.push(Typed::<S> { scratch: S::Scratch::default(), parts: Vec::new(), passing: Vec::new() });
-            let slot: Box<[Typed<S>; 1]> =
-                slot.into_boxed_slice().try_into().map_err(|_| Error::OutOfMemory)?;
-            self.0 = Some(slot);
-        }
-        let slot = self.0.as_mut().and_then(|slot| slot.as_any_mut().downcast_mut());
-        Ok(slot.unwrap_or_else(|| unreachable!("the slot was just made for this type")))
-    }
-
-    fn part<S: Solid<Part: 'static, Scratch: 'static> + 'static>(
-        &self,
-        part: ErasedPart,
-    ) -> Option<(&S::Scratch, &S::Part)> {
-        let typed = self.0.as_ref()?.as_any().downcast_ref::<Typed<S>>()?;
-        Some((&typed.scratch, &typed.parts.get(part.0)?.0))
-    }
-}
-
-/// The object-safe face of a solid.
-trait Erased: Send + Sync {
-    fn as_any(&self) -> &dyn Any;
-    fn root(&self, scratch: &mut ErasedScratch, frame: &Frame) -> Result<Verdict<ErasedPart>, Error>;
-    fn split(
-        &self,
-        scratch: &mut ErasedScratch,
-        cube: &Cube<'_>,
-        part: ErasedPart,
-    ) -> Result<[Verdict<ErasedPart>; 8], Error>;
-    fn split64(
-        &self,
-        scratch: &mut ErasedScratch,
-        cube: &Cube<'_>,
-        part: ErasedPart,
-        parts: &mut Vec<(u8, ErasedPart)>,
-    ) -> Result<Planes, Error>;
-    fn sample64(
-        &self,
-        scratch: &mut ErasedScratch,
-        cube: &Cube<'_>,
-        parts: &[(u8, ErasedPart)],
-    ) -> Result<Option<u64>, Error>;
-    fn fill(
-        &self,
-        scratch: &mut ErasedScratch,
-        cube: &Cube<'_>,
-        part: ErasedPart,
-        block: &mut Block,
-    ) -> Result<bool, Error>;
-    fn sample(
-        &self,
-        scratch: &mut ErasedScratch,
-        cube: &Cube<'_>,
-        part: ErasedPart,
-    ) -> Result<Option<bool>, Error>;
-    fn exterior(&self, frame: &Frame) -> Tag;
-    fn fingerprint(&self) -> Option<Fingerprint>;
-    fn hand_over(
-        &self,
-        from: &ErasedScratch,
-        part: ErasedPart,
-        to: &mut ErasedScratch,
-    ) -> Result<ErasedPart, Error>;
-}
-
-impl<S: Solid<Part: 'static, Scratch: 'static> + Send + 'static> Erased for S {
-    fn as_any(&self) -> &dyn Any {
-        self
-    }
-
-    fn root(&self, scratch: &mut ErasedScratch, frame: &Frame) -> Result<Verdict<ErasedPart>, Error> {
-        let typed = scratch.typed::<S>()?;
-        Ok(match Solid::root(self, &mut typed.scratch, frame)? {
-            Verdict::Empty => Verdict::Empty,
-            Verdict::Full => Verdict::Full,
-            Verdict::Undecided => Verdict::Undecided,
-            Verdict::Partial(part) => Verdict::Partial(typed.hand_out(part)?),
-        })
-    }
-
-    fn split(
-        &self,
-        scratch: &mut ErasedScratch,
-        cube: &Cube<'_>,
-        part: ErasedPart,
-    ) -> Result<[Verdict<ErasedPart>; 8], Error> {
-        const UNDECIDED: Verdict<ErasedPart> = Verdict::Undecided;
-        let typed = scratch.typed::<S>()?;
-        let mut verdicts = [UNDECIDED; 8];
-        let Some((part, _)) = typed.parts.get(part.0).cloned() else { return Ok(verdicts) };
-        for (verdict, child) in verdicts.iter_mut().zip(Solid::split(self, &mut typed.scratch, cube, &part)?)
-        {
-            *verdict = match child {
-                Verdict::Empty => Verdict::Empty,
-                Verdict::Full => Verdict::Full,
-                Verdict::Undecided => Verdict::Undecided,
-                Verdict::Partial(part) => Verdict::Partial(typed.hand_out(part)?),
-            };
-        }
-        Ok(verdicts)
+    fn split(&mut self, cell: Cell, part: &ErasedPart) -> Result<[Verdict<ErasedPart>; 8], Error> {
+        let part = self[0].part(part);
+        let verdicts = self[0].worker.split(cell, &part)?;
+        self[0].hand_out_eight(verdicts)
     }
 
     fn split64(
-        &self,
-        scratch: &mut ErasedScratch,
-        cube: &Cube<'_>,
-        part: ErasedPart,
+        &mut self,
+        cell: Cell,
+        part: &ErasedPart,
         parts: &mut Vec<(u8, ErasedPart)>,
     ) -> Result<Planes, Error> {
-        let typed = scratch.typed::<S>()?;
-        let Some((part, _)) = typed.parts.get(part.0).cloned() else {
-            return Ok(Planes::uniform(Tag::Partial));
-        };
-        typed.passing.clear();
-        let planes = Solid::split64(self, &mut typed.scratch, cube, &part, &mut typed.passing)?;
-        parts.try_reserve(typed.passing.len()).map_err(|_| Error::OutOfMemory)?;
-        typed.parts.try_reserve(typed.passing.len()).map_err(|_| Error::OutOfMemory)?;
-        let Typed { scratch, parts: kept, passing } = typed;
-        let height = scratch.mark();
+        let part = self[0].part(part);
+        self[0].passing.clear();
+        let planes = self[0].worker.split64(cell, &part, &mut self[0].passing)?;
+        parts.try_reserve(self[0].passing.len()).map_err(|_| Error::OutOfMemory)?;
+        self[0].parts.try_reserve(self[0].passing.len()).map_err(|_| Error::OutOfMemory)?;
+        let Typed { worker, parts: kept, passing } = &mut self[0];
+        let height = worker.mark();
         for (c, part) in passing.drain(..) {
             kept.push((part, height));
             parts.push((c, ErasedPart(kept.len() - 1)));
@@ -241,149 +374,85 @@ impl<S: Solid<Part: 'static, Scratch: 'static> + Send + 'static> Erased for S {
         Ok(planes)
     }
 
-    fn sample64(
-        &self,
-        scratch: &mut ErasedScratch,
-        cube: &Cube<'_>,
-        parts: &[(u8, ErasedPart)],
-    ) -> Result<Option<u64>, Error> {
-        let Typed { scratch, parts: kept, passing } = scratch.typed::<S>()?;
+    fn likes_many(&self) -> bool {
+        self[0].worker.likes_many()
+    }
+
+    fn split_many(
+        &mut self,
+        cells: &[(Cell, ErasedPart)],
+        control: &Control<'_>,
+        verdicts: &mut Vec<[Verdict<ErasedPart>; 8]>,
+    ) -> Result<(), Error> {
+        let (own, mut found) = (self[0].own(cells)?, Vec::new());
+        self[0].worker.split_many(&own, control, &mut found)?;
+        verdicts.try_reserve(found.len()).map_err(|_| Error::OutOfMemory)?;
+        for eight in found {
+            verdicts.push(self[0].hand_out_eight(eight)?);
+        }
+        Ok(())
+    }
+
+    fn fill(&mut self, cell: Cell, part: &ErasedPart, block: &mut Block) -> Result<bool, Error> {
+        let part = self[0].part(part);
+        self[0].worker.fill(cell, &part, block)
+    }
+
+    fn subtree(&self, part: &ErasedPart) -> Option<Subtree<'_>> {
+        self[0].worker.subtree(&self[0].parts[part.0].0)
+    }
+
+    fn sample(&mut self, cell: Cell, part: &ErasedPart) -> Result<Option<bool>, Error> {
+        let part = self[0].part(part);
+        self[0].worker.sample(cell, &part)
+    }
+
+    fn sample64(&mut self, cell: Cell, parts: &[(u8, ErasedPart)]) -> Result<Option<u64>, Error> {
+        let Typed { worker, parts: kept, passing } = &mut self[0];
         passing.clear();
         passing.try_reserve(parts.len()).map_err(|_| Error::OutOfMemory)?;
-        for (c, part) in parts {
-            let Some((part, _)) = kept.get(part.0) else { return Ok(None) };
-            passing.push((*c, part.clone()));
-        }
-        Solid::sample64(self, scratch, cube, passing)
+        passing.extend(parts.iter().map(|(c, part)| (*c, kept[part.0].0.clone())));
+        worker.sample64(cell, passing)
     }
 
-    fn fill(
-        &self,
-        scratch: &mut ErasedScratch,
-        cube: &Cube<'_>,
-        part: ErasedPart,
-        block: &mut Block,
-    ) -> Result<bool, Error> {
-        let typed = scratch.typed::<S>()?;
-        match typed.parts.get(part.0).cloned() {
-            Some((part, _)) => Solid::fill(self, &mut typed.scratch, cube, &part, block),
-            None => Ok(false),
-        }
+    fn sample_many(
+        &mut self,
+        cells: &[(Cell, ErasedPart)],
+        control: &Control<'_>,
+        inside: &mut Vec<Option<bool>>,
+    ) -> Result<(), Error> {
+        let own = self[0].own(cells)?;
+        self[0].worker.sample_many(&own, control, inside)
     }
 
-    fn sample(
-        &self,
-        scratch: &mut ErasedScratch,
-        cube: &Cube<'_>,
-        part: ErasedPart,
-    ) -> Result<Option<bool>, Error> {
-        let typed = scratch.typed::<S>()?;
-        let Some((part, _)) = typed.parts.get(part.0).cloned() else { return Ok(None) };
-        Solid::sample(self, &mut typed.scratch, cube, &part)
+    fn inside(&mut self, points: &[[f64; 3]], answers: &mut [Option<bool>]) -> Result<(), Error> {
+        self[0].worker.inside(points, answers)
     }
 
-    fn exterior(&self, frame: &Frame) -> Tag {
-        Solid::exterior(self, frame)
+    fn enclosure(&mut self, cell: Cell, part: &ErasedPart) -> Result<Option<Enclosure>, Error> {
+        let part = self[0].part(part);
+        self[0].worker.enclosure(cell, &part)
     }
 
-    fn fingerprint(&self) -> Option<Fingerprint> {
-        Solid::fingerprint(self)
-    }
-
-    fn hand_over(
-        &self,
-        from: &ErasedScratch,
-        part: ErasedPart,
-        to: &mut ErasedScratch,
-    ) -> Result<ErasedPart, Error> {
-        let to = to.typed::<S>()?;
-        match from.part::<S>(part) {
-            Some((from, part)) => {
-                let part = Solid::hand_over(self, from, part, &mut to.scratch)?;
-                to.hand_out(part)
-            }
-            // A part that does not exist is none that can be split.
-            None => Ok(ErasedPart(usize::MAX)),
-        }
+    fn crossing(
+        &mut self,
+        cell: Cell,
+        part: &ErasedPart,
+        segment: &Segment,
+    ) -> Result<Option<Crossing>, Error> {
+        let part = self[0].part(part);
+        self[0].worker.crossing(cell, &part, segment)
     }
 }
 
-impl Solid for AnySolid {
+impl Worker for AnyWorker {
     type Part = ErasedPart;
-    type Scratch = ErasedScratch;
 
-    fn root(&self, scratch: &mut ErasedScratch, frame: &Frame) -> Result<Verdict<ErasedPart>, Error> {
-        if self.nesting > MOST_NESTED {
-            return Err(Error::Limit { what: "solids within each other", limit: MOST_NESTED.into() });
-        }
-        self.solid.root(scratch, frame)
+    fn hand_over(&mut self, from: &AnyWorker, part: &ErasedPart) -> Result<ErasedPart, Error> {
+        self.0.hand_over(from, part)
     }
 
-    fn split(
-        &self,
-        scratch: &mut ErasedScratch,
-        cube: &Cube<'_>,
-        part: &ErasedPart,
-    ) -> Result<[Verdict<ErasedPart>; 8], Error> {
-        self.solid.split(scratch, cube, *part)
-    }
-
-    fn split64(
-        &self,
-        scratch: &mut ErasedScratch,
-        cube: &Cube<'_>,
-        part: &ErasedPart,
-        parts: &mut Vec<(u8, ErasedPart)>,
-    ) -> Result<Planes, Error> {
-        self.solid.split64(scratch, cube, *part, parts)
-    }
-
-    fn sample64(
-        &self,
-        scratch: &mut ErasedScratch,
-        cube: &Cube<'_>,
-        parts: &[(u8, ErasedPart)],
-    ) -> Result<Option<u64>, Error> {
-        self.solid.sample64(scratch, cube, parts)
-    }
-
-    fn fill(
-        &self,
-        scratch: &mut ErasedScratch,
-        cube: &Cube<'_>,
-        part: &ErasedPart,
-        block: &mut Block,
-    ) -> Result<bool, Error> {
-        self.solid.fill(scratch, cube, *part, block)
-    }
-
-    fn sample(
-        &self,
-        scratch: &mut ErasedScratch,
-        cube: &Cube<'_>,
-        part: &ErasedPart,
-    ) -> Result<Option<bool>, Error> {
-        self.solid.sample(scratch, cube, *part)
-    }
-
-    fn exterior(&self, frame: &Frame) -> Tag {
-        self.solid.exterior(frame)
-    }
-
-    fn nesting(&self) -> u32 {
-        self.nesting
-    }
-
-    fn fingerprint(&self) -> Option<Fingerprint> {
-        self.solid.fingerprint()
-    }
-
-    fn hand_over(
-        &self,
-        from: &ErasedScratch,
-        part: &ErasedPart,
-        to: &mut ErasedScratch,
-    ) -> Result<ErasedPart, Error> {
-        self.solid.hand_over(from, *part, to)
-    }
+    forward_worker!(memory ErasedPart, self => self.0);
+    forward_worker!(splits ErasedPart, self => self.0);
+    forward_worker!(answers ErasedPart, self => self.0);
 }

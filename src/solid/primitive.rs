@@ -1,11 +1,74 @@
 //! Shapes that end: the ball and the axis-aligned box.
 
 use super::exact::{Expansion, certain};
-use super::{Fingerprint, Fingerprinter, Solid, Verdict, is_moderate};
+use super::{Classifier, Fingerprint, Fingerprinter, OCTANTS, Solid, Verdict, Worker, is_moderate};
+use crate::control::Control;
 use crate::error::Error;
 use crate::lattice::exact::{sign_of_sum, two_product};
-use crate::lattice::{Cell, Cube, Frame};
+use crate::lattice::{Bounds, Cell, Cube, Frame};
 use crate::octree::Tag;
+
+/// A shape whose verdict of a cell needs nothing but the cell.
+pub trait Primitive: Copy + Send + Sync {
+    /// What is known of a cell.
+    fn verdict(&self, cube: &Cube<'_>) -> Verdict<()>;
+
+    /// Whether the centre of a finest cell lies inside.
+    fn sample(&self, cube: &Cube<'_>) -> bool;
+
+    /// What is known of the space around the universe.
+    fn exterior(&self, frame: &Frame) -> Tag;
+}
+
+/// A primitive on a frame: handle and worker are the same.
+#[derive(Debug, Clone, Copy)]
+pub struct OnFrame<P> {
+    shape: P,
+    frame: Frame,
+}
+
+impl<P: Primitive> Classifier for OnFrame<P> {
+    type Worker = OnFrame<P>;
+
+    fn frame(&self) -> &Frame {
+        &self.frame
+    }
+
+    fn worker(&self) -> Result<OnFrame<P>, Error> {
+        Ok(*self)
+    }
+
+    fn exterior(&self) -> Tag {
+        self.shape.exterior(&self.frame)
+    }
+}
+
+impl<P: Primitive> Worker for OnFrame<P> {
+    type Part = ();
+
+    fn frame(&self) -> &Frame {
+        &self.frame
+    }
+
+    fn root(&mut self) -> Result<Verdict<()>, Error> {
+        Ok(self.shape.verdict(&Cube { frame: &self.frame, cell: Cell::ROOT }))
+    }
+
+    #[inline]
+    fn split(&mut self, cell: Cell, _: &()) -> Result<[Verdict<()>; 8], Error> {
+        let cube = Cube { frame: &self.frame, cell };
+        Ok(OCTANTS.map(|k| self.shape.verdict(&cube.child(k))))
+    }
+
+    fn recall(&mut self, _: Cell) -> Option<()> {
+        Some(())
+    }
+
+    #[inline]
+    fn sample(&mut self, cell: Cell, _: &()) -> Result<Option<bool>, Error> {
+        Ok(Some(self.shape.sample(&Cube { frame: &self.frame, cell })))
+    }
+}
 
 /// A ball. Verdicts are exact for the centre and radius given.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -55,7 +118,9 @@ impl Ball {
                 .sign()
         })
     }
+}
 
+impl Primitive for Ball {
     fn verdict(&self, cube: &Cube<'_>) -> Verdict<()> {
         let (lower, upper) = cube.planes();
         let mut farthest = [None; 3];
@@ -80,30 +145,17 @@ impl Ball {
             Verdict::Partial(())
         }
     }
-}
 
-impl Solid for Ball {
-    type Part = ();
-    type Scratch = ();
-
-    fn root(&self, _: &mut (), frame: &Frame) -> Result<Verdict<()>, Error> {
-        Ok(self.verdict(&Cube { frame, cell: Cell::ROOT }))
-    }
-
-    fn split(&self, _: &mut (), cube: &Cube<'_>, _: &()) -> Result<[Verdict<()>; 8], Error> {
-        Ok([0, 1, 2, 3, 4, 5, 6, 7].map(|k| self.verdict(&cube.child(k))))
-    }
-
-    fn sample(&self, _: &mut (), cube: &Cube<'_>, _: &()) -> Result<Option<bool>, Error> {
+    fn sample(&self, cube: &Cube<'_>) -> bool {
         let centre = cube.cell.at.map(|i| 2 * i as i64 + 1);
-        Ok(Some(match self.sign_at(cube.frame, centre.map(Some)) {
+        match self.sign_at(cube.frame, centre.map(Some)) {
             // On the sphere the shift (ε, ε², ε³) leads inside if it leads towards the centre.
             0 => {
                 let towards = |axis: usize| cube.frame.side(axis, self.centre[axis], centre[axis]);
                 (0..3).map(towards).find(|&side| side != 0).is_some_and(|side| side > 0)
             }
             sign => sign > 0,
-        }))
+        }
     }
 
     fn exterior(&self, frame: &Frame) -> Tag {
@@ -113,6 +165,21 @@ impl Solid for Ball {
                 && sign_of_sum(&[origin, frame.edge(), -centre, -self.radius]) >= 0
         });
         if inside { Tag::Empty } else { Tag::Partial }
+    }
+}
+
+impl Solid for Ball {
+    type Classifier = OnFrame<Ball>;
+
+    fn on(&self, frame: &Frame, _: &Control<'_>) -> Result<OnFrame<Ball>, Error> {
+        Ok(OnFrame { shape: *self, frame: *frame })
+    }
+
+    fn bounds(&self) -> Option<Bounds> {
+        Bounds::new(
+            self.centre.map(|c| (c - self.radius).next_down()),
+            self.centre.map(|c| (c + self.radius).next_up()),
+        )
     }
 
     fn fingerprint(&self) -> Option<Fingerprint> {
@@ -144,7 +211,9 @@ impl AxisBox {
         }
         Ok(AxisBox { min, max })
     }
+}
 
+impl Primitive for AxisBox {
     fn verdict(&self, cube: &Cube<'_>) -> Verdict<()> {
         let (lower, upper) = cube.planes();
         let mut full = true;
@@ -157,27 +226,14 @@ impl AxisBox {
         }
         if full { Verdict::Full } else { Verdict::Partial(()) }
     }
-}
 
-impl Solid for AxisBox {
-    type Part = ();
-    type Scratch = ();
-
-    fn root(&self, _: &mut (), frame: &Frame) -> Result<Verdict<()>, Error> {
-        Ok(self.verdict(&Cube { frame, cell: Cell::ROOT }))
-    }
-
-    fn split(&self, _: &mut (), cube: &Cube<'_>, _: &()) -> Result<[Verdict<()>; 8], Error> {
-        Ok([0, 1, 2, 3, 4, 5, 6, 7].map(|k| self.verdict(&cube.child(k))))
-    }
-
-    fn sample(&self, _: &mut (), cube: &Cube<'_>, _: &()) -> Result<Option<bool>, Error> {
+    fn sample(&self, cube: &Cube<'_>) -> bool {
         // The shift is positive on every axis: a centre on the lower face goes inside, on the upper outside.
-        Ok(Some((0..3).all(|axis| {
+        (0..3).all(|axis| {
             let k = 2 * cube.cell.at[axis] as i64 + 1;
             let side = |x: f64| cube.frame.side(axis, x, k);
             side(self.min[axis]) <= 0 && side(self.max[axis]) > 0
-        })))
+        })
     }
 
     fn exterior(&self, frame: &Frame) -> Tag {
@@ -186,6 +242,18 @@ impl Solid for AxisBox {
             self.min[axis] >= origin && sign_of_sum(&[origin, frame.edge(), -self.max[axis]]) >= 0
         });
         if inside { Tag::Empty } else { Tag::Partial }
+    }
+}
+
+impl Solid for AxisBox {
+    type Classifier = OnFrame<AxisBox>;
+
+    fn on(&self, frame: &Frame, _: &Control<'_>) -> Result<OnFrame<AxisBox>, Error> {
+        Ok(OnFrame { shape: *self, frame: *frame })
+    }
+
+    fn bounds(&self) -> Option<Bounds> {
+        Bounds::new(self.min, self.max)
     }
 
     fn fingerprint(&self) -> Option<Fingerprint> {

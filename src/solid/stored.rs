@@ -1,8 +1,9 @@
 //! A stored octree as a solid.
 
-use super::{Fingerprint, Fingerprinter, Solid, Verdict, split_twice};
+use super::{Classifier, Fingerprint, Fingerprinter, OCTANTS, Solid, Subtree, Verdict, Worker, split_twice};
+use crate::control::Control;
 use crate::error::Error;
-use crate::lattice::{Cube, Frame};
+use crate::lattice::{Bounds, Cell, Frame};
 use crate::octree::view::starts_half_way;
 use crate::octree::{Octree, OctreeRef, Planes, Tag};
 use alloc::vec::Vec;
@@ -10,8 +11,9 @@ use alloc::vec::Vec;
 /// An octree, in memory or on disk, as a solid on its own universe. Built to fewer levels it is cut there
 /// (what is cut becomes PARTIAL), built to more its PARTIAL cells stay undecided.
 ///
-/// Its [root](Solid::root) is given only once all links are checked, O(elements): [`Error::Damaged`] if the
-/// tree was mapped unverified and they are damaged.
+/// To put it on a frame, all links are checked, O(elements): [`Error::Damaged`] if the tree was mapped unverified and
+/// they are damaged. Whoever writes an octree copies subtrees as they are: of an unverified one whose links are sound, but
+/// not what they lead to, the copy is damaged, too, or [`Error::Damaged`] is returned.
 #[derive(Debug, Clone, Copy)]
 pub struct Stored<'a>(OctreeRef<'a>);
 
@@ -66,31 +68,50 @@ impl<'a> Stored<'a> {
     }
 }
 
-const OCTANTS: [u8; 8] = [0, 1, 2, 3, 4, 5, 6, 7];
-
-impl Solid for Stored<'_> {
-    type Part = StoredPart;
-    type Scratch = ();
-
-    fn root(&self, _: &mut (), frame: &Frame) -> Result<Verdict<StoredPart>, Error> {
+impl Stored<'_> {
+    fn root_on(&self, frame: &Frame) -> Result<(), Error> {
         if !frame.same_universe(self.0.frame()) {
             return Err(Error::FrameMismatch);
         }
         // A descent remembers nothing, so elements with shared children would be visited again and again:
         // 64^10 times in a file of a few kilobytes.
-        self.0.check_links()?;
+        Ok(self.0.check_links()?)
+    }
+
+    fn bounds(&self) -> Option<Bounds> {
+        (self.0.exterior() == Tag::Empty).then(|| Bounds::of(self.0.frame()))
+    }
+
+    /// Of what is stored, however its bricks are encoded. O(n).
+    fn fingerprint(&self) -> Fingerprint {
+        let (tree, frame) = (&self.0, self.0.frame());
+        // Of a brick that cannot be read a cell would be a branch.
+        let bricks =
+            (0..tree.bricks.len()).map(|b| tree.bricks.get(b).unwrap_or(Planes::uniform(Tag::Branch)));
+        let words = |planes: Planes| [planes.lower, planes.upper];
+        let count = |entries: usize| 2 * entries as u64;
+        let all = Fingerprinter::new("octree")
+            .numbers(&frame.origin())
+            .numbers(&[frame.edge()])
+            .integers(&[frame.depth().into(), tree.root_tag() as u64, tree.exterior() as u64])
+            .words(count(tree.planes.len()), tree.planes.iter().copied().flat_map(words))
+            .words(count(tree.bricks.len()), bricks.flat_map(words));
+        all.finish()
+    }
+
+    fn root(&self) -> Verdict<StoredPart> {
         let half = starts_half_way(self.0.frame().depth());
-        Ok(match self.0.root_tag() {
+        match self.0.root_tag() {
             Tag::Empty => Verdict::Empty,
             Tag::Full => Verdict::Full,
             Tag::Partial => Verdict::Undecided,
             Tag::Branch if half => Verdict::Partial(StoredPart::Octant { level: 0, index: 0, octant: 0 }),
             Tag::Branch => Verdict::Partial(StoredPart::Element { level: 0, index: 0 }),
-        })
+        }
     }
 
-    fn split(&self, _: &mut (), _: &Cube<'_>, part: &StoredPart) -> Result<[Verdict<StoredPart>; 8], Error> {
-        Ok(match *part {
+    fn split(&self, part: &StoredPart) -> [Verdict<StoredPart>; 8] {
+        match *part {
             StoredPart::Element { level, index } => {
                 let planes = self.entry(level, index);
                 OCTANTS.map(|octant| match planes.octant(octant as u32) {
@@ -104,20 +125,12 @@ impl Solid for Stored<'_> {
                 let planes = self.entry(level, index);
                 OCTANTS.map(|k| self.cell(level, index, planes, (8 * (octant & 7) + k) as u32))
             }
-        })
+        }
     }
 
-    fn split64(
-        &self,
-        scratch: &mut (),
-        cube: &Cube<'_>,
-        part: &StoredPart,
-        parts: &mut Vec<(u8, StoredPart)>,
-    ) -> Result<Planes, Error> {
-        // An octant straddles the stored grain: its grandchildren lie in the next elements.
-        let StoredPart::Element { level, index } = *part else {
-            return split_twice(self, scratch, cube, part, parts);
-        };
+    /// The two levels of an element; `None` if the part is an octant of one, which straddles the stored grain.
+    fn split64(&self, part: &StoredPart, parts: &mut Vec<(u8, StoredPart)>) -> Result<Option<Planes>, Error> {
+        let StoredPart::Element { level, index } = *part else { return Ok(None) };
         let planes = self.entry(level, index);
         for c in (0..64).filter(|c| planes.branch() >> c & 1 != 0) {
             if let Verdict::Partial(part) = self.cell(level, index, planes, c) {
@@ -126,64 +139,136 @@ impl Solid for Stored<'_> {
             }
         }
         // Whoever asks sees a cut cell as PARTIAL with a part.
-        Ok(Planes { lower: planes.full(), upper: planes.upper | planes.lower })
+        Ok(Some(Planes { lower: planes.full(), upper: planes.upper | planes.lower }))
+    }
+}
+
+/// A tree that is borrowed, or owned: where its view comes from.
+trait Tree: Clone + Send + Sync {
+    fn stored(&self) -> Stored<'_>;
+}
+
+impl Tree for Stored<'_> {
+    fn stored(&self) -> Stored<'_> {
+        *self
+    }
+}
+
+impl Tree for Octree {
+    fn stored(&self) -> Stored<'_> {
+        Stored(*self.view())
+    }
+}
+
+/// A stored octree whose links are checked, on a frame of its universe: handle and worker.
+#[derive(Debug, Clone)]
+pub struct OnFrame<T> {
+    tree: T,
+    frame: Frame,
+}
+
+#[allow(private_bounds)]
+impl<T: Tree> OnFrame<T> {
+    fn new(tree: T, frame: &Frame) -> Result<OnFrame<T>, Error> {
+        tree.stored().root_on(frame)?;
+        Ok(OnFrame { tree, frame: *frame })
+    }
+}
+
+#[allow(private_bounds)]
+impl<T: Tree> Classifier for OnFrame<T> {
+    type Worker = OnFrame<T>;
+
+    fn frame(&self) -> &Frame {
+        &self.frame
     }
 
-    fn exterior(&self, _: &Frame) -> Tag {
-        self.0.exterior()
+    fn worker(&self) -> Result<OnFrame<T>, Error> {
+        Ok(self.clone())
     }
 
-    /// Of what is stored, however its bricks are encoded. O(n).
+    fn exterior(&self) -> Tag {
+        self.tree.stored().0.exterior()
+    }
+}
+
+#[allow(private_bounds)]
+impl<T: Tree> Worker for OnFrame<T> {
+    type Part = StoredPart;
+
+    fn frame(&self) -> &Frame {
+        &self.frame
+    }
+
+    fn root(&mut self) -> Result<Verdict<StoredPart>, Error> {
+        Ok(self.tree.stored().root())
+    }
+
+    fn split(&mut self, _: Cell, part: &StoredPart) -> Result<[Verdict<StoredPart>; 8], Error> {
+        Ok(self.tree.stored().split(part))
+    }
+
+    fn split64(
+        &mut self,
+        cell: Cell,
+        part: &StoredPart,
+        parts: &mut Vec<(u8, StoredPart)>,
+    ) -> Result<Planes, Error> {
+        match self.tree.stored().split64(part, parts)? {
+            Some(planes) => Ok(planes),
+            // The grandchildren lie in the next elements.
+            None => split_twice(self, cell, part, parts),
+        }
+    }
+
+    fn subtree(&self, part: &StoredPart) -> Option<Subtree<'_>> {
+        let Stored(tree) = self.tree.stored();
+        match *part {
+            StoredPart::Element { level, index } if *tree.frame() == self.frame => {
+                Some(Subtree { tree, level: level.into(), index, flip: false })
+            }
+            _ => None,
+        }
+    }
+}
+
+impl<'a> Solid for Stored<'a> {
+    type Classifier = OnFrame<Stored<'a>>;
+
+    fn on(&self, frame: &Frame, _: &Control<'_>) -> Result<Self::Classifier, Error> {
+        OnFrame::new(*self, frame)
+    }
+
+    fn bounds(&self) -> Option<Bounds> {
+        Stored::bounds(self)
+    }
+
+    fn home(&self) -> Option<Frame> {
+        Some(*self.0.frame())
+    }
+
     fn fingerprint(&self) -> Option<Fingerprint> {
-        let (tree, frame) = (&self.0, self.0.frame());
-        // Of a brick that cannot be read a cell would be a branch.
-        let bricks =
-            (0..tree.bricks.len()).map(|b| tree.bricks.get(b).unwrap_or(Planes::uniform(Tag::Branch)));
-        let words = |planes: Planes| [planes.lower, planes.upper];
-        let count = |entries: usize| 2 * entries as u64;
-        let all = Fingerprinter::new("octree")
-            .numbers(&frame.origin())
-            .numbers(&[frame.edge()])
-            .integers(&[frame.depth().into(), tree.root_tag() as u64, tree.exterior() as u64])
-            .words(count(tree.planes.len()), tree.planes.iter().copied().flat_map(words))
-            .words(count(tree.bricks.len()), bricks.flat_map(words));
-        Some(all.finish())
+        Some(Stored::fingerprint(self))
     }
 }
 
 /// As [`Stored`], for whoever needs a solid that owns its tree.
 impl Solid for Octree {
-    type Part = StoredPart;
-    type Scratch = ();
+    type Classifier = OnFrame<Octree>;
 
-    fn root(&self, scratch: &mut (), frame: &Frame) -> Result<Verdict<StoredPart>, Error> {
-        Stored(*self.view()).root(scratch, frame)
+    fn on(&self, frame: &Frame, _: &Control<'_>) -> Result<Self::Classifier, Error> {
+        OnFrame::new(self.clone(), frame)
     }
 
-    fn split(
-        &self,
-        scratch: &mut (),
-        cube: &Cube<'_>,
-        part: &StoredPart,
-    ) -> Result<[Verdict<StoredPart>; 8], Error> {
-        Stored(*self.view()).split(scratch, cube, part)
+    fn bounds(&self) -> Option<Bounds> {
+        self.stored().bounds()
     }
 
-    fn split64(
-        &self,
-        scratch: &mut (),
-        cube: &Cube<'_>,
-        part: &StoredPart,
-        parts: &mut Vec<(u8, StoredPart)>,
-    ) -> Result<Planes, Error> {
-        Stored(*self.view()).split64(scratch, cube, part, parts)
-    }
-
-    fn exterior(&self, frame: &Frame) -> Tag {
-        Stored(*self.view()).exterior(frame)
+    fn home(&self) -> Option<Frame> {
+        Some(*self.frame())
     }
 
     fn fingerprint(&self) -> Option<Fingerprint> {
-        Stored(*self.view()).fingerprint()
+        Some(self.stored().fingerprint())
     }
 }

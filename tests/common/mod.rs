@@ -4,11 +4,11 @@
 // Each test program uses its own part of this.
 #![allow(dead_code)]
 
+pub mod cubes;
 pub mod exact;
 
 use leafless::{
-    Cell, Control, Cube, Cursor, Error, Frame, LevelStatistics, Octree, OctreeRef, Rule, Solid, Tag, Verdict,
-    build,
+    Cell, Control, Cube, Cursor, Error, Frame, LevelStatistics, Octree, OctreeRef, Rule, Tag, Verdict, build,
 };
 use proptest::prelude::*;
 use std::path::PathBuf;
@@ -162,38 +162,28 @@ pub fn positions(depth: u8) -> impl Iterator<Item = [u32; 3]> {
 }
 
 /// A dense array as a solid.
+#[derive(Clone, Copy)]
 pub struct DenseSolid<'a> {
     pub dense: &'a Dense,
     pub exterior: Tag,
 }
 
-impl DenseSolid<'_> {
-    fn verdict(&self, cell: Cell) -> Verdict<()> {
-        match self.dense.tag_of(cell) {
+impl cubes::Cubes for DenseSolid<'_> {
+    fn verdict(&self, cube: &Cube<'_>) -> Result<Verdict<()>, Error> {
+        Ok(match self.dense.tag_of(cube.cell) {
             Some(Tag::Empty) => Verdict::Empty,
             Some(Tag::Full) => Verdict::Full,
             Some(_) => Verdict::Undecided,
             None => Verdict::Partial(()),
-        }
-    }
-}
-
-impl Solid for DenseSolid<'_> {
-    type Part = ();
-    type Scratch = ();
-
-    fn root(&self, _: &mut (), _: &Frame) -> Result<Verdict<()>, Error> {
-        Ok(self.verdict(Cell::ROOT))
-    }
-
-    fn split(&self, _: &mut (), cube: &Cube<'_>, _: &()) -> Result<[Verdict<()>; 8], Error> {
-        Ok([0, 1, 2, 3, 4, 5, 6, 7].map(|k| self.verdict(cube.cell.child(k))))
+        })
     }
 
     fn exterior(&self, _: &Frame) -> Tag {
         self.exterior
     }
 }
+
+crate::solid_of_cubes!(DenseSolid<'a>: 'a);
 
 /// An octree as textbooks draw it, with explicit leaves.
 #[derive(Debug)]

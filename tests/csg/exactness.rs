@@ -1,21 +1,21 @@
 //! Of planes and quadrics without mixed products the verdicts are the best possible ones, at every level.
 
 use super::extremes::{Powers, Separable, Torus, Truth};
-use crate::common::Random;
 use crate::common::exact::Exact;
-use leafless::{Affine, Cell, Csg, CsgScratch, Cube, Frame, HalfSpace, Solid, Verdict};
+use crate::common::{Random, alone};
+use leafless::{Affine, Cell, Classifier, Csg, Frame, HalfSpace, Solid, Verdict, Worker};
 
 /// Descends towards `target` (in finest cells) and away from it, and compares all verdicts on the way; returns how many
 /// levels were reached.
 fn compare(solid: &Csg, truth: &Truth, frame: &Frame, target: [u32; 3], random: &mut Random) -> u8 {
-    let mut scratch = CsgScratch::default();
-    let mut verdict = solid.root(&mut scratch, frame).unwrap();
+    let mut worker = solid.on(frame, &alone()).unwrap().worker().unwrap();
+    let mut verdict = worker.root().unwrap();
     assert_eq!(verdict.tag(), truth.tag(frame, Cell::ROOT), "universe {frame:?} {truth:?}");
     let mut cell = Cell::ROOT;
     // One descent in four leaves the target at some level.
     let leave = random.below(4 * frame.depth() as u64) as u8;
     while let (Verdict::Partial(part), true) = (verdict, cell.level < frame.depth()) {
-        let children = solid.split(&mut scratch, &Cube { frame, cell }, &part).unwrap();
+        let children = worker.split(cell, &part).unwrap();
         for (k, child) in (0..).zip(&children) {
             assert_eq!(
                 child.tag(),

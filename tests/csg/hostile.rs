@@ -4,8 +4,8 @@
 use super::lattice_frame;
 use crate::common::alone;
 use leafless::{
-    Affine, AnySolid, AxisBox, Cell, Csg, CsgScratch, Cube, Error, Frame, HalfSpace, Rule, Solid, Tag,
-    Verdict, build,
+    Affine, AnySolid, AxisBox, Cell, Classifier, Csg, Error, Frame, HalfSpace, Rule, Solid, Tag, Verdict,
+    Worker, build,
 };
 use std::time::{Duration, Instant};
 
@@ -19,16 +19,20 @@ fn soon<T>(work: impl FnOnce() -> T) -> T {
 }
 
 fn root(csg: &Csg, frame: &Frame) -> Result<Tag, Error> {
-    Ok(csg.root(&mut CsgScratch::default(), frame)?.tag())
+    Ok(csg.on(frame, &alone())?.worker()?.root()?.tag())
+}
+
+fn exterior(csg: &Csg, frame: &Frame) -> Result<Tag, Error> {
+    Ok(csg.on(frame, &alone())?.exterior())
 }
 
 /// The universe and one cell of each level below it.
 fn descend(csg: &Csg, frame: &Frame) -> u8 {
-    let mut scratch = CsgScratch::default();
+    let mut worker = csg.on(frame, &alone()).unwrap().worker().unwrap();
     let mut cell = Cell::ROOT;
-    let mut verdict = csg.root(&mut scratch, frame).unwrap();
+    let mut verdict = worker.root().unwrap();
     while let (Verdict::Partial(part), true) = (&verdict, cell.level < frame.depth()) {
-        let children = csg.split(&mut scratch, &Cube { frame, cell }, part).unwrap();
+        let children = worker.split(cell, part).unwrap();
         let partial = (0..).zip(children).find(|(_, child)| child.tag() == Tag::Partial);
         let Some((k, child)) = partial else { break };
         (cell, verdict) = (cell.child(k), child);
@@ -47,7 +51,7 @@ fn operations_by_the_hundred_thousand_that_come_to_nothing() {
         let parts = (0..300_000).map(|_| Csg::intersection_of([Csg::everything(), Csg::empty()]).unwrap());
         let csg = Csg::union_of(parts).unwrap();
         assert_eq!(root(&csg, &frame).unwrap(), Tag::Empty);
-        assert_eq!(csg.exterior(&frame), Tag::Empty);
+        assert_eq!(exterior(&csg, &frame).unwrap(), Tag::Empty);
         assert_eq!(root(&csg.complement(), &frame).unwrap(), Tag::Full);
     });
 }
@@ -104,7 +108,7 @@ fn deep_chains() {
         soon(|| {
             let csg = (0..n).fold(near.clone(), |csg, i| step(i, &csg));
             assert_eq!(root(&csg, &frame).unwrap(), expected, "step {i}");
-            csg.exterior(&frame);
+            exterior(&csg, &frame).unwrap();
             if expected == Tag::Partial {
                 assert_eq!(descend(&csg, &frame), 4, "step {i}");
             }
@@ -122,7 +126,7 @@ fn deep_placements_end_in_a_limit() {
         soon(|| {
             let csg = (0..100_000).fold(near.clone(), |csg, _| csg.placed(&placement).unwrap());
             assert!(matches!(root(&csg, &frame), Err(Error::Limit { .. })), "{placement:?}");
-            csg.exterior(&frame);
+            assert!(matches!(exterior(&csg, &frame), Err(Error::Limit { .. })), "{placement:?}");
         });
     }
     // Nothing gets longer, but larger and larger, or smaller.
@@ -159,7 +163,7 @@ fn doubled_over_and_over() {
                     assert!(matches!(root(&csg.complement(), &frame), Err(Error::Limit { .. })));
                     let tree = build(&csg, &frame, Rule::Certified, &alone());
                     assert!(matches!(tree, Err(Error::Limit { .. })));
-                    csg.exterior(&frame);
+                    assert!(matches!(exterior(&csg, &frame), Err(Error::Limit { .. })));
                     csg.bounds();
                 });
             }
@@ -226,7 +230,7 @@ fn numbers_at_the_ends_of_their_ranges() {
                 ];
                 for solid in &solids {
                     descend(solid, &frame);
-                    solid.exterior(&frame);
+                    exterior(solid, &frame).unwrap();
                     descend(&solid.complement(), &frame);
                 }
                 descend(&Csg::xor_of(solids).unwrap(), &frame);

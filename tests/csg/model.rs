@@ -358,7 +358,7 @@ impl Other {
             Other::Tetrahedron(corners) => {
                 let faces = vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];
                 let mesh = TriangleMesh::new(corners.to_vec(), faces)?;
-                AnySolid::new(MeshSolid::new(mesh, frame, FillRule::NonZero)?)
+                AnySolid::new(MeshSolid::new(mesh, FillRule::NonZero)?)
             }
             Other::Octree(tree) => AnySolid::new(tree.clone()),
             Other::Moved(other, own, placement) => {

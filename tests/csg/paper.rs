@@ -3,9 +3,7 @@
 use super::extremes::{Separable, corners};
 use crate::common::exact::Exact;
 use crate::common::{Dense, Random, alone, lattice_frame, positions};
-use leafless::{
-    Cell, Csg, CsgScratch, Cube, Frame, HalfSpace, Rule, Scratch, Solid, Tag, Touch, Verdict, build,
-};
+use leafless::{Cell, Classifier, Csg, Frame, HalfSpace, Rule, Solid, Tag, Touch, Verdict, Worker, build};
 
 /// A primitive as the library has it, and its half-spaces.
 #[derive(Clone)]
@@ -30,19 +28,27 @@ fn classify(primitive: &Primitive, frame: &Frame, cell: Cell) -> Tag {
 }
 
 /// Compares all splits above the frame's depth; returns the tags of the finest cells.
-fn compare(primitive: &Primitive, frame: &Frame, scratch: &mut CsgScratch) -> Dense {
+fn compare(primitive: &Primitive, frame: &Frame) -> Dense {
     let csg = primitive.csg.with_touch(Touch::Paper);
     let n = primitive.half_spaces.len() as u64;
     let mut out = Dense::uniform(frame.depth(), Tag::Empty);
-    let root = csg.root(scratch, frame).unwrap();
+    let classifier = csg.on(frame, &alone()).unwrap();
+    let mut worker = classifier.worker().unwrap();
+    let root = worker.root().unwrap();
     assert_eq!(root.tag(), classify(primitive, frame, Cell::ROOT));
     let mut stack = vec![(Cell::ROOT, root)];
     while let Some((cell, verdict)) = stack.pop() {
         match verdict {
             Verdict::Partial(part) if cell.level < frame.depth() => {
-                let before = scratch.evaluations();
-                let children = csg.split(scratch, &Cube { frame, cell }, &part).unwrap();
-                let evaluations = scratch.evaluations() - before;
+                // A worker for this split alone: what it evaluates is told when it is gone.
+                let mut single = classifier.worker().unwrap();
+                let own = single.hand_over(&worker, &part).unwrap();
+                let before = csg.evaluations();
+                let again = single.split(cell, &own).unwrap().map(|child| child.tag());
+                drop(single);
+                let evaluations = csg.evaluations() - before;
+                let children = worker.split(cell, &part).unwrap();
+                assert_eq!(again, children.each_ref().map(|child| child.tag()));
                 // Each of the 27 points at most once, then each half-space for the children that agree.
                 assert!(
                     evaluations >= (n + 2).min(27) && evaluations <= 27 * n + 8 * n,
@@ -127,12 +133,11 @@ fn primitive(random: &mut Random, n: f64) -> Primitive {
 
 #[test]
 fn primitives_are_classified_as_published() {
-    let mut scratch = CsgScratch::default();
     for seed in 0..120 {
         let mut random = Random(seed);
         let frame = lattice_frame(1 + random.below(4) as u8);
         let primitive = primitive(&mut random, frame.cells() as f64);
-        let dense = compare(&primitive, &frame, &mut scratch);
+        let dense = compare(&primitive, &frame);
         let paper = primitive.csg.with_touch(Touch::Paper);
         assert!(Dense::of(build(&paper, &frame, Rule::Certified, &alone()).unwrap().view()) == dense);
         let other = build(&paper.complement().with_touch(Touch::Paper), &frame, Rule::Certified, &alone());
@@ -153,13 +158,12 @@ fn expressions_of_published_primitives_are_set_operations() {
         (|a, b| a.difference(&b).unwrap(), |a, b| a & !b),
         (|a, b| Csg::xor_of([a, b]).unwrap(), |a, b| a ^ b),
     ];
-    let mut scratch = CsgScratch::default();
     for seed in 0..60 {
         let mut random = Random(seed ^ 0xFACE);
         let frame = lattice_frame(1 + random.below(4) as u8);
         let mut make = || primitive(&mut random, frame.cells() as f64);
         let [a, b, c] = [make(), make(), make()];
-        let [da, db, dc] = [&a, &b, &c].map(|p| compare(p, &frame, &mut scratch));
+        let [da, db, dc] = [&a, &b, &c].map(|p| compare(p, &frame));
         for (join, op) in operations {
             for (outer, outer_op) in operations {
                 // Two half-spaces alone would be a primitive together.

@@ -3,7 +3,7 @@
 use super::model::{Model, Point, Probe};
 use crate::common::Random;
 use crate::common::exact::Exact;
-use leafless::{Frame, Octree, Tag};
+use leafless::{Bounds, Frame, Octree, Tag};
 
 /// Positions are counted in steps of 2^-20 of a finest cell.
 const STEPS: u32 = 20;
@@ -30,7 +30,7 @@ pub struct Found {
 pub struct Judge<'a> {
     pub model: &'a Model,
     pub tree: &'a Octree,
-    pub bounds: Option<([f64; 3], [f64; 3])>,
+    pub bounds: Option<Bounds>,
     pub found: Found,
 }
 
@@ -64,7 +64,7 @@ impl Judge<'_> {
             );
         }
         if sign > 0
-            && let Some((min, max)) = self.bounds
+            && let Some(Bounds { min, max }) = self.bounds
         {
             for axis in 0..3 {
                 let above = p[axis].minus(&Exact::from(min[axis])).sign() >= 0;

@@ -1,41 +1,61 @@
 //! A way to switch block-wise scanning off.
 
-use leafless::{Cube, Error, Frame, MeshPart, MeshScratch, MeshSolid, Solid, Tag, Verdict};
+use leafless::{Cell, Classifier, Control, Error, Frame, MeshSolid, Solid, Tag, Verdict, Worker};
 
 /// A mesh that is only ever split, never scanned in blocks.
 pub struct Descended<'a>(pub &'a MeshSolid);
 
+type Inner = <MeshSolid as Solid>::Classifier;
+type InnerWorker = <Inner as Classifier>::Worker;
+type Part = <InnerWorker as Worker>::Part;
+
+/// On a frame.
+#[derive(Clone)]
+pub struct DescendedOnFrame(Inner);
+
+pub struct DescendedWorker(InnerWorker);
+
 impl Solid for Descended<'_> {
-    type Part = MeshPart;
-    type Scratch = MeshScratch;
-    fn root(&self, scratch: &mut MeshScratch, frame: &Frame) -> Result<Verdict<MeshPart>, Error> {
-        self.0.root(scratch, frame)
+    type Classifier = DescendedOnFrame;
+    fn on(&self, frame: &Frame, control: &Control<'_>) -> Result<DescendedOnFrame, Error> {
+        Ok(DescendedOnFrame(self.0.on(frame, control)?))
     }
-    fn split(
-        &self,
-        scratch: &mut MeshScratch,
-        cube: &Cube<'_>,
-        part: &MeshPart,
-    ) -> Result<[Verdict<MeshPart>; 8], Error> {
-        self.0.split(scratch, cube, part)
+}
+
+impl Classifier for DescendedOnFrame {
+    type Worker = DescendedWorker;
+    fn frame(&self) -> &Frame {
+        self.0.frame()
     }
-    fn sample(
-        &self,
-        scratch: &mut MeshScratch,
-        cube: &Cube<'_>,
-        part: &MeshPart,
-    ) -> Result<Option<bool>, Error> {
-        self.0.sample(scratch, cube, part)
+    fn worker(&self) -> Result<DescendedWorker, Error> {
+        Ok(DescendedWorker(self.0.worker()?))
     }
-    fn exterior(&self, frame: &Frame) -> Tag {
-        self.0.exterior(frame)
+    fn exterior(&self) -> Tag {
+        self.0.exterior()
     }
-    fn hand_over(
-        &self,
-        from: &MeshScratch,
-        part: &MeshPart,
-        to: &mut MeshScratch,
-    ) -> Result<MeshPart, Error> {
-        self.0.hand_over(from, part, to)
+}
+
+impl Worker for DescendedWorker {
+    type Part = Part;
+    fn frame(&self) -> &Frame {
+        self.0.frame()
+    }
+    fn root(&mut self) -> Result<Verdict<Part>, Error> {
+        self.0.root()
+    }
+    fn split(&mut self, cell: Cell, part: &Part) -> Result<[Verdict<Part>; 8], Error> {
+        self.0.split(cell, part)
+    }
+    fn sample(&mut self, cell: Cell, part: &Part) -> Result<Option<bool>, Error> {
+        self.0.sample(cell, part)
+    }
+    fn mark(&self) -> usize {
+        self.0.mark()
+    }
+    fn release(&mut self, mark: usize) {
+        self.0.release(mark);
+    }
+    fn hand_over(&mut self, from: &Self, part: &Part) -> Result<Part, Error> {
+        self.0.hand_over(&from.0, part)
     }
 }

@@ -3,9 +3,10 @@
 
 use super::check::{centre, margin};
 use super::winding::{Boundary, Soupy};
+use crate::common::cubes::Cubes;
 use crate::shapes::Soup;
-use leafless::{Cell, Cube, Error, FillRule, Frame, Solid, Tag, Verdict};
-use std::sync::Mutex;
+use leafless::{Cell, Cube, Error, FillRule, Frame, Tag, Verdict};
+use std::sync::{Arc, Mutex};
 
 /// Mistakes that a solid of this kind could make.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -33,9 +34,10 @@ pub enum Lie {
     Ends,
 }
 
+#[derive(Clone)]
 pub struct Reference {
-    truth: Mutex<Soupy>,
-    boundary: Boundary,
+    truth: Arc<Mutex<Soupy>>,
+    boundary: Arc<Boundary>,
     fill: FillRule,
     lie: Lie,
 }
@@ -53,7 +55,8 @@ impl Reference {
             let half = seen.len() / 2;
             seen[..half].iter_mut().for_each(|f| f.swap(0, 1));
         }
-        Reference { boundary: Boundary::of(&seen), truth: Mutex::new(Soupy::new(&seen)), fill, lie }
+        let (truth, boundary) = (Mutex::new(Soupy::new(&seen)), Boundary::of(&seen));
+        Reference { truth: Arc::new(truth), boundary: Arc::new(boundary), fill, lie }
     }
 
     fn margin(&self, p: [f64; 3]) -> f64 {
@@ -94,19 +97,12 @@ impl Reference {
     }
 }
 
-impl Solid for Reference {
-    type Part = ();
-    type Scratch = ();
-
-    fn root(&self, _: &mut (), frame: &Frame) -> Result<Verdict<()>, Error> {
-        Ok(self.verdict(frame, Cell::ROOT))
+impl Cubes for Reference {
+    fn verdict(&self, cube: &Cube<'_>) -> Result<Verdict<()>, Error> {
+        Ok(Reference::verdict(self, cube.frame, cube.cell))
     }
 
-    fn split(&self, _: &mut (), cube: &Cube<'_>, _: &()) -> Result<[Verdict<()>; 8], Error> {
-        Ok([0, 1, 2, 3, 4, 5, 6, 7].map(|k| self.verdict(cube.frame, cube.cell.child(k))))
-    }
-
-    fn sample(&self, _: &mut (), cube: &Cube<'_>, _: &()) -> Result<Option<bool>, Error> {
+    fn sample(&self, cube: &Cube<'_>) -> Result<Option<bool>, Error> {
         let mut p = centre(cube.frame, cube.cell.at);
         if self.lie == Lie::Corner {
             p = p.map(|x| x - 0.49 * cube.frame.cell_size());
@@ -123,3 +119,5 @@ impl Solid for Reference {
         if self.lie == Lie::Ends { Tag::Empty } else { Tag::Partial }
     }
 }
+
+crate::solid_of_cubes!(Reference);

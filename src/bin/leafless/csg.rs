@@ -80,8 +80,8 @@ struct Report {
     rule: String,
     touch: String,
     timings: Timings,
-    /// Cells that were split.
-    splits: u64,
+    /// Cells that were split; null if there are meshes or octrees in the scene, which work in bulk.
+    splits: Option<u64>,
     /// Half-spaces that were evaluated, at a point or over a box.
     evaluations: u64,
     /// Volume of the undecided cells.
@@ -105,12 +105,16 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         TouchName::Exact => Touch::Exact,
         TouchName::Paper => Touch::Paper,
     };
-    let solid = Counted::new(scene.solid(&frame).of(&input)?.with_touch(touch));
+    let solid = scene.solid(&frame).of(&input)?.with_touch(touch);
+    // To count splits turns off what meshes and octrees do in bulk.
+    let counted = (solid.nesting() == 0).then(|| Counted::new(solid.clone()));
     let read = start.elapsed().as_secs_f64();
 
     let building = Instant::now();
-    let octree =
-        watched("csg", arguments.threads, |control| build(&solid, &frame, arguments.rule.into(), control));
+    let octree = watched("csg", arguments.threads, |control| match &counted {
+        Some(counted) => build(counted, &frame, arguments.rule.into(), control),
+        None => build(&solid, &frame, arguments.rule.into(), control),
+    });
     let octree = octree.of(&input)?.with_metadata(facts(&input, source, arguments));
     let build = building.elapsed().as_secs_f64();
 
@@ -123,14 +127,17 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         output::complain(&format!("{input}: warning: {warning}"));
     }
     let mut info = Info::new(&octree, bytes);
-    info.note_splits(&solid.splits());
+    let splits = counted.as_ref().map(Counted::splits);
+    if let Some(splits) = &splits {
+        info.note_splits(splits);
+    }
     let report = Report {
         input: input.to_string(),
         output: output.to_string(),
         rule: name_of(arguments.rule),
         touch: name_of(arguments.touch),
         timings: Timings { read, build, save, total: start.elapsed().as_secs_f64() },
-        splits: solid.splits().iter().sum(),
+        splits: splits.map(|splits| splits.iter().sum()),
         evaluations: solid.evaluations(),
         undecided_volume: info.volume.width(),
         info,
@@ -159,7 +166,7 @@ fn summary(report: &Report, octree: &Octree) -> String {
     format!(
         "{}: {} octree of depth {}, cells of {}\n\
          volume  {}{}\n\
-         splits  {}, {} evaluations of half-spaces\n\
+         splits  {}{} evaluations of half-spaces\n\
          nodes   {} (a classical octree has {})\n\
          bytes   {}{}\n\
          time    {total}: read {read}, build {build}, save {save}\n",
@@ -173,7 +180,7 @@ fn summary(report: &Report, octree: &Octree) -> String {
             (false, false) => " (the true one lies between)",
             (false, true) => " (that of the part inside of the bounds lies between)",
         },
-        count(report.splits),
+        report.splits.map_or(String::new(), |splits| count(splits) + ", "),
         count(report.evaluations),
         count(info.nodes),
         count(info.classical_nodes),

@@ -54,7 +54,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let mut solids = Vec::new();
     for (name, mesh) in &meshes {
         let (octree, time) = fallible(|| {
-            let solid = MeshSolid::new(mesh.clone(), &frame, FillRule::NonZero)?;
+            let solid = MeshSolid::new(mesh.clone(), FillRule::NonZero)?;
             build(&solid, &frame, Rule::Certified, &control)
         })
         .of(name)?;

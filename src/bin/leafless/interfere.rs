@@ -5,11 +5,11 @@ use crate::input::Input;
 use crate::mesh::Reading;
 use crate::output::{self, count, interval, number};
 use crate::report::Volume;
-use crate::source::{Corners, Source};
+use crate::source::{Corners, Source, evaluations};
 use crate::voxelize::bounds;
 use clap::Args;
 use leafless::{
-    Affine, AnySolid, Clearance, Control, Cube, Error, Frame, Interference, Interval, Overlap, clearance,
+    Affine, Clearance, Control, Cube, Error, Frame, Interference, Interval, Overlap, Prepared, clearance,
     interference,
 };
 use serde::Serialize;
@@ -108,11 +108,12 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             common_frame(first.own_frame(), both, &placement, arguments.depth).of(a)?
         }
     };
-    let (first, second) =
-        (first.placed(a, &Affine::IDENTITY, &frame)?, second.placed(b, &placement, &frame)?);
+    let first = Prepared::new(first.placed(a, &Affine::IDENTITY, &frame)?);
+    let second = Prepared::new(second.placed(b, &placement, &frame)?);
     let control = Control { max_splits: Some(arguments.splits), ..Control::default() };
-    let (found, near) = ask(&first, &second, &frame, &control).map_err(|error| Failure::of(a, error))?;
-    let report = Report::new(&inputs, &frame, &found, &near);
+    let (found, near, evaluations) =
+        ask(&first, &second, &frame, &control).map_err(|error| Failure::of(a, error))?;
+    let report = Report::new(&inputs, &frame, &found, &near, evaluations);
     let text = if arguments.json { output::json(&report)? } else { text(&found, &near, &report) };
     output::print(text.as_bytes())
 }
@@ -151,30 +152,36 @@ fn common_frame(
     Ok(frame)
 }
 
-/// The verdict; then how much, or how far.
+/// The verdict; then how much, or how far; and the evaluations of half-spaces for the verdict.
 fn ask(
-    a: &AnySolid,
-    b: &AnySolid,
+    a: &Prepared,
+    b: &Prepared,
     frame: &Frame,
     control: &Control<'_>,
-) -> Result<(Interference, Clearance), Error> {
+) -> Result<(Interference, Clearance, u64), Error> {
     let mut found = interference(a, b, frame, f64::INFINITY, control)?;
+    let evaluated = evaluations(a.solid()) + evaluations(b.solid());
     if found.verdict == Overlap::Overlapping {
         found.volume = interference(a, b, frame, 0.0, control)?.volume;
         let near = Clearance {
             distance: Interval::exactly(0.0),
             nearest: None,
             splits: [0, 0],
-            evaluations: 0,
             clipped: found.clipped,
         };
-        return Ok((found, near));
+        return Ok((found, near, evaluated));
     }
-    Ok((found, clearance(a, b, frame, 4.0 * frame.cell_size(), control)?))
+    Ok((found, clearance(a, b, frame, 4.0 * frame.cell_size(), control)?, evaluated))
 }
 
 impl Report {
-    fn new([a, b]: &[Input; 2], frame: &Frame, found: &Interference, near: &Clearance) -> Report {
+    fn new(
+        [a, b]: &[Input; 2],
+        frame: &Frame,
+        found: &Interference,
+        near: &Clearance,
+        evaluations: u64,
+    ) -> Report {
         Report {
             a: a.to_string(),
             b: b.to_string(),
@@ -192,7 +199,7 @@ impl Report {
             splits: found.splits.iter().sum(),
             splits_a: found.splits[0],
             splits_b: found.splits[1],
-            evaluations: found.evaluations,
+            evaluations,
             level: found.level,
             depth: frame.depth(),
             origin: frame.origin(),

@@ -6,11 +6,11 @@ use crate::mesh::Reading;
 use crate::output::{self, count, interval};
 use crate::progress::watched;
 use crate::report::Volume;
-use crate::source::Source;
+use crate::source::{Source, evaluations};
 use crate::voxelize::{bounds, threads};
 use clap::Args;
 use leafless::{
-    Affine, Control, Extent, Frame, Interval, MAX_DEPTH, Measured, Measures, bounding_box, measure,
+    Affine, Control, Extent, Frame, Interval, MAX_DEPTH, Measured, Measures, Prepared, bounding_box, measure,
 };
 use serde::Serialize;
 use std::ffi::OsString;
@@ -124,25 +124,26 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         }
     };
     let frame = frame.of(&input)?;
-    let solid = source.placed(&input, &Affine::IDENTITY, &frame)?;
+    let solid = Prepared::new(source.placed(&input, &Affine::IDENTITY, &frame)?);
     let tolerance = arguments.tolerance.unwrap_or(if arguments.splits.is_some() { 0.0 } else { 0.01 });
     let found = watched("measure", arguments.threads, |control| {
         let control = Control { max_splits: arguments.splits, ..*control };
         let measures = measure(&solid, &frame, tolerance, &control)?;
+        let evaluated = evaluations(solid.solid());
         let quiet = Control { progress: None, ..control };
         let extent = bounding_box(&solid, &frame, tolerance.max(SIDES) * frame.edge(), &quiet)?;
-        Ok((measures, extent))
+        Ok((measures, extent, evaluated))
     });
-    let (measures, extent) = found.of(&input)?;
+    let (measures, extent, evaluated) = found.of(&input)?;
     let text = if arguments.json {
-        output::json(&report(&input, &frame, &measures, &extent))?
+        output::json(&report(&input, &frame, &measures, &extent, evaluated))?
     } else {
         text(&measures, &extent, is_stored)
     };
     output::print(text.as_bytes())
 }
 
-fn report(input: &Input, frame: &Frame, measures: &Measures, extent: &Extent) -> Report {
+fn report(input: &Input, frame: &Frame, measures: &Measures, extent: &Extent, evaluations: u64) -> Report {
     Report {
         input: input.to_string(),
         volume: measures.volume.into(),
@@ -157,7 +158,7 @@ fn report(input: &Input, frame: &Frame, measures: &Measures, extent: &Extent) ->
             Measured::Exhausted => "exhausted",
         },
         splits: measures.splits,
-        evaluations: measures.evaluations,
+        evaluations,
         level: measures.level,
         depth: frame.depth(),
         origin: frame.origin(),

@@ -6,7 +6,7 @@ use crate::mesh::{Reading, openness};
 use crate::output;
 use crate::scene::{bounds_of, read_scene};
 use leafless::file::{MeshFormat, Scene};
-use leafless::{Affine, AnySolid, FillRule, Frame, MeshSolid, Octree, Transform, TriangleMesh, file};
+use leafless::{Affine, AnySolid, Csg, FillRule, Frame, MeshSolid, Octree, Transform, TriangleMesh, file};
 use std::path::Path;
 
 /// Of a box, the lower and the upper one.
@@ -73,25 +73,21 @@ impl Source {
         })
     }
 
-    /// The solid under a placement, to be asked about cells of `frame`. A mesh is moved by its vertices, so that nothing
-    /// blurs.
+    /// The solid under a placement, to be asked about cells of `frame`, moved in the best way that its kind knows.
     pub fn placed(self, input: &Input, placement: &Affine, frame: &Frame) -> Result<AnySolid, Failure> {
-        Ok(match self {
-            Source::Octree(octree) if placement.is_identity() && octree.frame().same_universe(frame) => {
-                AnySolid::new(*octree)
+        let solid = match self {
+            Source::Octree(octree) if placement.is_identity() && !octree.frame().same_universe(frame) => {
+                return Ok(AnySolid::new(Transform::of(*octree, placement)));
             }
-            Source::Octree(octree) => {
-                let own = *octree.frame();
-                AnySolid::new(Transform::new(*octree, &own, placement))
-            }
-            Source::Mesh(mesh, fill) => {
-                let mesh = if placement.is_identity() { mesh } else { mesh.placed(placement).of(input)? };
-                AnySolid::new(MeshSolid::new(mesh, frame, fill).of(input)?)
-            }
-            Source::Scene(scene) => {
-                let scene = scene.placed(placement).of(input)?;
-                AnySolid::new(scene.solid(frame).of(input)?)
-            }
-        })
+            Source::Octree(octree) => AnySolid::new(*octree),
+            Source::Mesh(mesh, fill) => AnySolid::new(MeshSolid::new(mesh, fill).of(input)?),
+            Source::Scene(scene) => AnySolid::new(scene.solid(frame).of(input)?),
+        };
+        solid.placed(placement).of(input)
     }
+}
+
+/// Half-spaces that were evaluated for a solid.
+pub fn evaluations(solid: &AnySolid) -> u64 {
+    solid.get::<Csg>().map_or(0, Csg::evaluations)
 }

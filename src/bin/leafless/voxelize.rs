@@ -184,7 +184,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let read = start.elapsed().as_secs_f64();
 
     let building = Instant::now();
-    let solid = MeshSolid::new(mesh, &frame, fill.into()).of(&input)?;
+    let solid = MeshSolid::new(mesh, fill.into()).of(&input)?;
     let octree = watched("voxelize", arguments.threads, |control| {
         build(&solid, &frame, arguments.rule.into(), control)
     });

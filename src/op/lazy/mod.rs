@@ -6,13 +6,14 @@ mod zone;
 
 pub use zone::Zone;
 
+use super::{build_on, gathered};
 use crate::control::{Control, Job, WHOLE};
 use crate::error::Error;
 use crate::lattice::{Cell, Cube, Frame, MAX_DEPTH};
 use crate::octree::{Octree, Rule, Statistics, Tag};
-use crate::op::build;
-use crate::solid::{Solid, Stored, Verdict};
+use crate::solid::{Classifier, PartOf, Solid, Stored, Verdict, Worker, WorkerOf};
 use alloc::string::ToString;
+use alloc::vec::Vec;
 use nodes::{Children, Nodes, Place};
 use trail::Trail;
 use zone::Reach;
@@ -52,8 +53,9 @@ const SOURCE: &str = "source";
 /// ```
 pub struct LazyOctree<S: Solid> {
     solid: S,
+    classifier: S::Classifier,
     nodes: Nodes,
-    trail: Trail<S>,
+    trail: Trail<WorkerOf<S>>,
     /// Cells of each level that were split.
     splits: [u64; MAX_DEPTH as usize],
 }
@@ -105,9 +107,10 @@ impl<S: Solid> LazyOctree<S> {
     /// # Errors
     /// If the solid cannot be had in this frame, or memory runs out.
     pub fn new(solid: S, frame: &Frame) -> Result<LazyOctree<S>, Error> {
-        let trail = Trail::new(&solid, frame)?;
-        let nodes = Nodes::new(*frame, trail.root(), solid.exterior(frame))?;
-        Ok(LazyOctree { solid, nodes, trail, splits: [0; MAX_DEPTH as usize] })
+        let classifier = solid.on(frame, &Control::default())?;
+        let trail = Trail::new(&classifier)?;
+        let nodes = Nodes::new(*frame, trail.root(), classifier.exterior())?;
+        Ok(LazyOctree { solid, classifier, nodes, trail, splits: [0; MAX_DEPTH as usize] })
     }
 
     /// Takes up an octree that [`freeze`](Self::freeze) made of the same solid. `frame` may be deeper than the octree's.
@@ -216,7 +219,7 @@ impl<S: Solid> LazyOctree<S> {
                 if level < cell.level {
                     return refuse("lies in a cell that is still to be split");
                 }
-                let tags = self.split_at(cell, place)?.unwrap_or([Tag::Partial; 8]);
+                let tags = self.split_at(cell, place, &Control::default())?.unwrap_or([Tag::Partial; 8]);
                 for (level, &place) in way.iter().enumerate().take(level.into()).rev() {
                     self.nodes.merge(place, level as u8);
                 }
@@ -226,7 +229,8 @@ impl<S: Solid> LazyOctree<S> {
         })
     }
 
-    /// Splits the cells of a zone down to `level` (0 to the frame's depth), those that can be. One thread does it. Where
+    /// Splits the cells of a zone down to `level` (0 to the frame's depth), those that can be. One thread does it; of a host
+    /// program's shape all threads that `control` allows, level by level, unless nodes or bytes are limited. Where
     /// `control` has a limit (`max_splits`, `max_nodes` and `max_bytes` of all that the octree then holds), that ends
     /// the work, not the octree, and coarser cells are split before finer ones; those of a ray as it meets them.
     ///
@@ -247,7 +251,24 @@ impl<S: Solid> LazyOctree<S> {
         let order = reach.order().unwrap_or(0);
         let left = control.max_splits.unwrap_or(u64::MAX);
         let mut run = Run { control, job: Job::new(control), reach, order, level, left, reports: true };
-        if by_level {
+        let unlimited = control.max_nodes.is_none() && control.max_bytes.is_none();
+        let in_order = run.reach.order().is_some() && control.max_splits.is_some();
+        if unlimited && !in_order && self.trail.likes_many() {
+            // All that is open on a level at once; what the walk below then finds is to be merged.
+            let done = control.run(true, |parallel| {
+                let threads = if parallel { gathered::threads() } else { 1 };
+                for above in 0..level {
+                    if self.split_level(&mut run, above, threads)? == Refined::Spent {
+                        return Ok(Refined::Spent);
+                    }
+                }
+                Ok(Refined::Done)
+            });
+            if !matches!(done, Ok(Refined::Done)) {
+                self.merge_below(Nodes::ROOT, 0);
+                return done;
+            }
+        } else if by_level {
             run.reports = false;
             for above in 1..level {
                 run.level = above;
@@ -262,6 +283,81 @@ impl<S: Solid> LazyOctree<S> {
         self.visit(&mut run, Cell::ROOT, Nodes::ROOT)
     }
 
+    /// Splits all cells of a level that are open in the zone, as many as may be, by as many threads as may be.
+    fn split_level(&mut self, run: &mut Run<'_>, level: u8, threads: usize) -> Result<Refined, Error> {
+        run.job.check()?;
+        let mut open = Vec::new();
+        self.collect(run, level, Cell::ROOT, Nodes::ROOT, &mut open)?;
+        let done = if open.len() as u64 > run.left { Refined::Spent } else { Refined::Done };
+        open.truncate(usize::try_from(run.left).unwrap_or(usize::MAX));
+        let LazyOctree { classifier, trail, nodes, splits, .. } = self;
+        let (worker, asked) = trail.worker();
+        let mark = worker.mark();
+        let (mut cells, mut places) = (Vec::new(), Vec::new());
+        cells.try_reserve_exact(open.len()).map_err(|_| Error::OutOfMemory)?;
+        places.try_reserve_exact(open.len()).map_err(|_| Error::OutOfMemory)?;
+        for (cell, place) in open {
+            // Each part stands alone.
+            if let Some(part) = worker.recall(cell) {
+                cells.push((cell, part));
+                places.push(place);
+            }
+        }
+        let control = run.control;
+        let ask = |worker: &mut WorkerOf<S>, cells: &[(Cell, PartOf<S>)], verdicts: &mut Vec<_>| {
+            worker.split_many(cells, control, verdicts)
+        };
+        // Of what was asked before an error nothing is lost.
+        let asked_all = gathered::each_known(classifier, worker, &cells, threads, ask, |i, verdicts| {
+            nodes.open(places[i], level, Children::new(&verdicts))?;
+            splits[level as usize] += 1;
+            *asked += 1;
+            run.left -= 1;
+            Ok(())
+        });
+        worker.release(mark);
+        asked_all?;
+        Ok(done)
+    }
+
+    /// Merges what agrees. The recursion is as deep as the octree.
+    fn merge_below(&mut self, place: Place, level: u8) {
+        if self.nodes.tag(place) == Tag::Branch {
+            for octant in 0..8 {
+                self.merge_below(self.nodes.child(place, octant), level + 1);
+            }
+            self.nodes.merge(place, level);
+        }
+    }
+
+    /// Appends the cells of a level that are open in the zone. The recursion is as deep as the octree.
+    fn collect(
+        &self,
+        run: &Run<'_>,
+        level: u8,
+        cell: Cell,
+        place: Place,
+        open: &mut Vec<(Cell, Place)>,
+    ) -> Result<(), Error> {
+        match self.nodes.tag(place) {
+            Tag::Partial if cell.level == level && !self.nodes.is_hopeless(place) => {
+                open.try_reserve(1).map_err(|_| Error::OutOfMemory)?;
+                open.push((cell, place));
+            }
+            Tag::Branch if cell.level < level => {
+                for octant in 0..8 {
+                    let octant = octant ^ run.order;
+                    let child = cell.child(octant);
+                    if run.reach.meets(&Cube { frame: self.nodes.frame(), cell: child }) {
+                        self.collect(run, level, child, self.nodes.child(place, octant), open)?;
+                    }
+                }
+            }
+            _ => {}
+        }
+        Ok(())
+    }
+
     /// Refines a cell. The recursion is as deep as the octree, twenty levels at the most.
     fn visit(&mut self, run: &mut Run<'_>, cell: Cell, place: Place) -> Result<Refined, Error> {
         if self.nodes.tag(place) == Tag::Partial && cell.level < run.level && !self.nodes.is_hopeless(place) {
@@ -269,7 +365,7 @@ impl<S: Solid> LazyOctree<S> {
                 return Ok(Refined::Spent);
             }
             run.job.check()?;
-            run.left -= self.split_at(cell, place)?.is_some() as u64;
+            run.left -= self.split_at(cell, place, run.control)?.is_some() as u64;
         }
         if self.nodes.tag(place) == Tag::Branch && cell.level + 1 < run.level {
             let done = self.visit_children(run, cell, place);
@@ -299,9 +395,14 @@ impl<S: Solid> LazyOctree<S> {
 
     /// Splits a PARTIAL cell of which it is not known that this does not help: the tags of its children, or `None` if it
     /// does not.
-    fn split_at(&mut self, cell: Cell, place: Place) -> Result<Option<[Tag; 8]>, Error> {
+    fn split_at(
+        &mut self,
+        cell: Cell,
+        place: Place,
+        control: &Control<'_>,
+    ) -> Result<Option<[Tag; 8]>, Error> {
         let at_hand = self.trail.at_hand(cell) as u8;
-        let led = self.trail.lead(&self.solid, self.nodes.frame(), cell);
+        let led = self.trail.lead(cell, control);
         self.check(cell, at_hand)?;
         led?;
         let Some(verdicts) = self.trail.verdicts(cell.level) else {
@@ -353,11 +454,6 @@ impl<S: Solid> LazyOctree<S> {
         self.trail.splits().saturating_sub(self.splits())
     }
 
-    /// Half-spaces that were evaluated for all of that, each at a point or over a box, as the solid counts them.
-    pub fn evaluations(&self) -> u64 {
-        self.trail.evaluations()
-    }
-
     /// Bytes that the split cells take.
     pub fn bytes(&self) -> u64 {
         self.nodes.bytes()
@@ -369,7 +465,7 @@ impl<S: Solid> LazyOctree<S> {
     /// # Errors
     /// What `control` asks for; [`Error::OutOfMemory`].
     pub fn freeze(&self, control: &Control<'_>) -> Result<Octree, Error> {
-        let octree = build(&self.nodes, self.frame(), Rule::Certified, control)?;
+        let octree = build_on(&&self.nodes, Rule::Certified, control)?;
         let Some(fingerprint) = self.solid.fingerprint() else { return Ok(octree) };
         let mut metadata = octree.metadata().clone();
         metadata.insert(SOURCE, fingerprint.to_string());

@@ -1,10 +1,11 @@
 //! What a lazy octree remembers of its cells.
 
+use crate::control::Control;
 use crate::error::Error;
-use crate::lattice::{Cell, Cube, Frame, MAX_DEPTH};
+use crate::lattice::{Cell, Frame, MAX_DEPTH};
 use crate::octree::view::LevelCounts;
 use crate::octree::{Node, Statistics, Tag};
-use crate::solid::{Solid, Verdict};
+use crate::solid::{Classifier, OCTANTS, Solid, Verdict, Worker};
 use alloc::vec::Vec;
 
 /// What is known of the eight children of a cell.
@@ -270,20 +271,43 @@ impl Nodes {
 }
 
 /// As far as it is known: what is not split stays undecided. Parts are the places of splits.
-impl Solid for Nodes {
-    type Part = usize;
-    type Scratch = ();
+impl<'n> Solid for &'n Nodes {
+    type Classifier = &'n Nodes;
 
-    fn root(&self, _: &mut (), _: &Frame) -> Result<Verdict<usize>, Error> {
+    fn on(&self, _: &Frame, _: &Control<'_>) -> Result<&'n Nodes, Error> {
+        Ok(self)
+    }
+}
+
+impl Classifier for &Nodes {
+    type Worker = Self;
+
+    fn frame(&self) -> &Frame {
+        &self.frame
+    }
+
+    fn worker(&self) -> Result<Self, Error> {
+        Ok(self)
+    }
+
+    fn exterior(&self) -> Tag {
+        self.exterior
+    }
+}
+
+impl Worker for &Nodes {
+    type Part = usize;
+
+    fn frame(&self) -> &Frame {
+        &self.frame
+    }
+
+    fn root(&mut self) -> Result<Verdict<usize>, Error> {
         Ok(self.verdict(Nodes::ROOT))
     }
 
-    fn split(&self, _: &mut (), _: &Cube<'_>, part: &usize) -> Result<[Verdict<usize>; 8], Error> {
-        Ok([0, 1, 2, 3, 4, 5, 6, 7].map(|octant| self.verdict(Place { split: *part, octant })))
-    }
-
-    fn exterior(&self, _: &Frame) -> Tag {
-        self.exterior
+    fn split(&mut self, _: Cell, part: &usize) -> Result<[Verdict<usize>; 8], Error> {
+        Ok(OCTANTS.map(|octant| self.verdict(Place { split: *part, octant })))
     }
 }
 

@@ -1,8 +1,10 @@
 //! How a solid's parts are had again.
 
+use crate::control::Control;
 use crate::error::Error;
-use crate::lattice::{Cell, Cube, Frame};
-use crate::solid::{Scratch, Solid, Verdict};
+use crate::lattice::Cell;
+use crate::op::split_one;
+use crate::solid::{Classifier, Verdict, Worker};
 use alloc::vec::Vec;
 
 /// One split on the way.
@@ -14,38 +16,50 @@ struct Step<P> {
 
 /// The splits from the universe to one cell, which have its part: to split another cell, those are replayed that do not
 /// lie on the way to this one, too.
-pub(super) struct Trail<S: Solid> {
-    scratch: S::Scratch,
-    root: Verdict<S::Part>,
+pub(super) struct Trail<W: Worker> {
+    worker: W,
+    root: Verdict<W::Part>,
     /// Where the way leads.
     cell: Cell,
     /// `steps[i]` is the split of the ancestor of `cell` at level i; the last may be its own.
-    steps: Vec<Step<S::Part>>,
+    steps: Vec<Step<W::Part>>,
+    /// The split of `cell` itself, if its part was had without the way.
+    own: Option<[Verdict<W::Part>; 8]>,
     splits: u64,
 }
 
-impl<S: Solid> Trail<S> {
+impl<W: Worker> Trail<W> {
     /// Asks the solid for the universe.
-    pub(super) fn new(solid: &S, frame: &Frame) -> Result<Trail<S>, Error> {
-        let mut scratch = S::Scratch::default();
-        let root = solid.root(&mut scratch, frame)?;
+    pub(super) fn new(classifier: &impl Classifier<Worker = W>) -> Result<Trail<W>, Error> {
+        let mut worker = classifier.worker()?;
+        let root = worker.root()?;
         let mut steps = Vec::new();
-        steps.try_reserve_exact(frame.depth().into()).map_err(|_| Error::OutOfMemory)?;
-        Ok(Trail { scratch, root, cell: Cell::ROOT, steps, splits: 0 })
+        let depth: usize = worker.frame().depth().into();
+        steps.try_reserve_exact(depth).map_err(|_| Error::OutOfMemory)?;
+        Ok(Trail { worker, root, cell: Cell::ROOT, steps, own: None, splits: 0 })
+    }
+
+    /// Whether many cells are better split at once, and each without the way to it.
+    pub(super) fn likes_many(&mut self) -> bool {
+        let mark = self.worker.mark();
+        let alone = self.worker.likes_many() && self.worker.recall(Cell::ROOT).is_some();
+        self.worker.release(mark);
+        alone
+    }
+
+    /// The worker, for cells that are split without the way to them; and a count of their splits.
+    pub(super) fn worker(&mut self) -> (&mut W, &mut u64) {
+        (&mut self.worker, &mut self.splits)
     }
 
     /// The verdict of the universe.
-    pub(super) fn root(&self) -> &Verdict<S::Part> {
+    pub(super) fn root(&self) -> &Verdict<W::Part> {
         &self.root
     }
 
     /// Splits that the solid was asked for.
     pub(super) fn splits(&self) -> u64 {
         self.splits
-    }
-
-    pub(super) fn evaluations(&self) -> u64 {
-        self.scratch.evaluations()
     }
 
     /// The splits at hand that lie on the way to `cell`, which ends with its own.
@@ -59,8 +73,11 @@ impl<S: Solid> Trail<S> {
     }
 
     /// What the solid says of the children of `cell`'s ancestor at `level`, if [`lead`](Self::lead) came that far.
-    pub(super) fn verdicts(&self, level: u8) -> Option<&[Verdict<S::Part>; 8]> {
-        self.steps.get(level as usize).map(|step| &step.verdicts)
+    pub(super) fn verdicts(&self, level: u8) -> Option<&[Verdict<W::Part>; 8]> {
+        match &self.own {
+            Some(own) => (level == self.cell.level).then_some(own),
+            None => self.steps.get(level as usize).map(|step| &step.verdicts),
+        }
     }
 
     /// Leads the way to `cell`, which is above the frame's depth, and splits it. It ends before a cell that the solid
@@ -68,7 +85,16 @@ impl<S: Solid> Trail<S> {
     ///
     /// # Errors
     /// The solid's own; the way then ends where they occurred.
-    pub(super) fn lead(&mut self, solid: &S, frame: &Frame, cell: Cell) -> Result<(), Error> {
+    pub(super) fn lead(&mut self, cell: Cell, control: &Control<'_>) -> Result<(), Error> {
+        let mark = self.worker.mark();
+        if let Some(part) = self.worker.recall(cell) {
+            self.own = None;
+            let verdicts = split_one(&mut self.worker, cell, &part, control);
+            self.worker.release(mark);
+            (self.own, self.cell) = (Some(verdicts?), cell);
+            self.splits += 1;
+            return Ok(());
+        }
         self.cut(self.at_hand(cell));
         self.cell = cell;
         for level in self.steps.len() as u8..=cell.level {
@@ -78,11 +104,11 @@ impl<S: Solid> Trail<S> {
                 None => &self.root,
             };
             let Verdict::Partial(part) = verdict else { return Ok(()) };
-            let mark = self.scratch.mark();
-            match solid.split(&mut self.scratch, &Cube { frame, cell: ancestor }, part) {
+            let mark = self.worker.mark();
+            match split_one(&mut self.worker, ancestor, part, control) {
                 Ok(verdicts) => self.steps.push(Step { mark, verdicts }),
                 Err(error) => {
-                    self.scratch.release(mark);
+                    self.worker.release(mark);
                     return Err(error);
                 }
             }
@@ -94,7 +120,7 @@ impl<S: Solid> Trail<S> {
     /// Forgets all but the first `steps` splits.
     pub(super) fn cut(&mut self, steps: usize) {
         if let Some(step) = self.steps.get(steps) {
-            self.scratch.release(step.mark);
+            self.worker.release(step.mark);
             self.steps.truncate(steps);
         }
     }

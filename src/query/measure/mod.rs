@@ -9,7 +9,7 @@ use crate::control::Control;
 use crate::error::Error;
 use crate::lattice::{Frame, Interval};
 use crate::octree::Tag;
-use crate::solid::Solid;
+use crate::solid::{Classifier, Solid};
 use bounds::Known;
 
 /// Why measuring ended.
@@ -47,8 +47,6 @@ pub struct Measures {
     pub level: u8,
     /// How many times a cell was split.
     pub splits: u64,
-    /// Evaluations of half-spaces, for solids that count them.
-    pub evaluations: u64,
 }
 
 /// Measures `solid` in the universe of `frame`, without building a tree: the largest undecided cells are split first,
@@ -85,17 +83,17 @@ pub fn measure<S: Solid>(
     control: &Control<'_>,
 ) -> Result<Measures, Error> {
     check_tolerance(tolerance)?;
-    let walked = walk::walk(solid, frame, tolerance, control)?;
+    let classifier = solid.on(frame, control)?;
+    let walked = walk::walk(&classifier, tolerance, control)?;
     let known = Known { frame, full: walked.full, open: walked.open };
     Ok(Measures {
         volume: known.volume(),
         centroid: known.centroid(),
         inertia_about_origin: known.inertia_about_origin(),
         inertia_about_centroid: known.inertia_about_centroid(),
-        clipped: solid.exterior(frame) != Tag::Empty,
+        clipped: classifier.exterior() != Tag::Empty,
         measured: walked.measured,
         level: walked.level,
         splits: walked.splits,
-        evaluations: walked.evaluations,
     })
 }

@@ -9,8 +9,9 @@ use super::Measured;
 use super::moments::{Moments, Tally};
 use crate::control::{Control, Job, WHOLE};
 use crate::error::Error;
-use crate::lattice::{Cell, Cube, Frame};
-use crate::solid::{Scratch, Solid, Verdict};
+use crate::lattice::{Cell, Frame};
+use crate::op::{gathered, split_one};
+use crate::solid::{Classifier, Verdict, Worker};
 use alloc::vec::Vec;
 use core::ops::AddAssign;
 
@@ -19,6 +20,9 @@ const LONG_FRONT: usize = 1 << 16;
 
 /// Cells of the front that have their scratch memory in common, and that one thread takes on at once.
 const CHUNK: usize = 1 << 8;
+
+/// A longer front of a solid that is asked about all of it at once is not split further.
+const LONG_GATHERED: usize = 1 << 22;
 
 /// What was found.
 pub(super) struct Walked {
@@ -29,7 +33,6 @@ pub(super) struct Walked {
     pub(super) measured: Measured,
     pub(super) level: u8,
     pub(super) splits: u64,
-    pub(super) evaluations: u64,
 }
 
 /// Moments of FULL and of undecided cells.
@@ -62,54 +65,69 @@ impl Tallies {
     }
 }
 
-/// Neighbouring cells of the front, in Morton order.
-struct Chunk<S: Solid> {
-    scratch: S::Scratch,
-    cells: Vec<(Cell, S::Part)>,
+/// Neighbouring cells of the front, in Morton order, with the worker that has their parts.
+struct Chunk<W: Worker> {
+    worker: W,
+    cells: Vec<(Cell, W::Part)>,
     /// The cells themselves, or what the last whole pass has found below them.
     found: Found,
 }
 
-impl<S: Solid> Chunk<S> {
-    /// Cells with parts in this scratch memory.
-    fn new(scratch: S::Scratch, cells: Vec<(Cell, S::Part)>, frame: &Frame) -> Chunk<S> {
+impl<W: Worker> Chunk<W> {
+    /// Cells with parts of this worker.
+    fn new(worker: W, cells: Vec<(Cell, W::Part)>, frame: &Frame) -> Chunk<W> {
         let mut tallies = Tallies::new(frame);
         cells.iter().for_each(|&(cell, _)| tallies.open.add(cell));
-        Chunk { scratch, cells, found: tallies.finish() }
+        Chunk { worker, cells, found: tallies.finish() }
     }
 }
 
-/// Splits `solid` until one of the reasons to end is met.
-pub(super) fn walk<S: Solid>(
-    solid: &S,
-    frame: &Frame,
+/// Splits a solid until one of the reasons to end is met.
+pub(super) fn walk<C: Classifier>(
+    classifier: &C,
     tolerance: f64,
     control: &Control<'_>,
 ) -> Result<Walked, Error> {
     let job = Job::new(control);
     job.check()?;
     // Shallow walks are done faster than threads are made.
-    control.run(frame.depth() > 5, |parallel| {
-        let walk = Walk { solid, frame, tolerance, max_splits: control.max_splits, job: &job, parallel };
+    let frame = classifier.frame();
+    let likes_many = classifier.worker()?.likes_many();
+    control.run(frame.depth() > 5 || likes_many, |parallel| {
+        // All of a front is asked at once.
+        let (chunk, long) = if likes_many { (usize::MAX, LONG_GATHERED) } else { (CHUNK, LONG_FRONT) };
+        let max_splits = control.max_splits;
+        let walk = Walk { classifier, frame, tolerance, max_splits, job: &job, chunk, long, parallel };
         walk.run()
     })
 }
 
-struct Walk<'a, S> {
-    solid: &'a S,
+struct Walk<'a, C> {
+    classifier: &'a C,
     frame: &'a Frame,
     tolerance: f64,
     max_splits: Option<u64>,
     job: &'a Job<'a>,
+    /// Cells of a chunk, and of a front that is split further.
+    chunk: usize,
+    long: usize,
     #[cfg_attr(not(feature = "parallel"), allow(dead_code))]
     parallel: bool,
 }
 
-impl<S: Solid> Walk<'_, S> {
+type Part<C> = <<C as Classifier>::Worker as Worker>::Part;
+
+/// The cells of the front.
+type Front<C> = Vec<Chunk<<C as Classifier>::Worker>>;
+
+/// A worker, and cells with its parts.
+type Out<C> = (<C as Classifier>::Worker, Vec<(Cell, Part<C>)>);
+
+impl<C: Classifier> Walk<'_, C> {
     fn run(&self) -> Result<Walked, Error> {
         let budget = self.max_splits.unwrap_or(u64::MAX);
         let (mut settled, mut front) = self.root()?;
-        let (mut level, mut left, mut evaluations) = (0, budget, 0);
+        let (mut level, mut left) = (0, budget);
         // Whether all of the front was split, and whether the last pass ended at cells that can be.
         let (mut whole, mut splittable) = (true, true);
         let mut unreported = WHOLE;
@@ -127,11 +145,10 @@ impl<S: Solid> Walk<'_, S> {
             }
             let share = unreported / 2;
             unreported -= share;
-            if length <= LONG_FRONT {
+            if length <= self.long {
                 whole = length as u64 <= left;
                 let (found, next) = self.split(&mut front, &mut left)?;
                 settled += found;
-                evaluations += count_evaluations(&front);
                 front = next;
                 level += whole as u8;
                 self.job.advance(share);
@@ -145,16 +162,15 @@ impl<S: Solid> Walk<'_, S> {
         };
         self.job.advance(unreported);
         let Found { full, open } = total(settled, &front);
-        evaluations += count_evaluations(&front);
-        Ok(Walked { full, open, measured, level, splits: budget - left, evaluations })
+        Ok(Walked { full, open, measured, level, splits: budget - left })
     }
 
     /// What is settled at once, and the first front.
-    fn root(&self) -> Result<(Found, Vec<Chunk<S>>), Error> {
-        let mut scratch = S::Scratch::default();
+    fn root(&self) -> Result<(Found, Front<C>), Error> {
+        let mut worker = self.classifier.worker()?;
         let mut settled = Tallies::new(self.frame);
         let mut cells = Vec::new();
-        match self.solid.root(&mut scratch, self.frame)? {
+        match worker.root()? {
             Verdict::Empty => {}
             Verdict::Full => settled.full.add(Cell::ROOT),
             Verdict::Undecided => settled.open.add(Cell::ROOT),
@@ -165,7 +181,7 @@ impl<S: Solid> Walk<'_, S> {
         }
         let mut front = Vec::new();
         front.try_reserve_exact(1).map_err(|_| Error::OutOfMemory)?;
-        front.push(Chunk::new(scratch, cells, self.frame));
+        front.push(Chunk::new(worker, cells, self.frame));
         Ok((settled.finish(), front))
     }
 
@@ -191,7 +207,7 @@ impl<S: Solid> Walk<'_, S> {
     }
 
     /// Splits the cells of the front, as many as may be: what is settled by it, and the new front.
-    fn split(&self, front: &mut [Chunk<S>], left: &mut u64) -> Result<(Found, Vec<Chunk<S>>), Error> {
+    fn split(&self, front: &mut [Chunk<C::Worker>], left: &mut u64) -> Result<(Found, Front<C>), Error> {
         let mut tasks = Vec::new();
         tasks.try_reserve_exact(front.len()).map_err(|_| Error::OutOfMemory)?;
         for chunk in front {
@@ -210,37 +226,59 @@ impl<S: Solid> Walk<'_, S> {
     }
 
     /// Splits the first `count` cells of a chunk; the others are settled as undecided.
-    fn split_chunk(&self, chunk: &mut Chunk<S>, count: usize) -> Result<(Found, Vec<Chunk<S>>), Error> {
+    fn split_chunk(&self, chunk: &mut Chunk<C::Worker>, count: usize) -> Result<(Found, Front<C>), Error> {
         let mut settled = Tallies::new(self.frame);
-        let mut next: Vec<Chunk<S>> = Vec::new();
-        let (mut scratch, mut cells) = (S::Scratch::default(), Vec::new());
-        for (i, (cell, part)) in chunk.cells.iter().enumerate() {
-            if i >= count {
-                settled.open.add(*cell);
-                continue;
-            }
+        let mut next: Front<C> = Vec::new();
+        chunk.cells.iter().skip(count).for_each(|&(cell, _)| settled.open.add(cell));
+        let mut verdicts = Vec::new();
+        let mut out: Option<Out<C>> = None;
+        let many = chunk.worker.likes_many();
+        let step = if many { count.max(1) } else { 1 };
+        for cells in chunk.cells[..count].chunks(step) {
             self.job.check()?;
-            let mark = chunk.scratch.mark();
-            let cube = Cube { frame: self.frame, cell: *cell };
-            for (octant, verdict) in (0..8).zip(self.solid.split(&mut chunk.scratch, &cube, part)?) {
-                let child = cell.child(octant);
-                match verdict {
-                    Verdict::Empty => {}
-                    Verdict::Full => settled.full.add(child),
-                    Verdict::Partial(part) if child.level < self.frame.depth() => {
-                        let part = self.solid.hand_over(&chunk.scratch, &part, &mut scratch)?;
-                        cells.try_reserve(1).map_err(|_| Error::OutOfMemory)?;
-                        cells.push((child, part));
+            let mark = chunk.worker.mark();
+            verdicts.clear();
+            if many {
+                let threads = if self.parallel { gathered::threads() } else { 1 };
+                verdicts = gathered::each(
+                    self.classifier,
+                    &mut chunk.worker,
+                    cells,
+                    threads,
+                    |own, cells, verdicts| own.split_many(cells, self.job.control(), verdicts),
+                )?;
+            } else {
+                let (cell, part) = &cells[0];
+                verdicts.push(chunk.worker.split(*cell, part)?);
+            }
+            for ((cell, _), children) in cells.iter().zip(verdicts.drain(..)) {
+                for (octant, verdict) in (0..8).zip(children) {
+                    let child = cell.child(octant);
+                    match verdict {
+                        Verdict::Empty => {}
+                        Verdict::Full => settled.full.add(child),
+                        Verdict::Partial(part) if child.level < self.frame.depth() => {
+                            let (worker, cells) = match &mut out {
+                                Some(out) => out,
+                                none => none.insert((self.classifier.worker()?, Vec::new())),
+                            };
+                            let part = worker.hand_over(&chunk.worker, &part)?;
+                            cells.try_reserve(1).map_err(|_| Error::OutOfMemory)?;
+                            cells.push((child, part));
+                        }
+                        Verdict::Undecided | Verdict::Partial(_) => settled.open.add(child),
                     }
-                    Verdict::Undecided | Verdict::Partial(_) => settled.open.add(child),
+                }
+                if let Some((worker, cells)) = out.take_if(|(_, cells)| cells.len() >= self.chunk) {
+                    next.try_reserve(1).map_err(|_| Error::OutOfMemory)?;
+                    next.push(Chunk::new(worker, cells, self.frame));
                 }
             }
-            chunk.scratch.release(mark);
-            if cells.len() >= CHUNK || i + 1 == count && !cells.is_empty() {
-                let (scratch, cells) = (core::mem::take(&mut scratch), core::mem::take(&mut cells));
-                next.try_reserve(1).map_err(|_| Error::OutOfMemory)?;
-                next.push(Chunk::new(scratch, cells, self.frame));
-            }
+            chunk.worker.release(mark);
+        }
+        if let Some((worker, cells)) = out {
+            next.try_reserve(1).map_err(|_| Error::OutOfMemory)?;
+            next.push(Chunk::new(worker, cells, self.frame));
         }
         Ok((settled.finish(), next))
     }
@@ -250,7 +288,7 @@ impl<S: Solid> Walk<'_, S> {
     /// order.)
     fn deepen(
         &self,
-        front: &mut [Chunk<S>],
+        front: &mut [Chunk<C::Worker>],
         target: u8,
         left: &mut u64,
         share: usize,
@@ -282,12 +320,17 @@ impl<S: Solid> Walk<'_, S> {
     }
 
     /// As [`deepen`](Self::deepen) below one chunk, which stays as it was if the budget ends it.
-    fn deepen_chunk(&self, chunk: &mut Chunk<S>, target: u8, left: &mut u64) -> Result<Option<bool>, Error> {
-        let mark = chunk.scratch.mark();
+    fn deepen_chunk(
+        &self,
+        chunk: &mut Chunk<C::Worker>,
+        target: u8,
+        left: &mut u64,
+    ) -> Result<Option<bool>, Error> {
+        let mark = chunk.worker.mark();
         let mut pass = Pass { target, found: Tallies::new(self.frame), splittable: false };
         for (cell, part) in &chunk.cells {
-            if !self.descend(&mut chunk.scratch, *cell, part, &mut pass, left)? {
-                chunk.scratch.release(mark);
+            if !self.descend(&mut chunk.worker, *cell, part, &mut pass, left)? {
+                chunk.worker.release(mark);
                 return Ok(None);
             }
         }
@@ -299,9 +342,9 @@ impl<S: Solid> Walk<'_, S> {
     /// recursion is as deep as the frame at the most, 20 levels.
     fn descend(
         &self,
-        scratch: &mut S::Scratch,
+        worker: &mut C::Worker,
         cell: Cell,
-        part: &S::Part,
+        part: &Part<C>,
         pass: &mut Pass,
         left: &mut u64,
     ) -> Result<bool, Error> {
@@ -310,15 +353,14 @@ impl<S: Solid> Walk<'_, S> {
         }
         *left -= 1;
         self.job.check()?;
-        let mark = scratch.mark();
-        let cube = Cube { frame: self.frame, cell };
-        for (octant, verdict) in (0..8).zip(self.solid.split(scratch, &cube, part)?) {
+        let mark = worker.mark();
+        for (octant, verdict) in (0..8).zip(split_one(worker, cell, part, self.job.control())?) {
             let child = cell.child(octant);
             match verdict {
                 Verdict::Empty => {}
                 Verdict::Full => pass.found.full.add(child),
                 Verdict::Partial(part) if child.level < pass.target => {
-                    if !self.descend(scratch, child, &part, pass, left)? {
+                    if !self.descend(worker, child, &part, pass, left)? {
                         return Ok(false);
                     }
                 }
@@ -329,7 +371,7 @@ impl<S: Solid> Walk<'_, S> {
                 Verdict::Undecided => pass.found.open.add(child),
             }
         }
-        scratch.release(mark);
+        worker.release(mark);
         Ok(true)
     }
 
@@ -361,12 +403,8 @@ struct Pass {
     splittable: bool,
 }
 
-fn total<S: Solid>(settled: Found, front: &[Chunk<S>]) -> Found {
+fn total<W: Worker>(settled: Found, front: &[Chunk<W>]) -> Found {
     let mut total = settled;
     front.iter().for_each(|chunk| total += chunk.found);
     total
-}
-
-fn count_evaluations<S: Solid>(front: &[Chunk<S>]) -> u64 {
-    front.iter().map(|chunk| chunk.scratch.evaluations()).sum()
 }

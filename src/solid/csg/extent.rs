@@ -2,10 +2,10 @@
 
 use super::program::MOST;
 use super::{Join, Kind, Node};
-use crate::lattice::exact::{sign_of_sum, two_product, two_sum};
-use crate::lattice::{Affine, Frame};
+use crate::lattice::{Affine, Bounds, Frame};
 use crate::octree::Tag;
-use crate::solid::Solid;
+use crate::solid::AnySolid;
+use alloc::sync::Arc;
 use alloc::vec::Vec;
 
 /// What a solid surely does not reach beyond, in model units.
@@ -13,22 +13,24 @@ use alloc::vec::Vec;
 pub(super) enum Extent {
     /// It is empty.
     Nothing,
-    /// The box between two corners.
-    Box([f64; 3], [f64; 3]),
+    /// A box.
+    Box(Bounds),
     /// Nobody knows.
     Unbounded,
 }
 
 impl Extent {
+    /// Of what is known to lie in a box, or not.
+    pub(super) fn of(bounds: Option<Bounds>) -> Extent {
+        bounds.map_or(Extent::Unbounded, Extent::Box)
+    }
+
     /// Whether the solid surely lies in the universe.
     fn within(self, frame: &Frame) -> bool {
         match self {
             Extent::Nothing => true,
             Extent::Unbounded => false,
-            Extent::Box(min, max) => (0..3).all(|axis| {
-                let origin = frame.origin()[axis];
-                min[axis] >= origin && sign_of_sum(&[origin, frame.edge(), -max[axis]]) >= 0
-            }),
+            Extent::Box(bounds) => bounds.is_within(frame),
         }
     }
 
@@ -36,10 +38,7 @@ impl Extent {
     pub(super) fn hull(self, other: Extent) -> Extent {
         match (self, other) {
             (Extent::Nothing, extent) | (extent, Extent::Nothing) => extent,
-            (Extent::Box(a, b), Extent::Box(c, d)) => Extent::Box(
-                [0, 1, 2].map(|axis| a[axis].min(c[axis])),
-                [0, 1, 2].map(|axis| b[axis].max(d[axis])),
-            ),
+            (Extent::Box(a), Extent::Box(b)) => Extent::Box(a.hull(&b)),
             _ => Extent::Unbounded,
         }
     }
@@ -48,46 +47,73 @@ impl Extent {
     pub(super) fn common(self, other: Extent) -> Extent {
         match (self, other) {
             (Extent::Unbounded, extent) | (extent, Extent::Unbounded) => extent,
-            (Extent::Box(a, b), Extent::Box(c, d)) => {
-                let low = [0, 1, 2].map(|axis| a[axis].max(c[axis]));
-                let high = [0, 1, 2].map(|axis| b[axis].min(d[axis]));
-                if (0..3).any(|axis| low[axis] > high[axis]) {
-                    Extent::Nothing
-                } else {
-                    Extent::Box(low, high)
-                }
-            }
+            (Extent::Box(a), Extent::Box(b)) => a.common(&b).map_or(Extent::Nothing, Extent::Box),
             _ => Extent::Nothing,
         }
     }
 
     /// Of the solid under a placement, rounded outward.
     pub(super) fn placed(self, placement: &Affine) -> Extent {
-        let Extent::Box(low, high) = self else { return self };
-        let (mut min, mut max) = ([0.0; 3], [0.0; 3]);
-        for (i, row) in placement.rows().iter().enumerate() {
-            let (mut least, mut most, mut size) = (row[3], row[3], row[3].abs());
-            // Where nothing is rounded; in numbers this small errors get lost.
-            let is_tellable = |c: f64| c == 0.0 || c.abs() > 1e-100;
-            let mut is_exact = low.iter().chain(&high).all(|&end| is_tellable(end));
-            for axis in 0..3 {
-                let [a, b] = [low[axis], high[axis]].map(|end| two_product(row[axis], end));
-                let (a, b) = if a.0 <= b.0 { (a, b) } else { (b, a) };
-                let (lower, upper) = (two_sum(least, a.0), two_sum(most, b.0));
-                is_exact &= [a.1, b.1, lower.1, upper.1] == [0.0; 4];
-                (least, most, size) = (lower.0, upper.0, size + a.0.abs().max(b.0.abs()));
-            }
-            // Each summand is rounded at most six times.
-            let error = if is_exact { 0.0 } else { 16.0 * f64::EPSILON * size + f64::MIN_POSITIVE };
-            (min[i], max[i]) = (least - error, most + error);
+        match self {
+            Extent::Box(bounds) => Extent::of(bounds.placed(placement)),
+            other => other,
         }
-        if min.iter().chain(&max).all(|c| c.is_finite()) { Extent::Box(min, max) } else { Extent::Unbounded }
+    }
+}
+
+/// The placements that a node stands under, from the inside out.
+pub(super) struct Outward {
+    placement: Affine,
+    outer: Option<Arc<Outward>>,
+    /// How many there are, this one included.
+    count: u32,
+}
+
+/// Placements within each other through which boxes are followed.
+const MOST_FOLLOWED: u32 = 64;
+
+/// A box in unit coordinates, in which the universe is [0, 1]³.
+pub(super) type UnitBox = ([f64; 3], [f64; 3]);
+
+impl Outward {
+    pub(super) fn new(placement: &Affine, outer: Option<Arc<Outward>>) -> Arc<Outward> {
+        let count = outer.as_ref().map_or(0, |outer| outer.count) + 1;
+        // Of more of them nothing is known, and none is kept.
+        let outer = outer.filter(|_| count <= MOST_FOLLOWED);
+        Arc::new(Outward { placement: *placement, outer, count: count.min(MOST_FOLLOWED + 1) })
+    }
+
+    /// The box around an extent in unit coordinates, rounded outward; `None` if there is none.
+    pub(super) fn into_universe(this: Option<&Outward>, extent: Extent, frame: &Frame) -> Option<UnitBox> {
+        if this.is_some_and(|outward| outward.count > MOST_FOLLOWED) {
+            return None;
+        }
+        let (mut extent, mut next) = (extent, this);
+        while let (Extent::Box(_), Some(outward)) = (extent, next) {
+            (extent, next) = (extent.placed(&outward.placement), outward.outer.as_deref());
+        }
+        let Extent::Box(Bounds { min, max }) = extent else { return None };
+        // A difference and a quotient, each rounded once.
+        let unit = |axis: usize, end: f64| {
+            let distance = end - frame.origin()[axis];
+            let error = 4.0 * f64::EPSILON * (end.abs() + frame.origin()[axis].abs()) / frame.edge();
+            (distance / frame.edge(), error + f64::MIN_POSITIVE)
+        };
+        let low = [0, 1, 2].map(|axis| {
+            let (at, error) = unit(axis, min[axis]);
+            at - error
+        });
+        let high = [0, 1, 2].map(|axis| {
+            let (at, error) = unit(axis, max[axis]);
+            at + error
+        });
+        low.iter().chain(&high).all(|c| c.is_finite()).then_some((low, high))
     }
 }
 
 impl Node {
-    /// What is known of the space around the universe; `None` if memory runs out.
-    pub(super) fn exterior(&self, frame: &Frame) -> Option<Tag> {
+    /// What is known of the space around the universe, by what `of_solid` says of other solids; `None` if memory runs out.
+    pub(super) fn exterior(&self, frame: &Frame, of_solid: impl Fn(&AnySolid) -> Option<Tag>) -> Option<Tag> {
         // Operands first; each operation then takes its own from the end.
         let (mut tasks, mut tags) = (Vec::new(), Vec::new());
         let mut next = Some((self, false));
@@ -103,7 +129,7 @@ impl Node {
                     _ if !node.mixed => tags.push(Tag::Partial),
                     // Nor is it worth as much time as the expression, which is refused, too.
                     _ if node.size > MOST => tags.push(Tag::Partial),
-                    Kind::Solid(solid) => tags.push(solid.exterior(frame)),
+                    Kind::Solid(solid) => tags.push(of_solid(solid)?),
                     Kind::Join(_, parts) if !operands_done => {
                         tasks.try_reserve(parts.len() + 1).ok()?;
                         tasks.push((node, true));

@@ -83,7 +83,7 @@ impl Csg {
     }
 
     /// The convex polyhedron of the points p with `normal` · p + `offset` ≥ 0 for all `planes` (normal, offset); the
-    /// normals, of any length, point inward. It may be unbounded, or empty; then it has no [`bounds`](Csg::bounds).
+    /// normals, of any length, point inward. It may be unbounded, or empty; then it has no [`bounds`](crate::Solid::bounds).
     /// O(planes).
     ///
     /// # Errors

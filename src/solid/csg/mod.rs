@@ -5,6 +5,7 @@
 //! [`Csg`].
 
 mod bounds;
+mod centres;
 mod dyadic;
 mod extent;
 mod faceted;
@@ -12,9 +13,11 @@ mod faceted;
 mod figure;
 mod fingerprint;
 mod halfspace;
+mod hierarchy;
 mod host;
 mod kleene;
 mod linear;
+mod lone;
 mod map;
 mod points;
 mod polygon;
@@ -22,22 +25,25 @@ mod power;
 mod primitive;
 mod program;
 mod quadric;
-mod scratch;
 mod split;
 mod support;
+mod table;
 mod torus;
+mod worker;
 
 #[cfg(feature = "scene")]
 pub(crate) use figure::{Figure, wedge};
 pub use halfspace::HalfSpace;
-pub use scratch::{CsgPart, CsgScratch};
 
+use super::Motion;
 use crate::error::Error;
-use crate::lattice::Affine;
+use crate::lattice::{Affine, Bounds, Frame};
 use crate::solid::{AnySolid, Solid};
 use alloc::sync::Arc;
 use alloc::vec::Vec;
+use core::sync::atomic::{AtomicU64, Ordering::Relaxed};
 use extent::Extent;
+use hashbrown::HashMap;
 
 /// What counts as touching: when a cell that meets the solid's boundary, but not its interior, is EMPTY.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -83,8 +89,12 @@ struct Node {
     /// Whether other solids occur in it, and how many of them within each other.
     mixed: bool,
     nesting: u32,
+    /// The frame of a stored octree in it, if there is one.
+    home: Option<Arc<Frame>>,
     extent: Extent,
     opposite: Extent,
+    /// Evaluations for expressions of which this is the root.
+    evaluations: AtomicU64,
 }
 
 enum Kind {
@@ -106,19 +116,21 @@ enum Join {
 
 impl Csg {
     fn new(kind: Kind, extent: Extent, opposite: Extent) -> Csg {
-        let (size, mixed, nesting) = match &kind {
-            Kind::HalfSpace(_) => (1, false, 0),
-            Kind::Solid(solid) => (1, true, solid.nesting()),
+        let (size, mixed, nesting, home) = match &kind {
+            Kind::HalfSpace(_) => (1, false, 0, None),
+            Kind::Solid(solid) => (1, true, solid.nesting(), solid.home().map(Arc::new)),
             Kind::Complement(part) | Kind::Placed(part, _) => {
-                (part.size.saturating_add(1), part.mixed, part.nesting)
+                (part.size.saturating_add(1), part.mixed, part.nesting, part.home.clone())
             }
             Kind::Join(_, parts) => (
                 parts.iter().fold(1, |sum: u64, part| sum.saturating_add(part.size)),
                 parts.iter().any(|part| part.mixed),
                 parts.iter().map(|part| part.nesting).max().unwrap_or(0),
+                parts.iter().find_map(|part| part.home.clone()),
             ),
         };
-        let node = Node { kind, size, mixed, nesting, extent, opposite };
+        let evaluations = AtomicU64::new(0);
+        let node = Node { kind, size, mixed, nesting, home, extent, opposite, evaluations };
         Csg { root: Arc::new(node), touch: Touch::Exact }
     }
 
@@ -165,7 +177,8 @@ impl Csg {
         if let Some(csg) = solid.get::<Csg>() {
             return csg.clone();
         }
-        Csg::new(Kind::Solid(solid), Extent::Unbounded, Extent::Unbounded)
+        let extent = Extent::of(solid.bounds());
+        Csg::new(Kind::Solid(solid), extent, Extent::Unbounded)
     }
 
     /// What at least one part contains; nothing, if there is none. O(parts).
@@ -206,21 +219,85 @@ impl Csg {
         Csg::new(Kind::Complement(self.root.clone()), self.root.opposite, self.root.extent)
     }
 
-    /// The solid moved by `placement`, exactly: nothing is rounded.
+    /// The solid moved by `placement`: half-spaces exactly, other solids each as [`AnySolid::placed`] moves it;
+    /// [`motion`](Solid::motion) says what comes of that. O(1), but for what other solids take, and those parts of the
+    /// expression that hold them.
     ///
     /// # Errors
-    /// [`Error::Argument`] if other solids occur in the expression: those a [`Transform`](crate::Transform) moves, one
-    /// by one.
+    /// As [`AnySolid::placed`].
     pub fn placed(&self, placement: &Affine) -> Result<Csg, Error> {
-        if self.root.mixed {
-            let problem = "cannot move solids that are not made of half-spaces";
-            return Err(Error::Argument { name: "placement", problem });
-        }
         if placement.is_identity() {
             return Ok(Csg { root: self.root.clone(), touch: Touch::Exact });
         }
-        let (extent, opposite) = (self.root.extent.placed(placement), self.root.opposite.placed(placement));
-        Ok(Csg::new(Kind::Placed(self.root.clone(), *placement), extent, opposite))
+        if !self.root.mixed {
+            return Ok(Csg { root: Node::placed(&self.root, placement), touch: Touch::Exact });
+        }
+        // What was moved, by where it stands: a part that occurs twice is moved once.
+        let mut moved: HashMap<*const Node, Arc<Node>> = HashMap::new();
+        let mut tasks: Vec<(&Arc<Node>, bool)> = Vec::new();
+        program::push(&mut tasks, (&self.root, false))?;
+        while let Some((node, parts_moved)) = tasks.pop() {
+            if moved.contains_key(&Arc::as_ptr(node)) {
+                continue;
+            }
+            let parts = match &node.kind {
+                Kind::Join(_, parts) if node.mixed => parts.as_slice(),
+                Kind::Complement(part) if node.mixed => core::slice::from_ref(part),
+                _ => &[],
+            };
+            if !parts_moved && !parts.is_empty() {
+                program::push(&mut tasks, (node, true))?;
+                tasks.try_reserve(parts.len()).map_err(|_| Error::OutOfMemory)?;
+                tasks.extend(parts.iter().map(|part| (part, false)));
+                continue;
+            }
+            let part =
+                |part: &Arc<Node>| Csg { root: moved[&Arc::as_ptr(part)].clone(), touch: Touch::Exact };
+            let result = match &node.kind {
+                Kind::Solid(solid) => Csg::solid(solid.placed(placement)?).root,
+                Kind::Join(join, parts) if node.mixed => Csg::join(*join, parts.iter().map(part))?.root,
+                Kind::Complement(inner) if node.mixed => part(inner).complement().root,
+                _ => Node::placed(node, placement),
+            };
+            moved.try_reserve(1).map_err(|_| Error::OutOfMemory)?;
+            moved.insert(Arc::as_ptr(node), result);
+        }
+        Ok(Csg { root: moved[&Arc::as_ptr(&self.root)].clone(), touch: Touch::Exact })
+    }
+
+    /// What moving it does: the worst of what it does to its parts.
+    fn motion_of_expression(&self) -> Motion {
+        let (mut worst, mut rest) = (Motion::Exact, Vec::new());
+        let mut seen: HashMap<*const Node, ()> = HashMap::new();
+        rest.push(&self.root);
+        while let Some(node) = rest.pop() {
+            if !node.mixed || seen.insert(Arc::as_ptr(node), ()).is_some() {
+                continue;
+            }
+            match &node.kind {
+                Kind::HalfSpace(_) => {}
+                Kind::Solid(solid) => worst = worst.max(solid.motion()),
+                Kind::Join(_, parts) => rest.extend(parts),
+                Kind::Complement(part) | Kind::Placed(part, _) => rest.push(part),
+            }
+        }
+        worst
+    }
+
+    /// How many [`AnySolid`]s lie within each other in it: 0 for half-spaces alone.
+    pub fn nesting(&self) -> u32 {
+        self.root.nesting
+    }
+
+    /// Half-spaces that were evaluated so far for this expression and its clones, each at a point or over a box, by those
+    /// workers that are gone: once an operation has returned, all of it. (Expressions that this one is made of, or is a
+    /// part of, have counts of their own.)
+    pub fn evaluations(&self) -> u64 {
+        self.root.evaluations.load(Relaxed)
+    }
+
+    fn count(&self, evaluations: u64) {
+        self.root.evaluations.fetch_add(evaluations, Relaxed);
     }
 
     /// The same solid by another rule of touching. It holds for the whole expression; parts of a later expression
@@ -230,11 +307,10 @@ impl Csg {
         Csg { root: self.root.clone(), touch }
     }
 
-    /// A box (lower and upper corner, model units) beyond which the solid surely does not reach, if one is known. An
-    /// empty solid has none.
-    pub fn bounds(&self) -> Option<([f64; 3], [f64; 3])> {
+    /// A box beyond which the solid surely does not reach, if one is known. An empty solid has none.
+    fn bounds_of_expression(&self) -> Option<Bounds> {
         match self.root.extent {
-            Extent::Box(min, max) => Some((min, max)),
+            Extent::Box(bounds) => Some(bounds),
             _ => None,
         }
     }
@@ -242,9 +318,17 @@ impl Csg {
     /// The same solid, which is known to lie in a box.
     pub(crate) fn within(mut self, min: [f64; 3], max: [f64; 3]) -> Csg {
         if let Some(node) = Arc::get_mut(&mut self.root) {
-            node.extent = node.extent.common(Extent::Box(min, max));
+            node.extent = node.extent.common(Extent::of(Bounds::new(min, max)));
         }
         self
+    }
+}
+
+impl Node {
+    /// A node of half-spaces under a placement.
+    fn placed(node: &Arc<Node>, placement: &Affine) -> Arc<Node> {
+        let (extent, opposite) = (node.extent.placed(placement), node.opposite.placed(placement));
+        Csg::new(Kind::Placed(node.clone(), *placement), extent, opposite).root
     }
 }
 

@@ -1,108 +1,207 @@
 //! A CSG expression as a solid.
 
 use super::Csg;
-use super::bounds::Octants;
 use super::kleene::Kleene;
 use super::program::Program;
-use super::scratch::{Ask, Cells, CsgPart, CsgScratch};
+use super::worker::{Ask, CsgPart, Scratch};
+use crate::control::Control;
 use crate::error::Error;
-use crate::lattice::{Cube, Frame};
-use crate::octree::{Planes, Tag};
-use crate::solid::{Fingerprint, Solid, Verdict};
+use crate::lattice::{Bounds, Cell, Frame};
+use crate::octree::{Block, Planes, Tag};
+use crate::solid::{
+    Classifier, Crossing, Enclosure, Fingerprint, OCTANTS, Segment, Solid, Subtree, Verdict, Worker,
+};
+use alloc::sync::Arc;
 use alloc::vec::Vec;
+use core::sync::atomic::Ordering::Relaxed;
+
+/// An expression on a frame: the handle.
+#[derive(Clone)]
+pub struct CsgClassifier {
+    program: Arc<Program>,
+    universe: Verdict<CsgPart>,
+}
+
+/// A worker on an expression.
+pub struct CsgWorker {
+    program: Arc<Program>,
+    universe: Verdict<CsgPart>,
+    scratch: Scratch,
+}
 
 impl Solid for Csg {
-    type Part = CsgPart;
-    type Scratch = CsgScratch;
+    type Classifier = CsgClassifier;
 
-    fn root(&self, scratch: &mut CsgScratch, frame: &Frame) -> Result<Verdict<CsgPart>, Error> {
-        let Cells { kleene, parts } = scratch.begin(Program::new(self, frame)?, frame)?;
-        Ok(kleene.verdict(0, parts[0]))
+    /// O(n) in the expression written out, but for operations of many operands, which sort them; and what the other solids
+    /// in it take.
+    fn on(&self, frame: &Frame, control: &Control<'_>) -> Result<CsgClassifier, Error> {
+        let mut program = Program::new(self, frame, control)?;
+        let mut scratch = Scratch::new(&program)?;
+        let mut universe = scratch.begin(&program)?;
+        self.count(scratch.evaluations);
+        if let Verdict::Partial(part) = universe {
+            let (words, part) = scratch.into_words(&program, part)?;
+            program.words = words;
+            universe = Verdict::Partial(part);
+        }
+        Ok(CsgClassifier { program: Arc::new(program), universe })
     }
 
-    fn split(
-        &self,
-        scratch: &mut CsgScratch,
-        cube: &Cube<'_>,
-        part: &CsgPart,
-    ) -> Result<[Verdict<CsgPart>; 8], Error> {
-        let cells = scratch.with_program(|scratch, program| {
-            scratch.cells(program, *part, &Octants::of(cube.cell), Ask::Split(cube))
-        })?;
-        let Some(Cells { kleene, parts }) = cells else { return Ok([Verdict::Undecided; 8]) };
-        Ok([0, 1, 2, 3, 4, 5, 6, 7].map(|k| kleene.verdict(k, parts[k as usize])))
+    fn bounds(&self) -> Option<Bounds> {
+        self.bounds_of_expression()
     }
 
-    fn split64(
-        &self,
-        scratch: &mut CsgScratch,
-        cube: &Cube<'_>,
-        part: &CsgPart,
-        parts: &mut Vec<(u8, CsgPart)>,
-    ) -> Result<Planes, Error> {
-        parts.try_reserve(64).map_err(|_| Error::OutOfMemory)?;
-        let planes = scratch.with_program(|scratch, program| {
-            let octants = scratch.cells(program, *part, &Octants::of(cube.cell), Ask::Split(cube))?;
-            let mut planes = Planes::uniform(Tag::Empty);
-            for k in 0..8u8 {
-                let (lower, upper) = (octants.kleene.lower >> k & 1 != 0, octants.kleene.upper >> k & 1 != 0);
-                let part = octants.parts[k as usize];
-                let mut cells =
-                    Kleene { lower: if lower { 0xFF } else { 0 }, upper: if upper { 0xFF } else { 0 } };
-                if upper && !lower && part.len > 0 {
-                    let child = cube.child(k);
-                    let split = scratch.cells(program, part, &Octants::of(child.cell), Ask::Split(&child))?;
-                    cells = split.kleene;
-                    let mut partial = cells.partial();
-                    while partial != 0 {
-                        let c = partial.trailing_zeros() as u8;
-                        partial &= partial - 1;
-                        if split.parts[c as usize].len > 0 {
-                            parts.push((8 * k + c, split.parts[c as usize]));
-                        }
-                    }
-                }
-                planes.lower |= (cells.lower as u64) << (8 * k);
-                planes.upper |= (cells.upper as u64) << (8 * k);
-            }
-            Ok(planes)
-        })?;
-        Ok(planes.unwrap_or(Planes::uniform(Tag::Partial)))
-    }
-
-    fn sample(
-        &self,
-        scratch: &mut CsgScratch,
-        cube: &Cube<'_>,
-        part: &CsgPart,
-    ) -> Result<Option<bool>, Error> {
-        let inside = scratch.with_program(|scratch, program| scratch.contains(program, *part, cube))?;
-        Ok(inside.flatten())
-    }
-
-    fn sample64(
-        &self,
-        scratch: &mut CsgScratch,
-        cube: &Cube<'_>,
-        parts: &[(u8, CsgPart)],
-    ) -> Result<Option<u64>, Error> {
-        let inside = scratch.with_program(|scratch, program| scratch.contained(program, cube, parts))?;
-        Ok(inside.flatten())
-    }
-
-    fn exterior(&self, frame: &Frame) -> Tag {
-        self.root.exterior(frame).unwrap_or(Tag::Partial)
-    }
-
-    fn nesting(&self) -> u32 {
-        self.root.nesting
+    fn home(&self) -> Option<Frame> {
+        self.root.home.as_deref().copied()
     }
 
     fn fingerprint(&self) -> Option<Fingerprint> {
         self.fingerprint_of_expression()
     }
 
-    fn hand_over(&self, from: &CsgScratch, part: &CsgPart, to: &mut CsgScratch) -> Result<CsgPart, Error> {
-        to.copy(from, *part)
+    fn placed(&self, placement: &crate::lattice::Affine) -> Result<Option<Csg>, Error> {
+        Csg::placed(self, placement).map(Some)
+    }
+
+    fn motion(&self) -> super::Motion {
+        self.motion_of_expression()
+    }
+}
+
+impl Classifier for CsgClassifier {
+    type Worker = CsgWorker;
+
+    fn frame(&self) -> &Frame {
+        &self.program.frame
+    }
+
+    fn worker(&self) -> Result<CsgWorker, Error> {
+        let scratch = Scratch::new(&self.program)?;
+        Ok(CsgWorker { program: self.program.clone(), universe: self.universe, scratch })
+    }
+
+    fn exterior(&self) -> Tag {
+        self.program.exterior
+    }
+}
+
+impl Drop for CsgWorker {
+    fn drop(&mut self) {
+        self.program.root.evaluations.fetch_add(self.scratch.evaluations, Relaxed);
+    }
+}
+
+impl Worker for CsgWorker {
+    type Part = CsgPart;
+
+    fn frame(&self) -> &Frame {
+        &self.program.frame
+    }
+
+    fn root(&mut self) -> Result<Verdict<CsgPart>, Error> {
+        Ok(self.universe)
+    }
+
+    #[inline]
+    fn split(&mut self, cell: Cell, part: &CsgPart) -> Result<[Verdict<CsgPart>; 8], Error> {
+        let CsgWorker { program, scratch, .. } = self;
+        if scratch.may_be_lone(program, *part)
+            && let Some(verdicts) = scratch.lone8(program, cell, *part)?
+        {
+            return Ok(verdicts);
+        }
+        let cells = scratch.cells(program, *part, Ask::Split(cell))?;
+        Ok(OCTANTS.map(|k| cells.kleene.verdict(k.into(), cells.parts[k as usize])))
+    }
+
+    fn mark(&self) -> usize {
+        self.scratch.mark()
+    }
+
+    fn release(&mut self, mark: usize) {
+        self.scratch.release(mark);
+    }
+
+    fn hand_over(&mut self, from: &Self, part: &CsgPart) -> Result<CsgPart, Error> {
+        self.scratch.copy(&self.program, &from.scratch, *part)
+    }
+
+    fn split64(
+        &mut self,
+        cell: Cell,
+        part: &CsgPart,
+        parts: &mut Vec<(u8, CsgPart)>,
+    ) -> Result<Planes, Error> {
+        let CsgWorker { program, scratch, .. } = self;
+        if scratch.may_be_lone(program, *part)
+            && let Some(planes) = scratch.lone64(program, cell, *part, parts)?
+        {
+            return Ok(planes);
+        }
+        parts.try_reserve(64).map_err(|_| Error::OutOfMemory)?;
+        let octants = scratch.cells(program, *part, Ask::Split(cell))?;
+        let mut planes = Planes::uniform(Tag::Empty);
+        for k in OCTANTS {
+            let (lower, upper) = (octants.kleene.lower >> k & 1 != 0, octants.kleene.upper >> k & 1 != 0);
+            let part = octants.parts[k as usize];
+            let mut cells =
+                Kleene { lower: if lower { 0xFF } else { 0 }, upper: if upper { 0xFF } else { 0 } };
+            if upper && !lower && part.len > 0 {
+                let split = scratch.cells(program, part, Ask::Split(cell.child(k)))?;
+                cells = split.kleene;
+                let mut partial = cells.partial();
+                while partial != 0 {
+                    let c = partial.trailing_zeros() as u8;
+                    partial &= partial - 1;
+                    if split.parts[c as usize].len > 0 {
+                        parts.push((8 * k + c, split.parts[c as usize]));
+                    }
+                }
+            }
+            planes.lower |= (cells.lower as u64) << (8 * k);
+            planes.upper |= (cells.upper as u64) << (8 * k);
+        }
+        Ok(planes)
+    }
+
+    fn fill(&mut self, cell: Cell, part: &CsgPart, block: &mut Block) -> Result<bool, Error> {
+        let CsgWorker { program, scratch, .. } = self;
+        let filled = scratch.ask_lone(program, *part, |worker, part| worker.fill(cell, part, block))?;
+        if let Some((true, true)) = filled {
+            block.complement();
+        }
+        Ok(filled.is_some_and(|(filled, _)| filled))
+    }
+
+    fn subtree(&self, part: &CsgPart) -> Option<Subtree<'_>> {
+        let (worker, part, complement) = self.scratch.look_at_lone(&self.program, *part)?;
+        let subtree = worker.subtree(&part)?;
+        Some(if complement { subtree.complement() } else { subtree })
+    }
+
+    fn sample(&mut self, cell: Cell, part: &CsgPart) -> Result<Option<bool>, Error> {
+        self.scratch.contains(&self.program, *part, cell)
+    }
+
+    fn sample64(&mut self, cell: Cell, parts: &[(u8, CsgPart)]) -> Result<Option<u64>, Error> {
+        self.scratch.contained(&self.program, cell, parts)
+    }
+
+    fn enclosure(&mut self, cell: Cell, part: &CsgPart) -> Result<Option<Enclosure>, Error> {
+        let CsgWorker { program, scratch, .. } = self;
+        let found = scratch.ask_lone(program, *part, |worker, part| worker.enclosure(cell, part))?;
+        Ok(found.and_then(|(enclosure, complement)| match (enclosure, complement) {
+            (Some(enclosure), true) => Some(enclosure.complement()),
+            (enclosure, _) => enclosure,
+        }))
+    }
+
+    fn crossing(&mut self, cell: Cell, part: &CsgPart, segment: &Segment) -> Result<Option<Crossing>, Error> {
+        let CsgWorker { program, scratch, .. } = self;
+        let found = scratch.ask_lone(program, *part, |worker, part| worker.crossing(cell, part, segment))?;
+        Ok(found.and_then(|(crossing, complement)| match (crossing, complement) {
+            (Some(crossing), true) => Some(crossing.complement()),
+            (crossing, _) => crossing,
+        }))
     }
 }

@@ -35,6 +35,6 @@ pub(crate) use polygon::triangulate_facet;
 #[cfg(feature = "std")]
 pub use polyhedron::{Polyhedron, PolyhedronArrays};
 pub use report::MeshReport;
-pub use split::{MeshPart, MeshScratch, MeshSolid};
+pub use split::MeshSolid;
 pub use surface::{FillRule, TriangleMesh};
 pub(crate) use weld::FacetWelder;

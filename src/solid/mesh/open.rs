@@ -11,7 +11,7 @@
 //! * Else its children are asked. A finest cell near a hole, that nothing cuts, may stay PARTIAL.
 
 use super::placed::Placed;
-use super::split::{MeshPart, MeshSolid};
+use super::split::{MeshPart, OnFrame};
 use super::surface::FillRule;
 use super::winding::{Local, Range};
 use crate::lattice::MAX_DEPTH;
@@ -61,8 +61,6 @@ impl Branch {
 /// kept for those below it.
 #[derive(Default)]
 pub(super) struct Surroundings {
-    /// The solid that it is about.
-    owner: usize,
     /// The cell's lower corner, and what is known unless the boundary passes close by.
     levels: [Option<([i32; 3], Option<Local>)>; MAX_DEPTH as usize + 1],
 }
@@ -71,9 +69,6 @@ impl Surroundings {
     /// The caps' winding number around the middle of the cell of `level` that holds `at`; of a finest cell on that side
     /// of every cap on which its centre counts.
     fn local(&mut self, placed: &Placed, level: u8, at: [i32; 3]) -> Option<Local> {
-        if self.owner != placed.identity {
-            *self = Surroundings { owner: placed.identity, ..Surroundings::default() };
-        }
         let size = 1 << (placed.frame.depth() - level);
         let corner = at.map(|a| a & -size);
         let slot = &mut self.levels[level as usize];
@@ -100,7 +95,7 @@ fn middle(corner: [i32; 3], size: i32) -> [f64; 3] {
     corner.map(|a| a as f64 + size as f64 / 2.0)
 }
 
-impl MeshSolid {
+impl OnFrame {
     /// What is known of a cell in which the caps' winding number is not known to be near one integer.
     #[cold]
     pub(super) fn open_verdict(

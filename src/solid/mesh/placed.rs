@@ -12,7 +12,6 @@ use crate::lattice::Frame;
 use crate::lattice::exact::{floor, two_diff, two_product};
 use alloc::sync::Arc;
 use alloc::vec::Vec;
-use core::sync::atomic::{AtomicUsize, Ordering};
 
 /// Bound of the relative error of one rounded subtraction and one rounded division: 2^-52 and some more.
 const UNIT: f32 = f32::EPSILON * f32::EPSILON / 32.0;
@@ -42,11 +41,7 @@ pub(super) struct Placed {
     vertices: Vertices,
     /// What closes the surface. Its triangles are numbered on from the mesh's.
     pub(super) caps: Caps,
-    /// Another number for every one, from 1: scratch memory may serve several solids.
-    pub(super) identity: usize,
 }
-
-static IDENTITIES: AtomicUsize = AtomicUsize::new(1);
 
 /// The vertices, field by field: of most triangles only the ranks are looked at. 37 bytes each.
 #[derive(Default)]
@@ -103,8 +98,7 @@ impl Placed {
             return Err(MeshError::TooMany.into());
         }
         let caps = Caps::new(loops, |vertex| vertices.get(vertex), displacement)?;
-        let identity = IDENTITIES.fetch_add(1, Ordering::Relaxed);
-        Ok(Placed { frame: *frame, mesh, displacement, vertices, caps, identity })
+        Ok(Placed { frame: *frame, mesh, displacement, vertices, caps })
     }
 
     /// How many triangles the surface and its caps have.

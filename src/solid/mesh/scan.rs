@@ -9,8 +9,8 @@ use super::overlap::Overlap;
 use super::placed::{Placed, ranks};
 use super::surface::FillRule;
 use crate::error::Error;
+use crate::octree::Block;
 use crate::octree::block::zeros;
-use crate::octree::{Block, Rule};
 use alloc::boxed::Box;
 use alloc::vec::Vec;
 
@@ -46,9 +46,8 @@ impl Scan {
         Ok(Scan { cut: zeros()?, low: zeros()?, high: zeros()?, floor: zeros()?, changes: Vec::new() })
     }
 
-    /// Fills `block` by its rule.
+    /// Fills what `block` asks for.
     pub(super) fn fill(&mut self, task: Task<'_>, block: &mut Block) -> Result<(), Error> {
-        let rule = block.rule();
         self.wind_floor(&task);
         if self.wind(&task) {
             let columns = self.low.iter_mut().zip(self.high.iter());
@@ -62,18 +61,13 @@ impl Scan {
             self.wind_counting(&task)?;
         }
         let inside = &self.low;
-        let (lower, upper) = block.planes_mut();
-        if rule == Rule::Sampled {
-            *lower = **inside;
-            *upper = **inside;
-            return Ok(());
+        if let Some(centres) = block.centres_mut() {
+            *centres = **inside;
         }
-        mark_cut(&task, &mut self.cut);
-        for (i, (&inside, &cut)) in inside.iter().zip(self.cut.iter()).enumerate() {
-            match rule {
-                Rule::Inner => (lower[i], upper[i]) = (inside & !cut, inside & !cut),
-                Rule::Outer => (lower[i], upper[i]) = (inside | cut, inside | cut),
-                Rule::Certified | Rule::Sampled => (lower[i], upper[i]) = (inside & !cut, inside | cut),
+        if let Some((lower, upper)) = block.planes_mut() {
+            mark_cut(&task, &mut self.cut);
+            for (i, (&inside, &cut)) in inside.iter().zip(self.cut.iter()).enumerate() {
+                (lower[i], upper[i]) = (inside & !cut, inside | cut);
             }
         }
         Ok(())

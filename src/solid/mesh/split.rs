@@ -7,15 +7,17 @@ use super::overlap::Overlap;
 use super::placed::{Corners, Placed, bounds, ranks};
 use super::scan::{Scan, Task};
 use super::surface::{FillRule, TriangleMesh};
+use crate::control::Control;
 use crate::error::{Error, MeshError};
-use crate::lattice::{Cell, Cube, Frame};
+use crate::lattice::{Affine, Bounds, Cell, Frame};
 use crate::octree::{Block, Tag};
-use crate::solid::{Fingerprint, Fingerprinter, Scratch, Solid, Verdict};
+use crate::solid::{Classifier, Fingerprint, Fingerprinter, Motion, Solid, Verdict, Worker};
 use alloc::boxed::Box;
 use alloc::sync::Arc;
 use alloc::vec::Vec;
+use once_cell::race::OnceBox;
 
-/// A triangle mesh as a solid on the lattice of one frame.
+/// A triangle mesh as a solid. Cheap to clone.
 ///
 /// Any mesh will do. Where it is closed, what it encloses is exact. Where it is not, [`FillRule`] says by which convention
 /// a point is inside; a cell is FULL or EMPTY if that is proven for all of its points, and around holes stay
@@ -25,16 +27,33 @@ use alloc::vec::Vec;
 /// use leafless::{Control, FillRule, Frame, MeshSolid, Rule, TriangleMesh, build};
 /// let vertices = vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 /// let mesh = TriangleMesh::new(vertices, vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]])?;
-/// let frame = Frame::new([0.0; 3], 1.0, 6)?;
-/// let solid = MeshSolid::new(mesh, &frame, FillRule::NonZero)?;
-/// let tree = build(&solid, &frame, Rule::Certified, &Control::default())?;
+/// let solid = MeshSolid::new(mesh, FillRule::NonZero)?;
+/// let tree = build(&solid, &Frame::new([0.0; 3], 1.0, 6)?, Rule::Certified, &Control::default())?;
 /// assert!(tree.statistics().volume().contains(1.0 / 6.0));
 /// # Ok::<(), leafless::Error>(())
 /// ```
+#[derive(Clone)]
 pub struct MeshSolid {
+    mesh: Arc<TriangleMesh>,
+    fill: FillRule,
+    /// The loops of the mesh's boundary.
+    loops: Arc<Loops>,
+}
+
+/// A mesh on the lattice of a frame, with what is known of the universe.
+pub(super) struct OnFrame {
     pub(super) placed: Placed,
     pub(super) fill: FillRule,
+    /// The triangles that cut the universe, in ascending order, and the winding number of its lowest centre.
+    roots: Vec<u32>,
+    winding: i32,
+    /// What is known of the space around the universe, once somebody has asked.
+    exterior: OnceBox<Tag>,
 }
+
+/// A mesh on a frame: the handle.
+#[derive(Clone)]
+pub struct MeshClassifier(Arc<OnFrame>);
 
 /// What is remembered of a cell: the triangles that cut it, and the winding number of its lowest centre.
 #[derive(Debug, Clone, Copy)]
@@ -49,9 +68,9 @@ pub struct MeshPart {
     pub(super) caps: Option<Branch>,
 }
 
-/// Lists of triangles, one for each cell on the way down, and what a block is scanned with.
-#[derive(Default)]
-pub struct MeshScratch {
+/// A worker on a mesh: lists of triangles, one for each cell on the way down, and what a block is scanned with.
+pub struct MeshWorker {
+    mesh: Arc<OnFrame>,
     triangles: Vec<u32>,
     /// Bit k: the triangle belongs to child k.
     masks: Vec<u8>,
@@ -59,29 +78,14 @@ pub struct MeshScratch {
     scan: Option<Box<Scan>>,
 }
 
-impl Scratch for MeshScratch {
-    fn mark(&self) -> usize {
-        self.triangles.len()
-    }
-
-    fn release(&mut self, mark: usize) {
-        self.triangles.truncate(mark);
-    }
-}
-
 impl MeshSolid {
-    /// A mesh on the lattice of `frame`; time and memory linear in the mesh, which is shared (an `Arc`) or taken
-    /// over. (Boundaries are sorted: n log n in the number of their edges.) A mesh that reaches beyond the universe is
-    /// clipped by it, which [`exterior`](Solid::exterior) tells.
+    /// What a mesh encloses; the mesh is shared (an `Arc`) or taken over. O(1) for a closed mesh whose edges were
+    /// analysed before, else O(t), and n log n in the edges of the boundary.
     ///
     /// # Errors
     /// [`Error::Mesh`] if the mesh is empty, or, for [`FillRule::EvenOdd`], if an odd number of triangles meet on an
     /// edge; [`Error::OutOfMemory`].
-    pub fn new(
-        mesh: impl Into<Arc<TriangleMesh>>,
-        frame: &Frame,
-        fill: FillRule,
-    ) -> Result<MeshSolid, Error> {
+    pub fn new(mesh: impl Into<Arc<TriangleMesh>>, fill: FillRule) -> Result<MeshSolid, Error> {
         let mesh = mesh.into();
         let loops = match fill {
             FillRule::EvenOdd => {
@@ -93,7 +97,33 @@ impl MeshSolid {
             }
             FillRule::NonZero | FillRule::Positive => mesh.loops()?,
         };
-        Ok(MeshSolid { placed: Placed::new(mesh, frame, &loops)?, fill })
+        Ok(MeshSolid { mesh, fill, loops: Arc::new(loops) })
+    }
+
+    /// The mesh.
+    pub fn mesh(&self) -> &Arc<TriangleMesh> {
+        &self.mesh
+    }
+
+    /// The solid under an affine map: its vertices are moved, as [`TriangleMesh::placed`] says.
+    ///
+    /// # Errors
+    /// As [`TriangleMesh::placed`].
+    pub fn placed(&self, placement: &Affine) -> Result<MeshSolid, Error> {
+        if placement.is_identity() {
+            return Ok(self.clone());
+        }
+        MeshSolid::new(self.mesh.placed(placement)?, self.fill)
+    }
+}
+
+impl OnFrame {
+    fn exterior(&self) -> Tag {
+        let mesh = &self.placed.mesh;
+        let (min, max) = mesh.bounds();
+        let within = Bounds::new(min, max)
+            .is_some_and(|bounds| bounds.grown(mesh.displacement()).is_within(&self.placed.frame));
+        if within && self.is_quiet_outside() { Tag::Empty } else { Tag::Partial }
     }
 
     /// What is known of a cell that these triangles cut.
@@ -178,75 +208,149 @@ fn extent(cell: Cell, depth: u8) -> ([i32; 3], i32) {
     (cell.first_at(depth).at.map(|a| a as i32), 1 << (depth - cell.level))
 }
 
-impl Solid for MeshSolid {
-    type Part = MeshPart;
-    type Scratch = MeshScratch;
+/// The triangles of a part: the universe's are shared, others lie in the scratch memory.
+#[inline(always)]
+fn list<'t>(roots: &'t [u32], own: &'t [u32], part: &MeshPart) -> &'t [u32] {
+    match part.first.checked_sub(roots.len()) {
+        None => &roots[part.first..part.first + part.count],
+        Some(first) => &own[first..first + part.count],
+    }
+}
 
-    fn root(&self, scratch: &mut MeshScratch, frame: &Frame) -> Result<Verdict<MeshPart>, Error> {
-        if *frame != self.placed.frame {
-            return Err(Error::FrameMismatch);
-        }
-        let first = scratch.triangles.len();
-        let count = self.placed.count();
-        scratch.triangles.try_reserve(count as usize).map_err(|_| Error::OutOfMemory)?;
+impl Solid for MeshSolid {
+    type Classifier = MeshClassifier;
+
+    /// O(v + t); memory beyond the mesh 37 bytes a vertex, and 4 a triangle. A mesh that reaches beyond the universe is
+    /// clipped by it, which the exterior tells.
+    fn on(&self, frame: &Frame, control: &Control<'_>) -> Result<MeshClassifier, Error> {
+        let placed = Placed::new(self.mesh.clone(), frame, &self.loops)?;
+        let mut roots = Vec::new();
+        let count = placed.count();
+        roots.try_reserve_exact(count as usize).map_err(|_| Error::OutOfMemory)?;
         let size = frame.cells() as f64;
         let mut winding = 0;
         for triangle in 0..count {
-            let corners = self.placed.corners(triangle);
+            if triangle % 65536 == 0 && control.is_cancelled() {
+                return Err(Error::Cancelled);
+            }
+            let corners = placed.corners(triangle);
             // The winding number is zero at infinity: follow the lowest centre's line along x from there.
             let spans = |axis: usize| {
                 let (first, end) = ranks(&corners, axis);
                 first <= 0 && 0 < end
             };
             if spans(1) && spans(2) && ranks(&corners, 0).0 <= 0 {
-                let mut seen = Projection::new(&self.placed, triangle, corners, 0);
+                let mut seen = Projection::new(&placed, triangle, corners, 0);
                 if let Some(span) = seen.span(0).filter(|span| span.first <= 0 && 0 < span.end)
                     && seen.above(0, 0, span.step) <= 0
                 {
                     winding += span.step;
                 }
             }
-            let (min, max) = bounds(&self.placed, &corners);
+            let (min, max) = bounds(&placed, &corners);
             let within = (0..3).all(|axis| min[axis] > 0.0 && max[axis] < size);
-            if within || Overlap::new(&self.placed, &corners, size, frame.depth()).cuts([0.0; 3], size) {
-                scratch.triangles.push(triangle);
+            if within || Overlap::new(&placed, &corners, size, frame.depth()).cuts([0.0; 3], size) {
+                roots.push(triangle);
             }
         }
-        let triangles = &scratch.triangles[first..];
-        let caps = if self.placed.caps.is_empty() { None } else { Some(Branch::UNKNOWN) };
-        let part = MeshPart { first, count: triangles.len(), winding, caps };
-        Ok(self.verdict(&mut scratch.surroundings, triangles, [0; 3], frame.cells() as i32, part))
+        Ok(MeshClassifier(Arc::new(OnFrame {
+            placed,
+            fill: self.fill,
+            roots,
+            winding,
+            exterior: OnceBox::new(),
+        })))
     }
 
-    fn split(
-        &self,
-        scratch: &mut MeshScratch,
-        cube: &Cube<'_>,
-        part: &MeshPart,
-    ) -> Result<[Verdict<MeshPart>; 8], Error> {
-        let depth = self.placed.frame.depth();
-        debug_assert!(cube.cell.level < depth, "finest cells have no children");
-        let (at, size) = extent(cube.cell, depth);
+    fn bounds(&self) -> Option<Bounds> {
+        let (min, max) = self.mesh.bounds();
+        // What an open surface encloses may reach beyond it.
+        let bounds = Bounds::new(min, max).filter(|_| self.loops.caps() == 0)?;
+        Some(bounds.grown(self.mesh.displacement()))
+    }
+
+    fn placed(&self, placement: &Affine) -> Result<Option<MeshSolid>, Error> {
+        MeshSolid::placed(self, placement).map(Some)
+    }
+
+    fn motion(&self) -> Motion {
+        Motion::Vertices
+    }
+
+    /// Of the mesh. O(v + t).
+    fn fingerprint(&self) -> Option<Fingerprint> {
+        let (vertices, triangles) =
+            (self.mesh.vertices().as_flattened(), self.mesh.triangles().as_flattened());
+        let all = Fingerprinter::new("mesh")
+            .integers(&[self.fill as u64])
+            .numbers(&[self.mesh.displacement()])
+            .numbers(vertices)
+            .words(triangles.len() as u64, triangles.iter().map(|&index| index.into()));
+        Some(all.finish())
+    }
+}
+
+impl Classifier for MeshClassifier {
+    type Worker = MeshWorker;
+
+    fn frame(&self) -> &Frame {
+        &self.0.placed.frame
+    }
+
+    fn worker(&self) -> Result<MeshWorker, Error> {
+        Ok(MeshWorker {
+            mesh: self.0.clone(),
+            triangles: Vec::new(),
+            masks: Vec::new(),
+            surroundings: Surroundings::default(),
+            scan: None,
+        })
+    }
+
+    fn exterior(&self) -> Tag {
+        let mesh = &*self.0;
+        *mesh.exterior.get_or_init(|| Box::new(mesh.exterior()))
+    }
+}
+
+impl Worker for MeshWorker {
+    type Part = MeshPart;
+
+    fn frame(&self) -> &Frame {
+        &self.mesh.placed.frame
+    }
+
+    fn root(&mut self) -> Result<Verdict<MeshPart>, Error> {
+        let MeshWorker { mesh, surroundings, .. } = self;
+        let caps = if mesh.placed.caps.is_empty() { None } else { Some(Branch::UNKNOWN) };
+        let part = MeshPart { first: 0, count: mesh.roots.len(), winding: mesh.winding, caps };
+        Ok(mesh.verdict(surroundings, &mesh.roots, [0; 3], mesh.placed.frame.cells() as i32, part))
+    }
+
+    fn split(&mut self, cell: Cell, part: &MeshPart) -> Result<[Verdict<MeshPart>; 8], Error> {
+        let depth = self.mesh.placed.frame.depth();
+        debug_assert!(cell.level < depth, "finest cells have no children");
+        let (at, size) = extent(cell, depth);
         let half = size / 2;
-        let height = depth - cube.cell.level - 1;
-        let MeshScratch { triangles, masks, surroundings, .. } = scratch;
-        let range = part.first..part.first + part.count;
+        let height = depth - cell.level - 1;
+        let MeshWorker { mesh, triangles, masks, surroundings, .. } = self;
+        let shared = mesh.roots.len();
 
         masks.clear();
         masks.try_reserve(part.count).map_err(|_| Error::OutOfMemory)?;
         let mut counts = [0; 8];
         let mut steps = [[0; 8]; 2];
         let mut boxes = [[[0; 3]; 2]; BATCH];
-        for batch in triangles[range].chunks(BATCH) {
+        for batch in list(&mesh.roots, triangles, part).chunks(BATCH) {
             // Memory is slow: many are asked for before the first is looked at.
             for (ranks, &triangle) in boxes.iter_mut().zip(batch) {
-                *ranks = self.placed.rank_box(triangle);
+                *ranks = mesh.placed.rank_box(triangle);
             }
             for (&ranks, &triangle) in boxes.iter().zip(batch) {
-                self.pierce(triangle, ranks, at, half, &mut steps);
+                mesh.pierce(triangle, ranks, at, half, &mut steps);
                 let mask = match only_child(ranks, at, half) {
-                    Some(mask) if self.placed.ranks_tell() && height > 0 => mask,
-                    _ => children_cut(&self.placed, &self.placed.corners(triangle), at, half, height),
+                    Some(mask) if mesh.placed.ranks_tell() && height > 0 => mask,
+                    _ => children_cut(&mesh.placed, &mesh.placed.corners(triangle), at, half, height),
                 };
                 masks.push(mask);
                 counts.iter_mut().enumerate().for_each(|(k, count)| *count += (mask >> k & 1) as usize);
@@ -254,19 +358,19 @@ impl Solid for MeshSolid {
         }
         let top = triangles.len();
         triangles.try_reserve(counts.iter().sum()).map_err(|_| Error::OutOfMemory)?;
-        let mut firsts = [top; 8];
+        let mut firsts = [0; 8];
         for k in 1..8 {
             firsts[k] = firsts[k - 1] + counts[k - 1];
         }
         let mut next = firsts;
         triangles.resize(top + counts.iter().sum::<usize>(), 0);
-        for (i, &mask) in masks.iter().enumerate() {
-            let triangle = triangles[part.first + i];
+        let (above, below) = triangles.split_at_mut(top);
+        for (&triangle, &mask) in list(&mesh.roots, above, part).iter().zip(masks.iter()) {
             let mut left = mask;
             while left != 0 {
                 let k = left.trailing_zeros() as usize;
                 left &= left - 1;
-                triangles[next[k]] = triangle;
+                below[next[k]] = triangle;
                 next[k] += 1;
             }
         }
@@ -282,26 +386,37 @@ impl Solid for MeshSolid {
             let (first, count) = (firsts[k], counts[k]);
             let at = [0, 1, 2].map(|axis| at[axis] + if k >> axis & 1 != 0 { half } else { 0 });
             let caps = part.caps.map(|branch| branch.plus(jumps[k]));
-            let part = MeshPart { first, count, winding: part.winding + steps[k], caps };
-            *verdict = self.verdict(surroundings, &triangles[first..first + count], at, half, part);
+            let winding = part.winding + steps[k];
+            let part = MeshPart { first: shared + top + first, count, winding, caps };
+            *verdict = mesh.verdict(surroundings, &below[first..first + count], at, half, part);
         }
         Ok(verdicts)
     }
 
-    fn fill(
-        &self,
-        scratch: &mut MeshScratch,
-        cube: &Cube<'_>,
-        part: &MeshPart,
-        block: &mut Block,
-    ) -> Result<bool, Error> {
+    fn mark(&self) -> usize {
+        self.triangles.len()
+    }
+
+    fn release(&mut self, mark: usize) {
+        self.triangles.truncate(mark);
+    }
+
+    fn hand_over(&mut self, from: &Self, part: &MeshPart) -> Result<MeshPart, Error> {
+        let first = self.mesh.roots.len() + self.triangles.len();
+        self.triangles.try_reserve(part.count).map_err(|_| Error::OutOfMemory)?;
+        self.triangles.extend_from_slice(list(&from.mesh.roots, &from.triangles, part));
+        Ok(MeshPart { first, ..*part })
+    }
+
+    fn fill(&mut self, cell: Cell, part: &MeshPart, block: &mut Block) -> Result<bool, Error> {
         if part.caps.is_some() {
             return Ok(false);
         }
-        let (at, _) = extent(cube.cell, self.placed.frame.depth());
-        let triangles = &scratch.triangles[part.first..part.first + part.count];
-        let task = Task { placed: &self.placed, at, triangles, winding: part.winding, fill: self.fill };
-        let scan = match &mut scratch.scan {
+        let MeshWorker { mesh, triangles, scan, .. } = self;
+        let (at, _) = extent(cell, mesh.placed.frame.depth());
+        let triangles = list(&mesh.roots, triangles, part);
+        let task = Task { placed: &mesh.placed, at, triangles, winding: part.winding, fill: mesh.fill };
+        let scan = match scan {
             Some(scan) => scan,
             none => none.insert(Box::new(Scan::new()?)),
         };
@@ -309,58 +424,13 @@ impl Solid for MeshSolid {
         Ok(true)
     }
 
-    fn sample(
-        &self,
-        scratch: &mut MeshScratch,
-        cube: &Cube<'_>,
-        part: &MeshPart,
-    ) -> Result<Option<bool>, Error> {
+    fn sample(&mut self, cell: Cell, part: &MeshPart) -> Result<Option<bool>, Error> {
         // A finest cell's lowest centre is its only one.
-        let (at, _) = extent(cube.cell, self.placed.frame.depth());
+        let (at, _) = extent(cell, self.mesh.placed.frame.depth());
         Ok(Some(match part.caps {
-            Some(_) => self.open_sample(&mut scratch.surroundings, at, *part),
-            None => self.fill.encloses(part.winding),
+            Some(_) => self.mesh.open_sample(&mut self.surroundings, at, *part),
+            None => self.mesh.fill.encloses(part.winding),
         }))
-    }
-
-    fn exterior(&self, frame: &Frame) -> Tag {
-        let (min, max) = self.placed.mesh.bounds();
-        let margin = self.placed.mesh.displacement();
-        let outward = |x: f64, margin: f64| match margin {
-            0.0 => x,
-            margin if margin < 0.0 => (x + margin).next_down(),
-            margin => (x + margin).next_up(),
-        };
-        let within = |axis: usize| {
-            let (min, max) = (outward(min[axis], -margin), outward(max[axis], margin));
-            frame.side(axis, min, 0) >= 0 && frame.side(axis, max, 2 * frame.cells() as i64) <= 0
-        };
-        if (0..3).all(within) && self.is_quiet_outside() { Tag::Empty } else { Tag::Partial }
-    }
-
-    /// Of the mesh and of its lattice, because bounds are computed in finest cells. O(v + t).
-    fn fingerprint(&self) -> Option<Fingerprint> {
-        let Placed { frame, mesh, .. } = &self.placed;
-        let (vertices, triangles) = (mesh.vertices().as_flattened(), mesh.triangles().as_flattened());
-        let all = Fingerprinter::new("mesh")
-            .integers(&[self.fill as u64, frame.depth().into()])
-            .numbers(&frame.origin())
-            .numbers(&[frame.edge(), mesh.displacement()])
-            .numbers(vertices)
-            .words(triangles.len() as u64, triangles.iter().map(|&index| index.into()));
-        Some(all.finish())
-    }
-
-    fn hand_over(
-        &self,
-        from: &MeshScratch,
-        part: &MeshPart,
-        to: &mut MeshScratch,
-    ) -> Result<MeshPart, Error> {
-        let first = to.triangles.len();
-        to.triangles.try_reserve(part.count).map_err(|_| Error::OutOfMemory)?;
-        to.triangles.extend_from_slice(&from.triangles[part.first..part.first + part.count]);
-        Ok(MeshPart { first, ..*part })
     }
 }
 

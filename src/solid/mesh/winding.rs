@@ -650,14 +650,14 @@ fn halve(corners: usize, found: &mut impl FnMut([usize; 3], u8)) {
 
 #[cfg(test)]
 mod tests {
-    use super::super::split::MeshSolid;
-    use super::super::surface::{FillRule, TriangleMesh};
+    use super::super::surface::TriangleMesh;
     use super::*;
     use crate::lattice::Frame;
+    use alloc::sync::Arc;
 
     /// A cone without its base: `corners` corners at height 3 around the axis through (8, 8), of about radius 5, its top
     /// at height 13. In a frame of 16 cells.
-    fn cone(corners: u32) -> MeshSolid {
+    fn cone(corners: u32) -> Placed {
         let mut vertices = alloc::vec![[8.0, 8.0, 13.0]];
         for i in 0..corners {
             let angle = 2.0 * PI * f64::from(i) / f64::from(corners);
@@ -667,11 +667,12 @@ mod tests {
         }
         let triangles = (0..corners).map(|i| [0, 1 + i, 1 + (i + 1) % corners]).collect();
         let mesh = TriangleMesh::new(vertices, triangles).unwrap();
-        MeshSolid::new(mesh, &Frame::new([0.0; 3], 16.0, 4).unwrap(), FillRule::NonZero).unwrap()
+        let loops = mesh.loops().unwrap();
+        Placed::new(Arc::new(mesh), &Frame::new([0.0; 3], 16.0, 4).unwrap(), &loops).unwrap()
     }
 
-    fn local(solid: &MeshSolid, point: DVec3, radius: f64, enough: f64) -> Option<Local> {
-        solid.placed.caps.local(&solid.placed, point.to_array(), radius, enough, None)
+    fn local(placed: &Placed, point: DVec3, radius: f64, enough: f64) -> Option<Local> {
+        placed.caps.local(placed, point.to_array(), radius, enough, None)
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! Boxes of one lattice as seen from another.
 
 use crate::lattice::exact::{floor, sqrt, two_product};
-use crate::lattice::{Affine, Cube, Frame, MAX_DEPTH};
+use crate::lattice::{Affine, Bounds, Cube, Frame, MAX_DEPTH};
 use crate::solid::exact::Expansion;
 
 /// From the lattice of one frame to that of another, in finest cells: u = linear · k + offset.
@@ -353,4 +353,51 @@ pub(super) fn inverse(placement: &Affine) -> [[f64; 3]; 3] {
         .fold(Expansion::default(), |sum, j| sum.plus(&cofactors[0][j].times(&Expansion::sum([m[0][j]]))));
     let determinant = determinant.estimate();
     [0, 1, 2].map(|i| [0, 1, 2].map(|j| cofactors[j][i].estimate() / determinant))
+}
+
+/// The frame whose cells have those of `frame` as their images, if there is one and its origin is a double.
+pub(super) fn source_frame(placement: &Affine, inverse: &[[f64; 3]; 3], frame: &Frame) -> Option<Frame> {
+    let linear = placement.rows().map(|[x, y, z, _]| [x, y, z]);
+    let scale = |row: [f64; 3]| row.iter().map(|c| c.abs()).sum::<f64>();
+    let factor = scale(inverse[0]);
+    if !is_monomial(&linear) || inverse.iter().any(|&row| scale(row) != factor) {
+        return None;
+    }
+    let mut origin = [0.0; 3];
+    for (axis, row) in inverse.iter().enumerate() {
+        // The lower end comes from the upper one where the axis is turned round.
+        let (from, entry) = row.iter().enumerate().find(|(_, entry)| **entry != 0.0)?;
+        let upper = if *entry < 0.0 { frame.edge() } else { 0.0 };
+        let moved = Expansion::sum([frame.origin()[from], upper, -placement.rows()[from][3]]);
+        let rounded = moved.estimate();
+        if Expansion::sum([frame.origin()[from], upper, -placement.rows()[from][3], -rounded]).sign() != 0 {
+            return None;
+        }
+        origin[axis] = rounded * entry;
+    }
+    Frame::new(origin, frame.edge() * factor, frame.depth()).ok()
+}
+
+/// A box that holds the inverse image of a box: somewhat larger than what is computed.
+pub(super) fn source_box(placement: &Affine, inverse: &[[f64; 3]; 3], bounds: &Bounds) -> [[f64; 3]; 2] {
+    let (mut min, mut max) = ([0.0; 3], [0.0; 3]);
+    for (i, row) in inverse.iter().enumerate() {
+        let (mut centre, mut radius, mut size) = (0.0, 0.0, 0.0);
+        for j in 0..3 {
+            let t = placement.rows()[j][3];
+            centre += row[j] * (0.5 * (bounds.min[j] + bounds.max[j]) - t);
+            radius += row[j].abs() * 0.5 * (bounds.max[j] - bounds.min[j]);
+            size += row[j].abs() * (bounds.min[j].abs() + bounds.max[j].abs() + t.abs());
+        }
+        let reach = radius + 64.0 * f64::EPSILON * size;
+        (min[i], max[i]) = (centre - reach, centre + reach);
+    }
+    [min, max]
+}
+
+/// By how much the shortest way becomes shorter at the most under the inverse map: the reciprocal of the longest column
+/// of the map, about.
+pub(super) fn shrinkage(inverse: &[[f64; 3]; 3]) -> f64 {
+    let square = |j: usize| (0..3).map(|i| inverse[i][j] * inverse[i][j]).sum::<f64>();
+    sqrt(square(0).min(square(1)).min(square(2)))
 }

@@ -2,10 +2,12 @@
 
 mod image;
 
-use super::{Fingerprint, Fingerprinter, Scratch, Solid, Verdict};
+use super::{Classifier, Fingerprint, Fingerprinter, Solid, Verdict, Worker};
+use crate::control::Control;
 use crate::error::Error;
-use crate::lattice::{Affine, Cell, Cube, Frame};
+use crate::lattice::{Affine, Bounds, Cell, Cube, Frame, MAX_DEPTH};
 use crate::octree::Tag;
+use alloc::sync::Arc;
 use alloc::vec::Vec;
 use core::ops::Range;
 use image::{Images, Maps, Point, Target, inverse};
@@ -20,7 +22,7 @@ use image::{Images, Maps, Point, Target, inverse};
 /// scales, and an offset of whole cells) no rounding occurs and nothing blurs: of cells of one size each finest cell of
 /// the result is one of the solid's.
 ///
-/// What sticks out of the solid's own universe is as [`exterior`](Solid::exterior) tells: undecided, unless the solid is
+/// What sticks out of the solid's own universe is as [`exterior`](Classifier::exterior) tells: undecided, unless the solid is
 /// proven to end inside. Centres ([`Rule::Sampled`](crate::Rule::Sampled)) are decided where cells of the solid's own
 /// depth decide them, or, if the placement is an offset of whole cells, by the solid.
 ///
@@ -36,12 +38,37 @@ use image::{Images, Maps, Point, Target, inverse};
 /// assert!(tree.statistics().volume().contains(1.0));
 /// # Ok::<(), leafless::Error>(())
 /// ```
-#[derive(Debug, Clone)]
+#[derive(Debug)]
 pub struct Transform<S> {
-    solid: S,
-    own: Frame,
+    solid: Arc<S>,
+    own: Option<Frame>,
     placement: Affine,
-    inverse: [[f64; 3]; 3],
+}
+
+/// A solid on its own frame, under an affine placement, on another frame.
+#[derive(Debug, Clone)]
+pub struct TransformClassifier<C> {
+    inner: C,
+    own: Frame,
+    maps: Maps,
+    frame: Frame,
+    /// A box around the placed solid, if one is known.
+    bounds: Option<Bounds>,
+}
+
+/// A worker on a placed solid: lists of cells of the solid's own frame, one for each PARTIAL cell.
+pub struct TransformWorker<W: Worker> {
+    inner: W,
+    own: Frame,
+    maps: Maps,
+    frame: Frame,
+    /// What is known of the space around the solid's own universe.
+    exterior: Tag,
+    known: Vec<Known<W::Part>>,
+    /// Per list its end among the cells, and the height that the solid's own memory had when it was made.
+    lists: Vec<(usize, usize)>,
+    /// Cells at hand during a split, each with the children that it touches.
+    at_hand: Vec<(Known<W::Part>, u8)>,
 }
 
 /// Where the cells of its own frame that a cell touches lie in the scratch memory.
@@ -50,64 +77,6 @@ pub struct TransformPart(usize);
 
 /// What is known of one cell of the solid's own frame.
 type Known<P> = (Cell, Verdict<P>);
-
-/// Lists of cells of the solid's own frame, one for each PARTIAL cell.
-pub struct TransformScratch<S: Solid> {
-    maps: Option<Maps>,
-    known: Vec<Known<S::Part>>,
-    /// Per list its end among the cells, and the height that the solid's own memory had when it was made.
-    lists: Vec<(usize, usize)>,
-    /// Cells at hand during a split, each with the children that it touches.
-    at_hand: Vec<(Known<S::Part>, u8)>,
-    own: S::Scratch,
-}
-
-impl<S: Solid> Default for TransformScratch<S> {
-    fn default() -> Self {
-        let (known, lists, at_hand) = (Vec::new(), Vec::new(), Vec::new());
-        TransformScratch { maps: None, known, lists, at_hand, own: S::Scratch::default() }
-    }
-}
-
-impl<S: Solid> Scratch for TransformScratch<S> {
-    fn mark(&self) -> usize {
-        self.lists.len()
-    }
-
-    fn release(&mut self, mark: usize) {
-        self.lists.truncate(mark);
-        let &(known, own) = self.lists.last().unwrap_or(&(0, 0));
-        self.known.truncate(known);
-        self.own.release(own);
-    }
-
-    fn evaluations(&self) -> u64 {
-        self.own.evaluations()
-    }
-}
-
-impl<S: Solid> TransformScratch<S> {
-    /// Where the list of a part lies; empty for one that nobody made.
-    fn range(&self, part: TransformPart) -> Range<usize> {
-        let first = part.0.checked_sub(1).map_or(Some(0), |before| Some(self.lists.get(before)?.0));
-        let end = self.lists.get(part.0).map(|list| list.0);
-        first.zip(end).map_or(0..0, |(first, end)| first..end)
-    }
-
-    /// Makes a list of the cells at hand that a child (as a bit) touches.
-    fn keep(&mut self, child: u8) -> Result<TransformPart, Error> {
-        self.known.try_reserve(self.at_hand.len()).map_err(|_| Error::OutOfMemory)?;
-        let touched = self.at_hand.iter().filter(|(_, children)| children & child != 0);
-        self.known.extend(touched.map(|(known, _)| known.clone()));
-        self.close()
-    }
-
-    fn close(&mut self) -> Result<TransformPart, Error> {
-        self.lists.try_reserve(1).map_err(|_| Error::OutOfMemory)?;
-        self.lists.push((self.known.len(), self.own.mark()));
-        Ok(TransformPart(self.lists.len() - 1))
-    }
-}
 
 /// In which of up to eight cells (bit k: cell k) something has been met.
 #[derive(Default)]
@@ -132,132 +101,117 @@ impl Met {
 impl<S: Solid> Transform<S> {
     /// The image under `placement` of a solid that is known on the frame `own`, and there to no more than its depth.
     pub fn new(solid: S, own: &Frame, placement: &Affine) -> Transform<S> {
-        Transform { solid, own: *own, placement: *placement, inverse: inverse(placement) }
+        Transform { solid: Arc::new(solid), own: Some(*own), placement: *placement }
+    }
+
+    /// The image under `placement` of a solid that is known on a frame of its own ([`home`](Solid::home)), or on any. Then
+    /// the frame is chosen, for each frame that the image is asked on: the inverse image of that where cells are the
+    /// images of cells, else the least cube around what there is of the solid, in cells that are no larger.
+    pub fn of(solid: S, placement: &Affine) -> Transform<S> {
+        let own = solid.home();
+        Transform { solid: Arc::new(solid), own, placement: *placement }
+    }
+
+    /// The solid that is moved.
+    pub fn solid(&self) -> &S {
+        &self.solid
+    }
+
+    /// The frame for the solid where it has none of its own.
+    fn own_frame(&self, frame: &Frame) -> Result<Frame, Error> {
+        let inverse = inverse(&self.placement);
+        if let Some(exact) = image::source_frame(&self.placement, &inverse, frame) {
+            return Ok(exact);
+        }
+        // The universe's inverse image, rounded generously.
+        let [min, max] = image::source_box(&self.placement, &inverse, &Bounds::of(frame));
+        let seen = Bounds::new(min, max);
+        let cell = frame.cell_size() * image::shrinkage(&inverse);
+        let around = |bounds: Bounds| -> Result<(Frame, bool), Error> {
+            let own = Frame::around(bounds.min, bounds.max, MAX_DEPTH)?;
+            let fits = |&depth: &u8| own.edge() / f64::from(1u32 << depth) <= cell;
+            let depth = (1..=MAX_DEPTH).find(fits);
+            Ok((own.with_depth(depth.unwrap_or(MAX_DEPTH))?, depth.is_some()))
+        };
+        // All there is of the solid, so that it ends inside; if that is too much, what can be seen of it.
+        let bounds = self.solid.bounds();
+        if let Some(Ok((own, true))) = bounds.map(around) {
+            return Ok(own);
+        }
+        let common = seen.and_then(|seen| seen.common(&bounds?)).or(seen).or(bounds);
+        let Some(common) = common else {
+            let problem = "takes the universe beyond what doubles can tell";
+            return Err(Error::Argument { name: "placement", problem });
+        };
+        // (What both have in common may be flat.)
+        around(common).or_else(|error| around(seen.ok_or(error)?)).map(|(own, _)| own)
+    }
+}
+
+impl<S: Solid> Solid for Transform<S> {
+    type Classifier = TransformClassifier<S::Classifier>;
+
+    fn on(&self, frame: &Frame, control: &Control<'_>) -> Result<Self::Classifier, Error> {
+        let own = match self.own {
+            Some(own) => own,
+            None => self.own_frame(frame)?,
+        };
+        Ok(TransformClassifier::new(self.solid.on(&own, control)?, &self.placement, frame, self.bounds()))
+    }
+
+    fn bounds(&self) -> Option<Bounds> {
+        self.solid.bounds()?.placed(&self.placement)
+    }
+
+    fn fingerprint(&self) -> Option<Fingerprint> {
+        let transform = Fingerprinter::new("transform").part(self.solid.fingerprint()?);
+        let transform = match &self.own {
+            Some(own) => {
+                let [x, y, z] = own.origin();
+                transform.numbers(&[x, y, z, own.edge(), own.depth() as f64])
+            }
+            None => transform.numbers(&[]),
+        };
+        Some(transform.numbers(self.placement.rows().as_flattened()).finish())
+    }
+
+    /// What has not been moved yet is moved but once.
+    fn placed(&self, placement: &Affine) -> Result<Option<Self>, Error> {
+        let moved = || Transform { solid: self.solid.clone(), own: self.own, placement: *placement };
+        Ok(self.placement.is_identity().then(moved))
+    }
+}
+
+impl<S> Clone for Transform<S> {
+    fn clone(&self) -> Self {
+        Transform { solid: self.solid.clone(), own: self.own, placement: self.placement }
+    }
+}
+
+impl<C: Classifier> TransformClassifier<C> {
+    /// The solid of a classifier under a placement: a pose changes a map, and nothing else. `bounds` is a box around the
+    /// placed solid, if one is known. O(1).
+    pub(crate) fn new(inner: C, placement: &Affine, frame: &Frame, bounds: Option<Bounds>) -> Self {
+        let own = *inner.frame();
+        let maps = Maps::new(placement, &inverse(placement), frame, &own);
+        TransformClassifier { inner, own, maps, frame: *frame, bounds }
     }
 
     /// Lower corner and edge of a cell of the solid's own frame, in its finest cells.
-    #[inline(always)]
     fn extent(&self, cell: Cell) -> ([f64; 3], f64) {
-        let shift = self.own.depth() - cell.level;
-        (cell.at.map(|a| (a << shift) as f64), (1u32 << shift) as f64)
+        extent(&self.own, cell)
     }
 
-    /// Puts the cells of a list at hand that touch a target, those larger than its grain replaced by their children.
-    fn gather(
-        &self,
-        scratch: &mut TransformScratch<S>,
-        part: TransformPart,
-        target: &impl Target,
-        grain: f64,
-    ) -> Result<(), Error> {
-        let range = scratch.range(part);
-        let TransformScratch { known, at_hand, own, .. } = scratch;
-        at_hand.clear();
-        let list = known.get(range).unwrap_or(&[]);
-        at_hand.try_reserve(list.len()).map_err(|_| Error::OutOfMemory)?;
-        for known in list {
-            let touched = if self.is_large(known, grain) {
-                self.replace(known, own, target, at_hand)?;
-                0
-            } else {
-                let (corner, edge) = self.extent(known.0);
-                target.touched(corner, edge)
-            };
-            if touched != 0 {
-                at_hand.try_reserve(1).map_err(|_| Error::OutOfMemory)?;
-                at_hand.push((known.clone(), touched));
-            }
-        }
-        // Mostly one step is all; the first, and that to a point, may take more.
-        let mut i = 0;
-        while let Some((known, _)) = at_hand.get(i) {
-            if self.is_large(known, grain) {
-                let (known, _) = at_hand.swap_remove(i);
-                self.replace(&known, own, target, at_hand)?;
-            } else {
-                i += 1;
-            }
-        }
-        Ok(())
-    }
-
-    /// Whether a cell is to be split.
-    #[inline(always)]
-    fn is_large(&self, (cell, verdict): &Known<S::Part>, grain: f64) -> bool {
-        matches!(verdict, Verdict::Partial(_))
-            && cell.level < self.own.depth()
-            && self.extent(*cell).1 > grain
-    }
-
-    /// Puts the children of a PARTIAL cell at hand that touch a target.
-    fn replace(
-        &self,
-        (cell, verdict): &Known<S::Part>,
-        own: &mut S::Scratch,
-        target: &impl Target,
-        at_hand: &mut Vec<(Known<S::Part>, u8)>,
-    ) -> Result<(), Error> {
-        let Verdict::Partial(part) = verdict else { return Ok(()) };
-        let children = self.solid.split(own, &Cube { frame: &self.own, cell: *cell }, part)?;
-        let (corner, edge) = self.extent(*cell);
-        let touched = target.touched_by_children(corner, edge);
-        at_hand.try_reserve(8).map_err(|_| Error::OutOfMemory)?;
-        for (octant, (child, touched)) in (0..8).zip(children.into_iter().zip(touched)) {
-            if touched != 0 {
-                at_hand.push(((cell.child(octant), child), touched));
-            }
-        }
-        Ok(())
-    }
-
-    /// What the cells at hand say of the first `count` children, whose centres may be asked for if they are `finest`.
-    fn verdicts(
-        &self,
-        scratch: &mut TransformScratch<S>,
-        images: &Images<'_>,
-        count: usize,
-        finest: bool,
-    ) -> Result<[Verdict<TransformPart>; 8], Error> {
-        let Met { empty, full, undecided, part } =
-            self.met(&scratch.at_hand, images.reach_beyond(self.own.cells() as f64));
-        let mut verdicts = [const { Verdict::Undecided }; 8];
-        for (k, verdict) in verdicts.iter_mut().enumerate().take(count) {
-            let child = 1 << k;
-            *verdict = match [empty, full, undecided, part].map(|met| met & child != 0) {
-                [true, false, false, false] => Verdict::Empty,
-                [false, true, false, false] => Verdict::Full,
-                [false, false, _, false] if !finest => Verdict::Undecided,
-                _ => Verdict::Partial(scratch.keep(child)?),
-            };
-        }
-        Ok(verdicts)
-    }
-
-    /// What has been met, in those that reach `beyond` the solid's own universe also what is there.
-    fn met(&self, at_hand: &[(Known<S::Part>, u8)], beyond: u8) -> Met {
-        let mut met = Met::default();
-        if beyond != 0 {
-            met.add(self.solid.exterior(&self.own), beyond);
-        }
-        for ((cell, verdict), touched) in at_hand {
-            match verdict {
-                Verdict::Partial(_) if cell.level < self.own.depth() => met.part |= touched,
-                verdict => met.add(verdict.tag(), *touched),
-            }
-        }
-        met
-    }
-
-    /// Whether cells that are not EMPTY (not FULL, if `hollow`) may reach beyond the universe of `frame`: some cells that
+    /// Whether cells that are not EMPTY (not FULL, if `hollow`) may reach beyond the universe: some cells that
     /// do are split to see.
-    fn reaches_beyond(&self, frame: &Frame, hollow: bool) -> Result<bool, Error> {
+    fn reaches_beyond(&self, hollow: bool) -> Result<bool, Error> {
         const MOST: usize = 512;
-        let outward = self.maps(frame).outward;
-        let cells = frame.cells() as f64;
-        let mut scratch = S::Scratch::default();
+        let outward = self.maps.outward;
+        let cells = self.frame.cells() as f64;
+        let mut worker = self.inner.worker()?;
         let mut open = Vec::new();
         open.try_reserve(8 * MOST).map_err(|_| Error::OutOfMemory)?;
-        open.push((Cell::ROOT, self.solid.root(&mut scratch, &self.own)?));
+        open.push((Cell::ROOT, worker.root()?));
         let mut left = MOST;
         while let Some((cell, verdict)) = open.pop() {
             let (corner, edge) = self.extent(cell);
@@ -272,118 +226,239 @@ impl<S: Solid> Transform<S> {
                 return Ok(true);
             }
             left -= 1;
-            let children = self.solid.split(&mut scratch, &Cube { frame: &self.own, cell }, &part)?;
+            let children = worker.split(cell, &part)?;
             open.extend((0..8).map(|octant| cell.child(octant)).zip(children));
         }
         Ok(false)
     }
+}
 
-    fn maps(&self, frame: &Frame) -> Maps {
-        Maps::new(&self.placement, &self.inverse, frame, &self.own)
+impl<C: Classifier> Classifier for TransformClassifier<C> {
+    type Worker = TransformWorker<C::Worker>;
+
+    fn frame(&self) -> &Frame {
+        &self.frame
+    }
+
+    fn worker(&self) -> Result<Self::Worker, Error> {
+        Ok(TransformWorker {
+            inner: self.inner.worker()?,
+            own: self.own,
+            maps: self.maps,
+            frame: self.frame,
+            exterior: self.inner.exterior(),
+            known: Vec::new(),
+            lists: Vec::new(),
+            at_hand: Vec::new(),
+        })
+    }
+
+    /// Some hundred cells may be split to tell.
+    fn exterior(&self) -> Tag {
+        match self.inner.exterior() {
+            Tag::Empty if self.bounds.is_some_and(|bounds| bounds.is_within(&self.frame)) => Tag::Empty,
+            // What is FULL around its own universe must be so around the frame's.
+            Tag::Full if self.reaches_beyond(true).is_ok_and(|beyond| !beyond) => Tag::Full,
+            Tag::Empty if self.reaches_beyond(false).is_ok_and(|beyond| !beyond) => Tag::Empty,
+            _ => Tag::Partial,
+        }
     }
 }
 
-impl<S: Solid> Solid for Transform<S> {
-    type Part = TransformPart;
-    type Scratch = TransformScratch<S>;
+/// Lower corner and edge of a cell of a frame, in its finest cells.
+#[inline(always)]
+fn extent(frame: &Frame, cell: Cell) -> ([f64; 3], f64) {
+    let shift = frame.depth() - cell.level;
+    (cell.at.map(|a| (a << shift) as f64), (1u32 << shift) as f64)
+}
 
-    fn root(
-        &self,
-        scratch: &mut TransformScratch<S>,
-        frame: &Frame,
-    ) -> Result<Verdict<TransformPart>, Error> {
-        let maps = *scratch.maps.insert(self.maps(frame));
-        scratch.lists.clear();
-        scratch.known.clear();
-        let own = self.solid.root(&mut scratch.own, &self.own)?;
-        scratch.known.try_reserve(1).map_err(|_| Error::OutOfMemory)?;
-        scratch.known.push((Cell::ROOT, own));
-        let universe = scratch.close()?;
-        let images = Images::new(&maps, &Cube { frame, cell: Cell::ROOT }, 1);
-        self.gather(scratch, universe, &images, images.grain)?;
-        let [universe, ..] = self.verdicts(scratch, &images, 1, false)?;
+impl<W: Worker> TransformWorker<W> {
+    /// Where the list of a part lies.
+    fn range(&self, part: TransformPart) -> Range<usize> {
+        let first = part.0.checked_sub(1).map_or(0, |before| self.lists[before].0);
+        first..self.lists[part.0].0
+    }
+
+    /// Makes a list of the cells at hand that a child (as a bit) touches.
+    fn keep(&mut self, child: u8) -> Result<TransformPart, Error> {
+        self.known.try_reserve(self.at_hand.len()).map_err(|_| Error::OutOfMemory)?;
+        let touched = self.at_hand.iter().filter(|(_, children)| children & child != 0);
+        self.known.extend(touched.map(|(known, _)| known.clone()));
+        self.close()
+    }
+
+    fn close(&mut self) -> Result<TransformPart, Error> {
+        self.lists.try_reserve(1).map_err(|_| Error::OutOfMemory)?;
+        self.lists.push((self.known.len(), self.inner.mark()));
+        Ok(TransformPart(self.lists.len() - 1))
+    }
+
+    /// Puts the cells of a list at hand that touch a target, those larger than its grain replaced by their children.
+    fn gather(&mut self, part: TransformPart, target: &impl Target, grain: f64) -> Result<(), Error> {
+        let range = self.range(part);
+        let TransformWorker { known, at_hand, inner, own, .. } = self;
+        at_hand.clear();
+        let list = &known[range];
+        at_hand.try_reserve(list.len()).map_err(|_| Error::OutOfMemory)?;
+        for known in list {
+            let touched = if is_large(own, known, grain) {
+                replace(own, known, inner, target, at_hand)?;
+                0
+            } else {
+                let (corner, edge) = extent(own, known.0);
+                target.touched(corner, edge)
+            };
+            if touched != 0 {
+                at_hand.try_reserve(1).map_err(|_| Error::OutOfMemory)?;
+                at_hand.push((known.clone(), touched));
+            }
+        }
+        // Mostly one step is all; the first, and that to a point, may take more.
+        let mut i = 0;
+        while let Some((known, _)) = at_hand.get(i) {
+            if is_large(own, known, grain) {
+                let (known, _) = at_hand.swap_remove(i);
+                replace(own, &known, inner, target, at_hand)?;
+            } else {
+                i += 1;
+            }
+        }
+        Ok(())
+    }
+
+    /// What the cells at hand say of the first `count` children, whose centres may be asked for if they are `finest`.
+    fn verdicts(
+        &mut self,
+        images: &Images<'_>,
+        count: usize,
+        finest: bool,
+    ) -> Result<[Verdict<TransformPart>; 8], Error> {
+        let Met { empty, full, undecided, part } = self.met(images.reach_beyond(self.own.cells() as f64));
+        let mut verdicts = [const { Verdict::Undecided }; 8];
+        for (k, verdict) in verdicts.iter_mut().enumerate().take(count) {
+            let child = 1 << k;
+            *verdict = match [empty, full, undecided, part].map(|met| met & child != 0) {
+                [true, false, false, false] => Verdict::Empty,
+                [false, true, false, false] => Verdict::Full,
+                [false, false, _, false] if !finest => Verdict::Undecided,
+                _ => Verdict::Partial(self.keep(child)?),
+            };
+        }
+        Ok(verdicts)
+    }
+
+    /// What has been met, in those that reach `beyond` the solid's own universe also what is there.
+    fn met(&self, beyond: u8) -> Met {
+        let mut met = Met::default();
+        if beyond != 0 {
+            met.add(self.exterior, beyond);
+        }
+        for ((cell, verdict), touched) in &self.at_hand {
+            match verdict {
+                Verdict::Partial(_) if cell.level < self.own.depth() => met.part |= touched,
+                verdict => met.add(verdict.tag(), *touched),
+            }
+        }
+        met
+    }
+}
+
+/// Whether a cell is to be split.
+#[inline(always)]
+fn is_large<P>(own: &Frame, (cell, verdict): &Known<P>, grain: f64) -> bool {
+    matches!(verdict, Verdict::Partial(_)) && cell.level < own.depth() && extent(own, *cell).1 > grain
+}
+
+/// Puts the children of a PARTIAL cell at hand that touch a target.
+fn replace<W: Worker>(
+    own: &Frame,
+    (cell, verdict): &Known<W::Part>,
+    inner: &mut W,
+    target: &impl Target,
+    at_hand: &mut Vec<(Known<W::Part>, u8)>,
+) -> Result<(), Error> {
+    let Verdict::Partial(part) = verdict else { return Ok(()) };
+    let children = inner.split(*cell, part)?;
+    let (corner, edge) = extent(own, *cell);
+    let touched = target.touched_by_children(corner, edge);
+    at_hand.try_reserve(8).map_err(|_| Error::OutOfMemory)?;
+    for (octant, (child, touched)) in (0..8).zip(children.into_iter().zip(touched)) {
+        if touched != 0 {
+            at_hand.push(((cell.child(octant), child), touched));
+        }
+    }
+    Ok(())
+}
+
+impl<W: Worker> Worker for TransformWorker<W> {
+    type Part = TransformPart;
+
+    fn frame(&self) -> &Frame {
+        &self.frame
+    }
+
+    fn root(&mut self) -> Result<Verdict<TransformPart>, Error> {
+        let root = self.inner.root()?;
+        self.known.try_reserve(1).map_err(|_| Error::OutOfMemory)?;
+        self.known.push((Cell::ROOT, root));
+        let universe = self.close()?;
+        let (maps, frame) = (self.maps, self.frame);
+        let images = Images::new(&maps, &Cube { frame: &frame, cell: Cell::ROOT }, 1);
+        self.gather(universe, &images, images.grain)?;
+        let [universe, ..] = self.verdicts(&images, 1, false)?;
         Ok(universe)
     }
 
-    fn split(
-        &self,
-        scratch: &mut TransformScratch<S>,
-        cube: &Cube<'_>,
-        part: &TransformPart,
-    ) -> Result<[Verdict<TransformPart>; 8], Error> {
-        let Some(maps) = scratch.maps else { return Ok([const { Verdict::Undecided }; 8]) };
-        let images = Images::new(&maps, cube, 2);
-        self.gather(scratch, *part, &images, images.grain)?;
-        self.verdicts(scratch, &images, 8, cube.cell.level + 1 == cube.frame.depth())
+    fn split(&mut self, cell: Cell, part: &TransformPart) -> Result<[Verdict<TransformPart>; 8], Error> {
+        let (maps, frame) = (self.maps, self.frame);
+        let images = Images::new(&maps, &Cube { frame: &frame, cell }, 2);
+        self.gather(*part, &images, images.grain)?;
+        self.verdicts(&images, 8, cell.level + 1 == frame.depth())
     }
 
-    fn sample(
-        &self,
-        scratch: &mut TransformScratch<S>,
-        cube: &Cube<'_>,
-        part: &TransformPart,
-    ) -> Result<Option<bool>, Error> {
-        let Some(Maps { inward, .. }) = scratch.maps else { return Ok(None) };
-        let mark = scratch.own.mark();
-        let centre = inward.image(cube.cell.at.map(|a| a as f64 + 0.5), 0.0).0;
+    fn mark(&self) -> usize {
+        self.lists.len()
+    }
+
+    fn release(&mut self, mark: usize) {
+        self.lists.truncate(mark);
+        let &(known, inner) = self.lists.last().unwrap_or(&(0, 0));
+        self.known.truncate(known);
+        self.inner.release(inner);
+    }
+
+    fn hand_over(&mut self, from: &Self, part: &TransformPart) -> Result<TransformPart, Error> {
+        let list = &from.known[from.range(*part)];
+        self.known.try_reserve(list.len()).map_err(|_| Error::OutOfMemory)?;
+        for (cell, verdict) in list {
+            let verdict = match verdict {
+                Verdict::Partial(part) => Verdict::Partial(self.inner.hand_over(&from.inner, part)?),
+                decided => decided.clone(),
+            };
+            self.known.push((*cell, verdict));
+        }
+        self.close()
+    }
+
+    fn sample(&mut self, cell: Cell, part: &TransformPart) -> Result<Option<bool>, Error> {
+        let inward = self.maps.inward;
+        let mark = self.inner.mark();
+        let centre = inward.image(cell.at.map(|a| a as f64 + 0.5), 0.0).0;
         let point = Point { map: &inward, at: centre };
-        self.gather(scratch, *part, &point, 0.0)?;
-        let Met { empty, full, undecided, part } =
-            self.met(&scratch.at_hand, point.reaches_beyond(self.own.cells() as f64));
+        self.gather(*part, &point, 0.0)?;
+        let Met { empty, full, undecided, part } = self.met(point.reaches_beyond(self.own.cells() as f64));
         let inside = match [empty, full, undecided, part].map(|met| met != 0) {
             [true, false, false, false] => Some(false),
             [false, true, false, false] => Some(true),
-            _ => match scratch.at_hand.as_slice() {
+            _ => match self.at_hand.as_slice() {
                 [((cell, Verdict::Partial(part)), _)] if inward.keeps_centres() => {
                     let (cell, part) = (*cell, part.clone());
-                    self.solid.sample(&mut scratch.own, &Cube { frame: &self.own, cell }, &part)?
+                    self.inner.sample(cell, &part)?
                 }
                 _ => None,
             },
         };
-        scratch.own.release(mark);
+        self.inner.release(mark);
         Ok(inside)
-    }
-
-    fn exterior(&self, frame: &Frame) -> Tag {
-        match self.solid.exterior(&self.own) {
-            // What is FULL around its own universe must be so around the frame's.
-            Tag::Full if self.reaches_beyond(frame, true).is_ok_and(|beyond| !beyond) => Tag::Full,
-            Tag::Empty if self.reaches_beyond(frame, false).is_ok_and(|beyond| !beyond) => Tag::Empty,
-            _ => Tag::Partial,
-        }
-    }
-
-    fn nesting(&self) -> u32 {
-        self.solid.nesting()
-    }
-
-    fn fingerprint(&self) -> Option<Fingerprint> {
-        let [x, y, z] = self.own.origin();
-        let frame = [x, y, z, self.own.edge(), self.own.depth() as f64];
-        let solid = self.solid.fingerprint()?;
-        let transform = Fingerprinter::new("transform").part(solid).numbers(&frame);
-        Some(transform.numbers(self.placement.rows().as_flattened()).finish())
-    }
-
-    fn hand_over(
-        &self,
-        from: &TransformScratch<S>,
-        part: &TransformPart,
-        to: &mut TransformScratch<S>,
-    ) -> Result<TransformPart, Error> {
-        to.maps = from.maps;
-        let list = from.known.get(from.range(*part)).unwrap_or(&[]);
-        to.known.try_reserve(list.len()).map_err(|_| Error::OutOfMemory)?;
-        for (cell, verdict) in list {
-            let verdict = match verdict {
-                Verdict::Partial(part) => {
-                    Verdict::Partial(self.solid.hand_over(&from.own, part, &mut to.own)?)
-                }
-                decided => decided.clone(),
-            };
-            to.known.push((*cell, verdict));
-        }
-        to.close()
     }
 }

@@ -1,0 +1,88 @@
+//! What may be known of a PARTIAL cell beyond its verdict: where the boundary lies in it, to second order.
+
+/// What lies on one side of a plane belongs to the solid, and what lies on the other side of a parallel one does not.
+///
+/// x is measured from the cell's centre, in half edges of the cell, so that the cell is [-1, 1]³.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Slab {
+    /// The direction n that leads out of the solid, of any length. Zero: there is no slab.
+    pub normal: [f64; 3],
+    /// Where n · x is less, x lies in the solid. It may be −∞, and is at most `outer`.
+    pub inner: f64,
+    /// Where n · x is greater, x lies outside. It may be ∞.
+    pub outer: f64,
+}
+
+impl Slab {
+    /// The slab of the complement.
+    #[must_use]
+    pub fn complement(&self) -> Slab {
+        Slab { normal: self.normal.map(|c| -c), inner: -self.outer, outer: -self.inner }
+    }
+}
+
+/// How slabs are joined.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum SlabJoin {
+    /// A point is inside if all slabs say so, and outside if one does.
+    All,
+    /// A point is inside if one slab says so, and outside if all do.
+    Any,
+}
+
+/// One to three slabs that enclose the boundary of a solid in an open cell.
+///
+/// # Law
+/// With [`SlabJoin::All`] the solid contains { x in the open cell : n · x < inner for all slabs } and does not meet { x in
+/// the open cell : n · x > outer for some slab }. With [`SlabJoin::Any`], *some* and *all* change places.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Enclosure {
+    /// The slabs; those of normal zero do not count.
+    pub slabs: [Slab; 3],
+    /// How they are joined.
+    pub join: SlabJoin,
+    /// Every normal of the boundary in the cell lies within this angle (radians) of that of the first slab; ∞ if nothing is
+    /// known.
+    pub cone: f64,
+}
+
+impl Enclosure {
+    /// The enclosure of the complement; its complement is this one, bit for bit.
+    #[must_use]
+    pub fn complement(&self) -> Enclosure {
+        let join = match self.join {
+            SlabJoin::All => SlabJoin::Any,
+            SlabJoin::Any => SlabJoin::All,
+        };
+        Enclosure { slabs: self.slabs.map(|slab| slab.complement()), join, cone: self.cone }
+    }
+}
+
+/// A straight way between two points, in model units.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Segment {
+    /// Where it begins.
+    pub from: [f64; 3],
+    /// Where it ends.
+    pub to: [f64; 3],
+}
+
+/// Where a segment crosses the boundary of a solid.
+///
+/// # Law
+/// The bits are the same from whichever cell the crossing is asked.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Crossing {
+    /// The point from + t (to − from), 0 ≤ t ≤ 1.
+    pub t: f64,
+    /// A direction that leads out of the solid there, of any length.
+    pub normal: [f64; 3],
+}
+
+impl Crossing {
+    /// The crossing as the complement has it.
+    #[must_use]
+    pub fn complement(&self) -> Crossing {
+        Crossing { t: self.t, normal: self.normal.map(|c| -c) }
+    }
+}

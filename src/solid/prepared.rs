@@ -1,0 +1,62 @@
+//! A solid that keeps what it is on a frame.
+
+use super::forward::forward_solid;
+use super::{AnyClassifier, AnySolid, Solid};
+use crate::control::Control;
+use crate::error::Error;
+use crate::lattice::{Affine, Frame};
+use alloc::sync::Arc;
+use std::sync::{Mutex, PoisonError};
+
+/// A solid that keeps one frame prepared, the last that it was put on: asked on it again, it is there at once. A clone
+/// shares what is kept.
+///
+/// Threads may put it on frames at the same time. None waits for another: two that come first with the same frame both
+/// prepare it.
+#[derive(Clone)]
+pub struct Prepared {
+    solid: AnySolid,
+    last: Arc<Mutex<Option<(Frame, AnyClassifier)>>>,
+}
+
+impl Prepared {
+    /// A solid that nobody has put on a frame yet.
+    pub fn new(solid: AnySolid) -> Prepared {
+        Prepared { solid, last: Arc::default() }
+    }
+
+    /// The solid.
+    pub fn solid(&self) -> &AnySolid {
+        &self.solid
+    }
+
+    /// What is kept, if it is for this frame.
+    fn kept(&self, frame: &Frame) -> Option<AnyClassifier> {
+        let last = self.last.lock().unwrap_or_else(PoisonError::into_inner);
+        last.as_ref().filter(|(kept, _)| kept == frame).map(|(_, classifier)| classifier.clone())
+    }
+}
+
+impl Solid for Prepared {
+    type Classifier = AnyClassifier;
+
+    fn on(&self, frame: &Frame, control: &Control<'_>) -> Result<AnyClassifier, Error> {
+        if let Some(classifier) = self.kept(frame) {
+            return Ok(classifier);
+        }
+        // The host's functions may be called here, and may ask this very solid: no lock is held.
+        let classifier = self.solid.on(frame, control)?;
+        let before = {
+            let mut last = self.last.lock().unwrap_or_else(PoisonError::into_inner);
+            last.replace((*frame, classifier.clone()))
+        };
+        drop(before);
+        Ok(classifier)
+    }
+
+    fn placed(&self, placement: &Affine) -> Result<Option<Prepared>, Error> {
+        Ok(Some(Prepared::new(AnySolid::placed(&self.solid, placement)?)))
+    }
+
+    forward_solid!(@description self => self.solid);
+}

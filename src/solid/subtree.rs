@@ -1,0 +1,21 @@
+//! Stored cells that are copied as they are.
+
+use crate::octree::OctreeRef;
+
+/// Stored cells that whoever writes an octree can copy as they are, or complemented.
+#[derive(Debug, Clone, Copy)]
+pub struct Subtree<'a> {
+    pub(crate) tree: OctreeRef<'a>,
+    /// Element level and index of the element that describes the cell.
+    pub(crate) level: usize,
+    pub(crate) index: usize,
+    pub(crate) flip: bool,
+}
+
+impl Subtree<'_> {
+    /// The complement of the cells.
+    #[must_use]
+    pub fn complement(self) -> Self {
+        Subtree { flip: !self.flip, ..self }
+    }
+}
