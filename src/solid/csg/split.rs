@@ -104,7 +104,7 @@ impl Worker for CsgWorker {
 
     #[inline]
     fn split(&mut self, cell: Cell, part: &CsgPart) -> Result<[Verdict<CsgPart>; 8], Error> {
-        let CsgWorker { program, scratch, .. } = self;
+        let (program, scratch) = (&*self.program, &mut self.scratch);
         if scratch.may_be_lone(program, *part)
             && let Some(verdicts) = scratch.lone8(program, cell, *part)?
         {
@@ -132,7 +132,7 @@ impl Worker for CsgWorker {
         part: &CsgPart,
         parts: &mut Vec<(u8, CsgPart)>,
     ) -> Result<Planes, Error> {
-        let CsgWorker { program, scratch, .. } = self;
+        let (program, scratch) = (&*self.program, &mut self.scratch);
         if scratch.may_be_lone(program, *part)
             && let Some(planes) = scratch.lone64(program, cell, *part, parts)?
         {
@@ -165,7 +165,7 @@ impl Worker for CsgWorker {
     }
 
     fn fill(&mut self, cell: Cell, part: &CsgPart, block: &mut Block) -> Result<bool, Error> {
-        let CsgWorker { program, scratch, .. } = self;
+        let (program, scratch) = (&*self.program, &mut self.scratch);
         let filled = scratch.ask_lone(program, *part, |worker, part| worker.fill(cell, part, block))?;
         if let Some((true, true)) = filled {
             block.complement();
@@ -188,7 +188,7 @@ impl Worker for CsgWorker {
     }
 
     fn enclosure(&mut self, cell: Cell, part: &CsgPart) -> Result<Option<Enclosure>, Error> {
-        let CsgWorker { program, scratch, .. } = self;
+        let (program, scratch) = (&*self.program, &mut self.scratch);
         let found = scratch.ask_lone(program, *part, |worker, part| worker.enclosure(cell, part))?;
         Ok(found.and_then(|(enclosure, complement)| match (enclosure, complement) {
             (Some(enclosure), true) => Some(enclosure.complement()),
@@ -197,7 +197,7 @@ impl Worker for CsgWorker {
     }
 
     fn crossing(&mut self, cell: Cell, part: &CsgPart, segment: &Segment) -> Result<Option<Crossing>, Error> {
-        let CsgWorker { program, scratch, .. } = self;
+        let (program, scratch) = (&*self.program, &mut self.scratch);
         let found = scratch.ask_lone(program, *part, |worker, part| worker.crossing(cell, part, segment))?;
         Ok(found.and_then(|(crossing, complement)| match (crossing, complement) {
             (Some(crossing), true) => Some(crossing.complement()),

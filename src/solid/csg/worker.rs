@@ -176,6 +176,16 @@ impl Scratch {
         }
     }
 
+    /// The word of a part that has one.
+    #[inline(always)]
+    fn only_word(&self, program: &Program, part: CsgPart) -> Word {
+        let start = part.start as usize;
+        match program.words.get(start) {
+            Some(&word) => word,
+            None => self.words[start - program.words.len()],
+        }
+    }
+
     /// Where the next part begins.
     pub(super) fn start(&self, program: &Program) -> Result<u32, Error> {
         u32::try_from(program.words.len() + self.words.len()).map_err(|_| Error::OutOfMemory)
@@ -260,7 +270,7 @@ impl Scratch {
         // Most cells are cut by one half-space: they share its word.
         if part.len == 1
             && !program.paper
-            && let Op::HalfSpace { index, complement } = Scratch::list(program, &self.words, part)[0].op()
+            && let Op::HalfSpace { index, complement } = self.only_word(program, part).op()
         {
             let half_space = &program.half_spaces[index as usize];
             let sides = half_space.sides(&ask.octants(), 0xFF, &mut self.evaluations)?;
