@@ -38,6 +38,9 @@ type Distance<'a> = Box<dyn Fn(&[[f64; 3]], &mut [f64]) -> Result<(), Error> + S
 /// assert_eq!(tree.statistics().volume(), leafless::Interval::exactly(0.25));
 /// # Ok::<(), leafless::Error>(())
 /// ```
+///
+/// # Panics
+/// The methods that add to a callback panic once it has been put on a frame.
 pub struct Callback<'a, F>(Arc<Functions<'a, F>>);
 
 struct Functions<'a, F> {
