@@ -11,7 +11,7 @@
 use criterion::{BatchSize, Criterion, Throughput, criterion_group, criterion_main};
 use leafless::{
     Control, FillRule, Frame, Membership, MeshSolid, Octree, PointCursor, Rule, TriangleMesh, build, compact,
-    difference, file, intersection, union, xor,
+    difference, exchange, file, intersection, union, xor,
 };
 use std::hint::black_box;
 use std::path::Path;
@@ -31,7 +31,7 @@ fn model(name: &str) -> Vec<u8> {
                 torus = TriangleMesh::new(torus.vertices().into(), torus.triangles()[400..].into())
                     .expect("a torus");
             }
-            file::write_stl(&torus).expect("a torus")
+            exchange::write_stl(&torus).expect("a torus")
         }
     }
 }
@@ -53,7 +53,7 @@ fn torus(n: u32) -> TriangleMesh {
 }
 
 fn mesh(bytes: &[u8]) -> Arc<TriangleMesh> {
-    let file = file::read_mesh(bytes, &file::MeshOptions::default()).expect("a mesh");
+    let file = exchange::read_mesh(bytes, &exchange::MeshOptions::default()).expect("a mesh");
     Arc::new(file.mesh.sewn().expect("a mesh"))
 }
 

@@ -9,7 +9,7 @@
 //! this file, and what limits them, stand in `benches/README.md`.
 
 use criterion::{BatchSize, Criterion, Throughput, criterion_group, criterion_main};
-use leafless::{TriangleMesh, file};
+use leafless::{TriangleMesh, exchange};
 use std::hint::black_box;
 
 #[path = "../fuzz/bodies/meshes.rs"]
@@ -38,17 +38,17 @@ fn read(c: &mut Criterion) {
     group.sample_size(20);
     let (short, long) = (torus(500, true), torus(500, false));
     let [(obj, _), _, (off, _), _, (ascii, _), (little, _), (big, _), _] = meshes::WRITERS;
-    let stl: meshes::Writer = |mesh| file::write_stl(mesh).expect("a good mesh");
+    let stl: meshes::Writer = |mesh| exchange::write_stl(mesh).expect("a good mesh");
     let files: [(&str, Vec<u8>, meshes::Reader); 9] = [
-        ("OBJ, 6 places", plain_obj(&short), file::read_obj),
-        ("OBJ, 17 digits", plain_obj(&long), file::read_obj),
-        ("OBJ, other dialect", obj(&short), file::read_obj),
-        ("OFF", off(&short), file::read_off),
-        ("PLY ascii", ascii(&short), file::read_ply),
-        ("PLY little-endian", little(&short), file::read_ply),
-        ("PLY big-endian", big(&short), file::read_ply),
-        ("OBJ of quadrilaterals", quadrilaterals(&short), file::read_obj),
-        ("STL", stl(&short), file::read_stl),
+        ("OBJ, 6 places", plain_obj(&short), exchange::read_obj),
+        ("OBJ, 17 digits", plain_obj(&long), exchange::read_obj),
+        ("OBJ, other dialect", obj(&short), exchange::read_obj),
+        ("OFF", off(&short), exchange::read_off),
+        ("PLY ascii", ascii(&short), exchange::read_ply),
+        ("PLY little-endian", little(&short), exchange::read_ply),
+        ("PLY big-endian", big(&short), exchange::read_ply),
+        ("OBJ of quadrilaterals", quadrilaterals(&short), exchange::read_obj),
+        ("STL", stl(&short), exchange::read_stl),
     ];
     for (name, bytes, read) in files {
         group.throughput(Throughput::Bytes(bytes.len() as u64));

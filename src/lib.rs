@@ -34,10 +34,13 @@
 //! |---|---|
 //! | `lattice` | cells, cubes, frames: integers and model space |
 //! | `octree` | tags, the word algebra, views, the writer, checks, statistics |
-//! | `solid` | what can split a cell: one file a producer |
+//! | `mesh` | triangle meshes as data: welding, topology, defects, repair |
+//! | `solid` | what can split a cell: one file or folder a producer |
 //! | `op` | building, splitting on demand, and the set algebra of stored trees |
 //! | `query` | points and boxes, measures, interference |
-//! | `file` | the file format, and meshes from other programs |
+//! | `file` | the file format |
+//! | `exchange` | the files of other programs |
+//! | `scene` | the language of OpenSCAD's CSG dumps |
 //! | `capi` | the C interface |
 
 #![no_std]
@@ -52,11 +55,16 @@ pub mod capi;
 mod control;
 mod dispatch;
 mod error;
+pub mod exchange;
 pub mod file;
 mod lattice;
+mod memory;
+mod mesh;
 mod octree;
 mod op;
 mod query;
+#[cfg(feature = "scene")]
+pub mod scene;
 mod solid;
 
 pub use control::Control;
@@ -64,6 +72,9 @@ pub use error::{
     Damage, Error, FormatError, MeshError, MeshFileError, PackageError, PolyhedronError, SceneError,
 };
 pub use lattice::{Affine, Bounds, Cell, Cube, Frame, Interval, MAX_DEPTH};
+pub use mesh::{DefectKind, FillRule, MeshDefect, MeshReport, TriangleMesh};
+#[cfg(feature = "std")]
+pub use mesh::{Polyhedron, PolyhedronArrays};
 pub use octree::{
     Block, Cursor, LevelStatistics, Metadata, Node, Octree, OctreeRef, Planes, Rule, Statistics, Tag,
 };
@@ -77,13 +88,12 @@ pub use query::{
 };
 pub use solid::{
     AnyClassifier, AnySolid, AnyWorker, AxisBox, Ball, Callback, Classifier, Counted, Crossing, Csg,
-    DefectKind, Enclosure, Erasable, FillRule, Fingerprint, Fingerprinter, HalfSpace, MeshDefect, MeshReport,
-    MeshSolid, Motion, Segment, Slab, SlabJoin, Solid, Stored, Subtree, Touch, Transform, TriangleMesh,
-    Verdict, Worker,
+    Enclosure, Erasable, Fingerprint, Fingerprinter, HalfSpace, MeshSolid, Motion, Segment, Slab, SlabJoin,
+    Solid, Stored, Subtree, Touch, Transform, Verdict, Worker,
 };
 
 #[cfg(feature = "std")]
-pub use solid::{Polyhedron, PolyhedronArrays, Prepared};
+pub use solid::Prepared;
 
 /// The README's example is compiled and run.
 #[cfg(all(doctest, feature = "mmap"))]

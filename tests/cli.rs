@@ -6,7 +6,7 @@ mod common;
 #[path = "common/zip.rs"]
 mod zip;
 
-use leafless::{Membership, TriangleMesh, file};
+use leafless::{Membership, TriangleMesh, exchange, file};
 use serde_json::Value;
 use std::ffi::OsStr;
 use std::io::{Read, Write};
@@ -127,7 +127,7 @@ fn block(min: [f64; 3], max: [f64; 3]) -> TriangleMesh {
 }
 
 fn stl(mesh: &TriangleMesh) -> Vec<u8> {
-    file::write_stl(mesh).unwrap()
+    exchange::write_stl(mesh).unwrap()
 }
 
 /// `cube.stl`, the cube [1, 3]³, and `slab.stl`, the box [2, 6] × [2, 6] × [0, 2].

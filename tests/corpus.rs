@@ -287,7 +287,7 @@ fn corpus() -> Vec<Entry> {
         ("stanford-bunny.obj", &[6]),
     ] {
         let Some(path) = model(name) else { continue };
-        let mesh = Arc::new(leafless::file::open_mesh(&path, &Default::default()).unwrap().mesh);
+        let mesh = Arc::new(leafless::exchange::open_mesh(&path, &Default::default()).unwrap().mesh);
         let (min, max) = mesh.bounds();
         all.push(Entry {
             name: name.into(),

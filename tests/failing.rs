@@ -18,7 +18,7 @@ use leafless::{
     Affine, AnySolid, AxisBox, Ball, Callback, Control, Csg, Error, FillRule, Frame, HalfSpace, LazyOctree,
     Membership, MeshSolid, Metadata, Octree, Polyhedron, PolyhedronArrays, Rule, Stored, Transform,
     TriangleMesh, Verdict, Zone, bounding_box, build, classify_box, clearance, compact, complement, contains,
-    difference, file, interference_of, intersection, measure, resolve, union, union_of, xor,
+    difference, exchange, file, interference_of, intersection, measure, resolve, scene, union, union_of, xor,
 };
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
@@ -239,7 +239,7 @@ fn operations(directory: &Path) -> Vec<(&'static str, Operation)> {
     let bytes = file::to_bytes(&coded).unwrap();
     let (closed, cracked) = (Arc::new(TriangleMesh::from_facets(facets()).unwrap()), Arc::new(cracked()));
     let facets = facets();
-    let stl = file::write_stl(&closed).unwrap();
+    let stl = exchange::write_stl(&closed).unwrap();
     let path = directory.join("tree.lfl");
     let mut operations: Vec<(&'static str, Operation)> = vec![];
     macro_rules! operation {
@@ -322,10 +322,10 @@ fn operations(directory: &Path) -> Vec<(&'static str, Operation)> {
     // Faces of few corners: the crate that triangulates faces cannot be refused memory.
     operation!("polyhedron", [], polyhedron(&band(12)));
     operation!("sew", [cracked], cracked.transformed(|corner| corner)?.sewn());
-    operation!("read STL", [stl], file::read_stl(&stl));
+    operation!("read STL", [stl], exchange::read_stl(&stl));
     operation!("read mesh", [stl], {
-        let (unit, target) = (Some(file::LengthUnit::Inch), Some(file::LengthUnit::Millimetre));
-        file::read_mesh(&stl, &file::MeshOptions { unit, target, ..Default::default() })
+        let (unit, target) = (Some(exchange::LengthUnit::Inch), Some(exchange::LengthUnit::Millimetre));
+        exchange::read_mesh(&stl, &exchange::MeshOptions { unit, target, ..Default::default() })
     });
     #[cfg(feature = "threemf")]
     {
@@ -344,9 +344,9 @@ fn operations(directory: &Path) -> Vec<(&'static str, Operation)> {
         let mut entries = zip::package(zip::model("", &resources, items));
         entries.push(zip::Entry::deflated("b.model", zip::model("", &zip::tetrahedron(1, ""), "")));
         let package = zip::zip(&entries);
-        operation!("read 3MF", [package], file::read_mesh(&package, &Default::default()));
+        operation!("read 3MF", [package], exchange::read_mesh(&package, &Default::default()));
     }
-    operation!("write STL", [closed], file::write_stl(&closed));
+    operation!("write STL", [closed], exchange::write_stl(&closed));
     for (k, (write, read)) in bodies::meshes::WRITERS.into_iter().enumerate() {
         const NAMES: [&str; bodies::meshes::WRITERS.len()] = [
             "read OBJ",
@@ -362,7 +362,7 @@ fn operations(directory: &Path) -> Vec<(&'static str, Operation)> {
         operations.push((NAMES[k], Box::new(move || read(&bytes).map(drop))));
     }
     let polygons = polygons();
-    operation!("read polygons", [polygons], file::read_obj(polygons.as_bytes()));
+    operation!("read polygons", [polygons], exchange::read_obj(polygons.as_bytes()));
     #[cfg(feature = "scene")]
     {
         let text: String = (0..40)
@@ -375,8 +375,8 @@ fn operations(directory: &Path) -> Vec<(&'static str, Operation)> {
                 "polyhedron([[0,0,0],[4,0,0],[0,4,0],[0,0,4]], [[0,1,2],[0,3,1],[0,2,3],[1,3,2]]);".into()
             ])
             .collect();
-        let scene = file::read_scene(&text, None).unwrap();
-        operation!("read a scene", [text], file::read_scene(&text, None));
+        let scene = scene::read_scene(&text, None).unwrap();
+        operation!("read a scene", [text], scene::read_scene(&text, None));
         operation!("solid of a scene", [scene], scene.solid(&Frame::new([0.0; 3], 64.0, 3)?));
         operation!("bounds of a scene", [scene], scene.bounds());
     }
@@ -669,7 +669,7 @@ fn packages_take_twenty_times_their_parts() {
             zip::Entry::stored("_rels/.rels", zip::RELATIONSHIPS),
             zip::Entry::stored("3D/3dmodel.model", &text),
         ]);
-        let (result, held) = most_held(|| file::read_mesh(&package, &Default::default()));
+        let (result, held) = most_held(|| exchange::read_mesh(&package, &Default::default()));
         result.unwrap();
         let times = held as f64 / text.len() as f64;
         println!("{name}: {times:.1} times {} bytes", text.len());
@@ -687,12 +687,12 @@ fn meshes_take_a_small_multiple_of_their_files() {
     for (write, read) in bodies::meshes::WRITERS {
         files.push((write(&mesh), read));
     }
-    files.push((file::write_stl(&mesh).unwrap(), file::read_stl));
-    files.push((polygons().into_bytes(), file::read_obj));
+    files.push((exchange::write_stl(&mesh).unwrap(), exchange::read_stl));
+    files.push((polygons().into_bytes(), exchange::read_obj));
     // A face that is not convex, of many corners.
     let comb: String = (0..9000).map(|i| format!("v {} {} 0\n", i / 2, i % 2 * (1 + i / 2 % 2))).collect();
     let face: String = (1..=9000).map(|i| format!(" {i}")).collect();
-    files.push((format!("{comb}v 9 -1 0\nf{face} 9001\n").into_bytes(), file::read_obj));
+    files.push((format!("{comb}v 9 -1 0\nf{face} 9001\n").into_bytes(), exchange::read_obj));
     let winding =
         (0..100u8).flat_map(|x| (1..=100).map(move |y| [x, if x % 2 == 0 { y } else { 101 - y }, 0]));
     let corners: Vec<[u8; 3]> = winding.chain([[101, 0, 0], [0, 0, 0]]).collect();
@@ -704,28 +704,31 @@ fn meshes_take_a_small_multiple_of_their_files() {
     );
     files.push((
         header.bytes().chain(corners.iter().flatten().copied()).chain(face).collect(),
-        file::read_ply,
+        exchange::read_ply,
     ));
     // What takes the least text for each vertex, face and corner; and claims of what is not there.
-    files.push(("v 0 0 0\n".repeat(5000).into_bytes(), file::read_obj));
+    files.push(("v 0 0 0\n".repeat(5000).into_bytes(), exchange::read_obj));
     let vertices: String = (0..9999).map(|i| format!("v 0 0 {i}\n")).collect();
-    files.push((vertices.into_bytes(), file::read_obj));
-    files.push((("f 1 1 1\n".repeat(5000) + "v 0 0 0").into_bytes(), file::read_obj));
-    files.push((("f 1 1 1 1\n".repeat(5000) + "v 0 0 0").into_bytes(), file::read_obj));
-    files.push((format!("v 0 0 0\nf{}\n", " 1".repeat(5000)).into_bytes(), file::read_obj));
-    files.push((format!("1 5000\n0 0 0\n{}", "3 0 0 0\n".repeat(5000)).into_bytes(), file::read_off));
-    files.push((format!("4000000000 5000\n{}", "0 0 0\n".repeat(5000)).into_bytes(), file::read_off));
-    files.push((format!("1 4000000000\n0 0 0\n{}", "4 0 0 0 0\n".repeat(5000)).into_bytes(), file::read_off));
+    files.push((vertices.into_bytes(), exchange::read_obj));
+    files.push((("f 1 1 1\n".repeat(5000) + "v 0 0 0").into_bytes(), exchange::read_obj));
+    files.push((("f 1 1 1 1\n".repeat(5000) + "v 0 0 0").into_bytes(), exchange::read_obj));
+    files.push((format!("v 0 0 0\nf{}\n", " 1".repeat(5000)).into_bytes(), exchange::read_obj));
+    files.push((format!("1 5000\n0 0 0\n{}", "3 0 0 0\n".repeat(5000)).into_bytes(), exchange::read_off));
+    files.push((format!("4000000000 5000\n{}", "0 0 0\n".repeat(5000)).into_bytes(), exchange::read_off));
+    files.push((
+        format!("1 4000000000\n0 0 0\n{}", "4 0 0 0 0\n".repeat(5000)).into_bytes(),
+        exchange::read_off,
+    ));
     let header = "ply\nformat binary_little_endian 1.0\nelement vertex 20000\nproperty char x\nproperty char y\n\
                   property char z\nelement face 4000000000\nproperty list uchar uchar vertex_index\nend_header\n";
     let vertices = (0..20_000u32).flat_map(|i| [i as u8, (i >> 8) as u8, (i >> 16) as u8]);
     let both = header.bytes().chain(vertices.clone()).chain([3, 0, 1, 2].repeat(5000));
-    files.push((both.collect(), file::read_ply));
+    files.push((both.collect(), exchange::read_ply));
     let only_vertices = header.replace("4000000000", "0");
-    files.push((only_vertices.bytes().chain(vertices).collect(), file::read_ply));
+    files.push((only_vertices.bytes().chain(vertices).collect(), exchange::read_ply));
     let strip = "ply\nformat binary_big_endian 1.0\nelement vertex 1\nproperty char x\nproperty char y\nproperty char z\n\
                  element tristrips 1\nproperty list ushort char vertex_index\nend_header\n\0\0\0\x7F\0";
-    files.push((strip.bytes().chain([0; 0x7F00]).collect(), file::read_ply));
+    files.push((strip.bytes().chain([0; 0x7F00]).collect(), exchange::read_ply));
     let mut worst = 0f64;
     for (bytes, read) in &files {
         let mut most = 0.0;

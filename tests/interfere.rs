@@ -2,7 +2,7 @@
 
 #![cfg(feature = "cli")]
 
-use leafless::{AxisBox, Control, Frame, Rule, TriangleMesh, build, file};
+use leafless::{AxisBox, Control, Frame, Rule, TriangleMesh, build, exchange, file};
 use serde_json::Value;
 use std::path::Path;
 use std::process::{Command, Output};
@@ -26,7 +26,7 @@ fn block(min: [f64; 3], max: [f64; 3]) -> Vec<u8> {
     let sides: [[u32; 4]; 6] =
         [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
     let triangles = sides.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
-    file::write_stl(&TriangleMesh::new(corners.collect(), triangles).unwrap()).unwrap()
+    exchange::write_stl(&TriangleMesh::new(corners.collect(), triangles).unwrap()).unwrap()
 }
 
 fn contains(interval: &Value, value: f64) -> bool {

@@ -7,7 +7,7 @@ use common::{Dense, Random, alone, model};
 use leafless::{
     Affine, AnySolid, AxisBox, Ball, Cell, Clearance, Control, Csg, Cube, Error, FillRule, Frame, HalfSpace,
     Interference, MeshSolid, Octree, Overlap, Rule, Solid, Tag, Transform, TriangleMesh, build, clearance,
-    file, interference, interference_of, intersection,
+    exchange, interference, interference_of, intersection,
 };
 use std::f64::consts::PI;
 use std::sync::atomic::AtomicBool;
@@ -566,7 +566,8 @@ fn a_mesh_in_other_places() {
 #[test]
 fn a_mesh_against_itself() {
     let Some(path) = model("featuretype.STL") else { return };
-    let mesh = file::read_mesh(&std::fs::read(path).unwrap(), &file::MeshOptions::default()).unwrap().mesh;
+    let mesh =
+        exchange::read_mesh(&std::fs::read(path).unwrap(), &exchange::MeshOptions::default()).unwrap().mesh;
     let (min, max) = mesh.bounds();
     let volume = mesh.volume();
     let around = Frame::around(min, max, 7).unwrap();

@@ -7,7 +7,7 @@ use common::{Dense, DenseSolid, Random, alone, cases, model, positions, shapes};
 use leafless::{
     AnySolid, AxisBox, Ball, Callback, Cell, Classifier, Control, Error, Extent, FillRule, Frame, Interval,
     Measured, Measures, MeshSolid, Rule, Solid, Tag, TriangleMesh, Verdict, Worker, bounding_box, build,
-    complement, file, measure,
+    complement, exchange, measure,
 };
 use proptest::prelude::*;
 use std::f64::consts::PI;
@@ -670,7 +670,7 @@ fn sums_of(mesh: &TriangleMesh) -> Sums {
 #[test]
 fn a_mesh_against_the_divergence_theorem() {
     let Some(path) = model("featuretype.STL") else { return };
-    let mesh = file::read_mesh(&std::fs::read(path).unwrap(), &Default::default()).unwrap().mesh;
+    let mesh = exchange::read_mesh(&std::fs::read(path).unwrap(), &Default::default()).unwrap().mesh;
     let (min, max) = mesh.bounds();
     let sums = sums_of(&mesh);
     for depth in [3, 6, 9] {

@@ -12,7 +12,7 @@ use common::{Random, alone, cases, lattice_frame, model};
 use descended::Descended;
 use leafless::{
     AnySolid, Classifier, Control, Error, FillRule, Frame, Membership, MeshError, MeshSolid, Octree, Rule,
-    Solid, Tag, TriangleMesh, build, difference, file,
+    Solid, Tag, TriangleMesh, build, difference, exchange,
 };
 use oracle::{Contact, Oracle, PointOracle};
 use proptest::prelude::*;
@@ -485,7 +485,7 @@ proptest! {
 fn read(name: &str) -> Option<TriangleMesh> {
     let path = model(name)?;
     let bytes = std::fs::read(path).unwrap();
-    Some(file::read_stl(&bytes).unwrap().sewn().unwrap())
+    Some(exchange::read_stl(&bytes).unwrap().sewn().unwrap())
 }
 
 fn around(mesh: &TriangleMesh, depth: u8) -> Frame {

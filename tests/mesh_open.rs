@@ -20,7 +20,8 @@ mod soup;
 
 use common::{Random, alone};
 use descended::Descended;
-use leafless::file::{MeshOptions, open_mesh, write_to};
+use leafless::exchange::{MeshOptions, open_mesh};
+use leafless::file::write_to;
 use leafless::{Control, FillRule, Frame, MeshSolid, Octree, Rule, Tag, build};
 use oracle::PointOracle;
 use shapes::*;

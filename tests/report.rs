@@ -321,7 +321,7 @@ fn random_soups_agree_with_the_definitions() {
 #[test]
 fn a_real_file_of_several_bodies() {
     let Some(path) = common::model("multibody.stl") else { return };
-    let mesh = leafless::file::read_stl(&std::fs::read(path).unwrap()).unwrap();
+    let mesh = leafless::exchange::read_stl(&std::fs::read(path).unwrap()).unwrap();
     assert_eq!(counts(&mesh), [0, 0, 12, 0, 0, 0, 0, 2, 2, 0]);
     let defects = mesh.defects(10).unwrap();
     assert!(defects.iter().all(|d| d.kind == DefectKind::Misoriented));
@@ -331,7 +331,7 @@ fn a_real_file_of_several_bodies() {
 #[test]
 fn a_real_file_with_holes() {
     let Some(path) = common::model("stanford-bunny.obj") else { return };
-    let mesh = leafless::file::read_obj(&std::fs::read(path).unwrap()).unwrap();
+    let mesh = leafless::exchange::read_obj(&std::fs::read(path).unwrap()).unwrap();
     let report = mesh.report().unwrap();
     assert_eq!((report.triangles, report.boundary_edges, report.boundary_loops), (69451, 223, 5));
     assert_eq!((report.misoriented_edges, report.bodies, report.open_bodies), (0, 1, 1));
@@ -361,9 +361,9 @@ fn real_files() {
         let Some(path) = common::model(name) else { return };
         let bytes = std::fs::read(path).unwrap();
         let mesh = match name.split_once('.').unwrap().1 {
-            "obj" => leafless::file::read_obj(&bytes),
-            "ply" => leafless::file::read_ply(&bytes),
-            _ => leafless::file::read_stl(&bytes),
+            "obj" => leafless::exchange::read_obj(&bytes),
+            "ply" => leafless::exchange::read_ply(&bytes),
+            _ => leafless::exchange::read_stl(&bytes),
         };
         let mesh = mesh.unwrap();
         assert_eq!(counts(&mesh), expected, "{name}");

@@ -5,7 +5,8 @@
 #[path = "../fuzz/bodies/scenes.rs"]
 mod scenes;
 
-use leafless::file::{read_scene, write_stl};
+use leafless::exchange::write_stl;
+use leafless::scene::read_scene;
 use leafless::{Control, Error, Frame, Interval, Membership, Octree, Rule, TriangleMesh, build};
 use std::f64::consts::PI;
 use std::fmt::Write;
@@ -535,7 +536,7 @@ fn files_beside_the_scene() {
     let read = |text: &str| {
         let path = folder.path().join("scene.csg");
         std::fs::write(&path, text).unwrap();
-        let scene = leafless::file::open_scene(&path)?;
+        let scene = leafless::scene::open_scene(&path)?;
         build(&scene.solid(&frame)?, &frame, Rule::Certified, &Control::default())
     };
     let check = |text: &str, truth: f64, width: f64| {
@@ -579,9 +580,9 @@ fn files_beside_the_scene() {
             other => panic!("{text}: {:?}", other.map(|_| ())),
         }
     }
-    assert!(matches!(leafless::file::open_scene(folder.path().join("none.csg")), Err(Error::Io(_))));
+    assert!(matches!(leafless::scene::open_scene(folder.path().join("none.csg")), Err(Error::Io(_))));
     std::fs::write(folder.path().join("latin.csg"), b"cube(1);\n// gr\xFC\xDFe").unwrap();
-    let error = leafless::file::open_scene(folder.path().join("latin.csg")).err().unwrap();
+    let error = leafless::scene::open_scene(folder.path().join("latin.csg")).err().unwrap();
     assert_eq!(error.to_string(), "line 2, column 6: the text is not UTF-8");
     // Without a folder there are no files.
     let (line, column, problem) = refusal("mesh(\"block.stl\");");

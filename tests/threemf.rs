@@ -3,7 +3,7 @@
 #[path = "../fuzz/bodies/packages.rs"]
 mod packages;
 
-use leafless::file::{LengthUnit, MeshFile, MeshFormat, MeshOptions, read_mesh};
+use leafless::exchange::{LengthUnit, MeshFile, MeshFormat, MeshOptions, read_mesh};
 use leafless::{Error, FillRule, PackageError};
 use packages::zip::{CONTENT_TYPES, Entry, RELATIONSHIPS, model, package, tetrahedron, zip};
 use proptest::prelude::*;

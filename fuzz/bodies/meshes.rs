@@ -1,6 +1,6 @@
 //! Any bytes through every reader of meshes: none panics, and what is read comes back after it is written.
 
-use leafless::{Error, TriangleMesh, file};
+use leafless::{Error, TriangleMesh, exchange};
 
 /// A function that reads a mesh.
 pub type Reader = fn(&[u8]) -> Result<TriangleMesh, Error>;
@@ -8,19 +8,23 @@ pub type Reader = fn(&[u8]) -> Result<TriangleMesh, Error>;
 pub type Writer = fn(&TriangleMesh) -> Vec<u8>;
 
 /// All readers of single files.
-pub const READERS: [(&str, Reader); 4] =
-    [("STL", file::read_stl), ("OBJ", file::read_obj), ("PLY", file::read_ply), ("OFF", file::read_off)];
+pub const READERS: [(&str, Reader); 4] = [
+    ("STL", exchange::read_stl),
+    ("OBJ", exchange::read_obj),
+    ("PLY", exchange::read_ply),
+    ("OFF", exchange::read_off),
+];
 
 /// Writers of several dialects, and the reader of each.
 pub const WRITERS: [(Writer, Reader); 8] = [
-    (obj, file::read_obj),
-    (obj_from_behind, file::read_obj),
-    (off, file::read_off),
-    (off_of_numbers, file::read_off),
-    (|mesh| ply("ascii", mesh), file::read_ply),
-    (|mesh| ply("binary_little_endian", mesh), file::read_ply),
-    (|mesh| ply("binary_big_endian", mesh), file::read_ply),
-    (strips, file::read_ply),
+    (obj, exchange::read_obj),
+    (obj_from_behind, exchange::read_obj),
+    (off, exchange::read_off),
+    (off_of_numbers, exchange::read_off),
+    (|mesh| ply("ascii", mesh), exchange::read_ply),
+    (|mesh| ply("binary_little_endian", mesh), exchange::read_ply),
+    (|mesh| ply("binary_big_endian", mesh), exchange::read_ply),
+    (strips, exchange::read_ply),
 ];
 
 /// Reads `data` as a file of every format.
@@ -36,8 +40,8 @@ pub fn meshes(data: &[u8]) {
             let back = read(&written).unwrap_or_else(|e| panic!("{name}: {e}"));
             assert!(back.vertices() == vertices && back.triangles() == triangles, "{name}");
         }
-        if let Ok(written) = file::write_stl(&mesh) {
-            let back = file::read_stl(&written).expect("what was written can be read");
+        if let Ok(written) = exchange::write_stl(&mesh) {
+            let back = exchange::read_stl(&written).expect("what was written can be read");
             let report = back.report().expect("memory");
             assert_eq!(report.facets_read, triangles.len() as u64, "{name}");
         }
@@ -48,9 +52,9 @@ pub fn meshes(data: &[u8]) {
 pub fn seeds() -> Vec<Vec<u8>> {
     let mut seeds: Vec<Vec<u8>> = TEXTS.iter().map(|text| text.as_bytes().to_vec()).collect();
     for text in &TEXTS[..2] {
-        let mesh = file::read_obj(text.as_bytes()).expect("a good file");
+        let mesh = exchange::read_obj(text.as_bytes()).expect("a good file");
         seeds.extend(WRITERS.map(|(write, _)| write(&mesh)));
-        seeds.push(file::write_stl(&mesh).expect("a good mesh"));
+        seeds.push(exchange::write_stl(&mesh).expect("a good mesh"));
     }
     let binary = |header: &str, numbers: &[i32]| {
         let numbers = numbers.iter().flat_map(|number| number.to_be_bytes());

@@ -3,7 +3,7 @@
 #[path = "../../tests/common/zip.rs"]
 pub mod zip;
 
-use leafless::file::{MeshFormat, MeshOptions, read_mesh};
+use leafless::exchange::{MeshFormat, MeshOptions, read_mesh};
 use zip::{CONTENT_TYPES, Entry, RELATIONSHIPS, model, tetrahedron};
 
 /// Reads `data` as a package; and its pieces, which zero bytes separate, as a model part, another one that the first may

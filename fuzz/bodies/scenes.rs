@@ -1,6 +1,6 @@
 //! Any bytes as a scene: what is read has a solid, whose cells agree from depth to depth and with its bounds.
 
-use leafless::file::read_scene;
+use leafless::scene::read_scene;
 use leafless::{Control, Error, Frame, Membership, Octree, Rule, build};
 
 const CONTROL: Control<'static> = Control {

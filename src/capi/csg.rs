@@ -3,8 +3,8 @@
 use super::boundary::{Failure, array, guard, out, shared, slice};
 use super::solid::{give, give_any, leafless_solid};
 use super::status::leafless_status;
-use crate::error::Error;
 use crate::lattice::Affine;
+use crate::memory;
 use crate::solid::{Csg, HalfSpace, Motion, Solid, Touch};
 use alloc::vec::Vec;
 
@@ -45,8 +45,7 @@ unsafe fn operand(solid: *const leafless_solid, name: &'static str) -> Result<Cs
 unsafe fn operands(solids: *const *const leafless_solid, count: u64) -> Result<Vec<Csg>, Failure> {
     // SAFETY: as the caller promises.
     let solids = unsafe { slice(solids, count, "solids")? };
-    let mut operands = Vec::new();
-    operands.try_reserve_exact(solids.len()).map_err(|_| Error::OutOfMemory)?;
+    let mut operands = memory::with_capacity(solids.len())?;
     for &solid in solids {
         // SAFETY: as the caller promises.
         operands.push(unsafe { operand(solid, "solids")? });
@@ -363,9 +362,7 @@ pub unsafe extern "C" fn leafless_solid_new_convex(
 ) -> leafless_status {
     guard(|| unsafe {
         let given = slice(planes.cast::<[f64; 4]>(), count, "planes")?;
-        let mut planes = Vec::new();
-        planes.try_reserve_exact(given.len()).map_err(|_| Error::OutOfMemory)?;
-        planes.extend(given.iter().map(|&[x, y, z, offset]| ([x, y, z], offset)));
+        let planes = memory::collected(given.iter().map(|&[x, y, z, offset]| ([x, y, z], offset)))?;
         let solid = out(solid, "solid")?;
         solid.write(give(Csg::convex(&planes)?))
     })

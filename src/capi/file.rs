@@ -6,8 +6,8 @@ use super::octree::{give, leafless_octree, leafless_tag};
 use super::status::leafless_status;
 use crate::error::Error;
 use crate::file::{self, Probe, Section};
+use crate::memory;
 use crate::octree::Octree;
-use alloc::vec::Vec;
 use core::ffi::{c_char, c_void};
 use std::io;
 
@@ -113,9 +113,7 @@ unsafe fn hand_out(
     let (probe, sections) = unsafe { (out(probe, "probe")?, buffer(sections, capacity, "sections")?) };
     let found = found()?;
     sections.check(found.sections.len())?;
-    let mut list = Vec::new();
-    list.try_reserve_exact(found.sections.len()).map_err(|_| Error::OutOfMemory)?;
-    list.extend(found.sections.iter().map(leafless_section::from));
+    let list = memory::collected(found.sections.iter().map(leafless_section::from))?;
     sections.fill(&list)?;
     probe.write((&found).into())
 }

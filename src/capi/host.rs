@@ -7,10 +7,10 @@ use super::solid::{give, leafless_solid};
 use super::status::leafless_status;
 use crate::error::Error;
 use crate::lattice::Interval;
+use crate::memory;
 use crate::octree::Tag;
 use crate::solid::{Callback, Csg, Fingerprint, HalfSpace, Verdict};
 use alloc::sync::Arc;
-use alloc::vec::Vec;
 use core::ffi::c_void;
 
 /// What a host promises of its shape outside of the universe that it is asked about.
@@ -149,7 +149,7 @@ impl Host {
     fn classify_many(&self, boxes: &[[[f64; 3]; 2]], verdicts: &mut [Verdict<()>]) -> Result<(), Error> {
         let Some(classify) = self.0.classify_many else { return Ok(()) };
         // A tag that is not set is none.
-        let mut tags = filled(i32::MIN, boxes.len())?;
+        let mut tags = memory::filled(boxes.len(), i32::MIN)?;
         // SAFETY: as above.
         done(unsafe { classify(self.0.ctx, boxes.as_ptr().cast(), boxes.len() as u64, tags.as_mut_ptr()) })?;
         for (to, &tag) in verdicts.iter_mut().zip(&tags) {
@@ -167,7 +167,7 @@ impl Host {
     }
 
     fn contains(&self, points: &[[f64; 3]], inside: &mut [bool]) -> Result<(), Error> {
-        let mut answers = filled(i32::MIN, points.len())?;
+        let mut answers = memory::filled(points.len(), i32::MIN)?;
         if let Some(contains) = self.0.contains_many {
             let count = points.len() as u64;
             // SAFETY: as above.
@@ -184,14 +184,6 @@ impl Host {
         }
         Ok(())
     }
-}
-
-/// So many of a number.
-fn filled(value: i32, count: usize) -> Result<Vec<i32>, Error> {
-    let mut values = Vec::new();
-    values.try_reserve_exact(count).map_err(|_| Error::OutOfMemory)?;
-    values.resize(count, value);
-    Ok(values)
 }
 
 /// The fingerprint that a host gives, unless it is 0.

@@ -8,9 +8,9 @@ use super::solid::{give, leafless_solid};
 use super::status::leafless_status;
 use crate::error::Error;
 use crate::lattice::Cell;
+use crate::memory;
 use crate::query::{Clearance, Interference, Overlap, clearance, interference, interference_of};
 use crate::solid::{MOST_NESTED, Transform};
-use alloc::vec::Vec;
 
 /// Whether the interiors of two solids have points in common.
 #[derive(Clone, Copy)]
@@ -224,8 +224,7 @@ pub unsafe extern "C" fn leafless_solid_interfere_many(
             out(interferences, "interferences")?;
         }
         let results = buffer(interferences, count, "interferences")?;
-        let mut placements = Vec::new();
-        placements.try_reserve_exact(matrices.len()).map_err(|_| Error::OutOfMemory)?;
+        let mut placements = memory::with_capacity(matrices.len())?;
         for matrix in matrices {
             placements.push(placement(matrix.as_ptr())?);
         }

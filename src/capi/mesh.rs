@@ -2,7 +2,7 @@
 
 use super::boundary::{Failure, array, buffer, guard, handle, out, refer, release, shared};
 use super::status::leafless_status;
-use crate::solid::{DefectKind, FillRule, MeshDefect, TriangleMesh};
+use crate::mesh::{DefectKind, FillRule, MeshDefect, TriangleMesh};
 use alloc::sync::Arc;
 
 /// A surface of triangles with shared vertices. Vertices at equal places are welded; whether the mesh is closed is

@@ -5,7 +5,8 @@ use super::mesh::{give, leafless_mesh};
 use super::status::leafless_status;
 use crate::error::{Error, MeshError};
 use crate::lattice::{LARGEST, SMALLEST};
-use crate::solid::TriangleMesh;
+use crate::memory;
+use crate::mesh::TriangleMesh;
 use alloc::borrow::Cow;
 use alloc::vec::Vec;
 use core::ffi::c_void;
@@ -142,8 +143,7 @@ impl<'a> Vertices<'a> {
 
     /// A copy of all of them.
     fn copied(&self) -> Result<Vec<[f64; 3]>, Error> {
-        let mut own = Vec::new();
-        own.try_reserve_exact(self.len()).map_err(|_| Error::OutOfMemory)?;
+        let mut own = memory::with_capacity(self.len())?;
         own.extend((0..self.len()).map(|index| self.at(index)));
         Ok(own)
     }
@@ -248,8 +248,7 @@ impl leafless_mesh_arrays {
         if u32::try_from(triangle_count).is_err() {
             return Err(MeshError::TooMany.into());
         }
-        let mut triangles = Vec::new();
-        triangles.try_reserve_exact(indices.len()).map_err(|_| Error::OutOfMemory)?;
+        let mut triangles = memory::with_capacity(indices.len())?;
         let count = vertices.len() as u64;
         for triangle in 0..indices.len() {
             let corners = indices.at(triangle);

@@ -3,7 +3,7 @@
 use super::boundary::{Failure, Out, Sized32, buffer, guard, initialise, out, path, shared, sized, slice};
 use super::mesh::{give, leafless_mesh};
 use super::status::leafless_status;
-use crate::file::{LengthUnit, MeshFile, MeshFormat, MeshOptions, open_mesh, read_mesh, write_stl};
+use crate::exchange::{LengthUnit, MeshFile, MeshFormat, MeshOptions, open_mesh, read_mesh, write_stl};
 use core::ffi::c_char;
 use leafless_mesh_format::*;
 use leafless_unit::*;

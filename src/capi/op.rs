@@ -8,9 +8,9 @@ use super::solid::leafless_solid;
 use super::status::leafless_status;
 use crate::control::Control;
 use crate::error::Error;
+use crate::memory;
 use crate::octree::{Octree, OctreeRef, Rule};
 use crate::op::{self, build, compact, resolve};
-use alloc::vec::Vec;
 
 /// What becomes of finest cells that are not decided.
 #[derive(Clone, Copy)]
@@ -146,8 +146,7 @@ unsafe fn nary(
     guard(|| unsafe {
         let octrees = slice(octrees, count, "octrees")?;
         let result = out(result, "result")?;
-        let mut views = Vec::new();
-        views.try_reserve_exact(octrees.len()).map_err(|_| Error::OutOfMemory)?;
+        let mut views = memory::with_capacity(octrees.len())?;
         for &octree in octrees {
             views.push(*shared(octree, "octrees")?.octree.view());
         }

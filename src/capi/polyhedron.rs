@@ -4,10 +4,10 @@ use super::boundary::{Failure, Out, Sized32, guard, initialise, out, sized};
 use super::mesh::{give, leafless_mesh};
 use super::mesh_arrays::{GivenVertices, Indices, Vertices};
 use super::status::leafless_status;
-use crate::error::{Error, MeshError, PolyhedronError};
-use crate::solid::{Polyhedron, PolyhedronArrays};
+use crate::error::{MeshError, PolyhedronError};
+use crate::memory;
+use crate::mesh::{Polyhedron, PolyhedronArrays};
 use alloc::borrow::Cow;
-use alloc::vec::Vec;
 use core::ffi::c_void;
 
 /// Solids that plane faces bound, as boundary representations have them: solids of shells of faces of loops of
@@ -76,8 +76,7 @@ fn narrow<'a>(
     {
         return Ok(Cow::Borrowed(indices.as_flattened()));
     }
-    let mut narrowed = Vec::new();
-    narrowed.try_reserve_exact(indices.len()).map_err(|_| Error::OutOfMemory)?;
+    let mut narrowed = memory::with_capacity(indices.len())?;
     for index in 0..indices.len() {
         let [value] = indices.at(index);
         narrowed.push(u32::try_from(value).map_err(|_| refused(index as u64, value))?);
@@ -149,8 +148,7 @@ impl leafless_polyhedron_arrays {
         let corners =
             narrow(corners, |corner, vertex| PolyhedronError::Vertex { corner, vertex, vertices: count })?;
         let faces = if faces.is_absent() {
-            let mut each = Vec::new();
-            each.try_reserve_exact(loops.len()).map_err(|_| Error::OutOfMemory)?;
+            let mut each = memory::with_capacity(loops.len())?;
             each.extend((0..).take(loops.len()));
             Cow::Owned(each)
         } else {

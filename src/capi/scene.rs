@@ -4,7 +4,7 @@ use super::boundary::{Failure, guard, handle, out, path, refer, release, shared,
 use super::frame::{frame, leafless_frame};
 use super::solid::{give, leafless_solid};
 use super::status::leafless_status;
-use crate::file::{Scene, open_scene, read_scene};
+use crate::scene::{Scene, open_scene, read_scene};
 use core::ffi::c_char;
 use std::path::Path;
 

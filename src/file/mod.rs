@@ -25,32 +25,6 @@
 //! # Ok::<(), leafless::Error>(())
 //! ```
 //!
-//! # Meshes
-//!
-//! [`read_mesh`] and `open_mesh` (with the feature `std`) read mesh files of all formats, tell which it is, and convert units;
-//! [`read_stl`], [`read_obj`], [`read_ply`] and [`read_off`] read one.
-//!
-//! | format | what is read |
-//! |---|---|
-//! | STL | binary and ASCII, several solids in one file |
-//! | OBJ | polygons, relative indices, continued lines; groups, materials and normals are skipped |
-//! | PLY | ASCII and both binary orders; any other elements and properties are skipped; triangle strips |
-//! | OFF | text and binary, with and without a keyword, with colours, normals and textures, which are skipped |
-//! | 3MF | (feature `threemf`) the core specification and parts of the production extension: units, components, the build's transforms |
-//!
-//! An error says in which line, or at which byte or element, and for a 3MF in which part. Bytes may be anything: no
-//! reader panics, and memory is linear in the length of the file, with two exceptions of 3MF: its parts may be
-//! up to 64 times as long as the file and 16 MiB, and instances of one object, up to 2^25 vertices and triangles
-//! altogether, are stored one by one. Of a 3MF the items of the build become one mesh: objects of type `model`, each as
-//! often as it is placed; supports and what else is no solid are left out and counted. A model that requires an
-//! extension other than production, materials and triangle sets is refused, as are encryption and document
-//! type declarations.
-//!
-//! # Scenes
-//!
-//! `read_scene` and `open_scene` (with the feature `scene`) read texts in the language of OpenSCAD's CSG dumps. What it has,
-//! and what it means, stands at `Scene`.
-//!
 //! # Files from strangers
 //!
 //! Whatever the bytes, none of this panics, reads beyond them, or goes on for ever:
@@ -99,26 +73,18 @@
 //! its reason. Beside it lie test vectors, the reasons for the design, and the list of what readers accept
 //! although the writer never writes it.
 
-mod exchange;
 mod layout;
 #[cfg(feature = "mmap")]
 mod map;
 mod read;
-#[cfg(feature = "scene")]
-mod scene;
 mod write;
 
-pub use exchange::{LengthUnit, MeshFile, MeshFormat, MeshOptions, read_mesh, read_stl, write_stl};
-#[cfg(feature = "std")]
-pub use exchange::{open_mesh, read_obj, read_off, read_ply};
 pub use layout::{MAGIC, MAJOR, MINOR};
 #[cfg(feature = "mmap")]
 pub use map::{map, map_verified};
 pub use read::{Probe, Section, from_bytes, from_static, probe_bytes, verify, view};
 #[cfg(feature = "std")]
 pub use read::{open, probe, probe_from};
-#[cfg(feature = "scene")]
-pub use scene::{Scene, open_scene, read_scene};
 pub use write::to_bytes;
 #[cfg(feature = "std")]
 pub use write::{save, write_to};

@@ -5,6 +5,7 @@ use super::layout::HEADER_LENGTH;
 use super::layout::{Head, Kind, Layout, SECTION_REQUIRED, Table, entries, section};
 use crate::error::{Error, FormatError};
 use crate::lattice::Frame;
+use crate::memory;
 use crate::octree::{Metadata, Octree, OctreeRef, Tag};
 use alloc::sync::Arc;
 use alloc::vec::Vec;
@@ -63,8 +64,7 @@ pub fn probe_bytes(bytes: &[u8]) -> Result<Probe, Error> {
     let head = Head::read(bytes)?;
     let raw = head.table(bytes)?;
     Table::read(&head, raw)?;
-    let mut sections = Vec::new();
-    sections.try_reserve_exact(head.header.section_count as usize).map_err(|_| Error::OutOfMemory)?;
+    let mut sections = memory::with_capacity(head.header.section_count as usize)?;
     sections.extend(entries(raw).map(|entry| Section {
         kind: entry.kind,
         name: Kind::from_number(entry.kind).map(Kind::name),
@@ -264,7 +264,7 @@ impl Buffer {
     fn extend(&mut self, length: usize) -> Result<(), Error> {
         let words = length.div_ceil(size_of::<u64>());
         let fresh = words.saturating_sub(self.words.len());
-        self.words.try_reserve_exact(fresh).map_err(|_| Error::OutOfMemory)?;
+        self.words.try_reserve_exact(fresh)?;
         self.words.resize(words.max(self.words.len()), 0);
         self.length = length;
         Ok(())

@@ -34,7 +34,7 @@ pub fn to_bytes(octree: &Octree) -> Result<Vec<u8>, Error> {
     let mut file = Vec::new();
     assemble(octree, &mut |length, write| {
         let length = usize::try_from(length).map_err(|_| Error::OutOfMemory)?;
-        file.try_reserve_exact(length).map_err(|_| Error::OutOfMemory)?;
+        file.try_reserve_exact(length)?;
         write(&mut |bytes| {
             file.extend_from_slice(bytes);
             Ok(())

@@ -5,8 +5,8 @@ use super::word::Planes;
 use super::writer::Writer;
 use crate::error::Error;
 use crate::lattice::morton;
+use crate::memory;
 use alloc::boxed::Box;
-use alloc::vec::Vec;
 
 /// How PARTIAL cells of the finest level are resolved when a tree is built.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
@@ -49,8 +49,8 @@ impl Block {
     /// # Errors
     /// [`Error::OutOfMemory`].
     pub fn new(planes: bool, centres: bool) -> Result<Block, Error> {
-        let planes = if planes { Some([zeros()?, zeros()?]) } else { None };
-        Ok(Block { planes, centres: if centres { Some(zeros()?) } else { None } })
+        let planes = if planes { Some([memory::zeros()?, memory::zeros()?]) } else { None };
+        Ok(Block { planes, centres: if centres { Some(memory::zeros()?) } else { None } })
     }
 
     /// What a rule needs.
@@ -174,14 +174,6 @@ impl Cells<'_> {
         }
         writer.put(e, element)
     }
-}
-
-/// One value for each column of a block.
-pub(crate) fn zeros<T: Copy + Default>() -> Result<Box<[T; 4096]>, Error> {
-    let mut values = Vec::new();
-    values.try_reserve_exact(4096).map_err(|_| Error::OutOfMemory)?;
-    values.resize(4096, T::default());
-    values.try_into().map_err(|_| Error::OutOfMemory)
 }
 
 /// Sixteen columns: what holds for all of them, and for any.

@@ -8,6 +8,7 @@
 use super::brick::{Brick, BrickArray, Bricks, OwnedArray, OwnedBricks};
 use super::view::OctreeRef;
 use crate::error::{Damage, Error};
+use crate::memory;
 use alloc::vec::Vec;
 use hashbrown::{HashMap, HashSet};
 
@@ -38,7 +39,7 @@ fn encode_array<T: Brick>(bricks: &BrickArray<'_, T>) -> Result<Option<OwnedArra
     let decoded = match bricks {
         BrickArray::Raw(raw) => return shortest(raw),
         BrickArray::Dictionary { .. } => {
-            let mut raw = with_capacity(bricks.len())?;
+            let mut raw = memory::with_capacity(bricks.len())?;
             if !bricks.extend(0..bricks.len(), &mut raw, |brick| brick) {
                 let bad = (0..bricks.len()).find(|&b| bricks.get(b).is_none()).unwrap_or(0);
                 return Err(Damage::Dictionary { brick: bad as u64 }.into());
@@ -80,9 +81,9 @@ enum Segmented<T> {
 /// The bricks in segments of 2^shift.
 fn segmented<T: Brick>(raw: &[T], shift: u8) -> Result<Segmented<T>, Error> {
     let length = if shift == WHOLE { raw.len().max(1) } else { 1 << shift };
-    let mut indices: Vec<u16> = with_capacity(raw.len())?;
+    let mut indices: Vec<u16> = memory::with_capacity(raw.len())?;
     let mut entries: Vec<T> = Vec::new();
-    let mut segments: Vec<u64> = with_capacity(raw.len().div_ceil(length))?;
+    let mut segments: Vec<u64> = memory::with_capacity(raw.len().div_ceil(length))?;
     let mut seen: HashMap<T, u32> = HashMap::new();
     let mut counts: Vec<u64> = Vec::new();
     let mut distinct: Vec<T> = Vec::new();
@@ -94,31 +95,31 @@ fn segmented<T: Brick>(raw: &[T], shift: u8) -> Result<Segmented<T>, Error> {
         // Indices are given in order of appearance first, and renamed once the frequencies are known.
         for &brick in segment {
             let fresh = counts.len();
-            seen.try_reserve(1).map_err(|_| Error::OutOfMemory)?;
+            seen.try_reserve(1)?;
             let index = *seen.entry(brick).or_insert(fresh as u32) as usize;
             if index == fresh {
                 if fresh == MOST {
                     return Ok(Segmented::TooManyEntries);
                 }
-                counts.try_reserve(1).map_err(|_| Error::OutOfMemory)?;
-                distinct.try_reserve(1).map_err(|_| Error::OutOfMemory)?;
+                counts.try_reserve(1)?;
+                distinct.try_reserve(1)?;
                 counts.push(0);
                 distinct.push(brick);
             }
             counts[index] += 1;
             indices.push(index as u16);
         }
-        let mut order: Vec<u16> = with_capacity(distinct.len())?;
+        let mut order: Vec<u16> = memory::with_capacity(distinct.len())?;
         order.extend((0..=u16::MAX).take(distinct.len()));
         let key = |&i: &u16| (core::cmp::Reverse(counts[i as usize]), distinct[i as usize]);
         order.sort_unstable_by_key(key);
-        let mut rename = zeros::<u16>(order.len())?;
+        let mut rename = memory::filled(order.len(), 0u16)?;
         for (new, &old) in order.iter().enumerate() {
             rename[old as usize] = new as u16;
         }
         indices[first..].iter_mut().for_each(|index| *index = rename[*index as usize]);
         segments.push(entries.len() as u64);
-        entries.try_reserve(order.len()).map_err(|_| Error::OutOfMemory)?;
+        entries.try_reserve(order.len())?;
         entries.extend(order.iter().map(|&i| distinct[i as usize]));
         // Already no shorter than raw bricks: nor will it be with the other segments, or smaller ones.
         if bytes::<T>(raw.len(), entries.len(), segments.len()) >= size_of_val(raw) {
@@ -126,18 +127,6 @@ fn segmented<T: Brick>(raw: &[T], shift: u8) -> Result<Segmented<T>, Error> {
         }
     }
     Ok(Segmented::Fits(OwnedArray::Dictionary { indices, entries, segments, shift }))
-}
-
-fn with_capacity<T>(count: usize) -> Result<Vec<T>, Error> {
-    let mut vec = Vec::new();
-    vec.try_reserve_exact(count).map_err(|_| Error::OutOfMemory)?;
-    Ok(vec)
-}
-
-fn zeros<T: Copy + Default>(count: usize) -> Result<Vec<T>, Error> {
-    let mut vec = with_capacity(count)?;
-    vec.resize(count, T::default());
-    Ok(vec)
 }
 
 /// Checks that the dictionary, if there is one, is the one that the bricks determine.
@@ -167,7 +156,7 @@ fn check_array<T: Brick>(bricks: &BrickArray<'_, T>) -> Result<(), Error> {
         if segments[s] != expected {
             return Err(Damage::Dictionary { brick }.into());
         }
-        let mut counts = zeros::<u64>(own.len())?;
+        let mut counts = memory::filled(own.len(), 0u64)?;
         for (b, &index) in indices.iter().enumerate() {
             match counts.get_mut(index as usize) {
                 Some(count) => *count += 1,
@@ -175,7 +164,7 @@ fn check_array<T: Brick>(bricks: &BrickArray<'_, T>) -> Result<(), Error> {
             }
         }
         let mut distinct = HashSet::new();
-        distinct.try_reserve(own.len()).map_err(|_| Error::OutOfMemory)?;
+        distinct.try_reserve(own.len())?;
         let key = |i: usize| (core::cmp::Reverse(counts[i]), own[i]);
         // Equal entries of different frequency do not stand side by side.
         let right = |i: usize, fresh: bool| fresh && counts[i] != 0 && (i == 0 || key(i - 1) < key(i));

@@ -1,6 +1,7 @@
 //! Key–value facts that travel with a tree.
 
 use crate::error::{Error, FormatError};
+use crate::memory;
 use alloc::string::String;
 use alloc::vec::Vec;
 
@@ -48,14 +49,13 @@ impl Metadata {
             let problem = "must not take more than 1 MiB in a file";
             return Err(Error::Argument { name: "metadata", problem });
         }
-        let mut facts = Vec::new();
-        facts.try_reserve_exact(self.0.len() + 1).map_err(|_| Error::OutOfMemory)?;
+        let mut facts = memory::with_capacity(self.0.len() + 1)?;
         for (key, value) in kept() {
-            facts.push((copy(key)?, copy(value)?));
+            facts.push((memory::text(key)?, memory::text(value)?));
         }
         let mut changed = Metadata(facts);
         if let Some(value) = value {
-            changed.insert(copy(key)?, copy(value)?);
+            changed.insert(memory::text(key)?, memory::text(value)?);
         }
         Ok(changed)
     }
@@ -91,8 +91,7 @@ impl Metadata {
     /// # Errors
     /// [`Error::OutOfMemory`].
     pub(crate) fn to_bytes(&self) -> Result<Vec<u8>, Error> {
-        let mut bytes = Vec::new();
-        bytes.try_reserve_exact(self.len_in_file()).map_err(|_| Error::OutOfMemory)?;
+        let mut bytes = memory::with_capacity(self.len_in_file())?;
         for (key, value) in self.iter() {
             bytes.extend_from_slice(&(key.len() as u32).to_le_bytes());
             bytes.extend_from_slice(&(value.len() as u32).to_le_bytes());
@@ -119,20 +118,12 @@ impl Metadata {
             last = Some(key);
             count += 1;
         }
-        let mut facts = Vec::new();
-        facts.try_reserve_exact(count).map_err(|_| Error::OutOfMemory)?;
+        let mut facts = memory::with_capacity(count)?;
         for (key, value) in Facts(bytes).flatten() {
-            facts.push((copy(key)?, copy(value)?));
+            facts.push((memory::text(key)?, memory::text(value)?));
         }
         Ok(Metadata(facts))
     }
-}
-
-fn copy(text: &str) -> Result<String, Error> {
-    let mut copy = String::new();
-    copy.try_reserve_exact(text.len()).map_err(|_| Error::OutOfMemory)?;
-    copy.push_str(text);
-    Ok(copy)
 }
 
 /// The facts in the bytes of a file; `None`, and no more, where they cannot be read.

@@ -22,7 +22,6 @@ pub use block::{Block, Rule};
 pub use cursor::{Cursor, Node};
 pub use metadata::Metadata;
 pub use octree::Octree;
-pub(crate) use octree::try_copy;
 pub use stats::{LevelStatistics, Statistics};
 pub use tag::Tag;
 pub use view::OctreeRef;

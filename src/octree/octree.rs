@@ -9,6 +9,7 @@ use super::view::{LevelCounts, MAX_ELEMENT_LEVELS, OctreeRef, element_levels};
 use super::word::Planes;
 use crate::error::{Damage, Error};
 use crate::lattice::Frame;
+use crate::memory;
 use alloc::boxed::Box;
 use alloc::sync::Arc;
 use alloc::vec::Vec;
@@ -55,8 +56,8 @@ impl Arrays {
     ) -> Result<Arrays, Error> {
         let mut rel = Vec::new();
         let mut base = Vec::new();
-        rel.try_reserve_exact(planes.len()).map_err(|_| Error::OutOfMemory)?;
-        base.try_reserve_exact(planes.len().div_ceil(1024)).map_err(|_| Error::OutOfMemory)?;
+        rel.try_reserve_exact(planes.len())?;
+        base.try_reserve_exact(planes.len().div_ceil(1024))?;
         let levels = element_levels(frame.depth());
         let mut next = (root == Tag::Branch) as usize;
         for e in 0..levels {
@@ -130,9 +131,9 @@ impl Octree {
             frame: tree.frame,
             root: tree.root,
             exterior: tree.exterior,
-            planes: try_copy(tree.planes)?,
-            rel: try_copy(tree.rel)?,
-            base: try_copy(tree.base)?,
+            planes: memory::copied(tree.planes)?,
+            rel: memory::copied(tree.rel)?,
+            base: memory::copied(tree.base)?,
             bricks: match dictionary::encode(&tree.bricks)? {
                 Some(bricks) => bricks,
                 None => copy_raw(&tree.bricks)?,
@@ -230,8 +231,7 @@ impl PartialEq for Octree {
 /// A copy of bricks that are raw.
 fn copy_raw(bricks: &Bricks<'_>) -> Result<OwnedBricks, Error> {
     fn copy<T: Brick>(bricks: &BrickArray<'_, T>) -> Result<OwnedArray<T>, Error> {
-        let mut copy = Vec::new();
-        copy.try_reserve_exact(bricks.len()).map_err(|_| Error::OutOfMemory)?;
+        let mut copy = memory::with_capacity(bricks.len())?;
         bricks.extend(0..bricks.len(), &mut copy, |brick| brick);
         Ok(OwnedArray::Raw(copy))
     }
@@ -239,12 +239,4 @@ fn copy_raw(bricks: &Bricks<'_>) -> Result<OwnedBricks, Error> {
         Bricks::One(bricks) => OwnedBricks::One(copy(bricks)?),
         Bricks::Two(bricks) => OwnedBricks::Two(copy(bricks)?),
     })
-}
-
-/// A copy of a slice, whose memory can be refused.
-pub(crate) fn try_copy<T: Copy>(slice: &[T]) -> Result<Vec<T>, Error> {
-    let mut copy = Vec::new();
-    copy.try_reserve_exact(slice.len()).map_err(|_| Error::OutOfMemory)?;
-    copy.extend_from_slice(slice);
-    Ok(copy)
 }

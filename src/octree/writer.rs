@@ -14,6 +14,7 @@ use crate::control::Job;
 use crate::dispatch::{Hot, with_popcount};
 use crate::error::{Damage, Error};
 use crate::lattice::Frame;
+use crate::memory;
 use alloc::vec::Vec;
 use core::ops::Range;
 
@@ -41,16 +42,14 @@ impl<T: Copy> Chunks<T> {
             return Ok(());
         }
         let grown = (2 * self.tail.capacity()).clamp(Self::SMALLEST, Self::LARGEST);
-        let mut fresh = Vec::new();
-        fresh.try_reserve_exact(grown.max(count)).map_err(|_| Error::OutOfMemory)?;
+        let fresh = memory::with_capacity(grown.max(count))?;
         self.retire(fresh)
     }
 
     fn retire(&mut self, fresh: Vec<T>) -> Result<(), Error> {
         let tail = core::mem::replace(&mut self.tail, fresh);
         if !tail.is_empty() {
-            self.full.try_reserve(1).map_err(|_| Error::OutOfMemory)?;
-            self.full.push(tail);
+            memory::push(&mut self.full, tail)?;
         }
         Ok(())
     }
@@ -71,7 +70,7 @@ impl<T: Copy> Chunks<T> {
             return Ok(());
         }
         self.retire(Vec::new())?;
-        self.full.try_reserve(other.full.len()).map_err(|_| Error::OutOfMemory)?;
+        self.full.try_reserve(other.full.len())?;
         self.full.append(&mut other.full);
         self.tail = other.tail;
         Ok(())
@@ -84,8 +83,7 @@ impl<T: Copy> Chunks<T> {
             tail.shrink_to_fit();
             return Ok(tail);
         }
-        let mut all = Vec::new();
-        all.try_reserve_exact(self.len()).map_err(|_| Error::OutOfMemory)?;
+        let mut all = memory::with_capacity(self.len())?;
         for piece in self.full.into_iter().chain([self.tail]) {
             all.extend_from_slice(&piece);
         }
@@ -293,8 +291,7 @@ impl<'j> Writer<'j> {
         self.report()?;
         let mut starts = [0; MAX_ELEMENT_LEVELS + 1];
         let total = self.levels.iter().map(Chunks::len).sum();
-        let mut planes: Vec<Planes> = Vec::new();
-        planes.try_reserve_exact(total).map_err(|_| Error::OutOfMemory)?;
+        let mut planes: Vec<Planes> = memory::with_capacity(total)?;
         let levels = self.levels.len() + 1;
         for (e, level) in self.levels.into_iter().enumerate() {
             starts[e] = planes.len();
@@ -317,9 +314,7 @@ impl<'j> Writer<'j> {
                 if root == Tag::Partial || planes.iter().any(undecided) || bricks.iter().any(undecided) {
                     OwnedBricks::Two(OwnedArray::Raw(bricks))
                 } else {
-                    let mut one = Vec::new();
-                    one.try_reserve_exact(bricks.len()).map_err(|_| Error::OutOfMemory)?;
-                    one.extend(bricks.iter().map(|planes| planes.lower));
+                    let one = memory::collected(bricks.iter().map(|planes| planes.lower))?;
                     OwnedBricks::One(OwnedArray::Raw(one))
                 }
             }

@@ -13,6 +13,8 @@
 
 use crate::control::{Control, Job, WHOLE};
 use crate::error::{Damage, Error};
+#[cfg(feature = "parallel")]
+use crate::memory;
 use crate::octree::view::{OctreeRef, Windows, element_levels, root_cells};
 use crate::octree::writer::Writer;
 use crate::octree::{Octree, Planes, Tag};
@@ -398,8 +400,7 @@ impl Kernel<'_> {
     ) -> Result<(), Error> {
         use alloc::vec::Vec;
         use rayon::prelude::*;
-        let mut tasks = Vec::new();
-        tasks.try_reserve_exact(open.count_ones() as usize).map_err(|_| Error::OutOfMemory)?;
+        let mut tasks = memory::with_capacity(open.count_ones() as usize)?;
         for c in (0..64).filter(|c| open >> c & 1 != 0) {
             let children = self.children(&mut walk.windows, sources, planes, c, 1)?;
             let mut windows = walk.windows.clone();

@@ -4,6 +4,7 @@ use super::gathered::{self, Gathered};
 use crate::control::{Control, Job, WHOLE};
 use crate::error::Error;
 use crate::lattice::{Cell, Frame, morton};
+use crate::memory;
 use crate::octree::block::BLOCK_LEVELS;
 use crate::octree::view::{OctreeRef, Windows, element_levels, starts_half_way};
 use crate::octree::writer::Writer;
@@ -158,8 +159,7 @@ impl<C: Classifier> Builder<'_, C> {
         for (k, child) in (0u8..).zip(hand.worker.split(cell, part)?) {
             planes.set(k as u32, child.tag());
             if let Verdict::Partial(part) = child {
-                hand.parts.try_reserve(1).map_err(|_| Error::OutOfMemory)?;
-                hand.parts.push((k, part));
+                memory::push(&mut hand.parts, (k, part))?;
             }
         }
         Ok(planes)

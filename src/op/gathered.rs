@@ -6,6 +6,7 @@
 use crate::control::{Control, Job};
 use crate::error::Error;
 use crate::lattice::{Cell, Frame};
+use crate::memory;
 use crate::octree::Tag;
 use crate::solid::{Classifier, OCTANTS, Verdict, Worker};
 use alloc::vec::Vec;
@@ -44,8 +45,7 @@ impl Gathered {
         let frame = *classifier.frame();
         let mut gathered = Gathered { frame, splits: Vec::new(), centres: Vec::new() };
         let mark = worker.mark();
-        let mut front = Vec::new();
-        front.try_reserve_exact(1).map_err(|_| Error::OutOfMemory)?;
+        let mut front = memory::with_capacity(1)?;
         front.push((cell, part));
         for level in cell.level..frame.depth() {
             let verdicts = each(classifier, worker, &front, threads, |worker, cells, verdicts| {
@@ -53,13 +53,13 @@ impl Gathered {
             })?;
             let finest = level + 1 == frame.depth();
             let mut next = Vec::new();
-            gathered.splits.try_reserve(front.len()).map_err(|_| Error::OutOfMemory)?;
+            gathered.splits.try_reserve(front.len())?;
             // Children are split after all cells of this level, in the same order.
             let below = if finest { 0 } else { gathered.splits.len() + front.len() };
             for ((cell, _), eight) in front.iter().zip(verdicts) {
                 let first = u32::try_from(below + next.len()).map_err(|_| Error::OutOfMemory)?;
                 let mut own = [Verdict::Undecided; 8];
-                next.try_reserve(8).map_err(|_| Error::OutOfMemory)?;
+                next.try_reserve(8)?;
                 for (octant, verdict) in OCTANTS.into_iter().zip(eight) {
                     own[octant as usize] = verdict.try_map(|part| {
                         next.push((cell.child(octant), part));
@@ -92,8 +92,7 @@ pub(crate) fn each<C: Classifier, A: Answer<Part<C>>>(
     threads: usize,
     ask: impl Fn(&mut C::Worker, &[(Cell, Part<C>)], &mut Vec<A>) -> Result<(), Error> + Sync,
 ) -> Result<Vec<A>, Error> {
-    let mut all = Vec::new();
-    all.try_reserve_exact(cells.len()).map_err(|_| Error::OutOfMemory)?;
+    let mut all = memory::with_capacity(cells.len())?;
     each_known(classifier, worker, cells, threads, ask, |_, answer| {
         all.push(answer);
         Ok(())
@@ -118,8 +117,7 @@ pub(crate) fn each_known<C: Classifier, A: Answer<Part<C>>>(
         let share = cells.len().div_ceil(threads);
         let one = |cells: &[(Cell, Part<C>)]| {
             let mut own = classifier.worker()?;
-            let mut handed = Vec::new();
-            handed.try_reserve_exact(cells.len()).map_err(|_| Error::OutOfMemory)?;
+            let mut handed = memory::with_capacity(cells.len())?;
             for (cell, part) in cells {
                 handed.push((*cell, own.hand_over(from, part)?));
             }

@@ -13,6 +13,7 @@ use crate::control::{Control, Job, WHOLE};
 use crate::error::Error;
 use crate::lattice::exact::{product_down, product_up, sqrt, two_product};
 use crate::lattice::{Cell, Cube, Frame, Interval};
+use crate::memory;
 use crate::octree::Tag;
 use crate::op::split_one;
 use crate::solid::{Classifier, Solid, Verdict, Worker};
@@ -122,8 +123,7 @@ impl<'s, C: Classifier> Cells<'s, C> {
             Verdict::Partial(_) if cell.level == self.frame().depth() => Known::Undecided,
             Verdict::Partial(part) => Known::Part(part),
         };
-        self.nodes.try_reserve(1).map_err(|_| Error::OutOfMemory)?;
-        self.nodes.push(Node { cell, known });
+        memory::push(&mut self.nodes, Node { cell, known })?;
         Ok(())
     }
 
@@ -329,14 +329,13 @@ impl<'s, A: Classifier, B: Classifier> Search<'s, A, B> {
                 self.reached = Some((least, [a, b]));
             }
             if can_be_split || self.b.can_be_split(b) {
-                companions.try_reserve(1).map_err(|_| Error::OutOfMemory)?;
-                companions.push((least, greatest, b));
+                memory::push(&mut companions, (least, greatest, b))?;
             } else {
                 self.settled = Some(self.settled.map_or(least, |settled| settled.min(least)));
             }
         }
         if let Some(&nearest) = companions.iter().min() {
-            self.open.try_reserve(1).map_err(|_| Error::OutOfMemory)?;
+            self.open.try_reserve(1)?;
             let mut group = Group { rank: ([0; 2], Reverse(self.met)), node: a, nearest, companions };
             group.rank(self.diving);
             self.open.push(group);

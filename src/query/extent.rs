@@ -156,8 +156,8 @@ impl Search<'_> {
                 }
             }
             Verdict::Partial(part) if cell.level < self.frame.depth() => {
-                open.cells.try_reserve(1).map_err(|_| Error::OutOfMemory)?;
-                open.queue.try_reserve(1).map_err(|_| Error::OutOfMemory)?;
+                open.cells.try_reserve(1)?;
+                open.queue.try_reserve(1)?;
                 open.queue.push(Reverse((start, MAX_DEPTH - cell.level, open.cells.len())));
                 open.cells.push((cell, part));
             }

@@ -11,6 +11,7 @@
 use crate::control::{Control, Job, WHOLE};
 use crate::error::Error;
 use crate::lattice::{Affine, Cell, Frame, Interval};
+use crate::memory;
 use crate::octree::Tag;
 use crate::octree::stats::volume_of;
 use crate::op::{gathered, split_one};
@@ -114,8 +115,7 @@ pub fn interference_of<A: Solid, B: Solid>(
         job.advance(WHOLE / placements.len());
         Ok::<_, Error>(found)
     };
-    let mut found = Vec::new();
-    found.try_reserve_exact(placements.len()).map_err(|_| Error::OutOfMemory)?;
+    let mut found = memory::with_capacity(placements.len())?;
     control.run(placements.len() > 1, |parallel| {
         #[cfg(feature = "parallel")]
         if parallel {
@@ -242,9 +242,9 @@ impl<'s, C: Classifier> Side<'s, C> {
     {
         let (mut all, mut asked, mut places) = (Vec::new(), Vec::new(), Vec::new());
         for (cell, known) in cells {
-            all.try_reserve(1).map_err(|_| Error::OutOfMemory)?;
-            asked.try_reserve(1).map_err(|_| Error::OutOfMemory)?;
-            places.try_reserve(1).map_err(|_| Error::OutOfMemory)?;
+            all.try_reserve(1)?;
+            asked.try_reserve(1)?;
+            places.try_reserve(1)?;
             match known {
                 Known::Part(part) if self.worker.likes_many() => {
                     asked.push((cell, part.clone()));
@@ -433,7 +433,7 @@ impl<'s, A: Classifier, B: Classifier> Search<'s, A, B> {
         } else if cell.level == self.frame.depth() || !(a.is_part() || b.is_part()) {
             self.undecided += cells;
         } else {
-            self.open.try_reserve(1).map_err(|_| Error::OutOfMemory)?;
+            self.open.try_reserve(1)?;
             // Doubles that are not negative have the order of their bits.
             self.open.push(Pair { cell, a, b, rank: rank.to_bits(), met: self.met });
             self.met += 1;
@@ -460,8 +460,7 @@ impl<'s, A: Classifier, B: Classifier> Search<'s, A, B> {
 
     /// Takes up the pairs that come next, after a first one.
     fn gather(&mut self, first: Pair<Part<A>, Part<B>>) -> Result<Pairs<A, B>, Error> {
-        let mut pairs = Vec::new();
-        pairs.try_reserve_exact(GATHERED).map_err(|_| Error::OutOfMemory)?;
+        let mut pairs = memory::with_capacity(GATHERED)?;
         pairs.push(first);
         while pairs.len() < GATHERED
             && let Some(pair) = self.open.pop()

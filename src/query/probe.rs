@@ -4,6 +4,7 @@ use super::{Membership, Region};
 use crate::control::{Control, Job};
 use crate::error::Error;
 use crate::lattice::{Cell, Cube, Frame};
+use crate::memory;
 use crate::octree::Tag;
 use crate::op::split_one;
 use crate::solid::{Classifier, Solid, Verdict, Worker};
@@ -44,8 +45,7 @@ pub fn contains<S: Solid>(
     let job = Job::new(control);
     job.check()?;
     answers.fill(Membership::Undecided);
-    let mut wanted: Vec<(u64, [u32; 3], usize)> = Vec::new();
-    wanted.try_reserve_exact(points.len()).map_err(|_| Error::OutOfMemory)?;
+    let mut wanted: Vec<(u64, [u32; 3], usize)> = memory::with_capacity(points.len())?;
     wanted.extend((0..).zip(points).filter_map(|(i, &point)| {
         let at = frame.cell_of(point)?;
         Some((order(at), at, i))
@@ -62,8 +62,7 @@ pub fn contains<S: Solid>(
         }
         let _ = parallel;
         for chunk in wanted.chunks(CHUNK) {
-            found.try_reserve(1).map_err(|_| Error::OutOfMemory)?;
-            found.push(one(chunk)?);
+            memory::push(&mut found, one(chunk)?)?;
         }
         Ok::<(), Error>(())
     })?;
@@ -91,17 +90,16 @@ fn locate<C: Classifier>(
 ) -> Result<Vec<Membership>, Error> {
     let mut worker = classifier.worker()?;
     let (mut own, mut known, mut answers) = (Vec::new(), Vec::new(), Vec::new());
-    own.try_reserve_exact(wanted.len()).map_err(|_| Error::OutOfMemory)?;
-    known.try_reserve_exact(wanted.len()).map_err(|_| Error::OutOfMemory)?;
-    answers.try_reserve_exact(wanted.len()).map_err(|_| Error::OutOfMemory)?;
+    own.try_reserve_exact(wanted.len())?;
+    known.try_reserve_exact(wanted.len())?;
+    answers.try_reserve_exact(wanted.len())?;
     own.extend(wanted.iter().map(|&(.., i)| points[i]));
     known.resize(wanted.len(), None);
     worker.inside(&own, &mut known)?;
     let root = worker.root()?;
     let depth = worker.frame().depth();
     // The splits on the way to the last point: the height of the memory before, and the children.
-    let mut way: Vec<(usize, [Verdict<_>; 8])> = Vec::new();
-    way.try_reserve_exact(depth.into()).map_err(|_| Error::OutOfMemory)?;
+    let mut way: Vec<(usize, [Verdict<_>; 8])> = memory::with_capacity(depth.into())?;
     let mut last = [0; 3];
     for (&(_, at, _), known) in wanted.iter().zip(known) {
         if let Some(inside) = known {

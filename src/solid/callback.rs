@@ -5,6 +5,7 @@ use crate::control::Control;
 use crate::error::Error;
 use crate::lattice::exact::sqrt;
 use crate::lattice::{Bounds, Cell, Cube, Frame};
+use crate::memory;
 use crate::octree::Tag;
 use alloc::boxed::Box;
 use alloc::sync::Arc;
@@ -245,15 +246,14 @@ impl<F: Fn([f64; 3], [f64; 3]) -> Result<Verdict<()>, Error> + Send + Sync> OnFr
 
     /// Decides cells by the distances of their middles; returns those that this leaves open.
     fn by_distance(&self, cells: &[Cell], verdicts: &mut [Verdict<()>]) -> Result<Vec<usize>, Error> {
-        let mut open = Vec::new();
-        open.try_reserve_exact(cells.len()).map_err(|_| Error::OutOfMemory)?;
+        let mut open = memory::with_capacity(cells.len())?;
         let Some(distance) = &self.functions.distance else {
             open.extend(0..cells.len());
             return Ok(open);
         };
         let (mut points, mut found) = (Vec::new(), Vec::new());
-        points.try_reserve_exact(cells.len()).map_err(|_| Error::OutOfMemory)?;
-        found.try_reserve_exact(cells.len()).map_err(|_| Error::OutOfMemory)?;
+        points.try_reserve_exact(cells.len())?;
+        found.try_reserve_exact(cells.len())?;
         points.extend(cells.iter().map(|&cell| {
             let (min, max) = Cube { frame: &self.frame, cell }.bounds();
             [0, 1, 2].map(|axis| min[axis] + 0.5 * (max[axis] - min[axis]))
@@ -312,11 +312,10 @@ impl<F: Fn([f64; 3], [f64; 3]) -> Result<Verdict<()>, Error> + Send + Sync> Work
         control: &Control<'_>,
         verdicts: &mut Vec<[Verdict<()>; 8]>,
     ) -> Result<(), Error> {
-        let mut children = Vec::new();
-        children.try_reserve_exact(8 * cells.len()).map_err(|_| Error::OutOfMemory)?;
+        let mut children = memory::with_capacity(8 * cells.len())?;
         children.extend(cells.iter().flat_map(|(cell, ())| OCTANTS.map(|octant| cell.child(octant))));
         let first = verdicts.len();
-        verdicts.try_reserve(cells.len()).map_err(|_| Error::OutOfMemory)?;
+        verdicts.try_reserve(cells.len())?;
         verdicts.resize(first + cells.len(), [Verdict::Undecided; 8]);
         let done = self.classify(&children, control, verdicts[first..].as_flattened_mut());
         done.map_err(|(known, error)| {
@@ -354,11 +353,9 @@ impl<F: Fn([f64; 3], [f64; 3]) -> Result<Verdict<()>, Error> + Send + Sync> Work
         inside: &mut Vec<Option<bool>>,
     ) -> Result<(), Error> {
         control.check()?;
-        let mut points = Vec::new();
-        points.try_reserve_exact(cells.len()).map_err(|_| Error::OutOfMemory)?;
-        points.extend(cells.iter().map(|(cell, ())| centre(&self.frame, *cell)));
+        let points = memory::collected(cells.iter().map(|(cell, ())| centre(&self.frame, *cell)))?;
         let first = inside.len();
-        inside.try_reserve(cells.len()).map_err(|_| Error::OutOfMemory)?;
+        inside.try_reserve(cells.len())?;
         inside.resize(first + cells.len(), None);
         // A function that decides one point at a time is cancelled between pieces.
         let piece = if self.functions.contains_one { 1 } else { cells.len().max(1) };
@@ -373,9 +370,7 @@ impl<F: Fn([f64; 3], [f64; 3]) -> Result<Verdict<()>, Error> + Send + Sync> Work
         let Some(contains) = self.functions.contains.as_ref().filter(|_| !points.is_empty()) else {
             return Ok(());
         };
-        let mut inside = Vec::new();
-        inside.try_reserve_exact(points.len()).map_err(|_| Error::OutOfMemory)?;
-        inside.resize(points.len(), false);
+        let mut inside = memory::filled(points.len(), false)?;
         contains(points, &mut inside)?;
         answers.iter_mut().zip(inside).for_each(|(answer, inside)| *answer = Some(inside));
         Ok(())

@@ -12,6 +12,7 @@ use super::{
 use crate::control::Control;
 use crate::error::Error;
 use crate::lattice::{Affine, Bounds, Cell, Frame};
+use crate::memory;
 use crate::octree::{Block, Planes, Tag};
 use alloc::boxed::Box;
 use alloc::sync::Arc;
@@ -206,11 +207,7 @@ impl<C: Classifier<Worker: Worker<Part: 'static> + 'static>> ErasedClassifier fo
     fn worker(&self) -> Result<AnyWorker, Error> {
         let typed = Typed { worker: Classifier::worker(self)?, parts: Vec::new(), passing: Vec::new() };
         // Some workers are large from the beginning.
-        let mut one = Vec::new();
-        one.try_reserve_exact(1).map_err(|_| Error::OutOfMemory)?;
-        one.push(typed);
-        let one: Box<[_; 1]> = one.into_boxed_slice().try_into().map_err(|_| Error::OutOfMemory)?;
-        Ok(AnyWorker(one))
+        Ok(AnyWorker(memory::boxed(typed)?))
     }
 
     fn exterior(&self) -> Tag {
@@ -244,8 +241,7 @@ struct Typed<W: Worker> {
 
 impl<W: Worker> Typed<W> {
     fn hand_out(&mut self, part: W::Part) -> Result<ErasedPart, Error> {
-        self.parts.try_reserve(1).map_err(|_| Error::OutOfMemory)?;
-        self.parts.push((part, self.worker.mark()));
+        memory::push(&mut self.parts, (part, self.worker.mark()))?;
         Ok(ErasedPart(self.parts.len() - 1))
     }
 
@@ -259,9 +255,7 @@ impl<W: Worker> Typed<W> {
 
     /// Cells with the worker's own parts.
     fn own(&self, cells: &[(Cell, ErasedPart)]) -> Result<Vec<(Cell, W::Part)>, Error> {
-        let mut own = Vec::new();
-        own.try_reserve_exact(cells.len()).map_err(|_| Error::OutOfMemory)?;
-        own.extend(cells.iter().map(|(cell, part)| (*cell, self.part(part))));
+        let own = memory::collected(cells.iter().map(|(cell, part)| (*cell, self.part(part))))?;
         Ok(own)
     }
 
@@ -363,8 +357,8 @@ impl<W: Worker<Part: 'static> + 'static> ErasedWorker for [Typed<W>; 1] {
         let part = self[0].part(part);
         self[0].passing.clear();
         let planes = self[0].worker.split64(cell, &part, &mut self[0].passing)?;
-        parts.try_reserve(self[0].passing.len()).map_err(|_| Error::OutOfMemory)?;
-        self[0].parts.try_reserve(self[0].passing.len()).map_err(|_| Error::OutOfMemory)?;
+        parts.try_reserve(self[0].passing.len())?;
+        self[0].parts.try_reserve(self[0].passing.len())?;
         let Typed { worker, parts: kept, passing } = &mut self[0];
         let height = worker.mark();
         for (c, part) in passing.drain(..) {
@@ -386,7 +380,7 @@ impl<W: Worker<Part: 'static> + 'static> ErasedWorker for [Typed<W>; 1] {
     ) -> Result<(), Error> {
         let (own, mut found) = (self[0].own(cells)?, Vec::new());
         self[0].worker.split_many(&own, control, &mut found)?;
-        verdicts.try_reserve(found.len()).map_err(|_| Error::OutOfMemory)?;
+        verdicts.try_reserve(found.len())?;
         for eight in found {
             verdicts.push(self[0].hand_out_eight(eight)?);
         }
@@ -410,7 +404,7 @@ impl<W: Worker<Part: 'static> + 'static> ErasedWorker for [Typed<W>; 1] {
     fn sample64(&mut self, cell: Cell, parts: &[(u8, ErasedPart)]) -> Result<Option<u64>, Error> {
         let Typed { worker, parts: kept, passing } = &mut self[0];
         passing.clear();
-        passing.try_reserve(parts.len()).map_err(|_| Error::OutOfMemory)?;
+        passing.try_reserve(parts.len())?;
         passing.extend(parts.iter().map(|(c, part)| (*c, kept[part.0].0.clone())));
         worker.sample64(cell, passing)
     }

@@ -10,7 +10,6 @@ mod counted;
 mod csg;
 mod enclosure;
 mod erased;
-mod exact;
 mod fingerprint;
 mod forward;
 mod mesh;
@@ -32,12 +31,7 @@ pub use enclosure::{Crossing, Enclosure, Segment, Slab, SlabJoin};
 pub(crate) use erased::MOST_NESTED;
 pub use erased::{AnyClassifier, AnySolid, AnyWorker, Erasable};
 pub use fingerprint::{Fingerprint, Fingerprinter};
-pub(crate) use mesh::FacetWelder;
-#[cfg(feature = "std")]
-pub(crate) use mesh::triangulate_facet;
-pub use mesh::{DefectKind, FillRule, MeshDefect, MeshReport, MeshSolid, TriangleMesh};
-#[cfg(feature = "std")]
-pub use mesh::{Polyhedron, PolyhedronArrays};
+pub use mesh::MeshSolid;
 pub use motion::Motion;
 #[cfg(feature = "std")]
 pub use prepared::Prepared;
@@ -50,6 +44,7 @@ pub(crate) use transform::TransformClassifier;
 use crate::control::Control;
 use crate::error::Error;
 use crate::lattice::{Affine, Bounds, Cell, Frame, LARGEST, SMALLEST};
+use crate::memory;
 use crate::octree::{Block, Planes, Tag};
 use alloc::vec::Vec;
 
@@ -351,7 +346,7 @@ pub trait Worker: Send + Sync {
         control: &Control<'_>,
         verdicts: &mut Vec<[Verdict<Self::Part>; 8]>,
     ) -> Result<(), Error> {
-        verdicts.try_reserve(cells.len()).map_err(|_| Error::OutOfMemory)?;
+        verdicts.try_reserve(cells.len())?;
         for (cell, part) in cells {
             control.check()?;
             verdicts.push(self.split(*cell, part)?);
@@ -418,7 +413,7 @@ pub trait Worker: Send + Sync {
         control: &Control<'_>,
         inside: &mut Vec<Option<bool>>,
     ) -> Result<(), Error> {
-        inside.try_reserve(cells.len()).map_err(|_| Error::OutOfMemory)?;
+        inside.try_reserve(cells.len())?;
         for (cell, part) in cells {
             control.check()?;
             inside.push(self.sample(*cell, part)?);
@@ -491,8 +486,7 @@ pub(crate) fn split_twice<W: Worker + ?Sized>(
             for (c, grandchild) in (8 * k..).zip(worker.split(cell.child(k), &part)?) {
                 octant.set(c as u32, grandchild.tag());
                 if let Verdict::Partial(part) = grandchild {
-                    parts.try_reserve(1).map_err(|_| Error::OutOfMemory)?;
-                    parts.push((c, part));
+                    memory::push(parts, (c, part))?;
                 }
             }
         }

@@ -1,9 +1,9 @@
 //! Shapes that end: the ball and the axis-aligned box.
 
-use super::exact::{Expansion, certain};
 use super::{Classifier, Fingerprint, Fingerprinter, OCTANTS, Solid, Verdict, Worker, is_moderate};
 use crate::control::Control;
 use crate::error::Error;
+use crate::lattice::exact::{Expansion, certain};
 use crate::lattice::exact::{sign_of_sum, two_product};
 use crate::lattice::{Bounds, Cell, Cube, Frame};
 use crate::octree::Tag;

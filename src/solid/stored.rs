@@ -4,6 +4,7 @@ use super::{Classifier, Fingerprint, Fingerprinter, OCTANTS, Solid, Subtree, Ver
 use crate::control::Control;
 use crate::error::Error;
 use crate::lattice::{Bounds, Cell, Frame};
+use crate::memory;
 use crate::octree::view::starts_half_way;
 use crate::octree::{Octree, OctreeRef, Planes, Tag};
 use alloc::vec::Vec;
@@ -134,8 +135,7 @@ impl Stored<'_> {
         let planes = self.entry(level, index);
         for c in (0..64).filter(|c| planes.branch() >> c & 1 != 0) {
             if let Verdict::Partial(part) = self.cell(level, index, planes, c) {
-                parts.try_reserve(1).map_err(|_| Error::OutOfMemory)?;
-                parts.push((c as u8, part));
+                memory::push(parts, (c as u8, part))?;
             }
         }
         // Whoever asks sees a cut cell as PARTIAL with a part.

@@ -6,7 +6,7 @@ use crate::output::{self, Output, count, counted, interval, seconds};
 use crate::part;
 use clap::Args;
 use leafless::{
-    Control, FillRule, Frame, Membership, MeshSolid, Octree, Rule, TriangleMesh, build, difference, file,
+    Control, FillRule, Frame, Membership, MeshSolid, Octree, Rule, TriangleMesh, build, difference, exchange,
 };
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -33,14 +33,14 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let mut meshes = Vec::new();
     for (name, make) in [("flange", part::flange as fn() -> TriangleMesh), ("cutter", part::cutter)] {
         let stl = path(name).with_extension("stl");
-        let (bytes, time) = timed(|| file::write_stl(&make()).of(stl.display()));
+        let (bytes, time) = timed(|| exchange::write_stl(&make()).of(stl.display()));
         let bytes = bytes?;
         let ((), written) = fallible(|| output::write_file(&stl, &bytes))?;
         row(&format!("make {name}.stl"), &format!("{} bytes", count(bytes.len() as u64)), time + written)?;
 
         let (mesh, time) = fallible(|| {
             let bytes = Input::Path(stl.clone()).read()?;
-            let mesh = file::read_stl(&bytes).and_then(TriangleMesh::sewn).of(stl.display())?;
+            let mesh = exchange::read_stl(&bytes).and_then(TriangleMesh::sewn).of(stl.display())?;
             mesh.check_closed(FillRule::NonZero).of(stl.display())?;
             Ok(mesh)
         })?;

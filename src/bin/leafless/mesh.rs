@@ -5,8 +5,9 @@ use crate::input::Input;
 use crate::output::{self, count, counted, number};
 use crate::report::{Defect, Mesh};
 use clap::{Args, ValueEnum};
-use leafless::file::{self, LengthUnit, MeshFile, MeshFormat, MeshOptions};
-use leafless::{MeshReport, TriangleMesh};
+use leafless::exchange::{LengthUnit, MeshFile, MeshFormat, MeshOptions};
+use leafless::file;
+use leafless::{MeshReport, TriangleMesh, exchange};
 use serde::Serialize;
 use std::fmt::Write;
 
@@ -82,7 +83,7 @@ impl Reading {
     pub fn mesh(&self, input: &Input, bytes: Vec<u8>) -> Result<MeshFile, Failure> {
         let (format, unit, target) = (self.format_of(input, &bytes), self.unit, self.to);
         let options = MeshOptions { format, unit, target, scale: self.scale };
-        let mut file = file::read_mesh(&bytes, &options).of(input)?;
+        let mut file = exchange::read_mesh(&bytes, &options).of(input)?;
         // Sewing needs memory of its own.
         drop(bytes);
         file.mesh = file.mesh.sewn().of(input)?;

@@ -3,7 +3,9 @@
 use crate::failure::{Failure, Of};
 use crate::input::Input;
 use leafless::Frame;
-use leafless::file::{self, MAGIC, Scene};
+use leafless::file::MAGIC;
+use leafless::scene;
+use leafless::scene::Scene;
 use std::path::Path;
 
 /// Reads a scene, and says what its text was: the text's checksum and length. Files that it names are looked for beside
@@ -14,7 +16,7 @@ pub fn read_scene(input: &Input) -> Result<(Scene, String), Failure> {
         return Err(Failure::of(input, "this is a solid already, not a scene"));
     }
     let folder = input.path().and_then(Path::parent).unwrap_or(Path::new(""));
-    let scene = file::read_scene(&text, Some(folder)).of(input)?;
+    let scene = scene::read_scene(&text, Some(folder)).of(input)?;
     Ok((scene, format!("crc32:{:08x} bytes:{}", crc32fast::hash(&text), text.len())))
 }
 

@@ -5,7 +5,8 @@ use crate::input::Input;
 use crate::mesh::{Reading, openness};
 use crate::output;
 use crate::scene::{bounds_of, read_scene};
-use leafless::file::{MeshFormat, Scene};
+use leafless::exchange::MeshFormat;
+use leafless::scene::Scene;
 use leafless::{Affine, AnySolid, Csg, FillRule, Frame, MeshSolid, Octree, Transform, TriangleMesh, file};
 use std::path::Path;
 

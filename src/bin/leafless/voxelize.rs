@@ -7,7 +7,7 @@ use crate::output::{self, Output, count, counted, number, seconds};
 use crate::progress::watched;
 use crate::report::{Info, Mesh};
 use clap::{Args, ValueEnum};
-use leafless::file::{LengthUnit, MeshFile, MeshFormat};
+use leafless::exchange::{LengthUnit, MeshFile, MeshFormat};
 use leafless::{Error, FillRule, Frame, MeshError, MeshReport, MeshSolid, Metadata, Octree, Rule, build};
 use serde::Serialize;
 use std::ffi::OsString;

@@ -10,6 +10,7 @@ use super::{build_on, gathered};
 use crate::control::{Control, Job, WHOLE};
 use crate::error::Error;
 use crate::lattice::{Cell, Cube, Frame, MAX_DEPTH};
+use crate::memory;
 use crate::octree::{Octree, Rule, Statistics, Tag};
 use crate::solid::{Classifier, PartOf, Solid, Stored, Verdict, Worker, WorkerOf};
 use alloc::string::ToString;
@@ -294,8 +295,8 @@ impl<S: Solid> LazyOctree<S> {
         let (worker, asked) = trail.worker();
         let mark = worker.mark();
         let (mut cells, mut places) = (Vec::new(), Vec::new());
-        cells.try_reserve_exact(open.len()).map_err(|_| Error::OutOfMemory)?;
-        places.try_reserve_exact(open.len()).map_err(|_| Error::OutOfMemory)?;
+        cells.try_reserve_exact(open.len())?;
+        places.try_reserve_exact(open.len())?;
         for (cell, place) in open {
             // Each part stands alone.
             if let Some(part) = worker.recall(cell) {
@@ -341,8 +342,7 @@ impl<S: Solid> LazyOctree<S> {
     ) -> Result<(), Error> {
         match self.nodes.tag(place) {
             Tag::Partial if cell.level == level && !self.nodes.is_hopeless(place) => {
-                open.try_reserve(1).map_err(|_| Error::OutOfMemory)?;
-                open.push((cell, place));
+                memory::push(open, (cell, place))?;
             }
             Tag::Branch if cell.level < level => {
                 for octant in 0..8 {

@@ -236,7 +236,7 @@ impl Nodes {
                 if block == NONE {
                     return Err(Error::OutOfMemory);
                 }
-                self.splits.try_reserve(8).map_err(|_| Error::OutOfMemory)?;
+                self.splits.try_reserve(8)?;
                 self.splits.extend([Split::UNUSED; 8]);
                 block
             }

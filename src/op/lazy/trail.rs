@@ -35,7 +35,7 @@ impl<W: Worker> Trail<W> {
         let root = worker.root()?;
         let mut steps = Vec::new();
         let depth: usize = worker.frame().depth().into();
-        steps.try_reserve_exact(depth).map_err(|_| Error::OutOfMemory)?;
+        steps.try_reserve_exact(depth)?;
         Ok(Trail { worker, root, cell: Cell::ROOT, steps, own: None, splits: 0 })
     }
 

@@ -10,6 +10,7 @@ use super::moments::{Moments, Tally};
 use crate::control::{Control, Job, WHOLE};
 use crate::error::Error;
 use crate::lattice::{Cell, Frame};
+use crate::memory;
 use crate::op::{gathered, split_one};
 use crate::solid::{Classifier, Verdict, Worker};
 use alloc::vec::Vec;
@@ -175,12 +176,11 @@ impl<C: Classifier> Walk<'_, C> {
             Verdict::Full => settled.full.add(Cell::ROOT),
             Verdict::Undecided => settled.open.add(Cell::ROOT),
             Verdict::Partial(part) => {
-                cells.try_reserve_exact(1).map_err(|_| Error::OutOfMemory)?;
+                cells.try_reserve_exact(1)?;
                 cells.push((Cell::ROOT, part));
             }
         }
-        let mut front = Vec::new();
-        front.try_reserve_exact(1).map_err(|_| Error::OutOfMemory)?;
+        let mut front = memory::with_capacity(1)?;
         front.push(Chunk::new(worker, cells, self.frame));
         Ok((settled.finish(), front))
     }
@@ -208,8 +208,7 @@ impl<C: Classifier> Walk<'_, C> {
 
     /// Splits the cells of the front, as many as may be: what is settled by it, and the new front.
     fn split(&self, front: &mut [Chunk<C::Worker>], left: &mut u64) -> Result<(Found, Front<C>), Error> {
-        let mut tasks = Vec::new();
-        tasks.try_reserve_exact(front.len()).map_err(|_| Error::OutOfMemory)?;
+        let mut tasks = memory::with_capacity(front.len())?;
         for chunk in front {
             let count = (*left).min(chunk.cells.len() as u64) as usize;
             *left -= count as u64;
@@ -219,7 +218,7 @@ impl<C: Classifier> Walk<'_, C> {
         let mut next = Vec::new();
         for (found, chunks) in self.each(tasks, |(chunk, count)| self.split_chunk(chunk, count))? {
             settled += found;
-            next.try_reserve(chunks.len()).map_err(|_| Error::OutOfMemory)?;
+            next.try_reserve(chunks.len())?;
             next.extend(chunks);
         }
         Ok((settled, next))
@@ -263,22 +262,19 @@ impl<C: Classifier> Walk<'_, C> {
                                 none => none.insert((self.classifier.worker()?, Vec::new())),
                             };
                             let part = worker.hand_over(&chunk.worker, &part)?;
-                            cells.try_reserve(1).map_err(|_| Error::OutOfMemory)?;
-                            cells.push((child, part));
+                            memory::push(cells, (child, part))?;
                         }
                         Verdict::Undecided | Verdict::Partial(_) => settled.open.add(child),
                     }
                 }
                 if let Some((worker, cells)) = out.take_if(|(_, cells)| cells.len() >= self.chunk) {
-                    next.try_reserve(1).map_err(|_| Error::OutOfMemory)?;
-                    next.push(Chunk::new(worker, cells, self.frame));
+                    memory::push(&mut next, Chunk::new(worker, cells, self.frame))?;
                 }
             }
             chunk.worker.release(mark);
         }
         if let Some((worker, cells)) = out {
-            next.try_reserve(1).map_err(|_| Error::OutOfMemory)?;
-            next.push(Chunk::new(worker, cells, self.frame));
+            memory::push(&mut next, Chunk::new(worker, cells, self.frame))?;
         }
         Ok((settled.finish(), next))
     }
@@ -306,8 +302,7 @@ impl<C: Classifier> Walk<'_, C> {
             }
             return Ok(Some(splittable));
         }
-        let mut tasks = Vec::new();
-        tasks.try_reserve_exact(front.len()).map_err(|_| Error::OutOfMemory)?;
+        let mut tasks = memory::with_capacity(front.len())?;
         tasks.extend(front);
         let done = self.each(tasks, |chunk| {
             let mut own = u64::MAX;
@@ -386,8 +381,7 @@ impl<C: Classifier> Walk<'_, C> {
             use rayon::prelude::*;
             return tasks.into_par_iter().map(work).collect();
         }
-        let mut done = Vec::new();
-        done.try_reserve_exact(tasks.len()).map_err(|_| Error::OutOfMemory)?;
+        let mut done = memory::with_capacity(tasks.len())?;
         for task in tasks {
             done.push(work(task)?);
         }

@@ -68,7 +68,7 @@ impl Scratch {
         let Some(first) = first else { return Ok(None) };
         let mut passing = core::mem::take(&mut self.passing);
         passing.clear();
-        passing.try_reserve(parts.len()).map_err(|_| Error::OutOfMemory)?;
+        passing.try_reserve(parts.len())?;
         let mut same = true;
         for &(c, part) in parts {
             match self.lone(program, part)? {
@@ -119,7 +119,7 @@ impl Scratch {
         // A word of one cell: the others say the same.
         let all = |inside: bool| if inside { Kleene::FULL } else { Kleene::EMPTY };
         operands.clear();
-        operands.try_reserve(words.len()).map_err(|_| Error::OutOfMemory)?;
+        operands.try_reserve(words.len())?;
         for word in words {
             let kleene = match word.op() {
                 Op::HalfSpace { index, complement } => {

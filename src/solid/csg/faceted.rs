@@ -5,6 +5,7 @@ use super::polygon::{Term, convex_differences};
 use super::primitive::{coordinates, length, slab};
 use super::{Csg, HalfSpace, support};
 use crate::error::Error;
+use crate::memory;
 use alloc::vec::Vec;
 
 /// The half-space over the half-plane a x + b y + c ≥ 0.
@@ -76,8 +77,7 @@ impl Csg {
                 Term::All(count) => Csg::intersection_of(operands.drain(operands.len() - count..))?,
                 Term::Any(count) => Csg::union_of(operands.drain(operands.len() - count..))?,
             };
-            operands.try_reserve(1).map_err(|_| Error::OutOfMemory)?;
-            operands.push(operand);
+            memory::push(&mut operands, operand)?;
         }
         Ok(operands.pop().unwrap_or_else(Csg::empty))
     }
@@ -92,8 +92,7 @@ impl Csg {
         if planes.is_empty() {
             return Err(Error::Argument { name: "planes", problem: "must not be empty" });
         }
-        let mut parts = Vec::new();
-        parts.try_reserve_exact(planes.len()).map_err(|_| Error::OutOfMemory)?;
+        let mut parts = memory::with_capacity(planes.len())?;
         for &(normal, offset) in planes {
             parts.push(Csg::half_space(normal, offset)?);
         }

@@ -8,12 +8,12 @@ use super::dyadic::Dyadic;
 use super::halfspace::{HalfSpace, Surface};
 use super::map::{ExactMap, MOST_BITS};
 use super::primitive::slab;
-use super::program::push;
 use super::quadric::substitute;
 use super::torus::Torus;
 use super::{Csg, Join, Kind, Node};
 use crate::error::Error;
 use crate::lattice::Affine;
+use crate::memory;
 use alloc::sync::Arc;
 use alloc::vec::Vec;
 use core::cmp::Ordering;
@@ -196,7 +196,7 @@ impl Figure {
         }
         let mut tasks = Vec::new();
         let mut images: Vec<Csg> = Vec::new();
-        push(&mut tasks, Task::Map(&self.csg.root, Arc::new(ExactMap::identity())))?;
+        memory::push(&mut tasks, Task::Map(&self.csg.root, Arc::new(ExactMap::identity())))?;
         while let Some(task) = tasks.pop() {
             match task {
                 Task::Map(node, map) => match &node.kind {
@@ -205,26 +205,26 @@ impl Figure {
                             return refuse("figure", "must consist of half-planes and conics");
                         };
                         let [xx, yy, _, xy, _, _, x, y, _, one] = substitute(coefficients, &map);
-                        push(&mut images, image([xx, yy, xy, x, y, one])?)?;
+                        memory::push(&mut images, image([xx, yy, xy, x, y, one])?)?;
                     }
                     Kind::Placed(part, placement) => {
-                        push(&mut tasks, Task::Map(part, Arc::new(map.of_placed(placement)?)))?;
+                        memory::push(&mut tasks, Task::Map(part, Arc::new(map.of_placed(placement)?)))?;
                     }
                     Kind::Complement(part) => {
-                        push(&mut tasks, Task::Complement)?;
-                        push(&mut tasks, Task::Map(part, map))?;
+                        memory::push(&mut tasks, Task::Complement)?;
+                        memory::push(&mut tasks, Task::Map(part, map))?;
                     }
                     Kind::Join(join, parts) => {
-                        push(&mut tasks, Task::Join(*join, parts.len()))?;
+                        memory::push(&mut tasks, Task::Join(*join, parts.len()))?;
                         for part in parts.iter().rev() {
-                            push(&mut tasks, Task::Map(part, map.clone()))?;
+                            memory::push(&mut tasks, Task::Map(part, map.clone()))?;
                         }
                     }
                     Kind::Solid(_) => return refuse("figure", "must consist of half-planes and conics"),
                 },
                 Task::Join(join, count) => {
                     let joined = Csg::join(join, images.drain(images.len() - count..))?;
-                    push(&mut images, joined)?;
+                    memory::push(&mut images, joined)?;
                 }
                 Task::Complement => {
                     if let Some(image) = images.last_mut() {

@@ -2,9 +2,9 @@
 
 use super::dyadic::Dyadic;
 use super::halfspace::{HalfSpace, Surface};
-use super::program::push;
 use super::torus::Torus;
 use super::{Csg, Join, Kind, Node, program};
+use crate::memory;
 use crate::solid::{Fingerprint, Fingerprinter, Solid};
 use alloc::vec::Vec;
 
@@ -17,7 +17,7 @@ impl Csg {
         }
         let mut tasks: Vec<(&Node, bool)> = Vec::new();
         let mut found: Vec<Fingerprint> = Vec::new();
-        push(&mut tasks, (&self.root, false)).ok()?;
+        memory::push(&mut tasks, (&self.root, false)).ok()?;
         while let Some((node, parts_found)) = tasks.pop() {
             let parts = match &node.kind {
                 Kind::HalfSpace(_) | Kind::Solid(_) => &[][..],
@@ -25,7 +25,7 @@ impl Csg {
                 Kind::Complement(part) | Kind::Placed(part, _) => core::slice::from_ref(part),
             };
             if !parts_found && !parts.is_empty() {
-                push(&mut tasks, (node, true)).ok()?;
+                memory::push(&mut tasks, (node, true)).ok()?;
                 tasks.try_reserve(parts.len()).ok()?;
                 tasks.extend(parts.iter().rev().map(|part| (&**part, false)));
                 continue;
@@ -48,7 +48,7 @@ impl Csg {
                     Fingerprinter::new("csg placed").part(found.pop()?).numbers(rows).finish()
                 }
             };
-            push(&mut found, fingerprint).ok()?;
+            memory::push(&mut found, fingerprint).ok()?;
         }
         let whole = Fingerprinter::new("csg").part(found.pop()?).integers(&[self.touch as u64]);
         Some(whole.finish())

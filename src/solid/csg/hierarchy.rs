@@ -11,8 +11,9 @@ use super::Join;
 use super::bounds::Octants;
 use super::extent::UnitBox;
 use super::kleene::Kleene;
-use super::program::{Op, Program, Word, push};
+use super::program::{Op, Program, Word};
 use crate::error::Error;
+use crate::memory;
 use alloc::vec::Vec;
 use core::ops::Range;
 
@@ -112,21 +113,21 @@ impl Program {
                 // Those that could cover it are worth a look.
                 Some(unit) if longest(&unit) < 0.5 => {
                     let start = self.grouped.len();
-                    self.grouped.try_reserve(words.len()).map_err(|_| Error::OutOfMemory)?;
+                    self.grouped.try_reserve(words.len())?;
                     self.grouped.extend_from_slice(words);
                     let members = Members::Words(start..self.grouped.len());
                     let (low, high) = unit;
-                    push(&mut found, Group { low, high, size: longest(&unit), join, members })?;
+                    memory::push(&mut found, Group { low, high, size: longest(&unit), join, members })?;
                 }
                 _ => {
-                    rest.try_reserve(words.len()).map_err(|_| Error::OutOfMemory)?;
+                    rest.try_reserve(words.len())?;
                     rest.extend_from_slice(words);
                     count += 1;
                 }
             }
         }
         self.words.truncate(first);
-        self.words.try_reserve(rest.len() + MEMBERS).map_err(|_| Error::OutOfMemory)?;
+        self.words.try_reserve(rest.len() + MEMBERS)?;
         self.words.extend_from_slice(&rest);
         // Neighbours in Morton order of their middles lie together.
         found.sort_by_cached_key(|group| {
@@ -143,15 +144,15 @@ impl Program {
             let mut left = found.into_iter().peekable();
             while left.peek().is_some() {
                 let start = self.groups.len();
-                self.groups.try_reserve(MEMBERS).map_err(|_| Error::OutOfMemory)?;
+                self.groups.try_reserve(MEMBERS)?;
                 self.groups.extend(left.by_ref().take(MEMBERS));
-                push(&mut above, self.around(join, start..self.groups.len()))?;
+                memory::push(&mut above, self.around(join, start..self.groups.len()))?;
             }
             found = above;
         }
         for group in found {
             let index = self.groups.len() as u32;
-            push(&mut self.groups, group)?;
+            memory::push(&mut self.groups, group)?;
             self.words.push(Word::new(Op::Group { index }));
             count += 1;
         }
@@ -184,13 +185,13 @@ impl Program {
             return Ok(Taken::Nothing);
         }
         if !finest && own.size < 0.5 * (high[0] - low[0]) {
-            push(words, Word::new(Op::Group { index: group as u32 }))?;
+            memory::push(words, Word::new(Op::Group { index: group as u32 }))?;
             return Ok(Taken::Written);
         }
         match &own.members {
             Members::Words(range) => {
                 let own = &self.grouped[range.clone()];
-                words.try_reserve(own.len()).map_err(|_| Error::OutOfMemory)?;
+                words.try_reserve(own.len())?;
                 words.extend_from_slice(own);
                 Ok(Taken::Written)
             }
@@ -201,7 +202,7 @@ impl Program {
                     count += matches!(taken, Taken::Written) as u32;
                 }
                 if count > 1 {
-                    push(words, Word::new(Op::Join { join: own.join, complement: false, count }))?;
+                    memory::push(words, Word::new(Op::Join { join: own.join, complement: false, count }))?;
                 }
                 Ok(if count == 0 { Taken::Nothing } else { Taken::Written })
             }

@@ -1,9 +1,10 @@
 //! Cells in which only one operand is open, a solid of another kind: all questions go on to it, bulk forms included.
 
-use super::program::{Op, Program, Word, push};
+use super::program::{Op, Program, Word};
 use super::worker::{CsgPart, Scratch, Slot};
 use crate::error::Error;
 use crate::lattice::Cell;
+use crate::memory;
 use crate::octree::Planes;
 use crate::solid::erased::ErasedPart;
 use crate::solid::{AnyWorker, Verdict, Worker};
@@ -79,7 +80,7 @@ impl Scratch {
         let worker = &mut Scratch::other(&mut self.workers, program, solid)?.worker;
         let height = worker.mark();
         let planes = worker.split64(cell, &part, &mut passing)?;
-        parts.try_reserve(passing.len()).map_err(|_| Error::OutOfMemory)?;
+        parts.try_reserve(passing.len())?;
         for (c, part) in passing.drain(..) {
             parts.push((c, self.lone_part(program, solid, part, complement, height)?));
         }
@@ -98,7 +99,7 @@ impl Scratch {
     ) -> Result<CsgPart, Error> {
         let start = self.start(program)?;
         let index = self.keep(program, Slot { solid, part, words: self.words.len(), height })?;
-        push(&mut self.words, Word::new(Op::Solid { index, complement }))?;
+        memory::push(&mut self.words, Word::new(Op::Solid { index, complement }))?;
         Ok(CsgPart { start, len: 1 })
     }
 

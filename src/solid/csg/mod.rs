@@ -38,6 +38,7 @@ pub use halfspace::HalfSpace;
 use super::Motion;
 use crate::error::Error;
 use crate::lattice::{Affine, Bounds, Frame};
+use crate::memory;
 use crate::solid::{AnySolid, Solid};
 use alloc::sync::Arc;
 use alloc::vec::Vec;
@@ -137,8 +138,7 @@ impl Csg {
     fn join(join: Join, parts: impl IntoIterator<Item = Csg>) -> Result<Csg, Error> {
         let mut nodes = Vec::new();
         for part in parts {
-            nodes.try_reserve(1).map_err(|_| Error::OutOfMemory)?;
-            nodes.push(part.root);
+            memory::push(&mut nodes, part.root)?;
         }
         let (none, all) = ((Extent::Nothing, Extent::Unbounded), (Extent::Unbounded, Extent::Nothing));
         let boxes = nodes.iter().map(|node| (node.extent, node.opposite));
@@ -235,7 +235,7 @@ impl Csg {
         // What was moved, by where it stands: a part that occurs twice is moved once.
         let mut moved: HashMap<*const Node, Arc<Node>> = HashMap::new();
         let mut tasks: Vec<(&Arc<Node>, bool)> = Vec::new();
-        program::push(&mut tasks, (&self.root, false))?;
+        memory::push(&mut tasks, (&self.root, false))?;
         while let Some((node, parts_moved)) = tasks.pop() {
             if moved.contains_key(&Arc::as_ptr(node)) {
                 continue;
@@ -246,8 +246,8 @@ impl Csg {
                 _ => &[],
             };
             if !parts_moved && !parts.is_empty() {
-                program::push(&mut tasks, (node, true))?;
-                tasks.try_reserve(parts.len()).map_err(|_| Error::OutOfMemory)?;
+                memory::push(&mut tasks, (node, true))?;
+                tasks.try_reserve(parts.len())?;
                 tasks.extend(parts.iter().map(|part| (part, false)));
                 continue;
             }
@@ -259,7 +259,7 @@ impl Csg {
                 Kind::Complement(inner) if node.mixed => part(inner).complement().root,
                 _ => Node::placed(node, placement),
             };
-            moved.try_reserve(1).map_err(|_| Error::OutOfMemory)?;
+            moved.try_reserve(1)?;
             moved.insert(Arc::as_ptr(node), result);
         }
         Ok(Csg { root: moved[&Arc::as_ptr(&self.root)].clone(), touch: Touch::Exact })

@@ -15,6 +15,7 @@ use alloc::vec::Vec;
 
 use crate::error::Error;
 use crate::lattice::exact::{grow, sign, two_diff, two_product};
+use crate::memory;
 use crate::solid::is_moderate;
 
 /// One term of a formula in postfix order: operators combine the terms right before them.
@@ -41,7 +42,7 @@ pub(crate) fn convex_differences(points: &[[f64; 2]]) -> Result<Vec<Term>, Error
     if !points.iter().flatten().all(|&c| c == 0.0 || is_moderate(c)) {
         return refuse("every coordinate must be zero or of a magnitude between 2^-256 and 2^256");
     }
-    let mut corners = reserved(points.len())?;
+    let mut corners = memory::with_capacity(points.len())?;
     for (i, point) in points.iter().enumerate() {
         if corners.last().is_none_or(|&last: &usize| points[last] != *point) {
             corners.push(i);
@@ -58,12 +59,6 @@ pub(crate) fn convex_differences(points: &[[f64; 2]]) -> Result<Vec<Term>, Error
 
 fn refuse<T>(problem: &'static str) -> Result<T, Error> {
     Err(Error::Argument { name: "polygon", problem })
-}
-
-fn reserved<T>(count: usize) -> Result<Vec<T>, Error> {
-    let mut items = Vec::new();
-    items.try_reserve_exact(count).map_err(|_| Error::OutOfMemory)?;
-    Ok(items)
 }
 
 /// The exact sign of (b − a) × (d − c): 1 if the second direction is to the left of the first.
@@ -133,10 +128,10 @@ impl Outline<'_> {
             let [a, b] = self.edge(i).map(|point| point[axis]);
             [a.min(b), a.max(b)]
         };
-        let mut order = reserved(n)?;
+        let mut order = memory::with_capacity(n)?;
         order.extend(0..n);
         order.sort_unstable_by(|&i, &j| span(i, axis)[0].total_cmp(&span(j, axis)[0]));
-        let mut open: Vec<usize> = reserved(n)?;
+        let mut open: Vec<usize> = memory::with_capacity(n)?;
         for i in order {
             let ([low, _], [floor, ceiling]) = (span(i, axis), span(i, 1 - axis));
             open.retain(|&j| span(j, axis)[1] >= low);
@@ -156,7 +151,7 @@ impl Outline<'_> {
     /// not turn.
     fn normalise(&mut self) -> Result<(), Error> {
         let n = self.corners.len();
-        let mut kept = reserved(n)?;
+        let mut kept = memory::with_capacity(n)?;
         kept.extend((1..=n).filter(|&i| self.turn_at(i) != 0).map(|i| self.corners[i % n]));
         self.corners = kept;
         let points = self.points;
@@ -192,9 +187,9 @@ impl Outline<'_> {
         let points = self.points;
         let last = self.extreme(|new, old| before(points[old], points[new]));
         // There are fewer operators than edges, and at most one of them, and one chain, waits for each cut.
-        let mut terms = reserved(2 * n)?;
-        let mut counts = reserved(n + 1)?;
-        let mut tasks = reserved(2 * n + 2)?;
+        let mut terms = memory::with_capacity(2 * n)?;
+        let mut counts = memory::with_capacity(n + 1)?;
+        let mut tasks = memory::with_capacity(2 * n + 2)?;
         let whole = Operator::All;
         counts.push(0);
         tasks.push(Task::Close(whole));

@@ -9,6 +9,7 @@ use super::{Csg, Join, Kind, Node, Touch};
 use crate::control::Control;
 use crate::error::Error;
 use crate::lattice::Frame;
+use crate::memory;
 use crate::octree::Tag;
 use crate::solid::{AnyClassifier, AnySolid, Classifier, Solid};
 use alloc::sync::Arc;
@@ -198,13 +199,6 @@ struct Writer<'c> {
     spaces: HashMap<(usize, usize), Space>,
 }
 
-/// Appends, where there is memory.
-pub(super) fn push<T>(list: &mut Vec<T>, value: T) -> Result<(), Error> {
-    list.try_reserve(1).map_err(|_| Error::OutOfMemory)?;
-    list.push(value);
-    Ok(())
-}
-
 impl Program {
     /// Time and memory are linear in the expression, written out: a node that occurs twice counts twice. (Operations of
     /// many operands sort them.)
@@ -249,7 +243,7 @@ impl Writer<'_> {
         let mut joins: Vec<(Join, bool)> = Vec::new();
         let map = Arc::new(ExactMap::from_universe(&self.program.frame));
         let space = Space { map, outward: None };
-        push(&mut tasks, Task::Write { node: root, complement: false, shared: false, space })?;
+        memory::push(&mut tasks, Task::Write { node: root, complement: false, shared: false, space })?;
         while let Some(task) = tasks.pop() {
             match task {
                 Task::Join { join, complement, start } => {
@@ -260,7 +254,7 @@ impl Writer<'_> {
                     let shared = shared || Arc::strong_count(node) > 1;
                     match &node.kind {
                         Kind::Complement(part) => {
-                            push(
+                            memory::push(
                                 &mut tasks,
                                 Task::Write { node: part, complement: !complement, shared, space },
                             )?;
@@ -274,13 +268,16 @@ impl Writer<'_> {
                                     let outward = Some(Outward::new(placement, space.outward));
                                     let inner = Space { map, outward };
                                     if shared {
-                                        self.spaces.try_reserve(1).map_err(|_| Error::OutOfMemory)?;
+                                        self.spaces.try_reserve(1)?;
                                         self.spaces.insert(key, inner.clone());
                                     }
                                     inner
                                 }
                             };
-                            push(&mut tasks, Task::Write { node: part, complement, shared, space: inner })?;
+                            memory::push(
+                                &mut tasks,
+                                Task::Write { node: part, complement, shared, space: inner },
+                            )?;
                         }
                         Kind::HalfSpace(half_space) => {
                             self.begin(node, complement, &space)?;
@@ -316,11 +313,11 @@ impl Writer<'_> {
                                 && joins.last() == Some(&(join, false));
                             if !flat {
                                 self.begin(node, complement, &space)?;
-                                push(&mut joins, (join, outer))?;
+                                memory::push(&mut joins, (join, outer))?;
                                 let start = self.operands.len();
-                                push(&mut tasks, Task::Join { join, complement: outer, start })?;
+                                memory::push(&mut tasks, Task::Join { join, complement: outer, start })?;
                             }
-                            tasks.try_reserve(parts.len()).map_err(|_| Error::OutOfMemory)?;
+                            tasks.try_reserve(parts.len())?;
                             for part in parts.iter().rev() {
                                 tasks.push(Task::Write {
                                     node: part,
@@ -346,7 +343,7 @@ impl Writer<'_> {
         let start = self.program.words.len();
         // Parts of other solids belong to the universe, and cannot wait in a group.
         let [extent, opposite] = if node.mixed { [None; 2] } else { [unit(extent), unit(opposite)] };
-        push(&mut self.operands, Operand { start, extent, opposite })
+        memory::push(&mut self.operands, Operand { start, extent, opposite })
     }
 
     /// Joins the operands from `first` on.
@@ -362,7 +359,7 @@ impl Writer<'_> {
 
     fn write_join(&mut self, join: Join, complement: bool, count: usize) -> Result<(), Error> {
         let count = count as u32;
-        push(&mut self.program.words, Word::new(Op::Join { join, complement, count }))
+        memory::push(&mut self.program.words, Word::new(Op::Join { join, complement, count }))
     }
 
     fn half_space(
@@ -380,15 +377,15 @@ impl Writer<'_> {
                 if index.is_multiple_of(1024) && self.control.is_cancelled() {
                     return Err(Error::Cancelled);
                 }
-                push(&mut self.program.half_spaces, half_space.0.on(map, &self.program.frame))?;
+                memory::push(&mut self.program.half_spaces, half_space.0.on(map, &self.program.frame))?;
                 if shared {
-                    self.seen_half_spaces.try_reserve(1).map_err(|_| Error::OutOfMemory)?;
+                    self.seen_half_spaces.try_reserve(1)?;
                     self.seen_half_spaces.insert(key, index);
                 }
                 index
             }
         };
-        push(&mut self.program.words, Word::new(Op::HalfSpace { index, complement }))
+        memory::push(&mut self.program.words, Word::new(Op::HalfSpace { index, complement }))
     }
 
     fn primitive<'h>(
@@ -403,7 +400,7 @@ impl Writer<'_> {
             self.half_space(half_space, false, shared, map)?;
         }
         let count = (self.program.words.len() - before) as u32;
-        push(&mut self.program.words, Word::new(Op::Primitive { count }))?;
+        memory::push(&mut self.program.words, Word::new(Op::Primitive { count }))?;
         if complement { self.write_join(Join::Parity, true, 1) } else { Ok(()) }
     }
 
@@ -412,13 +409,13 @@ impl Writer<'_> {
             Some(&index) => index,
             None => {
                 let index = self.program.solids.len() as u32;
-                push(&mut self.program.solids, solid.on(&self.program.frame, self.control)?)?;
-                self.seen_solids.try_reserve(1).map_err(|_| Error::OutOfMemory)?;
+                memory::push(&mut self.program.solids, solid.on(&self.program.frame, self.control)?)?;
+                self.seen_solids.try_reserve(1)?;
                 self.seen_solids.insert(solid.address(), index);
                 index
             }
         };
-        push(&mut self.program.words, Word::new(Op::Solid { index, complement }))
+        memory::push(&mut self.program.words, Word::new(Op::Solid { index, complement }))
     }
 }
 

@@ -138,7 +138,7 @@ impl Worker for CsgWorker {
         {
             return Ok(planes);
         }
-        parts.try_reserve(64).map_err(|_| Error::OutOfMemory)?;
+        parts.try_reserve(64)?;
         let octants = scratch.cells(program, *part, Ask::Split(cell))?;
         let mut planes = Planes::uniform(Tag::Empty);
         for k in OCTANTS {

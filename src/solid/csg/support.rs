@@ -6,6 +6,7 @@
 use super::dyadic::Dyadic;
 use crate::error::Error;
 use crate::lattice::exact::sqrt;
+use crate::memory;
 use alloc::vec::Vec;
 
 type Plane = ([f64; 3], f64);
@@ -34,8 +35,7 @@ fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
 /// [`Error::OutOfMemory`].
 pub(super) fn box_around(planes: &[Plane]) -> Result<Option<Corners>, Error> {
     // Unit normals, and offsets up to one.
-    let mut rows: Vec<Plane> = Vec::new();
-    rows.try_reserve_exact(planes.len() + 3).map_err(|_| Error::OutOfMemory)?;
+    let mut rows: Vec<Plane> = memory::with_capacity(planes.len() + 3)?;
     rows.extend(planes.iter().map(|&(normal, offset)| {
         let largest = normal.iter().fold(0.0, |most: f64, c| most.max(c.abs()));
         let normal = normal.map(|c| c / largest);

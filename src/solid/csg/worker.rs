@@ -3,11 +3,12 @@
 use super::bounds::Octants;
 use super::hierarchy::Taken;
 use super::kleene::Kleene;
-use super::program::{Op, Program, Word, push};
+use super::program::{Op, Program, Word};
 use super::table::{self, Table};
 use super::{Join, points};
 use crate::error::Error;
 use crate::lattice::Cell;
+use crate::memory;
 use crate::octree::Tag;
 use crate::solid::erased::ErasedPart;
 use crate::solid::{AnyWorker, Classifier, Verdict, Worker};
@@ -134,7 +135,7 @@ impl Scratch {
     /// For a program: nothing is remembered yet.
     pub(super) fn new(program: &Program) -> Result<Scratch, Error> {
         let mut scratch = Scratch::default();
-        scratch.workers.try_reserve_exact(program.solids.len()).map_err(|_| Error::OutOfMemory)?;
+        scratch.workers.try_reserve_exact(program.solids.len())?;
         scratch.workers.resize_with(program.solids.len(), || None);
         Ok(scratch)
     }
@@ -161,8 +162,7 @@ impl Scratch {
 
     /// What is open in the universe, for a program to have in place of its own words.
     pub(super) fn into_words(self, program: &Program, part: CsgPart) -> Result<(Vec<Word>, CsgPart), Error> {
-        let mut words = Vec::new();
-        words.try_reserve_exact(part.words()).map_err(|_| Error::OutOfMemory)?;
+        let mut words = memory::with_capacity(part.words())?;
         words.extend_from_slice(Scratch::list(program, &self.words, part));
         Ok((words, CsgPart { start: 0, ..part }))
     }
@@ -223,7 +223,7 @@ impl Scratch {
     /// Keeps a slot; returns its index, which a word can hold.
     pub(super) fn keep(&mut self, program: &Program, slot: Slot) -> Result<u32, Error> {
         let index = u32::try_from(program.solids.len() + self.slots.len()).ok();
-        push(&mut self.slots, slot)?;
+        memory::push(&mut self.slots, slot)?;
         index.filter(|&index| index <= Word::MOST).ok_or(Error::OutOfMemory)
     }
 
@@ -239,7 +239,7 @@ impl Scratch {
         }
         let start = self.start(program)?;
         let words = Scratch::list(program, &from.words, part);
-        self.words.try_reserve(words.len()).map_err(|_| Error::OutOfMemory)?;
+        self.words.try_reserve(words.len())?;
         if part.is_table() {
             self.words.extend_from_slice(words);
             return Ok(CsgPart { start, ..part });
@@ -371,7 +371,7 @@ impl Scratch {
             return Ok(());
         }
         let start = self.start(program)?;
-        self.words.try_reserve(half_spaces.len() + 2).map_err(|_| Error::OutOfMemory)?;
+        self.words.try_reserve(half_spaces.len() + 2)?;
         let (mut count, mut last) = (0, 0);
         for (i, &index) in half_spaces.iter().enumerate().filter(|(i, _)| table.depends_on(*i)) {
             self.words.push(Word::of_variable(i, index));
@@ -433,8 +433,8 @@ impl Scratch {
         masks.clear();
         operands.clear();
         answers.clear();
-        masks.try_reserve(words.len()).map_err(|_| Error::OutOfMemory)?;
-        operands.try_reserve(words.len()).map_err(|_| Error::OutOfMemory)?;
+        masks.try_reserve(words.len())?;
+        operands.try_reserve(words.len())?;
         let mut somewhere = 0;
         for (i, word) in words.iter().enumerate() {
             let kleene = match word.op() {
@@ -457,7 +457,7 @@ impl Scratch {
                     };
                     let answer = Answer { solid, height, verdicts };
                     let kleene = Kleene::of_tags(answer.verdicts.map(|verdict| verdict.tag()));
-                    push(answers, answer)?;
+                    memory::push(answers, answer)?;
                     kleene.complemented(complement)
                 }
                 Op::Unknown => Kleene::UNKNOWN,
@@ -487,8 +487,8 @@ impl Scratch {
         // Whether the child's own children are finest cells.
         let finest = 0.5 * at.half <= 1.0 / program.frame.cells() as f64;
         self.open.clear();
-        self.open.try_reserve(part.words()).map_err(|_| Error::OutOfMemory)?;
-        self.words.try_reserve(part.words()).map_err(|_| Error::OutOfMemory)?;
+        self.open.try_reserve(part.words())?;
+        self.words.try_reserve(part.words())?;
         let (mut answers, mut hopeful) = (0, false);
         for i in 0..self.masks.len() {
             let op = Scratch::list(program, &self.words, part)[i].op();
@@ -552,7 +552,7 @@ impl Scratch {
                 self.words.truncate(first);
                 self.open.push(Operand::Decided(kleene.lower & bit != 0));
             } else {
-                self.words.try_reserve(1).map_err(|_| Error::OutOfMemory)?;
+                self.words.try_reserve(1)?;
                 self.words.extend(emitted.map(Word::new));
                 self.open.push(Operand::Open(first));
             }

@@ -10,8 +10,8 @@
 //! which two centres of the line it is pierced. Doubles with an error bound decide nearly all of them, exact
 //! arithmetic on the original coordinates the rest.
 
-use super::super::exact::Expansion;
 use super::placed::{Corners, Placed, accuracy, are_short, ranks};
+use crate::lattice::exact::Expansion;
 
 /// A triangle seen along an axis.
 pub(super) struct Projection<'p> {

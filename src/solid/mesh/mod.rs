@@ -9,32 +9,12 @@
 //! carried from cell to cell along lines that count the triangles they pierce. An open mesh is closed by caps for that
 //! (`boundary`), whose own winding number is then taken off with bounds of its error and its slope (`winding`, `open`).
 
-mod boundary;
 mod crossing;
-mod defects;
 mod open;
 mod overlap;
 mod placed;
-mod placement;
-#[cfg(feature = "std")]
-mod polygon;
-#[cfg(feature = "std")]
-mod polyhedron;
-mod report;
 mod scan;
-mod sew;
 mod split;
-mod surface;
-mod topology;
-mod weld;
 mod winding;
 
-pub use defects::{DefectKind, MeshDefect};
-#[cfg(feature = "std")]
-pub(crate) use polygon::triangulate_facet;
-#[cfg(feature = "std")]
-pub use polyhedron::{Polyhedron, PolyhedronArrays};
-pub use report::MeshReport;
 pub use split::MeshSolid;
-pub use surface::{FillRule, TriangleMesh};
-pub(crate) use weld::FacetWelder;

@@ -12,10 +12,10 @@
 
 use super::placed::Placed;
 use super::split::{MeshPart, OnFrame};
-use super::surface::FillRule;
 use super::winding::{Local, Range};
 use crate::lattice::MAX_DEPTH;
 use crate::lattice::exact::floor;
+use crate::mesh::FillRule;
 use crate::solid::Verdict;
 use alloc::vec::Vec;
 

@@ -4,12 +4,12 @@
 //! a double, as lattice-aligned parts have it), and with its exact *ranks* among the planes of cell centres.
 //! Bulk work is done on these; whatever they leave open is decided exactly on the original coordinates.
 
-use super::boundary::Loops;
-use super::surface::TriangleMesh;
 use super::winding::Caps;
 use crate::error::{Error, MeshError};
 use crate::lattice::Frame;
 use crate::lattice::exact::{floor, two_diff, two_product};
+use crate::mesh::Loops;
+use crate::mesh::TriangleMesh;
 use alloc::sync::Arc;
 use alloc::vec::Vec;
 
@@ -58,9 +58,9 @@ impl Vertices {
     fn new(mesh: &TriangleMesh, frame: &Frame) -> Result<Vertices, Error> {
         let mut vertices = Vertices::default();
         let count = mesh.vertices().len();
-        vertices.at.try_reserve_exact(count).map_err(|_| Error::OutOfMemory)?;
-        vertices.ranks.try_reserve_exact(count).map_err(|_| Error::OutOfMemory)?;
-        vertices.flags.try_reserve_exact(count).map_err(|_| Error::OutOfMemory)?;
+        vertices.at.try_reserve_exact(count)?;
+        vertices.ranks.try_reserve_exact(count)?;
+        vertices.flags.try_reserve_exact(count)?;
         for &vertex in mesh.vertices() {
             let (at, rank, flags) = place(frame, vertex);
             vertices.at.push(at);

@@ -7,10 +7,10 @@
 use super::crossing::Projection;
 use super::overlap::Overlap;
 use super::placed::{Placed, ranks};
-use super::surface::FillRule;
 use crate::error::Error;
+use crate::memory;
+use crate::mesh::FillRule;
 use crate::octree::Block;
-use crate::octree::block::zeros;
 use alloc::boxed::Box;
 use alloc::vec::Vec;
 
@@ -43,7 +43,13 @@ pub(super) struct Task<'t> {
 
 impl Scan {
     pub(super) fn new() -> Result<Scan, Error> {
-        Ok(Scan { cut: zeros()?, low: zeros()?, high: zeros()?, floor: zeros()?, changes: Vec::new() })
+        Ok(Scan {
+            cut: memory::zeros()?,
+            low: memory::zeros()?,
+            high: memory::zeros()?,
+            floor: memory::zeros()?,
+            changes: Vec::new(),
+        })
     }
 
     /// Fills what `block` asks for.
@@ -144,7 +150,7 @@ impl Scan {
     #[cold]
     fn wind_counting(&mut self, task: &Task<'_>) -> Result<(), Error> {
         self.changes.clear();
-        self.changes.try_reserve_exact(COLUMNS * SIZE).map_err(|_| Error::OutOfMemory)?;
+        self.changes.try_reserve_exact(COLUMNS * SIZE)?;
         self.changes.resize(COLUMNS * SIZE, 0);
         let changes = &mut self.changes;
         for_crossings(task, |column, z, step| changes[column * SIZE + z as usize] += step);

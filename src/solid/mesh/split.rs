@@ -1,15 +1,15 @@
 //! Splitting the cells of a mesh.
 
-use super::boundary::Loops;
 use super::crossing::Projection;
 use super::open::{Branch, Surroundings};
 use super::overlap::Overlap;
 use super::placed::{Corners, Placed, bounds, ranks};
 use super::scan::{Scan, Task};
-use super::surface::{FillRule, TriangleMesh};
 use crate::control::Control;
 use crate::error::{Error, MeshError};
 use crate::lattice::{Affine, Bounds, Cell, Frame};
+use crate::mesh::Loops;
+use crate::mesh::{FillRule, TriangleMesh};
 use crate::octree::{Block, Tag};
 use crate::solid::{Classifier, Fingerprint, Fingerprinter, Motion, Solid, Verdict, Worker};
 use alloc::boxed::Box;
@@ -226,7 +226,7 @@ impl Solid for MeshSolid {
         let placed = Placed::new(self.mesh.clone(), frame, &self.loops)?;
         let mut roots = Vec::new();
         let count = placed.count();
-        roots.try_reserve_exact(count as usize).map_err(|_| Error::OutOfMemory)?;
+        roots.try_reserve_exact(count as usize)?;
         let size = frame.cells() as f64;
         let mut winding = 0;
         for triangle in 0..count {
@@ -337,7 +337,7 @@ impl Worker for MeshWorker {
         let shared = mesh.roots.len();
 
         masks.clear();
-        masks.try_reserve(part.count).map_err(|_| Error::OutOfMemory)?;
+        masks.try_reserve(part.count)?;
         let mut counts = [0; 8];
         let mut steps = [[0; 8]; 2];
         let mut boxes = [[[0; 3]; 2]; BATCH];
@@ -357,7 +357,7 @@ impl Worker for MeshWorker {
             }
         }
         let top = triangles.len();
-        triangles.try_reserve(counts.iter().sum()).map_err(|_| Error::OutOfMemory)?;
+        triangles.try_reserve(counts.iter().sum())?;
         let mut firsts = [0; 8];
         for k in 1..8 {
             firsts[k] = firsts[k - 1] + counts[k - 1];
@@ -403,7 +403,7 @@ impl Worker for MeshWorker {
 
     fn hand_over(&mut self, from: &Self, part: &MeshPart) -> Result<MeshPart, Error> {
         let first = self.mesh.roots.len() + self.triangles.len();
-        self.triangles.try_reserve(part.count).map_err(|_| Error::OutOfMemory)?;
+        self.triangles.try_reserve(part.count)?;
         self.triangles.extend_from_slice(list(&from.mesh.roots, &from.triangles, part));
         Ok(MeshPart { first, ..*part })
     }

@@ -16,11 +16,12 @@
 //! *boundary* (the law of Biot and Savart), so that derivatives are sums over the boundary's edges; the third is at most
 //! Σ ∫ 6 ds / (4π·distance⁴). One expansion thus bounds it on a whole cell, and serves many cells inside of that.
 
-use super::boundary::Loops;
 use super::crossing::Projection;
 use super::placed::{Placed, Vertex, ranks};
 use crate::error::Error;
 use crate::lattice::exact::sqrt;
+use crate::memory;
+use crate::mesh::Loops;
 use alloc::vec::Vec;
 use core::f64::consts::PI;
 use glam::{DMat3, DVec2, DVec3};
@@ -190,10 +191,9 @@ impl Caps {
     ) -> Result<Caps, Error> {
         let count = loops.caps();
         let mut caps = Caps::default();
-        caps.triangles.try_reserve_exact(count).map_err(|_| Error::OutOfMemory)?;
-        caps.rims.try_reserve_exact(count).map_err(|_| Error::OutOfMemory)?;
-        let mut slots = Vec::new();
-        slots.try_reserve_exact(count).map_err(|_| Error::OutOfMemory)?;
+        caps.triangles.try_reserve_exact(count)?;
+        caps.rims.try_reserve_exact(count)?;
+        let mut slots = memory::with_capacity(count)?;
         let mut error = 0f32;
         for walk in loops.iter() {
             for &vertex in walk {
@@ -207,16 +207,14 @@ impl Caps {
         }
         caps.error = error as f64;
         caps.wobble = 2.0 * (caps.error + displacement);
-        caps.nodes
-            .try_reserve_exact(2 * count.div_ceil(LEAF).next_power_of_two())
-            .map_err(|_| Error::OutOfMemory)?;
+        caps.nodes.try_reserve_exact(2 * count.div_ceil(LEAF).next_power_of_two())?;
         let at = |vertex: u32| DVec3::from(place(vertex).at);
         if count > 0 {
             caps.grow(&mut slots, 0, &at)?;
         }
         caps.triangles.extend(slots.iter().map(|slot| slot.0));
         caps.rims.extend(slots.iter().map(|slot| slot.1));
-        caps.sizes.try_reserve_exact(count).map_err(|_| Error::OutOfMemory)?;
+        caps.sizes.try_reserve_exact(count)?;
         caps.sizes.extend(slots.iter().map(|slot| {
             let [a, b, c] = slot.0.map(at);
             let edges = [b - a, c - b, a - c].map(length);
@@ -230,8 +228,7 @@ impl Caps {
     fn grow(&mut self, slots: &mut [Slot], first: usize, at: &impl Fn(u32) -> DVec3) -> Result<(), Error> {
         let node = Node::around(slots, first, at);
         let index = self.nodes.len();
-        self.nodes.try_reserve(1).map_err(|_| Error::OutOfMemory)?;
-        self.nodes.push(node);
+        memory::push(&mut self.nodes, node)?;
         if slots.len() > LEAF {
             // Halves, so that the depth is the logarithm whatever the coordinates are: of near and far ones along the
             // longest extent, or, where the largest are larger than that, of small and large ones.
@@ -650,9 +647,9 @@ fn halve(corners: usize, found: &mut impl FnMut([usize; 3], u8)) {
 
 #[cfg(test)]
 mod tests {
-    use super::super::surface::TriangleMesh;
     use super::*;
     use crate::lattice::Frame;
+    use crate::mesh::TriangleMesh;
     use alloc::sync::Arc;
 
     /// A cone without its base: `corners` corners at height 3 around the axis through (8, 8), of about radius 5, its top

@@ -1,8 +1,8 @@
 //! Boxes of one lattice as seen from another.
 
+use crate::lattice::exact::Expansion;
 use crate::lattice::exact::{floor, sqrt, two_product};
 use crate::lattice::{Affine, Bounds, Cube, Frame, MAX_DEPTH};
-use crate::solid::exact::Expansion;
 
 /// From the lattice of one frame to that of another, in finest cells: u = linear · k + offset.
 #[derive(Debug, Clone, Copy)]

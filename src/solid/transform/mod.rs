@@ -6,6 +6,7 @@ use super::{Classifier, Fingerprint, Fingerprinter, Solid, Verdict, Worker};
 use crate::control::Control;
 use crate::error::Error;
 use crate::lattice::{Affine, Bounds, Cell, Cube, Frame, MAX_DEPTH};
+use crate::memory;
 use crate::octree::Tag;
 use alloc::sync::Arc;
 use alloc::vec::Vec;
@@ -210,7 +211,7 @@ impl<C: Classifier> TransformClassifier<C> {
         let cells = self.frame.cells() as f64;
         let mut worker = self.inner.worker()?;
         let mut open = Vec::new();
-        open.try_reserve(8 * MOST).map_err(|_| Error::OutOfMemory)?;
+        open.try_reserve(8 * MOST)?;
         open.push((Cell::ROOT, worker.root()?));
         let mut left = MOST;
         while let Some((cell, verdict)) = open.pop() {
@@ -281,15 +282,14 @@ impl<W: Worker> TransformWorker<W> {
 
     /// Makes a list of the cells at hand that a child (as a bit) touches.
     fn keep(&mut self, child: u8) -> Result<TransformPart, Error> {
-        self.known.try_reserve(self.at_hand.len()).map_err(|_| Error::OutOfMemory)?;
+        self.known.try_reserve(self.at_hand.len())?;
         let touched = self.at_hand.iter().filter(|(_, children)| children & child != 0);
         self.known.extend(touched.map(|(known, _)| known.clone()));
         self.close()
     }
 
     fn close(&mut self) -> Result<TransformPart, Error> {
-        self.lists.try_reserve(1).map_err(|_| Error::OutOfMemory)?;
-        self.lists.push((self.known.len(), self.inner.mark()));
+        memory::push(&mut self.lists, (self.known.len(), self.inner.mark()))?;
         Ok(TransformPart(self.lists.len() - 1))
     }
 
@@ -299,7 +299,7 @@ impl<W: Worker> TransformWorker<W> {
         let TransformWorker { known, at_hand, inner, own, .. } = self;
         at_hand.clear();
         let list = &known[range];
-        at_hand.try_reserve(list.len()).map_err(|_| Error::OutOfMemory)?;
+        at_hand.try_reserve(list.len())?;
         for known in list {
             let touched = if is_large(own, known, grain) {
                 replace(own, known, inner, target, at_hand)?;
@@ -309,8 +309,7 @@ impl<W: Worker> TransformWorker<W> {
                 target.touched(corner, edge)
             };
             if touched != 0 {
-                at_hand.try_reserve(1).map_err(|_| Error::OutOfMemory)?;
-                at_hand.push((known.clone(), touched));
+                memory::push(at_hand, (known.clone(), touched))?;
             }
         }
         // Mostly one step is all; the first, and that to a point, may take more.
@@ -381,7 +380,7 @@ fn replace<W: Worker>(
     let children = inner.split(*cell, part)?;
     let (corner, edge) = extent(own, *cell);
     let touched = target.touched_by_children(corner, edge);
-    at_hand.try_reserve(8).map_err(|_| Error::OutOfMemory)?;
+    at_hand.try_reserve(8)?;
     for (octant, (child, touched)) in (0..8).zip(children.into_iter().zip(touched)) {
         if touched != 0 {
             at_hand.push(((cell.child(octant), child), touched));
@@ -399,8 +398,7 @@ impl<W: Worker> Worker for TransformWorker<W> {
 
     fn root(&mut self) -> Result<Verdict<TransformPart>, Error> {
         let root = self.inner.root()?;
-        self.known.try_reserve(1).map_err(|_| Error::OutOfMemory)?;
-        self.known.push((Cell::ROOT, root));
+        memory::push(&mut self.known, (Cell::ROOT, root))?;
         let universe = self.close()?;
         let (maps, frame) = (self.maps, self.frame);
         let images = Images::new(&maps, &Cube { frame: &frame, cell: Cell::ROOT }, 1);
@@ -429,7 +427,7 @@ impl<W: Worker> Worker for TransformWorker<W> {
 
     fn hand_over(&mut self, from: &Self, part: &TransformPart) -> Result<TransformPart, Error> {
         let list = &from.known[from.range(*part)];
-        self.known.try_reserve(list.len()).map_err(|_| Error::OutOfMemory)?;
+        self.known.try_reserve(list.len())?;
         for (cell, verdict) in list {
             let verdict = match verdict {
                 Verdict::Partial(part) => Verdict::Partial(self.inner.hand_over(&from.inner, part)?),

@@ -1,0 +1,297 @@
+//! Mesh files of any format, in any unit.
+
+use core::fmt;
+
+use super::detect;
+use super::stl::read_stl;
+#[cfg(feature = "threemf")]
+use super::threemf;
+use super::unit::{Factor, LengthUnit};
+#[cfg(feature = "std")]
+use super::{read_obj, read_off, read_ply};
+use crate::error::{Error, MeshFileError};
+use crate::mesh::TriangleMesh;
+
+/// The formats of mesh files that can be read.
+#[non_exhaustive]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum MeshFormat {
+    /// STL, binary or ASCII.
+    Stl,
+    /// Wavefront OBJ. Reading it needs the feature `std`.
+    Obj,
+    /// Stanford PLY, ASCII or binary. Reading it needs the feature `std`.
+    Ply,
+    /// Geomview OFF. Reading it needs the feature `std`.
+    Off,
+    /// 3MF, the 3D Manufacturing Format. Reading it needs the feature `threemf`.
+    ThreeMf,
+}
+
+impl MeshFormat {
+    /// All of them.
+    pub const ALL: [MeshFormat; 5] = [Self::Stl, Self::Obj, Self::Ply, Self::Off, Self::ThreeMf];
+
+    /// The extension of the names of such files, in lower case and without a dot.
+    pub const fn extension(self) -> &'static str {
+        match self {
+            Self::Stl => "stl",
+            Self::Obj => "obj",
+            Self::Ply => "ply",
+            Self::Off => "off",
+            Self::ThreeMf => "3mf",
+        }
+    }
+
+    /// The format of files whose names end in this extension, which is given without a dot, in any letter case.
+    pub fn from_extension(extension: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|format| format.extension().eq_ignore_ascii_case(extension))
+    }
+
+    /// The format of a file with this content and, if it has one, this extension of its name.
+    ///
+    /// Content decides where it is unmistakable: the length of a binary STL, the signatures of ZIP and PLY, the
+    /// first words of an ASCII STL and of an OFF. Then the extension does. A file without a known one is an OBJ
+    /// if its first line that is neither blank nor a comment begins with a keyword of that format, an OFF if that
+    /// line begins with numbers only, and an STL if it is long enough and no text. `None` for anything else.
+    ///
+    /// O(1) but for comments and blank lines at the beginning.
+    pub fn detect(bytes: &[u8], extension: Option<&str>) -> Option<Self> {
+        detect::by_signature(bytes)
+            .or_else(|| extension.and_then(Self::from_extension))
+            .or_else(|| detect::by_look(bytes))
+    }
+}
+
+impl fmt::Display for MeshFormat {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(match self {
+            Self::Stl => "STL",
+            Self::Obj => "OBJ",
+            Self::Ply => "PLY",
+            Self::Off => "OFF",
+            Self::ThreeMf => "3MF",
+        })
+    }
+}
+
+/// How a mesh file is to be taken. The default takes everything from the file and changes nothing.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MeshOptions {
+    /// The file's format; `None`: [detected](MeshFormat::detect).
+    pub format: Option<MeshFormat>,
+    /// The unit of the numbers in the file. `None`: what the file says, which only a 3MF does. If given, it
+    /// overrides that.
+    pub unit: Option<LengthUnit>,
+    /// The unit that the mesh shall have; `None`: that of the file, and no conversion.
+    pub target: Option<LengthUnit>,
+    /// What all coordinates are multiplied by besides, from 2^-256 to 2^256.
+    pub scale: f64,
+}
+
+impl Default for MeshOptions {
+    fn default() -> Self {
+        Self { format: None, unit: None, target: None, scale: 1.0 }
+    }
+}
+
+/// A mesh from a file, and what else the file says.
+#[non_exhaustive]
+#[derive(Debug, Clone)]
+pub struct MeshFile {
+    /// The mesh, converted and scaled.
+    pub mesh: TriangleMesh,
+    /// The format that the file has.
+    pub format: MeshFormat,
+    /// The unit of the mesh's coordinates (apart from [`MeshOptions::scale`]), if it is known.
+    pub unit: Option<LengthUnit>,
+    /// Instances of objects that the file does not mean to be solid, such as supports, and that the mesh
+    /// therefore does not contain. 0 for all formats but 3MF.
+    pub skipped: u64,
+}
+
+/// Reads a mesh file of any format.
+///
+/// What the single formats allow stands at [`read_stl`] and its neighbours. Everything in the file becomes one mesh,
+/// whose vertices are welded where they are equal. That the mesh is closed is not checked.
+///
+/// A conversion of units and the scale are applied together: one product and, where the factor is no whole number,
+/// one quotient, so that coordinates of up to 40 bits (all of binary STL are) are the exact result rounded once.
+/// Without both, or if they cancel, coordinates stay as they are, bit by bit.
+///
+/// O(n). Fails with [`Error::Argument`] for a scale that is not allowed, [`MeshFileError::UnknownFormat`],
+/// [`MeshFileError::UnknownUnit`] if a conversion is asked for and nobody says from which unit,
+/// [`MeshFileError::Unsupported`] for a format that was left out of this build of the library,
+/// [`MeshError::TooLarge`](crate::MeshError::TooLarge) if scaling leads beyond ±2^256, and as the format's reader
+/// does.
+pub fn read_mesh(bytes: &[u8], options: &MeshOptions) -> Result<MeshFile, Error> {
+    read(bytes, None, options)
+}
+
+/// Reads a mesh file of any format from a path, whose extension helps to tell the format.
+///
+/// As [`read_mesh`]; fails with [`Error::Io`] besides.
+#[cfg(feature = "std")]
+pub fn open_mesh(path: impl AsRef<std::path::Path>, options: &MeshOptions) -> Result<MeshFile, Error> {
+    let path = path.as_ref();
+    let bytes = std::fs::read(path)?;
+    read(&bytes, path.extension().and_then(|extension| extension.to_str()), options)
+}
+
+fn read(bytes: &[u8], extension: Option<&str>, options: &MeshOptions) -> Result<MeshFile, Error> {
+    // Refused before any work is done.
+    Factor::new(None, options.scale)?;
+    if bytes.is_empty() {
+        return Err(MeshFileError::Empty.into());
+    }
+    let format = (options.format)
+        .or_else(|| MeshFormat::detect(bytes, extension))
+        .ok_or(MeshFileError::UnknownFormat)?;
+    let (mesh, own_unit, skipped) = match format {
+        MeshFormat::Stl => (read_stl(bytes)?, None, 0),
+        #[cfg(feature = "std")]
+        MeshFormat::Obj => (read_obj(bytes)?, None, 0),
+        #[cfg(feature = "std")]
+        MeshFormat::Ply => (read_ply(bytes)?, None, 0),
+        #[cfg(feature = "std")]
+        MeshFormat::Off => (read_off(bytes)?, None, 0),
+        #[cfg(not(feature = "std"))]
+        MeshFormat::Obj | MeshFormat::Ply | MeshFormat::Off => {
+            let what = "polygons, for which the library was built without the feature `std`,";
+            return Err(MeshFileError::Unsupported { what }.into());
+        }
+        #[cfg(feature = "threemf")]
+        MeshFormat::ThreeMf => {
+            let threemf::Built { mesh, unit, skipped } = threemf::read(bytes)?;
+            (mesh, Some(unit), skipped)
+        }
+        #[cfg(not(feature = "threemf"))]
+        MeshFormat::ThreeMf => {
+            let what = "3MF, for which the library was built without the feature `threemf`,";
+            return Err(MeshFileError::Unsupported { what }.into());
+        }
+    };
+    let unit = options.unit.or(own_unit);
+    let conversion = match (unit, options.target) {
+        (_, None) => None,
+        (Some(from), Some(to)) => Some((from, to)),
+        (None, Some(_)) => return Err(MeshFileError::UnknownUnit.into()),
+    };
+    let factor = Factor::new(conversion, options.scale)?;
+    let mesh = if factor.is_one() { mesh } else { mesh.scaled(|x| factor.apply(x))? };
+    Ok(MeshFile { mesh, format, unit: options.target.or(unit), skipped })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::write_stl;
+    use super::*;
+    use crate::error::MeshError;
+    use LengthUnit::*;
+    use alloc::vec;
+    use alloc::vec::Vec;
+
+    fn triangle(x: f64) -> Vec<u8> {
+        let corners = vec![[0.0; 3], [x, 0.0, 0.0], [0.0, -x, 1.5]];
+        write_stl(&TriangleMesh::new(corners, vec![[0, 1, 2]]).unwrap()).unwrap()
+    }
+
+    fn with(unit: Option<LengthUnit>, target: Option<LengthUnit>, scale: f64) -> MeshOptions {
+        MeshOptions { unit, target, scale, ..MeshOptions::default() }
+    }
+
+    #[test]
+    fn units_and_scale() {
+        let bytes = triangle(3.0);
+        let plain = read_mesh(&bytes, &MeshOptions::default()).unwrap();
+        assert_eq!((plain.format, plain.unit, plain.skipped), (MeshFormat::Stl, None, 0));
+        assert_eq!(plain.mesh.vertices(), read_stl(&bytes).unwrap().vertices());
+        for (unit, target, scale, expected, known) in [
+            (None, None, 1.0, 3.0, None),
+            (Some(Inch), None, 1.0, 3.0, Some(Inch)),
+            (Some(Inch), Some(Inch), 1.0, 3.0, Some(Inch)),
+            (Some(Inch), Some(Millimetre), 1.0, 76.2, Some(Millimetre)),
+            (Some(Inch), Some(Millimetre), 10.0, 762.0, Some(Millimetre)),
+            (Some(Millimetre), Some(Metre), 1.0, 0.003, Some(Metre)),
+            (None, None, 0.5, 1.5, None),
+        ] {
+            let file = read_mesh(&bytes, &with(unit, target, scale)).unwrap();
+            assert_eq!(file.mesh.vertices()[1], [expected, 0.0, 0.0], "{unit:?} {target:?} {scale}");
+            assert_eq!(file.unit, known);
+            assert_eq!(file.mesh.report().unwrap().facets_read, 1);
+        }
+        let result = read_mesh(&bytes, &with(None, Some(Millimetre), 1.0));
+        assert!(matches!(result, Err(Error::MeshFile(MeshFileError::UnknownUnit))), "{result:?}");
+        for scale in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+            let result = read_mesh(&bytes, &with(None, None, scale));
+            assert!(matches!(result, Err(Error::Argument { name: "scale", .. })), "{result:?}");
+        }
+        let far = read_mesh(&triangle(1e30), &with(None, None, 1e50));
+        assert!(matches!(far, Err(Error::Mesh(MeshError::TooLarge { vertex: 1 }))), "{far:?}");
+        // What becomes too small to compute with is one place.
+        let near = read_mesh(&triangle(0.5), &with(None, None, 1e-77)).unwrap();
+        let report = near.mesh.report().unwrap();
+        assert_eq!((report.triangles, report.degenerate, report.vertices, report.welded), (0, 1, 2, 1));
+    }
+
+    #[test]
+    fn counts_outlive_a_scale() {
+        // Two triangles with an edge in common, and one of no extent.
+        let square = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
+        let [a, b, c, d] = square;
+        let mesh = TriangleMesh::from_facets([[a, b, c], [a, c, d], [a, a, b]]).unwrap();
+        let scaled = mesh.clone().scaled(|x| 2.0 * x).unwrap();
+        assert_eq!(scaled.report().unwrap(), mesh.report().unwrap());
+        assert_eq!(scaled.bounds(), ([0.0; 3], [2.0, 2.0, 0.0]));
+        let flat = mesh.scaled(|_| 0.0).unwrap().report().unwrap();
+        assert_eq!((flat.facets_read, flat.degenerate, flat.vertices, flat.welded), (3, 3, 1, 8));
+    }
+
+    #[test]
+    fn each_format_is_read() {
+        let obj = b"# one triangle\nv 0 0 0\nv 2 0 0\nv 0 2 0\nf 1 2 3\n";
+        let off = b"OFF\n3 1 3\n0 0 0\n2 0 0\n0 2 0\n3 0 1 2\n";
+        let ply = b"ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n\
+            element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n2 0 0\n0 2 0\n3 0 1 2\n";
+        for (bytes, format) in
+            [(&obj[..], MeshFormat::Obj), (&off[..], MeshFormat::Off), (&ply[..], MeshFormat::Ply)]
+        {
+            let file = read_mesh(bytes, &with(Some(Inch), Some(Foot), 1.0)).unwrap();
+            assert_eq!((file.format, file.unit), (format, Some(Foot)));
+            assert_eq!(file.mesh.vertices()[1], [2.0 / 12.0, 0.0, 0.0]);
+            assert_eq!(file.mesh.triangles(), [[0, 1, 2]]);
+        }
+    }
+
+    /// Every model file has the format that its name says, by its content alone.
+    #[cfg(feature = "std")]
+    #[test]
+    fn model_files() {
+        let Some(folder) = std::env::var_os("LEAFLESS_MODELS") else {
+            std::println!("SKIPPED: LEAFLESS_MODELS is not set");
+            return;
+        };
+        let mut count = 0;
+        for entry in std::fs::read_dir(folder).unwrap() {
+            let path = entry.unwrap().path();
+            let extension = path.extension().and_then(|extension| extension.to_str()).unwrap_or("");
+            let Some(format) = MeshFormat::from_extension(extension) else { continue };
+            assert_eq!(MeshFormat::detect(&std::fs::read(&path).unwrap(), None), Some(format), "{path:?}");
+            let file = open_mesh(&path, &MeshOptions::default()).unwrap();
+            assert!(file.format == format && !file.mesh.triangles().is_empty(), "{path:?}");
+            count += 1;
+        }
+        assert!(count >= 12);
+    }
+
+    #[test]
+    fn formats() {
+        let bytes = triangle(1.0);
+        let as_obj = MeshOptions { format: Some(MeshFormat::Obj), ..MeshOptions::default() };
+        assert!(read_mesh(&bytes, &as_obj).is_err());
+        let result = read_mesh(b"nothing known\n", &MeshOptions::default());
+        assert!(matches!(result, Err(Error::MeshFile(MeshFileError::UnknownFormat))), "{result:?}");
+        let result = read_mesh(b"", &as_obj);
+        assert!(matches!(result, Err(Error::MeshFile(MeshFileError::Empty))), "{result:?}");
+    }
+}

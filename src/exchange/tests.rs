@@ -1,0 +1,70 @@
+//! What the tests of all readers share.
+
+extern crate std;
+
+use alloc::vec::Vec;
+use proptest::prelude::*;
+
+use crate::error::Error;
+use crate::mesh::TriangleMesh;
+
+/// A model file, or `None` if the tests run without them.
+pub(super) fn model(name: &str) -> Option<Vec<u8>> {
+    let Some(folder) = std::env::var_os("LEAFLESS_MODELS") else {
+        std::println!("SKIPPED: LEAFLESS_MODELS is not set");
+        return None;
+    };
+    let path = std::path::Path::new(&folder).join(name);
+    Some(std::fs::read(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display())))
+}
+
+/// Different vertices with coordinates of all kinds, and faces that are fans: of three to six corners, the
+/// vertices of each on a parabola, hence convex and in one plane.
+pub(super) fn random_polygons() -> impl Strategy<Value = (Vec<[f64; 3]>, Vec<Vec<u32>>)> {
+    let shift = prop_oneof![
+        Just(0.0),
+        Just(1e-3),
+        Just(-123.456),
+        -1e9..1e9,
+        any::<f32>().prop_map(|x| x as f64 % 1e20)
+    ];
+    let faces = proptest::collection::vec(proptest::collection::btree_set(0u32..12, 3..=6), 0..20);
+    (shift.clone(), shift, faces).prop_map(|(y, z, faces)| {
+        let vertices = (0..12).map(|i| [f64::from(i), y, z + f64::from(i * i) * z.abs().max(1.0)]).collect();
+        (vertices, faces.into_iter().map(|face| face.into_iter().collect()).collect())
+    })
+}
+
+/// Checks that `mesh` is of these vertices and faces.
+#[track_caller]
+pub(super) fn same(mesh: TriangleMesh, vertices: Vec<[f64; 3]>, faces: &[Vec<u32>]) {
+    let fan = |face: &Vec<u32>| {
+        let (first, others) = face.split_first().unwrap();
+        others.windows(2).map(|pair| [*first, pair[0], pair[1]]).collect::<Vec<_>>()
+    };
+    let expected = TriangleMesh::new(vertices, faces.iter().flat_map(fan).collect()).unwrap();
+    assert_eq!(mesh.vertices(), expected.vertices());
+    assert_eq!(mesh.triangles(), expected.triangles());
+}
+
+/// Reads `bytes` cut at every length and with every byte changed in several ways: an answer or an error, but no
+/// panic. That most of it is an error is a test that something is checked at all.
+pub(super) fn truncations_and_damages(read: fn(&[u8]) -> Result<TriangleMesh, Error>, bytes: &[u8]) {
+    read(bytes).unwrap();
+    for length in 0..bytes.len() {
+        let _ = read(&bytes[..length]);
+    }
+    let mut refused = 0;
+    for i in 0..bytes.len() {
+        for value in
+            [0, 1, 3, b'\n', b'\r', b' ', b'#', b'\\', b'-', b'/', b'9', b'e', 0x7F, 0x80, 0xFF, bytes[i] ^ 1]
+        {
+            let mut damaged = bytes.to_vec();
+            damaged[i] = value;
+            refused += read(&damaged).is_err() as usize;
+            damaged.remove(i);
+            refused += read(&damaged).is_err() as usize;
+        }
+    }
+    assert!(refused > 2 * bytes.len(), "{refused} of {}", 32 * bytes.len());
+}

@@ -1,0 +1,347 @@
+//! Model parts: objects of meshes or of components, and what of them is to be built.
+
+use alloc::vec::Vec;
+use core::ops::Range;
+
+use hashbrown::HashMap;
+
+use super::package::Package;
+use super::transform::Transform;
+use super::xml::{Attribute, Element, Markup, Namespace, Xml};
+use crate::error::Error;
+use crate::exchange::LengthUnit;
+use crate::memory;
+
+/// What all model parts of a package hold.
+#[derive(Default)]
+pub(super) struct Models {
+    pub vertices: Vec<[f64; 3]>,
+    /// Indices count from the beginning of the object's vertices.
+    pub triangles: Vec<[u32; 3]>,
+    pub components: Vec<Component>,
+    pub objects: Vec<Object>,
+    /// What is to be built.
+    pub items: Vec<Component>,
+    /// Objects by part and identifier.
+    pub known: HashMap<(u32, u32), u32>,
+}
+
+pub(super) struct Object {
+    pub purpose: Purpose,
+    pub shape: Shape,
+}
+
+/// What an object is meant for. Of objects of components it has no meaning.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Purpose {
+    /// To be a solid.
+    Model,
+    /// To support one, to be a mere surface, or something else.
+    Other,
+}
+
+pub(super) enum Shape {
+    /// Nothing that is known here.
+    Unknown,
+    /// Ranges of vertices and triangles.
+    Mesh(Range<usize>, Range<usize>),
+    /// A range of components.
+    Components(Range<usize>),
+}
+
+/// An object that is placed in another one, or in the build.
+#[derive(Clone, Copy)]
+pub(super) struct Component {
+    pub target: Target,
+    pub transform: Transform,
+    /// Where it stands in its part.
+    pub offset: usize,
+}
+
+#[derive(Clone, Copy)]
+pub(super) enum Target {
+    /// An object, by its place among all.
+    Object(u32),
+    /// One in another part, by that part and its identifier there.
+    Elsewhere(u32, u32),
+}
+
+/// An element that has a meaning here.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Node {
+    Model,
+    Resources,
+    Object,
+    Mesh,
+    Vertices,
+    Triangles,
+    Components,
+    Build,
+    /// Whatever else. Its content is skipped.
+    Skipped,
+}
+
+impl Models {
+    /// The place of an object among all.
+    pub fn find(&self, part: u32, id: u32) -> Option<u32> {
+        self.known.get(&(part, id)).copied()
+    }
+
+    /// Adds the objects of a part, and its build if it is the root. Returns the part's unit.
+    pub fn read(
+        &mut self,
+        package: &Package,
+        part: u32,
+        text: &str,
+        is_root: bool,
+    ) -> Result<LengthUnit, Error> {
+        let name = package.name(part);
+        let mut xml = Xml::new(&name, text);
+        let mut unit = LengthUnit::Millimetre;
+        let mut has_build = false;
+        // As deep as the reader allows.
+        let mut nodes = memory::with_capacity(64)?;
+        while let Some(markup) = xml.next()? {
+            let Markup::Start(element) = markup else {
+                nodes.pop();
+                continue;
+            };
+            let core = element.namespace == Namespace::Core;
+            let node = match (nodes.last(), element.name) {
+                (None, "model") if core => {
+                    unit = read_model(&xml, &element)?;
+                    Node::Model
+                }
+                (None, _) => return Err(xml.error(element.offset, "this is no 3MF model")),
+                (Some(Node::Vertices), "vertex") if core => {
+                    self.read_vertex(&xml, &element)?;
+                    Node::Skipped
+                }
+                (Some(Node::Triangles), "triangle") if core => {
+                    self.read_triangle(&xml, &element)?;
+                    Node::Skipped
+                }
+                (Some(Node::Model), "resources") if core => Node::Resources,
+                (Some(Node::Model), "build") if core && is_root => {
+                    has_build = true;
+                    Node::Build
+                }
+                (Some(Node::Resources), "object") if core => {
+                    self.read_object(&xml, &element, part)?;
+                    Node::Object
+                }
+                (Some(Node::Object), "mesh") if core => {
+                    let (v, t) = (self.vertices.len(), self.triangles.len());
+                    self.give_shape(&xml, &element, Shape::Mesh(v..v, t..t))?;
+                    Node::Mesh
+                }
+                (Some(Node::Mesh), "vertices") if core => Node::Vertices,
+                (Some(Node::Mesh), "triangles") if core => Node::Triangles,
+                (Some(Node::Object), "components") if core => {
+                    let c = self.components.len();
+                    self.give_shape(&xml, &element, Shape::Components(c..c))?;
+                    Node::Components
+                }
+                (Some(Node::Components), "component") if core => {
+                    let component =
+                        self.read_component(&xml, &element, package, part, is_root, self.objects.len() - 1)?;
+                    memory::push(&mut self.components, component)?;
+                    if let Some(Object { shape: Shape::Components(range), .. }) = self.objects.last_mut() {
+                        range.end = self.components.len();
+                    }
+                    Node::Skipped
+                }
+                (Some(Node::Build), "item") if core => {
+                    let item =
+                        self.read_component(&xml, &element, package, part, is_root, self.objects.len())?;
+                    memory::push(&mut self.items, item)?;
+                    Node::Skipped
+                }
+                _ => Node::Skipped,
+            };
+            if !element.empty {
+                memory::push(&mut nodes, node)?;
+            }
+        }
+        if is_root && !has_build {
+            return Err(xml.error(text.len(), "the model has no build"));
+        }
+        Ok(unit)
+    }
+
+    fn read_object(&mut self, xml: &Xml, element: &Element, part: u32) -> Result<(), Error> {
+        let (mut id, mut purpose) = (None, Purpose::Model);
+        for attribute in xml.attributes(element) {
+            let attribute = attribute?;
+            match (attribute.prefix, attribute.name) {
+                ("", "id") => id = Some(xml.index(&attribute)?),
+                ("", "type") => {
+                    purpose = match attribute.value.trim_ascii() {
+                        "model" => Purpose::Model,
+                        "solidsupport" | "support" | "surface" | "other" => Purpose::Other,
+                        _ => return Err(xml.attribute_error(&attribute, "is no type of objects")),
+                    };
+                }
+                // Of the slice and the production extension, which the model may not even say that it requires.
+                (_, "meshresolution" | "modelresolution") if attribute.value.trim_ascii() != "fullres" => {
+                    return Err(xml.attribute_error(&attribute, "says that the mesh is not the true shape"));
+                }
+                _ => {}
+            }
+        }
+        let id = id.ok_or_else(|| xml.error(element.offset, "the object has no id"))?;
+        let index = u32::try_from(self.objects.len()).map_err(|_| Error::OutOfMemory)?;
+        self.known.try_reserve(1)?;
+        if self.known.insert((part, id), index).is_some() {
+            return Err(xml.error(element.offset, alloc::format!("object {id} is defined a second time")));
+        }
+        memory::push(&mut self.objects, Object { purpose, shape: Shape::Unknown })?;
+        Ok(())
+    }
+
+    fn give_shape(&mut self, xml: &Xml, element: &Element, shape: Shape) -> Result<(), Error> {
+        match self.objects.last_mut() {
+            Some(object) if matches!(object.shape, Shape::Unknown) => {
+                object.shape = shape;
+                Ok(())
+            }
+            _ => Err(xml.error(element.offset, "the object has a second shape")),
+        }
+    }
+
+    fn read_vertex(&mut self, xml: &Xml, element: &Element) -> Result<(), Error> {
+        let mut found = [None; 3];
+        for attribute in xml.attributes(element) {
+            let attribute = attribute?;
+            let axis = match (attribute.prefix, attribute.name) {
+                ("", "x") => 0,
+                ("", "y") => 1,
+                ("", "z") => 2,
+                _ => continue,
+            };
+            take(&mut found[axis], xml.number(&attribute)?, xml, &attribute)?;
+        }
+        let [Some(x), Some(y), Some(z)] = found else {
+            return Err(xml.error(element.offset, "the vertex lacks x, y or z"));
+        };
+        memory::push(&mut self.vertices, [x, y, z])?;
+        if let Some(Object { shape: Shape::Mesh(vertices, _), .. }) = self.objects.last_mut() {
+            vertices.end = self.vertices.len();
+        }
+        Ok(())
+    }
+
+    fn read_triangle(&mut self, xml: &Xml, element: &Element) -> Result<(), Error> {
+        let Some(Object { shape: Shape::Mesh(vertices, triangles), .. }) = self.objects.last_mut() else {
+            return Ok(());
+        };
+        let mut found = [None; 3];
+        for attribute in xml.attributes(element) {
+            let attribute = attribute?;
+            let corner = match (attribute.prefix, attribute.name) {
+                ("", "v1") => 0,
+                ("", "v2") => 1,
+                ("", "v3") => 2,
+                _ => continue,
+            };
+            let index = xml.index(&attribute)?;
+            if index as usize >= vertices.len() {
+                let problem = alloc::format!("is no vertex, of which there are {}", vertices.len());
+                return Err(xml.attribute_error(&attribute, &problem));
+            }
+            take(&mut found[corner], index, xml, &attribute)?;
+        }
+        let [Some(a), Some(b), Some(c)] = found else {
+            return Err(xml.error(element.offset, "the triangle lacks v1, v2 or v3"));
+        };
+        memory::push(&mut self.triangles, [a, b, c])?;
+        triangles.end = self.triangles.len();
+        Ok(())
+    }
+
+    /// Of objects in the same part only the first `finished` of all may be referred to: circles are impossible then.
+    fn read_component(
+        &self,
+        xml: &Xml,
+        element: &Element,
+        package: &Package,
+        part: u32,
+        is_root: bool,
+        finished: usize,
+    ) -> Result<Component, Error> {
+        let (mut id, mut place, mut transform) = (None, part, Transform::IDENTITY);
+        for attribute in xml.attributes(element) {
+            let attribute = attribute?;
+            match (attribute.prefix, attribute.name) {
+                ("", "objectid") => id = Some(xml.index(&attribute)?),
+                ("", "transform") => {
+                    transform = Transform::parse(attribute.value)
+                        .ok_or_else(|| xml.attribute_error(&attribute, "is not twelve finite numbers"))?;
+                }
+                (prefix, "path") if !prefix.is_empty() && xml.namespace(prefix) == Namespace::Production => {
+                    if !is_root {
+                        return Err(xml.attribute_error(&attribute, "is only allowed in the root model"));
+                    }
+                    let path = xml.name(&attribute)?;
+                    place = package
+                        .find(&path)?
+                        .ok_or_else(|| xml.attribute_error(&attribute, "is missing in the package"))?;
+                }
+                _ => {}
+            }
+        }
+        let id = id.ok_or_else(|| xml.error(element.offset, "there is no objectid"))?;
+        let offset = element.offset;
+        let target = if place == part {
+            let object = self.find(part, id).filter(|&object| (object as usize) < finished);
+            let problem = || alloc::format!("object {id} is not defined before this place");
+            Target::Object(object.ok_or_else(|| xml.error(offset, problem()))?)
+        } else {
+            Target::Elsewhere(place, id)
+        };
+        Ok(Component { target, transform, offset })
+    }
+}
+
+/// The element around all others: the unit, and whether something is needed that is unknown here.
+fn read_model(xml: &Xml, element: &Element) -> Result<LengthUnit, Error> {
+    let mut unit = LengthUnit::Millimetre;
+    for attribute in xml.attributes(element) {
+        let attribute = attribute?;
+        match (attribute.prefix, attribute.name) {
+            ("", "unit") => {
+                unit = match attribute.value.trim_ascii() {
+                    "micron" => LengthUnit::Micrometre,
+                    "millimeter" => LengthUnit::Millimetre,
+                    "centimeter" => LengthUnit::Centimetre,
+                    "inch" => LengthUnit::Inch,
+                    "foot" => LengthUnit::Foot,
+                    "meter" => LengthUnit::Metre,
+                    _ => return Err(xml.attribute_error(&attribute, "is no unit of 3MF")),
+                };
+            }
+            ("", "requiredextensions") => {
+                for prefix in attribute.value.split_ascii_whitespace() {
+                    let problem = match xml.namespace(prefix) {
+                        Namespace::Core | Namespace::Production | Namespace::Harmless => continue,
+                        Namespace::Secure => {
+                            "asks for protected content (3MF Secure Content), which cannot be read"
+                        }
+                        _ => "asks for an extension that cannot be read",
+                    };
+                    return Err(xml.attribute_error(&attribute, problem));
+                }
+            }
+            _ => {}
+        }
+    }
+    Ok(unit)
+}
+
+/// Sets a value that may be given once.
+fn take<T>(slot: &mut Option<T>, value: T, xml: &Xml, attribute: &Attribute) -> Result<(), Error> {
+    match slot.replace(value) {
+        None => Ok(()),
+        Some(_) => Err(xml.attribute_error(attribute, "stands there a second time")),
+    }
+}

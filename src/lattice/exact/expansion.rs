@@ -1,0 +1,103 @@
+//! Exact signs of polynomials in doubles and lattice planes.
+//!
+//! An [`Expansion`] is a real number as a sum of doubles that do not overlap, so that its largest term has
+//! its sign (Shewchuk, *Adaptive precision floating-point arithmetic*, 1997). It is for the rare cases that
+//! floating point with an error bound leaves open; all of it is cold.
+
+use super::{grow, sign, two_diff, two_product};
+use crate::lattice::Frame;
+use alloc::vec::Vec;
+
+/// A real number, exactly: non-overlapping terms of increasing magnitude, no zeros.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Expansion(Vec<f64>);
+
+impl Expansion {
+    /// The sum of `terms`.
+    pub(crate) fn sum(terms: impl IntoIterator<Item = f64>) -> Expansion {
+        let mut sum = Expansion::default();
+        terms.into_iter().for_each(|term| sum.add(term));
+        sum
+    }
+
+    fn add(&mut self, term: f64) {
+        let count = self.0.len();
+        self.0.push(0.0);
+        let kept = grow(&mut self.0, count, term);
+        self.0.truncate(kept);
+    }
+
+    pub(crate) fn plus(mut self, other: &Expansion) -> Expansion {
+        other.0.iter().for_each(|&term| self.add(term));
+        self
+    }
+
+    pub(crate) fn minus(mut self, other: &Expansion) -> Expansion {
+        other.0.iter().for_each(|&term| self.add(-term));
+        self
+    }
+
+    pub(crate) fn times(&self, other: &Expansion) -> Expansion {
+        let mut product = Expansion::default();
+        for &a in &self.0 {
+            for &b in &other.0 {
+                let (high, low) = two_product(a, b);
+                product.add(low);
+                product.add(high);
+            }
+        }
+        product
+    }
+
+    /// The number rounded: off by 2^-52 of itself at the most.
+    pub(crate) fn estimate(&self) -> f64 {
+        self.0.iter().sum()
+    }
+
+    /// −1, 0 or 1.
+    pub(crate) fn sign(&self) -> i32 {
+        self.0.last().map_or(0, |&term| sign(term))
+    }
+
+    /// `x − (origin + k·cell/2)` on `axis` of the frame: how far a coordinate lies from a lattice plane (even
+    /// k) or a plane of cell centres (odd k).
+    pub(crate) fn offset(frame: &Frame, axis: usize, x: f64, k: i64) -> Expansion {
+        let (high, low) = two_diff(x, frame.origin()[axis]);
+        let (product, error) = two_product(k as f64, 0.5 * frame.cell_size());
+        Expansion::sum([low, -error, high, -product])
+    }
+}
+
+/// The sign of a value that is known up to an error, or `None` if that does not decide it. With no error
+/// at all, zero is a sign.
+#[inline(always)]
+pub(crate) fn certain(value: f64, error: f64) -> Option<i32> {
+    if value > error || value < -error || error == 0.0 { Some(sign(value)) } else { None }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn products_cancel_exactly() {
+        let a = Expansion::sum([1e20, 1.0, 1e-20]);
+        let b = Expansion::sum([1e20, -1.0, 1e-20]);
+        let squares = Expansion::sum([1e20, 1e-20]);
+        // (s + 1)(s − 1) − s² + 1 = 0 with s = 1e20 + 1e-20.
+        let zero = a.times(&b).minus(&squares.times(&squares)).plus(&Expansion::sum([1.0]));
+        assert_eq!(zero.sign(), 0);
+        assert_eq!(zero.plus(&Expansion::sum([1e-60])).sign(), 1);
+    }
+
+    #[test]
+    fn offsets_are_exact() {
+        let frame = Frame::new([0.1; 3], 0.7, 20).unwrap();
+        for k in [0i64, 1, 3, 1_000_001, 2_097_152] {
+            let plane = 0.1 + k as f64 * (0.7 / 2_097_152.0);
+            for x in [plane.next_down(), plane, plane.next_up()] {
+                assert_eq!(Expansion::offset(&frame, 1, x, k).sign(), frame.side(1, x, k));
+            }
+        }
+    }
+}

@@ -1,0 +1,137 @@
+//! The boundary of a surface as simple loops.
+
+use crate::error::Error;
+use crate::memory;
+use alloc::vec::Vec;
+
+/// Closed walks over different vertices.
+#[derive(Debug, Default)]
+pub(crate) struct Loops {
+    vertices: Vec<u32>,
+    /// One past the last vertex of each loop.
+    ends: Vec<usize>,
+}
+
+impl Loops {
+    /// Takes a boundary apart: directed edges of which every vertex begins as many as it ends. A loop has at least three
+    /// vertices, and none twice; the edges of all loops are those given.
+    ///
+    /// O(n log n). Fails with [`Error::OutOfMemory`].
+    pub(crate) fn of(boundary: &[[u32; 2]]) -> Result<Loops, Error> {
+        let mut edges = memory::copied(boundary)?;
+        edges.sort_unstable();
+        // Vertices are numbered by the edges they begin, which are consecutive.
+        let mut firsts: Vec<usize> = memory::with_capacity(edges.len() + 1)?;
+        firsts.extend((0..edges.len()).filter(|&e| e == 0 || edges[e - 1][0] != edges[e][0]));
+        let count = firsts.len();
+        firsts.push(edges.len());
+        let number = |vertex: u32| firsts[..count].partition_point(|&first| edges[first][0] < vertex);
+
+        let mut next = memory::copied(&firsts)?;
+        // Where on the path a vertex stands.
+        let mut places: Vec<usize> = memory::filled(count, usize::MAX)?;
+        let mut path: Vec<usize> = memory::with_capacity(count)?;
+        let mut loops = Loops::default();
+        loops.vertices.try_reserve_exact(edges.len())?;
+        loops.ends.try_reserve_exact(edges.len() / 3)?;
+        for start in 0..count {
+            path.push(start);
+            places[start] = 0;
+            // The walk can only end where it began: everywhere else an edge leads on.
+            while let Some(&last) = path.last()
+                && next[last] < firsts[last + 1]
+            {
+                let onto = number(edges[next[last]][1]);
+                next[last] += 1;
+                if places[onto] == usize::MAX {
+                    places[onto] = path.len();
+                    path.push(onto);
+                    continue;
+                }
+                let place = places[onto];
+                loops.vertices.extend(path[place..].iter().map(|&v| edges[firsts[v]][0]));
+                loops.ends.push(loops.vertices.len());
+                path.drain(place + 1..).for_each(|v| places[v] = usize::MAX);
+            }
+            places[start] = usize::MAX;
+            path.clear();
+        }
+        Ok(loops)
+    }
+
+    /// How many triangles it takes to fill them all.
+    pub(crate) fn caps(&self) -> usize {
+        self.vertices.len() - 2 * self.ends.len()
+    }
+
+    pub(crate) fn iter(&self) -> impl Iterator<Item = &[u32]> {
+        let starts = core::iter::once(0).chain(self.ends.iter().copied());
+        starts.zip(&self.ends).map(|(start, &end)| &self.vertices[start..end])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Loops are simple, and their edges are those given.
+    fn check(boundary: &[[u32; 2]]) -> usize {
+        let loops = Loops::of(boundary).unwrap();
+        let mut edges = Vec::new();
+        for walk in loops.iter() {
+            assert!(walk.len() >= 3, "{walk:?}");
+            let mut sorted = walk.to_vec();
+            sorted.sort_unstable();
+            sorted.dedup();
+            assert_eq!(sorted.len(), walk.len(), "{walk:?}");
+            edges.extend((0..walk.len()).map(|i| [walk[i], walk[(i + 1) % walk.len()]]));
+        }
+        let mut given = boundary.to_vec();
+        given.sort_unstable();
+        edges.sort_unstable();
+        assert_eq!(edges, given);
+        loops.iter().count()
+    }
+
+    #[test]
+    fn small_boundaries() {
+        assert_eq!(check(&[]), 0);
+        assert_eq!(check(&[[7, 3], [3, 9], [9, 7]]), 1);
+        // The same loop twice.
+        assert_eq!(check(&[[7, 3], [3, 9], [9, 7], [7, 3], [3, 9], [9, 7]]), 2);
+        // A figure of eight.
+        assert_eq!(check(&[[0, 1], [1, 2], [2, 0], [0, 3], [3, 4], [4, 0]]), 2);
+        // Three walks between two vertices.
+        assert_eq!(check(&[[0, 1], [0, 2], [1, 3], [2, 3], [3, 4], [4, 0], [3, 5], [5, 0]]), 2);
+    }
+
+    #[test]
+    fn random_boundaries() {
+        let mut state = 1u64;
+        let mut random = |below: u32| {
+            state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+            ((state >> 33) % u64::from(below)) as u32
+        };
+        for round in 0..500 {
+            // The boundary of a few random triangles, as a chain.
+            let vertices = 4 + random(2 + round / 4);
+            let mut chain = alloc::collections::BTreeMap::<(u32, u32), i32>::new();
+            for _ in 0..1 + random(1 + round / 3) {
+                let t = [random(vertices), random(vertices), random(vertices)];
+                if t[0] == t[1] || t[1] == t[2] || t[2] == t[0] {
+                    continue;
+                }
+                for i in 0..3 {
+                    let (a, b) = (t[i], t[(i + 1) % 3]);
+                    *chain.entry((a.min(b), a.max(b))).or_default() += if a < b { 1 } else { -1 };
+                }
+            }
+            let mut boundary = Vec::new();
+            for ((a, b), times) in chain {
+                let edge = if times > 0 { [a, b] } else { [b, a] };
+                boundary.extend(core::iter::repeat_n(edge, times.unsigned_abs() as usize));
+            }
+            check(&boundary);
+        }
+    }
+}

@@ -1,0 +1,27 @@
+//! Triangle meshes as data: welding, how triangles hang together, what is wrong with them and how much of that can be
+//! mended; solids of plane faces, which become meshes.
+//!
+//! Nothing here knows of cells. What the surface encloses, and how a cell of it is split, is `solid/mesh/`.
+
+mod boundary;
+mod defects;
+mod placement;
+#[cfg(feature = "std")]
+mod polygon;
+#[cfg(feature = "std")]
+mod polyhedron;
+mod report;
+mod sew;
+mod surface;
+mod topology;
+mod weld;
+
+pub(crate) use boundary::Loops;
+pub use defects::{DefectKind, MeshDefect};
+#[cfg(feature = "std")]
+pub(crate) use polygon::triangulate_facet;
+#[cfg(feature = "std")]
+pub use polyhedron::{Polyhedron, PolyhedronArrays};
+pub use report::MeshReport;
+pub use surface::{FillRule, TriangleMesh};
+pub(crate) use weld::FacetWelder;

@@ -1,0 +1,540 @@
+//! Solids of plane faces, as boundary representations have them.
+//!
+//! Nothing about the arrays is taken on trust. What is demanded of them is local, face by face and edge by edge, and that
+//! voids lie within their solids; faces that cut through each other, shells that overlap and solids that
+//! do are let through, because a mesh has a meaning for them.
+
+use alloc::vec::Vec;
+
+use robust::{Coord, Coord3D, orient2d, orient3d};
+
+use super::polygon::{PolygonDefect, normal, triangulate};
+use super::surface::TriangleMesh;
+use super::weld::normalised;
+use crate::error::{Error, MeshError, PolyhedronError};
+use crate::memory;
+
+/// How far corners may lie beside the plane of their face unless the caller says otherwise, as a fraction of the
+/// longest extent.
+const PLANE: f64 = 1e-9;
+
+/// How many vertices of a void are tried to find one that does not lie on its solid's surface.
+const SAMPLES: usize = 16;
+
+/// Solids of shells of faces of loops of corners, as plain arrays.
+///
+/// Every level is one array of offsets into the level below: part k is `offsets[k]..offsets[k + 1]` of it, so
+/// that each array begins with 0, rises, has one entry more than there are parts, and ends at the length of the
+/// next. Loops turn counter-clockwise around the material's outer side, holes of a face against its outer loop.
+///
+/// A block of eight vertices with a square hole from top to bottom, for instance, has ten faces, two of them with
+/// two loops each; see [`Polyhedron`] for a smaller example.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct PolyhedronArrays<'a> {
+    /// Coordinates in model units, finite and at most 2^256 in magnitude.
+    pub vertices: &'a [[f64; 3]],
+    /// The corners of all loops, one loop behind the other, as indices into `vertices`.
+    pub corners: &'a [u32],
+    /// Offsets of the loops in `corners`. A loop has at least three corners; its last edge leads back to the
+    /// first corner.
+    pub loops: &'a [u32],
+    /// Offsets of the faces in the loops. The first loop of a face bounds it from outside, the others are holes.
+    pub faces: &'a [u32],
+    /// Offsets of the shells in the faces.
+    pub shells: &'a [u32],
+    /// Offsets of the solids in the shells. The first shell of a solid bounds it from outside, the others are
+    /// voids.
+    pub solids: &'a [u32],
+}
+
+/// Solids of plane faces that were found to be sound.
+///
+/// * Every edge of a loop is run through once more in its shell, in the opposite direction. Topology is by index: two
+///   vertices at one place are two vertices, so that shells, and parts of one shell, may touch.
+/// * The corners of each face lie in a plane up to a tolerance, its loops do not cross, and its holes lie within
+///   its outer loop.
+/// * The first shell of each solid encloses a positive volume, its voids negative ones, and each void has its
+///   bounds within those of the first shell, and a vertex within it.
+///
+/// The solids are a [`TriangleMesh`] of the same vertices, closed and consistently oriented, and that mesh is
+/// from then on the truth: where a face is not plane to the last digit, its triangles say where the
+/// surface is. Needs the feature `std`.
+///
+/// ```
+/// use leafless::{Polyhedron, PolyhedronArrays};
+///
+/// // A pyramid with a square base.
+/// let polyhedron = Polyhedron::new(&PolyhedronArrays {
+///     vertices: &[[0., 0., 0.], [2., 0., 0.], [2., 2., 0.], [0., 2., 0.], [1., 1., 3.]],
+///     corners: &[3, 2, 1, 0, 0, 1, 4, 1, 2, 4, 2, 3, 4, 3, 0, 4],
+///     loops: &[0, 4, 7, 10, 13, 16],
+///     faces: &[0, 1, 2, 3, 4, 5],
+///     shells: &[0, 5],
+///     solids: &[0, 1],
+/// })?;
+/// assert_eq!(polyhedron.mesh().triangles().len(), 6);
+/// assert!((polyhedron.mesh().volume() - 4.0).abs() < 1e-12);
+/// # Ok::<(), leafless::Error>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct Polyhedron {
+    mesh: TriangleMesh,
+    deviation: f64,
+}
+
+impl Polyhedron {
+    /// Checks the arrays and triangulates the faces. Corners may lie beside the plane of their face by 10^-9 of the
+    /// longest extent of all vertices that loops use.
+    ///
+    /// O(n log n) expected, with about 100 bytes a corner of scratch memory and 320 a corner of the largest face.
+    ///
+    /// # Errors
+    /// [`Error::Polyhedron`] tells what is wrong and where, the arrays first, then edges, faces, shells, each
+    /// in ascending order; [`MeshError::NotFinite`], [`MeshError::TooLarge`], [`MeshError::TooMany`];
+    /// [`MeshError::Empty`] if there is no solid; [`Error::OutOfMemory`].
+    pub fn new(arrays: &PolyhedronArrays) -> Result<Polyhedron, Error> {
+        Self::checked(arrays, None)
+    }
+
+    /// As [`new`](Self::new), with the distance, in model units, that a corner may lie beside the plane of its
+    /// face: half the distance between two planes parallel to the face that have all its corners between them.
+    ///
+    /// # Errors
+    /// As `new`; [`Error::Argument`] if `tolerance` is negative or not a number.
+    pub fn with_tolerance(arrays: &PolyhedronArrays, tolerance: f64) -> Result<Polyhedron, Error> {
+        if tolerance >= 0.0 {
+            Self::checked(arrays, Some(tolerance))
+        } else {
+            Err(Error::Argument { name: "tolerance", problem: "must not be negative" })
+        }
+    }
+
+    /// The surface of all solids.
+    pub fn mesh(&self) -> &TriangleMesh {
+        &self.mesh
+    }
+
+    /// The surface of all solids.
+    pub fn into_mesh(self) -> TriangleMesh {
+        self.mesh
+    }
+
+    /// How far a corner lies beside the plane of its face at most, in model units and up to rounding.
+    pub fn deviation(&self) -> f64 {
+        self.deviation
+    }
+
+    fn checked(arrays: &PolyhedronArrays, tolerance: Option<f64>) -> Result<Polyhedron, Error> {
+        let parts = Parts::of(arrays)?;
+        if parts.solids.count() == 0 {
+            return Err(MeshError::Empty.into());
+        }
+        let mut vertices = memory::with_capacity(arrays.vertices.len())?;
+        for (&vertex, index) in arrays.vertices.iter().zip(0..) {
+            vertices.push(normalised(vertex, index)?);
+        }
+        parts.check_loops(&vertices)?;
+        parts.check_edges()?;
+
+        let tolerance = tolerance.unwrap_or_else(|| {
+            let bounds = Bounds::of(parts.corners.iter().map(|&v| vertices[v as usize]));
+            PLANE * (0..3).fold(0.0, |most: f64, axis| most.max(bounds.high[axis] - bounds.low[axis]))
+        });
+        let mut triangles = Vec::new();
+        // A loop of n corners has n - 2 triangles, and each hole adds two more.
+        triangles.try_reserve(parts.corners.len())?;
+        let mut ends = Vec::new();
+        let mut deviation: f64 = 0.0;
+        // Where each shell's triangles end.
+        let mut shells: Vec<usize> = memory::with_capacity(parts.shells.count())?;
+        for shell in 0..parts.shells.count() {
+            for face in parts.shells.range(shell) {
+                let apart = parts.flatness(face, &vertices)?;
+                if apart > tolerance {
+                    let (face, deviation) = (face as u64, apart);
+                    return Err(PolyhedronError::NotPlane { face, deviation, tolerance }.into());
+                }
+                deviation = deviation.max(apart);
+                parts.triangulate(face, &vertices, &mut ends, &mut triangles)?;
+            }
+            shells.push(triangles.len());
+        }
+        parts.check_shells(&vertices, &triangles, &shells)?;
+        Ok(Polyhedron { mesh: TriangleMesh::new(vertices, triangles)?, deviation })
+    }
+}
+
+/// Offsets that were found to rise from 0 to what they divide.
+#[derive(Clone, Copy)]
+struct Offsets<'a>(&'a [u32]);
+
+impl<'a> Offsets<'a> {
+    fn of(
+        offsets: &'a [u32],
+        whole: usize,
+        [array, parts]: [&'static str; 2],
+    ) -> Result<Offsets<'a>, PolyhedronError> {
+        let wrong = |index: usize| Err(PolyhedronError::Offsets { array, parts, index: index as u64 });
+        if offsets.first() != Some(&0) {
+            return wrong(0);
+        }
+        if let Some(k) = offsets.windows(2).position(|pair| pair[0] >= pair[1]) {
+            return wrong(k + 1);
+        }
+        if offsets.last().is_none_or(|&last| last as usize != whole) {
+            return wrong(offsets.len() - 1);
+        }
+        Ok(Offsets(offsets))
+    }
+
+    fn count(self) -> usize {
+        self.0.len() - 1
+    }
+
+    fn range(self, part: usize) -> core::ops::Range<usize> {
+        self.0[part] as usize..self.0[part + 1] as usize
+    }
+
+    /// The part that `item` belongs to.
+    fn part_of(self, item: usize) -> usize {
+        self.0.partition_point(|&offset| offset as usize <= item) - 1
+    }
+}
+
+/// The arrays, once their offsets are right.
+struct Parts<'a> {
+    corners: &'a [u32],
+    loops: Offsets<'a>,
+    faces: Offsets<'a>,
+    shells: Offsets<'a>,
+    solids: Offsets<'a>,
+}
+
+impl<'a> Parts<'a> {
+    fn of(arrays: &PolyhedronArrays<'a>) -> Result<Parts<'a>, Error> {
+        let many = |len: usize| u32::try_from(len).is_err();
+        if many(arrays.vertices.len()) || many(arrays.corners.len()) {
+            return Err(MeshError::TooMany.into());
+        }
+        let loops = Offsets::of(arrays.loops, arrays.corners.len(), ["loops", "corners"])?;
+        let faces = Offsets::of(arrays.faces, loops.count(), ["faces", "loops"])?;
+        let shells = Offsets::of(arrays.shells, faces.count(), ["shells", "faces"])?;
+        let solids = Offsets::of(arrays.solids, shells.count(), ["solids", "shells"])?;
+        Ok(Parts { corners: arrays.corners, loops, faces, shells, solids })
+    }
+
+    /// The position behind a corner in its loop.
+    fn next(&self, loop_: usize, corner: usize) -> usize {
+        let range = self.loops.range(loop_);
+        if corner + 1 < range.end { corner + 1 } else { range.start }
+    }
+
+    /// Loops have corners that exist, at least three of them, and edges that have a length.
+    fn check_loops(&self, vertices: &[[f64; 3]]) -> Result<(), PolyhedronError> {
+        let out_of_range = |&vertex: &u32| vertex as usize >= vertices.len();
+        if let Some(corner) = self.corners.iter().position(out_of_range) {
+            let vertex = self.corners[corner].into();
+            return Err(PolyhedronError::Vertex {
+                corner: corner as u64,
+                vertex,
+                vertices: vertices.len() as u64,
+            });
+        }
+        for index in 0..self.loops.count() {
+            let range = self.loops.range(index);
+            if range.len() < 3 {
+                return Err(PolyhedronError::FewCorners { index: index as u64, corners: range.len() as u64 });
+            }
+            for corner in range {
+                let [from, to] = [corner, self.next(index, corner)].map(|c| self.corners[c]);
+                if vertices[from as usize] == vertices[to as usize] {
+                    let face = self.faces.part_of(index) as u64;
+                    return Err(PolyhedronError::NoLength { face, from: from.into(), to: to.into() });
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Every edge is run through once in each direction in its shell.
+    fn check_edges(&self) -> Result<(), Error> {
+        /// A corner's edge, so that those of one edge and shell sort together.
+        #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+        struct Edge {
+            low: u32,
+            high: u32,
+            corner: u32,
+            forward: bool,
+        }
+        let mut edges: Vec<Edge> = Vec::new();
+        // The first corner whose edge is wrong, in the order of the arrays.
+        for shell in 0..self.shells.count() {
+            edges.clear();
+            let faces = self.shells.range(shell);
+            let loops = self.faces.range(faces.start).start..self.faces.range(faces.end - 1).end;
+            let corners = self.loops.range(loops.start).start..self.loops.range(loops.end - 1).end;
+            edges.try_reserve_exact(corners.len())?;
+            for index in loops {
+                for corner in self.loops.range(index) {
+                    let [from, to] = [corner, self.next(index, corner)].map(|c| self.corners[c]);
+                    let (low, high) = (from.min(to), from.max(to));
+                    edges.push(Edge { low, high, corner: corner as u32, forward: from < to });
+                }
+            }
+            edges.sort_unstable();
+            let wrong = (edges.chunk_by(|a, b| (a.low, a.high) == (b.low, b.high)))
+                .filter(|uses| !matches!(uses, [a, b] if a.forward != b.forward))
+                .min_by_key(|uses| uses[0].corner);
+            let Some(uses) = wrong else { continue };
+            let face = |edge: &Edge| self.faces.part_of(self.loops.part_of(edge.corner as usize)) as u64;
+            let Edge { low, high, forward, .. } = uses[0];
+            let (from, to) = if forward { (low, high) } else { (high, low) };
+            let (shell, from, to) = (shell as u64, from.into(), to.into());
+            return Err(match uses {
+                [only] => PolyhedronError::Open { shell, face: face(only), from, to },
+                [a, b] => PolyhedronError::Unoriented { shell, face: face(a), other: face(b), from, to },
+                _ => {
+                    let (face, uses) = (face(&uses[0]), uses.len() as u64);
+                    PolyhedronError::NonManifold { shell, face, from, to, uses }
+                }
+            }
+            .into());
+        }
+        Ok(())
+    }
+
+    /// The corners of a face.
+    fn face(&self, face: usize) -> &'a [u32] {
+        let loops = self.faces.range(face);
+        &self.corners[self.loops.range(loops.start).start..self.loops.range(loops.end - 1).end]
+    }
+
+    /// Half the distance between the two planes parallel to a face that have its corners between them.
+    fn flatness(&self, face: usize, vertices: &[[f64; 3]]) -> Result<f64, PolyhedronError> {
+        let corners = self.face(face);
+        let flat = PolyhedronError::Flat { face: face as u64 };
+        if corners.len() == 3 {
+            return Ok(0.0);
+        }
+        let outer = self.loops.range(self.faces.range(face).start);
+        let normal = normal(vertices, &self.corners[outer]).ok_or(flat)?;
+        // First to a size whose square does not overflow.
+        let most = normal.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+        if most == 0.0 {
+            return Err(flat);
+        }
+        let normal = normal.map(|x| x / most);
+        let length = normal.iter().map(|x| x * x).sum::<f64>().sqrt();
+        let [mut low, mut high] = [0.0; 2];
+        let origin = vertices[corners[0] as usize];
+        for &corner in corners {
+            let p = vertices[corner as usize];
+            let height = (0..3).map(|axis| normal[axis] / length * (p[axis] - origin[axis])).sum::<f64>();
+            (low, high) = (height.min(low), height.max(high));
+        }
+        Ok((high - low) / 2.0)
+    }
+
+    fn triangulate(
+        &self,
+        face: usize,
+        vertices: &[[f64; 3]],
+        ends: &mut Vec<usize>,
+        triangles: &mut Vec<[u32; 3]>,
+    ) -> Result<(), Error> {
+        let loops = self.faces.range(face);
+        let start = self.loops.range(loops.start).start;
+        ends.clear();
+        ends.try_reserve(loops.len())?;
+        ends.extend(loops.map(|index| self.loops.range(index).end - start));
+        let edge_of = |corner: usize| {
+            let corner = start + corner;
+            let next = self.next(self.loops.part_of(corner), corner);
+            let [from, to] = [corner, next].map(|c| u64::from(self.corners[c]));
+            PolyhedronError::Crossing { face: face as u64, from, to }
+        };
+        triangulate(vertices, self.face(face), ends, triangles).map_err(|defect| match defect {
+            PolygonDefect::OutOfMemory => Error::OutOfMemory,
+            PolygonDefect::Flat | PolygonDefect::Input => PolyhedronError::Flat { face: face as u64 }.into(),
+            PolygonDefect::Crossing(corner)
+            | PolygonDefect::Touching(corner)
+            | PolygonDefect::Folded([corner, _]) => edge_of(corner).into(),
+            PolygonDefect::Nesting => PolyhedronError::Loops { face: face as u64 }.into(),
+        })
+    }
+
+    /// The first shells of solids enclose a positive volume, the others a negative one, within that of the first.
+    fn check_shells(
+        &self,
+        vertices: &[[f64; 3]],
+        triangles: &[[u32; 3]],
+        ends: &[usize],
+    ) -> Result<(), Error> {
+        let of = |shell: usize| {
+            let start = if shell == 0 { 0 } else { ends[shell - 1] };
+            &triangles[start..ends[shell]]
+        };
+        for solid in 0..self.solids.count() {
+            let mut shells = self.solids.range(solid);
+            let Some(first) = shells.next() else { continue };
+            let bounds = Bounds::of(of(first).iter().flatten().map(|&v| vertices[v as usize]));
+            if volume(vertices, of(first), &bounds) <= 0.0 {
+                return Err(PolyhedronError::InsideOut { shell: first as u64 }.into());
+            }
+            for shell in shells.clone() {
+                let inner = Bounds::of(of(shell).iter().flatten().map(|&v| vertices[v as usize]));
+                if volume(vertices, of(shell), &inner) >= 0.0 {
+                    return Err(PolyhedronError::VoidOutward { shell: shell as u64 }.into());
+                }
+                if !bounds.hold(&inner) {
+                    return Err(PolyhedronError::VoidOutside { shell: shell as u64 }.into());
+                }
+            }
+            let outside = first_outside(vertices, of(first), shells.map(|shell| (shell, of(shell))))?;
+            if let Some(shell) = outside {
+                return Err(PolyhedronError::VoidOutside { shell: shell as u64 }.into());
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The first of `shells` of which a vertex lies outside of `surface`. Only one vertex of each is looked at,
+/// the first one that does not lie on the surface.
+///
+/// The winding numbers of all vertices looked at are counted at once: each triangle finds those beside it in a sorted
+/// list, so that many voids cost little more than one.
+fn first_outside<'a>(
+    vertices: &[[f64; 3]],
+    surface: &[[u32; 3]],
+    shells: impl Iterator<Item = (usize, &'a [[u32; 3]])>,
+) -> Result<Option<usize>, Error> {
+    struct Sample<'a> {
+        place: [f64; 3],
+        winding: i32,
+        on_surface: bool,
+        shell: usize,
+        triangles: &'a [[u32; 3]],
+    }
+    let mut samples: Vec<Sample> = Vec::new();
+    for (shell, triangles) in shells {
+        memory::push(
+            &mut samples,
+            Sample { place: [0.0; 3], winding: 0, on_surface: false, shell, triangles },
+        )?;
+    }
+    let mut outside = None;
+    for attempt in 0..SAMPLES {
+        samples.retain(|sample| attempt < sample.triangles.len());
+        if samples.is_empty() {
+            break;
+        }
+        for sample in &mut samples {
+            // Triangles of a fan share their first corner.
+            sample.place = vertices[sample.triangles[attempt][attempt % 3] as usize];
+            (sample.winding, sample.on_surface) = (0, false);
+        }
+        samples.sort_unstable_by(|a, b| a.place[2].total_cmp(&b.place[2]).then(a.shell.cmp(&b.shell)));
+        for triangle in surface {
+            let corners = triangle.map(|v| vertices[v as usize]);
+            let low = corners.iter().fold(f64::INFINITY, |low, p| low.min(p[2]));
+            let high = corners.iter().fold(f64::NEG_INFINITY, |high, p| high.max(p[2]));
+            let start = samples.partition_point(|sample| sample.place[2] < low);
+            for sample in samples[start..].iter_mut().take_while(|sample| sample.place[2] <= high) {
+                match crossing(corners, sample.place) {
+                    Some(sense) => sample.winding += sense,
+                    None => sample.on_surface = true,
+                }
+            }
+        }
+        for sample in samples.iter().filter(|sample| !sample.on_surface && sample.winding < 1) {
+            outside = Some(outside.map_or(sample.shell, |shell: usize| shell.min(sample.shell)));
+        }
+        samples.retain(|sample| sample.on_surface);
+    }
+    Ok(outside)
+}
+
+/// What a triangle adds to the winding number at `p`, by the ray from there along the first axis: 1 where the ray
+/// leaves through it, -1 where it enters, 0 where it passes by. `None` if `p` lies on the triangle.
+///
+/// Rays through edges and corners count as slightly shifted along the other two axes, for all triangles alike.
+fn crossing(corners: [[f64; 3]; 3], p: [f64; 3]) -> Option<i32> {
+    let flat = |p: [f64; 3]| Coord { x: p[1], y: p[2] };
+    let mut around = 0;
+    let mut touched = false;
+    for k in 0..3 {
+        let (a, b) = (corners[k], corners[(k + 1) % 3]);
+        let side = orient2d(flat(a), flat(b), flat(p));
+        if side == 0.0 {
+            // On the line through the edge; whether between its ends does not matter where the plane is missed.
+            touched = true;
+        }
+        if a[2] <= p[2] && b[2] > p[2] && side > 0.0 {
+            around += 1;
+        } else if b[2] <= p[2] && a[2] > p[2] && side < 0.0 {
+            around -= 1;
+        }
+    }
+    if around == 0 && !touched {
+        return Some(0);
+    }
+    let solid = |[x, y, z]: [f64; 3]| Coord3D { x, y, z };
+    // Positive where p lies below the triangle, seen with its corners counter-clockwise.
+    let below = orient3d(solid(corners[0]), solid(corners[1]), solid(corners[2]), solid(p));
+    if below == 0.0 && holds(corners, p) {
+        return None;
+    }
+    let ahead = if around > 0 { below > 0.0 } else { below < 0.0 };
+    Some(if ahead { around } else { 0 })
+}
+
+/// Whether a point of a triangle's plane lies within its bounds. That may say yes to a point beside the triangle, never
+/// no to one on it.
+fn holds(corners: [[f64; 3]; 3], p: [f64; 3]) -> bool {
+    Bounds::of(corners.into_iter()).hold(&Bounds { low: p, high: p })
+}
+
+/// The volume that triangles enclose, as differences to the centre of their bounds.
+fn volume(vertices: &[[f64; 3]], triangles: &[[u32; 3]], bounds: &Bounds) -> f64 {
+    let centre = [0, 1, 2].map(|axis| bounds.low[axis].midpoint(bounds.high[axis]));
+    let six_fold: f64 = (triangles.iter())
+        .map(|triangle| {
+            let [a, b, c] = triangle.map(|v| {
+                let p = vertices[v as usize];
+                [p[0] - centre[0], p[1] - centre[1], p[2] - centre[2]]
+            });
+            (0..3)
+                .map(|axis| {
+                    let [u, v] = [(axis + 1) % 3, (axis + 2) % 3];
+                    a[axis] * (b[u] * c[v] - b[v] * c[u])
+                })
+                .sum::<f64>()
+        })
+        .sum();
+    six_fold / 6.0
+}
+
+/// The least and the greatest coordinates of points.
+#[derive(Debug, Clone, Copy)]
+struct Bounds {
+    low: [f64; 3],
+    high: [f64; 3],
+}
+
+impl Bounds {
+    fn of(points: impl Iterator<Item = [f64; 3]>) -> Bounds {
+        let mut bounds = Bounds { low: [f64::INFINITY; 3], high: [f64::NEG_INFINITY; 3] };
+        for p in points {
+            for axis in 0..3 {
+                bounds.low[axis] = bounds.low[axis].min(p[axis]);
+                bounds.high[axis] = bounds.high[axis].max(p[axis]);
+            }
+        }
+        bounds
+    }
+
+    fn hold(&self, other: &Bounds) -> bool {
+        (0..3).all(|axis| self.low[axis] <= other.low[axis] && other.high[axis] <= self.high[axis])
+    }
+}

@@ -1,0 +1,189 @@
+//! What is told about a mesh.
+
+use alloc::boxed::Box;
+use alloc::vec::Vec;
+
+use glam::{DVec3, Vec3Swizzles};
+
+use super::defects::OpenLoops;
+use super::surface::TriangleMesh;
+use super::topology::{Bodies, Topology};
+use crate::error::Error;
+use crate::lattice::exact::{grow, two_product};
+use crate::memory;
+
+/// What was found while a mesh was taken in, and how its triangles hang together.
+///
+/// Where the defects lie is told by [`TriangleMesh::defects`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MeshReport {
+    /// Triangles that were handed in, `triangles` + `degenerate`.
+    pub facets_read: u64,
+    /// Triangles of the mesh.
+    pub triangles: u64,
+    /// Vertices of the mesh, all at different places. Some may be used by no triangle.
+    pub vertices: u64,
+    /// Vertices that were handed in and lay on an earlier one: of a triangle soup that was not
+    /// sewn, 3 `facets_read` - `vertices`.
+    pub welded: u64,
+    /// Triangles that were dropped because two of their corners lie at one place.
+    pub degenerate: u64,
+    /// Edges that an odd number of triangles use. A mesh is closed if there is none.
+    pub boundary_edges: u64,
+    /// Loops of these edges, without vertices that occur twice: the holes of the surface and the rims of sheets.
+    pub boundary_loops: u64,
+    /// Edges that an even number of triangles use, but not half of them in each direction. A closed mesh is
+    /// consistently oriented if there is none.
+    pub misoriented_edges: u64,
+    /// Edges that more than two triangles use, for instance where two bodies touch. They do no harm.
+    pub non_manifold_edges: u64,
+    /// Triangles that repeat an earlier one, in the same direction. They count as often as they occur.
+    pub duplicate: u64,
+    /// Pairs of triangles with the same corners in opposite directions: walls without thickness. The two
+    /// cancel each other.
+    pub opposite: u64,
+    /// Triangles without area whose corners are three different vertices. They do no harm.
+    pub flat: u64,
+    /// Sets of triangles that hang together over edges. Bodies that touch only in single vertices count
+    /// separately, and so does the outer from the inner surface of a hollow body.
+    pub bodies: u64,
+    /// Bodies with an edge whose triangles do not cancel each other: those that are open or not consistently oriented.
+    pub open_bodies: u64,
+    /// Other bodies that enclose a negative volume: cavities, and bodies that are inside out.
+    pub inside_out_bodies: u64,
+    /// Vertices that [`sewn`](TriangleMesh::sewn) moved onto another one.
+    pub sewn: u64,
+    /// The farthest that any of them was moved along an axis, in model units.
+    pub displacement: f64,
+}
+
+impl TriangleMesh {
+    /// What was found when the mesh was made, and how its triangles hang together.
+    ///
+    /// The first call analyses the edges, in O(t + v) time, O(n log n) for the n edges of the boundary, and with 28
+    /// bytes per triangle and 8 per vertex of scratch memory; later calls are free. Fails with
+    /// [`Error::OutOfMemory`].
+    pub fn report(&self) -> Result<MeshReport, Error> {
+        let details = self.details.get_or_try_init(|| self.find_details())?;
+        let topology = self.topology()?;
+        let triangles = self.triangles().len() as u64;
+        Ok(MeshReport {
+            facets_read: triangles + self.degenerate,
+            triangles,
+            vertices: self.vertices().len() as u64,
+            welded: self.welded,
+            degenerate: self.degenerate,
+            boundary_edges: topology.boundary_edges,
+            boundary_loops: details.boundary_loops,
+            misoriented_edges: topology.misoriented_edges,
+            non_manifold_edges: topology.non_manifold_edges,
+            duplicate: topology.duplicate,
+            opposite: topology.opposite,
+            flat: details.flat,
+            bodies: topology.bodies,
+            open_bodies: details.open_bodies,
+            inside_out_bodies: details.inside_out_bodies,
+            sewn: self.sewn,
+            displacement: self.displacement(),
+        })
+    }
+
+    fn find_details(&self) -> Result<Box<Details>, Error> {
+        let (topology, bodies) = Topology::with_bodies(self.triangles(), self.vertices().len())?;
+        let open = open_edges(&topology.boundary)?;
+        let details = self.look_at_triangles(&topology, &bodies, OpenLoops::of(&open)?.count() as u64)?;
+        // If it is there already, it is the same.
+        let _ = self.topology.set(Box::new(topology));
+        Ok(Box::new(details))
+    }
+
+    /// Finds what the places of vertices tell.
+    fn look_at_triangles(
+        &self,
+        topology: &Topology,
+        bodies: &Bodies,
+        boundary_loops: u64,
+    ) -> Result<Details, Error> {
+        /// Six times the volume, from tetrahedra with a vertex of the body; no number for an open one.
+        struct Body {
+            origin: u32,
+            triangles: u32,
+            volume: f64,
+            /// The sum of the products' magnitudes.
+            magnitude: f64,
+        }
+        impl Body {
+            /// Whether the volume is below zero whatever the rounding: of walls without thickness it is not.
+            fn is_inside_out(&self) -> bool {
+                self.volume < -f64::EPSILON * (f64::from(self.triangles) + 16.0) * self.magnitude
+            }
+        }
+        let mut flat = 0;
+        let mut found: Vec<Body> = Vec::new();
+        // Not more than there are triangles, which are in memory.
+        found.try_reserve_exact(topology.bodies as usize)?;
+        for (triangle, &body) in self.triangles().iter().zip(&bodies.of_triangles) {
+            flat += u64::from(self.is_flat(triangle));
+            // Numbers ascend in the order of first triangles.
+            if body as usize == found.len() {
+                found.push(Body { origin: triangle[0], triangles: 0, volume: 0.0, magnitude: 0.0 });
+            }
+            let body = &mut found[body as usize];
+            let origin = self.position(body.origin);
+            let [a, b, c] = triangle.map(|v| self.position(v) - origin);
+            body.triangles += 1;
+            body.volume += a.dot(b.cross(c));
+            let [a, b, c] = [a, b, c].map(DVec3::abs);
+            body.magnitude += a.dot(b.yzx() * c.zxy() + b.zxy() * c.yzx());
+        }
+        for &triangle in &bodies.torn {
+            found[bodies.of_triangles[triangle as usize] as usize].volume = f64::NAN;
+        }
+        let count = |test: fn(&Body) -> bool| found.iter().filter(|body| test(body)).count() as u64;
+        let (open_bodies, inside_out_bodies) =
+            (count(|body| body.volume.is_nan()), count(Body::is_inside_out));
+        Ok(Details { boundary_loops, flat, open_bodies, inside_out_bodies })
+    }
+
+    /// Whether the corners of a triangle lie on a line: exactly.
+    pub(super) fn is_flat(&self, triangle: &[u32; 3]) -> bool {
+        let [a, b, c] = triangle.map(|v| self.vertices()[v as usize]);
+        (0..3).all(|axis| is_straight([a, b, c].map(|p| [p[axis], p[(axis + 1) % 3]])))
+    }
+}
+
+/// What only a report needs to know.
+#[derive(Debug, Clone)]
+pub(super) struct Details {
+    boundary_loops: u64,
+    flat: u64,
+    open_bodies: u64,
+    inside_out_bodies: u64,
+}
+
+/// The edges of a boundary that an odd number of triangles use: those that occur an odd number of times.
+pub(super) fn open_edges(boundary: &[[u32; 2]]) -> Result<Vec<[u32; 2]>, Error> {
+    let mut open = memory::with_capacity(boundary.len())?;
+    open.extend(boundary.chunk_by(|a, b| a == b).filter(|same| same.len() % 2 == 1).map(|same| same[0]));
+    Ok(open)
+}
+
+/// Whether three points of a plane lie on a line.
+fn is_straight([a, b, c]: [[f64; 2]; 3]) -> bool {
+    let (left, right) = ((a[0] - c[0]) * (b[1] - c[1]), (a[1] - c[1]) * (b[0] - c[0]));
+    // Six roundings, each of them of 2^-53 at most.
+    if (left - right).abs() > 4e-16 * (left.abs() + right.abs()) {
+        return false;
+    }
+    // Twice the area, without differences.
+    let mut terms = [0.0; 12];
+    let mut count = 0;
+    for [p, q] in [[a, b], [b, c], [c, a]] {
+        let (left, left_error) = two_product(p[0], q[1]);
+        let (right, right_error) = two_product(-p[1], q[0]);
+        for term in [left_error, right_error, left, right] {
+            count = grow(&mut terms, count, term);
+        }
+    }
+    count == 0
+}

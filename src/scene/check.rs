@@ -1,0 +1,498 @@
+//! From calls to shapes.
+
+use alloc::boxed::Box;
+use alloc::format;
+use alloc::sync::Arc;
+use alloc::vec::Vec;
+use core::fmt::Display;
+use std::path::Path;
+
+use super::arguments::{Given, Item};
+use super::grammar::{Call, Tree, shown};
+use super::{Node, Scene};
+use crate::error::{Error, MeshError};
+use crate::exchange::{MeshFormat, MeshOptions, Polygons, open_mesh};
+use crate::lattice::Affine;
+use crate::memory;
+use crate::mesh::FillRule;
+use crate::solid::{Csg, Figure, HalfSpace, wedge};
+
+/// What makes up CSG dumps and has no counterpart here.
+const REFUSED: [&str; 9] =
+    ["hull", "minkowski", "text", "projection", "offset", "resize", "surface", "roof", "fill"];
+
+/// What a call stands for.
+enum Shape {
+    /// Neither a solid nor a figure: a group without anything in it.
+    Nothing,
+    Figure(Box<Figure>),
+    /// Index of a node.
+    Solid(usize),
+}
+
+/// A call whose block is being read.
+struct Open {
+    call: usize,
+    /// The first of the results that are in its block.
+    first: usize,
+}
+
+/// Shapes from a tree of calls.
+struct Checker<'a> {
+    tree: &'a Tree<'a>,
+    folder: Option<&'a Path>,
+    nodes: Vec<Node>,
+    /// What the calls stand for that are not part of a larger shape yet, and where they are.
+    results: Vec<(usize, Shape)>,
+}
+
+/// The scene of a whole text. Files are looked for in `folder`.
+pub(super) fn check(tree: &Tree<'_>, folder: Option<&Path>) -> Result<Scene, Error> {
+    let mut checker = Checker { tree, folder, nodes: Vec::new(), results: Vec::new() };
+    let mut open: Vec<Open> = Vec::new();
+    let mut next = 0;
+    loop {
+        while let Some(block) = open.pop_if(|block| tree.calls[block.call].end == next) {
+            let call = &tree.calls[block.call];
+            let shape = checker.shape(call, block.first)?;
+            checker.results.truncate(block.first);
+            memory::push(&mut checker.results, (call.at, shape))?;
+        }
+        let Some(call) = tree.calls.get(next) else { break };
+        if call.is_ignored {
+            next = call.end;
+            continue;
+        }
+        memory::push(&mut open, Open { call: next, first: checker.results.len() })?;
+        next += 1;
+    }
+    let place = checker.results.first().map_or(0, |result| result.0);
+    match checker.union(0)? {
+        Shape::Figure(_) => Err(tree.fault(place, "the scene is flat: figures must be extruded")),
+        Shape::Solid(_) => Ok(Scene { nodes: checker.nodes }),
+        Shape::Nothing => Ok(Scene { nodes: Vec::new() }),
+    }
+}
+
+impl Checker<'_> {
+    fn fault(&self, call: &Call<'_>, problem: impl Display) -> Error {
+        self.tree.fault(call.at, format!("`{}` {problem}", call.name))
+    }
+
+    /// Says where an argument was found wrong that is so only together with others.
+    fn at<T>(&self, call: &Call<'_>, result: Result<T, Error>) -> Result<T, Error> {
+        result.map_err(|error| match error {
+            Error::OutOfMemory => error,
+            error => self.fault(call, format_args!("cannot be had: {error}")),
+        })
+    }
+
+    fn node(&mut self, node: Node) -> Result<Shape, Error> {
+        memory::push(&mut self.nodes, node)?;
+        Ok(Shape::Solid(self.nodes.len() - 1))
+    }
+
+    /// What the call stands for, of which the results from `first` on are the block.
+    fn shape(&mut self, call: &Call<'_>, first: usize) -> Result<Shape, Error> {
+        if REFUSED.contains(&call.name) {
+            return Err(self.fault(call, "is not supported"));
+        }
+        let shape = match call.name {
+            "group" | "union" | "render" | "color" => {
+                // No argument of these has an effect on a shape.
+                self.union(first)
+            }
+            "intersection" => self.intersection(call, first),
+            "difference" => self.difference(call, first),
+            "multmatrix" => self.multmatrix(call, first),
+            "linear_extrude" => self.linear_extrude(call, first),
+            "rotate_extrude" => self.rotate_extrude(call, first),
+            "square" => self.square(call),
+            "circle" => self.circle(call),
+            "polygon" => self.polygon(call),
+            name => {
+                let solid = match name {
+                    "cube" => self.cube(call)?,
+                    "sphere" => self.sphere(call)?,
+                    "cylinder" => self.cylinder(call)?,
+                    "polyhedron" => self.polyhedron(call)?,
+                    "halfspace" => self.half_space(call)?,
+                    "quadric" => self.quadric(call)?,
+                    "power" => self.power(call)?,
+                    "torus" => self.torus(call)?,
+                    "mesh" => self.mesh(Given::new(self.tree, call, ["file"], &[])?.required(0)?)?,
+                    "import" => self.import(call)?,
+                    "octree" => self.octree(call)?,
+                    _ => {
+                        let hint = "CSG dumps, as OpenSCAD exports them, have none";
+                        return Err(self
+                            .tree
+                            .fault(call.at, format!("unknown call {}: {hint}", shown(name))));
+                    }
+                };
+                self.node(solid)
+            }
+        }?;
+        // Operations have taken what is in their blocks.
+        match self.results.get(first) {
+            Some(&(place, _)) => Err(self.tree.fault(place, format!("`{}` has no block", call.name))),
+            None => Ok(shape),
+        }
+    }
+}
+
+// ---- operations -------------------------------------------------------------------------------------------
+
+/// The operands of an operation, which are all of one kind.
+enum Operands {
+    Nothing,
+    Figures(Vec<Figure>),
+    Solids(Vec<usize>),
+}
+
+impl Checker<'_> {
+    /// The results from `first` on, those that are nothing at all left out.
+    fn operands(&mut self, first: usize) -> Result<Operands, Error> {
+        let (mut figures, mut solids) = (Vec::new(), Vec::new());
+        for (at, shape) in self.results.drain(first..) {
+            match shape {
+                Shape::Nothing => continue,
+                Shape::Figure(figure) => memory::push(&mut figures, *figure)?,
+                Shape::Solid(node) => memory::push(&mut solids, node)?,
+            }
+            if !figures.is_empty() && !solids.is_empty() {
+                return Err(self.tree.fault(at, "figures of the plane and solids are mixed"));
+            }
+        }
+        Ok(match (figures.is_empty(), solids.is_empty()) {
+            (true, true) => Operands::Nothing,
+            (false, _) => Operands::Figures(figures),
+            (true, false) => Operands::Solids(solids),
+        })
+    }
+
+    fn union(&mut self, first: usize) -> Result<Shape, Error> {
+        match self.operands(first)? {
+            Operands::Nothing => Ok(Shape::Nothing),
+            Operands::Figures(mut figures) if figures.len() == 1 => {
+                Ok(figures.pop().map_or(Shape::Nothing, Shape::from))
+            }
+            Operands::Figures(figures) => Ok(Figure::union_of(figures)?.into()),
+            Operands::Solids(solids) => match *solids {
+                [solid] => Ok(Shape::Solid(solid)),
+                _ => self.node(Node::Union(solids)),
+            },
+        }
+    }
+
+    /// Whether a part of an intersection, or what a difference is taken from, is nothing.
+    fn has_nothing(&self, mut parts: impl Iterator<Item = usize>) -> bool {
+        parts.any(|part| matches!(self.results[part].1, Shape::Nothing))
+    }
+
+    fn intersection(&mut self, call: &Call<'_>, first: usize) -> Result<Shape, Error> {
+        self.no_arguments(call)?;
+        let is_empty = self.has_nothing(first..self.results.len());
+        match self.operands(first)? {
+            _ if is_empty => Ok(Shape::Nothing),
+            Operands::Nothing => Ok(Shape::Nothing),
+            Operands::Figures(figures) => Ok(Figure::intersection_of(figures)?.into()),
+            Operands::Solids(solids) => self.node(Node::Intersection(solids)),
+        }
+    }
+
+    fn difference(&mut self, call: &Call<'_>, first: usize) -> Result<Shape, Error> {
+        self.no_arguments(call)?;
+        let is_empty = self.has_nothing(first..self.results.len().min(first + 1));
+        match self.operands(first)? {
+            _ if is_empty => Ok(Shape::Nothing),
+            Operands::Nothing => Ok(Shape::Nothing),
+            Operands::Figures(mut figures) => {
+                let others = figures.split_off(1);
+                Ok(figures.first().map_or(Ok(Figure::nothing()), |figure| figure.difference(others))?.into())
+            }
+            Operands::Solids(solids) => self.node(Node::Difference(solids)),
+        }
+    }
+
+    fn no_arguments(&self, call: &Call<'_>) -> Result<(), Error> {
+        Given::new(self.tree, call, [], &[]).map(|_| ())
+    }
+
+    fn multmatrix(&mut self, call: &Call<'_>, first: usize) -> Result<Shape, Error> {
+        let given = Given::new(self.tree, call, ["m"], &[])?;
+        let matrix = given.required(0)?;
+        let rows = matrix.list::<4>()?;
+        let mut m = [[0.0; 4]; 4];
+        for (row, item) in m.iter_mut().zip(rows) {
+            *row = item.numbers()?;
+        }
+        if m[3] != [0.0, 0.0, 0.0, 1.0] {
+            return Err(rows[3].fault("the last row must be [0, 0, 0, 1]"));
+        }
+        let [x, y, z, _] = m;
+        match self.union(first)? {
+            Shape::Nothing => Ok(Shape::Nothing),
+            Shape::Figure(figure) => {
+                // Of a figure only what happens in its plane counts.
+                let rows = [[x[0], x[1], x[3]], [y[0], y[1], y[3]]];
+                figure.placed(rows).map(Shape::from).map_err(|error| matrix.fault(format!("{error}")))
+            }
+            Shape::Solid(node) => match Affine::new([x, y, z]) {
+                Ok(placement) if placement.is_identity() => Ok(Shape::Solid(node)),
+                Ok(placement) => self.node(Node::Placed(node, placement)),
+                // A solid that is pressed flat is nothing.
+                Err(_) if is_singular([x, y, z]) => self.node(Node::Solid(Csg::empty())),
+                Err(error) => Err(matrix.fault(format!("{error}"))),
+            },
+        }
+    }
+
+    /// The figure that a block consists of.
+    fn figure(&mut self, call: &Call<'_>, first: usize) -> Result<Option<Figure>, Error> {
+        match self.union(first)? {
+            Shape::Nothing => Ok(None),
+            Shape::Figure(figure) => Ok(Some(*figure)),
+            Shape::Solid(_) => Err(self.fault(call, "takes figures of the plane, not solids")),
+        }
+    }
+
+    fn linear_extrude(&mut self, call: &Call<'_>, first: usize) -> Result<Shape, Error> {
+        let names = ["height", "v", "scale", "center", "twist"];
+        let given = Given::new(self.tree, call, names, &["convexity", "slices", "segments"])?;
+        let (has_height, direction) = (given.optional(0).is_some(), given.optional(1));
+        let height = given.number_or(0, if direction.is_some() && !has_height { 1.0 } else { 100.0 })?;
+        let direction = direction.map_or(Ok([0.0, 0.0, 1.0]), |item| item.numbers::<3>())?;
+        let scale = match given.optional(2) {
+            None => [1.0; 2],
+            Some(item) if item.is_list() => item.numbers()?,
+            Some(item) => [item.number()?; 2],
+        };
+        let is_centred = given.truth_or(3, false)?;
+        if given.number_or(4, 0.0)? != 0.0 {
+            return Err(self.fault(call, "is supported without `twist` only"));
+        }
+        let Some(figure) = self.figure(call, first)? else { return Ok(Shape::Nothing) };
+        let [low, high] = heights(height, is_centred);
+        // As in OpenSCAD, nothing is extruded downwards, and negative scales are 0.
+        let scale = scale.map(|scale| scale.max(0.0));
+        if low >= high || direction[2] <= 0.0 {
+            return self.node(Node::Solid(Csg::empty()));
+        }
+        let solid =
+            if scale == [1.0; 2] { figure.prism(low, high) } else { figure.tapered(low, high, scale) };
+        let mut solid = self.at(call, solid)?;
+        if direction != [0.0, 0.0, 1.0] {
+            let [x, y, z] = direction;
+            let shear = Affine::new([[1.0, 0.0, x, 0.0], [0.0, 1.0, y, 0.0], [0.0, 0.0, z, 0.0]]);
+            solid = solid.placed(&self.at(call, shear)?)?;
+        }
+        self.node(Node::Solid(solid))
+    }
+
+    fn rotate_extrude(&mut self, call: &Call<'_>, first: usize) -> Result<Shape, Error> {
+        let given = Given::new(self.tree, call, ["angle", "start"], &["convexity"])?;
+        let (angle, start) = (given.number_or(0, 360.0)?, given.number_or(1, 0.0)?);
+        let Some(figure) = self.figure(call, first)? else { return Ok(Shape::Nothing) };
+        let solid = self.at(call, figure.revolved())?;
+        let solid = if angle <= -360.0 || angle >= 360.0 {
+            solid
+        } else if angle == 0.0 {
+            Csg::empty()
+        } else {
+            // A figure on the other side of the axis starts half a turn further on.
+            let from = if figure.is_mirrored() { start + 180.0 } else { start };
+            let wedge = wedge(from + angle.min(0.0), angle.abs());
+            Csg::intersection_of([solid, self.at(call, wedge)?])?
+        };
+        self.node(Node::Solid(solid))
+    }
+}
+
+/// Whether a matrix of finite numbers maps space onto a plane, a line or a point.
+fn is_singular(rows: [[f64; 4]; 3]) -> bool {
+    matches!(Affine::new(rows), Err(Error::Argument { problem: Affine::SINGULAR, .. }))
+}
+
+impl From<Figure> for Shape {
+    fn from(figure: Figure) -> Shape {
+        Shape::Figure(Box::new(figure))
+    }
+}
+
+// ---- figures and solids -----------------------------------------------------------------------------------
+
+/// From 0 up, or half of it on both sides.
+fn heights(height: f64, is_centred: bool) -> [f64; 2] {
+    if is_centred { [-height / 2.0, height / 2.0] } else { [0.0, height] }
+}
+
+/// The sides of a box along each axis, and whether it is centred.
+fn sides<const N: usize>(given: &Given<'_, 2>) -> Result<[[f64; 2]; N], Error> {
+    let size = match given.optional(0) {
+        None => [1.0; N],
+        Some(item) if item.is_list() => item.numbers()?,
+        Some(item) => [item.number()?; N],
+    };
+    let is_centred = given.truth_or(1, false)?;
+    Ok(size.map(|size| heights(size, is_centred)))
+}
+
+impl Checker<'_> {
+    fn square(&self, call: &Call<'_>) -> Result<Shape, Error> {
+        let [x, y] = sides(&Given::new(self.tree, call, ["size", "center"], &[])?)?;
+        if x[0] >= x[1] || y[0] >= y[1] {
+            return Ok(Figure::nothing().into());
+        }
+        Ok(self.at(call, Figure::rectangle([x[0], y[0]], [x[1], y[1]]))?.into())
+    }
+
+    fn circle(&self, call: &Call<'_>) -> Result<Shape, Error> {
+        let given = Given::new(self.tree, call, ["r"], &[])?;
+        let radius = given.number_or(0, 1.0)?;
+        Ok((if radius > 0.0 { Figure::disc(radius) } else { Figure::nothing() }).into())
+    }
+
+    fn polygon(&self, call: &Call<'_>) -> Result<Shape, Error> {
+        let given = Given::new(self.tree, call, ["points", "paths"], &["convexity"])?;
+        let Some(item) = given.optional(0) else { return Ok(Figure::nothing().into()) };
+        let points = item.points::<2>()?;
+        let figure = |item: &Item<'_>, points: &[[f64; 2]]| {
+            Figure::polygon(points).map_err(|error| match error {
+                Error::Argument { problem, .. } => item.fault(problem),
+                error => error,
+            })
+        };
+        let Some(paths) = given.optional(1) else {
+            // As in OpenSCAD, fewer points are nothing.
+            return Ok((if points.len() < 3 { Figure::nothing() } else { figure(&item, &points)? }).into());
+        };
+        let mut outlines = Vec::new();
+        for path in paths.items()? {
+            let indices = path.indices(points.len())?;
+            let outline = memory::collected(indices.iter().map(|&index| points[index as usize]))?;
+            memory::push(&mut outlines, figure(&path, &outline)?)?;
+        }
+        // Outlines within outlines are holes, and islands within those.
+        Ok(Figure::xor_of(outlines)?.into())
+    }
+
+    fn cube(&self, call: &Call<'_>) -> Result<Node, Error> {
+        let sides = sides::<3>(&Given::new(self.tree, call, ["size", "center"], &[])?)?;
+        if sides.iter().any(|[low, high]| low >= high) {
+            return Ok(Node::Solid(Csg::empty()));
+        }
+        let cuboid = Csg::cuboid(sides.map(|side| side[0]), sides.map(|side| side[1]));
+        Ok(Node::Solid(self.at(call, cuboid)?))
+    }
+
+    fn sphere(&self, call: &Call<'_>) -> Result<Node, Error> {
+        let radius = Given::new(self.tree, call, ["r"], &[])?.number_or(0, 1.0)?;
+        if radius <= 0.0 {
+            return Ok(Node::Solid(Csg::empty()));
+        }
+        Ok(Node::Solid(self.at(call, Csg::ball([0.0; 3], radius))?))
+    }
+
+    fn cylinder(&self, call: &Call<'_>) -> Result<Node, Error> {
+        let given = Given::new(self.tree, call, ["h", "r1", "r2", "center", "r"], &[])?;
+        let radius = given.number_or(4, 1.0)?;
+        let (bottom, top) = (given.number_or(1, radius)?, given.number_or(2, radius)?);
+        let [low, high] = heights(given.number_or(0, 1.0)?, given.truth_or(3, false)?);
+        if low >= high || bottom < 0.0 || top < 0.0 || bottom + top == 0.0 {
+            return Ok(Node::Solid(Csg::empty()));
+        }
+        Ok(Node::Solid(self.at(call, Csg::frustum(bottom, top, low, high))?))
+    }
+
+    fn polyhedron(&self, call: &Call<'_>) -> Result<Node, Error> {
+        let given = Given::new(self.tree, call, ["points", "faces"], &["convexity"])?;
+        let (Some(points), Some(faces)) = (given.optional(0), given.optional(1)) else {
+            return Ok(Node::Solid(Csg::empty()));
+        };
+        let mut polygons = Polygons::default();
+        polygons.vertices = points.points()?;
+        for face in faces.items()? {
+            polygons.push_face(&face.indices(polygons.vertices.len())?)?;
+        }
+        let mesh = self.at(call, polygons.finish())?;
+        if mesh.triangles().is_empty() {
+            return Ok(Node::Solid(Csg::empty()));
+        }
+        Ok(Node::Mesh(Arc::new(mesh), FillRule::NonZero))
+    }
+
+    fn half_space(&self, call: &Call<'_>) -> Result<Node, Error> {
+        let [x, y, z, offset] = Given::new(self.tree, call, ["plane"], &[])?.required(0)?.numbers()?;
+        Ok(Node::Solid(self.at(call, HalfSpace::plane([x, y, z], offset))?.into()))
+    }
+
+    fn quadric(&self, call: &Call<'_>) -> Result<Node, Error> {
+        let numbers = Given::new(self.tree, call, ["coefficients"], &[])?.required(0)?.numbers()?;
+        Ok(Node::Solid(self.at(call, HalfSpace::quadric(numbers))?.into()))
+    }
+
+    fn power(&self, call: &Call<'_>) -> Result<Node, Error> {
+        let given = Given::new(self.tree, call, ["x", "y", "z", "constant"], &[])?;
+        let mut terms = [(0.0, 0.0, 0); 3];
+        for (axis, term) in terms.iter_mut().enumerate() {
+            let [factor, centre, exponent] = given.required(axis)?.list()?;
+            *term = (factor.number()?, centre.number()?, exponent.index()?);
+        }
+        let constant = given.required(3)?.number()?;
+        Ok(Node::Solid(self.at(call, HalfSpace::power(terms, constant))?.into()))
+    }
+
+    fn torus(&self, call: &Call<'_>) -> Result<Node, Error> {
+        let given = Given::new(self.tree, call, ["major", "minor"], &[])?;
+        let (major, minor) = (given.required(0)?.number()?, given.required(1)?.number()?);
+        Ok(Node::Solid(self.at(call, Csg::torus(major, minor))?))
+    }
+}
+
+// ---- files --------------------------------------------------------------------------------------------------
+
+impl Checker<'_> {
+    /// What `read` makes of the file that is named in the text.
+    fn read<T>(&self, file: &Item<'_>, read: impl FnOnce(&Path) -> Result<T, Error>) -> Result<T, Error> {
+        let name = file.text()?;
+        let Some(folder) = self.folder else {
+            return Err(file.fault("files cannot be read by this scene, which has no folder"));
+        };
+        read(&folder.join(&name)).map_err(|error| match error {
+            Error::OutOfMemory => error,
+            error => file.fault(format!("{name}: {error}")),
+        })
+    }
+
+    fn mesh(&self, file: Item<'_>) -> Result<Node, Error> {
+        let read = self.read(&file, |path| open_mesh(path, &MeshOptions::default()))?;
+        let fill = match read.format {
+            MeshFormat::ThreeMf => FillRule::Positive,
+            _ => FillRule::NonZero,
+        };
+        if read.mesh.triangles().is_empty() {
+            return Err(file.fault(format!("{}", MeshError::Empty)));
+        }
+        Ok(Node::Mesh(Arc::new(read.mesh), fill))
+    }
+
+    fn import(&self, call: &Call<'_>) -> Result<Node, Error> {
+        let ignored = ["origin", "scale", "convexity", "timestamp", "layer", "id", "dpi", "width", "height"];
+        let given = Given::new(self.tree, call, ["file", "center"], &ignored)?;
+        if given.truth_or(1, false)? {
+            return Err(self.fault(call, "is supported without `center` only"));
+        }
+        let name = given.required(0)?.text()?;
+        let extension = name.rsplit_once('.').map_or("", |parts| parts.1);
+        if MeshFormat::from_extension(extension).is_none() {
+            return Err(self.fault(call, format_args!("of files {} is not supported", shown(extension))));
+        }
+        self.mesh(given.required(0)?)
+    }
+
+    fn octree(&self, call: &Call<'_>) -> Result<Node, Error> {
+        let file = Given::new(self.tree, call, ["file"], &[])?.required(0)?;
+        Ok(Node::Octree(Box::new(self.read(&file, |path| crate::file::open(path))?)))
+    }
+}
