@@ -4,12 +4,12 @@
 //! cargo bench --bench boundary --features capi
 //! ```
 //!
-//! The functions are called through pointers that the compiler cannot see through, as a C program would call them.
-//! `c_tests/boundary.c` measures the same ball and points from C.
+//! The functions are called through pointers that the compiler cannot see through, as a C program would call
+//! them. `c_tests/boundary.c` measures the same ball and points from C.
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use leafless::capi::*;
-use leafless::{Ball, Control, Frame, Membership, PointCursor, Rule, build};
+use leafless::{Control, Csg, Frame, Membership, PointCursor, Rule, build};
 use std::hint::black_box;
 use std::ptr::{null, null_mut};
 
@@ -67,7 +67,7 @@ fn boundary(criterion: &mut Criterion) {
     let points = points();
     let lines = lines(&points);
     let frame = Frame::new([-1.0; 3], 2.0, 10).expect("a frame");
-    let ball = Ball::new([0.0; 3], 0.75).expect("a ball");
+    let ball = Csg::ball([0.0; 3], 0.75).expect("a ball");
     let rust = build(&ball, &frame, Rule::Certified, &Control::default()).expect("an octree");
     let c = ball_of_c();
     let mut cursor_of_c = null_mut();

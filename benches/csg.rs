@@ -4,9 +4,10 @@
 //! cargo bench --bench csg
 //! ```
 //!
-//! `splits` asks a solid of one half-space to split each of its PARTIAL cells of level 8, one by one. The scene is a ball
-//! with three square bars and twelve cylinders taken out; `peers` (see `benches/README.md`) builds it with another program.
-//! Figures measured with this file, and what limits them, stand in `benches/README.md`.
+//! `splits` asks a solid of one half-space to split each of its PARTIAL cells of level 8, one by one. The
+//! scene is a ball with three square bars and twelve cylinders taken out; `peers` (see `benches/README.md`)
+//! builds it with another program. Figures measured with this file, and what limits them, stand in
+//! `benches/README.md`.
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use leafless::{

@@ -5,8 +5,9 @@
 //! ```
 //!
 //! The models are `featuretype.STL` (a machined part, 3 476 triangles), `bunny-closed.stl` (a scan, 69 674
-//! triangles) and `stanford-bunny.obj` (the same with holes); without them a part that the library makes itself
-//! takes their place. Figures measured with this file, and what limits them, stand in `benches/README.md`.
+//! triangles) and `stanford-bunny.obj` (the same with holes); without them a part that the library makes
+//! itself takes their place. Figures measured with this file, and what limits them, stand in
+//! `benches/README.md`.
 
 use criterion::{BatchSize, Criterion, Throughput, criterion_group, criterion_main};
 use leafless::{
@@ -82,8 +83,8 @@ fn voxelise(c: &mut Criterion) {
     group.finish();
 }
 
-/// A mesh of five million triangles, as large as cells of the finest level or smaller: from the mesh in memory to the
-/// octree, on one and on two threads.
+/// A mesh of five million triangles, as large as cells of the finest level or smaller: from the mesh in
+/// memory to the octree, on one and on two threads.
 fn large(c: &mut Criterion) {
     let mut group = c.benchmark_group("five million triangles, 1024³");
     group.sample_size(10);

@@ -4,9 +4,10 @@
 //! cargo bench --bench meshes
 //! ```
 //!
-//! A torus of half a million triangles and a quarter of a million vertices, in files of every format that `fuzz/` knows to
-//! write, coordinates with six places, as most programs write them. `weld` is what every reader does in the end, alone. Figures measured with
-//! this file, and what limits them, stand in `benches/README.md`.
+//! A torus of half a million triangles and a quarter of a million vertices, in files of every format that
+//! `fuzz/` knows to write, coordinates with six places, as most programs write them. `weld` is what every
+//! reader does in the end, alone. Figures measured with this file, and what limits them, stand in
+//! `benches/README.md`.
 
 use criterion::{BatchSize, Criterion, Throughput, criterion_group, criterion_main};
 use leafless::{TriangleMesh, exchange};

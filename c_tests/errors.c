@@ -57,10 +57,10 @@ enum {
     TABLE_CRC = 100,
     HEADER_CRC = 124,
     TABLE = 128,
-    ENTRY = 40,
-    ENTRY_OFFSET = 8,
-    ENTRY_LENGTH = 16,
-    ENTRY_CRC = 32
+    ENTRY = 48,
+    ENTRY_OFFSET = 16,
+    ENTRY_LENGTH = 24,
+    ENTRY_CRC = 40
 };
 
 static uint64_t number(const uint8_t *bytes, size_t size) {
@@ -361,7 +361,7 @@ int main(int argc, char **argv) {
         altered[MAJOR_VERSION] = 3;
         make_checksums_right(altered);
         FAILS(LEAFLESS_E_VERSION, leafless_octree_from_bytes(altered, length, &octree));
-        failed(LEAFLESS_E_VERSION, "LEAFLESS_E_VERSION", "3.0");
+        failed(LEAFLESS_E_VERSION, "LEAFLESS_E_VERSION", "3.1");
         check_write("newer.lfl", altered, (size_t)length);
         FAILS(LEAFLESS_E_VERSION, leafless_octree_open("newer.lfl", 9, &octree));
         FAILS(LEAFLESS_E_VERSION, leafless_octree_map("newer.lfl", 9, &octree));

@@ -56,6 +56,13 @@ static void check_fact(const char *line, const leafless_octree *octree, const le
         CHECK(strcmp(value, tag_name(info.root)) == 0 && probe->root == info.root);
     } else if ((value = value_of(line, "exterior")) != NULL) {
         CHECK(strcmp(value, tag_name(info.exterior)) == 0 && probe->exterior == info.exterior);
+    } else if ((value = value_of(line, "proof")) != NULL) {
+        count = whole(value, &end);
+        CHECK(count < 4 && info.proof.full == (count % 2 == 1) && info.proof.empty == (count / 2 == 1));
+        CHECK(probe->proof.full == info.proof.full && probe->proof.empty == info.proof.empty);
+    } else if ((value = value_of(line, "displacement")) != NULL) {
+        numbers(value, parsed, 1);
+        CHECK(info.proof.displacement_model == parsed[0] && probe->proof.displacement_model == parsed[0]);
     } else if ((value = value_of(line, "planes")) != NULL) {
         CHECK(info.is_binary == (whole(value, &end) == 1) && probe->is_binary == info.is_binary);
     } else if ((value = value_of(line, "elements")) != NULL) {
@@ -68,6 +75,15 @@ static void check_fact(const char *line, const leafless_octree *octree, const le
             value = end;
         }
         CHECK(*value == '\0');
+    } else if ((value = value_of(line, "owners")) != NULL) {
+        for (i = 0; i < probe->sections; i++) {
+            CHECK(sections[i].owner == whole(value, &end));
+            CHECK(sections[i].owner == 0 || sections[i].name[0] == '\0');
+            value = end;
+        }
+        CHECK(*value == '\0');
+    } else if ((value = value_of(line, "objects")) != NULL) {
+        CHECK(sections[0].kind == 1 && sections[0].count == whole(value, &end) && sections[0].is_required);
     } else if ((value = value_of(line, "level")) != NULL) {
         OK(leafless_octree_levels(octree, levels, COUNT(levels), &count));
         i = whole(value, &end);

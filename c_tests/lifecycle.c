@@ -319,6 +319,39 @@ static void octrees(void) {
     CHECK(check_same(ball, compact));
     OK(leafless_octree_check(compact));
 
+    /* What cells prove: by the rule that made them, or as the host says. */
+    OK(leafless_octree_describe(ball, &info));
+    CHECK(info.proof.full && info.proof.empty && info.proof.displacement_model == 0.0);
+    OK(leafless_octree_describe(inner, &info));
+    CHECK(info.proof.full && !info.proof.empty);
+    OK(leafless_octree_describe(outer, &info));
+    CHECK(!info.proof.full && info.proof.empty);
+    {
+        static const uint32_t PROVEN[] = {LEAFLESS_PROVEN_NOTHING, LEAFLESS_PROVEN_FULL, LEAFLESS_PROVEN_EMPTY,
+                                          LEAFLESS_PROVEN_BOTH};
+        leafless_octree *said = NULL, *inverse = NULL, *both = NULL;
+        size_t i;
+        for (i = 0; i < COUNT(PROVEN); i++) {
+            OK(leafless_octree_with_proof(outer, PROVEN[i], 0.125, &said));
+            CHECK(check_same(said, outer));
+            OK(leafless_octree_describe(said, &info));
+            CHECK(info.proof.full == (i % 2 == 1) && info.proof.empty == (i / 2 == 1));
+            CHECK(info.proof.displacement_model == 0.125);
+            /* A complement exchanges them; a union has what both have, and is moved by the more. */
+            OK(leafless_octree_complement(said, NULL, &inverse));
+            OK(leafless_octree_describe(inverse, &info));
+            CHECK(info.proof.full == (i / 2 == 1) && info.proof.empty == (i % 2 == 1));
+            OK(leafless_octree_union(said, inner, NULL, &both));
+            OK(leafless_octree_describe(both, &info));
+            CHECK(info.proof.full == (i % 2 == 1) && !info.proof.empty && info.proof.displacement_model == 0.125);
+            leafless_octree_free(both);
+            leafless_octree_free(inverse);
+            leafless_octree_free(said);
+        }
+        OK(leafless_octree_describe(outer, &info));
+        CHECK(!info.proof.full && info.proof.empty && info.proof.displacement_model == 0.0);
+    }
+
     OK(leafless_octree_peek_metadata(ball, "units", 5, &value, &value_length));
     CHECK(value == NULL && value_length == 0);
     OK(leafless_octree_with_metadata(ball, "units", 5, "mm", 2, &named));

@@ -1,12 +1,14 @@
-//! C and C++ programs against `include/leafless.h` and the libraries that `include/README.md` says how to build.
+//! C and C++ programs against `include/leafless.h` and the libraries that `include/README.md` says how to
+//! build.
 //!
 //! ```text
 //! cargo test --release --test c_api
 //! LEAFLESS_C_CHECK=valgrind cargo test --release --test c_api     # also: address, address-all, thread
 //! ```
 //!
-//! The libraries are built by the commands that `include/README.md` documents, into a target folder of their own.
-//! Every program is compiled and linked as a user would do it, and run; `README.md` here tells what each is for.
+//! The libraries are built by the commands that `include/README.md` documents, into a target folder of their
+//! own. Every program is compiled and linked as a user would do it, and run; `README.md` here tells what each
+//! is for.
 
 #![cfg(unix)]
 
@@ -59,7 +61,8 @@ fn every_file_is_used() {
     }
 }
 
-// --- The header -------------------------------------------------------------------------------------------------
+// --- The header
+// -------------------------------------------------------------------------------------------------
 
 #[test]
 fn header_in_all_standards() {
@@ -129,7 +132,8 @@ fn version() {
     run("version", C99, Link::Shared, &[env!("CARGO_PKG_VERSION")]);
 }
 
-// --- What the functions do --------------------------------------------------------------------------------------
+// --- What the functions do
+// --------------------------------------------------------------------------------------
 
 #[test]
 fn lifecycle() {
@@ -289,7 +293,8 @@ fn boundary() {
     assert_eq!(told.lines().filter(|line| line.contains(" ns")).count(), 3, "{told}");
 }
 
-// --- What users read --------------------------------------------------------------------------------------------
+// --- What users read
+// --------------------------------------------------------------------------------------------
 
 /// The first block of a language in a text.
 fn block(text: &str, language: &str) -> String {
@@ -367,7 +372,8 @@ fn documented_commands() {
     assert!(compiled >= 3, "{compiled}");
 }
 
-// --- The libraries ----------------------------------------------------------------------------------------------
+// --- The libraries
+// ----------------------------------------------------------------------------------------------
 
 #[test]
 fn native_libraries_are_documented() {

@@ -127,7 +127,9 @@ static void ways_in_and_out(void) {
         CHECK(i == 0 || sections[i].offset >= sections[i - 1].offset + sections[i - 1].length);
         CHECK(sections[i].offset + sections[i].length <= length);
     }
-    CHECK(strcmp(sections[probe.sections - 1].name, "metadata") == 0 && !sections[probe.sections - 1].is_required);
+    CHECK(strcmp(sections[0].name, "objects") == 0 && sections[0].is_required && sections[0].owner == 0);
+    CHECK(strcmp(sections[1].name, "metadata") == 0 && !sections[1].is_required && sections[1].owner == 0);
+    CHECK(probe.proof.full && probe.proof.empty && probe.proof.displacement_model == 0.0);
     memset(&of_bytes, 0xaa, sizeof of_bytes);
     OK(leafless_bytes_probe(bytes, length, &of_bytes, same, COUNT(same)));
     CHECK(of_bytes.sections == probe.sections && of_bytes.elements == probe.elements);
@@ -158,6 +160,20 @@ static void ways_in_and_out(void) {
     free(s.bytes);
     free(bytes);
     leafless_octree_free(named);
+
+    /* A file says what its cells prove. */
+    OK(leafless_octree_with_proof(ball, LEAFLESS_PROVEN_EMPTY, 0.5, &named));
+    OK(leafless_octree_save(named, PATH("ball.lfl")));
+    leafless_octree_free(named);
+    OK(leafless_file_probe(PATH("ball.lfl"), &probe, NULL, 0));
+    CHECK(!probe.proof.full && probe.proof.empty && probe.proof.displacement_model == 0.5);
+    for (i = 0; i < COUNT(WAYS); i++) {
+        leafless_octree_info info;
+        OK(WAYS[i](PATH("ball.lfl"), &octree));
+        OK(leafless_octree_describe(octree, &info));
+        CHECK(!info.proof.full && info.proof.empty && info.proof.displacement_model == 0.5);
+        leafless_octree_free(octree);
+    }
     leafless_octree_free(ball);
 }
 

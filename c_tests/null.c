@@ -375,6 +375,8 @@ static void null_pointers(void) {
     NULL_POINTER(leafless_octree_ref, reference, leafless_octree_ref(octree, NULL));
     NULL_POINTER(leafless_octree_describe, octree, leafless_octree_describe(NULL, (leafless_octree_info *)out));
     NULL_POINTER(leafless_octree_describe, info, leafless_octree_describe(octree, NULL));
+    NULL_POINTER(leafless_octree_with_proof, octree, leafless_octree_with_proof(NULL, 3, 0, result));
+    NULL_POINTER(leafless_octree_with_proof, result, leafless_octree_with_proof(octree, 3, 0, NULL));
     NULL_POINTER(leafless_octree_statistics, octree, leafless_octree_statistics(NULL, (leafless_statistics *)out));
     NULL_POINTER(leafless_octree_statistics, statistics, leafless_octree_statistics(octree, NULL));
     NULL_POINTER(leafless_octree_levels, octree, leafless_octree_levels(NULL, NULL, 0, (uint64_t *)out));
@@ -728,6 +730,9 @@ static void misaligned(void) {
             leafless_octree_build(solid, &frame, 0, &bad_control, result));
     MISALIGNED(leafless_octree_describe, octree, leafless_octree_describe(bad_octree, (leafless_octree_info *)out));
     MISALIGNED(leafless_octree_describe, info, leafless_octree_describe(octree, (leafless_octree_info *)WRONG(out)));
+    MISALIGNED(leafless_octree_with_proof, octree, leafless_octree_with_proof(bad_octree, 3, 0, result));
+    MISALIGNED(leafless_octree_with_proof, result,
+               leafless_octree_with_proof(octree, 3, 0, (leafless_octree **)WRONG(out)));
     MISALIGNED(leafless_octree_levels, levels,
                leafless_octree_levels(octree, (leafless_statistics *)WRONG(out), 5, (uint64_t *)out));
     MISALIGNED(leafless_octree_union, b, leafless_octree_union(octree, bad_octree, NULL, result));
@@ -901,6 +906,9 @@ static void numbers(void) {
     for (i = 0; i < COUNT(not_a_rule); i++) {
         BAD_NUMBER(leafless_octree_build, rule, leafless_octree_build(solid, &frame, not_a_rule[i], NULL, result));
         BAD_NUMBER(leafless_octree_resolve, rule, leafless_octree_resolve(octree, not_a_rule[i], NULL, result));
+        BAD_NUMBER(leafless_octree_with_proof, proven, leafless_octree_with_proof(octree, not_a_rule[i], 0, result));
+        BAD_NUMBER(leafless_octree_with_proof, displacement,
+                   leafless_octree_with_proof(octree, 3, not_finite[i], result));
         BAD_NUMBER(leafless_mesh_check_closed, fill, leafless_mesh_check_closed(mesh, not_a_rule[i] - 1));
         BAD_NUMBER(leafless_solid_new_mesh, fill, leafless_solid_new_mesh(mesh, not_a_rule[i] - 1, solid_result));
         memset(&callbacks, 0, sizeof callbacks);
@@ -909,6 +917,7 @@ static void numbers(void) {
         callbacks.exterior = not_a_rule[i] - 1;
         BAD_NUMBER(leafless_solid_new_callbacks, exterior, leafless_solid_new_callbacks(&callbacks, solid_result));
     }
+    BAD_NUMBER(leafless_octree_with_proof, displacement, leafless_octree_with_proof(octree, 3, -0.5, result));
     BAD_NUMBER(leafless_solid_interfere, tolerance,
                leafless_solid_interfere(solid, solid, &frame, -1, NULL, (leafless_interference *)out));
     BAD_NUMBER(leafless_solid_clearance, tolerance,

@@ -2,9 +2,7 @@
 //!
 //! Run it with `cargo run --release --example boolean`.
 
-use leafless::{
-    AxisBox, Ball, Control, Frame, Metadata, Region, Rule, build, difference, file, intersection,
-};
+use leafless::{Control, Csg, Frame, Metadata, Region, Rule, build, difference, file, intersection};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     // Everything that is to be combined lies on one frame: here the cube [-1, 1]³ in 512 cells per axis.
@@ -12,9 +10,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let control = Control::default();
 
     // A die: a block, its corners rounded off by a ball, hollowed out by another one.
-    let block = build(&AxisBox::new([-0.7; 3], [0.7; 3])?, &frame, Rule::Certified, &control)?;
-    let round = build(&Ball::new([0.0; 3], 1.0)?, &frame, Rule::Certified, &control)?;
-    let hollow = build(&Ball::new([0.0; 3], 0.5)?, &frame, Rule::Certified, &control)?;
+    let block = build(&Csg::cuboid([-0.7; 3], [0.7; 3])?, &frame, Rule::Certified, &control)?;
+    let round = build(&Csg::ball([0.0; 3], 1.0)?, &frame, Rule::Certified, &control)?;
+    let hollow = build(&Csg::ball([0.0; 3], 0.5)?, &frame, Rule::Certified, &control)?;
     let rounded = intersection(block.view(), round.view(), &control)?;
     let die = difference(rounded.view(), hollow.view(), &control)?;
 

@@ -26,13 +26,23 @@ TEXT = "not UTF-8"
 # The field that says how long the file is. It is looked at after the header, before the table.
 LENGTH = "header.end_of_header"
 
+# The fields of an object, of which that of the solid repeats the header.
+OBJECT_FIELDS = {
+    "object_record." + name
+    for name in (
+        "type_code parent flags depth root_tag exterior proof num_brick_planes brick_encoding segment_shift "
+        "value_type num_components reserved1 displacement edge extents reserved2 num_elements num_bricks "
+        "num_dictionary_entries num_values reserved3 end_of_object"
+    ).split()
+}
+
 # For each rule of the specification the fields of which one must refuse its files, but for those in `SEEN_OTHERWISE`.
 # None stands for rules that the description does not state: it must read their files.
 SEEN_BY = {
     "header-text-mode": {"header.magic"},
     "header-magic": {"header.magic", END},
     "header-short": {END},
-    "header-major": {"header.version_major"},
+    "header-major": {"header.version_major", "header.version_minor"},
     "header-crc": None,
     "header-length": {"header.len_header"},
     "header-required-flags": {"header.required_flags"},
@@ -43,6 +53,8 @@ SEEN_BY = {
     "header-depth": {"header.depth"},
     "header-root": {"header.root_tag"},
     "header-exterior": {"header.exterior"},
+    "header-proof": {"header.proof"},
+    "header-displacement": {"displacement.value"},
     "header-brick-planes": {"header.num_brick_planes"},
     "header-encoding": {"header.brick_encoding"},
     "header-raw-shift": {"header.segment_shift"},
@@ -55,21 +67,32 @@ SEEN_BY = {
     "header-file-length": {"header.num_sections"},
     "table-short": {LENGTH},
     "table-crc": None,
-    "section-flags": {"section.flags"},
-    "section-length": {"section.len_body", "section.num_elements"},
-    "section-alignment": {"section.ofs_body"},
-    "section-overlap": {"section.ofs_body"},
-    "section-beyond": {"section.ofs_body", "section.len_body"},
     "section-kind": {"section.kind_code"},
-    "section-unknown": {"section.flags"},
-    "section-twice": {"section.kind_code"},
-    "section-size": {"section.len_element"},
-    "section-count": {"section.num_elements"},
-    "section-metadata-length": {"section.num_elements"},
-    "section-required": {"section.flags"},
+    "section-flags": {"section.flags"},
+    "table-reserved": {"section.reserved"},
+    "table-encoding": {"section.encoding"},
+    "table-element": {"section.element_code", "section.num_components"},
+    "section-length": {"section.len_body", "section.num_elements"},
+    "object-count": {"section.owner", "section.num_elements"},
+    "table-owner": {"section.owner"},
+    "table-order": {"section.owner"},
+    "table-same": {"section.same", "section.end_of_same"},
+    "section-alignment": {"section.end_of_own"},
+    "section-overlap": {"section.end_of_own"},
+    "section-beyond": {"section.end_of_own"},
+    "section-unknown": {"section.end_of_entry"},
+    "section-size": {"section.end_of_entry"},
+    "section-count": {"section.end_of_entry"},
+    "section-metadata-length": {"section.end_of_entry"},
+    "section-required": {"section.end_of_entry"},
     "section-missing": {"section.end_of_table"},
     "section-end": {"section.end_of_table"},
     "file-length": {LENGTH},
+    "object-mirror": OBJECT_FIELDS,
+    "object-type": {"object_record.type_code"},
+    "object-flags": {"object_record.flags"},
+    "object-parent": {"object_record.parent"},
+    "object-required": {"object_record.flags"},
     "level-table-root": {"level.num_nodes"},
     "level-table-starts": {"element_level.end_of_level"},
     "level-table-sum": {"element_level.end_of_level"},
@@ -164,7 +187,7 @@ def wrong_checksums(data, root):
         rules.append("header-crc")
     if zlib.crc32(data[128 : header.len_table_end]) != header.section_table_crc32:
         rules.append("table-crc")
-    if any(zlib.crc32(data[part.ofs_body : part.body_end]) != part.body_crc32 for part in root.sections):
+    if any(zlib.crc32(data[part.ofs_body :][: part.len_body]) != part.body_crc32 for part in root.sections):
         rules.append("section-crc")
     return rules
 
@@ -257,6 +280,8 @@ def check_valid(data, stated, description):
         "edge": [[header.edge]],
         "edge-decimal": [[header.edge]],
         "depth": [str(depth)],
+        "proof": [str(header.proof)],
+        "displacement": [[header.displacement.value]],
         "planes": [str(header.num_brick_planes)],
         "encoding": [header.brick_encoding.name],
         "shift": [str(header.segment_shift)],
@@ -265,7 +290,9 @@ def check_valid(data, stated, description):
         "entries": [str(header.num_dictionary_entries)],
         "root": [header.root_tag.name.upper()],
         "exterior": [header.exterior.name.upper()],
-        "sections": [" ".join(str(int(part.kind_code)) for part in root.sections)],
+        "objects": [str(len(root.objects.objects))],
+        "sections": [" ".join(str(part.kind_code) for part in root.sections)],
+        "owners": [" ".join(str(part.owner) for part in root.sections)],
         "level": [f"{l} {v.num_nodes} {v.num_full} {v.num_partial}" for l, v in enumerate(levels)],
         "cells": [f"{surely} {possibly}"],
         "metadata": [f"{fact.key}\t{fact.value}" for fact in root.metadata.facts] if root.metadata else [],
@@ -281,7 +308,7 @@ def check_valid(data, stated, description):
             given = answer(root, [float.fromhex(word) for word in point])
             if given != expected:
                 raise Mismatch(f"point {value}: {given}")
-        elif key in ("origin", "edge"):
+        elif key in ("origin", "edge", "displacement"):
             told[key].append(doubles(value))
         elif key in ("origin-decimal", "edge-decimal"):
             told[key].append([float(word) for word in value.split(" ")])
@@ -304,11 +331,11 @@ def check_invalid(name, data, stated, description):
     fields = {SEEN_OTHERWISE[name]} if name in SEEN_OTHERWISE else SEEN_BY[rule] or {None}
     by, root = refusal(data, description)
     if "error-of-length" in stated:
-        # The length is wrong, too, and refuses the file first. A section rule is looked at in the file made as long as
-        # it says.
+        # The length is wrong, too, and refuses the file first. A rule of the section table's entries is looked at in
+        # the file made as long as it says.
         if by != LENGTH:
             raise Mismatch(f"the length is wrong; refused by {by}")
-        if rule.startswith("section-"):
+        if rule == "section-crc" or any(str(field).startswith("section.") for field in fields):
             size = int.from_bytes(data[24:32], "little")
             by, root = refusal(data[:size].ljust(size, b"\0"), description)
         else:

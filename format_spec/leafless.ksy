@@ -1,4 +1,4 @@
-# The file format of Leafless, version 0.0, as a Kaitai Struct description. The specification is specification.md
+# The file format of Leafless, version 0.1, as a Kaitai Struct description. The specification is specification.md
 # beside this file; where the two differ, that one is right.
 #
 # Every `valid` is a rule of §10 of the specification, except those that are marked "implied": these follow from rules
@@ -24,7 +24,8 @@ doc: |
   cells are stored. One entry, an element, describes two levels at once: 64 cells of two bits. Elements of the deepest
   level, called bricks, have no BRANCH cells and lie in an array of their own.
 
-  The file is a header, a table of sections, and the sections, with zero bytes between them.
+  The file is a header, a table of sections, and the sections, with zero bytes between them. Each section belongs to an
+  object; object 0 is the solid, the octree that is described here.
 doc-ref: specification.md
 seq:
   - id: header
@@ -35,36 +36,55 @@ seq:
     type: section(_index)
     repeat: expr
     repeat-expr: header.num_sections
-    doc: The section table. Sections lie in the file in this order.
+    doc: The section table. Sections with their own bytes lie in the file in this order.
     doc-ref: specification.md §4
 instances:
-  find_planes:
-    type: finder(section_kind::planes)
-    doc: The place of the section `planes` in the table.
-  find_rel:
-    type: finder(section_kind::rel)
-    doc: The place of the section `rel` in the table.
-  find_base:
-    type: finder(section_kind::base)
-    doc: The place of the section `base` in the table.
-  find_bricks:
-    type: finder(section_kind::bricks)
-    doc: The place of the section `bricks` in the table.
-  find_brick_indices:
-    type: finder(section_kind::brick_indices)
-    doc: The place of the section `brick indices` in the table.
-  find_dictionary_entries:
-    type: finder(section_kind::dictionary_entries)
-    doc: The place of the section `dictionary entries` in the table.
-  find_dictionary_segments:
-    type: finder(section_kind::dictionary_segments)
-    doc: The place of the section `dictionary segments` in the table.
-  find_level_table:
-    type: finder(section_kind::level_table)
-    doc: The place of the section `level table` in the table.
+  find_objects:
+    type: finder(section_kind::objects)
+    doc: The place of the solid's section `objects` in the table.
   find_metadata:
     type: finder(section_kind::metadata)
-    doc: The place of the section `metadata` in the table.
+    doc: The place of the solid's section `metadata` in the table.
+  find_level_table:
+    type: finder(section_kind::level_table)
+    doc: The place of the solid's section `level table` in the table.
+  find_planes:
+    type: finder(section_kind::planes)
+    doc: The place of the solid's section `planes` in the table.
+  find_rel:
+    type: finder(section_kind::rel)
+    doc: The place of the solid's section `rel` in the table.
+  find_base:
+    type: finder(section_kind::base)
+    doc: The place of the solid's section `base` in the table.
+  find_bricks:
+    type: finder(section_kind::bricks)
+    doc: The place of the solid's section `bricks` in the table.
+  find_brick_indices:
+    type: finder(section_kind::brick_indices)
+    doc: The place of the solid's section `brick indices` in the table.
+  find_dictionary_entries:
+    type: finder(section_kind::dictionary_entries)
+    doc: The place of the solid's section `dictionary entries` in the table.
+  find_dictionary_segments:
+    type: finder(section_kind::dictionary_segments)
+    doc: The place of the solid's section `dictionary segments` in the table.
+  objects:
+    pos: find_objects.section.ofs_body
+    size: find_objects.section.len_body
+    type: objects
+    doc: What the file holds. It is always there.
+  metadata:
+    pos: find_metadata.section.ofs_body
+    size: find_metadata.section.len_body
+    type: metadata
+    if: find_metadata.is_found
+    doc: Facts about the solid; absent if there are none.
+  level_table:
+    pos: find_level_table.section.ofs_body
+    size: find_level_table.section.len_body
+    type: level_table
+    doc: Counts of cells of every octree level. It is always there.
   planes:
     pos: find_planes.section.ofs_body
     size: find_planes.section.len_body
@@ -107,17 +127,6 @@ instances:
     type: dictionary_segments
     if: find_dictionary_segments.is_found
     doc: Where the entries of each segment begin; absent if bricks are raw.
-  level_table:
-    pos: find_level_table.section.ofs_body
-    size: find_level_table.section.len_body
-    type: level_table
-    doc: Counts of cells of every octree level. It is always there.
-  metadata:
-    pos: find_metadata.section.ofs_body
-    size: find_metadata.section.len_body
-    type: metadata
-    if: find_metadata.is_found
-    doc: Facts about the solid; absent if there are none.
 types:
   header:
     doc: What the file is, and how much there is of everything. All else is checked against it.
@@ -134,7 +143,11 @@ types:
         doc: Files of another major version need another reader. (`header-major`)
       - id: version_minor
         type: u2
-        doc: Files of newer minor versions are read; in these, flags and reserved fields are not looked at.
+        valid:
+          min: 1
+        doc: |
+          Files of newer minor versions are read; in these, optional flags and reserved fields are not looked at. The
+          oldest version is 0.1. (`header-major`)
       - id: len_header
         type: u4
         valid: 128
@@ -146,11 +159,11 @@ types:
       - id: optional_flags
         type: u4
         valid:
-          expr: _ == 0 or version_minor != 0
+          expr: _ == 0 or is_newer
         doc: What a reader may ignore; nothing is defined. (`header-optional-flags`)
       - id: len_file
         type: u8
-        doc: Bytes of the file, which ends with its last section.
+        doc: Bytes of the file, which ends with the last section that has its own bytes.
       - id: origin_x
         size: 8
         type: coordinate
@@ -210,10 +223,17 @@ types:
         doc: |
           With a dictionary: a segment is 2^shift bricks, and 63 stands for a single segment of all bricks. Else 0.
           (`header-raw-shift`, `header-shift`)
-      - id: reserved1
-        type: u2
+      - id: proof
+        type: u1
         valid:
-          expr: _ == 0 or version_minor != 0
+          max: 3
+        doc: |
+          What the tags prove. Bit 0: FULL cells are proven to lie in the solid; bit 1: EMPTY cells are proven to lie
+          outside of it. (`header-proof`)
+      - id: reserved1
+        type: u1
+        valid:
+          expr: _ == 0 or is_newer
         doc: Zero. (`header-reserved`)
       - id: num_elements
         type: u8
@@ -237,17 +257,21 @@ types:
       - id: num_sections
         type: u4
         valid:
-          expr: _ >= 1 and _ <= 4096 and len_file > 128 + 40 * _
+          expr: _ >= 1 and _ <= 4096 and len_file > 128 + 48 * _
         doc: Number of entries of the section table. (`header-section-count`, `header-file-length`)
       - id: section_table_crc32
         type: u4
-        doc: CRC32 of the section table, 40 · `num_sections` bytes. (`table-crc`, which is not checked here)
+        doc: CRC32 of the section table, 48 · `num_sections` bytes. (`table-crc`, which is not checked here)
+      - id: displacement
+        size: 8
+        type: displacement
+        doc: How far surfaces were moved from those of the model that was handed in, in model units.
       - id: reserved2
         type: u1
         repeat: expr
-        repeat-expr: 20
+        repeat-expr: 12
         valid:
-          expr: _ == 0 or version_minor != 0
+          expr: _ == 0 or is_newer
         doc: Zero. (`header-reserved`)
       - id: header_crc32
         type: u4
@@ -258,9 +282,18 @@ types:
           expr: len_file == _root._io.size
         doc: No bytes. The file is as long as it says. (`file-length`)
     instances:
+      is_newer:
+        value: version_minor > 1
+        doc: Whether a later version wrote the file, which may have given a meaning to what is reserved in 0.1.
+      is_full_proven:
+        value: (proof & 1) != 0
+        doc: Whether FULL cells are proven to lie in the solid.
+      is_empty_proven:
+        value: (proof & 2) != 0
+        doc: Whether EMPTY cells are proven to lie outside of the solid.
       is_binary:
         value: num_brick_planes == 1
-        doc: Whether no cell is PARTIAL. The other trees are certified ones.
+        doc: Whether no cell is PARTIAL.
       has_dictionary:
         value: brick_encoding == brick_encoding::dictionary
         doc: Whether bricks are stored through a dictionary.
@@ -286,15 +319,15 @@ types:
         value: 8 * num_brick_planes
         doc: Bytes of a brick.
       len_table_end:
-        value: 128 + 40 * num_sections
+        value: 128 + 48 * num_sections
         doc: Where the section table ends.
       kinds_demanded:
         value: |
-          0b1_0000_0000 | (num_elements > 0 ? 0b1110 : 0)
-          | (num_bricks == 0 ? 0 : has_dictionary ? 0b1110_0000 : 0b1_0000)
+          0b1010 | (num_elements > 0 ? 0b111_0000 : 0)
+          | (num_bricks == 0 ? 0 : has_dictionary ? 0b111_0000_0000 : 0b1000_0000)
         doc: |
-          Bit k is set if the section of kind k must be there: the level table always, planes, rel and base if there are
-          elements, and for bricks either those or indices, entries and segments.
+          Bit k is set if the section of kind k must be there: objects and the level table always, planes, rel and base
+          if there are elements, and for bricks either those or indices, entries and segments.
   coordinate:
     doc: |
       A coordinate of the origin: zero, or of a magnitude of 2^-256 to 2^256. Negative zero is illegal.
@@ -313,6 +346,20 @@ types:
         pos: 7
         type: u1
         doc: The byte whose highest bit is the sign. It tells the two zeros apart, which compare as equal.
+  displacement:
+    doc: |
+      A length in model units, 0 or greater and finite. Negative zero is illegal. (`header-displacement`)
+    seq:
+      - id: value
+        type: f8
+        valid:
+          expr: _ >= 0.0 and _ <= 1.7976931348623157e+308 and sign_byte < 0x80
+        doc: The length.
+    instances:
+      sign_byte:
+        pos: 7
+        type: u1
+        doc: The byte whose highest bit is the sign. It tells the two zeros apart, which compare as equal.
   section:
     doc: One entry of the section table.
     doc-ref: specification.md §4
@@ -324,96 +371,179 @@ types:
       - id: kind_code
         type: u4
         valid:
-          expr: _ != 0 and (not is_known or (kinds_before >> _ & 1) == 0)
-        doc: What the section holds. No known kind stands twice. (`section-kind`, `section-twice`)
-      - id: len_element
+          min: 1
+        doc: What the section holds. (`section-kind`)
+      - id: owner
         type: u4
         valid:
-          expr: not is_known or _ == len_element_demanded
-        doc: Bytes of one element of the section. (`section-size`)
+          expr: >-
+            index == 0 ? _ == 0
+            : _ < _root.sections[0].num_elements
+            and (_ > previous.owner or (_ == previous.owner and kind_code > previous.kind_code))
+        doc: |
+          The object that the section belongs to; 0 is the solid. Entries ascend by owner and kind. (`table-owner`,
+          `table-order`; of the first entry `object-count`)
+      - id: element_code
+        type: u1
+        valid:
+          expr: _ <= 6 or _root.header.is_newer
+        doc: What the numbers of an element are. (`table-element`)
+      - id: num_components
+        type: u1
+        valid:
+          min: 1
+        doc: Numbers of an element; of records units of 8 bytes. (`table-element`)
+      - id: encoding
+        type: u1
+        valid:
+          expr: _ == 0 or (_root.header.is_newer and not is_known)
+        doc: How the elements are stored. 0 is raw, one after another as they are. (`table-encoding`)
+      - id: reserved
+        type: u1
+        valid:
+          expr: _ == 0 or _root.header.is_newer
+        doc: Zero. (`table-reserved`)
+      - id: flags
+        type: u4
+        valid:
+          expr: _ < 2 or _root.header.is_newer
+        doc: |
+          Bit 0: a reader must know the kind to read the owner. The others are zero. (`section-flags`)
       - id: ofs_body
         type: u8
-        valid:
-          expr: _ % 64 == 0 and _ >= previous_end and _ <= _root.header.len_file
-        doc: |
-          Where the section begins in the file. (`section-alignment`, `section-overlap`, and `section-beyond` without
-          its length)
+        doc: Where the section begins in the file.
       - id: len_body
         type: u8
         valid:
           min: 1
-          max: _root.header.len_file - ofs_body
-        doc: Bytes of the section. (`section-beyond`, `section-length`)
+        doc: Bytes of the section. (`section-length`)
       - id: num_elements
         type: u8
         valid:
           expr: >-
-            len_element > 0 and len_body % len_element == 0 and _ == len_body / len_element
-            and (not is_known or kind == section_kind::metadata or _ == num_elements_demanded)
-            and (kind != section_kind::metadata or _ <= 1048576)
+            _ != 0
+            and (encoding != 0 or element_code > 6 or (len_body % len_element == 0 and _ == len_body / len_element))
+            and (index != 0 or (kind_code == 1 and _ <= 4096))
         doc: |
-          Number of the section's elements. A section that would have none is absent. (`section-length`,
-          `section-count`, `section-metadata-length`)
+          Number of the section's elements. A section that would have none is absent. The first section is `objects`.
+          (`section-length`, `object-count`)
       - id: body_crc32
         type: u4
         doc: CRC32 of the section's bytes. (`section-crc`, which is not checked here)
-      - id: flags
+      - id: same
         type: u4
         valid:
-          expr: >-
-            (_ < 2 or _root.header.version_minor != 0)
-            and (is_known ? is_required == (kind != section_kind::metadata) : not is_required)
+          expr: _ <= index
         doc: |
-          Bit 0: a reader that does not know the kind must refuse the file. The others are zero. (`section-flags`,
-          `section-unknown`, `section-required`)
+          0 if the section has its own bytes. Otherwise it has those of the section before the one that this number
+          would count from 0. (`table-same`)
+      - id: end_of_same
+        size: 0
+        if: same != 0
+        valid:
+          expr: >-
+            source.same == 0 and source.element_code == element_code and source.num_components == num_components
+            and source.encoding == encoding and source.reserved == reserved and source.ofs_body == ofs_body
+            and source.len_body == len_body and source.num_elements == num_elements and source.body_crc32 == body_crc32
+        doc: |
+          No bytes. The entry whose bytes these are has its own, and says the same of them. (`table-same`)
+      - id: end_of_own
+        size: 0
+        if: same == 0
+        valid:
+          expr: >-
+            ofs_body % 64 == 0 and ofs_body >= previous_end
+            and ofs_body <= _root.header.len_file and len_body <= _root.header.len_file - ofs_body
+        doc: |
+          No bytes. Where a section with its own bytes lies. (`section-alignment`, `section-overlap`, `section-beyond`)
+      - id: end_of_entry
+        size: 0
+        valid:
+          expr: >-
+            is_known ? element_code == element_demanded and num_components == num_components_demanded
+            and (kind == section_kind::objects or (kind == section_kind::metadata ? len_body <= 1048576
+            : num_elements == num_elements_demanded))
+            and is_required == (kind != section_kind::metadata)
+            : owner != 0 or not is_required
+        doc: |
+          No bytes. A known section has the elements of its kind, and as many as the header demands; an unknown one of
+          the solid is not required. (`section-unknown`, `section-size`, `section-count`, `section-metadata-length`,
+          `section-required`)
       - id: end_of_table
         size: 0
         if: is_last
         valid:
           expr: >-
             (kinds_before_next & _root.header.kinds_demanded) == _root.header.kinds_demanded
-            and body_end == _root.header.len_file
+            and own_end == _root.header.len_file
         doc: |
           No bytes. What is known after the last entry: all sections that must be there are, and the file ends with
-          the last one. (`section-missing`, `section-end`)
+          the last one that has its own bytes. (`section-missing`, `section-end`)
     instances:
       is_known:
-        value: kind_code >= 1 and kind_code <= 9
-        doc: Whether this description knows the kind.
+        value: owner == 0 and kind_code >= 1 and kind_code <= 10
+        doc: Whether this description knows the section. It knows those of the solid.
       kind:
         value: kind_code
         enum: section_kind
         doc: The kind by name, if it is known. (What else it is depends on the language.)
+      element:
+        value: element_code
+        enum: element_type
+        doc: The element type by name, if it is known.
       is_required:
         value: (flags & 1) != 0
-        doc: Whether a reader that does not know the kind must refuse the file.
+        doc: Whether a reader must know the kind to read the owner.
       is_last:
         value: index == _root.header.num_sections.as<s4> - 1
         doc: Whether this is the last entry of the table.
+      previous:
+        value: _root.sections[index - 1]
+        if: index != 0
+        doc: The entry before.
+      source:
+        value: _root.sections[same - 1]
+        if: same != 0
+        doc: The entry whose bytes the section has, if it has not its own.
       previous_end:
-        value: '(index == 0 ? _root.header.len_table_end : _root.sections[index - 1].body_end).as<u8>'
-        doc: Where the table or the previous section ends, and the padding begins.
-      body_end:
-        value: (ofs_body + len_body).as<u8>
-        doc: Where the section ends.
+        value: '(index == 0 ? _root.header.len_table_end : _root.sections[index - 1].own_end).as<u8>'
+        doc: Where the table or the previous section with its own bytes ends, and the padding begins.
+      own_end:
+        value: '(same == 0 ? ofs_body + len_body : previous_end).as<u8>'
+        doc: Where the last section with its own bytes ends, of this one and those before.
       kinds_before:
         value: '(index == 0 ? 0 : _root.sections[index - 1].kinds_before_next).as<u4>'
-        doc: Bit k is set if a section before this one has the known kind k.
+        doc: Bit k is set if a section before this one is the solid's of the known kind k.
       kinds_before_next:
         value: '(kinds_before | (is_known ? 1 << kind_code : 0)).as<u4>'
         doc: The same with this section.
-      len_element_demanded:
+      len_number:
         value: |
-          kind == section_kind::planes ? 16
-          : kind == section_kind::rel ? 2
-          : kind == section_kind::base ? 8
-          : kind == section_kind::bricks ? _root.header.len_brick
-          : kind == section_kind::brick_indices ? 2
-          : kind == section_kind::dictionary_entries ? _root.header.len_brick
-          : kind == section_kind::dictionary_segments ? 8
-          : kind == section_kind::level_table ? 24
-          : 1
-        doc: The element size of a known kind.
+          element_code == 1 ? 1
+          : element_code == 2 ? 2
+          : element_code == 3 or element_code == 5 ? 4
+          : 8
+        doc: Bytes of one number of a known element type.
+        doc-ref: specification.md §4
+      len_element:
+        value: len_number * num_components
+        doc: Bytes of one element of a known element type.
+      element_demanded:
+        value: |
+          kind == section_kind::objects ? 0
+          : kind == section_kind::metadata ? 1
+          : kind == section_kind::rel or kind == section_kind::brick_indices ? 2
+          : 4
+        doc: The element type of a known section.
+        doc-ref: specification.md §5
+      num_components_demanded:
+        value: |
+          (kind == section_kind::objects ? 16
+          : kind == section_kind::level_table ? 3
+          : kind == section_kind::planes ? 2
+          : kind == section_kind::bricks or kind == section_kind::dictionary_entries ? _root.header.num_brick_planes
+          : 1).as<u1>
+        doc: The components of a known section.
         doc-ref: specification.md §5
       num_elements_demanded:
         value: |
@@ -425,7 +555,7 @@ types:
           : kind == section_kind::dictionary_entries ? _root.header.num_dictionary_entries
           : kind == section_kind::dictionary_segments ? _root.header.num_segments
           : _root.header.depth + 1).as<u8>
-        doc: The number of elements that a known kind must have; metadata may have any.
+        doc: The number of elements that a known section must have; objects and metadata may have any.
         doc-ref: specification.md §5
       padding:
         io: _root._io
@@ -433,16 +563,17 @@ types:
         type: u1
         repeat: expr
         repeat-expr: ofs_body - previous_end
+        if: same == 0
         valid: 0
-        doc: The bytes before the section. (`padding`)
+        doc: The bytes before a section that has its own bytes. (`padding`)
       body:
         io: _root._io
         pos: ofs_body
         size: len_body
-        doc: The bytes of the section. For those of known kinds see the instances of the file.
+        doc: The bytes of the section. For those of known sections see the instances of the file.
         doc-ref: specification.md §5
   finder:
-    doc: A search for the section of one kind. It reads nothing of the file.
+    doc: A search for the solid's section of one kind. It reads nothing of the file.
     params:
       - id: kind
         type: u4
@@ -477,11 +608,192 @@ types:
         value: _root.sections[index]
         doc: The entry.
       is_found:
-        value: section.kind == kind
-        doc: Whether it is of that kind.
+        value: section.owner == 0 and section.kind == kind
+        doc: Whether it is the solid's of that kind.
+  objects:
+    doc: What the file holds. Each section belongs to one of these objects.
+    doc-ref: specification.md §2.6, §5.1
+    seq:
+      - id: objects
+        size: 128
+        type: object_record(_index)
+        repeat: eos
+        doc: Object 0 is the solid.
+  object_record:
+    doc: |
+      One object. That of the solid repeats the header. (`object-mirror`, wherever a field of object 0 is compared. The
+      fields of other objects have a meaning in later versions.)
+    doc-ref: specification.md §5.1
+    params:
+      - id: index
+        type: s4
+        doc: The number of the object.
+    seq:
+      - id: type_code
+        type: u4
+        valid:
+          expr: 'is_solid ? _ == 1 : _ != 0'
+        doc: What the object is, 1 is a solid. (`object-type`)
+      - id: parent
+        type: u4
+        valid:
+          expr: '_ == 0xffff_ffff or _ < index'
+        doc: The number of an earlier object, or 0xFFFFFFFF. (`object-parent`; for object 0 there is none)
+      - id: flags
+        type: u4
+        valid:
+          expr: >-
+            (_ < 2 or _root.header.is_newer) and is_required == is_solid
+        doc: |
+          Bit 0: a reader must know the type to read the file. Only the type of object 0 is known. (`object-flags`,
+          `object-required`)
+      - id: depth
+        type: u1
+        valid:
+          expr: not is_solid or _ == _root.header.depth
+        doc: The header's, for object 0.
+      - id: root_tag
+        type: u1
+        valid:
+          expr: not is_solid or _ == _root.header.root_tag.to_i
+        doc: The header's, for object 0.
+      - id: exterior
+        type: u1
+        valid:
+          expr: not is_solid or _ == _root.header.exterior.to_i
+        doc: The header's, for object 0.
+      - id: proof
+        type: u1
+        valid:
+          expr: not is_solid or _ == _root.header.proof
+        doc: The header's, for object 0.
+      - id: num_brick_planes
+        type: u1
+        valid:
+          expr: not is_solid or _ == _root.header.num_brick_planes
+        doc: The header's, for object 0.
+      - id: brick_encoding
+        type: u1
+        valid:
+          expr: not is_solid or _ == _root.header.brick_encoding.to_i
+        doc: The header's, for object 0.
+      - id: segment_shift
+        type: u1
+        valid:
+          expr: not is_solid or _ == _root.header.segment_shift
+        doc: The header's, for object 0.
+      - id: value_type
+        type: u1
+        valid:
+          expr: not is_solid or _ == 0
+        doc: The element type of the object's values; 0 for object 0.
+      - id: num_components
+        type: u1
+        valid:
+          expr: not is_solid or _ == 0
+        doc: Components of the object's values; 0 for object 0.
+      - id: reserved1
+        type: u1
+        repeat: expr
+        repeat-expr: 3
+        valid:
+          expr: not is_solid or _ == 0 or _root.header.is_newer
+        doc: Zero, for object 0.
+      - id: displacement
+        type: f8
+        valid:
+          expr: not is_solid or (_ == _root.header.displacement.value and sign_byte < 0x80)
+        doc: The header's, for object 0.
+      - id: origin
+        size: 8
+        type: object_coordinate
+        repeat: expr
+        repeat-expr: 3
+        doc: The header's along x, y and z, for object 0.
+      - id: edge
+        type: f8
+        valid:
+          expr: not is_solid or _ == _root.header.edge
+        doc: The header's, for object 0.
+      - id: extents
+        type: u4
+        repeat: expr
+        repeat-expr: 3
+        valid:
+          expr: not is_solid or _ == 0
+        doc: Cells along x, y and z of an object on a lattice; 0 for object 0.
+      - id: reserved2
+        type: u4
+        valid:
+          expr: not is_solid or _ == 0 or _root.header.is_newer
+        doc: Zero, for object 0.
+      - id: num_elements
+        type: u8
+        valid:
+          expr: not is_solid or _ == _root.header.num_elements
+        doc: The header's, for object 0.
+      - id: num_bricks
+        type: u8
+        valid:
+          expr: not is_solid or _ == _root.header.num_bricks
+        doc: The header's, for object 0.
+      - id: num_dictionary_entries
+        type: u8
+        valid:
+          expr: not is_solid or _ == _root.header.num_dictionary_entries
+        doc: The header's, for object 0.
+      - id: num_values
+        type: u8
+        valid:
+          expr: not is_solid or _ == 0
+        doc: Number of the object's values; 0 for object 0.
+      - id: reserved3
+        type: u1
+        repeat: expr
+        repeat-expr: 16
+        valid:
+          expr: not is_solid or _ == 0 or _root.header.is_newer
+        doc: Zero, for object 0.
+      - id: end_of_object
+        size: 0
+        if: is_solid
+        valid:
+          expr: >-
+            origin[0].value == _root.header.origin_x.value and origin[1].value == _root.header.origin_y.value
+            and origin[2].value == _root.header.origin_z.value
+            and (origin[0].value != 0.0 or origin[0].sign_byte == 0)
+            and (origin[1].value != 0.0 or origin[1].sign_byte == 0)
+            and (origin[2].value != 0.0 or origin[2].sign_byte == 0)
+        doc: No bytes. The origin of object 0 is the header's.
+    instances:
+      is_solid:
+        value: index == 0
+        doc: Whether this is object 0, which repeats the header.
+      type_name:
+        value: type_code
+        enum: object_type
+        doc: The type by name, if it is one that this version names.
+      is_required:
+        value: (flags & 1) != 0
+        doc: Whether a reader must know the type to read the file.
+      sign_byte:
+        pos: 31
+        type: u1
+        doc: The byte of the displacement whose highest bit is the sign.
+  object_coordinate:
+    doc: A coordinate of the origin of an object, which is the header's for object 0.
+    seq:
+      - id: value
+        type: f8
+        doc: The coordinate, in model units.
+    instances:
+      sign_byte:
+        pos: 7
+        type: u1
+        doc: The byte whose highest bit is the sign.
   planes:
     doc: The elements, level by level; within a level in the order of their parents and of the cells of each parent.
-    doc-ref: specification.md §2.3, §2.4, §5.1
+    doc-ref: specification.md §2.3, §2.4, §5.4
     seq:
       - id: elements
         size: 16
@@ -493,7 +805,7 @@ types:
       An element or a brick: the tags of 64 cells, two levels below the cell to which it belongs. They are numbered in
       Morton order, so that the cells 8k to 8k + 7 are the children of octant k. Of an element, each BRANCH cell has an
       element or brick of its own; a brick has no BRANCH cells, and its cells are finest cells.
-    doc-ref: specification.md §2.3, §5.2
+    doc-ref: specification.md §2.3, §5.5
     params:
       - id: num_planes
         type: u1
@@ -643,7 +955,7 @@ types:
       First children of elements, as differences. The first child of element n, that is the element or brick of its
       first BRANCH cell, has the index base[n / 1024] + rel[n]; its other children follow in the order of their cells.
       Bricks are numbered on from the number of elements.
-    doc-ref: specification.md §2.4, §5.1
+    doc-ref: specification.md §2.4, §5.4
     seq:
       - id: values
         type: rel_value(_index)
@@ -668,7 +980,7 @@ types:
         doc: The index of the element's first child, or of what would be it.
   base:
     doc: First children of the elements 0, 1024, 2048 and so on.
-    doc-ref: specification.md §2.4, §5.1
+    doc-ref: specification.md §2.4, §5.4
     seq:
       - id: values
         type: u8
@@ -676,7 +988,7 @@ types:
         doc: One for each block of 1024 elements.
   bricks:
     doc: Bricks, or dictionary entries, which are bricks as well.
-    doc-ref: specification.md §5.2
+    doc-ref: specification.md §5.5
     seq:
       - id: bricks
         size: _root.header.len_brick
@@ -685,7 +997,7 @@ types:
         doc: The bricks in the order of their cells, or the entries.
   brick_indices:
     doc: For each brick its entry among those of its segment.
-    doc-ref: specification.md §5.2
+    doc-ref: specification.md §5.5
     seq:
       - id: indices
         type: brick_index(_index)
@@ -693,7 +1005,7 @@ types:
         doc: One for each brick.
   brick_index:
     doc: The dictionary entry of one brick.
-    doc-ref: specification.md §5.2
+    doc-ref: specification.md §5.5
     params:
       - id: index
         type: s4
@@ -715,7 +1027,7 @@ types:
         doc: The brick.
   dictionary_segments:
     doc: Where the dictionary entries of each segment begin.
-    doc-ref: specification.md §5.2
+    doc-ref: specification.md §5.5
     seq:
       - id: segments
         type: dictionary_segment(_index)
@@ -723,7 +1035,7 @@ types:
         doc: Segment s is that of the bricks s · 2^shift to (s + 1) · 2^shift − 1.
   dictionary_segment:
     doc: The dictionary entries of one segment.
-    doc-ref: specification.md §5.2
+    doc-ref: specification.md §5.5
     params:
       - id: index
         type: s4
@@ -859,7 +1171,7 @@ types:
       Facts about the solid. They change nothing about what the rest of the file means. In use are the keys `name`,
       `units` (the unit of length of the model), `source` (a fingerprint of what the tree was made from) and `rule` (how
       undecided cells were resolved).
-    doc-ref: specification.md §5.4
+    doc-ref: specification.md §5.2
     seq:
       - id: facts
         type: fact(_index)
@@ -867,7 +1179,7 @@ types:
         doc: The facts, which fill the section.
   fact:
     doc: A key and a value.
-    doc-ref: specification.md §5.4
+    doc-ref: specification.md §5.2
     params:
       - id: index
         type: s4
@@ -915,31 +1227,72 @@ enums:
     1:
       id: dictionary
       doc: Each brick is an index into the bricks that differ.
+  element_type:
+    0:
+      id: record
+      doc: A record that the kind of the section lays out, in units of 8 bytes.
+    1:
+      id: u1
+      doc: Bytes.
+    2:
+      id: u2
+      doc: Unsigned integers of 2 bytes.
+    3:
+      id: u4
+      doc: Unsigned integers of 4 bytes.
+    4:
+      id: u8
+      doc: Unsigned integers of 8 bytes.
+    5:
+      id: f4
+      doc: Floating-point numbers of 4 bytes.
+    6:
+      id: f8
+      doc: Floating-point numbers of 8 bytes.
+  object_type:
+    1:
+      id: solid
+      doc: A solid.
+    2:
+      id: channel
+      doc: Reserved for channels.
+    3:
+      id: tri_dexels
+      doc: Reserved for tri-dexel models.
+    4:
+      id: version
+      doc: Reserved for versions.
+    5:
+      id: partial_values
+      doc: Reserved for values of PARTIAL cells.
   section_kind:
     1:
-      id: planes
-      doc: Elements, 16 bytes each.
+      id: objects
+      doc: What the file holds, 128 bytes each.
     2:
-      id: rel
-      doc: Links of single elements, 2 bytes each.
-    3:
-      id: base
-      doc: Links of blocks of 1024 elements, 8 bytes each.
-    4:
-      id: bricks
-      doc: Raw bricks, 8 or 16 bytes each.
-    5:
-      id: brick_indices
-      doc: Dictionary entries of bricks, 2 bytes each.
-    6:
-      id: dictionary_entries
-      doc: Bricks that differ, 8 or 16 bytes each.
-    7:
-      id: dictionary_segments
-      doc: First entries of segments, 8 bytes each.
-    8:
-      id: level_table
-      doc: Counts of cells of each octree level, 24 bytes each.
-    9:
       id: metadata
       doc: Keys and values.
+    3:
+      id: level_table
+      doc: Counts of cells of each octree level, 24 bytes each.
+    4:
+      id: planes
+      doc: Elements, 16 bytes each.
+    5:
+      id: rel
+      doc: Links of single elements, 2 bytes each.
+    6:
+      id: base
+      doc: Links of blocks of 1024 elements, 8 bytes each.
+    7:
+      id: bricks
+      doc: Raw bricks, 8 or 16 bytes each.
+    8:
+      id: brick_indices
+      doc: Dictionary entries of bricks, 2 bytes each.
+    9:
+      id: dictionary_entries
+      doc: Bricks that differ, 8 or 16 bytes each.
+    10:
+      id: dictionary_segments
+      doc: First entries of segments, 8 bytes each.

@@ -1,14 +1,17 @@
-//! Makes the test vectors of the file format: small files, valid and invalid, and what a reader must say of each.
+//! Makes the test vectors of the file format: small files, valid and invalid, and what a reader must say of
+//! each.
 //!
 //! ```sh
 //! cargo run --release --example make_vectors -- format_spec/vectors
 //! ```
 //!
-//! What is expected of the valid files does not come from the library's readers: tags come from the shapes that
-//! the files were made from, counts from a plain recursion over them, and the cells of points from integers.
+//! What is expected of the valid files does not come from the library's readers: tags come from the shapes
+//! that the files were made from, counts from a plain recursion over them, and the cells of points from
+//! integers.
 
 use leafless::{
-    Cell, Classifier, Control, Error, Frame, Metadata, Octree, Rule, Solid, Tag, Verdict, Worker, build, file,
+    Cell, Classifier, Control, Error, Frame, Metadata, Octree, Proof, Rule, Solid, Tag, Verdict, Worker,
+    build, file,
 };
 use num_bigint::{BigInt, Sign};
 use std::cmp::Reverse;
@@ -57,6 +60,7 @@ type Shape = Arc<dyn Fn(Cell) -> Tag + Send + Sync>;
 struct Model {
     frame: Frame,
     exterior: Tag,
+    proof: Proof,
     metadata: Metadata,
     shape: Shape,
 }
@@ -109,7 +113,8 @@ impl Model {
         shape: impl Fn(Cell) -> Tag + Send + Sync + 'static,
     ) -> Model {
         let frame = Frame::new(origin, edge, depth).expect("a frame in range");
-        Model { frame, exterior: Tag::Empty, metadata: Metadata::new(), shape: Arc::new(shape) }
+        let (proof, metadata) = (Proof::CERTIFIED, Metadata::new());
+        Model { frame, exterior: Tag::Empty, proof, metadata, shape: Arc::new(shape) }
     }
 
     /// One in which lattice coordinates are model coordinates.
@@ -119,6 +124,16 @@ impl Model {
 
     fn exterior(mut self, exterior: Tag) -> Model {
         self.exterior = exterior;
+        self
+    }
+
+    fn proof(mut self, proof: Proof) -> Model {
+        self.proof = proof;
+        self
+    }
+
+    fn moved(mut self, displacement: f64) -> Model {
+        self.proof = self.proof.with_displacement(displacement).expect("a length");
         self
     }
 
@@ -138,7 +153,7 @@ impl Model {
 
     fn octree(&self) -> Octree {
         let octree = build(self, &self.frame, Rule::Certified, &Control::threads(1)).expect("a tree");
-        octree.with_metadata(self.metadata.clone())
+        octree.with_proof(self.proof).with_metadata(self.metadata.clone())
     }
 
     /// The tag of a finest cell.
@@ -235,7 +250,8 @@ fn ball(depth: u8) -> impl Fn(Cell) -> Tag + Sync {
     })
 }
 
-/// The finest cells `marks` have tags of their own, everything else is EMPTY: long branches, nothing beside them.
+/// The finest cells `marks` have tags of their own, everything else is EMPTY: long branches, nothing beside
+/// them.
 fn sparse(depth: u8, marks: &'static [([u32; 3], Tag)]) -> impl Fn(Cell) -> Tag + Sync {
     move |cell| {
         let below = |at: [u32; 3]| at.map(|a| a >> (depth - cell.level)) == cell.at;
@@ -376,24 +392,84 @@ pub fn valid() -> Vec<Valid> {
         .fact("unit", "a prefix of the next key");
     add("metadata", "five facts: empty texts, other alphabets", facts);
 
+    let proven = |full, empty| model().proof(Proof::new(full, empty));
+    add("proof-full", "FULL is proven, EMPTY is not: inner cells of a solid", proven(true, false));
+    add("proof-empty", "EMPTY is proven, FULL is not: outer cells of a solid", proven(false, true));
+    add("proof-none", "nothing is proven: a sampled solid", proven(false, false));
+    add("displacement", "surfaces were moved by 0.1 at the most", model().moved(0.1));
+    let about = "nothing but FULL is proven, and surfaces were moved by as much as a number can say";
+    add("displacement-greatest", about, proven(true, false).moved(f64::MAX));
+    let about = "surfaces were moved by the smallest number above 0";
+    add("displacement-smallest", about, model().moved(f64::from_bits(1)));
+
     let mut unusual = |name, about, model: Model, change: &dyn Fn(Parts) -> Vec<u8>| {
         let bytes = change(Parts::of(&model));
         vectors.push(Valid { name, about, canonical: false, bytes, model });
     };
     let about = "a section of an unknown kind that is not required";
     unusual("unknown-section", about, model(), &|mut parts| {
-        parts.sections.push(Section::new(1000, 2, 0, b"colours!".to_vec()));
+        parts.sections.push(Section::new(1000, (U16, 1), b"colours!".to_vec()));
         parts.bytes()
     });
-    let about =
-        "minor version 7, with optional flags, reserved fields and section flags that 0.0 does not know";
+    let about = "two sections of kinds that an application chose, of 32-bit floating point and of bytes";
+    unusual("application-sections", about, model(), &|mut parts| {
+        parts.sections.push(Section::new(APPLICATION, (F32, 3), vec![0x40; 36]));
+        parts.sections.push(Section::new(u32::MAX.into(), (U8, 255), vec![7; 255]));
+        parts.bytes()
+    });
+    let about = "two objects of unknown types, one the other's child, with sections of every element type, of which \
+                 two are sections of the solid";
+    unusual("unknown-objects", about, model().fact("units", "mm"), &|mut parts| {
+        parts.object(2, 0, 0).fill(0xA5);
+        parts.object(0x8000_0000, 1, 0);
+        parts.object(7, NO_PARENT, 0).fill(0xFF);
+        let own =
+            [(16, (U8, 1)), (17, (U16, 2)), (18, (U32, 1)), (19, (U64, 1)), (20, (F32, 4)), (21, (F64, 1))];
+        for (kind, element) in own {
+            parts.sections.push(Section::new(kind, element, vec![0x3F; 32]).of(1));
+        }
+        // What a kind means to the solid it need not mean to another object; nor whether it is required.
+        parts.sections.push(Section::new(REL, (F64, 2), vec![0; 16]).of(2).flagged(0));
+        let levels = parts.shared(LEVELS, 3, LEVELS);
+        let metadata = parts.shared(METADATA, 3, APPLICATION);
+        parts.sections.extend([levels, metadata.flagged(0)]);
+        parts.bytes()
+    });
+    let about = "two pairs of sections of the solid, each of which lies in one place";
+    let corner = Model::plain(3, sparse(3, &[([0; 3], Tag::Full)]));
+    unusual("shared-sections", about, corner, &|parts| {
+        // `rel` and the brick indices are 0, `base` and the dictionary 1.
+        let mut parts = parts.encoded();
+        for (kind, of) in [(INDICES, REL), (ENTRIES, BASE)] {
+            let section = parts.take(kind);
+            let shared = parts.shared(of, 0, kind);
+            assert!((section.bytes, section.element) == (shared.bytes.clone(), shared.element));
+            parts.sections.push(shared);
+        }
+        parts.sort();
+        parts.bytes()
+    });
+    let about = "minor version 7: optional flags, reserved fields, flags of sections and objects, an element type and an \
+                 encoding that 0.1 does not know";
     unusual("newer-minor", about, model(), &|mut parts| {
         put(&mut parts.head, 10, 7, 2);
         put(&mut parts.head, 20, 0x8000_0001, 4);
-        put(&mut parts.head, 70, 0xABCD, 2);
-        parts.head[104..124].fill(0x55);
-        parts.sections.push(Section::new(16, 1, 6, b"tomorrow".to_vec()));
-        parts.sections[0].flags |= 0x10;
+        parts.head[71] = 0xAB;
+        parts.head[112..124].fill(0x55);
+        let solid = &mut parts.section(OBJECTS).bytes;
+        put(solid, 8, 0x41, 4);
+        for reserved in [21..24, 76..80, 112..128] {
+            solid[reserved].fill(0x66);
+        }
+        parts.object(3, 0, 0xFFFF_FFFE).fill(0x77);
+        let mut strange = Section::new(16, (200, 3), b"tomorrow".to_vec()).flagged(6);
+        (strange.encoding, strange.count) = (9, Some(1 << 60));
+        parts.sections.push(strange);
+        let mut packed = Section::new(17, (F32, 1), b"packed".to_vec()).of(1);
+        (packed.encoding, packed.count) = (1, Some(1000));
+        parts.sections.push(packed);
+        let levels = parts.section(LEVELS);
+        (levels.flags, levels.reserved) = (0x11, 0xEE);
         parts.bytes()
     });
     unusual("unusual-raw", "raw bricks where a dictionary would be shorter", coded(), &|parts| {
@@ -405,10 +481,6 @@ pub fn valid() -> Vec<Valid> {
     let about = "more padding between sections than alignment needs";
     unusual("unusual-padding", about, example(), &|mut parts| {
         parts.sections.iter_mut().for_each(|section| section.gap = 64);
-        parts.bytes()
-    });
-    unusual("unusual-order", "sections in descending order of kinds", example(), &|mut parts| {
-        parts.sections.reverse();
         parts.bytes()
     });
     vectors
@@ -437,6 +509,9 @@ impl Valid {
         line("root", &name(root));
         line("exterior", &name(model.exterior));
         let partial: u64 = levels.iter().map(|counts| counts[2]).sum();
+        let Proof { full, empty, .. } = model.proof;
+        line("proof", &(full as u8 + 2 * empty as u8));
+        line("displacement", &hex(model.proof.displacement()));
         line("planes", &if partial == 0 { 1 } else { 2 });
         line("encoding", &["raw", "dictionary"][number(bytes, 68, 1) as usize]);
         line("shift", &number(bytes, 69, 1));
@@ -449,8 +524,11 @@ impl Valid {
         line("elements", &nodes(0..last));
         line("bricks", &nodes(last..depth as usize));
         line("entries", &number(bytes, 88, 8));
-        let kinds = (0..number(bytes, 96, 4) as usize).map(|i| number(bytes, 128 + 40 * i, 4).to_string());
-        line("sections", &kinds.collect::<Vec<_>>().join(" "));
+        line("objects", &number(bytes, entry(bytes, OBJECTS) + COUNT, 8));
+        for (key, field) in [("sections", KIND), ("owners", OWNER)] {
+            let numbers = entries(bytes).map(|at| number(bytes, at + field, 4).to_string());
+            line(key, &numbers.collect::<Vec<_>>().join(" "));
+        }
         for (level, [nodes, full, partial]) in levels.iter().enumerate() {
             line("level", &format!("{level} {nodes} {full} {partial}"));
         }
@@ -598,14 +676,89 @@ pub fn put(bytes: &mut [u8], at: usize, value: u64, length: usize) {
     bytes[at..at + length].copy_from_slice(&value.to_le_bytes()[..length]);
 }
 
+/// Kinds of sections.
+const OBJECTS: u64 = 1;
+const METADATA: u64 = 2;
+const LEVELS: u64 = 3;
+const PLANES: u64 = 4;
+const REL: u64 = 5;
+const BASE: u64 = 6;
+const BRICKS: u64 = 7;
+const INDICES: u64 = 8;
+const ENTRIES: u64 = 9;
+const SEGMENTS: u64 = 10;
+/// The first kind that belongs to applications.
+const APPLICATION: u64 = 1 << 31;
+
+/// Types of elements.
+const RECORD: u64 = 0;
+const U8: u64 = 1;
+const U16: u64 = 2;
+const U32: u64 = 3;
+const U64: u64 = 4;
+const F32: u64 = 5;
+const F64: u64 = 6;
+
+/// The parent of an object that has none.
+const NO_PARENT: u64 = u32::MAX as u64;
+
+/// Length of a header, and of the record of an object.
+const HEADER: usize = 128;
+/// Length of an entry of the section table.
+pub const ENTRY: usize = 48;
+
+/// Where the fields of an entry are.
+const KIND: usize = 0;
+const OWNER: usize = 4;
+const TYPE: usize = 8;
+const COMPONENTS: usize = 9;
+const ENCODING: usize = 10;
+const RESERVED: usize = 11;
+const FLAGS: usize = 12;
+const OFFSET: usize = 16;
+const LENGTH: usize = 24;
+const COUNT: usize = 32;
+const CRC: usize = 40;
+const SAME: usize = 44;
+
+/// Where the fields of the header are that the record of the solid repeats, where they are in the record, and
+/// how many bytes they take.
+const MIRRORED: [(usize, usize, usize); 8] = [
+    // Depth, root tag, exterior.
+    (64, 12, 3),
+    // Proof.
+    (70, 15, 1),
+    // Planes of a brick, brick encoding, segment shift.
+    (67, 16, 3),
+    // Displacement.
+    (104, 24, 8),
+    // Origin and edge.
+    (32, 32, 32),
+    (72, 80, 8),
+    (80, 88, 8),
+    (88, 96, 8),
+];
+
+/// Makes the record of the solid say what the header says, where there is one.
+pub fn mirror(bytes: &mut [u8]) {
+    let Some(at) = entries(bytes).next().filter(|&at| number(bytes, at + KIND, 8) == OBJECTS) else { return };
+    let start = number(bytes, at + OFFSET, 8) as usize;
+    if start < at || start.checked_add(HEADER).is_none_or(|end| end > bytes.len()) {
+        return;
+    }
+    for (from, to, length) in MIRRORED {
+        bytes.copy_within(from..from + length, start + to);
+    }
+}
+
 /// Sets the checksums of all sections that lie in the file, of the table and of the header.
 pub fn seal(bytes: &mut [u8]) {
     for at in entries(bytes) {
-        let (start, length) = (number(bytes, at + 8, 8), number(bytes, at + 16, 8));
+        let (start, length) = (number(bytes, at + OFFSET, 8), number(bytes, at + LENGTH, 8));
         let end = usize::try_from(start.saturating_add(length)).unwrap_or(usize::MAX);
         if let Some(section) = bytes.get(start as usize..end) {
             let crc = crc32fast::hash(section);
-            put(bytes, at + 32, crc.into(), 4);
+            put(bytes, at + CRC, crc.into(), 4);
         }
     }
     seal_head(bytes);
@@ -613,8 +766,8 @@ pub fn seal(bytes: &mut [u8]) {
 
 /// Sets the checksums of the table and of the header.
 pub fn seal_head(bytes: &mut [u8]) {
-    let end = 128 + 40 * number(bytes, 96, 4) as usize;
-    if let Some(table) = bytes.get(128..end) {
+    let end = HEADER + ENTRY * number(bytes, 96, 4) as usize;
+    if let Some(table) = bytes.get(HEADER..end) {
         let crc = crc32fast::hash(table);
         put(bytes, 100, crc.into(), 4);
     }
@@ -625,7 +778,7 @@ pub fn seal_head(bytes: &mut [u8]) {
 /// Where the entries of the section table are.
 fn entries(bytes: &[u8]) -> impl Iterator<Item = usize> + use<> {
     let end = bytes.len();
-    (0..number(bytes, 96, 4) as usize).map(|i| 128 + 40 * i).take_while(move |at| at + 40 <= end)
+    (0..number(bytes, 96, 4) as usize).map(|i| HEADER + ENTRY * i).take_while(move |at| at + ENTRY <= end)
 }
 
 /// Where the table's entry of a kind is.
@@ -635,7 +788,7 @@ fn entry(bytes: &[u8], kind: u64) -> usize {
 
 /// Where the section of a kind begins.
 fn offset(bytes: &[u8], kind: u64) -> usize {
-    number(bytes, entry(bytes, kind) + 8, 8) as usize
+    number(bytes, entry(bytes, kind) + OFFSET, 8) as usize
 }
 
 /// A file in pieces.
@@ -644,18 +797,55 @@ struct Parts {
     sections: Vec<Section>,
 }
 
+#[derive(Clone)]
 struct Section {
     kind: u64,
-    size: u64,
+    owner: u64,
+    /// Type and components of an element.
+    element: (u64, u64),
+    encoding: u64,
+    reserved: u64,
     flags: u64,
+    /// How many elements, if not as many as fit into the bytes.
+    count: Option<u64>,
     bytes: Vec<u8>,
+    /// Owner and kind of the section whose bytes these are, too.
+    same: Option<(u64, u64)>,
     /// Zeros before it, besides those of the alignment.
     gap: usize,
 }
 
 impl Section {
-    fn new(kind: u64, size: u64, flags: u64, bytes: Vec<u8>) -> Section {
-        Section { kind, size, flags, bytes, gap: 0 }
+    /// One of the solid's. It is required if it is one that all readers know, and no metadata.
+    fn new(kind: u64, element: (u64, u64), bytes: Vec<u8>) -> Section {
+        let flags = (kind <= SEGMENTS && kind != METADATA) as u64;
+        Section {
+            kind,
+            owner: 0,
+            element,
+            encoding: 0,
+            reserved: 0,
+            flags,
+            count: None,
+            bytes,
+            same: None,
+            gap: 0,
+        }
+    }
+
+    /// The same of another object.
+    fn of(self, owner: u64) -> Section {
+        Section { owner, ..self }
+    }
+
+    fn flagged(self, flags: u64) -> Section {
+        Section { flags, ..self }
+    }
+
+    /// Bytes of an element.
+    fn size(&self) -> usize {
+        let (kind, components) = self.element;
+        [8, 1, 2, 4, 8, 4, 8].get(kind as usize).map_or(1, |size| size * components as usize)
     }
 }
 
@@ -664,60 +854,99 @@ impl Parts {
         let bytes = file::to_bytes(&model.octree()).expect("a file");
         let section = |at: usize| {
             let field = |offset, length| number(&bytes, at + offset, length);
-            let (start, length) = (field(8, 8) as usize, field(16, 8) as usize);
-            Section::new(field(0, 4), field(4, 4), field(36, 4), bytes[start..start + length].to_vec())
+            let (start, length) = (field(OFFSET, 8) as usize, field(LENGTH, 8) as usize);
+            let element = (field(TYPE, 1), field(COMPONENTS, 1));
+            let section = Section::new(field(KIND, 4), element, bytes[start..start + length].to_vec());
+            assert_eq!(section.flags, field(FLAGS, 4));
+            section
         };
-        Parts { head: bytes[..128].to_vec(), sections: entries(&bytes).map(section).collect() }
+        Parts { head: bytes[..HEADER].to_vec(), sections: entries(&bytes).map(section).collect() }
     }
 
+    /// The solid's section of a kind.
     fn section(&mut self, kind: u64) -> &mut Section {
-        self.sections.iter_mut().find(|section| section.kind == kind).expect("a section of this kind")
+        let of_solid = |section: &&mut Section| section.kind == kind && section.owner == 0;
+        self.sections.iter_mut().find(of_solid).expect("a section of this kind")
     }
 
     fn take(&mut self, kind: u64) -> Section {
-        let at = self.sections.iter().position(|section| section.kind == kind);
+        let at = self.sections.iter().position(|section| section.kind == kind && section.owner == 0);
         self.sections.remove(at.expect("a section of this kind"))
+    }
+
+    /// A section of `kind` for `owner`, of which the bytes are those of the solid's section `of`.
+    fn shared(&mut self, of: u64, owner: u64, kind: u64) -> Section {
+        Section { kind, owner, same: Some((0, of)), ..self.section(of).clone() }
+    }
+
+    /// Adds the record of an object that has not been told more about than this; what can be told follows.
+    fn object(&mut self, kind: u64, parent: u64, flags: u64) -> &mut [u8] {
+        let records = &mut self.section(OBJECTS).bytes;
+        let at = records.len();
+        records.resize(at + HEADER, 0);
+        for (field, value) in [(0, kind), (4, parent), (8, flags)] {
+            put(records, at + field, value, 4);
+        }
+        &mut records[at + 12..]
+    }
+
+    /// Puts sections into the order that the table demands.
+    fn sort(&mut self) {
+        self.sections.sort_by_key(|section| (section.owner, section.kind));
     }
 
     /// The file, with right offsets and checksums.
     fn bytes(&self) -> Vec<u8> {
         let mut bytes = self.head.clone();
-        bytes.resize(128 + 40 * self.sections.len(), 0);
+        bytes.resize(HEADER + ENTRY * self.sections.len(), 0);
         for (i, section) in self.sections.iter().enumerate() {
-            let start = bytes.len().next_multiple_of(64) + section.gap;
-            bytes.resize(start, 0);
-            bytes.extend_from_slice(&section.bytes);
-            let length = section.bytes.len() as u64;
+            let of = section.same.and_then(|of| self.sections.iter().position(|s| (s.owner, s.kind) == of));
+            let start = match of {
+                Some(of) => number(&bytes, HEADER + ENTRY * of + OFFSET, 8) as usize,
+                None => {
+                    let start = bytes.len().next_multiple_of(64) + section.gap;
+                    bytes.resize(start, 0);
+                    bytes.extend_from_slice(&section.bytes);
+                    start
+                }
+            };
+            let length = section.bytes.len();
             let fields = [
-                (0, section.kind, 4),
-                (4, section.size, 4),
-                (8, start as u64, 8),
-                (16, length, 8),
-                (24, length / section.size, 8),
-                (36, section.flags, 4),
+                (KIND, section.kind, 4),
+                (OWNER, section.owner, 4),
+                (TYPE, section.element.0, 1),
+                (COMPONENTS, section.element.1, 1),
+                (ENCODING, section.encoding, 1),
+                (RESERVED, section.reserved, 1),
+                (FLAGS, section.flags, 4),
+                (OFFSET, start as u64, 8),
+                (LENGTH, length as u64, 8),
+                (COUNT, section.count.unwrap_or((length / section.size()) as u64), 8),
+                (SAME, of.map_or(0, |of| of as u64 + 1), 4),
             ];
             for (at, value, size) in fields {
-                put(&mut bytes, 128 + 40 * i + at, value, size);
+                put(&mut bytes, HEADER + ENTRY * i + at, value, size);
             }
         }
         let length = bytes.len() as u64;
         put(&mut bytes, 24, length, 8);
         put(&mut bytes, 96, self.sections.len() as u64, 4);
+        mirror(&mut bytes);
         seal(&mut bytes);
         bytes
     }
 
     /// The same with raw bricks.
     fn decoded(mut self) -> Parts {
-        let (indices, entries) = (self.take(5), self.take(6));
-        self.take(7);
+        let (indices, entries) = (self.take(INDICES), self.take(ENTRIES));
+        self.take(SEGMENTS);
         let entry = |index: &[u8]| {
-            let at = (number(index, 0, 2) * entries.size) as usize;
-            entries.bytes[at..at + entries.size as usize].to_vec()
+            let at = number(index, 0, 2) as usize * entries.size();
+            entries.bytes[at..at + entries.size()].to_vec()
         };
         let bricks = indices.bytes.chunks(2).flat_map(entry).collect();
-        self.sections.insert(0, Section::new(4, entries.size, 1, bricks));
-        self.sections.sort_by_key(|section| section.kind);
+        self.sections.push(Section::new(BRICKS, entries.element, bricks));
+        self.sort();
         self.head[68..70].fill(0);
         put(&mut self.head, 88, 0, 8);
         self
@@ -725,8 +954,8 @@ impl Parts {
 
     /// The same, bricks of one plane through a dictionary, with segments of 2^16 bricks.
     fn in_small_segments(mut self) -> Parts {
-        let (shift, entries, starts) = (self.head[69], self.take(6).bytes, self.take(7).bytes);
-        let indices = self.take(5).bytes;
+        let (shift, entries, starts) = (self.head[69], self.take(ENTRIES).bytes, self.take(SEGMENTS).bytes);
+        let indices = self.take(INDICES).bytes;
         let brick = |b: usize| {
             let start = number(&starts, 8 * (b >> shift), 8);
             number(&entries, 8 * (start + number(&indices, 2 * b, 2)) as usize, 8)
@@ -745,28 +974,29 @@ impl Parts {
         }
         self.head[69] = 16;
         put(&mut self.head, 88, entries.len() as u64 / 8, 8);
-        let sections = [(5, 2, indices), (6, 8, entries), (7, 8, starts)];
-        self.sections.extend(sections.map(|(kind, size, bytes)| Section::new(kind, size, 1, bytes)));
-        self.sections.sort_by_key(|section| section.kind);
+        let sections = [(INDICES, U16, indices), (ENTRIES, U64, entries), (SEGMENTS, U64, starts)];
+        self.sections.extend(sections.map(|(kind, element, bytes)| Section::new(kind, (element, 1), bytes)));
+        self.sort();
         self
     }
 
     /// The same with all bricks through a dictionary of one segment; all bricks are different.
     fn encoded(mut self) -> Parts {
-        let raw = self.take(4);
-        let mut bricks: Vec<_> = raw.bytes.chunks(raw.size as usize).collect();
+        let raw = self.take(BRICKS);
+        let size = raw.size();
+        let mut bricks: Vec<_> = raw.bytes.chunks(size).collect();
         let value = |brick: &&[u8]| (number(brick, 0, 8), number(brick, brick.len() - 8, 8));
         bricks.sort_by_key(value);
         bricks.dedup();
         let place = |brick: &[u8]| bricks.iter().position(|&entry| entry == brick).expect("an entry") as u16;
-        let indices =
-            raw.bytes.chunks(raw.size as usize).flat_map(|brick| place(brick).to_le_bytes()).collect();
-        assert_eq!(bricks.len() * raw.size as usize, raw.bytes.len(), "each entry is used once");
+        let indices = raw.bytes.chunks(size).flat_map(|brick| place(brick).to_le_bytes()).collect();
+        assert_eq!(bricks.len() * size, raw.bytes.len(), "each entry is used once");
         self.head[68..70].copy_from_slice(&[1, 63]);
         put(&mut self.head, 88, bricks.len() as u64, 8);
-        let entries = Section::new(6, raw.size, 1, bricks.concat());
-        self.sections.extend([Section::new(5, 2, 1, indices), entries, Section::new(7, 8, 1, vec![0; 8])]);
-        self.sections.sort_by_key(|section| section.kind);
+        let entries = Section::new(ENTRIES, raw.element, bricks.concat());
+        let segments = Section::new(SEGMENTS, (U64, 1), vec![0; 8]);
+        self.sections.extend([Section::new(INDICES, (U16, 1), indices), entries, segments]);
+        self.sort();
         self
     }
 }
@@ -833,6 +1063,8 @@ pub fn invalid() -> Vec<Invalid> {
     let mut list = List { way: Way::Probing, vectors: vec![] };
     header(&mut list);
     table(&mut list);
+    list.way = Way::Plain;
+    objects(&mut list);
     before_use(&mut list);
     verification(&mut list);
     list.vectors
@@ -901,7 +1133,7 @@ fn good(model: &Model) -> Vec<u8> {
     file::to_bytes(&model.octree()).expect("a file")
 }
 
-/// `bytes` with one number changed, and right checksums.
+/// `bytes` with one number changed, the header repeated by the record of the solid, and right checksums.
 fn with(bytes: &[u8], at: usize, value: u64, length: usize) -> Vec<u8> {
     changed(bytes, |bytes| put(bytes, at, value, length))
 }
@@ -909,21 +1141,23 @@ fn with(bytes: &[u8], at: usize, value: u64, length: usize) -> Vec<u8> {
 fn changed(bytes: &[u8], change: impl FnOnce(&mut Vec<u8>)) -> Vec<u8> {
     let mut bytes = bytes.to_vec();
     change(&mut bytes);
+    mirror(&mut bytes);
     seal(&mut bytes);
     bytes
 }
 
 /// Names of the known sections, by kind.
-const KINDS: [(u64, &str); 9] = [
-    (1, "planes"),
-    (2, "rel"),
-    (3, "base"),
-    (4, "bricks"),
-    (5, "brick indices"),
-    (6, "dictionary entries"),
-    (7, "dictionary segments"),
-    (8, "level table"),
-    (9, "metadata"),
+const KINDS: [(u64, &str); 10] = [
+    (OBJECTS, "objects"),
+    (METADATA, "metadata"),
+    (LEVELS, "level table"),
+    (PLANES, "planes"),
+    (REL, "rel"),
+    (BASE, "base"),
+    (BRICKS, "bricks"),
+    (INDICES, "brick indices"),
+    (ENTRIES, "dictionary entries"),
+    (SEGMENTS, "dictionary segments"),
 ];
 
 /// §10.1, the header.
@@ -932,6 +1166,7 @@ fn header(list: &mut List) {
     let uniform = good(&Model::plain(4, |_| Tag::Full));
     let flat = good(&Model::plain(2, noise(2, 3, BINARY)));
     let all = raw.len();
+    let table_end = HEADER + ENTRY * number(&raw, 96, 4) as usize;
 
     let transfer = |from: &str, to: &str| {
         let mut out = vec![];
@@ -962,7 +1197,9 @@ fn header(list: &mut List) {
     list.add("header-short", "magic", "a part of the magic", length(128, 5), raw[..5].to_vec());
     list.add("header-short", "", "one byte less than a header", length(128, 127), raw[..127].to_vec());
     let version = |major, minor| format!("Format(Version {{ major: {major}, minor: {minor} }})");
-    list.add("header-major", "", "major version 1", version(1, 0), with(&raw, 8, 1, 2));
+    list.add("header-major", "", "major version 1", version(1, 1), with(&raw, 8, 1, 2));
+    let about = "version 0.0, which had another section table";
+    list.add("header-major", "oldest", about, version(0, 0), with(&raw, 10, 0, 2));
     let mut other = with(&raw, 8, 0xFFFF, 2);
     put(&mut other, 10, 3, 2);
     list.add(
@@ -983,9 +1220,9 @@ fn header(list: &mut List) {
         list.add(rule, of, about, field(name, value), with(&raw, at, value, length));
     };
     one("header-length", "", "a longer header", "header length", 12, 136, 4);
-    one("header-optional-flags", "", "an unknown flag of version 0.0", "optional flags", 20, 1, 4);
-    one("header-reserved", "", "the reserved number", "reserved field", 70, 1, 2);
-    one("header-reserved", "first", "the first of the reserved bytes", "reserved field", 104, 1, 1);
+    one("header-optional-flags", "", "an unknown flag of version 0.1", "optional flags", 20, 1, 4);
+    one("header-reserved", "", "the reserved byte by itself", "reserved field", 71, 1, 1);
+    one("header-reserved", "first", "the first of the reserved bytes", "reserved field", 112, 1, 1);
     one("header-reserved", "last", "the last of the reserved bytes", "reserved field", 123, 0x80, 1);
     let beyond = f64::from_bits((1023 + 256) << 52).next_up().to_bits();
     let below = f64::from_bits((1023 - 256) << 52).next_down().to_bits();
@@ -1004,6 +1241,15 @@ fn header(list: &mut List) {
     one("header-root", "", "a tag of three bits", "root tag", 65, 4, 1);
     one("header-exterior", "branch", "BRANCH", "exterior", 66, 1, 1);
     one("header-exterior", "large", "a tag of three bits", "exterior", 66, 4, 1);
+    one("header-proof", "", "a third bit", "proof", 70, 4, 1);
+    one("header-proof", "large", "all bits", "proof", 70, 255, 1);
+    let mut moved = |of: &str, about, value: f64| {
+        one("header-displacement", of, about, "displacement", 104, value.to_bits(), 8);
+    };
+    moved("nan", "not a number", f64::NAN);
+    moved("infinite", "infinite", f64::INFINITY);
+    moved("negative", "-1", -1.0);
+    moved("negative-zero", "-0", -0.0);
     one("header-brick-planes", "zero", "no plane", "planes of a brick", 67, 0, 1);
     one("header-brick-planes", "large", "three planes", "planes of a brick", 67, 3, 1);
     one("header-encoding", "", "an unknown encoding", "brick encoding", 68, 2, 1);
@@ -1011,11 +1257,11 @@ fn header(list: &mut List) {
     one("header-raw-entries", "", "a dictionary entry of raw bricks", "dictionary entries", 88, 1, 8);
     one("header-section-count", "zero", "no section", "section count", 96, 0, 4);
     one("header-section-count", "large", "4097 sections", "section count", 96, 4097, 4);
-    one("header-file-length", "", "the file ends with the table", "file length", 24, 368, 8);
+    one("header-file-length", "", "the file ends with the table", "file length", 24, table_end as u64, 8);
     let flags = required("flags", 4);
     list.add("header-required-flags", "", "a required flag", flags, with(&raw, 16, 4, 4));
     let newer = changed(&raw, |bytes| {
-        put(bytes, 10, 1, 2);
+        put(bytes, 10, 2, 2);
         put(bytes, 16, 1 << 31, 4);
     });
     let flags = required("flags", 1 << 31);
@@ -1045,16 +1291,18 @@ fn header(list: &mut List) {
     let bytes = with(&uniform, 80, 2, 8);
     list.add("header-bricks", "", "bricks of a universe that is FULL", field("bricks", 2), bytes);
 
-    list.add("table-short", "none", "nothing behind the header", length(368, 128), raw[..128].to_vec());
+    let about = "nothing behind the header";
+    list.add("table-short", "none", about, length(table_end, HEADER), raw[..HEADER].to_vec());
     list.but_length(all);
-    list.add("table-short", "", "one byte less than the table", length(368, 367), raw[..367].to_vec());
+    let about = "one byte less than the table";
+    list.add("table-short", "", about, length(table_end, table_end - 1), raw[..table_end - 1].to_vec());
     list.but_length(all);
     let mut wrong = raw.clone();
     wrong[100] ^= 1;
     seal_header(&mut wrong);
     list.add("table-crc", "", "a bit of the checksum is flipped", checksum("the section table"), wrong);
     let mut wrong = raw;
-    wrong[128 + 36] ^= 2;
+    wrong[HEADER + FLAGS] ^= 2;
     list.add("table-crc", "entry", "a bit of an entry is flipped", checksum("the section table"), wrong);
 }
 
@@ -1072,82 +1320,230 @@ fn table(list: &mut List) {
     let mut one = |rule, of: &str, about, name: &str, at, value: u64, length| {
         list.add(rule, of, about, field(name, value), with(&raw, at, value, length));
     };
-    one("section-flags", "", "an unknown flag of version 0.0", "section flags", at(1) + 36, 3, 4);
-    one("section-length", "product", "not count times size", "section length", at(1) + 16, 17, 8);
-    one("section-alignment", "", "on a multiple of 32", "section offset", at(2) + 8, 0x1A0, 8);
-    one("section-overlap", "table", "a section in the table", "section offset", at(1) + 8, 0x140, 8);
+    one("section-kind", "", "kind 0", "section kind", at(METADATA), 0, 4);
+    one("section-flags", "", "an unknown flag of version 0.1", "section flags", at(PLANES) + FLAGS, 3, 4);
+    one("table-reserved", "", "the reserved byte", "reserved field", at(PLANES) + RESERVED, 1, 1);
+    let about = "an encoding that version 0.1 does not know";
+    one("table-encoding", "", about, "section encoding", at(PLANES) + ENCODING, 1, 1);
+    one("section-length", "product", "not count times size", "section length", at(PLANES) + LENGTH, 17, 8);
+    let about = "on a multiple of 32";
+    one("section-alignment", "", about, "section offset", at(METADATA) + OFFSET, 0x2A0, 8);
     one(
         "section-overlap",
-        "header",
-        "a section at the beginning of the file",
+        "table",
+        "a section in the table",
         "section offset",
-        at(1) + 8,
-        0,
+        at(OBJECTS) + OFFSET,
+        0x140,
         8,
     );
-    one("section-overlap", "same", "two sections in one place", "section offset", at(2) + 8, 0x180, 8);
-    one("section-kind", "", "kind 0", "section kind", at(9), 0, 4);
-    one("section-required", "", "planes that are not required", "section flags", at(1) + 36, 0, 4);
-    one("section-required", "metadata", "metadata that are", "section flags", at(9) + 36, 1, 4);
-    let many = |count: u64| {
+    let about = "a section at the beginning of the file";
+    one("section-overlap", "header", about, "section offset", at(OBJECTS) + OFFSET, 0, 8);
+    let about = "two sections in one place, and neither says so";
+    one("section-overlap", "same", about, "section offset", at(METADATA) + OFFSET, 0x200, 8);
+    one("section-required", "", "planes that are not required", "section flags", at(PLANES) + FLAGS, 0, 4);
+    one("section-required", "objects", "objects that are not", "section flags", at(OBJECTS) + FLAGS, 0, 4);
+    one("section-required", "metadata", "metadata that are", "section flags", at(METADATA) + FLAGS, 1, 4);
+
+    // What the elements are.
+    let mut strange = |of: &str, about, kind: u64, components: u64| {
+        let bytes = changed(&raw, |bytes| {
+            put(bytes, at(PLANES) + TYPE, kind, 1);
+            put(bytes, at(PLANES) + COMPONENTS, components, 1);
+        });
+        list.add("table-element", of, about, field("element type", kind | components << 8), bytes);
+    };
+    strange("", "an element type that version 0.1 does not know", 7, 2);
+    strange("large", "the largest number of a type", 255, 2);
+    strange("components", "elements of no component", U64, 0);
+    let newer = changed(&raw, |bytes| {
+        put(bytes, 10, 2, 2);
+        put(bytes, at(PLANES) + TYPE, 7, 2);
+    });
+    let about = "no component, of an unknown type in a newer minor version";
+    list.add("table-element", "newer", about, field("element type", 7), newer);
+    let newer = changed(&raw, |bytes| {
+        put(bytes, 10, 2, 2);
+        put(bytes, at(PLANES) + ENCODING, 1, 1);
+    });
+    let about = "planes in an unknown encoding of a newer minor version";
+    list.add("table-encoding", "newer", about, required("section encoding", 1), newer);
+
+    // Where they are.
+    let extent = |kind: u64, length: u64, count: u64| {
         changed(&raw, |bytes| {
-            put(bytes, at(9) + 16, count, 8);
-            put(bytes, at(9) + 24, count, 8);
+            put(bytes, at(kind) + LENGTH, length, 8);
+            put(bytes, at(kind) + COUNT, count, 8);
         })
     };
-    list.add("section-length", "zero", "an empty section", field("section length", 0), many(0));
-    let wide = changed(&raw, |bytes| {
-        put(bytes, at(1) + 24, 1 << 60, 8);
-        put(bytes, at(1) + 16, 0, 8);
-    });
-    list.add("section-length", "overflow", "count times size is 2^64", field("section length", 0), wide);
-    list.add("section-beyond", "", "one byte more than the file has", field("section length", 16), many(16));
-    let far = with(&raw, at(9) + 8, u64::MAX - 63, 8);
-    let far = changed(&far, |bytes| {
-        put(bytes, at(9) + 16, 64, 8);
-        put(bytes, at(9) + 24, 64, 8);
-    });
-    list.add("section-beyond", "overflow", "its end is 2^64", field("section length", 64), far);
-    let unknown = with(&raw, at(1), 20, 4);
-    list.add("section-unknown", "", "a required section of kind 20", required("section", 20), unknown);
+    let error = field("section length", 0);
+    list.add("section-length", "zero", "an empty section", error.clone(), extent(METADATA, 0, 0));
+    list.add("section-length", "overflow", "count times size is 2^64", error, extent(PLANES, 0, 1 << 60));
     let newer = changed(&raw, |bytes| {
-        put(bytes, 10, 1, 2);
-        put(bytes, at(8), u32::MAX as u64, 4);
+        put(bytes, 10, 2, 2);
+        put(bytes, at(BRICKS) + KIND, 99, 4);
+        put(bytes, at(BRICKS) + ENCODING, 1, 1);
+        put(bytes, at(BRICKS) + COUNT, 0, 8);
     });
-    let error = required("section", u32::MAX as u64);
-    list.add("section-unknown", "newer", "a required section of a newer minor version", error, newer);
-    let mut parts = Parts::of(&example());
-    parts.sections.push(Section::new(9, 1, 0, b"\0\0\0\0\0\0\0\0".to_vec()));
-    list.add("section-twice", "metadata", "metadata stand twice", section("metadata"), parts.bytes());
-    let mut parts = Parts::of(&example());
-    let again = parts.section(1).bytes.clone();
-    parts.sections.push(Section::new(1, 16, 1, again));
-    list.add("section-twice", "", "planes stand twice", section("planes"), parts.bytes());
+    let about = "no element, in an unknown encoding of a newer minor version";
+    list.add("section-length", "newer", about, field("section length", 32), newer);
+    let about = "one brick more than the file has";
+    list.add("section-beyond", "", about, field("section length", 48), extent(BRICKS, 48, 3));
+    let far = changed(&extent(BRICKS, 64, 4), |bytes| put(bytes, at(BRICKS) + OFFSET, u64::MAX - 63, 8));
+    list.add("section-beyond", "overflow", "its end is 2^64", field("section length", 64), far);
+
+    // What must be known.
+    let unknown = |kind: u64| with(&raw, at(BRICKS), kind, 4);
+    let about = "a required section of kind 20";
+    list.add("section-unknown", "", about, required("section", 20), unknown(20));
+    let about = "a required section of an application's kind";
+    list.add("section-unknown", "application", about, required("section", APPLICATION), unknown(APPLICATION));
+    let newer = changed(&unknown(u32::MAX.into()), |bytes| put(bytes, 10, 2, 2));
+    let about = "a required section of a newer minor version";
+    list.add("section-unknown", "newer", about, required("section", u32::MAX.into()), newer);
+
+    // Whose they are, and in which order.
+    let mut parts = |rule, of: &str, about, error: String, change: &dyn Fn(&mut Parts)| {
+        let mut parts = Parts::of(&example());
+        change(&mut parts);
+        list.add(rule, of, about, error, parts.bytes());
+    };
+    let owner = |owner| field("section owner", owner);
+    parts("table-owner", "", "the second of one object", owner(1), &|parts| {
+        parts.sections.push(Section::new(20, (U8, 1), vec![1; 8]).of(1));
+    });
+    parts("table-owner", "far", "the last owner that a number can say", owner(u32::MAX.into()), &|parts| {
+        parts.object(2, 0, 0);
+        parts.sections.push(Section::new(20, (U8, 1), vec![1; 8]).of(u32::MAX.into()));
+    });
+    parts("table-order", "kind", "the level table after the planes", owner(0), &|parts| {
+        parts.sections.swap(2, 3)
+    });
+    parts("table-order", "unknown", "an unknown kind among lower ones", owner(0), &|parts| {
+        parts.sections.insert(2, Section::new(20, (U8, 1), vec![1; 8]));
+    });
+    parts("table-order", "owner", "a section of the solid after one of another object", owner(0), &|parts| {
+        parts.object(2, 0, 0);
+        let bricks = parts.sections.len() - 1;
+        parts.sections.insert(bricks, Section::new(1, (U8, 1), vec![1; 8]).of(1));
+    });
+    parts("table-order", "twice", "planes stand twice", owner(0), &|parts| {
+        let again = parts.section(PLANES).clone();
+        parts.sections.insert(4, again);
+    });
+    parts("table-order", "metadata", "metadata stand twice", owner(0), &|parts| {
+        parts.sections.insert(2, Section::new(METADATA, (U8, 1), vec![0; 8]));
+    });
+    parts("table-order", "unknown-twice", "an unknown kind stands twice", owner(1), &|parts| {
+        parts.object(2, 0, 0);
+        let section = Section::new(20, (U8, 1), vec![1; 8]).of(1);
+        parts.sections.extend([section.clone(), section]);
+    });
+    let objects = || section("objects");
+    parts("object-count", "none", "there are no objects", objects(), &|parts| drop(parts.take(OBJECTS)));
+    parts("object-count", "owner", "objects that belong to the second object", objects(), &|parts| {
+        parts.object(2, 0, 0);
+        parts.section(OBJECTS).owner = 1;
+    });
+
+    // Bytes that several sections have.
+    let two_owners = |change: &dyn Fn(&mut Parts)| {
+        let mut parts = Parts::of(&example());
+        parts.object(2, 0, 0);
+        for kind in [20, 21] {
+            let planes = parts.shared(PLANES, 1, kind);
+            parts.sections.push(planes.flagged(0));
+        }
+        change(&mut parts);
+        parts.bytes()
+    };
+    let shared = two_owners(&|_| {});
+    let last = HEADER + ENTRY * (number(&shared, 96, 4) as usize - 1);
+    assert_eq!((number(&shared, last, 4), number(&shared, last + SAME, 4)), (21, 4));
+    let mut same = |of: &str, about, change: &dyn Fn(&mut Vec<u8>)| {
+        let bytes = changed(&shared, change);
+        let value = number(&bytes, last + SAME, 4);
+        // Checksums are made right by whoever changes bytes, also where that is what is wrong.
+        list.add("table-same", of, about, field("shared section", value), bytes);
+    };
+    same("itself", "a section that shares its own bytes", &|bytes| put(bytes, last + SAME, 9, 4));
+    same("beyond", "one behind the last section", &|bytes| put(bytes, last + SAME, 10, 4));
+    same("far", "the last section that a number can say", &|bytes| {
+        put(bytes, last + SAME, u32::MAX.into(), 4)
+    });
+    same("chain", "a section that itself shares another's bytes", &|bytes| put(bytes, last + SAME, 8, 4));
+    same("offset", "another place", &|bytes| put(bytes, last + OFFSET, 0x200, 8));
+    same("length", "another length", &|bytes| {
+        put(bytes, last + LENGTH, 32, 8);
+        put(bytes, last + COUNT, 2, 8);
+    });
+    same("element", "elements of another type", &|bytes| put(bytes, last + TYPE, F64, 1));
+    same("components", "elements of other components", &|bytes| {
+        put(bytes, last + COMPONENTS, 1, 1);
+        put(bytes, last + COUNT, 2, 8);
+    });
+    let later = changed(&shared, |bytes| {
+        // The last but one names the last, which has bytes of its own.
+        put(bytes, last - ENTRY + SAME, 9, 4);
+        put(bytes, last + SAME, 0, 4);
+    });
+    list.add("table-same", "later", "a section that comes later", field("shared section", 9), later);
+    let mut crc = shared.clone();
+    crc[last + CRC] ^= 1;
+    seal_head(&mut crc);
+    list.add("table-same", "crc", "another checksum", field("shared section", 4), crc);
+    let newer = changed(&shared, |bytes| {
+        put(bytes, 10, 2, 2);
+        put(bytes, last + RESERVED, 1, 1);
+    });
+    let about = "another value of the reserved byte, which a newer minor version uses";
+    list.add("table-same", "reserved", about, field("shared section", 4), newer);
+    let newer = changed(&shared, |bytes| {
+        put(bytes, 10, 2, 2);
+        put(bytes, last + ENCODING, 1, 1);
+    });
+    let about = "another encoding, which is one of a newer minor version";
+    list.add("table-same", "encoding", about, field("shared section", 4), newer);
 
     for (kind, name) in KINDS {
-        let base = if (5..=7).contains(&kind) { &coded } else { &raw };
+        let base = if (INDICES..=SEGMENTS).contains(&kind) { &coded } else { &raw };
         let at = entry(base, kind);
         let of = name.replace(' ', "-");
-        let (size, length) = (number(base, at + 4, 4), number(base, at + 16, 8));
         let other = changed(base, |bytes| {
-            // Twice the size of an element, or of metadata all of them as one.
-            let size = if kind == 9 { length } else { size / 2 };
-            put(bytes, at + 4, size, 4);
-            put(bytes, at + 24, length / size, 8);
+            // Of the same size, but of another type; bytes have none but their own.
+            let (element, count) = (number(bytes, at + TYPE, 1), number(bytes, at + COUNT, 8));
+            match element {
+                RECORD => put(bytes, at + TYPE, U64, 1),
+                U8 => {
+                    put(bytes, at + COMPONENTS, count, 1);
+                    put(bytes, at + COUNT, 1, 8);
+                }
+                U16 => {
+                    put(bytes, at + TYPE, U8, 1);
+                    put(bytes, at + COMPONENTS, 2, 1);
+                }
+                _ => put(bytes, at + TYPE, F64, 1),
+            }
         });
-        list.add("section-size", &of, "elements of another size", section(name), other);
-        if kind == 9 {
+        list.add("section-size", &of, "elements of another type", section(name), other);
+        if kind == OBJECTS || kind == METADATA {
             continue;
         }
-        let mut parts = Parts::of(&if (5..=7).contains(&kind) { self::coded() } else { example() });
+        let mut parts =
+            Parts::of(&if (INDICES..=SEGMENTS).contains(&kind) { self::coded() } else { example() });
         let whole = parts.section(kind);
-        whole.bytes.extend(vec![0; whole.size as usize]);
+        whole.bytes.extend(vec![0; whole.size()]);
         list.add("section-count", &of, "one element too many", section(name), parts.bytes());
         parts.take(kind);
         list.add("section-missing", &of, "it is absent", section(name), parts.bytes());
     }
+    let halves = changed(&raw, |bytes| {
+        put(bytes, at(PLANES) + COMPONENTS, 1, 1);
+        put(bytes, at(PLANES) + COUNT, 2, 8);
+    });
+    list.add("section-size", "components", "planes one by one", section("planes"), halves);
     let mut parts = Parts::of(&example());
-    parts.sections.push(Section::new(5, 2, 1, vec![0, 0]));
+    parts.sections.push(Section::new(INDICES, (U16, 1), vec![0, 0]));
     let about = "a section of dictionaries where bricks are raw";
     list.add("section-count", "zero", about, section("brick indices"), parts.bytes());
     let bytes = with(&raw, 72, 1 << 40, 8);
@@ -1156,16 +1552,20 @@ fn table(list: &mut List) {
     let about = "one plane in the header, two in the section";
     list.add("section-size", "header", about, section("bricks"), bytes);
 
-    // A megabyte of metadata, of which only the beginning is there.
-    let length = (1 << 20) + 1;
-    let long = changed(&raw, |bytes| {
-        put(bytes, at(9) + 16, length, 8);
-        put(bytes, at(9) + 24, length, 8);
-        put(bytes, 24, 768 + length, 8);
-    });
+    // Of what is too long only the beginning is there.
+    let mut begun = |rule, of: &str, about, error: String, kind, length: usize| {
+        let mut parts = Parts::of(&example());
+        parts.section(kind).bytes.resize(length, 0);
+        let bytes = parts.bytes();
+        list.add(rule, of, about, error, bytes[..1024].to_vec());
+        list.but_length(bytes.len());
+    };
     let about = "metadata of 2^20 + 1 bytes, which the file does not have";
-    list.add("section-metadata-length", "", about, field("section length", length), long);
-    list.but_length(768 + length as usize);
+    let length = (1 << 20) + 1;
+    let error = field("section length", length as u64);
+    begun("section-metadata-length", "", about, error, METADATA, length);
+    let about = "4097 objects, which the file does not have";
+    begun("object-count", "large", about, section("objects"), OBJECTS, 4097 * HEADER);
 
     let longer = changed(&raw, |bytes| {
         bytes.push(0);
@@ -1173,6 +1573,90 @@ fn table(list: &mut List) {
     });
     let error = self::length(end as usize, end as usize + 1);
     list.add("section-end", "", "a byte after the last section, which the header counts", error, longer);
+}
+
+/// §10.2, the records of objects.
+fn objects(list: &mut List) {
+    let records = |change: &dyn Fn(&mut Parts)| {
+        let mut parts = Parts::of(&example());
+        change(&mut parts);
+        parts.bytes()
+    };
+    let raw = records(&|_| {});
+    let solid = offset(&raw, OBJECTS);
+    // The record alone, behind the back of what makes it right.
+    let mut other = |of: &str, about, at: usize, value: u64, length: usize| {
+        let mut bytes = raw.clone();
+        assert_ne!(number(&bytes, solid + at, length), value);
+        put(&mut bytes, solid + at, value, length);
+        seal(&mut bytes);
+        list.add("object-mirror", of, about, "Format(Object)", bytes);
+    };
+    other("type", "the first object is no solid", 0, 2, 4);
+    other("type-zero", "the first object is of type 0", 0, 0, 4);
+    other("parent", "the solid is its own parent", 4, 0, 4);
+    other("optional", "the solid is not required", 8, 0, 4);
+    other("flags", "a flag of the solid that version 0.1 does not know", 8, 3, 4);
+    other("depth", "another depth than the header's", 12, 4, 1);
+    other("root", "another root tag", 13, 3, 1);
+    other("exterior", "another exterior", 14, 3, 1);
+    other("proof", "another proof", 15, 1, 1);
+    other("planes", "other planes of a brick", 16, 1, 1);
+    other("encoding", "another brick encoding", 17, 1, 1);
+    other("shift", "another segment shift", 18, 63, 1);
+    other("value-type", "the solid has values", 19, 1, 1);
+    other("components", "values of a solid have components", 20, 1, 1);
+    other("reserved", "the first of the reserved bytes", 21, 1, 1);
+    other("displacement", "another displacement", 24, 1f64.to_bits(), 8);
+    other("displacement-negative-zero", "-0 where the header says 0", 24, (-0f64).to_bits(), 8);
+    other("origin", "another origin", 40, 1f64.to_bits(), 8);
+    other("edge", "another edge", 56, 2f64.to_bits(), 8);
+    other("extents", "extents of another lattice", 64, 8, 4);
+    other("reserved-middle", "the reserved number", 76, 1, 4);
+    other("elements", "another number of elements", 80, 2, 8);
+    other("bricks", "another number of bricks", 88, 1, 8);
+    other("entries", "another number of dictionary entries", 96, 1, 8);
+    other("values", "a number of values", 104, 1, 8);
+    other("reserved-last", "the last of the reserved bytes", 127, 0x80, 1);
+    let newer = |at: usize, value: u64, length: usize| {
+        let mut bytes = with(&raw, 10, 2, 2);
+        put(&mut bytes, solid + at, value, length);
+        seal(&mut bytes);
+        bytes
+    };
+    let about = "extents of another lattice, in a newer minor version";
+    list.add("object-mirror", "newer", about, "Format(Object)", newer(72, 8, 4));
+    let about = "the solid is not required, but has a flag of a newer minor version";
+    list.add("object-mirror", "newer-optional", about, "Format(Object)", newer(8, 2, 4));
+
+    let mut second = |rule, of: &str, about, error, [kind, parent, flags]: [u64; 3], minor| {
+        let bytes = records(&|parts| {
+            put(&mut parts.head, 10, minor, 2);
+            parts.object(kind, parent, flags);
+        });
+        list.add(rule, of, about, error, bytes);
+    };
+    second("object-type", "", "a second object of type 0", field("object type", 0), [0, 0, 0], 1);
+    let error = field("object type", 0);
+    second("object-type", "newer", "the same of a newer minor version", error, [0, 0, 2], 2);
+    let about = "a flag that version 0.1 does not know";
+    second("object-flags", "", about, field("object flags", 2), [2, 0, 2], 1);
+    let about = "its own parent";
+    second("object-parent", "", about, field("object parent", 1), [2, 1, 0], 1);
+    let about = "a parent beyond the objects";
+    second("object-parent", "beyond", about, field("object parent", NO_PARENT - 1), [2, NO_PARENT - 1, 0], 1);
+    let about = "an object of unknown type that is required";
+    second("object-required", "", about, required("object", 2), [2, 0, 1], 1);
+    let about = "another solid that is required";
+    second("object-required", "solid", about, required("object", 1), [1, NO_PARENT, 1], 1);
+    let about = "an object of a newer minor version that is required";
+    second("object-required", "newer", about, required("object", 77), [77, 0, 3], 2);
+    let later = records(&|parts| {
+        parts.object(2, 2, 0);
+        parts.object(2, 0, 0);
+    });
+    let about = "a parent that comes later";
+    list.add("object-parent", "later", about, field("object parent", 2), later);
 }
 
 /// §10.2.
@@ -1184,12 +1668,13 @@ fn before_use(list: &mut List) {
     let short = raw[..end - 1].to_vec();
     list.add("file-length", "short", "the last byte is missing", length(end, end - 1), short);
     let about = "everything behind the table is missing";
-    list.add("file-length", "table", about, length(end, 368), raw[..368].to_vec());
+    let table_end = HEADER + ENTRY * number(&raw, 96, 4) as usize;
+    list.add("file-length", "table", about, length(end, table_end), raw[..table_end].to_vec());
     let long = [&raw[..], b"\0"].concat();
     list.add("file-length", "long", "a byte too many", length(end, end + 1), long);
 
     // Entry l of the level table.
-    let nodes = |bytes: &[u8], level: usize| offset(bytes, 8) + 24 * level;
+    let nodes = |bytes: &[u8], level: usize| offset(bytes, LEVELS) + 24 * level;
     let level = |bytes: &[u8], level, value| with(bytes, nodes(bytes, level), value, 8);
     let about = "no node for the universe, which is BRANCH";
     list.add("level-table-root", "none", about, levels(0), level(&raw, 0, 0));
@@ -1218,7 +1703,7 @@ fn before_use(list: &mut List) {
     list.way = Way::Metadata;
     let mut text = |of: &str, about, bytes: &[u8]| {
         let mut parts = Parts::of(&example());
-        parts.section(9).bytes = bytes.to_vec();
+        parts.section(METADATA).bytes = bytes.to_vec();
         list.add("metadata-text", of, about, "Format(Metadata)", parts.bytes());
     };
     text("key-length", "a key that is longer than the section", b"\x09\0\0\0\0\0\0\0unitsmm");
@@ -1237,25 +1722,30 @@ fn before_use(list: &mut List) {
 fn verification(list: &mut List) {
     list.way = Way::Verification;
     let (raw, coded) = (good(&example()), good(&coded()));
-    for (of, at) in [("table", 368), ("between", 0x1C2), ("last", 0x2FF)] {
+    for (of, at) in [("table", 0x1D0), ("between", 0x28F), ("last", 0x3FF)] {
         let error = field("padding", 1);
         list.add("padding", of, "a byte between sections is not 0", error, with(&raw, at, 1, 1));
     }
     for (kind, name) in KINDS {
-        let base = if (5..=7).contains(&kind) { &coded } else { &raw };
+        let base = if (INDICES..=SEGMENTS).contains(&kind) { &coded } else { &raw };
         let mut wrong = base.clone();
-        let at = entry(base, kind) + 32;
+        let at = entry(base, kind) + CRC;
         wrong[at] ^= 1;
         seal_head(&mut wrong);
         let of = name.replace(' ', "-");
         list.add("section-crc", &of, "a bit of the checksum is flipped", checksum(name), wrong);
     }
     let mut parts = Parts::of(&example());
-    parts.sections.push(Section::new(1000, 2, 0, b"colours!".to_vec()));
-    let mut wrong = parts.bytes();
-    *wrong.last_mut().expect("a byte") ^= 1;
-    let about = "a bit of an unknown section is flipped";
-    list.add("section-crc", "unknown", about, checksum("an unknown section"), wrong);
+    parts.object(2, 0, 0);
+    for (of, about, owner) in [
+        ("unknown", "a bit of an unknown section is flipped", 0),
+        ("object", "a bit of a section of an unknown object is flipped", 1),
+    ] {
+        parts.sections.push(Section::new(1000, (U16, 1), b"colours!".to_vec()).of(owner));
+        let mut wrong = parts.bytes();
+        *wrong.last_mut().expect("a byte") ^= 1;
+        list.add("section-crc", of, about, checksum("an unknown section"), wrong);
+    }
 
     links(list);
     elements(list);
@@ -1264,7 +1754,7 @@ fn verification(list: &mut List) {
 
     let one_plane = good(&without_bricks(BINARY));
     let partial = good(&Model::plain(4, |_| Tag::Partial));
-    let planes = offset(&one_plane, 1);
+    let planes = offset(&one_plane, PLANES);
     // The first FULL cell of the root's without children.
     let full = number(&one_plane, planes, 8) & number(&one_plane, planes + 8, 8);
     let cell = full & full.wrapping_neg();
@@ -1278,13 +1768,13 @@ fn verification(list: &mut List) {
     list.add("planes-needless", "", about, "Damaged(NeedlessPlane)", with(&one_plane, 67, 2, 1));
     let mut parts = Parts::of(&Model::plain(2, noise(2, 3, BINARY)));
     parts.head[67] = 2;
-    let two = parts.section(4);
+    let two = parts.section(BRICKS);
     two.bytes = [&two.bytes[..], &two.bytes].concat();
-    two.size = 16;
+    two.element = (U64, 2);
     let about = "bricks of two planes that are the same";
     list.add("planes-needless", "bricks", about, "Damaged(NeedlessPlane)", parts.bytes());
 
-    let table = offset(&raw, 8);
+    let table = offset(&raw, LEVELS);
     for (of, about, at, level) in [
         ("nodes", "internal nodes of a level that no start depends on", 48, 2),
         ("full", "FULL cells", 24 + 8, 1),
@@ -1303,15 +1793,15 @@ fn links(list: &mut List) {
         format!("Damaged(Count {{ level: {level}, expected: {expected}, found: {found} }})")
     };
     // The BRANCH cell 7 of the root becomes EMPTY.
-    let fewer = with(&raw, offset(&raw, 1), 0x03, 8);
+    let fewer = with(&raw, offset(&raw, PLANES), 0x03, 8);
     list.add("element-count", "bricks", "two bricks for one BRANCH cell", count(1, 1, 2), fewer);
-    let planes = offset(&coded, 1);
+    let planes = offset(&coded, PLANES);
     let fewer = with(&coded, planes, number(&coded, planes, 8) & !0x80, 8);
     list.add("element-count", "", "eight elements for seven BRANCH cells", count(1, 7, 8), fewer);
-    let more = with(&raw, offset(&raw, 1), 0x93, 8);
+    let more = with(&raw, offset(&raw, PLANES), 0x93, 8);
     list.add("element-count", "few", "two bricks for three BRANCH cells", count(1, 3, 2), more);
 
-    let (rel, base) = (offset(&coded, 2), offset(&coded, 3));
+    let (rel, base) = (offset(&coded, REL), offset(&coded, BASE));
     let near = with(&coded, rel + 2, number(&coded, rel + 2, 2) + 1, 2);
     list.add("element-link", "rel", "the children of element 1 are one further", link(1), near);
     let both = changed(&coded, |bytes| {
@@ -1341,7 +1831,7 @@ fn links(list: &mut List) {
 
 fn elements(list: &mut List) {
     let raw = good(&example());
-    let planes = offset(&raw, 1);
+    let planes = offset(&raw, PLANES);
     let padding = "Damaged(Padding)";
     let outside = changed(&raw, |bytes| {
         bytes[planes + 1] = 1;
@@ -1354,7 +1844,7 @@ fn elements(list: &mut List) {
     let uniform = |index| format!("Damaged(Uniform {{ index: {index} }})");
     let flat = good(&Model::plain(4, cells(4, |at| solid(at[0] > 3))));
     assert_eq!((number(&flat, 72, 8), number(&flat, 80, 8)), (1, 0), "one element, no brick");
-    let planes = offset(&flat, 1);
+    let planes = offset(&flat, PLANES);
     for (of, about, [lower, upper]) in [
         ("empty", "all cells of the root are EMPTY", [0, 0]),
         ("full", "all cells of the root are FULL", [u64::MAX; 2]),
@@ -1368,7 +1858,7 @@ fn elements(list: &mut List) {
     }
     let odd = good(&Model::plain(3, cells(3, |at| solid(at[0] > 3))));
     let same = changed(&odd, |bytes| {
-        let planes = offset(bytes, 1);
+        let planes = offset(bytes, PLANES);
         put(bytes, planes, 0xFF, 8);
         put(bytes, planes + 8, 0xFF, 8);
     });
@@ -1377,7 +1867,7 @@ fn elements(list: &mut List) {
     let deeper = good(&without_bricks(BINARY));
     let last = number(&deeper, 72, 8) - 1;
     let same = changed(&deeper, |bytes| {
-        let planes = offset(bytes, 1) + 16 * last as usize;
+        let planes = offset(bytes, PLANES) + 16 * last as usize;
         bytes[planes..planes + 16].fill(0);
     });
     list.add("element-uniform", "", "all cells of the last element are EMPTY", uniform(last), same);
@@ -1387,7 +1877,8 @@ fn dictionaries(list: &mut List) {
     let coded = good(&coded());
     let bricks = number(&coded, 80, 8);
     let count = number(&coded, 88, 8);
-    let (indices, entries, segments) = (offset(&coded, 5), offset(&coded, 6), offset(&coded, 7));
+    let (indices, entries, segments) =
+        (offset(&coded, INDICES), offset(&coded, ENTRIES), offset(&coded, SEGMENTS));
     let index = |bytes: &[u8], b: u64| number(bytes, indices + 2 * b as usize, 2);
     let uses = |i: u64| (0..bricks).filter(|&b| index(&coded, b) == i).count();
     let damaged = |brick| format!("Damaged(Dictionary {{ brick: {brick} }})");
@@ -1451,14 +1942,14 @@ fn dictionaries(list: &mut List) {
 
 fn bricks(list: &mut List) {
     let depth_1 = good(&Model::plain(1, cells(1, |[x, _, _]| solid(x == 0))));
-    let outside = with(&depth_1, offset(&depth_1, 4), 0x155, 8);
+    let outside = with(&depth_1, offset(&depth_1, BRICKS), 0x155, 8);
     list.add("brick-padding", "", "cell 8 of the brick is FULL at depth 1", "Damaged(Padding)", outside);
     let uniform = |index| format!("Damaged(Uniform {{ index: {index} }})");
-    let all = with(&depth_1, offset(&depth_1, 4), 0xFF, 8);
+    let all = with(&depth_1, offset(&depth_1, BRICKS), 0xFF, 8);
     let about = "all cells that the brick has at depth 1 are FULL";
     list.add("brick-uniform", "depth-1", about, uniform(0), all);
     let raw = good(&example());
-    let bricks = offset(&raw, 4);
+    let bricks = offset(&raw, BRICKS);
     let empty = changed(&raw, |bytes| bytes[bricks + 16..bricks + 32].fill(0));
     list.add("brick-uniform", "empty", "all cells of the second brick are EMPTY", uniform(2), empty);
     let partial = changed(&raw, |bytes| {
@@ -1471,7 +1962,7 @@ fn bricks(list: &mut List) {
     list.add("brick-branch", "", "a cell of the second brick is BRANCH", branch(1), cut);
     let depth_2 = good(&Model::plain(2, noise(2, 3, CERTIFIED)));
     let all = changed(&depth_2, |bytes| {
-        let at = offset(bytes, 4);
+        let at = offset(bytes, BRICKS);
         put(bytes, at, u64::MAX, 8);
         put(bytes, at + 8, 0, 8);
     });

@@ -1,5 +1,5 @@
 /*
- * A reader of files of the Leafless format, version 0.0, in C99 and nothing but its library.
+ * A reader of files of the Leafless format, version 0.1, in C99 and nothing but its library.
  *
  * It is meant to be read beside specification.md, whose sections the comments name (§): each rule of §10 stands here
  * under its name, in the order in which the specification lists it. It favours being evident over being fast; yet every
@@ -35,7 +35,7 @@
 
 /* ---- Interface ------------------------------------------------------------------------------------------------- */
 
-enum { LFL_MAX_DEPTH = 20, LFL_KINDS = 10 };
+enum { LFL_MAX_DEPTH = 20, LFL_KINDS = 11 };
 
 /* §2.2. The last is no tag: it says that the bytes on the way to a cell are damaged (§6). */
 enum lfl_tag { LFL_EMPTY = 0, LFL_BRANCH = 1, LFL_PARTIAL = 2, LFL_FULL = 3, LFL_DAMAGED = 4 };
@@ -45,7 +45,8 @@ enum lfl_answer { LFL_OUTSIDE, LFL_INSIDE, LFL_UNDECIDED };
 
 /* §4: an entry of the section table. */
 struct lfl_section {
-    uint32_t kind, element_size, crc, flags;
+    uint32_t kind, owner, flags, crc, same;
+    unsigned element_type, components, encoding, reserved;
     uint64_t offset, length, count;
 };
 
@@ -54,7 +55,7 @@ struct lfl_level {
     uint64_t nodes, full, partial;
 };
 
-/* §5.4: a fact. Neither text has a terminator; both may contain any byte until the metadata have been checked. */
+/* §5.2: a fact. Neither text has a terminator; both may contain any byte until the metadata have been checked. */
 struct lfl_fact {
     const unsigned char *key, *value;
     size_t key_length, value_length;
@@ -67,12 +68,15 @@ struct lfl_reader {
     /* §3 */
     unsigned major, minor;
     uint64_t file_length;
-    uint64_t origin[3], edge; /* the bits of the f64 */
-    unsigned depth, root, exterior, brick_planes, encoding, shift;
+    uint64_t origin[3], edge, displacement; /* the bits of the f64 */
+    unsigned depth, root, exterior, brick_planes, encoding, shift, proof;
     uint64_t elements, bricks, entries;
     uint32_t section_count;
 
-    /* §4: the sections of known kinds, by kind; of those that are absent the count is 0. */
+    /* §4: the number of objects. */
+    uint64_t object_count;
+
+    /* §5: the sections of the solid of known kinds, by kind; of those that are absent the count is 0. */
     struct lfl_section section[LFL_KINDS];
 
     /* §2.3: L. §5.3: start[0] to start[L]. */
@@ -97,7 +101,8 @@ struct lfl_section lfl_section(const struct lfl_reader *reader, uint32_t index);
 /* Entry `level`, at most reader->depth, of the level table (§5.3). */
 struct lfl_level lfl_level(const struct lfl_reader *reader, unsigned level);
 
-/* The fact at *position, which begins as 0 and is moved on (§5.4): 1; at the end 0; -1 if the lengths are damaged. */
+/* The solid's fact at *position, which begins as 0 and is moved on (§5.2): 1; at the end 0; -1 if the lengths are
+   damaged. */
 int lfl_metadata(const struct lfl_reader *reader, uint64_t *position, struct lfl_fact *fact);
 
 /* The tag of a finest cell (§6); each coordinate must be less than 2^depth. Never BRANCH. */
@@ -306,49 +311,67 @@ static double natural_round(const struct natural *a, int exponent, int up)
 /* ---- §5 Sections ------------------------------------------------------------------------------------------------ */
 
 enum {
-    KIND_PLANES = 1,
+    KIND_OBJECTS = 1,
+    KIND_METADATA,
+    KIND_LEVEL_TABLE,
+    KIND_PLANES,
     KIND_REL,
     KIND_BASE,
     KIND_BRICKS,
     KIND_BRICK_INDICES,
     KIND_DICTIONARY_ENTRIES,
-    KIND_DICTIONARY_SEGMENTS,
-    KIND_LEVEL_TABLE,
-    KIND_METADATA
+    KIND_DICTIONARY_SEGMENTS
 };
 
 enum { RAW = 0, DICTIONARY = 1, ONE_SEGMENT = 63, MAX_METADATA = 1 << 20, MAX_SEGMENT_ENTRIES = 1 << 16 };
 
-static int is_known(uint32_t kind) { return kind >= KIND_PLANES && kind <= KIND_METADATA; }
+/* Element types (§4), with their sizes. The types that no known section has are not named here. */
+enum { TYPE_RECORD = 0, TYPE_U8 = 1, TYPE_U16 = 2, TYPE_U64 = 4, TYPES = 7 };
+static const unsigned type_size[TYPES] = {8, 1, 2, 4, 8, 4, 8};
 
-/* The columns of §5's table. The count is 0 where the section must be absent. */
-static void demanded(const struct lfl_reader *r, uint32_t kind, uint32_t *element_size, uint64_t *count)
+/* The solid's sections of the kinds of §5. */
+static int is_known(const struct lfl_section *s)
 {
-    int dictionary = r->encoding == DICTIONARY;
-    *element_size = 8 * r->brick_planes;
-    switch (kind) {
-    case KIND_PLANES: *element_size = 16, *count = r->elements; break;
-    case KIND_REL: *element_size = 2, *count = r->elements; break;
-    case KIND_BASE: *element_size = 8, *count = quotient_up(r->elements, 1024); break;
-    case KIND_BRICKS: *count = dictionary ? 0 : r->bricks; break;
-    case KIND_BRICK_INDICES: *element_size = 2, *count = dictionary ? r->bricks : 0; break;
-    case KIND_DICTIONARY_ENTRIES: *count = r->entries; break;
-    case KIND_DICTIONARY_SEGMENTS:
-        *element_size = 8, *count = dictionary ? quotient_up(r->bricks, UINT64_C(1) << r->shift) : 0;
-        break;
-    case KIND_LEVEL_TABLE: *element_size = 24, *count = r->depth + 1; break;
-    default: *element_size = 1, *count = 1; break; /* metadata: 1 to 2^20, see `section-metadata-length` */
-    }
+    return s->owner == 0 && s->kind >= KIND_OBJECTS && s->kind <= KIND_DICTIONARY_SEGMENTS;
 }
 
-/* An element of a section. The index must be less than the section's count. */
+/* A row of §5's table. */
+struct demand {
+    unsigned element_type, components;
+    int any_count;  /* objects and metadata: other rules bound their counts */
+    uint64_t count; /* 0 where the section must be absent */
+};
+
+static struct demand demanded(const struct lfl_reader *r, uint32_t kind)
+{
+    int dictionary = r->encoding == DICTIONARY;
+    struct demand d = {TYPE_U64, 1, 0, 0};
+    switch (kind) {
+    case KIND_OBJECTS: d.element_type = TYPE_RECORD, d.components = 16, d.any_count = 1; break;
+    case KIND_METADATA: d.element_type = TYPE_U8, d.any_count = 1; break;
+    case KIND_LEVEL_TABLE: d.components = 3, d.count = r->depth + 1; break;
+    case KIND_PLANES: d.components = 2, d.count = r->elements; break;
+    case KIND_REL: d.element_type = TYPE_U16, d.count = r->elements; break;
+    case KIND_BASE: d.count = quotient_up(r->elements, 1024); break;
+    case KIND_BRICKS: d.components = r->brick_planes, d.count = dictionary ? 0 : r->bricks; break;
+    case KIND_BRICK_INDICES: d.element_type = TYPE_U16, d.count = dictionary ? r->bricks : 0; break;
+    case KIND_DICTIONARY_ENTRIES: d.components = r->brick_planes, d.count = r->entries; break;
+    default: /* dictionary segments */
+        d.count = dictionary ? quotient_up(r->bricks, UINT64_C(1) << r->shift) : 0;
+        break;
+    }
+    return d;
+}
+
+/* An element of a section of the solid. The index must be less than the section's count. */
 static const unsigned char *item(const struct lfl_reader *r, unsigned kind, uint64_t index)
 {
     const struct lfl_section *section = &r->section[kind];
-    return r->bytes + (size_t)section->offset + (size_t)(index * section->element_size);
+    uint64_t size = type_size[section->element_type] * section->components;
+    return r->bytes + (size_t)section->offset + (size_t)(index * size);
 }
 
-/* §5.1 */
+/* §5.4 */
 static struct words element(const struct lfl_reader *r, uint64_t n)
 {
     const unsigned char *p = item(r, KIND_PLANES, n);
@@ -364,7 +387,7 @@ static uint64_t first_child(const struct lfl_reader *r, uint64_t n)
     return u64(item(r, KIND_BASE, n / 1024)) + u16(item(r, KIND_REL, n));
 }
 
-/* §5.2: entry `index` of the bricks or of the dictionary. */
+/* §5.5: entry `index` of the bricks or of the dictionary. */
 static struct words brick_entry(const struct lfl_reader *r, unsigned kind, uint64_t index)
 {
     const unsigned char *p = item(r, kind, index);
@@ -374,7 +397,7 @@ static struct words brick_entry(const struct lfl_reader *r, unsigned kind, uint6
     return w;
 }
 
-/* §5.2: brick b. Returns 0 if its index leads outside of the dictionary (§6). */
+/* §5.5: brick b. Returns 0 if its index leads outside of the dictionary (§6). */
 static int brick(const struct lfl_reader *r, uint64_t b, struct words *w)
 {
     uint64_t segment, index;
@@ -404,7 +427,7 @@ struct lfl_level lfl_level(const struct lfl_reader *r, unsigned level)
 /* §5.3: the octree level whose nodes are the elements of element level e. */
 static unsigned level_of(const struct lfl_reader *r, unsigned e) { return e == 0 ? 0 : 2 * e - parity(r); }
 
-/* §5.4 */
+/* §5.2 */
 int lfl_metadata(const struct lfl_reader *r, uint64_t *position, struct lfl_fact *fact)
 {
     uint64_t rest = r->section[KIND_METADATA].length, key_length, value_length;
@@ -487,7 +510,10 @@ static int is_illegal(uint64_t bits)
     return magnitude < (uint64_t)(1023 - 256) << 52 || magnitude > (uint64_t)(1023 + 256) << 52;
 }
 
-static uint64_t end_of_table(const struct lfl_reader *r) { return 128 + 40 * (uint64_t)r->section_count; }
+/* §10: whether a later version wrote the file, which may have given a meaning to what is reserved in 0.1. */
+static int is_newer(const struct lfl_reader *r) { return r->minor > 1; }
+
+static uint64_t end_of_table(const struct lfl_reader *r) { return 128 + 48 * (uint64_t)r->section_count; }
 
 static const char *check_header(struct lfl_reader *r)
 {
@@ -512,23 +538,27 @@ static const char *check_header(struct lfl_reader *r)
     r->brick_planes = h[67];
     r->encoding = h[68];
     r->shift = h[69];
+    r->proof = h[70];
     r->elements = u64(h + 72);
     r->bricks = u64(h + 80);
     r->entries = u64(h + 88);
     r->section_count = u32(h + 96);
+    r->displacement = u64(h + 104);
 
-    REFUSE_IF(r->major != 0, "header-major");
+    REFUSE_IF(r->major != 0 || r->minor == 0, "header-major");
     REFUSE_IF(crc32(h, 124) != u32(h + 124), "header-crc");
     REFUSE_IF(u32(h + 12) != 128, "header-length");
     REFUSE_IF(u32(h + 16) != 0, "header-required-flags");
-    REFUSE_IF(u32(h + 20) != 0 && r->minor == 0, "header-optional-flags");
-    REFUSE_IF((u16(h + 70) != 0 || !all_zero(h + 104, 20)) && r->minor == 0, "header-reserved");
+    REFUSE_IF(u32(h + 20) != 0 && !is_newer(r), "header-optional-flags");
+    REFUSE_IF((h[71] != 0 || !all_zero(h + 112, 12)) && !is_newer(r), "header-reserved");
     for (i = 0; i < 3; i++)
         REFUSE_IF(r->origin[i] != 0 && is_illegal(r->origin[i]), "header-origin");
     REFUSE_IF(r->edge >> 63 != 0 || is_illegal(r->edge), "header-edge");
     REFUSE_IF(r->depth < 1 || r->depth > LFL_MAX_DEPTH, "header-depth");
     REFUSE_IF(r->root > 3, "header-root");
     REFUSE_IF(r->exterior == 1 || r->exterior > 3, "header-exterior");
+    REFUSE_IF(r->proof > 3, "header-proof");
+    REFUSE_IF(r->displacement >= UINT64_C(0x7FF) << 52, "header-displacement"); /* the sign, the infinity, NaN */
     REFUSE_IF(r->brick_planes != 1 && r->brick_planes != 2, "header-brick-planes");
     REFUSE_IF(r->encoding != RAW && r->encoding != DICTIONARY, "header-encoding");
     REFUSE_IF(r->encoding == RAW && r->shift != 0, "header-raw-shift");
@@ -549,39 +579,72 @@ static const char *check_header(struct lfl_reader *r)
 /* §4 */
 struct lfl_section lfl_section(const struct lfl_reader *r, uint32_t index)
 {
-    const unsigned char *p = r->bytes + 128 + 40 * (size_t)index;
+    const unsigned char *p = r->bytes + 128 + 48 * (size_t)index;
     struct lfl_section s;
     s.kind = u32(p);
-    s.element_size = u32(p + 4);
-    s.offset = u64(p + 8);
-    s.length = u64(p + 16);
-    s.count = u64(p + 24);
-    s.crc = u32(p + 32);
-    s.flags = u32(p + 36);
+    s.owner = u32(p + 4);
+    s.element_type = p[8];
+    s.components = p[9];
+    s.encoding = p[10];
+    s.reserved = p[11];
+    s.flags = u32(p + 12);
+    s.offset = u64(p + 16);
+    s.length = u64(p + 24);
+    s.count = u64(p + 32);
+    s.crc = u32(p + 40);
+    s.same = u32(p + 44);
     return s;
 }
 
-static const char *check_section(struct lfl_reader *r, struct lfl_section s, uint64_t previous_end)
+/* §4: whether an entry may have the bytes of an earlier one. */
+static int may_share(const struct lfl_section *s, const struct lfl_section *earlier)
 {
-    int known = is_known(s.kind);
-    uint32_t element_size;
-    uint64_t count;
+    return earlier->same == 0 && s->element_type == earlier->element_type && s->components == earlier->components &&
+           s->encoding == earlier->encoding && s->reserved == earlier->reserved && s->offset == earlier->offset &&
+           s->length == earlier->length && s->count == earlier->count && s->crc == earlier->crc;
+}
 
-    REFUSE_IF(s.flags >> 1 != 0 && r->minor == 0, "section-flags");
-    REFUSE_IF(s.length == 0, "section-length");
-    REFUSE_IF(s.element_size == 0 || s.count > UINT64_MAX / s.element_size, "section-length");
-    REFUSE_IF(s.length != s.count * s.element_size, "section-length");
-    REFUSE_IF(s.offset % 64 != 0, "section-alignment");
-    REFUSE_IF(s.offset < previous_end, "section-overlap");
-    REFUSE_IF(s.offset > r->file_length || s.length > r->file_length - s.offset, "section-beyond");
+/* The entry `index`. What precedes it ends at *end; *owner and *kind are those of the entry before. All move on. */
+static const char *check_section(struct lfl_reader *r, uint32_t index, uint64_t *end, uint32_t *owner, uint32_t *kind)
+{
+    struct lfl_section s = lfl_section(r, index), earlier;
+    struct demand d;
+    int known = is_known(&s), newer = is_newer(r);
+
     REFUSE_IF(s.kind == 0, "section-kind");
-    REFUSE_IF(!known && s.flags & 1, "section-unknown");
+    REFUSE_IF(s.flags >> 1 != 0 && !newer, "section-flags");
+    REFUSE_IF(s.reserved != 0 && !newer, "table-reserved");
+    REFUSE_IF(s.encoding != RAW && (!newer || known), "table-encoding");
+    REFUSE_IF(s.components == 0 || (s.element_type >= TYPES && !newer), "table-element");
+    REFUSE_IF(s.length == 0 || s.count == 0, "section-length");
+    if (s.encoding == RAW && s.element_type < TYPES) {
+        unsigned size = type_size[s.element_type] * s.components;
+        REFUSE_IF(s.count > UINT64_MAX / size || s.length != s.count * size, "section-length");
+    }
+    if (index == 0) {
+        REFUSE_IF(!known || s.kind != KIND_OBJECTS || s.count > 4096, "object-count");
+        r->object_count = s.count;
+    }
+    REFUSE_IF(s.owner >= r->object_count, "table-owner");
+    REFUSE_IF(s.owner < *owner || (s.owner == *owner && s.kind <= *kind), "table-order");
+    *owner = s.owner;
+    *kind = s.kind;
+    if (s.same != 0) {
+        REFUSE_IF(s.same > index, "table-same");
+        earlier = lfl_section(r, s.same - 1);
+        REFUSE_IF(!may_share(&s, &earlier), "table-same");
+    } else {
+        REFUSE_IF(s.offset % 64 != 0, "section-alignment");
+        REFUSE_IF(s.offset < *end, "section-overlap");
+        REFUSE_IF(s.offset > r->file_length || s.length > r->file_length - s.offset, "section-beyond");
+        *end = s.offset + s.length;
+    }
+    REFUSE_IF(s.owner == 0 && !known && s.flags & 1, "section-unknown");
     if (!known)
         return NULL;
-    demanded(r, s.kind, &element_size, &count);
-    REFUSE_IF(r->section[s.kind].count != 0, "section-twice");
-    REFUSE_IF(s.element_size != element_size, "section-size");
-    REFUSE_IF(s.kind != KIND_METADATA && s.count != count, "section-count");
+    d = demanded(r, s.kind);
+    REFUSE_IF(s.element_type != d.element_type || s.components != d.components, "section-size");
+    REFUSE_IF(!d.any_count && s.count != d.count, "section-count");
     REFUSE_IF(s.kind == KIND_METADATA && s.length > MAX_METADATA, "section-metadata-length");
     REFUSE_IF((s.flags & 1) != (s.kind != KIND_METADATA), "section-required");
     r->section[s.kind] = s;
@@ -590,27 +653,57 @@ static const char *check_section(struct lfl_reader *r, struct lfl_section s, uin
 
 static const char *check_table(struct lfl_reader *r)
 {
-    uint64_t end = end_of_table(r), count;
-    uint32_t i, element_size;
+    uint64_t end = end_of_table(r);
+    uint32_t i, owner = 0, kind = 0;
     const char *error;
 
     REFUSE_IF(r->length < end, "table-short");
     REFUSE_IF(crc32(r->bytes + 128, (size_t)end - 128) != u32(r->bytes + 100), "table-crc");
     for (i = 0; i < r->section_count; i++) {
-        struct lfl_section s = lfl_section(r, i);
-        error = check_section(r, s, end);
+        error = check_section(r, i, &end, &owner, &kind);
         REFUSE_IF(error != NULL, error);
-        end = s.offset + s.length;
     }
-    for (i = KIND_PLANES; i < KIND_METADATA; i++) {
-        demanded(r, i, &element_size, &count);
-        REFUSE_IF(count != 0 && r->section[i].count == 0, "section-missing");
-    }
+    for (i = KIND_OBJECTS; i <= KIND_DICTIONARY_SEGMENTS; i++)
+        REFUSE_IF(demanded(r, i).count != 0 && r->section[i].count == 0, "section-missing");
     REFUSE_IF(end != r->file_length, "section-end");
     return NULL;
 }
 
 /* ---- §10.2 Before the arrays are used --------------------------------------------------------------------------- */
+
+/* §5.1: record 0 repeats the header. */
+static int is_the_solid(const struct lfl_reader *r, const unsigned char *p)
+{
+    uint32_t flags = u32(p + 8);
+    unsigned i;
+    if (u32(p) != 1 || u32(p + 4) != UINT32_MAX || (flags & 1) == 0)
+        return 0;
+    if (!is_newer(r) && (flags != 1 || !all_zero(p + 21, 3) || !all_zero(p + 76, 4) || !all_zero(p + 112, 16)))
+        return 0;
+    for (i = 0; i < 3; i++) {
+        if (u64(p + 32 + 8 * i) != r->origin[i])
+            return 0;
+    }
+    return p[12] == r->depth && p[13] == r->root && p[14] == r->exterior && p[15] == r->proof &&
+           p[16] == r->brick_planes && p[17] == r->encoding && p[18] == r->shift && p[19] == 0 && p[20] == 0 &&
+           u64(p + 24) == r->displacement && u64(p + 56) == r->edge && all_zero(p + 64, 12) &&
+           u64(p + 80) == r->elements && u64(p + 88) == r->bricks && u64(p + 96) == r->entries && u64(p + 104) == 0;
+}
+
+static const char *check_objects(const struct lfl_reader *r)
+{
+    uint32_t i;
+    REFUSE_IF(!is_the_solid(r, item(r, KIND_OBJECTS, 0)), "object-mirror");
+    for (i = 1; i < r->object_count; i++) {
+        const unsigned char *p = item(r, KIND_OBJECTS, i);
+        uint32_t parent = u32(p + 4), flags = u32(p + 8);
+        REFUSE_IF(u32(p) == 0, "object-type");
+        REFUSE_IF(flags >> 1 != 0 && !is_newer(r), "object-flags");
+        REFUSE_IF(parent != UINT32_MAX && parent >= i, "object-parent");
+        REFUSE_IF(flags & 1, "object-required");
+    }
+    return NULL;
+}
 
 static const char *check_level_table(struct lfl_reader *r)
 {
@@ -657,6 +750,8 @@ static const char *check_all_before_use(const void *bytes, size_t length, struct
     if (error == NULL)
         error = check_table(r);
     if (error == NULL && !probing)
+        error = check_objects(r);
+    if (error == NULL && !probing)
         error = check_level_table(r);
     return error;
 }
@@ -682,6 +777,8 @@ static const char *verify_sections(const struct lfl_reader *r)
     for (i = 0; i < r->section_count; i++) {
         struct lfl_section s = lfl_section(r, i);
         size_t offset = (size_t)s.offset, length = (size_t)s.length;
+        if (s.same != 0)
+            continue; /* the bytes and their CRC32 are those of another entry */
         REFUSE_IF(!all_zero(r->bytes + end, offset - end), "padding");
         REFUSE_IF(crc32(r->bytes + offset, length) != s.crc, "section-crc");
         end = offset + length;
@@ -747,7 +844,7 @@ static int compare_words(const void *a, const void *b)
     return v->upper < w->upper ? -1 : v->upper > w->upper;
 }
 
-/* §5.2: one segment, with room for the number of uses and for copies of its entries. */
+/* §5.5: one segment, with room for the number of uses and for copies of its entries. */
 static const char *verify_segment(const struct lfl_reader *r, uint64_t s, uint64_t begin, uint64_t end, uint32_t *uses,
                                   struct words *values)
 {
@@ -1033,15 +1130,21 @@ static void print_facts(const struct lfl_reader *r, enum checks checks)
     printf("depth: %u\n", r->depth);
     printf("root: %s\n", tags[r->root]);
     printf("exterior: %s\n", tags[r->exterior]);
+    printf("proof: %u\n", r->proof);
+    printf("displacement: %a\n", from_bits(r->displacement));
     printf("planes: %u\n", r->brick_planes);
     printf("encoding: %s\n", r->encoding == RAW ? "raw" : "dictionary");
     printf("shift: %u\n", r->shift);
     printf("elements: %" PRIu64 "\n", r->elements);
     printf("bricks: %" PRIu64 "\n", r->bricks);
     printf("entries: %" PRIu64 "\n", r->entries);
+    printf("objects: %" PRIu64 "\n", r->object_count);
     printf("sections:");
     for (i = 0; i < r->section_count; i++)
         printf(" %" PRIu32, lfl_section(r, i).kind);
+    printf("\nowners:");
+    for (i = 0; i < r->section_count; i++)
+        printf(" %" PRIu32, lfl_section(r, i).owner);
     putchar('\n');
     if (checks == PROBE)
         return;

@@ -79,8 +79,8 @@
 #define LEAFLESS_VERSION_PATCH 1
 
 /**
- * Number of the binary interface: programs and libraries of one number fit together. 0 until the release 0.1,
- * which means that nothing is promised yet.
+ * Number of the binary interface: programs and libraries of one number fit together. 0 until the release
+ * 0.1, which means that nothing is promised yet.
  */
 #define LEAFLESS_ABI 0
 
@@ -92,11 +92,11 @@
 /**
  * Minor version of the file format that this library writes; it reads newer ones, too.
  */
-#define LEAFLESS_FORMAT_MINOR 0
+#define LEAFLESS_FORMAT_MINOR 1
 
 /**
- * What a function returns. Codes are never renumbered and never used for something else; new ones may be added
- * at the end.
+ * What a function returns. Codes are never renumbered and never used for something else; new ones may be
+ * added at the end.
  */
 enum leafless_status
 #ifdef __cplusplus
@@ -341,12 +341,13 @@ enum leafless_motion
      */
     LEAFLESS_MOTION_EXACT = 0,
     /**
-     * The vertices of a mesh are moved and rounded, by some 10^-16 of their coordinates; what is proven allows for that.
+     * The vertices of a mesh are moved and rounded, by some 10^-16 of their coordinates; what is proven
+     * allows for that.
      */
     LEAFLESS_MOTION_VERTICES = 1,
     /**
-     * As leafless_solid_new_transform does, on a frame that is chosen for the solid: a surface that is not parallel to the
-     * lattice blurs by about a cell. Where cells are the images of cells, nothing blurs.
+     * As leafless_solid_new_transform does, on a frame that is chosen for the solid: a surface that is not
+     * parallel to the lattice blurs by about a cell. Where cells are the images of cells, nothing blurs.
      */
     LEAFLESS_MOTION_CONSERVATIVE = 2,
 };
@@ -425,8 +426,8 @@ enum leafless_measured
      */
     LEAFLESS_MEASURED_BUDGET = 1,
     /**
-     * No cell is left that could be split: what is undecided has the size of the frame's finest cells, or the solid
-     * itself knows no more about it, as an octree does of its PARTIAL cells.
+     * No cell is left that could be split: what is undecided has the size of the frame's finest cells, or
+     * the solid itself knows no more about it, as an octree does of its PARTIAL cells.
      */
     LEAFLESS_MEASURED_EXHAUSTED = 2,
 };
@@ -437,10 +438,10 @@ typedef uint32_t leafless_measured;
 /**
  * Which points a surface encloses.
  *
- * The winding number of a surface at a point is the solid angle at which it is seen from there, over 4π, counted
- * positive where the inner side is seen. Of a closed surface it is an integer. Where a surface has holes, fins, or
- * triangles turned over, it is a fraction, and the nearest integer decides by convention: a hole is closed by the
- * surface from which half of all directions lead out.
+ * The winding number of a surface at a point is the solid angle at which it is seen from there, over 4π,
+ * counted positive where the inner side is seen. Of a closed surface it is an integer. Where a surface has
+ * holes, fins, or triangles turned over, it is a fraction, and the nearest integer decides by convention: a
+ * hole is closed by the surface from which half of all directions lead out.
  */
 enum leafless_fill
 #ifdef __cplusplus
@@ -448,18 +449,18 @@ enum leafless_fill
 #endif // __cplusplus
  {
     /**
-     * Points whose winding number is at least 1/2 in magnitude: overlapping bodies are united, and a body that is
-     * inside out is a body.
+     * Points whose winding number is at least 1/2 in magnitude: overlapping bodies are united, and a body
+     * that is inside out is a body.
      */
     LEAFLESS_FILL_NON_ZERO = 0,
     /**
-     * Points from which a ray crosses the surface an odd number of times: the overlap of two bodies is outside.
-     * Orientation does not matter. An even number of triangles must meet on every edge.
+     * Points from which a ray crosses the surface an odd number of times: the overlap of two bodies is
+     * outside. Orientation does not matter. An even number of triangles must meet on every edge.
      */
     LEAFLESS_FILL_EVEN_ODD = 1,
     /**
-     * Points whose winding number is at least 1/2: a body that is inside out is a cavity, and takes away from
-     * bodies that it overlaps.
+     * Points whose winding number is at least 1/2: a body that is inside out is a cavity, and takes away
+     * from bodies that it overlaps.
      */
     LEAFLESS_FILL_POSITIVE = 2,
 };
@@ -593,8 +594,8 @@ typedef uint32_t leafless_overlap;
 #endif // __cplusplus
 
 /**
- * What counts as touching: when a cell that meets the boundary of an expression of half-spaces, but not its interior,
- * is EMPTY.
+ * What counts as touching: when a cell that meets the boundary of an expression of half-spaces, but not its
+ * interior, is EMPTY.
  */
 enum leafless_touch
 #ifdef __cplusplus
@@ -606,13 +607,42 @@ enum leafless_touch
      */
     LEAFLESS_TOUCH_EXACT = 0,
     /**
-     * A vertex on the surface counts as inside, so that a cell that touches a primitive with a vertex from outside is
-     * PARTIAL. It reproduces published tables and is no better for anything else.
+     * A vertex on the surface counts as inside, so that a cell that touches a primitive with a vertex from
+     * outside is PARTIAL. It reproduces published tables and is no better for anything else.
      */
     LEAFLESS_TOUCH_PAPER = 1,
 };
 #ifndef __cplusplus
 typedef uint32_t leafless_touch;
+#endif // __cplusplus
+
+/**
+ * Which tags of an octree's cells are proven.
+ */
+enum leafless_proven
+#ifdef __cplusplus
+  : uint32_t
+#endif // __cplusplus
+ {
+    /**
+     * Neither.
+     */
+    LEAFLESS_PROVEN_NOTHING = 0,
+    /**
+     * FULL.
+     */
+    LEAFLESS_PROVEN_FULL = 1,
+    /**
+     * EMPTY.
+     */
+    LEAFLESS_PROVEN_EMPTY = 2,
+    /**
+     * FULL and EMPTY.
+     */
+    LEAFLESS_PROVEN_BOTH = 3,
+};
+#ifndef __cplusplus
+typedef uint32_t leafless_proven;
 #endif // __cplusplus
 
 /**
@@ -623,41 +653,43 @@ typedef uint32_t leafless_touch;
 typedef struct leafless_control leafless_control;
 
 /**
- * A position in an octree that moves along its links, one level at a step. At first it stands on the universe.
+ * A position in an octree that moves along its links, one level at a step. At first it stands on the
+ * universe.
  *
  * Moving changes it: while one thread moves a cursor, no other may use it. Threads may have a cursor each.
  */
 typedef struct leafless_cursor leafless_cursor;
 
 /**
- * An octree of a solid that is not built in one go: a cell is split when somebody asks for it, and what was split is
- * remembered. FULL and EMPTY cells are proven; cells that nobody has split yet are PARTIAL.
+ * An octree of a solid that is not built in one go: a cell is split when somebody asks for it, and what was
+ * split is remembered. FULL and EMPTY cells are proven; cells that nobody has split yet are PARTIAL.
  *
- * Splitting and refining change it: while one thread does so, no other may use it, and neither may the host's functions
- * that it asks about a cell. Otherwise its other functions may be called at once from any number of threads.
+ * Splitting and refining change it: while one thread does so, no other may use it, and neither may the
+ * host's functions that it asks about a cell. Otherwise its other functions may be called at once from any
+ * number of threads.
  */
 typedef struct leafless_lazy leafless_lazy;
 
 /**
- * A surface of triangles with shared vertices. Vertices at equal places are welded; whether the mesh is closed is
- * not implied, and need not be.
+ * A surface of triangles with shared vertices. Vertices at equal places are welded; whether the mesh is
+ * closed is not implied, and need not be.
  *
- * Immutable: all its functions may be called at once from any number of threads, but leafless_mesh_free needs
- * the reference that it gives back for itself.
+ * Immutable: all its functions may be called at once from any number of threads, but leafless_mesh_free
+ * needs the reference that it gives back for itself.
  */
 typedef struct leafless_mesh leafless_mesh;
 
 /**
  * A leaf-free octree, in memory or mapped from a file.
  *
- * Immutable: all its functions may be called at once from any number of threads, but leafless_octree_free needs
- * the reference that it gives back for itself.
+ * Immutable: all its functions may be called at once from any number of threads, but leafless_octree_free
+ * needs the reference that it gives back for itself.
  */
 typedef struct leafless_octree leafless_octree;
 
 /**
- * Point queries that remember the way to the last answer: for points that lie near each other, such as along a
- * line or in scan order.
+ * Point queries that remember the way to the last answer: for points that lie near each other, such as along
+ * a line or in scan order.
  *
  * Every call changes it: only one thread may use a cursor at a time. Threads may have a cursor each.
  */
@@ -666,46 +698,48 @@ typedef struct leafless_point_cursor leafless_point_cursor;
 /**
  * What a text describes: set operations on primitives, swept figures, meshes and octrees.
  *
- * The language is that of the CSG dumps which OpenSCAD exports (group union difference intersection multmatrix color
- * render cube sphere cylinder polyhedron linear_extrude rotate_extrude square circle polygon, and import of meshes), with
- * these calls besides: halfspace([a, b, c, d]), which is a x + b y + c z + d ≥ 0, quadric([10 numbers]),
- * power([A, a, n1], [B, b, n2], [C, c, n3], R), torus(major, minor), mesh("file.stl") and octree("file.lfl"). Curved
- * shapes are exact, without facets. What is not supported (hull, minkowski, text, projection and others) is refused
- * by name.
+ * The language is that of the CSG dumps which OpenSCAD exports (group union difference intersection
+ * multmatrix color render cube sphere cylinder polyhedron linear_extrude rotate_extrude square circle
+ * polygon, and import of meshes), with these calls besides: halfspace([a, b, c, d]), which is a x + b y + c
+ * z + d ≥ 0, quadric([10 numbers]), power([A, a, n1], [B, b, n2], [C, c, n3], R), torus(major, minor),
+ * mesh("file.stl") and octree("file.lfl"). Curved shapes are exact, without facets. What is not supported
+ * (hull, minkowski, text, projection and others) is refused by name.
  *
- * Immutable: all its functions may be called at once from any number of threads, but leafless_scene_free needs the
- * reference that it gives back for itself.
+ * Immutable: all its functions may be called at once from any number of threads, but leafless_scene_free
+ * needs the reference that it gives back for itself.
  */
 typedef struct leafless_scene leafless_scene;
 
 /**
  * Anything that has a shape: it can split a cell of space into eight classified ones.
  *
- * To answer about cells of a frame a solid is prepared for it, which takes time in proportion to the model: a mesh is
- * brought onto the lattice, an expression is written out, all links of an octree are checked. It keeps the last frame
- * that it was prepared for, so that a second question on the same frame costs none of that; another frame takes its
- * place. (It keeps the last frame of its own only: what is made of it prepares it anew.)
+ * To answer about cells of a frame a solid is prepared for it, which takes time in proportion to the model:
+ * a mesh is brought onto the lattice, an expression is written out, all links of an octree are checked. It
+ * keeps the last frame that it was prepared for, so that a second question on the same frame costs none of
+ * that; another frame takes its place. (It keeps the last frame of its own only: what is made of it prepares
+ * it anew.)
  *
- * Immutable otherwise: all its functions may be called at once from any number of threads, but leafless_solid_free needs
- * the reference that it gives back for itself. Threads that ask on different frames at the same time prepare it again
- * and again: give each a solid of its own.
+ * Immutable otherwise: all its functions may be called at once from any number of threads, but
+ * leafless_solid_free needs the reference that it gives back for itself. Threads that ask on different
+ * frames at the same time prepare it again and again: give each a solid of its own.
  */
 typedef struct leafless_solid leafless_solid;
 
 /**
  * Hears how far an operation is, with the fraction done (0 to 1); returns 0 to go on. Anything else ends the
- * operation with LEAFLESS_E_CANCELLED, unless it is already done, and cancels the `control` of its options, if there
- * is one, until leafless_control_reset.
+ * operation with LEAFLESS_E_CANCELLED, unless it is already done, and cancels the `control` of its options,
+ * if there is one, until leafless_control_reset.
  *
- * It is called from any of the operation's threads, also from two at once and then not in ascending order; with
- * `threads` = 1 from the calling thread only. It must return: no exception, no longjmp. It may call this library.
+ * It is called from any of the operation's threads, also from two at once and then not in ascending order;
+ * with `threads` = 1 from the calling thread only. It must return: no exception, no longjmp. It may call
+ * this library.
  */
 typedef int32_t (*leafless_progress_fn)(void *ctx, double fraction);
 
 /**
- * How a long operation may proceed. Where a function takes options, NULL means the defaults. All fields but the
- * first may be zero, which is their default; leafless_options_init sets them so. No option but `max_splits` changes a
- * result.
+ * How a long operation may proceed. Where a function takes options, NULL means the defaults. All fields but
+ * the first may be zero, which is their default; leafless_options_init sets them so. No option but
+ * `max_splits` changes a result.
  */
 typedef struct {
     /**
@@ -713,8 +747,8 @@ typedef struct {
      */
     uint32_t struct_size;
     /**
-     * Threads to use; 0 means as many as the machine has processors, numbers beyond 1024 mean 1024. Inside of a
-     * function that the library calls it is always 1.
+     * Threads to use; 0 means as many as the machine has processors, numbers beyond 1024 mean 1024. Inside
+     * of a function that the library calls it is always 1.
      */
     uint32_t threads;
     /**
@@ -726,8 +760,8 @@ typedef struct {
      */
     uint64_t max_bytes;
     /**
-     * Split at most this many cells; 0 means no limit. Only functions that split on demand heed it, and say so: with
-     * it spent they stop, and keep or return what they have; it is no error.
+     * Split at most this many cells; 0 means no limit. Only functions that split on demand heed it, and say
+     * so: with it spent they stop, and keep or return what they have; it is no error.
      */
     uint64_t max_splits;
     /**
@@ -739,8 +773,8 @@ typedef struct {
      */
     void *progress_ctx;
     /**
-     * Ends the operation when it is cancelled, and can be asked for the progress; optional. Give operations that
-     * run at once a control each, or their progress is mixed up.
+     * Ends the operation when it is cancelled, and can be asked for the progress; optional. Give operations
+     * that run at once a control each, or their progress is mixed up.
      */
     const leafless_control *control;
 } leafless_options;
@@ -810,7 +844,8 @@ typedef struct {
      */
     uint64_t boundary_edges;
     /**
-     * Loops of these edges, without vertices that occur twice: the holes of the surface and the rims of sheets.
+     * Loops of these edges, without vertices that occur twice: the holes of the surface and the rims of
+     * sheets.
      */
     uint64_t boundary_loops;
     /**
@@ -827,8 +862,8 @@ typedef struct {
      */
     uint64_t duplicate;
     /**
-     * Pairs of triangles with the same corners in opposite directions: walls without thickness. The two cancel
-     * each other.
+     * Pairs of triangles with the same corners in opposite directions: walls without thickness. The two
+     * cancel each other.
      */
     uint64_t opposite;
     /**
@@ -836,8 +871,8 @@ typedef struct {
      */
     uint64_t flat;
     /**
-     * Sets of triangles that hang together over edges. Bodies that touch only in single vertices count separately, and
-     * so does the outer from the inner surface of a hollow body.
+     * Sets of triangles that hang together over edges. Bodies that touch only in single vertices count
+     * separately, and so does the outer from the inner surface of a hollow body.
      */
     uint64_t bodies;
     /**
@@ -859,8 +894,8 @@ typedef struct {
 } leafless_mesh_report;
 
 /**
- * A part of a mesh that is not as it should be: one loop of a hole, or, of the other kinds, edges or triangles that hang
- * together over common vertices.
+ * A part of a mesh that is not as it should be: one loop of a hole, or, of the other kinds, edges or
+ * triangles that hang together over common vertices.
  */
 typedef struct {
     /**
@@ -886,9 +921,9 @@ typedef struct {
 } leafless_mesh_defect;
 
 /**
- * The arrays that a mesh is made of: vertices of three coordinates, and triangles of three indices. They need not
- * be aligned, and may lie among other data, such as normals, which are not read. All fields but the first may be
- * zero, which is their default; leafless_mesh_arrays_init sets them so.
+ * The arrays that a mesh is made of: vertices of three coordinates, and triangles of three indices. They
+ * need not be aligned, and may lie among other data, such as normals, which are not read. All fields but the
+ * first may be zero, which is their default; leafless_mesh_arrays_init sets them so.
  */
 typedef struct {
     /**
@@ -912,8 +947,8 @@ typedef struct {
      */
     uint64_t vertex_stride;
     /**
-     * The first triangle: three indices, counted from 0. NULL if there is none, or if every three vertices are
-     * one.
+     * The first triangle: three indices, counted from 0. NULL if there is none, or if every three vertices
+     * are one.
      */
     const void *indices;
     /**
@@ -935,8 +970,8 @@ typedef struct {
 } leafless_mesh_arrays;
 
 /**
- * How a mesh file is to be taken. NULL means the defaults. All fields but the first may be zero, which is their
- * default; leafless_mesh_options_init sets them so.
+ * How a mesh file is to be taken. NULL means the defaults. All fields but the first may be zero, which is
+ * their default; leafless_mesh_options_init sets them so.
  */
 typedef struct {
     /**
@@ -948,8 +983,8 @@ typedef struct {
      */
     uint32_t format;
     /**
-     * The unit of the numbers in the file, a leafless_unit. LEAFLESS_UNIT_UNKNOWN means what the file says, which only
-     * a 3MF does; anything else overrides that.
+     * The unit of the numbers in the file, a leafless_unit. LEAFLESS_UNIT_UNKNOWN means what the file says,
+     * which only a 3MF does; anything else overrides that.
      */
     uint32_t unit;
     /**
@@ -975,21 +1010,22 @@ typedef struct {
      */
     leafless_unit unit;
     /**
-     * Instances of objects that are not meant to be solid, such as supports in a 3MF, and that the mesh does not
-     * contain.
+     * Instances of objects that are not meant to be solid, such as supports in a 3MF, and that the mesh does
+     * not contain.
      */
     uint64_t skipped;
 } leafless_mesh_source;
 
 /**
- * Solids that plane faces bound, as boundary representations have them: solids of shells of faces of loops of
- * corners.
+ * Solids that plane faces bound, as boundary representations have them: solids of shells of faces of loops
+ * of corners.
  *
- * Each level is an array of offsets into the level below, one more than there are parts: part k goes from offset k
- * up to, but not including, offset k + 1. So each array begins with 0, rises, and ends at the number of parts below.
- * Loops turn counter-clockwise as seen from outside of the solid's material, and holes of a face against its outer loop.
- * Corners and offsets are of one type, without gaps, and need not be aligned. All fields but the first may be zero,
- * which is their default; leafless_polyhedron_arrays_init sets them so.
+ * Each level is an array of offsets into the level below, one more than there are parts: part k goes from
+ * offset k up to, but not including, offset k + 1. So each array begins with 0, rises, and ends at the
+ * number of parts below. Loops turn counter-clockwise as seen from outside of the solid's material, and
+ * holes of a face against its outer loop. Corners and offsets are of one type, without gaps, and need not be
+ * aligned. All fields but the first may be zero, which is their default; leafless_polyhedron_arrays_init
+ * sets them so.
  */
 typedef struct {
     /**
@@ -1029,8 +1065,8 @@ typedef struct {
      */
     uint64_t loop_count;
     /**
-     * Offsets of the faces in the loops: the first loop of a face is its outer one, the others are holes. NULL, with
-     * a count of 0, means that each loop is a face.
+     * Offsets of the faces in the loops: the first loop of a face is its outer one, the others are holes.
+     * NULL, with a count of 0, means that each loop is a face.
      */
     const void *faces;
     /**
@@ -1046,8 +1082,8 @@ typedef struct {
      */
     uint64_t shell_count;
     /**
-     * Offsets of the solids in the shells: the first shell of a solid bounds it from outside, the others are voids.
-     * NULL, with a count of 0, means that all shells are one solid.
+     * Offsets of the solids in the shells: the first shell of a solid bounds it from outside, the others are
+     * voids. NULL, with a count of 0, means that all shells are one solid.
      */
     const void *solids;
     /**
@@ -1063,11 +1099,33 @@ typedef struct {
      */
     double scale;
     /**
-     * How far corners may lie beside the plane of their face, in model units: half the distance of two planes
-     * parallel to the face that have all its corners between them. 0 means 10^-9 of the longest extent.
+     * How far corners may lie beside the plane of their face, in model units: half the distance of two
+     * planes parallel to the face that have all its corners between them. 0 means 10^-9 of the longest
+     * extent.
      */
     double tolerance_model;
 } leafless_polyhedron_arrays;
+
+/**
+ * What the cells of an octree prove of the solid that it was made from. Certified trees prove both, inner
+ * ones FULL, outer ones EMPTY, sampled ones nothing. Booleans prove what their operands do, and files keep
+ * it.
+ */
+typedef struct {
+    /**
+     * How far the surfaces that the cells speak of were moved from those that were handed in, in model
+     * units: cracks that were sewn, vertices that were rounded, a stated deviation of a tessellation.
+     */
+    double displacement_model;
+    /**
+     * A FULL cell is proven to lie in the solid.
+     */
+    bool full;
+    /**
+     * An EMPTY cell is proven to lie outside of it.
+     */
+    bool empty;
+} leafless_proof;
 
 /**
  * What can be said of an octree at once.
@@ -1085,6 +1143,10 @@ typedef struct {
      * Array elements of the deepest level.
      */
     uint64_t bricks;
+    /**
+     * What the cells prove.
+     */
+    leafless_proof proof;
     /**
      * The tag of the whole universe; BRANCH if it is cut.
      */
@@ -1138,46 +1200,47 @@ typedef struct {
 } leafless_statistics;
 
 /**
- * Classifies the box [min, max] (3 numbers each, model units) for the host's own shape: LEAFLESS_TAG_EMPTY or
- * LEAFLESS_TAG_FULL if that is proven for all of the box, LEAFLESS_TAG_PARTIAL to be asked about its eight parts.
- * Anything else ends the operation with LEAFLESS_E_CALLBACK and the number in the message; so use a negative
- * number for the host's own errors.
+ * Classifies the box [min, max] (3 numbers each, model units) for the host's own shape: LEAFLESS_TAG_EMPTY
+ * or LEAFLESS_TAG_FULL if that is proven for all of the box, LEAFLESS_TAG_PARTIAL to be asked about its
+ * eight parts. Anything else ends the operation with LEAFLESS_E_CALLBACK and the number in the message; so
+ * use a negative number for the host's own errors.
  *
- * It is called from several threads at once, which may all be the library's own, unless the operation's options say
- * `threads` = 1; and it must give the same answer to the same box. It must return: no exception, no longjmp. It may
- * call this library.
+ * It is called from several threads at once, which may all be the library's own, unless the operation's
+ * options say `threads` = 1; and it must give the same answer to the same box. It must return: no exception,
+ * no longjmp. It may call this library.
  */
 typedef int32_t (*leafless_classify_fn)(void *ctx, const double *min, const double *max);
 
 /**
- * Decides a point (3 numbers, model units) for the host's own shape: 1 inside, 0 outside; anything else ends the
- * operation with LEAFLESS_E_CALLBACK. Else as leafless_classify_fn.
+ * Decides a point (3 numbers, model units) for the host's own shape: 1 inside, 0 outside; anything else ends
+ * the operation with LEAFLESS_E_CALLBACK. Else as leafless_classify_fn.
  */
 typedef int32_t (*leafless_contains_fn)(void *ctx, const double *point);
 
 /**
- * Called once, when nothing uses `ctx` any more, in the thread that gave back the last reference. It must return: no
- * exception, no longjmp. It may call this library.
+ * Called once, when nothing uses `ctx` any more, in the thread that gave back the last reference. It must
+ * return: no exception, no longjmp. It may call this library.
  */
 typedef void (*leafless_destroy_fn)(void *ctx);
 
 /**
- * Classifies `count` boxes (6 numbers each: min, then max) at once, for hosts that do that faster than one by one:
- * sets `tags` to what leafless_classify_fn would answer. 0, or the number of the host's own error, which ends the
- * operation with LEAFLESS_E_CALLBACK. Else as leafless_classify_fn.
+ * Classifies `count` boxes (6 numbers each: min, then max) at once, for hosts that do that faster than one
+ * by one: sets `tags` to what leafless_classify_fn would answer. 0, or the number of the host's own error,
+ * which ends the operation with LEAFLESS_E_CALLBACK. Else as leafless_classify_fn.
  */
 typedef int32_t (*leafless_classify_many_fn)(void *ctx, const double *boxes, uint64_t count, int32_t *tags);
 
 /**
- * Decides `count` points (3 numbers each) at once: sets each of `inside` to 1 or 0. 0, or the number of the host's own
- * error. Else as leafless_contains_fn.
+ * Decides `count` points (3 numbers each) at once: sets each of `inside` to 1 or 0. 0, or the number of the
+ * host's own error. Else as leafless_contains_fn.
  */
 typedef int32_t (*leafless_contains_many_fn)(void *ctx, const double *points, uint64_t count, int32_t *inside);
 
 /**
- * Bounds the distances of `count` points (3 numbers each, model units) from the surface of the host's own shape: sets each
- * of `distances_model` to a number whose magnitude is at most that distance, negative inside and positive outside; 0, or
- * what is no number, says nothing. 0, or the number of the host's own error. Else as leafless_classify_fn.
+ * Bounds the distances of `count` points (3 numbers each, model units) from the surface of the host's own
+ * shape: sets each of `distances_model` to a number whose magnitude is at most that distance, negative
+ * inside and positive outside; 0, or what is no number, says nothing. 0, or the number of the host's own
+ * error. Else as leafless_classify_fn.
  */
 typedef int32_t (*leafless_distance_many_fn)(void *ctx,
                                              const double *points,
@@ -1213,12 +1276,14 @@ typedef struct {
      */
     void *ctx;
     /**
-     * Any number but 0, of 128 bits, that tells the shape from others, such as a hash of what it is made of: octrees
-     * that leafless_lazy_freeze makes remember it, and are taken up again by no other shape. Optional.
+     * Any number but 0, of 128 bits, that tells the shape from others, such as a hash of what it is made of:
+     * octrees that leafless_lazy_freeze makes remember it, and are taken up again by no other shape.
+     * Optional.
      */
     uint64_t fingerprint[2];
     /**
-     * Classifies many boxes at once, as many as the work has at hand; optional, and `classify` must be set all the same.
+     * Classifies many boxes at once, as many as the work has at hand; optional, and `classify` must be set
+     * all the same.
      */
     leafless_classify_many_fn classify_many;
     /**
@@ -1226,22 +1291,22 @@ typedef struct {
      */
     leafless_contains_many_fn contains_many;
     /**
-     * Bounds the distances of points from the surface; optional. It is asked about the middles of cells before boxes are
-     * classified, and a cell whose middle is further from the surface than its corners is decided. With it `classify` is
-     * optional.
+     * Bounds the distances of points from the surface; optional. It is asked about the middles of cells
+     * before boxes are classified, and a cell whose middle is further from the surface than its corners is
+     * decided. With it `classify` is optional.
      */
     leafless_distance_many_fn distance_many;
 } leafless_callbacks;
 
 /**
- * The value of the host's function at a point (3 numbers, model units): sets `*value`. 0, or the number of the host's
- * own error, which ends the operation with LEAFLESS_E_CALLBACK. Else as leafless_classify_fn.
+ * The value of the host's function at a point (3 numbers, model units): sets `*value`. 0, or the number of
+ * the host's own error, which ends the operation with LEAFLESS_E_CALLBACK. Else as leafless_classify_fn.
  */
 typedef int32_t (*leafless_value_fn)(void *ctx, const double *point, double *value);
 
 /**
- * An interval that contains all values of the host's function over the box [min, max] (3 numbers each, model units):
- * sets `*range`. Else as leafless_value_fn.
+ * An interval that contains all values of the host's function over the box [min, max] (3 numbers each, model
+ * units): sets `*range`. Else as leafless_value_fn.
  */
 typedef int32_t (*leafless_range_fn)(void *ctx, const double *min, const double *max, leafless_interval *range);
 
@@ -1262,7 +1327,8 @@ typedef struct {
      */
     leafless_value_fn value;
     /**
-     * Its range over a box. It alone proves that a cell lies inside or outside. A NaN, or lower > upper, proves nothing.
+     * Its range over a box. It alone proves that a cell lies inside or outside. A NaN, or lower > upper,
+     * proves nothing.
      */
     leafless_range_fn range;
     /**
@@ -1296,8 +1362,8 @@ typedef struct {
      */
     leafless_tag tag;
     /**
-     * Of a BRANCH the tags of its children, in octant order (bit 0 of the octant is x, bit 1 y, bit 2 z); else
-     * eight times the cell's own.
+     * Of a BRANCH the tags of its children, in octant order (bit 0 of the octant is x, bit 1 y, bit 2 z);
+     * else eight times the cell's own.
      */
     leafless_tag children[8];
 } leafless_cursor_state;
@@ -1329,6 +1395,14 @@ typedef struct {
      */
     leafless_interval volume_model;
     /**
+     * What of the first solid is proven: what is not counts as undecided.
+     */
+    leafless_proof proof_a;
+    /**
+     * What of the second solid is proven.
+     */
+    leafless_proof proof_b;
+    /**
      * Cells of the first solid that were split.
      */
     uint64_t splits_a;
@@ -1345,7 +1419,8 @@ typedef struct {
      */
     uint32_t level;
     /**
-     * A cell that lies in both, if they are proven to overlap: its position in cells of its level; else zeros.
+     * A cell that lies in both, if they are proven to overlap: its position in cells of its level; else
+     * zeros.
      */
     uint32_t witness[3];
     /**
@@ -1363,11 +1438,19 @@ typedef struct {
  */
 typedef struct {
     /**
-     * The least distance between points of the two, in model units: 0 if they touch or overlap. The upper bound is
-     * infinite as long as one of them has no cell that is proven to be full, and the lower one too if one of them is
-     * proven to be empty.
+     * The least distance between points of the two, in model units: 0 if they touch or overlap. The upper
+     * bound is infinite as long as one of them has no cell that is proven to be full, and the lower one too
+     * if one of them is proven to be empty.
      */
     leafless_interval distance_model;
+    /**
+     * What of the first solid is proven: what is not counts as undecided.
+     */
+    leafless_proof proof_a;
+    /**
+     * What of the second solid is proven.
+     */
+    leafless_proof proof_b;
     /**
      * Cells of the first solid that were split.
      */
@@ -1377,8 +1460,8 @@ typedef struct {
      */
     uint64_t splits_b;
     /**
-     * If `has_nearest`, cells of the first and of the second solid with points that are no further apart than the upper
-     * bound: the position of the first in cells of its level; else zeros.
+     * If `has_nearest`, cells of the first and of the second solid with points that are no further apart
+     * than the upper bound: the position of the first in cells of its level; else zeros.
      */
     uint32_t nearest_a[3];
     /**
@@ -1404,8 +1487,8 @@ typedef struct {
 } leafless_clearance;
 
 /**
- * Mass properties of a solid of density 1. All intervals contain the truth. All of it concerns the part inside of the
- * universe; unless `is_clipped` says otherwise, that is the whole solid.
+ * Mass properties of a solid of density 1. All intervals contain the truth. All of it concerns the part
+ * inside of the universe; unless `is_clipped` says otherwise, that is the whole solid.
  */
 typedef struct {
     /**
@@ -1417,14 +1500,19 @@ typedef struct {
      */
     leafless_interval centroid_model[3];
     /**
-     * Tensor of inertia about the model's origin, row by row: the integral of |p|²δij - pi·pj over the points p of the
-     * solid. So products of inertia are negative where the product of the coordinates is mostly positive.
+     * Tensor of inertia about the model's origin, row by row: the integral of |p|²δij - pi·pj over the
+     * points p of the solid. So products of inertia are negative where the product of the coordinates is
+     * mostly positive.
      */
     leafless_interval inertia_origin_model[9];
     /**
      * The same about the solid's own centroid, wherever in the interval that lies.
      */
     leafless_interval inertia_centroid_model[9];
+    /**
+     * What of the solid is proven: what is not counts as undecided.
+     */
+    leafless_proof proof;
     /**
      * How many times a cell was split.
      */
@@ -1459,6 +1547,10 @@ typedef struct {
      * Upper corner; all numbers if `is_empty`.
      */
     leafless_interval max_model[3];
+    /**
+     * What of the solid is proven: what is not counts as undecided.
+     */
+    leafless_proof proof;
     /**
      * How many times a cell was split.
      */
@@ -1514,6 +1606,10 @@ typedef struct {
      */
     uint64_t sections;
     /**
+     * What the cells prove.
+     */
+    leafless_proof proof;
+    /**
      * The tag of the whole universe; BRANCH if it is cut.
      */
     leafless_tag root;
@@ -1535,6 +1631,10 @@ typedef struct {
      * Number of its kind.
      */
     uint32_t kind;
+    /**
+     * The object that it belongs to: 0 is the solid.
+     */
+    uint32_t owner;
     /**
      * Whether a reader must know the kind to read the file.
      */
@@ -1559,8 +1659,8 @@ typedef struct {
 
 /**
  * Takes bytes of a file in order: all `count` of them, and returns 0; anything else ends the writing with
- * LEAFLESS_E_CALLBACK. It is called in the calling thread. It must return: no exception, no longjmp. It may call this
- * library.
+ * LEAFLESS_E_CALLBACK. It is called in the calling thread. It must return: no exception, no longjmp. It may
+ * call this library.
  */
 typedef int32_t (*leafless_write_fn)(void *ctx, const uint8_t *bytes, uint64_t count);
 
@@ -1626,8 +1726,8 @@ const char *leafless_status_name(int32_t status);
  * that succeed leave it as it is; before the first failure it is empty.
  *
  * - Buffers: `message`, `capacity` bytes; may be NULL if `capacity` is 0.
- * - Result: the message's length in bytes, without the terminating NUL, also if not all of it was written; at
- *   most 511. What is written is cut at a character and NUL-terminated.
+ * - Result: the message's length in bytes, without the terminating NUL, also if not all of it was written;
+ *   at most 511. What is written is cut at a character and NUL-terminated.
  * - Errors: none.
  * - Ownership: the message is copied.
  * - Threads: any; every thread has its own message.
@@ -1684,7 +1784,8 @@ leafless_status leafless_options_init(leafless_options *options, size_t struct_s
  * - Buffers: `control`, one pointer.
  * - Result: `*control`, not cancelled.
  * - Errors: only the general ones.
- * - Ownership: give `*control` back with leafless_control_free, not before the operations that use it are done.
+ * - Ownership: give `*control` back with leafless_control_free, not before the operations that use it are
+ *   done.
  * - Threads: any.
  * - Untrusted input: none.
  * - Since: 0.1
@@ -1705,8 +1806,8 @@ leafless_status leafless_control_new(leafless_control **control);
 void leafless_control_free(leafless_control *control);
 
 /**
- * Ends the operations that run with this control: they return LEAFLESS_E_CANCELLED soon, and so do later ones
- * until leafless_control_reset.
+ * Ends the operations that run with this control: they return LEAFLESS_E_CANCELLED soon, and so do later
+ * ones until leafless_control_reset.
  *
  * - Buffers: `control`, a handle.
  * - Result: none; returns at once.
@@ -1758,13 +1859,14 @@ leafless_status leafless_control_state(const leafless_control *control, bool *ca
 leafless_status leafless_frame_check(const leafless_frame *frame);
 
 /**
- * The default frame of a shape: the cube of edge L·(1 + 1/32) around its centre, L being its longest extent; the
- * same universe at every depth.
+ * The default frame of a shape: the cube of edge L·(1 + 1/32) around its centre, L being its longest extent;
+ * the same universe at every depth.
  *
  * - Buffers: `min_model` and `max_model`, 3 numbers each; `frame`, one struct.
  * - Result: `*frame`.
- * - Errors: LEAFLESS_E_MESH if the longest extent is 0; LEAFLESS_E_ARGUMENT if min > max on an axis, if `depth` is
- *   not 1 to 20, or if a bound is not a finite number in range, or so far from the origin that doubles cannot resolve the cube.
+ * - Errors: LEAFLESS_E_MESH if the longest extent is 0; LEAFLESS_E_ARGUMENT if min > max on an axis, if
+ *   `depth` is not 1 to 20, or if a bound is not a finite number in range, or so far from the origin that
+ *   doubles cannot resolve the cube.
  * - Ownership: nothing changes hands.
  * - Threads: any.
  * - Untrusted input: any values.
@@ -1790,13 +1892,13 @@ leafless_status leafless_frame_around(const double min_model[3],
 leafless_status leafless_frame_cell_size(const leafless_frame *frame, double *cell_size_model);
 
 /**
- * The finest cell that a point lies in. A point on a plane between two cells belongs to the upper one, on the
- * universe's upper face to the last; the comparison is exact.
+ * The finest cell that a point lies in. A point on a plane between two cells belongs to the upper one, on
+ * the universe's upper face to the last; the comparison is exact.
  *
  * - Buffers: `frame`, one struct; `point_model`, 3 numbers; `cell`, room for 3.
  * - Result: `cell`, each below 2^depth.
- * - Errors: LEAFLESS_E_ARGUMENT as leafless_frame_check, and if the point is outside of the universe or not a
- *   number.
+ * - Errors: LEAFLESS_E_ARGUMENT as leafless_frame_check, and if the point is outside of the universe or not
+ *   a number.
  * - Ownership: nothing changes hands.
  * - Threads: any.
  * - Untrusted input: any values.
@@ -1897,8 +1999,8 @@ leafless_status leafless_mesh_copy(const leafless_mesh *mesh,
 leafless_status leafless_mesh_bounds(const leafless_mesh *mesh, double min_model[3], double max_model[3]);
 
 /**
- * The volume that a mesh encloses, by the divergence theorem: overlaps count twice, bodies that are inside out
- * negative. Of an open mesh it has no meaning. Rounded; the certified volume is that of an octree.
+ * The volume that a mesh encloses, by the divergence theorem: overlaps count twice, bodies that are inside
+ * out negative. Of an open mesh it has no meaning. Rounded; the certified volume is that of an octree.
  *
  * - Buffers: `volume_model`, one number.
  * - Result: `*volume_model`, in cubic model units.
@@ -1908,12 +2010,11 @@ leafless_status leafless_mesh_bounds(const leafless_mesh *mesh, double min_model
  * - Untrusted input: none.
  * - Since: 0.1
  */
-leafless_status leafless_mesh_volume(const leafless_mesh *mesh,
-                                     double *volume_model);
+leafless_status leafless_mesh_volume(const leafless_mesh *mesh, double *volume_model);
 
 /**
- * What was found when a mesh was made, and how its triangles hang together. The first call analyses the edges,
- * later ones are free.
+ * What was found when a mesh was made, and how its triangles hang together. The first call analyses the
+ * edges, later ones are free.
  *
  * - Buffers: `report`, one struct.
  * - Result: `*report`.
@@ -1923,12 +2024,11 @@ leafless_status leafless_mesh_volume(const leafless_mesh *mesh,
  * - Untrusted input: none.
  * - Since: 0.1
  */
-leafless_status leafless_mesh_describe(const leafless_mesh *mesh,
-                                       leafless_mesh_report *report);
+leafless_status leafless_mesh_describe(const leafless_mesh *mesh, leafless_mesh_report *report);
 
 /**
- * Where a mesh is not as it should be, the worst first: in the order of leafless_defect, and those of one kind by the
- * longest side of their boxes, then by count, then by position.
+ * Where a mesh is not as it should be, the worst first: in the order of leafless_defect, and those of one
+ * kind by the longest side of their boxes, then by count, then by position.
  *
  * - Buffers: `defects`, room for `capacity` of them, or NULL to ask for their number only.
  * - Result: `*count`, how many there are, but not more than `limit`; the worst ones in `defects`.
@@ -1945,21 +2045,21 @@ leafless_status leafless_mesh_defects(const leafless_mesh *mesh,
                                       uint64_t *count);
 
 /**
- * Checks that a mesh has no hole, so that every point that is not on it is clearly inside or outside: an even number
- * of triangles meet on every edge, and but for LEAFLESS_FILL_EVEN_ODD half of them run in each direction.
- * Self-intersections, overlaps, nested and inside-out bodies are all allowed. Solids need not pass this.
+ * Checks that a mesh has no hole, so that every point that is not on it is clearly inside or outside: an
+ * even number of triangles meet on every edge, and but for LEAFLESS_FILL_EVEN_ODD half of them run in each
+ * direction. Self-intersections, overlaps, nested and inside-out bodies are all allowed. Solids need not
+ * pass this.
  *
  * - Buffers: none. `fill` is a leafless_fill.
  * - Result: LEAFLESS_OK if it is so.
- * - Errors: LEAFLESS_E_MESH if the mesh is empty, not closed, or (but for LEAFLESS_FILL_EVEN_ODD) not consistently
- *   oriented; LEAFLESS_E_ARGUMENT if `fill` is no leafless_fill; LEAFLESS_E_NO_MEMORY.
+ * - Errors: LEAFLESS_E_MESH if the mesh is empty, not closed, or (but for LEAFLESS_FILL_EVEN_ODD) not
+ *   consistently oriented; LEAFLESS_E_ARGUMENT if `fill` is no leafless_fill; LEAFLESS_E_NO_MEMORY.
  * - Ownership: nothing changes hands.
  * - Threads: any.
  * - Untrusted input: any mesh.
  * - Since: 0.1
  */
-leafless_status leafless_mesh_check_closed(const leafless_mesh *mesh,
-                                           uint32_t fill);
+leafless_status leafless_mesh_check_closed(const leafless_mesh *mesh, uint32_t fill);
 
 /**
  * The mesh with hair cracks closed: vertices at open edges that lie within 2^-24 of the extent of each other
@@ -1976,8 +2076,8 @@ leafless_status leafless_mesh_check_closed(const leafless_mesh *mesh,
 leafless_status leafless_mesh_sewn(const leafless_mesh *mesh, leafless_mesh **sewn);
 
 /**
- * The mesh under an affine map: x' = M x + t, rounded. A reflection turns it inside out. The moved vertices count
- * as the truth, whatever cracks were closed before.
+ * The mesh under an affine map: x' = M x + t, rounded. A reflection turns it inside out. The moved vertices
+ * count as the truth, whatever cracks were closed before.
  *
  * - Buffers: `matrix`, 12 numbers: three rows of M and t, (m00 m01 m02 t0, m10 …); `moved`, one pointer.
  * - Result: `*moved`, welded as by leafless_mesh_new.
@@ -2025,29 +2125,30 @@ leafless_status leafless_mesh_translated(const leafless_mesh *mesh,
 leafless_status leafless_mesh_arrays_init(leafless_mesh_arrays *arrays, size_t struct_size);
 
 /**
- * Makes a mesh of arrays. Equal vertices are welded, triangles with two corners at one place dropped and counted;
- * coordinates below 2^-256 count as zero. Seen from outside of the solid the corners turn counter-clockwise.
+ * Makes a mesh of arrays. Equal vertices are welded, triangles with two corners at one place dropped and
+ * counted; coordinates below 2^-256 count as zero. Seen from outside of the solid the corners turn
+ * counter-clockwise.
  *
- * - Buffers: `arrays`, one struct; what its pointers lead to must not change during the call. `mesh`, one pointer.
+ * - Buffers: `arrays`, one struct; what its pointers lead to must not change during the call. `mesh`, one
+ *   pointer.
  * - Result: `*mesh`; not checked to be closed.
- * - Errors: LEAFLESS_E_MESH if a coordinate is infinite, not a number, or beyond ±2^256, or if an index is out of
- *   range, with the index of the vertex or triangle in the message, or if there are more than 2^32 - 1 vertices or
- *   triangles; LEAFLESS_E_ARGUMENT if a type, a stride or the scale is none, or `indices` NULL though there are
- *   triangles and not three vertices for each; LEAFLESS_E_NO_MEMORY.
- * - Ownership: the arrays are only read during the call, once and in their order, and may be freed after it: the
- *   mesh has its own. Give `*mesh` back with leafless_mesh_free.
+ * - Errors: LEAFLESS_E_MESH if a coordinate is infinite, not a number, or beyond ±2^256, or if an index is
+ *   out of range, with the index of the vertex or triangle in the message, or if there are more than 2^32 -
+ *   1 vertices or triangles; LEAFLESS_E_ARGUMENT if a type, a stride or the scale is none, or `indices` NULL
+ *   though there are triangles and not three vertices for each; LEAFLESS_E_NO_MEMORY.
+ * - Ownership: the arrays are only read during the call, once and in their order, and may be freed after it:
+ *   the mesh has its own. Give `*mesh` back with leafless_mesh_free.
  * - Threads: any.
  * - Untrusted input: any values in the arrays.
  * - Since: 0.1
  */
-leafless_status leafless_mesh_new(const leafless_mesh_arrays *arrays,
-                                  leafless_mesh **mesh);
+leafless_status leafless_mesh_new(const leafless_mesh_arrays *arrays, leafless_mesh **mesh);
 
 /**
  * Sets options for mesh files to their defaults.
  *
- * - Buffers: `options`, one struct of `struct_size` bytes, which is sizeof(leafless_mesh_options); need not be
- *   initialised.
+ * - Buffers: `options`, one struct of `struct_size` bytes, which is sizeof(leafless_mesh_options); need not
+ *   be initialised.
  * - Result: `*options`.
  * - Errors: LEAFLESS_E_ARGUMENT if `struct_size` cannot be right.
  * - Ownership: nothing changes hands.
@@ -2055,24 +2156,25 @@ leafless_status leafless_mesh_new(const leafless_mesh_arrays *arrays,
  * - Untrusted input: none.
  * - Since: 0.1
  */
-leafless_status leafless_mesh_options_init(leafless_mesh_options *options,
-                                           size_t struct_size);
+leafless_status leafless_mesh_options_init(leafless_mesh_options *options, size_t struct_size);
 
 /**
- * Reads a mesh file. Everything in it becomes one mesh, welded as by leafless_mesh_new; polygons become triangles.
+ * Reads a mesh file. Everything in it becomes one mesh, welded as by leafless_mesh_new; polygons become
+ * triangles.
  *
- * - Buffers: `path`, `path_length` bytes of UTF-8; `options`, one struct, or NULL; `source`, one struct, or NULL if it
- *   is not wanted; `mesh`, one pointer.
+ * - Buffers: `path`, `path_length` bytes of UTF-8; `options`, one struct, or NULL; `source`, one struct, or
+ *   NULL if it is not wanted; `mesh`, one pointer.
  * - Result: `*mesh`, not checked to be closed; `*source`.
- * - Errors: LEAFLESS_E_MESH_FILE, with the part, line, facet or byte in the message, if the file cannot be read, if its
- *   format is not known, or if `target` is given and nobody says from which unit; LEAFLESS_E_MESH, with the vertex,
- *   if a coordinate is beyond ±2^256 once it is scaled; LEAFLESS_E_ARGUMENT if the format or a unit is none, or the
- *   scale out of range; LEAFLESS_E_IO; LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY.
+ * - Errors: LEAFLESS_E_MESH_FILE, with the part, line, facet or byte in the message, if the file cannot be
+ *   read, if its format is not known, or if `target` is given and nobody says from which unit;
+ *   LEAFLESS_E_MESH, with the vertex, if a coordinate is beyond ±2^256 once it is scaled;
+ *   LEAFLESS_E_ARGUMENT if the format or a unit is none, or the scale out of range; LEAFLESS_E_IO;
+ *   LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY.
  * - Ownership: give `*mesh` back with leafless_mesh_free.
  * - Threads: any.
- * - Untrusted input: any file. Memory is at most a small multiple of its length; of a 3MF, which is compressed, of 64
- *   times its length and 16 MiB, and its instances may come to 2^25 vertices and 2^25 triangles, or to as many as the
- *   file has.
+ * - Untrusted input: any file. Memory is at most a small multiple of its length; of a 3MF, which is
+ *   compressed, of 64 times its length and 16 MiB, and its instances may come to 2^25 vertices and 2^25
+ *   triangles, or to as many as the file has.
  * - Since: 0.1
  */
 leafless_status leafless_mesh_open(const char *path,
@@ -2084,8 +2186,8 @@ leafless_status leafless_mesh_open(const char *path,
 /**
  * As leafless_mesh_open for a file in memory, of whose name nothing is known.
  *
- * - Buffers: `bytes`, `length` bytes; may be NULL if there are none. `options`, one struct, or NULL; `source`, one
- *   struct, or NULL if it is not wanted; `mesh`, one pointer.
+ * - Buffers: `bytes`, `length` bytes; may be NULL if there are none. `options`, one struct, or NULL;
+ *   `source`, one struct, or NULL if it is not wanted; `mesh`, one pointer.
  * - Result: `*mesh`, not checked to be closed; `*source`.
  * - Errors: as leafless_mesh_open, but those of paths.
  * - Ownership: the bytes are not kept; give `*mesh` back with leafless_mesh_free.
@@ -2104,8 +2206,8 @@ leafless_status leafless_mesh_from_bytes(const uint8_t *bytes,
  *
  * - Buffers: `bytes`, room for `capacity` bytes, or NULL to ask for the length only.
  * - Result: `*length`, the length of the file; the file in `bytes`.
- * - Errors: LEAFLESS_E_BUFFER if the capacity is too small; LEAFLESS_E_ARGUMENT if a coordinate is beyond the
- *   range of 32-bit floating point numbers; LEAFLESS_E_NO_MEMORY.
+ * - Errors: LEAFLESS_E_BUFFER if the capacity is too small; LEAFLESS_E_ARGUMENT if a coordinate is beyond
+ *   the range of 32-bit floating point numbers; LEAFLESS_E_NO_MEMORY.
  * - Ownership: nothing changes hands.
  * - Threads: any.
  * - Untrusted input: none.
@@ -2119,8 +2221,8 @@ leafless_status leafless_mesh_to_stl(const leafless_mesh *mesh,
 /**
  * Sets arrays to their defaults: none.
  *
- * - Buffers: `arrays`, one struct of `struct_size` bytes, which is sizeof(leafless_polyhedron_arrays); need not be
- *   initialised.
+ * - Buffers: `arrays`, one struct of `struct_size` bytes, which is sizeof(leafless_polyhedron_arrays); need
+ *   not be initialised.
  * - Result: `*arrays`.
  * - Errors: LEAFLESS_E_ARGUMENT if `struct_size` cannot be right.
  * - Ownership: nothing changes hands.
@@ -2128,25 +2230,24 @@ leafless_status leafless_mesh_to_stl(const leafless_mesh *mesh,
  * - Untrusted input: none.
  * - Since: 0.1
  */
-leafless_status leafless_polyhedron_arrays_init(leafless_polyhedron_arrays *arrays,
-                                                size_t struct_size);
+leafless_status leafless_polyhedron_arrays_init(leafless_polyhedron_arrays *arrays, size_t struct_size);
 
 /**
- * Checks solids of plane faces and makes a closed, consistently oriented mesh of them. Where a face is not plane to the
- * last digit, its triangles say from then on where the surface is.
+ * Checks solids of plane faces and makes a closed, consistently oriented mesh of them. Where a face is not
+ * plane to the last digit, its triangles say from then on where the surface is.
  *
- * Each edge of a loop is run through once more in its shell, in the opposite direction; vertices at one place are two
- * vertices there, so that shells may touch. The first shell of a solid encloses a positive volume, its voids
- * negative ones within it. Faces that cut through each other and solids that overlap are let through: a mesh has a
- * meaning for them.
+ * Each edge of a loop is run through once more in its shell, in the opposite direction; vertices at one
+ * place are two vertices there, so that shells may touch. The first shell of a solid encloses a positive
+ * volume, its voids negative ones within it. Faces that cut through each other and solids that overlap are
+ * let through: a mesh has a meaning for them.
  *
- * - Buffers: `arrays`, one struct; what its pointers lead to must not change during the call. `deviation_model`, one
- *   number, or NULL if it is not wanted; `mesh`, one pointer.
+ * - Buffers: `arrays`, one struct; what its pointers lead to must not change during the call.
+ *   `deviation_model`, one number, or NULL if it is not wanted; `mesh`, one pointer.
  * - Result: `*mesh`; `*deviation_model`, how far a corner lies beside the plane of its face at most.
- * - Errors: LEAFLESS_E_MESH, with the numbers of loop, face, shell or vertices in the message, if the arrays are
- *   not such solids, if a coordinate is infinite, not a number, or beyond ±2^256, if there is no solid, or if there
- *   are more than 2^32 - 1 of anything; LEAFLESS_E_ARGUMENT if a type, a stride, the scale or the tolerance is none;
- *   LEAFLESS_E_NO_MEMORY.
+ * - Errors: LEAFLESS_E_MESH, with the numbers of loop, face, shell or vertices in the message, if the arrays
+ *   are not such solids, if a coordinate is infinite, not a number, or beyond ±2^256, if there is no solid,
+ *   or if there are more than 2^32 - 1 of anything; LEAFLESS_E_ARGUMENT if a type, a stride, the scale or
+ *   the tolerance is none; LEAFLESS_E_NO_MEMORY.
  * - Ownership: the arrays are only read during the call, and may be freed after it; give `*mesh` back with
  *   leafless_mesh_free.
  * - Threads: any.
@@ -2160,8 +2261,8 @@ leafless_status leafless_mesh_from_polyhedron(const leafless_polyhedron_arrays *
 /**
  * The octree whose whole universe has one tag.
  *
- * - Buffers: `frame`, one struct; `octree`, one pointer. `tag` and `exterior` are leafless_tags, not BRANCH: what
- *   is known of the universe, and of the space around it.
+ * - Buffers: `frame`, one struct; `octree`, one pointer. `tag` and `exterior` are leafless_tags, not BRANCH:
+ *   what is known of the universe, and of the space around it.
  * - Result: `*octree`.
  * - Errors: LEAFLESS_E_ARGUMENT.
  * - Ownership: give `*octree` back with leafless_octree_free.
@@ -2188,8 +2289,8 @@ leafless_status leafless_octree_uniform(const leafless_frame *frame,
 leafless_status leafless_octree_ref(const leafless_octree *octree, leafless_octree **reference);
 
 /**
- * Gives back a reference to an octree. With the last one the octree is gone, and with it the mapping of its file,
- * unless a cursor, a solid, or an octree with other metadata still shares it.
+ * Gives back a reference to an octree. With the last one the octree is gone, and with it the mapping of its
+ * file, unless a cursor, a solid, or an octree with other metadata still shares it.
  *
  * - Buffers: `octree`, a handle or NULL, which does nothing.
  * - Result: none.
@@ -2215,8 +2316,27 @@ void leafless_octree_free(leafless_octree *octree);
 leafless_status leafless_octree_describe(const leafless_octree *octree, leafless_octree_info *info);
 
 /**
- * Counts over all levels, and the certified volume. O(depth) once the counts are known, which for an octree from
- * a file they are and for a new one takes one pass over its arrays.
+ * The same octree, of whose cells this is said; the arrays are shared. Octrees that other programs made
+ * prove what these know. If FULL and EMPTY are said to be proven, the cells themselves are taken for the
+ * solid: measures of a sampled octree then are those of its cells, and not of what was sampled.
+ *
+ * - Buffers: `octree`, a handle; `proven`, a leafless_proven; `displacement_model` as in leafless_proof;
+ *   `result`, one pointer.
+ * - Result: `*result`.
+ * - Errors: LEAFLESS_E_ARGUMENT unless `proven` is one, and the displacement finite and not negative.
+ * - Ownership: give `*result` back with leafless_octree_free.
+ * - Threads: any.
+ * - Untrusted input: any octree, any numbers.
+ * - Since: 0.1
+ */
+leafless_status leafless_octree_with_proof(const leafless_octree *octree,
+                                           uint32_t proven,
+                                           double displacement_model,
+                                           leafless_octree **result);
+
+/**
+ * Counts over all levels, and the volume of the cells. O(depth) once the counts are known, which for an
+ * octree from a file they are and for a new one takes one pass over its arrays.
  *
  * - Buffers: `statistics`, one struct.
  * - Result: `*statistics`.
@@ -2226,12 +2346,11 @@ leafless_status leafless_octree_describe(const leafless_octree *octree, leafless
  * - Untrusted input: any octree; of one that was mapped unverified the numbers may be wrong.
  * - Since: 0.1
  */
-leafless_status leafless_octree_statistics(const leafless_octree *octree,
-                                           leafless_statistics *statistics);
+leafless_status leafless_octree_statistics(const leafless_octree *octree, leafless_statistics *statistics);
 
 /**
- * Counts of each level, and the certified volumes of the tree cut there. Entry 0 is the universe, entry `depth`
- * the finest cells.
+ * Counts of each level, and the certified volumes of the tree cut there. Entry 0 is the universe, entry
+ * `depth` the finest cells.
  *
  * - Buffers: `levels`, room for `capacity` structs, or NULL to ask for the count only; `count`, one number.
  * - Result: `*count`, depth + 1; the levels.
@@ -2247,8 +2366,8 @@ leafless_status leafless_octree_levels(const leafless_octree *octree,
                                        uint64_t *count);
 
 /**
- * Checks that an octree is well-formed and canonical: O(n). Those that the library makes, opens or maps verified
- * are; the bytes that checksums cover are not looked at here, see leafless_bytes_verify.
+ * Checks that an octree is well-formed and canonical: O(n). Those that the library makes, opens or maps
+ * verified are; the bytes that checksums cover are not looked at here, see leafless_bytes_verify.
  *
  * - Buffers: none.
  * - Result: LEAFLESS_OK if it is.
@@ -2261,7 +2380,8 @@ leafless_status leafless_octree_levels(const leafless_octree *octree,
 leafless_status leafless_octree_check(const leafless_octree *octree);
 
 /**
- * Whether two octrees have the same cells with the same tags on the same frame. Metadata does not count. O(n).
+ * Whether two octrees have the same cells with the same tags on the same frame. Metadata does not count.
+ * O(n).
  *
  * - Buffers: `equal`, one truth value.
  * - Result: `*equal`.
@@ -2271,20 +2391,19 @@ leafless_status leafless_octree_check(const leafless_octree *octree);
  * - Untrusted input: any octrees.
  * - Since: 0.1
  */
-leafless_status leafless_octree_equal(const leafless_octree *a,
-                                      const leafless_octree *b,
-                                      bool *equal);
+leafless_status leafless_octree_equal(const leafless_octree *a, const leafless_octree *b, bool *equal);
 
 /**
- * The octree with one more fact in its metadata, or with another value of one; the arrays are shared. Names in
- * use: "name", "units", "source", "rule".
+ * The octree with one more fact in its metadata, or with another value of one; the arrays are shared. Names
+ * in use: "name", "units", "source", "rule".
  *
  * - Buffers: `key` and `value`, `key_length` and `value_length` bytes of UTF-8; `named`, one pointer.
  * - Result: `*named`.
- * - Errors: LEAFLESS_E_UTF8; LEAFLESS_E_ARGUMENT if all facts would take more than 1 MiB in a file, 8 bytes and the
- *   two texts each; LEAFLESS_E_NO_MEMORY.
- * - Ownership: the texts are copied. `*named` shares the arrays of `octree`, which may be freed: what must outlive
- *   `octree`, such as bytes that it views, must outlive `*named` too. Give that back with leafless_octree_free.
+ * - Errors: LEAFLESS_E_UTF8; LEAFLESS_E_ARGUMENT if all facts would take more than 1 MiB in a file, 8 bytes
+ *   and the two texts each; LEAFLESS_E_NO_MEMORY.
+ * - Ownership: the texts are copied. `*named` shares the arrays of `octree`, which may be freed: what must
+ *   outlive `octree`, such as bytes that it views, must outlive `*named` too. Give that back with
+ *   leafless_octree_free.
  * - Threads: any.
  * - Untrusted input: any texts.
  * - Since: 0.1
@@ -2332,9 +2451,10 @@ leafless_status leafless_octree_peek_metadata(const leafless_octree *octree,
 /**
  * A fact of an octree's metadata by its place among all, which stand by ascending key.
  *
- * - Buffers: `count`, one number; `key`, `key_length`, `value`, `value_length`, one each, all four NULL to ask
- *   for the count only.
- * - Result: `*count`, the number of all facts; key and value, not NUL-terminated, with their lengths in bytes.
+ * - Buffers: `count`, one number; `key`, `key_length`, `value`, `value_length`, one each, all four NULL to
+ *   ask for the count only.
+ * - Result: `*count`, the number of all facts; key and value, not NUL-terminated, with their lengths in
+ *   bytes.
  * - Errors: LEAFLESS_E_ARGUMENT if there is no fact `index`, unless only the count is asked for.
  * - Ownership: the texts belong to the octree and live as long as the reference `octree`.
  * - Threads: any.
@@ -2352,22 +2472,20 @@ leafless_status leafless_octree_peek_metadata_at(const leafless_octree *octree,
 /**
  * What a mesh encloses. On a frame whose universe it reaches beyond it is clipped by that.
  *
- * Where the mesh is closed, what it encloses is exact. Around holes leafless_fill says by which convention a point is
- * inside: a cell is FULL or EMPTY if that is proven for all of its points, and others are PARTIAL though no triangle
- * cuts them. leafless_mesh_describe tells whether to expect them.
+ * Where the mesh is closed, what it encloses is exact. Around holes leafless_fill says by which convention a
+ * point is inside: a cell is FULL or EMPTY if that is proven for all of its points, and others are PARTIAL
+ * though no triangle cuts them. leafless_mesh_describe tells whether to expect them.
  *
  * - Buffers: `solid`, one pointer. `fill` is a leafless_fill.
  * - Result: `*solid`. Time is linear in the mesh (n log n in the edges of its boundary).
- * - Errors: LEAFLESS_E_MESH if the mesh is empty, or (LEAFLESS_FILL_EVEN_ODD) an odd number of triangles meet on an
- *   edge; LEAFLESS_E_ARGUMENT if `fill` is no leafless_fill; LEAFLESS_E_NO_MEMORY.
+ * - Errors: LEAFLESS_E_MESH if the mesh is empty, or (LEAFLESS_FILL_EVEN_ODD) an odd number of triangles
+ *   meet on an edge; LEAFLESS_E_ARGUMENT if `fill` is no leafless_fill; LEAFLESS_E_NO_MEMORY.
  * - Ownership: the solid shares the mesh, which may be freed; give `*solid` back with leafless_solid_free.
  * - Threads: any.
  * - Untrusted input: any mesh.
  * - Since: 0.1
  */
-leafless_status leafless_solid_new_mesh(const leafless_mesh *mesh,
-                                        uint32_t fill,
-                                        leafless_solid **solid);
+leafless_status leafless_solid_new_mesh(const leafless_mesh *mesh, uint32_t fill, leafless_solid **solid);
 
 /**
  * A stored octree as a solid on its own universe. Built to fewer levels it is cut there, built to more its
@@ -2375,8 +2493,8 @@ leafless_status leafless_solid_new_mesh(const leafless_mesh *mesh,
  *
  * - Buffers: `solid`, one pointer.
  * - Result: `*solid`.
- * - Errors: only the general ones; building it returns LEAFLESS_E_DAMAGED if the octree was mapped unverified
- *   and its links are damaged.
+ * - Errors: only the general ones; building it returns LEAFLESS_E_DAMAGED if the octree was mapped
+ *   unverified and its links are damaged.
  * - Ownership: the solid shares the octree, which may be freed; give `*solid` back with leafless_solid_free.
  * - Threads: any.
  * - Untrusted input: any octree.
@@ -2385,9 +2503,10 @@ leafless_status leafless_solid_new_mesh(const leafless_mesh *mesh,
 leafless_status leafless_octree_as_solid(const leafless_octree *octree, leafless_solid **solid);
 
 /**
- * Half-spaces that were evaluated so far, each at a point or over a box, for a solid that is made of half-spaces (see
- * leafless_solid_new_halfspace and what follows it) and perhaps others: by calls that have returned, and by lazy
- * octrees and the like that are given back. What else is made of the solid counts for itself.
+ * Half-spaces that were evaluated so far, each at a point or over a box, for a solid that is made of
+ * half-spaces (see leafless_solid_new_halfspace and what follows it) and perhaps others: by calls that have
+ * returned, and by lazy octrees and the like that are given back. What else is made of the solid counts for
+ * itself.
  *
  * - Buffers: `evaluations`, one number.
  * - Result: `*evaluations`; 0 for solids of other kinds.
@@ -2397,8 +2516,7 @@ leafless_status leafless_octree_as_solid(const leafless_octree *octree, leafless
  * - Untrusted input: any solid.
  * - Since: 0.1
  */
-leafless_status leafless_solid_evaluations(const leafless_solid *solid,
-                                           uint64_t *evaluations);
+leafless_status leafless_solid_evaluations(const leafless_solid *solid, uint64_t *evaluations);
 
 /**
  * One more reference to a solid.
@@ -2431,8 +2549,8 @@ void leafless_solid_free(leafless_solid *solid);
  *
  * - Buffers: `centre_model`, 3 numbers; `solid`, one pointer.
  * - Result: `*solid`.
- * - Errors: LEAFLESS_E_ARGUMENT if the radius is not between 2^-256 and 2^256, or a coordinate neither 0 nor of
- *   such a magnitude.
+ * - Errors: LEAFLESS_E_ARGUMENT if the radius is not between 2^-256 and 2^256, or a coordinate neither 0 nor
+ *   of such a magnitude.
  * - Ownership: give `*solid` back with leafless_solid_free.
  * - Threads: any.
  * - Untrusted input: any numbers.
@@ -2444,13 +2562,13 @@ leafless_status leafless_solid_new_ball(const double centre_model[3],
                                         leafless_solid **solid);
 
 /**
- * The box [min, max] with faces parallel to the lattice. Its verdicts are exact, so a face on a lattice plane
- * leaves nothing undecided.
+ * The box [min, max] with faces parallel to the lattice. Its verdicts are exact, so a face on a lattice
+ * plane leaves nothing undecided.
  *
  * - Buffers: `min_model` and `max_model`, 3 numbers each; `solid`, one pointer.
  * - Result: `*solid`.
- * - Errors: LEAFLESS_E_ARGUMENT if min ≥ max on an axis, or a coordinate is neither 0 nor of a magnitude between
- *   2^-256 and 2^256.
+ * - Errors: LEAFLESS_E_ARGUMENT if min ≥ max on an axis, or a coordinate is neither 0 nor of a magnitude
+ *   between 2^-256 and 2^256.
  * - Ownership: give `*solid` back with leafless_solid_free.
  * - Threads: any.
  * - Untrusted input: any numbers.
@@ -2477,29 +2595,28 @@ leafless_status leafless_solid_new_box(const double min_model[3],
 leafless_status leafless_solid_new_halfspace(const double normal[3], double offset, leafless_solid **solid);
 
 /**
- * The points p with a x² + b y² + c z² + d xy + e yz + f zx + g x + h y + i z + j ≥ 0, of which the ten coefficients
- * are a to j. Its signs are exact.
+ * The points p with a x² + b y² + c z² + d xy + e yz + f zx + g x + h y + i z + j ≥ 0, of which the ten
+ * coefficients are a to j. Its signs are exact.
  *
  * - Buffers: `coefficients`, 10 numbers; `solid`, one pointer.
  * - Result: `*solid`.
- * - Errors: LEAFLESS_E_ARGUMENT if all coefficients but the last are 0, or one is neither 0 nor of a magnitude
- *   between 2^-256 and 2^256.
+ * - Errors: LEAFLESS_E_ARGUMENT if all coefficients but the last are 0, or one is neither 0 nor of a
+ *   magnitude between 2^-256 and 2^256.
  * - Ownership: give `*solid` back with leafless_solid_free.
  * - Threads: any.
  * - Untrusted input: any numbers.
  * - Since: 0.1
  *
  */
-leafless_status leafless_solid_new_quadric(const double coefficients[10],
-                                           leafless_solid **solid);
+leafless_status leafless_solid_new_quadric(const double coefficients[10], leafless_solid **solid);
 
 /**
  * The ellipsoid around `centre` with the semi-axes `radii` along x, y and z. Its verdicts are exact.
  *
  * - Buffers: `centre_model` and `radii_model`, 3 numbers each; `solid`, one pointer.
  * - Result: `*solid`.
- * - Errors: LEAFLESS_E_ARGUMENT if a radius is not between 2^-256 and 2^256, or a coordinate neither 0 nor of such a
- *   magnitude.
+ * - Errors: LEAFLESS_E_ARGUMENT if a radius is not between 2^-256 and 2^256, or a coordinate neither 0 nor
+ *   of such a magnitude.
  * - Ownership: give `*solid` back with leafless_solid_free.
  * - Threads: any.
  * - Untrusted input: any numbers.
@@ -2515,8 +2632,8 @@ leafless_status leafless_solid_new_ellipsoid(const double centre_model[3],
  *
  * - Buffers: `solid`, one pointer.
  * - Result: `*solid`.
- * - Errors: LEAFLESS_E_ARGUMENT if the radius is not between 2^-256 and 2^256, a coordinate neither 0 nor of such a
- *   magnitude, or `low` not less than `high`.
+ * - Errors: LEAFLESS_E_ARGUMENT if the radius is not between 2^-256 and 2^256, a coordinate neither 0 nor of
+ *   such a magnitude, or `low` not less than `high`.
  * - Ownership: give `*solid` back with leafless_solid_free.
  * - Threads: any.
  * - Untrusted input: any numbers.
@@ -2528,13 +2645,13 @@ leafless_status leafless_solid_new_cylinder(double radius_model,
                                             leafless_solid **solid);
 
 /**
- * The frustum of a cone around the z axis: of radius `bottom` at z = `low` and `top` at z = `high`. One of the radii
- * may be 0, which makes a cone. Its verdicts are exact.
+ * The frustum of a cone around the z axis: of radius `bottom` at z = `low` and `top` at z = `high`. One of
+ * the radii may be 0, which makes a cone. Its verdicts are exact.
  *
  * - Buffers: `solid`, one pointer.
  * - Result: `*solid`.
- * - Errors: LEAFLESS_E_ARGUMENT if both radii are 0 or one is not between 2^-256 and 2^256, a coordinate neither 0
- *   nor of such a magnitude, or `low` not less than `high`.
+ * - Errors: LEAFLESS_E_ARGUMENT if both radii are 0 or one is not between 2^-256 and 2^256, a coordinate
+ *   neither 0 nor of such a magnitude, or `low` not less than `high`.
  * - Ownership: give `*solid` back with leafless_solid_free.
  * - Threads: any.
  * - Untrusted input: any numbers.
@@ -2549,11 +2666,11 @@ leafless_status leafless_solid_new_frustum(double bottom_model,
 /**
  * The points p with A (x − a)^n + B (y − b)^m + C (z − c)^k + `constant` ≥ 0. Its signs are exact.
  *
- * - Buffers: `coefficients` A, B, C, `centre_model` a, b, c, and `exponents` n, m, k, 3 numbers each; `solid`, one
- *   pointer.
+ * - Buffers: `coefficients` A, B, C, `centre_model` a, b, c, and `exponents` n, m, k, 3 numbers each;
+ *   `solid`, one pointer.
  * - Result: `*solid`.
- * - Errors: LEAFLESS_E_ARGUMENT if all coefficients are 0, an exponent is not 1 to 64, or a number neither 0 nor of
- *   a magnitude between 2^-256 and 2^256.
+ * - Errors: LEAFLESS_E_ARGUMENT if all coefficients are 0, an exponent is not 1 to 64, or a number neither 0
+ *   nor of a magnitude between 2^-256 and 2^256.
  * - Ownership: give `*solid` back with leafless_solid_free.
  * - Threads: any.
  * - Untrusted input: any numbers.
@@ -2567,24 +2684,23 @@ leafless_status leafless_solid_new_power(const double coefficients[3],
                                          leafless_solid **solid);
 
 /**
- * The torus around the z axis: all points at most `minor` from the circle of radius `major` in the plane z = 0;
- * where `minor` is greater, there is no hollow core.
+ * The torus around the z axis: all points at most `minor` from the circle of radius `major` in the plane z =
+ * 0; where `minor` is greater, there is no hollow core.
  *
  * - Buffers: `solid`, one pointer.
  * - Result: `*solid`.
- * - Errors: LEAFLESS_E_ARGUMENT if a radius is not between 2^-256 and 2^256; `major` may be 0, which makes a ball.
+ * - Errors: LEAFLESS_E_ARGUMENT if a radius is not between 2^-256 and 2^256; `major` may be 0, which makes a
+ *   ball.
  * - Ownership: give `*solid` back with leafless_solid_free.
  * - Threads: any.
  * - Untrusted input: any numbers.
  * - Since: 0.1
  */
-leafless_status leafless_solid_new_torus(double major_model,
-                                         double minor_model,
-                                         leafless_solid **solid);
+leafless_status leafless_solid_new_torus(double major_model, double minor_model, leafless_solid **solid);
 
 /**
- * The right angular wedge: the box between the origin and `size` whose face at the greatest y is narrowed, or
- * widened, to 0 ≤ x ≤ `top`; 0 makes that face an edge. (So it is defined by STEP, ISO 10303-42.)
+ * The right angular wedge: the box between the origin and `size` whose face at the greatest y is narrowed,
+ * or widened, to 0 ≤ x ≤ `top`; 0 makes that face an edge. (So it is defined by STEP, ISO 10303-42.)
  *
  * - Buffers: `size_model`, 3 numbers; `solid`, one pointer.
  * - Result: `*solid`.
@@ -2600,14 +2716,15 @@ leafless_status leafless_solid_new_wedge(const double size_model[3],
                                          leafless_solid **solid);
 
 /**
- * The prism over a simple polygon in the xy plane, between z = `low` and z = `high`. The polygon's corners are given
- * in order, in either direction of rotation; the last is joined to the first. The planes through its edges are
- * exact.
+ * The prism over a simple polygon in the xy plane, between z = `low` and z = `high`. The polygon's corners
+ * are given in order, in either direction of rotation; the last is joined to the first. The planes through
+ * its edges are exact.
  *
  * - Buffers: `polygon_model`, `count` points of 2 numbers each; `solid`, one pointer.
  * - Result: `*solid`.
- * - Errors: LEAFLESS_E_ARGUMENT if the outline touches or crosses itself or encloses nothing, a coordinate is
- *   neither 0 nor of a magnitude between 2^-256 and 2^256, or `low` not less than `high`; LEAFLESS_E_NO_MEMORY.
+ * - Errors: LEAFLESS_E_ARGUMENT if the outline touches or crosses itself or encloses nothing, a coordinate
+ *   is neither 0 nor of a magnitude between 2^-256 and 2^256, or `low` not less than `high`;
+ *   LEAFLESS_E_NO_MEMORY.
  * - Ownership: give `*solid` back with leafless_solid_free.
  * - Threads: any.
  * - Untrusted input: any numbers.
@@ -2620,22 +2737,20 @@ leafless_status leafless_solid_new_prism(const double *polygon_model,
                                          leafless_solid **solid);
 
 /**
- * The convex polyhedron of the points p with normal · p + offset ≥ 0 for all of the planes. It may be unbounded, or
- * empty.
+ * The convex polyhedron of the points p with normal · p + offset ≥ 0 for all of the planes. It may be
+ * unbounded, or empty.
  *
- * - Buffers: `planes`, `count` of 4 numbers each: the normal, of any length and pointing inward, and the offset;
- *   `solid`, one pointer.
+ * - Buffers: `planes`, `count` of 4 numbers each: the normal, of any length and pointing inward, and the
+ *   offset; `solid`, one pointer.
  * - Result: `*solid`.
- * - Errors: LEAFLESS_E_ARGUMENT if there is no plane, a normal is zero, or a number neither 0 nor of a magnitude
- *   between 2^-256 and 2^256; LEAFLESS_E_NO_MEMORY.
+ * - Errors: LEAFLESS_E_ARGUMENT if there is no plane, a normal is zero, or a number neither 0 nor of a
+ *   magnitude between 2^-256 and 2^256; LEAFLESS_E_NO_MEMORY.
  * - Ownership: give `*solid` back with leafless_solid_free.
  * - Threads: any.
  * - Untrusted input: any numbers.
  * - Since: 0.1
  */
-leafless_status leafless_solid_new_convex(const double *planes,
-                                          uint64_t count,
-                                          leafless_solid **solid);
+leafless_status leafless_solid_new_convex(const double *planes, uint64_t count, leafless_solid **solid);
 
 /**
  * What at least one of the solids contains; nothing, if there is none. No tree is built: the result asks its
@@ -2654,8 +2769,8 @@ leafless_status leafless_solid_union(const leafless_solid *const *solids,
                                      leafless_solid **solid);
 
 /**
- * What all of the solids contain; everything, if there is none. No tree is built: the result asks its operands about
- * each cell that it is asked about, and expressions of half-spaces join into one.
+ * What all of the solids contain; everything, if there is none. No tree is built: the result asks its
+ * operands about each cell that it is asked about, and expressions of half-spaces join into one.
  *
  * - Buffers: `solids`, `count` pointers, or NULL if there is none; `solid`, one pointer.
  * - Result: `*solid`.
@@ -2670,8 +2785,9 @@ leafless_status leafless_solid_intersection(const leafless_solid *const *solids,
                                             leafless_solid **solid);
 
 /**
- * What an odd number of the solids contain: of two, what is in one and not in the other. No tree is built: the
- * result asks its operands about each cell that it is asked about, and expressions of half-spaces join into one.
+ * What an odd number of the solids contain: of two, what is in one and not in the other. No tree is built:
+ * the result asks its operands about each cell that it is asked about, and expressions of half-spaces join
+ * into one.
  *
  * - Buffers: `solids`, `count` pointers, or NULL if there is none; `solid`, one pointer.
  * - Result: `*solid`.
@@ -2714,14 +2830,15 @@ leafless_status leafless_solid_difference(const leafless_solid *a,
 leafless_status leafless_solid_complement(const leafless_solid *operand, leafless_solid **solid);
 
 /**
- * A solid moved by an affine map, in the best way that its kind knows: half-spaces exactly, meshes by their vertices, others
- * as leafless_solid_new_transform; of an expression each part in its own way.
+ * A solid moved by an affine map, in the best way that its kind knows: half-spaces exactly, meshes by their
+ * vertices, others as leafless_solid_new_transform; of an expression each part in its own way.
  *
- * - Buffers: `matrix`, 12 numbers, the rows of [M | t], where a point p goes to M p + t; `motion`, one leafless_motion
- *   or NULL; `solid`, one pointer.
+ * - Buffers: `matrix`, 12 numbers, the rows of [M | t], where a point p goes to M p + t; `motion`, one
+ *   leafless_motion or NULL; `solid`, one pointer.
  * - Result: `*solid`; `*motion`, the worst that a map does to any part (the identity does nothing).
- * - Errors: LEAFLESS_E_ARGUMENT if an entry is neither 0 nor of a magnitude between 2^-64 and 2^64, or M is singular;
- *   LEAFLESS_E_MESH if a mesh is moved beyond the numbers that meshes may have; LEAFLESS_E_NO_MEMORY.
+ * - Errors: LEAFLESS_E_ARGUMENT if an entry is neither 0 nor of a magnitude between 2^-64 and 2^64, or M is
+ *   singular; LEAFLESS_E_MESH if a mesh is moved beyond the numbers that meshes may have;
+ *   LEAFLESS_E_NO_MEMORY.
  * - Ownership: the operand is shared and may be freed; give `*solid` back with leafless_solid_free.
  * - Threads: any.
  * - Untrusted input: any solids and numbers.
@@ -2734,8 +2851,8 @@ leafless_status leafless_solid_placed(const leafless_solid *operand,
                                       leafless_solid **solid);
 
 /**
- * The same solid by another rule of touching, which holds for the whole expression. What joins it to others follows
- * its own rule.
+ * The same solid by another rule of touching, which holds for the whole expression. What joins it to others
+ * follows its own rule.
  *
  * - Buffers: `solid`, one pointer. `touch` is a leafless_touch.
  * - Result: `*solid`.
@@ -2752,8 +2869,8 @@ leafless_status leafless_solid_with_touch(const leafless_solid *operand,
 /**
  * Sets callbacks to their defaults; `classify` must then be set.
  *
- * - Buffers: `callbacks`, one struct of `struct_size` bytes, which is sizeof(leafless_callbacks); need not be
- *   initialised.
+ * - Buffers: `callbacks`, one struct of `struct_size` bytes, which is sizeof(leafless_callbacks); need not
+ *   be initialised.
  * - Result: `*callbacks`.
  * - Errors: LEAFLESS_E_ARGUMENT if `struct_size` cannot be right.
  * - Ownership: nothing changes hands.
@@ -2771,13 +2888,13 @@ leafless_status leafless_callbacks_init(leafless_callbacks *callbacks, size_t st
  * - Errors: LEAFLESS_E_NULL if `classify` is NULL, unless `distance_many` is set and `classify_many` is not;
  *   LEAFLESS_E_ARGUMENT if `exterior` is no leafless_exterior.
  *   After an error `destroy` is not called.
- * - Ownership: `ctx` must live until `destroy` is called with it; give `*solid` back with leafless_solid_free.
+ * - Ownership: `ctx` must live until `destroy` is called with it; give `*solid` back with
+ *   leafless_solid_free.
  * - Threads: any; in which the functions are called, leafless_classify_fn says.
  * - Untrusted input: any answers.
  * - Since: 0.1
  */
-leafless_status leafless_solid_new_callbacks(const leafless_callbacks *callbacks,
-                                             leafless_solid **solid);
+leafless_status leafless_solid_new_callbacks(const leafless_callbacks *callbacks, leafless_solid **solid);
 
 /**
  * Sets a function to its defaults; `value` and `range` must then be set.
@@ -2794,44 +2911,46 @@ leafless_status leafless_solid_new_callbacks(const leafless_callbacks *callbacks
 leafless_status leafless_function_init(leafless_function *function, size_t struct_size);
 
 /**
- * A half-space of the host. It joins others, and may be placed: then its functions are asked in its own space, about the
- * box around a cell's inverse image and about the rounded inverse image of a point.
+ * A half-space of the host. It joins others, and may be placed: then its functions are asked in its own
+ * space, about the box around a cell's inverse image and about the rounded inverse image of a point.
  *
  * - Buffers: `function`, one struct, which is copied; `solid`, one pointer.
  * - Result: `*solid`.
- * - Errors: LEAFLESS_E_NULL if `value` or `range` is NULL; LEAFLESS_E_ARGUMENT. After an error `destroy` is not called.
- * - Ownership: `ctx` must live until `destroy` is called with it; give `*solid` back with leafless_solid_free.
+ * - Errors: LEAFLESS_E_NULL if `value` or `range` is NULL; LEAFLESS_E_ARGUMENT. After an error `destroy` is
+ *   not called.
+ * - Ownership: `ctx` must live until `destroy` is called with it; give `*solid` back with
+ *   leafless_solid_free.
  * - Threads: any; in which the functions are called, leafless_classify_fn says.
  * - Untrusted input: any answers.
  * - Since: 0.1
  */
-leafless_status leafless_solid_new_function(const leafless_function *function,
-                                            leafless_solid **solid);
+leafless_status leafless_solid_new_function(const leafless_function *function, leafless_solid **solid);
 
 /**
  * Reads a scene from a file. Files that it names are looked for beside it.
  *
  * - Buffers: `path`, `path_length` bytes of UTF-8; `scene`, one pointer.
  * - Result: `*scene`.
- * - Errors: LEAFLESS_E_SCENE, with line and column in the message, for whatever is wrong with the text or a file that
- *   it names; LEAFLESS_E_IO if the file itself cannot be read; LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY.
+ * - Errors: LEAFLESS_E_SCENE, with line and column in the message, for whatever is wrong with the text or a
+ *   file that it names; LEAFLESS_E_IO if the file itself cannot be read; LEAFLESS_E_UTF8;
+ *   LEAFLESS_E_NO_MEMORY.
  * - Ownership: give `*scene` back with leafless_scene_free.
  * - Threads: any.
- * - Untrusted input: any text; nesting costs memory, not stack, and memory is linear in the text and in the files that it
- *   names. It may name any file, by absolute paths too, which is then read as a mesh or an octree.
+ * - Untrusted input: any text; nesting costs memory, not stack, and memory is linear in the text and in the
+ *   files that it names. It may name any file, by absolute paths too, which is then read as a mesh or an
+ *   octree.
  * - Since: 0.1
  */
-leafless_status leafless_scene_open(const char *path,
-                                    size_t path_length,
-                                    leafless_scene **scene);
+leafless_status leafless_scene_open(const char *path, size_t path_length, leafless_scene **scene);
 
 /**
  * As leafless_scene_open for a text in memory, in UTF-8. Files that it names are looked for in `folder`.
  *
- * - Buffers: `bytes`, `length` bytes; may be NULL if there are none. `folder`, `folder_length` bytes of UTF-8; NULL if
- *   the scene may name no files. `scene`, one pointer.
+ * - Buffers: `bytes`, `length` bytes; may be NULL if there are none. `folder`, `folder_length` bytes of
+ *   UTF-8; NULL if the scene may name no files. `scene`, one pointer.
  * - Result: `*scene`.
- * - Errors: as leafless_scene_open, but LEAFLESS_E_IO; of names of files, if there is no folder, LEAFLESS_E_SCENE.
+ * - Errors: as leafless_scene_open, but LEAFLESS_E_IO; of names of files, if there is no folder,
+ *   LEAFLESS_E_SCENE.
  * - Ownership: the bytes are not kept; give `*scene` back with leafless_scene_free.
  * - Threads: any.
  * - Untrusted input: any bytes, as for leafless_scene_open.
@@ -2874,24 +2993,24 @@ void leafless_scene_free(leafless_scene *scene);
  *
  * - Buffers: `min_model` and `max_model`, 3 numbers each.
  * - Result: both.
- * - Errors: LEAFLESS_E_ARGUMENT if none is known: the scene is empty, or may be unbounded; LEAFLESS_E_NO_MEMORY.
+ * - Errors: LEAFLESS_E_ARGUMENT if none is known: the scene is empty, or may be unbounded;
+ *   LEAFLESS_E_NO_MEMORY.
  * - Ownership: nothing changes hands.
  * - Threads: any.
  * - Untrusted input: none.
  * - Since: 0.1
  *
  */
-leafless_status leafless_scene_bounds(const leafless_scene *scene,
-                                      double min_model[3],
-                                      double max_model[3]);
+leafless_status leafless_scene_bounds(const leafless_scene *scene, double min_model[3], double max_model[3]);
 
 /**
- * The solid of a scene, to be built on this frame. If there are neither meshes nor octrees in it, it can be built on any.
+ * The solid of a scene, to be built on this frame. If there are neither meshes nor octrees in it, it can be
+ * built on any.
  *
  * - Buffers: `frame`, one struct; `solid`, one pointer.
  * - Result: `*solid`.
- * - Errors: LEAFLESS_E_ARGUMENT as leafless_frame_check; LEAFLESS_E_LIMIT if a mesh or octree is within more than 256
- *   matrices; LEAFLESS_E_NO_MEMORY.
+ * - Errors: LEAFLESS_E_ARGUMENT as leafless_frame_check; LEAFLESS_E_LIMIT if a mesh or octree is within more
+ *   than 256 matrices; LEAFLESS_E_NO_MEMORY.
  * - Ownership: give `*solid` back with leafless_solid_free.
  * - Threads: any.
  * - Untrusted input: any scene.
@@ -2905,7 +3024,8 @@ leafless_status leafless_solid_new_scene(const leafless_scene *scene,
  * Builds the octree of a solid to the depth of a frame. The result is the same bit for bit for any number of
  * threads.
  *
- * - Buffers: `frame`, one struct; `options`, one struct or NULL; `octree`, one pointer. `rule` is a leafless_rule.
+ * - Buffers: `frame`, one struct; `options`, one struct or NULL; `octree`, one pointer. `rule` is a
+ *   leafless_rule.
  * - Result: `*octree`.
  * - Errors: LEAFLESS_E_FRAME if the solid belongs to another frame; LEAFLESS_E_NOT_SAMPLED if
  *   LEAFLESS_RULE_SAMPLED is asked of a solid that cannot decide points; LEAFLESS_E_CALLBACK;
@@ -2922,12 +3042,13 @@ leafless_status leafless_octree_build(const leafless_solid *solid,
                                       leafless_octree **octree);
 
 /**
- * The octree with its PARTIAL cells resolved: EMPTY under LEAFLESS_RULE_INNER, FULL under LEAFLESS_RULE_OUTER.
+ * The octree with its PARTIAL cells resolved: EMPTY under LEAFLESS_RULE_INNER, FULL under
+ * LEAFLESS_RULE_OUTER.
  *
  * - Buffers: `options`, one struct or NULL; `resolved`, one pointer. `rule` is a leafless_rule.
  * - Result: `*resolved`, without metadata.
- * - Errors: LEAFLESS_E_NOT_SAMPLED under LEAFLESS_RULE_SAMPLED if a cell is PARTIAL, because a stored octree knows
- *   no more about it; LEAFLESS_E_DAMAGED; LEAFLESS_E_ARGUMENT; LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED;
+ * - Errors: LEAFLESS_E_NOT_SAMPLED under LEAFLESS_RULE_SAMPLED if a cell is PARTIAL, because a stored octree
+ *   knows no more about it; LEAFLESS_E_DAMAGED; LEAFLESS_E_ARGUMENT; LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED;
  *   LEAFLESS_E_NO_MEMORY.
  * - Ownership: `octree` stays as it is; give `*resolved` back with leafless_octree_free.
  * - Threads: any; uses as many as `options` says.
@@ -2940,8 +3061,8 @@ leafless_status leafless_octree_resolve(const leafless_octree *octree,
                                         leafless_octree **resolved);
 
 /**
- * The same octree with its bricks encoded as a file would have them, through a dictionary where that is shorter.
- * Everything works on it as on any other.
+ * The same octree with its bricks encoded as a file would have them, through a dictionary where that is
+ * shorter. Everything works on it as on any other.
  *
  * - Buffers: `compacted`, one pointer.
  * - Result: `*compacted`, with the same metadata.
@@ -2951,20 +3072,20 @@ leafless_status leafless_octree_resolve(const leafless_octree *octree,
  * - Untrusted input: any octree.
  * - Since: 0.1
  */
-leafless_status leafless_octree_compact(const leafless_octree *octree,
-                                        leafless_octree **compacted);
+leafless_status leafless_octree_compact(const leafless_octree *octree, leafless_octree **compacted);
 
 /**
- * Every point of `a` and of `b`. Exact, and the same bit for bit for any number of threads; never larger than
- * both operands together.
+ * Every point of `a` and of `b`. Exact, and the same bit for bit for any number of threads; never larger
+ * than both operands together.
  *
  * - Buffers: `options`, one struct or NULL; `result`, one pointer.
  * - Result: `*result`, without metadata.
- * - Errors: LEAFLESS_E_FRAME if the frames differ; LEAFLESS_E_DAMAGED; LEAFLESS_E_ARGUMENT; LEAFLESS_E_LIMIT;
- *   LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
+ * - Errors: LEAFLESS_E_FRAME if the frames differ; LEAFLESS_E_DAMAGED; LEAFLESS_E_ARGUMENT;
+ *   LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
  * - Ownership: the operands stay as they are; give `*result` back with leafless_octree_free.
  * - Threads: any; uses as many as `options` says.
- * - Untrusted input: any octrees; damage in ones that were mapped unverified is an error or reads as PARTIAL.
+ * - Untrusted input: any octrees; damage in ones that were mapped unverified is an error or reads as
+ *   PARTIAL.
  * - Since: 0.1
  */
 leafless_status leafless_octree_union(const leafless_octree *a,
@@ -3036,7 +3157,8 @@ leafless_status leafless_octree_complement(const leafless_octree *octree,
                                            leafless_octree **result);
 
 /**
- * The union of any number of octrees, at least one. Limits and progress of `options` concern each of its steps.
+ * The union of any number of octrees, at least one. Limits and progress of `options` concern each of its
+ * steps.
  *
  * - Buffers: `octrees`, `count` handles; `options`, one struct or NULL; `result`, one pointer.
  * - Result: as leafless_octree_union.
@@ -3084,8 +3206,8 @@ leafless_status leafless_octree_xor_of(const leafless_octree *const *octrees,
                                        leafless_octree **result);
 
 /**
- * Whether the solid contains a point. A point on the boundary may be answered either way; one that is outside of
- * the universe or not a number is undecided. At most ⌈depth/2⌉ array elements are read.
+ * Whether the solid contains a point. A point on the boundary may be answered either way; one that is
+ * outside of the universe or not a number is undecided. At most ⌈depth/2⌉ array elements are read.
  *
  * - Buffers: `point_model`, 3 numbers; `membership`, one.
  * - Result: `*membership`.
@@ -3103,8 +3225,8 @@ leafless_status leafless_octree_contains(const leafless_octree *octree,
 /**
  * As leafless_octree_contains for many points at once, which is faster than one by one.
  *
- * - Buffers: `points_model`, `count` points of 3 numbers; `memberships`, room for `count`. Both may be NULL if
- *   `count` is 0.
+ * - Buffers: `points_model`, `count` points of 3 numbers; `memberships`, room for `count`. Both may be NULL
+ *   if `count` is 0.
  * - Result: `memberships[i]` for point i.
  * - Errors: only the general ones.
  * - Ownership: nothing changes hands.
@@ -3151,16 +3273,18 @@ leafless_status leafless_octree_classify_box(const leafless_octree *octree,
                                              leafless_region *region);
 
 /**
- * Whether a solid contains points, without an octree: a point in a cell of the frame that is undecided at the frame's depth,
- * outside of the universe, or not a number is undecided. A point on the boundary may be answered either way. The host's
- * own `contains` is asked first, where there is one; for others at most one cell a level is split a point, and points
- * near each other share the way.
+ * Whether a solid contains points, without an octree: a point in a cell of the frame that is undecided at
+ * the frame's depth, outside of the universe, or not a number is undecided. A point on the boundary may be
+ * answered either way. The host's own `contains` is asked first, where there is one; for others at most one
+ * cell a level is split a point, and points near each other share the way.
  *
- * - Buffers: `frame`, one struct; `points_model`, `count` points of 3 numbers; `options`, one struct or NULL, of which
- *   limits do not matter; `memberships`, room for `count`. `points_model` and `memberships` may be NULL if `count` is 0.
+ * - Buffers: `frame`, one struct; `points_model`, `count` points of 3 numbers; `options`, one struct or
+ *   NULL, of which limits do not matter; `memberships`, room for `count`. `points_model` and `memberships`
+ *   may be NULL if `count` is 0.
  * - Result: `memberships[i]` for point i; the same for any number of threads.
- * - Errors: LEAFLESS_E_FRAME if the solid belongs to another frame; LEAFLESS_E_ARGUMENT as leafless_frame_check;
- *   LEAFLESS_E_CALLBACK; LEAFLESS_E_DAMAGED; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
+ * - Errors: LEAFLESS_E_FRAME if the solid belongs to another frame; LEAFLESS_E_ARGUMENT as
+ *   leafless_frame_check; LEAFLESS_E_CALLBACK; LEAFLESS_E_DAMAGED; LEAFLESS_E_CANCELLED;
+ *   LEAFLESS_E_NO_MEMORY.
  * - Ownership: nothing changes hands.
  * - Threads: any; uses as many as `options` says.
  * - Untrusted input: any solid, any numbers.
@@ -3174,17 +3298,19 @@ leafless_status leafless_solid_contains(const leafless_solid *solid,
                                         leafless_membership *memberships);
 
 /**
- * How a box lies to a solid, without an octree, as far as cells of the frame tell; what of the box lies outside of the
- * universe is undecided. The work ends as soon as the answer is known, or once `max_splits` cells are split.
+ * How a box lies to a solid, without an octree, as far as cells of the frame tell; what of the box lies
+ * outside of the universe is undecided. The work ends as soon as the answer is known, or once `max_splits`
+ * cells are split.
  *
- * - Buffers: `frame`, one struct; `min_model` and `max_model`, 3 numbers each; `options`, one struct or NULL; `region`,
- *   one.
+ * - Buffers: `frame`, one struct; `min_model` and `max_model`, 3 numbers each; `options`, one struct or
+ *   NULL; `region`, one.
  * - Result: `*region`.
  * - Errors: LEAFLESS_E_ARGUMENT if min > max on an axis, or a coordinate is not a number; else as
  *   leafless_solid_contains.
  * - Ownership: nothing changes hands.
  * - Threads: any; works in the calling thread.
- * - Untrusted input: any solid, any numbers; set `max_splits` where the depth or the solid is not your own choice.
+ * - Untrusted input: any solid, any numbers; set `max_splits` where the depth or the solid is not your own
+ *   choice.
  * - Since: 0.1
  *
  */
@@ -3260,13 +3386,13 @@ leafless_status leafless_point_cursor_tag_at(leafless_point_cursor *cursor,
  * - Buffers: `cursor`, one pointer.
  * - Result: `*cursor`.
  * - Errors: only the general ones.
- * - Ownership: the cursor shares the octree, which may be freed; give `*cursor` back with leafless_cursor_free.
+ * - Ownership: the cursor shares the octree, which may be freed; give `*cursor` back with
+ *   leafless_cursor_free.
  * - Threads: any.
  * - Untrusted input: any octree.
  * - Since: 0.1
  */
-leafless_status leafless_cursor_new(const leafless_octree *octree,
-                                    leafless_cursor **cursor);
+leafless_status leafless_cursor_new(const leafless_octree *octree, leafless_cursor **cursor);
 
 /**
  * Gives back a cursor.
@@ -3321,8 +3447,8 @@ leafless_status leafless_cursor_descend(leafless_cursor *cursor, uint32_t octant
 leafless_status leafless_cursor_ascend(leafless_cursor *cursor, bool *moved);
 
 /**
- * An octree of which only the universe is known. No cell will ever be finer than the frame's depth, which costs nothing
- * until they are asked for.
+ * An octree of which only the universe is known. No cell will ever be finer than the frame's depth, which
+ * costs nothing until they are asked for.
  *
  * - Buffers: `frame`, one struct; `lazy`, one pointer.
  * - Result: `*lazy`.
@@ -3338,16 +3464,16 @@ leafless_status leafless_lazy_new(const leafless_solid *solid,
                                   leafless_lazy **lazy);
 
 /**
- * Takes up an octree that leafless_lazy_freeze made of the same solid, which is known by its fingerprint; `frame` may be
- * deeper than the octree's. Whatever else the octree holds is believed, as far as the solid's splits do not contradict
- * it. Splits are counted from zero.
+ * Takes up an octree that leafless_lazy_freeze made of the same solid, which is known by its fingerprint;
+ * `frame` may be deeper than the octree's. Whatever else the octree holds is believed, as far as the solid's
+ * splits do not contradict it. Splits are counted from zero.
  *
  * - Buffers: `frame`, one struct; `options`, one struct or NULL; `lazy`, one pointer.
  * - Result: `*lazy`. O(n).
- * - Errors: LEAFLESS_E_SOURCE if the octree does not hold the solid's fingerprint; LEAFLESS_E_ARGUMENT if the solid has
- *   none, or the octree is deeper than the frame; LEAFLESS_E_FRAME if it lies on another universe, or the solid
- *   belongs to another frame; LEAFLESS_E_DAMAGED; LEAFLESS_E_CALLBACK; LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED;
- *   LEAFLESS_E_NO_MEMORY.
+ * - Errors: LEAFLESS_E_SOURCE if the octree does not hold the solid's fingerprint; LEAFLESS_E_ARGUMENT if
+ *   the solid has none, or the octree is deeper than the frame; LEAFLESS_E_FRAME if it lies on another
+ *   universe, or the solid belongs to another frame; LEAFLESS_E_DAMAGED; LEAFLESS_E_CALLBACK;
+ *   LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
  * - Ownership: `octree` stays as it is; `*lazy` shares the solid, which may be freed; give it back with
  *   leafless_lazy_free.
  * - Threads: any.
@@ -3374,13 +3500,14 @@ leafless_status leafless_lazy_resume(const leafless_octree *octree,
 void leafless_lazy_free(leafless_lazy *lazy);
 
 /**
- * Splits a PARTIAL cell. A cell that was split before, is decided, or that splitting does not help costs nothing.
+ * Splits a PARTIAL cell. A cell that was split before, is decided, or that splitting does not help costs
+ * nothing.
  *
  * - Buffers: `cell`, 3 numbers, the cell's place among those of its level; `tags`, room for 8.
  * - Result: the tags of its children in octant order (bit 0 of the octant is x, bit 1 y, bit 2 z).
- * - Errors: LEAFLESS_E_ARGUMENT if the cell is none of the frame's, lies at its depth, or in a cell that is still to be
- *   split; LEAFLESS_E_SOURCE if the solid contradicts what the octree holds; LEAFLESS_E_CALLBACK;
- *   LEAFLESS_E_NO_MEMORY.
+ * - Errors: LEAFLESS_E_ARGUMENT if the cell is none of the frame's, lies at its depth, or in a cell that is
+ *   still to be split; LEAFLESS_E_SOURCE if the solid contradicts what the octree holds;
+ *   LEAFLESS_E_CALLBACK; LEAFLESS_E_NO_MEMORY.
  * - Ownership: nothing changes hands.
  * - Threads: no other call may use the handle.
  * - Untrusted input: any solid, any numbers.
@@ -3393,13 +3520,15 @@ leafless_status leafless_lazy_split(leafless_lazy *lazy,
                                     leafless_tag tags[8]);
 
 /**
- * Splits all cells down to `level`, those that can be. Limits in `options` (`max_splits`; `max_nodes` and `max_bytes` of
- * all that the octree then holds) end the work, not the octree; coarser cells are then split before finer ones.
+ * Splits all cells down to `level`, those that can be. Limits in `options` (`max_splits`; `max_nodes` and
+ * `max_bytes` of all that the octree then holds) end the work, not the octree; coarser cells are then split
+ * before finer ones.
  *
  * - Buffers: `options`, one struct or NULL; `done`, one truth value, or NULL.
  * - Result: `*done`, whether no limit was reached first.
- * - Errors: LEAFLESS_E_ARGUMENT if `level` is beyond the frame's depth; LEAFLESS_E_SOURCE if the solid contradicts what
- *   the octree holds; LEAFLESS_E_CALLBACK; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY. What was split before stays so.
+ * - Errors: LEAFLESS_E_ARGUMENT if `level` is beyond the frame's depth; LEAFLESS_E_SOURCE if the solid
+ *   contradicts what the octree holds; LEAFLESS_E_CALLBACK; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY. What
+ *   was split before stays so.
  * - Ownership: nothing changes hands.
  * - Threads: no other call may use the handle; uses the calling thread alone.
  * - Untrusted input: any solid; set limits where the level or the solid is not your own choice.
@@ -3411,13 +3540,14 @@ leafless_status leafless_lazy_refine(leafless_lazy *lazy,
                                      bool *done);
 
 /**
- * As leafless_lazy_refine, for the cells that have more than their surface in common with the box [min, max]; of a box
- * without thickness, for those that it lies in.
+ * As leafless_lazy_refine, for the cells that have more than their surface in common with the box [min,
+ * max]; of a box without thickness, for those that it lies in.
  *
- * - Buffers: `min_model` and `max_model`, 3 numbers each; `options`, one struct or NULL; `done`, one truth value, or
- *   NULL.
+ * - Buffers: `min_model` and `max_model`, 3 numbers each; `options`, one struct or NULL; `done`, one truth
+ *   value, or NULL.
  * - Result: `*done`, whether no limit was reached first.
- * - Errors: as leafless_lazy_refine; LEAFLESS_E_ARGUMENT also if min > max on an axis, or a coordinate is not a number.
+ * - Errors: as leafless_lazy_refine; LEAFLESS_E_ARGUMENT also if min > max on an axis, or a coordinate is
+ *   not a number.
  * - Ownership: nothing changes hands.
  * - Threads: no other call may use the handle; uses the calling thread alone.
  * - Untrusted input: any solid, any numbers; set limits where the level or the solid is not your own choice.
@@ -3450,14 +3580,14 @@ leafless_status leafless_lazy_refine_point(leafless_lazy *lazy,
                                            bool *done);
 
 /**
- * As leafless_lazy_refine, for all cells that the points origin + t·direction with from ≤ t ≤ to touch. Limits leave
- * those unsplit that the ray comes to last.
+ * As leafless_lazy_refine, for all cells that the points origin + t·direction with from ≤ t ≤ to touch.
+ * Limits leave those unsplit that the ray comes to last.
  *
- * - Buffers: `origin_model` and `direction_model`, 3 numbers each; `options`, one struct or NULL; `done`, one truth
- *   value, or NULL.
+ * - Buffers: `origin_model` and `direction_model`, 3 numbers each; `options`, one struct or NULL; `done`,
+ *   one truth value, or NULL.
  * - Result: `*done`, whether no limit was reached first.
- * - Errors: as leafless_lazy_refine; LEAFLESS_E_ARGUMENT also if a coordinate is neither 0 nor of a magnitude between
- *   2^-256 and 2^256, the direction is zero, or not from ≤ to (both may be infinite).
+ * - Errors: as leafless_lazy_refine; LEAFLESS_E_ARGUMENT also if a coordinate is neither 0 nor of a
+ *   magnitude between 2^-256 and 2^256, the direction is zero, or not from ≤ to (both may be infinite).
  * - Ownership: nothing changes hands.
  * - Threads: no other call may use the handle; uses the calling thread alone.
  * - Untrusted input: any solid, any numbers; set limits where the level or the solid is not your own choice.
@@ -3476,11 +3606,11 @@ leafless_status leafless_lazy_refine_ray(leafless_lazy *lazy,
 /**
  * What is known of a cell. In a cell that is decided, or was not split yet, there are only cells like it.
  *
- * - Buffers: `cell`, 3 numbers, the cell's place among those of its level; `tag`, one; `can_split`, one truth value, or
- *   NULL.
- * - Result: `*tag`; BRANCH if the cell was split and its children differ; PARTIAL if it is none of the frame's.
- *   `*can_split`, whether leafless_lazy_split would ask the solid: the cell is PARTIAL, its parent was split, it is
- *   above the frame's depth, and the solid did not say that splitting does not help.
+ * - Buffers: `cell`, 3 numbers, the cell's place among those of its level; `tag`, one; `can_split`, one
+ *   truth value, or NULL.
+ * - Result: `*tag`; BRANCH if the cell was split and its children differ; PARTIAL if it is none of the
+ *   frame's. `*can_split`, whether leafless_lazy_split would ask the solid: the cell is PARTIAL, its parent
+ *   was split, it is above the frame's depth, and the solid did not say that splitting does not help.
  * - Errors: only the general ones.
  * - Ownership: nothing changes hands.
  * - Threads: any, while nobody changes the octree.
@@ -3495,8 +3625,8 @@ leafless_status leafless_lazy_tag(const leafless_lazy *lazy,
                                   bool *can_split);
 
 /**
- * Whether the solid contains a point, as far as cells have been split. A point on the boundary may be answered either
- * way.
+ * Whether the solid contains a point, as far as cells have been split. A point on the boundary may be
+ * answered either way.
  *
  * - Buffers: `point_model`, 3 numbers; `membership`, one.
  * - Result: `*membership`.
@@ -3538,8 +3668,8 @@ leafless_status leafless_lazy_statistics(const leafless_lazy *lazy, leafless_sta
 leafless_status leafless_lazy_count(const leafless_lazy *lazy, leafless_lazy_counts *counts);
 
 /**
- * Counts of each level, and the certified volumes of the octree cut there. Entry 0 is the universe, entry `depth` the
- * finest cells.
+ * Counts of each level, and the certified volumes of the octree cut there. Entry 0 is the universe, entry
+ * `depth` the finest cells.
  *
  * - Buffers: `levels`, room for `capacity` structs, or NULL to ask for the count only; `count`, one number.
  * - Result: `*count`, depth + 1; the levels.
@@ -3571,8 +3701,8 @@ leafless_status leafless_lazy_splits(const leafless_lazy *lazy,
                                      uint64_t *count);
 
 /**
- * The octree as it is now: canonical, and what is not split is PARTIAL. As the fact "source" it holds the solid's
- * fingerprint, if there is one: saved or not, leafless_lazy_resume takes it up again.
+ * The octree as it is now: canonical, and what is not split is PARTIAL. As the fact "source" it holds the
+ * solid's fingerprint, if there is one: saved or not, leafless_lazy_resume takes it up again.
  *
  * - Buffers: `options`, one struct or NULL; `octree`, one pointer.
  * - Result: `*octree`.
@@ -3589,18 +3719,19 @@ leafless_status leafless_lazy_freeze(const leafless_lazy *lazy,
 /**
  * A solid, known on a frame of its own, under an affine map.
  *
- * A cell is FULL or EMPTY if all the cells of the solid's own frame are that its inverse image touches: cells of about
- * its size, or larger ones that are decided. So a surface that is not parallel to the lattice blurs by about a cell,
- * down to the depth of the solid's own frame; rounding is outward. Where the map takes lattice planes to lattice planes
- * nothing blurs. What sticks out of the solid's own universe is undecided, unless the solid is proven to end inside.
- * (leafless_solid_placed moves a solid in the best way that its kind knows, and chooses a frame where it takes one.)
+ * A cell is FULL or EMPTY if all the cells of the solid's own frame are that its inverse image touches:
+ * cells of about its size, or larger ones that are decided. So a surface that is not parallel to the lattice
+ * blurs by about a cell, down to the depth of the solid's own frame; rounding is outward. Where the map
+ * takes lattice planes to lattice planes nothing blurs. What sticks out of the solid's own universe is
+ * undecided, unless the solid is proven to end inside. (leafless_solid_placed moves a solid in the best way
+ * that its kind knows, and chooses a frame where it takes one.)
  *
- * - Buffers: `own`, one struct; `matrix`, 12 numbers, the rows of [M | t], where a point p goes to M p + t; `solid`,
- *   one pointer.
+ * - Buffers: `own`, one struct; `matrix`, 12 numbers, the rows of [M | t], where a point p goes to M p + t;
+ *   `solid`, one pointer.
  * - Result: `*solid`.
- * - Errors: LEAFLESS_E_ARGUMENT as leafless_frame_check, or if an entry is neither 0 nor of a magnitude between 2^-64
- *   and 2^64, or M is singular; LEAFLESS_E_LIMIT if too many transforms lie within each other. Asking the result returns LEAFLESS_E_FRAME if `operand` belongs to another frame than
- *   `own`.
+ * - Errors: LEAFLESS_E_ARGUMENT as leafless_frame_check, or if an entry is neither 0 nor of a magnitude
+ *   between 2^-64 and 2^64, or M is singular; LEAFLESS_E_LIMIT if too many transforms lie within each other.
+ *   Asking the result returns LEAFLESS_E_FRAME if `operand` belongs to another frame than `own`.
  * - Ownership: the operand is shared and may be freed; give `*solid` back with leafless_solid_free.
  * - Threads: any.
  * - Untrusted input: any solid and numbers.
@@ -3613,17 +3744,18 @@ leafless_status leafless_solid_new_transform(const leafless_solid *operand,
                                              leafless_solid **solid);
 
 /**
- * Whether two solids overlap, as they are in the universe of a frame. Once an overlap is proven its volume is refined
- * until the interval is no wider than `tolerance_model` cubic model units; infinity ends the work with the proof.
+ * Whether two solids overlap, as they are in the universe of a frame. Once an overlap is proven its volume
+ * is refined until the interval is no wider than `tolerance_model` cubic model units; infinity ends the work
+ * with the proof.
  *
- * Only cells of one solid are split where the other one is. The work ends at the frame's depth, or once `max_splits`
- * cells of both are split, with what is known by then.
+ * Only cells of one solid are split where the other one is. The work ends at the frame's depth, or once
+ * `max_splits` cells of both are split, with what is known by then.
  *
  * - Buffers: `frame`, one struct; `options`, one struct or NULL; `interference`, one struct.
  * - Result: `*interference`.
- * - Errors: LEAFLESS_E_FRAME if a solid belongs to another frame; LEAFLESS_E_ARGUMENT as leafless_frame_check, or if
- *   the tolerance is negative or not a number; LEAFLESS_E_CALLBACK; LEAFLESS_E_DAMAGED; LEAFLESS_E_CANCELLED;
- *   LEAFLESS_E_NO_MEMORY.
+ * - Errors: LEAFLESS_E_FRAME if a solid belongs to another frame; LEAFLESS_E_ARGUMENT as
+ *   leafless_frame_check, or if the tolerance is negative or not a number; LEAFLESS_E_CALLBACK;
+ *   LEAFLESS_E_DAMAGED; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
  * - Ownership: nothing changes hands.
  * - Threads: any; works in the calling thread.
  * - Untrusted input: any solids; set `max_splits` where the depth or the solids are not your own choice.
@@ -3637,12 +3769,13 @@ leafless_status leafless_solid_interfere(const leafless_solid *a,
                                          leafless_interference *interference);
 
 /**
- * As leafless_solid_interfere of `a` with `b` under each of many affine maps, as leafless_solid_new_transform makes
- * them. `max_splits` concerns each of them. The results are the same for any number of threads.
+ * As leafless_solid_interfere of `a` with `b` under each of many affine maps, as
+ * leafless_solid_new_transform makes them. `max_splits` concerns each of them. The results are the same for
+ * any number of threads.
  *
- * - Buffers: `own`, one struct, the frame of `b`; `matrices`, `count` times 12 numbers; `frame`, one struct, that of
- *   `a`; `options`, one struct or NULL; `interferences`, room for `count`. `matrices` and `interferences` may be NULL if
- *   `count` is 0.
+ * - Buffers: `own`, one struct, the frame of `b`; `matrices`, `count` times 12 numbers; `frame`, one struct,
+ *   that of `a`; `options`, one struct or NULL; `interferences`, room for `count`. `matrices` and
+ *   `interferences` may be NULL if `count` is 0.
  * - Result: `interferences[i]` for map i.
  * - Errors: as leafless_solid_interfere and leafless_solid_new_transform; nothing is then written.
  * - Ownership: nothing changes hands.
@@ -3661,11 +3794,12 @@ leafless_status leafless_solid_interfere_many(const leafless_solid *a,
                                               leafless_interference *interferences);
 
 /**
- * The distance between two solids, as they are in the universe of a frame. The work ends when the interval is no wider
- * than `tolerance_model` (model units), at the frame's depth, or once `max_splits` cells of both are split, with what is
- * known by then; a cell whose children are looked at again, next to another one, counts once more. About twice the
- * diagonal of a finest cell is what can be had for any solids. The work grows with the area where the distance is about
- * the least one, and with the distance, both measured in cells as large as the tolerance.
+ * The distance between two solids, as they are in the universe of a frame. The work ends when the interval
+ * is no wider than `tolerance_model` (model units), at the frame's depth, or once `max_splits` cells of both
+ * are split, with what is known by then; a cell whose children are looked at again, next to another one,
+ * counts once more. About twice the diagonal of a finest cell is what can be had for any solids. The work
+ * grows with the area where the distance is about the least one, and with the distance, both measured in
+ * cells as large as the tolerance.
  *
  * - Buffers: `frame`, one struct; `options`, one struct or NULL; `clearance`, one struct.
  * - Result: `*clearance`.
@@ -3683,16 +3817,17 @@ leafless_status leafless_solid_clearance(const leafless_solid *a,
                                          leafless_clearance *clearance);
 
 /**
- * Measures a solid in the universe of a frame, without building an octree: the largest undecided cells are split
- * first, until the width of the volume's interval is at most `tolerance` times its middle, `max_splits` of the
- * options is spent, or nothing is left to split at the frame's depth. The result is the same bit for bit for any number
- * of threads.
+ * Measures a solid in the universe of a frame, without building an octree: the largest undecided cells are
+ * split first, until the width of the volume's interval is at most `tolerance` times its middle,
+ * `max_splits` of the options is spent, or nothing is left to split at the frame's depth. The result is the
+ * same bit for bit for any number of threads.
  *
- * - Buffers: `frame`, one struct; `options`, one struct or NULL, of which `max_nodes` and `max_bytes` do not matter;
- *   `measures`, one struct.
+ * - Buffers: `frame`, one struct; `options`, one struct or NULL, of which `max_nodes` and `max_bytes` do not
+ *   matter; `measures`, one struct.
  * - Result: `*measures`.
- * - Errors: LEAFLESS_E_ARGUMENT, also if `tolerance` is negative or not a number; LEAFLESS_E_FRAME if the solid belongs
- *   to another frame; LEAFLESS_E_CALLBACK; LEAFLESS_E_DAMAGED; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
+ * - Errors: LEAFLESS_E_ARGUMENT, also if `tolerance` is negative or not a number; LEAFLESS_E_FRAME if the
+ *   solid belongs to another frame; LEAFLESS_E_CALLBACK; LEAFLESS_E_DAMAGED; LEAFLESS_E_CANCELLED;
+ *   LEAFLESS_E_NO_MEMORY.
  * - Ownership: nothing changes hands.
  * - Threads: any; uses as many as `options` says.
  * - Untrusted input: any solid; set `max_splits` where the depth or the solid is not your own choice.
@@ -3706,9 +3841,10 @@ leafless_status leafless_solid_measure(const leafless_solid *solid,
 
 /**
  * The bounding box of a solid in the universe of a frame: each of its sides until the interval is at most
- * `tolerance_model` or one finest cell wide, `max_splits` of the options is spent, or nothing is left to split. Only
- * cells that may reach beyond what is proven solid are split. With n the universe's edge over the tolerance that takes
- * some n splits for a curved side and, unless it lies on a plane of the lattice, n² for a flat one.
+ * `tolerance_model` or one finest cell wide, `max_splits` of the options is spent, or nothing is left to
+ * split. Only cells that may reach beyond what is proven solid are split. With n the universe's edge over
+ * the tolerance that takes some n splits for a curved side and, unless it lies on a plane of the lattice, n²
+ * for a flat one.
  *
  * - Buffers: as leafless_solid_measure; `extent`, one struct.
  * - Result: `*extent`.
@@ -3725,11 +3861,11 @@ leafless_status leafless_solid_bounding_box(const leafless_solid *solid,
                                             leafless_extent *extent);
 
 /**
- * What a file says of itself, without looking at more than header and section table. Whether the rest is good is
- * not known then.
+ * What a file says of itself, without looking at more than header and section table. Whether the rest is
+ * good is not known then.
  *
- * - Buffers: `path`, `path_length` bytes of UTF-8; `probe`, one struct; `sections`, room for `capacity` structs,
- *   or NULL if they are not wanted.
+ * - Buffers: `path`, `path_length` bytes of UTF-8; `probe`, one struct; `sections`, room for `capacity`
+ *   structs, or NULL if they are not wanted.
  * - Result: `*probe`; as many sections as it says.
  * - Errors: LEAFLESS_E_FORMAT; LEAFLESS_E_VERSION; LEAFLESS_E_IO; LEAFLESS_E_BUFFER; LEAFLESS_E_UTF8;
  *   LEAFLESS_E_NO_MEMORY.
@@ -3745,11 +3881,11 @@ leafless_status leafless_file_probe(const char *path,
                                     uint64_t capacity);
 
 /**
- * As leafless_file_probe for the first bytes of a file in memory, or all of them: 128 and 40 for each section. 488
- * suffice for every file that this library writes, 163 968 for any.
+ * As leafless_file_probe for the first bytes of a file in memory, or all of them: 128 and 40 for each
+ * section. 488 suffice for every file that this library writes, 163 968 for any.
  *
- * - Buffers: `bytes`, `length` bytes, may be NULL if there are none; `probe`, one struct; `sections`, room for
- *   `capacity` structs, or NULL if they are not wanted.
+ * - Buffers: `bytes`, `length` bytes, may be NULL if there are none; `probe`, one struct; `sections`, room
+ *   for `capacity` structs, or NULL if they are not wanted.
  * - Result: `*probe`; as many sections as it says.
  * - Errors: LEAFLESS_E_FORMAT, also if the bytes end before the section table does; LEAFLESS_E_VERSION;
  *   LEAFLESS_E_BUFFER; LEAFLESS_E_NO_MEMORY.
@@ -3779,8 +3915,8 @@ leafless_status leafless_bytes_probe(const uint8_t *bytes,
 leafless_status leafless_bytes_verify(const uint8_t *bytes, uint64_t length);
 
 /**
- * Reads a file into memory and verifies all of it: the plain way, and the one for files that may not be trusted.
- * Later changes of the file do not matter.
+ * Reads a file into memory and verifies all of it: the plain way, and the one for files that may not be
+ * trusted. Later changes of the file do not matter.
  *
  * - Buffers: `path`, `path_length` bytes of UTF-8; `octree`, one pointer.
  * - Result: `*octree`.
@@ -3791,48 +3927,45 @@ leafless_status leafless_bytes_verify(const uint8_t *bytes, uint64_t length);
  * - Untrusted input: any file; memory is at most a small multiple of its length.
  * - Since: 0.1
  */
-leafless_status leafless_octree_open(const char *path,
-                                     size_t path_length,
-                                     leafless_octree **octree);
+leafless_status leafless_octree_open(const char *path, size_t path_length, leafless_octree **octree);
 
 /**
- * Maps a file into memory and looks at its header, section table, bounds, level table and metadata only: some
- * microseconds for a file of any size. What queries touch is read when they do. Of a file that is damaged
- * elsewhere queries answer undecided or wrong, but stay in bounds and end.
+ * Maps a file into memory and looks at its header, section table, bounds, level table and metadata only:
+ * some microseconds for a file of any size. What queries touch is read when they do. Of a file that is
+ * damaged elsewhere queries answer undecided or wrong, but stay in bounds and end.
  *
- * While the octree lives, or a cursor, a solid or an octree with other metadata that shares it, nobody may make the
- * file shorter: reading beyond its new end raises SIGBUS, which by default ends the process. Nobody may write to it
- * either: answers may then be wrong, and nothing more is promised.
- * Removing the file, or replacing it by renaming another over it, as leafless_octree_save does, is harmless.
+ * While the octree lives, or a cursor, a solid or an octree with other metadata that shares it, nobody may
+ * make the file shorter: reading beyond its new end raises SIGBUS, which by default ends the process. Nobody
+ * may write to it either: answers may then be wrong, and nothing more is promised. Removing the file, or
+ * replacing it by renaming another over it, as leafless_octree_save does, is harmless.
  *
  * - Buffers: `path`, `path_length` bytes of UTF-8; `octree`, one pointer.
  * - Result: `*octree`.
- * - Errors: LEAFLESS_E_FORMAT; LEAFLESS_E_VERSION; LEAFLESS_E_DAMAGED if the level table contradicts the header;
- *   LEAFLESS_E_ARGUMENT if there is no regular file; LEAFLESS_E_IO; LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY.
+ * - Errors: LEAFLESS_E_FORMAT; LEAFLESS_E_VERSION; LEAFLESS_E_DAMAGED if the level table contradicts the
+ *   header; LEAFLESS_E_ARGUMENT if there is no regular file; LEAFLESS_E_IO; LEAFLESS_E_UTF8;
+ *   LEAFLESS_E_NO_MEMORY.
  * - Ownership: give `*octree` back with leafless_octree_free.
  * - Threads: any.
- * - Untrusted input: any contents, but only where nobody else can change the file; else leafless_octree_open.
+ * - Untrusted input: any contents, but only where nobody else can change the file; else
+ *   leafless_octree_open.
  * - Since: 0.1
  */
-leafless_status leafless_octree_map(const char *path,
-                                    size_t path_length,
-                                    leafless_octree **octree);
+leafless_status leafless_octree_map(const char *path, size_t path_length, leafless_octree **octree);
 
 /**
- * As leafless_octree_map, but verifies all of the file first, in one scan. Who writes to the file afterwards undoes
- * that.
+ * As leafless_octree_map, but verifies all of the file first, in one scan. Who writes to the file afterwards
+ * undoes that.
  *
  * - Buffers: `path`, `path_length` bytes of UTF-8; `octree`, one pointer.
  * - Result: `*octree`.
  * - Errors: as leafless_octree_open, and LEAFLESS_E_ARGUMENT if there is no regular file.
  * - Ownership: give `*octree` back with leafless_octree_free.
  * - Threads: any.
- * - Untrusted input: any contents, but only where nobody else can change the file; else leafless_octree_open.
+ * - Untrusted input: any contents, but only where nobody else can change the file; else
+ *   leafless_octree_open.
  * - Since: 0.1
  */
-leafless_status leafless_octree_map_verified(const char *path,
-                                             size_t path_length,
-                                             leafless_octree **octree);
+leafless_status leafless_octree_map_verified(const char *path, size_t path_length, leafless_octree **octree);
 
 /**
  * The octree in the bytes of a whole file, copied and verified as by leafless_octree_open.
@@ -3848,39 +3981,38 @@ leafless_status leafless_octree_map_verified(const char *path,
 leafless_status leafless_octree_from_bytes(const uint8_t *bytes, uint64_t length, leafless_octree **octree);
 
 /**
- * The octree in the bytes of a whole file, used where they lie, and checked as little as by leafless_octree_map;
- * call leafless_bytes_verify first where they may be damaged. For files that are part of a program, or that the
- * host maps itself.
+ * The octree in the bytes of a whole file, used where they lie, and checked as little as by
+ * leafless_octree_map; call leafless_bytes_verify first where they may be damaged. For files that are part
+ * of a program, or that the host maps itself.
  *
  * - Buffers: `bytes`, `length` bytes on an address that is a multiple of 8; `octree`, one pointer.
  * - Result: `*octree`.
- * - Errors: LEAFLESS_E_FORMAT; LEAFLESS_E_VERSION; LEAFLESS_E_DAMAGED if the level table contradicts the header;
- *   LEAFLESS_E_ARGUMENT if the bytes are misaligned; LEAFLESS_E_NO_MEMORY.
- * - Ownership: the bytes stay the host's. They must stay, unchanged, until the last reference is given back to the
- *   octree, to every octree that leafless_octree_with_metadata or leafless_octree_without_metadata made of it, and to
- *   every cursor and solid of these. Give `*octree` back with leafless_octree_free.
+ * - Errors: LEAFLESS_E_FORMAT; LEAFLESS_E_VERSION; LEAFLESS_E_DAMAGED if the level table contradicts the
+ *   header; LEAFLESS_E_ARGUMENT if the bytes are misaligned; LEAFLESS_E_NO_MEMORY.
+ * - Ownership: the bytes stay the host's. They must stay, unchanged, until the last reference is given back
+ *   to the octree, to every octree that leafless_octree_with_metadata or leafless_octree_without_metadata
+ *   made of it, and to every cursor and solid of these. Give `*octree` back with leafless_octree_free.
  * - Threads: any.
  * - Untrusted input: any bytes, as leafless_octree_map.
  * - Since: 0.1
  */
-leafless_status leafless_octree_view_bytes(const uint8_t *bytes,
-                                           uint64_t length,
-                                           leafless_octree **octree);
+leafless_status leafless_octree_view_bytes(const uint8_t *bytes, uint64_t length, leafless_octree **octree);
 
 /**
- * Saves an octree: at any moment, also after a crash or a power failure, there is the old file or the new one,
- * each complete. Equal octrees with equal metadata give equal bytes.
+ * Saves an octree: at any moment, also after a crash or a power failure, there is the old file or the new
+ * one, each complete. Equal octrees with equal metadata give equal bytes.
  *
- * The bytes go to a temporary file in the same directory, which is synchronised with the disk and then renamed over
- * the old file; a process that is killed meanwhile may leave a file `.leafless-….tmp` behind. A file that is replaced
- * keeps its permissions, its other hard links keep the old contents. A symbolic link is followed. What is no regular
- * file, such as a pipe, is written to directly; a pipe that nobody reads raises SIGPIPE, and a file beyond the
- * process's limit SIGXFSZ, if the host has not ignored them.
+ * The bytes go to a temporary file in the same directory, which is synchronised with the disk and then
+ * renamed over the old file; a process that is killed meanwhile may leave a file `.leafless-….tmp` behind. A
+ * file that is replaced keeps its permissions, its other hard links keep the old contents. A symbolic link
+ * is followed. What is no regular file, such as a pipe, is written to directly; a pipe that nobody reads
+ * raises SIGPIPE, and a file beyond the process's limit SIGXFSZ, if the host has not ignored them.
  *
  * - Buffers: `path`, `path_length` bytes of UTF-8.
  * - Result: LEAFLESS_OK once the file is on the disk.
- * - Errors: LEAFLESS_E_IO; LEAFLESS_E_DAMAGED if the octree was mapped unverified and is damaged; LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY. The old file
- *   is then as it was; only if the very last step fails, synchronising the directory, the new one is in place.
+ * - Errors: LEAFLESS_E_IO; LEAFLESS_E_DAMAGED if the octree was mapped unverified and is damaged;
+ *   LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY. The old file is then as it was; only if the very last step fails,
+ *   synchronising the directory, the new one is in place.
  * - Ownership: nothing changes hands.
  * - Threads: any.
  * - Untrusted input: any octree.
@@ -3895,8 +4027,8 @@ leafless_status leafless_octree_save(const leafless_octree *octree,
  *
  * - Buffers: `bytes`, room for `capacity` bytes, or NULL to ask for the length only; `length`, one number.
  * - Result: `*length`, the length of the file; the file in `bytes`.
- * - Errors: LEAFLESS_E_BUFFER if the capacity is too small; LEAFLESS_E_DAMAGED if the octree was mapped unverified
- *   and is damaged; LEAFLESS_E_NO_MEMORY.
+ * - Errors: LEAFLESS_E_BUFFER if the capacity is too small; LEAFLESS_E_DAMAGED if the octree was mapped
+ *   unverified and is damaged; LEAFLESS_E_NO_MEMORY.
  * - Ownership: nothing changes hands.
  * - Threads: any.
  * - Untrusted input: any octree.
@@ -3908,39 +4040,37 @@ leafless_status leafless_octree_to_bytes(const leafless_octree *octree,
                                          uint64_t *length);
 
 /**
- * Writes an octree's file through a function of the host, in a few large pieces; the file is never in memory as a
- * whole.
+ * Writes an octree's file through a function of the host, in a few large pieces; the file is never in memory
+ * as a whole.
  *
  * - Buffers: none.
  * - Result: LEAFLESS_OK once `write` has taken all bytes.
  * - Errors: LEAFLESS_E_CALLBACK with what `write` returned in the message; LEAFLESS_E_NULL if it is NULL;
- *   LEAFLESS_E_DAMAGED if the octree was mapped unverified and is damaged; LEAFLESS_E_NO_MEMORY. The last two come before anything is written.
+ *   LEAFLESS_E_DAMAGED if the octree was mapped unverified and is damaged; LEAFLESS_E_NO_MEMORY. The last
+ *   two come before anything is written.
  * - Ownership: nothing changes hands.
  * - Threads: any.
  * - Untrusted input: any octree.
  * - Since: 0.1
  */
-leafless_status leafless_octree_write(const leafless_octree *octree,
-                                      leafless_write_fn write,
-                                      void *ctx);
+leafless_status leafless_octree_write(const leafless_octree *octree, leafless_write_fn write, void *ctx);
 
 #if defined(LEAFLESS_TEST)
 /**
- * What the library was built with, to be compared with what C makes of this header: only in libraries that are
- * built for tests. One line for each struct with its size, for each field with its offset and size, and for each
- * constant with its value.
+ * What the library was built with, to be compared with what C makes of this header: only in libraries that
+ * are built for tests. One line for each struct with its size, for each field with its offset and size, and
+ * for each constant with its value.
  *
  * - Buffers: `text`, `capacity` bytes; may be NULL if `capacity` is 0.
- * - Result: the text's length in bytes, without the terminating NUL, also if not all of it was written. What is
- *   written is NUL-terminated.
+ * - Result: the text's length in bytes, without the terminating NUL, also if not all of it was written. What
+ *   is written is NUL-terminated.
  * - Errors: none.
  * - Ownership: the text is copied.
  * - Threads: any.
  * - Untrusted input: none.
  * - Since: 0.1
  */
-size_t leafless_test_layout(char *text,
-                            size_t capacity);
+size_t leafless_test_layout(char *text, size_t capacity);
 #endif
 
 #ifdef __cplusplus

@@ -9,19 +9,22 @@ const MOST_THREADS: usize = 1024;
 
 /// How a long operation may proceed. The default has no limit, uses all processors and reports to nobody.
 ///
-/// No field but `max_splits` changes a result: an operation either returns what it would have returned without
-/// them, bit for bit, or an error. (Which damage to unverified bytes is noticed may depend on the number of threads.)
+/// No field but `max_splits` changes a result: an operation either returns what it would have returned
+/// without them, bit for bit, or an error. (Which damage to unverified bytes is noticed may depend on the
+/// number of threads.)
 #[derive(Clone, Copy, Default)]
 pub struct Control<'a> {
-    /// Threads to use; 0 means as many as the machine has processors, numbers beyond 1024 mean 1024. Without the
-    /// feature `parallel`, and where the system refuses to start threads, there is one: the calling thread.
+    /// Threads to use; 0 means as many as the machine has processors, numbers beyond 1024 mean 1024. Without
+    /// the feature `parallel`, and where the system refuses to start threads, there is one: the calling
+    /// thread.
     pub threads: usize,
-    /// Refuse results of more than this many octree nodes with [`Error::Limit`]. (What is refined on demand stops there.)
+    /// Refuse results of more than this many octree nodes with [`Error::Limit`]. (What is refined on demand
+    /// stops there.)
     pub max_nodes: Option<u64>,
     /// Refuse results whose working form is larger than this many bytes with [`Error::Limit`]. (As above.)
     pub max_bytes: Option<u64>,
-    /// Split at most this many cells. Only operations that split on demand heed it, and say so: with it spent they
-    /// stop, and keep or return what they have; it is no error.
+    /// Split at most this many cells. Only operations that split on demand heed it, and say so: with it spent
+    /// they stop, and keep or return what they have; it is no error.
     pub max_splits: Option<u64>,
     /// Setting this flag, from any thread, ends the operation with [`Error::Cancelled`].
     pub cancel: Option<&'a AtomicBool>,
@@ -68,8 +71,8 @@ impl Control<'_> {
             };
             let mut work = Some(work);
             if threads > 1 {
-                // All are joined, and not only done with their work, as a scope alone sees to: no thread outlives the
-                // call, not even by what it tidies up at its end.
+                // All are joined, and not only done with their work, as a scope alone sees to: no thread
+                // outlives the call, not even by what it tidies up at its end.
                 let done = std::thread::scope(|scope| {
                     let mut joinable = alloc::vec::Vec::new();
                     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).spawn_handler(|thread| {

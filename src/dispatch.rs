@@ -4,7 +4,8 @@
 //! twice and the better copy is chosen when it is entered; results never depend on the choice.
 
 /// A loop worth compiling twice. `run` must be marked `#[inline(always)]`, and so must what it calls to take
-/// part. (A type instead of a closure, because a closure may be left out of line, and then nothing is gained.)
+/// part. (A type instead of a closure, because a closure may be left out of line, and then nothing is
+/// gained.)
 pub trait Hot {
     /// What the loop returns.
     type Output;

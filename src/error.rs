@@ -8,8 +8,8 @@ use core::fmt;
 
 use thiserror::Error;
 
-/// Why an operation was refused. Nothing is changed, and nothing half-made is returned, when one occurs. (An octree
-/// that is refined on demand keeps what was found out before.)
+/// Why an operation was refused. Nothing is changed, and nothing half-made is returned, when one occurs. (An
+/// octree that is refined on demand keeps what was found out before.)
 #[non_exhaustive]
 #[derive(Debug, Error)]
 pub enum Error {
@@ -66,9 +66,10 @@ pub enum Error {
     /// Every allocation whose size depends on an input or a result is asked for in a way that can be refused,
     /// and this is the refusal. What remains is small, at most 2 KiB a piece: counted references, the numbers
     /// per level behind statistics, exact signs, what the standard library and `tempfile` need to handle a
-    /// path; what threads cost; and polygons that are no fans, which another crate triangulates: about 320 bytes a
-    /// corner are asked for, and given back, before it begins. If even that cannot be had, the process ends, as Rust programs do. (So it
-    /// does where an allocator refuses to make a piece of memory smaller, which none is known to.)
+    /// path; what threads cost; and polygons that are no fans, which another crate triangulates: about 320
+    /// bytes a corner are asked for, and given back, before it begins. If even that cannot be had, the
+    /// process ends, as Rust programs do. (So it does where an allocator refuses to make a piece of memory
+    /// smaller, which none is known to.)
     #[error("out of memory")]
     OutOfMemory,
     /// The caller asked to stop.
@@ -146,7 +147,8 @@ pub enum MeshError {
     },
 }
 
-/// Why arrays do not describe solids of plane faces. Loops, faces and shells are counted from 0 through all solids.
+/// Why arrays do not describe solids of plane faces. Loops, faces and shells are counted from 0 through all
+/// solids.
 #[non_exhaustive]
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 pub enum PolyhedronError {
@@ -251,8 +253,8 @@ pub enum PolyhedronError {
     NotPlane {
         /// Index of the face.
         face: u64,
-        /// Half the distance between two planes, parallel to the face, that have all its corners between them,
-        /// in model units.
+        /// Half the distance between two planes, parallel to the face, that have all its corners between
+        /// them, in model units.
         deviation: f64,
         /// The most that is allowed.
         tolerance: f64,
@@ -267,8 +269,8 @@ pub enum PolyhedronError {
         /// Vertex at which it ends.
         to: u64,
     },
-    /// A loop of a face lies on the wrong side of another one: a hole outside of the outer loop, within another
-    /// hole, or one that turns as the outer loop does.
+    /// A loop of a face lies on the wrong side of another one: a hole outside of the outer loop, within
+    /// another hole, or one that turns as the outer loop does.
     #[error(
         "the loops of face {face} do not enclose one area: holes must lie within the outer loop and turn against it"
     )]
@@ -276,13 +278,15 @@ pub enum PolyhedronError {
         /// Index of the face.
         face: u64,
     },
-    /// The first shell of a solid encloses a negative volume, or none: its loops turn clockwise, seen from outside.
+    /// The first shell of a solid encloses a negative volume, or none: its loops turn clockwise, seen from
+    /// outside.
     #[error("shell {shell} bounds its solid from outside, but is inside out")]
     InsideOut {
         /// Index of the shell.
         shell: u64,
     },
-    /// A further shell of a solid encloses a positive volume, or none: its loops turn clockwise, seen from the void.
+    /// A further shell of a solid encloses a positive volume, or none: its loops turn clockwise, seen from
+    /// the void.
     #[error("shell {shell} bounds a void, but is not inside out")]
     VoidOutward {
         /// Index of the shell.
@@ -511,6 +515,9 @@ pub enum FormatError {
         /// The section's name in the specification.
         name: &'static str,
     },
+    /// The record of the solid does not repeat what the header says of it.
+    #[error("the record of the solid contradicts the header")]
+    Object,
     /// A checksum does not match.
     #[error("the checksum of {name} is wrong")]
     Checksum {

@@ -6,19 +6,20 @@
 //! 1. **A solid is what can split a cell.** Primitives, triangle meshes, stored octrees and a host program's
 //!    callback are all a [`Solid`]; whatever wants a shape puts it on a frame ([`Solid::on`]) and only calls
 //!    [`Worker::split`].
-//! 2. **Certified.** inner ⊆ true ⊆ outer: a FULL cell is proven inside, an EMPTY one proven outside, and doubt
-//!    stays PARTIAL through every operation. So a volume is an interval that contains the truth. (Whoever wants
-//!    a plain yes or no builds by another [`Rule`], and then the answers are about the tree, not the shape.)
-//! 3. **Closed and exact.** On one lattice the Booleans are exact set algebra, and their results canonical: the
-//!    same bits for any number of threads on any platform.
+//! 2. **Certified.** inner ⊆ true ⊆ outer: a FULL cell is proven inside, an EMPTY one proven outside, and
+//!    doubt stays PARTIAL through every operation. So a volume is an interval that contains the truth.
+//!    (Whoever wants a plain yes or no builds by another [`Rule`], and then the answers are about the tree,
+//!    not the shape.)
+//! 3. **Closed and exact.** On one lattice the Booleans are exact set algebra, and their results canonical:
+//!    the same bits for any number of threads on any platform.
 //!
 //! ```
-//! use leafless::{Ball, AxisBox, Control, Frame, Membership, Rule, build, difference};
+//! use leafless::{Control, Csg, Frame, Membership, Rule, build, difference};
 //!
 //! let frame = Frame::new([-1.0; 3], 2.0, 8)?; // the cube [-1, 1]³, 256 cells per axis
 //! let control = Control::default();
-//! let block = build(&AxisBox::new([-0.75; 3], [0.75; 3])?, &frame, Rule::Certified, &control)?;
-//! let ball = build(&Ball::new([0.0; 3], 0.9)?, &frame, Rule::Certified, &control)?;
+//! let block = build(&Csg::cuboid([-0.75; 3], [0.75; 3])?, &frame, Rule::Certified, &control)?;
+//! let ball = build(&Csg::ball([0.0; 3], 0.9)?, &frame, Rule::Certified, &control)?;
 //! let part = difference(block.view(), ball.view(), &control)?;
 //!
 //! assert_eq!(part.contains([0.0, 0.0, 0.0]), Membership::Outside);
@@ -27,6 +28,8 @@
 //! assert!(volume.lower < 0.68186 && 0.68188 < volume.upper);
 //! # Ok::<(), leafless::Error>(())
 //! ```
+//!
+//! What the cells of an octree prove travels with it ([`Proof`]), through every operation and in its file.
 //!
 //! The modules from the bottom up; none uses one above it:
 //!
@@ -42,6 +45,23 @@
 //! | `exchange` | the files of other programs |
 //! | `scene` | the language of OpenSCAD's CSG dumps |
 //! | `capi` | the C interface |
+//!
+//! Where is …
+//!
+//! | question | file |
+//! |---|---|
+//! | … the one operation that all is made of? | `solid/mod.rs` |
+//! | … a sphere, a prism, a torus? | `solid/csg/primitive.rs`, `faceted.rs`, `torus.rs` |
+//! | … the sign of a polynomial decided exactly? | `lattice/exact/` |
+//! | … the winding number of an open mesh? | `solid/mesh/winding.rs` |
+//! | … a hole in a mesh found, a crack closed? | `mesh/defects.rs`, `mesh/sew.rs` |
+//! | … the union of two stored octrees? | `op/boolean.rs` |
+//! | … a child of an element found? | `octree/links.rs` |
+//! | … what cells prove? | `octree/proof.rs` |
+//! | … an STL read? | `exchange/stl.rs` |
+//! | … a byte of a file checked? | `file/header.rs`, `object.rs`, `section.rs`, `layout.rs` |
+//! | … an allocation refused? | `memory.rs` |
+//! | … the volume of a solid, the distance of two? | `query/measure/`, `query/clearance/` |
 
 #![no_std]
 #![deny(unsafe_code)]
@@ -76,20 +96,20 @@ pub use mesh::{DefectKind, FillRule, MeshDefect, MeshReport, TriangleMesh};
 #[cfg(feature = "std")]
 pub use mesh::{Polyhedron, PolyhedronArrays};
 pub use octree::{
-    Block, Cursor, LevelStatistics, Metadata, Node, Octree, OctreeRef, Planes, Rule, Statistics, Tag,
+    Block, Cursor, LevelStatistics, Metadata, Node, Octree, OctreeRef, Planes, Proof, Statistics, Tag,
 };
 pub use op::{
-    LazyOctree, Refined, Zone, build, compact, complement, difference, intersection, intersection_of,
-    resolve, union, union_of, xor, xor_of,
+    LazyOctree, Refinement, Rule, Zone, build, compact, complement, difference, intersection,
+    intersection_of, resolve, union, union_of, xor, xor_of,
 };
 pub use query::{
-    Clearance, Extent, Interference, Measured, Measures, Membership, Overlap, PointCursor, Region,
+    Clearance, Extent, Interference, MassProperties, Membership, Overlap, PointCursor, Region, StopReason,
     bounding_box, classify_box, clearance, contains, interference, interference_of, measure,
 };
 pub use solid::{
-    AnyClassifier, AnySolid, AnyWorker, AxisBox, Ball, Callback, Classifier, Counted, Crossing, Csg,
-    Enclosure, Erasable, Fingerprint, Fingerprinter, HalfSpace, MeshSolid, Motion, Segment, Slab, SlabJoin,
-    Solid, Stored, Subtree, Touch, Transform, Verdict, Worker,
+    AnyClassifier, AnySolid, AnyWorker, Callback, Classifier, Crossing, Csg, Enclosure, Erasable,
+    Fingerprint, Fingerprinter, HalfSpace, MeshSolid, Motion, Segment, Slab, SlabJoin, Solid, SplitCounter,
+    Subtree, Touch, Transform, Verdict, Worker,
 };
 
 #[cfg(feature = "std")]

@@ -1,5 +1,5 @@
-//! Memory that can be refused: every allocation whose size depends on an input or a result goes through here or
-//! through `try_reserve`, and a refusal is [`Error::OutOfMemory`].
+//! Memory that can be refused: every allocation whose size depends on an input or a result goes through here
+//! or through `try_reserve`, and a refusal is [`Error::OutOfMemory`].
 
 use crate::error::Error;
 use alloc::boxed::Box;

@@ -4,7 +4,7 @@ mod common;
 
 use common::{Dense, Random, alone, assert_is, cases, lattice_frame, pairs, shapes};
 use leafless::{
-    Ball, Control, Error, Frame, Octree, OctreeRef, Rule, Tag, build, compact, complement, difference,
+    Control, Csg, Error, Frame, Octree, OctreeRef, Rule, Tag, build, compact, complement, difference,
     intersection, intersection_of, union, union_of, xor, xor_of,
 };
 use proptest::prelude::*;
@@ -248,7 +248,7 @@ fn limits_are_exact() {
     for depth in 1..=7 {
         let frame = lattice_frame(depth);
         let size = frame.edge();
-        let ball = |at: f64| Ball::new([at * size; 3], 0.35 * size).unwrap();
+        let ball = |at: f64| Csg::ball([at * size; 3], 0.35 * size).unwrap();
         for rule in [Rule::Certified, Rule::Sampled] {
             for threads in [1, 3] {
                 let brick = if rule.is_binary() { 8 } else { 16 };
@@ -285,7 +285,7 @@ const WORTH_THREADS: u64 = 1 << 19;
 fn large_pair(rule: Rule) -> (Octree, Octree) {
     let frame = lattice_frame(10);
     let ball = |x: f64, radius: f64| {
-        let ball = Ball::new([x, 512.25, 511.5], radius).unwrap();
+        let ball = Csg::ball([x, 512.25, 511.5], radius).unwrap();
         build(&ball, &frame, rule, &Control::default()).unwrap()
     };
     let hollow = |x: f64| apply(difference, &ball(x, 504.75), &ball(x, 210.5));
@@ -394,7 +394,7 @@ fn dictionary_coded_operands_give_the_same() {
     let frame = Frame::new([0.0; 3], 1.0, 8).unwrap();
     let control = Control::threads(1);
     for rule in [Rule::Sampled, Rule::Certified] {
-        let ball = |x: f64| build(&Ball::new([x, 0.5, 0.5], 0.31).unwrap(), &frame, rule, &control).unwrap();
+        let ball = |x: f64| build(&Csg::ball([x, 0.5, 0.5], 0.31).unwrap(), &frame, rule, &control).unwrap();
         let (a, b) = (ball(0.4), ball(0.6));
         let (coded_a, coded_b) = (compact(a.view()).unwrap(), compact(b.view()).unwrap());
         for tree in [&a, &b] {

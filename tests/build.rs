@@ -2,12 +2,12 @@
 
 mod common;
 
-use common::cubes::Cubes;
+use common::cubes::{Cubes, Plain};
 use common::exact::Definition;
 use common::{Dense, Random, Shape, alone, assert_is, cases, lattice_frame, positions, shapes};
 use leafless::{
-    AnySolid, AxisBox, Ball, Block, Callback, Cell, Classifier, Control, Csg, Cube, Error, Frame, Interval,
-    Octree, Rule, Solid, Stored, Tag, Verdict, Worker, build, compact, complement, resolve, union_of,
+    AnySolid, Block, Callback, Cell, Classifier, Control, Csg, Cube, Error, Frame, Interval, Octree, Rule,
+    Solid, Tag, Verdict, Worker, build, compact, complement, resolve, union_of,
 };
 use proptest::prelude::*;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -24,9 +24,9 @@ fn made<S: Solid>(solid: &S, frame: &Frame, rule: Rule) -> Octree {
 /// A shape by its definition, and as the library has it.
 fn shape(definition: Definition) -> AnySolid {
     match definition {
-        Definition::Ball { centre, radius } => AnySolid::new(Ball::new(centre, radius).unwrap()),
+        Definition::Ball { centre, radius } => AnySolid::new(Csg::ball(centre, radius).unwrap()),
         Definition::HalfSpace { normal, offset } => AnySolid::new(Csg::half_space(normal, offset).unwrap()),
-        Definition::Box { min, max } => AnySolid::new(AxisBox::new(min, max).unwrap()),
+        Definition::Box { min, max } => AnySolid::new(Csg::cuboid(min, max).unwrap()),
     }
 }
 
@@ -58,11 +58,11 @@ fn assert_exact(definition: Definition, frame: &Frame) {
         assert_eq!(tree.view().exterior(), exterior, "{definition:?} {frame:?}");
         // The same without the indirection.
         let same = match definition {
-            Definition::Ball { centre, radius } => made(&Ball::new(centre, radius).unwrap(), frame, rule),
+            Definition::Ball { centre, radius } => made(&Csg::ball(centre, radius).unwrap(), frame, rule),
             Definition::HalfSpace { normal, offset } => {
                 made(&Csg::half_space(normal, offset).unwrap(), frame, rule)
             }
-            Definition::Box { min, max } => made(&AxisBox::new(min, max).unwrap(), frame, rule),
+            Definition::Box { min, max } => made(&Csg::cuboid(min, max).unwrap(), frame, rule),
         };
         assert_eq!(tree, same);
     }
@@ -314,7 +314,7 @@ fn faces_on_the_lattice_leave_nothing_undecided() {
                 });
                 let min = model(&frame, ends.map(|end| end.0 as f64));
                 let max = model(&frame, ends.map(|end| end.1 as f64));
-                let tree = made(&AxisBox::new(min, max).unwrap(), &frame, Rule::Certified);
+                let tree = made(&Csg::cuboid(min, max).unwrap(), &frame, Rule::Certified);
                 let inside = |at: [u32; 3]| (0..3).all(|i| (ends[i].0..ends[i].1).contains(&(at[i] as u64)));
                 assert_is(
                     &tree,
@@ -378,7 +378,7 @@ fn origins_smaller_than_anything_else_are_refused() {
 fn rules_are_nested() {
     for depth in 1..=6 {
         let frame = Frame::new([0.1, 0.2, -0.3], 0.77, depth).unwrap();
-        let solid = Ball::new([0.45, 0.55, 0.1], 0.31).unwrap();
+        let solid = Csg::ball([0.45, 0.55, 0.1], 0.31).unwrap();
         let [certified, sampled, inner, outer] = RULES.map(|rule| made(&solid, &frame, rule));
         for at in positions(depth) {
             let tag = |tree: &Octree| tree.view().tag_at(at);
@@ -443,17 +443,17 @@ fn threads_do_not_change_results() {
     for depth in 1..=9 {
         let frame = Frame::new([0.1, 0.2, -0.3], 0.77, depth).unwrap();
         for rule in if depth < 8 { &RULES[..] } else { &RULES[..2] }.iter().copied() {
-            let ball = Ball::new([0.45, 0.55, 0.1], 0.31).unwrap();
+            let ball = Csg::ball([0.45, 0.55, 0.1], 0.31).unwrap();
             let tree = threads_agree(&ball, &frame, rule);
             if depth < 9 {
-                assert_eq!(threads_agree(&AnySolid::new(ball), &frame, rule), tree);
+                assert_eq!(threads_agree(&AnySolid::new(ball.clone()), &frame, rule), tree);
             }
             if depth < 8 {
                 threads_agree(&Csg::half_space([1.0, 0.2, -0.7], -0.3).unwrap(), &frame, rule);
-                threads_agree(&AxisBox::new([0.2, 0.3, -0.2], [0.7, 0.6, 0.3]).unwrap(), &frame, rule);
+                threads_agree(&Csg::cuboid([0.2, 0.3, -0.2], [0.7, 0.6, 0.3]).unwrap(), &frame, rule);
             }
             if rule != Rule::Sampled {
-                assert_eq!(threads_agree(&Stored::new(tree.view()), &frame, rule), tree);
+                assert_eq!(threads_agree(tree.view(), &frame, rule), tree);
             }
         }
     }
@@ -462,10 +462,10 @@ fn threads_do_not_change_results() {
 /// A union of balls whose parts are lists in scratch memory: the balls that still cut the cell. Parts that
 /// refer to released memory would be noticed, as would one that another part overwrites.
 #[derive(Clone)]
-struct Crowd(Vec<Ball>);
+struct Crowd(Vec<Plain>);
 
 /// A ball on a frame.
-type PlacedBall = <Ball as Solid>::Classifier;
+type PlacedBall = <Plain as Solid>::Classifier;
 
 /// The balls on a frame.
 #[derive(Clone)]
@@ -486,7 +486,7 @@ impl Crowd {
         let mut random = Random(9);
         let ball = |_| {
             let centre = [0, 1, 2].map(|axis| frame.origin()[axis] + random.unit() * frame.edge());
-            Ball::new(centre, frame.edge() * random.between(0.02, 0.2)).unwrap()
+            Plain::ball(centre, frame.edge() * random.between(0.02, 0.2)).unwrap()
         };
         Crowd((0..count).map(ball).collect())
     }
@@ -607,7 +607,7 @@ fn parts_in_scratch_memory_survive_what_the_builder_does() {
 /// A solid that fills blocks at once, by looking them up in trees that were built without.
 #[derive(Clone)]
 struct Bulk<'a> {
-    ball: Ball,
+    ball: Plain,
     certified: &'a Octree,
     sampled: &'a Octree,
     /// What the builder resolves by, and so asks for.
@@ -706,7 +706,7 @@ impl Worker for BulkOnFrame<'_> {
 fn blocks_give_what_descent_gives() {
     for depth in 6..=8 {
         let frame = Frame::new([0.1, 0.2, -0.3], 0.77, depth).unwrap();
-        let ball = Ball::new([0.45, 0.55, 0.1], 0.31).unwrap();
+        let ball = Plain::ball([0.45, 0.55, 0.1], 0.31).unwrap();
         let [certified, sampled] = [Rule::Certified, Rule::Sampled].map(|rule| made(&ball, &frame, rule));
         for rule in RULES {
             let answer = made(&ball, &frame, rule);
@@ -726,7 +726,7 @@ proptest! {
         let dense = shape.dense();
         let original = dense.octree_with(Tag::Full, &alone()).unwrap();
         for tree in [original.clone(), compact(original.view()).unwrap()] {
-            let stored = Stored::new(tree.view());
+            let stored = *tree.view();
             let again = made(&stored, tree.frame(), Rule::Certified);
             assert_eq!(again, tree);
             assert_eq!(again.view().exterior(), Tag::Full);
@@ -865,7 +865,7 @@ fn the_deepest_trees() {
     ] {
         let frame = lattice_frame(depth);
         let last = first.map(|a| a + size);
-        let solid = AxisBox::new(first.map(f64::from), last.map(f64::from)).unwrap();
+        let solid = Csg::cuboid(first.map(f64::from), last.map(f64::from)).unwrap();
         for rule in RULES {
             let tree = threads_agree(&solid, &frame, rule);
             let cells = (size as u64).pow(3);
@@ -899,7 +899,7 @@ fn the_deepest_trees() {
         }
     }
     let frame = lattice_frame(20);
-    let ball = Ball::new([700_000.25, 3.5, 1_048_570.0], 2.5).unwrap();
+    let ball = Csg::ball([700_000.25, 3.5, 1_048_570.0], 2.5).unwrap();
     let tree = threads_agree(&ball, &frame, Rule::Certified);
     assert!(tree.statistics().volume().contains(4.0 / 3.0 * std::f64::consts::PI * 2.5f64.powi(3)));
     let definition = Definition::Ball { centre: [700_000.25, 3.5, 1_048_570.0], radius: 2.5 };
@@ -915,7 +915,7 @@ fn the_deepest_trees() {
 #[test]
 fn frames_of_other_universes_are_refused() {
     let tree = Shape { depth: 3, tape: vec![9, 6, 0, 1, 3, 5, 0, 9, 2] }.dense().octree();
-    let stored = Stored::new(tree.view());
+    let stored = *tree.view();
     for frame in [
         Frame::new([0.0; 3], 8.5, 3).unwrap(),
         Frame::new([0.0, 1e-9, 0.0], 8.0, 3).unwrap(),
@@ -931,16 +931,16 @@ fn frames_of_other_universes_are_refused() {
 fn shapes_refuse_what_is_no_shape() {
     let bad = [f64::NAN, f64::INFINITY, -f64::INFINITY, 1e-100, 1e100, 5e-324];
     for x in bad {
-        assert!(matches!(Ball::new([0.0, x, 0.0], 1.0), Err(Error::Argument { name: "centre", .. })));
-        assert!(matches!(Ball::new([0.0; 3], x), Err(Error::Argument { name: "radius", .. })));
-        assert!(matches!(AxisBox::new([-x.abs(), 0.0, 0.0], [1.0; 3]), Err(Error::Argument { .. })));
+        assert!(matches!(Csg::ball([0.0, x, 0.0], 1.0), Err(Error::Argument { name: "centre", .. })));
+        assert!(matches!(Csg::ball([0.0; 3], x), Err(Error::Argument { name: "radius", .. })));
+        assert!(matches!(Csg::cuboid([-x.abs(), 0.0, 0.0], [1.0; 3]), Err(Error::Argument { .. })));
         assert!(matches!(Csg::half_space([x, 1.0, 0.0], 0.0), Err(Error::Argument { name: "normal", .. })));
         assert!(matches!(Csg::half_space([0.0, 1.0, 0.0], x), Err(Error::Argument { name: "offset", .. })));
     }
-    assert!(Ball::new([0.0; 3], 0.0).is_err() && Ball::new([0.0; 3], -1.0).is_err());
+    assert!(Csg::ball([0.0; 3], 0.0).is_err() && Csg::ball([0.0; 3], -1.0).is_err());
     assert!(Csg::half_space([0.0, -0.0, 0.0], 1.0).is_err());
     for max in [[1.0, 0.0, 1.0], [1.0, -1.0, 1.0]] {
-        assert!(matches!(AxisBox::new([0.0; 3], max), Err(Error::Argument { name: "max", .. })));
+        assert!(matches!(Csg::cuboid([0.0; 3], max), Err(Error::Argument { name: "max", .. })));
     }
 }
 
@@ -981,7 +981,7 @@ fn progress_rises_to_one() {
 #[test]
 fn a_build_stops_when_it_is_told_to() {
     let frame = lattice_frame(8);
-    let ball = Ball::new([128.5; 3], 100.0).unwrap();
+    let ball = Csg::ball([128.5; 3], 100.0).unwrap();
     let flag = AtomicBool::new(true);
     let refused = build(&ball, &frame, Rule::Inner, &Control { cancel: Some(&flag), ..alone() });
     assert!(matches!(refused, Err(Error::Cancelled)));
@@ -1054,13 +1054,13 @@ fn an_octree_is_a_solid_that_owns_itself() {
     for depth in [3, 6, 7] {
         let frame = lattice_frame(depth);
         let edge = frame.edge();
-        let ball = Ball::new([edge * 0.4; 3], edge * 0.37).unwrap();
+        let ball = Csg::ball([edge * 0.4; 3], edge * 0.37).unwrap();
         for rule in [Rule::Certified, Rule::Sampled] {
             let tree = made(&ball, &frame, rule);
             assert_eq!(made(&tree, &frame, Rule::Certified), tree);
             assert_eq!(made(&AnySolid::new(tree.clone()), &frame, Rule::Certified), tree);
             let coarse = frame.with_depth(depth - 1).unwrap();
-            let stored = made(&Stored::new(tree.view()), &coarse, Rule::Outer);
+            let stored = made(tree.view(), &coarse, Rule::Outer);
             assert_eq!(made(&tree, &coarse, Rule::Outer), stored);
         }
     }

@@ -804,6 +804,7 @@ fn info_has_the_promised_keys() {
             "metadata",
             "nodes",
             "origin",
+            "proof",
             "volume",
         ]
     );
@@ -843,6 +844,30 @@ fn info_has_the_promised_keys() {
 }
 
 #[test]
+fn what_cells_do_not_prove_is_not_said() {
+    let place = solids();
+    assert_eq!(place.run("voxelize cube.stl -o sampled.lfl --depth 4 --rule sampled").code, Some(0));
+    std::fs::write(place.path("scene.csg"), "octree(\"sampled.lfl\");").unwrap();
+    assert_eq!(place.run("csg scene.csg -o copy.lfl --depth 5").code, Some(0));
+    for name in ["sampled.lfl", "copy.lfl"] {
+        let info = place.run(&format!("info {name} --json")).good().json();
+        assert_eq!(info["proof"], serde_json::json!({ "full": false, "empty": false, "displacement": 0.0 }));
+        // What was sampled is known to lie in the universe, and no more.
+        let told = place.run(&format!("measure {name} --json")).good().json();
+        let edge = told["edge"].as_f64().unwrap();
+        assert_eq!(volume(&told), (0.0, edge * edge * edge));
+        assert!(place.run(&format!("measure {name}")).good().text().contains("nothing: cells are called"));
+        // The cells themselves are what they are.
+        let told = place.run(&format!("measure {name} --cells --json")).good().json();
+        assert!(volume(&told).0 > 0.0 && told["proof"]["full"] == true);
+        let found = place.run(&format!("interfere {name} {name} --json")).good().json();
+        assert_eq!((&found["verdict"], &found["proof_a"]["full"]), (&"undecided".into(), &false.into()));
+        let found = place.run(&format!("interfere {name} {name} --cells --json")).good().json();
+        assert_eq!(found["verdict"], "overlapping");
+    }
+}
+
+#[test]
 fn measure_tells_what_is_proven() {
     let place = solids();
     let told = place.run("measure cube.lfl --json").good().json();
@@ -860,6 +885,7 @@ fn measure_tells_what_is_proven() {
         "measured",
         "min",
         "origin",
+        "proof",
         "splits",
         "volume",
     ];
@@ -992,7 +1018,8 @@ fn booleans_are_those_of_the_library() {
     place.run("union cube.lfl sampled.lfl -o sampled.lfl").good();
     let info = place.run("info sampled.lfl --json").good().json();
     assert_eq!(info["metadata"], serde_json::json!({ "rule": "mixed" }));
-    // Twice the complement is the solid, also in bytes but for the metadata; the result may replace the operand.
+    // Twice the complement is the solid, also in bytes but for the metadata; the result may replace the
+    // operand.
     place.run("complement cube.lfl -o back.lfl").good();
     place.run("complement back.lfl -o back.lfl").good();
     assert_eq!(file::open(place.path("back.lfl")).unwrap(), cube);

@@ -1,15 +1,15 @@
 //! What every kind of solid is built into, by checksums that were taken when the corpus was first made.
 //!
-//! `corpus.txt` has a line for each solid, depth and rule: the checksum of all tags, and how many finest cells are FULL
-//! and PARTIAL. A resolved octree must never change. A certified one may only become tighter, and then the line that it
-//! had at first stays in the file behind the new one, after `was`.
+//! `corpus.txt` has a line for each solid, depth and rule: the checksum of all tags, and how many finest
+//! cells are FULL and PARTIAL. A resolved octree must never change. A certified one may only become tighter,
+//! and then the line that it had at first stays in the file behind the new one, after `was`.
 
 mod common;
 
 use common::{Random, alone, model};
 use leafless::{
-    Affine, AnySolid, AxisBox, Ball, Callback, Csg, Cursor, FillRule, Frame, HalfSpace, MeshSolid, Octree,
-    Rule, Tag, Transform, TriangleMesh, Verdict, build,
+    Affine, AnySolid, Callback, Csg, Cursor, FillRule, Frame, HalfSpace, MeshSolid, Octree, Rule, Tag,
+    Transform, TriangleMesh, Verdict, build,
 };
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -168,12 +168,12 @@ fn corpus() -> Vec<Entry> {
         add(&format!("odd {name}"), &[1, 4, 5], odd, fixed(AnySolid::new(solid.clone())));
         add(&format!("turned {name}"), &[4, 5], odd, fixed(AnySolid::new(solid.placed(&turned()).unwrap())));
     }
-    add("small ball", &shallow, odd, fixed(AnySolid::new(Ball::new([0.2, 0.1, 0.3], 0.6).unwrap())));
+    add("small ball", &shallow, odd, fixed(AnySolid::new(Csg::ball([0.2, 0.1, 0.3], 0.6).unwrap())));
     add(
         "small box",
         &shallow,
         odd,
-        fixed(AnySolid::new(AxisBox::new([-0.3, -0.4, -0.5], [0.3, 0.7, 0.2]).unwrap())),
+        fixed(AnySolid::new(Csg::cuboid([-0.3, -0.4, -0.5], [0.3, 0.7, 0.2]).unwrap())),
     );
     add("plate", &[3, 6, 7], unit, fixed(AnySolid::new(plate())));
     add("turned plate", &[5, 6], odd, fixed(AnySolid::new(plate().placed(&turned()).unwrap())));

@@ -10,8 +10,8 @@ mod common;
 use aligned::Aligned;
 use common::cubes::Cubes;
 use leafless::{
-    Ball, Control, Cube, Cursor, Error, FormatError, Frame, Metadata, Octree, OctreeRef, PointCursor, Rule,
-    Stored, Tag, Verdict, build, compact, complement, difference, file, intersection, union, xor,
+    Control, Csg, Cube, Cursor, Error, FormatError, Frame, Metadata, Octree, OctreeRef, PointCursor, Rule,
+    Tag, Verdict, build, compact, complement, difference, file, intersection, union, xor,
 };
 use std::path::Path;
 
@@ -84,7 +84,7 @@ fn many_bricks() -> Octree {
 }
 
 fn dictionary_coded() -> Octree {
-    let ball = Ball::new([1.7, -0.9, 1001.6], 1.5).unwrap();
+    let ball = Csg::ball([1.7, -0.9, 1001.6], 1.5).unwrap();
     build(&ball, &frame(7), Rule::Certified, &Control::threads(1)).unwrap()
 }
 
@@ -116,7 +116,7 @@ fn small() -> Octree {
 /// Small files of different structure: elements on one and on two levels, one and two planes, a dictionary.
 fn small_files() -> Vec<Vec<u8>> {
     // Faces away from the bricks' own: many bricks, of few kinds.
-    let cuboid = leafless::AxisBox::new([2.0; 3], [29.0; 3]).unwrap();
+    let cuboid = leafless::Csg::cuboid([2.0; 3], [29.0; 3]).unwrap();
     let frame = Frame::new([0.0; 3], 32.0, 5).unwrap();
     let cuboid = build(&cuboid, &frame, Rule::Sampled, &Control::threads(1)).unwrap();
     let trees = [small(), noise(3, 1, Rule::Inner), noise(2, 1, Rule::Certified), cuboid];
@@ -133,24 +133,54 @@ fn number(bytes: &[u8], at: usize, length: usize) -> u64 {
     u64::from_le_bytes(raw)
 }
 
+/// Length of an entry of the section table.
+const ENTRY: usize = 48;
+
+/// Where the record of the solid is, and the fields of the header that it repeats: offset, offset in the
+/// record, length.
+fn mirrored(bytes: &[u8]) -> (usize, [(usize, usize, usize); 8]) {
+    let start = number(bytes, 128 + 16, 8) as usize;
+    (
+        start,
+        [
+            (64, 12, 3),
+            (70, 15, 1),
+            (67, 16, 3),
+            (104, 24, 8),
+            (32, 32, 32),
+            (72, 80, 8),
+            (80, 88, 8),
+            (88, 96, 8),
+        ],
+    )
+}
+
+/// Makes the record of the solid say what the header says.
+fn mirror(bytes: &mut [u8]) {
+    let (start, fields) = mirrored(bytes);
+    for (from, to, length) in fields {
+        bytes.copy_within(from..from + length, start + to);
+    }
+}
+
 /// Makes all checksums right again, as far as the fields that say where things are allow.
 fn seal(bytes: &mut [u8]) {
     let count = number(bytes, 96, 4) as usize;
     for i in 0..count.min(64) {
-        let at = 128 + 40 * i;
-        let Some(entry) = bytes.get(at..at + 40) else { break };
-        let (offset, length) = (number(entry, 8, 8), number(entry, 16, 8));
+        let at = 128 + ENTRY * i;
+        let Some(entry) = bytes.get(at..at + ENTRY) else { break };
+        let (offset, length) = (number(entry, 16, 8), number(entry, 24, 8));
         let section = usize::try_from(offset).ok().zip(usize::try_from(offset.saturating_add(length)).ok());
         if let Some(section) = section.and_then(|(start, end)| bytes.get(start..end)) {
             let crc = crc32fast::hash(section).to_le_bytes();
-            bytes[at + 32..at + 36].copy_from_slice(&crc);
+            bytes[at + 40..at + 44].copy_from_slice(&crc);
         }
     }
     seal_head(bytes);
 }
 
 fn seal_head(bytes: &mut [u8]) {
-    let end = 128usize.saturating_add((number(bytes, 96, 4) as usize).saturating_mul(40));
+    let end = 128usize.saturating_add((number(bytes, 96, 4) as usize).saturating_mul(ENTRY));
     if let Some(table) = bytes.get(128..end) {
         let crc = crc32fast::hash(table).to_le_bytes();
         bytes[100..104].copy_from_slice(&crc);
@@ -194,7 +224,7 @@ fn exercise(tree: &OctreeRef<'_>) {
         difference(tree, tree, &control),
         xor(tree, tree, &control),
         complement(tree, &control),
-        build(&Stored::new(tree), tree.frame(), Rule::Certified, &control),
+        build(tree, tree.frame(), Rule::Certified, &control),
         compact(tree),
     ];
     for result in results.into_iter().flatten() {
@@ -286,7 +316,7 @@ fn every_way_in_gives_the_tree_back() {
         let probe = file::probe(&path).unwrap();
         assert_eq!(probe, file::probe_bytes(&bytes).unwrap());
         assert_eq!(probe, file::probe_from(&bytes[..]).unwrap());
-        assert_eq!(probe.version, (0, 0));
+        assert_eq!(probe.version, (0, 1));
         assert_eq!(&probe.frame, tree.frame());
         assert_eq!((probe.root, probe.exterior), (tree.view().root_tag(), tree.view().exterior()));
         assert_eq!(probe.binary, tree.view().is_binary());
@@ -304,49 +334,68 @@ fn bricks_are_coded_as_the_rule_says() {
         let probe = file::probe_bytes(&file::to_bytes(tree).unwrap()).unwrap();
         probe.sections.iter().map(|section| section.name.unwrap()).collect()
     };
-    let coded = ["brick indices", "dictionary entries", "dictionary segments", "level table"];
-    assert_eq!(names(&noise(2, 1, Rule::Inner)), ["bricks", "level table"]);
-    assert_eq!(names(&small()), ["planes", "rel", "base", "bricks", "level table", "metadata"]);
-    assert_eq!(names(&dictionary_coded()), [&["planes", "rel", "base"][..], &coded].concat());
+    let elements = ["objects", "level table", "planes", "rel", "base"];
+    let coded = ["brick indices", "dictionary entries", "dictionary segments"];
+    assert_eq!(names(&noise(2, 1, Rule::Inner)), ["objects", "level table", "bricks"]);
+    let with_metadata = [&elements[..1], &["metadata"], &elements[1..], &["bricks"]].concat();
+    assert_eq!(names(&small()), with_metadata);
+    assert_eq!(names(&dictionary_coded()), [&elements[..], &coded].concat());
     let many = file::to_bytes(&many_bricks()).unwrap();
     let sections = file::probe_bytes(&many).unwrap().sections;
     // Two halves of 50 000 distinct bricks each: the largest segments that do.
-    assert_eq!((many[68], many[69], sections[5].count), (1, 17, 2));
-    assert_eq!(names(&Octree::uniform(frame(3), Tag::Full, Tag::Full).unwrap()), ["level table"]);
+    assert_eq!((many[68], many[69], sections[7].count), (1, 17, 2));
+    assert_eq!(names(&Octree::uniform(frame(3), Tag::Full, Tag::Full).unwrap()), ["objects", "level table"]);
 }
 
 /// The numbers in a file are where its documentation says; a change of this test is a change of the format.
 #[test]
 fn a_file_byte_by_byte() {
     // The lower x half of the universe, at depth 1: one brick.
-    let half = leafless::AxisBox::new([0.0; 3], [1.0, 2.0, 2.0]).unwrap();
+    let half = leafless::Csg::cuboid([0.0; 3], [1.0, 2.0, 2.0]).unwrap();
     let frame = Frame::new([0.0; 3], 2.0, 1).unwrap();
-    let tree = build(&half, &frame, Rule::Certified, &Control::threads(1)).unwrap();
+    let tree = build(&half, &frame, Rule::Outer, &Control::threads(1)).unwrap();
+    let tree = tree.with_proof(tree.proof().with_displacement(0.25).unwrap());
     let mut metadata = Metadata::new();
     metadata.insert("k", "v");
     let bytes = file::to_bytes(&tree.with_metadata(metadata)).unwrap();
-    let mut expected = vec![0; 384 + 10];
+    let mut expected = vec![0; 576 + 8];
     expected[..8].copy_from_slice(b"\x89LFL\r\n\x1a\n");
+    put(&mut expected, 10, 1, 2);
     put(&mut expected, 12, 128, 4);
-    put(&mut expected, 24, 394, 8);
+    put(&mut expected, 24, 584, 8);
     put(&mut expected, 56, 2f64.to_bits(), 8);
-    expected[64..70].copy_from_slice(&[1, 1, 0, 1, 0, 0]);
+    expected[64..71].copy_from_slice(&[1, 1, 0, 1, 0, 0, 2]);
     put(&mut expected, 80, 1, 8);
-    put(&mut expected, 96, 3, 4);
-    for (i, entry) in
-        [[4, 8, 256, 8, 1, 1], [8, 24, 320, 48, 2, 1], [9, 1, 384, 10, 10, 0]].iter().enumerate()
+    put(&mut expected, 96, 4, 4);
+    put(&mut expected, 104, 0.25f64.to_bits(), 8);
+    for (i, entry) in [
+        [1, 0, 16, 1, 320, 128, 1],
+        [2, 1, 1, 0, 448, 10, 10],
+        [3, 4, 3, 1, 512, 48, 2],
+        [7, 4, 1, 1, 576, 8, 1],
+    ]
+    .iter()
+    .enumerate()
     {
-        let fields = [(0, 4), (4, 4), (8, 8), (16, 8), (24, 8), (36, 4)];
+        let fields = [(0, 4), (8, 1), (9, 1), (12, 4), (16, 8), (24, 8), (32, 8)];
         for (&value, (at, length)) in entry.iter().zip(fields) {
-            put(&mut expected, 128 + 40 * i + at, value, length);
+            put(&mut expected, 128 + ENTRY * i + at, value, length);
         }
     }
-    // Octants 0, 2, 4, 6.
-    put(&mut expected, 256, 0x55, 8);
+    // The object: a solid without a parent, which must be known; then what the header says of it.
+    put(&mut expected, 320, 1, 4);
+    put(&mut expected, 324, u32::MAX.into(), 4);
+    put(&mut expected, 328, 1, 4);
+    expected[332..339].copy_from_slice(&[1, 1, 0, 2, 1, 0, 0]);
+    put(&mut expected, 320 + 24, 0.25f64.to_bits(), 8);
+    put(&mut expected, 320 + 56, 2f64.to_bits(), 8);
+    put(&mut expected, 320 + 88, 1, 8);
+    expected[448..458].copy_from_slice(b"\x01\0\0\0\x01\0\0\0kv");
     // One node at level 0, four FULL cells at level 1.
-    put(&mut expected, 320, 1, 8);
-    put(&mut expected, 320 + 24 + 8, 4, 8);
-    expected[384..].copy_from_slice(b"\x01\0\0\0\x01\0\0\0kv");
+    put(&mut expected, 512, 1, 8);
+    put(&mut expected, 512 + 24 + 8, 4, 8);
+    // Octants 0, 2, 4, 6.
+    put(&mut expected, 576, 0x55, 8);
     seal(&mut expected);
     assert_eq!(bytes, expected);
 }
@@ -373,14 +422,21 @@ fn metadata_have_a_limit() {
     let largest = with(1 << 20);
     let back = file::from_bytes(&file::to_bytes(&largest).unwrap()).unwrap();
     assert_eq!(back.metadata(), largest.metadata());
-    // One byte more in a file.
+    // One byte more in a file, and all that follows further on.
     let mut bytes = file::to_bytes(&largest).unwrap();
     let probe = file::probe_bytes(&bytes).unwrap();
-    let (entry, at) = (128 + 40 * (probe.sections.len() - 1), probe.sections.last().unwrap().offset as usize);
-    bytes.push(b'v');
-    for (at, length) in [(entry + 16, 8), (entry + 24, 8), (24, 8), (at + 4, 4)] {
+    let (entry, at) = (128 + ENTRY, probe.sections[1].offset as usize);
+    assert_eq!((probe.sections[1].name, at % 64), (Some("metadata"), 0));
+    let end = at + (1 << 20);
+    bytes.splice(end..end, [&b"v"[..], &[0; 63]].concat());
+    for (at, length) in [(entry + 24, 8), (entry + 32, 8), (at + 4, 4)] {
         let more = number(&bytes, at, length) + 1;
         put(&mut bytes, at, more, length);
+    }
+    let offsets = (2..probe.sections.len()).map(|i| 128 + ENTRY * i + 16);
+    for at in offsets.chain([24]) {
+        let further = number(&bytes, at, 8) + 64;
+        put(&mut bytes, at, further, 8);
     }
     seal(&mut bytes);
     let length = FormatError::Field { name: "section length", value: (1 << 20) + 1 };
@@ -396,7 +452,7 @@ fn a_shorter_or_longer_file_is_refused() {
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path().join("cut.lfl");
     let bytes = file::to_bytes(&small()).unwrap();
-    let head = 128 + 40 * file::probe_bytes(&bytes).unwrap().sections.len();
+    let head = 128 + ENTRY * file::probe_bytes(&bytes).unwrap().sections.len();
     let aligned = Aligned::new(&[&bytes[..], &[0; 8]].concat());
     for length in (0..bytes.len()).chain([bytes.len() + 1, bytes.len() + 8]) {
         let cut = &aligned.bytes()[..length];
@@ -465,7 +521,7 @@ fn changes_with_right_checksums_never_panic() {
             let all = hostile.bytes_mut();
             for _ in 0..1 + round % 3 {
                 // Half of the time in header and table; small numbers are the most dangerous.
-                let end = if round % 2 == 0 { 128 + 40 * 5 } else { all.len() };
+                let end = if round % 2 == 0 { 128 + ENTRY * 5 } else { all.len() };
                 let at = random(end as u64) as usize;
                 all[at] = match random(4) {
                     0 => all[at] ^ 1 << random(8),
@@ -473,6 +529,10 @@ fn changes_with_right_checksums_never_panic() {
                     2 => 0xFF,
                     _ => random(256) as u8,
                 };
+            }
+            // Mostly, what was changed in the header stands in the record of the solid, too.
+            if round % 8 != 0 && number(all, 128 + 16, 8) == number(&bytes, 128 + 16, 8) {
+                mirror(all);
             }
             seal(all);
             let verdict = file::verify(hostile.bytes());
@@ -514,27 +574,45 @@ fn shared_children() -> Vec<u8> {
     let mut bytes = file::to_bytes(&Octree::uniform(frame(20), Tag::Empty, Tag::Empty).unwrap()).unwrap();
     bytes.truncate(128);
     bytes[65] = 1;
-    let sections = [(1, 16, elements), (2, 2, elements), (3, 8, 1), (4, 8, bricks), (8, 24, 21)];
-    bytes.resize(128 + 40 * sections.len(), 0);
-    let mut at = [0; 5];
-    for (i, &(kind, size, count)) in sections.iter().enumerate() {
+    // Kind, element type, components, bytes of an element, count.
+    let sections = [
+        (1, 0, 16, 128, 1),
+        (3, 4, 3, 24, 21),
+        (4, 4, 2, 16, elements),
+        (5, 2, 1, 2, elements),
+        (6, 4, 1, 8, 1),
+        (7, 4, 1, 8, bricks),
+    ];
+    bytes.resize(128 + ENTRY * sections.len(), 0);
+    let mut at = [0; 6];
+    for (i, &(kind, element, components, size, count)) in sections.iter().enumerate() {
         at[i] = bytes.len().next_multiple_of(64);
         bytes.resize(at[i] + size * count, 0);
-        for (field, value, length) in [(0, kind, 4), (4, size, 4), (8, at[i], 8), (16, size * count, 8)] {
-            put(&mut bytes, 128 + 40 * i + field, value as u64, length);
+        let fields = [
+            (0, kind, 4),
+            (8, element, 1),
+            (9, components, 1),
+            (12, 1, 4),
+            (16, at[i], 8),
+            (24, size * count, 8),
+            (32, count, 8),
+        ];
+        for (field, value, length) in fields {
+            put(&mut bytes, 128 + ENTRY * i + field, value as u64, length);
         }
-        put(&mut bytes, 128 + 40 * i + 24, count as u64, 8);
-        put(&mut bytes, 128 + 40 * i + 36, 1, 4);
+    }
+    for (field, value) in [(0, 1), (4, u32::MAX), (8, 1)] {
+        put(&mut bytes, at[0] + field, value.into(), 4);
     }
     for n in 0..elements {
-        put(&mut bytes, at[0] + 16 * n, !0, 8);
-        put(&mut bytes, at[1] + 2 * n, 1 + 64 * (n as u64).div_ceil(64), 2);
+        put(&mut bytes, at[2] + 16 * n, !0, 8);
+        put(&mut bytes, at[3] + 2 * n, 1 + 64 * (n as u64).div_ceil(64), 2);
     }
     for b in 0..bricks {
-        put(&mut bytes, at[3] + 8 * b, 0xF0, 8);
+        put(&mut bytes, at[5] + 8 * b, 0xF0, 8);
     }
     for level in 0..10 {
-        put(&mut bytes, at[4] + 48 * level, if level == 0 { 1 } else { 64 }, 8);
+        put(&mut bytes, at[1] + 48 * level, if level == 0 { 1 } else { 64 }, 8);
     }
     let length = bytes.len() as u64;
     for (field, value, size) in
@@ -542,6 +620,7 @@ fn shared_children() -> Vec<u8> {
     {
         put(&mut bytes, field, value, size);
     }
+    mirror(&mut bytes);
     seal(&mut bytes);
     bytes
 }
@@ -560,7 +639,7 @@ fn shared_children_are_not_visited_again_and_again() {
         difference(&tree, &tree, &control),
         xor(&tree, &tree, &control),
         complement(&tree, &control),
-        build(&Stored::new(&tree), tree.frame(), Rule::Inner, &control),
+        build(&tree, tree.frame(), Rule::Inner, &control),
         leafless::resolve(&tree, Rule::Outer, &control),
     ] {
         assert!(matches!(result, Err(Error::Damaged(_))));
@@ -583,10 +662,12 @@ fn each_field_is_checked() {
         other => panic!("byte {at}: {other}"),
     };
     assert_eq!(field(&bytes, 0, 0x88, 1), FormatError::Magic);
-    assert_eq!(field(&bytes, 8, 1, 2), FormatError::Version { major: 1, minor: 0 });
+    assert_eq!(field(&bytes, 8, 1, 2), FormatError::Version { major: 1, minor: 1 });
+    assert_eq!(field(&bytes, 10, 0, 2), FormatError::Version { major: 0, minor: 0 });
     assert_eq!(field(&bytes, 16, 4, 4), FormatError::Required { name: "flags", value: 4 });
     let length = FormatError::Length { expected: 5000, found: bytes.len() as u64 };
     assert_eq!(field(&bytes, 24, 5000, 8), length);
+    let second = 128 + ENTRY;
     for (at, value, length, expected) in [
         (12, 136, 4, "header length"),
         (20, 1, 4, "optional flags"),
@@ -607,22 +688,33 @@ fn each_field_is_checked() {
         (68, 2, 1, "brick encoding"),
         (68, 1, 1, "segment shift"),
         (69, 63, 1, "segment shift"),
-        (70, 1, 2, "reserved field"),
+        (70, 4, 1, "proof"),
+        (71, 1, 1, "reserved field"),
         (88, 1, 8, "dictionary entries"),
         (96, 0, 4, "section count"),
         (96, 4097, 4, "section count"),
-        (104, 1, 1, "reserved field"),
+        (104, f64::NAN.to_bits(), 8, "displacement"),
+        (104, (-0f64).to_bits(), 8, "displacement"),
+        (104, f64::INFINITY.to_bits(), 8, "displacement"),
+        (112, 1, 1, "reserved field"),
         (123, 1, 1, "reserved field"),
         (128, 0, 4, "section kind"),
-        (128 + 4, 8, 4, "section length"),
-        (128 + 8, 0, 8, "section offset"),
-        (128 + 8, u64::MAX - 63, 8, "section length"),
-        (128 + 16, 1, 8, "section length"),
-        (128 + 24, u64::MAX, 8, "section length"),
-        (128 + 36, 3, 4, "section flags"),
-        (128 + 36, 0, 4, "section flags"),
-        (168 + 8, number(&bytes, 136, 8), 8, "section offset"),
-        (168 + 8, number(&bytes, 176, 8) + 8, 8, "section offset"),
+        (128 + 8, 7, 1, "element type"),
+        (128 + 9, 0, 1, "element type"),
+        (128 + 9, 8, 1, "section length"),
+        (128 + 10, 1, 1, "section encoding"),
+        (128 + 11, 1, 1, "reserved field"),
+        (128 + 12, 3, 4, "section flags"),
+        (128 + 12, 0, 4, "section flags"),
+        (128 + 16, 0, 8, "section offset"),
+        (128 + 16, u64::MAX - 63, 8, "section length"),
+        (128 + 24, 1, 8, "section length"),
+        (128 + 32, u64::MAX, 8, "section length"),
+        (second, 1, 4, "section owner"),
+        (second + 4, 1, 4, "section owner"),
+        (second + 16, number(&bytes, 144, 8), 8, "section offset"),
+        (second + 16, number(&bytes, second + 16, 8) + 8, 8, "section offset"),
+        (second + 44, 1, 4, "shared section"),
     ] {
         assert_eq!(name(&bytes, at, value, length), expected, "byte {at} = {value:#x}");
     }
@@ -639,17 +731,23 @@ fn each_field_is_checked() {
     assert_eq!(field(&bytes, 72, 1 << 40, 8), FormatError::Section { name: "planes" });
     assert_eq!(field(&bytes, 80, 1, 8), FormatError::Section { name: "bricks" });
     assert_eq!(field(&bytes, 67, 1, 1), FormatError::Section { name: "bricks" });
-    // A section that is unknown, missing, twice.
-    assert_eq!(field(&bytes, 128, 20, 4), FormatError::Required { name: "section", value: 20 });
-    let twice = field(&bytes, 168, 1, 4);
-    assert_eq!(twice, FormatError::Section { name: "planes" });
+    // A section that is unknown or missing, and objects that are not there.
+    let last = 128 + ENTRY * (file::probe_bytes(&bytes).unwrap().sections.len() - 1);
+    assert_eq!(field(&bytes, last, 20, 4), FormatError::Required { name: "section", value: 20 });
     let missing = changed(&bytes, false, |bytes| {
-        put(bytes, 128, 20, 4);
-        put(bytes, 128 + 36, 0, 4);
+        put(bytes, last, 20, 4);
+        put(bytes, last + 12, 0, 4);
     });
-    assert_eq!(format_error(view(missing)), FormatError::Section { name: "planes" });
+    assert_eq!(format_error(view(missing)), FormatError::Section { name: "bricks" });
+    assert_eq!(field(&bytes, 128, 2, 4), FormatError::Section { name: "objects" });
+    // Each byte of the solid's record says what the header says, or is 0.
+    let (record, _) = mirrored(&bytes);
+    for at in 0..128 {
+        let other = changed(&bytes, true, |bytes| bytes[record + at] ^= 1);
+        assert_eq!(format_error(view(other)), FormatError::Object, "byte {at}");
+    }
     // Levels whose elements are not the stored ones.
-    let levels = file::probe_bytes(&bytes).unwrap().sections[4].offset as usize;
+    let levels = file::probe_bytes(&bytes).unwrap().sections[2].offset as usize;
     for level in [0, 2] {
         for nodes in [0, 2, u64::MAX] {
             let bytes = changed(&bytes, true, |bytes| put(bytes, levels + 24 * level, nodes, 8));
@@ -700,28 +798,29 @@ fn what_a_text_mode_transfer_does_is_recognised() {
 
 #[test]
 fn what_later_versions_may_add_is_skipped() {
-    let tree = small().with_metadata(Metadata::new());
+    let tree = small();
     let bytes = file::to_bytes(&tree).unwrap();
     // A newer minor version with a flag and a field of its own.
     let newer = changed(&bytes, false, |bytes| {
         put(bytes, 10, 3, 2);
         put(bytes, 20, 8, 4);
-        bytes[110] = 7;
+        bytes[71] = 7;
+        bytes[115] = 7;
     });
     assert_eq!(file::from_bytes(&newer).unwrap(), tree);
     assert_eq!(file::probe_bytes(&newer).unwrap().version, (0, 3));
     // A section of an unknown kind behind all others; its entry takes the place of padding.
     let sections = file::probe_bytes(&bytes).unwrap().sections;
-    let table_end = 128 + 40 * sections.len();
-    assert!(sections[0].offset as usize >= table_end + 40);
+    let table_end = 128 + ENTRY * sections.len();
+    assert!(sections[0].offset as usize >= table_end + ENTRY);
     let offset = bytes.len().next_multiple_of(64);
     let with_flags = |flags: u64| {
         changed(&bytes, true, |bytes| {
             bytes.resize(offset, 0);
             bytes.extend_from_slice(b"colours!");
-            for (at, value, length) in
-                [(0, 17, 4), (4, 2, 4), (8, offset as u64, 8), (16, 8, 8), (24, 4, 8), (36, flags, 4)]
-            {
+            let fields =
+                [(0, 17, 4), (8, 0x102, 2), (12, flags, 4), (16, offset as u64, 8), (24, 8, 8), (32, 4, 8)];
+            for (at, value, length) in fields {
                 put(bytes, table_end + at, value, length);
             }
             let length = bytes.len() as u64;
@@ -745,7 +844,9 @@ fn what_later_versions_may_add_is_skipped() {
 #[test]
 fn metadata_that_cannot_be_read_are_refused_by_all_who_read_them() {
     let bytes = file::to_bytes(&small()).unwrap();
-    let last = bytes.len() - 1;
+    let metadata = file::probe_bytes(&bytes).unwrap().sections[1];
+    assert_eq!(metadata.name, Some("metadata"));
+    let last = (metadata.offset + metadata.length - 1) as usize;
     let damaged = changed(&bytes, true, |bytes| bytes[last] = 0xFF);
     assert_eq!(format_error(file::from_bytes(&damaged)), FormatError::Metadata);
     let aligned = Aligned::new(&damaged);

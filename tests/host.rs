@@ -1,8 +1,8 @@
-//! A host program whose functions take their time: how often it is called, by how many threads, and how soon a cancel is
-//! answered.
+//! A host program whose functions take their time: how often it is called, by how many threads, and how soon
+//! a cancel is answered.
 
 use leafless::{
-    AnySolid, Ball, Bounds, Callback, Control, Csg, Error, Frame, LazyOctree, Octree, Refined, Rule, Solid,
+    AnySolid, Bounds, Callback, Control, Csg, Error, Frame, LazyOctree, Octree, Refinement, Rule, Solid,
     Verdict, Zone, bounding_box, build, clearance, interference, measure,
 };
 use std::collections::HashSet;
@@ -176,7 +176,7 @@ fn deep_builds_ask_in_batches() {
     assert!(boxes / batches > 1000, "{boxes} in {batches}");
     assert!(calls.largest.load(Relaxed) > 100_000);
     let exact =
-        build(&Ball::new(CENTRE, RADIUS).unwrap(), &frame, Rule::Certified, &Control::default()).unwrap();
+        build(&Csg::ball(CENTRE, RADIUS).unwrap(), &frame, Rule::Certified, &Control::default()).unwrap();
     let (host, exact) = (tree.statistics().volume(), exact.statistics().volume());
     assert!((host.lower - exact.lower).abs() < 1e-6 && (host.upper - exact.upper).abs() < 1e-6);
 }
@@ -186,7 +186,7 @@ fn lazy_octrees_never_replay_and_use_threads() {
     let frame = unit(6);
     let calls = Arc::new(Calls::default());
     let mut lazy = LazyOctree::new(host(&calls, Duration::from_millis(1), false), &frame).unwrap();
-    assert_eq!(lazy.refine(&Zone::Whole, 4, &Control::threads(4)).unwrap(), Refined::Done);
+    assert_eq!(lazy.refine(&Zone::Whole, 4, &Control::threads(4)).unwrap(), Refinement::Done);
     assert_eq!(calls.boxes.load(Relaxed), 8 * lazy.splits() + 1);
     assert!(calls.threads() >= 4);
     assert_eq!(lazy.replays(), 0);
@@ -199,7 +199,7 @@ fn lazy_octrees_never_replay_and_use_threads() {
     let mut limited = LazyOctree::new(host(&Arc::default(), Duration::ZERO, true), &frame).unwrap();
     let control = Control { max_splits: Some(37), ..Control::threads(3) };
     let mut refined = 0;
-    while limited.refine(&Zone::Whole, 4, &control).unwrap() == Refined::Spent {
+    while limited.refine(&Zone::Whole, 4, &control).unwrap() == Refinement::Spent {
         refined += 1;
         assert_eq!(limited.splits(), 37 * refined);
     }
@@ -223,7 +223,8 @@ fn measures_use_threads() {
     assert_eq!(calls.boxes.load(Relaxed), 8 * found.splits + 1);
 }
 
-/// Runs work in another thread, cancels it once the host has been called some times, and returns what it came to.
+/// Runs work in another thread, cancels it once the host has been called some times, and returns what it came
+/// to.
 fn cancelled(
     calls: &Arc<Calls>,
     work: impl FnOnce(&Control<'_>) -> Result<(), Error> + Send,
@@ -256,7 +257,7 @@ fn a_cancel_waits_for_the_calls_under_way() {
             interference(&solid, &Csg::everything(), &frame, 0.0, control).map(drop)
         }),
         ("clearance", |solid, frame, control| {
-            clearance(&solid, &Ball::new([0.9; 3], 0.05)?, &frame, 0.0, control).map(drop)
+            clearance(&solid, &Csg::ball([0.9; 3], 0.05)?, &frame, 0.0, control).map(drop)
         }),
         ("lazy", |solid, frame, control| {
             LazyOctree::new(solid, &frame)?.refine(&Zone::Whole, 9, control).map(drop)
@@ -299,7 +300,7 @@ fn distances_decide_cells() {
         let tree = build(&solid, &frame, Rule::Certified, &Control::default()).unwrap();
         assert!(tree.statistics().volume().contains(truth));
         let exact =
-            build(&Ball::new(CENTRE, RADIUS).unwrap(), &frame, Rule::Certified, &Control::default()).unwrap();
+            build(&Csg::ball(CENTRE, RADIUS).unwrap(), &frame, Rule::Certified, &Control::default()).unwrap();
         if with_boxes {
             assert!(tree.statistics().volume().width() < 1.01 * exact.statistics().volume().width());
         }
@@ -338,7 +339,7 @@ fn fifty_milliseconds_a_call() {
                 measure(solid, &frame, 0.5, &control).unwrap();
             });
             run("interference", &|solid| {
-                interference(solid, &Ball::new([0.9; 3], 0.1).unwrap(), &frame, f64::INFINITY, &control)
+                interference(solid, &Csg::ball([0.9; 3], 0.1).unwrap(), &frame, f64::INFINITY, &control)
                     .unwrap();
             });
             run("lazy, to level 3", &|solid| {

@@ -1,13 +1,14 @@
-//! Interference and clearance: the published cases, analytic truth for spheres and boxes, dense sampling for all else,
-//! and the set algebra of built octrees.
+//! Interference and clearance: the published cases, analytic truth for spheres and boxes, dense sampling for
+//! all else, and the set algebra of built octrees.
 
 mod common;
 
+use common::cubes::Plain;
 use common::{Dense, Random, alone, model};
 use leafless::{
-    Affine, AnySolid, AxisBox, Ball, Cell, Clearance, Control, Csg, Cube, Error, FillRule, Frame, HalfSpace,
-    Interference, MeshSolid, Octree, Overlap, Rule, Solid, Tag, Transform, TriangleMesh, build, clearance,
-    exchange, interference, interference_of, intersection,
+    Affine, AnySolid, Cell, Clearance, Control, Csg, Cube, Error, FillRule, Frame, HalfSpace, Interference,
+    MeshSolid, Octree, Overlap, Rule, Solid, Tag, Transform, TriangleMesh, build, clearance, exchange,
+    interference, interference_of, intersection,
 };
 use std::f64::consts::PI;
 use std::sync::atomic::AtomicBool;
@@ -32,7 +33,7 @@ fn two_balls_take_eighty_splits_at_most() {
     for depth in [8, 12, 20] {
         let frame = published(depth);
         let ball = |at| Csg::ball([at; 3], 30.0).unwrap();
-        let plain = |at| Ball::new([at; 3], 30.0).unwrap();
+        let plain = |at| Plain::ball([at; 3], 30.0).unwrap();
         let balls = [50.0, 86.0, 83.0].map(ball);
         let apart = interference(&balls[0], &balls[1], &frame, PROOF, &alone()).unwrap();
         assert!(balls[..2].iter().all(|ball| ball.evaluations() > 0));
@@ -126,7 +127,7 @@ fn a_block_in_a_pocket() {
         assert!(found.volume.contains(4.0 * 48.0 * 48.0) && found.volume.width() == 0.0, "{found:?}");
         // The same by a transform of a solid that knows nothing of placements.
         let step = Affine::translation([6.0, 0.0, 0.0]).unwrap();
-        let plain = AxisBox::new([40.0; 3], [88.0; 3]).unwrap();
+        let plain = Plain::cuboid([40.0; 3], [88.0; 3]).unwrap();
         let moved = Transform::new(&plain, &frame, &step);
         let same = interference(&moved, &stock, &frame, 0.0, &alone()).unwrap();
         assert_eq!((same.verdict, same.volume), (found.verdict, found.volume));
@@ -181,7 +182,7 @@ fn boxes_on_and_off_the_lattice() {
         let ((a, b), (c, d)) = (cuboid(), cuboid());
         let common: f64 = (0..3).map(|axis| (b[axis].min(d[axis]) - a[axis].max(c[axis])).max(0.0)).product();
         let gap = [0, 1, 2].map(|axis| (c[axis] - b[axis]).max(a[axis] - d[axis]).max(0.0));
-        let (first, second) = (AxisBox::new(a, b).unwrap(), AxisBox::new(c, d).unwrap());
+        let (first, second) = (Csg::cuboid(a, b).unwrap(), Csg::cuboid(c, d).unwrap());
         let text = format!("{a:?} {b:?}, {c:?} {d:?}");
         let found = interference(&first, &second, &frame, PROOF, &alone()).unwrap();
         check_truth(&found, common, &text);
@@ -215,7 +216,7 @@ fn balls_and_their_contacts() {
             let (p, q) = (point(), point());
             (p, random.between(1.0, 4.0), q, random.between(1.0, 4.0))
         };
-        let (a, b) = (Ball::new(p, r).unwrap(), Ball::new(q, s).unwrap());
+        let (a, b) = (Csg::ball(p, r).unwrap(), Plain::ball(q, s).unwrap());
         let d = distance(p, q);
         let common = if d >= r + s {
             0.0
@@ -422,8 +423,8 @@ fn random_trees_in_random_places() {
     assert!(counts.iter().all(|&count| count > 5), "{counts:?}");
 }
 
-/// To the end, the answer is that of the set algebra, cell by cell; and moving parts from memory to memory on the way
-/// changes nothing.
+/// To the end, the answer is that of the set algebra, cell by cell; and moving parts from memory to memory on
+/// the way changes nothing.
 #[test]
 fn to_the_end_it_is_the_intersection_of_octrees() {
     let mut random = Random(6);
@@ -473,7 +474,7 @@ fn many_placements_are_one_after_the_other() {
 #[test]
 fn budgets_and_refusals() {
     let frame = published(12);
-    let (a, b) = (Ball::new([50.0; 3], 30.0).unwrap(), Ball::new([84.5; 3], 30.0).unwrap());
+    let (a, b) = (Csg::ball([50.0; 3], 30.0).unwrap(), Csg::ball([84.5; 3], 30.0).unwrap());
     for most in [0, 1, 2, 3, 40, 300] {
         let found = interference(&a, &b, &frame, PROOF, &up_to(most)).unwrap();
         assert!(splits(&found) <= most && found.verdict == Overlap::Undecided && found.volume.lower == 0.0);
@@ -628,7 +629,7 @@ fn side(tree: &Octree, p: [f64; 3]) -> i32 {
 #[test]
 fn solids_of_any_kind() {
     fn is_a_solid<S: Solid>(_: &S) {}
-    let ball = Ball::new([1.0; 3], 0.5).unwrap();
+    let ball = Csg::ball([1.0; 3], 0.5).unwrap();
     is_a_solid(&&ball);
     let frame = Frame::new([0.0; 3], 2.0, 6).unwrap();
     let found = interference(&&ball, &&ball, &frame, PROOF, &alone()).unwrap();

@@ -1,9 +1,10 @@
-//! The order of the layers: a module uses only modules below it.
+//! The order of the layers: a module uses only modules below it, and no two files of a folder use each other,
+//! be it by way of others.
 //!
 //! The sources are read as text. Comments and literals are taken out, every path that begins with `crate`,
 //! `super` or `self` is resolved to a module of the crate, and its layer is compared with that of the file.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 /// From the bottom up; modules of one row may use each other.
@@ -22,7 +23,11 @@ const LAYERS: [&[&str]; 11] = [
 ];
 
 /// Modules of `solid` that its producers share. Every other one is a producer, which no other may use.
-const SHARED: [&str; 7] = ["erased", "fingerprint", "forward", "enclosure", "motion", "prepared", "subtree"];
+const SHARED: [&str; 8] =
+    ["any", "erased", "fingerprint", "forward", "enclosure", "motion", "prepared", "subtree"];
+
+/// Folders in which some files still use each other. Strike out those that have become clean.
+const WITH_CIRCLES: [&str; 0] = [];
 
 fn layer(module: &str) -> Option<usize> {
     LAYERS.iter().position(|layer| layer.contains(&module))
@@ -272,26 +277,74 @@ fn resolve(module: &[String], mention: &Mention) -> Option<Vec<String>> {
     Some(at)
 }
 
-/// Names that `solid` re-exports, with the module that each comes from.
-fn origins(sources: &Sources) -> BTreeMap<String, String> {
-    let module = ["solid".to_string()];
-    let Some(source) = sources.get(&module[..]) else { return BTreeMap::new() };
+/// Names that a folder's `mod.rs` re-exports, with the file or folder that each comes from.
+fn origins(sources: &Sources, folder: &[String]) -> BTreeMap<String, String> {
+    let Some(source) = sources.get(folder) else { return BTreeMap::new() };
     let imports = mentions(source).into_iter().filter_map(|mention| {
         let name = mention.import.clone()?;
-        let path = match resolve(&module, &mention) {
+        let path = match resolve(folder, &mention) {
             Some(path) => path,
             // `pub use callback::Callback` is relative to the module.
-            None => module.iter().chain(&mention.path).cloned().collect(),
+            None => folder.iter().chain(&mention.path).cloned().collect(),
         };
-        let from = path.get(1).filter(|_| path[0] == "solid" && path.len() > 2)?;
+        let from =
+            path.get(folder.len()).filter(|_| path.starts_with(folder) && path.len() > folder.len() + 1)?;
         Some((name, from.clone()))
     });
     imports.collect()
 }
 
+/// For each folder, which of its files and subfolders use which others. What a `mod.rs` defines itself
+/// belongs to none of them, and tests may use everything.
+fn uses(sources: &Sources) -> BTreeMap<Vec<String>, BTreeMap<String, BTreeSet<String>>> {
+    let folders: BTreeSet<&[String]> = sources.keys().map(|module| &module[..module.len() - 1]).collect();
+    let origins: BTreeMap<_, _> = folders.iter().map(|&folder| (folder, origins(sources, folder))).collect();
+    let mut uses: BTreeMap<Vec<String>, BTreeMap<String, BTreeSet<String>>> = BTreeMap::new();
+    for (module, source) in sources.iter().filter(|(module, _)| !is_test(module)) {
+        for mention in mentions(source).iter().filter(|mention| !is_test(&mention.inside)) {
+            let Some(target) = resolve(module, mention) else { continue };
+            let shared = module.iter().zip(&target).take_while(|(mine, theirs)| mine == theirs).count();
+            let (folder, Some(mine)) = (&module[..shared], module.get(shared)) else { continue };
+            let Some(theirs) = target.get(shared) else { continue };
+            let theirs = origins.get(folder).and_then(|origins| origins.get(theirs)).unwrap_or(theirs);
+            let is_file = sources.contains_key(&[folder, std::slice::from_ref(theirs)].concat());
+            if is_file && theirs != mine {
+                let used = uses.entry(folder.to_vec()).or_default().entry(mine.clone()).or_default();
+                used.insert(theirs.clone());
+            }
+        }
+    }
+    uses
+}
+
+fn is_test(module: &[String]) -> bool {
+    module.last().is_some_and(|name| name == "tests")
+}
+
+/// Each folder with the uses between files that lie on a circle.
+fn circles(sources: &Sources) -> Vec<(String, Vec<String>)> {
+    let mut found = Vec::new();
+    for (folder, uses) in uses(sources) {
+        let reaches = |from: &String, to: &String| {
+            let (mut seen, mut open) = (BTreeSet::new(), vec![from]);
+            while let Some(file) = open.pop() {
+                open.extend(uses.get(file).into_iter().flatten().filter(|&next| seen.insert(next)));
+            }
+            seen.contains(to)
+        };
+        let pairs = uses.iter().flat_map(|(file, used)| used.iter().map(move |other| (file, other)));
+        let closed = pairs.filter(|(file, other)| reaches(other, file));
+        let closed: Vec<String> = closed.map(|(file, other)| format!("{file} uses {other}")).collect();
+        if !closed.is_empty() {
+            found.push((folder.join("/"), closed));
+        }
+    }
+    found
+}
+
 /// Everything in `sources` that goes against the order.
 fn violations(sources: &Sources) -> Vec<String> {
-    let origins = origins(sources);
+    let origins = origins(sources, &path(&["solid"]));
     let mut found = Vec::new();
     for (module, source) in sources {
         let name = module.join("::");
@@ -364,15 +417,24 @@ fn library() -> Sources {
 #[test]
 fn the_order_is_kept() {
     let sources = library();
-    for module in [&["octree", "view"][..], &["solid", "primitive"], &["op"], &["control"]] {
+    for module in [&["octree", "view"][..], &["solid", "callback"], &["op"], &["control"]] {
         assert!(sources.contains_key(&path(module)), "{module:?} was not read");
     }
     // The checker sees what the sources are known to use.
     let build = mentions(&sources[&path(&["op", "build"])]);
-    assert!(build.iter().any(|mention| mention.path == path(&["crate", "solid", "Stored"])));
-    assert!(origins(&sources).contains_key("Callback"));
+    assert!(build.iter().any(|mention| mention.path == path(&["crate", "solid", "Subtree"])));
+    assert!(origins(&sources, &path(&["solid"])).contains_key("Callback"));
     let found = violations(&sources);
     assert!(found.is_empty(), "\n{}", found.join("\n"));
+}
+
+#[test]
+fn no_files_use_each_other() {
+    let sources = library();
+    let found = circles(&sources);
+    let unexpected: Vec<_> =
+        found.iter().filter(|(folder, _)| !WITH_CIRCLES.contains(&&folder[..])).collect();
+    assert!(unexpected.is_empty(), "{unexpected:#?}");
 }
 
 #[test]
@@ -471,6 +533,40 @@ mod checker {
     #[test]
     fn catches_modules_without_a_layer() {
         assert_eq!(with(&[(&["surprise"], "")]), ["surprise: has no layer"]);
+    }
+
+    #[test]
+    fn catches_circles() {
+        let circles_with = |extra: &[(&[&str], &str)]| {
+            let sources = extra.iter().map(|(module, source)| (path(module), source.to_string()));
+            circles(&sources.collect())
+        };
+        let top: (&[&str], &str) = (&["solid"], "pub use ball::Ball; pub trait Solid {}");
+        for (ball, slab) in [
+            ("use super::slab::Slab;", "use super::ball::Ball;"),
+            ("use super::slab::Slab;", "use super::Ball;"),
+            ("fn f() { crate::solid::slab::g() }", "use super::{Solid, Ball};"),
+        ] {
+            let found = circles_with(&[top, (&["solid", "ball"], ball), (&["solid", "slab"], slab)]);
+            let expected = ["ball uses slab", "slab uses ball"].map(String::from).to_vec();
+            assert_eq!(found, [("solid".to_string(), expected)], "{ball} {slab}");
+        }
+        // Over three files, of which one lies in a folder of its own.
+        let found = circles_with(&[
+            top,
+            (&["solid", "ball"], "use super::slab::Slab;"),
+            (&["solid", "slab"], "use super::mesh::scan::Scan;"),
+            (&["solid", "mesh"], "mod scan;"),
+            (&["solid", "mesh", "scan"], "use crate::solid::Ball;"),
+        ]);
+        assert_eq!(found[0].1, ["ball uses slab", "mesh uses ball", "slab uses mesh"]);
+        // Parents and children, tests, and what leads one way.
+        let found = circles_with(&[
+            top,
+            (&["solid", "ball"], "use super::Solid; mod tests { use super::super::slab::Slab; }"),
+            (&["solid", "slab"], "use super::{Ball, Solid};"),
+        ]);
+        assert!(found.is_empty(), "{found:?}");
     }
 
     #[test]

@@ -1,14 +1,14 @@
-//! Octrees that are split on demand: against dense recursion over the same cells, counted, limited, cancelled, frozen
-//! and taken up again.
+//! Octrees that are split on demand: against dense recursion over the same cells, counted, limited,
+//! cancelled, frozen and taken up again.
 
 mod common;
 
-use common::cubes::Cubes;
+use common::cubes::{Cubes, Plain};
 use common::{Dense, Random, alone, assert_is, cases, lattice_frame, noise, positions, shapes};
 use leafless::{
-    AnySolid, AxisBox, Ball, Callback, Cell, Classifier, Control, Counted, Csg, Cube, Error, FillRule,
-    Fingerprint, Frame, LazyOctree, Membership, MeshSolid, Metadata, Octree, Refined, Rule, Solid, Stored,
-    Tag, TriangleMesh, Verdict, Worker, Zone, build, compact, file,
+    AnySolid, Callback, Cell, Classifier, Control, Csg, Cube, Error, FillRule, Fingerprint, Frame,
+    LazyOctree, Membership, MeshSolid, Metadata, Octree, Refinement, Rule, Solid, SplitCounter, Tag,
+    TriangleMesh, Verdict, Worker, Zone, build, compact, file,
 };
 use proptest::prelude::*;
 use std::collections::HashSet;
@@ -17,7 +17,8 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 // ---- a solid that finds out late ------------------------------------------------------------------------
 
-/// A dense array as a solid that does not see at once that a cell is of one kind. Its parts lie in scratch memory.
+/// A dense array as a solid that does not see at once that a cell is of one kind. Its parts lie in scratch
+/// memory.
 #[derive(Clone, Copy)]
 struct Late<'a> {
     dense: &'a Dense,
@@ -212,7 +213,8 @@ impl Fraction {
     }
 }
 
-/// Whether a zone has the cell, by the words of its documentation. Coordinates are multiples of ½ and not large.
+/// Whether a zone has the cell, by the words of its documentation. Coordinates are multiples of ½ and not
+/// large.
 fn meets(zone: &Zone, depth: u8, cell: Cell) -> bool {
     let size = 1u32 << (depth - cell.level);
     let low = cell.at.map(|a| (a * size) as f64);
@@ -401,13 +403,13 @@ proptest! {
                     let by_level = most.is_some() && !matches!(zone, Zone::Ray { .. });
                     if by_level {
                         let all = (0..level).all(|only| model.refine(&zone, Some(only), level, &mut left));
-                        assert_eq!(done == Refined::Done, all);
+                        assert_eq!(done == Refinement::Done, all);
                     } else if most.is_none() {
-                        assert!(model.refine(&zone, None, level, &mut left) && done == Refined::Done);
+                        assert!(model.refine(&zone, None, level, &mut left) && done == Refinement::Done);
                     } else {
                         // The order along a ray is another test's matter.
                         assert!(lazy.splits() - before <= most.unwrap());
-                        assert_eq!(lazy.refine(&zone, level, &alone()).unwrap(), Refined::Done);
+                        assert_eq!(lazy.refine(&zone, level, &alone()).unwrap(), Refinement::Done);
                         model.refine_all(&zone, level);
                     }
                 }
@@ -421,7 +423,7 @@ proptest! {
         }
         compare(&lazy, &model);
         // All that is left.
-        assert_eq!(lazy.refine(&Zone::Whole, depth, &alone()).unwrap(), Refined::Done);
+        assert_eq!(lazy.refine(&Zone::Whole, depth, &alone()).unwrap(), Refinement::Done);
         model.refine_all(&Zone::Whole, depth);
         compare(&lazy, &model);
         assert_eq!(lazy.freeze(&alone()).unwrap(), dense.octree());
@@ -440,7 +442,7 @@ fn tetrahedron() -> TriangleMesh {
 
 /// Solids of every kind.
 fn solids(frame: &Frame) -> Vec<AnySolid> {
-    let stored = build(&Ball::new([0.5; 3], 0.4).unwrap(), frame, Rule::Certified, &alone()).unwrap();
+    let stored = build(&Csg::ball([0.5; 3], 0.4).unwrap(), frame, Rule::Certified, &alone()).unwrap();
     let open = {
         let mesh = tetrahedron();
         TriangleMesh::new(mesh.vertices().to_vec(), mesh.triangles()[..3].to_vec()).unwrap()
@@ -451,15 +453,15 @@ fn solids(frame: &Frame) -> Vec<AnySolid> {
     let mixed = Csg::solid(mesh).difference(&ball).unwrap();
     let mixed = Csg::xor_of([mixed, Csg::solid(AnySolid::new(stored.clone()))]).unwrap();
     vec![
-        AnySolid::new(Ball::new([0.4, 0.5, 0.6], 0.37).unwrap()),
-        AnySolid::new(AxisBox::new([0.25, 0.1, 0.3], [0.75, 0.5, 0.9]).unwrap()),
+        AnySolid::new(Csg::ball([0.4, 0.5, 0.6], 0.37).unwrap()),
+        AnySolid::new(Csg::cuboid([0.25, 0.1, 0.3], [0.75, 0.5, 0.9]).unwrap()),
         AnySolid::new(Csg::half_space([1.0, 2.0, -0.5], -1.2).unwrap()),
         AnySolid::new(mixed),
         AnySolid::new(MeshSolid::new(tetrahedron(), FillRule::NonZero).unwrap()),
         AnySolid::new(MeshSolid::new(open, FillRule::NonZero).unwrap()),
         AnySolid::new(stored),
         AnySolid::new(slab().with_fingerprint(Fingerprint::of_bytes(b"slab"))),
-        AnySolid::new(AnySolid::new(Ball::new([0.1; 3], 0.3).unwrap())),
+        AnySolid::new(AnySolid::new(Csg::ball([0.1; 3], 0.3).unwrap())),
     ]
 }
 
@@ -499,7 +501,7 @@ fn a_full_refinement_is_the_build_bit_for_bit() {
         for (i, solid) in solids(&frame).into_iter().enumerate() {
             let built = build(&solid, &frame, Rule::Certified, &alone()).unwrap();
             let mut lazy = LazyOctree::new(solid.clone(), &frame).unwrap();
-            assert_eq!(lazy.refine(&Zone::Whole, depth, &alone()).unwrap(), Refined::Done);
+            assert_eq!(lazy.refine(&Zone::Whole, depth, &alone()).unwrap(), Refinement::Done);
             let frozen = lazy.freeze(&alone()).unwrap();
             assert_eq!(bytes(&frozen), bytes(&built), "solid {i}, depth {depth}");
             assert_eq!(frozen.view().exterior(), built.view().exterior());
@@ -537,7 +539,7 @@ fn an_octree_that_is_taken_up_again_goes_on() {
         assert_eq!(resumed.splits(), 0);
         for (zone, level) in [(corner, 7), (Zone::Point([0.7; 3]), 7), (Zone::Whole, 6), (Zone::Whole, 7)] {
             for lazy in [&mut direct, &mut resumed] {
-                assert_eq!(lazy.refine(&zone, level, &alone()).unwrap(), Refined::Done);
+                assert_eq!(lazy.refine(&zone, level, &alone()).unwrap(), Refinement::Done);
             }
             let (a, b) = (direct.freeze(&alone()).unwrap(), resumed.freeze(&alone()).unwrap());
             assert_eq!(file::to_bytes(&a).unwrap(), file::to_bytes(&b).unwrap(), "solid {i}, {zone:?}");
@@ -549,7 +551,7 @@ fn an_octree_that_is_taken_up_again_goes_on() {
     }
     // From a shallow frame to a deep one.
     for solid in [
-        AnySolid::new(Ball::new([0.4, 0.5, 0.6], 0.37).unwrap()),
+        AnySolid::new(Csg::ball([0.4, 0.5, 0.6], 0.37).unwrap()),
         AnySolid::new(MeshSolid::new(tetrahedron(), FillRule::NonZero).unwrap()),
     ] {
         let mut lazy = LazyOctree::new(solid.clone(), &coarse).unwrap();
@@ -565,19 +567,19 @@ fn an_octree_that_is_taken_up_again_goes_on() {
 
 #[test]
 fn depths_one_and_twenty() {
-    let ball = Ball::new([0.4, 0.5, 0.6], 0.37).unwrap();
-    let mut lazy = LazyOctree::new(ball, &unit_frame(1)).unwrap();
+    let ball = Csg::ball([0.4, 0.5, 0.6], 0.37).unwrap();
+    let mut lazy = LazyOctree::new(ball.clone(), &unit_frame(1)).unwrap();
     assert!(lazy.can_split(Cell::ROOT));
     assert_eq!(lazy.split(Cell::ROOT).unwrap(), [Tag::Partial; 8]);
     assert_eq!((lazy.splits(), lazy.tag(Cell::ROOT)), (1, Tag::Branch));
     assert_eq!(lazy.freeze(&alone()).unwrap().view().root_tag(), Tag::Partial);
 
     let frame = unit_frame(20);
-    let mut lazy = LazyOctree::new(ball, &frame).unwrap();
+    let mut lazy = LazyOctree::new(ball.clone(), &frame).unwrap();
     let surface = [0.4 + 0.37, 0.5, 0.6];
     for point in [surface, [0.4, 0.5, 0.6], [0.0; 3], [1.0; 3]] {
         let before = lazy.splits();
-        assert_eq!(lazy.refine(&Zone::Point(point), 20, &alone()).unwrap(), Refined::Done);
+        assert_eq!(lazy.refine(&Zone::Point(point), 20, &alone()).unwrap(), Refinement::Done);
         assert!(lazy.splits() - before <= 20);
         let found = lazy.contains(point);
         let expected = if point == [0.4, 0.5, 0.6] { Membership::Inside } else { Membership::Outside };
@@ -591,7 +593,7 @@ fn depths_one_and_twenty() {
     frozen.view().check().unwrap();
     let truth = 4.0 / 3.0 * std::f64::consts::PI * 0.37f64.powi(3);
     assert!(frozen.statistics().volume().contains(truth));
-    let mut resumed = LazyOctree::resume(&frozen, ball, &frame, &alone()).unwrap();
+    let mut resumed = LazyOctree::resume(&frozen, &ball, &frame, &alone()).unwrap();
     let before = resumed.splits();
     resumed.refine(&ray, 20, &alone()).unwrap();
     assert_eq!(resumed.splits(), before);
@@ -599,7 +601,7 @@ fn depths_one_and_twenty() {
 
 #[test]
 fn what_is_no_cell_is_refused() {
-    let mut lazy = LazyOctree::new(Ball::new([0.5; 3], 0.4).unwrap(), &unit_frame(3)).unwrap();
+    let mut lazy = LazyOctree::new(Csg::ball([0.5; 3], 0.4).unwrap(), &unit_frame(3)).unwrap();
     let cell = |level, at| Cell { level, at };
     for (at, problem) in [
         (cell(0, [1, 0, 0]), "none of"),
@@ -616,12 +618,12 @@ fn what_is_no_cell_is_refused() {
         assert_eq!(lazy.tag(at), Tag::Partial);
     }
     let nothing = lazy.refine(&Zone::Point([2.0; 3]), 3, &alone()).unwrap();
-    assert_eq!((nothing, lazy.splits()), (Refined::Done, 0));
+    assert_eq!((nothing, lazy.splits()), (Refinement::Done, 0));
     assert_eq!(lazy.contains([f64::NAN; 3]), Membership::Undecided);
     assert_eq!(lazy.contains([2.0; 3]), Membership::Undecided);
     // A cell in a decided one has its tag.
     lazy.refine(&Zone::Whole, 3, &alone()).unwrap();
-    let mut inside = LazyOctree::new(AxisBox::new([0.0; 3], [0.5; 3]).unwrap(), &unit_frame(3)).unwrap();
+    let mut inside = LazyOctree::new(Csg::cuboid([0.0; 3], [0.5; 3]).unwrap(), &unit_frame(3)).unwrap();
     let [full, others @ ..] = inside.split(Cell::ROOT).unwrap();
     assert_eq!((full, others), (Tag::Full, [Tag::Empty; 7]));
     assert_eq!(inside.split(cell(2, [1; 3])).unwrap(), [Tag::Full; 8]);
@@ -711,8 +713,8 @@ fn only_cells_that_matter_are_asked_about() {
 #[test]
 fn a_cell_that_nobody_can_split_is_asked_about_once() {
     let coarse = unit_frame(5);
-    let ball = build(&Ball::new([0.5; 3], 0.4).unwrap(), &coarse, Rule::Certified, &alone()).unwrap();
-    let mut lazy = LazyOctree::new(Stored::new(ball.view()), &unit_frame(12)).unwrap();
+    let ball = build(&Csg::ball([0.5; 3], 0.4).unwrap(), &coarse, Rule::Certified, &alone()).unwrap();
+    let mut lazy = LazyOctree::new(*ball.view(), &unit_frame(12)).unwrap();
     lazy.refine(&Zone::Whole, 12, &alone()).unwrap();
     assert_eq!(lazy.splits(), ball.statistics().nodes());
     assert_eq!((lazy.replays(), lazy.splits_at(5), lazy.splits_at(200)), (0, 0, 0));
@@ -741,7 +743,8 @@ fn merged_cells_give_their_memory_back() {
     }
     assert_eq!((lazy.tag(Cell::ROOT), lazy.splits()), (Tag::Empty, (1 << 18) / 7));
     assert_eq!(lazy.statistics().nodes(), 0);
-    // The universe's block; the blocks on the way to what is not merged yet: up to 64 of level 3 and 8 of level 2.
+    // The universe's block; the blocks on the way to what is not merged yet: up to 64 of level 3 and 8 of
+    // level 2.
     assert_eq!(lazy.bytes(), 64);
     assert!(most <= 64 * (4 + 8 + 1), "{most}");
     // In one go only those on the way are there.
@@ -801,7 +804,7 @@ fn what_depends_on_the_cell_alone_is_never_replayed() {
     assert!(replayed.replays() > 0);
     assert_eq!(bytes(&lazy.freeze(&alone()).unwrap()), bytes(&replayed.freeze(&alone()).unwrap()));
     // So it is cell by cell, in any order.
-    let mut lazy = LazyOctree::new(Ball::new([0.5; 3], 0.4).unwrap(), &unit_frame(5)).unwrap();
+    let mut lazy = LazyOctree::new(Plain::ball([0.5; 3], 0.4).unwrap(), &unit_frame(5)).unwrap();
     let mut open = vec![Cell::ROOT];
     while !open.is_empty() {
         let cell = open.swap_remove(random.below(open.len() as u64) as usize);
@@ -820,7 +823,7 @@ fn evaluations_are_counted_by_the_expression() {
     let bite = Csg::half_space([1.0, 0.5, -0.25], -0.6).unwrap();
     let solid = ball.difference(&bite).unwrap();
     let clone = solid.clone();
-    let counted = Counted::new(solid.clone());
+    let counted = SplitCounter::new(solid.clone());
     let (mut last, mut each) = (0, None);
     for _ in 0..3 {
         let splits = counted.splits().iter().sum::<u64>();
@@ -863,7 +866,7 @@ fn limits_stop_the_work_and_lose_nothing() {
                 let volume = lazy.statistics().volume();
                 assert!(last.lower <= volume.lower && volume.upper <= last.upper);
                 last = volume;
-                if done == Refined::Done {
+                if done == Refinement::Done {
                     break;
                 }
                 assert_eq!(lazy.splits() - before, limit);
@@ -887,13 +890,13 @@ fn limits_stop_the_work_and_lose_nothing() {
             let control = Control { max_nodes: Some(limit), ..alone() };
             let done = lazy.refine(&Zone::Whole, 6, &control).unwrap();
             assert!(lazy.statistics().nodes() <= limit);
-            assert_eq!(done == Refined::Done, lazy.freeze(&alone()).unwrap() == expected);
+            assert_eq!(done == Refinement::Done, lazy.freeze(&alone()).unwrap() == expected);
             let bytes = 64 * (limit + 1);
             let mut lazy = LazyOctree::new(solid.clone(), &frame).unwrap();
             let control = Control { max_bytes: Some(bytes), ..alone() };
             let done = lazy.refine(&Zone::Whole, 6, &control).unwrap();
             assert!(lazy.bytes() <= bytes);
-            assert_eq!(done == Refined::Done, lazy.freeze(&alone()).unwrap() == expected);
+            assert_eq!(done == Refinement::Done, lazy.freeze(&alone()).unwrap() == expected);
         }
     }
 }
@@ -901,14 +904,14 @@ fn limits_stop_the_work_and_lose_nothing() {
 #[test]
 fn a_ray_is_refined_from_its_beginning_on() {
     let frame = unit_frame(8);
-    let ball = Ball::new([0.5; 3], 0.4).unwrap();
+    let ball = Csg::ball([0.5; 3], 0.4).unwrap();
     for direction in [[1.0, 0.125, 0.25], [-1.0, 0.125, -0.25], [-0.5, -1.0, -0.25], [0.125, 0.25, -1.0]] {
         let origin = direction.map(|d: f64| 0.5 - 2.0 * d);
         let zone = Zone::Ray { origin, direction, from: 0.0, to: f64::INFINITY };
-        let mut lazy = LazyOctree::new(ball, &frame).unwrap();
+        let mut lazy = LazyOctree::new(&ball, &frame).unwrap();
         // Enough for where it enters, not for where it leaves.
         let control = Control { max_splits: Some(24), ..alone() };
-        assert_eq!(lazy.refine(&zone, 8, &control).unwrap(), Refined::Spent);
+        assert_eq!(lazy.refine(&zone, 8, &control).unwrap(), Refinement::Spent);
         let at = |t: f64| [0, 1, 2].map(|axis| origin[axis] + t * direction[axis]);
         let length = direction.iter().map(|d| d * d).sum::<f64>().sqrt();
         let (enters, leaves) = (2.0 - 0.4 / length, 2.0 + 0.4 / length);
@@ -916,7 +919,7 @@ fn a_ray_is_refined_from_its_beginning_on() {
         assert_eq!(lazy.contains(at(enters - reach)), Membership::Outside, "{direction:?}");
         assert_eq!(lazy.contains(at(enters + reach)), Membership::Inside, "{direction:?}");
         assert_eq!(lazy.contains(at(leaves - reach)), Membership::Undecided, "{direction:?}");
-        assert_eq!(lazy.refine(&zone, 8, &alone()).unwrap(), Refined::Done);
+        assert_eq!(lazy.refine(&zone, 8, &alone()).unwrap(), Refinement::Done);
         assert_eq!(lazy.contains(at(leaves - reach)), Membership::Inside);
         assert_eq!(lazy.contains(at(leaves + reach)), Membership::Outside);
     }
@@ -955,7 +958,7 @@ fn cancelling_keeps_what_was_split() {
             assert_eq!(lazy.statistics().volume(), volume);
             cancelled.store(false, Ordering::Relaxed);
             stop.store(u64::MAX, Ordering::Relaxed);
-            assert_eq!(lazy.refine(&Zone::Whole, 5, &control).unwrap(), Refined::Done);
+            assert_eq!(lazy.refine(&Zone::Whole, 5, &control).unwrap(), Refinement::Done);
             assert_eq!(lazy.freeze(&alone()).unwrap(), expected);
             assert_eq!(lazy.splits(), direct.splits());
             assert!(splits < lazy.splits());
@@ -982,11 +985,11 @@ fn an_error_of_the_solid_loses_nothing() {
         left.store(100, Ordering::Relaxed);
         match lazy.refine(&Zone::Whole, 5, &alone()) {
             Err(Error::Callback { code: -3 }) if errors < 1000 => errors += 1,
-            done => break assert_eq!(done.unwrap(), Refined::Done),
+            done => break assert_eq!(done.unwrap(), Refinement::Done),
         }
     }
     assert!(errors > 10);
-    let whole = AxisBox::new([-1.0; 3], [0.3, 2.0, 2.0]).unwrap();
+    let whole = Csg::cuboid([-1.0; 3], [0.3, 2.0, 2.0]).unwrap();
     let expected = build(&whole, &unit_frame(5), Rule::Certified, &alone()).unwrap();
     assert_eq!(lazy.freeze(&alone()).unwrap(), expected);
 }
@@ -1007,7 +1010,7 @@ fn progress_ends_at_one() {
                     assert!(*last <= done && done <= 1.0);
                     *last = done;
                 };
-                let mut lazy = LazyOctree::new(Ball::new([0.5; 3], 0.4).unwrap(), &unit_frame(6)).unwrap();
+                let mut lazy = LazyOctree::new(Csg::ball([0.5; 3], 0.4).unwrap(), &unit_frame(6)).unwrap();
                 let control = Control { progress: Some(&progress), max_splits, ..alone() };
                 lazy.refine(&zone, level, &control).unwrap();
                 assert_eq!(*last.lock().unwrap(), 1.0, "{zone:?} {level}");
@@ -1021,14 +1024,15 @@ fn progress_ends_at_one() {
 #[test]
 fn another_source_is_refused() {
     let frame = unit_frame(5);
-    let ball = Ball::new([0.5; 3], 0.4).unwrap();
-    let mut lazy = LazyOctree::new(ball, &frame).unwrap();
+    let ball = Csg::ball([0.5; 3], 0.4).unwrap();
+    let mut lazy = LazyOctree::new(&ball, &frame).unwrap();
     lazy.refine(&Zone::Whole, 3, &alone()).unwrap();
     let octree = lazy.freeze(&alone()).unwrap();
-    let resume = |octree: &Octree, frame: &Frame| LazyOctree::resume(octree, ball, frame, &alone()).map(drop);
+    let resume =
+        |octree: &Octree, frame: &Frame| LazyOctree::resume(octree, &ball, frame, &alone()).map(drop);
     resume(&octree, &frame).unwrap();
     let mismatch = |result: Result<(), Error>| assert!(matches!(result, Err(Error::SourceMismatch)));
-    let other = Ball::new([0.5; 3], 0.4f64.next_up()).unwrap();
+    let other = Csg::ball([0.5; 3], 0.4f64.next_up()).unwrap();
     mismatch(LazyOctree::resume(&octree, other, &frame, &alone()).map(drop));
     mismatch(resume(&octree.with_metadata(Metadata::new()), &frame));
     let mut crc = Metadata::new();
@@ -1050,12 +1054,12 @@ fn another_source_is_refused() {
         (Control { max_nodes: Some(30), ..alone() }, "nodes"),
         (Control { max_bytes: Some(640), ..alone() }, "bytes"),
     ] {
-        let limited = LazyOctree::resume(&octree, ball, &frame, &control).map(drop);
+        let limited = LazyOctree::resume(&octree, &ball, &frame, &control).map(drop);
         assert!(matches!(limited, Err(Error::Limit { what: found, .. }) if found == what));
     }
     let cancelled = AtomicBool::new(true);
     let control = Control { cancel: Some(&cancelled), ..alone() };
-    assert!(matches!(LazyOctree::resume(&octree, ball, &frame, &control), Err(Error::Cancelled)));
+    assert!(matches!(LazyOctree::resume(&octree, &ball, &frame, &control), Err(Error::Cancelled)));
 }
 
 #[test]
@@ -1084,7 +1088,7 @@ fn a_contradiction_is_found_where_it_matters() {
         Octree::uniform(frame, Tag::Full, Tag::Full).unwrap().with_metadata(octree.metadata().clone());
     let resumed = LazyOctree::resume(&everything, other, &frame, &alone());
     assert!(resumed.is_ok(), "in what can be split anything may have come out");
-    let whole = AxisBox::new([-1.0; 3], [2.0; 3]).unwrap();
+    let whole = Csg::cuboid([-1.0; 3], [2.0; 3]).unwrap();
     let mut lie = Metadata::new();
     lie.insert("source", whole.fingerprint().unwrap().to_string());
     let resumed = LazyOctree::resume(&truth.with_metadata(lie), whole, &frame, &alone());
@@ -1094,12 +1098,12 @@ fn a_contradiction_is_found_where_it_matters() {
 #[test]
 fn fingerprints_tell_solids_apart() {
     let frame = unit_frame(5);
-    let ball = |c: [f64; 3], r: f64| AnySolid::new(Ball::new(c, r).unwrap()).fingerprint().unwrap();
+    let ball = |c: [f64; 3], r: f64| AnySolid::new(Csg::ball(c, r).unwrap()).fingerprint().unwrap();
     let mesh = |fill| AnySolid::new(MeshSolid::new(tetrahedron(), fill).unwrap()).fingerprint().unwrap();
     let stored = |radius: f64, depth: u8| {
         let frame = unit_frame(depth);
         AnySolid::new(
-            build(&Ball::new([0.5; 3], radius).unwrap(), &frame, Rule::Certified, &alone()).unwrap(),
+            build(&Csg::ball([0.5; 3], radius).unwrap(), &frame, Rule::Certified, &alone()).unwrap(),
         )
     };
     let mut turned = tetrahedron().triangles().to_vec();
@@ -1109,8 +1113,8 @@ fn fingerprints_tell_solids_apart() {
         ball([0.5; 3], 0.4),
         ball([0.5, 0.5, 0.25], 0.4),
         ball([0.5; 3], 0.3),
-        AxisBox::new([0.0; 3], [1.0; 3]).unwrap().fingerprint().unwrap(),
-        AxisBox::new([0.0; 3], [1.0, 1.0, 2.0]).unwrap().fingerprint().unwrap(),
+        Csg::cuboid([0.0; 3], [1.0; 3]).unwrap().fingerprint().unwrap(),
+        Csg::cuboid([0.0; 3], [1.0, 1.0, 2.0]).unwrap().fingerprint().unwrap(),
         Csg::half_space([1.0, 0.0, 0.0], 0.5).unwrap().fingerprint().unwrap(),
         Csg::half_space([0.0, 1.0, 0.0], 0.5).unwrap().fingerprint().unwrap(),
         mesh(FillRule::NonZero),
@@ -1127,9 +1131,9 @@ fn fingerprints_tell_solids_apart() {
     }
     assert_eq!(ball([0.0; 3], 0.4), ball([-0.0; 3], 0.4));
     assert_eq!(slab().fingerprint(), None);
-    let octree = build(&Ball::new([0.5; 3], 0.4).unwrap(), &frame, Rule::Certified, &alone()).unwrap();
+    let octree = build(&Csg::ball([0.5; 3], 0.4).unwrap(), &frame, Rule::Certified, &alone()).unwrap();
     let coded = compact(octree.view()).unwrap();
-    assert_eq!(Stored::new(octree.view()).fingerprint(), coded.fingerprint());
+    assert_eq!(octree.view().fingerprint(), coded.fingerprint());
     assert_eq!(octree.fingerprint(), Some(all[11]));
 }
 
@@ -1140,13 +1144,14 @@ fn threads_may_have_it_one_after_another() {
     is_send_and_sync::<LazyOctree<MeshSolid>>();
 }
 
-/// Any octree that a file may hold: taken up without a crash, and refined as far as it does not contradict the solid.
+/// Any octree that a file may hold: taken up without a crash, and refined as far as it does not contradict
+/// the solid.
 #[test]
 #[cfg(all(feature = "mmap", target_endian = "little"))]
 fn damaged_files_are_taken_up_without_a_crash() {
     // One that replays splits, and one that does not.
     damaged_files(&Csg::ball([0.5; 3], 0.4).unwrap());
-    damaged_files(&Ball::new([0.5; 3], 0.4).unwrap());
+    damaged_files(&Csg::ball([0.5; 3], 0.4).unwrap());
 }
 
 #[cfg(all(feature = "mmap", target_endian = "little"))]
@@ -1173,7 +1178,7 @@ fn damaged_files<S: Solid>(ball: &S) {
         for level in [4, 5, 6] {
             match lazy.refine(&Zone::Whole, level, &alone()) {
                 Ok(done) => {
-                    assert_eq!(done, Refined::Done);
+                    assert_eq!(done, Refinement::Done);
                     refined += 1;
                 }
                 Err(Error::SourceMismatch) => {}

@@ -2,12 +2,13 @@
 
 mod common;
 
+use common::cubes::Plain;
 use common::exact::Exact;
 use common::{Dense, DenseSolid, Random, alone, cases, model, positions, shapes};
 use leafless::{
-    AnySolid, AxisBox, Ball, Callback, Cell, Classifier, Control, Error, Extent, FillRule, Frame, Interval,
-    Measured, Measures, MeshSolid, Rule, Solid, Tag, TriangleMesh, Verdict, Worker, bounding_box, build,
-    complement, exchange, measure,
+    AnySolid, Callback, Cell, Classifier, Control, Csg, Error, Extent, FillRule, Frame, Interval,
+    MassProperties, MeshSolid, Rule, Solid, StopReason, Tag, TriangleMesh, Verdict, Worker, bounding_box,
+    build, complement, exchange, measure,
 };
 use proptest::prelude::*;
 use std::f64::consts::PI;
@@ -20,8 +21,8 @@ fn zero() -> Exact {
     Exact::from(0.0)
 }
 
-/// Volume and moments about the model's origin, without a rounding; all times `factor`, which keeps them sums of
-/// doubles.
+/// Volume and moments about the model's origin, without a rounding; all times `factor`, which keeps them sums
+/// of doubles.
 #[derive(Clone)]
 struct Sums {
     factor: f64,
@@ -121,7 +122,7 @@ fn contains(interval: Interval, [numerator, denominator]: &[Exact; 2]) -> bool {
         && (interval.upper == f64::INFINITY || above(interval.upper))
 }
 
-fn contains_all(measures: &Measures, sums: &Sums) -> Result<(), String> {
+fn contains_all(measures: &MassProperties, sums: &Sums) -> Result<(), String> {
     let check = |what: &str, interval: Interval, value: &[Exact; 2]| {
         if contains(interval, value) { Ok(()) } else { Err(format!("{what} is not in {interval:?}")) }
     };
@@ -149,8 +150,8 @@ fn contains_all(measures: &Measures, sums: &Sums) -> Result<(), String> {
     Ok(())
 }
 
-/// Asserts that an interval is as tight as the least and the greatest possible value allow, but for `slack` of the
-/// magnitude.
+/// Asserts that an interval is as tight as the least and the greatest possible value allow, but for `slack`
+/// of the magnitude.
 fn assert_tight(interval: Interval, least: &[Exact; 2], most: &[Exact; 2], slack: f64) {
     let slack = slack * interval.lower.abs().max(interval.upper.abs());
     let narrow = Interval { lower: interval.lower + slack, upper: f64::INFINITY };
@@ -159,7 +160,7 @@ fn assert_tight(interval: Interval, least: &[Exact; 2], most: &[Exact; 2], slack
     assert!(slack == 0.0 || !contains(narrow, most), "{interval:?} ends too high");
 }
 
-fn assert_symmetric(measures: &Measures) {
+fn assert_symmetric(measures: &MassProperties) {
     for tensor in [measures.inertia_about_origin, measures.inertia_about_centroid] {
         for i in 0..3 {
             for j in 0..3 {
@@ -170,8 +171,8 @@ fn assert_symmetric(measures: &Measures) {
     }
 }
 
-/// What the cells of a dense array allow: every choice of the undecided that is tried lies in the intervals, and what
-/// can be exact is.
+/// What the cells of a dense array allow: every choice of the undecided that is tried lies in the intervals,
+/// and what can be exact is.
 fn check_dense(dense: &Dense, frame: &Frame, random: &mut Random) {
     let measures = measure(&DenseSolid { dense, exterior: Tag::Empty }, frame, 0.0, &alone()).unwrap();
     assert_symmetric(&measures);
@@ -185,8 +186,8 @@ fn check_dense(dense: &Dense, frame: &Frame, random: &mut Random) {
     };
     let all = choose(&|_| true);
     assert_eq!(measures.centroid.is_some(), !full.is_empty());
-    let end = if open.is_empty() { Measured::Tolerance } else { Measured::Exhausted };
-    assert_eq!((measures.measured, measures.clipped), (end, false));
+    let end = if open.is_empty() { StopReason::Tolerance } else { StopReason::Exhausted };
+    assert_eq!((measures.stop_reason, measures.clipped), (end, false));
     let mut choices = vec![full.clone(), all.clone()];
     for _ in 0..3 {
         let seed = random.next() as u8;
@@ -262,7 +263,7 @@ fn uniform_universes() {
 #[test]
 fn aligned_boxes_are_exact_at_once() {
     let frame = Frame::new([-4.0; 3], 8.0, 20).unwrap();
-    let solid = AxisBox::new([-2.0, -1.0, 0.0], [2.0, 3.0, 1.0]).unwrap();
+    let solid = Csg::cuboid([-2.0, -1.0, 0.0], [2.0, 3.0, 1.0]).unwrap();
     let measures = measure(&solid, &frame, 0.0, &Control::default()).unwrap();
     assert_eq!(measures.volume, Interval::exactly(16.0));
     assert_eq!(measures.centroid, Some([0.0, 1.0, 0.5].map(Interval::exactly)));
@@ -274,7 +275,7 @@ fn aligned_boxes_are_exact_at_once() {
     }
     // −V y z
     assert_eq!(measures.inertia_about_origin[1][2], Interval::exactly(-8.0));
-    assert_eq!((measures.measured, measures.level), (Measured::Tolerance, 3));
+    assert_eq!((measures.stop_reason, measures.level), (StopReason::Tolerance, 3));
 }
 
 /// A number that formulas in doubles give, near which the truth is.
@@ -290,10 +291,10 @@ fn balls_and_boxes_contain_the_formulas_at_every_depth() {
         let centre = [0, 1, 2].map(|_| random.between(-2.0, 2.0));
         let half = [0, 1, 2].map(|_| random.between(0.3, 1.5));
         let radius = half[0];
-        let ball = Ball::new(centre, radius).unwrap();
+        let ball = Csg::ball(centre, radius).unwrap();
         let min = [0, 1, 2].map(|axis| centre[axis] - half[axis]);
         let max = [0, 1, 2].map(|axis| centre[axis] + half[axis]);
-        let block = AxisBox::new(min, max).unwrap();
+        let block = Csg::cuboid(min, max).unwrap();
         let ball_volume = 4.0 / 3.0 * PI * radius.powi(3);
         let block_volume = 8.0 * half[0] * half[1] * half[2];
         for depth in 1..=8 {
@@ -338,12 +339,12 @@ fn balls_and_boxes_contain_the_formulas_at_every_depth() {
     }
 }
 
-/// The moments of all undecided cells together bound the centroid of a ball by some 2/√3 of what it takes: that is the
-/// ratio of the root of the mean square to the mean, of a coordinate on a sphere.
+/// The moments of all undecided cells together bound the centroid of a ball by some 2/√3 of what it takes:
+/// that is the ratio of the root of the mean square to the mean, of a coordinate on a sphere.
 #[test]
 fn the_centroid_is_as_tight_as_it_is_said_to_be() {
     let frame = Frame::new([-1.0; 3], 2.0, 4).unwrap();
-    let ball = Ball::new([0.0; 3], 0.9).unwrap();
+    let ball = Csg::ball([0.0; 3], 0.9).unwrap();
     let tree = build(&ball, &frame, Rule::Certified, &alone()).unwrap();
     let measures = measure(&ball, &frame, 0.0, &alone()).unwrap();
     // The greatest x of a centroid: all undecided cells beyond a plane belong to the solid.
@@ -373,22 +374,22 @@ fn a_walk_finds_what_a_tree_holds() {
     for (depth, tolerance) in [(5, 0.0), (9, 0.0), (10, 0.0), (11, 0.03), (20, 0.02)] {
         let centre = [0, 1, 2].map(|_| random.between(-0.1, 0.1));
         let frame = Frame::new([-1.0; 3], 2.0, depth).unwrap();
-        let ball = Ball::new(centre, 0.8).unwrap();
+        let ball = Plain::ball(centre, 0.8).unwrap();
         let measures = measure(&ball, &frame, tolerance, &alone()).unwrap();
         let tree =
             build(&ball, &frame.with_depth(measures.level).unwrap(), Rule::Certified, &Control::default());
         let tree = tree.unwrap();
         assert_eq!(measures.volume, tree.statistics().volume(), "{measures:?}");
-        let end = if tolerance > 0.0 { Measured::Tolerance } else { Measured::Exhausted };
-        assert_eq!(measures.measured, end, "{measures:?}");
+        let end = if tolerance > 0.0 { StopReason::Tolerance } else { StopReason::Exhausted };
+        assert_eq!(measures.stop_reason, end, "{measures:?}");
         assert!(tolerance > 0.0 || measures.level == depth);
         assert!(measures.splits >= tree.statistics().nodes());
         assert!(measures.splits <= tree.statistics().nodes() * 16 / 9);
         // The stored tree gives the same, as a solid of its own, and knows no more.
         let stored = measure(&tree, tree.frame(), 0.0, &alone()).unwrap();
-        assert_eq!((stored.volume, stored.measured), (measures.volume, Measured::Exhausted));
+        assert_eq!((stored.volume, stored.stop_reason), (measures.volume, StopReason::Exhausted));
         if measures.level == depth {
-            assert_eq!(stored, Measures { splits: stored.splits, ..measures });
+            assert_eq!(stored, MassProperties { splits: stored.splits, ..measures });
         }
         // For any number of threads, and behind any type.
         for threads in [2, 5] {
@@ -401,14 +402,14 @@ fn a_walk_finds_what_a_tree_holds() {
 #[test]
 fn budgets_are_kept_and_not_wasted() {
     let frame = Frame::new([-1.0; 3], 2.0, 20).unwrap();
-    let ball = Ball::new([0.01, 0.02, 0.03], 0.9).unwrap();
+    let ball = Plain::ball([0.01, 0.02, 0.03], 0.9).unwrap();
     let volume = 4.0 / 3.0 * PI * 0.9f64.powi(3);
     let mut last = f64::INFINITY;
     let budgets = [0, 1, 2, 9, 10, 65, 337, 1000, 5000, 100_000, 300_000, 600_000];
     for budget in budgets {
         let control = Control { max_splits: Some(budget), ..Control::default() };
         let measures = measure(&ball, &frame, 0.0, &control).unwrap();
-        assert_eq!((measures.splits, measures.measured), (budget, Measured::Budget));
+        assert_eq!((measures.splits, measures.stop_reason), (budget, StopReason::Budget));
         assert!(measures.volume.contains(volume));
         assert!(measures.volume.width() <= last, "{measures:?}");
         last = measures.volume.width();
@@ -428,23 +429,24 @@ fn budgets_are_kept_and_not_wasted() {
     assert!(last < 0.1 * volume, "{last}");
     let control = Control { max_splits: Some(u64::MAX), ..Control::default() };
     let measures = measure(&ball, &frame, 0.05, &control).unwrap();
-    assert_eq!(measures.measured, Measured::Tolerance);
+    assert_eq!(measures.stop_reason, StopReason::Tolerance);
     assert!(measures.volume.width() <= 0.05 * volume * 1.1);
 }
 
-/// A solid that counts, and whose parts lie in scratch memory; a part that is not what it should be is noticed.
+/// A solid that counts, and whose parts lie in scratch memory; a part that is not what it should be is
+/// noticed.
 struct Counting {
-    ball: Ball,
+    ball: Plain,
     calls: Arc<AtomicU64>,
 }
 
 impl Counting {
-    fn new(ball: Ball) -> Counting {
+    fn new(ball: Plain) -> Counting {
         Counting { ball, calls: Arc::default() }
     }
 }
 
-type BallOnFrame = <Ball as Solid>::Classifier;
+type BallOnFrame = <Plain as Solid>::Classifier;
 
 #[derive(Clone)]
 struct CountingOnFrame {
@@ -533,7 +535,7 @@ impl Worker for Stack {
 
 #[test]
 fn splits_are_counted_as_they_happen() {
-    let ball = Ball::new([0.01, 0.02, 0.03], 0.9).unwrap();
+    let ball = Plain::ball([0.01, 0.02, 0.03], 0.9).unwrap();
     for (depth, max_splits) in [(4, None), (9, None), (10, Some(77)), (20, Some(300_000))] {
         let frame = Frame::new([-1.0; 3], 2.0, depth).unwrap();
         for threads in [1, 4] {
@@ -554,10 +556,10 @@ fn splits_are_counted_as_they_happen() {
 fn what_the_universe_clips_is_said() {
     let frame = Frame::new([-1.0; 3], 2.0, 5).unwrap();
     let control = Control::default();
-    let clipped = |ball: Ball| measure(&ball, &frame, 0.0, &control).unwrap().clipped;
-    assert!(!clipped(Ball::new([0.0; 3], 1.0).unwrap()));
-    assert!(clipped(Ball::new([0.0; 3], 1.1).unwrap()));
-    let ball = build(&Ball::new([0.0; 3], 1.0).unwrap(), &frame, Rule::Certified, &control).unwrap();
+    let clipped = |ball: Csg| measure(&ball, &frame, 0.0, &control).unwrap().clipped;
+    assert!(!clipped(Csg::ball([0.0; 3], 1.0).unwrap()));
+    assert!(clipped(Csg::ball([0.0; 3], 1.1).unwrap()));
+    let ball = build(&Csg::ball([0.0; 3], 1.0).unwrap(), &frame, Rule::Certified, &control).unwrap();
     let outside = complement(ball.view(), &control).unwrap();
     assert!(!measure(&ball, &frame, 0.0, &control).unwrap().clipped);
     let measures = measure(&outside, &frame, 0.0, &control).unwrap();
@@ -573,10 +575,10 @@ fn a_host_s_shape_that_knows_little() {
     let doubtful = Callback::new(|_, _| Ok(Verdict::Partial(()))).with_exterior(Tag::Empty);
     let measures = measure(&doubtful, &frame, 0.1, &Control::default()).unwrap();
     assert_eq!((measures.volume, measures.centroid), (Interval { lower: 0.0, upper: 1.0 }, None));
-    assert_eq!(measures.measured, Measured::Exhausted);
+    assert_eq!(measures.stop_reason, StopReason::Exhausted);
     let hopeless = Callback::new(|_, _| Ok(Verdict::Undecided));
     let measures = measure(&hopeless, &frame, 0.1, &Control::default()).unwrap();
-    assert_eq!((measures.splits, measures.measured), (0, Measured::Exhausted));
+    assert_eq!((measures.splits, measures.stop_reason), (0, StopReason::Exhausted));
     // Only the upper half is decided, and no finer than eighths.
     let eighths = Callback::new(|min: [f64; 3], max: [f64; 3]| {
         Ok(match (min[2], max[2]) {
@@ -588,7 +590,7 @@ fn a_host_s_shape_that_knows_little() {
     let frame = Frame::new([0.0; 3], 1.0, 20).unwrap();
     let measures = measure(&eighths, &frame, 0.1, &Control::default()).unwrap();
     assert_eq!(measures.volume, Interval { lower: 0.5, upper: 1.0 });
-    assert_eq!((measures.measured, measures.splits, measures.level), (Measured::Exhausted, 37, 3));
+    assert_eq!((measures.stop_reason, measures.splits, measures.level), (StopReason::Exhausted, 37, 3));
     let z = measures.centroid.unwrap()[2];
     assert!(z.contains(0.5) && z.contains(0.75) && z.lower > 0.4 && z.upper < 0.82, "{z:?}");
     let failing = Callback::new(|_, _| Err(Error::Callback { code: 7 }));
@@ -637,7 +639,7 @@ fn frames_at_the_ends_of_the_range() {
 #[test]
 fn it_can_be_watched_and_stopped() {
     let frame = Frame::new([-1.0; 3], 2.0, 11).unwrap();
-    let ball = Ball::new([0.0; 3], 0.9).unwrap();
+    let ball = Csg::ball([0.0; 3], 0.9).unwrap();
     let cancel = AtomicBool::new(false);
     let seen = std::sync::Mutex::new(Vec::new());
     let progress = |fraction: f64| seen.lock().unwrap().push(fraction);
@@ -685,7 +687,8 @@ fn a_mesh_against_the_divergence_theorem() {
     }
 }
 
-// --- Bounding boxes ----------------------------------------------------------------------------------------------
+// --- Bounding boxes
+// ----------------------------------------------------------------------------------------------
 
 /// The corners of all finest cells for which `tag` holds, in planes.
 fn hull(dense: &Dense, tag: impl Fn(Tag) -> bool) -> Option<[[u32; 3]; 2]> {
@@ -746,8 +749,8 @@ fn boxes_of_balls_and_blocks() {
             let centre = [0, 1, 2].map(|_| random.between(-0.5, 0.5));
             let radius = random.between(0.8, 1.2);
             let [min, max] = [-1.0, 1.0].map(|sign| centre.map(|c| c + sign * radius));
-            let ball = AnySolid::new(Ball::new(centre, radius).unwrap());
-            let block = AnySolid::new(AxisBox::new(min, max).unwrap());
+            let ball = AnySolid::new(Csg::ball(centre, radius).unwrap());
+            let block = AnySolid::new(Csg::cuboid(min, max).unwrap());
             for (solid, most) in [(ball, 3e4), (block, 2e5)] {
                 if (depth, most) == (10, 2e5) || (tolerance, most) == (0.001, 2e5) {
                     continue;
@@ -763,7 +766,7 @@ fn boxes_of_balls_and_blocks() {
                     }
                 }
                 assert!(
-                    depth < 10 || extent.occupied && extent.measured == Measured::Tolerance,
+                    depth < 10 || extent.occupied && extent.stop_reason == StopReason::Tolerance,
                     "{depth} {tolerance} {extent:?}"
                 );
                 assert!(!extent.clipped);
@@ -775,7 +778,7 @@ fn boxes_of_balls_and_blocks() {
     }
     // On the lattice nothing is left open.
     let frame = Frame::new([-4.0; 3], 8.0, 20).unwrap();
-    let solid = AxisBox::new([-2.0, -1.0, 0.0], [2.0, 3.0, 1.0]).unwrap();
+    let solid = Csg::cuboid([-2.0, -1.0, 0.0], [2.0, 3.0, 1.0]).unwrap();
     let extent = bounding_box(&solid, &frame, 0.0, &Control::default()).unwrap();
     let corners = [[-2.0, -1.0, 0.0], [2.0, 3.0, 1.0]].map(|corner| corner.map(Interval::exactly));
     assert_eq!(extent.corners, Some(corners));
@@ -786,17 +789,17 @@ fn boxes_of_balls_and_blocks() {
 fn boxes_of_what_is_empty_or_unknown() {
     let frame = Frame::new([0.0; 3], 1.0, 4).unwrap();
     let control = Control::default();
-    let far = Ball::new([9.0; 3], 1.0).unwrap();
+    let far = Csg::ball([9.0; 3], 1.0).unwrap();
     let extent = bounding_box(&far, &frame, 0.0, &control).unwrap();
     assert_eq!((extent.corners, extent.occupied, extent.splits), (None, false, 0));
     let doubtful = Callback::new(|_, _| Ok(Verdict::Partial(()))).with_exterior(Tag::Empty);
     let extent = bounding_box(&doubtful, &frame, 0.0, &control).unwrap();
     let all = Interval { lower: 0.0, upper: 1.0 };
-    assert_eq!((extent.corners, extent.measured), (Some([[all; 3]; 2]), Measured::Exhausted));
+    assert_eq!((extent.corners, extent.stop_reason), (Some([[all; 3]; 2]), StopReason::Exhausted));
     assert!(!extent.occupied && !extent.clipped);
     let limited = Control { max_splits: Some(100), ..control };
     let extent = bounding_box(&doubtful, &frame, 0.0, &limited).unwrap();
-    assert_eq!((extent.corners, extent.measured), (Some([[all; 3]; 2]), Measured::Budget));
+    assert_eq!((extent.corners, extent.stop_reason), (Some([[all; 3]; 2]), StopReason::Budget));
     assert!(extent.splits <= 100);
     let cancel = AtomicBool::new(true);
     let cancelled = Control { cancel: Some(&cancel), ..control };

@@ -1,12 +1,14 @@
 //! Meshes as they come, against the winding number by its definition.
 //!
-//! The truth of a soup is the set of points with |w| ≥ ½ (or w ≥ ½), w being the sum of the solid angles of all its
-//! triangles over 4π. Damaged variants of many shapes are built, and every kind of verdict is held against that sum.
+//! The truth of a soup is the set of points with |w| ≥ ½ (or w ≥ ½), w being the sum of the solid angles of
+//! all its triangles over 4π. Damaged variants of many shapes are built, and every kind of verdict is held
+//! against that sum.
 //!
 //! The heavier sets, of many more variants, deeper trees, more points, and five million triangles:
 //!
 //! ```text
-//! LEAFLESS_MODELS=/path/to/models cargo test --release --test mesh_open -- --ignored --nocapture --test-threads 1
+//! LEAFLESS_MODELS=/path/to/models \
+//!     cargo test --release --test mesh_open -- --ignored --nocapture --test-threads 1
 //! ```
 
 mod common;
@@ -16,6 +18,7 @@ mod descended;
 mod oracle;
 #[path = "mesh/shapes.rs"]
 mod shapes;
+#[path = "mesh/soup/mod.rs"]
 mod soup;
 
 use common::{Random, alone};
@@ -344,7 +347,8 @@ fn large_holes() {
     total.judge();
 }
 
-/// Faces through centres, some of them missing: every centre of the lattice, also those on what closes the holes.
+/// Faces through centres, some of them missing: every centre of the lattice, also those on what closes the
+/// holes.
 #[test]
 fn every_centre_of_an_aligned_block_without_some_faces() {
     let frame = Frame::new([0.0; 3], 16.0, 4).unwrap();
@@ -396,8 +400,8 @@ fn holes_and_meshes_outside_of_the_universe() {
         ("sheet", sheet(centre, 24.0, 1.5, 0)),
     ];
     let frames = [
-        // Parts of it, by the faces, an edge and a corner; a cube within; one beside; one that sees it from afar; and
-        // one in which it is a speck.
+        // Parts of it, by the faces, an edge and a corner; a cube within; one beside; one that sees it from
+        // afar; and one in which it is a speck.
         ([16.1, 0.0, 0.0], 32.0),
         ([0.0, 0.0, 16.05], 32.0),
         ([-16.0, -16.1, 0.0], 32.3),
@@ -477,14 +481,14 @@ fn both(soup: &Soup, frame: &Frame) -> [Octree; 2] {
 
 /// Removes single facets of a soup that is closed, and holds the trees against the intact one's.
 ///
-/// Where the winding number is an integer n, without a facet seen at the solid angle Ω it is n ± Ω/4π, and |Ω| < 2π
-/// away from the facet: no winding number crosses ½. So
+/// Where the winding number is an integer n, without a facet seen at the solid angle Ω it is n ± Ω/4π, and
+/// |Ω| < 2π away from the facet: no winding number crosses ½. So
 ///
 /// * the sampled cells are the same, unless their centre is on the facet;
 /// * decided cells never turn from FULL to EMPTY or back;
-/// * beyond d + 2h of the facet, d its diameter and h half the diagonal of a cell, finest cells are decided as they were:
-///   all of the cell is then d + h away, so that Ω ≤ (√3/4) d²/(d + h)², |w − n| < 0.035; and it changes in the
-///   cell by at most 3d h/(4π (d + h)²) ≤ 3/16π < 0.06, both far from ½.
+/// * beyond d + 2h of the facet, d its diameter and h half the diagonal of a cell, finest cells are decided
+///   as they were: all of the cell is then d + h away, so that Ω ≤ (√3/4) d²/(d + h)², |w − n| < 0.035; and
+///   it changes in the cell by at most 3d h/(4π (d + h)²) ≤ 3/16π < 0.06, both far from ½.
 fn remove_single_facets(name: &str, soup: &Soup, depth: u8, times: usize, random: &mut Random) {
     // (Some models that are taken for closed have cracks as wide as a rounding.)
     assert!(Boundary::of(soup).0.is_empty(), "{name} is not closed");
@@ -554,8 +558,8 @@ fn read(name: &str) -> Option<Soup> {
     Some(mesh.triangles().iter().map(|t| t.map(|v| vertices[v as usize])).collect())
 }
 
-/// What is undecided lies around a surface: that of the mesh, or the membrane over its holes on which the winding
-/// number is ½. Cells of half the edge hold half as much of it.
+/// What is undecided lies around a surface: that of the mesh, or the membrane over its holes on which the
+/// winding number is ½. Cells of half the edge hold half as much of it.
 #[test]
 fn what_is_undecided_halves_with_every_level() {
     let mut random = Random(41);
@@ -652,8 +656,9 @@ fn off(name: &str, soup: &Soup, frame: &Frame, intact: f64) -> f64 {
     (volume / intact - 1.0).abs()
 }
 
-/// Holes that are small against the part cost little of its volume. One facet costs nothing at all, so nothing is off but
-/// by rounding; several that hang together lose about what the membrane over them cuts off.
+/// Holes that are small against the part cost little of its volume. One facet costs nothing at all, so
+/// nothing is off but by rounding; several that hang together lose about what the membrane over them cuts
+/// off.
 fn holes_cost_little(name: &str, soup: &Soup, depth: u8, share: f64, random: &mut Random) {
     let frame = odd_frame(soup, depth);
     let intact = both(soup, &frame)[1].statistics().volume().lower;

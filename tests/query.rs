@@ -2,10 +2,11 @@
 
 mod common;
 
+use common::cubes::Plain;
 use common::{Dense, DenseSolid, Random, Shape, alone, assert_is, cases, lattice_frame, positions, shapes};
 use leafless::{
-    AnySolid, AxisBox, Ball, Callback, Cell, Control, Counted, Csg, Cursor, Error, Frame, Membership, Octree,
-    PointCursor, Region, Rule, Solid, Stored, Tag, Verdict, build, classify_box, compact, contains,
+    AnySolid, Callback, Cell, Control, Csg, Cursor, Error, Frame, Membership, Octree, PointCursor, Region,
+    Rule, Solid, SplitCounter, Tag, Verdict, build, classify_box, compact, contains,
 };
 use proptest::prelude::*;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -249,7 +250,7 @@ fn points_beside_planes_that_are_no_doubles() {
 #[test]
 fn batches_on_a_tree_of_many_levels() {
     let frame = Frame::new([-1.0, 0.3, 20.0], 2.0 / 3.0, 9).unwrap();
-    let ball = Ball::new([-0.7, 0.6, 20.3], 0.29).unwrap();
+    let ball = Csg::ball([-0.7, 0.6, 20.3], 0.29).unwrap();
     for rule in [Rule::Certified, Rule::Sampled] {
         let tree = build(&ball, &frame, rule, &alone()).unwrap();
         let coded = compact(tree.view()).unwrap();
@@ -384,7 +385,7 @@ proptest! {
         octree_agrees(&AnySolid::new(coded), &frame, seed, 300);
         // Cut at a level, and finer than it is.
         for depth in [dense.depth.saturating_sub(1).max(1), dense.depth + 2] {
-            octree_agrees(&Stored::new(tree.view()), &frame.with_depth(depth).unwrap(), seed, 200);
+            octree_agrees(tree.view(), &frame.with_depth(depth).unwrap(), seed, 200);
         }
     }
 
@@ -392,9 +393,9 @@ proptest! {
     fn any_shape_knows_its_points_and_boxes(
         centre in [-0.3..0.3f64, -0.3..0.3, -0.3..0.3], radius in 0.1..0.6f64, depth in 1..=6u8, seed in any::<u64>(),
     ) {
-        let ball = Ball::new(centre, radius).unwrap();
+        let ball = Plain::ball(centre, radius).unwrap();
         let csg = Csg::ball(centre, radius).unwrap();
-        let corner = AxisBox::new(centre, [0.7; 3]).unwrap();
+        let corner = Csg::cuboid(centre, [0.7; 3]).unwrap();
         let bitten = csg.difference(&Csg::half_space([0.5, -1.0, 0.25], 0.1).unwrap()).unwrap();
         let mixed = Csg::xor_of([bitten.clone(), Csg::solid(AnySolid::new(corner))]).unwrap();
         // Planes that are doubles, and planes that are not.
@@ -412,7 +413,7 @@ fn many_points_of_any_solid_are_those_of_its_octree() {
     // Enough for several threads.
     let frame = Frame::new([-1.0, 0.3, 20.0], 2.0 / 3.0, 8).unwrap();
     let centre = [-0.7, 0.6, 20.3];
-    let ball = Ball::new(centre, 0.29).unwrap();
+    let ball = Plain::ball(centre, 0.29).unwrap();
     let tree = build(&ball, &frame, Rule::Certified, &alone()).unwrap();
     let csg = Csg::ball(centre, 0.29).unwrap();
     points_agree(&ball, &tree, 1, 20_000);
@@ -459,7 +460,7 @@ fn what_a_solid_knows_of_points_comes_first() {
 #[test]
 fn points_cost_no_more_splits_than_their_way() {
     let frame = Frame::new([-2.0; 3], 4.0, 20).unwrap();
-    let ball = Counted::new(Csg::ball([0.0; 3], 1.0).unwrap());
+    let ball = SplitCounter::new(Csg::ball([0.0; 3], 1.0).unwrap());
     let splits = || ball.splits().iter().sum::<u64>();
     assert_eq!(located(&ball, &frame, &[[0.3, 0.4, 0.8]; 200], 1), [Membership::Inside; 200]);
     let one = splits();
@@ -506,7 +507,7 @@ fn a_budget_of_nothing_proves_nothing_of_a_cut_universe() {
 #[test]
 fn what_is_refused_of_any_solid() {
     let frame = lattice_frame(4);
-    let ball = Ball::new([8.0; 3], 5.0).unwrap();
+    let ball = Csg::ball([8.0; 3], 5.0).unwrap();
     for (min, max) in [
         ([0.0, 1.0, 0.0], [1.0, 0.5, 1.0]),
         ([f64::NAN, 0.0, 0.0], [1.0; 3]),

@@ -27,7 +27,8 @@ fn volume(text: &str) -> Interval {
     in_cube(text).statistics().volume()
 }
 
-/// The volume's interval holds the truth and is no wider than a layer of so many cells around the solid's `area`.
+/// The volume's interval holds the truth and is no wider than a layer of so many cells around the solid's
+/// `area`.
 fn check(text: &str, truth: f64, area: f64) {
     let tree = in_cube(text);
     let volume = tree.statistics().volume();
@@ -62,7 +63,8 @@ fn refusal(text: &str) -> (u64, u64, String) {
     }
 }
 
-// ---- what the calls mean ------------------------------------------------------------------------------------
+// ---- what the calls mean
+// ------------------------------------------------------------------------------------
 
 #[test]
 fn solids() {
@@ -516,7 +518,8 @@ fn points_never_contradict_cells() {
     assert!(decided > asked * 3 / 4 && inside > asked / 50, "{decided} and {inside} of {asked}");
 }
 
-// ---- files and meshes ---------------------------------------------------------------------------------------
+// ---- files and meshes
+// ---------------------------------------------------------------------------------------
 
 /// The block [0, 2] × [0, 1] × [0, 1].
 fn block() -> TriangleMesh {
@@ -590,7 +593,8 @@ fn files_beside_the_scene() {
     assert!(read_scene("mesh(\"block.stl\");", Some(Path::new(folder.path()))).is_ok());
 }
 
-// ---- errors -------------------------------------------------------------------------------------------------
+// ---- errors
+// -------------------------------------------------------------------------------------------------
 
 #[test]
 fn errors_say_where() {
@@ -639,12 +643,12 @@ fn errors_say_where() {
         ("cube(size = [1, 2]);", (1, 13), "expected 3 items, found 2"),
         ("cube(size = [1, [2], 3]);", (1, 17), "expected a number"),
         ("cube(size = 1, center = 1);", (1, 25), "expected true or false"),
-        ("sphere(r = inf);", (1, 12), "a number must be"),
-        ("sphere(r = -inf);", (1, 12), "a number must be"),
-        ("sphere(r = nan);", (1, 12), "a number must be"),
-        ("sphere(r = 1e999);", (1, 12), "a number must be"),
-        ("sphere(r = 1e80);", (1, 12), "a number must be"),
-        ("sphere(r = 1e-80);", (1, 12), "a number must be"),
+        ("sphere(r = inf);", (1, 12), "must be zero or of a magnitude"),
+        ("sphere(r = -inf);", (1, 12), "must be zero or of a magnitude"),
+        ("sphere(r = nan);", (1, 12), "must be zero or of a magnitude"),
+        ("sphere(r = 1e999);", (1, 12), "must be zero or of a magnitude"),
+        ("sphere(r = 1e80);", (1, 12), "must be zero or of a magnitude"),
+        ("sphere(r = 1e-80);", (1, 12), "must be zero or of a magnitude"),
         ("multmatrix([[1,0,0,0],[0,1,0,0],[0,0,1,0]]) cube(1);", (1, 12), "expected 4 items, found 3"),
         (
             "multmatrix([[1,0,0,0],[0,1,0],[0,0,1,0],[0,0,0,1]]) cube(1);",
@@ -705,7 +709,8 @@ fn errors_say_where() {
     }
 }
 
-// ---- texts that mean harm -----------------------------------------------------------------------------------
+// ---- texts that mean harm
+// -----------------------------------------------------------------------------------
 
 #[test]
 fn nesting() {

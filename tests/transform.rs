@@ -1,13 +1,12 @@
-//! Solids under affine maps: verdicts against exact arithmetic, and maps of the lattice onto itself, which must lose
-//! nothing.
+//! Solids under affine maps: verdicts against exact arithmetic, and maps of the lattice onto itself, which
+//! must lose nothing.
 
 mod common;
 
 use common::exact::Exact;
 use common::{Dense, Random, alone, lattice_frame, positions, shapes};
 use leafless::{
-    Affine, AnySolid, AxisBox, Ball, Cell, Control, Csg, Error, Frame, LazyOctree, Rule, Tag, Transform,
-    Zone, build,
+    Affine, AnySolid, Cell, Control, Csg, Error, Frame, LazyOctree, Rule, Tag, Transform, Zone, build,
 };
 use proptest::prelude::*;
 use std::f64::consts::PI;
@@ -151,7 +150,7 @@ fn what_is_proven_of_a_placed_box_is_true() {
             1 => Frame::new([-2.0; 3], 4.0, 5).unwrap(),
             _ => Frame::new([-3.3, -3.1, -3.7], 7.0, 5).unwrap(),
         };
-        let solid = Transform::new(AxisBox::new(corner, max).unwrap(), &own, &placement);
+        let solid = Transform::new(Csg::cuboid(corner, max).unwrap(), &own, &placement);
         let tree = build(&solid, &frame, Rule::Certified, &alone()).unwrap();
         let dense = Dense::of(tree.view());
         let exact = Placed::new(&placement, corner, max);
@@ -195,7 +194,7 @@ fn volumes_contain_the_truth_and_close_in_on_it() {
             })
             .sum::<f64>()
             .abs();
-        let ball = Ball::new([0.25, 0.0, -0.125], 0.75).unwrap();
+        let ball = Csg::ball([0.25, 0.0, -0.125], 0.75).unwrap();
         let truth = determinant * 4.0 / 3.0 * PI * 0.75f64.powi(3);
         let own = Frame::new([-1.0; 3], 2.0, 12).unwrap();
         let solid = Transform::new(ball, &own, &placement);
@@ -212,7 +211,8 @@ fn volumes_contain_the_truth_and_close_in_on_it() {
     }
 }
 
-/// A map of the lattice onto itself: where cell `at` of a universe of 2^depth cells comes from, times 2^scale.
+/// A map of the lattice onto itself: where cell `at` of a universe of 2^depth cells comes from, times
+/// 2^scale.
 #[derive(Debug, Clone, Copy)]
 struct Move {
     axes: [usize; 3],
@@ -301,7 +301,8 @@ proptest! {
             let moved = build(&Transform::new(&tree, &frame, &step.affine()), &frame, Rule::Sampled, &alone()).unwrap();
             let expected = Dense::from_fn(dense.depth, |at| {
                 let ranges = step.source(at);
-                // The middle, in eighths; on a plane it goes the way of the shift, which the signs may turn round.
+                // The middle, in eighths; on a plane it goes the way of the shift, which the signs may turn
+                // round.
                 let middle = [0, 1, 2].map(|axis| ranges[axis].0 + ranges[axis].1);
                 let cell = [0, 1, 2].map(|axis| {
                     let sign = (0..3).find(|&i| step.axes[i] == axis).map(|i| step.signs[i]).unwrap();
@@ -318,10 +319,10 @@ proptest! {
 #[test]
 fn an_offset_of_whole_cells_keeps_the_centres_of_any_solid() {
     let own = Frame::new([-8.0; 3], 16.0, 5).unwrap();
-    let ball = Ball::new([0.25, -0.5, 0.0], 5.25).unwrap();
+    let ball = Csg::ball([0.25, -0.5, 0.0], 5.25).unwrap();
     let tree = build(&ball, &own, Rule::Sampled, &alone()).unwrap();
     let placement = Affine::translation([1.5, -2.0, 0.5]).unwrap();
-    let solid = Transform::new(ball, &own, &placement);
+    let solid = Transform::new(&ball, &own, &placement);
     let moved = build(&solid, &own, Rule::Sampled, &alone()).unwrap();
     let stored = build(&Transform::new(&tree, &own, &placement), &own, Rule::Certified, &alone()).unwrap();
     assert_eq!(Dense::of(moved.view()), Dense::of(stored.view()));
@@ -343,7 +344,7 @@ fn threads_and_erasure_change_nothing() {
     let frame = Frame::new([-2.0, -2.5, -1.5], 4.5, 8).unwrap();
     let placement =
         Affine::new([[0.7, -0.4, 0.1, 0.2], [0.3, 0.9, -0.2, 0.0], [0.1, 0.2, 1.1, 0.3]]).unwrap();
-    let ball = build(&Ball::new([0.0; 3], 0.9).unwrap(), &own, Rule::Certified, &alone()).unwrap();
+    let ball = build(&Csg::ball([0.0; 3], 0.9).unwrap(), &own, Rule::Certified, &alone()).unwrap();
     let solid = Transform::new(ball, &own, &placement);
     let one = build(&solid, &frame, Rule::Certified, &alone()).unwrap();
     let many = build(&solid, &frame, Rule::Certified, &Control::threads(4)).unwrap();
@@ -370,14 +371,14 @@ fn what_lies_outside_of_the_own_universe_is_known_as_the_solid_tells() {
     assert_eq!(tree.view().tag_at([11, 8, 8]), Tag::Full);
     assert_eq!(tree.view().exterior(), Tag::Partial);
     // A box ends inside.
-    let cube = AxisBox::new([0.25; 3], [0.75; 3]).unwrap();
+    let cube = Csg::cuboid([0.25; 3], [0.75; 3]).unwrap();
     let tree =
-        build(&Transform::new(cube, &own, &Affine::IDENTITY), &frame, Rule::Certified, &alone()).unwrap();
+        build(&Transform::new(&cube, &own, &Affine::IDENTITY), &frame, Rule::Certified, &alone()).unwrap();
     assert_eq!(tree.statistics().volume(), leafless::Interval::exactly(0.125));
     assert_eq!(tree.view().exterior(), Tag::Empty);
     // What sticks out of the frame is clipped by it.
     let away = Affine::translation([1.5, 0.0, 0.0]).unwrap();
-    let tree = build(&Transform::new(cube, &own, &away), &frame, Rule::Certified, &alone()).unwrap();
+    let tree = build(&Transform::new(&cube, &own, &away), &frame, Rule::Certified, &alone()).unwrap();
     assert_eq!(tree.view().exterior(), Tag::Partial);
 }
 
@@ -390,7 +391,7 @@ fn extreme_numbers_prove_nothing_wrong() {
         Affine::new([[large, 0.0, 0.0, 1.0], [0.0, 1.0 / large, 0.0, large], [1.0, 0.0, 1.0, 0.0]]).unwrap();
     for (from, to) in [(&own, &tiny), (&tiny, &own), (&own, &own), (&tiny, &tiny)] {
         for placement in [&squeeze, &Affine::IDENTITY] {
-            let cube = AxisBox::new(from.origin(), from.origin().map(|c| c + 0.5 * from.edge())).unwrap();
+            let cube = Csg::cuboid(from.origin(), from.origin().map(|c| c + 0.5 * from.edge())).unwrap();
             let solid = Transform::new(cube, from, placement);
             let tree = build(&solid, to, Rule::Certified, &alone()).unwrap();
             let exact = Placed::new(placement, from.origin(), from.origin().map(|c| c + 0.5 * from.edge()));
@@ -401,7 +402,8 @@ fn extreme_numbers_prove_nothing_wrong() {
     }
 }
 
-/// Planes of the frame lie next to planes of the solid's lattice, so near that sums of their coordinates are rounded.
+/// Planes of the frame lie next to planes of the solid's lattice, so near that sums of their coordinates are
+/// rounded.
 #[test]
 fn what_rounds_is_not_taken_for_exact() {
     let size = 256.0 - 2f64.powi(-32);
@@ -410,7 +412,7 @@ fn what_rounds_is_not_taken_for_exact() {
     let own = Frame::new([0.0; 3], 2f64.powi(14), 14).unwrap();
     for j in 1..64 {
         let max = [16384.0 - 256.0 * (j - 1) as f64, 16384.0, 16384.0];
-        let solid = Transform::new(AxisBox::new([0.0; 3], max).unwrap(), &own, &Affine::IDENTITY);
+        let solid = Transform::new(Csg::cuboid([0.0; 3], max).unwrap(), &own, &Affine::IDENTITY);
         let at = [(1 << 20) - j; 3];
         let middle = origin + (at[0] as f64 + 0.5) * size;
         let mut lazy = LazyOctree::new(&solid, &frame).unwrap();
@@ -424,12 +426,12 @@ fn what_rounds_is_not_taken_for_exact() {
 #[test]
 fn centres_on_the_faces_of_the_own_universe_are_decided() {
     let own = Frame::new([0.0; 3], 1.0, 4).unwrap();
-    let cube = AxisBox::new([0.0; 3], [1.0; 3]).unwrap();
+    let cube = Csg::cuboid([0.0; 3], [1.0; 3]).unwrap();
     let mirror = Affine::new([[-1.0, 0.0, 0.0, 1.0], [0.0, -1.0, 0.0, 1.0], [0.0, 0.0, 1.0, 0.0]]).unwrap();
     // All the cells at the cube's surface have their centres on it.
     let frame = Frame::new([-0.5625; 3], 2.0, 4).unwrap();
     for placement in [Affine::IDENTITY, mirror] {
-        let tree = build(&Transform::new(cube, &own, &placement), &frame, Rule::Sampled, &alone()).unwrap();
+        let tree = build(&Transform::new(&cube, &own, &placement), &frame, Rule::Sampled, &alone()).unwrap();
         let truth = build(&cube, &frame, Rule::Sampled, &alone()).unwrap();
         assert_eq!(Dense::of(tree.view()), Dense::of(truth.view()), "{placement:?}");
     }

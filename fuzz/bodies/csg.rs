@@ -1,5 +1,5 @@
-//! Any bytes as an expression of half-spaces, asked on a small lattice: whatever it is, no vertex of the lattice and no
-//! centre contradicts the verdicts, by exact arithmetic.
+//! Any bytes as an expression of half-spaces, asked on a small lattice: whatever it is, no vertex of the
+//! lattice and no centre contradicts the verdicts, by exact arithmetic.
 
 use crate::common::exact::Exact;
 use crate::model::{Model, Other, Probe};

@@ -4,23 +4,26 @@
 /// Length of the header.
 pub const HEADER: usize = 128;
 /// Length of an entry of the section table.
-pub const ENTRY: usize = 40;
+pub const ENTRY: usize = 48;
+/// Length of the record of an object.
+pub const RECORD: usize = 128;
 /// The first eight bytes.
 pub const MAGIC: [u8; 8] = *b"\x89LFL\r\n\x1a\n";
 
 /// Kinds of sections.
-pub const PLANES: u32 = 1;
-pub const REL: u32 = 2;
-pub const BASE: u32 = 3;
-pub const BRICKS: u32 = 4;
-pub const INDICES: u32 = 5;
-pub const ENTRIES: u32 = 6;
-pub const SEGMENTS: u32 = 7;
-pub const LEVELS: u32 = 8;
-pub const METADATA: u32 = 9;
+pub const OBJECTS: u32 = 1;
+pub const METADATA: u32 = 2;
+pub const LEVELS: u32 = 3;
+pub const PLANES: u32 = 4;
+pub const REL: u32 = 5;
+pub const BASE: u32 = 6;
+pub const BRICKS: u32 = 7;
+pub const INDICES: u32 = 8;
+pub const ENTRIES: u32 = 9;
+pub const SEGMENTS: u32 = 10;
 
 /// Fields of the header: offset and length.
-pub const HEADER_FIELDS: [(usize, usize); 26] = [
+pub const HEADER_FIELDS: [(usize, usize); 28] = [
     (0, 8),
     (8, 2),
     (10, 2),
@@ -38,19 +41,67 @@ pub const HEADER_FIELDS: [(usize, usize); 26] = [
     (67, 1),
     (68, 1),
     (69, 1),
-    (70, 2),
+    (70, 1),
+    (71, 1),
     (72, 8),
     (80, 8),
     (88, 8),
     (96, 4),
     (100, 4),
     (104, 8),
-    (116, 8),
+    (112, 8),
+    (120, 4),
     (124, 4),
 ];
 
 /// Fields of an entry of the section table.
-pub const ENTRY_FIELDS: [(usize, usize); 7] = [(0, 4), (4, 4), (8, 8), (16, 8), (24, 8), (32, 4), (36, 4)];
+pub const ENTRY_FIELDS: [(usize, usize); 12] =
+    [(0, 4), (4, 4), (8, 1), (9, 1), (10, 1), (11, 1), (12, 4), (16, 8), (24, 8), (32, 8), (40, 4), (44, 4)];
+
+/// Fields of the record of an object.
+pub const RECORD_FIELDS: [(usize, usize); 29] = [
+    (0, 4),
+    (4, 4),
+    (8, 4),
+    (12, 1),
+    (13, 1),
+    (14, 1),
+    (15, 1),
+    (16, 1),
+    (17, 1),
+    (18, 1),
+    (19, 1),
+    (20, 1),
+    (21, 3),
+    (24, 8),
+    (32, 8),
+    (40, 8),
+    (48, 8),
+    (56, 8),
+    (64, 4),
+    (68, 4),
+    (72, 4),
+    (76, 4),
+    (80, 8),
+    (88, 8),
+    (96, 8),
+    (104, 8),
+    (112, 8),
+    (120, 4),
+    (124, 4),
+];
+
+/// What the record of the solid repeats: offset in the header, offset in the record, length.
+const MIRRORED: [(usize, usize, usize); 8] = [
+    (64, 12, 3),
+    (70, 15, 1),
+    (67, 16, 3),
+    (104, 24, 8),
+    (32, 32, 32),
+    (72, 80, 8),
+    (80, 88, 8),
+    (88, 96, 8),
+];
 
 /// The number in the `length` bytes from `at` on.
 pub fn number(bytes: &[u8], at: usize, length: usize) -> u64 {
@@ -72,17 +123,37 @@ pub struct Section {
 }
 
 impl Section {
-    /// A section of `kind` whose entry has no place yet.
+    /// A section of the solid whose entry has no place yet.
     pub fn new(kind: u32, bytes: Vec<u8>) -> Section {
         let mut entry = [0; ENTRY];
         put(&mut entry, 0, kind.into(), 4);
-        put(&mut entry, 4, 1, 4);
-        put(&mut entry, 36, (1..=LEVELS).contains(&kind).into(), 4);
+        put(&mut entry, 8, 0x101, 2);
+        put(&mut entry, 12, ((OBJECTS..=SEGMENTS).contains(&kind) && kind != METADATA).into(), 4);
         Section { entry, bytes }
     }
 
     pub fn kind(&self) -> u32 {
         number(&self.entry, 0, 4) as u32
+    }
+
+    pub fn owner(&self) -> u32 {
+        number(&self.entry, 4, 4) as u32
+    }
+
+    /// Whether it is the solid's section of a kind.
+    pub fn is(&self, kind: u32) -> bool {
+        self.kind() == kind && self.owner() == 0
+    }
+
+    /// Bytes of an element according to the entry; 1 of a type or of an encoding that nobody knows.
+    pub fn size(&self) -> usize {
+        let element = [8, 1, 2, 4, 8, 4, 8].get(self.entry[8] as usize).filter(|_| self.entry[10] == 0);
+        element.map_or(1, |size| size * self.entry[9] as usize).max(1)
+    }
+
+    /// The index of the section whose bytes these are, too.
+    pub fn same(&self) -> Option<usize> {
+        (number(&self.entry, 44, 4) as usize).checked_sub(1)
     }
 }
 
@@ -102,8 +173,10 @@ pub struct Repairs {
     pub dictionary: bool,
     /// The level table.
     pub levels: bool,
-    /// Element sizes and counts, in the entries and in the header.
+    /// The order of the table, and elements and counts, in the entries and in the header.
     pub counts: bool,
+    /// The records of objects.
+    pub objects: bool,
     /// Offsets and lengths, also of the file.
     pub places: bool,
     /// Checksums of sections, of the table, of the header.
@@ -116,6 +189,7 @@ impl Repairs {
         dictionary: true,
         levels: true,
         counts: true,
+        objects: true,
         places: true,
         checksums: [true; 3],
     };
@@ -124,6 +198,7 @@ impl Repairs {
         dictionary: false,
         levels: false,
         counts: false,
+        objects: false,
         places: false,
         checksums: [false; 3],
     };
@@ -147,7 +222,7 @@ impl File {
         let count = number(&header, 96, 4) as usize;
         let table = bytes[HEADER..].chunks_exact(ENTRY).take(count.min(MOST_SECTIONS));
         let sections = table.map(|entry| {
-            let (start, length) = (number(entry, 8, 8), number(entry, 16, 8));
+            let (start, length) = (number(entry, 16, 8), number(entry, 24, 8));
             let range = start as usize..start.saturating_add(length) as usize;
             let mut section = Section { entry: [0; ENTRY], bytes: vec![] };
             section.entry.copy_from_slice(entry);
@@ -157,25 +232,57 @@ impl File {
         Some(File { header, sections: sections.collect() })
     }
 
-    /// The section of a kind, the first if there are several.
+    /// The solid's section of a kind, the first if there are several.
     pub fn section(&mut self, kind: u32) -> Option<&mut Section> {
-        self.sections.iter_mut().find(|section| section.kind() == kind)
+        self.sections.iter_mut().find(|section| section.is(kind))
     }
 
     fn bytes(&self, kind: u32) -> &[u8] {
-        self.sections.iter().find(|section| section.kind() == kind).map_or(&[], |section| &section.bytes)
+        self.sections.iter().find(|section| section.is(kind)).map_or(&[], |section| &section.bytes)
     }
 
-    /// Makes `bytes` the section of a kind; none if they are empty.
+    /// Makes `bytes` the solid's section of a kind; none if they are empty.
     fn set(&mut self, kind: u32, bytes: Vec<u8>) {
         if bytes.is_empty() {
-            self.sections.retain(|section| section.kind() != kind);
+            let others = (0..self.sections.len()).filter(|&i| !self.sections[i].is(kind));
+            self.rearrange(&others.collect::<Vec<_>>());
         } else if let Some(section) = self.section(kind) {
             section.bytes = bytes;
         } else {
-            let at = self.sections.iter().position(|section| section.kind() > kind);
-            self.sections.insert(at.unwrap_or(self.sections.len()), Section::new(kind, bytes));
+            let at = self.sections.iter().position(|section| (section.owner(), section.kind()) > (0, kind));
+            self.insert(at.unwrap_or(self.sections.len()), Section::new(kind, bytes));
         }
+    }
+
+    /// Keeps the sections that `order` names, in that order. Those that shared the bytes of one that goes
+    /// have them for themselves.
+    fn rearrange(&mut self, order: &[usize]) {
+        let mut sections: Vec<Section> = order.iter().map(|&i| self.sections[i].clone()).collect();
+        for section in &mut sections {
+            if let Some(of) = section.same().filter(|&of| of < self.sections.len()) {
+                let of = order.iter().position(|&i| i == of);
+                put(&mut section.entry, 44, of.map_or(0, |of| of as u64 + 1), 4);
+            }
+        }
+        self.sections = sections;
+    }
+
+    /// Puts a section before the one at `at`.
+    pub fn insert(&mut self, at: usize, section: Section) {
+        let last = self.sections.len();
+        self.sections.push(section);
+        self.rearrange(&(0..at).chain([last]).chain(at..last).collect::<Vec<_>>());
+    }
+
+    /// Takes the section at `at` away.
+    pub fn remove(&mut self, at: usize) {
+        let others = (0..self.sections.len()).filter(|&i| i != at);
+        self.rearrange(&others.collect::<Vec<_>>());
+    }
+
+    /// Whose bytes the section at `at` shares, if it names one that comes before it and has bytes of its own.
+    fn shared(&self, at: usize) -> Option<usize> {
+        self.sections[at].same().filter(|&of| of < at && self.sections[of].same().is_none())
     }
 
     fn words(&self, kind: u32) -> Vec<u64> {
@@ -251,8 +358,8 @@ impl File {
         self.encode(&converted, self.coded());
     }
 
-    /// Makes the tree one that hangs together, starting from its planes: drops and repeats elements and bricks
-    /// until there are as many as the branches demand, and ranks the children.
+    /// Makes the tree one that hangs together, starting from its planes: drops and repeats elements and
+    /// bricks until there are as many as the branches demand, and ranks the children.
     fn repair_links(&mut self) {
         let Some(depth) = self.depth() else { return };
         let levels = depth.div_ceil(2);
@@ -363,28 +470,94 @@ impl File {
         self.set_words(LEVELS, &counts.concat());
     }
 
+    /// The table's order, the elements of the solid's sections, and the counts.
     fn repair_counts(&mut self) {
-        let brick = self.brick_size();
+        let planes = self.brick_size() as u64 / 8;
+        let place = |file: &File, i: usize| (file.sections[i].owner(), file.sections[i].kind());
+        let mut order: Vec<usize> = (0..self.sections.len()).collect();
+        order.sort_by_key(|&i| place(self, i));
+        order.dedup_by_key(|i| place(self, *i));
         for section in &mut self.sections {
-            let size = match section.kind() {
-                PLANES => 16,
-                REL | INDICES => 2,
-                BASE | SEGMENTS => 8,
-                BRICKS | ENTRIES => brick,
-                LEVELS => 24,
-                METADATA => 1,
-                _ => number(&section.entry, 4, 4).max(1) as usize,
+            let (kind, components) = match section.kind() {
+                _ if section.owner() != 0 => continue,
+                OBJECTS => (0, RECORD as u64 / 8),
+                METADATA => (1, 1),
+                LEVELS => (4, 3),
+                PLANES => (4, 2),
+                REL | INDICES => (2, 1),
+                BASE | SEGMENTS => (4, 1),
+                BRICKS | ENTRIES => (4, planes),
+                _ => continue,
             };
-            section.bytes.truncate(section.bytes.len() / size * size);
-            put(&mut section.entry, 4, size as u64, 4);
+            put(&mut section.entry, 8, kind | components << 8, 4);
         }
-        self.sections.retain(|section| !section.bytes.is_empty());
-        let bricks = self.bytes(BRICKS).len() / brick + self.bytes(INDICES).len() / 2;
-        let counts = [self.bytes(PLANES).len() / 16, bricks, self.bytes(ENTRIES).len() / brick];
+        for section in &mut self.sections {
+            let size = section.size();
+            section.bytes.truncate(section.bytes.len() / size * size);
+        }
+        order.retain(|&i| !self.sections[i].bytes.is_empty());
+        self.rearrange(&order);
+        let bricks = self.bytes(BRICKS).len() / self.brick_size() + self.bytes(INDICES).len() / 2;
+        let counts = [self.bytes(PLANES).len() / 16, bricks, self.bytes(ENTRIES).len() / self.brick_size()];
         for (at, count) in [72, 80, 88].into_iter().zip(counts) {
             put(&mut self.header, at, count as u64, 8);
         }
         put(&mut self.header, 96, self.sections.len() as u64, 4);
+    }
+
+    /// The records of the objects: the solid's says what the header says, the others nothing that must be
+    /// understood; and every section belongs to one of them.
+    fn repair_objects(&mut self) {
+        let newer = number(&self.header, 10, 2) > 1;
+        let mut records = self.bytes(OBJECTS).to_vec();
+        records.resize((records.len() / RECORD * RECORD).max(RECORD), 0);
+        for (i, record) in records.chunks_exact_mut(RECORD).enumerate() {
+            let (kind, parent, flags) = (number(record, 0, 4), number(record, 4, 4), number(record, 8, 4));
+            let flags = if newer { flags } else { 0 };
+            if i > 0 {
+                put(record, 0, kind.max(1), 4);
+                put(record, 4, if parent < i as u64 { parent } else { u32::MAX.into() }, 4);
+                put(record, 8, flags & !1, 4);
+                continue;
+            }
+            put(record, 0, 1, 4);
+            put(record, 4, u32::MAX.into(), 4);
+            put(record, 8, flags | 1, 4);
+            for (from, to, length) in MIRRORED {
+                record[to..to + length].copy_from_slice(&self.header[from..from + length]);
+            }
+            // Values, which solids have not, and what is reserved.
+            for (values, reserved) in [(19..21, 21..24), (64..76, 76..80), (104..112, 112..128)] {
+                record[values].fill(0);
+                if !newer {
+                    record[reserved].fill(0);
+                }
+            }
+        }
+        let objects = (records.len() / RECORD) as u32;
+        self.set(OBJECTS, records);
+        for section in &mut self.sections {
+            let owner = section.owner() % objects;
+            put(&mut section.entry, 4, owner.into(), 4);
+        }
+    }
+
+    /// That sections share the bytes of others which say that they do, and can.
+    fn repair_sharing(&mut self) {
+        for i in 0..self.sections.len() {
+            let Some(of) = self.shared(i) else {
+                put(&mut self.sections[i].entry, 44, 0, 4);
+                continue;
+            };
+            let of = self.sections[of].clone();
+            let section = &mut self.sections[i];
+            if section.owner() != 0 || section.kind() > SEGMENTS {
+                section.entry[8..12].copy_from_slice(&of.entry[8..12]);
+                section.bytes = of.bytes;
+            } else if section.entry[8..12] != of.entry[8..12] || section.bytes != of.bytes {
+                put(&mut section.entry, 44, 0, 4);
+            }
+        }
     }
 
     /// The file. What is not repaired stands there as it stood.
@@ -398,24 +571,48 @@ impl File {
         if repairs.levels {
             self.repair_levels();
         }
+        if repairs.objects {
+            self.repair_objects();
+        }
         if repairs.counts {
             self.repair_counts();
         }
+        if repairs.objects && repairs.counts {
+            // What was counted stands in the record of the solid, too.
+            self.repair_objects();
+        }
+        if repairs.places {
+            self.repair_sharing();
+        }
         let mut bytes = vec![0; HEADER + ENTRY * self.sections.len()];
-        for (i, section) in self.sections.iter_mut().enumerate() {
-            bytes.resize(bytes.len().next_multiple_of(64), 0);
+        for i in 0..self.sections.len() {
+            let shared = self.shared(i).map(|of| self.sections[of].entry);
+            if shared.is_none() {
+                bytes.resize(bytes.len().next_multiple_of(64), 0);
+            }
+            let section = &mut self.sections[i];
+            let (size, length, raw) = (section.size(), section.bytes.len(), section.entry[10] == 0);
             let entry = &mut section.entry;
             if repairs.places {
-                let size = number(entry, 4, 4).max(1);
-                put(entry, 8, bytes.len() as u64, 8);
-                put(entry, 16, section.bytes.len() as u64, 8);
-                put(entry, 24, section.bytes.len() as u64 / size, 8);
+                put(entry, 16, shared.map_or(bytes.len() as u64, |of| number(&of, 16, 8)), 8);
+                put(entry, 24, length as u64, 8);
+                // How many elements there are in an encoding that nobody knows is the entry's word.
+                let count =
+                    if raw && entry[8] < 7 { (length / size) as u64 } else { number(entry, 32, 8).max(1) };
+                put(entry, 32, shared.map_or(count, |of| number(&of, 32, 8)), 8);
             }
             if repairs.checksums[0] {
-                put(entry, 32, crc32fast::hash(&section.bytes).into(), 4);
+                put(
+                    entry,
+                    40,
+                    shared.map_or(crc32fast::hash(&section.bytes).into(), |of| number(&of, 40, 4)),
+                    4,
+                );
             }
             bytes[HEADER + ENTRY * i..][..ENTRY].copy_from_slice(entry);
-            bytes.extend_from_slice(&section.bytes);
+            if shared.is_none() {
+                bytes.extend_from_slice(&section.bytes);
+            }
         }
         if repairs.places {
             put(&mut self.header, 24, bytes.len() as u64, 8);

@@ -1,13 +1,13 @@
 //! Changes of files that know what a file is: without them hardly any input would get past the checksums.
 
 use super::layout::{
-    BASE, ENTRIES, ENTRY_FIELDS, File, HEADER_FIELDS, INDICES, LEVELS, METADATA, PLANES, REL, Repairs,
-    SEGMENTS, Section, number, put,
+    BASE, ENTRIES, ENTRY_FIELDS, File, HEADER_FIELDS, INDICES, LEVELS, METADATA, OBJECTS, PLANES, RECORD,
+    RECORD_FIELDS, REL, Repairs, SEGMENTS, Section, number, put,
 };
 use super::{Random, halves, joined};
 
-/// Changes the first `size` of `data` without knowing anything, to at most `max` bytes; returns how many there
-/// are now. libFuzzer's own mutation, or what stands in for it in a test.
+/// Changes the first `size` of `data` without knowing anything, to at most `max` bytes; returns how many
+/// there are now. libFuzzer's own mutation, or what stands in for it in a test.
 pub type Blind<'b> = &'b mut dyn FnMut(&mut [u8], usize, usize) -> usize;
 
 /// Changes the file in the first `size` bytes of `data`, to at most `max` bytes.
@@ -69,6 +69,7 @@ pub fn repairs(random: &mut Random) -> Repairs {
     let mut often = || !random.one_in(24);
     let mut repairs = Repairs {
         counts: often(),
+        objects: often(),
         places: often(),
         checksums: [often(), often(), often()],
         ..Repairs::FRAME
@@ -94,8 +95,8 @@ pub fn changed(bytes: &[u8], random: &mut Random, blind: Blind<'_>, repairs: &Re
     Some(file.assemble(repairs))
 }
 
-/// The file in `bytes` after a few changes; `None` if there is none, it becomes too long, or a blind change is
-/// due.
+/// The file in `bytes` after a few changes; `None` if there is none, it becomes too long, or a blind change
+/// is due.
 fn changed_or_blind(bytes: &[u8], max: usize, random: &mut Random, blind: Blind<'_>) -> Option<Vec<u8>> {
     if random.one_in(12) {
         return None;
@@ -190,12 +191,11 @@ fn change_extent(file: &mut File, random: &mut Random) {
             section.bytes.truncate(length);
         }
         1 => {
-            let size = number(&section.entry, 4, 4).clamp(1, 24) as usize;
-            let length = section.bytes.len().saturating_sub(size);
+            let length = section.bytes.len().saturating_sub(section.size());
             section.bytes.truncate(length);
         }
         2 => {
-            let size = (number(&section.entry, 4, 4).clamp(1, 24) as usize).min(section.bytes.len());
+            let size = section.size().min(section.bytes.len());
             section.bytes.extend_from_within(..size);
         }
         3 => {
@@ -204,15 +204,55 @@ fn change_extent(file: &mut File, random: &mut Random) {
         }
         4 => {
             let copy = section.clone();
-            file.sections.insert(i, copy);
+            file.insert(i, copy);
         }
-        5 => drop(file.sections.remove(i)),
+        5 => file.remove(i),
         _ => {
-            let kind = random.below(48) as u32;
-            let mut section = Section::new(kind, vec![7; 1 + random.below(40)]);
-            put(&mut section.entry, 36, random.below(3) as u64 / 2, 4);
+            let kind = random.below(48) as u32 | (random.below(2) as u32) << 31;
+            let mut section = Section::new(kind, vec![7; 8 * (1 + random.below(5))]);
+            put(&mut section.entry, 12, random.below(3) as u64 / 2, 4);
             let at = random.below(file.sections.len() + 1);
-            file.sections.insert(at, section);
+            file.insert(at, section);
+        }
+    }
+}
+
+/// Adds an object or a section to one, makes sections share bytes, or changes a record.
+fn change_objects(file: &mut File, random: &mut Random) {
+    let Some(objects) = file.section(OBJECTS) else { return };
+    let count = objects.bytes.len() / RECORD;
+    match random.below(4) {
+        0 if count < 8 => {
+            let at = objects.bytes.len();
+            objects.bytes.resize(at + RECORD, 0);
+            let record = &mut objects.bytes[at..];
+            put(record, 0, 2 + random.below(6) as u64, 4);
+            put(
+                record,
+                4,
+                if random.one_in(2) { u32::MAX.into() } else { random.below(count + 1) as u64 },
+                4,
+            );
+            put(record, 8, random.below(4) as u64 / 3, 4);
+        }
+        1 => {
+            let mut section = Section::new(random.below(24) as u32, vec![3; 8 * (1 + random.below(5))]);
+            put(&mut section.entry, 4, random.below(count + 1) as u64, 4);
+            put(&mut section.entry, 8, random.below(7) as u64 | 0x100, 2);
+            file.sections.push(section);
+        }
+        2 => {
+            // Of a section that comes before it, mostly.
+            let at = random.below(file.sections.len());
+            let of =
+                if random.one_in(4) { random.below(file.sections.len() + 2) } else { random.below(at + 1) };
+            put(&mut file.sections[at].entry, 44, of as u64, 4);
+        }
+        _ => {
+            let at = RECORD * random.below(count);
+            if let Some(record) = objects.bytes.get_mut(at..at + RECORD) {
+                change_field(record, &RECORD_FIELDS, random);
+            }
         }
     }
 }
@@ -230,17 +270,17 @@ fn change_metadata(file: &mut File, random: &mut Random) {
         Some(section) => section.bytes.extend_from_slice(b"\x02\0\0\0\x01\0\0\0zzv"),
         None => {
             let facts = b"\x01\0\0\0\x02\0\0\0k\xC3\x98\x02\0\0\0\0\0\0\0kk".to_vec();
-            file.sections.push(Section::new(METADATA, facts));
+            file.insert(file.sections.len().min(1), Section::new(METADATA, facts));
         }
     }
 }
 
 /// One change.
 fn change(file: &mut File, random: &mut Random, blind: Blind<'_>) {
-    match random.below(24) {
+    match random.below(26) {
         0 => change_field(&mut file.header, &HEADER_FIELDS, random),
         // Depth, tags, bricks and counts, which the rest hangs on.
-        1 => change_field(&mut file.header, &HEADER_FIELDS[11..21], random),
+        1 => change_field(&mut file.header, &HEADER_FIELDS[11..22], random),
         2 => file.header[64] = 1 + random.below(20) as u8,
         3 => {
             let depth = file.header[64];
@@ -270,6 +310,7 @@ fn change(file: &mut File, random: &mut Random, blind: Blind<'_>) {
         17 => change_number(file, SEGMENTS, 8, random),
         18 => change_number(file, ENTRIES, 8, random),
         19 => change_metadata(file, random),
+        20 | 21 => change_objects(file, random),
         _ => change_tag(file, random),
     }
 }

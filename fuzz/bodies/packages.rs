@@ -1,4 +1,5 @@
-//! Any bytes as a 3MF package, and as the parts of one: the reader does not panic, and builds no more than it says.
+//! Any bytes as a 3MF package, and as the parts of one: the reader does not panic, and builds no more than it
+//! says.
 
 #[path = "../../tests/common/zip.rs"]
 pub mod zip;
@@ -6,8 +7,8 @@ pub mod zip;
 use leafless::exchange::{MeshFormat, MeshOptions, read_mesh};
 use zip::{CONTENT_TYPES, Entry, RELATIONSHIPS, model, tetrahedron};
 
-/// Reads `data` as a package; and its pieces, which zero bytes separate, as a model part, another one that the first may
-/// refer to as `/b.model`, relationships and content types.
+/// Reads `data` as a package; and its pieces, which zero bytes separate, as a model part, another one that
+/// the first may refer to as `/b.model`, relationships and content types.
 pub fn packages(data: &[u8]) {
     read(data);
     let mut pieces = data.split(|&b| b == 0);

@@ -3,8 +3,8 @@
 
 use super::{Aligned, CONTROL, Random, halves, walk};
 use leafless::{
-    Cell, Classifier, Control, Cursor, Frame, LazyOctree, Membership, OctreeRef, PointCursor, Region, Rule,
-    Solid, Stored, Tag, Verdict, Worker, Zone, build, classify_box, contains, file,
+    Cell, Classifier, Control, Cursor, Frame, LazyOctree, Membership, OctreeRef, PointCursor, Proof, Region,
+    Rule, Solid, Tag, Verdict, Worker, Zone, build, classify_box, contains, file,
 };
 
 /// Asks the tree in the first half of `data` what the second half says.
@@ -116,7 +116,7 @@ fn ask_boxes(tree: &OctreeRef<'_>, points: &[[f64; 3]]) {
 
 /// The tree as a solid: the splits from the root to a cell lead to its tag.
 fn replay(tree: &OctreeRef<'_>, points: &[[f64; 3]]) {
-    let solid = Stored::new(tree);
+    let solid = *tree;
     let frame = tree.frame();
     let Ok(classifier) = solid.on(frame, &CONTROL) else { return };
     let mut worker = classifier.worker().expect("nothing is allocated");
@@ -143,9 +143,10 @@ fn replay(tree: &OctreeRef<'_>, points: &[[f64; 3]]) {
     }
 }
 
-/// The tree as a solid, asked without an octree: the answers are the tree's own.
+/// The tree as a solid, asked without an octree: the answers are the tree's own, if its cells are taken for
+/// the solid.
 fn ask_solid(tree: &OctreeRef<'_>, points: &[[f64; 3]]) {
-    let (solid, frame) = (Stored::new(tree), tree.frame());
+    let (solid, frame) = (tree.with_proof(Proof::CERTIFIED), tree.frame());
     let mut answers = vec![Membership::Inside; points.len()];
     if contains(&solid, frame, points, &mut answers, &CONTROL).is_err() {
         assert!(solid.on(frame, &CONTROL).is_err());
@@ -162,10 +163,11 @@ fn ask_solid(tree: &OctreeRef<'_>, points: &[[f64; 3]]) {
     }
 }
 
-/// The tree as a solid that is split on demand: what comes out lies between nothing and the tree, and is well-formed.
+/// The tree as a solid that is split on demand: what comes out lies between nothing and the tree, and is
+/// well-formed.
 fn on_demand(tree: &OctreeRef<'_>, points: &[[f64; 3]]) {
     let frame = tree.frame();
-    let Ok(mut lazy) = LazyOctree::new(Stored::new(tree), frame) else { return };
+    let Ok(mut lazy) = LazyOctree::new(*tree, frame) else { return };
     for (k, pair) in points.chunks_exact(2).enumerate() {
         let level = (k * 5) as u8 % (frame.depth() + 1);
         let (from, to) = ([0.0, 0.5, f64::NEG_INFINITY][k % 3], [1.0, f64::INFINITY][k % 2]);
@@ -200,6 +202,6 @@ fn on_demand(tree: &OctreeRef<'_>, points: &[[f64; 3]]) {
     lazy.refine(&Zone::Whole, frame.depth(), &CONTROL).expect("enough memory");
     let whole = lazy.freeze(&CONTROL).expect("enough memory");
     // Subtrees are copied as they are: whether what is in them is sound, only a check tells.
-    let built = build(&Stored::new(tree), frame, Rule::Certified, &CONTROL);
+    let built = build(tree, frame, Rule::Certified, &CONTROL);
     assert!(tree.check().is_err() || whole == built.expect("it is sound"));
 }

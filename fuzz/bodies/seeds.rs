@@ -1,10 +1,10 @@
 //! Small files of every kind, made by the library.
 
-use super::layout::{File, Repairs, Section, put};
+use super::layout::{File, OBJECTS, PLANES, RECORD, Repairs, Section, put};
 use super::{CONTROL, Random, joined};
 use leafless::{
-    AxisBox, Ball, Cell, Classifier, Control, Error, Frame, Metadata, Octree, Rule, Solid, Tag, Verdict,
-    Worker, build, file,
+    Cell, Classifier, Control, Csg, Error, Frame, Metadata, Octree, Proof, Rule, Solid, Tag, Verdict, Worker,
+    build, file,
 };
 
 /// A different tree for every seed, with coarse and fine cells of every tag.
@@ -92,10 +92,10 @@ pub fn trees() -> Vec<Octree> {
         trees.push(noise(depth, depth.into(), Rule::Certified));
         trees.push(noise(depth, 100 + depth as u64, Rule::Inner).with_metadata(facts()));
     }
-    let cuboid = AxisBox::new([2.0; 3], [29.0; 3]).expect("a box");
-    let corner = AxisBox::new([0.0; 3], [1.0; 3]).expect("a box");
-    let ball = Ball::new([15.0, 16.0, 17.0], 12.0).expect("a ball");
-    let small = Ball::new([3.0; 3], 0.001).expect("a ball");
+    let cuboid = Csg::cuboid([2.0; 3], [29.0; 3]).expect("a box");
+    let corner = Csg::cuboid([0.0; 3], [1.0; 3]).expect("a box");
+    let ball = Csg::ball([15.0, 16.0, 17.0], 12.0).expect("a ball");
+    let small = Csg::ball([3.0; 3], 0.001).expect("a ball");
     let certified = Rule::Certified;
     trees.extend([
         build(&cuboid, &frame(5), Rule::Sampled, &CONTROL).expect("no limits"),
@@ -120,9 +120,28 @@ pub fn files() -> Vec<Vec<u8>> {
         newer(6, &|file| {
             put(&mut file.header, 10, 3, 2);
             put(&mut file.header, 20, 1, 4);
-            file.header[110] = 9;
+            file.header[71] = 5;
+            file.header[115] = 9;
         }),
         newer(9, &|file| file.sections.push(Section::new(17, b"colours!".to_vec()))),
+        // Two objects that nobody knows: of one the bytes are the solid's.
+        newer(10, &|file| {
+            let of = file.sections.iter().position(|section| section.is(PLANES)).expect("planes");
+            let objects = file.section(OBJECTS).expect("objects");
+            objects.bytes.resize(3 * RECORD, 2);
+            let mut own = Section::new(17, b"colours!".to_vec());
+            put(&mut own.entry, 4, 1, 4);
+            let mut shared = file.sections[of].clone();
+            put(&mut shared.entry, 4, 2, 4);
+            put(&mut shared.entry, 44, of as u64 + 1, 4);
+            file.sections.extend([own, shared]);
+        }),
+        // Kinds of applications.
+        newer(13, &|file| {
+            let numbers = Section::new(1 << 31, 0.5f64.to_le_bytes().repeat(3));
+            file.sections.push(numbers);
+            file.sections.last_mut().expect("a section").entry[8] = 6;
+        }),
     ];
     files.extend(more);
     files.retain(|file| file.len() <= MOST);
@@ -146,8 +165,10 @@ pub fn pairs() -> Vec<Vec<u8>> {
     pairs
 }
 
-/// Whether a file has a section of a kind that nobody knows.
-pub fn has_unknown_section(bytes: &[u8]) -> bool {
-    let file = File::parse(bytes).expect("a file");
-    file.sections.iter().any(|section| !(1..=9).contains(&section.kind()))
+/// Whether a file has a section or an object that nobody knows, or sections that share bytes.
+pub fn has_unknown_parts(bytes: &[u8]) -> bool {
+    let mut file = File::parse(bytes).expect("a file");
+    let objects = file.section(OBJECTS).map_or(0, |objects| objects.bytes.len() / RECORD);
+    let known = |section: &Section| (1..=10).contains(&section.kind()) && section.same().is_none();
+    objects > 1 || !file.sections.iter().all(known)
 }

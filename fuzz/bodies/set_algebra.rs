@@ -3,8 +3,8 @@
 
 use super::{Aligned, CONTROL, halves, queries};
 use leafless::{
-    Control, Error, Octree, OctreeRef, Rule, Solid, Stored, Tag, build, compact, complement, difference,
-    file, intersection, intersection_of, resolve, union, union_of, xor, xor_of,
+    Control, Error, Octree, OctreeRef, Rule, Solid, Tag, build, compact, complement, difference, file,
+    intersection, intersection_of, resolve, union, union_of, xor, xor_of,
 };
 
 /// Combines the trees in the two halves of `data`.
@@ -25,7 +25,7 @@ pub fn threads(bytes: &[u8]) {
     let aligned = Aligned::new(bytes);
     let Ok(tree) = file::view(aligned.bytes()) else { return };
     let several = Control { threads: 3, ..CONTROL };
-    let solid = Stored::new(&tree);
+    let solid = tree;
     let built = [CONTROL, several].map(|control| build(&solid, tree.frame(), Rule::Certified, &control));
     match built {
         [Ok(one), Ok(several)] => assert!(one == several),
@@ -74,7 +74,7 @@ fn sound(result: Result<Octree, Error>, most: u64, sure: bool) -> Option<Octree>
         tree.view().check().expect("of good operands comes a good result");
     }
     // Its links are its own, whatever the operands' were.
-    let links = Stored::new(tree.view()).on(tree.frame(), &CONTROL);
+    let links = tree.view().on(tree.frame(), &CONTROL);
     assert!(!matches!(links, Err(Error::Damaged(_))));
     let _ = (tree.statistics(), tree.view().check());
     Some(tree)
@@ -94,7 +94,7 @@ fn alone(a: &OctreeRef<'_>, sure: bool) {
     for depth in [frame.depth().saturating_sub(1).max(1), (frame.depth() + 1).min(20)] {
         let other = frame.with_depth(depth).expect("a legal depth");
         // Of the other parity, an element is spread over up to nine.
-        sound(build(&Stored::new(a), &other, Rule::Certified, &CONTROL), 9 * n + 9, sure);
+        sound(build(&a, &other, Rule::Certified, &CONTROL), 9 * n + 9, sure);
     }
     if !sure {
         return;

@@ -44,7 +44,7 @@ pub fn read_in_all_ways(data: &[u8], as_a_file: bool) -> bool {
             (tree.frame(), tree.root_tag(), tree.exterior())
         );
         assert_eq!((probe.elements, probe.bricks), (tree.element_count(), tree.brick_count()));
-        assert_eq!(probe.binary, tree.is_binary());
+        assert_eq!((probe.binary, probe.proof), (tree.is_binary(), tree.proof()));
     }
     if let Ok(tree) = &copied {
         good(tree);
@@ -59,7 +59,7 @@ pub fn read_in_all_ways(data: &[u8], as_a_file: bool) -> bool {
 fn good(tree: &Octree) {
     let written = file::to_bytes(tree).expect("a verified tree can be written");
     let back = file::from_bytes(&written).expect("what was written can be read");
-    assert!(&back == tree && back.metadata() == tree.metadata());
+    assert!(&back == tree && back.metadata() == tree.metadata() && back.proof() == tree.proof());
     assert_eq!(file::to_bytes(&back).expect("a verified tree can be written"), written);
     // What the statistics say is what a walk over all cells meets.
     let walked = walk(Cursor::new(tree.view()));

@@ -4,6 +4,9 @@
 #[path = "../bodies/csg.rs"]
 mod csg;
 #[allow(dead_code)]
+#[path = "../../tests/common/cubes.rs"]
+mod cubes;
+#[allow(dead_code)]
 #[path = "../../tests/common/exact.rs"]
 mod exact;
 #[allow(dead_code)]
@@ -12,7 +15,7 @@ mod model;
 
 /// Where the test suite has it.
 mod common {
-    pub(crate) use crate::exact;
+    pub(crate) use crate::{cubes, exact};
 }
 
 libfuzzer_sys::fuzz_target!(|data: &[u8]| csg::csg(data));

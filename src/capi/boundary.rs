@@ -78,9 +78,9 @@ impl From<&Failure> for leafless_status {
 
 /// Runs the body of a function.
 ///
-/// A panic does not reach the host. Nothing that survives it can be half-changed: handles are immutable but for
-/// atomic flags, cursors and lazy octrees. A cursor's position is checked at every step; a lazy octree changes only once
-/// the solid has answered.
+/// A panic does not reach the host. Nothing that survives it can be half-changed: handles are immutable but
+/// for atomic flags, cursors and lazy octrees. A cursor's position is checked at every step; a lazy octree
+/// changes only once the solid has answered.
 #[inline(always)]
 pub(super) fn guard(body: impl FnOnce() -> Result<(), Failure>) -> leafless_status {
     match catch_unwind(AssertUnwindSafe(body)) {
@@ -198,11 +198,12 @@ pub(super) struct Strided<'a, T> {
     host: PhantomData<&'a T>,
 }
 
-/// The `count` elements from `start` on, `stride` bytes from one's beginning to the next's; 0 means without a gap.
-/// `start` may be NULL if there is none. The names are those of `start` and `stride`.
+/// The `count` elements from `start` on, `stride` bytes from one's beginning to the next's; 0 means without a
+/// gap. `start` may be NULL if there is none. The names are those of `start` and `stride`.
 ///
 /// # Safety
-/// Any bytes are a `T`. `start` is NULL, or that many elements lie there, and stay and do not change during the call.
+/// Any bytes are a `T`. `start` is NULL, or that many elements lie there, and stay and do not change during
+/// the call.
 pub(super) unsafe fn strided<'a, T>(
     start: *const c_void,
     count: u64,
@@ -235,8 +236,8 @@ impl<T: Copy> Strided<'_, T> {
     #[inline(always)]
     pub(super) fn at(&self, index: usize) -> T {
         assert!(index < self.len, "index {index} of {}", self.len);
-        // SAFETY: one of the elements that `strided` was promised; where it begins is less than their span, which is
-        // no longer than memory can be.
+        // SAFETY: one of the elements that `strided` was promised; where it begins is less than their span,
+        // which is no longer than memory can be.
         unsafe { self.start.add(index * self.stride).cast::<T>().read_unaligned() }
     }
 }
@@ -249,8 +250,8 @@ impl<'a, T> Strided<'a, T> {
         }
         let start = self.start.cast::<T>();
         let is_packed = self.stride == size_of::<T>() || self.len == 1;
-        // SAFETY: promised to `strided`: that many elements, which stay and do not change during the call. Their span is
-        // no longer than memory can be.
+        // SAFETY: promised to `strided`: that many elements, which stay and do not change during the call.
+        // Their span is no longer than memory can be.
         (is_packed && start.is_aligned()).then(|| unsafe { core::slice::from_raw_parts(start, self.len) })
     }
 }
@@ -303,7 +304,8 @@ const _: () = {
 pub(super) struct Out<T>(NonNull<T>);
 
 /// # Safety
-/// Unless it is NULL or misaligned, `pointer` points to room for a `T` that nothing else uses during the call.
+/// Unless it is NULL or misaligned, `pointer` points to room for a `T` that nothing else uses during the
+/// call.
 #[inline(always)]
 pub(super) unsafe fn out<T>(pointer: *mut T, name: &'static str) -> Result<Out<T>, Failure> {
     checked(pointer, name)?;
@@ -327,8 +329,8 @@ pub(super) struct Buffer<T> {
 }
 
 /// # Safety
-/// Unless it is NULL or misaligned, `start` points to room for `capacity` elements that nothing else uses during
-/// the call.
+/// Unless it is NULL or misaligned, `start` points to room for `capacity` elements that nothing else uses
+/// during the call.
 pub(super) unsafe fn buffer<T>(
     start: *mut T,
     capacity: u64,
@@ -387,15 +389,15 @@ impl<T: Copy> Buffer<T> {
 /// All-zero bytes are a `T`.
 pub(super) unsafe trait Sized32: Copy {}
 
-/// Whether a host's struct can have this size. No version's ends within a field: its size is a multiple of its
-/// alignment. So half a pointer is never taken for one.
+/// Whether a host's struct can have this size. No version's ends within a field: its size is a multiple of
+/// its alignment. So half a pointer is never taken for one.
 fn sensible<T>(size: usize) -> bool {
     const LARGEST: usize = 4096;
     (size_of::<u32>()..=LARGEST).contains(&size) && size.is_multiple_of(align_of::<T>())
 }
 
-/// The host's struct, or the default (all zero) if it is NULL. What an older host does not have yet is zero; what
-/// this library does not know yet must be.
+/// The host's struct, or the default (all zero) if it is NULL. What an older host does not have yet is zero;
+/// what this library does not know yet must be.
 ///
 /// # Safety
 /// Unless it is NULL or misaligned, `pointer` points to as many bytes as its first four say.
@@ -453,7 +455,8 @@ pub(super) fn handle<T>(value: T) -> *mut T {
     Arc::into_raw(Arc::new(value)).cast_mut()
 }
 
-/// One more share of what a handle stands for. Never through a reference: the count lies beside what that covers.
+/// One more share of what a handle stands for. Never through a reference: the count lies beside what that
+/// covers.
 ///
 /// # Safety
 /// The handle is NULL or misaligned, or alive and came from [`handle`].

@@ -17,37 +17,38 @@ pub struct leafless_control {
 }
 
 /// Hears how far an operation is, with the fraction done (0 to 1); returns 0 to go on. Anything else ends the
-/// operation with LEAFLESS_E_CANCELLED, unless it is already done, and cancels the `control` of its options, if there
-/// is one, until leafless_control_reset.
+/// operation with LEAFLESS_E_CANCELLED, unless it is already done, and cancels the `control` of its options,
+/// if there is one, until leafless_control_reset.
 ///
-/// It is called from any of the operation's threads, also from two at once and then not in ascending order; with
-/// `threads` = 1 from the calling thread only. It must return: no exception, no longjmp. It may call this library.
+/// It is called from any of the operation's threads, also from two at once and then not in ascending order;
+/// with `threads` = 1 from the calling thread only. It must return: no exception, no longjmp. It may call
+/// this library.
 pub type leafless_progress_fn = Option<unsafe extern "C" fn(ctx: *mut c_void, fraction: f64) -> i32>;
 
-/// How a long operation may proceed. Where a function takes options, NULL means the defaults. All fields but the
-/// first may be zero, which is their default; leafless_options_init sets them so. No option but `max_splits` changes a
-/// result.
+/// How a long operation may proceed. Where a function takes options, NULL means the defaults. All fields but
+/// the first may be zero, which is their default; leafless_options_init sets them so. No option but
+/// `max_splits` changes a result.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_options {
     /// sizeof(leafless_options).
     pub struct_size: u32,
-    /// Threads to use; 0 means as many as the machine has processors, numbers beyond 1024 mean 1024. Inside of a
-    /// function that the library calls it is always 1.
+    /// Threads to use; 0 means as many as the machine has processors, numbers beyond 1024 mean 1024. Inside
+    /// of a function that the library calls it is always 1.
     pub threads: u32,
     /// Refuse results of more octree nodes than this; 0 means no limit.
     pub max_nodes: u64,
     /// Refuse results whose working form is larger than this many bytes; 0 means no limit.
     pub max_bytes: u64,
-    /// Split at most this many cells; 0 means no limit. Only functions that split on demand heed it, and say so: with
-    /// it spent they stop, and keep or return what they have; it is no error.
+    /// Split at most this many cells; 0 means no limit. Only functions that split on demand heed it, and say
+    /// so: with it spent they stop, and keep or return what they have; it is no error.
     pub max_splits: u64,
     /// Hears of the progress; optional.
     pub progress: leafless_progress_fn,
     /// What `progress` is called with.
     pub progress_ctx: *mut c_void,
-    /// Ends the operation when it is cancelled, and can be asked for the progress; optional. Give operations that
-    /// run at once a control each, or their progress is mixed up.
+    /// Ends the operation when it is cancelled, and can be asked for the progress; optional. Give operations
+    /// that run at once a control each, or their progress is mixed up.
     pub control: *const leafless_control,
 }
 
@@ -61,8 +62,8 @@ struct Host<'a> {
     control: &'a leafless_control,
 }
 
-// SAFETY: the library does nothing with `ctx` but hand it back; that the host's function may be called from any
-// thread is its documented contract.
+// SAFETY: the library does nothing with `ctx` but hand it back; that the host's function may be called from
+// any thread is its documented contract.
 unsafe impl Sync for Host<'_> {}
 
 impl Host<'_> {
@@ -98,8 +99,8 @@ pub(super) unsafe fn controlled<R>(
     let limit = |most: u64| (most != 0).then_some(most);
     control.fraction.store(0, Relaxed);
     Ok(operation(&Control {
-        // A thread of the library that waited for others would meanwhile take up other work of theirs, and call the
-        // host's function again in the midst of a call.
+        // A thread of the library that waited for others would meanwhile take up other work of theirs, and
+        // call the host's function again in the midst of a call.
         threads: if rayon::current_thread_index().is_some() { 1 } else { options.threads as usize },
         max_nodes: limit(options.max_nodes),
         max_bytes: limit(options.max_bytes),
@@ -132,7 +133,8 @@ pub unsafe extern "C" fn leafless_options_init(
 /// - Buffers: `control`, one pointer.
 /// - Result: `*control`, not cancelled.
 /// - Errors: only the general ones.
-/// - Ownership: give `*control` back with leafless_control_free, not before the operations that use it are done.
+/// - Ownership: give `*control` back with leafless_control_free, not before the operations that use it are
+///   done.
 /// - Threads: any.
 /// - Untrusted input: none.
 /// - Since: 0.1
@@ -160,8 +162,8 @@ pub unsafe extern "C" fn leafless_control_free(control: *mut leafless_control) {
     unsafe { release(control) }
 }
 
-/// Ends the operations that run with this control: they return LEAFLESS_E_CANCELLED soon, and so do later ones
-/// until leafless_control_reset.
+/// Ends the operations that run with this control: they return LEAFLESS_E_CANCELLED soon, and so do later
+/// ones until leafless_control_reset.
 ///
 /// - Buffers: `control`, a handle.
 /// - Result: none; returns at once.

@@ -8,15 +8,15 @@ use crate::memory;
 use crate::solid::{Csg, HalfSpace, Motion, Solid, Touch};
 use alloc::vec::Vec;
 
-/// What counts as touching: when a cell that meets the boundary of an expression of half-spaces, but not its interior,
-/// is EMPTY.
+/// What counts as touching: when a cell that meets the boundary of an expression of half-spaces, but not its
+/// interior, is EMPTY.
 #[derive(Clone, Copy)]
 #[repr(u32)]
 pub enum leafless_touch {
     /// Contact is not overlap: a cell is EMPTY if the interiors are disjoint.
     LEAFLESS_TOUCH_EXACT = 0,
-    /// A vertex on the surface counts as inside, so that a cell that touches a primitive with a vertex from outside is
-    /// PARTIAL. It reproduces published tables and is no better for anything else.
+    /// A vertex on the surface counts as inside, so that a cell that touches a primitive with a vertex from
+    /// outside is PARTIAL. It reproduces published tables and is no better for anything else.
     LEAFLESS_TOUCH_PAPER = 1,
 }
 use leafless_touch::*;
@@ -67,8 +67,8 @@ pub(super) unsafe fn placement(matrix: *const f64) -> Result<Affine, Failure> {
 ///
 /// - Buffers: `centre_model`, 3 numbers; `solid`, one pointer.
 /// - Result: `*solid`.
-/// - Errors: LEAFLESS_E_ARGUMENT if the radius is not between 2^-256 and 2^256, or a coordinate neither 0 nor of
-///   such a magnitude.
+/// - Errors: LEAFLESS_E_ARGUMENT if the radius is not between 2^-256 and 2^256, or a coordinate neither 0 nor
+///   of such a magnitude.
 /// - Ownership: give `*solid` back with leafless_solid_free.
 /// - Threads: any.
 /// - Untrusted input: any numbers.
@@ -88,13 +88,13 @@ pub unsafe extern "C" fn leafless_solid_new_ball(
     })
 }
 
-/// The box [min, max] with faces parallel to the lattice. Its verdicts are exact, so a face on a lattice plane
-/// leaves nothing undecided.
+/// The box [min, max] with faces parallel to the lattice. Its verdicts are exact, so a face on a lattice
+/// plane leaves nothing undecided.
 ///
 /// - Buffers: `min_model` and `max_model`, 3 numbers each; `solid`, one pointer.
 /// - Result: `*solid`.
-/// - Errors: LEAFLESS_E_ARGUMENT if min ≥ max on an axis, or a coordinate is neither 0 nor of a magnitude between
-///   2^-256 and 2^256.
+/// - Errors: LEAFLESS_E_ARGUMENT if min ≥ max on an axis, or a coordinate is neither 0 nor of a magnitude
+///   between 2^-256 and 2^256.
 /// - Ownership: give `*solid` back with leafless_solid_free.
 /// - Threads: any.
 /// - Untrusted input: any numbers.
@@ -139,13 +139,13 @@ pub unsafe extern "C" fn leafless_solid_new_halfspace(
     })
 }
 
-/// The points p with a x² + b y² + c z² + d xy + e yz + f zx + g x + h y + i z + j ≥ 0, of which the ten coefficients
-/// are a to j. Its signs are exact.
+/// The points p with a x² + b y² + c z² + d xy + e yz + f zx + g x + h y + i z + j ≥ 0, of which the ten
+/// coefficients are a to j. Its signs are exact.
 ///
 /// - Buffers: `coefficients`, 10 numbers; `solid`, one pointer.
 /// - Result: `*solid`.
-/// - Errors: LEAFLESS_E_ARGUMENT if all coefficients but the last are 0, or one is neither 0 nor of a magnitude
-///   between 2^-256 and 2^256.
+/// - Errors: LEAFLESS_E_ARGUMENT if all coefficients but the last are 0, or one is neither 0 nor of a
+///   magnitude between 2^-256 and 2^256.
 /// - Ownership: give `*solid` back with leafless_solid_free.
 /// - Threads: any.
 /// - Untrusted input: any numbers.
@@ -168,8 +168,8 @@ pub unsafe extern "C" fn leafless_solid_new_quadric(
 ///
 /// - Buffers: `centre_model` and `radii_model`, 3 numbers each; `solid`, one pointer.
 /// - Result: `*solid`.
-/// - Errors: LEAFLESS_E_ARGUMENT if a radius is not between 2^-256 and 2^256, or a coordinate neither 0 nor of such a
-///   magnitude.
+/// - Errors: LEAFLESS_E_ARGUMENT if a radius is not between 2^-256 and 2^256, or a coordinate neither 0 nor
+///   of such a magnitude.
 /// - Ownership: give `*solid` back with leafless_solid_free.
 /// - Threads: any.
 /// - Untrusted input: any numbers.
@@ -193,8 +193,8 @@ pub unsafe extern "C" fn leafless_solid_new_ellipsoid(
 ///
 /// - Buffers: `solid`, one pointer.
 /// - Result: `*solid`.
-/// - Errors: LEAFLESS_E_ARGUMENT if the radius is not between 2^-256 and 2^256, a coordinate neither 0 nor of such a
-///   magnitude, or `low` not less than `high`.
+/// - Errors: LEAFLESS_E_ARGUMENT if the radius is not between 2^-256 and 2^256, a coordinate neither 0 nor of
+///   such a magnitude, or `low` not less than `high`.
 /// - Ownership: give `*solid` back with leafless_solid_free.
 /// - Threads: any.
 /// - Untrusted input: any numbers.
@@ -212,13 +212,13 @@ pub unsafe extern "C" fn leafless_solid_new_cylinder(
     })
 }
 
-/// The frustum of a cone around the z axis: of radius `bottom` at z = `low` and `top` at z = `high`. One of the radii
-/// may be 0, which makes a cone. Its verdicts are exact.
+/// The frustum of a cone around the z axis: of radius `bottom` at z = `low` and `top` at z = `high`. One of
+/// the radii may be 0, which makes a cone. Its verdicts are exact.
 ///
 /// - Buffers: `solid`, one pointer.
 /// - Result: `*solid`.
-/// - Errors: LEAFLESS_E_ARGUMENT if both radii are 0 or one is not between 2^-256 and 2^256, a coordinate neither 0
-///   nor of such a magnitude, or `low` not less than `high`.
+/// - Errors: LEAFLESS_E_ARGUMENT if both radii are 0 or one is not between 2^-256 and 2^256, a coordinate
+///   neither 0 nor of such a magnitude, or `low` not less than `high`.
 /// - Ownership: give `*solid` back with leafless_solid_free.
 /// - Threads: any.
 /// - Untrusted input: any numbers.
@@ -239,11 +239,11 @@ pub unsafe extern "C" fn leafless_solid_new_frustum(
 
 /// The points p with A (x − a)^n + B (y − b)^m + C (z − c)^k + `constant` ≥ 0. Its signs are exact.
 ///
-/// - Buffers: `coefficients` A, B, C, `centre_model` a, b, c, and `exponents` n, m, k, 3 numbers each; `solid`, one
-///   pointer.
+/// - Buffers: `coefficients` A, B, C, `centre_model` a, b, c, and `exponents` n, m, k, 3 numbers each;
+///   `solid`, one pointer.
 /// - Result: `*solid`.
-/// - Errors: LEAFLESS_E_ARGUMENT if all coefficients are 0, an exponent is not 1 to 64, or a number neither 0 nor of
-///   a magnitude between 2^-256 and 2^256.
+/// - Errors: LEAFLESS_E_ARGUMENT if all coefficients are 0, an exponent is not 1 to 64, or a number neither 0
+///   nor of a magnitude between 2^-256 and 2^256.
 /// - Ownership: give `*solid` back with leafless_solid_free.
 /// - Threads: any.
 /// - Untrusted input: any numbers.
@@ -268,12 +268,13 @@ pub unsafe extern "C" fn leafless_solid_new_power(
     })
 }
 
-/// The torus around the z axis: all points at most `minor` from the circle of radius `major` in the plane z = 0;
-/// where `minor` is greater, there is no hollow core.
+/// The torus around the z axis: all points at most `minor` from the circle of radius `major` in the plane z =
+/// 0; where `minor` is greater, there is no hollow core.
 ///
 /// - Buffers: `solid`, one pointer.
 /// - Result: `*solid`.
-/// - Errors: LEAFLESS_E_ARGUMENT if a radius is not between 2^-256 and 2^256; `major` may be 0, which makes a ball.
+/// - Errors: LEAFLESS_E_ARGUMENT if a radius is not between 2^-256 and 2^256; `major` may be 0, which makes a
+///   ball.
 /// - Ownership: give `*solid` back with leafless_solid_free.
 /// - Threads: any.
 /// - Untrusted input: any numbers.
@@ -290,8 +291,8 @@ pub unsafe extern "C" fn leafless_solid_new_torus(
     })
 }
 
-/// The right angular wedge: the box between the origin and `size` whose face at the greatest y is narrowed, or
-/// widened, to 0 ≤ x ≤ `top`; 0 makes that face an edge. (So it is defined by STEP, ISO 10303-42.)
+/// The right angular wedge: the box between the origin and `size` whose face at the greatest y is narrowed,
+/// or widened, to 0 ≤ x ≤ `top`; 0 makes that face an edge. (So it is defined by STEP, ISO 10303-42.)
 ///
 /// - Buffers: `size_model`, 3 numbers; `solid`, one pointer.
 /// - Result: `*solid`.
@@ -315,14 +316,15 @@ pub unsafe extern "C" fn leafless_solid_new_wedge(
     })
 }
 
-/// The prism over a simple polygon in the xy plane, between z = `low` and z = `high`. The polygon's corners are given
-/// in order, in either direction of rotation; the last is joined to the first. The planes through its edges are
-/// exact.
+/// The prism over a simple polygon in the xy plane, between z = `low` and z = `high`. The polygon's corners
+/// are given in order, in either direction of rotation; the last is joined to the first. The planes through
+/// its edges are exact.
 ///
 /// - Buffers: `polygon_model`, `count` points of 2 numbers each; `solid`, one pointer.
 /// - Result: `*solid`.
-/// - Errors: LEAFLESS_E_ARGUMENT if the outline touches or crosses itself or encloses nothing, a coordinate is
-///   neither 0 nor of a magnitude between 2^-256 and 2^256, or `low` not less than `high`; LEAFLESS_E_NO_MEMORY.
+/// - Errors: LEAFLESS_E_ARGUMENT if the outline touches or crosses itself or encloses nothing, a coordinate
+///   is neither 0 nor of a magnitude between 2^-256 and 2^256, or `low` not less than `high`;
+///   LEAFLESS_E_NO_MEMORY.
 /// - Ownership: give `*solid` back with leafless_solid_free.
 /// - Threads: any.
 /// - Untrusted input: any numbers.
@@ -342,14 +344,14 @@ pub unsafe extern "C" fn leafless_solid_new_prism(
     })
 }
 
-/// The convex polyhedron of the points p with normal · p + offset ≥ 0 for all of the planes. It may be unbounded, or
-/// empty.
+/// The convex polyhedron of the points p with normal · p + offset ≥ 0 for all of the planes. It may be
+/// unbounded, or empty.
 ///
-/// - Buffers: `planes`, `count` of 4 numbers each: the normal, of any length and pointing inward, and the offset;
-///   `solid`, one pointer.
+/// - Buffers: `planes`, `count` of 4 numbers each: the normal, of any length and pointing inward, and the
+///   offset; `solid`, one pointer.
 /// - Result: `*solid`.
-/// - Errors: LEAFLESS_E_ARGUMENT if there is no plane, a normal is zero, or a number neither 0 nor of a magnitude
-///   between 2^-256 and 2^256; LEAFLESS_E_NO_MEMORY.
+/// - Errors: LEAFLESS_E_ARGUMENT if there is no plane, a normal is zero, or a number neither 0 nor of a
+///   magnitude between 2^-256 and 2^256; LEAFLESS_E_NO_MEMORY.
 /// - Ownership: give `*solid` back with leafless_solid_free.
 /// - Threads: any.
 /// - Untrusted input: any numbers.
@@ -391,8 +393,8 @@ pub unsafe extern "C" fn leafless_solid_union(
     })
 }
 
-/// What all of the solids contain; everything, if there is none. No tree is built: the result asks its operands about
-/// each cell that it is asked about, and expressions of half-spaces join into one.
+/// What all of the solids contain; everything, if there is none. No tree is built: the result asks its
+/// operands about each cell that it is asked about, and expressions of half-spaces join into one.
 ///
 /// - Buffers: `solids`, `count` pointers, or NULL if there is none; `solid`, one pointer.
 /// - Result: `*solid`.
@@ -414,8 +416,9 @@ pub unsafe extern "C" fn leafless_solid_intersection(
     })
 }
 
-/// What an odd number of the solids contain: of two, what is in one and not in the other. No tree is built: the
-/// result asks its operands about each cell that it is asked about, and expressions of half-spaces join into one.
+/// What an odd number of the solids contain: of two, what is in one and not in the other. No tree is built:
+/// the result asks its operands about each cell that it is asked about, and expressions of half-spaces join
+/// into one.
 ///
 /// - Buffers: `solids`, `count` pointers, or NULL if there is none; `solid`, one pointer.
 /// - Result: `*solid`.
@@ -486,10 +489,11 @@ pub unsafe extern "C" fn leafless_solid_complement(
 pub enum leafless_motion {
     /// Nothing is rounded: half-spaces, and what is made of them.
     LEAFLESS_MOTION_EXACT = 0,
-    /// The vertices of a mesh are moved and rounded, by some 10^-16 of their coordinates; what is proven allows for that.
+    /// The vertices of a mesh are moved and rounded, by some 10^-16 of their coordinates; what is proven
+    /// allows for that.
     LEAFLESS_MOTION_VERTICES = 1,
-    /// As leafless_solid_new_transform does, on a frame that is chosen for the solid: a surface that is not parallel to the
-    /// lattice blurs by about a cell. Where cells are the images of cells, nothing blurs.
+    /// As leafless_solid_new_transform does, on a frame that is chosen for the solid: a surface that is not
+    /// parallel to the lattice blurs by about a cell. Where cells are the images of cells, nothing blurs.
     LEAFLESS_MOTION_CONSERVATIVE = 2,
 }
 use leafless_motion::*;
@@ -504,14 +508,15 @@ impl From<Motion> for leafless_motion {
     }
 }
 
-/// A solid moved by an affine map, in the best way that its kind knows: half-spaces exactly, meshes by their vertices, others
-/// as leafless_solid_new_transform; of an expression each part in its own way.
+/// A solid moved by an affine map, in the best way that its kind knows: half-spaces exactly, meshes by their
+/// vertices, others as leafless_solid_new_transform; of an expression each part in its own way.
 ///
-/// - Buffers: `matrix`, 12 numbers, the rows of [M | t], where a point p goes to M p + t; `motion`, one leafless_motion
-///   or NULL; `solid`, one pointer.
+/// - Buffers: `matrix`, 12 numbers, the rows of [M | t], where a point p goes to M p + t; `motion`, one
+///   leafless_motion or NULL; `solid`, one pointer.
 /// - Result: `*solid`; `*motion`, the worst that a map does to any part (the identity does nothing).
-/// - Errors: LEAFLESS_E_ARGUMENT if an entry is neither 0 nor of a magnitude between 2^-64 and 2^64, or M is singular;
-///   LEAFLESS_E_MESH if a mesh is moved beyond the numbers that meshes may have; LEAFLESS_E_NO_MEMORY.
+/// - Errors: LEAFLESS_E_ARGUMENT if an entry is neither 0 nor of a magnitude between 2^-64 and 2^64, or M is
+///   singular; LEAFLESS_E_MESH if a mesh is moved beyond the numbers that meshes may have;
+///   LEAFLESS_E_NO_MEMORY.
 /// - Ownership: the operand is shared and may be freed; give `*solid` back with leafless_solid_free.
 /// - Threads: any.
 /// - Untrusted input: any solids and numbers.
@@ -538,8 +543,8 @@ pub unsafe extern "C" fn leafless_solid_placed(
     })
 }
 
-/// The same solid by another rule of touching, which holds for the whole expression. What joins it to others follows
-/// its own rule.
+/// The same solid by another rule of touching, which holds for the whole expression. What joins it to others
+/// follows its own rule.
 ///
 /// - Buffers: `solid`, one pointer. `touch` is a leafless_touch.
 /// - Result: `*solid`.

@@ -2,7 +2,7 @@
 
 use super::boundary::{Failure, buffer, guard, out, path, shared, slice};
 use super::frame::leafless_frame;
-use super::octree::{give, leafless_octree, leafless_tag};
+use super::octree::{give, leafless_octree, leafless_proof, leafless_tag};
 use super::status::leafless_status;
 use crate::error::Error;
 use crate::file::{self, Probe, Section};
@@ -14,7 +14,7 @@ use std::io;
 /// Major version of the file format that this library writes, and the only one that it reads.
 pub const LEAFLESS_FORMAT_MAJOR: u32 = 0;
 /// Minor version of the file format that this library writes; it reads newer ones, too.
-pub const LEAFLESS_FORMAT_MINOR: u32 = 0;
+pub const LEAFLESS_FORMAT_MINOR: u32 = 1;
 const _: () = {
     assert!(LEAFLESS_FORMAT_MAJOR == file::MAJOR as u32);
     assert!(LEAFLESS_FORMAT_MINOR == file::MINOR as u32);
@@ -38,6 +38,8 @@ pub struct leafless_probe {
     pub file_length: u64,
     /// Sections of the file.
     pub sections: u64,
+    /// What the cells prove.
+    pub proof: leafless_proof,
     /// The tag of the whole universe; BRANCH if it is cut.
     pub root: leafless_tag,
     /// What is known of the space outside of the universe; never BRANCH.
@@ -52,6 +54,8 @@ pub struct leafless_probe {
 pub struct leafless_section {
     /// Number of its kind.
     pub kind: u32,
+    /// The object that it belongs to: 0 is the solid.
+    pub owner: u32,
     /// Whether a reader must know the kind to read the file.
     pub is_required: bool,
     /// Name of its kind, NUL-terminated; empty if this library does not know it.
@@ -74,6 +78,7 @@ impl From<&Probe> for leafless_probe {
             bricks: probe.bricks,
             file_length: probe.file_len,
             sections: probe.sections.len() as u64,
+            proof: probe.proof.into(),
             root: probe.root.into(),
             exterior: probe.exterior.into(),
             is_binary: probe.binary,
@@ -90,6 +95,7 @@ impl From<&Section> for leafless_section {
         }
         leafless_section {
             kind: section.kind,
+            owner: section.owner,
             is_required: section.required,
             name,
             offset: section.offset,
@@ -118,11 +124,11 @@ unsafe fn hand_out(
     probe.write((&found).into())
 }
 
-/// What a file says of itself, without looking at more than header and section table. Whether the rest is good is
-/// not known then.
+/// What a file says of itself, without looking at more than header and section table. Whether the rest is
+/// good is not known then.
 ///
-/// - Buffers: `path`, `path_length` bytes of UTF-8; `probe`, one struct; `sections`, room for `capacity` structs,
-///   or NULL if they are not wanted.
+/// - Buffers: `path`, `path_length` bytes of UTF-8; `probe`, one struct; `sections`, room for `capacity`
+///   structs, or NULL if they are not wanted.
 /// - Result: `*probe`; as many sections as it says.
 /// - Errors: LEAFLESS_E_FORMAT; LEAFLESS_E_VERSION; LEAFLESS_E_IO; LEAFLESS_E_BUFFER; LEAFLESS_E_UTF8;
 ///   LEAFLESS_E_NO_MEMORY.
@@ -144,11 +150,11 @@ pub unsafe extern "C" fn leafless_file_probe(
     })
 }
 
-/// As leafless_file_probe for the first bytes of a file in memory, or all of them: 128 and 40 for each section. 488
-/// suffice for every file that this library writes, 163 968 for any.
+/// As leafless_file_probe for the first bytes of a file in memory, or all of them: 128 and 40 for each
+/// section. 488 suffice for every file that this library writes, 163 968 for any.
 ///
-/// - Buffers: `bytes`, `length` bytes, may be NULL if there are none; `probe`, one struct; `sections`, room for
-///   `capacity` structs, or NULL if they are not wanted.
+/// - Buffers: `bytes`, `length` bytes, may be NULL if there are none; `probe`, one struct; `sections`, room
+///   for `capacity` structs, or NULL if they are not wanted.
 /// - Result: `*probe`; as many sections as it says.
 /// - Errors: LEAFLESS_E_FORMAT, also if the bytes end before the section table does; LEAFLESS_E_VERSION;
 ///   LEAFLESS_E_BUFFER; LEAFLESS_E_NO_MEMORY.
@@ -219,8 +225,8 @@ unsafe fn found_in<'a>(
     })
 }
 
-/// Reads a file into memory and verifies all of it: the plain way, and the one for files that may not be trusted.
-/// Later changes of the file do not matter.
+/// Reads a file into memory and verifies all of it: the plain way, and the one for files that may not be
+/// trusted. Later changes of the file do not matter.
 ///
 /// - Buffers: `path`, `path_length` bytes of UTF-8; `octree`, one pointer.
 /// - Result: `*octree`.
@@ -240,22 +246,24 @@ pub unsafe extern "C" fn leafless_octree_open(
     unsafe { opened(path, path_length, octree, |path| file::open(path)) }
 }
 
-/// Maps a file into memory and looks at its header, section table, bounds, level table and metadata only: some
-/// microseconds for a file of any size. What queries touch is read when they do. Of a file that is damaged
-/// elsewhere queries answer undecided or wrong, but stay in bounds and end.
+/// Maps a file into memory and looks at its header, section table, bounds, level table and metadata only:
+/// some microseconds for a file of any size. What queries touch is read when they do. Of a file that is
+/// damaged elsewhere queries answer undecided or wrong, but stay in bounds and end.
 ///
-/// While the octree lives, or a cursor, a solid or an octree with other metadata that shares it, nobody may make the
-/// file shorter: reading beyond its new end raises SIGBUS, which by default ends the process. Nobody may write to it
-/// either: answers may then be wrong, and nothing more is promised.
-/// Removing the file, or replacing it by renaming another over it, as leafless_octree_save does, is harmless.
+/// While the octree lives, or a cursor, a solid or an octree with other metadata that shares it, nobody may
+/// make the file shorter: reading beyond its new end raises SIGBUS, which by default ends the process. Nobody
+/// may write to it either: answers may then be wrong, and nothing more is promised. Removing the file, or
+/// replacing it by renaming another over it, as leafless_octree_save does, is harmless.
 ///
 /// - Buffers: `path`, `path_length` bytes of UTF-8; `octree`, one pointer.
 /// - Result: `*octree`.
-/// - Errors: LEAFLESS_E_FORMAT; LEAFLESS_E_VERSION; LEAFLESS_E_DAMAGED if the level table contradicts the header;
-///   LEAFLESS_E_ARGUMENT if there is no regular file; LEAFLESS_E_IO; LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY.
+/// - Errors: LEAFLESS_E_FORMAT; LEAFLESS_E_VERSION; LEAFLESS_E_DAMAGED if the level table contradicts the
+///   header; LEAFLESS_E_ARGUMENT if there is no regular file; LEAFLESS_E_IO; LEAFLESS_E_UTF8;
+///   LEAFLESS_E_NO_MEMORY.
 /// - Ownership: give `*octree` back with leafless_octree_free.
 /// - Threads: any.
-/// - Untrusted input: any contents, but only where nobody else can change the file; else leafless_octree_open.
+/// - Untrusted input: any contents, but only where nobody else can change the file; else
+///   leafless_octree_open.
 /// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_octree_map(
@@ -267,15 +275,16 @@ pub unsafe extern "C" fn leafless_octree_map(
     unsafe { opened(path, path_length, octree, |path| file::map(path)) }
 }
 
-/// As leafless_octree_map, but verifies all of the file first, in one scan. Who writes to the file afterwards undoes
-/// that.
+/// As leafless_octree_map, but verifies all of the file first, in one scan. Who writes to the file afterwards
+/// undoes that.
 ///
 /// - Buffers: `path`, `path_length` bytes of UTF-8; `octree`, one pointer.
 /// - Result: `*octree`.
 /// - Errors: as leafless_octree_open, and LEAFLESS_E_ARGUMENT if there is no regular file.
 /// - Ownership: give `*octree` back with leafless_octree_free.
 /// - Threads: any.
-/// - Untrusted input: any contents, but only where nobody else can change the file; else leafless_octree_open.
+/// - Untrusted input: any contents, but only where nobody else can change the file; else
+///   leafless_octree_open.
 /// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_octree_map_verified(
@@ -306,17 +315,17 @@ pub unsafe extern "C" fn leafless_octree_from_bytes(
     unsafe { found_in(bytes, length, octree, file::from_bytes) }
 }
 
-/// The octree in the bytes of a whole file, used where they lie, and checked as little as by leafless_octree_map;
-/// call leafless_bytes_verify first where they may be damaged. For files that are part of a program, or that the
-/// host maps itself.
+/// The octree in the bytes of a whole file, used where they lie, and checked as little as by
+/// leafless_octree_map; call leafless_bytes_verify first where they may be damaged. For files that are part
+/// of a program, or that the host maps itself.
 ///
 /// - Buffers: `bytes`, `length` bytes on an address that is a multiple of 8; `octree`, one pointer.
 /// - Result: `*octree`.
-/// - Errors: LEAFLESS_E_FORMAT; LEAFLESS_E_VERSION; LEAFLESS_E_DAMAGED if the level table contradicts the header;
-///   LEAFLESS_E_ARGUMENT if the bytes are misaligned; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: the bytes stay the host's. They must stay, unchanged, until the last reference is given back to the
-///   octree, to every octree that leafless_octree_with_metadata or leafless_octree_without_metadata made of it, and to
-///   every cursor and solid of these. Give `*octree` back with leafless_octree_free.
+/// - Errors: LEAFLESS_E_FORMAT; LEAFLESS_E_VERSION; LEAFLESS_E_DAMAGED if the level table contradicts the
+///   header; LEAFLESS_E_ARGUMENT if the bytes are misaligned; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: the bytes stay the host's. They must stay, unchanged, until the last reference is given back
+///   to the octree, to every octree that leafless_octree_with_metadata or leafless_octree_without_metadata
+///   made of it, and to every cursor and solid of these. Give `*octree` back with leafless_octree_free.
 /// - Threads: any.
 /// - Untrusted input: any bytes, as leafless_octree_map.
 /// - Since: 0.1
@@ -330,19 +339,20 @@ pub unsafe extern "C" fn leafless_octree_view_bytes(
     unsafe { found_in::<'static>(bytes, length, octree, file::from_static) }
 }
 
-/// Saves an octree: at any moment, also after a crash or a power failure, there is the old file or the new one,
-/// each complete. Equal octrees with equal metadata give equal bytes.
+/// Saves an octree: at any moment, also after a crash or a power failure, there is the old file or the new
+/// one, each complete. Equal octrees with equal metadata give equal bytes.
 ///
-/// The bytes go to a temporary file in the same directory, which is synchronised with the disk and then renamed over
-/// the old file; a process that is killed meanwhile may leave a file `.leafless-….tmp` behind. A file that is replaced
-/// keeps its permissions, its other hard links keep the old contents. A symbolic link is followed. What is no regular
-/// file, such as a pipe, is written to directly; a pipe that nobody reads raises SIGPIPE, and a file beyond the
-/// process's limit SIGXFSZ, if the host has not ignored them.
+/// The bytes go to a temporary file in the same directory, which is synchronised with the disk and then
+/// renamed over the old file; a process that is killed meanwhile may leave a file `.leafless-….tmp` behind. A
+/// file that is replaced keeps its permissions, its other hard links keep the old contents. A symbolic link
+/// is followed. What is no regular file, such as a pipe, is written to directly; a pipe that nobody reads
+/// raises SIGPIPE, and a file beyond the process's limit SIGXFSZ, if the host has not ignored them.
 ///
 /// - Buffers: `path`, `path_length` bytes of UTF-8.
 /// - Result: LEAFLESS_OK once the file is on the disk.
-/// - Errors: LEAFLESS_E_IO; LEAFLESS_E_DAMAGED if the octree was mapped unverified and is damaged; LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY. The old file
-///   is then as it was; only if the very last step fails, synchronising the directory, the new one is in place.
+/// - Errors: LEAFLESS_E_IO; LEAFLESS_E_DAMAGED if the octree was mapped unverified and is damaged;
+///   LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY. The old file is then as it was; only if the very last step fails,
+///   synchronising the directory, the new one is in place.
 /// - Ownership: nothing changes hands.
 /// - Threads: any.
 /// - Untrusted input: any octree.
@@ -363,8 +373,8 @@ pub unsafe extern "C" fn leafless_octree_save(
 ///
 /// - Buffers: `bytes`, room for `capacity` bytes, or NULL to ask for the length only; `length`, one number.
 /// - Result: `*length`, the length of the file; the file in `bytes`.
-/// - Errors: LEAFLESS_E_BUFFER if the capacity is too small; LEAFLESS_E_DAMAGED if the octree was mapped unverified
-///   and is damaged; LEAFLESS_E_NO_MEMORY.
+/// - Errors: LEAFLESS_E_BUFFER if the capacity is too small; LEAFLESS_E_DAMAGED if the octree was mapped
+///   unverified and is damaged; LEAFLESS_E_NO_MEMORY.
 /// - Ownership: nothing changes hands.
 /// - Threads: any.
 /// - Untrusted input: any octree.
@@ -387,8 +397,8 @@ pub unsafe extern "C" fn leafless_octree_to_bytes(
 }
 
 /// Takes bytes of a file in order: all `count` of them, and returns 0; anything else ends the writing with
-/// LEAFLESS_E_CALLBACK. It is called in the calling thread. It must return: no exception, no longjmp. It may call this
-/// library.
+/// LEAFLESS_E_CALLBACK. It is called in the calling thread. It must return: no exception, no longjmp. It may
+/// call this library.
 pub type leafless_write_fn =
     Option<unsafe extern "C" fn(ctx: *mut c_void, bytes: *const u8, count: u64) -> i32>;
 
@@ -411,13 +421,14 @@ impl io::Write for Sink {
     }
 }
 
-/// Writes an octree's file through a function of the host, in a few large pieces; the file is never in memory as a
-/// whole.
+/// Writes an octree's file through a function of the host, in a few large pieces; the file is never in memory
+/// as a whole.
 ///
 /// - Buffers: none.
 /// - Result: LEAFLESS_OK once `write` has taken all bytes.
 /// - Errors: LEAFLESS_E_CALLBACK with what `write` returned in the message; LEAFLESS_E_NULL if it is NULL;
-///   LEAFLESS_E_DAMAGED if the octree was mapped unverified and is damaged; LEAFLESS_E_NO_MEMORY. The last two come before anything is written.
+///   LEAFLESS_E_DAMAGED if the octree was mapped unverified and is damaged; LEAFLESS_E_NO_MEMORY. The last
+///   two come before anything is written.
 /// - Ownership: nothing changes hands.
 /// - Threads: any.
 /// - Untrusted input: any octree.

@@ -80,13 +80,14 @@ pub unsafe extern "C" fn leafless_frame_check(frame: *const leafless_frame) -> l
     guard(|| unsafe { self::frame(frame).map(|_| ()) })
 }
 
-/// The default frame of a shape: the cube of edge L·(1 + 1/32) around its centre, L being its longest extent; the
-/// same universe at every depth.
+/// The default frame of a shape: the cube of edge L·(1 + 1/32) around its centre, L being its longest extent;
+/// the same universe at every depth.
 ///
 /// - Buffers: `min_model` and `max_model`, 3 numbers each; `frame`, one struct.
 /// - Result: `*frame`.
-/// - Errors: LEAFLESS_E_MESH if the longest extent is 0; LEAFLESS_E_ARGUMENT if min > max on an axis, if `depth` is
-///   not 1 to 20, or if a bound is not a finite number in range, or so far from the origin that doubles cannot resolve the cube.
+/// - Errors: LEAFLESS_E_MESH if the longest extent is 0; LEAFLESS_E_ARGUMENT if min > max on an axis, if
+///   `depth` is not 1 to 20, or if a bound is not a finite number in range, or so far from the origin that
+///   doubles cannot resolve the cube.
 /// - Ownership: nothing changes hands.
 /// - Threads: any.
 /// - Untrusted input: any values.
@@ -127,13 +128,13 @@ pub unsafe extern "C" fn leafless_frame_cell_size(
     })
 }
 
-/// The finest cell that a point lies in. A point on a plane between two cells belongs to the upper one, on the
-/// universe's upper face to the last; the comparison is exact.
+/// The finest cell that a point lies in. A point on a plane between two cells belongs to the upper one, on
+/// the universe's upper face to the last; the comparison is exact.
 ///
 /// - Buffers: `frame`, one struct; `point_model`, 3 numbers; `cell`, room for 3.
 /// - Result: `cell`, each below 2^depth.
-/// - Errors: LEAFLESS_E_ARGUMENT as leafless_frame_check, and if the point is outside of the universe or not a
-///   number.
+/// - Errors: LEAFLESS_E_ARGUMENT as leafless_frame_check, and if the point is outside of the universe or not
+///   a number.
 /// - Ownership: nothing changes hands.
 /// - Threads: any.
 /// - Untrusted input: any values.

@@ -26,41 +26,42 @@ pub enum leafless_exterior {
 }
 use leafless_exterior::*;
 
-/// Classifies the box [min, max] (3 numbers each, model units) for the host's own shape: LEAFLESS_TAG_EMPTY or
-/// LEAFLESS_TAG_FULL if that is proven for all of the box, LEAFLESS_TAG_PARTIAL to be asked about its eight parts.
-/// Anything else ends the operation with LEAFLESS_E_CALLBACK and the number in the message; so use a negative
-/// number for the host's own errors.
+/// Classifies the box [min, max] (3 numbers each, model units) for the host's own shape: LEAFLESS_TAG_EMPTY
+/// or LEAFLESS_TAG_FULL if that is proven for all of the box, LEAFLESS_TAG_PARTIAL to be asked about its
+/// eight parts. Anything else ends the operation with LEAFLESS_E_CALLBACK and the number in the message; so
+/// use a negative number for the host's own errors.
 ///
-/// It is called from several threads at once, which may all be the library's own, unless the operation's options say
-/// `threads` = 1; and it must give the same answer to the same box. It must return: no exception, no longjmp. It may
-/// call this library.
+/// It is called from several threads at once, which may all be the library's own, unless the operation's
+/// options say `threads` = 1; and it must give the same answer to the same box. It must return: no exception,
+/// no longjmp. It may call this library.
 pub type leafless_classify_fn =
     Option<unsafe extern "C" fn(ctx: *mut c_void, min: *const f64, max: *const f64) -> i32>;
 
-/// Decides a point (3 numbers, model units) for the host's own shape: 1 inside, 0 outside; anything else ends the
-/// operation with LEAFLESS_E_CALLBACK. Else as leafless_classify_fn.
+/// Decides a point (3 numbers, model units) for the host's own shape: 1 inside, 0 outside; anything else ends
+/// the operation with LEAFLESS_E_CALLBACK. Else as leafless_classify_fn.
 pub type leafless_contains_fn = Option<unsafe extern "C" fn(ctx: *mut c_void, point: *const f64) -> i32>;
 
-/// Classifies `count` boxes (6 numbers each: min, then max) at once, for hosts that do that faster than one by one:
-/// sets `tags` to what leafless_classify_fn would answer. 0, or the number of the host's own error, which ends the
-/// operation with LEAFLESS_E_CALLBACK. Else as leafless_classify_fn.
+/// Classifies `count` boxes (6 numbers each: min, then max) at once, for hosts that do that faster than one
+/// by one: sets `tags` to what leafless_classify_fn would answer. 0, or the number of the host's own error,
+/// which ends the operation with LEAFLESS_E_CALLBACK. Else as leafless_classify_fn.
 pub type leafless_classify_many_fn =
     Option<unsafe extern "C" fn(ctx: *mut c_void, boxes: *const f64, count: u64, tags: *mut i32) -> i32>;
 
-/// Decides `count` points (3 numbers each) at once: sets each of `inside` to 1 or 0. 0, or the number of the host's own
-/// error. Else as leafless_contains_fn.
+/// Decides `count` points (3 numbers each) at once: sets each of `inside` to 1 or 0. 0, or the number of the
+/// host's own error. Else as leafless_contains_fn.
 pub type leafless_contains_many_fn =
     Option<unsafe extern "C" fn(ctx: *mut c_void, points: *const f64, count: u64, inside: *mut i32) -> i32>;
 
-/// Bounds the distances of `count` points (3 numbers each, model units) from the surface of the host's own shape: sets each
-/// of `distances_model` to a number whose magnitude is at most that distance, negative inside and positive outside; 0, or
-/// what is no number, says nothing. 0, or the number of the host's own error. Else as leafless_classify_fn.
+/// Bounds the distances of `count` points (3 numbers each, model units) from the surface of the host's own
+/// shape: sets each of `distances_model` to a number whose magnitude is at most that distance, negative
+/// inside and positive outside; 0, or what is no number, says nothing. 0, or the number of the host's own
+/// error. Else as leafless_classify_fn.
 pub type leafless_distance_many_fn = Option<
     unsafe extern "C" fn(ctx: *mut c_void, points: *const f64, count: u64, distances_model: *mut f64) -> i32,
 >;
 
-/// Called once, when nothing uses `ctx` any more, in the thread that gave back the last reference. It must return: no
-/// exception, no longjmp. It may call this library.
+/// Called once, when nothing uses `ctx` any more, in the thread that gave back the last reference. It must
+/// return: no exception, no longjmp. It may call this library.
 pub type leafless_destroy_fn = Option<unsafe extern "C" fn(ctx: *mut c_void)>;
 
 /// The host's own shape. All fields but the first may be zero; `classify` or `distance_many` must be set.
@@ -79,16 +80,18 @@ pub struct leafless_callbacks {
     pub destroy: leafless_destroy_fn,
     /// What the functions are called with.
     pub ctx: *mut c_void,
-    /// Any number but 0, of 128 bits, that tells the shape from others, such as a hash of what it is made of: octrees
-    /// that leafless_lazy_freeze makes remember it, and are taken up again by no other shape. Optional.
+    /// Any number but 0, of 128 bits, that tells the shape from others, such as a hash of what it is made of:
+    /// octrees that leafless_lazy_freeze makes remember it, and are taken up again by no other shape.
+    /// Optional.
     pub fingerprint: [u64; 2],
-    /// Classifies many boxes at once, as many as the work has at hand; optional, and `classify` must be set all the same.
+    /// Classifies many boxes at once, as many as the work has at hand; optional, and `classify` must be set
+    /// all the same.
     pub classify_many: leafless_classify_many_fn,
     /// Decides many points at once; optional, with or without `contains`.
     pub contains_many: leafless_contains_many_fn,
-    /// Bounds the distances of points from the surface; optional. It is asked about the middles of cells before boxes are
-    /// classified, and a cell whose middle is further from the surface than its corners is decided. With it `classify` is
-    /// optional.
+    /// Bounds the distances of points from the surface; optional. It is asked about the middles of cells
+    /// before boxes are classified, and a cell whose middle is further from the surface than its corners is
+    /// decided. With it `classify` is optional.
     pub distance_many: leafless_distance_many_fn,
 }
 
@@ -98,8 +101,8 @@ unsafe impl Sized32 for leafless_callbacks {}
 /// The host's functions with their context.
 struct Host(leafless_callbacks);
 
-// SAFETY: the library does nothing with `ctx` but hand it back; that the functions may be called from any thread
-// is their documented contract.
+// SAFETY: the library does nothing with `ctx` but hand it back; that the functions may be called from any
+// thread is their documented contract.
 unsafe impl Send for Host {}
 // SAFETY: as above.
 unsafe impl Sync for Host {}
@@ -137,8 +140,8 @@ fn done(code: i32) -> Result<(), Error> {
     if code == 0 { Ok(()) } else { Err(Error::Callback { code }) }
 }
 
-// SAFETY, of all calls here: the functions are as the host gave them, with their own context and as many numbers as
-// they are told of.
+// SAFETY, of all calls here: the functions are as the host gave them, with their own context and as many
+// numbers as they are told of.
 impl Host {
     fn classify(&self, min: [f64; 3], max: [f64; 3]) -> Result<Verdict<()>, Error> {
         let Some(classify) = self.0.classify else { return Ok(Verdict::Partial(())) };
@@ -193,8 +196,8 @@ fn fingerprint(given: [u64; 2]) -> Option<Fingerprint> {
 
 /// Sets callbacks to their defaults; `classify` must then be set.
 ///
-/// - Buffers: `callbacks`, one struct of `struct_size` bytes, which is sizeof(leafless_callbacks); need not be
-///   initialised.
+/// - Buffers: `callbacks`, one struct of `struct_size` bytes, which is sizeof(leafless_callbacks); need not
+///   be initialised.
 /// - Result: `*callbacks`.
 /// - Errors: LEAFLESS_E_ARGUMENT if `struct_size` cannot be right.
 /// - Ownership: nothing changes hands.
@@ -216,7 +219,8 @@ pub unsafe extern "C" fn leafless_callbacks_init(
 /// - Errors: LEAFLESS_E_NULL if `classify` is NULL, unless `distance_many` is set and `classify_many` is not;
 ///   LEAFLESS_E_ARGUMENT if `exterior` is no leafless_exterior.
 ///   After an error `destroy` is not called.
-/// - Ownership: `ctx` must live until `destroy` is called with it; give `*solid` back with leafless_solid_free.
+/// - Ownership: `ctx` must live until `destroy` is called with it; give `*solid` back with
+///   leafless_solid_free.
 /// - Threads: any; in which the functions are called, leafless_classify_fn says.
 /// - Untrusted input: any answers.
 /// - Since: 0.1
@@ -280,13 +284,13 @@ pub unsafe extern "C" fn leafless_solid_new_callbacks(
     })
 }
 
-/// The value of the host's function at a point (3 numbers, model units): sets `*value`. 0, or the number of the host's
-/// own error, which ends the operation with LEAFLESS_E_CALLBACK. Else as leafless_classify_fn.
+/// The value of the host's function at a point (3 numbers, model units): sets `*value`. 0, or the number of
+/// the host's own error, which ends the operation with LEAFLESS_E_CALLBACK. Else as leafless_classify_fn.
 pub type leafless_value_fn =
     Option<unsafe extern "C" fn(ctx: *mut c_void, point: *const f64, value: *mut f64) -> i32>;
 
-/// An interval that contains all values of the host's function over the box [min, max] (3 numbers each, model units):
-/// sets `*range`. Else as leafless_value_fn.
+/// An interval that contains all values of the host's function over the box [min, max] (3 numbers each, model
+/// units): sets `*range`. Else as leafless_value_fn.
 pub type leafless_range_fn = Option<
     unsafe extern "C" fn(
         ctx: *mut c_void,
@@ -306,7 +310,8 @@ pub struct leafless_function {
     pub reserved: u32,
     /// The function's value at a point; NaN where it has none. Only its sign counts.
     pub value: leafless_value_fn,
-    /// Its range over a box. It alone proves that a cell lies inside or outside. A NaN, or lower > upper, proves nothing.
+    /// Its range over a box. It alone proves that a cell lies inside or outside. A NaN, or lower > upper,
+    /// proves nothing.
     pub range: leafless_range_fn,
     /// Called when `ctx` is not needed any more; optional.
     pub destroy: leafless_destroy_fn,
@@ -373,13 +378,15 @@ pub unsafe extern "C" fn leafless_function_init(
     guard(|| unsafe { initialise(function, struct_size, "function") })
 }
 
-/// A half-space of the host. It joins others, and may be placed: then its functions are asked in its own space, about the
-/// box around a cell's inverse image and about the rounded inverse image of a point.
+/// A half-space of the host. It joins others, and may be placed: then its functions are asked in its own
+/// space, about the box around a cell's inverse image and about the rounded inverse image of a point.
 ///
 /// - Buffers: `function`, one struct, which is copied; `solid`, one pointer.
 /// - Result: `*solid`.
-/// - Errors: LEAFLESS_E_NULL if `value` or `range` is NULL; LEAFLESS_E_ARGUMENT. After an error `destroy` is not called.
-/// - Ownership: `ctx` must live until `destroy` is called with it; give `*solid` back with leafless_solid_free.
+/// - Errors: LEAFLESS_E_NULL if `value` or `range` is NULL; LEAFLESS_E_ARGUMENT. After an error `destroy` is
+///   not called.
+/// - Ownership: `ctx` must live until `destroy` is called with it; give `*solid` back with
+///   leafless_solid_free.
 /// - Threads: any; in which the functions are called, leafless_classify_fn says.
 /// - Untrusted input: any answers.
 /// - Since: 0.1

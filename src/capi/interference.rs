@@ -4,6 +4,7 @@ use super::boundary::{buffer, guard, out, shared, slice};
 use super::control::{controlled, leafless_options};
 use super::csg::placement;
 use super::frame::{frame, frame_of, leafless_frame, leafless_interval};
+use super::octree::leafless_proof;
 use super::solid::{give, leafless_solid};
 use super::status::leafless_status;
 use crate::error::Error;
@@ -40,6 +41,10 @@ impl From<Overlap> for leafless_overlap {
 pub struct leafless_interference {
     /// The volume of what they have in common, in cubic model units.
     pub volume_model: leafless_interval,
+    /// What of the first solid is proven: what is not counts as undecided.
+    pub proof_a: leafless_proof,
+    /// What of the second solid is proven.
+    pub proof_b: leafless_proof,
     /// Cells of the first solid that were split.
     pub splits_a: u64,
     /// Cells of the second solid that were split.
@@ -48,7 +53,8 @@ pub struct leafless_interference {
     pub verdict: u32,
     /// The finest level of which cells were looked at.
     pub level: u32,
-    /// A cell that lies in both, if they are proven to overlap: its position in cells of its level; else zeros.
+    /// A cell that lies in both, if they are proven to overlap: its position in cells of its level; else
+    /// zeros.
     pub witness: [u32; 3],
     /// The level of that cell.
     pub witness_level: u32,
@@ -61,6 +67,8 @@ impl From<&Interference> for leafless_interference {
         let witness = found.witness.unwrap_or(Cell::ROOT);
         leafless_interference {
             volume_model: found.volume.into(),
+            proof_a: found.proofs[0].into(),
+            proof_b: found.proofs[1].into(),
             splits_a: found.splits[0],
             splits_b: found.splits[1],
             verdict: leafless_overlap::from(found.verdict) as u32,
@@ -76,16 +84,20 @@ impl From<&Interference> for leafless_interference {
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_clearance {
-    /// The least distance between points of the two, in model units: 0 if they touch or overlap. The upper bound is
-    /// infinite as long as one of them has no cell that is proven to be full, and the lower one too if one of them is
-    /// proven to be empty.
+    /// The least distance between points of the two, in model units: 0 if they touch or overlap. The upper
+    /// bound is infinite as long as one of them has no cell that is proven to be full, and the lower one too
+    /// if one of them is proven to be empty.
     pub distance_model: leafless_interval,
+    /// What of the first solid is proven: what is not counts as undecided.
+    pub proof_a: leafless_proof,
+    /// What of the second solid is proven.
+    pub proof_b: leafless_proof,
     /// Cells of the first solid that were split.
     pub splits_a: u64,
     /// Cells of the second solid that were split.
     pub splits_b: u64,
-    /// If `has_nearest`, cells of the first and of the second solid with points that are no further apart than the upper
-    /// bound: the position of the first in cells of its level; else zeros.
+    /// If `has_nearest`, cells of the first and of the second solid with points that are no further apart
+    /// than the upper bound: the position of the first in cells of its level; else zeros.
     pub nearest_a: [u32; 3],
     /// The level of that cell.
     pub nearest_a_level: u32,
@@ -104,6 +116,8 @@ impl From<&Clearance> for leafless_clearance {
         let [a, b] = found.nearest.unwrap_or([Cell::ROOT; 2]);
         leafless_clearance {
             distance_model: found.distance.into(),
+            proof_a: found.proofs[0].into(),
+            proof_b: found.proofs[1].into(),
             splits_a: found.splits[0],
             splits_b: found.splits[1],
             nearest_a: a.at,
@@ -118,18 +132,19 @@ impl From<&Clearance> for leafless_clearance {
 
 /// A solid, known on a frame of its own, under an affine map.
 ///
-/// A cell is FULL or EMPTY if all the cells of the solid's own frame are that its inverse image touches: cells of about
-/// its size, or larger ones that are decided. So a surface that is not parallel to the lattice blurs by about a cell,
-/// down to the depth of the solid's own frame; rounding is outward. Where the map takes lattice planes to lattice planes
-/// nothing blurs. What sticks out of the solid's own universe is undecided, unless the solid is proven to end inside.
-/// (leafless_solid_placed moves a solid in the best way that its kind knows, and chooses a frame where it takes one.)
+/// A cell is FULL or EMPTY if all the cells of the solid's own frame are that its inverse image touches:
+/// cells of about its size, or larger ones that are decided. So a surface that is not parallel to the lattice
+/// blurs by about a cell, down to the depth of the solid's own frame; rounding is outward. Where the map
+/// takes lattice planes to lattice planes nothing blurs. What sticks out of the solid's own universe is
+/// undecided, unless the solid is proven to end inside. (leafless_solid_placed moves a solid in the best way
+/// that its kind knows, and chooses a frame where it takes one.)
 ///
-/// - Buffers: `own`, one struct; `matrix`, 12 numbers, the rows of [M | t], where a point p goes to M p + t; `solid`,
-///   one pointer.
+/// - Buffers: `own`, one struct; `matrix`, 12 numbers, the rows of [M | t], where a point p goes to M p + t;
+///   `solid`, one pointer.
 /// - Result: `*solid`.
-/// - Errors: LEAFLESS_E_ARGUMENT as leafless_frame_check, or if an entry is neither 0 nor of a magnitude between 2^-64
-///   and 2^64, or M is singular; LEAFLESS_E_LIMIT if too many transforms lie within each other. Asking the result returns LEAFLESS_E_FRAME if `operand` belongs to another frame than
-///   `own`.
+/// - Errors: LEAFLESS_E_ARGUMENT as leafless_frame_check, or if an entry is neither 0 nor of a magnitude
+///   between 2^-64 and 2^64, or M is singular; LEAFLESS_E_LIMIT if too many transforms lie within each other.
+///   Asking the result returns LEAFLESS_E_FRAME if `operand` belongs to another frame than `own`.
 /// - Ownership: the operand is shared and may be freed; give `*solid` back with leafless_solid_free.
 /// - Threads: any.
 /// - Untrusted input: any solid and numbers.
@@ -157,17 +172,18 @@ pub unsafe extern "C" fn leafless_solid_new_transform(
     })
 }
 
-/// Whether two solids overlap, as they are in the universe of a frame. Once an overlap is proven its volume is refined
-/// until the interval is no wider than `tolerance_model` cubic model units; infinity ends the work with the proof.
+/// Whether two solids overlap, as they are in the universe of a frame. Once an overlap is proven its volume
+/// is refined until the interval is no wider than `tolerance_model` cubic model units; infinity ends the work
+/// with the proof.
 ///
-/// Only cells of one solid are split where the other one is. The work ends at the frame's depth, or once `max_splits`
-/// cells of both are split, with what is known by then.
+/// Only cells of one solid are split where the other one is. The work ends at the frame's depth, or once
+/// `max_splits` cells of both are split, with what is known by then.
 ///
 /// - Buffers: `frame`, one struct; `options`, one struct or NULL; `interference`, one struct.
 /// - Result: `*interference`.
-/// - Errors: LEAFLESS_E_FRAME if a solid belongs to another frame; LEAFLESS_E_ARGUMENT as leafless_frame_check, or if
-///   the tolerance is negative or not a number; LEAFLESS_E_CALLBACK; LEAFLESS_E_DAMAGED; LEAFLESS_E_CANCELLED;
-///   LEAFLESS_E_NO_MEMORY.
+/// - Errors: LEAFLESS_E_FRAME if a solid belongs to another frame; LEAFLESS_E_ARGUMENT as
+///   leafless_frame_check, or if the tolerance is negative or not a number; LEAFLESS_E_CALLBACK;
+///   LEAFLESS_E_DAMAGED; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
 /// - Ownership: nothing changes hands.
 /// - Threads: any; works in the calling thread.
 /// - Untrusted input: any solids; set `max_splits` where the depth or the solids are not your own choice.
@@ -191,12 +207,13 @@ pub unsafe extern "C" fn leafless_solid_interfere(
     })
 }
 
-/// As leafless_solid_interfere of `a` with `b` under each of many affine maps, as leafless_solid_new_transform makes
-/// them. `max_splits` concerns each of them. The results are the same for any number of threads.
+/// As leafless_solid_interfere of `a` with `b` under each of many affine maps, as
+/// leafless_solid_new_transform makes them. `max_splits` concerns each of them. The results are the same for
+/// any number of threads.
 ///
-/// - Buffers: `own`, one struct, the frame of `b`; `matrices`, `count` times 12 numbers; `frame`, one struct, that of
-///   `a`; `options`, one struct or NULL; `interferences`, room for `count`. `matrices` and `interferences` may be NULL if
-///   `count` is 0.
+/// - Buffers: `own`, one struct, the frame of `b`; `matrices`, `count` times 12 numbers; `frame`, one struct,
+///   that of `a`; `options`, one struct or NULL; `interferences`, room for `count`. `matrices` and
+///   `interferences` may be NULL if `count` is 0.
 /// - Result: `interferences[i]` for map i.
 /// - Errors: as leafless_solid_interfere and leafless_solid_new_transform; nothing is then written.
 /// - Ownership: nothing changes hands.
@@ -235,11 +252,12 @@ pub unsafe extern "C" fn leafless_solid_interfere_many(
     })
 }
 
-/// The distance between two solids, as they are in the universe of a frame. The work ends when the interval is no wider
-/// than `tolerance_model` (model units), at the frame's depth, or once `max_splits` cells of both are split, with what is
-/// known by then; a cell whose children are looked at again, next to another one, counts once more. About twice the
-/// diagonal of a finest cell is what can be had for any solids. The work grows with the area where the distance is about
-/// the least one, and with the distance, both measured in cells as large as the tolerance.
+/// The distance between two solids, as they are in the universe of a frame. The work ends when the interval
+/// is no wider than `tolerance_model` (model units), at the frame's depth, or once `max_splits` cells of both
+/// are split, with what is known by then; a cell whose children are looked at again, next to another one,
+/// counts once more. About twice the diagonal of a finest cell is what can be had for any solids. The work
+/// grows with the area where the distance is about the least one, and with the distance, both measured in
+/// cells as large as the tolerance.
 ///
 /// - Buffers: `frame`, one struct; `options`, one struct or NULL; `clearance`, one struct.
 /// - Result: `*clearance`.

@@ -57,28 +57,29 @@ fn write_all(to: &mut dyn Write) -> fmt::Result {
             struct_size, exterior, classify, contains, destroy, ctx, fingerprint, classify_many, contains_many, distance_many
         }
         leafless_function { struct_size, reserved, value, range, destroy, ctx, fingerprint }
-        leafless_octree_info { frame, elements, bricks, root, exterior, is_binary, is_clipped }
+        leafless_proof { displacement_model, full, empty }
+        leafless_octree_info { frame, elements, bricks, proof, root, exterior, is_binary, is_clipped }
         leafless_statistics { nodes, empty, full, partial, lower_cells, upper_cells, volume_model }
         leafless_lazy_counts { splits, replays, bytes }
         leafless_interference {
-            volume_model, splits_a, splits_b, verdict, level, witness, witness_level, is_clipped
+            volume_model, proof_a, proof_b, splits_a, splits_b, verdict, level, witness, witness_level, is_clipped
         }
         leafless_clearance {
-            distance_model, splits_a, splits_b, nearest_a, nearest_a_level, nearest_b, nearest_b_level,
+            distance_model, proof_a, proof_b, splits_a, splits_b, nearest_a, nearest_a_level, nearest_b, nearest_b_level,
             has_nearest, is_clipped
         }
         leafless_measures {
-            volume_model, centroid_model, inertia_origin_model, inertia_centroid_model, splits, level,
+            volume_model, centroid_model, inertia_origin_model, inertia_centroid_model, proof, splits, level,
             measured, has_centroid, is_clipped
         }
         leafless_extent {
-            min_model, max_model, splits, measured, is_empty, is_occupied, is_clipped
+            min_model, max_model, proof, splits, measured, is_empty, is_occupied, is_clipped
         }
         leafless_cursor_state { cell, level, tag, children }
         leafless_probe {
-            major, minor, frame, elements, bricks, file_length, sections, root, exterior, is_binary
+            major, minor, frame, elements, bricks, file_length, sections, proof, root, exterior, is_binary
         }
-        leafless_section { kind, is_required, name, offset, length, count }
+        leafless_section { kind, owner, is_required, name, offset, length, count }
     }
     values! { to;
         leafless_status {
@@ -93,6 +94,9 @@ fn write_all(to: &mut dyn Write) -> fmt::Result {
         leafless_region {
             LEAFLESS_REGION_OUTSIDE, LEAFLESS_REGION_INSIDE, LEAFLESS_REGION_CROSSING,
             LEAFLESS_REGION_UNDECIDED
+        }
+        leafless_proven {
+            LEAFLESS_PROVEN_NOTHING, LEAFLESS_PROVEN_FULL, LEAFLESS_PROVEN_EMPTY, LEAFLESS_PROVEN_BOTH
         }
         leafless_touch { LEAFLESS_TOUCH_EXACT, LEAFLESS_TOUCH_PAPER }
         leafless_motion { LEAFLESS_MOTION_EXACT, LEAFLESS_MOTION_VERTICES, LEAFLESS_MOTION_CONSERVATIVE }
@@ -128,13 +132,13 @@ fn write_all(to: &mut dyn Write) -> fmt::Result {
     writeln!(to, "LEAFLESS_ABI {LEAFLESS_ABI}")
 }
 
-/// What the library was built with, to be compared with what C makes of this header: only in libraries that are
-/// built for tests. One line for each struct with its size, for each field with its offset and size, and for each
-/// constant with its value.
+/// What the library was built with, to be compared with what C makes of this header: only in libraries that
+/// are built for tests. One line for each struct with its size, for each field with its offset and size, and
+/// for each constant with its value.
 ///
 /// - Buffers: `text`, `capacity` bytes; may be NULL if `capacity` is 0.
-/// - Result: the text's length in bytes, without the terminating NUL, also if not all of it was written. What is
-///   written is NUL-terminated.
+/// - Result: the text's length in bytes, without the terminating NUL, also if not all of it was written. What
+///   is written is NUL-terminated.
 /// - Errors: none.
 /// - Ownership: the text is copied.
 /// - Threads: any.

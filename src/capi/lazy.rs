@@ -8,16 +8,17 @@ use super::query::leafless_membership;
 use super::solid::leafless_solid;
 use super::status::leafless_status;
 use crate::lattice::Cell;
-use crate::op::{LazyOctree, Refined, Zone};
+use crate::op::{LazyOctree, Refinement, Zone};
 use crate::solid::Prepared;
 use alloc::boxed::Box;
 use alloc::vec::Vec;
 
-/// An octree of a solid that is not built in one go: a cell is split when somebody asks for it, and what was split is
-/// remembered. FULL and EMPTY cells are proven; cells that nobody has split yet are PARTIAL.
+/// An octree of a solid that is not built in one go: a cell is split when somebody asks for it, and what was
+/// split is remembered. FULL and EMPTY cells are proven; cells that nobody has split yet are PARTIAL.
 ///
-/// Splitting and refining change it: while one thread does so, no other may use it, and neither may the host's functions
-/// that it asks about a cell. Otherwise its other functions may be called at once from any number of threads.
+/// Splitting and refining change it: while one thread does so, no other may use it, and neither may the
+/// host's functions that it asks about a cell. Otherwise its other functions may be called at once from any
+/// number of threads.
 pub struct leafless_lazy(LazyOctree<Prepared>);
 
 /// What the work on an octree came to.
@@ -51,8 +52,8 @@ fn new(lazy: LazyOctree<Prepared>) -> *mut leafless_lazy {
     Box::into_raw(Box::new(leafless_lazy(lazy)))
 }
 
-/// An octree of which only the universe is known. No cell will ever be finer than the frame's depth, which costs nothing
-/// until they are asked for.
+/// An octree of which only the universe is known. No cell will ever be finer than the frame's depth, which
+/// costs nothing until they are asked for.
 ///
 /// - Buffers: `frame`, one struct; `lazy`, one pointer.
 /// - Result: `*lazy`.
@@ -76,16 +77,16 @@ pub unsafe extern "C" fn leafless_lazy_new(
     })
 }
 
-/// Takes up an octree that leafless_lazy_freeze made of the same solid, which is known by its fingerprint; `frame` may be
-/// deeper than the octree's. Whatever else the octree holds is believed, as far as the solid's splits do not contradict
-/// it. Splits are counted from zero.
+/// Takes up an octree that leafless_lazy_freeze made of the same solid, which is known by its fingerprint;
+/// `frame` may be deeper than the octree's. Whatever else the octree holds is believed, as far as the solid's
+/// splits do not contradict it. Splits are counted from zero.
 ///
 /// - Buffers: `frame`, one struct; `options`, one struct or NULL; `lazy`, one pointer.
 /// - Result: `*lazy`. O(n).
-/// - Errors: LEAFLESS_E_SOURCE if the octree does not hold the solid's fingerprint; LEAFLESS_E_ARGUMENT if the solid has
-///   none, or the octree is deeper than the frame; LEAFLESS_E_FRAME if it lies on another universe, or the solid
-///   belongs to another frame; LEAFLESS_E_DAMAGED; LEAFLESS_E_CALLBACK; LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED;
-///   LEAFLESS_E_NO_MEMORY.
+/// - Errors: LEAFLESS_E_SOURCE if the octree does not hold the solid's fingerprint; LEAFLESS_E_ARGUMENT if
+///   the solid has none, or the octree is deeper than the frame; LEAFLESS_E_FRAME if it lies on another
+///   universe, or the solid belongs to another frame; LEAFLESS_E_DAMAGED; LEAFLESS_E_CALLBACK;
+///   LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
 /// - Ownership: `octree` stays as it is; `*lazy` shares the solid, which may be freed; give it back with
 ///   leafless_lazy_free.
 /// - Threads: any.
@@ -125,13 +126,14 @@ pub unsafe extern "C" fn leafless_lazy_free(lazy: *mut leafless_lazy) {
     }
 }
 
-/// Splits a PARTIAL cell. A cell that was split before, is decided, or that splitting does not help costs nothing.
+/// Splits a PARTIAL cell. A cell that was split before, is decided, or that splitting does not help costs
+/// nothing.
 ///
 /// - Buffers: `cell`, 3 numbers, the cell's place among those of its level; `tags`, room for 8.
 /// - Result: the tags of its children in octant order (bit 0 of the octant is x, bit 1 y, bit 2 z).
-/// - Errors: LEAFLESS_E_ARGUMENT if the cell is none of the frame's, lies at its depth, or in a cell that is still to be
-///   split; LEAFLESS_E_SOURCE if the solid contradicts what the octree holds; LEAFLESS_E_CALLBACK;
-///   LEAFLESS_E_NO_MEMORY.
+/// - Errors: LEAFLESS_E_ARGUMENT if the cell is none of the frame's, lies at its depth, or in a cell that is
+///   still to be split; LEAFLESS_E_SOURCE if the solid contradicts what the octree holds;
+///   LEAFLESS_E_CALLBACK; LEAFLESS_E_NO_MEMORY.
 /// - Ownership: nothing changes hands.
 /// - Threads: no other call may use the handle.
 /// - Untrusted input: any solid, any numbers.
@@ -168,17 +170,19 @@ unsafe fn refine(
         let done = if done.is_null() { None } else { Some(out(done, "done")?) };
         let level = self::level(level);
         let refined = controlled(options, |control| lazy.refine(&zone, level, control))?;
-        done.map_or(Ok(()), |done| done.write(refined == Refined::Done))
+        done.map_or(Ok(()), |done| done.write(refined == Refinement::Done))
     })
 }
 
-/// Splits all cells down to `level`, those that can be. Limits in `options` (`max_splits`; `max_nodes` and `max_bytes` of
-/// all that the octree then holds) end the work, not the octree; coarser cells are then split before finer ones.
+/// Splits all cells down to `level`, those that can be. Limits in `options` (`max_splits`; `max_nodes` and
+/// `max_bytes` of all that the octree then holds) end the work, not the octree; coarser cells are then split
+/// before finer ones.
 ///
 /// - Buffers: `options`, one struct or NULL; `done`, one truth value, or NULL.
 /// - Result: `*done`, whether no limit was reached first.
-/// - Errors: LEAFLESS_E_ARGUMENT if `level` is beyond the frame's depth; LEAFLESS_E_SOURCE if the solid contradicts what
-///   the octree holds; LEAFLESS_E_CALLBACK; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY. What was split before stays so.
+/// - Errors: LEAFLESS_E_ARGUMENT if `level` is beyond the frame's depth; LEAFLESS_E_SOURCE if the solid
+///   contradicts what the octree holds; LEAFLESS_E_CALLBACK; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY. What
+///   was split before stays so.
 /// - Ownership: nothing changes hands.
 /// - Threads: no other call may use the handle; uses the calling thread alone.
 /// - Untrusted input: any solid; set limits where the level or the solid is not your own choice.
@@ -194,13 +198,14 @@ pub unsafe extern "C" fn leafless_lazy_refine(
     unsafe { refine(lazy, || Ok(Zone::Whole), level, options, done) }
 }
 
-/// As leafless_lazy_refine, for the cells that have more than their surface in common with the box [min, max]; of a box
-/// without thickness, for those that it lies in.
+/// As leafless_lazy_refine, for the cells that have more than their surface in common with the box [min,
+/// max]; of a box without thickness, for those that it lies in.
 ///
-/// - Buffers: `min_model` and `max_model`, 3 numbers each; `options`, one struct or NULL; `done`, one truth value, or
-///   NULL.
+/// - Buffers: `min_model` and `max_model`, 3 numbers each; `options`, one struct or NULL; `done`, one truth
+///   value, or NULL.
 /// - Result: `*done`, whether no limit was reached first.
-/// - Errors: as leafless_lazy_refine; LEAFLESS_E_ARGUMENT also if min > max on an axis, or a coordinate is not a number.
+/// - Errors: as leafless_lazy_refine; LEAFLESS_E_ARGUMENT also if min > max on an axis, or a coordinate is
+///   not a number.
 /// - Ownership: nothing changes hands.
 /// - Threads: no other call may use the handle; uses the calling thread alone.
 /// - Untrusted input: any solid, any numbers; set limits where the level or the solid is not your own choice.
@@ -247,14 +252,14 @@ pub unsafe extern "C" fn leafless_lazy_refine_point(
     unsafe { refine(lazy, || Ok(Zone::Point(array(point_model, "point_model")?)), level, options, done) }
 }
 
-/// As leafless_lazy_refine, for all cells that the points origin + t·direction with from ≤ t ≤ to touch. Limits leave
-/// those unsplit that the ray comes to last.
+/// As leafless_lazy_refine, for all cells that the points origin + t·direction with from ≤ t ≤ to touch.
+/// Limits leave those unsplit that the ray comes to last.
 ///
-/// - Buffers: `origin_model` and `direction_model`, 3 numbers each; `options`, one struct or NULL; `done`, one truth
-///   value, or NULL.
+/// - Buffers: `origin_model` and `direction_model`, 3 numbers each; `options`, one struct or NULL; `done`,
+///   one truth value, or NULL.
 /// - Result: `*done`, whether no limit was reached first.
-/// - Errors: as leafless_lazy_refine; LEAFLESS_E_ARGUMENT also if a coordinate is neither 0 nor of a magnitude between
-///   2^-256 and 2^256, the direction is zero, or not from ≤ to (both may be infinite).
+/// - Errors: as leafless_lazy_refine; LEAFLESS_E_ARGUMENT also if a coordinate is neither 0 nor of a
+///   magnitude between 2^-256 and 2^256, the direction is zero, or not from ≤ to (both may be infinite).
 /// - Ownership: nothing changes hands.
 /// - Threads: no other call may use the handle; uses the calling thread alone.
 /// - Untrusted input: any solid, any numbers; set limits where the level or the solid is not your own choice.
@@ -284,11 +289,11 @@ pub unsafe extern "C" fn leafless_lazy_refine_ray(
 
 /// What is known of a cell. In a cell that is decided, or was not split yet, there are only cells like it.
 ///
-/// - Buffers: `cell`, 3 numbers, the cell's place among those of its level; `tag`, one; `can_split`, one truth value, or
-///   NULL.
-/// - Result: `*tag`; BRANCH if the cell was split and its children differ; PARTIAL if it is none of the frame's.
-///   `*can_split`, whether leafless_lazy_split would ask the solid: the cell is PARTIAL, its parent was split, it is
-///   above the frame's depth, and the solid did not say that splitting does not help.
+/// - Buffers: `cell`, 3 numbers, the cell's place among those of its level; `tag`, one; `can_split`, one
+///   truth value, or NULL.
+/// - Result: `*tag`; BRANCH if the cell was split and its children differ; PARTIAL if it is none of the
+///   frame's. `*can_split`, whether leafless_lazy_split would ask the solid: the cell is PARTIAL, its parent
+///   was split, it is above the frame's depth, and the solid did not say that splitting does not help.
 /// - Errors: only the general ones.
 /// - Ownership: nothing changes hands.
 /// - Threads: any, while nobody changes the octree.
@@ -314,8 +319,8 @@ pub unsafe extern "C" fn leafless_lazy_tag(
     })
 }
 
-/// Whether the solid contains a point, as far as cells have been split. A point on the boundary may be answered either
-/// way.
+/// Whether the solid contains a point, as far as cells have been split. A point on the boundary may be
+/// answered either way.
 ///
 /// - Buffers: `point_model`, 3 numbers; `membership`, one.
 /// - Result: `*membership`.
@@ -383,8 +388,8 @@ pub unsafe extern "C" fn leafless_lazy_count(
     })
 }
 
-/// Counts of each level, and the certified volumes of the octree cut there. Entry 0 is the universe, entry `depth` the
-/// finest cells.
+/// Counts of each level, and the certified volumes of the octree cut there. Entry 0 is the universe, entry
+/// `depth` the finest cells.
 ///
 /// - Buffers: `levels`, room for `capacity` structs, or NULL to ask for the count only; `count`, one number.
 /// - Result: `*count`, depth + 1; the levels.
@@ -436,8 +441,8 @@ pub unsafe extern "C" fn leafless_lazy_splits(
     })
 }
 
-/// The octree as it is now: canonical, and what is not split is PARTIAL. As the fact "source" it holds the solid's
-/// fingerprint, if there is one: saved or not, leafless_lazy_resume takes it up again.
+/// The octree as it is now: canonical, and what is not split is PARTIAL. As the fact "source" it holds the
+/// solid's fingerprint, if there is one: saved or not, leafless_lazy_resume takes it up again.
 ///
 /// - Buffers: `options`, one struct or NULL; `octree`, one pointer.
 /// - Result: `*octree`.

@@ -3,10 +3,11 @@
 use super::boundary::{guard, out, shared};
 use super::control::{controlled, leafless_options};
 use super::frame::{frame, leafless_frame, leafless_interval};
+use super::octree::leafless_proof;
 use super::solid::leafless_solid;
 use super::status::leafless_status;
 use crate::lattice::Interval;
-use crate::query::{Extent, Measured, Measures, bounding_box, measure};
+use crate::query::{Extent, MassProperties, StopReason, bounding_box, measure};
 
 /// Why measuring ended.
 #[derive(Clone, Copy)]
@@ -16,24 +17,24 @@ pub enum leafless_measured {
     LEAFLESS_MEASURED_TOLERANCE = 0,
     /// `max_splits` of the options is spent.
     LEAFLESS_MEASURED_BUDGET = 1,
-    /// No cell is left that could be split: what is undecided has the size of the frame's finest cells, or the solid
-    /// itself knows no more about it, as an octree does of its PARTIAL cells.
+    /// No cell is left that could be split: what is undecided has the size of the frame's finest cells, or
+    /// the solid itself knows no more about it, as an octree does of its PARTIAL cells.
     LEAFLESS_MEASURED_EXHAUSTED = 2,
 }
 use leafless_measured::*;
 
-impl From<Measured> for leafless_measured {
-    fn from(measured: Measured) -> leafless_measured {
-        match measured {
-            Measured::Tolerance => LEAFLESS_MEASURED_TOLERANCE,
-            Measured::Budget => LEAFLESS_MEASURED_BUDGET,
-            Measured::Exhausted => LEAFLESS_MEASURED_EXHAUSTED,
+impl From<StopReason> for leafless_measured {
+    fn from(reason: StopReason) -> leafless_measured {
+        match reason {
+            StopReason::Tolerance => LEAFLESS_MEASURED_TOLERANCE,
+            StopReason::Budget => LEAFLESS_MEASURED_BUDGET,
+            StopReason::Exhausted => LEAFLESS_MEASURED_EXHAUSTED,
         }
     }
 }
 
-/// Mass properties of a solid of density 1. All intervals contain the truth. All of it concerns the part inside of the
-/// universe; unless `is_clipped` says otherwise, that is the whole solid.
+/// Mass properties of a solid of density 1. All intervals contain the truth. All of it concerns the part
+/// inside of the universe; unless `is_clipped` says otherwise, that is the whole solid.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_measures {
@@ -41,11 +42,14 @@ pub struct leafless_measures {
     pub volume_model: leafless_interval,
     /// Centroid; all numbers unless `has_centroid`.
     pub centroid_model: [leafless_interval; 3],
-    /// Tensor of inertia about the model's origin, row by row: the integral of |p|²δij - pi·pj over the points p of the
-    /// solid. So products of inertia are negative where the product of the coordinates is mostly positive.
+    /// Tensor of inertia about the model's origin, row by row: the integral of |p|²δij - pi·pj over the
+    /// points p of the solid. So products of inertia are negative where the product of the coordinates is
+    /// mostly positive.
     pub inertia_origin_model: [leafless_interval; 9],
     /// The same about the solid's own centroid, wherever in the interval that lies.
     pub inertia_centroid_model: [leafless_interval; 9],
+    /// What of the solid is proven: what is not counts as undecided.
+    pub proof: leafless_proof,
     /// How many times a cell was split.
     pub splits: u64,
     /// Every undecided cell of a lower level was split, if the solid could.
@@ -66,6 +70,8 @@ pub struct leafless_extent {
     pub min_model: [leafless_interval; 3],
     /// Upper corner; all numbers if `is_empty`.
     pub max_model: [leafless_interval; 3],
+    /// What of the solid is proven: what is not counts as undecided.
+    pub proof: leafless_proof,
     /// How many times a cell was split.
     pub splits: u64,
     /// Why it ended.
@@ -84,16 +90,17 @@ fn row_by_row(tensor: [[Interval; 3]; 3]) -> [leafless_interval; 9] {
     core::array::from_fn(|k| tensor[k / 3][k % 3].into())
 }
 
-impl From<Measures> for leafless_measures {
-    fn from(measures: Measures) -> leafless_measures {
+impl From<MassProperties> for leafless_measures {
+    fn from(measures: MassProperties) -> leafless_measures {
         leafless_measures {
             volume_model: measures.volume.into(),
             centroid_model: measures.centroid.unwrap_or([ANY; 3]).map(Into::into),
             inertia_origin_model: row_by_row(measures.inertia_about_origin),
             inertia_centroid_model: row_by_row(measures.inertia_about_centroid),
+            proof: measures.proof.into(),
             splits: measures.splits,
             level: measures.level.into(),
-            measured: measures.measured.into(),
+            measured: measures.stop_reason.into(),
             has_centroid: measures.centroid.is_some(),
             is_clipped: measures.clipped,
         }
@@ -106,8 +113,9 @@ impl From<Extent> for leafless_extent {
         leafless_extent {
             min_model: min.map(Into::into),
             max_model: max.map(Into::into),
+            proof: extent.proof.into(),
             splits: extent.splits,
-            measured: extent.measured.into(),
+            measured: extent.stop_reason.into(),
             is_empty: extent.corners.is_none(),
             is_occupied: extent.occupied,
             is_clipped: extent.clipped,
@@ -115,16 +123,17 @@ impl From<Extent> for leafless_extent {
     }
 }
 
-/// Measures a solid in the universe of a frame, without building an octree: the largest undecided cells are split
-/// first, until the width of the volume's interval is at most `tolerance` times its middle, `max_splits` of the
-/// options is spent, or nothing is left to split at the frame's depth. The result is the same bit for bit for any number
-/// of threads.
+/// Measures a solid in the universe of a frame, without building an octree: the largest undecided cells are
+/// split first, until the width of the volume's interval is at most `tolerance` times its middle,
+/// `max_splits` of the options is spent, or nothing is left to split at the frame's depth. The result is the
+/// same bit for bit for any number of threads.
 ///
-/// - Buffers: `frame`, one struct; `options`, one struct or NULL, of which `max_nodes` and `max_bytes` do not matter;
-///   `measures`, one struct.
+/// - Buffers: `frame`, one struct; `options`, one struct or NULL, of which `max_nodes` and `max_bytes` do not
+///   matter; `measures`, one struct.
 /// - Result: `*measures`.
-/// - Errors: LEAFLESS_E_ARGUMENT, also if `tolerance` is negative or not a number; LEAFLESS_E_FRAME if the solid belongs
-///   to another frame; LEAFLESS_E_CALLBACK; LEAFLESS_E_DAMAGED; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
+/// - Errors: LEAFLESS_E_ARGUMENT, also if `tolerance` is negative or not a number; LEAFLESS_E_FRAME if the
+///   solid belongs to another frame; LEAFLESS_E_CALLBACK; LEAFLESS_E_DAMAGED; LEAFLESS_E_CANCELLED;
+///   LEAFLESS_E_NO_MEMORY.
 /// - Ownership: nothing changes hands.
 /// - Threads: any; uses as many as `options` says.
 /// - Untrusted input: any solid; set `max_splits` where the depth or the solid is not your own choice.
@@ -146,9 +155,10 @@ pub unsafe extern "C" fn leafless_solid_measure(
 }
 
 /// The bounding box of a solid in the universe of a frame: each of its sides until the interval is at most
-/// `tolerance_model` or one finest cell wide, `max_splits` of the options is spent, or nothing is left to split. Only
-/// cells that may reach beyond what is proven solid are split. With n the universe's edge over the tolerance that takes
-/// some n splits for a curved side and, unless it lies on a plane of the lattice, n² for a flat one.
+/// `tolerance_model` or one finest cell wide, `max_splits` of the options is spent, or nothing is left to
+/// split. Only cells that may reach beyond what is proven solid are split. With n the universe's edge over
+/// the tolerance that takes some n splits for a curved side and, unless it lies on a plane of the lattice, n²
+/// for a flat one.
 ///
 /// - Buffers: as leafless_solid_measure; `extent`, one struct.
 /// - Result: `*extent`.

@@ -2,35 +2,36 @@
 
 use super::boundary::{Failure, array, buffer, guard, handle, out, refer, release, shared};
 use super::status::leafless_status;
+use crate::lattice::valid;
 use crate::mesh::{DefectKind, FillRule, MeshDefect, TriangleMesh};
 use alloc::sync::Arc;
 
-/// A surface of triangles with shared vertices. Vertices at equal places are welded; whether the mesh is closed is
-/// not implied, and need not be.
+/// A surface of triangles with shared vertices. Vertices at equal places are welded; whether the mesh is
+/// closed is not implied, and need not be.
 ///
-/// Immutable: all its functions may be called at once from any number of threads, but leafless_mesh_free needs
-/// the reference that it gives back for itself.
+/// Immutable: all its functions may be called at once from any number of threads, but leafless_mesh_free
+/// needs the reference that it gives back for itself.
 pub struct leafless_mesh {
     pub(super) mesh: Arc<TriangleMesh>,
 }
 
 /// Which points a surface encloses.
 ///
-/// The winding number of a surface at a point is the solid angle at which it is seen from there, over 4π, counted
-/// positive where the inner side is seen. Of a closed surface it is an integer. Where a surface has holes, fins, or
-/// triangles turned over, it is a fraction, and the nearest integer decides by convention: a hole is closed by the
-/// surface from which half of all directions lead out.
+/// The winding number of a surface at a point is the solid angle at which it is seen from there, over 4π,
+/// counted positive where the inner side is seen. Of a closed surface it is an integer. Where a surface has
+/// holes, fins, or triangles turned over, it is a fraction, and the nearest integer decides by convention: a
+/// hole is closed by the surface from which half of all directions lead out.
 #[derive(Clone, Copy)]
 #[repr(u32)]
 pub enum leafless_fill {
-    /// Points whose winding number is at least 1/2 in magnitude: overlapping bodies are united, and a body that is
-    /// inside out is a body.
+    /// Points whose winding number is at least 1/2 in magnitude: overlapping bodies are united, and a body
+    /// that is inside out is a body.
     LEAFLESS_FILL_NON_ZERO = 0,
-    /// Points from which a ray crosses the surface an odd number of times: the overlap of two bodies is outside.
-    /// Orientation does not matter. An even number of triangles must meet on every edge.
+    /// Points from which a ray crosses the surface an odd number of times: the overlap of two bodies is
+    /// outside. Orientation does not matter. An even number of triangles must meet on every edge.
     LEAFLESS_FILL_EVEN_ODD = 1,
-    /// Points whose winding number is at least 1/2: a body that is inside out is a cavity, and takes away from
-    /// bodies that it overlaps.
+    /// Points whose winding number is at least 1/2: a body that is inside out is a cavity, and takes away
+    /// from bodies that it overlaps.
     LEAFLESS_FILL_POSITIVE = 2,
 }
 
@@ -59,7 +60,8 @@ pub struct leafless_mesh_report {
     pub degenerate: u64,
     /// Edges that an odd number of triangles use. A mesh is closed if there is none.
     pub boundary_edges: u64,
-    /// Loops of these edges, without vertices that occur twice: the holes of the surface and the rims of sheets.
+    /// Loops of these edges, without vertices that occur twice: the holes of the surface and the rims of
+    /// sheets.
     pub boundary_loops: u64,
     /// Edges that an even number of triangles use, but not half of them in each direction. A closed mesh is
     /// consistently oriented if there is none.
@@ -68,13 +70,13 @@ pub struct leafless_mesh_report {
     pub non_manifold_edges: u64,
     /// Triangles that repeat an earlier one, in the same direction. They count as often as they occur.
     pub duplicate: u64,
-    /// Pairs of triangles with the same corners in opposite directions: walls without thickness. The two cancel
-    /// each other.
+    /// Pairs of triangles with the same corners in opposite directions: walls without thickness. The two
+    /// cancel each other.
     pub opposite: u64,
     /// Triangles without area whose corners are three different vertices. They do no harm.
     pub flat: u64,
-    /// Sets of triangles that hang together over edges. Bodies that touch only in single vertices count separately, and
-    /// so does the outer from the inner surface of a hollow body.
+    /// Sets of triangles that hang together over edges. Bodies that touch only in single vertices count
+    /// separately, and so does the outer from the inner surface of a hollow body.
     pub bodies: u64,
     /// Bodies that are open or not consistently oriented.
     pub open_bodies: u64,
@@ -102,8 +104,8 @@ pub enum leafless_defect {
     LEAFLESS_DEFECT_FLAT = 4,
 }
 
-/// A part of a mesh that is not as it should be: one loop of a hole, or, of the other kinds, edges or triangles that hang
-/// together over common vertices.
+/// A part of a mesh that is not as it should be: one loop of a hole, or, of the other kinds, edges or
+/// triangles that hang together over common vertices.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_mesh_defect {
@@ -255,8 +257,8 @@ pub unsafe extern "C" fn leafless_mesh_bounds(
     })
 }
 
-/// The volume that a mesh encloses, by the divergence theorem: overlaps count twice, bodies that are inside out
-/// negative. Of an open mesh it has no meaning. Rounded; the certified volume is that of an octree.
+/// The volume that a mesh encloses, by the divergence theorem: overlaps count twice, bodies that are inside
+/// out negative. Of an open mesh it has no meaning. Rounded; the certified volume is that of an octree.
 ///
 /// - Buffers: `volume_model`, one number.
 /// - Result: `*volume_model`, in cubic model units.
@@ -276,8 +278,8 @@ pub unsafe extern "C" fn leafless_mesh_volume(
     })
 }
 
-/// What was found when a mesh was made, and how its triangles hang together. The first call analyses the edges,
-/// later ones are free.
+/// What was found when a mesh was made, and how its triangles hang together. The first call analyses the
+/// edges, later ones are free.
 ///
 /// - Buffers: `report`, one struct.
 /// - Result: `*report`.
@@ -317,8 +319,8 @@ pub unsafe extern "C" fn leafless_mesh_describe(
     })
 }
 
-/// Where a mesh is not as it should be, the worst first: in the order of leafless_defect, and those of one kind by the
-/// longest side of their boxes, then by count, then by position.
+/// Where a mesh is not as it should be, the worst first: in the order of leafless_defect, and those of one
+/// kind by the longest side of their boxes, then by count, then by position.
 ///
 /// - Buffers: `defects`, room for `capacity` of them, or NULL to ask for their number only.
 /// - Result: `*count`, how many there are, but not more than `limit`; the worst ones in `defects`.
@@ -345,14 +347,15 @@ pub unsafe extern "C" fn leafless_mesh_defects(
     })
 }
 
-/// Checks that a mesh has no hole, so that every point that is not on it is clearly inside or outside: an even number
-/// of triangles meet on every edge, and but for LEAFLESS_FILL_EVEN_ODD half of them run in each direction.
-/// Self-intersections, overlaps, nested and inside-out bodies are all allowed. Solids need not pass this.
+/// Checks that a mesh has no hole, so that every point that is not on it is clearly inside or outside: an
+/// even number of triangles meet on every edge, and but for LEAFLESS_FILL_EVEN_ODD half of them run in each
+/// direction. Self-intersections, overlaps, nested and inside-out bodies are all allowed. Solids need not
+/// pass this.
 ///
 /// - Buffers: none. `fill` is a leafless_fill.
 /// - Result: LEAFLESS_OK if it is so.
-/// - Errors: LEAFLESS_E_MESH if the mesh is empty, not closed, or (but for LEAFLESS_FILL_EVEN_ODD) not consistently
-///   oriented; LEAFLESS_E_ARGUMENT if `fill` is no leafless_fill; LEAFLESS_E_NO_MEMORY.
+/// - Errors: LEAFLESS_E_MESH if the mesh is empty, not closed, or (but for LEAFLESS_FILL_EVEN_ODD) not
+///   consistently oriented; LEAFLESS_E_ARGUMENT if `fill` is no leafless_fill; LEAFLESS_E_NO_MEMORY.
 /// - Ownership: nothing changes hands.
 /// - Threads: any.
 /// - Untrusted input: any mesh.
@@ -390,8 +393,8 @@ pub unsafe extern "C" fn leafless_mesh_sewn(
     })
 }
 
-/// The mesh under an affine map: x' = M x + t, rounded. A reflection turns it inside out. The moved vertices count
-/// as the truth, whatever cracks were closed before.
+/// The mesh under an affine map: x' = M x + t, rounded. A reflection turns it inside out. The moved vertices
+/// count as the truth, whatever cracks were closed before.
 ///
 /// - Buffers: `matrix`, 12 numbers: three rows of M and t, (m00 m01 m02 t0, m10 …); `moved`, one pointer.
 /// - Result: `*moved`, welded as by leafless_mesh_new.
@@ -413,9 +416,7 @@ pub unsafe extern "C" fn leafless_mesh_transformed(
         let mesh = &shared(mesh, "mesh")?.mesh;
         let matrix: [[f64; 4]; 3] = array(matrix.cast(), "matrix")?;
         let moved = out(moved, "moved")?;
-        if matrix.iter().flatten().any(|number| !number.is_finite()) {
-            return Err(Failure::Argument { name: "matrix", problem: "has a number that is not finite" });
-        }
+        valid::finite("matrix", matrix.as_flattened())?;
         let row = |[a, b, c, t]: [f64; 4], [x, y, z]: [f64; 3]| a * x + b * y + c * z + t;
         moved.write(give(mesh.transformed(|vertex| matrix.map(|m| row(m, vertex)))?))
     })
@@ -443,12 +444,7 @@ pub unsafe extern "C" fn leafless_mesh_translated(
         let mesh = &shared(mesh, "mesh")?.mesh;
         let offset: [f64; 3] = array(offset_model, "offset_model")?;
         let moved = out(moved, "moved")?;
-        if offset.iter().any(|number| !number.is_finite()) {
-            return Err(Failure::Argument {
-                name: "offset_model",
-                problem: "has a number that is not finite",
-            });
-        }
+        valid::finite("offset_model", &offset)?;
         moved.write(give(mesh.translated(offset)?))
     })
 }

@@ -4,7 +4,7 @@ use super::boundary::{Failure, Sized32, Strided, guard, initialise, out, sized, 
 use super::mesh::{give, leafless_mesh};
 use super::status::leafless_status;
 use crate::error::{Error, MeshError};
-use crate::lattice::{LARGEST, SMALLEST};
+use crate::lattice::valid;
 use crate::memory;
 use crate::mesh::TriangleMesh;
 use alloc::borrow::Cow;
@@ -35,9 +35,9 @@ pub enum leafless_index_type {
     LEAFLESS_INDEX_U16 = 2,
 }
 
-/// The arrays that a mesh is made of: vertices of three coordinates, and triangles of three indices. They need not
-/// be aligned, and may lie among other data, such as normals, which are not read. All fields but the first may be
-/// zero, which is their default; leafless_mesh_arrays_init sets them so.
+/// The arrays that a mesh is made of: vertices of three coordinates, and triangles of three indices. They
+/// need not be aligned, and may lie among other data, such as normals, which are not read. All fields but the
+/// first may be zero, which is their default; leafless_mesh_arrays_init sets them so.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_mesh_arrays {
@@ -51,8 +51,8 @@ pub struct leafless_mesh_arrays {
     pub vertex_count: u64,
     /// Bytes from one vertex to the next; 0 means that they follow each other without a gap.
     pub vertex_stride: u64,
-    /// The first triangle: three indices, counted from 0. NULL if there is none, or if every three vertices are
-    /// one.
+    /// The first triangle: three indices, counted from 0. NULL if there is none, or if every three vertices
+    /// are one.
     pub indices: *const c_void,
     /// Number of triangles. Where every three vertices are one, this must be a third of `vertex_count`.
     pub triangle_count: u64,
@@ -95,11 +95,7 @@ impl<'a> Vertices<'a> {
     pub(super) unsafe fn new(given: GivenVertices) -> Result<Vertices<'a>, Failure> {
         let scale = match given.scale {
             0.0 => 1.0,
-            scale if (SMALLEST..=LARGEST).contains(&scale) => scale,
-            _ => {
-                let problem = "must be 0 or between 2^-256 and 2^256";
-                return Err(Failure::Argument { name: "arrays.scale", problem });
-            }
+            scale => valid::length("arrays.scale", scale).map(|()| scale)?,
         };
         let names = ["arrays.vertices", "arrays.vertex_stride"];
         let GivenVertices { start, count, stride, .. } = given;
@@ -281,17 +277,19 @@ pub unsafe extern "C" fn leafless_mesh_arrays_init(
     guard(|| unsafe { initialise(arrays, struct_size, "arrays") })
 }
 
-/// Makes a mesh of arrays. Equal vertices are welded, triangles with two corners at one place dropped and counted;
-/// coordinates below 2^-256 count as zero. Seen from outside of the solid the corners turn counter-clockwise.
+/// Makes a mesh of arrays. Equal vertices are welded, triangles with two corners at one place dropped and
+/// counted; coordinates below 2^-256 count as zero. Seen from outside of the solid the corners turn
+/// counter-clockwise.
 ///
-/// - Buffers: `arrays`, one struct; what its pointers lead to must not change during the call. `mesh`, one pointer.
+/// - Buffers: `arrays`, one struct; what its pointers lead to must not change during the call. `mesh`, one
+///   pointer.
 /// - Result: `*mesh`; not checked to be closed.
-/// - Errors: LEAFLESS_E_MESH if a coordinate is infinite, not a number, or beyond ±2^256, or if an index is out of
-///   range, with the index of the vertex or triangle in the message, or if there are more than 2^32 - 1 vertices or
-///   triangles; LEAFLESS_E_ARGUMENT if a type, a stride or the scale is none, or `indices` NULL though there are
-///   triangles and not three vertices for each; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: the arrays are only read during the call, once and in their order, and may be freed after it: the
-///   mesh has its own. Give `*mesh` back with leafless_mesh_free.
+/// - Errors: LEAFLESS_E_MESH if a coordinate is infinite, not a number, or beyond ±2^256, or if an index is
+///   out of range, with the index of the vertex or triangle in the message, or if there are more than 2^32 -
+///   1 vertices or triangles; LEAFLESS_E_ARGUMENT if a type, a stride or the scale is none, or `indices` NULL
+///   though there are triangles and not three vertices for each; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: the arrays are only read during the call, once and in their order, and may be freed after it:
+///   the mesh has its own. Give `*mesh` back with leafless_mesh_free.
 /// - Threads: any.
 /// - Untrusted input: any values in the arrays.
 /// - Since: 0.1

@@ -46,8 +46,8 @@ pub enum leafless_unit {
     LEAFLESS_UNIT_FOOT = 6,
 }
 
-/// How a mesh file is to be taken. NULL means the defaults. All fields but the first may be zero, which is their
-/// default; leafless_mesh_options_init sets them so.
+/// How a mesh file is to be taken. NULL means the defaults. All fields but the first may be zero, which is
+/// their default; leafless_mesh_options_init sets them so.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_mesh_options {
@@ -55,8 +55,8 @@ pub struct leafless_mesh_options {
     pub struct_size: u32,
     /// The file's format, a leafless_mesh_format.
     pub format: u32,
-    /// The unit of the numbers in the file, a leafless_unit. LEAFLESS_UNIT_UNKNOWN means what the file says, which only
-    /// a 3MF does; anything else overrides that.
+    /// The unit of the numbers in the file, a leafless_unit. LEAFLESS_UNIT_UNKNOWN means what the file says,
+    /// which only a 3MF does; anything else overrides that.
     pub unit: u32,
     /// The unit that the mesh shall have, a leafless_unit. LEAFLESS_UNIT_UNKNOWN means that of the file.
     pub target: u32,
@@ -75,8 +75,8 @@ pub struct leafless_mesh_source {
     pub format: leafless_mesh_format,
     /// The unit of the mesh, converted but not scaled, if it is known.
     pub unit: leafless_unit,
-    /// Instances of objects that are not meant to be solid, such as supports in a 3MF, and that the mesh does not
-    /// contain.
+    /// Instances of objects that are not meant to be solid, such as supports in a 3MF, and that the mesh does
+    /// not contain.
     pub skipped: u64,
 }
 
@@ -170,8 +170,8 @@ impl Results {
 
 /// Sets options for mesh files to their defaults.
 ///
-/// - Buffers: `options`, one struct of `struct_size` bytes, which is sizeof(leafless_mesh_options); need not be
-///   initialised.
+/// - Buffers: `options`, one struct of `struct_size` bytes, which is sizeof(leafless_mesh_options); need not
+///   be initialised.
 /// - Result: `*options`.
 /// - Errors: LEAFLESS_E_ARGUMENT if `struct_size` cannot be right.
 /// - Ownership: nothing changes hands.
@@ -186,20 +186,22 @@ pub unsafe extern "C" fn leafless_mesh_options_init(
     guard(|| unsafe { initialise(options, struct_size, "options") })
 }
 
-/// Reads a mesh file. Everything in it becomes one mesh, welded as by leafless_mesh_new; polygons become triangles.
+/// Reads a mesh file. Everything in it becomes one mesh, welded as by leafless_mesh_new; polygons become
+/// triangles.
 ///
-/// - Buffers: `path`, `path_length` bytes of UTF-8; `options`, one struct, or NULL; `source`, one struct, or NULL if it
-///   is not wanted; `mesh`, one pointer.
+/// - Buffers: `path`, `path_length` bytes of UTF-8; `options`, one struct, or NULL; `source`, one struct, or
+///   NULL if it is not wanted; `mesh`, one pointer.
 /// - Result: `*mesh`, not checked to be closed; `*source`.
-/// - Errors: LEAFLESS_E_MESH_FILE, with the part, line, facet or byte in the message, if the file cannot be read, if its
-///   format is not known, or if `target` is given and nobody says from which unit; LEAFLESS_E_MESH, with the vertex,
-///   if a coordinate is beyond ±2^256 once it is scaled; LEAFLESS_E_ARGUMENT if the format or a unit is none, or the
-///   scale out of range; LEAFLESS_E_IO; LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY.
+/// - Errors: LEAFLESS_E_MESH_FILE, with the part, line, facet or byte in the message, if the file cannot be
+///   read, if its format is not known, or if `target` is given and nobody says from which unit;
+///   LEAFLESS_E_MESH, with the vertex, if a coordinate is beyond ±2^256 once it is scaled;
+///   LEAFLESS_E_ARGUMENT if the format or a unit is none, or the scale out of range; LEAFLESS_E_IO;
+///   LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY.
 /// - Ownership: give `*mesh` back with leafless_mesh_free.
 /// - Threads: any.
-/// - Untrusted input: any file. Memory is at most a small multiple of its length; of a 3MF, which is compressed, of 64
-///   times its length and 16 MiB, and its instances may come to 2^25 vertices and 2^25 triangles, or to as many as the
-///   file has.
+/// - Untrusted input: any file. Memory is at most a small multiple of its length; of a 3MF, which is
+///   compressed, of 64 times its length and 16 MiB, and its instances may come to 2^25 vertices and 2^25
+///   triangles, or to as many as the file has.
 /// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_mesh_open(
@@ -219,8 +221,8 @@ pub unsafe extern "C" fn leafless_mesh_open(
 
 /// As leafless_mesh_open for a file in memory, of whose name nothing is known.
 ///
-/// - Buffers: `bytes`, `length` bytes; may be NULL if there are none. `options`, one struct, or NULL; `source`, one
-///   struct, or NULL if it is not wanted; `mesh`, one pointer.
+/// - Buffers: `bytes`, `length` bytes; may be NULL if there are none. `options`, one struct, or NULL;
+///   `source`, one struct, or NULL if it is not wanted; `mesh`, one pointer.
 /// - Result: `*mesh`, not checked to be closed; `*source`.
 /// - Errors: as leafless_mesh_open, but those of paths.
 /// - Ownership: the bytes are not kept; give `*mesh` back with leafless_mesh_free.
@@ -247,8 +249,8 @@ pub unsafe extern "C" fn leafless_mesh_from_bytes(
 ///
 /// - Buffers: `bytes`, room for `capacity` bytes, or NULL to ask for the length only.
 /// - Result: `*length`, the length of the file; the file in `bytes`.
-/// - Errors: LEAFLESS_E_BUFFER if the capacity is too small; LEAFLESS_E_ARGUMENT if a coordinate is beyond the
-///   range of 32-bit floating point numbers; LEAFLESS_E_NO_MEMORY.
+/// - Errors: LEAFLESS_E_BUFFER if the capacity is too small; LEAFLESS_E_ARGUMENT if a coordinate is beyond
+///   the range of 32-bit floating point numbers; LEAFLESS_E_NO_MEMORY.
 /// - Ownership: nothing changes hands.
 /// - Threads: any.
 /// - Untrusted input: none.

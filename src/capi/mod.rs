@@ -1,8 +1,8 @@
 //! The C interface: what `include/leafless.h` declares.
 //!
-//! Every function is a few lines: check what came from outside, call the one function of the library that does
-//! the work, hand its result over. The header's preface states the rules that hold for all of them; `boundary`
-//! enforces these, and the doc blocks here become the header's.
+//! Every function is a few lines: check what came from outside, call the one function of the library that
+//! does the work, hand its result over. The header's preface states the rules that hold for all of them;
+//! `boundary` enforces these, and the doc blocks here become the header's.
 //!
 //! | file | section of the header |
 //! |---|---|

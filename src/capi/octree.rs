@@ -3,13 +3,13 @@
 use super::boundary::{Failure, buffer, guard, handle, out, refer, release, shared, text};
 use super::frame::{frame, leafless_frame, leafless_interval};
 use super::status::leafless_status;
-use crate::octree::{LevelStatistics, Metadata, Octree, Statistics, Tag};
+use crate::octree::{LevelStatistics, Metadata, Octree, Proof, Statistics, Tag};
 use core::ffi::c_char;
 
 /// A leaf-free octree, in memory or mapped from a file.
 ///
-/// Immutable: all its functions may be called at once from any number of threads, but leafless_octree_free needs
-/// the reference that it gives back for itself.
+/// Immutable: all its functions may be called at once from any number of threads, but leafless_octree_free
+/// needs the reference that it gives back for itself.
 pub struct leafless_octree {
     pub(super) octree: Octree,
 }
@@ -50,6 +50,40 @@ pub(super) fn settled_tag(tag: i64, name: &'static str) -> Result<Tag, Failure> 
     }
 }
 
+/// What the cells of an octree prove of the solid that it was made from. Certified trees prove both, inner
+/// ones FULL, outer ones EMPTY, sampled ones nothing. Booleans prove what their operands do, and files keep
+/// it.
+#[derive(Clone, Copy)]
+#[repr(C)]
+pub struct leafless_proof {
+    /// How far the surfaces that the cells speak of were moved from those that were handed in, in model
+    /// units: cracks that were sewn, vertices that were rounded, a stated deviation of a tessellation.
+    pub displacement_model: f64,
+    /// A FULL cell is proven to lie in the solid.
+    pub full: bool,
+    /// An EMPTY cell is proven to lie outside of it.
+    pub empty: bool,
+}
+
+impl From<Proof> for leafless_proof {
+    fn from(proof: Proof) -> leafless_proof {
+        leafless_proof { displacement_model: proof.displacement(), full: proof.full, empty: proof.empty }
+    }
+}
+
+/// Which tags of an octree's cells are proven.
+#[repr(u32)]
+pub enum leafless_proven {
+    /// Neither.
+    LEAFLESS_PROVEN_NOTHING = 0,
+    /// FULL.
+    LEAFLESS_PROVEN_FULL = 1,
+    /// EMPTY.
+    LEAFLESS_PROVEN_EMPTY = 2,
+    /// FULL and EMPTY.
+    LEAFLESS_PROVEN_BOTH = 3,
+}
+
 /// What can be said of an octree at once.
 #[derive(Clone, Copy)]
 #[repr(C)]
@@ -60,6 +94,8 @@ pub struct leafless_octree_info {
     pub elements: u64,
     /// Array elements of the deepest level.
     pub bricks: u64,
+    /// What the cells prove.
+    pub proof: leafless_proof,
     /// The tag of the whole universe; BRANCH if it is cut.
     pub root: leafless_tag,
     /// What is known of the space outside of the universe; never BRANCH.
@@ -125,8 +161,8 @@ pub(super) fn give(octree: Octree) -> *mut leafless_octree {
 
 /// The octree whose whole universe has one tag.
 ///
-/// - Buffers: `frame`, one struct; `octree`, one pointer. `tag` and `exterior` are leafless_tags, not BRANCH: what
-///   is known of the universe, and of the space around it.
+/// - Buffers: `frame`, one struct; `octree`, one pointer. `tag` and `exterior` are leafless_tags, not BRANCH:
+///   what is known of the universe, and of the space around it.
 /// - Result: `*octree`.
 /// - Errors: LEAFLESS_E_ARGUMENT.
 /// - Ownership: give `*octree` back with leafless_octree_free.
@@ -166,8 +202,8 @@ pub unsafe extern "C" fn leafless_octree_ref(
     guard(|| unsafe { refer(octree, "octree", reference) })
 }
 
-/// Gives back a reference to an octree. With the last one the octree is gone, and with it the mapping of its file,
-/// unless a cursor, a solid, or an octree with other metadata still shares it.
+/// Gives back a reference to an octree. With the last one the octree is gone, and with it the mapping of its
+/// file, unless a cursor, a solid, or an octree with other metadata still shares it.
 ///
 /// - Buffers: `octree`, a handle or NULL, which does nothing.
 /// - Result: none.
@@ -202,6 +238,7 @@ pub unsafe extern "C" fn leafless_octree_describe(
             frame: view.frame().into(),
             elements: view.element_count(),
             bricks: view.brick_count(),
+            proof: view.proof().into(),
             root: view.root_tag().into(),
             exterior: view.exterior().into(),
             is_binary: view.is_binary(),
@@ -210,8 +247,38 @@ pub unsafe extern "C" fn leafless_octree_describe(
     })
 }
 
-/// Counts over all levels, and the certified volume. O(depth) once the counts are known, which for an octree from
-/// a file they are and for a new one takes one pass over its arrays.
+/// The same octree, of whose cells this is said; the arrays are shared. Octrees that other programs made
+/// prove what these know. If FULL and EMPTY are said to be proven, the cells themselves are taken for the
+/// solid: measures of a sampled octree then are those of its cells, and not of what was sampled.
+///
+/// - Buffers: `octree`, a handle; `proven`, a leafless_proven; `displacement_model` as in leafless_proof;
+///   `result`, one pointer.
+/// - Result: `*result`.
+/// - Errors: LEAFLESS_E_ARGUMENT unless `proven` is one, and the displacement finite and not negative.
+/// - Ownership: give `*result` back with leafless_octree_free.
+/// - Threads: any.
+/// - Untrusted input: any octree, any numbers.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_octree_with_proof(
+    octree: *const leafless_octree,
+    proven: u32,
+    displacement_model: f64,
+    result: *mut *mut leafless_octree,
+) -> leafless_status {
+    guard(|| unsafe {
+        let octree = &shared(octree, "octree")?.octree;
+        let result = out(result, "result")?;
+        if proven > leafless_proven::LEAFLESS_PROVEN_BOTH as u32 {
+            return Err(Failure::Argument { name: "proven", problem: "is no leafless_proven" });
+        }
+        let proof = Proof::from_bits(proven as u8).with_displacement(displacement_model)?;
+        result.write(give(octree.with_proof(proof)))
+    })
+}
+
+/// Counts over all levels, and the volume of the cells. O(depth) once the counts are known, which for an
+/// octree from a file they are and for a new one takes one pass over its arrays.
 ///
 /// - Buffers: `statistics`, one struct.
 /// - Result: `*statistics`.
@@ -231,8 +298,8 @@ pub unsafe extern "C" fn leafless_octree_statistics(
     })
 }
 
-/// Counts of each level, and the certified volumes of the tree cut there. Entry 0 is the universe, entry `depth`
-/// the finest cells.
+/// Counts of each level, and the certified volumes of the tree cut there. Entry 0 is the universe, entry
+/// `depth` the finest cells.
 ///
 /// - Buffers: `levels`, room for `capacity` structs, or NULL to ask for the count only; `count`, one number.
 /// - Result: `*count`, depth + 1; the levels.
@@ -258,8 +325,8 @@ pub unsafe extern "C" fn leafless_octree_levels(
     })
 }
 
-/// Checks that an octree is well-formed and canonical: O(n). Those that the library makes, opens or maps verified
-/// are; the bytes that checksums cover are not looked at here, see leafless_bytes_verify.
+/// Checks that an octree is well-formed and canonical: O(n). Those that the library makes, opens or maps
+/// verified are; the bytes that checksums cover are not looked at here, see leafless_bytes_verify.
 ///
 /// - Buffers: none.
 /// - Result: LEAFLESS_OK if it is.
@@ -273,7 +340,8 @@ pub unsafe extern "C" fn leafless_octree_check(octree: *const leafless_octree) -
     guard(|| unsafe { Ok(shared(octree, "octree")?.octree.view().check()?) })
 }
 
-/// Whether two octrees have the same cells with the same tags on the same frame. Metadata does not count. O(n).
+/// Whether two octrees have the same cells with the same tags on the same frame. Metadata does not count.
+/// O(n).
 ///
 /// - Buffers: `equal`, one truth value.
 /// - Result: `*equal`.
@@ -294,15 +362,16 @@ pub unsafe extern "C" fn leafless_octree_equal(
     })
 }
 
-/// The octree with one more fact in its metadata, or with another value of one; the arrays are shared. Names in
-/// use: "name", "units", "source", "rule".
+/// The octree with one more fact in its metadata, or with another value of one; the arrays are shared. Names
+/// in use: "name", "units", "source", "rule".
 ///
 /// - Buffers: `key` and `value`, `key_length` and `value_length` bytes of UTF-8; `named`, one pointer.
 /// - Result: `*named`.
-/// - Errors: LEAFLESS_E_UTF8; LEAFLESS_E_ARGUMENT if all facts would take more than 1 MiB in a file, 8 bytes and the
-///   two texts each; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: the texts are copied. `*named` shares the arrays of `octree`, which may be freed: what must outlive
-///   `octree`, such as bytes that it views, must outlive `*named` too. Give that back with leafless_octree_free.
+/// - Errors: LEAFLESS_E_UTF8; LEAFLESS_E_ARGUMENT if all facts would take more than 1 MiB in a file, 8 bytes
+///   and the two texts each; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: the texts are copied. `*named` shares the arrays of `octree`, which may be freed: what must
+///   outlive `octree`, such as bytes that it views, must outlive `*named` too. Give that back with
+///   leafless_octree_free.
 /// - Threads: any.
 /// - Untrusted input: any texts.
 /// - Since: 0.1
@@ -379,9 +448,10 @@ pub unsafe extern "C" fn leafless_octree_peek_metadata(
 
 /// A fact of an octree's metadata by its place among all, which stand by ascending key.
 ///
-/// - Buffers: `count`, one number; `key`, `key_length`, `value`, `value_length`, one each, all four NULL to ask
-///   for the count only.
-/// - Result: `*count`, the number of all facts; key and value, not NUL-terminated, with their lengths in bytes.
+/// - Buffers: `count`, one number; `key`, `key_length`, `value`, `value_length`, one each, all four NULL to
+///   ask for the count only.
+/// - Result: `*count`, the number of all facts; key and value, not NUL-terminated, with their lengths in
+///   bytes.
 /// - Errors: LEAFLESS_E_ARGUMENT if there is no fact `index`, unless only the count is asked for.
 /// - Ownership: the texts belong to the octree and live as long as the reference `octree`.
 /// - Threads: any.

@@ -9,7 +9,8 @@ use super::status::leafless_status;
 use crate::control::Control;
 use crate::error::Error;
 use crate::memory;
-use crate::octree::{Octree, OctreeRef, Rule};
+use crate::octree::{Octree, OctreeRef};
+use crate::op::Rule;
 use crate::op::{self, build, compact, resolve};
 
 /// What becomes of finest cells that are not decided.
@@ -40,7 +41,8 @@ fn rule(rule: u32) -> Result<Rule, Failure> {
 /// Builds the octree of a solid to the depth of a frame. The result is the same bit for bit for any number of
 /// threads.
 ///
-/// - Buffers: `frame`, one struct; `options`, one struct or NULL; `octree`, one pointer. `rule` is a leafless_rule.
+/// - Buffers: `frame`, one struct; `options`, one struct or NULL; `octree`, one pointer. `rule` is a
+///   leafless_rule.
 /// - Result: `*octree`.
 /// - Errors: LEAFLESS_E_FRAME if the solid belongs to another frame; LEAFLESS_E_NOT_SAMPLED if
 ///   LEAFLESS_RULE_SAMPLED is asked of a solid that cannot decide points; LEAFLESS_E_CALLBACK;
@@ -66,12 +68,13 @@ pub unsafe extern "C" fn leafless_octree_build(
     })
 }
 
-/// The octree with its PARTIAL cells resolved: EMPTY under LEAFLESS_RULE_INNER, FULL under LEAFLESS_RULE_OUTER.
+/// The octree with its PARTIAL cells resolved: EMPTY under LEAFLESS_RULE_INNER, FULL under
+/// LEAFLESS_RULE_OUTER.
 ///
 /// - Buffers: `options`, one struct or NULL; `resolved`, one pointer. `rule` is a leafless_rule.
 /// - Result: `*resolved`, without metadata.
-/// - Errors: LEAFLESS_E_NOT_SAMPLED under LEAFLESS_RULE_SAMPLED if a cell is PARTIAL, because a stored octree knows
-///   no more about it; LEAFLESS_E_DAMAGED; LEAFLESS_E_ARGUMENT; LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED;
+/// - Errors: LEAFLESS_E_NOT_SAMPLED under LEAFLESS_RULE_SAMPLED if a cell is PARTIAL, because a stored octree
+///   knows no more about it; LEAFLESS_E_DAMAGED; LEAFLESS_E_ARGUMENT; LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED;
 ///   LEAFLESS_E_NO_MEMORY.
 /// - Ownership: `octree` stays as it is; give `*resolved` back with leafless_octree_free.
 /// - Threads: any; uses as many as `options` says.
@@ -92,8 +95,8 @@ pub unsafe extern "C" fn leafless_octree_resolve(
     })
 }
 
-/// The same octree with its bricks encoded as a file would have them, through a dictionary where that is shorter.
-/// Everything works on it as on any other.
+/// The same octree with its bricks encoded as a file would have them, through a dictionary where that is
+/// shorter. Everything works on it as on any other.
 ///
 /// - Buffers: `compacted`, one pointer.
 /// - Result: `*compacted`, with the same metadata.
@@ -157,16 +160,17 @@ unsafe fn nary(
     })
 }
 
-/// Every point of `a` and of `b`. Exact, and the same bit for bit for any number of threads; never larger than
-/// both operands together.
+/// Every point of `a` and of `b`. Exact, and the same bit for bit for any number of threads; never larger
+/// than both operands together.
 ///
 /// - Buffers: `options`, one struct or NULL; `result`, one pointer.
 /// - Result: `*result`, without metadata.
-/// - Errors: LEAFLESS_E_FRAME if the frames differ; LEAFLESS_E_DAMAGED; LEAFLESS_E_ARGUMENT; LEAFLESS_E_LIMIT;
-///   LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
+/// - Errors: LEAFLESS_E_FRAME if the frames differ; LEAFLESS_E_DAMAGED; LEAFLESS_E_ARGUMENT;
+///   LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
 /// - Ownership: the operands stay as they are; give `*result` back with leafless_octree_free.
 /// - Threads: any; uses as many as `options` says.
-/// - Untrusted input: any octrees; damage in ones that were mapped unverified is an error or reads as PARTIAL.
+/// - Untrusted input: any octrees; damage in ones that were mapped unverified is an error or reads as
+///   PARTIAL.
 /// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_octree_union(
@@ -261,7 +265,8 @@ pub unsafe extern "C" fn leafless_octree_complement(
     })
 }
 
-/// The union of any number of octrees, at least one. Limits and progress of `options` concern each of its steps.
+/// The union of any number of octrees, at least one. Limits and progress of `options` concern each of its
+/// steps.
 ///
 /// - Buffers: `octrees`, `count` handles; `options`, one struct or NULL; `result`, one pointer.
 /// - Result: as leafless_octree_union.

@@ -5,19 +5,21 @@ use super::mesh::{give, leafless_mesh};
 use super::mesh_arrays::{GivenVertices, Indices, Vertices};
 use super::status::leafless_status;
 use crate::error::{MeshError, PolyhedronError};
+use crate::lattice::valid;
 use crate::memory;
 use crate::mesh::{Polyhedron, PolyhedronArrays};
 use alloc::borrow::Cow;
 use core::ffi::c_void;
 
-/// Solids that plane faces bound, as boundary representations have them: solids of shells of faces of loops of
-/// corners.
+/// Solids that plane faces bound, as boundary representations have them: solids of shells of faces of loops
+/// of corners.
 ///
-/// Each level is an array of offsets into the level below, one more than there are parts: part k goes from offset k
-/// up to, but not including, offset k + 1. So each array begins with 0, rises, and ends at the number of parts below.
-/// Loops turn counter-clockwise as seen from outside of the solid's material, and holes of a face against its outer loop.
-/// Corners and offsets are of one type, without gaps, and need not be aligned. All fields but the first may be zero,
-/// which is their default; leafless_polyhedron_arrays_init sets them so.
+/// Each level is an array of offsets into the level below, one more than there are parts: part k goes from
+/// offset k up to, but not including, offset k + 1. So each array begins with 0, rises, and ends at the
+/// number of parts below. Loops turn counter-clockwise as seen from outside of the solid's material, and
+/// holes of a face against its outer loop. Corners and offsets are of one type, without gaps, and need not be
+/// aligned. All fields but the first may be zero, which is their default; leafless_polyhedron_arrays_init
+/// sets them so.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_polyhedron_arrays {
@@ -39,8 +41,8 @@ pub struct leafless_polyhedron_arrays {
     pub loops: *const c_void,
     /// Number of loops.
     pub loop_count: u64,
-    /// Offsets of the faces in the loops: the first loop of a face is its outer one, the others are holes. NULL, with
-    /// a count of 0, means that each loop is a face.
+    /// Offsets of the faces in the loops: the first loop of a face is its outer one, the others are holes.
+    /// NULL, with a count of 0, means that each loop is a face.
     pub faces: *const c_void,
     /// Number of faces.
     pub face_count: u64,
@@ -48,8 +50,8 @@ pub struct leafless_polyhedron_arrays {
     pub shells: *const c_void,
     /// Number of shells.
     pub shell_count: u64,
-    /// Offsets of the solids in the shells: the first shell of a solid bounds it from outside, the others are voids.
-    /// NULL, with a count of 0, means that all shells are one solid.
+    /// Offsets of the solids in the shells: the first shell of a solid bounds it from outside, the others are
+    /// voids. NULL, with a count of 0, means that all shells are one solid.
     pub solids: *const c_void,
     /// Number of solids.
     pub solid_count: u64,
@@ -57,16 +59,17 @@ pub struct leafless_polyhedron_arrays {
     pub index_type: u32,
     /// What the coordinates are multiplied by to become model units: 2^-256 to 2^256, or 0, which means 1.
     pub scale: f64,
-    /// How far corners may lie beside the plane of their face, in model units: half the distance of two planes
-    /// parallel to the face that have all its corners between them. 0 means 10^-9 of the longest extent.
+    /// How far corners may lie beside the plane of their face, in model units: half the distance of two
+    /// planes parallel to the face that have all its corners between them. 0 means 10^-9 of the longest
+    /// extent.
     pub tolerance_model: f64,
 }
 
 // SAFETY: numbers and pointers.
 unsafe impl Sized32 for leafless_polyhedron_arrays {}
 
-/// Indices as the library has them: the host's own if they are so, or a copy. `refused` says what is wrong with the one
-/// of the given index and value, if 32 bits cannot hold it.
+/// Indices as the library has them: the host's own if they are so, or a copy. `refused` says what is wrong
+/// with the one of the given index and value, if 32 bits cannot hold it.
 fn narrow<'a>(
     indices: Indices<'a, 1>,
     refused: impl Fn(u64, u64) -> PolyhedronError,
@@ -173,10 +176,9 @@ impl leafless_polyhedron_arrays {
         };
         Ok(match self.tolerance_model {
             0.0 => Polyhedron::new(&arrays)?,
-            tolerance if tolerance > 0.0 => Polyhedron::with_tolerance(&arrays, tolerance)?,
-            _ => {
-                let problem = "must not be negative";
-                return Err(Failure::Argument { name: "arrays.tolerance_model", problem });
+            tolerance => {
+                valid::tolerance("arrays.tolerance_model", tolerance)?;
+                Polyhedron::with_tolerance(&arrays, tolerance)?
             }
         })
     }
@@ -184,8 +186,8 @@ impl leafless_polyhedron_arrays {
 
 /// Sets arrays to their defaults: none.
 ///
-/// - Buffers: `arrays`, one struct of `struct_size` bytes, which is sizeof(leafless_polyhedron_arrays); need not be
-///   initialised.
+/// - Buffers: `arrays`, one struct of `struct_size` bytes, which is sizeof(leafless_polyhedron_arrays); need
+///   not be initialised.
 /// - Result: `*arrays`.
 /// - Errors: LEAFLESS_E_ARGUMENT if `struct_size` cannot be right.
 /// - Ownership: nothing changes hands.
@@ -200,21 +202,21 @@ pub unsafe extern "C" fn leafless_polyhedron_arrays_init(
     guard(|| unsafe { initialise(arrays, struct_size, "arrays") })
 }
 
-/// Checks solids of plane faces and makes a closed, consistently oriented mesh of them. Where a face is not plane to the
-/// last digit, its triangles say from then on where the surface is.
+/// Checks solids of plane faces and makes a closed, consistently oriented mesh of them. Where a face is not
+/// plane to the last digit, its triangles say from then on where the surface is.
 ///
-/// Each edge of a loop is run through once more in its shell, in the opposite direction; vertices at one place are two
-/// vertices there, so that shells may touch. The first shell of a solid encloses a positive volume, its voids
-/// negative ones within it. Faces that cut through each other and solids that overlap are let through: a mesh has a
-/// meaning for them.
+/// Each edge of a loop is run through once more in its shell, in the opposite direction; vertices at one
+/// place are two vertices there, so that shells may touch. The first shell of a solid encloses a positive
+/// volume, its voids negative ones within it. Faces that cut through each other and solids that overlap are
+/// let through: a mesh has a meaning for them.
 ///
-/// - Buffers: `arrays`, one struct; what its pointers lead to must not change during the call. `deviation_model`, one
-///   number, or NULL if it is not wanted; `mesh`, one pointer.
+/// - Buffers: `arrays`, one struct; what its pointers lead to must not change during the call.
+///   `deviation_model`, one number, or NULL if it is not wanted; `mesh`, one pointer.
 /// - Result: `*mesh`; `*deviation_model`, how far a corner lies beside the plane of its face at most.
-/// - Errors: LEAFLESS_E_MESH, with the numbers of loop, face, shell or vertices in the message, if the arrays are
-///   not such solids, if a coordinate is infinite, not a number, or beyond ±2^256, if there is no solid, or if there
-///   are more than 2^32 - 1 of anything; LEAFLESS_E_ARGUMENT if a type, a stride, the scale or the tolerance is none;
-///   LEAFLESS_E_NO_MEMORY.
+/// - Errors: LEAFLESS_E_MESH, with the numbers of loop, face, shell or vertices in the message, if the arrays
+///   are not such solids, if a coordinate is infinite, not a number, or beyond ±2^256, if there is no solid,
+///   or if there are more than 2^32 - 1 of anything; LEAFLESS_E_ARGUMENT if a type, a stride, the scale or
+///   the tolerance is none; LEAFLESS_E_NO_MEMORY.
 /// - Ownership: the arrays are only read during the call, and may be freed after it; give `*mesh` back with
 ///   leafless_mesh_free.
 /// - Threads: any.

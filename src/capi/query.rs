@@ -70,8 +70,8 @@ impl From<Region> for leafless_region {
     }
 }
 
-/// Whether the solid contains a point. A point on the boundary may be answered either way; one that is outside of
-/// the universe or not a number is undecided. At most ⌈depth/2⌉ array elements are read.
+/// Whether the solid contains a point. A point on the boundary may be answered either way; one that is
+/// outside of the universe or not a number is undecided. At most ⌈depth/2⌉ array elements are read.
 ///
 /// - Buffers: `point_model`, 3 numbers; `membership`, one.
 /// - Result: `*membership`.
@@ -98,8 +98,8 @@ pub unsafe extern "C" fn leafless_octree_contains(
 
 /// As leafless_octree_contains for many points at once, which is faster than one by one.
 ///
-/// - Buffers: `points_model`, `count` points of 3 numbers; `memberships`, room for `count`. Both may be NULL if
-///   `count` is 0.
+/// - Buffers: `points_model`, `count` points of 3 numbers; `memberships`, room for `count`. Both may be NULL
+///   if `count` is 0.
 /// - Result: `memberships[i]` for point i.
 /// - Errors: only the general ones.
 /// - Ownership: nothing changes hands.
@@ -177,16 +177,18 @@ pub unsafe extern "C" fn leafless_octree_classify_box(
     })
 }
 
-/// Whether a solid contains points, without an octree: a point in a cell of the frame that is undecided at the frame's depth,
-/// outside of the universe, or not a number is undecided. A point on the boundary may be answered either way. The host's
-/// own `contains` is asked first, where there is one; for others at most one cell a level is split a point, and points
-/// near each other share the way.
+/// Whether a solid contains points, without an octree: a point in a cell of the frame that is undecided at
+/// the frame's depth, outside of the universe, or not a number is undecided. A point on the boundary may be
+/// answered either way. The host's own `contains` is asked first, where there is one; for others at most one
+/// cell a level is split a point, and points near each other share the way.
 ///
-/// - Buffers: `frame`, one struct; `points_model`, `count` points of 3 numbers; `options`, one struct or NULL, of which
-///   limits do not matter; `memberships`, room for `count`. `points_model` and `memberships` may be NULL if `count` is 0.
+/// - Buffers: `frame`, one struct; `points_model`, `count` points of 3 numbers; `options`, one struct or
+///   NULL, of which limits do not matter; `memberships`, room for `count`. `points_model` and `memberships`
+///   may be NULL if `count` is 0.
 /// - Result: `memberships[i]` for point i; the same for any number of threads.
-/// - Errors: LEAFLESS_E_FRAME if the solid belongs to another frame; LEAFLESS_E_ARGUMENT as leafless_frame_check;
-///   LEAFLESS_E_CALLBACK; LEAFLESS_E_DAMAGED; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
+/// - Errors: LEAFLESS_E_FRAME if the solid belongs to another frame; LEAFLESS_E_ARGUMENT as
+///   leafless_frame_check; LEAFLESS_E_CALLBACK; LEAFLESS_E_DAMAGED; LEAFLESS_E_CANCELLED;
+///   LEAFLESS_E_NO_MEMORY.
 /// - Ownership: nothing changes hands.
 /// - Threads: any; uses as many as `options` says.
 /// - Untrusted input: any solid, any numbers.
@@ -215,17 +217,19 @@ pub unsafe extern "C" fn leafless_solid_contains(
     })
 }
 
-/// How a box lies to a solid, without an octree, as far as cells of the frame tell; what of the box lies outside of the
-/// universe is undecided. The work ends as soon as the answer is known, or once `max_splits` cells are split.
+/// How a box lies to a solid, without an octree, as far as cells of the frame tell; what of the box lies
+/// outside of the universe is undecided. The work ends as soon as the answer is known, or once `max_splits`
+/// cells are split.
 ///
-/// - Buffers: `frame`, one struct; `min_model` and `max_model`, 3 numbers each; `options`, one struct or NULL; `region`,
-///   one.
+/// - Buffers: `frame`, one struct; `min_model` and `max_model`, 3 numbers each; `options`, one struct or
+///   NULL; `region`, one.
 /// - Result: `*region`.
 /// - Errors: LEAFLESS_E_ARGUMENT if min > max on an axis, or a coordinate is not a number; else as
 ///   leafless_solid_contains.
 /// - Ownership: nothing changes hands.
 /// - Threads: any; works in the calling thread.
-/// - Untrusted input: any solid, any numbers; set `max_splits` where the depth or the solid is not your own choice.
+/// - Untrusted input: any solid, any numbers; set `max_splits` where the depth or the solid is not your own
+///   choice.
 /// - Since: 0.1
 ///
 /// cbindgen:ptrs-as-arrays=[[min_model; 3], [max_model; 3]]
@@ -248,8 +252,8 @@ pub unsafe extern "C" fn leafless_solid_classify_box(
     })
 }
 
-/// Point queries that remember the way to the last answer: for points that lie near each other, such as along a
-/// line or in scan order.
+/// Point queries that remember the way to the last answer: for points that lie near each other, such as along
+/// a line or in scan order.
 ///
 /// Every call changes it: only one thread may use a cursor at a time. Threads may have a cursor each.
 pub struct leafless_point_cursor(Yoke<PointCursor<'static>, Arc<leafless_octree>>);
@@ -344,7 +348,8 @@ pub unsafe extern "C" fn leafless_point_cursor_tag_at(
     })
 }
 
-/// A position in an octree that moves along its links, one level at a step. At first it stands on the universe.
+/// A position in an octree that moves along its links, one level at a step. At first it stands on the
+/// universe.
 ///
 /// Moving changes it: while one thread moves a cursor, no other may use it. Threads may have a cursor each.
 pub struct leafless_cursor(Yoke<Cursor<'static>, Arc<leafless_octree>>);
@@ -359,8 +364,8 @@ pub struct leafless_cursor_state {
     pub level: u32,
     /// The cell's tag.
     pub tag: leafless_tag,
-    /// Of a BRANCH the tags of its children, in octant order (bit 0 of the octant is x, bit 1 y, bit 2 z); else
-    /// eight times the cell's own.
+    /// Of a BRANCH the tags of its children, in octant order (bit 0 of the octant is x, bit 1 y, bit 2 z);
+    /// else eight times the cell's own.
     pub children: [leafless_tag; 8],
 }
 
@@ -369,7 +374,8 @@ pub struct leafless_cursor_state {
 /// - Buffers: `cursor`, one pointer.
 /// - Result: `*cursor`.
 /// - Errors: only the general ones.
-/// - Ownership: the cursor shares the octree, which may be freed; give `*cursor` back with leafless_cursor_free.
+/// - Ownership: the cursor shares the octree, which may be freed; give `*cursor` back with
+///   leafless_cursor_free.
 /// - Threads: any.
 /// - Untrusted input: any octree.
 /// - Since: 0.1

@@ -10,15 +10,15 @@ use std::path::Path;
 
 /// What a text describes: set operations on primitives, swept figures, meshes and octrees.
 ///
-/// The language is that of the CSG dumps which OpenSCAD exports (group union difference intersection multmatrix color
-/// render cube sphere cylinder polyhedron linear_extrude rotate_extrude square circle polygon, and import of meshes), with
-/// these calls besides: halfspace([a, b, c, d]), which is a x + b y + c z + d ≥ 0, quadric([10 numbers]),
-/// power([A, a, n1], [B, b, n2], [C, c, n3], R), torus(major, minor), mesh("file.stl") and octree("file.lfl"). Curved
-/// shapes are exact, without facets. What is not supported (hull, minkowski, text, projection and others) is refused
-/// by name.
+/// The language is that of the CSG dumps which OpenSCAD exports (group union difference intersection
+/// multmatrix color render cube sphere cylinder polyhedron linear_extrude rotate_extrude square circle
+/// polygon, and import of meshes), with these calls besides: halfspace([a, b, c, d]), which is a x + b y + c
+/// z + d ≥ 0, quadric([10 numbers]), power([A, a, n1], [B, b, n2], [C, c, n3], R), torus(major, minor),
+/// mesh("file.stl") and octree("file.lfl"). Curved shapes are exact, without facets. What is not supported
+/// (hull, minkowski, text, projection and others) is refused by name.
 ///
-/// Immutable: all its functions may be called at once from any number of threads, but leafless_scene_free needs the
-/// reference that it gives back for itself.
+/// Immutable: all its functions may be called at once from any number of threads, but leafless_scene_free
+/// needs the reference that it gives back for itself.
 pub struct leafless_scene {
     scene: Scene,
 }
@@ -27,12 +27,14 @@ pub struct leafless_scene {
 ///
 /// - Buffers: `path`, `path_length` bytes of UTF-8; `scene`, one pointer.
 /// - Result: `*scene`.
-/// - Errors: LEAFLESS_E_SCENE, with line and column in the message, for whatever is wrong with the text or a file that
-///   it names; LEAFLESS_E_IO if the file itself cannot be read; LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY.
+/// - Errors: LEAFLESS_E_SCENE, with line and column in the message, for whatever is wrong with the text or a
+///   file that it names; LEAFLESS_E_IO if the file itself cannot be read; LEAFLESS_E_UTF8;
+///   LEAFLESS_E_NO_MEMORY.
 /// - Ownership: give `*scene` back with leafless_scene_free.
 /// - Threads: any.
-/// - Untrusted input: any text; nesting costs memory, not stack, and memory is linear in the text and in the files that it
-///   names. It may name any file, by absolute paths too, which is then read as a mesh or an octree.
+/// - Untrusted input: any text; nesting costs memory, not stack, and memory is linear in the text and in the
+///   files that it names. It may name any file, by absolute paths too, which is then read as a mesh or an
+///   octree.
 /// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_scene_open(
@@ -49,10 +51,11 @@ pub unsafe extern "C" fn leafless_scene_open(
 
 /// As leafless_scene_open for a text in memory, in UTF-8. Files that it names are looked for in `folder`.
 ///
-/// - Buffers: `bytes`, `length` bytes; may be NULL if there are none. `folder`, `folder_length` bytes of UTF-8; NULL if
-///   the scene may name no files. `scene`, one pointer.
+/// - Buffers: `bytes`, `length` bytes; may be NULL if there are none. `folder`, `folder_length` bytes of
+///   UTF-8; NULL if the scene may name no files. `scene`, one pointer.
 /// - Result: `*scene`.
-/// - Errors: as leafless_scene_open, but LEAFLESS_E_IO; of names of files, if there is no folder, LEAFLESS_E_SCENE.
+/// - Errors: as leafless_scene_open, but LEAFLESS_E_IO; of names of files, if there is no folder,
+///   LEAFLESS_E_SCENE.
 /// - Ownership: the bytes are not kept; give `*scene` back with leafless_scene_free.
 /// - Threads: any.
 /// - Untrusted input: any bytes, as for leafless_scene_open.
@@ -110,7 +113,8 @@ pub unsafe extern "C" fn leafless_scene_free(scene: *mut leafless_scene) {
 ///
 /// - Buffers: `min_model` and `max_model`, 3 numbers each.
 /// - Result: both.
-/// - Errors: LEAFLESS_E_ARGUMENT if none is known: the scene is empty, or may be unbounded; LEAFLESS_E_NO_MEMORY.
+/// - Errors: LEAFLESS_E_ARGUMENT if none is known: the scene is empty, or may be unbounded;
+///   LEAFLESS_E_NO_MEMORY.
 /// - Ownership: nothing changes hands.
 /// - Threads: any.
 /// - Untrusted input: none.
@@ -136,12 +140,13 @@ pub unsafe extern "C" fn leafless_scene_bounds(
     })
 }
 
-/// The solid of a scene, to be built on this frame. If there are neither meshes nor octrees in it, it can be built on any.
+/// The solid of a scene, to be built on this frame. If there are neither meshes nor octrees in it, it can be
+/// built on any.
 ///
 /// - Buffers: `frame`, one struct; `solid`, one pointer.
 /// - Result: `*solid`.
-/// - Errors: LEAFLESS_E_ARGUMENT as leafless_frame_check; LEAFLESS_E_LIMIT if a mesh or octree is within more than 256
-///   matrices; LEAFLESS_E_NO_MEMORY.
+/// - Errors: LEAFLESS_E_ARGUMENT as leafless_frame_check; LEAFLESS_E_LIMIT if a mesh or octree is within more
+///   than 256 matrices; LEAFLESS_E_NO_MEMORY.
 /// - Ownership: give `*solid` back with leafless_solid_free.
 /// - Threads: any.
 /// - Untrusted input: any scene.

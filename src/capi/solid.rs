@@ -8,14 +8,15 @@ use crate::solid::{AnySolid, Csg, Erasable, MeshSolid, Prepared};
 
 /// Anything that has a shape: it can split a cell of space into eight classified ones.
 ///
-/// To answer about cells of a frame a solid is prepared for it, which takes time in proportion to the model: a mesh is
-/// brought onto the lattice, an expression is written out, all links of an octree are checked. It keeps the last frame
-/// that it was prepared for, so that a second question on the same frame costs none of that; another frame takes its
-/// place. (It keeps the last frame of its own only: what is made of it prepares it anew.)
+/// To answer about cells of a frame a solid is prepared for it, which takes time in proportion to the model:
+/// a mesh is brought onto the lattice, an expression is written out, all links of an octree are checked. It
+/// keeps the last frame that it was prepared for, so that a second question on the same frame costs none of
+/// that; another frame takes its place. (It keeps the last frame of its own only: what is made of it prepares
+/// it anew.)
 ///
-/// Immutable otherwise: all its functions may be called at once from any number of threads, but leafless_solid_free needs
-/// the reference that it gives back for itself. Threads that ask on different frames at the same time prepare it again
-/// and again: give each a solid of its own.
+/// Immutable otherwise: all its functions may be called at once from any number of threads, but
+/// leafless_solid_free needs the reference that it gives back for itself. Threads that ask on different
+/// frames at the same time prepare it again and again: give each a solid of its own.
 pub struct leafless_solid {
     pub(super) solid: Prepared,
 }
@@ -32,14 +33,14 @@ pub(super) fn give_any(solid: AnySolid) -> *mut leafless_solid {
 
 /// What a mesh encloses. On a frame whose universe it reaches beyond it is clipped by that.
 ///
-/// Where the mesh is closed, what it encloses is exact. Around holes leafless_fill says by which convention a point is
-/// inside: a cell is FULL or EMPTY if that is proven for all of its points, and others are PARTIAL though no triangle
-/// cuts them. leafless_mesh_describe tells whether to expect them.
+/// Where the mesh is closed, what it encloses is exact. Around holes leafless_fill says by which convention a
+/// point is inside: a cell is FULL or EMPTY if that is proven for all of its points, and others are PARTIAL
+/// though no triangle cuts them. leafless_mesh_describe tells whether to expect them.
 ///
 /// - Buffers: `solid`, one pointer. `fill` is a leafless_fill.
 /// - Result: `*solid`. Time is linear in the mesh (n log n in the edges of its boundary).
-/// - Errors: LEAFLESS_E_MESH if the mesh is empty, or (LEAFLESS_FILL_EVEN_ODD) an odd number of triangles meet on an
-///   edge; LEAFLESS_E_ARGUMENT if `fill` is no leafless_fill; LEAFLESS_E_NO_MEMORY.
+/// - Errors: LEAFLESS_E_MESH if the mesh is empty, or (LEAFLESS_FILL_EVEN_ODD) an odd number of triangles
+///   meet on an edge; LEAFLESS_E_ARGUMENT if `fill` is no leafless_fill; LEAFLESS_E_NO_MEMORY.
 /// - Ownership: the solid shares the mesh, which may be freed; give `*solid` back with leafless_solid_free.
 /// - Threads: any.
 /// - Untrusted input: any mesh.
@@ -63,8 +64,8 @@ pub unsafe extern "C" fn leafless_solid_new_mesh(
 ///
 /// - Buffers: `solid`, one pointer.
 /// - Result: `*solid`.
-/// - Errors: only the general ones; building it returns LEAFLESS_E_DAMAGED if the octree was mapped unverified
-///   and its links are damaged.
+/// - Errors: only the general ones; building it returns LEAFLESS_E_DAMAGED if the octree was mapped
+///   unverified and its links are damaged.
 /// - Ownership: the solid shares the octree, which may be freed; give `*solid` back with leafless_solid_free.
 /// - Threads: any.
 /// - Untrusted input: any octree.
@@ -81,9 +82,10 @@ pub unsafe extern "C" fn leafless_octree_as_solid(
     })
 }
 
-/// Half-spaces that were evaluated so far, each at a point or over a box, for a solid that is made of half-spaces (see
-/// leafless_solid_new_halfspace and what follows it) and perhaps others: by calls that have returned, and by lazy
-/// octrees and the like that are given back. What else is made of the solid counts for itself.
+/// Half-spaces that were evaluated so far, each at a point or over a box, for a solid that is made of
+/// half-spaces (see leafless_solid_new_halfspace and what follows it) and perhaps others: by calls that have
+/// returned, and by lazy octrees and the like that are given back. What else is made of the solid counts for
+/// itself.
 ///
 /// - Buffers: `evaluations`, one number.
 /// - Result: `*evaluations`; 0 for solids of other kinds.

@@ -4,8 +4,8 @@ use core::ffi::{CStr, c_char};
 use core::fmt::{self, Display, Write};
 use std::cell::RefCell;
 
-/// What a function returns. Codes are never renumbered and never used for something else; new ones may be added
-/// at the end.
+/// What a function returns. Codes are never renumbered and never used for something else; new ones may be
+/// added at the end.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(i32)]
 pub enum leafless_status {
@@ -129,8 +129,8 @@ pub extern "C" fn leafless_status_name(status: i32) -> *const c_char {
 /// that succeed leave it as it is; before the first failure it is empty.
 ///
 /// - Buffers: `message`, `capacity` bytes; may be NULL if `capacity` is 0.
-/// - Result: the message's length in bytes, without the terminating NUL, also if not all of it was written; at
-///   most 511. What is written is cut at a character and NUL-terminated.
+/// - Result: the message's length in bytes, without the terminating NUL, also if not all of it was written;
+///   at most 511. What is written is cut at a character and NUL-terminated.
 /// - Errors: none.
 /// - Ownership: the message is copied.
 /// - Threads: any; every thread has its own message.

@@ -8,8 +8,8 @@ pub const LEAFLESS_VERSION_MAJOR: u32 = 0;
 pub const LEAFLESS_VERSION_MINOR: u32 = 0;
 /// Patch level of the library that this header belongs to.
 pub const LEAFLESS_VERSION_PATCH: u32 = 1;
-/// Number of the binary interface: programs and libraries of one number fit together. 0 until the release 0.1,
-/// which means that nothing is promised yet.
+/// Number of the binary interface: programs and libraries of one number fit together. 0 until the release
+/// 0.1, which means that nothing is promised yet.
 pub const LEAFLESS_ABI: u32 = 0;
 
 const TEXT: &CStr = {

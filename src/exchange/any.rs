@@ -1,8 +1,6 @@
 //! Mesh files of any format, in any unit.
 
-use core::fmt;
-
-use super::detect;
+use super::detect::MeshFormat;
 use super::stl::read_stl;
 #[cfg(feature = "threemf")]
 use super::threemf;
@@ -11,69 +9,6 @@ use super::unit::{Factor, LengthUnit};
 use super::{read_obj, read_off, read_ply};
 use crate::error::{Error, MeshFileError};
 use crate::mesh::TriangleMesh;
-
-/// The formats of mesh files that can be read.
-#[non_exhaustive]
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum MeshFormat {
-    /// STL, binary or ASCII.
-    Stl,
-    /// Wavefront OBJ. Reading it needs the feature `std`.
-    Obj,
-    /// Stanford PLY, ASCII or binary. Reading it needs the feature `std`.
-    Ply,
-    /// Geomview OFF. Reading it needs the feature `std`.
-    Off,
-    /// 3MF, the 3D Manufacturing Format. Reading it needs the feature `threemf`.
-    ThreeMf,
-}
-
-impl MeshFormat {
-    /// All of them.
-    pub const ALL: [MeshFormat; 5] = [Self::Stl, Self::Obj, Self::Ply, Self::Off, Self::ThreeMf];
-
-    /// The extension of the names of such files, in lower case and without a dot.
-    pub const fn extension(self) -> &'static str {
-        match self {
-            Self::Stl => "stl",
-            Self::Obj => "obj",
-            Self::Ply => "ply",
-            Self::Off => "off",
-            Self::ThreeMf => "3mf",
-        }
-    }
-
-    /// The format of files whose names end in this extension, which is given without a dot, in any letter case.
-    pub fn from_extension(extension: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|format| format.extension().eq_ignore_ascii_case(extension))
-    }
-
-    /// The format of a file with this content and, if it has one, this extension of its name.
-    ///
-    /// Content decides where it is unmistakable: the length of a binary STL, the signatures of ZIP and PLY, the
-    /// first words of an ASCII STL and of an OFF. Then the extension does. A file without a known one is an OBJ
-    /// if its first line that is neither blank nor a comment begins with a keyword of that format, an OFF if that
-    /// line begins with numbers only, and an STL if it is long enough and no text. `None` for anything else.
-    ///
-    /// O(1) but for comments and blank lines at the beginning.
-    pub fn detect(bytes: &[u8], extension: Option<&str>) -> Option<Self> {
-        detect::by_signature(bytes)
-            .or_else(|| extension.and_then(Self::from_extension))
-            .or_else(|| detect::by_look(bytes))
-    }
-}
-
-impl fmt::Display for MeshFormat {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.pad(match self {
-            Self::Stl => "STL",
-            Self::Obj => "OBJ",
-            Self::Ply => "PLY",
-            Self::Off => "OFF",
-            Self::ThreeMf => "3MF",
-        })
-    }
-}
 
 /// How a mesh file is to be taken. The default takes everything from the file and changes nothing.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -112,18 +47,17 @@ pub struct MeshFile {
 
 /// Reads a mesh file of any format.
 ///
-/// What the single formats allow stands at [`read_stl`] and its neighbours. Everything in the file becomes one mesh,
-/// whose vertices are welded where they are equal. That the mesh is closed is not checked.
+/// What the single formats allow stands at [`read_stl`] and its neighbours. Everything in the file becomes
+/// one mesh, whose vertices are welded where they are equal. That the mesh is closed is not checked.
 ///
-/// A conversion of units and the scale are applied together: one product and, where the factor is no whole number,
-/// one quotient, so that coordinates of up to 40 bits (all of binary STL are) are the exact result rounded once.
-/// Without both, or if they cancel, coordinates stay as they are, bit by bit.
+/// A conversion of units and the scale are applied together: one product and, where the factor is no whole
+/// number, one quotient, so that coordinates of up to 40 bits (all of binary STL are) are the exact result
+/// rounded once. Without both, or if they cancel, coordinates stay as they are, bit by bit.
 ///
 /// O(n). Fails with [`Error::Argument`] for a scale that is not allowed, [`MeshFileError::UnknownFormat`],
 /// [`MeshFileError::UnknownUnit`] if a conversion is asked for and nobody says from which unit,
 /// [`MeshFileError::Unsupported`] for a format that was left out of this build of the library,
-/// [`MeshError::TooLarge`](crate::MeshError::TooLarge) if scaling leads beyond ±2^256, and as the format's reader
-/// does.
+/// [`MeshError::TooLarge`](crate::MeshError::TooLarge) if scaling exceeds ±2^256, and the reader's errors.
 pub fn read_mesh(bytes: &[u8], options: &MeshOptions) -> Result<MeshFile, Error> {
     read(bytes, None, options)
 }
@@ -184,6 +118,8 @@ fn read(bytes: &[u8], extension: Option<&str>, options: &MeshOptions) -> Result<
 
 #[cfg(test)]
 mod tests {
+    #[cfg(feature = "std")]
+    use super::super::tests::models;
     use super::super::write_stl;
     use super::*;
     use crate::error::MeshError;
@@ -267,10 +203,7 @@ mod tests {
     #[cfg(feature = "std")]
     #[test]
     fn model_files() {
-        let Some(folder) = std::env::var_os("LEAFLESS_MODELS") else {
-            std::println!("SKIPPED: LEAFLESS_MODELS is not set");
-            return;
-        };
+        let Some(folder) = models() else { return };
         let mut count = 0;
         for entry in std::fs::read_dir(folder).unwrap() {
             let path = entry.unwrap().path();

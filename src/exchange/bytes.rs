@@ -1,6 +1,6 @@
 //! Binary numbers of either byte order, taken from the front.
 
-use super::text::is_space;
+use super::is_space;
 use crate::error::MeshFileError;
 
 /// What was expected where a file ends.

@@ -1,8 +1,8 @@
 //! Decimal numbers as text, read fast and rounded correctly.
 //!
-//! A number of at most 19 digits whose digits make an integer below 2^53 and whose power of ten is at most 22 in
-//! magnitude is one product or quotient of two `f64` that are both exact, so the one rounding is the right one.
-//! All others go to [`str::parse`].
+//! A number of at most 19 digits whose digits make an integer below 2^53 and whose power of ten is at most 22
+//! in magnitude is one product or quotient of two `f64` that are both exact, so the one rounding is the right
+//! one. All others go to [`str::parse`].
 
 /// The powers of ten that `f64` holds exactly.
 const POWERS: [f64; 23] = [
@@ -13,8 +13,8 @@ const POWERS: [f64; 23] = [
 /// The same as integers, for up to eight digits at once.
 const TENS: [u64; 9] = [1, 10, 100, 1_000, 10_000, 100_000, 1_000_000, 10_000_000, 100_000_000];
 
-/// The finite number that `text` begins with, which ends where no letter, digit, sign or point follows, and what
-/// stands behind it: the nearest `f64`, ties to even.
+/// The finite number that `text` begins with, which ends where no letter, digit, sign or point follows, and
+/// what stands behind it: the nearest `f64`, ties to even.
 ///
 /// Accepted is what [`f64`] parses, without infinities and NaN: `1`, `+1.`, `-.5`, `1e-3`, `1E+05`.
 #[inline]

@@ -1,10 +1,71 @@
 //! Which format a mesh file has, from its bytes.
 
-use super::MeshFormat;
 use super::stl::is_binary_of_exact_length;
+use core::fmt;
+
+/// The formats of mesh files that can be read.
+#[non_exhaustive]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum MeshFormat {
+    /// STL, binary or ASCII.
+    Stl,
+    /// Wavefront OBJ. Reading it needs the feature `std`.
+    Obj,
+    /// Stanford PLY, ASCII or binary. Reading it needs the feature `std`.
+    Ply,
+    /// Geomview OFF. Reading it needs the feature `std`.
+    Off,
+    /// 3MF, the 3D Manufacturing Format. Reading it needs the feature `threemf`.
+    ThreeMf,
+}
+
+impl MeshFormat {
+    /// All of them.
+    pub const ALL: [MeshFormat; 5] = [Self::Stl, Self::Obj, Self::Ply, Self::Off, Self::ThreeMf];
+
+    /// The extension of the names of such files, in lower case and without a dot.
+    pub const fn extension(self) -> &'static str {
+        match self {
+            Self::Stl => "stl",
+            Self::Obj => "obj",
+            Self::Ply => "ply",
+            Self::Off => "off",
+            Self::ThreeMf => "3mf",
+        }
+    }
+
+    /// The format of files whose names end in this extension, given without a dot, in any letter case.
+    pub fn from_extension(extension: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|format| format.extension().eq_ignore_ascii_case(extension))
+    }
+
+    /// The format of a file with this content and, if it has one, this extension of its name.
+    ///
+    /// Content decides where it is unmistakable: the length of a binary STL, the signatures of ZIP and PLY,
+    /// the first words of an ASCII STL and of an OFF. Then the extension does. A file without a known one is
+    /// an OBJ if its first line that is neither blank nor a comment begins with a keyword of that format, an
+    /// OFF if that line begins with numbers only, and an STL if it is long enough and no text; else `None`.
+    ///
+    /// O(1) but for comments and blank lines at the beginning.
+    pub fn detect(bytes: &[u8], extension: Option<&str>) -> Option<Self> {
+        by_signature(bytes).or_else(|| extension.and_then(Self::from_extension)).or_else(|| by_look(bytes))
+    }
+}
+
+impl fmt::Display for MeshFormat {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(match self {
+            Self::Stl => "STL",
+            Self::Obj => "OBJ",
+            Self::Ply => "PLY",
+            Self::Off => "OFF",
+            Self::ThreeMf => "3MF",
+        })
+    }
+}
 
 /// The format whose signature the file bears.
-pub(super) fn by_signature(bytes: &[u8]) -> Option<MeshFormat> {
+fn by_signature(bytes: &[u8]) -> Option<MeshFormat> {
     // First, because the header of a binary STL may hold anything.
     if is_binary_of_exact_length(bytes) {
         return Some(MeshFormat::Stl);
@@ -27,7 +88,7 @@ pub(super) fn by_signature(bytes: &[u8]) -> Option<MeshFormat> {
 }
 
 /// The format that a file without a signature is most likely to have.
-pub(super) fn by_look(bytes: &[u8]) -> Option<MeshFormat> {
+fn by_look(bytes: &[u8]) -> Option<MeshFormat> {
     if let Some(mut words) = first_line(bytes)
         && let Some(word) = words.next()
     {
@@ -61,7 +122,7 @@ pub(super) fn by_look(bytes: &[u8]) -> Option<MeshFormat> {
     (start.len() == 84 && start.contains(&0)).then_some(MeshFormat::Stl)
 }
 
-/// `OFF` and what may stand before it: texture coordinates, colours, normals, a fourth coordinate, a dimension.
+/// `OFF` and what may stand before it: texture coordinates, colours, normals, and so on.
 fn is_off_keyword(word: &[u8]) -> bool {
     let mut rest = word;
     for prefix in [&b"ST"[..], b"C", b"N", b"4", b"n"] {

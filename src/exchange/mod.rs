@@ -1,7 +1,7 @@
 //! The files of other programs.
 //!
-//! [`read_mesh`] and `open_mesh` (with the feature `std`) read mesh files of all formats, tell which it is, and convert
-//! units; [`read_stl`], `read_obj`, `read_ply` and `read_off` read one.
+//! [`read_mesh`] and `open_mesh` (with the feature `std`) read mesh files of all formats, tell which it is,
+//! and convert units; [`read_stl`], `read_obj`, `read_ply` and `read_off` read one.
 //!
 //! | format | what is read |
 //! |---|---|
@@ -11,13 +11,13 @@
 //! | OFF | text and binary, with and without a keyword, with colours, normals and textures, which are skipped |
 //! | 3MF | (feature `threemf`) the core specification and parts of the production extension: units, components, the build's transforms |
 //!
-//! An error says in which line, or at which byte or element, and for a 3MF in which part. Bytes may be anything: no
-//! reader panics, and memory is linear in the length of the file, with two exceptions of 3MF: its parts may be
-//! up to 64 times as long as the file and 16 MiB, and instances of one object, up to 2^25 vertices and triangles
-//! altogether, are stored one by one. Of a 3MF the items of the build become one mesh: objects of type `model`, each as
-//! often as it is placed; supports and what else is no solid are left out and counted. A model that requires an
-//! extension other than production, materials and triangle sets is refused, as are encryption and document
-//! type declarations.
+//! An error says in which line, or at which byte or element, and for a 3MF in which part. Bytes may be
+//! anything: no reader panics, and memory is linear in the length of the file, with two exceptions of 3MF:
+//! its parts may be up to 64 times as long as the file and 16 MiB, and instances of one object, up to 2^25
+//! vertices and triangles altogether, are stored one by one. Of a 3MF the items of the build become one mesh:
+//! objects of type `model`, each as often as it is placed; supports and what else is no solid are left out
+//! and counted. A model that requires an extension other than production, materials and triangle sets is
+//! refused, as are encryption and document type declarations.
 //!
 //! Formats of polygons are read only with the feature `std`, which cutting polygons into triangles needs.
 
@@ -46,7 +46,8 @@ mod unit;
 
 #[cfg(feature = "std")]
 pub use any::open_mesh;
-pub use any::{MeshFile, MeshFormat, MeshOptions, read_mesh};
+pub use any::{MeshFile, MeshOptions, read_mesh};
+pub use detect::MeshFormat;
 #[cfg(feature = "std")]
 pub use obj::read_obj;
 #[cfg(feature = "std")]
@@ -57,3 +58,13 @@ pub use ply::read_ply;
 pub(crate) use polygons::Polygons;
 pub use stl::{read_stl, write_stl};
 pub use unit::LengthUnit;
+
+#[inline]
+fn is_space(byte: u8) -> bool {
+    matches!(byte, b' ' | b'\t'..=b'\r')
+}
+
+#[inline]
+fn is_line_end(byte: u8) -> bool {
+    matches!(byte, b'\n' | b'\r')
+}

@@ -1,41 +1,43 @@
 //! OBJ files: polygons, of whatever else such a file may hold.
 //!
-//! **Lines.** A line ends with LF, CR or both. A statement is a keyword and its arguments, with blanks or tabs
-//! between them; a backslash at the end of a line continues it. `#` begins a comment, also behind arguments.
-//! A comment, and a statement that is skipped, end with their line even if there is a backslash: so no name like
-//! `C:\` can swallow a face.
+//! **Lines.** A line ends with LF, CR or both. A statement is a keyword and its arguments, with blanks or
+//! tabs between them; a backslash at the end of a line continues it. `#` begins a comment, also behind
+//! arguments. A comment, and a statement that is skipped, end with their line even if there is a backslash:
+//! so no name like `C:\` can swallow a face.
 //!
-//! **`v`** and three finite coordinates. More numbers may follow (a weight, which for polygons has no meaning, or
-//! a colour) and are skipped. A coordinate becomes the nearest `f64`.
+//! **`v`** and three finite coordinates. More numbers may follow (a weight, which for polygons has no
+//! meaning, or a colour) and are skipped. A coordinate becomes the nearest `f64`.
 //!
-//! **`f`** and three or more corners, each `v`, `v/vt`, `v//vn` or `v/vt/vn`; textures and normals are skipped,
-//! and whether there are such is not checked. Vertices are counted from 1; -1 is the last one before the face. A
-//! face may come before its vertices. `fo`, which old files have, means the same.
+//! **`f`** and three or more corners, each `v`, `v/vt`, `v//vn` or `v/vt/vn`; textures and normals are
+//! skipped, and whether there are such is not checked. Vertices are counted from 1; -1 is the last one before
+//! the face. A face may come before its vertices. `fo`, which old files have, means the same.
 //!
-//! **Skipped** are all other statements: textures, normals, points, lines, groups, names, materials (also without
-//! a name), curves, and keywords that nobody knows. All groups and objects become one mesh.
+//! **Skipped** are all other statements: textures, normals, points, lines, groups, names, materials (also
+//! without a name), curves, and keywords that nobody knows. All groups and objects become one mesh.
 //!
-//! **Refused**, since what is missing would be missed, are surfaces that are no polygons (`surf`, `bsp`, `bzp`)
-//! and parts that stand in another file (`call`). So is a file with neither `v` nor `f`, which is no OBJ.
+//! **Refused**, since what is missing would be missed, are surfaces that are no polygons (`surf`, `bsp`,
+//! `bzp`) and parts that stand in another file (`call`). So is a file with neither `v` nor `f`.
 
 use alloc::vec::Vec;
 
 use super::polygons::Polygons;
-use super::text::{Text, is_line_end, is_space};
+use super::text::Text;
+use super::{is_line_end, is_space};
 use crate::error::{Error, MeshFileError};
 use crate::memory;
 use crate::mesh::TriangleMesh;
 
 /// Reads an OBJ file; all of its groups and objects become one mesh.
 ///
-/// Triangles keep the order of the faces. A face of more than three corners is cut into triangles that do not leave
-/// it; only where that cannot be, because its edges cross or it has no area, into the fan around its first corner.
-/// Equal vertices are welded, and triangles that two equal vertices make degenerate are dropped and counted, as in
-/// [`TriangleMesh::new`]. That the mesh is closed is not checked. Of a file without faces the mesh has no triangles.
+/// Triangles keep the order of the faces. A face of more than three corners is cut into triangles that do not
+/// leave it; only where that cannot be, because its edges cross or it has no area, into the fan around its
+/// first corner. Equal vertices are welded, and triangles that two equal vertices make degenerate are dropped
+/// and counted, as in [`TriangleMesh::new`]. The mesh need not be closed, and may be empty.
 ///
-/// O(n), or O(n log n) for faces that are not convex. Memory is at most 128 times the length of the file. Fails with [`MeshFileError::Empty`],
-/// [`MeshFileError::Syntax`], [`MeshFileError::Index`], [`MeshError::TooLarge`](crate::MeshError::TooLarge),
-/// [`MeshError::TooMany`](crate::MeshError::TooMany) or [`Error::OutOfMemory`].
+/// O(n), or O(n log n) for faces that are not convex. Memory is at most 128 times the length of the file.
+/// Fails with [`MeshFileError::Empty`], [`MeshFileError::Syntax`], [`MeshFileError::Index`],
+/// [`MeshError::TooLarge`](crate::MeshError::TooLarge), [`MeshError::TooMany`](crate::MeshError::TooMany) or
+/// [`Error::OutOfMemory`].
 pub fn read_obj(bytes: &[u8]) -> Result<TriangleMesh, Error> {
     if bytes.is_empty() {
         return Err(MeshFileError::Empty.into());
@@ -107,7 +109,7 @@ impl Reader {
         loop {
             skip_gap(text);
             match text.rest() {
-                // Whatever is printed for a number, like `-nan(ind)`; but no statement that lost its line end.
+                // Whatever is printed for a number, like `-nan(ind)`; but no statement that lost its end.
                 [b'0'..=b'9' | b'+' | b'-' | b'.' | b'i' | b'I' | b'n' | b'N', ..] => {
                     text.word();
                 }
@@ -231,7 +233,7 @@ fn continuation(rest: &[u8]) -> Option<&[u8]> {
 mod tests {
     extern crate std;
 
-    use super::super::tests::{model, random_polygons, same, truncations_and_damages};
+    use super::super::tests::{is_syntax_error, model, random_polygons, same, truncations_and_damages};
     use super::*;
     use crate::error::MeshError;
     use crate::mesh::FillRule;
@@ -257,13 +259,7 @@ mod tests {
 
     #[track_caller]
     fn assert_syntax(text: impl AsRef<[u8]>, at: u64, what: &str) {
-        match read_obj(text.as_ref()) {
-            Err(Error::MeshFile(MeshFileError::Syntax { line, expected })) => {
-                assert_eq!(line, at, "{expected}");
-                assert!(expected.contains(what), "{expected}");
-            }
-            other => panic!("{other:?}"),
-        }
+        is_syntax_error(read_obj(text.as_ref()), at, what);
     }
 
     #[track_caller]

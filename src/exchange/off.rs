@@ -1,24 +1,25 @@
 //! OFF files, as Geomview defines them: text and binary.
 //!
-//! **Header.** `OFF` with any of the prefixes `ST`, `C`, `N`, `4` and `n`, then the numbers of vertices, faces and
-//! edges. The keyword may be absent, and the counts may follow it at once (`OFF8 6 12`, as some collections have
-//! it). The number of edges has no meaning, and may be absent where the others stand on one line. `#` begins a
-//! comment anywhere.
+//! **Header.** `OFF` with any of the prefixes `ST`, `C`, `N`, `4` and `n`, then the numbers of vertices,
+//! faces and edges. The keyword may be absent, and the counts may follow it at once (`OFF8 6 12`, as some
+//! collections have it). The number of edges has no meaning, and may be absent after others on one line.
+//! `#` begins a comment anywhere.
 //!
-//! **Vertices** are three finite coordinates each, with any white space between them; a coordinate becomes the
-//! nearest `f64`. Of `4OFF` there are four, and the others are divided by the fourth. `nOFF` says its dimension, which
-//! must be 3. Behind its coordinates a vertex has what the prefixes announce, all of which is skipped: a normal of
-//! three numbers (`N`), a colour of three or four (`C`; those that are left on the line), two of a texture (`ST`).
+//! **Vertices** are three finite coordinates each, with any white space between them; a coordinate becomes
+//! the nearest `f64`. Of `4OFF` there are four, and the others are divided by the fourth. `nOFF` says its
+//! dimension, which must be 3. Behind its coordinates a vertex has what the prefixes announce, all of which
+//! is skipped: a normal of three numbers (`N`), a colour of three or four (`C`; those that are left on the
+//! line), two of a texture (`ST`).
 //!
 //! **Faces** are a number of corners, vertices counted from 0, and up to the end of the line the at most four
 //! numbers of a colour, which is skipped. Faces of one or two corners, which stand for points and lines, are
 //! skipped too.
 //!
-//! **Binary** files (`OFF BINARY`) have integers of 32 bits and floating point numbers of 32 bits, both big-endian,
-//! and a count before each colour.
+//! **Binary** files (`OFF BINARY`) have integers of 32 bits and floating point numbers of 32 bits, both
+//! big-endian, and a count before each colour.
 //!
-//! **The end.** Behind the last face only white space and comments may follow, of a binary file also zero bytes: if
-//! there is more, the counts are wrong. Nothing is allocated that a header claims and a file does not hold.
+//! **The end.** Behind the last face only white space and comments may follow, of a binary file also zero
+//! bytes: if there is more, the counts are wrong. Nothing is allocated beyond what the file holds.
 
 use alloc::vec::Vec;
 
@@ -31,17 +32,16 @@ use crate::mesh::TriangleMesh;
 
 /// Reads an OFF file, text or binary.
 ///
-/// Triangles keep the order of the faces. A face of more than three corners is cut into triangles that do not leave
-/// it; only where that cannot be, because its edges cross or it has no area, into the fan around its first corner.
-/// Equal vertices are welded, and triangles that two equal vertices make degenerate are dropped and counted, as in
-/// [`TriangleMesh::new`]. That the mesh is closed is not checked. Of a file without faces the mesh has no triangles.
+/// Triangles keep the order of the faces. A face of more than three corners is cut into triangles that do not
+/// leave it; only where that cannot be, because its edges cross or it has no area, into the fan around its
+/// first corner. Equal vertices are welded, and triangles that two equal vertices make degenerate are dropped
+/// and counted, as in [`TriangleMesh::new`]. The mesh need not be closed, and may be empty.
 ///
-/// O(n), or O(n log n) for faces that are not convex. Memory is at most 128 times the length of the file, whatever
-/// its header claims. Fails with
-/// [`MeshFileError::Empty`], [`MeshFileError::Syntax`] and [`MeshFileError::Index`] (in the header, and in a text),
-/// [`MeshFileError::Binary`] and [`MeshFileError::BinaryIndex`],
-/// [`MeshError::TooLarge`](crate::MeshError::TooLarge), [`MeshError::TooMany`](crate::MeshError::TooMany) or
-/// [`Error::OutOfMemory`].
+/// O(n), or O(n log n) for faces that are not convex. Memory is at most 128 times the length of the file,
+/// whatever its header claims. Fails with [`MeshFileError::Empty`], [`MeshFileError::Syntax`] and
+/// [`MeshFileError::Index`] (in the header, and in a text), [`MeshFileError::Binary`] and
+/// [`MeshFileError::BinaryIndex`], [`MeshError::TooLarge`](crate::MeshError::TooLarge),
+/// [`MeshError::TooMany`](crate::MeshError::TooMany) or [`Error::OutOfMemory`].
 pub fn read_off(bytes: &[u8]) -> Result<TriangleMesh, Error> {
     if bytes.is_empty() {
         return Err(MeshFileError::Empty.into());
@@ -318,7 +318,7 @@ fn read_binary(layout: &Layout, mut bytes: Bytes<true>) -> Result<TriangleMesh, 
 
 #[cfg(test)]
 mod tests {
-    use super::super::tests::{random_polygons, same, truncations_and_damages};
+    use super::super::tests::{is_syntax_error, random_polygons, same, truncations_and_damages};
     use super::*;
     use crate::error::MeshError;
     use crate::mesh::FillRule;
@@ -349,13 +349,7 @@ mod tests {
 
     #[track_caller]
     fn assert_syntax(text: impl AsRef<[u8]>, at: u64, what: &str) {
-        match read_off(text.as_ref()) {
-            Err(Error::MeshFile(MeshFileError::Syntax { line, expected })) => {
-                assert_eq!(line, at, "{expected}");
-                assert!(expected.contains(what), "{expected}");
-            }
-            other => panic!("{other:?}"),
-        }
+        is_syntax_error(read_off(text.as_ref()), at, what);
     }
 
     #[test]

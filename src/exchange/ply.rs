@@ -1,22 +1,22 @@
 //! PLY files: ASCII and binary of both byte orders.
 //!
-//! **Header.** `ply`, one `format` (`ascii`, `binary_little_endian` or `binary_big_endian`, version 1.0), elements
-//! with their properties, and `end_header`. `comment` and `obj_info` may stand on any line between. Lines end with
-//! LF, CR or both. The types are `char`, `uchar`, `short`, `ushort`, `int`, `uint`, `float`, `double` and the same
-//! as `int8` to `float64`. A keyword or a type that is none of these is refused.
+//! **Header.** `ply`, one `format` (`ascii`, `binary_little_endian` or `binary_big_endian`, version 1.0),
+//! elements with their properties, and `end_header`. `comment` and `obj_info` may stand on any line between.
+//! Lines end with LF, CR or both. The types are `char`, `uchar`, `short`, `ushort`, `int`, `uint`, `float`,
+//! `double` and the same as `int8` to `float64`. A keyword or a type that is none of these is refused.
 //!
-//! **Elements** come in any order; those of other names, and all properties that are not needed, single ones and
-//! lists, are skipped. `vertex` needs `x`, `y` and `z` of any type. `face` needs a list of integers that is called
-//! `vertex_indices` or `vertex_index`, of three or more vertices each. `tristrips`, as the Stanford scans have
-//! it, needs a list of that name, in which -1 ends a strip; every second triangle of a strip is turned.
+//! **Elements** come in any order; those of other names, and all properties that are not needed, single ones
+//! and lists, are skipped. `vertex` needs `x`, `y` and `z` of any type. `face` needs a list of integers that
+//! is called `vertex_indices` or `vertex_index`, of three or more vertices each. `tristrips`, as the Stanford
+//! scans have it, needs a list of that name, in which -1 ends a strip; every second triangle is turned.
 //!
-//! **ASCII.** The values of an element are separated by white space, also by line ends; each element begins on a
-//! new line. A decimal coordinate becomes the nearest `f64`, also if its type is `float`.
+//! **ASCII.** The values of an element are separated by white space, also by line ends; each element begins
+//! on a new line. A decimal coordinate becomes the nearest `f64`, also if its type is `float`.
 //!
 //! **Binary.** Coordinates are taken over exactly.
 //!
-//! **The end.** Behind the last element only white space, zero bytes and Ctrl-Z may follow: if there is more, the
-//! header's counts are wrong. Nothing is allocated that a header claims and a file does not hold.
+//! **The end.** Behind the last element only white space, zero bytes and Ctrl-Z may follow: if there is more,
+//! the header's counts are wrong. Nothing is allocated that a header claims and a file does not hold.
 
 use alloc::vec::Vec;
 
@@ -29,17 +29,16 @@ use crate::mesh::TriangleMesh;
 
 /// Reads a PLY file, ASCII or binary.
 ///
-/// Triangles keep the order of the faces. A face of more than three corners is cut into triangles that do not leave
-/// it; only where that cannot be, because its edges cross or it has no area, into the fan around its first corner.
-/// Equal vertices are welded, and triangles that two equal vertices make degenerate are dropped and counted, as in
-/// [`TriangleMesh::new`]. That the mesh is closed is not checked. Of a file without faces the mesh has no triangles.
+/// Triangles keep the order of the faces. A face of more than three corners is cut into triangles that do not
+/// leave it; only where that cannot be, because its edges cross or it has no area, into the fan around its
+/// first corner. Equal vertices are welded, and triangles that two equal vertices make degenerate are dropped
+/// and counted, as in [`TriangleMesh::new`]. The mesh need not be closed, and may be empty.
 ///
-/// O(n), or O(n log n) for faces that are not convex. Memory is at most 128 times the length of the file, whatever
-/// its header claims. Fails with
-/// [`MeshFileError::Empty`], [`MeshFileError::Syntax`] and [`MeshFileError::Index`] (in the header, and in an ASCII
-/// file), [`MeshFileError::Binary`] and [`MeshFileError::BinaryIndex`],
-/// [`MeshError::TooLarge`](crate::MeshError::TooLarge), [`MeshError::TooMany`](crate::MeshError::TooMany) or
-/// [`Error::OutOfMemory`].
+/// O(n), or O(n log n) for faces that are not convex. Memory is at most 128 times the length of the file,
+/// whatever its header claims. Fails with [`MeshFileError::Empty`], [`MeshFileError::Syntax`] and
+/// [`MeshFileError::Index`] (in the header, and in an ASCII file), [`MeshFileError::Binary`] and
+/// [`MeshFileError::BinaryIndex`], [`MeshError::TooLarge`](crate::MeshError::TooLarge),
+/// [`MeshError::TooMany`](crate::MeshError::TooMany) or [`Error::OutOfMemory`].
 pub fn read_ply(bytes: &[u8]) -> Result<TriangleMesh, Error> {
     if bytes.is_empty() {
         return Err(MeshFileError::Empty.into());
@@ -236,7 +235,7 @@ trait Source: Copy {
     /// The error that something else than what comes next was expected.
     fn error(&self, expected: &'static str) -> MeshFileError;
 
-    /// At most how many elements may still come that have each at least so many `values`, of `bytes` together.
+    /// At most how many elements may still come, each of so many `values` or more, of `bytes` together.
     fn at_most(&self, values: usize, bytes: usize) -> usize;
 
     /// Takes a finite number.
@@ -248,8 +247,7 @@ trait Source: Copy {
     /// Takes numbers of any values, so many or of so many bytes.
     fn skip(&mut self, values: u64, bytes: u64) -> Result<(), MeshFileError>;
 
-    /// Takes `count` indices of vertices, of which there are `vertices`; in a strip also -1, which becomes the
-    /// greatest `u32`.
+    /// Takes `count` indices below `vertices`; in a strip also -1, which becomes the greatest `u32`.
     fn indices(&mut self, out: &mut Vec<u32>, count: u64, of: &Indices, vertices: u64) -> Result<(), Error>;
 
     /// Takes the end of an element.
@@ -592,7 +590,7 @@ fn integer<const BIG: bool>(source: &mut Bytes<BIG>, kind: Kind) -> Result<i64, 
 
 #[cfg(test)]
 mod tests {
-    use super::super::tests::{model, random_polygons, same, truncations_and_damages};
+    use super::super::tests::{is_syntax_error, model, random_polygons, same, truncations_and_damages};
     use super::*;
     use crate::error::MeshError;
     use crate::mesh::FillRule;
@@ -633,7 +631,7 @@ mod tests {
 
     const FORMATS: [&str; 3] = ["ascii", "binary_little_endian", "binary_big_endian"];
 
-    /// Of elements of one kind the name, the properties as the header has them, and of each its values of each.
+    /// Of elements of one kind the name, the properties as the header has them, and the values of each.
     type Elements<'a> = (&'a str, &'a [&'a str], Vec<Vec<Vec<f64>>>);
 
     fn file(format: &str, elements: &[Elements]) -> Vec<u8> {
@@ -686,14 +684,8 @@ mod tests {
     }
 
     #[track_caller]
-    fn assert_syntax(bytes: impl AsRef<[u8]>, at: u64, what: &str) {
-        match read_ply(bytes.as_ref()) {
-            Err(Error::MeshFile(MeshFileError::Syntax { line, expected })) => {
-                assert_eq!(line, at, "{expected}");
-                assert!(expected.contains(what), "{expected}");
-            }
-            other => panic!("{other:?}"),
-        }
+    fn assert_syntax(text: impl AsRef<[u8]>, at: u64, what: &str) {
+        is_syntax_error(read_ply(text.as_ref()), at, what);
     }
 
     #[track_caller]

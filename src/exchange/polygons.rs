@@ -1,8 +1,8 @@
 //! Faces of any number of corners, on the way to a triangle mesh.
 //!
-//! A face of more than three corners is cut into triangles that do not leave it, also where it is not convex. Where
-//! that cannot be, because its edges cross or it has no area as it is seen along its normal, it becomes the fan around
-//! its first corner. In both cases the triangles have the boundary of the face, so that neighbours still meet.
+//! A face of more than three corners is cut into triangles that do not leave it, also where it is not convex.
+//! Where that cannot be, because its edges cross or it has no area as it is seen along its normal, it becomes
+//! the fan around its first corner. In both cases the triangles keep the face's boundary: neighbours meet.
 
 use alloc::vec::Vec;
 
@@ -12,8 +12,8 @@ use crate::mesh::{TriangleMesh, triangulate_facet};
 
 /// A mesh of polygons with shared vertices, whose vertices need not be known before the faces.
 ///
-/// A face of n corners is stored as the n - 2 triangles of a fan, and if n is more than three it is noted: how it is
-/// cut is decided once all vertices are there.
+/// A face of n corners is stored as the n - 2 triangles of a fan, and if n is more than three it is noted:
+/// how it is cut is decided once all vertices are there.
 #[derive(Default)]
 pub(crate) struct Polygons {
     pub vertices: Vec<[f64; 3]>,

@@ -1,35 +1,35 @@
 //! STL files, binary and ASCII: triangle soups, welded to a mesh on reading.
 //!
-//! **Which of the two.** A file whose length is exactly 84 + 50 n, where n is the facet count that a binary file
-//! has in its bytes 80 to 83, is binary, even if its header begins with `solid`. (An ASCII file cannot look like
-//! this below 7 gigabytes, since four text characters make n at least 0x09090909.) Any other file is ASCII if its
-//! first word is `solid` and none of the bytes 80 to 83 is zero, which in a binary file of less than 2^24 facets
-//! the last one always is. What remains is binary.
+//! **Which of the two.** A file whose length is exactly 84 + 50 n, where n is the facet count that a binary
+//! file has in its bytes 80 to 83, is binary, even if its header begins with `solid`. (An ASCII file cannot
+//! look like this below 7 gigabytes, since four text characters make n at least 0x09090909.) Any other file
+//! is ASCII if its first word is `solid` and none of the bytes 80 to 83 is zero, which in a binary file of
+//! less than 2^24 facets the last one always is. What remains is binary.
 //!
 //! **Binary.** Coordinates are `f32` and taken over exactly. After the counted facets there may be up to 49
-//! bytes, or any number of zero bytes, as block-wise transfers append them; if there is more, the count must be
-//! wrong, and the file is refused rather than read in part. Headers, attribute bytes (colours) and normals are
-//! ignored.
+//! bytes, or any number of zero bytes, as block-wise transfers append them; if there is more, the count must
+//! be wrong, and the file is refused rather than read in part. Headers, colours and normals are ignored.
 //!
-//! **ASCII.** Keywords have any letter case and any white space and line ends between them. A file may hold any
-//! number of solids, which all become one mesh; the bodies stay apart because they share no edge. A name is
-//! whatever stands behind `solid` or `endsolid` on the same line, in any encoding. Normals are ignored and may be
-//! garbage or absent, since programs that cannot compute one print things like `-nan(ind)`. A loop of more than
-//! three vertices is cut into a fan from its first vertex; for a planar polygon this is right even where it is
-//! not convex, because the winding numbers around the surface are the same for every triangulation. `endsolid`
-//! may be missing where the file ends, but only behind a complete facet.
+//! **ASCII.** Keywords have any letter case and any white space and line ends between them. A file may hold
+//! any number of solids, which all become one mesh; the bodies stay apart because they share no edge. A name
+//! is whatever stands behind `solid` or `endsolid` on the same line, in any encoding. Normals are ignored and
+//! may be garbage or absent, since programs that cannot compute one print things like `-nan(ind)`. A loop of
+//! more than three vertices is cut into a fan from its first vertex; for a planar polygon this is right even
+//! where it is not convex, because the winding numbers around the surface are the same for every
+//! triangulation. `endsolid` may be missing where the file ends, but only behind a complete facet.
 //!
 //! A decimal coordinate becomes the nearest `f64`, not the nearest `f32`: this is nearer to what was written.
 //! Two facets that print a common vertex alike share it, those that print it with different digits do not.
 //!
-//! **Numerical noise.** Some CAD programs write 0 for a coordinate in one facet and 1e-16 in the next, and such a
-//! file is open as it stands. Nothing is rounded here behind the user's back;
-//! [`TriangleMesh::sewn`] closes such cracks and says how far it moved anything.
+//! **Numerical noise.** Some CAD programs write 0 for a coordinate in one facet and 1e-16 in the next, and
+//! such a file is open as it stands. Nothing is rounded here behind the user's back; [`TriangleMesh::sewn`]
+//! closes such cracks and says how far it moved anything.
 
 use alloc::vec::Vec;
 
 use glam::DVec3;
 
+use super::{is_line_end, is_space};
 use crate::error::{Error, MeshError, MeshFileError};
 use crate::memory;
 use crate::mesh::{FacetWelder, TriangleMesh};
@@ -47,9 +47,9 @@ const TITLE: &[u8] = b"binary STL written by leafless";
 /// counted, as in [`TriangleMesh::from_facets`]. That the mesh is closed is not checked.
 ///
 /// O(n). Memory is allocated for facets that are there, not for facets that a header claims. Fails with
-/// [`MeshFileError::Empty`], [`MeshFileError::Length`], [`MeshFileError::NotFinite`], [`MeshFileError::Syntax`],
-/// [`MeshError::TooLarge`](crate::MeshError::TooLarge), [`MeshError::TooMany`](crate::MeshError::TooMany) or
-/// [`Error::OutOfMemory`].
+/// [`MeshFileError::Empty`], [`MeshFileError::Length`], [`MeshFileError::NotFinite`],
+/// [`MeshFileError::Syntax`], [`MeshError::TooLarge`](crate::MeshError::TooLarge),
+/// [`MeshError::TooMany`](crate::MeshError::TooMany) or [`Error::OutOfMemory`].
 pub fn read_stl(bytes: &[u8]) -> Result<TriangleMesh, Error> {
     if bytes.is_empty() {
         return Err(MeshFileError::Empty.into());
@@ -66,11 +66,10 @@ pub fn read_stl(bytes: &[u8]) -> Result<TriangleMesh, Error> {
 
 /// Writes a binary STL file.
 ///
-/// Coordinates are rounded to `f32`. Vertices stay common to their triangles, so a closed mesh stays closed, also
-/// where rounding makes a triangle degenerate, which readers then drop. A triangle of no area gets the normal
-/// (0, 0, 0).
+/// Coordinates are rounded to `f32`. Vertices stay common to their triangles, so a closed mesh stays closed,
+/// also where rounding makes a triangle degenerate, which readers drop. Without area the normal is (0, 0, 0).
 ///
-/// O(t), 84 + 50 t bytes. Fails with [`Error::Argument`] if a coordinate is beyond the range of `f32`, and with
+/// O(t), 84 + 50 t bytes. Fails with [`Error::Argument`] beyond the range of `f32`, or
 /// [`Error::OutOfMemory`].
 pub fn write_stl(mesh: &TriangleMesh) -> Result<Vec<u8>, Error> {
     let count = u32::try_from(mesh.triangles().len()).map_err(|_| MeshError::TooMany)?;
@@ -258,8 +257,8 @@ impl<'a> Words<'a> {
         }
     }
 
-    /// Skips a name, which goes on to the end of the line. In a file without line ends it goes on to the words
-    /// `facet normal`, so that no facet can be lost in a name.
+    /// Skips a name, which goes on to the end of the line. In a file without line ends it goes on to the
+    /// words `facet normal`, so that no facet can be lost in a name.
     fn skip_name(&mut self) {
         let mut facet = None;
         loop {
@@ -281,8 +280,8 @@ impl<'a> Words<'a> {
         }
     }
 
-    /// The error that something else than the next word was expected. Its line is that of the next word, or of
-    /// the last one if none follows. Only now are the lines counted.
+    /// The error that something else than the next word was expected. Its line is that of the next word, or
+    /// of the last one if none follows. Only now are the lines counted.
     #[cold]
     fn error(&self, expected: &'static str) -> MeshFileError {
         let rest = &self.text[self.position..];
@@ -296,20 +295,12 @@ impl<'a> Words<'a> {
     }
 }
 
-#[inline]
-fn is_space(byte: u8) -> bool {
-    matches!(byte, b' ' | b'\t'..=b'\r')
-}
-
-#[inline]
-fn is_line_end(byte: u8) -> bool {
-    matches!(byte, b'\n' | b'\r')
-}
-
 #[cfg(test)]
 mod tests {
     extern crate std;
 
+    #[cfg(feature = "std")]
+    use super::super::tests::model;
     use super::*;
     use crate::mesh::FillRule;
     use alloc::string::String;
@@ -615,16 +606,7 @@ mod tests {
         assert_eq!(read_stl(&write_stl(&empty).unwrap()).unwrap().triangles().len(), 0);
     }
 
-    /// A model file, or `None` if the tests run without them.
-    fn model(name: &str) -> Option<Vec<u8>> {
-        let Some(folder) = std::env::var_os("LEAFLESS_MODELS") else {
-            std::println!("SKIPPED: LEAFLESS_MODELS is not set");
-            return None;
-        };
-        let path = std::path::Path::new(&folder).join(name);
-        Some(std::fs::read(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display())))
-    }
-
+    #[cfg(feature = "std")]
     #[test]
     fn real_files() {
         // Triangles, edges on which the file as it stands is open, volume.
@@ -657,6 +639,7 @@ mod tests {
         }
     }
 
+    #[cfg(feature = "std")]
     #[test]
     fn a_real_file_of_several_bodies() {
         let Some(bytes) = model("multibody.stl") else { return };

@@ -4,18 +4,39 @@ extern crate std;
 
 use alloc::vec::Vec;
 use proptest::prelude::*;
+use std::io::Write;
+use std::path::PathBuf;
 
-use crate::error::Error;
+use crate::error::{Error, MeshFileError};
 use crate::mesh::TriangleMesh;
+
+/// The folder of models; without one `None`, and a line tells so.
+pub(super) fn models() -> Option<PathBuf> {
+    let folder = std::env::var_os("LEAFLESS_MODELS");
+    if folder.is_none() {
+        // Past the capture of output, which would hide the line because the test passes.
+        let test = std::thread::current();
+        let test = test.name().unwrap_or_default();
+        let _ = writeln!(std::io::stderr(), "SKIPPED {test}: LEAFLESS_MODELS is not set");
+    }
+    folder.map(PathBuf::from)
+}
 
 /// A model file, or `None` if the tests run without them.
 pub(super) fn model(name: &str) -> Option<Vec<u8>> {
-    let Some(folder) = std::env::var_os("LEAFLESS_MODELS") else {
-        std::println!("SKIPPED: LEAFLESS_MODELS is not set");
-        return None;
-    };
-    let path = std::path::Path::new(&folder).join(name);
+    let path = models()?.join(name);
     Some(std::fs::read(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display())))
+}
+
+#[track_caller]
+pub(super) fn is_syntax_error(result: Result<TriangleMesh, Error>, at: u64, what: &str) {
+    match result {
+        Err(Error::MeshFile(MeshFileError::Syntax { line, expected })) => {
+            assert_eq!(line, at, "{expected}");
+            assert!(expected.contains(what), "{expected}");
+        }
+        other => panic!("{other:?}"),
+    }
 }
 
 /// Different vertices with coordinates of all kinds, and faces that are fans: of three to six corners, the
@@ -47,8 +68,8 @@ pub(super) fn same(mesh: TriangleMesh, vertices: Vec<[f64; 3]>, faces: &[Vec<u32
     assert_eq!(mesh.triangles(), expected.triangles());
 }
 
-/// Reads `bytes` cut at every length and with every byte changed in several ways: an answer or an error, but no
-/// panic. That most of it is an error is a test that something is checked at all.
+/// Reads `bytes` cut at every length and with every byte changed in several ways: an answer or an error, but
+/// no panic. That most of it is an error is a test that something is checked at all.
 pub(super) fn truncations_and_damages(read: fn(&[u8]) -> Result<TriangleMesh, Error>, bytes: &[u8]) {
     read(bytes).unwrap();
     for length in 0..bytes.len() {

@@ -1,6 +1,6 @@
 //! Text of words and lines, taken from the front.
 
-use super::decimal;
+use super::{decimal, is_line_end, is_space};
 use crate::error::MeshFileError;
 
 /// A text, of which a part has been taken.
@@ -130,14 +130,4 @@ impl<'a> Text<'a> {
         let lone_returns = returns.filter(|&(&b, &next)| b == b'\r' && next != b'\n').count();
         1 + (line_feeds + lone_returns) as u64
     }
-}
-
-#[inline]
-pub(super) fn is_space(byte: u8) -> bool {
-    matches!(byte, b' ' | b'\t'..=b'\r')
-}
-
-#[inline]
-pub(super) fn is_line_end(byte: u8) -> bool {
-    matches!(byte, b'\n' | b'\r')
 }

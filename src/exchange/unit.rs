@@ -4,7 +4,7 @@ use core::fmt;
 use core::str::FromStr;
 
 use crate::error::Error;
-use crate::lattice::{LARGEST, SMALLEST};
+use crate::lattice::valid;
 
 /// A unit of length. Any two of them are in an exact rational ratio.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -62,7 +62,7 @@ impl fmt::Display for LengthUnit {
 impl FromStr for LengthUnit {
     type Err = Error;
 
-    /// Takes the symbol or a name (`µm`, `micron`, `millimetre`, `millimeters`, `inch`, `feet` …) in any letter
+    /// Takes the symbol or a name (`µm`, `micron`, `millimetre`, `meters`, `inch`, `feet` …) in any letter
     /// case.
     fn from_str(text: &str) -> Result<Self, Error> {
         const NAMES: [(LengthUnit, &[&str]); 6] = [
@@ -95,9 +95,9 @@ impl FromStr for LengthUnit {
 
 /// What coordinates are multiplied by: `numerator / denominator`.
 ///
-/// The denominator is a whole number and stands apart because the factors between units are ratios of small whole
-/// numbers that are seldom floating point numbers (127/5 from inches to millimetres): the product with the
-/// numerator is exact for coordinates of up to 40 bits, and so the quotient is the exact result, rounded once.
+/// The denominator is a whole number and stands apart because the factors between units are ratios of small
+/// whole numbers that are seldom floating point numbers (127/5 from inches to millimetres): the product with
+/// the numerator is exact for coordinates of up to 40 bits, and so the quotient is rounded only once.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Factor {
     numerator: f64,
@@ -107,10 +107,7 @@ pub(super) struct Factor {
 impl Factor {
     /// From one unit to another and by `scale` besides, which must be between 2^-256 and 2^256.
     pub fn new(conversion: Option<(LengthUnit, LengthUnit)>, scale: f64) -> Result<Self, Error> {
-        if !(SMALLEST..=LARGEST).contains(&scale) {
-            let problem = "must be a positive number between 2^-256 and 2^256";
-            return Err(Error::Argument { name: "scale", problem });
-        }
+        valid::length("scale", scale)?;
         let (from, to) = conversion.map_or((1, 1), |(from, to)| (from.micrometres(), to.micrometres()));
         let divisor = common_divisor(from, to);
         Ok(Self { numerator: f64::from(from / divisor) * scale, denominator: f64::from(to / divisor) })
@@ -136,6 +133,7 @@ const fn common_divisor(a: u32, b: u32) -> u32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::lattice::{LARGEST, SMALLEST};
     use LengthUnit::*;
     use alloc::string::ToString;
 

@@ -5,18 +5,18 @@
 //! | function | reads | checks | cost |
 //! |---|---|---|---|
 //! | [`probe`], [`probe_from`], [`probe_bytes`] | header and section table | both | O(sections) |
-//! | [`map`], [`view`], [`from_static`] (bytes) | in place | header, section table, bounds, level table | O(sections + depth) |
+//! | [`map`], [`view`], [`from_static`] (bytes) | in place | header, section table, bounds, objects, level table | O(sections + objects + depth) |
 //! | [`map_verified`], [`verify`] (bytes) | in place | everything | O(n) |
 //! | [`open`], [`from_bytes`] | a copy | everything | O(n) |
 //!
 //! `open` is the plain way. Mapping is for files that are larger than what is asked of them, and is `unsafe`
 //! because of what others may do to a mapped file. [`save`], [`write_to`] and [`to_bytes`] write: equal trees
-//! with equal metadata give equal bytes.
+//! that prove the same and have equal metadata give equal bytes.
 //!
 //! ```
-//! use leafless::{Ball, Control, Frame, Membership, Rule, build, file};
+//! use leafless::{Control, Csg, Frame, Membership, Rule, build, file};
 //! let frame = Frame::new([0.0; 3], 1.0, 6)?;
-//! let ball = build(&Ball::new([0.5; 3], 0.4)?, &frame, Rule::Certified, &Control::default())?;
+//! let ball = build(&Csg::ball([0.5; 3], 0.4)?, &frame, Rule::Certified, &Control::default())?;
 //! let bytes = file::to_bytes(&ball)?;
 //! let back = file::from_bytes(&bytes)?;
 //! assert_eq!(back, ball);
@@ -29,57 +29,66 @@
 //!
 //! Whatever the bytes, none of this panics, reads beyond them, or goes on for ever:
 //!
-//! * [`open`], [`from_bytes`], [`map_verified`] and [`verify`] accept nothing but a well-formed tree with right
-//!   checksums; everything that follows is then what it would be of a tree that was just built. They need O(n)
-//!   time, and memory for at most six times the length of the file (once for the copy; the rest only for files
-//!   that are all metadata). `open` asks for no more than the length that a regular file has; of a pipe or
-//!   device it takes memory as the bytes arrive.
-//! * [`probe`] needs O(sections), at most 4096 of them, and twice the section table's memory. [`view`] allocates
-//!   nothing; [`map`] only for the metadata, which are at most 1 MiB, six times their length.
+//! * [`open`], [`from_bytes`], [`map_verified`] and [`verify`] accept nothing but a well-formed tree with
+//!   right checksums; everything that follows is then what it would be of a tree that was just built. They
+//!   need O(n) time, and memory for at most six times the length of the file (once for the copy; the rest
+//!   only for files that are all metadata). `open` asks for no more than the length that a regular file has;
+//!   of a pipe or device it takes memory as the bytes arrive.
+//! * [`probe`] needs O(sections), at most 4096 of them, and twice the section table's memory. [`view`]
+//!   allocates nothing; [`map`] only for the metadata, which are at most 1 MiB, six times their length.
 //! * After [`view`] or [`map`] nothing has looked at the tree itself. Point queries read at most ten elements
-//!   and allocate nothing. A box query, a walk with a [`Cursor`](crate::Cursor) and a Boolean meet every element
-//!   at most once; a tree is built from a stored one only once all of its links are checked. What is damaged
-//!   reads as PARTIAL or makes an operation return [`Error::Damaged`](crate::Error::Damaged). The result of a
-//!   Boolean never has more elements than its operands together, and the work takes at most 32 times their
-//!   memory (their bricks may be 16-bit indices) and 128 KiB a thread. Statistics are the level table's word.
-//! * Answers about damaged bytes are only this: safe. A changed tag with a right checksum is another tree, and
-//!   checksums are no signatures: who may have made a file must be known by other means.
+//!   and allocate nothing. A box query, a walk with a [`Cursor`](crate::Cursor) and a Boolean meet every
+//!   element at most once; a tree is built from a stored one only once all of its links are checked. What is
+//!   damaged reads as PARTIAL or makes an operation return [`Error::Damaged`](crate::Error::Damaged). The
+//!   result of a Boolean never has more elements than its operands together, and the work takes at most 32
+//!   times their memory (their bricks may be 16-bit indices) and 128 KiB a thread. Statistics are the level
+//!   table's word.
+//! * Answers about damaged bytes are only this: safe. A changed tag with a right checksum is another tree,
+//!   and checksums are no signatures: who may have made a file must be known by other means.
 //!
-//! The files in `fuzz/` and the tests `hostile` and `failing` of this crate try to show the contrary.
+//! The files in `fuzz/` and the tests `hostile_bytes` and `resource_failures` of this crate try to show the
+//! contrary.
 //!
 //! # The format
 //!
-//! Version 0.0. **Until major version 1 the format may change from release to release.**
+//! Version 0.1. **Later versions of major version 0 only add to it**: a file of version 0.1 stays readable.
 //!
 //! A file is a header of 128 bytes, a table of sections, and the sections: the arrays of an
-//! [`OctreeRef`](crate::OctreeRef), each on a multiple of 64 bytes, all numbers little-endian. Header, table and
-//! every section have a CRC32. The name of a file ends in `.lfl`.
+//! [`OctreeRef`](crate::OctreeRef), each on a multiple of 64 bytes, all numbers little-endian. Header, table
+//! and every section have a CRC32. The name of a file ends in `.lfl`.
 //!
 //! | kind | section | element | count |
 //! |---|---|---|---|
-//! | 1 | planes | u64 lower, u64 upper | elements |
-//! | 2 | rel | u16 | elements |
-//! | 3 | base | u64 | ⌈elements / 1024⌉ |
-//! | 4 | bricks | one or two u64 | bricks, if raw |
-//! | 5 | brick indices | u16 | bricks, if through a dictionary |
-//! | 6 | dictionary entries | one or two u64 | dictionary entries |
-//! | 7 | dictionary segments | u64 | segments of the dictionary |
-//! | 8 | level table | three u64 | depth + 1 |
-//! | 9 | metadata | byte | at most 2^20 |
+//! | 1 | objects | record of 128 bytes | objects, at most 4096 |
+//! | 2 | metadata | byte | at most 2^20 |
+//! | 3 | level table | three u64 | depth + 1 |
+//! | 4 | planes | u64 lower, u64 upper | elements |
+//! | 5 | rel | u16 | elements |
+//! | 6 | base | u64 | ⌈elements / 1024⌉ |
+//! | 7 | bricks | one or two u64 | bricks, if raw |
+//! | 8 | brick indices | u16 | bricks, if through a dictionary |
+//! | 9 | dictionary entries | one or two u64 | dictionary entries |
+//! | 10 | dictionary segments | u64 | segments of the dictionary |
 //!
-//! Other kinds are for later versions: a reader skips a section that it does not know, unless it is required.
+//! Each section belongs to an object, its owner. Object 0 is the solid. Other objects and other kinds are for
+//! later versions, and kinds from 2^31 on for applications: a reader skips what it does not know, unless it
+//! is required.
 //!
-//! The specification is `format_spec/specification.md` in the source of this crate: every field, every check and
-//! its reason. Beside it lie test vectors, the reasons for the design, and the list of what readers accept
-//! although the writer never writes it.
+//! The specification is `format_spec/specification.md` in the source of this crate: every field, every check
+//! and its reason. Beside it lie test vectors, the reasons for the design, and the list of what readers
+//! accept although the writer never writes it.
 
+mod header;
 mod layout;
 #[cfg(feature = "mmap")]
 mod map;
+mod object;
 mod read;
+mod section;
+mod wire;
 mod write;
 
-pub use layout::{MAGIC, MAJOR, MINOR};
+pub use header::{MAGIC, MAJOR, MINOR};
 #[cfg(feature = "mmap")]
 pub use map::{map, map_verified};
 pub use read::{Probe, Section, from_bytes, from_static, probe_bytes, verify, view};

@@ -1,12 +1,14 @@
 //! The ways in that need no operating system, and reading from paths.
 
 #[cfg(feature = "std")]
-use super::layout::HEADER_LENGTH;
-use super::layout::{Head, Kind, Layout, SECTION_REQUIRED, Table, entries, section};
+use super::header::HEADER_LENGTH;
+use super::header::Head;
+use super::layout::Layout;
+use super::section::{Kind, SECTION_REQUIRED, Table, entries, section};
 use crate::error::{Error, FormatError};
 use crate::lattice::Frame;
 use crate::memory;
-use crate::octree::{Metadata, Octree, OctreeRef, Tag};
+use crate::octree::{Metadata, Octree, OctreeRef, Proof, Tag};
 use alloc::sync::Arc;
 use alloc::vec::Vec;
 #[cfg(feature = "std")]
@@ -24,6 +26,8 @@ pub struct Probe {
     pub root: Tag,
     /// What is known of the space outside of the universe: EMPTY, FULL or PARTIAL.
     pub exterior: Tag,
+    /// What the cells prove of the solid that the tree was made from.
+    pub proof: Proof,
     /// Whether nothing is undecided.
     pub binary: bool,
     /// Elements, without bricks.
@@ -42,6 +46,8 @@ pub struct Probe {
 pub struct Section {
     /// Number of its kind; see the [table](super#the-format).
     pub kind: u32,
+    /// The object that it belongs to: 0 is the solid.
+    pub owner: u32,
     /// Name of its kind, if this library knows it.
     pub name: Option<&'static str>,
     /// Where it begins in the file, in bytes.
@@ -67,7 +73,8 @@ pub fn probe_bytes(bytes: &[u8]) -> Result<Probe, Error> {
     let mut sections = memory::with_capacity(head.header.section_count as usize)?;
     sections.extend(entries(raw).map(|entry| Section {
         kind: entry.kind,
-        name: Kind::from_number(entry.kind).map(Kind::name),
+        owner: entry.owner,
+        name: entry.known().map(Kind::name),
         offset: entry.offset,
         length: entry.length,
         count: entry.count,
@@ -78,6 +85,7 @@ pub fn probe_bytes(bytes: &[u8]) -> Result<Probe, Error> {
         frame: head.frame,
         root: head.root,
         exterior: head.exterior,
+        proof: head.proof,
         binary: head.header.brick_planes == 1 && head.root != Tag::Partial,
         elements: head.header.elements,
         bricks: head.header.bricks,
@@ -239,7 +247,7 @@ pub(super) fn metadata(layout: &Layout, bytes: &[u8]) -> Result<Metadata, Error>
 /// Everything but the tree itself: checksums, padding, metadata. The bytes are still in the file's order.
 pub(super) fn verify_contents(layout: &Layout, bytes: &[u8]) -> Result<Metadata, Error> {
     let mut end = layout.head.table_range().end as u64;
-    for entry in entries(layout.head.table(bytes)?) {
+    for entry in entries(layout.head.table(bytes)?).filter(|entry| entry.same == 0) {
         let padding = section(bytes, &(end..entry.offset))?;
         if let Some(&byte) = padding.iter().find(|&&byte| byte != 0) {
             return Err(FormatError::Field { name: "padding", value: byte.into() }.into());

@@ -1,9 +1,9 @@
 //! Writing: the bytes of a tree, and how they reach a disk.
 
-use super::layout::{
-    ENCODING_DICTIONARY, ENCODING_RAW, Entry, HEADER_LENGTH, Header, Kind, MAGIC, MAJOR, MAX_METADATA, MINOR,
-    SECTION_ALIGNMENT, Wire,
-};
+use super::header::{ENCODING_DICTIONARY, ENCODING_RAW, HEADER_LENGTH, Header, MAGIC, MAJOR, MINOR};
+use super::object::Object;
+use super::section::{Entry, Kind, MAX_METADATA, SECTION_ALIGNMENT};
+use super::wire::Wire;
 use crate::error::Error;
 use crate::octree::Octree;
 use crate::octree::brick::OwnedBricks;
@@ -164,6 +164,7 @@ enum Elements<'a> {
     U16(&'a [u16]),
     U64(&'a [u64]),
     Levels(&'a [LevelCounts]),
+    Objects(&'a [Object]),
     Bytes(&'a [u8]),
 }
 
@@ -177,6 +178,7 @@ impl Elements<'_> {
             Elements::U16(_) => size_of::<u16>(),
             Elements::U64(_) => size_of::<u64>(),
             Elements::Levels(_) => size_of::<LevelCounts>(),
+            Elements::Objects(_) => size_of::<Object>(),
             Elements::Bytes(_) => 1,
         }
     }
@@ -187,6 +189,7 @@ impl Elements<'_> {
             Elements::U16(elements) => elements.len(),
             Elements::U64(elements) => elements.len(),
             Elements::Levels(elements) => elements.len(),
+            Elements::Objects(elements) => elements.len(),
             Elements::Bytes(elements) => elements.len(),
         }
     }
@@ -198,6 +201,7 @@ impl Elements<'_> {
             Elements::U16(elements) => write_elements(elements, sink),
             Elements::U64(elements) => write_elements(elements, sink),
             Elements::Levels(elements) => write_elements(elements, sink),
+            Elements::Objects(elements) => write_elements(elements, sink),
             Elements::Bytes(elements) => sink(elements),
         }
     }
@@ -244,6 +248,8 @@ fn assemble(
         depth: tree.frame.depth(),
         root: tree.root as u8,
         exterior: tree.exterior as u8,
+        proof: tree.proof.bits(),
+        displacement: tree.proof.displacement().to_bits(),
         brick_planes: if bricks.one_plane() { 1 } else { 2 },
         elements: tree.element_count(),
         bricks: tree.brick_count(),
@@ -253,8 +259,12 @@ fn assemble(
         Bricks::One(bricks) => brick_sections(&bricks, Elements::U64, &mut header),
         Bricks::Two(bricks) => brick_sections(&bricks, Elements::Planes, &mut header),
     };
-    // In ascending order, as they lie in the file.
+    let objects = [Object::solid(&header)];
+    // In ascending order, as they lie in the file: what is asked first lies together.
     let sections = [
+        (Kind::Objects, Elements::Objects(&objects)),
+        (Kind::Metadata, Elements::Bytes(&metadata)),
+        (Kind::Levels, Elements::Levels(octree.counts())),
         (Kind::Planes, Elements::Planes(tree.planes)),
         (Kind::Rel, Elements::U16(tree.rel)),
         (Kind::Base, Elements::U64(tree.base)),
@@ -262,12 +272,10 @@ fn assemble(
         (Kind::Indices, indices),
         (Kind::Entries, entries),
         (Kind::Segments, segments),
-        (Kind::Levels, Elements::Levels(octree.counts())),
-        (Kind::Metadata, Elements::Bytes(&metadata)),
     ];
     let present = || sections.iter().filter(|(_, elements)| elements.count() != 0);
 
-    let mut head = [0; HEADER_LENGTH + 9 * size_of::<Entry>()];
+    let mut head = [0; HEADER_LENGTH + Kind::ALL.len() * size_of::<Entry>()];
     let head_length = HEADER_LENGTH + present().count() * size_of::<Entry>();
     let (first, table) = head[..head_length].split_at_mut(HEADER_LENGTH);
     // Offsets cannot overflow: all of it lies in memory.
@@ -278,14 +286,17 @@ fn assemble(
             crc.update(bytes);
             Ok(())
         })?;
+        let (element, components) = kind.element(header.brick_planes);
         let entry = Entry {
             kind: *kind as u32,
-            element_size: elements.size() as u32,
+            element_type: element as u8,
+            components,
+            flags: kind.flags(),
             offset: end.next_multiple_of(SECTION_ALIGNMENT),
             length: elements.count() as u64 * elements.size() as u64,
             count: elements.count() as u64,
             crc: crc.finalize(),
-            flags: kind.flags(),
+            ..Entry::zeroed()
         };
         end = entry.range().end;
         header.section_count += 1;

@@ -1,13 +1,13 @@
 //! Affine maps of model space.
 
-use super::exact::{grow, sign, two_product};
+use super::exact::{product_up, sign_of_products, two_product};
 use crate::error::Error;
 
 /// Entries beyond ±2^64 are refused, and so are those but zero below 2^-64.
 const LARGEST: f64 = 18_446_744_073_709_551_616.0;
 
-/// The invertible affine map p ↦ M p + t, which places a shape: row i of `[M | t]` gives coordinate i of the image.
-/// The map is that of exactly these doubles; nothing is normalised or rounded.
+/// The invertible affine map p ↦ M p + t, which places a shape: row i of `[M | t]` gives coordinate i of the
+/// image. The map is that of exactly these doubles; nothing is normalised or rounded.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Affine {
     rows: [[f64; 4]; 3],
@@ -24,8 +24,8 @@ impl Affine {
     /// The map with the rows of `[M | t]`.
     ///
     /// # Errors
-    /// [`Error::Argument`] if an entry is not zero and not of a magnitude between 2^-64 and 2^64, or M is singular
-    /// (which is decided exactly).
+    /// [`Error::Argument`] if an entry is not zero and not of a magnitude between 2^-64 and 2^64, or M is
+    /// singular (which is decided exactly).
     pub fn new(rows: [[f64; 4]; 3]) -> Result<Affine, Error> {
         let refuse = |problem| Err(Error::Argument { name: "placement", problem });
         if !rows.iter().flatten().all(|&c| c == 0.0 || (1.0 / LARGEST..=LARGEST).contains(&c.abs())) {
@@ -60,32 +60,28 @@ impl Affine {
         *self == Affine::IDENTITY
     }
 
-    /// 1 if the map keeps orientation, −1 if it mirrors, 0 if M is singular: the exact sign of the determinant.
+    /// How far apart along an axis, at the most, the images of two points are that are `distance` apart along
+    /// each; rounded upward.
+    pub(crate) fn stretched(&self, distance: f64) -> f64 {
+        let stretch = self.rows.iter().map(|[x, y, z, _]| x.abs() + y.abs() + z.abs()).fold(0.0, f64::max);
+        product_up(stretch * (1.0 + 2.0 * f64::EPSILON), distance)
+    }
+
+    /// 1 if the map keeps orientation, −1 if it mirrors, 0 if M is singular: the exact sign of the
+    /// determinant.
     pub fn orientation(&self) -> i32 {
         // Six products of three doubles, four terms each, none of which leaves the range of doubles.
         let m = &self.rows;
-        let mut terms = [0.0; 25];
-        let mut count = 0;
-        for (i, j, k, plus) in [
-            (0, 1, 2, 1.0),
-            (1, 2, 0, 1.0),
-            (2, 0, 1, 1.0),
-            (0, 2, 1, -1.0),
-            (1, 0, 2, -1.0),
-            (2, 1, 0, -1.0),
-        ] {
-            let (high, low) = two_product(m[0][i], m[1][j]);
-            for part in [low, high] {
-                let (high, low) = two_product(part, plus * m[2][k]);
-                count = grow(&mut terms, count, low);
-                count = grow(&mut terms, count, high);
-            }
-        }
-        if count == 0 { 0 } else { sign(terms[count - 1]) }
+        let parts = [0, 1, 2].map(|i| {
+            let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+            let (plus, minus) = (two_product(m[0][i], m[1][j]), two_product(m[0][j], m[1][i]));
+            [(plus.0, m[2][k]), (plus.1, m[2][k]), (-minus.0, m[2][k]), (-minus.1, m[2][k])]
+        });
+        sign_of_products(parts.as_flattened())
     }
 
-    /// The image of a point, rounded: each coordinate is off by at most 2^-50 times the sum of the magnitudes of its
-    /// four summands.
+    /// The image of a point, rounded: each coordinate is off by at most 2^-50 times the sum of the magnitudes
+    /// of its four summands.
     pub fn apply(&self, p: [f64; 3]) -> [f64; 3] {
         self.rows.map(|[x, y, z, t]| ((x * p[0] + y * p[1]) + z * p[2]) + t)
     }

@@ -1,13 +1,8 @@
 //! Where the lattice lies in model space.
 
-use super::exact::{floor, sign_of_sum, two_diff, two_product, two_sum};
-use super::{Interval, MAX_DEPTH};
+use super::exact::{Expansion, floor, sign_of_sum, two_diff, two_product, two_sum};
+use super::{Interval, MAX_DEPTH, valid};
 use crate::error::{Error, MeshError};
-
-/// Coordinates and edges beyond ±2^256 are refused: no intermediate result of the library overflows.
-pub(crate) const LARGEST: f64 = f64::from_bits((1023 + 256) << 52);
-/// Edges, and coordinates and coefficients but zero, below 2^-256 are refused too: nothing underflows.
-pub(crate) const SMALLEST: f64 = 1.0 / LARGEST;
 
 /// Where a tree lies: the cube `[origin, origin + edge]³` in model units, cut into 2^depth cells per axis.
 ///
@@ -40,16 +35,10 @@ impl Frame {
     /// # Errors
     /// [`Error::Argument`] names the parameter that is out of range.
     pub fn new(origin: [f64; 3], edge: f64, depth: u8) -> Result<Frame, Error> {
-        let refuse = |name, problem| Err(Error::Argument { name, problem });
-        if !origin.iter().all(|&c| c == 0.0 || (SMALLEST..=LARGEST).contains(&c.abs())) {
-            let problem = "every coordinate must be zero or of a magnitude between 2^-256 and 2^256";
-            return refuse("origin", problem);
-        }
-        if !(SMALLEST..=LARGEST).contains(&edge) {
-            return refuse("edge", "must be a number between 2^-256 and 2^256");
-        }
+        valid::numbers("origin", &origin)?;
+        valid::length("edge", edge)?;
         if !(1..=MAX_DEPTH).contains(&depth) {
-            return refuse("depth", "must be 1 to 20");
+            return Err(Error::Argument { name: "depth", problem: "must be 1 to 20" });
         }
         let cells = (1u32 << depth) as f64;
         Ok(Frame { origin: origin.map(|c| c + 0.0), edge, depth, cell: edge / cells, per_unit: cells / edge })
@@ -59,15 +48,11 @@ impl Frame {
     /// centre, L being its longest extent; the same universe at every depth.
     ///
     /// # Errors
-    /// [`MeshError::NoExtent`] if L is zero; [`Error::Argument`] if min > max on an axis, if a bound is not a finite
-    /// number in range, or lies so far from the origin that the cube around it cannot be told in doubles.
+    /// [`MeshError::NoExtent`] if L is zero; [`Error::Argument`] if min > max on an axis, if a bound is not a
+    /// finite number in range, or lies so far from the origin that the cube around it cannot be told in
+    /// doubles.
     pub fn around(min: [f64; 3], max: [f64; 3], depth: u8) -> Result<Frame, Error> {
-        if (0..3).any(|axis| min[axis] > max[axis] || min[axis].is_nan() || max[axis].is_nan()) {
-            return Err(Error::Argument {
-                name: "bounds",
-                problem: "must be numbers with min ≤ max on every axis",
-            });
-        }
+        valid::ordered("bounds", min, max)?;
         let extent = |axis: usize| max[axis] - min[axis];
         let longest = extent(0).max(extent(1)).max(extent(2));
         if longest == 0.0 {
@@ -137,11 +122,22 @@ impl Frame {
         }
     }
 
+    /// `x − (origin + k·cell/2)` on an axis: how far a coordinate lies from a lattice plane (even k) or a
+    /// plane of cell centres (odd k).
+    pub(crate) fn offset(&self, axis: usize, x: f64, k: i64) -> Expansion {
+        Expansion::sum(self.offset_terms(axis, x, k))
+    }
+
     /// Exact sign of `x − (origin + k·cell/2)` on `axis`: even k are lattice planes, odd k cell centres.
     pub(crate) fn side(&self, axis: usize, x: f64, k: i64) -> i32 {
+        sign_of_sum(&self.offset_terms(axis, x, k))
+    }
+
+    #[inline(always)]
+    fn offset_terms(&self, axis: usize, x: f64, k: i64) -> [f64; 4] {
         let (high, low) = two_diff(x, self.origin[axis]);
         let (product, error) = two_product(k as f64, 0.5 * self.cell);
-        sign_of_sum(&[low, -error, high, -product])
+        [low, -error, high, -product]
     }
 
     /// `(x − origin) / cell` on `axis`: lattice coordinates, with a relative error below 2^-51.
@@ -171,16 +167,16 @@ impl Frame {
         self.cell_of_exactly(point)
     }
 
-    /// First and last finest cell along `axis` whose interior meets `[min, max]` (numbers, min ≤ max), and whether some
-    /// of that lies outside of the universe; `None` if all of it does.
+    /// First and last finest cell along `axis` whose interior meets `[min, max]` (numbers, min ≤ max), and
+    /// whether some of that lies outside of the universe; `None` if all of it does.
     pub(crate) fn cells_between(&self, axis: usize, min: f64, max: f64) -> Option<(u32, u32, bool)> {
         let cells = self.cells();
         // Far outside the comparison with a plane needs no exactness, and must not overflow.
         const FAR: f64 = f64::from_bits((1023 + 400) << 52);
         let (min, max) = (min.clamp(-FAR, FAR), max.clamp(-FAR, FAR));
         let (low, high) = (0, 2 * cells as i64);
-        // What has thickness and only touches the universe has no cell in common with it; what has none may lie
-        // in the face.
+        // What has thickness and only touches the universe has no cell in common with it; what has none may
+        // lie in the face.
         let thick = (min < max) as i32;
         if self.side(axis, max, low) < thick || self.side(axis, min, high) > -thick {
             return None;
@@ -194,8 +190,8 @@ impl Frame {
         Some((first, last, below || above))
     }
 
-    /// The rounded-down lattice coordinate of `x`, and whether rounding errors cannot have changed it. What is
-    /// outside of the universe comes out as a number that is no cell, or as unsure.
+    /// The rounded-down lattice coordinate of `x`, and whether rounding errors cannot have changed it. What
+    /// is outside of the universe comes out as a number that is no cell, or as unsure.
     #[inline(always)]
     fn cell_nearby(&self, axis: usize, x: f64) -> (u64, bool) {
         // Adding this leaves the nearest integer in the low bits (and NaN and the far outside elsewhere).
@@ -234,6 +230,17 @@ impl Frame {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn offsets_are_exact() {
+        let frame = Frame::new([0.1; 3], 0.7, 20).unwrap();
+        for k in [0i64, 1, 3, 1_000_001, 2_097_152] {
+            let plane = 0.1 + k as f64 * (0.7 / 2_097_152.0);
+            for x in [plane.next_down(), plane, plane.next_up()] {
+                assert_eq!(frame.offset(1, x, k).sign(), frame.side(1, x, k));
+            }
+        }
+    }
 
     #[test]
     fn what_is_refused() {

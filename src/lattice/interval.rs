@@ -28,9 +28,9 @@ impl Interval {
     }
 }
 
-/// Arithmetic that rounds outward: the result contains what the operation gives for any numbers in the operands. A
-/// bound that is a double is met exactly. Where a result leaves the range of doubles it is still true, if as wide as
-/// `[1.8e308, ∞]`.
+/// Arithmetic that rounds outward: the result contains what the operation gives for any numbers in the
+/// operands. A bound that is a double is met exactly. Where a result leaves the range of doubles it is still
+/// true, if as wide as `[1.8e308, ∞]`.
 impl Interval {
     /// Of an integer below 2^120 in magnitude.
     pub(crate) fn of_integer(value: i128) -> Interval {

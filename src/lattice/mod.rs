@@ -25,14 +25,17 @@ pub(crate) mod exact;
 mod frame;
 mod interval;
 pub(crate) mod morton;
+pub(crate) mod valid;
+mod window;
 
 pub use affine::Affine;
 pub use bounds::Bounds;
 pub use cell::Cell;
 pub use cube::Cube;
 pub use frame::Frame;
-pub(crate) use frame::{LARGEST, SMALLEST};
 pub use interval::Interval;
+pub(crate) use valid::{LARGEST, SMALLEST};
+pub(crate) use window::Window;
 
 /// The deepest octree: 2^20 = 1 048 576 cells per axis.
 pub const MAX_DEPTH: u8 = 20;

@@ -1,6 +1,6 @@
 //! The boundary of a surface as simple loops.
 
-use crate::error::Error;
+use crate::error::{Error, MeshError};
 use crate::memory;
 use alloc::vec::Vec;
 
@@ -13,50 +13,20 @@ pub(crate) struct Loops {
 }
 
 impl Loops {
-    /// Takes a boundary apart: directed edges of which every vertex begins as many as it ends. A loop has at least three
-    /// vertices, and none twice; the edges of all loops are those given.
+    /// The loops of directed edges of which every vertex begins as many as it ends. Each has three vertices
+    /// or more, and none twice; together they have the edges given.
     ///
-    /// O(n log n). Fails with [`Error::OutOfMemory`].
+    /// O(n log n). Fails with [`MeshError::TooMany`] or [`Error::OutOfMemory`].
     pub(crate) fn of(boundary: &[[u32; 2]]) -> Result<Loops, Error> {
         let mut edges = memory::copied(boundary)?;
         edges.sort_unstable();
-        // Vertices are numbered by the edges they begin, which are consecutive.
-        let mut firsts: Vec<usize> = memory::with_capacity(edges.len() + 1)?;
-        firsts.extend((0..edges.len()).filter(|&e| e == 0 || edges[e - 1][0] != edges[e][0]));
-        let count = firsts.len();
-        firsts.push(edges.len());
-        let number = |vertex: u32| firsts[..count].partition_point(|&first| edges[first][0] < vertex);
-
-        let mut next = memory::copied(&firsts)?;
-        // Where on the path a vertex stands.
-        let mut places: Vec<usize> = memory::filled(count, usize::MAX)?;
-        let mut path: Vec<usize> = memory::with_capacity(count)?;
-        let mut loops = Loops::default();
-        loops.vertices.try_reserve_exact(edges.len())?;
-        loops.ends.try_reserve_exact(edges.len() / 3)?;
-        for start in 0..count {
-            path.push(start);
-            places[start] = 0;
-            // The walk can only end where it began: everywhere else an edge leads on.
-            while let Some(&last) = path.last()
-                && next[last] < firsts[last + 1]
-            {
-                let onto = number(edges[next[last]][1]);
-                next[last] += 1;
-                if places[onto] == usize::MAX {
-                    places[onto] = path.len();
-                    path.push(onto);
-                    continue;
-                }
-                let place = places[onto];
-                loops.vertices.extend(path[place..].iter().map(|&v| edges[firsts[v]][0]));
-                loops.ends.push(loops.vertices.len());
-                path.drain(place + 1..).for_each(|v| places[v] = usize::MAX);
-            }
-            places[start] = usize::MAX;
-            path.clear();
+        let loops = EdgeLoops::of(&edges, true)?;
+        let mut vertices = memory::with_capacity(edges.len())?;
+        for walk in loops.iter() {
+            let in_order = walk[1..].iter().chain(&walk[..1]);
+            vertices.extend(in_order.map(|&edge| edges[edge as usize][0]));
         }
-        Ok(loops)
+        Ok(Loops { vertices, ends: loops.ends })
     }
 
     /// How many triangles it takes to fill them all.
@@ -67,6 +37,84 @@ impl Loops {
     pub(crate) fn iter(&self) -> impl Iterator<Item = &[u32]> {
         let starts = core::iter::once(0).chain(self.ends.iter().copied());
         starts.zip(&self.ends).map(|(start, &end)| &self.vertices[start..end])
+    }
+}
+
+/// Loops of edges, each with the edge that closes it first and the others in order.
+#[derive(Default)]
+pub(super) struct EdgeLoops {
+    edges: Vec<u32>,
+    /// One past the last edge of each loop.
+    ends: Vec<usize>,
+}
+
+impl EdgeLoops {
+    /// Takes a boundary apart. Directed, every vertex must begin as many edges as it ends; undirected, edges
+    /// must differ and every vertex have an even number. No loop has a vertex twice; each edge is in one.
+    ///
+    /// O(n log n). Fails with [`MeshError::TooMany`] or [`Error::OutOfMemory`].
+    pub fn of(open: &[[u32; 2]], is_directed: bool) -> Result<EdgeLoops, Error> {
+        if u32::try_from(open.len()).is_err() {
+            return Err(MeshError::TooMany.into());
+        }
+        // The edges that lead on from a vertex are consecutive, and vertices are numbered by them.
+        let mut uses: Vec<(u32, u32)> = memory::with_capacity(open.len() * 2)?;
+        let ends = if is_directed { 1 } else { 2 };
+        uses.extend(open.iter().zip(0..).flat_map(|(edge, e)| edge[..ends].iter().map(move |&v| (v, e))));
+        uses.sort_unstable();
+        let mut firsts: Vec<usize> = memory::with_capacity(uses.len() + 1)?;
+        firsts.extend((0..uses.len()).filter(|&u| u == 0 || uses[u - 1].0 != uses[u].0));
+        let count = firsts.len();
+        firsts.push(uses.len());
+        let number = |vertex: u32| firsts[..count].partition_point(|&first| uses[first].0 < vertex);
+
+        let mut next = memory::copied(&firsts[..count])?;
+        let mut walked: Vec<bool> = memory::filled(open.len(), false)?;
+        // Where on the path a vertex stands.
+        let mut places = memory::filled(count, usize::MAX)?;
+        // Each vertex of the path, and the edge that led there.
+        let mut path: Vec<(usize, u32)> = memory::with_capacity(count)?;
+        let mut loops = EdgeLoops::default();
+        loops.edges.try_reserve_exact(open.len())?;
+        for start in 0..count {
+            path.push((start, 0));
+            places[start] = 0;
+            // The walk can only end where it began: everywhere else an edge leads on.
+            while let Some(&(last, _)) = path.last()
+                && next[last] < firsts[last + 1]
+            {
+                let edge = uses[next[last]].1;
+                next[last] += 1;
+                if core::mem::replace(&mut walked[edge as usize], true) {
+                    continue;
+                }
+                let [a, b] = open[edge as usize];
+                let onto = number(if uses[firsts[last]].0 == a { b } else { a });
+                if places[onto] == usize::MAX {
+                    places[onto] = path.len();
+                    path.push((onto, edge));
+                    continue;
+                }
+                let place = places[onto];
+                loops.edges.push(edge);
+                loops.edges.extend(path[place + 1..].iter().map(|&(_, edge)| edge));
+                memory::push(&mut loops.ends, loops.edges.len())?;
+                path.drain(place + 1..).for_each(|(vertex, _)| places[vertex] = usize::MAX);
+            }
+            places[start] = usize::MAX;
+            path.clear();
+        }
+        Ok(loops)
+    }
+
+    pub fn count(&self) -> usize {
+        self.ends.len()
+    }
+
+    /// The edges of each loop.
+    pub fn iter(&self) -> impl Iterator<Item = &[u32]> {
+        let starts = core::iter::once(0).chain(self.ends.iter().copied());
+        starts.zip(&self.ends).map(|(start, &end)| &self.edges[start..end])
     }
 }
 

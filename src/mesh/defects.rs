@@ -1,13 +1,14 @@
 //! Where a mesh is not as it should be.
 //!
-//! A scan may have a hundred thousand holes, and a list of them is of no use. What belongs together is one defect, and
-//! the worst come first.
+//! A scan may have a hundred thousand holes, and a list of them is of no use. What belongs together is one
+//! defect, and the worst come first.
 
 use alloc::vec::Vec;
 use core::cmp::Ordering;
 
 use glam::DVec3;
 
+use super::boundary::EdgeLoops;
 use super::surface::TriangleMesh;
 use super::topology::{Coincident, DisjointSets, for_each_edge};
 use crate::error::Error;
@@ -19,8 +20,7 @@ use crate::memory;
 pub enum DefectKind {
     /// A loop of edges that an odd number of triangles use: around a hole, or around a sheet.
     Hole,
-    /// Edges that an even number of triangles use, but not half of them in each direction: across them the facing
-    /// changes.
+    /// Edges that an even number of triangles use, but not half of them in each direction: the facing flips.
     Misoriented,
     /// Triangles with the same corners as an earlier one, in the same or the opposite direction.
     Duplicate,
@@ -30,8 +30,8 @@ pub enum DefectKind {
     Flat,
 }
 
-/// A part of a mesh that is not as it should be: one loop of a [`Hole`](DefectKind::Hole), or, of the other kinds, edges or
-/// triangles that hang together over common vertices.
+/// A part of a mesh that is not as it should be: one loop of a [`Hole`](DefectKind::Hole), or, of the other
+/// kinds, edges or triangles that hang together over common vertices.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MeshDefect {
     /// What is wrong.
@@ -53,11 +53,12 @@ impl MeshDefect {
 }
 
 impl TriangleMesh {
-    /// Where the mesh is not as it should be: the `limit` worst places, in the order of [`DefectKind`], and those of one
-    /// kind by descending [extent](MeshDefect::extent), then by descending count, then by position.
+    /// Where the mesh is not as it should be: the `limit` worst places, in the order of [`DefectKind`], and
+    /// those of one kind by descending [extent](MeshDefect::extent), then by descending count, then position.
     ///
-    /// O(t + v) time and 24 bytes per triangle and 8 per vertex of scratch memory; O(n log n) time and about 100 bytes
-    /// for each of n edges and triangles that are part of a defect. Fails with [`Error::OutOfMemory`].
+    /// O(t + v) time and 24 bytes per triangle and 8 per vertex of scratch memory; O(n log n) time and about
+    /// 100 bytes for each of n edges and triangles that are part of a defect. Fails with
+    /// [`Error::OutOfMemory`].
     pub fn defects(&self, limit: usize) -> Result<Vec<MeshDefect>, Error> {
         let mut defects = Vec::new();
         let triangles = self.triangles();
@@ -83,7 +84,7 @@ impl TriangleMesh {
         for triangle in triangles.iter().filter(|triangle| self.is_flat(triangle)) {
             memory::push(&mut flat, *triangle)?;
         }
-        for edges in OpenLoops::of(&open)?.iter() {
+        for edges in EdgeLoops::of(&open, false)?.iter() {
             let mut defect = MeshDefect::new(DefectKind::Hole);
             edges.iter().for_each(|edge| self.extend(&mut defect, &open[*edge as usize]));
             memory::push(&mut defects, defect)?;
@@ -152,78 +153,4 @@ impl MeshDefect {
 /// The order of two places, by their first coordinates that differ.
 fn compare(a: &[f64; 3], b: &[f64; 3]) -> Ordering {
     a.iter().zip(b).map(|(x, y)| x.total_cmp(y)).find(|order| order.is_ne()).unwrap_or(Ordering::Equal)
-}
-
-/// Loops of edges without regard to their directions.
-#[derive(Default)]
-pub(super) struct OpenLoops {
-    edges: Vec<u32>,
-    /// One past the last edge of each loop.
-    ends: Vec<usize>,
-}
-
-impl OpenLoops {
-    /// Takes `open` apart: different edges of which every vertex has an even number, as the edges have that an odd
-    /// number of triangles use. No loop has a vertex twice, and each edge belongs to one loop.
-    ///
-    /// O(n log n). Fails with [`Error::OutOfMemory`].
-    pub fn of(open: &[[u32; 2]]) -> Result<OpenLoops, Error> {
-        // The edges of each vertex are consecutive, and vertices are numbered by theirs.
-        let mut uses: Vec<(u32, u32)> = memory::with_capacity(open.len() * 2)?;
-        uses.extend(open.iter().zip(0..).flat_map(|(edge, e)| edge.map(|vertex| (vertex, e))));
-        uses.sort_unstable();
-        let mut firsts: Vec<usize> = memory::with_capacity(uses.len() + 1)?;
-        firsts.extend((0..uses.len()).filter(|&u| u == 0 || uses[u - 1].0 != uses[u].0));
-        let count = firsts.len();
-        firsts.push(uses.len());
-        let number = |vertex: u32| firsts[..count].partition_point(|&first| uses[first].0 < vertex);
-
-        let mut next = memory::copied(&firsts[..count])?;
-        let mut walked: Vec<bool> = memory::filled(open.len(), false)?;
-        // Where on the path a vertex stands.
-        let mut places = memory::filled(count, usize::MAX)?;
-        // Each vertex of the path, and the edge that led there.
-        let mut path: Vec<(usize, u32)> = memory::with_capacity(count)?;
-        let mut loops = OpenLoops::default();
-        loops.edges.try_reserve_exact(open.len())?;
-        for start in 0..count {
-            path.push((start, 0));
-            places[start] = 0;
-            // The walk can only end where it began: everywhere else an edge leads on.
-            while let Some(&(last, _)) = path.last()
-                && next[last] < firsts[last + 1]
-            {
-                let edge = uses[next[last]].1;
-                next[last] += 1;
-                if core::mem::replace(&mut walked[edge as usize], true) {
-                    continue;
-                }
-                let [a, b] = open[edge as usize];
-                let onto = number(if uses[firsts[last]].0 == a { b } else { a });
-                if places[onto] == usize::MAX {
-                    places[onto] = path.len();
-                    path.push((onto, edge));
-                    continue;
-                }
-                let place = places[onto];
-                loops.edges.push(edge);
-                loops.edges.extend(path[place + 1..].iter().map(|&(_, edge)| edge));
-                memory::push(&mut loops.ends, loops.edges.len())?;
-                path.drain(place + 1..).for_each(|(vertex, _)| places[vertex] = usize::MAX);
-            }
-            places[start] = usize::MAX;
-            path.clear();
-        }
-        Ok(loops)
-    }
-
-    pub fn count(&self) -> usize {
-        self.ends.len()
-    }
-
-    /// The edges of each loop.
-    pub fn iter(&self) -> impl Iterator<Item = &[u32]> {
-        let starts = core::iter::once(0).chain(self.ends.iter().copied());
-        starts.zip(&self.ends).map(|(start, &end)| &self.edges[start..end])
-    }
 }

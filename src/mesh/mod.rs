@@ -1,7 +1,11 @@
-//! Triangle meshes as data: welding, how triangles hang together, what is wrong with them and how much of that can be
-//! mended; solids of plane faces, which become meshes.
+//! Triangle meshes as data: welding, how triangles hang together, what is wrong with them and how much of
+//! that can be mended; solids of plane faces, which become meshes.
 //!
 //! Nothing here knows of cells. What the surface encloses, and how a cell of it is split, is `solid/mesh/`.
+//!
+//! From the bottom up, each file uses only files named before it: `positions` (equal vertices), `topology`
+//! (edges and bodies), `boundary` (loops of edges), `surface` (the mesh); on the mesh `weld`, `sew`,
+//! `placement`, `defects` and `report`; `polygon` (triangulation) and `polyhedron`.
 
 mod boundary;
 mod defects;
@@ -10,6 +14,7 @@ mod placement;
 mod polygon;
 #[cfg(feature = "std")]
 mod polyhedron;
+mod positions;
 mod report;
 mod sew;
 mod surface;

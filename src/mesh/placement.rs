@@ -3,13 +3,13 @@
 use super::surface::TriangleMesh;
 use crate::error::Error;
 use crate::lattice::exact::Expansion;
-use crate::lattice::exact::{product_up, two_product};
+use crate::lattice::exact::two_product;
 use crate::lattice::{Affine, SMALLEST};
 
 impl TriangleMesh {
-    /// The mesh under an affine map. Vertices are rounded to doubles, and by how much one may be off counts as
-    /// [`displacement`](Self::displacement): what is proven of the solid is proven of the exact image. A reflection turns
-    /// the triangles round as well, so that what was outside stays outside. The report starts anew.
+    /// The mesh under an affine map. Vertices are rounded to doubles, and by how much one may be off counts
+    /// as [`displacement`](Self::displacement): what is proven of the solid is proven of the exact image. A
+    /// reflection turns the triangles round as well, so that outside stays outside. The report starts anew.
     ///
     /// O(v + t). Fails as [`new`](Self::new) does.
     pub fn placed(&self, placement: &Affine) -> Result<TriangleMesh, Error> {
@@ -30,10 +30,7 @@ impl TriangleMesh {
         if placement.orientation() < 0 {
             placed.turn_round();
         }
-        // Where the surface may be off by d along each axis, its image may be by the greatest sum of a row times d.
-        let stretch =
-            placement.rows().iter().map(|[x, y, z, _]| x.abs() + y.abs() + z.abs()).fold(0.0, f64::max);
-        let moved = product_up(stretch * (1.0 + 2.0 * f64::EPSILON), self.displacement());
+        let moved = placement.stretched(self.displacement());
         // `apply` is off by 2^-50 of the summands at the most; twice that for the sums here.
         let rounding = rounded * (8.0 * f64::EPSILON);
         let displacement = moved + rounding + dropped;

@@ -2,16 +2,17 @@
 //!
 //! A polygon is a closed walk of edges, its outer loop, and further ones around its holes. Its triangles have
 //! exactly these edges as their boundary, so that polygons that share edges fit together after
-//! triangulation as they did before, and every corner of the polygon stays a corner, also one that lies straight
-//! between its neighbours. Nothing is added.
+//! triangulation as they did before, and every corner of the polygon stays a corner, also one that lies
+//! straight between its neighbours. Nothing is added.
 //!
-//! The polygon is seen along the axis that its normal is nearest to. To leave out a coordinate rounds nothing, and
-//! all decisions in the plane are exact signs, so that a triangulation is either right or refused. Most
-//! polygons are convex, and fans. All others are triangulated by a constrained Delaunay triangulation (the
-//! crate `spade`), whose triangles are told apart by the number of times that the loops wind around them: 1 inside,
-//! 0 outside. Every other number, and any contradiction between the triangles and the loops, is a refusal.
+//! The polygon is seen along the axis that its normal is nearest to. To leave out a coordinate rounds
+//! nothing, and all decisions in the plane are exact signs, so that a triangulation is either right or
+//! refused. Most polygons are convex, and fans. All others are triangulated by a constrained Delaunay
+//! triangulation (the crate `spade`), whose triangles are told apart by the number of times that the loops
+//! wind around them: 1 inside, 0 outside. Every other number, and any contradiction between the triangles and
+//! the loops, is a refusal.
 //!
-//! `spade` links the standard library through one of its dependencies, so all of this needs the feature `std`.
+//! `spade` links the standard library through one of its dependencies, so all this needs the feature `std`.
 
 use alloc::vec::Vec;
 
@@ -22,8 +23,8 @@ use spade::{ConstrainedDelaunayTriangulation, HierarchyHintGenerator, Point2, Tr
 use crate::error::Error;
 use crate::lattice::exact::two_product;
 
-/// Bytes that a triangulation takes for each corner, at most, all its parts counted. They are asked for and given
-/// back before it begins, because the crate that does it cannot be refused memory.
+/// Bytes that a triangulation takes for each corner, at most, all its parts counted. They are asked for and
+/// given back before it begins, because the crate that does it cannot be refused memory.
 const BYTES_PER_CORNER: usize = 320;
 
 /// Why a polygon has no triangulation.
@@ -42,17 +43,18 @@ pub(crate) enum PolygonDefect {
     Crossing(usize),
     /// A corner lies within the edge that begins at this corner.
     Touching(usize),
-    /// A part of the plane is enclosed more than once, or the wrong way around: a hole outside of the outer loop,
-    /// around another hole, or in the same direction as the outer loop.
+    /// A part of the plane is enclosed more than once, or the wrong way around: a hole outside of the outer
+    /// loop, around another hole, or in the same direction as the outer loop.
     Nesting,
 }
 
-/// Triangulates a polygon whose corners are `corners`; loop k is `corners[ends[k - 1]..ends[k]]`, the first one
-/// the outer loop. Corners at one place count as one vertex. The triangles, added to `triangles`, face as the outer
-/// loop does, that is, they turn counter-clockwise where it does.
+/// Triangulates a polygon whose corners are `corners`; loop k is `corners[ends[k - 1]..ends[k]]`, the first
+/// one the outer loop. Corners at one place count as one vertex. The triangles, added to `triangles`, face as
+/// the outer loop does, that is, they turn counter-clockwise where it does.
 ///
-/// The boundary of the triangles is the chain of the loops' edges; edges that the loops use in both directions,
-/// such as the bridge to a hole that is written as one loop, lie inside. Of an error, nothing is added.
+/// The boundary of the triangles is the chain of the loops' edges; edges that the loops use in both
+/// directions, such as the bridge to a hole that is written as one loop, lie inside. If it fails, nothing is
+/// added.
 ///
 /// O(n) for fans, O(n log n) expected otherwise; 5 µs a corner.
 pub(crate) fn triangulate(
@@ -72,11 +74,12 @@ pub(crate) fn triangulate(
     Arrangement::new(plane, vertices, corners, ends)?.triangles(triangles)
 }
 
-/// Triangulates a polygon of a mesh file, without holes: as [`triangulate`], and where that is refused, as a fan around
-/// the first corner, whose boundary is the same but whose triangles may overlap or leave the polygon. Tells
-/// whether it was a triangulation.
+/// Triangulates a polygon of a mesh file, without holes: as [`triangulate`], and where that is refused, as a
+/// fan around the first corner, whose boundary is the same but whose triangles may overlap or leave the
+/// polygon. Tells whether it was a triangulation.
 ///
-/// A loop of fewer than three corners adds nothing. Corners must be vertices. Fails with [`Error::OutOfMemory`].
+/// A loop of fewer than three corners adds nothing. Corners must be vertices. Fails with
+/// [`Error::OutOfMemory`].
 #[allow(dead_code)]
 pub(crate) fn triangulate_facet(
     vertices: &[[f64; 3]],
@@ -108,8 +111,8 @@ fn fan(
     let mut previous = second;
     for k in 2..corners.len() {
         let next = at(k)?;
-        // All triangles face up, and they lie one behind the other within half a turn. Two triangles on a common
-        // edge lie on its two sides by facing up alone.
+        // All triangles face up, and they lie one behind the other within half a turn. Two triangles on a
+        // common edge lie on its two sides by facing up alone.
         let within = k == 2 || corners.len() == 4 || turn(first, second, next) > 0.0;
         if !(within && turn(first, previous, next) > 0.0) {
             return Ok(false);
@@ -178,8 +181,8 @@ pub(super) fn normal(vertices: &[[f64; 3]], corners: &[u32]) -> Option<[f64; 3]>
 /// A triangulation of points in the plane. A hierarchy of coarser ones tells near which point a new one lies.
 type Net = ConstrainedDelaunayTriangulation<Point2<f64>, (), (), (), HierarchyHintGenerator<f64>>;
 
-/// Brings numbers into an order that has nothing to do with their own. Points that come along a loop would cost
-/// quadratic time, one by one all triangles made so far.
+/// Brings numbers into an order that has nothing to do with their own. Points that come along a loop would
+/// cost quadratic time, one by one all triangles made so far.
 fn shuffle(items: &mut [usize]) {
     let mut state = 1u64;
     for i in (1..items.len()).rev() {

@@ -1,21 +1,21 @@
 //! Solids of plane faces, as boundary representations have them.
 //!
-//! Nothing about the arrays is taken on trust. What is demanded of them is local, face by face and edge by edge, and that
-//! voids lie within their solids; faces that cut through each other, shells that overlap and solids that
-//! do are let through, because a mesh has a meaning for them.
+//! Nothing about the arrays is taken on trust. What is demanded of them is local, face by face and edge by
+//! edge, and that voids lie within their solids; faces that cut through each other, shells that overlap and
+//! solids that do are let through, because a mesh has a meaning for them.
 
 use alloc::vec::Vec;
 
 use robust::{Coord, Coord3D, orient2d, orient3d};
 
 use super::polygon::{PolygonDefect, normal, triangulate};
+use super::positions::normalised;
 use super::surface::TriangleMesh;
-use super::weld::normalised;
 use crate::error::{Error, MeshError, PolyhedronError};
+use crate::lattice::valid;
 use crate::memory;
 
-/// How far corners may lie beside the plane of their face unless the caller says otherwise, as a fraction of the
-/// longest extent.
+/// How far corners may lie beside the plane of their face by default, as a fraction of the longest extent.
 const PLANE: f64 = 1e-9;
 
 /// How many vertices of a void are tried to find one that does not lie on its solid's surface.
@@ -24,11 +24,11 @@ const SAMPLES: usize = 16;
 /// Solids of shells of faces of loops of corners, as plain arrays.
 ///
 /// Every level is one array of offsets into the level below: part k is `offsets[k]..offsets[k + 1]` of it, so
-/// that each array begins with 0, rises, has one entry more than there are parts, and ends at the length of the
-/// next. Loops turn counter-clockwise around the material's outer side, holes of a face against its outer loop.
+/// that each array begins with 0, rises, has one entry more than there are parts, and ends at the length of
+/// the next. Loops turn counter-clockwise around the material's outer side, holes the other way.
 ///
-/// A block of eight vertices with a square hole from top to bottom, for instance, has ten faces, two of them with
-/// two loops each; see [`Polyhedron`] for a smaller example.
+/// A block of eight vertices with a square hole from top to bottom, for instance, has ten faces, two of them
+/// with two loops each; see [`Polyhedron`] for a smaller example.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct PolyhedronArrays<'a> {
     /// Coordinates in model units, finite and at most 2^256 in magnitude.
@@ -38,7 +38,7 @@ pub struct PolyhedronArrays<'a> {
     /// Offsets of the loops in `corners`. A loop has at least three corners; its last edge leads back to the
     /// first corner.
     pub loops: &'a [u32],
-    /// Offsets of the faces in the loops. The first loop of a face bounds it from outside, the others are holes.
+    /// Offsets of the faces in the loops. The first loop of a face bounds it from outside, others are holes.
     pub faces: &'a [u32],
     /// Offsets of the shells in the faces.
     pub shells: &'a [u32],
@@ -49,10 +49,10 @@ pub struct PolyhedronArrays<'a> {
 
 /// Solids of plane faces that were found to be sound.
 ///
-/// * Every edge of a loop is run through once more in its shell, in the opposite direction. Topology is by index: two
-///   vertices at one place are two vertices, so that shells, and parts of one shell, may touch.
-/// * The corners of each face lie in a plane up to a tolerance, its loops do not cross, and its holes lie within
-///   its outer loop.
+/// * Every edge of a loop is run through once more in its shell, in the opposite direction. Topology is by
+///   index: two vertices at one place are two vertices, so that shells, and parts of one shell, may touch.
+/// * The corners of each face lie in a plane up to a tolerance, its loops do not cross, and its holes lie
+///   within its outer loop.
 /// * The first shell of each solid encloses a positive volume, its voids negative ones, and each void has its
 ///   bounds within those of the first shell, and a vertex within it.
 ///
@@ -83,10 +83,10 @@ pub struct Polyhedron {
 }
 
 impl Polyhedron {
-    /// Checks the arrays and triangulates the faces. Corners may lie beside the plane of their face by 10^-9 of the
-    /// longest extent of all vertices that loops use.
+    /// Checks the arrays and triangulates the faces. Corners may lie beside the plane of their face by 10^-9
+    /// of the longest extent of all vertices that loops use.
     ///
-    /// O(n log n) expected, with about 100 bytes a corner of scratch memory and 320 a corner of the largest face.
+    /// O(n log n) expected, with about 100 bytes a corner of scratch memory and 320 of the largest face.
     ///
     /// # Errors
     /// [`Error::Polyhedron`] tells what is wrong and where, the arrays first, then edges, faces, shells, each
@@ -96,17 +96,14 @@ impl Polyhedron {
         Self::checked(arrays, None)
     }
 
-    /// As [`new`](Self::new), with the distance, in model units, that a corner may lie beside the plane of its
-    /// face: half the distance between two planes parallel to the face that have all its corners between them.
+    /// As [`new`](Self::new), with the distance, in model units, that a corner may lie beside the plane of
+    /// its face: half the distance between two planes parallel to the face around all its corners.
     ///
     /// # Errors
     /// As `new`; [`Error::Argument`] if `tolerance` is negative or not a number.
     pub fn with_tolerance(arrays: &PolyhedronArrays, tolerance: f64) -> Result<Polyhedron, Error> {
-        if tolerance >= 0.0 {
-            Self::checked(arrays, Some(tolerance))
-        } else {
-            Err(Error::Argument { name: "tolerance", problem: "must not be negative" })
-        }
+        valid::tolerance("tolerance", tolerance)?;
+        Self::checked(arrays, Some(tolerance))
     }
 
     /// The surface of all solids.
@@ -363,7 +360,7 @@ impl<'a> Parts<'a> {
         })
     }
 
-    /// The first shells of solids enclose a positive volume, the others a negative one, within that of the first.
+    /// The first shells of solids enclose a positive volume, the others a negative one, within it.
     fn check_shells(
         &self,
         vertices: &[[f64; 3]],
@@ -402,8 +399,8 @@ impl<'a> Parts<'a> {
 /// The first of `shells` of which a vertex lies outside of `surface`. Only one vertex of each is looked at,
 /// the first one that does not lie on the surface.
 ///
-/// The winding numbers of all vertices looked at are counted at once: each triangle finds those beside it in a sorted
-/// list, so that many voids cost little more than one.
+/// The winding numbers of all vertices looked at are counted at once: each triangle finds those beside it in
+/// a sorted list, so that many voids cost little more than one.
 fn first_outside<'a>(
     vertices: &[[f64; 3]],
     surface: &[[u32; 3]],
@@ -455,10 +452,11 @@ fn first_outside<'a>(
     Ok(outside)
 }
 
-/// What a triangle adds to the winding number at `p`, by the ray from there along the first axis: 1 where the ray
-/// leaves through it, -1 where it enters, 0 where it passes by. `None` if `p` lies on the triangle.
+/// What a triangle adds to the winding number at `p`, by the ray from there along the first axis: 1 where the
+/// ray leaves through it, -1 where it enters, 0 where it passes by. `None` if `p` lies on the triangle.
 ///
-/// Rays through edges and corners count as slightly shifted along the other two axes, for all triangles alike.
+/// Rays through edges and corners count as slightly shifted along the other two axes, for all triangles
+/// alike.
 fn crossing(corners: [[f64; 3]; 3], p: [f64; 3]) -> Option<i32> {
     let flat = |p: [f64; 3]| Coord { x: p[1], y: p[2] };
     let mut around = 0;
@@ -467,7 +465,7 @@ fn crossing(corners: [[f64; 3]; 3], p: [f64; 3]) -> Option<i32> {
         let (a, b) = (corners[k], corners[(k + 1) % 3]);
         let side = orient2d(flat(a), flat(b), flat(p));
         if side == 0.0 {
-            // On the line through the edge; whether between its ends does not matter where the plane is missed.
+            // On the line through the edge; whether between its ends does not matter off the plane.
             touched = true;
         }
         if a[2] <= p[2] && b[2] > p[2] && side > 0.0 {
@@ -489,8 +487,7 @@ fn crossing(corners: [[f64; 3]; 3], p: [f64; 3]) -> Option<i32> {
     Some(if ahead { around } else { 0 })
 }
 
-/// Whether a point of a triangle's plane lies within its bounds. That may say yes to a point beside the triangle, never
-/// no to one on it.
+/// Whether a point of a triangle's plane lies within its bounds; beside it, perhaps.
 fn holds(corners: [[f64; 3]; 3], p: [f64; 3]) -> bool {
     Bounds::of(corners.into_iter()).hold(&Bounds { low: p, high: p })
 }

@@ -5,11 +5,11 @@ use alloc::vec::Vec;
 
 use glam::{DVec3, Vec3Swizzles};
 
-use super::defects::OpenLoops;
-use super::surface::TriangleMesh;
+use super::boundary::EdgeLoops;
+use super::surface::{Details, TriangleMesh};
 use super::topology::{Bodies, Topology};
 use crate::error::Error;
-use crate::lattice::exact::{grow, two_product};
+use crate::lattice::exact::sign_of_products;
 use crate::memory;
 
 /// What was found while a mesh was taken in, and how its triangles hang together.
@@ -30,7 +30,7 @@ pub struct MeshReport {
     pub degenerate: u64,
     /// Edges that an odd number of triangles use. A mesh is closed if there is none.
     pub boundary_edges: u64,
-    /// Loops of these edges, without vertices that occur twice: the holes of the surface and the rims of sheets.
+    /// Loops of these edges, without vertices that occur twice: holes of the surface and rims of sheets.
     pub boundary_loops: u64,
     /// Edges that an even number of triangles use, but not half of them in each direction. A closed mesh is
     /// consistently oriented if there is none.
@@ -47,7 +47,7 @@ pub struct MeshReport {
     /// Sets of triangles that hang together over edges. Bodies that touch only in single vertices count
     /// separately, and so does the outer from the inner surface of a hollow body.
     pub bodies: u64,
-    /// Bodies with an edge whose triangles do not cancel each other: those that are open or not consistently oriented.
+    /// Bodies with an edge whose triangles do not cancel each other: open or not consistently oriented.
     pub open_bodies: u64,
     /// Other bodies that enclose a negative volume: cavities, and bodies that are inside out.
     pub inside_out_bodies: u64,
@@ -60,8 +60,8 @@ pub struct MeshReport {
 impl TriangleMesh {
     /// What was found when the mesh was made, and how its triangles hang together.
     ///
-    /// The first call analyses the edges, in O(t + v) time, O(n log n) for the n edges of the boundary, and with 28
-    /// bytes per triangle and 8 per vertex of scratch memory; later calls are free. Fails with
+    /// The first call analyses the edges, in O(t + v) time, O(n log n) for the n edges of the boundary, and
+    /// with 28 bytes per triangle and 8 per vertex of scratch memory; later calls are free. Fails with
     /// [`Error::OutOfMemory`].
     pub fn report(&self) -> Result<MeshReport, Error> {
         let details = self.details.get_or_try_init(|| self.find_details())?;
@@ -91,7 +91,8 @@ impl TriangleMesh {
     fn find_details(&self) -> Result<Box<Details>, Error> {
         let (topology, bodies) = Topology::with_bodies(self.triangles(), self.vertices().len())?;
         let open = open_edges(&topology.boundary)?;
-        let details = self.look_at_triangles(&topology, &bodies, OpenLoops::of(&open)?.count() as u64)?;
+        let details =
+            self.look_at_triangles(&topology, &bodies, EdgeLoops::of(&open, false)?.count() as u64)?;
         // If it is there already, it is the same.
         let _ = self.topology.set(Box::new(topology));
         Ok(Box::new(details))
@@ -152,15 +153,6 @@ impl TriangleMesh {
     }
 }
 
-/// What only a report needs to know.
-#[derive(Debug, Clone)]
-pub(super) struct Details {
-    boundary_loops: u64,
-    flat: u64,
-    open_bodies: u64,
-    inside_out_bodies: u64,
-}
-
 /// The edges of a boundary that an odd number of triangles use: those that occur an odd number of times.
 pub(super) fn open_edges(boundary: &[[u32; 2]]) -> Result<Vec<[u32; 2]>, Error> {
     let mut open = memory::with_capacity(boundary.len())?;
@@ -176,14 +168,6 @@ fn is_straight([a, b, c]: [[f64; 2]; 3]) -> bool {
         return false;
     }
     // Twice the area, without differences.
-    let mut terms = [0.0; 12];
-    let mut count = 0;
-    for [p, q] in [[a, b], [b, c], [c, a]] {
-        let (left, left_error) = two_product(p[0], q[1]);
-        let (right, right_error) = two_product(-p[1], q[0]);
-        for term in [left_error, right_error, left, right] {
-            count = grow(&mut terms, count, term);
-        }
-    }
-    count == 0
+    let cross = |p: [f64; 2], q: [f64; 2]| [(p[0], q[1]), (-p[1], q[0])];
+    sign_of_products([cross(a, b), cross(b, c), cross(c, a)].as_flattened()) == 0
 }

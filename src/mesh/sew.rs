@@ -1,10 +1,10 @@
 //! Closing the hair cracks of exported meshes.
 //!
 //! CAD systems export parts whose faces were tessellated one by one, and a vertex that two faces share may
-//! come out as 0 on one side and as 2·10⁻¹⁶ on the other. Bit for bit such a mesh is open. Sewing welds vertices
-//! of open edges that lie closer together than single precision can tell, remembers how far any of them was
-//! moved, and the certified classification then counts that distance as an error of every position: what is
-//! proven about the sewn surface is proven about any way of closing the cracks within that distance.
+//! come out as 0 on one side and as 2·10⁻¹⁶ on the other. Bit for bit such a mesh is open. Sewing welds
+//! vertices of open edges that lie closer together than single precision can tell, remembers how far any of
+//! them was moved, and the certified classification then counts that distance as an error of every position:
+//! what is proven about the sewn surface is proven about any way of closing the cracks within that distance.
 
 use super::surface::TriangleMesh;
 use crate::error::Error;
@@ -19,8 +19,8 @@ const REACH: f64 = f32::EPSILON as f64 / 2.0;
 
 impl TriangleMesh {
     /// The mesh with hair cracks closed: of the vertices at open edges, those that lie within 2^-24 of the
-    /// mesh's longest extent of an earlier one are moved onto it. A mesh without open edges is returned as it is,
-    /// and wider gaps stay open. [`report`](Self::report) tells how many vertices were moved and how far.
+    /// mesh's longest extent of an earlier one are moved onto it. A mesh without open edges is returned as it
+    /// is, and wider gaps stay open. [`report`](Self::report) tells how many vertices were moved and how far.
     ///
     /// O(t + v). Fails with [`Error::OutOfMemory`].
     pub fn sewn(self) -> Result<TriangleMesh, Error> {

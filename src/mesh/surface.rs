@@ -11,25 +11,24 @@
 
 use alloc::boxed::Box;
 use alloc::vec::Vec;
-use core::borrow::Borrow;
 use core::fmt;
 
 use glam::DVec3;
 use once_cell::race::OnceBox;
 
 use super::boundary::Loops;
-use super::report::Details;
+use super::positions::{NOWHERE, Places, is_proper, normalised};
 use super::topology::Topology;
-use super::weld::{FacetWelder, NOWHERE, Places, is_proper, normalised};
+
 use crate::error::{Error, MeshError};
 use crate::memory;
 
 /// Which points a surface encloses.
 ///
 /// The *winding number* of a surface at a point is the solid angle at which it is seen from there, over 4π,
-/// counted positive where the inner side is seen. Of a closed surface it is an integer. Where a surface has holes,
-/// fins, or triangles turned over, it is a fraction, and the rules are a convention: they take the nearest
-/// integer, so that a hole is closed by the surface from which half of all directions lead out.
+/// counted positive where the inner side is seen. Of a closed surface it is an integer. Where a surface has
+/// holes, fins, or triangles turned over, it is a fraction, and the rules are a convention: they take the
+/// nearest integer, so that a hole is closed by the surface from which half of all directions lead out.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum FillRule {
     /// Points whose winding number is at least ½ in magnitude: those that the surface winds around, in either
@@ -39,8 +38,8 @@ pub enum FillRule {
     /// Points from which a ray crosses the surface an odd number of times. The overlap of two bodies is
     /// outside; orientation does not matter. An even number of triangles must meet on every edge.
     EvenOdd,
-    /// Points whose winding number is at least ½. A body that is inside out is a cavity: it takes away from bodies
-    /// that it overlaps.
+    /// Points whose winding number is at least ½. A body that is inside out is a cavity: it takes away from
+    /// bodies that it overlaps.
     Positive,
 }
 
@@ -58,9 +57,10 @@ impl FillRule {
 
 /// A surface of triangles with shared vertices.
 ///
-/// Coordinates are finite and at most 2^256 in magnitude, those below 2^-256 count as zero, no two vertices are
-/// equal, and the corners of a triangle are three different vertices. Seen from outside of the solid the corners turn counter-clockwise.
-/// Whether the mesh is closed is not implied: [`check_closed`](Self::check_closed) tells.
+/// Coordinates are finite and at most 2^256 in magnitude, those below 2^-256 count as zero, no two vertices
+/// are equal, and the corners of a triangle are three different vertices. Seen from outside of the solid the
+/// corners turn counter-clockwise. Whether the mesh is closed is not implied:
+/// [`check_closed`](Self::check_closed) tells.
 ///
 /// A mesh takes 24 bytes per vertex and 12 bytes per triangle.
 #[derive(Clone)]
@@ -75,11 +75,20 @@ pub struct TriangleMesh {
     pub(super) details: OnceBox<Details>,
 }
 
+/// What only a report needs to know.
+#[derive(Debug, Clone)]
+pub(super) struct Details {
+    pub boundary_loops: u64,
+    pub flat: u64,
+    pub open_bodies: u64,
+    pub inside_out_bodies: u64,
+}
+
 impl TriangleMesh {
     /// A mesh of indexed triangles.
     ///
-    /// Equal vertices are welded and keep the order of first appearance, so that the indices of the result are
-    /// those given unless there were equal vertices. Vertices that no triangle uses are kept.
+    /// Equal vertices are welded and keep the order of first appearance, so that the indices of the result
+    /// are those given unless there were equal vertices. Vertices that no triangle uses are kept.
     ///
     /// O(v + t). Fails with [`MeshError::TooMany`], [`MeshError::NotFinite`], [`MeshError::TooLarge`],
     /// [`MeshError::Index`] or [`Error::OutOfMemory`].
@@ -146,23 +155,6 @@ impl TriangleMesh {
         }
     }
 
-    /// A mesh of separate triangles, each given by its three corners. Vertices have the order of their first
-    /// appearance.
-    ///
-    /// O(t). Fails with [`MeshError::TooMany`], [`MeshError::NotFinite`], [`MeshError::TooLarge`] (both count
-    /// the corners of all facets through) or [`Error::OutOfMemory`].
-    pub fn from_facets<I>(facets: I) -> Result<Self, Error>
-    where
-        I: IntoIterator<Item: Borrow<[[f64; 3]; 3]>>,
-    {
-        let facets = facets.into_iter();
-        let mut welder = FacetWelder::with_capacity(facets.size_hint().0)?;
-        for facet in facets {
-            welder.push(facet.borrow())?;
-        }
-        Ok(welder.finish())
-    }
-
     /// The vertices, all different.
     pub fn vertices(&self) -> &[[f64; 3]] {
         &self.vertices
@@ -173,7 +165,7 @@ impl TriangleMesh {
         &self.triangles
     }
 
-    /// The least and the greatest coordinates of the vertices that triangles use; zeros if there is no triangle.
+    /// The least and the greatest coordinates of the vertices that triangles use; zeros if there are none.
     ///
     /// O(t), computed anew on each call.
     pub fn bounds(&self) -> ([f64; 3], [f64; 3]) {
@@ -190,7 +182,7 @@ impl TriangleMesh {
     }
 
     /// The enclosed volume, by the divergence theorem: what the surface winds around n times counts n times,
-    /// so overlaps count twice and bodies that are inside out count negative. Of an open mesh it has no meaning.
+    /// so overlaps count twice and bodies that are inside out count negative. Open meshes have none.
     ///
     /// O(t). The sum is taken relative to the centre of the bounds, so that a far-off origin costs no digits.
     pub fn volume(&self) -> f64 {
@@ -207,8 +199,8 @@ impl TriangleMesh {
 
     /// Checks that the mesh bounds a solid under `rule`.
     ///
-    /// For [`FillRule::EvenOdd`] an even number of triangles must meet on every edge; for the others half of them
-    /// must also run in each direction, and then every winding number is an integer. Self-intersections,
+    /// For [`FillRule::EvenOdd`] an even number of triangles must meet on every edge; for the others half of
+    /// them must also run in each direction, and then every winding number is an integer. Self-intersections,
     /// overlaps, nested and inside-out bodies are all allowed.
     ///
     /// The first call analyses the edges, in O(t + v) time and with 28 bytes per triangle and 8 per vertex of
@@ -231,8 +223,8 @@ impl TriangleMesh {
     }
 
     /// The mesh with every vertex moved to where `f` says. Vertices that meet are welded, as in
-    /// [`new`](Self::new); a reflection turns the mesh inside out. The report starts anew, and the surface as it
-    /// then is counts as the truth, whatever cracks were closed before.
+    /// [`new`](Self::new); a reflection turns the mesh inside out. The report starts anew, and the surface as
+    /// it then is counts as the truth, whatever cracks were closed before.
     ///
     /// O(v + t). Fails as `new` does.
     pub fn transformed(&self, f: impl FnMut([f64; 3]) -> [f64; 3]) -> Result<Self, Error> {
@@ -240,8 +232,7 @@ impl TriangleMesh {
         Self::new(vertices, memory::copied(&self.triangles)?)
     }
 
-    /// The mesh with `f` applied to every coordinate. What was found when it was taken in is still part of the
-    /// report.
+    /// The mesh with `f` applied to every coordinate. The report keeps what was found before.
     ///
     /// O(v + t), in place. Fails as [`new`](Self::new) does.
     pub(crate) fn scaled(self, f: impl Fn(f64) -> f64) -> Result<Self, Error> {

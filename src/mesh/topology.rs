@@ -26,9 +26,9 @@ pub(super) struct Topology {
     pub bodies: u64,
     /// The vertices of the boundary edges, ascending.
     pub open_vertices: Vec<u32>,
-    /// The surface's boundary as a chain: each edge that more triangles run along in one direction than in the other,
-    /// in that direction, as often as there are more, one behind the other. Of a surface whose triangles cancel
-    /// each other's edges it is empty; otherwise every vertex begins as many of these edges as it ends.
+    /// The surface's boundary as a chain: each edge that more triangles run along in one direction than in
+    /// the other, in that direction, as often as there are more, one behind the other. Of a surface whose
+    /// triangles cancel each other's edges it is empty; otherwise every vertex begins as many as it ends.
     pub boundary: Vec<[u32; 2]>,
 }
 
@@ -168,8 +168,7 @@ pub(super) fn for_each_edge(
     Ok(())
 }
 
-/// Finds triangles with the same three corners. Each is found on one of its edges, the one between its lowest and
-/// its highest vertex.
+/// Finds triangles with the same three corners. Each is found on the edge of its lowest and highest vertex.
 #[derive(Default)]
 pub(super) struct Coincident {
     /// Triangles, found on all edges so far, whose corners an earlier one has in the same direction.

@@ -8,33 +8,12 @@ use crate::lattice::morton;
 use crate::memory;
 use alloc::boxed::Box;
 
-/// How PARTIAL cells of the finest level are resolved when a tree is built.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
-pub enum Rule {
-    /// Not at all: the tree holds the certified bounds.
-    #[default]
-    Certified,
-    /// By the cell's centre. The tree is binary and lies between `Inner` and `Outer`.
-    Sampled,
-    /// As EMPTY: the tree is binary and contained in the solid.
-    Inner,
-    /// As FULL: the tree is binary and contains the solid.
-    Outer,
-}
-
-impl Rule {
-    /// Whether nothing is left undecided.
-    pub fn is_binary(self) -> bool {
-        self != Rule::Certified
-    }
-}
-
 /// Levels of a block: 64³ cells are six octree levels, three elements.
 pub(crate) const BLOCK_LEVELS: u8 = 6;
 
-/// A cube of 64³ finest cells as bit columns along z: what a [`Worker`](crate::Worker) fills that can classify
-/// many cells at once. Bit k of word x + 64·y is the cell (x, y, k). Whoever makes a block says what is wanted: the
-/// certified planes, the centres, or both.
+/// A cube of 64³ finest cells as bit columns along z: what a [`Worker`](crate::Worker) fills that can
+/// classify many cells at once. Bit k of word x + 64·y is the cell (x, y, k). Whoever makes a block says what
+/// is wanted: the certified planes, the centres, or both.
 pub struct Block {
     planes: Option<[Columns; 2]>,
     centres: Option<Columns>,
@@ -53,13 +32,8 @@ impl Block {
         Ok(Block { planes, centres: if centres { Some(memory::zeros()?) } else { None } })
     }
 
-    /// What a rule needs.
-    pub(crate) fn for_rule(rule: Rule) -> Result<Block, Error> {
-        Block::new(rule != Rule::Sampled, rule == Rule::Sampled)
-    }
-
-    /// The planes of the surely and of the possibly solid cells, to be filled if they are asked for; a cell that is surely
-    /// solid must be possibly solid too.
+    /// The planes of the surely and of the possibly solid cells, to be filled if they are asked for; a cell
+    /// that is surely solid must be possibly solid too.
     pub fn planes_mut(&mut self) -> Option<(&mut [u64; 4096], &mut [u64; 4096])> {
         self.planes.as_mut().map(|[lower, upper]| (&mut **lower, &mut **upper))
     }
@@ -80,30 +54,28 @@ impl Block {
         }
     }
 
-    /// Writes the block by a rule as three levels of elements, `e` being the first; returns the block's tag. The
-    /// planes must be there, or for [`Rule::Sampled`] the centres; what is not counts as undecided, or as outside.
-    pub(crate) fn write(&self, rule: Rule, e: usize, writer: &mut Writer<'_>) -> Result<Tag, Error> {
-        let planes = self.planes.as_ref().map(|[lower, upper]| (&**lower, &**upper));
-        let resolved = match rule {
-            Rule::Certified => planes,
-            Rule::Inner => planes.map(|(lower, _)| (lower, lower)),
-            Rule::Outer => planes.map(|(_, upper)| (upper, upper)),
-            Rule::Sampled => self.centres.as_deref().map(|centres| (centres, centres)),
-        };
-        let (lower, upper) = resolved.unwrap_or_else(|| unreachable!("a block has what its rule needs"));
-        Cells { binary: rule.is_binary(), lower, upper }.write(e, writer)
+    /// The planes of the surely and of the possibly solid cells, if they were asked for.
+    pub(crate) fn planes(&self) -> Option<(&[u64; 4096], &[u64; 4096])> {
+        self.planes.as_ref().map(|[lower, upper]| (&**lower, &**upper))
+    }
+
+    /// Which centres lie inside, if that was asked for.
+    pub(crate) fn centres(&self) -> Option<&[u64; 4096]> {
+        self.centres.as_deref()
     }
 }
 
-/// The cells of a block, resolved.
-struct Cells<'b> {
-    binary: bool,
-    lower: &'b [u64; 4096],
-    upper: &'b [u64; 4096],
+/// The cells of a block, resolved as they are to be stored.
+pub(crate) struct Cells<'b> {
+    /// Whether both planes are the same.
+    pub binary: bool,
+    pub lower: &'b [u64; 4096],
+    pub upper: &'b [u64; 4096],
 }
 
 impl Cells<'_> {
-    fn write(&self, e: usize, writer: &mut Writer<'_>) -> Result<Tag, Error> {
+    /// Writes them as three levels of elements, `e` being the first; returns the block's tag.
+    pub(crate) fn write(&self, e: usize, writer: &mut Writer<'_>) -> Result<Tag, Error> {
         let tiles = self.tiles();
         let mut block = Planes::uniform(Tag::Empty);
         for c in 0..64 {

@@ -12,9 +12,10 @@ impl OctreeRef<'_> {
     /// a true level table. The trees that the library makes pass by construction. O(n).
     ///
     /// # Errors
-    /// [`Error::Damaged`] with the first [`Damage`] found, in this order, which matters because each step relies
-    /// on the one before: links level by level, then elements, then bricks, then what is derived from them.
-    /// [`Error::OutOfMemory`]: a dictionary's entries are counted and compared, at most 65 536 at a time.
+    /// [`Error::Damaged`] with the first [`Damage`] found, in this order, which matters because each step
+    /// relies on the one before: links level by level, then elements, then bricks, then what is derived from
+    /// them. [`Error::OutOfMemory`]: a dictionary's entries are counted and compared, at most 65 536 at a
+    /// time.
     pub fn check(&self) -> Result<(), Error> {
         self.check_links()?;
         let real = |index: usize| if index == 0 { self.root_cells() } else { !0 };

@@ -1,5 +1,6 @@
 //! The octree as the papers draw it: node by node, eight 2-bit tags each.
 
+use super::links::Step;
 use super::tag::Tag;
 use super::view::{MAX_ELEMENT_LEVELS, OctreeRef, starts_half_way};
 use super::word::Planes;
@@ -53,9 +54,9 @@ impl Node {
 /// noticed depends on where the cursor has been before.)
 ///
 /// ```
-/// use leafless::{Ball, Control, Cursor, Frame, Rule, Tag, build};
+/// use leafless::{Control, Csg, Cursor, Frame, Rule, Tag, build};
 /// let frame = Frame::new([0.0; 3], 1.0, 5)?;
-/// let ball = build(&Ball::new([0.5; 3], 0.4)?, &frame, Rule::Certified, &Control::default())?;
+/// let ball = build(&Csg::ball([0.5; 3], 0.4)?, &frame, Rule::Certified, &Control::default())?;
 /// let mut cursor = Cursor::new(ball.view());
 /// while cursor.tag() == Tag::Branch {
 ///     cursor.descend(0);
@@ -120,12 +121,11 @@ impl<'a> Cursor<'a> {
         self.cell = self.cell.child(octant);
         self.morton = self.morton << 3 | octant as u64;
         self.tag = node.tag(octant);
-        if let (Tag::Branch, Some(k)) = (self.tag, half) {
+        if let Some(k) = half {
             let (n, planes) = self.path[e];
-            let child = self.tree.child(n, planes.branch(), 8 * k + octant as u32);
-            match child.filter(|&child| e + 1 < self.tree.levels() && self.tree.on_level(child, e + 1)) {
-                Some(child) => self.enter(e + 1, child),
-                None => self.tag = Tag::Partial,
+            match self.tree.step(e, n, planes, 8 * k + octant as u32) {
+                Step::Into(child) => self.enter(e + 1, child),
+                Step::Settled(tag) => self.tag = tag,
             }
         }
         true

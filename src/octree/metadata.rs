@@ -85,8 +85,8 @@ impl Metadata {
         self.iter().map(|(key, value)| LENGTHS + key.len() + value.len()).sum()
     }
 
-    /// The bytes in a file: per fact the lengths of key and value as little-endian u32, then both texts. There
-    /// must not be 4 GiB of them.
+    /// The bytes in a file: per fact the lengths of key and value as little-endian u32, then both texts.
+    /// There must not be 4 GiB of them.
     ///
     /// # Errors
     /// [`Error::OutOfMemory`].

@@ -9,19 +9,22 @@ pub(crate) mod brick;
 mod check;
 mod cursor;
 pub(crate) mod dictionary;
+pub(crate) mod links;
 pub(crate) mod metadata;
 #[allow(clippy::module_inception)]
 pub(crate) mod octree;
+mod proof;
 pub(crate) mod stats;
 mod tag;
 pub(crate) mod view;
 pub(crate) mod word;
 pub(crate) mod writer;
 
-pub use block::{Block, Rule};
+pub use block::Block;
 pub use cursor::{Cursor, Node};
 pub use metadata::Metadata;
 pub use octree::Octree;
+pub use proof::Proof;
 pub use stats::{LevelStatistics, Statistics};
 pub use tag::Tag;
 pub use view::OctreeRef;

@@ -3,6 +3,7 @@
 use super::brick::{Brick, BrickArray, Bricks, OwnedArray, OwnedBricks};
 use super::dictionary;
 use super::metadata::Metadata;
+use super::proof::Proof;
 use super::stats::Statistics;
 use super::tag::Tag;
 use super::view::{LevelCounts, MAX_ELEMENT_LEVELS, OctreeRef, element_levels};
@@ -82,6 +83,7 @@ impl Arrays {
             frame: self.frame,
             root: self.root,
             exterior: self.exterior,
+            proof: Proof::CERTIFIED,
             planes: &self.planes,
             rel: &self.rel,
             base: &self.base,
@@ -111,8 +113,8 @@ impl Octree {
         })
     }
 
-    /// An octree whose whole universe has one `tag`, and the space around it the tag `exterior`; neither may be
-    /// BRANCH.
+    /// An octree whose whole universe has one `tag`, and the space around it the tag `exterior`; neither may
+    /// be BRANCH.
     pub fn uniform(frame: Frame, tag: Tag, exterior: Tag) -> Result<Octree, Error> {
         if tag == Tag::Branch || exterior == Tag::Branch {
             return Err(Error::Argument { name: "tag", problem: "must be EMPTY, FULL or PARTIAL" });
@@ -127,7 +129,7 @@ impl Octree {
 
     /// A copy of `tree` with its bricks in the encoding that a file would give them.
     pub(crate) fn recoded(tree: &OctreeRef<'_>) -> Result<Octree, Error> {
-        Ok(Octree::new(Arrays {
+        let recoded = Octree::new(Arrays {
             frame: tree.frame,
             root: tree.root,
             exterior: tree.exterior,
@@ -139,7 +141,8 @@ impl Octree {
                 None => copy_raw(&tree.bricks)?,
             },
             starts: tree.starts,
-        }))
+        });
+        Ok(recoded.with_proof(tree.proof))
     }
 
     /// The view that all reading goes through. Free.
@@ -162,9 +165,9 @@ impl Octree {
     /// leaves and 3 without; a bar of three cells is such a solid:
     ///
     /// ```
-    /// use leafless::{AxisBox, Control, Frame, Rule, Tag, build};
+    /// use leafless::{Control, Csg, Frame, Rule, Tag, build};
     /// let frame = Frame::new([0.0; 3], 4.0, 2)?;
-    /// let bar = AxisBox::new([0.0; 3], [3.0, 1.0, 1.0])?;
+    /// let bar = Csg::cuboid([0.0; 3], [3.0, 1.0, 1.0])?;
     /// let statistics = build(&bar, &frame, Rule::Certified, &Control::default())?.statistics();
     ///
     /// let m = statistics.nodes();
@@ -184,6 +187,21 @@ impl Octree {
             Some(table) => table,
             None => self.counts.get_or_init(|| Box::new(self.view().count_levels())),
         }
+    }
+
+    /// What the cells prove of the solid that the tree was made from.
+    pub fn proof(&self) -> Proof {
+        self.view().proof
+    }
+
+    /// The same tree, of whose cells this is said; the arrays are shared. Whoever makes trees otherwise than
+    /// by this library knows what they prove. With [`Proof::CERTIFIED`] the cells themselves are taken for
+    /// the solid: measures of a sampled tree then are those of its cells, and not of what was sampled.
+    #[must_use]
+    pub fn with_proof(&self, proof: Proof) -> Octree {
+        let mut octree = self.clone();
+        octree.arrays.with_mut(move |view| view.proof = proof);
+        octree
     }
 
     /// Facts about the tree that its file carries along: units, name, source.
@@ -216,7 +234,7 @@ impl core::fmt::Debug for Octree {
 }
 
 /// Equal as sets of cells with the same tags on the same frame: trees are canonical, so their arrays agree
-/// however the bricks are encoded. Metadata does not count. O(n).
+/// however the bricks are encoded. Metadata does not count, nor what the cells prove. O(n).
 impl PartialEq for Octree {
     fn eq(&self, other: &Octree) -> bool {
         let (a, b) = (self.view(), other.view());

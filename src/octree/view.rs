@@ -1,9 +1,9 @@
 //! The borrowed view on which all reading code is written.
 
 use super::brick::Bricks;
+use super::proof::Proof;
 use super::tag::Tag;
 use super::word::Planes;
-use crate::error::Damage;
 use crate::lattice::{Frame, MAX_DEPTH};
 use bytemuck::{Pod, Zeroable};
 use yoke::Yokeable;
@@ -40,15 +40,16 @@ pub(crate) struct LevelCounts {
 }
 
 /// A borrowed octree: everything that only reads is a method of this type, whether the arrays lie in a `Vec`,
-/// in a static or in a mapped file. Copying it copies a few pointers.
+/// in a static or in a mapped file. Copying it copies slices and indices, some three hundred bytes, and no
+/// cell.
 ///
 /// # How a solid is stored
 ///
 /// The octree has **no leaves**. Only cells that are cut *and split* have a node, a node is eight 2-bit
 /// [`Tag`]s, and one array entry, an *element*, carries two octree levels: the 64 grandchildren of a cell as
-/// two words ([`Planes`]). Byte k of the two words is exactly the node of octant k, so nothing of the octree is
-/// lost; a link is just never spent on every other level. (The leaf-free octree: Peng, Tang et al. 2000; the
-/// nearest relatives are OctoMap's `.bt` stream and sparse 64-trees.)
+/// two words ([`Planes`]). Byte k of the two words is exactly the node of octant k, so nothing of the octree
+/// is lost; a link is just never spent on every other level. (The leaf-free octree: Peng, Tang et al. 2000;
+/// the nearest relatives are OctoMap's `.bt` stream and sparse 64-trees.)
 ///
 /// Elements lie in level order: level by level, in Morton order within a level. So the children of an
 /// element follow each other, a subtree is one contiguous range per level, and a child is found by rank:
@@ -66,16 +67,17 @@ pub(crate) struct LevelCounts {
 ///
 /// # Trust
 ///
-/// A view may lie over bytes that nobody has checked. Reading is then still memory-safe, terminates, and
-/// does bounded work; a damaged link or index reads as PARTIAL, or makes a bulk operation return
+/// A view may lie over bytes that nobody has checked. Reading is then still memory-safe, terminates, and does
+/// bounded work; a damaged link or index reads as PARTIAL, or makes a bulk operation return
 /// [`Error::Damaged`](crate::Error::Damaged). A flipped tag cannot be told from a true one that way: only the
-/// checksums and [`check`](OctreeRef::check) find it. Also a [`Cursor`](crate::Cursor) that walks over all of an
-/// unchecked tree meets no element twice.
+/// checksums and [`check`](OctreeRef::check) find it. Also a [`Cursor`](crate::Cursor) that walks over all of
+/// an unchecked tree meets no element twice.
 #[derive(Debug, Clone, Copy, Yokeable)]
 pub struct OctreeRef<'a> {
     pub(crate) frame: Frame,
     pub(crate) root: Tag,
     pub(crate) exterior: Tag,
+    pub(crate) proof: Proof,
     pub(crate) planes: &'a [Planes],
     pub(crate) rel: &'a [u16],
     pub(crate) base: &'a [u64],
@@ -108,6 +110,17 @@ impl<'a> OctreeRef<'a> {
         self.exterior == Tag::Partial
     }
 
+    /// What the cells prove of the solid that the tree was made from.
+    pub fn proof(&self) -> Proof {
+        self.proof
+    }
+
+    /// The same tree, of whose cells this is said; see [`Octree::with_proof`](crate::Octree::with_proof).
+    #[must_use]
+    pub fn with_proof(&self, proof: Proof) -> OctreeRef<'a> {
+        OctreeRef { proof, ..*self }
+    }
+
     /// Whether every cell is decided: no PARTIAL anywhere.
     pub fn is_binary(&self) -> bool {
         self.bricks.one_plane() && self.root != Tag::Partial
@@ -137,114 +150,5 @@ impl<'a> OctreeRef<'a> {
     /// Octree level of the cells that an element of element level `e` describes.
     pub(crate) fn cell_level(&self, e: usize) -> u8 {
         2 * (e as u8 + 1) - starts_half_way(self.frame.depth()) as u8
-    }
-
-    /// The element or brick with this index.
-    #[inline(always)]
-    pub(crate) fn entry(&self, index: usize) -> Option<Planes> {
-        match self.planes.get(index) {
-            Some(&planes) => Some(planes),
-            None => self.bricks.get(index - self.planes.len()),
-        }
-    }
-
-    /// Index of the first child of element `n`, whether or not it has one: children are numbered through.
-    #[inline(always)]
-    pub(crate) fn first_child(&self, n: usize) -> Option<usize> {
-        let base = *self.base.get(n >> 10)?;
-        let rel = *self.rel.get(n)?;
-        usize::try_from(base.checked_add(rel as u64)?).ok()
-    }
-
-    /// Index of the child in cell `c` of element `n`, whose BRANCH cells are `branch`. Nothing is known of it
-    /// before it is compared with a level or a window: wild sums wrap, as they do in the point queries, so that
-    /// all that follow single links agree also where these are damaged.
-    #[inline(always)]
-    pub(crate) fn child(&self, n: usize, branch: u64, c: u32) -> Option<usize> {
-        let (base, rel) = (*self.base.get(n >> 10)?, *self.rel.get(n)?);
-        let rank = (branch & ((1u64 << c) - 1)).count_ones() as usize;
-        Some((base as usize).wrapping_add(rel as usize).wrapping_add(rank))
-    }
-
-    /// Where the children of the elements of level `e` from `n` on begin; `n` may be one past the level.
-    pub(crate) fn children_from(&self, n: usize, e: usize) -> usize {
-        let end = self.starts[e + 2];
-        if n == self.starts[e + 1] {
-            end
-        } else {
-            self.first_child(n).map_or(usize::MAX, |first| first.min(end))
-        }
-    }
-
-    /// Whether `index` lies on element level `e`.
-    #[inline(always)]
-    pub(crate) fn on_level(&self, index: usize, e: usize) -> bool {
-        self.starts[e] <= index && index < self.starts[e + 1]
-    }
-}
-
-/// What a depth-first traversal has already passed, per level: how hostile bytes are kept from making it
-/// visit anything twice.
-///
-/// In a sound tree a depth-first traversal meets the elements of each level in ascending order. So one index
-/// per level, the first that has not been passed, decides in O(1) whether a link is admissible; all visits
-/// together never exceed the number of elements.
-#[derive(Clone)]
-pub(crate) struct Windows {
-    next: [usize; MAX_ELEMENT_LEVELS],
-    end: [usize; MAX_ELEMENT_LEVELS],
-}
-
-impl Windows {
-    /// All of a tree.
-    pub(crate) fn new(tree: &OctreeRef<'_>) -> Windows {
-        let mut windows = Windows { next: [0; MAX_ELEMENT_LEVELS], end: [0; MAX_ELEMENT_LEVELS] };
-        windows.next.copy_from_slice(&tree.starts[..MAX_ELEMENT_LEVELS]);
-        windows.end.copy_from_slice(&tree.starts[1..]);
-        windows
-    }
-
-    /// Cuts off the windows of the subtree below element `index` of level `e`, which has been admitted, and
-    /// passes it: what several threads visit below elements that were cut off one after another never overlaps.
-    #[cfg(feature = "parallel")]
-    pub(crate) fn below(&mut self, tree: &OctreeRef<'_>, e: usize, index: usize) -> Result<Windows, Damage> {
-        let mut windows = self.clone();
-        let (mut first, mut end) = (index, index + 1);
-        for level in e..tree.levels() {
-            if level > e {
-                self.admit(index, level, first, end)?;
-            }
-            (windows.next[level], windows.end[level]) = (first, end);
-            if level + 1 < tree.levels() {
-                (first, end) = (tree.children_from(first, level), tree.children_from(end, level));
-            }
-        }
-        Ok(windows)
-    }
-
-    /// Admits the range `first..end` of level `e` below element `parent`, and passes it.
-    #[inline(always)]
-    pub(crate) fn admit(&mut self, parent: usize, e: usize, first: usize, end: usize) -> Result<(), Damage> {
-        if self.next[e] <= first && first <= end && end <= self.end[e] {
-            self.next[e] = end;
-            Ok(())
-        } else {
-            Err(Damage::Link { element: parent as u64 })
-        }
-    }
-
-    /// The child of element `n` (BRANCH cells `branch`) in cell `c`, which lies on level `e`.
-    #[inline(always)]
-    pub(crate) fn child(
-        &mut self,
-        tree: &OctreeRef<'_>,
-        n: usize,
-        branch: u64,
-        c: u32,
-        e: usize,
-    ) -> Result<usize, Damage> {
-        let child = tree.child(n, branch, c).ok_or(Damage::Link { element: n as u64 })?;
-        self.admit(n, e, child, child.saturating_add(1))?;
-        Ok(child)
     }
 }

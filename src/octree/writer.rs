@@ -6,9 +6,10 @@
 //! then has no stored children nothing is ever taken back: the result is canonical by construction.
 
 use super::brick::{Brick, BrickArray, Bricks, OwnedArray, OwnedBricks};
+use super::links::Windows;
 use super::octree::{Arrays, Octree};
 use super::tag::Tag;
-use super::view::{MAX_ELEMENT_LEVELS, OctreeRef, Windows, element_levels, root_cells, starts_half_way};
+use super::view::{MAX_ELEMENT_LEVELS, OctreeRef, element_levels, root_cells, starts_half_way};
 use super::word::Planes;
 use crate::control::Job;
 use crate::dispatch::{Hot, with_popcount};
@@ -18,15 +19,22 @@ use crate::memory;
 use alloc::vec::Vec;
 use core::ops::Range;
 
+/// Items that several threads copy at once when pieces are joined.
+#[cfg(feature = "parallel")]
+const BLOCK: usize = 64;
+
 /// A vector in pieces: it grows without ever copying what it holds or asking for twice the memory.
 struct Chunks<T> {
     full: Vec<Vec<T>>,
     tail: Vec<T>,
 }
 
-impl<T: Copy> Chunks<T> {
+impl<T: Copy + Send + Sync> Chunks<T> {
     const SMALLEST: usize = 64;
     const LARGEST: usize = 1 << 17;
+    /// What is joined by copying and not as a piece of its own.
+    #[cfg(feature = "parallel")]
+    const COPIED: usize = 1 << 10;
 
     fn new() -> Chunks<T> {
         Chunks { full: Vec::new(), tail: Vec::new() }
@@ -44,6 +52,15 @@ impl<T: Copy> Chunks<T> {
         let grown = (2 * self.tail.capacity()).clamp(Self::SMALLEST, Self::LARGEST);
         let fresh = memory::with_capacity(grown.max(count))?;
         self.retire(fresh)
+    }
+
+    /// The same for all that is to come, which may turn out to be less, if it is to be in `one` piece. An
+    /// allocator that keeps blocks of the sizes that it was given back must see this size once, not only what
+    /// is left of it in the end; else it has fresh pages for every result, and they take as long as the
+    /// result.
+    fn reserve_whole(&mut self, count: usize, one: bool) -> Result<(), Error> {
+        drop(core::hint::black_box(memory::with_capacity::<T>(count)?));
+        if one { self.reserve(count) } else { Ok(()) }
     }
 
     fn retire(&mut self, fresh: Vec<T>) -> Result<(), Error> {
@@ -65,7 +82,8 @@ impl<T: Copy> Chunks<T> {
 
     #[cfg(feature = "parallel")]
     fn append(&mut self, mut other: Chunks<T>) -> Result<(), Error> {
-        if other.full.is_empty() && self.tail.capacity() - self.tail.len() >= other.tail.len() {
+        let room = self.tail.capacity() - self.tail.len();
+        if other.full.is_empty() && other.tail.len() <= room.min(Self::COPIED) {
             self.tail.extend_from_slice(&other.tail);
             return Ok(());
         }
@@ -76,14 +94,54 @@ impl<T: Copy> Chunks<T> {
         Ok(())
     }
 
-    /// Everything in one piece; without a copy if it already is.
-    fn into_vec(self) -> Result<Vec<T>, Error> {
+    /// Everything in one piece; without a copy if it already is. By all threads if several wrote it, which
+    /// are then those of a pool.
+    fn into_vec(self, joined: bool) -> Result<Vec<T>, Error> {
         if self.full.is_empty() {
             let mut tail = self.tail;
             tail.shrink_to_fit();
             return Ok(tail);
         }
         let mut all = memory::with_capacity(self.len())?;
+        #[cfg(feature = "parallel")]
+        if joined {
+            use rayon::prelude::*;
+            let count = self.len();
+            let pieces = || self.full.iter().chain([&self.tail]).map(Vec::as_slice);
+            let mut blocks: Vec<[T; BLOCK]> = memory::with_capacity(count.div_ceil(BLOCK))?;
+            let each = (0..count / BLOCK).into_par_iter().with_min_len(1 << 10);
+            // Each job takes neighbours, so it looks only for the first of them.
+            blocks.par_extend(each.map_init(
+                || None,
+                |at, i| {
+                    let (rest, more) = at.get_or_insert_with(|| {
+                        let (mut more, mut before) = (pieces(), i * BLOCK);
+                        let rest = more.find_map(|piece| {
+                            let rest = piece.get(before..);
+                            before = before.saturating_sub(piece.len());
+                            rest
+                        });
+                        (rest.unwrap_or_default().iter(), more)
+                    });
+                    if let Some((&block, behind)) = rest.as_slice().split_first_chunk() {
+                        *rest = behind.iter();
+                        return block;
+                    }
+                    core::array::from_fn(|_| {
+                        loop {
+                            if let Some(&item) = rest.next() {
+                                return item;
+                            }
+                            *rest = more.next().unwrap_or_else(|| unreachable!("all were counted")).iter();
+                        }
+                    })
+                },
+            ));
+            let mut all = blocks.into_flattened();
+            all.extend(pieces().flatten().skip(all.len()));
+            return Ok(all);
+        }
+        let _ = joined;
         for piece in self.full.into_iter().chain([self.tail]) {
             all.extend_from_slice(&piece);
         }
@@ -102,6 +160,8 @@ pub(crate) struct Writer<'j> {
     depth: u8,
     levels: Vec<Chunks<Planes>>,
     bricks: BrickChunks,
+    /// Whether parts were appended.
+    joined: bool,
     // Written since the job was last told.
     nodes: usize,
     bytes: usize,
@@ -119,6 +179,7 @@ impl<'j> Writer<'j> {
             depth,
             levels: (1..element_levels(depth)).map(|_| Chunks::new()).collect(),
             bricks: if binary { BrickChunks::One(Chunks::new()) } else { BrickChunks::Two(Chunks::new()) },
+            joined: false,
             nodes: 0,
             bytes: 0,
             untold: 0,
@@ -135,13 +196,14 @@ impl<'j> Writer<'j> {
         self.job
     }
 
-    /// Reserves room for `count` elements of level `e`; memory is only touched when it is used.
-    pub(crate) fn reserve(&mut self, e: usize, count: usize) -> Result<(), Error> {
+    /// Reserves room for `count` elements of level `e` if they are to be in `one` piece; memory is only
+    /// touched when it is used.
+    pub(crate) fn reserve(&mut self, e: usize, count: usize, one: bool) -> Result<(), Error> {
         match self.levels.get_mut(e) {
-            Some(level) => level.reserve(count),
+            Some(level) => level.reserve_whole(count, one),
             None => match &mut self.bricks {
-                BrickChunks::One(bricks) => bricks.reserve(count),
-                BrickChunks::Two(bricks) => bricks.reserve(count),
+                BrickChunks::One(bricks) => bricks.reserve_whole(count, one),
+                BrickChunks::Two(bricks) => bricks.reserve_whole(count, one),
             },
         }
     }
@@ -279,6 +341,7 @@ impl<'j> Writer<'j> {
             (BrickChunks::Two(bricks), BrickChunks::Two(theirs)) => bricks.append(theirs)?,
             _ => unreachable!("siblings write the same kind of brick"),
         }
+        self.joined = true;
         self.nodes += other.nodes;
         self.bytes += other.bytes;
         self.untold = self.untold.saturating_add(other.untold);
@@ -306,10 +369,10 @@ impl<'j> Writer<'j> {
                 if root == Tag::Partial || planes.iter().any(undecided) {
                     return Err(Damage::MissingPlane.into());
                 }
-                OwnedBricks::One(OwnedArray::Raw(bricks.into_vec()?))
+                OwnedBricks::One(OwnedArray::Raw(bricks.into_vec(self.joined)?))
             }
             BrickChunks::Two(bricks) => {
-                let bricks = bricks.into_vec()?;
+                let bricks = bricks.into_vec(self.joined)?;
                 // Without a single brick their kind still says whether anything is undecided.
                 if root == Tag::Partial || planes.iter().any(undecided) || bricks.iter().any(undecided) {
                     OwnedBricks::Two(OwnedArray::Raw(bricks))

@@ -12,12 +12,14 @@
 //! dictionaries; they are read where they lie.
 
 use crate::control::{Control, Job, WHOLE};
+use crate::dispatch::{Hot, with_popcount};
 use crate::error::{Damage, Error};
 #[cfg(feature = "parallel")]
 use crate::memory;
-use crate::octree::view::{OctreeRef, Windows, element_levels, root_cells};
+use crate::octree::links::Windows;
+use crate::octree::view::OctreeRef;
 use crate::octree::writer::Writer;
-use crate::octree::{Octree, Planes, Tag};
+use crate::octree::{Octree, Planes, Proof, Tag};
 use core::ops::Range;
 
 /// Every point of `a` and of `b`.
@@ -30,10 +32,10 @@ use core::ops::Range;
 /// `control` asks for.
 ///
 /// ```
-/// use leafless::{AxisBox, Control, Frame, Rule, build, difference, union};
+/// use leafless::{Control, Csg, Frame, Rule, build, difference, union};
 /// let (frame, control) = (Frame::new([0.0; 3], 8.0, 3)?, Control::default());
-/// let a = build(&AxisBox::new([0.0; 3], [4.0; 3])?, &frame, Rule::Certified, &control)?;
-/// let b = build(&AxisBox::new([2.0; 3], [6.0; 3])?, &frame, Rule::Certified, &control)?;
+/// let a = build(&Csg::cuboid([0.0; 3], [4.0; 3])?, &frame, Rule::Certified, &control)?;
+/// let b = build(&Csg::cuboid([2.0; 3], [6.0; 3])?, &frame, Rule::Certified, &control)?;
 /// let both = union(a.view(), b.view(), &control)?;
 /// assert_eq!(both.statistics().volume_cells(), (64 + 64 - 8, 64 + 64 - 8));
 /// assert_eq!(difference(both.view(), b.view(), &control)?.statistics().volume_cells().0, 64 - 8);
@@ -206,13 +208,21 @@ struct Walk<'w, 'j> {
     writer: &'w mut Writer<'j>,
 }
 
-/// Neighbouring subtrees of operand `of` that are taken over as they are, or complemented.
-#[derive(Clone)]
-struct Run {
-    of: usize,
-    flip: bool,
-    parent: usize,
-    range: Range<usize>,
+/// What is next to be done below an element.
+enum Step {
+    /// Neighbouring subtrees of operand `of` are taken over as they are, or complemented.
+    Copy { of: usize, flip: bool, parent: usize, range: Range<usize> },
+    /// Both operands are combined in this cell.
+    Visit(u32, [Source; 2]),
+}
+
+/// A visit as a loop that ranks children.
+struct Visit<'v, 'a, 'w, 'j> {
+    kernel: &'v Kernel<'a>,
+    e: usize,
+    sources: [Source; 2],
+    walk: &'v mut Walk<'w, 'j>,
+    parallel: bool,
 }
 
 /// Entries of both operands from which threads pay: below, a Boolean takes about as long as starting them.
@@ -234,12 +244,12 @@ fn combine_above(entries: u64, kernel: Kernel<'_>, control: &Control<'_>) -> Res
         let binary = a.is_binary() && b.is_binary();
         let mut writer = Writer::new(&job, a.frame().depth(), binary);
         let most = (count(a) + count(b)).saturating_mul(size_of::<Planes>() as u64);
-        if !parallel && control.max_bytes.is_none_or(|limit| most <= limit) {
-            // The result is never larger than both operands, so each level can be written in one piece. Where
-            // that much cannot be reserved, it is written in several.
+        if control.max_bytes.is_none_or(|limit| most <= limit) {
+            // The result is never larger than both operands, so one thread can write each level in one piece.
+            // Where that much cannot be reserved, it is written in several.
             for e in 0..a.levels() {
                 let most = |tree: &OctreeRef<'_>| tree.starts[e + 1].saturating_sub(tree.starts[e]);
-                let _ = writer.reserve(e, most(a).saturating_add(most(b)).min(1 << 26));
+                let _ = writer.reserve(e, most(a).saturating_add(most(b)).min(1 << 26), !parallel);
             }
         }
         let mut walk = Walk { windows: [Windows::new(a), Windows::new(b)], writer: &mut writer };
@@ -255,7 +265,12 @@ fn combine_above(entries: u64, kernel: Kernel<'_>, control: &Control<'_>) -> Res
             Planes::uniform(operand.tree.exterior()).complement_if(operand.flip)
         });
         let exterior = kernel.words(exterior).complement_if(kernel.flip).tag(0);
-        writer.finish(*a.frame(), root, exterior)
+        let proofs = kernel.operands.each_ref().map(|operand| {
+            let proof = operand.tree.proof();
+            if operand.flip { proof.complement() } else { proof }
+        });
+        let proof = kernel.proof(proofs);
+        Ok(writer.finish(*a.frame(), root, exterior)?.with_proof(proof))
     })
 }
 
@@ -272,32 +287,86 @@ impl Kernel<'_> {
         }
     }
 
-    /// The operand whose subtree below a cell is the result as it is (or complemented, as the second says),
-    /// from the operands' (flipped) tags there; `None` if they must be combined.
-    #[inline(always)]
-    fn lone(&self, tags: [Tag; 2]) -> Option<(usize, bool)> {
-        let leaves = |tag: Tag| tag == Tag::Full || (self.op == Op::Xor && tag == Tag::Empty);
-        [0, 1].into_iter().find(|&k| tags[k] == Tag::Branch && leaves(tags[1 - k])).map(|k| {
-            let inverts = self.op == Op::Xor && tags[1 - k] == Tag::Full;
-            (k, self.operands[k].flip ^ inverts ^ self.flip)
-        })
+    /// What the cells of the result prove, from what those of the (flipped) operands do.
+    fn proof(&self, [a, b]: [Proof; 2]) -> Proof {
+        let proof = match self.op {
+            Op::And => a.and(b),
+            Op::Xor => a.xor(b),
+        };
+        if self.flip { proof.complement() } else { proof }
     }
 
-    /// What each operand has in cell `c`, which lies on level `e`.
+    /// The operands' (flipped) tags in the cells of two sources, those of the result, and the cells below
+    /// which the result has to be found.
     #[inline(always)]
-    fn children(
+    fn meet(&self, sources: [Source; 2]) -> Result<([Planes; 2], Planes, u64), Damage> {
+        let planes = [self.operands[0].planes(sources[0])?, self.operands[1].planes(sources[1])?];
+        let words = self.words(planes);
+        let clash = if self.op == Op::And { planes[0].clash(planes[1]) } else { 0 };
+        Ok((planes, words.complement_if(self.flip), words.branch() | clash))
+    }
+
+    /// Takes the first of the `open` cells, which lie on level `e`, and those behind it that are copied with
+    /// it.
+    #[inline(always)]
+    fn step(
         &self,
-        windows: &mut [Windows; 2],
+        open: &mut u64,
         sources: [Source; 2],
         planes: [Planes; 2],
-        c: u32,
+        windows: &mut [Windows; 2],
         e: usize,
-    ) -> Result<[Source; 2], Damage> {
+    ) -> Result<Step, Damage> {
+        let (c, rest) = (open.trailing_zeros(), *open);
+        for of in [0, 1] {
+            let (other, branch) = (planes[1 - of], planes[of].branch());
+            let full = other.full() >> c & 1 != 0;
+            // Where the other operand is decided, this one's subtree is the result.
+            let decided = if full || self.op == Op::And { other.full() } else { other.empty() };
+            let lone = rest & branch & decided;
+            if lone >> c & 1 != 0
+                && let Source::Element(parent) = sources[of]
+            {
+                let stop = (rest | branch) & !lone & !0 << c;
+                let run = lone & (stop & stop.wrapping_neg()).wrapping_sub(1);
+                *open &= !run;
+                let bad = Damage::Link { element: parent as u64 };
+                let child = self.operands[of].tree.child(parent, branch, c).ok_or(bad)?;
+                let end = child.checked_add(run.count_ones() as usize).ok_or(bad)?;
+                let flip = self.operands[of].flip ^ self.flip ^ (self.op == Op::Xor && full);
+                return Ok(Step::Copy { of, flip, parent, range: child..end });
+            }
+        }
+        *open &= rest - 1;
         let [wa, wb] = windows;
-        Ok([
-            self.operands[0].child(wa, sources[0], planes[0], c, e)?,
-            self.operands[1].child(wb, sources[1], planes[1], c, e)?,
-        ])
+        let a = self.operands[0].child(wa, sources[0], planes[0], c, e)?;
+        Ok(Step::Visit(c, [a, self.operands[1].child(wb, sources[1], planes[1], c, e)?]))
+    }
+
+    /// Does what is next on level `e`; tells what a visited cell comes to.
+    #[inline(always)]
+    fn go(
+        &self,
+        e: usize,
+        step: Step,
+        walk: &mut Walk<'_, '_>,
+        parallel: bool,
+    ) -> Result<Option<(u32, Tag)>, Error> {
+        match step {
+            Step::Copy { of, flip, parent, range } => {
+                let windows = &mut walk.windows[of];
+                walk.writer.copy(&self.operands[of].tree, windows, parent, e, range, flip)?;
+                Ok(None)
+            }
+            Step::Visit(c, sources) if e + 1 == self.operands[0].tree.levels() => {
+                let (_, result, open) = self.meet(sources)?;
+                if open != 0 {
+                    return Err(self.branching_brick(sources).into());
+                }
+                Ok(Some((c, walk.writer.put(e, result)?)))
+            }
+            Step::Visit(c, sources) => Ok(Some((c, self.visit(e, sources, walk, parallel)?))),
+        }
     }
 
     /// Combines two cells that elements of level `e` describe; returns the tag of the result.
@@ -308,73 +377,7 @@ impl Kernel<'_> {
         walk: &mut Walk<'_, '_>,
         parallel: bool,
     ) -> Result<Tag, Error> {
-        let planes = [self.operands[0].planes(sources[0])?, self.operands[1].planes(sources[1])?];
-        let words = self.words(planes);
-        let mut result = words.complement_if(self.flip);
-        let clash = if self.op == Op::And { planes[0].clash(planes[1]) } else { 0 };
-        let depth = self.operands[0].tree.frame().depth();
-        let real = if e == 0 { root_cells(depth) } else { !0 };
-        let mut open = (words.branch() | clash) & real;
-        // Progress is counted in the cells below the root.
-        let weight = WHOLE / real.count_ones() as usize;
-        if e == 0 {
-            walk.writer.job().advance(weight * (real & !open).count_ones() as usize);
-        }
-        if open == 0 {
-            return walk.writer.put(e, result);
-        }
-        walk.writer.job().check()?;
-        if e + 1 == element_levels(depth) {
-            return Err(self.branching_brick(sources).into());
-        }
-        #[cfg(feature = "parallel")]
-        if parallel && e == 0 {
-            self.visit_parallel(open, sources, planes, walk, weight, &mut result)?;
-            return walk.writer.put(e, result);
-        }
-        let _ = parallel;
-        let mut run: Option<Run> = None;
-        while open != 0 {
-            let c = open.trailing_zeros();
-            open &= open - 1;
-            if e == 0 {
-                walk.writer.job().advance(weight);
-            }
-            let lone = self.lone(planes.map(|planes| planes.tag(c)));
-            if let Some((of, flip)) = lone
-                && let Source::Element(parent) = sources[of]
-            {
-                let bad = Damage::Link { element: parent as u64 };
-                let child = self.operands[of].tree.child(parent, planes[of].branch(), c).ok_or(bad)?;
-                let end = child.checked_add(1).ok_or(bad)?;
-                result.set(c, Tag::Branch);
-                match &mut run {
-                    Some(run) if (run.of, run.flip, run.range.end) == (of, flip, child) => {
-                        run.range.end = end
-                    }
-                    _ => {
-                        self.copy(e + 1, run.replace(Run { of, flip, parent, range: child..end }), walk)?;
-                    }
-                }
-            } else {
-                self.copy(e + 1, run.take(), walk)?;
-                let children = self.children(&mut walk.windows, sources, planes, c, e + 1)?;
-                result.set(c, self.visit(e + 1, children, walk, false)?);
-            }
-        }
-        self.copy(e + 1, run, walk)?;
-        walk.writer.put(e, result)
-    }
-
-    /// Takes over the subtrees below the elements of a run on level `e`.
-    #[inline(always)]
-    fn copy(&self, e: usize, run: Option<Run>, walk: &mut Walk<'_, '_>) -> Result<(), Error> {
-        match run {
-            Some(Run { of, flip, parent, range }) => {
-                walk.writer.copy(&self.operands[of].tree, &mut walk.windows[of], parent, e, range, flip)
-            }
-            None => Ok(()),
-        }
+        with_popcount(Visit { kernel: self, e, sources, walk, parallel })
     }
 
     /// The damage when cells of the deepest level claim to have children.
@@ -387,54 +390,103 @@ impl Kernel<'_> {
         Damage::BrickBranch { brick: brick.unwrap_or(0) as u64 }
     }
 
-    /// The descent below the root as independent tasks, their outputs appended in order.
+    /// The steps below an element of the first two levels as independent tasks, their outputs appended in
+    /// order.
     #[cfg(feature = "parallel")]
     fn visit_parallel(
         &self,
-        open: u64,
+        e: usize,
+        mut open: u64,
         sources: [Source; 2],
         planes: [Planes; 2],
         walk: &mut Walk<'_, '_>,
-        weight: usize,
         result: &mut Planes,
     ) -> Result<(), Error> {
         use alloc::vec::Vec;
         use rayon::prelude::*;
         let mut tasks = memory::with_capacity(open.count_ones() as usize)?;
-        for c in (0..64).filter(|c| open >> c & 1 != 0) {
-            let children = self.children(&mut walk.windows, sources, planes, c, 1)?;
+        while open != 0 {
+            let before = open.count_ones();
+            let step = self.step(&mut open, sources, planes, &mut walk.windows, e)?;
+            let below = match &step {
+                Step::Copy { of, parent, range, .. } => {
+                    walk.windows[*of].admit(*parent, e, range.start, range.end)?;
+                    [0, 1].map(|k| (k == *of).then(|| range.clone()))
+                }
+                Step::Visit(_, children) => children.map(|child| match child {
+                    Source::Element(n) => Some(n..n + 1),
+                    Source::Uniform(_) => None,
+                }),
+            };
             let mut windows = walk.windows.clone();
-            for (k, child) in children.iter().enumerate() {
-                if let Source::Element(n) = *child {
-                    windows[k] = walk.windows[k].below(&self.operands[k].tree, 1, n)?;
+            for (k, range) in below.into_iter().enumerate() {
+                if let Some(range) = range {
+                    windows[k] = walk.windows[k].below(&self.operands[k].tree, e, range)?;
                 }
             }
-            tasks.push((c, children, windows));
+            tasks.push((step, windows, before - open.count_ones()));
         }
         let subtrees = &*walk.writer;
         let done = tasks
             .into_par_iter()
-            .map(|(c, children, windows)| {
+            .map(|(step, windows, cells)| {
                 let mut subtree = subtrees.sibling();
-                let mut walk = Walk { windows, writer: &mut subtree };
-                let lone = self.lone(planes.map(|planes| planes.tag(c)));
-                let tag = if let Some((of, flip)) = lone
-                    && let Source::Element(n) = children[of]
-                {
-                    self.copy(1, Some(Run { of, flip, parent: n, range: n..n + 1 }), &mut walk)?;
-                    Tag::Branch
-                } else {
-                    self.visit(1, children, &mut walk, false)?
-                };
-                subtree.job().advance(weight);
-                Ok((c, tag, subtree))
+                let found = self.go(e, step, &mut Walk { windows, writer: &mut subtree }, true)?;
+                self.advance(e, cells, &subtree);
+                Ok((found, subtree))
             })
             .collect::<Result<Vec<_>, Error>>()?;
-        for (c, tag, subtree) in done {
-            result.set(c, tag);
+        for (found, subtree) in done {
+            if let Some((c, tag)) = found {
+                result.set(c, tag);
+            }
             walk.writer.append(subtree)?;
         }
         Ok(())
+    }
+
+    /// Reports cells on level `e` as done: progress is counted in those below the root.
+    #[inline(always)]
+    fn advance(&self, e: usize, cells: u32, writer: &Writer<'_>) {
+        if e == 1 {
+            let all = self.operands[0].tree.root_cells().count_ones() as usize;
+            writer.job().advance(WHOLE / all * cells as usize);
+        }
+    }
+}
+
+impl Hot for Visit<'_, '_, '_, '_> {
+    type Output = Result<Tag, Error>;
+
+    #[inline(always)]
+    fn run(self) -> Result<Tag, Error> {
+        let Visit { kernel, e, sources, walk, parallel } = self;
+        let (planes, mut result, open) = kernel.meet(sources)?;
+        let real = if e == 0 { kernel.operands[0].tree.root_cells() } else { !0 };
+        let mut open = open & real;
+        kernel.advance(e + 1, (real & !open).count_ones(), walk.writer);
+        if open == 0 {
+            return walk.writer.put(e, result);
+        }
+        walk.writer.job().check()?;
+        let levels = kernel.operands[0].tree.levels();
+        if e + 1 == levels {
+            return Err(kernel.branching_brick(sources).into());
+        }
+        #[cfg(feature = "parallel")]
+        if parallel && (e == 0 || e == 1 && e + 3 < levels) {
+            kernel.visit_parallel(e + 1, open, sources, planes, walk, &mut result)?;
+            return walk.writer.put(e, result);
+        }
+        while open != 0 {
+            let before = open.count_ones();
+            let step = kernel.step(&mut open, sources, planes, &mut walk.windows, e + 1)?;
+            if let Some((c, tag)) = kernel.go(e + 1, step, walk, parallel)? {
+                result.set(c, tag);
+            }
+            kernel.advance(e + 1, before - open.count_ones(), walk.writer);
+        }
+        walk.writer.put(e, result)
     }
 }
 
@@ -446,8 +498,8 @@ mod tests {
     use alloc::vec;
     use alloc::vec::Vec;
 
-    /// A tree of depth 6 whose root is cut in all 64 cells, each cut in its first; `link` says where the element
-    /// of a cell finds its brick.
+    /// A tree of depth 6 whose root is cut in all 64 cells, each cut in its first; `link` says where the
+    /// element of a cell finds its brick.
     fn with_tree<R>(base: u64, link: impl Fn(u16) -> u16, ask: impl FnOnce(&OctreeRef<'_>) -> R) -> R {
         let mut planes = vec![Planes { lower: 1, upper: 0 }; 65];
         planes[0] = Planes::uniform(Tag::Branch);
@@ -459,6 +511,7 @@ mod tests {
             frame: Frame::new([0.0; 3], 1.0, 6).unwrap(),
             root: Tag::Branch,
             exterior: Tag::Empty,
+            proof: Proof::CERTIFIED,
             planes: &planes,
             rel: &rel,
             base: &[base],

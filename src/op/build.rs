@@ -1,15 +1,17 @@
 //! From any solid to an octree.
 
 use super::gathered::{self, Gathered};
+use super::rule::Rule;
 use crate::control::{Control, Job, WHOLE};
 use crate::error::Error;
 use crate::lattice::{Cell, Frame, morton};
 use crate::memory;
 use crate::octree::block::BLOCK_LEVELS;
-use crate::octree::view::{OctreeRef, Windows, element_levels, starts_half_way};
+use crate::octree::links::Windows;
+use crate::octree::view::{OctreeRef, element_levels, starts_half_way};
 use crate::octree::writer::Writer;
-use crate::octree::{Block, Octree, Planes, Rule, Tag};
-use crate::solid::{Classifier, Solid, Stored, Subtree, Verdict, Worker};
+use crate::octree::{Block, Octree, Planes, Tag};
+use crate::solid::{Classifier, Solid, Subtree, Verdict, Worker};
 use alloc::vec::Vec;
 
 /// Builds the octree of `solid` to the depth of `frame`, its undecided finest cells resolved by `rule`.
@@ -18,14 +20,14 @@ use alloc::vec::Vec;
 /// in the nodes that are visited.
 ///
 /// # Errors
-/// What the solid refuses ([`Error::FrameMismatch`] for stored trees, [`Error::Damaged`] for unverified ones),
-/// [`Error::NotSampled`] under
-/// [`Rule::Sampled`] if the solid cannot decide points, and what `control` asks for.
+/// What the solid refuses ([`Error::FrameMismatch`] for stored trees, [`Error::Damaged`] for unverified
+/// ones), [`Error::NotSampled`] under [`Rule::Sampled`] if the solid cannot decide points, and what `control`
+/// asks for.
 ///
 /// ```
-/// use leafless::{Ball, Control, Frame, Rule, build};
+/// use leafless::{Control, Csg, Frame, Rule, build};
 /// let frame = Frame::new([0.0; 3], 2.0, 7)?;
-/// let ball = build(&Ball::new([1.0; 3], 0.75)?, &frame, Rule::Certified, &Control::default())?;
+/// let ball = build(&Csg::ball([1.0; 3], 0.75)?, &frame, Rule::Certified, &Control::default())?;
 /// let volume = ball.statistics().volume();
 /// assert!(volume.contains(4.0 / 3.0 * std::f64::consts::PI * 0.75f64.powi(3)));
 /// assert!(volume.width() < 0.17);
@@ -57,20 +59,21 @@ pub(crate) fn build_on<C: Classifier>(
         let tag = match root {
             Verdict::Empty => Tag::Empty,
             Verdict::Full => Tag::Full,
-            Verdict::Undecided => builder.resolve_all(Planes::uniform(Tag::Partial))?.tag(0),
+            Verdict::Undecided => rule.resolved(Planes::uniform(Tag::Partial))?.tag(0),
             Verdict::Partial(part) => builder.cell(0, Cell::ROOT, &part, &mut hand, &mut writer)?,
         };
-        writer.finish(frame, tag, classifier.exterior())
+        let octree = writer.finish(frame, tag, classifier.exterior())?;
+        Ok(octree.with_proof(rule.proof(classifier.proof())))
     })
 }
 
 /// The tree with its PARTIAL cells resolved: EMPTY under [`Rule::Inner`], FULL under [`Rule::Outer`].
 ///
 /// # Errors
-/// [`Error::NotSampled`] under [`Rule::Sampled`] if a cell is PARTIAL, because a stored tree knows no more about it;
-/// and what `control` asks for.
+/// [`Error::NotSampled`] under [`Rule::Sampled`] if a cell is PARTIAL, because a stored tree knows no more
+/// about it; and what `control` asks for.
 pub fn resolve(tree: &OctreeRef<'_>, rule: Rule, control: &Control<'_>) -> Result<Octree, Error> {
-    build(&Stored::new(tree), tree.frame(), rule, control)
+    build(tree, tree.frame(), rule, control)
 }
 
 /// The same tree with its bricks encoded as a file would have them, through a dictionary where that is
@@ -125,11 +128,11 @@ impl<C: Classifier> Builder<'_, C> {
         if cell.level + BLOCK_LEVELS == self.frame.depth() {
             let block = match &mut hand.block {
                 Some(block) => block,
-                none => none.insert(Block::for_rule(self.rule)?),
+                none => none.insert(self.rule.block()?),
             };
             if hand.worker.fill(cell, part, block)? {
                 self.progress(e, writer);
-                return block.write(self.rule, e, writer);
+                return self.rule.cells(block).write(e, writer);
             }
         }
         let mark = hand.worker.mark();
@@ -209,7 +212,7 @@ impl<C: Classifier> Builder<'_, C> {
         let mut result = if hopeless == 0 {
             planes
         } else {
-            let resolved = self.resolve_all(planes.masked(hopeless))?;
+            let resolved = self.rule.resolved(planes.masked(hopeless))?;
             planes.masked(!hopeless).union(resolved)
         };
         if e < 2 {
@@ -299,7 +302,7 @@ impl<C: Classifier> Builder<'_, C> {
         hand: &mut Hand<C>,
     ) -> Result<Planes, Error> {
         if self.rule != Rule::Sampled {
-            return self.resolve_all(planes);
+            return self.rule.resolved(planes);
         }
         if planes.partial().count_ones() as usize != hand.parts.len() - first {
             return Err(Error::NotSampled);
@@ -318,17 +321,6 @@ impl<C: Classifier> Builder<'_, C> {
             result.set(c as u32, if inside { Tag::Full } else { Tag::Empty });
         }
         Ok(result)
-    }
-
-    /// Resolves cells that nothing more is known about.
-    fn resolve_all(&self, planes: Planes) -> Result<Planes, Error> {
-        match self.rule {
-            Rule::Certified => Ok(planes),
-            Rule::Inner => Ok(Planes::binary(planes.lower)),
-            Rule::Outer => Ok(Planes::binary(planes.upper)),
-            Rule::Sampled if planes.partial() == 0 => Ok(planes),
-            Rule::Sampled => Err(Error::NotSampled),
-        }
     }
 
     /// Writes the subtree of a PARTIAL cell of which the solid is asked level by level.
@@ -382,15 +374,17 @@ impl<C: Classifier> Builder<'_, C> {
     }
 }
 
-/// Neighbouring stored subtrees that are copied together: the place of the first one's part, their element level.
+/// Neighbouring stored subtrees that are copied together: the place of the first one's part, their element
+/// level.
 struct Run {
     first: usize,
     level: usize,
     count: usize,
 }
 
-/// Copies `count` neighbouring subtrees of a stored octree, all links of which were checked when it was put on the frame.
+/// Copies `count` neighbouring subtrees of a stored octree, all links of which were checked when it was put
+/// on the frame.
 fn copy(first: &Subtree<'_>, count: usize, writer: &mut Writer<'_>) -> Result<(), Error> {
     let &Subtree { tree, level, index, flip } = first;
-    writer.copy(&tree, &mut Windows::new(&tree), index, level, index..index + count, flip)
+    writer.copy(tree, &mut Windows::new(tree), index, level, index..index + count, flip)
 }

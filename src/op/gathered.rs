@@ -1,18 +1,19 @@
 //! Solids whose answers come more cheaply many at a time: asked level by level.
 //!
-//! A host program's functions take most of the time of whoever asks them, and can be asked about all cells of a level at
-//! once, by as many threads as there are. What they say is kept, and the octree is then built from that.
+//! A host program's functions take most of the time of whoever asks them, and can be asked about all cells of
+//! a level at once, by as many threads as there are. What they say is kept, and the octree is then built from
+//! that.
 
 use crate::control::{Control, Job};
 use crate::error::Error;
 use crate::lattice::{Cell, Frame};
 use crate::memory;
 use crate::octree::Tag;
-use crate::solid::{Classifier, OCTANTS, Verdict, Worker};
+use crate::solid::{Classifier, Verdict, Worker};
 use alloc::vec::Vec;
 
-/// Levels below a cell that are asked at most before anything is written. (Of a surface some four times as many cells
-/// are kept with each.)
+/// Levels below a cell that are asked at most before anything is written. (Of a surface some four times as
+/// many cells are kept with each.)
 pub(super) const LEVELS: u8 = 8;
 
 /// What a solid said of the cells below one cell.
@@ -30,7 +31,8 @@ struct Split {
     first: u32,
 }
 
-type Part<C> = <<C as Classifier>::Worker as Worker>::Part;
+/// The parts of a classifier's workers.
+pub(crate) type Part<C> = <<C as Classifier>::Worker as Worker>::Part;
 
 impl Gathered {
     /// Splits a cell and all that is open below it; asks for the `centres` of finest cells too.
@@ -45,12 +47,9 @@ impl Gathered {
         let frame = *classifier.frame();
         let mut gathered = Gathered { frame, splits: Vec::new(), centres: Vec::new() };
         let mark = worker.mark();
-        let mut front = memory::with_capacity(1)?;
-        front.push((cell, part));
+        let mut front = memory::collected([(cell, part)].into_iter())?;
         for level in cell.level..frame.depth() {
-            let verdicts = each(classifier, worker, &front, threads, |worker, cells, verdicts| {
-                worker.split_many(cells, job.control(), verdicts)
-            })?;
+            let verdicts = split_each(classifier, worker, &front, threads, job.control())?;
             let finest = level + 1 == frame.depth();
             let mut next = Vec::new();
             gathered.splits.try_reserve(front.len())?;
@@ -58,15 +57,12 @@ impl Gathered {
             let below = if finest { 0 } else { gathered.splits.len() + front.len() };
             for ((cell, _), eight) in front.iter().zip(verdicts) {
                 let first = u32::try_from(below + next.len()).map_err(|_| Error::OutOfMemory)?;
-                let mut own = [Verdict::Undecided; 8];
                 next.try_reserve(8)?;
-                for (octant, verdict) in OCTANTS.into_iter().zip(eight) {
-                    own[octant as usize] = verdict.try_map(|part| {
-                        next.push((cell.child(octant), part));
-                        Ok(())
-                    })?;
-                }
-                gathered.splits.push(Split { verdicts: own, first });
+                let verdicts = map_parts(eight, |octant, part| {
+                    next.push((cell.child(octant), part));
+                    Ok(())
+                })?;
+                gathered.splits.push(Split { verdicts, first });
             }
             front = next;
             if front.is_empty() {
@@ -83,9 +79,9 @@ impl Gathered {
     }
 }
 
-/// What is asked about many cells, by several threads: the answers in the order of the cells. Parts among the answers
-/// are handed over to `worker`.
-pub(crate) fn each<C: Classifier, A: Answer<Part<C>>>(
+/// What is asked about many cells, by several threads: the answers in the order of the cells. Parts among the
+/// answers are handed over to `worker`.
+fn each<C: Classifier, A: Answer<Part<C>>>(
     classifier: &C,
     worker: &mut C::Worker,
     cells: &[(Cell, Part<C>)],
@@ -100,9 +96,22 @@ pub(crate) fn each<C: Classifier, A: Answer<Part<C>>>(
     Ok(all)
 }
 
-/// As [`each`], with the answers going to `take` in the order of the cells, each with its cell's place. If there is an
-/// error, the answers that were had all the same are taken first.
-pub(crate) fn each_known<C: Classifier, A: Answer<Part<C>>>(
+/// The children of many cells, which several threads split.
+pub(crate) fn split_each<C: Classifier>(
+    classifier: &C,
+    worker: &mut C::Worker,
+    cells: &[(Cell, Part<C>)],
+    threads: usize,
+    control: &Control<'_>,
+) -> Result<Vec<[Verdict<Part<C>>; 8]>, Error> {
+    each(classifier, worker, cells, threads, |worker, cells, verdicts| {
+        worker.split_many(cells, control, verdicts)
+    })
+}
+
+/// As [`each`], with the answers going to `take` in the order of the cells, each with its cell's place. If
+/// there is an error, the answers that were had all the same are taken first.
+pub(super) fn each_known<C: Classifier, A: Answer<Part<C>>>(
     classifier: &C,
     worker: &mut C::Worker,
     cells: &[(Cell, Part<C>)],
@@ -150,18 +159,26 @@ pub(crate) fn each_known<C: Classifier, A: Answer<Part<C>>>(
 
 /// An answer that may hold parts.
 #[cfg_attr(not(feature = "parallel"), allow(dead_code))]
-pub(crate) trait Answer<P>: Send + Sized {
+pub(super) trait Answer<P>: Send + Sized {
     fn handed_over(self, hand_over: impl FnMut(P) -> Result<P, Error>) -> Result<Self, Error>;
 }
 
 impl<P: Send> Answer<P> for [Verdict<P>; 8] {
     fn handed_over(self, mut hand_over: impl FnMut(P) -> Result<P, Error>) -> Result<Self, Error> {
-        let mut handed = [const { Verdict::Undecided }; 8];
-        for (to, verdict) in handed.iter_mut().zip(self) {
-            *to = verdict.try_map(&mut hand_over)?;
-        }
-        Ok(handed)
+        map_parts(self, |_, part| hand_over(part))
     }
+}
+
+/// Eight siblings with other parts.
+fn map_parts<P, Q>(
+    eight: [Verdict<P>; 8],
+    mut part: impl FnMut(u8, P) -> Result<Q, Error>,
+) -> Result<[Verdict<Q>; 8], Error> {
+    let mut mapped = [const { Verdict::Undecided }; 8];
+    for ((octant, verdict), to) in (0..).zip(eight).zip(&mut mapped) {
+        *to = verdict.try_map(|own| part(octant, own))?;
+    }
+    Ok(mapped)
 }
 
 impl<P> Answer<P> for Option<bool> {
@@ -186,7 +203,8 @@ impl Classifier for &Gathered {
     }
 }
 
-/// Parts are the places of splits, and of the centres of finest cells. The cell that all is below has the first.
+/// Parts are the places of splits, and of the centres of finest cells. The cell that all is below has the
+/// first.
 impl Worker for &Gathered {
     type Part = u32;
 
@@ -201,14 +219,10 @@ impl Worker for &Gathered {
     fn split(&mut self, _: Cell, part: &u32) -> Result<[Verdict<u32>; 8], Error> {
         let Split { verdicts, first } = &self.splits[*part as usize];
         let mut next = *first;
-        let mut eight = [Verdict::Undecided; 8];
-        for (to, verdict) in eight.iter_mut().zip(verdicts) {
-            *to = verdict.try_map(|()| {
-                next += 1;
-                Ok(next - 1)
-            })?;
-        }
-        Ok(eight)
+        map_parts(*verdicts, |_, ()| {
+            next += 1;
+            Ok(next - 1)
+        })
     }
 
     fn sample(&mut self, _: Cell, part: &u32) -> Result<Option<bool>, Error> {
@@ -224,8 +238,8 @@ pub(crate) fn threads() -> usize {
     1
 }
 
-/// The eight children of a cell, by whichever form of splitting the solid likes; where that takes long, `control` can
-/// cancel it half-way.
+/// The eight children of a cell, by whichever form of splitting the solid likes; where that takes long,
+/// `control` can cancel it half-way.
 pub(crate) fn split_one<W: Worker>(
     worker: &mut W,
     cell: Cell,

@@ -4,9 +4,12 @@ mod boolean;
 mod build;
 pub(crate) mod gathered;
 mod lazy;
+mod rule;
 
 pub use boolean::{complement, difference, intersection, intersection_of, union, union_of, xor, xor_of};
 use build::build_on;
 pub use build::{build, compact, resolve};
 pub(crate) use gathered::split_one;
-pub use lazy::{LazyOctree, Refined, Zone};
+pub(crate) use lazy::Trail;
+pub use lazy::{LazyOctree, Refinement, Zone};
+pub use rule::Rule;

@@ -1,53 +1,56 @@
 //! Where a solid begins and ends along each axis.
 
-use super::{Measured, check_tolerance};
+use super::StopReason;
+use super::proven::Proven;
+use super::queue::Queue;
+use super::subject::Subject;
 use crate::control::{Control, Job, WHOLE};
 use crate::error::Error;
-use crate::lattice::{Cell, Cube, Frame, Interval, MAX_DEPTH};
-use crate::octree::Tag;
-use crate::op::split_one;
+use crate::lattice::{Cell, Cube, Frame, Interval, MAX_DEPTH, valid};
+use crate::octree::Proof;
+use crate::op::gathered::Part;
 use crate::solid::{Classifier, Solid, Verdict, Worker};
-use alloc::collections::BinaryHeap;
-use alloc::vec::Vec;
 use core::cmp::Reverse;
 
 /// What is proven of the bounding box of a solid's part inside of the universe.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Extent {
-    /// The lower and the upper corner, in model units: intervals that contain the truth. `None` if the solid is proven
-    /// empty.
+    /// The lower and the upper corner, in model units: intervals that contain the truth. `None` if the solid
+    /// is proven empty.
     pub corners: Option<[[Interval; 3]; 2]>,
-    /// Whether the solid is proven not to be empty. If neither is proven, the corners are those of what the solid may
-    /// be, and it may be empty.
+    /// Whether the solid is proven not to be empty. If neither is proven, the corners are those of what the
+    /// solid may be, and it may be empty.
     pub occupied: bool,
+    /// What of the solid is proven: what is not counts as undecided.
+    pub proof: Proof,
     /// Whether the solid may go on outside of the universe, or does.
     pub clipped: bool,
-    /// Why it ended; [`Tolerance`](Measured::Tolerance) means that no interval is wider than was asked for, or than
-    /// one of the frame's finest cells.
-    pub measured: Measured,
+    /// Why it ended; [`Tolerance`](StopReason::Tolerance) means that no interval is wider than was asked for,
+    /// or than one of the frame's finest cells.
+    pub stop_reason: StopReason,
     /// How many times a cell was split.
     pub splits: u64,
 }
 
-/// The bounding box of `solid` in the universe of `frame`: each of its sides until the interval is at most `tolerance`
-/// (model units) or one finest cell wide, `max_splits` of `control` are spent, or nothing is left to split. The result
-/// does not depend on the number of threads, since there is only one.
+/// The bounding box of `solid` in the universe of `frame`: each of its sides until the interval is at most
+/// `tolerance` (model units) or one finest cell wide, `max_splits` of `control` are spent, or nothing is left
+/// to split. The result does not depend on the number of threads, since there is only one.
 ///
-/// Only cells are split that may reach beyond what is proven solid, those first that reach farthest. With n the edge of
-/// the universe over the tolerance that takes some n splits for a curved side and, unless it lies on a plane of the
-/// lattice, n² for a flat one, because each cell in front of it must be proven empty. Time is linear in the splits but
-/// for a logarithm, and so is memory. Set `max_splits` if it may be that nothing is proven full, as of a sheet without
-/// thickness: then no tolerance is met, and all that is undecided is split. Each side gets its share of what those before
-/// it have left.
+/// Only cells are split that may reach beyond what is proven solid, those first that reach farthest. With n
+/// the edge of the universe over the tolerance that takes some n splits for a curved side and, unless it lies
+/// on a plane of the lattice, n² for a flat one, because each cell in front of it must be proven empty. Time
+/// is linear in the splits but for a logarithm, and so is memory. Set `max_splits` if it may be that nothing
+/// is proven full, as of a sheet without thickness: then no tolerance is met, and all that is undecided is
+/// split. Each side gets its share of what those before it have left.
 ///
 /// # Errors
 /// [`Error::Argument`] if `tolerance` is negative or not a number; what the solid refuses, as
 /// [`build`](crate::build); [`Error::Cancelled`]; [`Error::OutOfMemory`].
 ///
 /// ```
-/// use leafless::{Ball, Control, Frame, bounding_box};
+/// use leafless::{Control, Csg, Frame, bounding_box};
 /// let frame = Frame::new([-1.0; 3], 2.0, 20)?;
-/// let extent = bounding_box(&Ball::new([0.1, 0.0, 0.0], 0.75)?, &frame, 0.001, &Control::default())?;
+/// let extent = bounding_box(&Csg::ball([0.1, 0.0, 0.0], 0.75)?, &frame, 0.001, &Control::default())?;
 /// let [min, max] = extent.corners.unwrap();
 /// assert!(min[0].contains(-0.65) && max[0].contains(0.85) && max[0].width() <= 0.001);
 /// # Ok::<(), leafless::Error>(())
@@ -58,22 +61,28 @@ pub fn bounding_box<S: Solid>(
     tolerance: f64,
     control: &Control<'_>,
 ) -> Result<Extent, Error> {
-    check_tolerance(tolerance)?;
+    valid::tolerance("tolerance", tolerance)?;
     let job = Job::new(control);
     // The cast rounds down, and saturates.
     let goal = ((tolerance / frame.cell_size()) as u32).max(1);
-    let classifier = solid.on(frame, control)?;
-    let mut search = Search { frame, job: &job, goal, inner: [NOWHERE; 6], outer: [NOWHERE; 6] };
+    let classifier = Proven(solid.on(frame, control)?);
+    let mut search = Search {
+        subject: Subject::new(&classifier, control)?,
+        frame,
+        job: &job,
+        goal,
+        inner: [NOWHERE; 6],
+        outer: [NOWHERE; 6],
+        stuck: NOWHERE,
+        open: Queue::new(),
+    };
     let budget = control.max_splits.unwrap_or(u64::MAX);
-    let (mut left, mut unfinished) = (budget, false);
-    let mut worker = classifier.worker()?;
-    let mark = worker.mark();
+    let mut unfinished = false;
+    let mark = search.subject.worker.mark();
     for side in 0..6 {
-        let share = left / (6 - side as u64);
-        let mut own = share;
-        unfinished |= !search.side(side, &mut worker, &mut own)?;
-        worker.release(mark);
-        left -= share - own;
+        let share = (budget - search.subject.splits) / (6 - side as u64);
+        unfinished |= !search.side(side, share)?;
+        search.subject.worker.release(mark);
         job.advance(WHOLE / 6 + if side == 0 { WHOLE % 6 } else { 0 });
     }
     // Both are nowhere if the solid is empty, and the difference is large if nothing is proven FULL.
@@ -81,22 +90,28 @@ pub fn bounding_box<S: Solid>(
     Ok(Extent {
         corners: search.corners(),
         occupied: search.inner[0] != NOWHERE,
-        clipped: classifier.exterior() != Tag::Empty,
-        measured: match (wide, unfinished) {
-            (false, _) => Measured::Tolerance,
-            (true, true) => Measured::Budget,
-            (true, false) => Measured::Exhausted,
+        proof: classifier.proof(),
+        clipped: search.subject.is_clipped(),
+        stop_reason: match (wide, unfinished) {
+            (false, _) => StopReason::Tolerance,
+            (true, true) => StopReason::Budget,
+            (true, false) => StopReason::Exhausted,
         },
-        splits: budget - left,
+        splits: search.subject.splits,
     })
 }
 
-/// Farther than any plane. (Differences saturate: a host that contradicts itself may put a solid before its bounds.)
+/// Farther than any plane. (Differences saturate: a host that contradicts itself may put a solid before its
+/// bounds.)
 const NOWHERE: u32 = u32::MAX;
 
-/// Sides are numbered: 0 to 2 the lower ones along x, y and z, 3 to 5 the upper ones. What lies at a side is told by
-/// its distance from the universe's face there, in finest cells.
-struct Search<'a> {
+/// Where a cell begins, its height above the deepest level, the order of meeting.
+type Key = Reverse<(u32, u8, u64)>;
+
+/// Sides are numbered: 0 to 2 the lower ones along x, y and z, 3 to 5 the upper ones. What lies at a side is
+/// told by its distance from the universe's face there, in finest cells.
+struct Search<'a, C: Classifier> {
+    subject: Subject<'a, C>,
     frame: &'a Frame,
     job: &'a Job<'a>,
     /// How many finest cells an interval may be wide.
@@ -105,48 +120,42 @@ struct Search<'a> {
     inner: [u32; 6],
     /// Where the first cell begins that is not EMPTY.
     outer: [u32; 6],
+    /// Where the first cell begins, seen from the present side, that is undecided and cannot be split.
+    stuck: u32,
+    /// Those that can be split.
+    open: Queue<Key, (Cell, Part<C>)>,
 }
 
-impl Search<'_> {
+impl<C: Classifier> Search<'_, C> {
     /// Where a cell begins, seen from a side.
     fn start(&self, side: usize, cell: Cell) -> u32 {
         let (lower, upper) = Cube { frame: self.frame, cell }.planes();
         if side < 3 { lower[side] } else { self.frame.cells() - upper[side - 3] }
     }
 
-    /// Splits the cells that begin first, and of those the smallest. `false` if the budget has ended it.
-    fn side<W: Worker>(&mut self, side: usize, worker: &mut W, left: &mut u64) -> Result<bool, Error> {
+    /// Splits the cells that begin first, and of those the smallest. `false` if the share has ended it.
+    fn side(&mut self, side: usize, share: u64) -> Result<bool, Error> {
         self.job.check()?;
-        let mut open = Open { cells: Vec::new(), queue: BinaryHeap::new(), stuck: NOWHERE };
-        let root = worker.root()?;
-        self.note(side, Cell::ROOT, root, &mut open)?;
+        let last = self.subject.splits + share;
+        (self.stuck, self.open) = (NOWHERE, Queue::new());
+        let root = self.subject.worker.root()?;
+        self.note(side, Cell::ROOT, root)?;
         loop {
-            let next = open.queue.peek().copied();
-            let start = next.map_or(NOWHERE, |Reverse((start, ..))| start);
-            self.outer[side] = self.inner[side].min(open.stuck).min(start);
+            let start = self.open.peek().map_or(NOWHERE, |entry| entry.key.0.0);
+            self.outer[side] = self.inner[side].min(self.stuck).min(start);
             let is_known = self.inner[side].saturating_sub(self.outer[side]) <= self.goal;
-            let Some(Reverse((_, _, index))) = next.filter(|_| !is_known) else { return Ok(true) };
-            if *left == 0 {
+            let Some((cell, part)) = self.open.pop().filter(|_| !is_known) else { return Ok(true) };
+            if self.subject.splits == last {
                 return Ok(false);
             }
-            *left -= 1;
             self.job.check()?;
-            open.queue.pop();
-            let (cell, part) = open.cells[index].clone();
-            let children = split_one(worker, cell, &part, self.job.control())?;
-            for (octant, verdict) in (0..8).zip(children) {
-                self.note(side, cell.child(octant), verdict, &mut open)?;
+            for (octant, verdict) in (0..8).zip(self.subject.split(cell, &part)?) {
+                self.note(side, cell.child(octant), verdict)?;
             }
         }
     }
 
-    fn note<P>(
-        &mut self,
-        side: usize,
-        cell: Cell,
-        verdict: Verdict<P>,
-        open: &mut Open<P>,
-    ) -> Result<(), Error> {
+    fn note(&mut self, side: usize, cell: Cell, verdict: Verdict<Part<C>>) -> Result<(), Error> {
         let start = self.start(side, cell);
         match verdict {
             Verdict::Empty => {}
@@ -156,12 +165,10 @@ impl Search<'_> {
                 }
             }
             Verdict::Partial(part) if cell.level < self.frame.depth() => {
-                open.cells.try_reserve(1)?;
-                open.queue.try_reserve(1)?;
-                open.queue.push(Reverse((start, MAX_DEPTH - cell.level, open.cells.len())));
-                open.cells.push((cell, part));
+                let key = Reverse((start, MAX_DEPTH - cell.level, self.open.met()));
+                self.open.push(key, (cell, part))?;
             }
-            Verdict::Undecided | Verdict::Partial(_) => open.stuck = open.stuck.min(start),
+            Verdict::Undecided | Verdict::Partial(_) => self.stuck = self.stuck.min(start),
         }
         Ok(())
     }
@@ -179,23 +186,11 @@ impl Search<'_> {
             };
             let (near, far) = (axis, axis + 3);
             let plane = |i: u32| self.frame.plane(axis, i);
-            let cells = self.frame.cells();
-            corners[0][axis] =
-                Interval { lower: plane(self.outer[near]).lower, upper: plane(reach(near, far)).upper };
-            corners[1][axis] = Interval {
-                lower: plane(cells.saturating_sub(reach(far, near))).lower,
-                upper: plane(cells.saturating_sub(self.outer[far])).upper,
-            };
+            let between = |a: u32, b: u32| Interval { lower: plane(a).lower, upper: plane(b).upper };
+            let opposite = |i: u32| self.frame.cells().saturating_sub(i);
+            corners[0][axis] = between(self.outer[near], reach(near, far));
+            corners[1][axis] = between(opposite(reach(far, near)), opposite(self.outer[far]));
         }
         Some(corners)
     }
-}
-
-/// Undecided cells, seen from one side.
-struct Open<P> {
-    cells: Vec<(Cell, P)>,
-    /// Where each begins, its height above the deepest level, its index.
-    queue: BinaryHeap<Reverse<(u32, u8, usize)>>,
-    /// Where the first begins that cannot be split.
-    stuck: u32,
 }

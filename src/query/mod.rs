@@ -1,27 +1,44 @@
 //! Questions: such as a stored octree answers in place, and such as any solids answer.
 
 mod clearance;
+mod descent;
 mod extent;
 mod interference;
 mod measure;
 mod point;
 mod probe;
+mod proven;
+mod queue;
 mod region;
+mod subject;
 
 pub use clearance::{Clearance, clearance};
 pub use extent::{Extent, bounding_box};
 pub use interference::{Interference, Overlap, interference, interference_of};
-pub use measure::{Measured, Measures, measure};
+pub use measure::{MassProperties, StopReason, measure};
 pub use point::{Membership, PointCursor};
-pub use probe::{classify_box, contains};
-pub use region::Region;
+pub use probe::contains;
+pub use region::{Region, classify_box};
 
 use crate::error::Error;
+use crate::memory;
+use alloc::vec::Vec;
 
-/// Refuses what cannot be the width of an interval.
-fn check_tolerance(tolerance: f64) -> Result<(), Error> {
-    if tolerance >= 0.0 {
-        return Ok(());
+/// Does all tasks, on the threads at hand if `parallel`: the results in the order of the tasks.
+fn each<T: Send, R: Send>(
+    parallel: bool,
+    tasks: impl ExactSizeIterator<Item = T>,
+    work: impl Fn(T) -> Result<R, Error> + Send + Sync,
+) -> Result<Vec<R>, Error> {
+    #[cfg(feature = "parallel")]
+    if parallel && tasks.len() > 1 {
+        use rayon::prelude::*;
+        return memory::collected(tasks)?.into_par_iter().map(work).collect();
     }
-    Err(Error::Argument { name: "tolerance", problem: "must be a number, and not negative" })
+    let _ = parallel;
+    let mut done = memory::with_capacity(tasks.len())?;
+    for task in tasks {
+        done.push(work(task)?);
+    }
+    Ok(done)
 }

@@ -3,8 +3,9 @@
 use crate::dispatch::{Hot, with_popcount};
 use crate::error::Error;
 use crate::lattice::Cell;
+use crate::octree::links::{Links, levels_below};
 use crate::octree::view::{MAX_ELEMENT_LEVELS, OctreeRef};
-use crate::octree::{Octree, Planes, Tag};
+use crate::octree::{Octree, Tag};
 use crate::op::LazyOctree;
 use crate::solid::Solid;
 use yoke::Yokeable;
@@ -103,47 +104,6 @@ impl OctreeRef<'_> {
         let brick = self.bricks.get(index.wrapping_sub(self.planes.len()));
         brick.map_or(Tag::Partial, |planes| planes.tag(at.cell(0)))
     }
-}
-
-/// The arrays that a descent reads, cut to one length so that an index needs to be checked only once.
-#[derive(Clone, Copy)]
-struct Links<'a> {
-    planes: &'a [Planes],
-    rel: &'a [u16],
-    base: &'a [u64],
-}
-
-impl<'a> Links<'a> {
-    #[inline(always)]
-    fn new(tree: &OctreeRef<'a>) -> Links<'a> {
-        let count = tree.planes.len().min(tree.rel.len());
-        Links { planes: &tree.planes[..count], rel: &tree.rel[..count], base: tree.base }
-    }
-
-    /// What element `index` has in cell `c`, and the child there, which means something for a BRANCH whose
-    /// link is sound: whether it leads to `level`, the children's range of indices.
-    #[inline(always)]
-    fn step(&self, index: usize, c: u32, level: &[usize]) -> (Tag, usize, bool) {
-        let (Some(planes), Some(&rel), Some(&base)) =
-            (self.planes.get(index), self.rel.get(index), self.base.get(index >> 10))
-        else {
-            return (Tag::Partial, 0, false);
-        };
-        let branch = planes.branch();
-        let rank = (branch & ((1u64 << c) - 1)).count_ones() as usize;
-        // A wild sum is caught by the range.
-        let child = (base as usize).wrapping_add(rel as usize).wrapping_add(rank);
-        let sound = child.wrapping_sub(level[0]) < level[1] - level[0];
-        (planes.tag(c), child, sound & (branch >> c & 1 != 0))
-    }
-}
-
-/// The index ranges of the element levels below the root, from the top.
-#[inline(always)]
-fn levels_below<'t>(tree: &'t OctreeRef<'_>) -> impl Iterator<Item = (u32, &'t [usize])> {
-    let levels = tree.levels();
-    let shifts = (1..levels as u32).rev().map(|below| 2 * below);
-    shifts.zip(tree.starts[1..levels + 1].windows(2))
 }
 
 /// One point on its way down.
@@ -290,8 +250,8 @@ impl<'a> PointCursor<'a> {
 }
 
 impl<S: Solid> LazyOctree<S> {
-    /// Whether the solid contains `point` (model units), as far as cells have been split. A point on the boundary may be
-    /// answered either way. O(depth).
+    /// Whether the solid contains `point` (model units), as far as cells have been split. A point on the
+    /// boundary may be answered either way. O(depth).
     pub fn contains(&self, point: [f64; 3]) -> Membership {
         let level = self.frame().depth();
         self.frame().cell_of(point).map_or(Membership::Undecided, |at| self.tag(Cell { level, at }).into())

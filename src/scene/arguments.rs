@@ -6,8 +6,8 @@ use alloc::vec::Vec;
 
 use super::grammar::{Call, Kind, Tree, shown};
 use crate::error::Error;
+use crate::lattice::valid::{IMMODERATE, is_moderate};
 use crate::memory;
-use crate::solid::is_moderate;
 
 /// A call with its arguments in the order of its parameters.
 pub(super) struct Given<'a, const N: usize> {
@@ -20,8 +20,8 @@ pub(super) struct Given<'a, const N: usize> {
 }
 
 impl<'a, const N: usize> Given<'a, N> {
-    /// Arguments without a name are for the parameters in order. Those whose names begin with `$` and those `ignored` have
-    /// no effect on a shape; all others must be parameters.
+    /// Arguments without a name are for the parameters in order. Those whose names begin with `$` and those
+    /// `ignored` have no effect on a shape; all others must be parameters.
     pub fn new(
         tree: &'a Tree<'a>,
         call: &Call<'a>,
@@ -94,10 +94,8 @@ impl<'a> Item<'a> {
     pub fn number(&self) -> Result<f64, Error> {
         match self.kind() {
             // No negative zeros.
-            Kind::Number(number) if number == 0.0 || is_moderate(number) => Ok(number + 0.0),
-            Kind::Number(_) => {
-                Err(self.fault("a number must be zero or of a magnitude between 2^-256 and 2^256"))
-            }
+            Kind::Number(number) if is_moderate(number) => Ok(number + 0.0),
+            Kind::Number(_) => Err(self.fault(IMMODERATE)),
             _ => Err(self.fault("expected a number")),
         }
     }

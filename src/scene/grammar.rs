@@ -1,7 +1,7 @@
 //! The grammar of CSG dumps.
 //!
-//! Words, numbers, texts and the heads of calls are parsers of the crate `winnow`. What may be nested, calls in
-//! blocks and lists in lists, is kept in tables here, so that no nesting is too deep for the stack.
+//! Words, numbers, texts and the heads of calls are parsers of the crate `winnow`. What may be nested, calls
+//! in blocks and lists in lists, is kept in tables here, so that no nesting is too deep for the stack.
 
 use alloc::format;
 use alloc::string::String;

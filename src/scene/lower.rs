@@ -11,12 +11,13 @@ use crate::solid::{AnySolid, Csg, MeshSolid, Solid, Transform};
 /// Of a box, the lower and the upper one.
 type Corners = ([f64; 3], [f64; 3]);
 
-/// Matrices around each other that a mesh or an octree may be under; each has to be applied to all that it contains.
+/// Matrices around each other that a mesh or an octree may be under; each has to be applied to all that it
+/// contains.
 const MOST_NESTED: usize = 256;
 
 impl Scene {
-    /// A box (lower and upper corner) that holds the solid, if one is known; an empty scene has none. It may be larger
-    /// than the solid.
+    /// A box (lower and upper corner) that holds the solid, if one is known; an empty scene has none. It may
+    /// be larger than the solid.
     ///
     /// # Errors
     /// [`Error::OutOfMemory`].

@@ -20,9 +20,9 @@ use crate::solid::Csg;
 ///
 /// # The language
 ///
-/// That of the CSG dumps which OpenSCAD exports (`openscad -o part.csg part.scad`), with some calls of our own. Curved
-/// shapes are exact: `$fn`, `$fa` and `$fs` are ignored, a cylinder is round and not a prism. Numbers mean just the
-/// doubles that they are read as, and nothing is rounded on the way to the solid.
+/// That of the CSG dumps which OpenSCAD exports (`openscad -o part.csg part.scad`), with some calls of our
+/// own. Curved shapes are exact: `$fn`, `$fa` and `$fs` are ignored, a cylinder is round and not a prism.
+/// Numbers mean just the doubles that they are read as, and nothing is rounded on the way to the solid.
 ///
 /// | calls | |
 /// |---|---|
@@ -41,21 +41,23 @@ use crate::solid::Csg;
 /// | `mesh(file)` `import(file)` | a mesh file of any known format, as [`open_mesh`](crate::exchange::open_mesh) reads it |
 /// | `octree(file)` | a file of this library |
 ///
-/// All calls on the top level are united. What is marked by `%` or `*` is left out, as OpenSCAD does; `#` means nothing.
-/// Empty groups are nothing, and so are boxes, balls, cylinders and extrusions without extent or with a negative one,
-/// and what is put under a singular matrix. A difference of nothing, and an intersection with nothing, are empty.
+/// All calls on the top level are united. What is marked by `%` or `*` is left out, as OpenSCAD does; `#`
+/// means nothing. Empty groups are nothing, and so are boxes, balls, cylinders and extrusions without extent
+/// or with a negative one, and what is put under a singular matrix. A difference of nothing, and an
+/// intersection with nothing, are empty.
 ///
-/// Not supported, and refused by name: `hull minkowski text projection offset resize surface roof fill`, imports of
-/// other files than meshes, `linear_extrude` with `twist`, or with different scales for figures with circles,
-/// `rotate_extrude` of ellipses, of figures on both sides of the axis (as far as their bounds tell), polygons of which
-/// an outline touches or crosses itself, matrices that are not affine, the modifier `!`, and every call that dumps do
-/// not have. Several outlines of a polygon are combined by the even-odd rule. Every error says line and column.
+/// Not supported, and refused by name: `hull minkowski text projection offset resize surface roof fill`,
+/// imports of other files than meshes, `linear_extrude` with `twist`, or with different scales for figures
+/// with circles, `rotate_extrude` of ellipses, of figures on both sides of the axis (as far as their bounds
+/// tell), polygons of which an outline touches or crosses itself, matrices that are not affine, the modifier
+/// `!`, and every call that dumps do not have. Several outlines of a polygon are combined by the even-odd
+/// rule. Every error says line and column.
 ///
 /// # Files from strangers
 ///
-/// A text may hold anything: nesting costs memory, not stack, and all memory is linear in the text, but for the files
-/// that it names. These are looked for in the folder given and are whatever file the text says, by absolute paths
-/// or through `..` too; without a folder there are none.
+/// A text may hold anything: nesting costs memory, not stack, and all memory is linear in the text, but for
+/// the files that it names. These are looked for in the folder given and are whatever file the text says, by
+/// absolute paths or through `..` too; without a folder there are none.
 #[derive(Clone)]
 pub struct Scene {
     /// Each after those that it consists of; the last one is the whole. Empty, if there is nothing.
@@ -75,13 +77,14 @@ enum Node {
     Placed(usize, Affine),
 }
 
-/// Reads a scene from its text, in UTF-8. Files that it names are looked for in `folder`; without one they are refused.
+/// Reads a scene from its text, in UTF-8. Files that it names are looked for in `folder`; without one they
+/// are refused.
 ///
 /// O(text), but for polygons, which are O(n²) at worst, and the files.
 ///
 /// # Errors
-/// [`SceneError`](crate::SceneError) with line and column for whatever is wrong with the text or a file that it names;
-/// [`Error::OutOfMemory`].
+/// [`SceneError`](crate::SceneError) with line and column for whatever is wrong with the text or a file that
+/// it names; [`Error::OutOfMemory`].
 pub fn read_scene(text: impl AsRef<[u8]>, folder: Option<&Path>) -> Result<Scene, Error> {
     let bytes = text.as_ref();
     let text = core::str::from_utf8(bytes).map_err(|error| {

@@ -83,9 +83,9 @@ impl<'a, F: Fn([f64; 3], [f64; 3]) -> Result<Verdict<()>, Error> + Send + Sync> 
         self
     }
 
-    /// The same solid with a function that classifies several boxes (lower and upper corner each) at once, for hosts
-    /// that do that faster than one by one; its answers must be those of the single form. It gets as many verdicts to
-    /// set as there are boxes, all of them undecided.
+    /// The same solid with a function that classifies several boxes (lower and upper corner each) at once,
+    /// for hosts that do that faster than one by one; its answers must be those of the single form. It gets
+    /// as many verdicts to set as there are boxes, all of them undecided.
     #[must_use]
     pub fn with_classify_many(
         self,
@@ -109,8 +109,8 @@ impl<'a, F: Fn([f64; 3], [f64; 3]) -> Result<Verdict<()>, Error> + Send + Sync> 
         .with(|functions| functions.contains_one = true)
     }
 
-    /// As [`with_contains`](Self::with_contains), for several points at once. It gets as many answers to set as there
-    /// are points.
+    /// As [`with_contains`](Self::with_contains), for several points at once. It gets as many answers to set
+    /// as there are points.
     #[must_use]
     pub fn with_contains_many(
         self,
@@ -122,10 +122,10 @@ impl<'a, F: Fn([f64; 3], [f64; 3]) -> Result<Verdict<()>, Error> + Send + Sync> 
         })
     }
 
-    /// The same solid with a function that bounds distances: of each point (model units) it sets a number whose magnitude
-    /// is at most the point's distance from the surface, negative where the point lies inside and positive where it lies
-    /// outside; 0, or what is no number, says nothing. It is asked first: a cell whose middle is further from the surface
-    /// than its corners is decided, and the box is not classified.
+    /// The same solid with a function that bounds distances: of each point (model units) it sets a number
+    /// whose magnitude is at most the point's distance from the surface, negative where the point lies inside
+    /// and positive where it lies outside; 0, or what is no number, says nothing. It is asked first: a cell
+    /// whose middle is further from the surface than its corners is decided, and the box is not classified.
     #[must_use]
     pub fn with_distance(
         self,
@@ -143,8 +143,8 @@ impl<'a, F: Fn([f64; 3], [f64; 3]) -> Result<Verdict<()>, Error> + Send + Sync> 
         })
     }
 
-    /// The same solid with a promise that it lies in a box. On frames whose universe holds the box the shape then ends
-    /// inside, whatever else was promised of the space around.
+    /// The same solid with a promise that it lies in a box. On frames whose universe holds the box the shape
+    /// then ends inside, whatever else was promised of the space around.
     #[must_use]
     pub fn with_bounds(self, bounds: Bounds) -> Callback<'a, F> {
         self.with(|functions| functions.bounds = Some(bounds))
@@ -207,8 +207,8 @@ impl<'a, F: Fn([f64; 3], [f64; 3]) -> Result<Verdict<()>, Error> + Send + Sync> 
 }
 
 impl<F: Fn([f64; 3], [f64; 3]) -> Result<Verdict<()>, Error> + Send + Sync> OnFrame<'_, F> {
-    /// What the host says of cells: of all that its distances leave open. With an error comes how many of the cells are
-    /// known from the first on.
+    /// What the host says of cells: of all that its distances leave open. With an error comes how many of the
+    /// cells are known from the first on.
     fn classify(
         &self,
         cells: &[Cell],
@@ -262,7 +262,8 @@ impl<F: Fn([f64; 3], [f64; 3]) -> Result<Verdict<()>, Error> + Send + Sync> OnFr
         distance(&points, &mut found)?;
         for (i, (&cell, found)) in cells.iter().zip(found).enumerate() {
             let (min, max) = Cube { frame: &self.frame, cell }.bounds();
-            // The corner that is farthest from the middle, each step rounded up by far less than a part in 2^48.
+            // The corner that is farthest from the middle, each step rounded up by far less than a part in
+            // 2^48.
             let reach = |axis: usize| (max[axis] - points[i][axis]).max(points[i][axis] - min[axis]);
             let square = (0..3).map(|axis| reach(axis) * reach(axis)).sum::<f64>();
             let radius = sqrt(square) * (1.0 + 16.0 * f64::EPSILON) + f64::MIN_POSITIVE;

@@ -1,6 +1,7 @@
 //! What may be known of a PARTIAL cell beyond its verdict: where the boundary lies in it, to second order.
 
-/// What lies on one side of a plane belongs to the solid, and what lies on the other side of a parallel one does not.
+/// What lies on one side of a plane belongs to the solid, and what lies on the other side of a parallel one
+/// does not.
 ///
 /// x is measured from the cell's centre, in half edges of the cell, so that the cell is [-1, 1]³.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -33,16 +34,17 @@ pub enum SlabJoin {
 /// One to three slabs that enclose the boundary of a solid in an open cell.
 ///
 /// # Law
-/// With [`SlabJoin::All`] the solid contains { x in the open cell : n · x < inner for all slabs } and does not meet { x in
-/// the open cell : n · x > outer for some slab }. With [`SlabJoin::Any`], *some* and *all* change places.
+/// With [`SlabJoin::All`] the solid contains { x in the open cell : n · x < inner for all slabs } and does
+/// not meet { x in the open cell : n · x > outer for some slab }. With [`SlabJoin::Any`], *some* and *all*
+/// change places.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Enclosure {
     /// The slabs; those of normal zero do not count.
     pub slabs: [Slab; 3],
     /// How they are joined.
     pub join: SlabJoin,
-    /// Every normal of the boundary in the cell lies within this angle (radians) of that of the first slab; ∞ if nothing is
-    /// known.
+    /// Every normal of the boundary in the cell lies within this angle (radians) of that of the first slab; ∞
+    /// if nothing is known.
     pub cone: f64,
 }
 

@@ -1,19 +1,17 @@
 //! Solids of any kind behind one type.
 //!
 //! [`Solid`] has associated types so that loops over it compile to tight code. Programs that hold shapes of
-//! different kinds in one place (the C interface first of all) use [`AnySolid`], which is a `Solid` itself. Each of the
-//! three traits has an object-safe face here, whose methods have no defaults: none can be forgotten.
+//! different kinds in one place (the C interface first of all) use [`AnySolid`], which is a `Solid` itself.
+//! Each of the three traits has an object-safe face here, whose methods have no defaults: none can be
+//! forgotten.
 
 use super::forward::{forward_solid, forward_worker};
-use super::{
-    Classifier, Counted, Crossing, Csg, Enclosure, Fingerprint, Motion, Segment, Solid, Subtree, Transform,
-    Verdict, Worker,
-};
+use super::{Classifier, Crossing, Enclosure, Fingerprint, Motion, Segment, Solid, Subtree, Verdict, Worker};
 use crate::control::Control;
 use crate::error::Error;
 use crate::lattice::{Affine, Bounds, Cell, Frame};
 use crate::memory;
-use crate::octree::{Block, Planes, Tag};
+use crate::octree::{Block, Planes, Proof, Tag};
 use alloc::boxed::Box;
 use alloc::sync::Arc;
 use alloc::vec::Vec;
@@ -52,10 +50,9 @@ impl<S: Solid<Classifier: Classifier<Worker: Worker<Part: 'static> + 'static> + 
 }
 
 impl AnySolid {
-    /// Wraps a solid.
-    pub fn new<S: Erasable>(solid: S) -> AnySolid {
-        let nesting = nesting_in(&solid).saturating_add(1);
-        AnySolid { solid: Arc::new(solid), nesting }
+    /// Wraps a solid in which so many others lie within each other.
+    pub(super) fn around<S: Erasable>(solid: S, nesting: u32) -> AnySolid {
+        AnySolid { solid: Arc::new(solid), nesting: nesting.saturating_add(1) }
     }
 
     /// The solid behind the type, if it is of this one.
@@ -63,10 +60,10 @@ impl AnySolid {
         self.solid.as_any().downcast_ref()
     }
 
-    /// How many `AnySolid`s lie within each other here, this one included. Questions go from one to the next, so
-    /// that there is an end to what the stack holds: one with more than 64 within each other cannot be put on a frame.
-    /// (It counts those within expressions, and within transforms, counters and the like of `AnySolid` or `Csg`; any other
-    /// solid counts as one that consists of no others.)
+    /// How many `AnySolid`s lie within each other here, this one included. Questions go from one to the next,
+    /// so that there is an end to what the stack holds: one with more than 64 within each other cannot be put
+    /// on a frame. (It counts those within expressions, and within transforms, counters and the like of
+    /// `AnySolid` or `Csg`; any other solid counts as one that consists of no others.)
     pub fn nesting(&self) -> u32 {
         self.nesting
     }
@@ -85,28 +82,6 @@ impl AnySolid {
     pub(super) fn address(&self) -> usize {
         Arc::as_ptr(&self.solid).cast::<()>() as usize
     }
-}
-
-/// How many `AnySolid`s lie within each other in a solid of a kind that holds some.
-fn nesting_in(solid: &dyn Any) -> u32 {
-    fn of<S: Any>(solid: &dyn Any, nesting: impl Fn(&S) -> u32) -> Option<u32> {
-        solid.downcast_ref().map(nesting)
-    }
-    None.or_else(|| of(solid, Csg::nesting))
-        .or_else(|| of(solid, AnySolid::nesting))
-        .or_else(|| of(solid, |moved: &Transform<AnySolid>| moved.solid().nesting()))
-        .or_else(|| of(solid, |moved: &Transform<Csg>| moved.solid().nesting()))
-        .or_else(|| of(solid, |counted: &Counted<AnySolid>| counted.solid().nesting()))
-        .or_else(|| of(solid, |counted: &Counted<Csg>| counted.solid().nesting()))
-        .or_else(|| nesting_in_prepared(solid))
-        .unwrap_or(0)
-}
-
-fn nesting_in_prepared(solid: &dyn Any) -> Option<u32> {
-    #[cfg(feature = "std")]
-    return solid.downcast_ref().map(|prepared: &super::Prepared| prepared.solid().nesting());
-    #[cfg(not(feature = "std"))]
-    None::<u32>.filter(|_| solid.is::<()>())
 }
 
 // ---- the object-safe faces ------------------------------------------------------------------------------
@@ -197,6 +172,7 @@ trait ErasedClassifier: Send + Sync {
     fn frame(&self) -> &Frame;
     fn worker(&self) -> Result<AnyWorker, Error>;
     fn exterior(&self) -> Tag;
+    fn proof(&self) -> Proof;
 }
 
 impl<C: Classifier<Worker: Worker<Part: 'static> + 'static>> ErasedClassifier for C {
@@ -213,6 +189,10 @@ impl<C: Classifier<Worker: Worker<Part: 'static> + 'static>> ErasedClassifier fo
     fn exterior(&self) -> Tag {
         Classifier::exterior(self)
     }
+
+    fn proof(&self) -> Proof {
+        Classifier::proof(self)
+    }
 }
 
 impl Classifier for AnyClassifier {
@@ -228,6 +208,10 @@ impl Classifier for AnyClassifier {
 
     fn exterior(&self) -> Tag {
         self.0.exterior()
+    }
+
+    fn proof(&self) -> Proof {
+        self.0.proof()
     }
 }
 

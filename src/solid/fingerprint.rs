@@ -3,19 +3,20 @@
 use core::fmt;
 use xxhash_rust::xxh3::Xxh3Default;
 
-/// 128 bits that two solids have in common only if they are the same, made of everything that their verdicts depend
-/// on: a stored octree remembers its source by them, so that it is not refined by another one.
+/// 128 bits that two solids have in common only if they are the same, made of everything that their verdicts
+/// depend on: a stored octree remembers its source by them, so that it is not refined by another one.
 ///
-/// It is an XXH3 hash (128 bits, no seed; the algorithm is frozen), the same on every platform. It guards against
-/// mistakes, not against malice: whoever can write a file can write any fingerprint into it, so that a cryptographic
-/// hash, several times slower on a large mesh, would prove no more.
+/// It is an XXH3 hash (128 bits, no seed; the algorithm is frozen), the same on every platform. It guards
+/// against mistakes, not against malice: whoever can write a file can write any fingerprint into it, so that
+/// a cryptographic hash, several times slower on a large mesh, would prove no more.
 ///
 /// It is written as `xxh3:` and 32 hexadecimal digits.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Fingerprint(u128);
 
 impl Fingerprint {
-    /// The fingerprint of a solid that a host program knows by these bytes: a name, a version, a hash of its own.
+    /// The fingerprint of a solid that a host program knows by these bytes: a name, a version, a hash of its
+    /// own.
     pub fn of_bytes(bytes: &[u8]) -> Fingerprint {
         Fingerprinter::new("host").bytes(bytes).finish()
     }
@@ -29,8 +30,9 @@ impl fmt::Display for Fingerprint {
 
 /// Makes the fingerprint of a solid out of what it consists of, in a fixed order.
 ///
-/// Each piece is preceded by its length, so that no two sequences of pieces of one kind of solid are the same bytes.
-/// A solid that consists of others takes in their fingerprints, from the leaves up; no recursion is needed.
+/// Each piece is preceded by its length, so that no two sequences of pieces of one kind of solid are the same
+/// bytes. A solid that consists of others takes in their fingerprints, from the leaves up; no recursion is
+/// needed.
 ///
 /// ```
 /// use leafless::Fingerprinter;
@@ -45,8 +47,8 @@ pub struct Fingerprinter(Xxh3Default);
 const BATCH: usize = 64;
 
 impl Fingerprinter {
-    /// Begins with the kind of the solid, a name that no other kind has. It must change when verdicts change for other
-    /// reasons than those that follow.
+    /// Begins with the kind of the solid, a name that no other kind has. It must change when verdicts change
+    /// for other reasons than those that follow.
     pub fn new(kind: &str) -> Fingerprinter {
         Fingerprinter(Xxh3Default::new()).bytes(kind.as_bytes())
     }

@@ -1,7 +1,7 @@
 //! Handing on: the methods of the traits, written once for all who pass them to somebody else.
 //!
-//! `forward_solid!` and `forward_worker!` write methods whose bodies are one call. A method that is missing here is
-//! noticed by a test that reads the traits.
+//! `forward_solid!` and `forward_worker!` write methods whose bodies are one call. A method that is missing
+//! here is noticed by a test that reads the traits.
 
 /// All methods of [`Solid`](super::Solid).
 macro_rules! forward_solid {

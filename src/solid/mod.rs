@@ -2,11 +2,11 @@
 //!
 //! The library asks one thing of a shape: *split this PARTIAL cell into its eight children, classified*.
 //! Whatever has a shape is a [`Solid`]: primitives, triangle meshes, stored octrees, a host program's
-//! callback. Whatever wants a shape puts it on a frame, takes a [`Worker`] and asks that. Each producer is one file, and
-//! none knows the others.
+//! callback. Whatever wants a shape puts it on a frame, takes a [`Worker`] and asks that. Each producer is
+//! one file, and none knows the others.
 
+mod any;
 mod callback;
-mod counted;
 mod csg;
 mod enclosure;
 mod erased;
@@ -16,13 +16,12 @@ mod mesh;
 mod motion;
 #[cfg(feature = "std")]
 mod prepared;
-mod primitive;
+mod split_counter;
 mod stored;
 mod subtree;
 mod transform;
 
 pub use callback::Callback;
-pub use counted::Counted;
 pub use csg::{Csg, HalfSpace, Touch};
 #[cfg(feature = "scene")]
 pub(crate) use csg::{Figure, wedge};
@@ -35,17 +34,16 @@ pub use mesh::MeshSolid;
 pub use motion::Motion;
 #[cfg(feature = "std")]
 pub use prepared::Prepared;
-pub use primitive::{AxisBox, Ball};
-pub use stored::Stored;
+pub use split_counter::SplitCounter;
 pub use subtree::Subtree;
 pub use transform::Transform;
 pub(crate) use transform::TransformClassifier;
 
 use crate::control::Control;
 use crate::error::Error;
-use crate::lattice::{Affine, Bounds, Cell, Frame, LARGEST, SMALLEST};
+use crate::lattice::{Affine, Bounds, Cell, Frame};
 use crate::memory;
-use crate::octree::{Block, Planes, Tag};
+use crate::octree::{Block, Planes, Proof, Tag};
 use alloc::vec::Vec;
 
 /// What a solid says of one cell.
@@ -97,9 +95,9 @@ impl<P> Verdict<P> {
 
 /// A shape in model space.
 ///
-/// A shape is asked in three steps. [`on`](Solid::on) puts it on the lattice of a frame, once: the [`Classifier`] is a
-/// handle that costs nothing to copy and that threads, queries and poses share. Each thread takes a [`Worker`] from it,
-/// which has the scratch memory and answers.
+/// A shape is asked in three steps. [`on`](Solid::on) puts it on the lattice of a frame, once: the
+/// [`Classifier`] is a handle that costs nothing to copy and that threads, queries and poses share. Each
+/// thread takes a [`Worker`] from it, which has the scratch memory and answers.
 ///
 /// ```
 /// use leafless::{Bounds, Cell, Classifier, Control, Cube, Error, Frame, Rule, Solid, Tag, Verdict, Worker, build};
@@ -189,8 +187,8 @@ pub trait Solid: Send + Sync {
     /// The shape on the lattice of a frame. All that costs time in proportion to the model is done here.
     ///
     /// # Errors
-    /// If the shape cannot be had in this frame ([`Error::FrameMismatch`] for stored octrees), memory runs out, or
-    /// `control` asks for it: the work can be cancelled, and may use its threads.
+    /// If the shape cannot be had in this frame ([`Error::FrameMismatch`] for stored octrees), memory runs
+    /// out, or `control` asks for it: the work can be cancelled, and may use its threads.
     fn on(&self, frame: &Frame, control: &Control<'_>) -> Result<Self::Classifier, Error>;
 
     /// A box in model space that the shape surely lies in, if one is known.
@@ -203,14 +201,14 @@ pub trait Solid: Send + Sync {
         None
     }
 
-    /// What tells this shape from others: two with the same fingerprint give the same verdicts. `None`, the default,
-    /// if nothing does; then an octree that was refined on demand cannot be taken up again with it.
+    /// What tells this shape from others: two with the same fingerprint give the same verdicts. `None`, the
+    /// default, if nothing does; then an octree that was refined on demand cannot be taken up again with it.
     fn fingerprint(&self) -> Option<Fingerprint> {
         None
     }
 
-    /// The shape under an affine map, if its kind can be moved otherwise than by [`Transform`]; `None`, the default, if it
-    /// cannot. [`AnySolid::placed`] moves all kinds.
+    /// The shape under an affine map, if its kind can be moved otherwise than by [`Transform`]; `None`, the
+    /// default, if it cannot. [`AnySolid::placed`] moves all kinds.
     ///
     /// # Errors
     /// If memory runs out, or the kind's own.
@@ -247,25 +245,31 @@ pub trait Classifier: Clone + Send + Sync {
     fn exterior(&self) -> Tag {
         Tag::Partial
     }
+
+    /// What the verdicts prove, if not all that they say: those of a stored octree prove what its cells do.
+    fn proof(&self) -> Proof {
+        Proof::CERTIFIED
+    }
 }
 
 /// A classifier with scratch memory: what answers.
 ///
-/// A PARTIAL cell has a *part*, which is what the worker remembers about it. It may refer to the worker's scratch memory,
-/// a stack: parts that were made after a [mark](Worker::mark) are gone once the mark is [released](Worker::release). A
-/// part means something to the worker that made it, and to no other. (To another worker it may mean anything, and asking
-/// may panic.)
+/// A PARTIAL cell has a *part*, which is what the worker remembers about it. It may refer to the worker's
+/// scratch memory, a stack: parts that were made after a [mark](Worker::mark) are gone once the mark is
+/// [released](Worker::release). A part means something to the worker that made it, and to no other. (To
+/// another worker it may mean anything, and asking may panic.)
 ///
 /// # Laws
-/// 1. A FULL or EMPTY verdict is proven. Contact is not overlap: FULL means that the whole (closed) cell lies
-///    in the solid, EMPTY that the interiors are disjoint.
+/// 1. A FULL or EMPTY verdict is proven, unless [`Classifier::proof`] says otherwise. Contact is not overlap:
+///    FULL means that the whole (closed) cell lies in the solid, EMPTY that the interiors are disjoint.
 /// 2. A verdict depends on the cell and the shape alone: not on the path to the cell, the thread, or what
 ///    was asked before.
 /// 3. The part of any cell can be had again by replaying the splits from the root.
-/// 4. An enclosure and a crossing are proven as verdicts are. A crossing has the same bits whichever cell is asked.
+/// 4. An enclosure and a crossing are proven as verdicts are. A crossing has the same bits whichever cell is
+///    asked.
 ///
-/// All of it concerns the shape inside of the universe. The errors of all questions are those of memory that runs out,
-/// and of a host program's function that stops the work.
+/// All of it concerns the shape inside of the universe. The errors of all questions are those of memory that
+/// runs out, and of a host program's function that stops the work.
 pub trait Worker: Send + Sync {
     /// What is remembered about one PARTIAL cell.
     type Part: Clone + Send + Sync;
@@ -306,8 +310,8 @@ pub trait Worker: Send + Sync {
         Ok(part.clone())
     }
 
-    /// The part of a PARTIAL cell without the way to it, if it depends on the cell alone; then nobody needs to
-    /// replay splits.
+    /// The part of a PARTIAL cell without the way to it, if it depends on the cell alone; then nobody needs
+    /// to replay splits.
     fn recall(&mut self, cell: Cell) -> Option<Self::Part> {
         let _ = cell;
         None
@@ -329,14 +333,14 @@ pub trait Worker: Send + Sync {
         split_twice(self, cell, part, parts)
     }
 
-    /// Whether answers are dear, or come more cheaply many at a time, as those of a host program do. Whoever can then
-    /// gathers cells for [`split_many`](Self::split_many), and uses threads for few of them.
+    /// Whether answers are dear, or come more cheaply many at a time, as those of a host program do. Whoever
+    /// can then gathers cells for [`split_many`](Self::split_many), and uses threads for few of them.
     fn likes_many(&self) -> bool {
         false
     }
 
-    /// Splits many PARTIAL cells: appends what [`split`](Self::split) says of each, in their order. A cancel by
-    /// `control` ends it early. What was appended before an error is right.
+    /// Splits many PARTIAL cells: appends what [`split`](Self::split) says of each, in their order. A cancel
+    /// by `control` ends it early. What was appended before an error is right.
     ///
     /// # Errors
     /// As all questions, and [`Error::Cancelled`].
@@ -354,9 +358,9 @@ pub trait Worker: Send + Sync {
         Ok(())
     }
 
-    /// Classifies a PARTIAL cell of 64³ finest cells at once, where that is faster than descent: fills what `block`
-    /// asks for with just what descending by [`split`](Self::split) would find, and returns `true`. The default
-    /// returns `false`: descend.
+    /// Classifies a PARTIAL cell of 64³ finest cells at once, where that is faster than descent: fills what
+    /// `block` asks for with just what descending by [`split`](Self::split) would find, and returns `true`.
+    /// The default returns `false`: descend.
     ///
     /// # Errors
     /// As all questions.
@@ -365,8 +369,8 @@ pub trait Worker: Send + Sync {
         Ok(false)
     }
 
-    /// The stored cells that a PARTIAL cell consists of, if they are stored in the form of octrees on this frame:
-    /// whoever writes an octree copies them.
+    /// The stored cells that a PARTIAL cell consists of, if they are stored in the form of octrees on this
+    /// frame: whoever writes an octree copies them.
     fn subtree(&self, part: &Self::Part) -> Option<Subtree<'_>> {
         let _ = part;
         None
@@ -375,8 +379,8 @@ pub trait Worker: Send + Sync {
     // ---- points ---------------------------------------------------------------------------------------------
 
     /// Whether the centre of a PARTIAL cell of the frame's depth lies in the solid, or `None` if the solid
-    /// cannot tell. A centre on the boundary is decided as if all centres were shifted by (ε, ε², ε³), to first
-    /// order: on a curved surface too, the first axis that leads across it decides.
+    /// cannot tell. A centre on the boundary is decided as if all centres were shifted by (ε, ε², ε³), to
+    /// first order: on a curved surface too, the first axis that leads across it decides.
     ///
     /// # Errors
     /// As all questions.
@@ -385,8 +389,9 @@ pub trait Worker: Send + Sync {
         Ok(None)
     }
 
-    /// Samples many at once, the grain of storage: of those 64 grandchildren of a cell whose parts are given, with
-    /// their index, bit c says whether the centre of cell c lies in the solid. The grandchildren have the frame's depth.
+    /// Samples many at once, the grain of storage: of those 64 grandchildren of a cell whose parts are given,
+    /// with their index, bit c says whether the centre of cell c lies in the solid. The grandchildren have
+    /// the frame's depth.
     ///
     /// # Errors
     /// As all questions.
@@ -402,8 +407,8 @@ pub trait Worker: Send + Sync {
         Ok(Some(inside))
     }
 
-    /// Samples many cells of the frame's depth: appends what [`sample`](Self::sample) says of each, in their order. A
-    /// cancel by `control` ends it early.
+    /// Samples many cells of the frame's depth: appends what [`sample`](Self::sample) says of each, in their
+    /// order. A cancel by `control` ends it early.
     ///
     /// # Errors
     /// As all questions, and [`Error::Cancelled`].
@@ -421,8 +426,9 @@ pub trait Worker: Send + Sync {
         Ok(())
     }
 
-    /// Whether points of the universe (model units) lie in the solid: sets `answers[i]` for `points[i]` where that is known
-    /// without a descent; on the boundary either answer is right. The default knows nothing, and whoever asks descends.
+    /// Whether points of the universe (model units) lie in the solid: sets `answers[i]` for `points[i]` where
+    /// that is known without a descent; on the boundary either answer is right. The default knows nothing,
+    /// and whoever asks descends.
     ///
     /// # Errors
     /// As all questions.
@@ -442,8 +448,8 @@ pub trait Worker: Send + Sync {
         Ok(None)
     }
 
-    /// Where a segment with both ends in the closed cell first crosses the boundary, by the law that [`Crossing`]
-    /// states; `None` if it does not, or the solid cannot tell.
+    /// Where a segment with both ends in the closed cell first crosses the boundary, by the law that
+    /// [`Crossing`] states; `None` if it does not, or the solid cannot tell.
     ///
     /// # Errors
     /// As all questions.
@@ -493,9 +499,4 @@ pub(crate) fn split_twice<W: Worker + ?Sized>(
         planes = planes.union(octant);
     }
     Ok(planes)
-}
-
-/// Whether a coefficient is of a magnitude that exact arithmetic can take: 2^-256 to 2^256.
-pub(crate) fn is_moderate(value: f64) -> bool {
-    (SMALLEST..=LARGEST).contains(&value.abs())
 }

@@ -8,11 +8,11 @@ use crate::lattice::{Affine, Frame};
 use alloc::sync::Arc;
 use std::sync::{Mutex, PoisonError};
 
-/// A solid that keeps one frame prepared, the last that it was put on: asked on it again, it is there at once. A clone
-/// shares what is kept.
+/// A solid that keeps one frame prepared, the last that it was put on: asked on it again, it is there at
+/// once. A clone shares what is kept.
 ///
-/// Threads may put it on frames at the same time. None waits for another: two that come first with the same frame both
-/// prepare it.
+/// Threads may put it on frames at the same time. None waits for another: two that come first with the same
+/// frame both prepare it.
 #[derive(Clone)]
 pub struct Prepared {
     solid: AnySolid,

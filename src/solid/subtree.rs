@@ -5,7 +5,7 @@ use crate::octree::OctreeRef;
 /// Stored cells that whoever writes an octree can copy as they are, or complemented.
 #[derive(Debug, Clone, Copy)]
 pub struct Subtree<'a> {
-    pub(crate) tree: OctreeRef<'a>,
+    pub(crate) tree: &'a OctreeRef<'a>,
     /// Element level and index of the element that describes the cell.
     pub(crate) level: usize,
     pub(crate) index: usize,

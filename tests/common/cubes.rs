@@ -3,10 +3,15 @@
 // Each test program uses its own part of this.
 #![allow(dead_code)]
 
-use leafless::{Block, Cell, Classifier, Cube, Error, Frame, Tag, Verdict, Worker};
+use super::exact::Definition;
+use leafless::{Block, Bounds, Cell, Classifier, Csg, Cube, Error, Frame, Tag, Verdict, Worker};
 
-/// A shape whose verdict of a cell needs nothing but the cell. Types that have it become solids by [`solid_of_cubes`].
+/// A shape whose verdict of a cell needs nothing but the cell. Types that have it become solids by
+/// [`solid_of_cubes`].
 pub trait Cubes: Clone + Send + Sync {
+    /// Whether parts are had without the way to them.
+    const RECALLS: bool = false;
+
     fn verdict(&self, cube: &Cube<'_>) -> Result<Verdict<()>, Error>;
 
     fn sample(&self, _: &Cube<'_>) -> Result<Option<bool>, Error> {
@@ -19,6 +24,10 @@ pub trait Cubes: Clone + Send + Sync {
 
     fn exterior(&self, _: &Frame) -> Tag {
         Tag::Partial
+    }
+
+    fn bounds(&self) -> Option<Bounds> {
+        None
     }
 }
 
@@ -70,6 +79,10 @@ impl<T: Cubes> Worker for OnFrame<T> {
         Ok(verdicts)
     }
 
+    fn recall(&mut self, _: Cell) -> Option<()> {
+        T::RECALLS.then_some(())
+    }
+
     fn sample(&mut self, cell: Cell, _: &()) -> Result<Option<bool>, Error> {
         self.shape.sample(&Cube { frame: &self.frame, cell })
     }
@@ -93,6 +106,86 @@ macro_rules! solid_of_cubes {
             ) -> Result<Self::Classifier, leafless::Error> {
                 Ok($crate::common::cubes::OnFrame::new(self.clone(), frame))
             }
+
+            fn bounds(&self) -> Option<leafless::Bounds> {
+                $crate::common::cubes::Cubes::bounds(self)
+            }
         }
     )*};
 }
+
+/// A ball or a box by its definition: a solid of which the library knows nothing but what it answers.
+#[derive(Clone, Copy, Debug)]
+pub struct Plain(Definition);
+
+impl Plain {
+    /// Takes what [`Csg::ball`] takes.
+    pub fn ball(centre: [f64; 3], radius: f64) -> Result<Plain, Error> {
+        Csg::ball(centre, radius)?;
+        Ok(Plain(Definition::Ball { centre, radius }))
+    }
+
+    /// Takes what [`Csg::cuboid`] takes.
+    pub fn cuboid(min: [f64; 3], max: [f64; 3]) -> Result<Plain, Error> {
+        Csg::cuboid(min, max)?;
+        Ok(Plain(Definition::Box { min, max }))
+    }
+
+    /// The verdict of a ball, if doubles leave no doubt: exact arithmetic takes a hundred times as long.
+    fn roughly(&self, cube: &Cube<'_>) -> Option<Tag> {
+        let Definition::Ball { centre, radius } = self.0 else { return None };
+        let (min, max) = cube.bounds();
+        let (mut near, mut far, mut size) = (0.0, 0.0, radius * radius);
+        for axis in 0..3 {
+            let (low, high) = (min[axis] - centre[axis], max[axis] - centre[axis]);
+            near += low.max(-high).max(0.0).powi(2);
+            far += high.max(-low).powi(2);
+            size += (cube.frame.origin()[axis].abs() + cube.frame.edge() + centre[axis].abs()).powi(2);
+        }
+        let [less, more] = [-1.0, 1.0].map(|side| radius * radius + side * 1e-12 * size);
+        if far < less {
+            Some(Tag::Full)
+        } else if near > more {
+            Some(Tag::Empty)
+        } else if near < less && far > more {
+            Some(Tag::Partial)
+        } else {
+            None
+        }
+    }
+}
+
+impl Cubes for Plain {
+    const RECALLS: bool = true;
+
+    fn verdict(&self, cube: &Cube<'_>) -> Result<Verdict<()>, Error> {
+        let (low, high) = cube.planes();
+        let tag = self.roughly(cube).unwrap_or_else(|| self.0.tag_between(cube.frame, low, high));
+        Ok(match tag {
+            Tag::Empty => Verdict::Empty,
+            Tag::Full => Verdict::Full,
+            _ => Verdict::Partial(()),
+        })
+    }
+
+    fn sample(&self, cube: &Cube<'_>) -> Result<Option<bool>, Error> {
+        Ok(Some(self.0.sampled(cube.frame, cube.cell.at)))
+    }
+
+    fn exterior(&self, frame: &Frame) -> Tag {
+        if self.0.ends_inside(frame) { Tag::Empty } else { Tag::Partial }
+    }
+
+    fn bounds(&self) -> Option<Bounds> {
+        let ends = |axis: usize| match self.0 {
+            Definition::Ball { centre, radius } => {
+                ((centre[axis] - radius).next_down(), (centre[axis] + radius).next_up())
+            }
+            Definition::Box { min, max } => (min[axis], max[axis]),
+            Definition::HalfSpace { .. } => (f64::NEG_INFINITY, f64::INFINITY),
+        };
+        Bounds::new([0, 1, 2].map(|axis| ends(axis).0), [0, 1, 2].map(|axis| ends(axis).1))
+    }
+}
+
+solid_of_cubes!(Plain);

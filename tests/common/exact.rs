@@ -81,8 +81,13 @@ pub enum Definition {
 impl Definition {
     /// The verdict that cannot be improved on a finest cell.
     pub fn tag(&self, frame: &Frame, at: [u32; 3]) -> Tag {
-        let low = [0, 1, 2].map(|axis| Exact::plane(frame, axis, at[axis]));
-        let high = [0, 1, 2].map(|axis| Exact::plane(frame, axis, at[axis] + 1));
+        self.tag_between(frame, at, at.map(|i| i + 1))
+    }
+
+    /// The verdict that cannot be improved on the cell between lattice planes.
+    pub fn tag_between(&self, frame: &Frame, lower: [u32; 3], upper: [u32; 3]) -> Tag {
+        let [low, high] =
+            [lower, upper].map(|planes| [0, 1, 2].map(|axis| Exact::plane(frame, axis, planes[axis])));
         // The smallest and the greatest value of f over the closed cell.
         let (least, most) = match *self {
             Definition::Ball { centre, radius } => {

@@ -5,8 +5,8 @@ use crate::common::exact::Exact;
 use crate::common::{Random, alone};
 use leafless::{Affine, Cell, Classifier, Csg, Frame, HalfSpace, Solid, Verdict, Worker};
 
-/// Descends towards `target` (in finest cells) and away from it, and compares all verdicts on the way; returns how many
-/// levels were reached.
+/// Descends towards `target` (in finest cells) and away from it, and compares all verdicts on the way;
+/// returns how many levels were reached.
 fn compare(solid: &Csg, truth: &Truth, frame: &Frame, target: [u32; 3], random: &mut Random) -> u8 {
     let mut worker = solid.on(frame, &alone()).unwrap().worker().unwrap();
     let mut verdict = worker.root().unwrap();

@@ -1,4 +1,5 @@
-//! Operations of many operands, which are grouped by where they lie, against trees that are joined one by one.
+//! Operations of many operands, which are grouped by where they lie, against trees that are joined one by
+//! one.
 
 use crate::common::{Dense, Random, alone};
 use leafless::{
@@ -16,8 +17,8 @@ enum Way {
     Parity,
 }
 
-/// A random operand. Boxes around those that are `plain` say nothing that their half-spaces do not say: there the
-/// hierarchy knows no more than each of them does alone.
+/// A random operand. Boxes around those that are `plain` say nothing that their half-spaces do not say: there
+/// the hierarchy knows no more than each of them does alone.
 fn operand(random: &mut Random, frame: &Frame, special: u64, plain: bool) -> Csg {
     let edge = frame.edge();
     let length = |random: &mut Random, low: f64, high: f64| random.between(low, high) * edge;

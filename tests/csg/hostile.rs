@@ -1,11 +1,12 @@
-//! Expressions that nobody would write by hand: enormous, deep, doubled over and over, of numbers at the ends of their
-//! ranges. What comes is a result or a clear error, and it comes soon.
+//! Expressions that nobody would write by hand: enormous, deep, doubled over and over, of numbers at the ends
+//! of their ranges. What comes is a result or a clear error, and it comes soon.
 
 use super::lattice_frame;
 use crate::common::alone;
+use crate::common::cubes::Plain;
 use leafless::{
-    Affine, AnySolid, AxisBox, Cell, Classifier, Csg, Error, Frame, HalfSpace, Rule, Solid, Tag, Verdict,
-    Worker, build,
+    Affine, AnySolid, Cell, Classifier, Csg, Error, Frame, HalfSpace, Rule, Solid, Tag, Verdict, Worker,
+    build,
 };
 use std::time::{Duration, Instant};
 
@@ -150,7 +151,7 @@ fn deep_placements_end_in_a_limit() {
 #[test]
 fn doubled_over_and_over() {
     let frame = lattice_frame(4);
-    let solid = Csg::solid(AnySolid::new(AxisBox::new([1.0; 3], [3.0; 3]).unwrap()));
+    let solid = Csg::solid(AnySolid::new(Plain::cuboid([1.0; 3], [3.0; 3]).unwrap()));
     type Join = fn([Csg; 2]) -> Result<Csg, Error>;
     let joins: [Join; 3] =
         [|pair| Csg::union_of(pair), |pair| Csg::intersection_of(pair), |pair| Csg::xor_of(pair)];

@@ -5,7 +5,7 @@ use super::random::Maker;
 use super::{frames, lattice_frame};
 use crate::common::{Dense, Random, alone};
 use leafless::{
-    AnySolid, Cell, Classifier, Control, Counted, Csg, Frame, Octree, Rule, Solid, Tag, Verdict, Worker,
+    AnySolid, Cell, Classifier, Control, Csg, Frame, Octree, Rule, Solid, SplitCounter, Tag, Verdict, Worker,
     build, complement,
 };
 
@@ -128,8 +128,8 @@ fn verdicts_do_not_depend_on_the_way() {
     expressions(400, [1, 4], 3, all_ways_find_the_same);
 }
 
-/// Words that are written for a child and taken back, because a later operand decides what they belong to, must not take
-/// anything with them that others need.
+/// Words that are written for a child and taken back, because a later operand decides what they belong to,
+/// must not take anything with them that others need.
 #[test]
 fn parts_of_other_solids_live_as_long_as_their_cells() {
     for seed in 0..200 {
@@ -182,7 +182,8 @@ fn a_used_worker_is_as_good_as_a_new_one() {
             assert!(now >= evaluations, "the count of evaluations falls\n{model:#?}");
             evaluations = now;
         }
-        // What the used one evaluated is told once it is gone: as much as what the four new ones did, at least.
+        // What the used one evaluated is told once it is gone: as much as what the four new ones did, at
+        // least.
         let before = csg.evaluations();
         drop(used);
         let parts: u64 = csg.evaluations() - before;
@@ -260,7 +261,7 @@ fn booleans_are_those_of_the_trees() {
 fn evaluations_are_counted_where_they_happen() {
     let frame = lattice_frame(5);
     let ball = Csg::ball([16.0; 3], 10.0).unwrap();
-    let counted = Counted::new(&ball);
+    let counted = SplitCounter::new(&ball);
     assert_eq!(ball.evaluations(), 0);
     build(&counted, &frame, Rule::Certified, &alone()).unwrap();
     let once = ball.evaluations();
@@ -269,15 +270,16 @@ fn evaluations_are_counted_where_they_happen() {
     let mut nested = ball.clone();
     for times in 2..5 {
         // An expression alone would be that expression.
-        nested = Csg::solid(AnySolid::new(Counted::new(nested)));
-        let again = Counted::new(&nested);
+        nested = Csg::solid(AnySolid::new(SplitCounter::new(nested)));
+        let again = SplitCounter::new(&nested);
         build(&again, &frame, Rule::Certified, &alone()).unwrap();
         assert_eq!(again.splits(), counted.splits());
-        // Half-spaces behind the common face count there, as often as without it, and not for what is around it.
+        // Half-spaces behind the common face count there, as often as without it, and not for what is around
+        // it.
         assert_eq!((ball.evaluations(), nested.evaluations()), (times * once, 0));
     }
     // Asked again by another worker, the count goes on.
-    let classifier = Counted::new(&nested).on(&frame, &alone()).unwrap();
+    let classifier = SplitCounter::new(&nested).on(&frame, &alone()).unwrap();
     let mut last = ball.evaluations();
     let start = last;
     for _ in 0..3 {

@@ -1,24 +1,26 @@
-//! Expressions by their definition: which side of the surface a point is on, in exact arithmetic and with no cell in
-//! sight.
+//! Expressions by their definition: which side of the surface a point is on, in exact arithmetic and with no
+//! cell in sight.
 
+use crate::common::cubes::Plain;
 use crate::common::exact::Exact;
 use leafless::{
-    Affine, AnySolid, AxisBox, Ball, Callback, Counted, Csg, Error, FillRule, Frame, HalfSpace, Interval,
-    MeshSolid, Octree, Tag, Transform, TriangleMesh, Verdict,
+    Affine, AnySolid, Callback, Csg, Error, FillRule, Frame, HalfSpace, Interval, MeshSolid, Octree,
+    SplitCounter, Tag, Transform, TriangleMesh, Verdict,
 };
 
 /// A point (x, y, z)/w with w ≠ 0, so that the inverse of a placement needs no division.
 pub type Point = [Exact; 4];
 
-/// A point, and the point (ε, ε², ε³) beside it: ε = 2^-20000, and, which is as good, 2^-23000 and 2^-26000. Where a
-/// function is zero and has a slope, its value there has the sign that the slope says; where it has none, its value is
-/// far smaller.
+/// A point, and the point (ε, ε², ε³) beside it: ε = 2^-20000, and, which is as good, 2^-23000 and 2^-26000.
+/// Where a function is zero and has a slope, its value there has the sign that the slope says; where it has
+/// none, its value is far smaller.
 pub struct Probe {
     pub at: Point,
     pub beside: Point,
 }
 
-/// What no value beside a zero with a slope is smaller than, nor one without a slope larger, of the functions here.
+/// What no value beside a zero with a slope is smaller than, nor one without a slope larger, of the functions
+/// here.
 const SLOPE: i64 = -32_000;
 
 #[derive(Clone, Debug)]
@@ -186,8 +188,8 @@ fn inside(polygon: &[[f64; 2]], p: &Point) -> i32 {
 
 /// A ball by its values and its ranges.
 fn host(centre: [f64; 3], radius: f64) -> HalfSpace {
-    // Distances to the nearest and to the farthest point on an axis, squared and relative to the squares around; some
-    // last places for what is rounded.
+    // Distances to the nearest and to the farthest point on an axis, squared and relative to the squares
+    // around; some last places for what is rounded.
     let value = move |near: [f64; 3]| radius * radius - near.iter().map(|d| d * d).sum::<f64>();
     let slack = |size: f64| 64.0 * f64::EPSILON * size;
     HalfSpace::host(
@@ -283,7 +285,8 @@ impl Model {
         }
     }
 
-    /// 1 if a point lies in the interior, −1 if it lies outside, 0 on the boundary or if the definition does not tell.
+    /// 1 if a point lies in the interior, −1 if it lies outside, 0 on the boundary or if the definition does
+    /// not tell.
     pub fn sign(&self, p: &Point) -> i32 {
         match self {
             Model::Union(parts) => parts.iter().map(|part| part.sign(p)).max().unwrap_or(-1),
@@ -298,7 +301,8 @@ impl Model {
         }
     }
 
-    /// Whether a point lies inside, all points being shifted by (ε, ε², ε³); `None` if the definition does not tell.
+    /// Whether a point lies inside, all points being shifted by (ε, ε², ε³); `None` if the definition does
+    /// not tell.
     pub fn sampled(&self, probe: &Probe) -> Option<bool> {
         let all = |parts: &[Model]| parts.iter().map(|part| part.sampled(probe)).collect::<Option<Vec<_>>>();
         Some(match self {
@@ -343,8 +347,8 @@ fn lowest(values: Vec<Exact>) -> i32 {
 impl Other {
     pub fn solid(&self, frame: &Frame) -> Result<AnySolid, Error> {
         Ok(match self {
-            Other::Cuboid(min, max) => AnySolid::new(AxisBox::new(*min, *max)?),
-            Other::Ball(centre, radius) => AnySolid::new(Ball::new(*centre, *radius)?),
+            Other::Cuboid(min, max) => AnySolid::new(Plain::cuboid(*min, *max)?),
+            Other::Ball(centre, radius) => AnySolid::new(Plain::ball(*centre, *radius)?),
             &Other::Slab(low, high) => AnySolid::new(
                 Callback::new(move |min, max| {
                     Ok(match (min[2], max[2]) {
@@ -365,7 +369,7 @@ impl Other {
                 AnySolid::new(Transform::new(other.solid(own)?, own, placement))
             }
             // An expression alone would become part of the one that it stands in.
-            Other::Model(model) => AnySolid::new(Counted::new(model.csg(frame)?)),
+            Other::Model(model) => AnySolid::new(SplitCounter::new(model.csg(frame)?)),
         })
     }
 

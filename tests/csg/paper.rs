@@ -1,4 +1,5 @@
-//! The published classification, written down as slowly as it was published: all vertices, then all half-spaces.
+//! The published classification, written down as slowly as it was published: all vertices, then all
+//! half-spaces.
 
 use super::extremes::{Separable, corners};
 use crate::common::exact::Exact;
@@ -12,7 +13,8 @@ struct Primitive {
     half_spaces: Vec<Separable>,
 }
 
-/// A vertex on the surface is inside; vertices that do not agree make a cell PARTIAL, those that do the half-spaces decide.
+/// A vertex on the surface is inside; vertices that do not agree make a cell PARTIAL, those that do the
+/// half-spaces decide.
 fn classify(primitive: &Primitive, frame: &Frame, cell: Cell) -> Tag {
     let [x, y, z] = corners(frame, cell);
     let inside = |vertex: usize| {

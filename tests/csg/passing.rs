@@ -1,9 +1,10 @@
-//! Expressions in which one other solid is all that is open, in the whole universe or in a part of it: what that solid
-//! does in bulk, the expression does.
+//! Expressions in which one other solid is all that is open, in the whole universe or in a part of it: what
+//! that solid does in bulk, the expression does.
 
 use crate::common::alone;
+use crate::common::cubes::Plain;
 use leafless::{
-    AnySolid, Ball, Bounds, Callback, Control, Csg, FillRule, Frame, MeshSolid, Octree, Rule, Solid, Tag,
+    AnySolid, Bounds, Callback, Control, Csg, FillRule, Frame, MeshSolid, Octree, Rule, Solid, Tag,
     TriangleMesh, Verdict, build, complement, difference, intersection, resolve, union, xor,
 };
 
@@ -174,6 +175,6 @@ fn a_callback() {
 
 #[test]
 fn a_ball() {
-    let solid = AnySolid::new(Ball::new([0.05, -0.02, 0.03], 0.8).unwrap());
+    let solid = AnySolid::new(Plain::ball([0.05, -0.02, 0.03], 0.8).unwrap());
     check("ball", |_| solid.clone(), &RULES);
 }

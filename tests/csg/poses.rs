@@ -1,7 +1,8 @@
 //! Many poses of a block among many balls: the union is prepared once, and a pose costs what is near it.
 
+use crate::common::cubes::Plain;
 use crate::common::{Random, alone};
-use leafless::{Affine, AxisBox, Counted, Csg, Frame, Overlap, interference_of};
+use leafless::{Affine, Csg, Frame, Overlap, SplitCounter, interference_of};
 
 /// Evaluations of half-spaces for each pose, among `n` balls.
 fn evaluations(n: u32) -> f64 {
@@ -11,8 +12,8 @@ fn evaluations(n: u32) -> f64 {
     let edge = (n as f64).cbrt();
     let frame = Frame::new([0.0; 3], edge, 12).unwrap();
     let balls = (0..n).map(|_| Csg::ball([0; 3].map(|_| random.between(0.0, edge)), 0.3).unwrap());
-    let union = Counted::new(Csg::union_of(balls.collect::<Vec<_>>()).unwrap());
-    let block = Counted::new(AxisBox::new([-0.1; 3], [0.1; 3]).unwrap());
+    let union = SplitCounter::new(Csg::union_of(balls.collect::<Vec<_>>()).unwrap());
+    let block = SplitCounter::new(Plain::cuboid([-0.1; 3], [0.1; 3]).unwrap());
     let own = Frame::new([-0.2; 3], 0.4, 6).unwrap();
     let poses: Vec<Affine> = (0..POSES)
         .map(|_| {
@@ -47,8 +48,8 @@ fn evaluations_of_a_moved_union(n: u32) -> f64 {
     let edge = (n as f64).cbrt();
     let own = Frame::new([0.0; 3], edge, 12).unwrap();
     let balls = (0..n).map(|_| Csg::ball([0; 3].map(|_| random.between(0.0, edge)), 0.3).unwrap());
-    let union = Counted::new(Csg::union_of(balls.collect::<Vec<_>>()).unwrap());
-    let block = AxisBox::new([-0.1; 3], [0.1; 3]).unwrap();
+    let union = SplitCounter::new(Csg::union_of(balls.collect::<Vec<_>>()).unwrap());
+    let block = Plain::cuboid([-0.1; 3], [0.1; 3]).unwrap();
     let frame = Frame::new([-0.2; 3], 0.4, 6).unwrap();
     let poses: Vec<Affine> = (0..POSES)
         .map(|_| {

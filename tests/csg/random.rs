@@ -7,8 +7,8 @@ use leafless::{Affine, Frame, Rule, build};
 pub struct Maker<'a> {
     pub random: &'a mut Random,
     pub frame: Frame,
-    /// Whether coordinates are multiples of half a cell and matrices take axes to axes, so that surfaces lie on
-    /// lattice planes and touch cells in vertices.
+    /// Whether coordinates are multiples of half a cell and matrices take axes to axes, so that surfaces lie
+    /// on lattice planes and touch cells in vertices.
     pub aligned: bool,
     /// Whether solids that are no half-spaces occur.
     pub others: bool,

@@ -246,8 +246,8 @@ fn half_space(maker: &mut Maker<'_>) -> Model {
     }
 }
 
-/// Verdicts of the universe, cell by cell as far as the splits go: not looser than any choice of what the half-spaces
-/// leave open, each on its own, and never beyond exact arithmetic.
+/// Verdicts of the universe, cell by cell as far as the splits go: not looser than any choice of what the
+/// half-spaces leave open, each on its own, and never beyond exact arithmetic.
 #[test]
 fn random_expressions_of_few_half_spaces() {
     let (mut tighter, mut found, mut made) = (0, Found::default(), 0);

@@ -122,8 +122,8 @@ impl Oracle {
         &self.half * k
     }
 
-    /// On which side of the line from `a` to `b`, seen along x, the centre (y, z) lies, shifted by (ε², ε³): 1 on
-    /// the left. 0 only if the line is a point.
+    /// On which side of the line from `a` to `b`, seen along x, the centre (y, z) lies, shifted by (ε², ε³):
+    /// 1 on the left. 0 only if the line is a point.
     fn side(&self, a: usize, b: usize, [y, z]: [i64; 2]) -> i32 {
         let (p, q) = (self.approximate[a], self.approximate[b]);
         let (cy, cz) = (y as f64 + 0.5, z as f64 + 0.5);
@@ -170,8 +170,8 @@ impl Oracle {
         (low.floor() as i64).clamp(0, self.cells)..(high.ceil() as i64).clamp(0, self.cells)
     }
 
-    /// The winding number of every finest cell's centre, shifted by (ε, ε², ε³), x fastest: by the definition, a
-    /// ray from x = −∞.
+    /// The winding number of every finest cell's centre, shifted by (ε, ε², ε³), x fastest: by the
+    /// definition, a ray from x = −∞.
     pub fn windings(&self) -> Vec<i32> {
         let n = self.cells;
         let mut windings = vec![0; (n * n * n) as usize];
@@ -226,8 +226,8 @@ impl Oracle {
     }
 
     /// Along each of the axes that can separate the triangle from a cube: how far it lies beyond the cube's
-    /// lower and upper side (from the cube's centre, positive when apart), the sum of the axis' components, and
-    /// the degree of the polynomials.
+    /// lower and upper side (from the cube's centre, positive when apart), the sum of the axis' components,
+    /// and the degree of the polynomials.
     fn gaps(&self, t: [usize; 3], at: [i64; 3], size: i64) -> [(f64, f64, i32); 13] {
         let half = size as f64 / 2.0;
         let [a, b, c] = t.map(|v| [0, 1, 2].map(|axis| self.approximate[v][axis] - (at[axis] as f64 + half)));
@@ -388,7 +388,8 @@ pub fn over(corners: [[f64; 3]; 3], p: [f64; 3]) -> i32 {
     })
 }
 
-/// Exactly: on which side of the triangle's plane (ε, ε², ε³) leads away from it; 0 for a triangle without area.
+/// Exactly: on which side of the triangle's plane (ε, ε², ε³) leads away from it; 0 for a triangle without
+/// area.
 pub fn facing(corners: [[f64; 3]; 3]) -> i32 {
     let [a, b, c] = common(corners);
     let edge = |to: [BigInt; 3]| [0, 1, 2].map(|i| &to[i] - &a[i]);

@@ -47,8 +47,8 @@ pub fn octahedron(centre: [f64; 3], radius: f64) -> Soup {
         .collect()
 }
 
-/// A prism over a counter-clockwise polygon around `centre` (which every edge sees from its left), from z = low
-/// to high.
+/// A prism over a counter-clockwise polygon around `centre` (which every edge sees from its left), from z =
+/// low to high.
 pub fn prism(polygon: &[[f64; 2]], centre: [f64; 2], low: f64, high: f64) -> Soup {
     let mut soup = Soup::new();
     for (i, &a) in polygon.iter().enumerate() {

@@ -10,8 +10,8 @@ use leafless::{Control, Error, Metadata, Octree, OctreeRef};
 use std::ffi::OsString;
 use std::time::Instant;
 
-/// The solids must lie on one frame: voxelize them with the same --bounds and --depth. The result may replace one
-/// of them.
+/// The solids must lie on one frame: voxelize them with the same --bounds and --depth. The result may replace
+/// one of them.
 #[derive(Args)]
 pub struct Arguments {
     /// Solids (.lfl), two or more; one of them may be `-` for standard input

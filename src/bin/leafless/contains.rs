@@ -8,12 +8,12 @@ use leafless::{Membership, OctreeRef};
 use std::ffi::OsString;
 use std::io::{ErrorKind, Read};
 
-/// Reads points from standard input, one a line: x, y and z in the solid's units, separated by blanks, tabs or
-/// commas. Empty lines and lines that begin with # are skipped.
+/// Reads points from standard input, one a line: x, y and z in the solid's units, separated by blanks, tabs
+/// or commas. Empty lines and lines that begin with # are skipped.
 ///
-/// Prints a line for each point: `inside` and `outside` are proven if the solid is certified; `undecided` are points in cells that the surface
-/// may pass through, points outside of the solid's bounds, and such as `nan`. Answers come as soon as lines are
-/// there, so that another program can ask and wait.
+/// Prints a line for each point: `inside` and `outside` are proven if the solid is certified; `undecided` are
+/// points in cells that the surface may pass through, points outside of the solid's bounds, and such as
+/// `nan`. Answers come as soon as lines are there, so that another program can ask and wait.
 #[derive(Args)]
 pub struct Arguments {
     /// Solid (.lfl)

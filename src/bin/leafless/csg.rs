@@ -8,32 +8,33 @@ use crate::report::Info;
 use crate::scene::{frame_of, read_scene};
 use crate::voxelize::{RuleName, bounds, name_of, threads};
 use clap::{Args, ValueEnum};
-use leafless::{Counted, Frame, Metadata, Octree, Touch, build};
+use leafless::{Frame, Metadata, Octree, SplitCounter, Touch, build};
 use serde::Serialize;
 use std::ffi::OsString;
 use std::time::Instant;
 
-/// Splits space where the surface of a scene passes, down to cells of 2^-N of its extent. By the certified rule every
-/// cell is proven inside, proven outside, or undecided.
+/// Splits space where the surface of a scene passes, down to cells of 2^-N of its extent. By the certified
+/// rule every cell is proven inside, proven outside, or undecided.
 ///
-/// A scene is a text in the language of the CSG dumps that OpenSCAD writes (`openscad -o part.csg part.scad`): group
-/// union difference intersection multmatrix color render cube sphere cylinder polyhedron linear_extrude rotate_extrude
-/// square circle polygon, import of meshes, and some of ours: halfspace([a,b,c,d]) power([A,a,n1],[B,b,n2],[C,c,n3],R)
-/// quadric([10 numbers]) torus(major,minor) mesh("file.stl") octree("file.lfl"). Curved surfaces are exact: no facets.
+/// A scene is a text in the language of the CSG dumps that OpenSCAD writes (`openscad -o part.csg
+/// part.scad`): group union difference intersection multmatrix color render cube sphere cylinder polyhedron
+/// linear_extrude rotate_extrude square circle polygon, import of meshes, and some of ours:
+/// halfspace([a,b,c,d]) power([A,a,n1],[B,b,n2],[C,c,n3],R) quadric([10 numbers]) torus(major,minor)
+/// mesh("file.stl") octree("file.lfl"). Curved surfaces are exact: no facets.
 ///
-/// The file records the scene's name, length and checksum, and the rule. Equal input gives equal bytes, for any number of
-/// threads.
+/// The file records the scene's name, length and checksum, and the rule. Equal input gives equal bytes, for
+/// any number of threads.
 #[derive(Args)]
 pub struct Arguments {
     /// Scene (.csg), or `-` for standard input
     #[arg(value_name = "SCENE")]
     input: OsString,
-    /// File to write, or `-` for standard output, whose summary then goes to standard error; it is written whole
-    /// or not at all
+    /// File to write, or `-` for standard output, whose summary then goes to standard error; it is written
+    /// whole or not at all
     #[arg(short, long, value_name = "OUT.lfl")]
     output: OsString,
-    /// Levels of the octree, 1 to 20: each halves the cells, and the error, and makes the file some four times as
-    /// long
+    /// Levels of the octree, 1 to 20: each halves the cells, and the error, and makes the file some four
+    /// times as long
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=leafless::MAX_DEPTH as i64))]
     depth: u8,
     /// What becomes of the finest cells that the surface passes through
@@ -42,16 +43,16 @@ pub struct Arguments {
     /// What counts as touching
     #[arg(long, value_enum, default_value_t = TouchName::Exact)]
     touch: TouchName,
-    /// Lower corner and edge length of the cube to cut into cells, in the units of the scene. Solids can be combined
-    /// if they were given the same bounds and depth. What sticks out is cut off, and reported. Without it: the cube
-    /// around the middle of the scene's bounds, its edge 33/32 of their longest extent
+    /// Lower corner and edge length of the cube to cut into cells, in the units of the scene. Solids can be
+    /// combined if they were given the same bounds and depth. What sticks out is cut off, and reported.
+    /// Without it: the cube around the middle of the scene's bounds, its edge 33/32 of their longest extent
     #[arg(long, value_name = "X0,Y0,Z0,EDGE", value_parser = bounds, allow_hyphen_values = true)]
     bounds: Option<Frame>,
     /// Threads to use; 0: as many as there are processors. The result is the same
     #[arg(long, default_value_t = 0, value_name = "N", value_parser = threads)]
     threads: usize,
-    /// Print one JSON object with timings, splits, evaluations of half-spaces and the volume, level by level (on standard
-    /// error if the solid goes to standard output)
+    /// Print one JSON object with timings, splits, evaluations of half-spaces and the volume, level by level
+    /// (on standard error if the solid goes to standard output)
     #[arg(long)]
     json: bool,
 }
@@ -107,7 +108,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     };
     let solid = scene.solid(&frame).of(&input)?.with_touch(touch);
     // To count splits turns off what meshes and octrees do in bulk.
-    let counted = (solid.nesting() == 0).then(|| Counted::new(solid.clone()));
+    let counted = (solid.nesting() == 0).then(|| SplitCounter::new(solid.clone()));
     let read = start.elapsed().as_secs_f64();
 
     let building = Instant::now();
@@ -127,7 +128,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         output::complain(&format!("{input}: warning: {warning}"));
     }
     let mut info = Info::new(&octree, bytes);
-    let splits = counted.as_ref().map(Counted::splits);
+    let splits = counted.as_ref().map(SplitCounter::splits);
     if let Some(splits) = &splits {
         info.note_splits(splits);
     }
@@ -175,11 +176,7 @@ fn summary(report: &Report, octree: &Octree) -> String {
         frame.depth(),
         number(frame.cell_size()),
         info.volume_text(),
-        match (octree.view().is_binary(), octree.view().is_clipped()) {
-            (true, _) => " (of the cells)",
-            (false, false) => " (the true one lies between)",
-            (false, true) => " (that of the part inside of the bounds lies between)",
-        },
+        info.volume_note(),
         report.splits.map_or(String::new(), |splits| count(splits) + ", "),
         count(report.evaluations),
         count(info.nodes),

@@ -12,12 +12,13 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
 
-/// Makes a flanged, ribbed and drilled part and a tool to cut it with, writes both as STL files, reads them back,
-/// turns them into octrees of 1024³ cells, cuts, saves, maps, verifies and queries the result. Every file stays in
-/// the folder to be looked at.
+/// Makes a flanged, ribbed and drilled part and a tool to cut it with, writes both as STL files, reads them
+/// back, turns them into octrees of 1024³ cells, cuts, saves, maps, verifies and queries the result. Every
+/// file stays in the folder to be looked at.
 #[derive(Args)]
 pub struct Arguments {
-    /// Folder for the files; made if it does not exist [default: leafless-demo in the folder for temporary files]
+    /// Folder for the files; made if it does not exist [default: leafless-demo in the folder for temporary
+    /// files]
     dir: Option<PathBuf>,
 }
 

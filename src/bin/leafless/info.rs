@@ -9,8 +9,8 @@ use clap::Args;
 use leafless::file;
 use std::ffi::OsString;
 
-/// Of a solid only the file's header and level table are read, so this takes the same short time for files of any
-/// size. Run `leafless verify` to know whether the rest of the file is good.
+/// Of a solid only the file's header and level table are read, so this takes the same short time for files of
+/// any size. Run `leafless verify` to know whether the rest of the file is good.
 ///
 /// Of a mesh everything is read: what its triangles bound, and what is wrong with them.
 #[derive(Args)]

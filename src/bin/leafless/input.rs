@@ -61,8 +61,8 @@ impl Input {
         })
     }
 
-    /// The octree in the file, and the file's length. A regular file is mapped and, unless `verified` is asked
-    /// for, hardly read; what comes through a pipe is read and verified in any case.
+    /// The octree in the file, and the file's length. A regular file is mapped and, unless `verified` is
+    /// asked for, hardly read; what comes through a pipe is read and verified in any case.
     pub fn octree(&self, verified: bool) -> Result<(Octree, u64), Failure> {
         if let Input::Path(path) = self {
             let metadata = std::fs::metadata(path).of(self)?;

@@ -4,7 +4,7 @@ use crate::failure::{Failure, Of};
 use crate::input::Input;
 use crate::mesh::Reading;
 use crate::output::{self, count, interval, number};
-use crate::report::Volume;
+use crate::report::{Proven, Volume};
 use crate::source::{Corners, Source, evaluations};
 use crate::voxelize::bounds;
 use clap::Args;
@@ -16,12 +16,13 @@ use serde::Serialize;
 use std::ffi::OsString;
 use std::fmt::Write;
 
-/// Says whether two solids have inner points in common: `disjoint` and `overlapping` are proven, `undecided` is what
-/// the depth, or the number of splits, does not decide. Solids that touch are disjoint, and their clearance is 0.
+/// Says whether two solids have inner points in common: `disjoint` and `overlapping` are proven, `undecided`
+/// is what the depth, or the number of splits, does not decide. Solids that touch are disjoint, and their
+/// clearance is 0.
 ///
-/// The volume that the solids have in common and the clearance, the least distance between them, are intervals that hold
-/// the true ones. An upper bound of the clearance needs cells that are proven to be inside; where there are none it is
-/// infinite (null in JSON).
+/// The volume that the solids have in common and the clearance, the least distance between them, are
+/// intervals that hold the true ones. An upper bound of the clearance needs cells that are proven to be
+/// inside; where there are none it is infinite (null in JSON).
 #[derive(Args)]
 pub struct Arguments {
     /// First solid (.lfl), mesh (STL, OBJ, PLY, OFF, 3MF) or scene (.csg), or `-` for standard input
@@ -30,8 +31,8 @@ pub struct Arguments {
     /// Second solid, mesh or scene
     #[arg(value_name = "B")]
     b: OsString,
-    /// Where the second solid is moved to first: the rows of the matrix [M | t], 12 numbers, or 16 with a last row
-    /// 0 0 0 1, in brackets or not
+    /// Where the second solid is moved to first: the rows of the matrix [M | t], 12 numbers, or 16 with a
+    /// last row 0 0 0 1, in brackets or not
     #[arg(long, value_name = "MATRIX", value_parser = matrix, allow_hyphen_values = true)]
     place_b: Option<Affine>,
     /// Levels to look at, 1 to 20. Without it: as many as the first solid has, or 10 for a mesh or scene
@@ -43,6 +44,10 @@ pub struct Arguments {
     /// Cells to split at most, for each of the three answers
     #[arg(long, value_name = "N", default_value_t = 100_000)]
     splits: u64,
+    /// Take the cells of solids from files (.lfl) for the solids themselves, whatever they prove of what they
+    /// were made from
+    #[arg(long)]
+    cells: bool,
     #[command(flatten)]
     reading: Reading,
     /// Print one JSON object
@@ -79,6 +84,9 @@ struct Report {
     overlap: Volume,
     clearance: Volume,
     witness: Option<Witness>,
+    /// What of both is proven; what is not counts as undecided.
+    proof_a: Proven,
+    proof_b: Proven,
     /// Of both, for the verdict.
     splits: u64,
     splits_a: u64,
@@ -100,7 +108,10 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     let [a, b] = &inputs;
     let placement = arguments.place_b.unwrap_or(Affine::IDENTITY);
-    let (first, second) = (Source::read(a, &arguments.reading)?, Source::read(b, &arguments.reading)?);
+    let (first, second) = (
+        Source::read(a, &arguments.reading)?.taken(arguments.cells),
+        Source::read(b, &arguments.reading)?.taken(arguments.cells),
+    );
     let frame = match &arguments.bounds {
         Some(bounds) => bounds.with_depth(arguments.depth.unwrap_or(10)).of(a)?,
         None => {
@@ -167,6 +178,7 @@ fn ask(
             distance: Interval::exactly(0.0),
             nearest: None,
             splits: [0, 0],
+            proofs: found.proofs,
             clipped: found.clipped,
         };
         return Ok((found, near, evaluated));
@@ -196,6 +208,8 @@ impl Report {
                 let (min, max) = Cube { frame, cell }.bounds();
                 Witness { level: cell.level, at: cell.at, min, max }
             }),
+            proof_a: found.proofs[0].into(),
+            proof_b: found.proofs[1].into(),
             splits: found.splits.iter().sum(),
             splits_a: found.splits[0],
             splits_b: found.splits[1],
@@ -221,6 +235,11 @@ fn text(found: &Interference, near: &Clearance, report: &Report) -> String {
     line("clearance", interval(near.distance));
     if let Some(Witness { min, max, .. }) = &report.witness {
         line("witness", format!("{} to {}", min.map(number).join(" "), max.map(number).join(" ")));
+    }
+    for (input, proven) in [(&report.a, &report.proof_a), (&report.b, &report.proof_b)] {
+        if let Some(doubt) = proven.doubt() {
+            line("proven", format!("of {input}: {doubt}"));
+        }
     }
     let [a, b] = found.splits.map(count);
     line("splits", format!("{} ({a} and {b})", count(report.splits)));

@@ -31,9 +31,9 @@ use std::process::ExitCode;
 
 /// Turns meshes into solids, cuts and joins them exactly, and answers questions about them.
 ///
-/// A solid is kept as an octree in a file (.lfl) that is queried where it lies, without loading it. Unless another
-/// rule is asked for, answers are certified: what is called inside or outside is proven, and a volume is an interval
-/// that holds the true one.
+/// A solid is kept as an octree in a file (.lfl) that is queried where it lies, without loading it. Unless
+/// another rule is asked for, answers are certified: what is called inside or outside is proven, and a volume
+/// is an interval that holds the true one.
 #[derive(Parser)]
 #[command(version, propagate_version = true, max_term_width = 100)]
 #[command(after_help = "\

@@ -5,28 +5,29 @@ use crate::input::Input;
 use crate::mesh::Reading;
 use crate::output::{self, count, interval};
 use crate::progress::watched;
-use crate::report::Volume;
+use crate::report::{Proven, Volume};
 use crate::source::{Source, evaluations};
 use crate::voxelize::{bounds, threads};
 use clap::Args;
 use leafless::{
-    Affine, Control, Extent, Frame, Interval, MAX_DEPTH, Measured, Measures, Prepared, bounding_box, measure,
+    Affine, Control, Extent, Frame, Interval, MAX_DEPTH, MassProperties, Prepared, StopReason, bounding_box,
+    measure,
 };
 use serde::Serialize;
 use std::ffi::OsString;
 use std::fmt::Write;
 
-/// Measures a solid of density 1 without making an octree of it: the largest undecided cells are split first, until the
-/// volume is known well enough. All numbers are intervals that hold the true ones.
+/// Measures a solid of density 1 without making an octree of it: the largest undecided cells are split first,
+/// until the volume is known well enough. All numbers are intervals that hold the true ones.
 ///
-/// A solid from a file (.lfl) knows no more about its undecided cells, so its own bounds are told, as well as it was
-/// made; a mesh or a scene is split as deep as it takes.
+/// A solid from a file (.lfl) knows no more about its undecided cells, so its own bounds are told, as well as
+/// it was made; a mesh or a scene is split as deep as it takes.
 #[derive(Args)]
 pub struct Arguments {
     /// Solid (.lfl), mesh (STL, OBJ, PLY, OFF, 3MF) or scene (.csg), or `-` for standard input
     file: OsString,
-    /// How wide the interval of the volume may be, relative to its middle; 0 goes on to the depth. Without it: 0.01, or 0
-    /// if --splits is given
+    /// How wide the interval of the volume may be, relative to its middle; 0 goes on to the depth. Without
+    /// it: 0.01, or 0 if --splits is given
     #[arg(long, value_name = "T", value_parser = tolerance, allow_hyphen_values = true)]
     tolerance: Option<f64>,
     /// Cells to split at most
@@ -35,9 +36,14 @@ pub struct Arguments {
     /// Deepest level to split to, 1 to 20. Without it: as deep as the solid is, or 20 for a mesh or scene
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=MAX_DEPTH as i64))]
     depth: Option<u8>,
-    /// Lower corner and edge length of the cube to measure in, for a mesh or scene. Without it: the cube around it
+    /// Lower corner and edge length of the cube to measure in, for a mesh or scene. Without it: the cube
+    /// around it
     #[arg(long, value_name = "X0,Y0,Z0,EDGE", value_parser = bounds, allow_hyphen_values = true)]
     bounds: Option<Frame>,
+    /// Take the cells of a solid from a file (.lfl) for the solid itself, whatever they prove of what they
+    /// were made from
+    #[arg(long)]
+    cells: bool,
     #[command(flatten)]
     reading: Reading,
     /// Threads to use; 0: as many as there are processors. The result is the same
@@ -55,7 +61,8 @@ fn tolerance(text: &str) -> Result<f64, String> {
     }
 }
 
-/// Sides of the bounding box are told to this part of the universe's edge, unless a greater tolerance is asked for.
+/// Sides of the bounding box are told to this part of the universe's edge, unless a greater tolerance is
+/// asked for.
 const SIDES: f64 = 0.001;
 
 /// Lower and upper bounds of the elements of a vector or a matrix.
@@ -82,6 +89,8 @@ impl From<[[Interval; 3]; 3]> for Bounds<[[f64; 3]; 3]> {
 struct Report {
     input: String,
     volume: Volume,
+    /// What of the solid is proven; what is not counts as undecided.
+    proof: Proven,
     /// Absent (null) if nothing is proven to be inside.
     centroid: Option<Bounds<[f64; 3]>>,
     /// About the centroid.
@@ -104,7 +113,7 @@ struct Report {
 
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let input = Input::from(&*arguments.file);
-    let source = Source::read(&input, &arguments.reading)?;
+    let source = Source::read(&input, &arguments.reading)?.taken(arguments.cells);
     if let (Some(_), Some(_)) = (source.own_frame(), &arguments.bounds) {
         return Err(Failure::Usage("--bounds is for meshes and scenes: a solid has its own".into()));
     }
@@ -128,60 +137,64 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let tolerance = arguments.tolerance.unwrap_or(if arguments.splits.is_some() { 0.0 } else { 0.01 });
     let found = watched("measure", arguments.threads, |control| {
         let control = Control { max_splits: arguments.splits, ..*control };
-        let measures = measure(&solid, &frame, tolerance, &control)?;
+        let mass = measure(&solid, &frame, tolerance, &control)?;
         let evaluated = evaluations(solid.solid());
         let quiet = Control { progress: None, ..control };
         let extent = bounding_box(&solid, &frame, tolerance.max(SIDES) * frame.edge(), &quiet)?;
-        Ok((measures, extent, evaluated))
+        Ok((mass, extent, evaluated))
     });
-    let (measures, extent, evaluated) = found.of(&input)?;
+    let (mass, extent, evaluated) = found.of(&input)?;
     let text = if arguments.json {
-        output::json(&report(&input, &frame, &measures, &extent, evaluated))?
+        output::json(&report(&input, &frame, &mass, &extent, evaluated))?
     } else {
-        text(&measures, &extent, is_stored)
+        text(&mass, &extent, is_stored)
     };
     output::print(text.as_bytes())
 }
 
-fn report(input: &Input, frame: &Frame, measures: &Measures, extent: &Extent, evaluations: u64) -> Report {
+fn report(input: &Input, frame: &Frame, mass: &MassProperties, extent: &Extent, evaluations: u64) -> Report {
     Report {
         input: input.to_string(),
-        volume: measures.volume.into(),
-        centroid: measures.centroid.map(Into::into),
-        inertia: measures.inertia_about_centroid.into(),
-        inertia_about_origin: measures.inertia_about_origin.into(),
+        volume: mass.volume.into(),
+        proof: mass.proof.into(),
+        centroid: mass.centroid.map(Into::into),
+        inertia: mass.inertia_about_centroid.into(),
+        inertia_about_origin: mass.inertia_about_origin.into(),
         min: extent.corners.map(|[min, _]| min.into()),
         max: extent.corners.map(|[_, max]| max.into()),
-        measured: match measures.measured {
-            Measured::Tolerance => "tolerance",
-            Measured::Budget => "budget",
-            Measured::Exhausted => "exhausted",
+        measured: match mass.stop_reason {
+            StopReason::Tolerance => "tolerance",
+            StopReason::Budget => "budget",
+            StopReason::Exhausted => "exhausted",
         },
-        splits: measures.splits,
+        splits: mass.splits,
         evaluations,
-        level: measures.level,
+        level: mass.level,
         depth: frame.depth(),
         origin: frame.origin(),
         edge: frame.edge(),
-        clipped: measures.clipped,
+        clipped: mass.clipped,
     }
 }
 
 /// The same for people.
-fn text(measures: &Measures, extent: &Extent, is_stored: bool) -> String {
+fn text(mass: &MassProperties, extent: &Extent, is_stored: bool) -> String {
     let mut text = String::new();
     let mut line = |name: &str, value: String| {
         // Writing to a string does not fail.
         let _ = writeln!(text, "{name:<16}{value}");
     };
-    line("volume", interval(measures.volume));
+    line("volume", interval(mass.volume));
+    if let Some(doubt) = Proven::from(mass.proof).doubt() {
+        line("proven", doubt);
+    }
     for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
-        if let Some(centroid) = measures.centroid {
+        if let Some(centroid) = mass.centroid {
             line(&format!("centroid {name}"), interval(centroid[axis]));
         }
     }
     for (name, tensor) in
-        [("inertia", &measures.inertia_about_centroid), ("about origin", &measures.inertia_about_origin)]
+        [("inertia", &mass.inertia_about_centroid), ("about origin", &mass.inertia_about_origin)]
     {
         for (i, j, axes) in
             [(0, 0, "xx"), (1, 1, "yy"), (2, 2, "zz"), (0, 1, "xy"), (0, 2, "xz"), (1, 2, "yz")]
@@ -195,14 +208,14 @@ fn text(measures: &Measures, extent: &Extent, is_stored: bool) -> String {
             line(&format!("greatest {name}"), interval(max[axis]));
         }
     }
-    let ended = match (measures.measured, is_stored) {
-        (Measured::Tolerance, _) => "",
-        (Measured::Budget, _) => ", which were all that may be split",
-        (Measured::Exhausted, true) => ", and the file knows no more",
-        (Measured::Exhausted, false) => ", and there is nothing left to split at this depth",
+    let ended = match (mass.stop_reason, is_stored) {
+        (StopReason::Tolerance, _) => "",
+        (StopReason::Budget, _) => ", which were all that may be split",
+        (StopReason::Exhausted, true) => ", and the file knows no more",
+        (StopReason::Exhausted, false) => ", and there is nothing left to split at this depth",
     };
-    line("splits", format!("{}, to level {}{ended}", count(measures.splits), measures.level));
-    if measures.clipped {
+    line("splits", format!("{}, to level {}{ended}", count(mass.splits), mass.level));
+    if mass.clipped {
         line("clipped", "this is the part inside of the bounds; the solid may go on outside".into());
     }
     text

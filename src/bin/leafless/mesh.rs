@@ -17,8 +17,8 @@ pub struct Reading {
     /// Format of the mesh file. Without it the content tells, and the extension of the name
     #[arg(long, value_enum)]
     format: Option<FormatName>,
-    /// Unit of the numbers in the mesh file: um, mm, cm, m, in or ft. Without it that of a 3MF is known, and those of
-    /// other formats are not
+    /// Unit of the numbers in the mesh file: um, mm, cm, m, in or ft. Without it that of a 3MF is known, and
+    /// those of other formats are not
     #[arg(long, value_name = "UNIT", value_parser = unit)]
     unit: Option<LengthUnit>,
     /// Unit to convert the mesh to

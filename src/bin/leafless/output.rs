@@ -140,8 +140,8 @@ const STOPPED: i32 = 130;
 /// Runs `save`, which a first Ctrl-C (or SIGTERM, SIGHUP) does not interrupt but only keeps from being the
 /// last thing that the program does: so that no temporary file is left behind. A second one ends at once.
 fn unharmed<T>(save: impl FnOnce() -> T) -> T {
-    // Fails the second time, which is well. Takes the signals also where one of them was ignored, as SIGHUP is
-    // under `nohup`: the others must not find a temporary file either.
+    // Fails the second time, which is well. Takes the signals also where one of them was ignored, as SIGHUP
+    // is under `nohup`: the others must not find a temporary file either.
     let _ = ctrlc::set_handler(|| {
         if !SAVING.load(SeqCst) || INTERRUPTED.swap(true, SeqCst) {
             std::process::exit(STOPPED);

@@ -1,9 +1,9 @@
 //! The demonstration part: a flanged bearing seat with bolt holes and ribs, and a tool to cut it with.
 //!
-//! Both are closed meshes in millimetres, with z along the axis and the mounting face at z = 0. The part is the
-//! union of bodies that overlap (ribs reach into the hub and the flange), as an assembly from a CAD program
-//! would be; winding numbers make one solid of them. Every sine and cosine comes from `libm`, so the meshes are
-//! the same on all platforms.
+//! Both are closed meshes in millimetres, with z along the axis and the mounting face at z = 0. The part is
+//! the union of bodies that overlap (ribs reach into the hub and the flange), as an assembly from a CAD
+//! program would be; winding numbers make one solid of them. Every sine and cosine comes from `libm`, so the
+//! meshes are the same on all platforms.
 
 use core::f64::consts::{PI, TAU};
 
@@ -140,8 +140,8 @@ fn bolt_centres() -> impl Iterator<Item = [f64; 2]> {
     })
 }
 
-/// The point of a circle in the direction `[cos, sin]`. Every face that uses the point computes it here, so that
-/// all get the same bits and the surface closes.
+/// The point of a circle in the direction `[cos, sin]`. Every face that uses the point computes it here, so
+/// that all get the same bits and the surface closes.
 fn on_circle(centre: [f64; 2], radius: f64, [cos, sin]: [f64; 2]) -> [f64; 2] {
     [centre[0] + radius * cos, centre[1] + radius * sin]
 }
@@ -164,8 +164,8 @@ impl Surface {
         self.facets.extend([[a, b, c], [a, c, d]]);
     }
 
-    /// The surface that the line between two points (radius, height) sweeps around a vertical axis. Outside is
-    /// on the right of the line.
+    /// The surface that the line between two points (radius, height) sweeps around a vertical axis. Outside
+    /// is on the right of the line.
     fn band(&mut self, centre: [f64; 2], circle: &[[f64; 2]], from: [f64; 2], to: [f64; 2]) {
         let point = |i: usize, [r, z]: [f64; 2]| {
             let [x, y] = on_circle(centre, r, circle[i % circle.len()]);
@@ -193,8 +193,8 @@ impl Surface {
         }
     }
 
-    /// A prism over a polygon that is counter-clockwise seen against the third axis, between two values on that
-    /// axis. `place` moves it into space and must be a rotation with a translation.
+    /// A prism over a polygon that is counter-clockwise seen against the third axis, between two values on
+    /// that axis. `place` moves it into space and must be a rotation with a translation.
     fn prism(&mut self, base: &[[f64; 2]], [low, high]: [f64; 2], place: impl Fn(f64, f64, f64) -> [f64; 3]) {
         for [a, b, c] in triangulated(base, &[]) {
             self.facets.push([a, b, c].map(|[s, t]| place(s, t, high)));

@@ -12,8 +12,8 @@ const PATIENCE: Duration = Duration::from_secs(1);
 const STEPS: u64 = 1000;
 
 /// Runs `work` on so many threads (0: one a processor), with a progress bar called `label` once it has taken
-/// more than a second, if standard error is a terminal. Says so, instead of being killed for it, when the solid
-/// outgrows the free memory.
+/// more than a second, if standard error is a terminal. Says so, instead of being killed for it, when the
+/// solid outgrows the free memory.
 pub fn watched<R>(
     label: &'static str,
     threads: usize,

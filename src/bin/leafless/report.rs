@@ -1,7 +1,9 @@
 //! What is told of a solid, for programs (JSON) and for people.
 
 use crate::output::{count, interval, number};
-use leafless::{DefectKind, Error, Interval, MeshDefect, MeshReport, Octree, Statistics, Tag, TriangleMesh};
+use leafless::{
+    DefectKind, Error, Interval, MeshDefect, MeshReport, Octree, Proof, Statistics, Tag, TriangleMesh,
+};
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -23,6 +25,42 @@ impl Volume {
 impl From<Interval> for Volume {
     fn from(interval: Interval) -> Volume {
         Volume { lower: interval.lower, upper: interval.upper }
+    }
+}
+
+/// What cells prove of the solid that they were made from.
+#[derive(Serialize)]
+pub struct Proven {
+    full: bool,
+    empty: bool,
+    displacement: f64,
+}
+
+impl From<Proof> for Proven {
+    fn from(proof: Proof) -> Proven {
+        Proven { full: proof.full, empty: proof.empty, displacement: proof.displacement() }
+    }
+}
+
+impl Proven {
+    /// What is not proven, if that is anything, and what can be done.
+    pub fn doubt(&self) -> Option<String> {
+        let certified = self.full && self.empty;
+        (!certified).then(|| format!("{} (--cells takes the cells for the solid)", self.text()))
+    }
+
+    /// The same for people.
+    pub fn text(&self) -> String {
+        let proven = match (self.full, self.empty) {
+            (true, true) => "inside and outside",
+            (true, false) => "inside only; what is called outside need not be",
+            (false, true) => "outside only; what is called inside need not be",
+            (false, false) => "nothing: cells are called inside or outside as they were sampled",
+        };
+        match self.displacement {
+            0.0 => proven.into(),
+            moved => format!("{proven}; of surfaces that were moved by {} or less", number(moved)),
+        }
     }
 }
 
@@ -55,6 +93,7 @@ pub struct Info {
     edge: f64,
     binary: bool,
     clipped: bool,
+    proof: Proven,
     pub nodes: u64,
     pub classical_nodes: u64,
     cells: Cells,
@@ -77,6 +116,7 @@ impl Info {
             edge: frame.edge(),
             binary: view.is_binary(),
             clipped: view.is_clipped(),
+            proof: octree.proof().into(),
             nodes,
             // The level table of a damaged file may hold anything.
             classical_nodes: nodes.saturating_mul(8).saturating_add(1),
@@ -101,8 +141,8 @@ impl Info {
         }
     }
 
-    /// Notes how many cells of each level were split while the tree was built; the canonical tree forgets those splits
-    /// whose eight children agree.
+    /// Notes how many cells of each level were split while the tree was built; the canonical tree forgets
+    /// those splits whose eight children agree.
     pub fn note_splits(&mut self, splits: &[u64]) {
         for level in &mut self.levels {
             level.splits = Some(splits.iter().take(level.level.into()).sum());
@@ -125,6 +165,7 @@ impl Info {
             (if self.binary { "binary: every cell is decided" } else { "bounds: some cells are undecided" })
                 .into(),
         );
+        line("proven", self.proof.text());
         line("volume", self.volume_text());
         line("nodes", count(self.nodes));
         line("classical nodes", count(self.classical_nodes));
@@ -145,6 +186,16 @@ impl Info {
         text.push('\n');
         text.push_str(&table(&head, &rows));
         text
+    }
+
+    /// What the volume is the volume of.
+    pub fn volume_note(&self) -> &'static str {
+        let certified = self.proof.full && self.proof.empty && !self.binary;
+        match (certified, self.clipped) {
+            (false, _) => " (of the cells)",
+            (true, false) => " (the true one lies between)",
+            (true, true) => " (that of the part inside of the bounds lies between)",
+        }
     }
 
     /// The volume in words.

@@ -8,8 +8,8 @@ use leafless::scene;
 use leafless::scene::Scene;
 use std::path::Path;
 
-/// Reads a scene, and says what its text was: the text's checksum and length. Files that it names are looked for beside
-/// it, or in the current folder if it comes from standard input.
+/// Reads a scene, and says what its text was: the text's checksum and length. Files that it names are looked
+/// for beside it, or in the current folder if it comes from standard input.
 pub fn read_scene(input: &Input) -> Result<(Scene, String), Failure> {
     let text = input.read()?;
     if text.starts_with(&MAGIC) {

@@ -7,7 +7,9 @@ use crate::output;
 use crate::scene::{bounds_of, read_scene};
 use leafless::exchange::MeshFormat;
 use leafless::scene::Scene;
-use leafless::{Affine, AnySolid, Csg, FillRule, Frame, MeshSolid, Octree, Transform, TriangleMesh, file};
+use leafless::{
+    Affine, AnySolid, Csg, FillRule, Frame, MeshSolid, Octree, Proof, Transform, TriangleMesh, file,
+};
 use std::path::Path;
 
 /// Of a box, the lower and the upper one.
@@ -54,6 +56,14 @@ impl Source {
         Ok(Source::Mesh(read.mesh, fill))
     }
 
+    /// The same; of a solid from a file the cells themselves, if that is asked for, and not what they prove.
+    pub fn taken(self, cells: bool) -> Source {
+        match self {
+            Source::Octree(octree) if cells => Source::Octree(Box::new(octree.with_proof(Proof::CERTIFIED))),
+            source => source,
+        }
+    }
+
     /// The frame of a solid.
     pub fn own_frame(&self) -> Option<&Frame> {
         match self {
@@ -74,7 +84,8 @@ impl Source {
         })
     }
 
-    /// The solid under a placement, to be asked about cells of `frame`, moved in the best way that its kind knows.
+    /// The solid under a placement, to be asked about cells of `frame`, moved in the best way that its kind
+    /// knows.
     pub fn placed(self, input: &Input, placement: &Affine, frame: &Frame) -> Result<AnySolid, Failure> {
         let solid = match self {
             Source::Octree(octree) if placement.is_identity() && !octree.frame().same_universe(frame) => {

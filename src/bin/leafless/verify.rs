@@ -6,8 +6,8 @@ use crate::output::{count, print};
 use clap::Args;
 use std::ffi::OsString;
 
-/// Checks every checksum, the order and the links of all nodes, that the tree is in canonical form, and that the
-/// level table describes it. The exit code is 0 if the file is good and 1, with the reason, if it is not.
+/// Checks every checksum, the order and the links of all nodes, that the tree is in canonical form, and that
+/// the level table describes it. The exit code is 0 if the file is good and 1, with the reason, if it is not.
 #[derive(Args)]
 pub struct Arguments {
     /// Solid (.lfl), or `-` for standard input

@@ -14,48 +14,50 @@ use std::ffi::OsString;
 use std::fmt::Write;
 use std::time::Instant;
 
-/// Cuts the space around a mesh into 2^N × 2^N × 2^N cells, of which only those near the surface are kept apart. By
-/// the certified rule every cell is proven inside, proven outside, or undecided because the surface may pass
-/// through it; no such cell is ever missed.
+/// Cuts the space around a mesh into 2^N × 2^N × 2^N cells, of which only those near the surface are kept
+/// apart. By the certified rule every cell is proven inside, proven outside, or undecided because the surface
+/// may pass through it; no such cell is ever missed.
 ///
-/// The mesh should be closed: every edge shared by an even number of triangles that face the same side. Where it has
-/// holes, or facets that are turned round, the winding number decides what is inside, and cells near them may stay
-/// undecided; a warning says so. Bodies may overlap. Vertices that differ by no more than single precision can tell
-/// are joined, and it is reported how many.
+/// The mesh should be closed: every edge shared by an even number of triangles that face the same side. Where
+/// it has holes, or facets that are turned round, the winding number decides what is inside, and cells near
+/// them may stay undecided; a warning says so. Bodies may overlap. Vertices that differ by no more than
+/// single precision can tell are joined, and it is reported how many.
 ///
-/// The file records the input's name, length and checksum, the rule, and the unit if it is known. Equal input gives equal bytes, for any
-/// number of threads.
+/// The file records the input's name, length and checksum, the rule, and the unit if it is known. Equal input
+/// gives equal bytes, for any number of threads.
 #[derive(Args)]
 pub struct Arguments {
     /// Mesh (STL, OBJ, PLY, OFF or 3MF), or `-` for standard input
     #[arg(value_name = "MESH")]
     input: OsString,
-    /// File to write, or `-` for standard output, whose summary then goes to standard error; it is written whole
-    /// or not at all
+    /// File to write, or `-` for standard output, whose summary then goes to standard error; it is written
+    /// whole or not at all
     #[arg(short, long, value_name = "OUT.lfl")]
     output: OsString,
-    /// Levels of the octree, 1 to 20: each halves the cells, and the error, and makes the file some four times as
-    /// long
+    /// Levels of the octree, 1 to 20: each halves the cells, and the error, and makes the file some four
+    /// times as long
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=leafless::MAX_DEPTH as i64))]
     depth: u8,
     /// What becomes of the finest cells that the surface passes through
     #[arg(long, value_enum, default_value_t = RuleName::Certified)]
     rule: RuleName,
-    /// Which points count as inside. Without it: positive for 3MF, as that format demands, and nonzero for all others
+    /// Which points count as inside. Without it: positive for 3MF, as that format demands, and nonzero for
+    /// all others
     #[arg(long, value_enum)]
     fill: Option<FillName>,
     #[command(flatten)]
     reading: Reading,
-    /// Lower corner and edge length of the cube to cut into cells, in the units of the mesh once it is converted and
-    /// scaled. Solids can be combined if they were given the same bounds and depth. What sticks out is cut off, and
-    /// reported. Without it: the cube around the middle of the mesh, its edge 33/32 of the mesh's longest extent
+    /// Lower corner and edge length of the cube to cut into cells, in the units of the mesh once it is
+    /// converted and scaled. Solids can be combined if they were given the same bounds and depth. What sticks
+    /// out is cut off, and reported. Without it: the cube around the middle of the mesh, its edge 33/32 of
+    /// the mesh's longest extent
     #[arg(long, value_name = "X0,Y0,Z0,EDGE", value_parser = bounds, allow_hyphen_values = true)]
     bounds: Option<Frame>,
     /// Threads to use; 0: as many as there are processors. The result is the same
     #[arg(long, default_value_t = 0, value_name = "N", value_parser = threads)]
     threads: usize,
-    /// Print one JSON object with timings, counts, the mesh report and the volume (on standard error if the solid
-    /// goes to standard output)
+    /// Print one JSON object with timings, counts, the mesh report and the volume (on standard error if the
+    /// solid goes to standard output)
     #[arg(long)]
     json: bool,
 }
@@ -313,11 +315,7 @@ fn summary(
         frame.depth(),
         number(frame.cell_size()),
         info.volume_text(),
-        match (octree.view().is_binary(), octree.view().is_clipped()) {
-            (true, _) => " (of the cells)",
-            (false, false) => " (the true one lies between)",
-            (false, true) => " (that of the part inside of the bounds lies between)",
-        },
+        info.volume_note(),
         count(info.nodes),
         count(info.classical_nodes),
         count(info.bytes),

@@ -1,28 +1,30 @@
-//! 3MF packages: the core specification 1.x, and of the production extension the parts that it spreads models over.
+//! 3MF packages: the core specification 1.x, and the production extension's parts of models.
 //!
-//! **The way in.** A package is a ZIP archive (stored or DEFLATE). `_rels/.rels` must lead to one 3D model, and
-//! `[Content_Types].xml` must be there and not call it something else. Components and items of the build may refer
-//! to objects in other model parts by the production extension's `path`, from the root model only.
+//! **The way in.** A package is a ZIP archive (stored or DEFLATE). `_rels/.rels` must lead to one 3D model,
+//! and `[Content_Types].xml` must be there and not call it something else. Components and items of the build
+//! may refer to objects in other model parts by the production extension's `path`, from the root model only.
 //!
-//! **What is built.** The items of the build in the root model, each an object that is a mesh or consists of placed
-//! components, which are objects again. All their triangles become one mesh in the unit of the root model. An object
-//! that is reached several times stands there several times. A transform that mirrors also turns the triangles round,
-//! so that a volume keeps its sign. Objects of all types but `model` (`support`, `solidsupport`, `surface`, and
-//! `other`, which a build should not reach, but slicers put their modifiers there) are left out, and counted; the
-//! type of an object of components has no meaning. Objects that the build does not reach are not built. Metadata,
-//! materials, textures and triangle sets are ignored, and so are extensions that the model does not require. The fill
-//! rule of 3MF is `FillRule::Positive` for each object, and the union of the objects: the mesh as a whole differs
-//! from that only where an object that is inside out overlaps another one.
+//! **What is built.** The items of the build in the root model, each an object that is a mesh or consists of
+//! placed components, which are objects again. All their triangles become one mesh in the unit of the root
+//! model. An object that is reached several times stands there several times. A transform that mirrors also
+//! turns the triangles round, so that a volume keeps its sign. Objects of all types but `model` (`support`,
+//! `solidsupport`, `surface`, and `other`, which a build should not reach, but slicers put their modifiers
+//! there) are left out, and counted; the type of an object of components has no meaning. Objects that the
+//! build does not reach are not built. Metadata, materials, textures and triangle sets are ignored, and so
+//! are extensions that the model does not require. The fill rule of 3MF is `FillRule::Positive` for each
+//! object, and the union of the objects: the mesh as a whole differs from that only where an object that is
+//! inside out overlaps another one.
 //!
-//! **What is refused.** Damaged archives, parts that are encrypted, packages with keys for protected content, models
-//! that require an extension other than production, materials and triangle sets; document type declarations,
-//! encodings other than UTF-8; objects that are referred to before they are defined (which makes circles impossible)
-//! or defined twice, meshes that only stand for something finer (`lowres`, `obfuscated`), models without a build,
-//! indices of vertices that do not exist, numbers that are not finite.
+//! **What is refused.** Damaged archives, parts that are encrypted, packages with keys for protected content,
+//! models that require an extension other than production, materials and triangle sets; document type
+//! declarations, encodings other than UTF-8; objects that are referred to before they are defined (which
+//! makes circles impossible) or defined twice, meshes that only stand for something finer (`lowres`,
+//! `obfuscated`), models without a build, indices of vertices that do not exist, numbers that are not finite.
 //!
-//! **Memory.** Decompressed, the parts that are read may together be 64 times as long as the file and 16 MiB; what is
-//! read of them takes at most twenty times their length (of meshes three times). Instances may come to 2^25 vertices
-//! and 2^25 triangles, or to as many as the file has, and be made of 2^24 placements. Nothing is recursive.
+//! **Memory.** Decompressed, the parts that are read may together be 64 times as long as the file and 16 MiB;
+//! what is read of them takes at most twenty times their length (of meshes three times). Instances may come
+//! to 2^25 vertices and 2^25 triangles, or to as many as the file has, and be made of 2^24 placements.
+//! Nothing is recursive.
 
 mod model;
 mod package;

@@ -182,7 +182,7 @@ impl Models {
                         _ => return Err(xml.attribute_error(&attribute, "is no type of objects")),
                     };
                 }
-                // Of the slice and the production extension, which the model may not even say that it requires.
+                // Of the slice and the production extension, which the model may not even require.
                 (_, "meshresolution" | "modelresolution") if attribute.value.trim_ascii() != "fullres" => {
                     return Err(xml.attribute_error(&attribute, "says that the mesh is not the true shape"));
                 }
@@ -259,7 +259,7 @@ impl Models {
         Ok(())
     }
 
-    /// Of objects in the same part only the first `finished` of all may be referred to: circles are impossible then.
+    /// Of objects in the same part only the first `finished` of all may be referred to, hence no circles.
     fn read_component(
         &self,
         xml: &Xml,

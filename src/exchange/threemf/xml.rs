@@ -11,8 +11,8 @@ use quick_xml::events::attributes::Attributes;
 use crate::error::{Error, PackageError};
 use crate::memory;
 
-/// How deep elements may be nested, and how long the names of the open ones may be together. The reader keeps them
-/// in memory that cannot be refused.
+/// How deep elements may be nested, and how long the names of the open ones may be together. The reader keeps
+/// them in memory that cannot be refused.
 const MAX_DEPTH: usize = 64;
 const MAX_NAMES: usize = 1024;
 /// How long names and paths in attributes may be.
@@ -114,7 +114,7 @@ impl<'a> Xml<'a> {
         Self { part, text, reader, bindings, open: [0; MAX_DEPTH], depth: 0, names: 0, rooted: false }
     }
 
-    /// The next start or end of an element; `None` at the end of a part that has just one element around all others.
+    /// The next start or end of an element; `None` at the end of a part with one element around all others.
     pub fn next(&mut self) -> Result<Option<Markup<'a>>, Error> {
         let depth = self.depth;
         while self.bindings.last().is_some_and(|binding| binding.depth > depth) {
@@ -174,8 +174,7 @@ impl<'a> Xml<'a> {
         usize::try_from(self.reader.buffer_position()).unwrap_or(usize::MAX)
     }
 
-    /// The length of the name of the element that begins or ends at `offset`, 0 if none does. Checked before the
-    /// reader sees it.
+    /// The length of the name of the element that begins or ends at `offset`, or 0. Checked before reading.
     fn name_ahead(&self, offset: usize) -> Result<usize, Error> {
         let rest = self.text.as_bytes().get(offset..).unwrap_or(b"");
         let Some(rest) = rest.strip_prefix(b"<") else { return Ok(0) };

@@ -1,11 +1,7 @@
-//! Exact signs of polynomials in doubles and lattice planes.
-//!
-//! An [`Expansion`] is a real number as a sum of doubles that do not overlap, so that its largest term has
-//! its sign (Shewchuk, *Adaptive precision floating-point arithmetic*, 1997). It is for the rare cases that
-//! floating point with an error bound leaves open; all of it is cold.
+//! Sums of doubles that do not overlap, so that the largest term has the sign of the sum (Shewchuk, *Adaptive
+//! precision floating-point arithmetic*, 1997). All of it is cold.
 
-use super::{grow, sign, two_diff, two_product};
-use crate::lattice::Frame;
+use super::{grow, sign, two_product};
 use alloc::vec::Vec;
 
 /// A real number, exactly: non-overlapping terms of increasing magnitude, no zeros.
@@ -58,14 +54,6 @@ impl Expansion {
     pub(crate) fn sign(&self) -> i32 {
         self.0.last().map_or(0, |&term| sign(term))
     }
-
-    /// `x − (origin + k·cell/2)` on `axis` of the frame: how far a coordinate lies from a lattice plane (even
-    /// k) or a plane of cell centres (odd k).
-    pub(crate) fn offset(frame: &Frame, axis: usize, x: f64, k: i64) -> Expansion {
-        let (high, low) = two_diff(x, frame.origin()[axis]);
-        let (product, error) = two_product(k as f64, 0.5 * frame.cell_size());
-        Expansion::sum([low, -error, high, -product])
-    }
 }
 
 /// The sign of a value that is known up to an error, or `None` if that does not decide it. With no error
@@ -88,16 +76,5 @@ mod tests {
         let zero = a.times(&b).minus(&squares.times(&squares)).plus(&Expansion::sum([1.0]));
         assert_eq!(zero.sign(), 0);
         assert_eq!(zero.plus(&Expansion::sum([1e-60])).sign(), 1);
-    }
-
-    #[test]
-    fn offsets_are_exact() {
-        let frame = Frame::new([0.1; 3], 0.7, 20).unwrap();
-        for k in [0i64, 1, 3, 1_000_001, 2_097_152] {
-            let plane = 0.1 + k as f64 * (0.7 / 2_097_152.0);
-            for x in [plane.next_down(), plane, plane.next_up()] {
-                assert_eq!(Expansion::offset(&frame, 1, x, k).sign(), frame.side(1, x, k));
-            }
-        }
     }
 }

@@ -1,12 +1,20 @@
-//! Error-free transformations of doubles.
+//! Exact arithmetic, of which there are two kinds.
 //!
-//! Sums and products of two doubles as an unevaluated pair `(rounded, error)` (Dekker 1971, Knuth 1969), and
-//! what follows from them at once: exact signs of short sums, products rounded in a chosen direction. All of
-//! it holds under round-to-nearest as long as nothing over- or underflows, which the ranges that frames and
-//! shapes accept (2^±256) guarantee.
+//! * Sums of doubles, for the sign of a short polynomial in the doubles that a shape was given:
+//!   [`sign_of_sum`] and [`sign_of_products`] where the number of terms is known, an [`Expansion`] where it
+//!   is not. They rest on error-free transformations, which turn the sum or product of two doubles into a
+//!   pair `(rounded, error)` (Dekker 1971, Knuth 1969). All of it holds under round-to-nearest as long as
+//!   nothing over- or underflows, which the ranges that frames and shapes accept (2^±256) guarantee for
+//!   polynomials up to degree three.
+//! * [`Dyadic`], an integer of any length times a power of two, for what grows: coefficients of half-spaces,
+//!   placements within placements, polynomials of any degree. It never overflows, and it is slow.
+//!
+//! Both decide what floating point with an error bound leaves open; that filter belongs to the caller.
 
+mod dyadic;
 mod expansion;
 
+pub(crate) use dyadic::{Dyadic, cross, dot};
 pub(crate) use expansion::{Expansion, certain};
 
 /// `a + b` as `(rounded, error)` with `rounded + error = a + b` exactly.
@@ -65,7 +73,7 @@ pub fn product_up(a: f64, b: f64) -> f64 {
 /// Adds `value` to the expansion in `terms[..count]` (non-overlapping, increasing magnitude) and returns the
 /// new count; zeros are dropped. `terms` needs room for one more (Shewchuk 1997, Grow-Expansion).
 #[inline]
-pub fn grow(terms: &mut [f64], count: usize, value: f64) -> usize {
+fn grow(terms: &mut [f64], count: usize, value: f64) -> usize {
     let mut carry = value;
     let mut kept = 0;
     for i in 0..count {
@@ -83,12 +91,24 @@ pub fn grow(terms: &mut [f64], count: usize, value: f64) -> usize {
     kept
 }
 
-/// The exact sign (−1, 0, 1) of the sum of up to eight doubles.
-pub fn sign_of_sum(values: &[f64]) -> i32 {
-    let mut terms = [0.0; 8];
+/// The exact sign (−1, 0, 1) of the sum of the values.
+pub fn sign_of_sum<const N: usize>(values: &[f64; N]) -> i32 {
+    let mut terms = [0.0; N];
     let count = values.iter().fold(0, |count, &value| grow(&mut terms, count, value));
     // The last term of an expansion outweighs all the others together.
-    if count == 0 { 0 } else { sign(terms[count - 1]) }
+    terms[..count].last().map_or(0, |&term| sign(term))
+}
+
+/// The exact sign (−1, 0, 1) of the sum of the products of up to twelve pairs.
+pub fn sign_of_products(pairs: &[(f64, f64)]) -> i32 {
+    let mut terms = [0.0; 24];
+    let mut count = 0;
+    for &(a, b) in pairs {
+        let (high, low) = two_product(a, b);
+        count = grow(&mut terms, count, low);
+        count = grow(&mut terms, count, high);
+    }
+    terms[..count].last().map_or(0, |&term| sign(term))
 }
 
 /// −1, 0 or 1.
@@ -117,6 +137,7 @@ mod tests {
         assert_eq!(sign_of_sum(&[0.1, 0.2, -0.3]), 1);
         assert_eq!(sign_of_sum(&[3.0, -1.0, -2.0]), 0);
         assert_eq!(sign_of_sum(&[]), 0);
+        assert_eq!(sign_of_products(&[(1.0 + f64::EPSILON, 1.0 - f64::EPSILON), (-1.0, 1.0)]), -1);
     }
 
     #[test]

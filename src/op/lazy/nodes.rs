@@ -4,7 +4,7 @@ use crate::control::Control;
 use crate::error::Error;
 use crate::lattice::{Cell, Frame, MAX_DEPTH};
 use crate::octree::view::LevelCounts;
-use crate::octree::{Node, Statistics, Tag};
+use crate::octree::{Node, Proof, Statistics, Tag};
 use crate::solid::{Classifier, OCTANTS, Solid, Verdict, Worker};
 use alloc::vec::Vec;
 
@@ -88,11 +88,12 @@ pub(super) struct Place {
 
 /// The split cells of an octree, eight siblings to a block, for changing it in place.
 ///
-/// A block is there as long as one of its eight is split. Blocks that are not used any more form a list, and are taken
-/// up again before there are new ones.
+/// A block is there as long as one of its eight is split. Blocks that are not used any more form a list, and
+/// are taken up again before there are new ones.
 pub(super) struct Nodes {
     frame: Frame,
     pub(super) exterior: Tag,
+    pub(super) proof: Proof,
     /// Block b is `splits[8 * b..8 * b + 8]`. The universe is child 0 of the first of block 0.
     splits: Vec<Split>,
     /// First block of those that are not used, each of which names the next as its first split's.
@@ -109,9 +110,14 @@ impl Nodes {
     pub(super) const ROOT: Place = Place { split: 0, octant: 0 };
 
     /// An octree of which nothing is known but this of the universe.
-    pub(super) fn new<P>(frame: Frame, root: &Verdict<P>, exterior: Tag) -> Result<Nodes, Error> {
+    pub(super) fn new<P>(
+        frame: Frame,
+        root: &Verdict<P>,
+        exterior: Tag,
+        proof: Proof,
+    ) -> Result<Nodes, Error> {
         let counts = [LevelCounts::default(); MAX_DEPTH as usize + 1];
-        let mut nodes = Nodes { frame, exterior, splits: Vec::new(), unused: NONE, blocks: 0, counts };
+        let mut nodes = Nodes { frame, exterior, proof, splits: Vec::new(), unused: NONE, blocks: 0, counts };
         nodes.take_block()?;
         nodes.splits[0].children.set(0, root.tag(), matches!(root, Verdict::Undecided));
         nodes.counts[0].full = (root.tag() == Tag::Full) as u64;
@@ -147,8 +153,8 @@ impl Nodes {
         self.splits[self.own(place)].children
     }
 
-    /// The places from the universe towards `cell`, and the last of them with its level: `cell` itself, or the last one
-    /// that is no BRANCH.
+    /// The places from the universe towards `cell`, and the last of them with its level: `cell` itself, or
+    /// the last one that is no BRANCH.
     pub(super) fn way(&self, cell: Cell) -> ([Place; MAX_DEPTH as usize + 1], u8) {
         let mut way = [Nodes::ROOT; MAX_DEPTH as usize + 1];
         for level in 0..cell.level {
@@ -213,7 +219,7 @@ impl Nodes {
     }
 
     /// Takes every PARTIAL cell for one that may be split.
-    pub(super) fn take_heart(&mut self) {
+    pub(super) fn forget_hopeless(&mut self) {
         self.splits.iter_mut().for_each(|split| split.children.hopeless = 0);
     }
 
@@ -232,10 +238,8 @@ impl Nodes {
     fn take_block(&mut self) -> Result<u32, Error> {
         let block = match self.unused {
             NONE => {
-                let block = u32::try_from(self.splits.len() / 8).map_err(|_| Error::OutOfMemory)?;
-                if block == NONE {
-                    return Err(Error::OutOfMemory);
-                }
+                let block = u32::try_from(self.splits.len() / 8).ok().filter(|&block| block != NONE);
+                let block = block.ok_or(Error::OutOfMemory)?;
                 self.splits.try_reserve(8)?;
                 self.splits.extend([Split::UNUSED; 8]);
                 block
@@ -292,6 +296,10 @@ impl Classifier for &Nodes {
 
     fn exterior(&self) -> Tag {
         self.exterior
+    }
+
+    fn proof(&self) -> Proof {
+        self.proof
     }
 }
 

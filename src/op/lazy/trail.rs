@@ -3,8 +3,9 @@
 use crate::control::Control;
 use crate::error::Error;
 use crate::lattice::Cell;
+use crate::memory;
 use crate::op::split_one;
-use crate::solid::{Classifier, Verdict, Worker};
+use crate::solid::{Verdict, Worker};
 use alloc::vec::Vec;
 
 /// One split on the way.
@@ -14,9 +15,9 @@ struct Step<P> {
     verdicts: [Verdict<P>; 8],
 }
 
-/// The splits from the universe to one cell, which have its part: to split another cell, those are replayed that do not
-/// lie on the way to this one, too.
-pub(super) struct Trail<W: Worker> {
+/// The splits from the universe to one cell, which have its part: to split another cell, those are replayed
+/// that do not lie on the way to this one, too.
+pub(crate) struct Trail<W: Worker> {
     worker: W,
     root: Verdict<W::Part>,
     /// Where the way leads.
@@ -30,12 +31,9 @@ pub(super) struct Trail<W: Worker> {
 
 impl<W: Worker> Trail<W> {
     /// Asks the solid for the universe.
-    pub(super) fn new(classifier: &impl Classifier<Worker = W>) -> Result<Trail<W>, Error> {
-        let mut worker = classifier.worker()?;
+    pub(crate) fn new(mut worker: W) -> Result<Trail<W>, Error> {
         let root = worker.root()?;
-        let mut steps = Vec::new();
-        let depth: usize = worker.frame().depth().into();
-        steps.try_reserve_exact(depth)?;
+        let steps = memory::with_capacity(worker.frame().depth().into())?;
         Ok(Trail { worker, root, cell: Cell::ROOT, steps, own: None, splits: 0 })
     }
 
@@ -72,7 +70,8 @@ impl<W: Worker> Trail<W> {
         shared.min(self.steps.len())
     }
 
-    /// What the solid says of the children of `cell`'s ancestor at `level`, if [`lead`](Self::lead) came that far.
+    /// What the solid says of the children of `cell`'s ancestor at `level`, if [`lead`](Self::lead) came that
+    /// far.
     pub(super) fn verdicts(&self, level: u8) -> Option<&[Verdict<W::Part>; 8]> {
         match &self.own {
             Some(own) => (level == self.cell.level).then_some(own),
@@ -80,8 +79,8 @@ impl<W: Worker> Trail<W> {
         }
     }
 
-    /// Leads the way to `cell`, which is above the frame's depth, and splits it. It ends before a cell that the solid
-    /// does not split.
+    /// Leads the way to `cell`, which is above the frame's depth, and splits it. It ends before a cell that
+    /// the solid does not split.
     ///
     /// # Errors
     /// The solid's own; the way then ends where they occurred.
@@ -95,15 +94,16 @@ impl<W: Worker> Trail<W> {
             self.splits += 1;
             return Ok(());
         }
+        self.follow(cell, control)
+    }
+
+    /// As [`lead`](Self::lead), with all splits on the way whether or not the part can be had without them.
+    pub(crate) fn follow(&mut self, cell: Cell, control: &Control<'_>) -> Result<(), Error> {
         self.cut(self.at_hand(cell));
         self.cell = cell;
-        for level in self.steps.len() as u8..=cell.level {
-            let ancestor = cell.ancestor(level);
-            let verdict = match self.steps.last() {
-                Some(step) => &step.verdicts[ancestor.octant() as usize],
-                None => &self.root,
-            };
-            let Verdict::Partial(part) = verdict else { return Ok(()) };
+        while self.steps.len() <= cell.level.into() {
+            let ancestor = cell.ancestor(self.steps.len() as u8);
+            let Verdict::Partial(part) = verdict_at(&self.steps, &self.root, ancestor) else { break };
             let mark = self.worker.mark();
             match split_one(&mut self.worker, ancestor, part, control) {
                 Ok(verdicts) => self.steps.push(Step { mark, verdicts }),
@@ -117,6 +117,11 @@ impl<W: Worker> Trail<W> {
         Ok(())
     }
 
+    /// What is known of `cell`, to whose parent the way was led, or of the ancestor that the way ends before.
+    pub(crate) fn verdict(&self, cell: Cell) -> &Verdict<W::Part> {
+        verdict_at(&self.steps, &self.root, cell.ancestor(self.steps.len() as u8))
+    }
+
     /// Forgets all but the first `steps` splits.
     pub(super) fn cut(&mut self, steps: usize) {
         if let Some(step) = self.steps.get(steps) {
@@ -124,4 +129,9 @@ impl<W: Worker> Trail<W> {
             self.steps.truncate(steps);
         }
     }
+}
+
+/// What the last of the steps to `cell` says of it.
+fn verdict_at<'s, P>(steps: &'s [Step<P>], root: &'s Verdict<P>, cell: Cell) -> &'s Verdict<P> {
+    steps.last().map_or(root, |step| &step.verdicts[cell.octant() as usize])
 }

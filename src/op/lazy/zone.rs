@@ -1,26 +1,27 @@
 //! Where a lazy octree is refined.
 
 use crate::error::Error;
-use crate::lattice::{Cube, Frame, LARGEST, SMALLEST};
+use crate::lattice::{Cube, Frame, Window, valid};
 
-/// A part of model space in which cells are to be refined. What of it lies outside of the universe does not count.
+/// A part of model space in which cells are to be refined. What of it lies outside of the universe does not
+/// count.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Zone {
     /// All of the universe.
     Whole,
-    /// The cells that have more than their surface in common with a box (model units, min ≤ max); of a box without
-    /// thickness, those that it lies in.
+    /// The cells that have more than their surface in common with a box (model units, min ≤ max); of a box
+    /// without thickness, those that it lies in.
     Box {
         /// Lower corner.
         min: [f64; 3],
         /// Upper corner.
         max: [f64; 3],
     },
-    /// The cells that contain a point (model units), as point queries count them: a point between two cells lies in
-    /// the upper one.
+    /// The cells that contain a point (model units), as point queries count them: a point between two cells
+    /// lies in the upper one.
     Point([f64; 3]),
-    /// All cells that the points origin + t·direction with from ≤ t ≤ to touch, be it in a corner, and perhaps some
-    /// that they miss by a hair's breadth.
+    /// All cells that the points origin + t·direction with from ≤ t ≤ to touch, be it in a corner, and
+    /// perhaps some that they miss by a hair's breadth.
     Ray {
         /// A point of the ray (model units); each coordinate zero or of a magnitude between 2^-256 and 2^256.
         origin: [f64; 3],
@@ -35,9 +36,7 @@ pub enum Zone {
 
 /// A zone on the lattice of a frame.
 pub(super) struct Reach {
-    /// First and last finest cell per axis.
-    first: [u32; 3],
-    last: [u32; 3],
+    window: Window,
     ray: Option<Ray>,
 }
 
@@ -54,27 +53,15 @@ impl Reach {
     /// # Errors
     /// [`Error::Argument`] if its numbers are not as they must be.
     pub(super) fn new(frame: &Frame, zone: &Zone) -> Result<Option<Reach>, Error> {
-        let whole = Reach { first: [0; 3], last: [frame.cells() - 1; 3], ray: None };
+        let whole = Window { first: [0; 3], last: [frame.cells() - 1; 3] };
+        let without_ray = |window| Reach { window, ray: None };
         Ok(match *zone {
-            Zone::Whole => Some(whole),
-            Zone::Box { min, max } => {
-                if (0..3).any(|axis| min[axis] > max[axis] || min[axis].is_nan() || max[axis].is_nan()) {
-                    let problem = "must be a number not below min on any axis";
-                    return Err(Error::Argument { name: "max", problem });
-                }
-                let mut reach = whole;
-                for axis in 0..3 {
-                    match frame.cells_between(axis, min[axis], max[axis]) {
-                        Some((first, last, _)) => (reach.first[axis], reach.last[axis]) = (first, last),
-                        None => return Ok(None),
-                    }
-                }
-                Some(reach)
-            }
-            Zone::Point(point) => frame.cell_of(point).map(|at| Reach { first: at, last: at, ray: None }),
+            Zone::Whole => Some(without_ray(whole)),
+            Zone::Box { min, max } => Window::new(frame, min, max)?.map(|(window, _)| without_ray(window)),
+            Zone::Point(point) => frame.cell_of(point).map(|at| without_ray(Window { first: at, last: at })),
             Zone::Ray { origin, direction, from, to } => {
                 let ray = Ray::new(origin, direction, from, to)?;
-                Some(Reach { ray: Some(ray), ..whole })
+                Some(Reach { window: whole, ray: Some(ray) })
             }
         })
     }
@@ -82,13 +69,11 @@ impl Reach {
     /// Whether the zone has a cell in common with `cube`.
     #[inline]
     pub(super) fn meets(&self, cube: &Cube<'_>) -> bool {
-        let (lower, upper) = cube.planes();
-        (0..3).all(|axis| lower[axis] <= self.last[axis] && self.first[axis] < upper[axis])
-            && self.ray.as_ref().is_none_or(|ray| ray.meets(cube))
+        self.window.meets(cube) && self.ray.as_ref().is_none_or(|ray| ray.meets(cube))
     }
 
-    /// What the octants' numbers are changed by (exclusive or) to take them in the zone's order: along a ray from its
-    /// beginning on.
+    /// What the octants' numbers are changed by (exclusive or) to take them in the zone's order: along a ray
+    /// from its beginning on.
     pub(super) fn order(&self) -> Option<u8> {
         let ray = self.ray.as_ref()?;
         Some((0..3).fold(0, |order, axis| order | ((ray.direction[axis] < 0.0) as u8) << axis))
@@ -98,12 +83,8 @@ impl Reach {
 impl Ray {
     fn new(origin: [f64; 3], direction: [f64; 3], from: f64, to: f64) -> Result<Ray, Error> {
         let refuse = |name, problem| Err(Error::Argument { name, problem });
-        for (name, coordinates) in [("origin", origin), ("direction", direction)] {
-            if !coordinates.iter().all(|&c| c == 0.0 || (SMALLEST..=LARGEST).contains(&c.abs())) {
-                let problem = "every coordinate must be zero or of a magnitude between 2^-256 and 2^256";
-                return refuse(name, problem);
-            }
-        }
+        valid::numbers("origin", &origin)?;
+        valid::numbers("direction", &direction)?;
         if direction == [0.0; 3] {
             return refuse("direction", "must not be zero");
         }
@@ -113,8 +94,8 @@ impl Ray {
         Ok(Ray { origin, direction, from, to })
     }
 
-    /// Whether the ray touches a cube: by the intervals of t in which it is between the cube's planes (Kay and Kajiya,
-    /// *Ray tracing complex scenes*, 1986), every number rounded outward.
+    /// Whether the ray touches a cube: by the intervals of t in which it is between the cube's planes (Kay
+    /// and Kajiya, *Ray tracing complex scenes*, 1986), every number rounded outward.
     fn meets(&self, cube: &Cube<'_>) -> bool {
         let (min, max) = cube.bounds();
         let (mut enters, mut leaves) = (self.from, self.to);

@@ -1,18 +1,20 @@
 //! What the moments of the FULL and of the PARTIAL cells prove of the solid.
 //!
-//! The solid S contains the FULL cells F, and the FULL and PARTIAL cells together, A, contain it. All its volume
-//! integrals of one sign are therefore bounded by those of F and of A, and so is more:
+//! The solid S contains the FULL cells F, and the FULL and PARTIAL cells together, A, contain it. All its
+//! volume integrals of one sign are therefore bounded by those of F and of A, and so is more:
 //!
-//! - The matrix ∫ x xᵀ of second moments about a point grows with the set in the order of Loewner: the difference for
-//!   two nested sets is the matrix of what lies between, which is positive semidefinite. So does the one about the
-//!   set's own centroid, because uᵀ M u = ∫ (u·x − u·c)², and the centroid c makes this a minimum.
-//! - From L ≼ M ≼ U follows, for elements off the diagonal, |2 Mij − Lij − Uij| ≤ √(Δii Δjj) with Δ = U − L. (Both M − L
-//!   and U − M have Mij² ≤ Mii Mjj; then Cauchy–Schwarz.)
-//! - The same holds of the matrix of the moments of 1 and x − c: ∫ (x − c) over S is at most the mean of those over F
-//!   and A plus ½ √(V ∫ (x − c)²) of the PARTIAL cells of volume V. (Scarf's bound.) Where that is 0, no centroid lies
-//!   beyond c; elsewhere none further than that over the volume of F.
+//! - The matrix ∫ x xᵀ of second moments about a point grows with the set in the order of Loewner: the
+//!   difference for two nested sets is the matrix of what lies between, which is positive semidefinite. So
+//!   does the one about the set's own centroid, because uᵀ M u = ∫ (u·x − u·c)², and the centroid c makes
+//!   this a minimum.
+//! - From L ≼ M ≼ U follows, for elements off the diagonal, |2 Mij − Lij − Uij| ≤ √(Δii Δjj) with Δ = U − L.
+//!   (Both M − L and U − M have Mij² ≤ Mii Mjj; then Cauchy–Schwarz.)
+//! - The same holds of the matrix of the moments of 1 and x − c: ∫ (x − c) over S is at most the mean of
+//!   those over F and A plus ½ √(V ∫ (x − c)²) of the PARTIAL cells of volume V. (Scarf's bound.) Where that
+//!   is 0, no centroid lies beyond c; elsewhere none further than that over the volume of F.
 
 use super::moments::{Moments, PAIRS};
+use super::walk::Found;
 use crate::lattice::exact::sqrt;
 use crate::lattice::{Frame, Interval};
 
@@ -29,13 +31,12 @@ const THREE: Interval = Interval::exactly(3.0);
 /// The FULL and the PARTIAL cells.
 pub(super) struct Known<'f> {
     pub(super) frame: &'f Frame,
-    pub(super) full: Moments,
-    pub(super) open: Moments,
+    pub(super) found: Found,
 }
 
 impl Known<'_> {
     fn all(&self) -> Moments {
-        self.full + self.open
+        self.found.full + self.found.open
     }
 
     /// The edge of half a finest cell, in model units.
@@ -51,17 +52,18 @@ impl Known<'_> {
     }
 
     pub(super) fn volume(&self) -> Interval {
-        let (full, all) = (Interval::of_integer(self.full.volume), Interval::of_integer(self.all().volume));
+        let (full, all) =
+            (Interval::of_integer(self.found.full.volume), Interval::of_integer(self.all().volume));
         self.to_model(Interval { lower: full.lower, upper: all.upper })
     }
 
     /// None if nothing is proven full.
     pub(super) fn centroid(&self) -> Option<[Interval; 3]> {
-        if self.full.volume == 0 {
+        if self.found.full.volume == 0 {
             return None;
         }
-        let point = self.full.first.map(|first| 2 * nearest(first, 2 * self.full.volume));
-        let (full, open) = (self.full.about(point), self.open.about(point));
+        let point = self.found.full.first.map(|first| 2 * nearest(first, 2 * self.found.full.volume));
+        let (full, open) = (self.found.full.about(point), self.found.open.about(point));
         Some([0, 1, 2].map(|axis| {
             let of = |sign: i128| {
                 farthest(
@@ -82,14 +84,15 @@ impl Known<'_> {
 
     /// About the model's origin.
     pub(super) fn inertia_about_origin(&self) -> Tensor {
-        let [full, open, all] = [self.full, self.open, self.all()].map(|m| self.second_about_origin(&m));
+        let [full, open, all] =
+            [self.found.full, self.found.open, self.all()].map(|m| self.second_about_origin(&m));
         self.tensor(&full, &all, [0, 1, 2].map(|axis| open[axis].upper))
     }
 
     /// About the solid's own centroid.
     pub(super) fn inertia_about_centroid(&self) -> Tensor {
-        let [full, all] = [self.full, self.all()].map(|m| second_about_centroid(&m));
-        let spread = match self.open.volume {
+        let [full, all] = [self.found.full, self.all()].map(|m| second_about_centroid(&m));
+        let spread = match self.found.open.volume {
             0 => [0.0; 3],
             _ => [0, 1, 2].map(|axis| all[axis].minus(full[axis]).upper),
         };
@@ -119,8 +122,8 @@ impl Known<'_> {
         second
     }
 
-    /// The tensor of inertia of a set whose second moments lie between `lower` and `upper`, the differences of whose
-    /// diagonals are at most `spread`.
+    /// The tensor of inertia of a set whose second moments lie between `lower` and `upper`, the differences
+    /// of whose diagonals are at most `spread`.
     fn tensor(&self, lower: &Symmetric, upper: &Symmetric, spread: [f64; 3]) -> Tensor {
         let half = Interval::exactly(self.half());
         let to_model = |second: Interval| {
@@ -173,8 +176,8 @@ fn nearest(a: i128, b: i128) -> i128 {
     (2 * a + b) / (2 * b)
 }
 
-/// A number that the centroid's coordinate does not exceed, from moments of the FULL and the PARTIAL cells along the
-/// axis; `full_volume` is positive.
+/// A number that the centroid's coordinate does not exceed, from moments of the FULL and the PARTIAL cells
+/// along the axis; `full_volume` is positive.
 fn farthest(
     full_volume: i128,
     full_first: i128,

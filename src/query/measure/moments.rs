@@ -6,9 +6,9 @@ use core::ops::{Add, AddAssign};
 /// Which two axes each second moment is of.
 pub(super) const PAIRS: [(usize, usize); 6] = [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)];
 
-/// Moments of a set of cells, about a point of the lattice of half finest cells. With lengths in half finest cells and
-/// volumes in finest cells they are volume, ∫x and 3·∫xy, and integers: below 2^60, 2^81 and 2^104, since the universe has
-/// at most 2^20 finest cells per axis.
+/// Moments of a set of cells, about a point of the lattice of half finest cells. With lengths in half finest
+/// cells and volumes in finest cells they are volume, ∫x and 3·∫xy, and integers: below 2^60, 2^81 and 2^104,
+/// since the universe has at most 2^20 finest cells per axis.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub(super) struct Moments {
     pub(super) volume: i128,

@@ -1,17 +1,19 @@
 //! Splitting the largest undecided cells first.
 //!
-//! Cells of one level are equally large, so this goes level by level, and all cells of a level are kept with their
-//! parts for the next: the *front*. Once it is long, memory matters more than splits, and it stays as it is: each
-//! pass walks depth first through what lies below it, to a deeper level than the one before, and keeps nothing but
-//! the moments of the cells that it ends at.
+//! Cells of one level are equally large, so this goes level by level, and all cells of a level are kept with
+//! their parts for the next: the *front*. Once it is long, memory matters more than splits, and it stays as
+//! it is: each pass walks depth first through what lies below it, to a deeper level than the one before, and
+//! keeps nothing but the moments of the cells that it ends at.
 
-use super::Measured;
+use super::StopReason;
 use super::moments::{Moments, Tally};
 use crate::control::{Control, Job, WHOLE};
 use crate::error::Error;
 use crate::lattice::{Cell, Frame};
 use crate::memory;
-use crate::op::{gathered, split_one};
+use crate::op::gathered::{self, Part};
+use crate::query::descent::{Step, descend};
+use crate::query::each;
 use crate::solid::{Classifier, Verdict, Worker};
 use alloc::vec::Vec;
 use core::ops::AddAssign;
@@ -27,20 +29,18 @@ const LONG_GATHERED: usize = 1 << 22;
 
 /// What was found.
 pub(super) struct Walked {
-    /// Of the FULL cells, about the lattice's origin.
-    pub(super) full: Moments,
-    /// Of the undecided cells.
-    pub(super) open: Moments,
-    pub(super) measured: Measured,
+    /// About the lattice's origin.
+    pub(super) found: Found,
+    pub(super) stop_reason: StopReason,
     pub(super) level: u8,
     pub(super) splits: u64,
 }
 
 /// Moments of FULL and of undecided cells.
 #[derive(Clone, Copy, Default)]
-struct Found {
-    full: Moments,
-    open: Moments,
+pub(super) struct Found {
+    pub(super) full: Moments,
+    pub(super) open: Moments,
 }
 
 impl AddAssign for Found {
@@ -97,9 +97,7 @@ pub(super) fn walk<C: Classifier>(
     control.run(frame.depth() > 5 || likes_many, |parallel| {
         // All of a front is asked at once.
         let (chunk, long) = if likes_many { (usize::MAX, LONG_GATHERED) } else { (CHUNK, LONG_FRONT) };
-        let max_splits = control.max_splits;
-        let walk = Walk { classifier, frame, tolerance, max_splits, job: &job, chunk, long, parallel };
-        walk.run()
+        Walk { classifier, frame, tolerance, job: &job, chunk, long, parallel }.run()
     })
 }
 
@@ -107,42 +105,38 @@ struct Walk<'a, C> {
     classifier: &'a C,
     frame: &'a Frame,
     tolerance: f64,
-    max_splits: Option<u64>,
     job: &'a Job<'a>,
     /// Cells of a chunk, and of a front that is split further.
     chunk: usize,
     long: usize,
-    #[cfg_attr(not(feature = "parallel"), allow(dead_code))]
     parallel: bool,
 }
-
-type Part<C> = <<C as Classifier>::Worker as Worker>::Part;
 
 /// The cells of the front.
 type Front<C> = Vec<Chunk<<C as Classifier>::Worker>>;
 
-/// A worker, and cells with its parts.
-type Out<C> = (<C as Classifier>::Worker, Vec<(Cell, Part<C>)>);
+/// Cells with their parts.
+type Cells<C> = Vec<(Cell, Part<C>)>;
 
 impl<C: Classifier> Walk<'_, C> {
     fn run(&self) -> Result<Walked, Error> {
-        let budget = self.max_splits.unwrap_or(u64::MAX);
+        let budget = self.job.control().max_splits.unwrap_or(u64::MAX);
         let (mut settled, mut front) = self.root()?;
         let (mut level, mut left) = (0, budget);
         // Whether all of the front was split, and whether the last pass ended at cells that can be.
         let (mut whole, mut splittable) = (true, true);
         let mut unreported = WHOLE;
-        let measured = loop {
+        let stop_reason = loop {
             let found = total(settled, &front);
             let length: usize = front.iter().map(|chunk| chunk.cells.len()).sum();
             if self.is_met(&found) {
-                break Measured::Tolerance;
+                break StopReason::Tolerance;
             }
             if whole && (length == 0 || !splittable) {
-                break Measured::Exhausted;
+                break StopReason::Exhausted;
             }
             if left == 0 {
-                break Measured::Budget;
+                break StopReason::Budget;
             }
             let share = unreported / 2;
             unreported -= share;
@@ -162,8 +156,7 @@ impl<C: Classifier> Walk<'_, C> {
             }
         };
         self.job.advance(unreported);
-        let Found { full, open } = total(settled, &front);
-        Ok(Walked { full, open, measured, level, splits: budget - left })
+        Ok(Walked { found: total(settled, &front), stop_reason, level, splits: budget - left })
     }
 
     /// What is settled at once, and the first front.
@@ -172,16 +165,12 @@ impl<C: Classifier> Walk<'_, C> {
         let mut settled = Tallies::new(self.frame);
         let mut cells = Vec::new();
         match worker.root()? {
+            Verdict::Partial(part) => memory::push(&mut cells, (Cell::ROOT, part))?,
             Verdict::Empty => {}
             Verdict::Full => settled.full.add(Cell::ROOT),
             Verdict::Undecided => settled.open.add(Cell::ROOT),
-            Verdict::Partial(part) => {
-                cells.try_reserve_exact(1)?;
-                cells.push((Cell::ROOT, part));
-            }
         }
-        let mut front = memory::with_capacity(1)?;
-        front.push(Chunk::new(worker, cells, self.frame));
+        let front = memory::collected([Chunk::new(worker, cells, self.frame)].into_iter())?;
         Ok((settled.finish(), front))
     }
 
@@ -190,12 +179,12 @@ impl<C: Classifier> Walk<'_, C> {
         open == 0.0 || open <= self.tolerance * (full + 0.5 * open)
     }
 
-    /// The level for the next pass: where the tolerance will be met if each level halves what is undecided. Under a
-    /// budget it is the next one, so that the budget does not end half-way to a deep one.
+    /// The level for the next pass: where the tolerance will be met if each level halves what is undecided.
+    /// Under a budget it is the next one, so that the budget does not end half-way to a deep one.
     fn target(&self, found: &Found, level: u8) -> u8 {
         let mut expected = *found;
         let mut target = level + 1;
-        while target < self.frame.depth() && self.max_splits.is_none() {
+        while target < self.frame.depth() && self.job.control().max_splits.is_none() {
             expected.open.volume /= 2;
             expected.full.volume += expected.open.volume / 2;
             if self.is_met(&expected) {
@@ -208,15 +197,14 @@ impl<C: Classifier> Walk<'_, C> {
 
     /// Splits the cells of the front, as many as may be: what is settled by it, and the new front.
     fn split(&self, front: &mut [Chunk<C::Worker>], left: &mut u64) -> Result<(Found, Front<C>), Error> {
-        let mut tasks = memory::with_capacity(front.len())?;
-        for chunk in front {
+        let tasks = front.iter_mut().map(|chunk| {
             let count = (*left).min(chunk.cells.len() as u64) as usize;
             *left -= count as u64;
-            tasks.push((chunk, count));
-        }
+            (chunk, count)
+        });
         let mut settled = Found::default();
         let mut next = Vec::new();
-        for (found, chunks) in self.each(tasks, |(chunk, count)| self.split_chunk(chunk, count))? {
+        for (found, chunks) in each(self.parallel, tasks, |(chunk, count)| self.split_chunk(chunk, count))? {
             settled += found;
             next.try_reserve(chunks.len())?;
             next.extend(chunks);
@@ -230,7 +218,7 @@ impl<C: Classifier> Walk<'_, C> {
         let mut next: Front<C> = Vec::new();
         chunk.cells.iter().skip(count).for_each(|&(cell, _)| settled.open.add(cell));
         let mut verdicts = Vec::new();
-        let mut out: Option<Out<C>> = None;
+        let mut out: Option<(C::Worker, Cells<C>)> = None;
         let many = chunk.worker.likes_many();
         let step = if many { count.max(1) } else { 1 };
         for cells in chunk.cells[..count].chunks(step) {
@@ -239,13 +227,8 @@ impl<C: Classifier> Walk<'_, C> {
             verdicts.clear();
             if many {
                 let threads = if self.parallel { gathered::threads() } else { 1 };
-                verdicts = gathered::each(
-                    self.classifier,
-                    &mut chunk.worker,
-                    cells,
-                    threads,
-                    |own, cells, verdicts| own.split_many(cells, self.job.control(), verdicts),
-                )?;
+                let control = self.job.control();
+                verdicts = gathered::split_each(self.classifier, &mut chunk.worker, cells, threads, control)?;
             } else {
                 let (cell, part) = &cells[0];
                 verdicts.push(chunk.worker.split(*cell, part)?);
@@ -279,9 +262,9 @@ impl<C: Classifier> Walk<'_, C> {
         Ok((settled.finish(), next))
     }
 
-    /// Walks through what lies below the front, to cells of level `target`: whether any of these can be split.
-    /// `None` if the budget has ended it. (Under a budget one thread has to do it, as what it leaves depends on the
-    /// order.)
+    /// Walks through what lies below the front, to cells of level `target`: whether any of these can be
+    /// split. `None` if the budget has ended it. (Under a budget one thread has to do it, as what it leaves
+    /// depends on the order.)
     fn deepen(
         &self,
         front: &mut [Chunk<C::Worker>],
@@ -289,25 +272,23 @@ impl<C: Classifier> Walk<'_, C> {
         left: &mut u64,
         share: usize,
     ) -> Result<Option<bool>, Error> {
-        let each = share / front.len().max(1);
-        self.job.advance(share - each * front.len());
-        if self.max_splits.is_some() {
+        let one = share / front.len().max(1);
+        self.job.advance(share - one * front.len());
+        if self.job.control().max_splits.is_some() {
             let mut splittable = false;
             for chunk in front {
                 match self.deepen_chunk(chunk, target, left)? {
                     Some(more) => splittable |= more,
                     None => return Ok(None),
                 }
-                self.job.advance(each);
+                self.job.advance(one);
             }
             return Ok(Some(splittable));
         }
-        let mut tasks = memory::with_capacity(front.len())?;
-        tasks.extend(front);
-        let done = self.each(tasks, |chunk| {
+        let done = each(self.parallel, front.iter_mut(), |chunk| {
             let mut own = u64::MAX;
             let more = self.deepen_chunk(chunk, target, &mut own)?;
-            self.job.advance(each);
+            self.job.advance(one);
             Ok((more, u64::MAX - own))
         })?;
         *left -= done.iter().map(|&(_, splits)| splits).sum::<u64>();
@@ -321,10 +302,15 @@ impl<C: Classifier> Walk<'_, C> {
         target: u8,
         left: &mut u64,
     ) -> Result<Option<bool>, Error> {
+        let depth = self.frame.depth();
+        let mut pass = Pass { depth, target, left, found: Tallies::new(self.frame), splittable: false };
         let mark = chunk.worker.mark();
-        let mut pass = Pass { target, found: Tallies::new(self.frame), splittable: false };
         for (cell, part) in &chunk.cells {
-            if !self.descend(&mut chunk.worker, *cell, part, &mut pass, left)? {
+            let goes_on = pass.may_split()
+                && descend(&mut chunk.worker, *cell, part, self.job, &mut |cell, verdict| {
+                    pass.step(cell, verdict)
+                })?;
+            if !goes_on {
                 chunk.worker.release(mark);
                 return Ok(None);
             }
@@ -332,69 +318,43 @@ impl<C: Classifier> Walk<'_, C> {
         chunk.found = pass.found.finish();
         Ok(Some(pass.splittable))
     }
-
-    /// Splits a cell and what lies below it, down to the pass's target; `false` if the budget has ended it. The
-    /// recursion is as deep as the frame at the most, 20 levels.
-    fn descend(
-        &self,
-        worker: &mut C::Worker,
-        cell: Cell,
-        part: &Part<C>,
-        pass: &mut Pass,
-        left: &mut u64,
-    ) -> Result<bool, Error> {
-        if *left == 0 {
-            return Ok(false);
-        }
-        *left -= 1;
-        self.job.check()?;
-        let mark = worker.mark();
-        for (octant, verdict) in (0..8).zip(split_one(worker, cell, part, self.job.control())?) {
-            let child = cell.child(octant);
-            match verdict {
-                Verdict::Empty => {}
-                Verdict::Full => pass.found.full.add(child),
-                Verdict::Partial(part) if child.level < pass.target => {
-                    if !self.descend(worker, child, &part, pass, left)? {
-                        return Ok(false);
-                    }
-                }
-                Verdict::Partial(_) => {
-                    pass.splittable |= child.level < self.frame.depth();
-                    pass.found.open.add(child);
-                }
-                Verdict::Undecided => pass.found.open.add(child),
-            }
-        }
-        worker.release(mark);
-        Ok(true)
-    }
-
-    /// Does all tasks: the results in their order.
-    fn each<T: Send, R: Send>(
-        &self,
-        tasks: Vec<T>,
-        work: impl Fn(T) -> Result<R, Error> + Send + Sync,
-    ) -> Result<Vec<R>, Error> {
-        #[cfg(feature = "parallel")]
-        if self.parallel && tasks.len() > 1 {
-            use rayon::prelude::*;
-            return tasks.into_par_iter().map(work).collect();
-        }
-        let mut done = memory::with_capacity(tasks.len())?;
-        for task in tasks {
-            done.push(work(task)?);
-        }
-        Ok(done)
-    }
 }
 
 /// One walk below a chunk.
-struct Pass {
+struct Pass<'l> {
+    depth: u8,
     target: u8,
+    /// Splits that may still be made.
+    left: &'l mut u64,
     found: Tallies,
     /// Whether a cell at the target can be split.
     splittable: bool,
+}
+
+impl Pass<'_> {
+    /// Takes one split off those that are left, if there is one.
+    #[inline]
+    fn may_split(&mut self) -> bool {
+        let may = *self.left > 0;
+        *self.left -= may as u64;
+        may
+    }
+
+    fn step<P>(&mut self, cell: Cell, verdict: Verdict<P>) -> Step<P> {
+        match verdict {
+            Verdict::Empty => {}
+            Verdict::Full => self.found.full.add(cell),
+            Verdict::Undecided => self.found.open.add(cell),
+            Verdict::Partial(part) if cell.level < self.target => {
+                return if self.may_split() { Step::Into(part) } else { Step::End };
+            }
+            Verdict::Partial(_) => {
+                self.splittable |= cell.level < self.depth;
+                self.found.open.add(cell);
+            }
+        }
+        Step::Past
+    }
 }
 
 fn total<W: Worker>(settled: Found, front: &[Chunk<W>]) -> Found {

@@ -6,8 +6,8 @@ use wide::f64x4;
 
 /// The eight children of a cell in unit coordinates: the universe is [0, 1]³.
 pub(super) struct Octants {
-    /// The cell's lower corner; one lane an axis, the last is 0.
-    pub(super) low: f64x4,
+    /// The cell's lower corner. (A vector would lie in memory, where it is slow to load after its parts.)
+    pub(super) low: [f64; 3],
     /// Edge of a child.
     pub(super) half: f64,
 }
@@ -17,24 +17,30 @@ impl Octants {
     #[inline(always)]
     pub(super) fn of(cell: Cell) -> Octants {
         let edge = edge(cell.level as u32);
-        let [x, y, z] = cell.at.map(|i| i as f64 * edge);
-        Octants { low: f64x4::new([x, y, z, 0.0]), half: 0.5 * edge }
+        Octants { low: cell.at.map(|i| i as f64 * edge), half: 0.5 * edge }
     }
 
     /// [0, 2]³, whose first child is the universe.
     pub(super) fn of_universe() -> Octants {
-        Octants { low: f64x4::ZERO, half: 1.0 }
+        Octants { low: [0.0; 3], half: 1.0 }
+    }
+
+    /// The lower corner; one lane an axis, the last is 0.
+    #[inline(always)]
+    pub(super) fn lanes(&self) -> f64x4 {
+        let [x, y, z] = self.low;
+        f64x4::new([x, y, z, 0.0])
     }
 
     /// The centres of the children, those of the lower and of the upper z, and half their edge.
     #[inline(always)]
     pub(super) fn centres(&self) -> ([[f64x4; 3]; 2], f64) {
-        let [low_x, low_y, low_z, _] = self.low.to_array();
+        let [low_x, low_y, low_z] = self.low;
         let quarter = 0.5 * self.half;
         let (x, y, z) = (low_x + quarter, low_y + quarter, low_z + quarter);
         let xs = f64x4::new([x, x + self.half, x, x + self.half]);
         let ys = f64x4::new([y, y, y + self.half, y + self.half]);
-        ([z, z + self.half].map(|z| [xs, ys, f64x4::splat(z)]), quarter)
+        ([[xs, ys, f64x4::splat(z)], [xs, ys, f64x4::splat(z + self.half)]], quarter)
     }
 
     /// Which of the eight are children: of the universe, which is the first itself, no other.
@@ -44,16 +50,16 @@ impl Octants {
 
     /// The lower and the upper corner of child `k`.
     pub(super) fn octant(&self, k: u32) -> ([f64; 3], [f64; 3]) {
-        let low = self.low.to_array();
-        let at = [0, 1, 2].map(|axis| low[axis] + (k >> axis & 1) as f64 * self.half);
+        let at = [0, 1, 2].map(|axis| self.low[axis] + (k >> axis & 1) as f64 * self.half);
         (at, at.map(|t| t + self.half))
     }
 }
 
-/// For each child the sum of `constant` and a value an axis, which are given for the lower and the upper half.
+/// For each child the sum of `constant` and a value an axis, which are given for the lower and the upper
+/// half.
 #[inline(always)]
 pub(super) fn sums(constant: f64, halves: [f64x4; 2]) -> [f64x4; 2] {
-    let [first, second] = halves.map(|values| values.to_array());
+    let [first, second] = [halves[0].to_array(), halves[1].to_array()];
     let x = f64x4::new([first[0], second[0], first[0], second[0]]);
     let y = f64x4::new([first[1], first[1], second[1], second[1]]);
     let xy = (f64x4::splat(constant) + x) + y;
@@ -85,20 +91,21 @@ pub(super) struct Sides {
 }
 
 impl Sides {
-    /// From the least and the greatest values, which are off by less than `error`; and the children of which they
-    /// leave a side open.
+    /// From the least and the greatest values, which are off by less than `error`; and the children of which
+    /// they leave a side open.
     #[inline(always)]
     pub(super) fn with_error(least: [f64x4; 2], most: [f64x4; 2], error: f64) -> (Sides, u8) {
         let (above, below) = (f64x4::splat(error), f64x4::splat(-error));
-        let inside = mask(least.map(|v| v.simd_ge(above)));
-        let outside = mask(most.map(|v| v.simd_le(below)));
-        let doubt =
-            mask(least.map(|v| v.simd_gt(below))) & !inside | mask(most.map(|v| v.simd_lt(above))) & !outside;
+        // Written out, since calls for arrays are not always inlined.
+        let inside = mask([least[0].simd_ge(above), least[1].simd_ge(above)]);
+        let outside = mask([most[0].simd_le(below), most[1].simd_le(below)]);
+        let doubt = mask([least[0].simd_gt(below), least[1].simd_gt(below)]) & !inside
+            | mask([most[0].simd_lt(above), most[1].simd_lt(above)]) & !outside;
         (Sides { inside, outside }, doubt)
     }
 
-    /// The same with what was left open, for the children `doubt`, decided by the exact sign of the least (`Less`) and
-    /// of the greatest value over a box (lower and upper corner).
+    /// The same with what was left open, for the children `doubt`, decided by the exact sign of the least
+    /// (`Less`) and of the greatest value over a box (lower and upper corner).
     #[cold]
     pub(super) fn settled(
         mut self,

@@ -3,8 +3,9 @@
 use super::Join;
 use super::bounds::{Octants, centre};
 use super::kleene::Kleene;
-use super::program::{Op, Program};
+use super::program::Program;
 use super::table::Table;
+use super::word::Op;
 use super::worker::{CsgPart, Scratch};
 use crate::error::Error;
 use crate::lattice::Cell;

@@ -1,6 +1,6 @@
 //! Boxes that contain a solid and its complement.
 
-use super::program::MOST;
+use super::word::MOST;
 use super::{Join, Kind, Node};
 use crate::lattice::{Affine, Bounds, Frame};
 use crate::octree::Tag;
@@ -112,7 +112,8 @@ impl Outward {
 }
 
 impl Node {
-    /// What is known of the space around the universe, by what `of_solid` says of other solids; `None` if memory runs out.
+    /// What is known of the space around the universe, by what `of_solid` says of other solids; `None` if
+    /// memory runs out.
     pub(super) fn exterior(&self, frame: &Frame, of_solid: impl Fn(&AnySolid) -> Option<Tag>) -> Option<Tag> {
         // Operands first; each operation then takes its own from the end.
         let (mut tasks, mut tags) = (Vec::new(), Vec::new());

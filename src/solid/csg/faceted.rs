@@ -1,24 +1,23 @@
 //! Named primitives with plane faces.
 
-use super::dyadic::Dyadic;
-use super::polygon::{Term, convex_differences};
-use super::primitive::{coordinates, length, slab};
+use super::polygon::{Term, monotone_formula};
+use super::primitive::{heights, slab};
 use super::{Csg, HalfSpace, support};
 use crate::error::Error;
+use crate::lattice::exact::Dyadic;
+use crate::lattice::valid::length;
 use crate::memory;
 use alloc::vec::Vec;
 
 /// The half-space over the half-plane a x + b y + c ≥ 0.
 fn upright_plane(a: Dyadic, b: Dyadic, c: Dyadic) -> HalfSpace {
-    let mut all = [0.0; 10].map(Dyadic::new);
-    (all[6], all[7], all[9]) = (a, b, c);
-    HalfSpace::exactly(all)
+    HalfSpace::linear([a, b, Dyadic::zero(), c])
 }
 
 impl Csg {
-    /// The right angular wedge: the box between the origin and `size` (model units) whose face at y = `size[1]` is
-    /// narrowed, or widened, to 0 ≤ x ≤ `top`; 0 makes that face an edge. (So it is defined by STEP, ISO 10303-42, where
-    /// `top` is called `ltx`.)
+    /// The right angular wedge: the box between the origin and `size` (model units) whose face at y =
+    /// `size[1]` is narrowed, or widened, to 0 ≤ x ≤ `top`; 0 makes that face an edge. (So it is defined by
+    /// STEP, ISO 10303-42, where `top` is called `ltx`.)
     ///
     /// # Errors
     /// [`Error::Argument`] if a size, or `top` unless it is 0, is not between 2^-256 and 2^256.
@@ -38,20 +37,18 @@ impl Csg {
         Ok(parts.within([0.0; 3], [size[0].max(top), size[1], size[2]]))
     }
 
-    /// The prism over a simple polygon in the xy plane, between z = `low` and z = `high` (model units). The polygon's
-    /// corners are given in order, in either direction of rotation; the last is joined to the first. The planes
-    /// through its edges are exact.
+    /// The prism over a simple polygon in the xy plane, between z = `low` and z = `high` (model units). The
+    /// polygon's corners are given in order, in either direction of rotation; the last is joined to the
+    /// first. The planes through its edges are exact.
     ///
     /// O(n log n) time for outlines whose edges are short and which do not spiral, O(n²) at worst.
     ///
     /// # Errors
-    /// [`Error::Argument`] if the outline touches or crosses itself or encloses nothing, a coordinate is not zero and not
-    /// of a magnitude between 2^-256 and 2^256, or `low` not less than `high`; [`Error::OutOfMemory`].
+    /// [`Error::Argument`] if the outline touches or crosses itself or encloses nothing, a coordinate is not
+    /// zero and not of a magnitude between 2^-256 and 2^256, or `low` not less than `high`;
+    /// [`Error::OutOfMemory`].
     pub fn prism(polygon: &[[f64; 2]], low: f64, high: f64) -> Result<Csg, Error> {
-        coordinates("height", &[low, high])?;
-        if low >= high {
-            return Err(Error::Argument { name: "high", problem: "must be greater than low" });
-        }
+        heights(low, high)?;
         let (mut min, mut max) =
             ([f64::INFINITY, f64::INFINITY, low], [f64::NEG_INFINITY, f64::NEG_INFINITY, high]);
         for corner in polygon {
@@ -66,7 +63,7 @@ impl Csg {
     /// The prism that has no ends.
     pub(super) fn column(polygon: &[[f64; 2]]) -> Result<Csg, Error> {
         let mut operands: Vec<Csg> = Vec::new();
-        for term in convex_differences(polygon)? {
+        for term in monotone_formula(polygon)? {
             let operand = match term {
                 Term::Edge([from, to]) => {
                     let [[ax, ay], [bx, by]] = [from, to].map(|i| polygon[i].map(Dyadic::new));
@@ -82,9 +79,9 @@ impl Csg {
         Ok(operands.pop().unwrap_or_else(Csg::empty))
     }
 
-    /// The convex polyhedron of the points p with `normal` · p + `offset` ≥ 0 for all `planes` (normal, offset); the
-    /// normals, of any length, point inward. It may be unbounded, or empty; then it has no [`bounds`](crate::Solid::bounds).
-    /// O(planes).
+    /// The convex polyhedron of the points p with `normal` · p + `offset` ≥ 0 for all `planes` (normal,
+    /// offset); the normals, of any length, point inward. It may be unbounded, or empty; then it has no
+    /// [`bounds`](crate::Solid::bounds). O(planes).
     ///
     /// # Errors
     /// [`Error::Argument`] if there is no plane; as [`HalfSpace::plane`]; [`Error::OutOfMemory`].

@@ -1,10 +1,9 @@
 //! Plane figures, and the solids that they sweep: prisms, tapered prisms and solids of revolution.
 //!
-//! A figure is an expression of half-planes and conics in x and y. As a solid it is the cylinder over itself along z, so
-//! that placements and set operations in the plane are those of space. The swept solids replace each of its half-planes
-//! and conics by what that sweeps; nothing is rounded.
+//! A figure is an expression of half-planes and conics in x and y. As a solid it is the cylinder over itself
+//! along z, so that placements and set operations in the plane are those of space. The swept solids replace
+//! each of its half-planes and conics by what that sweeps; nothing is rounded.
 
-use super::dyadic::Dyadic;
 use super::halfspace::{HalfSpace, Surface};
 use super::map::{ExactMap, MOST_BITS};
 use super::primitive::slab;
@@ -13,10 +12,10 @@ use super::torus::Torus;
 use super::{Csg, Join, Kind, Node};
 use crate::error::Error;
 use crate::lattice::Affine;
+use crate::lattice::exact::Dyadic;
 use crate::memory;
 use alloc::sync::Arc;
 use alloc::vec::Vec;
-use core::cmp::Ordering;
 
 /// A set of points in the plane.
 #[derive(Clone)]
@@ -48,8 +47,8 @@ impl Figure {
         Figure { csg: Csg::empty(), extent: None, core: None }
     }
 
-    /// The rectangle between two corners. Coordinates are zero or of a magnitude between 2^-256 and 2^256, `min` is less
-    /// than `max`.
+    /// The rectangle between two corners. Coordinates are zero or of a magnitude between 2^-256 and 2^256,
+    /// `min` is less than `max`.
     pub(crate) fn rectangle(min: [f64; 2], max: [f64; 2]) -> Result<Figure, Error> {
         let sides = (0..2).flat_map(|axis| slab(axis, min[axis], max[axis]));
         let extent = Some(Rectangle { min: min.map(Dyadic::new), max: max.map(Dyadic::new) });
@@ -58,11 +57,11 @@ impl Figure {
 
     /// The disc of a radius between 2^-256 and 2^256 around the origin.
     pub(crate) fn disc(radius: f64) -> Figure {
-        let mut c = [-1.0, -1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0].map(Dyadic::new);
-        c[9] = Dyadic::new(radius).pow(2);
+        let [squares, linear] = [[-1.0, -1.0, 0.0], [0.0; 3]].map(|c| c.map(Dyadic::new));
+        let disc = HalfSpace::separable(squares, linear, Dyadic::new(radius).pow(2));
         let [min, max] = [-radius, radius].map(|x| [x; 2].map(Dyadic::new));
         let extent = Some(Rectangle { min, max });
-        Figure { csg: HalfSpace::exactly(c).into(), extent, core: None }
+        Figure { csg: disc.into(), extent, core: None }
     }
 
     /// The simple polygon with these corners, in either direction.
@@ -140,15 +139,16 @@ impl Figure {
         extent.between(self.csg.clone(), low, high)
     }
 
-    /// The solid between two heights, `low` less than `high`, whose section is the figure at `low` and is scaled about
-    /// the z axis linearly with the height, to `scale` ≥ 0 (along x and y) at `high`.
+    /// The solid between two heights, `low` less than `high`, whose section is the figure at `low` and is
+    /// scaled about the z axis linearly with the height, to `scale` ≥ 0 (along x and y) at `high`.
     ///
     /// # Errors
     /// [`Error::Argument`] if the scales differ and the figure has curves.
     pub(crate) fn tapered(&self, low: f64, high: f64, scale: [f64; 2]) -> Result<Csg, Error> {
         let Some(extent) = &self.extent else { return Ok(Csg::empty()) };
         let (bottom, height) = (Dyadic::new(low), &Dyadic::new(high) - &Dyadic::new(low));
-        // The scale at z times the height, [constant, factor of z], along both axes. Not negative where it counts.
+        // The scale at z times the height, [constant, factor of z], along both axes. Not negative where it
+        // counts.
         let scales = scale.map(|scale| {
             let slope = &Dyadic::new(scale) - &Dyadic::new(1.0);
             [&height - &(&slope * &bottom), slope]
@@ -164,12 +164,12 @@ impl Figure {
         self.extent.as_ref().is_some_and(|extent| extent.max[0].sign() <= 0)
     }
 
-    /// The solid that the figure sweeps when it is put into the plane of x and z, x to x and y to z, and turned
-    /// around the z axis.
+    /// The solid that the figure sweeps when it is put into the plane of x and z, x to x and y to z, and
+    /// turned around the z axis.
     ///
     /// # Errors
-    /// [`Error::Argument`] if the figure is not known to lie on one side of its y axis, or if it has curves that are no
-    /// circles.
+    /// [`Error::Argument`] if the figure is not known to lie on one side of its y axis, or if it has curves
+    /// that are no circles.
     pub(crate) fn revolved(&self) -> Result<Csg, Error> {
         let Some(Rectangle { min, max }) = &self.extent else { return Ok(Csg::empty()) };
         let is_mirrored = self.is_mirrored();
@@ -201,11 +201,19 @@ impl Figure {
             match task {
                 Task::Map(node, map) => match &node.kind {
                     Kind::HalfSpace(half_space) => {
-                        let Surface::Quadric(coefficients) = &*half_space.0 else {
-                            return refuse("figure", "must consist of half-planes and conics");
+                        let conic = match &*half_space.0 {
+                            Surface::Plane(plane) => {
+                                // As of a conic, times w².
+                                let [x, y, _, one] = map.linear(plane).map(|c| &c * &map.w);
+                                [Dyadic::zero(), Dyadic::zero(), Dyadic::zero(), x, y, one]
+                            }
+                            Surface::Quadric(coefficients) => {
+                                let [xx, yy, _, xy, _, _, x, y, _, one] = substitute(coefficients, &map);
+                                [xx, yy, xy, x, y, one]
+                            }
+                            _ => return refuse("figure", "must consist of half-planes and conics"),
                         };
-                        let [xx, yy, _, xy, _, _, x, y, _, one] = substitute(coefficients, &map);
-                        memory::push(&mut images, image([xx, yy, xy, x, y, one])?)?;
+                        memory::push(&mut images, image(conic)?)?;
                     }
                     Kind::Placed(part, placement) => {
                         memory::push(&mut tasks, Task::Map(part, Arc::new(map.of_placed(placement)?)))?;
@@ -237,8 +245,8 @@ impl Figure {
     }
 }
 
-/// What a half-plane or conic becomes if x and y are divided by the two scales (each the `height`-th part of a linear
-/// function of z, which is not negative).
+/// What a half-plane or conic becomes if x and y are divided by the two scales (each the `height`-th part of
+/// a linear function of z, which is not negative).
 fn taper([xx, yy, xy, x, y, one]: Conic, height: &Dyadic, scales: &[[Dyadic; 2]; 2]) -> Result<Csg, Error> {
     let zero = Dyadic::zero;
     let [p, q] = scales;
@@ -248,9 +256,7 @@ fn taper([xx, yy, xy, x, y, one]: Conic, height: &Dyadic, scales: &[[Dyadic; 2];
         // x h + y h + p ≥ 0.
         let scale = if y.is_zero() { p } else { q };
         let [constant, z] = scale.each_ref().map(|c| &one * c);
-        return Ok(
-            HalfSpace::exactly([zero(), zero(), zero(), zero(), zero(), zero(), x, y, z, constant]).into()
-        );
+        return Ok(HalfSpace::linear([x, y, z, constant]).into());
     }
     let pq = |c: &Dyadic| -> [Dyadic; 3] {
         let middle = &(&p[0] * &q[1]) + &(&p[1] * &q[0]);
@@ -282,37 +288,15 @@ fn revolve([xx, yy, xy, x, y, one]: Conic) -> Result<Csg, Error> {
     }
     // x r + L ≥ 0, with L = y z + 1.
     if x.is_zero() {
-        return Ok(HalfSpace::exactly([
-            zero(),
-            zero(),
-            zero(),
-            zero(),
-            zero(),
-            zero(),
-            zero(),
-            zero(),
-            y,
-            one,
-        ])
-        .into());
+        return Ok(HalfSpace::linear([zero(), zero(), y, one]).into());
     }
     // Where L has the sign of x or is 0 the sum has it; elsewhere the squares tell.
     let square = x.pow(2);
     let inward = x.sign() < 0;
     let signed = |c: Dyadic| if inward { -&c } else { c };
-    let c = [
-        signed(square.clone()),
-        signed(square),
-        signed(-&y.pow(2)),
-        zero(),
-        zero(),
-        zero(),
-        zero(),
-        zero(),
-        signed(-&(&y * &one).shifted(1)),
-        signed(-&one.pow(2)),
-    ];
-    let squares = Csg::from(HalfSpace::exactly(c));
+    let squares = [square.clone(), square, -&y.pow(2)].map(signed);
+    let linear = [zero(), zero(), signed(-&(&y * &one).shifted(1))];
+    let squares = Csg::from(HalfSpace::separable(squares, linear, signed(-&one.pow(2))));
     if y.is_zero() {
         // A cylinder, unless L has the sign of x.
         return Ok(match (inward, one.sign()) {
@@ -321,23 +305,21 @@ fn revolve([xx, yy, xy, x, y, one]: Conic) -> Result<Csg, Error> {
             _ => squares,
         });
     }
-    let linear =
-        HalfSpace::exactly([zero(), zero(), zero(), zero(), zero(), zero(), zero(), zero(), y, one]).into();
+    let linear = HalfSpace::linear([zero(), zero(), y, one]).into();
     if inward { Csg::intersection_of([linear, squares]) } else { Csg::union_of([linear, squares]) }
 }
 
 /// The body of revolution of the disc with `square` (x² + y²) + `x` x + `y` y + `one` ≥ 0.
 fn ring(square: Dyadic, x: Dyadic, y: Dyadic, one: Dyadic) -> Result<Csg, Error> {
-    let zero = Dyadic::zero;
     if x.is_zero() {
-        let c = [square.clone(), square.clone(), square, zero(), zero(), zero(), zero(), zero(), y, one];
-        return Ok(HalfSpace::exactly(c).into());
+        let squares = [square.clone(), square.clone(), square];
+        return Ok(HalfSpace::separable(squares, [Dyadic::zero(), Dyadic::zero(), y], one).into());
     }
     if x.sign() < 0 {
         return refuse("figure", "has a circle whose centre lies beyond the axis");
     }
-    // With A = −square > 0, and ρ² = x² + y², A (ρ² + z²) ≤ x ρ + y z + 1. That is, times 4 A and with each square
-    // completed, (2 A ρ − x)² + (2 A z − y)² ≤ x² + y² + 4 A.
+    // With A = −square > 0, and ρ² = x² + y², A (ρ² + z²) ≤ x ρ + y z + 1. That is, times 4 A and with each
+    // square completed, (2 A ρ − x)² + (2 A z − y)² ≤ x² + y² + 4 A.
     let scale = -&square.shifted(1);
     let square = &(&x.pow(2) + &y.pow(2)) + &(&scale * &one).shifted(1);
     Ok(HalfSpace::ring(Torus { major: x, square, scale, shift: -&y }).into())
@@ -350,14 +332,6 @@ fn hull(figures: &[Figure]) -> Option<Rectangle> {
         None => Some(extent.clone()),
         Some(hull) => Some(hull.hull(extent)),
     })
-}
-
-fn least(a: &Dyadic, b: &Dyadic) -> Dyadic {
-    if a.compare(b) == Ordering::Greater { b.clone() } else { a.clone() }
-}
-
-fn greatest(a: &Dyadic, b: &Dyadic) -> Dyadic {
-    if a.compare(b) == Ordering::Less { b.clone() } else { a.clone() }
 }
 
 /// The largest double that is known not to be greater.
@@ -373,34 +347,33 @@ fn up(value: Dyadic) -> f64 {
 impl Rectangle {
     fn hull(&self, other: &Rectangle) -> Rectangle {
         Rectangle {
-            min: [0, 1].map(|axis| least(&self.min[axis], &other.min[axis])),
-            max: [0, 1].map(|axis| greatest(&self.max[axis], &other.max[axis])),
+            min: [0, 1].map(|axis| (&self.min[axis]).min(&other.min[axis]).clone()),
+            max: [0, 1].map(|axis| (&self.max[axis]).max(&other.max[axis]).clone()),
         }
     }
 
     fn common(&self, other: &Rectangle) -> Option<Rectangle> {
         Rectangle {
-            min: [0, 1].map(|axis| greatest(&self.min[axis], &other.min[axis])),
-            max: [0, 1].map(|axis| least(&self.max[axis], &other.max[axis])),
+            min: [0, 1].map(|axis| (&self.min[axis]).max(&other.min[axis]).clone()),
+            max: [0, 1].map(|axis| (&self.max[axis]).min(&other.max[axis]).clone()),
         }
         .proper()
     }
 
     /// Nothing, if it has no inside.
     fn proper(self) -> Option<Rectangle> {
-        (0..2).all(|axis| self.min[axis].compare(&self.max[axis]) == Ordering::Less).then_some(self)
+        (0..2).all(|axis| self.min[axis] < self.max[axis]).then_some(self)
     }
 
     /// The smallest rectangle around what is not in another one.
     fn without(mut self, other: &Rectangle) -> Option<Rectangle> {
         for (axis, across) in [(0, 1), (1, 0)] {
-            let covers = other.min[across].compare(&self.min[across]) != Ordering::Greater
-                && other.max[across].compare(&self.max[across]) != Ordering::Less;
-            if covers && other.min[axis].compare(&self.min[axis]) != Ordering::Greater {
-                self.min[axis] = greatest(&self.min[axis], &other.max[axis]);
+            let covers = other.min[across] <= self.min[across] && other.max[across] >= self.max[across];
+            if covers && other.min[axis] <= self.min[axis] {
+                self.min[axis] = (&self.min[axis]).max(&other.max[axis]).clone();
             }
-            if covers && other.max[axis].compare(&self.max[axis]) != Ordering::Less {
-                self.max[axis] = least(&self.max[axis], &other.min[axis]);
+            if covers && other.max[axis] >= self.max[axis] {
+                self.max[axis] = (&self.max[axis]).min(&other.min[axis]).clone();
             }
             self = self.proper()?;
         }
@@ -435,9 +408,9 @@ impl Rectangle {
     }
 }
 
-/// The wedge of directions around the z axis from `start` on, counter-clockwise by `angle` degrees (between 0 and 360,
-/// both exclusive). Its two planes have the directions of the angles' cosines and sines, rounded to doubles, and exact
-/// ones at multiples of 45°.
+/// The wedge of directions around the z axis from `start` on, counter-clockwise by `angle` degrees (between 0
+/// and 360, both exclusive). Its two planes have the directions of the angles' cosines and sines, rounded to
+/// doubles, and exact ones at multiples of 45°.
 pub(crate) fn wedge(start: f64, angle: f64) -> Result<Csg, Error> {
     let side = |degrees: f64, sense: f64| {
         let [cos, sin] = direction(degrees);

@@ -1,18 +1,18 @@
 //! The fingerprint of an expression: of its parts before it, without recursion.
 
-use super::dyadic::Dyadic;
 use super::halfspace::{HalfSpace, Surface};
 use super::torus::Torus;
-use super::{Csg, Join, Kind, Node, program};
+use super::{Csg, Join, Kind, Node, word};
+use crate::lattice::exact::Dyadic;
 use crate::memory;
 use crate::solid::{Fingerprint, Fingerprinter, Solid};
 use alloc::vec::Vec;
 
 impl Csg {
-    /// The fingerprint, of all numbers that the expression was given in their order; `None` if a part has none. O(n) in
-    /// the expression written out.
+    /// The fingerprint, of all numbers that the expression was given in their order; `None` if a part has
+    /// none. O(n) in the expression written out.
     pub(super) fn fingerprint_of_expression(&self) -> Option<Fingerprint> {
-        if self.root.size > program::MOST {
+        if self.root.size > word::MOST {
             return None;
         }
         let mut tasks: Vec<(&Node, bool)> = Vec::new();
@@ -58,6 +58,12 @@ impl Csg {
 impl HalfSpace {
     fn fingerprint(&self) -> Option<Fingerprint> {
         let all = match &*self.0 {
+            // A plane is a quadric without squares and products.
+            Surface::Plane(plane) => {
+                let zero = Dyadic::zero();
+                let all = core::iter::repeat_n(&zero, 6).chain(plane);
+                all.fold(Fingerprinter::new("quadric"), |all, c| c.taken_in(all))
+            }
             Surface::Quadric(coefficients) => {
                 coefficients.iter().fold(Fingerprinter::new("quadric"), |all, c| c.taken_in(all))
             }

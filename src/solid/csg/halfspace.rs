@@ -1,29 +1,32 @@
 //! Half-spaces: what all primitives are made of.
 
-use super::bounds::{Octants, Sides};
-use super::dyadic::Dyadic;
+use super::bounds::{Octants, Sides, mask};
 use super::host::{Host, PlacedHost};
 use super::map::ExactMap;
+use super::plane::Plane;
 use super::power::{PlacedPowers, Powers};
 use super::quadric::{Coefficients, Quadric};
 use super::torus::{PlacedTorus, Torus};
 use crate::error::Error;
-use crate::lattice::exact::sign;
-use crate::lattice::{Frame, Interval};
-use crate::solid::{Fingerprint, is_moderate};
+use crate::lattice::exact::{Dyadic, sign};
+use crate::lattice::{Frame, Interval, valid};
+use crate::solid::Fingerprint;
 use alloc::boxed::Box;
 use alloc::sync::Arc;
+use wide::f64x4;
 
 /// The points with f(x, y, z) ≥ 0, for one function f. Cheap to clone.
 ///
-/// f is that of exactly the doubles given, and its signs are exact: no rounding decides anything. (Of a host program's
-/// function it is the program that answers for the signs.)
+/// f is that of exactly the doubles given, and its signs are exact: no rounding decides anything. (Of a host
+/// program's function it is the program that answers for the signs.)
 #[derive(Clone)]
 pub struct HalfSpace(pub(super) Arc<Surface>);
 
 /// The function of a half-space, in the space in which it was given.
 pub(super) enum Surface {
-    /// Of degree one or two.
+    /// a x + b y + c z + d.
+    Plane([Dyadic; 4]),
+    /// Of degree two.
     Quadric(Box<Coefficients>),
     Powers(Powers),
     Torus(Torus),
@@ -37,56 +40,44 @@ impl HalfSpace {
     /// `normal` · p + `offset` ≥ 0; the normal, of any length, points into the half-space.
     ///
     /// # Errors
-    /// [`Error::Argument`] if the normal is zero, or a number is not zero and not of a magnitude between 2^-256 and
-    /// 2^256.
+    /// [`Error::Argument`] if the normal is zero, or a number is not zero and not of a magnitude between
+    /// 2^-256 and 2^256.
     pub fn plane(normal: [f64; 3], offset: f64) -> Result<HalfSpace, Error> {
         if normal == [0.0; 3] {
             return Err(Error::Argument { name: "normal", problem: "must not be zero" });
         }
-        let problem = "every number must be zero or of a magnitude between 2^-256 and 2^256";
-        for (name, numbers) in [("normal", &normal[..]), ("offset", &[offset])] {
-            if !numbers.iter().all(|&c| c == 0.0 || is_moderate(c)) {
-                return Err(Error::Argument { name, problem });
-            }
-        }
+        valid::numbers("normal", &normal)?;
+        valid::numbers("offset", &[offset])?;
         let [x, y, z] = normal;
-        HalfSpace::quadric([0.0, 0.0, 0.0, 0.0, 0.0, 0.0, x, y, z, offset])
+        Ok(HalfSpace::linear([x, y, z, offset].map(Dyadic::new)))
     }
 
     /// a x² + b y² + c z² + d xy + e yz + f zx + g x + h y + i z + j ≥ 0 for the `coefficients` a to j.
     ///
     /// # Errors
-    /// [`Error::Argument`] if all but the last are zero, or one is not zero and not of a magnitude between 2^-256 and
-    /// 2^256.
+    /// [`Error::Argument`] if all but the last are zero, or one is not zero and not of a magnitude between
+    /// 2^-256 and 2^256.
     pub fn quadric(coefficients: [f64; 10]) -> Result<HalfSpace, Error> {
-        let refuse = |problem| Err(Error::Argument { name: "coefficients", problem });
-        if !coefficients.iter().all(|&c| c == 0.0 || is_moderate(c)) {
-            return refuse("every number must be zero or of a magnitude between 2^-256 and 2^256");
-        }
+        valid::numbers("coefficients", &coefficients)?;
         if coefficients[..9].iter().all(|&c| c == 0.0) {
-            return refuse("must not all be zero but the last: the function would be constant");
+            let problem = "must not all be zero but the last: the function would be constant";
+            return Err(Error::Argument { name: "coefficients", problem });
         }
         Ok(HalfSpace::exactly(coefficients.map(Dyadic::new)))
     }
 
-    /// A (x − a)^n + B (y − b)^m + C (z − c)^k + `constant` ≥ 0, for the `terms` (A, a, n), (B, b, m) and (C, c, k). A
-    /// coefficient 0 leaves a term out.
+    /// A (x − a)^n + B (y − b)^m + C (z − c)^k + `constant` ≥ 0, for the `terms` (A, a, n), (B, b, m) and (C,
+    /// c, k). A coefficient 0 leaves a term out.
     ///
-    /// Least and greatest values over a cell are exact under placements that take axes to axes, and bounded outward
-    /// under others.
+    /// Least and greatest values over a cell are exact under placements that take axes to axes, and bounded
+    /// outward under others.
     ///
     /// # Errors
-    /// [`Error::Argument`] if all coefficients are zero, an exponent is not 1 to 64, or a number is not zero and not of
-    /// a magnitude between 2^-256 and 2^256.
+    /// [`Error::Argument`] if all coefficients are zero, an exponent is not 1 to 64, or a number is not zero
+    /// and not of a magnitude between 2^-256 and 2^256.
     pub fn power(terms: [(f64, f64, u32); 3], constant: f64) -> Result<HalfSpace, Error> {
-        let problem = "every number must be zero or of a magnitude between 2^-256 and 2^256";
-        let moderate = |c: f64| c == 0.0 || is_moderate(c);
-        if !terms.iter().all(|&(coefficient, centre, _)| moderate(coefficient) && moderate(centre)) {
-            return Err(Error::Argument { name: "terms", problem });
-        }
-        if !moderate(constant) {
-            return Err(Error::Argument { name: "constant", problem });
-        }
+        valid::numbers("terms", terms.map(|(coefficient, centre, _)| [coefficient, centre]).as_flattened())?;
+        valid::numbers("constant", &[constant])?;
         if !terms.iter().all(|&(.., exponent)| (1..=LARGEST_EXPONENT).contains(&exponent)) {
             return Err(Error::Argument { name: "terms", problem: "every exponent must be 1 to 64" });
         }
@@ -99,40 +90,36 @@ impl HalfSpace {
         if !terms.iter().all(is_quadratic) {
             return Ok(HalfSpace(Arc::new(Surface::Powers(Powers { terms, constant }))));
         }
-        let mut c = [0.0; 10].map(Dyadic::new);
-        c[9] = Dyadic::new(constant);
+        let [mut squares, mut linear] = [0.0; 2].map(|c| [c; 3].map(Dyadic::new));
+        let mut constant = Dyadic::new(constant);
         for (axis, (coefficient, centre, exponent)) in terms.into_iter().enumerate() {
             let (coefficient, centre) = (Dyadic::new(coefficient), Dyadic::new(centre));
             let times_centre = &coefficient * &centre;
             if exponent == 1 {
-                c[9] = &c[9] - &times_centre;
-                c[6 + axis] = coefficient;
+                constant = &constant - &times_centre;
+                linear[axis] = coefficient;
             } else {
-                c[9] = &c[9] + &(&times_centre * &centre);
-                c[6 + axis] = -&times_centre.shifted(1);
-                c[axis] = coefficient;
+                constant = &constant + &(&times_centre * &centre);
+                linear[axis] = -&times_centre.shifted(1);
+                squares[axis] = coefficient;
             }
         }
-        Ok(HalfSpace::exactly(c))
+        Ok(HalfSpace::separable(squares, linear, constant))
     }
 
-    /// The torus around the z axis: all points at most `minor` from the circle of radius `major` in the plane z = 0. So
-    /// where `minor` is greater than `major`, the ring being closed in the middle, there is no hollow core.
+    /// The torus around the z axis: all points at most `minor` from the circle of radius `major` in the plane
+    /// z = 0. So where `minor` is greater than `major`, the ring being closed in the middle, there is no
+    /// hollow core.
     ///
     /// # Errors
     /// [`Error::Argument`] if a radius is not between 2^-256 and 2^256; `major` may be 0, which makes a ball.
     pub fn torus(major: f64, minor: f64) -> Result<HalfSpace, Error> {
-        let problem = "must be between 2^-256 and 2^256";
-        for (name, radius) in [("minor", minor), ("major", if major == 0.0 { 1.0 } else { major })] {
-            if !(radius > 0.0 && is_moderate(radius)) {
-                return Err(Error::Argument { name, problem });
-            }
-        }
-        if major == 0.0 {
-            let mut c = [0.0; 10].map(Dyadic::new);
-            c[..3].fill(Dyadic::new(-1.0));
-            c[9] = Dyadic::new(minor).pow(2);
-            return Ok(HalfSpace::exactly(c));
+        valid::length("minor", minor)?;
+        if major != 0.0 {
+            valid::length("major", major)?;
+        } else {
+            let [squares, linear] = [-1.0, 0.0].map(|c| [c; 3].map(Dyadic::new));
+            return Ok(HalfSpace::separable(squares, linear, Dyadic::new(minor).pow(2)));
         }
         let [major, minor, scale, shift] = [major, minor, 1.0, 0.0].map(Dyadic::new);
         Ok(HalfSpace::ring(Torus { major, square: minor.pow(2), scale, shift }))
@@ -143,19 +130,20 @@ impl HalfSpace {
         HalfSpace(Arc::new(Surface::Torus(torus)))
     }
 
-    /// A half-space that a host program supplies: by f's `value` at a point and its `range` over a box (lower and upper
-    /// corner), in model units; under a placement, in the space of the half-space.
+    /// A half-space that a host program supplies: by f's `value` at a point and its `range` over a box (lower
+    /// and upper corner), in model units; under a placement, in the space of the half-space.
     ///
-    /// A range must contain all values that f has in the box. It alone proves anything: a cell is FULL if it is nowhere
-    /// negative over a box around the cell (the cell itself, where its corners are doubles), and EMPTY if it is nowhere
-    /// positive. Values, which are asked for first, keep a cell from it that has vertices on both sides, so they
-    /// need not be exact; they decide single points, at the point's rounded image, where zero is inside. A value that is
-    /// not a number, and a range with a NaN or with `lower > upper`, decide nothing.
+    /// A range must contain all values that f has in the box. It alone proves anything: a cell is FULL if it
+    /// is nowhere negative over a box around the cell (the cell itself, where its corners are doubles), and
+    /// EMPTY if it is nowhere positive. Values, which are asked for first, keep a cell from it that has
+    /// vertices on both sides, so they need not be exact; they decide single points, at the point's rounded
+    /// image, where zero is inside. A value that is not a number, and a range with a NaN or with `lower >
+    /// upper`, decide nothing.
     ///
-    /// Both functions are called from several threads at once, and must give the same answer to the same question. An
-    /// error, such as [`Error::Callback`], ends the operation and is what that returns. The `fingerprint` is the
-    /// promise that functions that are given the same one are the same; without one no expression that contains the
-    /// half-space has a fingerprint.
+    /// Both functions are called from several threads at once, and must give the same answer to the same
+    /// question. An error, such as [`Error::Callback`], ends the operation and is what that returns. The
+    /// `fingerprint` is the promise that functions that are given the same one are the same; without one no
+    /// expression that contains the half-space has a fingerprint.
     ///
     /// ```
     /// use leafless::{Control, Csg, Frame, HalfSpace, Interval, Rule, build};
@@ -187,17 +175,33 @@ impl HalfSpace {
         HalfSpace(Arc::new(Surface::Host(Arc::new(host))))
     }
 
-    /// Of coefficients in the order of [`quadric`](Self::quadric) that need not be doubles, of which one but the last
-    /// is not zero.
+    /// Of coefficients in the order of [`quadric`](Self::quadric) that need not be doubles, of which one but
+    /// the last is not zero.
     pub(super) fn exactly(coefficients: Coefficients) -> HalfSpace {
+        if coefficients[..6].iter().all(Dyadic::is_zero) {
+            let [.., x, y, z, one] = coefficients;
+            return HalfSpace::linear([x, y, z, one]);
+        }
         HalfSpace(Arc::new(Surface::Quadric(Box::new(coefficients))))
+    }
+
+    /// The sum of `squares` times x², y² and z², `linear` times x, y and z, and a constant; one that is not
+    /// the constant is not zero.
+    pub(super) fn separable(squares: [Dyadic; 3], linear: [Dyadic; 3], constant: Dyadic) -> HalfSpace {
+        let ([xx, yy, zz], [x, y, z], zero) = (squares, linear, Dyadic::zero);
+        HalfSpace::exactly([xx, yy, zz, zero(), zero(), zero(), x, y, z, constant])
+    }
+
+    /// a x + b y + c z + d ≥ 0 for the coefficients a to d, of which one but the last is not zero.
+    pub(super) fn linear(coefficients: [Dyadic; 4]) -> HalfSpace {
+        HalfSpace(Arc::new(Surface::Plane(coefficients)))
     }
 }
 
 /// A half-space on a universe: f in unit coordinates, times something positive.
-#[allow(clippy::large_enum_variant)] // Nearly all are quadrics, which are not worth a step more.
 pub(super) enum Placed {
-    Quadric(Quadric),
+    Plane(Plane),
+    Quadric(Box<Quadric>),
     Powers(Box<PlacedPowers>),
     Torus(Box<PlacedTorus>),
     Host(Box<PlacedHost>),
@@ -207,7 +211,10 @@ impl Surface {
     /// The half-space as `map` shows it on the universe of `frame`.
     pub(super) fn on(&self, map: &ExactMap, frame: &Frame) -> Placed {
         match self {
-            Surface::Quadric(coefficients) => Placed::Quadric(Quadric::new(coefficients, map, frame.depth())),
+            Surface::Plane(plane) => Placed::Plane(Plane::new(plane, map, frame.depth())),
+            Surface::Quadric(coefficients) => {
+                Placed::Quadric(Box::new(Quadric::new(coefficients, map, frame.depth())))
+            }
             Surface::Powers(powers) => Placed::Powers(Box::new(PlacedPowers::new(powers, map))),
             Surface::Torus(torus) => Placed::Torus(Box::new(PlacedTorus::new(torus, map))),
             Surface::Host(host) => Placed::Host(Box::new(PlacedHost::new(host, map, frame))),
@@ -219,43 +226,49 @@ impl Placed {
     /// For which of the cells `wanted` f is proven not negative, and not positive; counts the evaluations.
     #[inline(always)]
     pub(super) fn sides(&self, at: &Octants, wanted: u8, evaluations: &mut u64) -> Result<Sides, Error> {
-        match self {
-            Placed::Quadric(quadric) => {
-                *evaluations += wanted.count_ones() as u64;
-                Ok(quadric.sides(at))
-            }
-            _ => self.sides_of_others(at, wanted, evaluations),
-        }
-    }
-
-    /// Of those that are not quadrics, which are the fastest by far.
-    #[inline(never)]
-    fn sides_of_others(&self, at: &Octants, wanted: u8, evaluations: &mut u64) -> Result<Sides, Error> {
-        if let Placed::Host(host) = self {
-            return host.sides(at, wanted, evaluations);
-        }
         *evaluations += wanted.count_ones() as u64;
         Ok(match self {
+            Placed::Plane(plane) => plane.sides(at),
             Placed::Quadric(quadric) => quadric.sides(at),
-            Placed::Powers(powers) => powers.sides(at),
-            Placed::Torus(torus) => torus.sides(at),
-            Placed::Host(_) => Sides { inside: 0, outside: 0 },
+            _ => return self.sides_of_others(at, wanted, evaluations),
         })
     }
 
-    /// In which of the eight cells the centre is surely inside, and in which surely outside, where that is had at once.
+    /// Of those that are neither planes nor quadrics, which are the fastest by far.
+    #[inline(never)]
+    fn sides_of_others(&self, at: &Octants, wanted: u8, evaluations: &mut u64) -> Result<Sides, Error> {
+        Ok(match self {
+            Placed::Powers(powers) => powers.sides(at),
+            Placed::Torus(torus) => torus.sides(at),
+            Placed::Host(host) => {
+                // It counts what it asks the host program.
+                *evaluations -= wanted.count_ones() as u64;
+                host.sides(at, wanted, evaluations)?
+            }
+            Placed::Plane(_) | Placed::Quadric(_) => Sides { inside: 0, outside: 0 },
+        })
+    }
+
+    /// In which of the eight cells the centre is surely inside, and in which surely outside, where that is
+    /// had at once.
     #[inline(always)]
     pub(super) fn centres(&self, at: &Octants) -> (u8, u8) {
-        match self {
+        let (values, error) = match self {
+            Placed::Plane(plane) => plane.centres(at),
             Placed::Quadric(quadric) => quadric.centres(at),
-            _ => (0, 0),
-        }
+            _ => return (0, 0),
+        };
+        (
+            mask(values.map(|v| v.simd_gt(f64x4::splat(error)))),
+            mask(values.map(|v| v.simd_lt(f64x4::splat(-error)))),
+        )
     }
 
     /// Exact sign of f at a point of the universe; `None` if the host does not know it.
     #[inline]
     pub(super) fn sign_at(&self, t: [f64; 3]) -> Result<Option<i32>, Error> {
         Ok(Some(match self {
+            Placed::Plane(plane) => plane.sign_at(t),
             Placed::Quadric(quadric) => quadric.sign_at(t),
             Placed::Powers(powers) => powers.sign_at(t),
             Placed::Torus(torus) => torus.sign_at(t),
@@ -263,12 +276,13 @@ impl Placed {
         }))
     }
 
-    /// Whether the centre `t` of a cell is inside, shifted by (ε, ε², ε³) if it lies on the surface; `None` if the host
-    /// does not know.
+    /// Whether the centre `t` of a cell is inside, shifted by (ε, ε², ε³) if it lies on the surface; `None`
+    /// if the host does not know.
     #[inline]
     pub(super) fn contains(&self, t: [f64; 3]) -> Result<Option<bool>, Error> {
         let sign = match self.sign_at(t)? {
             Some(0) => match self {
+                Placed::Plane(plane) => plane.shifted_sign(),
                 Placed::Quadric(quadric) => quadric.shifted_sign_at(t),
                 Placed::Powers(powers) => powers.shifted_sign_at(t),
                 Placed::Torus(torus) => torus.shifted_sign_at(t),

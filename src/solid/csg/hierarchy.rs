@@ -1,17 +1,17 @@
 //! Operands of a large operation, grouped by where they lie.
 //!
-//! An operand of a union is nothing outside of its box, and one of an intersection is everything outside of the box
-//! around its complement. So of thousands of operands a cell needs to know only those whose boxes it meets; and of those
-//! that are smaller than its children only that they are there, until cells are as small as they: no such operand covers a
-//! child, and whether it is empty there is found out below. So a cell's words hold groups, which are taken apart on the
-//! way down, and the first split does not look at all operands. (Finest cells are decided by every operand that they
-//! meet, as without groups.)
+//! An operand of a union is nothing outside of its box, and one of an intersection is everything outside of
+//! the box around its complement. So of thousands of operands a cell needs to know only those whose boxes it
+//! meets; and of those that are smaller than its children only that they are there, until cells are as small
+//! as they: no such operand covers a child, and whether it is empty there is found out below. So a cell's
+//! words hold groups, which are taken apart on the way down, and the first split does not look at all
+//! operands. (Finest cells are decided by every operand that they meet, as without groups.)
 
 use super::Join;
 use super::bounds::Octants;
 use super::extent::UnitBox;
 use super::kleene::Kleene;
-use super::program::{Op, Program, Word};
+use super::word::{Op, Word};
 use crate::error::Error;
 use crate::memory;
 use alloc::vec::Vec;
@@ -27,7 +27,7 @@ pub(super) struct Operand {
 }
 
 /// Operands, or a single one.
-pub(super) struct Group {
+struct Group {
     /// The box outside of which they change nothing.
     low: [f64; 3],
     high: [f64; 3],
@@ -53,15 +53,14 @@ const MEMBERS: usize = 8;
 impl Group {
     /// What is known of the eight cells `at`.
     #[inline]
-    pub(super) fn kleene(&self, at: &Octants) -> Kleene {
+    fn kleene(&self, at: &Octants) -> Kleene {
         // Bits of the children in the lower and in the upper half of each axis.
         const LOWER: [u8; 3] = [0x55, 0x33, 0x0F];
-        let low = at.low.to_array();
         let mut met = 0xFF;
         for axis in 0..3 {
-            let middle = low[axis] + at.half;
+            let (low, middle) = (at.low[axis], at.low[axis] + at.half);
             let high = middle + at.half;
-            if self.high[axis] <= low[axis] || self.low[axis] >= middle {
+            if self.high[axis] <= low || self.low[axis] >= middle {
                 met &= !LOWER[axis];
             }
             if self.high[axis] <= middle || self.low[axis] >= high {
@@ -87,11 +86,24 @@ pub(super) enum Taken {
     Written,
 }
 
-impl Program {
-    /// Puts those operands that are small into groups, and writes what takes their place; returns how many operands there
-    /// then are.
-    pub(super) fn group(&mut self, join: Join, operands: &[Operand]) -> Result<usize, Error> {
-        if operands.len() < FEW || self.paper {
+/// All groups of an expression.
+#[derive(Default)]
+pub(super) struct Groups {
+    groups: Vec<Group>,
+    /// The words of operands that are in groups.
+    grouped: Vec<Word>,
+}
+
+impl Groups {
+    /// Puts those of the operands at the end of `words` that are small into groups, and writes what takes
+    /// their place; returns how many operands there then are.
+    pub(super) fn gather(
+        &mut self,
+        join: Join,
+        operands: &[Operand],
+        words: &mut Vec<Word>,
+    ) -> Result<usize, Error> {
+        if operands.len() < FEW {
             return Ok(operands.len());
         }
         let first = operands[0].start;
@@ -99,8 +111,8 @@ impl Program {
         let mut found: Vec<Group> = Vec::new();
         let mut count = 0;
         for (i, operand) in operands.iter().enumerate() {
-            let end = operands.get(i + 1).map_or(self.words.len(), |next| next.start);
-            let words = &self.words[operand.start..end];
+            let end = operands.get(i + 1).map_or(words.len(), |next| next.start);
+            let own = &words[operand.start..end];
             let unit = match join {
                 Join::Intersection => operand.opposite,
                 Join::Union | Join::Parity => operand.extent,
@@ -113,22 +125,22 @@ impl Program {
                 // Those that could cover it are worth a look.
                 Some(unit) if longest(&unit) < 0.5 => {
                     let start = self.grouped.len();
-                    self.grouped.try_reserve(words.len())?;
-                    self.grouped.extend_from_slice(words);
+                    self.grouped.try_reserve(own.len())?;
+                    self.grouped.extend_from_slice(own);
                     let members = Members::Words(start..self.grouped.len());
                     let (low, high) = unit;
                     memory::push(&mut found, Group { low, high, size: longest(&unit), join, members })?;
                 }
                 _ => {
-                    rest.try_reserve(words.len())?;
-                    rest.extend_from_slice(words);
+                    rest.try_reserve(own.len())?;
+                    rest.extend_from_slice(own);
                     count += 1;
                 }
             }
         }
-        self.words.truncate(first);
-        self.words.try_reserve(rest.len() + MEMBERS)?;
-        self.words.extend_from_slice(&rest);
+        words.truncate(first);
+        words.try_reserve(rest.len() + MEMBERS)?;
+        words.extend_from_slice(&rest);
         // Neighbours in Morton order of their middles lie together.
         found.sort_by_cached_key(|group| {
             let middle = |axis: usize| {
@@ -153,7 +165,7 @@ impl Program {
         for group in found {
             let index = self.groups.len() as u32;
             memory::push(&mut self.groups, group)?;
-            self.words.push(Word::new(Op::Group { index }));
+            words.push(Word::new(Op::Group { index }));
             count += 1;
         }
         Ok(count)
@@ -171,8 +183,9 @@ impl Program {
         Group { low, high, size, join, members: Members::Groups(members) }
     }
 
-    /// Writes the words of a group in a cell (lower and upper corner): the group itself, if it is smaller than the cell's
-    /// children and these are not the finest, or what of it the cell meets. The recursion is as deep as the hierarchy.
+    /// Writes the words of a group in a cell (lower and upper corner): the group itself, if it is smaller
+    /// than the cell's children and these are not the finest, or what of it the cell meets. The recursion is
+    /// as deep as the hierarchy.
     pub(super) fn take_apart(
         &self,
         group: usize,
@@ -207,6 +220,11 @@ impl Program {
                 Ok(if count == 0 { Taken::Nothing } else { Taken::Written })
             }
         }
+    }
+
+    /// What is known of a group in the eight cells `at`.
+    pub(super) fn kleene(&self, group: usize, at: &Octants) -> Kleene {
+        self.groups[group].kleene(at)
     }
 
     /// What nothing of a group comes to.

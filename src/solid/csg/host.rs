@@ -1,7 +1,7 @@
 //! Half-spaces that a host program supplies.
 
 use super::bounds::{Octants, Sides};
-use super::dyadic::Dyadic;
+use super::linear;
 use super::map::ExactMap;
 use super::points;
 use crate::error::Error;
@@ -26,7 +26,8 @@ pub(super) struct Host {
 /// A function of the host on a universe.
 pub(super) struct PlacedHost {
     host: Arc<Host>,
-    /// The map into the function's space: rows of `[R | r]`, and more than the error of each coordinate of an image.
+    /// The map into the function's space: rows of `[R | r]`, and more than the error of each coordinate of an
+    /// image.
     rows: [[f64; 4]; 3],
     errors: [f64; 3],
 }
@@ -38,19 +39,18 @@ impl PlacedHost {
         let shift = map.w.magnitude().unwrap_or(0);
         let divisor = map.w.shifted(-shift).rounded();
         let exact_divisor = map.w.bits() == 1;
+        // Coordinates are of a cell's centre, and nothing is finer than the least double.
+        let places = frame.depth() as i64 + 1;
+        let lowest = LOWEST + places;
         let mut errors = [0.0; 3];
         let rows = [0, 1, 2].map(|i| {
             let exact = map.rows[i].each_ref().map(|c| c.shifted(-shift));
             let row = exact.each_ref().map(|c| c.rounded() / divisor);
             let size: f64 = row.iter().map(|c| c.abs()).sum();
-            // What all values are multiples of, where coordinates are of a cell's centre.
-            let grain =
-                exact.iter().filter_map(Dyadic::grain).min().unwrap_or(0) - (frame.depth() as i64 + 1);
             let is_exact = exact_divisor
-                && grain >= LOWEST
-                && exact.iter().all(|c| c.exactly().is_some())
+                && exact.iter().all(|c| c.exactly().is_some() && c.grain().is_none_or(|bit| bit >= lowest))
                 && size.is_finite()
-                && Dyadic::new(size).magnitude().is_none_or(|m| m + 1 - grain <= 53);
+                && linear::is_exact(&exact, places, size);
             // A term is rounded at most eight times.
             errors[i] = if is_exact { 0.0 } else { 16.0 * f64::EPSILON * size + f64::MIN_POSITIVE };
             row
@@ -74,8 +74,8 @@ impl PlacedHost {
         ([0, 1, 2].map(|i| end(i, false)), [0, 1, 2].map(|i| end(i, true)))
     }
 
-    /// For which of the cells `wanted` the function is said to be nowhere negative, and nowhere positive. A cell with an
-    /// inner and an outer vertex is neither, and its range is not asked for.
+    /// For which of the cells `wanted` the function is said to be nowhere negative, and nowhere positive. A
+    /// cell with an inner and an outer vertex is neither, and its range is not asked for.
     pub(super) fn sides(&self, at: &Octants, wanted: u8, evaluations: &mut u64) -> Result<Sides, Error> {
         let wanted = wanted & at.all();
         let mut sides = Sides { inside: 0, outside: 0 };

@@ -5,7 +5,8 @@ use super::bounds::Sides;
 use crate::octree::Tag;
 use alloc::vec::Vec;
 
-/// The verdicts of eight cells: bit k of `lower` says that cell k is surely solid, of `upper` that it is possibly.
+/// The verdicts of eight cells: bit k of `lower` says that cell k is surely solid, of `upper` that it is
+/// possibly.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Kleene {
     pub(super) lower: u8,

@@ -1,6 +1,6 @@
 //! Linear functions of the unit coordinates.
 
-use super::dyadic::Dyadic;
+use crate::lattice::exact::Dyadic;
 use wide::f64x4;
 
 /// f(x, y, z) = a x + b y + c z + d: exactly, and rounded.
@@ -11,19 +11,32 @@ pub(super) struct Linear {
     pub(super) error: f64,
 }
 
+/// The exponent of the largest coefficient.
+pub(super) fn magnitude<'a>(exact: impl IntoIterator<Item = &'a Dyadic>) -> i64 {
+    exact.into_iter().filter_map(Dyadic::magnitude).max().unwrap_or(0)
+}
+
+/// The value of a x + b y + c z + d at `t`, for the coefficients a to d.
+pub(super) fn value(exact: &[Dyadic; 4], t: &[Dyadic; 3]) -> Dyadic {
+    (0..3).fold(exact[3].clone(), |sum, axis| &sum + &(&exact[axis] * &t[axis]))
+}
+
+/// Whether no sum of products is rounded, the factors being `coefficients` (doubles) and multiples of
+/// 2^-`places`, and no sum greater than `size`: there is nothing finer than the grain and nothing beyond 2^53
+/// of it.
+pub(super) fn is_exact(coefficients: &[Dyadic], places: i64, size: f64) -> bool {
+    let grain = coefficients.iter().filter_map(Dyadic::grain).min().unwrap_or(0) - places;
+    Dyadic::new(size).magnitude().is_none_or(|m| m + 1 - grain <= 53)
+}
+
 impl Linear {
-    /// The function with the coefficients a to d, which are neither all zero nor, rounded, near the ends of the range of
-    /// doubles.
+    /// The function with the coefficients a to d, which are neither all zero nor, rounded, near the ends of
+    /// the range of doubles.
     pub(super) fn new(exact: [Dyadic; 4]) -> Linear {
         let c = exact.each_ref().map(Dyadic::rounded);
         // Coefficients, products and sums are rounded: each term at most six times.
         let error = 8.0 * f64::EPSILON * c.iter().map(|c| c.abs()).sum::<f64>();
         Linear { exact, c, error }
-    }
-
-    /// The exponent of the largest coefficient.
-    pub(super) fn magnitude(exact: &[Dyadic; 4]) -> i64 {
-        exact.iter().filter_map(Dyadic::magnitude).max().unwrap_or(0)
     }
 
     /// The axis on which alone the function depends, if there is one.
@@ -52,6 +65,6 @@ impl Linear {
     }
 
     pub(super) fn exactly_at(&self, t: &[Dyadic; 3]) -> Dyadic {
-        (0..3).fold(self.exact[3].clone(), |sum, axis| &sum + &(&self.exact[axis] * &t[axis]))
+        value(&self.exact, t)
     }
 }

@@ -1,6 +1,8 @@
-//! Cells in which only one operand is open, a solid of another kind: all questions go on to it, bulk forms included.
+//! Cells in which only one operand is open, a solid of another kind: all questions go on to it, bulk forms
+//! included.
 
-use super::program::{Op, Program, Word};
+use super::program::Program;
+use super::word::{Op, Word};
 use super::worker::{CsgPart, Scratch, Slot};
 use crate::error::Error;
 use crate::lattice::Cell;
@@ -35,8 +37,8 @@ impl Scratch {
         Ok(self.slot(program, index)?.map(|(solid, part)| Lone { solid, part, complement }))
     }
 
-    /// Runs `ask` with the worker and the part of the only operand that is open, if there is only one: what it says, and
-    /// whether the complement is meant.
+    /// Runs `ask` with the worker and the part of the only operand that is open, if there is only one: what
+    /// it says, and whether the complement is meant.
     pub(super) fn ask_lone<T>(
         &mut self,
         program: &Program,

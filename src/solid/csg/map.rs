@@ -1,15 +1,15 @@
 //! Exact affine maps.
 
-use super::dyadic::Dyadic;
 use crate::error::Error;
+use crate::lattice::exact::{Dyadic, cross, dot};
 use crate::lattice::{Affine, Frame};
 
-/// Most bits that an entry may take, and most powers of two between one and w: some hundred rotations inside of each
-/// other.
+/// Most bits that an entry may take, and most powers of two between one and w: some hundred rotations inside
+/// of each other.
 pub(super) const MOST_BITS: u64 = 1 << 14;
 
-/// The map x ↦ (R x + r) / w, exactly: from the universe's unit coordinates into the space of a shape that stands
-/// under any number of placements.
+/// The map x ↦ (R x + r) / w, exactly: from the universe's unit coordinates into the space of a shape that
+/// stands under any number of placements.
 #[derive(Debug, Clone)]
 pub(super) struct ExactMap {
     /// Rows of `[R | r]`.
@@ -38,20 +38,25 @@ impl ExactMap {
         ExactMap { rows, w: Dyadic::new(1.0) }
     }
 
-    /// The map into the space of a shape that `placement` puts into this map's target. With M and t of the placement
-    /// it is x ↦ adj(M) (R x + r − w t) / (w det M).
+    /// The linear function `given`, by its four coefficients, of the image of its argument: `given` ∘ map,
+    /// times w.
+    pub(super) fn linear(&self, given: &[Dyadic; 4]) -> [Dyadic; 4] {
+        let [a, b, c, d] = given.each_ref();
+        let [x, y, z] = &self.rows;
+        let mut sums = [0, 1, 2, 3].map(|j| dot([a, b, c], [&x[j], &y[j], &z[j]]));
+        sums[3] = &sums[3] + &(d * &self.w);
+        sums
+    }
+
+    /// The map into the space of a shape that `placement` puts into this map's target. With M and t of the
+    /// placement it is x ↦ adj(M) (R x + r − w t) / (w det M).
     ///
     /// # Errors
     /// [`Error::Limit`] if the exact entries become too long.
     pub(super) fn of_placed(&self, placement: &Affine) -> Result<ExactMap, Error> {
         let m = placement.rows().map(|row| row.map(Dyadic::new));
-        let minor = |i: usize, j: usize| {
-            // Cofactor (i, j), with its sign, by cyclic indices.
-            let ([a, b], [c, d]) = ([(i + 1) % 3, (i + 2) % 3], [(j + 1) % 3, (j + 2) % 3]);
-            &(&m[a][c] * &m[b][d]) - &(&m[a][d] * &m[b][c])
-        };
-        let cofactors = [0, 1, 2].map(|i| [0, 1, 2].map(|j| minor(i, j)));
-        let determinant = dot(&[&m[0][0], &m[0][1], &m[0][2]], &[0, 1, 2].map(|j| &cofactors[0][j]));
+        let cofactors = [0, 1, 2].map(|i| cross(&m[(i + 1) % 3], &m[(i + 2) % 3]));
+        let determinant = dot([&m[0][0], &m[0][1], &m[0][2]], cofactors[0].each_ref());
         let moved = [0, 1, 2].map(|i| {
             let mut row = self.rows[i].clone();
             row[3] = &row[3] - &(&self.w * &m[i][3]);
@@ -59,9 +64,7 @@ impl ExactMap {
         });
         // The adjugate is the cofactors' transpose.
         let rows = [0, 1, 2].map(|i| {
-            [0, 1, 2, 3].map(|j| {
-                dot(&[0, 1, 2].map(|k| &cofactors[k][i]), &[&moved[0][j], &moved[1][j], &moved[2][j]])
-            })
+            [0, 1, 2, 3].map(|j| dot([0, 1, 2].map(|k| &cofactors[k][i]), [0, 1, 2].map(|k| &moved[k][j])))
         });
         // With w of a magnitude of one, sums of entries and products are as long as the entries are apart.
         let w = &self.w * &determinant;
@@ -76,10 +79,6 @@ impl ExactMap {
         }
         Ok(map)
     }
-}
-
-fn dot(a: &[&Dyadic; 3], b: &[&Dyadic; 3]) -> Dyadic {
-    &(&(a[0] * b[0]) + &(a[1] * b[1])) + &(a[2] * b[2])
 }
 
 #[cfg(test)]
@@ -98,7 +97,7 @@ mod tests {
         let unit = [0, 1, 2].map(|i| Dyadic::new((image[i] - frame.origin()[i]) / 8.0));
         for i in 0..3 {
             let row = &map.rows[i];
-            let value = &dot(&[&row[0], &row[1], &row[2]], &[&unit[0], &unit[1], &unit[2]]) + &row[3];
+            let value = &dot([&row[0], &row[1], &row[2]], unit.each_ref()) + &row[3];
             assert_eq!(value, &map.w * &Dyadic::new(local[i]), "{i}");
         }
     }

@@ -1,12 +1,11 @@
 //! Constructive solid geometry: half-spaces and other solids, joined by set operations.
 //!
-//! The split of a cell, the counting of its work and the classification of half-spaces follow Dai, Zha and Ni, *A fast
-//! decomposition algorithm of octree node in 3D-packing* (1994), with proofs in place of their approximations: see
-//! [`Csg`].
+//! The split of a cell, the counting of its work and the classification of half-spaces follow Dai, Zha and
+//! Ni, *A fast decomposition algorithm of octree node in 3D-packing* (1994), with proofs in place of their
+//! approximations: see [`Csg`].
 
 mod bounds;
 mod centres;
-mod dyadic;
 mod extent;
 mod faceted;
 #[cfg(feature = "scene")]
@@ -19,6 +18,7 @@ mod kleene;
 mod linear;
 mod lone;
 mod map;
+mod plane;
 mod points;
 mod polygon;
 mod power;
@@ -29,6 +29,7 @@ mod split;
 mod support;
 mod table;
 mod torus;
+mod word;
 mod worker;
 
 #[cfg(feature = "scene")]
@@ -52,18 +53,19 @@ pub enum Touch {
     /// Contact is not overlap: a cell is EMPTY if the interiors are disjoint.
     #[default]
     Exact,
-    /// As the method was published: a vertex on the surface counts as inside, so that a cell that touches a primitive
-    /// with a vertex from outside is PARTIAL. It reproduces the published tables and is no better for anything else.
+    /// As the method was published: a vertex on the surface counts as inside, so that a cell that touches a
+    /// primitive with a vertex from outside is PARTIAL. It reproduces the published tables and is no better
+    /// for anything else.
     Paper,
 }
 
 /// A solid made of half-spaces and other solids by union, intersection, symmetric difference, complement and
 /// placement. Immutable; cloning costs nothing.
 ///
-/// Asked about a cell, it looks only at what still cuts the cell: a child inherits those half-spaces of its parent that
-/// are undecided there, so a scene of ten thousand primitives costs at each cell what is near it. Verdicts are proofs:
-/// the extremes of planes and of quadrics without mixed terms over a box are taken exactly, others are bounded
-/// outward.
+/// Asked about a cell, it looks only at what still cuts the cell: a child inherits those half-spaces of its
+/// parent that are undecided there, so a scene of ten thousand primitives costs at each cell what is near it.
+/// Verdicts are proofs: the extremes of planes and of quadrics without mixed terms over a box are taken
+/// exactly, others are bounded outward.
 ///
 /// ```
 /// use leafless::{Control, Csg, Frame, Rule, build};
@@ -171,8 +173,8 @@ impl Csg {
         Csg::new(Kind::Join(Join::Intersection, Vec::new()), Extent::Unbounded, Extent::Nothing)
     }
 
-    /// Any solid. It is asked in whatever frame the whole is asked in, which it must be able to answer. If it is an
-    /// expression itself, this is that.
+    /// Any solid. It is asked in whatever frame the whole is asked in, which it must be able to answer. If it
+    /// is an expression itself, this is that.
     pub fn solid(solid: AnySolid) -> Csg {
         if let Some(csg) = solid.get::<Csg>() {
             return csg.clone();
@@ -219,9 +221,9 @@ impl Csg {
         Csg::new(Kind::Complement(self.root.clone()), self.root.opposite, self.root.extent)
     }
 
-    /// The solid moved by `placement`: half-spaces exactly, other solids each as [`AnySolid::placed`] moves it;
-    /// [`motion`](Solid::motion) says what comes of that. O(1), but for what other solids take, and those parts of the
-    /// expression that hold them.
+    /// The solid moved by `placement`: half-spaces exactly, other solids each as [`AnySolid::placed`] moves
+    /// it; [`motion`](Solid::motion) says what comes of that. O(1), but for what other solids take, and those
+    /// parts of the expression that hold them.
     ///
     /// # Errors
     /// As [`AnySolid::placed`].
@@ -289,9 +291,9 @@ impl Csg {
         self.root.nesting
     }
 
-    /// Half-spaces that were evaluated so far for this expression and its clones, each at a point or over a box, by those
-    /// workers that are gone: once an operation has returned, all of it. (Expressions that this one is made of, or is a
-    /// part of, have counts of their own.)
+    /// Half-spaces that were evaluated so far for this expression and its clones, each at a point or over a
+    /// box, by those workers that are gone: once an operation has returned, all of it. (Expressions that this
+    /// one is made of, or is a part of, have counts of their own.)
     pub fn evaluations(&self) -> u64 {
         self.root.evaluations.load(Relaxed)
     }
@@ -300,8 +302,8 @@ impl Csg {
         self.root.evaluations.fetch_add(evaluations, Relaxed);
     }
 
-    /// The same solid by another rule of touching. It holds for the whole expression; parts of a later expression
-    /// follow that one's rule.
+    /// The same solid by another rule of touching. It holds for the whole expression; parts of a later
+    /// expression follow that one's rule.
     #[must_use]
     pub fn with_touch(&self, touch: Touch) -> Csg {
         Csg { root: self.root.clone(), touch }

@@ -3,8 +3,9 @@
 use super::bounds::Octants;
 use crate::error::Error;
 
-/// The points that the eight children of a cell have as vertices, by their place on each axis (0 lower end, 1 middle,
-/// 2 upper end), those of most children first: the centre, centres of faces, middles of edges, corners.
+/// The points that the eight children of a cell have as vertices, by their place on each axis (0 lower end, 1
+/// middle, 2 upper end), those of most children first: the centre, centres of faces, middles of edges,
+/// corners.
 const POINTS: [[u8; 3]; 27] = {
     let mut points = [[1; 3]; 27];
     let mut found = 0;
@@ -42,9 +43,9 @@ const fn owners(point: [u8; 3]) -> u8 {
     mask
 }
 
-/// Asks `inside` about the vertices of the children `wanted` in the published order, each at most once, and no further than it
-/// takes to find an inner and an outer vertex of each child. Returns which children have an inner vertex and which an
-/// outer one; a vertex for which the answer is `None` is neither.
+/// Asks `inside` about the vertices of the children `wanted` in the published order, each at most once, and
+/// no further than it takes to find an inner and an outer vertex of each child. Returns which children have
+/// an inner vertex and which an outer one; a vertex for which the answer is `None` is neither.
 ///
 /// # Errors
 /// The first one of `inside`.
@@ -53,14 +54,13 @@ pub(super) fn vertices(
     wanted: u8,
     mut inside: impl FnMut([f64; 3]) -> Result<Option<bool>, Error>,
 ) -> Result<(u8, u8), Error> {
-    let low = at.low.to_array();
     let (mut inner, mut outer) = (0, 0);
     for point in POINTS {
         let owners = owners(point) & wanted;
         if owners & !(inner & outer) == 0 {
             continue;
         }
-        match inside([0, 1, 2].map(|axis| low[axis] + point[axis] as f64 * at.half))? {
+        match inside([0, 1, 2].map(|axis| at.low[axis] + point[axis] as f64 * at.half))? {
             Some(true) => inner |= owners,
             Some(false) => outer |= owners,
             None => {}

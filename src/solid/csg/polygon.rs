@@ -1,22 +1,26 @@
 //! A simple polygon as a formula of half-planes.
 //!
-//! Every simple polygon is an expression of unions and intersections, without complements, in which the
-//! half-plane of each edge occurs just once (Peterson 1984; Dobkin, Guibas, Hershberger, Snoeyink, *An efficient
-//! algorithm for finding the CSG representation of a simple polygon*, 1993). Each edge deciding in one place is what a
-//! three-valued evaluation needs: where the line of one edge runs on through the interior, the rest of the formula
-//! decides without it, so there is no seam, as the cuts of a triangulation or of a convex decomposition would
-//! leave one.
+//! Every simple polygon is a monotone formula (unions and intersections, no complements) in which the
+//! half-plane of each edge occurs once (Peterson, *Halfspace representation of extrusions, solids of
+//! revolution, and pyramids*, 1984). A three-valued evaluation needs that each edge decides in one place:
+//! where the line of one edge runs on through the interior, the rest of the formula decides without it. A
+//! triangulation and a convex decomposition leave seams at their cuts, and differences of convex hulls (Tor
+//! and Middleditch 1984) have such cuts at the edges of the hulls.
 //!
-//! The formula comes from cutting chains of edges whose end edges go on for ever: a chain may be cut at any vertex
-//! on its convex hull, and at a vertex that turns to the left its side is the intersection of the sides of
-//! both parts, at one that turns to the right the union. All decisions are signs of exact arithmetic.
+//! The formula is found as in the proof of Dobkin, Guibas, Hershberger and Snoeyink, *An efficient algorithm
+//! for finding the CSG representation of a simple polygon* (SIGGRAPH 1988; Algorithmica 1993). The polygon is
+//! cut at its first and last corner in lexicographic order, into chains of edges whose end edges go on for
+//! ever. A chain may be cut at any corner on its convex hull. At a corner that turns to the left, the chain's
+//! side is the intersection of the sides of both parts; at one that turns to the right, it is their union.
+//! Their algorithm finds all cuts in O(n log n) with a structure for hulls of paths; here each cut looks at
+//! every corner of its chain. All decisions are signs of exact arithmetic.
 
 use alloc::vec::Vec;
 
 use crate::error::Error;
-use crate::lattice::exact::{grow, sign, two_diff, two_product};
+use crate::lattice::exact::{sign, sign_of_products, two_diff};
+use crate::lattice::valid;
 use crate::memory;
-use crate::solid::is_moderate;
 
 /// One term of a formula in postfix order: operators combine the terms right before them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -29,19 +33,17 @@ pub(crate) enum Term {
     Any(usize),
 }
 
-/// The formula of the polygon with these corners, in order, in either direction of rotation. The last corner is joined to
-/// the first. Corners that repeat the one before, and those straight between their neighbours, are left out, so
-/// that there may be fewer edges than points; every other edge occurs once.
+/// The formula of the polygon with these corners, in order, in either direction of rotation. The last corner
+/// is joined to the first. Corners that repeat the one before, and those straight between their neighbours,
+/// are left out, so that there may be fewer edges than points; every other edge occurs once.
 ///
 /// O(n log n) time for outlines whose edges are short and which do not spiral, O(n²) at worst.
 ///
 /// # Errors
 /// [`Error::Argument`] if a coordinate is not zero and not of a magnitude between 2^-256 and 2^256, or if the
 /// outline touches or crosses itself or encloses nothing; [`Error::OutOfMemory`].
-pub(crate) fn convex_differences(points: &[[f64; 2]]) -> Result<Vec<Term>, Error> {
-    if !points.iter().flatten().all(|&c| c == 0.0 || is_moderate(c)) {
-        return refuse("every coordinate must be zero or of a magnitude between 2^-256 and 2^256");
-    }
+pub(crate) fn monotone_formula(points: &[[f64; 2]]) -> Result<Vec<Term>, Error> {
+    valid::numbers("polygon", points.as_flattened())?;
     let mut corners = memory::with_capacity(points.len())?;
     for (i, point) in points.iter().enumerate() {
         if corners.last().is_none_or(|&last: &usize| points[last] != *point) {
@@ -70,21 +72,9 @@ fn turn([a, b]: [[f64; 2]; 2], [c, d]: [[f64; 2]; 2]) -> i32 {
     if cross.abs() > 4.0 * f64::EPSILON * (left.abs() + right.abs()) {
         return sign(cross);
     }
-    let mut terms = [0.0; 17];
-    let mut count = 0;
-    for (first, second, plus) in [
-        (two_diff(b[0], a[0]), two_diff(d[1], c[1]), 1.0),
-        (two_diff(b[1], a[1]), two_diff(d[0], c[0]), -1.0),
-    ] {
-        for x in [first.0, first.1] {
-            for y in [second.0, second.1] {
-                let (high, low) = two_product(x, plus * y);
-                count = grow(&mut terms, count, low);
-                count = grow(&mut terms, count, high);
-            }
-        }
-    }
-    if count == 0 { 0 } else { sign(terms[count - 1]) }
+    let ((x, p), (y, q)) = (two_diff(b[0], a[0]), two_diff(d[1], c[1]));
+    let ((u, r), (v, s)) = (two_diff(a[1], b[1]), two_diff(d[0], c[0]));
+    sign_of_products(&[(x, y), (x, q), (p, y), (p, q), (u, v), (u, s), (r, v), (r, s)])
 }
 
 /// The corners of a closed polygon in order.
@@ -108,7 +98,8 @@ impl Outline<'_> {
         turn(self.edge(i - 1), self.edge(i))
     }
 
-    /// Refuses outlines that touch or cross themselves: a sweep along the axis on which the edges are shorter.
+    /// Refuses outlines that touch or cross themselves: a sweep along the axis on which the edges are
+    /// shorter.
     fn check(&self) -> Result<(), Error> {
         let n = self.corners.len();
         if n < 3 {
@@ -147,8 +138,8 @@ impl Outline<'_> {
         Ok(())
     }
 
-    /// Makes the outline counter-clockwise, starting at the corner with the smallest coordinates, without corners that do
-    /// not turn.
+    /// Makes the outline counter-clockwise, starting at the corner with the smallest coordinates, without
+    /// corners that do not turn.
     fn normalise(&mut self) -> Result<(), Error> {
         let n = self.corners.len();
         let mut kept = memory::with_capacity(n)?;
@@ -224,11 +215,11 @@ impl Outline<'_> {
         Ok(terms)
     }
 
-    /// A corner within the chain of the edges `from..to` (two or more) that lies on the hull of the chain with its
-    /// first and last edge prolonged for ever.
+    /// A corner within the chain of the edges `from..to` (two or more) that lies on the hull of the chain
+    /// with its first and last edge prolonged for ever.
     ///
-    /// It is the farthest in a direction in which neither ray goes on: across the chord of the chain, which cuts
-    /// an arc in halves, or else across the first edge.
+    /// It is the farthest in a direction in which neither ray goes on: across the chord of the chain, which
+    /// cuts an arc in halves, or else across the first edge.
     fn cut(&self, from: usize, to: usize) -> usize {
         let (first, last) = (self.edge(from), self.edge(to - 1));
         let mut base = [self.at(from), self.at(to)];
@@ -319,7 +310,7 @@ mod tests {
 
     /// Checks a polygon of integer corners in 0..size at all points of a lattice of quarters.
     fn check(points: &[[f64; 2]], size: i32) {
-        let terms = convex_differences(points).unwrap();
+        let terms = monotone_formula(points).unwrap();
         let edges: Vec<_> =
             terms.iter().filter_map(|t| if let Term::Edge(e) = t { Some(*e) } else { None }).collect();
         let mut starts: Vec<_> = edges.iter().map(|e| e[0]).collect();
@@ -349,11 +340,11 @@ mod tests {
     fn formulas_are_the_polygons_without_seams() {
         let square = [[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [0.0, 4.0]];
         check(&square, 5);
-        assert_eq!(convex_differences(&square).unwrap().last(), Some(&Term::All(4)));
+        assert_eq!(monotone_formula(&square).unwrap().last(), Some(&Term::All(4)));
         // Repeated corners, straight corners, the other direction.
         let repeated = [[0.0, 4.0], [4.0, 4.0], [4.0, 4.0], [4.0, 2.0], [4.0, 0.0], [0.0, 0.0], [0.0, 4.0]];
         check(&repeated, 5);
-        assert_eq!(convex_differences(&repeated).unwrap().len(), 5);
+        assert_eq!(monotone_formula(&repeated).unwrap().len(), 5);
         let comb =
             [[0.0, 0.0], [7.0, 0.0], [7.0, 4.0], [6.0, 4.0], [6.0, 1.0], [4.0, 1.0], [4.0, 4.0], [3.0, 4.0]];
         check(&[&comb[..], &[[3.0, 1.0], [1.0, 1.0], [1.0, 4.0], [0.0, 4.0]]].concat(), 8);
@@ -362,7 +353,7 @@ mod tests {
         let inner =
             [[2.0, 4.0], [4.0, 4.0], [4.0, 5.0], [3.0, 5.0], [5.0, 5.0], [5.0, 3.0], [1.0, 3.0], [1.0, 7.0]];
         let outer = [[7.0, 7.0], [7.0, 1.0], [0.0, 1.0]];
-        assert!(convex_differences(&[&spiral[..], &inner, &outer].concat()).is_err());
+        assert!(monotone_formula(&[&spiral[..], &inner, &outer].concat()).is_err());
         let inner = [[2.0, 4.0], [4.0, 4.0], [4.0, 5.0], [5.0, 5.0], [5.0, 3.0], [1.0, 3.0], [1.0, 7.0]];
         check(&[&spiral[..], &inner, &outer].concat(), 9);
     }
@@ -383,7 +374,7 @@ mod tests {
                     points[i + 1..=j].reverse();
                 }
             }
-            if convex_differences(&points).is_ok() {
+            if monotone_formula(&points).is_ok() {
                 counts[n] += 1;
                 check(&points, 7);
             }
@@ -400,13 +391,13 @@ mod tests {
             [radius * cos, radius * sin]
         };
         let star: Vec<_> = (0..n).map(|i| zigzag(i, 1.0)).collect();
-        let terms = convex_differences(&star).unwrap();
+        let terms = monotone_formula(&star).unwrap();
         for p in [[0.0, 0.0], [0.5, 0.7], [0.94, 0.0], [0.2, -0.95], [1.0, 1.0]] {
             let side = |[a, b]: [usize; 2]| turn([star[a], star[b]], [star[a], p]);
             assert_eq!(value(&terms, side), truth(&star, p));
         }
         let disc: Vec<_> = (0..n).map(|i| zigzag(2 * i, 0.5)).collect();
-        assert_eq!(convex_differences(&disc).unwrap().last(), Some(&Term::All(n)));
+        assert_eq!(monotone_formula(&disc).unwrap().last(), Some(&Term::All(n)));
     }
 
     #[test]
@@ -423,7 +414,7 @@ mod tests {
             &[[0.0, 0.0], [1.0, f64::NAN], [1.0, 0.0]],
             &[[0.0, 0.0], [1.0, 1e300], [1.0, 0.0]],
         ] {
-            let result = convex_differences(points);
+            let result = monotone_formula(points);
             assert!(matches!(result, Err(Error::Argument { name: "polygon", .. })), "{points:?}: {result:?}");
         }
     }

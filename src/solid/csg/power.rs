@@ -1,15 +1,15 @@
 //! Sums of powers of one coordinate each.
 
 use super::bounds::{Octants, Sides, sums};
-use super::dyadic::Dyadic;
-use super::linear::Linear;
+use super::linear::{self, Linear};
 use super::map::ExactMap;
-use crate::lattice::exact::sign;
+use crate::lattice::exact::{Dyadic, sign};
 use alloc::vec::Vec;
 use core::cmp::Ordering;
 use wide::f64x4;
 
-/// Σ coefficient · (coordinate − centre)^exponent + constant, as given: a term an axis, of which some may be zero.
+/// Σ coefficient · (coordinate − centre)^exponent + constant, as given: a term an axis, of which some may be
+/// zero.
 pub(super) struct Powers {
     pub(super) terms: [(f64, f64, u32); 3],
     pub(super) constant: f64,
@@ -67,7 +67,7 @@ impl PlacedPowers {
             let (coefficient, centre, exponent) = given.terms[axis];
             let mut line = map.rows[axis].clone();
             line[3] = &line[3] - &(&map.w * &Dyadic::new(centre));
-            let size = Linear::magnitude(&line);
+            let size = linear::magnitude(&line);
             let line = line.map(|c| c.shifted(-size));
             let mut weight = &Dyadic::new(coefficient) * &w.pow(highest - exponent);
             if map.w.sign() < 0 && exponent % 2 == 1 {
@@ -77,7 +77,7 @@ impl PlacedPowers {
         }
         let constant = &Dyadic::new(given.constant) * &w.pow(highest);
         let weights = lines.iter().map(|(_, _, weight)| weight).chain([&constant]);
-        let scale = -weights.filter_map(Dyadic::magnitude).max().unwrap_or(0);
+        let scale = -linear::magnitude(weights);
         let terms: Vec<Term> = lines
             .into_iter()
             .map(|(line, exponent, weight)| {
@@ -114,10 +114,10 @@ impl PlacedPowers {
             let [a, b] = ends.each_ref().map(|end| term.line.exactly_at(end));
             let weighted = |base: &Dyadic| &term.exact_weight * &base.pow(term.exponent);
             let (at_a, at_b) = (weighted(&a), weighted(&b));
-            let mut extreme = if at_a.compare(&at_b) == which { at_a } else { at_b };
+            let mut extreme = if at_a.cmp(&at_b) == which { at_a } else { at_b };
             // An even power has its extreme 0 where the base is.
             let zero = Dyadic::zero();
-            if term.exponent % 2 == 0 && a.sign() * b.sign() < 0 && zero.compare(&extreme) == which {
+            if term.exponent % 2 == 0 && a.sign() * b.sign() < 0 && zero.cmp(&extreme) == which {
                 extreme = zero;
             }
             &sum + &extreme
@@ -166,8 +166,8 @@ impl PlacedPowers {
     }
 
     /// Bounds where the axes are mixed. As each term depends on one quantity u alone, its remainder after the
-    /// linear part of Taylor's formula about the centre has its extremes at the centre and at the ends of u's range.
-    /// (That of an odd power has one more, opposite the centre, which the farther end exceeds.)
+    /// linear part of Taylor's formula about the centre has its extremes at the centre and at the ends of u's
+    /// range. (That of an odd power has one more, opposite the centre, which the farther end exceeds.)
     fn bounds(&self, at: &Octants) -> Sides {
         let (halves, reach) = at.centres();
         let ranges = halves.map(|centre| {
@@ -208,8 +208,8 @@ impl PlacedPowers {
                 for axis in 0..3 {
                     slopes[axis] += weight * slope * splat(line.c[axis]);
                 }
-                // With e the error of the line, which is more than the roundings of u, and |u| at its greatest, all parts
-                // together are off by less than 17 n² e |u|^(n − 1).
+                // With e the error of the line, which is more than the roundings of u, and |u| at its
+                // greatest, all parts together are off by less than 17 n² e |u|^(n − 1).
                 let farthest = middle.abs() + spread + splat(line.error);
                 let share = 32.0 * (*exponent as f64) * (*exponent as f64) * line.error;
                 error += (weight * splat(share)).abs() * power(farthest, exponent - 1);
@@ -224,7 +224,8 @@ impl PlacedPowers {
 }
 
 impl Term {
-    /// More than the error of (base ± line's error)^exponent, as a multiple of (|base| + error)^(exponent − 1).
+    /// More than the error of (base ± line's error)^exponent, as a multiple of (|base| + error)^(exponent −
+    /// 1).
     fn error(&self, most: f64) -> f64 {
         let n = self.exponent as f64;
         4.0 * n * self.line.error + 4.0 * (n + 8.0) * f64::EPSILON * most
@@ -302,7 +303,7 @@ impl Aligned {
     /// The sides of the eight cells, and those for which rounding leaves a side open.
     #[inline(always)]
     fn sides(&self, at: &Octants) -> (Sides, u8) {
-        let low = at.low;
+        let low = at.lanes();
         let middle = low + at.half;
         let high = middle + at.half;
         let (base_a, a, error_a) = self.along(low);

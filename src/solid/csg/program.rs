@@ -1,150 +1,21 @@
-//! An expression on a universe: placements applied, complements pushed down to the half-spaces, and the whole written as
-//! words in postfix order, so that a cell's share of it is an array of words again.
+//! An expression on a universe: placements applied, complements pushed down to the half-spaces, and the whole
+//! written as words in postfix order, so that a cell's share of it is an array of words again.
 
 use super::extent::{Extent, Outward};
 use super::halfspace::{HalfSpace, Placed};
-use super::hierarchy::{Group, Operand};
+use super::hierarchy::{Groups, Operand};
 use super::map::ExactMap;
+use super::word::{MOST, Op, Word};
 use super::{Csg, Join, Kind, Node, Touch};
 use crate::control::Control;
 use crate::error::Error;
 use crate::lattice::Frame;
 use crate::memory;
-use crate::octree::Tag;
+use crate::octree::{Proof, Tag};
 use crate::solid::{AnyClassifier, AnySolid, Classifier, Solid};
 use alloc::sync::Arc;
 use alloc::vec::Vec;
 use hashbrown::HashMap;
-
-/// One word: an operand, or what joins the operands before it.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Word(u32);
-
-/// A word taken apart.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Op {
-    /// Half-space `index`, or its complement.
-    HalfSpace { index: u32, complement: bool },
-    /// Another solid, or its complement. `index` counts the parts that a worker keeps, of which the first are the
-    /// universe's parts of the program's solids.
-    Solid { index: u32, complement: bool },
-    /// Nothing is known, and splitting does not help.
-    Unknown,
-    /// The operation on the `count` operands before; or its complement.
-    Join { join: Join, complement: bool, count: u32 },
-    /// Operands that are not looked at one by one: group `index` of the program's.
-    Group { index: u32 },
-    /// The intersection of the `count` half-spaces before, which are classified together by [`Touch::Paper`].
-    Primitive { count: u32 },
-}
-
-/// Most half-spaces, other solids, operations and placements of an expression that is written out. (A half-space takes a kilobyte,
-/// and a node that contains another twice, which contains another twice …, soon comes to more than there is.)
-pub(super) const MOST: u64 = 1 << 22;
-
-impl Word {
-    /// The greatest index or count that a word can hold.
-    pub(super) const MOST: u32 = (1 << 28) - 1;
-
-    pub(super) fn new(op: Op) -> Word {
-        let word = |tag: u32, complement: bool, value: u32| tag | (complement as u32) << 3 | value << 4;
-        Word(match op {
-            Op::HalfSpace { index, complement } => word(0, complement, index),
-            Op::Solid { index, complement } => word(1, complement, index),
-            Op::Unknown => word(2, false, 0),
-            Op::Join { join: Join::Intersection, complement, count } => word(3, complement, count),
-            Op::Join { join: Join::Union, complement, count } => word(4, complement, count),
-            Op::Join { join: Join::Parity, complement, count } => word(5, complement, count),
-            Op::Primitive { count } => word(6, false, count),
-            Op::Group { index } => word(7, false, index),
-        })
-    }
-
-    /// Half of a number that lies among words.
-    pub(super) fn raw(bits: u32) -> Word {
-        Word(bits)
-    }
-
-    /// The bits of such a half.
-    pub(super) fn bits(self) -> u32 {
-        self.0
-    }
-
-    #[inline(always)]
-    pub(super) fn op(self) -> Op {
-        let (complement, value) = (self.0 & 8 != 0, self.0 >> 4);
-        let join = |join| Op::Join { join, complement, count: value };
-        match self.0 & 7 {
-            0 => Op::HalfSpace { index: value, complement },
-            1 => Op::Solid { index: value, complement },
-            3 => join(Join::Intersection),
-            4 => join(Join::Union),
-            5 => join(Join::Parity),
-            6 => Op::Primitive { count: value },
-            7 => Op::Group { index: value },
-            _ => Op::Unknown,
-        }
-    }
-}
-
-impl Word {
-    /// Bits of a half-space's index, of which there are no more than [`MOST`].
-    const VARIABLE: u32 = 25;
-
-    /// A half-space with its number in a truth table.
-    pub(super) fn of_variable(i: usize, index: u32) -> Word {
-        Word(index | (i as u32) << Word::VARIABLE)
-    }
-
-    /// The number of a half-space in a truth table, and which one it is.
-    #[inline(always)]
-    pub(super) fn variable(self) -> (usize, u32) {
-        ((self.0 >> Word::VARIABLE) as usize, self.0 & ((1 << Word::VARIABLE) - 1))
-    }
-}
-
-impl Op {
-    /// The value of an operand that decides the operation.
-    pub(super) fn absorbs(self) -> Option<bool> {
-        match self {
-            Op::Join { join: Join::Union, .. } => Some(true),
-            Op::Join { join: Join::Intersection, .. } | Op::Primitive { .. } => Some(false),
-            _ => None,
-        }
-    }
-
-    /// The value of an operation of which `open` operands are not decided, if it has one: one that decides it was
-    /// `absorbed`, or none is open.
-    pub(super) fn decided(self, open: u32, parity: bool, absorbed: bool) -> Option<bool> {
-        let (none, complement) = match self {
-            Op::Join { join: Join::Union, complement, .. } => (false, complement),
-            Op::Join { join: Join::Intersection, complement, .. } => (true, complement),
-            Op::Join { join: Join::Parity, complement, .. } => (parity, complement),
-            _ => (true, false),
-        };
-        match (absorbed, open) {
-            (true, _) => Some(!none ^ complement),
-            (false, 0) => Some(none ^ complement),
-            _ => None,
-        }
-    }
-
-    /// What remains of an operation of which `open` operands are not decided; `None` if one operand is all that
-    /// remains. Those of unions and intersections that are decided say nothing, those of parities their `parity`.
-    pub(super) fn of_open(self, open: u32, parity: bool) -> Option<Op> {
-        match self {
-            Op::Join { join: Join::Parity, complement, .. } => {
-                let complement = complement ^ parity;
-                (open > 1 || complement).then_some(Op::Join { join: Join::Parity, complement, count: open })
-            }
-            Op::Join { join, complement, .. } => {
-                (open > 1).then_some(Op::Join { join, complement, count: open })
-            }
-            Op::Primitive { .. } => Some(Op::Primitive { count: open }),
-            _ => Some(self),
-        }
-    }
-}
 
 /// An expression on one universe.
 pub(super) struct Program {
@@ -153,12 +24,13 @@ pub(super) struct Program {
     pub(super) paper: bool,
     pub(super) half_spaces: Vec<Placed>,
     pub(super) solids: Vec<AnyClassifier>,
-    /// Operands of large operations by where they lie, and the words of those that are in groups.
-    pub(super) groups: Vec<Group>,
-    pub(super) grouped: Vec<Word>,
+    /// Operands of large operations by where they lie.
+    pub(super) groups: Groups,
     pub(super) words: Vec<Word>,
     /// What is known of the space around the universe.
     pub(super) exterior: Tag,
+    /// What the verdicts prove: all that the other solids do.
+    pub(super) proof: Proof,
     /// Counts the evaluations of workers that are gone.
     pub(super) root: Arc<Node>,
 }
@@ -179,7 +51,8 @@ enum Task<'a> {
     },
 }
 
-/// The space that a node is given in, by its map from the universe, and the way of a box back into the universe.
+/// The space that a node is given in, by its map from the universe, and the way of a box back into the
+/// universe.
 #[derive(Clone)]
 struct Space {
     map: Arc<ExactMap>,
@@ -200,8 +73,8 @@ struct Writer<'c> {
 }
 
 impl Program {
-    /// Time and memory are linear in the expression, written out: a node that occurs twice counts twice. (Operations of
-    /// many operands sort them.)
+    /// Time and memory are linear in the expression, written out: a node that occurs twice counts twice.
+    /// (Operations of many operands sort them.)
     pub(super) fn new(csg: &Csg, frame: &Frame, control: &Control<'_>) -> Result<Program, Error> {
         if csg.root.size > MOST {
             return Err(Error::Limit { what: "half-spaces, operations and placements", limit: MOST });
@@ -211,10 +84,10 @@ impl Program {
             paper: csg.touch == Touch::Paper,
             half_spaces: Vec::new(),
             solids: Vec::new(),
-            groups: Vec::new(),
-            grouped: Vec::new(),
+            groups: Groups::default(),
             words: Vec::new(),
             exterior: Tag::Partial,
+            proof: Proof::CERTIFIED,
             root: csg.root.clone(),
         };
         let mut writer = Writer {
@@ -289,7 +162,15 @@ impl Writer<'_> {
                         }
                         Kind::Solid(solid) => {
                             self.begin(node, complement, &space)?;
-                            self.solid(solid, complement)?;
+                            let index = self.solid(solid, complement)?;
+                            // Under a parity both sides are asked for, whatever stands in between.
+                            let proof = self.program.solids[index as usize].proof();
+                            let proof = match joins.iter().any(|&(join, _)| join == Join::Parity) {
+                                true => proof.xor(proof),
+                                false if complement => proof.complement(),
+                                false => proof,
+                            };
+                            self.program.proof = self.program.proof.and(proof);
                         }
                         Kind::Join(Join::Intersection, parts)
                             if self.program.paper && all_half_spaces(parts) =>
@@ -348,7 +229,9 @@ impl Writer<'_> {
 
     /// Joins the operands from `first` on.
     fn join(&mut self, join: Join, complement: bool, first: usize) -> Result<(), Error> {
-        let count = self.program.group(join, &self.operands[first..])?;
+        let Program { groups, words, paper, .. } = &mut self.program;
+        let operands = &self.operands[first..];
+        let count = if *paper { operands.len() } else { groups.gather(join, operands, words)? };
         self.operands.truncate(first);
         // One operand is itself.
         if count != 1 || (join == Join::Parity && complement) {
@@ -404,7 +287,7 @@ impl Writer<'_> {
         if complement { self.write_join(Join::Parity, true, 1) } else { Ok(()) }
     }
 
-    fn solid(&mut self, solid: &AnySolid, complement: bool) -> Result<(), Error> {
+    fn solid(&mut self, solid: &AnySolid, complement: bool) -> Result<u32, Error> {
         let index = match self.seen_solids.get(&solid.address()) {
             Some(&index) => index,
             None => {
@@ -415,7 +298,8 @@ impl Writer<'_> {
                 index
             }
         };
-        memory::push(&mut self.program.words, Word::new(Op::Solid { index, complement }))
+        memory::push(&mut self.program.words, Word::new(Op::Solid { index, complement }))?;
+        Ok(index)
     }
 }
 

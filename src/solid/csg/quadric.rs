@@ -1,14 +1,15 @@
-//! Polynomials of degree two: planes and quadrics.
+//! Polynomials of degree two: quadrics.
 
-use super::bounds::{Octants, Sides, mask, sums};
-use super::dyadic::Dyadic;
+use super::bounds::{Octants, Sides, sums};
+use super::linear;
 use super::map::ExactMap;
-use crate::lattice::exact::sign;
+use crate::lattice::exact::{Dyadic, certain};
 use alloc::boxed::Box;
 use core::cmp::Ordering;
 use wide::f64x4;
 
-/// Which products of (x, y, z, 1) the coefficients of a quadric belong to: squares, mixed products, linear terms, 1.
+/// Which products of (x, y, z, 1) the coefficients of a quadric belong to: squares, mixed products, linear
+/// terms, 1.
 const PAIRS: [(usize, usize); 10] =
     [(0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (0, 2), (0, 3), (1, 3), (2, 3), (3, 3)];
 
@@ -59,8 +60,8 @@ struct Separable {
     constant: f64,
     linear: f64x4,
     square: f64x4,
-    /// Where the parabola of an axis has its vertex, and its value there: as `least` for one that opens upward, as
-    /// `most` for one that opens downward, else infinite.
+    /// Where the parabola of an axis has its vertex, and its value there: as `least` for one that opens
+    /// upward, as `most` for one that opens downward, else infinite.
     vertex: f64x4,
     least: f64x4,
     most: f64x4,
@@ -81,7 +82,7 @@ impl Quadric {
     pub(super) fn new(given: &Coefficients, map: &ExactMap, depth: u8) -> Quadric {
         let exact = substitute(given, map);
         // Only the sign counts: the largest coefficient is brought to a magnitude of one.
-        let scale = -exact.iter().filter_map(Dyadic::magnitude).max().unwrap_or(0);
+        let scale = -linear::magnitude(&exact);
         let exact = exact.map(|c| c.shifted(scale));
         let c = exact.each_ref().map(Dyadic::rounded);
         // Magnitudes of all terms on [−1, 2]³, where no value is larger.
@@ -114,16 +115,13 @@ impl Quadric {
         }
     }
 
-    /// In which of the eight cells the centre is surely inside, and in which surely outside; on the surface, and where
-    /// rounding leaves it open, it is neither.
+    /// The values at the centres of the eight cells, and more than their error.
     #[inline(always)]
-    pub(super) fn centres(&self, at: &Octants) -> (u8, u8) {
-        let (values, error) = match &self.form {
+    pub(super) fn centres(&self, at: &Octants) -> ([f64x4; 2], f64) {
+        match &self.form {
             Form::Separable(separable) => (separable.centres(at), separable.error),
             Form::Mixed(mixed) => (at.centres().0.map(|centre| mixed.value(centre)), mixed.error),
-        };
-        let (above, below) = (f64x4::splat(error), f64x4::splat(-error));
-        (mask(values.map(|v| v.simd_gt(above))), mask(values.map(|v| v.simd_lt(below))))
+        }
     }
 
     /// Exact sign of the least (`Less`) or the greatest value over a box, without mixed products.
@@ -142,7 +140,7 @@ impl Quadric {
                 // −linear² / (4 square), a fraction.
                 vertices[axis] = Some((-&(linear * linear), square.shifted(2)));
             } else {
-                sum = &sum + if at_low.compare(&at_high) == which { &at_low } else { &at_high };
+                sum = &sum + if at_low.cmp(&at_high) == which { &at_low } else { &at_high };
             }
         }
         // Over a common denominator, whose sign counts.
@@ -161,7 +159,7 @@ impl Quadric {
             Form::Separable(separable) => (separable.value(t), separable.error),
             Form::Mixed(mixed) => (mixed.value(t.map(f64x4::splat)).to_array()[0], mixed.error),
         };
-        if value > error || value < -error || error == 0.0 { sign(value) } else { self.exact_sign_at(t) }
+        certain(value, error).unwrap_or_else(|| self.exact_sign_at(t))
     }
 
     #[cold]
@@ -189,8 +187,9 @@ impl Separable {
     fn new(exact: &Coefficients, c: [f64; 10], size: f64, depth: u8) -> Separable {
         let (mut vertex, mut least, mut most) =
             ([f64::INFINITY; 4], [f64::INFINITY; 4], [f64::NEG_INFINITY; 4]);
-        // What all values are multiples of, where coordinates are of a cell's centre. A vertex is exact if it is one.
-        let grain = exact.iter().filter_map(Dyadic::grain).min().unwrap_or(0) - 2 * (depth as i64 + 1);
+        // Coordinates are of a cell's centre. A vertex is exact if its value is no finer than others.
+        let places = 2 * (depth as i64 + 1);
+        let grain = exact.iter().filter_map(Dyadic::grain).min().unwrap_or(0) - places;
         let mut is_exact = exact.iter().all(|c| c.exactly().is_some());
         let mut size = size;
         for axis in 0..3 {
@@ -211,8 +210,7 @@ impl Separable {
             *if square > 0.0 { &mut least[axis] } else { &mut most[axis] } = value;
             size += value.abs();
         }
-        // With nothing finer than the grain and nothing beyond 2^53 of it, nothing is rounded.
-        is_exact &= Dyadic::new(size).magnitude().is_none_or(|m| m + 1 - grain <= 53);
+        is_exact &= linear::is_exact(exact, places, size);
         Separable {
             constant: c[place(3, 3)],
             linear: f64x4::new([c[place(0, 3)], c[place(1, 3)], c[place(2, 3)], 0.0]),
@@ -228,7 +226,7 @@ impl Separable {
     /// The sides of the eight cells, and those for which rounding leaves a side open.
     #[inline(always)]
     fn sides(&self, at: &Octants) -> (Sides, u8) {
-        let low = at.low;
+        let low = at.lanes();
         let middle = low + at.half;
         let high = middle + at.half;
         let along = |t: f64x4| (self.square * t + self.linear) * t;
@@ -236,17 +234,21 @@ impl Separable {
         let first = low.simd_lt(self.vertex) & self.vertex.simd_lt(middle);
         let second = middle.simd_le(self.vertex) & self.vertex.simd_lt(high);
         let (up, down) = (f64x4::splat(f64::INFINITY), f64x4::splat(f64::NEG_INFINITY));
-        let least = [(a, b, first), (b, c, second)]
-            .map(|(a, b, inside)| a.fast_min(b).fast_min(inside.select(self.least, up)));
-        let most = [(a, b, first), (b, c, second)]
-            .map(|(a, b, inside)| a.fast_max(b).fast_max(inside.select(self.most, down)));
+        let least = [
+            a.fast_min(b).fast_min(first.select(self.least, up)),
+            b.fast_min(c).fast_min(second.select(self.least, up)),
+        ];
+        let most = [
+            a.fast_max(b).fast_max(first.select(self.most, down)),
+            b.fast_max(c).fast_max(second.select(self.most, down)),
+        ];
         Sides::with_error(sums(self.constant, least), sums(self.constant, most), self.error)
     }
 
     /// The values at the centres of the eight cells.
     #[inline(always)]
     fn centres(&self, at: &Octants) -> [f64x4; 2] {
-        let first = at.low + 0.5 * at.half;
+        let first = at.lanes() + 0.5 * at.half;
         sums(self.constant, [first, first + at.half].map(|t| (self.square * t + self.linear) * t))
     }
 
@@ -259,34 +261,33 @@ impl Separable {
 }
 
 impl Mixed {
-    /// Taylor's formula about each centre: exact but for what the axes have in common.
     #[inline(always)]
     fn sides(&self, at: &Octants) -> Sides {
-        let [xx, yy, zz, xy, yz, zx, x1, y1, z1, _] = self.c.map(f64x4::splat);
         let (centres, quarter) = at.centres();
-        let two = f64x4::splat(2.0);
-        let reach = f64x4::splat(quarter);
-        let (square_least, square_most) = (
-            f64x4::splat(quarter * quarter * self.squares.0),
-            f64x4::splat(quarter * quarter * self.squares.1),
-        );
-        let ranges = centres.map(|[x, y, z]| {
-            let value = self.value([x, y, z]);
-            let (mixed_x, mixed_y) = (xy * y + zx * z, xy * x + yz * z);
-            let (from_x, from_y, from_z) = (xx * x, yy * y, zz * z);
-            let slopes = (two * from_x + (x1 + mixed_x)).abs()
-                + (two * from_y + (y1 + mixed_y)).abs()
-                + (two * from_z + (z1 + (zx * x + yz * y))).abs();
-            let spread = slopes * reach;
-            (value - spread + square_least, value + spread + square_most)
-        });
-        Sides::with_error([ranges[0].0, ranges[1].0], [ranges[0].1, ranges[1].1], self.error).0
+        let (a, b) = (self.range(centres[0], quarter), self.range(centres[1], quarter));
+        Sides::with_error([a.0, b.0], [a.1, b.1], self.error).0
+    }
+
+    /// Bounds over four cubes of half edge `reach`, by Taylor's formula about each centre: exact but for what
+    /// the axes have in common.
+    #[inline(always)]
+    fn range(&self, [x, y, z]: [f64x4; 3], reach: f64) -> (f64x4, f64x4) {
+        let [xx, yy, zz, xy, yz, zx, x1, y1, z1, _] = self.c;
+        let value = self.value([x, y, z]);
+        let (mixed_x, mixed_y, mixed_z) = (y * xy + z * zx, x * xy + z * yz, x * zx + y * yz);
+        let (from_x, from_y, from_z) = (x * xx * 2.0, y * yy * 2.0, z * zz * 2.0);
+        let slopes = (from_x + (mixed_x + x1)).abs()
+            + (from_y + (mixed_y + y1)).abs()
+            + (from_z + (mixed_z + z1)).abs();
+        let spread = slopes * reach;
+        let (least, most) = (reach * reach * self.squares.0, reach * reach * self.squares.1);
+        (value - spread + least, value + spread + most)
     }
 
     /// The values at four points.
     #[inline(always)]
     fn value(&self, [x, y, z]: [f64x4; 3]) -> f64x4 {
-        let [xx, yy, zz, xy, yz, zx, x1, y1, z1, constant] = self.c.map(f64x4::splat);
-        constant + (xx * x + (x1 + xy * y)) * x + (yy * y + (y1 + yz * z)) * y + (zz * z + (z1 + zx * x)) * z
+        let [xx, yy, zz, xy, yz, zx, x1, y1, z1, constant] = self.c;
+        (x * xx + (y * xy + x1)) * x + constant + (y * yy + (z * yz + y1)) * y + (z * zz + (x * zx + z1)) * z
     }
 }

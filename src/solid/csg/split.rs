@@ -7,7 +7,7 @@ use super::worker::{Ask, CsgPart, Scratch};
 use crate::control::Control;
 use crate::error::Error;
 use crate::lattice::{Bounds, Cell, Frame};
-use crate::octree::{Block, Planes, Tag};
+use crate::octree::{Block, Planes, Proof, Tag};
 use crate::solid::{
     Classifier, Crossing, Enclosure, Fingerprint, OCTANTS, Segment, Solid, Subtree, Verdict, Worker,
 };
@@ -32,8 +32,8 @@ pub struct CsgWorker {
 impl Solid for Csg {
     type Classifier = CsgClassifier;
 
-    /// O(n) in the expression written out, but for operations of many operands, which sort them; and what the other solids
-    /// in it take.
+    /// O(n) in the expression written out, but for operations of many operands, which sort them; and what the
+    /// other solids in it take.
     fn on(&self, frame: &Frame, control: &Control<'_>) -> Result<CsgClassifier, Error> {
         let mut program = Program::new(self, frame, control)?;
         let mut scratch = Scratch::new(&program)?;
@@ -82,6 +82,10 @@ impl Classifier for CsgClassifier {
 
     fn exterior(&self) -> Tag {
         self.program.exterior
+    }
+
+    fn proof(&self) -> Proof {
+        self.program.proof
     }
 }
 

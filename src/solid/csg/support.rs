@@ -1,11 +1,10 @@
 //! How far convex polyhedra reach.
 //!
-//! A linear programme is solved in floating point by the dual simplex method; what it finds is then proven: if a
-//! direction e is −Σ λ n over some planes n · p + o ≥ 0 with exact λ ≥ 0, then e · p ≤ Σ λ o.
+//! A linear programme is solved in floating point by the dual simplex method; what it finds is then proven:
+//! if a direction e is −Σ λ n over some planes n · p + o ≥ 0 with exact λ ≥ 0, then e · p ≤ Σ λ o.
 
-use super::dyadic::Dyadic;
 use crate::error::Error;
-use crate::lattice::exact::sqrt;
+use crate::lattice::exact::{self, Dyadic, sqrt};
 use crate::memory;
 use alloc::vec::Vec;
 
@@ -28,8 +27,8 @@ fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     [0, 1, 2].map(|i| a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3])
 }
 
-/// A box that surely contains the polyhedron of all points with n · p + o ≥ 0 for each plane (n, o), if one is found.
-/// O(planes).
+/// A box that surely contains the polyhedron of all points with n · p + o ≥ 0 for each plane (n, o), if one
+/// is found. O(planes).
 ///
 /// # Errors
 /// [`Error::OutOfMemory`].
@@ -67,7 +66,8 @@ pub(super) fn box_around(planes: &[Plane]) -> Result<Option<Corners>, Error> {
     Ok(Some((min, max)))
 }
 
-/// Three planes in whose common point `direction` · p seems to be greatest; the last three planes are where to begin.
+/// Three planes in whose common point `direction` · p seems to be greatest; the last three planes are where
+/// to begin.
 fn best_planes(rows: &[Plane], direction: [f64; 3]) -> Option<[usize; 3]> {
     let first = rows.len() - 3;
     let mut basis = [first, first + 1, first + 2];
@@ -95,20 +95,16 @@ fn best_planes(rows: &[Plane], direction: [f64; 3]) -> Option<[usize; 3]> {
     None
 }
 
-/// An upper bound of `direction` · p on the polyhedron, proven by three planes; beyond the given ones there are those
-/// that are not part of it.
+/// An upper bound of `direction` · p on the polyhedron, proven by three planes; beyond the given ones there
+/// are those that are not part of it.
 fn reach(planes: &[Plane], basis: [usize; 3], direction: [f64; 3]) -> Option<f64> {
-    let exact = |v: [f64; 3]| v.map(Dyadic::new);
-    let determinant = |[a, b, c]: [&[Dyadic; 3]; 3]| {
-        (0..3).fold(Dyadic::zero(), |sum, i| {
-            let (j, k) = ((i + 1) % 3, (i + 2) % 3);
-            &sum + &(&a[i] * &(&(&b[j] * &c[k]) - &(&b[k] * &c[j])))
-        })
-    };
+    let exactly = |v: [f64; 3]| v.map(Dyadic::new);
+    let determinant = |[a, b, c]: [&[Dyadic; 3]; 3]| exact::dot(a.each_ref(), exact::cross(b, c).each_ref());
     let unit = |k: usize| [0, 1, 2].map(|axis| if axis == k { 1.0 } else { 0.0 });
     // The sign of a plane that has no share does not matter.
-    let normals = basis.map(|i| exact(planes.get(i).map_or_else(|| unit(i - planes.len()), |plane| plane.0)));
-    let direction = exact(direction);
+    let normals =
+        basis.map(|i| exactly(planes.get(i).map_or_else(|| unit(i - planes.len()), |plane| plane.0)));
+    let direction = exactly(direction);
     let volume = determinant([&normals[0], &normals[1], &normals[2]]);
     if volume.is_zero() {
         return None;

@@ -5,7 +5,8 @@ use super::bounds::Sides;
 /// Most half-spaces of a table: 2^6 combinations are the bits of one word.
 pub(super) const MOST: usize = 6;
 
-/// A function of up to six half-spaces: bit i is its value where the half-spaces hold whose bits are set in i.
+/// A function of up to six half-spaces: bit i is its value where the half-spaces hold whose bits are set in
+/// i.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Table(pub(super) u64);
 

@@ -1,15 +1,14 @@
 //! The torus.
 
 use super::bounds::{Octants, Sides};
-use super::dyadic::Dyadic;
-use super::linear::Linear;
+use super::linear::{self, Linear};
 use super::map::ExactMap;
-use crate::lattice::exact::{sign, sqrt};
+use crate::lattice::exact::{Dyadic, sign, sqrt};
 use core::cmp::Ordering;
 use wide::f64x4;
 
-/// The points (x, y, z) for which (`scale` x, `scale` y, `scale` z + `shift`) is at most √`square` from the circle of
-/// radius `major` > 0 around the z axis in the plane z = 0.
+/// The points (x, y, z) for which (`scale` x, `scale` y, `scale` z + `shift`) is at most √`square` from the
+/// circle of radius `major` > 0 around the z axis in the plane z = 0.
 pub(super) struct Torus {
     pub(super) major: Dyadic,
     pub(super) square: Dyadic,
@@ -31,8 +30,8 @@ pub(super) struct PlacedTorus {
     major: f64,
     /// minor².
     square: f64,
-    /// Half the diagonal of a cube's image, the cube being of half edge 1: its length squared, and the length of its
-    /// projection along z.
+    /// Half the diagonal of a cube's image, the cube being of half edge 1: its length squared, and the length
+    /// of its projection along z.
     diagonal: f64,
     radius: f64,
     /// If x, y and z depend on one axis each.
@@ -48,7 +47,7 @@ impl PlacedTorus {
         let (major, square) = (&w * &given.major, &w.pow(2) * &given.square);
         let mut rows = map.rows.each_ref().map(|row| row.each_ref().map(|c| c * &given.scale));
         rows[2][3] = &rows[2][3] + &(&map.w * &given.shift);
-        let sizes = rows.each_ref().map(Linear::magnitude);
+        let sizes = rows.each_ref().map(linear::magnitude);
         let minor = square.magnitude().map(|power| power.div_euclid(2) + 1);
         let scale = -sizes.into_iter().chain(major.magnitude()).chain(minor).max().unwrap_or(0);
         let (major, square) = (major.shifted(scale), square.shifted(2 * scale));
@@ -69,8 +68,8 @@ impl PlacedTorus {
             diagonal,
             radius: sqrt(radius),
             aligned: lines.iter().all(|line| line.axis().is_some()),
-            // A term is rounded at most twenty times, and what its arguments are off by counts with the slopes, at most
-            // four times the size.
+            // A term is rounded at most twenty times, and what its arguments are off by counts with the
+            // slopes, at most four times the size.
             error: 256.0 * f64::EPSILON * size * size,
             lines,
             exact_major: major,
@@ -111,9 +110,9 @@ impl PlacedTorus {
         (square - far * far - z.1, square - near * near - z.0)
     }
 
-    /// Bounds by Taylor's formula about the centres c of four cubes. Off the centre by d, ρ is convex, so not below
-    /// its tangent, and above it by at most b² / 2a, with b the part of d across the radius and a ≤ ρ the radius c
-    /// and the part of d along it; −|d|² makes up the rest of f.
+    /// Bounds by Taylor's formula about the centres c of four cubes. Off the centre by d, ρ is convex, so not
+    /// below its tangent, and above it by at most b² / 2a, with b the part of d across the radius and a ≤ ρ
+    /// the radius c and the part of d along it; −|d|² makes up the rest of f.
     #[inline(always)]
     fn taylor_range(&self, centre: [f64x4; 3], reach: f64) -> (f64x4, f64x4) {
         let zero = f64x4::ZERO;
@@ -122,7 +121,8 @@ impl PlacedTorus {
         let rho = roots(x * x + y * y);
         let off = rho - splat(self.major);
         let value = splat(self.square) - off * off - z * z;
-        // On the axis any direction will do for the tangent, and none; nearby squares lose the direction's length.
+        // On the axis any direction will do for the tangent, and none; nearby squares lose the direction's
+        // length.
         let share = rho.simd_gt(splat(NEAR)).select(off / rho, zero);
         let (slope_x, slope_y) = (x * share, y * share);
         let slopes = [0, 1, 2].map(|axis| {
@@ -147,7 +147,7 @@ impl PlacedTorus {
                 let [a, b] = ends.each_ref().map(|end| line.exactly_at(end));
                 let (square_a, square_b) = (a.pow(2), b.pow(2));
                 let across = a.sign() * b.sign() < 0;
-                let (near, far) = match square_a.compare(&square_b) {
+                let (near, far) = match square_a.cmp(&square_b) {
                     Ordering::Less => (square_a, square_b),
                     _ => (square_b, square_a),
                 };
@@ -157,7 +157,7 @@ impl PlacedTorus {
             let (inner, outer) = (&x.0 + &y.0, &x.1 + &y.1);
             let signs = |z: &Dyadic| [&inner, &outer].map(|rho| self.sign_of(rho, z));
             let ring = self.exact_major.pow(2);
-            let around = inner.compare(&ring) == Ordering::Less && ring.compare(&outer) == Ordering::Less;
+            let around = inner < ring && ring < outer;
             let [a, b] = signs(&z.1);
             if a.min(b) >= 0 {
                 sides.inside |= 1 << k;
@@ -218,7 +218,7 @@ fn sign_with_root(a: &Dyadic, b: &Dyadic, s: &Dyadic) -> i32 {
     match (a.sign(), root) {
         (0, sign) | (sign, 0) => sign,
         (one, other) if one == other => one,
-        (sign, _) => match a.pow(2).compare(&(&b.pow(2) * s)) {
+        (sign, _) => match a.pow(2).cmp(&(&b.pow(2) * s)) {
             Ordering::Greater => sign,
             Ordering::Equal => 0,
             Ordering::Less => -sign,
@@ -249,7 +249,8 @@ mod tests {
 
     #[test]
     fn as_near_to_the_axis_as_squares_underflow() {
-        // The centre of cell (300, 300, 200) lies on z = ½ and 1.2 · 2^-536 off the axis; x and z change together.
+        // The centre of cell (300, 300, 200) lies on z = ½ and 1.2 · 2^-536 off the axis; x and z change
+        // together.
         let [u, w] = [300.5, 200.5].map(|i| i / 512.0);
         let (steep, flat) = (77.0 / 32.0, 2f64.powi(-10));
         let rows = [

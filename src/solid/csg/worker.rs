@@ -3,8 +3,9 @@
 use super::bounds::Octants;
 use super::hierarchy::Taken;
 use super::kleene::Kleene;
-use super::program::{Op, Program, Word};
+use super::program::Program;
 use super::table::{self, Table};
+use super::word::{Op, Word};
 use super::{Join, points};
 use crate::error::Error;
 use crate::lattice::Cell;
@@ -25,8 +26,8 @@ impl CsgPart {
     /// Of a cell that cannot be split.
     const HOPELESS: CsgPart = CsgPart { start: 0, len: 0 };
 
-    /// Set in the length: so many words of half-spaces, each with its number in the table, are followed by the two halves
-    /// of a truth table.
+    /// Set in the length: so many words of half-spaces, each with its number in the table, are followed by
+    /// the two halves of a truth table.
     const TABLE: u32 = 1 << 31;
 
     /// Words that the part takes.
@@ -53,8 +54,8 @@ pub(super) struct Scratch {
     /// One for each other solid, made when it is first asked.
     pub(super) workers: Vec<Option<Other>>,
     pub(super) evaluations: u64,
-    /// Of the split under way: verdicts by each word, those of the operands that wait, what other solids answered, and
-    /// the operands of a child.
+    /// Of the split under way: verdicts by each word, those of the operands that wait, what other solids
+    /// answered, and the operands of a child.
     masks: Vec<Kleene>,
     pub(super) operands: Vec<Kleene>,
     answers: Vec<Answer>,
@@ -74,8 +75,8 @@ pub(super) struct Other {
 pub(super) struct Slot {
     pub(super) solid: u32,
     pub(super) part: ErasedPart,
-    /// The number of words when its cell's were begun (words may be taken back until the cell's are complete, and then
-    /// there are more), and the height of the solid's own scratch memory before.
+    /// The number of words when its cell's were begun (words may be taken back until the cell's are complete,
+    /// and then there are more), and the height of the solid's own scratch memory before.
     pub(super) words: usize,
     pub(super) height: usize,
 }
@@ -153,7 +154,8 @@ impl Scratch {
         }
     }
 
-    /// The verdict of the universe, from the words of the whole program; what is open there remains as its part.
+    /// The verdict of the universe, from the words of the whole program; what is open there remains as its
+    /// part.
     pub(super) fn begin(&mut self, program: &Program) -> Result<Verdict<CsgPart>, Error> {
         let len = u32::try_from(program.words.len()).map_err(|_| Error::OutOfMemory)?;
         let cells = self.cells(program, CsgPart { start: 0, len }, Ask::Root)?;
@@ -309,8 +311,9 @@ impl Scratch {
         Ok(cells)
     }
 
-    /// Replaces the words of child `k` by a truth table, if it has few half-spaces and nothing else: if that is the same
-    /// for all combinations, the child is decided. `fresh` words are the last, and the child's own.
+    /// Replaces the words of child `k` by a truth table, if it has few half-spaces and nothing else: if that
+    /// is the same for all combinations, the child is decided. `fresh` words are the last, and the child's
+    /// own.
     fn tabulate(&mut self, program: &Program, cells: &mut Cells, k: u32, fresh: bool) -> Result<(), Error> {
         let part = cells.parts[k as usize];
         if part.len < 2 || part.len > 64 || program.paper {
@@ -464,7 +467,7 @@ impl Scratch {
                 Op::Join { join, complement, count } => {
                     Kleene::join_last(operands, join, count).complemented(complement)
                 }
-                Op::Group { index } => program.groups[index as usize].kleene(at),
+                Op::Group { index } => program.groups.kleene(index as usize, at),
                 Op::Primitive { count } => {
                     let first = i - count as usize;
                     operands.truncate(operands.len() - count as usize);
@@ -503,9 +506,11 @@ impl Scratch {
                 Op::Group { .. } if kleene.decided() & bit != 0 => None,
                 Op::Group { index } => {
                     hopeful = true;
-                    match program.take_apart(index as usize, corners, finest, &mut self.words)? {
+                    match program.groups.take_apart(index as usize, corners, finest, &mut self.words)? {
                         Taken::Written => self.open.push(Operand::Open(first)),
-                        Taken::Nothing => self.open.push(Operand::Decided(program.neutral(index as usize))),
+                        Taken::Nothing => {
+                            self.open.push(Operand::Decided(program.groups.neutral(index as usize)))
+                        }
                     }
                     continue;
                 }
@@ -569,8 +574,8 @@ impl Scratch {
     }
 }
 
-/// A primitive as the method was published: the vertices of the children first, a vertex on the surface being inside;
-/// then half-space by half-space the children whose vertices agree.
+/// A primitive as the method was published: the vertices of the children first, a vertex on the surface being
+/// inside; then half-space by half-space the children whose vertices agree.
 fn primitive_by_paper(
     program: &Program,
     words: &[Word],

@@ -1,8 +1,8 @@
 //! Where lines of cell centres pierce triangles, exactly.
 //!
 //! The winding number of a cell centre against that of another one follows from the triangles that an
-//! axis-parallel line between them pierces. All centres are shifted by (ε, ε², ε³) in thought, ε → 0, so that no
-//! line ever meets an edge or a vertex and no centre lies on a triangle; the shift is the same for all
+//! axis-parallel line between them pierces. All centres are shifted by (ε, ε², ε³) in thought, ε → 0, so that
+//! no line ever meets an edge or a vertex and no centre lies on a triangle; the shift is the same for all
 //! lines, so that winding numbers do not depend on the way taken. (Simulation of simplicity: Edelsbrunner and
 //! Mücke 1990, with one perturbation for all points.)
 //!
@@ -19,8 +19,8 @@ pub(super) struct Projection<'p> {
     triangle: u32,
     corners: Corners,
     axes: Axes,
-    /// Per edge (from corner i to corner i + 1) its advance along u per unit of v, and a bound of the error of
-    /// where a row meets it.
+    /// Per edge (from corner i to corner i + 1) its advance along u per unit of v, and a bound of the error
+    /// of where a row meets it.
     edges: [(f64, f64); 3],
     /// The corners' accuracy: bound of a position's error with the roundings of a few sums.
     error: f64,
@@ -141,7 +141,7 @@ impl<'p> Projection<'p> {
         } else {
             let original = self.placed.original(self.triangle);
             let from = |corner: usize, axis: usize, index: i32| {
-                Expansion::offset(&self.placed.frame, axis, original[corner][axis], 2 * index as i64 + 1)
+                self.placed.frame.offset(axis, original[corner][axis], 2 * index as i64 + 1)
             };
             let (au, av) = (from(i, u, column), from(i, v, row));
             let (bu, bv) = (from(j, u, column), from(j, v, row));
@@ -208,9 +208,8 @@ impl<'p> Projection<'p> {
             crate::lattice::exact::sign(-(a[0] * minor(1, 2) + a[1] * minor(2, 0) + a[2] * minor(0, 1)))
         } else {
             let [a, b, c] = self.placed.original(self.triangle).map(|corner| {
-                [0, 1, 2].map(|axis| {
-                    Expansion::offset(&self.placed.frame, axis, corner[axis], 2 * centre[axis] as i64 + 1)
-                })
+                [0, 1, 2]
+                    .map(|axis| self.placed.frame.offset(axis, corner[axis], 2 * centre[axis] as i64 + 1))
             });
             let minor = |i: usize, j: usize| b[i].times(&c[j]).minus(&b[j].times(&c[i]));
             let det =

@@ -1,15 +1,22 @@
 //! Triangle meshes as solids.
 //!
-//! The truth is the set of points with a non-zero winding number (or a positive or an odd one, on request), so
-//! that overlapping bodies, nested shells and shells turned inside out have a meaning. Where a mesh is not closed the
-//! winding number is not an integer, and the nearest one decides: a convention, and said to be one.
+//! The truth is the set of points with a non-zero winding number (or a positive or an odd one, on request),
+//! so that overlapping bodies, nested shells and shells turned inside out have a meaning. Where a mesh is not
+//! closed the winding number is not an integer, and the nearest one decides: a convention.
 //!
-//! Classification is certified: the cells that a triangle cuts stay PARTIAL and none is ever missed. Every other cell of a
-//! closed mesh is wholly on one side, and which side is an exact integer, the winding number of its lowest centre,
-//! carried from cell to cell along lines that count the triangles they pierce. An open mesh is closed by caps for that
-//! (`boundary`), whose own winding number is then taken off with bounds of its error and its slope (`winding`, `open`).
+//! Classification is certified: the cells that a triangle cuts stay PARTIAL and none is ever missed. Every
+//! other cell of a closed mesh is wholly on one side, and which side is an exact integer, the winding number
+//! of its lowest centre, carried from cell to cell along lines that count the triangles they pierce. An open
+//! mesh is closed by caps for that (`boundary`), whose own winding number is then taken off with bounds of
+//! its error and its slope (`winding`, `open`).
+//!
+//! From the bottom up, each file uses only files named before it: `placed` (vertices on the lattice),
+//! `crossing` (where lines of centres pierce triangles), `overlap` (which cells a triangle cuts), `winding`
+//! (the caps' winding number), `scan` (blocks of 64³ cells), `on_frame` (a mesh on a frame, and what is known
+//! of a cell), `open` (cells of an open surface), `split` (the solid, its classifier and its workers).
 
 mod crossing;
+mod on_frame;
 mod open;
 mod overlap;
 mod placed;

@@ -1,17 +1,17 @@
 //! Cells of an open surface.
 //!
-//! What is counted along lines is the winding number of the surface *and its caps*. Here the caps' own is taken off: around
-//! the middle of a cell it is known to second order, with bounds of what that neglects, and jumps by an integer on every
-//! cap. Three things follow for a cell:
+//! What is counted along lines is the winding number of the surface *and its caps*. Here the caps' own is
+//! taken off: around the middle of a cell it is known to second order, with bounds of what that neglects, and
+//! jumps by an integer on every cap. Three things follow for a cell:
 //!
-//! * If no cap cuts it, and the caps' winding number stays within one half of an integer, the surface's own is what remains,
-//!   an integer, up to less than one half. The cell and all below it are then as those of a closed surface.
-//! * If the surface does not cut it, its winding number is continuous in the cell, caps or not, and may be bounded away
-//!   from what the fill rule asks for: FULL or EMPTY.
+//! * If no cap cuts it, and the caps' winding number stays within one half of an integer, the surface's own
+//!   is what remains, an integer, up to less than one half. The cell and all below it are then as those of a
+//!   closed surface.
+//! * If the surface does not cut it, its winding number is continuous in the cell, caps or not, and may be
+//!   bounded away from what the fill rule asks for: FULL or EMPTY.
 //! * Else its children are asked. A finest cell near a hole, that nothing cuts, may stay PARTIAL.
 
-use super::placed::Placed;
-use super::split::{MeshPart, OnFrame};
+use super::on_frame::{Branch, MeshPart, OnFrame};
 use super::winding::{Local, Range};
 use crate::lattice::MAX_DEPTH;
 use crate::lattice::exact::floor;
@@ -22,8 +22,8 @@ use alloc::vec::Vec;
 /// Half the diagonal of a cube of edge 1, rounded up.
 const HALF_DIAGONAL: f64 = 0.866_025_404;
 
-/// Two winding numbers that are known so well, both together to less than one half, differ by the nearest integer if
-/// they should differ by an integer.
+/// Two winding numbers that are known so well, both together to less than one half, differ by the nearest
+/// integer if they should differ by an integer.
 const SURE: f64 = 0.2;
 
 /// Error that a group of caps may add in a cell.
@@ -38,27 +38,8 @@ const MOST_SQUARES: usize = 2048;
 /// How many caps are looked at for that at most, about.
 const MOST_CAPS: usize = 1 << 22;
 
-/// Which of its values the caps' winding number takes at a cell's lowest centre.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Branch {
-    /// That of the expansion around the cell of this level which holds this one
-    level: u8,
-    /// and so much more.
-    step: i32,
-}
-
-impl Branch {
-    /// Nothing is known.
-    pub(super) const UNKNOWN: Branch = Branch { level: u8::MAX, step: 0 };
-
-    /// Beyond caps.
-    pub(super) fn plus(self, jump: i32) -> Branch {
-        Branch { step: self.step + jump, ..self }
-    }
-}
-
-/// The caps' winding number around the latest cell of each level that it was asked for: a function of the cell alone,
-/// kept for those below it.
+/// The caps' winding number around the latest cell of each level that it was asked for: a function of the
+/// cell alone, kept for those below it.
 #[derive(Default)]
 pub(super) struct Surroundings {
     /// The cell's lower corner, and what is known unless the boundary passes close by.
@@ -66,10 +47,10 @@ pub(super) struct Surroundings {
 }
 
 impl Surroundings {
-    /// The caps' winding number around the middle of the cell of `level` that holds `at`; of a finest cell on that side
-    /// of every cap on which its centre counts.
-    fn local(&mut self, placed: &Placed, level: u8, at: [i32; 3]) -> Option<Local> {
-        let size = 1 << (placed.frame.depth() - level);
+    /// The caps' winding number around the middle of the cell of `level` that holds `at`; of a finest cell on
+    /// that side of every cap on which its centre counts.
+    fn local(&mut self, mesh: &OnFrame, level: u8, at: [i32; 3]) -> Option<Local> {
+        let size = 1 << (mesh.placed.frame.depth() - level);
         let corner = at.map(|a| a & -size);
         let slot = &mut self.levels[level as usize];
         if let Some((kept, local)) = slot
@@ -79,15 +60,15 @@ impl Surroundings {
         }
         let radius = size as f64 * HALF_DIAGONAL;
         let cell = (size == 1).then_some(corner);
-        let local = placed.caps.local(placed, middle(corner, size), radius, ENOUGH, cell);
+        let local = mesh.caps.local(&mesh.placed, middle(corner, size), radius, ENOUGH, cell);
         *slot = Some((corner, local));
         local
     }
 }
 
 /// The caps' winding number at the centre of a finest cell.
-fn at_centre(placed: &Placed, at: [i32; 3], enough: f64) -> Range {
-    let local = placed.caps.local(placed, middle(at, 1), 0.0, enough, Some(at));
+fn at_centre(mesh: &OnFrame, at: [i32; 3], enough: f64) -> Range {
+    let local = mesh.caps.local(&mesh.placed, middle(at, 1), 0.0, enough, Some(at));
     local.map_or(Range::UNKNOWN, |local| local.within(0.0))
 }
 
@@ -114,7 +95,7 @@ impl OnFrame {
         let mut is_fresh = false;
         loop {
             let caps = self.caps_over(surroundings, at, size, part);
-            let change = caps.change + caps.doubt;
+            let change = caps.change + caps.error;
             if !is_capped {
                 // (What is not known may be no number at all.)
                 let nearest = if change < 0.5 { floor(caps.value + 0.5) } else { 0 };
@@ -130,13 +111,13 @@ impl OnFrame {
                     return if excess > 0.0 { Verdict::Full } else { Verdict::Empty };
                 }
             }
-            // What is known from above is no worse than half of what a better sum could not tell either. (Also false
-            // for NaN.)
-            let is_sharp = caps.doubt <= 0.5 * caps.change;
+            // What is known from above is no worse than half of what a better sum could not tell either.
+            // (False for NaN.)
+            let is_sharp = caps.error <= 0.5 * caps.change;
             if is_sharp || is_fresh {
                 // What only the error keeps open is worth a better sum.
                 let excess = self.excess(part.winding as f64 - caps.value).abs();
-                let is_close = size == 1 && !is_cut && caps.doubt < 2.0 && excess > caps.change;
+                let is_close = size == 1 && !is_cut && caps.error < 2.0 && excess > caps.change;
                 return if is_close { self.close_verdict(at, part) } else { Verdict::Partial(part) };
             }
             part.caps = Some(self.branch(surroundings, at, size, is_capped, part));
@@ -146,11 +127,10 @@ impl OnFrame {
 
     /// What is known of a finest cell that nothing cuts, of a better sum.
     fn close_verdict(&self, at: [i32; 3], part: MeshPart) -> Verdict<MeshPart> {
-        let local =
-            self.placed.caps.local(&self.placed, middle(at, 1), HALF_DIAGONAL, ENOUGH / 16.0, Some(at));
+        let local = self.caps.local(&self.placed, middle(at, 1), HALF_DIAGONAL, ENOUGH / 16.0, Some(at));
         let caps = local.map_or(Range::UNKNOWN, |local| local.over(at, 1));
         let excess = self.excess(part.winding as f64 - caps.value);
-        match excess.abs() > caps.change + caps.doubt {
+        match excess.abs() > caps.change + caps.error {
             true if excess > 0.0 => Verdict::Full,
             true => Verdict::Empty,
             false => Verdict::Partial(part),
@@ -163,10 +143,10 @@ impl OnFrame {
         let excess = |caps: Range| self.excess(part.winding as f64 - caps.value);
         let mut caps = self.caps_at(surroundings, at, part);
         for enough in [ENOUGH, LEAST] {
-            if excess(caps).abs() > caps.doubt {
+            if excess(caps).abs() > caps.error {
                 break;
             }
-            caps = at_centre(&self.placed, at, enough);
+            caps = at_centre(self, at, enough);
         }
         excess(caps) >= 0.0
     }
@@ -199,7 +179,7 @@ impl OnFrame {
         let Some(Branch { level: level @ 0..=MAX_DEPTH, step }) = part.caps else {
             return Range::UNKNOWN;
         };
-        let local = surroundings.local(&self.placed, level, at);
+        let local = surroundings.local(self, level, at);
         local.map_or(Range::UNKNOWN, |local| range(&local).plus(step))
     }
 
@@ -213,7 +193,7 @@ impl OnFrame {
         part: MeshPart,
     ) -> Branch {
         let level = self.placed.frame.depth() - size.trailing_zeros() as u8;
-        let Some(here) = surroundings.local(&self.placed, level, at) else { return Branch::UNKNOWN };
+        let Some(here) = surroundings.local(self, level, at) else { return Branch::UNKNOWN };
         if size == 1 {
             return Branch { level, step: 0 };
         }
@@ -223,22 +203,22 @@ impl OnFrame {
         }
         let here = here.at_centre(at);
         let mut there = self.caps_at(surroundings, at, part);
-        let is_known = there.doubt < SURE;
+        let is_known = there.error < SURE;
         if !is_known {
-            there = at_centre(&self.placed, at, ENOUGH);
+            there = at_centre(self, at, ENOUGH);
         }
-        if here.doubt < SURE && there.doubt < SURE {
+        if here.error < SURE && there.error < SURE {
             Branch { level, step: floor(there.value - here.value + 0.5) as i32 }
         } else {
             Branch::UNKNOWN
         }
     }
 
-    /// Whether the winding number is proven less than one half in magnitude everywhere outside of the universe, which holds
-    /// the whole surface: a harmonic function that vanishes at infinity takes its extremes on the faces.
-    pub(super) fn is_quiet_outside(&self) -> bool {
-        let caps = &self.placed.caps;
-        if caps.is_empty() {
+    /// Whether the winding number is proven less than one half in magnitude everywhere outside of the
+    /// universe, which holds the whole surface: a harmonic function that vanishes at infinity takes its
+    /// extremes on the faces.
+    pub(super) fn is_empty_outside(&self) -> bool {
+        if self.caps.is_empty() {
             return true;
         }
         let cells = self.placed.frame.cells() as f64;
@@ -249,7 +229,7 @@ impl OnFrame {
         }
         squares.extend((0..6).map(|face| (face, [0.0; 2], cells)));
         // The more caps, the longer does each take.
-        let most = (MOST_CAPS / caps.triangles().len()).clamp(1, MOST_SQUARES);
+        let most = (MOST_CAPS / self.placed.caps.len()).clamp(1, MOST_SQUARES);
         let mut divided = 0;
         while let Some((face, corner, size)) = squares.pop() {
             let (w, height) = (face / 2, if face % 2 == 0 { 0.0 } else { cells });
@@ -257,14 +237,14 @@ impl OnFrame {
             let mut point = [height; 3];
             (point[(w + 1) % 3], point[(w + 2) % 3]) = (corner[0] + half, corner[1] + half);
             let radius = half * core::f64::consts::SQRT_2;
-            let seen = caps.local(&self.placed, point, radius, ENOUGH, None);
+            let seen = self.caps.local(&self.placed, point, radius, ENOUGH, None);
             let seen = seen.map_or(Range::UNKNOWN, |local| local.within(radius));
-            if seen.value.abs() + seen.change + seen.doubt < 0.5 {
+            if seen.value.abs() + seen.change + seen.error < 0.5 {
                 continue;
             }
             divided += 1;
             // In vain, too, if the middle shows the contrary.
-            if divided > most || seen.doubt < 0.5 && seen.value.abs() >= 0.5 {
+            if divided > most || seen.error < 0.5 && seen.value.abs() >= 0.5 {
                 return false;
             }
             squares.extend((0..4).map(|k| {

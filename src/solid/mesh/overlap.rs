@@ -1,7 +1,7 @@
 //! Which cells does a triangle cut?
 //!
-//! The separating-axis test of a triangle and a cube in the form of Schwarz and Seidel (*Fast parallel surface
-//! and solid voxelization on GPUs*, 2010): bounding box, plane, and the triangle's edges in the three
+//! The separating-axis test of a triangle and a cube in the form of Schwarz and Seidel (*Fast parallel
+//! surface and solid voxelization on GPUs*, 2010): bounding box, plane, and the triangle's edges in the three
 //! coordinate planes. Each condition is linear in the cell's position, so that along a column it holds on an
 //! interval and 64 cells are decided at once.
 //!
@@ -10,7 +10,7 @@
 //! does not cut it. Coarser cells are widened more than their children, so that what cuts a cell is
 //! always found to cut its parent too.
 
-use super::placed::{Corners, Placed, bounds, is_exact, surface_accuracy};
+use super::placed::{Corners, Placed, accuracy, bounds, is_exact};
 use crate::lattice::MAX_DEPTH;
 
 /// A triangle and what the conditions need of it for cubes of one size.
@@ -25,8 +25,8 @@ pub(super) struct Overlap {
     behind: f64,
     slack: f64,
     /// Per axis w the triangle's edges seen along w: a cube with its lower corner at (u, v) is beside the
-    /// triangle unless `n · (u, v) + offset > −slack` for all three. Where the triangle is seen (nearly) edge-on,
-    /// so that its edges have no sure inner side, the two sides of the strip along its longest edge instead.
+    /// triangle unless `n · (u, v) + offset > −slack` for all three. Where the triangle is seen (nearly)
+    /// edge-on, so that its edges have no sure inner side, the two sides of the strip along its longest edge.
     edges: [[Edge; 3]; 3],
 }
 
@@ -42,8 +42,7 @@ struct Edge {
 const OTHERS: [(usize, usize); 3] = [(1, 2), (0, 2), (0, 1)];
 
 impl Overlap {
-    /// Prepares the test of a triangle against cubes of edge `size` (in finest cells), `height` levels above the
-    /// finest.
+    /// Prepares the test of a triangle against cubes of edge `size` (in finest cells), `height` levels up.
     pub(super) fn new(placed: &Placed, corners: &Corners, size: f64, height: u8) -> Overlap {
         let (min, max) = bounds(placed, corners);
         let [a, b, c] = corners.map(|corner| corner.at);
@@ -51,8 +50,8 @@ impl Overlap {
         let unit = if is_exact(placed, corners) {
             0.0
         } else {
-            let (error, magnitude) = surface_accuracy(placed, corners);
-            16.0 * error + 64.0 * f64::EPSILON * magnitude
+            let (error, magnitude) = accuracy(placed, corners);
+            16.0 * (error + placed.displacement) + 64.0 * f64::EPSILON * magnitude
         };
         // Relative to the product of their factors' sizes the conditions are off by a few dozen roundings; a
         // level's widening exceeds that of the level below by more than both errors.
@@ -155,8 +154,8 @@ impl Edge {
     }
 }
 
-/// Whether `slope · k + start > limit`; what cannot be computed (coordinates of astronomic size overflow) counts
-/// as true, because only a proven separation may exclude a cell.
+/// Whether `slope · k + start > limit`; what cannot be computed (coordinates of astronomic size overflow)
+/// counts as true, because only a proven separation may exclude a cell.
 #[inline(always)]
 fn exceeds(slope: f64, k: f64, start: f64, limit: f64) -> bool {
     let value = slope * k + start;
@@ -170,8 +169,8 @@ fn bits(base: i32, first: i32, last: i32) -> u64 {
     if first > last { 0 } else { !0 >> (63 - (last - first)) << (first - base) }
 }
 
-/// The k in `first..=last` with `slope · k + start > limit`, as bits counted from `base`. Products and sums of
-/// doubles are monotone, so these are an interval that reaches to one end.
+/// The k in `first..=last` with `slope · k + start > limit`, as bits counted from `base`. Products and sums
+/// of doubles are monotone, so these are an interval that reaches to one end.
 #[inline(always)]
 fn above(slope: f64, start: f64, limit: f64, base: i32, first: i32, last: i32) -> u64 {
     let holds = |k: i32| exceeds(slope, k as f64, start, limit);

@@ -4,11 +4,9 @@
 //! a double, as lattice-aligned parts have it), and with its exact *ranks* among the planes of cell centres.
 //! Bulk work is done on these; whatever they leave open is decided exactly on the original coordinates.
 
-use super::winding::Caps;
 use crate::error::{Error, MeshError};
 use crate::lattice::Frame;
 use crate::lattice::exact::{floor, two_diff, two_product};
-use crate::mesh::Loops;
 use crate::mesh::TriangleMesh;
 use alloc::sync::Arc;
 use alloc::vec::Vec;
@@ -37,10 +35,10 @@ pub(super) struct Placed {
     pub(super) frame: Frame,
     pub(super) mesh: Arc<TriangleMesh>,
     /// How far the surface may lie from the mesh, in finest cells: what was moved to close hair cracks.
-    displacement: f64,
+    pub(super) displacement: f64,
     vertices: Vertices,
-    /// What closes the surface. Its triangles are numbered on from the mesh's.
-    pub(super) caps: Caps,
+    /// The triangles that close the surface, numbered on from the mesh's.
+    pub(super) caps: Vec<[u32; 3]>,
 }
 
 /// The vertices, field by field: of most triangles only the ranks are looked at. 37 bytes each.
@@ -89,25 +87,34 @@ fn error_of(at: f64) -> f32 {
 pub(super) type Corners = [Vertex; 3];
 
 impl Placed {
-    /// The mesh with caps over the loops of its boundary. Fails with [`MeshError::TooMany`] (of both together) or
-    /// [`Error::OutOfMemory`].
-    pub(super) fn new(mesh: Arc<TriangleMesh>, frame: &Frame, loops: &Loops) -> Result<Placed, Error> {
+    /// The mesh without caps. Fails with [`Error::OutOfMemory`].
+    pub(super) fn new(mesh: Arc<TriangleMesh>, frame: &Frame) -> Result<Placed, Error> {
         let vertices = Vertices::new(&mesh, frame)?;
         let displacement = mesh.displacement() / frame.cell_size() * (1.0 + 4.0 * f64::EPSILON);
-        if u32::try_from(mesh.triangles().len() + loops.caps()).is_err() {
+        Ok(Placed { frame: *frame, mesh, displacement, vertices, caps: Vec::new() })
+    }
+
+    /// Adds the caps. Fails with [`MeshError::TooMany`] if `u32` cannot number all triangles.
+    pub(super) fn close(&mut self, caps: Vec<[u32; 3]>) -> Result<(), Error> {
+        if u32::try_from(self.mesh.triangles().len() + caps.len()).is_err() {
             return Err(MeshError::TooMany.into());
         }
-        let caps = Caps::new(loops, |vertex| vertices.get(vertex), displacement)?;
-        Ok(Placed { frame: *frame, mesh, displacement, vertices, caps })
+        self.caps = caps;
+        Ok(())
     }
 
     /// How many triangles the surface and its caps have.
     pub(super) fn count(&self) -> u32 {
-        (self.mesh.triangles().len() + self.caps.triangles().len()) as u32
+        (self.mesh.triangles().len() + self.caps.len()) as u32
     }
 
     pub(super) fn is_cap(&self, triangle: u32) -> bool {
         triangle as usize >= self.mesh.triangles().len()
+    }
+
+    #[inline(always)]
+    pub(super) fn vertex(&self, vertex: u32) -> Vertex {
+        self.vertices.get(vertex)
     }
 
     /// A vertex's position.
@@ -121,13 +128,13 @@ impl Placed {
         let of_mesh = self.mesh.triangles();
         match of_mesh.get(triangle as usize) {
             Some(&triangle) => triangle,
-            None => self.caps.triangles()[triangle as usize - of_mesh.len()],
+            None => self.caps[triangle as usize - of_mesh.len()],
         }
     }
 
     #[inline(always)]
     pub(super) fn corners(&self, triangle: u32) -> Corners {
-        self.triangle(triangle).map(|vertex| self.vertices.get(vertex))
+        self.triangle(triangle).map(|vertex| self.vertex(vertex))
     }
 
     /// The lowest and the highest ranks of a triangle's corners.
@@ -139,8 +146,8 @@ impl Placed {
         [[least(0), least(1), least(2)], [most(0), most(1), most(2)]]
     }
 
-    /// Whether the surface lies less than half a cell from the mesh: a vertex of a lower rank than k is then below the
-    /// plane k, one of a higher rank above it.
+    /// Whether the surface lies less than half a cell from the mesh: a vertex of a lower rank than k is then
+    /// below the plane k, one of a higher rank above it.
     pub(super) fn ranks_tell(&self) -> bool {
         self.displacement < 0.25
     }
@@ -224,12 +231,6 @@ pub(super) fn accuracy(placed: &Placed, corners: &Corners) -> (f64, f64) {
         }
     }
     (error as f64, magnitude)
-}
-
-/// The same when it is not the mesh that counts but the surface that it stands for.
-pub(super) fn surface_accuracy(placed: &Placed, corners: &Corners) -> (f64, f64) {
-    let (error, magnitude) = accuracy(placed, corners);
-    (error + placed.displacement, magnitude)
 }
 
 /// Whether determinants of the corners and lattice points are the surface's, without rounding.

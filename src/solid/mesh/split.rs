@@ -1,16 +1,17 @@
 //! Splitting the cells of a mesh.
 
 use super::crossing::Projection;
-use super::open::{Branch, Surroundings};
+use super::on_frame::{Branch, MeshPart, OnFrame};
+use super::open::Surroundings;
 use super::overlap::Overlap;
 use super::placed::{Corners, Placed, bounds, ranks};
 use super::scan::{Scan, Task};
+use super::winding::Caps;
 use crate::control::Control;
 use crate::error::{Error, MeshError};
 use crate::lattice::{Affine, Bounds, Cell, Frame};
-use crate::mesh::Loops;
-use crate::mesh::{FillRule, TriangleMesh};
-use crate::octree::{Block, Tag};
+use crate::mesh::{FillRule, Loops, TriangleMesh};
+use crate::octree::{Block, Proof, Tag};
 use crate::solid::{Classifier, Fingerprint, Fingerprinter, Motion, Solid, Verdict, Worker};
 use alloc::boxed::Box;
 use alloc::sync::Arc;
@@ -19,9 +20,9 @@ use once_cell::race::OnceBox;
 
 /// A triangle mesh as a solid. Cheap to clone.
 ///
-/// Any mesh will do. Where it is closed, what it encloses is exact. Where it is not, [`FillRule`] says by which convention
-/// a point is inside; a cell is FULL or EMPTY if that is proven for all of its points, and around holes stay
-/// PARTIAL cells which no triangle cuts: [`TriangleMesh::report`] tells whether to expect them.
+/// Any mesh will do. Where it is closed, what it encloses is exact. Where it is not, [`FillRule`] says by
+/// which convention a point is inside; a cell is FULL or EMPTY if that is proven for all of its points, and
+/// around holes stay PARTIAL cells which no triangle cuts: [`TriangleMesh::report`] tells of holes.
 ///
 /// ```
 /// use leafless::{Control, FillRule, Frame, MeshSolid, Rule, TriangleMesh, build};
@@ -40,35 +41,11 @@ pub struct MeshSolid {
     loops: Arc<Loops>,
 }
 
-/// A mesh on the lattice of a frame, with what is known of the universe.
-pub(super) struct OnFrame {
-    pub(super) placed: Placed,
-    pub(super) fill: FillRule,
-    /// The triangles that cut the universe, in ascending order, and the winding number of its lowest centre.
-    roots: Vec<u32>,
-    winding: i32,
-    /// What is known of the space around the universe, once somebody has asked.
-    exterior: OnceBox<Tag>,
-}
-
 /// A mesh on a frame: the handle.
 #[derive(Clone)]
 pub struct MeshClassifier(Arc<OnFrame>);
 
-/// What is remembered of a cell: the triangles that cut it, and the winding number of its lowest centre.
-#[derive(Debug, Clone, Copy)]
-pub struct MeshPart {
-    /// Where the triangles lie in the scratch memory.
-    first: usize,
-    pub(super) count: usize,
-    /// Of the surface with its caps; of the surface alone if `caps` is None.
-    pub(super) winding: i32,
-    /// What is known of the caps' winding number, which is not an integer. None if the surface's own rounds to
-    /// `winding` throughout the cell, but for what the triangles that cut it change: always if there are no caps.
-    pub(super) caps: Option<Branch>,
-}
-
-/// A worker on a mesh: lists of triangles, one for each cell on the way down, and what a block is scanned with.
+/// A worker on a mesh: lists of triangles, one for each cell on the way down, and what scans a block.
 pub struct MeshWorker {
     mesh: Arc<OnFrame>,
     triangles: Vec<u32>,
@@ -79,12 +56,12 @@ pub struct MeshWorker {
 }
 
 impl MeshSolid {
-    /// What a mesh encloses; the mesh is shared (an `Arc`) or taken over. O(1) for a closed mesh whose edges were
-    /// analysed before, else O(t), and n log n in the edges of the boundary.
+    /// What a mesh encloses; the mesh is shared (an `Arc`) or taken over. O(1) for a closed mesh whose edges
+    /// were analysed before, else O(t), and n log n in the edges of the boundary.
     ///
     /// # Errors
-    /// [`Error::Mesh`] if the mesh is empty, or, for [`FillRule::EvenOdd`], if an odd number of triangles meet on an
-    /// edge; [`Error::OutOfMemory`].
+    /// [`Error::Mesh`] if the mesh is empty, or, for [`FillRule::EvenOdd`], if an odd number of triangles
+    /// meet on an edge; [`Error::OutOfMemory`].
     pub fn new(mesh: impl Into<Arc<TriangleMesh>>, fill: FillRule) -> Result<MeshSolid, Error> {
         let mesh = mesh.into();
         let loops = match fill {
@@ -123,7 +100,7 @@ impl OnFrame {
         let (min, max) = mesh.bounds();
         let within = Bounds::new(min, max)
             .is_some_and(|bounds| bounds.grown(mesh.displacement()).is_within(&self.placed.frame));
-        if within && self.is_quiet_outside() { Tag::Empty } else { Tag::Partial }
+        if within && self.is_empty_outside() { Tag::Empty } else { Tag::Partial }
     }
 
     /// What is known of a cell that these triangles cut.
@@ -139,63 +116,6 @@ impl OnFrame {
         match part.caps {
             Some(_) => self.open_verdict(surroundings, triangles, at, size, part),
             None => self.closed_verdict(part),
-        }
-    }
-
-    pub(super) fn closed_verdict(&self, part: MeshPart) -> Verdict<MeshPart> {
-        if part.count > 0 {
-            Verdict::Partial(part)
-        } else if self.fill.encloses(part.winding) {
-            Verdict::Full
-        } else {
-            Verdict::Empty
-        }
-    }
-
-    /// Adds to `steps` by how much a triangle changes the winding number on the ways along x, y and z to the lowest
-    /// centres of a cell's children of edge `half`, by the child that the way leads to.
-    #[inline]
-    fn pierce(
-        &self,
-        triangle: u32,
-        [low, high]: [[i32; 3]; 2],
-        at: [i32; 3],
-        half: i32,
-        steps: &mut [[i32; 8]; 2],
-    ) {
-        let next = at.map(|a| a + half);
-        let spans = |axis: usize, k: i32| low[axis] <= k && k < high[axis];
-        // The way along an axis leads from `at` to `next`: it passes the triangle between two ranks.
-        let reaches = |axis: usize| low[axis] <= next[axis] && high[axis] > at[axis];
-        let mut pierce = |w: usize, u: i32, v: i32, child: usize| {
-            let mut seen = Projection::new(&self.placed, triangle, self.placed.corners(triangle), w);
-            if let Some(span) = seen.span(v).filter(|span| span.first <= u && u < span.end) {
-                let above = seen.above(u, v, span.step);
-                if at[w] < above && above <= next[w] {
-                    steps[0][child] += span.step;
-                    if self.placed.is_cap(triangle) {
-                        steps[1][child] += span.step;
-                    }
-                }
-            }
-        };
-        let [x, y, z] = at;
-        if reaches(0) && spans(1, y) && spans(2, z) {
-            pierce(0, y, z, 1);
-        }
-        if reaches(1) && spans(2, z) {
-            for (child, x) in [(2, x), (3, next[0])] {
-                if spans(0, x) {
-                    pierce(1, x, z, child);
-                }
-            }
-        }
-        if reaches(2) {
-            for (child, x, y) in [(4, x, y), (5, next[0], y), (6, x, next[1]), (7, next[0], next[1])] {
-                if spans(0, x) && spans(1, y) {
-                    pierce(2, x, y, child);
-                }
-            }
         }
     }
 }
@@ -220,10 +140,11 @@ fn list<'t>(roots: &'t [u32], own: &'t [u32], part: &MeshPart) -> &'t [u32] {
 impl Solid for MeshSolid {
     type Classifier = MeshClassifier;
 
-    /// O(v + t); memory beyond the mesh 37 bytes a vertex, and 4 a triangle. A mesh that reaches beyond the universe is
-    /// clipped by it, which the exterior tells.
+    /// O(v + t); memory beyond the mesh 37 bytes a vertex, and 4 a triangle. A mesh that reaches beyond the
+    /// universe is clipped by it, which the exterior tells.
     fn on(&self, frame: &Frame, control: &Control<'_>) -> Result<MeshClassifier, Error> {
-        let placed = Placed::new(self.mesh.clone(), frame, &self.loops)?;
+        let mut placed = Placed::new(self.mesh.clone(), frame)?;
+        let caps = Caps::close(&mut placed, &self.loops)?;
         let mut roots = Vec::new();
         let count = placed.count();
         roots.try_reserve_exact(count as usize)?;
@@ -255,6 +176,7 @@ impl Solid for MeshSolid {
         }
         Ok(MeshClassifier(Arc::new(OnFrame {
             placed,
+            caps,
             fill: self.fill,
             roots,
             winding,
@@ -311,6 +233,10 @@ impl Classifier for MeshClassifier {
         let mesh = &*self.0;
         *mesh.exterior.get_or_init(|| Box::new(mesh.exterior()))
     }
+
+    fn proof(&self) -> Proof {
+        Proof::CERTIFIED.moved(self.0.placed.mesh.displacement())
+    }
 }
 
 impl Worker for MeshWorker {
@@ -322,7 +248,7 @@ impl Worker for MeshWorker {
 
     fn root(&mut self) -> Result<Verdict<MeshPart>, Error> {
         let MeshWorker { mesh, surroundings, .. } = self;
-        let caps = if mesh.placed.caps.is_empty() { None } else { Some(Branch::UNKNOWN) };
+        let caps = if mesh.caps.is_empty() { None } else { Some(Branch::UNKNOWN) };
         let part = MeshPart { first: 0, count: mesh.roots.len(), winding: mesh.winding, caps };
         Ok(mesh.verdict(surroundings, &mesh.roots, [0; 3], mesh.placed.frame.cells() as i32, part))
     }
@@ -468,8 +394,8 @@ fn children_cut(placed: &Placed, corners: &Corners, at: [i32; 3], half: i32, hei
             strictly &= min[axis] > middle && max[axis] < high;
         }
     }
-    // A triangle well inside of the only child that its box reaches needs no further test. (A finest cell gets
-    // it all the same: of a triangle without area only the test knows that it cuts nothing.)
+    // A triangle well inside of the only child that its box reaches needs no further test. (A finest cell
+    // gets it all the same: of a triangle without area only the test knows that it cuts nothing.)
     if candidates.count_ones() == 1 && strictly && height > 0 {
         return candidates;
     }

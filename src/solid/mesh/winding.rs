@@ -1,23 +1,24 @@
 //! Winding numbers of open surfaces.
 //!
-//! The *winding number* of a surface at a point is the solid angle at which it is seen from there, with a sign,
-//! over 4π (Jacobson, Kavan and Sorkine-Hornung 2013). Of a closed surface it is an integer. What an open one lacks are
-//! surfaces over the loops of its boundary, *caps*. Surface and caps together are closed, so that their winding
-//! number N is found exactly, as an integer, by counting what lines pierce. The surface's own is then N − c with c
-//! the winding number of the caps alone: a sum over as many triangles as the boundary has edges, and not over
-//! the whole surface. Which caps are chosen does not matter, because their jumps cancel.
+//! The *winding number* of a surface at a point is the solid angle at which it is seen from there, with a
+//! sign, over 4π (Jacobson, Kavan and Sorkine-Hornung 2013). Of a closed surface it is an integer. What an
+//! open one lacks are surfaces over the loops of its boundary, *caps*. Surface and caps together are closed,
+//! so that their winding number N is found exactly, as an integer, by counting what lines pierce. The
+//! surface's own is then N − c with c the winding number of the caps alone: a sum over as many triangles as
+//! the boundary has edges, and not over the whole surface. Which caps are chosen does not matter, because
+//! their jumps cancel.
 //!
-//! The caps' winding number is a sum of solid angles (van Oosterom and Strackee 1983), in which a far group of
-//! triangles is replaced by the first two terms of its expansion (Barill, Dickson, Schmidt, Levin and
-//! Jacobson 2018), here with a bound of what that leaves out. The distance at which a group is far is a parameter:
-//! whoever needs a smaller error asks again.
+//! The caps' winding number is a sum of solid angles (van Oosterom and Strackee 1983), in which a far group
+//! of triangles is replaced by the first two terms of its expansion (Barill, Dickson, Schmidt, Levin and
+//! Jacobson 2018), here with a bound of what that leaves out. The distance at which a group is far is a
+//! parameter: whoever needs a smaller error asks again.
 //!
-//! Away from the surface the winding number is smooth. Its gradient is the magnetic field of a current along the
-//! *boundary* (the law of Biot and Savart), so that derivatives are sums over the boundary's edges; the third is at most
-//! Σ ∫ 6 ds / (4π·distance⁴). One expansion thus bounds it on a whole cell, and serves many cells inside of that.
+//! Away from the surface the winding number is smooth. Its gradient is the magnetic field of a current along
+//! the *boundary* (the law of Biot and Savart), so that derivatives are sums over the boundary's edges; the
+//! third is at most Σ ∫ 6 ds / (4π·distance⁴). One expansion bounds it on a cell and serves many cells below.
 
 use super::crossing::Projection;
-use super::placed::{Placed, Vertex, ranks};
+use super::placed::{Placed, ranks};
 use crate::error::Error;
 use crate::lattice::exact::sqrt;
 use crate::memory;
@@ -31,18 +32,17 @@ const LEAF: usize = 4;
 
 const SCALE: f64 = 1.0 / (4.0 * PI);
 
-/// Triangles that close a surface, in the order of a tree of bounding spheres.
+/// A tree of bounding spheres over the caps of a surface, which are in the tree's order.
 #[derive(Default)]
 pub(super) struct Caps {
-    triangles: Vec<[u32; 3]>,
     /// Bit i: the edge from corner i to corner i + 1 is one of the surface's boundary.
     rims: Vec<u8>,
     sizes: Vec<Size>,
     nodes: Vec<Node>,
     /// How far the boundary may lie from where its vertices are placed, in finest cells.
-    wobble: f64,
+    boundary_error: f64,
     /// Bound of the error of a vertex's position per axis.
-    error: f64,
+    vertex_error: f64,
 }
 
 /// What does not depend on where a cap is seen from.
@@ -88,9 +88,11 @@ struct Node {
     moment: DMat3,
     /// ∫ |dA|, and ∫ |y − centre|² |dA|.
     size: f64,
-    spread: f64,
-    /// Bound of what is rounded in these sums, as an area.
+    second_moment: f64,
+    /// Bound of what is rounded in the sums over caps, as an area.
     rounding: f64,
+    /// The same for the sums over edges of the boundary, as a length.
+    rim_rounding: f64,
     /// ∫ |ds| of the boundary's edges, ∫ ds, and ∫ ds ⊗ (y − centre).
     rim: f64,
     current: DVec3,
@@ -101,8 +103,8 @@ struct Node {
     skip: u32,
 }
 
-/// The caps' winding number in a ball around a point, to second order. It jumps by an integer on every cap; this is its
-/// smooth continuation from the point.
+/// The caps' winding number in a ball around a point, to second order. It jumps by an integer on every cap;
+/// this is its smooth continuation from the point.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Local {
     point: DVec3,
@@ -111,16 +113,16 @@ pub(super) struct Local {
     /// Symmetric only up to rounding.
     hessian: DMat3,
     /// Bounds of the errors of value, gradient and second derivative.
-    error: f64,
-    slant: f64,
-    bend: f64,
+    value_error: f64,
+    gradient_error: f64,
+    hessian_error: f64,
     /// Two bounds of the third derivative anywhere in the ball: by what the boundary's edges add, and by what
     /// the caps add. Of wide holes the first is the smaller, of hair cracks the second.
-    by_rims: f64,
-    by_areas: f64,
-    /// Bound of the change, anywhere in the ball, per distance by which every vertex of the boundary may be misplaced,
-    /// each in a direction of its own.
-    by_wobble: f64,
+    third_by_edges: f64,
+    third_by_areas: f64,
+    /// Bound of the change, anywhere in the ball, per distance by which every vertex of the boundary may be
+    /// misplaced, each in a direction of its own.
+    position_sensitivity: f64,
 }
 
 /// A range of winding numbers.
@@ -131,12 +133,12 @@ pub(super) struct Range {
     /// that much off for its slope, and
     pub(super) change: f64,
     /// that much more at most for what is not known.
-    pub(super) doubt: f64,
+    pub(super) error: f64,
 }
 
 impl Range {
     /// Nothing is known.
-    pub(super) const UNKNOWN: Range = Range { value: 0.0, change: 0.0, doubt: f64::INFINITY };
+    pub(super) const UNKNOWN: Range = Range { value: 0.0, change: 0.0, error: f64::INFINITY };
 
     pub(super) fn plus(self, step: i32) -> Range {
         Range { value: self.value + step as f64, ..self }
@@ -147,7 +149,7 @@ impl Local {
     /// In the ball of the given radius around the point it was made for.
     pub(super) fn within(&self, radius: f64) -> Range {
         let change = (length(self.gradient) + 0.5 * sum_of_magnitudes(self.hessian) * radius) * radius;
-        Range { value: self.value, change, doubt: self.doubt(radius) }
+        Range { value: self.value, change, error: self.error_at(radius) }
     }
 
     /// In a cube with the lower corner `at`, which must lie in the ball it was made for.
@@ -155,13 +157,13 @@ impl Local {
         let half = size as f64 / 2.0;
         let middle = DVec3::from(at.map(|a| a as f64 + half)) - self.point;
         let symmetric = (self.hessian + self.hessian.transpose()) * 0.5;
-        let bent = symmetric * middle;
-        let gradient = (self.gradient + bent).abs();
+        let hessian_step = symmetric * middle;
+        let gradient = (self.gradient + hessian_step).abs();
         let change = gradient.x + gradient.y + gradient.z + 0.5 * half * sum_of_magnitudes(symmetric);
         Range {
-            value: self.value + (self.gradient + 0.5 * bent).dot(middle),
+            value: self.value + (self.gradient + 0.5 * hessian_step).dot(middle),
             change: half * change,
-            doubt: self.doubt(length(middle.abs() + half)),
+            error: self.error_at(length(middle.abs() + half)),
         }
     }
 
@@ -169,50 +171,47 @@ impl Local {
     pub(super) fn at_centre(&self, cell: [i32; 3]) -> Range {
         let to = DVec3::from(cell.map(|a| a as f64 + 0.5)) - self.point;
         let value = self.value + (self.gradient + 0.5 * (self.hessian * to)).dot(to);
-        Range { value, change: 0.0, doubt: self.doubt(length(to)) }
+        Range { value, change: 0.0, error: self.error_at(length(to)) }
     }
 
-    fn doubt(&self, distance: f64) -> f64 {
-        let jerk = self.by_rims.min(self.by_areas);
-        let (bend, slant) = (0.5 * self.bend * distance, self.slant);
+    fn error_at(&self, distance: f64) -> f64 {
+        let third = self.third_by_edges.min(self.third_by_areas);
+        let (first, second) = (self.gradient_error, 0.5 * self.hessian_error * distance);
         // The factor outweighs the roundings of all these bounds.
-        (self.error + (slant + bend + jerk / 6.0 * distance * distance) * distance) * (1.0 + 1e-6) + 1e-12
+        (self.value_error + (first + second + third / 6.0 * distance * distance) * distance) * (1.0 + 1e-6)
+            + 1e-12
     }
 }
 
 impl Caps {
-    /// Caps over the loops of a surface's boundary, whose vertices are given with their places.
+    /// Closes `placed` by caps over the loops of its boundary.
     ///
-    /// O(n log n) in the boundary's edges, of which there are never fewer than caps; some 250 bytes for each cap.
-    pub(super) fn new(
-        loops: &Loops,
-        place: impl Fn(u32) -> Vertex,
-        displacement: f64,
-    ) -> Result<Caps, Error> {
+    /// O(n log n) in the boundary's edges, of which there are never fewer than caps; some 250 bytes a cap.
+    pub(super) fn close(placed: &mut Placed, loops: &Loops) -> Result<Caps, Error> {
         let count = loops.caps();
         let mut caps = Caps::default();
-        caps.triangles.try_reserve_exact(count)?;
+        let mut triangles = memory::with_capacity(count)?;
         caps.rims.try_reserve_exact(count)?;
         let mut slots = memory::with_capacity(count)?;
         let mut error = 0f32;
         for walk in loops.iter() {
             for &vertex in walk {
-                error = place(vertex).error.into_iter().fold(error, f32::max);
+                error = placed.vertex(vertex).error.into_iter().fold(error, f32::max);
             }
-            // The loop backward, so that its edges cancel those of the surface. By halves, not as a fan: most caps
-            // are then as small as the edges that they lie at, and groups of them are far from most places.
+            // The loop backward, so that its edges cancel those of the surface. By halves, not as a fan: most
+            // caps are then as small as the edges that they lie at, and groups of them are far from most.
             halve(walk.len(), &mut |[a, b, c], rims| {
                 slots.push((([a, b, c]).map(|corner| walk[corner]), rims));
             });
         }
-        caps.error = error as f64;
-        caps.wobble = 2.0 * (caps.error + displacement);
+        caps.vertex_error = error as f64;
+        caps.boundary_error = 2.0 * (caps.vertex_error + placed.displacement);
         caps.nodes.try_reserve_exact(2 * count.div_ceil(LEAF).next_power_of_two())?;
-        let at = |vertex: u32| DVec3::from(place(vertex).at);
+        let at = |vertex: u32| DVec3::from(placed.at(vertex));
         if count > 0 {
             caps.grow(&mut slots, 0, &at)?;
         }
-        caps.triangles.extend(slots.iter().map(|slot| slot.0));
+        triangles.extend(slots.iter().map(|slot| slot.0));
         caps.rims.extend(slots.iter().map(|slot| slot.1));
         caps.sizes.try_reserve_exact(count)?;
         caps.sizes.extend(slots.iter().map(|slot| {
@@ -221,6 +220,7 @@ impl Caps {
             let longest = edges.iter().copied().fold(0.0, f64::max) * (1.0 + 1e-9);
             Size { area: length((b - a).cross(c - a)) / 2.0, edges, longest }
         }));
+        placed.close(triangles)?;
         Ok(caps)
     }
 
@@ -230,8 +230,8 @@ impl Caps {
         let index = self.nodes.len();
         memory::push(&mut self.nodes, node)?;
         if slots.len() > LEAF {
-            // Halves, so that the depth is the logarithm whatever the coordinates are: of near and far ones along the
-            // longest extent, or, where the largest are larger than that, of small and large ones.
+            // Halves, so that the depth is the logarithm whatever the coordinates are: of near and far ones
+            // along the longest extent, or, where the largest are larger than that, of small and large ones.
             let centroid = |slot: &Slot| slot.0.iter().map(|&v| at(v)).sum::<DVec3>() / 3.0;
             let size = |slot: &Slot| {
                 let [a, b, c] = slot.0.map(at);
@@ -258,19 +258,15 @@ impl Caps {
     }
 
     pub(super) fn is_empty(&self) -> bool {
-        self.triangles.is_empty()
+        self.nodes.is_empty()
     }
 
-    pub(super) fn triangles(&self) -> &[[u32; 3]] {
-        &self.triangles
-    }
-
-    /// The winding number around `point` to second order, within `radius` of it (both in finest cells from the frame's
-    /// origin). A group of caps that is taken together adds at most `enough` to the error. `None` if the boundary
-    /// passes through the ball. Of a ball without radius there is only the value.
+    /// The winding number around `point` to second order, within `radius` of it (both in finest cells from
+    /// the frame's origin). A group of caps that is taken together adds at most `enough` to the error. `None`
+    /// if the boundary passes through the ball. Of a ball without radius there is only the value.
     ///
-    /// If the point is a cell's centre, `cell` says so, and the value is the one on that side of every cap on which
-    /// the symbolic shift puts the centre. Otherwise a point on a cap may get the value of either side.
+    /// If the point is a cell's centre, `cell` says so, and the value is the one on that side of every cap on
+    /// which the symbolic shift puts the centre. Otherwise a point on a cap may get the value of either side.
     pub(super) fn local(
         &self,
         placed: &Placed,
@@ -279,18 +275,18 @@ impl Caps {
         enough: f64,
         cell: Option<[i32; 3]>,
     ) -> Option<Local> {
-        let reach = if radius > 0.0 { radius + self.wobble } else { 0.0 };
+        let reach = if radius > 0.0 { radius + self.boundary_error } else { 0.0 };
         let mut local = Local {
             point: DVec3::from(point),
             value: 0.0,
             gradient: DVec3::ZERO,
             hessian: DMat3::ZERO,
-            error: 0.0,
-            slant: 0.0,
-            bend: 0.0,
-            by_rims: 0.0,
-            by_areas: 0.0,
-            by_wobble: 0.0,
+            value_error: 0.0,
+            gradient_error: 0.0,
+            hessian_error: 0.0,
+            third_by_edges: 0.0,
+            third_by_areas: 0.0,
+            position_sensitivity: 0.0,
         };
         let mut turned = DVec2::X;
         let mut next = 0;
@@ -307,11 +303,11 @@ impl Caps {
             next += 1;
         }
         local.value += libm::atan2(turned.y, turned.x) / (2.0 * PI);
-        local.error += self.wobble * local.by_wobble;
+        local.value_error += self.boundary_error * local.position_sensitivity;
         Some(local)
     }
 
-    /// Adds one cap; half its solid angle to the value or to the argument of `turned`, a complex number of modulus 1.
+    /// Adds one cap; half its solid angle to the value or to the argument of `turned`, of modulus 1.
     #[inline]
     fn add_cap(
         &self,
@@ -322,7 +318,7 @@ impl Caps {
         sum: &mut Local,
         turned: &mut DVec2,
     ) -> Option<()> {
-        let ends = self.triangles[cap].map(|vertex| End::new(DVec3::from(placed.at(vertex)) - sum.point));
+        let ends = placed.caps[cap].map(|vertex| End::new(DVec3::from(placed.at(vertex)) - sum.point));
         let [a, b, c] = ends.map(|end| end.direction);
         let (ab, bc, ca) = (a.dot(b), b.dot(c), c.dot(a));
         // Half the solid angle is the argument of (real, imaginary).
@@ -330,7 +326,7 @@ impl Caps {
         let real = 1.0 + ab + bc + ca;
         let modulus = sqrt(real * real + imaginary * imaginary);
         let [near, far, farther] = ends.map(|end| end.inverse);
-        let wrong = 64.0 * f64::EPSILON + 8.0 * self.error * (near + far + farther);
+        let wrong = 64.0 * f64::EPSILON + 8.0 * self.vertex_error * (near + far + farther);
         // Also false for NaN.
         if modulus >= 2.0 * wrong {
             let inverse = 1.0 / modulus;
@@ -348,14 +344,14 @@ impl Caps {
                 {
                     match self.side(placed, cap, cell) {
                         Some(side) => angle = side * angle.abs(),
-                        None => sum.error += 1.0,
+                        None => sum.value_error += 1.0,
                     }
                 }
                 sum.value += angle / (2.0 * PI);
             }
-            sum.error += wrong * inverse + f64::EPSILON * sum.value.abs();
+            sum.value_error += wrong * inverse + f64::EPSILON * sum.value.abs();
         } else {
-            sum.error += 1.0;
+            sum.value_error += 1.0;
             if let Some(cell) = cell {
                 // No proof, because the centre may lie beside the edge; but the best guess, and exact on it.
                 sum.value += self.on_edge(placed, cap, cell, ends.map(|end| end.at)) / (2.0 * PI);
@@ -370,7 +366,7 @@ impl Caps {
         let farthest = ends.iter().fold(0.0, |most: f64, end| most.max(end.distance));
         let inverse = 1.0 / (farthest * (1.0 - 1e-9) - longest - radius);
         let square = inverse * inverse;
-        sum.by_areas +=
+        sum.third_by_areas +=
             if inverse > 0.0 { SCALE * 24.0 * area * square * square * inverse } else { f64::INFINITY };
         for (i, cosine) in [ab, bc, ca].into_iter().enumerate() {
             if self.rims[cap] >> i & 1 != 0 {
@@ -380,15 +376,15 @@ impl Caps {
         Some(())
     }
 
-    /// Half the solid angle of a cap on whose edge or corner the centre of a cell lies, as seen from where the symbolic
-    /// shift puts the centre: that of a half-plane or of a sector. `corners` are relative to the centre.
+    /// Half the solid angle of a cap on whose edge or corner the centre of a cell lies, as seen from where
+    /// the symbolic shift puts the centre: that of a half-plane or of a sector. `corners` are relative to it.
     #[cold]
     fn on_edge(&self, placed: &Placed, cap: usize, cell: [i32; 3], corners: [DVec3; 3]) -> f64 {
         let units = corners.map(DVec3::normalize_or_zero);
         let i = if let Some(apex) = units.iter().position(|unit| *unit == DVec3::ZERO) {
             let (first, last) = ((apex + 1) % 3, (apex + 2) % 3);
             let (u, v) = (units[first], units[last]);
-            // The shift is along x, so that the apex is seen along −x, and all else of the sector where it is.
+            // The shift is along x, so that the apex is seen along −x, and the rest where it is.
             let (imaginary, real) = (-u.cross(v).x, 1.0 - u.x + u.dot(v) - v.x);
             if sqrt(real * real + imaginary * imaginary) > 1e-12 {
                 let angle = libm::atan2(imaginary, real);
@@ -456,7 +452,7 @@ impl Node {
             area: DVec3::ZERO,
             moment: DMat3::ZERO,
             size: 0.0,
-            spread: 0.0,
+            second_moment: 0.0,
             rim: 0.0,
             current: DVec3::ZERO,
             currents: DMat3::ZERO,
@@ -464,6 +460,7 @@ impl Node {
             end: (first + slots.len()) as u32,
             skip: 0,
             rounding: 0.0,
+            rim_rounding: 0.0,
         };
         for &(triangle, rims) in slots {
             let [a, b, c] = triangle.map(|vertex| at(vertex) - centre);
@@ -474,7 +471,7 @@ impl Node {
             // Columns are area · s.x, area · s.y, area · s.z.
             node.moment += DMat3::from_cols(area * middle.x, area * middle.y, area * middle.z) * (1.0 / 3.0);
             node.size += size;
-            node.spread += size / 12.0
+            node.second_moment += size / 12.0
                 * (a.length_squared() + b.length_squared() + c.length_squared() + middle.length_squared());
             for (i, (from, to)) in [(a, b), (b, c), (c, a)].into_iter().enumerate() {
                 if rims >> i & 1 != 0 {
@@ -485,21 +482,28 @@ impl Node {
                 }
             }
         }
-        // Of every addition, and of areas of slivers.
-        let count = slots.len() as f64;
-        node.rounding =
-            16.0 * f64::EPSILON * (count + 16.0) * (node.size + node.radius * node.radius * count);
-        node.size += node.rounding;
-        // What additions round, and areas of slivers.
+        // `rounding` covers all that is rounded in what `add_from_afar` adds to the value, and in its bound.
+        // Let n be the number of caps, u = ε/2, r the radius and |y| > 2 r the distance; errors are in units
+        // of SCALE/(|y| − r)². A sum of n terms is off by n·u times their magnitudes, and each term has fewer
+        // than 100 roundings of its own; the terms of value and second moment are at most 4·size: that makes
+        // 4·(n + 100)·u·size. A corner relative to the centre is off by u·r, so a cap's area by 11·u·r²,
+        // however thin the cap is: that makes 17·n·u·r² in value and second moment. 16·ε = 32·u is more than
+        // either needs. Nothing else is rounded, so the bound counts once; with it, `size` bounds the area.
         let count = slots.len() as f64;
         let slivers = count * node.radius * node.radius;
         node.rounding = 16.0 * f64::EPSILON * ((count + 16.0) * node.size + slivers);
         node.size += node.rounding;
+        // The sums over the boundary's n edges are off by 5·((n + 3)·rim + 2·n·r)·u in the gradient, in units of
+        // SCALE/(|y| − r)²: n roundings of sums, and corners that are off by u·r. 10^-11 of the boundary's
+        // length covers what else is rounded.
+        let edges = slots.iter().map(|slot| slot.1.count_ones() as f64).sum::<f64>();
+        let sums = 16.0 * f64::EPSILON * ((edges + 16.0) * node.rim + edges * node.radius);
+        node.rim_rounding = sums.max(1e-11 * node.rim);
         node
     }
 
-    /// Adds the group's winding number as seen from afar to what is known of the ball of `radius` around a point, if that
-    /// adds at most `enough` to the error anywhere in it.
+    /// Adds the group's winding number as seen from afar to what is known of the ball of `radius` around a
+    /// point, if that adds at most `enough` to the error anywhere in it.
     #[inline]
     fn add_from_afar(&self, radius: f64, enough: f64, sum: &mut Local) -> bool {
         let towards = self.centre - sum.point;
@@ -510,23 +514,25 @@ impl Node {
         if !is_apart {
             return false;
         }
-        // The n-th derivative of the kernel y/|y|³ is at most (n + 1)!/|y|ⁿ⁺²: it is one of 1/|y|, which is harmonic, so
-        // that it is largest along y. (`rounding` and the terms with 1e-11 are for what is rounded.)
+        // The n-th derivative of the kernel y/|y|³ is at most (n + 1)!/|y|ⁿ⁺²: it is one of 1/|y|, which is
+        // harmonic, so that it is largest along y. (`rounding` and `rim_rounding` are for what is
+        // rounded.)
         let per_gap = 1.0 / gap;
         let near = SCALE * per_gap * per_gap;
-        let error = (3.0 * self.spread * per_gap * per_gap + self.rounding) * near;
+        let error = (3.0 * self.second_moment * per_gap * per_gap + self.rounding) * near;
         let is_exact = error <= enough;
         if !is_exact {
             return false;
         }
         let wide = self.radius * per_gap;
-        let slant = (3.0 * wide * wide + 1e-11) * self.rim * near;
-        let bend = (6.0 * wide + 1e-11) * self.rim * near * per_gap;
+        let gradient_error = (3.0 * wide * wide * self.rim + self.rim_rounding) * near;
+        let hessian_error = (6.0 * wide * self.rim + self.rim_rounding) * near * per_gap;
         let per_clear = 1.0 / clear;
         let close = SCALE * per_clear * per_clear * per_clear * per_clear;
-        let (by_rims, by_areas) = (6.0 * self.rim * close, 24.0 * self.size * close * per_clear);
-        let jerk = by_rims.max(by_areas);
-        let is_smooth = error + (slant + (0.5 * bend + jerk / 6.0 * radius) * radius) * radius <= enough;
+        let (third_by_edges, third_by_areas) = (6.0 * self.rim * close, 24.0 * self.size * close * per_clear);
+        let third = third_by_edges.max(third_by_areas);
+        let beyond_value = (gradient_error + (0.5 * hessian_error + third / 6.0 * radius) * radius) * radius;
+        let is_smooth = error + beyond_value <= enough;
         if !is_smooth {
             return false;
         }
@@ -539,26 +545,27 @@ impl Node {
         sum.value += facing * square + (trace(self.moment) - 3.0 * along) * cube;
         // ∫ y/|y|³ × ds with the same two terms.
         let turned = curl(self.currents);
-        let slid = self.currents * direction;
+        let along_direction = self.currents * direction;
         sum.gradient +=
-            direction.cross(self.current) * square + (turned - 3.0 * direction.cross(slid)) * cube;
+            direction.cross(self.current) * square + (turned - 3.0 * direction.cross(along_direction)) * cube;
         // The first of them once more differentiated: −(v − 3 d (d·v))/|y|³ × ds for a step v.
         let columns =
             DVec3::AXES.map(|v| (3.0 * direction.dot(v) * direction - v).cross(self.current) * cube);
         sum.hessian += DMat3::from_cols(columns[0], columns[1], columns[2]);
-        sum.error += error + f64::EPSILON * sum.value.abs();
-        sum.slant += slant;
-        sum.bend += bend;
-        sum.by_rims += by_rims;
-        sum.by_areas += by_areas;
-        sum.by_wobble += SCALE * self.rim / (clear * clear);
+        sum.value_error += error + f64::EPSILON * sum.value.abs();
+        sum.gradient_error += gradient_error;
+        sum.hessian_error += hessian_error;
+        sum.round_derivatives();
+        sum.third_by_edges += third_by_edges;
+        sum.third_by_areas += third_by_areas;
+        sum.position_sensitivity += SCALE * self.rim / (clear * clear);
         true
     }
 }
 
 impl Local {
-    /// Adds what an edge of the boundary does to the derivatives. The gradient is the magnetic field of a current
-    /// along the edge. `None` if the edge passes through the ball.
+    /// Adds what an edge of the boundary does to the derivatives. The gradient is the magnetic field of a
+    /// current along the edge. `None` if the edge passes through the ball.
     #[inline]
     fn add_rim(&mut self, [from, to]: [End; 2], cosine: f64, length: f64, radius: f64) -> Option<()> {
         let (a, b) = (from.direction, to.direction);
@@ -584,7 +591,8 @@ impl Local {
         let inverse_open = 1.0 / open;
         let strength = SCALE * both * inverse_product * inverse_open;
         self.gradient += field * strength;
-        // Along v the derivative of from × to is edge × v, that of `strength` over both distances is `weaker` · v.
+        // Along v the derivative of from × to is edge × v, that of `strength` over both distances is
+        // `weaker` · v.
         let mixed = (a * to.distance + b * from.distance) * inverse_product;
         let weaker =
             strength * (mixed + (a + b) * (both * inverse_product * inverse_open) - (a + b) * (1.0 / both));
@@ -596,14 +604,22 @@ impl Local {
         );
         // Of the field's direction, and of `open`.
         let rounding = 256.0 * f64::EPSILON * strength * if cosine < 0.0 { 2.0 } else { 1.0 + sine };
-        self.slant += rounding;
-        self.bend += rounding * both * inverse_product * inverse_open.max(1.0);
+        self.gradient_error += rounding;
+        self.hessian_error += rounding * both * inverse_product * inverse_open.max(1.0);
+        self.round_derivatives();
         // ∫ 6 ds / distance⁴ along the edge, and at most along its whole line.
         let inverse = 1.0 / distance;
         let angle = length * inverse;
-        self.by_wobble += SCALE * angle.min(PI) * inverse;
-        self.by_rims += SCALE * 6.0 * angle.min(PI / 2.0) * inverse * inverse * inverse;
+        self.position_sensitivity += SCALE * angle.min(PI) * inverse;
+        self.third_by_edges += SCALE * 6.0 * angle.min(PI / 2.0) * inverse * inverse * inverse;
         Some(())
+    }
+
+    /// Accounts for the rounding of the sums to which something was just added.
+    #[inline(always)]
+    fn round_derivatives(&mut self) {
+        self.gradient_error += f64::EPSILON * self.gradient.abs().element_sum();
+        self.hessian_error += f64::EPSILON * sum_of_magnitudes(self.hessian);
     }
 }
 
@@ -626,8 +642,8 @@ fn length(v: DVec3) -> f64 {
     sqrt(v.length_squared())
 }
 
-/// The triangles of a polygon with `corners` corners, by halves; `found` gets the corners of each, descending, and
-/// which edges are the polygon's.
+/// The triangles of a polygon with `corners` corners, by halves; `found` gets the corners of each,
+/// descending, and which edges are the polygon's.
 fn halve(corners: usize, found: &mut impl FnMut([usize; 3], u8)) {
     fn part(first: usize, last: usize, closing: bool, found: &mut impl FnMut([usize; 3], u8)) {
         if last - first < 2 {
@@ -652,9 +668,9 @@ mod tests {
     use crate::mesh::TriangleMesh;
     use alloc::sync::Arc;
 
-    /// A cone without its base: `corners` corners at height 3 around the axis through (8, 8), of about radius 5, its top
-    /// at height 13. In a frame of 16 cells.
-    fn cone(corners: u32) -> Placed {
+    /// A cone without its base: `corners` corners at height 3 around the axis through (8, 8), of about radius
+    /// 5, its top at height 13. In a frame of 16 cells.
+    fn cone(corners: u32) -> (Placed, Caps) {
         let mut vertices = alloc::vec![[8.0, 8.0, 13.0]];
         for i in 0..corners {
             let angle = 2.0 * PI * f64::from(i) / f64::from(corners);
@@ -665,11 +681,13 @@ mod tests {
         let triangles = (0..corners).map(|i| [0, 1 + i, 1 + (i + 1) % corners]).collect();
         let mesh = TriangleMesh::new(vertices, triangles).unwrap();
         let loops = mesh.loops().unwrap();
-        Placed::new(Arc::new(mesh), &Frame::new([0.0; 3], 16.0, 4).unwrap(), &loops).unwrap()
+        let mut placed = Placed::new(Arc::new(mesh), &Frame::new([0.0; 3], 16.0, 4).unwrap()).unwrap();
+        let caps = Caps::close(&mut placed, &loops).unwrap();
+        (placed, caps)
     }
 
-    fn local(placed: &Placed, point: DVec3, radius: f64, enough: f64) -> Option<Local> {
-        placed.caps.local(placed, point.to_array(), radius, enough, None)
+    fn local((placed, caps): &(Placed, Caps), point: DVec3, radius: f64, enough: f64) -> Option<Local> {
+        caps.local(placed, point.to_array(), radius, enough, None)
     }
 
     #[test]
@@ -691,15 +709,15 @@ mod tests {
                     let step = DVec3::new(random(), random(), random()) * 2.0 - 1.0;
                     let step = step * (radius * random() / length(step));
                     let there = local(&solid, point + step, 0.0, 0.0).unwrap();
-                    assert!(there.doubt(0.0) < 1e-9);
-                    let bent = around.hessian * step;
-                    let guess = around.value + (around.gradient + 0.5 * bent).dot(step);
+                    assert!(there.error_at(0.0) < 1e-9);
+                    let hessian_step = around.hessian * step;
+                    let guess = around.value + (around.gradient + 0.5 * hessian_step).dot(step);
                     // Caps may lie between the two points.
                     let off = guess - there.value;
                     let off = (off - libm::round(off)).abs();
-                    let doubt = around.doubt(length(step)) + 1e-9;
-                    assert!(off <= doubt, "{corners} {point} {radius} {step} {enough}: {off} {doubt}");
-                    taken += usize::from(doubt < 0.5);
+                    let bound = around.error_at(length(step)) + 1e-9;
+                    assert!(off <= bound, "{corners} {point} {radius} {step} {enough}: {off} {bound}");
+                    taken += usize::from(bound < 0.5);
                 }
             }
             assert!(known > 5000 && taken > 4000, "{known} {taken}");

@@ -14,8 +14,9 @@ pub(super) struct LatticeMap {
 }
 
 impl LatticeMap {
-    /// The map p ↦ linear · (p − before) + after of model space. `linear` may be off by 5 · 2^-53, relatively, in each
-    /// entry; none of it is if the map is `monomial`, and then its entries are powers of two, one a row.
+    /// The map p ↦ linear · (p − before) + after of model space. `linear` may be off by 5 · 2^-53,
+    /// relatively, in each entry; none of it is if the map is `monomial`, and then its entries are powers of
+    /// two, one a row.
     fn new(
         linear: &[[f64; 3]; 3],
         before: [f64; 3],
@@ -39,8 +40,8 @@ impl LatticeMap {
                 size += linear[i][j].abs() * (from.origin()[j].abs() + before[j].abs());
             }
             map.offset[i] = offset / cell;
-            // Every sum below has a dozen roundings at the most, each relative to this size; the entries bring five
-            // more.
+            // Every sum below has a dozen roundings at the most, each relative to this size; the entries
+            // bring five more.
             map.error[i] = 32.0 * f64::EPSILON * (reach + size / cell);
         }
         if exact && (0..3).all(|i| map.offset_is_exact(i, &linear[i], before, after[i], from, to)) {
@@ -49,7 +50,8 @@ impl LatticeMap {
         map
     }
 
-    /// Whether the offset on an axis of a monomial map is one with which no sum is rounded; corrects it if so.
+    /// Whether the offset on an axis of a monomial map is one with which no sum is rounded; corrects it if
+    /// so.
     fn offset_is_exact(
         &mut self,
         i: usize,
@@ -68,8 +70,8 @@ impl LatticeMap {
         are_sums_exact(span, offset) && sum.minus(&Expansion::sum([error, product])).sign() == 0
     }
 
-    /// The box around the image of a cube with this corner and edge (or half of both) of the source lattice, without
-    /// the error.
+    /// The box around the image of a cube with this corner and edge (or half of both) of the source lattice,
+    /// without the error.
     #[inline(always)]
     pub(super) fn image(&self, corner: [f64; 3], edge: f64) -> ([f64; 3], [f64; 3]) {
         let (mut low, mut high) = ([0.0; 3], [0.0; 3]);
@@ -94,8 +96,8 @@ impl LatticeMap {
         (low, high)
     }
 
-    /// The edge of the cells that the image of a unit cube is to be covered with: the cube's longest image, or half of
-    /// that again and again while a few dozen cells will do.
+    /// The edge of the cells that the image of a unit cube is to be covered with: the cube's longest image,
+    /// or half of that again and again while a few dozen cells will do.
     fn grain(&self) -> f64 {
         const MOST: f64 = 32.0;
         let square = |j: usize| (0..3).map(|i| self.linear[i][j] * self.linear[i][j]).sum::<f64>();
@@ -126,8 +128,9 @@ impl LatticeMap {
     }
 }
 
-/// Whether all coordinates of the images of cells are doubles, and of their halves, where the universe's image spans
-/// `span` cells: they are multiples of a power of two, and smaller than 2^53 of it. That does not depend on the depth.
+/// Whether all coordinates of the images of cells are doubles, and of their halves, where the universe's
+/// image spans `span` cells: they are multiples of a power of two, and smaller than 2^53 of it. That does not
+/// depend on the depth.
 fn are_sums_exact(span: f64, offset: f64) -> bool {
     const STEP: f64 = 1.0 / (2u64 << MAX_DEPTH) as f64;
     const MOST: f64 = (1u64 << 53) as f64;
@@ -186,8 +189,8 @@ pub(super) trait Target {
 
 /// The inverse images of the eight children of a cube, or of a single one.
 ///
-/// A cell touches those whose inner points neither a plane of its lattice nor one of the frame's separates from its
-/// own. A number that is none separates nothing.
+/// A cell touches those whose inner points neither a plane of its lattice nor one of the frame's separates
+/// from its own. A number that is none separates nothing.
 pub(super) struct Images<'m> {
     maps: &'m Maps,
     /// Boxes around them.
@@ -292,8 +295,8 @@ impl Target for Images<'_> {
     }
 }
 
-/// The inverse image of a point: a cell touches it if it may hold it. Where there is no error, what lies on a plane goes
-/// where the shift of all centres by (ε, ε², ε³) leads.
+/// The inverse image of a point: a cell touches it if it may hold it. Where there is no error, what lies on a
+/// plane goes where the shift of all centres by (ε, ε², ε³) leads.
 pub(super) struct Point<'m> {
     pub(super) map: &'m LatticeMap,
     pub(super) at: [f64; 3],
@@ -338,8 +341,8 @@ fn is_monomial(linear: &[[f64; 3]; 3]) -> bool {
     })
 }
 
-/// The inverse of the linear part, each entry off by 5 · 2^-53 of itself at the most: quotients of a minor and the
-/// determinant, both of which come from exact sums.
+/// The inverse of the linear part, each entry off by 5 · 2^-53 of itself at the most: quotients of a minor
+/// and the determinant, both of which come from exact sums.
 pub(super) fn inverse(placement: &Affine) -> [[f64; 3]; 3] {
     let m = placement.rows();
     let minor = |i: usize, j: usize| {
@@ -395,8 +398,8 @@ pub(super) fn source_box(placement: &Affine, inverse: &[[f64; 3]; 3], bounds: &B
     [min, max]
 }
 
-/// By how much the shortest way becomes shorter at the most under the inverse map: the reciprocal of the longest column
-/// of the map, about.
+/// By how much the shortest way becomes shorter at the most under the inverse map: the reciprocal of the
+/// longest column of the map, about.
 pub(super) fn shrinkage(inverse: &[[f64; 3]; 3]) -> f64 {
     let square = |j: usize| (0..3).map(|i| inverse[i][j] * inverse[i][j]).sum::<f64>();
     sqrt(square(0).min(square(1)).min(square(2)))

@@ -7,7 +7,7 @@ use crate::control::Control;
 use crate::error::Error;
 use crate::lattice::{Affine, Bounds, Cell, Cube, Frame, MAX_DEPTH};
 use crate::memory;
-use crate::octree::Tag;
+use crate::octree::{Proof, Tag};
 use alloc::sync::Arc;
 use alloc::vec::Vec;
 use core::ops::Range;
@@ -15,21 +15,23 @@ use image::{Images, Maps, Point, Target, inverse};
 
 /// A solid, known on a frame of its own, under an affine placement.
 ///
-/// A cell is FULL or EMPTY if all the cells of the solid's own frame are that its inverse image touches: cells of about
-/// its size, or larger ones that are decided. So a surface that is not parallel to the lattice blurs by about a cell,
-/// which a finer frame makes as small as one likes, down to the depth of the solid's own. Rounding is outward.
+/// A cell is FULL or EMPTY if all the cells of the solid's own frame are that its inverse image touches:
+/// cells of about its size, or larger ones that are decided. So a surface that is not parallel to the lattice
+/// blurs by about a cell, which a finer frame makes as small as one likes, down to the depth of the solid's
+/// own. Rounding is outward.
 ///
-/// Where the map takes lattice planes to lattice planes (a permutation of the axes, with signs and powers of two as
-/// scales, and an offset of whole cells) no rounding occurs and nothing blurs: of cells of one size each finest cell of
-/// the result is one of the solid's.
+/// Where the map takes lattice planes to lattice planes (a permutation of the axes, with signs and powers of
+/// two as scales, and an offset of whole cells) no rounding occurs and nothing blurs: of cells of one size
+/// each finest cell of the result is one of the solid's.
 ///
-/// What sticks out of the solid's own universe is as [`exterior`](Classifier::exterior) tells: undecided, unless the solid is
-/// proven to end inside. Centres ([`Rule::Sampled`](crate::Rule::Sampled)) are decided where cells of the solid's own
-/// depth decide them, or, if the placement is an offset of whole cells, by the solid.
+/// What sticks out of the solid's own universe is as [`exterior`](Classifier::exterior) tells: undecided,
+/// unless the solid is proven to end inside. Centres ([`Rule::Sampled`](crate::Rule::Sampled)) are decided
+/// where cells of the solid's own depth decide them, or, if the placement is an offset of whole cells, by the
+/// solid.
 ///
 /// ```
-/// use leafless::{Affine, AxisBox, Control, Frame, Rule, Transform, build};
-/// let block = AxisBox::new([-1.0, -0.5, -0.25], [1.0, 0.5, 0.25])?;
+/// use leafless::{Affine, Control, Csg, Frame, Rule, Transform, build};
+/// let block = Csg::cuboid([-1.0, -0.5, -0.25], [1.0, 0.5, 0.25])?;
 /// let own = Frame::new([-2.0; 3], 4.0, 8)?;
 /// // Turned by the angle whose cosine is 0.8, and moved.
 /// let placement =
@@ -55,6 +57,7 @@ pub struct TransformClassifier<C> {
     frame: Frame,
     /// A box around the placed solid, if one is known.
     bounds: Option<Bounds>,
+    proof: Proof,
 }
 
 /// A worker on a placed solid: lists of cells of the solid's own frame, one for each PARTIAL cell.
@@ -100,14 +103,16 @@ impl Met {
 }
 
 impl<S: Solid> Transform<S> {
-    /// The image under `placement` of a solid that is known on the frame `own`, and there to no more than its depth.
+    /// The image under `placement` of a solid that is known on the frame `own`, and there to no more than its
+    /// depth.
     pub fn new(solid: S, own: &Frame, placement: &Affine) -> Transform<S> {
         Transform { solid: Arc::new(solid), own: Some(*own), placement: *placement }
     }
 
-    /// The image under `placement` of a solid that is known on a frame of its own ([`home`](Solid::home)), or on any. Then
-    /// the frame is chosen, for each frame that the image is asked on: the inverse image of that where cells are the
-    /// images of cells, else the least cube around what there is of the solid, in cells that are no larger.
+    /// The image under `placement` of a solid that is known on a frame of its own ([`home`](Solid::home)), or
+    /// on any. Then the frame is chosen, for each frame that the image is asked on: the inverse image of that
+    /// where cells are the images of cells, else the least cube around what there is of the solid, in cells
+    /// that are no larger.
     pub fn of(solid: S, placement: &Affine) -> Transform<S> {
         let own = solid.home();
         Transform { solid: Arc::new(solid), own, placement: *placement }
@@ -190,12 +195,14 @@ impl<S> Clone for Transform<S> {
 }
 
 impl<C: Classifier> TransformClassifier<C> {
-    /// The solid of a classifier under a placement: a pose changes a map, and nothing else. `bounds` is a box around the
-    /// placed solid, if one is known. O(1).
+    /// The solid of a classifier under a placement: a pose changes a map, and nothing else. `bounds` is a box
+    /// around the placed solid, if one is known. O(1).
     pub(crate) fn new(inner: C, placement: &Affine, frame: &Frame, bounds: Option<Bounds>) -> Self {
         let own = *inner.frame();
         let maps = Maps::new(placement, &inverse(placement), frame, &own);
-        TransformClassifier { inner, own, maps, frame: *frame, bounds }
+        let proof = inner.proof();
+        let proof = proof.moved(placement.stretched(proof.displacement()));
+        TransformClassifier { inner, own, maps, frame: *frame, bounds, proof }
     }
 
     /// Lower corner and edge of a cell of the solid's own frame, in its finest cells.
@@ -203,8 +210,8 @@ impl<C: Classifier> TransformClassifier<C> {
         extent(&self.own, cell)
     }
 
-    /// Whether cells that are not EMPTY (not FULL, if `hollow`) may reach beyond the universe: some cells that
-    /// do are split to see.
+    /// Whether cells that are not EMPTY (not FULL, if `hollow`) may reach beyond the universe: some cells
+    /// that do are split to see.
     fn reaches_beyond(&self, hollow: bool) -> Result<bool, Error> {
         const MOST: usize = 512;
         let outward = self.maps.outward;
@@ -264,6 +271,10 @@ impl<C: Classifier> Classifier for TransformClassifier<C> {
             _ => Tag::Partial,
         }
     }
+
+    fn proof(&self) -> Proof {
+        self.proof
+    }
 }
 
 /// Lower corner and edge of a cell of a frame, in its finest cells.
@@ -293,7 +304,8 @@ impl<W: Worker> TransformWorker<W> {
         Ok(TransformPart(self.lists.len() - 1))
     }
 
-    /// Puts the cells of a list at hand that touch a target, those larger than its grain replaced by their children.
+    /// Puts the cells of a list at hand that touch a target, those larger than its grain replaced by their
+    /// children.
     fn gather(&mut self, part: TransformPart, target: &impl Target, grain: f64) -> Result<(), Error> {
         let range = self.range(part);
         let TransformWorker { known, at_hand, inner, own, .. } = self;
@@ -325,7 +337,8 @@ impl<W: Worker> TransformWorker<W> {
         Ok(())
     }
 
-    /// What the cells at hand say of the first `count` children, whose centres may be asked for if they are `finest`.
+    /// What the cells at hand say of the first `count` children, whose centres may be asked for if they are
+    /// `finest`.
     fn verdicts(
         &mut self,
         images: &Images<'_>,

@@ -8,8 +8,7 @@
 use core::alloc::{GlobalAlloc, Layout};
 use core::ffi::{c_int, c_void};
 use leafless::{
-    AnySolid, AxisBox, Ball, Control, Error, Frame, Membership, PointCursor, Region, Rule, build, compact,
-    difference,
+    AnySolid, Control, Csg, Error, Frame, Membership, PointCursor, Region, Rule, build, compact, difference,
 };
 
 // The C library stands for the allocator and the start-up code that an embedded target would bring.
@@ -47,17 +46,17 @@ fn panic(_: &core::panic::PanicInfo<'_>) -> ! {
     unsafe { abort() }
 }
 
-/// The ready-made `alloc` was compiled to unwind and names this routine of `std`. Panics abort here, so nothing
-/// ever calls it.
+/// The ready-made `alloc` was compiled to unwind and names this routine of `std`. Panics abort here, so
+/// nothing ever calls it.
 #[unsafe(no_mangle)]
 extern "C" fn rust_eh_personality() {}
 
 fn run() -> Result<c_int, Error> {
     let control = Control::default();
     let frame = Frame::new([-1.0; 3], 2.0, 7)?;
-    let block = AnySolid::new(AxisBox::new([-0.75; 3], [0.75; 3])?);
+    let block = AnySolid::new(Csg::cuboid([-0.75; 3], [0.75; 3])?);
     let block = build(&block, &frame, Rule::Certified, &control)?;
-    let ball = build(&Ball::new([0.0; 3], 0.9)?, &frame, Rule::Certified, &control)?;
+    let ball = build(&Csg::ball([0.0; 3], 0.9)?, &frame, Rule::Certified, &control)?;
     let part = compact(difference(block.view(), ball.view(), &control)?.view())?;
     if part.view().check().is_err() {
         return Ok(2);

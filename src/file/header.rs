@@ -1,0 +1,248 @@
+//! The first 128 bytes of a file.
+
+use super::wire::{Wire, wire_struct};
+use crate::error::{Error, FormatError};
+use crate::lattice::Frame;
+use crate::octree::dictionary;
+use crate::octree::view::element_levels;
+use crate::octree::{Proof, Tag};
+use core::mem::offset_of;
+use core::ops::Range;
+
+/// The first eight bytes of every file; part of the format. The first byte is not ASCII, the line ends and
+/// the end-of-file mark are what transfers in text mode change.
+pub const MAGIC: [u8; 8] = *b"\x89LFL\r\n\x1a\n";
+
+/// Major version that this library reads and writes; part of the format.
+pub const MAJOR: u16 = 0;
+
+/// Minor version that this library writes; part of the format. Newer ones of the same major are readable.
+pub const MINOR: u16 = 1;
+
+/// The oldest minor version that is readable: 0.0 had another section table.
+const OLDEST_MINOR: u16 = 1;
+
+/// Length of the header, and offset of the section table; part of the format.
+pub(super) const HEADER_LENGTH: usize = size_of::<Header>();
+
+/// Raw bricks, one after another; part of the format.
+pub(super) const ENCODING_RAW: u8 = 0;
+
+/// Bricks through a dictionary; part of the format.
+pub(super) const ENCODING_DICTIONARY: u8 = 1;
+
+/// Smallest base-2 logarithm of the bricks of a segment; part of the format.
+pub(super) const LEAST_SEGMENT_SHIFT: u8 = 16;
+
+/// Most sections that a file may have; part of the format. It bounds the work of the readers that trust
+/// nothing yet.
+const MAX_SECTIONS: u32 = 4096;
+
+/// Length of an entry of the section table; part of the format.
+pub(super) const ENTRY_LENGTH: usize = 48;
+
+wire_struct! {
+    /// The first 128 bytes of a file. Doubles are kept as their bits.
+    struct Header: 128 {
+        0 magic: [u8; 8],
+        8 major: u16,
+        10 minor: u16,
+        12 header_length: u32,
+        16 flags_required: u32,
+        20 flags_optional: u32,
+        24 file_length: u64,
+        32 origin: [u64; 3],
+        56 edge: u64,
+        64 depth: u8,
+        65 root: u8,
+        66 exterior: u8,
+        67 brick_planes: u8,
+        68 brick_encoding: u8,
+        69 segment_shift: u8,
+        70 proof: u8,
+        71 reserved: u8,
+        72 elements: u64,
+        80 bricks: u64,
+        88 dictionary_entries: u64,
+        96 section_count: u32,
+        100 table_crc: u32,
+        104 displacement: u64,
+        112 reserved_tail: [u8; 12],
+        124 header_crc: u32,
+    }
+}
+
+impl Header {
+    /// Whether a later version wrote the file, which may have given a meaning to what is reserved today.
+    pub fn is_newer(&self) -> bool {
+        self.minor > MINOR
+    }
+}
+
+pub(super) fn illegal(name: &'static str, value: impl Into<u64>) -> FormatError {
+    FormatError::Field { name, value: value.into() }
+}
+
+/// Refuses `value` unless it is `expected`.
+pub(super) fn demand(
+    name: &'static str,
+    value: impl Into<u64>,
+    expected: impl Into<u64>,
+) -> Result<(), FormatError> {
+    let value = value.into();
+    if value == expected.into() { Ok(()) } else { Err(illegal(name, value)) }
+}
+
+/// A header of which everything has been checked that can be checked without other bytes.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Head {
+    pub header: Header,
+    pub frame: Frame,
+    pub root: Tag,
+    pub exterior: Tag,
+    pub proof: Proof,
+}
+
+impl Head {
+    /// Reads the first 128 of `bytes`.
+    ///
+    /// The order of the checks: what kind of file it is, then its version, because a newer one may have
+    /// changed all that follows, then the checksum, so that damage is called damage, then each field.
+    pub(super) fn read(bytes: &[u8]) -> Result<Head, FormatError> {
+        let known = bytes.len().min(MAGIC.len());
+        if bytes[..known] != MAGIC[..known] {
+            return Err(if is_text_mode(bytes) { FormatError::TextMode } else { FormatError::Magic });
+        }
+        let Some(raw) = bytes.get(..HEADER_LENGTH) else {
+            return Err(FormatError::Length { expected: HEADER_LENGTH as u64, found: bytes.len() as u64 });
+        };
+        let header = bytemuck::pod_read_unaligned::<Header>(raw).ordered();
+        if header.major != MAJOR || header.minor < OLDEST_MINOR {
+            return Err(FormatError::Version { major: header.major, minor: header.minor });
+        }
+        if crc32fast::hash(&raw[..offset_of!(Header, header_crc)]) != header.header_crc {
+            return Err(FormatError::Checksum { name: "the header" });
+        }
+        Head::check(header)
+    }
+
+    fn check(header: Header) -> Result<Head, FormatError> {
+        demand("header length", header.header_length, HEADER_LENGTH as u64)?;
+        if header.flags_required != 0 {
+            let value = header.flags_required.into();
+            return Err(FormatError::Required { name: "flags", value });
+        }
+        // A newer minor version may have given these a meaning that can be ignored.
+        if !header.is_newer() {
+            demand("optional flags", header.flags_optional, 0u64)?;
+            demand("reserved field", header.reserved, 0u64)?;
+            for byte in header.reserved_tail {
+                demand("reserved field", byte, 0u64)?;
+            }
+        }
+        // Every value of a frame has one spelling only, so that equal trees have equal files.
+        let frame = Frame::new(header.origin.map(f64::from_bits), f64::from_bits(header.edge), header.depth);
+        let frame = frame.map_err(|refused| match refused {
+            Error::Argument { name: "depth", .. } => illegal("depth", header.depth),
+            Error::Argument { name: "edge", .. } => illegal("edge", header.edge),
+            _ => {
+                // The first coordinate that is refused by itself.
+                let alone = |&bits: &u64| Frame::new([f64::from_bits(bits); 3], 1.0, 1).is_err();
+                illegal("origin", header.origin.into_iter().find(alone).unwrap_or_default())
+            }
+        })?;
+        for (value, normal) in header.origin.into_iter().zip(frame.origin()) {
+            demand("origin", value, normal.to_bits())?;
+        }
+        if header.root > 3 {
+            return Err(illegal("root tag", header.root));
+        }
+        let root = Tag::from_code(header.root);
+        let exterior = Tag::from_code(header.exterior);
+        if header.exterior > 3 || exterior == Tag::Branch {
+            return Err(illegal("exterior", header.exterior));
+        }
+        if header.proof > 3 {
+            return Err(illegal("proof", header.proof));
+        }
+        let displacement = f64::from_bits(header.displacement);
+        let proof = Proof::from_bits(header.proof)
+            .with_displacement(displacement)
+            .ok()
+            .filter(|proof| proof.displacement().to_bits() == header.displacement)
+            .ok_or(illegal("displacement", header.displacement))?;
+        if !(1..=2).contains(&header.brick_planes) {
+            return Err(illegal("planes of a brick", header.brick_planes));
+        }
+        match header.brick_encoding {
+            ENCODING_RAW => {
+                demand("segment shift", header.segment_shift, 0u64)?;
+                demand("dictionary entries", header.dictionary_entries, 0u64)?;
+            }
+            ENCODING_DICTIONARY => {
+                let shift = header.segment_shift;
+                // A single segment has one spelling only.
+                let whole = segments(header.bricks, shift) == 1;
+                if !(LEAST_SEGMENT_SHIFT..=dictionary::WHOLE).contains(&shift)
+                    || whole != (shift == dictionary::WHOLE)
+                {
+                    return Err(illegal("segment shift", shift));
+                }
+                if header.dictionary_entries == 0 || header.dictionary_entries > header.bricks {
+                    return Err(illegal("dictionary entries", header.dictionary_entries));
+                }
+            }
+            unknown => return Err(illegal("brick encoding", unknown)),
+        }
+        if element_levels(header.depth) == 1 {
+            demand("elements", header.elements, 0u64)?;
+        }
+        if root != Tag::Branch {
+            demand("elements", header.elements, 0u64)?;
+            demand("bricks", header.bricks, 0u64)?;
+        }
+        if !(1..=MAX_SECTIONS).contains(&header.section_count) {
+            return Err(illegal("section count", header.section_count));
+        }
+        let head = Head { header, frame, root, exterior, proof };
+        if header.file_length <= head.table_range().end as u64 {
+            return Err(illegal("file length", header.file_length));
+        }
+        Ok(head)
+    }
+
+    /// Where the section table lies.
+    pub(super) fn table_range(&self) -> Range<usize> {
+        // At most 128 + 4096 · 48.
+        HEADER_LENGTH..HEADER_LENGTH + self.header.section_count as usize * ENTRY_LENGTH
+    }
+
+    /// The section table in `bytes`, which begin where the file does; its checksum is checked.
+    pub(super) fn table<'a>(&self, bytes: &'a [u8]) -> Result<&'a [u8], FormatError> {
+        let range = self.table_range();
+        let found = bytes.len() as u64;
+        let table =
+            bytes.get(range.clone()).ok_or(FormatError::Length { expected: range.end as u64, found })?;
+        if crc32fast::hash(table) != self.header.table_crc {
+            return Err(FormatError::Checksum { name: "the section table" });
+        }
+        Ok(table)
+    }
+}
+
+/// Segments of 2^`shift` bricks.
+pub(super) fn segments(bricks: u64, shift: u8) -> u64 {
+    match 1u64.checked_shl(shift.into()) {
+        Some(length) => bricks.div_ceil(length),
+        None => 0,
+    }
+}
+
+/// Whether the signature is there but for what a transfer in text mode does to line ends: whatever stands
+/// between the letters and the end-of-file mark, and after it, are still line ends.
+fn is_text_mode(bytes: &[u8]) -> bool {
+    let Some(rest) = bytes.strip_prefix(b"\x89LFL") else { return false };
+    let is_end = |byte: &u8| *byte == b'\r' || *byte == b'\n';
+    let ends = rest.iter().take(4).take_while(|byte| is_end(byte)).count();
+    ends > 0 && rest.get(ends) == Some(&0x1A) && rest.get(ends + 1).is_some_and(is_end)
+}

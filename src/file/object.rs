@@ -1,0 +1,106 @@
+//! The records of what a file holds: the solid and, in later versions, whatever comes with it.
+
+use super::header::{Header, illegal};
+use super::wire::{Wire, elements, wire_struct};
+use crate::error::FormatError;
+use bytemuck::Zeroable;
+
+/// Most objects that a file may hold; part of the format. It bounds the work of mapping a file.
+pub(super) const MAX_OBJECTS: u64 = 4096;
+
+/// The type of a solid; part of the format. 2 is reserved for channels, 3 for tri-dexel models, 4 for
+/// versions, 5 for values of PARTIAL cells.
+const SOLID: u32 = 1;
+
+/// The parent of an object that has none; part of the format.
+const NO_PARENT: u32 = u32::MAX;
+
+/// Flag of an object of which a reader must know the type to read the file; part of the format.
+const OBJECT_REQUIRED: u32 = 1;
+
+wire_struct! {
+    /// What is said of one object, the owner of sections. Doubles are kept as their bits.
+    struct Object: 128 {
+        0 kind: u32,
+        4 parent: u32,
+        8 flags: u32,
+        12 depth: u8,
+        13 root: u8,
+        14 exterior: u8,
+        15 proof: u8,
+        16 brick_planes: u8,
+        17 brick_encoding: u8,
+        18 segment_shift: u8,
+        19 value_type: u8,
+        20 components: u8,
+        21 reserved: [u8; 3],
+        24 displacement: u64,
+        32 origin: [u64; 3],
+        56 edge: u64,
+        64 extents: [u32; 3],
+        76 reserved_middle: u32,
+        80 elements: u64,
+        88 bricks: u64,
+        96 dictionary_entries: u64,
+        104 values: u64,
+        112 reserved_tail: [u8; 16],
+    }
+}
+
+impl Object {
+    /// What the header says of the solid, the object 0.
+    pub(super) fn solid(header: &Header) -> Object {
+        Object {
+            kind: SOLID,
+            parent: NO_PARENT,
+            flags: OBJECT_REQUIRED,
+            depth: header.depth,
+            root: header.root,
+            exterior: header.exterior,
+            proof: header.proof,
+            brick_planes: header.brick_planes,
+            brick_encoding: header.brick_encoding,
+            segment_shift: header.segment_shift,
+            displacement: header.displacement,
+            origin: header.origin,
+            edge: header.edge,
+            elements: header.elements,
+            bricks: header.bricks,
+            dictionary_entries: header.dictionary_entries,
+            ..Object::zeroed()
+        }
+    }
+}
+
+/// Checks the records of all objects: the first repeats the header, and none that is unknown is required.
+/// What is said of the others is not looked at.
+pub(super) fn check(header: &Header, records: &[u8]) -> Result<(), FormatError> {
+    for (index, object) in (0u32..).zip(elements::<Object>(records)) {
+        if index == 0 {
+            // A newer minor version may have given a meaning to what is reserved today.
+            let mut expected = Object::solid(header);
+            if header.is_newer() {
+                let Object { reserved, reserved_middle, reserved_tail, flags, .. } = object;
+                let flags = expected.flags | flags;
+                expected = Object { reserved, reserved_middle, reserved_tail, flags, ..expected };
+            }
+            if object != expected {
+                return Err(FormatError::Object);
+            }
+            continue;
+        }
+        if object.kind == 0 {
+            return Err(illegal("object type", object.kind));
+        }
+        if object.flags & !OBJECT_REQUIRED != 0 && !header.is_newer() {
+            return Err(illegal("object flags", object.flags));
+        }
+        if object.parent != NO_PARENT && object.parent >= index {
+            return Err(illegal("object parent", object.parent));
+        }
+        if object.flags & OBJECT_REQUIRED != 0 {
+            return Err(FormatError::Required { name: "object", value: object.kind.into() });
+        }
+    }
+    Ok(())
+}

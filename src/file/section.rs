@@ -1,0 +1,335 @@
+//! The section table: which bytes of a file are what, and whose.
+
+use super::header::{ENCODING_DICTIONARY, ENTRY_LENGTH, Head, Header, illegal, segments};
+use super::object::{MAX_OBJECTS, Object};
+use super::wire::{Wire, elements, wire_struct};
+use crate::error::FormatError;
+use crate::octree::view::LevelCounts;
+use crate::octree::word::Planes;
+use core::ops::Range;
+
+/// Offsets of sections are multiples of this; part of the format.
+pub(super) const SECTION_ALIGNMENT: u64 = 64;
+
+/// Most bytes that the metadata may take; part of the format. It bounds the work of mapping a file.
+pub(super) const MAX_METADATA: u64 = 1 << 20;
+const _: () = assert!(MAX_METADATA == crate::octree::metadata::MOST as u64);
+
+/// Flag of a section that a reader must know to read its object; part of the format.
+pub(super) const SECTION_REQUIRED: u32 = 1;
+
+/// Elements one after another as they are; part of the format. 1 is reserved for the archive.
+const RAW: u8 = 0;
+
+/// The sections that this library knows. The numbers are part of the format. 16 to 31 are reserved for values
+/// (16 of channels, 17 of PARTIAL cells by rank), 32 to 47 for tri-dexel models, 48 to 55 for versions, 56 to
+/// 63 for the archive; from 2^31 on they belong to applications.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[repr(u32)]
+pub(super) enum Kind {
+    /// What the file holds.
+    Objects = 1,
+    /// Keys and values.
+    Metadata = 2,
+    /// What is counted on each octree level.
+    Levels = 3,
+    /// Elements: pairs of words.
+    Planes = 4,
+    /// First child of each element, less the base of its 1024.
+    Rel = 5,
+    /// First child of every 1024th element.
+    Base = 6,
+    /// Bricks, one after another.
+    Bricks = 7,
+    /// Dictionary index of each brick.
+    Indices = 8,
+    /// The dictionary: distinct bricks, segment by segment.
+    Entries = 9,
+    /// First dictionary entry of each segment.
+    Segments = 10,
+}
+
+/// Sections by kind: one more than the largest number in [`Kind`].
+const KINDS: usize = 11;
+
+/// What the elements of a section are made of; the numbers are part of the format.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[repr(u8)]
+pub(super) enum Element {
+    /// Records that the kind lays out, in units of eight bytes.
+    Record = 0,
+    U8 = 1,
+    U16 = 2,
+    U32 = 3,
+    U64 = 4,
+    F32 = 5,
+    F64 = 6,
+}
+
+impl Element {
+    const ALL: [Element; 7] =
+        [Element::Record, Element::U8, Element::U16, Element::U32, Element::U64, Element::F32, Element::F64];
+
+    fn from_number(number: u8) -> Option<Element> {
+        Element::ALL.get(number as usize).copied()
+    }
+
+    fn size(self) -> u64 {
+        match self {
+            Element::U8 => 1,
+            Element::U16 => 2,
+            Element::U32 | Element::F32 => 4,
+            Element::Record | Element::U64 | Element::F64 => 8,
+        }
+    }
+}
+
+impl Kind {
+    pub(super) const ALL: [Kind; 10] = [
+        Kind::Objects,
+        Kind::Metadata,
+        Kind::Levels,
+        Kind::Planes,
+        Kind::Rel,
+        Kind::Base,
+        Kind::Bricks,
+        Kind::Indices,
+        Kind::Entries,
+        Kind::Segments,
+    ];
+
+    pub(super) fn from_number(number: u32) -> Option<Kind> {
+        Kind::ALL.into_iter().find(|&kind| kind as u32 == number)
+    }
+
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Kind::Objects => "objects",
+            Kind::Metadata => "metadata",
+            Kind::Levels => "level table",
+            Kind::Planes => "planes",
+            Kind::Rel => "rel",
+            Kind::Base => "base",
+            Kind::Bricks => "bricks",
+            Kind::Indices => "brick indices",
+            Kind::Entries => "dictionary entries",
+            Kind::Segments => "dictionary segments",
+        }
+    }
+
+    /// Only the metadata can be done without.
+    pub(super) fn flags(self) -> u32 {
+        if self == Kind::Metadata { 0 } else { SECTION_REQUIRED }
+    }
+
+    /// Type and components of an element, if bricks have so many planes.
+    pub(super) fn element(self, brick_planes: u8) -> (Element, u8) {
+        match self {
+            Kind::Objects => (Element::Record, (size_of::<Object>() / 8) as u8),
+            Kind::Metadata => (Element::U8, 1),
+            Kind::Levels => (Element::U64, (size_of::<LevelCounts>() / 8) as u8),
+            Kind::Planes => (Element::U64, (size_of::<Planes>() / 8) as u8),
+            Kind::Rel | Kind::Indices => (Element::U16, 1),
+            Kind::Base | Kind::Segments => (Element::U64, 1),
+            Kind::Bricks | Kind::Entries => (Element::U64, brick_planes),
+        }
+    }
+
+    /// How many elements the header demands of the solid's section; `None` where that is free.
+    fn demanded(self, header: &Header) -> Option<u64> {
+        let coded = header.brick_encoding == ENCODING_DICTIONARY;
+        let if_coded = |count: u64| if coded { count } else { 0 };
+        match self {
+            Kind::Objects | Kind::Metadata => None,
+            Kind::Levels => Some(header.depth as u64 + 1),
+            Kind::Planes | Kind::Rel => Some(header.elements),
+            Kind::Base => Some(header.elements.div_ceil(1024)),
+            Kind::Bricks => Some(if coded { 0 } else { header.bricks }),
+            Kind::Indices => Some(if_coded(header.bricks)),
+            Kind::Entries => Some(if_coded(header.dictionary_entries)),
+            Kind::Segments => Some(if_coded(segments(header.bricks, header.segment_shift))),
+        }
+    }
+}
+
+wire_struct! {
+    /// One entry of the section table.
+    struct Entry: 48 {
+        0 kind: u32,
+        /// The object that the section belongs to.
+        4 owner: u32,
+        8 element_type: u8,
+        9 components: u8,
+        10 encoding: u8,
+        11 reserved: u8,
+        12 flags: u32,
+        16 offset: u64,
+        24 length: u64,
+        32 count: u64,
+        40 crc: u32,
+        /// 0, or one more than the index of the entry whose bytes these are, too.
+        44 same: u32,
+    }
+}
+
+const _: () = assert!(size_of::<Entry>() == ENTRY_LENGTH);
+
+impl Entry {
+    /// The bytes of the section in the file. Nothing overflows in an entry that [`Table::read`] let pass;
+    /// any other may yield a range that is no range of the file.
+    pub(super) fn range(&self) -> Range<u64> {
+        self.offset..self.offset.saturating_add(self.length)
+    }
+
+    /// The kind, if it is a section of the solid that this library knows.
+    pub(super) fn known(&self) -> Option<Kind> {
+        Kind::from_number(self.kind).filter(|_| self.owner == 0)
+    }
+
+    /// Its name in error messages.
+    pub(super) fn name(&self) -> &'static str {
+        self.known().map_or("an unknown section", Kind::name)
+    }
+
+    /// Checks the entry by itself.
+    fn check(&self, newer: bool) -> Result<(), FormatError> {
+        if self.kind == 0 {
+            return Err(illegal("section kind", self.kind));
+        }
+        // A newer minor version may have given a meaning to what is reserved today.
+        if !newer {
+            if self.flags & !SECTION_REQUIRED != 0 {
+                return Err(illegal("section flags", self.flags));
+            }
+            if self.reserved != 0 {
+                return Err(illegal("reserved field", self.reserved));
+            }
+            if self.encoding != RAW {
+                return Err(illegal("section encoding", self.encoding));
+            }
+        }
+        let size = Element::from_number(self.element_type).map(Element::size);
+        if size.is_none() && !newer || self.components == 0 {
+            return Err(illegal("element type", self.element_type as u64 | (self.components as u64) << 8));
+        }
+        let raw = size.filter(|_| self.encoding == RAW);
+        let length = raw.map(|size| self.count.checked_mul(size * self.components as u64));
+        if length.is_some_and(|length| length != Some(self.length)) || self.length == 0 || self.count == 0 {
+            return Err(illegal("section length", self.length));
+        }
+        Ok(())
+    }
+}
+
+/// Where the sections of the solid lie. Every one that the header makes necessary is there with its length.
+/// Entries ascend by owner and kind; their bytes ascend without overlap, or are those of an earlier entry;
+/// the last of them end where the file does.
+#[derive(Debug, Clone)]
+pub(super) struct Table {
+    ranges: [Range<u64>; KINDS],
+}
+
+impl Table {
+    /// Checks the bytes of a section table against its header. O(sections).
+    pub(super) fn read(head: &Head, table: &[u8]) -> Result<Table, FormatError> {
+        let newer = head.header.is_newer();
+        let mut ranges = [const { 0..0 }; KINDS];
+        let mut end = head.table_range().end as u64;
+        // The first section says how many objects there are.
+        let mut objects = 0;
+        let mut last = (0, 0);
+        for (index, entry) in entries(table).enumerate() {
+            entry.check(newer)?;
+            if index == 0 {
+                objects = if entry.known() == Some(Kind::Objects) { entry.count } else { 0 };
+                if !(1..=MAX_OBJECTS).contains(&objects) {
+                    return Err(FormatError::Section { name: Kind::Objects.name() });
+                }
+            }
+            let place = (entry.owner, entry.kind);
+            if entry.owner as u64 >= objects || place <= last {
+                return Err(illegal("section owner", entry.owner));
+            }
+            last = place;
+            if entry.same != 0 {
+                let Entry { kind, owner, flags, same, .. } = entry;
+                let before = &table[..index * size_of::<Entry>()];
+                let shares = |of: Entry| of.same == 0 && Entry { kind, owner, flags, same, ..of } == entry;
+                if !before
+                    .chunks_exact(size_of::<Entry>())
+                    .nth(same as usize - 1)
+                    .is_some_and(|raw| entries(raw).any(shares))
+                {
+                    return Err(illegal("shared section", entry.same));
+                }
+            } else {
+                if !entry.offset.is_multiple_of(SECTION_ALIGNMENT) || entry.offset < end {
+                    return Err(illegal("section offset", entry.offset));
+                }
+                end = match entry.offset.checked_add(entry.length) {
+                    Some(end) if end <= head.header.file_length => end,
+                    _ => return Err(illegal("section length", entry.length)),
+                };
+            }
+            // Whose sections are not the solid's is known to whoever knows their objects.
+            if entry.owner != 0 {
+                continue;
+            }
+            let Some(kind) = entry.known() else {
+                if entry.flags & SECTION_REQUIRED != 0 {
+                    return Err(FormatError::Required { name: "section", value: entry.kind.into() });
+                }
+                continue;
+            };
+            if entry.encoding != RAW {
+                return Err(FormatError::Required { name: "section encoding", value: entry.encoding.into() });
+            }
+            let (element, components) = kind.element(head.header.brick_planes);
+            let count = kind.demanded(&head.header).unwrap_or(entry.count);
+            if (entry.element_type, entry.components, entry.count) != (element as u8, components, count) {
+                return Err(FormatError::Section { name: kind.name() });
+            }
+            if kind == Kind::Metadata && entry.length > MAX_METADATA {
+                return Err(illegal("section length", entry.length));
+            }
+            if entry.flags & SECTION_REQUIRED != kind.flags() {
+                return Err(illegal("section flags", entry.flags));
+            }
+            ranges[kind as usize] = entry.range();
+        }
+        for kind in Kind::ALL {
+            // None is empty that is there.
+            let present = ranges[kind as usize].end != 0;
+            if kind.demanded(&head.header).is_some_and(|count| present != (count != 0)) {
+                return Err(FormatError::Section { name: kind.name() });
+            }
+        }
+        if end != head.header.file_length {
+            return Err(FormatError::Length { expected: end, found: head.header.file_length });
+        }
+        Ok(Table { ranges })
+    }
+
+    /// Where a section of the solid lies; nowhere if it is absent.
+    pub(super) fn range(&self, kind: Kind) -> &Range<u64> {
+        &self.ranges[kind as usize]
+    }
+
+    /// The bytes of a section of the solid; none if it is absent.
+    pub(super) fn bytes<'a>(&self, bytes: &'a [u8], kind: Kind) -> Result<&'a [u8], FormatError> {
+        section(bytes, self.range(kind))
+    }
+}
+
+/// The entries of a section table.
+pub(super) fn entries(table: &[u8]) -> impl Iterator<Item = Entry> {
+    elements(table)
+}
+
+/// The part `range` of a file.
+pub(super) fn section<'a>(bytes: &'a [u8], range: &Range<u64>) -> Result<&'a [u8], FormatError> {
+    let in_memory = usize::try_from(range.start).ok().zip(usize::try_from(range.end).ok());
+    in_memory
+        .and_then(|(start, end)| bytes.get(start..end))
+        .ok_or(FormatError::Length { expected: range.end, found: bytes.len() as u64 })
+}

@@ -1,0 +1,223 @@
+//! Integers times powers of two. Every double is one, and so are sums and products of them. All of it is
+//! cold.
+
+use alloc::vec::Vec;
+use core::cmp::Ordering;
+use core::ops::{Add, Mul, Neg, Sub};
+use num_bigint::{BigInt, Sign};
+use num_traits::{ToPrimitive, Zero};
+
+/// `mantissa · 2^exponent`; the mantissa is odd or zero.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct Dyadic {
+    mantissa: BigInt,
+    exponent: i64,
+}
+
+impl Dyadic {
+    pub(crate) fn zero() -> Dyadic {
+        Dyadic { mantissa: BigInt::zero(), exponent: 0 }
+    }
+
+    /// A finite double, exactly.
+    pub(crate) fn new(value: f64) -> Dyadic {
+        debug_assert!(value.is_finite());
+        let bits = value.to_bits();
+        let (fraction, biased) = ((bits & ((1 << 52) - 1)) as i64, (bits >> 52 & 0x7FF) as i64);
+        let magnitude = if biased == 0 { fraction } else { fraction | 1 << 52 };
+        let mantissa = BigInt::from(if value.is_sign_negative() { -magnitude } else { magnitude });
+        Dyadic::normal(mantissa, biased.max(1) - 1075)
+    }
+
+    fn normal(mantissa: BigInt, exponent: i64) -> Dyadic {
+        match mantissa.trailing_zeros() {
+            None => Dyadic::zero(),
+            Some(0) => Dyadic { mantissa, exponent },
+            Some(zeros) => Dyadic { mantissa: mantissa >> zeros, exponent: exponent + zeros as i64 },
+        }
+    }
+
+    /// −1, 0 or 1.
+    pub(crate) fn sign(&self) -> i32 {
+        match self.mantissa.sign() {
+            Sign::Minus => -1,
+            Sign::NoSign => 0,
+            Sign::Plus => 1,
+        }
+    }
+
+    pub(crate) fn is_zero(&self) -> bool {
+        self.sign() == 0
+    }
+
+    /// This times 2^`power`.
+    pub(crate) fn shifted(&self, power: i64) -> Dyadic {
+        let exponent = if self.is_zero() { 0 } else { self.exponent + power };
+        Dyadic { mantissa: self.mantissa.clone(), exponent }
+    }
+
+    /// This to the power `n`.
+    pub(crate) fn pow(&self, n: u32) -> Dyadic {
+        Dyadic { mantissa: self.mantissa.pow(n), exponent: self.exponent * n as i64 }
+    }
+
+    /// The exponent e for which 2^e ≤ |this| < 2^(e + 1); `None` for zero.
+    pub(crate) fn magnitude(&self) -> Option<i64> {
+        (!self.is_zero()).then(|| self.mantissa.bits() as i64 - 1 + self.exponent)
+    }
+
+    /// The exponent of the lowest bit, of which this is a multiple; `None` for zero.
+    pub(crate) fn grain(&self) -> Option<i64> {
+        (!self.is_zero()).then_some(self.exponent)
+    }
+
+    /// Bits of the mantissa.
+    pub(crate) fn bits(&self) -> u64 {
+        self.mantissa.bits()
+    }
+
+    /// The mantissa's bytes, in two's complement from the lowest on, and the exponent.
+    pub(crate) fn bytes(&self) -> (Vec<u8>, i64) {
+        (self.mantissa.to_signed_bytes_le(), self.exponent)
+    }
+
+    /// Writes the number, so that it can be read again.
+    pub(crate) fn write(&self, to: &mut Vec<u8>) {
+        let (mantissa, exponent) = self.bytes();
+        to.extend(exponent.to_le_bytes());
+        to.extend((mantissa.len() as u32).to_le_bytes());
+        to.extend(mantissa);
+    }
+
+    /// Reads a number, and leaves what was written behind it.
+    pub(crate) fn read(from: &mut &[u8]) -> Dyadic {
+        let (mut exponent, mut length) = ([0; 8], [0; 4]);
+        exponent.copy_from_slice(&from[..8]);
+        length.copy_from_slice(&from[8..12]);
+        let (mantissa, rest) = from[12..].split_at(u32::from_le_bytes(length) as usize);
+        *from = rest;
+        let mantissa = BigInt::from_signed_bytes_le(mantissa);
+        Dyadic { mantissa, exponent: i64::from_le_bytes(exponent) }
+    }
+
+    /// The double towards zero whose error is less than 2^-52 of it, or less than 2^-1020; infinite beyond
+    /// the doubles.
+    pub(crate) fn rounded(&self) -> f64 {
+        let bits = self.mantissa.bits() as i64;
+        // All bits that a double has, cut off below.
+        let cut = (bits - 53).max(0);
+        let kept = (self.mantissa.magnitude() >> cut as u64).to_f64().unwrap_or(f64::INFINITY);
+        let magnitude = scaled(kept, self.exponent + cut);
+        if self.sign() < 0 { -magnitude } else { magnitude }
+    }
+
+    /// The double that this is, if it is one.
+    pub(crate) fn exactly(&self) -> Option<f64> {
+        let value = self.rounded();
+        (value.is_finite() && Dyadic::new(value) == *self).then_some(value)
+    }
+}
+
+/// a · b, of three coordinates.
+pub(crate) fn dot(a: [&Dyadic; 3], b: [&Dyadic; 3]) -> Dyadic {
+    &(&(a[0] * b[0]) + &(a[1] * b[1])) + &(a[2] * b[2])
+}
+
+/// a × b, of three coordinates.
+pub(crate) fn cross(a: &[Dyadic], b: &[Dyadic]) -> [Dyadic; 3] {
+    [(1, 2), (2, 0), (0, 1)].map(|(i, j)| &(&a[i] * &b[j]) - &(&a[j] * &b[i]))
+}
+
+impl Ord for Dyadic {
+    fn cmp(&self, other: &Dyadic) -> Ordering {
+        (self - other).sign().cmp(&0)
+    }
+}
+
+impl PartialOrd for Dyadic {
+    fn partial_cmp(&self, other: &Dyadic) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+/// `value · 2^exponent`, in steps that do not overflow before the result does.
+fn scaled(mut value: f64, mut exponent: i64) -> f64 {
+    let power = |e: i64| f64::from_bits(((1023 + e) as u64) << 52);
+    while exponent > 1000 && value.is_finite() && value != 0.0 {
+        (value, exponent) = (value * power(1000), exponent - 1000);
+    }
+    while exponent < -1000 && value != 0.0 {
+        (value, exponent) = (value * power(-1000), exponent + 1000);
+    }
+    if value == 0.0 || !value.is_finite() { value } else { value * power(exponent) }
+}
+
+impl Add for &Dyadic {
+    type Output = Dyadic;
+
+    fn add(self, other: &Dyadic) -> Dyadic {
+        if self.is_zero() {
+            return other.clone();
+        }
+        if other.is_zero() {
+            return self.clone();
+        }
+        let (low, high) = if self.exponent <= other.exponent { (self, other) } else { (other, self) };
+        let shift = (high.exponent - low.exponent) as u64;
+        Dyadic::normal(&low.mantissa + (&high.mantissa << shift), low.exponent)
+    }
+}
+
+impl Sub for &Dyadic {
+    type Output = Dyadic;
+
+    fn sub(self, other: &Dyadic) -> Dyadic {
+        self + &-other
+    }
+}
+
+impl Mul for &Dyadic {
+    type Output = Dyadic;
+
+    fn mul(self, other: &Dyadic) -> Dyadic {
+        let mantissa = &self.mantissa * &other.mantissa;
+        // A product of odd numbers is odd.
+        let exponent = if mantissa.is_zero() { 0 } else { self.exponent + other.exponent };
+        Dyadic { mantissa, exponent }
+    }
+}
+
+impl Neg for &Dyadic {
+    type Output = Dyadic;
+
+    fn neg(self) -> Dyadic {
+        Dyadic { mantissa: -&self.mantissa, exponent: self.exponent }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn doubles_come_back() {
+        for value in [0.0, 1.0, -0.1, 1e300, -5e-324, f64::MAX, f64::MIN_POSITIVE, 0.5f64.next_up()] {
+            assert_eq!(Dyadic::new(value).exactly(), Some(value));
+        }
+    }
+
+    #[test]
+    fn nothing_is_lost() {
+        let d = Dyadic::new;
+        let sum = &(&d(1e300) + &d(1e-300)) - &d(1e300);
+        assert_eq!(sum.exactly(), Some(1e-300));
+        let product = &d(0.1) * &d(0.1);
+        assert_eq!(product.exactly(), None);
+        assert!((product.rounded() - 0.01).abs() < 1e-17);
+        assert_eq!(d(3.0).pow(40).cmp(&d(3f64.powi(40))), Ordering::Greater);
+        assert_eq!((&d(0.3) - &(&d(0.1) + &d(0.2))).sign(), -1);
+        assert_eq!(d(1e-300).pow(3).rounded(), 0.0);
+        assert_eq!(d(-1e300).pow(3).rounded(), f64::NEG_INFINITY);
+        assert_eq!((d(6.0).magnitude(), d(6.0).grain(), d(0.0).grain()), (Some(2), Some(1), None));
+    }
+}

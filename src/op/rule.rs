@@ -1,0 +1,64 @@
+//! How what is undecided is resolved when a tree is built.
+
+use crate::error::Error;
+use crate::octree::block::Cells;
+use crate::octree::{Block, Planes, Proof};
+
+/// How PARTIAL cells of the finest level are resolved when a tree is built.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Rule {
+    /// Not at all: the tree holds the certified bounds.
+    #[default]
+    Certified,
+    /// By the cell's centre. The tree is binary and lies between `Inner` and `Outer`.
+    Sampled,
+    /// As EMPTY: the tree is binary and contained in the solid.
+    Inner,
+    /// As FULL: the tree is binary and contains the solid.
+    Outer,
+}
+
+impl Rule {
+    /// Whether nothing is left undecided.
+    pub fn is_binary(self) -> bool {
+        self != Rule::Certified
+    }
+
+    /// What the cells prove of a solid of whose verdicts `source` says the same.
+    pub fn proof(self, source: Proof) -> Proof {
+        let full = source.full && matches!(self, Rule::Certified | Rule::Inner);
+        let empty = source.empty && matches!(self, Rule::Certified | Rule::Outer);
+        Proof::new(full, empty).moved(source.displacement())
+    }
+
+    /// Cells of which nothing more is known.
+    ///
+    /// # Errors
+    /// [`Error::NotSampled`] if their centres are asked for.
+    pub(super) fn resolved(self, planes: Planes) -> Result<Planes, Error> {
+        match self {
+            Rule::Certified => Ok(planes),
+            Rule::Inner => Ok(Planes::binary(planes.lower)),
+            Rule::Outer => Ok(Planes::binary(planes.upper)),
+            Rule::Sampled if planes.partial() == 0 => Ok(planes),
+            Rule::Sampled => Err(Error::NotSampled),
+        }
+    }
+
+    /// A block for which is asked what the rule needs.
+    pub(super) fn block(self) -> Result<Block, Error> {
+        Block::new(self != Rule::Sampled, self == Rule::Sampled)
+    }
+
+    /// The cells of such a block.
+    pub(super) fn cells(self, block: &Block) -> Cells<'_> {
+        let planes = match self {
+            Rule::Certified => block.planes(),
+            Rule::Inner => block.planes().map(|(lower, _)| (lower, lower)),
+            Rule::Outer => block.planes().map(|(_, upper)| (upper, upper)),
+            Rule::Sampled => block.centres().map(|centres| (centres, centres)),
+        };
+        let (lower, upper) = planes.unwrap_or_else(|| unreachable!("a block has what its rule needs"));
+        Cells { binary: self.is_binary(), lower, upper }
+    }
+}

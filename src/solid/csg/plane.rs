@@ -1,0 +1,103 @@
+//! Planes: polynomials of degree one.
+
+use super::bounds::{Octants, Sides};
+use super::linear;
+use super::map::ExactMap;
+use crate::lattice::exact::{Dyadic, certain};
+use alloc::boxed::Box;
+use alloc::vec::Vec;
+use core::cmp::Ordering;
+use wide::f64x4;
+
+/// A plane on a universe, a x + b y + c z + d in unit coordinates. Expressions have many of them, so it is
+/// small.
+pub(super) struct Plane {
+    /// a to d, of which the largest has a magnitude of one.
+    c: [f64; 4],
+    /// How far the value at a corner of a unit cube can be below that at its lower corner, as a negative
+    /// number; and how far the values at the corners are apart.
+    fall: f64,
+    reach: f64,
+    /// More than the error of any value on [−1, 2]³; zero if they have none on the lattice.
+    error: f64,
+    /// The exact coefficients, one behind the other; empty if they are the doubles.
+    exact: Box<[u8]>,
+}
+
+impl Plane {
+    /// The plane `given` as the map shows it on the universe, whose lattice has 2^depth cells.
+    pub(super) fn new(given: &[Dyadic; 4], map: &ExactMap, depth: u8) -> Plane {
+        let exact = map.linear(given);
+        // Only the sign counts: the largest coefficient is brought to a magnitude of one.
+        let scale = -linear::magnitude(&exact);
+        let exact = exact.map(|c| if map.w.sign() < 0 { -&c.shifted(scale) } else { c.shifted(scale) });
+        let c = exact.each_ref().map(Dyadic::rounded);
+        // No sum of some terms is larger than four times this.
+        let size: f64 = c.iter().map(|c| c.abs()).sum();
+        let is_double = exact.iter().all(|c| c.exactly().is_some());
+        let is_exact = is_double && linear::is_exact(&exact, depth as i64 + 1, 4.0 * size);
+        let mut bytes = Vec::new();
+        exact.iter().filter(|_| !is_double).for_each(|c| c.write(&mut bytes));
+        Plane {
+            c,
+            fall: (c[0].min(0.0) + c[1].min(0.0)) + c[2].min(0.0),
+            reach: (c[0].abs() + c[1].abs()) + c[2].abs(),
+            // A term is rounded at most fourteen times.
+            error: if is_exact { 0.0 } else { 32.0 * f64::EPSILON * size },
+            exact: bytes.into_boxed_slice(),
+        }
+    }
+
+    /// The least values over the eight cells, and by how much the greatest are greater.
+    #[inline(always)]
+    fn least(&self, at: &Octants) -> ([f64x4; 2], f64) {
+        let ([x, y, z], [a, b, c, d]) = (at.low, self.c);
+        let first = ((a * x + b * y) + c * z) + (d + self.fall * at.half);
+        let lower = f64x4::new([0.0, a, b, a + b]) * at.half + first;
+        ([lower, lower + c * at.half], self.reach * at.half)
+    }
+
+    /// For which of the eight cells the value is proven not negative, and not positive.
+    #[inline(always)]
+    pub(super) fn sides(&self, at: &Octants) -> Sides {
+        let (least, reach) = self.least(at);
+        let (sides, doubt) = Sides::with_error(least, [least[0] + reach, least[1] + reach], self.error);
+        if doubt == 0 {
+            return sides;
+        }
+        sides.settled(at, doubt, |low, high, which| {
+            let exact = self.exact();
+            let less = if which == Ordering::Less { 1 } else { -1 };
+            let corner =
+                [0, 1, 2].map(|i| if exact[i].sign() == less { low[i] } else { high[i] }).map(Dyadic::new);
+            linear::value(&exact, &corner).sign()
+        })
+    }
+
+    /// The values at the centres of the eight cells, and more than their error.
+    #[inline(always)]
+    pub(super) fn centres(&self, at: &Octants) -> ([f64x4; 2], f64) {
+        let (least, reach) = self.least(at);
+        ([least[0] + 0.5 * reach, least[1] + 0.5 * reach], self.error)
+    }
+
+    /// Exact sign at a point of [−1, 2]³.
+    #[inline]
+    pub(super) fn sign_at(&self, t: [f64; 3]) -> i32 {
+        let [a, b, c, d] = self.c;
+        let value = ((a * t[0] + b * t[1]) + c * t[2]) + d;
+        certain(value, self.error).unwrap_or_else(|| linear::value(&self.exact(), &t.map(Dyadic::new)).sign())
+    }
+
+    /// The sign that the shift (ε, ε², ε³) gives at a zero.
+    #[cold]
+    pub(super) fn shifted_sign(&self) -> i32 {
+        self.exact()[..3].iter().map(Dyadic::sign).find(|&sign| sign != 0).unwrap_or(0)
+    }
+
+    #[cold]
+    fn exact(&self) -> [Dyadic; 4] {
+        let mut rest = &*self.exact;
+        self.c.map(|c| if self.exact.is_empty() { Dyadic::new(c) } else { Dyadic::read(&mut rest) })
+    }
+}

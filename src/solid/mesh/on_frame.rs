@@ -1,0 +1,113 @@
+//! A mesh on a frame, and what is known of its cells.
+
+use super::crossing::Projection;
+use super::placed::Placed;
+use super::winding::Caps;
+use crate::mesh::FillRule;
+use crate::octree::Tag;
+use crate::solid::Verdict;
+use alloc::vec::Vec;
+use once_cell::race::OnceBox;
+
+/// A mesh on the lattice of a frame, with what is known of the universe.
+pub(super) struct OnFrame {
+    pub(super) placed: Placed,
+    pub(super) caps: Caps,
+    pub(super) fill: FillRule,
+    /// The triangles that cut the universe, in ascending order, and the winding number of its lowest centre.
+    pub(super) roots: Vec<u32>,
+    pub(super) winding: i32,
+    /// What is known of the space around the universe, once somebody has asked.
+    pub(super) exterior: OnceBox<Tag>,
+}
+
+/// What is remembered of a cell: the triangles that cut it, and the winding number of its lowest centre.
+#[derive(Debug, Clone, Copy)]
+pub struct MeshPart {
+    /// Where the triangles lie in the scratch memory.
+    pub(super) first: usize,
+    pub(super) count: usize,
+    /// Of the surface with its caps; of the surface alone if `caps` is None.
+    pub(super) winding: i32,
+    /// What is known of the caps' winding number, which is not an integer. None if the surface's own rounds
+    /// to `winding` throughout the cell, but for what the triangles that cut it change: always without caps.
+    pub(super) caps: Option<Branch>,
+}
+
+/// Which of its values the caps' winding number takes at a cell's lowest centre.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Branch {
+    /// That of the expansion around the cell of this level which holds this one
+    pub(super) level: u8,
+    /// and so much more.
+    pub(super) step: i32,
+}
+
+impl Branch {
+    /// Nothing is known.
+    pub(super) const UNKNOWN: Branch = Branch { level: u8::MAX, step: 0 };
+
+    /// Beyond caps.
+    pub(super) fn plus(self, jump: i32) -> Branch {
+        Branch { step: self.step + jump, ..self }
+    }
+}
+
+impl OnFrame {
+    pub(super) fn closed_verdict(&self, part: MeshPart) -> Verdict<MeshPart> {
+        if part.count > 0 {
+            Verdict::Partial(part)
+        } else if self.fill.encloses(part.winding) {
+            Verdict::Full
+        } else {
+            Verdict::Empty
+        }
+    }
+
+    /// Adds to `steps` by how much a triangle changes the winding number on the ways along x, y and z to the
+    /// lowest centres of a cell's children of edge `half`, by the child that the way leads to.
+    #[inline]
+    pub(super) fn pierce(
+        &self,
+        triangle: u32,
+        [low, high]: [[i32; 3]; 2],
+        at: [i32; 3],
+        half: i32,
+        steps: &mut [[i32; 8]; 2],
+    ) {
+        let next = at.map(|a| a + half);
+        let spans = |axis: usize, k: i32| low[axis] <= k && k < high[axis];
+        // The way along an axis leads from `at` to `next`: it passes the triangle between two ranks.
+        let reaches = |axis: usize| low[axis] <= next[axis] && high[axis] > at[axis];
+        let mut pierce = |w: usize, u: i32, v: i32, child: usize| {
+            let mut seen = Projection::new(&self.placed, triangle, self.placed.corners(triangle), w);
+            if let Some(span) = seen.span(v).filter(|span| span.first <= u && u < span.end) {
+                let above = seen.above(u, v, span.step);
+                if at[w] < above && above <= next[w] {
+                    steps[0][child] += span.step;
+                    if self.placed.is_cap(triangle) {
+                        steps[1][child] += span.step;
+                    }
+                }
+            }
+        };
+        let [x, y, z] = at;
+        if reaches(0) && spans(1, y) && spans(2, z) {
+            pierce(0, y, z, 1);
+        }
+        if reaches(1) && spans(2, z) {
+            for (child, x) in [(2, x), (3, next[0])] {
+                if spans(0, x) {
+                    pierce(1, x, z, child);
+                }
+            }
+        }
+        if reaches(2) {
+            for (child, x, y) in [(4, x, y), (5, next[0], y), (6, x, next[1]), (7, next[0], next[1])] {
+                if spans(0, x) && spans(1, y) {
+                    pierce(2, x, y, child);
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,214 @@
+//! What happens to meshes: on purpose, and the same in every run.
+
+use crate::common::Random;
+use crate::shapes::*;
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Damage {
+    Intact,
+    RemoveOne,
+    RemoveFew,
+    RemoveFifth,
+    /// All facets around a place.
+    RemovePatch,
+    RemoveHalf,
+    FlipOne,
+    FlipTenth,
+    FlipHalf,
+    DuplicateOne,
+    DuplicateFifth,
+    /// Every facet twice: winding numbers are doubled.
+    DuplicateAll,
+    /// Some facets once more in the other sense, which cancels them.
+    Cancel,
+    /// A facet many times over.
+    Stack,
+    /// Hair cracks.
+    JitterSlightly,
+    /// Gaps that are as wide as cells.
+    JitterWidely,
+    /// Vertices in the middle of edges, of one facet only, and slightly beside.
+    TJunctions,
+    /// Facets without area added.
+    Degenerate,
+    /// A copy of the body beside itself.
+    Overlap,
+    /// A smaller copy inside, inside out, with a hole.
+    Nest,
+    InsideOut,
+    /// Facets scattered around.
+    Debris,
+    Everything,
+}
+
+use Damage::*;
+
+pub const ALL: [Damage; 23] = [
+    Intact,
+    RemoveOne,
+    RemoveFew,
+    RemoveFifth,
+    RemovePatch,
+    RemoveHalf,
+    FlipOne,
+    FlipTenth,
+    FlipHalf,
+    DuplicateOne,
+    DuplicateFifth,
+    DuplicateAll,
+    Cancel,
+    Stack,
+    JitterSlightly,
+    JitterWidely,
+    TJunctions,
+    Degenerate,
+    Overlap,
+    Nest,
+    InsideOut,
+    Debris,
+    Everything,
+];
+
+fn bounds(soup: &Soup) -> ([f64; 3], [f64; 3]) {
+    let fold = |f: fn(f64, f64) -> f64, start: f64| {
+        [0, 1, 2].map(|axis| soup.iter().flatten().map(|p| p[axis]).fold(start, f))
+    };
+    (fold(f64::min, f64::INFINITY), fold(f64::max, f64::NEG_INFINITY))
+}
+
+/// The longest extent.
+pub fn extent(soup: &Soup) -> f64 {
+    let (low, high) = bounds(soup);
+    (0..3).map(|axis| high[axis] - low[axis]).fold(0.0, f64::max)
+}
+
+fn middle(facet: &[[f64; 3]; 3]) -> [f64; 3] {
+    [0, 1, 2].map(|axis| (facet[0][axis] + facet[1][axis] + facet[2][axis]) / 3.0)
+}
+
+fn any<'s>(soup: &'s Soup, random: &mut Random) -> &'s [[f64; 3]; 3] {
+    &soup[random.below(soup.len() as u64) as usize]
+}
+
+/// Removes `count` facets, but not the last one.
+pub fn remove(soup: &mut Soup, random: &mut Random, count: usize) {
+    for _ in 0..count.min(soup.len() - 1) {
+        soup.swap_remove(random.below(soup.len() as u64) as usize);
+    }
+}
+
+/// Keeps what `keep` says, but not less than one facet.
+fn keep(soup: &mut Soup, keep: impl FnMut(&[[f64; 3]; 3]) -> bool) {
+    let last = *soup.last().unwrap();
+    soup.retain(keep);
+    if soup.is_empty() {
+        soup.push(last);
+    }
+}
+
+/// The damaged soup. `grain` is the edge of a cell: how far things are moved goes by it; if `aligned`,
+/// corners stay on planes and centres of the lattice where the soup's are.
+pub fn damaged(soup: &Soup, damage: Damage, random: &mut Random, grain: f64, aligned: bool) -> Soup {
+    let mut soup = soup.clone();
+    let size = extent(&soup);
+    let some = soup.len().div_ceil(5);
+    let place = middle(any(&soup, random));
+    let near = |facet: &[[f64; 3]; 3], radius: f64| {
+        let at = middle(facet);
+        (0..3).map(|axis| (at[axis] - place[axis]).powi(2)).sum::<f64>() < radius * radius
+    };
+    let whole = |x: f64| if aligned { (x / grain * 2.0).round() * grain / 2.0 } else { x };
+    match damage {
+        Intact => {}
+        RemoveOne => remove(&mut soup, random, 1),
+        RemoveFew => remove(&mut soup, random, 5),
+        RemoveFifth => remove(&mut soup, random, some),
+        RemovePatch => keep(&mut soup, |facet| !near(facet, 0.3 * size)),
+        RemoveHalf => {
+            let axis = random.below(3) as usize;
+            keep(&mut soup, |facet| middle(facet)[axis] > place[axis])
+        }
+        FlipOne | FlipTenth => {
+            let count = if damage == FlipOne { 1 } else { some.div_ceil(2) };
+            for _ in 0..count {
+                let i = random.below(soup.len() as u64) as usize;
+                soup[i].swap(0, 1);
+            }
+        }
+        FlipHalf => {
+            soup.iter_mut().filter(|facet| middle(facet)[0] > place[0]).for_each(|facet| facet.swap(0, 1))
+        }
+        DuplicateOne | DuplicateFifth | Cancel => {
+            for _ in 0..if damage == DuplicateOne { 1 } else { some } {
+                // Other corners first, as exporters have it.
+                let [a, b, c] = *any(&soup, random);
+                soup.push(if damage == Cancel { [b, a, c] } else { [b, c, a] });
+            }
+        }
+        DuplicateAll => soup.extend_from_within(..),
+        Stack => {
+            let facet = *any(&soup, random);
+            soup.extend([facet; 6]);
+        }
+        JitterSlightly | JitterWidely => {
+            let far = grain * if damage == JitterSlightly { 1e-7 } else { 0.7 };
+            for x in soup.as_flattened_mut().as_flattened_mut() {
+                let moved = *x + random.between(-far, far);
+                *x = if damage == JitterWidely { whole(moved) } else { moved };
+            }
+        }
+        TJunctions => {
+            for _ in 0..some {
+                let i = random.below(soup.len() as u64) as usize;
+                let [a, b, c] = soup.swap_remove(i);
+                let beside = if aligned { 0.0 } else { grain * random.between(-0.2, 0.2) };
+                let between = [0, 1, 2].map(|axis| whole((a[axis] + b[axis]) / 2.0) + beside);
+                soup.extend([[a, between, c], [between, b, c]]);
+            }
+        }
+        Degenerate => {
+            for _ in 0..some {
+                let [a, b, _] = *any(&soup, random);
+                let between = [0, 1, 2].map(|axis| (a[axis] + b[axis]) / 2.0);
+                let beyond = [0, 1, 2].map(|axis| 2.0 * b[axis] - a[axis]);
+                soup.push(match random.below(4) {
+                    0 => [a, a, b],
+                    1 => [a, a, a],
+                    2 => [a, between, b],
+                    _ => [a, b, beyond],
+                });
+            }
+        }
+        Overlap => {
+            let by = [0; 3].map(|_: i32| whole(size * random.between(0.1, 0.35)));
+            soup.extend(moved(&soup, |p| [0, 1, 2].map(|axis| p[axis] + by[axis])));
+        }
+        Nest => {
+            let (low, high) = bounds(&soup);
+            let mut inner =
+                moved(&soup, |p| [0, 1, 2].map(|axis| whole((low[axis] + high[axis]) / 4.0 + p[axis] / 2.0)));
+            remove(&mut inner, random, 2);
+            soup.extend(inside_out(inner));
+        }
+        InsideOut => soup = inside_out(soup),
+        Debris => {
+            let (low, high) = bounds(&soup);
+            for _ in 0..some.min(20) {
+                soup.push(
+                    [0; 3].map(|_: i32| [0, 1, 2].map(|axis| whole(random.between(low[axis], high[axis])))),
+                );
+            }
+        }
+        Everything => {
+            for step in
+                [RemoveFew, FlipOne, DuplicateFifth, TJunctions, Degenerate, JitterSlightly, Overlap, Debris]
+            {
+                // What is aligned stays so, but for the one step that would spoil it.
+                if !(aligned && step == JitterSlightly) {
+                    soup = damaged(&soup, step, random, grain, aligned);
+                }
+            }
+        }
+    }
+    soup
+}

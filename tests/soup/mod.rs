@@ -1,7 +1,0 @@
-//! Open and dirty meshes: shapes, damage, the winding number by its definition, and what must hold of a solid.
-
-pub mod check;
-pub mod damage;
-pub mod forms;
-pub mod reference;
-pub mod winding;
