@@ -272,7 +272,10 @@ pub unsafe extern "C" fn leafless_octree_with_proof(
         if proven > leafless_proven::LEAFLESS_PROVEN_BOTH as u32 {
             return Err(Failure::Argument { name: "proven", problem: "is no leafless_proven" });
         }
-        let proof = Proof::from_bits(proven as u8).with_displacement(displacement_model)?;
+        let Ok(proof) = Proof::from_bits(proven as u8).with_displacement(displacement_model) else {
+            let problem = "must be finite and not negative";
+            return Err(Failure::Argument { name: "displacement_model", problem });
+        };
         result.write(give(octree.with_proof(proof)))
     })
 }
