@@ -279,17 +279,17 @@ fn a_flag_that_is_already_set_stops_everything() {
 }
 
 /// Entries of both operands from which the Booleans use threads; the test below must stay above it.
-const WORTH_THREADS: u64 = 1 << 19;
+const WORTH_THREADS: u64 = 1 << 21;
 
 /// Two large hollow balls, a shade apart, so that they nearly coincide all around.
 fn large_pair(rule: Rule) -> (Octree, Octree) {
-    let frame = lattice_frame(10);
+    let frame = lattice_frame(11);
     let ball = |x: f64, radius: f64| {
-        let ball = Csg::ball([x, 512.25, 511.5], radius).unwrap();
+        let ball = Csg::ball([x, 1024.25, 1023.5], radius).unwrap();
         build(&ball, &frame, rule, &Control::default()).unwrap()
     };
-    let hollow = |x: f64| apply(difference, &ball(x, 504.75), &ball(x, 210.5));
-    let (a, b) = (hollow(510.0), hollow(513.5));
+    let hollow = |x: f64| apply(difference, &ball(x, 1009.75), &ball(x, 621.5));
+    let (a, b) = (hollow(1022.0), hollow(1025.5));
     let entries = |tree: &Octree| tree.view().element_count() + tree.view().brick_count();
     assert!(entries(&a) + entries(&b) > WORTH_THREADS, "{} {}", entries(&a), entries(&b));
     (a, b)
@@ -320,7 +320,7 @@ fn threads_agree(rule: Rule) {
         // Too many cells for a dense array; points of both, of one and of none.
         let mut random = Random(7);
         for _ in 0..200_000 {
-            let at = [0; 3].map(|_| random.below(1024) as u32);
+            let at = [0; 3].map(|_| random.below(2048) as u32);
             let expected = common::kleene(bits, a.view().tag_at(at), b.view().tag_at(at));
             assert_eq!(one.view().tag_at(at), expected, "{name} {at:?}");
         }
