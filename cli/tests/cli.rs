@@ -1,9 +1,8 @@
 //! The program `leafless`, from outside: every subcommand, what it prints, what it leaves behind.
 
-#![cfg(feature = "cli")]
-
-mod common;
-#[path = "common/zip.rs"]
+#[path = "../../tests/common/models.rs"]
+mod models;
+#[path = "../../tests/common/zip.rs"]
 mod zip;
 
 use leafless::{Membership, TriangleMesh, exchange, file};
@@ -1300,7 +1299,7 @@ fn interrupted_work_leaves_nothing_behind() {
 #[test]
 fn the_volume_of_a_machined_part() {
     const TRUE_VOLUME: f64 = 11.627733;
-    let Some(path) = common::model("featuretype.STL") else { return };
+    let Some(path) = models::model("featuretype.STL") else { return };
     // The program runs in another folder.
     let path = std::path::absolute(path).unwrap();
     let place = Place::new();

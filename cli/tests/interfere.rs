@@ -1,7 +1,5 @@
 //! The subcommand `leafless interfere`, from outside.
 
-#![cfg(feature = "cli")]
-
 use leafless::{Control, Csg, Frame, Rule, TriangleMesh, build, exchange, file};
 use serde_json::Value;
 use std::path::Path;
