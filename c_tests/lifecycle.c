@@ -6,7 +6,8 @@ static void text_equals(const char *text, size_t length, const char *expected) {
 }
 
 static void frames(void) {
-    const double min[3] = {0.0, 1.0, 2.0}, max[3] = {32.0, 2.0, 4.0}, inside[3] = {0.5, -0.5, -1.0};
+    const double min[3] = {0.0, 1.0, 2.0}, max[3] = {32.0, 2.0, 4.0}, uneven[3] = {32.1, 2.0, 4.0};
+    const double inside[3] = {0.5, -0.5, -1.0};
     leafless_frame frame;
     leafless_interval plane;
     double size;
@@ -15,6 +16,14 @@ static void frames(void) {
     OK(leafless_frame_around(min, max, 8, &frame));
     CHECK(frame.edge == 33.0 && frame.depth == 8 && frame.origin[0] == -0.5);
     OK(leafless_frame_check(&frame));
+    OK(leafless_frame_aligned(min, max, 8, &frame));
+    CHECK(frame.edge == 32.0 && frame.origin[0] == 0.0 && frame.origin[1] == 0.0 && frame.origin[2] == 0.0);
+    OK(leafless_frame_fitted(min, max, 8, &frame));
+    CHECK(frame.edge == 32.0 && frame.depth == 8);
+    OK(leafless_frame_fitted(min, uneven, 8, &frame));
+    CHECK(frame.edge == uneven[0] * 33.0 / 32.0);
+    OK(leafless_frame_with_cells(min, max, 0.5, &frame));
+    CHECK(frame.edge == 32.0 && frame.depth == 6);
 
     frame = check_frame(3);
     OK(leafless_frame_cell_size(&frame, &size));

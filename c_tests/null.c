@@ -153,6 +153,15 @@ static void null_pointers(void) {
     NULL_POINTER(leafless_frame_around, min_model, leafless_frame_around(NULL, above, 4, (leafless_frame *)out));
     NULL_POINTER(leafless_frame_around, max_model, leafless_frame_around(point, NULL, 4, (leafless_frame *)out));
     NULL_POINTER(leafless_frame_around, frame, leafless_frame_around(point, above, 4, NULL));
+    NULL_POINTER(leafless_frame_aligned, min_model, leafless_frame_aligned(NULL, above, 4, (leafless_frame *)out));
+    NULL_POINTER(leafless_frame_aligned, max_model, leafless_frame_aligned(point, NULL, 4, (leafless_frame *)out));
+    NULL_POINTER(leafless_frame_aligned, frame, leafless_frame_aligned(point, above, 4, NULL));
+    NULL_POINTER(leafless_frame_fitted, min_model, leafless_frame_fitted(NULL, above, 4, (leafless_frame *)out));
+    NULL_POINTER(leafless_frame_fitted, max_model, leafless_frame_fitted(point, NULL, 4, (leafless_frame *)out));
+    NULL_POINTER(leafless_frame_fitted, frame, leafless_frame_fitted(point, above, 4, NULL));
+    NULL_POINTER(leafless_frame_with_cells, min_model, leafless_frame_with_cells(NULL, above, 0.5, (leafless_frame *)out));
+    NULL_POINTER(leafless_frame_with_cells, max_model, leafless_frame_with_cells(point, NULL, 0.5, (leafless_frame *)out));
+    NULL_POINTER(leafless_frame_with_cells, frame, leafless_frame_with_cells(point, above, 0.5, NULL));
     NULL_POINTER(leafless_frame_cell_size, frame, leafless_frame_cell_size(NULL, (double *)out));
     NULL_POINTER(leafless_frame_cell_size, cell_size_model, leafless_frame_cell_size(&frame, NULL));
     NULL_POINTER(leafless_frame_cell_of, frame, leafless_frame_cell_of(NULL, point, (uint32_t *)out));
@@ -665,6 +674,15 @@ static void misaligned(void) {
     MISALIGNED(leafless_frame_around, min_model, leafless_frame_around(numbers, above, 4, (leafless_frame *)out));
     MISALIGNED(leafless_frame_around, max_model, leafless_frame_around(point, numbers, 4, (leafless_frame *)out));
     MISALIGNED(leafless_frame_around, frame, leafless_frame_around(point, above, 4, (leafless_frame *)WRONG(out)));
+    MISALIGNED(leafless_frame_aligned, min_model, leafless_frame_aligned(numbers, above, 4, (leafless_frame *)out));
+    MISALIGNED(leafless_frame_aligned, max_model, leafless_frame_aligned(point, numbers, 4, (leafless_frame *)out));
+    MISALIGNED(leafless_frame_aligned, frame, leafless_frame_aligned(point, above, 4, (leafless_frame *)WRONG(out)));
+    MISALIGNED(leafless_frame_fitted, min_model, leafless_frame_fitted(numbers, above, 4, (leafless_frame *)out));
+    MISALIGNED(leafless_frame_fitted, max_model, leafless_frame_fitted(point, numbers, 4, (leafless_frame *)out));
+    MISALIGNED(leafless_frame_fitted, frame, leafless_frame_fitted(point, above, 4, (leafless_frame *)WRONG(out)));
+    MISALIGNED(leafless_frame_with_cells, min_model, leafless_frame_with_cells(numbers, above, 0.5, (leafless_frame *)out));
+    MISALIGNED(leafless_frame_with_cells, max_model, leafless_frame_with_cells(point, numbers, 0.5, (leafless_frame *)out));
+    MISALIGNED(leafless_frame_with_cells, frame, leafless_frame_with_cells(point, above, 0.5, (leafless_frame *)WRONG(out)));
     MISALIGNED(leafless_frame_cell_size, cell_size_model, leafless_frame_cell_size(&frame, (double *)WRONG(out)));
     MISALIGNED(leafless_frame_cell_of, cell, leafless_frame_cell_of(&frame, point, (uint32_t *)WRONG(out)));
     MISALIGNED(leafless_frame_plane, plane_model, leafless_frame_plane(&frame, 0, 0, (leafless_interval *)WRONG(out)));
@@ -812,6 +830,8 @@ static void numbers(void) {
         bad.depth = not_a_depth[i];
         BAD_NUMBER(leafless_frame_check, depth, leafless_frame_check(&bad));
         BAD_NUMBER(leafless_frame_around, depth, leafless_frame_around(point, above, bad.depth, (leafless_frame *)out));
+        BAD_NUMBER(leafless_frame_aligned, depth, leafless_frame_aligned(point, above, bad.depth, (leafless_frame *)out));
+        BAD_NUMBER(leafless_frame_fitted, depth, leafless_frame_fitted(point, above, bad.depth, (leafless_frame *)out));
         BAD_NUMBER(leafless_octree_build, depth, leafless_octree_build(solid, &bad, 0, NULL, result));
         BAD_NUMBER(leafless_solid_measure, depth,
                    leafless_solid_measure(solid, &bad, 0, NULL, (leafless_measures *)out));

@@ -585,7 +585,8 @@ enum leafless_overlap
      */
     LEAFLESS_OVERLAP_OVERLAPPING = 1,
     /**
-     * Not decided at the frame's depth, or before the splits were spent.
+     * Not decided at the frame's depth, or before the splits were spent; or both solids go on outside of the
+     * universe, where they may overlap.
      */
     LEAFLESS_OVERLAP_UNDECIDED = 2,
 };
@@ -1391,7 +1392,8 @@ typedef struct {
  */
 typedef struct {
     /**
-     * The volume of what they have in common, in cubic model units.
+     * The volume of what they have in common, in cubic model units; the upper bound is infinite if
+     * `is_clipped`.
      */
     leafless_interval volume_model;
     /**
@@ -1428,7 +1430,7 @@ typedef struct {
      */
     uint32_t witness_level;
     /**
-     * Whether both solids may go on outside of the universe, of which nothing is said.
+     * Whether both solids may go on outside of the universe. Then they are not proven to be disjoint.
      */
     bool is_clipped;
 } leafless_interference;
@@ -1859,8 +1861,8 @@ leafless_status leafless_control_state(const leafless_control *control, bool *ca
 leafless_status leafless_frame_check(const leafless_frame *frame);
 
 /**
- * The default frame of a shape: the cube of edge L·(1 + 1/32) around its centre, L being its longest extent;
- * the same universe at every depth.
+ * The cube of edge L·(1 + 1/32) around the centre of a shape, L being its longest extent; the same universe at
+ * every depth. For parts with round dimensions leafless_frame_aligned is better.
  *
  * - Buffers: `min_model` and `max_model`, 3 numbers each; `frame`, one struct.
  * - Result: `*frame`.
@@ -1874,6 +1876,63 @@ leafless_status leafless_frame_check(const leafless_frame *frame);
  *
  */
 leafless_status leafless_frame_around(const double min_model[3],
+                                      const double max_model[3],
+                                      uint32_t depth,
+                                      leafless_frame *frame);
+
+/**
+ * A frame whose lattice planes are round numbers, around a shape with these bounds: its edge is the smallest
+ * power of two that holds them, its origin a multiple of as great a power of two as possible. Faces at 25,
+ * 12.5 or -0.75 then lie on lattice planes, where they take no cells and the certified volume is exact. The
+ * same universe at every depth.
+ *
+ * - Buffers: `min_model` and `max_model`, 3 numbers each; `frame`, one struct.
+ * - Result: `*frame`.
+ * - Errors: as leafless_frame_around.
+ * - Ownership: nothing changes hands.
+ * - Threads: any.
+ * - Untrusted input: any values.
+ * - Since: 0.1
+ *
+ */
+leafless_status leafless_frame_aligned(const double min_model[3],
+                                       const double max_model[3],
+                                       uint32_t depth,
+                                       leafless_frame *frame);
+
+/**
+ * A frame with cells of a given size around a shape with these bounds, its origin a multiple of the cell size
+ * times as great a power of two as possible, of the least depth that holds the bounds.
+ *
+ * - Buffers: `min_model` and `max_model`, 3 numbers each; `frame`, one struct.
+ * - Result: `*frame`.
+ * - Errors: as leafless_frame_around; LEAFLESS_E_ARGUMENT also if `cell_size_model` is not 2^-256 to 2^256, or
+ *   if the bounds take more than 2^20 cells on an axis.
+ * - Ownership: nothing changes hands.
+ * - Threads: any.
+ * - Untrusted input: any values.
+ * - Since: 0.1
+ *
+ */
+leafless_status leafless_frame_with_cells(const double min_model[3],
+                                          const double max_model[3],
+                                          double cell_size_model,
+                                          leafless_frame *frame);
+
+/**
+ * The frame that suits a shape with these bounds: leafless_frame_aligned if all bounds are multiples of 2^-12 of
+ * its edge, as those of parts that people draw, else leafless_frame_around. The same universe at every depth.
+ *
+ * - Buffers: `min_model` and `max_model`, 3 numbers each; `frame`, one struct.
+ * - Result: `*frame`.
+ * - Errors: as leafless_frame_around.
+ * - Ownership: nothing changes hands.
+ * - Threads: any.
+ * - Untrusted input: any values.
+ * - Since: 0.1
+ *
+ */
+leafless_status leafless_frame_fitted(const double min_model[3],
                                       const double max_model[3],
                                       uint32_t depth,
                                       leafless_frame *frame);

@@ -87,8 +87,15 @@ fn a_shaft_in_a_ring() {
     let frame = published(8);
     let found = interference(&rod(20.0), &ring, &frame, PROOF, &alone()).unwrap();
     println!("shaft in ring: {:?}", found.splits);
-    assert_eq!(found.verdict, Overlap::Disjoint);
-    assert!(found.clipped, "both go on outside of the universe");
+    // Both go on outside of the universe, where they might overlap.
+    assert_eq!((found.verdict, found.clipped), (Overlap::Undecided, true));
+    assert_eq!((found.volume.lower, found.volume.upper), (0.0, f64::INFINITY));
+    // One that is cut off at the universe does not.
+    let universe = Csg::cuboid([0.0; 3], [128.0; 3]).unwrap();
+    let cut = Csg::intersection_of([rod(20.0), universe]).unwrap();
+    let found = interference(&cut, &ring, &frame, PROOF, &alone()).unwrap();
+    assert_eq!((found.verdict, found.clipped), (Overlap::Disjoint, false));
+    assert_eq!((found.volume.lower, found.volume.upper), (0.0, 0.0));
     let distance = clearance(&rod(20.0), &ring, &frame, 2.0, &up_to(100_000)).unwrap();
     println!("shaft in ring: {distance:?}");
     assert!(distance.distance.contains(4.0) && distance.distance.lower > 0.0, "{distance:?}");

@@ -45,7 +45,9 @@ pub struct Arguments {
     touch: TouchName,
     /// Lower corner and edge length of the cube to cut into cells, in the units of the scene. Solids can be
     /// combined if they were given the same bounds and depth. What sticks out is cut off, and reported.
-    /// Without it: the cube around the middle of the scene's bounds, its edge 33/32 of their longest extent
+    /// Without it: a cube around the scene whose edge and cells are powers of two, so that faces at round
+    /// numbers lie between cells; if the scene's bounds are no round numbers, the cube around their middle, its
+    /// edge 33/32 of their longest extent
     #[arg(long, value_name = "X0,Y0,Z0,EDGE", value_parser = bounds, allow_hyphen_values = true)]
     bounds: Option<Frame>,
     /// Threads to use; 0: as many as there are processors. The result is the same

@@ -2,7 +2,7 @@
 
 use crate::failure::{Failure, Of};
 use crate::input::Input;
-use crate::output::{self, Output, count, counted, interval, seconds};
+use crate::output::{self, Output, count, counted, measured, seconds};
 use crate::part;
 use clap::Args;
 use leafless::{
@@ -101,12 +101,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let shares = [Membership::Inside, Membership::Outside, Membership::Undecided].map(share);
     let volume = mapped.statistics().volume();
     output::print(
-        format!(
-            "\nOf the points {}.\nThe volume is proven to lie in {} mm³.\n",
-            shares.join(", "),
-            interval(volume)
-        )
-        .as_bytes(),
+        format!("\nOf the points {}.\nCertified volume: {} mm³.\n", shares.join(", "), measured(volume))
+            .as_bytes(),
     )
 }
 
@@ -141,7 +137,7 @@ fn around(meshes: &[(&str, Arc<TriangleMesh>)]) -> Result<Frame, Failure> {
             max[axis] = max[axis].max(high[axis]);
         }
     }
-    Frame::around(min, max, DEPTH).of("bounds")
+    Frame::fitted(min, max, DEPTH).of("bounds")
 }
 
 /// Points all over the universe, the same ones every time.

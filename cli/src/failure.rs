@@ -11,6 +11,8 @@ pub enum Failure {
     Usage(String),
     /// Nobody reads standard output any more: no reason to say anything.
     ReaderGone,
+    /// Nobody reads standard output any more, where a solid was to go.
+    Undelivered,
 }
 
 impl Failure {

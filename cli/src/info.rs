@@ -1,10 +1,12 @@
-//! `leafless info`: what a solid or a mesh consists of.
+//! `leafless info`: what a solid, a mesh or a scene consists of.
 
+use crate::content::Content;
 use crate::failure::{Failure, Of};
 use crate::input::Input;
 use crate::mesh::{self, Reading};
 use crate::output;
 use crate::report::Info;
+use crate::scene;
 use clap::Args;
 use leafless::file;
 use std::ffi::OsString;
@@ -12,10 +14,11 @@ use std::ffi::OsString;
 /// Of a solid only the file's header and level table are read, so this takes the same short time for files of
 /// any size. Run `leafless verify` to know whether the rest of the file is good.
 ///
-/// Of a mesh everything is read: what its triangles bound, and what is wrong with them.
+/// Of a mesh everything is read: what its triangles bound, and what is wrong with them. Of a scene the bounds
+/// are told, and what is wrong with the meshes in it; `leafless measure` tells its volume.
 #[derive(Args)]
 pub struct Arguments {
-    /// Solid (.lfl) or mesh (STL, OBJ, PLY, OFF, 3MF), or `-` for standard input
+    /// Solid (.lfl), mesh (STL, OBJ, PLY, OFF, 3MF) or scene (.csg), or `-` for standard input
     file: OsString,
     /// Print one JSON object
     #[arg(long)]
@@ -26,18 +29,26 @@ pub struct Arguments {
 
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let input = Input::from(&*arguments.file);
-    // A damaged solid is not to be taken for some mesh.
-    let is_solid = input.path().is_some_and(|path| path.extension().is_some_and(|name| name == "lfl"));
-    let (octree, bytes) = if is_solid || input.begins_as_solid() {
+    let (octree, bytes) = if input.begins_as_solid() {
+        arguments.reading.refuse(&input, "a solid")?;
         input.octree(false)?
     } else {
         let bytes = input.read()?;
-        if !bytes.starts_with(&file::MAGIC) && arguments.reading.format_of(&input, &bytes).is_some() {
-            let length = bytes.len() as u64;
-            let mesh = arguments.reading.mesh(&input, bytes)?;
-            return mesh::tell(&input, &mesh, length, arguments.json);
+        let length = bytes.len() as u64;
+        match Content::of(&input, &bytes, arguments.reading.has_format())? {
+            Content::Solid => {
+                arguments.reading.refuse(&input, "a solid")?;
+                (file::from_bytes(&bytes).of(&input)?, length)
+            }
+            Content::Scene => {
+                arguments.reading.refuse(&input, "a scene")?;
+                return scene::tell(&input, &bytes, arguments.json);
+            }
+            Content::Mesh => {
+                let mesh = arguments.reading.mesh(&input, bytes)?;
+                return mesh::tell(&input, &mesh, length, arguments.json);
+            }
         }
-        (file::from_bytes(&bytes).of(&input)?, bytes.len() as u64)
     };
     let info = Info::new(&octree, bytes);
     let text = if arguments.json { output::json(&info)? } else { info.text() };

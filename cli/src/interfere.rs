@@ -3,26 +3,27 @@
 use crate::failure::{Failure, Of};
 use crate::input::Input;
 use crate::mesh::Reading;
-use crate::output::{self, count, interval, number};
-use crate::report::{Proven, Volume};
+use crate::output::{self, count, measured, number};
+use crate::report::Proven;
 use crate::source::{Corners, Source, evaluations};
 use crate::voxelize::bounds;
 use clap::Args;
 use leafless::{
-    Affine, Clearance, Control, Cube, Error, Frame, Interference, Interval, Overlap, Prepared, clearance,
-    interference,
+    Affine, Clearance, Control, Cube, Error, Frame, Interference, Interval, Overlap, Prepared, Proof,
+    clearance, interference,
 };
 use serde::Serialize;
 use std::ffi::OsString;
 use std::fmt::Write;
 
 /// Says whether two solids have inner points in common: `disjoint` and `overlapping` are proven, `undecided`
-/// is what the depth, or the number of splits, does not decide. Solids that touch are disjoint, and their
+/// comes with the reason: the depth or the number of splits does not decide it, the cells of a file do not
+/// prove enough, or both solids go on outside of the bounds. Solids that touch are disjoint, and their
 /// clearance is 0.
 ///
 /// The volume that the solids have in common and the clearance, the least distance between them, are
 /// intervals that hold the true ones. An upper bound of the clearance needs cells that are proven to be
-/// inside; where there are none it is infinite (null in JSON).
+/// inside. What is not known is null in JSON.
 #[derive(Args)]
 pub struct Arguments {
     /// First solid (.lfl), mesh (STL, OBJ, PLY, OFF, 3MF) or scene (.csg), or `-` for standard input
@@ -76,13 +77,61 @@ struct Witness {
     max: [f64; 3],
 }
 
+/// Bounds of a number that is not negative; null where nothing is known.
+#[derive(Serialize)]
+struct Range {
+    lower: Option<f64>,
+    upper: Option<f64>,
+}
+
+impl Range {
+    /// Of what lies in the universe only, if `clipped`: then the lower bound says nothing of the rest.
+    fn new(interval: Interval, clipped: bool) -> Range {
+        let upper = interval.upper.is_finite().then_some(interval.upper);
+        Range { lower: (!clipped || interval.lower > 0.0).then_some(interval.lower), upper }
+    }
+
+    /// The same for people.
+    fn text(&self) -> String {
+        match (self.lower, self.upper) {
+            (None, None) => "unknown".into(),
+            (lower, upper) => {
+                measured(Interval { lower: lower.unwrap_or(0.0), upper: upper.unwrap_or(f64::INFINITY) })
+            }
+        }
+    }
+}
+
+/// Why a verdict is undecided, in a word and in a sentence.
+fn reason(found: &Interference, splits: u64) -> Option<(&'static str, &'static str)> {
+    let certified = |proof: Proof| proof.full && proof.empty;
+    match found.verdict {
+        // (What lies outside of such a solid's universe is not proven, either.)
+        Overlap::Undecided if !found.proofs.into_iter().all(certified) => {
+            Some(("unproven", "the cells of a file do not prove enough; --cells takes them for the solid"))
+        }
+        Overlap::Undecided if found.clipped => {
+            Some(("clipped", "both solids may go on outside of the bounds; give larger --bounds"))
+        }
+        Overlap::Undecided if found.splits.iter().sum::<u64>() >= splits => {
+            Some(("budget", "the splits are spent; give more --splits"))
+        }
+        Overlap::Undecided => {
+            Some(("depth", "cells of the finest level are undecided; give a greater --depth"))
+        }
+        Overlap::Disjoint | Overlap::Overlapping => None,
+    }
+}
+
 #[derive(Serialize)]
 struct Report {
     a: String,
     b: String,
     verdict: &'static str,
-    overlap: Volume,
-    clearance: Volume,
+    /// Why nothing is decided: "clipped", "unproven", "budget" or "depth"; else absent (null).
+    reason: Option<&'static str>,
+    overlap: Range,
+    clearance: Range,
     witness: Option<Witness>,
     /// What of both is proven; what is not counts as undecided.
     proof_a: Proven,
@@ -116,7 +165,12 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         Some(bounds) => bounds.with_depth(arguments.depth.unwrap_or(10)).of(a)?,
         None => {
             let both = (first.bounds(a)?, second.bounds(b)?);
-            common_frame(first.own_frame(), both, &placement, arguments.depth).of(a)?
+            let around = if first.ends_at_bounds(a)? && second.ends_at_bounds(b)? {
+                Frame::fitted
+            } else {
+                Frame::around
+            };
+            common_frame(first.own_frame(), both, &placement, arguments.depth, around).of(a)?
         }
     };
     let first = Prepared::new(first.placed(a, &Affine::IDENTITY, &frame)?);
@@ -124,17 +178,23 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let control = Control { max_splits: Some(arguments.splits), ..Control::default() };
     let (found, near, evaluations) =
         ask(&first, &second, &frame, &control).map_err(|error| Failure::of(a, error))?;
-    let report = Report::new(&inputs, &frame, &found, &near, evaluations);
-    let text = if arguments.json { output::json(&report)? } else { text(&found, &near, &report) };
+    let report = Report::new(&inputs, &frame, &found, &near, evaluations, arguments.splits);
+    let text = if arguments.json {
+        output::json(&report)?
+    } else {
+        text(&found, &report, reason(&found, arguments.splits).map(|reason| reason.1))
+    };
     output::print(text.as_bytes())
 }
 
-/// The cube that holds both: of a solid its own, as often doubled as it takes, so that its cells stay whole.
+/// The cube that holds both: of a solid its own, as often doubled as it takes, so that its cells stay whole;
+/// else the one that `around` makes of their bounds.
 fn common_frame(
     own: Option<&Frame>,
     ((mut min, mut max), (low, high)): (Corners, Corners),
     placement: &Affine,
     depth: Option<u8>,
+    around: fn([f64; 3], [f64; 3], u8) -> Result<Frame, Error>,
 ) -> Result<Frame, Error> {
     for k in 0..8 {
         let corner = placement.apply([0, 1, 2].map(|axis| if k >> axis & 1 == 0 { low } else { high }[axis]));
@@ -143,7 +203,7 @@ fn common_frame(
             max[axis] = max[axis].max(corner[axis]);
         }
     }
-    let Some(own) = own else { return Frame::around(min, max, depth.unwrap_or(10)) };
+    let Some(own) = own else { return around(min, max, depth.unwrap_or(10)) };
     let mut frame = match depth {
         Some(depth) => own.with_depth(depth)?,
         None => *own,
@@ -193,6 +253,7 @@ impl Report {
         found: &Interference,
         near: &Clearance,
         evaluations: u64,
+        splits: u64,
     ) -> Report {
         Report {
             a: a.to_string(),
@@ -202,8 +263,9 @@ impl Report {
                 Overlap::Overlapping => "overlapping",
                 Overlap::Undecided => "undecided",
             },
-            overlap: found.volume.into(),
-            clearance: near.distance.into(),
+            reason: reason(found, splits).map(|reason| reason.0),
+            overlap: Range::new(found.volume, found.clipped),
+            clearance: Range::new(near.distance, near.clipped),
             witness: found.witness.map(|cell| {
                 let (min, max) = Cube { frame, cell }.bounds();
                 Witness { level: cell.level, at: cell.at, min, max }
@@ -224,15 +286,15 @@ impl Report {
 }
 
 /// The same for people.
-fn text(found: &Interference, near: &Clearance, report: &Report) -> String {
+fn text(found: &Interference, report: &Report, reason: Option<&str>) -> String {
     let mut text = String::new();
     let mut line = |name: &str, value: String| {
         // Writing to a string does not fail.
         let _ = writeln!(text, "{name:<16}{value}");
     };
-    line("verdict", report.verdict.into());
-    line("overlap", interval(found.volume));
-    line("clearance", interval(near.distance));
+    line("verdict", reason.map_or(report.verdict.into(), |reason| format!("{}: {reason}", report.verdict)));
+    line("overlap", report.overlap.text());
+    line("clearance", report.clearance.text());
     if let Some(Witness { min, max, .. }) = &report.witness {
         line("witness", format!("{} to {}", min.map(number).join(" "), max.map(number).join(" ")));
     }

@@ -7,6 +7,7 @@
 
 mod boolean;
 mod contains;
+mod content;
 mod csg;
 mod demo;
 mod failure;
@@ -35,7 +36,7 @@ use std::process::ExitCode;
 /// another rule is asked for, answers are certified: what is called inside or outside is proven, and a volume
 /// is an interval that holds the true one.
 #[derive(Parser)]
-#[command(version, propagate_version = true, max_term_width = 100)]
+#[command(name = "leafless", version, propagate_version = true, max_term_width = 100)]
 #[command(after_help = "\
 Try `leafless demo` first. A file named `-` is standard input or standard output.
 Files are mapped, not loaded: let no other program rewrite one in place while it is read here.")]
@@ -50,7 +51,7 @@ enum Command {
     Voxelize(voxelize::Arguments),
     /// Make a solid from a scene: primitives and set operations, as OpenSCAD exports them (.csg)
     Csg(csg::Arguments),
-    /// Show what a solid consists of (depth, nodes, cells, volume), or a mesh (bodies, holes, defects)
+    /// Show what a solid consists of (depth, nodes, cells, volume), a mesh (bodies, holes, defects) or a scene
     Info(info::Arguments),
     /// Check a file completely: exit code 0 if it is good, 1 with the reason if not
     Verify(verify::Arguments),
@@ -98,6 +99,8 @@ fn main() -> ExitCode {
         Ok(()) => ExitCode::SUCCESS,
         // Whoever reads has seen enough, as `head` has.
         Err(Failure::ReaderGone) => ExitCode::SUCCESS,
+        // Half a solid is none; but the reader knows best why it left.
+        Err(Failure::Undelivered) => ExitCode::from(1),
         Err(Failure::Failed(line)) => {
             output::complain(&line);
             ExitCode::from(1)

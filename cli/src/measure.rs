@@ -3,7 +3,7 @@
 use crate::failure::{Failure, Of};
 use crate::input::Input;
 use crate::mesh::Reading;
-use crate::output::{self, count, interval};
+use crate::output::{self, count, measured};
 use crate::progress::watched;
 use crate::report::{Proven, Volume};
 use crate::source::{Source, evaluations};
@@ -118,21 +118,10 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         return Err(Failure::Usage("--bounds is for meshes and scenes: a solid has its own".into()));
     }
     let is_stored = source.own_frame().is_some();
-    let frame = match (source.own_frame(), arguments.depth) {
-        (Some(frame), None) => Ok(*frame),
-        (Some(frame), Some(depth)) => frame.with_depth(depth),
-        (None, depth) => {
-            let depth = depth.unwrap_or(MAX_DEPTH);
-            match &arguments.bounds {
-                Some(bounds) => bounds.with_depth(depth),
-                None => {
-                    let (min, max) = source.bounds(&input)?;
-                    Frame::around(min, max, depth)
-                }
-            }
-        }
+    let frame = match (&arguments.bounds, arguments.depth) {
+        (Some(bounds), depth) => bounds.with_depth(depth.unwrap_or(MAX_DEPTH)).of(&input)?,
+        (None, depth) => source.frame(&input, depth)?,
     };
-    let frame = frame.of(&input)?;
     let solid = Prepared::new(source.placed(&input, &Affine::IDENTITY, &frame)?);
     let tolerance = arguments.tolerance.unwrap_or(if arguments.splits.is_some() { 0.0 } else { 0.01 });
     let found = watched("measure", arguments.threads, |control| {
@@ -184,13 +173,13 @@ fn text(mass: &MassProperties, extent: &Extent, is_stored: bool) -> String {
         // Writing to a string does not fail.
         let _ = writeln!(text, "{name:<16}{value}");
     };
-    line("volume", interval(mass.volume));
+    line("volume", measured(mass.volume));
     if let Some(doubt) = Proven::from(mass.proof).doubt() {
         line("proven", doubt);
     }
     for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
         if let Some(centroid) = mass.centroid {
-            line(&format!("centroid {name}"), interval(centroid[axis]));
+            line(&format!("centroid {name}"), measured(centroid[axis]));
         }
     }
     for (name, tensor) in
@@ -199,13 +188,13 @@ fn text(mass: &MassProperties, extent: &Extent, is_stored: bool) -> String {
         for (i, j, axes) in
             [(0, 0, "xx"), (1, 1, "yy"), (2, 2, "zz"), (0, 1, "xy"), (0, 2, "xz"), (1, 2, "yz")]
         {
-            line(&format!("{name} {axes}"), interval(tensor[i][j]));
+            line(&format!("{name} {axes}"), measured(tensor[i][j]));
         }
     }
     if let Some([min, max]) = extent.corners {
         for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
-            line(&format!("least {name}"), interval(min[axis]));
-            line(&format!("greatest {name}"), interval(max[axis]));
+            line(&format!("least {name}"), measured(min[axis]));
+            line(&format!("greatest {name}"), measured(max[axis]));
         }
     }
     let ended = match (mass.stop_reason, is_stored) {

@@ -1,13 +1,13 @@
 //! Meshes from files of any format: the options of reading them, and what is told of them.
 
+use crate::content::Content;
 use crate::failure::{Failure, Of};
 use crate::input::Input;
 use crate::output::{self, count, counted, number};
 use crate::report::{Defect, Mesh};
 use clap::{Args, ValueEnum};
 use leafless::exchange::{LengthUnit, MeshFile, MeshFormat, MeshOptions};
-use leafless::file;
-use leafless::{MeshReport, TriangleMesh, exchange};
+use leafless::{Error, Frame, MeshReport, TriangleMesh, exchange};
 use serde::Serialize;
 use std::fmt::Write;
 
@@ -24,9 +24,9 @@ pub struct Reading {
     /// Unit to convert the mesh to
     #[arg(long, value_name = "UNIT", value_parser = unit)]
     to: Option<LengthUnit>,
-    /// Factor to scale the mesh by besides
-    #[arg(long, value_name = "FACTOR", default_value_t = 1.0, value_parser = scale, allow_hyphen_values = true)]
-    scale: f64,
+    /// Factor to scale the mesh by besides. Without it: 1
+    #[arg(long, value_name = "FACTOR", value_parser = scale, allow_hyphen_values = true)]
+    scale: Option<f64>,
 }
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
@@ -63,8 +63,27 @@ fn scale(text: &str) -> Result<f64, String> {
 }
 
 impl Reading {
+    /// The format of mesh files that is asked for.
+    pub fn has_format(&self) -> bool {
+        self.format.is_some()
+    }
+
+    /// Refuses the options for meshes where something else is read: `what` it is.
+    pub fn refuse(&self, input: &Input, what: &str) -> Result<(), Failure> {
+        let given = [
+            ("--format", self.format.is_some()),
+            ("--unit", self.unit.is_some()),
+            ("--to", self.to.is_some()),
+            ("--scale", self.scale.is_some()),
+        ];
+        match given.into_iter().find(|option| option.1) {
+            Some((option, _)) => Err(Failure::Usage(format!("{option} is for meshes: {input} is {what}"))),
+            None => Ok(()),
+        }
+    }
+
     /// The format of a file with these bytes, if it is known to be a mesh.
-    pub fn format_of(&self, input: &Input, bytes: &[u8]) -> Option<MeshFormat> {
+    fn format_of(&self, input: &Input, bytes: &[u8]) -> Option<MeshFormat> {
         let extension = input.path().and_then(|path| path.extension()?.to_str());
         self.format.map(MeshFormat::from).or_else(|| MeshFormat::detect(bytes, extension))
     }
@@ -72,8 +91,10 @@ impl Reading {
     /// The mesh in a file, hair cracks closed, and a fingerprint of the file.
     pub fn read(&self, input: &Input) -> Result<(MeshFile, String), Failure> {
         let bytes = input.read()?;
-        if bytes.starts_with(&file::MAGIC) {
-            return Err(Failure::of(input, "this is a solid already, not a mesh"));
+        match Content::of(input, &bytes, self.has_format())? {
+            Content::Solid => return Err(Failure::of(input, "is a solid already, not a mesh")),
+            Content::Scene => return Err(Failure::of(input, "is a scene, not a mesh: use `leafless csg`")),
+            Content::Mesh => {}
         }
         let source = format!("crc32:{:08x} bytes:{}", crc32fast::hash(&bytes), bytes.len());
         Ok((self.mesh(input, bytes)?, source))
@@ -82,13 +103,26 @@ impl Reading {
     /// The mesh in these bytes of a file, hair cracks closed.
     pub fn mesh(&self, input: &Input, bytes: Vec<u8>) -> Result<MeshFile, Failure> {
         let (format, unit, target) = (self.format_of(input, &bytes), self.unit, self.to);
-        let options = MeshOptions { format, unit, target, scale: self.scale };
+        let options = MeshOptions { format, unit, target, scale: self.scale.unwrap_or(1.0) };
         let mut file = exchange::read_mesh(&bytes, &options).of(input)?;
         // Sewing needs memory of its own.
         drop(bytes);
         file.mesh = file.mesh.sewn().of(input)?;
         Ok(file)
     }
+}
+
+/// Whether nothing of a mesh lies beyond its vertices: what an open mesh encloses may, and so may a surface
+/// that was moved to close hair cracks.
+pub fn ends_at_vertices(mesh: &TriangleMesh) -> Result<bool, Error> {
+    let report = mesh.report()?;
+    Ok(report.displacement == 0.0 && openness(&report).is_none())
+}
+
+/// The frame around a mesh. Only one that ends at its vertices can do without a margin.
+pub fn frame_around(mesh: &TriangleMesh, depth: u8) -> Result<Frame, Error> {
+    let (min, max) = mesh.bounds();
+    if ends_at_vertices(mesh)? { Frame::fitted(min, max, depth) } else { Frame::around(min, max, depth) }
 }
 
 /// The name of a format, as the user writes it.

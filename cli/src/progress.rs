@@ -34,7 +34,8 @@ pub fn watched<R>(
         bar.finish_and_clear();
     }
     result.map_err(|error| match error {
-        Error::Limit { .. } | Error::OutOfMemory => {
+        // The only limit that is set here; others are the library's own, and say what they are.
+        Error::Limit { what: "bytes", .. } | Error::OutOfMemory => {
             "not enough free memory for a solid of this depth (one of a level less takes a quarter)"
                 .to_string()
         }

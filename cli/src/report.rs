@@ -1,6 +1,6 @@
 //! What is told of a solid, for programs (JSON) and for people.
 
-use crate::output::{count, interval, number};
+use crate::output::{count, ends, measured, number};
 use leafless::{
     DefectKind, Error, Interval, MeshDefect, MeshReport, Octree, Proof, Statistics, Tag, TriangleMesh,
 };
@@ -179,7 +179,8 @@ impl Info {
         }
         let rows = (self.levels.iter())
             .map(|level| {
-                [level.level.to_string(), count(level.nodes), number(level.lower), number(level.upper)]
+                let [from, to] = ends(Interval { lower: level.lower, upper: level.upper });
+                [level.level.to_string(), count(level.nodes), from, to]
             })
             .collect::<Vec<_>>();
         let head = ["level", "nodes", "volume from", "to"].map(str::to_owned);
@@ -190,9 +191,9 @@ impl Info {
 
     /// What the volume is the volume of.
     pub fn volume_note(&self) -> &'static str {
-        let certified = self.proof.full && self.proof.empty && !self.binary;
-        match (certified, self.clipped) {
+        match (self.proof.full && self.proof.empty, self.clipped) {
             (false, _) => " (of the cells)",
+            (true, false) if self.volume.width() == 0.0 => " (exactly)",
             (true, false) => " (the true one lies between)",
             (true, true) => " (that of the part inside of the bounds lies between)",
         }
@@ -201,7 +202,7 @@ impl Info {
     /// The volume in words.
     pub fn volume_text(&self) -> String {
         let Volume { lower, upper } = self.volume;
-        if lower == upper { number(lower) } else { interval(Interval { lower, upper }) }
+        measured(Interval { lower, upper })
     }
 }
 

@@ -1,16 +1,17 @@
 //! Solids to ask questions about: from files of any kind.
 
+use crate::content::Content;
 use crate::failure::{Failure, Of};
 use crate::input::Input;
-use crate::mesh::{Reading, openness};
+use crate::mesh::{Reading, ends_at_vertices, frame_around, openness};
 use crate::output;
-use crate::scene::{bounds_of, read_scene};
+use crate::scene::{bounds_of, frame_of, scene_of};
 use leafless::exchange::MeshFormat;
 use leafless::scene::Scene;
 use leafless::{
-    Affine, AnySolid, Csg, FillRule, Frame, MeshSolid, Octree, Proof, Transform, TriangleMesh, file,
+    Affine, AnySolid, Csg, FillRule, Frame, MAX_DEPTH, MeshSolid, Octree, Proof, Transform, TriangleMesh,
+    file,
 };
-use std::path::Path;
 
 /// Of a box, the lower and the upper one.
 pub type Corners = ([f64; 3], [f64; 3]);
@@ -26,21 +27,24 @@ pub enum Source {
 }
 
 impl Source {
-    /// Reads a solid or a mesh. Answers about a solid are proven, so its file is verified.
+    /// Reads a solid, a mesh or a scene. Answers about a solid are proven, so its file is verified.
     pub fn read(input: &Input, reading: &Reading) -> Result<Source, Failure> {
+        const SOLID: &str = "a solid";
         if input.begins_as_solid() {
+            reading.refuse(input, SOLID)?;
             return Ok(Source::Octree(Box::new(input.octree(true)?.0)));
         }
-        if input
-            .path()
-            .and_then(Path::extension)
-            .is_some_and(|extension| extension.eq_ignore_ascii_case("csg"))
-        {
-            return Ok(Source::Scene(read_scene(input)?.0));
-        }
         let bytes = input.read()?;
-        if bytes.starts_with(&file::MAGIC) {
-            return Ok(Source::Octree(Box::new(file::from_bytes(&bytes).of(input)?)));
+        match Content::of(input, &bytes, reading.has_format())? {
+            Content::Solid => {
+                reading.refuse(input, SOLID)?;
+                return Ok(Source::Octree(Box::new(file::from_bytes(&bytes).of(input)?)));
+            }
+            Content::Scene => {
+                reading.refuse(input, "a scene")?;
+                return Ok(Source::Scene(scene_of(input, &bytes)?.0));
+            }
+            Content::Mesh => {}
         }
         let read = reading.mesh(input, bytes)?;
         let fill = match read.format {
@@ -69,6 +73,24 @@ impl Source {
         match self {
             Source::Octree(octree) => Some(octree.frame()),
             Source::Mesh(..) | Source::Scene(_) => None,
+        }
+    }
+
+    /// The frame to ask it on: a solid's own, or one around the mesh or scene, which can be split to any depth.
+    pub fn frame(&self, input: &Input, depth: Option<u8>) -> Result<Frame, Failure> {
+        match (self, depth) {
+            (Source::Octree(octree), None) => Ok(*octree.frame()),
+            (Source::Octree(octree), Some(depth)) => octree.frame().with_depth(depth).of(input),
+            (Source::Mesh(mesh, _), depth) => frame_around(mesh, depth.unwrap_or(MAX_DEPTH)).of(input),
+            (Source::Scene(scene), depth) => frame_of(input, scene, None, depth.unwrap_or(MAX_DEPTH)),
+        }
+    }
+
+    /// Whether nothing of it lies beyond its bounds.
+    pub fn ends_at_bounds(&self, input: &Input) -> Result<bool, Failure> {
+        match self {
+            Source::Octree(_) | Source::Scene(_) => Ok(true),
+            Source::Mesh(mesh, _) => ends_at_vertices(mesh).of(input),
         }
     }
 

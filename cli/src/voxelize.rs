@@ -2,7 +2,7 @@
 
 use crate::failure::{Failure, Of};
 use crate::input::Input;
-use crate::mesh::{Reading, format_name, openness};
+use crate::mesh::{Reading, format_name, frame_around, openness};
 use crate::output::{self, Output, count, counted, number, seconds};
 use crate::progress::watched;
 use crate::report::{Info, Mesh};
@@ -49,8 +49,9 @@ pub struct Arguments {
     reading: Reading,
     /// Lower corner and edge length of the cube to cut into cells, in the units of the mesh once it is
     /// converted and scaled. Solids can be combined if they were given the same bounds and depth. What sticks
-    /// out is cut off, and reported. Without it: the cube around the middle of the mesh, its edge 33/32 of
-    /// the mesh's longest extent
+    /// out is cut off, and reported. Without it: a cube around the mesh whose edge and cells are powers of two,
+    /// so that faces at round numbers lie between cells; if the mesh's bounds are no round numbers, the cube
+    /// around its middle, its edge 33/32 of its longest extent
     #[arg(long, value_name = "X0,Y0,Z0,EDGE", value_parser = bounds, allow_hyphen_values = true)]
     bounds: Option<Frame>,
     /// Threads to use; 0: as many as there are processors. The result is the same
@@ -180,7 +181,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let (min, max) = mesh.bounds();
     let frame = match &arguments.bounds {
         Some(bounds) => bounds.with_depth(arguments.depth),
-        None => Frame::around(min, max, arguments.depth),
+        None => frame_around(&mesh, arguments.depth),
     };
     let frame = frame.of(&input)?;
     let read = start.elapsed().as_secs_f64();

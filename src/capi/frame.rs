@@ -80,8 +80,8 @@ pub unsafe extern "C" fn leafless_frame_check(frame: *const leafless_frame) -> l
     guard(|| unsafe { self::frame(frame).map(|_| ()) })
 }
 
-/// The default frame of a shape: the cube of edge L·(1 + 1/32) around its centre, L being its longest extent;
-/// the same universe at every depth.
+/// The cube of edge L·(1 + 1/32) around the centre of a shape, L being its longest extent; the same universe at
+/// every depth. For parts with round dimensions leafless_frame_aligned is better.
 ///
 /// - Buffers: `min_model` and `max_model`, 3 numbers each; `frame`, one struct.
 /// - Result: `*frame`.
@@ -105,6 +105,87 @@ pub unsafe extern "C" fn leafless_frame_around(
         let (min, max) = (array(min_model, "min_model")?, array(max_model, "max_model")?);
         let frame = out(frame, "frame")?;
         frame.write((&Frame::around(min, max, self::depth(depth))?).into())
+    })
+}
+
+/// A frame whose lattice planes are round numbers, around a shape with these bounds: its edge is the smallest
+/// power of two that holds them, its origin a multiple of as great a power of two as possible. Faces at 25,
+/// 12.5 or -0.75 then lie on lattice planes, where they take no cells and the certified volume is exact. The
+/// same universe at every depth.
+///
+/// - Buffers: `min_model` and `max_model`, 3 numbers each; `frame`, one struct.
+/// - Result: `*frame`.
+/// - Errors: as leafless_frame_around.
+/// - Ownership: nothing changes hands.
+/// - Threads: any.
+/// - Untrusted input: any values.
+/// - Since: 0.1
+///
+/// cbindgen:ptrs-as-arrays=[[min_model; 3], [max_model; 3]]
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_frame_aligned(
+    min_model: *const f64,
+    max_model: *const f64,
+    depth: u32,
+    frame: *mut leafless_frame,
+) -> leafless_status {
+    guard(|| unsafe {
+        let (min, max) = (array(min_model, "min_model")?, array(max_model, "max_model")?);
+        let frame = out(frame, "frame")?;
+        frame.write((&Frame::aligned(min, max, self::depth(depth))?).into())
+    })
+}
+
+/// A frame with cells of a given size around a shape with these bounds, its origin a multiple of the cell size
+/// times as great a power of two as possible, of the least depth that holds the bounds.
+///
+/// - Buffers: `min_model` and `max_model`, 3 numbers each; `frame`, one struct.
+/// - Result: `*frame`.
+/// - Errors: as leafless_frame_around; LEAFLESS_E_ARGUMENT also if `cell_size_model` is not 2^-256 to 2^256, or
+///   if the bounds take more than 2^20 cells on an axis.
+/// - Ownership: nothing changes hands.
+/// - Threads: any.
+/// - Untrusted input: any values.
+/// - Since: 0.1
+///
+/// cbindgen:ptrs-as-arrays=[[min_model; 3], [max_model; 3]]
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_frame_with_cells(
+    min_model: *const f64,
+    max_model: *const f64,
+    cell_size_model: f64,
+    frame: *mut leafless_frame,
+) -> leafless_status {
+    guard(|| unsafe {
+        let (min, max) = (array(min_model, "min_model")?, array(max_model, "max_model")?);
+        let frame = out(frame, "frame")?;
+        frame.write((&Frame::with_cells(min, max, cell_size_model)?).into())
+    })
+}
+
+/// The frame that suits a shape with these bounds: leafless_frame_aligned if all bounds are multiples of 2^-12 of
+/// its edge, as those of parts that people draw, else leafless_frame_around. The same universe at every depth.
+///
+/// - Buffers: `min_model` and `max_model`, 3 numbers each; `frame`, one struct.
+/// - Result: `*frame`.
+/// - Errors: as leafless_frame_around.
+/// - Ownership: nothing changes hands.
+/// - Threads: any.
+/// - Untrusted input: any values.
+/// - Since: 0.1
+///
+/// cbindgen:ptrs-as-arrays=[[min_model; 3], [max_model; 3]]
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_frame_fitted(
+    min_model: *const f64,
+    max_model: *const f64,
+    depth: u32,
+    frame: *mut leafless_frame,
+) -> leafless_status {
+    guard(|| unsafe {
+        let (min, max) = (array(min_model, "min_model")?, array(max_model, "max_model")?);
+        let frame = out(frame, "frame")?;
+        frame.write((&Frame::fitted(min, max, self::depth(depth))?).into())
     })
 }
 

@@ -21,7 +21,8 @@ pub enum leafless_overlap {
     LEAFLESS_OVERLAP_DISJOINT = 0,
     /// Proven: a cell lies in both.
     LEAFLESS_OVERLAP_OVERLAPPING = 1,
-    /// Not decided at the frame's depth, or before the splits were spent.
+    /// Not decided at the frame's depth, or before the splits were spent; or both solids go on outside of the
+    /// universe, where they may overlap.
     LEAFLESS_OVERLAP_UNDECIDED = 2,
 }
 
@@ -39,7 +40,8 @@ impl From<Overlap> for leafless_overlap {
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_interference {
-    /// The volume of what they have in common, in cubic model units.
+    /// The volume of what they have in common, in cubic model units; the upper bound is infinite if
+    /// `is_clipped`.
     pub volume_model: leafless_interval,
     /// What of the first solid is proven: what is not counts as undecided.
     pub proof_a: leafless_proof,
@@ -58,7 +60,7 @@ pub struct leafless_interference {
     pub witness: [u32; 3],
     /// The level of that cell.
     pub witness_level: u32,
-    /// Whether both solids may go on outside of the universe, of which nothing is said.
+    /// Whether both solids may go on outside of the universe. Then they are not proven to be disjoint.
     pub is_clipped: bool,
 }
 

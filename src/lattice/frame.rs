@@ -44,29 +44,105 @@ impl Frame {
         Ok(Frame { origin: origin.map(|c| c + 0.0), edge, depth, cell: edge / cells, per_unit: cells / edge })
     }
 
-    /// The default frame of a shape with the bounds `min`, `max`: the cube of edge L·(1 + 1/32) around its
-    /// centre, L being its longest extent; the same universe at every depth.
+    /// The cube of edge L·(1 + 1/32) around the centre of a shape with the bounds `min`, `max`, L being its
+    /// longest extent; the same universe at every depth. For parts with round dimensions
+    /// [`aligned`](Self::aligned) is better.
     ///
     /// # Errors
     /// [`MeshError::NoExtent`] if L is zero; [`Error::Argument`] if min > max on an axis, if a bound is not a
     /// finite number in range, or lies so far from the origin that the cube around it cannot be told in
     /// doubles.
     pub fn around(min: [f64; 3], max: [f64; 3], depth: u8) -> Result<Frame, Error> {
-        valid::ordered("bounds", min, max)?;
-        let extent = |axis: usize| max[axis] - min[axis];
-        let longest = extent(0).max(extent(1)).max(extent(2));
-        if longest == 0.0 {
-            return Err(MeshError::NoExtent.into());
+        let edge = longest_extent(min, max)? * (1.0 + 1.0 / 32.0);
+        let frame = Frame::new([0, 1, 2].map(|axis| centred(min[axis], max[axis], edge)), edge, depth)?;
+        if frame.holds(min, max) { Ok(frame) } else { Err(UNRESOLVED) }
+    }
+
+    /// A frame whose lattice planes are round numbers, around a shape with the bounds `min`, `max`: cells are
+    /// powers of two, and the origin is a multiple of as great a power of two as possible. Faces at 25, 12.5
+    /// or −0.75 then lie on lattice planes. Such a face needs no cells along it, and the certified volume is
+    /// exact there: a part of 100 × 60 × 30 with four bores and rounded edges takes 7 504 splits at depth 9
+    /// instead of 845 041.
+    ///
+    /// The edge is the smallest power of two that holds the bounds, so it is up to twice their longest extent
+    /// L, and cells are up to twice as long as those of [`around`](Self::around). On each axis a 128th of the
+    /// edge is left free on both sides where there is room. The universe is the same at every depth.
+    ///
+    /// # Errors
+    /// As [`around`](Self::around).
+    ///
+    /// ```
+    /// use leafless::Frame;
+    /// let frame = Frame::aligned([0.0; 3], [100.0, 60.0, 30.0], 9)?;
+    /// assert_eq!((frame.origin(), frame.edge(), frame.cell_size()), ([-16.0, -64.0, -64.0], 128.0, 0.25));
+    /// # Ok::<(), leafless::Error>(())
+    /// ```
+    pub fn aligned(min: [f64; 3], max: [f64; 3], depth: u8) -> Result<Frame, Error> {
+        let longest = longest_extent(min, max)?;
+        let mut edge = power_of_two_from(longest);
+        // Bounds that are as long as the edge may have no origin on the lattice; those of twice the edge have.
+        for _ in 0..2 {
+            if let Some(origin) = aligned_origin(min, max, edge) {
+                let frame = Frame::new(origin, edge, depth)?;
+                if frame.holds(min, max) {
+                    return Ok(frame);
+                }
+            }
+            edge *= 2.0;
         }
-        let edge = longest * (1.0 + 1.0 / 32.0);
-        let origin = [0, 1, 2].map(|axis| (min[axis] + extent(axis) / 2.0) - edge / 2.0);
-        let frame = Frame::new(origin, edge, depth)?;
-        let top = 2 * frame.cells() as i64;
-        if (0..3).any(|axis| frame.side(axis, min[axis], 0) < 0 || frame.side(axis, max[axis], top) > 0) {
-            let problem = "so far from the origin that doubles cannot resolve them";
-            return Err(Error::Argument { name: "bounds", problem });
+        Err(UNRESOLVED)
+    }
+
+    /// A frame with cells of the edge length `cell` (model units, 2^-256 to 2^256) around a shape with the
+    /// bounds `min`, `max`, its origin a multiple of `cell` times as great a power of two as possible. The
+    /// depth is the least that holds the bounds, so edge = cell · 2^depth. With `cell` = 0.25 the lattice planes
+    /// are the multiples of 0.25. (A double is a sum of powers of two: the planes of a `cell` of 0.1 are
+    /// multiples of the double next to 0.1, which are not the doubles next to 0.3 or 0.7.)
+    ///
+    /// # Errors
+    /// As [`around`](Self::around); [`Error::Argument`] if `cell` is out of range, or if more than 2^20 cells
+    /// would be needed on an axis.
+    ///
+    /// ```
+    /// use leafless::Frame;
+    /// let frame = Frame::with_cells([0.0; 3], [100.0, 60.0, 30.0], 0.5)?;
+    /// assert_eq!((frame.origin(), frame.edge(), frame.depth()), ([-16.0, -64.0, -64.0], 128.0, 8));
+    /// # Ok::<(), leafless::Error>(())
+    /// ```
+    pub fn with_cells(min: [f64; 3], max: [f64; 3], cell: f64) -> Result<Frame, Error> {
+        longest_extent(min, max)?;
+        valid::length("cell", cell)?;
+        for depth in 1..=MAX_DEPTH {
+            let edge = cell * (1u32 << depth) as f64;
+            let Some(origin) = aligned_origin(min, max, edge) else { continue };
+            let frame = Frame::new(origin, edge, depth)?;
+            if frame.holds(min, max) {
+                return Ok(frame);
+            }
         }
-        Ok(frame)
+        Err(Error::Argument { name: "cell", problem: "so small that the bounds take more than 2^20 cells" })
+    }
+
+    /// The frame that suits a shape with the bounds `min`, `max`, as the program `leafless` takes it where none
+    /// is given: [`aligned`](Self::aligned) if all bounds are multiples of 2^-12 of its edge, as those of parts
+    /// that people draw, else [`around`](Self::around). The same universe at every depth.
+    ///
+    /// # Errors
+    /// As [`around`](Self::around).
+    pub fn fitted(min: [f64; 3], max: [f64; 3], depth: u8) -> Result<Frame, Error> {
+        if let Ok(aligned) = Frame::aligned(min, max, depth) {
+            let unit = aligned.edge / 4096.0;
+            if min.iter().chain(&max).all(|bound| bound % unit == 0.0) {
+                return Ok(aligned);
+            }
+        }
+        Frame::around(min, max, depth)
+    }
+
+    /// Whether the universe contains the box from `min` to `max`; exact.
+    fn holds(&self, min: [f64; 3], max: [f64; 3]) -> bool {
+        let top = 2 * self.cells() as i64;
+        (0..3).all(|axis| self.side(axis, min[axis], 0) >= 0 && self.side(axis, max[axis], top) <= 0)
     }
 
     /// The same universe with another depth.
@@ -227,6 +303,57 @@ impl Frame {
     }
 }
 
+const UNRESOLVED: Error =
+    Error::Argument { name: "bounds", problem: "so far from the origin that doubles cannot resolve them" };
+
+/// The longest extent of a box, which must have one.
+fn longest_extent(min: [f64; 3], max: [f64; 3]) -> Result<f64, Error> {
+    valid::ordered("bounds", min, max)?;
+    let longest = (0..3).fold(0.0, |longest: f64, axis| longest.max(max[axis] - min[axis]));
+    if longest == 0.0 { Err(MeshError::NoExtent.into()) } else { Ok(longest) }
+}
+
+/// The origin of an edge that has the middle between `min` and `max` in its middle.
+fn centred(min: f64, max: f64, edge: f64) -> f64 {
+    (min + (max - min) / 2.0) - edge / 2.0
+}
+
+/// The least power of two that is not less than a positive number.
+fn power_of_two_from(x: f64) -> f64 {
+    let power = f64::from_bits(x.to_bits() & f64::INFINITY.to_bits());
+    if power < x { 2.0 * power } else { power }
+}
+
+/// The origin of a universe of this edge around a box: on each axis the multiple of edge / 2^k with the least
+/// k, at most [`MAX_DEPTH`]. `None` if there is none on an axis.
+fn aligned_origin(min: [f64; 3], max: [f64; 3], edge: f64) -> Option<[f64; 3]> {
+    let mut origin = [0.0; 3];
+    for axis in 0..3 {
+        let margin = edge / 128.0;
+        let (least, greatest) = (max[axis] - edge, min[axis]);
+        let roomy = nearest_multiple(least + margin, greatest - margin, edge);
+        origin[axis] = roomy.or_else(|| nearest_multiple(least, greatest, edge))?;
+    }
+    Some(origin)
+}
+
+/// Between `least` and `greatest` the multiple of edge / 2^k with the least k; of several the one next to the
+/// middle.
+fn nearest_multiple(least: f64, greatest: f64, edge: f64) -> Option<f64> {
+    let middle = least + (greatest - least) / 2.0;
+    let mut step = edge;
+    for _ in 0..=MAX_DEPTH {
+        let below = libm::floor(middle / step) * step;
+        let near = [below, below + step];
+        let mut inside = near.into_iter().filter(|x| (least..=greatest).contains(x));
+        if let Some(first) = inside.next() {
+            return Some(inside.find(|next| next - middle < middle - first).unwrap_or(first));
+        }
+        step /= 2.0;
+    }
+    None
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -266,6 +393,73 @@ mod tests {
         let frame = Frame::around([0.0, 10.0, 0.0], [32.0, 26.0, 8.0], 7).unwrap();
         assert_eq!((frame.edge(), frame.origin()), (33.0, [-0.5, 1.5, -12.5]));
         assert!(frame.same_universe(&Frame::around([0.0, 10.0, 0.0], [32.0, 26.0, 8.0], 8).unwrap()));
+    }
+
+    #[test]
+    fn an_aligned_frame_has_round_planes() {
+        let min = [[0.0; 3], [-50.0, -0.75, 3.5], [1e6, -1e-3, 0.0], [0.1, 0.2, 0.3], [-64.0, 1.0, 2.0]];
+        let extents =
+            [[100.0, 60.0, 30.0], [1.0; 3], [128.0, 1.0, 64.0], [1e-3, 0.0, 0.1], [33.0, 0.5, 65.0]];
+        for min in min {
+            for extent in extents {
+                let max = [0, 1, 2].map(|axis| min[axis] + extent[axis]);
+                let Ok(frame) = Frame::aligned(min, max, 9) else { panic!("{min:?} {max:?}") };
+                let (edge, longest) = (frame.edge(), extent.into_iter().fold(0.0, f64::max));
+                assert!(frame.holds(min, max) && edge < 4.0 * longest, "{frame:?} {min:?} {max:?}");
+                assert_eq!((edge.log2().fract(), (edge / longest > 2.0)), (0.0, false), "{frame:?}");
+                for axis in 0..3 {
+                    assert_eq!(frame.origin()[axis] % (edge / (1 << 20) as f64), 0.0);
+                    // A plane of the finest lattice is a round number.
+                    let plane = frame.plane(axis, 77);
+                    assert_eq!((plane.width(), plane.lower % frame.cell_size()), (0.0, 0.0), "{frame:?}");
+                }
+                assert!(frame.same_universe(&Frame::aligned(min, max, 1).unwrap()));
+                let by_cells = Frame::with_cells(min, max, edge / 512.0).unwrap();
+                assert_eq!(by_cells, frame);
+            }
+        }
+    }
+
+    #[test]
+    fn origins_are_multiples_of_great_powers() {
+        for (min, max, edge, expected) in [
+            (0.0, 100.0, 128.0, -16.0),
+            (-50.0, 50.0, 128.0, -64.0),
+            (0.0, 128.0, 128.0, 0.0),
+            (0.0, 127.5, 128.0, 0.0),
+            (3.0, 4.0, 2.0, 2.5),
+            (-1.0, 1.0, 4.0, -2.0),
+            (0.3, 0.5, 0.25, 0.25 + 1.0 / 32.0),
+        ] {
+            let origin = aligned_origin([min; 3], [max; 3], edge);
+            assert_eq!(origin, Some([expected; 3]), "{min} {max}");
+        }
+        assert_eq!(aligned_origin([0.1; 3], [1.1; 3], 1.0), None);
+    }
+
+    #[test]
+    fn a_fitted_frame_is_aligned_where_bounds_are_round() {
+        let part = ([0.0, 0.0, -12.5], [100.0, 60.0, 17.5]);
+        assert_eq!(Frame::fitted(part.0, part.1, 9).unwrap(), Frame::aligned(part.0, part.1, 9).unwrap());
+        for scan in [([0.061_7, 0.0, 0.0], [1.0; 3]), ([0.0; 3], [1.0 / 3.0, 0.7, 1.0])] {
+            assert_eq!(Frame::fitted(scan.0, scan.1, 9).unwrap(), Frame::around(scan.0, scan.1, 9).unwrap());
+        }
+        for make in [Frame::aligned, Frame::fitted] {
+            assert!(make([1.0; 3], [1.0; 3], 5).is_err() && make([1.0; 3], [0.0; 3], 5).is_err());
+            assert!(make([f64::NAN; 3], [1.0; 3], 5).is_err() && make([0.0; 3], [1.0; 3], 21).is_err());
+            assert!(make([2f64.powi(255); 3], [2f64.powi(255) * (1.0 + 1e-15); 3], 5).is_ok());
+        }
+    }
+
+    #[test]
+    fn cells_of_a_given_size() {
+        let frame = Frame::with_cells([0.0; 3], [10.0, 1.0, 1.0], 0.1).unwrap();
+        assert_eq!((frame.cell_size(), frame.depth()), (0.1, 7));
+        assert!(Frame::with_cells([0.0; 3], [1.0; 3], 1e-9).is_err());
+        assert!(Frame::with_cells([0.0; 3], [1.0; 3], 0.0).is_err());
+        assert!(Frame::with_cells([0.0; 3], [1.0; 3], f64::NAN).is_err());
+        let coarse = Frame::with_cells([0.0; 3], [1.0; 3], 1e9).unwrap();
+        assert_eq!((coarse.depth(), coarse.cell_size()), (1, 1e9));
     }
 
     #[test]

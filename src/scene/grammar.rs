@@ -174,6 +174,16 @@ impl<'t> Reader<'t> {
     }
 }
 
+/// The name of the first call, if the text begins with one.
+pub(super) fn first_call(text: &str) -> Option<&str> {
+    let rest = text.strip_prefix(BYTE_ORDER_MARK).unwrap_or(text);
+    let mut reader = Reader { text, rest };
+    reader.take("");
+    reader.take(modifiers);
+    let name = reader.take(name)?;
+    reader.take('(').map(|_| name)
+}
+
 /// A call whose block has begun.
 struct Open {
     call: usize,

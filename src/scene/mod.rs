@@ -2,6 +2,7 @@
 
 mod arguments;
 mod check;
+mod detect;
 mod grammar;
 mod lower;
 
@@ -15,6 +16,7 @@ use crate::lattice::Affine;
 use crate::mesh::{FillRule, TriangleMesh};
 use crate::octree::Octree;
 use crate::solid::Csg;
+pub use detect::is_scene;
 
 /// A solid that a text describes: set operations on primitives, swept figures, meshes and octrees.
 ///

@@ -23,18 +23,19 @@ pub enum Overlap {
     Disjoint = 0,
     /// Proven: a cell lies in both.
     Overlapping = 1,
-    /// Not decided at the frame's depth, or before the splits were spent.
+    /// Not decided at the frame's depth, or before the splits were spent; or both solids go on outside of the
+    /// universe, where they may overlap.
     Undecided = 2,
 }
 
-/// What is known of two solids inside of the universe of a frame.
+/// What is known of two solids.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Interference {
     /// Whether they overlap.
     pub verdict: Overlap,
     /// A cell that lies in both, if they are proven to overlap.
     pub witness: Option<Cell>,
-    /// The volume of what they have in common, in cubic model units.
+    /// The volume of what they have in common, in cubic model units; the upper bound is infinite if `clipped`.
     pub volume: Interval,
     /// Cells that were split, of the first solid and of the second.
     pub splits: [u64; 2],
@@ -42,12 +43,13 @@ pub struct Interference {
     pub level: u8,
     /// What of the first and of the second solid is proven: what is not counts as undecided.
     pub proofs: [Proof; 2],
-    /// Whether both solids may go on outside of the universe, of which nothing is said.
+    /// Whether both solids may go on outside of the universe. Then they are not proven to be disjoint. (If one
+    /// of them lies inside, all that they have in common does.)
     pub clipped: bool,
 }
 
-/// Whether `a` and `b` overlap, each as it is in the universe of `frame`: a solid under a placement is moved
-/// first (see [`AnySolid::placed`](crate::AnySolid::placed)). Once an overlap is proven its volume is refined
+/// Whether `a` and `b` overlap; a solid under a placement is moved first (see
+/// [`AnySolid::placed`](crate::AnySolid::placed)). What is looked at is the universe of `frame`. Once an overlap is proven its volume is refined
 /// until the interval is no wider than `tolerance` (cubic model units); infinity ends the work with the
 /// proof.
 ///

@@ -120,7 +120,10 @@ impl<'s, A: Classifier, B: Classifier> Search<'s, A, B> {
     }
 
     fn found(self) -> Interference {
-        let undecided = self.waiting + self.undecided > 0;
+        // Where both go on outside of the universe, nobody knows what they do there.
+        let clipped = self.a.is_clipped() && self.b.is_clipped();
+        let undecided = clipped || self.waiting + self.undecided > 0;
+        let Interval { lower, upper } = self.volume();
         Interference {
             verdict: match self.witness {
                 Some(_) => Overlap::Overlapping,
@@ -128,11 +131,11 @@ impl<'s, A: Classifier, B: Classifier> Search<'s, A, B> {
                 None => Overlap::Disjoint,
             },
             witness: self.witness,
-            volume: self.volume(),
+            volume: Interval { lower, upper: if clipped { f64::INFINITY } else { upper } },
             splits: [self.a.splits, self.b.splits],
             level: self.level,
             proofs: [self.a.classifier.proof(), self.b.classifier.proof()],
-            clipped: self.a.is_clipped() && self.b.is_clipped(),
+            clipped,
         }
     }
 

@@ -1,0 +1,68 @@
+//! What kind of file the bytes are.
+
+use crate::failure::Failure;
+use crate::input::Input;
+use leafless::exchange::MeshFormat;
+use leafless::{file, scene};
+
+/// The kinds of files that hold a shape.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Content {
+    /// A solid (.lfl).
+    Solid,
+    /// A mesh of any format.
+    Mesh,
+    /// A scene (.csg).
+    Scene,
+}
+
+impl Content {
+    /// What the bytes of a file are. The content decides where it tells, then the extension of the file's name;
+    /// `is_mesh` says that the user calls it a mesh. What is called a solid is taken for nothing else: a damaged
+    /// one must not pass for some mesh.
+    pub fn of(input: &Input, bytes: &[u8], is_mesh: bool) -> Result<Content, Failure> {
+        let extension = input.path().and_then(|path| path.extension()?.to_str()).unwrap_or_default();
+        if bytes.starts_with(&file::MAGIC) || extension == "lfl" {
+            Ok(Content::Solid)
+        } else if is_mesh || MeshFormat::detect(bytes, None).is_some() {
+            Ok(Content::Mesh)
+        } else if scene::is_scene(bytes) || extension.eq_ignore_ascii_case("csg") {
+            Ok(Content::Scene)
+        } else if MeshFormat::from_extension(extension).is_some() {
+            Ok(Content::Mesh)
+        } else if bytes.is_empty() {
+            Err(Failure::of(input, "is empty"))
+        } else {
+            let kinds = "a solid (.lfl), nor a mesh (STL, OBJ, PLY, OFF, 3MF), nor a scene (.csg)";
+            Err(Failure::of(input, format_args!("neither the content nor the name is that of {kinds}")))
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::ffi::OsStr;
+
+    #[test]
+    fn the_content_decides() {
+        let of = |name: &str, bytes: &[u8]| Content::of(&Input::from(OsStr::new(name)), bytes, false).ok();
+        for name in ["-", "a.csg", "a.stl", "a.txt", "a"] {
+            assert_eq!(of(name, b"// v1\n#group() { cube(1); }"), Some(Content::Scene), "{name}");
+            assert_eq!(of(name, b"\xEF\xBB\xBF // by hand\n%union () {}"), Some(Content::Scene), "{name}");
+            assert_eq!(of(name, b"solid cube(1)\nfacet normal 0 0 1\n"), Some(Content::Mesh), "{name}");
+            assert_eq!(of(name, b"# group()\nv 0 0 0\n"), Some(Content::Mesh), "{name}");
+            assert_eq!(of(name, &file::MAGIC), Some(Content::Solid), "{name}");
+        }
+        for (name, expected) in [
+            ("-", None),
+            ("a.csg", Some(Content::Scene)),
+            ("a.CSG", Some(Content::Scene)),
+            ("a.lfl", Some(Content::Solid)),
+            ("a.stl", Some(Content::Mesh)),
+        ] {
+            assert_eq!(of(name, b"nobody knows"), expected, "{name}");
+            assert_eq!(of(name, b""), expected, "{name}");
+        }
+    }
+}
