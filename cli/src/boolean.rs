@@ -2,7 +2,7 @@
 
 use crate::failure::{Failure, Of};
 use crate::input::Input;
-use crate::output::{self, Output, seconds};
+use crate::output::{self, Output, number, seconds};
 use crate::progress::watched;
 use crate::report::Info;
 use clap::Args;
@@ -137,15 +137,14 @@ fn common_rule(octrees: &[Octree]) -> Metadata {
 
 /// How the frame of `octree` differs from that of the first operand.
 fn unlike(first: &Input, whole: &Octree, octree: &Octree) -> String {
-    let (a, b) = (whole.frame(), octree.frame());
-    let number = output::number;
-    let what = if a.depth() != b.depth() {
-        format!("depth {} instead of {}", b.depth(), a.depth())
-    } else if a.edge() != b.edge() {
-        format!("edge {} instead of {}", number(b.edge()), number(a.edge()))
-    } else {
-        let [a, b] = [a, b].map(|frame| frame.origin().map(number).join(" "));
-        format!("origin {b} instead of {a}")
+    let shown = |octree: &Octree| {
+        let frame = octree.frame();
+        let origin = frame.origin().map(number).join(" ");
+        format!("origin {origin}, edge {}, depth {}", number(frame.edge()), frame.depth())
     };
-    format!("lies on another frame than {first}: {what} (voxelize both with the same --bounds and --depth)")
+    format!(
+        "lies on another frame ({}) than {first} ({}): make both with the same --bounds and --depth",
+        shown(octree),
+        shown(whole),
+    )
 }

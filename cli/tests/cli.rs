@@ -907,9 +907,9 @@ fn booleans_are_those_of_the_library() {
 fn booleans_need_one_frame_and_sound_operands() {
     let place = solids();
     for (options, words) in [
-        ("--depth 6 --bounds 0,0,0,8", &["depth 6 instead of 5"][..]),
-        ("--depth 5 --bounds 0,0,0,9", &["edge 9 instead of 8"]),
-        ("--depth 5 --bounds -1,0,0,8", &["origin -1 0 0 instead of 0 0 0"]),
+        ("--depth 6 --bounds 0,0,0,8", &["(origin 0 0 0, edge 8, depth 6)", "(origin 0 0 0, edge 8, depth 5)"][..]),
+        ("--depth 5 --bounds 0,0,0,9", &["edge 9", "edge 8"]),
+        ("--depth 5 --bounds -1,0,0,8", &["origin -1 0 0", "origin 0 0 0"]),
         ("--depth 5", &["frame", "--bounds"]),
     ] {
         place.run(&format!("voxelize slab.stl -o other.lfl {options}")).good();

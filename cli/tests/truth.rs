@@ -233,6 +233,42 @@ fn frames_of_round_parts_are_aligned() {
     assert!((edge - (0.7 - 0.0617) * 33.0 / 32.0).abs() < 1e-7, "{edge}");
 }
 
+/// Four bores along z, four rounded edges.
+fn rounded_plate() -> String {
+    let at = |x: i32, y: i32, shape: &str| {
+        format!("multmatrix([[1, 0, 0, {x}], [0, 1, 0, {y}], [0, 0, 1, 0], [0, 0, 0, 1]]) {shape}")
+    };
+    let corners = |radius: i32| {
+        let cylinder = format!("cylinder(h = 30, r = {radius});\n");
+        [(10, 10), (90, 10), (10, 50), (90, 50)].map(|(x, y)| at(x, y, &cylinder)).concat()
+    };
+    let long = at(0, 10, "cube([100, 40, 30]);\n") + &at(10, 0, "cube([80, 60, 30]);\n");
+    format!("difference() {{ union() {{ {long}{} }}\n{} }}", corners(10), corners(4))
+}
+
+#[test]
+fn a_part_with_round_dimensions_is_cheap() {
+    let place = Place::new();
+    place.write("part.csg", rounded_plate());
+    let truth =
+        180_000.0 - 30.0 * (400.0 - 100.0 * std::f64::consts::PI) - 120.0 * 16.0 * std::f64::consts::PI;
+    let run = |options: &str| {
+        let measured =
+            place.run(&format!("measure part.csg --tolerance 0.02 --json {options}")).good().json();
+        let made = place.run(&format!("csg part.csg -o part.lfl --depth 9 --json {options}")).good().json();
+        for told in [&measured, &made] {
+            let [lower, upper] = ["lower", "upper"].map(|end| told["volume"][end].as_f64().unwrap());
+            assert!(lower <= truth && truth <= upper, "{told}");
+        }
+        (measured["splits"].as_u64().unwrap(), made["nodes"].as_u64().unwrap())
+    };
+    let aligned = run("");
+    // The cube around the middle, its edge 33/32 of the longest extent.
+    let centred = run("--bounds -1.5625,-21.5625,-36.5625,103.125");
+    println!("splits to 2 % and nodes at depth 9: {aligned:?}, and {centred:?} around the middle");
+    assert!(100 * aligned.0 < centred.0 && 6 * aligned.1 < centred.1, "{aligned:?} {centred:?}");
+}
+
 #[test]
 fn a_reader_that_has_seen_enough_is_no_failure() {
     let place = solids();
