@@ -44,6 +44,19 @@ static int32_t knows_nothing(void *ctx, const double *points, uint64_t count, do
     return -815;
 }
 
+static int32_t uses_the_octree(void *ctx, const double *min, const double *max) {
+    leafless_lazy *const lazy = *(leafless_lazy **)ctx;
+    leafless_lazy_counts counts;
+    (void)min;
+    (void)max;
+    if (lazy == NULL) {
+        return LEAFLESS_TAG_PARTIAL;
+    }
+    FAILS(LEAFLESS_E_BUSY, leafless_lazy_count(lazy, &counts));
+    failed(LEAFLESS_E_BUSY, "LEAFLESS_E_BUSY", "lazy: is in use");
+    return -LEAFLESS_E_BUSY;
+}
+
 static int32_t stops(void *ctx, double fraction) {
     (void)ctx;
     (void)fraction;
@@ -244,7 +257,7 @@ int main(int argc, char **argv) {
     /* The names of all, and of what is none. */
     CHECK(strcmp(leafless_status_name(LEAFLESS_OK), "LEAFLESS_OK") == 0);
     CHECK(strcmp(leafless_status_name(-1), "LEAFLESS_E_UNKNOWN") == 0);
-    CHECK(strcmp(leafless_status_name(20), "LEAFLESS_E_UNKNOWN") == 0);
+    CHECK(strcmp(leafless_status_name(21), "LEAFLESS_E_UNKNOWN") == 0);
     CHECK(strcmp(leafless_status_name(INT32_MIN), "LEAFLESS_E_UNKNOWN") == 0);
     CHECK(leafless_last_status() == LEAFLESS_OK);
     seen[LEAFLESS_OK] = true;
@@ -270,7 +283,7 @@ int main(int argc, char **argv) {
     CHECK(count == 77);
 
     FAILS(LEAFLESS_E_FRAME, leafless_octree_union(ball, finer, NULL, &octree));
-    failed(LEAFLESS_E_FRAME, "LEAFLESS_E_FRAME", "different frames");
+    failed(LEAFLESS_E_FRAME, "LEAFLESS_E_FRAME", "different frames: origin [");
     {
         /* A stored octree is known on its own universe only, whatever it is asked; a mesh on any. */
         const leafless_frame apart = {{0, 0, 0}, 1, 4};
@@ -282,7 +295,7 @@ int main(int argc, char **argv) {
         FAILS(LEAFLESS_E_FRAME, leafless_octree_build(stored, &apart, LEAFLESS_RULE_CERTIFIED, NULL, &octree));
         FAILS(LEAFLESS_E_FRAME, leafless_solid_contains(stored, &apart, centre, 1, NULL, &membership));
         FAILS(LEAFLESS_E_FRAME, leafless_solid_classify_box(stored, &apart, centre, corner, NULL, &region));
-        failed(LEAFLESS_E_FRAME, "LEAFLESS_E_FRAME", "different frames");
+        failed(LEAFLESS_E_FRAME, "LEAFLESS_E_FRAME", "different frames: origin [");
         CHECK(region == 77);
         OK(leafless_solid_new_mesh(cube, LEAFLESS_FILL_NON_ZERO, &meshed));
         OK(leafless_solid_contains(meshed, &apart, centre, 1, NULL, &membership));
@@ -456,10 +469,22 @@ int main(int argc, char **argv) {
     failed(LEAFLESS_E_CALLBACK, "LEAFLESS_E_CALLBACK", "-4711");
 
     FAILS(LEAFLESS_E_IO, leafless_octree_open("no/such/file", 12, &octree));
-    failed(LEAFLESS_E_IO, "LEAFLESS_E_IO", "No such file");
+    failed(LEAFLESS_E_IO, "LEAFLESS_E_IO", "no/such/file: No such file");
     FAILS(LEAFLESS_E_IO, leafless_octree_map("no/such/file", 12, &octree));
+    failed(LEAFLESS_E_IO, "LEAFLESS_E_IO", "no/such/file: No such file");
     FAILS(LEAFLESS_E_IO, leafless_octree_save(ball, "no/such/file", 12));
+    failed(LEAFLESS_E_IO, "LEAFLESS_E_IO", "no/such/file: No such file");
     FAILS(LEAFLESS_E_IO, leafless_mesh_open("no/such/file", 12, NULL, NULL, &mesh));
+    failed(LEAFLESS_E_IO, "LEAFLESS_E_IO", "no/such/file: No such file");
+    {
+        /* Of a long path the end is told, and the reason after it. */
+        char path[3 * 1000 + 9] = {0};
+        int i;
+        for (i = 0; i < 1000; i++) memcpy(path + 3 * i, "no/", 3);
+        memcpy(path + 3000, "part.lfl", 8);
+        FAILS(LEAFLESS_E_IO, leafless_octree_open(path, 3008, &octree));
+        failed(LEAFLESS_E_IO, "LEAFLESS_E_IO", "no/part.lfl: No such file");
+    }
     /* A device that is always full. */
     if (access("/dev/full", W_OK) == 0) {
         FAILS(LEAFLESS_E_IO, leafless_octree_save(ball, "/dev/full", 9));
@@ -476,6 +501,22 @@ int main(int argc, char **argv) {
         CHECK(lazy == NULL);
     }
 
+    {
+        /* A function that is asked about a cell of an octree uses that octree. */
+        leafless_lazy *lazy = NULL;
+        leafless_callbacks callbacks;
+        leafless_solid *host = NULL;
+        OK(leafless_callbacks_init(&callbacks, sizeof callbacks));
+        callbacks.classify = uses_the_octree;
+        callbacks.ctx = &lazy;
+        OK(leafless_solid_new_callbacks(&callbacks, &host));
+        OK(leafless_lazy_new(host, &frame, &lazy));
+        FAILS(LEAFLESS_E_CALLBACK, leafless_lazy_refine(lazy, 1, NULL, NULL));
+        failed(LEAFLESS_E_CALLBACK, "LEAFLESS_E_CALLBACK", "-20");
+        leafless_lazy_free(lazy);
+        leafless_solid_free(host);
+    }
+
     CHECK(octree == UNTOUCHED && mesh == (leafless_mesh *)UNTOUCHED);
     for (i = 0; strcmp(leafless_status_name((int32_t)i), "LEAFLESS_E_UNKNOWN") != 0; i++) {
         if (!seen[i]) {
@@ -483,7 +524,7 @@ int main(int argc, char **argv) {
             return 1;
         }
     }
-    CHECK(i == 20);
+    CHECK(i == 21);
 
     free(bytes);
     leafless_control_free(control);

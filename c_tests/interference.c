@@ -39,9 +39,13 @@ static void two_balls(const leafless_solid *a, const leafless_solid *apart, cons
     OK(leafless_solid_clearance(a, apart, &frame, 0.5, NULL, &near));
     CHECK(near.distance_model.lower < 2.3538 && near.distance_model.upper > 2.3537 && near.has_nearest);
     CHECK(near.distance_model.upper - near.distance_model.lower <= 0.5 && !near.is_clipped);
+    CHECK(near.measured == LEAFLESS_MEASURED_TOLERANCE);
     CHECK(near.nearest_a_level > 0 && near.nearest_b_level > 0 && near.nearest_a[0] < near.nearest_b[0]);
     OK(leafless_solid_clearance(a, over, &frame, 0.5, NULL, &near));
     CHECK(near.distance_model.lower == 0);
+    /* Finer than the finest cells: they say when they have told all. */
+    OK(leafless_solid_clearance(a, apart, &frame, 1e-6, NULL, &near));
+    CHECK(near.measured == LEAFLESS_MEASURED_EXHAUSTED && near.distance_model.upper < 2.8);
 }
 
 /* Many placements are as one after the other, for any number of threads. */

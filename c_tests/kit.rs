@@ -65,7 +65,8 @@ fn line(command: &Command) -> String {
     words.map(|word| word.to_string_lossy()).collect::<Vec<_>>().join(" ")
 }
 
-fn output(command: &mut Command) -> Result<(String, String), String> {
+/// What a command prints on standard output and on standard error, if it succeeds.
+pub fn output(command: &mut Command) -> Result<(String, String), String> {
     let told = command.output().map_err(|error| format!("{}: {error}", line(command)))?;
     let (out, err) = (String::from_utf8_lossy(&told.stdout), String::from_utf8_lossy(&told.stderr));
     match told.status.success() {
@@ -98,7 +99,7 @@ impl Kit {
     }
 
     /// The toolchain that builds the library.
-    fn rust(&self, program: &str) -> Command {
+    pub fn rust(&self, program: &str) -> Command {
         let mut command = match (self.check.rust_flags(), program) {
             (Some(_), _) => {
                 let mut command = Command::new("rustup");
@@ -210,7 +211,7 @@ impl Kit {
         folder
     }
 
-    fn compiler(&self, standard: Standard) -> Result<Command, String> {
+    pub fn compiler(&self, standard: Standard) -> Result<Command, String> {
         let mut build = cc::Build::new();
         build.target(&self.triple).host(&self.triple).opt_level(1).debug(true).out_dir(&self.folder);
         build.cargo_metadata(false).cpp(matches!(standard, Standard::Cpp(_)));

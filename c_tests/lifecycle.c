@@ -376,6 +376,29 @@ static void octrees(void) {
     text_equals(key, key_length, "units");
     text_equals(value, value_length, "mm");
 
+    {
+        /* What the operands agree on holds of what is made of them. */
+        const leafless_octree *const both[3] = {more, named, more}, *const same[2] = {more, more};
+        leafless_octree *made[6] = {NULL, NULL, NULL, NULL, NULL, NULL};
+        int i;
+        OK(leafless_octree_union(more, named, NULL, &made[0]));
+        OK(leafless_octree_xor_of(both, 3, NULL, &made[1]));
+        OK(leafless_octree_difference(named, ball, NULL, &made[2]));
+        OK(leafless_octree_complement(more, NULL, &made[3]));
+        OK(leafless_octree_intersection_of(same, 2, NULL, &made[4]));
+        OK(leafless_octree_resolve(more, LEAFLESS_RULE_INNER, NULL, &made[5]));
+        for (i = 0; i < 6; i++) {
+            OK(leafless_octree_peek_metadata_at(made[i], 0, &count, NULL, NULL, NULL, NULL));
+            CHECK(count == (i < 2 ? 1 : i == 2 ? 0 : 2));
+            OK(leafless_octree_peek_metadata(made[i], "units", 5, &value, &value_length));
+            if (i == 2) {
+                CHECK(value == NULL);
+            } else {
+                text_equals(value, value_length, "mm");
+            }
+            leafless_octree_free(made[i]);
+        }
+    }
     OK(leafless_octree_without_metadata(more, "units", 5, &fewer));
     OK(leafless_octree_peek_metadata_at(fewer, 0, &count, &key, &key_length, &value, &value_length));
     CHECK(count == 1);

@@ -290,6 +290,43 @@ static void damaged(const sample *one) {
     }
 }
 
+/* What a file departs from its format in: its own text for each, and none for other meshes. */
+static void warnings(void) {
+    static const char STRANGE[] =
+        "ply\nformat ascii 1.0\nby hand\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+        "element face 4\nproperty list uchar int vertex_indices\nend_header\n"
+        "0 0 0 255\n3 0 0 255\n0 3 0 255\n0 0 3 255\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n";
+    static const char *const TEXTS[] = {"line 3 of the header has no keyword", "line 11 (like 3 more) has more values"};
+    static const double OFFSET[3] = {1, 2, 3};
+    leafless_mesh *mesh = NULL, *moved = NULL;
+    const char *text = NULL;
+    size_t length = 0;
+    uint64_t count = 77, i;
+    OK(leafless_mesh_from_bytes((const uint8_t *)STRANGE, sizeof STRANGE - 1, NULL, NULL, &mesh));
+    is_tetrahedron(mesh, 3.0);
+    OK(leafless_mesh_peek_warning_at(mesh, 99, &count, NULL, NULL));
+    CHECK(count == COUNT(TEXTS));
+    for (i = 0; i < count; i++) {
+        uint64_t all = 0;
+        OK(leafless_mesh_peek_warning_at(mesh, i, &all, &text, &length));
+        CHECK(all == count && length > strlen(TEXTS[i]) && memcmp(text, TEXTS[i], strlen(TEXTS[i])) == 0);
+    }
+    FAILS(LEAFLESS_E_ARGUMENT, leafless_mesh_peek_warning_at(mesh, count, &count, &text, &length));
+    FAILS(LEAFLESS_E_NULL, leafless_mesh_peek_warning_at(mesh, 0, &count, &text, NULL));
+    FAILS(LEAFLESS_E_NULL, leafless_mesh_peek_warning_at(mesh, 0, NULL, NULL, NULL));
+    OK(leafless_mesh_translated(mesh, OFFSET, &moved));
+    OK(leafless_mesh_peek_warning_at(moved, 0, &count, NULL, NULL));
+    CHECK(count == 0);
+    leafless_mesh_free(moved);
+    leafless_mesh_free(mesh);
+    mesh = NULL;
+    OK(leafless_mesh_from_bytes((const uint8_t *)PLY, sizeof PLY - 1, NULL, NULL, &mesh));
+    count = 77;
+    OK(leafless_mesh_peek_warning_at(mesh, 0, &count, NULL, NULL));
+    CHECK(count == 0);
+    leafless_mesh_free(mesh);
+}
+
 static void bad_options(void) {
     static const uint32_t not_known[] = {7, 8, 255, UINT32_MAX};
     static const double not_a_scale[] = {-1.0, NAN, INFINITY, -INFINITY, 0x1p-257, 0x1.8p256};
@@ -386,6 +423,7 @@ int main(void) {
         units(&samples[i]);
         damaged(&samples[i]);
     }
+    warnings();
     bad_options();
     bad_files();
     return 0;

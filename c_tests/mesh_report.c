@@ -142,6 +142,43 @@ int main(void) {
     CHECK(defect.kind == LEAFLESS_DEFECT_HOLE && defect.count == 4 && box(&defect, 5, 5, 5, 9, 8, 5));
     CHECK(defect.length_model == 12.0);
 
+    /* A second cube that overlaps the first, one inside of it, and that one as a cavity. */
+    {
+        static const double PLACES[2][2] = {{0.5, 1.0}, {0.25, 0.5}};
+        uint32_t kind, i, axis;
+        for (kind = 0; kind < 3; kind++) {
+            const double *place = PLACES[kind > 0];
+            all = cube();
+            for (i = 0; i < 8; i++) {
+                for (axis = 0; axis < 3; axis++) {
+                    all.vertices[8 + i][axis] = place[0] + place[1] * CHECK_CUBE[i][axis];
+                }
+            }
+            for (i = 0; i < 12; i++) {
+                const uint32_t *of = CHECK_CUBE_TRIANGLES[i];
+                all.triangles[12 + i][0] = 8 + of[0];
+                all.triangles[12 + i][1] = 8 + of[kind == 2 ? 2 : 1];
+                all.triangles[12 + i][2] = 8 + of[kind == 2 ? 1 : 2];
+            }
+            all.vertex_count = 16, all.triangle_count = 24;
+            report = told(&all, 0, &defect);
+            CHECK(report.bodies == 2 && report.undecided_bodies == 0);
+            CHECK(report.overlapping_bodies == (kind == 2 ? 0 : 2));
+            CHECK(report.polygons == 0 && report.bent_polygons == 0 && report.polygon_deviation_model == 0.0);
+        }
+    }
+
+    /* A square with a corner lifted. */
+    {
+        static const char OFF[] = "OFF 4 1 0\n0 0 0\n2 0 0\n2 2 0.25\n0 2 0\n4 0 1 2 3\n";
+        leafless_mesh *mesh = NULL;
+        OK(leafless_mesh_from_bytes((const uint8_t *)OFF, sizeof OFF - 1, NULL, NULL, &mesh));
+        OK(leafless_mesh_describe(mesh, &report));
+        CHECK(report.polygons == 1 && report.bent_polygons == 1);
+        CHECK(fabs(report.polygon_deviation_model - 0.0625) < 0.001);
+        leafless_mesh_free(mesh);
+    }
+
     /* Nothing at all. */
     all.triangle_count = 0;
     report = told(&all, 0, &defect);

@@ -205,6 +205,13 @@ static void null_pointers(void) {
     NULL_POINTER(leafless_mesh_bounds, mesh, leafless_mesh_bounds(NULL, (double *)out, (double *)out + 3));
     NULL_POINTER(leafless_mesh_bounds, min_model, leafless_mesh_bounds(mesh, NULL, (double *)out));
     NULL_POINTER(leafless_mesh_bounds, max_model, leafless_mesh_bounds(mesh, (double *)out, NULL));
+    NULL_POINTER(leafless_mesh_peek_warning_at, mesh,
+                 leafless_mesh_peek_warning_at(NULL, 0, (uint64_t *)out, NULL, NULL));
+    NULL_POINTER(leafless_mesh_peek_warning_at, count, leafless_mesh_peek_warning_at(mesh, 0, NULL, NULL, NULL));
+    NULL_POINTER(leafless_mesh_peek_warning_at, warning,
+                 leafless_mesh_peek_warning_at(mesh, 0, (uint64_t *)out, NULL, (size_t *)out + 1));
+    NULL_POINTER(leafless_mesh_peek_warning_at, warning_length,
+                 leafless_mesh_peek_warning_at(mesh, 0, (uint64_t *)out, (const char **)out + 1, NULL));
     NULL_POINTER(leafless_mesh_volume, mesh, leafless_mesh_volume(NULL, (double *)out));
     NULL_POINTER(leafless_mesh_volume, volume_model, leafless_mesh_volume(mesh, NULL));
     NULL_POINTER(leafless_mesh_describe, mesh, leafless_mesh_describe(NULL, (leafless_mesh_report *)out));
@@ -341,6 +348,34 @@ static void null_pointers(void) {
                 leafless_scene_from_bytes((const uint8_t *)"cube();", 7, NULL, 0, &scene));
     NULL_POINTER(leafless_scene_from_bytes, scene,
                  leafless_scene_from_bytes((const uint8_t *)"cube();", 7, NULL, 0, NULL));
+    NULL_POINTER(leafless_scene_options_init, options,
+                 leafless_scene_options_init(NULL, sizeof(leafless_scene_options)));
+    NULL_POINTER(leafless_scene_open_with, path, leafless_scene_open_with(NULL, 3, NULL, scene_result));
+    NULL_POINTER(leafless_scene_open_with, scene, leafless_scene_open_with("null.csg", 8, NULL, NULL));
+    NULL_POINTER(leafless_scene_from_bytes_with, bytes,
+                 leafless_scene_from_bytes_with(NULL, 4, NULL, 0, NULL, scene_result));
+    NULL_POINTER(leafless_scene_from_bytes_with, scene,
+                 leafless_scene_from_bytes_with((const uint8_t *)"cube();", 7, NULL, 0, NULL, NULL));
+    leafless_scene_free(scene);
+    check_write("null.csg", "cube();", 7);
+    MAY_BE_NULL(leafless_scene_open_with, options, leafless_scene_open_with("null.csg", 8, NULL, &scene));
+    leafless_scene_free(scene);
+    MAY_BE_NULL(leafless_scene_from_bytes_with, bytes,
+                leafless_scene_from_bytes_with(NULL, 0, NULL, 0, NULL, &scene));
+    leafless_scene_free(scene);
+    MAY_BE_NULL(leafless_scene_from_bytes_with, folder,
+                leafless_scene_from_bytes_with((const uint8_t *)"cube();", 7, NULL, 0, NULL, &scene));
+    leafless_scene_free(scene);
+    MAY_BE_NULL(leafless_scene_from_bytes_with, options,
+                leafless_scene_from_bytes_with((const uint8_t *)"mesh(\"null.stl\");", 17, "", 0, NULL, &scene));
+    NULL_POINTER(leafless_scene_describe, scene, leafless_scene_describe(NULL, (leafless_scene_report *)out));
+    NULL_POINTER(leafless_scene_describe, report, leafless_scene_describe(scene, NULL));
+    NULL_POINTER(leafless_scene_describe_mesh, scene,
+                 leafless_scene_describe_mesh(NULL, 0, (leafless_scene_mesh *)out));
+    NULL_POINTER(leafless_scene_describe_mesh, mesh, leafless_scene_describe_mesh(scene, 0, NULL));
+    MAY_BE_NULL(leafless_scene_mesh_file, bytes, leafless_scene_mesh_file(scene, 0, NULL, 0, &number));
+    NULL_POINTER(leafless_scene_mesh_file, length, leafless_scene_mesh_file(scene, 0, NULL, 0, NULL));
+    NULL_POINTER(leafless_scene_mesh_file, scene, leafless_scene_mesh_file(NULL, 0, NULL, 0, (uint64_t *)out));
     NULL_POINTER(leafless_scene_bounds, scene, leafless_scene_bounds(NULL, (double *)out, (double *)out + 3));
     NULL_POINTER(leafless_scene_bounds, min_model, leafless_scene_bounds(scene, NULL, (double *)out));
     NULL_POINTER(leafless_scene_bounds, max_model, leafless_scene_bounds(scene, (double *)out, NULL));
@@ -967,7 +1002,7 @@ static void numbers(void) {
         CHECK(leafless_octree_save(octree, "a\xff", 2) == LEAFLESS_E_UTF8);
         CHECK(leafless_file_probe("a\xff", 2, (leafless_probe *)out, NULL, 0) == LEAFLESS_E_UTF8);
     }
-    refused(LEAFLESS_E_ARGUMENT, "leafless_octree_map", "path", leafless_octree_map(".", 1, result));
+    refused(LEAFLESS_E_ARGUMENT, "leafless_octree_map", "./.", leafless_octree_map("./.", 3, result));
 
     untouched();
     CHECK(never == UNTOUCHED);

@@ -36,11 +36,61 @@ static void refused(const char *text, const char *folder, const char *words) {
     }
 }
 
+/* Options, and what is told of a scene. */
+static void reports(void) {
+    static const char text[] = "cylinder($fn = 6, h = 4, r = 2);\n"
+                               " polyhedron([[0, 0, 0], [4, 0, 0], [0, 4, 0], [0, 0, 4]], "
+                               "[[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 3, 2]]);";
+    const uint64_t polygons[] = {1, 0, 1};
+    const uint32_t facets[] = {LEAFLESS_FACETS_AUTO, LEAFLESS_FACETS_EXACT, LEAFLESS_FACETS_POLYGON};
+    leafless_scene_options options;
+    leafless_scene_report report;
+    leafless_scene_mesh mesh;
+    leafless_scene *scene = NULL;
+    uint64_t length = 7;
+    size_t i;
+    uint8_t name[8];
+    OK(leafless_scene_options_init(&options, sizeof options));
+    CHECK(options.struct_size == sizeof options && options.facets == LEAFLESS_FACETS_AUTO);
+    for (i = 0; i < 3; i++) {
+        options.facets = facets[i];
+        OK(leafless_scene_from_bytes_with((const uint8_t *)text, strlen(text), NULL, 0, &options, &scene));
+        OK(leafless_scene_describe(scene, &report));
+        CHECK(report.polygons == polygons[i] && report.exact == 1 - polygons[i] && report.ignored_slices == 0);
+        CHECK(report.meshes == 1 && !report.is_empty);
+        OK(leafless_scene_describe_mesh(scene, 0, &mesh));
+        CHECK(mesh.line == 2 && mesh.column == 2 && mesh.turned == 1);
+        CHECK(mesh.report.triangles == 4 && mesh.report.misoriented_edges == 3 && mesh.report.boundary_edges == 0);
+        FAILS(LEAFLESS_E_ARGUMENT, leafless_scene_describe_mesh(scene, 1, &mesh));
+        OK(leafless_scene_mesh_file(scene, 0, NULL, 0, &length));
+        CHECK(length == 0);
+        FAILS(LEAFLESS_E_ARGUMENT, leafless_scene_mesh_file(scene, 1, NULL, 0, &length));
+        leafless_scene_free(scene);
+    }
+    options.facets = 3;
+    FAILS(LEAFLESS_E_ARGUMENT,
+          leafless_scene_from_bytes_with((const uint8_t *)text, strlen(text), NULL, 0, &options, &scene));
+    OK(leafless_scene_from_bytes_with(NULL, 0, NULL, 0, NULL, &scene));
+    OK(leafless_scene_describe(scene, &report));
+    CHECK(report.is_empty && report.meshes == 0);
+    leafless_scene_free(scene);
+    /* A mesh file. */
+    check_write("t.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n", 36);
+    check_write("mesh.csg", "mesh(\"t.off\");", 14);
+    OK(leafless_scene_open_with("mesh.csg", 8, NULL, &scene));
+    OK(leafless_scene_describe_mesh(scene, 0, &mesh));
+    CHECK(mesh.line == 1 && mesh.column == 1 && mesh.report.boundary_edges == 3);
+    FAILS(LEAFLESS_E_BUFFER, leafless_scene_mesh_file(scene, 0, name, 4, &length));
+    OK(leafless_scene_mesh_file(scene, 0, name, sizeof name, &length));
+    CHECK(length == 5 && memcmp(name, "t.off", 5) == 0);
+    leafless_scene_free(scene);
+}
+
 int main(void) {
     static const char part[] = "// a block with a hole\n"
                                "difference() {\n"
                                "\tcube(size = [4, 4, 2], center = true);\n"
-                               "\tcylinder($fn = 8, h = 3, r1 = 1, r2 = 1, center = true);\n"
+                               "\tcylinder($fn = 80, h = 3, r1 = 1, r2 = 1, center = true);\n"
                                "}\n";
     const double pi = 3.14159265358979323846;
     double low[3], high[3];
@@ -51,6 +101,7 @@ int main(void) {
     const char *octree_path = "scene.lfl", *scene_path = "scene.csg";
     const char *naming = "octree(\"scene.lfl\");";
 
+    reports();
     volume = volume_of(scene_of(part));
     CHECK(volume.lower <= 32 - 2 * pi && 32 - 2 * pi <= volume.upper && volume.upper - volume.lower < 8);
     volume = volume_of(scene_of("cube(2);"));

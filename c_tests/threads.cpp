@@ -439,6 +439,99 @@ void one_solid() {
     leafless_mesh_free(cube);
 }
 
+bool is_done_or_busy(leafless_status status) {
+    if (status == LEAFLESS_E_BUSY) {
+        char message[512];
+        leafless_last_error(message, sizeof message);
+        CHECK(leafless_last_status() == LEAFLESS_E_BUSY && strstr(message, "lazy: is in use") != nullptr);
+    }
+    CHECK(status == LEAFLESS_OK || status == LEAFLESS_E_BUSY);
+    return status == LEAFLESS_OK;
+}
+
+struct Asking {
+    leafless_lazy *lazy;
+    std::atomic<int> busy;
+};
+
+// A ball of radius 0.75 that meanwhile uses the octree which is being split.
+int32_t asks_back(void *ctx, const double *min, const double *max) {
+    Asking *const asking = static_cast<Asking *>(ctx);
+    leafless_lazy_counts counts;
+    if (asking->lazy != nullptr) {
+        FAILS(LEAFLESS_E_BUSY, leafless_lazy_count(asking->lazy, &counts));
+        FAILS(LEAFLESS_E_BUSY, leafless_lazy_refine(asking->lazy, 2, nullptr, nullptr));
+        asking->busy++;
+    }
+    double near = 0, far = 0;
+    for (int axis = 0; axis < 3; axis++) {
+        const double low = std::max({0.0, min[axis], -max[axis]}), high = std::max(max[axis], -min[axis]);
+        near += low * low, far += high * high;
+    }
+    return far <= 0.5625 ? LEAFLESS_TAG_FULL : near >= 0.5625 ? LEAFLESS_TAG_EMPTY : LEAFLESS_TAG_PARTIAL;
+}
+
+// One lazy octree in all threads: each call does all of its work, or says that the octree is busy and does nothing.
+void lazy_at_once() {
+    const leafless_frame frame = check_frame(6);
+    leafless_solid *const solid = check_ball_solid();
+    leafless_lazy *lazy = nullptr;
+    OK(leafless_lazy_new(solid, &frame, &lazy));
+    std::atomic<int> done{0};
+    in_all_threads([&](int number) {
+        const double at[3] = {0.1 * number, 0.5, 0.0};
+        const double from[3] = {-1, 0.01 * number, 0.02}, along[3] = {1, 0.3, 0.2};
+        const uint32_t root[3] = {0, 0, 0};
+        for (int i = 0; i < 400; i++) {
+            leafless_tag tags[8];
+            leafless_membership membership;
+            leafless_statistics statistics;
+            leafless_octree *octree = nullptr;
+            done += is_done_or_busy(leafless_lazy_refine_point(lazy, at, uint32_t(1 + i % 6), nullptr, nullptr));
+            done += is_done_or_busy(leafless_lazy_refine_ray(lazy, from, along, 0, 3, uint32_t(1 + i % 6), nullptr, nullptr));
+            done += is_done_or_busy(leafless_lazy_split(lazy, root, 0, tags));
+            done += is_done_or_busy(leafless_lazy_contains(lazy, at, &membership));
+            done += is_done_or_busy(leafless_lazy_statistics(lazy, &statistics));
+            if (i % 50 == number && is_done_or_busy(leafless_lazy_freeze(lazy, nullptr, &octree))) {
+                OK(leafless_octree_check(octree));
+                leafless_octree_free(octree);
+            }
+        }
+    });
+    CHECK(done > 0);
+    // As if one thread had done all of it.
+    leafless_octree *found = nullptr, *expected = check_ball(6, LEAFLESS_RULE_CERTIFIED);
+    leafless_statistics statistics[2];
+    OK(leafless_lazy_refine(lazy, 6, nullptr, nullptr));
+    OK(leafless_lazy_freeze(lazy, nullptr, &found));
+    OK(leafless_octree_check(found));
+    OK(leafless_octree_statistics(found, &statistics[0]));
+    OK(leafless_octree_statistics(expected, &statistics[1]));
+    CHECK(memcmp(&statistics[0], &statistics[1], sizeof statistics[0]) == 0);
+    leafless_octree_free(expected);
+    leafless_octree_free(found);
+    leafless_lazy_free(lazy);
+    leafless_solid_free(solid);
+
+    // The host's function that is asked about a cell comes back to the octree.
+    Asking asking{nullptr, {0}};
+    leafless_callbacks callbacks;
+    leafless_solid *host = nullptr;
+    OK(leafless_callbacks_init(&callbacks, sizeof callbacks));
+    callbacks.classify = asks_back;
+    callbacks.ctx = &asking;
+    OK(leafless_solid_new_callbacks(&callbacks, &host));
+    OK(leafless_lazy_new(host, &frame, &lazy));
+    asking.lazy = lazy;
+    OK(leafless_lazy_refine(lazy, 3, nullptr, nullptr));
+    CHECK(asking.busy > 8);
+    leafless_lazy_counts counts;
+    OK(leafless_lazy_count(lazy, &counts));
+    CHECK(counts.splits > 0);
+    leafless_lazy_free(lazy);
+    leafless_solid_free(host);
+}
+
 }  // namespace
 
 int main(int argc, char **) {
@@ -459,6 +552,7 @@ int main(int argc, char **) {
     solids();
     open_mesh();
     one_solid();
+    lazy_at_once();
     messages();
     return 0;
 }

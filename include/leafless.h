@@ -22,6 +22,7 @@
  *   shares. Pointers from _peek functions belong to the object.
  * - Threads: calls whose handle parameters are pointers to const may run at once, on the same object too. Other
  *   calls need the object for themselves; but _free needs only its own reference, others may be in use meanwhile.
+ *   A leafless_lazy that is in use says so itself: LEAFLESS_E_BUSY.
  *   Different objects never interfere. Nothing global is changed. No thread of the library outlives the call that
  *   started it.
  * - Structs with a field struct_size begin with sizeof of themselves, and all their other fields may be zero.
@@ -183,6 +184,10 @@ enum leafless_status
      * A scene cannot be read.
      */
     LEAFLESS_E_SCENE = 19,
+    /**
+     * A lazy octree is in use by another call, in another thread or around this one. Nothing was done.
+     */
+    LEAFLESS_E_BUSY = 20,
 };
 #ifndef __cplusplus
 typedef int32_t leafless_status;
@@ -410,7 +415,7 @@ typedef uint8_t leafless_region;
 #endif // __cplusplus
 
 /**
- * Why measuring ended.
+ * Why a search or a measurement ended.
  */
 enum leafless_measured
 #ifdef __cplusplus
@@ -422,17 +427,42 @@ enum leafless_measured
      */
     LEAFLESS_MEASURED_TOLERANCE = 0,
     /**
-     * `max_splits` of the options is spent.
+     * `max_splits` of the options, or the function's own limit, is spent.
      */
     LEAFLESS_MEASURED_BUDGET = 1,
     /**
-     * No cell is left that could be split: what is undecided has the size of the frame's finest cells, or
+     * No cell is left whose split would help: what is undecided has the size of the frame's finest cells, or
      * the solid itself knows no more about it, as an octree does of its PARTIAL cells.
      */
     LEAFLESS_MEASURED_EXHAUSTED = 2,
 };
 #ifndef __cplusplus
 typedef uint32_t leafless_measured;
+#endif // __cplusplus
+
+/**
+ * Which circles, balls, cylinders and solids of revolution are drawn as polygons, prisms and polyhedra.
+ */
+enum leafless_facets
+#ifdef __cplusplus
+  : uint32_t
+#endif // __cplusplus
+ {
+    /**
+     * Those with a $fn of 12 or less; all others are exact.
+     */
+    LEAFLESS_FACETS_AUTO = 0,
+    /**
+     * None: circles are round.
+     */
+    LEAFLESS_FACETS_EXACT = 1,
+    /**
+     * All, with as many sides as OpenSCAD gives them, which must be 1024 at most.
+     */
+    LEAFLESS_FACETS_POLYGON = 2,
+};
+#ifndef __cplusplus
+typedef uint32_t leafless_facets;
 #endif // __cplusplus
 
 /**
@@ -665,9 +695,10 @@ typedef struct leafless_cursor leafless_cursor;
  * An octree of a solid that is not built in one go: a cell is split when somebody asks for it, and what was
  * split is remembered. FULL and EMPTY cells are proven; cells that nobody has split yet are PARTIAL.
  *
- * Splitting and refining change it: while one thread does so, no other may use it, and neither may the
- * host's functions that it asks about a cell. Otherwise its other functions may be called at once from any
- * number of threads.
+ * Splitting and refining change it: while one call does so, every other call returns LEAFLESS_E_BUSY, from
+ * another thread as from the host's functions that are asked about a cell. While another call reads it,
+ * splitting and refining return LEAFLESS_E_BUSY. Its other functions may be called at once from any number
+ * of threads.
  */
 typedef struct leafless_lazy leafless_lazy;
 
@@ -703,8 +734,9 @@ typedef struct leafless_point_cursor leafless_point_cursor;
  * multmatrix color render cube sphere cylinder polyhedron linear_extrude rotate_extrude square circle
  * polygon, and import of meshes), with these calls besides: halfspace([a, b, c, d]), which is a x + b y + c
  * z + d ≥ 0, quadric([10 numbers]), power([A, a, n1], [B, b, n2], [C, c, n3], R), torus(major, minor),
- * mesh("file.stl") and octree("file.lfl"). Curved shapes are exact, without facets. What is not supported
- * (hull, minkowski, text, projection and others) is refused by name.
+ * mesh("file.stl") and octree("file.lfl"). Curved shapes are exact, but for those with a $fn of 12 or less,
+ * which are the polygons, prisms and polyhedra that OpenSCAD draws; leafless_scene_options ask for others. What
+ * is not supported (hull, minkowski, text, projection and others) is refused by name.
  *
  * Immutable: all its functions may be called at once from any number of threads, but leafless_scene_free
  * needs the reference that it gives back for itself.
@@ -761,7 +793,7 @@ typedef struct {
      */
     uint64_t max_bytes;
     /**
-     * Split at most this many cells; 0 means no limit. Only functions that split on demand heed it, and say
+     * Split at most this many cells; 0 means no limit, or the one that the function names. Only functions that split on demand heed it, and say
      * so: with it spent they stop, and keep or return what they have; it is no error.
      */
     uint64_t max_splits;
@@ -892,6 +924,34 @@ typedef struct {
      * The farthest that any of them was moved along an axis, in model units.
      */
     double displacement_model;
+    /**
+     * Closed bodies that are proven to overlap another one: their surfaces cross, or one lies within the other
+     * with the same sense and no cavity between them. There the surface winds around points more than once,
+     * and leafless_mesh_volume is not what a fill rule encloses.
+     */
+    uint64_t overlapping_bodies;
+    /**
+     * Other closed bodies that may overlap another one: they touch in a way that is not decided, such as a
+     * peg that fits its hole exactly, or there was too much to look at.
+     */
+    uint64_t undecided_bodies;
+    /**
+     * Faces of more than three corners that the triangles were made from: of OBJ, PLY and OFF files and of
+     * polyhedra. 0 for other meshes.
+     */
+    uint64_t polygons;
+    /**
+     * Those that are not flat: corners lie beside the face's plane, by more than 2^-40 of its extent. Such a
+     * face has no shape of its own. The mesh is one of its triangulations, and whatever is proven of the
+     * mesh is proven of that one.
+     */
+    uint64_t bent_polygons;
+    /**
+     * Half the distance, in model units and up to rounding, between the two planes parallel to a face that
+     * have all its corners between them, for the face where it is greatest. Each triangulation of the face
+     * lies between the planes.
+     */
+    double polygon_deviation_model;
 } leafless_mesh_report;
 
 /**
@@ -1347,6 +1407,69 @@ typedef struct {
 } leafless_function;
 
 /**
+ * How a scene is to be read. NULL means the defaults. All fields but the first may be zero, which is their
+ * default; leafless_scene_options_init sets them so.
+ */
+typedef struct {
+    /**
+     * sizeof(leafless_scene_options).
+     */
+    uint32_t struct_size;
+    /**
+     * Which curves are drawn as polygons, a leafless_facets.
+     */
+    uint32_t facets;
+} leafless_scene_options;
+
+/**
+ * What was found while a scene was read.
+ */
+typedef struct {
+    /**
+     * Calls of circle, sphere, cylinder and rotate_extrude that were drawn as polygons.
+     */
+    uint64_t polygons;
+    /**
+     * Calls of these that are exact. OpenSCAD draws them as polygons.
+     */
+    uint64_t exact;
+    /**
+     * Calls of linear_extrude of which `slices` has no effect though it has one in OpenSCAD.
+     */
+    uint64_t ignored_slices;
+    /**
+     * Meshes and polyhedra that have triangles: leafless_scene_describe_mesh tells of each.
+     */
+    uint64_t meshes;
+    /**
+     * Whether the scene is known to be empty: there is nothing in it, or what is intersected lies apart.
+     */
+    bool is_empty;
+} leafless_scene_report;
+
+/**
+ * What is told of a mesh or polyhedron in a scene.
+ */
+typedef struct {
+    /**
+     * Line of the call in the text, counted from 1.
+     */
+    uint64_t line;
+    /**
+     * Column of the call in characters, counted from 1.
+     */
+    uint64_t column;
+    /**
+     * Triangles that face the other way than most of those that they hang together with.
+     */
+    uint64_t turned;
+    /**
+     * What was found while the mesh was taken in.
+     */
+    leafless_mesh_report report;
+} leafless_scene_mesh;
+
+/**
  * Where a cursor stands.
  */
 typedef struct {
@@ -1478,6 +1601,10 @@ typedef struct {
      * The level of that cell.
      */
     uint32_t nearest_b_level;
+    /**
+     * Why the search ended.
+     */
+    leafless_measured measured;
     /**
      * Whether the upper bound is finite.
      */
@@ -1724,8 +1851,8 @@ uint32_t leafless_abi(void);
 const char *leafless_status_name(int32_t status);
 
 /**
- * The message of the last failure in the calling thread: a sentence that a user can act on, in UTF-8. Calls
- * that succeed leave it as it is; before the first failure it is empty.
+ * The message of the last failure in the calling thread: a sentence that a user can act on, in UTF-8. If it
+ * is about a file, the message begins with the path, or with the end of a long one. Calls that succeed leave it as it is; before the first failure it is empty.
  *
  * - Buffers: `message`, `capacity` bytes; may be NULL if `capacity` is 0.
  * - Result: the message's length in bytes, without the terminating NUL, also if not all of it was written;
@@ -1736,7 +1863,8 @@ const char *leafless_status_name(int32_t status);
  * - Untrusted input: none.
  * - Since: 0.1
  */
-size_t leafless_last_error(char *message, size_t capacity);
+size_t leafless_last_error(char *message,
+                           size_t capacity);
 
 /**
  * The status of the last failure in the calling thread, LEAFLESS_OK before the first.
@@ -2073,7 +2201,7 @@ leafless_status leafless_mesh_volume(const leafless_mesh *mesh, double *volume_m
 
 /**
  * What was found when a mesh was made, and how its triangles hang together. The first call analyses the
- * edges, later ones are free.
+ * edges and looks for bodies that overlap, later ones are free.
  *
  * - Buffers: `report`, one struct.
  * - Result: `*report`.
@@ -2121,8 +2249,9 @@ leafless_status leafless_mesh_defects(const leafless_mesh *mesh,
 leafless_status leafless_mesh_check_closed(const leafless_mesh *mesh, uint32_t fill);
 
 /**
- * The mesh with hair cracks closed: vertices at open edges that lie within 2^-24 of the extent of each other
- * become one. Verdicts about solids made of it stay proven: the distance is added outward.
+ * The mesh with hair cracks closed: vertices at open edges become one if they lie no further apart than 2^-24
+ * of the longest extent of the larger one of their pieces. (A piece is all triangles that hang together by
+ * common vertices.) Verdicts about solids made of it stay proven: the distance is added outward.
  *
  * - Buffers: `sewn`, one pointer.
  * - Result: `*sewn`; leafless_mesh_describe tells how many vertices moved and how far.
@@ -2223,7 +2352,8 @@ leafless_status leafless_mesh_options_init(leafless_mesh_options *options, size_
  *
  * - Buffers: `path`, `path_length` bytes of UTF-8; `options`, one struct, or NULL; `source`, one struct, or
  *   NULL if it is not wanted; `mesh`, one pointer.
- * - Result: `*mesh`, not checked to be closed; `*source`.
+ * - Result: `*mesh`, not checked to be closed; `*source`. leafless_mesh_peek_warning_at tells where the file
+ *   departs from its format, though it could be read.
  * - Errors: LEAFLESS_E_MESH_FILE, with the part, line, facet or byte in the message, if the file cannot be
  *   read, if its format is not known, or if `target` is given and nobody says from which unit;
  *   LEAFLESS_E_MESH, with the vertex, if a coordinate is beyond ±2^256 once it is scaled;
@@ -2259,6 +2389,25 @@ leafless_status leafless_mesh_from_bytes(const uint8_t *bytes,
                                          const leafless_mesh_options *options,
                                          leafless_mesh_source *source,
                                          leafless_mesh **mesh);
+
+/**
+ * What a mesh file departs from its format in, though it could be read: a sentence in UTF-8 for each kind of
+ * departure, by its place among all. A mesh that was not read from a file, or was made from another mesh, has
+ * none.
+ *
+ * - Buffers: `count`, one number; `warning`, `warning_length`, one each, both NULL to ask for the count only.
+ * - Result: `*count`, the number of all warnings; the text, not NUL-terminated, with its length in bytes.
+ * - Errors: LEAFLESS_E_ARGUMENT if there is no warning `index`, unless only the count is asked for.
+ * - Ownership: the text belongs to the mesh and lives as long as the reference `mesh`.
+ * - Threads: any.
+ * - Untrusted input: none.
+ * - Since: 0.1
+ */
+leafless_status leafless_mesh_peek_warning_at(const leafless_mesh *mesh,
+                                              uint64_t index,
+                                              uint64_t *count,
+                                              const char **warning,
+                                              size_t *warning_length);
 
 /**
  * Writes a binary STL file into memory: 84 + 50 t bytes. Coordinates are rounded to 32 bits.
@@ -3022,6 +3171,103 @@ leafless_status leafless_scene_from_bytes(const uint8_t *bytes,
                                           leafless_scene **scene);
 
 /**
+ * Sets options for scenes to their defaults.
+ *
+ * - Buffers: `options`, one struct of `struct_size` bytes, which is sizeof(leafless_scene_options); need not
+ *   be initialised.
+ * - Result: `*options`.
+ * - Errors: LEAFLESS_E_ARGUMENT if `struct_size` cannot be right.
+ * - Ownership: nothing changes hands.
+ * - Threads: any.
+ * - Untrusted input: none.
+ * - Since: 0.1
+ */
+leafless_status leafless_scene_options_init(leafless_scene_options *options, size_t struct_size);
+
+/**
+ * As leafless_scene_open, with options.
+ *
+ * - Buffers: `path`, `path_length` bytes of UTF-8; `options`, one struct, or NULL; `scene`, one pointer.
+ * - Result: `*scene`.
+ * - Errors: as leafless_scene_open; LEAFLESS_E_ARGUMENT if `options.facets` is no leafless_facets.
+ * - Ownership: give `*scene` back with leafless_scene_free.
+ * - Threads: any.
+ * - Untrusted input: as for leafless_scene_open; with LEAFLESS_FACETS_POLYGON a ball may take memory for half
+ *   a million half-spaces.
+ * - Since: 0.1
+ */
+leafless_status leafless_scene_open_with(const char *path,
+                                         size_t path_length,
+                                         const leafless_scene_options *options,
+                                         leafless_scene **scene);
+
+/**
+ * As leafless_scene_from_bytes, with options.
+ *
+ * - Buffers: `bytes`, `length` bytes; may be NULL if there are none. `folder`, `folder_length` bytes of
+ *   UTF-8; NULL if the scene may name no files. `options`, one struct, or NULL; `scene`, one pointer.
+ * - Result: `*scene`.
+ * - Errors: as leafless_scene_from_bytes; LEAFLESS_E_ARGUMENT if `options.facets` is no leafless_facets.
+ * - Ownership: the bytes are not kept; give `*scene` back with leafless_scene_free.
+ * - Threads: any.
+ * - Untrusted input: any bytes, as for leafless_scene_open_with.
+ * - Since: 0.1
+ */
+leafless_status leafless_scene_from_bytes_with(const uint8_t *bytes,
+                                               uint64_t length,
+                                               const char *folder,
+                                               size_t folder_length,
+                                               const leafless_scene_options *options,
+                                               leafless_scene **scene);
+
+/**
+ * What was found while a scene was read.
+ *
+ * - Buffers: `report`, one struct.
+ * - Result: `*report`.
+ * - Errors: only the general ones.
+ * - Ownership: nothing changes hands.
+ * - Threads: any.
+ * - Untrusted input: none.
+ * - Since: 0.1
+ */
+leafless_status leafless_scene_describe(const leafless_scene *scene, leafless_scene_report *report);
+
+/**
+ * What was found while a mesh or polyhedron of a scene was taken in.
+ *
+ * - Buffers: `mesh`, one struct. `index`, in the order of the text, is less than the report's `meshes`.
+ * - Result: `*mesh`.
+ * - Errors: LEAFLESS_E_ARGUMENT if there is no such mesh.
+ * - Ownership: nothing changes hands.
+ * - Threads: any.
+ * - Untrusted input: none.
+ * - Since: 0.1
+ */
+leafless_status leafless_scene_describe_mesh(const leafless_scene *scene,
+                                             uint64_t index,
+                                             leafless_scene_mesh *mesh);
+
+/**
+ * The file of a mesh in a scene, as the text names it, in UTF-8 and not terminated by NUL; nothing for a
+ * polyhedron.
+ *
+ * - Buffers: `bytes`, room for `capacity` bytes, or NULL to ask for the length only; `length`, one number.
+ *   `index`, in the order of the text, is less than the report's `meshes`.
+ * - Result: `*length`, the length of the name in bytes; the name in `bytes`.
+ * - Errors: LEAFLESS_E_BUFFER if the capacity is too small; LEAFLESS_E_ARGUMENT if there is no such mesh.
+ * - Ownership: nothing changes hands.
+ * - Threads: any.
+ * - Untrusted input: none.
+ * - Since: 0.1
+ */
+leafless_status leafless_scene_mesh_file(const leafless_scene *scene,
+                                         uint64_t index,
+                                         uint8_t *bytes,
+                                         uint64_t capacity,
+                                         uint64_t *length);
+
+/**
  * One more reference to a scene.
  *
  * - Buffers: `scene`, a handle; `reference`, one pointer.
@@ -3105,7 +3351,7 @@ leafless_status leafless_octree_build(const leafless_solid *solid,
  * LEAFLESS_RULE_OUTER.
  *
  * - Buffers: `options`, one struct or NULL; `resolved`, one pointer. `rule` is a leafless_rule.
- * - Result: `*resolved`, without metadata.
+ * - Result: `*resolved`, with the octree's facts "name" and "units" and no others.
  * - Errors: LEAFLESS_E_NOT_SAMPLED under LEAFLESS_RULE_SAMPLED if a cell is PARTIAL, because a stored octree
  *   knows no more about it; LEAFLESS_E_DAMAGED; LEAFLESS_E_ARGUMENT; LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED;
  *   LEAFLESS_E_NO_MEMORY.
@@ -3134,11 +3380,12 @@ leafless_status leafless_octree_resolve(const leafless_octree *octree,
 leafless_status leafless_octree_compact(const leafless_octree *octree, leafless_octree **compacted);
 
 /**
- * Every point of `a` and of `b`. Exact, and the same bit for bit for any number of threads; never larger
+ * The points that lie in `a`, in `b`, or in both. Exact, and the same bit for bit for any number of threads; never larger
  * than both operands together.
  *
  * - Buffers: `options`, one struct or NULL; `result`, one pointer.
- * - Result: `*result`, without metadata.
+ * - Result: `*result`, with those of the facts "name" and "units" that all operands have with one value, and
+ *   no other metadata.
  * - Errors: LEAFLESS_E_FRAME if the frames differ; LEAFLESS_E_DAMAGED; LEAFLESS_E_ARGUMENT;
  *   LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
  * - Ownership: the operands stay as they are; give `*result` back with leafless_octree_free.
@@ -3568,7 +3815,7 @@ void leafless_lazy_free(leafless_lazy *lazy);
  *   still to be split; LEAFLESS_E_SOURCE if the solid contradicts what the octree holds;
  *   LEAFLESS_E_CALLBACK; LEAFLESS_E_NO_MEMORY.
  * - Ownership: nothing changes hands.
- * - Threads: no other call may use the handle.
+ * - Threads: any; LEAFLESS_E_BUSY while another call uses the handle.
  * - Untrusted input: any solid, any numbers.
  * - Since: 0.1
  *
@@ -3589,7 +3836,7 @@ leafless_status leafless_lazy_split(leafless_lazy *lazy,
  *   contradicts what the octree holds; LEAFLESS_E_CALLBACK; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY. What
  *   was split before stays so.
  * - Ownership: nothing changes hands.
- * - Threads: no other call may use the handle; uses the calling thread alone.
+ * - Threads: any; LEAFLESS_E_BUSY while another call uses the handle; uses the calling thread alone.
  * - Untrusted input: any solid; set limits where the level or the solid is not your own choice.
  * - Since: 0.1
  */
@@ -3608,7 +3855,7 @@ leafless_status leafless_lazy_refine(leafless_lazy *lazy,
  * - Errors: as leafless_lazy_refine; LEAFLESS_E_ARGUMENT also if min > max on an axis, or a coordinate is
  *   not a number.
  * - Ownership: nothing changes hands.
- * - Threads: no other call may use the handle; uses the calling thread alone.
+ * - Threads: any; LEAFLESS_E_BUSY while another call uses the handle; uses the calling thread alone.
  * - Untrusted input: any solid, any numbers; set limits where the level or the solid is not your own choice.
  * - Since: 0.1
  *
@@ -3627,7 +3874,7 @@ leafless_status leafless_lazy_refine_box(leafless_lazy *lazy,
  * - Result: `*done`, whether no limit was reached first.
  * - Errors: as leafless_lazy_refine.
  * - Ownership: nothing changes hands.
- * - Threads: no other call may use the handle; uses the calling thread alone.
+ * - Threads: any; LEAFLESS_E_BUSY while another call uses the handle; uses the calling thread alone.
  * - Untrusted input: any solid, any numbers.
  * - Since: 0.1
  *
@@ -3648,7 +3895,7 @@ leafless_status leafless_lazy_refine_point(leafless_lazy *lazy,
  * - Errors: as leafless_lazy_refine; LEAFLESS_E_ARGUMENT also if a coordinate is neither 0 nor of a
  *   magnitude between 2^-256 and 2^256, the direction is zero, or not from ≤ to (both may be infinite).
  * - Ownership: nothing changes hands.
- * - Threads: no other call may use the handle; uses the calling thread alone.
+ * - Threads: any; LEAFLESS_E_BUSY while another call uses the handle; uses the calling thread alone.
  * - Untrusted input: any solid, any numbers; set limits where the level or the solid is not your own choice.
  * - Since: 0.1
  *
@@ -3672,7 +3919,7 @@ leafless_status leafless_lazy_refine_ray(leafless_lazy *lazy,
  *   was split, it is above the frame's depth, and the solid did not say that splitting does not help.
  * - Errors: only the general ones.
  * - Ownership: nothing changes hands.
- * - Threads: any, while nobody changes the octree.
+ * - Threads: any; LEAFLESS_E_BUSY while another call changes the octree.
  * - Untrusted input: any numbers.
  * - Since: 0.1
  *
@@ -3691,7 +3938,7 @@ leafless_status leafless_lazy_tag(const leafless_lazy *lazy,
  * - Result: `*membership`.
  * - Errors: only the general ones.
  * - Ownership: nothing changes hands.
- * - Threads: any, while nobody changes the octree.
+ * - Threads: any; LEAFLESS_E_BUSY while another call changes the octree.
  * - Untrusted input: any numbers.
  * - Since: 0.1
  *
@@ -3707,7 +3954,7 @@ leafless_status leafless_lazy_contains(const leafless_lazy *lazy,
  * - Result: `*statistics`. A cell counts as a node also if its eight children are PARTIAL.
  * - Errors: only the general ones.
  * - Ownership: nothing changes hands.
- * - Threads: any, while nobody changes the octree.
+ * - Threads: any; LEAFLESS_E_BUSY while another call changes the octree.
  * - Untrusted input: none.
  * - Since: 0.1
  */
@@ -3720,7 +3967,7 @@ leafless_status leafless_lazy_statistics(const leafless_lazy *lazy, leafless_sta
  * - Result: `*counts`.
  * - Errors: only the general ones.
  * - Ownership: nothing changes hands.
- * - Threads: any, while nobody changes the octree.
+ * - Threads: any; LEAFLESS_E_BUSY while another call changes the octree.
  * - Untrusted input: none.
  * - Since: 0.1
  */
@@ -3734,7 +3981,7 @@ leafless_status leafless_lazy_count(const leafless_lazy *lazy, leafless_lazy_cou
  * - Result: `*count`, depth + 1; the levels.
  * - Errors: LEAFLESS_E_BUFFER if the capacity is too small.
  * - Ownership: nothing changes hands.
- * - Threads: any, while nobody changes the octree.
+ * - Threads: any; LEAFLESS_E_BUSY while another call changes the octree.
  * - Untrusted input: none.
  * - Since: 0.1
  */
@@ -3750,7 +3997,7 @@ leafless_status leafless_lazy_levels(const leafless_lazy *lazy,
  * - Result: `*count`, the frame's depth; the numbers.
  * - Errors: LEAFLESS_E_BUFFER if the capacity is too small.
  * - Ownership: nothing changes hands.
- * - Threads: any, while nobody changes the octree.
+ * - Threads: any; LEAFLESS_E_BUSY while another call changes the octree.
  * - Untrusted input: none.
  * - Since: 0.1
  */
@@ -3767,7 +4014,7 @@ leafless_status leafless_lazy_splits(const leafless_lazy *lazy,
  * - Result: `*octree`.
  * - Errors: LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
  * - Ownership: give `*octree` back with leafless_octree_free.
- * - Threads: any, while nobody changes the octree; uses as many as `options` says.
+ * - Threads: any; LEAFLESS_E_BUSY while another call changes the octree; uses as many as `options` says.
  * - Untrusted input: none.
  * - Since: 0.1
  */
@@ -3853,19 +4100,24 @@ leafless_status leafless_solid_interfere_many(const leafless_solid *a,
                                               leafless_interference *interferences);
 
 /**
- * The distance between two solids, as they are in the universe of a frame. The work ends when the interval
- * is no wider than `tolerance_model` (model units), at the frame's depth, or once `max_splits` cells of both
- * are split, with what is known by then; a cell whose children are looked at again, next to another one,
- * counts once more. About twice the diagonal of a finest cell is what can be had for any solids. The work
- * grows with the area where the distance is about the least one, and with the distance, both measured in
- * cells as large as the tolerance.
+ * The distance between two solids, as they are in the universe of a frame.
+ *
+ * `measured` of the result says why the search ended. With LEAFLESS_MEASURED_TOLERANCE the interval is no
+ * wider than `tolerance_model` (model units). With LEAFLESS_MEASURED_EXHAUSTED the cells of the frame's depth
+ * cannot raise the lower bound, and the interval is no wider than twice their diagonal, which is what cells
+ * can tell of most solids; or no pair of cells is left. With LEAFLESS_MEASURED_BUDGET `max_splits` steps were
+ * taken, or 1 048 576 if that is 0. A step looks at the children of one cell. A cell whose children are
+ * looked at again, next to another cell, counts once more.
+ *
+ * The upper bound is finite once the search has met a FULL cell of each solid. The work grows with the area
+ * where the distance is about the least one, measured in cells as large as the tolerance.
  *
  * - Buffers: `frame`, one struct; `options`, one struct or NULL; `clearance`, one struct.
  * - Result: `*clearance`.
  * - Errors: as leafless_solid_interfere.
  * - Ownership: nothing changes hands.
  * - Threads: any; works in the calling thread.
- * - Untrusted input: as leafless_solid_interfere.
+ * - Untrusted input: any solids; the default of `max_splits` bounds the work.
  * - Since: 0.1
  */
 leafless_status leafless_solid_clearance(const leafless_solid *a,

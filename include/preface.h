@@ -22,6 +22,7 @@
  *   shares. Pointers from _peek functions belong to the object.
  * - Threads: calls whose handle parameters are pointers to const may run at once, on the same object too. Other
  *   calls need the object for themselves; but _free needs only its own reference, others may be in use meanwhile.
+ *   A leafless_lazy that is in use says so itself: LEAFLESS_E_BUSY.
  *   Different objects never interfere. Nothing global is changed. No thread of the library outlives the call that
  *   started it.
  * - Structs with a field struct_size begin with sizeof of themselves, and all their other fields may be zero.

@@ -23,8 +23,9 @@ pub struct Control<'a> {
     pub max_nodes: Option<u64>,
     /// Refuse results whose working form is larger than this many bytes with [`Error::Limit`]. (As above.)
     pub max_bytes: Option<u64>,
-    /// Split at most this many cells. Only operations that split on demand heed it, and say so: with it spent
-    /// they stop, and keep or return what they have; it is no error.
+    /// Split at most this many cells; `None` means no limit, or the one that the operation names. Only
+    /// operations that split on demand heed it, and say so: with it spent they stop, and keep or return what
+    /// they have; it is no error.
     pub max_splits: Option<u64>,
     /// Setting this flag, from any thread, ends the operation with [`Error::Cancelled`].
     pub cancel: Option<&'a AtomicBool>,

@@ -1,7 +1,7 @@
 //! Every way in which the library can refuse.
 //!
 //! One enum for the whole crate. Each variant carries what was found, and its text is a sentence that a
-//! user can act on; names of files are added by whoever knows them.
+//! user can act on. What is read from or written to a path names the path.
 
 use alloc::boxed::Box;
 use core::fmt;
@@ -21,16 +21,29 @@ pub enum Error {
         /// What is wrong with it.
         problem: &'static str,
     },
-    /// Two operands do not lie on one lattice.
-    #[error("the operands lie on different frames (origin, edge and depth must be the same)")]
-    FrameMismatch,
+    /// Two operands do not lie on one lattice. A stored octree is known on the frame that it was made on and on
+    /// that frame with another depth.
+    #[error(
+        "different frames: origin {:?}, edge {}, depth {} and origin {:?}, edge {}, depth {}; give both the same \
+         bounds and depth", origins[0], edges[0], depths[0], origins[1], edges[1], depths[1]
+    )]
+    FrameMismatch {
+        /// Lower corners of both universes, in model units.
+        origins: [[f64; 3]; 2],
+        /// Edge lengths of both, in model units.
+        edges: [f64; 2],
+        /// Depths of both.
+        depths: [u8; 2],
+    },
     /// An octree that is to be refined was made from another solid than this one.
     #[error(
         "the octree was not made from this solid: its fingerprint, or what it says of a cell, is another"
     )]
     SourceMismatch,
     /// The producer cannot decide the centre of a cell, so the sampled rule cannot be used on it.
-    #[error("this solid cannot decide single points, which the sampled rule needs")]
+    #[error(
+        "this solid cannot decide single points, which the sampled rule needs; any other rule can be used"
+    )]
     NotSampled,
     /// A triangle mesh that does not bound a solid.
     #[error(transparent)]
@@ -83,8 +96,55 @@ pub enum Error {
     },
     /// The operating system refused to read or write.
     #[cfg(feature = "std")]
-    #[error(transparent)]
+    #[error("{}", system_text(.0))]
     Io(std::io::Error),
+    /// A file at a path cannot be read or written; [`cause`](Error::cause) tells why.
+    #[cfg(feature = "std")]
+    #[error("{}: {error}", path.display())]
+    File {
+        /// The path that was asked for.
+        path: Box<std::path::Path>,
+        /// What is wrong with the file.
+        error: Box<Error>,
+    },
+}
+
+impl Error {
+    /// The error without the name of a file: of [`Error::File`] what is wrong with the file, else the error.
+    pub fn cause(&self) -> &Error {
+        match self {
+            #[cfg(feature = "std")]
+            Error::File { error, .. } => error.cause(),
+            other => other,
+        }
+    }
+
+    /// The error with the name of the file that it is about, if it is about a file.
+    #[cfg(feature = "std")]
+    pub(crate) fn of_file(self, path: &std::path::Path) -> Error {
+        match self {
+            Error::Io(_)
+            | Error::Format(_)
+            | Error::Damaged(_)
+            | Error::Mesh(_)
+            | Error::MeshFile(_)
+            | Error::Package(_)
+            | Error::Scene(_) => Error::File { path: path.into(), error: Box::new(self) },
+            other => other,
+        }
+    }
+}
+
+/// What the system says, without its number.
+#[cfg(feature = "std")]
+fn system_text(error: &std::io::Error) -> alloc::string::String {
+    let mut text = alloc::string::ToString::to_string(error);
+    if let Some(code) = error.raw_os_error()
+        && let Some(before) = text.strip_suffix(&alloc::format!(" (os error {code})"))
+    {
+        text.truncate(before.len());
+    }
+    text
 }
 
 #[cfg(feature = "std")]
@@ -528,11 +588,14 @@ pub enum FormatError {
     #[error("the metadata are not UTF-8 texts with ascending keys")]
     Metadata,
     /// The bytes are not aligned in memory as a view needs them.
-    #[error("the bytes must begin on an address that is a multiple of 8")]
+    #[error("the bytes must begin on an address that is a multiple of 8; from_bytes copies any")]
     Alignment,
     /// Multi-byte numbers of this machine have the other order, so a file cannot be used in place.
     #[error("files can only be mapped on little-endian machines; open copies instead")]
     Endianness,
+    /// A pipe, device or folder cannot be mapped.
+    #[error("only a regular file can be mapped; open reads others, too")]
+    NotRegular,
 }
 
 /// How the arrays of an octree contradict each other: what [`OctreeRef::check`](crate::OctreeRef::check)

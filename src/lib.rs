@@ -103,8 +103,9 @@ pub use op::{
     intersection_of, resolve, union, union_of, xor, xor_of,
 };
 pub use query::{
-    Clearance, Extent, Interference, MassProperties, Membership, Overlap, PointCursor, Region, StopReason,
-    bounding_box, classify_box, clearance, contains, interference, interference_of, measure,
+    CLEARANCE_SPLITS, Clearance, Extent, Interference, MassProperties, Membership, Overlap, PointCursor,
+    Region, StopReason, bounding_box, classify_box, clearance, contains, interference, interference_of,
+    measure,
 };
 pub use solid::{
     AnyClassifier, AnySolid, AnyWorker, Callback, Classifier, Crossing, Csg, Enclosure, Erasable,

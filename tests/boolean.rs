@@ -204,11 +204,11 @@ fn refusals() {
     ] {
         for (_, op, _) in OPERATIONS {
             let refused = op(tree(a).view(), tree(other).view(), &alone());
-            assert!(matches!(refused, Err(Error::FrameMismatch)), "{refused:?}");
+            assert!(matches!(refused, Err(Error::FrameMismatch { .. })), "{refused:?}");
         }
         let (one, two) = (tree(a), tree(other));
         let refused = union_of(&[*one.view(), *one.view(), *two.view()], &alone());
-        assert!(matches!(refused, Err(Error::FrameMismatch)));
+        assert!(matches!(refused, Err(Error::FrameMismatch { .. })));
     }
     for many in [union_of, intersection_of, xor_of] {
         assert!(matches!(many(&[], &alone()), Err(Error::Argument { name: "trees", .. })));

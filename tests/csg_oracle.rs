@@ -155,6 +155,17 @@ fn any_bytes(count: u64) {
 }
 
 #[test]
+fn what_the_fuzzer_found_interesting() {
+    let corpus = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("fuzz/corpus/csg");
+    let mut count = 0;
+    for entry in std::fs::read_dir(&corpus).unwrap() {
+        any_bytes::csg(&std::fs::read(entry.unwrap().path()).unwrap());
+        count += 1;
+    }
+    assert!(count > 100, "{count} inputs");
+}
+
+#[test]
 fn any_bytes_are_expressions() {
     any_bytes(400);
 }

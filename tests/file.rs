@@ -208,8 +208,10 @@ fn put(bytes: &mut [u8], at: usize, value: u64, length: usize) {
 #[track_caller]
 fn format_error<T>(result: Result<T, Error>) -> FormatError {
     match result {
-        Err(Error::Format(error)) => error,
-        Err(other) => panic!("another error: {other}"),
+        Err(error) => match error.cause() {
+            Error::Format(error) => *error,
+            other => panic!("another error: {other}"),
+        },
         Ok(_) => panic!("no error"),
     }
 }
@@ -890,7 +892,10 @@ mod save {
     #[track_caller]
     fn io_error(result: Result<(), Error>) -> std::io::Error {
         match result {
-            Err(Error::Io(error)) => error,
+            Err(Error::File { error, .. }) => match *error {
+                Error::Io(error) => error,
+                other => panic!("{other:?}"),
+            },
             other => panic!("{other:?}"),
         }
     }
@@ -967,7 +972,7 @@ mod save {
         }
         #[cfg(feature = "mmap")]
         // SAFETY: it is refused.
-        assert!(matches!(unsafe { file::map(&pipe) }, Err(Error::Argument { name: "path", .. })));
+        assert_eq!(format_error(unsafe { file::map(&pipe) }), FormatError::NotRegular);
         assert_eq!(names(directory.path()), ["pipe"]);
     }
 
@@ -1150,4 +1155,69 @@ mod save {
         assert_eq!(names(&inner), ["tree.lfl"]);
         assert_eq!(file::open(inner.join("tree.lfl")).unwrap(), dictionary_coded());
     }
+}
+
+/// Each refusal of a path begins with the path as it was given, and tells no other name and no number.
+#[test]
+fn errors_name_the_file() {
+    fn text<T>(result: Result<T, Error>) -> String {
+        result.err().unwrap().to_string()
+    }
+    let directory = tempfile::tempdir().unwrap();
+    let missing = directory.path().join("missing.lfl");
+    let expected = format!("{}: No such file or directory", missing.display());
+    let short = directory.path().join("short.lfl");
+    std::fs::write(&short, b"leafless").unwrap();
+    let is_named = |text: String| {
+        assert!(
+            text.starts_with(&format!("{}: ", short.display())) && text.matches("short.lfl").count() == 1,
+            "{text}"
+        );
+    };
+    #[cfg(unix)]
+    {
+        assert_eq!(text(file::open(&missing)), expected);
+        assert_eq!(text(file::probe(&missing)), expected);
+        assert_eq!(text(leafless::exchange::open_mesh(&missing, &Default::default())), expected);
+        #[cfg(feature = "scene")]
+        assert_eq!(text(leafless::scene::open_scene(&missing)), expected);
+        #[cfg(feature = "mmap")]
+        // SAFETY: there is no such file.
+        unsafe {
+            assert_eq!(text(file::map(&missing)), expected);
+            assert_eq!(text(file::map_verified(&missing)), expected);
+        }
+        // The temporary file beside it is nobody's business.
+        let tree = small();
+        let path = directory.path().join("no/part.lfl");
+        assert_eq!(text(file::save(&tree, &path)), format!("{}: No such file or directory", path.display()));
+    }
+    is_named(text(file::open(&short)));
+    is_named(text(file::probe(&short)));
+    is_named(text(leafless::exchange::open_mesh(&short, &Default::default())));
+    #[cfg(feature = "scene")]
+    is_named(text(leafless::scene::open_scene(&short)));
+    #[cfg(feature = "mmap")]
+    // SAFETY: nobody changes the file.
+    unsafe {
+        is_named(text(file::map(&short)));
+        is_named(text(file::map_verified(&short)));
+        let folder = text(file::map(directory.path()));
+        assert!(folder.starts_with(&format!("{}: only a regular", directory.path().display())), "{folder}");
+    }
+}
+
+/// Frames that differ are both told.
+#[test]
+fn frames_that_differ_are_told() {
+    let tree = |x: f64, depth| {
+        let frame = leafless::Frame::new([x, 0.0, 0.5], 4.0, depth).unwrap();
+        leafless::Octree::uniform(frame, leafless::Tag::Full, leafless::Tag::Full).unwrap()
+    };
+    let refused = leafless::union(tree(0.0, 3).view(), tree(1.0, 4).view(), &Default::default());
+    assert_eq!(
+        refused.unwrap_err().to_string(),
+        "different frames: origin [0.0, 0.0, 0.5], edge 4, depth 3 and origin [1.0, 0.0, 0.5], edge 4, depth 4; \
+         give both the same bounds and depth"
+    );
 }

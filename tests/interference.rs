@@ -6,9 +6,9 @@ mod common;
 use common::cubes::Plain;
 use common::{Dense, Random, alone, model};
 use leafless::{
-    Affine, AnySolid, Cell, Clearance, Control, Csg, Cube, Error, FillRule, Frame, HalfSpace, Interference,
-    MeshSolid, Octree, Overlap, Rule, Solid, Tag, Transform, TriangleMesh, build, clearance, exchange,
-    interference, interference_of, intersection,
+    Affine, AnySolid, CLEARANCE_SPLITS, Cell, Clearance, Control, Csg, Cube, Error, FillRule, Frame,
+    HalfSpace, Interference, MeshSolid, Octree, Overlap, Rule, Solid, StopReason, Tag, Transform,
+    TriangleMesh, build, clearance, exchange, interference, interference_of, intersection,
 };
 use std::f64::consts::PI;
 use std::sync::atomic::AtomicBool;
@@ -96,7 +96,10 @@ fn a_shaft_in_a_ring() {
     let found = interference(&cut, &ring, &frame, PROOF, &alone()).unwrap();
     assert_eq!((found.verdict, found.clipped), (Overlap::Disjoint, false));
     assert_eq!((found.volume.lower, found.volume.upper), (0.0, 0.0));
-    let distance = clearance(&rod(20.0), &ring, &frame, 2.0, &up_to(100_000)).unwrap();
+    let far = clearance(&cut, &ring, &frame, 2.0, &up_to(100_000)).unwrap();
+    assert!(far.clipped && far.distance.lower == 0.0, "the ring goes on: {far:?}");
+    let whole = Csg::intersection_of([ring.clone(), Csg::cuboid([0.0; 3], [128.0; 3]).unwrap()]).unwrap();
+    let distance = clearance(&cut, &whole, &frame, 2.0, &up_to(100_000)).unwrap();
     println!("shaft in ring: {distance:?}");
     assert!(distance.distance.contains(4.0) && distance.distance.lower > 0.0, "{distance:?}");
     // Of its own length the shaft ends inside, so that nothing outside matters to the overlap.
@@ -501,7 +504,7 @@ fn budgets_and_refusals() {
     // A solid that cannot be had in this frame.
     let tree = build(&a, &published(5), Rule::Certified, &alone()).unwrap();
     let other = Frame::new([1.0; 3], 128.0, 5).unwrap();
-    assert!(matches!(interference(&tree, &b, &other, PROOF, &alone()), Err(Error::FrameMismatch)));
+    assert!(matches!(interference(&tree, &b, &other, PROOF, &alone()), Err(Error::FrameMismatch { .. })));
 }
 
 #[test]
@@ -641,4 +644,85 @@ fn solids_of_any_kind() {
     let frame = Frame::new([0.0; 3], 2.0, 6).unwrap();
     let found = interference(&&ball, &&ball, &frame, PROOF, &alone()).unwrap();
     assert_eq!(found.verdict, Overlap::Overlapping);
+}
+
+/// A pin in the bore of a block, with the same play all around: nowhere is nearest.
+fn pin_and_bore() -> (Csg, Csg) {
+    let pin = Csg::cylinder(4.9, 2.0, 18.0).unwrap();
+    let bore = Csg::cylinder(5.0, 0.0, 20.0).unwrap();
+    let block = Csg::cuboid([-8.0, -8.0, 1.0], [8.0, 8.0, 19.0]).unwrap().difference(&bore).unwrap();
+    (pin, block)
+}
+
+/// Cells of 0.006 could tell the play to 0.01, but not soon: the default budget ends it, with both bounds.
+#[test]
+fn a_pin_in_a_bore_ends_by_default() {
+    let (pin, block) = pin_and_bore();
+    let frame = Frame::new([-12.0, -12.0, -2.0], 24.0, 12).unwrap();
+    let start = std::time::Instant::now();
+    let found = clearance(&pin, &block, &frame, 0.01, &alone()).unwrap();
+    println!("{:?} {found:?}", start.elapsed());
+    check_distance(&found, 0.1, "pin and bore");
+    assert!(found.distance.upper < 0.11, "{found:?}");
+    assert_eq!(found.stop_reason, StopReason::Budget);
+    assert!(found.splits.iter().sum::<u64>() <= CLEARANCE_SPLITS);
+}
+
+/// A tolerance that the finest cells cannot give ends with what they can.
+#[test]
+fn cells_that_cannot_tell_more_end_a_search() {
+    let (pin, block) = pin_and_bore();
+    for depth in [6, 8, 9] {
+        let frame = Frame::new([-12.0, -12.0, -2.0], 24.0, depth).unwrap();
+        for tolerance in [0.0, 1e-3] {
+            let start = std::time::Instant::now();
+            let found = clearance(&pin, &block, &frame, tolerance, &up_to(1 << 26)).unwrap();
+            println!("{depth} {:?} {found:?}", start.elapsed());
+            check_distance(&found, 0.1, "pin and bore");
+            assert_eq!(found.stop_reason, StopReason::Exhausted);
+            assert!(found.distance.width() <= 2.0 * 3f64.sqrt() * frame.cell_size());
+        }
+    }
+}
+
+/// Two foils that are thinner than a cell, one on the other, each with a ball at its far end: nothing near the
+/// contact is FULL, and yet the distance is no greater than that of the balls.
+#[test]
+fn full_cells_anywhere_bound_a_distance() {
+    let frame = Frame::new([0.0; 3], 16.0, 9).unwrap();
+    let foil = |low: f64, x: f64, r: f64| {
+        let foil = Csg::cuboid([2.0, 2.0, low], [14.0, 14.0, low + 0.02]).unwrap();
+        let centre = if low < 8.0 { [x, 8.0, 5.0] } else { [x, 8.0, 11.0] };
+        Csg::union_of([foil, Csg::ball(centre, r).unwrap()]).unwrap()
+    };
+    for radius in [1.0, 0.1] {
+        let (a, b) = (foil(7.99, 3.0, radius), foil(8.01, 13.0, radius));
+        let few = if radius == 1.0 { 2000 } else { 100_000 };
+        for (most, tolerance) in [(None, 0.0), (None, f64::INFINITY), (Some(few), 0.0)] {
+            let control = Control { max_splits: most, ..Control::default() };
+            let found = clearance(&a, &b, &frame, tolerance, &control).unwrap();
+            println!("{found:?}");
+            check_distance(&found, 0.0, "foils");
+            assert!(found.distance.upper <= 12.0 && found.nearest.is_some(), "{found:?}");
+        }
+    }
+    // Of a foil alone nothing is FULL: that is found out, and said.
+    let foil = |low: f64| Csg::cuboid([2.0, 2.0, low], [14.0, 14.0, low + 0.02]).unwrap();
+    let frame = Frame::new([0.0; 3], 16.0, 6).unwrap();
+    let found = clearance(&foil(7.99), &foil(8.01), &frame, 0.0, &alone()).unwrap();
+    assert_eq!((found.distance.upper, found.stop_reason), (f64::INFINITY, StopReason::Exhausted));
+}
+
+/// A wall of three finest cells has FULL cells on the finest level only.
+#[test]
+fn full_cells_of_thin_walls_are_found() {
+    let frame = Frame::new([0.0; 3], 16.0, 10).unwrap();
+    let turn = Affine::new([[0.8, -0.6, 0.0, 4.0], [0.6, 0.8, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]]).unwrap();
+    let wall = |x: f64| {
+        let wall = Csg::cuboid([x, 1.0, 1.0], [x + 0.06, 9.0, 15.0]).unwrap();
+        wall.placed(&turn).unwrap()
+    };
+    let found = clearance(&wall(4.0), &wall(7.06), &frame, 0.0, &up_to(20_000)).unwrap();
+    check_distance(&found, 3.0, "walls");
+    assert!(found.distance.upper < 3.2, "{found:?}");
 }

@@ -1043,7 +1043,7 @@ fn another_source_is_refused() {
     mismatch(resume(&built, &frame));
     resume(&built.with_metadata(octree.metadata().clone()), &frame).unwrap();
     let moved = Frame::new([0.25; 3], 1.0, 5).unwrap();
-    assert!(matches!(resume(&octree, &moved), Err(Error::FrameMismatch)));
+    assert!(matches!(resume(&octree, &moved), Err(Error::FrameMismatch { .. })));
     let shallow = unit_frame(4);
     assert!(matches!(resume(&octree, &shallow), Err(Error::Argument { name: "frame", .. })));
     let nameless = LazyOctree::resume(&octree, slab(), &frame, &alone()).map(drop);

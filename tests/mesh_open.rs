@@ -25,7 +25,9 @@ use common::{Random, alone};
 use descended::Descended;
 use leafless::exchange::{MeshOptions, open_mesh};
 use leafless::file::write_to;
-use leafless::{Control, FillRule, Frame, MeshSolid, Octree, Rule, Tag, build};
+use leafless::{
+    Control, FillRule, Frame, Membership, MeshSolid, Octree, Rule, Solid, Tag, TriangleMesh, build,
+};
 use oracle::PointOracle;
 use shapes::*;
 use soup::check::{Case, Effort, Findings, around_centre, examine, is_inside, trees};
@@ -730,6 +732,69 @@ fn five_million_triangles() {
             if let Some(inside) = is_inside(FillRule::NonZero, truth.at(p), 1e-6) {
                 assert_ne!(tag, if inside { Tag::Empty } else { Tag::Full }, "{p:?}");
             }
+        }
+    }
+}
+
+/// Corners of a cube, and its facets facing outward.
+fn cube() -> (Vec<[f64; 3]>, Vec<[u32; 3]>) {
+    let corners = (0..8).map(|k| [0, 1, 2].map(|axis| f64::from(k >> axis & 1))).collect();
+    let quads = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+    let facets = quads.iter().flat_map(|[a, b, c, d]| [[*a, *b, *c], [*a, *c, *d]]).collect();
+    (corners, facets)
+}
+
+/// Random facets of a cube turned over, left out or doubled: nothing is enclosed outside of the bounds, though
+/// something is outside of the box around the corners.
+#[test]
+fn bounds_hold_whatever_an_open_surface_encloses() {
+    let (corners, whole) = cube();
+    let mut random = Random(7);
+    let (mut beyond, mut slack) = (0, 0.0f64);
+    for round in 0..400 {
+        let mut facets = Vec::new();
+        for &[a, b, c] in &whole {
+            match random.below(5) {
+                0 => facets.push([a, c, b]),
+                1 if round % 2 == 0 => {}
+                2 if round % 3 == 0 => facets.extend([[a, b, c]; 2]),
+                _ => facets.push([a, b, c]),
+            }
+        }
+        let Ok(mesh) = TriangleMesh::new(corners.clone(), facets) else { continue };
+        let fill = if round % 5 == 0 { FillRule::Positive } else { FillRule::NonZero };
+        let Ok(solid) = MeshSolid::new(mesh, fill) else { continue };
+        let bounds = solid.bounds().expect("bounds of every mesh");
+        let frame = Frame::new([-1.5; 3], 4.0, 4).unwrap();
+        let tree = build(&solid, &frame, Rule::Sampled, &Control::default()).unwrap();
+        for at in 0..4096u32 {
+            let centre = [0, 4, 8].map(|shift| -1.5 + 0.25 * (f64::from(at >> shift & 15) + 0.5));
+            if tree.contains(centre) == Membership::Inside {
+                let is_within = |low: f64, high: f64| centre.iter().all(|&c| low <= c && c <= high);
+                beyond += u32::from(!is_within(0.0, 1.0));
+                let [min, max] = [bounds.min, bounds.max];
+                assert!(
+                    (0..3).all(|k| min[k] <= centre[k] && centre[k] <= max[k]),
+                    "{round} {centre:?} {bounds:?}"
+                );
+            }
+        }
+        slack = (0..3).fold(slack, |slack, k| slack.max(bounds.max[k] - 1.0).max(-bounds.min[k]));
+    }
+    assert!(beyond > 0 && slack < 1.5, "{beyond} {slack}");
+}
+
+/// One flat, convex hole lets nothing out.
+#[test]
+fn bounds_of_a_surface_with_one_flat_hole_are_those_of_its_corners() {
+    let (corners, whole) = cube();
+    for lid in 0..6 {
+        let open: Vec<_> = (0..12).filter(|facet| facet / 2 != lid).map(|facet| whole[facet]).collect();
+        for facets in [open, whole[1..].to_vec()] {
+            let solid =
+                MeshSolid::new(TriangleMesh::new(corners.clone(), facets).unwrap(), FillRule::NonZero)
+                    .unwrap();
+            assert_eq!(solid.bounds(), leafless::Bounds::new([0.0; 3], [1.0; 3]));
         }
     }
 }

@@ -116,9 +116,12 @@ fn sewn_vertices_move_each_in_its_own_direction() {
         let on = face.map(|p| [0, 1, 2].map(|axis| centre[axis] + 100.0 * p[axis]));
         let middle = [0, 1, 2].map(|axis| (on[0][axis] + on[1][axis] + on[2][axis]) / 3.0);
         let shrunk = on.map(|p| [0, 1, 2].map(|axis| middle[axis] + 0.712 * (p[axis] - middle[axis])));
-        // Dust at the corners, onto which these are sewn: away from the middles of the triangles.
+        // Hairs at the corners, onto which these are sewn: away from the middles of the triangles. They are so
+        // long, outward, that they reach a tenth of a cell at least.
         for p in shrunk {
-            add([p, [p[0] + 1e-9, p[1], p[2]], [p[0], p[1] + 1e-9, p[2]]]);
+            let outward = unit(minus(p, centre));
+            let end = [0, 1, 2].map(|axis| p[axis] + 3f64.sqrt() * 0.1 * f64::from(1 << 24) * outward[axis]);
+            add([p, [p[0], p[1] + 1e-9, p[2]], end]);
         }
         handed_in.push(shrunk.map(|p| {
             let outward = minus(p, middle);
@@ -127,9 +130,6 @@ fn sewn_vertices_move_each_in_its_own_direction() {
         }));
     }
     handed_in.into_iter().for_each(&mut add);
-    // Something far away makes the reach of sewing a tenth of a cell.
-    let far = -0.1 * f64::from(1 << 24);
-    add([[far, 0.0, 0.0], [far, 30.0, 0.0], [far, 0.0, 30.0]]);
 
     let mesh = TriangleMesh::new(vertices.clone(), triangles.clone()).unwrap().sewn().unwrap();
     assert!(mesh.displacement() > 0.09);

@@ -101,6 +101,144 @@ fn known_meshes() {
     assert_eq!(counts(&mesh(&[a.clone(), cube([1.0, 1.0, 1.0])])), [0, 0, 0, 0, 0, 0, 0, 2, 0, 0]);
 }
 
+/// An axis-aligned block, as twelve triangles.
+fn block(low: [f64; 3], high: [f64; 3]) -> Vec<[[f64; 3]; 3]> {
+    let place = |p: [f64; 3]| [0, 1, 2].map(|axis| if p[axis] == 0.0 { low[axis] } else { high[axis] });
+    cube([0.0; 3]).into_iter().map(|facet| facet.map(place)).collect()
+}
+
+/// Bodies that overlap, and those that may.
+fn overlapping(facets: &[Vec<[[f64; 3]; 3]>]) -> [u64; 2] {
+    let report = mesh(facets).report().unwrap();
+    [report.overlapping_bodies, report.undecided_bodies]
+}
+
+#[test]
+fn bodies_that_overlap() {
+    let centred = |half: f64| block([-half; 3], [half; 3]);
+    let [one, two, three, four] = [1.0, 2.0, 3.0, 4.0].map(centred);
+    let moved = |offset: [f64; 3]| cube([0, 1, 2].map(|axis| offset[axis] - 1.0));
+    let base = cube([-1.0; 3]);
+    assert_eq!(overlapping(&[base.clone(), moved([0.5, 0.25, 0.125])]), [2, 0]);
+    // With sides in common planes.
+    assert_eq!(overlapping(&[base.clone(), moved([0.5, 0.0, 0.0])]), [2, 0]);
+    assert_eq!(overlapping(&[base.clone(), moved([0.5, 0.5, 0.0])]), [2, 0]);
+    // Edges that go through the other one's diagonals.
+    assert_eq!(overlapping(&[base.clone(), moved([0.5, 0.5, 0.5])]), [2, 0]);
+    // Apart, and side by side.
+    assert_eq!(overlapping(&[base.clone(), moved([5.0, 0.0, 0.0])]), [0, 0]);
+    assert_eq!(overlapping(&[base.clone(), moved([1.0, 0.25, 0.25])]), [0, 0]);
+    assert_eq!(overlapping(&[base.clone(), moved([1.0, 1.0, 1.0])]), [0, 0]);
+    // Inside, in one sense and in the other.
+    assert_eq!(overlapping(&[one.clone(), two.clone()]), [2, 0]);
+    assert_eq!(overlapping(&[turned(&one), turned(&two)]), [2, 0]);
+    assert_eq!(overlapping(&[turned(&one), two.clone()]), [0, 0]);
+    assert_eq!(overlapping(&[one.clone(), turned(&two), three.clone()]), [0, 0]);
+    // All but the cavity.
+    assert_eq!(overlapping(&[one.clone(), turned(&two), three.clone(), four.clone()]), [3, 0]);
+    assert_eq!(overlapping(&[one.clone(), two.clone(), three.clone()]), [3, 0]);
+    // A cavity that leaves its body.
+    assert_eq!(overlapping(&[two.clone(), turned(&cube([1.5; 3]))]), [2, 0]);
+    // A sixth of a cube that counts twice: three of its faces lie in the cube's.
+    let [o, x, y, z] =
+        [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(|p| p.map(|c| c / 2.0));
+    let corner = vec![[o, y, x], [o, x, z], [x, y, z], [y, o, z]];
+    assert_eq!(overlapping(&[cube([0.0; 3]), corner.clone()]), [2, 0]);
+    assert_eq!(overlapping(&[cube([0.0; 3]), turned(&corner)]), [0, 0]);
+    // A peg that fits into a cavity exactly: to tell needs more than signs.
+    let peg = block([-1.0, -1.0, -0.5], [1.0, 1.0, 0.5]);
+    assert_eq!(overlapping(&[two.clone(), turned(&one), peg]), [0, 2]);
+    // Of an open body nothing is said.
+    assert_eq!(overlapping(&[two[1..].to_vec(), one.clone()]), [0, 0]);
+    // Far away, where coordinates are rounded.
+    let far = |facets: &[[[f64; 3]; 3]]| -> Vec<[[f64; 3]; 3]> {
+        facets.iter().map(|facet| facet.map(|p| p.map(|c| c * 1e-3 + 1e9))).collect()
+    };
+    assert_eq!(overlapping(&[far(&two), far(&one)]), [2, 0]);
+    assert_eq!(overlapping(&[far(&two), far(&turned(&one))]), [0, 0]);
+}
+
+/// Blocks with whole coordinates, where all can be told cell by cell.
+#[test]
+fn random_blocks_that_overlap() {
+    let mut random = Random(3);
+    let (mut sure, mut clear, mut open) = (0, 0, 0);
+    for _ in 0..3000 {
+        let count = 2 + random.below(4) as usize;
+        let size = 3 + random.below(5);
+        let mut blocks = vec![];
+        while blocks.len() < count {
+            let ends = [0; 3].map(|_: i32| [random.below(size), random.below(size)]);
+            if ends.iter().all(|[a, b]| a != b) {
+                let sense = if random.below(3) == 0 { -1 } else { 1 };
+                blocks.push((ends.map(|[a, b]| a.min(b)), ends.map(|[a, b]| a.max(b)), sense));
+            }
+        }
+        let facets: Vec<_> = (blocks.iter())
+            .map(|&(low, high, sense)| {
+                let facets = block(low.map(f64::from), high.map(f64::from));
+                if sense > 0 { facets } else { turned(&facets) }
+            })
+            .collect();
+        let report = mesh(&facets).report().unwrap();
+        // Blocks with a common edge are one body.
+        if report.bodies != count as u64 || report.opposite > 0 {
+            continue;
+        }
+        let within = |(l, h, _): ([u32; 3], [u32; 3], i32), (low, high, _): ([u32; 3], [u32; 3], i32)| {
+            (0..3).all(|axis| low[axis] <= l[axis] && h[axis] <= high[axis])
+        };
+        let meet = |(l, h, _): ([u32; 3], [u32; 3], i32), (low, high, _): ([u32; 3], [u32; 3], i32)| {
+            (0..3).all(|axis| low[axis] < h[axis] && l[axis] < high[axis])
+        };
+        let mut overlap = vec![false; count];
+        for k in 0..count {
+            let around: i32 =
+                (0..count).filter(|&j| j != k && within(blocks[k], blocks[j])).map(|j| blocks[j].2).sum();
+            for j in (0..count).filter(|&j| j != k && meet(blocks[k], blocks[j])) {
+                let is_crossing = !within(blocks[k], blocks[j]) && !within(blocks[j], blocks[k]);
+                let is_nested =
+                    within(blocks[k], blocks[j]) && blocks[j].2 == blocks[k].2 && around * blocks[k].2 > 0;
+                if is_crossing || is_nested {
+                    (overlap[j], overlap[k]) = (true, true);
+                }
+            }
+        }
+        let expected = overlap.iter().filter(|&&overlap| overlap).count() as u64;
+        let (proven, possible) = (report.overlapping_bodies, report.undecided_bodies);
+        assert!(proven <= expected && expected <= proven + possible, "{blocks:?}: {expected}, {report:?}");
+        sure += proven;
+        clear += u64::from(possible == 0 && expected == 0);
+        open += possible;
+    }
+    assert!(sure > 2000 && clear > 200 && open < sure / 20, "{sure} {clear} {open}");
+}
+
+#[test]
+fn faces_that_are_not_flat() {
+    use leafless::exchange::read_obj;
+    let report = |z: f64, more: &str| {
+        // A square with one corner lifted, a flat square, and a triangle.
+        let text = format!(
+            "v 0 0 0\nv 2 0 0\nv 2 2 {z}\nv 0 2 0\nv 4 0 0\nv 4 2 0\n{more}f 1 2 3 4\nf 2 5 6 3\nf 1 2 5\nf 1 2 5 5\n"
+        );
+        let mesh = read_obj(text.as_bytes()).unwrap();
+        let report = mesh.report().unwrap();
+        assert_eq!(mesh.clone().sewn().unwrap().report().unwrap().polygons, report.polygons);
+        // What is moved is another surface, of triangles.
+        assert_eq!(mesh.transformed(|p| p).unwrap().report().unwrap().polygons, 0);
+        (report.polygons, report.bent_polygons, report.polygon_deviation)
+    };
+    assert_eq!(report(0.0, ""), (3, 0, 0.0));
+    // The plane of a square with the heights 0, 0, z, 0 has its corners z/4 above and below, but for the tilt.
+    let (polygons, bent, deviation) = report(0.25, "");
+    assert_eq!((polygons, bent), (3, 2));
+    assert!((deviation - 0.0625).abs() < 0.001, "{deviation}");
+    let (_, bent, deviation) = report(1e-9, "");
+    assert!(bent == 2 && (deviation - 0.25e-9).abs() < 1e-15, "{bent} {deviation}");
+    assert_eq!(report(1e-14, "").1, 0);
+}
+
 #[test]
 fn the_order_of_questions_does_not_matter() {
     let facets = [cube([0.0; 3])[1..].to_vec(), turned(&cube([3.0; 3]))].concat();

@@ -528,9 +528,9 @@ fn what_is_refused_of_any_solid() {
     // What the solid refuses.
     let tree = Dense::uniform(3, Tag::Full).octree();
     let refused = contains(&tree, &frame, &points, &mut answers, &alone());
-    assert!(matches!(refused, Err(Error::FrameMismatch)));
+    assert!(matches!(refused, Err(Error::FrameMismatch { .. })));
     let refused = classify_box(&tree, &frame, [0.0; 3], [1.0; 3], &alone());
-    assert!(matches!(refused, Err(Error::FrameMismatch)));
+    assert!(matches!(refused, Err(Error::FrameMismatch { .. })));
     // A host that stops the work.
     let failing = Callback::new(|_, _| Err(Error::Callback { code: 3 }));
     let refused = contains(&failing, &frame, &points, &mut answers, &alone());

@@ -7,7 +7,7 @@ mod scenes;
 
 use leafless::exchange::write_stl;
 use leafless::scene::read_scene;
-use leafless::{Control, Error, Frame, Interval, Membership, Octree, Rule, TriangleMesh, build};
+use leafless::{Affine, Control, Error, Frame, Interval, Membership, Octree, Rule, TriangleMesh, build};
 use std::f64::consts::PI;
 use std::fmt::Write;
 use std::path::Path;
@@ -79,7 +79,7 @@ fn solids() {
     assert_eq!(in_cube("cube([2, 3, 4], true);").contains([-0.9, -1.4, -1.9]), Membership::Inside);
     check("sphere($fn = 0, $fa = 12, $fs = 2, r = 5);", PI * 500.0 / 3.0, PI * 100.0);
     check("sphere(5);", PI * 500.0 / 3.0, PI * 100.0);
-    let cylinder = "cylinder($fn = 6, $fa = 12, $fs = 2, h = 4, r1 = 3, r2 = 3, center = ";
+    let cylinder = "cylinder($fn = 60, $fa = 12, $fs = 2, h = 4, r1 = 3, r2 = 3, center = ";
     check(&format!("{cylinder}false);"), PI * 36.0, PI * 42.0);
     check(&format!("{cylinder}true);"), PI * 36.0, PI * 42.0);
     assert_eq!(in_cube(&format!("{cylinder}true);")).contains([1.5, 1.5, -1.8]), Membership::Inside);
@@ -307,6 +307,109 @@ fn bounds() {
         assert!((min[axis] - [-5.0, 0.0, 1.0][axis]).abs() < 1e-12, "{min:?}");
         assert!((max[axis] - [0.0, 4.0, 7.0][axis]).abs() < 1e-12, "{max:?}");
     }
+}
+
+/// Links within each other's matrices, as OpenSCAD dumps an arm: each is moved up by 5 along the one before,
+/// and turned.
+fn arm(links: usize) -> String {
+    let link = "cylinder(h = 5, r1 = 1.66, r2 = 1.66, center = false); \
+                multmatrix([[1, 0, 0, -1], [0, 1, 0, -2], [0, 0, 1, 2], [0, 0, 0, 1]]) cube([2, 4, 1]);";
+    let joint = "multmatrix([[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 5], [0, 0, 0, 1]]) \
+                 multmatrix([[0.8, -0.6, 0, 0], [0.48, 0.64, -0.6, 0], [0.36, 0.48, 0.8, 0], [0, 0, 0, 1]])";
+    (1..links).fold(format!("group() {{ {link} }}"), |inner, _| {
+        format!("group() {{ {link} {joint} {{ {inner} }} }}")
+    })
+}
+
+#[test]
+fn bounds_of_an_arm_of_turned_links_are_hardly_larger_than_the_arm() {
+    let scene = read_scene(arm(8), None).unwrap();
+    let (min, max) = scene.bounds().unwrap().unwrap();
+    // By OpenSCAD 2021.01, with $fn = 200: its extents, and 346.29 for the volume.
+    let (low, high) = ([-2.0, -12.4508, 0.0], [18.1793, 2.0, 21.7006]);
+    for axis in 0..3 {
+        assert!(min[axis] <= low[axis] + 0.01 && high[axis] - 0.01 <= max[axis], "{min:?} {max:?}");
+    }
+    let frame = Frame::around(min, max, 8).unwrap();
+    assert!(frame.edge() <= 1.5 * (high[2] - low[2]), "{}", frame.edge());
+    let tree = tree(&arm(8), &frame);
+    assert!(!tree.view().is_clipped());
+    let volume = tree.statistics().volume();
+    assert!(250.0 <= volume.lower && volume.contains(346.3) && volume.upper <= 480.0, "{volume:?}");
+    // As long as exact numbers may be nested: 60 links reach 300 far at most.
+    let (min, max) = read_scene(arm(60), None).unwrap().bounds().unwrap().unwrap();
+    assert!((0..3).all(|axis| max[axis] - min[axis] < 700.0), "{min:?} {max:?}");
+}
+
+#[test]
+fn bounds_of_deep_and_shared_nestings_cost_little() {
+    let start = std::time::Instant::now();
+    let scene = read_scene(arm(3000), None).unwrap();
+    let _ = scene.bounds().unwrap();
+    let turn = Affine::new([[0.8, -0.6, 0.0, 1.0], [0.6, 0.8, 0.0, 0.0], [0.0, 0.0, 1.0, 0.5]]).unwrap();
+    let mut shared = leafless::Csg::cuboid([0.0; 3], [1.0; 3]).unwrap();
+    for _ in 0..200 {
+        shared = leafless::Csg::union_of([shared.clone(), shared.placed(&turn).unwrap()]).unwrap();
+    }
+    assert!(leafless::Solid::bounds(&shared).is_some());
+    assert!(start.elapsed().as_secs_f64() < 5.0, "{:?}", start.elapsed());
+}
+
+/// Every limit says what it is of, and none is called a shortage of memory.
+#[test]
+fn limits_say_what_they_are_of() {
+    let turn = "multmatrix([[0.8,-0.6,0,0],[0.48,0.64,-0.6,0],[0.36,0.48,0.8,0],[0,0,0,1]]) ";
+    let step = "multmatrix([[1,0,0,1],[0,1,0,0],[0,0,1,0],[0,0,0,1]]) ";
+    let mesh = "polyhedron([[0,0,0],[4,0,0],[0,4,0],[0,0,4]], [[0,1,2],[0,3,1],[0,2,3],[1,3,2]]);";
+    let cases = [
+        (format!("{}cube(1);", turn.repeat(200)), "16384 bits for the exact numbers of nested placements"),
+        (format!("{}{mesh}", step.repeat(300)), "256 matrices around a mesh or octree"),
+        (
+            format!("linear_extrude(height = 1) {}square(1);", turn.repeat(200)),
+            "16384 bits for the exact numbers of nested placements",
+        ),
+    ];
+    let frame = Frame::new([-8.0; 3], 16.0, 4).unwrap();
+    for (text, words) in cases {
+        let built = read_scene(&text, None)
+            .and_then(|scene| scene.solid(&frame))
+            .and_then(|solid| build(&solid, &frame, Rule::Certified, &Control::default()));
+        let error = built.map(|_| ()).unwrap_err();
+        assert!(matches!(error, Error::Limit { .. } | Error::Scene(_)), "{error:?}");
+        assert!(error.to_string().contains(words), "{error}");
+    }
+}
+
+/// A tetrahedron with a facet turned over and one missing encloses points below its lowest corner, as the fill
+/// rule has it.
+#[test]
+fn bounds_hold_what_a_polyhedron_with_a_turned_facet_encloses() {
+    let text = "polyhedron([[0, 0, 0], [4, 0, 0], [0, 4, 0], [0, 0, 4]], [[0, 1, 2], [0, 3, 1], [0, 2, 3]]);";
+    let turned = text.replace("[0, 1, 2]", "[0, 2, 1]").replace("[0, 3, 1], ", "[0, 3, 1], [1, 3, 2], ");
+    for text in [text, turned.as_str()] {
+        let (min, max) = read_scene(text, None).unwrap().bounds().unwrap().unwrap();
+        let tree = in_cube(text);
+        let mut count = 0;
+        for at in 0..1 << 18 {
+            let centre = [0, 6, 12].map(|shift| f64::from(at >> shift & 63) / 4.0 - 7.875);
+            if tree.contains(centre) == Membership::Inside {
+                count += 1;
+                assert!((0..3).all(|k| min[k] <= centre[k] && centre[k] <= max[k]), "{text} {centre:?}");
+            }
+        }
+        assert!(count > 100, "{text} {count}");
+    }
+}
+
+#[test]
+fn what_the_fuzzer_found_interesting() {
+    let corpus = Path::new(env!("CARGO_MANIFEST_DIR")).join("fuzz/corpus/scenes");
+    let (mut count, mut scenes) = (0, 0);
+    for entry in std::fs::read_dir(&corpus).unwrap() {
+        count += 1;
+        scenes += u32::from(scenes::scenes(&std::fs::read(entry.unwrap().path()).unwrap()));
+    }
+    assert!(count > 100 && scenes > 50, "{scenes} scenes of {count} inputs");
 }
 
 // ---- random scenes against an evaluation of their points --------------------------------------------------
@@ -575,18 +678,23 @@ fn files_beside_the_scene() {
         ("import(\"plan.dxf\");", (1, 1), "`import` of files `dxf` is not supported"),
         ("import(\"block.stl\", center = true);", (1, 1), "without `center`"),
     ] {
-        match read(text) {
-            Err(Error::Scene(error)) => {
+        let error = read(text).err().unwrap_or_else(|| panic!("{text}"));
+        match error.cause() {
+            Error::Scene(error) => {
                 assert_eq!((error.line(), error.column()), place, "{text}: {error}");
                 assert!(error.problem().contains(words), "{text}: {error}");
             }
-            other => panic!("{text}: {:?}", other.map(|_| ())),
+            other => panic!("{text}: {other:?}"),
         }
     }
-    assert!(matches!(leafless::scene::open_scene(folder.path().join("none.csg")), Err(Error::Io(_))));
+    let missing = leafless::scene::open_scene(folder.path().join("none.csg")).err().unwrap();
+    assert!(
+        matches!(missing.cause(), Error::Io(_)) && missing.to_string().contains("none.csg: "),
+        "{missing}"
+    );
     std::fs::write(folder.path().join("latin.csg"), b"cube(1);\n// gr\xFC\xDFe").unwrap();
     let error = leafless::scene::open_scene(folder.path().join("latin.csg")).err().unwrap();
-    assert_eq!(error.to_string(), "line 2, column 6: the text is not UTF-8");
+    assert_eq!(error.cause().to_string(), "line 2, column 6: the text is not UTF-8");
     // Without a folder there are no files.
     let (line, column, problem) = refusal("mesh(\"block.stl\");");
     assert!((line, column) == (1, 6) && problem.contains("folder"), "{problem}");

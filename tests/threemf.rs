@@ -3,7 +3,7 @@
 #[path = "../fuzz/bodies/packages.rs"]
 mod packages;
 
-use leafless::exchange::{LengthUnit, MeshFile, MeshFormat, MeshOptions, read_mesh};
+use leafless::exchange::{LengthUnit, MeshFile, MeshFormat, MeshOptions, MeshWarning, read_mesh};
 use leafless::{Error, FillRule, PackageError};
 use packages::zip::{CONTENT_TYPES, Entry, RELATIONSHIPS, model, package, tetrahedron, zip};
 use proptest::prelude::*;
@@ -327,18 +327,157 @@ fn circles_are_impossible() {
 
 #[test]
 fn extensions_that_are_required() {
-    for (uri, words) in [
-        ("http://schemas.microsoft.com/3dmanufacturing/securecontent/2019/04", "Secure Content"),
-        ("http://schemas.microsoft.com/3dmanufacturing/beamlattice/2017/02", "extension"),
-        ("http://schemas.microsoft.com/3dmanufacturing/slice/2015/07", "extension"),
+    let microsoft = "http://schemas.microsoft.com/3dmanufacturing";
+    let consortium = "http://schemas.3mf.io/3dmanufacturing";
+    for (uri, name) in [
+        (format!("{microsoft}/securecontent/2019/04"), "3MF extension \"Secure Content\""),
+        (format!("{microsoft}/beamlattice/2017/02"), "3MF extension \"Beam Lattice\""),
+        (format!("{microsoft}/beamlattice/balls/2020/07"), "3MF extension \"Beam Lattice: Balls\""),
+        (format!("{microsoft}/slice/2015/07"), "3MF extension \"Slice\""),
+        (
+            format!("{microsoft}/production/alternatives/2021/04"),
+            "3MF extension \"Production: Alternatives\"",
+        ),
+        (format!("{microsoft}/material/2099/01"), "3MF extension \"Materials and Properties\""),
+        (format!("{consortium}/volumetric/2022/01"), "3MF extension \"Volumetric\""),
+        (format!("{consortium}/implicit/2023/12"), "3MF extension \"Volumetric: Implicit Functions\""),
+        (format!("{consortium}/displacement/2023/10"), "3MF extension \"Displacement\""),
+        (format!("{consortium}/booleanoperations/2023/07"), "3MF extension \"Boolean Operations\""),
+        ("urn:example:lattices".into(), "unknown extension urn:example:lattices"),
     ] {
         let attributes = format!("requiredextensions=\"p x\" xmlns:x=\"{uri}\"");
-        assert_refused(&model(&attributes, &tetrahedron(1, ""), ITEM), 2, words);
+        assert_refused(&model(&attributes, &tetrahedron(1, ""), ITEM), 2, name);
         // Otherwise they may be ignored.
         let attributes = attributes.replace("required", "recommended");
         assert_eq!(read_model(model(&attributes, &tetrahedron(1, ""), ITEM)).mesh.triangles().len(), 4);
     }
-    assert_refused(&model("requiredextensions=\"unbound\"", "", ""), 2, "extension");
+    assert_refused(&model("requiredextensions=\"unbound\"", "", ""), 2, "stands for nothing");
+}
+
+/// An attribute that stands twice in one element is no well-formed XML, wherever it is.
+#[test]
+fn attributes_that_stand_twice() {
+    let turn = "transform=\"1 0 0 0 1 0 0 0 1 0 0 0\"";
+    let resources = format!(
+        "{}<object id=\"2\"><components><component objectid=\"1\" {turn}/></components></object>
+        <basematerials id=\"9\"><base name=\"PLA\"/></basematerials>",
+        tetrahedron(1, "type=\"model\"")
+    );
+    let items = format!("<item objectid=\"2\" {turn} p:path=\"/3D/3dmodel.model\"/>");
+    let good = model("unit=\"inch\"", &resources, &items);
+    read_model(&good);
+    for attribute in [
+        "unit=\"inch\"",
+        "xmlns:p=\"http://schemas.microsoft.com/3dmanufacturing/production/2015/06\"",
+        "type=\"model\"",
+        "objectid=\"1\"",
+        "objectid=\"2\"",
+        turn,
+        "p:path=\"/3D/3dmodel.model\"",
+        "v1=\"0\"",
+        "z=\"0\"",
+        "name=\"PLA\"",
+        "id=\"9\"",
+    ] {
+        let text = good.replacen(attribute, &format!("{attribute} {attribute}"), 1);
+        assert_ne!(text, good, "{attribute}");
+        let error = refused(&zip(&package(&text)));
+        assert!(error.problem().contains("second time") && error.line() > 0, "{attribute}: {error}");
+    }
+    // Another prefix for the same namespace makes no other attribute; other namespaces do.
+    let both = |uri: &str| good.replace("p:path", &format!("xmlns:q=\"{uri}\" q:path=\"/nowhere\" p:path"));
+    let error =
+        refused(&zip(&package(both("http://schemas.microsoft.com/3dmanufacturing/production/2015/06"))));
+    assert!(error.problem().contains("second time"), "{error}");
+    read_model(both("urn:other"));
+    // One among many.
+    let many: String = (0..40).map(|i| format!(" a{i}=\"\"")).collect();
+    let with = |more: &str| good.replace("<build", &format!("<build{many}{more}"));
+    read_model(with(" b=\"\""));
+    let error = refused(&zip(&package(with(" a7=\"\""))));
+    assert!(error.problem().contains("a7") && error.problem().contains("second time"), "{error}");
+    // In the other parts too.
+    for (index, attribute) in [(0, "Extension=\"model\""), (1, "Target=\"/3D/3dmodel.model\"")] {
+        let mut entries = package(&good);
+        let text = [CONTENT_TYPES, RELATIONSHIPS][index];
+        let twice = text.replacen(attribute, &format!("{attribute} {attribute}"), 1);
+        assert_ne!(twice, text);
+        let name = ["[Content_Types].xml", "_rels/.rels"][index];
+        entries[index] = Entry::stored(name, twice);
+        assert_broken(&zip(&entries), name, "second time");
+    }
+}
+
+/// Neither many attributes nor many prefixes take more than linear time.
+#[test]
+fn many_attributes_and_prefixes() {
+    let good = model("", &tetrahedron(1, ""), ITEM);
+    let many: String = (0..100_000).map(|i| format!(" a{i}=\"\"")).collect();
+    read_model(good.replace("<build", &format!("<build{many}")));
+    let many: String = (0..100_000).map(|i| format!(" xmlns:a{i}=\"urn:{i}\"")).collect();
+    let error = refused(&zip(&package(good.replace("<build", &format!("<build{many}")))));
+    assert!(error.problem().contains("too many prefixes"), "{error}");
+}
+
+/// XML may be in UTF-16, with a byte order mark.
+#[test]
+fn utf_16() {
+    let encoded = |text: &str, big: bool, mark: bool| -> Vec<u8> {
+        let text = text.replace("UTF-8", "UTF-16");
+        let units = mark.then_some(0xFEFF).into_iter().chain(text.encode_utf16());
+        units.flat_map(|unit| if big { unit.to_be_bytes() } else { unit.to_le_bytes() }).collect()
+    };
+    let good = model("", &tetrahedron(1, "name=\"Fl\u{e4}che \u{1F600}\""), ITEM);
+    let expected = read_model(&good).mesh;
+    for big in [false, true] {
+        let mut entries = package(encoded(&good, big, true));
+        entries[0] = Entry::stored("[Content_Types].xml", encoded(CONTENT_TYPES, big, true));
+        entries[1] = Entry::stored("_rels/.rels", encoded(RELATIONSHIPS, big, true));
+        let mesh = read(&zip(&entries)).mesh;
+        assert_eq!((mesh.vertices(), mesh.triangles()), (expected.vertices(), expected.triangles()));
+        let part = "3D/3dmodel.model";
+        assert_broken(&zip(&package(encoded(&good, big, false))), part, "UTF-16 without its byte order mark");
+        let mut odd = encoded(&good, big, true);
+        odd.push(b' ');
+        assert_broken(&zip(&package(odd)), part, "odd");
+        let mut lone = encoded(&good, big, true);
+        lone.extend(if big { [0xD8, 0] } else { [0, 0xD8] });
+        assert_broken(&zip(&package(lone)), part, "no UTF-16 text from character");
+        // What the declaration says must be so.
+        let wrong = encoded(&good.replace("UTF-8", "ISO-8859-1"), big, true);
+        assert_broken(&zip(&package(wrong)), part, "encoding is not UTF-16");
+    }
+    assert_refused(&good.replace("UTF-8", "UTF-16"), 1, "encoding is not UTF-8");
+}
+
+/// Files from before the first standard, as programs of 2013 and 2014 wrote them.
+#[test]
+fn the_draft() {
+    let colours = "<color id=\"0\" value=\"#FFFFFF\"/><material id=\"3\" colorid=\"0\"/>";
+    let text = model("", &(colours.to_owned() + &tetrahedron(1, "materialid=\"3\"")), ITEM);
+    let core = "http://schemas.microsoft.com/3dmanufacturing/core/2015/02";
+    let draft = text.replace(core, "http://schemas.microsoft.com/3dmanufacturing/2013/01");
+    assert_ne!(draft, text);
+    let [new, old] = [text, draft].map(read_model);
+    assert_eq!((old.mesh.vertices(), old.mesh.triangles()), (new.mesh.vertices(), new.mesh.triangles()));
+    assert_eq!((&new.warnings[..], &old.warnings[..]), (&[][..], &[MeshWarning::Draft][..]));
+    assert_eq!(old.warnings[0].to_string(), "this is 3MF of the draft 0.93; it was read as 1.0");
+}
+
+#[test]
+fn plain_xml_is_no_package() {
+    let text = model("", &tetrahedron(1, ""), ITEM);
+    for bytes in [
+        text.clone().into_bytes(),
+        format!("\u{FEFF}\n{text}").into_bytes(),
+        format!("\u{FEFF}{text}").encode_utf16().flat_map(u16::to_le_bytes).collect(),
+    ] {
+        let options = MeshOptions { format: Some(MeshFormat::ThreeMf), ..MeshOptions::default() };
+        match read_mesh(&bytes, &options) {
+            Err(Error::Package(error)) => assert!(error.to_string().contains("plain XML"), "{error}"),
+            other => panic!("{other:?}"),
+        }
+    }
 }
 
 #[test]
@@ -476,6 +615,17 @@ fn truncated_and_changed() {
 }
 
 /// What the fuzzer begins with is read, and has all that there is to be changed.
+#[test]
+fn what_the_fuzzer_found_interesting() {
+    let corpus = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("fuzz/corpus/packages");
+    let mut count = 0;
+    for entry in std::fs::read_dir(&corpus).unwrap() {
+        packages::packages(&std::fs::read(entry.unwrap().path()).unwrap());
+        count += 1;
+    }
+    assert!(count > 100, "{count} inputs");
+}
+
 #[test]
 fn seeds_of_the_fuzzer() {
     let seeds = packages::seeds();

@@ -111,7 +111,19 @@ fn combine(operation: Operation, inputs: &[Input], common: &Common) -> Result<()
     let trees: Vec<OctreeRef<'_>> = octrees.iter().map(|octree| *octree.view()).collect();
     let name = operation.name();
     let result = watched(name, common.threads, |control| operation.of(&trees[0], &trees, control));
-    let result = result.of(name)?.with_metadata(common_rule(&octrees));
+    let result = result.of(name)?.with_metadata(facts(&octrees)?);
+    for (input, octree) in inputs.iter().zip(&octrees).skip(1) {
+        let units = [&octrees[0], octree].map(|octree| octree.metadata().get("units"));
+        if let [Some(first), Some(other)] = units
+            && first != other
+        {
+            let whole = &inputs[0];
+            let unlike = format!(
+                "its unit is {other}, and that of {whole} is {first}: the numbers are taken as they are"
+            );
+            output::complain(&format!("{input}: warning: {unlike}"));
+        }
+    }
     let bytes = output.save(&result)?;
     let info = Info::new(&result, bytes);
     output.report(&format!(
@@ -124,15 +136,16 @@ fn combine(operation: Operation, inputs: &[Input], common: &Common) -> Result<()
     ))
 }
 
-/// By which rule the result's cells were resolved, if the operands say it: the common one, or `mixed`.
-fn common_rule(octrees: &[Octree]) -> Metadata {
-    let mut metadata = Metadata::new();
+/// What the operands' files say that holds of the result: name and unit, if it is the same in all; and by which
+/// rule cells were resolved, if they say it: the common one, or `mixed`.
+fn facts(octrees: &[Octree]) -> Result<Metadata, Failure> {
+    let mut metadata = Metadata::common(octrees.iter().map(Octree::metadata)).of("metadata")?;
     let rules: Option<Vec<&str>> = octrees.iter().map(|octree| octree.metadata().get("rule")).collect();
     if let Some(rules) = rules {
         let same = rules.iter().all(|rule| *rule == rules[0]);
         metadata.insert("rule", if same { rules[0] } else { "mixed" });
     }
-    metadata
+    Ok(metadata)
 }
 
 /// How the frame of `octree` differs from that of the first operand.

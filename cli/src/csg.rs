@@ -5,7 +5,7 @@ use crate::input::Input;
 use crate::output::{self, Output, count, number, seconds};
 use crate::progress::watched;
 use crate::report::Info;
-use crate::scene::{frame_of, read_scene};
+use crate::scene::{Curves, Drawing, frame_of, read_scene};
 use crate::voxelize::{RuleName, bounds, name_of, threads};
 use clap::{Args, ValueEnum};
 use leafless::{Frame, Metadata, Octree, SplitCounter, Touch, build};
@@ -20,7 +20,8 @@ use std::time::Instant;
 /// part.scad`): group union difference intersection multmatrix color render cube sphere cylinder polyhedron
 /// linear_extrude rotate_extrude square circle polygon, import of meshes, and some of ours:
 /// halfspace([a,b,c,d]) power([A,a,n1],[B,b,n2],[C,c,n3],R) quadric([10 numbers]) torus(major,minor)
-/// mesh("file.stl") octree("file.lfl"). Curved surfaces are exact: no facets.
+/// mesh("file.stl") octree("file.lfl"). Curved surfaces are exact, but for those with a $fn of 12 or less, which
+/// are the prisms and pyramids that OpenSCAD draws: --fn exact or --fn polygon decides for all.
 ///
 /// The file records the scene's name, length and checksum, and the rule. Equal input gives equal bytes, for
 /// any number of threads.
@@ -50,6 +51,8 @@ pub struct Arguments {
     /// edge 33/32 of their longest extent
     #[arg(long, value_name = "X0,Y0,Z0,EDGE", value_parser = bounds, allow_hyphen_values = true)]
     bounds: Option<Frame>,
+    #[command(flatten)]
+    drawing: Drawing,
     /// Threads to use; 0: as many as there are processors. The result is the same
     #[arg(long, default_value_t = 0, value_name = "N", value_parser = threads)]
     threads: usize,
@@ -89,6 +92,8 @@ struct Report {
     evaluations: u64,
     /// Volume of the undecided cells.
     undecided_volume: f64,
+    /// How the curves of the scene were drawn.
+    curves: Curves,
     #[serde(flatten)]
     info: Info,
 }
@@ -102,7 +107,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     {
         return Err(Failure::of(&output, "is the scene itself, which is not overwritten"));
     }
-    let (scene, source) = read_scene(&input)?;
+    let (scene, source) = read_scene(&input, &arguments.drawing)?;
     let frame = frame_of(&input, &scene, arguments.bounds.as_ref(), arguments.depth)?;
     let touch = match arguments.touch {
         TouchName::Exact => Touch::Exact,
@@ -143,6 +148,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         splits: splits.map(|splits| splits.iter().sum()),
         evaluations: solid.evaluations(),
         undecided_volume: info.volume.width(),
+        curves: scene.report().into(),
         info,
     };
     output.report(&if arguments.json { output::json(&report)? } else { summary(&report, &octree) })
@@ -169,6 +175,7 @@ fn summary(report: &Report, octree: &Octree) -> String {
     format!(
         "{}: {} octree of depth {}, cells of {}\n\
          volume  {}{}\n\
+         {}\
          splits  {}{} evaluations of half-spaces\n\
          nodes   {} (a classical octree has {})\n\
          bytes   {}{}\n\
@@ -179,6 +186,7 @@ fn summary(report: &Report, octree: &Octree) -> String {
         number(frame.cell_size()),
         info.volume_text(),
         info.volume_note(),
+        report.curves.text().map_or(String::new(), |curves| format!("curves  {curves}\n")),
         report.splits.map_or(String::new(), |splits| count(splits) + ", "),
         count(report.evaluations),
         count(info.nodes),

@@ -22,14 +22,41 @@ impl Failure {
     }
 }
 
+/// What can be wrong with a file.
+pub trait Problem {
+    /// The problem in words, without the name of the file.
+    fn text(&self) -> String;
+}
+
+impl Problem for leafless::Error {
+    fn text(&self) -> String {
+        self.cause().to_string()
+    }
+}
+
+impl Problem for std::io::Error {
+    fn text(&self) -> String {
+        // People do not know the numbers of the system's errors.
+        let text = self.to_string();
+        let words = text.split_once(" (os error ").map_or(text.as_str(), |parts| parts.0);
+        words.to_owned()
+    }
+}
+
+impl Problem for String {
+    fn text(&self) -> String {
+        self.clone()
+    }
+}
+
 /// Names the file that an error is about.
 pub trait Of<T> {
     /// The result, its error about the file that is called `name`.
     fn of(self, name: impl Display) -> Result<T, Failure>;
 }
 
-impl<T, E: Display> Of<T> for Result<T, E> {
+impl<T, E: Problem> Of<T> for Result<T, E> {
     fn of(self, name: impl Display) -> Result<T, Failure> {
-        self.map_err(|error| Failure::of(name, error))
+        self.map_err(|error| Failure::of(name, error.text()))
     }
 }

@@ -6,7 +6,7 @@ use crate::input::Input;
 use crate::mesh::{self, Reading};
 use crate::output;
 use crate::report::Info;
-use crate::scene;
+use crate::scene::{self, Drawing};
 use clap::Args;
 use leafless::file;
 use std::ffi::OsString;
@@ -15,7 +15,7 @@ use std::ffi::OsString;
 /// any size. Run `leafless verify` to know whether the rest of the file is good.
 ///
 /// Of a mesh everything is read: what its triangles bound, and what is wrong with them. Of a scene the bounds
-/// are told, and what is wrong with the meshes in it; `leafless measure` tells its volume.
+/// are told, how its curves are drawn, and what is wrong with the meshes in it; `leafless measure` tells its volume.
 #[derive(Args)]
 pub struct Arguments {
     /// Solid (.lfl), mesh (STL, OBJ, PLY, OFF, 3MF) or scene (.csg), or `-` for standard input
@@ -25,12 +25,15 @@ pub struct Arguments {
     json: bool,
     #[command(flatten)]
     reading: Reading,
+    #[command(flatten)]
+    drawing: Drawing,
 }
 
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let input = Input::from(&*arguments.file);
     let (octree, bytes) = if input.begins_as_solid() {
         arguments.reading.refuse(&input, "a solid")?;
+        arguments.drawing.refuse(&input, "a solid")?;
         input.octree(false)?
     } else {
         let bytes = input.read()?;
@@ -38,13 +41,15 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         match Content::of(&input, &bytes, arguments.reading.has_format())? {
             Content::Solid => {
                 arguments.reading.refuse(&input, "a solid")?;
+                arguments.drawing.refuse(&input, "a solid")?;
                 (file::from_bytes(&bytes).of(&input)?, length)
             }
             Content::Scene => {
                 arguments.reading.refuse(&input, "a scene")?;
-                return scene::tell(&input, &bytes, arguments.json);
+                return scene::tell(&input, &bytes, &arguments.drawing, arguments.json);
             }
             Content::Mesh => {
+                arguments.drawing.refuse(&input, "a mesh")?;
                 let mesh = arguments.reading.mesh(&input, bytes)?;
                 return mesh::tell(&input, &mesh, length, arguments.json);
             }

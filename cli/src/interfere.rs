@@ -4,13 +4,14 @@ use crate::failure::{Failure, Of};
 use crate::input::Input;
 use crate::mesh::Reading;
 use crate::output::{self, count, measured, number};
-use crate::report::Proven;
+use crate::report::{Proven, stop_word};
+use crate::scene::Drawing;
 use crate::source::{Corners, Source, evaluations};
 use crate::voxelize::bounds;
 use clap::Args;
 use leafless::{
     Affine, Clearance, Control, Cube, Error, Frame, Interference, Interval, Overlap, Prepared, Proof,
-    clearance, interference,
+    StopReason, clearance, interference,
 };
 use serde::Serialize;
 use std::ffi::OsString;
@@ -51,6 +52,8 @@ pub struct Arguments {
     cells: bool,
     #[command(flatten)]
     reading: Reading,
+    #[command(flatten)]
+    drawing: Drawing,
     /// Print one JSON object
     #[arg(long)]
     json: bool,
@@ -132,6 +135,8 @@ struct Report {
     reason: Option<&'static str>,
     overlap: Range,
     clearance: Range,
+    /// Why the search for the clearance ended.
+    clearance_measured: &'static str,
     witness: Option<Witness>,
     /// What of both is proven; what is not counts as undecided.
     proof_a: Proven,
@@ -158,8 +163,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let [a, b] = &inputs;
     let placement = arguments.place_b.unwrap_or(Affine::IDENTITY);
     let (first, second) = (
-        Source::read(a, &arguments.reading)?.taken(arguments.cells),
-        Source::read(b, &arguments.reading)?.taken(arguments.cells),
+        Source::read(a, &arguments.reading, &arguments.drawing)?.taken(arguments.cells),
+        Source::read(b, &arguments.reading, &arguments.drawing)?.taken(arguments.cells),
     );
     let frame = match &arguments.bounds {
         Some(bounds) => bounds.with_depth(arguments.depth.unwrap_or(10)).of(a)?,
@@ -237,6 +242,7 @@ fn ask(
         let near = Clearance {
             distance: Interval::exactly(0.0),
             nearest: None,
+            stop_reason: StopReason::Tolerance,
             splits: [0, 0],
             proofs: found.proofs,
             clipped: found.clipped,
@@ -266,6 +272,7 @@ impl Report {
             reason: reason(found, splits).map(|reason| reason.0),
             overlap: Range::new(found.volume, found.clipped),
             clearance: Range::new(near.distance, near.clipped),
+            clearance_measured: stop_word(near.stop_reason),
             witness: found.witness.map(|cell| {
                 let (min, max) = Cube { frame, cell }.bounds();
                 Witness { level: cell.level, at: cell.at, min, max }
@@ -294,7 +301,12 @@ fn text(found: &Interference, report: &Report, reason: Option<&str>) -> String {
     };
     line("verdict", reason.map_or(report.verdict.into(), |reason| format!("{}: {reason}", report.verdict)));
     line("overlap", report.overlap.text());
-    line("clearance", report.clearance.text());
+    // (Where the solids overlap it is 0, and nothing was searched.)
+    let ended = match report.clearance_measured {
+        "budget" if report.clearance.upper != Some(0.0) => " (as far as the splits go)",
+        _ => "",
+    };
+    line("clearance", format!("{}{ended}", report.clearance.text()));
     if let Some(Witness { min, max, .. }) = &report.witness {
         line("witness", format!("{} to {}", min.map(number).join(" "), max.map(number).join(" ")));
     }

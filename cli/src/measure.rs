@@ -5,7 +5,8 @@ use crate::input::Input;
 use crate::mesh::Reading;
 use crate::output::{self, count, measured};
 use crate::progress::watched;
-use crate::report::{Proven, Volume};
+use crate::report::{Proven, Volume, stop_word};
+use crate::scene::{Curves, Drawing};
 use crate::source::{Source, evaluations};
 use crate::voxelize::{bounds, threads};
 use clap::Args;
@@ -46,6 +47,8 @@ pub struct Arguments {
     cells: bool,
     #[command(flatten)]
     reading: Reading,
+    #[command(flatten)]
+    drawing: Drawing,
     /// Threads to use; 0: as many as there are processors. The result is the same
     #[arg(long, default_value_t = 0, value_name = "N", value_parser = threads)]
     threads: usize,
@@ -109,14 +112,17 @@ struct Report {
     origin: [f64; 3],
     edge: f64,
     clipped: bool,
+    /// How the curves of a scene were drawn; else absent (null).
+    curves: Option<Curves>,
 }
 
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let input = Input::from(&*arguments.file);
-    let source = Source::read(&input, &arguments.reading)?.taken(arguments.cells);
+    let source = Source::read(&input, &arguments.reading, &arguments.drawing)?.taken(arguments.cells);
     if let (Some(_), Some(_)) = (source.own_frame(), &arguments.bounds) {
         return Err(Failure::Usage("--bounds is for meshes and scenes: a solid has its own".into()));
     }
+    let curves = source.curves();
     let is_stored = source.own_frame().is_some();
     let frame = match (&arguments.bounds, arguments.depth) {
         (Some(bounds), depth) => bounds.with_depth(depth.unwrap_or(MAX_DEPTH)).of(&input)?,
@@ -134,9 +140,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     });
     let (mass, extent, evaluated) = found.of(&input)?;
     let text = if arguments.json {
-        output::json(&report(&input, &frame, &mass, &extent, evaluated))?
+        output::json(&Report { curves, ..report(&input, &frame, &mass, &extent, evaluated) })?
     } else {
-        text(&mass, &extent, is_stored)
+        text(&mass, &extent, curves.as_ref(), is_stored)
     };
     output::print(text.as_bytes())
 }
@@ -151,11 +157,7 @@ fn report(input: &Input, frame: &Frame, mass: &MassProperties, extent: &Extent, 
         inertia_about_origin: mass.inertia_about_origin.into(),
         min: extent.corners.map(|[min, _]| min.into()),
         max: extent.corners.map(|[_, max]| max.into()),
-        measured: match mass.stop_reason {
-            StopReason::Tolerance => "tolerance",
-            StopReason::Budget => "budget",
-            StopReason::Exhausted => "exhausted",
-        },
+        measured: stop_word(mass.stop_reason),
         splits: mass.splits,
         evaluations,
         level: mass.level,
@@ -163,11 +165,12 @@ fn report(input: &Input, frame: &Frame, mass: &MassProperties, extent: &Extent, 
         origin: frame.origin(),
         edge: frame.edge(),
         clipped: mass.clipped,
+        curves: None,
     }
 }
 
 /// The same for people.
-fn text(mass: &MassProperties, extent: &Extent, is_stored: bool) -> String {
+fn text(mass: &MassProperties, extent: &Extent, curves: Option<&Curves>, is_stored: bool) -> String {
     let mut text = String::new();
     let mut line = |name: &str, value: String| {
         // Writing to a string does not fail.
@@ -196,6 +199,9 @@ fn text(mass: &MassProperties, extent: &Extent, is_stored: bool) -> String {
             line(&format!("least {name}"), measured(min[axis]));
             line(&format!("greatest {name}"), measured(max[axis]));
         }
+    }
+    if let Some(curves) = curves.and_then(Curves::text) {
+        line("curves", curves);
     }
     let ended = match (mass.stop_reason, is_stored) {
         (StopReason::Tolerance, _) => "",

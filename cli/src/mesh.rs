@@ -3,11 +3,14 @@
 use crate::content::Content;
 use crate::failure::{Failure, Of};
 use crate::input::Input;
-use crate::output::{self, count, counted, number};
-use crate::report::{Defect, Mesh};
+use crate::output::{self, count, counted, measured, number};
+use crate::report::{Defect, Mesh, Volume};
 use clap::{Args, ValueEnum};
-use leafless::exchange::{LengthUnit, MeshFile, MeshFormat, MeshOptions};
-use leafless::{Error, Frame, MeshReport, TriangleMesh, exchange};
+use leafless::exchange::{LengthUnit, MeshFile, MeshFormat, MeshOptions, MeshWarning};
+use leafless::{
+    Control, Error, FillRule, Frame, Interval, MAX_DEPTH, MeshReport, MeshSolid, TriangleMesh, exchange,
+    measure,
+};
 use serde::Serialize;
 use std::fmt::Write;
 
@@ -105,6 +108,9 @@ impl Reading {
         let (format, unit, target) = (self.format_of(input, &bytes), self.unit, self.to);
         let options = MeshOptions { format, unit, target, scale: self.scale.unwrap_or(1.0) };
         let mut file = exchange::read_mesh(&bytes, &options).of(input)?;
+        for warning in &file.warnings {
+            output::complain(&format!("{input}: warning: {warning}"));
+        }
         // Sewing needs memory of its own.
         drop(bytes);
         file.mesh = file.mesh.sewn().of(input)?;
@@ -146,6 +152,29 @@ pub fn openness(report: &MeshReport) -> Option<String> {
     }
 }
 
+/// The fill rule of a format, unless the user asks for another one: which points count as inside.
+pub fn fill_rule(format: MeshFormat) -> FillRule {
+    match format {
+        MeshFormat::ThreeMf => FillRule::Positive,
+        _ => FillRule::NonZero,
+    }
+}
+
+/// What is read though it departs from its format, in words.
+pub fn in_words(warnings: &[MeshWarning]) -> Vec<String> {
+    warnings.iter().map(ToString::to_string).collect()
+}
+
+/// The volume that a mesh encloses by a fill rule, to a ten thousandth, or what is known of it after a moment.
+fn volume_by(rule: FillRule, mesh: &TriangleMesh) -> Result<Interval, Error> {
+    const TOLERANCE: f64 = 1e-4;
+    const SPLITS: u64 = 1 << 18;
+    let frame = frame_around(mesh, MAX_DEPTH)?;
+    let solid = MeshSolid::new(mesh.clone(), rule)?;
+    let control = Control { max_splits: Some(SPLITS), ..Control::default() };
+    Ok(measure(&solid, &frame, TOLERANCE, &control)?.volume)
+}
+
 /// What `info` tells of a mesh.
 #[derive(Serialize)]
 pub struct Info {
@@ -154,11 +183,17 @@ pub struct Info {
     bytes: u64,
     min: [f64; 3],
     max: [f64; 3],
-    /// By the divergence theorem; absent (null) for a mesh that bounds no solid.
+    /// The sum of signed volumes, by the divergence theorem; absent (null) for a mesh that bounds no solid.
     volume: Option<f64>,
+    /// What is enclosed by the rule; absent (null) unless bodies overlap, or may, and make it another volume.
+    volume_by_rule: Option<Volume>,
+    /// The rule: `nonzero` or `positive`.
+    rule: &'static str,
     closed: bool,
     /// Objects of a 3MF that are no solids.
     skipped: u64,
+    /// Where the file departs from its format, though it could be read.
+    warnings: Vec<String>,
     mesh: Mesh,
 }
 
@@ -167,6 +202,9 @@ impl Info {
         let report = file.mesh.report().of(input)?;
         let closed = openness(&report).is_none() && report.triangles > 0;
         let (min, max) = file.mesh.bounds();
+        let fill = fill_rule(file.format);
+        let may_overlap = report.overlapping_bodies + report.undecided_bodies > 0;
+        let by_rule = (closed && may_overlap).then(|| volume_by(fill, &file.mesh)).transpose().of(input)?;
         Ok(Info {
             format: format_name(file.format),
             unit: file.unit.map(LengthUnit::symbol),
@@ -174,8 +212,11 @@ impl Info {
             min,
             max,
             volume: closed.then(|| file.mesh.volume()),
+            volume_by_rule: by_rule.map(Into::into),
+            rule: if fill == FillRule::Positive { "positive" } else { "nonzero" },
             closed,
             skipped: file.skipped,
+            warnings: in_words(&file.warnings),
             mesh: Mesh::new(&file.mesh).of(input)?,
         })
     }
@@ -199,13 +240,22 @@ impl Info {
             Some(how) => format!("no: {how}"),
         };
         line("closed", state);
-        line("volume", self.volume.map_or("-".to_owned(), number));
+        match (self.volume, &self.volume_by_rule) {
+            (None, _) => line("volume", "-".into()),
+            (Some(volume), None) => line("volume", number(volume)),
+            (Some(volume), Some(by_rule)) => {
+                line("volume", format!("{}, the sum of signed volumes", number(volume)));
+                line("", format!("{}, by the rule ({})", measured(by_rule.interval()), self.rule));
+            }
+        }
         for (name, value) in [
             ("triangles", report.triangles),
             ("vertices", report.vertices),
             ("bodies", report.bodies),
             ("open", report.open_bodies),
             ("inside out", report.inside_out_bodies),
+            ("overlapping", report.overlapping_bodies),
+            ("may overlap", report.undecided_bodies),
             ("boundary edges", report.boundary_edges),
             ("boundary loops", report.boundary_loops),
             ("misoriented", report.misoriented_edges),
@@ -217,6 +267,15 @@ impl Info {
             ("welded", report.welded),
         ] {
             line(name, count(value));
+        }
+        if report.polygons > 0 {
+            line("polygons", count(report.polygons));
+        }
+        if report.bent_polygons > 0 {
+            let most = number(report.polygon_deviation);
+            let bent = count(report.bent_polygons);
+            line("not flat", format!("{bent} of them, with corners up to {most} beside the mean plane;"));
+            line("", "what is measured is measured of one of their triangulations".into());
         }
         if report.sewn > 0 {
             line("sewn", format!("{}, moved by {} or less", count(report.sewn), number(report.displacement)));

@@ -2,7 +2,8 @@
 
 use crate::output::{count, ends, measured, number};
 use leafless::{
-    DefectKind, Error, Interval, MeshDefect, MeshReport, Octree, Proof, Statistics, Tag, TriangleMesh,
+    DefectKind, Error, Interval, MeshDefect, MeshReport, Octree, Proof, Statistics, StopReason, Tag,
+    TriangleMesh,
 };
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -16,6 +17,11 @@ pub struct Volume {
 }
 
 impl Volume {
+    /// The interval.
+    pub fn interval(&self) -> Interval {
+        Interval { lower: self.lower, upper: self.upper }
+    }
+
     /// How much is undecided.
     pub fn width(&self) -> f64 {
         self.upper - self.lower
@@ -25,6 +31,15 @@ impl Volume {
 impl From<Interval> for Volume {
     fn from(interval: Interval) -> Volume {
         Volume { lower: interval.lower, upper: interval.upper }
+    }
+}
+
+/// Why a search ended, in a word.
+pub fn stop_word(reason: StopReason) -> &'static str {
+    match reason {
+        StopReason::Tolerance => "tolerance",
+        StopReason::Budget => "budget",
+        StopReason::Exhausted => "exhausted",
     }
 }
 
@@ -237,6 +252,11 @@ pub struct Mesh {
     inside_out_bodies: u64,
     sewn: u64,
     displacement: f64,
+    overlapping_bodies: u64,
+    undecided_bodies: u64,
+    polygons: u64,
+    bent_polygons: u64,
+    polygon_deviation: f64,
     pub defects: Vec<Defect>,
 }
 
@@ -279,6 +299,11 @@ impl Mesh {
             inside_out_bodies: report.inside_out_bodies,
             sewn: report.sewn,
             displacement: report.displacement,
+            overlapping_bodies: report.overlapping_bodies,
+            undecided_bodies: report.undecided_bodies,
+            polygons: report.polygons,
+            bent_polygons: report.bent_polygons,
+            polygon_deviation: report.polygon_deviation,
             defects: defects.iter().map(Defect::new).collect(),
         })
     }

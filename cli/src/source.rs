@@ -3,10 +3,9 @@
 use crate::content::Content;
 use crate::failure::{Failure, Of};
 use crate::input::Input;
-use crate::mesh::{Reading, ends_at_vertices, frame_around, openness};
+use crate::mesh::{Reading, ends_at_vertices, fill_rule, frame_around, openness};
 use crate::output;
-use crate::scene::{bounds_of, frame_of, scene_of};
-use leafless::exchange::MeshFormat;
+use crate::scene::{Curves, Drawing, bounds_of, frame_of, scene_of};
 use leafless::scene::Scene;
 use leafless::{
     Affine, AnySolid, Csg, FillRule, Frame, MAX_DEPTH, MeshSolid, Octree, Proof, Transform, TriangleMesh,
@@ -28,29 +27,28 @@ pub enum Source {
 
 impl Source {
     /// Reads a solid, a mesh or a scene. Answers about a solid are proven, so its file is verified.
-    pub fn read(input: &Input, reading: &Reading) -> Result<Source, Failure> {
+    pub fn read(input: &Input, reading: &Reading, drawing: &Drawing) -> Result<Source, Failure> {
         const SOLID: &str = "a solid";
         if input.begins_as_solid() {
             reading.refuse(input, SOLID)?;
+            drawing.refuse(input, SOLID)?;
             return Ok(Source::Octree(Box::new(input.octree(true)?.0)));
         }
         let bytes = input.read()?;
         match Content::of(input, &bytes, reading.has_format())? {
             Content::Solid => {
                 reading.refuse(input, SOLID)?;
+                drawing.refuse(input, SOLID)?;
                 return Ok(Source::Octree(Box::new(file::from_bytes(&bytes).of(input)?)));
             }
             Content::Scene => {
                 reading.refuse(input, "a scene")?;
-                return Ok(Source::Scene(scene_of(input, &bytes)?.0));
+                return Ok(Source::Scene(scene_of(input, &bytes, drawing)?.0));
             }
-            Content::Mesh => {}
+            Content::Mesh => drawing.refuse(input, "a mesh")?,
         }
         let read = reading.mesh(input, bytes)?;
-        let fill = match read.format {
-            MeshFormat::ThreeMf => FillRule::Positive,
-            _ => FillRule::NonZero,
-        };
+        let fill = fill_rule(read.format);
         if let Some(how) = openness(&read.mesh.report().of(input)?) {
             let whole = "the mesh does not bound a solid";
             let warning =
@@ -65,6 +63,14 @@ impl Source {
         match self {
             Source::Octree(octree) if cells => Source::Octree(Box::new(octree.with_proof(Proof::CERTIFIED))),
             source => source,
+        }
+    }
+
+    /// How the curves of a scene were drawn.
+    pub fn curves(&self) -> Option<Curves> {
+        match self {
+            Source::Scene(scene) => Some(scene.report().into()),
+            Source::Octree(_) | Source::Mesh(..) => None,
         }
     }
 

@@ -2,7 +2,7 @@
 
 use crate::failure::{Failure, Of};
 use crate::input::Input;
-use crate::mesh::{Reading, format_name, frame_around, openness};
+use crate::mesh::{Reading, format_name, frame_around, in_words, openness};
 use crate::output::{self, Output, count, counted, number, seconds};
 use crate::progress::watched;
 use crate::report::{Info, Mesh};
@@ -147,6 +147,8 @@ struct Report {
     /// Objects of a 3MF that are no solids.
     skipped: u64,
     timings: Timings,
+    /// Where the file departs from its format, though it could be read.
+    warnings: Vec<String>,
     mesh: Mesh,
     /// Volume of the undecided cells.
     undecided_volume: f64,
@@ -164,7 +166,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         return Err(Failure::of(&output, "is the mesh itself, which is not overwritten"));
     }
 
-    let (MeshFile { mesh, format, unit, skipped, .. }, source) = arguments.reading.read(&input)?;
+    let (MeshFile { mesh, format, unit, skipped, warnings, .. }, source) = arguments.reading.read(&input)?;
     let fill = arguments.fill.unwrap_or(match format {
         MeshFormat::ThreeMf => FillName::Positive,
         _ => FillName::Nonzero,
@@ -221,6 +223,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             unit: unit.map(LengthUnit::symbol),
             skipped,
             timings,
+            warnings: in_words(&warnings),
             mesh,
             undecided_volume: info.volume.width(),
             info,
@@ -249,7 +252,7 @@ fn facts(input: &Input, source: String, rule: RuleName, unit: Option<LengthUnit>
     metadata.insert("source", source);
     metadata.insert("rule", name_of(rule));
     if let Some(unit) = unit {
-        metadata.insert("unit", unit.symbol());
+        metadata.insert("units", unit.symbol());
     }
     metadata
 }

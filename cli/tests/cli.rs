@@ -119,6 +119,7 @@ fn voxelize_reports_and_records() {
     assert_eq!(
         keys(&json["mesh"]),
         [
+            "bent_polygons",
             "bodies",
             "boundary_edges",
             "boundary_loops",
@@ -133,8 +134,12 @@ fn voxelize_reports_and_records() {
             "non_manifold_edges",
             "open_bodies",
             "opposite",
+            "overlapping_bodies",
+            "polygon_deviation",
+            "polygons",
             "sewn",
             "triangles",
+            "undecided_bodies",
             "vertices",
             "welded",
         ]
@@ -406,13 +411,13 @@ fn packages_end_to_end() {
     let truth = 25.4_f64.powi(3) / 3.0;
     assert!(lower < truth && truth < upper && upper - lower < truth, "{lower} {truth} {upper}");
     let solid = place.run("info part.lfl --json").good().json();
-    assert_eq!(solid["metadata"]["unit"], "mm");
+    assert_eq!(solid["metadata"]["units"], "mm");
     assert!(place.run("info part.lfl").good().text().contains("unit"));
     // Without a name, by the content.
     place.run_with("voxelize - -o other.lfl --depth 6 --to mm", &package()).good();
     assert_eq!(file::open(place.path("other.lfl")).unwrap(), file::open(place.path("part.lfl")).unwrap());
     place.run("voxelize part.3mf -o inch.lfl --depth 6").good();
-    assert_eq!(place.run("info inch.lfl --json").good().json()["metadata"]["unit"], "in");
+    assert_eq!(place.run("info inch.lfl --json").good().json()["metadata"]["units"], "in");
 
     place.write("damaged.3mf", &package()[..400]);
     place.run("voxelize damaged.3mf -o out.lfl --depth 4").bad(1, &["damaged.3mf", "ZIP"]);
@@ -479,7 +484,7 @@ fn units_and_scale() {
     let run = |options: &str| {
         let line = format!("voxelize cube.stl -o out.lfl --depth 3 --json {options}");
         let json = place.run(&line).good().json();
-        let metadata = json["metadata"].get("unit").cloned();
+        let metadata = json["metadata"].get("units").cloned();
         (json["edge"].as_f64().unwrap(), json["unit"].clone(), metadata)
     };
     // The edge of the frame is the power of two that holds the cube's, which is 2.
@@ -496,8 +501,22 @@ fn units_and_scale() {
 fn info_of_meshes() {
     let place = meshes();
     let info = place.run("info cube.stl --json").good().json();
-    let expected = ["bytes", "closed", "format", "max", "mesh", "min", "skipped", "unit", "volume"];
+    let expected = [
+        "bytes",
+        "closed",
+        "format",
+        "max",
+        "mesh",
+        "min",
+        "rule",
+        "skipped",
+        "unit",
+        "volume",
+        "volume_by_rule",
+        "warnings",
+    ];
     assert_eq!(keys(&info), expected);
+    assert_eq!((&info["volume_by_rule"], &info["warnings"]), (&Value::Null, &Value::Array(vec![])));
     assert_eq!(
         (&info["format"], &info["unit"], &info["closed"]),
         (&"stl".into(), &Value::Null, &true.into())
@@ -518,6 +537,81 @@ fn info_of_meshes() {
     place.run("info text.obj").bad(1, &["text.obj: "]);
     place.write("notes.txt", "a text that is neither of both\n");
     place.run("info notes.txt").bad(1, &["notes.txt: ", "solid (.lfl)", "mesh (STL", "scene (.csg)"]);
+}
+
+/// A cube, and in its corner a sixth of one that counts twice.
+#[test]
+fn info_of_bodies_that_overlap() {
+    let place = Place::new();
+    let cube = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nv 0 0 1\nv 1 0 1\nv 0 1 1\nv 1 1 1\n\
+        f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n";
+    let sixth = "v 0 0 0\nv .9 0 0\nv 0 .9 0\nv 0 0 .9\nf 9 11 10\nf 9 10 12\nf 10 11 12\nf 11 9 12\n";
+    place.write("cube.obj", cube);
+    place.write("both.obj", format!("{cube}{sixth}"));
+    let info = place.run("info both.obj --json").good().json();
+    let sum = 1.0 + 0.9f64.powi(3) / 6.0;
+    assert!((info["volume"].as_f64().unwrap() - sum).abs() < 1e-12, "{info}");
+    let by_rule = &info["volume_by_rule"];
+    let [lower, upper] = ["lower", "upper"].map(|end| by_rule[end].as_f64().unwrap());
+    assert!((0.99..=1.0).contains(&lower) && (1.0..1.01).contains(&upper), "{info}");
+    let mesh = &info["mesh"];
+    assert_eq!((&mesh["overlapping_bodies"], &mesh["undecided_bodies"]), (&2.into(), &0.into()));
+    assert_eq!(
+        (&mesh["polygons"], &mesh["bent_polygons"], &info["rule"]),
+        (&6.into(), &0.into(), &"nonzero".into())
+    );
+    let text = place.run("info both.obj").good().text().to_owned();
+    for words in [
+        "1.1215",
+        "the sum of signed volumes",
+        "by the rule (nonzero)",
+        "overlapping     2",
+        "polygons        6",
+    ] {
+        assert!(text.contains(words), "{words}: {text}");
+    }
+    let text = place.run("info cube.obj").good().text().to_owned();
+    assert!(!text.contains("by the rule") && !text.contains("not flat"), "{text}");
+    // A face that is not flat: of two triangulations one was taken.
+    place.write("bent.obj", cube.replacen("v 1 1 1", "v 1 1 1.25", 1));
+    let info = place.run("info bent.obj --json").good().json();
+    assert_eq!((&info["mesh"]["polygons"], &info["mesh"]["bent_polygons"]), (&6.into(), &1.into()));
+    assert!((info["mesh"]["polygon_deviation"].as_f64().unwrap() - 0.0625).abs() < 0.002, "{info}");
+    let text = place.run("info bent.obj").good().text().to_owned();
+    for words in ["not flat        1 of them, with corners up to 0.06", "one of their triangulations"] {
+        assert!(text.contains(words), "{words}: {text}");
+    }
+}
+
+/// What departs from its format is read, and said on standard error and in JSON.
+#[test]
+fn warnings_about_files() {
+    let place = Place::new();
+    let head = "ply\nformat ascii 1.0\nwritten by hand\nelement vertex 4\nproperty float x\nproperty float y\n\
+        property float z\nelement face 4\nproperty list uchar int vertex_indices\nend_header\n";
+    let data = "0 0 0 9\n1 0 0 9\n0 1 0 9\n0 0 1 9\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 2 0 3\n";
+    place.write("strange.ply", format!("{head}{data}"));
+    let run = place.run("info strange.ply --json");
+    assert_eq!(run.code, Some(0));
+    let warnings = run.json()["warnings"].clone();
+    assert_eq!(warnings.as_array().map(Vec::len), Some(2), "{warnings}");
+    for (warning, words) in
+        warnings.as_array().unwrap().iter().zip(["line 3 of the header", "line 11 (like 3 more)"])
+    {
+        let warning = warning.as_str().unwrap();
+        assert!(warning.starts_with(words), "{warning}");
+        let line = format!("strange.ply: warning: {warning}");
+        assert!(run.errors.contains(&line), "{line}: {run:?}");
+        for command in ["measure strange.ply", "voxelize strange.ply -o out.lfl --depth 3"] {
+            let run = place.run(command);
+            assert!(run.code == Some(0) && run.errors.contains(&line), "{run:?}");
+        }
+    }
+    let voxelized = place.run("voxelize strange.ply -o out.lfl --depth 3 --json").json();
+    assert_eq!(voxelized["warnings"], warnings);
+    let utf16: Vec<u8> = format!("\u{FEFF}{head}{data}").encode_utf16().flat_map(u16::to_le_bytes).collect();
+    place.write("wide.ply", utf16);
+    place.run("info wide.ply").bad(1, &["wide.ply: ", "UTF-16"]);
 }
 
 #[test]
@@ -739,6 +833,7 @@ fn measure_tells_what_is_proven() {
     let expected = [
         "centroid",
         "clipped",
+        "curves",
         "depth",
         "edge",
         "evaluations",
@@ -876,7 +971,11 @@ fn booleans_are_those_of_the_library() {
         let info = place.run("info out.lfl --json").good().json();
         let (lower, upper) = volume(&info);
         assert!(lower <= truth && truth <= upper, "{line}: {lower} {upper}");
-        assert_eq!(info["metadata"], serde_json::json!({ "rule": "certified" }));
+        let name = line.starts_with("complement").then_some("cube");
+        assert_eq!(
+            (info["metadata"]["name"].as_str(), &info["metadata"]["rule"]),
+            (name, &"certified".into())
+        );
     }
     let [cube, slab] = ["cube.lfl", "slab.lfl"].map(|name| file::open(place.path(name)).unwrap());
     let control = leafless::Control::default();
@@ -907,7 +1006,10 @@ fn booleans_are_those_of_the_library() {
 fn booleans_need_one_frame_and_sound_operands() {
     let place = solids();
     for (options, words) in [
-        ("--depth 6 --bounds 0,0,0,8", &["(origin 0 0 0, edge 8, depth 6)", "(origin 0 0 0, edge 8, depth 5)"][..]),
+        (
+            "--depth 6 --bounds 0,0,0,8",
+            &["(origin 0 0 0, edge 8, depth 6)", "(origin 0 0 0, edge 8, depth 5)"][..],
+        ),
         ("--depth 5 --bounds 0,0,0,9", &["edge 9", "edge 8"]),
         ("--depth 5 --bounds -1,0,0,8", &["origin -1 0 0", "origin 0 0 0"]),
         ("--depth 5", &["frame", "--bounds"]),
@@ -1189,5 +1291,39 @@ fn the_volume_of_a_machined_part() {
             assert!((0.4..0.6).contains(&(width / last)), "{last} becomes {width}");
         }
         last = Some(width);
+    }
+}
+
+/// Name and unit of a result are those that all operands have; units that differ are told.
+#[test]
+fn set_operations_keep_what_the_operands_agree_on() {
+    let place = Place::new();
+    place.write("cube.stl", stl(&block([1.0; 3], [3.0; 3])));
+    place.write("slab.stl", stl(&block([1.0; 3], [3.0, 3.0, 2.0])));
+    for (mesh, unit, solid) in
+        [("cube", "mm", "a"), ("slab", "mm", "b"), ("cube", "in", "c"), ("cube", "mm", "d")]
+    {
+        place
+            .run(&format!("voxelize {mesh}.stl -o {solid}.lfl --depth 4 --bounds 0,0,0,4 --unit {unit}"))
+            .good();
+    }
+    let facts = |line: &str| {
+        let run = place.run(line);
+        assert_eq!(run.code, Some(0), "{run:?}");
+        let info = place.run("info out.lfl --json").good().json();
+        (info["metadata"].clone(), run.errors.contains("warning"))
+    };
+    let kept = |facts: serde_json::Value| (facts, false);
+    let all = serde_json::json!({ "name": "cube", "units": "mm", "rule": "certified" });
+    let unit = serde_json::json!({ "units": "mm", "rule": "certified" });
+    assert_eq!(facts("union a.lfl d.lfl -o out.lfl"), kept(all.clone()));
+    assert_eq!(facts("complement a.lfl -o out.lfl"), kept(all));
+    assert_eq!(facts("difference a.lfl b.lfl -o out.lfl"), kept(unit.clone()));
+    assert_eq!(facts("xor a.lfl b.lfl d.lfl -o out.lfl"), kept(unit));
+    let (found, warned) = facts("union a.lfl c.lfl -o out.lfl");
+    assert_eq!((found, warned), (serde_json::json!({ "name": "cube", "rule": "certified" }), true));
+    let run = place.run("union a.lfl c.lfl -o out.lfl");
+    for words in ["c.lfl: warning", "unit is in", "a.lfl is mm"] {
+        assert!(run.errors.contains(words), "{run:?}");
     }
 }

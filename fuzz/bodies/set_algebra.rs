@@ -126,7 +126,7 @@ fn cells(tree: &OctreeRef<'_>) -> Vec<[u32; 3]> {
 /// What is done with two trees.
 fn together(a: &OctreeRef<'_>, b: &OctreeRef<'_>, sure: bool) {
     if a.frame() != b.frame() {
-        assert!(matches!(union(a, b, &CONTROL), Err(Error::FrameMismatch)));
+        assert!(matches!(union(a, b, &CONTROL), Err(Error::FrameMismatch { .. })));
         return;
     }
     let most = size(a) + size(b);

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 
 /// What became of an attempt, as a text that can be compared.
 fn outcome<T>(result: &Result<T, Error>) -> Result<(), String> {
-    result.as_ref().map(|_| ()).map_err(Error::to_string)
+    result.as_ref().map(|_| ()).map_err(|error| error.cause().to_string())
 }
 
 /// Reads `data` in every way. A real file costs more than all the others, so only some inputs become one.

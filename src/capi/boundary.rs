@@ -20,6 +20,7 @@ pub(super) enum Failure {
     Utf8 { name: &'static str },
     Nul { name: &'static str },
     Buffer { name: &'static str, needed: u64, capacity: u64 },
+    Busy { name: &'static str },
     Library(Error),
 }
 
@@ -39,9 +40,19 @@ impl Display for Failure {
             Failure::Buffer { name, needed, capacity } => {
                 write!(f, "{name}: has a capacity of {capacity}, and {needed} is needed")
             }
+            Failure::Busy { name } => write!(f, "{name}: is in use by another call that has not returned"),
+            Failure::Library(Error::File { path, error }) => {
+                write!(f, "{}: {error}", end(&path.to_string_lossy()))
+            }
             Failure::Library(error) => write!(f, "{error}"),
         }
     }
+}
+
+/// The end of a path, so that what is wrong with the file fits beside it.
+fn end(path: &str) -> &str {
+    let start = path.len().saturating_sub(255);
+    (start..=path.len()).find_map(|start| path.get(start..)).unwrap_or_default()
 }
 
 impl From<&Failure> for leafless_status {
@@ -51,9 +62,10 @@ impl From<&Failure> for leafless_status {
             Failure::Argument { .. } => LEAFLESS_E_ARGUMENT,
             Failure::Utf8 { .. } | Failure::Nul { .. } => LEAFLESS_E_UTF8,
             Failure::Buffer { .. } => LEAFLESS_E_BUFFER,
-            Failure::Library(error) => match error {
+            Failure::Busy { .. } => LEAFLESS_E_BUSY,
+            Failure::Library(error) => match error.cause() {
                 Error::Argument { .. } => LEAFLESS_E_ARGUMENT,
-                Error::FrameMismatch => LEAFLESS_E_FRAME,
+                Error::FrameMismatch { .. } => LEAFLESS_E_FRAME,
                 Error::SourceMismatch => LEAFLESS_E_SOURCE,
                 Error::NotSampled => LEAFLESS_E_NOT_SAMPLED,
                 Error::Mesh(_) | Error::Polyhedron(_) => LEAFLESS_E_MESH,
@@ -62,15 +74,15 @@ impl From<&Failure> for leafless_status {
                 Error::Format(FormatError::Version { .. } | FormatError::Required { .. }) => {
                     LEAFLESS_E_VERSION
                 }
-                // Not the file, but where the host has put it.
-                Error::Format(FormatError::Alignment) => LEAFLESS_E_ARGUMENT,
+                // Not the contents, but where the host has put them.
+                Error::Format(FormatError::Alignment | FormatError::NotRegular) => LEAFLESS_E_ARGUMENT,
                 Error::Format(_) => LEAFLESS_E_FORMAT,
                 Error::Damaged(_) => LEAFLESS_E_DAMAGED,
                 Error::Limit { .. } => LEAFLESS_E_LIMIT,
                 Error::OutOfMemory => LEAFLESS_E_NO_MEMORY,
                 Error::Cancelled => LEAFLESS_E_CANCELLED,
                 Error::Callback { .. } => LEAFLESS_E_CALLBACK,
-                Error::Io(_) => LEAFLESS_E_IO,
+                Error::Io(_) | Error::File { .. } => LEAFLESS_E_IO,
             },
         }
     }

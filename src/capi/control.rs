@@ -40,7 +40,7 @@ pub struct leafless_options {
     pub max_nodes: u64,
     /// Refuse results whose working form is larger than this many bytes; 0 means no limit.
     pub max_bytes: u64,
-    /// Split at most this many cells; 0 means no limit. Only functions that split on demand heed it, and say
+    /// Split at most this many cells; 0 means no limit, or the one that the function names. Only functions that split on demand heed it, and say
     /// so: with it spent they stop, and keep or return what they have; it is no error.
     pub max_splits: u64,
     /// Hears of the progress; optional.

@@ -4,6 +4,7 @@ use super::boundary::{buffer, guard, out, shared, slice};
 use super::control::{controlled, leafless_options};
 use super::csg::placement;
 use super::frame::{frame, frame_of, leafless_frame, leafless_interval};
+use super::measure::leafless_measured;
 use super::octree::leafless_proof;
 use super::solid::{give, leafless_solid};
 use super::status::leafless_status;
@@ -107,6 +108,8 @@ pub struct leafless_clearance {
     pub nearest_b: [u32; 3],
     /// The level of that cell.
     pub nearest_b_level: u32,
+    /// Why the search ended.
+    pub measured: leafless_measured,
     /// Whether the upper bound is finite.
     pub has_nearest: bool,
     /// Whether one of the solids may go on outside of the universe, of which nothing is said.
@@ -126,6 +129,7 @@ impl From<&Clearance> for leafless_clearance {
             nearest_a_level: a.level.into(),
             nearest_b: b.at,
             nearest_b_level: b.level.into(),
+            measured: found.stop_reason.into(),
             has_nearest: found.nearest.is_some(),
             is_clipped: found.clipped,
         }
@@ -254,19 +258,24 @@ pub unsafe extern "C" fn leafless_solid_interfere_many(
     })
 }
 
-/// The distance between two solids, as they are in the universe of a frame. The work ends when the interval
-/// is no wider than `tolerance_model` (model units), at the frame's depth, or once `max_splits` cells of both
-/// are split, with what is known by then; a cell whose children are looked at again, next to another one,
-/// counts once more. About twice the diagonal of a finest cell is what can be had for any solids. The work
-/// grows with the area where the distance is about the least one, and with the distance, both measured in
-/// cells as large as the tolerance.
+/// The distance between two solids, as they are in the universe of a frame.
+///
+/// `measured` of the result says why the search ended. With LEAFLESS_MEASURED_TOLERANCE the interval is no
+/// wider than `tolerance_model` (model units). With LEAFLESS_MEASURED_EXHAUSTED the cells of the frame's depth
+/// cannot raise the lower bound, and the interval is no wider than twice their diagonal, which is what cells
+/// can tell of most solids; or no pair of cells is left. With LEAFLESS_MEASURED_BUDGET `max_splits` steps were
+/// taken, or 1 048 576 if that is 0. A step looks at the children of one cell. A cell whose children are
+/// looked at again, next to another cell, counts once more.
+///
+/// The upper bound is finite once the search has met a FULL cell of each solid. The work grows with the area
+/// where the distance is about the least one, measured in cells as large as the tolerance.
 ///
 /// - Buffers: `frame`, one struct; `options`, one struct or NULL; `clearance`, one struct.
 /// - Result: `*clearance`.
 /// - Errors: as leafless_solid_interfere.
 /// - Ownership: nothing changes hands.
 /// - Threads: any; works in the calling thread.
-/// - Untrusted input: as leafless_solid_interfere.
+/// - Untrusted input: any solids; the default of `max_splits` bounds the work.
 /// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_solid_clearance(

@@ -40,7 +40,7 @@ fn write_all(to: &mut dyn Write) -> fmt::Result {
         leafless_mesh_report {
             facets_read, triangles, vertices, welded, degenerate, boundary_edges, boundary_loops, misoriented_edges,
             non_manifold_edges, duplicate, opposite, flat, bodies, open_bodies, inside_out_bodies, sewn,
-            displacement_model
+            displacement_model, overlapping_bodies, undecided_bodies, polygons, bent_polygons, polygon_deviation_model
         }
         leafless_mesh_defect { min_model, max_model, length_model, count, kind }
         leafless_mesh_arrays {
@@ -66,7 +66,7 @@ fn write_all(to: &mut dyn Write) -> fmt::Result {
         }
         leafless_clearance {
             distance_model, proof_a, proof_b, splits_a, splits_b, nearest_a, nearest_a_level, nearest_b, nearest_b_level,
-            has_nearest, is_clipped
+            measured, has_nearest, is_clipped
         }
         leafless_measures {
             volume_model, centroid_model, inertia_origin_model, inertia_centroid_model, proof, splits, level,
@@ -79,6 +79,9 @@ fn write_all(to: &mut dyn Write) -> fmt::Result {
         leafless_probe {
             major, minor, frame, elements, bricks, file_length, sections, proof, root, exterior, is_binary
         }
+        leafless_scene_options { struct_size, facets }
+        leafless_scene_report { polygons, exact, ignored_slices, meshes, is_empty }
+        leafless_scene_mesh { line, column, turned, report }
         leafless_section { kind, owner, is_required, name, offset, length, count }
     }
     values! { to;
@@ -87,7 +90,7 @@ fn write_all(to: &mut dyn Write) -> fmt::Result {
             LEAFLESS_E_FRAME, LEAFLESS_E_NOT_SAMPLED, LEAFLESS_E_MESH, LEAFLESS_E_MESH_FILE,
             LEAFLESS_E_FORMAT, LEAFLESS_E_VERSION, LEAFLESS_E_DAMAGED, LEAFLESS_E_LIMIT,
             LEAFLESS_E_NO_MEMORY, LEAFLESS_E_CANCELLED, LEAFLESS_E_CALLBACK, LEAFLESS_E_IO, LEAFLESS_E_PANIC,
-            LEAFLESS_E_SOURCE, LEAFLESS_E_SCENE
+            LEAFLESS_E_SOURCE, LEAFLESS_E_SCENE, LEAFLESS_E_BUSY
         }
         leafless_tag { LEAFLESS_TAG_EMPTY, LEAFLESS_TAG_BRANCH, LEAFLESS_TAG_PARTIAL, LEAFLESS_TAG_FULL }
         leafless_membership { LEAFLESS_MEMBERSHIP_OUTSIDE, LEAFLESS_MEMBERSHIP_INSIDE, LEAFLESS_MEMBERSHIP_UNDECIDED }
@@ -122,6 +125,7 @@ fn write_all(to: &mut dyn Write) -> fmt::Result {
         leafless_rule {
             LEAFLESS_RULE_CERTIFIED, LEAFLESS_RULE_SAMPLED, LEAFLESS_RULE_INNER, LEAFLESS_RULE_OUTER
         }
+        leafless_facets { LEAFLESS_FACETS_AUTO, LEAFLESS_FACETS_EXACT, LEAFLESS_FACETS_POLYGON }
         leafless_exterior { LEAFLESS_EXTERIOR_UNKNOWN, LEAFLESS_EXTERIOR_EMPTY, LEAFLESS_EXTERIOR_FULL }
     }
     writeln!(to, "LEAFLESS_VERSION_MAJOR {LEAFLESS_VERSION_MAJOR}")?;

@@ -1,6 +1,6 @@
 //! Octrees that are split on demand.
 
-use super::boundary::{Failure, array, buffer, exclusive, guard, guard_free, out, shared};
+use super::boundary::{Failure, array, buffer, guard, guard_free, out, shared};
 use super::control::{controlled, leafless_options};
 use super::frame::{frame, leafless_frame};
 use super::octree::{give, leafless_octree, leafless_statistics, leafless_tag};
@@ -12,14 +12,45 @@ use crate::op::{LazyOctree, Refinement, Zone};
 use crate::solid::Prepared;
 use alloc::boxed::Box;
 use alloc::vec::Vec;
+use std::sync::{RwLock, RwLockReadGuard, RwLockWriteGuard, TryLockError, TryLockResult};
 
 /// An octree of a solid that is not built in one go: a cell is split when somebody asks for it, and what was
 /// split is remembered. FULL and EMPTY cells are proven; cells that nobody has split yet are PARTIAL.
 ///
-/// Splitting and refining change it: while one thread does so, no other may use it, and neither may the
-/// host's functions that it asks about a cell. Otherwise its other functions may be called at once from any
-/// number of threads.
-pub struct leafless_lazy(LazyOctree<Prepared>);
+/// Splitting and refining change it: while one call does so, every other call returns LEAFLESS_E_BUSY, from
+/// another thread as from the host's functions that are asked about a cell. While another call reads it,
+/// splitting and refining return LEAFLESS_E_BUSY. Its other functions may be called at once from any number
+/// of threads.
+pub struct leafless_lazy(RwLock<LazyOctree<Prepared>>);
+
+type Held = LazyOctree<Prepared>;
+
+/// To read the octree, unless another call changes it.
+///
+/// # Safety
+/// As [`shared`].
+unsafe fn read<'a>(lazy: *const leafless_lazy) -> Result<RwLockReadGuard<'a, Held>, Failure> {
+    // SAFETY: the caller's promise.
+    unlocked(unsafe { shared(lazy, "lazy")? }.0.try_read())
+}
+
+/// To change the octree, unless another call uses it.
+///
+/// # Safety
+/// As [`shared`].
+unsafe fn change<'a>(lazy: *const leafless_lazy) -> Result<RwLockWriteGuard<'a, Held>, Failure> {
+    // SAFETY: the caller's promise.
+    unlocked(unsafe { shared(lazy, "lazy")? }.0.try_write())
+}
+
+/// An octree stays as it was when a call panics.
+fn unlocked<G>(held: TryLockResult<G>) -> Result<G, Failure> {
+    match held {
+        Ok(held) => Ok(held),
+        Err(TryLockError::Poisoned(held)) => Ok(held.into_inner()),
+        Err(TryLockError::WouldBlock) => Err(Failure::Busy { name: "lazy" }),
+    }
+}
 
 /// What the work on an octree came to.
 #[derive(Clone, Copy)]
@@ -49,7 +80,7 @@ fn level(level: u32) -> u8 {
 }
 
 fn new(lazy: LazyOctree<Prepared>) -> *mut leafless_lazy {
-    Box::into_raw(Box::new(leafless_lazy(lazy)))
+    Box::into_raw(Box::new(leafless_lazy(RwLock::new(lazy))))
 }
 
 /// An octree of which only the universe is known. No cell will ever be finer than the frame's depth, which
@@ -135,7 +166,7 @@ pub unsafe extern "C" fn leafless_lazy_free(lazy: *mut leafless_lazy) {
 ///   still to be split; LEAFLESS_E_SOURCE if the solid contradicts what the octree holds;
 ///   LEAFLESS_E_CALLBACK; LEAFLESS_E_NO_MEMORY.
 /// - Ownership: nothing changes hands.
-/// - Threads: no other call may use the handle.
+/// - Threads: any; LEAFLESS_E_BUSY while another call uses the handle.
 /// - Untrusted input: any solid, any numbers.
 /// - Since: 0.1
 ///
@@ -148,7 +179,7 @@ pub unsafe extern "C" fn leafless_lazy_split(
     tags: *mut leafless_tag,
 ) -> leafless_status {
     guard(|| unsafe {
-        let lazy = &mut exclusive(lazy, "lazy")?.0;
+        let mut lazy = change(lazy)?;
         let cell = self::cell(cell, level)?;
         let tags = out(tags.cast::<[leafless_tag; 8]>(), "tags")?;
         tags.write(lazy.split(cell)?.map(leafless_tag::from))
@@ -165,7 +196,7 @@ unsafe fn refine(
     done: *mut bool,
 ) -> leafless_status {
     guard(|| unsafe {
-        let lazy = &mut exclusive(lazy, "lazy")?.0;
+        let mut lazy = change(lazy)?;
         let zone = zone()?;
         let done = if done.is_null() { None } else { Some(out(done, "done")?) };
         let level = self::level(level);
@@ -184,7 +215,7 @@ unsafe fn refine(
 ///   contradicts what the octree holds; LEAFLESS_E_CALLBACK; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY. What
 ///   was split before stays so.
 /// - Ownership: nothing changes hands.
-/// - Threads: no other call may use the handle; uses the calling thread alone.
+/// - Threads: any; LEAFLESS_E_BUSY while another call uses the handle; uses the calling thread alone.
 /// - Untrusted input: any solid; set limits where the level or the solid is not your own choice.
 /// - Since: 0.1
 #[unsafe(no_mangle)]
@@ -207,7 +238,7 @@ pub unsafe extern "C" fn leafless_lazy_refine(
 /// - Errors: as leafless_lazy_refine; LEAFLESS_E_ARGUMENT also if min > max on an axis, or a coordinate is
 ///   not a number.
 /// - Ownership: nothing changes hands.
-/// - Threads: no other call may use the handle; uses the calling thread alone.
+/// - Threads: any; LEAFLESS_E_BUSY while another call uses the handle; uses the calling thread alone.
 /// - Untrusted input: any solid, any numbers; set limits where the level or the solid is not your own choice.
 /// - Since: 0.1
 ///
@@ -235,7 +266,7 @@ pub unsafe extern "C" fn leafless_lazy_refine_box(
 /// - Result: `*done`, whether no limit was reached first.
 /// - Errors: as leafless_lazy_refine.
 /// - Ownership: nothing changes hands.
-/// - Threads: no other call may use the handle; uses the calling thread alone.
+/// - Threads: any; LEAFLESS_E_BUSY while another call uses the handle; uses the calling thread alone.
 /// - Untrusted input: any solid, any numbers.
 /// - Since: 0.1
 ///
@@ -261,7 +292,7 @@ pub unsafe extern "C" fn leafless_lazy_refine_point(
 /// - Errors: as leafless_lazy_refine; LEAFLESS_E_ARGUMENT also if a coordinate is neither 0 nor of a
 ///   magnitude between 2^-256 and 2^256, the direction is zero, or not from ≤ to (both may be infinite).
 /// - Ownership: nothing changes hands.
-/// - Threads: no other call may use the handle; uses the calling thread alone.
+/// - Threads: any; LEAFLESS_E_BUSY while another call uses the handle; uses the calling thread alone.
 /// - Untrusted input: any solid, any numbers; set limits where the level or the solid is not your own choice.
 /// - Since: 0.1
 ///
@@ -296,7 +327,7 @@ pub unsafe extern "C" fn leafless_lazy_refine_ray(
 ///   was split, it is above the frame's depth, and the solid did not say that splitting does not help.
 /// - Errors: only the general ones.
 /// - Ownership: nothing changes hands.
-/// - Threads: any, while nobody changes the octree.
+/// - Threads: any; LEAFLESS_E_BUSY while another call changes the octree.
 /// - Untrusted input: any numbers.
 /// - Since: 0.1
 ///
@@ -310,7 +341,7 @@ pub unsafe extern "C" fn leafless_lazy_tag(
     can_split: *mut bool,
 ) -> leafless_status {
     guard(|| unsafe {
-        let lazy = &shared(lazy, "lazy")?.0;
+        let lazy = read(lazy)?;
         let cell = self::cell(cell, level)?;
         let tag = out(tag, "tag")?;
         let can_split = if can_split.is_null() { None } else { Some(out(can_split, "can_split")?) };
@@ -326,7 +357,7 @@ pub unsafe extern "C" fn leafless_lazy_tag(
 /// - Result: `*membership`.
 /// - Errors: only the general ones.
 /// - Ownership: nothing changes hands.
-/// - Threads: any, while nobody changes the octree.
+/// - Threads: any; LEAFLESS_E_BUSY while another call changes the octree.
 /// - Untrusted input: any numbers.
 /// - Since: 0.1
 ///
@@ -338,7 +369,7 @@ pub unsafe extern "C" fn leafless_lazy_contains(
     membership: *mut leafless_membership,
 ) -> leafless_status {
     guard(|| unsafe {
-        let lazy = &shared(lazy, "lazy")?.0;
+        let lazy = read(lazy)?;
         let point = array(point_model, "point_model")?;
         out(membership, "membership")?.write(lazy.contains(point).into())
     })
@@ -350,7 +381,7 @@ pub unsafe extern "C" fn leafless_lazy_contains(
 /// - Result: `*statistics`. A cell counts as a node also if its eight children are PARTIAL.
 /// - Errors: only the general ones.
 /// - Ownership: nothing changes hands.
-/// - Threads: any, while nobody changes the octree.
+/// - Threads: any; LEAFLESS_E_BUSY while another call changes the octree.
 /// - Untrusted input: none.
 /// - Since: 0.1
 #[unsafe(no_mangle)]
@@ -359,7 +390,7 @@ pub unsafe extern "C" fn leafless_lazy_statistics(
     statistics: *mut leafless_statistics,
 ) -> leafless_status {
     guard(|| unsafe {
-        let lazy = &shared(lazy, "lazy")?.0;
+        let lazy = read(lazy)?;
         out(statistics, "statistics")?.write((&lazy.statistics()).into())
     })
 }
@@ -370,7 +401,7 @@ pub unsafe extern "C" fn leafless_lazy_statistics(
 /// - Result: `*counts`.
 /// - Errors: only the general ones.
 /// - Ownership: nothing changes hands.
-/// - Threads: any, while nobody changes the octree.
+/// - Threads: any; LEAFLESS_E_BUSY while another call changes the octree.
 /// - Untrusted input: none.
 /// - Since: 0.1
 #[unsafe(no_mangle)]
@@ -379,7 +410,7 @@ pub unsafe extern "C" fn leafless_lazy_count(
     counts: *mut leafless_lazy_counts,
 ) -> leafless_status {
     guard(|| unsafe {
-        let lazy = &shared(lazy, "lazy")?.0;
+        let lazy = read(lazy)?;
         out(counts, "counts")?.write(leafless_lazy_counts {
             splits: lazy.splits(),
             replays: lazy.replays(),
@@ -395,7 +426,7 @@ pub unsafe extern "C" fn leafless_lazy_count(
 /// - Result: `*count`, depth + 1; the levels.
 /// - Errors: LEAFLESS_E_BUFFER if the capacity is too small.
 /// - Ownership: nothing changes hands.
-/// - Threads: any, while nobody changes the octree.
+/// - Threads: any; LEAFLESS_E_BUSY while another call changes the octree.
 /// - Untrusted input: none.
 /// - Since: 0.1
 #[unsafe(no_mangle)]
@@ -406,7 +437,7 @@ pub unsafe extern "C" fn leafless_lazy_levels(
     count: *mut u64,
 ) -> leafless_status {
     guard(|| unsafe {
-        let lazy = &shared(lazy, "lazy")?.0;
+        let lazy = read(lazy)?;
         let levels = buffer(levels, capacity, "levels")?;
         let count = out(count, "count")?;
         let statistics = lazy.statistics();
@@ -421,7 +452,7 @@ pub unsafe extern "C" fn leafless_lazy_levels(
 /// - Result: `*count`, the frame's depth; the numbers.
 /// - Errors: LEAFLESS_E_BUFFER if the capacity is too small.
 /// - Ownership: nothing changes hands.
-/// - Threads: any, while nobody changes the octree.
+/// - Threads: any; LEAFLESS_E_BUSY while another call changes the octree.
 /// - Untrusted input: none.
 /// - Since: 0.1
 #[unsafe(no_mangle)]
@@ -432,7 +463,7 @@ pub unsafe extern "C" fn leafless_lazy_splits(
     count: *mut u64,
 ) -> leafless_status {
     guard(|| unsafe {
-        let lazy = &shared(lazy, "lazy")?.0;
+        let lazy = read(lazy)?;
         let splits = buffer(splits, capacity, "splits")?;
         let count = out(count, "count")?;
         let found: Vec<u64> = (0..lazy.frame().depth()).map(|level| lazy.splits_at(level)).collect();
@@ -448,7 +479,7 @@ pub unsafe extern "C" fn leafless_lazy_splits(
 /// - Result: `*octree`.
 /// - Errors: LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
 /// - Ownership: give `*octree` back with leafless_octree_free.
-/// - Threads: any, while nobody changes the octree; uses as many as `options` says.
+/// - Threads: any; LEAFLESS_E_BUSY while another call changes the octree; uses as many as `options` says.
 /// - Untrusted input: none.
 /// - Since: 0.1
 #[unsafe(no_mangle)]
@@ -458,7 +489,7 @@ pub unsafe extern "C" fn leafless_lazy_freeze(
     octree: *mut *mut leafless_octree,
 ) -> leafless_status {
     guard(|| unsafe {
-        let lazy = &shared(lazy, "lazy")?.0;
+        let lazy = read(lazy)?;
         let octree = out(octree, "octree")?;
         octree.write(give(controlled(options, |control| lazy.freeze(control))?))
     })

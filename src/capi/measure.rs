@@ -9,15 +9,15 @@ use super::status::leafless_status;
 use crate::lattice::Interval;
 use crate::query::{Extent, MassProperties, StopReason, bounding_box, measure};
 
-/// Why measuring ended.
+/// Why a search or a measurement ended.
 #[derive(Clone, Copy)]
 #[repr(u32)]
 pub enum leafless_measured {
     /// What was asked for is known well enough.
     LEAFLESS_MEASURED_TOLERANCE = 0,
-    /// `max_splits` of the options is spent.
+    /// `max_splits` of the options, or the function's own limit, is spent.
     LEAFLESS_MEASURED_BUDGET = 1,
-    /// No cell is left that could be split: what is undecided has the size of the frame's finest cells, or
+    /// No cell is left whose split would help: what is undecided has the size of the frame's finest cells, or
     /// the solid itself knows no more about it, as an octree does of its PARTIAL cells.
     LEAFLESS_MEASURED_EXHAUSTED = 2,
 }

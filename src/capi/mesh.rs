@@ -3,8 +3,10 @@
 use super::boundary::{Failure, array, buffer, guard, handle, out, refer, release, shared};
 use super::status::leafless_status;
 use crate::lattice::valid;
-use crate::mesh::{DefectKind, FillRule, MeshDefect, TriangleMesh};
+use crate::mesh::{DefectKind, FillRule, MeshDefect, MeshReport, TriangleMesh};
+use alloc::string::String;
 use alloc::sync::Arc;
+use alloc::vec::Vec;
 
 /// A surface of triangles with shared vertices. Vertices at equal places are welded; whether the mesh is
 /// closed is not implied, and need not be.
@@ -13,6 +15,8 @@ use alloc::sync::Arc;
 /// needs the reference that it gives back for itself.
 pub struct leafless_mesh {
     pub(super) mesh: Arc<TriangleMesh>,
+    /// About the file that it was read from.
+    pub(super) warnings: Vec<String>,
 }
 
 /// Which points a surface encloses.
@@ -86,6 +90,53 @@ pub struct leafless_mesh_report {
     pub sewn: u64,
     /// The farthest that any of them was moved along an axis, in model units.
     pub displacement_model: f64,
+    /// Closed bodies that are proven to overlap another one: their surfaces cross, or one lies within the other
+    /// with the same sense and no cavity between them. There the surface winds around points more than once,
+    /// and leafless_mesh_volume is not what a fill rule encloses.
+    pub overlapping_bodies: u64,
+    /// Other closed bodies that may overlap another one: they touch in a way that is not decided, such as a
+    /// peg that fits its hole exactly, or there was too much to look at.
+    pub undecided_bodies: u64,
+    /// Faces of more than three corners that the triangles were made from: of OBJ, PLY and OFF files and of
+    /// polyhedra. 0 for other meshes.
+    pub polygons: u64,
+    /// Those that are not flat: corners lie beside the face's plane, by more than 2^-40 of its extent. Such a
+    /// face has no shape of its own. The mesh is one of its triangulations, and whatever is proven of the
+    /// mesh is proven of that one.
+    pub bent_polygons: u64,
+    /// Half the distance, in model units and up to rounding, between the two planes parallel to a face that
+    /// have all its corners between them, for the face where it is greatest. Each triangulation of the face
+    /// lies between the planes.
+    pub polygon_deviation_model: f64,
+}
+
+impl From<MeshReport> for leafless_mesh_report {
+    fn from(found: MeshReport) -> leafless_mesh_report {
+        leafless_mesh_report {
+            facets_read: found.facets_read,
+            triangles: found.triangles,
+            vertices: found.vertices,
+            welded: found.welded,
+            degenerate: found.degenerate,
+            boundary_edges: found.boundary_edges,
+            boundary_loops: found.boundary_loops,
+            misoriented_edges: found.misoriented_edges,
+            non_manifold_edges: found.non_manifold_edges,
+            duplicate: found.duplicate,
+            opposite: found.opposite,
+            flat: found.flat,
+            bodies: found.bodies,
+            open_bodies: found.open_bodies,
+            inside_out_bodies: found.inside_out_bodies,
+            sewn: found.sewn,
+            displacement_model: found.displacement,
+            overlapping_bodies: found.overlapping_bodies,
+            undecided_bodies: found.undecided_bodies,
+            polygons: found.polygons,
+            bent_polygons: found.bent_polygons,
+            polygon_deviation_model: found.polygon_deviation,
+        }
+    }
 }
 
 /// What is wrong with a part of a mesh, the most harmful first.
@@ -140,7 +191,7 @@ impl From<&MeshDefect> for leafless_mesh_defect {
 }
 
 pub(super) fn give(mesh: TriangleMesh) -> *mut leafless_mesh {
-    handle(leafless_mesh { mesh: Arc::new(mesh) })
+    handle(leafless_mesh { mesh: Arc::new(mesh), warnings: Vec::new() })
 }
 
 /// One more reference to a mesh.
@@ -279,7 +330,7 @@ pub unsafe extern "C" fn leafless_mesh_volume(
 }
 
 /// What was found when a mesh was made, and how its triangles hang together. The first call analyses the
-/// edges, later ones are free.
+/// edges and looks for bodies that overlap, later ones are free.
 ///
 /// - Buffers: `report`, one struct.
 /// - Result: `*report`.
@@ -296,26 +347,7 @@ pub unsafe extern "C" fn leafless_mesh_describe(
     guard(|| unsafe {
         let mesh = &shared(mesh, "mesh")?.mesh;
         let report = out(report, "report")?;
-        let found = mesh.report()?;
-        report.write(leafless_mesh_report {
-            facets_read: found.facets_read,
-            triangles: found.triangles,
-            vertices: found.vertices,
-            welded: found.welded,
-            degenerate: found.degenerate,
-            boundary_edges: found.boundary_edges,
-            boundary_loops: found.boundary_loops,
-            misoriented_edges: found.misoriented_edges,
-            non_manifold_edges: found.non_manifold_edges,
-            duplicate: found.duplicate,
-            opposite: found.opposite,
-            flat: found.flat,
-            bodies: found.bodies,
-            open_bodies: found.open_bodies,
-            inside_out_bodies: found.inside_out_bodies,
-            sewn: found.sewn,
-            displacement_model: found.displacement,
-        })
+        report.write(mesh.report()?.into())
     })
 }
 
@@ -371,8 +403,9 @@ pub unsafe extern "C" fn leafless_mesh_check_closed(
     })
 }
 
-/// The mesh with hair cracks closed: vertices at open edges that lie within 2^-24 of the extent of each other
-/// become one. Verdicts about solids made of it stay proven: the distance is added outward.
+/// The mesh with hair cracks closed: vertices at open edges become one if they lie no further apart than 2^-24
+/// of the longest extent of the larger one of their pieces. (A piece is all triangles that hang together by
+/// common vertices.) Verdicts about solids made of it stay proven: the distance is added outward.
 ///
 /// - Buffers: `sewn`, one pointer.
 /// - Result: `*sewn`; leafless_mesh_describe tells how many vertices moved and how far.

@@ -1,10 +1,17 @@
 //! Mesh files.
 
-use super::boundary::{Failure, Out, Sized32, buffer, guard, initialise, out, path, shared, sized, slice};
-use super::mesh::{give, leafless_mesh};
+use super::boundary::{
+    Failure, Out, Sized32, buffer, guard, handle, initialise, out, path, shared, sized, slice,
+};
+use super::mesh::leafless_mesh;
 use super::status::leafless_status;
+use crate::error::Error;
 use crate::exchange::{LengthUnit, MeshFile, MeshFormat, MeshOptions, open_mesh, read_mesh, write_stl};
+use crate::memory;
+use alloc::string::String;
+use alloc::sync::Arc;
 use core::ffi::c_char;
+use core::fmt::Write;
 use leafless_mesh_format::*;
 use leafless_unit::*;
 
@@ -164,7 +171,15 @@ impl Results {
         if let Some(source) = self.source {
             source.write((&file).into())?;
         }
-        self.mesh.write(give(file.mesh))
+        let mut warnings = memory::with_capacity(file.warnings.len())?;
+        for warning in &file.warnings {
+            let mut text = String::new();
+            text.try_reserve(256).map_err(Error::from)?;
+            // Writing to a string does not fail.
+            let _ = write!(text, "{warning}");
+            warnings.push(text);
+        }
+        self.mesh.write(handle(leafless_mesh { mesh: Arc::new(file.mesh), warnings }))
     }
 }
 
@@ -191,7 +206,8 @@ pub unsafe extern "C" fn leafless_mesh_options_init(
 ///
 /// - Buffers: `path`, `path_length` bytes of UTF-8; `options`, one struct, or NULL; `source`, one struct, or
 ///   NULL if it is not wanted; `mesh`, one pointer.
-/// - Result: `*mesh`, not checked to be closed; `*source`.
+/// - Result: `*mesh`, not checked to be closed; `*source`. leafless_mesh_peek_warning_at tells where the file
+///   departs from its format, though it could be read.
 /// - Errors: LEAFLESS_E_MESH_FILE, with the part, line, facet or byte in the message, if the file cannot be
 ///   read, if its format is not known, or if `target` is given and nobody says from which unit;
 ///   LEAFLESS_E_MESH, with the vertex, if a coordinate is beyond ±2^256 once it is scaled;
@@ -242,6 +258,40 @@ pub unsafe extern "C" fn leafless_mesh_from_bytes(
         let options = self::options(options)?;
         let results = Results::new(source, mesh)?;
         results.write(read_mesh(bytes, &options)?)
+    })
+}
+
+/// What a mesh file departs from its format in, though it could be read: a sentence in UTF-8 for each kind of
+/// departure, by its place among all. A mesh that was not read from a file, or was made from another mesh, has
+/// none.
+///
+/// - Buffers: `count`, one number; `warning`, `warning_length`, one each, both NULL to ask for the count only.
+/// - Result: `*count`, the number of all warnings; the text, not NUL-terminated, with its length in bytes.
+/// - Errors: LEAFLESS_E_ARGUMENT if there is no warning `index`, unless only the count is asked for.
+/// - Ownership: the text belongs to the mesh and lives as long as the reference `mesh`.
+/// - Threads: any.
+/// - Untrusted input: none.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_mesh_peek_warning_at(
+    mesh: *const leafless_mesh,
+    index: u64,
+    count: *mut u64,
+    warning: *mut *const c_char,
+    warning_length: *mut usize,
+) -> leafless_status {
+    guard(|| unsafe {
+        let warnings = &shared(mesh, "mesh")?.warnings;
+        let count = out(count, "count")?;
+        if warning.is_null() && warning_length.is_null() {
+            return count.write(warnings.len() as u64);
+        }
+        let (warning, warning_length) = (out(warning, "warning")?, out(warning_length, "warning_length")?);
+        let missing = Failure::Argument { name: "index", problem: "is not below the number of warnings" };
+        let found = usize::try_from(index).ok().and_then(|index| warnings.get(index)).ok_or(missing)?;
+        warning.write(found.as_ptr().cast())?;
+        warning_length.write(found.len())?;
+        count.write(warnings.len() as u64)
     })
 }
 

@@ -9,7 +9,7 @@ use super::status::leafless_status;
 use crate::control::Control;
 use crate::error::Error;
 use crate::memory;
-use crate::octree::{Octree, OctreeRef};
+use crate::octree::{Metadata, Octree, OctreeRef};
 use crate::op::Rule;
 use crate::op::{self, build, compact, resolve};
 
@@ -72,7 +72,7 @@ pub unsafe extern "C" fn leafless_octree_build(
 /// LEAFLESS_RULE_OUTER.
 ///
 /// - Buffers: `options`, one struct or NULL; `resolved`, one pointer. `rule` is a leafless_rule.
-/// - Result: `*resolved`, without metadata.
+/// - Result: `*resolved`, with the octree's facts "name" and "units" and no others.
 /// - Errors: LEAFLESS_E_NOT_SAMPLED under LEAFLESS_RULE_SAMPLED if a cell is PARTIAL, because a stored octree
 ///   knows no more about it; LEAFLESS_E_DAMAGED; LEAFLESS_E_ARGUMENT; LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED;
 ///   LEAFLESS_E_NO_MEMORY.
@@ -91,7 +91,8 @@ pub unsafe extern "C" fn leafless_octree_resolve(
         let octree = &shared(octree, "octree")?.octree;
         let rule = self::rule(rule)?;
         let resolved = out(resolved, "resolved")?;
-        resolved.write(give(controlled(options, |control| resolve(octree.view(), rule, control))?))
+        let made = controlled(options, |control| resolve(octree.view(), rule, control))?;
+        resolved.write(give(made.with_metadata(Metadata::common([octree.metadata()])?)))
     })
 }
 
@@ -131,9 +132,10 @@ unsafe fn binary(
     result: *mut *mut leafless_octree,
 ) -> leafless_status {
     guard(|| unsafe {
-        let (a, b) = (shared(a, "a")?.octree.view(), shared(b, "b")?.octree.view());
+        let (a, b) = (&shared(a, "a")?.octree, &shared(b, "b")?.octree);
         let result = out(result, "result")?;
-        result.write(give(controlled(options, |control| operation(a, b, control))?))
+        let made = controlled(options, |control| operation(a.view(), b.view(), control))?;
+        result.write(give(made.with_metadata(Metadata::common([a.metadata(), b.metadata()])?)))
     })
 }
 
@@ -150,21 +152,26 @@ unsafe fn nary(
         let octrees = slice(octrees, count, "octrees")?;
         let result = out(result, "result")?;
         let mut views = memory::with_capacity(octrees.len())?;
+        let mut metadata = memory::with_capacity(octrees.len())?;
         for &octree in octrees {
-            views.push(*shared(octree, "octrees")?.octree.view());
+            let octree = &shared(octree, "octrees")?.octree;
+            views.push(*octree.view());
+            metadata.push(octree.metadata());
         }
         if views.is_empty() {
             return Err(Failure::Argument { name: "count", problem: "must be at least 1" });
         }
-        result.write(give(controlled(options, |control| operation(&views, control))?))
+        let made = controlled(options, |control| operation(&views, control))?;
+        result.write(give(made.with_metadata(Metadata::common(metadata.iter().copied())?)))
     })
 }
 
-/// Every point of `a` and of `b`. Exact, and the same bit for bit for any number of threads; never larger
+/// The points that lie in `a`, in `b`, or in both. Exact, and the same bit for bit for any number of threads; never larger
 /// than both operands together.
 ///
 /// - Buffers: `options`, one struct or NULL; `result`, one pointer.
-/// - Result: `*result`, without metadata.
+/// - Result: `*result`, with those of the facts "name" and "units" that all operands have with one value, and
+///   no other metadata.
 /// - Errors: LEAFLESS_E_FRAME if the frames differ; LEAFLESS_E_DAMAGED; LEAFLESS_E_ARGUMENT;
 ///   LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
 /// - Ownership: the operands stay as they are; give `*result` back with leafless_octree_free.
@@ -259,9 +266,10 @@ pub unsafe extern "C" fn leafless_octree_complement(
     result: *mut *mut leafless_octree,
 ) -> leafless_status {
     guard(|| unsafe {
-        let octree = shared(octree, "octree")?.octree.view();
+        let octree = &shared(octree, "octree")?.octree;
         let result = out(result, "result")?;
-        result.write(give(controlled(options, |control| op::complement(octree, control))?))
+        let made = controlled(options, |control| op::complement(octree.view(), control))?;
+        result.write(give(made.with_metadata(Metadata::common([octree.metadata()])?)))
     })
 }
 

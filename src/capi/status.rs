@@ -49,10 +49,12 @@ pub enum leafless_status {
     LEAFLESS_E_SOURCE = 18,
     /// A scene cannot be read.
     LEAFLESS_E_SCENE = 19,
+    /// A lazy octree is in use by another call, in another thread or around this one. Nothing was done.
+    LEAFLESS_E_BUSY = 20,
 }
 use leafless_status::*;
 
-const ALL: [(leafless_status, &CStr); 20] = [
+const ALL: [(leafless_status, &CStr); 21] = [
     (LEAFLESS_OK, c"LEAFLESS_OK"),
     (LEAFLESS_E_NULL, c"LEAFLESS_E_NULL"),
     (LEAFLESS_E_ARGUMENT, c"LEAFLESS_E_ARGUMENT"),
@@ -73,6 +75,7 @@ const ALL: [(leafless_status, &CStr); 20] = [
     (LEAFLESS_E_PANIC, c"LEAFLESS_E_PANIC"),
     (LEAFLESS_E_SOURCE, c"LEAFLESS_E_SOURCE"),
     (LEAFLESS_E_SCENE, c"LEAFLESS_E_SCENE"),
+    (LEAFLESS_E_BUSY, c"LEAFLESS_E_BUSY"),
 ];
 
 /// The last failure of a thread. Of fixed size, so that a failure for want of memory can be told.
@@ -125,8 +128,8 @@ pub extern "C" fn leafless_status_name(status: i32) -> *const c_char {
     named.map_or(c"LEAFLESS_E_UNKNOWN", |(_, name)| name).as_ptr()
 }
 
-/// The message of the last failure in the calling thread: a sentence that a user can act on, in UTF-8. Calls
-/// that succeed leave it as it is; before the first failure it is empty.
+/// The message of the last failure in the calling thread: a sentence that a user can act on, in UTF-8. If it
+/// is about a file, the message begins with the path, or with the end of a long one. Calls that succeed leave it as it is; before the first failure it is empty.
 ///
 /// - Buffers: `message`, `capacity` bytes; may be NULL if `capacity` is 0.
 /// - Result: the message's length in bytes, without the terminating NUL, also if not all of it was written;

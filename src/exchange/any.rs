@@ -5,10 +5,14 @@ use super::stl::read_stl;
 #[cfg(feature = "threemf")]
 use super::threemf;
 use super::unit::{Factor, LengthUnit};
+use super::{MeshWarning, refuse_utf16};
 #[cfg(feature = "std")]
-use super::{read_obj, read_off, read_ply};
+use super::{ply, read_obj, read_off};
 use crate::error::{Error, MeshFileError};
+#[cfg(feature = "threemf")]
+use crate::memory;
 use crate::mesh::TriangleMesh;
+use alloc::vec::Vec;
 
 /// How a mesh file is to be taken. The default takes everything from the file and changes nothing.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -43,6 +47,8 @@ pub struct MeshFile {
     /// Instances of objects that the file does not mean to be solid, such as supports, and that the mesh
     /// therefore does not contain. 0 for all formats but 3MF.
     pub skipped: u64,
+    /// Where the file departs from its format, though it could be read.
+    pub warnings: Vec<MeshWarning>,
 }
 
 /// Reads a mesh file of any format.
@@ -54,9 +60,12 @@ pub struct MeshFile {
 /// number, one quotient, so that coordinates of up to 40 bits (all of binary STL are) are the exact result
 /// rounded once. Without both, or if they cancel, coordinates stay as they are, bit by bit.
 ///
+/// A file that departs from its format in a way that leaves no doubt about the mesh is read, and
+/// [`MeshFile::warnings`] tells of it.
+///
 /// O(n). Fails with [`Error::Argument`] for a scale that is not allowed, [`MeshFileError::UnknownFormat`],
 /// [`MeshFileError::UnknownUnit`] if a conversion is asked for and nobody says from which unit,
-/// [`MeshFileError::Unsupported`] for a format that was left out of this build of the library,
+/// [`MeshFileError::Unsupported`] for text in UTF-16 and for a format that was left out of this build,
 /// [`MeshError::TooLarge`](crate::MeshError::TooLarge) if scaling exceeds ±2^256, and the reader's errors.
 pub fn read_mesh(bytes: &[u8], options: &MeshOptions) -> Result<MeshFile, Error> {
     read(bytes, None, options)
@@ -64,12 +73,14 @@ pub fn read_mesh(bytes: &[u8], options: &MeshOptions) -> Result<MeshFile, Error>
 
 /// Reads a mesh file of any format from a path, whose extension helps to tell the format.
 ///
-/// As [`read_mesh`]; fails with [`Error::Io`] besides.
+/// As [`read_mesh`]. What is wrong with the file is the cause of an [`Error::File`] with the path, and may be
+/// [`Error::Io`] besides.
 #[cfg(feature = "std")]
 pub fn open_mesh(path: impl AsRef<std::path::Path>, options: &MeshOptions) -> Result<MeshFile, Error> {
     let path = path.as_ref();
-    let bytes = std::fs::read(path)?;
-    read(&bytes, path.extension().and_then(|extension| extension.to_str()), options)
+    let extension = path.extension().and_then(|extension| extension.to_str());
+    let bytes = std::fs::read(path).map_err(Error::from);
+    bytes.and_then(|bytes| read(&bytes, extension, options)).map_err(|error| error.of_file(path))
 }
 
 fn read(bytes: &[u8], extension: Option<&str>, options: &MeshOptions) -> Result<MeshFile, Error> {
@@ -78,15 +89,21 @@ fn read(bytes: &[u8], extension: Option<&str>, options: &MeshOptions) -> Result<
     if bytes.is_empty() {
         return Err(MeshFileError::Empty.into());
     }
+    if options.format != Some(MeshFormat::ThreeMf) {
+        // Before the format is detected, which the bytes of such a text do not tell.
+        refuse_utf16(bytes)?;
+    }
     let format = (options.format)
         .or_else(|| MeshFormat::detect(bytes, extension))
         .ok_or(MeshFileError::UnknownFormat)?;
+    #[cfg_attr(not(feature = "std"), expect(unused_mut, reason = "only these formats warn"))]
+    let mut warnings = Vec::new();
     let (mesh, own_unit, skipped) = match format {
         MeshFormat::Stl => (read_stl(bytes)?, None, 0),
         #[cfg(feature = "std")]
         MeshFormat::Obj => (read_obj(bytes)?, None, 0),
         #[cfg(feature = "std")]
-        MeshFormat::Ply => (read_ply(bytes)?, None, 0),
+        MeshFormat::Ply => (ply::read(bytes, &mut warnings)?, None, 0),
         #[cfg(feature = "std")]
         MeshFormat::Off => (read_off(bytes)?, None, 0),
         #[cfg(not(feature = "std"))]
@@ -96,7 +113,10 @@ fn read(bytes: &[u8], extension: Option<&str>, options: &MeshOptions) -> Result<
         }
         #[cfg(feature = "threemf")]
         MeshFormat::ThreeMf => {
-            let threemf::Built { mesh, unit, skipped } = threemf::read(bytes)?;
+            let threemf::Built { mesh, unit, skipped, draft } = threemf::read(bytes)?;
+            if draft {
+                memory::push(&mut warnings, MeshWarning::Draft)?;
+            }
             (mesh, Some(unit), skipped)
         }
         #[cfg(not(feature = "threemf"))]
@@ -113,7 +133,7 @@ fn read(bytes: &[u8], extension: Option<&str>, options: &MeshOptions) -> Result<
     };
     let factor = Factor::new(conversion, options.scale)?;
     let mesh = if factor.is_one() { mesh } else { mesh.scaled(|x| factor.apply(x))? };
-    Ok(MeshFile { mesh, format, unit: options.target.or(unit), skipped })
+    Ok(MeshFile { mesh, format, unit: options.target.or(unit), skipped, warnings })
 }
 
 #[cfg(test)]
@@ -196,7 +216,12 @@ mod tests {
             assert_eq!((file.format, file.unit), (format, Some(Foot)));
             assert_eq!(file.mesh.vertices()[1], [2.0 / 12.0, 0.0, 0.0]);
             assert_eq!(file.mesh.triangles(), [[0, 1, 2]]);
+            assert_eq!(file.warnings, []);
         }
+        // What is warned of reaches the caller.
+        let strange = [&ply[..21], b"by hand\n", &ply[21..]].concat();
+        let file = read_mesh(&strange, &MeshOptions::default()).unwrap();
+        assert_eq!(file.warnings, [MeshWarning::HeaderLine { line: 3, lines: 1 }]);
     }
 
     /// Every model file has the format that its name says, by its content alone.
@@ -215,6 +240,36 @@ mod tests {
             count += 1;
         }
         assert!(count >= 12);
+    }
+
+    /// Text in UTF-16 is called so, by the reader of every format.
+    #[cfg(feature = "std")]
+    #[test]
+    fn utf_16() {
+        let texts = [
+            ("solid a\nfacet normal 0 0 1\n", MeshFormat::Stl),
+            ("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", MeshFormat::Obj),
+            ("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n", MeshFormat::Off),
+            ("ply\nformat ascii 1.0\nend_header\n", MeshFormat::Ply),
+        ];
+        for (text, format) in texts {
+            for order in [u16::to_le_bytes, u16::to_be_bytes] {
+                let units = core::iter::once(0xFEFF).chain(text.encode_utf16());
+                let bytes: Vec<u8> = units.flat_map(order).collect();
+                let as_such = MeshOptions { format: Some(format), ..MeshOptions::default() };
+                for options in [MeshOptions::default(), as_such] {
+                    let found = read_mesh(&bytes, &options);
+                    let Err(Error::MeshFile(MeshFileError::Unsupported { what })) = found else {
+                        panic!("{format}: {found:?}");
+                    };
+                    assert!(what.contains("UTF-16"), "{what}");
+                }
+            }
+        }
+        // A binary STL may begin with anything.
+        let mut stl = triangle(1.0);
+        stl[..2].copy_from_slice(b"\xFF\xFE");
+        assert_eq!(read_mesh(&stl, &MeshOptions::default()).unwrap().mesh.triangles().len(), 1);
     }
 
     #[test]

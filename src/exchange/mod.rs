@@ -9,7 +9,10 @@
 //! | OBJ | polygons, relative indices, continued lines; groups, materials and normals are skipped |
 //! | PLY | ASCII and both binary orders; any other elements and properties are skipped; triangle strips |
 //! | OFF | text and binary, with and without a keyword, with colours, normals and textures, which are skipped |
-//! | 3MF | (feature `threemf`) the core specification and parts of the production extension: units, components, the build's transforms |
+//! | 3MF | (feature `threemf`) the core specification, its draft 0.93 and parts of the production extension: units, components, the build's transforms |
+//!
+//! Some files depart from their format in a way that leaves no doubt about the mesh. They are read, and
+//! [`MeshFile::warnings`] tells of it.
 //!
 //! An error says in which line, or at which byte or element, and for a 3MF in which part. Bytes may be
 //! anything: no reader panics, and memory is linear in the length of the file, with two exceptions of 3MF:
@@ -20,6 +23,8 @@
 //! refused, as are encryption and document type declarations.
 //!
 //! Formats of polygons are read only with the feature `std`, which cutting polygons into triangles needs.
+
+use crate::error::{Error, MeshFileError};
 
 mod any;
 #[cfg(feature = "std")]
@@ -43,6 +48,7 @@ mod text;
 #[cfg(feature = "threemf")]
 mod threemf;
 mod unit;
+mod warning;
 
 #[cfg(feature = "std")]
 pub use any::open_mesh;
@@ -58,6 +64,15 @@ pub use ply::read_ply;
 pub(crate) use polygons::Polygons;
 pub use stl::{read_stl, write_stl};
 pub use unit::LengthUnit;
+pub use warning::MeshWarning;
+
+/// Refuses text in UTF-16. Of the formats that are one text, none can be read in it.
+fn refuse_utf16(bytes: &[u8]) -> Result<(), Error> {
+    if !matches!(bytes, [0xFE, 0xFF, ..] | [0xFF, 0xFE, ..]) || stl::is_binary_of_exact_length(bytes) {
+        return Ok(());
+    }
+    Err(MeshFileError::Unsupported { what: "text in UTF-16, which must be saved as UTF-8 first," }.into())
+}
 
 #[inline]
 fn is_space(byte: u8) -> bool {

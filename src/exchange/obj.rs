@@ -22,7 +22,7 @@ use alloc::vec::Vec;
 
 use super::polygons::Polygons;
 use super::text::Text;
-use super::{is_line_end, is_space};
+use super::{is_line_end, is_space, refuse_utf16};
 use crate::error::{Error, MeshFileError};
 use crate::memory;
 use crate::mesh::TriangleMesh;
@@ -35,13 +35,14 @@ use crate::mesh::TriangleMesh;
 /// and counted, as in [`TriangleMesh::new`]. The mesh need not be closed, and may be empty.
 ///
 /// O(n), or O(n log n) for faces that are not convex. Memory is at most 128 times the length of the file.
-/// Fails with [`MeshFileError::Empty`], [`MeshFileError::Syntax`], [`MeshFileError::Index`],
+/// Fails with [`MeshFileError::Empty`], [`MeshFileError::Unsupported`] (UTF-16), [`MeshFileError::Syntax`], [`MeshFileError::Index`],
 /// [`MeshError::TooLarge`](crate::MeshError::TooLarge), [`MeshError::TooMany`](crate::MeshError::TooMany) or
 /// [`Error::OutOfMemory`].
 pub fn read_obj(bytes: &[u8]) -> Result<TriangleMesh, Error> {
     if bytes.is_empty() {
         return Err(MeshFileError::Empty.into());
     }
+    refuse_utf16(bytes)?;
     let mut file = Reader::default();
     file.read(Text::new(bytes))?;
     let vertices = file.mesh.vertices.len() as u64;

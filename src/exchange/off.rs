@@ -16,7 +16,8 @@
 //! skipped too.
 //!
 //! **Binary** files (`OFF BINARY`) have integers of 32 bits and floating point numbers of 32 bits, both
-//! big-endian, and a count before each colour.
+//! big-endian, and a count before each colour. A file in little-endian order, as some programs write it, is
+//! refused by that name.
 //!
 //! **The end.** Behind the last face only white space and comments may follow, of a binary file also zero
 //! bytes: if there is more, the counts are wrong. Nothing is allocated beyond what the file holds.
@@ -25,6 +26,7 @@ use alloc::vec::Vec;
 
 use super::bytes::{Bytes, TOO_LONG, TOO_SHORT};
 use super::polygons::Polygons;
+use super::refuse_utf16;
 use super::text::Text;
 use crate::error::{Error, MeshFileError};
 use crate::memory;
@@ -38,7 +40,8 @@ use crate::mesh::TriangleMesh;
 /// and counted, as in [`TriangleMesh::new`]. The mesh need not be closed, and may be empty.
 ///
 /// O(n), or O(n log n) for faces that are not convex. Memory is at most 128 times the length of the file,
-/// whatever its header claims. Fails with [`MeshFileError::Empty`], [`MeshFileError::Syntax`] and
+/// whatever its header claims. Fails with [`MeshFileError::Empty`], [`MeshFileError::Unsupported`] (UTF-16),
+/// [`MeshFileError::Syntax`] and
 /// [`MeshFileError::Index`] (in the header, and in a text), [`MeshFileError::Binary`] and
 /// [`MeshFileError::BinaryIndex`], [`MeshError::TooLarge`](crate::MeshError::TooLarge),
 /// [`MeshError::TooMany`](crate::MeshError::TooMany) or [`Error::OutOfMemory`].
@@ -46,6 +49,7 @@ pub fn read_off(bytes: &[u8]) -> Result<TriangleMesh, Error> {
     if bytes.is_empty() {
         return Err(MeshFileError::Empty.into());
     }
+    refuse_utf16(bytes)?;
     let mut text = Text::new(bytes);
     let layout = Layout::read(&mut text)?;
     text.skip_blanks();
@@ -118,6 +122,8 @@ impl Layout {
 
 const DIMENSION: &str = "three dimensions: `nOFF` of others is no surface in space";
 const FOURTH: &str = "a fourth coordinate by which the others can be divided";
+const LITTLE_ENDIAN: &str =
+    "big-endian numbers, which an OFF BINARY has; the counts make sense in little-endian order only";
 const NO_CORNER: &str = "a face of at least one corner";
 
 // ---- text -----------------------------------------------------------------------------------------------
@@ -258,7 +264,27 @@ const COLOUR: &str = "the end of the line, or at most four numbers of a colour";
 
 // ---- binary ---------------------------------------------------------------------------------------------
 
+/// Whether the counts in the header can only be those of a file in little-endian order, which OFF has not: the
+/// file is too short for what they are otherwise.
+fn is_little_endian(layout: &Layout, data: &[u8]) -> bool {
+    let counts = data.get(4 * layout.dimension as usize..).unwrap_or(&[]);
+    let number = |k: usize, order: fn([u8; 4]) -> i32| {
+        let bytes = counts.get(4 * k..).and_then(|rest| rest.first_chunk::<4>())?;
+        u64::try_from(order(*bytes)).ok()
+    };
+    // A face has at least its length, a corner and the length of its colour.
+    let vertex = 4 * (3 + layout.homogeneous as u64 + layout.others() as u64 + 4 * layout.colour as u64);
+    let is_whole = |order| match (number(0, order), number(1, order)) {
+        (Some(vertices), Some(faces)) => 12 + vertices * vertex + faces * 12 <= counts.len() as u64,
+        _ => false,
+    };
+    is_whole(i32::from_le_bytes) && !is_whole(i32::from_be_bytes)
+}
+
 fn read_binary(layout: &Layout, mut bytes: Bytes<true>) -> Result<TriangleMesh, Error> {
+    if is_little_endian(layout, bytes.rest()) {
+        return Err(bytes.error(LITTLE_ENDIAN).into());
+    }
     let mut number_of = |problem: &'static str| -> Result<u32, Error> {
         let start = bytes;
         let number = i32::from_le_bytes(bytes.number()?);
@@ -582,6 +608,17 @@ mod tests {
                 }
                 other => panic!("{other:?}"),
             }
+        }
+    }
+
+    #[test]
+    fn little_endian_files_are_called_so() {
+        for (header, start, numbers) in [("OFF", &[][..], 3), ("CNOFF", &[], 10), ("nOFF", &[3], 3)] {
+            let mut bytes = binary(header, start, numbers, &CORNERS, &faces(), 0);
+            let data = bytes.iter().position(|&b| b == b'\n').unwrap() + 1;
+            bytes[data..].as_chunks_mut::<4>().0.iter_mut().for_each(|number| number.reverse());
+            assert_binary(&bytes, data, "little-endian");
+            assert!(read_off(&bytes[..data + 12]).is_err());
         }
     }
 

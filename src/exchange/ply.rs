@@ -2,16 +2,19 @@
 //!
 //! **Header.** `ply`, one `format` (`ascii`, `binary_little_endian` or `binary_big_endian`, version 1.0),
 //! elements with their properties, and `end_header`. `comment` and `obj_info` may stand on any line between.
-//! Lines end with LF, CR or both. The types are `char`, `uchar`, `short`, `ushort`, `int`, `uint`, `float`,
+//! Lines end with LF, CR or both. Other lines before the first element are taken for comments, with a warning:
+//! Blender 2.47 and Assimp 3.0 forgot the keyword. The types are `char`, `uchar`, `short`, `ushort`, `int`, `uint`, `float`,
 //! `double` and the same as `int8` to `float64`. A keyword or a type that is none of these is refused.
 //!
 //! **Elements** come in any order; those of other names, and all properties that are not needed, single ones
 //! and lists, are skipped. `vertex` needs `x`, `y` and `z` of any type. `face` needs a list of integers that
-//! is called `vertex_indices` or `vertex_index`, of three or more vertices each. `tristrips`, as the Stanford
+//! is called `vertex_indices` or `vertex_index`, of three or more vertices each; without such a list, and with
+//! a warning, there may be none. `tristrips`, as the Stanford
 //! scans have it, needs a list of that name, in which -1 ends a strip; every second triangle is turned.
 //!
 //! **ASCII.** The values of an element are separated by white space, also by line ends; each element begins
-//! on a new line. A decimal coordinate becomes the nearest `f64`, also if its type is `float`.
+//! on a new line. If the first element of a kind has more values on its line than the header announces, these
+//! are skipped, with a warning; then every element of the kind must have as many. A decimal coordinate becomes the nearest `f64`, also if its type is `float`.
 //!
 //! **Binary.** Coordinates are taken over exactly.
 //!
@@ -23,6 +26,7 @@ use alloc::vec::Vec;
 use super::bytes::{Bytes, TOO_LONG, TOO_SHORT};
 use super::polygons::Polygons;
 use super::text::Text;
+use super::{MeshWarning, is_line_end, refuse_utf16};
 use crate::error::{Error, MeshFileError};
 use crate::memory;
 use crate::mesh::TriangleMesh;
@@ -35,23 +39,30 @@ use crate::mesh::TriangleMesh;
 /// and counted, as in [`TriangleMesh::new`]. The mesh need not be closed, and may be empty.
 ///
 /// O(n), or O(n log n) for faces that are not convex. Memory is at most 128 times the length of the file,
-/// whatever its header claims. Fails with [`MeshFileError::Empty`], [`MeshFileError::Syntax`] and
+/// whatever its header claims. What [`read_mesh`](super::read_mesh) warns of is not told. Fails with
+/// [`MeshFileError::Empty`], [`MeshFileError::Unsupported`] (UTF-16), [`MeshFileError::Syntax`] and
 /// [`MeshFileError::Index`] (in the header, and in an ASCII file), [`MeshFileError::Binary`] and
 /// [`MeshFileError::BinaryIndex`], [`MeshError::TooLarge`](crate::MeshError::TooLarge),
 /// [`MeshError::TooMany`](crate::MeshError::TooMany) or [`Error::OutOfMemory`].
 pub fn read_ply(bytes: &[u8]) -> Result<TriangleMesh, Error> {
+    read(bytes, &mut Vec::new())
+}
+
+/// The same, with warnings.
+pub(super) fn read(bytes: &[u8], warnings: &mut Vec<MeshWarning>) -> Result<TriangleMesh, Error> {
     if bytes.is_empty() {
         return Err(MeshFileError::Empty.into());
     }
-    let header = Header::read(bytes)?;
-    match header.encoding {
+    refuse_utf16(bytes)?;
+    let Header { encoding, elements, length } = Header::read(bytes, warnings)?;
+    match encoding {
         Encoding::Ascii => {
             let mut text = Text::new(bytes);
-            text.continue_with(text.rest().get(header.length..).unwrap_or(&[]));
-            read_elements(&header.elements, text)
+            text.continue_with(text.rest().get(length..).unwrap_or(&[]));
+            read_elements(&elements, text, warnings)
         }
-        Encoding::Little => read_elements(&header.elements, Bytes::<false>::new(bytes, header.length)),
-        Encoding::Big => read_elements(&header.elements, Bytes::<true>::new(bytes, header.length)),
+        Encoding::Little => read_elements(&elements, Bytes::<false>::new(bytes, length), warnings),
+        Encoding::Big => read_elements(&elements, Bytes::<true>::new(bytes, length), warnings),
     }
 }
 
@@ -131,7 +142,7 @@ struct Header<'a> {
 }
 
 impl<'a> Header<'a> {
-    fn read(bytes: &'a [u8]) -> Result<Self, Error> {
+    fn read(bytes: &'a [u8], warnings: &mut Vec<MeshWarning>) -> Result<Self, Error> {
         let mut text = Text::beginning(bytes);
         if text.word() != b"ply" {
             return Err(Text::beginning(bytes).error("`ply`, with which every PLY file begins").into());
@@ -142,6 +153,7 @@ impl<'a> Header<'a> {
         end_line(&mut text)?;
         let mut encoding = None;
         let mut elements: Vec<Element> = Vec::new();
+        let mut strange = (0, 0);
         loop {
             text.skip_space();
             let at = text;
@@ -180,11 +192,27 @@ impl<'a> Header<'a> {
                     memory::push(&mut element.properties, property)?;
                 }
                 b"end_header" => break,
+                // No property can be lost before the first element.
+                word if !word.is_empty()
+                    && !is_keyword(word)
+                    && elements.is_empty()
+                    && encoding.is_some() =>
+                {
+                    if strange.1 == 0 {
+                        strange.0 = at.line();
+                    }
+                    strange.1 += 1;
+                    text.skip_line();
+                    continue;
+                }
                 _ => return Err(at.error("a line of a PLY header, up to `end_header`").into()),
             }
             end_line(&mut text)?;
         }
         let encoding = encoding.ok_or_else(|| text.error(FORMAT))?;
+        if let (line, lines @ 1..) = strange {
+            memory::push(warnings, MeshWarning::HeaderLine { line, lines })?;
+        }
         text.skip_blanks();
         match text.rest() {
             [b'\r', b'\n', rest @ ..] if !old => text.continue_with(rest),
@@ -194,6 +222,10 @@ impl<'a> Header<'a> {
         }
         Ok(Self { encoding, elements, length: text.taken() })
     }
+}
+
+fn is_keyword(word: &[u8]) -> bool {
+    matches!(word, b"ply" | b"format" | b"comment" | b"obj_info" | b"element" | b"property" | b"end_header")
 }
 
 const FORMAT: &str = "a format: `ascii`, `binary_little_endian` or `binary_big_endian`, and `1.0`";
@@ -250,8 +282,12 @@ trait Source: Copy {
     /// Takes `count` indices below `vertices`; in a strip also -1, which becomes the greatest `u32`.
     fn indices(&mut self, out: &mut Vec<u32>, count: u64, of: &Indices, vertices: u64) -> Result<(), Error>;
 
-    /// Takes the end of an element.
-    fn end_element(&mut self) -> Result<(), MeshFileError>;
+    /// Takes the end of an element that began at `start`, and before it so many values that the header does not
+    /// announce; `None`: any number, all on the line where the element began. Tells how many there were.
+    fn end_element(&mut self, start: &Self, more: Option<u64>) -> Result<u64, MeshFileError>;
+
+    /// Where something stands.
+    fn line(&self) -> u64;
 
     /// Takes the end of the file.
     fn end_file(&mut self) -> Result<(), MeshFileError>;
@@ -286,7 +322,11 @@ enum Step {
     Indices(Indices),
 }
 
-fn read_elements<S: Source>(elements: &[Element], mut source: S) -> Result<TriangleMesh, Error> {
+fn read_elements<S: Source>(
+    elements: &[Element],
+    mut source: S,
+    warnings: &mut Vec<MeshWarning>,
+) -> Result<TriangleMesh, Error> {
     let mut mesh = Polygons::default();
     let vertex = elements.iter().find(|element| element.name == b"vertex");
     let vertices = vertex.map_or(0, |element| element.count);
@@ -294,8 +334,10 @@ fn read_elements<S: Source>(elements: &[Element], mut source: S) -> Result<Trian
         return Err(vertex.at.error("at most 2^32 - 1 vertices").into());
     }
     let mut indices = Vec::new();
+    // The first line with too many values, and the number of such lines.
+    let mut longer = (0, 0);
     for element in elements {
-        let steps = steps(element)?;
+        let steps = steps(element, warnings)?;
         let least = least(element);
         // At most the count, hence no overflow.
         let present = (source.at_most(least.0, least.1) as u64).min(element.count) as usize;
@@ -307,7 +349,9 @@ fn read_elements<S: Source>(elements: &[Element], mut source: S) -> Result<Trian
         if steps.is_empty() {
             continue;
         }
+        let mut more = None;
         for _ in 0..element.count {
+            let start = source;
             let mut vertex = [0.0; 3];
             for step in &steps {
                 match *step {
@@ -339,17 +383,25 @@ fn read_elements<S: Source>(elements: &[Element], mut source: S) -> Result<Trian
             if element.name == b"vertex" {
                 mesh.push_vertex(vertex)?;
             }
-            source.end_element()?;
+            let found = source.end_element(&start, more)?;
+            if found > 0 && longer.1 == 0 {
+                longer.0 = source.line();
+            }
+            longer.1 += u64::from(found > 0);
+            more = Some(found);
         }
     }
     source.end_file()?;
+    if let (line, lines @ 1..) = longer {
+        memory::push(warnings, MeshWarning::MoreValues { line, lines })?;
+    }
     mesh.finish()
 }
 
 const STRIP: &str = "strips of at least three vertices";
 
 /// How to read an element; no step if it has no properties.
-fn steps(element: &Element) -> Result<Vec<Step>, Error> {
+fn steps(element: &Element, warnings: &mut Vec<MeshWarning>) -> Result<Vec<Step>, Error> {
     let mut steps = Vec::new();
     let (mut axes, mut lists) = ([0; 3], 0);
     for property in &element.properties {
@@ -378,6 +430,13 @@ fn steps(element: &Element) -> Result<Vec<Step>, Error> {
         memory::push(&mut steps, step)?;
     }
     let missing = match element.name {
+        b"face" | b"tristrips" if lists == 0 && element.count == 0 => {
+            let is_known = warnings.iter().any(|known| matches!(known, MeshWarning::NoIndices { .. }));
+            if !is_known {
+                memory::push(warnings, MeshWarning::NoIndices { line: element.at.line() })?;
+            }
+            return Ok(steps);
+        }
         b"vertex" if axes != [1; 3] => "a vertex with the properties `x`, `y` and `z`, each of them once",
         b"face" if lists != 1 => "a face with one list of integers called `vertex_indices` or `vertex_index`",
         b"tristrips" if lists != 1 => {
@@ -474,14 +533,44 @@ impl Source for Text<'_> {
     }
 
     #[inline]
-    fn end_element(&mut self) -> Result<(), MeshFileError> {
+    fn end_element(&mut self, start: &Self, more: Option<u64>) -> Result<u64, MeshFileError> {
         self.skip_blanks();
-        if self.is_at_line_end() { Ok(()) } else { Err(Text::error(self, "the end of the line")) }
+        match (self.is_at_line_end(), more) {
+            (true, None | Some(0)) => Ok(0),
+            _ => skip_more(self, start, more),
+        }
+    }
+
+    fn line(&self) -> u64 {
+        Text::line(self)
     }
 
     fn end_file(&mut self) -> Result<(), MeshFileError> {
         self.skip_space();
         if self.is_at_end() { Ok(()) } else { Err(Text::error(self, TOO_LONG)) }
+    }
+}
+
+/// Takes values that the header does not announce, up to the end of the line.
+#[cold]
+fn skip_more(text: &mut Text, start: &Text, more: Option<u64>) -> Result<u64, MeshFileError> {
+    let (behind, mut found) = (*text, 0);
+    while !text.is_at_line_end() && text.number().is_some() {
+        text.skip_blanks();
+        found += 1;
+    }
+    let mut start = *start;
+    start.skip_space();
+    let element = &start.rest()[..start.rest().len() - behind.rest().len()];
+    // An element of several lines may have taken its last value from the next element.
+    let is_on_one_line = !element.iter().any(|&byte| is_line_end(byte));
+    let as_many = more.is_none_or(|more| more == found);
+    if text.is_at_line_end() && is_on_one_line && as_many {
+        Ok(found)
+    } else if found == 0 && more.is_some() && text.is_at_line_end() {
+        Err(behind.error("more values on the line, as the elements before have them"))
+    } else {
+        Err(behind.error("the end of the line"))
     }
 }
 
@@ -566,8 +655,12 @@ impl<const BIG: bool> Source for Bytes<'_, BIG> {
     }
 
     #[inline]
-    fn end_element(&mut self) -> Result<(), MeshFileError> {
-        Ok(())
+    fn end_element(&mut self, _: &Self, _: Option<u64>) -> Result<u64, MeshFileError> {
+        Ok(0)
+    }
+
+    fn line(&self) -> u64 {
+        0
     }
 
     fn end_file(&mut self) -> Result<(), MeshFileError> {
@@ -594,7 +687,7 @@ mod tests {
     use super::*;
     use crate::error::MeshError;
     use crate::mesh::FillRule;
-    use alloc::string::String;
+    use alloc::string::{String, ToString};
     use alloc::{format, vec};
     use proptest::prelude::*;
 
@@ -892,7 +985,7 @@ mod tests {
         assert_syntax(change("1.5", "inf"), 11, "finite number");
         assert_syntax(change("1.5", "1.5x"), 11, "finite number");
         assert_syntax(change("1.5", "1d5"), 11, "finite number");
-        assert_syntax(change("0 0 0", "0 0 0 0"), 10, "end of the line");
+        assert_syntax(change("0 0 0", "0 0 0 0"), 11, "more values on the line");
         assert_syntax(change("0 0 0\n", "0 0\n"), 11, "end of the line");
         assert_syntax(change("3 0 2", "2 0 2"), 14, "three vertices");
         assert_syntax(change("3 0 2 1", "0"), 14, "three vertices");
@@ -921,8 +1014,8 @@ mod tests {
         );
         assert_syntax(
             text.replace("element face", "element other 9\nproperty int a\nelement face"),
-            16,
-            "end of the line",
+            19,
+            "shorter",
         );
         assert_syntax(
             text.replace("vertex 4", "vertex 4000000000").replace("face 4", "face 0"),
@@ -933,6 +1026,76 @@ mod tests {
             read_ply(change("1.5", "1e78").as_bytes()),
             Err(Error::Mesh(MeshError::TooLarge { vertex: 1 }))
         ));
+    }
+
+    /// What is warned of; the mesh is the tetrahedron.
+    #[track_caller]
+    fn warnings_of(bytes: impl AsRef<[u8]>, height: f64) -> Vec<MeshWarning> {
+        let mut warnings = vec![];
+        read(bytes.as_ref(), &mut warnings).unwrap();
+        assert_tetrahedron(bytes, height);
+        warnings
+    }
+
+    #[test]
+    fn more_values_than_the_header_announces() {
+        let (vertices, faces) = DATA.split_at(DATA.find("3 0 2 1").unwrap());
+        let head = header("ascii");
+        let longer = |data: &str, more: &str| data.replace('\n', &format!("{more}\n"));
+        let with = |v: &str, f: &str| head.clone() + &longer(vertices, v) + &longer(faces, f);
+        assert_eq!(warnings_of(with("", ""), 1e-3), []);
+        assert_eq!(warnings_of(with("  ", "\t"), 1e-3), []);
+        let more = |line, lines| [MeshWarning::MoreValues { line, lines }];
+        assert_eq!(warnings_of(with(" 255", ""), 1e-3), more(10, 4));
+        assert_eq!(warnings_of(with("", " 255 0 0 "), 1e-3), more(14, 4));
+        assert_eq!(warnings_of(with(" .5 -1e3 7", " 0"), 1e-3), more(10, 8));
+        assert_eq!(warnings_of(with(" 1", "").replace('\n', "\r\n"), 1e-3), more(10, 4));
+        // Not as many on every line, or no numbers: then nobody knows what is what.
+        assert_syntax(with(" 255", "").replacen("255", "255 0", 1), 11, "end of the line");
+        assert_syntax(with(" 255", "").replacen("0 255", "0", 1), 11, "end of the line");
+        assert_syntax(with(" red", ""), 10, "end of the line");
+        // A value of the line before that went missing.
+        assert_syntax(with("", "").replacen("0 0 0\n", "0 0\n", 1), 11, "end of the line");
+        let text = MeshWarning::MoreValues { line: 10, lines: 4 }.to_string();
+        assert_eq!(
+            text,
+            "line 10 (like 3 more) has more values than the header announces; the last ones were skipped"
+        );
+    }
+
+    #[test]
+    fn header_lines_without_a_keyword() {
+        let line = "Created by Blender3D 2.47 - www.blender.org, source file: part.blend\n";
+        for format in FORMATS {
+            let plain = plain(format);
+            let at = plain.windows(7).position(|window| window == b"element").unwrap();
+            let with = |lines: &str| [&plain[..at], lines.as_bytes(), &plain[at..]].concat();
+            assert_eq!(warnings_of(with(line), 0.125), [MeshWarning::HeaderLine { line: 3, lines: 1 }]);
+            let two = format!("{line}comment a\n{line}");
+            assert_eq!(warnings_of(with(&two), 0.125), [MeshWarning::HeaderLine { line: 3, lines: 2 }]);
+        }
+        // Behind an element it may be a property that is spelt in a new way.
+        assert_syntax(
+            ascii().replacen(XYZ, &format!("{XYZ}propertz float a\n"), 1),
+            7,
+            "line of a PLY header",
+        );
+        assert_syntax(ascii().replacen("format", &format!("{line}format"), 1), 2, "line of a PLY header");
+    }
+
+    #[test]
+    fn no_faces_need_no_list() {
+        for format in FORMATS {
+            let head =
+                format!("ply\nformat {format} 1.0\nelement vertex 0\n{XYZ}element face 0\nend_header\n");
+            let mut warnings = vec![];
+            let mesh = read(head.as_bytes(), &mut warnings).unwrap();
+            assert_eq!(
+                (mesh.triangles().len(), &warnings[..]),
+                (0, &[MeshWarning::NoIndices { line: 7 }][..])
+            );
+            assert_syntax(head.replace("face 0", "face 1"), 7, "one list of integers");
+        }
     }
 
     #[test]

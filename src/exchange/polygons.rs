@@ -8,7 +8,7 @@ use alloc::vec::Vec;
 
 use crate::error::{Error, MeshError};
 use crate::memory;
-use crate::mesh::{TriangleMesh, triangulate_facet};
+use crate::mesh::{Faces, TriangleMesh, flatness, triangulate_facet};
 
 /// A mesh of polygons with shared vertices, whose vertices need not be known before the faces.
 ///
@@ -55,7 +55,7 @@ impl Polygons {
 
     /// The mesh. All corners must be vertices.
     pub fn finish(mut self) -> Result<TriangleMesh, Error> {
-        let (mut corners, mut cut) = (Vec::new(), Vec::new());
+        let (mut corners, mut cut, mut found) = (Vec::new(), Vec::new(), Faces::default());
         for &[start, count] in &self.fans {
             let fan = &mut self.triangles[start as usize..][..count as usize];
             corners.clear();
@@ -63,6 +63,9 @@ impl Polygons {
             corners.extend(fan.first().map_or([0; 2], |&[first, second, _]| [first, second]));
             corners.extend(fan.iter().map(|triangle| triangle[2]));
             cut.clear();
+            // A face without area has no plane.
+            let (deviation, extent) = flatness(&self.vertices, &corners, &corners).unwrap_or_default();
+            found.add(deviation, extent);
             triangulate_facet(&self.vertices, &corners, &mut cut)?;
             // Where corners coincide there are fewer triangles; the mesh counts the rest as degenerate.
             if cut.len() <= fan.len() {
@@ -70,7 +73,7 @@ impl Polygons {
                 fan[..cut.len()].copy_from_slice(&cut);
             }
         }
-        TriangleMesh::new(self.vertices, self.triangles)
+        Ok(TriangleMesh::new(self.vertices, self.triangles)?.made_from(found))
     }
 }
 

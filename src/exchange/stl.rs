@@ -29,7 +29,7 @@ use alloc::vec::Vec;
 
 use glam::DVec3;
 
-use super::{is_line_end, is_space};
+use super::{is_line_end, is_space, refuse_utf16};
 use crate::error::{Error, MeshError, MeshFileError};
 use crate::memory;
 use crate::mesh::{FacetWelder, TriangleMesh};
@@ -48,12 +48,13 @@ const TITLE: &[u8] = b"binary STL written by leafless";
 ///
 /// O(n). Memory is allocated for facets that are there, not for facets that a header claims. Fails with
 /// [`MeshFileError::Empty`], [`MeshFileError::Length`], [`MeshFileError::NotFinite`],
-/// [`MeshFileError::Syntax`], [`MeshError::TooLarge`](crate::MeshError::TooLarge),
+/// [`MeshFileError::Syntax`], [`MeshFileError::Unsupported`] (UTF-16), [`MeshError::TooLarge`](crate::MeshError::TooLarge),
 /// [`MeshError::TooMany`](crate::MeshError::TooMany) or [`Error::OutOfMemory`].
 pub fn read_stl(bytes: &[u8]) -> Result<TriangleMesh, Error> {
     if bytes.is_empty() {
         return Err(MeshFileError::Empty.into());
     }
+    refuse_utf16(bytes)?;
     let count = bytes.get(HEADER - 4..HEADER).and_then(|b| <[u8; 4]>::try_from(b).ok());
     if let Some(count) = count
         && (is_binary_of_exact_length(bytes) || count.contains(&0) || !begins_with_solid(bytes))

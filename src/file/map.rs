@@ -1,7 +1,7 @@
 //! Files mapped into memory and queried in place.
 
 use super::read::{metadata, verify_contents, viewed};
-use crate::error::Error;
+use crate::error::{Error, FormatError};
 use crate::octree::Octree;
 use alloc::sync::Arc;
 use memmap2::Mmap;
@@ -20,8 +20,9 @@ use std::path::Path;
 /// [`OctreeRef`](crate::OctreeRef). [`map_verified`] and [`open`](super::open) refuse such a file.
 ///
 /// # Errors
-/// [`Error::Io`]; [`Error::Argument`] if there is no regular file at `path`; else as [`view`](super::view),
-/// and [`FormatError::Metadata`](crate::FormatError::Metadata).
+/// [`Error::File`] with the path and one of these causes: [`Error::Io`];
+/// [`FormatError::NotRegular`](crate::FormatError::NotRegular) if there is no regular file at `path`; else as
+/// [`view`](super::view), and [`FormatError::Metadata`](crate::FormatError::Metadata).
 ///
 /// # Safety
 /// While the mapping lives,
@@ -38,7 +39,7 @@ use std::path::Path;
 #[allow(unsafe_code)]
 pub unsafe fn map(path: impl AsRef<Path>) -> Result<Octree, Error> {
     // SAFETY: the caller promises what `mapped` asks for.
-    unsafe { mapped(path.as_ref(), false) }
+    unsafe { mapped(path.as_ref(), false) }.map_err(|error| error.of_file(path.as_ref()))
 }
 
 /// As [`map`], but verifies all of the file first, in one scan: everything that [`verify`](super::verify)
@@ -52,7 +53,7 @@ pub unsafe fn map(path: impl AsRef<Path>) -> Result<Octree, Error> {
 #[allow(unsafe_code)]
 pub unsafe fn map_verified(path: impl AsRef<Path>) -> Result<Octree, Error> {
     // SAFETY: the caller promises what `mapped` asks for.
-    unsafe { mapped(path.as_ref(), true) }
+    unsafe { mapped(path.as_ref(), true) }.map_err(|error| error.of_file(path.as_ref()))
 }
 
 /// # Safety
@@ -61,7 +62,7 @@ pub unsafe fn map_verified(path: impl AsRef<Path>) -> Result<Octree, Error> {
 unsafe fn mapped(path: &Path, verify: bool) -> Result<Octree, Error> {
     // Asked before opening, because opening a pipe that nobody writes to would wait.
     if !std::fs::metadata(path)?.is_file() {
-        return Err(Error::Argument { name: "path", problem: "only a regular file can be mapped" });
+        return Err(FormatError::NotRegular.into());
     }
     let file = File::open(path)?;
     if file.metadata()?.len() == 0 {

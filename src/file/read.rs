@@ -110,9 +110,15 @@ pub fn probe_from(mut reader: impl Read) -> Result<Probe, Error> {
 /// As [`probe_bytes`] for the file at `path`, whose length is checked too.
 ///
 /// # Errors
-/// As [`probe_bytes`], and [`Error::Io`].
+/// [`Error::File`] with the path and one of these causes: as [`probe_bytes`], and [`Error::Io`].
 #[cfg(feature = "std")]
 pub fn probe(path: impl AsRef<Path>) -> Result<Probe, Error> {
+    let path = path.as_ref();
+    probe_path(path).map_err(|error| error.of_file(path))
+}
+
+#[cfg(feature = "std")]
+fn probe_path(path: &Path) -> Result<Probe, Error> {
     let file = File::open(path)?;
     let found = regular_length(&file)?;
     let probe = probe_from(file)?;
@@ -182,9 +188,15 @@ pub fn from_static(bytes: &'static [u8]) -> Result<Octree, Error> {
 /// matter. A pipe or device may be read too.
 ///
 /// # Errors
-/// As [`verify`], and [`Error::Io`].
+/// [`Error::File`] with the path and one of these causes: as [`verify`], and [`Error::Io`].
 #[cfg(feature = "std")]
 pub fn open(path: impl AsRef<Path>) -> Result<Octree, Error> {
+    let path = path.as_ref();
+    open_path(path).map_err(|error| error.of_file(path))
+}
+
+#[cfg(feature = "std")]
+fn open_path(path: &Path) -> Result<Octree, Error> {
     let mut file = File::open(path)?;
     let known = regular_length(&file)?;
     let mut start = Vec::new();

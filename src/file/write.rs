@@ -72,11 +72,21 @@ pub fn write_to(octree: &Octree, mut out: impl Write) -> Result<(), Error> {
 /// A process that is killed meanwhile may leave a file `.leafless-….tmp` behind.
 ///
 /// # Errors
-/// As [`to_bytes`], and [`Error::Io`]. The old file is then as it was, and no temporary file is left; only if
-/// it is the very last step that fails, synchronising the directory, the new file is already in place.
+/// As [`to_bytes`], and [`Error::File`] with the path and the cause [`Error::Io`]. The old file is then as it
+/// was, and no temporary file is left; only if it is the very last step that fails, synchronising the
+/// directory, the new file is already in place.
 #[cfg(feature = "std")]
 pub fn save(octree: &Octree, path: impl AsRef<Path>) -> Result<(), Error> {
     let path = path.as_ref();
+    save_path(octree, path).map_err(|error| match error {
+        Error::Io(_) => error.of_file(path),
+        // It is the octree that is damaged.
+        error => error,
+    })
+}
+
+#[cfg(feature = "std")]
+fn save_path(octree: &Octree, path: &Path) -> Result<(), Error> {
     let existing = match std::fs::metadata(path) {
         Ok(metadata) => Some(metadata),
         Err(error) if error.kind() == ErrorKind::NotFound => None,
@@ -105,7 +115,7 @@ pub fn save(octree: &Octree, path: impl AsRef<Path>) -> Result<(), Error> {
         // one before it has the old one's permissions.
         builder.permissions(std::fs::Permissions::from_mode(0o666));
     }
-    let mut temporary = builder.tempfile_in(directory)?;
+    let mut temporary = builder.tempfile_in(directory).map_err(without_name)?;
     write_to(octree, temporary.as_file_mut())?;
     if let Some(existing) = existing {
         temporary.as_file().set_permissions(existing.permissions())?;
@@ -117,6 +127,16 @@ pub fn save(octree: &Octree, path: impl AsRef<Path>) -> Result<(), Error> {
         synchronise(&handle)?;
     }
     Ok(())
+}
+
+/// An error of `tempfile` without the temporary file's name, which means nothing to whoever saves. The system's
+/// number is kept in its text only.
+#[cfg(feature = "std")]
+fn without_name(error: std::io::Error) -> std::io::Error {
+    let text = alloc::string::ToString::to_string(&error);
+    let number = text.split_once("(os error ").and_then(|(_, rest)| rest.split_once(')'));
+    let code = number.and_then(|(code, _)| code.parse().ok());
+    code.map_or(error.kind().into(), std::io::Error::from_raw_os_error)
 }
 
 /// Synchronises a directory, where its file system can.

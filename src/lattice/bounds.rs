@@ -1,6 +1,7 @@
 //! Boxes in model space.
 
-use super::exact::{sign_of_sum, two_product, two_sum};
+use super::composed::{Composed, RoundedSum};
+use super::exact::{sign_of_sum, two_sum};
 use super::{Affine, Frame};
 
 /// A box between two corners, in model units, with min ≤ max on every axis.
@@ -59,22 +60,26 @@ impl Bounds {
 
     /// A box around the image under a map, rounded outward; `None` beyond the doubles.
     pub fn placed(&self, placement: &Affine) -> Option<Bounds> {
+        self.under(&placement.into())
+    }
+
+    /// A box around the image under maps after each other, rounded outward; `None` beyond the doubles.
+    pub(crate) fn under(&self, map: &Composed) -> Option<Bounds> {
         let (mut min, mut max) = ([0.0; 3], [0.0; 3]);
-        for (i, row) in placement.rows().iter().enumerate() {
-            let (mut least, mut most, mut size) = (row[3], row[3], row[3].abs());
-            // Where nothing is rounded; in numbers this small errors get lost.
-            let is_tellable = |c: f64| c == 0.0 || c.abs() > 1e-100;
-            let mut is_exact = self.min.iter().chain(&self.max).all(|&end| is_tellable(end));
-            for axis in 0..3 {
-                let [a, b] = [self.min[axis], self.max[axis]].map(|end| two_product(row[axis], end));
-                let (a, b) = if a.0 <= b.0 { (a, b) } else { (b, a) };
-                let (lower, upper) = (two_sum(least, a.0), two_sum(most, b.0));
-                is_exact &= [a.1, b.1, lower.1, upper.1] == [0.0; 4];
-                (least, most, size) = (lower.0, upper.0, size + a.0.abs().max(b.0.abs()));
-            }
-            // Each summand is rounded at most six times.
-            let error = if is_exact { 0.0 } else { 16.0 * f64::EPSILON * size + f64::MIN_POSITIVE };
-            (min[i], max[i]) = (least - error, most + error);
+        for (i, (row, errors)) in map.rows.iter().zip(&map.errors).enumerate() {
+            let factors = [row[0], row[1], row[2]];
+            let end = |upper: bool| {
+                let corner =
+                    [0, 1, 2].map(|k| if (row[k] > 0.0) == upper { self.max[k] } else { self.min[k] });
+                RoundedSum::of(factors, corner, row[3])
+            };
+            let reach = |k: usize| errors[k] * self.min[k].abs().max(self.max[k].abs());
+            let off = ((reach(0) + reach(1)) + (reach(2) + errors[3])) * (1.0 + 1e-12);
+            let outward = |sum: RoundedSum, sense: f64| {
+                let off = if off == 0.0 { 0.0 } else { off + f64::EPSILON * sum.value.abs() };
+                sum.value + sense * (sum.error + off)
+            };
+            (min[i], max[i]) = (outward(end(false), -1.0), outward(end(true), 1.0));
         }
         Bounds::new(min, max)
     }

@@ -146,6 +146,15 @@ impl Frame {
         (0..3).all(|axis| self.side(axis, min[axis], 0) >= 0 && self.side(axis, max[axis], top) <= 0)
     }
 
+    /// The refusal of two frames that should be one.
+    pub(crate) fn mismatch(&self, other: &Frame) -> Error {
+        Error::FrameMismatch {
+            origins: [self.origin, other.origin],
+            edges: [self.edge, other.edge],
+            depths: [self.depth, other.depth],
+        }
+    }
+
     /// The same universe with another depth.
     ///
     /// # Errors

@@ -20,6 +20,7 @@
 mod affine;
 mod bounds;
 mod cell;
+mod composed;
 mod cube;
 pub(crate) mod exact;
 mod frame;
@@ -31,6 +32,7 @@ mod window;
 pub use affine::Affine;
 pub use bounds::Bounds;
 pub use cell::Cell;
+pub(crate) use composed::Composed;
 pub use cube::Cube;
 pub use frame::Frame;
 pub use interval::Interval;

@@ -5,10 +5,11 @@
 //!
 //! From the bottom up, each file uses only files named before it: `positions` (equal vertices), `topology`
 //! (edges and bodies), `boundary` (loops of edges), `surface` (the mesh); on the mesh `weld`, `sew`,
-//! `placement`, `defects` and `report`; `polygon` (triangulation) and `polyhedron`.
+//! `placement`, `defects`, `overlap` and `report`; `polygon` (triangulation) and `polyhedron`.
 
 mod boundary;
 mod defects;
+mod overlap;
 mod placement;
 #[cfg(feature = "std")]
 mod polygon;
@@ -19,14 +20,19 @@ mod report;
 mod sew;
 mod surface;
 mod topology;
+mod turned;
 mod weld;
 
 pub(crate) use boundary::Loops;
 pub use defects::{DefectKind, MeshDefect};
 #[cfg(feature = "std")]
+pub(crate) use polygon::flatness;
+#[cfg(feature = "std")]
 pub(crate) use polygon::triangulate_facet;
 #[cfg(feature = "std")]
 pub use polyhedron::{Polyhedron, PolyhedronArrays};
 pub use report::MeshReport;
+#[cfg(feature = "std")]
+pub(crate) use surface::Faces;
 pub use surface::{FillRule, TriangleMesh};
 pub(crate) use weld::FacetWelder;

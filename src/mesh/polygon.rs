@@ -156,7 +156,7 @@ impl Plane {
 
 /// Twice the area of a loop, as a vector along its normal (Newell): rounded, from differences to the first
 /// corner. `None` if a corner is no vertex or the result is not finite.
-pub(super) fn normal(vertices: &[[f64; 3]], corners: &[u32]) -> Option<[f64; 3]> {
+fn normal(vertices: &[[f64; 3]], corners: &[u32]) -> Option<[f64; 3]> {
     let origin = *vertices.get(*corners.first()? as usize)?;
     let from_origin = |corner: u32| {
         let p = vertices.get(corner as usize)?;
@@ -176,6 +176,29 @@ pub(super) fn normal(vertices: &[[f64; 3]], corners: &[u32]) -> Option<[f64; 3]>
         p = q;
     }
     sum.iter().all(|x| x.is_finite()).then_some(sum)
+}
+
+/// How far the corners of a face lie beside its plane: half the distance between the two planes parallel to the
+/// face that have its corners between them. And how far they reach from the first one along an axis. The first
+/// loop gives the normal. `None` for a face without area.
+pub(crate) fn flatness(vertices: &[[f64; 3]], outer: &[u32], corners: &[u32]) -> Option<(f64, f64)> {
+    let normal = normal(vertices, outer)?;
+    // First to a size whose square does not overflow.
+    let most = normal.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+    if most == 0.0 {
+        return None;
+    }
+    let normal = normal.map(|x| x / most);
+    let length = normal.iter().map(|x| x * x).sum::<f64>().sqrt();
+    let [mut low, mut high, mut extent] = [0.0; 3];
+    let origin = vertices[corners[0] as usize];
+    for &corner in corners {
+        let p = vertices[corner as usize];
+        let height = (0..3).map(|axis| normal[axis] / length * (p[axis] - origin[axis])).sum::<f64>();
+        (low, high) = (height.min(low), height.max(high));
+        extent = (0..3).fold(extent, |most: f64, axis| most.max((p[axis] - origin[axis]).abs()));
+    }
+    Some(((high - low) / 2.0, extent))
 }
 
 /// A triangulation of points in the plane. A hierarchy of coarser ones tells near which point a new one lies.

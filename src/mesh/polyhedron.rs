@@ -8,9 +8,9 @@ use alloc::vec::Vec;
 
 use robust::{Coord, Coord3D, orient2d, orient3d};
 
-use super::polygon::{PolygonDefect, normal, triangulate};
+use super::polygon::{PolygonDefect, flatness, triangulate};
 use super::positions::normalised;
-use super::surface::TriangleMesh;
+use super::surface::{Faces, TriangleMesh};
 use crate::error::{Error, MeshError, PolyhedronError};
 use crate::lattice::valid;
 use crate::memory;
@@ -141,23 +141,26 @@ impl Polyhedron {
         // A loop of n corners has n - 2 triangles, and each hole adds two more.
         triangles.try_reserve(parts.corners.len())?;
         let mut ends = Vec::new();
-        let mut deviation: f64 = 0.0;
+        let mut found = Faces::default();
         // Where each shell's triangles end.
         let mut shells: Vec<usize> = memory::with_capacity(parts.shells.count())?;
         for shell in 0..parts.shells.count() {
             for face in parts.shells.range(shell) {
-                let apart = parts.flatness(face, &vertices)?;
+                let (apart, extent) = parts.flatness(face, &vertices)?;
+                if parts.face(face).len() > 3 {
+                    found.add(apart, extent);
+                }
                 if apart > tolerance {
                     let (face, deviation) = (face as u64, apart);
                     return Err(PolyhedronError::NotPlane { face, deviation, tolerance }.into());
                 }
-                deviation = deviation.max(apart);
                 parts.triangulate(face, &vertices, &mut ends, &mut triangles)?;
             }
             shells.push(triangles.len());
         }
         parts.check_shells(&vertices, &triangles, &shells)?;
-        Ok(Polyhedron { mesh: TriangleMesh::new(vertices, triangles)?, deviation })
+        let mesh = TriangleMesh::new(vertices, triangles)?.made_from(found);
+        Ok(Polyhedron { mesh, deviation: found.deviation })
     }
 }
 
@@ -306,30 +309,16 @@ impl<'a> Parts<'a> {
         &self.corners[self.loops.range(loops.start).start..self.loops.range(loops.end - 1).end]
     }
 
-    /// Half the distance between the two planes parallel to a face that have its corners between them.
-    fn flatness(&self, face: usize, vertices: &[[f64; 3]]) -> Result<f64, PolyhedronError> {
+    /// Half the distance between the two planes parallel to a face that have its corners between them, and the
+    /// extent of the face.
+    fn flatness(&self, face: usize, vertices: &[[f64; 3]]) -> Result<(f64, f64), PolyhedronError> {
         let corners = self.face(face);
         let flat = PolyhedronError::Flat { face: face as u64 };
         if corners.len() == 3 {
-            return Ok(0.0);
+            return Ok((0.0, 0.0));
         }
         let outer = self.loops.range(self.faces.range(face).start);
-        let normal = normal(vertices, &self.corners[outer]).ok_or(flat)?;
-        // First to a size whose square does not overflow.
-        let most = normal.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
-        if most == 0.0 {
-            return Err(flat);
-        }
-        let normal = normal.map(|x| x / most);
-        let length = normal.iter().map(|x| x * x).sum::<f64>().sqrt();
-        let [mut low, mut high] = [0.0; 2];
-        let origin = vertices[corners[0] as usize];
-        for &corner in corners {
-            let p = vertices[corner as usize];
-            let height = (0..3).map(|axis| normal[axis] / length * (p[axis] - origin[axis])).sum::<f64>();
-            (low, high) = (height.min(low), height.max(high));
-        }
-        Ok((high - low) / 2.0)
+        flatness(vertices, &self.corners[outer], corners).ok_or(flat)
     }
 
     fn triangulate(

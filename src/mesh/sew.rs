@@ -6,60 +6,138 @@
 //! them was moved, and the certified classification then counts that distance as an error of every position:
 //! what is proven about the sewn surface is proven about any way of closing the cracks within that distance.
 
+//!
+//! How far sewing may reach depends on the *piece* that a vertex belongs to: all triangles that hang together
+//! by common vertices. A crack comes of rounding, in single precision at worst, and a rounding is as large as the
+//! numbers that an exporter computes with, which are those of the part. The magnitude of the coordinates
+//! themselves would be too far a reach for a small part far from the origin, whose details doubles can hold;
+//! the edges at the vertex would be too short a one, because exporters make short edges in large parts; and
+//! the extent of all pieces together says nothing about one of them.
+
 use super::surface::TriangleMesh;
+use super::topology::DisjointSets;
 use crate::error::Error;
-use crate::lattice::exact::floor;
 use crate::memory;
 use alloc::vec::Vec;
 use hashbrown::HashMap;
 
-/// Vertices of open edges at most this fraction of the mesh's longest extent apart become one: the spacing of
-/// single-precision numbers just below that extent.
+/// How far a piece reaches, as a fraction of its longest extent: the spacing of single-precision numbers just
+/// below that extent.
 const REACH: f64 = f32::EPSILON as f64 / 2.0;
 
+/// Vertices that stay, in boxes as large as their reach at least: those within reach of a position lie in
+/// neighbouring boxes.
+struct Grid {
+    /// Edge of a box, a power of two.
+    spacing: f64,
+    boxes: HashMap<[u64; 3], Vec<u32>>,
+}
+
+impl Grid {
+    /// The box at some steps from that of a position. Dividing by the spacing is exact. Where it exceeds 2^53
+    /// steps are lost, and so are no neighbours: positions that differ are then further apart than the spacing.
+    fn place(&self, position: [f64; 3], step: [f64; 3]) -> [u64; 3] {
+        // Zero has one sign.
+        [0, 1, 2].map(|axis| (libm::floor(position[axis] / self.spacing) + step[axis] + 0.0).to_bits())
+    }
+
+    fn add(&mut self, position: [f64; 3], vertex: u32) -> Result<(), Error> {
+        let place = self.place(position, [0.0; 3]);
+        self.boxes.try_reserve(1)?;
+        memory::push(self.boxes.entry(place).or_default(), vertex)
+    }
+
+    /// The vertices in the 27 boxes around a position.
+    fn around(&self, position: [f64; 3]) -> impl Iterator<Item = u32> {
+        let step = |n: i32| f64::from(n % 3 - 1);
+        (0..27)
+            .map(move |n| [step(n), step(n / 3), step(n / 9)])
+            .filter_map(move |step| self.boxes.get(&self.place(position, step)))
+            .flatten()
+            .copied()
+    }
+}
+
 impl TriangleMesh {
-    /// The mesh with hair cracks closed: of the vertices at open edges, those that lie within 2^-24 of the
-    /// mesh's longest extent of an earlier one are moved onto it. A mesh without open edges is returned as it
-    /// is, and wider gaps stay open. [`report`](Self::report) tells how many vertices were moved and how far.
+    /// The mesh with hair cracks closed: a vertex at an open edge is moved onto another one, if the two lie
+    /// no further apart than 2^-24 of the longest extent of the larger one of their pieces. (A piece is all
+    /// triangles that hang together by common vertices.) The vertex of the smaller piece moves, or the one
+    /// that comes later. A mesh without open edges is returned as it is, and wider gaps stay open.
+    /// [`report`](Self::report) tells how many vertices were moved and how far.
     ///
-    /// O(t + v). Fails with [`Error::OutOfMemory`].
+    /// O(t + v) for each power of two between the extents of the pieces. Fails with [`Error::OutOfMemory`].
     pub fn sewn(self) -> Result<TriangleMesh, Error> {
-        let (low, high) = self.bounds();
-        let reach = REACH * (0..3).fold(0.0, |most: f64, axis| most.max(high[axis] - low[axis]));
-        let open = self.open_vertices()?;
-        if open.is_empty() || reach == 0.0 {
+        if self.open_vertices()?.is_empty() {
             return Ok(self);
         }
-        // Of a grid with this spacing, vertices within reach of each other lie in neighbouring boxes.
-        let boxed = |p: [f64; 3]| [0, 1, 2].map(|axis| floor((p[axis] - low[axis]) / reach));
-        let mut kept: HashMap<[i64; 3], Vec<u32>> = HashMap::new();
+        let reaches = self.reaches()?;
+        let reach = |vertex: u32| reaches[vertex as usize];
+        let mut open = memory::copied(self.open_vertices()?)?;
+        // Whoever stays reaches at least as far as whoever comes later.
+        open.sort_unstable_by(|&a, &b| reach(b).total_cmp(&reach(a)).then(a.cmp(&b)));
+        let mut grids: Vec<Grid> = Vec::new();
         let mut moves: Vec<(u32, u32)> = Vec::new();
         let mut displacement = 0.0f64;
-        for &vertex in open {
+        for vertex in open {
             let position = self.vertices()[vertex as usize];
             let distance = |other: u32| {
                 let other = self.vertices()[other as usize];
                 (0..3).fold(0.0, |most: f64, axis| most.max((other[axis] - position[axis]).abs()))
             };
-            let home = boxed(position);
-            let neighbours = (0..27).flat_map(|n| {
-                let step = [n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1];
-                kept.get(&[0, 1, 2].map(|axis| home[axis] + step[axis])).into_iter().flatten().copied()
+            // Nothing lies that near in a piece beyond the smallest doubles.
+            let own = reach(vertex);
+            if own < f64::MIN_POSITIVE {
+                continue;
+            }
+            let near = grids.iter().find_map(|grid| {
+                grid.around(position).filter(|&other| distance(other) <= reach(other)).min()
             });
-            match neighbours.filter(|&other| distance(other) <= reach).min() {
+            match near {
                 Some(onto) => {
                     displacement = displacement.max(distance(onto));
                     memory::push(&mut moves, (vertex, onto))?;
                 }
                 None => {
-                    kept.try_reserve(1)?;
-                    let neighbours = kept.entry(home).or_default();
-                    memory::push(neighbours, vertex)?;
+                    if grids.last().is_none_or(|grid| own <= grid.spacing / 2.0) {
+                        memory::push(&mut grids, Grid { spacing: power_of_two(own), boxes: HashMap::new() })?;
+                    }
+                    if let Some(grid) = grids.last_mut() {
+                        grid.add(position, vertex)?;
+                    }
                 }
             }
         }
         self.moved(&moves, displacement)
     }
+
+    /// How far each vertex reaches.
+    fn reaches(&self) -> Result<Vec<f64>, Error> {
+        let mut sets = DisjointSets::new(self.vertices().len())?;
+        for &[a, b, c] in self.triangles() {
+            sets.unite(a, b);
+            sets.unite(a, c);
+        }
+        let pieces = sets.numbers();
+        let count = pieces.iter().max().map_or(0, |&last| last as usize + 1);
+        let mut extents = memory::filled(count, ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]))?;
+        for (&piece, position) in pieces.iter().zip(self.vertices()) {
+            let (low, high) = &mut extents[piece as usize];
+            for axis in 0..3 {
+                low[axis] = low[axis].min(position[axis]);
+                high[axis] = high[axis].max(position[axis]);
+            }
+        }
+        memory::collected(pieces.iter().map(|&piece| {
+            let (low, high) = extents[piece as usize];
+            REACH * (0..3).fold(0.0, |most: f64, axis| most.max(high[axis] - low[axis]))
+        }))
+    }
+}
+
+/// The least power of two that is not less than a normal number.
+fn power_of_two(x: f64) -> f64 {
+    const FRACTION: u64 = (1 << 52) - 1;
+    f64::from_bits((x.to_bits() + FRACTION) & !FRACTION)
 }
 
 #[cfg(test)]
@@ -93,6 +171,47 @@ mod tests {
             assert_eq!((report.sewn, report.displacement), (3, noise.abs()));
             assert_eq!((report.vertices, report.bodies), (4, 1));
         }
+    }
+
+    /// A box without a lid, its corners moved by `at`, and one triangle with `edge` far away.
+    fn box_and_triangle(size: f64, at: f64, far: f64, edge: f64) -> TriangleMesh {
+        let corner = |k: usize| [0, 1, 2].map(|axis| at + if k >> axis & 1 == 0 { 0.0 } else { size });
+        let sides = [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1]];
+        let mut facets: Vec<[[f64; 3]; 3]> = Vec::new();
+        for [a, b, c, d] in sides.map(|side: [usize; 4]| side.map(corner)) {
+            facets.extend([[a, b, c], [a, c, d]]);
+        }
+        facets.push([[far, 0.0, 0.0], [far + edge, 0.0, 0.0], [far, edge, 0.0]]);
+        TriangleMesh::from_facets(facets).unwrap()
+    }
+
+    #[test]
+    fn what_lies_far_away_does_not_matter() {
+        for (at, far, edge) in [(0.0, 1e8, 1.0), (-3.0, 1e60, 1e50), (1e6, 0.0, 1e-3), (0.0, 1e12, 1e9)] {
+            let mesh = box_and_triangle(1.0, at, far, edge);
+            let sewn = mesh.sewn().unwrap();
+            assert_eq!((sewn.vertices().len(), sewn.report().unwrap().sewn), (11, 0));
+        }
+    }
+
+    /// Facets that hang together with nothing, and bodies of very different sizes, each with its own cracks.
+    #[test]
+    fn every_piece_has_its_own_reach() {
+        let corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+        let faces = [[0usize, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];
+        let mut facets: Vec<[[f64; 3]; 3]> = Vec::new();
+        for (body, size) in [1.0, 1e-20, 1e30, 3e-7, 1e9].into_iter().enumerate() {
+            for (i, face) in faces.iter().enumerate() {
+                let noise = if body % 2 == 0 { 5e-8 } else { 1e-9 } * i as f64 / 3.0;
+                facets.push(face.map(|corner| corners[corner].map(|x| size * (x + 2.0 + noise))));
+            }
+        }
+        let mesh = TriangleMesh::from_facets(facets).unwrap();
+        assert_eq!(mesh.vertices().len(), 60);
+        let sewn = mesh.sewn().unwrap();
+        sewn.check_closed(FillRule::NonZero).unwrap();
+        let report = sewn.report().unwrap();
+        assert_eq!((report.vertices, report.bodies, report.sewn), (20, 5, 40));
     }
 
     #[test]

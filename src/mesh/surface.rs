@@ -71,6 +71,7 @@ pub struct TriangleMesh {
     pub(super) degenerate: u64,
     pub(super) sewn: u64,
     displacement: f64,
+    pub(super) faces: Faces,
     pub(super) topology: OnceBox<Topology>,
     pub(super) details: OnceBox<Details>,
 }
@@ -82,6 +83,40 @@ pub(super) struct Details {
     pub flat: u64,
     pub open_bodies: u64,
     pub inside_out_bodies: u64,
+    pub overlaps: Overlaps,
+}
+
+/// What was found about closed bodies whose boxes meet.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub(super) struct Overlaps {
+    /// Bodies that are proven to overlap another one.
+    pub overlapping: u64,
+    /// Other bodies that may overlap one.
+    pub undecided: u64,
+}
+
+/// What is known of the faces of more than three corners that triangles were made from.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Faces {
+    pub polygons: u64,
+    /// Those whose corners lie in no plane.
+    pub bent: u64,
+    /// How far at most.
+    pub deviation: f64,
+}
+
+#[cfg(feature = "std")]
+impl Faces {
+    /// Corners beside the plane by more than this part of the face's extent are not in the plane. What is
+    /// less may be the rounding of their distances.
+    const PLANE: f64 = 1.0 / (1_u64 << 40) as f64;
+
+    /// Adds a face with more than three corners, which lie so far beside its plane.
+    pub fn add(&mut self, deviation: f64, extent: f64) {
+        self.polygons += 1;
+        self.bent += u64::from(deviation > Self::PLANE * extent);
+        self.deviation = self.deviation.max(deviation);
+    }
 }
 
 impl TriangleMesh {
@@ -150,6 +185,7 @@ impl TriangleMesh {
             degenerate,
             sewn: 0,
             displacement: 0.0,
+            faces: Faces::default(),
             topology: OnceBox::new(),
             details: OnceBox::new(),
         }
@@ -236,10 +272,11 @@ impl TriangleMesh {
     ///
     /// O(v + t), in place. Fails as [`new`](Self::new) does.
     pub(crate) fn scaled(self, f: impl Fn(f64) -> f64) -> Result<Self, Error> {
-        let Self { mut vertices, triangles, welded, degenerate, .. } = self;
+        let Self { mut vertices, triangles, welded, degenerate, mut faces, .. } = self;
+        faces.deviation = f(faces.deviation);
         vertices.as_flattened_mut().iter_mut().for_each(|x| *x = f(*x));
         let mesh = Self::new(vertices, triangles)?;
-        Ok(Self { welded: welded + mesh.welded, degenerate: degenerate + mesh.degenerate, ..mesh })
+        Ok(Self { welded: welded + mesh.welded, degenerate: degenerate + mesh.degenerate, faces, ..mesh })
     }
 
     /// The mesh moved by `offset`: [`transformed`](Self::transformed) by a rounded sum.
@@ -259,6 +296,12 @@ impl TriangleMesh {
         self.triangles.iter_mut().for_each(|[_, b, c]| core::mem::swap(b, c));
         self.topology = OnceBox::new();
         self.details = OnceBox::new();
+    }
+
+    /// The same, made from these faces.
+    #[cfg(feature = "std")]
+    pub(crate) fn made_from(self, faces: Faces) -> Self {
+        Self { faces, ..self }
     }
 
     /// The same with a surface that lies within this distance of it.
@@ -292,19 +335,17 @@ impl TriangleMesh {
         targets.extend(0..self.vertices.len() as u32);
         moves.iter().for_each(|&(from, onto)| targets[from as usize] = onto);
         // Whoever is not replaced moves up to where the replaced ones leave room.
+        let mut places = memory::filled(targets.len(), 0)?;
         let mut kept = 0;
         for vertex in 0..self.vertices.len() {
             if targets[vertex] == vertex as u32 {
                 self.vertices[kept] = self.vertices[vertex];
-                targets[vertex] = kept as u32;
+                places[vertex] = kept as u32;
                 kept += 1;
-            } else {
-                // Targets come earlier, so theirs is known.
-                targets[vertex] = targets[targets[vertex] as usize];
             }
         }
         self.vertices.truncate(kept);
-        self.triangles.iter_mut().for_each(|t| *t = t.map(|v| targets[v as usize]));
+        self.triangles.iter_mut().for_each(|t| *t = t.map(|v| places[targets[v as usize] as usize]));
         let before = self.triangles.len();
         self.triangles.retain(is_proper);
         self.degenerate += (before - self.triangles.len()) as u64;
@@ -384,6 +425,11 @@ mod tests {
             inside_out_bodies: 0,
             sewn: 0,
             displacement: 0.0,
+            overlapping_bodies: 0,
+            undecided_bodies: 0,
+            polygons: 0,
+            bent_polygons: 0,
+            polygon_deviation: 0.0,
         };
         assert_eq!(mesh.report().unwrap(), expected);
         assert_eq!(mesh.clone().report().unwrap(), expected);

@@ -7,12 +7,16 @@ use alloc::vec::Vec;
 
 /// UTF-8 keys and values, sorted by key. They mean nothing to the library; files carry them along.
 ///
-/// Names in use: `name`, `units`, `source` (a fingerprint of what the tree was made from), `rule`.
+/// Names in use: `name`, `units` (the unit of length), `source` (a fingerprint of what the tree was made from),
+/// `rule`. Operations on views make octrees without metadata; [`common`](Self::common) tells what to keep.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Metadata(Vec<(String, String)>);
 
 /// Bytes that all facts together may take in a file; part of the format.
 pub(crate) const MOST: usize = 1 << 20;
+
+/// What set operations keep if their operands agree on it, in ascending order.
+const LASTING: [&str; 2] = ["name", "units"];
 
 /// Bytes of the two lengths before a fact in a file.
 const LENGTHS: usize = 2 * size_of::<u32>();
@@ -58,6 +62,39 @@ impl Metadata {
             changed.insert(memory::text(key)?, memory::text(value)?);
         }
         Ok(changed)
+    }
+
+    /// What holds of a set made of octrees with these metadata: `name` and `units`, each if all of them have it
+    /// with one value. Nothing of none. (What an octree was made from, and by which rule, is another matter for
+    /// the result.)
+    ///
+    /// ```
+    /// use leafless::{Control, Frame, Metadata, Octree, Tag, union};
+    /// let mut facts = Metadata::new();
+    /// facts.insert("units", "mm");
+    /// facts.insert("source", "…");
+    /// let frame = Frame::new([0.0; 3], 1.0, 4)?;
+    /// let a = Octree::uniform(frame, Tag::Full, Tag::Empty)?.with_metadata(facts);
+    /// let b = a.clone();
+    /// let both = union(a.view(), b.view(), &Control::default())?;
+    /// let both = both.with_metadata(Metadata::common([a.metadata(), b.metadata()])?);
+    /// assert_eq!(both.metadata().iter().collect::<Vec<_>>(), [("units", "mm")]);
+    /// # Ok::<(), leafless::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`Error::OutOfMemory`].
+    pub fn common<'m>(all: impl IntoIterator<Item = &'m Metadata> + Clone) -> Result<Metadata, Error> {
+        let mut common = Metadata(memory::with_capacity(LASTING.len())?);
+        for key in LASTING {
+            let mut values = all.clone().into_iter().map(|metadata| metadata.get(key));
+            if let Some(Some(first)) = values.next()
+                && values.all(|value| value == Some(first))
+            {
+                common.0.push((memory::text(key)?, memory::text(first)?));
+            }
+        }
+        Ok(common)
     }
 
     /// The value of `key`.
@@ -185,6 +222,11 @@ mod tests {
             let first = 8 + 4 + "Flansch Ø 120".len();
             assert_eq!(Metadata::from_bytes(&bytes[..cut]).is_ok(), cut == first, "{cut}");
         }
+        let other = Metadata::from_bytes(&bytes).unwrap();
+        assert!(Metadata::common([&metadata, &other]).unwrap().iter().eq([("name", "Flansch Ø 120")]));
+        assert!(Metadata::common([&other, &other, &other]).unwrap() == other);
+        assert!(Metadata::common([&other, &Metadata::new()]).unwrap().is_empty());
+        assert!(Metadata::common([]).unwrap().is_empty());
         let twice = [&bytes[..], &bytes[..]].concat();
         let refused = Metadata::from_bytes(&twice);
         assert!(matches!(refused, Err(Error::Format(FormatError::Metadata))));

@@ -22,10 +22,11 @@ use crate::octree::writer::Writer;
 use crate::octree::{Octree, Planes, Proof, Tag};
 use core::ops::Range;
 
-/// Every point of `a` and of `b`.
+/// The points that lie in `a`, in `b`, or in both.
 ///
 /// The operands must lie on the same frame. Time is linear in the cells where both are cut, plus the memory
-/// traffic of what is copied from one of them; the result is never larger than both together.
+/// traffic of what is copied from one of them; the result is never larger than both together. It has no
+/// metadata; [`Metadata::common`](crate::Metadata::common) tells which of the operands' hold of it.
 ///
 /// # Errors
 /// [`Error::FrameMismatch`]; [`Error::Damaged`] if an unverified operand turns out damaged; and what
@@ -106,8 +107,8 @@ pub fn xor_of(trees: &[OctreeRef<'_>], control: &Control<'_>) -> Result<Octree, 
 type Binary = fn(&OctreeRef<'_>, &OctreeRef<'_>, &Control<'_>) -> Result<Octree, Error>;
 
 fn reduce(trees: &[OctreeRef<'_>], op: Binary, control: &Control<'_>) -> Result<Octree, Error> {
-    if trees.iter().any(|tree| tree.frame() != trees[0].frame()) {
-        return Err(Error::FrameMismatch);
+    if let Some(other) = trees.iter().find(|tree| tree.frame() != trees[0].frame()) {
+        return Err(trees[0].frame().mismatch(other.frame()));
     }
     match trees {
         [] => Err(Error::Argument { name: "trees", problem: "at least one is needed" }),
@@ -236,7 +237,7 @@ fn combine(kernel: Kernel<'_>, control: &Control<'_>) -> Result<Octree, Error> {
 fn combine_above(entries: u64, kernel: Kernel<'_>, control: &Control<'_>) -> Result<Octree, Error> {
     let [a, b] = [&kernel.operands[0].tree, &kernel.operands[1].tree];
     if a.frame() != b.frame() {
-        return Err(Error::FrameMismatch);
+        return Err(a.frame().mismatch(b.frame()));
     }
     let job = Job::new(control);
     job.check()?;

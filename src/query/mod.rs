@@ -12,7 +12,7 @@ mod queue;
 mod region;
 mod subject;
 
-pub use clearance::{Clearance, clearance};
+pub use clearance::{CLEARANCE_SPLITS, Clearance, clearance};
 pub use extent::{Extent, bounding_box};
 pub use interference::{Interference, Overlap, interference, interference_of};
 pub use measure::{MassProperties, StopReason, measure};

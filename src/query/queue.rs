@@ -47,8 +47,8 @@ impl<K: Ord, T> Queue<K, T> {
     }
 
     /// All items, in no order.
-    pub(super) fn iter(&self) -> impl Iterator<Item = &T> {
-        self.heap.iter().map(|entry| &entry.item)
+    pub(super) fn into_items(self) -> impl Iterator<Item = T> {
+        self.heap.into_iter().map(|entry| entry.item)
     }
 
     /// Changes what is in the queue, keys and items. O(n).

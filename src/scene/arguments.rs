@@ -15,13 +15,15 @@ pub(super) struct Given<'a, const N: usize> {
     /// Where the call is.
     at: usize,
     names: [&'static str; N],
+    fineness: [Option<f64>; 3],
     /// Indices of the values that are given and not undefined.
     values: [Option<usize>; N],
 }
 
 impl<'a, const N: usize> Given<'a, N> {
-    /// Arguments without a name are for the parameters in order. Those whose names begin with `$` and those
-    /// `ignored` have no effect on a shape; all others must be parameters.
+    /// Arguments without a name are for the parameters in order. Those `ignored` have no effect on a shape, nor
+    /// have those whose names begin with `$`, but for the three that say how fine curves are drawn; all others
+    /// must be parameters.
     pub fn new(
         tree: &'a Tree<'a>,
         call: &Call<'a>,
@@ -31,10 +33,18 @@ impl<'a, const N: usize> Given<'a, N> {
         let mut values = [None; N];
         let mut is_given = [false; N];
         let mut unnamed = 0..N;
+        let mut fineness = [None; 3];
         for argument in &tree.arguments[call.arguments.clone()] {
             let refuse = |problem: String| Err(tree.fault(argument.at, format!("`{}` {problem}", call.name)));
             let position = match argument.name {
-                Some(name) if name.starts_with('$') || ignored.contains(&name) => continue,
+                Some(name) if name.starts_with('$') => {
+                    let known = ["$fn", "$fa", "$fs"].iter().position(|known| *known == name);
+                    if let (Some(k), Kind::Number(number)) = (known, tree.values[argument.value].kind) {
+                        fineness[k] = Some(number);
+                    }
+                    continue;
+                }
+                Some(name) if ignored.contains(&name) => continue,
                 Some(name) => match names.iter().position(|&known| known == name) {
                     Some(position) => position,
                     None => return refuse(format!("has no parameter {}", shown(name))),
@@ -53,7 +63,12 @@ impl<'a, const N: usize> Given<'a, N> {
                 values[position] = Some(argument.value);
             }
         }
-        Ok(Given { tree, at: call.at, names, values })
+        Ok(Given { tree, at: call.at, names, fineness, values })
+    }
+
+    /// `$fn`, `$fa` and `$fs`, as far as they are given.
+    pub fn fineness(&self) -> [Option<f64>; 3] {
+        self.fineness
     }
 
     /// The value of a parameter that has no default.

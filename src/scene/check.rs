@@ -2,24 +2,29 @@
 
 use alloc::boxed::Box;
 use alloc::format;
+use alloc::string::String;
 use alloc::sync::Arc;
 use alloc::vec::Vec;
 use core::fmt::Display;
 use std::path::Path;
 
 use super::arguments::{Given, Item};
-use super::grammar::{Call, Tree, shown};
-use super::{Node, Scene};
-use crate::error::{Error, MeshError};
-use crate::exchange::{MeshFormat, MeshOptions, Polygons, open_mesh};
+use super::facets::{Facets, Fineness, MOST_SIDES};
+use super::grammar::{Call, Cursor, Tree, shown};
+use super::{Node, Scene, SceneReport};
+use crate::error::Error;
+use crate::exchange::Polygons;
 use crate::lattice::Affine;
 use crate::memory;
 use crate::mesh::FillRule;
-use crate::solid::{Csg, Figure, HalfSpace, wedge};
+use crate::solid::{Csg, Fan, Figure, HalfSpace, cos_degrees, sin_degrees, wedge};
 
 /// What makes up CSG dumps and has no counterpart here.
 const REFUSED: [&str; 9] =
     ["hull", "minkowski", "text", "projection", "offset", "resize", "surface", "roof", "fill"];
+
+/// The least number of sides that is refused.
+const MANY: u32 = MOST_SIDES + 1;
 
 /// What a call stands for.
 enum Shape {
@@ -38,17 +43,23 @@ struct Open {
 }
 
 /// Shapes from a tree of calls.
-struct Checker<'a> {
-    tree: &'a Tree<'a>,
-    folder: Option<&'a Path>,
+pub(super) struct Checker<'a> {
+    pub(super) tree: &'a Tree<'a>,
+    pub(super) folder: Option<&'a Path>,
+    facets: Facets,
+    pub(super) report: SceneReport,
+    /// Where the latest mesh is.
+    pub(super) cursor: Cursor,
     nodes: Vec<Node>,
     /// What the calls stand for that are not part of a larger shape yet, and where they are.
     results: Vec<(usize, Shape)>,
 }
 
 /// The scene of a whole text. Files are looked for in `folder`.
-pub(super) fn check(tree: &Tree<'_>, folder: Option<&Path>) -> Result<Scene, Error> {
-    let mut checker = Checker { tree, folder, nodes: Vec::new(), results: Vec::new() };
+pub(super) fn check(tree: &Tree<'_>, folder: Option<&Path>, facets: Facets) -> Result<Scene, Error> {
+    let (report, cursor, nodes, results) =
+        (SceneReport::default(), Cursor::default(), Vec::new(), Vec::new());
+    let mut checker = Checker { tree, folder, facets, report, cursor, nodes, results };
     let mut open: Vec<Open> = Vec::new();
     let mut next = 0;
     loop {
@@ -67,15 +78,16 @@ pub(super) fn check(tree: &Tree<'_>, folder: Option<&Path>) -> Result<Scene, Err
         next += 1;
     }
     let place = checker.results.first().map_or(0, |result| result.0);
-    match checker.union(0)? {
-        Shape::Figure(_) => Err(tree.fault(place, "the scene is flat: figures must be extruded")),
-        Shape::Solid(_) => Ok(Scene { nodes: checker.nodes }),
-        Shape::Nothing => Ok(Scene { nodes: Vec::new() }),
-    }
+    let nodes = match checker.union(0)? {
+        Shape::Figure(_) => return Err(tree.fault(place, "the scene is flat: figures must be extruded")),
+        Shape::Solid(_) => checker.nodes,
+        Shape::Nothing => Vec::new(),
+    };
+    Ok(Scene { nodes, report: Arc::new(checker.report) })
 }
 
 impl Checker<'_> {
-    fn fault(&self, call: &Call<'_>, problem: impl Display) -> Error {
+    pub(super) fn fault(&self, call: &Call<'_>, problem: impl Display) -> Error {
         self.tree.fault(call.at, format!("`{}` {problem}", call.name))
     }
 
@@ -120,7 +132,7 @@ impl Checker<'_> {
                     "quadric" => self.quadric(call)?,
                     "power" => self.power(call)?,
                     "torus" => self.torus(call)?,
-                    "mesh" => self.mesh(Given::new(self.tree, call, ["file"], &[])?.required(0)?)?,
+                    "mesh" => self.mesh(call, Given::new(self.tree, call, ["file"], &[])?.required(0)?)?,
                     "import" => self.import(call)?,
                     "octree" => self.octree(call)?,
                     _ => {
@@ -258,8 +270,8 @@ impl Checker<'_> {
     }
 
     fn linear_extrude(&mut self, call: &Call<'_>, first: usize) -> Result<Shape, Error> {
-        let names = ["height", "v", "scale", "center", "twist"];
-        let given = Given::new(self.tree, call, names, &["convexity", "slices", "segments"])?;
+        let names = ["height", "v", "scale", "center", "twist", "slices"];
+        let given = Given::new(self.tree, call, names, &["convexity", "segments"])?;
         let (has_height, direction) = (given.optional(0).is_some(), given.optional(1));
         let height = given.number_or(0, if direction.is_some() && !has_height { 1.0 } else { 100.0 })?;
         let direction = direction.map_or(Ok([0.0, 0.0, 1.0]), |item| item.numbers::<3>())?;
@@ -282,6 +294,7 @@ impl Checker<'_> {
         let solid =
             if scale == [1.0; 2] { figure.prism(low, high) } else { figure.tapered(low, high, scale) };
         let mut solid = self.at(call, solid)?;
+        self.report.ignored_slices += u64::from(scale[0] != scale[1] && given.number_or(5, 1.0)? > 1.0);
         if direction != [0.0, 0.0, 1.0] {
             let [x, y, z] = direction;
             let shear = Affine::new([[1.0, 0.0, x, 0.0], [0.0, 1.0, y, 0.0], [0.0, 0.0, z, 0.0]]);
@@ -294,18 +307,51 @@ impl Checker<'_> {
         let given = Given::new(self.tree, call, ["angle", "start"], &["convexity"])?;
         let (angle, start) = (given.number_or(0, 360.0)?, given.number_or(1, 0.0)?);
         let Some(figure) = self.figure(call, first)? else { return Ok(Shape::Nothing) };
-        let solid = self.at(call, figure.revolved())?;
-        let solid = if angle <= -360.0 || angle >= 360.0 {
-            solid
-        } else if angle == 0.0 {
-            Csg::empty()
-        } else {
-            // A figure on the other side of the axis starts half a turn further on.
-            let from = if figure.is_mirrored() { start + 180.0 } else { start };
-            let wedge = wedge(from + angle.min(0.0), angle.abs());
-            Csg::intersection_of([solid, self.at(call, wedge)?])?
+        let solid = match self.turned(call, &given, &figure, angle, start)? {
+            Some(solid) => solid,
+            None => {
+                let solid = self.at(call, figure.revolved())?;
+                if angle <= -360.0 || angle >= 360.0 {
+                    solid
+                } else if angle == 0.0 {
+                    Csg::empty()
+                } else {
+                    // A figure on the other side of the axis starts half a turn further on.
+                    let from = if figure.is_mirrored() { start + 180.0 } else { start };
+                    let wedge = wedge(from + angle.min(0.0), angle.abs());
+                    Csg::intersection_of([solid, self.at(call, wedge)?])?
+                }
+            }
         };
         self.node(Node::Solid(solid))
+    }
+
+    /// What `rotate_extrude` makes of a figure if it is drawn as a polygon; notes which. Figures with curves are
+    /// turned exactly.
+    fn turned(
+        &mut self,
+        call: &Call<'_>,
+        given: &Given<'_, 2>,
+        figure: &Figure,
+        angle: f64,
+        start: f64,
+    ) -> Result<Option<Csg>, Error> {
+        let fan = match self.sides(call, given, figure.reach())? {
+            Some(_) if figure.has_curves()? => None,
+            Some(sides) if angle <= -360.0 || angle >= 360.0 => {
+                // A whole turn starts on the other side, unless it is said where.
+                Fan::regular(if given.optional(1).is_some() { start } else { 180.0 }, sides)?
+            }
+            Some(sides) => {
+                let share = f64::from(sides) * angle.abs() / 360.0;
+                Fan::part(start, angle, share.max(1.0) as u32)?
+            }
+            None => None,
+        };
+        if angle != 0.0 {
+            self.note(fan.is_some());
+        }
+        fan.map(|fan| self.at(call, figure.turned(fan))).transpose()
     }
 }
 
@@ -347,10 +393,51 @@ impl Checker<'_> {
         Ok(self.at(call, Figure::rectangle([x[0], y[0]], [x[1], y[1]]))?.into())
     }
 
-    fn circle(&self, call: &Call<'_>) -> Result<Shape, Error> {
+    /// With how many sides a curved call is to be drawn, which has a circle of this radius; `None` if it is
+    /// exact.
+    fn sides<const N: usize>(
+        &self,
+        call: &Call<'_>,
+        given: &Given<'_, N>,
+        radius: f64,
+    ) -> Result<Option<u32>, Error> {
+        let sides = Fineness::new(given.fineness()).drawn(self.facets, radius);
+        match sides {
+            Some(MANY..) => Err(self.fault(call, format_args!("has more than {MOST_SIDES} sides"))),
+            _ => Ok(sides),
+        }
+    }
+
+    /// The regular polygon in place of a curved call's circle, if it is drawn so; notes which.
+    fn fan<const N: usize>(
+        &mut self,
+        call: &Call<'_>,
+        given: &Given<'_, N>,
+        radius: f64,
+    ) -> Result<Option<Fan>, Error> {
+        let fan = match self.sides(call, given, radius)? {
+            Some(sides) => Fan::regular(0.0, sides)?,
+            None => None,
+        };
+        self.note(fan.is_some());
+        Ok(fan)
+    }
+
+    fn note(&mut self, is_polygon: bool) {
+        *(if is_polygon { &mut self.report.polygons } else { &mut self.report.exact }) += 1;
+    }
+
+    fn circle(&mut self, call: &Call<'_>) -> Result<Shape, Error> {
         let given = Given::new(self.tree, call, ["r"], &[])?;
         let radius = given.number_or(0, 1.0)?;
-        Ok((if radius > 0.0 { Figure::disc(radius) } else { Figure::nothing() }).into())
+        if radius <= 0.0 {
+            return Ok(Figure::nothing().into());
+        }
+        Ok(match self.fan(call, &given, radius)? {
+            Some(fan) => Figure::regular(radius, &fan)?,
+            None => Figure::disc(radius),
+        }
+        .into())
     }
 
     fn polygon(&self, call: &Call<'_>) -> Result<Shape, Error> {
@@ -386,15 +473,31 @@ impl Checker<'_> {
         Ok(Node::Solid(self.at(call, cuboid)?))
     }
 
-    fn sphere(&self, call: &Call<'_>) -> Result<Node, Error> {
-        let radius = Given::new(self.tree, call, ["r"], &[])?.number_or(0, 1.0)?;
+    fn sphere(&mut self, call: &Call<'_>) -> Result<Node, Error> {
+        let given = Given::new(self.tree, call, ["r"], &[])?;
+        let radius = given.number_or(0, 1.0)?;
         if radius <= 0.0 {
             return Ok(Node::Solid(Csg::empty()));
         }
-        Ok(Node::Solid(self.at(call, Csg::ball([0.0; 3], radius))?))
+        let ball = match self.fan(call, &given, radius)? {
+            None => Csg::ball([0.0; 3], radius),
+            Some(fan) => {
+                // Rings of corners, none of which is a pole.
+                let rings = fan.corners().len().div_ceil(2);
+                let mut profile = memory::with_capacity(rings + 2)?;
+                profile.extend((0..rings).map(|ring| {
+                    let angle = 180.0 * (ring as f64 + 0.5) / rings as f64;
+                    [radius * sin_degrees(angle), radius * cos_degrees(angle)]
+                }));
+                let ends = [profile.last(), profile.first()].map(|end| [0.0, end.map_or(0.0, |end| end[1])]);
+                profile.extend(ends);
+                self.at(call, Figure::polygon(&profile))?.turned(fan)
+            }
+        };
+        Ok(Node::Solid(self.at(call, ball)?))
     }
 
-    fn cylinder(&self, call: &Call<'_>) -> Result<Node, Error> {
+    fn cylinder(&mut self, call: &Call<'_>) -> Result<Node, Error> {
         let given = Given::new(self.tree, call, ["h", "r1", "r2", "center", "r"], &[])?;
         let radius = given.number_or(4, 1.0)?;
         let (bottom, top) = (given.number_or(1, radius)?, given.number_or(2, radius)?);
@@ -402,10 +505,17 @@ impl Checker<'_> {
         if low >= high || bottom < 0.0 || top < 0.0 || bottom + top == 0.0 {
             return Ok(Node::Solid(Csg::empty()));
         }
-        Ok(Node::Solid(self.at(call, Csg::frustum(bottom, top, low, high))?))
+        let frustum = match self.fan(call, &given, bottom.max(top))? {
+            None => Csg::frustum(bottom, top, low, high),
+            Some(fan) => {
+                let profile = [[0.0, low], [bottom, low], [top, high], [0.0, high]];
+                self.at(call, Figure::polygon(&profile))?.turned(fan)
+            }
+        };
+        Ok(Node::Solid(self.at(call, frustum)?))
     }
 
-    fn polyhedron(&self, call: &Call<'_>) -> Result<Node, Error> {
+    fn polyhedron(&mut self, call: &Call<'_>) -> Result<Node, Error> {
         let given = Given::new(self.tree, call, ["points", "faces"], &["convexity"])?;
         let (Some(points), Some(faces)) = (given.optional(0), given.optional(1)) else {
             return Ok(Node::Solid(Csg::empty()));
@@ -419,7 +529,7 @@ impl Checker<'_> {
         if mesh.triangles().is_empty() {
             return Ok(Node::Solid(Csg::empty()));
         }
-        Ok(Node::Mesh(Arc::new(mesh), FillRule::NonZero))
+        self.solid_mesh(call, String::new(), mesh, FillRule::NonZero)
     }
 
     fn half_space(&self, call: &Call<'_>) -> Result<Node, Error> {
@@ -447,52 +557,5 @@ impl Checker<'_> {
         let given = Given::new(self.tree, call, ["major", "minor"], &[])?;
         let (major, minor) = (given.required(0)?.number()?, given.required(1)?.number()?);
         Ok(Node::Solid(self.at(call, Csg::torus(major, minor))?))
-    }
-}
-
-// ---- files --------------------------------------------------------------------------------------------------
-
-impl Checker<'_> {
-    /// What `read` makes of the file that is named in the text.
-    fn read<T>(&self, file: &Item<'_>, read: impl FnOnce(&Path) -> Result<T, Error>) -> Result<T, Error> {
-        let name = file.text()?;
-        let Some(folder) = self.folder else {
-            return Err(file.fault("files cannot be read by this scene, which has no folder"));
-        };
-        read(&folder.join(&name)).map_err(|error| match error {
-            Error::OutOfMemory => error,
-            error => file.fault(format!("{name}: {error}")),
-        })
-    }
-
-    fn mesh(&self, file: Item<'_>) -> Result<Node, Error> {
-        let read = self.read(&file, |path| open_mesh(path, &MeshOptions::default()))?;
-        let fill = match read.format {
-            MeshFormat::ThreeMf => FillRule::Positive,
-            _ => FillRule::NonZero,
-        };
-        if read.mesh.triangles().is_empty() {
-            return Err(file.fault(format!("{}", MeshError::Empty)));
-        }
-        Ok(Node::Mesh(Arc::new(read.mesh), fill))
-    }
-
-    fn import(&self, call: &Call<'_>) -> Result<Node, Error> {
-        let ignored = ["origin", "scale", "convexity", "timestamp", "layer", "id", "dpi", "width", "height"];
-        let given = Given::new(self.tree, call, ["file", "center"], &ignored)?;
-        if given.truth_or(1, false)? {
-            return Err(self.fault(call, "is supported without `center` only"));
-        }
-        let name = given.required(0)?.text()?;
-        let extension = name.rsplit_once('.').map_or("", |parts| parts.1);
-        if MeshFormat::from_extension(extension).is_none() {
-            return Err(self.fault(call, format_args!("of files {} is not supported", shown(extension))));
-        }
-        self.mesh(given.required(0)?)
-    }
-
-    fn octree(&self, call: &Call<'_>) -> Result<Node, Error> {
-        let file = Given::new(self.tree, call, ["file"], &[])?.required(0)?;
-        Ok(Node::Octree(Box::new(self.read(&file, |path| crate::file::open(path))?)))
     }
 }

@@ -64,11 +64,41 @@ pub(super) enum Kind<'t> {
 
 /// The error that something is wrong `at` so many bytes from the beginning of a text.
 pub(super) fn fault(text: &str, at: usize, problem: impl Into<String>) -> Error {
-    let before = text.get(..at).unwrap_or(text);
-    let line = before.bytes().filter(|&byte| byte == b'\n').count() as u64 + 1;
-    let start = before.rfind('\n').map_or(0, |end| end + 1);
-    let column = before[start..].chars().filter(|&c| c != BYTE_ORDER_MARK).count() as u64 + 1;
-    SceneError::new((line, column), problem.into()).into()
+    SceneError::new(place(text, at), problem.into()).into()
+}
+
+/// Line and column, counted from 1, of a place in a text.
+fn place(text: &str, at: usize) -> (u64, u64) {
+    let mut cursor = Cursor::default();
+    cursor.advance(text, at);
+    (cursor.line, cursor.column)
+}
+
+/// A place in a text that moves forward only.
+pub(super) struct Cursor {
+    at: usize,
+    pub line: u64,
+    pub column: u64,
+}
+
+impl Default for Cursor {
+    fn default() -> Cursor {
+        Cursor { at: 0, line: 1, column: 1 }
+    }
+}
+
+impl Cursor {
+    /// Moves to a place that is not before this one. O(distance).
+    pub fn advance(&mut self, text: &str, to: usize) {
+        for c in text.get(self.at..to).unwrap_or_default().chars() {
+            match c {
+                '\n' => (self.line, self.column) = (self.line + 1, 1),
+                BYTE_ORDER_MARK => {}
+                _ => self.column += 1,
+            }
+        }
+        self.at = self.at.max(to);
+    }
 }
 
 const BYTE_ORDER_MARK: char = '\u{FEFF}';

@@ -6,7 +6,7 @@ use super::{Node, Scene};
 use crate::error::Error;
 use crate::lattice::{Affine, Bounds, Frame};
 use crate::memory;
-use crate::solid::{AnySolid, Csg, MeshSolid, Solid, Transform};
+use crate::solid::{AnySolid, Csg, Solid, Transform};
 
 /// Of a box, the lower and the upper one.
 type Corners = ([f64; 3], [f64; 3]);
@@ -23,6 +23,14 @@ impl Scene {
     /// [`Error::OutOfMemory`].
     pub fn bounds(&self) -> Result<Option<Corners>, Error> {
         Ok(self.lower(None)?.bounds().map(|Bounds { min, max }| (min, max)))
+    }
+
+    /// Whether the scene is known to be empty: there is nothing in it, or what is intersected lies apart.
+    ///
+    /// # Errors
+    /// As [`bounds`](Self::bounds).
+    pub fn is_empty(&self) -> Result<bool, Error> {
+        Ok(self.lower(None)?.is_known_empty())
     }
 
     /// The solid, to be asked on this frame. Solids of scenes without octrees can be asked on any.
@@ -55,7 +63,7 @@ impl Scene {
             let deepest = |parts: &[usize]| parts.iter().filter_map(|&part| solids[part].1).max();
             let lowered = match node {
                 Node::Solid(csg) => (csg.clone(), None),
-                Node::Mesh(..) | Node::Octree(_) => (leaf(node, frame)?, Some(0)),
+                Node::Mesh(_) | Node::Octree(_) => (leaf(node, frame)?, Some(0)),
                 Node::Union(parts) => (Csg::union_of(parts.iter().map(part))?, deepest(parts)),
                 Node::Intersection(parts) => (Csg::intersection_of(parts.iter().map(part))?, deepest(parts)),
                 Node::Difference(parts) => {
@@ -81,10 +89,7 @@ impl Scene {
 fn leaf(node: &Node, frame: Option<&Frame>) -> Result<Csg, Error> {
     let Some(frame) = frame else {
         let Some(Bounds { min, max }) = (match node {
-            Node::Mesh(mesh, _) => {
-                let (min, max) = mesh.bounds();
-                Bounds::new(min, max)
-            }
+            Node::Mesh(mesh) => mesh.bounds(),
             Node::Octree(octree) => Some(Bounds::of(octree.frame())),
             _ => None,
         }) else {
@@ -94,7 +99,7 @@ fn leaf(node: &Node, frame: Option<&Frame>) -> Result<Csg, Error> {
         return Ok(Csg::half_space([1.0, 0.0, 0.0], 0.0)?.within(min, max));
     };
     Ok(Csg::solid(match node {
-        Node::Mesh(mesh, fill) => AnySolid::new(MeshSolid::new(mesh.clone(), *fill)?),
+        Node::Mesh(mesh) => AnySolid::new(mesh.clone()),
         Node::Octree(octree) if octree.frame().same_universe(frame) => AnySolid::new((**octree).clone()),
         Node::Octree(octree) => AnySolid::new(Transform::of((**octree).clone(), &Affine::IDENTITY)),
         _ => return Ok(Csg::empty()),

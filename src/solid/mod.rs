@@ -24,7 +24,7 @@ mod transform;
 pub use callback::Callback;
 pub use csg::{Csg, HalfSpace, Touch};
 #[cfg(feature = "scene")]
-pub(crate) use csg::{Figure, wedge};
+pub(crate) use csg::{Fan, Figure, cos_degrees, sin_degrees, wedge};
 pub use enclosure::{Crossing, Enclosure, Segment, Slab, SlabJoin};
 #[cfg(feature = "capi")]
 pub(crate) use erased::MOST_NESTED;

@@ -80,7 +80,7 @@ pub struct OnFrame<T> {
 impl<T: Tree> OnFrame<T> {
     fn new(tree: T, frame: &Frame) -> Result<OnFrame<T>, Error> {
         if !frame.same_universe(tree.tree().frame()) {
-            return Err(Error::FrameMismatch);
+            return Err(tree.tree().frame().mismatch(frame));
         }
         // A descent remembers nothing, so elements with shared children would be visited again and again:
         // 64^10 times in a file of a few kilobytes.

@@ -330,11 +330,14 @@ impl Model {
                 return None;
             }
             primitive => {
-                let [at, beside] = [&probe.at, &probe.beside].map(|p| primitive.values(p));
-                at.iter().zip(&beside).all(|(at, beside)| match at.sign() {
-                    0 => beside.minus(&Exact::power_of_two(SLOPE)).sign() > 0,
-                    sign => sign > 0,
-                })
+                let at = primitive.values(&probe.at);
+                let lowest = at.iter().map(Exact::sign).min().unwrap_or(1);
+                // (The numbers beside zeros are long: they are looked at only where it hangs on them.)
+                lowest > 0
+                    || lowest == 0
+                        && at.iter().zip(&primitive.values(&probe.beside)).all(|(at, beside)| {
+                            at.sign() > 0 || beside.minus(&Exact::power_of_two(SLOPE)).sign() > 0
+                        })
             }
         })
     }

@@ -1,4 +1,4 @@
-//! 3MF packages: the core specification 1.x, and the production extension's parts of models.
+//! 3MF packages: the core specification 1.x and its draft 0.93, and the production extension's parts of models.
 //!
 //! **The way in.** A package is a ZIP archive (stored or DEFLATE). `_rels/.rels` must lead to one 3D model,
 //! and `[Content_Types].xml` must be there and not call it something else. Components and items of the build
@@ -15,11 +15,18 @@
 //! object, and the union of the objects: the mesh as a whole differs from that only where an object that is
 //! inside out overlaps another one.
 //!
+//! **The draft 0.93** has a namespace of its own. Its relationship and content types, its objects, components
+//! and items are those of 1.0; its colours, materials and textures are ignored like others. The caller is
+//! told, for a warning.
+//!
+//! **Text** is UTF-8, or UTF-16 with a byte order mark.
+//!
 //! **What is refused.** Damaged archives, parts that are encrypted, packages with keys for protected content,
 //! models that require an extension other than production, materials and triangle sets; document type
-//! declarations, encodings other than UTF-8; objects that are referred to before they are defined (which
-//! makes circles impossible) or defined twice, meshes that only stand for something finer (`lowres`,
-//! `obfuscated`), models without a build, indices of vertices that do not exist, numbers that are not finite.
+//! declarations, other encodings, attributes that stand twice in an element of any part; objects that are
+//! referred to before they are defined (which makes circles impossible) or defined twice, meshes that only
+//! stand for something finer (`lowres`, `obfuscated`), models without a build, indices of vertices that do not
+//! exist, numbers that are not finite.
 //!
 //! **Memory.** Decompressed, the parts that are read may together be 64 times as long as the file and 16 MiB;
 //! what is read of them takes at most twenty times their length (of meshes three times). Instances may come
@@ -53,6 +60,8 @@ pub(super) struct Built {
     pub unit: LengthUnit,
     /// Instances of objects that are no solids.
     pub skipped: u64,
+    /// Whether a part of it is of the draft 0.93.
+    pub draft: bool,
 }
 
 /// Reads a package.
@@ -64,7 +73,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Built, Error> {
     let unit = models.read(&package, root, &text, true)?;
     // What was found to be wrong in the root model when it had been read.
     let error = |package: &Package, component: &Component, problem: &str| {
-        xml::error_at(&package.name(root), &text, component.offset, problem)
+        xml::error_at(&package.name(root), &text.text, component.offset, problem)
     };
     let own = models.objects.len();
     resolve(&mut models, &mut package, unit, &error)?;
@@ -90,7 +99,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Built, Error> {
     }
     drop(package);
     let mesh = build(&models, &totals, &sum)?;
-    Ok(Built { mesh, unit, skipped: sum.skipped })
+    Ok(Built { mesh, unit, skipped: sum.skipped, draft: models.draft })
 }
 
 /// Reads the parts that the root model refers to, and replaces references to them by places of objects.

@@ -1,5 +1,6 @@
 //! Model parts: objects of meshes or of components, and what of them is to be built.
 
+use alloc::string::String;
 use alloc::vec::Vec;
 use core::ops::Range;
 
@@ -7,7 +8,7 @@ use hashbrown::HashMap;
 
 use super::package::Package;
 use super::transform::Transform;
-use super::xml::{Attribute, Element, Markup, Namespace, Xml};
+use super::xml::{Element, Markup, Namespace, Text, Xml};
 use crate::error::Error;
 use crate::exchange::LengthUnit;
 use crate::memory;
@@ -24,6 +25,8 @@ pub(super) struct Models {
     pub items: Vec<Component>,
     /// Objects by part and identifier.
     pub known: HashMap<(u32, u32), u32>,
+    /// Whether a part is of the draft 0.93.
+    pub draft: bool,
 }
 
 pub(super) struct Object {
@@ -92,7 +95,7 @@ impl Models {
         &mut self,
         package: &Package,
         part: u32,
-        text: &str,
+        text: &Text,
         is_root: bool,
     ) -> Result<LengthUnit, Error> {
         let name = package.name(part);
@@ -106,10 +109,11 @@ impl Models {
                 nodes.pop();
                 continue;
             };
-            let core = element.namespace == Namespace::Core;
+            let core = matches!(element.namespace, Namespace::Core | Namespace::Draft);
             let node = match (nodes.last(), element.name) {
                 (None, "model") if core => {
-                    unit = read_model(&xml, &element)?;
+                    self.draft |= element.namespace == Namespace::Draft;
+                    unit = read_model(&xml)?;
                     Node::Model
                 }
                 (None, _) => return Err(xml.error(element.offset, "this is no 3MF model")),
@@ -164,27 +168,26 @@ impl Models {
             }
         }
         if is_root && !has_build {
-            return Err(xml.error(text.len(), "the model has no build"));
+            return Err(xml.error(text.text.len(), "the model has no build"));
         }
         Ok(unit)
     }
 
     fn read_object(&mut self, xml: &Xml, element: &Element, part: u32) -> Result<(), Error> {
         let (mut id, mut purpose) = (None, Purpose::Model);
-        for attribute in xml.attributes(element) {
-            let attribute = attribute?;
+        for attribute in xml.attributes() {
             match (attribute.prefix, attribute.name) {
-                ("", "id") => id = Some(xml.index(&attribute)?),
+                ("", "id") => id = Some(xml.index(attribute)?),
                 ("", "type") => {
                     purpose = match attribute.value.trim_ascii() {
                         "model" => Purpose::Model,
                         "solidsupport" | "support" | "surface" | "other" => Purpose::Other,
-                        _ => return Err(xml.attribute_error(&attribute, "is no type of objects")),
+                        _ => return Err(xml.attribute_error(attribute, "is no type of objects")),
                     };
                 }
                 // Of the slice and the production extension, which the model may not even require.
                 (_, "meshresolution" | "modelresolution") if attribute.value.trim_ascii() != "fullres" => {
-                    return Err(xml.attribute_error(&attribute, "says that the mesh is not the true shape"));
+                    return Err(xml.attribute_error(attribute, "says that the mesh is not the true shape"));
                 }
                 _ => {}
             }
@@ -211,15 +214,14 @@ impl Models {
 
     fn read_vertex(&mut self, xml: &Xml, element: &Element) -> Result<(), Error> {
         let mut found = [None; 3];
-        for attribute in xml.attributes(element) {
-            let attribute = attribute?;
+        for attribute in xml.attributes() {
             let axis = match (attribute.prefix, attribute.name) {
                 ("", "x") => 0,
                 ("", "y") => 1,
                 ("", "z") => 2,
                 _ => continue,
             };
-            take(&mut found[axis], xml.number(&attribute)?, xml, &attribute)?;
+            found[axis] = Some(xml.number(attribute)?);
         }
         let [Some(x), Some(y), Some(z)] = found else {
             return Err(xml.error(element.offset, "the vertex lacks x, y or z"));
@@ -236,20 +238,19 @@ impl Models {
             return Ok(());
         };
         let mut found = [None; 3];
-        for attribute in xml.attributes(element) {
-            let attribute = attribute?;
+        for attribute in xml.attributes() {
             let corner = match (attribute.prefix, attribute.name) {
                 ("", "v1") => 0,
                 ("", "v2") => 1,
                 ("", "v3") => 2,
                 _ => continue,
             };
-            let index = xml.index(&attribute)?;
+            let index = xml.index(attribute)?;
             if index as usize >= vertices.len() {
                 let problem = alloc::format!("is no vertex, of which there are {}", vertices.len());
-                return Err(xml.attribute_error(&attribute, &problem));
+                return Err(xml.attribute_error(attribute, &problem));
             }
-            take(&mut found[corner], index, xml, &attribute)?;
+            found[corner] = Some(index);
         }
         let [Some(a), Some(b), Some(c)] = found else {
             return Err(xml.error(element.offset, "the triangle lacks v1, v2 or v3"));
@@ -270,22 +271,21 @@ impl Models {
         finished: usize,
     ) -> Result<Component, Error> {
         let (mut id, mut place, mut transform) = (None, part, Transform::IDENTITY);
-        for attribute in xml.attributes(element) {
-            let attribute = attribute?;
+        for attribute in xml.attributes() {
             match (attribute.prefix, attribute.name) {
-                ("", "objectid") => id = Some(xml.index(&attribute)?),
+                ("", "objectid") => id = Some(xml.index(attribute)?),
                 ("", "transform") => {
                     transform = Transform::parse(attribute.value)
-                        .ok_or_else(|| xml.attribute_error(&attribute, "is not twelve finite numbers"))?;
+                        .ok_or_else(|| xml.attribute_error(attribute, "is not twelve finite numbers"))?;
                 }
                 (prefix, "path") if !prefix.is_empty() && xml.namespace(prefix) == Namespace::Production => {
                     if !is_root {
-                        return Err(xml.attribute_error(&attribute, "is only allowed in the root model"));
+                        return Err(xml.attribute_error(attribute, "is only allowed in the root model"));
                     }
-                    let path = xml.name(&attribute)?;
+                    let path = xml.name(attribute)?;
                     place = package
                         .find(&path)?
-                        .ok_or_else(|| xml.attribute_error(&attribute, "is missing in the package"))?;
+                        .ok_or_else(|| xml.attribute_error(attribute, "is missing in the package"))?;
                 }
                 _ => {}
             }
@@ -304,10 +304,9 @@ impl Models {
 }
 
 /// The element around all others: the unit, and whether something is needed that is unknown here.
-fn read_model(xml: &Xml, element: &Element) -> Result<LengthUnit, Error> {
+fn read_model(xml: &Xml) -> Result<LengthUnit, Error> {
     let mut unit = LengthUnit::Millimetre;
-    for attribute in xml.attributes(element) {
-        let attribute = attribute?;
+    for attribute in xml.attributes() {
         match (attribute.prefix, attribute.name) {
             ("", "unit") => {
                 unit = match attribute.value.trim_ascii() {
@@ -317,31 +316,30 @@ fn read_model(xml: &Xml, element: &Element) -> Result<LengthUnit, Error> {
                     "inch" => LengthUnit::Inch,
                     "foot" => LengthUnit::Foot,
                     "meter" => LengthUnit::Metre,
-                    _ => return Err(xml.attribute_error(&attribute, "is no unit of 3MF")),
+                    _ => return Err(xml.attribute_error(attribute, "is no unit of 3MF")),
                 };
             }
             ("", "requiredextensions") => {
                 for prefix in attribute.value.split_ascii_whitespace() {
-                    let problem = match xml.namespace(prefix) {
-                        Namespace::Core | Namespace::Production | Namespace::Harmless => continue,
-                        Namespace::Secure => {
-                            "asks for protected content (3MF Secure Content), which cannot be read"
+                    let what = match xml.namespace(prefix) {
+                        Namespace::Core | Namespace::Draft | Namespace::Production | Namespace::Harmless => {
+                            continue;
                         }
-                        _ => "asks for an extension that cannot be read",
+                        Namespace::Extension(name) => alloc::format!("the 3MF extension \"{name}\""),
+                        _ => match xml.uri(prefix) {
+                            Some(uri) => {
+                                let uri: String = uri.chars().take(120).collect();
+                                alloc::format!("the unknown extension {uri}")
+                            }
+                            None => "an extension by a prefix that stands for nothing".into(),
+                        },
                     };
-                    return Err(xml.attribute_error(&attribute, problem));
+                    let problem = alloc::format!("requires {what}, which cannot be read");
+                    return Err(xml.attribute_error(attribute, &problem));
                 }
             }
             _ => {}
         }
     }
     Ok(unit)
-}
-
-/// Sets a value that may be given once.
-fn take<T>(slot: &mut Option<T>, value: T, xml: &Xml, attribute: &Attribute) -> Result<(), Error> {
-    match slot.replace(value) {
-        None => Ok(()),
-        Some(_) => Err(xml.attribute_error(attribute, "stands there a second time")),
-    }
 }

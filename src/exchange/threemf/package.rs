@@ -10,7 +10,7 @@ use miniz_oxide::inflate::core::inflate_flags::TINFL_FLAG_USING_NON_WRAPPING_OUT
 use miniz_oxide::inflate::core::{DecompressorOxide, decompress};
 use rawzip::{CompressionMethod, ZipArchive, ZipArchiveEntryWayfinder, ZipSliceArchive};
 
-use super::xml::{Markup, Namespace, Xml};
+use super::xml::{Markup, Namespace, Text, Xml};
 use crate::error::{Error, PackageError};
 use crate::memory;
 
@@ -51,7 +51,13 @@ impl<'a> Package<'a> {
     pub fn open(bytes: &'a [u8]) -> Result<Self, Error> {
         let damaged =
             |error: rawzip::Error| broken("", alloc::format!("the ZIP archive is damaged: {error}"));
-        let archive = ZipArchive::from_slice(bytes).map_err(damaged)?;
+        let archive = ZipArchive::from_slice(bytes).map_err(|error| {
+            if is_markup(bytes) {
+                broken("", "this is plain XML: a 3MF is a ZIP archive, of which such a text is one part")
+            } else {
+                damaged(error)
+            }
+        })?;
         let mut entries = Vec::new();
         let mut records = archive.entries();
         // Every record is in the file, so there are not more than it has bytes.
@@ -107,12 +113,10 @@ impl<'a> Package<'a> {
     }
 
     /// A part's text, decompressed and with its checksum verified.
-    pub fn text(&mut self, part: u32) -> Result<String, Error> {
-        let bytes = self.bytes(part)?;
-        let name = self.name(part);
-        String::from_utf8(bytes).map_err(|error| {
-            let at = error.utf8_error().valid_up_to();
-            broken(&name, alloc::format!("is no UTF-8 text from byte {at} on"))
+    pub fn text(&mut self, part: u32) -> Result<Text, Error> {
+        Text::decode(self.bytes(part)?).map_err(|problem| match problem {
+            Some(problem) => broken(&self.name(part), problem),
+            None => Error::OutOfMemory,
         })
     }
 
@@ -183,7 +187,7 @@ impl<'a> Package<'a> {
 const CENTRAL_HEADER: u64 = 46;
 
 /// The target of the one relationship that leads to a model.
-fn start_part(text: &str) -> Result<String, Error> {
+fn start_part(text: &Text) -> Result<String, Error> {
     let mut xml = Xml::new(RELATIONSHIPS, text);
     let mut target: Option<Cow<str>> = None;
     while let Some(markup) = xml.next()? {
@@ -192,11 +196,10 @@ fn start_part(text: &str) -> Result<String, Error> {
             continue;
         }
         let (mut kind, mut to, mut external) = (None, None, false);
-        for attribute in xml.attributes(&element) {
-            let attribute = attribute?;
+        for attribute in xml.attributes() {
             match (attribute.prefix, attribute.name) {
-                ("", "Type") => kind = Some(xml.name(&attribute)?),
-                ("", "Target") => to = Some(xml.name(&attribute)?),
+                ("", "Type") => kind = Some(xml.name(attribute)?),
+                ("", "Target") => to = Some(xml.name(attribute)?),
                 ("", "TargetMode") => external = attribute.value.trim() == "External",
                 _ => {}
             }
@@ -224,7 +227,7 @@ fn start_part(text: &str) -> Result<String, Error> {
 }
 
 /// The content type that the package declares for a part: by its name, or else by its extension.
-fn content_type<'a>(text: &'a str, part: &str) -> Result<Option<Cow<'a, str>>, Error> {
+fn content_type<'a>(text: &'a Text, part: &str) -> Result<Option<Cow<'a, str>>, Error> {
     let mut xml = Xml::new(CONTENT_TYPES, text);
     let extension = part.rsplit_once('.').map_or("", |(_, extension)| extension);
     let mut default = None;
@@ -235,16 +238,15 @@ fn content_type<'a>(text: &'a str, part: &str) -> Result<Option<Cow<'a, str>>, E
             continue;
         }
         let (mut matches, mut kind) = (false, None);
-        for attribute in xml.attributes(&element) {
-            let attribute = attribute?;
+        for attribute in xml.attributes() {
             match (attribute.prefix, attribute.name) {
-                ("", "ContentType") => kind = Some(xml.name(&attribute)?),
+                ("", "ContentType") => kind = Some(xml.name(attribute)?),
                 ("", "PartName") if by_name => {
-                    let name = xml.name(&attribute)?;
+                    let name = xml.name(attribute)?;
                     matches = name.strip_prefix('/').unwrap_or(&name).eq_ignore_ascii_case(part);
                 }
                 ("", "Extension") if !by_name => {
-                    matches = xml.name(&attribute)?.eq_ignore_ascii_case(extension);
+                    matches = xml.name(attribute)?.eq_ignore_ascii_case(extension);
                 }
                 _ => {}
             }
@@ -256,6 +258,14 @@ fn content_type<'a>(text: &'a str, part: &str) -> Result<Option<Cow<'a, str>>, E
         }
     }
     Ok(default)
+}
+
+/// Whether the first character is that of XML, in UTF-8 or UTF-16.
+fn is_markup(bytes: &[u8]) -> bool {
+    // Byte order marks and the upper halves of UTF-16 before it.
+    let mut start =
+        bytes.iter().take(64).filter(|byte| !matches!(byte, 0 | 0xBB | 0xBF | 0xEF | 0xFE | 0xFF));
+    start.find(|byte| !byte.is_ascii_whitespace()) == Some(&b'<')
 }
 
 /// Decompresses `data`, which must fill `bytes`. Whether it does.

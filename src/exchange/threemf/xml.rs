@@ -17,18 +17,22 @@ const MAX_DEPTH: usize = 64;
 const MAX_NAMES: usize = 1024;
 /// How long names and paths in attributes may be.
 const MAX_NAME: usize = 1024;
+/// How many prefixes may stand for a namespace at one place. Looking one up takes as many steps.
+const MAX_BINDINGS: usize = 256;
 
 /// The namespaces that have a meaning here.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Namespace {
     /// 3MF's core.
     Core,
+    /// 3MF's core as the draft 0.93 had it, of which the elements that matter here have the same meaning.
+    Draft,
     /// 3MF's production extension.
     Production,
     /// An extension that does not concern shapes.
     Harmless,
-    /// Protected content.
-    Secure,
+    /// Another extension of 3MF, of this name.
+    Extension(&'static str),
     /// Relationships of a package.
     Relationships,
     /// Content types of a package.
@@ -41,21 +45,43 @@ impl Namespace {
     fn of(uri: &str) -> Self {
         match uri {
             "http://schemas.microsoft.com/3dmanufacturing/core/2015/02" => Self::Core,
+            "http://schemas.microsoft.com/3dmanufacturing/2013/01" => Self::Draft,
             "http://schemas.microsoft.com/3dmanufacturing/production/2015/06" => Self::Production,
             "http://schemas.microsoft.com/3dmanufacturing/material/2015/02"
             | "http://schemas.microsoft.com/3dmanufacturing/trianglesets/2021/07" => Self::Harmless,
-            "http://schemas.microsoft.com/3dmanufacturing/securecontent/2019/04" => Self::Secure,
             "http://schemas.openxmlformats.org/package/2006/relationships" => Self::Relationships,
             "http://schemas.openxmlformats.org/package/2006/content-types" => Self::ContentTypes,
-            _ => Self::Other,
+            _ => extension(uri).map_or(Self::Other, Self::Extension),
         }
     }
+}
+
+/// The name of an extension that cannot be read. Versions of one differ behind its name in the address.
+fn extension(uri: &str) -> Option<&'static str> {
+    const EXTENSIONS: [(&str, &str); 11] = [
+        ("beamlattice/balls/", "Beam Lattice: Balls"),
+        ("beamlattice/", "Beam Lattice"),
+        ("booleanoperations/", "Boolean Operations"),
+        ("displacement/", "Displacement"),
+        ("implicit/", "Volumetric: Implicit Functions"),
+        ("material/", "Materials and Properties"),
+        ("production/alternatives/", "Production: Alternatives"),
+        ("production/", "Production"),
+        ("securecontent/", "Secure Content"),
+        ("slice/", "Slice"),
+        ("volumetric/", "Volumetric"),
+    ];
+    let path = ["http://schemas.microsoft.com/3dmanufacturing/", "http://schemas.3mf.io/3dmanufacturing/"]
+        .into_iter()
+        .find_map(|base| uri.strip_prefix(base))?;
+    EXTENSIONS.into_iter().find(|(start, _)| path.starts_with(start)).map(|(_, name)| name)
 }
 
 /// A prefix that stands for a namespace within an element.
 struct Binding<'a> {
     depth: usize,
     prefix: &'a str,
+    uri: &'a str,
     namespace: Namespace,
 }
 
@@ -68,9 +94,6 @@ pub(super) struct Element<'a> {
     pub empty: bool,
     /// Where the tag begins in the part.
     pub offset: usize,
-    /// What stands between the angle brackets, without the slash.
-    tag: &'a str,
-    name_length: usize,
 }
 
 impl Element<'_> {
@@ -79,6 +102,7 @@ impl Element<'_> {
     }
 }
 
+#[derive(Clone, Copy)]
 pub(super) struct Attribute<'a> {
     /// Empty if there is none.
     pub prefix: &'a str,
@@ -93,12 +117,59 @@ pub(super) enum Markup<'a> {
     End,
 }
 
+/// The text of a part.
+pub(super) struct Text {
+    pub text: String,
+    /// As a declaration in the text names it.
+    encoding: &'static str,
+}
+
+impl Text {
+    /// Decodes UTF-8, and UTF-16 that begins with its byte order mark. Fails with the problem, or with `None`
+    /// if there is no memory.
+    pub fn decode(bytes: Vec<u8>) -> Result<Self, Option<String>> {
+        let order: fn([u8; 2]) -> u16 = match *bytes {
+            [0xFE, 0xFF, ..] => u16::from_be_bytes,
+            [0xFF, 0xFE, ..] => u16::from_le_bytes,
+            [b'<', 0, ..] | [0, b'<', ..] => {
+                return Err(Some("is a text in UTF-16 without its byte order mark".into()));
+            }
+            _ => {
+                let mut text = String::from_utf8(bytes).map_err(|error| {
+                    let at = error.utf8_error().valid_up_to();
+                    alloc::format!("is no UTF-8 text from byte {at} on")
+                })?;
+                if text.starts_with('\u{FEFF}') {
+                    text.drain(..'\u{FEFF}'.len_utf8());
+                }
+                return Ok(Self { text, encoding: "UTF-8" });
+            }
+        };
+        let (units, rest) = bytes.as_chunks::<2>();
+        let mut text = String::new();
+        // Of a unit come three bytes at most.
+        text.try_reserve_exact(3 * units.len()).map_err(|_| None)?;
+        for (k, character) in char::decode_utf16(units.iter().skip(1).map(|&unit| order(unit))).enumerate() {
+            let problem = || alloc::format!("is no UTF-16 text from character {} on", k + 1);
+            text.push(character.map_err(|_| Some(problem()))?);
+        }
+        if !rest.is_empty() {
+            return Err(Some("is no UTF-16 text: its number of bytes is odd".into()));
+        }
+        Ok(Self { text, encoding: "UTF-16" })
+    }
+}
+
 /// Reads a part from its begin to its end.
 pub(super) struct Xml<'a> {
     part: &'a str,
     text: &'a str,
+    /// The encoding that the text had.
+    encoding: &'static str,
     reader: Reader<&'a [u8]>,
     bindings: Vec<Binding<'a>>,
+    /// Those of the element that was read last.
+    attributes: Vec<Attribute<'a>>,
     /// Lengths of the names of the open elements.
     open: [u16; MAX_DEPTH],
     depth: usize,
@@ -108,10 +179,20 @@ pub(super) struct Xml<'a> {
 
 impl<'a> Xml<'a> {
     /// Of a part of this name with this text.
-    pub fn new(part: &'a str, text: &'a str) -> Self {
-        let text = text.strip_prefix('\u{FEFF}').unwrap_or(text);
-        let (reader, bindings) = (Reader::from_str(text), Vec::new());
-        Self { part, text, reader, bindings, open: [0; MAX_DEPTH], depth: 0, names: 0, rooted: false }
+    pub fn new(part: &'a str, text: &'a Text) -> Self {
+        let Text { ref text, encoding } = *text;
+        Self {
+            part,
+            text,
+            encoding,
+            reader: Reader::from_str(text),
+            bindings: Vec::new(),
+            attributes: Vec::new(),
+            open: [0; MAX_DEPTH],
+            depth: 0,
+            names: 0,
+            rooted: false,
+        }
     }
 
     /// The next start or end of an element; `None` at the end of a part with one element around all others.
@@ -153,8 +234,10 @@ impl<'a> Xml<'a> {
                 }
                 Event::Decl(declaration) => {
                     let encoding = declaration.encoding().transpose().ok().flatten();
-                    if encoding.is_some_and(|encoding| !encoding.eq_ignore_ascii_case("UTF-8")) {
-                        return Err(self.error(offset, "the encoding is not UTF-8"));
+                    if encoding.is_some_and(|encoding| !encoding.eq_ignore_ascii_case(self.encoding)) {
+                        let problem =
+                            alloc::format!("the encoding is not {}, in which the text is", self.encoding);
+                        return Err(self.error(offset, problem));
                     }
                 }
                 Event::Eof if self.depth > 0 => {
@@ -203,52 +286,84 @@ impl<'a> Xml<'a> {
             return Err(self.error(offset, "a second element stands beside the one around all others"));
         }
         let qualified = tag.get(..name_length).unwrap_or(tag);
-        let mut element =
-            Element { namespace: Namespace::Other, name: qualified, empty, offset, tag, name_length };
-        if tag.contains("xmlns") {
-            for attribute in self.attributes(&element) {
-                let attribute = attribute?;
-                let prefix = match (attribute.prefix, attribute.name) {
-                    ("", "xmlns") => "",
-                    ("xmlns", prefix) => prefix,
-                    _ => continue,
-                };
-                let namespace = Namespace::of(attribute.value);
-                memory::push(&mut self.bindings, Binding { depth, prefix, namespace })?;
+        self.read_attributes(tag, name_length, offset)?;
+        for attribute in &self.attributes {
+            let prefix = match (attribute.prefix, attribute.name) {
+                ("", "xmlns") => "",
+                ("xmlns", prefix) => prefix,
+                _ => continue,
+            };
+            if self.bindings.len() == MAX_BINDINGS {
+                return Err(self.error(offset, "too many prefixes of namespaces"));
             }
+            let uri = attribute.value;
+            memory::push(&mut self.bindings, Binding { depth, prefix, uri, namespace: Namespace::of(uri) })?;
         }
+        self.check_attributes()?;
         let (prefix, name) = qualified.split_once(':').unwrap_or(("", qualified));
-        element.name = name;
-        element.namespace = self.namespace(prefix);
-        Ok(Markup::Start(element))
+        Ok(Markup::Start(Element { namespace: self.namespace(prefix), name, empty, offset }))
     }
 
-    /// What a prefix stands for at this place; the empty one for the default of elements.
-    pub fn namespace(&self, prefix: &str) -> Namespace {
-        let bound = self.bindings.iter().rfind(|binding| binding.prefix == prefix);
-        bound.map_or(Namespace::Other, |binding| binding.namespace)
-    }
-
-    /// The attributes of an element, those that bind prefixes among them.
-    pub fn attributes(
-        &self,
-        element: &Element<'a>,
-    ) -> impl Iterator<Item = Result<Attribute<'a>, Error>> + use<'a> {
-        let (part, text, offset) = (self.part, self.text, element.offset);
-        let mut attributes = Attributes::new(element.tag, element.name_length);
-        // Whether one stands twice is checked where it matters.
-        attributes.with_checks(false);
-        attributes.map(move |attribute| {
-            let attribute =
-                attribute.map_err(|error| error_at(part, text, offset, alloc::format!("{error}")))?;
+    fn read_attributes(&mut self, tag: &'a str, name_length: usize, offset: usize) -> Result<(), Error> {
+        self.attributes.clear();
+        let mut found = Attributes::new(tag, name_length);
+        // The reader's own check allocates memory that cannot be refused.
+        found.with_checks(false);
+        for attribute in found {
+            let attribute = attribute.map_err(|error| self.error(offset, alloc::format!("{error}")))?;
             let key = attribute.key.0;
             let (prefix, name) = key.split_once(':').unwrap_or(("", key));
             // A value is a piece of the tag.
             let Cow::Borrowed(value) = attribute.value else {
-                return Err(error_at(part, text, offset, "an attribute cannot be read"));
+                return Err(self.error(offset, "an attribute cannot be read"));
             };
-            Ok(Attribute { prefix, name, value, offset })
-        })
+            memory::push(&mut self.attributes, Attribute { prefix, name, value, offset })?;
+        }
+        Ok(())
+    }
+
+    /// Checks that no attribute stands twice in the element, be it by two prefixes of one namespace.
+    fn check_attributes(&self) -> Result<(), Error> {
+        let key = |attribute: &Attribute<'a>| match attribute.prefix {
+            "" => ("", attribute.name),
+            prefix => (self.binding(prefix).map_or(prefix, |binding| binding.uri), attribute.name),
+        };
+        let twice = if self.attributes.len() <= 8 {
+            let is_twice = |&(k, attribute): &(usize, &Attribute<'a>)| {
+                let mut before = self.attributes[..k].iter().filter(|other| other.name == attribute.name);
+                before.any(|other| key(other) == key(attribute))
+            };
+            self.attributes.iter().enumerate().find(is_twice).map(|(_, attribute)| *attribute)
+        } else {
+            let mut sorted = memory::with_capacity(self.attributes.len())?;
+            sorted.extend(self.attributes.iter().map(|attribute| (key(attribute), attribute)));
+            sorted.sort_unstable_by_key(|&(key, _)| key);
+            sorted.windows(2).find(|pair| pair[0].0 == pair[1].0).map(|pair| *pair[1].1)
+        };
+        match twice {
+            Some(attribute) => Err(self.attribute_error(&attribute, "stands there a second time")),
+            None => Ok(()),
+        }
+    }
+
+    /// What a prefix stands for at this place; the empty one for the default of elements.
+    pub fn namespace(&self, prefix: &str) -> Namespace {
+        self.binding(prefix).map_or(Namespace::Other, |binding| binding.namespace)
+    }
+
+    /// The address of the namespace that a prefix stands for at this place.
+    pub fn uri(&self, prefix: &str) -> Option<&'a str> {
+        self.binding(prefix).map(|binding| binding.uri)
+    }
+
+    fn binding(&self, prefix: &str) -> Option<&Binding<'a>> {
+        self.bindings.iter().rfind(|binding| binding.prefix == prefix)
+    }
+
+    /// The attributes of the element that was read last, those that bind prefixes among them. All of them are
+    /// different.
+    pub fn attributes(&self) -> &[Attribute<'a>] {
+        &self.attributes
     }
 
     /// An attribute's value as a finite number.

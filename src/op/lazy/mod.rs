@@ -134,13 +134,16 @@ impl<S: Solid> LazyOctree<S> {
         control: &Control<'_>,
     ) -> Result<LazyOctree<S>, Error> {
         let Some(fingerprint) = solid.fingerprint() else {
-            return Err(Error::Argument { name: "solid", problem: "has no fingerprint to know it by" });
+            return Err(Error::Argument {
+                name: "solid",
+                problem: "has no fingerprint to know it by; new begins without",
+            });
         };
         if octree.metadata().get(SOURCE) != Some(&fingerprint.to_string()) {
             return Err(Error::SourceMismatch);
         }
         if octree.frame().depth() > frame.depth() {
-            return Err(Error::Argument { name: "frame", problem: "must be as deep as the octree" });
+            return Err(Error::Argument { name: "frame", problem: "must be at least as deep as the octree" });
         }
         let mut stored = LazyOctree::new(*octree.view(), frame)?;
         let control = &Control { max_splits: None, ..*control };

@@ -3,6 +3,7 @@
 mod nodes;
 mod search;
 
+use super::StopReason;
 use super::proven::Proven;
 use crate::control::{Control, Job, WHOLE};
 use crate::error::Error;
@@ -11,32 +12,45 @@ use crate::octree::Proof;
 use crate::solid::Solid;
 use search::Search;
 
-/// What is known of the distance between two solids inside of the universe of a frame.
+/// What is known of the distance between two solids.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Clearance {
     /// The least distance between points of the two, in model units: 0 if they touch or overlap. The upper
     /// bound is infinite as long as one of them has no cell that is proven to be full, and the lower one too
-    /// if one of them is proven to be empty.
+    /// if one of them is proven to be empty. The lower bound is 0 if `clipped`.
     pub distance: Interval,
     /// Cells of the first and of the second solid with points that are no further apart than the upper bound.
     pub nearest: Option<[Cell; 2]>,
+    /// Why the search ended.
+    pub stop_reason: StopReason,
     /// Cells that were split, of the first solid and of the second.
     pub splits: [u64; 2],
     /// What of the first and of the second solid is proven: what is not counts as undecided.
     pub proofs: [Proof; 2],
-    /// Whether one of the solids may go on outside of the universe, of which nothing is said.
+    /// Whether one of the solids may go on outside of the universe, where it may come nearer to the other.
     pub clipped: bool,
 }
 
-/// The distance between `a` and `b`, each as it is in the universe of `frame`: a solid under a placement is
-/// moved first (see [`AnySolid::placed`](crate::AnySolid::placed)). The work ends when the interval is no
-/// wider than `tolerance` (model units), at the frame's depth, or once `control.max_splits` cells of both are
-/// split, with what is known by then; a cell whose children are looked at again, next to another one, counts
-/// once more, because that is where the work is.
+/// Steps that [`clearance`] takes if `control.max_splits` sets no other limit: some seconds, and some hundred
+/// megabytes at the most.
+pub const CLEARANCE_SPLITS: u64 = 1 << 20;
+
+/// The least distance between `a` and `b`; a solid under a placement is moved first (see
+/// [`AnySolid::placed`](crate::AnySolid::placed)). What is looked at is the universe of `frame`.
 ///
-/// About twice the diagonal of a finest cell is what can be had for any solids. The work grows with the area
-/// where the distance is about the least one, and with the distance, both measured in cells as large as the
-/// tolerance. Memory is linear in the splits and in what is compared. One thread.
+/// The search ends, and the result's `stop_reason` says why:
+/// - `Tolerance`: the interval is no wider than `tolerance` (model units).
+/// - `Exhausted`: the cells of the frame's depth cannot raise the lower bound, and the interval is no wider
+///   than twice their diagonal, which is what cells can tell of most solids; or no pair of cells is left.
+/// - `Budget`: `control.max_splits` steps were taken, or [`CLEARANCE_SPLITS`] if that is `None`. A step looks
+///   at the children of one cell. A cell whose children are looked at again, next to another cell, counts once
+///   more.
+///
+/// The upper bound is finite once the search has met a FULL cell of each solid. It looks for them first, with
+/// up to half of the budget. With nothing else left to do, it spends all of the budget on that.
+///
+/// The work grows with the area where the distance is about the least one, measured in cells as large as the
+/// tolerance. Memory is linear in the steps and in what is compared. One thread.
 ///
 /// # Errors
 /// [`Error::Argument`] if `tolerance` is negative or not a number; what the solids refuse;
@@ -61,8 +75,8 @@ pub fn clearance<A: Solid, B: Solid>(
     let job = Job::new(control);
     job.check()?;
     let (a, b) = (Proven(a.on(frame, control)?), Proven(b.on(frame, control)?));
-    let mut search = Search::new(&a, &b, control)?;
-    search.run(tolerance, control.max_splits.unwrap_or(u64::MAX), &job)?;
+    let budget = control.max_splits.unwrap_or(CLEARANCE_SPLITS);
+    let found = Search::new(&a, &b, tolerance, budget, control)?.run(&job)?;
     job.advance(WHOLE);
-    Ok(search.found())
+    Ok(found)
 }

@@ -1,8 +1,8 @@
 //! The cells of a solid that a search has met.
 
-use crate::control::Control;
+use crate::control::{Control, Job};
 use crate::error::Error;
-use crate::lattice::{Cell, Cube};
+use crate::lattice::{Cell, Cube, MAX_DEPTH};
 use crate::memory;
 use crate::op::gathered::Part;
 use crate::query::subject::Subject;
@@ -71,6 +71,45 @@ impl<'s, C: Classifier> Nodes<'s, C> {
 
     pub(super) fn cell(&self, node: usize) -> Cell {
         self.nodes[node].0
+    }
+
+    /// Whether no cell of the solid is left: it is proven to be empty, if all of them were looked at.
+    pub(super) fn is_empty(&self) -> bool {
+        self.nodes.is_empty()
+    }
+
+    /// The first FULL cell that turns up, for `budget` splits at the most; what was split does not cost any.
+    ///
+    /// The largest open cell and one of the smallest are split by turns: large FULL cells are found by going
+    /// through the coarse levels, which a thin wall has none on, and thin walls by going down, where a solid's
+    /// sharp edge would hold the search up.
+    pub(super) fn find_full(&mut self, budget: &mut u64, job: &Job<'_>) -> Result<Option<usize>, Error> {
+        let mut open: Vec<Vec<usize>> = memory::filled(MAX_DEPTH as usize + 1, Vec::new())?;
+        if !self.is_empty() {
+            memory::push(&mut open[0], 0)?;
+        }
+        for turn in 0u64.. {
+            job.check()?;
+            let mut levels = open.iter_mut().filter(|level| !level.is_empty());
+            let level = if turn % 2 == 0 { levels.next() } else { levels.next_back() };
+            let Some(node) = level.and_then(Vec::pop) else { break };
+            if self.is_full(node) {
+                return Ok(Some(node));
+            }
+            if matches!(self.nodes[node].1, Known::Whole(Verdict::Partial(_))) {
+                let Some(left) = budget.checked_sub(1) else { break };
+                *budget = left;
+            }
+            for child in self.children(node)? {
+                if self.is_full(child) {
+                    return Ok(Some(child));
+                }
+                if self.can_be_split(child) {
+                    memory::push(&mut open[self.cell(child).level as usize], child)?;
+                }
+            }
+        }
+        Ok(None)
     }
 
     /// The least and the greatest coordinates, in finest cells.

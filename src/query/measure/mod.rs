@@ -12,14 +12,14 @@ use crate::octree::{Proof, Tag};
 use crate::solid::{Classifier, Solid};
 use bounds::Known;
 
-/// Why a measurement ended.
+/// Why a search or a measurement ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum StopReason {
-    /// The volume is known as well as was asked for.
+    /// The result is known as well as was asked for.
     Tolerance,
-    /// `max_splits` cells were split.
+    /// `max_splits` is spent.
     Budget,
-    /// No cell is left that could be split: what is undecided has the size of the frame's finest cells, or
+    /// No cell is left whose split would help: what is undecided has the size of the frame's finest cells, or
     /// the solid itself knows no more about it, as a stored octree does of its PARTIAL cells.
     Exhausted,
 }

@@ -2,10 +2,11 @@
 
 use super::word::MOST;
 use super::{Join, Kind, Node};
-use crate::lattice::{Affine, Bounds, Frame};
+use crate::error::Error;
+use crate::lattice::{Affine, Bounds, Composed, Frame};
+use crate::memory;
 use crate::octree::Tag;
 use crate::solid::AnySolid;
-use alloc::sync::Arc;
 use alloc::vec::Vec;
 
 /// What a solid surely does not reach beyond, in model units.
@@ -52,66 +53,137 @@ impl Extent {
         }
     }
 
-    /// Of the solid under a placement, rounded outward.
-    pub(super) fn placed(self, placement: &Affine) -> Extent {
+    /// Of the solid under placements, rounded outward.
+    pub(super) fn under(self, map: &Composed) -> Extent {
         match self {
-            Extent::Box(bounds) => Extent::of(bounds.placed(placement)),
+            Extent::Box(bounds) => Extent::of(bounds.under(map)),
             other => other,
         }
     }
 }
 
-/// The placements that a node stands under, from the inside out.
-pub(super) struct Outward {
-    placement: Affine,
-    outer: Option<Arc<Outward>>,
-    /// How many there are, this one included.
-    count: u32,
-}
-
-/// Placements within each other through which boxes are followed.
-const MOST_FOLLOWED: u32 = 64;
-
 /// A box in unit coordinates, in which the universe is [0, 1]³.
 pub(super) type UnitBox = ([f64; 3], [f64; 3]);
 
-impl Outward {
-    pub(super) fn new(placement: &Affine, outer: Option<Arc<Outward>>) -> Arc<Outward> {
-        let count = outer.as_ref().map_or(0, |outer| outer.count) + 1;
-        // Of more of them nothing is known, and none is kept.
-        let outer = outer.filter(|_| count <= MOST_FOLLOWED);
-        Arc::new(Outward { placement: *placement, outer, count: count.min(MOST_FOLLOWED + 1) })
-    }
+/// The box around an extent under placements in unit coordinates, rounded outward; `None` if there is none.
+pub(super) fn into_universe(extent: Extent, outward: Option<&Composed>, frame: &Frame) -> Option<UnitBox> {
+    let extent = outward.map_or(extent, |map| extent.under(map));
+    let Extent::Box(Bounds { min, max }) = extent else { return None };
+    // A difference and a quotient, each rounded once.
+    let unit = |axis: usize, end: f64| {
+        let distance = end - frame.origin()[axis];
+        let error = 4.0 * f64::EPSILON * (end.abs() + frame.origin()[axis].abs()) / frame.edge();
+        (distance / frame.edge(), error + f64::MIN_POSITIVE)
+    };
+    let low = [0, 1, 2].map(|axis| {
+        let (at, error) = unit(axis, min[axis]);
+        at - error
+    });
+    let high = [0, 1, 2].map(|axis| {
+        let (at, error) = unit(axis, max[axis]);
+        at + error
+    });
+    low.iter().chain(&high).all(|c| c.is_finite()).then_some((low, high))
+}
 
-    /// The box around an extent in unit coordinates, rounded outward; `None` if there is none.
-    pub(super) fn into_universe(this: Option<&Outward>, extent: Extent, frame: &Frame) -> Option<UnitBox> {
-        if this.is_some_and(|outward| outward.count > MOST_FOLLOWED) {
-            return None;
+/// Nodes that are looked at for one placement: below more of them, boxes around boxes have to do.
+const MOST_FOLLOWED: usize = 512;
+
+/// Placements within each other that are followed. More of them are steps, scales and quarter turns, of which
+/// boxes lose nothing: other maps get too long to be exact (`MOST_BITS`).
+const MOST_NESTED: u32 = 128;
+
+/// The boxes around what a node stands for, and around its complement, under a placement, rounded outward.
+///
+/// A box around a turned box is larger than the solid needs, and in nested placements the excess multiplies.
+/// So the parts' boxes are taken under all placements at once, down to the parts that have no boxes in them.
+/// The box of the node as a whole under the placement holds, too; what both have in common is returned.
+///
+/// O(size of the expression), but bounded, so that nesting and sharing cost no more than a constant each.
+///
+/// # Errors
+/// [`Error::OutOfMemory`].
+pub(super) fn placed(root: &Node, placement: &Affine) -> Result<(Extent, Extent), Error> {
+    enum Task<'a> {
+        Look(&'a Node, Composed),
+        Join(Join, usize),
+        Swap,
+        Meet(&'a Node, Composed),
+    }
+    let own = |node: &Node, map: &Composed| (node.extent.under(map), node.opposite.under(map));
+    if root.placements > MOST_NESTED {
+        return Ok(own(root, &placement.into()));
+    }
+    let (mut tasks, mut boxes) = (Vec::new(), Vec::new());
+    let mut left = MOST_FOLLOWED;
+    memory::push(&mut tasks, Task::Look(root, placement.into()))?;
+    while let Some(task) = tasks.pop() {
+        match task {
+            Task::Look(node, map) => {
+                left = left.saturating_sub(1);
+                match &node.kind {
+                    Kind::Placed(part, inner) if left > 0 => {
+                        memory::push(&mut tasks, Task::Meet(node, map))?;
+                        memory::push(&mut tasks, Task::Look(part, map.after(inner)))?;
+                    }
+                    Kind::Complement(part) if left > 0 => {
+                        memory::push(&mut tasks, Task::Swap)?;
+                        memory::push(&mut tasks, Task::Look(part, map))?;
+                    }
+                    Kind::Join(join, parts)
+                        if parts.len() <= left && parts.iter().any(|part| part.has_box()) =>
+                    {
+                        let first = boxes.len();
+                        memory::push(&mut tasks, Task::Meet(node, map))?;
+                        memory::push(&mut tasks, Task::Join(*join, first))?;
+                        tasks.try_reserve(parts.len())?;
+                        tasks.extend(parts.iter().map(|part| Task::Look(part, map)));
+                    }
+                    _ => memory::push(&mut boxes, own(node, &map))?,
+                }
+            }
+            Task::Join(join, first) => {
+                let joined = join.boxes(boxes.drain(first..));
+                memory::push(&mut boxes, joined)?;
+            }
+            Task::Swap => {
+                if let Some((extent, opposite)) = boxes.last_mut() {
+                    core::mem::swap(extent, opposite);
+                }
+            }
+            Task::Meet(node, map) => {
+                let whole = own(node, &map);
+                if let Some((extent, opposite)) = boxes.last_mut() {
+                    (*extent, *opposite) = (extent.common(whole.0), opposite.common(whole.1));
+                }
+            }
         }
-        let (mut extent, mut next) = (extent, this);
-        while let (Extent::Box(_), Some(outward)) = (extent, next) {
-            (extent, next) = (extent.placed(&outward.placement), outward.outer.as_deref());
+    }
+    Ok(boxes.pop().unwrap_or((Extent::Unbounded, Extent::Unbounded)))
+}
+
+impl Join {
+    /// The boxes around what operands are joined to, and around its complement, from theirs.
+    pub(super) fn boxes(
+        self,
+        mut operands: impl ExactSizeIterator<Item = (Extent, Extent)>,
+    ) -> (Extent, Extent) {
+        let (none, all) = ((Extent::Nothing, Extent::Unbounded), (Extent::Unbounded, Extent::Nothing));
+        match self {
+            Join::Union => operands.fold(none, |a, b| (a.0.hull(b.0), a.1.common(b.1))),
+            Join::Intersection => operands.fold(all, |a, b| (a.0.common(b.0), a.1.hull(b.1))),
+            Join::Parity if operands.len() == 1 => operands.next().unwrap_or(none),
+            Join::Parity => (operands.fold(none, |a, b| (a.0.hull(b.0), a.1)).0, Extent::Unbounded),
         }
-        let Extent::Box(Bounds { min, max }) = extent else { return None };
-        // A difference and a quotient, each rounded once.
-        let unit = |axis: usize, end: f64| {
-            let distance = end - frame.origin()[axis];
-            let error = 4.0 * f64::EPSILON * (end.abs() + frame.origin()[axis].abs()) / frame.edge();
-            (distance / frame.edge(), error + f64::MIN_POSITIVE)
-        };
-        let low = [0, 1, 2].map(|axis| {
-            let (at, error) = unit(axis, min[axis]);
-            at - error
-        });
-        let high = [0, 1, 2].map(|axis| {
-            let (at, error) = unit(axis, max[axis]);
-            at + error
-        });
-        low.iter().chain(&high).all(|c| c.is_finite()).then_some((low, high))
     }
 }
 
 impl Node {
+    /// Whether a box is known, of it or of its complement.
+    fn has_box(&self) -> bool {
+        [self.extent, self.opposite].iter().any(|extent| *extent != Extent::Unbounded)
+    }
+
     /// What is known of the space around the universe, by what `of_solid` says of other solids; `None` if
     /// memory runs out.
     pub(super) fn exterior(&self, frame: &Frame, of_solid: impl Fn(&AnySolid) -> Option<Tag>) -> Option<Tag> {

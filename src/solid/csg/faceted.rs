@@ -41,7 +41,7 @@ impl Csg {
     /// polygon's corners are given in order, in either direction of rotation; the last is joined to the
     /// first. The planes through its edges are exact.
     ///
-    /// O(n log n) time for outlines whose edges are short and which do not spiral, O(n²) at worst.
+    /// O(n log² n) time for n corners.
     ///
     /// # Errors
     /// [`Error::Argument`] if the outline touches or crosses itself or encloses nothing, a coordinate is not

@@ -4,8 +4,9 @@
 //! along z, so that placements and set operations in the plane are those of space. The swept solids replace
 //! each of its half-planes and conics by what that sweeps; nothing is rounded.
 
+use super::fan::Fan;
 use super::halfspace::{HalfSpace, Surface};
-use super::map::{ExactMap, MOST_BITS};
+use super::map::{ExactMap, MOST_BITS, MOST_BITS_ARE};
 use super::primitive::slab;
 use super::quadric::substitute;
 use super::torus::Torus;
@@ -35,6 +36,8 @@ struct Rectangle {
     max: [Dyadic; 2],
 }
 
+const ONE_SIDE: &str = "must lie on one side of the axis, x ≥ 0 or x ≤ 0";
+
 /// Coefficients of a x² + b y² + c xy + d x + e y + f.
 type Conic = [Dyadic; 6];
 
@@ -62,6 +65,16 @@ impl Figure {
         let [min, max] = [-radius, radius].map(|x| [x; 2].map(Dyadic::new));
         let extent = Some(Rectangle { min, max });
         Figure { csg: disc.into(), extent, core: None }
+    }
+
+    /// The polygon of a radius between 2^-256 and 2^256, which takes the place of a disc.
+    ///
+    /// # Errors
+    /// [`Error::OutOfMemory`].
+    pub(crate) fn regular(radius: f64, fan: &Fan) -> Result<Figure, Error> {
+        let radius = Dyadic::new(radius);
+        let csg = fan.sweep([Dyadic::new(-1.0), Dyadic::zero(), radius.clone()])?;
+        Ok(Figure { csg, extent: Rectangle::around(fan, &radius), core: None })
     }
 
     /// The simple polygon with these corners, in either direction.
@@ -128,7 +141,7 @@ impl Figure {
         let core = self.core.as_ref().filter(|_| keeps_axes).map(|core| core.placed(rows));
         let extent = self.extent.as_ref().map(|extent| extent.placed(rows));
         if extent.as_ref().is_some_and(|extent| extent.bits() > MOST_BITS) {
-            return Err(Error::Limit { what: "bits of nested placements", limit: MOST_BITS });
+            return Err(Error::Limit { what: MOST_BITS_ARE, limit: MOST_BITS });
         }
         Ok(Figure { csg: self.csg.placed(&placement)?, extent, core })
     }
@@ -174,7 +187,7 @@ impl Figure {
         let Some(Rectangle { min, max }) = &self.extent else { return Ok(Csg::empty()) };
         let is_mirrored = self.is_mirrored();
         if !is_mirrored && min[0].sign() < 0 {
-            return refuse("figure", "must lie on one side of the axis, x ≥ 0 or x ≤ 0");
+            return refuse("figure", ONE_SIDE);
         }
         let solid = self.with_half_planes(|mut conic| {
             if is_mirrored {
@@ -185,6 +198,47 @@ impl Figure {
         let radius = up(if is_mirrored { -&min[0] } else { max[0].clone() });
         let [low, high] = [down(&min[1]), up(max[1].clone())];
         Ok(Csg::intersection_of([solid])?.within([-radius, -radius, low], [radius, radius, high]))
+    }
+
+    /// How far it is from the y axis at most; 0 for nothing.
+    pub(crate) fn reach(&self) -> f64 {
+        let Some(extent) = &self.extent else { return 0.0 };
+        (-down(&extent.min[0])).max(up(extent.max[0].clone())).max(0.0)
+    }
+
+    /// The solid that [`revolved`](Self::revolved) makes, with polygons for circles; a part of it, if the fan
+    /// is open. The fan begins where points with x > 0 begin.
+    ///
+    /// # Errors
+    /// As [`revolved`](Self::revolved), and if the figure has any curves.
+    pub(crate) fn turned(&self, fan: Fan) -> Result<Csg, Error> {
+        let Some(Rectangle { min, max }) = &self.extent else { return Ok(Csg::empty()) };
+        let is_mirrored = self.is_mirrored();
+        if !is_mirrored && min[0].sign() < 0 {
+            return refuse("figure", ONE_SIDE);
+        }
+        let fan = if is_mirrored { fan.opposite() } else { fan };
+        let solid = self.with_half_planes(|[xx, yy, xy, x, y, one]| {
+            if [&xx, &yy, &xy].iter().any(|c| !c.is_zero()) {
+                return refuse("figure", "has curves, and is to be turned as a polygon");
+            }
+            fan.sweep([if is_mirrored { -&x } else { x }, y, one])
+        })?;
+        let radius = if is_mirrored { -&min[0] } else { max[0].clone() };
+        let Some(around) = Rectangle::around(&fan, &radius) else { return Ok(Csg::empty()) };
+        let [[a, b], [c, d]] = [around.min.each_ref().map(down), around.max.map(up)];
+        let wedge = fan.wedge()?.unwrap_or_else(Csg::everything);
+        Ok(Csg::intersection_of([solid, wedge])?.within([a, b, down(&min[1])], [c, d, up(max[1].clone())]))
+    }
+
+    /// Whether a curve is part of it.
+    pub(crate) fn has_curves(&self) -> Result<bool, Error> {
+        let mut found = false;
+        self.with_half_planes(|[xx, yy, xy, ..]| {
+            found |= [&xx, &yy, &xy].iter().any(|c| !c.is_zero());
+            Ok(Csg::empty())
+        })?;
+        Ok(found)
     }
 
     /// The same expression with other operands: of each half-plane or conic its image.
@@ -269,7 +323,10 @@ fn taper([xx, yy, xy, x, y, one]: Conic, height: &Dyadic, scales: &[[Dyadic; 2];
         return Ok(HalfSpace::exactly(c).into());
     }
     if p != q {
-        return refuse("scale", "must be the same along x and y for figures with curves");
+        return refuse(
+            "scale",
+            "must be the same along x and y for figures with curves; drawn as polygons, they have none",
+        );
     }
     // (xx + yy + xy) h² + (x + y) h p + p² ≥ 0: a cone.
     let [xx, yy, xy] = [xx, yy, xy].map(|c| &(&c * height) * height);
@@ -345,6 +402,15 @@ fn up(value: Dyadic) -> f64 {
 }
 
 impl Rectangle {
+    /// The smallest rectangle around the origin and the corners of a fan, times a radius.
+    fn around(fan: &Fan, radius: &Dyadic) -> Option<Rectangle> {
+        let end = |axis: usize, pick: fn(f64, f64) -> f64| {
+            &Dyadic::new(fan.corners().iter().map(|corner| corner[axis]).fold(0.0, pick)) * radius
+        };
+        Rectangle { min: [0, 1].map(|axis| end(axis, f64::min)), max: [0, 1].map(|axis| end(axis, f64::max)) }
+            .proper()
+    }
+
     fn hull(&self, other: &Rectangle) -> Rectangle {
         Rectangle {
             min: [0, 1].map(|axis| (&self.min[axis]).min(&other.min[axis]).clone()),

@@ -8,6 +8,10 @@ use crate::lattice::{Affine, Frame};
 /// of each other.
 pub(super) const MOST_BITS: u64 = 1 << 14;
 
+/// What the limit is of.
+pub(super) const MOST_BITS_ARE: &str =
+    "bits for the exact numbers of nested placements (some hundred rotations within each other)";
+
 /// The map x ↦ (R x + r) / w, exactly: from the universe's unit coordinates into the space of a shape that
 /// stands under any number of placements.
 #[derive(Debug, Clone)]
@@ -75,7 +79,7 @@ impl ExactMap {
             far || entry.bits() > MOST_BITS
         };
         if map.rows.iter().flatten().chain([&map.w]).any(too_long) {
-            return Err(Error::Limit { what: "bits of nested placements", limit: MOST_BITS });
+            return Err(Error::Limit { what: MOST_BITS_ARE, limit: MOST_BITS });
         }
         Ok(map)
     }

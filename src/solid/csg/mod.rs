@@ -9,11 +9,14 @@ mod centres;
 mod extent;
 mod faceted;
 #[cfg(feature = "scene")]
+mod fan;
+#[cfg(feature = "scene")]
 mod figure;
 mod fingerprint;
 mod halfspace;
 mod hierarchy;
 mod host;
+mod hulls;
 mod kleene;
 mod linear;
 mod lone;
@@ -25,6 +28,8 @@ mod power;
 mod primitive;
 mod program;
 mod quadric;
+mod segment;
+mod simple;
 mod split;
 mod support;
 mod table;
@@ -32,6 +37,8 @@ mod torus;
 mod word;
 mod worker;
 
+#[cfg(feature = "scene")]
+pub(crate) use fan::{Fan, cos_degrees, sin_degrees};
 #[cfg(feature = "scene")]
 pub(crate) use figure::{Figure, wedge};
 pub use halfspace::HalfSpace;
@@ -92,6 +99,8 @@ struct Node {
     /// Whether other solids occur in it, and how many of them within each other.
     mixed: bool,
     nesting: u32,
+    /// How many placements stand within each other in it.
+    placements: u32,
     /// The frame of a stored octree in it, if there is one.
     home: Option<Arc<Frame>>,
     extent: Extent,
@@ -132,8 +141,14 @@ impl Csg {
                 parts.iter().find_map(|part| part.home.clone()),
             ),
         };
+        let placements = match &kind {
+            Kind::HalfSpace(_) | Kind::Solid(_) => 0,
+            Kind::Complement(part) => part.placements,
+            Kind::Placed(part, _) => part.placements.saturating_add(1),
+            Kind::Join(_, parts) => parts.iter().map(|part| part.placements).max().unwrap_or(0),
+        };
         let evaluations = AtomicU64::new(0);
-        let node = Node { kind, size, mixed, nesting, home, extent, opposite, evaluations };
+        let node = Node { kind, size, mixed, nesting, placements, home, extent, opposite, evaluations };
         Csg { root: Arc::new(node), touch: Touch::Exact }
     }
 
@@ -142,16 +157,7 @@ impl Csg {
         for part in parts {
             memory::push(&mut nodes, part.root)?;
         }
-        let (none, all) = ((Extent::Nothing, Extent::Unbounded), (Extent::Unbounded, Extent::Nothing));
-        let boxes = nodes.iter().map(|node| (node.extent, node.opposite));
-        let (extent, opposite) = match join {
-            Join::Union => boxes.fold(none, |a, b| (a.0.hull(b.0), a.1.common(b.1))),
-            Join::Intersection => boxes.fold(all, |a, b| (a.0.common(b.0), a.1.hull(b.1))),
-            Join::Parity => match &nodes[..] {
-                [one] => (one.extent, one.opposite),
-                _ => (boxes.fold(none, |a, b| (a.0.hull(b.0), a.1)).0, Extent::Unbounded),
-            },
-        };
+        let (extent, opposite) = join.boxes(nodes.iter().map(|node| (node.extent, node.opposite)));
         Ok(Csg::new(Kind::Join(join, nodes), extent, opposite))
     }
 
@@ -232,7 +238,7 @@ impl Csg {
             return Ok(Csg { root: self.root.clone(), touch: Touch::Exact });
         }
         if !self.root.mixed {
-            return Ok(Csg { root: Node::placed(&self.root, placement), touch: Touch::Exact });
+            return Ok(Csg { root: Node::placed(&self.root, placement)?, touch: Touch::Exact });
         }
         // What was moved, by where it stands: a part that occurs twice is moved once.
         let mut moved: HashMap<*const Node, Arc<Node>> = HashMap::new();
@@ -259,7 +265,7 @@ impl Csg {
                 Kind::Solid(solid) => Csg::solid(solid.placed(placement)?).root,
                 Kind::Join(join, parts) if node.mixed => Csg::join(*join, parts.iter().map(part))?.root,
                 Kind::Complement(inner) if node.mixed => part(inner).complement().root,
-                _ => Node::placed(node, placement),
+                _ => Node::placed(node, placement)?,
             };
             moved.try_reserve(1)?;
             moved.insert(Arc::as_ptr(node), result);
@@ -317,6 +323,12 @@ impl Csg {
         }
     }
 
+    /// Whether the solid is empty by the bounds of its parts.
+    #[cfg(feature = "scene")]
+    pub(crate) fn is_known_empty(&self) -> bool {
+        self.root.extent == Extent::Nothing
+    }
+
     /// The same solid, which is known to lie in a box.
     pub(crate) fn within(mut self, min: [f64; 3], max: [f64; 3]) -> Csg {
         if let Some(node) = Arc::get_mut(&mut self.root) {
@@ -328,9 +340,9 @@ impl Csg {
 
 impl Node {
     /// A node of half-spaces under a placement.
-    fn placed(node: &Arc<Node>, placement: &Affine) -> Arc<Node> {
-        let (extent, opposite) = (node.extent.placed(placement), node.opposite.placed(placement));
-        Csg::new(Kind::Placed(node.clone(), *placement), extent, opposite).root
+    fn placed(node: &Arc<Node>, placement: &Affine) -> Result<Arc<Node>, Error> {
+        let (extent, opposite) = extent::placed(node, placement)?;
+        Ok(Csg::new(Kind::Placed(node.clone(), *placement), extent, opposite).root)
     }
 }
 

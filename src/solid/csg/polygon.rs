@@ -12,13 +12,15 @@
 //! cut at its first and last corner in lexicographic order, into chains of edges whose end edges go on for
 //! ever. A chain may be cut at any corner on its convex hull. At a corner that turns to the left, the chain's
 //! side is the intersection of the sides of both parts; at one that turns to the right, it is their union.
-//! Their algorithm finds all cuts in O(n log n) with a structure for hulls of paths; here each cut looks at
-//! every corner of its chain. All decisions are signs of exact arithmetic.
+//! Their algorithm finds all cuts in O(n log n) with a structure for hulls of paths; here each cut takes
+//! O(log² n), with a tree of hulls. All decisions are signs of exact arithmetic.
 
 use alloc::vec::Vec;
 
+use super::hulls::Hulls;
+use super::segment::{before, turn};
+use super::simple;
 use crate::error::Error;
-use crate::lattice::exact::{sign, sign_of_products, two_diff};
 use crate::lattice::valid;
 use crate::memory;
 
@@ -37,7 +39,7 @@ pub(crate) enum Term {
 /// is joined to the first. Corners that repeat the one before, and those straight between their neighbours,
 /// are left out, so that there may be fewer edges than points; every other edge occurs once.
 ///
-/// O(n log n) time for outlines whose edges are short and which do not spiral, O(n²) at worst.
+/// O(n log² n) time, O(n log n) memory.
 ///
 /// # Errors
 /// [`Error::Argument`] if a coordinate is not zero and not of a magnitude between 2^-256 and 2^256, or if the
@@ -63,20 +65,6 @@ fn refuse<T>(problem: &'static str) -> Result<T, Error> {
     Err(Error::Argument { name: "polygon", problem })
 }
 
-/// The exact sign of (b − a) × (d − c): 1 if the second direction is to the left of the first.
-fn turn([a, b]: [[f64; 2]; 2], [c, d]: [[f64; 2]; 2]) -> i32 {
-    let left = (b[0] - a[0]) * (d[1] - c[1]);
-    let right = (b[1] - a[1]) * (d[0] - c[0]);
-    let cross = left - right;
-    // Five roundings, each of at most 2^-53 of the magnitude; the bound has room for its own.
-    if cross.abs() > 4.0 * f64::EPSILON * (left.abs() + right.abs()) {
-        return sign(cross);
-    }
-    let ((x, p), (y, q)) = (two_diff(b[0], a[0]), two_diff(d[1], c[1]));
-    let ((u, r), (v, s)) = (two_diff(a[1], b[1]), two_diff(d[0], c[0]));
-    sign_of_products(&[(x, y), (x, q), (p, y), (p, q), (u, v), (u, s), (r, v), (r, s)])
-}
-
 /// The corners of a closed polygon in order.
 struct Outline<'a> {
     points: &'a [[f64; 2]],
@@ -98,8 +86,7 @@ impl Outline<'_> {
         turn(self.edge(i - 1), self.edge(i))
     }
 
-    /// Refuses outlines that touch or cross themselves: a sweep along the axis on which the edges are
-    /// shorter.
+    /// Refuses outlines that touch or cross themselves.
     fn check(&self) -> Result<(), Error> {
         let n = self.corners.len();
         if n < 3 {
@@ -112,30 +99,8 @@ impl Outline<'_> {
                 return refuse("the outline goes back along one of its edges");
             }
         }
-        let extent =
-            |axis: usize| -> f64 { (0..n).map(|i| (self.at(i)[axis] - self.at(i + 1)[axis]).abs()).sum() };
-        let axis = usize::from(extent(1) < extent(0));
-        let span = |i: usize, axis: usize| {
-            let [a, b] = self.edge(i).map(|point| point[axis]);
-            [a.min(b), a.max(b)]
-        };
-        let mut order = memory::with_capacity(n)?;
-        order.extend(0..n);
-        order.sort_unstable_by(|&i, &j| span(i, axis)[0].total_cmp(&span(j, axis)[0]));
-        let mut open: Vec<usize> = memory::with_capacity(n)?;
-        for i in order {
-            let ([low, _], [floor, ceiling]) = (span(i, axis), span(i, 1 - axis));
-            open.retain(|&j| span(j, axis)[1] >= low);
-            for &j in &open {
-                let [bottom, top] = span(j, 1 - axis);
-                let adjacent = (i + 1) % n == j || (j + 1) % n == i;
-                if !adjacent && bottom <= ceiling && floor <= top && meet(self.edge(i), self.edge(j)) {
-                    return refuse("the outline touches or crosses itself");
-                }
-            }
-            open.push(i);
-        }
-        Ok(())
+        let corners = memory::collected(self.corners.iter().map(|&corner| self.points[corner]))?;
+        if simple::is_simple(&corners)? { Ok(()) } else { refuse("the outline touches or crosses itself") }
     }
 
     /// Makes the outline counter-clockwise, starting at the corner with the smallest coordinates, without
@@ -181,6 +146,7 @@ impl Outline<'_> {
         let mut terms = memory::with_capacity(2 * n)?;
         let mut counts = memory::with_capacity(n + 1)?;
         let mut tasks = memory::with_capacity(2 * n + 2)?;
+        let hulls = Hulls::new(n, |i| self.at(i))?;
         let whole = Operator::All;
         counts.push(0);
         tasks.push(Task::Close(whole));
@@ -193,7 +159,7 @@ impl Outline<'_> {
                     increment(&mut counts);
                 }
                 Task::Chain { from, to, parent } => {
-                    let cut = self.cut(from, to);
+                    let cut = self.cut(&hulls, from, to);
                     let operator = if self.turn_at(cut) > 0 { Operator::All } else { Operator::Any };
                     if operator != parent {
                         counts.push(0);
@@ -220,7 +186,7 @@ impl Outline<'_> {
     ///
     /// It is the farthest in a direction in which neither ray goes on: across the chord of the chain, which
     /// cuts an arc in halves, or else across the first edge.
-    fn cut(&self, from: usize, to: usize) -> usize {
+    fn cut(&self, hulls: &Hulls, from: usize, to: usize) -> usize {
         let (first, last) = (self.edge(from), self.edge(to - 1));
         let mut base = [self.at(from), self.at(to)];
         let (rise, fall) = (turn(base, first), turn(base, last));
@@ -232,13 +198,7 @@ impl Outline<'_> {
         if side < 0 {
             base.reverse();
         }
-        let mut best = from + 1;
-        for i in from + 2..to {
-            if turn(base, [self.at(best), self.at(i)]) > 0 {
-                best = i;
-            }
-        }
-        best
+        hulls.farthest(base, from + 1, to, |i| self.at(i))
     }
 }
 
@@ -254,19 +214,9 @@ fn increment(counts: &mut [usize]) {
     }
 }
 
-/// Lexicographic order.
-fn before(a: [f64; 2], b: [f64; 2]) -> bool {
-    a[0] < b[0] || a[0] == b[0] && a[1] < b[1]
-}
-
-/// Whether two edges whose boxes meet have a point in common.
-fn meet([a, b]: [[f64; 2]; 2], [c, d]: [[f64; 2]; 2]) -> bool {
-    let sides = |[a, b]: [[f64; 2]; 2], p: [f64; 2], q: [f64; 2]| turn([a, b], [a, p]) * turn([a, b], [a, q]);
-    sides([a, b], c, d) <= 0 && sides([c, d], a, b) <= 0
-}
-
 #[cfg(test)]
 mod tests {
+    use super::super::segment::meet;
     use super::*;
 
     /// Kleene evaluation with the sides of the edges: 1, −1 or 0.
@@ -400,6 +350,33 @@ mod tests {
         assert_eq!(monotone_formula(&disc).unwrap().last(), Some(&Term::All(n)));
     }
 
+    /// Outlines of which each cut takes off one corner, and of which a sweep line meets every edge.
+    #[test]
+    #[cfg(feature = "std")]
+    fn outlines_that_spiral_and_combs_take_little_time() {
+        let n = 20_000;
+        let arm = |i: usize, radius: f64| {
+            let angle = 40.0 * core::f64::consts::PI * i as f64 / n as f64;
+            let (sin, cos) = libm::sincos(angle);
+            [(radius + angle) * cos, (radius + angle) * sin]
+        };
+        let spiral: Vec<_> = (0..n).map(|i| arm(i, 1.0)).chain((0..n).rev().map(|i| arm(i, 2.5))).collect();
+        let tooth = |i: usize| {
+            let x = 2.0 * i as f64;
+            [[x, 0.0], [x, 10.0], [x + 1.0, 10.0], [x + 1.0, 0.0]]
+        };
+        let comb: Vec<_> = (0..n / 4).flat_map(tooth).chain([[n as f64, -1.0], [0.0, -1.0]]).collect();
+        for outline in [spiral, comb] {
+            let start = std::time::Instant::now();
+            let terms = monotone_formula(&outline).unwrap();
+            assert!(start.elapsed().as_secs_f64() < 2.0, "{:?}", start.elapsed());
+            for p in [[0.5, 5.0], [1.5, 5.0], [3.5, 0.2], [80.3, 9.0], [-60.0, 60.0], [0.0, -40.5]] {
+                let side = |[a, b]: [usize; 2]| turn([outline[a], outline[b]], [outline[a], p]);
+                assert_eq!(value(&terms, side), truth(&outline, p), "{p:?}");
+            }
+        }
+    }
+
     #[test]
     fn refusals() {
         for points in [
@@ -417,14 +394,5 @@ mod tests {
             let result = monotone_formula(points);
             assert!(matches!(result, Err(Error::Argument { name: "polygon", .. })), "{points:?}: {result:?}");
         }
-    }
-
-    #[test]
-    fn turns_are_exact() {
-        let e = f64::EPSILON;
-        assert_eq!(turn([[0.0; 2], [1.0, 1.0]], [[0.5, 0.5], [1.5, 1.5 + 2.0 * e]]), 1);
-        assert_eq!(turn([[0.0; 2], [1.0, 1.0]], [[0.1, 0.1], [0.7, 0.7]]), 0);
-        assert_eq!(turn([[0.1, 0.1], [0.3, 0.3]], [[1e30, 1e30], [1e31, 1e31]]), 0);
-        assert_eq!(turn([[0.1, 0.1], [0.3, 0.3]], [[1e30, 1e30], [1e31, 1e31_f64.next_down()]]), -1);
     }
 }

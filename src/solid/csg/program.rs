@@ -1,7 +1,7 @@
 //! An expression on a universe: placements applied, complements pushed down to the half-spaces, and the whole
 //! written as words in postfix order, so that a cell's share of it is an array of words again.
 
-use super::extent::{Extent, Outward};
+use super::extent::{Extent, into_universe};
 use super::halfspace::{HalfSpace, Placed};
 use super::hierarchy::{Groups, Operand};
 use super::map::ExactMap;
@@ -9,7 +9,7 @@ use super::word::{MOST, Op, Word};
 use super::{Csg, Join, Kind, Node, Touch};
 use crate::control::Control;
 use crate::error::Error;
-use crate::lattice::Frame;
+use crate::lattice::{Composed, Frame};
 use crate::memory;
 use crate::octree::{Proof, Tag};
 use crate::solid::{AnyClassifier, AnySolid, Classifier, Solid};
@@ -51,12 +51,12 @@ enum Task<'a> {
     },
 }
 
-/// The space that a node is given in, by its map from the universe, and the way of a box back into the
-/// universe.
+/// The space that a node is given in: the exact map into it from the universe, and the map back to model space
+/// for boxes, if that is not the identity.
 #[derive(Clone)]
 struct Space {
     map: Arc<ExactMap>,
-    outward: Option<Arc<Outward>>,
+    outward: Option<Arc<Composed>>,
 }
 
 /// An expression while it is written.
@@ -138,7 +138,11 @@ impl Writer<'_> {
                                 Some(inner) => inner.clone(),
                                 None => {
                                     let map = Arc::new(space.map.of_placed(placement)?);
-                                    let outward = Some(Outward::new(placement, space.outward));
+                                    let outward = match &space.outward {
+                                        Some(outward) => outward.after(placement),
+                                        None => placement.into(),
+                                    };
+                                    let outward = Some(Arc::new(outward));
                                     let inner = Space { map, outward };
                                     if shared {
                                         self.spaces.try_reserve(1)?;
@@ -217,8 +221,7 @@ impl Writer<'_> {
 
     /// Notes that the next words are those of an operand.
     fn begin(&mut self, node: &Node, complement: bool, space: &Space) -> Result<(), Error> {
-        let unit =
-            |extent: Extent| Outward::into_universe(space.outward.as_deref(), extent, &self.program.frame);
+        let unit = |extent: Extent| into_universe(extent, space.outward.as_deref(), &self.program.frame);
         let (extent, opposite) =
             if complement { (node.opposite, node.extent) } else { (node.extent, node.opposite) };
         let start = self.program.words.len();

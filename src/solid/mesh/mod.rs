@@ -12,7 +12,7 @@
 //!
 //! From the bottom up, each file uses only files named before it: `placed` (vertices on the lattice),
 //! `crossing` (where lines of centres pierce triangles), `overlap` (which cells a triangle cuts), `winding`
-//! (the caps' winding number), `scan` (blocks of 64³ cells), `on_frame` (a mesh on a frame, and what is known
+//! (the caps' winding number), `reach` (how far an open surface's solid may reach), `scan` (blocks of 64³ cells), `on_frame` (a mesh on a frame, and what is known
 //! of a cell), `open` (cells of an open surface), `split` (the solid, its classifier and its workers).
 
 mod crossing;
@@ -20,6 +20,7 @@ mod on_frame;
 mod open;
 mod overlap;
 mod placed;
+mod reach;
 mod scan;
 mod split;
 mod winding;

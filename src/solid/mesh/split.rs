@@ -5,6 +5,7 @@ use super::on_frame::{Branch, MeshPart, OnFrame};
 use super::open::Surroundings;
 use super::overlap::Overlap;
 use super::placed::{Corners, Placed, bounds, ranks};
+use super::reach;
 use super::scan::{Scan, Task};
 use super::winding::Caps;
 use crate::control::Control;
@@ -37,8 +38,14 @@ use once_cell::race::OnceBox;
 pub struct MeshSolid {
     mesh: Arc<TriangleMesh>,
     fill: FillRule,
-    /// The loops of the mesh's boundary.
-    loops: Arc<Loops>,
+    boundary: Arc<Boundary>,
+}
+
+/// The boundary of a mesh.
+struct Boundary {
+    loops: Loops,
+    /// How far the solid may reach beyond the mesh's box, once somebody has asked.
+    reach: OnceBox<[[f64; 3]; 2]>,
 }
 
 /// A mesh on a frame: the handle.
@@ -74,7 +81,7 @@ impl MeshSolid {
             }
             FillRule::NonZero | FillRule::Positive => mesh.loops()?,
         };
-        Ok(MeshSolid { mesh, fill, loops: Arc::new(loops) })
+        Ok(MeshSolid { mesh, fill, boundary: Arc::new(Boundary { loops, reach: OnceBox::new() }) })
     }
 
     /// The mesh.
@@ -144,7 +151,7 @@ impl Solid for MeshSolid {
     /// universe is clipped by it, which the exterior tells.
     fn on(&self, frame: &Frame, control: &Control<'_>) -> Result<MeshClassifier, Error> {
         let mut placed = Placed::new(self.mesh.clone(), frame)?;
-        let caps = Caps::close(&mut placed, &self.loops)?;
+        let caps = Caps::close(&mut placed, &self.boundary.loops)?;
         let mut roots = Vec::new();
         let count = placed.count();
         roots.try_reserve_exact(count as usize)?;
@@ -184,11 +191,31 @@ impl Solid for MeshSolid {
         })))
     }
 
+    /// For a closed mesh, the box around it. An open one may enclose points beyond, and the box is larger by as
+    /// much; O(n) in the edges of the boundary, once.
     fn bounds(&self) -> Option<Bounds> {
         let (min, max) = self.mesh.bounds();
-        // What an open surface encloses may reach beyond it.
-        let bounds = Bounds::new(min, max).filter(|_| self.loops.caps() == 0)?;
-        Some(bounds.grown(self.mesh.displacement()))
+        let displacement = self.mesh.displacement();
+        let bounds = Bounds::new(min, max)?.grown(displacement);
+        let Boundary { loops, reach } = &*self.boundary;
+        if loops.caps() == 0 {
+            return Some(bounds);
+        }
+        let find = || reach::reach(&self.mesh, loops, displacement).map(Box::new);
+        // (Without memory to find out, nothing is known.)
+        let [below, above] = reach.get_or_try_init(find).ok()?;
+        Bounds::new(
+            [0, 1, 2].map(|axis| {
+                if below[axis] == 0.0 {
+                    bounds.min[axis]
+                } else {
+                    (bounds.min[axis] - below[axis]).next_down()
+                }
+            }),
+            [0, 1, 2].map(|axis| {
+                if above[axis] == 0.0 { bounds.max[axis] } else { (bounds.max[axis] + above[axis]).next_up() }
+            }),
+        )
     }
 
     fn placed(&self, placement: &Affine) -> Result<Option<MeshSolid>, Error> {

@@ -644,7 +644,7 @@ fn length(v: DVec3) -> f64 {
 
 /// The triangles of a polygon with `corners` corners, by halves; `found` gets the corners of each,
 /// descending, and which edges are the polygon's.
-fn halve(corners: usize, found: &mut impl FnMut([usize; 3], u8)) {
+pub(super) fn halve(corners: usize, found: &mut impl FnMut([usize; 3], u8)) {
     fn part(first: usize, last: usize, closing: bool, found: &mut impl FnMut([usize; 3], u8)) {
         if last - first < 2 {
             return;

@@ -1,0 +1,70 @@
+//! Departures from a format that do not keep a mesh file from being read.
+
+use core::fmt;
+
+/// Where a mesh file departs from its format, and how it was read all the same.
+///
+/// A file has at most one warning of each kind.
+#[non_exhaustive]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum MeshWarning {
+    /// An ASCII PLY has more values on the line of every element of one kind than the header announces. The
+    /// first values of each line were taken, and the others skipped.
+    MoreValues {
+        /// The first such line, counted from 1.
+        line: u64,
+        /// How many lines there are.
+        lines: u64,
+    },
+    /// The header of a PLY has lines without a keyword before its first element. They were taken for comments.
+    HeaderLine {
+        /// The first such line, counted from 1.
+        line: u64,
+        /// How many lines there are.
+        lines: u64,
+    },
+    /// The header of a PLY has an element of faces without a list of vertices. It announces no face, so
+    /// nothing is missing.
+    NoIndices {
+        /// The line of the element, counted from 1.
+        line: u64,
+    },
+    /// A model part of a 3MF is of the draft 0.93. What it says of shapes has the same meaning in 1.0.
+    Draft,
+}
+
+impl fmt::Display for MeshWarning {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let also = |lines: u64| Also(lines.saturating_sub(1));
+        match *self {
+            Self::MoreValues { line, lines } => write!(
+                f,
+                "line {line}{} has more values than the header announces; the last ones were skipped",
+                also(lines)
+            ),
+            Self::HeaderLine { line, lines } => {
+                write!(
+                    f,
+                    "line {line}{} of the header has no keyword and was taken for a comment",
+                    also(lines)
+                )
+            }
+            Self::NoIndices { line } => {
+                write!(f, "line {line}: faces without a list of vertices; there are 0 of them")
+            }
+            Self::Draft => f.write_str("this is 3MF of the draft 0.93; it was read as 1.0"),
+        }
+    }
+}
+
+/// How many more lines are meant.
+struct Also(u64);
+
+impl fmt::Display for Also {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.0 {
+            0 => Ok(()),
+            more => write!(f, " (like {more} more)"),
+        }
+    }
+}

@@ -1,0 +1,512 @@
+//! Which bodies of a mesh overlap, or lie within others with the same sense.
+//!
+//! There the surface winds around points more than once, and the volume that a fill rule encloses is not the
+//! sum of the bodies' signed volumes.
+//!
+//! **Pairs.** Only bodies whose boxes meet are looked at. All decisions are exact signs. If an edge of one
+//! body goes through a triangle of the other, from one side to the other and between its edges, then the two
+//! cross. Otherwise the surfaces are apart or only touch. Touching is decided by moving one body by an
+//! infinitesimal distance, in one of eight general directions, in which no sign is zero: if the surfaces do not
+//! cross after one of these moves, then the winding number of each body around the other one is well defined,
+//! and tells whether it lies inside. (Volumes are continuous in the move.) What crosses after every move is not
+//! decided by this: a peg that fits its hole exactly, but also two blocks with sides in common planes. Points
+//! close to where they touch then prove that two overlap; without such points the pair stays undecided.
+//!
+//! **Nesting.** The winding numbers of all bodies around a body add up. It is nested with the same sense if
+//! the sum has the sign of its own volume: a cavity in a body is not, and a body in a cavity is not either.
+
+use alloc::vec::Vec;
+
+use super::positions::normalised;
+use super::surface::{Overlaps, TriangleMesh};
+use crate::error::Error;
+use crate::lattice::exact::{Expansion, sign};
+use crate::memory;
+use core::array::from_fn as array;
+
+type Point = [f64; 3];
+
+/// Looks at the bodies whose `senses` are not zero: the signs of their volumes. They must be closed. If there
+/// are `walls` of two triangles that cancel each other, to go through one is no crossing.
+///
+/// O(t + b log b) for t triangles and b bodies with few boxes that meet. Work is limited to 2^24 steps and 128
+/// a triangle; pairs that are left then are undecided.
+pub(super) fn overlaps(
+    mesh: &TriangleMesh,
+    of_triangles: &[u32],
+    senses: &[i32],
+    walls: bool,
+) -> Result<Overlaps, Error> {
+    if senses.iter().filter(|&&sense| sense != 0).count() < 2 {
+        return Ok(Overlaps::default());
+    }
+    let mut all = Search {
+        vertices: mesh.vertices(),
+        triangles: mesh.triangles(),
+        walls,
+        steps: (1 << 24) + 128 * mesh.triangles().len() as u64,
+    };
+    let mut bodies = Body::all(mesh, of_triangles, senses)?;
+    // By where their boxes begin along x.
+    bodies.sort_unstable_by(|a, b| a.bounds.low[0].total_cmp(&b.bounds.low[0]));
+    // Bodies with those around them that wind in their sense; and pairs of bodies that touch.
+    let (mut nested, mut touching) = (Vec::new(), Vec::new());
+    // Those that begin before the current one and may reach it.
+    let mut open: Vec<usize> = Vec::new();
+    for current in 0..bodies.len() {
+        let start = bodies[current].bounds.low[0];
+        open.retain(|&other| bodies[other].bounds.high[0] > start);
+        if !all.take(open.len()) {
+            bodies.iter_mut().for_each(|body| body.undecided = true);
+            break;
+        }
+        for &other in &open {
+            let (before, from) = bodies.split_at_mut(current);
+            let (a, b) = (&mut before[other], &mut from[0]);
+            if !a.bounds.overlaps(&b.bounds) {
+                continue;
+            }
+            let mut touches = Touches::NONE;
+            match all.compare(a, b, &mut touches) {
+                Relation::Crossing => (a.overlaps, b.overlaps) = (true, true),
+                Relation::Around([of_a, of_b]) => {
+                    (b.around, a.around) = (b.around + of_a, a.around + of_b);
+                    if of_a * b.sense > 0 {
+                        memory::push(&mut nested, (current, other))?;
+                    }
+                    if of_b * a.sense > 0 {
+                        memory::push(&mut nested, (other, current))?;
+                    }
+                }
+                Relation::Undecided => memory::push(&mut touching, (other, current, touches))?,
+            }
+        }
+        memory::push(&mut open, current)?;
+    }
+    for (a, b, touches) in touching {
+        let both = all.overlap_near(&bodies, [a, b], &touches);
+        for k in [a, b] {
+            let body = &mut bodies[k];
+            *(if both { &mut body.overlaps } else { &mut body.undecided }) = true;
+        }
+    }
+    for (inner, outer) in nested {
+        let Body { around, sense, undecided, .. } = bodies[inner];
+        if !undecided && around * sense > 0 {
+            (bodies[inner].overlaps, bodies[outer].overlaps) = (true, true);
+        }
+    }
+    let count = |test: fn(&Body) -> bool| bodies.iter().filter(|body| test(body)).count() as u64;
+    Ok(Overlaps {
+        overlapping: count(|body| body.overlaps),
+        undecided: count(|body| body.undecided && !body.overlaps),
+    })
+}
+
+/// A body and what is known of it.
+struct Body {
+    triangles: Vec<u32>,
+    bounds: Bounds,
+    sense: i32,
+    /// The winding numbers of other bodies around this one.
+    around: i32,
+    overlaps: bool,
+    undecided: bool,
+}
+
+impl Body {
+    fn all(mesh: &TriangleMesh, of_triangles: &[u32], senses: &[i32]) -> Result<Vec<Body>, Error> {
+        let mut counts: Vec<usize> = memory::filled(senses.len(), 0)?;
+        of_triangles.iter().for_each(|&body| counts[body as usize] += 1);
+        let mut bodies = memory::with_capacity(senses.len())?;
+        for (&sense, &count) in senses.iter().zip(&counts) {
+            let triangles = memory::with_capacity(if sense == 0 { 0 } else { count })?;
+            let bounds = Bounds::NONE;
+            bodies.push(Body { triangles, bounds, sense, around: 0, overlaps: false, undecided: false });
+        }
+        for (triangle, &body) in (0..).zip(of_triangles) {
+            let body = &mut bodies[body as usize];
+            if body.sense != 0 {
+                body.triangles.push(triangle);
+                let corners = mesh.triangles()[triangle as usize];
+                corners.iter().for_each(|&v| body.bounds.include(&mesh.vertices()[v as usize]));
+            }
+        }
+        bodies.retain(|body| body.sense != 0);
+        Ok(bodies)
+    }
+}
+
+#[derive(Clone, Copy)]
+struct Bounds {
+    low: Point,
+    high: Point,
+}
+
+impl Bounds {
+    const NONE: Bounds = Bounds { low: [f64::INFINITY; 3], high: [f64::NEG_INFINITY; 3] };
+
+    fn of(points: &[Point]) -> Bounds {
+        let mut bounds = Bounds::NONE;
+        points.iter().for_each(|p| bounds.include(p));
+        bounds
+    }
+
+    fn include(&mut self, p: &Point) {
+        for axis in 0..3 {
+            self.low[axis] = self.low[axis].min(p[axis]);
+            self.high[axis] = self.high[axis].max(p[axis]);
+        }
+    }
+
+    /// Whether the insides meet.
+    fn overlaps(&self, other: &Bounds) -> bool {
+        (0..3).all(|axis| self.low[axis] < other.high[axis] && other.low[axis] < self.high[axis])
+    }
+
+    /// Whether the closed boxes meet.
+    fn touches(&self, other: &Bounds) -> bool {
+        (0..3).all(|axis| self.low[axis] <= other.high[axis] && other.low[axis] <= self.high[axis])
+    }
+}
+
+/// A general direction: (s₀ε, s₁ε², s₂ε³) for all sufficiently small ε > 0, with signs s.
+#[derive(Clone, Copy)]
+struct Shift([i32; 3]);
+
+impl Shift {
+    const COUNT: usize = 8;
+
+    fn new(index: usize) -> Shift {
+        Shift([0, 1, 2].map(|axis| if index >> axis & 1 == 0 { 1 } else { -1 }))
+    }
+
+    fn back(self) -> Shift {
+        Shift(self.0.map(|s| -s))
+    }
+
+    /// The sign of `value` and, if it is zero, that of the first coefficient that is not.
+    fn sign(self, value: i32, coefficient: impl Fn(usize) -> i32) -> i32 {
+        let moved = || (0..3).map(|axis| self.0[axis] * coefficient(axis)).find(|&s| s != 0);
+        if value != 0 { value } else { moved().unwrap_or(0) }
+    }
+}
+
+/// What a pair of bodies has to do with each other.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Relation {
+    /// The surfaces cross.
+    Crossing,
+    /// They do not. The winding numbers of each around the other one.
+    Around([i32; 2]),
+    /// Neither was found.
+    Undecided,
+}
+
+/// Where triangles of two bodies touch, so that they would cross after a move of the second.
+#[derive(Debug, Clone, Copy)]
+struct Touches {
+    /// A bit for each move.
+    crossing: u8,
+    /// Some of the places, each with the size of what is there.
+    places: [(Point, f64); Touches::PLACES],
+    count: usize,
+}
+
+impl Touches {
+    const PLACES: usize = 8;
+    const NONE: Touches = Touches { crossing: 0, places: [([0.0; 3], 0.0); Touches::PLACES], count: 0 };
+
+    /// Notes that two triangles cross after a move, in the boxes around both.
+    fn note(&mut self, a: &Bounds, b: &Bounds) {
+        let Some(place) = self.places.get_mut(self.count) else { return };
+        let low: Point = array(|axis| a.low[axis].max(b.low[axis]));
+        let high: Point = array(|axis| a.high[axis].min(b.high[axis]));
+        let extent = |low: &Point, high: &Point| (0..3).fold(0.0, |most: f64, k| most.max(high[k] - low[k]));
+        let size = match extent(&low, &high) {
+            0.0 => extent(&a.low, &a.high).min(extent(&b.low, &b.high)),
+            size => size,
+        };
+        *place = (array(|axis| low[axis].midpoint(high[axis])), size);
+        self.count += 1;
+    }
+}
+
+struct Search<'a> {
+    vertices: &'a [Point],
+    triangles: &'a [[u32; 3]],
+    /// Whether triangles may cancel each other.
+    walls: bool,
+    /// That may still be made.
+    steps: u64,
+}
+
+impl Search<'_> {
+    /// Compares two bodies whose boxes meet, and notes where they touch.
+    fn compare(&mut self, a: &mut Body, b: &mut Body, touches: &mut Touches) -> Relation {
+        let is_crossing = self.crossings(&mut a.triangles, &mut b.triangles, touches);
+        let apart = (0..Shift::COUNT).find(|k| touches.crossing >> k & 1 == 0).map(Shift::new);
+        match (is_crossing, apart) {
+            (Some(true), _) if !self.walls => Relation::Crossing,
+            (Some(false), Some(shift)) => {
+                let [of_a, of_b] =
+                    [&b.triangles, &a.triangles].map(|triangles| self.corners(triangles[0])[0]);
+                match (self.winding(a, &of_a, shift), self.winding(b, &of_b, shift.back())) {
+                    (Some(of_a), Some(of_b)) => Relation::Around([of_a, of_b]),
+                    _ => Relation::Undecided,
+                }
+            }
+            _ => Relation::Undecided,
+        }
+    }
+
+    /// Takes steps, if there are so many left.
+    fn take(&mut self, steps: usize) -> bool {
+        let left = self.steps.checked_sub(steps as u64);
+        self.steps = left.unwrap_or(0);
+        left.is_some()
+    }
+
+    fn corners(&self, triangle: u32) -> [Point; 3] {
+        self.triangles[triangle as usize].map(|v| self.vertices[v as usize])
+    }
+
+    fn bounds(&self, triangles: &[u32]) -> Bounds {
+        let mut bounds = Bounds::NONE;
+        triangles.iter().for_each(|&t| self.corners(t).iter().for_each(|p| bounds.include(p)));
+        bounds
+    }
+
+    /// Whether triangles of the two lists cross; `None` if there are no steps left. Notes where they touch. The
+    /// lists come back in another order.
+    fn crossings(&mut self, a: &mut [u32], b: &mut [u32], touches: &mut Touches) -> Option<bool> {
+        /// Pairs that are not worth dividing.
+        const FEW: usize = 64;
+        if !self.take(a.len() + b.len()) {
+            return None;
+        }
+        let (bounds_a, bounds_b) = (self.bounds(a), self.bounds(b));
+        let kept_a = partition(a, |&t| self.bounds(&[t]).touches(&bounds_b));
+        let kept_b = partition(b, |&t| self.bounds(&[t]).touches(&bounds_a));
+        let (a, b) = (&mut a[..kept_a], &mut b[..kept_b]);
+        if a.is_empty() || b.is_empty() {
+            return Some(false);
+        }
+        if a.len() * b.len() > FEW {
+            let (longer, other) = if a.len() >= b.len() { (a, b) } else { (b, a) };
+            // Which of the two is moved matters for the moves, so the order is kept by a flag of its own.
+            let swapped = kept_b > kept_a;
+            let bounds = self.bounds(longer);
+            let axis = (1..3).fold(0, |most, axis| {
+                let extent = |axis: usize| bounds.high[axis] - bounds.low[axis];
+                if extent(axis) > extent(most) { axis } else { most }
+            });
+            // In the middle of the box, if that divides the list, and of the list otherwise.
+            let middle = bounds.low[axis].midpoint(bounds.high[axis]);
+            let below = partition(longer, |&t| self.corners(t)[0][axis] < middle);
+            let is_divided = below.min(longer.len() - below) > longer.len() / 8;
+            let half = if is_divided { below } else { longer.len() / 2 };
+            if !is_divided {
+                longer.select_nth_unstable_by(half, |&s, &t| {
+                    self.corners(s)[0][axis].total_cmp(&self.corners(t)[0][axis])
+                });
+            }
+            let (low, high) = longer.split_at_mut(half);
+            for part in [low, high] {
+                let (first, second) = if swapped { (&mut *other, part) } else { (part, &mut *other) };
+                if self.crossings(first, second, touches)? {
+                    return Some(true);
+                }
+            }
+            return Some(false);
+        }
+        if !self.take(4 * a.len() * b.len()) {
+            return None;
+        }
+        for &s in &*a {
+            let first = self.corners(s);
+            let box_of_first = Bounds::of(&first);
+            for &t in &*b {
+                let second = self.corners(t);
+                if box_of_first.touches(&Bounds::of(&second)) && crosses(&first, &second, touches) {
+                    return Some(true);
+                }
+            }
+        }
+        Some(false)
+    }
+
+    /// The winding number of a closed body around a moved point; `None` if there are no steps left.
+    fn winding(&mut self, body: &Body, p: &Point, shift: Shift) -> Option<i32> {
+        if (0..3).any(|axis| p[axis] < body.bounds.low[axis] || p[axis] > body.bounds.high[axis]) {
+            return Some(0);
+        }
+        if !self.take(body.triangles.len()) {
+            return None;
+        }
+        Some(body.triangles.iter().map(|&t| above(&self.corners(t), p, shift)).sum())
+    }
+
+    /// Whether points are found that prove an overlap: one around which both bodies wind in the same sense, and
+    /// all together more than once; or one in both bodies and one in each of them alone. Tried are points in
+    /// eight directions from where they touch.
+    fn overlap_near(&mut self, bodies: &[Body], pair: [usize; 2], touches: &Touches) -> bool {
+        let shift = Shift::new(0);
+        let mut parts = [false; 4];
+        for &(place, size) in &touches.places[..touches.count] {
+            for (reach, k) in [0.25, 1.0 / 64.0].into_iter().flat_map(|reach| (0..8).map(move |k| (reach, k)))
+            {
+                // Lengths that are no round part of anything.
+                let [x, y, z] = Shift::new(k).0.map(f64::from);
+                let way = [x * 0.97, y * 0.71, z * 0.53].map(|way| way * reach * size);
+                let Ok(near) = normalised(array(|axis| place[axis] + way[axis]), 0) else { continue };
+                let [Some(a), Some(b)] = pair.map(|k| self.winding(&bodies[k], &near, shift)) else {
+                    return false;
+                };
+                parts[usize::from(a != 0) + 2 * usize::from(b != 0)] = true;
+                if matches!(parts, [_, true, true, true]) {
+                    return true;
+                }
+                if a * b > 0 {
+                    let all =
+                        bodies.iter().try_fold(0, |sum, body| Some(sum + self.winding(body, &near, shift)?));
+                    if all.is_some_and(|all| all.abs() > 1) {
+                        return true;
+                    }
+                }
+            }
+        }
+        false
+    }
+}
+
+/// Brings the items that pass the test to the front; tells how many there are.
+fn partition<T>(items: &mut [T], test: impl Fn(&T) -> bool) -> usize {
+    let mut kept = 0;
+    for k in 0..items.len() {
+        if test(&items[k]) {
+            items.swap(kept, k);
+            kept += 1;
+        }
+    }
+    kept
+}
+
+/// Whether two triangles cross: an edge of one goes through the inside of the other. Where they only touch,
+/// notes the moves of the second after which it would be so.
+fn crosses(a: &[Point; 3], b: &[Point; 3], touches: &mut Touches) -> bool {
+    let on_one_side = |of: &[Point; 3], points: &[Point; 3]| {
+        let first = volume_sign(&of[0], &of[1], &of[2], &points[0]);
+        first != 0 && points[1..].iter().all(|p| volume_sign(&of[0], &of[1], &of[2], p) == first)
+    };
+    if on_one_side(a, b) || on_one_side(b, a) {
+        return false;
+    }
+    let mut crossing = 0;
+    // The edges of `b` are moved along with it; to move `a` back is the same.
+    for (edges, triangle, backwards) in [(b, a, false), (a, b, true)] {
+        for k in 0..3 {
+            match pierces(&edges[k], &edges[(k + 1) % 3], triangle, None) {
+                Some(true) => return true,
+                Some(false) => {}
+                None => {
+                    for index in 0..Shift::COUNT {
+                        let shift = Shift::new(index);
+                        let shift = if backwards { shift.back() } else { shift };
+                        let moved = pierces(&edges[k], &edges[(k + 1) % 3], triangle, Some(shift));
+                        crossing |= u8::from(moved == Some(true)) << index;
+                    }
+                }
+            }
+        }
+    }
+    if crossing != 0 {
+        touches.crossing |= crossing;
+        touches.note(&Bounds::of(a), &Bounds::of(b));
+    }
+    false
+}
+
+/// Whether the edge from `p` to `q`, moved by `shift`, goes through the inside of a triangle. Without a move,
+/// `None` if a move may change it.
+fn pierces(p: &Point, q: &Point, [a, b, c]: &[Point; 3], shift: Option<Shift>) -> Option<bool> {
+    let signed = |value: i32, coefficient: &dyn Fn(usize) -> i32| match shift {
+        Some(shift) => shift.sign(value, coefficient),
+        None => value,
+    };
+    let side = |p: &Point| signed(volume_sign(a, b, c, p), &|axis| cross_sign([a, b], [a, c], axis));
+    let (from, to) = (side(p), side(q));
+    if from * to > 0 {
+        return Some(false);
+    }
+    let along =
+        |s: &Point, t: &Point| signed(volume_sign(p, q, s, t), &|axis| cross_sign([p, q], [s, t], axis));
+    let edges = [along(a, b), along(b, c), along(c, a)];
+    if edges.contains(&1) && edges.contains(&-1) {
+        return Some(false);
+    }
+    let is_through = from * to < 0 && !edges.contains(&0);
+    if is_through || shift.is_some() { Some(is_through) } else { None }
+}
+
+/// What a triangle adds to the winding number around a moved point: 1 or -1 if it lies above, by the side from
+/// which it is seen.
+fn above([a, b, c]: &[Point; 3], p: &Point, shift: Shift) -> i32 {
+    for axis in 0..2 {
+        let [x, y, z] = [a, b, c].map(|corner| corner[axis]);
+        if p[axis] < x.min(y).min(z) || p[axis] > x.max(y).max(z) {
+            return 0;
+        }
+    }
+    // On which side of an edge the point is, seen from above.
+    let side = |s: &Point, t: &Point| {
+        shift.sign(cross_sign([s, t], [s, p], 2), |axis| match axis {
+            0 => -sign(t[1] - s[1]),
+            1 => sign(t[0] - s[0]),
+            _ => 0,
+        })
+    };
+    let turn = side(a, b);
+    if turn == 0 || side(b, c) != turn || side(c, a) != turn {
+        return 0;
+    }
+    let height = shift.sign(volume_sign(a, b, c, p), |axis| cross_sign([a, b], [a, c], axis));
+    if height * turn < 0 { turn } else { 0 }
+}
+
+/// The sign of (b − a) × (c − a) · (d − a): positive if d lies on the side from which a, b, c turn
+/// counter-clockwise.
+fn volume_sign(a: &Point, b: &Point, c: &Point, d: &Point) -> i32 {
+    let [u, v, w]: [Point; 3] = [b, c, d].map(|p| array(|axis| p[axis] - a[axis]));
+    let (mut value, mut magnitude) = (0.0, 0.0);
+    for k in 0..3 {
+        let (i, j) = ((k + 1) % 3, (k + 2) % 3);
+        let (left, right) = (u[i] * v[j], u[j] * v[i]);
+        value += (left - right) * w[k];
+        magnitude += (left.abs() + right.abs()) * w[k].abs();
+    }
+    // At most ten roundings lie behind each product.
+    if value.abs() > 16.0 * (f64::EPSILON / 2.0) * magnitude {
+        return sign(value);
+    }
+    let [u, v, w] = [b, c, d].map(|p| [0, 1, 2].map(|axis| Expansion::sum([p[axis], -a[axis]])));
+    let mut sum = Expansion::default();
+    for k in 0..3 {
+        let (i, j) = ((k + 1) % 3, (k + 2) % 3);
+        sum = sum.plus(&u[i].times(&v[j]).minus(&u[j].times(&v[i])).times(&w[k]));
+    }
+    sum.sign()
+}
+
+/// The sign of a component of the cross product of two differences, each from its first point to its second.
+fn cross_sign(u: [&Point; 2], v: [&Point; 2], axis: usize) -> i32 {
+    let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
+    let difference = |[from, to]: [&Point; 2], k: usize| to[k] - from[k];
+    let (left, right) = (difference(u, i) * difference(v, j), difference(u, j) * difference(v, i));
+    let value = left - right;
+    if value.abs() > 8.0 * (f64::EPSILON / 2.0) * (left.abs() + right.abs()) {
+        return sign(value);
+    }
+    let exact = |[from, to]: [&Point; 2], k: usize| Expansion::sum([to[k], -from[k]]);
+    exact(u, i).times(&exact(v, j)).minus(&exact(u, j).times(&exact(v, i))).sign()
+}

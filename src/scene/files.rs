@@ -1,0 +1,78 @@
+//! Calls that name files, and meshes.
+
+use alloc::boxed::Box;
+use alloc::format;
+use alloc::string::String;
+use std::path::Path;
+
+use super::arguments::{Given, Item};
+use super::check::Checker;
+use super::grammar::{Call, Cursor, shown};
+use super::{Node, SceneMesh};
+use crate::error::{Error, MeshError};
+use crate::exchange::{MeshFormat, MeshOptions, open_mesh};
+use crate::memory;
+use crate::mesh::{FillRule, TriangleMesh};
+use crate::solid::MeshSolid;
+
+impl Checker<'_> {
+    /// What `read` makes of the file that is named in the text.
+    fn read<T>(&self, file: &Item<'_>, read: impl FnOnce(&Path) -> Result<T, Error>) -> Result<T, Error> {
+        let name = file.text()?;
+        let Some(folder) = self.folder else {
+            return Err(file.fault("files cannot be read by this scene, which has no folder"));
+        };
+        read(&folder.join(&name)).map_err(|error| match error {
+            Error::OutOfMemory => error,
+            error => file.fault(format!("{name}: {}", error.cause())),
+        })
+    }
+
+    pub(super) fn mesh(&mut self, call: &Call<'_>, file: Item<'_>) -> Result<Node, Error> {
+        let read = self.read(&file, |path| open_mesh(path, &MeshOptions::default()))?;
+        let fill = match read.format {
+            MeshFormat::ThreeMf => FillRule::Positive,
+            _ => FillRule::NonZero,
+        };
+        if read.mesh.triangles().is_empty() {
+            return Err(file.fault(format!("{}", MeshError::Empty)));
+        }
+        self.solid_mesh(call, file.text()?, read.mesh, fill)
+    }
+
+    pub(super) fn import(&mut self, call: &Call<'_>) -> Result<Node, Error> {
+        let ignored = ["origin", "scale", "convexity", "timestamp", "layer", "id", "dpi", "width", "height"];
+        let given = Given::new(self.tree, call, ["file", "center"], &ignored)?;
+        if given.truth_or(1, false)? {
+            return Err(self.fault(call, "is supported without `center` only"));
+        }
+        let name = given.required(0)?.text()?;
+        let extension = name.rsplit_once('.').map_or("", |parts| parts.1);
+        if MeshFormat::from_extension(extension).is_none() {
+            return Err(self.fault(call, format_args!("of files {} is not supported", shown(extension))));
+        }
+        self.mesh(call, given.required(0)?)
+    }
+
+    pub(super) fn octree(&self, call: &Call<'_>) -> Result<Node, Error> {
+        let file = Given::new(self.tree, call, ["file"], &[])?.required(0)?;
+        Ok(Node::Octree(Box::new(self.read(&file, |path| crate::file::open(path))?)))
+    }
+
+    /// A mesh, of which the report is kept.
+    pub(super) fn solid_mesh(
+        &mut self,
+        call: &Call<'_>,
+        file: String,
+        mesh: TriangleMesh,
+        fill: FillRule,
+    ) -> Result<Node, Error> {
+        // (Calls without blocks come in the order of the text.)
+        self.cursor.advance(self.tree.text, call.at);
+        let Cursor { line, column, .. } = self.cursor;
+        let (report, turned) = (mesh.report()?, mesh.turned_triangles()?);
+        let solid = MeshSolid::new(mesh, fill)?;
+        memory::push(&mut self.report.meshes, SceneMesh { line, column, file, report, turned })?;
+        Ok(Node::Mesh(solid))
+    }
+}
