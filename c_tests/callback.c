@@ -443,7 +443,7 @@ static void by_distance_alone(void) {
             }
         }
     }
-    OK(leafless_solid_measure(solid, &deep, 0.05, &options, &measures));
+    OK(leafless_solid_measure(solid, &deep, 0.05, 0.0, &options, &measures));
     CHECK(measures.volume_model.lower < volume && volume < measures.volume_model.upper);
     CHECK(measures.measured == LEAFLESS_MEASURED_TOLERANCE);
     {
@@ -576,7 +576,7 @@ static void distance_gives_up(void) {
         GIVES_UP(leafless_octree_build(solid, &frame, LEAFLESS_RULE_CERTIFIED, &options, &octree));
         GIVES_UP(leafless_solid_contains(solid, &frame, at, 1, &options, &answer));
         GIVES_UP(leafless_solid_classify_box(solid, &frame, at, beside, &options, &region));
-        GIVES_UP(leafless_solid_measure(solid, &frame, 0.0, &options, &measures));
+        GIVES_UP(leafless_solid_measure(solid, &frame, 0.0, 0.0, &options, &measures));
         GIVES_UP(leafless_solid_bounding_box(solid, &frame, 0.0, &options, &extent));
         CHECK(octree == NULL && region == 77);
         h.calls = 0;

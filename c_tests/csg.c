@@ -276,7 +276,7 @@ static void evaluations(void) {
     OK(leafless_solid_classify_box(both, &frame, low, at, NULL, &region));
     CHECK(region == LEAFLESS_REGION_CROSSING && evaluations_of(both) > asked);
     asked = evaluations_of(both);
-    OK(leafless_solid_measure(both, &frame, 0.1, NULL, &measures));
+    OK(leafless_solid_measure(both, &frame, 0.1, 0.0, NULL, &measures));
     CHECK(evaluations_of(both) > asked);
     asked = evaluations_of(both);
     OK(leafless_solid_interfere(both, round, &frame, 0, NULL, &overlap));

@@ -44,11 +44,11 @@ static void ball(void) {
     leafless_extent extent;
     double last = 0.0;
     int i;
-    OK(leafless_solid_measure(solid, &frame, 0.05, NULL, &measures));
+    OK(leafless_solid_measure(solid, &frame, 0.05, 0.0, NULL, &measures));
     CHECK(measures.volume_model.lower < volume && volume < measures.volume_model.upper);
     CHECK(measures.volume_model.upper - measures.volume_model.lower <= 0.05 * measures.volume_model.upper);
     CHECK(measures.measured == LEAFLESS_MEASURED_TOLERANCE && measures.has_centroid && !measures.is_clipped);
-    CHECK(measures.splits > 1000 && measures.level >= 6 && measures.level < 12);
+    CHECK(measures.splits > 20 && measures.level >= 2 && measures.level < 12);
     for (i = 0; i < 3; i++) {
         CHECK(holds(measures.centroid_model[i], 0.0));
     }
@@ -61,14 +61,15 @@ static void ball(void) {
     options.threads = 1;
     options.progress = stop;
     options.progress_ctx = &last;
-    OK(leafless_solid_measure(solid, &frame, 0.05, &options, &again));
+    OK(leafless_solid_measure(solid, &frame, 0.05, 0.0, &options, &again));
     CHECK(last == 1.0 && again.splits == measures.splits && again.level == measures.level);
     CHECK(again.volume_model.lower == measures.volume_model.lower);
     CHECK(again.centroid_model[1].upper == measures.centroid_model[1].upper);
     options.max_splits = 65;
     last = 0.0;
-    OK(leafless_solid_measure(solid, &frame, 0.0, &options, &again));
-    CHECK(again.measured == LEAFLESS_MEASURED_BUDGET && again.splits == 65 && last == 1.0);
+    OK(leafless_solid_measure(solid, &frame, 0.0, 0.0, &options, &again));
+    /* The last whole pass counts. */
+    CHECK(again.measured == LEAFLESS_MEASURED_BUDGET && again.splits > 0 && again.splits <= 65 && last == 1.0);
     CHECK(again.volume_model.lower < volume && volume < again.volume_model.upper);
 
     options.max_splits = 0;
@@ -81,13 +82,39 @@ static void ball(void) {
         CHECK(extent.max_model[i].upper - extent.max_model[i].lower <= 0.0100001);
     }
 
+    /* Either tolerance ends it. */
+    OK(leafless_solid_measure(solid, &frame, 0.0, 0.01, NULL, &again));
+    CHECK(again.measured == LEAFLESS_MEASURED_TOLERANCE);
+    CHECK(again.volume_model.upper - again.volume_model.lower <= 0.01);
+    CHECK(again.volume_model.lower < volume && volume < again.volume_model.upper);
+    FAILS(LEAFLESS_E_ARGUMENT, leafless_solid_measure(solid, &frame, 0.0, -1.0, NULL, &again));
+
+    /* Where the surface is known to a hundredth the octree is coarse. */
+    {
+        const leafless_frame shallow = check_frame(8);
+        leafless_solid *adaptive = NULL;
+        leafless_octree *whole = NULL, *coarse = NULL;
+        leafless_statistics fine, rough;
+        OK(leafless_solid_adaptive(solid, 0.01, &adaptive));
+        OK(leafless_octree_build(solid, &shallow, LEAFLESS_RULE_CERTIFIED, NULL, &whole));
+        OK(leafless_octree_build(adaptive, &shallow, LEAFLESS_RULE_CERTIFIED, NULL, &coarse));
+        OK(leafless_octree_statistics(whole, &fine));
+        OK(leafless_octree_statistics(coarse, &rough));
+        CHECK(rough.volume_model.lower <= fine.volume_model.lower && fine.volume_model.upper <= rough.volume_model.upper);
+        CHECK(rough.nodes * 10 < fine.nodes);
+        leafless_octree_free(coarse), leafless_octree_free(whole), leafless_solid_free(adaptive);
+        adaptive = NULL;
+        FAILS(LEAFLESS_E_ARGUMENT, leafless_solid_adaptive(solid, -1.0, &adaptive));
+        CHECK(adaptive == NULL);
+    }
+
     /* Nothing is written when it fails. */
     options.progress = refuse;
     memset(&again, 0x5a, sizeof again);
-    FAILS(LEAFLESS_E_CANCELLED, leafless_solid_measure(solid, &frame, 0.0, &options, &again));
+    FAILS(LEAFLESS_E_CANCELLED, leafless_solid_measure(solid, &frame, 0.0, 0.0, &options, &again));
     FAILS(LEAFLESS_E_CANCELLED, leafless_solid_bounding_box(solid, &frame, 0.0, &options, &extent));
-    FAILS(LEAFLESS_E_ARGUMENT, leafless_solid_measure(solid, &frame, -1.0, NULL, &again));
-    FAILS(LEAFLESS_E_ARGUMENT, leafless_solid_measure(solid, &frame, NAN, NULL, &again));
+    FAILS(LEAFLESS_E_ARGUMENT, leafless_solid_measure(solid, &frame, -1.0, 0.0, NULL, &again));
+    FAILS(LEAFLESS_E_ARGUMENT, leafless_solid_measure(solid, &frame, NAN, 0.0, NULL, &again));
     FAILS(LEAFLESS_E_ARGUMENT, leafless_solid_bounding_box(solid, &frame, NAN, NULL, &extent));
     for (i = 0; i < (int)sizeof again; i++) {
         CHECK(((const unsigned char *)&again)[i] == 0x5a);
@@ -105,7 +132,7 @@ static void block(void) {
     leafless_extent extent;
     int i;
     OK(leafless_octree_as_solid(octree, &solid));
-    OK(leafless_solid_measure(solid, &frame, 0.0, NULL, &measures));
+    OK(leafless_solid_measure(solid, &frame, 0.0, 0.0, NULL, &measures));
     OK(leafless_solid_bounding_box(solid, &frame, 0.0, NULL, &extent));
     CHECK(measures.volume_model.lower == 0.421875 && measures.volume_model.upper == 0.421875);
     for (i = 0; i < 3; i++) {
@@ -116,7 +143,7 @@ static void block(void) {
     /* An octree on another frame is none on this. */
     {
         const leafless_frame other = {{0, 0, 0}, 1, 5};
-        FAILS(LEAFLESS_E_FRAME, leafless_solid_measure(solid, &other, 0.0, NULL, &measures));
+        FAILS(LEAFLESS_E_FRAME, leafless_solid_measure(solid, &other, 0.0, 0.0, NULL, &measures));
         FAILS(LEAFLESS_E_FRAME, leafless_solid_bounding_box(solid, &other, 0.0, NULL, &extent));
     }
     leafless_solid_free(solid);
@@ -133,12 +160,12 @@ static void host(void) {
     OK(leafless_callbacks_init(&callbacks, sizeof callbacks));
     callbacks.classify = fails;
     OK(leafless_solid_new_callbacks(&callbacks, &solid));
-    FAILS(LEAFLESS_E_CALLBACK, leafless_solid_measure(solid, &frame, 0.0, NULL, &measures));
+    FAILS(LEAFLESS_E_CALLBACK, leafless_solid_measure(solid, &frame, 0.0, 0.0, NULL, &measures));
     FAILS(LEAFLESS_E_CALLBACK, leafless_solid_bounding_box(solid, &frame, 0.0, NULL, &extent));
     leafless_solid_free(solid);
     callbacks.classify = doubts;
     OK(leafless_solid_new_callbacks(&callbacks, &solid));
-    OK(leafless_solid_measure(solid, &frame, 0.0, NULL, &measures));
+    OK(leafless_solid_measure(solid, &frame, 0.0, 0.0, NULL, &measures));
     CHECK(measures.volume_model.lower == 0.0 && measures.volume_model.upper == 8.0);
     CHECK(measures.measured == LEAFLESS_MEASURED_EXHAUSTED && !measures.has_centroid && measures.is_clipped);
     CHECK(measures.centroid_model[2].lower == -INFINITY && measures.centroid_model[2].upper == INFINITY);

@@ -291,6 +291,8 @@ static void null_pointers(void) {
     NULL_POINTER(leafless_solid_difference, solid, leafless_solid_difference(solid, solid, NULL));
     NULL_POINTER(leafless_solid_complement, operand, leafless_solid_complement(NULL, solid_result));
     NULL_POINTER(leafless_solid_complement, solid, leafless_solid_complement(solid, NULL));
+    NULL_POINTER(leafless_solid_adaptive, operand, leafless_solid_adaptive(NULL, 0.1, solid_result));
+    NULL_POINTER(leafless_solid_adaptive, solid, leafless_solid_adaptive(solid, 0.1, NULL));
     NULL_POINTER(leafless_solid_union, solids, leafless_solid_union(NULL, 1, solid_result));
     NULL_POINTER(leafless_solid_union, solid, leafless_solid_union(NULL, 0, NULL));
     NULL_POINTER(leafless_solid_intersection, solids, leafless_solid_intersection(NULL, 1, solid_result));
@@ -621,11 +623,11 @@ static void null_pointers(void) {
         leafless_solid_free(*solid_result);
     }
     NULL_POINTER(leafless_solid_measure, solid,
-                 leafless_solid_measure(NULL, &frame, 0, NULL, (leafless_measures *)out));
+                 leafless_solid_measure(NULL, &frame, 0, 0.0, NULL, (leafless_measures *)out));
     NULL_POINTER(leafless_solid_measure, frame,
-                 leafless_solid_measure(solid, NULL, 0, NULL, (leafless_measures *)out));
-    NULL_POINTER(leafless_solid_measure, measures, leafless_solid_measure(solid, &frame, 0, NULL, NULL));
-    MAY_BE_NULL(leafless_solid_measure, options, leafless_solid_measure(solid, &frame, 0, NULL, &measures));
+                 leafless_solid_measure(solid, NULL, 0, 0.0, NULL, (leafless_measures *)out));
+    NULL_POINTER(leafless_solid_measure, measures, leafless_solid_measure(solid, &frame, 0, 0.0, NULL, NULL));
+    MAY_BE_NULL(leafless_solid_measure, options, leafless_solid_measure(solid, &frame, 0, 0.0, NULL, &measures));
     NULL_POINTER(leafless_solid_bounding_box, solid,
                  leafless_solid_bounding_box(NULL, &frame, 0, NULL, (leafless_extent *)out));
     NULL_POINTER(leafless_solid_bounding_box, frame,
@@ -766,9 +768,9 @@ static void misaligned(void) {
     MISALIGNED(leafless_solid_clearance, clearance,
                leafless_solid_clearance(solid, solid, &frame, 0, NULL, (leafless_clearance *)WRONG(out)));
     MISALIGNED(leafless_solid_measure, solid,
-               leafless_solid_measure((leafless_solid *)WRONG(solid), &frame, 0, NULL, (leafless_measures *)out));
+               leafless_solid_measure((leafless_solid *)WRONG(solid), &frame, 0, 0.0, NULL, (leafless_measures *)out));
     MISALIGNED(leafless_solid_measure, measures,
-               leafless_solid_measure(solid, &frame, 0, NULL, (leafless_measures *)WRONG(out)));
+               leafless_solid_measure(solid, &frame, 0, 0.0, NULL, (leafless_measures *)WRONG(out)));
     MISALIGNED(leafless_solid_bounding_box, extent,
                leafless_solid_bounding_box(solid, &frame, 0, NULL, (leafless_extent *)WRONG(out)));
     MISALIGNED(leafless_octree_build, solid,
@@ -869,7 +871,7 @@ static void numbers(void) {
         BAD_NUMBER(leafless_frame_fitted, depth, leafless_frame_fitted(point, above, bad.depth, (leafless_frame *)out));
         BAD_NUMBER(leafless_octree_build, depth, leafless_octree_build(solid, &bad, 0, NULL, result));
         BAD_NUMBER(leafless_solid_measure, depth,
-                   leafless_solid_measure(solid, &bad, 0, NULL, (leafless_measures *)out));
+                   leafless_solid_measure(solid, &bad, 0, 0.0, NULL, (leafless_measures *)out));
         BAD_NUMBER(leafless_solid_bounding_box, depth,
                    leafless_solid_bounding_box(solid, &bad, 0, NULL, (leafless_extent *)out));
         BAD_NUMBER(leafless_solid_contains, depth,

@@ -353,7 +353,7 @@ Answers ask(const leafless_solid *solid, const leafless_frame &frame, uint32_t t
         answers.regions.push_back(region);
     }
     leafless_measures measures;
-    OK(leafless_solid_measure(solid, &frame, 0.05, &options, &measures));
+    OK(leafless_solid_measure(solid, &frame, 0.05, 0.0, &options, &measures));
     answers.volume = measures.volume_model;
     answers.splits = measures.splits;
     leafless_extent extent;

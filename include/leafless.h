@@ -1647,7 +1647,7 @@ typedef struct {
      */
     uint64_t splits;
     /**
-     * Every undecided cell of a lower level was split, if the solid could.
+     * The finest level of which cells were looked at.
      */
     uint32_t level;
     /**
@@ -3059,6 +3059,23 @@ leafless_status leafless_solid_placed(const leafless_solid *operand,
                                       leafless_solid **solid);
 
 /**
+ * A solid whose cells are not split where its surface is known to lie within a layer no thicker than a tolerance:
+ * an octree of it stays coarse where the surface is flat. Such cells stay PARTIAL. Half-spaces know such layers;
+ * a solid that knows none is split as ever.
+ *
+ * - Buffers: none.
+ * - Result: `*solid`, a new solid.
+ * - Errors: LEAFLESS_E_ARGUMENT if `tolerance_model` is negative or not a number; LEAFLESS_E_NO_MEMORY.
+ * - Ownership: the caller's, to be given to leafless_solid_free; `operand` stays the caller's.
+ * - Threads: any.
+ * - Untrusted input: any solid.
+ * - Since: 0.1
+ */
+leafless_status leafless_solid_adaptive(const leafless_solid *operand,
+                                        double tolerance_model,
+                                        leafless_solid **solid);
+
+/**
  * The same solid by another rule of touching, which holds for the whole expression. What joins it to others
  * follows its own rule.
  *
@@ -4128,15 +4145,16 @@ leafless_status leafless_solid_clearance(const leafless_solid *a,
                                          leafless_clearance *clearance);
 
 /**
- * Measures a solid in the universe of a frame, without building an octree: the largest undecided cells are
- * split first, until the width of the volume's interval is at most `tolerance` times its middle,
- * `max_splits` of the options is spent, or nothing is left to split at the frame's depth. The result is the
- * same bit for bit for any number of threads.
+ * Measures a solid in the universe of a frame, without building an octree: the cells of which most is in doubt are
+ * split first, until the width of the volume's interval is at most `relative` times its middle or at most
+ * `absolute_model` (cubic model units), `max_splits` of the options is spent (2^26 splits without it), or nothing is
+ * left to split at the frame's depth. Under a budget the last whole pass counts. The result is the same bit for
+ * bit for any number of threads.
  *
  * - Buffers: `frame`, one struct; `options`, one struct or NULL, of which `max_nodes` and `max_bytes` do not
  *   matter; `measures`, one struct.
  * - Result: `*measures`.
- * - Errors: LEAFLESS_E_ARGUMENT, also if `tolerance` is negative or not a number; LEAFLESS_E_FRAME if the
+ * - Errors: LEAFLESS_E_ARGUMENT, also if a tolerance is negative or not a number; LEAFLESS_E_FRAME if the
  *   solid belongs to another frame; LEAFLESS_E_CALLBACK; LEAFLESS_E_DAMAGED; LEAFLESS_E_CANCELLED;
  *   LEAFLESS_E_NO_MEMORY.
  * - Ownership: nothing changes hands.
@@ -4146,23 +4164,29 @@ leafless_status leafless_solid_clearance(const leafless_solid *a,
  */
 leafless_status leafless_solid_measure(const leafless_solid *solid,
                                        const leafless_frame *frame,
-                                       double tolerance,
+                                       double relative,
+                                       double absolute_model,
                                        const leafless_options *options,
                                        leafless_measures *measures);
 
 /**
- * The bounding box of a solid in the universe of a frame: each of its sides until the interval is at most
- * `tolerance_model` or one finest cell wide, `max_splits` of the options is spent, or nothing is left to
- * split. Only cells that may reach beyond what is proven solid are split. With n the universe's edge over
- * the tolerance that takes some n splits for a curved side and, unless it lies on a plane of the lattice, n²
- * for a flat one.
+ * The bounding box of a solid in the universe of a frame: six intervals, one for each side. The search splits
+ * only cells that may reach beyond what is proven solid. It ends with LEAFLESS_MEASURED_TOLERANCE if no interval
+ * is wider than `tolerance_model`, or than 2^-44 of the universe's edge; with LEAFLESS_MEASURED_EXHAUSTED if the outermost undecided cells cannot be
+ * split, and either the interval is no wider than one of the frame's finest cells, or nothing else is left to
+ * split; with LEAFLESS_MEASURED_BUDGET after `max_splits` of the options, or 2^20 splits if that is 0.
+ *
+ * Of half-spaces and what is made of them, a corner of three plane faces is known to rounding, and a curved side
+ * to some 10^-12 of the universe's edge at depth 20, after some hundred splits; a side that a cylinder touches
+ * along a line takes more. Of other solids, with n the universe's edge over the tolerance, a curved side takes
+ * some n splits and, unless it lies on a plane of the lattice, a flat one n².
  *
  * - Buffers: as leafless_solid_measure; `extent`, one struct.
  * - Result: `*extent`.
- * - Errors: as leafless_solid_measure, with `tolerance_model` for `tolerance`.
+ * - Errors: as leafless_solid_measure, with `tolerance_model` for its tolerances.
  * - Ownership: nothing changes hands.
  * - Threads: any; works in the calling thread.
- * - Untrusted input: as leafless_solid_measure.
+ * - Untrusted input: any solid; the default of `max_splits` bounds the work.
  * - Since: 0.1
  */
 leafless_status leafless_solid_bounding_box(const leafless_solid *solid,

@@ -91,8 +91,11 @@ pub use control::Control;
 pub use error::{
     Damage, Error, FormatError, MeshError, MeshFileError, PackageError, PolyhedronError, SceneError,
 };
-pub use lattice::{Affine, Bounds, Cell, Cube, Frame, Interval, MAX_DEPTH};
-pub use mesh::{DefectKind, FillRule, MeshDefect, MeshReport, TriangleMesh};
+pub use lattice::{Affine, Bounds, Cell, Cube, Frame, Interval, MAX_DEPTH, VolumeMoments};
+pub use mesh::{
+    DefectKind, FillRule, IntersectingPair, IntersectingPairs, MeshDefect, MeshMoments, MeshReport,
+    TriangleMesh,
+};
 #[cfg(feature = "std")]
 pub use mesh::{Polyhedron, PolyhedronArrays};
 pub use octree::{
@@ -103,12 +106,12 @@ pub use op::{
     intersection_of, resolve, union, union_of, xor, xor_of,
 };
 pub use query::{
-    CLEARANCE_SPLITS, Clearance, Extent, Interference, MassProperties, Membership, Overlap, PointCursor,
-    Region, StopReason, bounding_box, classify_box, clearance, contains, interference, interference_of,
-    measure,
+    BOUNDING_BOX_SPLITS, CLEARANCE_SPLITS, Clearance, Extent, Interference, MEASURE_SPLITS, MassProperties,
+    Membership, Overlap, PointCursor, Region, StopReason, Tolerance, bounding_box, classify_box, clearance,
+    contains, interference, interference_of, measure,
 };
 pub use solid::{
-    AnyClassifier, AnySolid, AnyWorker, Callback, Classifier, Crossing, Csg, Enclosure, Erasable,
+    Adaptive, AnyClassifier, AnySolid, AnyWorker, Callback, Classifier, Crossing, Csg, Enclosure, Erasable,
     Fingerprint, Fingerprinter, HalfSpace, MeshSolid, Motion, Segment, Slab, SlabJoin, Solid, SplitCounter,
     Subtree, Touch, Transform, Verdict, Worker,
 };

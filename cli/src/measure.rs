@@ -11,14 +11,14 @@ use crate::source::{Source, evaluations};
 use crate::voxelize::{bounds, threads};
 use clap::Args;
 use leafless::{
-    Affine, Control, Extent, Frame, Interval, MAX_DEPTH, MassProperties, Prepared, StopReason, bounding_box,
-    measure,
+    Affine, Control, Error, Extent, Frame, Interval, MAX_DEPTH, MassProperties, MeshMoments, MeshSolid,
+    Prepared, Solid, StopReason, Tolerance, bounding_box, measure,
 };
 use serde::Serialize;
 use std::ffi::OsString;
 use std::fmt::Write;
 
-/// Measures a solid of density 1 without making an octree of it: the largest undecided cells are split first,
+/// Measures a solid of density 1 without making an octree of it: the cells of which most is in doubt are split first,
 /// until the volume is known well enough. All numbers are intervals that hold the true ones.
 ///
 /// A solid from a file (.lfl) knows no more about its undecided cells, so its own bounds are told, as well as
@@ -28,10 +28,14 @@ pub struct Arguments {
     /// Solid (.lfl), mesh (STL, OBJ, PLY, OFF, 3MF) or scene (.csg), or `-` for standard input
     file: OsString,
     /// How wide the interval of the volume may be, relative to its middle; 0 goes on to the depth. Without
-    /// it: 0.01, or 0 if --splits is given
+    /// it: 0.01, or 0 if --splits is given; much less costs little where surfaces are those of half-spaces
     #[arg(long, value_name = "T", value_parser = tolerance, allow_hyphen_values = true)]
     tolerance: Option<f64>,
-    /// Cells to split at most
+    /// How wide it may be otherwise, in cubic units. Without it: a billionth of the cube that is looked at, or 0 if
+    /// --tolerance or --splits is given
+    #[arg(long, value_name = "A", value_parser = tolerance, allow_hyphen_values = true)]
+    absolute: Option<f64>,
+    /// Cells to split at most. Without it: 67108864, a minute or so
     #[arg(long, value_name = "N")]
     splits: Option<u64>,
     /// Deepest level to split to, 1 to 20. Without it: as deep as the solid is, or 20 for a mesh or scene
@@ -64,9 +68,36 @@ fn tolerance(text: &str) -> Result<f64, String> {
     }
 }
 
-/// Sides of the bounding box are told to this part of the universe's edge, unless a greater tolerance is
-/// asked for.
+/// Sides of the bounding box are told to this part of the universe's edge where that is cheap, …
+const FINE_SIDES: f64 = 1e-9;
+/// … which means that it takes no more splits than this …
+const FEW_SPLITS: u64 = 1 << 14;
+/// … and else to this part, or to the tolerance of the volume if that is less …
 const SIDES: f64 = 0.001;
+/// … unless that takes more splits than this.
+const MOST_SPLITS: u64 = 1 << 22;
+
+/// The bounding box, as well as it is known cheaply, or as the volume's tolerance asks for.
+fn sides<S: Solid>(
+    solid: &S,
+    frame: &Frame,
+    tolerance: f64,
+    control: &Control<'_>,
+) -> Result<Extent, leafless::Error> {
+    let few = Control {
+        max_splits: Some(control.max_splits.map_or(FEW_SPLITS, |most| most.min(FEW_SPLITS))),
+        ..*control
+    };
+    let coarse = tolerance.min(SIDES) * frame.edge();
+    let fine = bounding_box(solid, frame, tolerance.min(FINE_SIDES) * frame.edge(), &few)?;
+    let is_coarse =
+        |corners: [[Interval; 3]; 2]| corners.as_flattened().iter().any(|side| side.width() > coarse);
+    if fine.stop_reason == StopReason::Budget && fine.corners.is_some_and(is_coarse) {
+        let most = Control { max_splits: control.max_splits.or(Some(MOST_SPLITS)), ..*control };
+        return bounding_box(solid, frame, coarse, &most);
+    }
+    Ok(fine)
+}
 
 /// Lower and upper bounds of the elements of a vector or a matrix.
 #[derive(Serialize)]
@@ -112,6 +143,11 @@ struct Report {
     origin: [f64; 3],
     edge: f64,
     clipped: bool,
+    /// Whether all is known up to rounding, without splitting cells, as of a closed mesh whose triangles do not
+    /// intersect; absent (null) for what is no mesh.
+    exact: Option<bool>,
+    /// Why not.
+    inexact_reason: Option<String>,
     /// How the curves of a scene were drawn; else absent (null).
     curves: Option<Curves>,
 }
@@ -129,22 +165,45 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         (None, depth) => source.frame(&input, depth)?,
     };
     let solid = Prepared::new(source.placed(&input, &Affine::IDENTITY, &frame)?);
-    let tolerance = arguments.tolerance.unwrap_or(if arguments.splits.is_some() { 0.0 } else { 0.01 });
+    let asked = arguments.tolerance.is_some() || arguments.splits.is_some();
+    let relative = arguments.tolerance.unwrap_or(if arguments.splits.is_some() { 0.0 } else { 0.01 });
+    // What is flat or empty has no volume to be relative to.
+    let absolute = arguments.absolute.unwrap_or(if asked { 0.0 } else { 1e-9 * frame.edge().powi(3) });
+    let tolerance = Tolerance { relative, absolute };
     let found = watched("measure", arguments.threads, |control| {
         let control = Control { max_splits: arguments.splits, ..*control };
         let mass = measure(&solid, &frame, tolerance, &control)?;
         let evaluated = evaluations(solid.solid());
         let quiet = Control { progress: None, ..control };
-        let extent = bounding_box(&solid, &frame, tolerance.max(SIDES) * frame.edge(), &quiet)?;
-        Ok((mass, extent, evaluated))
+        let extent = sides(&solid, &frame, relative, &quiet)?;
+        // `measure` has found it out before, as a rule.
+        let inexact = match solid.solid().get::<MeshSolid>() {
+            Some(mesh) => Some(inexact_reason(mesh, mass.clipped, &quiet)?),
+            None => None,
+        };
+        Ok((mass, extent, evaluated, inexact))
     });
-    let (mass, extent, evaluated) = found.of(&input)?;
+    let (mass, extent, evaluated, inexact) = found.of(&input)?;
     let text = if arguments.json {
-        output::json(&Report { curves, ..report(&input, &frame, &mass, &extent, evaluated) })?
+        let exact = inexact.as_ref().map(Option::is_none);
+        let inexact_reason = inexact.flatten();
+        let report = report(&input, &frame, &mass, &extent, evaluated);
+        output::json(&Report { curves, exact, inexact_reason, ..report })?
     } else {
-        text(&mass, &extent, curves.as_ref(), is_stored)
+        text(&mass, &extent, curves.as_ref(), is_stored, inexact.as_ref())
     };
     output::print(text.as_bytes())
+}
+
+/// Why a mesh's moments were not known without splitting cells; `None` if they were.
+fn inexact_reason(mesh: &MeshSolid, clipped: bool, control: &Control<'_>) -> Result<Option<String>, Error> {
+    Ok(match mesh.moments(control)? {
+        MeshMoments::Known(_) if clipped => Some("the mesh reaches beyond the bounds, or may".into()),
+        MeshMoments::Known(_) => None,
+        MeshMoments::Open => Some("the mesh does not bound a solid".into()),
+        MeshMoments::Intersecting([a, b]) => Some(format!("triangles {a} and {b} intersect, for instance")),
+        MeshMoments::Undecided => Some("it is not known whether triangles intersect".into()),
+    })
 }
 
 fn report(input: &Input, frame: &Frame, mass: &MassProperties, extent: &Extent, evaluations: u64) -> Report {
@@ -165,12 +224,20 @@ fn report(input: &Input, frame: &Frame, mass: &MassProperties, extent: &Extent, 
         origin: frame.origin(),
         edge: frame.edge(),
         clipped: mass.clipped,
+        exact: None,
+        inexact_reason: None,
         curves: None,
     }
 }
 
 /// The same for people.
-fn text(mass: &MassProperties, extent: &Extent, curves: Option<&Curves>, is_stored: bool) -> String {
+fn text(
+    mass: &MassProperties,
+    extent: &Extent,
+    curves: Option<&Curves>,
+    is_stored: bool,
+    inexact: Option<&Option<String>>,
+) -> String {
     let mut text = String::new();
     let mut line = |name: &str, value: String| {
         // Writing to a string does not fail.
@@ -203,8 +270,16 @@ fn text(mass: &MassProperties, extent: &Extent, curves: Option<&Curves>, is_stor
     if let Some(curves) = curves.and_then(Curves::text) {
         line("curves", curves);
     }
+    match inexact {
+        Some(None) => {
+            line("exact", "yes, but for rounding: the mesh is closed, and no triangles intersect".into())
+        }
+        Some(Some(reason)) => line("exact", format!("no: {reason}")),
+        None => {}
+    }
     let ended = match (mass.stop_reason, is_stored) {
         (StopReason::Tolerance, _) => "",
+        _ if inexact == Some(&None) => "",
         (StopReason::Budget, _) => ", which were all that may be split",
         (StopReason::Exhausted, true) => ", and the file knows no more",
         (StopReason::Exhausted, false) => ", and there is nothing left to split at this depth",

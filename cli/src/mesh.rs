@@ -175,6 +175,9 @@ fn volume_by(rule: FillRule, mesh: &TriangleMesh) -> Result<Interval, Error> {
     Ok(measure(&solid, &frame, TOLERANCE, &control)?.volume)
 }
 
+/// Pairs of triangles that intersect, of which `info` tells the place.
+const PAIRS: usize = 5;
+
 /// What `info` tells of a mesh.
 #[derive(Serialize)]
 pub struct Info {
@@ -194,6 +197,10 @@ pub struct Info {
     skipped: u64,
     /// Where the file departs from its format, though it could be read.
     warnings: Vec<String>,
+    /// Pairs of triangles that intersect.
+    intersecting_pairs: u64,
+    /// Whether these are all: too many triangles close to each other end the search.
+    all_intersecting_pairs: bool,
     mesh: Mesh,
 }
 
@@ -205,6 +212,9 @@ impl Info {
         let fill = fill_rule(file.format);
         let may_overlap = report.overlapping_bodies + report.undecided_bodies > 0;
         let by_rule = (closed && may_overlap).then(|| volume_by(fill, &file.mesh)).transpose().of(input)?;
+        let pairs = file.mesh.intersecting_pairs(PAIRS, &Control::default()).of(input)?;
+        let mut mesh = Mesh::new(&file.mesh).of(input)?;
+        mesh.defects.extend(pairs.pairs.iter().map(Defect::intersecting));
         Ok(Info {
             format: format_name(file.format),
             unit: file.unit.map(LengthUnit::symbol),
@@ -217,7 +227,9 @@ impl Info {
             closed,
             skipped: file.skipped,
             warnings: in_words(&file.warnings),
-            mesh: Mesh::new(&file.mesh).of(input)?,
+            intersecting_pairs: pairs.count,
+            all_intersecting_pairs: pairs.is_complete,
+            mesh,
         })
     }
 
@@ -267,6 +279,10 @@ impl Info {
             ("welded", report.welded),
         ] {
             line(name, count(value));
+        }
+        match self.all_intersecting_pairs {
+            true => line("intersecting", counted(self.intersecting_pairs, "pair", "pairs")),
+            false => line("intersecting", format!("{} pairs or more", count(self.intersecting_pairs))),
         }
         if report.polygons > 0 {
             line("polygons", count(report.polygons));

@@ -2,8 +2,8 @@
 
 use crate::output::{count, ends, measured, number};
 use leafless::{
-    DefectKind, Error, Interval, MeshDefect, MeshReport, Octree, Proof, Statistics, StopReason, Tag,
-    TriangleMesh,
+    DefectKind, Error, IntersectingPair, Interval, MeshDefect, MeshReport, Octree, Proof, Statistics,
+    StopReason, Tag, TriangleMesh,
 };
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -321,6 +321,12 @@ impl Defect {
         };
         let (min, max) = defect.bounds;
         Defect { kind, count: defect.count, length: defect.length, min, max }
+    }
+
+    /// Two triangles that intersect.
+    pub fn intersecting(pair: &IntersectingPair) -> Defect {
+        let (min, max) = pair.bounds;
+        Defect { kind: "intersecting", count: 2, length: 0.0, min, max }
     }
 
     /// The same for people, in columns.

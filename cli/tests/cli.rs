@@ -502,9 +502,11 @@ fn info_of_meshes() {
     let place = meshes();
     let info = place.run("info cube.stl --json").good().json();
     let expected = [
+        "all_intersecting_pairs",
         "bytes",
         "closed",
         "format",
+        "intersecting_pairs",
         "max",
         "mesh",
         "min",
@@ -517,6 +519,7 @@ fn info_of_meshes() {
     ];
     assert_eq!(keys(&info), expected);
     assert_eq!((&info["volume_by_rule"], &info["warnings"]), (&Value::Null, &Value::Array(vec![])));
+    assert_eq!((&info["intersecting_pairs"], &info["all_intersecting_pairs"]), (&0.into(), &true.into()));
     assert_eq!(
         (&info["format"], &info["unit"], &info["closed"]),
         (&"stl".into(), &Value::Null, &true.into())
@@ -837,8 +840,10 @@ fn measure_tells_what_is_proven() {
         "depth",
         "edge",
         "evaluations",
+        "exact",
         "inertia",
         "inertia_about_origin",
+        "inexact_reason",
         "input",
         "level",
         "max",
@@ -879,27 +884,74 @@ fn measure_tells_what_is_proven() {
         assert!(text.text().contains(line), "{text:?}");
     }
 
-    // A mesh is measured as well as is asked for, and no better.
-    let rough = place.run("measure cube.stl --bounds 0.9,0.9,0.9,2.2 --tolerance 0.2 --json").good().json();
+    // A closed mesh is measured exactly.
+    assert_eq!((&told["exact"], &told["inexact_reason"]), (&Value::Null, &Value::Null));
+    let known = place.run("measure cube.stl --json").good().json();
+    let (lower, upper) = volume(&known);
+    assert!(lower <= 8.0 && 8.0 <= upper && upper - lower < 1e-12, "{known}");
+    assert_eq!(
+        (&known["exact"], &known["splits"], &known["inexact_reason"]),
+        (&true.into(), &0.into(), &Value::Null)
+    );
+    assert!(place.run("measure cube.stl").good().text().contains("exact           yes"));
+    let clipped = place.run("measure cube.stl --bounds 2,2,2,2 --json").good().json();
+    assert_eq!((&clipped["exact"], &clipped["clipped"]), (&false.into(), &true.into()));
+
+    // One whose triangles intersect, here because each is there twice, is measured as well as is asked for, and no
+    // better.
+    let cube = place.bytes("cube.stl");
+    let (head, facets) = cube.split_at(84);
+    let count = 2 * u32::from_le_bytes(head[80..].try_into().unwrap());
+    place.write("double.stl", [&head[..80], &count.to_le_bytes(), facets, facets].concat());
+    let told = place.run("info double.stl --json").good().json();
+    assert!(told["intersecting_pairs"].as_u64() >= Some(12), "{told}");
+    assert!(place.run("info double.stl").good().text().contains("\nintersecting "));
+    let rough = place.run("measure double.stl --bounds 0.9,0.9,0.9,2.2 --tolerance 0.2 --json").good().json();
     let (lower, upper) = volume(&rough);
     assert!(lower < 8.0 && 8.0 < upper && upper - lower < 0.2 * upper && upper - lower > 0.02);
+    assert_eq!(rough["exact"], Value::Bool(false));
+    assert!(rough["inexact_reason"].as_str().unwrap().contains("intersect"), "{rough}");
     assert_eq!((&rough["depth"], &rough["measured"]), (&20.into(), &"tolerance".into()));
-    let few = place.run("measure cube.stl --bounds 0.9,0.9,0.9,2.2 --splits 100 --json").good().json();
-    assert_eq!((&few["splits"], &few["measured"]), (&100.into(), &"budget".into()));
+    let few = place.run("measure double.stl --bounds 0.9,0.9,0.9,2.2 --splits 100 --json").good().json();
+    assert!((1..=100).contains(&few["splits"].as_u64().unwrap()), "{few}");
+    assert_eq!(few["measured"], "budget");
     assert!(
         place
-            .run("measure cube.stl --bounds 0.9,0.9,0.9,2.2 --splits 100")
+            .run("measure double.stl --bounds 0.9,0.9,0.9,2.2 --splits 100")
             .good()
             .text()
-            .contains("splits          100, to level ")
+            .contains("which were all that may be split")
     );
     let shallow =
-        place.run("measure cube.stl --bounds 0.9,0.9,0.9,2.2 --depth 3 --tolerance 0 --json").good().json();
+        place.run("measure double.stl --bounds 0.9,0.9,0.9,2.2 --depth 3 --tolerance 0 --json").good().json();
     assert_eq!((&shallow["level"], &shallow["measured"]), (&3.into(), &"exhausted".into()));
     let one =
-        place.run("measure cube.stl --bounds 0.9,0.9,0.9,2.2 --tolerance 0.1 --threads 1 --json").good();
+        place.run("measure double.stl --bounds 0.9,0.9,0.9,2.2 --tolerance 0.1 --threads 1 --json").good();
     let two =
-        place.run("measure cube.stl --bounds 0.9,0.9,0.9,2.2 --tolerance 0.1 --threads 2 --json").good();
+        place.run("measure double.stl --bounds 0.9,0.9,0.9,2.2 --tolerance 0.1 --threads 2 --json").good();
+    assert_eq!(one.text(), two.text());
+
+    // A scene is measured as well as is asked for.
+    place.write("ball.csg", "sphere(2);");
+    let truth = 32.0 / 3.0 * std::f64::consts::PI;
+    let mut last = f64::INFINITY;
+    for tolerance in [0.2, 1e-2, 1e-4] {
+        let found = place.run(&format!("measure ball.csg --tolerance {tolerance} --json")).good().json();
+        let (lower, upper) = volume(&found);
+        assert!(lower < truth && truth < upper && upper - lower < tolerance * upper, "{found}");
+        assert!(upper - lower < last && upper - lower > 1e-3 * tolerance, "{found}");
+        last = upper - lower;
+        assert_eq!((&found["depth"], &found["measured"]), (&20.into(), &"tolerance".into()));
+    }
+    let rough = place.run("measure ball.csg --tolerance 0 --absolute 2 --json").good().json();
+    let (lower, upper) = volume(&rough);
+    assert!(upper - lower <= 2.0 && rough["measured"] == "tolerance", "{rough}");
+    let few = place.run("measure ball.csg --splits 100 --json").good().json();
+    assert!(few["splits"].as_u64().unwrap() <= 100 && few["measured"] == "budget", "{few}");
+    let shallow = place.run("measure ball.csg --depth 3 --tolerance 0 --json").good().json();
+    assert_eq!((&shallow["level"], &shallow["measured"]), (&3.into(), &"exhausted".into()));
+    let one = place.run("measure ball.csg --tolerance 1e-3 --threads 1 --json").good();
+    let two = place.run("measure ball.csg --tolerance 1e-3 --threads 2 --json").good();
     assert_eq!(one.text(), two.text());
 
     // A file knows no more than it was made with, and says so.

@@ -56,7 +56,7 @@ int main(void) {
     int i;
     options.max_splits = 200000; /* for each question */
     if (!s) s = housing(&fixed);
-    if (!s) s = leafless_solid_measure(fixed, &frame, 0.02, NULL, &measures);
+    if (!s) s = leafless_solid_measure(fixed, &frame, 0.02, 0.0, NULL, &measures);
     if (!s) {
         printf("housing: volume %.0f to %.0f", measures.volume_model.lower, measures.volume_model.upper);
         printf(", centre of mass at z = %.2f to %.2f\n", measures.centroid_model[2].lower,

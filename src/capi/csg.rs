@@ -3,9 +3,10 @@
 use super::boundary::{Failure, array, guard, out, shared, slice};
 use super::solid::{give, give_any, leafless_solid};
 use super::status::leafless_status;
+use crate::error::Error;
 use crate::lattice::Affine;
 use crate::memory;
-use crate::solid::{Csg, HalfSpace, Motion, Solid, Touch};
+use crate::solid::{Adaptive, Csg, HalfSpace, MOST_NESTED, Motion, Solid, Touch};
 use alloc::vec::Vec;
 
 /// What counts as touching: when a cell that meets the boundary of an expression of half-spaces, but not its
@@ -540,6 +541,34 @@ pub unsafe extern "C" fn leafless_solid_placed(
             motion.write(operand.motion().into())?;
         }
         solid.write(give_any(placed))
+    })
+}
+
+/// A solid whose cells are not split where its surface is known to lie within a layer no thicker than a tolerance:
+/// an octree of it stays coarse where the surface is flat. Such cells stay PARTIAL. Half-spaces know such layers;
+/// a solid that knows none is split as ever.
+///
+/// - Buffers: none.
+/// - Result: `*solid`, a new solid.
+/// - Errors: LEAFLESS_E_ARGUMENT if `tolerance_model` is negative or not a number; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: the caller's, to be given to leafless_solid_free; `operand` stays the caller's.
+/// - Threads: any.
+/// - Untrusted input: any solid.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_solid_adaptive(
+    operand: *const leafless_solid,
+    tolerance_model: f64,
+    solid: *mut *mut leafless_solid,
+) -> leafless_status {
+    guard(|| unsafe {
+        let operand = shared(operand, "operand")?.solid.solid();
+        if operand.nesting() >= MOST_NESTED {
+            let what = "solids of other kinds within each other";
+            return Err(Error::Limit { what, limit: MOST_NESTED.into() }.into());
+        }
+        let solid = out(solid, "solid")?;
+        solid.write(give(Adaptive::new(operand.clone(), tolerance_model)?))
     })
 }
 

@@ -7,7 +7,7 @@ use super::octree::leafless_proof;
 use super::solid::leafless_solid;
 use super::status::leafless_status;
 use crate::lattice::Interval;
-use crate::query::{Extent, MassProperties, StopReason, bounding_box, measure};
+use crate::query::{Extent, MassProperties, StopReason, Tolerance, bounding_box, measure};
 
 /// Why a search or a measurement ended.
 #[derive(Clone, Copy)]
@@ -52,7 +52,7 @@ pub struct leafless_measures {
     pub proof: leafless_proof,
     /// How many times a cell was split.
     pub splits: u64,
-    /// Every undecided cell of a lower level was split, if the solid could.
+    /// The finest level of which cells were looked at.
     pub level: u32,
     /// Why it ended.
     pub measured: leafless_measured,
@@ -123,15 +123,16 @@ impl From<Extent> for leafless_extent {
     }
 }
 
-/// Measures a solid in the universe of a frame, without building an octree: the largest undecided cells are
-/// split first, until the width of the volume's interval is at most `tolerance` times its middle,
-/// `max_splits` of the options is spent, or nothing is left to split at the frame's depth. The result is the
-/// same bit for bit for any number of threads.
+/// Measures a solid in the universe of a frame, without building an octree: the cells of which most is in doubt are
+/// split first, until the width of the volume's interval is at most `relative` times its middle or at most
+/// `absolute_model` (cubic model units), `max_splits` of the options is spent (2^26 splits without it), or nothing is
+/// left to split at the frame's depth. Under a budget the last whole pass counts. The result is the same bit for
+/// bit for any number of threads.
 ///
 /// - Buffers: `frame`, one struct; `options`, one struct or NULL, of which `max_nodes` and `max_bytes` do not
 ///   matter; `measures`, one struct.
 /// - Result: `*measures`.
-/// - Errors: LEAFLESS_E_ARGUMENT, also if `tolerance` is negative or not a number; LEAFLESS_E_FRAME if the
+/// - Errors: LEAFLESS_E_ARGUMENT, also if a tolerance is negative or not a number; LEAFLESS_E_FRAME if the
 ///   solid belongs to another frame; LEAFLESS_E_CALLBACK; LEAFLESS_E_DAMAGED; LEAFLESS_E_CANCELLED;
 ///   LEAFLESS_E_NO_MEMORY.
 /// - Ownership: nothing changes hands.
@@ -142,7 +143,8 @@ impl From<Extent> for leafless_extent {
 pub unsafe extern "C" fn leafless_solid_measure(
     solid: *const leafless_solid,
     frame: *const leafless_frame,
-    tolerance: f64,
+    relative: f64,
+    absolute_model: f64,
     options: *const leafless_options,
     measures: *mut leafless_measures,
 ) -> leafless_status {
@@ -150,22 +152,28 @@ pub unsafe extern "C" fn leafless_solid_measure(
         let solid = &shared(solid, "solid")?.solid;
         let frame = self::frame(frame)?;
         let measures = out(measures, "measures")?;
+        let tolerance = Tolerance { relative, absolute: absolute_model };
         measures.write(controlled(options, |control| measure(solid, &frame, tolerance, control))?.into())
     })
 }
 
-/// The bounding box of a solid in the universe of a frame: each of its sides until the interval is at most
-/// `tolerance_model` or one finest cell wide, `max_splits` of the options is spent, or nothing is left to
-/// split. Only cells that may reach beyond what is proven solid are split. With n the universe's edge over
-/// the tolerance that takes some n splits for a curved side and, unless it lies on a plane of the lattice, n²
-/// for a flat one.
+/// The bounding box of a solid in the universe of a frame: six intervals, one for each side. The search splits
+/// only cells that may reach beyond what is proven solid. It ends with LEAFLESS_MEASURED_TOLERANCE if no interval
+/// is wider than `tolerance_model`, or than 2^-44 of the universe's edge; with LEAFLESS_MEASURED_EXHAUSTED if the outermost undecided cells cannot be
+/// split, and either the interval is no wider than one of the frame's finest cells, or nothing else is left to
+/// split; with LEAFLESS_MEASURED_BUDGET after `max_splits` of the options, or 2^20 splits if that is 0.
+///
+/// Of half-spaces and what is made of them, a corner of three plane faces is known to rounding, and a curved side
+/// to some 10^-12 of the universe's edge at depth 20, after some hundred splits; a side that a cylinder touches
+/// along a line takes more. Of other solids, with n the universe's edge over the tolerance, a curved side takes
+/// some n splits and, unless it lies on a plane of the lattice, a flat one n².
 ///
 /// - Buffers: as leafless_solid_measure; `extent`, one struct.
 /// - Result: `*extent`.
-/// - Errors: as leafless_solid_measure, with `tolerance_model` for `tolerance`.
+/// - Errors: as leafless_solid_measure, with `tolerance_model` for its tolerances.
 /// - Ownership: nothing changes hands.
 /// - Threads: any; works in the calling thread.
-/// - Untrusted input: as leafless_solid_measure.
+/// - Untrusted input: any solid; the default of `max_splits` bounds the work.
 /// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_solid_bounding_box(

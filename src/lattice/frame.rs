@@ -62,8 +62,8 @@ impl Frame {
     /// powers of two, and the origin is a multiple of as great a power of two as possible. Faces at 25, 12.5
     /// or −0.75 then lie on lattice planes. Such a face needs no cells along it, and the certified volume is
     /// exact there. A part of 100 × 60 × 30 with four bores and four rounded edges is an octree of 30 820 nodes at
-    /// depth 9, and its volume to 2 % takes 7 544 splits; with [`around`](Self::around) it is 208 377 nodes, and
-    /// 830 785 splits.
+    /// depth 9, and its volume to 2 % takes 419 splits; with [`around`](Self::around) it is 208 377 nodes, and
+    /// 2 177 splits. (For solids without slabs, as octrees, the splits differ by a factor of a hundred.)
     ///
     /// The edge is the smallest power of two that holds the bounds, so it is up to twice their longest extent
     /// L, and cells are up to twice as long as those of [`around`](Self::around). On each axis a 128th of the

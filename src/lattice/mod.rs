@@ -25,6 +25,7 @@ mod cube;
 pub(crate) mod exact;
 mod frame;
 mod interval;
+mod moments;
 pub(crate) mod morton;
 pub(crate) mod valid;
 mod window;
@@ -36,6 +37,7 @@ pub(crate) use composed::Composed;
 pub use cube::Cube;
 pub use frame::Frame;
 pub use interval::Interval;
+pub use moments::VolumeMoments;
 pub(crate) use valid::{LARGEST, SMALLEST};
 pub(crate) use window::Window;
 

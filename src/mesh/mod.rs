@@ -4,11 +4,15 @@
 //! Nothing here knows of cells. What the surface encloses, and how a cell of it is split, is `solid/mesh/`.
 //!
 //! From the bottom up, each file uses only files named before it: `positions` (equal vertices), `topology`
-//! (edges and bodies), `boundary` (loops of edges), `surface` (the mesh); on the mesh `weld`, `sew`,
-//! `placement`, `defects`, `overlap` and `report`; `polygon` (triangulation) and `polyhedron`.
+//! (edges and bodies), `boundary` (loops of edges), `signs` (exact determinants), `surface` (the mesh); on the
+//! mesh `weld`, `sew`, `placement`, `defects`, `overlap` and `report`; `tree` (boxes around triangles),
+//! `intersections`, `sheets` (winding numbers on both sides) and `moments` (volume and inertia); `polygon`
+//! (triangulation) and `polyhedron`.
 
 mod boundary;
 mod defects;
+mod intersections;
+mod moments;
 mod overlap;
 mod placement;
 #[cfg(feature = "std")]
@@ -18,13 +22,18 @@ mod polyhedron;
 mod positions;
 mod report;
 mod sew;
+mod sheets;
+mod signs;
 mod surface;
 mod topology;
+mod tree;
 mod turned;
 mod weld;
 
 pub(crate) use boundary::Loops;
 pub use defects::{DefectKind, MeshDefect};
+pub use intersections::{IntersectingPair, IntersectingPairs};
+pub use moments::MeshMoments;
 #[cfg(feature = "std")]
 pub(crate) use polygon::flatness;
 #[cfg(feature = "std")]

@@ -3,10 +3,11 @@
 use super::StopReason;
 use super::proven::Proven;
 use super::queue::Queue;
+use super::reach;
 use super::subject::Subject;
 use crate::control::{Control, Job, WHOLE};
 use crate::error::Error;
-use crate::lattice::{Cell, Cube, Frame, Interval, MAX_DEPTH, valid};
+use crate::lattice::{Cell, Frame, Interval, MAX_DEPTH, valid};
 use crate::octree::Proof;
 use crate::op::gathered::Part;
 use crate::solid::{Classifier, Solid, Verdict, Worker};
@@ -25,23 +26,39 @@ pub struct Extent {
     pub proof: Proof,
     /// Whether the solid may go on outside of the universe, or does.
     pub clipped: bool,
-    /// Why it ended; [`Tolerance`](StopReason::Tolerance) means that no interval is wider than was asked for,
-    /// or than one of the frame's finest cells.
+    /// Why it ended. [`Tolerance`](StopReason::Tolerance) means that no interval is wider than was asked for,
+    /// or than 2^-44 of the universe's edge, except for the rounding of the corners to doubles.
     pub stop_reason: StopReason,
     /// How many times a cell was split.
     pub splits: u64,
 }
 
-/// The bounding box of `solid` in the universe of `frame`: each of its sides until the interval is at most
-/// `tolerance` (model units) or one finest cell wide, `max_splits` of `control` are spent, or nothing is left
-/// to split. The result does not depend on the number of threads, since there is only one.
+/// Splits after which [`bounding_box`] ends if `control.max_splits` sets no other limit: some seconds, and some
+/// hundred megabytes at the most.
+pub const BOUNDING_BOX_SPLITS: u64 = 1 << 20;
+
+/// The bounding box of `solid` in the universe of `frame`: six intervals, one for each side. The result does not
+/// depend on the number of threads, since there is only one.
 ///
-/// Only cells are split that may reach beyond what is proven solid, those first that reach farthest. With n
-/// the edge of the universe over the tolerance that takes some n splits for a curved side and, unless it lies
-/// on a plane of the lattice, n² for a flat one, because each cell in front of it must be proven empty. Time
-/// is linear in the splits but for a logarithm, and so is memory. Set `max_splits` if it may be that nothing
-/// is proven full, as of a sheet without thickness: then no tolerance is met, and all that is undecided is
-/// split. Each side gets its share of what those before it have left.
+/// The search splits only cells that may reach beyond what is proven solid, those first that reach farthest. It
+/// ends, and the result's `stop_reason` says why:
+/// - `Tolerance`: no interval is wider than `tolerance` (model units), or than 2^-44 of the universe's edge.
+/// - `Exhausted`: the outermost undecided cells cannot be split, and either the interval is no wider than one of
+///   the frame's finest cells, or nothing else is left to split.
+/// - `Budget`: `control.max_splits` cells were split, or [`BOUNDING_BOX_SPLITS`] if that is `None`. Each side gets
+///   its share of what the sides before it have left.
+///
+/// Where the solid knows the slabs of a cell ([`Enclosure`](crate::Enclosure)), a linear program bounds how far it
+/// reaches there. A corner of three plane faces is exact to rounding as soon as a cell holds no more than these,
+/// wherever the faces lie: a tilted plate takes 28 splits. At a curved side each level makes the interval four
+/// times as narrow. A level takes some ten splits a side, and twice as many as the level before where the side is
+/// touched along a line or a circle, as an upright cylinder's is. The tip of a cone, and a corner of more than three
+/// faces, are known to some finest cells.
+///
+/// Without slabs, and with n the edge of the universe over the tolerance, a curved side takes some n splits. A flat
+/// one takes n², unless it lies on a plane of the lattice, because each cell in front of it must be proven empty.
+///
+/// Time is linear in the splits but for a logarithm, and so is memory.
 ///
 /// # Errors
 /// [`Error::Argument`] if `tolerance` is negative or not a number; what the solid refuses, as
@@ -50,9 +67,9 @@ pub struct Extent {
 /// ```
 /// use leafless::{Control, Csg, Frame, bounding_box};
 /// let frame = Frame::new([-1.0; 3], 2.0, 20)?;
-/// let extent = bounding_box(&Csg::ball([0.1, 0.0, 0.0], 0.75)?, &frame, 0.001, &Control::default())?;
+/// let extent = bounding_box(&Csg::ball([0.1, 0.0, 0.0], 0.75)?, &frame, 1e-9, &Control::default())?;
 /// let [min, max] = extent.corners.unwrap();
-/// assert!(min[0].contains(-0.65) && max[0].contains(0.85) && max[0].width() <= 0.001);
+/// assert!((min[0].lower + 0.65).abs() < 2e-9 && max[0].contains(0.85) && max[0].width() <= 2e-9);
 /// # Ok::<(), leafless::Error>(())
 /// ```
 pub fn bounding_box<S: Solid>(
@@ -64,7 +81,7 @@ pub fn bounding_box<S: Solid>(
     valid::tolerance("tolerance", tolerance)?;
     let job = Job::new(control);
     // The cast rounds down, and saturates.
-    let goal = ((tolerance / frame.cell_size()) as u32).max(1);
+    let goal = ((tolerance / frame.edge() * EDGE as f64) as u64).max(ROUNDING);
     let classifier = Proven(solid.on(frame, control)?);
     let mut search = Search {
         subject: Subject::new(&classifier, control)?,
@@ -76,7 +93,7 @@ pub fn bounding_box<S: Solid>(
         stuck: NOWHERE,
         open: Queue::new(),
     };
-    let budget = control.max_splits.unwrap_or(u64::MAX);
+    let budget = control.max_splits.unwrap_or(BOUNDING_BOX_SPLITS);
     let mut unfinished = false;
     let mark = search.subject.worker.mark();
     for side in 0..6 {
@@ -85,8 +102,8 @@ pub fn bounding_box<S: Solid>(
         search.subject.worker.release(mark);
         job.advance(WHOLE / 6 + if side == 0 { WHOLE % 6 } else { 0 });
     }
-    // Both are nowhere if the solid is empty, and the difference is large if nothing is proven FULL.
-    let wide = (0..6).any(|side| search.inner[side].saturating_sub(search.outer[side]) > goal);
+    // The difference is large if nothing is proven solid.
+    let wide = !search.is_empty() && (0..6).any(|side| search.width(side) > goal);
     Ok(Extent {
         corners: search.corners(),
         occupied: search.inner[0] != NOWHERE,
@@ -101,96 +118,187 @@ pub fn bounding_box<S: Solid>(
     })
 }
 
+/// The edge of the universe is 2^`UNITS` units: finer than doubles tell, and all lattice planes are integers.
+const UNITS: u32 = 60;
+const EDGE: u64 = 1 << UNITS;
+
+/// Rounding alone may keep an interval so wide.
+const ROUNDING: u64 = EDGE >> 44;
+
 /// Farther than any plane. (Differences saturate: a host that contradicts itself may put a solid before its
 /// bounds.)
-const NOWHERE: u32 = u32::MAX;
+const NOWHERE: u64 = u64::MAX;
 
-/// Where a cell begins, its height above the deepest level, the order of meeting.
-type Key = Reverse<(u32, u8, u64)>;
+/// Where the solid may begin in a cell, the cell's height above the deepest level, the order of meeting.
+type Key = Reverse<(u64, u8, u64)>;
 
 /// Sides are numbered: 0 to 2 the lower ones along x, y and z, 3 to 5 the upper ones. What lies at a side is
-/// told by its distance from the universe's face there, in finest cells.
+/// told by its distance from the universe's face there, in units.
 struct Search<'a, C: Classifier> {
     subject: Subject<'a, C>,
     frame: &'a Frame,
     job: &'a Job<'a>,
-    /// How many finest cells an interval may be wide.
-    goal: u32,
-    /// Where the first FULL cell that was met begins.
-    inner: [u32; 6],
-    /// Where the first cell begins that is not EMPTY.
-    outer: [u32; 6],
-    /// Where the first cell begins, seen from the present side, that is undecided and cannot be split.
-    stuck: u32,
+    /// How many units an interval may be wide.
+    goal: u64,
+    /// Where the solid begins as far as is proven: the first FULL cell, or the first point that an enclosure has
+    /// inside.
+    inner: [u64; 6],
+    /// Where the solid may begin.
+    outer: [u64; 6],
+    /// Where it may begin, seen from the present side, in undecided cells that cannot be split.
+    stuck: u64,
     /// Those that can be split.
     open: Queue<Key, (Cell, Part<C>)>,
 }
 
+/// The outward direction of a side.
+fn outward(side: usize) -> [f64; 3] {
+    let mut direction = [0.0; 3];
+    direction[side % 3] = if side < 3 { -1.0 } else { 1.0 };
+    direction
+}
+
+/// Half the edge of a cell.
+fn half(cell: Cell) -> u64 {
+    EDGE >> (cell.level + 1)
+}
+
+/// Where a cell begins, seen from a side.
+fn start(side: usize, cell: Cell) -> u64 {
+    let (at, edge) = (u64::from(cell.at[side % 3]), EDGE >> cell.level);
+    if side < 3 { at * edge } else { EDGE - (at + 1) * edge }
+}
+
 impl<C: Classifier> Search<'_, C> {
-    /// Where a cell begins, seen from a side.
-    fn start(&self, side: usize, cell: Cell) -> u32 {
-        let (lower, upper) = Cube { frame: self.frame, cell }.planes();
-        if side < 3 { lower[side] } else { self.frame.cells() - upper[side - 3] }
+    /// Whether no part of the universe may hold some of the solid.
+    fn is_empty(&self) -> bool {
+        self.outer.contains(&NOWHERE)
     }
 
-    /// Splits the cells that begin first, and of those the smallest. `false` if the share has ended it.
+    /// How much is open at a side.
+    fn width(&self, side: usize) -> u64 {
+        self.inner[side].saturating_sub(self.outer[side])
+    }
+
+    /// Splits the cells in which the solid may begin first, and of those the smallest. `false` if the share has
+    /// ended it.
     fn side(&mut self, side: usize, share: u64) -> Result<bool, Error> {
         self.job.check()?;
         let last = self.subject.splits + share;
+        let finest = EDGE >> self.frame.depth();
         (self.stuck, self.open) = (NOWHERE, Queue::new());
         let root = self.subject.worker.root()?;
-        self.note(side, Cell::ROOT, root)?;
+        self.note(side, Cell::ROOT, 0, root)?;
         loop {
-            let start = self.open.peek().map_or(NOWHERE, |entry| entry.key.0.0);
-            self.outer[side] = self.inner[side].min(self.stuck).min(start);
-            let is_known = self.inner[side].saturating_sub(self.outer[side]) <= self.goal;
-            let Some((cell, part)) = self.open.pop().filter(|_| !is_known) else { return Ok(true) };
+            let begin = self.open.peek().map_or(NOWHERE, |entry| entry.key.0.0);
+            self.outer[side] = self.inner[side].min(self.stuck).min(begin);
+            // Where a cell that cannot be split begins first, others could but raise the inner bound.
+            let goal = if self.stuck <= begin { self.goal.max(finest) } else { self.goal };
+            if self.width(side) <= goal {
+                return Ok(true);
+            }
+            let Some((cell, part)) = self.open.pop() else { return Ok(true) };
             if self.subject.splits == last {
                 return Ok(false);
             }
             self.job.check()?;
             for (octant, verdict) in (0..8).zip(self.subject.split(cell, &part)?) {
-                self.note(side, cell.child(octant), verdict)?;
+                self.note(side, cell.child(octant), begin, verdict)?;
             }
         }
     }
 
-    fn note(&mut self, side: usize, cell: Cell, verdict: Verdict<Part<C>>) -> Result<(), Error> {
-        let start = self.start(side, cell);
+    /// Takes in what is known of a cell whose parent's part of the solid does not begin before `parent`.
+    fn note(&mut self, side: usize, cell: Cell, parent: u64, verdict: Verdict<Part<C>>) -> Result<(), Error> {
+        let mut begin = parent.max(start(side, cell));
         match verdict {
             Verdict::Empty => {}
             Verdict::Full => {
                 for side in 0..6 {
-                    self.inner[side] = self.inner[side].min(self.start(side, cell));
+                    self.inner[side] = self.inner[side].min(start(side, cell));
                 }
             }
-            Verdict::Partial(part) if cell.level < self.frame.depth() => {
-                let key = Reverse((start, MAX_DEPTH - cell.level, self.open.met()));
-                self.open.push(key, (cell, part))?;
+            // Such a cell cannot widen the box.
+            _ if begin >= self.inner[side] => {}
+            Verdict::Undecided => self.stuck = self.stuck.min(begin),
+            Verdict::Partial(part) => {
+                if let Some(enclosure) = self.subject.worker.enclosure(cell, &part)? {
+                    let reach = reach::upper(&enclosure, outward(side));
+                    if reach == f64::NEG_INFINITY {
+                        return Ok(());
+                    }
+                    begin = begin.max(distance(side, cell, reach));
+                    if begin < self.inner[side]
+                        && let Some(point) = reach::witness(&enclosure, outward(side))
+                    {
+                        self.note_point(cell, point);
+                    }
+                }
+                let can_split = cell.level < self.frame.depth();
+                if begin < self.inner[side] && can_split {
+                    let key = Reverse((begin, MAX_DEPTH - cell.level, self.open.met()));
+                    self.open.push(key, (cell, part))?;
+                } else if begin < self.inner[side] {
+                    self.stuck = self.stuck.min(begin);
+                }
             }
-            Verdict::Undecided | Verdict::Partial(_) => self.stuck = self.stuck.min(start),
         }
         Ok(())
     }
 
+    /// Takes in a point of the solid, in half edges from a cell's centre.
+    fn note_point(&mut self, cell: Cell, point: [f64; 3]) {
+        for side in 0..6 {
+            let axis = side % 3;
+            let reach = if side < 3 { -point[axis] } else { point[axis] };
+            // One more where the distance is not a whole number of units.
+            let half = half(cell) as f64;
+            let uneven = u64::from(libm::ceil(reach * half) != reach * half);
+            self.inner[side] = self.inner[side].min(distance(side, cell, reach) + uneven);
+        }
+    }
+
     fn corners(&self) -> Option<[[Interval; 3]; 2]> {
-        if self.outer[0] == NOWHERE {
+        if self.is_empty() {
             return None;
         }
         let mut corners = [[Interval::exactly(0.0); 3]; 2];
         for axis in 0..3 {
-            // With nothing proven FULL, each side may be wherever the solid may be.
+            // With nothing proven solid, each side may be wherever the solid may be.
             let reach = |side: usize, other: usize| match self.inner[side] {
-                NOWHERE => self.frame.cells().saturating_sub(self.outer[other]),
+                NOWHERE => EDGE.saturating_sub(self.outer[other]),
                 inner => inner,
             };
             let (near, far) = (axis, axis + 3);
-            let plane = |i: u32| self.frame.plane(axis, i);
-            let between = |a: u32, b: u32| Interval { lower: plane(a).lower, upper: plane(b).upper };
-            let opposite = |i: u32| self.frame.cells().saturating_sub(i);
+            let between = |a: u64, b: u64| Interval {
+                lower: self.coordinate(axis, a).lower,
+                upper: self.coordinate(axis, b).upper,
+            };
+            let opposite = |distance: u64| EDGE.saturating_sub(distance);
             corners[0][axis] = between(self.outer[near], reach(near, far));
             corners[1][axis] = between(opposite(reach(far, near)), opposite(self.outer[far]));
         }
         Some(corners)
     }
+
+    /// The coordinate that lies so many units above the universe's lower face.
+    fn coordinate(&self, axis: usize, units: u64) -> Interval {
+        let shift = UNITS - u32::from(self.frame.depth());
+        if units.trailing_zeros() >= shift {
+            return self.frame.plane(axis, (units >> shift) as u32);
+        }
+        // The quotient is exact, being by a power of two.
+        let unit = Interval::exactly(self.frame.edge() / EDGE as f64);
+        let origin = Interval::exactly(self.frame.origin()[axis]);
+        origin.plus(Interval::of_integer(units.into()).times(unit))
+    }
+}
+
+/// How far from the universe's face at a side the points of a cell lie, rounded down, that reach so far (−1 to 1)
+/// from its centre.
+fn distance(side: usize, cell: Cell, reach: f64) -> u64 {
+    let half = half(cell);
+    // The product is exact, being with a power of two, and at most half an edge of the universe.
+    let beyond = libm::ceil(reach.clamp(-1.0, 1.0) * half as f64) as i64;
+    (start(side, cell) + half).saturating_add_signed(-beyond)
 }

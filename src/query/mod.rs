@@ -1,6 +1,7 @@
 //! Questions: such as a stored octree answers in place, and such as any solids answer.
 
 mod clearance;
+mod cut;
 mod descent;
 mod extent;
 mod interference;
@@ -9,13 +10,14 @@ mod point;
 mod probe;
 mod proven;
 mod queue;
+mod reach;
 mod region;
 mod subject;
 
 pub use clearance::{CLEARANCE_SPLITS, Clearance, clearance};
-pub use extent::{Extent, bounding_box};
+pub use extent::{BOUNDING_BOX_SPLITS, Extent, bounding_box};
 pub use interference::{Interference, Overlap, interference, interference_of};
-pub use measure::{MassProperties, StopReason, measure};
+pub use measure::{MEASURE_SPLITS, MassProperties, StopReason, Tolerance, measure};
 pub use point::{Membership, PointCursor};
 pub use probe::contains;
 pub use region::{Region, classify_box};

@@ -2,9 +2,9 @@
 
 use crate::control::Control;
 use crate::error::Error;
-use crate::lattice::{Cell, Frame};
+use crate::lattice::{Cell, Frame, VolumeMoments};
 use crate::octree::{Proof, Tag};
-use crate::solid::{Classifier, Verdict, Worker};
+use crate::solid::{Classifier, Enclosure, Verdict, Worker};
 use alloc::vec::Vec;
 
 /// A solid on a frame, of whose verdicts those are believed that are proven: a FULL or an EMPTY cell of which
@@ -33,6 +33,10 @@ impl<C: Classifier> Classifier for Proven<C> {
 
     fn proof(&self) -> Proof {
         self.0.proof()
+    }
+
+    fn moments(&self, control: &Control<'_>) -> Result<Option<VolumeMoments>, Error> {
+        if self.0.proof().is_certified() { self.0.moments(control) } else { Ok(None) }
     }
 }
 
@@ -85,6 +89,19 @@ impl<W: Worker> Worker for ProvenWorker<W> {
 
     fn recall(&mut self, cell: Cell) -> Option<W::Part> {
         self.inner.recall(cell)
+    }
+
+    fn enclosure(&mut self, cell: Cell, part: &W::Part) -> Result<Option<Enclosure>, Error> {
+        let mut found = self.inner.enclosure(cell, part)?;
+        for slab in found.iter_mut().flat_map(|enclosure| &mut enclosure.slabs) {
+            if !self.proof.full {
+                slab.inner = f64::NEG_INFINITY;
+            }
+            if !self.proof.empty {
+                slab.outer = f64::INFINITY;
+            }
+        }
+        Ok(found)
     }
 
     fn likes_many(&self) -> bool {

@@ -1,7 +1,7 @@
 //! What is done alike with solids of all kinds, which this file therefore knows: they are wrapped, and they
 //! are moved.
 
-use super::{AnySolid, Csg, Erasable, SplitCounter, Transform};
+use super::{Adaptive, AnySolid, Csg, Erasable, SplitCounter, Transform};
 use crate::error::Error;
 use crate::lattice::Affine;
 use core::any::Any;
@@ -53,6 +53,8 @@ fn nesting_in(solid: &dyn Any) -> u32 {
         .or_else(|| of(solid, |moved: &Transform<Csg>| moved.solid().nesting()))
         .or_else(|| of(solid, |counted: &SplitCounter<AnySolid>| counted.solid().nesting()))
         .or_else(|| of(solid, |counted: &SplitCounter<Csg>| counted.solid().nesting()))
+        .or_else(|| of(solid, |adaptive: &Adaptive<AnySolid>| adaptive.solid().nesting()))
+        .or_else(|| of(solid, |adaptive: &Adaptive<Csg>| adaptive.solid().nesting()))
         .or_else(|| nesting_in_prepared(solid))
         .unwrap_or(0)
 }

@@ -9,7 +9,7 @@ use super::forward::{forward_solid, forward_worker};
 use super::{Classifier, Crossing, Enclosure, Fingerprint, Motion, Segment, Solid, Subtree, Verdict, Worker};
 use crate::control::Control;
 use crate::error::Error;
-use crate::lattice::{Affine, Bounds, Cell, Frame};
+use crate::lattice::{Affine, Bounds, Cell, Frame, VolumeMoments};
 use crate::memory;
 use crate::octree::{Block, Planes, Proof, Tag};
 use alloc::boxed::Box;
@@ -173,6 +173,7 @@ trait ErasedClassifier: Send + Sync {
     fn worker(&self) -> Result<AnyWorker, Error>;
     fn exterior(&self) -> Tag;
     fn proof(&self) -> Proof;
+    fn moments(&self, control: &Control<'_>) -> Result<Option<VolumeMoments>, Error>;
 }
 
 impl<C: Classifier<Worker: Worker<Part: 'static> + 'static>> ErasedClassifier for C {
@@ -193,6 +194,10 @@ impl<C: Classifier<Worker: Worker<Part: 'static> + 'static>> ErasedClassifier fo
     fn proof(&self) -> Proof {
         Classifier::proof(self)
     }
+
+    fn moments(&self, control: &Control<'_>) -> Result<Option<VolumeMoments>, Error> {
+        Classifier::moments(self, control)
+    }
 }
 
 impl Classifier for AnyClassifier {
@@ -212,6 +217,10 @@ impl Classifier for AnyClassifier {
 
     fn proof(&self) -> Proof {
         self.0.proof()
+    }
+
+    fn moments(&self, control: &Control<'_>) -> Result<Option<VolumeMoments>, Error> {
+        self.0.moments(control)
     }
 }
 

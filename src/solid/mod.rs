@@ -5,6 +5,7 @@
 //! callback. Whatever wants a shape puts it on a frame, takes a [`Worker`] and asks that. Each producer is
 //! one file, and none knows the others.
 
+mod adaptive;
 mod any;
 mod callback;
 mod csg;
@@ -21,6 +22,7 @@ mod stored;
 mod subtree;
 mod transform;
 
+pub use adaptive::Adaptive;
 pub use callback::Callback;
 pub use csg::{Csg, HalfSpace, Touch};
 #[cfg(feature = "scene")]
@@ -41,7 +43,7 @@ pub(crate) use transform::TransformClassifier;
 
 use crate::control::Control;
 use crate::error::Error;
-use crate::lattice::{Affine, Bounds, Cell, Frame};
+use crate::lattice::{Affine, Bounds, Cell, Frame, VolumeMoments};
 use crate::memory;
 use crate::octree::{Block, Planes, Proof, Tag};
 use alloc::vec::Vec;
@@ -249,6 +251,16 @@ pub trait Classifier: Clone + Send + Sync {
     /// What the verdicts prove, if not all that they say: those of a stored octree prove what its cells do.
     fn proof(&self) -> Proof {
         Proof::CERTIFIED
+    }
+
+    /// The volume and the moments of the whole shape, inside and outside of the universe, if they are known
+    /// without splitting cells. `None`, the default, if they are not. They are proven as verdicts are.
+    ///
+    /// # Errors
+    /// [`Error::OutOfMemory`], and [`Error::Cancelled`] by `control`.
+    fn moments(&self, control: &Control<'_>) -> Result<Option<VolumeMoments>, Error> {
+        let _ = control;
+        Ok(None)
     }
 }
 

@@ -4,7 +4,7 @@ use super::forward::{forward_solid, forward_worker};
 use super::{Classifier, Solid, Verdict, Worker};
 use crate::control::Control;
 use crate::error::Error;
-use crate::lattice::{Cell, Frame, MAX_DEPTH};
+use crate::lattice::{Cell, Frame, MAX_DEPTH, VolumeMoments};
 use crate::octree::{Proof, Tag};
 use alloc::sync::Arc;
 use core::sync::atomic::{AtomicU64, Ordering::Relaxed};
@@ -89,6 +89,10 @@ impl<C: Classifier> Classifier for CountingClassifier<C> {
 
     fn proof(&self) -> Proof {
         self.inner.proof()
+    }
+
+    fn moments(&self, control: &Control<'_>) -> Result<Option<VolumeMoments>, Error> {
+        self.inner.moments(control)
     }
 }
 

@@ -1,6 +1,7 @@
-//! What the moments of the FULL and of the PARTIAL cells prove of the solid.
+//! What the moments of two sets prove of a solid that lies between them.
 //!
-//! The solid S contains the FULL cells F, and the FULL and PARTIAL cells together, A, contain it. All its
+//! The solid S contains the FULL cells and the parts of PARTIAL ones that are known to be inside, F. It lies in A, which
+//! is F and what is open: PARTIAL cells, or the parts of them that are not decided. All its
 //! volume integrals of one sign are therefore bounded by those of F and of A, and so is more:
 //!
 //! - The matrix ∫ x xᵀ of second moments about a point grows with the set in the order of Loewner: the
@@ -10,10 +11,10 @@
 //! - From L ≼ M ≼ U follows, for elements off the diagonal, |2 Mij − Lij − Uij| ≤ √(Δii Δjj) with Δ = U − L.
 //!   (Both M − L and U − M have Mij² ≤ Mii Mjj; then Cauchy–Schwarz.)
 //! - The same holds of the matrix of the moments of 1 and x − c: ∫ (x − c) over S is at most the mean of
-//!   those over F and A plus ½ √(V ∫ (x − c)²) of the PARTIAL cells of volume V. (Scarf's bound.) Where that
+//!   those over F and A plus ½ √(V ∫ (x − c)²) of what is open, of volume V. (Scarf's bound.) Where that
 //!   is 0, no centroid lies beyond c; elsewhere none further than that over the volume of F.
 
-use super::moments::{Moments, PAIRS};
+use super::moments::{BITS, Moments, PAIRS, UNIVERSE};
 use super::walk::Found;
 use crate::lattice::exact::sqrt;
 use crate::lattice::{Frame, Interval};
@@ -27,14 +28,40 @@ pub(super) type Tensor = [[Interval; 3]; 3];
 const ZERO: Interval = Interval::exactly(0.0);
 const HALF: Interval = Interval::exactly(0.5);
 const THREE: Interval = Interval::exactly(3.0);
+/// The unit of moments, as a share of what it would be without bits behind the point.
+const UNIT: Interval = Interval::exactly(1.0 / (1u64 << BITS) as f64);
 
-/// The FULL and the PARTIAL cells.
-pub(super) struct Known<'f> {
-    pub(super) frame: &'f Frame,
+/// The moments of F and of what is open.
+pub(super) struct Known {
+    /// The universe with grains as its finest cells.
+    pub(super) frame: Frame,
     pub(super) found: Found,
 }
 
-impl Known<'_> {
+/// Moments with their errors.
+struct Bounded {
+    volume: Interval,
+    first: [Interval; 3],
+    second: [Interval; 6],
+}
+
+impl Bounded {
+    fn new(moments: &Moments) -> Bounded {
+        let error = moments.error;
+        let within = |sum: i128, error: i128| Interval {
+            lower: Interval::of_integer(sum - error).lower,
+            upper: Interval::of_integer(sum + error).upper,
+        };
+        Bounded {
+            volume: within(moments.volume, error),
+            // No two points of the universe are further apart than 2^21 half grains along an axis.
+            first: moments.first.map(|sum| within(sum, error << 22)),
+            second: moments.second.map(|sum| within(sum, 3 * (error << 43))),
+        }
+    }
+}
+
+impl Known {
     fn all(&self) -> Moments {
         self.found.full + self.found.open
     }
@@ -44,39 +71,40 @@ impl Known<'_> {
         0.5 * self.frame.cell_size()
     }
 
-    /// From finest cells to cubic model units.
+    /// From the units of moments to cubic model units.
     fn to_model(&self, volume: Interval) -> Interval {
         let size = Interval::exactly(self.frame.cell_size());
-        let Interval { lower, upper } = volume.times(size).times(size).times(size);
-        Interval { lower: lower.max(0.0), upper }
+        volume.times(UNIT).times(size).times(size).times(size)
     }
 
     pub(super) fn volume(&self) -> Interval {
-        let (full, all) =
-            (Interval::of_integer(self.found.full.volume), Interval::of_integer(self.all().volume));
-        self.to_model(Interval { lower: full.lower, upper: all.upper })
+        let (full, all) = (Bounded::new(&self.found.full).volume, Bounded::new(&self.all()).volume);
+        let Interval { lower, upper } = self.to_model(Interval { lower: full.lower, upper: all.upper });
+        let universe = self.to_model(Interval::of_integer(UNIVERSE)).upper;
+        Interval { lower: lower.max(0.0), upper: upper.min(universe) }
     }
 
     /// None if nothing is proven full.
     pub(super) fn centroid(&self) -> Option<[Interval; 3]> {
-        if self.found.full.volume == 0 {
+        if self.found.full.volume <= self.found.full.error {
             return None;
         }
         let point = self.found.full.first.map(|first| 2 * nearest(first, 2 * self.found.full.volume));
-        let (full, open) = (self.found.full.about(point), self.found.open.about(point));
+        let [full, open] = [self.found.full, self.found.open].map(|m| Bounded::new(&m.about(point)));
         Some([0, 1, 2].map(|axis| {
-            let of = |sign: i128| {
+            let of = |sign: f64| {
+                let signed = |sum: Interval| sum.times(Interval::exactly(sign));
                 farthest(
                     full.volume,
-                    sign * full.first[axis],
+                    signed(full.first[axis]),
                     open.volume,
-                    sign * open.first[axis],
+                    signed(open.first[axis]),
                     open.second[axis],
                 )
             };
             let last = 2 * self.frame.cells() as i128;
             let universe = Interval { lower: -point[axis] as f64, upper: (last - point[axis]) as f64 };
-            let from_point = Interval { lower: -of(-1), upper: of(1) }.within(universe);
+            let from_point = Interval { lower: -of(-1.0), upper: of(1.0) }.within(universe);
             let plane = self.frame.plane(axis, (point[axis] / 2) as u32);
             plane.plus(from_point.times(Interval::exactly(self.half())))
         }))
@@ -92,8 +120,8 @@ impl Known<'_> {
     /// About the solid's own centroid.
     pub(super) fn inertia_about_centroid(&self) -> Tensor {
         let [full, all] = [self.found.full, self.all()].map(|m| second_about_centroid(&m));
-        let spread = match self.found.open.volume {
-            0 => [0.0; 3],
+        let spread = match (self.found.open.volume, self.found.open.error) {
+            (0, 0) => [0.0; 3],
             _ => [0, 1, 2].map(|axis| all[axis].minus(full[axis]).upper),
         };
         self.tensor(&full, &all, spread)
@@ -110,10 +138,8 @@ impl Known<'_> {
         let point = planes.map(|plane| 2 * plane as i128);
         let offset =
             [0, 1, 2].map(|axis| self.frame.plane(axis, planes[axis]).over(Interval::exactly(self.half())));
-        let moments = moments.about(point);
-        let volume = Interval::of_integer(moments.volume);
-        let first = moments.first.map(Interval::of_integer);
-        let mut second = moments.second.map(|sum| Interval::of_integer(sum).over(THREE));
+        let Bounded { volume, first, second } = Bounded::new(&moments.about(point));
+        let mut second = second.map(|sum| sum.over(THREE));
         for (sum, (i, j)) in second.iter_mut().zip(PAIRS) {
             let mixed = offset[i].times(first[j]).plus(offset[j].times(first[i]));
             let square = if i == j { offset[i].square() } else { offset[i].times(offset[j]) };
@@ -128,7 +154,7 @@ impl Known<'_> {
         let half = Interval::exactly(self.half());
         let to_model = |second: Interval| {
             let size = Interval::exactly(self.frame.cell_size());
-            second.times(half).times(half).times(size).times(size).times(size)
+            second.times(UNIT).times(half).times(half).times(size).times(size).times(size)
         };
         let mut tensor = [[ZERO; 3]; 3];
         for (k, (i, j)) in (0..6).zip(PAIRS) {
@@ -156,14 +182,15 @@ impl Known<'_> {
 
 /// ∫ (x − c)(x − c)ᵀ about the set's own centroid c, in the units of [`Moments`] but for the factor 3.
 fn second_about_centroid(moments: &Moments) -> Symmetric {
-    if moments.volume == 0 {
-        return [ZERO; 6];
+    if moments.volume <= moments.error {
+        // Nothing, as far as is known; the greatest moments are those of the error.
+        let Bounded { second, .. } = Bounded::new(moments);
+        return second.map(|sum| Interval { lower: ZERO.lower.min(sum.lower), upper: sum.upper.max(0.0) });
     }
     // The half cell next to the centroid is the reference, so that little is taken off.
-    let moments = moments.about(moments.first.map(|first| nearest(first, moments.volume)));
-    let volume = Interval::of_integer(moments.volume);
-    let first = moments.first.map(Interval::of_integer);
-    let mut second = moments.second.map(|sum| Interval::of_integer(sum).over(THREE));
+    let about = moments.about(moments.first.map(|first| nearest(first, moments.volume)));
+    let Bounded { volume, first, second } = Bounded::new(&about);
+    let mut second = second.map(|sum| sum.over(THREE));
     for (sum, (i, j)) in second.iter_mut().zip(PAIRS) {
         let product = if i == j { first[i].square() } else { first[i].times(first[j]) };
         *sum = sum.minus(product.over(volume));
@@ -176,23 +203,23 @@ fn nearest(a: i128, b: i128) -> i128 {
     (2 * a + b) / (2 * b)
 }
 
-/// A number that the centroid's coordinate does not exceed, from moments of the FULL and the PARTIAL cells
-/// along the axis; `full_volume` is positive.
+/// A number that the centroid's coordinate does not exceed, from moments of F and of what is open along the axis;
+/// the volume of F is positive.
 fn farthest(
-    full_volume: i128,
-    full_first: i128,
-    open_volume: i128,
-    open_first: i128,
-    open_second: i128,
+    full_volume: Interval,
+    full_first: Interval,
+    open_volume: Interval,
+    open_first: Interval,
+    open_second: Interval,
 ) -> f64 {
-    let [v, m, w, p, q] =
-        [full_volume, full_first, open_volume, open_first, open_second].map(|sum| sum as f64);
-    let q = q / 3.0;
+    let [v, m, w, p, q] = [full_volume, full_first, open_volume, open_first, open_second]
+        .map(|sum| 0.5 * (sum.lower + sum.upper));
+    let (w, q) = (w.max(0.0), q / 3.0);
     // Newton's method leads to about where the excess is 0; whatever comes out, what follows is proven of it.
     let mut c = m / v;
     for _ in 0..20 {
         let about = p - c * w;
-        let root = sqrt(w * (q - 2.0 * c * p + c * c * w));
+        let root = sqrt((w * (q - 2.0 * c * p + c * c * w)).max(0.0));
         let excess = m - c * v + 0.5 * (about + root);
         let step = excess / (v + 0.5 * w + 0.5 * w * about / root);
         let is_worth_it = step.abs() > 1e-12 * (1.0 + c.abs());
@@ -201,11 +228,12 @@ fn farthest(
         }
         c += step;
     }
-    let [v, m, w, p, q] =
-        [full_volume, full_first, open_volume, open_first, open_second].map(Interval::of_integer);
     let at = Interval::exactly(c);
+    let zero = |sum: Interval| Interval { lower: sum.lower.max(0.0), upper: sum.upper.max(0.0) };
+    let (v, m, w, p) = (full_volume, full_first, zero(open_volume), open_first);
+    let q = zero(open_second.over(THREE));
     let about = p.minus(at.times(w));
-    let square = q.over(THREE).minus(at.times(p).times(Interval::exactly(2.0))).plus(at.square().times(w));
+    let square = q.minus(at.times(p).times(Interval::exactly(2.0))).plus(at.square().times(w));
     let excess = m.minus(at.times(v)).plus(about.plus(w.times(square).root()).times(HALF));
     let beyond = Interval { lower: 0.0, upper: excess.upper.max(0.0) };
     at.plus(beyond.over(v)).upper

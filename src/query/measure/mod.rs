@@ -7,7 +7,7 @@ mod walk;
 use super::proven::Proven;
 use crate::control::Control;
 use crate::error::Error;
-use crate::lattice::{Frame, Interval, valid};
+use crate::lattice::{Frame, Interval, MAX_DEPTH, VolumeMoments, valid};
 use crate::octree::{Proof, Tag};
 use crate::solid::{Classifier, Solid};
 use bounds::Known;
@@ -48,26 +48,72 @@ pub struct MassProperties {
     pub clipped: bool,
     /// Why it ended.
     pub stop_reason: StopReason,
-    /// Every undecided cell of a lower level was split, if the solid could.
+    /// The finest level of which cells were looked at.
     pub level: u8,
     /// How many times a cell was split.
     pub splits: u64,
 }
 
-/// Measures `solid` in the universe of `frame`, without building a tree: the largest undecided cells are
-/// split first, until the width of the volume's interval is at most `tolerance` times its middle,
-/// `max_splits` of `control` are spent, or nothing is left to split at the frame's depth. With a tolerance of
-/// 0 only the latter two end it, or that no cell is undecided.
+impl MassProperties {
+    /// Of a solid in the universe that was not split, because it knows its moments.
+    fn known(moments: &VolumeMoments, proof: Proof, tolerance: Tolerance) -> MassProperties {
+        let volume = moments.volume;
+        let wanted = tolerance.absolute.max(tolerance.relative * (0.5 * (volume.lower + volume.upper)));
+        MassProperties {
+            volume,
+            centroid: moments.centroid(),
+            inertia_about_origin: moments.inertia_about_origin(),
+            inertia_about_centroid: moments.inertia_about_centroid(),
+            proof,
+            clipped: false,
+            stop_reason: if volume.width() <= wanted { StopReason::Tolerance } else { StopReason::Exhausted },
+            level: 0,
+            splits: 0,
+        }
+    }
+}
+
+/// How well a volume is to be known: as soon as one of both is met.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Tolerance {
+    /// Width of the interval, as a share of its middle.
+    pub relative: f64,
+    /// Width of the interval, in cubic model units.
+    pub absolute: f64,
+}
+
+impl From<f64> for Tolerance {
+    /// A relative tolerance.
+    fn from(relative: f64) -> Tolerance {
+        Tolerance { relative, absolute: 0.0 }
+    }
+}
+
+/// Splits after which a measurement ends if `max_splits` does not say otherwise: a minute or so.
+pub const MEASURE_SPLITS: u64 = 1 << 26;
+
+/// Measures `solid` in the universe of `frame`, without building a tree: the cells of which most is in doubt are
+/// split first, until the width of the volume's interval is within `tolerance` (a number is relative to the
+/// middle of the interval), `max_splits` of `control` ([`MEASURE_SPLITS`] if there is none) are spent, or nothing is
+/// left to split at the frame's depth. With a tolerance of 0 only the latter two end it, or that nothing is in
+/// doubt.
+///
+/// Where the solid knows the slabs of a cell ([`Enclosure`](crate::Enclosure)), the cell contributes what the slabs
+/// cut off, and only the rest is in doubt. With N splits the width goes down with 1/N at curved surfaces, with 1/N²
+/// at plane ones, and with N^-½ for solids that know no slabs.
+///
+/// A solid that knows its moments is not split, if it lies in the universe: a mesh that is closed and whose triangles
+/// do not intersect ([`TriangleMesh::moments`](crate::TriangleMesh::moments)). It is known up to rounding, whatever
+/// the tolerance.
 ///
 /// The result depends on the solid, the frame, the tolerance and `max_splits` only: it is the same bit for
-/// bit for any number of threads. Time is linear in the splits; memory is that of some hundred thousand parts
-/// at the most, since from a number of undecided cells on the levels below are walked through again and
-/// again, each time deeper, and not kept. (That costs a third more splits, which are counted.) Other limits
-/// of `control` are not heeded.
+/// bit for any number of threads. Work goes in passes, and under a budget the last whole pass counts. Time is
+/// linear in the splits; memory is that of some ten thousand parts at the most, since from a number of undecided
+/// cells on the levels below are walked through again and again, each time deeper, and not kept. Other limits of
+/// `control` are not heeded.
 ///
-/// Of a cell that is not decided any part may belong to the solid, and the intervals contain what comes of
-/// each choice. Volume and the diagonals of the tensors cannot be told better from the cells; products of
-/// inertia and the centroid are bounded by means of the undecided cells' second moments (Loewner's order;
+/// Of what is in doubt any part may belong to the solid, and the intervals contain what comes of each choice. Volume and the diagonals of the tensors cannot be told better from the cells; products of
+/// inertia and the centroid are bounded by means of the second moments of what is in doubt (Loewner's order;
 /// Scarf 1958).
 ///
 /// # Errors
@@ -86,13 +132,20 @@ pub struct MassProperties {
 pub fn measure<S: Solid>(
     solid: &S,
     frame: &Frame,
-    tolerance: f64,
+    tolerance: impl Into<Tolerance>,
     control: &Control<'_>,
 ) -> Result<MassProperties, Error> {
-    valid::tolerance("tolerance", tolerance)?;
+    let tolerance = tolerance.into();
+    valid::tolerance("tolerance", tolerance.relative)?;
+    valid::tolerance("tolerance", tolerance.absolute)?;
     let classifier = Proven(solid.on(frame, control)?);
-    let walked = walk::walk(&classifier, tolerance, control)?;
-    let known = Known { frame, found: walked.found };
+    if classifier.exterior() == Tag::Empty
+        && let Some(moments) = classifier.moments(control)?
+    {
+        return Ok(MassProperties::known(&moments, classifier.proof(), tolerance));
+    }
+    let walked = walk::walk(&classifier, tolerance, control.max_splits.unwrap_or(MEASURE_SPLITS), control)?;
+    let known = Known { frame: frame.with_depth(MAX_DEPTH)?, found: walked.found };
     Ok(MassProperties {
         volume: known.volume(),
         centroid: known.centroid(),

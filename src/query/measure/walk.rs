@@ -1,31 +1,41 @@
-//! Splitting the largest undecided cells first.
+//! Splitting those cells of which most is in doubt.
 //!
-//! Cells of one level are equally large, so this goes level by level, and all cells of a level are kept with
-//! their parts for the next: the *front*. Once it is long, memory matters more than splits, and it stays as
-//! it is: each pass walks depth first through what lies below it, to a deeper level than the one before, and
-//! keeps nothing but the moments of the cells that it ends at.
+//! The *doubt* of an undecided cell is a bound of the volume that may or may not belong to the solid: the cell, or
+//! what its enclosure leaves open. Work goes in passes. Each has a *threshold*, a share of the universe's volume, and
+//! splits all cells whose doubt is greater; the next one has a lower threshold. Cells whose doubt is not greater are
+//! *leaves*: they contribute the moments of the sets between which the solid lies there.
+//!
+//! At first all open cells are kept with their parts: the *front*. Once it is long, memory matters more than splits,
+//! and it stays as it is: each pass walks depth first through what lies below it and keeps nothing but moments.
 
-use super::StopReason;
 use super::moments::{Moments, Tally};
+use super::{StopReason, Tolerance};
 use crate::control::{Control, Job, WHOLE};
 use crate::error::Error;
 use crate::lattice::{Cell, Frame};
 use crate::memory;
 use crate::op::gathered::{self, Part};
-use crate::query::descent::{Step, descend};
-use crate::query::each;
-use crate::solid::{Classifier, Verdict, Worker};
+use crate::op::split_one;
+use crate::query::{cut, each};
+use crate::solid::{Classifier, Enclosure, Verdict, Worker};
 use alloc::vec::Vec;
 use core::ops::AddAssign;
+use core::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
 /// A longer front is not split further, but walked through.
-const LONG_FRONT: usize = 1 << 16;
+const LONG_FRONT: usize = 1 << 13;
 
 /// Cells of the front that have their scratch memory in common, and that one thread takes on at once.
-const CHUNK: usize = 1 << 8;
+const CHUNK: usize = 1 << 7;
 
 /// A longer front of a solid that is asked about all of it at once is not split further.
 const LONG_GATHERED: usize = 1 << 22;
+
+/// Less doubt than that, as a share of the cell, is rounding: splitting does not lessen it.
+const ROUNDING: f64 = 1e-12;
+
+/// Splits after which a walk below one chunk looks whether all of them have spent the budget.
+const BATCH: u64 = 1 << 10;
 
 /// What was found.
 pub(super) struct Walked {
@@ -36,7 +46,7 @@ pub(super) struct Walked {
     pub(super) splits: u64,
 }
 
-/// Moments of FULL and of undecided cells.
+/// Moments of what is proven inside, and of what is open.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Found {
     pub(super) full: Moments,
@@ -50,43 +60,77 @@ impl AddAssign for Found {
     }
 }
 
-/// Adds up FULL and undecided cells.
+/// Adds up cells.
 struct Tallies {
     full: Tally,
     open: Tally,
+    /// Of cells that an enclosure cuts: the sets in the solid, and those around it.
+    low: Tally,
+    high: Tally,
+    /// The finest level.
+    level: u8,
 }
 
 impl Tallies {
-    fn new(frame: &Frame) -> Tallies {
-        Tallies { full: Tally::new(frame.depth()), open: Tally::new(frame.depth()) }
+    fn new() -> Tallies {
+        let [full, open, low, high] = [(); 4].map(|()| Tally::new());
+        Tallies { full, open, low, high, level: 0 }
+    }
+
+    fn full(&mut self, cell: Cell) {
+        self.level = self.level.max(cell.level);
+        self.full.add(cell);
+    }
+
+    /// Adds a cell that is not decided.
+    fn open(&mut self, cell: Cell, enclosure: Option<&Enclosure>) {
+        self.level = self.level.max(cell.level);
+        let Some(enclosure) = enclosure else { return self.open.add(cell) };
+        let (low, high) = cut::bounds(enclosure);
+        self.low.add_cut(cell, &low);
+        self.high.add_cut(cell, &high);
     }
 
     fn finish(self) -> Found {
-        Found { full: self.full.finish(), open: self.open.finish() }
+        let low = self.low.finish();
+        Found { full: self.full.finish() + low, open: self.open.finish() + (self.high.finish() - low) }
     }
+}
+
+/// An undecided cell that can be split.
+struct Open<P> {
+    cell: Cell,
+    part: P,
+    /// As a share of the universe.
+    doubt: f64,
 }
 
 /// Neighbouring cells of the front, in Morton order, with the worker that has their parts.
 struct Chunk<W: Worker> {
     worker: W,
-    cells: Vec<(Cell, W::Part)>,
-    /// The cells themselves, or what the last whole pass has found below them.
+    cells: Vec<Open<W::Part>>,
+    /// What the last whole pass has found below them.
     found: Found,
+    level: u8,
 }
 
-impl<W: Worker> Chunk<W> {
-    /// Cells with parts of this worker.
-    fn new(worker: W, cells: Vec<(Cell, W::Part)>, frame: &Frame) -> Chunk<W> {
-        let mut tallies = Tallies::new(frame);
-        cells.iter().for_each(|&(cell, _)| tallies.open.add(cell));
-        Chunk { worker, cells, found: tallies.finish() }
-    }
+/// The volume of a cell, as a share of the universe.
+fn size(level: u8) -> f64 {
+    f64::from_bits((1023 - 3 * level as u64) << 52)
+}
+
+/// What is known of a cell, and its doubt as a share of the universe: 0 if splitting does not lessen it.
+fn weigh<W: Worker>(worker: &mut W, cell: Cell, part: &W::Part) -> Result<(Option<Enclosure>, f64), Error> {
+    let enclosure = worker.enclosure(cell, part)?;
+    let doubt = enclosure.as_ref().map_or(1.0, |enclosure| cut::doubt(enclosure) / 8.0);
+    Ok((enclosure, if doubt <= ROUNDING { 0.0 } else { doubt * size(cell.level) }))
 }
 
 /// Splits a solid until one of the reasons to end is met.
 pub(super) fn walk<C: Classifier>(
     classifier: &C,
-    tolerance: f64,
+    tolerance: Tolerance,
+    budget: u64,
     control: &Control<'_>,
 ) -> Result<Walked, Error> {
     let job = Job::new(control);
@@ -97,14 +141,15 @@ pub(super) fn walk<C: Classifier>(
     control.run(frame.depth() > 5 || likes_many, |parallel| {
         // All of a front is asked at once.
         let (chunk, long) = if likes_many { (usize::MAX, LONG_GATHERED) } else { (CHUNK, LONG_FRONT) };
-        Walk { classifier, frame, tolerance, job: &job, chunk, long, parallel }.run()
+        Walk { classifier, frame, tolerance, budget, job: &job, chunk, long, parallel }.run()
     })
 }
 
 struct Walk<'a, C> {
     classifier: &'a C,
     frame: &'a Frame,
-    tolerance: f64,
+    tolerance: Tolerance,
+    budget: u64,
     job: &'a Job<'a>,
     /// Cells of a chunk, and of a front that is split further.
     chunk: usize,
@@ -115,245 +160,358 @@ struct Walk<'a, C> {
 /// The cells of the front.
 type Front<C> = Vec<Chunk<<C as Classifier>::Worker>>;
 
-/// Cells with their parts.
-type Cells<C> = Vec<(Cell, Part<C>)>;
+/// A worker with the cells of the next front.
+type Next<C> = (<C as Classifier>::Worker, Vec<Open<Part<C>>>);
 
 impl<C: Classifier> Walk<'_, C> {
     fn run(&self) -> Result<Walked, Error> {
-        let budget = self.job.control().max_splits.unwrap_or(u64::MAX);
-        let (mut settled, mut front) = self.root()?;
-        let (mut level, mut left) = (0, budget);
-        // Whether all of the front was split, and whether the last pass ended at cells that can be.
-        let (mut whole, mut splittable) = (true, true);
+        let (mut settled, mut front, mut level) = self.root()?;
+        let mut splits = 0;
         let mut unreported = WHOLE;
-        let stop_reason = loop {
-            let found = total(settled, &front);
+        // The volume in doubt after the last pass that was evaluated, and its threshold.
+        let mut last: Option<(f64, f64)> = None;
+        let mut threshold = 1.0;
+        let (stop_reason, found) = loop {
             let length: usize = front.iter().map(|chunk| chunk.cells.len()).sum();
-            if self.is_met(&found) {
-                break StopReason::Tolerance;
-            }
-            if whole && (length == 0 || !splittable) {
-                break StopReason::Exhausted;
-            }
-            if left == 0 {
-                break StopReason::Budget;
-            }
-            let share = unreported / 2;
-            unreported -= share;
-            if length <= self.long {
-                whole = length as u64 <= left;
-                let (found, next) = self.split(&mut front, &mut left)?;
-                settled += found;
-                front = next;
-                level += whole as u8;
-                self.job.advance(share);
-            } else {
-                let target = self.target(&found, level);
-                match self.deepen(&mut front, target, &mut left, share)? {
-                    Some(more) => (splittable, level) = (more, target),
-                    None => whole = false,
+            let doubts = || front.iter().flat_map(|chunk| &chunk.cells).map(|open| open.doubt);
+            let greatest = doubts().fold(0.0, f64::max);
+            if length <= self.long && greatest > 0.0 && !self.may_be_met(&settled, doubts().sum()) {
+                threshold = greatest / 8.0;
+                let count = doubts().filter(|&doubt| doubt > threshold).count() as u64;
+                if splits + count > self.budget {
+                    let found = self.evaluate(&settled, &mut front, &mut level)?;
+                    break (self.reason(&found), found);
                 }
+                splits += count;
+                let share = unreported / 2;
+                unreported -= share;
+                let (more, next, deepest) = self.split(&mut front, threshold)?;
+                settled += more;
+                front = next;
+                level = level.max(deepest);
+                self.job.advance(share);
+                continue;
             }
+            // From here on the front stays. What is known at its threshold comes first.
+            let mut found = self.evaluate(&settled, &mut front, &mut level)?;
+            let mut deepest = greatest;
+            let stop_reason = loop {
+                if self.is_met(&found) {
+                    break StopReason::Tolerance;
+                }
+                if deepest == 0.0 {
+                    break StopReason::Exhausted;
+                }
+                let before = (found.open.volume.max(0) as f64, threshold);
+                threshold = self.next_threshold(&found, threshold, last).min(deepest / 2.0);
+                last = Some(before);
+                let share = unreported / 2;
+                unreported -= share;
+                let Some((passed, left)) = self.deepen(&mut front, threshold, self.budget - splits, share)?
+                else {
+                    break StopReason::Budget;
+                };
+                splits += passed;
+                deepest = left;
+                level = front.iter().fold(level, |level, chunk| level.max(chunk.level));
+                found = total(settled, &front);
+            };
+            break (stop_reason, found);
         };
         self.job.advance(unreported);
-        Ok(Walked { found: total(settled, &front), stop_reason, level, splits: budget - left })
+        Ok(Walked { found, stop_reason, level, splits })
     }
 
-    /// What is settled at once, and the first front.
-    fn root(&self) -> Result<(Found, Front<C>), Error> {
+    /// Why no more is split where the budget does not allow it.
+    fn reason(&self, found: &Found) -> StopReason {
+        if self.is_met(found) { StopReason::Tolerance } else { StopReason::Budget }
+    }
+
+    /// What is settled at once, the first front, and the finest level.
+    fn root(&self) -> Result<(Found, Front<C>, u8), Error> {
         let mut worker = self.classifier.worker()?;
-        let mut settled = Tallies::new(self.frame);
+        let mut settled = Tallies::new();
         let mut cells = Vec::new();
         match worker.root()? {
-            Verdict::Partial(part) => memory::push(&mut cells, (Cell::ROOT, part))?,
+            Verdict::Partial(part) => {
+                let (_, doubt) = weigh(&mut worker, Cell::ROOT, &part)?;
+                memory::push(&mut cells, Open { cell: Cell::ROOT, part, doubt })?;
+            }
             Verdict::Empty => {}
-            Verdict::Full => settled.full.add(Cell::ROOT),
-            Verdict::Undecided => settled.open.add(Cell::ROOT),
+            Verdict::Full => settled.full(Cell::ROOT),
+            Verdict::Undecided => settled.open(Cell::ROOT, None),
         }
-        let front = memory::collected([Chunk::new(worker, cells, self.frame)].into_iter())?;
-        Ok((settled.finish(), front))
+        let chunk = Chunk { worker, cells, found: Found::default(), level: 0 };
+        Ok((settled.finish(), memory::collected([chunk].into_iter())?, 0))
     }
 
     fn is_met(&self, found: &Found) -> bool {
-        let (full, open) = (found.full.volume as f64, found.open.volume as f64);
-        open == 0.0 || open <= self.tolerance * (full + 0.5 * open)
+        self.is_close(found.full.volume as f64, (found.open.volume + found.open.error) as f64)
     }
 
-    /// The level for the next pass: where the tolerance will be met if each level halves what is undecided.
-    /// Under a budget it is the next one, so that the budget does not end half-way to a deep one.
-    fn target(&self, found: &Found, level: u8) -> u8 {
-        let mut expected = *found;
-        let mut target = level + 1;
-        while target < self.frame.depth() && self.job.control().max_splits.is_none() {
-            expected.open.volume /= 2;
-            expected.full.volume += expected.open.volume / 2;
-            if self.is_met(&expected) {
-                break;
+    /// Whether it is worth looking if the tolerance is met: doubts are bounds, and up to some times too great.
+    fn may_be_met(&self, settled: &Found, doubts: f64) -> bool {
+        let universe = super::moments::UNIVERSE as f64;
+        let (full, open) = (settled.full.volume as f64, settled.open.volume as f64);
+        self.is_close(full + 0.5 * universe * doubts, open + 0.1 * universe * doubts)
+    }
+
+    /// Whether `open` is little enough beside `full`, both in units of moments.
+    fn is_close(&self, full: f64, open: f64) -> bool {
+        let unit = self.unit();
+        open <= 0.0
+            || open <= self.tolerance.relative * (full + 0.5 * open)
+            || open * unit <= self.tolerance.absolute
+    }
+
+    /// The unit of volumes in cubic model units, rounded.
+    fn unit(&self) -> f64 {
+        let edge = self.frame.edge();
+        edge * edge * edge / super::moments::UNIVERSE as f64
+    }
+
+    /// The threshold of the next pass: where the tolerance should be met, judged by the pass before.
+    fn next_threshold(&self, found: &Found, threshold: f64, last: Option<(f64, f64)>) -> f64 {
+        let (full, open) = (found.full.volume.max(0) as f64, found.open.volume.max(1) as f64);
+        let wanted = (self.tolerance.relative * full).max(self.tolerance.absolute / self.unit());
+        // The volume in doubt goes down with a power of the threshold: the third root where cells are in doubt as a
+        // whole, the square root where surfaces are curved, and faster at plane ones.
+        let power = match last {
+            Some((before, at)) if at > threshold && before > open => {
+                (libm::log(at / threshold) / libm::log(before / open)).clamp(1.0, 3.0)
             }
-            target += 1;
-        }
-        target
+            _ => 2.0,
+        };
+        let wanted = (0.8 * wanted / open).clamp(0.0, 1.0);
+        let most = if self.budget < u64::MAX { 1.0 / 64.0 } else { 1.0 / 4096.0 };
+        threshold * libm::pow(wanted, power).clamp(most, 1.0 / 4.0)
     }
 
-    /// Splits the cells of the front, as many as may be: what is settled by it, and the new front.
-    fn split(&self, front: &mut [Chunk<C::Worker>], left: &mut u64) -> Result<(Found, Front<C>), Error> {
-        let tasks = front.iter_mut().map(|chunk| {
-            let count = (*left).min(chunk.cells.len() as u64) as usize;
-            *left -= count as u64;
-            (chunk, count)
-        });
-        let mut settled = Found::default();
-        let mut next = Vec::new();
-        for (found, chunks) in each(self.parallel, tasks, |(chunk, count)| self.split_chunk(chunk, count))? {
+    /// What the front contributes as it is.
+    fn evaluate(
+        &self,
+        settled: &Found,
+        front: &mut [Chunk<C::Worker>],
+        level: &mut u8,
+    ) -> Result<Found, Error> {
+        let levels = each(self.parallel, front.iter_mut(), |chunk| {
+            let mut tallies = Tallies::new();
+            for open in &chunk.cells {
+                let enclosure = chunk.worker.enclosure(open.cell, &open.part)?;
+                tallies.open(open.cell, enclosure.as_ref());
+            }
+            chunk.level = tallies.level;
+            chunk.found = tallies.finish();
+            Ok(chunk.level)
+        })?;
+        *level = levels.into_iter().fold(*level, u8::max);
+        Ok(total(*settled, front))
+    }
+
+    /// Splits the cells of the front whose doubt is greater: what is settled by it, the new front, and the finest
+    /// level.
+    fn split(&self, front: &mut [Chunk<C::Worker>], threshold: f64) -> Result<(Found, Front<C>, u8), Error> {
+        let (mut settled, mut next, mut level) = (Found::default(), Vec::new(), 0);
+        let tasks = front.iter_mut();
+        for (found, chunks, deepest) in
+            each(self.parallel, tasks, |chunk| self.split_chunk(chunk, threshold))?
+        {
             settled += found;
+            level = level.max(deepest);
             next.try_reserve(chunks.len())?;
             next.extend(chunks);
         }
-        Ok((settled, next))
+        Ok((settled, next, level))
     }
 
-    /// Splits the first `count` cells of a chunk; the others are settled as undecided.
-    fn split_chunk(&self, chunk: &mut Chunk<C::Worker>, count: usize) -> Result<(Found, Front<C>), Error> {
-        let mut settled = Tallies::new(self.frame);
+    fn split_chunk(
+        &self,
+        chunk: &mut Chunk<C::Worker>,
+        threshold: f64,
+    ) -> Result<(Found, Front<C>, u8), Error> {
+        let mut settled = Tallies::new();
         let mut next: Front<C> = Vec::new();
-        chunk.cells.iter().skip(count).for_each(|&(cell, _)| settled.open.add(cell));
-        let mut verdicts = Vec::new();
-        let mut out: Option<(C::Worker, Cells<C>)> = None;
+        let mut out: Option<Next<C>> = None;
         let many = chunk.worker.likes_many();
-        let step = if many { count.max(1) } else { 1 };
-        for cells in chunk.cells[..count].chunks(step) {
-            self.job.check()?;
-            let mark = chunk.worker.mark();
-            verdicts.clear();
-            if many {
-                let threads = if self.parallel { gathered::threads() } else { 1 };
-                let control = self.job.control();
-                verdicts = gathered::split_each(self.classifier, &mut chunk.worker, cells, threads, control)?;
-            } else {
-                let (cell, part) = &cells[0];
-                verdicts.push(chunk.worker.split(*cell, part)?);
+        let mut gathered = Vec::new().into_iter();
+        if many {
+            let mut cells = Vec::new();
+            for open in chunk.cells.iter().filter(|open| open.doubt > threshold) {
+                memory::push(&mut cells, (open.cell, open.part.clone()))?;
             }
-            for ((cell, _), children) in cells.iter().zip(verdicts.drain(..)) {
+            let threads = if self.parallel { gathered::threads() } else { 1 };
+            let control = self.job.control();
+            let worker = &mut chunk.worker;
+            gathered = gathered::split_each(self.classifier, worker, &cells, threads, control)?.into_iter();
+        }
+        for open in &chunk.cells {
+            self.job.check()?;
+            if open.doubt <= threshold {
+                let (worker, cells) = self.next(&mut out)?;
+                let part = worker.hand_over(&chunk.worker, &open.part)?;
+                memory::push(cells, Open { cell: open.cell, part, doubt: open.doubt })?;
+            } else {
+                let mark = chunk.worker.mark();
+                let children = match gathered.next() {
+                    Some(children) => children,
+                    None => chunk.worker.split(open.cell, &open.part)?,
+                };
                 for (octant, verdict) in (0..8).zip(children) {
-                    let child = cell.child(octant);
+                    let child = open.cell.child(octant);
                     match verdict {
                         Verdict::Empty => {}
-                        Verdict::Full => settled.full.add(child),
-                        Verdict::Partial(part) if child.level < self.frame.depth() => {
-                            let (worker, cells) = match &mut out {
-                                Some(out) => out,
-                                none => none.insert((self.classifier.worker()?, Vec::new())),
-                            };
+                        Verdict::Full => settled.full(child),
+                        Verdict::Undecided => settled.open(child, None),
+                        Verdict::Partial(part) => {
+                            let (enclosure, doubt) = weigh(&mut chunk.worker, child, &part)?;
+                            if child.level == self.frame.depth() {
+                                settled.open(child, enclosure.as_ref());
+                                continue;
+                            }
+                            let (worker, cells) = self.next(&mut out)?;
                             let part = worker.hand_over(&chunk.worker, &part)?;
-                            memory::push(cells, (child, part))?;
+                            memory::push(cells, Open { cell: child, part, doubt })?;
                         }
-                        Verdict::Undecided | Verdict::Partial(_) => settled.open.add(child),
                     }
                 }
-                if let Some((worker, cells)) = out.take_if(|(_, cells)| cells.len() >= self.chunk) {
-                    memory::push(&mut next, Chunk::new(worker, cells, self.frame))?;
+                if !many {
+                    chunk.worker.release(mark);
                 }
             }
-            chunk.worker.release(mark);
+            if let Some(full) = out.take_if(|(_, cells)| cells.len() >= self.chunk) {
+                memory::push(&mut next, chunk_of(full))?;
+            }
         }
-        if let Some((worker, cells)) = out {
-            memory::push(&mut next, Chunk::new(worker, cells, self.frame))?;
+        if let Some(rest) = out {
+            memory::push(&mut next, chunk_of(rest))?;
         }
-        Ok((settled.finish(), next))
+        let level = settled.level;
+        Ok((settled.finish(), next, level))
     }
 
-    /// Walks through what lies below the front, to cells of level `target`: whether any of these can be
-    /// split. `None` if the budget has ended it. (Under a budget one thread has to do it, as what it leaves
-    /// depends on the order.)
+    /// Where the next cell of the front goes.
+    fn next<'o>(&self, out: &'o mut Option<Next<C>>) -> Result<&'o mut Next<C>, Error> {
+        Ok(match out {
+            Some(out) => out,
+            none => none.insert((self.classifier.worker()?, Vec::new())),
+        })
+    }
+
+    /// Walks through what lies below the front, to cells whose doubt is not greater: the number of splits, and the
+    /// greatest doubt of a cell that can be split. `None`, and nothing changed, if that takes more splits than are
+    /// left.
     fn deepen(
         &self,
         front: &mut [Chunk<C::Worker>],
-        target: u8,
-        left: &mut u64,
+        threshold: f64,
+        left: u64,
         share: usize,
-    ) -> Result<Option<bool>, Error> {
+    ) -> Result<Option<(u64, f64)>, Error> {
         let one = share / front.len().max(1);
         self.job.advance(share - one * front.len());
-        if self.job.control().max_splits.is_some() {
-            let mut splittable = false;
-            for chunk in front {
-                match self.deepen_chunk(chunk, target, left)? {
-                    Some(more) => splittable |= more,
-                    None => return Ok(None),
+        let spent = AtomicU64::new(0);
+        let passes = each(self.parallel, front.iter_mut(), |chunk| {
+            let mut pass = Pass {
+                depth: self.frame.depth(),
+                threshold,
+                tallies: Tallies::new(),
+                splits: 0,
+                deepest: 0.0,
+                spent: &spent,
+                left,
+            };
+            let mark = chunk.worker.mark();
+            for open in &chunk.cells {
+                if open.doubt > threshold {
+                    pass.below(&mut chunk.worker, open.cell, &open.part, self.job)?;
+                    chunk.worker.release(mark);
+                } else {
+                    let enclosure = chunk.worker.enclosure(open.cell, &open.part)?;
+                    pass.tallies.open(open.cell, enclosure.as_ref());
+                    pass.deepest = pass.deepest.max(open.doubt);
                 }
-                self.job.advance(one);
+                if pass.is_over() {
+                    break;
+                }
             }
-            return Ok(Some(splittable));
-        }
-        let done = each(self.parallel, front.iter_mut(), |chunk| {
-            let mut own = u64::MAX;
-            let more = self.deepen_chunk(chunk, target, &mut own)?;
             self.job.advance(one);
-            Ok((more, u64::MAX - own))
+            spent.fetch_add(pass.splits, Relaxed);
+            let level = pass.tallies.level;
+            Ok((pass.tallies.finish(), level, pass.deepest))
         })?;
-        *left -= done.iter().map(|&(_, splits)| splits).sum::<u64>();
-        Ok(Some(done.iter().any(|&(more, _)| more == Some(true))))
-    }
-
-    /// As [`deepen`](Self::deepen) below one chunk, which stays as it was if the budget ends it.
-    fn deepen_chunk(
-        &self,
-        chunk: &mut Chunk<C::Worker>,
-        target: u8,
-        left: &mut u64,
-    ) -> Result<Option<bool>, Error> {
-        let depth = self.frame.depth();
-        let mut pass = Pass { depth, target, left, found: Tallies::new(self.frame), splittable: false };
-        let mark = chunk.worker.mark();
-        for (cell, part) in &chunk.cells {
-            let goes_on = pass.may_split()
-                && descend(&mut chunk.worker, *cell, part, self.job, &mut |cell, verdict| {
-                    pass.step(cell, verdict)
-                })?;
-            if !goes_on {
-                chunk.worker.release(mark);
-                return Ok(None);
-            }
+        let spent = spent.into_inner();
+        if spent > left {
+            return Ok(None);
         }
-        chunk.found = pass.found.finish();
-        Ok(Some(pass.splittable))
+        let mut greatest: f64 = 0.0;
+        for (chunk, (found, level, deepest)) in front.iter_mut().zip(passes) {
+            (chunk.found, chunk.level) = (found, level);
+            greatest = greatest.max(deepest);
+        }
+        Ok(Some((spent, greatest)))
     }
+}
+
+fn chunk_of<W: Worker>((worker, cells): (W, Vec<Open<W::Part>>)) -> Chunk<W> {
+    Chunk { worker, cells, found: Found::default(), level: 0 }
 }
 
 /// One walk below a chunk.
-struct Pass<'l> {
+struct Pass<'a> {
     depth: u8,
-    target: u8,
-    /// Splits that may still be made.
-    left: &'l mut u64,
-    found: Tallies,
-    /// Whether a cell at the target can be split.
-    splittable: bool,
+    threshold: f64,
+    tallies: Tallies,
+    /// Splits that have not been added to those of all.
+    splits: u64,
+    /// The greatest doubt of a leaf that can be split.
+    deepest: f64,
+    spent: &'a AtomicU64,
+    left: u64,
 }
 
 impl Pass<'_> {
-    /// Takes one split off those that are left, if there is one.
-    #[inline]
-    fn may_split(&mut self) -> bool {
-        let may = *self.left > 0;
-        *self.left -= may as u64;
-        may
+    fn is_over(&mut self) -> bool {
+        if self.splits >= BATCH {
+            self.spent.fetch_add(core::mem::take(&mut self.splits), Relaxed);
+        }
+        self.spent.load(Relaxed) > self.left
     }
 
-    fn step<P>(&mut self, cell: Cell, verdict: Verdict<P>) -> Step<P> {
-        match verdict {
-            Verdict::Empty => {}
-            Verdict::Full => self.found.full.add(cell),
-            Verdict::Undecided => self.found.open.add(cell),
-            Verdict::Partial(part) if cell.level < self.target => {
-                return if self.may_split() { Step::Into(part) } else { Step::End };
-            }
-            Verdict::Partial(_) => {
-                self.splittable |= cell.level < self.depth;
-                self.found.open.add(cell);
+    /// The recursion is as deep as the frame, 20 levels at the most.
+    fn below<W: Worker>(
+        &mut self,
+        worker: &mut W,
+        cell: Cell,
+        part: &W::Part,
+        job: &Job<'_>,
+    ) -> Result<(), Error> {
+        job.check()?;
+        self.splits += 1;
+        if self.is_over() {
+            return Ok(());
+        }
+        let mark = worker.mark();
+        for (octant, verdict) in (0..8).zip(split_one(worker, cell, part, job.control())?) {
+            let child = cell.child(octant);
+            match verdict {
+                Verdict::Empty => {}
+                Verdict::Full => self.tallies.full(child),
+                Verdict::Undecided => self.tallies.open(child, None),
+                Verdict::Partial(part) => {
+                    let (enclosure, doubt) = weigh(worker, child, &part)?;
+                    if child.level == self.depth || doubt <= self.threshold {
+                        if child.level < self.depth {
+                            self.deepest = self.deepest.max(doubt);
+                        }
+                        self.tallies.open(child, enclosure.as_ref());
+                    } else {
+                        self.below(worker, child, &part, job)?;
+                    }
+                }
             }
         }
-        Step::Past
+        worker.release(mark);
+        Ok(())
     }
 }
 

@@ -83,6 +83,12 @@ pub(super) fn centre(cell: Cell) -> [f64; 3] {
     cell.at.map(|i| (2 * i as u64 + 1) as f64 * half)
 }
 
+/// Half the edge of a cell.
+#[inline(always)]
+pub(super) fn half_edge(cell: Cell) -> f64 {
+    edge(cell.level as u32 + 1)
+}
+
 /// For which of the eight children (bit k) f ≥ 0 is proven, and for which f ≤ 0.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Sides {

@@ -6,6 +6,7 @@ use super::map::ExactMap;
 use super::plane::Plane;
 use super::power::{PlacedPowers, Powers};
 use super::quadric::{Coefficients, Quadric};
+use super::tangent::Tangent;
 use super::torus::{PlacedTorus, Torus};
 use crate::error::Error;
 use crate::lattice::exact::{Dyadic, sign};
@@ -246,6 +247,19 @@ impl Placed {
                 host.sides(at, wanted, evaluations)?
             }
             Placed::Plane(_) | Placed::Quadric(_) => Sides { inside: 0, outside: 0 },
+        })
+    }
+
+    /// What is known of f over the cube of half edge `half` around `centre`, both in unit coordinates; `None` of
+    /// functions of the host.
+    #[inline]
+    pub(super) fn tangent(&self, centre: [f64; 3], half: f64) -> Option<Tangent> {
+        Some(match self {
+            Placed::Plane(plane) => plane.tangent(centre, half),
+            Placed::Quadric(quadric) => quadric.tangent(centre, half),
+            Placed::Powers(powers) => powers.tangent(centre, half),
+            Placed::Torus(torus) => torus.tangent(centre, half),
+            Placed::Host(_) => return None,
         })
     }
 

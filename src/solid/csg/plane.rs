@@ -3,6 +3,7 @@
 use super::bounds::{Octants, Sides};
 use super::linear;
 use super::map::ExactMap;
+use super::tangent::Tangent;
 use crate::lattice::exact::{Dyadic, certain};
 use alloc::boxed::Box;
 use alloc::vec::Vec;
@@ -79,6 +80,18 @@ impl Plane {
     pub(super) fn centres(&self, at: &Octants) -> ([f64x4; 2], f64) {
         let (least, reach) = self.least(at);
         ([least[0] + 0.5 * reach, least[1] + 0.5 * reach], self.error)
+    }
+
+    /// What is known of the value over a cube: all, but for rounding.
+    #[inline(always)]
+    pub(super) fn tangent(&self, centre: [f64; 3], half: f64) -> Tangent {
+        let [a, b, c, d] = self.c;
+        let value = ((a * centre[0] + b * centre[1]) + c * centre[2]) + d;
+        let gradient = [a * half, b * half, c * half];
+        if self.error == 0.0 {
+            return Tangent { gradient, low: value, high: value };
+        }
+        Tangent::new(value, gradient, (0.0, 0.0), self.error)
     }
 
     /// Exact sign at a point of [−1, 2]³.

@@ -3,6 +3,7 @@
 use super::bounds::{Octants, Sides, sums};
 use super::linear::{self, Linear};
 use super::map::ExactMap;
+use super::tangent::Tangent;
 use crate::lattice::exact::{Dyadic, sign};
 use alloc::vec::Vec;
 use core::cmp::Ordering;
@@ -163,6 +164,38 @@ impl PlacedPowers {
             parts.fold(Dyadic::zero(), |sum, part| &sum + &part).sign()
         };
         (0..3).map(slope).find(|&sign| sign != 0).unwrap_or(0)
+    }
+
+    /// What is known of the sum over a cube, as [`bounds`](Self::bounds) has it.
+    pub(super) fn tangent(&self, centre: [f64; 3], half: f64) -> Tangent {
+        let mut value = self.constant;
+        let (mut gradient, mut least, mut most) = ([0.0; 3], 0.0, 0.0);
+        let mut error = 32.0 * f64::EPSILON * self.constant.abs() + TINY;
+        let power = |base: f64, exponent: u32| power(f64x4::splat(base), exponent).to_array()[0];
+        for term in &self.terms {
+            let Term { line, exponent, weight, .. } = term;
+            let n = *exponent as f64;
+            let spread = half * line.reach();
+            let middle = line.value(centre);
+            let rise = power(middle, exponent - 1);
+            let there = rise * middle;
+            let slope = n * rise;
+            let step = slope * spread;
+            let rests = [
+                (power(middle - spread, *exponent) - there) + step,
+                (power(middle + spread, *exponent) - there) - step,
+            ];
+            let (floor, ceiling) = (rests[0].min(rests[1]).min(0.0), rests[0].max(rests[1]).max(0.0));
+            let (floor, ceiling) = if *weight < 0.0 { (ceiling, floor) } else { (floor, ceiling) };
+            value += weight * there;
+            (least, most) = (least + weight * floor, most + weight * ceiling);
+            for axis in 0..3 {
+                gradient[axis] += weight * slope * line.c[axis] * half;
+            }
+            let farthest = middle.abs() + spread + line.error;
+            error += (weight * 32.0 * n * n * line.error).abs() * power(farthest, exponent - 1);
+        }
+        Tangent::new(value, gradient, (least, most), error)
     }
 
     /// Bounds where the axes are mixed. As each term depends on one quantity u alone, its remainder after the

@@ -3,6 +3,7 @@
 use super::bounds::{Octants, Sides, sums};
 use super::linear;
 use super::map::ExactMap;
+use super::tangent::Tangent;
 use crate::lattice::exact::{Dyadic, certain};
 use alloc::boxed::Box;
 use core::cmp::Ordering;
@@ -74,6 +75,9 @@ struct Mixed {
     c: [f64; 10],
     /// Over a cube of half edge h around a point the quadratic part alone lies in h² times this.
     squares: (f64, f64),
+    /// The same, tighter: the extremes of the mixed products together, and 0 where the form has one sign.
+    /// (Verdicts are as they are with the other one, so that trees do not change.)
+    remainder: (f64, f64),
     error: f64,
 }
 
@@ -95,7 +99,13 @@ impl Quadric {
                     + c[3..6].iter().map(|c| extreme(c.abs(), -c.abs())).sum::<f64>()
             });
             // A term is rounded at most twenty times.
-            Form::Mixed(Mixed { c, squares: (least, most), error: 64.0 * f64::EPSILON * size })
+            let squares = (least, most);
+            Form::Mixed(Mixed {
+                c,
+                squares,
+                remainder: remainder(&exact, &c),
+                error: 64.0 * f64::EPSILON * size,
+            })
         };
         Quadric { exact: Box::new(exact), form }
     }
@@ -121,6 +131,15 @@ impl Quadric {
         match &self.form {
             Form::Separable(separable) => (separable.centres(at), separable.error),
             Form::Mixed(mixed) => (at.centres().0.map(|centre| mixed.value(centre)), mixed.error),
+        }
+    }
+
+    /// What is known of the value over a cube.
+    #[inline(always)]
+    pub(super) fn tangent(&self, centre: [f64; 3], half: f64) -> Tangent {
+        match &self.form {
+            Form::Separable(separable) => separable.tangent(centre, half),
+            Form::Mixed(mixed) => mixed.tangent(centre, half),
         }
     }
 
@@ -181,6 +200,38 @@ impl Quadric {
         };
         (0..3).map(slope).find(|&sign| sign != 0).unwrap_or(0)
     }
+}
+
+/// Bounds of the quadratic part over [-1, 1]³.
+fn remainder(exact: &Coefficients, c: &[f64; 10]) -> (f64, f64) {
+    // The mixed products are linear in each coordinate, so that their extremes are at corners, of which
+    // opposite ones agree.
+    let [xy, yz, zx] = [c[3], c[4], c[5]];
+    let corners = [(xy + yz) + zx, (yz - xy) - zx, (xy - yz) - zx, (zx - xy) - yz];
+    let squares = |extreme: fn(f64, f64) -> f64| c[..3].iter().map(|&c| extreme(c, 0.0)).sum::<f64>();
+    let least = squares(f64::min) + corners.into_iter().fold(f64::INFINITY, f64::min);
+    let most = squares(f64::max) + corners.into_iter().fold(f64::NEG_INFINITY, f64::max);
+    match definite(exact) {
+        1 => (0.0, most),
+        -1 => (least, 0.0),
+        _ => (least, most),
+    }
+}
+
+/// 1 if the quadratic part is nowhere negative, −1 if it is nowhere positive, by the signs of all principal
+/// minors; else 0.
+fn definite(exact: &Coefficients) -> i32 {
+    let [xx, yy, zz, xy, yz, zx, ..] = exact;
+    let sign = [xx, yy, zz].map(Dyadic::sign).into_iter().find(|&sign| sign != 0).unwrap_or(0);
+    let pair = |a: &Dyadic, b: &Dyadic, mixed: &Dyadic| &(a * b).shifted(2) - &mixed.pow(2);
+    // Half of the determinant.
+    let products = &(&(xx * yy) * zz).shifted(2) + &(&(xy * yz) * zx);
+    let taken = &(&(xx * &yz.pow(2)) + &(yy * &zx.pow(2))) + &(zz * &xy.pow(2));
+    let determinant = &products - &taken;
+    let has_one = [xx, yy, zz].iter().all(|c| c.sign() * sign >= 0)
+        && [pair(xx, yy, xy), pair(yy, zz, yz), pair(zz, xx, zx)].iter().all(|minor| minor.sign() >= 0)
+        && determinant.sign() * sign >= 0;
+    if has_one { sign } else { 0 }
 }
 
 impl Separable {
@@ -252,6 +303,23 @@ impl Separable {
         sums(self.constant, [first, first + at.half].map(|t| (self.square * t + self.linear) * t))
     }
 
+    /// The squares make up the remainder.
+    #[inline(always)]
+    fn tangent(&self, centre: [f64; 3], half: f64) -> Tangent {
+        let t = f64x4::new([centre[0], centre[1], centre[2], 0.0]);
+        let double = self.square * t * 2.0;
+        let [x, y, z, _] = ((double + self.linear) * half).to_array();
+        let [a, b, c, _] = (double.abs() + self.linear.abs()).to_array();
+        let rest = self.square * (half * half);
+        let sum = |rest: f64x4| {
+            let [x, y, z, _] = rest.to_array();
+            (x + y) + z
+        };
+        let rests = (sum(rest.fast_min(f64x4::ZERO)), sum(rest.fast_max(f64x4::ZERO)));
+        let error = self.error + 4.0 * f64::EPSILON * half * ((a + b) + c);
+        Tangent::new(self.value(centre), [x, y, z], rests, error)
+    }
+
     #[inline(always)]
     fn value(&self, t: [f64; 3]) -> f64 {
         let t = f64x4::new([t[0], t[1], t[2], 0.0]);
@@ -282,6 +350,27 @@ impl Mixed {
         let spread = slopes * reach;
         let (least, most) = (reach * reach * self.squares.0, reach * reach * self.squares.1);
         (value - spread + least, value + spread + most)
+    }
+
+    #[inline(always)]
+    fn tangent(&self, [x, y, z]: [f64; 3], half: f64) -> Tangent {
+        let [xx, yy, zz, xy, yz, zx, x1, y1, z1, _] = self.c;
+        let value = self.value([x, y, z].map(f64x4::splat)).to_array()[0];
+        let gradient = [
+            2.0 * xx * x + ((xy * y + zx * z) + x1),
+            2.0 * yy * y + ((xy * x + yz * z) + y1),
+            2.0 * zz * z + ((zx * x + yz * y) + z1),
+        ];
+        let (least, most) = self.remainder;
+        // `error` is more than four times the size of the coefficients in roundings, and so more than what a
+        // slope is off by, times an edge of the universe.
+        let error = self.error + self.error * half;
+        Tangent::new(
+            value,
+            gradient.map(|slope| slope * half),
+            (half * half * least, half * half * most),
+            error,
+        )
     }
 
     /// The values at four points.

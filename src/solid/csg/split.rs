@@ -193,7 +193,13 @@ impl Worker for CsgWorker {
 
     fn enclosure(&mut self, cell: Cell, part: &CsgPart) -> Result<Option<Enclosure>, Error> {
         let (program, scratch) = (&*self.program, &mut self.scratch);
+        if !scratch.may_be_lone(program, *part) {
+            return Ok(scratch.slabs(program, cell, *part));
+        }
         let found = scratch.ask_lone(program, *part, |worker, part| worker.enclosure(cell, part))?;
+        if found.is_none() {
+            return Ok(scratch.slabs(program, cell, *part));
+        }
         Ok(found.and_then(|(enclosure, complement)| match (enclosure, complement) {
             (Some(enclosure), true) => Some(enclosure.complement()),
             (enclosure, _) => enclosure,

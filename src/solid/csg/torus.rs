@@ -3,6 +3,7 @@
 use super::bounds::{Octants, Sides};
 use super::linear::{self, Linear};
 use super::map::ExactMap;
+use super::tangent::Tangent;
 use crate::lattice::exact::{Dyadic, sign, sqrt};
 use core::cmp::Ordering;
 use wide::f64x4;
@@ -135,6 +136,29 @@ impl PlacedTorus {
         let bend = (splat(self.major) / near - f64x4::ONE).fast_max(zero) * (across * across);
         let bend = near.simd_ge(across).select(bend, splat(f64::INFINITY));
         (value - spread - splat(reach * reach * self.diagonal), value + spread + bend)
+    }
+
+    /// What is known of f over a cube, as [`taylor_range`](Self::taylor_range) has it.
+    pub(super) fn tangent(&self, centre: [f64; 3], half: f64) -> Tangent {
+        let [x, y, z] = self.lines.each_ref().map(|line| line.value(centre));
+        let rho = sqrt(x * x + y * y);
+        let off = rho - self.major;
+        let value = self.square - off * off - z * z;
+        let share = if rho > NEAR { off / rho } else { 0.0 };
+        let (slope_x, slope_y) = (x * share, y * share);
+        let gradient = [0, 1, 2].map(|axis| {
+            let [a, b, c] = self.lines.each_ref().map(|line| line.c[axis]);
+            -2.0 * half * ((slope_x * a + slope_y * b) + z * c)
+        });
+        let across = half * self.radius;
+        let near = rho - across;
+        let bend = match near >= across {
+            true => (self.major / near - 1.0).max(0.0) * (across * across),
+            false => f64::INFINITY,
+        };
+        // On the axis the tangent of ρ may be any, and none is what the bound from below allows for; above, the
+        // bend is infinite there.
+        Tangent::new(value, gradient, (-(half * half * self.diagonal), bend), self.error)
     }
 
     /// Decides exactly what rounding leaves open, if axes go to axes.

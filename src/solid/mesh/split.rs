@@ -10,8 +10,8 @@ use super::scan::{Scan, Task};
 use super::winding::Caps;
 use crate::control::Control;
 use crate::error::{Error, MeshError};
-use crate::lattice::{Affine, Bounds, Cell, Frame};
-use crate::mesh::{FillRule, Loops, TriangleMesh};
+use crate::lattice::{Affine, Bounds, Cell, Frame, VolumeMoments};
+use crate::mesh::{FillRule, Loops, MeshMoments, TriangleMesh};
 use crate::octree::{Block, Proof, Tag};
 use crate::solid::{Classifier, Fingerprint, Fingerprinter, Motion, Solid, Verdict, Worker};
 use alloc::boxed::Box;
@@ -41,16 +41,21 @@ pub struct MeshSolid {
     boundary: Arc<Boundary>,
 }
 
-/// The boundary of a mesh.
+/// What is known of a mesh's boundary, and of what it encloses.
 struct Boundary {
     loops: Loops,
     /// How far the solid may reach beyond the mesh's box, once somebody has asked.
     reach: OnceBox<[[f64; 3]; 2]>,
+    /// The same.
+    moments: OnceBox<MeshMoments>,
 }
 
 /// A mesh on a frame: the handle.
 #[derive(Clone)]
-pub struct MeshClassifier(Arc<OnFrame>);
+pub struct MeshClassifier {
+    mesh: Arc<OnFrame>,
+    solid: MeshSolid,
+}
 
 /// A worker on a mesh: lists of triangles, one for each cell on the way down, and what scans a block.
 pub struct MeshWorker {
@@ -81,12 +86,26 @@ impl MeshSolid {
             }
             FillRule::NonZero | FillRule::Positive => mesh.loops()?,
         };
-        Ok(MeshSolid { mesh, fill, boundary: Arc::new(Boundary { loops, reach: OnceBox::new() }) })
+        Ok(MeshSolid {
+            mesh,
+            fill,
+            boundary: Arc::new(Boundary { loops, reach: OnceBox::new(), moments: OnceBox::new() }),
+        })
     }
 
     /// The mesh.
     pub fn mesh(&self) -> &Arc<TriangleMesh> {
         &self.mesh
+    }
+
+    /// The volume and the moments of the solid, or why they are not known without splitting cells:
+    /// [`TriangleMesh::moments`], kept for the solid and its clones.
+    ///
+    /// # Errors
+    /// [`Error::OutOfMemory`], and [`Error::Cancelled`] by `control`.
+    pub fn moments(&self, control: &Control<'_>) -> Result<MeshMoments, Error> {
+        let find = || self.mesh.moments(self.fill, control).map(Box::new);
+        self.boundary.moments.get_or_try_init(find).copied()
     }
 
     /// The solid under an affine map: its vertices are moved, as [`TriangleMesh::placed`] says.
@@ -181,14 +200,9 @@ impl Solid for MeshSolid {
                 roots.push(triangle);
             }
         }
-        Ok(MeshClassifier(Arc::new(OnFrame {
-            placed,
-            caps,
-            fill: self.fill,
-            roots,
-            winding,
-            exterior: OnceBox::new(),
-        })))
+        let exterior = OnceBox::new();
+        let mesh = Arc::new(OnFrame { placed, caps, fill: self.fill, roots, winding, exterior });
+        Ok(MeshClassifier { mesh, solid: self.clone() })
     }
 
     /// For a closed mesh, the box around it. An open one may enclose points beyond, and the box is larger by as
@@ -197,7 +211,7 @@ impl Solid for MeshSolid {
         let (min, max) = self.mesh.bounds();
         let displacement = self.mesh.displacement();
         let bounds = Bounds::new(min, max)?.grown(displacement);
-        let Boundary { loops, reach } = &*self.boundary;
+        let Boundary { loops, reach, .. } = &*self.boundary;
         if loops.caps() == 0 {
             return Some(bounds);
         }
@@ -243,12 +257,12 @@ impl Classifier for MeshClassifier {
     type Worker = MeshWorker;
 
     fn frame(&self) -> &Frame {
-        &self.0.placed.frame
+        &self.mesh.placed.frame
     }
 
     fn worker(&self) -> Result<MeshWorker, Error> {
         Ok(MeshWorker {
-            mesh: self.0.clone(),
+            mesh: self.mesh.clone(),
             triangles: Vec::new(),
             masks: Vec::new(),
             surroundings: Surroundings::default(),
@@ -257,12 +271,20 @@ impl Classifier for MeshClassifier {
     }
 
     fn exterior(&self) -> Tag {
-        let mesh = &*self.0;
+        let mesh = &*self.mesh;
         *mesh.exterior.get_or_init(|| Box::new(mesh.exterior()))
     }
 
     fn proof(&self) -> Proof {
-        Proof::CERTIFIED.moved(self.0.placed.mesh.displacement())
+        Proof::CERTIFIED.moved(self.mesh.placed.mesh.displacement())
+    }
+
+    /// If the mesh is closed and no two triangles intersect.
+    fn moments(&self, control: &Control<'_>) -> Result<Option<VolumeMoments>, Error> {
+        Ok(match self.solid.moments(control)? {
+            MeshMoments::Known(moments) => Some(moments),
+            MeshMoments::Open | MeshMoments::Intersecting(_) | MeshMoments::Undecided => None,
+        })
     }
 }
 

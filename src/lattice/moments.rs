@@ -1,0 +1,75 @@
+//! The volume of a set and its first and second moments.
+
+use super::Interval;
+use core::array::from_fn as array;
+
+/// Which two axes each second moment is of.
+const PAIRS: [(usize, usize); 6] = [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)];
+
+const ZERO: Interval = Interval::exactly(0.0);
+
+/// The volume of a set of points and its moments about one of them, in model units. The intervals contain the truth.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct VolumeMoments {
+    /// The point p that the moments are about: near the centroid, so that little cancels.
+    pub point: [f64; 3],
+    /// The volume. Not negative.
+    pub volume: Interval,
+    /// ∫ (x − p)
+    pub first: [Interval; 3],
+    /// ∫ (x − p)(x − p)ᵀ, the elements xx, yy, zz, xy, xz, yz.
+    pub second: [Interval; 6],
+}
+
+impl VolumeMoments {
+    /// The centroid; `None` if the volume may be 0.
+    pub fn centroid(&self) -> Option<[Interval; 3]> {
+        let is_some = self.volume.lower > 0.0;
+        is_some.then(|| array(|k| Interval::exactly(self.point[k]).plus(self.first[k].over(self.volume))))
+    }
+
+    /// The tensor of inertia about the origin of the model, for density 1: ∫ (|x|² δij − xi xj).
+    pub fn inertia_about_origin(&self) -> [[Interval; 3]; 3] {
+        let p = self.point.map(Interval::exactly);
+        tensor(array(|k| {
+            let (i, j) = PAIRS[k];
+            let square = if i == j { p[i].square() } else { p[i].times(p[j]) };
+            let mixed = p[i].times(self.first[j]).plus(p[j].times(self.first[i]));
+            self.second[k].plus(mixed).plus(square.times(self.volume))
+        }))
+    }
+
+    /// The tensor of inertia about the set's own centroid.
+    pub fn inertia_about_centroid(&self) -> [[Interval; 3]; 3] {
+        if self.volume.lower > 0.0 {
+            return tensor(array(|k| {
+                let (i, j) = PAIRS[k];
+                let first = &self.first;
+                let product = if i == j { first[i].square() } else { first[i].times(first[j]) };
+                self.second[k].minus(product.over(self.volume))
+            }));
+        }
+        // The set may be anything between nothing and what the second moments allow. M ≽ 0, so that Mij² ≤ Mii Mjj.
+        tensor(array(|k| {
+            let (i, j) = PAIRS[k];
+            let [a, b] = [i, j].map(|axis| Interval { lower: 0.0, upper: self.second[axis].upper.max(0.0) });
+            let radius = a.times(b).root().upper;
+            Interval { lower: if i == j { 0.0 } else { -radius }, upper: radius }
+        }))
+    }
+}
+
+/// The tensor of inertia of second moments. Those of one axis are not negative.
+fn tensor(second: [Interval; 6]) -> [[Interval; 3]; 3] {
+    let mut tensor = [[ZERO; 3]; 3];
+    for (k, (i, j)) in (0..6).zip(PAIRS) {
+        tensor[i][j] = if i == j {
+            let sum = second[(i + 1) % 3].plus(second[(i + 2) % 3]);
+            Interval { lower: sum.lower.max(0.0), upper: sum.upper.max(0.0) }
+        } else {
+            second[k].negated()
+        };
+        tensor[j][i] = tensor[i][j];
+    }
+    tensor
+}

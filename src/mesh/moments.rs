@@ -1,0 +1,207 @@
+//! The moments of what a mesh encloses, by the divergence theorem.
+//!
+//! A point belongs to the solid if the winding number w there has a property that the fill rule says. Where no two
+//! triangles intersect, this property changes at a triangle in one way: from inside to outside, the other way round,
+//! or not at all (`sheets`). The integral of a polynomial over the solid is then the sum of the integrals over signed
+//! tetrahedra, each with a triangle as its base and a common tip, of those triangles at which it changes.
+//!
+//! **Rounding.** A triangle is a corner, relative to the centre of the mesh, and two edges. All are scaled by a power of
+//! two, so that coordinates are at most 2 in magnitude and nothing overflows. A term is a polynomial of them. Beside its sum runs that of its
+//! *size*, the same polynomial of magnitudes. No more than 32 roundings lie one behind another in a term, so that
+//! it is off by 40 half units of its size at the most. The sums are kept in two doubles. Of parts with few and round
+//! dimensions nothing is rounded at all, which the sizes tell.
+//!
+//! **Displacement.** The surface may have been moved by some distance r. The solid changes by no more than the volume
+//! within r of the surface, which is at most the sum over all triangles of 2 A r + π/2 P r² + 4/3 π r³, for an area A
+//! and a perimeter P (Steiner's formula).
+
+use super::intersections::{corners, intersections};
+use super::sheets::sheets;
+use super::signs::Point;
+use super::surface::{FillRule, TriangleMesh};
+use super::tree::{Grid, Search, Tree};
+use crate::control::Control;
+use crate::error::{Error, MeshError};
+use crate::lattice::exact::{sqrt, two_sum};
+use crate::lattice::{Interval, VolumeMoments};
+use core::array::from_fn as array;
+use core::f64::consts::FRAC_PI_2;
+
+/// The moments of what a mesh encloses, or why they are not known without splitting cells.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum MeshMoments {
+    /// They are known, up to rounding and to the mesh's displacement.
+    Known(VolumeMoments),
+    /// The mesh is empty, not closed, or not consistently oriented as the fill rule demands.
+    /// [`TriangleMesh::check_closed`] tells which.
+    Open,
+    /// Two triangles intersect, these for instance. [`TriangleMesh::intersecting_pairs`] tells how many do.
+    Intersecting([u32; 2]),
+    /// Too many triangles lie close to each other to find out whether some intersect, or all triangles of a body are
+    /// slivers.
+    Undecided,
+}
+
+impl TriangleMesh {
+    /// The volume and the moments of what the mesh encloses by a fill rule, exact up to rounding: usually to 14
+    /// digits. They are known if the mesh is closed and no two triangles intersect. Nested bodies, cavities, and
+    /// bodies that are inside out count as the rule says.
+    ///
+    /// If vertices were moved ([`displacement`](Self::displacement)), the intervals contain the moments of each
+    /// solid whose surface lies within that distance along each axis.
+    ///
+    /// O(t log t) time for triangles that lie apart, and 46 bytes a triangle of scratch memory. Work is limited as
+    /// in [`intersecting_pairs`](Self::intersecting_pairs). Fails with [`Error::OutOfMemory`] or
+    /// [`Error::Cancelled`].
+    ///
+    /// ```
+    /// use leafless::{Control, FillRule, MeshMoments, TriangleMesh};
+    /// let vertices = vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+    /// let mesh = TriangleMesh::new(vertices, vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]])?;
+    /// let MeshMoments::Known(moments) = mesh.moments(FillRule::NonZero, &Control::default())? else { panic!() };
+    /// assert!(moments.volume.contains(1.0 / 6.0) && moments.volume.width() < 1e-14);
+    /// # Ok::<(), leafless::Error>(())
+    /// ```
+    pub fn moments(&self, rule: FillRule, control: &Control<'_>) -> Result<MeshMoments, Error> {
+        match self.check_closed(rule) {
+            Ok(()) => {}
+            Err(Error::Mesh(MeshError::Empty | MeshError::Open { .. } | MeshError::Unoriented { .. })) => {
+                return Ok(MeshMoments::Open);
+            }
+            Err(error) => return Err(error),
+        }
+        let tree = Tree::new(self, |t| !self.is_flat(&self.triangles()[t as usize]))?;
+        let mut pair = [0; 2];
+        let search = intersections(self, &tree, control, &mut |a, b| {
+            pair = [a, b];
+            Ok(false)
+        })?;
+        match search {
+            Search::Finished => {}
+            Search::Ended => return Ok(MeshMoments::Intersecting(pair)),
+            Search::Exhausted => return Ok(MeshMoments::Undecided),
+        }
+        let Some(sheets) = sheets(self, &tree, rule)? else { return Ok(MeshMoments::Undecided) };
+        let grid = Grid::of(self);
+        let mut sums = Sums::default();
+        for (triangle, &sheet) in (0..).zip(&sheets.of_triangles) {
+            let sense = sheets.senses[sheet as usize];
+            if sense != 0 {
+                sums.add(&grid.triangle(&corners(self, triangle)), f64::from(sense));
+            }
+        }
+        Ok(MeshMoments::Known(sums.finish(&grid, grid.bits(self), self.tube(&grid))))
+    }
+
+    /// The volume within the displacement of the surface, and that distance, in units of the grid: upper bounds.
+    fn tube(&self, grid: &Grid) -> [f64; 2] {
+        if self.displacement() == 0.0 {
+            return [0.0; 2];
+        }
+        // √3 along each axis, and what is rounded here.
+        const SLACK: f64 = 1.0 + 1e-6;
+        // More than what lengths and areas are off by, of coordinates up to 2.
+        const ERROR: f64 = 1e-14;
+        let mut r = 1.7320508075688774 * SLACK * self.displacement();
+        r *= grid.scale();
+        let mut volume = 0.0;
+        for triangle in 0..self.triangles().len() as u32 {
+            let [_, u, v] = grid.triangle(&corners(self, triangle));
+            let length = |u: Point| sqrt(u[0] * u[0] + u[1] * u[1] + u[2] * u[2]);
+            let twice_area =
+                length([u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]]);
+            let perimeter = length(u) + length(v) + length(array(|k| v[k] - u[k]));
+            volume += r * (twice_area + ERROR + r * (FRAC_PI_2 * (perimeter + ERROR) + 4.1888 * r));
+        }
+        [volume * SLACK, r]
+    }
+}
+
+/// Volume, first and second moments.
+const COUNT: usize = 10;
+
+/// Sums of terms in the units of the grid: 6 times the volume, 24 times the first and 120 times the second moments.
+#[derive(Default)]
+struct Sums {
+    /// The sums, and what was lost by rounding them.
+    values: [f64; COUNT],
+    lost: [f64; COUNT],
+    sizes: [f64; COUNT],
+    terms: f64,
+}
+
+impl Sums {
+    /// Adds the tetrahedron of a triangle and the grid's centre, `sense` times.
+    fn add(&mut self, triangle: &[Point; 3], sense: f64) {
+        let values = moments_of(triangle, |x, y| x - y);
+        let sizes = moments_of(&triangle.map(|p| p.map(f64::abs)), |x, y| x + y);
+        for k in 0..COUNT {
+            let (sum, lost) = two_sum(self.values[k], sense * values[k]);
+            self.values[k] = sum;
+            self.lost[k] += lost;
+            self.sizes[k] += sizes[k];
+        }
+        self.terms += 1.0;
+    }
+
+    /// `bits` are those of the coordinates behind the point, if they are exact. `tube` is a volume that may belong to
+    /// the solid or not, and by how much it reaches beyond the mesh.
+    fn finish(&self, grid: &Grid, bits: Option<i32>, [tube, reach]: [f64; 2]) -> VolumeMoments {
+        const HALF_UNIT: f64 = f64::EPSILON / 2.0;
+        let unit = Interval::exactly(1.0 / grid.scale());
+        let of = |k: usize, factor: f64, degree: usize| {
+            // What the terms are off by, what the lost parts are when they are added up, and what underflows.
+            let of_sums = HALF_UNIT * self.terms;
+            let share = 40.0 * HALF_UNIT + of_sums * of_sums;
+            // Multiples of a power of two, none of which comes near 2^53 of them, are not rounded.
+            let is_exact = bits.is_some_and(|bits| {
+                let grain = f64::from_bits(((1023 - bits * degree as i32) as u64) << 52);
+                self.sizes[k] < grain * (1u64 << 51) as f64
+            });
+            let error = if is_exact { 0.0 } else { 1.0001 * share * self.sizes[k] + 1e-300 * self.terms };
+            let sum = Interval::exactly(self.values[k]).plus(Interval::exactly(self.lost[k]));
+            let sum = sum.plus(around_zero(error)).over(Interval::exactly(factor));
+            // No point of the tube is further away from the centre along an axis.
+            let farthest = (1.0 + reach) * (1.0 + 1e-6);
+            let in_tube = (3..degree).fold(tube, |product, _| product * farthest) * (1.0 + 1e-6);
+            let sum = sum.plus(around_zero(in_tube));
+            (0..degree).fold(sum, |product, _| product.times(unit))
+        };
+        let volume = of(0, 6.0, 3);
+        VolumeMoments {
+            point: grid.centre,
+            volume: Interval { lower: volume.lower.max(0.0), upper: volume.upper.max(0.0) },
+            first: [1, 2, 3].map(|k| of(k, 24.0, 4)),
+            second: [4, 5, 6, 7, 8, 9].map(|k| of(k, 120.0, 5)),
+        }
+    }
+}
+
+fn around_zero(radius: f64) -> Interval {
+    Interval { lower: -radius, upper: radius }
+}
+
+/// 6 times the volume, 24 times the first and 120 times the second moments of the tetrahedron with the tip 0, in the
+/// order of [`VolumeMoments`]; or their sizes, if `minus` adds. The base has the corner `a` and from there the edges
+/// `u` and `v`, which are short: so the sizes are little more than the magnitudes.
+#[inline(always)]
+fn moments_of([a, u, v]: &[Point; 3], minus: impl Fn(f64, f64) -> f64) -> [f64; COUNT] {
+    let [b, c]: [Point; 2] = [u, v].map(|edge| array(|k| a[k] + edge[k]));
+    let minor = |i: usize, j: usize| minus(u[i] * v[j], u[j] * v[i]);
+    let six_fold = a[0] * minor(1, 2) + a[1] * minor(2, 0) + a[2] * minor(0, 1);
+    let [x, y, z] = [0, 1, 2].map(|k| a[k] + b[k] + c[k]);
+    let second =
+        |i: usize, j: usize, of_sums: f64| six_fold * (of_sums + (a[i] * a[j] + b[i] * b[j] + c[i] * c[j]));
+    [
+        six_fold,
+        six_fold * x,
+        six_fold * y,
+        six_fold * z,
+        second(0, 0, x * x),
+        second(1, 1, y * y),
+        second(2, 2, z * z),
+        second(0, 1, x * y),
+        second(0, 2, x * z),
+        second(1, 2, y * z),
+    ]
+}

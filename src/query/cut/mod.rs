@@ -1,0 +1,132 @@
+//! Moments of a cube that planes cut.
+//!
+//! The cube is [-1, 1]³. Of one plane closed forms give the moments (for the volume: Scardovelli and Zaleski,
+//! J. Comput. Phys. 164 (2000) 228–237; the others follow in the same way); where these would cancel, and of two
+//! or three planes, the cube is clipped and integrated over its faces.
+
+mod clip;
+mod formula;
+#[cfg(test)]
+mod tests;
+
+use crate::solid::{Enclosure, Slab, SlabJoin};
+
+/// Volume, first and second moments of a set in [-1, 1]³, each off by less than [`ERROR`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct CubeMoments {
+    /// At most 8.
+    pub(super) volume: f64,
+    /// ∫ x.
+    pub(super) first: [f64; 3],
+    /// ∫ x xᵀ: xx, yy, zz, xy, xz, yz.
+    pub(super) second: [f64; 6],
+}
+
+/// More than the error of any moment. (Twice what comes of the largest term that the formula admits; clipping is off
+/// by a tenth of that.)
+pub(super) const ERROR: f64 = 1.0 / (1u64 << 39) as f64;
+
+/// Which two axes each second moment is of.
+const PAIRS: [(usize, usize); 6] = [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)];
+
+impl CubeMoments {
+    pub(super) const EMPTY: CubeMoments = CubeMoments { volume: 0.0, first: [0.0; 3], second: [0.0; 6] };
+    pub(super) const FULL: CubeMoments = CubeMoments {
+        volume: 8.0,
+        first: [0.0; 3],
+        second: [8.0 / 3.0, 8.0 / 3.0, 8.0 / 3.0, 0.0, 0.0, 0.0],
+    };
+
+    /// Those of the rest of the cube.
+    fn complement(&self) -> CubeMoments {
+        let mut rest = CubeMoments::FULL;
+        rest.volume -= self.volume;
+        (0..3).for_each(|i| rest.first[i] -= self.first[i]);
+        (0..6).for_each(|i| rest.second[i] -= self.second[i]);
+        rest
+    }
+}
+
+/// The points of the cube with n · x ≤ offset.
+#[derive(Debug, Clone, Copy)]
+struct Half {
+    normal: [f64; 3],
+    offset: f64,
+}
+
+/// Sets that lie in a solid, and that contain it, in a cell of which the enclosure is known: their moments in the
+/// coordinates of the cell.
+pub(super) fn bounds(enclosure: &Enclosure) -> (CubeMoments, CubeMoments) {
+    let of = |outer: bool| match enclosure.join {
+        SlabJoin::All => intersection(&enclosure.slabs, outer).unwrap_or(if outer {
+            CubeMoments::FULL
+        } else {
+            CubeMoments::EMPTY
+        }),
+        // The union is what lies outside of the complements' intersection.
+        SlabJoin::Any => intersection(&enclosure.slabs.map(|slab| slab.complement()), !outer)
+            .map_or(if outer { CubeMoments::FULL } else { CubeMoments::EMPTY }, |m| m.complement()),
+    };
+    (of(false), of(true))
+}
+
+/// More than the volume, of 8, between the sets of [`bounds`]; cheap, and about right.
+pub(super) fn doubt(enclosure: &Enclosure) -> f64 {
+    let (mut doubt, mut is_known) = (0.0, false);
+    for Slab { normal, inner, outer } in &enclosure.slabs {
+        let [a, b, c] = normal.map(f64::abs);
+        let (high, rest) = (a.max(b), a.min(b));
+        let (most, middle, least) = (high.max(c), high.min(c).max(rest), rest.min(c));
+        if most > 0.0 {
+            // Seen along the axis to which the normal is nearest, a section is at most a face; near an edge or a
+            // corner of the cube it is smaller.
+            let range = (a + b) + c;
+            if !range.is_finite() {
+                return 8.0;
+            }
+            let (inner, outer) = (inner.max(-range), outer.min(range));
+            let nearest = inner.max(-outer).max(0.0);
+            let reach = range - nearest;
+            let face = 4.0 / most;
+            let edge = 2.0 * (reach / most) / middle;
+            let corner = 0.5 * (reach / most) * (reach / middle) / least;
+            // (No number, where components are 0, is not less.)
+            doubt += (outer - inner).max(0.0) * face.min(edge).min(corner);
+            is_known = true;
+        }
+    }
+    // (What is no number is no less than that.)
+    if is_known { 8.0f64.min(doubt) } else { 8.0 }
+}
+
+/// Moments of the cube's points that lie on the inner side of all planes, of the outer ends of the slabs or of
+/// the inner ends; `None` if they are not had.
+fn intersection(slabs: &[Slab; 3], outer: bool) -> Option<CubeMoments> {
+    let mut halves = [Half { normal: [0.0; 3], offset: 0.0 }; 3];
+    let (mut count, mut is_known) = (0, false);
+    for slab in slabs {
+        let range: f64 = slab.normal.iter().map(|c| c.abs()).sum();
+        if range == 0.0 {
+            continue;
+        }
+        is_known = true;
+        let offset = if outer { slab.outer } else { slab.inner };
+        if offset.is_nan() || !range.is_finite() {
+            return None;
+        }
+        if offset >= range {
+            continue;
+        }
+        if offset <= -range {
+            return Some(CubeMoments::EMPTY);
+        }
+        halves[count] = Half { normal: slab.normal.map(|c| c / range), offset: offset / range };
+        count += 1;
+    }
+    match count {
+        0 if !is_known => None,
+        0 => Some(CubeMoments::FULL),
+        1 => formula::below(&halves[0]).or_else(|| clip::moments(&halves[..1])),
+        count => clip::moments(&halves[..count]),
+    }
+}

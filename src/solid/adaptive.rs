@@ -1,0 +1,179 @@
+//! A solid that is split only until its surface is known to a tolerance.
+
+use super::forward::forward_worker;
+use super::{Classifier, Enclosure, Fingerprint, Fingerprinter, Motion, Solid, Verdict, Worker};
+use crate::control::Control;
+use crate::error::Error;
+use crate::lattice::exact::sqrt;
+use crate::lattice::{Bounds, Cell, Frame, valid};
+use crate::octree::{Proof, Tag};
+use alloc::vec::Vec;
+
+/// A solid whose cells are not split where its surface is known to lie within a layer thinner than a tolerance: an
+/// octree of it stays coarse where the surface is flat, and is fine where it bends and at edges.
+///
+/// Such cells are [`Verdict::Undecided`], so PARTIAL in an octree. The solid itself knows more about them: its
+/// [`Enclosure`]s. The distance between the inner and the outer side of each slab is at most the tolerance. A
+/// solid that knows no enclosures is split as ever.
+///
+/// ```
+/// use leafless::{Adaptive, Control, Csg, Frame, Rule, build};
+/// let ball = Csg::ball([0.0; 3], 0.9)?;
+/// let frame = Frame::new([-1.0; 3], 2.0, 9)?;
+/// let whole = build(&ball, &frame, Rule::Certified, &Control::default())?;
+/// let coarse = build(&Adaptive::new(ball, 0.001)?, &frame, Rule::Certified, &Control::default())?;
+/// assert!(coarse.statistics().nodes() * 50 < whole.statistics().nodes());
+/// # Ok::<(), leafless::Error>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct Adaptive<S> {
+    solid: S,
+    tolerance: f64,
+}
+
+impl<S: Solid> Adaptive<S> {
+    /// The solid, with a tolerance in model units.
+    ///
+    /// # Errors
+    /// [`Error::Argument`] if `tolerance` is negative or not a number.
+    pub fn new(solid: S, tolerance: f64) -> Result<Adaptive<S>, Error> {
+        valid::tolerance("tolerance", tolerance)?;
+        Ok(Adaptive { solid, tolerance })
+    }
+
+    /// The solid without the tolerance.
+    pub fn solid(&self) -> &S {
+        &self.solid
+    }
+}
+
+impl<S: Solid> Solid for Adaptive<S> {
+    type Classifier = AdaptiveClassifier<S::Classifier>;
+
+    fn on(&self, frame: &Frame, control: &Control<'_>) -> Result<Self::Classifier, Error> {
+        Ok(AdaptiveClassifier { inner: self.solid.on(frame, control)?, tolerance: self.tolerance })
+    }
+
+    fn bounds(&self) -> Option<Bounds> {
+        self.solid.bounds()
+    }
+
+    fn home(&self) -> Option<Frame> {
+        self.solid.home()
+    }
+
+    fn fingerprint(&self) -> Option<Fingerprint> {
+        let inner = self.solid.fingerprint()?;
+        Some(Fingerprinter::new("adaptive").part(inner).numbers(&[self.tolerance]).finish())
+    }
+
+    fn motion(&self) -> Motion {
+        Motion::Conservative
+    }
+}
+
+/// Such a solid on a frame.
+#[derive(Debug, Clone)]
+pub struct AdaptiveClassifier<C> {
+    inner: C,
+    tolerance: f64,
+}
+
+impl<C: Classifier> Classifier for AdaptiveClassifier<C> {
+    type Worker = AdaptiveWorker<C::Worker>;
+
+    fn frame(&self) -> &Frame {
+        self.inner.frame()
+    }
+
+    fn worker(&self) -> Result<Self::Worker, Error> {
+        Ok(AdaptiveWorker { inner: self.inner.worker()?, tolerance: self.tolerance })
+    }
+
+    fn exterior(&self) -> Tag {
+        self.inner.exterior()
+    }
+
+    fn proof(&self) -> Proof {
+        self.inner.proof()
+    }
+}
+
+/// A worker on such a solid.
+pub struct AdaptiveWorker<W> {
+    inner: W,
+    tolerance: f64,
+}
+
+impl<W: Worker> AdaptiveWorker<W> {
+    /// The verdicts of the children of a cell, those that are known well enough being undecided.
+    fn enough(
+        &mut self,
+        cell: Cell,
+        mut verdicts: [Verdict<W::Part>; 8],
+    ) -> Result<[Verdict<W::Part>; 8], Error> {
+        for (octant, verdict) in (0..8).zip(&mut verdicts) {
+            let Verdict::Partial(part) = verdict else { continue };
+            let child = cell.child(octant);
+            if let Some(enclosure) = self.inner.enclosure(child, part)?
+                && thickness(&enclosure) * self.half_edge(child) <= self.tolerance
+            {
+                *verdict = Verdict::Undecided;
+            }
+        }
+        Ok(verdicts)
+    }
+
+    /// Half the edge of a cell in model units.
+    fn half_edge(&self, cell: Cell) -> f64 {
+        0.5 * self.inner.frame().edge() / (1u64 << cell.level) as f64
+    }
+}
+
+/// The distance between the two sides of a slab, in half edges of the cell, where it is greatest.
+fn thickness(enclosure: &Enclosure) -> f64 {
+    let mut most = None;
+    for slab in &enclosure.slabs {
+        let square = slab.normal.iter().map(|c| c * c).sum::<f64>();
+        if square > 0.0 {
+            // (An infinite thickness, or none that is a number, is no thickness.)
+            let own = (slab.outer - slab.inner) / sqrt(square);
+            most = Some(if own >= 0.0 { own.max(most.unwrap_or(0.0)) } else { f64::INFINITY });
+        }
+    }
+    most.unwrap_or(f64::INFINITY)
+}
+
+impl<W: Worker> Worker for AdaptiveWorker<W> {
+    type Part = W::Part;
+
+    fn split(&mut self, cell: Cell, part: &W::Part) -> Result<[Verdict<W::Part>; 8], Error> {
+        let verdicts = self.inner.split(cell, part)?;
+        self.enough(cell, verdicts)
+    }
+
+    fn likes_many(&self) -> bool {
+        self.inner.likes_many()
+    }
+
+    fn split_many(
+        &mut self,
+        cells: &[(Cell, W::Part)],
+        control: &Control<'_>,
+        verdicts: &mut Vec<[Verdict<W::Part>; 8]>,
+    ) -> Result<(), Error> {
+        let before = verdicts.len();
+        self.inner.split_many(cells, control, verdicts)?;
+        for ((cell, _), eight) in cells.iter().zip(&mut verdicts[before..]) {
+            *eight = self.enough(*cell, eight.clone())?;
+        }
+        Ok(())
+    }
+
+    fn hand_over(&mut self, from: &Self, part: &W::Part) -> Result<W::Part, Error> {
+        self.inner.hand_over(&from.inner, part)
+    }
+
+    forward_worker!(memory W::Part, self => self.inner);
+    forward_worker!(answers W::Part, self => self.inner);
+}

@@ -1,0 +1,389 @@
+//! What solids say of where their boundary lies in a cell, against exact arithmetic.
+
+mod common;
+
+#[allow(dead_code)]
+#[path = "csg/model.rs"]
+mod model;
+#[allow(dead_code)]
+#[path = "csg/random.rs"]
+mod random;
+
+use common::exact::Exact;
+use common::{Random, alone, lattice_frame};
+use leafless::{
+    Affine, Cell, Classifier, Csg, Enclosure, Frame, MAX_DEPTH, Slab, SlabJoin, Solid, Verdict, Worker,
+};
+use model::{Model, Other, Point};
+use random::Maker;
+
+/// Frames whose planes are integers, exact doubles, no doubles at all; far from the origin, tiny.
+fn frames(depth: u8) -> [Frame; 5] {
+    let frame = |origin, edge| Frame::new(origin, edge, depth).unwrap();
+    [
+        lattice_frame(depth),
+        frame([-1.0; 3], 2.0),
+        frame([0.1, -7.3, 1e5 / 3.0], 10.0 / 3.0),
+        frame([1e9 + 0.1, -3.3e8, 0.7], 0.044),
+        frame([-1e-20 / 3.0, 1e-20, 0.0], 3e-20),
+    ]
+}
+
+/// The point of a cell with the coordinates `x` from its centre, in half edges.
+fn at(frame: &Frame, cell: Cell, x: [f64; 3]) -> Point {
+    let half = Exact::from(frame.edge()).times(&Exact::power_of_two(-(cell.level as i64) - 1));
+    let [x, y, z] = [0, 1, 2].map(|axis| {
+        let steps = Exact::from((2 * cell.at[axis] as u64 + 1) as f64).plus(&x[axis].into());
+        Exact::from(frame.origin()[axis]).plus(&steps.times(&half))
+    });
+    [x, y, z, Exact::from(1.0)]
+}
+
+/// The sign of n · x − offset.
+fn side(slab: &Slab, offset: f64, x: [f64; 3]) -> i32 {
+    if offset.is_infinite() {
+        return if offset > 0.0 { -1 } else { 1 };
+    }
+    let products = (0..3).map(|axis| Exact::from(slab.normal[axis]).times(&x[axis].into()));
+    products.fold(Exact::from(-offset), |sum, product| sum.plus(&product)).sign()
+}
+
+fn known(enclosure: &Enclosure) -> impl Iterator<Item = &Slab> {
+    enclosure.slabs.iter().filter(|slab| slab.normal != [0.0; 3])
+}
+
+/// 1 if the enclosure says that a point is inside, −1 if it says that it is outside.
+fn told(enclosure: &Enclosure, x: [f64; 3]) -> i32 {
+    let mut slabs =
+        known(enclosure).map(|slab| (side(slab, slab.inner, x) < 0, side(slab, slab.outer, x) > 0));
+    let (mut inside, mut outside) = match enclosure.join {
+        SlabJoin::All => (true, false),
+        SlabJoin::Any => (false, true),
+    };
+    for (within, beyond) in slabs.by_ref() {
+        match enclosure.join {
+            SlabJoin::All => (inside, outside) = (inside && within, outside || beyond),
+            SlabJoin::Any => (inside, outside) = (inside || within, outside && beyond),
+        }
+    }
+    assert!(!(inside && outside));
+    inside as i32 - outside as i32
+}
+
+/// A point of the open cell: anywhere, or next to where a slab ends.
+fn point(random: &mut Random, enclosure: &Enclosure) -> [f64; 3] {
+    loop {
+        let mut x = [0; 3].map(|_| random.between(-1.0, 1.0));
+        let slabs: Vec<&Slab> = known(enclosure).collect();
+        if random.below(4) != 0 {
+            let slab = slabs[random.below(slabs.len() as u64) as usize];
+            let offset = if random.below(2) == 0 { slab.inner } else { slab.outer };
+            let axis = (0..3).max_by(|&a, &b| slab.normal[a].abs().total_cmp(&slab.normal[b].abs())).unwrap();
+            let others: f64 = (0..3).filter(|&i| i != axis).map(|i| slab.normal[i] * x[i]).sum();
+            x[axis] = (offset - others) / slab.normal[axis];
+            for _ in 0..random.below(3) {
+                x[axis] = if offset == slab.outer { x[axis].next_up() } else { x[axis].next_down() };
+            }
+        }
+        if x.iter().all(|c| c.abs() < 1.0) {
+            return x;
+        }
+    }
+}
+
+fn bits(enclosure: &Enclosure) -> ([[u64; 5]; 3], SlabJoin, u64) {
+    let slab = |s: &Slab| [s.normal[0], s.normal[1], s.normal[2], s.inner, s.outer].map(f64::to_bits);
+    (enclosure.slabs.each_ref().map(slab), enclosure.join, enclosure.cone.to_bits())
+}
+
+/// Cells that were asked, those that told, and points that were told to be inside and outside.
+#[derive(Debug, Default)]
+struct Found {
+    cells: u64,
+    enclosed: u64,
+    /// Cells with more than one slab, and with a side of which nothing is known.
+    several: u64,
+    one_sided: u64,
+    inside: u64,
+    outside: u64,
+}
+
+/// Walks to a finest cell and asks every cell on the way.
+fn walk(model: &Model, frame: &Frame, csg: &Csg, points: u64, random: &mut Random, found: &mut Found) {
+    let mut worker = csg.on(frame, &alone()).unwrap().worker().unwrap();
+    let mut opposite = csg.complement().on(frame, &alone()).unwrap().worker().unwrap();
+    let (Verdict::Partial(mut part), Verdict::Partial(mut rest)) =
+        (worker.root().unwrap(), opposite.root().unwrap())
+    else {
+        return;
+    };
+    let mut cell = Cell::ROOT;
+    loop {
+        let enclosure = worker.enclosure(cell, &part).unwrap();
+        let complement = opposite.enclosure(cell, &rest).unwrap();
+        let context = || format!("{cell:?}\n{enclosure:#?}\n{complement:#?}\n{frame:?}\n{model:#?}");
+        assert_eq!(enclosure.map(|e| bits(&e.complement())), complement.as_ref().map(bits), "{}", context());
+        found.cells += 1;
+        if let Some(enclosure) = &enclosure {
+            assert_eq!(bits(&enclosure.complement().complement()), bits(enclosure));
+            assert!(known(enclosure).count() > 0, "{}", context());
+            assert!(known(enclosure).all(|slab| slab.inner <= slab.outer), "{}", context());
+            found.enclosed += 1;
+            found.several += (known(enclosure).count() > 1) as u64;
+            found.one_sided +=
+                known(enclosure).any(|slab| slab.inner.is_infinite() || slab.outer.is_infinite()) as u64;
+            for _ in 0..points {
+                let x = point(random, enclosure);
+                let told = told(enclosure, x);
+                found.inside += (told > 0) as u64;
+                found.outside += (told < 0) as u64;
+                if told != 0 {
+                    let sign = model.sign(&at(frame, cell, x));
+                    assert!(told * sign >= 0, "{x:?} is told {told} and is {sign}: {}", context());
+                }
+            }
+        }
+        if cell.level == frame.depth() {
+            return;
+        }
+        let children = worker.split(cell, &part).unwrap();
+        let others = opposite.split(cell, &rest).unwrap();
+        let open: Vec<u8> = (0..8).filter(|&k| matches!(children[k as usize], Verdict::Partial(_))).collect();
+        if open.is_empty() {
+            return;
+        }
+        // Half of the ways lead to where surfaces meet.
+        let mut slabs = |octant: u8| match &children[octant as usize] {
+            Verdict::Partial(part) => {
+                worker.enclosure(cell.child(octant), part).unwrap().map_or(0, |e| known(&e).count())
+            }
+            _ => 0,
+        };
+        let octant = match random.below(2) {
+            0 => open.iter().copied().max_by_key(|&octant| slabs(octant)).unwrap(),
+            _ => open[random.below(open.len() as u64) as usize],
+        };
+        let (Verdict::Partial(a), Verdict::Partial(b)) = (children[octant as usize], others[octant as usize])
+        else {
+            panic!("the complement is decided: {}", context());
+        };
+        (part, rest) = (a, b);
+        cell = cell.child(octant);
+    }
+}
+
+/// Random solids made by `make`, until `wanted` points of them have been told something.
+fn hold(name: &str, wanted: u64, make: impl Fn(&mut Maker<'_>) -> Model) {
+    let mut found = Found::default();
+    for seed in 0.. {
+        if found.inside + found.outside >= wanted {
+            break;
+        }
+        assert!(seed < 10_000 + wanted, "{name}: {found:?}");
+        let mut random = Random(seed ^ 0x5AB5);
+        let depth = 1 + random.below(MAX_DEPTH as u64) as u8;
+        let frame = frames(depth)[random.below(5) as usize];
+        let aligned = random.below(3) == 0;
+        let mut maker = Maker { random: &mut random, frame, aligned, others: false };
+        let model = make(&mut maker);
+        // What the ranges of arguments do not admit.
+        let Ok(csg) = model.csg(&frame) else { continue };
+        walk(&model, &frame, &csg, 8, &mut random, &mut found);
+    }
+    println!("{name}: {found:?}");
+    assert!(!name.starts_with("joined") || found.several > found.cells / 10, "{name}: {found:?}");
+    assert!(found.inside > wanted / 5 && found.outside > wanted / 5, "{name}: {found:?}");
+}
+
+fn placed(maker: &mut Maker<'_>, model: Model) -> Model {
+    Model::Placed(Box::new(model), maker.placement())
+}
+
+/// A torus around a point of the universe.
+fn torus(maker: &mut Maker<'_>) -> Model {
+    let edge = maker.frame.edge();
+    let (major, minor) = (edge * maker.random.between(0.1, 0.5), edge * maker.random.between(0.02, 0.6));
+    let to = maker.point();
+    Model::Placed(Box::new(Model::Torus(major, minor)), Affine::translation(to).unwrap_or(Affine::IDENTITY))
+}
+
+/// A half-space of any kind.
+fn half_space(maker: &mut Maker<'_>) -> Model {
+    match maker.below(6) {
+        0 | 1 => maker.plane(),
+        2 => maker.quadric(false),
+        3 => maker.quadric(true),
+        4 => maker.power(),
+        _ => torus(maker),
+    }
+}
+
+/// Two to six half-spaces joined in some way.
+fn joined(maker: &mut Maker<'_>) -> Model {
+    let mut model = half_space(maker);
+    for _ in 0..1 + maker.below(5) {
+        let other = half_space(maker);
+        model = match maker.below(5) {
+            0 => Model::Union(vec![model, other]),
+            1 => Model::Intersection(vec![other, model]),
+            2 => Model::Difference(Box::new([model, other])),
+            3 => Model::Difference(Box::new([other, model])),
+            _ => Model::Complement(Box::new(Model::Union(vec![model, other]))),
+        };
+    }
+    model
+}
+
+/// A solid of another kind that knows slabs, beside half-spaces.
+fn lone(maker: &mut Maker<'_>) -> Model {
+    let (inner, beside) = (joined(maker), half_space(maker));
+    let other = Model::Other(Other::Model(Box::new(inner)));
+    match maker.below(4) {
+        0 => Model::Union(vec![other, beside]),
+        1 => Model::Difference(Box::new([beside, other])),
+        2 => Model::Complement(Box::new(other)),
+        _ => Model::Intersection(vec![other, beside]),
+    }
+}
+
+fn every_producer(points: u64) {
+    hold("planes", points, |maker| maker.plane());
+    hold("turned planes", points, |maker| {
+        let plane = maker.plane();
+        placed(maker, plane)
+    });
+    hold("quadrics", points, |maker| maker.quadric(false));
+    hold("mixed quadrics", points, |maker| maker.quadric(true));
+    hold("turned quadrics", points, |maker| {
+        let quadric = maker.quadric(false);
+        placed(maker, quadric)
+    });
+    hold("powers", points, |maker| maker.power());
+    hold("turned powers", points, |maker| {
+        let power = maker.power();
+        placed(maker, power)
+    });
+    hold("tori", points, torus);
+    hold("turned tori", points, |maker| {
+        let torus = torus(maker);
+        placed(maker, torus)
+    });
+    hold("primitives", points, |maker| maker.primitive());
+    hold("joined half-spaces", points, joined);
+    hold("joined half-spaces, turned", points, |maker| {
+        let joined = joined(maker);
+        placed(maker, joined)
+    });
+    hold("other solids", points, lone);
+}
+
+#[test]
+fn enclosures_do_not_lie() {
+    every_producer(4_000);
+}
+
+#[test]
+#[ignore = "minutes"]
+fn a_million_points_of_each_producer() {
+    every_producer(1_000_000);
+}
+
+/// What analysis says of a function at a point: its gradient, and a bound of the sum of the magnitudes of second
+/// derivatives over the cube of this half edge around it.
+fn derivatives(model: &Model, p: [f64; 3], half: f64) -> ([f64; 3], f64) {
+    match model {
+        Model::Plane(normal, _) => (*normal, 0.0),
+        Model::Quadric([xx, yy, zz, xy, yz, zx, x, y, z, _]) => (
+            [
+                2.0 * xx * p[0] + xy * p[1] + zx * p[2] + x,
+                xy * p[0] + 2.0 * yy * p[1] + yz * p[2] + y,
+                zx * p[0] + yz * p[1] + 2.0 * zz * p[2] + z,
+            ],
+            2.0 * [xx, yy, zz, xy, yz, zx].map(|c| c.abs()).iter().sum::<f64>(),
+        ),
+        Model::Power(terms, _) => {
+            let along = |axis: usize| {
+                let (coefficient, centre, n) = terms[axis];
+                let (u, n) = (p[axis] - centre, n as i32);
+                let second = (n * (n - 1)) as f64 * (u.abs() + half).powi((n - 2).max(0));
+                (coefficient * n as f64 * u.powi(n - 1), (coefficient * second).abs())
+            };
+            let [x, y, z] = [0, 1, 2].map(along);
+            ([x.0, y.0, z.0], x.1 + y.1 + z.1)
+        }
+        Model::Torus(major, _) => {
+            let rho = p[0].hypot(p[1]);
+            let share = -2.0 * (rho - major) / rho;
+            // Of a curve around the axis it is 2 major / ρ − 2.
+            let near = rho - 2f64.sqrt() * half;
+            let around = if near > 2f64.sqrt() * half { 4.0 * major / near } else { f64::INFINITY };
+            ([share * p[0], share * p[1], -2.0 * p[2]], 6.0 + around)
+        }
+        _ => panic!("not a half-space"),
+    }
+}
+
+/// Slabs of single half-spaces are no wider than `share` of what the second derivatives allow, and than rounding.
+fn tight(name: &str, share: f64, make: impl Fn(&mut Maker<'_>) -> Model) {
+    let mut asked = 0;
+    for seed in 0..400 {
+        let mut random = Random(seed ^ 0x717);
+        let frame = Frame::new([-1.0; 3], 2.0, 8).unwrap();
+        let model = make(&mut Maker { random: &mut random, frame, aligned: seed % 3 == 0, others: false });
+        let Ok(csg) = model.csg(&frame) else { continue };
+        let mut worker = csg.on(&frame, &alone()).unwrap().worker().unwrap();
+        let Verdict::Partial(mut part) = worker.root().unwrap() else { continue };
+        let mut cell = Cell::ROOT;
+        loop {
+            let half = 0.5f64.powi(cell.level as i32);
+            let centre = cell.at.map(|i| (2 * i + 1) as f64 * half - 1.0);
+            let (gradient, second) = derivatives(&model, centre, half);
+            let largest = |v: [f64; 3]| v.iter().fold(0.0, |m: f64, c| m.max(c.abs()));
+            // In units of the function, where it does not nearly stand still.
+            if largest(gradient) > 1e-3 * half * second && second.is_finite() {
+                let slab = worker.enclosure(cell, &part).unwrap().expect("a half-space").slabs[0];
+                let unit = largest(slab.normal) / (half * largest(gradient));
+                let (width, allowed) = (slab.outer - slab.inner, share * unit * half * half * second);
+                let at = format!("{width} for {allowed}: {cell:?} {slab:?} {model:?}");
+                assert!(width <= allowed * (1.0 + 1e-9) + 1e-11 * unit.max(1.0), "{name}: {at}");
+                asked += 1;
+            }
+            if cell.level == frame.depth() {
+                break;
+            }
+            let children = worker.split(cell, &part).unwrap();
+            let open: Vec<u8> =
+                (0..8).filter(|&k| matches!(children[k as usize], Verdict::Partial(_))).collect();
+            if open.is_empty() {
+                break;
+            }
+            let octant = open[random.below(open.len() as u64) as usize];
+            let Verdict::Partial(next) = children[octant as usize] else { unreachable!() };
+            (part, cell) = (next, cell.child(octant));
+        }
+    }
+    assert!(asked > 1000, "{name}: {asked}");
+}
+
+#[test]
+fn widths_are_of_second_order() {
+    tight("planes", 0.0, |maker| maker.plane());
+    tight("quadrics", 0.5, |maker| maker.quadric(false));
+    tight("mixed quadrics", 1.0, |maker| maker.quadric(true));
+    // (x − a)² + (x + y − b)² + (y + 2 z − c)² and the like have one sign.
+    tight("definite quadrics", 0.5, |maker| {
+        let rows = [0; 3].map(|_| [0; 3].map(|_| maker.random.between(-1.0, 1.0)));
+        let through = maker.point();
+        let mut c = [0.0; 10];
+        for row in rows {
+            for (k, (i, j)) in [(0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (2, 0)].into_iter().enumerate() {
+                c[k] -= if i == j { 1.0 } else { 2.0 } * row[i] * row[j];
+            }
+            let value: f64 = (0..3).map(|i| row[i] * through[i]).sum();
+            c[9] += value * value;
+        }
+        Model::Quadric(c)
+    });
+    tight("powers", 1.0, |maker| maker.power());
+    tight("tori", 0.5, |maker| Model::Torus(maker.random.between(0.3, 0.7), maker.random.between(0.05, 0.3)));
+}
