@@ -38,7 +38,7 @@ impl Scene {
     /// Octrees that are placed, or lie on another frame, blur by about a cell: see [`Transform`].
     ///
     /// # Errors
-    /// As [`MeshSolid::new`] and [`Csg::placed`]; [`Error::OutOfMemory`].
+    /// As [`MeshSolid::new`](crate::MeshSolid::new) and [`Csg::placed`]; [`Error::OutOfMemory`].
     pub fn solid(&self, frame: &Frame) -> Result<Csg, Error> {
         self.lower(Some(frame))
     }
