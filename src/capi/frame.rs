@@ -2,6 +2,7 @@
 
 use super::boundary::{Failure, array, guard, out, shared};
 use super::status::leafless_status;
+use crate::error::Error;
 use crate::lattice::{Frame, Interval};
 
 /// Where a tree lies: the cube [origin, origin + edge]³ in model units, cut into 2^depth cells per axis.
@@ -80,6 +81,23 @@ pub unsafe extern "C" fn leafless_frame_check(frame: *const leafless_frame) -> l
     guard(|| unsafe { self::frame(frame).map(|_| ()) })
 }
 
+/// Writes the frame that `make` makes of the corners of a box.
+///
+/// # Safety
+/// As [`array`] for the corners and [`out`] for the frame.
+unsafe fn around(
+    min_model: *const f64,
+    max_model: *const f64,
+    frame: *mut leafless_frame,
+    make: impl FnOnce([f64; 3], [f64; 3]) -> Result<Frame, Error>,
+) -> Result<(), Failure> {
+    // SAFETY: the caller's promise.
+    unsafe {
+        let (min, max) = (array(min_model, "min_model")?, array(max_model, "max_model")?);
+        out(frame, "frame")?.write((&make(min, max)?).into())
+    }
+}
+
 /// The cube of edge L·(1 + 1/32) around the centre of a shape, L being its longest extent; the same universe at
 /// every depth. For parts with round dimensions leafless_frame_aligned is better.
 ///
@@ -102,9 +120,7 @@ pub unsafe extern "C" fn leafless_frame_around(
     frame: *mut leafless_frame,
 ) -> leafless_status {
     guard(|| unsafe {
-        let (min, max) = (array(min_model, "min_model")?, array(max_model, "max_model")?);
-        let frame = out(frame, "frame")?;
-        frame.write((&Frame::around(min, max, self::depth(depth))?).into())
+        around(min_model, max_model, frame, |min, max| Frame::around(min, max, self::depth(depth)))
     })
 }
 
@@ -130,9 +146,7 @@ pub unsafe extern "C" fn leafless_frame_aligned(
     frame: *mut leafless_frame,
 ) -> leafless_status {
     guard(|| unsafe {
-        let (min, max) = (array(min_model, "min_model")?, array(max_model, "max_model")?);
-        let frame = out(frame, "frame")?;
-        frame.write((&Frame::aligned(min, max, self::depth(depth))?).into())
+        around(min_model, max_model, frame, |min, max| Frame::aligned(min, max, self::depth(depth)))
     })
 }
 
@@ -157,9 +171,7 @@ pub unsafe extern "C" fn leafless_frame_with_cells(
     frame: *mut leafless_frame,
 ) -> leafless_status {
     guard(|| unsafe {
-        let (min, max) = (array(min_model, "min_model")?, array(max_model, "max_model")?);
-        let frame = out(frame, "frame")?;
-        frame.write((&Frame::with_cells(min, max, cell_size_model)?).into())
+        around(min_model, max_model, frame, |min, max| Frame::with_cells(min, max, cell_size_model))
     })
 }
 
@@ -183,9 +195,7 @@ pub unsafe extern "C" fn leafless_frame_fitted(
     frame: *mut leafless_frame,
 ) -> leafless_status {
     guard(|| unsafe {
-        let (min, max) = (array(min_model, "min_model")?, array(max_model, "max_model")?);
-        let frame = out(frame, "frame")?;
-        frame.write((&Frame::fitted(min, max, self::depth(depth))?).into())
+        around(min_model, max_model, frame, |min, max| Frame::fitted(min, max, self::depth(depth)))
     })
 }
 
