@@ -91,7 +91,9 @@ pub use control::Control;
 pub use error::{
     Damage, Error, FormatError, MeshError, MeshFileError, PackageError, PolyhedronError, SceneError,
 };
-pub use lattice::{Affine, Bounds, Cell, Cube, Frame, Interval, MAX_DEPTH, VolumeMoments};
+pub use lattice::{
+    Affine, Bounds, Cell, CellMoments, Cube, CubeMoments, Frame, Interval, MAX_DEPTH, VolumeMoments,
+};
 pub use mesh::{
     DefectKind, FillRule, IntersectingPair, IntersectingPairs, MeshDefect, MeshMoments, MeshReport,
     TriangleMesh,

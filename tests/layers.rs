@@ -23,8 +23,8 @@ const LAYERS: [&[&str]; 11] = [
 ];
 
 /// Modules of `solid` that its producers share. Every other one is a producer, which no other may use.
-const SHARED: [&str; 8] =
-    ["any", "erased", "fingerprint", "forward", "enclosure", "motion", "prepared", "subtree"];
+const SHARED: [&str; 9] =
+    ["any", "cut", "erased", "fingerprint", "forward", "enclosure", "motion", "prepared", "subtree"];
 
 /// Folders in which some files still use each other. Strike out those that have become clean.
 const WITH_CIRCLES: [&str; 0] = [];

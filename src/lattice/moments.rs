@@ -1,10 +1,7 @@
 //! The volume of a set and its first and second moments.
 
-use super::Interval;
+use super::{Interval, PAIRS};
 use core::array::from_fn as array;
-
-/// Which two axes each second moment is of.
-const PAIRS: [(usize, usize); 6] = [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)];
 
 const ZERO: Interval = Interval::exactly(0.0);
 

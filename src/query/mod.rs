@@ -1,7 +1,6 @@
 //! Questions: such as a stored octree answers in place, and such as any solids answer.
 
 mod clearance;
-mod cut;
 mod descent;
 mod extent;
 mod interference;

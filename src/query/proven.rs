@@ -2,7 +2,7 @@
 
 use crate::control::Control;
 use crate::error::Error;
-use crate::lattice::{Cell, Frame, VolumeMoments};
+use crate::lattice::{Cell, CellMoments, Frame, Interval, VolumeMoments};
 use crate::octree::{Proof, Tag};
 use crate::solid::{Classifier, Enclosure, Verdict, Worker};
 use alloc::vec::Vec;
@@ -102,6 +102,14 @@ impl<W: Worker> Worker for ProvenWorker<W> {
             }
         }
         Ok(found)
+    }
+
+    fn moments(&mut self, cell: Cell, part: &W::Part) -> Result<Option<CellMoments>, Error> {
+        if self.proof.is_certified() { self.inner.moments(cell, part) } else { Ok(None) }
+    }
+
+    fn area(&mut self, cell: Cell, part: &W::Part) -> Result<Option<Interval>, Error> {
+        if self.proof.is_certified() { self.inner.area(cell, part) } else { Ok(None) }
     }
 
     fn likes_many(&self) -> bool {

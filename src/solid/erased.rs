@@ -9,7 +9,7 @@ use super::forward::{forward_solid, forward_worker};
 use super::{Classifier, Crossing, Enclosure, Fingerprint, Motion, Segment, Solid, Subtree, Verdict, Worker};
 use crate::control::Control;
 use crate::error::Error;
-use crate::lattice::{Affine, Bounds, Cell, Frame, VolumeMoments};
+use crate::lattice::{Affine, Bounds, Cell, CellMoments, Frame, Interval, VolumeMoments};
 use crate::memory;
 use crate::octree::{Block, Planes, Proof, Tag};
 use alloc::boxed::Box;
@@ -291,6 +291,8 @@ trait ErasedWorker: Send + Sync {
     fn sample64(&mut self, cell: Cell, parts: &[(u8, ErasedPart)]) -> Result<Option<u64>, Error>;
     fn inside(&mut self, points: &[[f64; 3]], answers: &mut [Option<bool>]) -> Result<(), Error>;
     fn enclosure(&mut self, cell: Cell, part: &ErasedPart) -> Result<Option<Enclosure>, Error>;
+    fn moments(&mut self, cell: Cell, part: &ErasedPart) -> Result<Option<CellMoments>, Error>;
+    fn area(&mut self, cell: Cell, part: &ErasedPart) -> Result<Option<Interval>, Error>;
     fn crossing(
         &mut self,
         cell: Cell,
@@ -419,6 +421,16 @@ impl<W: Worker<Part: 'static> + 'static> ErasedWorker for [Typed<W>; 1] {
     fn enclosure(&mut self, cell: Cell, part: &ErasedPart) -> Result<Option<Enclosure>, Error> {
         let part = self[0].part(part);
         self[0].worker.enclosure(cell, &part)
+    }
+
+    fn moments(&mut self, cell: Cell, part: &ErasedPart) -> Result<Option<CellMoments>, Error> {
+        let part = self[0].part(part);
+        self[0].worker.moments(cell, &part)
+    }
+
+    fn area(&mut self, cell: Cell, part: &ErasedPart) -> Result<Option<Interval>, Error> {
+        let part = self[0].part(part);
+        self[0].worker.area(cell, &part)
     }
 
     fn crossing(

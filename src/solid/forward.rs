@@ -150,6 +150,22 @@ macro_rules! forward_worker {
             $to.enclosure(cell, part)
         }
 
+        fn moments(
+            &mut $self,
+            cell: $crate::lattice::Cell,
+            part: &$part,
+        ) -> Result<Option<$crate::lattice::CellMoments>, $crate::error::Error> {
+            $to.moments(cell, part)
+        }
+
+        fn area(
+            &mut $self,
+            cell: $crate::lattice::Cell,
+            part: &$part,
+        ) -> Result<Option<$crate::lattice::Interval>, $crate::error::Error> {
+            $to.area(cell, part)
+        }
+
         fn crossing(
             &mut $self,
             cell: $crate::lattice::Cell,

@@ -9,6 +9,7 @@ mod adaptive;
 mod any;
 mod callback;
 mod csg;
+pub(crate) mod cut;
 mod enclosure;
 mod erased;
 mod fingerprint;
@@ -43,7 +44,7 @@ pub(crate) use transform::TransformClassifier;
 
 use crate::control::Control;
 use crate::error::Error;
-use crate::lattice::{Affine, Bounds, Cell, Frame, VolumeMoments};
+use crate::lattice::{Affine, Bounds, Cell, CellMoments, Frame, Interval, VolumeMoments};
 use crate::memory;
 use crate::octree::{Block, Planes, Proof, Tag};
 use alloc::vec::Vec;
@@ -456,6 +457,25 @@ pub trait Worker: Send + Sync {
     /// # Errors
     /// As all questions.
     fn enclosure(&mut self, cell: Cell, part: &Self::Part) -> Result<Option<Enclosure>, Error> {
+        let _ = (cell, part);
+        Ok(None)
+    }
+
+    /// Volume and moments of the solid in a PARTIAL cell, if they are known better than by an enclosure.
+    ///
+    /// # Errors
+    /// As all questions.
+    fn moments(&mut self, cell: Cell, part: &Self::Part) -> Result<Option<CellMoments>, Error> {
+        let _ = (cell, part);
+        Ok(None)
+    }
+
+    /// Bounds of the area that the boundary has in a PARTIAL cell, in squares of the cell's half edge, if any are known
+    /// beside those by an enclosure with a cone.
+    ///
+    /// # Errors
+    /// As all questions.
+    fn area(&mut self, cell: Cell, part: &Self::Part) -> Result<Option<Interval>, Error> {
         let _ = (cell, part);
         Ok(None)
     }

@@ -3,12 +3,11 @@
 //! Whole cells are counted and nothing of theirs is rounded. Of cut cells the moments are rounded, to a 2^44th of the
 //! cell; what they may be off by is counted too.
 
-use crate::lattice::{Cell, MAX_DEPTH};
-use crate::query::cut::{self, CubeMoments};
+use crate::lattice::{Cell, CellMoments, CubeMoments, MAX_DEPTH};
+use crate::solid::cut;
 use core::ops::{Add, AddAssign, Sub};
 
-/// Which two axes each second moment is of.
-pub(super) const PAIRS: [(usize, usize); 6] = [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)];
+pub(super) use crate::lattice::PAIRS;
 
 /// Bits behind the point of all moments.
 pub(super) const BITS: u32 = 16;
@@ -129,6 +128,8 @@ struct CutSums {
     own_first: [i128; 3],
     mixed: [i128; 6],
     own_second: [i128; 6],
+    /// What moments are off by beside [`cut::ERROR`].
+    error: i128,
 }
 
 /// More of them are not added up: so none of the sums passes 2^126.
@@ -176,7 +177,7 @@ impl CutSums {
             volume: scaled(self.volume, 3),
             first: [0, 1, 2].map(|i| scaled(self.first[i] + self.own_first[i], 4)),
             second: [0, 1, 2, 3, 4, 5].map(second),
-            error: scaled(self.count as i128 * OWN, 3) + 2,
+            error: scaled(self.count as i128 * OWN + self.error, 3) + 2,
         }
     }
 }
@@ -212,6 +213,15 @@ impl Tally {
         if level.count == MOST_CUT {
             self.flush(cell.level);
         }
+    }
+
+    /// Adds the part of a cell that is solid, as far as that is known.
+    #[inline(always)]
+    pub(super) fn add_known(&mut self, cell: Cell, known: &CellMoments) {
+        // Where the error is as large as the cell it says no more.
+        const SHARE: f64 = (1u64 << SHARE_BITS) as f64 / 8.0;
+        self.cuts[cell.level as usize].error += (known.error.min(8.0) * SHARE) as i128 + 1;
+        self.add_cut(cell, &known.moments);
     }
 
     #[cold]

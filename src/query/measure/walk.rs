@@ -12,12 +12,12 @@ use super::moments::{Moments, Tally};
 use super::{StopReason, Tolerance};
 use crate::control::{Control, Job, WHOLE};
 use crate::error::Error;
-use crate::lattice::{Cell, Frame};
+use crate::lattice::{Cell, CellMoments, Frame};
 use crate::memory;
 use crate::op::gathered::{self, Part};
 use crate::op::split_one;
-use crate::query::{cut, each};
-use crate::solid::{Classifier, Enclosure, Verdict, Worker};
+use crate::query::each;
+use crate::solid::{Classifier, Enclosure, Verdict, Worker, cut};
 use alloc::vec::Vec;
 use core::ops::AddAssign;
 use core::sync::atomic::{AtomicU64, Ordering::Relaxed};
@@ -53,6 +53,13 @@ pub(super) struct Found {
     pub(super) open: Moments,
 }
 
+impl Found {
+    /// The volume in doubt.
+    fn doubt(&self) -> i128 {
+        self.open.volume + self.open.error + 2 * self.full.error
+    }
+}
+
 impl AddAssign for Found {
     fn add_assign(&mut self, other: Found) {
         self.full += other.full;
@@ -60,10 +67,37 @@ impl AddAssign for Found {
     }
 }
 
+/// What is known of an open cell.
+enum Known {
+    Nothing,
+    Slabs(Enclosure),
+    Moments(CellMoments),
+}
+
+impl Known {
+    fn of<W: Worker>(worker: &mut W, cell: Cell, part: &W::Part) -> Result<Known, Error> {
+        if let Some(moments) = worker.moments(cell, part)? {
+            return Ok(Known::Moments(moments));
+        }
+        Ok(worker.enclosure(cell, part)?.map_or(Known::Nothing, Known::Slabs))
+    }
+
+    /// As a share of the cell.
+    fn doubt(&self) -> f64 {
+        match self {
+            Known::Nothing => 1.0,
+            Known::Slabs(enclosure) => cut::doubt(enclosure) / 8.0,
+            Known::Moments(moments) => (2.0 * moments.error / 8.0).min(1.0),
+        }
+    }
+}
+
 /// Adds up cells.
 struct Tallies {
     full: Tally,
     open: Tally,
+    /// Of cells whose moments are known.
+    known: Tally,
     /// Of cells that an enclosure cuts: the sets in the solid, and those around it.
     low: Tally,
     high: Tally,
@@ -73,8 +107,8 @@ struct Tallies {
 
 impl Tallies {
     fn new() -> Tallies {
-        let [full, open, low, high] = [(); 4].map(|()| Tally::new());
-        Tallies { full, open, low, high, level: 0 }
+        let [full, open, known, low, high] = [(); 5].map(|()| Tally::new());
+        Tallies { full, open, known, low, high, level: 0 }
     }
 
     fn full(&mut self, cell: Cell) {
@@ -83,17 +117,23 @@ impl Tallies {
     }
 
     /// Adds a cell that is not decided.
-    fn open(&mut self, cell: Cell, enclosure: Option<&Enclosure>) {
+    fn open(&mut self, cell: Cell, known: &Known) {
         self.level = self.level.max(cell.level);
-        let Some(enclosure) = enclosure else { return self.open.add(cell) };
-        let (low, high) = cut::bounds(enclosure);
-        self.low.add_cut(cell, &low);
-        self.high.add_cut(cell, &high);
+        match known {
+            Known::Nothing => self.open.add(cell),
+            Known::Slabs(enclosure) => {
+                let (low, high) = cut::bounds(enclosure);
+                self.low.add_cut(cell, &low);
+                self.high.add_cut(cell, &high);
+            }
+            Known::Moments(moments) => self.known.add_known(cell, moments),
+        }
     }
 
     fn finish(self) -> Found {
         let low = self.low.finish();
-        Found { full: self.full.finish() + low, open: self.open.finish() + (self.high.finish() - low) }
+        let full = self.full.finish() + self.known.finish() + low;
+        Found { full, open: self.open.finish() + (self.high.finish() - low) }
     }
 }
 
@@ -120,10 +160,10 @@ fn size(level: u8) -> f64 {
 }
 
 /// What is known of a cell, and its doubt as a share of the universe: 0 if splitting does not lessen it.
-fn weigh<W: Worker>(worker: &mut W, cell: Cell, part: &W::Part) -> Result<(Option<Enclosure>, f64), Error> {
-    let enclosure = worker.enclosure(cell, part)?;
-    let doubt = enclosure.as_ref().map_or(1.0, |enclosure| cut::doubt(enclosure) / 8.0);
-    Ok((enclosure, if doubt <= ROUNDING { 0.0 } else { doubt * size(cell.level) }))
+fn weigh<W: Worker>(worker: &mut W, cell: Cell, part: &W::Part) -> Result<(Known, f64), Error> {
+    let known = Known::of(worker, cell, part)?;
+    let doubt = known.doubt();
+    Ok((known, if doubt <= ROUNDING { 0.0 } else { doubt * size(cell.level) }))
 }
 
 /// Splits a solid until one of the reasons to end is met.
@@ -202,7 +242,7 @@ impl<C: Classifier> Walk<'_, C> {
                 if deepest == 0.0 {
                     break StopReason::Exhausted;
                 }
-                let before = (found.open.volume.max(0) as f64, threshold);
+                let before = (found.doubt().max(0) as f64, threshold);
                 threshold = self.next_threshold(&found, threshold, last).min(deepest / 2.0);
                 last = Some(before);
                 let share = unreported / 2;
@@ -239,20 +279,20 @@ impl<C: Classifier> Walk<'_, C> {
             }
             Verdict::Empty => {}
             Verdict::Full => settled.full(Cell::ROOT),
-            Verdict::Undecided => settled.open(Cell::ROOT, None),
+            Verdict::Undecided => settled.open(Cell::ROOT, &Known::Nothing),
         }
         let chunk = Chunk { worker, cells, found: Found::default(), level: 0 };
         Ok((settled.finish(), memory::collected([chunk].into_iter())?, 0))
     }
 
     fn is_met(&self, found: &Found) -> bool {
-        self.is_close(found.full.volume as f64, (found.open.volume + found.open.error) as f64)
+        self.is_close(found.full.volume as f64, found.doubt() as f64)
     }
 
     /// Whether it is worth looking if the tolerance is met: doubts are bounds, and up to some times too great.
     fn may_be_met(&self, settled: &Found, doubts: f64) -> bool {
         let universe = super::moments::UNIVERSE as f64;
-        let (full, open) = (settled.full.volume as f64, settled.open.volume as f64);
+        let (full, open) = (settled.full.volume as f64, settled.doubt() as f64);
         self.is_close(full + 0.5 * universe * doubts, open + 0.1 * universe * doubts)
     }
 
@@ -272,7 +312,7 @@ impl<C: Classifier> Walk<'_, C> {
 
     /// The threshold of the next pass: where the tolerance should be met, judged by the pass before.
     fn next_threshold(&self, found: &Found, threshold: f64, last: Option<(f64, f64)>) -> f64 {
-        let (full, open) = (found.full.volume.max(0) as f64, found.open.volume.max(1) as f64);
+        let (full, open) = (found.full.volume.max(0) as f64, found.doubt().max(1) as f64);
         let wanted = (self.tolerance.relative * full).max(self.tolerance.absolute / self.unit());
         // The volume in doubt goes down with a power of the threshold: the third root where cells are in doubt as a
         // whole, the square root where surfaces are curved, and faster at plane ones.
@@ -297,8 +337,8 @@ impl<C: Classifier> Walk<'_, C> {
         let levels = each(self.parallel, front.iter_mut(), |chunk| {
             let mut tallies = Tallies::new();
             for open in &chunk.cells {
-                let enclosure = chunk.worker.enclosure(open.cell, &open.part)?;
-                tallies.open(open.cell, enclosure.as_ref());
+                let known = Known::of(&mut chunk.worker, open.cell, &open.part)?;
+                tallies.open(open.cell, &known);
             }
             chunk.level = tallies.level;
             chunk.found = tallies.finish();
@@ -361,11 +401,11 @@ impl<C: Classifier> Walk<'_, C> {
                     match verdict {
                         Verdict::Empty => {}
                         Verdict::Full => settled.full(child),
-                        Verdict::Undecided => settled.open(child, None),
+                        Verdict::Undecided => settled.open(child, &Known::Nothing),
                         Verdict::Partial(part) => {
-                            let (enclosure, doubt) = weigh(&mut chunk.worker, child, &part)?;
+                            let (known, doubt) = weigh(&mut chunk.worker, child, &part)?;
                             if child.level == self.frame.depth() {
-                                settled.open(child, enclosure.as_ref());
+                                settled.open(child, &known);
                                 continue;
                             }
                             let (worker, cells) = self.next(&mut out)?;
@@ -426,8 +466,8 @@ impl<C: Classifier> Walk<'_, C> {
                     pass.below(&mut chunk.worker, open.cell, &open.part, self.job)?;
                     chunk.worker.release(mark);
                 } else {
-                    let enclosure = chunk.worker.enclosure(open.cell, &open.part)?;
-                    pass.tallies.open(open.cell, enclosure.as_ref());
+                    let known = Known::of(&mut chunk.worker, open.cell, &open.part)?;
+                    pass.tallies.open(open.cell, &known);
                     pass.deepest = pass.deepest.max(open.doubt);
                 }
                 if pass.is_over() {
@@ -496,14 +536,14 @@ impl Pass<'_> {
             match verdict {
                 Verdict::Empty => {}
                 Verdict::Full => self.tallies.full(child),
-                Verdict::Undecided => self.tallies.open(child, None),
+                Verdict::Undecided => self.tallies.open(child, &Known::Nothing),
                 Verdict::Partial(part) => {
-                    let (enclosure, doubt) = weigh(worker, child, &part)?;
+                    let (known, doubt) = weigh(worker, child, &part)?;
                     if child.level == self.depth || doubt <= self.threshold {
                         if child.level < self.depth {
                             self.deepest = self.deepest.max(doubt);
                         }
-                        self.tallies.open(child, enclosure.as_ref());
+                        self.tallies.open(child, &known);
                     } else {
                         self.below(worker, child, &part, job)?;
                     }

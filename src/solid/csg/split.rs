@@ -6,7 +6,7 @@ use super::program::Program;
 use super::worker::{Ask, CsgPart, Scratch};
 use crate::control::Control;
 use crate::error::Error;
-use crate::lattice::{Bounds, Cell, Frame};
+use crate::lattice::{Bounds, Cell, CellMoments, Frame, Interval};
 use crate::octree::{Block, Planes, Proof, Tag};
 use crate::solid::{
     Classifier, Crossing, Enclosure, Fingerprint, OCTANTS, Segment, Solid, Subtree, Verdict, Worker,
@@ -204,6 +204,21 @@ impl Worker for CsgWorker {
             (Some(enclosure), true) => Some(enclosure.complement()),
             (enclosure, _) => enclosure,
         }))
+    }
+
+    fn moments(&mut self, cell: Cell, part: &CsgPart) -> Result<Option<CellMoments>, Error> {
+        let (program, scratch) = (&*self.program, &mut self.scratch);
+        let found = scratch.ask_lone(program, *part, |worker, part| worker.moments(cell, part))?;
+        Ok(found.and_then(|(moments, complement)| match (moments, complement) {
+            (Some(moments), true) => Some(moments.complement()),
+            (moments, _) => moments,
+        }))
+    }
+
+    fn area(&mut self, cell: Cell, part: &CsgPart) -> Result<Option<Interval>, Error> {
+        let (program, scratch) = (&*self.program, &mut self.scratch);
+        let found = scratch.ask_lone(program, *part, |worker, part| worker.area(cell, part))?;
+        Ok(found.and_then(|(area, _)| area))
     }
 
     fn crossing(&mut self, cell: Cell, part: &CsgPart, segment: &Segment) -> Result<Option<Crossing>, Error> {

@@ -6,6 +6,7 @@
 extern crate std;
 
 use super::*;
+use crate::lattice::PAIRS;
 use alloc::vec::Vec;
 use num_bigint::BigInt;
 use num_traits::{Signed, ToPrimitive, Zero};

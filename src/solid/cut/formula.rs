@@ -1,6 +1,7 @@
 //! A cube and one plane.
 
-use super::{CubeMoments, Half, PAIRS};
+use super::Half;
+use crate::lattice::{CubeMoments, PAIRS};
 
 /// Terms of the sum that are larger than this would cancel. (Moments are off by less than 2^-45 of the largest.)
 const LARGEST_TERM: f64 = 24.0;

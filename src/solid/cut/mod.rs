@@ -2,50 +2,19 @@
 //!
 //! The cube is [-1, 1]³. Of one plane closed forms give the moments (for the volume: Scardovelli and Zaleski,
 //! J. Comput. Phys. 164 (2000) 228–237; the others follow in the same way); where these would cancel, and of two
-//! or three planes, the cube is clipped and integrated over its faces.
+//! or three planes, the cube is clipped and integrated over its faces. Moments are off by less than [`ERROR`].
 
 mod clip;
 mod formula;
 #[cfg(test)]
 mod tests;
 
-use crate::solid::{Enclosure, Slab, SlabJoin};
-
-/// Volume, first and second moments of a set in [-1, 1]³, each off by less than [`ERROR`].
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct CubeMoments {
-    /// At most 8.
-    pub(super) volume: f64,
-    /// ∫ x.
-    pub(super) first: [f64; 3],
-    /// ∫ x xᵀ: xx, yy, zz, xy, xz, yz.
-    pub(super) second: [f64; 6],
-}
+use super::enclosure::{Enclosure, Slab, SlabJoin};
+use crate::lattice::CubeMoments;
 
 /// More than the error of any moment. (Twice what comes of the largest term that the formula admits; clipping is off
 /// by a tenth of that.)
-pub(super) const ERROR: f64 = 1.0 / (1u64 << 39) as f64;
-
-/// Which two axes each second moment is of.
-const PAIRS: [(usize, usize); 6] = [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)];
-
-impl CubeMoments {
-    pub(super) const EMPTY: CubeMoments = CubeMoments { volume: 0.0, first: [0.0; 3], second: [0.0; 6] };
-    pub(super) const FULL: CubeMoments = CubeMoments {
-        volume: 8.0,
-        first: [0.0; 3],
-        second: [8.0 / 3.0, 8.0 / 3.0, 8.0 / 3.0, 0.0, 0.0, 0.0],
-    };
-
-    /// Those of the rest of the cube.
-    fn complement(&self) -> CubeMoments {
-        let mut rest = CubeMoments::FULL;
-        rest.volume -= self.volume;
-        (0..3).for_each(|i| rest.first[i] -= self.first[i]);
-        (0..6).for_each(|i| rest.second[i] -= self.second[i]);
-        rest
-    }
-}
+pub(crate) const ERROR: f64 = 1.0 / (1u64 << 39) as f64;
 
 /// The points of the cube with n · x ≤ offset.
 #[derive(Debug, Clone, Copy)]
@@ -56,7 +25,7 @@ struct Half {
 
 /// Sets that lie in a solid, and that contain it, in a cell of which the enclosure is known: their moments in the
 /// coordinates of the cell.
-pub(super) fn bounds(enclosure: &Enclosure) -> (CubeMoments, CubeMoments) {
+pub(crate) fn bounds(enclosure: &Enclosure) -> (CubeMoments, CubeMoments) {
     let of = |outer: bool| match enclosure.join {
         SlabJoin::All => intersection(&enclosure.slabs, outer).unwrap_or(if outer {
             CubeMoments::FULL
@@ -71,7 +40,7 @@ pub(super) fn bounds(enclosure: &Enclosure) -> (CubeMoments, CubeMoments) {
 }
 
 /// More than the volume, of 8, between the sets of [`bounds`]; cheap, and about right.
-pub(super) fn doubt(enclosure: &Enclosure) -> f64 {
+pub(crate) fn doubt(enclosure: &Enclosure) -> f64 {
     let (mut doubt, mut is_known) = (0.0, false);
     for Slab { normal, inner, outer } in &enclosure.slabs {
         let [a, b, c] = normal.map(f64::abs);

@@ -6,7 +6,8 @@
 //! its moments too, even where planes are nearly parallel and rounding bends a face so that a line crosses its outline
 //! four times.
 
-use super::{CubeMoments, Half, PAIRS};
+use super::Half;
+use crate::lattice::{CubeMoments, PAIRS};
 
 /// A face of the cube has four corners, a section six; each further plane adds one. Bent faces may have more.
 const CORNERS: usize = 10;

@@ -1,0 +1,56 @@
+//! Moments of a set in a cell, in the cell's own coordinates.
+
+/// Volume, first and second moments of a set in the cube [-1, 1]³: a cell, measured from its centre in half edges.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CubeMoments {
+    /// At most 8.
+    pub volume: f64,
+    /// ∫ x.
+    pub first: [f64; 3],
+    /// ∫ x xᵀ: xx, yy, zz, xy, xz, yz.
+    pub second: [f64; 6],
+}
+
+/// Which two axes each second moment is of.
+pub(crate) const PAIRS: [(usize, usize); 6] = [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)];
+
+impl CubeMoments {
+    /// Those of nothing.
+    pub const EMPTY: CubeMoments = CubeMoments { volume: 0.0, first: [0.0; 3], second: [0.0; 6] };
+
+    /// Those of the whole cube.
+    pub const FULL: CubeMoments = CubeMoments {
+        volume: 8.0,
+        first: [0.0; 3],
+        second: [8.0 / 3.0, 8.0 / 3.0, 8.0 / 3.0, 0.0, 0.0, 0.0],
+    };
+
+    /// Those of the rest of the cube.
+    #[must_use]
+    pub fn complement(&self) -> CubeMoments {
+        let mut rest = CubeMoments::FULL;
+        rest.volume -= self.volume;
+        (0..3).for_each(|i| rest.first[i] -= self.first[i]);
+        (0..6).for_each(|i| rest.second[i] -= self.second[i]);
+        rest
+    }
+}
+
+/// What is known of the moments of a solid in a cell.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CellMoments {
+    /// Near the truth.
+    pub moments: CubeMoments,
+    /// No moment is further from the truth than that. Not negative; 8 and more say nothing.
+    pub error: f64,
+}
+
+impl CellMoments {
+    /// What is known of the complement.
+    #[must_use]
+    pub fn complement(&self) -> CellMoments {
+        // The subtraction is rounded.
+        let error = self.error + 16.0 * f64::EPSILON;
+        CellMoments { moments: self.moments.complement(), error }
+    }
+}
