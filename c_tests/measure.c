@@ -89,6 +89,32 @@ static void ball(void) {
     CHECK(again.volume_model.lower < volume && volume < again.volume_model.upper);
     FAILS(LEAFLESS_E_ARGUMENT, leafless_solid_measure(solid, &frame, 0.0, -1.0, NULL, &again));
 
+    /* The area, in one thread as in many. Of a block beyond the universe, with a face in a plane of the lattice, none is
+     * known. */
+    {
+        const double area = 4.0 * PI * 0.75 * 0.75, low[3] = {-9.0, -9.0, -9.0}, high[3] = {0.5, 9.0, 9.0};
+        leafless_solid *block = NULL;
+        leafless_surface_area surface, same;
+        OK(leafless_solid_surface_area(solid, &frame, 0.001, 0.0, NULL, &surface));
+        CHECK(holds(surface.area_model, area) && surface.measured == LEAFLESS_MEASURED_TOLERANCE);
+        CHECK(surface.area_model.upper - surface.area_model.lower <= 0.001 * area && !surface.is_clipped);
+        options.max_splits = 0;
+        last = 0.0;
+        OK(leafless_solid_surface_area(solid, &frame, 0.001, 0.0, &options, &same));
+        CHECK(last == 1.0 && same.splits == surface.splits && same.level == surface.level);
+        CHECK(same.area_model.lower == surface.area_model.lower && same.area_model.upper == surface.area_model.upper);
+        OK(leafless_solid_new_box(low, high, &block));
+        OK(leafless_solid_surface_area(block, &frame, 0.001, 0.0, NULL, &same));
+        CHECK(same.is_clipped);
+        CHECK(same.measured == LEAFLESS_MEASURED_EXHAUSTED && same.area_model.lower == 0.0);
+        CHECK(same.area_model.upper == (double)INFINITY);
+        FAILS(LEAFLESS_E_ARGUMENT, leafless_solid_surface_area(solid, &frame, -1.0, 0.0, NULL, &same));
+        options.progress = refuse;
+        FAILS(LEAFLESS_E_CANCELLED, leafless_solid_surface_area(solid, &frame, 0.0, 0.0, &options, &same));
+        options.progress = stop;
+        leafless_solid_free(block);
+    }
+
     /* Where the surface is known to a hundredth the octree is coarse. */
     {
         const leafless_frame shallow = check_frame(8);

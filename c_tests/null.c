@@ -118,6 +118,7 @@ static void null_pointers(void) {
     uint8_t *bytes = check_bytes(octree, &length);
     leafless_measures measures;
     leafless_extent extent;
+    leafless_surface_area surface;
     double wanted[8][3];
     uint32_t indices[12][3];
     uint64_t number, other;
@@ -628,6 +629,13 @@ static void null_pointers(void) {
                  leafless_solid_measure(solid, NULL, 0, 0.0, NULL, (leafless_measures *)out));
     NULL_POINTER(leafless_solid_measure, measures, leafless_solid_measure(solid, &frame, 0, 0.0, NULL, NULL));
     MAY_BE_NULL(leafless_solid_measure, options, leafless_solid_measure(solid, &frame, 0, 0.0, NULL, &measures));
+    NULL_POINTER(leafless_solid_surface_area, solid,
+                 leafless_solid_surface_area(NULL, &frame, 0, 0.0, NULL, (leafless_surface_area *)out));
+    NULL_POINTER(leafless_solid_surface_area, frame,
+                 leafless_solid_surface_area(solid, NULL, 0, 0.0, NULL, (leafless_surface_area *)out));
+    NULL_POINTER(leafless_solid_surface_area, surface, leafless_solid_surface_area(solid, &frame, 0, 0.0, NULL, NULL));
+    MAY_BE_NULL(leafless_solid_surface_area, options,
+                leafless_solid_surface_area(solid, &frame, 0, 0.0, NULL, &surface));
     NULL_POINTER(leafless_solid_bounding_box, solid,
                  leafless_solid_bounding_box(NULL, &frame, 0, NULL, (leafless_extent *)out));
     NULL_POINTER(leafless_solid_bounding_box, frame,
@@ -771,6 +779,8 @@ static void misaligned(void) {
                leafless_solid_measure((leafless_solid *)WRONG(solid), &frame, 0, 0.0, NULL, (leafless_measures *)out));
     MISALIGNED(leafless_solid_measure, measures,
                leafless_solid_measure(solid, &frame, 0, 0.0, NULL, (leafless_measures *)WRONG(out)));
+    MISALIGNED(leafless_solid_surface_area, surface,
+               leafless_solid_surface_area(solid, &frame, 0, 0.0, NULL, (leafless_surface_area *)WRONG(out)));
     MISALIGNED(leafless_solid_bounding_box, extent,
                leafless_solid_bounding_box(solid, &frame, 0, NULL, (leafless_extent *)WRONG(out)));
     MISALIGNED(leafless_octree_build, solid,
@@ -872,6 +882,8 @@ static void numbers(void) {
         BAD_NUMBER(leafless_octree_build, depth, leafless_octree_build(solid, &bad, 0, NULL, result));
         BAD_NUMBER(leafless_solid_measure, depth,
                    leafless_solid_measure(solid, &bad, 0, 0.0, NULL, (leafless_measures *)out));
+        BAD_NUMBER(leafless_solid_surface_area, depth,
+                   leafless_solid_surface_area(solid, &bad, 0, 0.0, NULL, (leafless_surface_area *)out));
         BAD_NUMBER(leafless_solid_bounding_box, depth,
                    leafless_solid_bounding_box(solid, &bad, 0, NULL, (leafless_extent *)out));
         BAD_NUMBER(leafless_solid_contains, depth,

@@ -1665,6 +1665,32 @@ typedef struct {
 } leafless_measures;
 
 /**
+ * The area of a solid's boundary.
+ */
+typedef struct {
+    /**
+     * Area. It contains the truth; its upper end is infinite where nothing is known.
+     */
+    leafless_interval area_model;
+    /**
+     * How many times a cell was split.
+     */
+    uint64_t splits;
+    /**
+     * The finest level of which cells were looked at.
+     */
+    uint32_t level;
+    /**
+     * Why it ended.
+     */
+    leafless_measured measured;
+    /**
+     * Whether the solid may go on outside of the universe, or does: then it is the boundary inside of it.
+     */
+    bool is_clipped;
+} leafless_surface_area;
+
+/**
  * What is proven of a solid's bounding box inside of the universe.
  */
 typedef struct {
@@ -4168,6 +4194,28 @@ leafless_status leafless_solid_measure(const leafless_solid *solid,
                                        double absolute_model,
                                        const leafless_options *options,
                                        leafless_measures *measures);
+
+/**
+ * The area of a solid's boundary in the universe of a frame, as leafless_solid_measure finds the volume: `relative` and
+ * `absolute_model` (square model units) say how wide the interval may be, and without `max_splits` of the options it ends
+ * after 2^23 splits. With N splits the width goes down with 1/N on curved surfaces; plane faces are exact. Where faces
+ * lie in planes of the frame's lattice, and the solid ends inside of the universe, another lattice is taken. Of an octree,
+ * of a host program's functions, and of what is clipped there and has such faces nothing is known.
+ *
+ * - Buffers: as leafless_solid_measure; `surface`, one struct.
+ * - Result: `*surface`.
+ * - Errors: as leafless_solid_measure.
+ * - Ownership: nothing changes hands.
+ * - Threads: any; uses as many as `options` says.
+ * - Untrusted input: any solid; the default of `max_splits` bounds the work.
+ * - Since: 0.1
+ */
+leafless_status leafless_solid_surface_area(const leafless_solid *solid,
+                                            const leafless_frame *frame,
+                                            double relative,
+                                            double absolute_model,
+                                            const leafless_options *options,
+                                            leafless_surface_area *surface);
 
 /**
  * The bounding box of a solid in the universe of a frame: six intervals, one for each side. The search splits

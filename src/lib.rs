@@ -108,9 +108,9 @@ pub use op::{
     intersection_of, resolve, union, union_of, xor, xor_of,
 };
 pub use query::{
-    BOUNDING_BOX_SPLITS, CLEARANCE_SPLITS, Clearance, Extent, Interference, MEASURE_SPLITS, MassProperties,
-    Membership, Overlap, PointCursor, Region, StopReason, Tolerance, bounding_box, classify_box, clearance,
-    contains, interference, interference_of, measure,
+    AREA_SPLITS, BOUNDING_BOX_SPLITS, CLEARANCE_SPLITS, Clearance, Extent, Interference, MEASURE_SPLITS,
+    MassProperties, Membership, Overlap, PointCursor, Region, StopReason, SurfaceArea, Tolerance,
+    bounding_box, classify_box, clearance, contains, interference, interference_of, measure, surface_area,
 };
 pub use solid::{
     Adaptive, AnyClassifier, AnySolid, AnyWorker, Callback, Classifier, Crossing, Csg, Enclosure, Erasable,

@@ -12,7 +12,7 @@ use crate::voxelize::{bounds, threads};
 use clap::Args;
 use leafless::{
     Affine, Control, Error, Extent, Frame, Interval, MAX_DEPTH, MassProperties, MeshMoments, MeshSolid,
-    Prepared, Solid, StopReason, Tolerance, bounding_box, measure,
+    Prepared, Solid, StopReason, SurfaceArea, Tolerance, bounding_box, measure, surface_area,
 };
 use serde::Serialize;
 use std::ffi::OsString;
@@ -99,6 +99,9 @@ fn sides<S: Solid>(
     Ok(fine)
 }
 
+/// Cells that are split for the area at most, if --splits does not say otherwise.
+const AREA_SPLITS: u64 = 1 << 20;
+
 /// Lower and upper bounds of the elements of a vector or a matrix.
 #[derive(Serialize)]
 struct Bounds<T> {
@@ -133,9 +136,13 @@ struct Report {
     /// Corners of the bounding box; absent (null) if the solid is proven empty.
     min: Option<Bounds<[f64; 3]>>,
     max: Option<Bounds<[f64; 3]>>,
+    /// Of the boundary; absent (null) if nothing is known of it.
+    area: Option<Volume>,
+    area_measured: &'static str,
+    area_splits: u64,
     /// Why it ended.
     measured: &'static str,
-    /// Without those for the bounding box.
+    /// Without those for the bounding box and for the area.
     splits: u64,
     evaluations: u64,
     level: u8,
@@ -181,16 +188,18 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             Some(mesh) => Some(inexact_reason(mesh, mass.clipped, &quiet)?),
             None => None,
         };
-        Ok((mass, extent, evaluated, inexact))
+        let most = Some(arguments.splits.unwrap_or(AREA_SPLITS));
+        let surface = surface_area(solid.solid(), &frame, relative, &Control { max_splits: most, ..quiet })?;
+        Ok((mass, surface, extent, evaluated, inexact))
     });
-    let (mass, extent, evaluated, inexact) = found.of(&input)?;
+    let (mass, surface, extent, evaluated, inexact) = found.of(&input)?;
     let text = if arguments.json {
         let exact = inexact.as_ref().map(Option::is_none);
         let inexact_reason = inexact.flatten();
-        let report = report(&input, &frame, &mass, &extent, evaluated);
+        let report = report(&input, &frame, &mass, &surface, &extent, evaluated);
         output::json(&Report { curves, exact, inexact_reason, ..report })?
     } else {
-        text(&mass, &extent, curves.as_ref(), is_stored, inexact.as_ref())
+        text(&mass, &surface, &extent, curves.as_ref(), is_stored, inexact.as_ref())
     };
     output::print(text.as_bytes())
 }
@@ -206,7 +215,14 @@ fn inexact_reason(mesh: &MeshSolid, clipped: bool, control: &Control<'_>) -> Res
     })
 }
 
-fn report(input: &Input, frame: &Frame, mass: &MassProperties, extent: &Extent, evaluations: u64) -> Report {
+fn report(
+    input: &Input,
+    frame: &Frame,
+    mass: &MassProperties,
+    surface: &SurfaceArea,
+    extent: &Extent,
+    evaluations: u64,
+) -> Report {
     Report {
         input: input.to_string(),
         volume: mass.volume.into(),
@@ -216,6 +232,9 @@ fn report(input: &Input, frame: &Frame, mass: &MassProperties, extent: &Extent, 
         inertia_about_origin: mass.inertia_about_origin.into(),
         min: extent.corners.map(|[min, _]| min.into()),
         max: extent.corners.map(|[_, max]| max.into()),
+        area: is_known(surface).then(|| surface.area.into()),
+        area_measured: stop_word(surface.stop_reason),
+        area_splits: surface.splits,
         measured: stop_word(mass.stop_reason),
         splits: mass.splits,
         evaluations,
@@ -230,9 +249,14 @@ fn report(input: &Input, frame: &Frame, mass: &MassProperties, extent: &Extent, 
     }
 }
 
+fn is_known(surface: &SurfaceArea) -> bool {
+    surface.area.upper < f64::INFINITY
+}
+
 /// The same for people.
 fn text(
     mass: &MassProperties,
+    surface: &SurfaceArea,
     extent: &Extent,
     curves: Option<&Curves>,
     is_stored: bool,
@@ -244,6 +268,7 @@ fn text(
         let _ = writeln!(text, "{name:<16}{value}");
     };
     line("volume", measured(mass.volume));
+    line("area", if is_known(surface) { measured(surface.area) } else { "not known".into() });
     if let Some(doubt) = Proven::from(mass.proof).doubt() {
         line("proven", doubt);
     }

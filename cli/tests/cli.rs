@@ -834,6 +834,9 @@ fn measure_tells_what_is_proven() {
     let place = solids();
     let told = place.run("measure cube.lfl --json").good().json();
     let expected = [
+        "area",
+        "area_measured",
+        "area_splits",
         "centroid",
         "clipped",
         "curves",
@@ -860,6 +863,7 @@ fn measure_tells_what_is_proven() {
         [value["lower"].clone(), value["upper"].clone()]
     };
     assert_eq!(volume(&told), (8.0, 8.0));
+    assert!(told["area"].is_null());
     assert_eq!(
         ends(&told["centroid"]),
         [serde_json::json!([2.0, 2.0, 2.0]), serde_json::json!([2.0, 2.0, 2.0])]

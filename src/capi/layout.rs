@@ -72,6 +72,7 @@ fn write_all(to: &mut dyn Write) -> fmt::Result {
             volume_model, centroid_model, inertia_origin_model, inertia_centroid_model, proof, splits, level,
             measured, has_centroid, is_clipped
         }
+        leafless_surface_area { area_model, splits, level, measured, is_clipped }
         leafless_extent {
             min_model, max_model, proof, splits, measured, is_empty, is_occupied, is_clipped
         }

@@ -7,7 +7,9 @@ use super::octree::leafless_proof;
 use super::solid::leafless_solid;
 use super::status::leafless_status;
 use crate::lattice::Interval;
-use crate::query::{Extent, MassProperties, StopReason, Tolerance, bounding_box, measure};
+use crate::query::{
+    Extent, MassProperties, StopReason, SurfaceArea, Tolerance, bounding_box, measure, surface_area,
+};
 
 /// Why a search or a measurement ended.
 #[derive(Clone, Copy)]
@@ -60,6 +62,34 @@ pub struct leafless_measures {
     pub has_centroid: bool,
     /// Whether the solid may go on outside of the universe, or does.
     pub is_clipped: bool,
+}
+
+/// The area of a solid's boundary.
+#[derive(Clone, Copy)]
+#[repr(C)]
+pub struct leafless_surface_area {
+    /// Area. It contains the truth; its upper end is infinite where nothing is known.
+    pub area_model: leafless_interval,
+    /// How many times a cell was split.
+    pub splits: u64,
+    /// The finest level of which cells were looked at.
+    pub level: u32,
+    /// Why it ended.
+    pub measured: leafless_measured,
+    /// Whether the solid may go on outside of the universe, or does: then it is the boundary inside of it.
+    pub is_clipped: bool,
+}
+
+impl From<SurfaceArea> for leafless_surface_area {
+    fn from(surface: SurfaceArea) -> leafless_surface_area {
+        leafless_surface_area {
+            area_model: surface.area.into(),
+            splits: surface.splits,
+            level: surface.level.into(),
+            measured: surface.stop_reason.into(),
+            is_clipped: surface.clipped,
+        }
+    }
 }
 
 /// What is proven of a solid's bounding box inside of the universe.
@@ -154,6 +184,37 @@ pub unsafe extern "C" fn leafless_solid_measure(
         let measures = out(measures, "measures")?;
         let tolerance = Tolerance { relative, absolute: absolute_model };
         measures.write(controlled(options, |control| measure(solid, &frame, tolerance, control))?.into())
+    })
+}
+
+/// The area of a solid's boundary in the universe of a frame, as leafless_solid_measure finds the volume: `relative` and
+/// `absolute_model` (square model units) say how wide the interval may be, and without `max_splits` of the options it ends
+/// after 2^23 splits. With N splits the width goes down with 1/N on curved surfaces; plane faces are exact. Where faces
+/// lie in planes of the frame's lattice, and the solid ends inside of the universe, another lattice is taken. Of an octree,
+/// of a host program's functions, and of what is clipped there and has such faces nothing is known.
+///
+/// - Buffers: as leafless_solid_measure; `surface`, one struct.
+/// - Result: `*surface`.
+/// - Errors: as leafless_solid_measure.
+/// - Ownership: nothing changes hands.
+/// - Threads: any; uses as many as `options` says.
+/// - Untrusted input: any solid; the default of `max_splits` bounds the work.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_solid_surface_area(
+    solid: *const leafless_solid,
+    frame: *const leafless_frame,
+    relative: f64,
+    absolute_model: f64,
+    options: *const leafless_options,
+    surface: *mut leafless_surface_area,
+) -> leafless_status {
+    guard(|| unsafe {
+        let solid = &shared(solid, "solid")?.solid;
+        let frame = self::frame(frame)?;
+        let surface = out(surface, "surface")?;
+        let tolerance = Tolerance { relative, absolute: absolute_model };
+        surface.write(controlled(options, |control| surface_area(solid, &frame, tolerance, control))?.into())
     })
 }
 

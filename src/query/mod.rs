@@ -16,7 +16,9 @@ mod subject;
 pub use clearance::{CLEARANCE_SPLITS, Clearance, clearance};
 pub use extent::{BOUNDING_BOX_SPLITS, Extent, bounding_box};
 pub use interference::{Interference, Overlap, interference, interference_of};
-pub use measure::{MEASURE_SPLITS, MassProperties, StopReason, Tolerance, measure};
+pub use measure::{
+    AREA_SPLITS, MEASURE_SPLITS, MassProperties, StopReason, SurfaceArea, Tolerance, measure, surface_area,
+};
 pub use point::{Membership, PointCursor};
 pub use probe::contains;
 pub use region::{Region, classify_box};

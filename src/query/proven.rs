@@ -38,6 +38,14 @@ impl<C: Classifier> Classifier for Proven<C> {
     fn moments(&self, control: &Control<'_>) -> Result<Option<VolumeMoments>, Error> {
         if self.0.proof().is_certified() { self.0.moments(control) } else { Ok(None) }
     }
+
+    fn area(&self, control: &Control<'_>) -> Result<Option<Interval>, Error> {
+        if self.0.proof().is_certified() { self.0.area(control) } else { Ok(None) }
+    }
+
+    fn is_off_lattice(&self) -> bool {
+        self.0.proof().is_certified() && self.0.is_off_lattice()
+    }
 }
 
 pub(super) struct ProvenWorker<W> {

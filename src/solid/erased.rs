@@ -174,6 +174,8 @@ trait ErasedClassifier: Send + Sync {
     fn exterior(&self) -> Tag;
     fn proof(&self) -> Proof;
     fn moments(&self, control: &Control<'_>) -> Result<Option<VolumeMoments>, Error>;
+    fn area(&self, control: &Control<'_>) -> Result<Option<Interval>, Error>;
+    fn is_off_lattice(&self) -> bool;
 }
 
 impl<C: Classifier<Worker: Worker<Part: 'static> + 'static>> ErasedClassifier for C {
@@ -198,6 +200,14 @@ impl<C: Classifier<Worker: Worker<Part: 'static> + 'static>> ErasedClassifier fo
     fn moments(&self, control: &Control<'_>) -> Result<Option<VolumeMoments>, Error> {
         Classifier::moments(self, control)
     }
+
+    fn area(&self, control: &Control<'_>) -> Result<Option<Interval>, Error> {
+        Classifier::area(self, control)
+    }
+
+    fn is_off_lattice(&self) -> bool {
+        Classifier::is_off_lattice(self)
+    }
 }
 
 impl Classifier for AnyClassifier {
@@ -221,6 +231,14 @@ impl Classifier for AnyClassifier {
 
     fn moments(&self, control: &Control<'_>) -> Result<Option<VolumeMoments>, Error> {
         self.0.moments(control)
+    }
+
+    fn area(&self, control: &Control<'_>) -> Result<Option<Interval>, Error> {
+        self.0.area(control)
+    }
+
+    fn is_off_lattice(&self) -> bool {
+        self.0.is_off_lattice()
     }
 }
 

@@ -263,6 +263,22 @@ pub trait Classifier: Clone + Send + Sync {
         let _ = control;
         Ok(None)
     }
+
+    /// The area of the whole boundary (square model units), inside and outside of the universe, if it is known without
+    /// splitting cells. `None`, the default, if it is not.
+    ///
+    /// # Errors
+    /// As [`moments`](Self::moments).
+    fn area(&self, control: &Control<'_>) -> Result<Option<Interval>, Error> {
+        let _ = control;
+        Ok(None)
+    }
+
+    /// Whether no piece of the boundary lies in a plane of the lattice, so that all its area lies in open PARTIAL cells.
+    /// `false`, the default, if that is not known.
+    fn is_off_lattice(&self) -> bool {
+        false
+    }
 }
 
 /// A classifier with scratch memory: what answers.

@@ -4,7 +4,7 @@ use super::forward::{forward_solid, forward_worker};
 use super::{Classifier, Solid, Verdict, Worker};
 use crate::control::Control;
 use crate::error::Error;
-use crate::lattice::{Cell, Frame, MAX_DEPTH, VolumeMoments};
+use crate::lattice::{Cell, Frame, Interval, MAX_DEPTH, VolumeMoments};
 use crate::octree::{Proof, Tag};
 use alloc::sync::Arc;
 use core::sync::atomic::{AtomicU64, Ordering::Relaxed};
@@ -93,6 +93,14 @@ impl<C: Classifier> Classifier for CountingClassifier<C> {
 
     fn moments(&self, control: &Control<'_>) -> Result<Option<VolumeMoments>, Error> {
         self.inner.moments(control)
+    }
+
+    fn area(&self, control: &Control<'_>) -> Result<Option<Interval>, Error> {
+        self.inner.area(control)
+    }
+
+    fn is_off_lattice(&self) -> bool {
+        self.inner.is_off_lattice()
     }
 }
 

@@ -15,7 +15,7 @@
 //!   is 0, no centroid lies beyond c; elsewhere none further than that over the volume of F.
 
 use super::moments::{BITS, Moments, PAIRS, UNIVERSE};
-use super::walk::Found;
+use super::volume::Found;
 use crate::lattice::exact::sqrt;
 use crate::lattice::{Frame, Interval};
 

@@ -1,8 +1,13 @@
 //! Certified volume, centroid and inertia of any solid.
 
+mod area;
 mod bounds;
 mod moments;
+mod quantity;
+mod volume;
 mod walk;
+
+pub use area::{AREA_SPLITS, SurfaceArea, surface_area};
 
 use super::proven::Proven;
 use crate::control::Control;
@@ -11,6 +16,7 @@ use crate::lattice::{Frame, Interval, MAX_DEPTH, VolumeMoments, valid};
 use crate::octree::{Proof, Tag};
 use crate::solid::{Classifier, Solid};
 use bounds::Known;
+use volume::Volume;
 
 /// Why a search or a measurement ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -144,7 +150,12 @@ pub fn measure<S: Solid>(
     {
         return Ok(MassProperties::known(&moments, classifier.proof(), tolerance));
     }
-    let walked = walk::walk(&classifier, tolerance, control.max_splits.unwrap_or(MEASURE_SPLITS), control)?;
+    let walked = walk::walk::<Volume, _>(
+        &classifier,
+        tolerance,
+        control.max_splits.unwrap_or(MEASURE_SPLITS),
+        control,
+    )?;
     let known = Known { frame: frame.with_depth(MAX_DEPTH)?, found: walked.found };
     Ok(MassProperties {
         volume: known.volume(),

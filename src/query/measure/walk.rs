@@ -1,25 +1,25 @@
 //! Splitting those cells of which most is in doubt.
 //!
-//! The *doubt* of an undecided cell is a bound of the volume that may or may not belong to the solid: the cell, or
-//! what its enclosure leaves open. Work goes in passes. Each has a *threshold*, a share of the universe's volume, and
+//! The *doubt* of an undecided cell is a bound of what the quantity that is measured there may differ by: of a volume
+//! all of the cell, or what its enclosure leaves open. Work goes in passes. Each has a *threshold*, and
 //! splits all cells whose doubt is greater; the next one has a lower threshold. Cells whose doubt is not greater are
-//! *leaves*: they contribute the moments of the sets between which the solid lies there.
+//! *leaves*: they contribute what is known of them.
 //!
 //! At first all open cells are kept with their parts: the *front*. Once it is long, memory matters more than splits,
-//! and it stays as it is: each pass walks depth first through what lies below it and keeps nothing but moments.
+//! and it stays as it is: each pass walks depth first through what lies below it and keeps nothing but sums.
 
-use super::moments::{Moments, Tally};
+use super::quantity::{Found, Quantity};
 use super::{StopReason, Tolerance};
 use crate::control::{Control, Job, WHOLE};
 use crate::error::Error;
-use crate::lattice::{Cell, CellMoments, Frame};
+use crate::lattice::{Cell, Frame};
 use crate::memory;
 use crate::op::gathered::{self, Part};
 use crate::op::split_one;
 use crate::query::each;
-use crate::solid::{Classifier, Enclosure, Verdict, Worker, cut};
+use crate::solid::{Classifier, Verdict, Worker};
 use alloc::vec::Vec;
-use core::ops::AddAssign;
+use core::marker::PhantomData;
 use core::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
 /// A longer front is not split further, but walked through.
@@ -38,102 +38,32 @@ const ROUNDING: f64 = 1e-12;
 const BATCH: u64 = 1 << 10;
 
 /// What was found.
-pub(super) struct Walked {
-    /// About the lattice's origin.
-    pub(super) found: Found,
+pub(super) struct Walked<F> {
+    pub(super) found: F,
     pub(super) stop_reason: StopReason,
     pub(super) level: u8,
     pub(super) splits: u64,
 }
 
-/// Moments of what is proven inside, and of what is open.
-#[derive(Clone, Copy, Default)]
-pub(super) struct Found {
-    pub(super) full: Moments,
-    pub(super) open: Moments,
-}
-
-impl Found {
-    /// The volume in doubt.
-    fn doubt(&self) -> i128 {
-        self.open.volume + self.open.error + 2 * self.full.error
-    }
-}
-
-impl AddAssign for Found {
-    fn add_assign(&mut self, other: Found) {
-        self.full += other.full;
-        self.open += other.open;
-    }
-}
-
-/// What is known of an open cell.
-enum Known {
-    Nothing,
-    Slabs(Enclosure),
-    Moments(CellMoments),
-}
-
-impl Known {
-    fn of<W: Worker>(worker: &mut W, cell: Cell, part: &W::Part) -> Result<Known, Error> {
-        if let Some(moments) = worker.moments(cell, part)? {
-            return Ok(Known::Moments(moments));
-        }
-        Ok(worker.enclosure(cell, part)?.map_or(Known::Nothing, Known::Slabs))
-    }
-
-    /// As a share of the cell.
-    fn doubt(&self) -> f64 {
-        match self {
-            Known::Nothing => 1.0,
-            Known::Slabs(enclosure) => cut::doubt(enclosure) / 8.0,
-            Known::Moments(moments) => (2.0 * moments.error / 8.0).min(1.0),
-        }
-    }
-}
-
-/// Adds up cells.
-struct Tallies {
-    full: Tally,
-    open: Tally,
-    /// Of cells whose moments are known.
-    known: Tally,
-    /// Of cells that an enclosure cuts: the sets in the solid, and those around it.
-    low: Tally,
-    high: Tally,
-    /// The finest level.
+/// Cells that are not split: what they contribute, and the finest level of theirs.
+struct Leaves<Q> {
+    sum: Q,
     level: u8,
 }
 
-impl Tallies {
-    fn new() -> Tallies {
-        let [full, open, known, low, high] = [(); 5].map(|()| Tally::new());
-        Tallies { full, open, known, low, high, level: 0 }
+impl<Q: Quantity> Leaves<Q> {
+    fn new() -> Leaves<Q> {
+        Leaves { sum: Q::new(), level: 0 }
     }
 
     fn full(&mut self, cell: Cell) {
         self.level = self.level.max(cell.level);
-        self.full.add(cell);
+        self.sum.full(cell);
     }
 
-    /// Adds a cell that is not decided.
-    fn open(&mut self, cell: Cell, known: &Known) {
+    fn open(&mut self, cell: Cell, known: &Q::Known) {
         self.level = self.level.max(cell.level);
-        match known {
-            Known::Nothing => self.open.add(cell),
-            Known::Slabs(enclosure) => {
-                let (low, high) = cut::bounds(enclosure);
-                self.low.add_cut(cell, &low);
-                self.high.add_cut(cell, &high);
-            }
-            Known::Moments(moments) => self.known.add_known(cell, moments),
-        }
-    }
-
-    fn finish(self) -> Found {
-        let low = self.low.finish();
-        let full = self.full.finish() + self.known.finish() + low;
-        Found { full, open: self.open.finish() + (self.high.finish() - low) }
+        self.sum.open(cell, known);
     }
 }
 
@@ -146,33 +76,33 @@ struct Open<P> {
 }
 
 /// Neighbouring cells of the front, in Morton order, with the worker that has their parts.
-struct Chunk<W: Worker> {
+struct Chunk<W: Worker, F> {
     worker: W,
     cells: Vec<Open<W::Part>>,
     /// What the last whole pass has found below them.
-    found: Found,
+    found: F,
     level: u8,
 }
 
-/// The volume of a cell, as a share of the universe.
-fn size(level: u8) -> f64 {
-    f64::from_bits((1023 - 3 * level as u64) << 52)
-}
-
 /// What is known of a cell, and its doubt as a share of the universe: 0 if splitting does not lessen it.
-fn weigh<W: Worker>(worker: &mut W, cell: Cell, part: &W::Part) -> Result<(Known, f64), Error> {
-    let known = Known::of(worker, cell, part)?;
-    let doubt = known.doubt();
-    Ok((known, if doubt <= ROUNDING { 0.0 } else { doubt * size(cell.level) }))
+fn weigh<Q: Quantity, W: Worker>(
+    worker: &mut W,
+    cell: Cell,
+    part: &W::Part,
+) -> Result<(Q::Known, f64), Error> {
+    let known = Q::known(worker, cell, part)?;
+    let doubt = Q::doubt(&known);
+    let size = f64::from_bits((1023 - (Q::DIMENSION * cell.level) as u64) << 52);
+    Ok((known, if doubt <= ROUNDING { 0.0 } else { doubt * size }))
 }
 
 /// Splits a solid until one of the reasons to end is met.
-pub(super) fn walk<C: Classifier>(
+pub(super) fn walk<Q: Quantity, C: Classifier>(
     classifier: &C,
     tolerance: Tolerance,
     budget: u64,
     control: &Control<'_>,
-) -> Result<Walked, Error> {
+) -> Result<Walked<Q::Found>, Error> {
     let job = Job::new(control);
     job.check()?;
     // Shallow walks are done faster than threads are made.
@@ -181,11 +111,13 @@ pub(super) fn walk<C: Classifier>(
     control.run(frame.depth() > 5 || likes_many, |parallel| {
         // All of a front is asked at once.
         let (chunk, long) = if likes_many { (usize::MAX, LONG_GATHERED) } else { (CHUNK, LONG_FRONT) };
-        Walk { classifier, frame, tolerance, budget, job: &job, chunk, long, parallel }.run()
+        let quantity = PhantomData::<Q>;
+        Walk { quantity, classifier, frame, tolerance, budget, job: &job, chunk, long, parallel }.run()
     })
 }
 
-struct Walk<'a, C> {
+struct Walk<'a, Q, C> {
+    quantity: PhantomData<Q>,
     classifier: &'a C,
     frame: &'a Frame,
     tolerance: Tolerance,
@@ -198,17 +130,19 @@ struct Walk<'a, C> {
 }
 
 /// The cells of the front.
-type Front<C> = Vec<Chunk<<C as Classifier>::Worker>>;
+type Front<Q, C> = Vec<ChunkOf<Q, C>>;
+
+type ChunkOf<Q, C> = Chunk<<C as Classifier>::Worker, <Q as Quantity>::Found>;
 
 /// A worker with the cells of the next front.
 type Next<C> = (<C as Classifier>::Worker, Vec<Open<Part<C>>>);
 
-impl<C: Classifier> Walk<'_, C> {
-    fn run(&self) -> Result<Walked, Error> {
+impl<Q: Quantity, C: Classifier> Walk<'_, Q, C> {
+    fn run(&self) -> Result<Walked<Q::Found>, Error> {
         let (mut settled, mut front, mut level) = self.root()?;
         let mut splits = 0;
         let mut unreported = WHOLE;
-        // The volume in doubt after the last pass that was evaluated, and its threshold.
+        // What is in doubt after the last pass that was evaluated, and its threshold.
         let mut last: Option<(f64, f64)> = None;
         let mut threshold = 1.0;
         let (stop_reason, found) = loop {
@@ -242,7 +176,7 @@ impl<C: Classifier> Walk<'_, C> {
                 if deepest == 0.0 {
                     break StopReason::Exhausted;
                 }
-                let before = (found.doubt().max(0) as f64, threshold);
+                let before = (found.doubt().max(0.0), threshold);
                 threshold = self.next_threshold(&found, threshold, last).min(deepest / 2.0);
                 last = Some(before);
                 let share = unreported / 2;
@@ -263,58 +197,56 @@ impl<C: Classifier> Walk<'_, C> {
     }
 
     /// Why no more is split where the budget does not allow it.
-    fn reason(&self, found: &Found) -> StopReason {
+    fn reason(&self, found: &Q::Found) -> StopReason {
         if self.is_met(found) { StopReason::Tolerance } else { StopReason::Budget }
     }
 
     /// What is settled at once, the first front, and the finest level.
-    fn root(&self) -> Result<(Found, Front<C>, u8), Error> {
+    fn root(&self) -> Result<(Q::Found, Front<Q, C>, u8), Error> {
         let mut worker = self.classifier.worker()?;
-        let mut settled = Tallies::new();
+        let mut settled = Leaves::<Q>::new();
         let mut cells = Vec::new();
         match worker.root()? {
             Verdict::Partial(part) => {
-                let (_, doubt) = weigh(&mut worker, Cell::ROOT, &part)?;
+                let (_, doubt) = weigh::<Q, _>(&mut worker, Cell::ROOT, &part)?;
                 memory::push(&mut cells, Open { cell: Cell::ROOT, part, doubt })?;
             }
             Verdict::Empty => {}
             Verdict::Full => settled.full(Cell::ROOT),
-            Verdict::Undecided => settled.open(Cell::ROOT, &Known::Nothing),
+            Verdict::Undecided => settled.open(Cell::ROOT, &Q::NOTHING),
         }
-        let chunk = Chunk { worker, cells, found: Found::default(), level: 0 };
-        Ok((settled.finish(), memory::collected([chunk].into_iter())?, 0))
+        let chunk = Chunk { worker, cells, found: Q::Found::default(), level: 0 };
+        Ok((settled.sum.finish(), memory::collected([chunk].into_iter())?, 0))
     }
 
-    fn is_met(&self, found: &Found) -> bool {
-        self.is_close(found.full.volume as f64, found.doubt() as f64)
+    fn is_met(&self, found: &Q::Found) -> bool {
+        self.is_close(found.least(), found.doubt())
     }
 
     /// Whether it is worth looking if the tolerance is met: doubts are bounds, and up to some times too great.
-    fn may_be_met(&self, settled: &Found, doubts: f64) -> bool {
-        let universe = super::moments::UNIVERSE as f64;
-        let (full, open) = (settled.full.volume as f64, settled.doubt() as f64);
-        self.is_close(full + 0.5 * universe * doubts, open + 0.1 * universe * doubts)
+    fn may_be_met(&self, settled: &Q::Found, doubts: f64) -> bool {
+        let (least, doubt) = (settled.least(), settled.doubt());
+        self.is_close(least + 0.5 * Q::UNIVERSE * doubts, doubt + 0.1 * Q::UNIVERSE * doubts)
     }
 
-    /// Whether `open` is little enough beside `full`, both in units of moments.
-    fn is_close(&self, full: f64, open: f64) -> bool {
-        let unit = self.unit();
-        open <= 0.0
-            || open <= self.tolerance.relative * (full + 0.5 * open)
-            || open * unit <= self.tolerance.absolute
+    /// Whether `doubt` is little enough beside `least`, both in units of what is found.
+    fn is_close(&self, least: f64, doubt: f64) -> bool {
+        doubt <= 0.0
+            || doubt <= self.tolerance.relative * (least + 0.5 * doubt)
+            || doubt * self.unit() <= self.tolerance.absolute
     }
 
-    /// The unit of volumes in cubic model units, rounded.
+    /// The unit of what is found in model units, rounded.
     fn unit(&self) -> f64 {
         let edge = self.frame.edge();
-        edge * edge * edge / super::moments::UNIVERSE as f64
+        (1..Q::DIMENSION).fold(edge, |power, _| power * edge) * Q::SIZE / Q::UNIVERSE
     }
 
     /// The threshold of the next pass: where the tolerance should be met, judged by the pass before.
-    fn next_threshold(&self, found: &Found, threshold: f64, last: Option<(f64, f64)>) -> f64 {
-        let (full, open) = (found.full.volume.max(0) as f64, found.doubt().max(1) as f64);
-        let wanted = (self.tolerance.relative * full).max(self.tolerance.absolute / self.unit());
-        // The volume in doubt goes down with a power of the threshold: the third root where cells are in doubt as a
+    fn next_threshold(&self, found: &Q::Found, threshold: f64, last: Option<(f64, f64)>) -> f64 {
+        let (least, open) = (found.least().max(0.0), found.doubt().max(1.0));
+        let wanted = (self.tolerance.relative * least).max(self.tolerance.absolute / self.unit());
+        // What is in doubt goes down with a power of the threshold: the third root where cells are in doubt as a
         // whole, the square root where surfaces are curved, and faster at plane ones.
         let power = match last {
             Some((before, at)) if at > threshold && before > open => {
@@ -330,18 +262,18 @@ impl<C: Classifier> Walk<'_, C> {
     /// What the front contributes as it is.
     fn evaluate(
         &self,
-        settled: &Found,
-        front: &mut [Chunk<C::Worker>],
+        settled: &Q::Found,
+        front: &mut [ChunkOf<Q, C>],
         level: &mut u8,
-    ) -> Result<Found, Error> {
+    ) -> Result<Q::Found, Error> {
         let levels = each(self.parallel, front.iter_mut(), |chunk| {
-            let mut tallies = Tallies::new();
+            let mut leaves = Leaves::<Q>::new();
             for open in &chunk.cells {
-                let known = Known::of(&mut chunk.worker, open.cell, &open.part)?;
-                tallies.open(open.cell, &known);
+                let known = Q::known(&mut chunk.worker, open.cell, &open.part)?;
+                leaves.open(open.cell, &known);
             }
-            chunk.level = tallies.level;
-            chunk.found = tallies.finish();
+            chunk.level = leaves.level;
+            chunk.found = leaves.sum.finish();
             Ok(chunk.level)
         })?;
         *level = levels.into_iter().fold(*level, u8::max);
@@ -350,8 +282,12 @@ impl<C: Classifier> Walk<'_, C> {
 
     /// Splits the cells of the front whose doubt is greater: what is settled by it, the new front, and the finest
     /// level.
-    fn split(&self, front: &mut [Chunk<C::Worker>], threshold: f64) -> Result<(Found, Front<C>, u8), Error> {
-        let (mut settled, mut next, mut level) = (Found::default(), Vec::new(), 0);
+    fn split(
+        &self,
+        front: &mut [ChunkOf<Q, C>],
+        threshold: f64,
+    ) -> Result<(Q::Found, Front<Q, C>, u8), Error> {
+        let (mut settled, mut next, mut level) = (Q::Found::default(), Vec::new(), 0);
         let tasks = front.iter_mut();
         for (found, chunks, deepest) in
             each(self.parallel, tasks, |chunk| self.split_chunk(chunk, threshold))?
@@ -366,11 +302,11 @@ impl<C: Classifier> Walk<'_, C> {
 
     fn split_chunk(
         &self,
-        chunk: &mut Chunk<C::Worker>,
+        chunk: &mut ChunkOf<Q, C>,
         threshold: f64,
-    ) -> Result<(Found, Front<C>, u8), Error> {
-        let mut settled = Tallies::new();
-        let mut next: Front<C> = Vec::new();
+    ) -> Result<(Q::Found, Front<Q, C>, u8), Error> {
+        let mut settled = Leaves::<Q>::new();
+        let mut next: Front<Q, C> = Vec::new();
         let mut out: Option<Next<C>> = None;
         let many = chunk.worker.likes_many();
         let mut gathered = Vec::new().into_iter();
@@ -401,9 +337,9 @@ impl<C: Classifier> Walk<'_, C> {
                     match verdict {
                         Verdict::Empty => {}
                         Verdict::Full => settled.full(child),
-                        Verdict::Undecided => settled.open(child, &Known::Nothing),
+                        Verdict::Undecided => settled.open(child, &Q::NOTHING),
                         Verdict::Partial(part) => {
-                            let (known, doubt) = weigh(&mut chunk.worker, child, &part)?;
+                            let (known, doubt) = weigh::<Q, _>(&mut chunk.worker, child, &part)?;
                             if child.level == self.frame.depth() {
                                 settled.open(child, &known);
                                 continue;
@@ -426,7 +362,7 @@ impl<C: Classifier> Walk<'_, C> {
             memory::push(&mut next, chunk_of(rest))?;
         }
         let level = settled.level;
-        Ok((settled.finish(), next, level))
+        Ok((settled.sum.finish(), next, level))
     }
 
     /// Where the next cell of the front goes.
@@ -442,7 +378,7 @@ impl<C: Classifier> Walk<'_, C> {
     /// left.
     fn deepen(
         &self,
-        front: &mut [Chunk<C::Worker>],
+        front: &mut [ChunkOf<Q, C>],
         threshold: f64,
         left: u64,
         share: usize,
@@ -454,7 +390,7 @@ impl<C: Classifier> Walk<'_, C> {
             let mut pass = Pass {
                 depth: self.frame.depth(),
                 threshold,
-                tallies: Tallies::new(),
+                leaves: Leaves::<Q>::new(),
                 splits: 0,
                 deepest: 0.0,
                 spent: &spent,
@@ -466,8 +402,8 @@ impl<C: Classifier> Walk<'_, C> {
                     pass.below(&mut chunk.worker, open.cell, &open.part, self.job)?;
                     chunk.worker.release(mark);
                 } else {
-                    let known = Known::of(&mut chunk.worker, open.cell, &open.part)?;
-                    pass.tallies.open(open.cell, &known);
+                    let known = Q::known(&mut chunk.worker, open.cell, &open.part)?;
+                    pass.leaves.open(open.cell, &known);
                     pass.deepest = pass.deepest.max(open.doubt);
                 }
                 if pass.is_over() {
@@ -476,8 +412,8 @@ impl<C: Classifier> Walk<'_, C> {
             }
             self.job.advance(one);
             spent.fetch_add(pass.splits, Relaxed);
-            let level = pass.tallies.level;
-            Ok((pass.tallies.finish(), level, pass.deepest))
+            let level = pass.leaves.level;
+            Ok((pass.leaves.sum.finish(), level, pass.deepest))
         })?;
         let spent = spent.into_inner();
         if spent > left {
@@ -492,15 +428,15 @@ impl<C: Classifier> Walk<'_, C> {
     }
 }
 
-fn chunk_of<W: Worker>((worker, cells): (W, Vec<Open<W::Part>>)) -> Chunk<W> {
-    Chunk { worker, cells, found: Found::default(), level: 0 }
+fn chunk_of<W: Worker, F: Default>((worker, cells): (W, Vec<Open<W::Part>>)) -> Chunk<W, F> {
+    Chunk { worker, cells, found: F::default(), level: 0 }
 }
 
 /// One walk below a chunk.
-struct Pass<'a> {
+struct Pass<'a, Q> {
     depth: u8,
     threshold: f64,
-    tallies: Tallies,
+    leaves: Leaves<Q>,
     /// Splits that have not been added to those of all.
     splits: u64,
     /// The greatest doubt of a leaf that can be split.
@@ -509,7 +445,7 @@ struct Pass<'a> {
     left: u64,
 }
 
-impl Pass<'_> {
+impl<Q: Quantity> Pass<'_, Q> {
     fn is_over(&mut self) -> bool {
         if self.splits >= BATCH {
             self.spent.fetch_add(core::mem::take(&mut self.splits), Relaxed);
@@ -535,15 +471,15 @@ impl Pass<'_> {
             let child = cell.child(octant);
             match verdict {
                 Verdict::Empty => {}
-                Verdict::Full => self.tallies.full(child),
-                Verdict::Undecided => self.tallies.open(child, &Known::Nothing),
+                Verdict::Full => self.leaves.full(child),
+                Verdict::Undecided => self.leaves.open(child, &Q::NOTHING),
                 Verdict::Partial(part) => {
-                    let (known, doubt) = weigh(worker, child, &part)?;
+                    let (known, doubt) = weigh::<Q, _>(worker, child, &part)?;
                     if child.level == self.depth || doubt <= self.threshold {
                         if child.level < self.depth {
                             self.deepest = self.deepest.max(doubt);
                         }
-                        self.tallies.open(child, &known);
+                        self.leaves.open(child, &known);
                     } else {
                         self.below(worker, child, &part, job)?;
                     }
@@ -555,7 +491,7 @@ impl Pass<'_> {
     }
 }
 
-fn total<W: Worker>(settled: Found, front: &[Chunk<W>]) -> Found {
+fn total<W: Worker, F: Found>(settled: F, front: &[Chunk<W, F>]) -> F {
     let mut total = settled;
     front.iter().for_each(|chunk| total += chunk.found);
     total

@@ -7,6 +7,7 @@ use super::plane::Plane;
 use super::power::{PlacedPowers, Powers};
 use super::quadric::{Coefficients, Quadric};
 use super::tangent::Tangent;
+use super::taylor::Taylor;
 use super::torus::{PlacedTorus, Torus};
 use crate::error::Error;
 use crate::lattice::exact::{Dyadic, sign};
@@ -261,6 +262,40 @@ impl Placed {
             Placed::Torus(torus) => torus.tangent(centre, half),
             Placed::Host(_) => return None,
         })
+    }
+
+    /// f over the cube of half edge `half` around `centre`, both in unit coordinates; `None` of functions of the host.
+    #[inline]
+    pub(super) fn taylor(&self, centre: [f64; 3], half: f64) -> Option<Taylor> {
+        Some(match self {
+            Placed::Plane(plane) => plane.taylor(centre, half),
+            Placed::Quadric(quadric) => quadric.taylor(centre, half),
+            Placed::Powers(powers) => powers.taylor(centre, half),
+            Placed::Torus(torus) => torus.taylor(centre, half),
+            Placed::Host(_) => return None,
+        })
+    }
+
+    /// How often a line that does not lie in the surface meets it at most; `None` of functions of the host.
+    pub(super) fn degree(&self) -> Option<u32> {
+        Some(match self {
+            Placed::Plane(_) => 1,
+            Placed::Quadric(_) => 2,
+            Placed::Powers(powers) => powers.degree(),
+            Placed::Torus(_) => 4,
+            Placed::Host(_) => return None,
+        })
+    }
+
+    /// Whether a piece of the surface may lie in a plane of the lattice, which has 2^depth cells.
+    pub(super) fn may_hold_lattice_plane(&self, depth: u8) -> bool {
+        match self {
+            Placed::Plane(plane) => plane.is_of_lattice(depth),
+            Placed::Quadric(quadric) => quadric.may_hold_lattice_plane(),
+            Placed::Powers(powers) => powers.may_hold_lattice_plane(),
+            Placed::Torus(_) => false,
+            Placed::Host(_) => true,
+        }
     }
 
     /// In which of the eight cells the centre is surely inside, and in which surely outside, where that is

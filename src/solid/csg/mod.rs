@@ -4,6 +4,7 @@
 //! Ni, *A fast decomposition algorithm of octree node in 3D-packing* (1994), with proofs in place of their
 //! approximations: see [`Csg`].
 
+mod area;
 mod bounds;
 mod centres;
 mod extent;
@@ -35,6 +36,7 @@ mod split;
 mod support;
 mod table;
 mod tangent;
+mod taylor;
 mod torus;
 mod word;
 mod worker;

@@ -4,6 +4,7 @@ use super::bounds::{Octants, Sides};
 use super::linear;
 use super::map::ExactMap;
 use super::tangent::Tangent;
+use super::taylor::Taylor;
 use crate::lattice::exact::{Dyadic, certain};
 use alloc::boxed::Box;
 use alloc::vec::Vec;
@@ -92,6 +93,38 @@ impl Plane {
             return Tangent { gradient, low: value, high: value };
         }
         Tangent::new(value, gradient, (0.0, 0.0), self.error)
+    }
+
+    /// The value over a cube.
+    pub(super) fn taylor(&self, centre: [f64; 3], half: f64) -> Taylor {
+        let Tangent { gradient, low, high } = self.tangent(centre, half);
+        let error = (0.5 * (high - low)).next_up();
+        Taylor {
+            value: 0.5 * (low + high),
+            gradient,
+            second: [0.0; 6],
+            error,
+            bend: self.error * half,
+            degree: 1,
+        }
+    }
+
+    /// Whether the plane may be one of the lattice's.
+    pub(super) fn is_of_lattice(&self, depth: u8) -> bool {
+        let exact = self.exact();
+        let mut axes = (0..3).filter(|&axis| exact[axis].sign() != 0);
+        let (Some(axis), None) = (axes.next(), axes.next()) else { return false };
+        let cells = (1u64 << depth) as f64;
+        let nearest = libm::round(-self.c[3] / self.c[axis] * cells);
+        // What is far outside of the universe is no matter.
+        if !(-2.0..=2.0 * cells).contains(&nearest) {
+            return false;
+        }
+        let mut point = [0.0; 3];
+        [nearest - 1.0, nearest, nearest + 1.0].into_iter().any(|plane| {
+            point[axis] = plane / cells;
+            linear::value(&exact, &point.map(Dyadic::new)).sign() == 0
+        })
     }
 
     /// Exact sign at a point of [−1, 2]³.

@@ -4,6 +4,8 @@ use super::bounds::{Octants, Sides, sums};
 use super::linear::{self, Linear};
 use super::map::ExactMap;
 use super::tangent::Tangent;
+use super::taylor::Taylor;
+use crate::lattice::PAIRS;
 use crate::lattice::exact::{Dyadic, sign};
 use alloc::vec::Vec;
 use core::cmp::Ordering;
@@ -196,6 +198,66 @@ impl PlacedPowers {
             error += (weight * 32.0 * n * n * line.error).abs() * power(farthest, exponent - 1);
         }
         Tangent::new(value, gradient, (least, most), error)
+    }
+
+    /// The sum over a cube: each term depends on one quantity u alone, and so do its derivatives.
+    pub(super) fn taylor(&self, centre: [f64; 3], half: f64) -> Taylor {
+        let mut value = self.constant;
+        let (mut gradient, mut second) = ([0.0; 3], [0.0; 6]);
+        let mut error = 32.0 * f64::EPSILON * self.constant.abs() + TINY;
+        let mut bend = TINY;
+        for Term { line, exponent, weight, .. } in &self.terms {
+            let n = *exponent as f64;
+            let spread = half * line.reach();
+            let middle = line.value(centre);
+            // The base to the exponent less `k`; 0 where the derivative is.
+            let power = |base: f64, k: u32| match exponent.checked_sub(k) {
+                Some(rest) => power(f64x4::splat(base), rest).to_array()[0],
+                None => 0.0,
+            };
+            let along = [0, 1, 2].map(|axis| half * line.c[axis]);
+            let slope = weight * n * power(middle, 1);
+            let curvature = weight * (0.5 * n * (n - 1.0)) * power(middle, 2);
+            value += weight * power(middle, 0);
+            for axis in 0..3 {
+                gradient[axis] += slope * along[axis];
+            }
+            for (sum, (i, j)) in second.iter_mut().zip(PAIRS) {
+                *sum += curvature * (along[i] * along[j]) * if i == j { 1.0 } else { 2.0 };
+            }
+            let farthest = middle.abs() + spread + line.error;
+            let weight = weight.abs();
+            let rest =
+                weight * (n * (n - 1.0) * (n - 2.0) / 6.0) * power(farthest, 3) * (spread * spread * spread);
+            // The base and the powers are rounded, each power at most 2 n times.
+            let off = 32.0 * n * n * n * line.error;
+            error += rest * (1.0 + 64.0 * n * f64::EPSILON) + weight * off * power(farthest, 1);
+            bend += 1.0001
+                * weight
+                * n
+                * spread
+                * ((n - 1.0) * power(farthest, 2) * (spread + off)
+                    + 64.0 * n * f64::EPSILON * power(farthest, 1));
+        }
+        Taylor { value, gradient, second, error, bend, degree: self.degree() }
+    }
+
+    pub(super) fn degree(&self) -> u32 {
+        self.terms.iter().map(|term| term.exponent).max().unwrap_or(0)
+    }
+
+    /// Whether the surface may contain a plane of a lattice. It does not if, on the planes across each axis, the sum
+    /// grows beyond all bounds along another one.
+    pub(super) fn may_hold_lattice_plane(&self) -> bool {
+        let grows = |axis: usize| {
+            let along = || self.terms.iter().filter(|term| !term.line.exact[axis].is_zero());
+            let sign = |term: &Term| term.exact_weight.sign();
+            let first = along().next().map(sign);
+            along().count() == 1
+                || (first.is_some()
+                    && along().all(|term| term.exponent % 2 == 0 && first == Some(sign(term))))
+        };
+        (0..3).any(|axis| !(0..3).any(|other| other != axis && grows(other)))
     }
 
     /// Bounds where the axes are mixed. As each term depends on one quantity u alone, its remainder after the

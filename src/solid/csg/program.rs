@@ -109,6 +109,17 @@ impl Program {
     }
 }
 
+impl Program {
+    /// The solid that this is another name of, if it is.
+    pub(super) fn sole(&self) -> Option<&AnyClassifier> {
+        let [word] = &*self.words else { return None };
+        match word.op() {
+            Op::Solid { index, complement: false } => self.solids.get(index as usize),
+            _ => None,
+        }
+    }
+}
+
 impl Writer<'_> {
     fn write(&mut self, root: &Arc<Node>) -> Result<(), Error> {
         let mut tasks = Vec::new();

@@ -4,6 +4,7 @@ use super::bounds::{Octants, Sides, sums};
 use super::linear;
 use super::map::ExactMap;
 use super::tangent::Tangent;
+use super::taylor::{Taylor, bend_of};
 use crate::lattice::exact::{Dyadic, certain};
 use alloc::boxed::Box;
 use core::cmp::Ordering;
@@ -141,6 +142,50 @@ impl Quadric {
             Form::Separable(separable) => separable.tangent(centre, half),
             Form::Mixed(mixed) => mixed.tangent(centre, half),
         }
+    }
+
+    /// The value over a cube.
+    pub(super) fn taylor(&self, centre: [f64; 3], half: f64) -> Taylor {
+        let square = half * half;
+        let (value, gradient, second, error) = match &self.form {
+            Form::Separable(separable) => {
+                let t = f64x4::new([centre[0], centre[1], centre[2], 0.0]);
+                let [x, y, z, _] = ((separable.square * t * 2.0 + separable.linear) * half).to_array();
+                let [xx, yy, zz, _] = (separable.square * square).to_array();
+                (separable.value(centre), [x, y, z], [xx, yy, zz, 0.0, 0.0, 0.0], separable.error)
+            }
+            Form::Mixed(mixed) => {
+                let [xx, yy, zz, xy, yz, zx, ..] = mixed.c;
+                let gradient = mixed.slopes(centre).map(|slope| slope * half);
+                let value = mixed.value(centre.map(f64x4::splat)).to_array()[0];
+                (value, gradient, [xx, yy, zz, xy, zx, yz].map(|c| c * square), mixed.error)
+            }
+        };
+        // A slope is a sum of four terms, which are no larger than twice the coefficients.
+        let slope = 16.0 * f64::EPSILON * half * self.size();
+        let error = error + 4.0 * slope;
+        Taylor { value, gradient, second, error, bend: bend_of(&second) + 2.0 * slope, degree: 2 }
+    }
+
+    /// The magnitudes of all coefficients.
+    fn size(&self) -> f64 {
+        match &self.form {
+            Form::Separable(separable) => {
+                let [x, y, z, _] = (separable.square.abs() + separable.linear.abs()).to_array();
+                ((x + y) + z) + separable.constant.abs()
+            }
+            Form::Mixed(mixed) => mixed.c.iter().map(|c| c.abs()).sum(),
+        }
+    }
+
+    /// Whether the surface may contain a plane of a lattice.
+    pub(super) fn may_hold_lattice_plane(&self) -> bool {
+        let zero = |i: usize, j: usize| self.exact[place(i, j)].is_zero();
+        // On such a plane neither the other squares, nor their mixed product, nor a slope are left.
+        [(0, 1, 2), (1, 2, 0), (2, 0, 1)].into_iter().any(|(k, i, j)| {
+            let may_be_flat = |other: usize| !zero(k, other) || zero(other, 3);
+            zero(i, i) && zero(j, j) && zero(i, j) && may_be_flat(i) && may_be_flat(j)
+        })
     }
 
     /// Exact sign of the least (`Less`) or the greatest value over a box, without mixed products.
@@ -353,14 +398,9 @@ impl Mixed {
     }
 
     #[inline(always)]
-    fn tangent(&self, [x, y, z]: [f64; 3], half: f64) -> Tangent {
-        let [xx, yy, zz, xy, yz, zx, x1, y1, z1, _] = self.c;
-        let value = self.value([x, y, z].map(f64x4::splat)).to_array()[0];
-        let gradient = [
-            2.0 * xx * x + ((xy * y + zx * z) + x1),
-            2.0 * yy * y + ((xy * x + yz * z) + y1),
-            2.0 * zz * z + ((zx * x + yz * y) + z1),
-        ];
+    fn tangent(&self, centre: [f64; 3], half: f64) -> Tangent {
+        let value = self.value(centre.map(f64x4::splat)).to_array()[0];
+        let gradient = self.slopes(centre);
         let (least, most) = self.remainder;
         // `error` is more than four times the size of the coefficients in roundings, and so more than what a
         // slope is off by, times an edge of the universe.
@@ -371,6 +411,16 @@ impl Mixed {
             (half * half * least, half * half * most),
             error,
         )
+    }
+
+    #[inline(always)]
+    fn slopes(&self, [x, y, z]: [f64; 3]) -> [f64; 3] {
+        let [xx, yy, zz, xy, yz, zx, x1, y1, z1, _] = self.c;
+        [
+            2.0 * xx * x + ((xy * y + zx * z) + x1),
+            2.0 * yy * y + ((xy * x + yz * z) + y1),
+            2.0 * zz * z + ((zx * x + yz * y) + z1),
+        ]
     }
 
     /// The values at four points.

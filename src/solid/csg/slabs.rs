@@ -39,7 +39,7 @@ impl Scratch {
 }
 
 /// Up to three half-spaces, or their complements.
-type Literals = [Option<(u32, bool)>; 3];
+pub(super) type Literals = [Option<(u32, bool)>; 3];
 
 /// What is known of a cell of the intersection of half-spaces, or, if `one_sided`, of a solid that lies in it.
 fn intersection(program: &Program, cell: Cell, literals: Literals, mut one_sided: bool) -> Option<Enclosure> {
@@ -66,7 +66,7 @@ fn intersection(program: &Program, cell: Cell, literals: Literals, mut one_sided
 
 /// Half-spaces, or their complements, in all of which the points of a table lie; with `false` if it is their
 /// intersection. `None` if there is no such half-space.
-fn around(half_spaces: &[Word], table: Table) -> Option<(Literals, bool)> {
+pub(super) fn around(half_spaces: &[Word], table: Table) -> Option<(Literals, bool)> {
     let mut literals = [None; MOST];
     let (mut all, mut count) = (Table::FULL, 0);
     for word in half_spaces {

@@ -6,7 +6,7 @@ use super::program::Program;
 use super::worker::{Ask, CsgPart, Scratch};
 use crate::control::Control;
 use crate::error::Error;
-use crate::lattice::{Bounds, Cell, CellMoments, Frame, Interval};
+use crate::lattice::{Bounds, Cell, CellMoments, Frame, Interval, VolumeMoments};
 use crate::octree::{Block, Planes, Proof, Tag};
 use crate::solid::{
     Classifier, Crossing, Enclosure, Fingerprint, OCTANTS, Segment, Solid, Subtree, Verdict, Worker,
@@ -86,6 +86,20 @@ impl Classifier for CsgClassifier {
 
     fn proof(&self) -> Proof {
         self.program.proof
+    }
+
+    fn moments(&self, control: &Control<'_>) -> Result<Option<VolumeMoments>, Error> {
+        self.program.sole().map_or(Ok(None), |solid| solid.moments(control))
+    }
+
+    fn area(&self, control: &Control<'_>) -> Result<Option<Interval>, Error> {
+        self.program.sole().map_or(Ok(None), |solid| solid.area(control))
+    }
+
+    fn is_off_lattice(&self) -> bool {
+        let depth = self.program.frame.depth();
+        self.program.solids.iter().all(Classifier::is_off_lattice)
+            && !self.program.half_spaces.iter().any(|half_space| half_space.may_hold_lattice_plane(depth))
     }
 }
 
@@ -217,8 +231,11 @@ impl Worker for CsgWorker {
 
     fn area(&mut self, cell: Cell, part: &CsgPart) -> Result<Option<Interval>, Error> {
         let (program, scratch) = (&*self.program, &mut self.scratch);
+        if !scratch.may_be_lone(program, *part) {
+            return Ok(scratch.area(program, cell, *part));
+        }
         let found = scratch.ask_lone(program, *part, |worker, part| worker.area(cell, part))?;
-        Ok(found.and_then(|(area, _)| area))
+        Ok(found.map_or_else(|| scratch.area(program, cell, *part), |(area, _)| area))
     }
 
     fn crossing(&mut self, cell: Cell, part: &CsgPart, segment: &Segment) -> Result<Option<Crossing>, Error> {

@@ -1,0 +1,205 @@
+//! Certified area of any solid's boundary.
+
+use super::quantity::{self, Quantity};
+use super::walk::walk;
+use super::{StopReason, Tolerance};
+use crate::control::Control;
+use crate::error::Error;
+use crate::lattice::{Cell, Frame, Interval, MAX_DEPTH, valid};
+use crate::octree::{Proof, Tag};
+use crate::query::proven::Proven;
+use crate::solid::{Classifier, Solid, Worker};
+use core::ops::AddAssign;
+
+/// The area of a solid's boundary.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SurfaceArea {
+    /// In square model units. It contains the truth; its upper end is infinite where nothing is known.
+    pub area: Interval,
+    /// Whether the solid may go on outside of the universe, or does: then the area is that of the boundary inside.
+    pub clipped: bool,
+    /// Why it ended.
+    pub stop_reason: StopReason,
+    /// The finest level of which cells were looked at.
+    pub level: u8,
+    /// How many times a cell was split.
+    pub splits: u64,
+}
+
+/// Splits after which the measurement of an area ends if `max_splits` does not say otherwise: some seconds.
+pub const AREA_SPLITS: u64 = 1 << 23;
+
+/// How many frames are tried.
+const FRAMES: u8 = 8;
+
+/// The area of the boundary of `solid` in the universe of `frame`, as [`measure`](crate::measure) finds the volume: to a
+/// `tolerance` (a number is relative to the middle of the interval), with at most `max_splits` of `control`
+/// ([`AREA_SPLITS`] if there is none), and with the same result for any number of threads.
+///
+/// With N splits the width goes down with 1/N on curved surfaces and where plane ones meet. A mesh that is closed and
+/// whose triangles do not intersect is not split.
+///
+/// What lies between two cells belongs to neither of them. If the boundary has pieces in planes of the lattice, the area
+/// of a solid that ends inside of the universe is found on another lattice, whose planes are elsewhere. Of a stored
+/// octree, of a host program's functions and of what is clipped there and has such pieces nothing is known.
+///
+/// # Errors
+/// As [`measure`](crate::measure).
+///
+/// ```
+/// use leafless::{Control, Csg, Frame, surface_area};
+/// let frame = Frame::new([-1.0; 3], 2.0, 20)?;
+/// let ball = surface_area(&Csg::ball([0.1, 0.0, 0.0], 0.75)?, &frame, 1e-3, &Control::default())?;
+/// assert!(ball.area.contains(4.0 * std::f64::consts::PI * 0.75f64.powi(2)));
+/// assert!(ball.area.width() <= 1e-3 * ball.area.upper);
+/// # Ok::<(), leafless::Error>(())
+/// ```
+pub fn surface_area<S: Solid>(
+    solid: &S,
+    frame: &Frame,
+    tolerance: impl Into<Tolerance>,
+    control: &Control<'_>,
+) -> Result<SurfaceArea, Error> {
+    let tolerance = tolerance.into();
+    valid::tolerance("tolerance", tolerance.relative)?;
+    valid::tolerance("tolerance", tolerance.absolute)?;
+    let mut classifier = Proven(solid.on(frame, control)?);
+    let clipped = !matches!(classifier.exterior(), Tag::Empty | Tag::Full);
+    // Without any splits.
+    let told = |area: Interval| {
+        let wanted = tolerance.absolute.max(tolerance.relative * (0.5 * (area.lower + area.upper)));
+        let is_met = area.upper < f64::INFINITY && area.width() <= wanted;
+        let stop_reason = if is_met { StopReason::Tolerance } else { StopReason::Exhausted };
+        SurfaceArea { area, clipped, stop_reason, level: 0, splits: 0 }
+    };
+    if !clipped && let Some(area) = classifier.area(control)? {
+        return Ok(told(area));
+    }
+    if !classifier.is_off_lattice() {
+        let other = match clipped || solid.home().is_some() || classifier.proof() != Proof::CERTIFIED {
+            true => None,
+            false => off_lattice(solid, frame, control)?,
+        };
+        let Some(other) = other else { return Ok(told(Area::NOTHING)) };
+        classifier = other;
+    }
+    let budget = control.max_splits.unwrap_or(AREA_SPLITS);
+    let walked = walk::<Area, _>(&classifier, tolerance, budget, control)?;
+    let Found { lower, upper, unbounded } = walked.found;
+    // A half edge of the universe is 2^(BITS / 2) units.
+    let edge = Interval::exactly(classifier.frame().edge());
+    let unit = edge.square().times(Interval::exactly(0.25 / (1u128 << BITS) as f64));
+    let area = Interval {
+        lower: Interval::of_integer(lower).times(unit).lower,
+        upper: if unbounded > 0 { f64::INFINITY } else { Interval::of_integer(upper).times(unit).upper },
+    };
+    let (stop_reason, level, splits) = (walked.stop_reason, walked.level, walked.splits);
+    Ok(SurfaceArea { area, clipped, stop_reason, level, splits })
+}
+
+/// The solid on a larger frame no plane of whose lattice holds a piece of the boundary, if one is found.
+fn off_lattice<S: Solid>(
+    solid: &S,
+    frame: &Frame,
+    control: &Control<'_>,
+) -> Result<Option<Proven<S::Classifier>>, Error> {
+    let depth = (frame.depth() + 1).min(MAX_DEPTH);
+    for k in 0..FRAMES {
+        // Shares of the golden ratio: no dimension of a part is like them.
+        let shift = [0.381_966_011_250_105, 0.236_067_977_499_790, 0.618_033_988_749_895];
+        let origin =
+            [0, 1, 2].map(|axis| frame.origin()[axis] - (shift[axis] + 0.01 * k as f64) * frame.edge());
+        let Ok(other) = Frame::new(origin, 2.0 * frame.edge(), depth) else { continue };
+        let classifier = Proven(solid.on(&other, control)?);
+        if classifier.is_off_lattice() && matches!(classifier.exterior(), Tag::Empty | Tag::Full) {
+            return Ok(Some(classifier));
+        }
+    }
+    Ok(None)
+}
+
+/// Bits of what the square of the universe's half edge has.
+const BITS: u32 = SHARE_BITS + 2 * MAX_DEPTH as u32;
+
+/// Bits of what the square of a finest cell's half edge has.
+const SHARE_BITS: u32 = 44;
+
+/// The area of a boundary, in fixed point: sums are the same in any order.
+struct Area {
+    /// Per level the sums of lower and upper bounds, in the squares of the cells' half edges.
+    levels: [[i128; 2]; MAX_DEPTH as usize + 1],
+    unbounded: u64,
+}
+
+/// What is found of an area: its bounds, and the number of cells of which no upper bound is known.
+#[derive(Debug, Clone, Copy, Default)]
+struct Found {
+    lower: i128,
+    upper: i128,
+    unbounded: u64,
+}
+
+impl AddAssign for Found {
+    fn add_assign(&mut self, other: Found) {
+        self.lower += other.lower;
+        self.upper += other.upper;
+        self.unbounded += other.unbounded;
+    }
+}
+
+impl quantity::Found for Found {
+    fn least(&self) -> f64 {
+        self.lower as f64
+    }
+
+    fn doubt(&self) -> f64 {
+        if self.unbounded > 0 { f64::INFINITY } else { (self.upper - self.lower) as f64 }
+    }
+}
+
+impl Quantity for Area {
+    type Known = Interval;
+    type Found = Found;
+
+    const DIMENSION: u8 = 2;
+    const SIZE: f64 = 6.0;
+    const UNIVERSE: f64 = 24.0 * (1u128 << BITS) as f64;
+    const NOTHING: Interval = Interval { lower: 0.0, upper: f64::INFINITY };
+
+    fn known<W: Worker>(worker: &mut W, cell: Cell, part: &W::Part) -> Result<Interval, Error> {
+        Ok(worker.area(cell, part)?.unwrap_or(Area::NOTHING))
+    }
+
+    fn doubt(known: &Interval) -> f64 {
+        (known.width() / 24.0).min(1.0)
+    }
+
+    fn new() -> Area {
+        Area { levels: [[0; 2]; MAX_DEPTH as usize + 1], unbounded: 0 }
+    }
+
+    fn full(&mut self, _: Cell) {}
+
+    fn open(&mut self, cell: Cell, known: &Interval) {
+        // A surface that is folded without end may have more than that; it counts as unbounded.
+        const MOST: f64 = (1u64 << 20) as f64;
+        const SHARE: f64 = (1u64 << SHARE_BITS) as f64;
+        let [lower, upper] = &mut self.levels[cell.level as usize];
+        *lower += (known.lower.clamp(0.0, MOST) * SHARE) as i128;
+        if known.upper <= MOST {
+            *upper += (known.upper * SHARE) as i128 + 1;
+        } else {
+            self.unbounded += 1;
+        }
+    }
+
+    fn finish(self) -> Found {
+        let mut found = Found { unbounded: self.unbounded, ..Found::default() };
+        for (level, [lower, upper]) in (0u32..).zip(self.levels) {
+            let shift = 2 * (MAX_DEPTH as u32 - level);
+            found.lower += lower << shift;
+            found.upper += upper << shift;
+        }
+        found
+    }
+}
