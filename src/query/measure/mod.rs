@@ -118,9 +118,9 @@ pub const MEASURE_SPLITS: u64 = 1 << 26;
 /// cells on the levels below are walked through again and again, each time deeper, and not kept. Other limits of
 /// `control` are not heeded.
 ///
-/// Of what is in doubt any part may belong to the solid, and the intervals contain what comes of each choice. Volume and the diagonals of the tensors cannot be told better from the cells; products of
-/// inertia and the centroid are bounded by means of the second moments of what is in doubt (Loewner's order;
-/// Scarf 1958).
+/// Of what is in doubt any part may belong to the solid, and the intervals contain what comes of each choice. Volume and
+/// the diagonals of the tensors cannot be told better from the cells; products of inertia and the centroid are bounded by
+/// means of the second moments of what is in doubt (Loewner's order; Scarf 1958).
 ///
 /// # Errors
 /// [`Error::Argument`] if `tolerance` is negative or not a number; what the solid refuses, as
