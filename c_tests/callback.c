@@ -160,6 +160,55 @@ static int32_t says_nothing(void *ctx, const double *points, uint64_t count, dou
     return 0;
 }
 
+/* The function |p|^2 - r^2 over a box, with more than what is rounded; or what `nothing` says. */
+static int32_t gradient(void *ctx, const double *min, const double *max, const double *middle,
+                        leafless_gradient *gradient) {
+    host *h = (host *)ctx;
+    const double value = middle[0] * middle[0] + middle[1] * middle[1] + middle[2] * middle[2] - h->radius * h->radius;
+    int axis;
+    h->calls++;
+    if (h->calls == h->fails_at) {
+        return -23;
+    }
+    CHECK(isnan(gradient->value.lower) && isnan(gradient->gradient[2].upper));
+    if (h->nothing == 1.0) {
+        return 0;
+    }
+    gradient->value.lower = value - 1e-12;
+    gradient->value.upper = value + 1e-12;
+    for (axis = 0; axis < 3; axis++) {
+        CHECK(min[axis] <= middle[axis] && middle[axis] <= max[axis]);
+        gradient->gradient[axis].lower = 2 * min[axis] - 1e-12;
+        gradient->gradient[axis].upper = 2 * max[axis] + 1e-12;
+    }
+    return 0;
+}
+
+/* The ball by its nearest point, and by a half-space outside; or what `nothing` says. */
+static int32_t tangent(void *ctx, const double *min, const double *max, const double *middle,
+                       leafless_tangent *tangent) {
+    host *h = (host *)ctx;
+    const double length = sqrt(middle[0] * middle[0] + middle[1] * middle[1] + middle[2] * middle[2]);
+    int axis;
+    (void)min, (void)max;
+    h->calls++;
+    if (h->calls == h->fails_at) {
+        return -23;
+    }
+    CHECK(isnan(tangent->point[0]) && isnan(tangent->normal[2]) && isnan(tangent->error));
+    if (h->nothing == 1.0 || length < 0.1) {
+        return 0;
+    }
+    for (axis = 0; axis < 3; axis++) {
+        tangent->point[axis] = middle[axis] * h->radius / length;
+        tangent->normal[axis] = middle[axis];
+    }
+    tangent->inner_curvature = 1 / h->radius;
+    tangent->outer_curvature = 0;
+    tangent->error = 1e-12;
+    return 0;
+}
+
 /* A brick with corners at (0, 0, -0.25) and (0.5, 0.25, 0.125). */
 static const double BRICK[2][3] = {{0, 0, -0.25}, {0.5, 0.25, 0.125}};
 
@@ -602,6 +651,52 @@ static void distance_gives_up(void) {
     }
 }
 
+/* What the host knows of the surface in a cell makes measures and boxes quick, and changes no verdict. */
+static void by_slabs(void) {
+    const double volume = 4.0 / 3.0 * 3.14159265358979323846 * 0.75 * 0.75 * 0.75;
+    const leafless_frame frame = check_frame(20), shallow = check_frame(6);
+    leafless_options options = one_thread();
+    int which, fails_at;
+    for (which = 1; which <= 3; which++) {
+        host h = ball_host();
+        leafless_callbacks callbacks = callbacks_of(&h);
+        leafless_solid *solid = NULL;
+        leafless_octree *own = NULL, *known = check_ball(6, LEAFLESS_RULE_CERTIFIED);
+        leafless_measures measures;
+        leafless_extent extent;
+        callbacks.gradient = which & 1 ? gradient : NULL;
+        callbacks.tangent = which & 2 ? tangent : NULL;
+        OK(leafless_solid_new_callbacks(&callbacks, &solid));
+        OK(leafless_octree_build(solid, &shallow, LEAFLESS_RULE_CERTIFIED, &options, &own));
+        CHECK(check_same(own, known) && h.calls == 0);
+        OK(leafless_solid_measure(solid, &frame, 1e-3, 0.0, &options, &measures));
+        CHECK(measures.measured == LEAFLESS_MEASURED_TOLERANCE && measures.splits < 60000 && h.calls > 0);
+        CHECK(measures.volume_model.lower < volume && volume < measures.volume_model.upper);
+        CHECK(measures.volume_model.upper - measures.volume_model.lower <= 1e-3 * volume);
+        OK(leafless_solid_bounding_box(solid, &frame, 1e-5, &options, &extent));
+        CHECK(extent.measured == LEAFLESS_MEASURED_TOLERANCE && extent.splits < 20000);
+        CHECK(extent.max_model[1].lower <= 0.75 && 0.75 <= extent.max_model[1].upper);
+        for (fails_at = 1; fails_at <= 40; fails_at += 13) {
+            h.calls = 0;
+            h.fails_at = fails_at;
+            fails_with(leafless_solid_measure(solid, &frame, 1e-3, 0.0, &options, &measures), "code -23");
+            CHECK(h.calls == fails_at);
+        }
+        h.fails_at = 0;
+        /* Nothing set is nothing said. */
+        h.nothing = 1.0;
+        options.max_splits = 1000;
+        OK(leafless_solid_measure(solid, &frame, 1e-3, 0.0, &options, &measures));
+        CHECK(measures.measured == LEAFLESS_MEASURED_BUDGET);
+        CHECK(measures.volume_model.lower < volume && volume < measures.volume_model.upper);
+        options.max_splits = 0;
+        leafless_octree_free(own);
+        leafless_octree_free(known);
+        leafless_solid_free(solid);
+        CHECK(h.destroyed == 1);
+    }
+}
+
 /* Where a point under the inverse of a turn by the angle whose cosine is 0.8, and an offset, lies to the brick: the
    least of what it is inside of the six faces. */
 static double in_brick(const double *offset, const double *point) {
@@ -691,6 +786,7 @@ int main(void) {
     by_distance_alone();
     by_distance_and_boxes();
     distance_gives_up();
+    by_slabs();
     is_moved();
     is_destroyed_once();
     garbage_is_refused();

@@ -69,6 +69,72 @@ static bool box(const leafless_mesh_defect *defect, double x, double y, double z
     return min[0] == x && min[1] == y && min[2] == z && max[0] == to_x && max[1] == to_y && max[2] == to_z;
 }
 
+static bool holds(leafless_interval interval, double value, double width) {
+    return interval.lower <= value && value <= interval.upper && interval.upper - interval.lower <= width;
+}
+
+/* Mass properties from the triangles, or why there are none. */
+static void encloses(void) {
+    surface all = cube();
+    leafless_mesh *mesh = made(&all);
+    leafless_mesh_moments moments;
+    int i, j;
+    OK(leafless_mesh_measure(mesh, LEAFLESS_FILL_NON_ZERO, NULL, &moments));
+    CHECK(moments.known == LEAFLESS_MOMENTS_KNOWN && moments.has_centroid && moments.triangles[1] == 0);
+    CHECK(holds(moments.volume_model, 1.0, 1e-13));
+    for (i = 0; i < 3; i++) {
+        CHECK(holds(moments.centroid_model[i], 0.5, 1e-13));
+        for (j = 0; j < 3; j++) {
+            CHECK(holds(moments.inertia_origin_model[3 * i + j], i == j ? 2.0 / 3.0 : -0.25, 1e-13));
+            CHECK(holds(moments.inertia_centroid_model[3 * i + j], i == j ? 1.0 / 6.0 : 0.0, 1e-13));
+        }
+    }
+    leafless_mesh_free(mesh);
+
+    all.triangle_count--;
+    mesh = made(&all);
+    OK(leafless_mesh_measure(mesh, LEAFLESS_FILL_NON_ZERO, NULL, &moments));
+    CHECK(moments.known == LEAFLESS_MOMENTS_OPEN && !moments.has_centroid);
+    CHECK(moments.volume_model.lower == 0.0 && moments.volume_model.upper == INFINITY);
+    CHECK(moments.inertia_origin_model[4].lower == -INFINITY && moments.centroid_model[2].upper == INFINITY);
+    leafless_mesh_free(mesh);
+}
+
+/* A cube and a tetrahedron through one of its faces. */
+static void intersects(void) {
+    surface all = cube();
+    leafless_mesh *mesh = made(&all);
+    leafless_intersecting_pair pairs[64], some[3];
+    leafless_mesh_moments moments;
+    uint64_t found = 77, again = 77, i;
+    bool is_complete = false;
+    uint32_t a, b, c, d;
+    OK(leafless_mesh_intersecting_pairs(mesh, NULL, NULL, 0, &found, &is_complete));
+    CHECK(found == 0 && is_complete);
+    leafless_mesh_free(mesh);
+
+    a = add_vertex(&all, 0.3, 0.3, 0.5), b = add_vertex(&all, 0.4, 0.3, 1.5);
+    c = add_vertex(&all, 0.3, 0.4, 1.5), d = add_vertex(&all, 0.2, 0.2, 1.5);
+    add_triangle(&all, a, c, b), add_triangle(&all, a, d, c), add_triangle(&all, a, b, d), add_triangle(&all, b, c, d);
+    mesh = made(&all);
+    OK(leafless_mesh_intersecting_pairs(mesh, NULL, pairs, COUNT(pairs), &found, &is_complete));
+    /* Three sides go through one or both triangles of the upper face. */
+    CHECK(3 <= found && found <= 6 && is_complete);
+    for (i = 0; i < found; i++) {
+        CHECK(pairs[i].triangles[0] < 12 && 12 <= pairs[i].triangles[1] && pairs[i].triangles[1] < 15);
+        CHECK(pairs[i].min_model[2] <= 1.0 && 1.0 <= pairs[i].max_model[2]);
+        CHECK(pairs[i].min_model[0] >= 0.2 && pairs[i].max_model[0] <= 0.4);
+    }
+    memset(some, 0xc3, sizeof some);
+    OK(leafless_mesh_intersecting_pairs(mesh, NULL, some, 2, &again, &is_complete));
+    CHECK(again == found && is_complete && memcmp(some, pairs, 2 * sizeof *some) == 0);
+    CHECK(((const unsigned char *)&some[2])[0] == 0xc3);
+    OK(leafless_mesh_measure(mesh, LEAFLESS_FILL_NON_ZERO, NULL, &moments));
+    CHECK(moments.known == LEAFLESS_MOMENTS_INTERSECTING);
+    CHECK(moments.triangles[0] < 12 && 12 <= moments.triangles[1] && moments.triangles[1] < 16);
+    leafless_mesh_free(mesh);
+}
+
 int main(void) {
     leafless_mesh_defect defect;
     leafless_mesh_report report;
@@ -167,6 +233,9 @@ int main(void) {
             CHECK(report.polygons == 0 && report.bent_polygons == 0 && report.polygon_deviation_model == 0.0);
         }
     }
+
+    encloses();
+    intersects();
 
     /* A square with a corner lifted. */
     {

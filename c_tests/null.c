@@ -117,6 +117,9 @@ static void null_pointers(void) {
     uint64_t length = 0;
     uint8_t *bytes = check_bytes(octree, &length);
     leafless_measures measures;
+    leafless_mesh_moments moments;
+    leafless_intersecting_pair pair;
+    bool is_complete;
     leafless_extent extent;
     leafless_surface_area surface;
     double wanted[8][3];
@@ -222,6 +225,16 @@ static void null_pointers(void) {
     MAY_BE_NULL(leafless_mesh_defects, defects, leafless_mesh_defects(mesh, 9, NULL, 0, &number));
     NULL_POINTER(leafless_mesh_defects, count,
                  leafless_mesh_defects(mesh, 9, (leafless_mesh_defect *)out, 2, NULL));
+    NULL_POINTER(leafless_mesh_measure, mesh, leafless_mesh_measure(NULL, 0, NULL, (leafless_mesh_moments *)out));
+    NULL_POINTER(leafless_mesh_measure, moments, leafless_mesh_measure(mesh, 0, NULL, NULL));
+    NULL_POINTER(leafless_mesh_intersecting_pairs, mesh,
+                 leafless_mesh_intersecting_pairs(NULL, NULL, NULL, 0, (uint64_t *)out, (bool *)out + 8));
+    NULL_POINTER(leafless_mesh_intersecting_pairs, pairs,
+                 leafless_mesh_intersecting_pairs(mesh, NULL, NULL, 9, (uint64_t *)out, (bool *)out + 8));
+    NULL_POINTER(leafless_mesh_intersecting_pairs, count,
+                 leafless_mesh_intersecting_pairs(mesh, NULL, NULL, 0, NULL, (bool *)out));
+    NULL_POINTER(leafless_mesh_intersecting_pairs, is_complete,
+                 leafless_mesh_intersecting_pairs(mesh, NULL, NULL, 0, (uint64_t *)out, NULL));
     NULL_POINTER(leafless_mesh_check_closed, mesh, leafless_mesh_check_closed(NULL, 0));
     NULL_POINTER(leafless_mesh_sewn, mesh, leafless_mesh_sewn(NULL, mesh_result));
     NULL_POINTER(leafless_mesh_sewn, sewn, leafless_mesh_sewn(mesh, NULL));
@@ -655,6 +668,11 @@ static void null_pointers(void) {
     MAY_BE_NULL(leafless_mesh_from_polyhedron, deviation_model,
                 leafless_mesh_from_polyhedron(&polyhedron, NULL, mesh_result));
     leafless_mesh_free(*mesh_result);
+    MAY_BE_NULL(leafless_mesh_measure, options, leafless_mesh_measure(mesh, 0, NULL, &moments));
+    MAY_BE_NULL(leafless_mesh_intersecting_pairs, options,
+                leafless_mesh_intersecting_pairs(mesh, NULL, &pair, 1, &number, &is_complete));
+    MAY_BE_NULL(leafless_mesh_intersecting_pairs, pairs,
+                leafless_mesh_intersecting_pairs(mesh, &options, NULL, 0, &number, &is_complete));
     MAY_BE_NULL(leafless_mesh_open, options, leafless_mesh_open("null.stl", 8, NULL, &found, mesh_result));
     leafless_mesh_free(*mesh_result);
     MAY_BE_NULL(leafless_mesh_open, source, leafless_mesh_open("null.stl", 8, &mesh_options, NULL, mesh_result));
@@ -757,6 +775,15 @@ static void misaligned(void) {
     MISALIGNED(leafless_mesh_defects, defects,
                leafless_mesh_defects(mesh, 9, (leafless_mesh_defect *)WRONG(out), 2, (uint64_t *)out));
     MISALIGNED(leafless_mesh_defects, count, leafless_mesh_defects(mesh, 9, NULL, 0, (uint64_t *)WRONG(out)));
+    MISALIGNED(leafless_mesh_measure, moments,
+               leafless_mesh_measure(mesh, 0, NULL, (leafless_mesh_moments *)WRONG(out)));
+    MISALIGNED(leafless_mesh_measure, options,
+               leafless_mesh_measure(mesh, 0, (leafless_options *)WRONG(&options), (leafless_mesh_moments *)out));
+    MISALIGNED(leafless_mesh_intersecting_pairs, pairs,
+               leafless_mesh_intersecting_pairs(mesh, NULL, (leafless_intersecting_pair *)WRONG(out), 2,
+                                                (uint64_t *)out, (bool *)out));
+    MISALIGNED(leafless_mesh_intersecting_pairs, count,
+               leafless_mesh_intersecting_pairs(mesh, NULL, NULL, 0, (uint64_t *)WRONG(out), (bool *)out));
     MISALIGNED(leafless_mesh_transformed, matrix, leafless_mesh_transformed(mesh, numbers, mesh_result));
     MISALIGNED(leafless_mesh_translated, mesh,
                leafless_mesh_translated((leafless_mesh *)WRONG(mesh), point, mesh_result));
@@ -979,6 +1006,8 @@ static void numbers(void) {
         BAD_NUMBER(leafless_octree_with_proof, displacement,
                    leafless_octree_with_proof(octree, 3, not_finite[i], result));
         BAD_NUMBER(leafless_mesh_check_closed, fill, leafless_mesh_check_closed(mesh, not_a_rule[i] - 1));
+        BAD_NUMBER(leafless_mesh_measure, fill,
+                   leafless_mesh_measure(mesh, not_a_rule[i] - 1, NULL, (leafless_mesh_moments *)out));
         BAD_NUMBER(leafless_solid_new_mesh, fill, leafless_solid_new_mesh(mesh, not_a_rule[i] - 1, solid_result));
         memset(&callbacks, 0, sizeof callbacks);
         callbacks.struct_size = sizeof callbacks;

@@ -84,6 +84,7 @@ int main(void) {
     OK(leafless_callbacks_init(&callbacks, sizeof callbacks));
     CHECK(callbacks.struct_size == sizeof callbacks && callbacks.classify == NULL && callbacks.ctx == NULL);
     CHECK(callbacks.classify_many == NULL && callbacks.contains_many == NULL && callbacks.distance_many == NULL);
+    CHECK(callbacks.gradient == NULL && callbacks.tangent == NULL);
     OK(leafless_options_init(&options, sizeof options));
     options.threads = 3;
     options.max_nodes = UINT64_MAX;

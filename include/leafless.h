@@ -305,6 +305,35 @@ typedef uint32_t leafless_unit;
 #endif // __cplusplus
 
 /**
+ * Whether the moments of what a mesh encloses are known from its triangles.
+ */
+enum leafless_moments_known
+#ifdef __cplusplus
+  : uint32_t
+#endif // __cplusplus
+ {
+    /**
+     * They are, up to rounding and to the mesh's displacement.
+     */
+    LEAFLESS_MOMENTS_KNOWN = 0,
+    /**
+     * They are not: the mesh is empty, not closed, or not consistently oriented as the fill rule demands.
+     */
+    LEAFLESS_MOMENTS_OPEN = 1,
+    /**
+     * They are not: two triangles intersect.
+     */
+    LEAFLESS_MOMENTS_INTERSECTING = 2,
+    /**
+     * They are not: too many triangles lie close to each other to find out, or all triangles of a body are slivers.
+     */
+    LEAFLESS_MOMENTS_UNDECIDED = 3,
+};
+#ifndef __cplusplus
+typedef uint32_t leafless_moments_known;
+#endif // __cplusplus
+
+/**
  * What is known of a cell.
  */
 enum leafless_tag
@@ -1078,6 +1107,58 @@ typedef struct {
 } leafless_mesh_source;
 
 /**
+ * Mass properties of what a mesh encloses, of density 1, as in leafless_measures: all numbers unless they are known.
+ */
+typedef struct {
+    /**
+     * Volume.
+     */
+    leafless_interval volume_model;
+    /**
+     * Centroid; all numbers unless `has_centroid`.
+     */
+    leafless_interval centroid_model[3];
+    /**
+     * Tensor of inertia about the model's origin, row by row.
+     */
+    leafless_interval inertia_origin_model[9];
+    /**
+     * The same about the centroid.
+     */
+    leafless_interval inertia_centroid_model[9];
+    /**
+     * Two triangles that intersect, if `known` says so; else 0.
+     */
+    uint32_t triangles[2];
+    /**
+     * Whether they are known, or why not.
+     */
+    leafless_moments_known known;
+    /**
+     * Whether the volume is proven not to be 0.
+     */
+    bool has_centroid;
+} leafless_mesh_moments;
+
+/**
+ * Two triangles that have a point in common which is not on a common vertex or edge.
+ */
+typedef struct {
+    /**
+     * A box in which they meet: where the boxes around the two overlap.
+     */
+    double min_model[3];
+    /**
+     * Its upper corner.
+     */
+    double max_model[3];
+    /**
+     * Indices of the triangles, ascending.
+     */
+    uint32_t triangles[2];
+} leafless_intersecting_pair;
+
+/**
  * Solids that plane faces bound, as boundary representations have them: solids of shells of faces of loops
  * of corners.
  *
@@ -1309,6 +1390,76 @@ typedef int32_t (*leafless_distance_many_fn)(void *ctx,
                                              double *distances_model);
 
 /**
+ * What a function f of the host does over a box. The shape is the set of the points where f is not positive, as for
+ * a signed distance; the gradient leads out of it. NaN, or lower > upper, says nothing of the box.
+ */
+typedef struct {
+    /**
+     * Contains the value of f at the middle of the box. One end may be infinite.
+     */
+    leafless_interval value;
+    /**
+     * For each axis: contains the partial derivative of f everywhere in the box. f must be continuous there;
+     * where it has no derivative, the range must contain the slopes on all sides.
+     */
+    leafless_interval gradient[3];
+} leafless_gradient;
+
+/**
+ * Bounds the host's function f over the box [min, max] (3 numbers each, model units), of which `middle` is the
+ * middle (3 numbers): sets `*gradient`, all of which is NaN before. 0, or the number of the host's own error. Else
+ * as leafless_classify_fn.
+ */
+typedef int32_t (*leafless_gradient_fn)(void *ctx,
+                                        const double *min,
+                                        const double *max,
+                                        const double *middle,
+                                        leafless_gradient *gradient);
+
+/**
+ * Two balls that touch the surface of the host's shape at a point, one inside and one outside.
+ *
+ * Let d = y - `point` for a point y of the box, and n = `normal` divided by its length. Each y of the box with
+ * n . d < -(inner_curvature / 2 |d|^2 + error) must lie in the shape, and no y with
+ * n . d > outer_curvature / 2 |d|^2 + error may. So without an error the balls have the radii 1 / `inner_curvature`
+ * and 1 / `outer_curvature`; 0 stands for a half-space, a negative curvature for all that lies outside of a ball,
+ * and infinity for nothing. The reciprocal of the surface's reach does for both: it is no less than any
+ * curvature, nor than 2 over the width of any wall or gap. NaN, or a negative error, says nothing of the box.
+ */
+typedef struct {
+    /**
+     * Where the balls touch (model units); best the surface's nearest point to the middle of the box.
+     */
+    double point[3];
+    /**
+     * The direction that leads out of the shape there, of any length.
+     */
+    double normal[3];
+    /**
+     * The reciprocal of the radius of the ball inside.
+     */
+    double inner_curvature;
+    /**
+     * The reciprocal of the radius of the ball outside.
+     */
+    double outer_curvature;
+    /**
+     * By how much the surface may be off (model units), for what is rounded in `point` and `normal`.
+     */
+    double error;
+} leafless_tangent;
+
+/**
+ * Tells where the surface of the host's own shape runs next to the middle of a box, and how it bends: sets `*tangent`,
+ * all of which is NaN before. Else as leafless_gradient_fn.
+ */
+typedef int32_t (*leafless_tangent_fn)(void *ctx,
+                                       const double *min,
+                                       const double *max,
+                                       const double *middle,
+                                       leafless_tangent *tangent);
+
+/**
  * The host's own shape. All fields but the first may be zero; `classify` or `distance_many` must be set.
  */
 typedef struct {
@@ -1357,6 +1508,16 @@ typedef struct {
      * decided. With it `classify` is optional.
      */
     leafless_distance_many_fn distance_many;
+    /**
+     * Bounds a function of the host over boxes; optional. It is asked about undecided cells. Measures,
+     * bounding boxes and adaptive octrees need far fewer splits with it. No verdict depends on it.
+     */
+    leafless_gradient_fn gradient;
+    /**
+     * Tells of the surface next to the middle of a box; optional. It is asked for the same as `gradient`; if
+     * both are set, where that one proves nothing.
+     */
+    leafless_tangent_fn tangent;
 } leafless_callbacks;
 
 /**
@@ -2451,6 +2612,47 @@ leafless_status leafless_mesh_to_stl(const leafless_mesh *mesh,
                                      uint8_t *bytes,
                                      uint64_t capacity,
                                      uint64_t *length);
+
+/**
+ * The volume and the moments of what a mesh encloses by a fill rule, exact up to rounding: usually to 14 digits.
+ * They are known if the mesh is closed and no two triangles intersect. leafless_solid_measure of a solid of such a
+ * mesh tells the same.
+ *
+ * - Buffers: `options`, one struct or NULL, of which the limits do not matter; `moments`, one struct. `fill` is
+ *   a leafless_fill.
+ * - Result: `*moments`, whether they are known or not.
+ * - Errors: LEAFLESS_E_ARGUMENT if `fill` is no leafless_fill; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
+ * - Ownership: nothing changes hands.
+ * - Threads: any; works in the calling thread. Each call analyses the mesh.
+ * - Untrusted input: any mesh; the work is limited.
+ * - Since: 0.1
+ */
+leafless_status leafless_mesh_measure(const leafless_mesh *mesh,
+                                      uint32_t fill,
+                                      const leafless_options *options,
+                                      leafless_mesh_moments *moments);
+
+/**
+ * The pairs of triangles that intersect: they cross, touch, or fold onto each other. Decided exactly. Triangles
+ * without area are left out.
+ *
+ * - Buffers: `options`, one struct or NULL, of which the limits do not matter; `pairs`, room for `capacity` of
+ *   them, or NULL to ask for their number only; `count`, one number; `is_complete`, one number.
+ * - Result: `*count`, how many were found; the first `capacity` of them in `pairs`, in ascending order of triangles;
+ *   `*is_complete`, whether these are all: else the search was ended, because too many triangles lie close to each
+ *   other.
+ * - Errors: LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY. A `capacity` that is too small is none.
+ * - Ownership: nothing changes hands.
+ * - Threads: any; works in the calling thread. Each call analyses the mesh.
+ * - Untrusted input: any mesh; the work is limited.
+ * - Since: 0.1
+ */
+leafless_status leafless_mesh_intersecting_pairs(const leafless_mesh *mesh,
+                                                 const leafless_options *options,
+                                                 leafless_intersecting_pair *pairs,
+                                                 uint64_t capacity,
+                                                 uint64_t *count,
+                                                 bool *is_complete);
 
 /**
  * Sets arrays to their defaults: none.

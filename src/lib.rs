@@ -114,8 +114,8 @@ pub use query::{
 };
 pub use solid::{
     Adaptive, AnyClassifier, AnySolid, AnyWorker, Callback, Classifier, Crossing, Csg, Enclosure, Erasable,
-    Fingerprint, Fingerprinter, HalfSpace, MeshSolid, Motion, Segment, Slab, SlabJoin, Solid, SplitCounter,
-    Subtree, Touch, Transform, Verdict, Worker,
+    Fingerprint, Fingerprinter, GradientRange, HalfSpace, MeshSolid, Motion, Segment, Slab, SlabJoin, Solid,
+    SplitCounter, Subtree, TangentBalls, Touch, Transform, Verdict, Worker,
 };
 
 #[cfg(feature = "std")]

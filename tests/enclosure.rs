@@ -12,7 +12,8 @@ mod random;
 use common::exact::Exact;
 use common::{Random, alone, lattice_frame};
 use leafless::{
-    Affine, Cell, Classifier, Csg, Enclosure, Frame, MAX_DEPTH, Slab, SlabJoin, Solid, Verdict, Worker,
+    Affine, AnySolid, Callback, Cell, Classifier, Csg, Enclosure, Error, Frame, GradientRange, Interval,
+    MAX_DEPTH, Slab, SlabJoin, Solid, TangentBalls, Transform, Verdict, Worker,
 };
 use model::{Model, Other, Point};
 use random::Maker;
@@ -110,7 +111,9 @@ struct Found {
 
 /// Walks to a finest cell and asks every cell on the way.
 fn walk(model: &Model, frame: &Frame, csg: &Csg, points: u64, random: &mut Random, found: &mut Found) {
-    let mut worker = csg.on(frame, &alone()).unwrap().worker().unwrap();
+    // (Placements may lead beyond what doubles can tell.)
+    let Ok(classifier) = csg.on(frame, &alone()) else { return };
+    let mut worker = classifier.worker().unwrap();
     let mut opposite = csg.complement().on(frame, &alone()).unwrap().worker().unwrap();
     let (Verdict::Partial(mut part), Verdict::Partial(mut rest)) =
         (worker.root().unwrap(), opposite.root().unwrap())
@@ -174,6 +177,16 @@ fn walk(model: &Model, frame: &Frame, csg: &Csg, points: u64, random: &mut Rando
 
 /// Random solids made by `make`, until `wanted` points of them have been told something.
 fn hold(name: &str, wanted: u64, make: impl Fn(&mut Maker<'_>) -> Model) {
+    hold_as(name, wanted, make, |model, frame| model.csg(frame));
+}
+
+/// The same, with solids that are made of the models in another way.
+fn hold_as(
+    name: &str,
+    wanted: u64,
+    make: impl Fn(&mut Maker<'_>) -> Model,
+    solid: impl Fn(&Model, &Frame) -> Result<Csg, Error>,
+) {
     let mut found = Found::default();
     for seed in 0.. {
         if found.inside + found.outside >= wanted {
@@ -187,7 +200,7 @@ fn hold(name: &str, wanted: u64, make: impl Fn(&mut Maker<'_>) -> Model) {
         let mut maker = Maker { random: &mut random, frame, aligned, others: false };
         let model = make(&mut maker);
         // What the ranges of arguments do not admit.
-        let Ok(csg) = model.csg(&frame) else { continue };
+        let Ok(csg) = solid(&model, &frame) else { continue };
         walk(&model, &frame, &csg, 8, &mut random, &mut found);
     }
     println!("{name}: {found:?}");
@@ -246,6 +259,99 @@ fn lone(maker: &mut Maker<'_>) -> Model {
     }
 }
 
+fn moved(maker: &mut Maker<'_>, make: impl Fn(&mut Maker<'_>) -> Model) -> Model {
+    let model = make(maker);
+    placed(maker, model)
+}
+
+/// A placed model that is not placed as an expression, but from a frame of its own; some as complements of
+/// complements.
+fn by_transform(model: &Model, frame: &Frame) -> Result<Csg, Error> {
+    let Model::Placed(model, placement) = model else { panic!("not placed") };
+    let csg = model.csg(frame)?;
+    let transform = |csg: &Csg| Csg::solid(AnySolid::new(Transform::of(csg.clone(), placement)));
+    let is_even = placement.rows()[0][0].to_bits() & 1 == 0;
+    Ok(if is_even { transform(&csg) } else { transform(&csg.complement()).complement() })
+}
+
+fn ball(maker: &mut Maker<'_>) -> Model {
+    let radius = maker.frame.edge() * maker.random.between(0.3, 0.9);
+    Model::Ellipsoid(maker.point(), [radius; 3])
+}
+
+/// A torus around a point of the universe with a hole.
+fn slim_torus(maker: &mut Maker<'_>) -> Model {
+    let major = maker.frame.edge() * maker.random.between(0.2, 0.6);
+    let minor = major * maker.random.between(0.1, 0.9);
+    let to = maker.point();
+    Model::Placed(Box::new(Model::Torus(major, minor)), Affine::translation(to).unwrap_or(Affine::IDENTITY))
+}
+
+/// A quadric as a host knows it, by its gradient.
+fn by_gradient(model: &Model, _: &Frame) -> Result<Csg, Error> {
+    let &Model::Quadric([xx, yy, zz, xy, yz, zx, x, y, z, constant]) = model else { panic!("no quadric") };
+    // The library's function is positive inside.
+    let range = move |low: [f64; 3], high: [f64; 3], [a, b, c, d]: [f64; 4]| {
+        let (mut least, mut most, mut size) = (d, d, d.abs());
+        for (axis, slope) in [a, b, c].into_iter().enumerate() {
+            let ends = [slope * low[axis], slope * high[axis]];
+            (least, most) = (least + ends[0].min(ends[1]), most + ends[0].max(ends[1]));
+            size += ends[0].abs().max(ends[1].abs());
+        }
+        Interval { lower: least - 1e-14 * size, upper: most + 1e-14 * size }
+    };
+    let gradient = move |min, max| {
+        let rows = [[2.0 * xx, xy, zx, x], [xy, 2.0 * yy, yz, y], [zx, yz, 2.0 * zz, z]];
+        rows.map(|row| range(min, max, row.map(|c| -c)))
+    };
+    let callback =
+        Callback::new(|_, _| Ok(Verdict::Partial(()))).with_gradient(move |min, max, [p, q, r]| {
+            let terms =
+                [xx * p * p, yy * q * q, zz * r * r, xy * p * q, yz * q * r, zx * r * p, x * p, y * q, z * r];
+            let (value, size) =
+                terms.iter().fold((constant, constant.abs()), |(sum, size), t| (sum + t, size + t.abs()));
+            let value = Interval { lower: -value - 1e-14 * size, upper: -value + 1e-14 * size };
+            Ok(Some(GradientRange { value, gradient: gradient(min, max) }))
+        });
+    Ok(Csg::solid(AnySolid::new(callback)))
+}
+
+/// A ball or a torus as a host knows it, by its nearest point.
+fn by_tangent(model: &Model, _: &Frame) -> Result<Csg, Error> {
+    // The centre, the radius of the circle around it that is the middle of the torus, and that of its tube.
+    let (centre, major, minor) = match model {
+        &Model::Ellipsoid(centre, [radius, ..]) => (centre, 0.0, radius),
+        Model::Placed(torus, to) => match **torus {
+            Model::Torus(major, minor) => (to.rows().map(|row| row[3]), major, minor),
+            _ => panic!("no torus"),
+        },
+        _ => panic!("neither"),
+    };
+    let length = |v: [f64; 3]| v.iter().map(|c| c * c).sum::<f64>().sqrt();
+    let callback = Callback::new(|_, _| Ok(Verdict::Partial(()))).with_tangent(move |min, max, middle| {
+        let off = [0, 1, 2].map(|axis| middle[axis] - centre[axis]);
+        let rho = off[0].hypot(off[1]);
+        let share = major / rho;
+        let ring = if major > 0.0 { [off[0] * share, off[1] * share, 0.0] } else { [0.0; 3] };
+        let away = [0, 1, 2].map(|axis| off[axis] - ring[axis]);
+        let distance = length(away);
+        if distance < 1e-3 * minor || major > 0.0 && rho < 1e-3 * major {
+            return Ok(None);
+        }
+        let point = [0, 1, 2].map(|axis| centre[axis] + ring[axis] + away[axis] * (minor / distance));
+        let size = length(centre) + length(middle) + major + minor;
+        let reach = length([0, 1, 2].map(|axis| max[axis] - min[axis])) + distance + minor;
+        Ok(Some(TangentBalls {
+            point,
+            normal: away,
+            inner_curvature: 1.0 / minor,
+            outer_curvature: if major > 0.0 { 1.0 / (major - minor) } else { -1.0 / minor },
+            error: 1e-13 * (size + reach * reach / minor.min((major - minor).abs())),
+        }))
+    });
+    Ok(Csg::solid(AnySolid::new(callback)))
+}
+
 fn every_producer(points: u64) {
     hold("planes", points, |maker| maker.plane());
     hold("turned planes", points, |maker| {
@@ -275,6 +381,12 @@ fn every_producer(points: u64) {
         placed(maker, joined)
     });
     hold("other solids", points, lone);
+    hold_as("moved half-spaces", points, |maker| moved(maker, half_space), by_transform);
+    hold_as("moved joined half-spaces", points, |maker| moved(maker, joined), by_transform);
+    hold_as("moved primitives", points, |maker| moved(maker, |maker| maker.primitive()), by_transform);
+    hold_as("gradients of a host", points, |maker| maker.quadric(true), by_gradient);
+    hold_as("balls of a host", points, ball, by_tangent);
+    hold_as("tori of a host", points, slim_torus, by_tangent);
 }
 
 #[test]

@@ -22,6 +22,7 @@ const SECTIONS: &[&str] = &[
     "mesh",
     "mesh_arrays",
     "mesh_file",
+    "mesh_moments",
     "polyhedron",
     "octree",
     "solid",

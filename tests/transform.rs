@@ -6,7 +6,8 @@ mod common;
 use common::exact::Exact;
 use common::{Dense, Random, alone, lattice_frame, positions, shapes};
 use leafless::{
-    Affine, AnySolid, Cell, Control, Csg, Error, Frame, LazyOctree, Rule, Tag, Transform, Zone, build,
+    Affine, AnySolid, Cell, Classifier, Control, Csg, Error, Frame, LazyOctree, Rule, Solid, Tag, Transform,
+    Verdict, Worker, Zone, build, measure,
 };
 use proptest::prelude::*;
 use std::f64::consts::PI;
@@ -434,5 +435,95 @@ fn centres_on_the_faces_of_the_own_universe_are_decided() {
         let tree = build(&Transform::new(&cube, &own, &placement), &frame, Rule::Sampled, &alone()).unwrap();
         let truth = build(&cube, &frame, Rule::Sampled, &alone()).unwrap();
         assert_eq!(Dense::of(tree.view()), Dense::of(truth.view()), "{placement:?}");
+    }
+}
+
+/// A part with flat, curved and edged faces.
+fn part() -> Csg {
+    let block = Csg::cuboid([-0.53, -0.39, -0.27], [0.51, 0.38, 0.26]).unwrap();
+    block.difference(&Csg::ball([0.4, 0.3, 0.2], 0.3).unwrap()).unwrap()
+}
+
+/// Walks down both ways at once: from cells to the cells of which they are the images.
+#[test]
+fn maps_of_the_lattice_hand_enclosures_on_exactly() {
+    let frame = Frame::new([-1.0; 3], 2.0, 5).unwrap();
+    for (rows, scale) in [
+        ([[0.0, -1.0, 0.0, 0.0], [1.0, 0.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]], 1.0),
+        ([[0.0, 0.0, 2.0, 0.0], [-2.0, 0.0, 0.0, 0.0], [0.0, 2.0, 0.0, 0.0]], 0.5),
+    ] {
+        let own = Frame::new([-scale; 3], 2.0 * scale, 5).unwrap();
+        let moved = Transform::new(part(), &own, &Affine::new(rows).unwrap());
+        let mut outer = moved.on(&frame, &alone()).unwrap().worker().unwrap();
+        let mut inner = part().on(&own, &alone()).unwrap().worker().unwrap();
+        let (Verdict::Partial(a), Verdict::Partial(b)) = (outer.root().unwrap(), inner.root().unwrap())
+        else {
+            panic!("decided");
+        };
+        // Where a child goes by the inverse of the map.
+        let source = |cell: Cell| {
+            let last = (1i64 << cell.level) - 1;
+            let at = [0, 1, 2].map(|j| {
+                let (i, c) = (0..3).map(|i| (i, rows[i][j])).find(|(_, c)| *c != 0.0).unwrap();
+                if c > 0.0 { cell.at[i] } else { (last - cell.at[i] as i64) as u32 }
+            });
+            Cell { level: cell.level, at }
+        };
+        let (mut open, mut asked) = (vec![(Cell::ROOT, a, b)], 0);
+        while let Some((cell, a, b)) = open.pop() {
+            let found = outer.enclosure(cell, &a).unwrap();
+            let known = inner.enclosure(source(cell), &b).unwrap();
+            asked += known.is_some() as u32;
+            // n · y = n · (P x) = (Pᵀ n) · x.
+            let expected = known.map(|mut known| {
+                for slab in &mut known.slabs {
+                    let sign = |i: usize, j: usize| rows[i][j].signum() * (rows[i][j] != 0.0) as u8 as f64;
+                    let n = slab.normal;
+                    slab.normal = [0, 1, 2].map(|i| (0..3).map(|j| sign(i, j) * n[j]).sum::<f64>());
+                }
+                known
+            });
+            assert_eq!(found, expected, "{cell:?}");
+            if cell.level == 5 {
+                continue;
+            }
+            let children = outer.split(cell, &a).unwrap();
+            let own = inner.split(source(cell), &b).unwrap();
+            for (octant, child) in (0..8).zip(children) {
+                let child_cell = cell.child(octant);
+                let at = source(child_cell).at.map(|c| c & 1);
+                let other = own[(at[0] | at[1] << 1 | at[2] << 2) as usize];
+                assert_eq!(child.tag(), other.tag());
+                if let (Verdict::Partial(a), Verdict::Partial(b)) = (child, other) {
+                    open.push((child_cell, a, b));
+                }
+            }
+        }
+        assert!(asked > 200, "{asked}");
+    }
+}
+
+#[test]
+fn measures_of_what_is_moved_converge_with_the_number_of_splits() {
+    let turn =
+        Affine::new([[0.36, 0.48, -0.8, 0.1], [-0.8, 0.6, 0.0, 0.2], [0.48, 0.64, 0.6, -0.1]]).unwrap();
+    let frame = Frame::new([-1.5; 3], 3.0, 20).unwrap();
+    let ball = 4.0 / 3.0 * PI * 0.75f64.powi(3);
+    let shear = Affine::new([[1.0, 0.3, 0.0, 0.1], [0.0, 1.0, 0.0, -0.2], [0.0, 0.1, 0.5, 0.0]]).unwrap();
+    for (name, csg, map, truth, allowed) in [
+        ("turned ball", Csg::ball([0.0; 3], 0.75).unwrap(), turn, ball, 3.0),
+        ("sheared ball", Csg::ball([0.0; 3], 0.75).unwrap(), shear, 0.5 * ball, 3.0),
+        ("turned block", Csg::cuboid([-0.7, -0.5, -0.3], [0.7, 0.5, 0.3]).unwrap(), turn, 1.4 * 0.6, 1.5),
+    ] {
+        let mut products = Vec::new();
+        for tolerance in [1e-1, 1e-2, 1e-3] {
+            let solid = Transform::of(csg.clone(), &map);
+            let found = measure(&solid, &frame, tolerance, &alone()).unwrap();
+            let width = found.volume.width() / truth;
+            println!("{name}, {tolerance:e}: {width:.2e} with {} splits", found.splits);
+            assert!(found.volume.contains(truth) && width <= 1.01 * tolerance, "{found:?}");
+            products.push(width * found.splits as f64);
+        }
+        assert!(products[2] < allowed * products[0], "{name}: {products:?}");
     }
 }

@@ -8,7 +8,7 @@ use crate::report::Info;
 use crate::scene::{Curves, Drawing, frame_of, read_scene};
 use crate::voxelize::{RuleName, bounds, name_of, threads};
 use clap::{Args, ValueEnum};
-use leafless::{Frame, Metadata, Octree, SplitCounter, Touch, build};
+use leafless::{Adaptive, Frame, Metadata, Octree, SplitCounter, Touch, build};
 use serde::Serialize;
 use std::ffi::OsString;
 use std::time::Instant;
@@ -41,6 +41,11 @@ pub struct Arguments {
     /// What becomes of the finest cells that the surface passes through
     #[arg(long, value_enum, default_value_t = RuleName::Certified)]
     rule: RuleName,
+    /// Leave cells whole in which the surface is known to lie within a layer of this thickness, in the units of
+    /// the scene: flat faces take few cells, curves more, and edges as many as the depth allows. Such cells are
+    /// undecided
+    #[arg(long, value_name = "T", value_parser = thickness, allow_hyphen_values = true)]
+    adaptive: Option<f64>,
     /// What counts as touching
     #[arg(long, value_enum, default_value_t = TouchName::Exact)]
     touch: TouchName,
@@ -60,6 +65,13 @@ pub struct Arguments {
     /// (on standard error if the solid goes to standard output)
     #[arg(long)]
     json: bool,
+}
+
+fn thickness(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(thickness) if thickness >= 0.0 && f64::is_finite(thickness) => Ok(thickness),
+        _ => Err("expected a length not below 0".into()),
+    }
 }
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
@@ -85,6 +97,8 @@ struct Report {
     output: String,
     rule: String,
     touch: String,
+    /// The thickness of layers that are not split; absent (null) if all are.
+    adaptive: Option<f64>,
     timings: Timings,
     /// Cells that were split; null if there are meshes or octrees in the scene, which work in bulk.
     splits: Option<u64>,
@@ -102,6 +116,16 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let start = Instant::now();
     let (input, output) = (Input::from(&*arguments.input), Output::from(&*arguments.output));
     output.check()?;
+    if arguments.adaptive.is_some() {
+        let useless = match (arguments.rule, arguments.touch) {
+            (RuleName::Certified, TouchName::Exact) => None,
+            (RuleName::Certified, TouchName::Paper) => Some("--touch paper, by which no layers are known"),
+            _ => Some("a --rule but certified: the cells that it leaves whole are undecided"),
+        };
+        if let Some(useless) = useless {
+            return Err(Failure::Usage(format!("--adaptive does not go with {useless}")));
+        }
+    }
     if let (Some(from), Some(to)) = (input.path(), output.path())
         && from.canonicalize().is_ok_and(|from| to.canonicalize().is_ok_and(|to| from == to))
     {
@@ -119,9 +143,12 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let read = start.elapsed().as_secs_f64();
 
     let building = Instant::now();
-    let octree = watched("csg", arguments.threads, |control| match &counted {
-        Some(counted) => build(counted, &frame, arguments.rule.into(), control),
-        None => build(&solid, &frame, arguments.rule.into(), control),
+    let rule = arguments.rule.into();
+    let octree = watched("csg", arguments.threads, |control| match (&counted, arguments.adaptive) {
+        (Some(counted), Some(t)) => build(&Adaptive::new(counted, t)?, &frame, rule, control),
+        (Some(counted), None) => build(counted, &frame, rule, control),
+        (None, Some(t)) => build(&Adaptive::new(&solid, t)?, &frame, rule, control),
+        (None, None) => build(&solid, &frame, rule, control),
     });
     let octree = octree.of(&input)?.with_metadata(facts(&input, source, arguments));
     let build = building.elapsed().as_secs_f64();
@@ -144,6 +171,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         output: output.to_string(),
         rule: name_of(arguments.rule),
         touch: name_of(arguments.touch),
+        adaptive: arguments.adaptive,
         timings: Timings { read, build, save, total: start.elapsed().as_secs_f64() },
         splits: splits.map(|splits| splits.iter().sum()),
         evaluations: solid.evaluations(),
@@ -162,6 +190,9 @@ fn facts(input: &Input, source: String, arguments: &Arguments) -> Metadata {
     }
     metadata.insert("source", source);
     metadata.insert("rule", name_of(arguments.rule));
+    if let Some(thickness) = arguments.adaptive {
+        metadata.insert("adaptive", number(thickness));
+    }
     if let TouchName::Paper = arguments.touch {
         metadata.insert("touch", name_of(arguments.touch));
     }

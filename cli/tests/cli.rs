@@ -73,6 +73,10 @@ fn wrong_usage_is_one_line_and_code_2() {
         ("csg part.csg -o out.lfl", &["--depth"]),
         ("csg part.csg --depth 5", &["--output"]),
         ("csg part.csg -o out.lfl --depth 5 --touch hard", &["--touch", "exact", "paper"]),
+        ("csg part.csg -o out.lfl --depth 5 --adaptive -1", &["--adaptive", "not below 0"]),
+        ("csg part.csg -o out.lfl --depth 5 --adaptive inf", &["--adaptive", "not below 0"]),
+        ("csg part.csg -o out.lfl --depth 5 --adaptive 0.1 --rule sampled", &["--adaptive", "--rule"]),
+        ("csg part.csg -o out.lfl --depth 5 --adaptive 0.1 --touch paper", &["--adaptive", "--touch paper"]),
         ("csg part.csg -o out.lfl --depth 5 --bounds 1,2,3", &["--bounds", "four numbers"]),
         ("voxelize cube.stl -o out.lfl --depth 5 --threads 9999", &["--threads", "1024"]),
         ("voxelize cube.stl -o out.lfl --depth 5 --bounds 1,2,3", &["--bounds", "four numbers"]),
@@ -335,6 +339,39 @@ fn a_scene_becomes_a_solid() {
     // A scene that sticks out is told of.
     let out = place.run("csg sphere.csg -o out.lfl --depth 4 --bounds 0,0,0,100");
     assert!(out.code == Some(0) && out.errors.contains("outside of the bounds"), "{out:?}");
+}
+
+/// Cells in which the surface is known well enough are left whole, by any number of threads, and in scenes of
+/// which not all is half-spaces.
+#[test]
+fn adaptive_octrees_of_scenes_are_coarse() {
+    let place = Place::new();
+    let turn = "multmatrix([[0.36, 0.48, -0.8, 20], [-0.8, 0.6, 0, 40], [0.48, 0.64, 0.6, 3], [0, 0, 0, 1]])";
+    let to = "multmatrix([[1, 0, 0, 10], [0, 1, 0, 10], [0, 0, 1, -1], [0, 0, 0, 1]])";
+    let part = format!("difference() {{ cube([30, 20, 10]); {to} cylinder(h = 12, r = 4, $fn = 0); }}");
+    place.write("part.csg", format!("{turn} {{ {part} }}"));
+    let truth = 30.0 * 20.0 * 10.0 - std::f64::consts::PI * 16.0 * 10.0;
+    let whole = place.run("csg part.csg -o whole.lfl --depth 8 --json").good().json();
+    assert!(whole["adaptive"].is_null());
+    let coarse = place.run("csg part.csg -o coarse.lfl --depth 8 --adaptive 0.05 --json").good().json();
+    assert_eq!(coarse["adaptive"], 0.05);
+    let count = |report: &Value, of: &str| report[of].as_u64().unwrap();
+    assert!(count(&coarse, "nodes") * 20 < count(&whole, "nodes"), "{coarse} {whole}");
+    assert!(count(&coarse, "splits") * 20 < count(&whole, "splits"));
+    for report in [&whole, &coarse] {
+        let (lower, upper) = volume(report);
+        assert!(lower < truth && truth < upper, "{report}");
+    }
+    let info = place.run("info coarse.lfl --json").good().json();
+    assert_eq!(info["metadata"]["adaptive"], "0.05");
+    let bytes = place.bytes("coarse.lfl");
+    place.run("csg part.csg -o coarse.lfl --depth 8 --adaptive 0.05 --threads 3").good();
+    assert_eq!(place.bytes("coarse.lfl"), bytes);
+    // Beside an octree, which knows no layers.
+    place.run_with("csg - -o small.lfl --depth 4 --bounds 0,0,0,64", b"cube([2, 1, 1]);").good();
+    place.write("both.csg", format!("union() {{ {turn} {{ {part} }} octree(\"small.lfl\"); }}"));
+    let line = "csg both.csg -o both.lfl --depth 4 --bounds 0,0,0,64 --adaptive 1 --json";
+    assert!(place.run(line).good().json()["splits"].is_null());
 }
 
 #[test]

@@ -9,7 +9,7 @@ use crate::error::Error;
 use crate::lattice::Interval;
 use crate::memory;
 use crate::octree::Tag;
-use crate::solid::{Callback, Csg, Fingerprint, HalfSpace, Verdict};
+use crate::solid::{Callback, Csg, Fingerprint, GradientRange, HalfSpace, TangentBalls, Verdict};
 use alloc::sync::Arc;
 use core::ffi::c_void;
 
@@ -60,6 +60,66 @@ pub type leafless_distance_many_fn = Option<
     unsafe extern "C" fn(ctx: *mut c_void, points: *const f64, count: u64, distances_model: *mut f64) -> i32,
 >;
 
+/// What a function f of the host does over a box. The shape is the set of the points where f is not positive, as for
+/// a signed distance; the gradient leads out of it. NaN, or lower > upper, says nothing of the box.
+#[derive(Clone, Copy)]
+#[repr(C)]
+pub struct leafless_gradient {
+    /// Contains the value of f at the middle of the box. One end may be infinite.
+    pub value: leafless_interval,
+    /// For each axis: contains the partial derivative of f everywhere in the box. f must be continuous there;
+    /// where it has no derivative, the range must contain the slopes on all sides.
+    pub gradient: [leafless_interval; 3],
+}
+
+/// Bounds the host's function f over the box [min, max] (3 numbers each, model units), of which `middle` is the
+/// middle (3 numbers): sets `*gradient`, all of which is NaN before. 0, or the number of the host's own error. Else
+/// as leafless_classify_fn.
+pub type leafless_gradient_fn = Option<
+    unsafe extern "C" fn(
+        ctx: *mut c_void,
+        min: *const f64,
+        max: *const f64,
+        middle: *const f64,
+        gradient: *mut leafless_gradient,
+    ) -> i32,
+>;
+
+/// Two balls that touch the surface of the host's shape at a point, one inside and one outside.
+///
+/// Let d = y - `point` for a point y of the box, and n = `normal` divided by its length. Each y of the box with
+/// n . d < -(inner_curvature / 2 |d|^2 + error) must lie in the shape, and no y with
+/// n . d > outer_curvature / 2 |d|^2 + error may. So without an error the balls have the radii 1 / `inner_curvature`
+/// and 1 / `outer_curvature`; 0 stands for a half-space, a negative curvature for all that lies outside of a ball,
+/// and infinity for nothing. The reciprocal of the surface's reach does for both: it is no less than any
+/// curvature, nor than 2 over the width of any wall or gap. NaN, or a negative error, says nothing of the box.
+#[derive(Clone, Copy)]
+#[repr(C)]
+pub struct leafless_tangent {
+    /// Where the balls touch (model units); best the surface's nearest point to the middle of the box.
+    pub point: [f64; 3],
+    /// The direction that leads out of the shape there, of any length.
+    pub normal: [f64; 3],
+    /// The reciprocal of the radius of the ball inside.
+    pub inner_curvature: f64,
+    /// The reciprocal of the radius of the ball outside.
+    pub outer_curvature: f64,
+    /// By how much the surface may be off (model units), for what is rounded in `point` and `normal`.
+    pub error: f64,
+}
+
+/// Tells where the surface of the host's own shape runs next to the middle of a box, and how it bends: sets `*tangent`,
+/// all of which is NaN before. Else as leafless_gradient_fn.
+pub type leafless_tangent_fn = Option<
+    unsafe extern "C" fn(
+        ctx: *mut c_void,
+        min: *const f64,
+        max: *const f64,
+        middle: *const f64,
+        tangent: *mut leafless_tangent,
+    ) -> i32,
+>;
+
 /// Called once, when nothing uses `ctx` any more, in the thread that gave back the last reference. It must
 /// return: no exception, no longjmp. It may call this library.
 pub type leafless_destroy_fn = Option<unsafe extern "C" fn(ctx: *mut c_void)>;
@@ -93,6 +153,12 @@ pub struct leafless_callbacks {
     /// before boxes are classified, and a cell whose middle is further from the surface than its corners is
     /// decided. With it `classify` is optional.
     pub distance_many: leafless_distance_many_fn,
+    /// Bounds a function of the host over boxes; optional. It is asked about undecided cells. Measures,
+    /// bounding boxes and adaptive octrees need far fewer splits with it. No verdict depends on it.
+    pub gradient: leafless_gradient_fn,
+    /// Tells of the surface next to the middle of a box; optional. It is asked for the same as `gradient`; if
+    /// both are set, where that one proves nothing.
+    pub tangent: leafless_tangent_fn,
 }
 
 // SAFETY: numbers, a pointer, and optional functions.
@@ -167,6 +233,36 @@ impl Host {
         done(unsafe {
             distance(self.0.ctx, points.as_ptr().cast(), points.len() as u64, distances.as_mut_ptr())
         })
+    }
+
+    fn gradient(
+        &self,
+        min: [f64; 3],
+        max: [f64; 3],
+        middle: [f64; 3],
+    ) -> Result<Option<GradientRange>, Error> {
+        let Some(function) = self.0.gradient else { return Ok(None) };
+        let unset = leafless_interval { lower: f64::NAN, upper: f64::NAN };
+        let mut found = leafless_gradient { value: unset, gradient: [unset; 3] };
+        // SAFETY: as above.
+        done(unsafe { function(self.0.ctx, min.as_ptr(), max.as_ptr(), middle.as_ptr(), &mut found) })?;
+        let range = |given: leafless_interval| Interval { lower: given.lower, upper: given.upper };
+        Ok(Some(GradientRange { value: range(found.value), gradient: found.gradient.map(range) }))
+    }
+
+    fn tangent(&self, min: [f64; 3], max: [f64; 3], middle: [f64; 3]) -> Result<Option<TangentBalls>, Error> {
+        let Some(function) = self.0.tangent else { return Ok(None) };
+        let mut found = leafless_tangent {
+            point: [f64::NAN; 3],
+            normal: [f64::NAN; 3],
+            inner_curvature: f64::NAN,
+            outer_curvature: f64::NAN,
+            error: f64::NAN,
+        };
+        // SAFETY: as above.
+        done(unsafe { function(self.0.ctx, min.as_ptr(), max.as_ptr(), middle.as_ptr(), &mut found) })?;
+        let leafless_tangent { point, normal, inner_curvature, outer_curvature, error } = found;
+        Ok(Some(TangentBalls { point, normal, inner_curvature, outer_curvature, error }))
     }
 
     fn contains(&self, points: &[[f64; 3]], inside: &mut [bool]) -> Result<(), Error> {
@@ -270,6 +366,14 @@ pub unsafe extern "C" fn leafless_solid_new_callbacks(
         if has_distance {
             let host = host.clone();
             callback = callback.with_distance(move |points, distances| host.distances(points, distances));
+        }
+        if callbacks.gradient.is_some() {
+            let host = host.clone();
+            callback = callback.with_gradient(move |min, max, middle| host.gradient(min, max, middle));
+        }
+        if callbacks.tangent.is_some() {
+            let host = host.clone();
+            callback = callback.with_tangent(move |min, max, middle| host.tangent(min, max, middle));
         }
         if callbacks.contains_many.is_some() {
             callback = callback.with_contains_many(move |points, inside| host.contains(points, inside));

@@ -51,11 +51,18 @@ fn write_all(to: &mut dyn Write) -> fmt::Result {
             struct_size, vertex_type, vertices, vertex_count, vertex_stride, corners, corner_count, loops, loop_count,
             faces, face_count, shells, shell_count, solids, solid_count, index_type, scale, tolerance_model
         }
+        leafless_mesh_moments {
+            volume_model, centroid_model, inertia_origin_model, inertia_centroid_model, triangles, known, has_centroid
+        }
+        leafless_intersecting_pair { min_model, max_model, triangles }
         leafless_mesh_options { struct_size, format, unit, target, scale }
         leafless_mesh_source { format, unit, skipped }
         leafless_callbacks {
-            struct_size, exterior, classify, contains, destroy, ctx, fingerprint, classify_many, contains_many, distance_many
+            struct_size, exterior, classify, contains, destroy, ctx, fingerprint, classify_many, contains_many, distance_many,
+            gradient, tangent
         }
+        leafless_gradient { value, gradient }
+        leafless_tangent { point, normal, inner_curvature, outer_curvature, error }
         leafless_function { struct_size, reserved, value, range, destroy, ctx, fingerprint }
         leafless_proof { displacement_model, full, empty }
         leafless_octree_info { frame, elements, bricks, proof, root, exterior, is_binary, is_clipped }
@@ -107,6 +114,9 @@ fn write_all(to: &mut dyn Write) -> fmt::Result {
         leafless_overlap { LEAFLESS_OVERLAP_DISJOINT, LEAFLESS_OVERLAP_OVERLAPPING, LEAFLESS_OVERLAP_UNDECIDED }
         leafless_measured {
             LEAFLESS_MEASURED_TOLERANCE, LEAFLESS_MEASURED_BUDGET, LEAFLESS_MEASURED_EXHAUSTED
+        }
+        leafless_moments_known {
+            LEAFLESS_MOMENTS_KNOWN, LEAFLESS_MOMENTS_OPEN, LEAFLESS_MOMENTS_INTERSECTING, LEAFLESS_MOMENTS_UNDECIDED
         }
         leafless_fill { LEAFLESS_FILL_NON_ZERO, LEAFLESS_FILL_EVEN_ODD, LEAFLESS_FILL_POSITIVE }
         leafless_vertex_type { LEAFLESS_VERTEX_F64, LEAFLESS_VERTEX_F32 }

@@ -114,9 +114,9 @@ pub struct leafless_extent {
     pub is_clipped: bool,
 }
 
-const ANY: Interval = Interval { lower: f64::NEG_INFINITY, upper: f64::INFINITY };
+pub(super) const ANY: Interval = Interval { lower: f64::NEG_INFINITY, upper: f64::INFINITY };
 
-fn row_by_row(tensor: [[Interval; 3]; 3]) -> [leafless_interval; 9] {
+pub(super) fn row_by_row(tensor: [[Interval; 3]; 3]) -> [leafless_interval; 9] {
     core::array::from_fn(|k| tensor[k / 3][k % 3].into())
 }
 

@@ -1,6 +1,6 @@
 //! A cell together with its frame.
 
-use super::{Cell, Frame};
+use super::{Cell, Frame, Interval};
 
 /// A cell as a piece of model space: what a solid is asked about.
 #[derive(Debug, Clone, Copy)]
@@ -37,5 +37,19 @@ impl<'f> Cube<'f> {
             max[axis] = self.frame.plane(axis, upper[axis]).upper;
         }
         (min, max)
+    }
+
+    /// Half the edge in model units, exactly.
+    pub(crate) fn half_edge(&self) -> f64 {
+        0.5 * self.frame.edge() / (1u64 << self.cell.level) as f64
+    }
+
+    /// The vector from a point (model units) to the cube's centre, rounded outward.
+    pub(crate) fn centre_from(&self, point: [f64; 3]) -> [Interval; 3] {
+        let (lower, upper) = self.planes();
+        [0, 1, 2].map(|axis| {
+            let middle = lower[axis] as i64 + upper[axis] as i64;
+            self.frame.rounded_offset(axis, point[axis], middle).negated()
+        })
     }
 }

@@ -219,6 +219,12 @@ impl Frame {
         sign_of_sum(&self.offset_terms(axis, x, k))
     }
 
+    /// The same number as [`offset`](Self::offset), rounded outward: next to nothing if `x` lies near the plane.
+    pub(crate) fn rounded_offset(&self, axis: usize, x: f64, k: i64) -> Interval {
+        let [a, b, c, d] = self.offset_terms(axis, x, k).map(Interval::exactly);
+        c.plus(d).plus(a.plus(b))
+    }
+
     #[inline(always)]
     fn offset_terms(&self, axis: usize, x: f64, k: i64) -> [f64; 4] {
         let (high, low) = two_diff(x, self.origin[axis]);

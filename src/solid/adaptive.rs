@@ -5,7 +5,7 @@ use super::{Classifier, Enclosure, Fingerprint, Fingerprinter, Motion, Solid, Ve
 use crate::control::Control;
 use crate::error::Error;
 use crate::lattice::exact::sqrt;
-use crate::lattice::{Bounds, Cell, Frame, valid};
+use crate::lattice::{Bounds, Cell, Cube, Frame, valid};
 use crate::octree::{Proof, Tag};
 use alloc::vec::Vec;
 
@@ -115,18 +115,14 @@ impl<W: Worker> AdaptiveWorker<W> {
         for (octant, verdict) in (0..8).zip(&mut verdicts) {
             let Verdict::Partial(part) = verdict else { continue };
             let child = cell.child(octant);
+            let half_edge = Cube { frame: self.inner.frame(), cell: child }.half_edge();
             if let Some(enclosure) = self.inner.enclosure(child, part)?
-                && thickness(&enclosure) * self.half_edge(child) <= self.tolerance
+                && thickness(&enclosure) * half_edge <= self.tolerance
             {
                 *verdict = Verdict::Undecided;
             }
         }
         Ok(verdicts)
-    }
-
-    /// Half the edge of a cell in model units.
-    fn half_edge(&self, cell: Cell) -> f64 {
-        0.5 * self.inner.frame().edge() / (1u64 << cell.level) as f64
     }
 }
 

@@ -15,6 +15,9 @@ pub struct Slab {
 }
 
 impl Slab {
+    /// No slab.
+    pub(crate) const NONE: Slab = Slab { normal: [0.0; 3], inner: f64::NEG_INFINITY, outer: f64::INFINITY };
+
     /// The slab of the complement.
     #[must_use]
     pub fn complement(&self) -> Slab {
@@ -49,6 +52,15 @@ pub struct Enclosure {
 }
 
 impl Enclosure {
+    /// One slab with its cone; `None` if it says nothing, or is none.
+    pub(crate) fn of_one(slab: Slab, cone: f64) -> Option<Enclosure> {
+        let Slab { normal, inner, outer } = slab;
+        let is_slab = normal.iter().all(|c| c.is_finite()) && normal != [0.0; 3] && inner <= outer;
+        let is_known = inner > f64::NEG_INFINITY || outer < f64::INFINITY;
+        let slabs = [slab, Slab::NONE, Slab::NONE];
+        (is_slab && is_known).then_some(Enclosure { slabs, join: SlabJoin::All, cone })
+    }
+
     /// The enclosure of the complement; its complement is this one, bit for bit.
     #[must_use]
     pub fn complement(&self) -> Enclosure {

@@ -24,7 +24,7 @@ mod subtree;
 mod transform;
 
 pub use adaptive::Adaptive;
-pub use callback::Callback;
+pub use callback::{Callback, GradientRange, TangentBalls};
 pub use csg::{Csg, HalfSpace, Touch};
 #[cfg(feature = "scene")]
 pub(crate) use csg::{Fan, Figure, cos_degrees, sin_degrees, wedge};

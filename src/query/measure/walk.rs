@@ -134,6 +134,9 @@ type Front<Q, C> = Vec<ChunkOf<Q, C>>;
 
 type ChunkOf<Q, C> = Chunk<<C as Classifier>::Worker, <Q as Quantity>::Found>;
 
+/// What is settled, the open cells, and the finest level.
+type Step<Q, C> = (<Q as Quantity>::Found, Front<Q, C>, u8);
+
 /// A worker with the cells of the next front.
 type Next<C> = (<C as Classifier>::Worker, Vec<Open<Part<C>>>);
 
@@ -202,7 +205,7 @@ impl<Q: Quantity, C: Classifier> Walk<'_, Q, C> {
     }
 
     /// What is settled at once, the first front, and the finest level.
-    fn root(&self) -> Result<(Q::Found, Front<Q, C>, u8), Error> {
+    fn root(&self) -> Result<Step<Q, C>, Error> {
         let mut worker = self.classifier.worker()?;
         let mut settled = Leaves::<Q>::new();
         let mut cells = Vec::new();
@@ -286,7 +289,7 @@ impl<Q: Quantity, C: Classifier> Walk<'_, Q, C> {
         &self,
         front: &mut [ChunkOf<Q, C>],
         threshold: f64,
-    ) -> Result<(Q::Found, Front<Q, C>, u8), Error> {
+    ) -> Result<Step<Q, C>, Error> {
         let (mut settled, mut next, mut level) = (Q::Found::default(), Vec::new(), 0);
         let tasks = front.iter_mut();
         for (found, chunks, deepest) in
@@ -304,7 +307,7 @@ impl<Q: Quantity, C: Classifier> Walk<'_, Q, C> {
         &self,
         chunk: &mut ChunkOf<Q, C>,
         threshold: f64,
-    ) -> Result<(Q::Found, Front<Q, C>, u8), Error> {
+    ) -> Result<Step<Q, C>, Error> {
         let mut settled = Leaves::<Q>::new();
         let mut next: Front<Q, C> = Vec::new();
         let mut out: Option<Next<C>> = None;

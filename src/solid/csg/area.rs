@@ -91,7 +91,7 @@ fn of_intersection(sides: &[Option<Side>; 3]) -> Interval {
         return of_surface(&side.f);
     }
     let known = sides.iter().flatten();
-    if known.clone().any(|side| !(side.f.error < f64::INFINITY)) {
+    if !known.clone().all(|side| side.f.error < f64::INFINITY) {
         return Interval { lower: 0.0, upper: known.map(|side| of_surface(&side.f).upper).sum() };
     }
     let mut sum = Interval::exactly(0.0);
@@ -112,7 +112,8 @@ fn of_face<'a>(f: &Taylor, others: impl Iterator<Item = &'a Side>) -> Interval {
     let axis = (0..3).fold(0, |most, axis| if size[axis] > size[most] { axis } else { most });
     let (fall, length) = (f.gradient[axis], length(f.gradient));
     let bend = f.bend + 4.0 * f64::EPSILON * length;
-    if !(bend < 0.5 * size[axis] && f.error < f64::INFINITY) {
+    let is_graph = bend < 0.5 * size[axis] && f.error < f64::INFINITY;
+    if !is_graph {
         return whole;
     }
     // Each point of the wall sees at most one of the surface, about where the linear function is 0. By how much f may
@@ -212,7 +213,8 @@ pub(super) fn of_surface(f: &Taylor) -> Interval {
     let most = at_most(f.degree);
     let length = length(f.gradient);
     let cosine = cosine(f, length);
-    if !(cosine > 0.5 && f.error < f64::INFINITY) {
+    let is_known = cosine > 0.5 && f.error < f64::INFINITY;
+    if !is_known {
         return most;
     }
     // Wall by wall: along each axis what flows out at the upper one and in at the lower one.
@@ -280,7 +282,8 @@ impl Figure {
         let fall = self.of_y.abs();
         // By how much the slope along y varies, as a share.
         let share = (self.xy.abs() + 2.0 * self.yy.abs()) / fall * (1.0 + 8.0 * f64::EPSILON);
-        if !(share < 0.5 && self.error < 0.25 * fall) {
+        let is_graph = share < 0.5 && self.error < 0.25 * fall;
+        if !is_graph {
             return Interval { lower: 0.0, upper: 4.0 };
         }
         // Each x has at most one y on the outline: about y0 = offset + slope · x, a straight line, by `moved` at the most.

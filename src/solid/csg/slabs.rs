@@ -8,9 +8,6 @@ use super::worker::{CsgPart, Scratch};
 use crate::lattice::Cell;
 use crate::solid::{Enclosure, Slab, SlabJoin};
 
-/// A slab that says nothing.
-const NOTHING: Slab = Slab { normal: [0.0; 3], inner: f64::NEG_INFINITY, outer: f64::INFINITY };
-
 impl Scratch {
     /// What the half-spaces that are open in a cell know of it. One to three that are joined by one operation
     /// give a slab each; of other expressions those that the solid lies in, or that lie in the solid, bound it
@@ -44,7 +41,7 @@ pub(super) type Literals = [Option<(u32, bool)>; 3];
 /// What is known of a cell of the intersection of half-spaces, or, if `one_sided`, of a solid that lies in it.
 fn intersection(program: &Program, cell: Cell, literals: Literals, mut one_sided: bool) -> Option<Enclosure> {
     let (centre, half) = (centre(cell), half_edge(cell));
-    let mut slabs = [NOTHING; 3];
+    let mut slabs = [Slab::NONE; 3];
     let mut count = 0;
     for (index, complement) in literals.into_iter().flatten() {
         let tangent = program.half_spaces[index as usize].tangent(centre, half);

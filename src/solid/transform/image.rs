@@ -7,7 +7,7 @@ use crate::lattice::{Affine, Bounds, Cube, Frame, MAX_DEPTH};
 /// From the lattice of one frame to that of another, in finest cells: u = linear · k + offset.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct LatticeMap {
-    linear: [[f64; 3]; 3],
+    pub(super) linear: [[f64; 3]; 3],
     offset: [f64; 3],
     /// How far what [`image`](Self::image) computes for boxes of the universe may be off. Zero: not at all.
     pub(super) error: [f64; 3],

@@ -1,8 +1,9 @@
 //! Any solid under an affine map.
 
 mod image;
+mod slabs;
 
-use super::{Classifier, Fingerprint, Fingerprinter, Solid, Verdict, Worker};
+use super::{Classifier, Enclosure, Fingerprint, Fingerprinter, Solid, Verdict, Worker};
 use crate::control::Control;
 use crate::error::Error;
 use crate::lattice::{Affine, Bounds, Cell, Cube, Frame, MAX_DEPTH};
@@ -12,6 +13,7 @@ use alloc::sync::Arc;
 use alloc::vec::Vec;
 use core::ops::Range;
 use image::{Images, Maps, Point, Target, inverse};
+use slabs::Source;
 
 /// A solid, known on a frame of its own, under an affine placement.
 ///
@@ -28,6 +30,9 @@ use image::{Images, Maps, Point, Target, inverse};
 /// unless the solid is proven to end inside. Centres ([`Rule::Sampled`](crate::Rule::Sampled)) are decided
 /// where cells of the solid's own depth decide them, or, if the placement is an offset of whole cells, by the
 /// solid.
+///
+/// What the solid knows of its surface in cells ([`Enclosure`]) is known of the result: one slab a cell, as thin as the
+/// surface is flat there, and where nothing blurs the solid's own enclosure, exactly.
 ///
 /// ```
 /// use leafless::{Affine, Control, Csg, Frame, Rule, Transform, build};
@@ -471,5 +476,20 @@ impl<W: Worker> Worker for TransformWorker<W> {
         };
         self.inner.release(mark);
         Ok(inside)
+    }
+
+    fn enclosure(&mut self, cell: Cell, part: &TransformPart) -> Result<Option<Enclosure>, Error> {
+        let range = self.range(*part);
+        let mut sources = memory::with_capacity(range.len())?;
+        for (source, verdict) in &self.known[range] {
+            let enclosure = match verdict {
+                Verdict::Partial(part) => self.inner.enclosure(*source, part)?,
+                _ => None,
+            };
+            let (corner, edge) = extent(&self.own, *source);
+            sources.push(Source { corner, edge, tag: verdict.tag(), enclosure });
+        }
+        let cube = Cube { frame: &self.frame, cell };
+        Ok(slabs::enclosure(&self.maps, &cube, self.own.cells() as f64, self.exterior, &sources))
     }
 }

@@ -1,0 +1,62 @@
+//! What a host knows of its function over a box: a value and the range of the gradient.
+
+use crate::lattice::{Cube, Interval};
+use crate::solid::{Enclosure, Slab};
+use core::f64::consts::FRAC_PI_2;
+
+/// Bounds of a host's function f over a box, to first order. The solid is the set of points with f ≤ 0, as for
+/// a signed distance: f is negative inside, and its gradient leads out of the solid.
+///
+/// The promise concerns the points of the box alone. By the mean value theorem it makes a [slab](Slab). If the
+/// gradient's range shrinks with the box, as it does by interval arithmetic, the slab's thickness falls with the
+/// square of the cell's edge.
+///
+/// A NaN, an infinite gradient, or lower > upper says nothing. One end of `value` may be infinite.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct GradientRange {
+    /// Contains the value of f at the middle of the box.
+    pub value: Interval,
+    /// For each axis: contains the partial derivative of f everywhere in the box. f must be continuous in the
+    /// box. Where it has no derivative, as at a crease, the range must contain the slopes on all sides.
+    pub gradient: [Interval; 3],
+}
+
+impl GradientRange {
+    /// What this proves of a cube in the box; the value is that at `middle`, a point of the box.
+    ///
+    /// Let m be the middle of the gradient's range. For each point y of the box, f(y) lies in
+    /// value + m · (y − middle) + (range − m) · (y − middle).
+    pub(super) fn enclosure(&self, cube: &Cube<'_>, middle: [f64; 3]) -> Option<Enclosure> {
+        if ![self.value].iter().chain(&self.gradient).all(|range| range.lower <= range.upper) {
+            return None;
+        }
+        let half = cube.half_edge();
+        let to_centre = cube.centre_from(middle);
+        let normal = self.gradient.map(|range| 0.5 * range.lower + 0.5 * range.upper);
+        let mut rest = self.value;
+        let (mut square, mut deviation_square) = (Interval::exactly(0.0), Interval::exactly(0.0));
+        for axis in 0..3 {
+            let slope = Interval::exactly(normal[axis]);
+            let deviation = self.gradient[axis].minus(slope);
+            let way = to_centre[axis].plus(Interval { lower: -half, upper: half });
+            rest = rest.plus(slope.times(to_centre[axis])).plus(deviation.times(way));
+            square = square.plus(slope.square());
+            deviation_square = deviation_square.plus(deviation.square());
+        }
+        let offset = rest.negated().over(Interval::exactly(half));
+        let slab = Slab { normal, inner: offset.lower, outer: offset.upper };
+        Enclosure::of_one(slab, cone(deviation_square.over(square).upper))
+    }
+}
+
+/// An upper bound of the angle between a vector and another one that differs from it by at most a share of its
+/// length; the square of that share is given. The angle is the share's arc sine, which is less than its tangent.
+fn cone(square: f64) -> f64 {
+    if square < 1.0 {
+        let square = Interval::exactly(square);
+        let tangent = square.over(Interval::exactly(1.0).minus(square)).root().upper;
+        tangent.min(FRAC_PI_2.next_up())
+    } else {
+        f64::INFINITY
+    }
+}

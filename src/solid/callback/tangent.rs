@@ -1,0 +1,92 @@
+//! What a host knows of its surface next to a point: balls on both sides that touch it.
+
+use crate::lattice::{Cube, Interval};
+use crate::solid::{Enclosure, Slab};
+
+/// Two balls that touch the surface at a point, one in the solid and one outside of it.
+///
+/// Let d = y − `point` for a point y of the box, and let n be `normal` divided by its length. The promise has two
+/// halves, which concern the points of the box alone:
+///
+/// - each y with n · d < −(`inner_curvature` / 2 · |d|² + `error`) lies in the solid;
+/// - each y with n · d > `outer_curvature` / 2 · |d|² + `error` lies outside.
+///
+/// Without an error, the first half is about the open ball of radius 1 / `inner_curvature` that touches the surface
+/// at `point` from within, and the second half about its counterpart outside. A curvature of 0 stands for a
+/// half-space, a negative one for all points outside of a ball, and ∞ for no point. For a ball of radius r the
+/// curvatures are 1/r and −1/r, exactly.
+///
+/// A bound of the surface's own curvatures does not suffice, because another sheet of the surface may pass through
+/// the box. The reciprocal of the surface's reach suffices for both (Federer 1959). The reach is the greatest
+/// distance up to which every point has only one nearest point on the surface, so its reciprocal is no less than any
+/// curvature, nor than 2 over the width of any wall or gap. In a box that a single face of a part passes through,
+/// the reach of that face's surface suffices: 0 is the reciprocal for a plane, 1/r for a cylinder or a sphere.
+///
+/// The slab is thinnest if `point` is the surface's nearest point to the middle of the box. Its thickness falls with
+/// the square of the cell's edge, down to twice the error.
+///
+/// A NaN, a negative error, or a normal that is zero or infinite says nothing.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TangentBalls {
+    /// Where the balls touch, in model units.
+    pub point: [f64; 3],
+    /// The direction that leads out of the solid there, of any length.
+    pub normal: [f64; 3],
+    /// The reciprocal of the radius of the ball in the solid.
+    pub inner_curvature: f64,
+    /// The reciprocal of the radius of the ball outside of it.
+    pub outer_curvature: f64,
+    /// By how much the surface may be off, in model units, because point and normal are rounded. Not negative.
+    pub error: f64,
+}
+
+impl TangentBalls {
+    /// What this proves of a cube in the box.
+    pub(super) fn enclosure(&self, cube: &Cube<'_>) -> Option<Enclosure> {
+        let numbers = [self.inner_curvature, self.outer_curvature];
+        if self.error >= 0.0 && !numbers.iter().chain(&self.point).any(|c| c.is_nan()) {
+            let inner = self.beyond(cube, self.normal, self.inner_curvature);
+            let outer = -self.beyond(cube, self.normal.map(|c| -c), self.outer_curvature);
+            Enclosure::of_one(Slab { normal: self.normal, inner, outer }, f64::INFINITY)
+        } else {
+            None
+        }
+    }
+
+    /// A lower bound of n · x over the points x of the cube, in the cube's own coordinates, that the promise of one
+    /// side does not cover. That side is the one from which n leads away.
+    ///
+    /// Let a be the vector from `point` to the cube's centre, h the cube's half edge, l the length of n, κ the
+    /// curvature, and a = α n + t with t at right angles to n. The promise covers x if
+    ///
+    /// n · a + l (κ/2 |a|² + error) + h (1 + l κ α) n · x + h l κ t · x + h² l κ/2 |x|² < 0,
+    ///
+    /// where |t · x| is at most the sum of the magnitudes of t's components, and |x|² ≤ 3.
+    fn beyond(&self, cube: &Cube<'_>, n: [f64; 3], curvature: f64) -> f64 {
+        let dot = |a: &[Interval; 3], b: &[Interval; 3]| {
+            a[0].times(b[0]).plus(a[1].times(b[1])).plus(a[2].times(b[2]))
+        };
+        let n = n.map(Interval::exactly);
+        let square = dot(&n, &n);
+        if !(square.lower > 0.0 && square.upper < f64::INFINITY) {
+            return f64::NEG_INFINITY;
+        }
+        let half = Interval::exactly(cube.half_edge());
+        let a = cube.centre_from(self.point);
+        let along = dot(&n, &a);
+        let share = along.over(square);
+        let bend = square.root().times(Interval::exactly(curvature));
+        let factor = half.times(Interval::exactly(1.0).plus(bend.times(share)));
+        let across = [0, 1, 2].map(|axis| a[axis].minus(n[axis].times(share)));
+        let most = across.iter().fold(0.0, |sum: f64, c| sum + c.upper.max(-c.lower));
+        // (The sum of three, rounded.)
+        let sideways = half.times(bend).times(Interval::exactly(most * (1.0 + 4.0 * f64::EPSILON)));
+        let square_of_x = Interval { lower: 0.0, upper: 1.5 };
+        let rest = along
+            .plus(bend.times(Interval::exactly(0.5)).times(dot(&a, &a)))
+            .plus(square.root().times(Interval::exactly(self.error)))
+            .plus(Interval::exactly(sideways.upper.max(-sideways.lower)))
+            .plus(half.square().times(bend).times(square_of_x));
+        Interval::exactly(-rest.upper).over(factor).lower
+    }
+}
