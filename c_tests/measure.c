@@ -48,6 +48,7 @@ static void ball(void) {
     CHECK(measures.volume_model.lower < volume && volume < measures.volume_model.upper);
     CHECK(measures.volume_model.upper - measures.volume_model.lower <= 0.05 * measures.volume_model.upper);
     CHECK(measures.measured == LEAFLESS_MEASURED_TOLERANCE && measures.has_centroid && !measures.is_clipped);
+    CHECK(!measures.is_exact);
     CHECK(measures.splits > 20 && measures.level >= 2 && measures.level < 12);
     for (i = 0; i < 3; i++) {
         CHECK(holds(measures.centroid_model[i], 0.0));

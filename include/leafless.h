@@ -1823,6 +1823,11 @@ typedef struct {
      * Whether the solid may go on outside of the universe, or does.
      */
     bool is_clipped;
+    /**
+     * Whether the solid was not split because it knows its own moments, up to rounding: a mesh does that is closed and
+     * whose triangles do not intersect.
+     */
+    bool is_exact;
 } leafless_measures;
 
 /**

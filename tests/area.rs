@@ -297,7 +297,7 @@ fn cells_agree(count: u64) {
                 break;
             }
             let octant = open[random.below(open.len() as u64) as usize];
-            verdict = verdicts[octant].clone();
+            verdict = verdicts[octant];
             cell = cell.child(octant as u8);
         }
     }

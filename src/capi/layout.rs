@@ -77,7 +77,7 @@ fn write_all(to: &mut dyn Write) -> fmt::Result {
         }
         leafless_measures {
             volume_model, centroid_model, inertia_origin_model, inertia_centroid_model, proof, splits, level,
-            measured, has_centroid, is_clipped
+            measured, has_centroid, is_clipped, is_exact
         }
         leafless_surface_area { area_model, splits, level, measured, is_clipped }
         leafless_extent {

@@ -62,6 +62,9 @@ pub struct leafless_measures {
     pub has_centroid: bool,
     /// Whether the solid may go on outside of the universe, or does.
     pub is_clipped: bool,
+    /// Whether the solid was not split because it knows its own moments, up to rounding: a mesh does that is closed and
+    /// whose triangles do not intersect.
+    pub is_exact: bool,
 }
 
 /// The area of a solid's boundary.
@@ -133,6 +136,7 @@ impl From<MassProperties> for leafless_measures {
             measured: measures.stop_reason.into(),
             has_centroid: measures.centroid.is_some(),
             is_clipped: measures.clipped,
+            is_exact: measures.exact,
         }
     }
 }

@@ -52,6 +52,9 @@ pub struct MassProperties {
     /// Whether the solid may go on outside of the universe, or does: the measures then are those of the part
     /// inside.
     pub clipped: bool,
+    /// Whether the solid was not split because it knows its own moments, up to rounding: a mesh does that is closed and
+    /// whose triangles do not intersect.
+    pub exact: bool,
     /// Why it ended.
     pub stop_reason: StopReason,
     /// The finest level of which cells were looked at.
@@ -72,6 +75,7 @@ impl MassProperties {
             inertia_about_centroid: moments.inertia_about_centroid(),
             proof,
             clipped: false,
+            exact: true,
             stop_reason: if volume.width() <= wanted { StopReason::Tolerance } else { StopReason::Exhausted },
             level: 0,
             splits: 0,
@@ -164,6 +168,7 @@ pub fn measure<S: Solid>(
         inertia_about_centroid: known.inertia_about_centroid(),
         proof: classifier.proof(),
         clipped: classifier.exterior() != Tag::Empty,
+        exact: false,
         stop_reason: walked.stop_reason,
         level: walked.level,
         splits: walked.splits,
