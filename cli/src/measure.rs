@@ -100,7 +100,7 @@ fn sides<S: Solid>(
 }
 
 /// Cells that are split for the area at most, if --splits does not say otherwise.
-const AREA_SPLITS: u64 = 1 << 20;
+const AREA_SPLITS: u64 = 1 << 17;
 
 /// Lower and upper bounds of the elements of a vector or a matrix.
 #[derive(Serialize)]

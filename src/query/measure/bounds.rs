@@ -2,7 +2,8 @@
 //!
 //! The solid S contains the FULL cells and the parts of PARTIAL ones that are known to be inside, F. It lies in A, which
 //! is F and what is open: PARTIAL cells, or the parts of them that are not decided. All its
-//! volume integrals of one sign are therefore bounded by those of F and of A, and so is more:
+//! volume integrals of one sign are therefore bounded by those of F and of A, and so is more. (Where F and A are no sets
+//! but moments, their matrices are as those of such sets in the order of Loewner, which is all that is used.)
 //!
 //! - The matrix ∫ x xᵀ of second moments about a point grows with the set in the order of Loewner: the
 //!   difference for two nested sets is the matrix of what lies between, which is positive semidefinite. So
@@ -17,7 +18,7 @@
 use super::moments::{BITS, Moments, PAIRS, UNIVERSE};
 use super::volume::Found;
 use crate::lattice::exact::sqrt;
-use crate::lattice::{Frame, Interval};
+use crate::lattice::{Frame, Interval, MAX_DEPTH};
 
 /// A symmetric matrix in the order of [`PAIRS`].
 type Symmetric = [Interval; 6];
@@ -89,7 +90,9 @@ impl Known {
         if self.found.full.volume <= self.found.full.error {
             return None;
         }
-        let point = self.found.full.first.map(|first| 2 * nearest(first, 2 * self.found.full.volume));
+        let last = 2 * self.frame.cells() as i128;
+        let double = 2 * self.found.full.volume;
+        let point = self.found.full.first.map(|first| (2 * nearest(first, double)).clamp(0, last));
         let [full, open] = [self.found.full, self.found.open].map(|m| Bounded::new(&m.about(point)));
         Some([0, 1, 2].map(|axis| {
             let of = |sign: f64| {
@@ -102,7 +105,6 @@ impl Known {
                     open.second[axis],
                 )
             };
-            let last = 2 * self.frame.cells() as i128;
             let universe = Interval { lower: -point[axis] as f64, upper: (last - point[axis]) as f64 };
             let from_point = Interval { lower: -of(-1.0), upper: of(1.0) }.within(universe);
             let plane = self.frame.plane(axis, (point[axis] / 2) as u32);
@@ -188,7 +190,8 @@ fn second_about_centroid(moments: &Moments) -> Symmetric {
         return second.map(|sum| Interval { lower: ZERO.lower.min(sum.lower), upper: sum.upper.max(0.0) });
     }
     // The half cell next to the centroid is the reference, so that little is taken off.
-    let about = moments.about(moments.first.map(|first| nearest(first, moments.volume)));
+    let point = moments.first.map(|first| nearest(first, moments.volume).clamp(0, 2 << MAX_DEPTH));
+    let about = moments.about(point);
     let Bounded { volume, first, second } = Bounded::new(&about);
     let mut second = second.map(|sum| sum.over(THREE));
     for (sum, (i, j)) in second.iter_mut().zip(PAIRS) {
@@ -198,7 +201,7 @@ fn second_about_centroid(moments: &Moments) -> Symmetric {
     second
 }
 
-/// The integer nearest to the quotient of two that are not negative.
+/// The integer nearest to the quotient of two, if it is not negative; `b` is positive.
 fn nearest(a: i128, b: i128) -> i128 {
     (2 * a + b) / (2 * b)
 }

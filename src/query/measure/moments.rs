@@ -3,7 +3,7 @@
 //! Whole cells are counted and nothing of theirs is rounded. Of cut cells the moments are rounded, to a 2^44th of the
 //! cell; what they may be off by is counted too.
 
-use crate::lattice::{Cell, CellMoments, CubeMoments, MAX_DEPTH};
+use crate::lattice::{Cell, CubeMoments, MAX_DEPTH};
 use crate::solid::cut;
 use core::ops::{Add, AddAssign, Sub};
 
@@ -128,8 +128,6 @@ struct CutSums {
     own_first: [i128; 3],
     mixed: [i128; 6],
     own_second: [i128; 6],
-    /// What moments are off by beside [`cut::ERROR`].
-    error: i128,
 }
 
 /// More of them are not added up: so none of the sums passes 2^126.
@@ -177,7 +175,7 @@ impl CutSums {
             volume: scaled(self.volume, 3),
             first: [0, 1, 2].map(|i| scaled(self.first[i] + self.own_first[i], 4)),
             second: [0, 1, 2, 3, 4, 5].map(second),
-            error: scaled(self.count as i128 * OWN + self.error, 3) + 2,
+            error: scaled(self.count as i128 * OWN, 3) + 2,
         }
     }
 }
@@ -213,15 +211,6 @@ impl Tally {
         if level.count == MOST_CUT {
             self.flush(cell.level);
         }
-    }
-
-    /// Adds the part of a cell that is solid, as far as that is known.
-    #[inline(always)]
-    pub(super) fn add_known(&mut self, cell: Cell, known: &CellMoments) {
-        // Where the error is as large as the cell it says no more.
-        const SHARE: f64 = (1u64 << SHARE_BITS) as f64 / 8.0;
-        self.cuts[cell.level as usize].error += (known.error.min(8.0) * SHARE) as i128 + 1;
-        self.add_cut(cell, &known.moments);
     }
 
     #[cold]

@@ -3,7 +3,7 @@
 use super::moments::{Moments, Tally, UNIVERSE};
 use super::quantity::{self, Quantity};
 use crate::error::Error;
-use crate::lattice::{Cell, CellMoments};
+use crate::lattice::{Cell, CellMoments, CubeMoments};
 use crate::solid::{Enclosure, Worker, cut};
 use core::ops::AddAssign;
 
@@ -42,9 +42,8 @@ pub(super) enum Known {
 pub(super) struct Volume {
     full: Tally,
     open: Tally,
-    /// Of cells whose moments are known.
-    known: Tally,
-    /// Of cells that an enclosure cuts: the sets in the solid, and those around it.
+    /// Of cells that an enclosure cuts: the sets in the solid, and those around it; and of those whose moments are
+    /// known, bounds of them.
     low: Tally,
     high: Tally,
 }
@@ -74,8 +73,8 @@ impl Quantity for Volume {
     }
 
     fn new() -> Volume {
-        let [full, open, known, low, high] = [(); 5].map(|()| Tally::new());
-        Volume { full, open, known, low, high }
+        let [full, open, low, high] = [(); 4].map(|()| Tally::new());
+        Volume { full, open, low, high }
     }
 
     fn full(&mut self, cell: Cell) {
@@ -85,18 +84,45 @@ impl Quantity for Volume {
     fn open(&mut self, cell: Cell, known: &Known) {
         match known {
             Known::Nothing => self.open.add(cell),
-            Known::Slabs(enclosure) => {
-                let (low, high) = cut::bounds(enclosure);
-                self.low.add_cut(cell, &low);
-                self.high.add_cut(cell, &high);
-            }
-            Known::Moments(moments) => self.known.add_known(cell, moments),
+            Known::Slabs(enclosure) => self.add_cut(cell, cut::bounds(enclosure)),
+            Known::Moments(moments) => self.add_cut(cell, bounds(moments)),
         }
     }
 
     fn finish(self) -> Found {
         let low = self.low.finish();
-        let full = self.full.finish() + self.known.finish() + low;
+        let full = self.full.finish() + low;
         Found { full, open: self.open.finish() + (self.high.finish() - low) }
     }
+}
+
+impl Volume {
+    fn add_cut(&mut self, cell: Cell, (low, high): (CubeMoments, CubeMoments)) {
+        self.low.add_cut(cell, &low);
+        self.high.add_cut(cell, &high);
+    }
+}
+
+/// Moments of which the matrices are, in the order of Loewner, below and above that of the solid: this is all that
+/// follows, for what is concluded, from sets between which the solid lies.
+///
+/// The matrix is that of the products of 1, x, y and z, and none of its elements is off by more than the error e. A
+/// diagonal matrix is above all such differences if, for some s, its first element is e (1 + 3 s), and the others are
+/// e (3 + 1/s): its rows then dominate those of the difference, with the weights 1, s, s, s. The smaller s, the less is
+/// the volume in doubt, and the more the second moments about the centre, which count little in a small cell.
+fn bounds(known: &CellMoments) -> (CubeMoments, CubeMoments) {
+    let CellMoments { moments, error } = *known;
+    let s = if error < 1.0 / 16.0 { 1.0 / 48.0 } else { 0.5 };
+    let (volume, square) = (error * (1.0 + 3.0 * s), error * (3.0 + 1.0 / s));
+    let [mut low, mut high] = [moments; 2];
+    low.volume -= volume;
+    high.volume += volume;
+    for i in 0..3 {
+        low.second[i] -= square;
+        high.second[i] += square;
+    }
+    (
+        if low.volume > 0.0 { low } else { CubeMoments::EMPTY },
+        if high.volume < 8.0 { high } else { CubeMoments::FULL },
+    )
 }

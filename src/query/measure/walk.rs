@@ -285,11 +285,7 @@ impl<Q: Quantity, C: Classifier> Walk<'_, Q, C> {
 
     /// Splits the cells of the front whose doubt is greater: what is settled by it, the new front, and the finest
     /// level.
-    fn split(
-        &self,
-        front: &mut [ChunkOf<Q, C>],
-        threshold: f64,
-    ) -> Result<Step<Q, C>, Error> {
+    fn split(&self, front: &mut [ChunkOf<Q, C>], threshold: f64) -> Result<Step<Q, C>, Error> {
         let (mut settled, mut next, mut level) = (Q::Found::default(), Vec::new(), 0);
         let tasks = front.iter_mut();
         for (found, chunks, deepest) in
@@ -303,11 +299,7 @@ impl<Q: Quantity, C: Classifier> Walk<'_, Q, C> {
         Ok((settled, next, level))
     }
 
-    fn split_chunk(
-        &self,
-        chunk: &mut ChunkOf<Q, C>,
-        threshold: f64,
-    ) -> Result<Step<Q, C>, Error> {
+    fn split_chunk(&self, chunk: &mut ChunkOf<Q, C>, threshold: f64) -> Result<Step<Q, C>, Error> {
         let mut settled = Leaves::<Q>::new();
         let mut next: Front<Q, C> = Vec::new();
         let mut out: Option<Next<C>> = None;

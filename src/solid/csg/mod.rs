@@ -22,6 +22,7 @@ mod kleene;
 mod linear;
 mod lone;
 mod map;
+mod moments;
 mod plane;
 mod points;
 mod polygon;

@@ -13,25 +13,31 @@ impl Scratch {
     /// give a slab each; of other expressions those that the solid lies in, or that lie in the solid, bound it
     /// from one side.
     pub(super) fn slabs(&self, program: &Program, cell: Cell, part: CsgPart) -> Option<Enclosure> {
+        let (literals, one_sided, complement) = self.literals(program, part)?;
+        let enclosure = intersection(program, cell, literals, one_sided)?;
+        Some(if complement { enclosure.complement() } else { enclosure })
+    }
+
+    /// Half-spaces, or their complements, whose intersection is the part, or, if the first flag is set, contains it;
+    /// if the second one is set, the part's complement is meant.
+    pub(super) fn literals(&self, program: &Program, part: CsgPart) -> Option<(Literals, bool, bool)> {
         if program.paper || part.len == 0 {
             return None;
         }
         let words = Scratch::list(program, &self.words, part);
         // A union is the complement of an intersection, so that complements have the same bits.
-        let (literals, one_sided, complement) = if part.is_table() {
+        if part.is_table() {
             let (half_spaces, table) = Scratch::table_of(words);
             let around = |table: Table| around(half_spaces, table);
             match around(table) {
-                Some((literals, one_sided)) => (literals, one_sided, false),
-                None => around(Table(!table.0)).map(|(literals, one_sided)| (literals, one_sided, true))?,
+                Some((literals, one_sided)) => Some((literals, one_sided, false)),
+                None => around(Table(!table.0)).map(|(literals, one_sided)| (literals, one_sided, true)),
             }
         } else {
             let [word] = words else { return None };
             let Op::HalfSpace { index, complement } = word.op() else { return None };
-            ([Some((index, false)), None, None], false, complement)
-        };
-        let enclosure = intersection(program, cell, literals, one_sided)?;
-        Some(if complement { enclosure.complement() } else { enclosure })
+            Some(([Some((index, false)), None, None], false, complement))
+        }
     }
 }
 

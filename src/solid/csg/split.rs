@@ -223,6 +223,9 @@ impl Worker for CsgWorker {
     fn moments(&mut self, cell: Cell, part: &CsgPart) -> Result<Option<CellMoments>, Error> {
         let (program, scratch) = (&*self.program, &mut self.scratch);
         let found = scratch.ask_lone(program, *part, |worker, part| worker.moments(cell, part))?;
+        if found.is_none() {
+            return Ok(scratch.moments(program, cell, *part));
+        }
         Ok(found.and_then(|(moments, complement)| match (moments, complement) {
             (Some(moments), true) => Some(moments.complement()),
             (moments, _) => moments,

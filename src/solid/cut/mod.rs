@@ -1,16 +1,25 @@
-//! Moments of a cube that planes cut.
+//! Moments of a cube that planes cut, or one curved surface and planes.
 //!
 //! The cube is [-1, 1]³. Of one plane closed forms give the moments (for the volume: Scardovelli and Zaleski,
 //! J. Comput. Phys. 164 (2000) 228–237; the others follow in the same way); where these would cancel, and of two
 //! or three planes, the cube is clipped and integrated over its faces. Moments are off by less than [`ERROR`].
 
 mod clip;
+mod curved;
+#[cfg(test)]
+mod curved_tests;
 mod formula;
+mod graph;
+mod polygon;
+mod quadratic;
+mod surplus;
 #[cfg(test)]
 mod tests;
+mod wedge;
 
 use super::enclosure::{Enclosure, Slab, SlabJoin};
-use crate::lattice::CubeMoments;
+use crate::lattice::{CellMoments, CubeMoments};
+pub(crate) use quadratic::Quadratic;
 
 /// More than the error of any moment. (Twice what comes of the largest term that the formula admits; clipping is off
 /// by a tenth of that.)
@@ -37,6 +46,36 @@ pub(crate) fn bounds(enclosure: &Enclosure) -> (CubeMoments, CubeMoments) {
             .map_or(if outer { CubeMoments::FULL } else { CubeMoments::EMPTY }, |m| m.complement()),
     };
     (of(false), of(true))
+}
+
+/// Moments of { x in the cell : f(x) ≥ 0 } on the inner sides of up to two planes, of which slabs tell all but what
+/// rounding leaves open; `None` if they are not known to third order.
+pub(crate) fn curved(f: &Quadratic, planes: &[Slab]) -> Option<CellMoments> {
+    let mut halves = [Half { normal: [0.0; 3], offset: 0.0 }; 3];
+    let (mut count, mut error) = (0, 0.0);
+    for Slab { normal, inner, outer } in planes {
+        let range: f64 = normal.iter().map(|c| c.abs()).sum();
+        let open = (outer - inner) / range;
+        if !(range > 0.0 && range.is_finite() && (0.0..1.0).contains(&open)) {
+            return None;
+        }
+        // Seen along the axis to which the normal is nearest, the section is at most a face.
+        error += 12.0 * open;
+        if *inner < range {
+            halves[count] = Half { normal: normal.map(|c| c / range), offset: inner / range };
+            count += 1;
+        }
+    }
+    let known = curved::moments(f, &halves[..count], |tangent| {
+        let mut all = halves;
+        all[count] = *tangent;
+        match count {
+            0 => formula::below(tangent).or_else(|| clip::moments(&all[..1])),
+            _ => clip::moments(&all[..=count]),
+        }
+    })?;
+    let error = known.error + error;
+    (error < 8.0).then_some(CellMoments { error, ..known })
 }
 
 /// More than the volume, of 8, between the sets of [`bounds`]; cheap, and about right.

@@ -181,7 +181,7 @@ fn the_oracle_knows_simple_cuts() {
     assert!(difference(0.125, &corner.0[1]).abs() < 1e-16);
 }
 
-struct Random(u64);
+pub(super) struct Random(pub(super) u64);
 
 impl Random {
     fn next(&mut self) -> u64 {
@@ -191,17 +191,17 @@ impl Random {
         x ^ x >> 31
     }
 
-    fn below(&mut self, end: u64) -> u64 {
+    pub(super) fn below(&mut self, end: u64) -> u64 {
         self.next() % end
     }
 
     /// Between −1 and 1.
-    fn unit(&mut self) -> f64 {
+    pub(super) fn unit(&mut self) -> f64 {
         (self.next() >> 11) as f64 / (1u64 << 52) as f64 - 1.0
     }
 
     /// 10^-3 to 10^-17.
-    fn tiny(&mut self) -> f64 {
+    pub(super) fn tiny(&mut self) -> f64 {
         10f64.powf(-3.0 - 14.0 * self.unit().abs())
     }
 
@@ -217,7 +217,7 @@ impl Random {
         }
     }
 
-    fn normal(&mut self, others: &[Slab]) -> [f64; 3] {
+    pub(super) fn normal(&mut self, others: &[Slab]) -> [f64; 3] {
         let mut normal = [self.component(), self.component(), self.component()];
         if let Some(other) = others.last() {
             match self.below(8) {
@@ -234,7 +234,7 @@ impl Random {
     }
 
     /// Where a plane of this normal lies.
-    fn offset(&mut self, normal: [f64; 3], range: f64) -> f64 {
+    pub(super) fn offset(&mut self, normal: [f64; 3], range: f64) -> f64 {
         let sign = |random: &mut Self| [1.0, -1.0, 0.0][random.below(3) as usize];
         let signs = [sign(self), sign(self), sign(self)];
         // Through the centre, or that of an edge or of a face, or a corner.
@@ -249,7 +249,7 @@ impl Random {
         }
     }
 
-    fn slab(&mut self, others: &[Slab]) -> Slab {
+    pub(super) fn slab(&mut self, others: &[Slab]) -> Slab {
         let mut normal = self.normal(others);
         let scale = match self.below(12) {
             0 => 2f64.powi(900),

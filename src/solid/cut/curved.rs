@@ -1,0 +1,73 @@
+//! A cube that one curved surface and up to two planes cut: moments to third order.
+//!
+//! In the cell the function is f = c + g · x + xᵀ Q x, and Q is small beside g. The surface then is a graph z*(x, y)
+//! along the axis z of the greatest slope. A plane z₀(x, y) near it cuts off a polyhedron, whose moments are known.
+//! The rest is what lies between plane and surface: the integral over the plane's section of what there is in a
+//! column, and wedges along the section's outline, where columns end at other faces. Both are had to second order in
+//! z* − z₀, and what is left is bounded.
+
+use super::graph::{Graph, PLACE};
+use super::polygon::{Line, Polygon};
+use super::quadratic::Quadratic;
+use super::surplus::Surplus;
+use super::{ERROR, Half};
+use crate::lattice::{CellMoments, CubeMoments, PAIRS};
+
+/// Moments of { x in [-1, 1]³ : f(x) ≥ 0 } on the inner sides of up to two planes, of which `flat` gives those where
+/// another plane takes the place of f; `None` if they are not known to third order.
+#[inline(always)]
+pub(super) fn moments(
+    f: &Quadratic,
+    planes: &[Half],
+    flat: impl Fn(&Half) -> Option<CubeMoments>,
+) -> Option<CellMoments> {
+    // The faces across z, and the planes.
+    let face = |k: usize| match k {
+        0 => ([0.0, 0.0, 1.0], 1.0),
+        1 => ([0.0, 0.0, -1.0], 1.0),
+        _ => (planes[k - 2].normal, planes[k - 2].offset),
+    };
+    let count = 2 + planes.len();
+    let line = |axes: &[usize; 3], plane: &[f64; 3], k: usize| {
+        let (normal, offset) = face(k);
+        let axes = if k < 2 { &[0, 1, 2] } else { axes };
+        Graph::line(axes, plane, &normal, offset)
+    };
+    let section =
+        |axes: &[usize; 3], plane: &[f64; 3]| Polygon::new((0..count).map(|k| line(axes, plane, k)));
+    let graph = Graph::new(f, section)?;
+    let Graph { axes, plane, .. } = graph;
+    let mut lines = [Line { slope: [0.0; 2], constant: 1.0, rise: 0.0 }; 4];
+    lines[..count].iter_mut().enumerate().for_each(|(k, own)| *own = line(&axes, &plane, k));
+    let lines = &lines[..count];
+    let polygon = Polygon::new(lines.iter().copied())?;
+    let mut surplus = Surplus::over(&polygon, &graph);
+    for k in 0..count {
+        surplus.add_wedge(&graph, lines, k)?;
+    }
+    let [a, b, c] = plane;
+    let sign = if graph.scale > 0.0 { 1.0 } else { -1.0 };
+    let per = sign / (1.0 + (a.abs() + b.abs()));
+    let mut half = Half { normal: [0.0; 3], offset: per * c };
+    for (axis, n) in axes.into_iter().zip([a, b, 1.0]) {
+        half.normal[axis] = -per * n;
+    }
+    let mut moments = flat(&half)?;
+    let [volume, first @ .., xx, yy, zz, xy, xz, yz] = surplus.moments;
+    moments.volume += sign * volume;
+    for (axis, more) in axes.into_iter().zip(first) {
+        moments.first[axis] += sign * more;
+    }
+    for ((i, j), more) in PAIRS.into_iter().zip([xx, yy, zz, xy, xz, yz]) {
+        moments.second[PLACE[axes[i]][axes[j]]] += sign * more;
+    }
+    // The error of the function moves the surface by this much along z. Where that is little, a weight has one sign in
+    // the part of a column that is concerned, or is small.
+    let moved = f.error / (graph.scale.abs() * (1.0 - graph.steepest));
+    if moved.is_nan() || moved > 0.125 {
+        return None;
+    }
+    // (Sums were rounded, too.)
+    let error = (surplus.error + 4.0 * moved) * (1.0 + 1e-9) + 16.0 * graph.rounding + ERROR;
+    Some(CellMoments { moments, error })
+}
