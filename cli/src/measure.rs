@@ -72,12 +72,12 @@ fn tolerance(text: &str) -> Result<f64, String> {
 const FINE_SIDES: f64 = 1e-9;
 /// … which means that it takes no more splits than this …
 const FEW_SPLITS: u64 = 1 << 14;
-/// … and else to this part, or to the tolerance of the volume if that is less …
+/// … and else to this part …
 const SIDES: f64 = 0.001;
 /// … unless that takes more splits than this.
 const MOST_SPLITS: u64 = 1 << 22;
 
-/// The bounding box, as well as it is known cheaply, or as the volume's tolerance asks for.
+/// The bounding box, as well as it is known cheaply.
 fn sides<S: Solid>(
     solid: &S,
     frame: &Frame,
@@ -88,7 +88,7 @@ fn sides<S: Solid>(
         max_splits: Some(control.max_splits.map_or(FEW_SPLITS, |most| most.min(FEW_SPLITS))),
         ..*control
     };
-    let coarse = tolerance.min(SIDES) * frame.edge();
+    let coarse = SIDES * frame.edge();
     let fine = bounding_box(solid, frame, tolerance.min(FINE_SIDES) * frame.edge(), &few)?;
     let is_coarse =
         |corners: [[Interval; 3]; 2]| corners.as_flattened().iter().any(|side| side.width() > coarse);
