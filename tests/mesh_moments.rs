@@ -263,14 +263,15 @@ fn round_parts_are_exact() {
     assert!(inertia.contains(16.0 / 3.0) && inertia.width() < 2e-15, "{inertia:?}");
 }
 
-/// What is clipped is not what the mesh encloses.
+/// What is clipped is not what the mesh encloses. It is known by cells, up to rounding.
 #[test]
-fn clipped_meshes_are_split() {
+fn clipped_meshes_are_measured_in_the_universe() {
     let solid = MeshSolid::new(mesh(&[cube(1.0)]), FillRule::NonZero).unwrap();
     let control = Control::default();
     let half = Frame::new([0.0, -2.0, -2.0], 4.0, 5).unwrap();
     let measures = measure(&solid, &half, 0.0, &control).unwrap();
-    assert!(measures.clipped && measures.volume == Interval::exactly(4.0), "{measures:?}");
+    assert!(measures.clipped && measures.volume.contains(4.0), "{measures:?}");
+    assert!(measures.volume.width() < 1e-9 && measures.splits == 0, "{measures:?}");
     let whole = Frame::new([-1.0; 3], 2.0, 5).unwrap();
     let measures = measure(&solid, &whole, 1e-12, &control).unwrap();
     assert_eq!((measures.clipped, measures.splits, measures.stop_reason), (false, 0, StopReason::Tolerance));

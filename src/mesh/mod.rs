@@ -6,8 +6,8 @@
 //! From the bottom up, each file uses only files named before it: `positions` (equal vertices), `topology`
 //! (edges and bodies), `boundary` (loops of edges), `signs` (exact determinants), `surface` (the mesh); on the
 //! mesh `weld`, `sew`, `placement`, `defects`, `overlap` and `report`; `tree` (boxes around triangles),
-//! `intersections`, `sheets` (winding numbers on both sides) and `moments` (volume and inertia); `polygon`
-//! (triangulation) and `polyhedron`.
+//! `intersections`, `sheets` (winding numbers on both sides), `sides` (the same, triangle by triangle) and `moments`
+//! (volume and inertia); `polygon` (triangulation) and `polyhedron`.
 
 mod boundary;
 mod defects;
@@ -23,6 +23,7 @@ mod positions;
 mod report;
 mod sew;
 mod sheets;
+mod sides;
 mod signs;
 mod surface;
 mod topology;
@@ -41,6 +42,7 @@ pub(crate) use polygon::triangulate_facet;
 #[cfg(feature = "std")]
 pub use polyhedron::{Polyhedron, PolyhedronArrays};
 pub use report::MeshReport;
+pub(crate) use sides::Sides;
 #[cfg(feature = "std")]
 pub(crate) use surface::Faces;
 pub use surface::{FillRule, TriangleMesh};

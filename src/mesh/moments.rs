@@ -16,7 +16,7 @@
 //! and a perimeter P (Steiner's formula).
 
 use super::intersections::{corners, intersections};
-use super::sheets::sheets;
+use super::sheets::{Sense, sheets};
 use super::signs::Point;
 use super::surface::{FillRule, TriangleMesh};
 use super::tree::{Grid, Search, Tree};
@@ -81,13 +81,16 @@ impl TriangleMesh {
             Search::Ended => return Ok(MeshMoments::Intersecting(pair)),
             Search::Exhausted => return Ok(MeshMoments::Undecided),
         }
-        let Some(sheets) = sheets(self, &tree, rule)? else { return Ok(MeshMoments::Undecided) };
+        let sheets = sheets(self, &tree, rule, |_| false)?;
         let grid = Grid::of(self);
         let mut sums = Sums::default();
         for (triangle, &sheet) in (0..).zip(&sheets.of_triangles) {
-            let sense = sheets.senses[sheet as usize];
-            if sense != 0 {
-                sums.add(&grid.triangle(&corners(self, triangle)), f64::from(sense));
+            match sheets.senses[sheet as usize] {
+                Sense::Known(0) | Sense::Flat => {}
+                Sense::Known(sense) => {
+                    sums.add(&grid.triangle(&corners(self, triangle)), f64::from(sense));
+                }
+                Sense::Unknown => return Ok(MeshMoments::Undecided),
             }
         }
         Ok(MeshMoments::Known(sums.finish(&grid, grid.bits(self), self.tube(&grid))))

@@ -1,7 +1,7 @@
-//! Sheets of a closed surface without intersections, and on which side of each the solid lies.
+//! Sheets of a closed surface, and on which side of each the solid lies.
 //!
-//! A *sheet* is a set of triangles that hang together over edges of just two triangles that face alike. No other
-//! triangle meets such an edge, or the inside of a triangle. So the winding number right in front of the triangles is
+//! A *sheet* is a set of triangles that hang together over edges of just two triangles that face alike. Triangles that
+//! intersect others belong to none. So no other triangle meets such an edge, or the inside of a triangle of a sheet, and the winding number right in front of the triangles is
 //! the same for all of a sheet, and right behind them it is one more. It is found on a line through one of them:
 //! the triangles above the line's point, counted by the sides from which they are seen.
 
@@ -18,22 +18,36 @@ use core::array::from_fn as array;
 
 /// The sheets of a mesh.
 pub(super) struct Sheets {
-    /// The sheet that each triangle belongs to.
+    /// The sheet that each triangle belongs to. One that intersects others is a sheet of its own.
     pub(super) of_triangles: Vec<u32>,
-    /// Of each sheet: 1 if the solid lies behind it and not in front, −1 if the other way round, 0 if on both sides
-    /// or on neither.
-    pub(super) senses: Vec<i8>,
+    pub(super) senses: Vec<Sense>,
 }
 
-/// Finds the sheets of a mesh that is closed under `rule` and none of whose triangles intersect; `tree` has those
-/// with area. `None` if no point can be found inside of any triangle of a sheet: all of them are slivers.
+/// On which side of a sheet the solid lies.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Sense {
+    /// 1 if behind it and not in front, −1 if the other way round, 0 if on both sides or on neither.
+    Known(i8),
+    /// It has no area, and so no sides.
+    Flat,
+    /// A triangle that intersects others; or no point can be found inside of any triangle, all being slivers.
+    Unknown,
+}
+
+/// Finds the sheets of a mesh that is closed under `rule`; `tree` has the triangles with area. `meets` tells of each
+/// triangle whether it intersects others.
 ///
 /// O(t), and O(log t) a sheet if few triangles lie above each other.
-pub(super) fn sheets(mesh: &TriangleMesh, tree: &Tree, rule: FillRule) -> Result<Option<Sheets>, Error> {
+pub(super) fn sheets(
+    mesh: &TriangleMesh,
+    tree: &Tree,
+    rule: FillRule,
+    meets: impl Fn(u32) -> bool,
+) -> Result<Sheets, Error> {
     let triangles = mesh.triangles();
     let mut sets = DisjointSets::new(triangles.len())?;
     for_each_edge(triangles, mesh.vertices().len(), |edge| {
-        if edge.count() == 2 && edge.excess() == 0 {
+        if edge.count() == 2 && edge.excess() == 0 && !edge.triangles().any(&meets) {
             edge.triangles().for_each(|triangle| sets.unite(edge.first(), triangle));
         }
         Ok(())
@@ -50,15 +64,15 @@ pub(super) fn sheets(mesh: &TriangleMesh, tree: &Tree, rule: FillRule) -> Result
     }
     let mut senses = memory::with_capacity(count)?;
     for &found in &largest {
-        let Some((_, triangle)) = found else {
-            // Without area it contributes nothing.
-            senses.push(0);
-            continue;
-        };
-        let Some(front) = in_front(mesh, tree, triangle, rule) else { return Ok(None) };
-        senses.push(rule.encloses(front + 1) as i8 - rule.encloses(front) as i8);
+        senses.push(match found {
+            None => Sense::Flat,
+            Some((_, triangle)) if meets(triangle) => Sense::Unknown,
+            Some((_, triangle)) => in_front(mesh, tree, triangle, rule).map_or(Sense::Unknown, |front| {
+                Sense::Known(rule.encloses(front + 1) as i8 - rule.encloses(front) as i8)
+            }),
+        });
     }
-    Ok(Some(Sheets { of_triangles, senses }))
+    Ok(Sheets { of_triangles, senses })
 }
 
 /// About twice a triangle's area, seen along the axis along which it is largest.

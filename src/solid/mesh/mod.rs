@@ -10,18 +10,28 @@
 //! mesh is closed by caps for that (`boundary`), whose own winding number is then taken off with bounds of
 //! its error and its slope (`winding`, `open`).
 //!
+//! Beyond verdicts, cells know the moments of what they hold, the area of the boundary and its slab, from the triangles
+//! that cut them (`integral`, `slab`).
+//!
 //! From the bottom up, each file uses only files named before it: `placed` (vertices on the lattice),
 //! `crossing` (where lines of centres pierce triangles), `overlap` (which cells a triangle cuts), `winding`
-//! (the caps' winding number), `reach` (how far an open surface's solid may reach), `scan` (blocks of 64³ cells), `on_frame` (a mesh on a frame, and what is known
-//! of a cell), `open` (cells of an open surface), `split` (the solid, its classifier and its workers).
+//! (the caps' winding number), `reach` (how far an open surface's solid may reach), `scan` (blocks of 64³ cells),
+//! `on_frame` (a mesh on a frame, and what is known of a cell), `local` (triangles in a cell's coordinates), `base` (a
+//! point whose winding number is known), `fronts` (on which sides of triangles the solid lies), `integral` (moments and
+//! areas), `slab` (enclosures), `open` (cells of an open surface), `split` (the solid, its classifier and its workers).
 
+mod base;
 mod crossing;
+mod fronts;
+mod integral;
+mod local;
 mod on_frame;
 mod open;
 mod overlap;
 mod placed;
 mod reach;
 mod scan;
+mod slab;
 mod split;
 mod winding;
 

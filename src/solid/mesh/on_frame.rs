@@ -3,6 +3,7 @@
 use super::crossing::Projection;
 use super::placed::Placed;
 use super::winding::Caps;
+use crate::lattice::exact::floor;
 use crate::mesh::FillRule;
 use crate::octree::Tag;
 use crate::solid::Verdict;
@@ -54,6 +55,19 @@ impl Branch {
 }
 
 impl OnFrame {
+    /// Whether no triangle lies in a plane between cells. Exact.
+    pub(super) fn has_no_triangle_in_planes(&self) -> bool {
+        let frame = &self.placed.frame;
+        self.roots.iter().all(|&triangle| {
+            let [a, b, c] = self.placed.original(triangle);
+            (0..3).all(|axis| {
+                let plane = floor(frame.scaled(axis, a[axis]) + 0.5);
+                let is_flat = a[axis] == b[axis] && b[axis] == c[axis];
+                !is_flat || frame.side(axis, a[axis], 2 * plane) != 0
+            })
+        })
+    }
+
     pub(super) fn closed_verdict(&self, part: MeshPart) -> Verdict<MeshPart> {
         if part.count > 0 {
             Verdict::Partial(part)

@@ -12,11 +12,12 @@
 //! * Else its children are asked. A finest cell near a hole, that nothing cuts, may stay PARTIAL.
 
 use super::on_frame::{Branch, MeshPart, OnFrame};
+use super::slab;
 use super::winding::{Local, Range};
 use crate::lattice::MAX_DEPTH;
 use crate::lattice::exact::floor;
 use crate::mesh::FillRule;
-use crate::solid::Verdict;
+use crate::solid::{Enclosure, Slab, Verdict};
 use alloc::vec::Vec;
 
 /// Half the diagonal of a cube of edge 1, rounded up.
@@ -149,6 +150,64 @@ impl OnFrame {
             caps = at_centre(self, at, enough);
         }
         excess(caps) >= 0.0
+    }
+
+    /// The integer next to the surface's own winding number all over a cell, but for what the triangles of the surface
+    /// change: what it is at the lowest centre. `None` if the number may come to one half more or less.
+    pub(super) fn nearest_winding(
+        &self,
+        surroundings: &mut Surroundings,
+        triangles: &[u32],
+        at: [i32; 3],
+        size: i32,
+        mut part: MeshPart,
+    ) -> Option<i32> {
+        let is_capped = triangles.last().is_some_and(|&last| self.placed.is_cap(last));
+        let level = self.placed.frame.depth() - size.trailing_zeros() as u8;
+        if part.caps?.level != level {
+            part.caps = Some(self.branch(surroundings, at, size, is_capped, part));
+        }
+        let caps = self.caps_over(surroundings, at, size, part);
+        let change = caps.change + caps.error;
+        // (What is not known may be no number at all.)
+        let nearest = if change < 0.5 { floor(caps.value + 0.5) } else { return None };
+        ((caps.value - nearest as f64).abs() + change < 0.5).then(|| part.winding - nearest as i32)
+    }
+
+    /// A slab that holds the boundary in a cell which the surface does not cut: where the winding number is one half.
+    pub(super) fn open_slab(
+        &self,
+        surroundings: &mut Surroundings,
+        triangles: &[u32],
+        at: [i32; 3],
+        size: i32,
+        mut part: MeshPart,
+    ) -> Option<Enclosure> {
+        let is_cut = triangles.first().is_some_and(|&first| !self.placed.is_cap(first));
+        let level = self.placed.frame.depth() - size.trailing_zeros() as u8;
+        if is_cut {
+            return None;
+        }
+        if part.caps.is_some_and(|branch| branch.level != level) {
+            part.caps = Some(self.branch(surroundings, at, size, !triangles.is_empty(), part));
+        }
+        let Branch { level: level @ 0..=MAX_DEPTH, step } = part.caps? else { return None };
+        let (value, slope, rest) = surroundings.local(self, level, at)?.tangent(at, size);
+        // The number is `middle` − slope · x, up to `rest`. More than what is rounded comes to that.
+        let middle = part.winding as f64 - (value + step as f64);
+        let rest = rest * (1.0 + 1e-9) + 1e-12 * (1.0 + middle.abs());
+        let range = slope.iter().map(|s| s.abs()).sum::<f64>() + rest;
+        let is_at_plus_half = self.fill == FillRule::Positive || middle - range > -0.5;
+        let (normal, end) = if is_at_plus_half {
+            (slope, middle - 0.5)
+        } else if middle + range < 0.5 {
+            (slope.map(|s| -s), -middle - 0.5)
+        } else {
+            return None;
+        };
+        // (Of what is no number nothing is known.)
+        let is_known = range.is_finite() && normal != [0.0; 3];
+        is_known.then(|| slab::enclosure(Slab { normal, inner: end - rest, outer: end + rest }))
     }
 
     /// By how much a winding number exceeds what the fill rule asks for.

@@ -1,6 +1,7 @@
 //! Splitting the cells of a mesh.
 
 use super::crossing::Projection;
+use super::local::View;
 use super::on_frame::{Branch, MeshPart, OnFrame};
 use super::open::Surroundings;
 use super::overlap::Overlap;
@@ -10,10 +11,10 @@ use super::scan::{Scan, Task};
 use super::winding::Caps;
 use crate::control::Control;
 use crate::error::{Error, MeshError};
-use crate::lattice::{Affine, Bounds, Cell, Frame, VolumeMoments};
-use crate::mesh::{FillRule, Loops, MeshMoments, TriangleMesh};
+use crate::lattice::{Affine, Bounds, Cell, CellMoments, Frame, Interval, VolumeMoments};
+use crate::mesh::{FillRule, Loops, MeshMoments, Sides, TriangleMesh};
 use crate::octree::{Block, Proof, Tag};
-use crate::solid::{Classifier, Fingerprint, Fingerprinter, Motion, Solid, Verdict, Worker};
+use crate::solid::{Classifier, Enclosure, Fingerprint, Fingerprinter, Motion, Solid, Verdict, Worker};
 use alloc::boxed::Box;
 use alloc::sync::Arc;
 use alloc::vec::Vec;
@@ -48,6 +49,8 @@ struct Boundary {
     reach: OnceBox<[[f64; 3]; 2]>,
     /// The same.
     moments: OnceBox<MeshMoments>,
+    /// The same; nothing if the triangles lie too close to each other.
+    sides: OnceBox<Option<Sides>>,
 }
 
 /// A mesh on a frame: the handle.
@@ -60,6 +63,7 @@ pub struct MeshClassifier {
 /// A worker on a mesh: lists of triangles, one for each cell on the way down, and what scans a block.
 pub struct MeshWorker {
     mesh: Arc<OnFrame>,
+    solid: MeshSolid,
     triangles: Vec<u32>,
     /// Bit k: the triangle belongs to child k.
     masks: Vec<u8>,
@@ -89,7 +93,12 @@ impl MeshSolid {
         Ok(MeshSolid {
             mesh,
             fill,
-            boundary: Arc::new(Boundary { loops, reach: OnceBox::new(), moments: OnceBox::new() }),
+            boundary: Arc::new(Boundary {
+                loops,
+                reach: OnceBox::new(),
+                moments: OnceBox::new(),
+                sides: OnceBox::new(),
+            }),
         })
     }
 
@@ -106,6 +115,12 @@ impl MeshSolid {
     pub fn moments(&self, control: &Control<'_>) -> Result<MeshMoments, Error> {
         let find = || self.mesh.moments(self.fill, control).map(Box::new);
         self.boundary.moments.get_or_try_init(find).copied()
+    }
+
+    /// On which side of each triangle the solid lies, as far as that is known.
+    fn sides(&self, control: &Control<'_>) -> Result<Option<&Sides>, Error> {
+        let find = || self.mesh.sides(self.fill, control).map(Box::new);
+        self.boundary.sides.get_or_try_init(find).map(Option::as_ref)
     }
 
     /// The solid under an affine map: its vertices are moved, as [`TriangleMesh::placed`] says.
@@ -263,6 +278,7 @@ impl Classifier for MeshClassifier {
     fn worker(&self) -> Result<MeshWorker, Error> {
         Ok(MeshWorker {
             mesh: self.mesh.clone(),
+            solid: self.solid.clone(),
             triangles: Vec::new(),
             masks: Vec::new(),
             surroundings: Surroundings::default(),
@@ -283,9 +299,44 @@ impl Classifier for MeshClassifier {
     fn moments(&self, control: &Control<'_>) -> Result<Option<VolumeMoments>, Error> {
         Ok(match self.solid.moments(control)? {
             MeshMoments::Known(moments) => Some(moments),
-            MeshMoments::Open | MeshMoments::Intersecting(_) | MeshMoments::Undecided => None,
+            MeshMoments::Open | MeshMoments::Intersecting(_) | MeshMoments::Undecided => {
+                // Whoever asks for moments goes on to those of cells.
+                self.solid.sides(control)?;
+                None
+            }
         })
     }
+
+    /// If the mesh is closed and no two triangles intersect.
+    fn area(&self, control: &Control<'_>) -> Result<Option<Interval>, Error> {
+        Ok(self.solid.sides(control)?.and_then(|sides| self.solid.mesh.boundary_area(sides)))
+    }
+
+    /// O(t).
+    fn is_off_lattice(&self) -> bool {
+        let Placed { displacement, .. } = self.mesh.placed;
+        displacement == 0.0 && self.mesh.caps.is_empty() && self.mesh.has_no_triangle_in_planes()
+    }
+}
+
+/// A cell that the surface cuts, and in which its winding number is an integer or near to one.
+fn view<'a>(
+    mesh: &'a OnFrame,
+    own: &'a [u32],
+    surroundings: &mut Surroundings,
+    cell: Cell,
+    part: &MeshPart,
+) -> Option<View<'a>> {
+    let placed = &mesh.placed;
+    let (at, size) = extent(cell, placed.frame.depth());
+    let mut triangles = list(&mesh.roots, own, part);
+    let mut winding = part.winding;
+    if part.caps.is_some() {
+        winding = mesh.nearest_winding(surroundings, triangles, at, size, *part)?;
+        triangles = &triangles[..triangles.partition_point(|&triangle| !placed.is_cap(triangle))];
+    }
+    let is_cut = !triangles.is_empty();
+    is_cut.then_some(View { placed, triangles, at, size, winding })
 }
 
 impl Worker for MeshWorker {
@@ -397,6 +448,31 @@ impl Worker for MeshWorker {
         };
         scan.fill(task, block)?;
         Ok(true)
+    }
+
+    fn moments(&mut self, cell: Cell, part: &MeshPart) -> Result<Option<CellMoments>, Error> {
+        let MeshWorker { mesh, solid, triangles, surroundings, .. } = self;
+        match (solid.sides(&Control::default())?, view(mesh, triangles, surroundings, cell, part)) {
+            (Some(sides), Some(view)) => view.moments(sides, mesh.fill),
+            _ => Ok(None),
+        }
+    }
+
+    fn area(&mut self, cell: Cell, part: &MeshPart) -> Result<Option<Interval>, Error> {
+        let MeshWorker { mesh, solid, triangles, surroundings, .. } = self;
+        match (solid.sides(&Control::default())?, view(mesh, triangles, surroundings, cell, part)) {
+            (Some(sides), Some(view)) => view.area(sides, mesh.fill),
+            _ => Ok(None),
+        }
+    }
+
+    fn enclosure(&mut self, cell: Cell, part: &MeshPart) -> Result<Option<Enclosure>, Error> {
+        let MeshWorker { mesh, triangles, surroundings, .. } = self;
+        if let Some(view) = view(mesh, triangles, surroundings, cell, part) {
+            return Ok(view.slab(mesh.fill));
+        }
+        let (at, size) = extent(cell, mesh.placed.frame.depth());
+        Ok(mesh.open_slab(surroundings, list(&mesh.roots, triangles, part), at, size, *part))
     }
 
     fn sample(&mut self, cell: Cell, part: &MeshPart) -> Result<Option<bool>, Error> {

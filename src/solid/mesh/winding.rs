@@ -167,6 +167,19 @@ impl Local {
         }
     }
 
+    /// In such a cube, as a linear function of where a point lies, from the middle in half edges: its value in the
+    /// middle, its slope, and how much further off the winding number may be.
+    pub(super) fn tangent(&self, at: [i32; 3], size: i32) -> (f64, [f64; 3], f64) {
+        let half = size as f64 / 2.0;
+        let middle = DVec3::from(at.map(|a| a as f64 + half)) - self.point;
+        let symmetric = (self.hessian + self.hessian.transpose()) * 0.5;
+        let hessian_step = symmetric * middle;
+        let value = self.value + (self.gradient + 0.5 * hessian_step).dot(middle);
+        let slope = (self.gradient + hessian_step) * half;
+        let bend = 0.5 * half * half * sum_of_magnitudes(symmetric);
+        (value, slope.to_array(), bend + self.error_at(length(middle.abs() + half)))
+    }
+
     /// At the centre of a cell.
     pub(super) fn at_centre(&self, cell: [i32; 3]) -> Range {
         let to = DVec3::from(cell.map(|a| a as f64 + 0.5)) - self.point;

@@ -1,0 +1,102 @@
+//! On which side of each triangle the solid lies, for those that are to integrate over parts of it.
+
+use super::intersections::{corners, intersections};
+use super::sheets::{Sense, sheets};
+use super::surface::{FillRule, TriangleMesh};
+use super::tree::{Search, Tree};
+use crate::control::Control;
+use crate::error::Error;
+use crate::lattice::Interval;
+use crate::memory;
+use alloc::vec::Vec;
+
+/// What is known of the two sides of triangles.
+pub(crate) struct Sides {
+    /// Of each triangle: 1 if the solid lies behind all of it and not in front, −1 if the other way round, 0 if on
+    /// both sides or on neither; [`Sides::UNKNOWN`] or [`Sides::FLAT`].
+    senses: Vec<i8>,
+    /// The pairs of triangles that intersect, each in both orders, ascending.
+    pairs: Vec<[u32; 2]>,
+}
+
+impl Sides {
+    /// A triangle that intersects others, or that belongs to an open surface.
+    const UNKNOWN: i8 = 2;
+    /// A triangle without area of which nothing else is known.
+    const FLAT: i8 = 4;
+
+    /// On which side of a triangle the solid lies, if it is the same side everywhere.
+    #[inline(always)]
+    pub(crate) fn of(&self, triangle: u32) -> Option<i8> {
+        let sense = self.senses[triangle as usize];
+        (sense < Sides::UNKNOWN).then_some(sense)
+    }
+
+    pub(crate) fn is_flat(&self, triangle: u32) -> bool {
+        self.senses[triangle as usize] == Sides::FLAT
+    }
+
+    /// Whether two triangles intersect beyond common vertices and edges.
+    pub(crate) fn is_pair(&self, a: u32, b: u32) -> bool {
+        self.pairs.binary_search(&[a, b]).is_ok()
+    }
+}
+
+impl TriangleMesh {
+    /// The sides of all triangles. `None` if too many triangles lie close to each other to find all that intersect.
+    ///
+    /// O(t log t) for triangles that lie apart. Memory as [`moments`](Self::moments), and 1 byte a triangle.
+    pub(crate) fn sides(&self, rule: FillRule, control: &Control<'_>) -> Result<Option<Sides>, Error> {
+        let tree = Tree::new(self, |t| !self.is_flat(&self.triangles()[t as usize]))?;
+        let mut pairs = Vec::new();
+        let search = intersections(self, &tree, control, &mut |a, b| {
+            memory::push(&mut pairs, [a, b])?;
+            memory::push(&mut pairs, [b, a])?;
+            Ok(true)
+        })?;
+        if search != Search::Finished {
+            return Ok(None);
+        }
+        pairs.sort_unstable();
+        let mut senses = memory::filled(self.triangles().len(), 0)?;
+        pairs.iter().for_each(|&[a, _]| senses[a as usize] = Sides::UNKNOWN);
+        match self.check_closed(rule) {
+            Ok(()) => {
+                let sheets = sheets(self, &tree, rule, |t| senses[t as usize] == Sides::UNKNOWN)?;
+                for (sense, &sheet) in senses.iter_mut().zip(&sheets.of_triangles) {
+                    *sense = match sheets.senses[sheet as usize] {
+                        Sense::Known(sense) => sense,
+                        Sense::Flat => Sides::FLAT,
+                        Sense::Unknown => Sides::UNKNOWN,
+                    };
+                }
+            }
+            Err(Error::Mesh(_)) => {
+                for (sense, triangle) in senses.iter_mut().zip(self.triangles()) {
+                    *sense = if self.is_flat(triangle) { Sides::FLAT } else { Sides::UNKNOWN };
+                }
+            }
+            Err(error) => return Err(error),
+        }
+        Ok(Some(Sides { senses, pairs }))
+    }
+
+    /// The area of the triangles at which the solid ends. `None` if that is not known of all, or vertices were moved.
+    pub(crate) fn boundary_area(&self, sides: &Sides) -> Option<Interval> {
+        if self.displacement() > 0.0 || sides.senses.contains(&Sides::UNKNOWN) {
+            return None;
+        }
+        let zero = Interval::exactly(0.0);
+        let ends = (0..).zip(&sides.senses).filter(|(_, sense)| matches!(sense, 1 | -1));
+        let sum = ends.fold(zero, |sum, (triangle, _)| {
+            let [a, b, c] = corners(self, triangle).map(|p| p.map(Interval::exactly));
+            let minor = |i: usize, j: usize| {
+                let edge = |p: &[Interval; 3], axis: usize| p[axis].minus(a[axis]);
+                edge(&b, i).times(edge(&c, j)).minus(edge(&b, j).times(edge(&c, i)))
+            };
+            let squares = [(1, 2), (2, 0), (0, 1)].map(|(i, j)| minor(i, j).square());
+            sum.plus(squares[0].plus(squares[1]).plus(squares[2]).root())
+        });
+        Some(sum.times(Interval::exactly(0.5)))
+    }
+}

@@ -1,0 +1,264 @@
+//! Triangles in the coordinates of a cell.
+//!
+//! The cell is [-1, 1]³. Corners are rounded in these coordinates, and a vertex comes out the same for each triangle
+//! that has it. So the rounded surface hangs together as the true one does.
+
+use super::placed::Placed;
+use crate::lattice::exact::sqrt;
+use core::array::from_fn as array;
+
+pub(super) type Point = [f64; 3];
+
+/// 2^-52: more than what a rounding adds, relative to the result.
+pub(super) const UNIT: f64 = f64::EPSILON;
+
+/// How far clipping moves points of a polygon at the most, in [`UNIT`]s of what its triangle reaches to: 6 for each of
+/// seven planes.
+pub(super) const CLIPPING: f64 = 42.0;
+
+/// A cell and the mesh that its triangles belong to.
+#[derive(Clone, Copy)]
+pub(super) struct View<'a> {
+    pub(super) placed: &'a Placed,
+    /// The triangles that cut the cell.
+    pub(super) triangles: &'a [u32],
+    /// The lowest finest cell, and the edge in finest cells.
+    pub(super) at: [i32; 3],
+    pub(super) size: i32,
+    /// The winding number at the lowest centre.
+    pub(super) winding: i32,
+}
+
+/// A triangle in the coordinates of a cell.
+#[derive(Clone, Copy)]
+pub(super) struct Seen {
+    pub(super) corners: [Point; 3],
+    pub(super) vertices: [u32; 3],
+    /// How far the corners are off along an axis at the most.
+    pub(super) error: f64,
+    /// The greatest magnitude of a coordinate, and at least 1.
+    pub(super) reach: f64,
+    /// The box around it.
+    pub(super) low: Point,
+    pub(super) high: Point,
+}
+
+impl View<'_> {
+    /// From finest cells to coordinates of the cell.
+    pub(super) fn scale(&self) -> f64 {
+        2.0 / self.size as f64
+    }
+
+    /// How far the surface may lie from the mesh along an axis, in the coordinates of the cell.
+    pub(super) fn displacement(&self) -> f64 {
+        self.placed.displacement * self.scale()
+    }
+
+    /// The coordinates of the centre of a finest cell.
+    pub(super) fn centre(&self, cell: [i32; 3]) -> Point {
+        array(|axis| (2 * (cell[axis] - self.at[axis]) + 1 - self.size) as f64 / self.size as f64)
+    }
+
+    /// A triangle of the mesh.
+    #[inline]
+    pub(super) fn seen(&self, triangle: u32) -> Seen {
+        let vertices = self.placed.mesh.triangles()[triangle as usize];
+        let scale = self.scale();
+        let half = self.size as f64 / 2.0;
+        let mut off: f64 = 0.0;
+        let corners = vertices.map(|vertex| {
+            let vertex = self.placed.vertex(vertex);
+            array(|axis| {
+                off = off.max(vertex.error[axis] as f64);
+                (vertex.at[axis] - (self.at[axis] as f64 + half)) * scale
+            })
+        });
+        let [a, b, c]: [Point; 3] = corners;
+        let low: Point = array(|axis| a[axis].min(b[axis]).min(c[axis]));
+        let high: Point = array(|axis| a[axis].max(b[axis]).max(c[axis]));
+        let reach = (0..3).fold(1.0, |reach: f64, axis| reach.max(high[axis]).max(-low[axis]));
+        Seen { corners, vertices, error: off * scale + UNIT * reach, reach, low, high }
+    }
+}
+
+impl Seen {
+    /// More than what corners and clipped points are off by.
+    pub(super) fn slack(&self) -> f64 {
+        2.0 * self.error + CLIPPING * UNIT * self.reach
+    }
+
+    /// The longest edge of what of its box lies in the cell, with all that is rounded.
+    pub(super) fn extent(&self) -> f64 {
+        let slack = self.slack();
+        (0..3).fold(slack, |most: f64, k| most.max(self.high[k].min(1.0) - self.low[k].max(-1.0) + slack))
+    }
+
+    /// Whether all of it lies within `limit` of the cell's centre along each axis.
+    pub(super) fn is_within(&self, limit: f64) -> bool {
+        (0..3).all(|k| self.high[k] <= limit && -self.low[k] <= limit)
+    }
+
+    /// How many of the cell's planes, or of those at `limit`, cut it or have it beyond them.
+    pub(super) fn planes(&self, limit: f64) -> f64 {
+        (0..3).map(|k| f64::from((self.high[k] > limit) as u8 + (-self.low[k] > limit) as u8)).sum()
+    }
+
+    pub(super) fn area(&self) -> f64 {
+        let [a, b, c] = &self.corners;
+        let twice = cross(&minus(b, a), &minus(c, a));
+        0.5 * sqrt(dot(&twice, &twice))
+    }
+
+    /// The part within `limit` of the cell's centre along each axis. `None` if it has more corners than there is room
+    /// for, which is possible only by rounding.
+    #[inline]
+    pub(super) fn clipped(&self, limit: f64) -> Option<Polygon> {
+        let mut polygon = Polygon::new(&self.corners);
+        for axis in 0..3 {
+            for (sign, beyond) in [(1.0, self.high[axis]), (-1.0, -self.low[axis])] {
+                if beyond > limit {
+                    polygon = polygon.below(axis, sign, limit)?;
+                }
+            }
+        }
+        Some(polygon)
+    }
+
+    /// On which side of the plane a point lies that is off by `error`: 1 in front, −1 behind, 0 if that is not sure.
+    pub(super) fn side(&self, p: &Point, error: f64) -> i32 {
+        let [a, b, c] = &self.corners;
+        volume_sign([&minus(b, a), &minus(c, a), &minus(p, a)], self.error + error)
+    }
+
+    /// By how much the winding number changes on the way from a point to another: 1 if the way goes through the
+    /// triangle from its front, −1 from behind, 0 if it misses. `None` if that is not sure.
+    pub(super) fn pierced(&self, from: &Point, to: &Point) -> Option<i32> {
+        let margin = 2.0 * self.error;
+        let is_beside = (0..3).any(|axis| {
+            from[axis].max(to[axis]) < self.low[axis] - margin
+                || from[axis].min(to[axis]) > self.high[axis] + margin
+        });
+        if is_beside {
+            return Some(0);
+        }
+        let way = minus(to, from);
+        let ends = self.corners.map(|corner| minus(&corner, from));
+        let turns: [i32; 3] = array(|k| volume_sign([&way, &ends[k], &ends[(k + 1) % 3]], self.error));
+        if turns.contains(&1) && turns.contains(&-1) {
+            return Some(0);
+        }
+        let (before, after) = (self.side(from, 0.0), self.side(to, 0.0));
+        if before * after > 0 {
+            return Some(0);
+        }
+        (before * after < 0 && !turns.contains(&0)).then_some(before)
+    }
+}
+
+/// The sign of u × v · w for differences of points that are off by `error`; 0 if it is not sure.
+fn volume_sign([u, v, w]: [&Point; 3], error: f64) -> i32 {
+    let size = [u, v, w].into_iter().flatten().fold(0.0, |most: f64, x| most.max(x.abs()));
+    let value = dot(&cross(u, v), w);
+    // A factor is off by twice the error and a rounding; there are six products of three factors.
+    let sure = 64.0 * size * size * (error + UNIT * size);
+    if value > sure {
+        1
+    } else if value < -sure {
+        -1
+    } else {
+        0
+    }
+}
+
+/// A polygon, nearly plane and convex.
+#[derive(Clone, Copy)]
+pub(super) struct Polygon {
+    points: [Point; Polygon::MOST],
+    count: usize,
+}
+
+impl Polygon {
+    /// A triangle that seven planes cut has ten corners; there is room for some that come of rounding.
+    const MOST: usize = 14;
+
+    fn new([a, b, c]: &[Point; 3]) -> Polygon {
+        let mut points = [[0.0; 3]; Polygon::MOST];
+        (points[0], points[1], points[2]) = (*a, *b, *c);
+        Polygon { points, count: 3 }
+    }
+
+    pub(super) fn points(&self) -> &[Point] {
+        &self.points[..self.count]
+    }
+
+    /// The part where the coordinate times `sign` is at most `bound`: Sutherland and Hodgman 1974.
+    #[inline(always)]
+    pub(super) fn below(&self, axis: usize, sign: f64, bound: f64) -> Option<Polygon> {
+        let mut kept = Polygon { points: [[0.0; 3]; Polygon::MOST], count: 0 };
+        let points = self.points();
+        for (k, p) in points.iter().enumerate() {
+            let q = &points[if k + 1 == points.len() { 0 } else { k + 1 }];
+            let [p_within, q_within] = [p, q].map(|p| sign * p[axis] <= bound);
+            if p_within {
+                kept.push(*p)?;
+            }
+            if p_within != q_within {
+                kept.push(between(p, q, axis, sign * bound))?;
+            }
+        }
+        Some(kept)
+    }
+
+    #[inline(always)]
+    fn push(&mut self, point: Point) -> Option<()> {
+        *self.points.get_mut(self.count)? = point;
+        self.count += 1;
+        Some(())
+    }
+
+    pub(super) fn area(&self) -> f64 {
+        let twice = self.twice_area();
+        0.5 * sqrt(dot(&twice, &twice))
+    }
+
+    /// The normal, as long as twice the area.
+    pub(super) fn twice_area(&self) -> Point {
+        let mut sum = [0.0; 3];
+        if let [a, rest @ ..] = self.points() {
+            for ends in rest.windows(2) {
+                let area = cross(&minus(&ends[0], a), &minus(&ends[1], a));
+                (0..3).for_each(|k| sum[k] += area[k]);
+            }
+        }
+        sum
+    }
+
+    /// A point inside.
+    pub(super) fn middle(&self) -> Point {
+        let share = 1.0 / self.count as f64;
+        array(|axis| self.points().iter().map(|p| p[axis]).sum::<f64>() * share)
+    }
+}
+
+/// The point at `bound` on the way between two points on different sides of it.
+pub(super) fn between(p: &Point, q: &Point, axis: usize, bound: f64) -> Point {
+    let t = (bound - p[axis]) / (q[axis] - p[axis]);
+    let mut point = array(|k| p[k] + t * (q[k] - p[k]));
+    point[axis] = bound;
+    point
+}
+
+#[inline(always)]
+pub(super) fn minus(a: &Point, b: &Point) -> Point {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+}
+
+#[inline(always)]
+pub(super) fn cross(a: &Point, b: &Point) -> Point {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
+#[inline(always)]
+pub(super) fn dot(a: &Point, b: &Point) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}

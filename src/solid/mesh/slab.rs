@@ -1,0 +1,93 @@
+//! The slab of a cell: how far triangles reach to either side along their mean normal, and what lies beyond.
+//!
+//! No triangle reaches beyond the slab's ends, so that on each side the winding number is the same. It is found on the
+//! way from a base to a point there.
+
+use super::base::Base;
+use super::local::{Point, UNIT, View, dot};
+use crate::mesh::FillRule;
+use crate::solid::{Enclosure, Slab, SlabJoin};
+
+/// Of more triangles a slab would be as thick as the cell.
+const MOST: usize = 256;
+
+/// So is one whose surface may lie that far from the mesh, in half edges.
+const THICK: f64 = 0.25;
+
+impl View<'_> {
+    /// A slab that holds the boundary. `None` if the same lies on both sides, or what does is not found out.
+    pub(super) fn slab(&self, fill: FillRule) -> Option<Enclosure> {
+        if self.triangles.len() > MOST || self.displacement() > THICK {
+            return None;
+        }
+        let base = self.base()?;
+        let mut normal = [0.0; 3];
+        for &triangle in self.triangles {
+            let area = self.seen(triangle).clipped(1.0)?.twice_area();
+            (0..3).for_each(|k| normal[k] += area[k]);
+        }
+        let size = normal.iter().fold(0.0, |most: f64, n| most.max(n.abs()));
+        // (What is no number is in no range.)
+        if !(1e-30..1e30).contains(&size) {
+            return None;
+        }
+        let normal = normal.map(|n| n / size);
+        let range = normal.iter().map(|n| n.abs()).sum::<f64>();
+        let (mut inner, mut outer) = (f64::INFINITY, f64::NEG_INFINITY);
+        for &triangle in self.triangles {
+            let seen = self.seen(triangle);
+            let slack = 4.0 * seen.slack() + 2.0 * self.displacement();
+            // What of the surface lies in the cell lies that near to a point of the polygon.
+            let polygon = seen.clipped(1.0 + slack)?;
+            let margin = range * slack + 16.0 * UNIT;
+            for p in polygon.points() {
+                let along = dot(&normal, p);
+                (inner, outer) = (inner.min(along - margin), outer.max(along + margin));
+            }
+        }
+        let is_known = inner <= outer;
+        if !is_known {
+            return None;
+        }
+        // What lies in front, and what behind; nothing does where the slab reaches to the cell's corner.
+        const NEARLY: f64 = 1.0 - 1e-9;
+        let beyond = |sign: f64, end: f64| -> Option<Option<bool>> {
+            if end >= range * NEARLY {
+                return Some(None);
+            }
+            let share = (0.5 * (1.0 + end / range)).max(0.5);
+            let corner = normal.map(|n| if sign * n < 0.0 { -share } else { share });
+            Some(Some(fill.encloses(self.winding_at(&corner, &base)?)))
+        };
+        let (front, behind) = (beyond(1.0, outer)?, beyond(-1.0, -inner)?);
+        let is_inside_behind = match (front, behind) {
+            (Some(front), Some(behind)) if front == behind => return None,
+            (_, Some(behind)) => behind,
+            (Some(front), None) => !front,
+            (None, None) => return None,
+        };
+        // Where there is no point beyond, anything is true of all of them.
+        if front.is_none() {
+            outer = f64::INFINITY;
+        }
+        if behind.is_none() {
+            inner = f64::NEG_INFINITY;
+        }
+        let slab = Slab { normal, inner, outer };
+        let slab = if is_inside_behind { slab } else { slab.complement() };
+        Some(enclosure(slab))
+    }
+
+    /// The winding number at a point of the cell that no triangle comes near.
+    fn winding_at(&self, p: &Point, base: &Base) -> Option<i32> {
+        self.triangles
+            .iter()
+            .try_fold(base.winding, |sum, &triangle| Some(sum + self.seen(triangle).pierced(&base.at, p)?))
+    }
+}
+
+/// The enclosure of one slab.
+pub(super) fn enclosure(slab: Slab) -> Enclosure {
+    const NONE: Slab = Slab { normal: [0.0; 3], inner: 0.0, outer: 0.0 };
+    Enclosure { slabs: [slab, NONE, NONE], join: SlabJoin::All, cone: f64::INFINITY }
+}
