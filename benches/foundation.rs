@@ -11,8 +11,9 @@
 
 use criterion::{BatchSize, Criterion, Throughput, criterion_group, criterion_main};
 use leafless::{
-    Control, FillRule, Frame, Membership, MeshSolid, Octree, PointCursor, Rule, TriangleMesh, build, compact,
-    difference, exchange, file, intersection, union, xor,
+    CellFilter, Control, Cursor, Direction, FillRule, Frame, Membership, MeshSolid, Octree, PointCursor,
+    Rule, Tag, TaggedCell, TriangleMesh, build, compact, difference, exchange, file, intersection, union,
+    xor,
 };
 use std::hint::black_box;
 use std::path::Path;
@@ -192,6 +193,81 @@ fn queries(c: &mut Criterion) {
     group.finish();
 }
 
+/// Cells one after another, and their neighbours, of the bunny.
+fn cells(c: &mut Criterion) {
+    let mesh = mesh(&model("bunny-closed.stl"));
+    let tree = octree(&mesh, &frame(&mesh), Rule::Certified);
+    let view = tree.view();
+    let surface: Vec<TaggedCell> = view.cells(CellFilter::tags(&[Tag::Partial])).collect();
+    let leaves = CellFilter::leaves();
+    let solid = CellFilter::tags(&[Tag::Full]);
+    let mut group = c.benchmark_group("cells, bunny 1024³");
+    group.sample_size(20);
+
+    group.throughput(Throughput::Elements(view.cells(leaves).count() as u64));
+    let mut buffer = vec![surface[0]; 4096];
+    group.bench_function("leaves, 4096 at once", |b| {
+        b.iter(|| {
+            let mut cells = view.cells(leaves);
+            while cells.fill(black_box(&mut buffer)) == buffer.len() {}
+        })
+    });
+    group.bench_function("leaves, one by one", |b| b.iter(|| view.cells(leaves).map(black_box).count()));
+    group.throughput(Throughput::Elements(view.boundary_faces(solid).count() as u64));
+    group.bench_function("boundary faces", |b| b.iter(|| view.boundary_faces(solid).map(black_box).count()));
+
+    // Cells of the surface in Morton order, all neighbours of each.
+    for (name, directions) in [("6", &Direction::ALL[..6]), ("26", &Direction::ALL[..])] {
+        group.throughput(Throughput::Elements((surface.len() * directions.len()) as u64));
+        group.bench_function(format!("{name} neighbours of surface cells"), |b| {
+            b.iter(|| {
+                let mut cursor = Cursor::new(view);
+                for found in &surface {
+                    let _ = black_box(cursor.seek(found.cell));
+                    directions.iter().for_each(|&way| {
+                        black_box(cursor.neighbour(way));
+                    });
+                }
+            })
+        });
+        group.bench_function(format!("{name} neighbours of surface cells, smaller ones"), |b| {
+            b.iter(|| {
+                let mut cursor = Cursor::new(view);
+                for found in &surface {
+                    let _ = black_box(cursor.seek(found.cell));
+                    directions.iter().for_each(|&way| {
+                        black_box(cursor.neighbours(way).count());
+                    });
+                }
+            })
+        });
+    }
+    // From neighbour to neighbour, in random directions.
+    const STEPS: usize = 1_000_000;
+    let mut state = 88_172_645_463_325_252u64;
+    let ways: Vec<Direction> = (0..STEPS)
+        .map(|_| {
+            state ^= state << 13;
+            state ^= state >> 7;
+            state ^= state << 17;
+            Direction::ALL[(state >> 11) as usize % 26]
+        })
+        .collect();
+    group.throughput(Throughput::Elements(STEPS as u64));
+    group.bench_function("a walk from neighbour to neighbour", |b| {
+        b.iter(|| {
+            let mut cursor = Cursor::new(view);
+            let _ = cursor.seek(surface[surface.len() / 2].cell);
+            for &way in &ways {
+                if let Some(found) = cursor.neighbour(way) {
+                    let _ = black_box(cursor.seek(found.cell));
+                }
+            }
+        })
+    });
+    group.finish();
+}
+
 fn files(c: &mut Criterion) {
     let mut group = c.benchmark_group("file, bunny 1024³");
     let folder = tempfile::tempdir().expect("a folder");
@@ -217,5 +293,5 @@ fn files(c: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, voxelise, large, booleans, queries, files);
+criterion_group!(benches, voxelise, large, booleans, queries, cells, files);
 criterion_main!(benches);

@@ -227,6 +227,11 @@ fn measures() {
 }
 
 #[test]
+fn cells() {
+    run("cells", C99, Link::Static, &[]);
+}
+
+#[test]
 fn probes() {
     run("probe", C99, Link::Static, &[]);
 }

@@ -1159,6 +1159,111 @@ static void lazy_octrees(void) {
     leafless_lazy_free(NULL);
 }
 
+static void cells_and_faces(void) {
+    void *out = fresh();
+    void *never = UNTOUCHED;
+    leafless_cells *cells = NULL, **cells_result = (leafless_cells **)&never;
+    leafless_faces *faces = NULL, **faces_result = (leafless_faces **)&never;
+    const uint32_t cell[4] = {0, 0, 0, 0}, end[3] = {16, 16, 16};
+    const uint32_t *wrong = (const uint32_t *)WRONG(cell);
+    const int32_t up[4] = {0, 0, 1, 0}, still[3] = {0, 0, 0}, far[3] = {0, 0, 256};
+    leafless_cell *some = (leafless_cell *)out, one;
+    leafless_boundary_face *squares = (leafless_boundary_face *)out;
+    double *low = (double *)out;
+    uint64_t number;
+    bool flag;
+
+    OK(leafless_cells_new(octree, LEAFLESS_TAGS_LEAVES, 0, 20, cell, end, &cells));
+    OK(leafless_faces_new(octree, LEAFLESS_TAGS_FULL, 0, 20, cell, end, &faces));
+    NULL_POINTER(leafless_frame_cell_bounds, frame, leafless_frame_cell_bounds(NULL, cell, 0, low, low));
+    NULL_POINTER(leafless_frame_cell_bounds, cell, leafless_frame_cell_bounds(&frame, NULL, 0, low, low));
+    NULL_POINTER(leafless_frame_cell_bounds, min_model, leafless_frame_cell_bounds(&frame, cell, 0, NULL, low));
+    NULL_POINTER(leafless_frame_cell_bounds, max_model, leafless_frame_cell_bounds(&frame, cell, 0, low, NULL));
+    NULL_POINTER(leafless_cursor_seek, cursor, leafless_cursor_seek(NULL, cell, 0, (bool *)out));
+    NULL_POINTER(leafless_cursor_seek, cell, leafless_cursor_seek(cursor, NULL, 0, (bool *)out));
+    NULL_POINTER(leafless_cursor_neighbour, cursor, leafless_cursor_neighbour(NULL, up, some, NULL));
+    NULL_POINTER(leafless_cursor_neighbour, direction, leafless_cursor_neighbour(cursor, NULL, some, NULL));
+    NULL_POINTER(leafless_cursor_neighbour, neighbour, leafless_cursor_neighbour(cursor, up, NULL, (bool *)out));
+    NULL_POINTER(leafless_cursor_neighbours, cursor, leafless_cursor_neighbours(NULL, up, NULL, 0, (uint64_t *)out));
+    NULL_POINTER(leafless_cursor_neighbours, direction,
+                 leafless_cursor_neighbours(cursor, NULL, NULL, 0, (uint64_t *)out));
+    NULL_POINTER(leafless_cursor_neighbours, cells, leafless_cursor_neighbours(cursor, up, NULL, 1, (uint64_t *)out));
+    NULL_POINTER(leafless_cursor_neighbours, count, leafless_cursor_neighbours(cursor, up, NULL, 0, NULL));
+    NULL_POINTER(leafless_cells_new, octree, leafless_cells_new(NULL, 13, 0, 20, NULL, NULL, cells_result));
+    NULL_POINTER(leafless_cells_new, min_cell, leafless_cells_new(octree, 13, 0, 20, NULL, end, cells_result));
+    NULL_POINTER(leafless_cells_new, max_cell, leafless_cells_new(octree, 13, 0, 20, cell, NULL, cells_result));
+    NULL_POINTER(leafless_cells_new, cells, leafless_cells_new(octree, 13, 0, 20, NULL, NULL, NULL));
+    NULL_POINTER(leafless_cells_seek, cells, leafless_cells_seek(NULL, cell, 0));
+    NULL_POINTER(leafless_cells_seek, cell, leafless_cells_seek(cells, NULL, 0));
+    NULL_POINTER(leafless_cells_next, cells, leafless_cells_next(NULL, some, 1, (uint64_t *)out));
+    NULL_POINTER(leafless_cells_next, buffer, leafless_cells_next(cells, NULL, 1, (uint64_t *)out));
+    NULL_POINTER(leafless_cells_next, count, leafless_cells_next(cells, some, 1, NULL));
+    NULL_POINTER(leafless_faces_new, octree, leafless_faces_new(NULL, 8, 0, 20, NULL, NULL, faces_result));
+    NULL_POINTER(leafless_faces_new, min_cell, leafless_faces_new(octree, 8, 0, 20, NULL, end, faces_result));
+    NULL_POINTER(leafless_faces_new, max_cell, leafless_faces_new(octree, 8, 0, 20, cell, NULL, faces_result));
+    NULL_POINTER(leafless_faces_new, faces, leafless_faces_new(octree, 8, 0, 20, NULL, NULL, NULL));
+    NULL_POINTER(leafless_faces_seek, faces, leafless_faces_seek(NULL, cell, 0));
+    NULL_POINTER(leafless_faces_seek, cell, leafless_faces_seek(faces, NULL, 0));
+    NULL_POINTER(leafless_faces_next, faces, leafless_faces_next(NULL, squares, 1, (uint64_t *)out));
+    NULL_POINTER(leafless_faces_next, buffer, leafless_faces_next(faces, NULL, 1, (uint64_t *)out));
+    NULL_POINTER(leafless_faces_next, count, leafless_faces_next(faces, squares, 1, NULL));
+
+    MISALIGNED(leafless_frame_cell_bounds, cell, leafless_frame_cell_bounds(&frame, wrong, 0, low, low));
+    MISALIGNED(leafless_frame_cell_bounds, min_model, leafless_frame_cell_bounds(&frame, cell, 0, (double *)WRONG(out), low));
+    MISALIGNED(leafless_frame_cell_bounds, max_model, leafless_frame_cell_bounds(&frame, cell, 0, low, (double *)WRONG(out)));
+    MISALIGNED(leafless_cursor_seek, cursor, leafless_cursor_seek((leafless_cursor *)WRONG(cursor), cell, 0, NULL));
+    MISALIGNED(leafless_cursor_seek, cell, leafless_cursor_seek(cursor, wrong, 0, NULL));
+    MISALIGNED(leafless_cursor_neighbour, direction,
+               leafless_cursor_neighbour(cursor, (const int32_t *)WRONG(up), some, NULL));
+    MISALIGNED(leafless_cursor_neighbour, neighbour,
+               leafless_cursor_neighbour(cursor, up, (leafless_cell *)WRONG(out), NULL));
+    MISALIGNED(leafless_cursor_neighbours, cells,
+               leafless_cursor_neighbours(cursor, up, (leafless_cell *)WRONG(out), 1, (uint64_t *)out));
+    MISALIGNED(leafless_cursor_neighbours, count,
+               leafless_cursor_neighbours(cursor, up, NULL, 0, (uint64_t *)WRONG(out)));
+    MISALIGNED(leafless_cells_new, min_cell, leafless_cells_new(octree, 13, 0, 20, wrong, end, cells_result));
+    MISALIGNED(leafless_cells_new, max_cell, leafless_cells_new(octree, 13, 0, 20, cell, wrong, cells_result));
+    MISALIGNED(leafless_cells_new, cells, leafless_cells_new(octree, 13, 0, 20, NULL, NULL, (leafless_cells **)WRONG(out)));
+    MISALIGNED(leafless_cells_seek, cells, leafless_cells_seek((leafless_cells *)WRONG(cells), cell, 0));
+    MISALIGNED(leafless_cells_next, buffer, leafless_cells_next(cells, (leafless_cell *)WRONG(out), 1, (uint64_t *)out));
+    MISALIGNED(leafless_cells_next, count, leafless_cells_next(cells, some, 1, (uint64_t *)WRONG(out)));
+    MISALIGNED(leafless_faces_new, min_cell, leafless_faces_new(octree, 8, 0, 20, wrong, end, faces_result));
+    MISALIGNED(leafless_faces_new, faces, leafless_faces_new(octree, 8, 0, 20, NULL, NULL, (leafless_faces **)WRONG(out)));
+    MISALIGNED(leafless_faces_seek, cell, leafless_faces_seek(faces, wrong, 0));
+    MISALIGNED(leafless_faces_next, faces,
+               leafless_faces_next((leafless_faces *)WRONG(faces), squares, 1, (uint64_t *)out));
+    MISALIGNED(leafless_faces_next, buffer,
+               leafless_faces_next(faces, (leafless_boundary_face *)WRONG(out), 1, (uint64_t *)out));
+    MISALIGNED(leafless_faces_next, count, leafless_faces_next(faces, squares, 1, (uint64_t *)WRONG(out)));
+
+    BAD_NUMBER(leafless_frame_cell_bounds, cell, leafless_frame_cell_bounds(&frame, cell, 5, low, low));
+    BAD_NUMBER(leafless_frame_cell_bounds, cell, leafless_frame_cell_bounds(&frame, end, 4, low, low));
+    BAD_NUMBER(leafless_cursor_seek, cell, leafless_cursor_seek(cursor, cell, UINT32_MAX, NULL));
+    BAD_NUMBER(leafless_cursor_neighbour, direction, leafless_cursor_neighbour(cursor, still, some, NULL));
+    BAD_NUMBER(leafless_cursor_neighbour, direction, leafless_cursor_neighbour(cursor, far, some, NULL));
+    BAD_NUMBER(leafless_cursor_neighbours, direction,
+               leafless_cursor_neighbours(cursor, still, NULL, 0, (uint64_t *)out));
+    BAD_NUMBER(leafless_cells_new, tags, leafless_cells_new(octree, 0, 0, 20, NULL, NULL, cells_result));
+    BAD_NUMBER(leafless_faces_new, tags, leafless_faces_new(octree, 16, 0, 20, NULL, NULL, faces_result));
+    BAD_NUMBER(leafless_cells_seek, cell, leafless_cells_seek(cells, end, 4));
+    BAD_NUMBER(leafless_faces_seek, cell, leafless_faces_seek(faces, cell, 5));
+    BAD_NUMBER(leafless_cells_next, buffer, leafless_cells_next(cells, some, UINT64_MAX, (uint64_t *)out));
+    untouched();
+    CHECK(never == UNTOUCHED);
+
+    MAY_BE_NULL(leafless_cursor_seek, reached, leafless_cursor_seek(cursor, cell, 1, NULL));
+    MAY_BE_NULL(leafless_cursor_neighbour, exists, leafless_cursor_neighbour(cursor, up, &one, NULL));
+    MAY_BE_NULL(leafless_cursor_neighbours, cells, leafless_cursor_neighbours(cursor, up, NULL, 0, &number));
+    MAY_BE_NULL(leafless_cells_next, buffer, leafless_cells_next(cells, NULL, 0, &number));
+    MAY_BE_NULL(leafless_faces_next, buffer, leafless_faces_next(faces, NULL, 0, &number));
+    OK(leafless_cursor_seek(cursor, cell, 0, &flag));
+    CHECK(flag && number == 0);
+    leafless_cells_free(cells);
+    leafless_faces_free(faces);
+    leafless_cells_free(NULL);
+    leafless_faces_free(NULL);
+}
+
 int main(void) {
     octree = check_ball(4, LEAFLESS_RULE_CERTIFIED);
     mesh = check_cube();
@@ -1171,6 +1276,7 @@ int main(void) {
     misaligned();
     numbers();
     lazy_octrees();
+    cells_and_faces();
     /* All of it is as good as ever. */
     OK(leafless_octree_check(octree));
     leafless_point_cursor_free(point_cursor);

@@ -654,6 +654,39 @@ typedef uint32_t leafless_overlap;
 #endif // __cplusplus
 
 /**
+ * Which tags' cells are wanted: one of these values, or several joined by `|`.
+ */
+enum leafless_tags
+#ifdef __cplusplus
+  : uint32_t
+#endif // __cplusplus
+ {
+    /**
+     * EMPTY cells.
+     */
+    LEAFLESS_TAGS_EMPTY = 1,
+    /**
+     * BRANCH cells: those that are cut and split.
+     */
+    LEAFLESS_TAGS_BRANCH = 2,
+    /**
+     * PARTIAL cells.
+     */
+    LEAFLESS_TAGS_PARTIAL = 4,
+    /**
+     * FULL cells.
+     */
+    LEAFLESS_TAGS_FULL = 8,
+    /**
+     * All cells that are not split.
+     */
+    LEAFLESS_TAGS_LEAVES = 13,
+};
+#ifndef __cplusplus
+typedef uint32_t leafless_tags;
+#endif // __cplusplus
+
+/**
  * What counts as touching: when a cell that meets the boundary of an expression of half-spaces, but not its
  * interior, is EMPTY.
  */
@@ -706,6 +739,13 @@ typedef uint32_t leafless_proven;
 #endif // __cplusplus
 
 /**
+ * Cells of an octree one after another. It stands before its next cell.
+ *
+ * Reading changes it: while one thread reads, no other may use it. Threads may have one each.
+ */
+typedef struct leafless_cells leafless_cells;
+
+/**
  * A switch to stop long operations from any thread, and to ask how far they are.
  *
  * All its functions may be called at once from any number of threads.
@@ -719,6 +759,13 @@ typedef struct leafless_control leafless_control;
  * Moving changes it: while one thread moves a cursor, no other may use it. Threads may have a cursor each.
  */
 typedef struct leafless_cursor leafless_cursor;
+
+/**
+ * Boundary faces of an octree one after another. It stands before its next face.
+ *
+ * Reading changes it: while one thread reads, no other may use it. Threads may have one each.
+ */
+typedef struct leafless_faces leafless_faces;
 
 /**
  * An octree of a solid that is not built in one go: a cell is split when somebody asks for it, and what was
@@ -1652,6 +1699,52 @@ typedef struct {
      */
     leafless_tag children[8];
 } leafless_cursor_state;
+
+/**
+ * A cell of an octree and what is known of it.
+ */
+typedef struct {
+    /**
+     * The cell's place among those of its level, per axis: its lower corner in units of its edge.
+     */
+    uint32_t cell[3];
+    /**
+     * The cell's level; 0 is the universe.
+     */
+    uint32_t level;
+    /**
+     * The cell's tag.
+     */
+    leafless_tag tag;
+} leafless_cell;
+
+/**
+ * A square between two cells that are not split: one of a tag that was asked for, and one of another. It is a
+ * whole face of the smaller one.
+ */
+typedef struct {
+    /**
+     * The cell of a tag that was asked for.
+     */
+    leafless_cell inner;
+    /**
+     * The cell of another tag. Outside of the universe: the inner cell's place and level, with the exterior's
+     * tag.
+     */
+    leafless_cell outer;
+    /**
+     * The axis from the inner cell to the outer one: 0 is x, 1 y, 2 z.
+     */
+    uint8_t axis;
+    /**
+     * Whether the outer cell lies above the inner one on that axis.
+     */
+    bool is_upper;
+    /**
+     * Whether the outer cell lies in the universe.
+     */
+    bool has_outer;
+} leafless_boundary_face;
 
 /**
  * What the work on an octree came to.
@@ -4001,6 +4094,225 @@ leafless_status leafless_cursor_descend(leafless_cursor *cursor, uint32_t octant
  * - Since: 0.1
  */
 leafless_status leafless_cursor_ascend(leafless_cursor *cursor, bool *moved);
+
+/**
+ * The box of a cell of any level, in model units: the doubles nearest to its corners that contain it.
+ *
+ * - Buffers: `frame`, one struct; `cell`, 3 numbers; `min_model` and `max_model`, room for 3 numbers each.
+ * - Result: `min_model` and `max_model`; the exact corners if these are doubles.
+ * - Errors: LEAFLESS_E_ARGUMENT as leafless_frame_check, if `level` is greater than the frame's depth, or a
+ *   coordinate of `cell` not below 2^level.
+ * - Ownership: nothing changes hands.
+ * - Threads: any.
+ * - Untrusted input: any values.
+ * - Since: 0.1
+ *
+ */
+leafless_status leafless_frame_cell_bounds(const leafless_frame *frame,
+                                           const uint32_t cell[3],
+                                           uint32_t level,
+                                           double min_model[3],
+                                           double max_model[3]);
+
+/**
+ * Moves a cursor to a cell, or to the cell that contains it and is not split. O(levels below the common
+ * ancestor).
+ *
+ * - Buffers: `cell`, 3 numbers; `reached`, one truth value, or NULL.
+ * - Result: `*reached`, whether the cursor stands on the cell itself.
+ * - Errors: LEAFLESS_E_ARGUMENT if `level` is greater than the octree's depth, or a coordinate of `cell` not
+ *   below 2^level; the cursor then stays where it is.
+ * - Ownership: nothing changes hands.
+ * - Threads: no other call may use the cursor.
+ * - Untrusted input: any octree, any numbers; damage reads as PARTIAL.
+ * - Since: 0.1
+ *
+ */
+leafless_status leafless_cursor_seek(leafless_cursor *cursor,
+                                     const uint32_t cell[3],
+                                     uint32_t level,
+                                     bool *reached);
+
+/**
+ * The neighbour of a cursor's cell through a face, an edge or a vertex: the cell of the same size, which is a
+ * BRANCH if it is split, or the larger one that contains it and is not split. The cursor stays where it is.
+ * Along a walk amortised O(1), at most O(depth).
+ *
+ * - Buffers: `direction`, 3 numbers of -1, 0 and 1: the steps along x, y and z; `neighbour`, one struct;
+ *   `exists`, one truth value, or NULL.
+ * - Result: `*neighbour`; `*exists`, whether it lies in the universe. If not, `*neighbour` is the cursor's
+ *   own cell with the exterior's tag.
+ * - Errors: LEAFLESS_E_ARGUMENT if `direction` is none.
+ * - Ownership: nothing changes hands.
+ * - Threads: any, while nobody moves the cursor.
+ * - Untrusted input: any octree, any numbers; damage reads as PARTIAL.
+ * - Since: 0.1
+ *
+ */
+leafless_status leafless_cursor_neighbour(const leafless_cursor *cursor,
+                                          const int32_t direction[3],
+                                          leafless_cell *neighbour,
+                                          bool *exists);
+
+/**
+ * All cells that are not split and touch a cursor's cell on one side: one that is at least as large, or the
+ * smaller ones at its face, edge or vertex, in Morton order.
+ *
+ * - Buffers: `direction`, 3 numbers of -1, 0 and 1: the steps along x, y and z; `cells`, room for `capacity`
+ *   structs, or NULL to ask for the count only; `count`, one number.
+ * - Result: `*count`, 0 if the side lies on the boundary of the universe; the cells.
+ * - Errors: LEAFLESS_E_ARGUMENT if `direction` is none; LEAFLESS_E_BUFFER if the capacity is too small.
+ * - Ownership: nothing changes hands.
+ * - Threads: any, while nobody moves the cursor.
+ * - Untrusted input: any octree, any numbers; damage reads as PARTIAL, and no array element is met twice.
+ * - Since: 0.1
+ *
+ */
+leafless_status leafless_cursor_neighbours(const leafless_cursor *cursor,
+                                           const int32_t direction[3],
+                                           leafless_cell *cells,
+                                           uint64_t capacity,
+                                           uint64_t *count);
+
+/**
+ * Cells of an octree one after another, in Morton order: those of some tags, on some levels, in a box. A cell
+ * that is split comes before the cells in it. It reads no parts of the octree outside of the box or below the
+ * levels.
+ *
+ * - Buffers: `min_cell` and `max_cell`, 3 numbers each, or NULL both for the whole universe: the first finest
+ *   cell of the box on each axis, and the first beyond it; `cells`, one pointer. `tags` are leafless_tags.
+ *   `min_level` and `max_level` may be greater than the depth.
+ * - Result: `*cells`, which stands before the first such cell.
+ * - Errors: LEAFLESS_E_ARGUMENT if `tags` are none.
+ * - Ownership: `*cells` shares the octree, which may be freed; give it back with leafless_cells_free.
+ * - Threads: any.
+ * - Untrusted input: any octree, any numbers.
+ * - Since: 0.1
+ *
+ */
+leafless_status leafless_cells_new(const leafless_octree *octree,
+                                   uint32_t tags,
+                                   uint32_t min_level,
+                                   uint32_t max_level,
+                                   const uint32_t min_cell[3],
+                                   const uint32_t max_cell[3],
+                                   leafless_cells **cells);
+
+/**
+ * Gives back what leafless_cells_new made.
+ *
+ * - Buffers: `cells`, a handle or NULL, which does nothing.
+ * - Result: none.
+ * - Errors: none.
+ * - Ownership: the handle is gone.
+ * - Threads: no other call may use the handle.
+ * - Untrusted input: none.
+ * - Since: 0.1
+ */
+void leafless_cells_free(leafless_cells *cells);
+
+/**
+ * Goes on from a cell: the next one is that cell, or the one that contains it and is not split, or the first
+ * wanted one after it in Morton order. O(depth).
+ *
+ * - Buffers: `cell`, 3 numbers.
+ * - Result: none.
+ * - Errors: LEAFLESS_E_ARGUMENT if `level` is greater than the octree's depth, or a coordinate of `cell` not
+ *   below 2^level; nothing then changes.
+ * - Ownership: nothing changes hands.
+ * - Threads: no other call may use `cells`.
+ * - Untrusted input: any octree, any numbers.
+ * - Since: 0.1
+ *
+ */
+leafless_status leafless_cells_seek(leafless_cells *cells, const uint32_t cell[3], uint32_t level);
+
+/**
+ * Reads the next cells.
+ *
+ * - Buffers: `buffer`, room for `capacity` structs, which may be NULL if `capacity` is 0; `count`, one number.
+ * - Result: the cells; `*count`, how many: fewer than `capacity` only if there are no more.
+ * - Errors: only the general ones.
+ * - Ownership: nothing changes hands.
+ * - Threads: no other call may use `cells`.
+ * - Untrusted input: any octree; damage reads as PARTIAL, and no array element is met twice.
+ * - Since: 0.1
+ */
+leafless_status leafless_cells_next(leafless_cells *cells,
+                                    leafless_cell *buffer,
+                                    uint64_t capacity,
+                                    uint64_t *count);
+
+/**
+ * Boundary faces of an octree one after another: those between cells of some tags and cells of others, which
+ * are both not split. With FULL, the boundary of what is surely solid; with FULL and PARTIAL, of what is
+ * possibly solid. Where cells of different sizes meet there is one face for each of the smaller ones. What is
+ * outside of the universe has the exterior's tag. They come in Morton order of the inner cells, for each of
+ * these in the order -z, -y, -x, +x, +y, +z, and for each side in the Morton order of the outer cells.
+ *
+ * - Buffers: as leafless_cells_new; levels and box are those of the inner cells; `faces`, one pointer.
+ *   BRANCH among the tags does nothing.
+ * - Result: `*faces`, which stands before the first face.
+ * - Errors: LEAFLESS_E_ARGUMENT if `tags` are none.
+ * - Ownership: `*faces` shares the octree, which may be freed; give it back with leafless_faces_free.
+ * - Threads: any.
+ * - Untrusted input: any octree, any numbers.
+ * - Since: 0.1
+ *
+ */
+leafless_status leafless_faces_new(const leafless_octree *octree,
+                                   uint32_t tags,
+                                   uint32_t min_level,
+                                   uint32_t max_level,
+                                   const uint32_t min_cell[3],
+                                   const uint32_t max_cell[3],
+                                   leafless_faces **faces);
+
+/**
+ * Gives back what leafless_faces_new made.
+ *
+ * - Buffers: `faces`, a handle or NULL, which does nothing.
+ * - Result: none.
+ * - Errors: none.
+ * - Ownership: the handle is gone.
+ * - Threads: no other call may use the handle.
+ * - Untrusted input: none.
+ * - Since: 0.1
+ */
+void leafless_faces_free(leafless_faces *faces);
+
+/**
+ * Goes on with the faces of a cell, or of the one that contains it and is not split, or of the first wanted
+ * one after it in Morton order. O(depth).
+ *
+ * - Buffers: `cell`, 3 numbers.
+ * - Result: none.
+ * - Errors: LEAFLESS_E_ARGUMENT if `level` is greater than the octree's depth, or a coordinate of `cell` not
+ *   below 2^level; nothing then changes.
+ * - Ownership: nothing changes hands.
+ * - Threads: no other call may use `faces`.
+ * - Untrusted input: any octree, any numbers.
+ * - Since: 0.1
+ *
+ */
+leafless_status leafless_faces_seek(leafless_faces *faces, const uint32_t cell[3], uint32_t level);
+
+/**
+ * Reads the next faces.
+ *
+ * - Buffers: `buffer`, room for `capacity` structs, which may be NULL if `capacity` is 0; `count`, one number.
+ * - Result: the faces; `*count`, how many: fewer than `capacity` only if there are no more.
+ * - Errors: only the general ones.
+ * - Ownership: nothing changes hands.
+ * - Threads: no other call may use `faces`.
+ * - Untrusted input: any octree; damage reads as PARTIAL. An array element is met once for its own cells, and
+ *   no oftener for those beside them than in a sound octree: six times.
+ * - Since: 0.1
+ */
+leafless_status leafless_faces_next(leafless_faces *faces,
+                                    leafless_boundary_face *buffer,
+                                    uint64_t capacity,
+                                    uint64_t *count);
 
 /**
  * An octree of which only the universe is known. No cell will ever be finer than the frame's depth, which

@@ -57,6 +57,7 @@
 //! | … a hole in a mesh found, a crack closed? | `mesh/defects.rs`, `mesh/sew.rs` |
 //! | … the union of two stored octrees? | `op/boolean.rs` |
 //! | … a child of an element found? | `octree/links.rs` |
+//! | … the cell beside a cell, all cells of a tag, the faces between them? | `octree/neighbour.rs`, `cells.rs`, `faces.rs` |
 //! | … what cells prove? | `octree/proof.rs` |
 //! | … an STL read? | `exchange/stl.rs` |
 //! | … a byte of a file checked? | `file/header.rs`, `object.rs`, `section.rs`, `layout.rs` |
@@ -101,7 +102,8 @@ pub use mesh::{
 #[cfg(feature = "std")]
 pub use mesh::{Polyhedron, PolyhedronArrays};
 pub use octree::{
-    Block, Cursor, LevelStatistics, Metadata, Node, Octree, OctreeRef, Planes, Proof, Statistics, Tag,
+    Block, BoundaryFace, BoundaryFaces, CellFilter, Cells, Cursor, Direction, LevelStatistics, Metadata,
+    Node, Octree, OctreeRef, Planes, Proof, Statistics, Tag, TaggedCell,
 };
 pub use op::{
     LazyOctree, Refinement, Rule, Zone, build, compact, complement, difference, intersection,

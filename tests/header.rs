@@ -31,6 +31,7 @@ const SECTIONS: &[&str] = &[
     "scene",
     "op",
     "query",
+    "cells",
     "lazy",
     "interference",
     "measure",

@@ -3,8 +3,9 @@
 
 use super::{Aligned, CONTROL, Random, halves, walk};
 use leafless::{
-    Cell, Classifier, Control, Cursor, Frame, LazyOctree, Membership, OctreeRef, PointCursor, Proof, Region,
-    Rule, Solid, Tag, Verdict, Worker, Zone, build, classify_box, contains, file,
+    Cell, CellFilter, Classifier, Control, Cursor, Direction, Frame, LazyOctree, Membership, OctreeRef,
+    PointCursor, Proof, Region, Rule, Solid, Tag, TaggedCell, Verdict, Worker, Zone, build, classify_box,
+    contains, file,
 };
 
 /// Asks the tree in the first half of `data` what the second half says.
@@ -24,6 +25,8 @@ pub fn ask(tree: &OctreeRef<'_>, questions: &[u8], verified: bool) {
     replay(tree, &points);
     ask_solid(tree, &points);
     on_demand(tree, &points);
+    ask_cells(tree);
+    ask_neighbours(tree, verified);
     if verified {
         tree.check().expect("it is verified");
     } else {
@@ -32,6 +35,65 @@ pub fn ask(tree: &OctreeRef<'_>, questions: &[u8], verified: bool) {
     // An element has 8 + 64 cells at the most.
     let steps = walk(Cursor::new(tree)).steps;
     assert!(steps <= 1 + 72 * (tree.element_count() + tree.brick_count()), "{steps} steps");
+}
+
+/// All cells of a tree, as a cursor that takes them in order sees them.
+fn walked(tree: &OctreeRef<'_>) -> Vec<TaggedCell> {
+    let mut cursor = Cursor::new(tree);
+    let mut cells = vec![TaggedCell { cell: cursor.cell(), tag: cursor.tag() }];
+    let mut next = vec![0];
+    while let Some(octant) = next.pop() {
+        if cursor.tag() == Tag::Branch && octant < 8 {
+            cursor.descend(octant);
+            cells.push(TaggedCell { cell: cursor.cell(), tag: cursor.tag() });
+            next.extend([octant + 1, 0]);
+        } else {
+            cursor.ascend();
+        }
+    }
+    cells
+}
+
+/// Cells come one after another as a cursor meets them; of boundary faces there are not more than a sound
+/// tree of this size could have.
+fn ask_cells(tree: &OctreeRef<'_>) {
+    let entries = (tree.element_count() + tree.brick_count()) as usize;
+    let walked = walked(tree);
+    let all = CellFilter::tags(&[Tag::Empty, Tag::Branch, Tag::Partial, Tag::Full]);
+    assert!(tree.cells(all).eq(walked.iter().copied()));
+    let depth = tree.frame().depth();
+    let finest = |found: &TaggedCell| found.tag != Tag::Branch && found.cell.level == depth;
+    let leaves = tree.cells(CellFilter::leaves().levels(depth..=depth));
+    assert!(leaves.eq(walked.iter().copied().filter(finest)));
+    let middle = walked[walked.len() / 2].cell;
+    let mut cells = tree.cells(all);
+    cells.seek(middle).expect("a cell of the tree");
+    assert!(cells.count() <= 1 + 72 * entries);
+    let faces = tree.boundary_faces(CellFilter::tags(&[Tag::Full])).count();
+    assert!(faces <= 96 * (1 + 73 * entries), "{faces} faces, {entries} entries");
+}
+
+/// The neighbours of some cells are leaves beside them; in a sound tree, those that a cursor finds.
+fn ask_neighbours(tree: &OctreeRef<'_>, verified: bool) {
+    let entries = (tree.element_count() + tree.brick_count()) as usize;
+    let all = CellFilter::tags(&[Tag::Empty, Tag::Branch, Tag::Partial, Tag::Full]);
+    let mut cursor = Cursor::new(tree);
+    let mut other = Cursor::new(tree);
+    for found in tree.cells(all).take(3000).step_by(397) {
+        let reached = cursor.seek(found.cell).expect("a cell of the tree");
+        assert!(!verified || (reached && cursor.tag() == found.tag));
+        let cell = cursor.cell();
+        for direction in Direction::ALL {
+            let neighbour = cursor.neighbour(direction);
+            assert!(cursor.neighbours(direction).count() <= 1 + 72 * entries);
+            let Some(TaggedCell { cell: beside, tag }) = neighbour else { continue };
+            assert!(beside.level == cell.level || (beside.level < cell.level && tag != Tag::Branch));
+            if verified {
+                other.seek(beside).expect("a cell of the tree");
+                assert_eq!((other.cell(), other.tag()), (beside, tag));
+            }
+        }
+    }
 }
 
 /// At most this many points are asked for.

@@ -310,6 +310,8 @@ const _: () = {
     shared_by_threads::<super::leafless_lazy>();
     shared_by_threads::<super::leafless_cursor>();
     shared_by_threads::<super::leafless_point_cursor>();
+    shared_by_threads::<super::leafless_cells>();
+    shared_by_threads::<super::leafless_faces>();
 };
 
 /// A place for a result, checked before the work begins and written once it is done.

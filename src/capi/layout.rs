@@ -84,6 +84,8 @@ fn write_all(to: &mut dyn Write) -> fmt::Result {
             min_model, max_model, proof, splits, measured, is_empty, is_occupied, is_clipped
         }
         leafless_cursor_state { cell, level, tag, children }
+        leafless_cell { cell, level, tag }
+        leafless_boundary_face { inner, outer, axis, is_upper, has_outer }
         leafless_probe {
             major, minor, frame, elements, bricks, file_length, sections, proof, root, exterior, is_binary
         }
@@ -101,6 +103,10 @@ fn write_all(to: &mut dyn Write) -> fmt::Result {
             LEAFLESS_E_SOURCE, LEAFLESS_E_SCENE, LEAFLESS_E_BUSY
         }
         leafless_tag { LEAFLESS_TAG_EMPTY, LEAFLESS_TAG_BRANCH, LEAFLESS_TAG_PARTIAL, LEAFLESS_TAG_FULL }
+        leafless_tags {
+            LEAFLESS_TAGS_EMPTY, LEAFLESS_TAGS_BRANCH, LEAFLESS_TAGS_PARTIAL, LEAFLESS_TAGS_FULL,
+            LEAFLESS_TAGS_LEAVES
+        }
         leafless_membership { LEAFLESS_MEMBERSHIP_OUTSIDE, LEAFLESS_MEMBERSHIP_INSIDE, LEAFLESS_MEMBERSHIP_UNDECIDED }
         leafless_region {
             LEAFLESS_REGION_OUTSIDE, LEAFLESS_REGION_INSIDE, LEAFLESS_REGION_CROSSING,

@@ -19,6 +19,7 @@
 //! | `scene` | scenes in the language of OpenSCAD's CSG dumps |
 //! | `op` | building, resolving, Booleans |
 //! | `query` | points, boxes, cursors |
+//! | `cells` | neighbours of cells, cells and boundary faces one after another |
 //! | `lazy` | octrees that are split on demand |
 //! | `interference` | solids under affine maps; overlap and distance of two solids |
 //! | `measure` | volume, centroid, inertia, bounding boxes of solids |
@@ -30,6 +31,7 @@
 #![allow(clippy::missing_safety_doc)]
 
 mod boundary;
+mod cells;
 mod control;
 mod csg;
 mod file;
@@ -55,6 +57,7 @@ mod version;
 
 #[cfg(feature = "capi-test")]
 pub use boundary::leafless_test_panic;
+pub use cells::*;
 pub use control::*;
 pub use csg::*;
 pub use file::*;

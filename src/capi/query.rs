@@ -352,7 +352,7 @@ pub unsafe extern "C" fn leafless_point_cursor_tag_at(
 /// universe.
 ///
 /// Moving changes it: while one thread moves a cursor, no other may use it. Threads may have a cursor each.
-pub struct leafless_cursor(Yoke<Cursor<'static>, Arc<leafless_octree>>);
+pub struct leafless_cursor(pub(super) Yoke<Cursor<'static>, Arc<leafless_octree>>);
 
 /// Where a cursor stands.
 #[derive(Clone, Copy)]

@@ -1,6 +1,7 @@
 //! The octree as the papers draw it: node by node, eight 2-bit tags each.
 
 use super::links::Step;
+use super::path::{NOWHERE, Path};
 use super::tag::Tag;
 use super::view::{MAX_ELEMENT_LEVELS, OctreeRef, starts_half_way};
 use super::word::Planes;
@@ -72,7 +73,7 @@ pub struct Cursor<'a> {
     /// The octants from the universe to the cell, three bits each: the cell's place in Morton order.
     morton: u64,
     /// Elements from the root to the one that describes the current cell's children.
-    path: [(usize, Planes); MAX_ELEMENT_LEVELS],
+    path: Path,
     /// The last element that was entered on each level: the Morton index of its own cell, and its index.
     entered: [Option<(u64, usize)>; MAX_ELEMENT_LEVELS],
 }
@@ -80,13 +81,12 @@ pub struct Cursor<'a> {
 impl<'a> Cursor<'a> {
     /// A cursor on the universe.
     pub fn new(tree: &OctreeRef<'a>) -> Cursor<'a> {
-        let partial = (usize::MAX, Planes::uniform(Tag::Partial));
         let mut cursor = Cursor {
             tree: *tree,
             cell: Cell::ROOT,
             tag: tree.root,
             morton: 0,
-            path: [partial; MAX_ELEMENT_LEVELS],
+            path: NOWHERE,
             entered: [None; MAX_ELEMENT_LEVELS],
         };
         if cursor.tag == Tag::Branch {
@@ -116,17 +116,22 @@ impl<'a> Cursor<'a> {
     /// Moves to the child in `octant` (0 to 7) of a BRANCH; the cursor stays where it is, and the answer is
     /// `false`, on any other cell.
     pub fn descend(&mut self, octant: u8) -> bool {
-        let Some(node) = self.node().filter(|_| octant < 8) else { return false };
+        if self.tag != Tag::Branch || octant >= 8 {
+            return false;
+        }
         let (e, half) = self.position(self.cell.level);
         self.cell = self.cell.child(octant);
         self.morton = self.morton << 3 | octant as u64;
-        self.tag = node.tag(octant);
-        if let Some(k) = half {
-            let (n, planes) = self.path[e];
-            match self.tree.step(e, n, planes, 8 * k + octant as u32) {
-                Step::Into(child) => self.enter(e + 1, child),
+        let (n, planes) = self.path[e];
+        match half {
+            None => self.tag = planes.octant(octant as u32),
+            Some(k) => match self.tree.step(e, n, planes, 8 * k + octant as u32) {
+                Step::Into(child) => {
+                    self.tag = Tag::Branch;
+                    self.enter(e + 1, child);
+                }
                 Step::Settled(tag) => self.tag = tag,
-            }
+            },
         }
         true
     }
@@ -140,6 +145,28 @@ impl<'a> Cursor<'a> {
         self.morton >>= 3;
         self.tag = Tag::Branch;
         true
+    }
+
+    /// Moves up to the nearest cell that contains `cell`, which lies in the universe.
+    pub(super) fn rise_towards(&mut self, cell: Cell) {
+        let shared = self.cell.level.min(cell.level);
+        let (mine, other) = (self.cell.ancestor(shared).at, cell.ancestor(shared).at);
+        let changed = (0..3).fold(0, |changed, axis| changed | (mine[axis] ^ other[axis]));
+        let level = shared - (u32::BITS - changed.leading_zeros()) as u8;
+        if level < self.cell.level {
+            self.morton >>= 3 * (self.cell.level - level);
+            self.cell = self.cell.ancestor(level);
+            self.tag = Tag::Branch;
+        }
+    }
+
+    pub(super) fn tree(&self) -> &OctreeRef<'a> {
+        &self.tree
+    }
+
+    /// The elements from the root to the one that the cell lies in.
+    pub(super) fn path(&self) -> &Path {
+        &self.path
     }
 
     /// Where the node of a cell at `level` is kept: the element level, and the octant of the element unless

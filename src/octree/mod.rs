@@ -6,13 +6,18 @@
 
 pub(crate) mod block;
 pub(crate) mod brick;
+mod cells;
 mod check;
 mod cursor;
 pub(crate) mod dictionary;
+mod direction;
+mod faces;
 pub(crate) mod links;
 pub(crate) mod metadata;
+mod neighbour;
 #[allow(clippy::module_inception)]
 pub(crate) mod octree;
+mod path;
 mod proof;
 pub(crate) mod stats;
 mod tag;
@@ -21,7 +26,10 @@ pub(crate) mod word;
 pub(crate) mod writer;
 
 pub use block::Block;
+pub use cells::{CellFilter, Cells, TaggedCell};
 pub use cursor::{Cursor, Node};
+pub use direction::Direction;
+pub use faces::{BoundaryFace, BoundaryFaces};
 pub use metadata::Metadata;
 pub use octree::Octree;
 pub use proof::Proof;
