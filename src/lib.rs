@@ -40,7 +40,7 @@
 //! | `mesh` | triangle meshes as data: welding, topology, defects, repair |
 //! | `solid` | what can split a cell: one file or folder a producer |
 //! | `op` | building, splitting on demand, and the set algebra of stored trees |
-//! | `query` | points and boxes, measures, interference |
+//! | `query` | points, boxes and rays, measures, interference |
 //! | `file` | the file format |
 //! | `exchange` | the files of other programs |
 //! | `scene` | the language of OpenSCAD's CSG dumps |
@@ -111,8 +111,9 @@ pub use op::{
 };
 pub use query::{
     AREA_SPLITS, BOUNDING_BOX_SPLITS, CLEARANCE_SPLITS, Clearance, Extent, Interference, MEASURE_SPLITS,
-    MassProperties, Membership, Overlap, PointCursor, Region, StopReason, SurfaceArea, Tolerance,
-    bounding_box, classify_box, clearance, contains, interference, interference_of, measure, surface_area,
+    MassProperties, Membership, Obstacle, Overlap, PointCursor, Ray, RayHit, RaySpans, Region, Sight,
+    StopReason, SurfaceArea, Tolerance, bounding_box, cast_rays, classify_box, clearance, contains,
+    interference, interference_of, line_of_sight, measure, ray_spans, surface_area,
 };
 pub use solid::{
     Adaptive, AnyClassifier, AnySolid, AnyWorker, Callback, Classifier, Crossing, Csg, Enclosure, Erasable,

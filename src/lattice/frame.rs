@@ -238,6 +238,12 @@ impl Frame {
         (x - self.origin[axis]) * self.per_unit
     }
 
+    /// A length in cells, with a relative error below 2^-51.
+    #[inline(always)]
+    pub(crate) fn scaled_length(&self, length: f64) -> f64 {
+        length * self.per_unit
+    }
+
     /// Index along `axis` of the finest cell that contains the model coordinate `x`; the universe's upper
     /// face belongs to the last cell. `None` outside the universe and for NaN. Exact for every double.
     #[inline]

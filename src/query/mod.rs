@@ -9,6 +9,7 @@ mod point;
 mod probe;
 mod proven;
 mod queue;
+mod ray;
 mod reach;
 mod region;
 mod subject;
@@ -21,6 +22,7 @@ pub use measure::{
 };
 pub use point::{Membership, PointCursor};
 pub use probe::contains;
+pub use ray::{Obstacle, Ray, RayHit, RaySpans, Sight, cast_rays, line_of_sight, ray_spans};
 pub use region::{Region, classify_box};
 
 use crate::error::Error;

@@ -1,0 +1,380 @@
+//! The cells along a ray, front to back.
+
+use super::line::{Line, Moment, Passage};
+use super::{Obstacle, RayHit, RaySpans};
+use crate::error::Error;
+use crate::lattice::exact::sqrt;
+use crate::lattice::{Cell, Cube, Interval};
+use crate::memory;
+use crate::solid::{Enclosure, OCTANTS, Slab, SlabJoin, Verdict};
+use alloc::vec::Vec;
+
+/// Whatever has cells.
+pub(super) trait Cells {
+    /// What is remembered about a cell that can be split.
+    type Part;
+
+    fn root(&mut self) -> Result<Verdict<Self::Part>, Error>;
+
+    /// The children of a cell; `None` if it is not to be split.
+    fn split(&mut self, cell: Cell, part: &Self::Part) -> Result<Option<[Verdict<Self::Part>; 8]>, Error>;
+
+    /// As [`Worker::enclosure`](crate::solid::Worker::enclosure).
+    fn enclosure(&mut self, cell: Cell, part: &Self::Part) -> Result<Option<Enclosure>, Error>;
+
+    /// As [`Worker::mark`](crate::solid::Worker::mark).
+    fn mark(&self) -> usize;
+
+    /// As [`Worker::release`](crate::solid::Worker::release).
+    fn release(&mut self, mark: usize);
+}
+
+/// What a search makes of the cells that it meets.
+trait Visitor {
+    /// Whether a cell may be left out.
+    fn skips(&self, passage: &Passage) -> bool;
+
+    /// A cell that is not EMPTY and not split further.
+    fn meet(&mut self, line: &Line<'_>, cell: Cell, passage: &Passage, known: Known) -> Result<(), Error>;
+}
+
+/// What is known of a cell.
+enum Known {
+    Full,
+    /// PARTIAL, perhaps with slabs.
+    Partial(Option<Enclosure>),
+}
+
+/// Shows all cells along a ray to a visitor, roughly front to back. The recursion is as deep as the frame.
+fn walk<C: Cells>(
+    cells: &mut C,
+    line: &Line<'_>,
+    cell: Cell,
+    verdict: Verdict<C::Part>,
+    visitor: &mut impl Visitor,
+) -> Result<(), Error> {
+    if matches!(verdict, Verdict::Empty) {
+        return Ok(());
+    }
+    let Some(passage) = line.passage(cell) else { return Ok(()) };
+    if visitor.skips(&passage) {
+        return Ok(());
+    }
+    let part = match verdict {
+        Verdict::Empty => return Ok(()),
+        Verdict::Full => return visitor.meet(line, cell, &passage, Known::Full),
+        Verdict::Undecided => return visitor.meet(line, cell, &passage, Known::Partial(None)),
+        Verdict::Partial(part) => part,
+    };
+    let mark = cells.mark();
+    let children = if cell.level < line.frame.depth() { cells.split(cell, &part)? } else { None };
+    match children {
+        Some(mut children) => {
+            for k in OCTANTS.map(|k| k ^ line.mirror) {
+                let child = core::mem::replace(&mut children[k as usize], Verdict::Empty);
+                walk(cells, line, cell.child(k), child, visitor)?;
+            }
+            cells.release(mark);
+            Ok(())
+        }
+        None => {
+            let enclosure = cells.enclosure(cell, &part)?;
+            visitor.meet(line, cell, &passage, Known::Partial(enclosure))
+        }
+    }
+}
+
+/// A cell that a ray enters, and the lattice plane by which it does; none if it starts there.
+pub(super) type Met = (Cell, Option<(usize, u32)>);
+
+/// The first cells that stop a ray.
+#[derive(Default)]
+pub(super) struct First {
+    /// What may be solid, and the least t of it.
+    outer: Option<(f64, Cell, [f64; 3])>,
+    /// What is solid, and the least t of it.
+    inner: Option<(f64, Cell, [f64; 3])>,
+}
+
+impl First {
+    pub(super) fn search<C: Cells>(cells: &mut C, line: &Line<'_>) -> Result<First, Error> {
+        let mut first = First::default();
+        let root = cells.root()?;
+        walk(cells, line, Cell::ROOT, root, &mut first)?;
+        Ok(first)
+    }
+
+    /// What is known of a ray by the first cells that it enters, each with the lattice plane by which it does.
+    pub(super) fn of(line: &Line<'_>, outer: Option<Met>, inner: Option<Met>) -> First {
+        let entry =
+            |by: Option<(usize, u32)>| by.map_or(Moment::START, |(axis, plane)| line.passes(axis, plane));
+        First {
+            outer: outer.map(|(cell, by)| (entry(by).t.lower, cell, line.face(&entry(by)))),
+            inner: inner.map(|(cell, by)| (entry(by).t.upper, cell, line.face(&entry(by)))),
+        }
+    }
+
+    /// The answer to a query.
+    pub(super) fn hit(&self, on: Obstacle) -> Option<RayHit> {
+        let (_, cell, normal) = match on {
+            Obstacle::Full => self.inner?,
+            Obstacle::Upper => self.outer?,
+        };
+        let lower = self.outer?.0;
+        let upper = self.inner.map_or(f64::INFINITY, |(t, ..)| t);
+        Some(RayHit { t: Interval { lower, upper }, cell, normal })
+    }
+
+    /// Whether the ray is surely stopped, and whether it may be.
+    pub(super) fn stops(&self) -> (bool, bool) {
+        (self.inner.is_some(), self.outer.is_some())
+    }
+}
+
+/// Keeps the less of two, of equals the one that was there before.
+fn keep(kept: &mut Option<(f64, Cell, [f64; 3])>, t: f64, cell: Cell, normal: [f64; 3]) {
+    if kept.is_none_or(|(before, ..)| t < before) {
+        *kept = Some((t, cell, normal));
+    }
+}
+
+impl Visitor for First {
+    fn skips(&self, passage: &Passage) -> bool {
+        self.inner.is_some_and(|(t, ..)| passage.entry.t.lower >= t)
+    }
+
+    fn meet(&mut self, line: &Line<'_>, cell: Cell, passage: &Passage, known: Known) -> Result<(), Error> {
+        let (entry, face) = (passage.entry.t, line.face(&passage.entry));
+        match known {
+            Known::Full => {
+                keep(&mut self.outer, entry.lower, cell, face);
+                keep(&mut self.inner, entry.upper, cell, face);
+            }
+            Known::Partial(None) => keep(&mut self.outer, entry.lower, cell, face),
+            Known::Partial(Some(enclosure)) => {
+                let found = Enclosed::new(line, cell, passage, &enclosure);
+                if let Some((t, slab)) = found.possible {
+                    keep(&mut self.outer, t, cell, slab.map_or(face, |n| unit(enclosure.slabs[n].normal)));
+                }
+                if let Some((t, slab)) = found.certain {
+                    keep(&mut self.inner, t, cell, slab.map_or(face, |n| unit(enclosure.slabs[n].normal)));
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+/// A normal of length 1, but for rounding.
+fn unit(normal: [f64; 3]) -> [f64; 3] {
+    let largest = normal.iter().fold(0.0, |largest: f64, c| largest.max(c.abs()));
+    let scaled = normal.map(|c| c / largest);
+    let length = sqrt(scaled.iter().map(|c| c * c).sum());
+    scaled.map(|c| c / length)
+}
+
+/// What slabs say of a ray in a cell: the least t at which it may be in the solid, and the least at which it is.
+/// With each comes the slab that decides; none if the ray enters the cell there.
+struct Enclosed {
+    possible: Option<(f64, Option<usize>)>,
+    certain: Option<(f64, Option<usize>)>,
+}
+
+/// An interval of t, and the slab that bounds it from below.
+#[derive(Clone, Copy)]
+struct Spell {
+    from: f64,
+    to: f64,
+    slab: Option<usize>,
+}
+
+impl Spell {
+    /// The time in both.
+    fn and(self, other: Spell) -> Spell {
+        let slab = if other.from > self.from { other.slab } else { self.slab };
+        Spell { from: self.from.max(other.from), to: self.to.min(other.to), slab }
+    }
+}
+
+impl Enclosed {
+    fn new(line: &Line<'_>, cell: Cell, passage: &Passage, enclosure: &Enclosure) -> Enclosed {
+        let (entry, exit) = (passage.entry.t, passage.exit.t);
+        let whole = Spell { from: entry.lower, to: exit.upper, slab: None };
+        let sure = Spell { from: entry.upper, to: exit.lower, slab: None };
+        let (mut possible, mut certain) = (Spells::default(), Spells::default());
+        for (n, slab) in enclosure.slabs.iter().enumerate().filter(|(_, slab)| slab.normal != [0.0; 3]) {
+            let height = Height::new(line, cell, slab, Interval { lower: entry.lower, upper: exit.upper });
+            possible.push(height.perhaps_below(slab.outer, n));
+            certain.push(height.surely_below(slab.inner, n));
+        }
+        // Where slabs agree at a single point only, they do not prove it to be inside.
+        let possible_in = |spell: Spell| (spell.from <= spell.to).then_some((spell.from, spell.slab));
+        let certain_in = |spell: Spell| (spell.from < spell.to).then_some((spell.from, spell.slab));
+        let least = |spells: Spells, limits: Spell, kept: &dyn Fn(Spell) -> Option<(f64, Option<usize>)>| {
+            match enclosure.join {
+                SlabJoin::All => kept(spells.iter().fold(limits, Spell::and)),
+                SlabJoin::Any => spells
+                    .iter()
+                    .filter_map(|spell| kept(limits.and(spell)))
+                    .min_by(|a, b| a.0.total_cmp(&b.0)),
+            }
+        };
+        Enclosed {
+            possible: least(possible, whole, &possible_in),
+            certain: least(certain, sure, &certain_in),
+        }
+    }
+}
+
+/// At most three spells.
+#[derive(Default, Clone, Copy)]
+struct Spells {
+    spells: [Option<Spell>; 3],
+    count: usize,
+}
+
+impl Spells {
+    fn push(&mut self, spell: Spell) {
+        self.spells[self.count] = Some(spell);
+        self.count += 1;
+    }
+
+    fn iter(&self) -> impl Iterator<Item = Spell> {
+        self.spells.into_iter().flatten()
+    }
+}
+
+/// n · x along a ray: at + t · slope.
+struct Height {
+    at: Interval,
+    slope: Interval,
+    /// All heights in the cell.
+    range: Interval,
+}
+
+impl Height {
+    fn new(line: &Line<'_>, cell: Cell, slab: &Slab, stay: Interval) -> Height {
+        let cube = Cube { frame: line.frame, cell };
+        let centre = cube.centre_from(line.ray.from);
+        let half = Interval::exactly(cube.half_edge());
+        let dot = |v: [Interval; 3]| {
+            let [x, y, z] = [0, 1, 2].map(|axis| v[axis].times(Interval::exactly(slab.normal[axis])));
+            x.plus(y).plus(z).over(half)
+        };
+        let (at, slope) = (dot(centre).negated(), dot(line.direction));
+        Height { at, slope, range: at.plus(slope.times(stay)) }
+    }
+
+    /// When n · x = `bound`; `None` if the slope may be zero.
+    fn reaches(&self, bound: f64) -> Option<Interval> {
+        let rest = Interval::exactly(bound).minus(self.at);
+        if self.slope.lower > 0.0 {
+            Some(rest.over(self.slope))
+        } else if self.slope.upper < 0.0 {
+            Some(rest.negated().over(self.slope.negated()))
+        } else {
+            None
+        }
+    }
+
+    /// Outside of this n · x > `bound`.
+    fn perhaps_below(&self, bound: f64, slab: usize) -> Spell {
+        match self.reaches(bound) {
+            Some(t) if self.slope.lower > 0.0 => Spell { to: t.upper, ..ALWAYS },
+            Some(t) => Spell { from: t.lower, slab: Some(slab), ..ALWAYS },
+            None if self.range.lower > bound => NEVER,
+            None => ALWAYS,
+        }
+    }
+
+    /// Within this n · x < `bound`, but perhaps at its ends.
+    fn surely_below(&self, bound: f64, slab: usize) -> Spell {
+        match self.reaches(bound) {
+            Some(t) if self.slope.lower > 0.0 => Spell { to: t.lower, ..ALWAYS },
+            Some(t) => Spell { from: t.upper, slab: Some(slab), ..ALWAYS },
+            None if self.range.upper < bound => ALWAYS,
+            None => NEVER,
+        }
+    }
+}
+
+const ALWAYS: Spell = Spell { from: f64::NEG_INFINITY, to: f64::INFINITY, slab: None };
+const NEVER: Spell = Spell { from: f64::INFINITY, to: f64::NEG_INFINITY, slab: None };
+
+/// The stays of a ray in cells of two kinds.
+#[derive(Default)]
+pub(super) struct Stays {
+    inner: Vec<Passage>,
+    outer: Vec<Passage>,
+}
+
+impl Stays {
+    pub(super) fn search<C: Cells>(cells: &mut C, line: &Line<'_>) -> Result<RaySpans, Error> {
+        let mut stays = Stays::default();
+        let root = cells.root()?;
+        walk(cells, line, Cell::ROOT, root, &mut stays)?;
+        let inner = |[entry, exit]: [Moment; 2]| Interval { lower: entry.t.upper, upper: exit.t.lower };
+        let outer = |[entry, exit]: [Moment; 2]| Interval { lower: entry.t.lower, upper: exit.t.upper };
+        Ok(RaySpans { inner: united(line, stays.inner, inner)?, outer: united(line, stays.outer, outer)? })
+    }
+}
+
+impl Visitor for Stays {
+    fn skips(&self, _: &Passage) -> bool {
+        false
+    }
+
+    fn meet(&mut self, line: &Line<'_>, _: Cell, passage: &Passage, known: Known) -> Result<(), Error> {
+        if let Known::Full = known {
+            add(line, &mut self.inner, passage)?;
+        }
+        add(line, &mut self.outer, passage)
+    }
+}
+
+/// Adds a stay. As a rule it goes on where the last one ended.
+fn add(line: &Line<'_>, stays: &mut Vec<Passage>, next: &Passage) -> Result<(), Error> {
+    match stays.last_mut() {
+        Some(last) if goes_on(line, last, next) => extend(line, last, next),
+        _ => memory::push(stays, *next)?,
+    }
+    Ok(())
+}
+
+/// Whether `next` begins in `last`.
+fn goes_on(line: &Line<'_>, last: &Passage, next: &Passage) -> bool {
+    line.order(&last.entry, &next.entry).is_le() && line.order(&next.entry, &last.exit).is_le()
+}
+
+fn extend(line: &Line<'_>, last: &mut Passage, next: &Passage) {
+    if line.order(&next.exit, &last.exit).is_gt() {
+        last.exit = next.exit;
+    }
+}
+
+/// The union of stays.
+fn united(
+    line: &Line<'_>,
+    mut stays: Vec<Passage>,
+    rounded: impl Fn([Moment; 2]) -> Interval,
+) -> Result<Vec<Interval>, Error> {
+    stays.sort_unstable_by(|a, b| line.order(&a.entry, &b.entry).then_with(|| line.order(&a.exit, &b.exit)));
+    let mut united: Vec<Passage> = memory::with_capacity(stays.len())?;
+    for stay in &stays {
+        match united.last_mut() {
+            Some(last) if goes_on(line, last, stay) => extend(line, last, stay),
+            _ => united.push(*stay),
+        }
+    }
+    let mut spans: Vec<Interval> = memory::with_capacity(united.len())?;
+    for Passage { entry, exit } in united {
+        let span = rounded([entry, exit]);
+        match spans.last_mut() {
+            // Two ends that differ by less than a rounding.
+            Some(last) if span.lower <= last.upper => last.upper = last.upper.max(span.upper),
+            _ if span.lower <= span.upper => spans.push(span),
+            _ => {}
+        }
+    }
+    Ok(spans)
+}
