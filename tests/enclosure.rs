@@ -435,6 +435,24 @@ fn derivatives(model: &Model, p: [f64; 3], half: f64) -> ([f64; 3], f64) {
     }
 }
 
+/// The gradients at random points of a cell lie within the cone.
+fn cone_holds(model: &Model, enclosure: &Enclosure, centre: [f64; 3], half: f64, random: &mut Random) {
+    let normal = enclosure.slabs[0].normal;
+    let length = |v: [f64; 3]| v.iter().map(|c| c * c).sum::<f64>().sqrt();
+    for _ in 0..4 {
+        let point = centre.map(|c| c + half * random.between(-1.0, 1.0));
+        // The function grows inward.
+        let gradient = derivatives(model, point, 0.0).0.map(|c| -c);
+        let cross = [0, 1, 2].map(|i| {
+            let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+            normal[j] * gradient[k] - normal[k] * gradient[j]
+        });
+        let dot: f64 = (0..3).map(|i| normal[i] * gradient[i]).sum();
+        let angle = length(cross).atan2(dot);
+        assert!(angle <= enclosure.cone + 1e-7, "{angle} {enclosure:?} {model:?}");
+    }
+}
+
 /// Slabs of single half-spaces are no wider than `share` of what the second derivatives allow, and than rounding.
 fn tight(name: &str, share: f64, make: impl Fn(&mut Maker<'_>) -> Model) {
     let mut asked = 0;
@@ -455,6 +473,13 @@ fn tight(name: &str, share: f64, make: impl Fn(&mut Maker<'_>) -> Model) {
             if largest(gradient) > 1e-3 * half * second && second.is_finite() {
                 let slab = worker.enclosure(cell, &part).unwrap().expect("a half-space").slabs[0];
                 let unit = largest(slab.normal) / (half * largest(gradient));
+                cone_holds(
+                    &model,
+                    &worker.enclosure(cell, &part).unwrap().unwrap(),
+                    centre,
+                    half,
+                    &mut random,
+                );
                 let (width, allowed) = (slab.outer - slab.inner, share * unit * half * half * second);
                 let at = format!("{width} for {allowed}: {cell:?} {slab:?} {model:?}");
                 assert!(width <= allowed * (1.0 + 1e-9) + 1e-11 * unit.max(1.0), "{name}: {at}");

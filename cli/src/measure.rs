@@ -268,7 +268,12 @@ fn text(
         let _ = writeln!(text, "{name:<16}{value}");
     };
     line("volume", measured(mass.volume));
-    line("area", if is_known(surface) { measured(surface.area) } else { "not known".into() });
+    let area = match is_known(surface) {
+        true => measured(surface.area),
+        false if is_stored => "not known: a file does not tell what its surface is like between cells".into(),
+        false => "not known".into(),
+    };
+    line("area", area);
     if let Some(doubt) = Proven::from(mass.proof).doubt() {
         line("proven", doubt);
     }

@@ -11,8 +11,6 @@
 
 use super::bounds::{centre, half_edge};
 use super::program::Program;
-use super::slabs::around;
-use super::table::Table;
 use super::taylor::Taylor;
 use super::word::{Op, Word};
 use super::worker::{CsgPart, Scratch};
@@ -29,41 +27,27 @@ impl Scratch {
             return None;
         }
         let taylor = |index: u32| program.half_spaces[index as usize].taylor(centre(cell), half_edge(cell));
+        // A union has the boundary of the complements' intersection.
+        if let Some((literals, false, _)) = self.literals(program, part) {
+            let mut sides = [None; 3];
+            for (side, (index, complement)) in sides.iter_mut().zip(literals.into_iter().flatten()) {
+                *side = Some(Side { f: taylor(index)?, complement });
+            }
+            return Some(of_intersection(&sides));
+        }
         let words = Scratch::list(program, &self.words, part);
         if !part.is_table() {
-            return match words {
-                [word] => match word.op() {
-                    Op::HalfSpace { index, .. } => Some(of_surface(&taylor(index)?)),
-                    _ => None,
-                },
-                _ => of_many(program, words),
-            };
+            return of_many(program, words);
         }
-        let (half_spaces, table) = Scratch::table_of(words);
-        // A union has the boundary of the complements' intersection.
-        let literals = around(half_spaces, table).filter(|(_, one_sided)| !one_sided);
-        let literals =
-            literals.or_else(|| around(half_spaces, Table(!table.0)).filter(|(_, one_sided)| !one_sided));
-        match literals {
-            Some((literals, _)) => {
-                let mut sides = [None; 3];
-                for (side, (index, complement)) in sides.iter_mut().zip(literals.into_iter().flatten()) {
-                    *side = Some(Side { f: taylor(index)?, complement });
-                }
-                Some(of_intersection(&sides))
-            }
-            None => {
-                let mut sum = Interval::exactly(0.0);
-                for word in half_spaces {
-                    sum.upper += of_surface(&taylor(word.variable().1)?).upper;
-                }
-                Some(sum)
-            }
+        let mut sum = Interval::exactly(0.0);
+        for word in Scratch::table_of(words).0 {
+            sum.upper += of_surface(&taylor(word.variable().1)?).upper;
         }
+        Some(sum)
     }
 }
 
-/// What is known where more half-spaces are open than a table has.
+/// What is known of other expressions: no more than of all half-spaces in them.
 fn of_many(program: &Program, words: &[Word]) -> Option<Interval> {
     let mut sum = Interval::exactly(0.0);
     for word in words {
@@ -110,7 +94,7 @@ fn of_face<'a>(f: &Taylor, others: impl Iterator<Item = &'a Side>) -> Interval {
     let whole = Interval { lower: 0.0, upper: of_surface(f).upper };
     let size = f.gradient.map(f64::abs);
     let axis = (0..3).fold(0, |most, axis| if size[axis] > size[most] { axis } else { most });
-    let (fall, length) = (f.gradient[axis], length(f.gradient));
+    let (fall, length) = (f.gradient[axis], f.steepness());
     let bend = f.bend + 4.0 * f64::EPSILON * length;
     let is_graph = bend < 0.5 * size[axis] && f.error < f64::INFINITY;
     if !is_graph {
@@ -211,8 +195,10 @@ pub(super) fn at_most(degree: u32) -> Interval {
 /// The area in a cell of the surface on which a function is 0, in squares of the half edge.
 pub(super) fn of_surface(f: &Taylor) -> Interval {
     let most = at_most(f.degree);
-    let length = length(f.gradient);
-    let cosine = cosine(f, length);
+    let length = f.steepness();
+    let sine = f.sine();
+    // Less than the cosine of the angle between the gradient at the centre and any other.
+    let cosine = if sine < 1.0 { sqrt((1.0 - sine * sine) * (1.0 - 4.0 * f64::EPSILON)) } else { 0.0 };
     let is_known = cosine > 0.5 && f.error < f64::INFINITY;
     if !is_known {
         return most;
@@ -229,16 +215,6 @@ pub(super) fn of_surface(f: &Taylor) -> Interval {
     let lower = (flux.lower - ROUNDING).max(0.0);
     let upper = ((flux.upper + ROUNDING).max(0.0) / cosine).min(most.upper);
     Interval { lower: lower.min(upper), upper }
-}
-
-fn length([x, y, z]: [f64; 3]) -> f64 {
-    sqrt((x * x + y * y) + z * z)
-}
-
-/// Less than the cosine of the angle between the gradient at the centre, of that length, and any other; or no number.
-fn cosine(f: &Taylor, length: f64) -> f64 {
-    let sine = f.bend / length * (1.0 + 8.0 * f64::EPSILON);
-    if sine < 1.0 { sqrt((1.0 - sine * sine) * (1.0 - 4.0 * f64::EPSILON)) } else { 0.0 }
 }
 
 /// The area in which f ≥ 0 on the wall of a cell where the coordinate of `axis` is `at`.

@@ -64,12 +64,19 @@ fn intersection(program: &Program, cell: Cell, literals: Literals, mut one_sided
     if one_sided {
         slabs.iter_mut().for_each(|slab| slab.inner = f64::NEG_INFINITY);
     }
-    (count > 0).then_some(Enclosure { slabs, join: SlabJoin::All, cone: f64::INFINITY })
+    // Of several surfaces each has normals of its own.
+    let cone = match literals {
+        [Some((index, _)), None, None] if !one_sided => {
+            program.half_spaces[index as usize].taylor(centre, half).map_or(f64::INFINITY, |f| f.cone())
+        }
+        _ => f64::INFINITY,
+    };
+    (count > 0).then_some(Enclosure { slabs, join: SlabJoin::All, cone })
 }
 
 /// Half-spaces, or their complements, in all of which the points of a table lie; with `false` if it is their
 /// intersection. `None` if there is no such half-space.
-pub(super) fn around(half_spaces: &[Word], table: Table) -> Option<(Literals, bool)> {
+fn around(half_spaces: &[Word], table: Table) -> Option<(Literals, bool)> {
     let mut literals = [None; MOST];
     let (mut all, mut count) = (Table::FULL, 0);
     for word in half_spaces {
