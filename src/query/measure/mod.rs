@@ -109,8 +109,9 @@ pub const MEASURE_SPLITS: u64 = 1 << 26;
 /// doubt.
 ///
 /// Where the solid knows the slabs of a cell ([`Enclosure`](crate::Enclosure)), the cell contributes what the slabs
-/// cut off, and only the rest is in doubt. With N splits the width goes down with 1/N at curved surfaces, with 1/N²
-/// at plane ones, and with N^-½ for solids that know no slabs.
+/// cut off, and only the rest is in doubt; where it knows the moments ([`Worker::moments`](crate::Worker::moments)), nothing
+/// is but their error. With N splits the width goes down with N^-1.5 where one curved half-space cuts a cell, with 1/N at
+/// other curved surfaces, with 1/N² at plane ones, and with N^-½ for solids that know no slabs.
 ///
 /// A solid that knows its moments is not split, if it lies in the universe: a mesh that is closed and whose triangles
 /// do not intersect ([`TriangleMesh::moments`](crate::TriangleMesh::moments)). It is known up to rounding, whatever
