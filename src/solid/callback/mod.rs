@@ -181,7 +181,7 @@ impl<'a, F: Fn([f64; 3], [f64; 3]) -> Result<Verdict<()>, Error> + Send + Sync> 
     /// });
     /// let found = measure(&bowl, &Frame::new([-1.0; 3], 2.0, 16)?, 1e-3, &Control::default())?;
     /// assert!(found.volume.contains(0.5 * std::f64::consts::PI) && found.volume.width() < 2e-3);
-    /// assert!(found.splits < 20_000);
+    /// assert!(found.splits < 40_000);
     /// # Ok::<(), leafless::Error>(())
     /// ```
     #[must_use]
