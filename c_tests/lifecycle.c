@@ -238,6 +238,8 @@ static void queries(void) {
     leafless_region region;
     leafless_tag tag;
     leafless_point_cursor *near = NULL;
+    leafless_point_table *table = NULL;
+    uint8_t level = 99;
     leafless_cursor *cursor = NULL;
     leafless_cursor_state state;
     bool moved;
@@ -248,12 +250,20 @@ static void queries(void) {
     CHECK(many[2] == LEAFLESS_MEMBERSHIP_UNDECIDED && many[3] == LEAFLESS_MEMBERSHIP_UNDECIDED);
     OK(leafless_octree_contains_many(octree, NULL, 0, NULL));
     OK(leafless_point_cursor_new(octree, &near));
+    OK(leafless_point_table_new(octree, 5, &table, &level));
+    CHECK(level == 4);
     for (i = 0; i < 4; i++) {
         OK(leafless_octree_contains(octree, points[i], &one));
         CHECK(one == many[i]);
         OK(leafless_point_cursor_contains(near, points[i], &one));
         CHECK(one == many[i]);
+        OK(leafless_point_table_contains(table, points[i], &one));
+        CHECK(one == many[i]);
     }
+    many[0] = LEAFLESS_MEMBERSHIP_UNDECIDED;
+    OK(leafless_point_table_contains_many(table, &points[0][0], 4, many));
+    CHECK(many[0] == LEAFLESS_MEMBERSHIP_INSIDE && many[1] == LEAFLESS_MEMBERSHIP_OUTSIDE);
+    OK(leafless_point_table_contains_many(table, NULL, 0, NULL));
     OK(leafless_octree_tag_at(octree, middle, &tag));
     CHECK(tag == LEAFLESS_TAG_FULL);
     OK(leafless_octree_tag_at(octree, corner, &tag));
@@ -273,6 +283,9 @@ static void queries(void) {
     OK(leafless_point_cursor_tag_at(near, middle, &tag));
     CHECK(tag == LEAFLESS_TAG_FULL);
     leafless_point_cursor_free(near);
+    OK(leafless_point_table_contains(table, points[0], &one));
+    CHECK(one == LEAFLESS_MEMBERSHIP_INSIDE);
+    leafless_point_table_free(table);
 
     OK(leafless_cursor_read(cursor, &state));
     CHECK(state.level == 0 && state.tag == LEAFLESS_TAG_BRANCH && state.children[7] == LEAFLESS_TAG_BRANCH);

@@ -89,6 +89,7 @@ static leafless_solid *solid;
 static leafless_control *control;
 static leafless_cursor *cursor;
 static leafless_point_cursor *point_cursor;
+static leafless_point_table *point_table;
 static leafless_options options;
 static const double point[3] = {0, 0, 0}, above[3] = {1, 1, 1};
 
@@ -554,6 +555,22 @@ static void null_pointers(void) {
     NULL_POINTER(leafless_point_cursor_tag_at, cell,
                  leafless_point_cursor_tag_at(point_cursor, NULL, (leafless_tag *)out));
     NULL_POINTER(leafless_point_cursor_tag_at, tag, leafless_point_cursor_tag_at(point_cursor, cell, NULL));
+    NULL_POINTER(leafless_point_table_new, octree,
+                 leafless_point_table_new(NULL, 4, (leafless_point_table **)&never, (uint8_t *)out));
+    NULL_POINTER(leafless_point_table_new, table, leafless_point_table_new(octree, 4, NULL, (uint8_t *)out));
+    NULL_POINTER(leafless_point_table_new, table_level,
+                 leafless_point_table_new(octree, 4, (leafless_point_table **)&never, NULL));
+    NULL_POINTER(leafless_point_table_contains, table,
+                 leafless_point_table_contains(NULL, point, (leafless_membership *)out));
+    NULL_POINTER(leafless_point_table_contains, point_model,
+                 leafless_point_table_contains(point_table, NULL, (leafless_membership *)out));
+    NULL_POINTER(leafless_point_table_contains, membership, leafless_point_table_contains(point_table, point, NULL));
+    NULL_POINTER(leafless_point_table_contains_many, table,
+                 leafless_point_table_contains_many(NULL, point, 1, (leafless_membership *)out));
+    NULL_POINTER(leafless_point_table_contains_many, points_model,
+                 leafless_point_table_contains_many(point_table, NULL, 1, (leafless_membership *)out));
+    NULL_POINTER(leafless_point_table_contains_many, memberships,
+                 leafless_point_table_contains_many(point_table, point, 1, NULL));
     NULL_POINTER(leafless_cursor_new, octree, leafless_cursor_new(NULL, (leafless_cursor **)out));
     NULL_POINTER(leafless_cursor_new, cursor, leafless_cursor_new(octree, NULL));
     NULL_POINTER(leafless_cursor_read, cursor, leafless_cursor_read(NULL, (leafless_cursor_state *)out));
@@ -703,6 +720,7 @@ static void null_pointers(void) {
     leafless_octree_free(NULL);
     leafless_cursor_free(NULL);
     leafless_point_cursor_free(NULL);
+    leafless_point_table_free(NULL);
     CHECK(leafless_last_error(NULL, 0) > 0);
     CHECK(leafless_last_error(NULL, 100) > 0);
     (void)other;
@@ -1271,6 +1289,7 @@ int main(void) {
     OK(leafless_control_new(&control));
     OK(leafless_cursor_new(octree, &cursor));
     OK(leafless_point_cursor_new(octree, &point_cursor));
+    OK(leafless_point_table_new(octree, 4, &point_table, (uint8_t *)fresh()));
     OK(leafless_options_init(&options, sizeof options));
     null_pointers();
     misaligned();
@@ -1280,6 +1299,7 @@ int main(void) {
     /* All of it is as good as ever. */
     OK(leafless_octree_check(octree));
     leafless_point_cursor_free(point_cursor);
+    leafless_point_table_free(point_table);
     leafless_cursor_free(cursor);
     leafless_control_free(control);
     leafless_solid_free(solid);

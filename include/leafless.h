@@ -804,6 +804,13 @@ typedef struct leafless_octree leafless_octree;
 typedef struct leafless_point_cursor leafless_point_cursor;
 
 /**
+ * Point queries by way of a table of all cells of one level, where most points are decided: about twice as fast as
+ * leafless_octree_contains for points anywhere. The table takes 4 * 8^level bytes: 1 MiB for level 6, 64 MiB for
+ * level 8. Questions do not change it: any threads may ask at once.
+ */
+typedef struct leafless_point_table leafless_point_table;
+
+/**
  * What a text describes: set operations on primitives, swept figures, meshes and octrees.
  *
  * The language is that of the CSG dumps which OpenSCAD exports (group union difference intersection
@@ -3971,65 +3978,6 @@ leafless_status leafless_solid_classify_box(const leafless_solid *solid,
                                             leafless_region *region);
 
 /**
- * Makes a point cursor.
- *
- * - Buffers: `cursor`, one pointer.
- * - Result: `*cursor`.
- * - Errors: only the general ones.
- * - Ownership: the cursor shares the octree, which may be freed; give `*cursor` back with
- *   leafless_point_cursor_free.
- * - Threads: any.
- * - Untrusted input: any octree.
- * - Since: 0.1
- */
-leafless_status leafless_point_cursor_new(const leafless_octree *octree, leafless_point_cursor **cursor);
-
-/**
- * Gives back a point cursor.
- *
- * - Buffers: `cursor`, a handle or NULL, which does nothing.
- * - Result: none.
- * - Errors: none.
- * - Ownership: the handle is gone.
- * - Threads: no other call may use the handle.
- * - Untrusted input: none.
- * - Since: 0.1
- */
-void leafless_point_cursor_free(leafless_point_cursor *cursor);
-
-/**
- * As leafless_octree_contains.
- *
- * - Buffers: `point_model`, 3 numbers; `membership`, one.
- * - Result: `*membership`.
- * - Errors: only the general ones.
- * - Ownership: nothing changes hands.
- * - Threads: no other call may use the cursor.
- * - Untrusted input: any octree, any numbers; damage reads as undecided.
- * - Since: 0.1
- *
- */
-leafless_status leafless_point_cursor_contains(leafless_point_cursor *cursor,
-                                               const double point_model[3],
-                                               leafless_membership *membership);
-
-/**
- * As leafless_octree_tag_at.
- *
- * - Buffers: `cell`, 3 numbers; `tag`, one.
- * - Result: `*tag`: EMPTY, FULL or PARTIAL; PARTIAL if a coordinate is not below 2^depth.
- * - Errors: only the general ones.
- * - Ownership: nothing changes hands.
- * - Threads: no other call may use the cursor.
- * - Untrusted input: any octree, any numbers; damage reads as PARTIAL.
- * - Since: 0.1
- *
- */
-leafless_status leafless_point_cursor_tag_at(leafless_point_cursor *cursor,
-                                             const uint32_t cell[3],
-                                             leafless_tag *tag);
-
-/**
  * Makes a cursor that stands on the universe.
  *
  * - Buffers: `cursor`, one pointer.
@@ -4094,6 +4042,129 @@ leafless_status leafless_cursor_descend(leafless_cursor *cursor, uint32_t octant
  * - Since: 0.1
  */
 leafless_status leafless_cursor_ascend(leafless_cursor *cursor, bool *moved);
+
+/**
+ * Makes a point cursor.
+ *
+ * - Buffers: `cursor`, one pointer.
+ * - Result: `*cursor`.
+ * - Errors: only the general ones.
+ * - Ownership: the cursor shares the octree, which may be freed; give `*cursor` back with
+ *   leafless_point_cursor_free.
+ * - Threads: any.
+ * - Untrusted input: any octree.
+ * - Since: 0.1
+ */
+leafless_status leafless_point_cursor_new(const leafless_octree *octree, leafless_point_cursor **cursor);
+
+/**
+ * Gives back a point cursor.
+ *
+ * - Buffers: `cursor`, a handle or NULL, which does nothing.
+ * - Result: none.
+ * - Errors: none.
+ * - Ownership: the handle is gone.
+ * - Threads: no other call may use the handle.
+ * - Untrusted input: none.
+ * - Since: 0.1
+ */
+void leafless_point_cursor_free(leafless_point_cursor *cursor);
+
+/**
+ * As leafless_octree_contains.
+ *
+ * - Buffers: `point_model`, 3 numbers; `membership`, one.
+ * - Result: `*membership`.
+ * - Errors: only the general ones.
+ * - Ownership: nothing changes hands.
+ * - Threads: no other call may use the cursor.
+ * - Untrusted input: any octree, any numbers; damage reads as undecided.
+ * - Since: 0.1
+ *
+ */
+leafless_status leafless_point_cursor_contains(leafless_point_cursor *cursor,
+                                               const double point_model[3],
+                                               leafless_membership *membership);
+
+/**
+ * As leafless_octree_tag_at.
+ *
+ * - Buffers: `cell`, 3 numbers; `tag`, one.
+ * - Result: `*tag`: EMPTY, FULL or PARTIAL; PARTIAL if a coordinate is not below 2^depth.
+ * - Errors: only the general ones.
+ * - Ownership: nothing changes hands.
+ * - Threads: no other call may use the cursor.
+ * - Untrusted input: any octree, any numbers; damage reads as PARTIAL.
+ * - Since: 0.1
+ *
+ */
+leafless_status leafless_point_cursor_tag_at(leafless_point_cursor *cursor,
+                                             const uint32_t cell[3],
+                                             leafless_tag *tag);
+
+/**
+ * Makes a point table.
+ *
+ * - Buffers: `table`, one pointer; `table_level`, one.
+ * - Result: `*table`; `*table_level`: the level of the table's cells, `level` or the next coarser one that the
+ *   octree's arrays lead to, which hold two levels each. Levels beyond 8, and beyond the octree's depth, count as these.
+ * - Errors: LEAFLESS_E_NO_MEMORY.
+ * - Ownership: the table shares the octree, which may be freed; give `*table` back with
+ *   leafless_point_table_free.
+ * - Threads: any.
+ * - Untrusted input: any octree; work is bounded by 8^level.
+ * - Since: 0.1
+ */
+leafless_status leafless_point_table_new(const leafless_octree *octree,
+                                         uint8_t level,
+                                         leafless_point_table **table,
+                                         uint8_t *table_level);
+
+/**
+ * Gives back a point table.
+ *
+ * - Buffers: `table`, a handle or NULL, which does nothing.
+ * - Result: none.
+ * - Errors: none.
+ * - Ownership: the handle is gone.
+ * - Threads: no other call may use the handle.
+ * - Untrusted input: none.
+ * - Since: 0.1
+ */
+void leafless_point_table_free(leafless_point_table *table);
+
+/**
+ * As leafless_octree_contains.
+ *
+ * - Buffers: `point_model`, 3 numbers; `membership`, one.
+ * - Result: `*membership`.
+ * - Errors: only the general ones.
+ * - Ownership: nothing changes hands.
+ * - Threads: any.
+ * - Untrusted input: any octree, any numbers; damage reads as undecided.
+ * - Since: 0.1
+ *
+ */
+leafless_status leafless_point_table_contains(const leafless_point_table *table,
+                                              const double point_model[3],
+                                              leafless_membership *membership);
+
+/**
+ * As leafless_octree_contains_many.
+ *
+ * - Buffers: `points_model`, `count` points of 3 numbers; `memberships`, room for `count`. Both may be NULL
+ *   if `count` is 0.
+ * - Result: `memberships[i]` for point i.
+ * - Errors: only the general ones.
+ * - Ownership: nothing changes hands.
+ * - Threads: any; works in the calling thread.
+ * - Untrusted input: any octree, any numbers; damage reads as undecided.
+ * - Since: 0.1
+ */
+leafless_status leafless_point_table_contains_many(const leafless_point_table *table,
+                                                   const double *points_model,
+                                                   uint64_t count,
+                                                   leafless_membership *memberships);
 
 /**
  * The box of a cell of any level, in model units: the doubles nearest to its corners that contain it.

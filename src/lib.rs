@@ -111,8 +111,8 @@ pub use op::{
 };
 pub use query::{
     AREA_SPLITS, BOUNDING_BOX_SPLITS, CLEARANCE_SPLITS, Clearance, Extent, Interference, MEASURE_SPLITS,
-    MassProperties, Membership, Obstacle, Overlap, PointCursor, Ray, RayHit, RaySpans, Region, Sight,
-    StopReason, SurfaceArea, Tolerance, bounding_box, cast_rays, classify_box, clearance, contains,
+    MassProperties, Membership, Obstacle, Overlap, PointCursor, PointTable, Ray, RayHit, RaySpans, Region,
+    Sight, StopReason, SurfaceArea, Tolerance, bounding_box, cast_rays, classify_box, clearance, contains,
     interference, interference_of, line_of_sight, measure, ray_spans, surface_area,
 };
 pub use solid::{

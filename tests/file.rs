@@ -10,8 +10,8 @@ mod common;
 use aligned::Aligned;
 use common::cubes::Cubes;
 use leafless::{
-    Control, Csg, Cube, Cursor, Error, FormatError, Frame, Metadata, Octree, OctreeRef, PointCursor, Rule,
-    Tag, Verdict, build, compact, complement, difference, file, intersection, union, xor,
+    Control, Csg, Cube, Cursor, Error, FormatError, Frame, Metadata, Octree, OctreeRef, PointCursor,
+    PointTable, Rule, Tag, Verdict, build, compact, complement, difference, file, intersection, union, xor,
 };
 use std::path::Path;
 
@@ -253,6 +253,14 @@ fn read_all(tree: &OctreeRef<'_>) {
     for (&point, &answer) in points.iter().zip(&answers) {
         assert_eq!(tree.contains(point), answer);
         assert_eq!(cursor.contains(point), answer);
+    }
+    for level in [0, 3, 6] {
+        // Of a damaged tree less may be known by way of a table, and nothing else.
+        let table = PointTable::new(tree, level).unwrap();
+        let known = points.iter().map(|&point| table.contains(point));
+        known.zip(&answers).for_each(|(known, &answer)| {
+            assert!(known == answer || known == leafless::Membership::Undecided)
+        });
     }
     for (low, high) in [(0.0, 1.0), (0.3, 0.4), (0.5, 0.5), (-1.0, 2.0), (0.7, 1.5)] {
         tree.classify_box(at([low; 3]), at([high; 3])).unwrap();

@@ -11,7 +11,9 @@ mod make_vectors;
 mod aligned;
 
 use aligned::Aligned;
-use leafless::{Error, FormatError, Frame, Membership, Octree, OctreeRef, PointCursor, Proof, file};
+use leafless::{
+    Error, FormatError, Frame, Membership, Octree, OctreeRef, PointCursor, PointTable, Proof, file,
+};
 use make_vectors::{Way, hex, name, number};
 use std::collections::BTreeSet;
 use std::fs;
@@ -180,6 +182,7 @@ fn viewed(tree: &OctreeRef<'_>, facts: &Facts<'_>) {
     );
     assert_eq!(tree.is_binary(), facts.one("planes") == "1");
     let mut cursor = PointCursor::new(tree);
+    let table = PointTable::new(tree, 4).unwrap();
     let (mut points, mut expected) = (vec![], vec![]);
     for line in facts.all("point") {
         let words: Vec<&str> = line.split(' ').collect();
@@ -191,7 +194,7 @@ fn viewed(tree: &OctreeRef<'_>, facts: &Facts<'_>) {
             other => panic!("{other}"),
         };
         assert_eq!(tree.contains(point), answer, "{point:?}");
-        assert_eq!(cursor.contains(point), answer, "{point:?}");
+        assert_eq!((cursor.contains(point), table.contains(point)), (answer, answer), "{point:?}");
         points.push(point);
         expected.push(answer);
     }

@@ -31,6 +31,7 @@ const SECTIONS: &[&str] = &[
     "scene",
     "op",
     "query",
+    "point",
     "cells",
     "lazy",
     "interference",

@@ -5,8 +5,8 @@ mod common;
 use common::cubes::Plain;
 use common::{Dense, DenseSolid, Random, Shape, alone, assert_is, cases, lattice_frame, positions, shapes};
 use leafless::{
-    AnySolid, Callback, Cell, Control, Csg, Cursor, Error, Frame, Membership, Octree, PointCursor, Region,
-    Rule, Solid, SplitCounter, Tag, Verdict, build, classify_box, compact, contains,
+    AnySolid, Callback, Cell, Control, Csg, Cursor, Error, Frame, Membership, Octree, PointCursor,
+    PointTable, Region, Rule, Solid, SplitCounter, Tag, Verdict, build, classify_box, compact, contains,
 };
 use proptest::prelude::*;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -71,6 +71,16 @@ fn every_way_to_ask(tree: &Octree, dense: &Dense, seed: u64) {
     let mut cursor = PointCursor::new(tree.view());
     for at in positions(dense.depth) {
         assert_eq!(cursor.tag_at(at), dense.at(at));
+    }
+    for level in 0..=dense.depth + 1 {
+        let table = PointTable::new(tree.view(), level).unwrap();
+        assert!(table.level() <= level.min(dense.depth).max(1 + (dense.depth + 1) % 2));
+        positions(dense.depth).for_each(|at| assert_eq!(table.tag_at(at), dense.at(at)));
+        assert_eq!(table.tag_at([0, 1 << dense.depth, 0]), Tag::Partial);
+        let mut answers = vec![Membership::Inside; points.len()];
+        table.contains_many(&points, &mut answers).unwrap();
+        assert_eq!(answers, wanted);
+        assert!(table.contains_many(&points, &mut answers[1..]).is_err());
     }
     let (mut random, n) = (Random(seed), 1u64 << dense.depth);
     let mut last = [0; 3];

@@ -4,8 +4,8 @@
 use super::{Aligned, CONTROL, Random, halves, walk};
 use leafless::{
     Cell, CellFilter, Classifier, Control, Cursor, Direction, Frame, LazyOctree, Membership, OctreeRef,
-    PointCursor, Proof, Region, Rule, Solid, Tag, TaggedCell, Verdict, Worker, Zone, build, classify_box,
-    contains, file,
+    PointCursor, PointTable, Proof, Region, Rule, Solid, Tag, TaggedCell, Verdict, Worker, Zone, build,
+    classify_box, contains, file,
 };
 
 /// Asks the tree in the first half of `data` what the second half says.
@@ -131,8 +131,10 @@ fn ask_points(tree: &OctreeRef<'_>, points: &[[f64; 3]]) {
     let mut answers = vec![Membership::Inside; points.len()];
     tree.contains_many(points, &mut answers).expect("as many answers as points");
     let mut remembering = PointCursor::new(tree);
+    let tables = [1, 4].map(|level| PointTable::new(tree, level).expect("a small table"));
     for (&point, &answer) in points.iter().zip(&answers) {
         assert_eq!((tree.contains(point), remembering.contains(point)), (answer, answer), "{point:?}");
+        assert_eq!(tables.each_ref().map(|table| table.contains(point)), [answer; 2], "{point:?}");
         let Some(at) = tree.frame().cell_of(point) else {
             assert_eq!(answer, Membership::Undecided);
             continue;

@@ -19,6 +19,7 @@
 //! | `scene` | scenes in the language of OpenSCAD's CSG dumps |
 //! | `op` | building, resolving, Booleans |
 //! | `query` | points, boxes, cursors |
+//! | `point` | cursors and tables for points |
 //! | `cells` | neighbours of cells, cells and boundary faces one after another |
 //! | `lazy` | octrees that are split on demand |
 //! | `interference` | solids under affine maps; overlap and distance of two solids |
@@ -48,6 +49,7 @@ mod mesh_file;
 mod mesh_moments;
 mod octree;
 mod op;
+mod point;
 mod polyhedron;
 mod query;
 mod scene;
@@ -74,6 +76,7 @@ pub use mesh_file::*;
 pub use mesh_moments::*;
 pub use octree::*;
 pub use op::*;
+pub use point::*;
 pub use polyhedron::*;
 pub use query::*;
 pub use scene::*;

@@ -1,4 +1,4 @@
-//! Queries: points, boxes, and cursors that remember where they are.
+//! Queries: points, boxes, and cursors on the nodes of an octree.
 
 use super::boundary::{Failure, array, exclusive, guard, guard_free, out, share, shared, slice};
 use super::control::{controlled, leafless_options};
@@ -7,7 +7,7 @@ use super::octree::{leafless_octree, leafless_tag};
 use super::solid::leafless_solid;
 use super::status::leafless_status;
 use crate::octree::Cursor;
-use crate::query::{Membership, PointCursor, Region, classify_box, contains};
+use crate::query::{Membership, Region, classify_box, contains};
 use alloc::boxed::Box;
 use alloc::sync::Arc;
 use core::mem::{align_of, size_of};
@@ -44,6 +44,23 @@ const _: () = {
     assert!(Membership::Inside as u8 == leafless_membership::LEAFLESS_MEMBERSHIP_INSIDE as u8);
     assert!(Membership::Undecided as u8 == leafless_membership::LEAFLESS_MEMBERSHIP_UNDECIDED as u8);
 };
+
+/// Room for the answers to `count` points, at least one.
+///
+/// # Safety
+/// `memberships` is NULL, or has room for `count` answers that nobody else touches.
+pub(super) unsafe fn answers<'m>(
+    memberships: *mut leafless_membership,
+    count: usize,
+) -> Result<&'m mut [Membership], Failure> {
+    // SAFETY: the caller's promise.
+    unsafe {
+        out(memberships, "memberships")?;
+        // Every byte must be an answer before there is a slice of answers.
+        memberships.cast::<u8>().write_bytes(Membership::Undecided as u8, count);
+        Ok(core::slice::from_raw_parts_mut(memberships.cast(), count))
+    }
+}
 
 /// The answer to a box query. Each is proven, but for the last.
 #[derive(Clone, Copy)]
@@ -119,10 +136,7 @@ pub unsafe extern "C" fn leafless_octree_contains_many(
         if points.is_empty() {
             return Ok(());
         }
-        out(memberships, "memberships")?;
-        // Every byte must be an answer before there is a slice of answers.
-        memberships.cast::<u8>().write_bytes(Membership::Undecided as u8, points.len());
-        let answers = core::slice::from_raw_parts_mut(memberships.cast::<Membership>(), points.len());
+        let answers = answers(memberships, points.len())?;
         Ok(octree.contains_many(points, answers)?)
     })
 }
@@ -209,10 +223,7 @@ pub unsafe extern "C" fn leafless_solid_contains(
         if points.is_empty() {
             return Ok(());
         }
-        out(memberships, "memberships")?;
-        // Every byte must be an answer before there is a slice of answers.
-        memberships.cast::<u8>().write_bytes(Membership::Undecided as u8, points.len());
-        let answers = core::slice::from_raw_parts_mut(memberships.cast::<Membership>(), points.len());
+        let answers = answers(memberships, points.len())?;
         controlled(options, |control| contains(solid, &frame, points, answers, control))
     })
 }
@@ -249,102 +260,6 @@ pub unsafe extern "C" fn leafless_solid_classify_box(
         let region = out(region, "region")?;
         let found = controlled(options, |control| classify_box(solid, &frame, min, max, control))?;
         region.write(found.into())
-    })
-}
-
-/// Point queries that remember the way to the last answer: for points that lie near each other, such as along
-/// a line or in scan order.
-///
-/// Every call changes it: only one thread may use a cursor at a time. Threads may have a cursor each.
-pub struct leafless_point_cursor(Yoke<PointCursor<'static>, Arc<leafless_octree>>);
-
-/// Makes a point cursor.
-///
-/// - Buffers: `cursor`, one pointer.
-/// - Result: `*cursor`.
-/// - Errors: only the general ones.
-/// - Ownership: the cursor shares the octree, which may be freed; give `*cursor` back with
-///   leafless_point_cursor_free.
-/// - Threads: any.
-/// - Untrusted input: any octree.
-/// - Since: 0.1
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn leafless_point_cursor_new(
-    octree: *const leafless_octree,
-    cursor: *mut *mut leafless_point_cursor,
-) -> leafless_status {
-    guard(|| unsafe {
-        let octree = share(octree, "octree")?;
-        let cursor = out(cursor, "cursor")?;
-        let yoke = Yoke::attach_to_cart(octree, |handle| PointCursor::new(handle.octree.view()));
-        cursor.write(Box::into_raw(Box::new(leafless_point_cursor(yoke))))
-    })
-}
-
-/// Gives back a point cursor.
-///
-/// - Buffers: `cursor`, a handle or NULL, which does nothing.
-/// - Result: none.
-/// - Errors: none.
-/// - Ownership: the handle is gone.
-/// - Threads: no other call may use the handle.
-/// - Untrusted input: none.
-/// - Since: 0.1
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn leafless_point_cursor_free(cursor: *mut leafless_point_cursor) {
-    if !cursor.is_null() {
-        // SAFETY: the caller's promise; it came from `Box::into_raw`.
-        guard_free(|| drop(unsafe { Box::from_raw(cursor) }));
-    }
-}
-
-/// As leafless_octree_contains.
-///
-/// - Buffers: `point_model`, 3 numbers; `membership`, one.
-/// - Result: `*membership`.
-/// - Errors: only the general ones.
-/// - Ownership: nothing changes hands.
-/// - Threads: no other call may use the cursor.
-/// - Untrusted input: any octree, any numbers; damage reads as undecided.
-/// - Since: 0.1
-///
-/// cbindgen:ptrs-as-arrays=[[point_model; 3]]
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn leafless_point_cursor_contains(
-    cursor: *mut leafless_point_cursor,
-    point_model: *const f64,
-    membership: *mut leafless_membership,
-) -> leafless_status {
-    guard(|| unsafe {
-        let cursor = exclusive(cursor, "cursor")?;
-        let point = array(point_model, "point_model")?;
-        let membership = out(membership, "membership")?;
-        membership.write(cursor.0.with_mut_return(move |cursor| cursor.contains(point)).into())
-    })
-}
-
-/// As leafless_octree_tag_at.
-///
-/// - Buffers: `cell`, 3 numbers; `tag`, one.
-/// - Result: `*tag`: EMPTY, FULL or PARTIAL; PARTIAL if a coordinate is not below 2^depth.
-/// - Errors: only the general ones.
-/// - Ownership: nothing changes hands.
-/// - Threads: no other call may use the cursor.
-/// - Untrusted input: any octree, any numbers; damage reads as PARTIAL.
-/// - Since: 0.1
-///
-/// cbindgen:ptrs-as-arrays=[[cell; 3]]
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn leafless_point_cursor_tag_at(
-    cursor: *mut leafless_point_cursor,
-    cell: *const u32,
-    tag: *mut leafless_tag,
-) -> leafless_status {
-    guard(|| unsafe {
-        let cursor = exclusive(cursor, "cursor")?;
-        let cell = array(cell, "cell")?;
-        let tag = out(tag, "tag")?;
-        tag.write(cursor.0.with_mut_return(move |cursor| cursor.tag_at(cell)).into())
     })
 }
 

@@ -100,6 +100,12 @@ impl<'a> Links<'a> {
         Links { planes: &tree.planes[..count], rel: &tree.rel[..count], base: tree.base }
     }
 
+    /// The cells of element `index`; PARTIAL if there is no such element.
+    #[inline(always)]
+    pub fn planes(&self, index: usize) -> Planes {
+        self.planes.get(index).copied().unwrap_or(Planes::uniform(Tag::Partial))
+    }
+
     /// What element `index` has in cell `c`, and the child there, which means something for a BRANCH whose
     /// link is sound: whether it leads to `level`, the children's range of indices.
     #[inline(always)]

@@ -20,7 +20,7 @@ pub use interference::{Interference, Overlap, interference, interference_of};
 pub use measure::{
     AREA_SPLITS, MEASURE_SPLITS, MassProperties, StopReason, SurfaceArea, Tolerance, measure, surface_area,
 };
-pub use point::{Membership, PointCursor};
+pub use point::{Membership, PointCursor, PointTable};
 pub use probe::contains;
 pub use ray::{Obstacle, Ray, RayHit, RaySpans, Sight, cast_rays, line_of_sight, ray_spans};
 pub use region::{Region, classify_box};

@@ -1,0 +1,115 @@
+//! Points that lie near each other.
+
+use super::Membership;
+use super::descent::{Packed, brick, settled};
+use crate::dispatch::{Hot, with_popcount};
+use crate::octree::links::{Links, levels_below};
+use crate::octree::view::{MAX_ELEMENT_LEVELS, OctreeRef};
+use crate::octree::{Planes, Tag};
+use yoke::Yokeable;
+
+/// Point queries that remember the way to the last answer: for points that lie near each other, such as
+/// along a line or in scan order. A point in the same element as the last one costs no memory access.
+#[derive(Clone, Yokeable)]
+pub struct PointCursor<'a> {
+    tree: OctreeRef<'a>,
+    /// A cell in the element that gave the last answer. At first it lies outside of any universe.
+    last: [u32; 3],
+    /// Elements on the way to `last`, valid up to level `reached`.
+    path: [usize; MAX_ELEMENT_LEVELS],
+    reached: usize,
+    /// The cells of the element that gave the last answer, and the binary logarithm of their edge.
+    planes: Planes,
+    shift: u32,
+}
+
+impl<'a> PointCursor<'a> {
+    /// A cursor that has not been anywhere yet.
+    pub fn new(tree: &OctreeRef<'a>) -> PointCursor<'a> {
+        PointCursor {
+            tree: *tree,
+            last: [u32::MAX; 3],
+            path: [0; MAX_ELEMENT_LEVELS],
+            reached: 0,
+            planes: Planes::uniform(Tag::Branch),
+            shift: 0,
+        }
+    }
+
+    /// As [`OctreeRef::contains`].
+    #[inline]
+    pub fn contains(&mut self, point: [f64; 3]) -> Membership {
+        match self.tree.frame.cell_of(point) {
+            Some(at) => self.locate(at).into(),
+            None => Membership::Undecided,
+        }
+    }
+
+    /// As [`OctreeRef::tag_at`].
+    #[inline]
+    pub fn tag_at(&mut self, at: [u32; 3]) -> Tag {
+        // Their number is a power of two, so one comparison tells whether all three are cells.
+        if at[0] | at[1] | at[2] >= self.tree.frame.cells() { Tag::Partial } else { self.locate(at) }
+    }
+
+    /// The tag of a finest cell of the universe.
+    #[inline]
+    fn locate(&mut self, at: [u32; 3]) -> Tag {
+        let changed = self.changed(at);
+        // Two bits a level.
+        if changed >> (self.shift + 2) == 0 {
+            let tag = self.planes.tag(Packed::new(at).cell(self.shift));
+            if tag != Tag::Branch {
+                return tag;
+            }
+        }
+        with_popcount(Move { cursor: self, at, changed })
+    }
+
+    /// The bits in which coordinates differ from those of the last cell.
+    #[inline(always)]
+    fn changed(&self, at: [u32; 3]) -> u32 {
+        (at[0] ^ self.last[0]) | (at[1] ^ self.last[1]) | (at[2] ^ self.last[2])
+    }
+}
+
+/// A move into another element.
+struct Move<'c, 'a> {
+    cursor: &'c mut PointCursor<'a>,
+    at: [u32; 3],
+    changed: u32,
+}
+
+impl Hot for Move<'_, '_> {
+    type Output = Tag;
+
+    #[inline(always)]
+    fn run(self) -> Tag {
+        let Move { cursor, at, changed } = self;
+        let tree = cursor.tree;
+        if tree.root != Tag::Branch {
+            return tree.root;
+        }
+        // Elements above the highest changed bit are on both ways.
+        let highest = (31 - (changed | 1).leading_zeros()) as usize / 2;
+        let mut e = (tree.levels() - 1).saturating_sub(highest).min(cursor.reached);
+        cursor.last = at;
+        let at = Packed::new(at);
+        let links = Links::new(&tree);
+        for (shift, level) in levels_below(&tree).skip(e) {
+            let (tag, child, goes_on) = links.step(cursor.path[e], at.cell(shift), level);
+            if !goes_on {
+                cursor.reached = e;
+                cursor.shift = shift;
+                cursor.planes = links.planes(cursor.path[e]);
+                return settled(tag);
+            }
+            e += 1;
+            cursor.path[e] = child;
+        }
+        cursor.reached = e;
+        cursor.shift = 0;
+        cursor.planes = brick(&tree, cursor.path[e]);
+        settled(cursor.planes.tag(at.cell(0)))
+    }
+}
