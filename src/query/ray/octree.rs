@@ -124,6 +124,31 @@ struct Course {
     mirror: [u32; 3],
 }
 
+/// `AHEAD[axis][falls][k]`: the cells of an element whose coordinate along an axis is k or comes after it.
+const AHEAD: [[[u64; 4]; 2]; 3] = {
+    let mut ahead = [[[0; 4]; 2]; 3];
+    let mut axis = 0;
+    while axis < 3 {
+        let slab = morton::SLAB[axis];
+        let mut k = 0;
+        while k < 4 {
+            let (mut from, mut to) = (k, k);
+            while from < 4 {
+                ahead[axis][0][k] |= slab[from];
+                from += 1;
+            }
+            ahead[axis][1][k] |= slab[0];
+            while to > 0 {
+                ahead[axis][1][k] |= slab[to];
+                to -= 1;
+            }
+            k += 1;
+        }
+        axis += 1;
+    }
+    ahead
+};
+
 /// A bound of all relative rounding errors of a coordinate together, of which each is 2^-53 and none counts more
 /// than twice. They are relative to the universe and the ray's start.
 const ERROR: f64 = 1.0 / (1u64 << 48) as f64;
@@ -155,6 +180,14 @@ impl Course {
                 if still { 0.0 } else { course.place_error[axis] * course.slowness[axis] };
         }
         course
+    }
+
+    /// The cells of an element that a ray may still meet which is in one of them; they have an edge of 2^shift.
+    #[inline(always)]
+    fn ahead(&self, place: [u32; 3], shift: u32) -> u64 {
+        let [x, y, z] = [0, 1, 2]
+            .map(|axis| AHEAD[axis][(self.mirror[axis] != 0) as usize][(place[axis] >> shift & 3) as usize]);
+        x & y & z
     }
 
     /// When the ray passes a plane of an axis.
@@ -253,8 +286,8 @@ impl March {
         loop {
             let place = [0, 1, 2].map(|axis| at[axis] ^ course.mirror[axis]);
             // Down to the cell in which the ray is.
-            let (tag, shift) = if tree.root != Tag::Branch {
-                (tree.root, frame.depth() as u32)
+            let (tag, mut shift, c) = if tree.root != Tag::Branch {
+                (tree.root, frame.depth() as u32, 0)
             } else {
                 loop {
                     let shift = 2 * (levels - 1 - e) as u32;
@@ -265,11 +298,12 @@ impl March {
                             path[e] = child;
                             planes = tree.entry(child).unwrap_or(Planes::uniform(Tag::Partial));
                         }
-                        Step::Settled(tag) => break (tag, shift + (planes.octant(c >> 3) == tag) as u32),
+                        Step::Settled(tag) => break (tag, shift, c),
                     }
                 }
             };
             if tag != Tag::Empty {
+                let shift = shift + (tree.root == Tag::Branch && planes.octant(c >> 3) == tag) as u32;
                 let cell = Cell { level: frame.depth() - shift as u8, at: place.map(|a| a >> shift) };
                 let plane = |axis: usize| {
                     if course.mirror[axis] == 0 { at[axis] } else { frame.cells() - at[axis] }
@@ -280,6 +314,13 @@ impl March {
                     march.inner = Some(met);
                     return Some(march);
                 }
+            }
+            if tree.root == Tag::Branch {
+                // Nothing on the ray's further way through the octant, or through all of the element, may stop it.
+                let ahead = course.ahead(place, shift);
+                let stops = if march.outer.is_none() { planes.lower | planes.upper } else { planes.lower };
+                let octant = 0xFF << (c & !7);
+                shift += (stops & ahead & octant == 0) as u32 + (stops & ahead == 0) as u32;
             }
             // Out of it by the plane that is passed first. Nothing is indexed by its axis, so that all stays in
             // registers.
