@@ -51,7 +51,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             Content::Mesh => {
                 arguments.drawing.refuse(&input, "a mesh")?;
                 let mesh = arguments.reading.mesh(&input, bytes)?;
-                return mesh::tell(&input, &mesh, length, arguments.json);
+                let fill = arguments.reading.fill(mesh.format);
+                mesh::check_closed(&input, &mesh.mesh, fill)?;
+                return mesh::tell(&input, &mesh, fill, length, arguments.json);
             }
         }
     };

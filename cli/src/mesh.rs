@@ -8,8 +8,8 @@ use crate::report::{Defect, Mesh, Volume};
 use clap::{Args, ValueEnum};
 use leafless::exchange::{LengthUnit, MeshFile, MeshFormat, MeshOptions, MeshWarning};
 use leafless::{
-    Control, Error, FillRule, Frame, Interval, MAX_DEPTH, MeshReport, MeshSolid, TriangleMesh, exchange,
-    measure,
+    Control, Error, FillRule, Frame, Interval, MAX_DEPTH, MeshError, MeshReport, MeshSolid, TriangleMesh,
+    exchange, measure,
 };
 use serde::Serialize;
 use std::fmt::Write;
@@ -30,6 +30,10 @@ pub struct Reading {
     /// Factor to scale the mesh by besides. Without it: 1
     #[arg(long, value_name = "FACTOR", value_parser = scale, allow_hyphen_values = true)]
     scale: Option<f64>,
+    /// Which points count as inside a mesh. Without it: positive for 3MF, as that format demands, and nonzero for
+    /// all others
+    #[arg(long, value_enum)]
+    fill: Option<FillName>,
 }
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
@@ -51,6 +55,37 @@ impl From<FormatName> for MeshFormat {
             FormatName::Off => MeshFormat::Off,
             FormatName::ThreeMf => MeshFormat::ThreeMf,
         }
+    }
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum FillName {
+    /// Those that the surface winds around, in either sense: overlapping bodies are joined
+    #[value(alias = "non-zero")]
+    Nonzero,
+    /// Those that it winds around in the positive sense: bodies that are inside out take away from others
+    Positive,
+    /// Those that it winds around an odd number of times: overlaps are holes. Needs a closed mesh
+    #[value(alias = "even-odd")]
+    Evenodd,
+}
+
+impl From<FillName> for FillRule {
+    fn from(name: FillName) -> FillRule {
+        match name {
+            FillName::Nonzero => FillRule::NonZero,
+            FillName::Positive => FillRule::Positive,
+            FillName::Evenodd => FillRule::EvenOdd,
+        }
+    }
+}
+
+/// The name of a fill rule, as the user writes it.
+pub fn fill_name(fill: FillRule) -> &'static str {
+    match fill {
+        FillRule::NonZero => "nonzero",
+        FillRule::Positive => "positive",
+        FillRule::EvenOdd => "evenodd",
     }
 }
 
@@ -78,10 +113,20 @@ impl Reading {
             ("--unit", self.unit.is_some()),
             ("--to", self.to.is_some()),
             ("--scale", self.scale.is_some()),
+            ("--fill", self.fill.is_some()),
         ];
         match given.into_iter().find(|option| option.1) {
             Some((option, _)) => Err(Failure::Usage(format!("{option} is for meshes: {input} is {what}"))),
             None => Ok(()),
+        }
+    }
+
+    /// The rule by which points count as inside a mesh of this format.
+    pub fn fill(&self, format: MeshFormat) -> FillRule {
+        match (self.fill, format) {
+            (Some(fill), _) => fill.into(),
+            (None, MeshFormat::ThreeMf) => FillRule::Positive,
+            (None, _) => FillRule::NonZero,
         }
     }
 
@@ -152,12 +197,18 @@ pub fn openness(report: &MeshReport) -> Option<String> {
     }
 }
 
-/// The fill rule of a format, unless the user asks for another one: which points count as inside.
-pub fn fill_rule(format: MeshFormat) -> FillRule {
-    match format {
-        MeshFormat::ThreeMf => FillRule::Positive,
-        _ => FillRule::NonZero,
+/// Refuses a mesh that is open where the fill rule needs a closed one.
+pub fn check_closed(input: &Input, mesh: &TriangleMesh, fill: FillRule) -> Result<(), Failure> {
+    if fill != FillRule::EvenOdd {
+        return Ok(());
     }
+    mesh.check_closed(fill).map_err(|error| {
+        let hint = match error {
+            Error::Mesh(MeshError::Open { .. }) => " (--fill nonzero and positive take open meshes)",
+            _ => "",
+        };
+        Failure::of(input, format_args!("{error}{hint}"))
+    })
 }
 
 /// What is read though it departs from its format, in words.
@@ -190,7 +241,7 @@ pub struct Info {
     volume: Option<f64>,
     /// What is enclosed by the rule; absent (null) unless bodies overlap, or may, and make it another volume.
     volume_by_rule: Option<Volume>,
-    /// The rule: `nonzero` or `positive`.
+    /// The rule: `nonzero`, `positive` or `evenodd`.
     rule: &'static str,
     closed: bool,
     /// Objects of a 3MF that are no solids.
@@ -205,11 +256,10 @@ pub struct Info {
 }
 
 impl Info {
-    pub fn new(input: &Input, file: &MeshFile, bytes: u64) -> Result<Info, Failure> {
+    pub fn new(input: &Input, file: &MeshFile, fill: FillRule, bytes: u64) -> Result<Info, Failure> {
         let report = file.mesh.report().of(input)?;
         let closed = openness(&report).is_none() && report.triangles > 0;
         let (min, max) = file.mesh.bounds();
-        let fill = fill_rule(file.format);
         let may_overlap = report.overlapping_bodies + report.undecided_bodies > 0;
         let by_rule = (closed && may_overlap).then(|| volume_by(fill, &file.mesh)).transpose().of(input)?;
         let pairs = file.mesh.intersecting_pairs(PAIRS, &Control::default()).of(input)?;
@@ -223,7 +273,7 @@ impl Info {
             max,
             volume: closed.then(|| file.mesh.volume()),
             volume_by_rule: by_rule.map(Into::into),
-            rule: if fill == FillRule::Positive { "positive" } else { "nonzero" },
+            rule: fill_name(fill),
             closed,
             skipped: file.skipped,
             warnings: in_words(&file.warnings),
@@ -309,8 +359,8 @@ impl Info {
 }
 
 /// Prints what is known of a mesh.
-pub fn tell(input: &Input, file: &MeshFile, bytes: u64, json: bool) -> Result<(), Failure> {
-    let info = Info::new(input, file, bytes)?;
+pub fn tell(input: &Input, file: &MeshFile, fill: FillRule, bytes: u64, json: bool) -> Result<(), Failure> {
+    let info = Info::new(input, file, fill, bytes)?;
     let text = if json { output::json(&info)? } else { info.text(&file.mesh, input)? };
     output::print(text.as_bytes())
 }

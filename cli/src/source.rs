@@ -3,7 +3,7 @@
 use crate::content::Content;
 use crate::failure::{Failure, Of};
 use crate::input::Input;
-use crate::mesh::{Reading, ends_at_vertices, fill_rule, frame_around, openness};
+use crate::mesh::{Reading, check_closed, ends_at_vertices, frame_around, openness};
 use crate::output;
 use crate::scene::{Curves, Drawing, bounds_of, frame_of, scene_of};
 use leafless::scene::Scene;
@@ -48,8 +48,11 @@ impl Source {
             Content::Mesh => drawing.refuse(input, "a mesh")?,
         }
         let read = reading.mesh(input, bytes)?;
-        let fill = fill_rule(read.format);
-        if let Some(how) = openness(&read.mesh.report().of(input)?) {
+        let fill = reading.fill(read.format);
+        check_closed(input, &read.mesh, fill)?;
+        if fill != FillRule::EvenOdd
+            && let Some(how) = openness(&read.mesh.report().of(input)?)
+        {
             let whole = "the mesh does not bound a solid";
             let warning =
                 format!("{input}: warning: {whole}: {how}; the winding number decides what is inside");

@@ -2,13 +2,13 @@
 
 use crate::failure::{Failure, Of};
 use crate::input::Input;
-use crate::mesh::{Reading, format_name, frame_around, in_words, openness};
+use crate::mesh::{Reading, check_closed, fill_name, format_name, frame_around, in_words, openness};
 use crate::output::{self, Output, count, counted, number, seconds};
 use crate::progress::watched;
 use crate::report::{Info, Mesh};
 use clap::{Args, ValueEnum};
-use leafless::exchange::{LengthUnit, MeshFile, MeshFormat};
-use leafless::{Error, FillRule, Frame, MeshError, MeshReport, MeshSolid, Metadata, Octree, Rule, build};
+use leafless::exchange::{LengthUnit, MeshFile};
+use leafless::{FillRule, Frame, MeshError, MeshReport, MeshSolid, Metadata, Octree, Rule, build};
 use serde::Serialize;
 use std::ffi::OsString;
 use std::fmt::Write;
@@ -41,10 +41,6 @@ pub struct Arguments {
     /// What becomes of the finest cells that the surface passes through
     #[arg(long, value_enum, default_value_t = RuleName::Certified)]
     rule: RuleName,
-    /// Which points count as inside. Without it: positive for 3MF, as that format demands, and nonzero for
-    /// all others
-    #[arg(long, value_enum)]
-    fill: Option<FillName>,
     #[command(flatten)]
     reading: Reading,
     /// Lower corner and edge length of the cube to cut into cells, in the units of the mesh once it is
@@ -86,28 +82,6 @@ impl From<RuleName> for Rule {
     }
 }
 
-#[derive(Debug, Clone, Copy, ValueEnum)]
-enum FillName {
-    /// Those that the surface winds around, in either sense: overlapping bodies are joined
-    #[value(alias = "non-zero")]
-    Nonzero,
-    /// Those that it winds around in the positive sense: bodies that are inside out take away from others
-    Positive,
-    /// Those that it winds around an odd number of times: overlaps are holes. Needs a closed mesh
-    #[value(alias = "even-odd")]
-    Evenodd,
-}
-
-impl From<FillName> for FillRule {
-    fn from(name: FillName) -> FillRule {
-        match name {
-            FillName::Nonzero => FillRule::NonZero,
-            FillName::Positive => FillRule::Positive,
-            FillName::Evenodd => FillRule::EvenOdd,
-        }
-    }
-}
-
 /// The universe of `--bounds`; its depth is a placeholder.
 pub fn bounds(text: &str) -> Result<Frame, String> {
     let numbers: Result<Vec<f64>, _> = text.split(',').map(|number| number.trim().parse()).collect();
@@ -140,7 +114,7 @@ struct Report {
     input: String,
     output: String,
     rule: String,
-    fill: String,
+    fill: &'static str,
     format: &'static str,
     /// Absent (null) where nobody knows it.
     unit: Option<&'static str>,
@@ -167,13 +141,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
 
     let (MeshFile { mesh, format, unit, skipped, warnings, .. }, source) = arguments.reading.read(&input)?;
-    let fill = arguments.fill.unwrap_or(match format {
-        MeshFormat::ThreeMf => FillName::Positive,
-        _ => FillName::Nonzero,
-    });
-    if let FillName::Evenodd = fill {
-        mesh.check_closed(fill.into()).map_err(|error| hint(&input, error))?;
-    }
+    let fill = arguments.reading.fill(format);
+    check_closed(&input, &mesh, fill)?;
     let mesh_report = mesh.report().of(&input)?;
     if mesh_report.triangles == 0 {
         return Err(Failure::of(&input, MeshError::Empty));
@@ -189,7 +158,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let read = start.elapsed().as_secs_f64();
 
     let building = Instant::now();
-    let solid = MeshSolid::new(mesh, fill.into()).of(&input)?;
+    let solid = MeshSolid::new(mesh, fill).of(&input)?;
     let octree = watched("voxelize", arguments.threads, |control| {
         build(&solid, &frame, arguments.rule.into(), control)
     });
@@ -201,7 +170,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let save = saving.elapsed().as_secs_f64();
 
     if let Some(how) = openness(&mesh_report)
-        && !matches!(fill, FillName::Evenodd)
+        && fill != FillRule::EvenOdd
     {
         let whole = "the mesh does not bound a solid";
         output::complain(&format!(
@@ -218,7 +187,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             input: input.to_string(),
             output: output.to_string(),
             rule: name_of(arguments.rule),
-            fill: name_of(fill),
+            fill: fill_name(fill),
             format: format_name(format),
             unit: unit.map(LengthUnit::symbol),
             skipped,
@@ -232,15 +201,6 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     let read = (&mesh_report, skipped);
     output.report(&summary(&input, &output, arguments.rule, read, &octree, &info, &timings))
-}
-
-/// What is wrong with the mesh, and what the user might do about it.
-fn hint(input: &Input, error: Error) -> Failure {
-    let hint = match error {
-        Error::Mesh(MeshError::Open { .. }) => " (--fill nonzero and positive take open meshes)",
-        _ => "",
-    };
-    Failure::of(input, format_args!("{error}{hint}"))
 }
 
 /// What the solid's file says of its making: nothing that differs from run to run.

@@ -199,6 +199,19 @@ fn the_four_rules_and_both_fills() {
     assert!(lower < 8.0 && 8.0 < upper && upper < 12.0 + 4.0, "{lower} {upper}");
     let (_, (sampled, _)) = run("--fill evenodd --rule sampled");
     assert!((7.0..9.0).contains(&sampled), "{sampled}");
+    // The other ways to ask go by the same rules.
+    for (fill, volume) in
+        [("", 12.0), ("--fill nonzero", 12.0), ("--fill positive", 12.0), ("--fill evenodd", 8.0)]
+    {
+        let json = place.run(&format!("measure two.stl --json {fill}")).good().json();
+        let [lower, upper] = ["lower", "upper"].map(|side| json["volume"][side].as_f64().unwrap());
+        assert!(lower <= volume && volume <= upper && upper - lower < 0.2, "{fill}: {lower} {upper}");
+        let run = place.run(&format!("info two.stl {fill}")).good();
+        let text = run.text();
+        let rule = if fill.is_empty() { "nonzero" } else { &fill[7..] };
+        assert!(text.contains(&format!("by the rule ({rule})")), "{text}");
+    }
+    place.run("measure two.lfl --fill evenodd").bad(2, &["--fill", "is for meshes", "two.lfl"]);
 }
 
 #[test]
