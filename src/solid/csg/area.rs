@@ -11,11 +11,11 @@
 
 use super::bounds::{centre, half_edge};
 use super::program::Program;
-use super::taylor::Taylor;
 use super::word::{Op, Word};
 use super::worker::{CsgPart, Scratch};
 use crate::lattice::exact::sqrt;
 use crate::lattice::{Cell, Interval};
+use crate::solid::cut::{Quadratic, Taylor};
 
 /// More than what comes of rounding, lengths and areas being at most 24.
 const ROUNDING: f64 = 1e-13;
@@ -75,7 +75,7 @@ fn of_intersection(sides: &[Option<Side>; 3]) -> Interval {
         return of_surface(&side.f);
     }
     let known = sides.iter().flatten();
-    if !known.clone().all(|side| side.f.error < f64::INFINITY) {
+    if !known.clone().all(|side| side.f.f.error < f64::INFINITY) {
         return Interval { lower: 0.0, upper: known.map(|side| of_surface(&side.f).upper).sum() };
     }
     let mut sum = Interval::exactly(0.0);
@@ -90,22 +90,20 @@ fn of_intersection(sides: &[Option<Side>; 3]) -> Interval {
 }
 
 /// Of the area that a surface has within other half-spaces.
-fn of_face<'a>(f: &Taylor, others: impl Iterator<Item = &'a Side>) -> Interval {
-    let whole = Interval { lower: 0.0, upper: of_surface(f).upper };
+fn of_face<'a>(surface: &Taylor, others: impl Iterator<Item = &'a Side>) -> Interval {
+    let whole = Interval { lower: 0.0, upper: of_surface(surface).upper };
+    let f = &surface.f;
     let size = f.gradient.map(f64::abs);
     let axis = (0..3).fold(0, |most, axis| if size[axis] > size[most] { axis } else { most });
-    let (fall, length) = (f.gradient[axis], f.steepness());
-    let bend = f.bend + 4.0 * f64::EPSILON * length;
+    let (fall, length) = (f.gradient[axis], surface.steepness());
+    let bend = surface.bend + 4.0 * f64::EPSILON * length;
     let is_graph = bend < 0.5 * size[axis] && f.error < f64::INFINITY;
     if !is_graph {
         return whole;
     }
     // Each point of the wall sees at most one of the surface, about where the linear function is 0. By how much f may
     // differ from that:
-    let off = |f: &Taylor| {
-        let terms = f.gradient.iter().chain(&f.second).map(|c| c.abs()).sum::<f64>() + f.value.abs();
-        f.second.iter().map(|c| c.abs()).sum::<f64>() + f.error + 16.0 * f64::EPSILON * terms
-    };
+    let off = |f: &Quadratic| f.curvature() + f.error + 16.0 * f64::EPSILON * f.size();
     let (x, y) = ((axis + 1) % 3, (axis + 2) % 3);
     let moved = off(f) / fall.abs();
     let (mut inner, mut outer) = (Polygon::SQUARE, Polygon::SQUARE);
@@ -119,7 +117,7 @@ fn of_face<'a>(f: &Taylor, others: impl Iterator<Item = &'a Side>) -> Interval {
     let depth = [-f.value / fall, -f.gradient[x] / fall, -f.gradient[y] / fall];
     clip([1.0 - depth[0], -depth[1], -depth[2]], moved);
     clip([1.0 + depth[0], depth[1], depth[2]], moved);
-    for Side { f: other, complement } in others {
+    for Side { f: Taylor { f: other, .. }, complement } in others {
         let along = other.gradient[axis];
         let line = [other.value, other.gradient[x], other.gradient[y]];
         let line = [0, 1, 2].map(|k| {
@@ -193,10 +191,11 @@ pub(super) fn at_most(degree: u32) -> Interval {
 }
 
 /// The area in a cell of the surface on which a function is 0, in squares of the half edge.
-pub(super) fn of_surface(f: &Taylor) -> Interval {
-    let most = at_most(f.degree);
-    let length = f.steepness();
-    let sine = f.sine();
+pub(super) fn of_surface(surface: &Taylor) -> Interval {
+    let f = &surface.f;
+    let most = at_most(surface.degree);
+    let length = surface.steepness();
+    let sine = surface.sine();
     // Less than the cosine of the angle between the gradient at the centre and any other.
     let cosine = if sine < 1.0 { sqrt((1.0 - sine * sine) * (1.0 - 4.0 * f64::EPSILON)) } else { 0.0 };
     let is_known = cosine > 0.5 && f.error < f64::INFINITY;
@@ -218,19 +217,18 @@ pub(super) fn of_surface(f: &Taylor) -> Interval {
 }
 
 /// The area in which f ≥ 0 on the wall of a cell where the coordinate of `axis` is `at`.
-fn on_wall(f: &Taylor, axis: usize, at: f64) -> Interval {
+fn on_wall(f: &Quadratic, axis: usize, at: f64) -> Interval {
     const MIXED: [[usize; 3]; 3] = [[0, 3, 4], [3, 1, 5], [4, 5, 2]];
-    let second = |i: usize, j: usize| f.second[MIXED[i][j]];
+    let square = |i: usize, j: usize| f.squares[MIXED[i][j]];
     let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
-    let value = (f.value + at * f.gradient[axis]) + second(axis, axis);
-    let [along_i, along_j] = [i, j].map(|other| f.gradient[other] + at * second(axis, other));
-    let size = f.value.abs() + f.gradient.iter().chain(&f.second).map(|c| c.abs()).sum::<f64>();
-    let error = f.error + 16.0 * f64::EPSILON * size;
+    let value = (f.value + at * f.gradient[axis]) + square(axis, axis);
+    let [along_i, along_j] = [i, j].map(|other| f.gradient[other] + 2.0 * at * square(axis, other));
+    let error = f.error + 16.0 * f64::EPSILON * f.size();
     // y is the axis along which f changes faster.
     let (of_x, of_y, x, y) =
         if along_i.abs() > along_j.abs() { (along_j, along_i, j, i) } else { (along_i, along_j, i, j) };
-    let figure = Figure { value, of_x, of_y, xx: second(x, x), xy: second(x, y), yy: second(y, y), error };
-    figure.area()
+    let [xx, xy, yy] = [square(x, x), 2.0 * square(x, y), square(y, y)];
+    Figure { value, of_x, of_y, xx, xy, yy, error }.area()
 }
 
 /// Where value + of_x x + of_y y + xx x² + xy x y + yy y², up to an error, is not negative in [-1, 1]².

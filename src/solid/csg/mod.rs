@@ -37,7 +37,6 @@ mod split;
 mod support;
 mod table;
 mod tangent;
-mod taylor;
 mod torus;
 mod word;
 mod worker;

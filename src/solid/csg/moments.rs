@@ -3,10 +3,8 @@
 use super::bounds::{centre, half_edge};
 use super::halfspace::Placed;
 use super::program::Program;
-use super::taylor::Taylor;
 use super::worker::{CsgPart, Scratch};
 use crate::lattice::{Cell, CellMoments};
-use crate::solid::cut::Quadratic;
 use crate::solid::{Enclosure, Slab, SlabJoin, cut};
 
 impl Scratch {
@@ -31,10 +29,7 @@ impl Scratch {
             slabs[count] = slab(plane, not)?;
             count += 1;
         }
-        let Taylor { value, gradient, second: [xx, yy, zz, mixed @ ..], error, .. } =
-            half_space.taylor(centre, half)?;
-        let [xy, xz, yz] = mixed.map(|c| 0.5 * c);
-        let f = Quadratic { value, gradient, squares: [xx, yy, zz, xy, xz, yz], error };
+        let f = half_space.taylor(centre, half)?.f;
         let f = if not { f.complement() } else { f };
         let known = cut::curved(&f, &slabs[..count])?;
         slabs[count] = slab(half_space, not)?;

@@ -4,8 +4,8 @@ use super::bounds::{Octants, Sides};
 use super::linear;
 use super::map::ExactMap;
 use super::tangent::Tangent;
-use super::taylor::Taylor;
 use crate::lattice::exact::{Dyadic, certain};
+use crate::solid::cut::{Quadratic, Taylor};
 use alloc::boxed::Box;
 use alloc::vec::Vec;
 use core::cmp::Ordering;
@@ -99,14 +99,8 @@ impl Plane {
     pub(super) fn taylor(&self, centre: [f64; 3], half: f64) -> Taylor {
         let Tangent { gradient, low, high } = self.tangent(centre, half);
         let error = (0.5 * (high - low)).next_up();
-        Taylor {
-            value: 0.5 * (low + high),
-            gradient,
-            second: [0.0; 6],
-            error,
-            bend: self.error * half,
-            degree: 1,
-        }
+        let f = Quadratic { value: 0.5 * (low + high), gradient, squares: [0.0; 6], error };
+        Taylor { f, bend: self.error * half, degree: 1 }
     }
 
     /// Whether the plane may be one of the lattice's.

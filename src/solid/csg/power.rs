@@ -4,9 +4,9 @@ use super::bounds::{Octants, Sides, sums};
 use super::linear::{self, Linear};
 use super::map::ExactMap;
 use super::tangent::Tangent;
-use super::taylor::Taylor;
 use crate::lattice::PAIRS;
 use crate::lattice::exact::{Dyadic, sign};
+use crate::solid::cut::{Quadratic, Taylor};
 use alloc::vec::Vec;
 use core::cmp::Ordering;
 use wide::f64x4;
@@ -203,7 +203,7 @@ impl PlacedPowers {
     /// The sum over a cube: each term depends on one quantity u alone, and so do its derivatives.
     pub(super) fn taylor(&self, centre: [f64; 3], half: f64) -> Taylor {
         let mut value = self.constant;
-        let (mut gradient, mut second) = ([0.0; 3], [0.0; 6]);
+        let (mut gradient, mut squares) = ([0.0; 3], [0.0; 6]);
         let mut error = 32.0 * f64::EPSILON * self.constant.abs() + TINY;
         let mut bend = TINY;
         for Term { line, exponent, weight, .. } in &self.terms {
@@ -222,8 +222,8 @@ impl PlacedPowers {
             for axis in 0..3 {
                 gradient[axis] += slope * along[axis];
             }
-            for (sum, (i, j)) in second.iter_mut().zip(PAIRS) {
-                *sum += curvature * (along[i] * along[j]) * if i == j { 1.0 } else { 2.0 };
+            for (sum, (i, j)) in squares.iter_mut().zip(PAIRS) {
+                *sum += curvature * (along[i] * along[j]);
             }
             let farthest = middle.abs() + spread + line.error;
             let weight = weight.abs();
@@ -239,7 +239,7 @@ impl PlacedPowers {
                 * ((n - 1.0) * power(farthest, 2) * (spread + off)
                     + 64.0 * n * f64::EPSILON * power(farthest, 1));
         }
-        Taylor { value, gradient, second, error, bend, degree: self.degree() }
+        Taylor { f: Quadratic { value, gradient, squares, error }, bend, degree: self.degree() }
     }
 
     pub(super) fn degree(&self) -> u32 {

@@ -4,8 +4,8 @@ use super::bounds::{Octants, Sides, sums};
 use super::linear;
 use super::map::ExactMap;
 use super::tangent::Tangent;
-use super::taylor::{Taylor, bend_of};
 use crate::lattice::exact::{Dyadic, certain};
+use crate::solid::cut::{Quadratic, Taylor};
 use alloc::boxed::Box;
 use core::cmp::Ordering;
 use wide::f64x4;
@@ -147,7 +147,7 @@ impl Quadric {
     /// The value over a cube.
     pub(super) fn taylor(&self, centre: [f64; 3], half: f64) -> Taylor {
         let square = half * half;
-        let (value, gradient, second, error) = match &self.form {
+        let (value, gradient, squares, error) = match &self.form {
             Form::Separable(separable) => {
                 let t = f64x4::new([centre[0], centre[1], centre[2], 0.0]);
                 let [x, y, z, _] = ((separable.square * t * 2.0 + separable.linear) * half).to_array();
@@ -158,13 +158,14 @@ impl Quadric {
                 let [xx, yy, zz, xy, yz, zx, ..] = mixed.c;
                 let gradient = mixed.slopes(centre).map(|slope| slope * half);
                 let value = mixed.value(centre.map(f64x4::splat)).to_array()[0];
+                let [xy, zx, yz] = [xy, zx, yz].map(|c| 0.5 * c);
                 (value, gradient, [xx, yy, zz, xy, zx, yz].map(|c| c * square), mixed.error)
             }
         };
         // A slope is a sum of four terms, which are no larger than twice the coefficients.
         let slope = 16.0 * f64::EPSILON * half * self.size();
-        let error = error + 4.0 * slope;
-        Taylor { value, gradient, second, error, bend: bend_of(&second) + 2.0 * slope, degree: 2 }
+        let f = Quadratic { value, gradient, squares, error: error + 4.0 * slope };
+        Taylor { f, bend: f.bend() + 2.0 * slope, degree: 2 }
     }
 
     /// The magnitudes of all coefficients.

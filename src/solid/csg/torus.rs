@@ -4,9 +4,9 @@ use super::bounds::{Octants, Sides};
 use super::linear::{self, Linear};
 use super::map::ExactMap;
 use super::tangent::Tangent;
-use super::taylor::Taylor;
 use crate::lattice::PAIRS;
 use crate::lattice::exact::{Dyadic, sign, sqrt};
+use crate::solid::cut::{Quadratic, Taylor};
 use core::cmp::Ordering;
 use wide::f64x4;
 
@@ -173,17 +173,16 @@ impl PlacedTorus {
         let slack = 1.0 + 64.0 * f64::EPSILON;
         if near <= across.max(NEAR) {
             let error = (0.5 * (high - low)).next_up();
-            let value = 0.5 * (low + high);
-            return Taylor { value, gradient, second: [0.0; 6], error, bend: f64::INFINITY, degree: 4 };
+            let f = Quadratic { value: 0.5 * (low + high), gradient, squares: [0.0; 6], error };
+            return Taylor { f, bend: f64::INFINITY, degree: 4 };
         }
         let columns = [0, 1, 2].map(|axis| self.lines.each_ref().map(|line| half * line.c[axis]));
         // Around the axis ρ bends.
         let around = columns.map(|[a, b, _]| (x * b - y * a) / rho);
         let share = self.major / rho;
-        let second = PAIRS.map(|(i, j)| {
+        let squares = PAIRS.map(|(i, j)| {
             let ([a, b, c], [d, e, f]) = (columns[i], columns[j]);
-            let product = share * (around[i] * around[j]) - ((a * d + b * e) + c * f);
-            if i == j { product } else { 2.0 * product }
+            share * (around[i] * around[j]) - ((a * d + b * e) + c * f)
         });
         let off = rho - self.major;
         let value = self.square - off * off - z * z;
@@ -191,7 +190,8 @@ impl PlacedTorus {
         // Along the radius and the axis f bends with 2, around the axis with 2 |1 − major / ρ|.
         let most = (self.major / near - 1.0).max(1.0);
         let bend = (2.0 * most * (along * along) + self.error * half) * slack;
-        Taylor { value, gradient, second, error: (self.error + rest) * slack, bend, degree: 4 }
+        let f = Quadratic { value, gradient, squares, error: (self.error + rest) * slack };
+        Taylor { f, bend, degree: 4 }
     }
 
     /// Decides exactly what rounding leaves open, if axes go to axes.

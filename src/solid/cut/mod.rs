@@ -13,6 +13,7 @@ mod graph;
 mod polygon;
 mod quadratic;
 mod surplus;
+mod taylor;
 #[cfg(test)]
 mod tests;
 mod wedge;
@@ -20,6 +21,7 @@ mod wedge;
 use super::enclosure::{Enclosure, Slab, SlabJoin};
 use crate::lattice::{CellMoments, CubeMoments};
 pub(crate) use quadratic::Quadratic;
+pub(crate) use taylor::Taylor;
 
 /// More than the error of any moment. (Twice what comes of the largest term that the formula admits; clipping is off
 /// by a tenth of that.)

@@ -1,6 +1,8 @@
 //! Functions to second order.
 
-/// A function over the cube [-1, 1]³ to second order.
+use crate::lattice::exact::sqrt;
+
+/// A function over the cube [-1, 1]³ to second order: a cell, measured from its centre in half edges.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Quadratic {
     /// At the centre.
@@ -8,7 +10,8 @@ pub(crate) struct Quadratic {
     pub(crate) gradient: [f64; 3],
     /// Half the second derivatives: xx, yy, zz, xy, xz, yz.
     pub(crate) squares: [f64; 6],
-    /// The function differs by at most this from value + gradient · x + xᵀ squares x.
+    /// The function differs by at most this from value + gradient · x + xᵀ squares x. Infinite, or no number: nothing is
+    /// known.
     pub(crate) error: f64,
 }
 
@@ -21,5 +24,29 @@ impl Quadratic {
             squares: self.squares.map(|c| -c),
             error: self.error,
         }
+    }
+
+    /// The greatest magnitudes of the terms of second order in the cube.
+    fn seconds(&self) -> [f64; 6] {
+        let [xx, yy, zz, xy, xz, yz] = self.squares.map(f64::abs);
+        [xx, yy, zz, 2.0 * xy, 2.0 * xz, 2.0 * yz]
+    }
+
+    /// The sum of the greatest magnitudes of the terms of second order.
+    pub(crate) fn curvature(&self) -> f64 {
+        self.seconds().iter().sum()
+    }
+
+    /// The sum of the greatest magnitudes of all terms.
+    pub(crate) fn size(&self) -> f64 {
+        self.gradient.map(f64::abs).iter().chain(&self.seconds()).sum::<f64>() + self.value.abs()
+    }
+
+    /// No gradient in the cube is further from that at the centre. Some last places are for what is rounded.
+    pub(crate) fn bend(&self) -> f64 {
+        let [xx, yy, zz, xy, xz, yz] = self.squares.map(f64::abs);
+        let rows = [(xx + xy) + xz, (xy + yy) + yz, (xz + yz) + zz];
+        let [x, y, z] = rows.map(|row| row * row);
+        2.0 * sqrt((x + y) + z) * (1.0 + 16.0 * f64::EPSILON)
     }
 }
