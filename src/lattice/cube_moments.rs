@@ -14,6 +14,9 @@ pub struct CubeMoments {
 /// Which two axes each second moment is of.
 pub(crate) const PAIRS: [(usize, usize); 6] = [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)];
 
+/// Where the product of two axes is in [`PAIRS`].
+pub(crate) const PLACES: [[usize; 3]; 3] = [[0, 3, 4], [3, 1, 5], [4, 5, 2]];
+
 impl CubeMoments {
     /// Those of nothing.
     pub const EMPTY: CubeMoments = CubeMoments { volume: 0.0, first: [0.0; 3], second: [0.0; 6] };

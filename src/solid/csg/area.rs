@@ -14,7 +14,7 @@ use super::program::Program;
 use super::word::{Op, Word};
 use super::worker::{CsgPart, Scratch};
 use crate::lattice::exact::sqrt;
-use crate::lattice::{Cell, Interval};
+use crate::lattice::{Cell, Interval, PLACES};
 use crate::solid::cut::{Quadratic, Taylor};
 
 /// More than what comes of rounding, lengths and areas being at most 24.
@@ -218,8 +218,7 @@ pub(super) fn of_surface(surface: &Taylor) -> Interval {
 
 /// The area in which f ≥ 0 on the wall of a cell where the coordinate of `axis` is `at`.
 fn on_wall(f: &Quadratic, axis: usize, at: f64) -> Interval {
-    const MIXED: [[usize; 3]; 3] = [[0, 3, 4], [3, 1, 5], [4, 5, 2]];
-    let square = |i: usize, j: usize| f.squares[MIXED[i][j]];
+    let square = |i: usize, j: usize| f.squares[PLACES[i][j]];
     let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
     let value = (f.value + at * f.gradient[axis]) + square(axis, axis);
     let [along_i, along_j] = [i, j].map(|other| f.gradient[other] + 2.0 * at * square(axis, other));

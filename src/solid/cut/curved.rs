@@ -6,12 +6,12 @@
 //! column, and wedges along the section's outline, where columns end at other faces. Both are had to second order in
 //! z* − z₀, and what is left is bounded.
 
-use super::graph::{Graph, PLACE};
+use super::graph::Graph;
 use super::polygon::{Line, Polygon};
 use super::quadratic::Quadratic;
 use super::surplus::Surplus;
 use super::{ERROR, Half};
-use crate::lattice::{CellMoments, CubeMoments, PAIRS};
+use crate::lattice::{CellMoments, CubeMoments, PAIRS, PLACES};
 
 /// Moments of { x in [-1, 1]³ : f(x) ≥ 0 } on the inner sides of up to two planes, of which `flat` gives those where
 /// another plane takes the place of f; `None` if they are not known to third order.
@@ -59,7 +59,7 @@ pub(super) fn moments(
         moments.first[axis] += sign * more;
     }
     for ((i, j), more) in PAIRS.into_iter().zip([xx, yy, zz, xy, xz, yz]) {
-        moments.second[PLACE[axes[i]][axes[j]]] += sign * more;
+        moments.second[PLACES[axes[i]][axes[j]]] += sign * more;
     }
     // The error of the function moves the surface by this much along z. Where that is little, a weight has one sign in
     // the part of a column that is concerned, or is small.

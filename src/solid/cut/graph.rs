@@ -2,11 +2,8 @@
 
 use super::polygon::{Line, Polygon};
 use super::quadratic::Quadratic;
-use crate::lattice::PAIRS;
+use crate::lattice::{PAIRS, PLACES};
 use wide::f64x4;
-
-/// Where the product of two axes is in [`PAIRS`].
-pub(super) const PLACE: [[usize; 3]; 3] = [[0, 3, 4], [3, 1, 5], [4, 5, 2]];
 
 /// A function whose surface is a graph z*(x, y) over the square, divided by its slope along z: z − z₀ + R, where
 /// z₀ = −(a x + b y + c) is a plane. z is the axis of the greatest slope.
@@ -54,9 +51,9 @@ impl Graph {
         };
         let axes = [(axis + 1) % 3, (axis + 2) % 3, axis];
         let g = axes.map(|axis| f.gradient[axis]);
-        let q = PAIRS.map(|(i, j)| f.squares[PLACE[axes[i]][axes[j]]]);
+        let q = PAIRS.map(|(i, j)| f.squares[PLACES[axes[i]][axes[j]]]);
         let times = |p: [f64; 3]| {
-            [0, 1, 2].map(|i| (q[PLACE[i][0]] * p[0] + q[PLACE[i][1]] * p[1]) + q[PLACE[i][2]] * p[2])
+            [0, 1, 2].map(|i| (q[PLACES[i][0]] * p[0] + q[PLACES[i][1]] * p[1]) + q[PLACES[i][2]] * p[2])
         };
         // The tangential plane of the level set through a point of which f is given.
         let tangent = |p: [f64; 3]| {
