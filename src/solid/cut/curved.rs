@@ -31,7 +31,7 @@ pub(super) fn moments(
     let line = |axes: &[usize; 3], plane: &[f64; 3], k: usize| {
         let (normal, offset) = face(k);
         let axes = if k < 2 { &[0, 1, 2] } else { axes };
-        Graph::line(axes, plane, &normal, offset)
+        Line::new(axes, plane, &normal, offset)
     };
     let section =
         |axes: &[usize; 3], plane: &[f64; 3]| Polygon::new((0..count).map(|k| line(axes, plane, k)));

@@ -1,6 +1,6 @@
 //! The graph of a surface over a plane near it.
 
-use super::polygon::{Line, Polygon};
+use super::polygon::Polygon;
 use super::quadratic::Quadratic;
 use crate::lattice::{PAIRS, PLACES};
 use wide::f64x4;
@@ -153,12 +153,6 @@ impl Graph {
             slope: [slope, by_y, by_x],
             ..*self
         }
-    }
-
-    /// The plane's points on the inner side of n · x ≤ offset.
-    pub(super) fn line(axes: &[usize; 3], [a, b, c]: &[f64; 3], normal: &[f64; 3], offset: f64) -> Line {
-        let n = axes.map(|axis| normal[axis]);
-        Line { slope: [n[2] * a - n[0], n[2] * b - n[1]], constant: offset + n[2] * c, rise: n[2] }
     }
 }
 

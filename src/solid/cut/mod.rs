@@ -1,13 +1,21 @@
-//! Moments of a cube that planes cut, or one curved surface and planes.
+//! Volume, moments and area of what planes and curved surfaces cut off a cube.
 //!
-//! The cube is [-1, 1]³. Of one plane closed forms give the moments (for the volume: Scardovelli and Zaleski,
-//! J. Comput. Phys. 164 (2000) 228–237; the others follow in the same way); where these would cancel, and of two
-//! or three planes, the cube is clipped and integrated over its faces. Moments are off by less than [`ERROR`].
+//! The cube is [-1, 1]³: a cell, measured from its centre in half edges.
+//!
+//! - For one plane, closed forms give the moments (for the volume: Scardovelli and Zaleski, J. Comput. Phys. 164 (2000)
+//!   228–237; the others follow in the same way). Where these would cancel, and for two or three planes, the cube is
+//!   clipped and integrated over its faces. Moments are off by less than [`ERROR`].
+//! - For one curved surface and up to two planes, a plane near the surface stands for it, and what lies between both is
+//!   integrated. Moments are known to third order, with a bound of their error.
+//! - The area of one surface is the flux through the walls of the cube, to third order. Where surfaces meet, each is
+//!   projected to a wall.
 
 mod clip;
 mod curved;
 #[cfg(test)]
 mod curved_tests;
+mod face;
+mod flux;
 mod formula;
 mod graph;
 mod polygon;
@@ -20,6 +28,8 @@ mod wedge;
 
 use super::enclosure::{Enclosure, Slab, SlabJoin};
 use crate::lattice::{CellMoments, CubeMoments};
+pub(crate) use face::area_of_faces;
+pub(crate) use flux::{area_of_surface, most_area};
 pub(crate) use quadratic::Quadratic;
 pub(crate) use taylor::Taylor;
 

@@ -1,6 +1,6 @@
 //! What a plane and a cube have in common, seen along an axis: a polygon in a square.
 
-/// A square that two faces of the cube and two planes cut.
+/// A square that two faces of the cube and two planes, or what is near them, cut.
 const CORNERS: usize = 8;
 
 /// A linear function of x and y, positive on one side of a line.
@@ -13,6 +13,13 @@ pub(super) struct Line {
 }
 
 impl Line {
+    /// The points of the plane z = −(a x + b y + c) on the inner side of n · x ≤ offset, `axes` of the cube being x, y
+    /// and z.
+    pub(super) fn new(axes: &[usize; 3], [a, b, c]: &[f64; 3], normal: &[f64; 3], offset: f64) -> Line {
+        let n = axes.map(|axis| normal[axis]);
+        Line { slope: [n[2] * a - n[0], n[2] * b - n[1]], constant: offset + n[2] * c, rise: n[2] }
+    }
+
     #[inline(always)]
     fn at(&self, [x, y]: [f64; 2]) -> f64 {
         (self.slope[0] * x + self.slope[1] * y) + self.constant
@@ -26,13 +33,18 @@ pub(super) struct Polygon {
 }
 
 impl Polygon {
-    /// The part of the square where no line is negative; `None` if rounding makes more corners than there is place
-    /// for.
-    pub(super) fn new(lines: impl Iterator<Item = Line>) -> Option<Polygon> {
+    /// All of the square.
+    pub(super) const SQUARE: Polygon = {
         let mut corners = [[0.0; 2]; CORNERS];
         (corners[0], corners[1], corners[2], corners[3]) =
             ([-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]);
-        let mut polygon = Polygon { corners, count: 4 };
+        Polygon { corners, count: 4 }
+    };
+
+    /// The part of the square where no line is negative; `None` if rounding makes more corners than there is place
+    /// for.
+    pub(super) fn new(lines: impl Iterator<Item = Line>) -> Option<Polygon> {
+        let mut polygon = Polygon::SQUARE;
         for line in lines {
             polygon.clip(&line)?;
         }
@@ -44,7 +56,8 @@ impl Polygon {
         &self.corners[..self.count]
     }
 
-    fn clip(&mut self, line: &Line) -> Option<()> {
+    /// Keeps the part where the line is not negative; `None` if rounding makes more corners than there is place for.
+    pub(super) fn clip(&mut self, line: &Line) -> Option<()> {
         let mut values = [0.0; CORNERS];
         let mut outside = 0;
         for (value, corner) in values.iter_mut().zip(self.corners()) {
@@ -74,6 +87,12 @@ impl Polygon {
         }
         *self = clipped;
         Some(())
+    }
+
+    pub(super) fn area(&self) -> f64 {
+        let Some((&[x, y], others)) = self.corners().split_first() else { return 0.0 };
+        let cross = |([a, b], [c, d]): (&[f64; 2], &[f64; 2])| (a - x) * (d - y) - (c - x) * (b - y);
+        0.5 * others.iter().zip(others.iter().skip(1)).map(cross).sum::<f64>()
     }
 
     /// The mean of the corners, and those of x², y² and x y about it; `None` if there is no polygon.

@@ -33,12 +33,12 @@ impl Quadratic {
     }
 
     /// The sum of the greatest magnitudes of the terms of second order.
-    pub(crate) fn curvature(&self) -> f64 {
+    pub(super) fn curvature(&self) -> f64 {
         self.seconds().iter().sum()
     }
 
     /// The sum of the greatest magnitudes of all terms.
-    pub(crate) fn size(&self) -> f64 {
+    pub(super) fn size(&self) -> f64 {
         self.gradient.map(f64::abs).iter().chain(&self.seconds()).sum::<f64>() + self.value.abs()
     }
 

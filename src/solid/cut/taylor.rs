@@ -15,15 +15,20 @@ pub(crate) struct Taylor {
 }
 
 impl Taylor {
+    /// The same surface, with the negative of the function.
+    pub(crate) fn complement(&self) -> Taylor {
+        Taylor { f: self.f.complement(), ..*self }
+    }
+
     /// The length of the gradient at the centre.
-    pub(crate) fn steepness(&self) -> f64 {
+    pub(super) fn steepness(&self) -> f64 {
         let [x, y, z] = self.f.gradient;
         sqrt((x * x + y * y) + z * z)
     }
 
     /// More than the sine of the angle between the gradient at the centre and any other; 1 and more, or no number, if
     /// nothing is known.
-    pub(crate) fn sine(&self) -> f64 {
+    pub(super) fn sine(&self) -> f64 {
         self.bend / self.steepness() * (1.0 + 16.0 * f64::EPSILON)
     }
 

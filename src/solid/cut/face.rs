@@ -1,0 +1,68 @@
+//! The area that surfaces have in a cube where several of them meet.
+//!
+//! A face is the part of a surface that lies within the half-spaces of the others. Seen along an axis it is a convex
+//! figure in the plane, of which the sides are known as slabs are.
+
+use super::flux::{ROUNDING, area_of_surface};
+use super::polygon::{Line, Polygon};
+use super::quadratic::Quadratic;
+use super::taylor::Taylor;
+use crate::lattice::Interval;
+
+/// Bounds of the area of the boundary of { x in the cell : all functions are ≥ 0 }, in squares of the half edge.
+pub(crate) fn area_of_faces(surfaces: &[Option<Taylor>; 3]) -> Interval {
+    let are_known = surfaces.iter().flatten().all(|surface| surface.f.error < f64::INFINITY);
+    let mut sum = Interval::exactly(0.0);
+    for (i, surface) in surfaces.iter().enumerate() {
+        let Some(surface) = surface else { continue };
+        let whole = Interval { lower: 0.0, upper: area_of_surface(surface).upper };
+        let others = surfaces.iter().enumerate().filter(|(j, _)| *j != i).filter_map(|(_, f)| f.as_ref());
+        let face = if are_known { area_of_face(surface, others).unwrap_or(whole) } else { whole };
+        let upper = face.upper.min(whole.upper);
+        sum = Interval { lower: sum.lower + face.lower.clamp(0.0, upper), upper: sum.upper + upper };
+    }
+    sum
+}
+
+/// Bounds of the area that a surface has within the half-spaces of others; `None` if it is no graph over a wall.
+fn area_of_face<'a>(surface: &Taylor, others: impl Iterator<Item = &'a Taylor>) -> Option<Interval> {
+    let f = &surface.f;
+    let size = f.gradient.map(f64::abs);
+    let axis = (0..3).fold(0, |most, axis| if size[axis] > size[most] { axis } else { most });
+    let length = surface.steepness();
+    let bend = surface.bend + 4.0 * f64::EPSILON * length;
+    let is_graph = bend < 0.5 * size[axis];
+    if !is_graph {
+        return None;
+    }
+    // Each point of the wall sees at most one of the surface, about where the linear function is 0. By how much f may
+    // differ from that:
+    let off = |f: &Quadratic| f.curvature() + f.error + 16.0 * f64::EPSILON * f.size();
+    let axes = [(axis + 1) % 3, (axis + 2) % 3, axis];
+    let [a, b, fall] = axes.map(|axis| f.gradient[axis]);
+    let plane = [a / fall, b / fall, f.value / fall];
+    let moved = off(f) / fall.abs();
+    let (mut inner, mut outer) = (Polygon::SQUARE, Polygon::SQUARE);
+    let mut clip = |line: Line, off: f64| {
+        let Line { slope: [x, y], constant, .. } = line;
+        let rounding = ROUNDING * ((constant.abs() + x.abs()) + y.abs());
+        let margin = off * (1.0 + 8.0 * f64::EPSILON) + rounding;
+        inner.clip(&Line { constant: constant - margin, ..line })?;
+        outer.clip(&Line { constant: constant + margin, ..line })
+    };
+    for side in [1.0, -1.0] {
+        clip(Line::new(&[0, 1, 2], &plane, &[0.0, 0.0, side], 1.0), moved)?;
+    }
+    for Taylor { f: other, .. } in others {
+        let line = Line::new(&axes, &plane, &other.gradient.map(|c| -c), other.value);
+        let rise = line.rise.abs();
+        let terms = rise * plane.iter().map(|c| c.abs()).sum::<f64>();
+        clip(line, off(other) + rise * moved + 16.0 * f64::EPSILON * terms)?;
+    }
+    let steepest = ((length + bend) / (size[axis] - bend)) * (1.0 + 8.0 * f64::EPSILON);
+    let flattest = ((length - bend) / (size[axis] + bend)) * (1.0 - 8.0 * f64::EPSILON);
+    Some(Interval {
+        lower: (inner.area() - ROUNDING) * flattest.max(1.0),
+        upper: (outer.area() + ROUNDING) * steepest,
+    })
+}
