@@ -5,16 +5,14 @@ mod common;
 #[allow(dead_code)]
 #[path = "csg/model.rs"]
 mod model;
-#[allow(dead_code)]
 #[path = "csg/random.rs"]
 mod random;
 
-use common::{Random, alone};
+use common::{Random, Way, alone};
 use leafless::{
     Affine, Cell, Classifier, Control, Csg, Error, Frame, Interval, Rule, Solid, StopReason, SurfaceArea,
     Tolerance, Verdict, Worker, build, surface_area,
 };
-use model::Model;
 use random::Maker;
 use std::f64::consts::PI;
 
@@ -238,32 +236,6 @@ fn by_finer<W: Worker>(worker: &mut W, cell: Cell, part: &W::Part, levels: u8) -
     sum
 }
 
-/// Half-spaces of all kinds, some joined.
-fn joined(maker: &mut Maker<'_>) -> Model {
-    let half_space = |maker: &mut Maker<'_>| match maker.below(6) {
-        0 | 1 => maker.plane(),
-        2 => maker.quadric(false),
-        3 => maker.quadric(true),
-        4 => maker.power(),
-        _ => {
-            let edge = maker.frame.edge();
-            let (major, minor) =
-                (edge * maker.random.between(0.1, 0.5), edge * maker.random.between(0.02, 0.6));
-            Model::Placed(Box::new(Model::Torus(major, minor)), Affine::translation(maker.point()).unwrap())
-        }
-    };
-    let mut model = half_space(maker);
-    for _ in 0..maker.below(4) {
-        let other = half_space(maker);
-        model = match maker.below(3) {
-            0 => Model::Union(vec![model, other]),
-            1 => Model::Intersection(vec![other, model]),
-            _ => Model::Difference(Box::new([model, other])),
-        };
-    }
-    model
-}
-
 fn cells_agree(count: u64) {
     let frame = Frame::new([-1.013, -1.027, -1.041], 2.1, 20).unwrap();
     let (mut checked, mut tight) = (0, 0);
@@ -272,17 +244,19 @@ fn cells_agree(count: u64) {
             break;
         }
         let mut random = Random(seed ^ 0xA12EA);
-        let model = joined(&mut Maker { random: &mut random, frame, aligned: false, others: false });
+        let mut maker = Maker { random: &mut random, frame, aligned: false, others: false };
+        let count = 1 + maker.below(4);
+        let model = maker.joined(count);
         let Ok(solid) = model.csg(&frame) else { continue };
         let classifier = solid.on(&frame, &alone()).unwrap();
         if !classifier.is_off_lattice() {
             continue;
         }
-        let mut worker = classifier.worker().unwrap();
-        let (mut cell, mut verdict) = (Cell::ROOT, worker.root().unwrap());
-        while let (Verdict::Partial(part), true) = (&verdict, cell.level <= 14) {
-            if let Some(area) = worker.area(cell, part).unwrap() {
-                let finer = by_finer(&mut worker, cell, part, 2);
+        let Some(mut way) = Way::new(classifier.worker().unwrap()) else { continue };
+        while way.cell.level <= 14 {
+            let cell = way.cell;
+            if let Some(area) = way.worker.area(cell, &way.part).unwrap() {
+                let finer = by_finer(&mut way.worker, cell, &way.part, 2);
                 let slack = 1e-10;
                 assert!(
                     area.lower <= finer.upper + slack && finer.lower <= area.upper + slack,
@@ -291,14 +265,9 @@ fn cells_agree(count: u64) {
                 checked += 1;
                 tight += (area.width() < 0.5) as u64;
             }
-            let verdicts = worker.split(cell, part).unwrap();
-            let open: Vec<usize> = (0..8).filter(|&k| matches!(verdicts[k], Verdict::Partial(_))).collect();
-            if open.is_empty() {
+            if !way.descend(&mut random) {
                 break;
             }
-            let octant = open[random.below(open.len() as u64) as usize];
-            verdict = verdicts[octant];
-            cell = cell.child(octant as u8);
         }
     }
     println!("{tight} of {checked}");

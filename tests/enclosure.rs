@@ -5,15 +5,15 @@ mod common;
 #[allow(dead_code)]
 #[path = "csg/model.rs"]
 mod model;
-#[allow(dead_code)]
 #[path = "csg/random.rs"]
 mod random;
 
 use common::exact::Exact;
-use common::{Random, alone, lattice_frame};
+use common::slabs::{bits, known, told};
+use common::{Random, Way, alone, lattice_frame};
 use leafless::{
     Affine, AnySolid, Callback, Cell, Classifier, Csg, Enclosure, Error, Frame, GradientRange, Interval,
-    MAX_DEPTH, Slab, SlabJoin, Solid, TangentBalls, Transform, Verdict, Worker,
+    MAX_DEPTH, Slab, Solid, TangentBalls, Transform, Verdict, Worker,
 };
 use model::{Model, Other, Point};
 use random::Maker;
@@ -40,37 +40,6 @@ fn at(frame: &Frame, cell: Cell, x: [f64; 3]) -> Point {
     [x, y, z, Exact::from(1.0)]
 }
 
-/// The sign of n · x − offset.
-fn side(slab: &Slab, offset: f64, x: [f64; 3]) -> i32 {
-    if offset.is_infinite() {
-        return if offset > 0.0 { -1 } else { 1 };
-    }
-    let products = (0..3).map(|axis| Exact::from(slab.normal[axis]).times(&x[axis].into()));
-    products.fold(Exact::from(-offset), |sum, product| sum.plus(&product)).sign()
-}
-
-fn known(enclosure: &Enclosure) -> impl Iterator<Item = &Slab> {
-    enclosure.slabs.iter().filter(|slab| slab.normal != [0.0; 3])
-}
-
-/// 1 if the enclosure says that a point is inside, −1 if it says that it is outside.
-fn told(enclosure: &Enclosure, x: [f64; 3]) -> i32 {
-    let mut slabs =
-        known(enclosure).map(|slab| (side(slab, slab.inner, x) < 0, side(slab, slab.outer, x) > 0));
-    let (mut inside, mut outside) = match enclosure.join {
-        SlabJoin::All => (true, false),
-        SlabJoin::Any => (false, true),
-    };
-    for (within, beyond) in slabs.by_ref() {
-        match enclosure.join {
-            SlabJoin::All => (inside, outside) = (inside && within, outside || beyond),
-            SlabJoin::Any => (inside, outside) = (inside || within, outside && beyond),
-        }
-    }
-    assert!(!(inside && outside));
-    inside as i32 - outside as i32
-}
-
 /// A point of the open cell: anywhere, or next to where a slab ends.
 fn point(random: &mut Random, enclosure: &Enclosure) -> [f64; 3] {
     loop {
@@ -92,11 +61,6 @@ fn point(random: &mut Random, enclosure: &Enclosure) -> [f64; 3] {
     }
 }
 
-fn bits(enclosure: &Enclosure) -> ([[u64; 5]; 3], SlabJoin, u64) {
-    let slab = |s: &Slab| [s.normal[0], s.normal[1], s.normal[2], s.inner, s.outer].map(f64::to_bits);
-    (enclosure.slabs.each_ref().map(slab), enclosure.join, enclosure.cone.to_bits())
-}
-
 /// Cells that were asked, those that told, and points that were told to be inside and outside.
 #[derive(Debug, Default)]
 struct Found {
@@ -113,17 +77,13 @@ struct Found {
 fn walk(model: &Model, frame: &Frame, csg: &Csg, points: u64, random: &mut Random, found: &mut Found) {
     // (Placements may lead beyond what doubles can tell.)
     let Ok(classifier) = csg.on(frame, &alone()) else { return };
-    let mut worker = classifier.worker().unwrap();
-    let mut opposite = csg.complement().on(frame, &alone()).unwrap().worker().unwrap();
-    let (Verdict::Partial(mut part), Verdict::Partial(mut rest)) =
-        (worker.root().unwrap(), opposite.root().unwrap())
-    else {
-        return;
-    };
-    let mut cell = Cell::ROOT;
+    let opposite = csg.complement().on(frame, &alone()).unwrap();
+    let ways = (Way::new(classifier.worker().unwrap()), Way::new(opposite.worker().unwrap()));
+    let (Some(mut way), Some(mut opposite)) = ways else { return };
     loop {
-        let enclosure = worker.enclosure(cell, &part).unwrap();
-        let complement = opposite.enclosure(cell, &rest).unwrap();
+        let cell = way.cell;
+        let enclosure = way.worker.enclosure(cell, &way.part).unwrap();
+        let complement = opposite.worker.enclosure(cell, &opposite.part).unwrap();
         let context = || format!("{cell:?}\n{enclosure:#?}\n{complement:#?}\n{frame:?}\n{model:#?}");
         assert_eq!(enclosure.map(|e| bits(&e.complement())), complement.as_ref().map(bits), "{}", context());
         found.cells += 1;
@@ -146,32 +106,20 @@ fn walk(model: &Model, frame: &Frame, csg: &Csg, points: u64, random: &mut Rando
                 }
             }
         }
-        if cell.level == frame.depth() {
-            return;
-        }
-        let children = worker.split(cell, &part).unwrap();
-        let others = opposite.split(cell, &rest).unwrap();
-        let open: Vec<u8> = (0..8).filter(|&k| matches!(children[k as usize], Verdict::Partial(_))).collect();
-        if open.is_empty() {
+        let mut children = way.children();
+        if children.is_empty() {
             return;
         }
         // Half of the ways lead to where surfaces meet.
-        let mut slabs = |octant: u8| match &children[octant as usize] {
-            Verdict::Partial(part) => {
-                worker.enclosure(cell.child(octant), part).unwrap().map_or(0, |e| known(&e).count())
-            }
-            _ => 0,
+        let slabs = |(cell, part): &(Cell, _)| {
+            way.worker.enclosure(*cell, part).unwrap().map_or(0, |e| known(&e).count())
         };
-        let octant = match random.below(2) {
-            0 => open.iter().copied().max_by_key(|&octant| slabs(octant)).unwrap(),
-            _ => open[random.below(open.len() as u64) as usize],
+        let next = match random.below(2) {
+            0 => children.iter().map(slabs).enumerate().max_by_key(|&(_, count)| count).unwrap().0,
+            _ => random.below(children.len() as u64) as usize,
         };
-        let (Verdict::Partial(a), Verdict::Partial(b)) = (children[octant as usize], others[octant as usize])
-        else {
-            panic!("the complement is decided: {}", context());
-        };
-        (part, rest) = (a, b);
-        cell = cell.child(octant);
+        (way.cell, way.part) = children.swap_remove(next);
+        opposite.follow(way.cell);
     }
 }
 
@@ -208,48 +156,15 @@ fn hold_as(
     assert!(found.inside > wanted / 5 && found.outside > wanted / 5, "{name}: {found:?}");
 }
 
-fn placed(maker: &mut Maker<'_>, model: Model) -> Model {
-    Model::Placed(Box::new(model), maker.placement())
-}
-
-/// A torus around a point of the universe.
-fn torus(maker: &mut Maker<'_>) -> Model {
-    let edge = maker.frame.edge();
-    let (major, minor) = (edge * maker.random.between(0.1, 0.5), edge * maker.random.between(0.02, 0.6));
-    let to = maker.point();
-    Model::Placed(Box::new(Model::Torus(major, minor)), Affine::translation(to).unwrap_or(Affine::IDENTITY))
-}
-
-/// A half-space of any kind.
-fn half_space(maker: &mut Maker<'_>) -> Model {
-    match maker.below(6) {
-        0 | 1 => maker.plane(),
-        2 => maker.quadric(false),
-        3 => maker.quadric(true),
-        4 => maker.power(),
-        _ => torus(maker),
-    }
-}
-
-/// Two to six half-spaces joined in some way.
+/// Two to six half-spaces.
 fn joined(maker: &mut Maker<'_>) -> Model {
-    let mut model = half_space(maker);
-    for _ in 0..1 + maker.below(5) {
-        let other = half_space(maker);
-        model = match maker.below(5) {
-            0 => Model::Union(vec![model, other]),
-            1 => Model::Intersection(vec![other, model]),
-            2 => Model::Difference(Box::new([model, other])),
-            3 => Model::Difference(Box::new([other, model])),
-            _ => Model::Complement(Box::new(Model::Union(vec![model, other]))),
-        };
-    }
-    model
+    let count = 2 + maker.below(5);
+    maker.joined(count)
 }
 
 /// A solid of another kind that knows slabs, beside half-spaces.
 fn lone(maker: &mut Maker<'_>) -> Model {
-    let (inner, beside) = (joined(maker), half_space(maker));
+    let (inner, beside) = (joined(maker), maker.half_space());
     let other = Model::Other(Other::Model(Box::new(inner)));
     match maker.below(4) {
         0 => Model::Union(vec![other, beside]),
@@ -261,7 +176,7 @@ fn lone(maker: &mut Maker<'_>) -> Model {
 
 fn moved(maker: &mut Maker<'_>, make: impl Fn(&mut Maker<'_>) -> Model) -> Model {
     let model = make(maker);
-    placed(maker, model)
+    maker.placed(model)
 }
 
 /// A placed model that is not placed as an expression, but from a frame of its own; some as complements of
@@ -356,32 +271,32 @@ fn every_producer(points: u64) {
     hold("planes", points, |maker| maker.plane());
     hold("turned planes", points, |maker| {
         let plane = maker.plane();
-        placed(maker, plane)
+        maker.placed(plane)
     });
     hold("quadrics", points, |maker| maker.quadric(false));
     hold("mixed quadrics", points, |maker| maker.quadric(true));
     hold("turned quadrics", points, |maker| {
         let quadric = maker.quadric(false);
-        placed(maker, quadric)
+        maker.placed(quadric)
     });
     hold("powers", points, |maker| maker.power());
     hold("turned powers", points, |maker| {
         let power = maker.power();
-        placed(maker, power)
+        maker.placed(power)
     });
-    hold("tori", points, torus);
+    hold("tori", points, |maker| maker.torus());
     hold("turned tori", points, |maker| {
-        let torus = torus(maker);
-        placed(maker, torus)
+        let torus = maker.torus();
+        maker.placed(torus)
     });
     hold("primitives", points, |maker| maker.primitive());
     hold("joined half-spaces", points, joined);
     hold("joined half-spaces, turned", points, |maker| {
         let joined = joined(maker);
-        placed(maker, joined)
+        maker.placed(joined)
     });
     hold("other solids", points, lone);
-    hold_as("moved half-spaces", points, |maker| moved(maker, half_space), by_transform);
+    hold_as("moved half-spaces", points, |maker| moved(maker, |maker| maker.half_space()), by_transform);
     hold_as("moved joined half-spaces", points, |maker| moved(maker, joined), by_transform);
     hold_as("moved primitives", points, |maker| moved(maker, |maker| maker.primitive()), by_transform);
     hold_as("gradients of a host", points, |maker| maker.quadric(true), by_gradient);
@@ -461,42 +376,27 @@ fn tight(name: &str, share: f64, make: impl Fn(&mut Maker<'_>) -> Model) {
         let frame = Frame::new([-1.0; 3], 2.0, 8).unwrap();
         let model = make(&mut Maker { random: &mut random, frame, aligned: seed % 3 == 0, others: false });
         let Ok(csg) = model.csg(&frame) else { continue };
-        let mut worker = csg.on(&frame, &alone()).unwrap().worker().unwrap();
-        let Verdict::Partial(mut part) = worker.root().unwrap() else { continue };
-        let mut cell = Cell::ROOT;
+        let Some(mut way) = Way::new(csg.on(&frame, &alone()).unwrap().worker().unwrap()) else { continue };
         loop {
+            let cell = way.cell;
             let half = 0.5f64.powi(cell.level as i32);
             let centre = cell.at.map(|i| (2 * i + 1) as f64 * half - 1.0);
             let (gradient, second) = derivatives(&model, centre, half);
             let largest = |v: [f64; 3]| v.iter().fold(0.0, |m: f64, c| m.max(c.abs()));
             // In units of the function, where it does not nearly stand still.
             if largest(gradient) > 1e-3 * half * second && second.is_finite() {
-                let slab = worker.enclosure(cell, &part).unwrap().expect("a half-space").slabs[0];
+                let enclosure = way.worker.enclosure(cell, &way.part).unwrap().expect("a half-space");
+                let slab = enclosure.slabs[0];
                 let unit = largest(slab.normal) / (half * largest(gradient));
-                cone_holds(
-                    &model,
-                    &worker.enclosure(cell, &part).unwrap().unwrap(),
-                    centre,
-                    half,
-                    &mut random,
-                );
+                cone_holds(&model, &enclosure, centre, half, &mut random);
                 let (width, allowed) = (slab.outer - slab.inner, share * unit * half * half * second);
                 let at = format!("{width} for {allowed}: {cell:?} {slab:?} {model:?}");
                 assert!(width <= allowed * (1.0 + 1e-9) + 1e-11 * unit.max(1.0), "{name}: {at}");
                 asked += 1;
             }
-            if cell.level == frame.depth() {
+            if !way.descend(&mut random) {
                 break;
             }
-            let children = worker.split(cell, &part).unwrap();
-            let open: Vec<u8> =
-                (0..8).filter(|&k| matches!(children[k as usize], Verdict::Partial(_))).collect();
-            if open.is_empty() {
-                break;
-            }
-            let octant = open[random.below(open.len() as u64) as usize];
-            let Verdict::Partial(next) = children[octant as usize] else { unreachable!() };
-            (part, cell) = (next, cell.child(octant));
         }
     }
     assert!(asked > 1000, "{name}: {asked}");

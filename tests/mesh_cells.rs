@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{Random, alone, lattice_frame};
+use common::{Random, Way, alone, lattice_frame};
 use leafless::{
     Cell, CellMoments, Classifier, CubeMoments, FillRule, Frame, MAX_DEPTH, MeshSolid, Solid, StopReason,
     TriangleMesh, Verdict, Worker, surface_area,
@@ -262,12 +262,11 @@ fn walk(bodies: &[Body], rule: FillRule, frame: &Frame, stray: bool, random: &mu
     }
     let Ok(mesh) = TriangleMesh::from_facets(facets) else { return };
     let Ok(solid) = MeshSolid::new(mesh, rule) else { return };
-    let mut worker = solid.on(frame, &alone()).unwrap().worker().unwrap();
-    let Verdict::Partial(mut part) = worker.root().unwrap() else { return };
-    let mut cell = Cell::ROOT;
+    let Some(mut way) = Way::new(solid.on(frame, &alone()).unwrap().worker().unwrap()) else { return };
     loop {
+        let cell = way.cell;
         found.cells += 1;
-        if let Some(CellMoments { moments, error }) = worker.moments(cell, &part).unwrap() {
+        if let Some(CellMoments { moments, error }) = way.worker.moments(cell, &way.part).unwrap() {
             let exact = Exactly::enclosed(bodies, rule, cell, frame.depth());
             let off = exact.error(&moments);
             assert!(off <= error, "{off:e} {error:e} {cell:?} {rule:?}\n{bodies:?}");
@@ -277,17 +276,9 @@ fn walk(bodies: &[Body], rule: FillRule, frame: &Frame, stray: bool, random: &mu
             found.several += u64::from(bodies.len() > 1);
             found.greatest = found.greatest.max(error * 2f64.powi(-3 * i32::from(cell.level)));
         }
-        if cell.level == frame.depth() {
+        if !way.descend(random) {
             return;
         }
-        let children = worker.split(cell, &part).unwrap();
-        let open: Vec<u8> = (0..8).filter(|&k| matches!(children[k as usize], Verdict::Partial(_))).collect();
-        if open.is_empty() {
-            return;
-        }
-        let octant = open[random.below(open.len() as u64) as usize];
-        let Verdict::Partial(next) = children[octant as usize] else { unreachable!() };
-        (part, cell) = (next, cell.child(octant));
     }
 }
 

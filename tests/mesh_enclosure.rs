@@ -9,11 +9,9 @@ mod shapes;
 #[allow(dead_code)]
 mod soup;
 
-use common::{Random, alone, lattice_frame};
-use leafless::{
-    AnySolid, Cell, Classifier, Csg, Enclosure, FillRule, Frame, MeshSolid, Slab, SlabJoin, Solid,
-    TriangleMesh, Verdict, Worker,
-};
+use common::slabs::{bits, told};
+use common::{Random, Way, alone, lattice_frame};
+use leafless::{AnySolid, Classifier, Csg, FillRule, Frame, MeshSolid, Slab, Solid, TriangleMesh, Worker};
 use oracle::PointOracle;
 use shapes::*;
 use soup::check::is_inside;
@@ -35,27 +33,6 @@ struct Found {
     widths: f64,
 }
 
-fn bits(enclosure: &Enclosure) -> ([u64; 5], bool, u64) {
-    let slab = &enclosure.slabs[0];
-    let [a, b, c] = slab.normal;
-    let numbers = [a, b, c, slab.inner, slab.outer].map(|x| (x + 0.0).to_bits());
-    (numbers, enclosure.join == SlabJoin::All, enclosure.cone.to_bits())
-}
-
-/// The sign of n · x − offset, if rounding leaves no doubt.
-fn side(slab: &Slab, offset: f64, x: [f64; 3]) -> i32 {
-    let along: f64 = (0..3).map(|k| slab.normal[k] * x[k]).sum::<f64>() - offset;
-    let size: f64 = (0..3).map(|k| (slab.normal[k] * x[k]).abs()).sum::<f64>();
-    let sure = 8.0 * f64::EPSILON * (size + if offset.is_finite() { offset.abs() } else { 0.0 });
-    if along > sure {
-        1
-    } else if along < -sure {
-        -1
-    } else {
-        0
-    }
-}
-
 /// A point of the open cell, anywhere or near to where the slab ends.
 fn point(random: &mut Random, slab: &Slab) -> Option<[f64; 3]> {
     let mut x = [0; 3].map(|_| random.between(-1.0, 1.0));
@@ -72,18 +49,13 @@ fn point(random: &mut Random, slab: &Slab) -> Option<[f64; 3]> {
 
 /// Walks to a finest cell and asks every cell on the way.
 fn walk(solid: &MeshSolid, frame: &Frame, truth: &mut Truth<'_>, random: &mut Random, found: &mut Found) {
-    let mut worker = solid.on(frame, &alone()).unwrap().worker().unwrap();
-    let opposite = Csg::solid(AnySolid::new(solid.clone())).complement();
-    let mut opposite = opposite.on(frame, &alone()).unwrap().worker().unwrap();
-    let (Verdict::Partial(mut part), Verdict::Partial(mut rest)) =
-        (worker.root().unwrap(), opposite.root().unwrap())
-    else {
-        return;
-    };
-    let mut cell = Cell::ROOT;
+    let complement = Csg::solid(AnySolid::new(solid.clone())).complement().on(frame, &alone()).unwrap();
+    let way = Way::new(solid.on(frame, &alone()).unwrap().worker().unwrap());
+    let (Some(mut way), Some(mut opposite)) = (way, Way::new(complement.worker().unwrap())) else { return };
     loop {
-        let enclosure = worker.enclosure(cell, &part).unwrap();
-        let complement = opposite.enclosure(cell, &rest).unwrap();
+        let cell = way.cell;
+        let enclosure = way.worker.enclosure(cell, &way.part).unwrap();
+        let complement = opposite.worker.enclosure(cell, &opposite.part).unwrap();
         let context = || format!("{cell:?} {frame:?}\n{enclosure:#?}\n{complement:#?}");
         assert_eq!(enclosure.map(|e| bits(&e.complement())), complement.as_ref().map(bits), "{}", context());
         found.cells += 1;
@@ -102,38 +74,21 @@ fn walk(solid: &MeshSolid, frame: &Frame, truth: &mut Truth<'_>, random: &mut Ra
                 // The double next to the point.
                 let x: [f64; 3] = std::array::from_fn(|k| (p[k] - centre[k]) / half);
                 let is_exact = (0..3).all(|k| centre[k] + half * x[k] == p[k] && x[k].abs() < 1.0);
-                let told = if side(slab, slab.inner, x) < 0 {
-                    true
-                } else if side(slab, slab.outer, x) > 0 {
-                    false
-                } else {
-                    continue;
-                };
-                if !is_exact {
+                let told = if is_exact { told(enclosure, x) } else { 0 };
+                if told == 0 {
                     continue;
                 }
-                (found.inside, found.outside) =
-                    (found.inside + u64::from(told), found.outside + u64::from(!told));
+                found.inside += u64::from(told > 0);
+                found.outside += u64::from(told < 0);
                 if let Some(is_inside) = truth(p) {
-                    assert_eq!(told, is_inside, "{x:?} {p:?} {}", context());
+                    assert_eq!(told > 0, is_inside, "{x:?} {p:?} {}", context());
                 }
             }
         }
-        if cell.level == frame.depth() {
+        if !way.descend(random) {
             return;
         }
-        let children = worker.split(cell, &part).unwrap();
-        let others = opposite.split(cell, &rest).unwrap();
-        let open: Vec<u8> = (0..8).filter(|&k| matches!(children[k as usize], Verdict::Partial(_))).collect();
-        if open.is_empty() {
-            return;
-        }
-        let octant = open[random.below(open.len() as u64) as usize];
-        let (Verdict::Partial(a), Verdict::Partial(b)) = (children[octant as usize], others[octant as usize])
-        else {
-            panic!("the complement is decided: {}", context());
-        };
-        (part, rest, cell) = (a, b, cell.child(octant));
+        opposite.follow(way.cell);
     }
 }
 
@@ -251,30 +206,22 @@ fn slabs_are_thin_to_second_order() {
     let middle = [2048.0; 3];
     let solid = MeshSolid::new(mesh(&sphere(middle, 1500.0, 6)), FillRule::NonZero).unwrap();
     let frame = lattice_frame(12);
-    let mut worker = solid.on(&frame, &alone()).unwrap().worker().unwrap();
+    let classifier = solid.on(&frame, &alone()).unwrap();
     let mut widths = [(0.0, 0.0); 12];
     let mut random = Random(3);
     for _ in 0..300 {
-        let Verdict::Partial(mut part) = worker.root().unwrap() else { panic!() };
-        let mut cell = Cell::ROOT;
-        while cell.level < 8 {
-            let children = worker.split(cell, &part).unwrap();
-            let open: Vec<u8> =
-                (0..8).filter(|&k| matches!(children[k as usize], Verdict::Partial(_))).collect();
-            let octant = open[random.below(open.len() as u64) as usize];
-            let Verdict::Partial(next) = children[octant as usize] else { unreachable!() };
-            (part, cell) = (next, cell.child(octant));
-            if let Some(enclosure) = worker.enclosure(cell, &part).unwrap() {
+        let mut way = Way::new(classifier.worker().unwrap()).unwrap();
+        while way.cell.level < 8 && way.descend(&mut random) {
+            if let Some(enclosure) = way.worker.enclosure(way.cell, &way.part).unwrap() {
                 let slab = &enclosure.slabs[0];
                 let range: f64 = slab.normal.iter().map(|n| n.abs()).sum();
                 if slab.inner.is_finite() && slab.outer.is_finite() {
-                    let (sum, count) = &mut widths[cell.level as usize];
+                    let (sum, count) = &mut widths[way.cell.level as usize];
                     *sum += (slab.outer - slab.inner) / range;
                     *count += 1.0;
                 }
             }
         }
-        worker.release(0);
     }
     let means = widths.map(|(sum, count)| sum / count);
     println!("{means:?} {widths:?}");

@@ -5,14 +5,11 @@ mod common;
 #[allow(dead_code)]
 #[path = "csg/model.rs"]
 mod model;
-#[allow(dead_code)]
 #[path = "csg/random.rs"]
 mod random;
 
-use common::{Random, alone, lattice_frame};
-use leafless::{
-    Affine, Cell, CellMoments, Classifier, Csg, CubeMoments, Frame, MAX_DEPTH, Solid, Verdict, Worker,
-};
+use common::{Random, Way, alone, lattice_frame};
+use leafless::{Cell, CellMoments, Classifier, Csg, CubeMoments, Frame, MAX_DEPTH, Solid, Verdict, Worker};
 use model::Model;
 use random::Maker;
 
@@ -94,19 +91,14 @@ struct Found {
 }
 
 fn walk(model: &Model, frame: &Frame, csg: &Csg, random: &mut Random, found: &mut Found) {
-    let mut worker = csg.on(frame, &alone()).unwrap().worker().unwrap();
-    let mut opposite = csg.complement().on(frame, &alone()).unwrap().worker().unwrap();
-    let (Verdict::Partial(mut part), Verdict::Partial(mut rest)) =
-        (worker.root().unwrap(), opposite.root().unwrap())
-    else {
-        return;
-    };
-    let mut cell = Cell::ROOT;
-    while cell.level < frame.depth() {
+    let way = |csg: &Csg| Way::new(csg.on(frame, &alone()).unwrap().worker().unwrap());
+    let (Some(mut way), Some(mut opposite)) = (way(csg), way(&csg.complement())) else { return };
+    while way.cell.level < frame.depth() {
+        let cell = way.cell;
         found.asked += 1;
         let context = || format!("{cell:?}\n{frame:?}\n{model:#?}");
-        let complement = opposite.moments(cell, &rest).unwrap();
-        let known = worker.moments(cell, &part).unwrap();
+        let complement = opposite.worker.moments(cell, &opposite.part).unwrap();
+        let known = way.worker.moments(cell, &way.part).unwrap();
         assert_eq!(known.is_some(), complement.is_some(), "{}", context());
         if let (Some(known), Some(complement)) = (known, complement) {
             found.known += 1;
@@ -115,7 +107,7 @@ fn walk(model: &Model, frame: &Frame, csg: &Csg, random: &mut Random, found: &mu
             let error = known.error + back.error;
             assert!(difference(&own, &Sum::of(&back.moments, 0.0)) <= error, "{}", context());
             for (levels, fine) in [(4, false), (2, true)] {
-                let sum = below(&mut worker, cell, &part, levels, fine);
+                let sum = below(&mut way.worker, cell, &way.part, levels, fine);
                 let off = difference(&own, &sum);
                 let rounding = 1e-14;
                 assert!(
@@ -129,19 +121,10 @@ fn walk(model: &Model, frame: &Frame, csg: &Csg, random: &mut Random, found: &mu
                 }
             }
         }
-        let children = worker.split(cell, &part).unwrap();
-        let others = opposite.split(cell, &rest).unwrap();
-        let open: Vec<u8> = (0..8).filter(|&k| matches!(children[k as usize], Verdict::Partial(_))).collect();
-        if open.is_empty() {
+        if !way.descend(random) {
             return;
         }
-        let octant = open[random.below(open.len() as u64) as usize];
-        let (Verdict::Partial(a), Verdict::Partial(b)) = (children[octant as usize], others[octant as usize])
-        else {
-            panic!("the complement is decided: {}", context());
-        };
-        (part, rest) = (a, b);
-        cell = cell.child(octant);
+        opposite.follow(way.cell);
     }
 }
 
@@ -170,24 +153,12 @@ fn hold(name: &str, wanted: u64, make: impl Fn(&mut Maker<'_>) -> Model) {
     assert!(found.strong > wanted / 4, "{name}: {found:?}");
 }
 
-fn placed(maker: &mut Maker<'_>, model: Model) -> Model {
-    Model::Placed(Box::new(model), maker.placement())
-}
-
-/// A torus around a point of the universe.
-fn torus(maker: &mut Maker<'_>) -> Model {
-    let edge = maker.frame.edge();
-    let (major, minor) = (edge * maker.random.between(0.1, 0.5), edge * maker.random.between(0.02, 0.6));
-    let to = maker.point();
-    Model::Placed(Box::new(Model::Torus(major, minor)), Affine::translation(to).unwrap_or(Affine::IDENTITY))
-}
-
 /// A curved half-space with one or two planes.
 fn cut(maker: &mut Maker<'_>) -> Model {
     let mixed = maker.below(2) == 0;
     let mut model = match maker.below(4) {
         0 => maker.power(),
-        1 => torus(maker),
+        1 => maker.torus(),
         _ => maker.quadric(mixed),
     };
     for _ in 0..1 + maker.below(2) {
@@ -206,23 +177,23 @@ fn every_producer(cells: u64) {
     hold("mixed quadrics", cells, |maker| maker.quadric(true));
     hold("turned quadrics", cells, |maker| {
         let quadric = maker.quadric(false);
-        placed(maker, quadric)
+        maker.placed(quadric)
     });
     hold("powers", cells, |maker| maker.power());
     hold("turned powers", cells, |maker| {
         let power = maker.power();
-        placed(maker, power)
+        maker.placed(power)
     });
-    hold("tori", cells, torus);
+    hold("tori", cells, |maker| maker.torus());
     hold("turned tori", cells, |maker| {
-        let torus = torus(maker);
-        placed(maker, torus)
+        let torus = maker.torus();
+        maker.placed(torus)
     });
     hold("primitives", cells, |maker| maker.primitive());
     hold("cut by planes", cells, cut);
     hold("cut by planes, turned", cells, |maker| {
         let cut = cut(maker);
-        placed(maker, cut)
+        maker.placed(cut)
     });
 }
 

@@ -7,12 +7,15 @@
 pub mod cubes;
 pub mod exact;
 mod models;
+pub mod slabs;
+mod way;
 
 use leafless::{
     Cell, Control, Cube, Cursor, Error, Frame, LevelStatistics, Octree, OctreeRef, Rule, Tag, Verdict, build,
 };
 pub use models::model;
 use proptest::prelude::*;
+pub use way::Way;
 
 /// The cube [0, 2^depth]³ with cells of edge 1, so that lattice coordinates are model coordinates.
 pub fn lattice_frame(depth: u8) -> Frame {

@@ -1,5 +1,8 @@
 //! Random expressions that have something to do with a frame.
 
+// Each test program uses its own part of this.
+#![allow(dead_code)]
+
 use super::model::{Model, Other};
 use crate::common::{Random, alone};
 use leafless::{Affine, Frame, Rule, build};
@@ -46,17 +49,17 @@ impl Maker<'_> {
         (min, min.map(|c| c + self.length()))
     }
 
-    fn half_space(&mut self) -> ([f64; 3], f64) {
+    fn normal_and_offset(&mut self) -> ([f64; 3], f64) {
         let normal = [self.factor(), self.factor(), self.factor()];
         if normal == [0.0; 3] {
-            return self.half_space();
+            return self.normal_and_offset();
         }
         let p = self.point();
         (normal, -(0..3).map(|axis| normal[axis] * p[axis]).sum::<f64>())
     }
 
     pub fn plane(&mut self) -> Model {
-        let (normal, offset) = self.half_space();
+        let (normal, offset) = self.normal_and_offset();
         Model::Plane(normal, offset)
     }
 
@@ -82,6 +85,40 @@ impl Maker<'_> {
         if c[..9] == [0.0; 9] { self.quadric(mixed) } else { Model::Quadric(c) }
     }
 
+    /// A torus around a point of the universe.
+    pub fn torus(&mut self) -> Model {
+        let edge = self.frame.edge();
+        let (major, minor) = (edge * self.random.between(0.1, 0.5), edge * self.random.between(0.02, 0.6));
+        self.moved(Model::Torus(major, minor))
+    }
+
+    /// A half-space of any kind.
+    pub fn half_space(&mut self) -> Model {
+        match self.below(6) {
+            0 | 1 => self.plane(),
+            2 => self.quadric(false),
+            3 => self.quadric(true),
+            4 => self.power(),
+            _ => self.torus(),
+        }
+    }
+
+    /// Half-spaces joined in some way.
+    pub fn joined(&mut self, count: u64) -> Model {
+        let mut model = self.half_space();
+        for _ in 1..count {
+            let other = self.half_space();
+            model = match self.below(5) {
+                0 => Model::Union(vec![model, other]),
+                1 => Model::Intersection(vec![other, model]),
+                2 => Model::Difference(Box::new([model, other])),
+                3 => Model::Difference(Box::new([other, model])),
+                _ => Model::Complement(Box::new(Model::Union(vec![model, other]))),
+            };
+        }
+        model
+    }
+
     pub fn primitive(&mut self) -> Model {
         match self.below(13) {
             0 => self.plane(),
@@ -94,7 +131,7 @@ impl Maker<'_> {
             4 => Model::Ellipsoid(self.point(), [self.length(); 3]),
             5 => Model::Ellipsoid(self.point(), [self.length(), self.length(), self.length()]),
             6 => self.power(),
-            7 => Model::Convex((0..2 + self.below(6)).map(|_| self.half_space()).collect()),
+            7 => Model::Convex((0..2 + self.below(6)).map(|_| self.normal_and_offset()).collect()),
             8 => Model::Host(self.point(), self.length()),
             9 => {
                 let (major, other) = (self.length(), self.length());
@@ -120,7 +157,7 @@ impl Maker<'_> {
     }
 
     /// From around the origin to where the universe is.
-    fn moved(&mut self, model: Model) -> Model {
+    pub fn moved(&mut self, model: Model) -> Model {
         match Affine::translation(self.point()) {
             Ok(placement) => Model::Placed(Box::new(model), placement),
             Err(_) => model,
@@ -191,6 +228,11 @@ impl Maker<'_> {
         }
     }
 
+    /// The model in another place.
+    pub fn placed(&mut self, model: Model) -> Model {
+        Model::Placed(Box::new(model), self.placement())
+    }
+
     pub fn other(&mut self) -> Other {
         match self.below(7) {
             0 => {
@@ -244,7 +286,7 @@ impl Maker<'_> {
             4 => Model::Complement(Box::new(self.expression(height - 1))),
             5 if !self.others => {
                 let part = self.expression(height - 1);
-                Model::Placed(Box::new(part), self.placement())
+                self.placed(part)
             }
             _ => self.expression(height - 1),
         }
