@@ -103,7 +103,7 @@ pub(super) fn guard(body: impl FnOnce() -> Result<(), Failure>) -> leafless_stat
 }
 
 /// As [`guard`] for functions that have nothing to refuse, such as `_free`.
-pub(super) fn guard_free(body: impl FnOnce()) {
+fn guard_free(body: impl FnOnce()) {
     if let Err(payload) = catch_unwind(AssertUnwindSafe(body)) {
         panicked(payload);
     }
@@ -508,6 +508,17 @@ pub(super) unsafe fn release<T>(handle: *mut T) {
     if !handle.is_null() {
         // SAFETY: `handle` came from `Arc::into_raw`.
         guard_free(|| drop(unsafe { Arc::from_raw(handle.cast_const()) }));
+    }
+}
+
+/// Gives back a handle that nothing shares.
+///
+/// # Safety
+/// The handle is NULL, or alive and came from `Box::into_raw`; no other call uses it.
+pub(super) unsafe fn discard<T>(handle: *mut T) {
+    if !handle.is_null() {
+        // SAFETY: `handle` came from `Box::into_raw`.
+        guard_free(|| drop(unsafe { Box::from_raw(handle) }));
     }
 }
 

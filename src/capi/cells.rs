@@ -1,6 +1,6 @@
 //! Cells of octrees: neighbours, and cells and boundary faces one after another.
 
-use super::boundary::{Failure, array, buffer, exclusive, guard, guard_free, out, share, slice};
+use super::boundary::{Failure, array, buffer, discard, exclusive, guard, out, share, slice};
 use super::frame::{frame, leafless_frame};
 use super::octree::{leafless_octree, leafless_tag};
 use super::query::leafless_cursor;
@@ -317,10 +317,8 @@ pub unsafe extern "C" fn leafless_cells_new(
 /// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_cells_free(cells: *mut leafless_cells) {
-    if !cells.is_null() {
-        // SAFETY: the caller's promise; it came from `Box::into_raw`.
-        guard_free(|| drop(unsafe { Box::from_raw(cells) }));
-    }
+    // SAFETY: the caller's promise.
+    unsafe { discard(cells) }
 }
 
 /// Goes on from a cell: the next one is that cell, or the one that contains it and is not split, or the first
@@ -437,10 +435,8 @@ pub unsafe extern "C" fn leafless_faces_new(
 /// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_faces_free(faces: *mut leafless_faces) {
-    if !faces.is_null() {
-        // SAFETY: the caller's promise; it came from `Box::into_raw`.
-        guard_free(|| drop(unsafe { Box::from_raw(faces) }));
-    }
+    // SAFETY: the caller's promise.
+    unsafe { discard(faces) }
 }
 
 /// Goes on with the faces of a cell, or of the one that contains it and is not split, or of the first wanted

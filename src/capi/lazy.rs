@@ -1,6 +1,6 @@
 //! Octrees that are split on demand.
 
-use super::boundary::{Failure, array, buffer, guard, guard_free, out, shared};
+use super::boundary::{Failure, array, buffer, discard, guard, out, shared};
 use super::control::{controlled, leafless_options};
 use super::frame::{frame, leafless_frame};
 use super::octree::{give, leafless_octree, leafless_statistics, leafless_tag};
@@ -151,10 +151,8 @@ pub unsafe extern "C" fn leafless_lazy_resume(
 /// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_lazy_free(lazy: *mut leafless_lazy) {
-    if !lazy.is_null() {
-        // SAFETY: the caller's promise; it came from `Box::into_raw`.
-        guard_free(|| drop(unsafe { Box::from_raw(lazy) }));
-    }
+    // SAFETY: the caller's promise.
+    unsafe { discard(lazy) }
 }
 
 /// Splits a PARTIAL cell. A cell that was split before, is decided, or that splitting does not help costs

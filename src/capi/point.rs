@@ -1,6 +1,6 @@
 //! Points asked of a stored octree many times: cursors that remember their way, and tables.
 
-use super::boundary::{array, exclusive, guard, guard_free, out, share, shared, slice};
+use super::boundary::{array, discard, exclusive, guard, out, share, shared, slice};
 use super::octree::{leafless_octree, leafless_tag};
 use super::query::{answers, leafless_membership};
 use super::status::leafless_status;
@@ -49,10 +49,8 @@ pub unsafe extern "C" fn leafless_point_cursor_new(
 /// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_point_cursor_free(cursor: *mut leafless_point_cursor) {
-    if !cursor.is_null() {
-        // SAFETY: the caller's promise; it came from `Box::into_raw`.
-        guard_free(|| drop(unsafe { Box::from_raw(cursor) }));
-    }
+    // SAFETY: the caller's promise.
+    unsafe { discard(cursor) }
 }
 
 /// As leafless_octree_contains.
@@ -149,10 +147,8 @@ pub unsafe extern "C" fn leafless_point_table_new(
 /// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_point_table_free(table: *mut leafless_point_table) {
-    if !table.is_null() {
-        // SAFETY: the caller's promise; it came from `Box::into_raw`.
-        guard_free(|| drop(unsafe { Box::from_raw(table) }));
-    }
+    // SAFETY: the caller's promise.
+    unsafe { discard(table) }
 }
 
 /// As leafless_octree_contains.

@@ -1,6 +1,6 @@
 //! Queries: points, boxes, and cursors on the nodes of an octree.
 
-use super::boundary::{Failure, array, exclusive, guard, guard_free, out, share, shared, slice};
+use super::boundary::{Failure, array, discard, exclusive, guard, out, share, shared, slice};
 use super::control::{controlled, leafless_options};
 use super::frame::{frame, leafless_frame};
 use super::octree::{leafless_octree, leafless_tag};
@@ -318,10 +318,8 @@ pub unsafe extern "C" fn leafless_cursor_new(
 /// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_cursor_free(cursor: *mut leafless_cursor) {
-    if !cursor.is_null() {
-        // SAFETY: the caller's promise; it came from `Box::into_raw`.
-        guard_free(|| drop(unsafe { Box::from_raw(cursor) }));
-    }
+    // SAFETY: the caller's promise.
+    unsafe { discard(cursor) }
 }
 
 /// Where a cursor stands.

@@ -88,27 +88,21 @@ impl OnFrame {
         size: i32,
         mut part: MeshPart,
     ) -> Verdict<MeshPart> {
-        let is_cut = triangles.first().is_some_and(|&first| !self.placed.is_cap(first));
-        let is_capped = triangles.last().is_some_and(|&last| self.placed.is_cap(last));
+        let (is_cut, is_capped) = (self.is_cut(triangles), self.is_capped(triangles));
         if is_cut && (size == 1 || is_capped) {
             return Verdict::Partial(part);
         }
         let mut is_fresh = false;
         loop {
             let caps = self.caps_over(surroundings, at, size, part);
-            let change = caps.change + caps.error;
-            if !is_capped {
-                // (What is not known may be no number at all.)
-                let nearest = if change < 0.5 { floor(caps.value + 0.5) } else { 0 };
-                if change < 0.5 && (caps.value - nearest as f64).abs() + change < 0.5 {
-                    part.winding -= nearest as i32;
-                    part.caps = None;
-                    return self.closed_verdict(part);
-                }
+            if !is_capped && let Some(nearest) = caps.nearest() {
+                part.winding -= nearest;
+                part.caps = None;
+                return self.closed_verdict(part);
             }
             if !is_cut {
                 let excess = self.excess(part.winding as f64 - caps.value);
-                if excess.abs() > change {
+                if excess.abs() > caps.change + caps.error {
                     return if excess > 0.0 { Verdict::Full } else { Verdict::Empty };
                 }
             }
@@ -162,16 +156,11 @@ impl OnFrame {
         size: i32,
         mut part: MeshPart,
     ) -> Option<i32> {
-        let is_capped = triangles.last().is_some_and(|&last| self.placed.is_cap(last));
-        let level = self.placed.frame.depth() - size.trailing_zeros() as u8;
-        if part.caps?.level != level {
-            part.caps = Some(self.branch(surroundings, at, size, is_capped, part));
+        if part.caps?.level != self.level(size) {
+            part.caps = Some(self.branch(surroundings, at, size, self.is_capped(triangles), part));
         }
-        let caps = self.caps_over(surroundings, at, size, part);
-        let change = caps.change + caps.error;
-        // (What is not known may be no number at all.)
-        let nearest = if change < 0.5 { floor(caps.value + 0.5) } else { return None };
-        ((caps.value - nearest as f64).abs() + change < 0.5).then(|| part.winding - nearest as i32)
+        let nearest = self.caps_over(surroundings, at, size, part).nearest()?;
+        Some(part.winding - nearest)
     }
 
     /// A slab that holds the boundary in a cell which the surface does not cut: where the winding number is one half.
@@ -183,12 +172,10 @@ impl OnFrame {
         size: i32,
         mut part: MeshPart,
     ) -> Option<Enclosure> {
-        let is_cut = triangles.first().is_some_and(|&first| !self.placed.is_cap(first));
-        let level = self.placed.frame.depth() - size.trailing_zeros() as u8;
-        if is_cut {
+        if self.is_cut(triangles) {
             return None;
         }
-        if part.caps.is_some_and(|branch| branch.level != level) {
+        if part.caps.is_some_and(|branch| branch.level != self.level(size)) {
             part.caps = Some(self.branch(surroundings, at, size, !triangles.is_empty(), part));
         }
         let Branch { level: level @ 0..=MAX_DEPTH, step } = part.caps? else { return None };
@@ -208,6 +195,21 @@ impl OnFrame {
         // (Of what is no number nothing is known.)
         let is_known = range.is_finite() && normal != [0.0; 3];
         is_known.then(|| slab::enclosure(Slab { normal, inner: end - rest, outer: end + rest }))
+    }
+
+    /// Whether triangles of the surface are among those that meet a cell: they come first.
+    fn is_cut(&self, triangles: &[u32]) -> bool {
+        triangles.first().is_some_and(|&first| !self.placed.is_cap(first))
+    }
+
+    /// Whether caps are among those that meet a cell: they come last.
+    fn is_capped(&self, triangles: &[u32]) -> bool {
+        triangles.last().is_some_and(|&last| self.placed.is_cap(last))
+    }
+
+    /// The level of cells that are so many finest cells wide.
+    fn level(&self, size: i32) -> u8 {
+        self.placed.frame.depth() - size.trailing_zeros() as u8
     }
 
     /// By how much a winding number exceeds what the fill rule asks for.
@@ -251,7 +253,7 @@ impl OnFrame {
         is_capped: bool,
         part: MeshPart,
     ) -> Branch {
-        let level = self.placed.frame.depth() - size.trailing_zeros() as u8;
+        let level = self.level(size);
         let Some(here) = surroundings.local(self, level, at) else { return Branch::UNKNOWN };
         if size == 1 {
             return Branch { level, step: 0 };

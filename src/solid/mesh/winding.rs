@@ -20,7 +20,7 @@
 use super::crossing::Projection;
 use super::placed::{Placed, ranks};
 use crate::error::Error;
-use crate::lattice::exact::sqrt;
+use crate::lattice::exact::{floor, sqrt};
 use crate::memory;
 use crate::mesh::Loops;
 use alloc::vec::Vec;
@@ -142,6 +142,14 @@ impl Range {
 
     pub(super) fn plus(self, step: i32) -> Range {
         Range { value: self.value + step as f64, ..self }
+    }
+
+    /// The integer that all numbers of the range are nearest to; `None` if one may be half way to the next.
+    pub(super) fn nearest(self) -> Option<i32> {
+        let change = self.change + self.error;
+        // (What is not known may be no number at all.)
+        let nearest = if change < 0.5 { floor(self.value + 0.5) } else { return None };
+        ((self.value - nearest as f64).abs() + change < 0.5).then_some(nearest as i32)
     }
 }
 
