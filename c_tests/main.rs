@@ -227,6 +227,16 @@ fn measures() {
 }
 
 #[test]
+fn rays() {
+    run("rays", C99, Link::Static, &[]);
+}
+
+#[test]
+fn columns() {
+    run("columns", C99, Link::Static, &[]);
+}
+
+#[test]
 fn cells() {
     run("cells", C99, Link::Static, &[]);
 }

@@ -1282,6 +1282,224 @@ static void cells_and_faces(void) {
     leafless_faces_free(NULL);
 }
 
+static void rays(void) {
+    void *out = fresh();
+    const leafless_ray good = {{-2, 0, 0}, {1, 0, 0}, INFINITY};
+    const leafless_ray *wrong = (const leafless_ray *)WRONG(&good);
+    leafless_ray bad = good;
+    leafless_ray_hit *hits = (leafless_ray_hit *)out, hit;
+    leafless_interval *spans = (leafless_interval *)out;
+    uint64_t *count = (uint64_t *)out, inner, outer;
+    leafless_sight sight;
+    const double far[4] = {0, 0, 3, 0}, huge[3] = {0, 0, 1e300};
+
+    NULL_POINTER(leafless_octree_cast_rays, octree, leafless_octree_cast_rays(NULL, &good, 1, 0, hits));
+    NULL_POINTER(leafless_octree_cast_rays, rays, leafless_octree_cast_rays(octree, NULL, 1, 0, hits));
+    NULL_POINTER(leafless_octree_cast_rays, hits, leafless_octree_cast_rays(octree, &good, 1, 0, NULL));
+    NULL_POINTER(leafless_solid_cast_rays, solid, leafless_solid_cast_rays(NULL, &frame, &good, 1, 0, NULL, hits));
+    NULL_POINTER(leafless_solid_cast_rays, frame, leafless_solid_cast_rays(solid, NULL, &good, 1, 0, NULL, hits));
+    NULL_POINTER(leafless_solid_cast_rays, rays, leafless_solid_cast_rays(solid, &frame, NULL, 1, 0, NULL, hits));
+    NULL_POINTER(leafless_solid_cast_rays, hits, leafless_solid_cast_rays(solid, &frame, &good, 1, 0, NULL, NULL));
+    NULL_POINTER(leafless_octree_ray_spans, octree,
+                 leafless_octree_ray_spans(NULL, &good, NULL, 0, count, NULL, 0, count));
+    NULL_POINTER(leafless_octree_ray_spans, ray,
+                 leafless_octree_ray_spans(octree, NULL, NULL, 0, count, NULL, 0, count));
+    NULL_POINTER(leafless_octree_ray_spans, inner,
+                 leafless_octree_ray_spans(octree, &good, NULL, 1, count, NULL, 0, count));
+    NULL_POINTER(leafless_octree_ray_spans, inner_count,
+                 leafless_octree_ray_spans(octree, &good, NULL, 0, NULL, NULL, 0, count));
+    NULL_POINTER(leafless_octree_ray_spans, outer,
+                 leafless_octree_ray_spans(octree, &good, NULL, 0, count, NULL, 1, count));
+    NULL_POINTER(leafless_octree_ray_spans, outer_count,
+                 leafless_octree_ray_spans(octree, &good, NULL, 0, count, NULL, 0, NULL));
+    NULL_POINTER(leafless_solid_ray_spans, solid,
+                 leafless_solid_ray_spans(NULL, &frame, &good, NULL, NULL, 0, count, NULL, 0, count));
+    NULL_POINTER(leafless_solid_ray_spans, frame,
+                 leafless_solid_ray_spans(solid, NULL, &good, NULL, NULL, 0, count, NULL, 0, count));
+    NULL_POINTER(leafless_solid_ray_spans, ray,
+                 leafless_solid_ray_spans(solid, &frame, NULL, NULL, NULL, 0, count, NULL, 0, count));
+    NULL_POINTER(leafless_solid_ray_spans, inner,
+                 leafless_solid_ray_spans(solid, &frame, &good, NULL, NULL, 1, count, NULL, 0, count));
+    NULL_POINTER(leafless_solid_ray_spans, inner_count,
+                 leafless_solid_ray_spans(solid, &frame, &good, NULL, NULL, 0, NULL, NULL, 0, count));
+    NULL_POINTER(leafless_solid_ray_spans, outer,
+                 leafless_solid_ray_spans(solid, &frame, &good, NULL, NULL, 0, count, NULL, 1, count));
+    NULL_POINTER(leafless_solid_ray_spans, outer_count,
+                 leafless_solid_ray_spans(solid, &frame, &good, NULL, NULL, 0, count, NULL, 0, NULL));
+    NULL_POINTER(leafless_solid_line_of_sight, solid,
+                 leafless_solid_line_of_sight(NULL, &frame, point, far, NULL, (leafless_sight *)out));
+    NULL_POINTER(leafless_solid_line_of_sight, frame,
+                 leafless_solid_line_of_sight(solid, NULL, point, far, NULL, (leafless_sight *)out));
+    NULL_POINTER(leafless_solid_line_of_sight, from_model,
+                 leafless_solid_line_of_sight(solid, &frame, NULL, far, NULL, (leafless_sight *)out));
+    NULL_POINTER(leafless_solid_line_of_sight, to_model,
+                 leafless_solid_line_of_sight(solid, &frame, point, NULL, NULL, (leafless_sight *)out));
+    NULL_POINTER(leafless_solid_line_of_sight, sight,
+                 leafless_solid_line_of_sight(solid, &frame, point, far, NULL, NULL));
+
+    MISALIGNED(leafless_octree_cast_rays, rays, leafless_octree_cast_rays(octree, wrong, 1, 0, hits));
+    MISALIGNED(leafless_octree_cast_rays, hits,
+               leafless_octree_cast_rays(octree, &good, 1, 0, (leafless_ray_hit *)WRONG(out)));
+    MISALIGNED(leafless_solid_cast_rays, rays, leafless_solid_cast_rays(solid, &frame, wrong, 1, 0, NULL, hits));
+    MISALIGNED(leafless_solid_cast_rays, hits,
+               leafless_solid_cast_rays(solid, &frame, &good, 1, 0, NULL, (leafless_ray_hit *)WRONG(out)));
+    MISALIGNED(leafless_octree_ray_spans, ray,
+               leafless_octree_ray_spans(octree, wrong, NULL, 0, count, NULL, 0, count));
+    MISALIGNED(leafless_octree_ray_spans, inner,
+               leafless_octree_ray_spans(octree, &good, (leafless_interval *)WRONG(out), 1, count, NULL, 0, count));
+    MISALIGNED(leafless_octree_ray_spans, outer_count,
+               leafless_octree_ray_spans(octree, &good, NULL, 0, count, NULL, 0, (uint64_t *)WRONG(out)));
+    MISALIGNED(leafless_solid_ray_spans, ray,
+               leafless_solid_ray_spans(solid, &frame, wrong, NULL, NULL, 0, count, NULL, 0, count));
+    MISALIGNED(leafless_solid_ray_spans, outer,
+               leafless_solid_ray_spans(solid, &frame, &good, NULL, NULL, 0, count, (leafless_interval *)WRONG(out), 1,
+                                        count));
+    MISALIGNED(leafless_solid_line_of_sight, from_model,
+               leafless_solid_line_of_sight(solid, &frame, (const double *)WRONG(far), far, NULL, (leafless_sight *)out));
+    MISALIGNED(leafless_solid_line_of_sight, to_model,
+               leafless_solid_line_of_sight(solid, &frame, point, (const double *)WRONG(far), NULL, (leafless_sight *)out));
+
+    BAD_NUMBER(leafless_octree_cast_rays, on, leafless_octree_cast_rays(octree, &good, 1, 2, hits));
+    BAD_NUMBER(leafless_solid_cast_rays, on, leafless_solid_cast_rays(solid, &frame, &good, 1, 2, NULL, hits));
+    BAD_NUMBER(leafless_octree_cast_rays, rays, leafless_octree_cast_rays(octree, &good, UINT64_MAX, 0, hits));
+    BAD_NUMBER(leafless_solid_line_of_sight, to,
+               leafless_solid_line_of_sight(solid, &frame, point, huge, NULL, (leafless_sight *)out));
+    BAD_NUMBER(leafless_solid_line_of_sight, direction,
+               leafless_solid_line_of_sight(solid, &frame, point, point, NULL, (leafless_sight *)out));
+    bad.direction_model[0] = 0;
+    BAD_NUMBER(leafless_octree_cast_rays, rays, leafless_octree_cast_rays(octree, &bad, 1, 0, hits));
+    BAD_NUMBER(leafless_solid_cast_rays, rays, leafless_solid_cast_rays(solid, &frame, &bad, 1, 0, NULL, hits));
+    BAD_NUMBER(leafless_octree_ray_spans, direction,
+               leafless_octree_ray_spans(octree, &bad, NULL, 0, count, NULL, 0, count));
+    bad = good;
+    bad.t_last = 0;
+    BAD_NUMBER(leafless_octree_cast_rays, last, leafless_octree_cast_rays(octree, &bad, 1, 0, hits));
+    bad.t_last = (double)NAN;
+    BAD_NUMBER(leafless_solid_ray_spans, last,
+               leafless_solid_ray_spans(solid, &frame, &bad, NULL, spans, 1, count, NULL, 0, count));
+    bad = good;
+    bad.origin_model[1] = INFINITY;
+    BAD_NUMBER(leafless_solid_cast_rays, origin, leafless_solid_cast_rays(solid, &frame, &bad, 1, 0, NULL, hits));
+    untouched();
+
+    MAY_BE_NULL(leafless_octree_cast_rays, rays, leafless_octree_cast_rays(octree, NULL, 0, 0, NULL));
+    MAY_BE_NULL(leafless_octree_cast_rays, hits, leafless_octree_cast_rays(octree, NULL, 0, 0, NULL));
+    MAY_BE_NULL(leafless_solid_cast_rays, rays, leafless_solid_cast_rays(solid, &frame, NULL, 0, 0, NULL, NULL));
+    MAY_BE_NULL(leafless_solid_cast_rays, hits, leafless_solid_cast_rays(solid, &frame, NULL, 0, 0, NULL, NULL));
+    MAY_BE_NULL(leafless_solid_cast_rays, options, leafless_solid_cast_rays(solid, &frame, &good, 1, 0, NULL, &hit));
+    MAY_BE_NULL(leafless_octree_ray_spans, inner,
+                leafless_octree_ray_spans(octree, &good, NULL, 0, &inner, NULL, 0, &outer));
+    MAY_BE_NULL(leafless_octree_ray_spans, outer,
+                leafless_octree_ray_spans(octree, &good, NULL, 0, &inner, NULL, 0, &outer));
+    MAY_BE_NULL(leafless_solid_ray_spans, inner,
+                leafless_solid_ray_spans(solid, &frame, &good, NULL, NULL, 0, &inner, NULL, 0, &outer));
+    MAY_BE_NULL(leafless_solid_ray_spans, outer,
+                leafless_solid_ray_spans(solid, &frame, &good, NULL, NULL, 0, &inner, NULL, 0, &outer));
+    MAY_BE_NULL(leafless_solid_ray_spans, options,
+                leafless_solid_ray_spans(solid, &frame, &good, NULL, NULL, 0, &inner, NULL, 0, &outer));
+    MAY_BE_NULL(leafless_solid_line_of_sight, options,
+                leafless_solid_line_of_sight(solid, &frame, point, far, NULL, &sight));
+    CHECK(hit.is_hit && inner == 1 && outer == 1 && sight == LEAFLESS_SIGHT_BLOCKED);
+}
+
+static void columns(void) {
+    void *out = fresh();
+    void *never = UNTOUCHED;
+    leafless_columns *columns = NULL, **result = (leafless_columns **)&never;
+    const uint32_t first[3] = {0, 0, 0}, end[3] = {16, 16, 0}, far[2] = {16, 17};
+    const uint32_t *wrong = (const uint32_t *)WRONG(end);
+    uint64_t *count = (uint64_t *)out, *offsets = (uint64_t *)out, number, other;
+    leafless_run *runs = (leafless_run *)out;
+    leafless_interval *map = (leafless_interval *)out;
+
+    OK(leafless_octree_columns(octree, 0, first, end, &columns));
+    NULL_POINTER(leafless_octree_columns, octree, leafless_octree_columns(NULL, 0, first, end, result));
+    NULL_POINTER(leafless_octree_columns, first, leafless_octree_columns(octree, 0, NULL, end, result));
+    NULL_POINTER(leafless_octree_columns, end, leafless_octree_columns(octree, 0, first, NULL, result));
+    NULL_POINTER(leafless_octree_columns, columns, leafless_octree_columns(octree, 0, first, end, NULL));
+    NULL_POINTER(leafless_solid_columns, solid, leafless_solid_columns(NULL, &frame, 0, first, end, NULL, result));
+    NULL_POINTER(leafless_solid_columns, frame, leafless_solid_columns(solid, NULL, 0, first, end, NULL, result));
+    NULL_POINTER(leafless_solid_columns, first, leafless_solid_columns(solid, &frame, 0, NULL, end, NULL, result));
+    NULL_POINTER(leafless_solid_columns, end, leafless_solid_columns(solid, &frame, 0, first, NULL, NULL, result));
+    NULL_POINTER(leafless_solid_columns, columns, leafless_solid_columns(solid, &frame, 0, first, end, NULL, NULL));
+    NULL_POINTER(leafless_columns_read, columns, leafless_columns_read(NULL, 0, NULL, 0, count, NULL, 0, count));
+    NULL_POINTER(leafless_columns_read, offsets, leafless_columns_read(columns, 0, NULL, 1, count, NULL, 0, count));
+    NULL_POINTER(leafless_columns_read, offset_count,
+                 leafless_columns_read(columns, 0, NULL, 0, NULL, NULL, 0, count));
+    NULL_POINTER(leafless_columns_read, runs, leafless_columns_read(columns, 0, NULL, 0, count, NULL, 1, count));
+    NULL_POINTER(leafless_columns_read, run_count, leafless_columns_read(columns, 0, NULL, 0, count, NULL, 0, NULL));
+    NULL_POINTER(leafless_octree_heights, octree, leafless_octree_heights(NULL, 0, first, end, 0, map, 16, count));
+    NULL_POINTER(leafless_octree_heights, first, leafless_octree_heights(octree, 0, NULL, end, 0, map, 16, count));
+    NULL_POINTER(leafless_octree_heights, end, leafless_octree_heights(octree, 0, first, NULL, 0, map, 16, count));
+    NULL_POINTER(leafless_octree_heights, heights_model,
+                 leafless_octree_heights(octree, 0, first, end, 0, NULL, 256, count));
+    NULL_POINTER(leafless_octree_heights, count, leafless_octree_heights(octree, 0, first, end, 0, NULL, 0, NULL));
+    NULL_POINTER(leafless_solid_heights, solid,
+                 leafless_solid_heights(NULL, &frame, 0, first, end, 0, NULL, map, 16, count));
+    NULL_POINTER(leafless_solid_heights, frame,
+                 leafless_solid_heights(solid, NULL, 0, first, end, 0, NULL, map, 16, count));
+    NULL_POINTER(leafless_solid_heights, first,
+                 leafless_solid_heights(solid, &frame, 0, NULL, end, 0, NULL, map, 16, count));
+    NULL_POINTER(leafless_solid_heights, end,
+                 leafless_solid_heights(solid, &frame, 0, first, NULL, 0, NULL, map, 16, count));
+    NULL_POINTER(leafless_solid_heights, heights_model,
+                 leafless_solid_heights(solid, &frame, 0, first, end, 0, NULL, NULL, 256, count));
+    NULL_POINTER(leafless_solid_heights, count,
+                 leafless_solid_heights(solid, &frame, 0, first, end, 0, NULL, NULL, 0, NULL));
+
+    MISALIGNED(leafless_octree_columns, first, leafless_octree_columns(octree, 0, wrong, end, result));
+    MISALIGNED(leafless_octree_columns, end, leafless_octree_columns(octree, 0, first, wrong, result));
+    MISALIGNED(leafless_octree_columns, columns,
+               leafless_octree_columns(octree, 0, first, end, (leafless_columns **)WRONG(out)));
+    MISALIGNED(leafless_solid_columns, end, leafless_solid_columns(solid, &frame, 0, first, wrong, NULL, result));
+    MISALIGNED(leafless_columns_read, columns,
+               leafless_columns_read((leafless_columns *)WRONG(columns), 0, NULL, 0, count, NULL, 0, count));
+    MISALIGNED(leafless_columns_read, offsets,
+               leafless_columns_read(columns, 0, (uint64_t *)WRONG(out), 1, count, NULL, 0, count));
+    MISALIGNED(leafless_columns_read, runs,
+               leafless_columns_read(columns, 0, NULL, 0, count, (leafless_run *)WRONG(out), 1, count));
+    MISALIGNED(leafless_octree_heights, heights_model,
+               leafless_octree_heights(octree, 0, first, end, 0, (leafless_interval *)WRONG(out), 256, count));
+    MISALIGNED(leafless_solid_heights, count,
+               leafless_solid_heights(solid, &frame, 0, first, end, 0, NULL, NULL, 0, (uint64_t *)WRONG(out)));
+
+    BAD_NUMBER(leafless_octree_columns, axis, leafless_octree_columns(octree, 3, first, end, result));
+    BAD_NUMBER(leafless_octree_columns, axis, leafless_octree_columns(octree, UINT32_MAX, NULL, NULL, result));
+    BAD_NUMBER(leafless_octree_columns, columns, leafless_octree_columns(octree, 0, first, far, result));
+    BAD_NUMBER(leafless_octree_columns, end, leafless_octree_columns(octree, 0, end, first, result));
+    BAD_NUMBER(leafless_solid_columns, columns, leafless_solid_columns(solid, &frame, 1, first, far, NULL, result));
+    BAD_NUMBER(leafless_columns_read, on, leafless_columns_read(columns, 2, NULL, 0, count, NULL, 0, count));
+    BAD_NUMBER(leafless_columns_read, runs, leafless_columns_read(columns, 0, NULL, 0, count, runs, UINT64_MAX, count));
+    BAD_NUMBER(leafless_columns_read, offsets,
+               leafless_columns_read(columns, 0, offsets, UINT64_MAX, count, NULL, 0, count));
+    BAD_NUMBER(leafless_octree_heights, side, leafless_octree_heights(octree, 0, first, end, 2, map, 256, count));
+    BAD_NUMBER(leafless_solid_heights, side,
+               leafless_solid_heights(solid, &frame, 0, first, end, 2, NULL, map, 256, count));
+    BAD_NUMBER(leafless_solid_heights, columns,
+               leafless_solid_heights(solid, &frame, 0, first, far, 0, NULL, map, 272, count));
+    untouched();
+    CHECK(never == UNTOUCHED);
+
+    MAY_BE_NULL(leafless_columns_read, offsets, leafless_columns_read(columns, 0, NULL, 0, &number, NULL, 0, &other));
+    MAY_BE_NULL(leafless_columns_read, runs, leafless_columns_read(columns, 0, NULL, 0, &number, NULL, 0, &other));
+    CHECK(number == 257 && other > 0);
+    MAY_BE_NULL(leafless_octree_heights, heights_model,
+                leafless_octree_heights(octree, 0, NULL, NULL, 1, NULL, 0, &number));
+    MAY_BE_NULL(leafless_octree_heights, first, leafless_octree_heights(octree, 0, NULL, NULL, 1, NULL, 0, &number));
+    MAY_BE_NULL(leafless_octree_heights, end, leafless_octree_heights(octree, 0, NULL, NULL, 1, NULL, 0, &number));
+    MAY_BE_NULL(leafless_solid_heights, heights_model,
+                leafless_solid_heights(solid, &frame, 0, NULL, NULL, 1, NULL, NULL, 0, &number));
+    MAY_BE_NULL(leafless_solid_heights, options,
+                leafless_solid_heights(solid, &frame, 0, NULL, NULL, 1, NULL, NULL, 0, &number));
+    CHECK(number == 256);
+    leafless_columns_free(columns);
+    columns = NULL;
+    MAY_BE_NULL(leafless_solid_columns, options,
+                leafless_solid_columns(solid, &frame, 0, first, end, NULL, &columns));
+    leafless_columns_free(columns);
+    leafless_columns_free(NULL);
+}
+
 int main(void) {
     octree = check_ball(4, LEAFLESS_RULE_CERTIFIED);
     mesh = check_cube();
@@ -1296,6 +1514,8 @@ int main(void) {
     numbers();
     lazy_octrees();
     cells_and_faces();
+    rays();
+    columns();
     /* All of it is as good as ever. */
     OK(leafless_octree_check(octree));
     leafless_point_cursor_free(point_cursor);

@@ -444,6 +444,31 @@ typedef uint8_t leafless_region;
 #endif // __cplusplus
 
 /**
+ * Whether two points see each other past a solid.
+ */
+enum leafless_sight
+#ifdef __cplusplus
+  : uint8_t
+#endif // __cplusplus
+ {
+    /**
+     * Proven: no point of the segment lies in the solid.
+     */
+    LEAFLESS_SIGHT_CLEAR = 0,
+    /**
+     * Proven: some point of the segment lies in the solid, or on its surface.
+     */
+    LEAFLESS_SIGHT_BLOCKED = 1,
+    /**
+     * Neither could be proven with the cells of the frame.
+     */
+    LEAFLESS_SIGHT_UNDECIDED = 2,
+};
+#ifndef __cplusplus
+typedef uint8_t leafless_sight;
+#endif // __cplusplus
+
+/**
  * Why a search or a measurement ended.
  */
 enum leafless_measured
@@ -654,6 +679,48 @@ typedef uint32_t leafless_overlap;
 #endif // __cplusplus
 
 /**
+ * Which cells stop a ray.
+ */
+enum leafless_obstacle
+#ifdef __cplusplus
+  : uint32_t
+#endif // __cplusplus
+ {
+    /**
+     * What is proven to be solid: FULL cells.
+     */
+    LEAFLESS_OBSTACLE_FULL = 0,
+    /**
+     * What may be solid: FULL and PARTIAL cells.
+     */
+    LEAFLESS_OBSTACLE_UPPER = 1,
+};
+#ifndef __cplusplus
+typedef uint32_t leafless_obstacle;
+#endif // __cplusplus
+
+/**
+ * Where columns are looked at from.
+ */
+enum leafless_side
+#ifdef __cplusplus
+  : uint32_t
+#endif // __cplusplus
+ {
+    /**
+     * From above, towards lower coordinates: what counts is the highest cell.
+     */
+    LEAFLESS_SIDE_ABOVE = 0,
+    /**
+     * From below: what counts is the lowest cell.
+     */
+    LEAFLESS_SIDE_BELOW = 1,
+};
+#ifndef __cplusplus
+typedef uint32_t leafless_side;
+#endif // __cplusplus
+
+/**
  * Which tags' cells are wanted: one of these values, or several joined by `|`.
  */
 enum leafless_tags
@@ -744,6 +811,13 @@ typedef uint32_t leafless_proven;
  * Reading changes it: while one thread reads, no other may use it. Threads may have one each.
  */
 typedef struct leafless_cells leafless_cells;
+
+/**
+ * The solid cells of columns, as runs.
+ *
+ * It does not change: any number of threads may read it at once.
+ */
+typedef struct leafless_columns leafless_columns;
 
 /**
  * A switch to stop long operations from any thread, and to ask how far they are.
@@ -1706,6 +1780,69 @@ typedef struct {
      */
     leafless_tag children[8];
 } leafless_cursor_state;
+
+/**
+ * A half-line or a segment: the points origin + t · direction with 0 ≤ t ≤ t_last. A coordinate is zero or has
+ * a magnitude between 2^-256 and 2^256.
+ */
+typedef struct {
+    /**
+     * Where the ray starts.
+     */
+    double origin_model[3];
+    /**
+     * Not zero, of any length. t is a distance if the length is 1.
+     */
+    double direction_model[3];
+    /**
+     * The greatest t: INFINITY for a half-line, or between 2^-256 and 2^256; 1 for the segment from
+     * `origin_model` to `origin_model` + `direction_model`.
+     */
+    double t_last;
+} leafless_ray;
+
+/**
+ * Where a ray first meets a solid.
+ */
+typedef struct {
+    /**
+     * The least t at which the ray is in the solid lies in this interval: before `lower` the ray is proven
+     * outside, at `upper` inside. `upper` is INFINITY if the ray is nowhere proven inside; then it may miss the
+     * solid. Both are INFINITY if nothing stops the ray.
+     */
+    leafless_interval t;
+    /**
+     * The outward normal of the face by which the ray enters the cell, or of the surface where the solid knows
+     * it better. Its length is 1 but for rounding; zero if the ray starts in the cell, or nothing stops it.
+     */
+    double normal[3];
+    /**
+     * The place of the first cell that stops the ray among those of its level, per axis.
+     */
+    uint32_t cell[3];
+    /**
+     * The cell's level; 0 is the universe.
+     */
+    uint32_t level;
+    /**
+     * Whether something stops the ray.
+     */
+    bool is_hit;
+} leafless_ray_hit;
+
+/**
+ * Consecutive finest cells of a column.
+ */
+typedef struct {
+    /**
+     * The coordinate of the lowest cell along the column.
+     */
+    uint32_t start;
+    /**
+     * How many cells there are, at least one.
+     */
+    uint32_t length;
+} leafless_run;
 
 /**
  * A cell of an octree and what is known of it.
@@ -4165,6 +4302,267 @@ leafless_status leafless_point_table_contains_many(const leafless_point_table *t
                                                    const double *points_model,
                                                    uint64_t count,
                                                    leafless_membership *memberships);
+
+/**
+ * Where rays first meet an octree's cells, whatever they prove of the solid that it was made from. What lies
+ * outside of the universe does not count. At most 3 · 2^depth cells a ray are looked at, about a dozen as a rule.
+ *
+ * - Buffers: `rays`, `count` structs; `hits`, room for `count`. Both may be NULL if `count` is 0. `on` is a
+ *   leafless_obstacle.
+ * - Result: `hits[i]` for ray i.
+ * - Errors: LEAFLESS_E_ARGUMENT if `on` is none, or a ray is not as leafless_ray says.
+ * - Ownership: nothing changes hands.
+ * - Threads: any; works in the calling thread.
+ * - Untrusted input: any octree, any numbers; damage reads as PARTIAL.
+ * - Since: 0.1
+ */
+leafless_status leafless_octree_cast_rays(const leafless_octree *octree,
+                                          const leafless_ray *rays,
+                                          uint64_t count,
+                                          uint32_t on,
+                                          leafless_ray_hit *hits);
+
+/**
+ * Where rays first meet a solid, without an octree, as far as cells of the frame tell, and what the solid knows
+ * of the surface in the finest of them. What lies outside of the universe does not count. A ray splits the
+ * PARTIAL cells that it passes up to the first FULL one: O(depth) cells across a surface, up to O(2^depth)
+ * along one.
+ *
+ * - Buffers: `frame`, one struct; `rays`, `count` structs; `options`, one struct or NULL, of which
+ *   `max_splits` counts for each ray by itself: cells that were not split count as PARTIAL; `hits`, room for
+ *   `count`. `rays` and `hits` may be NULL if `count` is 0. `on` is a leafless_obstacle.
+ * - Result: `hits[i]` for ray i; the same for any number of threads.
+ * - Errors: LEAFLESS_E_ARGUMENT if `on` is none, or a ray is not as leafless_ray says; else as
+ *   leafless_solid_contains.
+ * - Ownership: nothing changes hands.
+ * - Threads: any; uses as many as `options` says.
+ * - Untrusted input: any solid, any numbers; set `max_splits` where the depth or the solid is not your own
+ *   choice.
+ * - Since: 0.1
+ */
+leafless_status leafless_solid_cast_rays(const leafless_solid *solid,
+                                         const leafless_frame *frame,
+                                         const leafless_ray *rays,
+                                         uint64_t count,
+                                         uint32_t on,
+                                         const leafless_options *options,
+                                         leafless_ray_hit *hits);
+
+/**
+ * Where a ray is in an octree's cells, whatever they prove of the solid that it was made from: intervals of t
+ * that ascend, of which no two of a list meet. What lies outside of the universe does not count. O(cells along
+ * the ray · depth).
+ *
+ * - Buffers: `ray`, one struct; `inner` and `outer`, room for `inner_capacity` and `outer_capacity` structs, each
+ *   NULL to ask for its count only; `inner_count` and `outer_count`, one number each.
+ * - Result: `inner`, where the ray is in FULL cells, rounded inward; `outer`, where it is in FULL or PARTIAL
+ *   cells, rounded outward; their counts.
+ * - Errors: LEAFLESS_E_ARGUMENT if the ray is not as leafless_ray says; LEAFLESS_E_BUFFER if a capacity is too
+ *   small: nothing is written then; LEAFLESS_E_NO_MEMORY.
+ * - Ownership: nothing changes hands.
+ * - Threads: any.
+ * - Untrusted input: any octree, any numbers; damage reads as PARTIAL.
+ * - Since: 0.1
+ */
+leafless_status leafless_octree_ray_spans(const leafless_octree *octree,
+                                          const leafless_ray *ray,
+                                          leafless_interval *inner,
+                                          uint64_t inner_capacity,
+                                          uint64_t *inner_count,
+                                          leafless_interval *outer,
+                                          uint64_t outer_capacity,
+                                          uint64_t *outer_count);
+
+/**
+ * Where a ray is in a solid, without an octree, as far as cells of the frame tell: intervals of t that ascend, of
+ * which no two of a list meet. What lies outside of the universe does not count. The ray splits all PARTIAL cells
+ * that it passes: O(depth) cells where it crosses a surface, up to O(2^depth) along one. Asking for the counts
+ * costs as much as asking for the intervals.
+ *
+ * - Buffers: as leafless_octree_ray_spans; `frame`, one struct; `options`, one struct or NULL, of which
+ *   `max_splits` counts: cells that were not split count as PARTIAL.
+ * - Result: `inner`, where the ray is proven inside, rounded inward; `outer`, where it is not proven outside,
+ *   rounded outward; their counts.
+ * - Errors: LEAFLESS_E_ARGUMENT if the ray is not as leafless_ray says; LEAFLESS_E_BUFFER if a capacity is too
+ *   small: nothing is written then; else as leafless_solid_contains.
+ * - Ownership: nothing changes hands.
+ * - Threads: any; works in the calling thread.
+ * - Untrusted input: any solid, any numbers; set `max_splits` where the depth or the solid is not your own
+ *   choice.
+ * - Since: 0.1
+ */
+leafless_status leafless_solid_ray_spans(const leafless_solid *solid,
+                                         const leafless_frame *frame,
+                                         const leafless_ray *ray,
+                                         const leafless_options *options,
+                                         leafless_interval *inner,
+                                         uint64_t inner_capacity,
+                                         uint64_t *inner_count,
+                                         leafless_interval *outer,
+                                         uint64_t outer_capacity,
+                                         uint64_t *outer_count);
+
+/**
+ * Whether two points see each other past a solid, without an octree, as far as cells of the frame tell. If the
+ * solid may go on outside of the universe and a point lies there, the answer is not LEAFLESS_SIGHT_CLEAR. Costs
+ * as much as one ray of leafless_solid_cast_rays.
+ *
+ * - Buffers: `frame`, one struct; `from_model` and `to_model`, 3 numbers each; `options`, one struct or NULL,
+ *   of which `max_splits` counts: cells that were not split count as PARTIAL; `sight`, one.
+ * - Result: `*sight`.
+ * - Errors: LEAFLESS_E_ARGUMENT if the points are equal, or a coordinate is not zero and not of a magnitude
+ *   between 2^-256 and 2^256; else as leafless_solid_contains.
+ * - Ownership: nothing changes hands.
+ * - Threads: any; works in the calling thread.
+ * - Untrusted input: any solid, any numbers; set `max_splits` where the depth or the solid is not your own
+ *   choice.
+ * - Since: 0.1
+ *
+ */
+leafless_status leafless_solid_line_of_sight(const leafless_solid *solid,
+                                             const leafless_frame *frame,
+                                             const double from_model[3],
+                                             const double to_model[3],
+                                             const leafless_options *options,
+                                             leafless_sight *sight);
+
+/**
+ * Which of an octree's cells are solid in a rectangle of columns, whatever they prove of the solid that it was made
+ * from. A column is a row of finest cells along an axis, from one side of the universe to the other. It stands for
+ * all lines along the axis within it, such as the ray through the centres of its cells. O(cells in the columns +
+ * columns · cells along each), counting cells as they are stored.
+ *
+ * - Buffers: `first` and `end`, 2 numbers each, or NULL both for all columns: the coordinates of the first column's
+ *   cells on the other two axes in the order x, y, z, and the first beyond the last one's; `columns`, one pointer.
+ *   `axis` is 0 for x, 1 for y, 2 for z.
+ * - Result: `*columns`, to be read with leafless_columns_read.
+ * - Errors: LEAFLESS_E_ARGUMENT if `axis` is greater than 2, `first` lies beyond `end`, or the columns reach beyond
+ *   the universe; LEAFLESS_E_NO_MEMORY.
+ * - Ownership: give `*columns` back with leafless_columns_free.
+ * - Threads: any; works in the calling thread.
+ * - Untrusted input: any octree, any numbers; damage reads as PARTIAL, and no array element is met twice.
+ * - Since: 0.1
+ *
+ */
+leafless_status leafless_octree_columns(const leafless_octree *octree,
+                                        uint32_t axis,
+                                        const uint32_t first[2],
+                                        const uint32_t end[2],
+                                        leafless_columns **columns);
+
+/**
+ * Which cells of a frame are solid in a rectangle of columns, without an octree: all PARTIAL cells in the columns are
+ * split down to the frame's depth.
+ *
+ * - Buffers: as leafless_octree_columns; `frame`, one struct; `options`, one struct or NULL, of which `max_bytes`
+ *   counts and `max_splits` does not.
+ * - Result: `*columns`, to be read with leafless_columns_read; the same for any number of threads.
+ * - Errors: LEAFLESS_E_ARGUMENT as leafless_octree_columns; LEAFLESS_E_LIMIT if the result takes more than
+ *   `max_bytes`; else as leafless_solid_contains.
+ * - Ownership: give `*columns` back with leafless_columns_free.
+ * - Threads: any; uses as many as `options` says.
+ * - Untrusted input: any solid, any numbers; choose the depth and the rectangle yourself.
+ * - Since: 0.1
+ *
+ */
+leafless_status leafless_solid_columns(const leafless_solid *solid,
+                                       const leafless_frame *frame,
+                                       uint32_t axis,
+                                       const uint32_t first[2],
+                                       const uint32_t end[2],
+                                       const leafless_options *options,
+                                       leafless_columns **columns);
+
+/**
+ * The runs of solid cells in columns, in compressed rows: those of column i are `runs[offsets[i]]` to before
+ * `runs[offsets[i + 1]]`. They ascend, and no two of them touch. The column at steps (u, v) from the first is
+ * i = v · width + u, of a rectangle that is `width` columns wide along the first of the other two axes.
+ *
+ * - Buffers: `offsets`, room for `offset_capacity` numbers, and `runs`, room for `run_capacity` structs, each NULL to
+ *   ask for its count only; `offset_count` and `run_count`, one number each. `on` is a leafless_obstacle: FULL for
+ *   the cells that are proven to be solid, UPPER for those that may be.
+ * - Result: `offsets`, one more than columns; `runs`; their counts.
+ * - Errors: LEAFLESS_E_ARGUMENT if `on` is none; LEAFLESS_E_BUFFER if a capacity is too small: nothing is written
+ *   then.
+ * - Ownership: nothing changes hands.
+ * - Threads: any.
+ * - Untrusted input: none.
+ * - Since: 0.1
+ */
+leafless_status leafless_columns_read(const leafless_columns *columns,
+                                      uint32_t on,
+                                      uint64_t *offsets,
+                                      uint64_t offset_capacity,
+                                      uint64_t *offset_count,
+                                      leafless_run *runs,
+                                      uint64_t run_capacity,
+                                      uint64_t *run_count);
+
+/**
+ * Gives back what leafless_octree_columns or leafless_solid_columns made.
+ *
+ * - Buffers: `columns`, a handle or NULL, which does nothing.
+ * - Result: none.
+ * - Errors: none.
+ * - Ownership: the handle is gone.
+ * - Threads: no other call may use the handle.
+ * - Untrusted input: none.
+ * - Since: 0.1
+ */
+void leafless_columns_free(leafless_columns *columns);
+
+/**
+ * How far an octree's solid cells reach in a rectangle of columns, whatever they prove of the solid that it was made
+ * from: a height map. Costs as leafless_octree_columns.
+ *
+ * - Buffers: `first` and `end` as leafless_octree_columns; `heights_model`, room for `capacity` structs, or NULL to
+ *   ask for the count only; `count`, one number. `side` is a leafless_side.
+ * - Result: `*count`, that of the columns; for each column, in the order of leafless_columns_read, an interval in
+ *   which the greatest coordinate of the solid's points in the column lies, or from below the least one. The end
+ *   that needs a proof is infinite if no cell of the column is FULL. Both are -INFINITY (from below INFINITY) if
+ *   the column is empty.
+ * - Errors: LEAFLESS_E_ARGUMENT as leafless_octree_columns, or if `side` is none; LEAFLESS_E_BUFFER if the capacity
+ *   is too small; LEAFLESS_E_NO_MEMORY.
+ * - Ownership: nothing changes hands.
+ * - Threads: any; works in the calling thread.
+ * - Untrusted input: any octree, any numbers; damage reads as PARTIAL, and no array element is met twice.
+ * - Since: 0.1
+ *
+ */
+leafless_status leafless_octree_heights(const leafless_octree *octree,
+                                        uint32_t axis,
+                                        const uint32_t first[2],
+                                        const uint32_t end[2],
+                                        uint32_t side,
+                                        leafless_interval *heights_model,
+                                        uint64_t capacity,
+                                        uint64_t *count);
+
+/**
+ * How far a solid reaches in a rectangle of columns, without an octree, as far as cells of the frame tell: a height
+ * map. PARTIAL cells in the columns are split down to the frame's depth, unless FULL ones hide them.
+ *
+ * - Buffers: as leafless_octree_heights; `frame`, one struct; `options`, one struct or NULL, of which `max_bytes`
+ *   counts and `max_splits` does not.
+ * - Result: as leafless_octree_heights; the same for any number of threads.
+ * - Errors: LEAFLESS_E_ARGUMENT as leafless_octree_heights; LEAFLESS_E_BUFFER if the capacity is too small;
+ *   LEAFLESS_E_LIMIT if the result takes more than `max_bytes`; else as leafless_solid_contains.
+ * - Ownership: nothing changes hands.
+ * - Threads: any; uses as many as `options` says.
+ * - Untrusted input: any solid, any numbers; choose the depth and the rectangle yourself.
+ * - Since: 0.1
+ *
+ */
+leafless_status leafless_solid_heights(const leafless_solid *solid,
+                                       const leafless_frame *frame,
+                                       uint32_t axis,
+                                       const uint32_t first[2],
+                                       const uint32_t end[2],
+                                       uint32_t side,
+                                       const leafless_options *options,
+                                       leafless_interval *heights_model,
+                                       uint64_t capacity,
+                                       uint64_t *count);
 
 /**
  * The box of a cell of any level, in model units: the doubles nearest to its corners that contain it.

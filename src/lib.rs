@@ -63,6 +63,7 @@
 //! | … a byte of a file checked? | `file/header.rs`, `object.rs`, `section.rs`, `layout.rs` |
 //! | … an allocation refused? | `memory.rs` |
 //! | … the volume of a solid, the distance of two? | `query/measure/`, `query/clearance/` |
+//! | … where a ray meets a solid, how high it is? | `query/ray/`, `query/columns/` |
 
 #![no_std]
 #![deny(unsafe_code)]
@@ -110,10 +111,11 @@ pub use op::{
     intersection_of, resolve, union, union_of, xor, xor_of,
 };
 pub use query::{
-    AREA_SPLITS, BOUNDING_BOX_SPLITS, CLEARANCE_SPLITS, Clearance, Extent, Interference, MEASURE_SPLITS,
-    MassProperties, Membership, Obstacle, Overlap, PointCursor, PointTable, Ray, RayHit, RaySpans, Region,
-    Sight, StopReason, SurfaceArea, Tolerance, bounding_box, cast_rays, classify_box, clearance, contains,
-    interference, interference_of, line_of_sight, measure, ray_spans, surface_area,
+    AREA_SPLITS, BOUNDING_BOX_SPLITS, CLEARANCE_SPLITS, Clearance, ColumnCells, ColumnRuns, Columns, Extent,
+    Heights, Interference, MEASURE_SPLITS, MassProperties, Membership, Obstacle, Overlap, PointCursor,
+    PointTable, Ray, RayHit, RaySpans, Region, Run, Side, Sight, StopReason, SurfaceArea, Tolerance,
+    bounding_box, cast_rays, classify_box, clearance, columns, contains, heights, interference,
+    interference_of, line_of_sight, measure, ray_spans, surface_area,
 };
 pub use solid::{
     Adaptive, AnyClassifier, AnySolid, AnyWorker, Callback, Classifier, Crossing, Csg, Enclosure, Erasable,

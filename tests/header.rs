@@ -32,6 +32,8 @@ const SECTIONS: &[&str] = &[
     "op",
     "query",
     "point",
+    "rays",
+    "columns",
     "cells",
     "lazy",
     "interference",

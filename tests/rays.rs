@@ -342,6 +342,35 @@ fn the_true_hit_of_a_ball_lies_in_the_interval() {
     assert!(met > 1000 && missed > 300, "{met} {missed}");
 }
 
+/// Intervals along a ray end where slabs say: those inside in the ball, those outside out of it, close to each other.
+#[test]
+fn the_true_spans_of_a_ball_lie_between() {
+    let frame = Frame::new([-1.0; 3], 2.0, 12).unwrap();
+    let ball = Csg::ball(CENTRE, RADIUS).unwrap();
+    let (mut met, mut narrow) = (0, 0);
+    for (from, direction) in rays_with_digits(&mut Random(11), 2000) {
+        let ray = Ray::new(from, direction).unwrap();
+        let RaySpans { inner, outer } = ray_spans(&ball, &frame, &ray, &alone()).unwrap();
+        let hit = cast_rays(&ball, &frame, &[ray], Obstacle::Upper, &alone()).unwrap()[0];
+        assert_eq!(outer.first().map(|span| span.lower), hit.map(|hit| hit.t.lower));
+        for t in inner.iter().flat_map(|span| [span.lower, span.upper]) {
+            assert!(ball_at(from, direction, t).0.sign() <= 0, "{from:?} {direction:?} {inner:?}");
+        }
+        for t in outer.iter().flat_map(|span| [span.lower, span.upper]).filter(|&t| t > 0.0) {
+            assert!(ball_at(from, direction, t).0.sign() >= 0, "{from:?} {direction:?} {outer:?}");
+        }
+        let within = |span: &Interval, of: &Interval| of.lower <= span.lower && span.upper <= of.upper;
+        assert!(inner.iter().all(|span| outer.iter().any(|of| within(span, of))));
+        if let ([first, ..], [last], [.., end]) = (&inner[..], &outer[..], &inner[..]) {
+            let length = direction.iter().map(|d| d * d).sum::<f64>().sqrt();
+            let doubt = (first.lower - last.lower).max(last.upper - end.upper) * length;
+            met += 1;
+            narrow += (doubt < 1e-5) as usize;
+        }
+    }
+    assert!(met > 800 && narrow > met * 9 / 10, "{narrow} of {met}");
+}
+
 #[test]
 fn the_march_finds_what_exact_descent_does() {
     let frame = Frame::new([-1.0; 3], 2.0, 9).unwrap();
@@ -400,6 +429,52 @@ fn what_is_refused() {
     assert!(tree.cast_rays(&[ray], Obstacle::Full, &mut []).is_err());
     let hit = tree.cast_ray(&ray, Obstacle::Full).unwrap();
     assert_eq!((hit.t, hit.normal), (Interval::exactly(1.0), [-1.0, 0.0, 0.0]));
+}
+
+/// A ray that ends is a segment: the same first cells as of the whole ray, as far as it goes.
+#[test]
+fn rays_end() {
+    let frame = Frame::new([-1.0; 3], 2.0, 8).unwrap();
+    let ball = Csg::ball(CENTRE, RADIUS).unwrap();
+    let tree = build(&ball, &frame, Rule::Certified, &alone()).unwrap();
+    let mut random = Random(10);
+    let (mut ended, mut met) = (0, 0);
+    for (from, direction) in rays_with_digits(&mut random, 2000) {
+        let whole = Ray::new(from, direction).unwrap();
+        assert_eq!(whole.until(f64::INFINITY).unwrap(), whole);
+        let last = random.between(0.01, 2.0);
+        let ray = whole.until(last).unwrap();
+        for on in [Obstacle::Full, Obstacle::Upper] {
+            let (hit, wanted) = (tree.cast_ray(&ray, on), tree.cast_ray(&whole, on));
+            assert_eq!(cast_rays(&tree, &frame, &[ray], on, &alone()).unwrap(), [hit]);
+            match (hit, wanted) {
+                (Some(hit), Some(wanted)) => {
+                    assert!(hit.cell == wanted.cell && hit.t.lower == wanted.t.lower && hit.t.lower <= last);
+                    assert!(
+                        hit.t.upper == wanted.t.upper
+                            || hit.t.upper == f64::INFINITY && wanted.t.upper >= last
+                    );
+                    met += 1;
+                }
+                (None, Some(wanted)) => {
+                    assert!(
+                        wanted.t.upper >= last
+                            && (on == Obstacle::Full || wanted.t.lower >= last.next_down())
+                    );
+                    ended += 1;
+                }
+                (hit, wanted) => assert_eq!(hit, wanted),
+            }
+        }
+        let RaySpans { outer, .. } = tree.ray_spans(&ray).unwrap();
+        assert!(outer.iter().all(|span| span.upper <= last));
+    }
+    assert!(ended > 100 && met > 500, "{ended} {met}");
+    let segment = Ray::between([0.0; 3], [1.0; 3]).unwrap();
+    assert_eq!(segment.until(2.0).unwrap(), segment);
+    for bad in [0.0, -1.0, f64::NAN, f64::NEG_INFINITY, 1e300, 1e-300] {
+        assert!(segment.until(bad).is_err(), "{bad}");
+    }
 }
 
 /// Bytes in which anything may stand below the table of sections.

@@ -15,10 +15,11 @@ mod zip;
 
 use bodies::{Aligned, Random};
 use leafless::{
-    Affine, AnySolid, Callback, Control, Csg, Error, FillRule, Frame, HalfSpace, LazyOctree, Membership,
-    MeshSolid, Metadata, Octree, Polyhedron, PolyhedronArrays, Rule, Transform, TriangleMesh, Verdict, Zone,
-    bounding_box, build, classify_box, clearance, compact, complement, contains, difference, exchange, file,
-    interference_of, intersection, measure, resolve, scene, union, union_of, xor,
+    Affine, AnySolid, Callback, Columns, Control, Csg, Error, FillRule, Frame, HalfSpace, LazyOctree,
+    Membership, MeshSolid, Metadata, Obstacle, Octree, Polyhedron, PolyhedronArrays, Ray, Rule, Side,
+    Transform, TriangleMesh, Verdict, Zone, bounding_box, build, cast_rays, classify_box, clearance, columns,
+    compact, complement, contains, difference, exchange, file, heights, interference_of, intersection,
+    measure, ray_spans, resolve, scene, union, union_of, xor,
 };
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
@@ -410,6 +411,24 @@ fn operations(directory: &Path) -> Vec<(&'static str, Operation)> {
     operation!("box of a mesh", [closed], {
         let solid = MeshSolid::new(closed.clone(), FillRule::NonZero)?;
         classify_box(&solid, &frame(), [7.1; 3], [16.0; 3], &CONTROL)
+    });
+    operation!("rays on a mesh", [closed], {
+        let solid = MeshSolid::new(closed.clone(), FillRule::NonZero)?;
+        let rays = [Ray::new([-3.0, 9.0, 11.0], [1.0, 0.1, 0.0])?, Ray::new([11.0; 3], [0.0, 0.0, 1.0])?];
+        ray_spans(&solid, &frame(), &rays[0], &CONTROL)?;
+        cast_rays(&solid, &frame(), &rays, Obstacle::Upper, &CONTROL)
+    });
+    operation!("columns", [a], {
+        a.ray_spans(&Ray::new([-3.0, 9.0, 11.0], [1.0, 0.1, 0.0])?)?;
+        let all = Columns::all(a.frame(), 1)?;
+        a.heights(&all, Side::Above)?;
+        a.columns(&all)
+    });
+    operation!("columns of a ball", [], {
+        let ball = Csg::ball([15.0; 3], 9.0)?;
+        let all = Columns::all(&frame(), 2)?;
+        heights(&ball, &frame(), &all, Side::Below, &CONTROL)?;
+        columns(&ball, &frame(), &all, &CONTROL)
     });
     operation!("to bytes", [b], file::to_bytes(&b.with_metadata(facts())));
     operation!("to bytes again", [coded], file::to_bytes(&coded));

@@ -11,6 +11,7 @@ mod content;
 mod csg;
 mod demo;
 mod failure;
+mod heights;
 mod info;
 mod input;
 mod interfere;
@@ -19,9 +20,12 @@ mod mesh;
 mod output;
 mod part;
 mod progress;
+mod ray;
 mod report;
+mod rows;
 mod scene;
 mod source;
+mod target;
 mod verify;
 mod voxelize;
 
@@ -67,6 +71,10 @@ enum Command {
     Complement(boolean::ComplementArguments),
     /// Say of points on standard input whether the solid contains them
     Contains(contains::Arguments),
+    /// Say where rays on standard input first meet a solid, a mesh or a scene
+    Ray(ray::Arguments),
+    /// Write how far a solid, a mesh or a scene reaches in each column of cells: a height map
+    Heights(heights::Arguments),
     /// Say whether two solids or meshes overlap, by how much, and how far they are apart
     Interfere(interfere::Arguments),
     /// Volume, centroid, inertia and bounds of a solid or a mesh, as intervals that hold the true ones
@@ -91,6 +99,8 @@ fn main() -> ExitCode {
         Command::Xor(arguments) => boolean::run(boolean::Operation::Xor, arguments),
         Command::Complement(arguments) => boolean::run_complement(arguments),
         Command::Contains(arguments) => contains::run(arguments),
+        Command::Ray(arguments) => ray::run(arguments),
+        Command::Heights(arguments) => heights::run(arguments),
         Command::Interfere(arguments) => interfere::run(arguments),
         Command::Measure(arguments) => measure::run(arguments),
         Command::Demo(arguments) => demo::run(arguments),

@@ -162,15 +162,9 @@ struct Report {
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let input = Input::from(&*arguments.file);
     let source = Source::read(&input, &arguments.reading, &arguments.drawing)?.taken(arguments.cells);
-    if let (Some(_), Some(_)) = (source.own_frame(), &arguments.bounds) {
-        return Err(Failure::Usage("--bounds is for meshes and scenes: a solid has its own".into()));
-    }
     let curves = source.curves();
     let is_stored = source.own_frame().is_some();
-    let frame = match (&arguments.bounds, arguments.depth) {
-        (Some(bounds), depth) => bounds.with_depth(depth.unwrap_or(MAX_DEPTH)).of(&input)?,
-        (None, depth) => source.frame(&input, depth)?,
-    };
+    let frame = source.frame_in(&input, arguments.bounds.as_ref(), arguments.depth)?;
     let solid = Prepared::new(source.placed(&input, &Affine::IDENTITY, &frame)?);
     let asked = arguments.tolerance.is_some() || arguments.splits.is_some();
     let relative = arguments.tolerance.unwrap_or(if arguments.splits.is_some() { 0.0 } else { 0.01 });

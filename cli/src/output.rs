@@ -175,6 +175,13 @@ pub fn json(value: &impl serde::Serialize) -> Result<String, Failure> {
     Ok(text)
 }
 
+/// Writes `value` as JSON on one line.
+pub fn json_line(value: &impl serde::Serialize) -> Result<String, Failure> {
+    let mut text = serde_json::to_string(value).map_err(|error| Failure::of("JSON", error))?;
+    text.push('\n');
+    Ok(text)
+}
+
 /// Writes one line to standard error. If that is closed nobody wants to know.
 pub fn complain(line: &str) {
     let _ = writeln!(std::io::stderr().lock(), "leafless: {}", harmless(line));

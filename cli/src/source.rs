@@ -95,6 +95,22 @@ impl Source {
         }
     }
 
+    /// The same in a cube that the user may have given, for a mesh or a scene.
+    pub fn frame_in(
+        &self,
+        input: &Input,
+        bounds: Option<&Frame>,
+        depth: Option<u8>,
+    ) -> Result<Frame, Failure> {
+        match bounds {
+            Some(_) if self.own_frame().is_some() => {
+                Err(Failure::Usage("--bounds is for meshes and scenes: a solid has its own".into()))
+            }
+            Some(bounds) => bounds.with_depth(depth.unwrap_or(MAX_DEPTH)).of(input),
+            None => self.frame(input, depth),
+        }
+    }
+
     /// Whether nothing of it lies beyond its bounds.
     pub fn ends_at_bounds(&self, input: &Input) -> Result<bool, Failure> {
         match self {

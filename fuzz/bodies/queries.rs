@@ -3,9 +3,9 @@
 
 use super::{Aligned, CONTROL, Random, halves, walk};
 use leafless::{
-    Cell, CellFilter, Classifier, Control, Cursor, Direction, Frame, LazyOctree, Membership, OctreeRef,
-    PointCursor, PointTable, Proof, Region, Rule, Solid, Tag, TaggedCell, Verdict, Worker, Zone, build,
-    classify_box, contains, file,
+    Cell, CellFilter, Classifier, Columns, Control, Cursor, Direction, Frame, LazyOctree, Membership,
+    Obstacle, OctreeRef, PointCursor, PointTable, Proof, Ray, Region, Rule, Run, Side, Solid, Tag,
+    TaggedCell, Verdict, Worker, Zone, build, classify_box, contains, file,
 };
 
 /// Asks the tree in the first half of `data` what the second half says.
@@ -27,6 +27,8 @@ pub fn ask(tree: &OctreeRef<'_>, questions: &[u8], verified: bool) {
     on_demand(tree, &points);
     ask_cells(tree);
     ask_neighbours(tree, verified);
+    ask_rays(tree, &points);
+    ask_columns(tree, verified);
     if verified {
         tree.check().expect("it is verified");
     } else {
@@ -92,6 +94,57 @@ fn ask_neighbours(tree: &OctreeRef<'_>, verified: bool) {
                 other.seek(beside).expect("a cell of the tree");
                 assert_eq!((other.cell(), other.tag()), (beside, tag));
             }
+        }
+    }
+}
+
+/// Rays between points end, one by one and together, and are inside only where they are not outside.
+fn ask_rays(tree: &OctreeRef<'_>, points: &[[f64; 3]]) {
+    let rays: Vec<Ray> = points.windows(2).filter_map(|pair| Ray::between(pair[0], pair[1]).ok()).collect();
+    let mut hits = vec![None; rays.len()];
+    for on in [Obstacle::Full, Obstacle::Upper] {
+        tree.cast_rays(&rays, on, &mut hits).expect("as many hits as rays");
+        for (ray, hit) in rays.iter().zip(&hits) {
+            assert_eq!(tree.cast_ray(ray, on), *hit);
+            assert!(hit.is_none_or(|hit| hit.t.lower <= hit.t.upper && hit.t.lower <= 1.0));
+        }
+    }
+    // Each of these may take 3 · 2^depth steps.
+    for ray in rays.iter().take(if tree.frame().depth() < 12 { 8 } else { 0 }) {
+        let spans = tree.ray_spans(ray).expect("there is memory");
+        assert!(spans.inner.iter().all(|inner| {
+            spans.outer.iter().any(|outer| outer.lower <= inner.lower && inner.upper <= outer.upper)
+        }));
+    }
+}
+
+/// Runs of cells in columns ascend; in a sound tree, they are its FULL cells.
+fn ask_columns(tree: &OctreeRef<'_>, verified: bool) {
+    let (cells, depth) = (tree.frame().cells(), tree.frame().depth());
+    for axis in 0..3 {
+        let first = [cells / 3, cells / 2];
+        let columns = match depth {
+            0..7 => Columns::all(tree.frame(), axis),
+            _ => Columns::within(axis, first, first.map(|a| a + 8)),
+        };
+        let columns = columns.expect("there are such columns");
+        let found = tree.columns(&columns).expect("there is memory");
+        let above = tree.heights(&columns, Side::Above).expect("there is memory");
+        let mut volume = 0;
+        for index in 0..columns.count() as usize {
+            for runs in [found.full.column(index), found.upper.column(index)] {
+                assert!(runs.iter().all(|run| run.length > 0 && run.start + run.length <= cells));
+                assert!(runs.windows(2).all(|pair| pair[0].start + pair[0].length < pair[1].start));
+            }
+            let top = |runs: &[Run]| runs.last().map(|run| run.start + run.length);
+            assert_eq!(above.full_plane(index), top(found.full.column(index)));
+            assert_eq!(above.upper_plane(index), top(found.upper.column(index)));
+            volume += found.full.column(index).iter().map(|run| u64::from(run.length)).sum::<u64>();
+        }
+        if verified && depth < 7 {
+            let full = tree.cells(CellFilter::tags(&[Tag::Full]));
+            let finest = |found: TaggedCell| 1u64 << (3 * (depth - found.cell.level));
+            assert_eq!(volume, full.map(finest).sum::<u64>());
         }
     }
 }

@@ -15,12 +15,33 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 
 /// Why a call fails.
 pub(super) enum Failure {
-    Null { name: &'static str },
-    Argument { name: &'static str, problem: &'static str },
-    Utf8 { name: &'static str },
-    Nul { name: &'static str },
-    Buffer { name: &'static str, needed: u64, capacity: u64 },
-    Busy { name: &'static str },
+    Null {
+        name: &'static str,
+    },
+    Argument {
+        name: &'static str,
+        problem: &'static str,
+    },
+    /// An element of an array is refused.
+    Element {
+        name: &'static str,
+        index: u64,
+        error: Error,
+    },
+    Utf8 {
+        name: &'static str,
+    },
+    Nul {
+        name: &'static str,
+    },
+    Buffer {
+        name: &'static str,
+        needed: u64,
+        capacity: u64,
+    },
+    Busy {
+        name: &'static str,
+    },
     Library(Error),
 }
 
@@ -35,6 +56,7 @@ impl Display for Failure {
         match self {
             Failure::Null { name } => write!(f, "{name}: must not be NULL"),
             Failure::Argument { name, problem } => write!(f, "{name}: {problem}"),
+            Failure::Element { name, index, error } => write!(f, "{name}[{index}]: {error}"),
             Failure::Utf8 { name } => write!(f, "{name}: is not UTF-8"),
             Failure::Nul { name } => write!(f, "{name}: holds a NUL"),
             Failure::Buffer { name, needed, capacity } => {
@@ -59,7 +81,7 @@ impl From<&Failure> for leafless_status {
     fn from(failure: &Failure) -> leafless_status {
         match failure {
             Failure::Null { .. } => LEAFLESS_E_NULL,
-            Failure::Argument { .. } => LEAFLESS_E_ARGUMENT,
+            Failure::Argument { .. } | Failure::Element { .. } => LEAFLESS_E_ARGUMENT,
             Failure::Utf8 { .. } | Failure::Nul { .. } => LEAFLESS_E_UTF8,
             Failure::Buffer { .. } => LEAFLESS_E_BUFFER,
             Failure::Busy { .. } => LEAFLESS_E_BUSY,
@@ -312,6 +334,7 @@ const _: () = {
     shared_by_threads::<super::leafless_point_cursor>();
     shared_by_threads::<super::leafless_cells>();
     shared_by_threads::<super::leafless_faces>();
+    shared_by_threads::<super::leafless_columns>();
 };
 
 /// A place for a result, checked before the work begins and written once it is done.

@@ -67,6 +67,12 @@ impl From<Interval> for leafless_interval {
     }
 }
 
+impl From<&Interval> for leafless_interval {
+    fn from(interval: &Interval) -> leafless_interval {
+        leafless_interval::from(*interval)
+    }
+}
+
 /// Checks a frame's fields.
 ///
 /// - Buffers: `frame`, one struct.

@@ -84,6 +84,9 @@ fn write_all(to: &mut dyn Write) -> fmt::Result {
             min_model, max_model, proof, splits, measured, is_empty, is_occupied, is_clipped
         }
         leafless_cursor_state { cell, level, tag, children }
+        leafless_ray { origin_model, direction_model, t_last }
+        leafless_ray_hit { t, normal, cell, level, is_hit }
+        leafless_run { start, length }
         leafless_cell { cell, level, tag }
         leafless_boundary_face { inner, outer, axis, is_upper, has_outer }
         leafless_probe {
@@ -112,6 +115,9 @@ fn write_all(to: &mut dyn Write) -> fmt::Result {
             LEAFLESS_REGION_OUTSIDE, LEAFLESS_REGION_INSIDE, LEAFLESS_REGION_CROSSING,
             LEAFLESS_REGION_UNDECIDED
         }
+        leafless_obstacle { LEAFLESS_OBSTACLE_FULL, LEAFLESS_OBSTACLE_UPPER }
+        leafless_side { LEAFLESS_SIDE_ABOVE, LEAFLESS_SIDE_BELOW }
+        leafless_sight { LEAFLESS_SIGHT_CLEAR, LEAFLESS_SIGHT_BLOCKED, LEAFLESS_SIGHT_UNDECIDED }
         leafless_proven {
             LEAFLESS_PROVEN_NOTHING, LEAFLESS_PROVEN_FULL, LEAFLESS_PROVEN_EMPTY, LEAFLESS_PROVEN_BOTH
         }

@@ -20,6 +20,8 @@
 //! | `op` | building, resolving, Booleans |
 //! | `query` | points, boxes, cursors |
 //! | `point` | cursors and tables for points |
+//! | `rays` | rays: first hits, intervals, line of sight |
+//! | `columns` | columns of cells along an axis, height maps |
 //! | `cells` | neighbours of cells, cells and boundary faces one after another |
 //! | `lazy` | octrees that are split on demand |
 //! | `interference` | solids under affine maps; overlap and distance of two solids |
@@ -33,6 +35,7 @@
 
 mod boundary;
 mod cells;
+mod columns;
 mod control;
 mod csg;
 mod file;
@@ -52,6 +55,7 @@ mod op;
 mod point;
 mod polyhedron;
 mod query;
+mod rays;
 mod scene;
 mod solid;
 mod status;
@@ -60,6 +64,7 @@ mod version;
 #[cfg(feature = "capi-test")]
 pub use boundary::leafless_test_panic;
 pub use cells::*;
+pub use columns::*;
 pub use control::*;
 pub use csg::*;
 pub use file::*;
@@ -79,6 +84,7 @@ pub use op::*;
 pub use point::*;
 pub use polyhedron::*;
 pub use query::*;
+pub use rays::*;
 pub use scene::*;
 pub use solid::*;
 pub use status::*;

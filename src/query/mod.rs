@@ -1,6 +1,7 @@
 //! Questions: such as a stored octree answers in place, and such as any solids answer.
 
 mod clearance;
+mod columns;
 mod descent;
 mod extent;
 mod interference;
@@ -15,6 +16,7 @@ mod region;
 mod subject;
 
 pub use clearance::{CLEARANCE_SPLITS, Clearance, clearance};
+pub use columns::{ColumnCells, ColumnRuns, Columns, Heights, Run, Side, columns, heights};
 pub use extent::{BOUNDING_BOX_SPLITS, Extent, bounding_box};
 pub use interference::{Interference, Overlap, interference, interference_of};
 pub use measure::{

@@ -18,7 +18,7 @@ impl Moment {
     /// t = 0.
     pub(super) const START: Moment = Moment::exactly(0.0);
 
-    const fn exactly(t: f64) -> Moment {
+    pub(super) const fn exactly(t: f64) -> Moment {
         Moment { t: Interval::exactly(t), plane: None }
     }
 

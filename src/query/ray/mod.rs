@@ -54,6 +54,18 @@ impl Ray {
         Ray::along(from, direction, 1.0)
     }
 
+    /// The part of the ray with t ≤ `last`, or all of it if it ends before.
+    ///
+    /// # Errors
+    /// [`Error::Argument`] if `last` is neither ∞ nor between 2^-256 and 2^256.
+    pub fn until(self, last: f64) -> Result<Ray, Error> {
+        if last == f64::INFINITY {
+            return Ok(self);
+        }
+        valid::length("last", last)?;
+        Ok(Ray { last: last.min(self.last), ..self })
+    }
+
     fn along(from: [f64; 3], direction: [[f64; 2]; 3], last: f64) -> Result<Ray, Error> {
         if direction.iter().all(|&[high, _]| high == 0.0) {
             return Err(Error::Argument { name: "direction", problem: "must not be zero" });

@@ -153,11 +153,12 @@ impl Visitor for First {
             Known::Partial(None) => keep(&mut self.outer, entry.lower, cell, face),
             Known::Partial(Some(enclosure)) => {
                 let found = Enclosed::new(line, cell, passage, &enclosure);
-                if let Some((t, slab)) = found.possible {
-                    keep(&mut self.outer, t, cell, slab.map_or(face, |n| unit(enclosure.slabs[n].normal)));
+                let normal = |slab: Option<usize>| slab.map_or(face, |n| unit(enclosure.slabs[n].normal));
+                for (stay, slab) in found.possible.into_iter().flatten() {
+                    keep(&mut self.outer, stay.entry.t.lower, cell, normal(slab));
                 }
-                if let Some((t, slab)) = found.certain {
-                    keep(&mut self.inner, t, cell, slab.map_or(face, |n| unit(enclosure.slabs[n].normal)));
+                for (stay, slab) in found.certain.into_iter().flatten() {
+                    keep(&mut self.inner, stay.entry.t.upper, cell, normal(slab));
                 }
             }
         }
@@ -173,11 +174,13 @@ fn unit(normal: [f64; 3]) -> [f64; 3] {
     scaled.map(|c| c / length)
 }
 
-/// What slabs say of a ray in a cell: the least t at which it may be in the solid, and the least at which it is.
-/// With each comes the slab that decides; none if the ray enters the cell there.
+/// A stay of a ray, and the slab with which it begins; none if the ray enters the cell there.
+type Bounded = (Passage, Option<usize>);
+
+/// What slabs say of a ray in a cell: when it may be in the solid, and when it is.
 struct Enclosed {
-    possible: Option<(f64, Option<usize>)>,
-    certain: Option<(f64, Option<usize>)>,
+    possible: [Option<Bounded>; 3],
+    certain: [Option<Bounded>; 3],
 }
 
 /// An interval of t, and the slab that bounds it from below.
@@ -199,48 +202,34 @@ impl Spell {
 impl Enclosed {
     fn new(line: &Line<'_>, cell: Cell, passage: &Passage, enclosure: &Enclosure) -> Enclosed {
         let (entry, exit) = (passage.entry.t, passage.exit.t);
-        let whole = Spell { from: entry.lower, to: exit.upper, slab: None };
-        let sure = Spell { from: entry.upper, to: exit.lower, slab: None };
-        let (mut possible, mut certain) = (Spells::default(), Spells::default());
+        let (mut possible, mut certain) = ([None; 3], [None; 3]);
         for (n, slab) in enclosure.slabs.iter().enumerate().filter(|(_, slab)| slab.normal != [0.0; 3]) {
             let height = Height::new(line, cell, slab, Interval { lower: entry.lower, upper: exit.upper });
-            possible.push(height.perhaps_below(slab.outer, n));
-            certain.push(height.surely_below(slab.inner, n));
+            possible[n] = Some(height.perhaps_below(slab.outer, n));
+            certain[n] = Some(height.surely_below(slab.inner, n));
         }
-        // Where slabs agree at a single point only, they do not prove it to be inside.
-        let possible_in = |spell: Spell| (spell.from <= spell.to).then_some((spell.from, spell.slab));
-        let certain_in = |spell: Spell| (spell.from < spell.to).then_some((spell.from, spell.slab));
-        let least = |spells: Spells, limits: Spell, kept: &dyn Fn(Spell) -> Option<(f64, Option<usize>)>| {
-            match enclosure.join {
-                SlabJoin::All => kept(spells.iter().fold(limits, Spell::and)),
-                SlabJoin::Any => spells
-                    .iter()
-                    .filter_map(|spell| kept(limits.and(spell)))
-                    .min_by(|a, b| a.0.total_cmp(&b.0)),
-            }
+        let whole = Spell { from: entry.lower, to: exit.upper, slab: None };
+        let joined = |spells: [Option<Spell>; 3]| match enclosure.join {
+            SlabJoin::All => [Some(spells.into_iter().flatten().fold(whole, Spell::and)), None, None],
+            SlabJoin::Any => spells.map(|spell| spell.map(|spell| whole.and(spell))),
+        };
+        // A spell that lasts from the cell's entry begins with it exactly, so that it goes on from the cell before.
+        let begins = |from: f64| if from <= entry.lower { passage.entry } else { Moment::exactly(from) };
+        let ends = |to: f64| if to >= exit.upper { passage.exit } else { Moment::exactly(to) };
+        let may_be = |Spell { from, to, slab }: Spell| {
+            (from <= to).then(|| (Passage { entry: begins(from), exit: ends(to) }, slab))
+        };
+        let must_be = |Spell { from, to, slab }: Spell| {
+            let late = if from > entry.lower { from.max(entry.upper) } else { from };
+            let early = if to < exit.upper { to.min(exit.lower) } else { to };
+            let stay = Passage { entry: begins(late), exit: ends(early) };
+            // Where slabs agree at a single point only, they do not prove it to be inside.
+            (stay.entry.t.upper < stay.exit.t.lower).then_some((stay, slab))
         };
         Enclosed {
-            possible: least(possible, whole, &possible_in),
-            certain: least(certain, sure, &certain_in),
+            possible: joined(possible).map(|spell| spell.and_then(may_be)),
+            certain: joined(certain).map(|spell| spell.and_then(must_be)),
         }
-    }
-}
-
-/// At most three spells.
-#[derive(Default, Clone, Copy)]
-struct Spells {
-    spells: [Option<Spell>; 3],
-    count: usize,
-}
-
-impl Spells {
-    fn push(&mut self, spell: Spell) {
-        self.spells[self.count] = Some(spell);
-        self.count += 1;
-    }
-
-    fn iter(&self) -> impl Iterator<Item = Spell> {
-        self.spells.into_iter().flatten()
     }
 }
 
@@ -324,11 +313,21 @@ impl Visitor for Stays {
         false
     }
 
-    fn meet(&mut self, line: &Line<'_>, _: Cell, passage: &Passage, known: Known) -> Result<(), Error> {
-        if let Known::Full = known {
-            add(line, &mut self.inner, passage)?;
+    fn meet(&mut self, line: &Line<'_>, cell: Cell, passage: &Passage, known: Known) -> Result<(), Error> {
+        match known {
+            Known::Full => {
+                add(line, &mut self.inner, passage)?;
+                add(line, &mut self.outer, passage)
+            }
+            Known::Partial(None) => add(line, &mut self.outer, passage),
+            Known::Partial(Some(enclosure)) => {
+                let Enclosed { possible, certain } = Enclosed::new(line, cell, passage, &enclosure);
+                for (stay, _) in certain.iter().flatten() {
+                    add(line, &mut self.inner, stay)?;
+                }
+                possible.iter().flatten().try_for_each(|(stay, _)| add(line, &mut self.outer, stay))
+            }
         }
-        add(line, &mut self.outer, passage)
     }
 }
 

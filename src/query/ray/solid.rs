@@ -72,9 +72,9 @@ pub fn cast_rays<S: Solid>(
     Ok(hits)
 }
 
-/// Where a ray is in a solid, as far as cells of `frame` tell. What lies outside of the universe does not count.
-/// The ray splits all PARTIAL cells that it passes, `control.max_splits` at the most; cells that were not split
-/// count as PARTIAL. One thread.
+/// Where a ray is in a solid, as far as cells of `frame` and the slabs of the finest of them tell. What lies outside
+/// of the universe does not count. The ray splits all PARTIAL cells that it passes, `control.max_splits` at the most;
+/// cells that were not split count as PARTIAL. One thread.
 ///
 /// # Errors
 /// As [`cast_rays`].
