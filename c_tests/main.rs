@@ -237,6 +237,16 @@ fn columns() {
 }
 
 #[test]
+fn regions() {
+    run("region", C99, Link::Static, &[]);
+}
+
+#[test]
+fn distances() {
+    run("distance", C99, Link::Static, &[]);
+}
+
+#[test]
 fn cells() {
     run("cells", C99, Link::Static, &[]);
 }

@@ -1500,6 +1500,120 @@ static void columns(void) {
     leafless_columns_free(NULL);
 }
 
+static void regions(void) {
+    void *out = fresh();
+    const double padded[4] = {0, 0, 0, 0};
+    const double *wrong = (const double *)WRONG(padded);
+    const uint32_t cell[4] = {0, 0, 0, 0}, end[3] = {1, 1, 1}, beyond[3] = {17, 1, 1};
+    const uint32_t *wrong_cell = (const uint32_t *)WRONG(cell);
+    leafless_interval *volume = (leafless_interval *)out;
+    leafless_region *relation = (leafless_region *)out;
+    uint64_t *least = (uint64_t *)out;
+
+    NULL_POINTER(leafless_octree_cells_in_box, octree, leafless_octree_cells_in_box(NULL, cell, end, least, least));
+    NULL_POINTER(leafless_octree_cells_in_box, min_cell, leafless_octree_cells_in_box(octree, NULL, end, least, least));
+    NULL_POINTER(leafless_octree_cells_in_box, max_cell, leafless_octree_cells_in_box(octree, cell, NULL, least, least));
+    NULL_POINTER(leafless_octree_cells_in_box, least, leafless_octree_cells_in_box(octree, cell, end, NULL, least));
+    NULL_POINTER(leafless_octree_cells_in_box, most, leafless_octree_cells_in_box(octree, cell, end, least, NULL));
+    NULL_POINTER(leafless_octree_volume_in_box, octree, leafless_octree_volume_in_box(NULL, point, above, volume));
+    NULL_POINTER(leafless_octree_volume_in_box, min_model, leafless_octree_volume_in_box(octree, NULL, above, volume));
+    NULL_POINTER(leafless_octree_volume_in_box, max_model, leafless_octree_volume_in_box(octree, point, NULL, volume));
+    NULL_POINTER(leafless_octree_volume_in_box, volume_model, leafless_octree_volume_in_box(octree, point, above, NULL));
+    NULL_POINTER(leafless_solid_classify_in, solid, leafless_solid_classify_in(NULL, solid, &frame, NULL, relation));
+    NULL_POINTER(leafless_solid_classify_in, region, leafless_solid_classify_in(solid, NULL, &frame, NULL, relation));
+    NULL_POINTER(leafless_solid_classify_in, frame, leafless_solid_classify_in(solid, solid, NULL, NULL, relation));
+    NULL_POINTER(leafless_solid_classify_in, relation, leafless_solid_classify_in(solid, solid, &frame, NULL, NULL));
+
+    MISALIGNED(leafless_octree_cells_in_box, min_cell,
+               leafless_octree_cells_in_box(octree, wrong_cell, end, least, least));
+    MISALIGNED(leafless_octree_cells_in_box, max_cell,
+               leafless_octree_cells_in_box(octree, cell, wrong_cell, least, least));
+    MISALIGNED(leafless_octree_cells_in_box, least,
+               leafless_octree_cells_in_box(octree, cell, end, (uint64_t *)WRONG(out), least));
+    MISALIGNED(leafless_octree_cells_in_box, most,
+               leafless_octree_cells_in_box(octree, cell, end, least, (uint64_t *)WRONG(out)));
+    MISALIGNED(leafless_octree_volume_in_box, min_model, leafless_octree_volume_in_box(octree, wrong, above, volume));
+    MISALIGNED(leafless_octree_volume_in_box, max_model, leafless_octree_volume_in_box(octree, point, wrong, volume));
+    MISALIGNED(leafless_octree_volume_in_box, volume_model,
+               leafless_octree_volume_in_box(octree, point, above, (leafless_interval *)WRONG(out)));
+
+    BAD_NUMBER(leafless_octree_cells_in_box, max, leafless_octree_cells_in_box(octree, cell, beyond, least, least));
+    BAD_NUMBER(leafless_octree_volume_in_box, max, leafless_octree_volume_in_box(octree, above, point, volume));
+    untouched();
+}
+
+static void distances(void) {
+    void *out = fresh();
+    const double padded[4] = {0, 0, 0, 0};
+    const double *wrong = (const double *)WRONG(padded);
+    const uint32_t cell[4] = {0, 0, 0, 0}, end[3] = {1, 1, 1}, beyond[3] = {17, 1, 1};
+    const uint32_t *wrong_cell = (const uint32_t *)WRONG(cell);
+    leafless_interval *intervals = (leafless_interval *)out;
+    leafless_point_distance *found = (leafless_point_distance *)out;
+    leafless_near_cell *cells = (leafless_near_cell *)out;
+    float *field = (float *)out;
+    uint64_t number;
+
+    NULL_POINTER(leafless_octree_distances, octree, leafless_octree_distances(NULL, point, 1, 0, NULL, intervals));
+    NULL_POINTER(leafless_octree_distances, points_model, leafless_octree_distances(octree, NULL, 1, 0, NULL, intervals));
+    NULL_POINTER(leafless_octree_distances, distances_model, leafless_octree_distances(octree, point, 1, 0, NULL, NULL));
+    NULL_POINTER(leafless_solid_distances, solid, leafless_solid_distances(NULL, &frame, point, 1, 0, 0.0, NULL, found));
+    NULL_POINTER(leafless_solid_distances, frame, leafless_solid_distances(solid, NULL, point, 1, 0, 0.0, NULL, found));
+    NULL_POINTER(leafless_solid_distances, points_model,
+                 leafless_solid_distances(solid, &frame, NULL, 1, 0, 0.0, NULL, found));
+    NULL_POINTER(leafless_solid_distances, distances, leafless_solid_distances(solid, &frame, point, 1, 0, 0.0, NULL, NULL));
+    NULL_POINTER(leafless_octree_nearest_cells, octree,
+                 leafless_octree_nearest_cells(NULL, point, 8, cells, 1, (uint64_t *)out));
+    NULL_POINTER(leafless_octree_nearest_cells, point_model,
+                 leafless_octree_nearest_cells(octree, NULL, 8, cells, 1, (uint64_t *)out));
+    NULL_POINTER(leafless_octree_nearest_cells, cells,
+                 leafless_octree_nearest_cells(octree, point, 8, NULL, 1, (uint64_t *)out));
+    NULL_POINTER(leafless_octree_nearest_cells, count, leafless_octree_nearest_cells(octree, point, 8, cells, 1, NULL));
+    NULL_POINTER(leafless_octree_distance_field, octree, leafless_octree_distance_field(NULL, cell, end, NULL, field, 2));
+    NULL_POINTER(leafless_octree_distance_field, min_cell,
+                 leafless_octree_distance_field(octree, NULL, end, NULL, field, 2));
+    NULL_POINTER(leafless_octree_distance_field, max_cell,
+                 leafless_octree_distance_field(octree, cell, NULL, NULL, field, 2));
+    NULL_POINTER(leafless_octree_distance_field, field, leafless_octree_distance_field(octree, cell, end, NULL, NULL, 2));
+
+    MISALIGNED(leafless_octree_distances, points_model, leafless_octree_distances(octree, wrong, 1, 0, NULL, intervals));
+    MISALIGNED(leafless_octree_distances, distances_model,
+               leafless_octree_distances(octree, point, 1, 0, NULL, (leafless_interval *)WRONG(out)));
+    MISALIGNED(leafless_solid_distances, points_model,
+               leafless_solid_distances(solid, &frame, wrong, 1, 0, 0.0, NULL, found));
+    MISALIGNED(leafless_solid_distances, distances,
+               leafless_solid_distances(solid, &frame, point, 1, 0, 0.0, NULL, (leafless_point_distance *)WRONG(out)));
+    MISALIGNED(leafless_octree_nearest_cells, point_model,
+               leafless_octree_nearest_cells(octree, wrong, 8, cells, 1, (uint64_t *)out));
+    MISALIGNED(leafless_octree_nearest_cells, cells,
+               leafless_octree_nearest_cells(octree, point, 8, (leafless_near_cell *)WRONG(out), 1, (uint64_t *)out));
+    MISALIGNED(leafless_octree_nearest_cells, count,
+               leafless_octree_nearest_cells(octree, point, 8, cells, 1, (uint64_t *)WRONG(out)));
+    MISALIGNED(leafless_octree_distance_field, min_cell,
+               leafless_octree_distance_field(octree, wrong_cell, end, NULL, field, 2));
+    MISALIGNED(leafless_octree_distance_field, max_cell,
+               leafless_octree_distance_field(octree, cell, wrong_cell, NULL, field, 2));
+    MISALIGNED(leafless_octree_distance_field, field,
+               leafless_octree_distance_field(octree, cell, end, NULL, (float *)WRONG(out), 2));
+
+    BAD_NUMBER(leafless_octree_distances, to, leafless_octree_distances(octree, point, 1, 3, NULL, intervals));
+    BAD_NUMBER(leafless_solid_distances, to, leafless_solid_distances(solid, &frame, point, 1, 3, 0.0, NULL, found));
+    BAD_NUMBER(leafless_solid_distances, tolerance,
+               leafless_solid_distances(solid, &frame, point, 1, 0, -1.0, NULL, found));
+    BAD_NUMBER(leafless_octree_nearest_cells, tags,
+               leafless_octree_nearest_cells(octree, point, 0, cells, 1, (uint64_t *)out));
+    BAD_NUMBER(leafless_octree_distance_field, max, leafless_octree_distance_field(octree, cell, beyond, NULL, NULL, 0));
+    BAD_NUMBER(leafless_octree_distance_field, capacity,
+               leafless_octree_distance_field(octree, cell, end, NULL, field, 3));
+    untouched();
+
+    MAY_BE_NULL(leafless_octree_distances, points_model, leafless_octree_distances(octree, NULL, 0, 0, NULL, NULL));
+    MAY_BE_NULL(leafless_solid_distances, points_model,
+                leafless_solid_distances(solid, &frame, NULL, 0, 0, 0.0, NULL, NULL));
+    MAY_BE_NULL(leafless_octree_nearest_cells, cells, leafless_octree_nearest_cells(octree, point, 8, NULL, 0, &number));
+    MAY_BE_NULL(leafless_octree_distance_field, field, leafless_octree_distance_field(octree, cell, cell, NULL, NULL, 0));
+}
+
 int main(void) {
     octree = check_ball(4, LEAFLESS_RULE_CERTIFIED);
     mesh = check_cube();
@@ -1516,6 +1630,8 @@ int main(void) {
     cells_and_faces();
     rays();
     columns();
+    regions();
+    distances();
     /* All of it is as good as ever. */
     OK(leafless_octree_check(octree));
     leafless_point_cursor_free(point_cursor);

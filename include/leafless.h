@@ -806,6 +806,31 @@ typedef uint32_t leafless_proven;
 #endif // __cplusplus
 
 /**
+ * What a distance is measured to.
+ */
+enum leafless_distance_to
+#ifdef __cplusplus
+  : uint32_t
+#endif // __cplusplus
+ {
+    /**
+     * To the solid: 0 for its points.
+     */
+    LEAFLESS_DISTANCE_TO_SOLID = 0,
+    /**
+     * To what is not solid: 0 for points outside.
+     */
+    LEAFLESS_DISTANCE_TO_COMPLEMENT = 1,
+    /**
+     * To the boundary, with a sign: positive outside of the solid, negative inside.
+     */
+    LEAFLESS_DISTANCE_TO_BOUNDARY = 2,
+};
+#ifndef __cplusplus
+typedef uint32_t leafless_distance_to;
+#endif // __cplusplus
+
+/**
  * Cells of an octree one after another. It stands before its next cell.
  *
  * Reading changes it: while one thread reads, no other may use it. Threads may have one each.
@@ -2130,6 +2155,44 @@ typedef struct {
      */
     bool is_clipped;
 } leafless_extent;
+
+/**
+ * What is known of a point's distance from a solid.
+ */
+typedef struct {
+    /**
+     * The distance, in model units. The upper bound is infinite as long as nothing is proven to be there, and the lower
+     * one if it is proven that nothing is.
+     */
+    leafless_interval distance_model;
+    /**
+     * How many times a cell was split.
+     */
+    uint64_t splits;
+    /**
+     * Why the search ended.
+     */
+    leafless_measured measured;
+} leafless_point_distance;
+
+/**
+ * A cell near a point.
+ */
+typedef struct {
+    /**
+     * The point of the closed cell that is nearest to the given one: each coordinate is the given point's own, or a
+     * rounded one of the cell's faces.
+     */
+    double point_model[3];
+    /**
+     * The distance of the closed cell from the given point, rounded outward.
+     */
+    leafless_interval distance_model;
+    /**
+     * The cell and its tag.
+     */
+    leafless_cell found;
+} leafless_near_cell;
 
 /**
  * What header and section table of a file say.
@@ -4565,6 +4628,67 @@ leafless_status leafless_solid_heights(const leafless_solid *solid,
                                        uint64_t *count);
 
 /**
+ * The number of finest cells in a box that are surely solid (FULL), and of those that are possibly solid (FULL or
+ * PARTIAL).
+ *
+ * - Buffers: `min_cell` and `max_cell`, 3 numbers each: the first finest cell, and the first one beyond the box on each
+ *   axis; `least` and `most`, one number each.
+ * - Result: `*least` and `*most`.
+ * - Errors: LEAFLESS_E_ARGUMENT if the box is none, or lies outside of the universe.
+ * - Ownership: nothing changes hands.
+ * - Threads: any.
+ * - Untrusted input: any octree, any numbers; no array element is read twice; damage reads as PARTIAL.
+ * - Since: 0.1
+ *
+ */
+leafless_status leafless_octree_cells_in_box(const leafless_octree *octree,
+                                             const uint32_t min_cell[3],
+                                             const uint32_t max_cell[3],
+                                             uint64_t *least,
+                                             uint64_t *most);
+
+/**
+ * The volume that the solid has in common with a box whose faces may lie anywhere, as an octree's cells tell it: FULL
+ * ones bound it from below, FULL and PARTIAL ones from above. Cells that the box cuts count with the part in the box,
+ * rounded outward. What lies outside of the universe does not count.
+ *
+ * - Buffers: `min_model` and `max_model`, 3 numbers each; `volume_model`, one struct.
+ * - Result: `*volume_model`, in cubic model units.
+ * - Errors: LEAFLESS_E_ARGUMENT if min > max on an axis, or a coordinate is not a number.
+ * - Ownership: nothing changes hands.
+ * - Threads: any.
+ * - Untrusted input: any octree, any numbers; no array element is read more than 27 times; damage reads as PARTIAL.
+ * - Since: 0.1
+ *
+ */
+leafless_status leafless_octree_volume_in_box(const leafless_octree *octree,
+                                              const double min_model[3],
+                                              const double max_model[3],
+                                              leafless_interval *volume_model);
+
+/**
+ * How a region lies to a solid, as far as cells of the frame tell: a ball, or any other solid.
+ * LEAFLESS_REGION_INSIDE means that all of the region lies in the solid; LEAFLESS_REGION_OUTSIDE that the interiors are
+ * disjoint, as they also are if the region is empty; LEAFLESS_REGION_CROSSING that some of the region does and some does
+ * not. The work ends as soon as the answer is known, or once `max_splits` cells of both are split. (The volume that both
+ * have in common is leafless_solid_measure's of their intersection.)
+ *
+ * - Buffers: `frame`, one struct; `options`, one struct or NULL; `relation`, one.
+ * - Result: `*relation`.
+ * - Errors: LEAFLESS_E_FRAME if solid or region belong to another frame; LEAFLESS_E_ARGUMENT as leafless_frame_check;
+ *   LEAFLESS_E_CALLBACK; LEAFLESS_E_DAMAGED; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
+ * - Ownership: nothing changes hands.
+ * - Threads: any; works in the calling thread.
+ * - Untrusted input: any solids; set `max_splits` where the depth or the solids are not your own choice.
+ * - Since: 0.1
+ */
+leafless_status leafless_solid_classify_in(const leafless_solid *solid,
+                                           const leafless_solid *region,
+                                           const leafless_frame *frame,
+                                           const leafless_options *options,
+                                           leafless_region *relation);
+
+/**
  * The box of a cell of any level, in model units: the doubles nearest to its corners that contain it.
  *
  * - Buffers: `frame`, one struct; `cell`, 3 numbers; `min_model` and `max_model`, room for 3 numbers each.
@@ -5230,6 +5354,118 @@ leafless_status leafless_solid_bounding_box(const leafless_solid *solid,
                                             double tolerance_model,
                                             const leafless_options *options,
                                             leafless_extent *extent);
+
+/**
+ * The distances of points from a solid, its complement or its boundary, as an octree's cells and its exterior tell
+ * them. FULL cells bound a distance from the solid from above, FULL and PARTIAL ones from below. Points may lie outside
+ * of the universe. Some dozen array elements are read a point as a rule.
+ *
+ * - Buffers: `points_model`, `count` points of 3 numbers; `options`, one struct or NULL, of which limits do not matter;
+ *   `distances_model`, room for `count`. `points_model` and `distances_model` may be NULL if `count` is 0. `to` is a
+ *   leafless_distance_to.
+ * - Result: `distances_model[i]` for point i, the same for any number of threads: 0 to infinity if a coordinate is not a
+ *   finite number, and all numbers for LEAFLESS_DISTANCE_TO_BOUNDARY.
+ * - Errors: LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
+ * - Ownership: nothing changes hands.
+ * - Threads: any; uses as many as `options` says.
+ * - Untrusted input: any octree, any numbers; damage reads as PARTIAL, and for each point no more array elements are
+ *   read than twice those that there are.
+ * - Since: 0.1
+ */
+leafless_status leafless_octree_distances(const leafless_octree *octree,
+                                          const double *points_model,
+                                          uint64_t count,
+                                          uint32_t to,
+                                          const leafless_options *options,
+                                          leafless_interval *distances_model);
+
+/**
+ * The distances of points from a solid, its complement or its boundary, without an octree. Points may lie outside of
+ * the universe of the frame. The cells that may be nearest are split first.
+ *
+ * `measured` of a result says why the search for the point ended. With LEAFLESS_MEASURED_TOLERANCE the interval is no
+ * wider than `tolerance_model` (model units), or both ends are infinite. With LEAFLESS_MEASURED_EXHAUSTED no cell is
+ * left whose split would help, or of a solid without slabs, the nearest undecided cell cannot be split, and the interval
+ * is no wider than twice the diagonal of the frame's finest cells. With LEAFLESS_MEASURED_BUDGET `max_splits` cells were
+ * split for the point, or 65 536 if that is 0.
+ *
+ * - Buffers: `frame`, one struct; `points_model`, `count` points of 3 numbers; `options`, one struct or NULL;
+ *   `distances`, room for `count`. `points_model` and `distances` may be NULL if `count` is 0. `to` is a
+ *   leafless_distance_to.
+ * - Result: `distances[i]` for point i, the same for any number of threads.
+ * - Errors: LEAFLESS_E_FRAME if the solid belongs to another frame; LEAFLESS_E_ARGUMENT as leafless_frame_check, or if
+ *   the tolerance is negative or not a number; LEAFLESS_E_CALLBACK; LEAFLESS_E_DAMAGED; LEAFLESS_E_CANCELLED;
+ *   LEAFLESS_E_NO_MEMORY.
+ * - Ownership: nothing changes hands.
+ * - Threads: any; uses as many as `options` says.
+ * - Untrusted input: any solid, any numbers; the default of `max_splits` bounds the work.
+ * - Since: 0.1
+ */
+leafless_status leafless_solid_distances(const leafless_solid *solid,
+                                         const leafless_frame *frame,
+                                         const double *points_model,
+                                         uint64_t count,
+                                         uint32_t to,
+                                         double tolerance_model,
+                                         const leafless_options *options,
+                                         leafless_point_distance *distances);
+
+/**
+ * The cells of an octree that are nearest to a point, of those whose tag is among `tags`: the nearest first, and of
+ * equally near ones the first in Morton order. A cell is closed, as large as the octree has it, and no BRANCH. With
+ * LEAFLESS_TAGS_FULL and a capacity of 1 this is the nearest cell that is proven solid. The point may lie outside of the
+ * universe. It is rounded to 2^-56 of the universe's edge, or further out to 2^-57 of its distance, before cells are
+ * compared.
+ *
+ * - Buffers: `point_model`, 3 numbers; `cells`, room for `capacity` structs, which may be NULL if `capacity` is 0;
+ *   `count`, one number. `tags` is one or several leafless_tags.
+ * - Result: `*count`, which is `capacity` unless the octree has fewer such cells; the cells.
+ * - Errors: LEAFLESS_E_ARGUMENT if `tags` is none, or a coordinate is not a finite number; LEAFLESS_E_NO_MEMORY.
+ * - Ownership: nothing changes hands.
+ * - Threads: any; works in the calling thread.
+ * - Untrusted input: any octree, any numbers; damage reads as PARTIAL, and no more array elements are read than there
+ *   are.
+ * - Since: 0.1
+ *
+ */
+leafless_status leafless_octree_nearest_cells(const leafless_octree *octree,
+                                              const double point_model[3],
+                                              uint32_t tags,
+                                              leafless_near_cell *cells,
+                                              uint64_t capacity,
+                                              uint64_t *count);
+
+/**
+ * The signed distances of the finest cells in a box from the boundary of the solid. Entry (z·ny + y)·nx + x, two
+ * numbers, is for the cell `min_cell` + (x, y, z), where nx, ny and nz are `max_cell` − `min_cell`.
+ *
+ * The interval between the two (model units) contains the signed distance of the cell's centre from the boundary of any
+ * solid that the octree's cells and its exterior describe: positive outside, negative inside. The field is that of the
+ * whole solid, also of what lies outside of the box. The ends are exact distances from the nearest closed cells, but
+ * for one rounding, outward; they are infinite where there is no such cell.
+ *
+ * The time is linear in the cells of the box and a margin around it as wide as the largest distance. Memory beside
+ * `field` is a quarter of a byte for each of these, and for each thread some 140 bytes for each cell of a slice across
+ * z. A small box far away from the solid costs as much as leafless_octree_distances for its cells.
+ *
+ * - Buffers: `min_cell` and `max_cell`, 3 numbers each: the first finest cell, and the first one beyond the box on each
+ *   axis; `options`, one struct or NULL, of which limits do not matter; `field`, `capacity` numbers, two for each cell,
+ *   which may be NULL if there are none.
+ * - Result: the field, the same for any number of threads.
+ * - Errors: LEAFLESS_E_ARGUMENT if the box is none or lies outside of the universe, or if `capacity` is not twice the
+ *   number of its cells; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
+ * - Ownership: nothing changes hands.
+ * - Threads: any; uses as many as `options` says.
+ * - Untrusted input: any octree, any numbers; damage reads as PARTIAL.
+ * - Since: 0.1
+ *
+ */
+leafless_status leafless_octree_distance_field(const leafless_octree *octree,
+                                               const uint32_t min_cell[3],
+                                               const uint32_t max_cell[3],
+                                               const leafless_options *options,
+                                               float *field,
+                                               uint64_t capacity);
 
 /**
  * What a file says of itself, without looking at more than header and section table. Whether the rest is

@@ -62,8 +62,8 @@
 //! | … an STL read? | `exchange/stl.rs` |
 //! | … a byte of a file checked? | `file/header.rs`, `object.rs`, `section.rs`, `layout.rs` |
 //! | … an allocation refused? | `memory.rs` |
-//! | … the volume of a solid, the distance of two? | `query/measure/`, `query/clearance/` |
 //! | … where a ray meets a solid, how high it is? | `query/ray/`, `query/columns/` |
+//! | … the volume of a solid, the distance of two, or of a point? | `query/measure/`, `query/clearance/`, `query/distance/` |
 
 #![no_std]
 #![deny(unsafe_code)]
@@ -111,11 +111,12 @@ pub use op::{
     intersection_of, resolve, union, union_of, xor, xor_of,
 };
 pub use query::{
-    AREA_SPLITS, BOUNDING_BOX_SPLITS, CLEARANCE_SPLITS, Clearance, ColumnCells, ColumnRuns, Columns, Extent,
-    Heights, Interference, MEASURE_SPLITS, MassProperties, Membership, Obstacle, Overlap, PointCursor,
-    PointTable, Ray, RayHit, RaySpans, Region, Run, Side, Sight, StopReason, SurfaceArea, Tolerance,
-    bounding_box, cast_rays, classify_box, clearance, columns, contains, heights, interference,
-    interference_of, line_of_sight, measure, ray_spans, surface_area,
+    AREA_SPLITS, BOUNDING_BOX_SPLITS, CLEARANCE_SPLITS, Clearance, ColumnCells, ColumnRuns, Columns,
+    DISTANCE_SPLITS, DistanceTo, Extent, Heights, Interference, MEASURE_SPLITS, MassProperties, Membership,
+    NearCell, Obstacle, Overlap, PointCursor, PointDistance, PointTable, Ray, RayHit, RaySpans, Region, Run,
+    Side, Sight, StopReason, SurfaceArea, Tolerance, bounding_box, cast_rays, classify_box, classify_in,
+    clearance, columns, contains, distances, heights, interference, interference_of, line_of_sight, measure,
+    ray_spans, surface_area,
 };
 pub use solid::{
     Adaptive, AnyClassifier, AnySolid, AnyWorker, Callback, Classifier, Crossing, Csg, Enclosure, Erasable,

@@ -34,10 +34,12 @@ const SECTIONS: &[&str] = &[
     "point",
     "rays",
     "columns",
+    "region",
     "cells",
     "lazy",
     "interference",
     "measure",
+    "distance",
     "file",
     "layout",
 ];

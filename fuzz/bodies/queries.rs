@@ -3,9 +3,9 @@
 
 use super::{Aligned, CONTROL, Random, halves, walk};
 use leafless::{
-    Cell, CellFilter, Classifier, Columns, Control, Cursor, Direction, Frame, LazyOctree, Membership,
-    Obstacle, OctreeRef, PointCursor, PointTable, Proof, Ray, Region, Rule, Run, Side, Solid, Tag,
-    TaggedCell, Verdict, Worker, Zone, build, classify_box, contains, file,
+    Cell, CellFilter, Classifier, Columns, Control, Cursor, Direction, DistanceTo, Frame, LazyOctree,
+    Membership, Obstacle, OctreeRef, PointCursor, PointTable, Proof, Ray, Region, Rule, Run, Side, Solid,
+    Tag, TaggedCell, Verdict, Worker, Zone, build, classify_box, contains, file,
 };
 
 /// Asks the tree in the first half of `data` what the second half says.
@@ -29,6 +29,8 @@ pub fn ask(tree: &OctreeRef<'_>, questions: &[u8], verified: bool) {
     ask_neighbours(tree, verified);
     ask_rays(tree, &points);
     ask_columns(tree, verified);
+    ask_distances(tree, &points, verified);
+    ask_contents(tree, &points, verified);
     if verified {
         tree.check().expect("it is verified");
     } else {
@@ -146,6 +148,71 @@ fn ask_columns(tree: &OctreeRef<'_>, verified: bool) {
             let finest = |found: TaggedCell| 1u64 << (3 * (depth - found.cell.level));
             assert_eq!(volume, full.map(finest).sum::<u64>());
         }
+    }
+}
+
+/// Distances end whatever the bytes; in a sound tree they agree with what points and cells are.
+fn ask_distances(tree: &OctreeRef<'_>, points: &[[f64; 3]], verified: bool) {
+    for &point in points.iter().step_by(5) {
+        let [solid, complement, boundary] = [DistanceTo::Solid, DistanceTo::Complement, DistanceTo::Boundary]
+            .map(|to| tree.distance(point, to).expect("nothing is allocated"));
+        assert!(solid.lower <= solid.upper && complement.lower <= complement.upper);
+        assert!(boundary.lower <= boundary.upper);
+        let tags = [Tag::Full, Tag::Partial];
+        let Ok(near) = tree.nearest_cells(point, &tags, 4) else {
+            assert!(!point.iter().all(|c| c.is_finite()));
+            continue;
+        };
+        assert!(near.windows(2).all(|pair| pair[0].distance.lower <= pair[1].distance.upper));
+        if !verified {
+            continue;
+        }
+        match tree.contains(point) {
+            Membership::Inside => assert!(solid.lower == 0.0 && boundary.lower <= 0.0),
+            Membership::Outside => assert!(complement.lower == 0.0 && boundary.upper >= 0.0),
+            Membership::Undecided => {}
+        }
+        if let (Some(nearest), Tag::Empty) = (near.first(), tree.exterior()) {
+            assert_eq!(nearest.distance.lower, solid.lower, "{point:?}");
+        }
+    }
+    let cells = tree.frame().cells();
+    let Some(at) = points.iter().find_map(|&point| tree.frame().cell_of(point)) else { return };
+    let (min, max) = (at.map(|a| a.saturating_sub(2)), at.map(|a| (a + 3).min(cells)));
+    let size = [0, 1, 2].map(|axis: usize| max[axis] - min[axis]);
+    let mut field = vec![[f32::NAN; 2]; size.iter().product::<u32>() as usize];
+    tree.distance_field(min, max, &mut field, &CONTROL).expect("enough memory");
+    for (k, [lower, upper]) in (0..).zip(field) {
+        assert!(lower <= upper);
+        let cell = [min[0] + k % size[0], min[1] + k / size[0] % size[1], min[2] + k / size[0] / size[1]];
+        match tree.tag_at(cell) {
+            Tag::Empty if verified => assert!(lower > 0.0),
+            Tag::Full if verified => assert!(upper < 0.0),
+            _ => {}
+        }
+    }
+}
+
+/// No more lies in a box than it has room for, and in the whole universe what the tree's statistics tell.
+fn ask_contents(tree: &OctreeRef<'_>, points: &[[f64; 3]], verified: bool) {
+    let cells = tree.frame().cells();
+    let (least, most) = tree.cells_in_box([0; 3], [cells; 3]).expect("the universe");
+    assert!(least <= most && most <= u64::from(cells).pow(3));
+    if verified {
+        let volumes = [&[Tag::Full][..], &[Tag::Full, Tag::Partial]].map(|tags| {
+            let volume = |found: TaggedCell| 1u64 << (3 * (tree.frame().depth() - found.cell.level));
+            tree.cells(CellFilter::tags(tags)).map(volume).sum::<u64>()
+        });
+        assert_eq!([least, most], volumes);
+    }
+    for corners in points.chunks_exact(2) {
+        let min = [0, 1, 2].map(|axis: usize| corners[0][axis].min(corners[1][axis]));
+        let max = [0, 1, 2].map(|axis: usize| corners[0][axis].max(corners[1][axis]));
+        let Ok(volume) = tree.volume_in_box(min, max) else {
+            assert!(corners.iter().flatten().any(|c| c.is_nan()));
+            continue;
+        };
+        assert!(0.0 <= volume.lower && volume.lower <= volume.upper);
     }
 }
 

@@ -111,6 +111,16 @@ unsafe fn direction(pointer: *const i32) -> Result<Direction, Failure> {
     Direction::new(steps).ok_or(Failure::Argument { name: "direction", problem })
 }
 
+/// The tags of one or several leafless_tags.
+pub(super) fn tags(tags: u32) -> Result<alloc::vec::Vec<Tag>, Failure> {
+    if !(1..=15).contains(&tags) {
+        return Err(Failure::Argument { name: "tags", problem: "must be one or several leafless_tags" });
+    }
+    let all = [Tag::Empty, Tag::Branch, Tag::Partial, Tag::Full];
+    let chosen = |i: usize| if tags >> i & 1 != 0 { &all[i..=i] } else { &[] };
+    Ok((0..4).flat_map(chosen).copied().collect())
+}
+
 /// # Safety
 /// As [`array`] for a box that is not NULL.
 unsafe fn filter(
@@ -120,12 +130,7 @@ unsafe fn filter(
     min_cell: *const u32,
     max_cell: *const u32,
 ) -> Result<CellFilter, Failure> {
-    if !(1..=15).contains(&tags) {
-        return Err(Failure::Argument { name: "tags", problem: "must be one or several leafless_tags" });
-    }
-    let all = [Tag::Empty, Tag::Branch, Tag::Partial, Tag::Full];
-    let chosen = |i: usize| if tags >> i & 1 != 0 { &all[i..=i] } else { &[] };
-    let chosen: alloc::vec::Vec<Tag> = (0..4).flat_map(chosen).copied().collect();
+    let chosen = self::tags(tags)?;
     let level = |level: u32| level.try_into().unwrap_or(u8::MAX);
     let filter = CellFilter::tags(&chosen).levels(level(min_level)..=level(max_level));
     // A box needs both of its corners.

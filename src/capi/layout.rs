@@ -83,6 +83,8 @@ fn write_all(to: &mut dyn Write) -> fmt::Result {
         leafless_extent {
             min_model, max_model, proof, splits, measured, is_empty, is_occupied, is_clipped
         }
+        leafless_point_distance { distance_model, splits, measured }
+        leafless_near_cell { point_model, distance_model, found }
         leafless_cursor_state { cell, level, tag, children }
         leafless_ray { origin_model, direction_model, t_last }
         leafless_ray_hit { t, normal, cell, level, is_hit }
@@ -126,6 +128,9 @@ fn write_all(to: &mut dyn Write) -> fmt::Result {
         leafless_overlap { LEAFLESS_OVERLAP_DISJOINT, LEAFLESS_OVERLAP_OVERLAPPING, LEAFLESS_OVERLAP_UNDECIDED }
         leafless_measured {
             LEAFLESS_MEASURED_TOLERANCE, LEAFLESS_MEASURED_BUDGET, LEAFLESS_MEASURED_EXHAUSTED
+        }
+        leafless_distance_to {
+            LEAFLESS_DISTANCE_TO_SOLID, LEAFLESS_DISTANCE_TO_COMPLEMENT, LEAFLESS_DISTANCE_TO_BOUNDARY
         }
         leafless_moments_known {
             LEAFLESS_MOMENTS_KNOWN, LEAFLESS_MOMENTS_OPEN, LEAFLESS_MOMENTS_INTERSECTING, LEAFLESS_MOMENTS_UNDECIDED

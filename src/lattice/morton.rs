@@ -54,6 +54,19 @@ pub fn slabs(axis: usize, first: u32, last: u32) -> u64 {
     (first..=last).fold(0, |mask, at| mask | SLAB[axis][at as usize])
 }
 
+/// The cells of a block one place further along `axis`, or one place before if not `up`, than those of `mask`.
+#[inline(always)]
+pub const fn shifted(mask: u64, axis: usize, up: bool) -> u64 {
+    let [first, second, third, last] = SLAB[axis];
+    // From place 0 to 1 and from 2 to 3 a bit moves by one position of its axis, between them by seven.
+    let (one, seven) = (1 << axis, 7 << axis);
+    if up {
+        (mask & (first | third)) << one | (mask & second) << seven
+    } else {
+        (mask & (second | last)) >> one | (mask & third) >> seven
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -64,6 +77,17 @@ mod tests {
             let [x, y, z] = position(i);
             assert_eq!(index(x, y, z), i);
             assert_eq!(SLAB[0][x as usize] >> i & SLAB[1][y as usize] >> i & SLAB[2][z as usize] >> i & 1, 1);
+        }
+        for i in 0..64 {
+            for axis in 0..3 {
+                let mut place = position(i);
+                for (up, end) in [(true, 3), (false, 0)] {
+                    place[axis] = if up { position(i)[axis] + 1 } else { position(i)[axis].wrapping_sub(1) };
+                    let [x, y, z] = place;
+                    let beside = if position(i)[axis] == end { 0 } else { 1 << index(x, y, z) };
+                    assert_eq!(shifted(1 << i, axis, up), beside);
+                }
+            }
         }
         assert_eq!(slabs(0, 0, 3), !0);
         assert_eq!(slabs(2, 2, 1), 0);

@@ -2,7 +2,9 @@
 
 mod clearance;
 mod columns;
+mod content;
 mod descent;
+mod distance;
 mod extent;
 mod interference;
 mod measure;
@@ -14,9 +16,11 @@ mod ray;
 mod reach;
 mod region;
 mod subject;
+mod within;
 
 pub use clearance::{CLEARANCE_SPLITS, Clearance, clearance};
 pub use columns::{ColumnCells, ColumnRuns, Columns, Heights, Run, Side, columns, heights};
+pub use distance::{DISTANCE_SPLITS, DistanceTo, NearCell, PointDistance, distances};
 pub use extent::{BOUNDING_BOX_SPLITS, Extent, bounding_box};
 pub use interference::{Interference, Overlap, interference, interference_of};
 pub use measure::{
@@ -26,6 +30,7 @@ pub use point::{Membership, PointCursor, PointTable};
 pub use probe::contains;
 pub use ray::{Obstacle, Ray, RayHit, RaySpans, Sight, cast_rays, line_of_sight, ray_spans};
 pub use region::{Region, classify_box};
+pub use within::classify_in;
 
 use crate::error::Error;
 use crate::memory;

@@ -1,0 +1,134 @@
+//! How far a point is from a solid in a cell of which the enclosure is known.
+//!
+//! All of it is in the cell's own coordinates, from its centre in half edges. For any direction d, no point x of the
+//! solid has d · x > reach; so a point p is no nearer than (d · p − reach) / |d|. A direction near that of the nearest
+//! point gives a bound that is off by the square of the angle between them.
+
+use crate::lattice::Interval;
+use crate::query::reach;
+use crate::solid::{Enclosure, Slab, SlabJoin};
+
+/// A point, as seen from a cell.
+pub(super) type Seen = [Interval; 3];
+
+/// Proven: the distance of the solid in the cell is at least that, ∞ if there is none of it.
+pub(super) fn lower(enclosure: &Enclosure, point: &Seen) -> f64 {
+    match enclosure.join {
+        SlabJoin::All => lower_of_all(enclosure, point),
+        SlabJoin::Any => {
+            let each = alone(enclosure).map(|one| lower_of_all(&one, point));
+            // No slab says nothing.
+            each.reduce(f64::min).unwrap_or(0.0)
+        }
+    }
+}
+
+/// Proven: the distance of the solid in the cell is at most that. `None` if no point of it is found.
+pub(super) fn upper(enclosure: &Enclosure, point: &Seen) -> Option<f64> {
+    match enclosure.join {
+        SlabJoin::All => upper_of_all(enclosure, point),
+        SlabJoin::Any => alone(enclosure).filter_map(|one| upper_of_all(&one, point)).reduce(f64::min),
+    }
+}
+
+fn slabs(enclosure: &Enclosure) -> impl Iterator<Item = &Slab> {
+    enclosure.slabs.iter().filter(|slab| slab.normal != [0.0; 3])
+}
+
+/// Enclosures by each of the slabs alone.
+fn alone(enclosure: &Enclosure) -> impl Iterator<Item = Enclosure> {
+    slabs(enclosure).map(|&slab| Enclosure {
+        slabs: [slab, Slab::NONE, Slab::NONE],
+        join: SlabJoin::All,
+        cone: enclosure.cone,
+    })
+}
+
+fn middle(point: &Seen) -> [f64; 3] {
+    point.map(|c| 0.5 * (c.lower + c.upper))
+}
+
+fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+fn minus(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+}
+
+fn in_cell(point: [f64; 3]) -> [f64; 3] {
+    point.map(|c| c.clamp(-1.0, 1.0))
+}
+
+fn length(vector: &Seen) -> Interval {
+    let [x, y, z] = vector.map(Interval::square);
+    x.plus(y).plus(z).root()
+}
+
+fn lower_of_all(enclosure: &Enclosure, point: &Seen) -> f64 {
+    let about = middle(point);
+    let mut best: f64 = 0.0;
+    let from_cell = minus(about, in_cell(about));
+    let from_slab = minus(about, pulled(enclosure, about));
+    let normals = slabs(enclosure).filter(|slab| slab.outer.is_finite()).map(|slab| slab.normal);
+    for direction in [from_cell, from_slab].into_iter().chain(normals) {
+        if direction == [0.0; 3] || !direction.iter().all(|c| c.is_finite()) {
+            continue;
+        }
+        let reach = reach::upper(enclosure, direction);
+        if reach == f64::NEG_INFINITY {
+            return f64::INFINITY;
+        }
+        let direction = direction.map(Interval::exactly);
+        let [x, y, z] = [0, 1, 2].map(|axis| direction[axis].times(point[axis]));
+        let gap = x.plus(y).plus(z).minus(Interval::exactly(reach));
+        best = best.max(gap.over(length(&direction)).lower);
+    }
+    best
+}
+
+fn upper_of_all(enclosure: &Enclosure, point: &Seen) -> Option<f64> {
+    let about = middle(point);
+    let near = pulled(enclosure, about);
+    let found = if is_inside(enclosure, near) {
+        near
+    } else {
+        let towards = minus(about, near);
+        reach::witness(enclosure, towards)?
+    };
+    Some(length(&[0, 1, 2].map(|axis| point[axis].minus(Interval::exactly(found[axis])))).upper)
+}
+
+/// A point of the cell near `point` that lies, to rounding, a little inside of all slabs, if some turns of projections
+/// find one.
+fn pulled(enclosure: &Enclosure, point: [f64; 3]) -> [f64; 3] {
+    const TURNS: usize = 16;
+    /// How far inside, as a share of the normal's range.
+    const MARGIN: f64 = 1.0 / (1u64 << 44) as f64;
+    let mut point = in_cell(point);
+    for _ in 0..TURNS {
+        let mut moved = false;
+        for slab in slabs(enclosure).filter(|slab| slab.inner.is_finite()) {
+            let range: f64 = slab.normal.iter().map(|c| c.abs()).sum();
+            let beyond = dot(slab.normal, point) - (slab.inner - MARGIN * range);
+            if beyond > 0.0 {
+                let step = beyond / dot(slab.normal, slab.normal);
+                point = in_cell(minus(point, slab.normal.map(|c| step * c)));
+                moved = true;
+            }
+        }
+        if !moved {
+            break;
+        }
+    }
+    point
+}
+
+/// Whether a point of the closed cell is proven to be a limit of points that lie inside of all slabs.
+fn is_inside(enclosure: &Enclosure, point: [f64; 3]) -> bool {
+    slabs(enclosure).all(|slab| {
+        let [x, y, z] =
+            [0, 1, 2].map(|axis| Interval::exactly(slab.normal[axis]).times(Interval::exactly(point[axis])));
+        x.plus(y).plus(z).upper < slab.inner
+    }) && slabs(enclosure).next().is_some()
+}

@@ -1,0 +1,260 @@
+//! How far points are from any solid, without an octree.
+
+use super::DistanceTo;
+use super::place::Place;
+use super::slabs;
+use crate::control::{Control, Job};
+use crate::error::Error;
+use crate::lattice::exact::sqrt;
+use crate::lattice::{Cell, Cube, Frame, Interval, MAX_DEPTH, valid};
+use crate::memory;
+use crate::octree::Tag;
+use crate::op::split_one;
+use crate::query::proven::Proven;
+use crate::query::queue::Queue;
+use crate::query::{StopReason, each};
+use crate::solid::{Classifier, Solid, Verdict, Worker};
+use alloc::vec::Vec;
+use core::cmp::Reverse;
+
+/// What is known of a point's distance.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PointDistance {
+    /// The distance, in model units. `upper` is ∞ as long as nothing is proven to be there, and so is `lower` if it is
+    /// proven that nothing is.
+    pub distance: Interval,
+    /// Why the search ended.
+    pub stop_reason: StopReason,
+    /// How many times a cell was split.
+    pub splits: u64,
+}
+
+/// Cells that [`distances`] splits for a point if `control.max_splits` sets no other limit: a tenth of a second or so.
+pub const DISTANCE_SPLITS: u64 = 1 << 16;
+
+/// The distances of points (model units) from a solid, its complement or its boundary, one answer a point. Points may
+/// lie outside of the universe; what is known of the solid there is its [`exterior`](Classifier::exterior). A point with
+/// a coordinate that is not a finite number gets the interval `[0, ∞]`, or all numbers for [`DistanceTo::Boundary`].
+///
+/// The cells of `frame` that may be nearest are split first. The search for a point ends, and `stop_reason` says why:
+/// - `Tolerance`: the interval is no wider than `tolerance` (model units), or both ends are ∞.
+/// - `Exhausted`: no cell is left whose split would help, or of a solid without slabs, the nearest undecided cell cannot
+///   be split, and the interval is no wider than twice the diagonal of the frame's finest cells.
+/// - `Budget`: `control.max_splits` cells were split, or [`DISTANCE_SPLITS`] if that is `None`.
+///
+/// Where the solid knows the slabs of a cell ([`Enclosure`](crate::Enclosure)), these bound how near it comes: each
+/// level then makes the interval about four times as narrow, and a plane face is known at once. Without slabs a level
+/// makes it half as wide.
+///
+/// A point takes some dozen splits a level as a rule. It takes more the more of the surface is about as near: a ball's
+/// centre has no better bounds than cells as large as the budget allows. The answers are the same for any number of
+/// threads.
+///
+/// # Errors
+/// [`Error::Argument`] if `tolerance` is negative or not a number; what the solid refuses; [`Error::OutOfMemory`], and
+/// [`Error::Cancelled`].
+///
+/// ```
+/// use leafless::{Control, Csg, DistanceTo, Frame, distances};
+/// let frame = Frame::new([-2.0; 3], 4.0, 20)?;
+/// let (ball, points) = (Csg::ball([0.0; 3], 1.0)?, [[3.0, 0.0, 4.0], [0.0, 0.5, 0.0]]);
+/// let found = distances(&ball, &frame, &points, DistanceTo::Boundary, 1e-9, &Control::default())?;
+/// assert!(found[0].distance.contains(4.0) && found[0].distance.width() <= 1e-9);
+/// assert!(found[1].distance.contains(-0.5) && found[1].distance.width() <= 1e-9);
+/// # Ok::<(), leafless::Error>(())
+/// ```
+pub fn distances<S: Solid>(
+    solid: &S,
+    frame: &Frame,
+    points: &[[f64; 3]],
+    to: DistanceTo,
+    tolerance: f64,
+    control: &Control<'_>,
+) -> Result<Vec<PointDistance>, Error> {
+    valid::tolerance("tolerance", tolerance)?;
+    let job = Job::new(control);
+    job.check()?;
+    let classifier = Proven(solid.on(frame, control)?);
+    let exterior = classifier.exterior();
+    let found = control.run(points.len() > CHUNK, |parallel| {
+        each(parallel, points.chunks(CHUNK), |chunk| {
+            let mut worker = classifier.worker()?;
+            let mut found = memory::with_capacity(chunk.len())?;
+            for &point in chunk {
+                let mark = worker.mark();
+                found.push(distance(&mut worker, exterior, frame, point, to, tolerance, &job)?);
+                worker.release(mark);
+            }
+            Ok(found)
+        })
+    })?;
+    let mut distances = memory::with_capacity(points.len())?;
+    distances.extend(found.into_iter().flatten());
+    Ok(distances)
+}
+
+/// Points that one worker takes on.
+const CHUNK: usize = 1 << 4;
+
+fn distance<W: Worker>(
+    worker: &mut W,
+    exterior: Tag,
+    frame: &Frame,
+    point: [f64; 3],
+    to: DistanceTo,
+    tolerance: f64,
+    job: &Job<'_>,
+) -> Result<PointDistance, Error> {
+    let Some(place) = Place::new(frame, point) else {
+        let distance = to.unknown();
+        return Ok(PointDistance { distance, stop_reason: StopReason::Exhausted, splits: 0 });
+    };
+    let budget = job.control().max_splits.unwrap_or(DISTANCE_SPLITS);
+    let (mut left, mut is_spent) = (budget, false);
+    let distance = to.ask(|hollow| {
+        let mut search = Search {
+            worker,
+            frame,
+            place,
+            point,
+            hollow,
+            // Near the boundary the interval is that of both searches.
+            tolerance: if to == DistanceTo::Boundary { 0.5 * tolerance } else { tolerance },
+            upper: f64::INFINITY,
+            settled: f64::INFINITY,
+            has_slabs: false,
+            open: Queue::new(),
+            job,
+        };
+        is_spent |= search.run(exterior, &mut left)?;
+        Ok(search.found())
+    })?;
+    let is_known = distance.width() <= tolerance || distance.lower == f64::INFINITY;
+    let stop_reason = match (is_known, is_spent) {
+        (true, _) => StopReason::Tolerance,
+        (false, true) => StopReason::Budget,
+        (false, false) => StopReason::Exhausted,
+    };
+    Ok(PointDistance { distance, stop_reason, splits: budget - left })
+}
+
+/// The least distance of what may lie in a cell (the bits of a double that is not negative), the cell's height above the
+/// deepest level, the order of meeting.
+type Key = Reverse<(u64, u8, u64)>;
+
+struct Search<'a, W: Worker> {
+    worker: &'a mut W,
+    frame: &'a Frame,
+    place: Place<'a>,
+    point: [f64; 3],
+    /// Whether the complement is sought.
+    hollow: bool,
+    tolerance: f64,
+    /// The least distance of what is proven to be there.
+    upper: f64,
+    /// The least distance of what may be there, in cells that are not split any more.
+    settled: f64,
+    /// Whether the solid has told slabs.
+    has_slabs: bool,
+    /// Cells that can be split.
+    open: Queue<Key, (Cell, W::Part)>,
+    job: &'a Job<'a>,
+}
+
+impl<W: Worker> Search<'_, W> {
+    /// Whether the budget has ended it.
+    fn run(&mut self, exterior: Tag, left: &mut u64) -> Result<bool, Error> {
+        let outside = self.place.distance(self.place.square_from_outside());
+        match if self.hollow { exterior.complement() } else { exterior } {
+            Tag::Empty => {}
+            Tag::Full => self.reach(outside),
+            Tag::Partial | Tag::Branch => self.settled = outside.lower,
+        }
+        let root = self.worker.root()?;
+        self.note(Cell::ROOT, root, 0.0)?;
+        loop {
+            let found = self.found();
+            if found.lower == f64::INFINITY || found.width() <= self.tolerance {
+                return Ok(false);
+            }
+            let begin = self.begin();
+            if begin >= self.upper || self.settled <= begin && found.width() <= self.resolution() {
+                return Ok(false);
+            }
+            let Some((cell, part)) = self.open.pop() else { return Ok(false) };
+            if *left == 0 {
+                // It still counts.
+                self.settled = self.settled.min(begin);
+                return Ok(true);
+            }
+            *left -= 1;
+            self.job.check()?;
+            let children = split_one(self.worker, cell, &part, self.job.control())?;
+            for (octant, child) in (0..8).zip(children) {
+                self.note(cell.child(octant), child, begin)?;
+            }
+        }
+    }
+
+    /// The least distance of what may lie in the first open cell.
+    fn begin(&self) -> f64 {
+        self.open.peek().map_or(f64::INFINITY, |entry| f64::from_bits(entry.key.0.0))
+    }
+
+    /// What cells can tell: with slabs, as much as one likes; without, twice the diagonal of a finest one.
+    fn resolution(&self) -> f64 {
+        if self.has_slabs { 0.0 } else { 2.0 * sqrt(3.0) * self.frame.cell_size() }
+    }
+
+    fn found(&self) -> Interval {
+        Interval { lower: self.upper.min(self.settled).min(self.begin()), upper: self.upper }
+    }
+
+    /// Takes in what is proven to be there.
+    fn reach(&mut self, distance: Interval) {
+        self.upper = self.upper.min(distance.upper);
+        self.settled = self.settled.min(distance.lower);
+    }
+
+    /// Takes in what is known of a cell in which nothing is nearer than `least`.
+    fn note(&mut self, cell: Cell, verdict: Verdict<W::Part>, least: f64) -> Result<(), Error> {
+        let distance = self.place.distance(self.place.square_from(cell));
+        let mut least = least.max(distance.lower);
+        match if self.hollow { verdict.complement() } else { verdict } {
+            Verdict::Empty => {}
+            // What is no nearer than something that is there does not matter.
+            _ if least >= self.upper => {}
+            Verdict::Full => self.reach(distance),
+            Verdict::Undecided => self.settled = self.settled.min(least),
+            Verdict::Partial(part) => {
+                let (nearest, proven) = self.by_slabs(cell, &part)?;
+                least = least.max(nearest);
+                self.upper = self.upper.min(proven);
+                if least < self.upper && cell.level < self.frame.depth() {
+                    let key = Reverse((least.to_bits(), MAX_DEPTH - cell.level, self.open.met()));
+                    self.open.push(key, (cell, part))?;
+                } else if least < self.upper {
+                    self.settled = self.settled.min(least);
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Between which distances the solid in a PARTIAL cell begins, as its slabs tell: the first is ∞ if there is none of
+    /// it, the second if none is proven to be there.
+    fn by_slabs(&mut self, cell: Cell, part: &W::Part) -> Result<(f64, f64), Error> {
+        let Some(enclosure) = self.worker.enclosure(cell, part)? else { return Ok((0.0, f64::INFINITY)) };
+        self.has_slabs = true;
+        let enclosure = if self.hollow { enclosure.complement() } else { enclosure };
+        let cube = Cube { frame: self.frame, cell };
+        let half = Interval::exactly(cube.half_edge());
+        let seen = cube.centre_from(self.point).map(|c| c.negated().over(half));
+        let to_model = |halves: f64| Interval::exactly(halves).times(half);
+        let lower = slabs::lower(&enclosure, &seen);
+        Ok((
+            if lower == f64::INFINITY { lower } else { to_model(lower).lower },
+            slabs::upper(&enclosure, &seen).map_or(f64::INFINITY, |upper| to_model(upper).upper),
+        ))
+    }
+}
