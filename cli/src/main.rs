@@ -10,6 +10,7 @@ mod contains;
 mod content;
 mod csg;
 mod demo;
+mod distance;
 mod failure;
 mod heights;
 mod info;
@@ -17,6 +18,7 @@ mod input;
 mod interfere;
 mod measure;
 mod mesh;
+mod neighbours;
 mod output;
 mod part;
 mod progress;
@@ -71,6 +73,10 @@ enum Command {
     Complement(boolean::ComplementArguments),
     /// Say of points on standard input whether the solid contains them
     Contains(contains::Arguments),
+    /// Say how far points on standard input are from a solid, a mesh or a scene
+    Distance(distance::Arguments),
+    /// Say what lies beside cells on standard input
+    Neighbours(neighbours::Arguments),
     /// Say where rays on standard input first meet a solid, a mesh or a scene
     Ray(ray::Arguments),
     /// Write how far a solid, a mesh or a scene reaches in each column of cells: a height map
@@ -99,6 +105,8 @@ fn main() -> ExitCode {
         Command::Xor(arguments) => boolean::run(boolean::Operation::Xor, arguments),
         Command::Complement(arguments) => boolean::run_complement(arguments),
         Command::Contains(arguments) => contains::run(arguments),
+        Command::Distance(arguments) => distance::run(arguments),
+        Command::Neighbours(arguments) => neighbours::run(arguments),
         Command::Ray(arguments) => ray::run(arguments),
         Command::Heights(arguments) => heights::run(arguments),
         Command::Interfere(arguments) => interfere::run(arguments),

@@ -61,7 +61,7 @@ pub struct Arguments {
     json: bool,
 }
 
-fn tolerance(text: &str) -> Result<f64, String> {
+pub fn tolerance(text: &str) -> Result<f64, String> {
     match text.parse() {
         Ok(tolerance) if tolerance >= 0.0 && f64::is_finite(tolerance) => Ok(tolerance),
         _ => Err("expected a number not below 0".into()),

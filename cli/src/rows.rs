@@ -87,6 +87,7 @@ fn not_numbers<const N: usize>(line: &[u8]) -> String {
     let more = if shown.len() < text.len() { "…" } else { "" };
     let expected = match N {
         3 => "three".to_owned(),
+        4 => "four".to_owned(),
         6 => "six".to_owned(),
         n => n.to_string(),
     };
