@@ -1508,6 +1508,7 @@ static void regions(void) {
     const uint32_t *wrong_cell = (const uint32_t *)WRONG(cell);
     leafless_interval *volume = (leafless_interval *)out;
     leafless_region *relation = (leafless_region *)out;
+    leafless_region itself;
     uint64_t *least = (uint64_t *)out;
 
     NULL_POINTER(leafless_octree_cells_in_box, octree, leafless_octree_cells_in_box(NULL, cell, end, least, least));
@@ -1540,6 +1541,10 @@ static void regions(void) {
     BAD_NUMBER(leafless_octree_cells_in_box, max, leafless_octree_cells_in_box(octree, cell, beyond, least, least));
     BAD_NUMBER(leafless_octree_volume_in_box, max, leafless_octree_volume_in_box(octree, above, point, volume));
     untouched();
+
+    MAY_BE_NULL(leafless_solid_classify_in, options,
+                leafless_solid_classify_in(solid, solid, &frame, NULL, &itself));
+    CHECK(itself != LEAFLESS_REGION_OUTSIDE);
 }
 
 static void distances(void) {
@@ -1551,7 +1556,9 @@ static void distances(void) {
     leafless_interval *intervals = (leafless_interval *)out;
     leafless_point_distance *found = (leafless_point_distance *)out;
     leafless_near_cell *cells = (leafless_near_cell *)out;
-    float *field = (float *)out;
+    float *field = (float *)out, pair[2];
+    leafless_interval one;
+    leafless_point_distance far;
     uint64_t number;
 
     NULL_POINTER(leafless_octree_distances, octree, leafless_octree_distances(NULL, point, 1, 0, NULL, intervals));
@@ -1607,6 +1614,12 @@ static void distances(void) {
                leafless_octree_distance_field(octree, cell, end, NULL, field, 3));
     untouched();
 
+    MAY_BE_NULL(leafless_octree_distances, options, leafless_octree_distances(octree, point, 1, 0, NULL, &one));
+    MAY_BE_NULL(leafless_solid_distances, options,
+                leafless_solid_distances(solid, &frame, point, 1, 0, 1.0, NULL, &far));
+    MAY_BE_NULL(leafless_octree_distance_field, options,
+                leafless_octree_distance_field(octree, cell, end, NULL, pair, 2));
+    CHECK(one.lower == 0.0 && far.distance_model.lower == 0.0 && pair[0] <= pair[1]);
     MAY_BE_NULL(leafless_octree_distances, points_model, leafless_octree_distances(octree, NULL, 0, 0, NULL, NULL));
     MAY_BE_NULL(leafless_solid_distances, points_model,
                 leafless_solid_distances(solid, &frame, NULL, 0, 0, 0.0, NULL, NULL));
