@@ -12,8 +12,8 @@
 use criterion::{BatchSize, Criterion, Throughput, criterion_group, criterion_main};
 use leafless::{
     CellFilter, Control, Cursor, Direction, FillRule, Frame, Membership, MeshSolid, Octree, PointCursor,
-    Rule, Tag, TaggedCell, TriangleMesh, build, compact, difference, exchange, file, intersection, union,
-    xor,
+    PointTable, Rule, Tag, TaggedCell, TriangleMesh, build, compact, difference, exchange, file,
+    intersection, union, xor,
 };
 use std::hint::black_box;
 use std::path::Path;
@@ -181,6 +181,10 @@ fn queries(c: &mut Criterion) {
                     view.contains_many(black_box(&uniform), &mut answers).expect("equal lengths");
                     inside(&answers[..1])
                 })
+            });
+            let table = PointTable::new(view, 6).expect("a megabyte");
+            group.bench_function(name("uniform, one by one, table of level 6"), |b| {
+                b.iter(|| uniform.iter().filter(|&&p| table.contains(p) == Membership::Inside).count())
             });
             group.bench_function(name("along lines, cursor"), |b| {
                 b.iter(|| {
