@@ -3,16 +3,12 @@
 use crate::failure::{Failure, Of};
 use crate::input::Input;
 use crate::measure::tolerance;
-use crate::mesh::Reading;
 use crate::output::{self, number, print};
 use crate::progress::watched;
 use crate::rows::{Questions, serve};
-use crate::scene::Drawing;
-use crate::source::Source;
-use crate::target::Target;
-use crate::voxelize::{bounds, threads};
+use crate::target::{Looking, Target};
 use clap::{Args, ValueEnum};
-use leafless::{Control, DISTANCE_SPLITS, DistanceTo, Error, Frame, Interval, MAX_DEPTH, distances};
+use leafless::{Control, DISTANCE_SPLITS, DistanceTo, Error, Interval, MAX_DEPTH, distances};
 use serde::Serialize;
 use std::ffi::OsString;
 use std::fmt::Write;
@@ -43,20 +39,8 @@ pub struct Arguments {
     /// Cells to split at most for a point; where much of the surface is about as near, there is no end of them
     #[arg(long, value_name = "N", default_value_t = DISTANCE_SPLITS)]
     splits: u64,
-    /// Lower corner and edge length of the cube to look at, for a mesh or scene. Without it: the cube around it
-    #[arg(long, value_name = "X0,Y0,Z0,EDGE", value_parser = bounds, allow_hyphen_values = true)]
-    bounds: Option<Frame>,
-    /// Take the cells of a solid from a file (.lfl) for the solid itself, whatever they prove of what they
-    /// were made from
-    #[arg(long)]
-    cells: bool,
     #[command(flatten)]
-    reading: Reading,
-    #[command(flatten)]
-    drawing: Drawing,
-    /// Threads to use; 0: as many as there are processors. The result is the same
-    #[arg(long, default_value_t = 0, value_name = "N", value_parser = threads)]
-    threads: usize,
+    looking: Looking,
     /// Print a line of JSON for each point, in which what is not finite is `null`
     #[arg(long)]
     json: bool,
@@ -90,8 +74,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     if input.path().is_none() {
         return Err(Failure::Usage("standard input carries the points, so the solid must be a file".into()));
     }
-    let source = Source::read(&input, &arguments.reading, &arguments.drawing)?.taken(arguments.cells);
-    let target = Target::of(source, &input, arguments.bounds.as_ref(), arguments.depth, MAX_DEPTH)?;
+    let target = arguments.looking.target(&input, arguments.depth, MAX_DEPTH)?;
     serve(&mut Batch { input, target, arguments, points: Vec::new(), text: String::new() })
 }
 
@@ -142,7 +125,7 @@ impl Questions<3> for Batch<'_> {
         if self.points.is_empty() {
             return Ok(());
         }
-        let answers = watched("distance", self.arguments.threads, |control| self.measure(control));
+        let answers = watched("distance", self.arguments.looking.threads, |control| self.measure(control));
         self.points.clear();
         self.text.clear();
         for Interval { lower, upper } in answers.of(&self.input)? {

@@ -2,15 +2,11 @@
 
 use crate::failure::{Failure, Of};
 use crate::input::Input;
-use crate::mesh::Reading;
 use crate::output::{Output, number, print, write_file};
 use crate::progress::watched;
-use crate::scene::Drawing;
-use crate::source::Source;
-use crate::target::Target;
-use crate::voxelize::{bounds, threads};
+use crate::target::{Looking, Target};
 use clap::{Args, ValueEnum};
-use leafless::{Columns, Frame, Heights, Interval, MAX_DEPTH, Side, heights};
+use leafless::{Columns, Heights, Interval, MAX_DEPTH, Side, heights};
 use std::ffi::OsString;
 
 /// Writes a height map: for each column of cells along an axis, how far the solid reaches in it. Heights are in the
@@ -40,20 +36,8 @@ pub struct Arguments {
     /// mesh or scene
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=MAX_DEPTH as i64))]
     depth: Option<u8>,
-    /// Lower corner and edge length of the cube to look at, for a mesh or scene. Without it: the cube around it
-    #[arg(long, value_name = "X0,Y0,Z0,EDGE", value_parser = bounds, allow_hyphen_values = true)]
-    bounds: Option<Frame>,
-    /// Take the cells of a solid from a file (.lfl) for the solid itself, whatever they prove of what they
-    /// were made from
-    #[arg(long)]
-    cells: bool,
     #[command(flatten)]
-    reading: Reading,
-    #[command(flatten)]
-    drawing: Drawing,
-    /// Threads to use; 0: as many as there are processors. The result is the same
-    #[arg(long, default_value_t = 0, value_name = "N", value_parser = threads)]
-    threads: usize,
+    looking: Looking,
 }
 
 /// The depth of meshes and scenes, if none is asked for.
@@ -85,13 +69,12 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     if arguments.raw || output.path().is_some() {
         output.check()?;
     }
-    let source = Source::read(&input, &arguments.reading, &arguments.drawing)?.taken(arguments.cells);
-    let target = Target::of(source, &input, arguments.bounds.as_ref(), arguments.depth, DEPTH)?;
+    let target = arguments.looking.target(&input, arguments.depth, DEPTH)?;
     let side = match arguments.from {
         From::Above => Side::Above,
         From::Below => Side::Below,
     };
-    let map = watched("heights", arguments.threads, |control| {
+    let map = watched("heights", arguments.looking.threads, |control| {
         let columns = Columns::all(target.frame(), arguments.axis as usize)?;
         match &target {
             Target::Cells(octree) => octree.heights(&columns, side),

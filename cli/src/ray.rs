@@ -2,16 +2,12 @@
 
 use crate::failure::{Failure, Of};
 use crate::input::Input;
-use crate::mesh::Reading;
 use crate::output::{self, number, print};
 use crate::progress::watched;
 use crate::rows::{Questions, serve};
-use crate::scene::Drawing;
-use crate::source::Source;
-use crate::target::Target;
-use crate::voxelize::{bounds, threads};
+use crate::target::{Looking, Target};
 use clap::{Args, ValueEnum};
-use leafless::{Control, Error, Frame, MAX_DEPTH, Obstacle, Ray, RayHit, cast_rays};
+use leafless::{Control, Error, MAX_DEPTH, Obstacle, Ray, RayHit, cast_rays};
 use serde::Serialize;
 use std::ffi::OsString;
 use std::fmt::Write;
@@ -38,20 +34,8 @@ pub struct Arguments {
     /// unsplit know less
     #[arg(long, value_name = "N", default_value_t = 1 << 14)]
     splits: u64,
-    /// Lower corner and edge length of the cube to look at, for a mesh or scene. Without it: the cube around it
-    #[arg(long, value_name = "X0,Y0,Z0,EDGE", value_parser = bounds, allow_hyphen_values = true)]
-    bounds: Option<Frame>,
-    /// Take the cells of a solid from a file (.lfl) for the solid itself, whatever they prove of what they
-    /// were made from
-    #[arg(long)]
-    cells: bool,
     #[command(flatten)]
-    reading: Reading,
-    #[command(flatten)]
-    drawing: Drawing,
-    /// Threads to use; 0: as many as there are processors. The result is the same
-    #[arg(long, default_value_t = 0, value_name = "N", value_parser = threads)]
-    threads: usize,
+    looking: Looking,
     /// Print a line of JSON for each ray: an object, or `null` for a miss
     #[arg(long)]
     json: bool,
@@ -79,8 +63,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     if input.path().is_none() {
         return Err(Failure::Usage("standard input carries the rays, so the solid must be a file".into()));
     }
-    let source = Source::read(&input, &arguments.reading, &arguments.drawing)?.taken(arguments.cells);
-    let target = Target::of(source, &input, arguments.bounds.as_ref(), arguments.depth, MAX_DEPTH)?;
+    let target = arguments.looking.target(&input, arguments.depth, MAX_DEPTH)?;
     serve(&mut Batch { input, target, arguments, rays: Vec::new(), text: String::new() })
 }
 
@@ -130,7 +113,7 @@ impl Questions<6> for Batch<'_> {
             return Ok(());
         }
         let Batch { input, target, arguments, rays, text } = self;
-        let hits = watched("ray", arguments.threads, |control| {
+        let hits = watched("ray", arguments.looking.threads, |control| {
             let control = Control { max_splits: Some(arguments.splits), ..*control };
             cast(target, rays, arguments.on.into(), &control)
         });

@@ -2,8 +2,39 @@
 
 use crate::failure::Failure;
 use crate::input::Input;
+use crate::mesh::Reading;
+use crate::scene::Drawing;
 use crate::source::Source;
+use crate::voxelize::{bounds, threads};
+use clap::Args;
 use leafless::{Affine, Frame, Octree, Prepared};
+
+/// How a solid that is asked is read, and looked at.
+#[derive(Args)]
+pub struct Looking {
+    /// Lower corner and edge length of the cube to look at, for a mesh or scene. Without it: the cube around it
+    #[arg(long, value_name = "X0,Y0,Z0,EDGE", value_parser = bounds, allow_hyphen_values = true)]
+    bounds: Option<Frame>,
+    /// Take the cells of a solid from a file (.lfl) for the solid itself, whatever they prove of what they
+    /// were made from
+    #[arg(long)]
+    cells: bool,
+    #[command(flatten)]
+    reading: Reading,
+    #[command(flatten)]
+    drawing: Drawing,
+    /// Threads to use; 0: as many as there are processors. The result is the same
+    #[arg(long, default_value_t = 0, value_name = "N", value_parser = threads)]
+    pub threads: usize,
+}
+
+impl Looking {
+    /// Reads a solid. `depth` is the one that the user gave; without it a mesh or a scene is split to `deepest`.
+    pub fn target(&self, input: &Input, depth: Option<u8>, deepest: u8) -> Result<Target, Failure> {
+        let source = Source::read(input, &self.reading, &self.drawing)?.taken(self.cells);
+        Target::of(source, input, self.bounds.as_ref(), depth, deepest)
+    }
+}
 
 /// What is asked.
 pub enum Target {
@@ -14,8 +45,7 @@ pub enum Target {
 }
 
 impl Target {
-    /// `bounds` and `depth` are those that the user gave; without a depth a mesh or a scene is split to `deepest`.
-    pub fn of(
+    fn of(
         source: Source,
         input: &Input,
         bounds: Option<&Frame>,
