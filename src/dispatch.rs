@@ -31,3 +31,24 @@ pub fn with_popcount<H: Hot>(hot: H) -> H::Output {
     }
     hot.run()
 }
+
+/// As [`with_popcount`], with AVX2 besides where the processor has it: for loops over the coordinates of a point.
+#[inline(always)]
+pub fn with_vectors<H: Hot>(hot: H) -> H::Output {
+    #[cfg(all(target_arch = "x86_64", feature = "std", not(target_feature = "avx2")))]
+    {
+        #[target_feature(enable = "popcnt,bmi2,avx2")]
+        fn with_avx2<H: Hot>(hot: H) -> H::Output {
+            hot.run()
+        }
+        if std::is_x86_feature_detected!("avx2")
+            && std::is_x86_feature_detected!("popcnt")
+            && std::is_x86_feature_detected!("bmi2")
+        {
+            // SAFETY: the features that the function enables were just detected.
+            #[allow(unsafe_code)]
+            return unsafe { with_avx2(hot) };
+        }
+    }
+    with_popcount(hot)
+}

@@ -239,6 +239,59 @@ proptest! {
     }
 }
 
+/// Rays that run side by side from somewhere around or in the universe of a tree of 2^depth cells with edge 1: some of
+/// them on lattice planes, of different lengths, some of them ended.
+fn side_by_side(random: &mut Random, depth: u8, count: usize) -> Vec<Ray> {
+    let cells = f64::from(1u32 << depth);
+    let from = [0; 3].map(|_| random.between(-0.7, 1.7) * cells);
+    let mut direction = [0; 3].map(|_| random.between(-1.0, 1.0));
+    for axis in (0..3).filter(|_| random.below(4) == 0).collect::<Vec<_>>() {
+        direction[axis] = [0.0, -0.0, 1e-9][random.below(3) as usize];
+    }
+    if direction.iter().all(|&d| d == 0.0) {
+        direction[1] = -1.0;
+    }
+    let (spread, bend) = (random.between(0.0, 0.15) * cells, random.between(0.0, 0.05));
+    let on_planes = random.below(3) == 0;
+    (0..count)
+        .map(|_| {
+            let mut from = from.map(|c| c + random.between(-0.5, 0.5) * spread);
+            if on_planes {
+                from = from.map(|c| (2.0 * c).round() / 2.0);
+            }
+            let length = 2f64.powi(random.below(5) as i32 - 2);
+            let direction =
+                direction.map(|d| if d == 0.0 { d } else { (d + random.between(-bend, bend)) * length });
+            let ray = Ray::new(from, direction).unwrap();
+            if random.below(5) == 0 { ray.until(random.between(0.1, 2.0) * cells).unwrap() } else { ray }
+        })
+        .collect()
+}
+
+/// All rays together are cast as each alone.
+fn assert_together(tree: &OctreeRef<'_>, rays: &[Ray]) {
+    let mut hits = vec![None; rays.len()];
+    for on in [Obstacle::Full, Obstacle::Upper] {
+        tree.cast_rays(rays, on, &mut hits).unwrap();
+        for (ray, &hit) in rays.iter().zip(&hits) {
+            assert_eq!(tree.cast_ray(ray, on), hit, "{ray:?}");
+        }
+    }
+}
+
+proptest! {
+    #![proptest_config(cases(60))]
+
+    #[test]
+    fn rays_side_by_side_are_cast_as_each_alone(shape in shapes(4..=7), seed: u64) {
+        let tree = shape.dense().octree();
+        let mut random = Random(seed);
+        for count in [1, 31, 32, 33, 100, 64, 64, 64] {
+            assert_together(tree.view(), &side_by_side(&mut random, shape.depth, count));
+        }
+    }
+}
+
 /// Bytes as a mapping has them.
 struct Aligned {
     memory: Vec<u8>,
@@ -394,6 +447,17 @@ fn the_march_finds_what_exact_descent_does() {
             assert!(hits.iter().flatten().count() > 2000);
             assert_eq!(cast_rays(&tree, &frame, &rays, on, &alone()).unwrap(), hits);
         }
+        // A picture, whose rays a beam leads to the ball, or past it.
+        let pixel = |i: i32| f64::from(i) / 40.0;
+        let picture: Vec<Ray> = (-40..40)
+            .flat_map(|y| (-64..64).map(move |x| [-3.0, pixel(x), pixel(y)]))
+            .map(|[x, y, z]| Ray::new([x, 0.1, -0.2], [-x, y, z]).unwrap())
+            .collect();
+        assert_together(&tree, &picture);
+        let mut hits = vec![None; picture.len()];
+        tree.cast_rays(&picture, Obstacle::Full, &mut hits).unwrap();
+        let count = hits.iter().flatten().count();
+        assert!((1000..8000).contains(&count), "{count}");
     }
 }
 
@@ -489,6 +553,9 @@ fn damaged_trees_are_left() {
         .map(|(from, direction)| Ray::new(from, direction).unwrap())
         .collect();
     let mut hits = vec![None; rays.len()];
+    let beam: Vec<Ray> = (0..200)
+        .map(|i| Ray::new([-1.0, i as f64 / 128.0 - 0.8, 0.07], [1.0, 0.01 * (i % 3) as f64, 0.003]).unwrap())
+        .collect();
     let mut viewed = 0;
     for _ in 0..40 {
         let mut bytes = good.clone();
@@ -503,6 +570,7 @@ fn damaged_trees_are_left() {
             tree.cast_rays(&rays, on, &mut hits).unwrap();
             assert!(hits.iter().flatten().all(|hit| hit.t.lower <= hit.t.upper));
         }
+        assert_together(&tree, &beam);
         for ray in &rays {
             let RaySpans { inner, outer } = tree.ray_spans(ray).unwrap();
             assert!(inner.iter().chain(&outer).all(|span| span.lower <= span.upper));

@@ -42,36 +42,40 @@ pub fn ask(tree: &OctreeRef<'_>, questions: &[u8], verified: bool) {
 }
 
 /// All cells of a tree, as a cursor that takes them in order sees them.
-fn walked(tree: &OctreeRef<'_>) -> Vec<TaggedCell> {
+fn walked(tree: &OctreeRef<'_>) -> impl Iterator<Item = TaggedCell> {
     let mut cursor = Cursor::new(tree);
-    let mut cells = vec![TaggedCell { cell: cursor.cell(), tag: cursor.tag() }];
-    let mut next = vec![0];
-    while let Some(octant) = next.pop() {
-        if cursor.tag() == Tag::Branch && octant < 8 {
-            cursor.descend(octant);
-            cells.push(TaggedCell { cell: cursor.cell(), tag: cursor.tag() });
-            next.extend([octant + 1, 0]);
-        } else {
+    let mut next = Vec::new();
+    std::iter::from_fn(move || {
+        if next.is_empty() {
+            next.push(0);
+            return Some(TaggedCell { cell: cursor.cell(), tag: cursor.tag() });
+        }
+        while let Some(octant) = next.pop() {
+            if cursor.tag() == Tag::Branch && octant < 8 {
+                cursor.descend(octant);
+                next.extend([octant + 1, 0]);
+                return Some(TaggedCell { cell: cursor.cell(), tag: cursor.tag() });
+            }
             cursor.ascend();
         }
-    }
-    cells
+        next.push(8);
+        None
+    })
 }
 
 /// Cells come one after another as a cursor meets them; of boundary faces there are not more than a sound
 /// tree of this size could have.
 fn ask_cells(tree: &OctreeRef<'_>) {
     let entries = (tree.element_count() + tree.brick_count()) as usize;
-    let walked = walked(tree);
     let all = CellFilter::tags(&[Tag::Empty, Tag::Branch, Tag::Partial, Tag::Full]);
-    assert!(tree.cells(all).eq(walked.iter().copied()));
+    assert!(tree.cells(all).eq(walked(tree)));
     let depth = tree.frame().depth();
     let finest = |found: &TaggedCell| found.tag != Tag::Branch && found.cell.level == depth;
     let leaves = tree.cells(CellFilter::leaves().levels(depth..=depth));
-    assert!(leaves.eq(walked.iter().copied().filter(finest)));
-    let middle = walked[walked.len() / 2].cell;
+    assert!(leaves.eq(walked(tree).filter(finest)));
+    let middle = walked(tree).nth(tree.cells(all).count() / 2).expect("a cell of the tree");
     let mut cells = tree.cells(all);
-    cells.seek(middle).expect("a cell of the tree");
+    cells.seek(middle.cell).expect("a cell of the tree");
     assert!(cells.count() <= 1 + 72 * entries);
     let faces = tree.boundary_faces(CellFilter::tags(&[Tag::Full])).count();
     assert!(faces <= 96 * (1 + 73 * entries), "{faces} faces, {entries} entries");
@@ -102,7 +106,14 @@ fn ask_neighbours(tree: &OctreeRef<'_>, verified: bool) {
 
 /// Rays between points end, one by one and together, and are inside only where they are not outside.
 fn ask_rays(tree: &OctreeRef<'_>, points: &[[f64; 3]]) {
-    let rays: Vec<Ray> = points.windows(2).filter_map(|pair| Ray::between(pair[0], pair[1]).ok()).collect();
+    let mut rays: Vec<Ray> =
+        points.windows(2).filter_map(|pair| Ray::between(pair[0], pair[1]).ok()).collect();
+    if let [a, b, ..] = points {
+        // Side by side.
+        let (cell, to) = (tree.frame().cell_size(), [0, 1, 2].map(|axis| b[axis] - a[axis]));
+        let from = |i: u8| [a[0] + f64::from(i) * cell, a[1], a[2] - 0.3 * f64::from(i) * cell];
+        rays.extend((0..64).filter_map(|i| Ray::new(from(i), to).ok()));
+    }
     let mut hits = vec![None; rays.len()];
     for on in [Obstacle::Full, Obstacle::Upper] {
         tree.cast_rays(&rays, on, &mut hits).expect("as many hits as rays");

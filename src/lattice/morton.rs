@@ -48,10 +48,31 @@ pub const SLAB: [[u64; 4]; 3] = {
     slabs
 };
 
+/// `SLABS[axis][first][last]`: the cells of a block whose coordinate along `axis` lies in `first..=last` (none if
+/// `first > last`).
+pub const SLABS: [[[u64; 4]; 4]; 3] = {
+    let mut slabs = [[[0; 4]; 4]; 3];
+    let mut axis = 0;
+    while axis < 3 {
+        let mut first = 0;
+        while first < 4 {
+            let (mut cells, mut last) = (0, first);
+            while last < 4 {
+                cells |= SLAB[axis][last];
+                slabs[axis][first][last] = cells;
+                last += 1;
+            }
+            first += 1;
+        }
+        axis += 1;
+    }
+    slabs
+};
+
 /// The cells of a block whose coordinate along `axis` lies in `first..=last` (empty if `first > last`).
 #[inline]
 pub fn slabs(axis: usize, first: u32, last: u32) -> u64 {
-    (first..=last).fold(0, |mask, at| mask | SLAB[axis][at as usize])
+    SLABS[axis][first as usize][last as usize]
 }
 
 /// The cells of a block one place further along `axis`, or one place before if not `up`, than those of `mask`.

@@ -4,7 +4,10 @@
 //! enters the first, it is proven inside; before it enters the second, it is proven outside. So a ray that runs in
 //! a face of a cell, or touches an edge or a corner of it, meets that cell.
 
+mod beam;
+mod course;
 mod line;
+mod march;
 mod octree;
 mod search;
 mod solid;

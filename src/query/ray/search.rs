@@ -106,11 +106,15 @@ impl First {
 
     /// What is known of a ray by the first cells that it enters, each with the lattice plane by which it does.
     pub(super) fn of(line: &Line<'_>, outer: Option<Met>, inner: Option<Met>) -> First {
-        let entry =
-            |by: Option<(usize, u32)>| by.map_or(Moment::START, |(axis, plane)| line.passes(axis, plane));
+        let entry = |(cell, by): Met| {
+            let moment = by.map_or(Moment::START, |(axis, plane)| line.passes(axis, plane));
+            (moment.t, cell, line.face(&moment))
+        };
+        let outer_entry = outer.map(entry);
+        let inner_entry = if inner == outer { outer_entry } else { inner.map(entry) };
         First {
-            outer: outer.map(|(cell, by)| (entry(by).t.lower, cell, line.face(&entry(by)))),
-            inner: inner.map(|(cell, by)| (entry(by).t.upper, cell, line.face(&entry(by)))),
+            outer: outer_entry.map(|(t, cell, face)| (t.lower, cell, face)),
+            inner: inner_entry.map(|(t, cell, face)| (t.upper, cell, face)),
         }
     }
 

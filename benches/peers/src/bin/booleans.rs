@@ -9,14 +9,13 @@
 //! Without the second argument: the mesh and its copy turned by 0.002 rad, on one thread and on two, elapsed time.
 
 use leafless::{
-    Control, Cursor, FillRule, Frame, MeshSolid, Octree, OctreeRef, Rule, Tag, TriangleMesh, build,
-    difference, exchange, intersection, union,
+    Control, Cursor, Frame, Octree, OctreeRef, Rule, TriangleMesh, build, difference, intersection, union,
 };
+use peers::{Peer, median, read, solid, spent, write_full};
 use std::error::Error;
-use std::io::{BufRead, BufReader, BufWriter, Write};
+use std::io::{BufWriter, Write};
 use std::path::Path;
-use std::process::{Command, Stdio};
-use std::sync::Arc;
+use std::process::Command;
 use std::time::Instant;
 
 const CELLS: f64 = 1024.0;
@@ -31,46 +30,8 @@ type Operation = fn(&OctreeRef<'_>, &OctreeRef<'_>, &Control<'_>) -> Made;
 const OPERATIONS: [(&str, Operation); 3] =
     [("union", union), ("intersection", intersection), ("difference", difference)];
 
-fn median(mut values: Vec<f64>) -> f64 {
-    values.sort_by(f64::total_cmp);
-    values[values.len() / 2]
-}
-
-fn solid(mesh: &TriangleMesh) -> Result<MeshSolid, leafless::Error> {
-    let mesh = TriangleMesh::new(mesh.vertices().into(), mesh.triangles().into())?;
-    MeshSolid::new(Arc::new(mesh), FillRule::NonZero)
-}
-
 fn octree(mesh: &TriangleMesh, frame: &Frame, rule: Rule, threads: usize) -> Made {
     build(&solid(mesh)?, frame, rule, &Control::threads(threads))
-}
-
-/// Processor time of this thread in milliseconds, and its page faults.
-fn spent() -> (f64, f64) {
-    // SAFETY: plain structs, filled in by the system.
-    unsafe {
-        let (mut time, mut usage) =
-            (std::mem::zeroed::<libc::timespec>(), std::mem::zeroed::<libc::rusage>());
-        libc::clock_gettime(libc::CLOCK_THREAD_CPUTIME_ID, &mut time);
-        libc::getrusage(libc::RUSAGE_THREAD, &mut usage);
-        (1e3 * time.tv_sec as f64 + 1e-6 * time.tv_nsec as f64, usage.ru_minflt as f64)
-    }
-}
-
-/// Writes the FULL cells below a cursor: x, y, z and edge of each, in cells.
-fn full(cursor: &mut Cursor<'_>, depth: u8, out: &mut impl Write) -> std::io::Result<()> {
-    let (cell, edge) = (cursor.cell(), 1i32 << (depth - cursor.cell().level));
-    if cursor.tag() == Tag::Full {
-        let [x, y, z] = cell.at.map(|i| i as i32 * edge);
-        [x, y, z, edge].iter().try_for_each(|i| out.write_all(&i.to_ne_bytes()))?;
-    }
-    for octant in 0..8 {
-        if cursor.descend(octant) {
-            full(cursor, depth, out)?;
-            cursor.ascend();
-        }
-    }
-    Ok(())
 }
 
 fn beside(mesh: &TriangleMesh, peer: &Path) -> Result<(), Box<dyn Error>> {
@@ -90,26 +51,17 @@ fn beside(mesh: &TriangleMesh, peer: &Path) -> Result<(), Box<dyn Error>> {
     let paths = [0, 1].map(|k| std::env::temp_dir().join(format!("booleans-{}-{k}", std::process::id())));
     for (tree, path) in sampled.iter().zip(&paths) {
         let mut out = BufWriter::new(std::fs::File::create(path)?);
-        full(&mut Cursor::new(tree.view()), depth, &mut out)?;
+        write_full(&mut Cursor::new(tree.view()), depth, &mut out)?;
         out.flush()?;
     }
-    let mut child = Command::new(peer)
-        .args(&paths)
-        .env("LD_PRELOAD", PRELOADED)
-        .stdin(Stdio::piped())
-        .stdout(Stdio::piped())
-        .spawn()?;
-    let mut ask = child.stdin.take().ok_or("no input")?;
-    let mut answers = BufReader::new(child.stdout.take().ok_or("no output")?).lines();
+    let mut peer = Peer::start(Command::new(peer).args(&paths).env("LD_PRELOAD", PRELOADED))?;
     let control = Control::threads(1);
     println!("depth {depth}, milliseconds of processor time, medians of {ROUNDS}");
     println!("              MaskGrid copy     op  sampled ratio faults  certified ratio faults");
     for (name, operation) in OPERATIONS {
         let mut figures: [Vec<f64>; 6] = Default::default();
         for _ in 0..ROUNDS {
-            writeln!(ask, "{name}")?;
-            let answer = answers.next().ok_or("no answer")??;
-            let theirs: Vec<f64> = answer.split(' ').map(str::parse).collect::<Result<_, _>>()?;
+            let theirs = peer.ask(name)?;
             figures[0].push(theirs[0]);
             figures[1].push(theirs[1]);
             for (k, [a, b]) in [&sampled, &certified].into_iter().enumerate() {
@@ -129,8 +81,7 @@ fn beside(mesh: &TriangleMesh, peer: &Path) -> Result<(), Box<dyn Error>> {
         let (ra, rb) = ((copy + op) / a, (copy + op) / b);
         println!("{name:12}  {copy:13.2} {op:6.2}  {a:7.3} {ra:5.1} {af:6.0}  {b:9.3} {rb:5.1} {bf:6.0}");
     }
-    drop(ask);
-    child.wait()?;
+    peer.end()?;
     paths.iter().try_for_each(std::fs::remove_file)?;
     Ok(())
 }
@@ -182,8 +133,7 @@ fn scaling(mesh: &TriangleMesh) -> Result<(), Box<dyn Error>> {
 fn main() -> Result<(), Box<dyn Error>> {
     let mut arguments = std::env::args().skip(1);
     let path = arguments.next().ok_or("which mesh?")?;
-    let file = exchange::read_mesh(&std::fs::read(path)?, &exchange::MeshOptions::default())?;
-    let mesh = file.mesh.sewn()?;
+    let mesh = read(&path)?;
     match arguments.next() {
         Some(peer) => beside(&mesh, peer.as_ref()),
         None => scaling(&mesh),

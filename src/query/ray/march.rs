@@ -1,0 +1,109 @@
+//! The cells of a stored octree along a ray, two levels a step.
+
+use super::Ray;
+use super::course::{Clear, Course, Start};
+use super::search::Met;
+use crate::lattice::{Cell, morton};
+use crate::octree::links::Step;
+use crate::octree::view::{MAX_ELEMENT_LEVELS, OctreeRef};
+use crate::octree::{Planes, Tag};
+
+/// The first cells that stop a ray.
+pub(super) struct March {
+    pub(super) outer: Option<Met>,
+    pub(super) inner: Option<Met>,
+}
+
+impl March {
+    /// Along a ray that nothing stops where it is `clear`. `None` if rounding errors may change what is met.
+    #[inline(always)]
+    pub(super) fn run(tree: &OctreeRef<'_>, ray: &Ray, course: &Course, clear: Clear) -> Option<March> {
+        let frame = &tree.frame;
+        let mut march = March { outer: None, inner: None };
+        let start = match course.start(frame, ray.last) {
+            Start::At(at, by) => course.skip(frame, ray.last, (at, by), clear),
+            other => other,
+        };
+        let (mut at, mut by) = match start {
+            Start::Beside => return Some(march),
+            Start::At(at, by) => (at, by),
+            Start::Unsure => return None,
+        };
+        let levels = tree.levels();
+        let mut path = [0; MAX_ELEMENT_LEVELS];
+        let mut e = 0;
+        let mut planes = tree.entry(0).unwrap_or(Planes::uniform(Tag::Partial));
+        loop {
+            let place = [0, 1, 2, 3].map(|axis| at[axis] ^ course.mirror[axis]);
+            // Down to the cell in which the ray is.
+            let (tag, mut shift, c) = if tree.root != Tag::Branch {
+                (tree.root, frame.depth() as u32, 0)
+            } else {
+                loop {
+                    let shift = 2 * (levels - 1 - e) as u32;
+                    let c = morton::index(place[0] >> shift, place[1] >> shift, place[2] >> shift);
+                    match tree.step(e, path[e], planes, c) {
+                        Step::Into(child) => {
+                            e += 1;
+                            path[e] = child;
+                            planes = tree.entry(child).unwrap_or(Planes::uniform(Tag::Partial));
+                        }
+                        Step::Settled(tag) => break (tag, shift, c),
+                    }
+                }
+            };
+            if tag != Tag::Empty {
+                let shift = shift + (tree.root == Tag::Branch && planes.octant(c >> 3) == tag) as u32;
+                let cell = Cell {
+                    level: frame.depth() - shift as u8,
+                    at: [place[0], place[1], place[2]].map(|a| a >> shift),
+                };
+                let plane = |axis: usize| {
+                    if course.mirror[axis] == 0 { at[axis] } else { frame.cells() - at[axis] }
+                };
+                let met = (cell, by.map(|axis| (axis, plane(axis))));
+                march.outer.get_or_insert(met);
+                if tag == Tag::Full {
+                    march.inner = Some(met);
+                    return Some(march);
+                }
+            }
+            if tree.root == Tag::Branch {
+                // Nothing on the ray's further way through the octant, or through all of the element, may stop it.
+                let ahead = course.ahead(place, shift);
+                let stops = if march.outer.is_none() { planes.lower | planes.upper } else { planes.lower };
+                let octant = 0xFF << (c & !7);
+                shift += (stops & ahead & octant == 0) as u32 + (stops & ahead == 0) as u32;
+            }
+            // Out of it by the plane that is passed first.
+            let (far, times) = course.leaves(at, shift);
+            let [x, y, z, _] = times.to_array();
+            let least_of_two = if x < y { x } else { y };
+            let t = if z < least_of_two { z } else { least_of_two };
+            let passed = times.simd_eq(t);
+            let axes = passed.to_bitmask();
+            let axis = (axes >> 1) as usize;
+            let error = course.time_error[axis & 3];
+            let goes_on = t < ray.last - error;
+            if !goes_on {
+                return (t > ray.last + error).then_some(march);
+            }
+            let (cell, sure) = course.cells(t, error);
+            if !axes.is_power_of_two() || !(sure | passed).all() {
+                return None;
+            }
+            let next = Course::integers(passed.select(far, cell));
+            let changed = (next[0] ^ at[0]) | (next[1] ^ at[1]) | (next[2] ^ at[2]);
+            at = next;
+            if changed >= frame.cells() {
+                return Some(march);
+            }
+            by = Some(axis);
+            let shared = levels - 1 - (31 - (changed | 1).leading_zeros()) as usize / 2;
+            if shared < e {
+                e = shared;
+                planes = tree.entry(path[e]).unwrap_or(Planes::uniform(Tag::Partial));
+            }
+        }
+    }
+}
