@@ -405,6 +405,21 @@ fn extreme_numbers_prove_nothing_wrong() {
 
 /// Planes of the frame lie next to planes of the solid's lattice, so near that sums of their coordinates are
 /// rounded.
+/// Rounding errors of thousands of cells took all memory: each cell that a centre may be in was gathered.
+#[test]
+fn cells_far_smaller_than_rounding_errors_are_not_gathered() {
+    let own = Frame::new([-2.0; 3], 4.0, 20).unwrap();
+    let far = 1e13;
+    let placement =
+        Affine::new([[0.8, -0.6, 0.0, far], [0.6, 0.8, 0.0, far], [0.0, 0.0, 1.0, far]]).unwrap();
+    let solid = Transform::new(Csg::ball([0.0; 3], 1.0).unwrap(), &own, &placement);
+    let frame = Frame::new([far - 2.0; 3], 4.0, 4).unwrap();
+    let certified = build(&solid, &frame, Rule::Certified, &alone()).unwrap();
+    let volume = certified.statistics().volume();
+    assert!(volume.lower > 0.0 && volume.contains(4.0 / 3.0 * PI), "{volume:?}");
+    assert!(matches!(build(&solid, &frame, Rule::Sampled, &alone()), Err(Error::NotSampled)));
+}
+
 #[test]
 fn what_rounds_is_not_taken_for_exact() {
     let size = 256.0 - 2f64.powi(-32);

@@ -310,7 +310,7 @@ impl<W: Worker> TransformWorker<W> {
     }
 
     /// Puts the cells of a list at hand that touch a target, those larger than its grain replaced by their
-    /// children.
+    /// children. Where rounding makes a target so large that too many cells touch it, they stay larger.
     fn gather(&mut self, part: TransformPart, target: &impl Target, grain: f64) -> Result<(), Error> {
         let range = self.range(part);
         let TransformWorker { known, at_hand, inner, own, .. } = self;
@@ -318,7 +318,7 @@ impl<W: Worker> TransformWorker<W> {
         let list = &known[range];
         at_hand.try_reserve(list.len())?;
         for known in list {
-            let touched = if is_large(own, known, grain) {
+            let touched = if is_large(own, known, grain) && at_hand.len() < MOST_AT_HAND {
                 replace(own, known, inner, target, at_hand)?;
                 0
             } else {
@@ -332,7 +332,7 @@ impl<W: Worker> TransformWorker<W> {
         // Mostly one step is all; the first, and that to a point, may take more.
         let mut i = 0;
         while let Some((known, _)) = at_hand.get(i) {
-            if is_large(own, known, grain) {
+            if is_large(own, known, grain) && at_hand.len() < MOST_AT_HAND {
                 let (known, _) = at_hand.swap_remove(i);
                 replace(own, &known, inner, target, at_hand)?;
             } else {
@@ -379,6 +379,10 @@ impl<W: Worker> TransformWorker<W> {
         met
     }
 }
+
+/// From so many cells at hand on none is split. A grain leads to some hundred at the most, unless the rounding errors of
+/// a map are larger than cells.
+const MOST_AT_HAND: usize = 1024;
 
 /// Whether a cell is to be split.
 #[inline(always)]
