@@ -15,11 +15,12 @@ mod zip;
 
 use bodies::{Aligned, Random};
 use leafless::{
-    Affine, AnySolid, Callback, Columns, Control, Csg, Error, FillRule, Frame, HalfSpace, LazyOctree,
-    Membership, MeshSolid, Metadata, Obstacle, Octree, Polyhedron, PolyhedronArrays, Ray, Rule, Side,
-    Transform, TriangleMesh, Verdict, Zone, bounding_box, build, cast_rays, classify_box, clearance, columns,
-    compact, complement, contains, difference, exchange, file, heights, interference_of, intersection,
-    measure, ray_spans, resolve, scene, union, union_of, xor,
+    Affine, AnySolid, Callback, Columns, Control, Csg, DistanceTo, Error, FillRule, Frame, HalfSpace,
+    LazyOctree, Membership, MeshSolid, Metadata, Obstacle, Octree, PointTable, Polyhedron, PolyhedronArrays,
+    Ray, Rule, Side, Tag, Transform, TriangleMesh, Verdict, Zone, bounding_box, build, cast_rays,
+    classify_box, classify_in, clearance, columns, compact, complement, contains, difference, distances,
+    exchange, file, heights, interference_of, intersection, measure, ray_spans, resolve, scene, surface_area,
+    union, union_of, xor,
 };
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
@@ -429,6 +430,29 @@ fn operations(directory: &Path) -> Vec<(&'static str, Operation)> {
         let all = Columns::all(&frame(), 2)?;
         heights(&ball, &frame(), &all, Side::Below, &CONTROL)?;
         columns(&ball, &frame(), &all, &CONTROL)
+    });
+    operation!("distances of cells", [a], {
+        let mut field = [[0.0f32; 2]; 24 * 24 * 4];
+        a.distance_field([4, 4, 9], [28, 28, 13], &mut field, &CONTROL)?;
+        PointTable::new(a.view(), 4)?;
+        a.view().nearest_cells([1.0, 2.0, 3.0], &[Tag::Full, Tag::Partial], 40)
+    });
+    operation!("distances to a mesh", [closed], {
+        let solid = MeshSolid::new(closed.clone(), FillRule::NonZero)?;
+        let points: [[f64; 3]; 6] = std::array::from_fn(|i| [3.0 * i as f64, 7.7, 9.1]);
+        distances(&solid, &frame(), &points, DistanceTo::Boundary, 0.1, &CONTROL)
+    });
+    operation!("solid in a solid", [a], classify_in(&a, &Csg::ball([15.0; 3], 3.0)?, &frame(), &CONTROL));
+    operation!("area", [], {
+        let ball = Csg::ball([15.0; 3], 9.0)?.difference(&Csg::cuboid([14.0; 3], [40.0; 3])?)?;
+        surface_area(&ball, &frame(), 1e-2, &CONTROL)
+    });
+    operation!("intersecting pairs", [closed], {
+        TriangleMesh::from_facets(closed.triangles().iter().flat_map(|corners| {
+            let corners = corners.map(|v| closed.vertices()[v as usize]);
+            [corners, corners.map(|corner| corner.map(|x| x + 1.1))]
+        }))?
+        .intersecting_pairs(9, &CONTROL)
     });
     operation!("to bytes", [b], file::to_bytes(&b.with_metadata(facts())));
     operation!("to bytes again", [coded], file::to_bytes(&coded));

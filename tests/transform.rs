@@ -410,8 +410,7 @@ fn extreme_numbers_prove_nothing_wrong() {
 fn cells_far_smaller_than_rounding_errors_are_not_gathered() {
     let own = Frame::new([-2.0; 3], 4.0, 20).unwrap();
     let far = 1e13;
-    let placement =
-        Affine::new([[0.8, -0.6, 0.0, far], [0.6, 0.8, 0.0, far], [0.0, 0.0, 1.0, far]]).unwrap();
+    let placement = Affine::new([[0.8, -0.6, 0.0, far], [0.6, 0.8, 0.0, far], [0.0, 0.0, 1.0, far]]).unwrap();
     let solid = Transform::new(Csg::ball([0.0; 3], 1.0).unwrap(), &own, &placement);
     let frame = Frame::new([far - 2.0; 3], 4.0, 4).unwrap();
     let certified = build(&solid, &frame, Rule::Certified, &alone()).unwrap();
