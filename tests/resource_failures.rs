@@ -349,6 +349,14 @@ fn operations(directory: &Path) -> Vec<(&'static str, Operation)> {
         operation!("read 3MF", [package], exchange::read_mesh(&package, &Default::default()));
     }
     operation!("write STL", [closed], exchange::write_stl(&closed));
+    operation!("write meshes", [closed], {
+        for format in [exchange::MeshFormat::Stl, exchange::MeshFormat::Ply, exchange::MeshFormat::Off] {
+            let options = exchange::WriteOptions { text: true, unit: None };
+            exchange::write_mesh(&closed, format, &options)?;
+        }
+        exchange::write_mesh(&closed, exchange::MeshFormat::Ply, &Default::default())?;
+        exchange::write_mesh(&closed, exchange::MeshFormat::Obj, &Default::default())
+    });
     for (k, (write, read)) in bodies::meshes::WRITERS.into_iter().enumerate() {
         const NAMES: [&str; bodies::meshes::WRITERS.len()] = [
             "read OBJ",

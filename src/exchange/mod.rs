@@ -14,6 +14,8 @@
 //! Some files depart from their format in a way that leaves no doubt about the mesh. They are read, and
 //! [`MeshFile::warnings`] tells of it.
 //!
+//! [`write_mesh`] writes a file of any of them.
+//!
 //! An error says in which line, or at which byte or element, and for a 3MF in which part. Bytes may be
 //! anything: no reader panics, and memory is linear in the length of the file, with two exceptions of 3MF:
 //! its parts may be up to 64 times as long as the file and 16 MiB, and instances of one object, up to 2^25
@@ -49,6 +51,7 @@ mod text;
 mod threemf;
 mod unit;
 mod warning;
+mod write;
 
 #[cfg(feature = "std")]
 pub use any::open_mesh;
@@ -62,9 +65,10 @@ pub use off::read_off;
 pub use ply::read_ply;
 #[cfg(feature = "scene")]
 pub(crate) use polygons::Polygons;
-pub use stl::{read_stl, write_stl};
+pub use stl::read_stl;
 pub use unit::LengthUnit;
 pub use warning::MeshWarning;
+pub use write::{WriteOptions, write_mesh, write_stl};
 
 /// Refuses text in UTF-16. Of the formats that are one text, none can be read in it.
 fn refuse_utf16(bytes: &[u8]) -> Result<(), Error> {

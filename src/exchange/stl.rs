@@ -25,21 +25,14 @@
 //! such a file is open as it stands. Nothing is rounded here behind the user's back; [`TriangleMesh::sewn`]
 //! closes such cracks and says how far it moved anything.
 
-use alloc::vec::Vec;
-
-use glam::DVec3;
-
 use super::{is_line_end, is_space, refuse_utf16};
-use crate::error::{Error, MeshError, MeshFileError};
-use crate::memory;
+use crate::error::{Error, MeshFileError};
 use crate::mesh::{FacetWelder, TriangleMesh};
 
 /// Bytes of a binary file before its facets: 80 of header, 4 of count.
-const HEADER: usize = 84;
+pub(super) const HEADER: usize = 84;
 /// Bytes of a facet in a binary file: normal, three vertices, two bytes of attributes.
 const FACET: usize = 50;
-/// What a binary file that this module writes begins with; must not be `solid`.
-const TITLE: &[u8] = b"binary STL written by leafless";
 
 /// Reads a binary or ASCII STL file; which of the two is found out from the bytes.
 ///
@@ -65,52 +58,14 @@ pub fn read_stl(bytes: &[u8]) -> Result<TriangleMesh, Error> {
     read_ascii(bytes)
 }
 
-/// Writes a binary STL file.
-///
-/// Coordinates are rounded to `f32`. Vertices stay common to their triangles, so a closed mesh stays closed,
-/// also where rounding makes a triangle degenerate, which readers drop. Without area the normal is (0, 0, 0).
-///
-/// O(t), 84 + 50 t bytes. Fails with [`Error::Argument`] beyond the range of `f32`, or
-/// [`Error::OutOfMemory`].
-pub fn write_stl(mesh: &TriangleMesh) -> Result<Vec<u8>, Error> {
-    let count = u32::try_from(mesh.triangles().len()).map_err(|_| MeshError::TooMany)?;
-    let length = usize::try_from(binary_length(count)).map_err(|_| Error::OutOfMemory)?;
-    let mut bytes = memory::with_capacity(length)?;
-    bytes.extend_from_slice(TITLE);
-    bytes.resize(HEADER - 4, b' ');
-    bytes.extend_from_slice(&count.to_le_bytes());
-    for triangle in mesh.triangles() {
-        let corners = triangle.map(|v| mesh.vertices()[v as usize]);
-        for vector in [normal(corners)].iter().chain(&corners) {
-            for &x in vector {
-                let x = x as f32;
-                if !x.is_finite() {
-                    let problem = "has a coordinate beyond the range of 32-bit floating point numbers";
-                    return Err(Error::Argument { name: "mesh", problem });
-                }
-                bytes.extend_from_slice(&x.to_le_bytes());
-            }
-        }
-        bytes.extend_from_slice(&[0, 0]);
-    }
-    Ok(bytes)
-}
-
-/// The unit normal, or zero for a triangle of no area.
-fn normal(corners: [[f64; 3]; 3]) -> [f64; 3] {
-    let [a, b, c] = corners.map(DVec3::from);
-    // Scaled to about 1, lest the squares overflow or vanish.
-    let unit = |v: DVec3| (v / v.abs().max_element()).normalize_or_zero();
-    unit(unit(b - a).cross(unit(c - a))).to_array()
-}
-
 /// Whether the file has just the length that a binary STL with its facet count has.
 pub(super) fn is_binary_of_exact_length(bytes: &[u8]) -> bool {
     let count = bytes.get(HEADER - 4..HEADER).and_then(|b| <[u8; 4]>::try_from(b).ok());
     count.is_some_and(|count| binary_length(u32::from_le_bytes(count)) == bytes.len() as u64)
 }
 
-fn binary_length(facets: u32) -> u64 {
+/// Bytes of a binary file with so many facets.
+pub(super) fn binary_length(facets: u32) -> u64 {
     HEADER as u64 + FACET as u64 * u64::from(facets)
 }
 
@@ -303,8 +258,11 @@ mod tests {
     #[cfg(feature = "std")]
     use super::super::tests::model;
     use super::*;
+    use crate::error::MeshError;
+    use crate::exchange::write_stl;
     use crate::mesh::FillRule;
     use alloc::string::String;
+    use alloc::vec::Vec;
     use alloc::{format, vec};
 
     const TETRAHEDRON: [[[f32; 3]; 3]; 4] = {

@@ -1,0 +1,77 @@
+//! Mesh files of all formats, written.
+//!
+//! Whatever is written here comes back through this library's readers: text has the shortest decimal numbers that are
+//! read as the same doubles, binary PLY has the doubles themselves. STL alone has 32-bit coordinates.
+
+mod lines;
+mod obj;
+mod off;
+mod ply;
+mod stl;
+#[cfg(feature = "threemf")]
+mod threemf;
+
+pub use stl::write_stl;
+
+use super::{LengthUnit, MeshFormat};
+use crate::error::Error;
+#[cfg(not(feature = "threemf"))]
+use crate::error::MeshFileError;
+use crate::mesh::TriangleMesh;
+use alloc::vec::Vec;
+
+/// How a mesh file is written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct WriteOptions {
+    /// STL and PLY as text, which is several times as long. OBJ and OFF always are text.
+    pub text: bool,
+    /// The unit of the coordinates, which only a 3MF tells; `None` stands for its default, the millimetre. Nothing is
+    /// converted.
+    pub unit: Option<LengthUnit>,
+}
+
+/// The file of a mesh in a format.
+///
+/// | format | what is written |
+/// |---|---|
+/// | STL | binary, 32-bit coordinates; ASCII with all digits that these have |
+/// | PLY | little-endian or ASCII, coordinates of type `double` |
+/// | OBJ | vertices and triangles |
+/// | OFF | vertices and triangles |
+/// | 3MF | (feature `threemf`) a package of the core specification: one object, which is the build's one item, in the given unit |
+///
+/// Vertices and triangles keep their order. A 3MF leaves out triangles that have a vertex twice, which it must not have.
+///
+/// O(n) time and memory.
+///
+/// # Errors
+/// [`Error::Argument`] for an STL of coordinates beyond the range of `f32`, and for an OBJ without vertices; [`MeshFileError::Unsupported`] for a 3MF
+/// without the feature; [`Error::OutOfMemory`]. (Compressing a 3MF takes some 300 KiB that cannot be refused.)
+///
+/// ```
+/// use leafless::exchange::{MeshFormat, WriteOptions, read_mesh, write_mesh};
+/// use leafless::TriangleMesh;
+/// let vertices = vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 0.1]];
+/// let mesh = TriangleMesh::new(vertices, vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])?;
+/// for format in [MeshFormat::Ply, MeshFormat::Obj, MeshFormat::Off] {
+///     let bytes = write_mesh(&mesh, format, &WriteOptions::default())?;
+///     let back = read_mesh(&bytes, &Default::default())?;
+///     assert_eq!((back.format, back.mesh.vertices()), (format, mesh.vertices()));
+/// }
+/// # Ok::<(), leafless::Error>(())
+/// ```
+pub fn write_mesh(mesh: &TriangleMesh, format: MeshFormat, options: &WriteOptions) -> Result<Vec<u8>, Error> {
+    match format {
+        MeshFormat::Stl if options.text => stl::text(mesh),
+        MeshFormat::Stl => write_stl(mesh),
+        MeshFormat::Ply => ply::write(mesh, options.text),
+        MeshFormat::Obj => obj::write(mesh),
+        MeshFormat::Off => off::write(mesh),
+        #[cfg(feature = "threemf")]
+        MeshFormat::ThreeMf => threemf::write(mesh, options.unit.unwrap_or(LengthUnit::Millimetre)),
+        #[cfg(not(feature = "threemf"))]
+        MeshFormat::ThreeMf => {
+            Err(MeshFileError::Unsupported { what: "3MF, which was left out of this build," }.into())
+        }
+    }
+}

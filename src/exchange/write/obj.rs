@@ -1,0 +1,25 @@
+//! Wavefront OBJ.
+
+use super::lines::{Lines, Point};
+use crate::error::Error;
+use crate::mesh::TriangleMesh;
+use alloc::vec::Vec;
+
+pub(super) fn write(mesh: &TriangleMesh) -> Result<Vec<u8>, Error> {
+    // A file of neither cannot be told from other text.
+    if mesh.vertices().is_empty() {
+        return Err(Error::Argument {
+            name: "mesh",
+            problem: "has no vertices, of which an OBJ must have some",
+        });
+    }
+    let mut lines = Lines::default();
+    for &vertex in mesh.vertices() {
+        lines.add(format_args!("v {}\n", Point(vertex)))?;
+    }
+    for triangle in mesh.triangles() {
+        let [a, b, c] = triangle.map(|v| u64::from(v) + 1);
+        lines.add(format_args!("f {a} {b} {c}\n"))?;
+    }
+    Ok(lines.bytes())
+}
