@@ -112,7 +112,7 @@ fn ask_rays(tree: &OctreeRef<'_>, points: &[[f64; 3]]) {
         // Side by side.
         let (cell, to) = (tree.frame().cell_size(), [0, 1, 2].map(|axis| b[axis] - a[axis]));
         let from = |i: u8| [a[0] + f64::from(i) * cell, a[1], a[2] - 0.3 * f64::from(i) * cell];
-        rays.extend((0..64).filter_map(|i| Ray::new(from(i), to).ok()));
+        rays.extend((0..64).filter_map(|i| Ray::new(from(i), to).and_then(|ray| ray.until(1.0)).ok()));
     }
     let mut hits = vec![None; rays.len()];
     for on in [Obstacle::Full, Obstacle::Upper] {
