@@ -190,7 +190,7 @@ fn by_transform(model: &Model, frame: &Frame) -> Result<Csg, Error> {
 }
 
 fn ball(maker: &mut Maker<'_>) -> Model {
-    let radius = maker.frame.edge() * maker.random.between(0.3, 0.9);
+    let radius = maker.frame.edge() * maker.random.between(0.4, 1.0);
     Model::Ellipsoid(maker.point(), [radius; 3])
 }
 
