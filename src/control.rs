@@ -56,6 +56,17 @@ impl Control<'_> {
         self.cancel.is_some_and(|flag| flag.load(Relaxed))
     }
 
+    /// Does `work` that is the part between two fractions of all that there is to do.
+    pub(crate) fn share<R>(&self, [from, to]: [f64; 2], work: impl FnOnce(&Control<'_>) -> R) -> R {
+        let report = |done: f64| {
+            if let Some(progress) = self.progress {
+                progress(from + (to - from) * done);
+            }
+        };
+        let progress: Option<&(dyn Fn(f64) + Sync)> = self.progress.is_some().then_some(&report);
+        work(&Control { progress, ..*self })
+    }
+
     /// Refuses when the caller cancelled.
     pub(crate) fn check(&self) -> Result<(), Error> {
         if self.is_cancelled() { Err(Error::Cancelled) } else { Ok(()) }

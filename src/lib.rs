@@ -41,6 +41,7 @@
 //! | `solid` | what can split a cell: one file or folder a producer |
 //! | `op` | building, splitting on demand, and the set algebra of stored trees |
 //! | `query` | points, boxes and rays, measures, interference |
+//! | `surface` | triangle meshes of solids |
 //! | `file` | the file format |
 //! | `exchange` | the files of other programs |
 //! | `scene` | the language of OpenSCAD's CSG dumps |
@@ -88,6 +89,7 @@ mod query;
 #[cfg(feature = "scene")]
 pub mod scene;
 mod solid;
+mod surface;
 
 pub use control::Control;
 pub use error::{
@@ -123,6 +125,8 @@ pub use solid::{
     Fingerprint, Fingerprinter, GradientRange, HalfSpace, MeshSolid, Motion, Segment, Slab, SlabJoin, Solid,
     SplitCounter, Subtree, TangentBalls, Touch, Transform, Verdict, Worker,
 };
+
+pub use surface::{Resolve, Snap, VertexPlacement, marching_cubes, marching_cubes_of, smc, smc_of};
 
 #[cfg(feature = "std")]
 pub use solid::Prepared;

@@ -29,6 +29,11 @@ pub struct MeshReport {
     pub welded: u64,
     /// Triangles that were dropped because two of their corners lie at one place.
     pub degenerate: u64,
+    /// Edges, each counted once.
+    pub edges: u64,
+    /// V − E + F of the vertices that triangles use, the edges and the triangles: of a 2-manifold, 2 for each
+    /// component less 2 for each of its handles.
+    pub euler_characteristic: i64,
     /// Edges that an odd number of triangles use. A mesh is closed if there is none.
     pub boundary_edges: u64,
     /// Loops of these edges, without vertices that occur twice: holes of the surface and rims of sheets.
@@ -77,11 +82,24 @@ pub struct MeshReport {
     pub polygon_deviation: f64,
 }
 
+impl MeshReport {
+    /// Whether the mesh is closed and consistently oriented: every edge is run along as often in one direction as in
+    /// the other. (An empty mesh is.)
+    pub fn is_closed(&self) -> bool {
+        self.boundary_edges == 0 && self.misoriented_edges == 0
+    }
+
+    /// Whether exactly two triangles meet on every edge, which run along it in opposite directions.
+    pub fn is_manifold(&self) -> bool {
+        self.is_closed() && self.non_manifold_edges == 0
+    }
+}
+
 impl TriangleMesh {
     /// What was found when the mesh was made, and how its triangles hang together.
     ///
     /// The first call analyses the edges, in O(t + v) time, O(n log n) for the n edges of the boundary, and
-    /// with 28 bytes per triangle and 8 per vertex of scratch memory, and looks for bodies that overlap where
+    /// with 28 bytes per triangle and 9 per vertex of scratch memory, and looks for bodies that overlap where
     /// their boxes meet, with at most 2^24 steps and 128 a triangle; later calls are free. Fails with
     /// [`Error::OutOfMemory`].
     pub fn report(&self) -> Result<MeshReport, Error> {
@@ -94,6 +112,8 @@ impl TriangleMesh {
             vertices: self.vertices().len() as u64,
             welded: self.welded,
             degenerate: self.degenerate,
+            edges: topology.edges,
+            euler_characteristic: (topology.used_vertices + triangles) as i64 - topology.edges as i64,
             boundary_edges: topology.boundary_edges,
             boundary_loops: details.boundary_loops,
             misoriented_edges: topology.misoriented_edges,

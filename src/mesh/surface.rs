@@ -172,7 +172,7 @@ impl TriangleMesh {
     }
 
     /// The mesh of vertices that are all different and triangles of three different ones each.
-    pub(super) fn from_welded(
+    pub(crate) fn from_welded(
         vertices: Vec<[f64; 3]>,
         triangles: Vec<[u32; 3]>,
         welded: u64,
@@ -233,13 +233,22 @@ impl TriangleMesh {
         six_fold / 6.0
     }
 
+    /// The sum of the areas of the triangles (square model units), in doubles. O(t).
+    pub fn area(&self) -> f64 {
+        let twice = |t: &[u32; 3]| {
+            let [a, b, c] = t.map(|v| self.position(v));
+            (b - a).cross(c - a).length()
+        };
+        0.5 * self.triangles.iter().map(twice).sum::<f64>()
+    }
+
     /// Checks that the mesh bounds a solid under `rule`.
     ///
     /// For [`FillRule::EvenOdd`] an even number of triangles must meet on every edge; for the others half of
     /// them must also run in each direction, and then every winding number is an integer. Self-intersections,
     /// overlaps, nested and inside-out bodies are all allowed.
     ///
-    /// The first call analyses the edges, in O(t + v) time and with 28 bytes per triangle and 8 per vertex of
+    /// The first call analyses the edges, in O(t + v) time and with 28 bytes per triangle and 9 per vertex of
     /// scratch memory; later calls are free. Fails with [`MeshError::Empty`], [`MeshError::Open`],
     /// [`MeshError::Unoriented`] (tested in this order) or [`Error::OutOfMemory`].
     pub fn check_closed(&self, rule: FillRule) -> Result<(), Error> {
@@ -413,6 +422,8 @@ mod tests {
             vertices: 4,
             welded: 0,
             degenerate: 0,
+            edges: 6,
+            euler_characteristic: 2,
             boundary_edges: 0,
             misoriented_edges: 0,
             boundary_loops: 0,
@@ -433,6 +444,8 @@ mod tests {
         };
         assert_eq!(mesh.report().unwrap(), expected);
         assert_eq!(mesh.clone().report().unwrap(), expected);
+        assert!(expected.is_closed() && expected.is_manifold());
+        assert!((mesh.area() - (1.5 + 0.75f64.sqrt())).abs() < 1e-15);
         assert_eq!(alloc::format!("{mesh:?}"), "TriangleMesh { vertices: 4, triangles: 4, .. }");
     }
 

@@ -12,6 +12,10 @@ use crate::memory;
 /// What the edges of a mesh say.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Topology {
+    /// Edges.
+    pub edges: u64,
+    /// Vertices that triangles use.
+    pub used_vertices: u64,
     /// Edges that an odd number of triangles use.
     pub boundary_edges: u64,
     /// Edges that an even number of triangles use, but not half of them in each direction.
@@ -44,7 +48,7 @@ impl Topology {
     /// Analyses `triangles`, whose corners must be three different numbers below `vertices`.
     ///
     /// O(t + v) time on ordinary meshes, O(t log t) when many edges share one vertex; 28 bytes per triangle
-    /// and 8 bytes per vertex of scratch memory. Fails with [`Error::OutOfMemory`].
+    /// and 9 bytes per vertex of scratch memory. Fails with [`Error::OutOfMemory`].
     pub fn of(triangles: &[[u32; 3]], vertices: usize) -> Result<Self, Error> {
         Ok(Self::with_bodies(triangles, vertices)?.0)
     }
@@ -55,8 +59,14 @@ impl Topology {
         let mut torn = Vec::new();
         let mut coincident = Coincident::default();
         let mut sets = DisjointSets::new(triangles.len())?;
+        let mut is_used = memory::filled(vertices, false)?;
         for_each_edge(triangles, vertices, |edge| {
             edge.triangles().for_each(|t| sets.unite(edge.first(), t));
+            result.edges += 1;
+            for end in [edge.low, edge.high] {
+                let is_new = !core::mem::replace(&mut is_used[end as usize], true);
+                result.used_vertices += u64::from(is_new);
+            }
             coincident.on(edge, triangles)?;
             result.non_manifold_edges += u64::from(edge.count() > 2);
             let excess = edge.excess();

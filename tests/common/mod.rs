@@ -8,6 +8,7 @@ pub mod cubes;
 pub mod exact;
 mod models;
 pub mod slabs;
+pub mod surfaces;
 mod way;
 
 use leafless::{

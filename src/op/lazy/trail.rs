@@ -5,7 +5,7 @@ use crate::error::Error;
 use crate::lattice::Cell;
 use crate::memory;
 use crate::op::split_one;
-use crate::solid::{Verdict, Worker};
+use crate::solid::{Crossing, Enclosure, Segment, Verdict, Worker};
 use alloc::vec::Vec;
 
 /// One split on the way.
@@ -120,6 +120,38 @@ impl<W: Worker> Trail<W> {
     /// What is known of `cell`, to whose parent the way was led, or of the ancestor that the way ends before.
     pub(crate) fn verdict(&self, cell: Cell) -> &Verdict<W::Part> {
         verdict_at(&self.steps, &self.root, cell.ancestor(self.steps.len() as u8))
+    }
+
+    /// What the solid knows of the boundary in `cell`, to whose parent the way was led.
+    ///
+    /// # Errors
+    /// The solid's own.
+    pub(crate) fn enclosure(&mut self, cell: Cell) -> Result<Option<Enclosure>, Error> {
+        self.ask(cell, |worker, part| worker.enclosure(cell, part))
+    }
+
+    /// Where a segment in `cell`, to whose parent the way was led, crosses the boundary, if the solid can tell.
+    ///
+    /// # Errors
+    /// The solid's own.
+    pub(crate) fn crossing(&mut self, cell: Cell, segment: &Segment) -> Result<Option<Crossing>, Error> {
+        self.ask(cell, |worker, part| worker.crossing(cell, part, segment))
+    }
+
+    /// Asks about a cell to whose parent the way was led, if it has a part.
+    fn ask<R>(
+        &mut self,
+        cell: Cell,
+        question: impl FnOnce(&mut W, &W::Part) -> Result<Option<R>, Error>,
+    ) -> Result<Option<R>, Error> {
+        if self.steps.len() != usize::from(cell.level) {
+            return Ok(None);
+        }
+        let Verdict::Partial(part) = verdict_at(&self.steps, &self.root, cell) else { return Ok(None) };
+        let mark = self.worker.mark();
+        let answer = question(&mut self.worker, part);
+        self.worker.release(mark);
+        answer
     }
 
     /// Forgets all but the first `steps` splits.

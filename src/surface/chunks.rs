@@ -1,0 +1,84 @@
+//! Work on blocks, chunk by chunk, each writing to a place of its own.
+
+use crate::control::Job;
+use crate::error::Error;
+use crate::memory;
+use alloc::vec::Vec;
+use core::ops::Range;
+
+/// Blocks of a chunk.
+const CHUNK: usize = 1 << 10;
+
+/// Hands out `output` in pieces, one for each chunk of `blocks` blocks: `start(i)` is where that of block i begins.
+/// `work` fills each, and `weight` is what all of them count for in the progress.
+///
+/// # Errors
+/// Those of `work`, and [`Error::Cancelled`].
+pub(super) fn for_each<T: Send>(
+    blocks: usize,
+    output: &mut [T],
+    start: impl Fn(usize) -> usize,
+    weight: usize,
+    job: &Job<'_>,
+    parallel: bool,
+    work: impl Fn(Range<usize>, &mut [T]) -> Result<(), Error> + Sync,
+) -> Result<(), Error> {
+    let count = blocks.div_ceil(CHUNK);
+    let mut pieces: Vec<(Range<usize>, &mut [T])> = memory::with_capacity(count)?;
+    let mut rest = output;
+    for chunk in 0..count {
+        let range = CHUNK * chunk..blocks.min(CHUNK * (chunk + 1));
+        let end = if range.end == blocks { rest.len() } else { start(range.end) - start(range.start) };
+        let (piece, after) = rest.split_at_mut(end.min(rest.len()));
+        pieces.push((range, piece));
+        rest = after;
+    }
+    let done = |(range, piece): (Range<usize>, &mut [T])| {
+        job.check()?;
+        work(range, piece)?;
+        job.advance(weight / count);
+        Ok(())
+    };
+    #[cfg(feature = "parallel")]
+    if parallel {
+        use rayon::prelude::*;
+        return pieces.into_par_iter().map(done).collect();
+    }
+    let _ = parallel;
+    pieces.into_iter().try_for_each(done)
+}
+
+/// What `work` makes of the chunks of `blocks` blocks.
+///
+/// # Errors
+/// As [`for_each`].
+pub(super) fn map<T: Send>(
+    blocks: usize,
+    job: &Job<'_>,
+    parallel: bool,
+    work: impl Fn(Range<usize>) -> Result<T, Error> + Sync,
+) -> Result<Vec<T>, Error> {
+    let mut results = memory::with_capacity(blocks.div_ceil(CHUNK))?;
+    results.extend((0..blocks.div_ceil(CHUNK)).map(|_| None));
+    let ranges = |chunk: usize| CHUNK * chunk..blocks.min(CHUNK * (chunk + 1));
+    let done = |(chunk, result): (usize, &mut Option<T>)| {
+        job.check()?;
+        *result = Some(work(ranges(chunk))?);
+        Ok::<(), Error>(())
+    };
+    #[cfg(feature = "parallel")]
+    if parallel {
+        use rayon::prelude::*;
+        results.par_iter_mut().enumerate().try_for_each(done)?;
+        return flattened(results);
+    }
+    let _ = parallel;
+    results.iter_mut().enumerate().try_for_each(done)?;
+    flattened(results)
+}
+
+fn flattened<T>(results: Vec<Option<T>>) -> Result<Vec<T>, Error> {
+    let mut all = memory::with_capacity(results.len())?;
+    all.extend(results.into_iter().flatten());
+    Ok(all)
+}

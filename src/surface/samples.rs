@@ -1,0 +1,134 @@
+//! The samples of an octree: which of its finest cells lie inside.
+
+use crate::error::{Damage, Error};
+use crate::lattice::morton;
+use crate::octree::{OctreeRef, Tag};
+
+/// A cell of the 64-ary tree that elements form.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Node {
+    /// No sample in it lies inside.
+    Void,
+    /// All samples in it do.
+    Solid,
+    /// An element or a brick.
+    At(usize),
+}
+
+/// Which of 64 cells are wholly inside, and which wholly outside.
+#[derive(Clone, Copy)]
+pub(super) struct Sets {
+    pub solid: u64,
+    pub void: u64,
+    /// The cells in which an element lies, with its parent.
+    branch: u64,
+    parent: usize,
+    /// Cells that are inside, but reach beyond the end of the samples.
+    long: u64,
+}
+
+impl Sets {
+    pub const VOID: Sets = Sets { solid: 0, void: !0, branch: 0, parent: 0, long: 0 };
+    const SOLID: Sets = Sets { solid: !0, void: 0, branch: 0, parent: 0, long: 0 };
+}
+
+/// The samples of an octree. Its lattice is the smallest of 4^levels cells per axis; there is nothing around the
+/// universe.
+#[derive(Clone, Copy)]
+pub(super) struct Samples<'a> {
+    tree: OctreeRef<'a>,
+    /// Whether PARTIAL cells count as inside.
+    partial: bool,
+    /// Samples per axis; what lies beyond counts as outside.
+    end: u32,
+}
+
+impl<'a> Samples<'a> {
+    /// The finest cells of a tree as samples, the first `end` on each axis.
+    ///
+    /// # Errors
+    /// [`Error::Damaged`] if links of the tree are.
+    pub fn new(tree: &OctreeRef<'a>, partial: bool, end: u32) -> Result<Samples<'a>, Error> {
+        // Elements are met beside others, too. With sound links each is met as often as it has neighbours.
+        tree.check_links()?;
+        Ok(Samples { tree: *tree, partial, end: end.min(tree.frame().cells()) })
+    }
+
+    /// Element levels.
+    pub fn levels(&self) -> usize {
+        self.tree.levels()
+    }
+
+    /// Blocks of 4³ samples per axis of the lattice.
+    pub fn blocks(&self) -> i32 {
+        1 << (2 * (self.levels() - 1))
+    }
+
+    /// All of the lattice.
+    pub fn root(&self) -> Node {
+        match self.tree.root_tag() {
+            Tag::Empty => Node::Void,
+            Tag::Full => Node::Solid,
+            Tag::Partial if self.partial => Node::Solid,
+            Tag::Partial => Node::Void,
+            Tag::Branch => Node::At(0),
+        }
+    }
+
+    /// The cells in a node of element level `e`, at this place in nodes of that level.
+    #[inline(always)]
+    pub fn sets(&self, e: usize, node: Node, at: [i32; 3]) -> Result<Sets, Error> {
+        let mut sets = match node {
+            Node::Void => return Ok(Sets::VOID),
+            Node::Solid => Sets::SOLID,
+            Node::At(index) => {
+                let damage =
+                    || Damage::Dictionary { brick: index.saturating_sub(self.tree.planes.len()) as u64 };
+                let mut planes = self.tree.entry(index).ok_or_else(damage)?;
+                if e == 0 {
+                    planes = planes.masked(self.tree.root_cells());
+                }
+                let branch = if e + 1 < self.levels() { planes.branch() } else { 0 };
+                let solid = if self.partial { planes.upper } else { planes.full() };
+                Sets { solid, void: !(solid | branch), branch, parent: index, long: 0 }
+            }
+        };
+        let size = 1i64 << (2 * (self.levels() - 1 - e));
+        let last = at.map(|a| 4 * i64::from(a) + 4);
+        if last.iter().any(|last| last * size > i64::from(self.end)) {
+            self.cut(&mut sets, last, size);
+        }
+        Ok(sets)
+    }
+
+    /// Cuts off what lies beyond the end.
+    #[cold]
+    fn cut(&self, sets: &mut Sets, last: [i64; 3], size: i64) {
+        let end = i64::from(self.end);
+        let (mut beyond, mut across) = (0, 0);
+        for axis in 0..3 {
+            for k in 0..4 {
+                let low = (last[axis] - 4 + k) * size;
+                let slab = morton::SLAB[axis][k as usize];
+                beyond |= if low >= end { slab } else { 0 };
+                across |= if low < end && end < low + size { slab } else { 0 };
+            }
+        }
+        sets.long = sets.solid & across & !beyond;
+        sets.solid &= !(across | beyond);
+        sets.void |= beyond;
+    }
+
+    /// What lies in cell `c` of a node whose cells are `sets`.
+    #[inline(always)]
+    pub fn child(&self, sets: &Sets, c: u32) -> Result<Node, Error> {
+        if sets.void >> c & 1 != 0 {
+            Ok(Node::Void)
+        } else if (sets.solid | sets.long) >> c & 1 != 0 {
+            Ok(Node::Solid)
+        } else {
+            let child = self.tree.child(sets.parent, sets.branch, c);
+            Ok(Node::At(child.ok_or(Damage::Link { element: sets.parent as u64 })?))
+        }
+    }
+}

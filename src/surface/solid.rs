@@ -1,0 +1,199 @@
+//! Surfaces of any solid, which is sampled at the corners of the lattice.
+
+use super::blocks::{Block, Blocks};
+use super::chunks;
+use super::crossing::Edge;
+use super::cubes::{midpoints, triangles};
+use super::key;
+use super::lattice::Lattice;
+use super::masks::bits;
+use super::samples::Samples;
+use super::smc::{self, Snap};
+use crate::control::{Control, Job};
+use crate::error::Error;
+use crate::lattice::{Frame, MAX_DEPTH, morton};
+use crate::mesh::TriangleMesh;
+use crate::octree::Octree;
+use crate::op::{Rule, Trail, build};
+use crate::solid::{Classifier, Solid};
+use core::ops::Range;
+use core::sync::atomic::{AtomicBool, Ordering::Relaxed};
+
+/// Where marching cubes puts a vertex on an edge between an inside and an outside sample.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum VertexPlacement {
+    /// Half-way. The mesh has steps, and is as far from the surface as half a cell.
+    #[default]
+    Midpoint,
+    /// Where the edge crosses the solid's surface. If it does so several times, at one of them.
+    ///
+    /// The solid is asked for the crossing ([`Worker::crossing`](crate::Worker::crossing)). If it cannot tell, cells
+    /// along the edge are split, down to the depth of 20, and their verdicts and slabs narrow down where the
+    /// crossing is. With slabs, as half-spaces, CSG and meshes know them, it is found to rounding in a few
+    /// steps; without, to a finest cell of depth 20 or somewhat more.
+    ///
+    /// Vertices that then lie at one place, which is a sample, are one vertex, and triangles without area are dropped:
+    /// so boxes whose faces lie on the lattice are boxes. Where the solid has no thickness at a sample, such
+    /// a mesh is closed and balanced, but more than two triangles may meet on an edge.
+    Crossing,
+}
+
+/// The surface of a solid by marching cubes, sampled at the corners of the cells of `frame`: 2^depth + 1 to an axis.
+///
+/// The mesh is closed and oriented as that of [`marching_cubes`](crate::marching_cubes). What the solid has outside of the
+/// frame's universe is cut off. There vertices lie on the boundary of the universe with
+/// [`VertexPlacement::Crossing`], else half a cell beyond it. A corner on the solid's surface is decided by the shift
+/// by (ε, ε², ε³) that all samples share.
+///
+/// The solid is built on a frame of twice the edge and one more level, whose cells have the corners as centres.
+/// So the time is that of [`build`](crate::build) with [`Rule::Sampled`](crate::Rule::Sampled), and for crossings some
+/// splits a vertex. (A solid that goes on beyond the universe is sampled there, too.) The result is the same for
+/// any number of threads.
+///
+/// # Errors
+/// [`Error::Argument`] if the depth of the frame is 20, which leaves no level, or as
+/// [`marching_cubes`](crate::marching_cubes); [`Error::NotSampled`] if the solid cannot decide points;
+/// [`Error::FrameMismatch`] for stored octrees, which have samples of their own; and as [`build`](crate::build).
+///
+/// ```
+/// use leafless::{Control, Csg, Frame, VertexPlacement, marching_cubes_of};
+/// let frame = Frame::new([-1.0; 3], 2.0, 5)?;
+/// let (ball, control) = (Csg::ball([0.0; 3], 0.75)?, Control::default());
+/// let mesh = marching_cubes_of(&ball, &frame, VertexPlacement::Crossing, &control)?;
+/// for [x, y, z] in mesh.vertices() {
+///     assert!((x * x + y * y + z * z - 0.75 * 0.75).abs() < 1e-9);
+/// }
+/// # Ok::<(), leafless::Error>(())
+/// ```
+pub fn marching_cubes_of<S: Solid>(
+    solid: &S,
+    frame: &Frame,
+    placement: VertexPlacement,
+    control: &Control<'_>,
+) -> Result<TriangleMesh, Error> {
+    let corners = Corners::new(solid, frame, control)?;
+    let samples = corners.samples()?;
+    control.share([0.5, 1.0], |control| {
+        let job = Job::new(control);
+        job.check()?;
+        let finest = match placement {
+            VertexPlacement::Midpoint => None,
+            VertexPlacement::Crossing => Some(solid.on(&frame.with_depth(MAX_DEPTH)?, control)?),
+        };
+        control.run(samples.levels() > 2, |parallel| {
+            let blocks = Blocks::find(&samples, &job, parallel)?;
+            let mut vertices = midpoints(&blocks, &corners.lattice, &job, parallel)?;
+            let mut is_welded = true;
+            if let Some(classifier) = &finest {
+                let crossings = Crossings { classifier, frame, corners: &corners, blocks: &blocks };
+                is_welded = crossings.find(&mut vertices, &job, parallel)?;
+            }
+            let triangles = triangles(&blocks, &job, parallel)?;
+            if is_welded {
+                Ok(TriangleMesh::from_welded(vertices, triangles, 0, 0))
+            } else {
+                TriangleMesh::new(vertices, triangles)
+            }
+        })
+    })
+}
+
+/// The surface of a solid by simple marching cubes, sampled as by [`marching_cubes_of`]: its vertices are corners of the
+/// lattice, or of cells beside the universe. Else as [`smc`](crate::smc).
+///
+/// # Errors
+/// As [`marching_cubes_of`].
+pub fn smc_of<S: Solid>(
+    solid: &S,
+    frame: &Frame,
+    snap: Snap,
+    control: &Control<'_>,
+) -> Result<TriangleMesh, Error> {
+    let corners = Corners::new(solid, frame, control)?;
+    control.share([0.5, 1.0], |control| smc::extract(&corners.samples()?, &corners.lattice, snap, control))
+}
+
+/// Which corners of a lattice lie inside a solid.
+struct Corners {
+    /// Its cells have the corners as centres.
+    tree: Octree,
+    /// Corners per axis.
+    count: u32,
+    lattice: Lattice,
+}
+
+impl Corners {
+    fn new<S: Solid>(solid: &S, frame: &Frame, control: &Control<'_>) -> Result<Corners, Error> {
+        if frame.depth() >= MAX_DEPTH {
+            return Err(Error::Argument { name: "frame", problem: "must have a depth of at most 19" });
+        }
+        // The corners of a frame that doubles resolve can be told, but for rounding.
+        Lattice::new(frame)?;
+        let origin = frame.origin().map(|o| o - 0.5 * frame.cell_size());
+        let frame_of_corners = Frame::new(origin, 2.0 * frame.edge(), frame.depth() + 1)?;
+        let lattice = Lattice::new(&frame_of_corners)?;
+        let tree =
+            control.share([0.0, 0.5], |control| build(solid, &frame_of_corners, Rule::Sampled, control))?;
+        Ok(Corners { tree, count: frame.cells() + 1, lattice })
+    }
+
+    fn samples(&self) -> Result<Samples<'_>, Error> {
+        Samples::new(self.tree.view(), false, self.count)
+    }
+}
+
+/// Moves vertices to crossings.
+struct Crossings<'a, C> {
+    classifier: &'a C,
+    frame: &'a Frame,
+    corners: &'a Corners,
+    blocks: &'a Blocks,
+}
+
+impl<C: Classifier> Crossings<'_, C> {
+    /// Moves all vertices. The answer is whether they still lie at different places.
+    fn find(&self, vertices: &mut [[f64; 3]], job: &Job<'_>, parallel: bool) -> Result<bool, Error> {
+        let list = &self.blocks.list;
+        let start = |i: usize| list[i].vertex as usize;
+        let is_welded = AtomicBool::new(true);
+        chunks::for_each(list.len(), vertices, start, 0, job, parallel, |range, piece| {
+            if !self.in_chunk(range, piece, job)? {
+                is_welded.store(false, Relaxed);
+            }
+            Ok(())
+        })?;
+        Ok(is_welded.into_inner())
+    }
+
+    fn in_chunk(&self, range: Range<usize>, piece: &mut [[f64; 3]], job: &Job<'_>) -> Result<bool, Error> {
+        let mut trail = Trail::new(self.classifier.worker()?)?;
+        let mut places = piece.iter_mut();
+        let mut is_welded = true;
+        for block in &self.blocks.list[range] {
+            job.check()?;
+            for (edge, place) in edges(block, self.blocks.bias).zip(&mut places) {
+                let t = edge.crossing(self.frame, &mut trail, job.control())?;
+                let end =
+                    |k: i32| self.corners.lattice.coordinate(edge.axis, 2 * (edge.lower[edge.axis] + k) + 1);
+                let (low, high) = (end(0), end(1));
+                let x = (low + t * (high - low)).clamp(low, high);
+                place[edge.axis] = x;
+                is_welded &= low < x && x < high;
+            }
+        }
+        Ok(is_welded)
+    }
+}
+
+/// The cut edges of a block in the order of their vertices.
+fn edges(block: &Block, bias: i32) -> impl Iterator<Item = Edge> {
+    let at = key::position(block.key, bias);
+    let block = *block;
+    (0..3).flat_map(move |axis| {
+        bits(block.cut[axis]).map(move |c| {
+            let inner = morton::position(c);
+            let lower = [0, 1, 2].map(|axis| 4 * at[axis] + inner[axis] as i32);
+            Edge { axis, lower, starts_inside: block.inside >> c & 1 != 0 }
+        })
+    })
+}
