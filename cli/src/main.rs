@@ -27,6 +27,7 @@ mod report;
 mod rows;
 mod scene;
 mod source;
+mod surface;
 mod target;
 mod verify;
 mod voxelize;
@@ -81,6 +82,8 @@ enum Command {
     Ray(ray::Arguments),
     /// Write how far a solid, a mesh or a scene reaches in each column of cells: a height map
     Heights(heights::Arguments),
+    /// Write the surface of a solid, a mesh or a scene as a triangle mesh
+    Mesh(surface::Arguments),
     /// Say whether two solids or meshes overlap, by how much, and how far they are apart
     Interfere(interfere::Arguments),
     /// Volume, centroid, inertia and bounds of a solid or a mesh, as intervals that hold the true ones
@@ -109,6 +112,7 @@ fn main() -> ExitCode {
         Command::Neighbours(arguments) => neighbours::run(arguments),
         Command::Ray(arguments) => ray::run(arguments),
         Command::Heights(arguments) => heights::run(arguments),
+        Command::Mesh(arguments) => surface::run(arguments),
         Command::Interfere(arguments) => interfere::run(arguments),
         Command::Measure(arguments) => measure::run(arguments),
         Command::Demo(arguments) => demo::run(arguments),

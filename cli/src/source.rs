@@ -6,6 +6,7 @@ use crate::input::Input;
 use crate::mesh::{Reading, check_closed, ends_at_vertices, frame_around, openness};
 use crate::output;
 use crate::scene::{Curves, Drawing, bounds_of, frame_of, scene_of};
+use leafless::exchange::LengthUnit;
 use leafless::scene::Scene;
 use leafless::{
     Affine, AnySolid, Csg, FillRule, Frame, MAX_DEPTH, MeshSolid, Octree, Proof, Transform, TriangleMesh,
@@ -19,8 +20,8 @@ pub type Corners = ([f64; 3], [f64; 3]);
 pub enum Source {
     /// A solid (.lfl).
     Octree(Box<Octree>),
-    /// A mesh, and which points count as inside.
-    Mesh(TriangleMesh, FillRule),
+    /// A mesh, which points count as inside, and the unit of its coordinates if it is known.
+    Mesh(TriangleMesh, FillRule, Option<LengthUnit>),
     /// A scene.
     Scene(Scene),
 }
@@ -58,7 +59,7 @@ impl Source {
                 format!("{input}: warning: {whole}: {how}; the winding number decides what is inside");
             output::complain(&warning);
         }
-        Ok(Source::Mesh(read.mesh, fill))
+        Ok(Source::Mesh(read.mesh, fill, read.unit))
     }
 
     /// The same; of a solid from a file the cells themselves, if that is asked for, and not what they prove.
@@ -77,6 +78,15 @@ impl Source {
         }
     }
 
+    /// The unit of its coordinates, if it is known.
+    pub fn unit(&self) -> Option<LengthUnit> {
+        match self {
+            Source::Octree(octree) => octree.metadata().get("units")?.parse().ok(),
+            Source::Mesh(_, _, unit) => *unit,
+            Source::Scene(_) => None,
+        }
+    }
+
     /// The frame of a solid.
     pub fn own_frame(&self) -> Option<&Frame> {
         match self {
@@ -90,7 +100,7 @@ impl Source {
         match (self, depth) {
             (Source::Octree(octree), None) => Ok(*octree.frame()),
             (Source::Octree(octree), Some(depth)) => octree.frame().with_depth(depth).of(input),
-            (Source::Mesh(mesh, _), depth) => frame_around(mesh, depth.unwrap_or(MAX_DEPTH)).of(input),
+            (Source::Mesh(mesh, ..), depth) => frame_around(mesh, depth.unwrap_or(MAX_DEPTH)).of(input),
             (Source::Scene(scene), depth) => frame_of(input, scene, None, depth.unwrap_or(MAX_DEPTH)),
         }
     }
@@ -115,7 +125,7 @@ impl Source {
     pub fn ends_at_bounds(&self, input: &Input) -> Result<bool, Failure> {
         match self {
             Source::Octree(_) | Source::Scene(_) => Ok(true),
-            Source::Mesh(mesh, _) => ends_at_vertices(mesh).of(input),
+            Source::Mesh(mesh, ..) => ends_at_vertices(mesh).of(input),
         }
     }
 
@@ -126,7 +136,7 @@ impl Source {
                 let frame = octree.frame();
                 (frame.origin(), frame.origin().map(|low| low + frame.edge()))
             }
-            Source::Mesh(mesh, _) => mesh.bounds(),
+            Source::Mesh(mesh, ..) => mesh.bounds(),
             Source::Scene(scene) => bounds_of(input, scene)?,
         })
     }
@@ -139,7 +149,7 @@ impl Source {
                 return Ok(AnySolid::new(Transform::of(*octree, placement)));
             }
             Source::Octree(octree) => AnySolid::new(*octree),
-            Source::Mesh(mesh, fill) => AnySolid::new(MeshSolid::new(mesh, fill).of(input)?),
+            Source::Mesh(mesh, fill, _) => AnySolid::new(MeshSolid::new(mesh, fill).of(input)?),
             Source::Scene(scene) => AnySolid::new(scene.solid(frame).of(input)?),
         };
         solid.placed(placement).of(input)

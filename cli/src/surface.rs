@@ -1,0 +1,303 @@
+//! `leafless mesh`: the surface of a solid.
+
+use crate::failure::{Failure, Of};
+use crate::input::Input;
+use crate::mesh::{Reading, format_name};
+use crate::output::{self, Output, counted, number, write_file};
+use crate::progress::watched;
+use crate::scene::Drawing;
+use crate::source::Source;
+use crate::voxelize::{bounds, name_of, threads};
+use clap::{Args, ValueEnum};
+use leafless::exchange::{LengthUnit, MeshFormat, WriteOptions, write_mesh};
+use leafless::{
+    Affine, AnySolid, Control, Error, Frame, MAX_DEPTH, MeshReport, Octree, Resolve, Rule, Snap,
+    TriangleMesh, VertexPlacement, build, marching_cubes, marching_cubes_of, smc, smc_of,
+};
+use serde::Serialize;
+use std::ffi::OsString;
+use std::fmt::Write;
+use std::path::Path;
+use std::time::Instant;
+
+/// Writes the surface of a solid as a closed triangle mesh.
+///
+/// The surface separates samples that lie inside from those outside. Samples of a mesh or a scene are the corners of
+/// cells, and vertices lie where the edges between corners cross the surface. Samples of a solid from a file (.lfl) are
+/// its cells at their finest level; what is undecided there has no sign, so that --resolve must say what it counts as.
+#[derive(Args)]
+pub struct Arguments {
+    /// Solid (.lfl), mesh (STL, OBJ, PLY, OFF, 3MF) or scene (.csg), or `-` for standard input
+    file: OsString,
+    /// Where to write: the extension .ply, .stl, .obj, .off or .3mf tells the format; `-` is standard output
+    #[arg(short, long, value_name = "OUTPUT")]
+    output: OsString,
+    /// Format to write. Without it: what the extension of the output says, or PLY for standard output
+    #[arg(long, value_enum)]
+    write: Option<WriteName>,
+    /// Write STL and PLY as text
+    #[arg(long)]
+    text: bool,
+    /// How the surface is made
+    #[arg(long, value_enum, default_value_t = Method::Mc)]
+    method: Method,
+    /// Where --method smc moves vertices to
+    #[arg(long, value_enum, default_value_t = SnapName::Fat)]
+    snap: SnapName,
+    /// Where --method mc puts vertices of a mesh or scene
+    #[arg(long, value_enum, default_value_t = At::Crossing)]
+    vertices: At,
+    /// What undecided cells count as. Given for a mesh or scene, its cells are the samples, made as `leafless voxelize`
+    /// makes them, and not the corners
+    #[arg(long, value_enum)]
+    resolve: Option<ResolveName>,
+    /// Level of the cells of a mesh or scene, 1 to 19. Without it: 8
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..MAX_DEPTH as i64))]
+    depth: Option<u8>,
+    /// Lower corner and edge length of the cube to look at, for a mesh or scene. Without it: the cube around it
+    #[arg(long, value_name = "X0,Y0,Z0,EDGE", value_parser = bounds, allow_hyphen_values = true)]
+    bounds: Option<Frame>,
+    #[command(flatten)]
+    reading: Reading,
+    #[command(flatten)]
+    drawing: Drawing,
+    /// Threads to use; 0: as many as there are processors. The result is the same
+    #[arg(long, default_value_t = 0, value_name = "N", value_parser = threads)]
+    threads: usize,
+    /// Print one JSON object
+    #[arg(long)]
+    json: bool,
+}
+
+/// The depth of meshes and scenes, if none is asked for.
+const DEPTH: u8 = 8;
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum WriteName {
+    Ply,
+    Stl,
+    Obj,
+    Off,
+    #[value(name = "3mf")]
+    ThreeMf,
+}
+
+impl From<WriteName> for MeshFormat {
+    fn from(name: WriteName) -> MeshFormat {
+        match name {
+            WriteName::Ply => MeshFormat::Ply,
+            WriteName::Stl => MeshFormat::Stl,
+            WriteName::Obj => MeshFormat::Obj,
+            WriteName::Off => MeshFormat::Off,
+            WriteName::ThreeMf => MeshFormat::ThreeMf,
+        }
+    }
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, ValueEnum)]
+enum Method {
+    /// Marching cubes
+    Mc,
+    /// Simple marching cubes: all vertices are samples, all normals have one of 13 directions
+    Smc,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum SnapName {
+    /// To the samples outside
+    Fat,
+    /// To the samples inside
+    Thin,
+}
+
+impl From<SnapName> for Snap {
+    fn from(name: SnapName) -> Snap {
+        match name {
+            SnapName::Fat => Snap::Fat,
+            SnapName::Thin => Snap::Thin,
+        }
+    }
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum At {
+    /// Half-way between an inside and an outside sample
+    Midpoint,
+    /// Where the line between them crosses the surface
+    Crossing,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum ResolveName {
+    /// Outside: the surface is that of what is proven to be solid
+    Inner,
+    /// Inside: the surface is that of what may be solid
+    Outer,
+    /// Where the mesh or the scene says: at the cell's centre
+    Source,
+}
+
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let start = Instant::now();
+    let (input, output) = (Input::from(&*arguments.file), Output::from(&*arguments.output));
+    output.check()?;
+    let format = format(arguments, output.path())?;
+    let source = Source::read(&input, &arguments.reading, &arguments.drawing)?;
+    let unit = source.unit();
+    let mesh = extract(source, &input, arguments)?;
+    let options = WriteOptions { text: arguments.text, unit };
+    let bytes = write_mesh(&mesh, format, &options).of(&output)?;
+    match output.path() {
+        Some(path) => write_file(path, &bytes)?,
+        None => output::print(&bytes)?,
+    }
+    let report = mesh.report().of(&input)?;
+    let told = Report {
+        input: input.to_string(),
+        output: output.to_string(),
+        method: name_of(arguments.method),
+        format: format_name(format),
+        unit: unit.filter(|_| format == MeshFormat::ThreeMf).map(LengthUnit::symbol),
+        vertices: report.vertices,
+        triangles: report.triangles,
+        closed: report.is_closed(),
+        manifold: report.is_manifold(),
+        components: report.bodies,
+        euler: report.euler_characteristic,
+        area: mesh.area(),
+        volume: mesh.volume(),
+        seconds: start.elapsed().as_secs_f64(),
+    };
+    output.report(&if arguments.json { output::json(&told)? } else { told.summary(&report) })
+}
+
+/// The format to write.
+fn format(arguments: &Arguments, path: Option<&Path>) -> Result<MeshFormat, Failure> {
+    if let Some(name) = arguments.write {
+        return Ok(name.into());
+    }
+    let Some(path) = path else { return Ok(MeshFormat::Ply) };
+    let extension = path.extension().and_then(|extension| extension.to_str());
+    extension.and_then(MeshFormat::from_extension).ok_or_else(|| {
+        let problem =
+            "has none of the extensions .ply, .stl, .obj, .off and .3mf: name the format with --write";
+        Failure::Usage(format!("{}: {problem}", path.display()))
+    })
+}
+
+fn extract(source: Source, input: &Input, arguments: &Arguments) -> Result<TriangleMesh, Failure> {
+    let resolve = match (arguments.resolve, &source) {
+        (None, _) => None,
+        (Some(ResolveName::Inner), _) => Some(Resolve::Inner),
+        (Some(ResolveName::Outer), _) => Some(Resolve::Outer),
+        (Some(ResolveName::Source), Source::Octree(_)) => {
+            let problem =
+                "a solid from a file has no source: undecided cells can be resolved as inner or outer";
+            return Err(Failure::of(input, problem));
+        }
+        (Some(ResolveName::Source), _) => None,
+    };
+    if let Source::Octree(octree) = source {
+        if arguments.depth.is_some() || arguments.bounds.is_some() {
+            let problem = "--depth and --bounds are for meshes and scenes: a solid has its own";
+            return Err(Failure::Usage(problem.into()));
+        }
+        if resolve.is_none() && !octree.view().is_binary() {
+            let problem = "has undecided cells, which are neither inside nor outside: choose --resolve inner or \
+                           --resolve outer, or make it anew from its source with --rule sampled";
+            return Err(Failure::of(input, problem));
+        }
+        return watched("mesh", arguments.threads, |control| of_cells(&octree, resolve, arguments, control))
+            .of(input);
+    }
+    let frame = source.frame_in(input, arguments.bounds.as_ref(), Some(arguments.depth.unwrap_or(DEPTH)))?;
+    let solid = source.placed(input, &Affine::IDENTITY, &frame)?;
+    watched("mesh", arguments.threads, |control| match arguments.resolve {
+        None => of_solid(&solid, &frame, arguments, control),
+        Some(_) => {
+            let rule = if resolve.is_some() { Rule::Certified } else { Rule::Sampled };
+            let octree = build(&solid, &frame, rule, control)?;
+            of_cells(&octree, resolve, arguments, control)
+        }
+    })
+    .of(input)
+}
+
+/// The surface of an octree.
+fn of_cells(
+    octree: &Octree,
+    resolve: Option<Resolve<'_>>,
+    arguments: &Arguments,
+    control: &Control<'_>,
+) -> Result<TriangleMesh, Error> {
+    match arguments.method {
+        Method::Mc => marching_cubes(octree.view(), resolve, control),
+        Method::Smc => smc(octree.view(), arguments.snap.into(), resolve, control),
+    }
+}
+
+/// The surface of a solid that is sampled at the corners of cells.
+fn of_solid(
+    solid: &AnySolid,
+    frame: &Frame,
+    arguments: &Arguments,
+    control: &Control<'_>,
+) -> Result<TriangleMesh, Error> {
+    let placement = match arguments.vertices {
+        At::Midpoint => VertexPlacement::Midpoint,
+        At::Crossing => VertexPlacement::Crossing,
+    };
+    match arguments.method {
+        Method::Mc => marching_cubes_of(solid, frame, placement, control),
+        Method::Smc => smc_of(solid, frame, arguments.snap.into(), control),
+    }
+}
+
+/// What is told of a surface.
+#[derive(Serialize)]
+struct Report {
+    input: String,
+    output: String,
+    method: String,
+    format: &'static str,
+    /// What a 3MF says; others have none.
+    unit: Option<&'static str>,
+    vertices: u64,
+    triangles: u64,
+    closed: bool,
+    manifold: bool,
+    components: u64,
+    euler: i64,
+    area: f64,
+    volume: f64,
+    seconds: f64,
+}
+
+impl Report {
+    fn summary(&self, report: &MeshReport) -> String {
+        let mut text = String::new();
+        let sound = match (self.closed, self.manifold) {
+            (true, true) => "closed, 2-manifold".to_owned(),
+            (true, false) => {
+                let edges = counted(report.non_manifold_edges, "edge", "edges");
+                format!("closed; at {edges} more than two triangles meet")
+            }
+            (false, _) => format!("open at {}", counted(report.boundary_edges, "edge", "edges")),
+        };
+        // Writing to memory does not fail.
+        let _ = writeln!(
+            text,
+            "{}: {}, {}, {}; {sound}\n{}, Euler characteristic {}\narea {}, volume {}; {:.2} s",
+            self.output,
+            self.format,
+            counted(self.vertices, "vertex", "vertices"),
+            counted(self.triangles, "triangle", "triangles"),
+            counted(self.components, "component", "components"),
+            self.euler,
+            number(self.area),
+            number(self.volume),
+            self.seconds,
+        );
+        text
+    }
+}

@@ -1,0 +1,137 @@
+//! The subcommand `leafless mesh`, from outside.
+
+mod place;
+
+use leafless::TriangleMesh;
+use leafless::exchange::{LengthUnit, MeshFormat, MeshOptions, open_mesh};
+use place::{Place, solids};
+use serde_json::Value;
+
+fn ball() -> Place {
+    let place = solids();
+    place.write("ball.csg", "sphere(r = 2, $fn = 0);");
+    place
+}
+
+fn mesh(place: &Place, name: &str) -> TriangleMesh {
+    open_mesh(place.path(name), &MeshOptions::default()).unwrap().mesh
+}
+
+fn json(place: &Place, line: &str) -> Value {
+    serde_json::from_slice(&place.run(line).good().bytes).unwrap()
+}
+
+const BOUNDS: &str = "--bounds -3,-3,-3,6";
+
+#[test]
+fn every_format_has_the_same_mesh() {
+    let place = ball();
+    let counts =
+        |report: &Value| [report["vertices"].as_u64().unwrap(), report["triangles"].as_u64().unwrap()];
+    let mut seen = None;
+    for extension in ["ply", "stl", "obj", "off", "3mf"] {
+        for text in ["", "--text"] {
+            let report =
+                json(&place, &format!("mesh ball.csg -o ball.{extension} --depth 4 {BOUNDS} {text} --json"));
+            assert_eq!(report["format"], extension);
+            assert_eq!((&report["closed"], &report["manifold"]), (&Value::Bool(true), &Value::Bool(true)));
+            assert_eq!((&report["euler"], &report["components"]), (&Value::from(2), &Value::from(1)));
+            let back = mesh(&place, &format!("ball.{extension}"));
+            assert!(back.report().unwrap().is_closed());
+            assert_eq!([back.vertices().len() as u64, back.triangles().len() as u64], counts(&report));
+            assert_eq!(*seen.get_or_insert(counts(&report)), counts(&report));
+        }
+    }
+    let piped = place.run(&format!("mesh ball.csg -o - --depth 4 {BOUNDS}"));
+    assert!(piped.code == Some(0) && piped.errors.contains("2-manifold"));
+    place.write("piped.ply", &piped.bytes);
+    place.run(&format!("mesh ball.csg -o named --write ply --depth 4 {BOUNDS}")).good();
+    assert_eq!(place.bytes("piped.ply"), place.bytes("named"));
+    assert_eq!(mesh(&place, "piped.ply").triangles(), mesh(&place, "ball.off").triangles());
+}
+
+/// Vertices lie on the ball, and area and volume come near its own from below.
+#[test]
+fn vertices_lie_on_the_surface() {
+    let place = ball();
+    let mut gaps = vec![];
+    for depth in [4, 5, 6] {
+        let report = json(&place, &format!("mesh ball.csg -o ball.ply --depth {depth} {BOUNDS} --json"));
+        for vertex in mesh(&place, "ball.ply").vertices() {
+            let radius = vertex.iter().map(|x| x * x).sum::<f64>().sqrt();
+            assert!((radius - 2.0).abs() < 1e-9, "{radius}");
+        }
+        let of = |name: &str, true_one: f64| 1.0 - report[name].as_f64().unwrap() / true_one;
+        gaps.push([of("volume", 32.0 / 3.0 * std::f64::consts::PI), of("area", 16.0 * std::f64::consts::PI)]);
+    }
+    for pair in gaps.windows(2) {
+        for k in 0..2 {
+            assert!(pair[1][k] > 0.0 && pair[1][k] < 0.3 * pair[0][k], "{gaps:?}");
+        }
+    }
+}
+
+#[test]
+fn undecided_cells_are_resolved_as_one_asks() {
+    let place = ball();
+    place.run(&format!("csg ball.csg -o ball.lfl --depth 6 {BOUNDS}")).good();
+    place.run("mesh ball.lfl -o ball.ply").bad(1, &["ball.lfl", "undecided", "--resolve"]);
+    place.run("mesh ball.lfl -o ball.ply --resolve source").bad(1, &["ball.lfl", "source", "inner"]);
+    place.run("mesh ball.lfl -o ball.ply --depth 3").bad(2, &["--depth"]);
+    assert!(!place.files().contains(&"ball.ply".to_owned()));
+    let volume = |line: &str| json(&place, line)["volume"].as_f64().unwrap();
+    let whole = 32.0 / 3.0 * std::f64::consts::PI;
+    for method in ["mc", "smc"] {
+        let of = |file: &str, resolve: &str| {
+            volume(&format!("mesh {file} -o ball.ply --method {method} {resolve} --json"))
+        };
+        let scene = format!("ball.csg --depth 6 {BOUNDS}");
+        let [inner, outer] = ["--resolve inner", "--resolve outer"].map(|how| {
+            let found = of("ball.lfl", how);
+            assert_eq!(found, of(&scene, how));
+            found
+        });
+        assert!(0.8 * whole < inner && inner < whole && whole < outer && outer < 1.2 * whole);
+        let source = of(&scene, "--resolve source");
+        assert!(inner < source && source < outer);
+    }
+    let [fat, thin] = ["fat", "thin"].map(|snap| {
+        volume(&format!("mesh ball.lfl -o b.off --method smc --snap {snap} --resolve inner --json"))
+    });
+    assert!(thin < fat);
+}
+
+/// The slab is [2, 6] × [2, 6] × [0, 2], and its faces lie between cells.
+#[test]
+fn what_is_decided_needs_no_choice() {
+    let place = solids();
+    let report = json(&place, "mesh slab.lfl -o slab.obj --json");
+    assert_eq!(report["closed"], true);
+    // Corners and edges are cut off by half a cell.
+    let volume = report["volume"].as_f64().unwrap();
+    assert!(31.5 < volume && volume < 32.0, "{volume}");
+    let text = place.run("mesh slab.lfl -o slab.obj").good();
+    assert!(text.text().contains("2-manifold") && text.text().contains("Euler characteristic 2"));
+}
+
+#[test]
+fn a_package_keeps_the_unit() {
+    let place = ball();
+    let options = MeshOptions::default();
+    place.run(&format!("mesh ball.csg -o ball.stl --depth 4 {BOUNDS}")).good();
+    place.run("mesh ball.stl --unit in -o ball.3mf --depth 4").good();
+    let file = open_mesh(place.path("ball.3mf"), &options).unwrap();
+    assert_eq!((file.format, file.unit), (MeshFormat::ThreeMf, Some(LengthUnit::Inch)));
+    place.run("voxelize ball.3mf -o ball.lfl --depth 5 --rule sampled").good();
+    place.run("mesh ball.lfl -o again.3mf").good();
+    assert_eq!(open_mesh(place.path("again.3mf"), &options).unwrap().unit, Some(LengthUnit::Inch));
+}
+
+#[test]
+fn what_is_refused() {
+    let place = solids();
+    place.run("mesh slab.lfl -o slab").bad(2, &["slab", ".ply", "--write"]);
+    place.run("mesh slab.lfl -o none/slab.ply").bad(1, &["none"]);
+    place.run("mesh none.lfl -o slab.ply").bad(1, &["none.lfl"]);
+    place.run("mesh slab.lfl").bad(2, &["--output"]);
+}
