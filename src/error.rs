@@ -57,6 +57,9 @@ pub enum Error {
     /// A 3MF package that cannot be read.
     #[error(transparent)]
     Package(#[from] PackageError),
+    /// A file of a volume that cannot be read.
+    #[error(transparent)]
+    VolumeFile(#[from] VolumeFileError),
     /// A scene that cannot be read.
     #[error(transparent)]
     Scene(#[from] SceneError),
@@ -79,8 +82,9 @@ pub enum Error {
     /// Every allocation whose size depends on an input or a result is asked for in a way that can be refused,
     /// and this is the refusal. What remains is small, at most 2 KiB a piece: counted references, the numbers
     /// per level behind statistics, exact signs, what the standard library and `tempfile` need to handle a
-    /// path; what threads cost; and polygons that are no fans, which another crate triangulates: about 320
-    /// bytes a corner are asked for, and given back, before it begins. If even that cannot be had, the
+    /// path; what threads cost; polygons that are no fans, which another crate triangulates: about 320
+    /// bytes a corner are asked for, and given back, before it begins; and compressing, for which it is half a
+    /// megabyte. If even that cannot be had, the
     /// process ends, as Rust programs do. (So it does where an allocator refuses to make a piece of memory
     /// smaller, which none is known to.)
     #[error("out of memory")]
@@ -129,6 +133,7 @@ impl Error {
             | Error::Mesh(_)
             | Error::MeshFile(_)
             | Error::Package(_)
+            | Error::VolumeFile(_)
             | Error::Scene(_) => Error::File { path: path.into(), error: Box::new(self) },
             other => other,
         }
@@ -487,6 +492,63 @@ impl fmt::Display for PackageError {
 }
 
 impl core::error::Error for PackageError {}
+
+/// Why a file of a volume cannot be read.
+#[non_exhaustive]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
+pub enum VolumeFileError {
+    /// The file has no byte at all.
+    #[error("the file is empty")]
+    Empty,
+    /// The content is neither NRRD nor MetaImage.
+    #[error("this is neither NRRD nor MetaImage; a raw array needs its dimensions and its type")]
+    UnknownFormat,
+    /// The file uses something that this library cannot read.
+    #[error("{what} cannot be read")]
+    Unsupported {
+        /// What the file uses.
+        what: &'static str,
+    },
+    /// The header leaves something out.
+    #[error("missing: {what}")]
+    Missing {
+        /// The field, or what else is missing.
+        what: &'static str,
+    },
+    /// A line of the header departs from the format.
+    #[error("line {line}: expected {expected}")]
+    Syntax {
+        /// Line, counted from 1.
+        line: u64,
+        /// What should have stood there.
+        expected: &'static str,
+    },
+    /// The spacing, the origin or the directions of the samples are not such as a solid can have: zero, of one plane, or
+    /// not of a magnitude between 2^-256 and 2^256 (2^64 if the axes are turned).
+    #[error("the spacing, the origin or the directions of the samples are out of range, or lie in one plane")]
+    Place,
+    /// There are more or fewer bytes of samples than the header asks for.
+    #[error("the header asks for {expected} bytes of samples, and there are {found}")]
+    Length {
+        /// Bytes that are asked for, with those that are to be skipped. Of a text the fewest; of compressed samples what
+        /// they should become.
+        expected: u64,
+        /// Bytes that there are, as they are stored.
+        found: u64,
+    },
+    /// Compressed samples are damaged.
+    #[error("the file is damaged in {what}")]
+    Damaged {
+        /// Where.
+        what: &'static str,
+    },
+    /// A sample in a text is no number of its type, is missing, or is one too many.
+    #[error("sample {index} is missing, is one too many, or is no number of its type")]
+    Sample {
+        /// Index of the sample, counted from 0.
+        index: u64,
+    },
+}
 
 /// Why a scene cannot be read: what is wrong where.
 #[derive(Debug, Clone, PartialEq, Eq)]

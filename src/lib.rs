@@ -61,6 +61,7 @@
 //! | … the cell beside a cell, all cells of a tag, the faces between them? | `octree/neighbour.rs`, `cells.rs`, `faces.rs` |
 //! | … what cells prove? | `octree/proof.rs` |
 //! | … an STL read? | `exchange/stl.rs` |
+//! | … a bitmap or an array of samples a solid, and an octree a bitmap? | `solid/volume/`, `query/bitmap.rs` |
 //! | … a byte of a file checked? | `file/header.rs`, `object.rs`, `section.rs`, `layout.rs` |
 //! | … an allocation refused? | `memory.rs` |
 //! | … where a ray meets a solid, how high it is? | `query/ray/`, `query/columns/` |
@@ -94,6 +95,7 @@ mod surface;
 pub use control::Control;
 pub use error::{
     Damage, Error, FormatError, MeshError, MeshFileError, PackageError, PolyhedronError, SceneError,
+    VolumeFileError,
 };
 pub use lattice::{
     Affine, Bounds, Cell, CellMoments, Cube, CubeMoments, Frame, Interval, MAX_DEPTH, VolumeMoments,
@@ -121,9 +123,10 @@ pub use query::{
     ray_spans, surface_area,
 };
 pub use solid::{
-    Adaptive, AnyClassifier, AnySolid, AnyWorker, Callback, Classifier, Crossing, Csg, Enclosure, Erasable,
-    Fingerprint, Fingerprinter, GradientRange, HalfSpace, MeshSolid, Motion, Segment, Slab, SlabJoin, Solid,
-    SplitCounter, Subtree, TangentBalls, Touch, Transform, Verdict, Worker,
+    Adaptive, AnyClassifier, AnySolid, AnyWorker, Band, Callback, Classifier, Crossing, Csg, Enclosure,
+    Erasable, Fingerprint, Fingerprinter, GradientRange, HalfSpace, MeshSolid, Motion, SampleArray, Samples,
+    Segment, Slab, SlabJoin, Solid, SplitCounter, Subtree, TangentBalls, Touch, Transform, Verdict, Volume,
+    VoxelGrid, Worker,
 };
 
 pub use surface::{Resolve, Snap, VertexPlacement, marching_cubes, marching_cubes_of, smc, smc_of};

@@ -15,12 +15,12 @@ mod zip;
 
 use bodies::{Aligned, Random};
 use leafless::{
-    Affine, AnySolid, Callback, Columns, Control, Csg, DistanceTo, Error, FillRule, Frame, HalfSpace,
+    Affine, AnySolid, Band, Callback, Columns, Control, Csg, DistanceTo, Error, FillRule, Frame, HalfSpace,
     LazyOctree, Membership, MeshSolid, Metadata, Obstacle, Octree, PointTable, Polyhedron, PolyhedronArrays,
-    Ray, Rule, Side, Tag, Transform, TriangleMesh, Verdict, Zone, bounding_box, build, cast_rays,
-    classify_box, classify_in, clearance, columns, compact, complement, contains, difference, distances,
-    exchange, file, heights, interference_of, intersection, measure, ray_spans, resolve, scene, surface_area,
-    union, union_of, xor,
+    Ray, Rule, Side, Tag, Transform, TriangleMesh, Verdict, Volume, VoxelGrid, Zone, bounding_box, build,
+    cast_rays, classify_box, classify_in, clearance, columns, compact, complement, contains, difference,
+    distances, exchange, file, heights, interference_of, intersection, measure, ray_spans, resolve, scene,
+    surface_area, union, union_of, xor,
 };
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
@@ -295,6 +295,30 @@ fn operations(directory: &Path) -> Vec<(&'static str, Operation)> {
         build(&MeshSolid::new(closed.clone(), FillRule::EvenOdd)?, &frame, Rule::Sampled, &CONTROL)
     });
     operation!("build stored", [a], build(a.view(), &frame(), Rule::Inner, &CONTROL));
+    let waves: Vec<f32> =
+        (0..32 * 30 * 28).map(|i| ((i % 32) as f32 * 0.3).sin() + ((i / 960) as f32 * 0.2).cos()).collect();
+    let grid = VoxelGrid::new([32, 30, 28], [0.0; 3], [1.0; 3]).unwrap();
+    operation!("volume", [waves], {
+        let volume = Volume::new(waves[..].into(), &grid, Band::between(0.1, 0.9)?, &CONTROL)?;
+        let volume = volume.with_band(Band::at_least(0.2)?, &CONTROL)?;
+        let tree = build(&volume, &frame(), Rule::Certified, &CONTROL)?;
+        tree.bitmap(4, [0; 3], [16; 3], &mut [0; 256], Some(&mut [0; 256]), &CONTROL)
+    });
+    #[cfg(feature = "volumes")]
+    {
+        let samples: leafless::Samples<'static> = waves.into();
+        // The crate that compresses cannot be refused memory.
+        let nrrd = exchange::write_nrrd(&samples, &grid, exchange::NrrdEncoding::Gzip).unwrap();
+        let text =
+            b"NRRD0001\ntype: short\ndimension: 3\nsizes: 2 2 2\nencoding: ascii\n\n1 2 3 4 5 6 7 8".to_vec();
+        operation!("write NRRD", [samples], {
+            exchange::write_nrrd(&samples, &grid, exchange::NrrdEncoding::Raw)
+        });
+        operation!("read NRRD", [nrrd, text], {
+            exchange::read_volume(&nrrd, None)?;
+            exchange::read_volume(&text, None)
+        });
+    }
     operation!("refine", [closed], {
         let solid = || MeshSolid::new(closed.clone(), FillRule::NonZero);
         let mut lazy = LazyOctree::new(solid()?, &frame())?;

@@ -91,7 +91,7 @@ impl From<&Failure> for leafless_status {
                 Error::SourceMismatch => LEAFLESS_E_SOURCE,
                 Error::NotSampled => LEAFLESS_E_NOT_SAMPLED,
                 Error::Mesh(_) | Error::Polyhedron(_) => LEAFLESS_E_MESH,
-                Error::MeshFile(_) | Error::Package(_) => LEAFLESS_E_MESH_FILE,
+                Error::MeshFile(_) | Error::Package(_) | Error::VolumeFile(_) => LEAFLESS_E_MESH_FILE,
                 Error::Scene(_) => LEAFLESS_E_SCENE,
                 Error::Format(FormatError::Version { .. } | FormatError::Required { .. }) => {
                     LEAFLESS_E_VERSION

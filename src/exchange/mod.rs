@@ -24,6 +24,9 @@
 //! and counted. A model that requires an extension other than production, materials and triangle sets is
 //! refused, as are encryption and document type declarations.
 //!
+//! With the feature `volumes`, [`open_volume`] reads volumes, as NRRD and MetaImage, [`read_raw_volume`] arrays without a
+//! header, and [`write_nrrd`] writes them.
+//!
 //! Formats of polygons are read only with the feature `std`, which cutting polygons into triangles needs.
 
 use crate::error::{Error, MeshFileError};
@@ -50,6 +53,8 @@ mod text;
 #[cfg(feature = "threemf")]
 mod threemf;
 mod unit;
+#[cfg(feature = "volumes")]
+mod volume;
 mod warning;
 mod write;
 
@@ -67,6 +72,11 @@ pub use ply::read_ply;
 pub(crate) use polygons::Polygons;
 pub use stl::read_stl;
 pub use unit::LengthUnit;
+#[cfg(feature = "volumes")]
+pub use volume::{
+    NrrdEncoding, RawVolume, SampleKind, VolumeFile, VolumeFormat, open_volume, read_raw_volume, read_volume,
+    volume_data_file, write_nrrd, write_raw_volume,
+};
 pub use warning::MeshWarning;
 pub use write::{WriteOptions, write_mesh, write_stl};
 

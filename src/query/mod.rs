@@ -1,5 +1,6 @@
 //! Questions: such as a stored octree answers in place, and such as any solids answer.
 
+mod bitmap;
 mod clearance;
 mod columns;
 mod content;

@@ -22,6 +22,7 @@ mod split_counter;
 mod stored;
 mod subtree;
 mod transform;
+mod volume;
 
 pub use adaptive::Adaptive;
 pub use callback::{Callback, GradientRange, TangentBalls};
@@ -41,6 +42,7 @@ pub use split_counter::SplitCounter;
 pub use subtree::Subtree;
 pub use transform::Transform;
 pub(crate) use transform::TransformClassifier;
+pub use volume::{Band, SampleArray, Samples, Volume, VoxelGrid};
 
 use crate::control::Control;
 use crate::error::Error;

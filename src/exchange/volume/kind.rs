@@ -1,0 +1,174 @@
+//! Numbers as files hold them, and what they become.
+
+use crate::error::{Error, VolumeFileError};
+use crate::memory;
+use crate::solid::{Samples, VoxelGrid};
+use alloc::vec::Vec;
+
+/// The type of the samples in a file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum SampleKind {
+    /// Bits, eight to a byte, the lowest first; each row along x begins with a byte of its own.
+    Bit,
+    /// Whole numbers of 8 bits, from −128.
+    I8,
+    /// Whole numbers of 8 bits, from 0.
+    U8,
+    /// Whole numbers of 16 bits, from −32 768.
+    I16,
+    /// Whole numbers of 16 bits, from 0.
+    U16,
+    /// Whole numbers of 32 bits, from −2^31.
+    I32,
+    /// Whole numbers of 32 bits, from 0.
+    U32,
+    /// Whole numbers of 64 bits, from −2^63.
+    I64,
+    /// Whole numbers of 64 bits, from 0.
+    U64,
+    /// Numbers of single precision.
+    F32,
+    /// Numbers of double precision.
+    F64,
+}
+
+impl SampleKind {
+    /// The middle of the type's range, which is where a threshold lies if nobody says where: ½ of bits, 127½ of
+    /// bytes, −½ of whole numbers with a sign; 0 of single and double precision.
+    pub const fn half_range(self) -> f64 {
+        match self {
+            SampleKind::Bit => 0.5,
+            SampleKind::U8 => 127.5,
+            SampleKind::U16 => 32_767.5,
+            SampleKind::U32 => 2_147_483_647.5,
+            SampleKind::U64 => 9_223_372_036_854_775_808.0,
+            SampleKind::I8 | SampleKind::I16 | SampleKind::I32 | SampleKind::I64 => -0.5,
+            SampleKind::F32 | SampleKind::F64 => 0.0,
+        }
+    }
+
+    /// Bytes that the samples of a grid take; `None` beyond 2^64.
+    pub(super) fn bytes(self, grid: &VoxelGrid) -> Option<u64> {
+        let [nx, ny, nz] = grid.extents().map(u64::from);
+        let each = match self {
+            SampleKind::Bit => return nx.div_ceil(8).checked_mul(ny)?.checked_mul(nz),
+            SampleKind::I8 | SampleKind::U8 => 1,
+            SampleKind::I16 | SampleKind::U16 => 2,
+            SampleKind::I32 | SampleKind::U32 | SampleKind::F32 => 4,
+            SampleKind::I64 | SampleKind::U64 | SampleKind::F64 => 8,
+        };
+        grid.count().checked_mul(each)
+    }
+
+    /// The samples that bytes hold, of which there are as many as [`bytes`](Self::bytes) says, and how many
+    /// were rounded.
+    pub(super) fn samples(
+        self,
+        bytes: &[u8],
+        big: bool,
+        grid: &VoxelGrid,
+    ) -> Result<(Samples<'static>, u64), Error> {
+        // The bytes of each number in the order of their weight.
+        fn numbers<const N: usize>(bytes: &[u8], big: bool) -> impl ExactSizeIterator<Item = [u8; N]> {
+            bytes.as_chunks::<N>().0.iter().map(move |&(mut number)| {
+                if big {
+                    number.reverse();
+                }
+                number
+            })
+        }
+        Ok(match self {
+            SampleKind::Bit => (Samples::Bits(bits(bytes, grid)?.into()), 0),
+            SampleKind::I8 => (memory::collected(bytes.iter().map(|&b| i16::from(b as i8)))?.into(), 0),
+            SampleKind::U8 => (memory::copied(bytes)?.into(), 0),
+            SampleKind::I16 => (memory::collected(numbers(bytes, big).map(i16::from_le_bytes))?.into(), 0),
+            SampleKind::U16 => (memory::collected(numbers(bytes, big).map(u16::from_le_bytes))?.into(), 0),
+            SampleKind::F32 => (memory::collected(numbers(bytes, big).map(f32::from_le_bytes))?.into(), 0),
+            SampleKind::I32 => singles(numbers(bytes, big).map(|n| i32::from_le_bytes(n).into()))?,
+            SampleKind::U32 => singles(numbers(bytes, big).map(|n| u32::from_le_bytes(n).into()))?,
+            SampleKind::I64 => wide(numbers(bytes, big).map(|n| i64::from_le_bytes(n).into()))?,
+            SampleKind::U64 => wide(numbers(bytes, big).map(|n| u64::from_le_bytes(n).into()))?,
+            SampleKind::F64 => singles(numbers(bytes, big).map(f64::from_le_bytes))?,
+        })
+    }
+
+    /// The samples that a text holds, separated by white space or commas.
+    pub(super) fn parsed(self, text: &[u8], grid: &VoxelGrid) -> Result<(Samples<'static>, u64), Error> {
+        // Each number but the last has a separator behind it.
+        if grid.count() > (text.len() as u64).div_ceil(2) {
+            let (expected, found) = (2 * grid.count() - 1, text.len() as u64);
+            return Err(VolumeFileError::Length { expected, found }.into());
+        }
+        let count = usize::try_from(grid.count()).map_err(|_| Error::OutOfMemory)?;
+        let mut words = text
+            .split(|&b| b.is_ascii_whitespace() || b == b',')
+            .filter(|word| !word.is_empty())
+            .map(|word| core::str::from_utf8(word).ok().and_then(|word| word.parse::<f64>().ok()));
+        let mut numbers = memory::with_capacity(count)?;
+        for index in 0..count as u64 {
+            let number = words.next().flatten().filter(|&number| self.has(number));
+            numbers.push(number.ok_or(VolumeFileError::Sample { index })?);
+        }
+        if words.next().is_some() {
+            return Err(VolumeFileError::Sample { index: count as u64 }.into());
+        }
+        let numbers = numbers.into_iter();
+        Ok(match self {
+            SampleKind::U8 => (memory::collected(numbers.map(|x| x as u8))?.into(), 0),
+            SampleKind::U16 => (memory::collected(numbers.map(|x| x as u16))?.into(), 0),
+            SampleKind::I8 | SampleKind::I16 => (memory::collected(numbers.map(|x| x as i16))?.into(), 0),
+            _ => singles(numbers)?,
+        })
+    }
+
+    /// Whether a number is one of this type.
+    fn has(self, number: f64) -> bool {
+        let (least, beyond) = match self {
+            SampleKind::Bit => (0.0, 2.0),
+            SampleKind::I8 => (-128.0, 128.0),
+            SampleKind::U8 => (0.0, 256.0),
+            SampleKind::I16 => (-32_768.0, 32_768.0),
+            SampleKind::U16 => (0.0, 65_536.0),
+            SampleKind::I32 => (-2_147_483_648.0, 2_147_483_648.0),
+            SampleKind::U32 => (0.0, 4_294_967_296.0),
+            SampleKind::I64 => (-9_223_372_036_854_775_808.0, 9_223_372_036_854_775_808.0),
+            SampleKind::U64 => (0.0, 18_446_744_073_709_551_616.0),
+            SampleKind::F32 | SampleKind::F64 => return true,
+        };
+        least <= number && number < beyond && number % 1.0 == 0.0
+    }
+}
+
+/// Rows of bytes as rows of words.
+fn bits(bytes: &[u8], grid: &VoxelGrid) -> Result<Vec<u64>, Error> {
+    let [nx, ny, nz] = grid.extents().map(|extent| extent as usize);
+    let mut words = memory::with_capacity(grid.words() * ny * nz)?;
+    for row in bytes.chunks(nx.div_ceil(8)) {
+        for few in row.chunks(8) {
+            words.push(few.iter().rev().fold(0, |word, &byte| word << 8 | u64::from(byte)));
+        }
+    }
+    Ok(words)
+}
+
+/// Numbers rounded to single precision, and how many of them that changed.
+fn singles(numbers: impl ExactSizeIterator<Item = f64>) -> Result<(Samples<'static>, u64), Error> {
+    let mut rounded = 0;
+    let singles = memory::collected(numbers.map(|number| {
+        let single = number as f32;
+        rounded += u64::from(f64::from(single) != number && !number.is_nan());
+        single
+    }))?;
+    Ok((singles.into(), rounded))
+}
+
+/// The same with integers that doubles cannot hold.
+fn wide(numbers: impl ExactSizeIterator<Item = i128>) -> Result<(Samples<'static>, u64), Error> {
+    let mut rounded = 0;
+    let singles = memory::collected(numbers.map(|number| {
+        let single = number as f32;
+        rounded += u64::from(single as i128 != number);
+        single
+    }))?;
+    Ok((singles.into(), rounded))
+}

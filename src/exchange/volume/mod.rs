@@ -1,0 +1,256 @@
+//! Files of volumes: raw arrays, NRRD and MetaImage.
+//!
+//! | | what is read |
+//! |---|---|
+//! | raw | [`RawVolume`]: bits, 8, 16, 32 and 64 bits, both byte orders, bytes before the samples |
+//! | NRRD | versions 1 to 5; `.nrrd` and a detached `.nhdr` with one data file; encodings raw, gzip and ascii; all integer types and float, double; little and big endian; `spacings`, `axis mins` and `maxs` with `centers`, `space directions` with `space origin`; `line skip`, `byte skip` (−1 too); `units` and `space units`; comments, keys and values |
+//! | MetaImage | `.mha` and `.mhd` with one data file; binary, ASCII and compressed data (zlib, gzip); all types `MET_*` of single numbers; `ElementSpacing` (else `ElementSize`), `Offset`, `TransformMatrix` and their other names; `HeaderSize` (−1 too), `CompressedDataSize`, byte orders |
+//!
+//! | | what is refused, by name |
+//! |---|---|
+//! | both | samples of several numbers (colours, vectors); more than three axes of more than one sample; samples in several files (`LIST`, patterns); a data file outside of the header's folder |
+//! | NRRD | encodings bzip2, hex and zrl; blocks; spaces of another dimension than three; fields that the format does not have, and fields that stand twice |
+//! | MetaImage | objects that are no images |
+//!
+//! Of a MetaImage, fields that are not known are skipped, as MetaIO does; `ElementToIntensityFunctionSlope`
+//! and `Offset` change nothing, as in ITK. Samples lie at the centres of voxels, in the words of NRRD: `space
+//! origin`, like `Offset`, is the first sample's place, and `axis mins` is that unless the axis is centred on
+//! cells.
+//!
+//! Bytes may be anything: no reader panics, and a header that asks for more samples than its data can hold is
+//! refused before anything is allocated. Beside the samples and the file, compressed samples take memory for
+//! what they become (at most 1032 times as long as the file, the most that DEFLATE can compress), and samples
+//! in a text eight bytes each.
+
+mod header;
+mod inflate;
+mod kind;
+mod metaimage;
+mod nrrd;
+mod place;
+mod raw;
+mod write;
+
+pub use kind::SampleKind;
+pub use raw::{RawVolume, read_raw_volume};
+pub use write::{NrrdEncoding, write_nrrd, write_raw_volume};
+
+use super::LengthUnit;
+use crate::control::Control;
+use crate::error::{Error, VolumeFileError};
+use crate::lattice::Affine;
+use crate::solid::{AnySolid, Band, Samples, Volume, VoxelGrid};
+use alloc::borrow::Cow;
+use alloc::string::String;
+use core::fmt;
+use header::{Encoding, Header, Place, Skip};
+
+/// The formats of volumes that say themselves what they hold.
+#[non_exhaustive]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum VolumeFormat {
+    /// NRRD, `.nrrd` or `.nhdr`.
+    Nrrd,
+    /// MetaImage, `.mha` or `.mhd`.
+    MetaImage,
+}
+
+impl VolumeFormat {
+    /// The format of a file with this content; `None` if it is none of these.
+    pub fn detect(bytes: &[u8]) -> Option<VolumeFormat> {
+        if bytes.starts_with(nrrd::MAGIC) {
+            Some(VolumeFormat::Nrrd)
+        } else if metaimage::is_header(bytes) {
+            Some(VolumeFormat::MetaImage)
+        } else {
+            None
+        }
+    }
+}
+
+impl fmt::Display for VolumeFormat {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(match self {
+            VolumeFormat::Nrrd => "NRRD",
+            VolumeFormat::MetaImage => "MetaImage",
+        })
+    }
+}
+
+/// A volume from a file.
+#[non_exhaustive]
+#[derive(Debug, Clone)]
+pub struct VolumeFile {
+    /// The samples. What is neither bits nor 8 or 16 bits wide has become numbers of single precision, and
+    /// numbers of 8 bits with a sign have become 16 bits.
+    pub samples: Samples<'static>,
+    /// Where they lie, or before `placement` did.
+    pub grid: VoxelGrid,
+    /// The map that moves the grid to the place that the file says, if its axes are not x, y and z: then the
+    /// grid's first sample lies at 0. Its directions are rounded.
+    pub placement: Option<Affine>,
+    /// The unit of the grid's lengths, if the file says it.
+    pub unit: Option<LengthUnit>,
+    /// The format that the file has.
+    pub format: VolumeFormat,
+    /// The type that the samples have in the file.
+    pub kind: SampleKind,
+    /// How many samples single precision had to round.
+    pub rounded: u64,
+}
+
+impl VolumeFile {
+    /// The solid of the voxels that are inside, where the file says that they lie: a [`Volume`], moved by
+    /// [`AnySolid::placed`] if its axes are not x, y and z. Without a band, a voxel is inside if its sample is
+    /// not below the middle of the type's range ([`SampleKind::half_range`]). The samples are shared.
+    ///
+    /// # Errors
+    /// As [`Volume::new`].
+    ///
+    /// ```no_run
+    /// use leafless::exchange::open_volume;
+    /// use leafless::{Band, Control, Rule, build};
+    /// let (file, control) = (open_volume("scan.nrrd")?, Control::default());
+    /// let part = file.solid(Some(Band::at_least(900.0)?), &control)?;
+    /// // The frame is that of the voxels, which suits a file without a placement.
+    /// let tree = build(&part, &file.grid.frame()?, Rule::Sampled, &control)?;
+    /// # Ok::<(), leafless::Error>(())
+    /// ```
+    pub fn solid(&self, band: Option<Band>, control: &Control<'_>) -> Result<AnySolid, Error> {
+        let band = band.map_or_else(|| Band::at_least(self.kind.half_range()), Ok)?;
+        let solid = AnySolid::new(Volume::new(self.samples.clone(), &self.grid, band, control)?);
+        match &self.placement {
+            Some(placement) => solid.placed(placement),
+            None => Ok(solid),
+        }
+    }
+}
+
+/// The name of the file that has the samples of a header, relative to that; `None` if they stand behind the
+/// header.
+///
+/// # Errors
+/// [`Error::VolumeFile`].
+pub fn volume_data_file(bytes: &[u8]) -> Result<Option<String>, Error> {
+    Ok(match header(bytes)?.1.place {
+        Place::Here(_) => None,
+        Place::There(name) => Some(name),
+    })
+}
+
+/// Reads a volume. `data` is the content of the file that [`volume_data_file`] names, if it names one.
+///
+/// O(n); the samples are copied, once.
+///
+/// # Errors
+/// [`Error::VolumeFile`] says what is wrong where; [`Error::OutOfMemory`].
+///
+/// ```
+/// use leafless::exchange::read_volume;
+/// let header = "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 2 2 1\nencoding: raw\n\n";
+/// let file = read_volume(&[header.as_bytes(), &[1, 2, 3, 4]].concat(), None)?;
+/// assert_eq!(file.grid.extents(), [2, 2, 1]);
+/// # Ok::<(), leafless::Error>(())
+/// ```
+pub fn read_volume(bytes: &[u8], data: Option<&[u8]>) -> Result<VolumeFile, Error> {
+    let (format, header) = header(bytes)?;
+    let (grid, placement) = header.axes.placed(header.extents)?;
+    let data = match (&header.place, data) {
+        (&Place::Here(from), _) => bytes.get(from..).unwrap_or(&[]),
+        (Place::There(_), Some(data)) => data,
+        (Place::There(_), None) => {
+            return Err(VolumeFileError::Missing { what: "the file of the samples" }.into());
+        }
+    };
+    let (samples, rounded) = samples(&header, data, &grid)?;
+    let (unit, kind) = (header.unit, header.kind);
+    Ok(VolumeFile { samples, grid, placement, unit, format, kind, rounded })
+}
+
+/// Reads a volume from a path, with the file of its samples if that is another one, in the same folder or
+/// below it.
+///
+/// # Errors
+/// As [`read_volume`], and [`Error::Io`], both as the cause of an [`Error::File`] with the path.
+pub fn open_volume(path: impl AsRef<std::path::Path>) -> Result<VolumeFile, Error> {
+    let path = path.as_ref();
+    let bytes = std::fs::read(path).map_err(|error| Error::from(error).of_file(path))?;
+    let name = volume_data_file(&bytes).map_err(|error| error.of_file(path))?;
+    let Some(name) = name else { return read_volume(&bytes, None).map_err(|error| error.of_file(path)) };
+    let is_plain = |part| matches!(part, std::path::Component::Normal(_) | std::path::Component::CurDir);
+    let relative = std::path::Path::new(&name);
+    if !relative.components().all(is_plain) {
+        let what = "samples outside of the header's folder";
+        return Err(Error::from(VolumeFileError::Unsupported { what }).of_file(path));
+    }
+    let there = path.parent().unwrap_or(std::path::Path::new("")).join(relative);
+    let read = || -> Result<_, Error> {
+        // What is no file may have no end.
+        if !std::fs::metadata(&there)?.is_file() {
+            return Err(VolumeFileError::Unsupported { what: "samples in what is no regular file" }.into());
+        }
+        Ok(std::fs::read(&there)?)
+    };
+    let data = read().map_err(|error| error.of_file(&there))?;
+    read_volume(&bytes, Some(&data)).map_err(|error| error.of_file(path))
+}
+
+fn header(bytes: &[u8]) -> Result<(VolumeFormat, Header), Error> {
+    if bytes.is_empty() {
+        return Err(VolumeFileError::Empty.into());
+    }
+    let format = VolumeFormat::detect(bytes).ok_or(VolumeFileError::UnknownFormat)?;
+    let header = match format {
+        VolumeFormat::Nrrd => nrrd::header(bytes)?,
+        VolumeFormat::MetaImage => metaimage::header(bytes)?,
+    };
+    Ok((format, header))
+}
+
+/// The samples that a header describes, from the bytes behind it.
+fn samples(header: &Header, data: &[u8], grid: &VoxelGrid) -> Result<(Samples<'static>, u64), Error> {
+    let mut data = data;
+    for _ in 0..header.lines {
+        let end = data.iter().position(|&byte| byte == b'\n');
+        let end = end.ok_or(VolumeFileError::Missing { what: "a line that is to be skipped" })?;
+        data = &data[end + 1..];
+    }
+    let length = header.kind.bytes(grid).ok_or(Error::OutOfMemory)?;
+    let found = data.len() as u64;
+    let short = |expected: u64| Error::from(VolumeFileError::Length { expected, found });
+    let behind = |data: &'_ [u8], skip: u64| -> Option<usize> {
+        usize::try_from(skip).ok().filter(|&skip| skip <= data.len())
+    };
+    if let (Encoding::Text, Skip::Bytes(skip)) = (header.encoding, header.skip) {
+        let skip = behind(data, skip).ok_or_else(|| short(skip))?;
+        return header.kind.parsed(&data[skip..], grid);
+    }
+    let mut data = Cow::Borrowed(data);
+    let mut skip = header.skip;
+    if header.encoding == Encoding::Deflated {
+        let Skip::Bytes(before) = skip else { return Err(short(length)) };
+        let outside = if header.skips_compressed { before } else { 0 };
+        let bytes = behind(&data, outside).and_then(|from| data.get(from..)).ok_or_else(|| short(outside))?;
+        let bytes = match header.compressed {
+            Some(size) => usize::try_from(size).ok().and_then(|size| bytes.get(..size)),
+            None => Some(bytes),
+        };
+        let bytes = bytes.ok_or_else(|| short(header.compressed.unwrap_or(0)))?;
+        let all = length.checked_add(before - outside).ok_or(Error::OutOfMemory)?;
+        skip = Skip::Bytes(before - outside);
+        data = Cow::Owned(inflate::inflate(bytes, all)?);
+    }
+    let found = data.len() as u64;
+    let before = match skip {
+        Skip::Bytes(before) => before,
+        Skip::Rest => found.checked_sub(length).ok_or_else(|| short(length))?,
+    };
+    let expected = length.checked_add(before).ok_or(Error::OutOfMemory)?;
+    // Editors and tools leave a line end behind.
+    let rest = behind(&data, expected).and_then(|end| data.get(end..));
+    if !rest.is_some_and(|rest| rest.iter().all(|&byte| matches!(byte, b'\n' | b'\r' | 0))) {
+        return Err(VolumeFileError::Length { expected, found }.into());
+    }
+    let samples = data.get(before as usize..expected as usize).unwrap_or(&[]);
+    header.kind.samples(samples, header.big, grid)
+}

@@ -1,0 +1,324 @@
+//! Headers of NRRD files, versions 1 to 5, as the definition of the format by its authors (teem) has them.
+
+use super::super::LengthUnit;
+use super::header::{Encoding, Header, Line, Lines, Place, Skip, extents, number};
+use super::kind::SampleKind;
+use super::place::Axes;
+use crate::error::{Error, VolumeFileError};
+use crate::memory;
+use alloc::vec::Vec;
+
+/// What every file begins with, before the version.
+pub(super) const MAGIC: &[u8] = b"NRRD000";
+
+/// The most axes that a file may have.
+const MOST_AXES: u64 = 16;
+
+/// The fields that count, as they are found.
+#[derive(Default)]
+struct Fields<'a> {
+    dimension: Option<Line<'a>>,
+    kind: Option<Line<'a>>,
+    sizes: Option<Line<'a>>,
+    encoding: Option<Line<'a>>,
+    endian: Option<Line<'a>>,
+    spacings: Option<Line<'a>>,
+    mins: Option<Line<'a>>,
+    maxs: Option<Line<'a>>,
+    centers: Option<Line<'a>>,
+    directions: Option<Line<'a>>,
+    origin: Option<Line<'a>>,
+    units: Option<Line<'a>>,
+    line_skip: Option<Line<'a>>,
+    byte_skip: Option<Line<'a>>,
+    data_file: Option<Line<'a>>,
+}
+
+pub(super) fn header(bytes: &[u8]) -> Result<Header, Error> {
+    let mut lines = Lines::new(bytes);
+    let version = lines.next().and_then(|line| line.strip_prefix(MAGIC)).unwrap_or(b"");
+    if !matches!(version.trim_ascii_end(), [b'1'..=b'5']) {
+        return Err(VolumeFileError::Syntax { line: 1, expected: "NRRD0001 to NRRD0005" }.into());
+    }
+    let mut fields = Fields::default();
+    while let Some(line) = lines.next() {
+        if line.is_empty() {
+            break;
+        }
+        if line.starts_with(b"#") {
+            continue;
+        }
+        take(&mut fields, line, lines.number)?;
+    }
+    let needed = |field: Option<_>, what| field.ok_or(VolumeFileError::Missing { what });
+    let kind_line: Line<'_> = needed(fields.kind, "type")?;
+    let kind =
+        kind_of(kind_line.value).ok_or_else(|| kind_line.error("a type of numbers of up to 64 bits"))?;
+    let encoding: Line<'_> = needed(fields.encoding, "encoding")?;
+    let encoding = encoding_of(&encoding)?;
+    let big = match fields.endian {
+        _ if encoding == Encoding::Text || matches!(kind, SampleKind::I8 | SampleKind::U8) => false,
+        Some(line) if line.value.eq_ignore_ascii_case("little") => false,
+        Some(line) if line.value.eq_ignore_ascii_case("big") => true,
+        Some(line) => return Err(line.error("little or big").into()),
+        None => return Err(VolumeFileError::Missing { what: "endian" }.into()),
+    };
+    let dimension: Line<'_> = needed(fields.dimension, "dimension")?;
+    let [count] = dimension.whole::<1>("a number of axes")?;
+    if !(1..=MOST_AXES).contains(&count) {
+        return Err(dimension.error("1 to 16 axes").into());
+    }
+    let sizes: Line<'_> = needed(fields.sizes, "sizes")?;
+    let all = list(&sizes, count, "as many sizes as axes", |word| word.parse().ok())?;
+    let (extents, chosen) = extents(&all, &sizes)?;
+    let axes = axes(&fields, extents, chosen, count)?;
+    let lines_before = fields.line_skip.map_or(Ok([0]), |line| line.whole("a number of lines"))?[0];
+    let skip = match fields.byte_skip {
+        Some(line) if line.value == "-1" && encoding == Encoding::Raw => Skip::Rest,
+        Some(line) => Skip::Bytes(line.whole::<1>("a number of bytes, or -1 of raw samples")?[0]),
+        None => Skip::Bytes(0),
+    };
+    let place = match fields.data_file {
+        Some(line) if line.value.starts_with("LIST") || line.value.contains('%') => {
+            return Err(VolumeFileError::Unsupported { what: "samples in several files" }.into());
+        }
+        Some(line) if line.value.is_empty() => return Err(line.error("the name of a file").into()),
+        Some(line) => Place::There(line.text()?),
+        None => Place::Here(lines.taken),
+    };
+    let unit = fields.units.and_then(|line| unit_of(line.value));
+    Ok(Header {
+        extents,
+        kind,
+        big,
+        encoding,
+        lines: lines_before,
+        skip,
+        skips_compressed: false,
+        compressed: None,
+        place,
+        axes,
+        unit,
+    })
+}
+
+/// Takes in a line. Names of fields have no case, and most may be written without their blank.
+fn take<'a>(fields: &mut Fields<'a>, line: &'a [u8], number: u64) -> Result<(), Error> {
+    let wrong = |expected| Error::from(VolumeFileError::Syntax { line: number, expected });
+    // Keys of others, with their values, may be any text.
+    let Some(colon) = line.iter().position(|&byte| byte == b':') else {
+        return Err(wrong("a field, a colon and a blank, or an empty line before the samples"));
+    };
+    let (name, value) = (&line[..colon], &line[colon + 1..]);
+    if value.starts_with(b"=") {
+        return Ok(());
+    }
+    let mut normal = [0; 24];
+    let mut length = 0;
+    for byte in name.iter().filter(|&&byte| byte != b' ') {
+        let Some(place) = normal.get_mut(length) else { return Err(wrong("a field of the format")) };
+        *place = byte.to_ascii_lowercase();
+        length += 1;
+    }
+    let value = core::str::from_utf8(value).map_err(|_| wrong("a value in UTF-8"))?.trim_ascii();
+    let line = Line { number, value };
+    let field = match &normal[..length] {
+        b"dimension" => &mut fields.dimension,
+        b"type" => &mut fields.kind,
+        b"sizes" => &mut fields.sizes,
+        b"encoding" => &mut fields.encoding,
+        b"endian" => &mut fields.endian,
+        b"spacings" => &mut fields.spacings,
+        b"axismins" => &mut fields.mins,
+        b"axismaxs" => &mut fields.maxs,
+        b"centers" | b"centerings" => &mut fields.centers,
+        b"spacedirections" => &mut fields.directions,
+        b"spaceorigin" => &mut fields.origin,
+        b"spaceunits" | b"units" => &mut fields.units,
+        b"lineskip" => &mut fields.line_skip,
+        b"byteskip" => &mut fields.byte_skip,
+        b"datafile" => &mut fields.data_file,
+        b"space" => {
+            return match value {
+                _ if value.matches('-').count() == 2 && !value.ends_with("-time") => Ok(()),
+                "RAS" | "LAS" | "LPS" | "3D-right-handed" | "3D-left-handed" => Ok(()),
+                _ => Err(line.error("a space of three dimensions").into()),
+            };
+        }
+        b"spacedimension" => {
+            return match line.whole("a number")? {
+                [3] => Ok(()),
+                _ => Err(line.error("a space of three dimensions").into()),
+            };
+        }
+        // These say nothing of the samples or their places.
+        b"content" | b"number" | b"min" | b"max" | b"oldmin" | b"oldmax" | b"thicknesses" | b"labels"
+        | b"kinds" | b"sampleunits" | b"measurementframe" | b"blocksize" => return Ok(()),
+        _ => return Err(wrong("a field of the format")),
+    };
+    if field.is_some() {
+        return Err(wrong("each field once"));
+    }
+    *field = Some(line);
+    Ok(())
+}
+
+/// As many words as there are axes.
+fn list<T>(
+    line: &Line<'_>,
+    count: u64,
+    expected: &'static str,
+    parse: impl Fn(&str) -> Option<T>,
+) -> Result<Vec<T>, Error> {
+    let mut found = Vec::new();
+    for word in line.value.split_ascii_whitespace().take(count as usize + 1) {
+        memory::push(&mut found, parse(word).ok_or_else(|| line.error(expected))?)?;
+    }
+    if found.len() as u64 == count { Ok(found) } else { Err(line.error(expected).into()) }
+}
+
+/// Where the samples lie: by directions in space, else by spacings and the ends of axes, else one unit apart
+/// from 0 on.
+fn axes(fields: &Fields<'_>, extents: [u32; 3], chosen: [usize; 3], count: u64) -> Result<Axes, Error> {
+    if let Some(line) = fields.directions {
+        return in_space(fields, &line, chosen, count);
+    }
+    let numbers = |line: Option<Line<'_>>, default: f64| -> Result<[Option<f64>; 3], Error> {
+        let Some(line) = line else { return Ok([None; 3]) };
+        let all = list(&line, count, "a number for each axis", |word| word.parse::<f64>().ok())?;
+        let mut found = [Some(default); 3];
+        for (place, &axis) in found.iter_mut().zip(&chosen) {
+            if let Some(&given) = all.get(axis) {
+                *place = Some(given).filter(|x| x.is_finite());
+                place.ok_or_else(|| line.error("finite numbers for all axes of more than one sample"))?;
+            }
+        }
+        Ok(found)
+    };
+    let (spacings, mins, maxs) =
+        (numbers(fields.spacings, 1.0)?, numbers(fields.mins, 0.0)?, numbers(fields.maxs, 1.0)?);
+    let centres = match fields.centers {
+        Some(line) => {
+            let all = list(&line, count, "cell, node or none for each axis", |word| match word {
+                "cell" => Some(true),
+                "node" | "none" | "???" => Some(false),
+                _ => None,
+            })?;
+            chosen.map(|axis| all.get(axis).copied())
+        }
+        None => [None; 3],
+    };
+    let is_cell = |axis: usize| centres[axis].unwrap_or(false);
+    let mut found = Axes::along([1.0; 3], [0.0; 3]);
+    for axis in 0..3 {
+        let samples = f64::from(extents[axis]);
+        let steps = if is_cell(axis) { samples } else { (samples - 1.0).max(1.0) };
+        let spacing = match (spacings[axis], mins[axis], maxs[axis]) {
+            (Some(spacing), ..) => spacing,
+            (None, Some(min), Some(max)) if chosen[axis] != usize::MAX => (max - min) / steps,
+            _ => 1.0,
+        };
+        found.steps[axis][axis] = spacing;
+        let min = mins[axis].unwrap_or(0.0);
+        // The end of an axis of cells is half a spacing before the first sample.
+        found.origin[axis] = if is_cell(axis) && mins[axis].is_some() { min + 0.5 * spacing } else { min };
+    }
+    Ok(found)
+}
+
+fn in_space(fields: &Fields<'_>, line: &Line<'_>, chosen: [usize; 3], count: u64) -> Result<Axes, Error> {
+    const EXPECTED: &str = "a vector (x,y,z) or none for each axis";
+    let mut all: Vec<Option<[f64; 3]>> = Vec::new();
+    let mut rest = line.value;
+    while !rest.is_empty() {
+        let (found, behind) = match rest.strip_prefix("none") {
+            Some(behind) => (None, behind),
+            None => {
+                let (inner, behind) = rest.split_once(')').ok_or_else(|| line.error(EXPECTED))?;
+                (Some(vector(inner).ok_or_else(|| line.error(EXPECTED))?), behind)
+            }
+        };
+        if all.len() as u64 == count {
+            return Err(line.error(EXPECTED).into());
+        }
+        memory::push(&mut all, found)?;
+        rest = behind.trim_ascii_start();
+    }
+    if all.len() as u64 != count {
+        return Err(line.error(EXPECTED).into());
+    }
+    let mut axes = Axes::along([1.0; 3], [0.0; 3]);
+    let mut taken = 0;
+    for (place, &axis) in axes.steps.iter_mut().zip(&chosen) {
+        if axis != usize::MAX {
+            *place = all.get(axis).copied().flatten().ok_or_else(|| line.error(EXPECTED))?;
+            taken += 1;
+        }
+    }
+    if taken < 3 {
+        return Err(line.error("directions of three axes").into());
+    }
+    if let Some(line) = fields.origin {
+        let inner = line.value.strip_suffix(')').and_then(vector);
+        axes.origin = inner.ok_or_else(|| line.error("a point (x,y,z)"))?;
+    }
+    Ok(axes)
+}
+
+/// `(x,y,z`.
+fn vector(text: &str) -> Option<[f64; 3]> {
+    let mut parts = text.trim_ascii().strip_prefix('(')?.split(',').map(|part| number(part.trim_ascii()));
+    let found = [parts.next()??, parts.next()??, parts.next()??];
+    parts.next().is_none().then_some(found)
+}
+
+fn encoding_of(line: &Line<'_>) -> Result<Encoding, Error> {
+    let unsupported = |what| Err(VolumeFileError::Unsupported { what }.into());
+    let is = |names: &[&str]| names.iter().any(|name| line.value.eq_ignore_ascii_case(name));
+    if is(&["raw"]) {
+        Ok(Encoding::Raw)
+    } else if is(&["gz", "gzip"]) {
+        Ok(Encoding::Deflated)
+    } else if is(&["txt", "text", "ascii"]) {
+        Ok(Encoding::Text)
+    } else if is(&["bz2", "bzip2"]) {
+        unsupported("NRRD compressed by bzip2")
+    } else if is(&["hex"]) {
+        unsupported("NRRD in hexadecimal digits")
+    } else if is(&["zrl"]) {
+        unsupported("NRRD compressed by run lengths of zeros")
+    } else {
+        Err(line.error("raw, gzip, bzip2, ascii or hex").into())
+    }
+}
+
+fn kind_of(name: &str) -> Option<SampleKind> {
+    Some(match name {
+        "signed char" | "int8" | "int8_t" => SampleKind::I8,
+        "uchar" | "unsigned char" | "uint8" | "uint8_t" => SampleKind::U8,
+        "short" | "short int" | "signed short" | "signed short int" | "int16" | "int16_t" => SampleKind::I16,
+        "ushort" | "unsigned short" | "unsigned short int" | "uint16" | "uint16_t" => SampleKind::U16,
+        "int" | "signed int" | "int32" | "int32_t" => SampleKind::I32,
+        "uint" | "unsigned int" | "uint32" | "uint32_t" => SampleKind::U32,
+        "longlong"
+        | "long long"
+        | "long long int"
+        | "signed long long"
+        | "signed long long int"
+        | "int64"
+        | "int64_t" => SampleKind::I64,
+        "ulonglong" | "unsigned long long" | "unsigned long long int" | "uint64" | "uint64_t" => {
+            SampleKind::U64
+        }
+        "float" => SampleKind::F32,
+        "double" => SampleKind::F64,
+        _ => return None,
+    })
+}
+
+/// The unit of all axes in space, `"mm" "mm" "mm"`, if they have the same.
+fn unit_of(value: &str) -> Option<LengthUnit> {
+    let mut named = value.split('"').skip(1).step_by(2).filter(|name| !name.is_empty());
+    let first = named.next()?;
+    named.all(|name| name == first).then(|| first.parse().ok()).flatten()
+}

@@ -1,0 +1,59 @@
+//! Where the samples of a file lie.
+
+use crate::error::{Error, VolumeFileError};
+use crate::lattice::Affine;
+use crate::lattice::exact::sqrt;
+use crate::solid::VoxelGrid;
+
+/// What a file says of the place of its samples.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Axes {
+    /// The way from one sample to the next, for each of the file's axes.
+    pub(super) steps: [[f64; 3]; 3],
+    /// The place of the first sample, or the lower corner of its voxel.
+    pub(super) origin: [f64; 3],
+    pub(super) is_corner: bool,
+}
+
+impl Axes {
+    /// Samples with these distances along the axes.
+    pub(super) fn along(spacing: [f64; 3], origin: [f64; 3]) -> Axes {
+        let mut steps = [[0.0; 3]; 3];
+        for axis in 0..3 {
+            steps[axis][axis] = spacing[axis];
+        }
+        Axes { steps, origin, is_corner: false }
+    }
+
+    /// The grid, and the map that moves it to where the file says, if its axes are not x, y and z.
+    pub(super) fn placed(&self, extents: [u32; 3]) -> Result<(VoxelGrid, Option<Affine>), Error> {
+        let wrong = |_| VolumeFileError::Place;
+        let is_straight = (0..3).all(|axis| {
+            (0..3).all(|i| if i == axis { self.steps[axis][i] > 0.0 } else { self.steps[axis][i] == 0.0 })
+        });
+        if is_straight {
+            let spacing = [0, 1, 2].map(|axis| self.steps[axis][axis]);
+            let grid = if self.is_corner {
+                VoxelGrid::new(extents, self.origin, spacing)
+            } else {
+                VoxelGrid::with_first_sample(extents, self.origin, spacing)
+            };
+            return Ok((grid.map_err(wrong)?, None));
+        }
+        let spacing = self.steps.map(|[x, y, z]| match [x.abs(), y.abs(), z.abs()] {
+            // Along an axis nothing is rounded.
+            [only, 0.0, 0.0] | [0.0, only, 0.0] | [0.0, 0.0, only] => only,
+            _ => sqrt(x * x + y * y + z * z),
+        });
+        let first = if self.is_corner { spacing.map(|edge| 0.5 * edge) } else { [0.0; 3] };
+        let grid = VoxelGrid::with_first_sample(extents, first, spacing).map_err(wrong)?;
+        // What is nothing but an error of rounding is nothing.
+        let part = |c: f64| if c.abs() < 1.0 / (1u64 << 60) as f64 { 0.0 } else { c };
+        let row = |i: usize| {
+            let [a, b, c] = [0, 1, 2].map(|axis| part(self.steps[axis][i] / spacing[axis]));
+            [a, b, c, self.origin[i]]
+        };
+        let placement = Affine::new([row(0), row(1), row(2)]).map_err(wrong)?;
+        Ok((grid, Some(placement)))
+    }
+}

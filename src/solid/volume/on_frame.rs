@@ -1,0 +1,181 @@
+//! A volume on a frame.
+
+use super::axis::{Axis, Run};
+use super::occupancy::Seen;
+use super::{Volume, VoxelGrid};
+use crate::error::Error;
+use crate::lattice::{Cell, Frame};
+use crate::octree::{Planes, Tag};
+use crate::solid::{Classifier, OCTANTS, Verdict, Worker, split_twice};
+use alloc::vec::Vec;
+
+/// A volume on a frame: handle and worker. A cell is decided by the cell itself, so that its part is nothing.
+#[derive(Debug, Clone)]
+pub struct OnFrame<'a> {
+    volume: Volume<'a>,
+    frame: Frame,
+    axes: [Axis; 3],
+    /// If the finest cells are voxels, or cubes of 2^k voxels: how many steps the first of them is away from
+    /// the first voxel, in voxels, and k.
+    aligned: Option<([i64; 3], u32)>,
+}
+
+impl<'a> OnFrame<'a> {
+    pub(super) fn new(volume: Volume<'a>, frame: &Frame) -> OnFrame<'a> {
+        let axes = [0, 1, 2].map(|axis| Axis::new(volume.grid(), frame, axis));
+        let aligned = match axes {
+            [
+                Axis::Lattice { offset: x, shift, .. },
+                Axis::Lattice { offset: y, shift: of_y, .. },
+                Axis::Lattice { offset: z, shift: of_z, .. },
+            ] if shift == of_y && shift == of_z && shift >= -1 => Some(([x, y, z], (shift + 1) as u32)),
+            _ => None,
+        };
+        OnFrame { volume, frame: *frame, axes, aligned }
+    }
+
+    fn grid(&self) -> &VoxelGrid {
+        self.volume.grid()
+    }
+
+    /// The voxels between the planes of a frame's half cells.
+    fn run(&self, axis: usize, planes: [u32; 2]) -> Run {
+        let [from, to] = planes.map(|k| self.axes[axis].place(self.grid(), &self.frame, k));
+        self.axes[axis].run(from, to)
+    }
+
+    fn verdict(&self, runs: [Run; 3]) -> Verdict<()> {
+        if runs.iter().any(|run| run.low >= run.high) {
+            return Verdict::Empty;
+        }
+        let Seen { inside, mut outside } =
+            self.volume.occupancy.look(&self.volume.field, runs.map(|run| run.low), runs.map(|run| run.high));
+        outside |= runs.iter().any(|run| run.beyond);
+        match (inside, outside) {
+            (true, true) => Verdict::Partial(()),
+            (true, false) => Verdict::Full,
+            _ => Verdict::Empty,
+        }
+    }
+
+    /// The cell in voxels, if it is a cube of 2^k of them that lies on multiples of its edge: its place
+    /// counted in cubes of this size, and k.
+    fn cube(&self, cell: Cell) -> Option<([i64; 3], u32)> {
+        let (offset, finest) = self.aligned?;
+        let k = u32::from(self.frame.depth() - cell.level) + finest;
+        let is_on = |axis: usize| offset[axis] & ((1 << k) - 1) == 0;
+        let at = [0, 1, 2].map(|axis| (offset[axis] >> k) + i64::from(cell.at[axis]));
+        (k < 62 && (0..3).all(is_on)).then_some((at, k))
+    }
+
+    /// The 64 cubes that the cube of 4^(level + 2) voxels along an edge at a place consists of: voxels if the
+    /// level is −1.
+    fn group(&self, level: i32, at: [i64; 3]) -> Planes {
+        if level >= 0 {
+            return self.volume.occupancy.group(level as usize, at);
+        }
+        let blocks = self.grid().extents().map(|extent| i64::from(extent.div_ceil(4)));
+        if (0..3).any(|axis| !(0..blocks[axis]).contains(&at[axis])) {
+            return Planes::uniform(Tag::Empty);
+        }
+        Planes::binary(self.volume.field.brick(at.map(|a| a as u32)))
+    }
+
+    /// The 64 grandchildren of a cube of 2^k voxels, k ≥ 2: their sure and their possible ones.
+    fn grandchildren(&self, at: [i64; 3], k: u32) -> Planes {
+        if k.is_multiple_of(2) {
+            return self.group(k as i32 / 2 - 2, at);
+        }
+        let mut planes = Planes::uniform(Tag::Empty);
+        for octant in OCTANTS {
+            let bit = |axis: u32| i64::from(octant >> axis & 1);
+            let child = [2 * at[0] + bit(0), 2 * at[1] + bit(1), 2 * at[2] + bit(2)];
+            let group = self.group(k as i32 / 2 - 2, child);
+            let [empty, full, _] = Planes { lower: group.lower, upper: group.upper | group.lower }.octants();
+            // The low bits of the bytes, side by side.
+            let bits = |low: u64| low.wrapping_mul(0x0102_0408_1020_4080) >> 56;
+            planes.lower |= bits(full) << (8 * octant);
+            planes.upper |= (bits(empty) ^ 0xFF) << (8 * octant);
+        }
+        planes
+    }
+}
+
+impl<'a> Classifier for OnFrame<'a> {
+    type Worker = OnFrame<'a>;
+
+    fn frame(&self) -> &Frame {
+        &self.frame
+    }
+
+    fn worker(&self) -> Result<OnFrame<'a>, Error> {
+        Ok(self.clone())
+    }
+
+    fn exterior(&self) -> Tag {
+        if self.grid().is_within(&self.frame) { Tag::Empty } else { Tag::Partial }
+    }
+}
+
+impl Worker for OnFrame<'_> {
+    type Part = ();
+
+    fn frame(&self) -> &Frame {
+        &self.frame
+    }
+
+    fn root(&mut self) -> Result<Verdict<()>, Error> {
+        let end = 2 * self.frame.cells();
+        Ok(self.verdict([0, 1, 2].map(|axis| self.run(axis, [0, end]))))
+    }
+
+    fn split(&mut self, cell: Cell, _: &()) -> Result<[Verdict<()>; 8], Error> {
+        // Planes of half cells, so that the middle of a finest cell is one, too.
+        let shift = 1 + self.frame.depth().saturating_sub(cell.level);
+        let halves = [0, 1, 2].map(|axis| {
+            let first = cell.at[axis] << shift;
+            let planes = [first, first + (1 << (shift - 1)), first + (1 << shift)];
+            let [low, middle, high] = planes.map(|k| self.axes[axis].place(self.grid(), &self.frame, k));
+            [self.axes[axis].run(low, middle), self.axes[axis].run(middle, high)]
+        });
+        Ok(OCTANTS
+            .map(|octant| self.verdict([0, 1, 2].map(|axis| halves[axis][usize::from(octant >> axis & 1)]))))
+    }
+
+    fn recall(&mut self, _: Cell) -> Option<()> {
+        Some(())
+    }
+
+    fn split64(&mut self, cell: Cell, part: &(), parts: &mut Vec<(u8, ())>) -> Result<Planes, Error> {
+        let Some((at, k @ 2..)) = self.cube(cell) else { return split_twice(self, cell, part, parts) };
+        let planes = self.grandchildren(at, k);
+        let mut mixed = planes.partial();
+        parts.try_reserve(mixed.count_ones() as usize)?;
+        while mixed != 0 {
+            parts.push((mixed.trailing_zeros() as u8, ()));
+            mixed &= mixed - 1;
+        }
+        Ok(planes)
+    }
+
+    fn sample(&mut self, cell: Cell, _: &()) -> Result<Option<bool>, Error> {
+        let mut voxel = [0; 3];
+        for axis in 0..3 {
+            // Shifted upward, a centre on a voxel's face lies in the upper one.
+            let place = self.axes[axis].place(self.grid(), &self.frame, 2 * cell.at[axis] + 1);
+            match u32::try_from(place.floor) {
+                Ok(floor) if floor < self.grid().extents()[axis] => voxel[axis] = floor,
+                _ => return Ok(Some(false)),
+            }
+        }
+        Ok(Some(self.volume.field.contains(voxel)))
+    }
+
+    fn inside(&mut self, points: &[[f64; 3]], answers: &mut [Option<bool>]) -> Result<(), Error> {
+        for (&point, answer) in points.iter().zip(answers) {
+            let voxel = self.grid().voxel_of(point);
+            *answer = Some(voxel.is_some_and(|voxel| self.volume.field.contains(voxel)));
+        }
+        Ok(())
+    }
+}
