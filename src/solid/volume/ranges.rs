@@ -86,8 +86,11 @@ fn ranges<T: Value>(grid: &VoxelGrid, values: &[T], control: &Control<'_>) -> Re
                 for y in 4 * by..ny.min(4 * by + 4) {
                     let first = (z * ny + y) * nx;
                     let samples = values.get(first..first + nx).unwrap_or(&[]);
-                    for ((least, greatest), &value) in least.iter_mut().zip(&mut greatest).zip(samples) {
+                    // Two loops, each of which becomes one of vectors.
+                    for (least, &value) in least.iter_mut().zip(samples) {
                         *least = if value < *least { value } else { *least };
+                    }
+                    for (greatest, &value) in greatest.iter_mut().zip(samples) {
                         *greatest = if value > *greatest { value } else { *greatest };
                     }
                     if T::NONE.is_nan() {
