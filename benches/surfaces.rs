@@ -4,7 +4,8 @@
 //! LEAFLESS_MODELS=/path/to/models cargo bench --bench surfaces
 //! ```
 //!
-//! A ball and, with models, the closed bunny, in octrees of 256, 512 and 1024 cells per axis. One thread and two.
+//! A ball and, with models, the closed bunny, in octrees of 256, 512 and 1024 cells per axis. One thread and
+//! two.
 
 use criterion::measurement::WallTime;
 use criterion::{BenchmarkGroup, Criterion, Throughput, criterion_group, criterion_main};

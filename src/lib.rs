@@ -65,6 +65,7 @@
 //! | … a byte of a file checked? | `file/header.rs`, `object.rs`, `section.rs`, `layout.rs` |
 //! | … an allocation refused? | `memory.rs` |
 //! | … where a ray meets a solid, how high it is? | `query/ray/`, `query/columns/` |
+//! | … a closed triangle mesh of a solid? | `surface/cubes.rs`, `smc.rs`, `solid.rs` |
 //! | … the volume of a solid, the distance of two, or of a point? | `query/measure/`, `query/clearance/`, `query/distance/` |
 
 #![no_std]

@@ -64,9 +64,10 @@ impl Samples {
         count
     }
 
-    /// The Euler characteristic of the inside for the connectivity pair (6, 18): of the complex whose vertices are
-    /// the inside samples, whose edges, squares and cubes are those with all corners inside; and where all corners
-    /// of a cube but two, at the ends of a body diagonal, are inside, their ring of edges is filled.
+    /// The Euler characteristic of the inside for the connectivity pair (6, 18): of the complex whose
+    /// vertices are the inside samples, whose edges, squares and cubes are those with all corners inside; and
+    /// where all corners of a cube but two, at the ends of a body diagonal, are inside, their ring of edges
+    /// is filled.
     fn euler(&self) -> i64 {
         let mut sum = 0;
         for at in self.positions(self.n - 1) {
@@ -95,7 +96,8 @@ impl Samples {
 fn check(mesh: &TriangleMesh, dense: &Dense) {
     let samples = Samples::of(dense);
     assert_eq!(euler_of_manifold(mesh), 2 * samples.euler(), "{dense:?}");
-    // Each component of the surface separates one of the inside from one of the outside, and these form a tree.
+    // Each component of the surface separates one of the inside from one of the outside, and these form a
+    // tree.
     let (inside, outside) = (samples.components(true, 1), samples.components(false, 2));
     assert_eq!(components(mesh), inside + outside - 1, "{dense:?}");
     let difference = mesh.volume() - dense.count(Tag::Full) as f64;

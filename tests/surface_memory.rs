@@ -1,5 +1,5 @@
-//! How much memory the extraction of a surface takes beside the mesh. The only test of its program: others would
-//! allocate at the same time.
+//! How much memory the extraction of a surface takes beside the mesh. The only test of its program: others
+//! would allocate at the same time.
 
 mod common;
 

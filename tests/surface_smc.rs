@@ -110,8 +110,8 @@ fn random_bitmaps() {
     }
 }
 
-/// Where no two inside cells meet in less than a face, nor outside ones, and nothing is one cell thick, the mesh is a
-/// 2-manifold.
+/// Where no two inside cells meet in less than a face, nor outside ones, and nothing is one cell thick, the
+/// mesh is a 2-manifold.
 #[test]
 fn manifold_where_cells_are() {
     let frame = lattice_frame(6);
@@ -128,9 +128,9 @@ fn manifold_where_cells_are() {
     }
 }
 
-/// The tetrahedron of the published figures, in a volume of 100³: 16 471 vertices and 32 938 triangles. They are those of
-/// x + y + z ≤ 89 between three planes of the lattice, with vertices at the outer ends: (m + 2) (2 m + 3) of them for
-/// m = 89.
+/// The tetrahedron of the published figures, in a volume of 100³: 16 471 vertices and 32 938 triangles. They
+/// are those of x + y + z ≤ 89 between three planes of the lattice, with vertices at the outer ends: (m + 2)
+/// (2 m + 3) of them for m = 89.
 #[test]
 fn the_published_tetrahedron() {
     let frame = lattice_frame(7);
@@ -153,7 +153,8 @@ fn the_published_tetrahedron() {
 fn corners_of_the_lattice() {
     let frame = Frame::new([0.0; 3], 8.0, 3).unwrap();
     let block = Csg::cuboid([2.0; 3], [5.0; 3]).unwrap();
-    // The corners at the lower faces lie inside, by the shift of all samples, those at the upper ones outside.
+    // The corners at the lower faces lie inside, by the shift of all samples, those at the upper ones
+    // outside.
     let mesh = smc_of(&block, &frame, Snap::Thin, &alone()).unwrap();
     assert_eq!((mesh.bounds(), mesh.volume()), (([2.0; 3], [4.0; 3]), 8.0));
     let mesh = smc_of(&block, &frame, Snap::Fat, &alone()).unwrap();

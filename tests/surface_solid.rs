@@ -5,8 +5,8 @@ mod common;
 use common::surfaces::{assert_balanced, components, euler_of_manifold};
 use common::{Random, alone, lattice_frame, model};
 use leafless::{
-    Affine, AnySolid, Callback, Control, Csg, Error, FillRule, Frame, MeshSolid, Rule, Solid, TriangleMesh,
-    Verdict, VertexPlacement, build, exchange, marching_cubes_of,
+    Affine, AnySolid, Callback, Cell, Classifier, Control, Csg, Error, FillRule, Frame, MeshSolid, Rule,
+    Segment, Solid, TriangleMesh, Verdict, VertexPlacement, Worker, build, exchange, marching_cubes_of,
 };
 
 fn crossings<S: Solid>(solid: &S, frame: &Frame) -> TriangleMesh {
@@ -103,14 +103,58 @@ fn distance_to(mesh: &TriangleMesh, p: [f64; 3]) -> f64 {
     least.sqrt()
 }
 
-#[test]
-fn vertices_of_meshes_lie_on_them() {
+/// A tetrahedron with a fourth corner pulled out of one face.
+fn bumped() -> MeshSolid {
     let corners =
         vec![[0.1, 0.2, 0.3], [0.9, 0.25, 0.2], [0.3, 0.8, 0.1], [0.4, 0.35, 0.85], [0.75, 0.7, 0.6]];
-    // A tetrahedron with a fourth corner pulled out of one face.
     let triangles = vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 4], [2, 3, 4], [3, 1, 4]];
-    let mesh = TriangleMesh::new(corners, triangles).unwrap();
-    let solid = MeshSolid::new(mesh, FillRule::NonZero).unwrap();
+    MeshSolid::new(TriangleMesh::new(corners, triangles).unwrap(), FillRule::NonZero).unwrap()
+}
+
+/// Segments cross a mesh where they first meet a triangle, and the normal leads out there.
+#[test]
+fn segments_cross_meshes() {
+    let solid = bumped();
+    let frame = Frame::new([0.0; 3], 1.0, 4).unwrap();
+    let mut worker = solid.on(&frame, &alone()).unwrap().worker().unwrap();
+    let Verdict::Partial(part) = worker.root().unwrap() else { panic!("the mesh cuts the universe") };
+    let (mut random, mut seen) = (Random(4), [0; 3]);
+    for _ in 0..4000 {
+        let [from, to] = [0, 1].map(|_| [0; 3].map(|_: i32| random.unit()));
+        let way = [0, 1, 2].map(|k| to[k] - from[k]);
+        let cross = |u: [f64; 3], v: [f64; 3]| {
+            [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]]
+        };
+        let dot = |u: [f64; 3], v: [f64; 3]| u[0] * v[0] + u[1] * v[1] + u[2] * v[2];
+        // Möller and Trumbore 1997: parameters of the meeting point, and whether the way leads out.
+        let hits = solid.mesh().triangles().iter().filter_map(|triangle| {
+            let [a, b, c] = triangle.map(|v| solid.mesh().vertices()[v as usize]);
+            let minus = |p: [f64; 3], q: [f64; 3]| [0, 1, 2].map(|k| p[k] - q[k]);
+            let (e, f, s) = (minus(b, a), minus(c, a), minus(from, a));
+            let scale = dot(e, cross(way, f));
+            let (u, v) = (dot(s, cross(way, f)) / scale, dot(way, cross(s, e)) / scale);
+            let t = dot(f, cross(s, e)) / scale;
+            (u > 0.0 && v > 0.0 && u + v < 1.0 && (0.0..1.0).contains(&t)).then_some((t, scale < 0.0))
+        });
+        let first = hits.min_by(|a, b| a.0.total_cmp(&b.0));
+        let found = worker.crossing(Cell::ROOT, &part, &Segment { from, to }).unwrap();
+        match (first, found) {
+            (None, None) => seen[0] += 1,
+            (Some(_), None) => seen[1] += 1,
+            (Some((t, leads_out)), Some(crossing)) => {
+                seen[2] += 1;
+                assert!((crossing.t - t).abs() < 1e-9, "{crossing:?} {t}");
+                assert_eq!(dot(crossing.normal, way) > 0.0, leads_out);
+            }
+            (None, Some(crossing)) => panic!("{crossing:?} from {from:?} to {to:?}"),
+        }
+    }
+    assert!(seen[0] > 500 && seen[1] < 10 && seen[2] > 500, "{seen:?}");
+}
+
+#[test]
+fn vertices_of_meshes_lie_on_them() {
+    let solid = bumped();
     assert!(solid.mesh().volume() > 0.0);
     for depth in [4, 6] {
         let surface = crossings(&solid, &Frame::new([0.0; 3], 1.0, depth).unwrap());

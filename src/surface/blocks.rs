@@ -1,8 +1,8 @@
 //! The blocks of samples that a surface passes through.
 //!
-//! One walk through the tree, which looks at every cell together with its seven neighbours towards +x, +y and +z, and
-//! leaves out where all eight are inside, or all outside. (Ju et al. 2002 walk so in dual contouring.) What is left
-//! are cells at the surface, so that the walk costs as much as there are.
+//! One walk through the tree, which looks at every cell together with its seven neighbours towards +x, +y and
+//! +z, and leaves out where all eight are inside, or all outside. (Ju et al. 2002 walk so in dual
+//! contouring.) What is left are cells at the surface, so that the walk costs as much as there are.
 
 use super::key::Key;
 use super::masks::{CORNER_AT, all, any, bits, configuration, corners};

@@ -9,8 +9,8 @@ use core::ops::Range;
 /// Blocks of a chunk.
 const CHUNK: usize = 1 << 10;
 
-/// Hands out `output` in pieces, one for each chunk of `blocks` blocks: `start(i)` is where that of block i begins.
-/// `work` fills each, and `weight` is what all of them count for in the progress.
+/// Hands out `output` in pieces, one for each chunk of `blocks` blocks: `start(i)` is where that of block i
+/// begins. `work` fills each, and `weight` is what all of them count for in the progress.
 ///
 /// # Errors
 /// Those of `work`, and [`Error::Cancelled`].

@@ -1,9 +1,10 @@
 //! Where an edge between two samples crosses the surface of a solid.
 //!
-//! The edge runs along edges of cells. What is known of these narrows down where it crosses: a FULL or EMPTY cell says on
-//! which side all of its edge lies, and the slabs of a PARTIAL one leave only what lies between their two planes. The next
-//! cell that is asked is as small as what is left. Slabs are thinner than their cells by a factor of the cell's size, so
-//! that each step doubles the number of digits; a plane surface is found at once.
+//! The edge runs along edges of cells. What is known of these narrows down where it crosses: a FULL or EMPTY
+//! cell says on which side all of its edge lies, and the slabs of a PARTIAL one leave only what lies between
+//! their two planes. The next cell that is asked is as small as what is left. Slabs are thinner than their
+//! cells by a factor of the cell's size, so that each step doubles the number of digits; a plane surface is
+//! found at once.
 
 use crate::control::Control;
 use crate::error::Error;
@@ -44,8 +45,9 @@ impl Place {
 }
 
 impl Edge {
-    /// Where it crosses the surface of the solid that `trail` asks on the finest lattice of the universe: 0 at the lower
-    /// end, 1 at the upper one. What is proven narrows it down; of what is left it is the middle.
+    /// Where it crosses the surface of the solid that `trail` asks on the finest lattice of the universe: 0
+    /// at the lower end, 1 at the upper one. What is proven narrows it down; of what is left it is the
+    /// middle.
     ///
     /// # Errors
     /// The solid's own.
@@ -80,8 +82,8 @@ impl Edge {
         }
     }
 
-    /// Narrows the bracket down by cells of a level: by halves, as long as cells in the middle are decided, then from both
-    /// ends. If the solid knows the crossing, that is the answer.
+    /// Narrows the bracket down by cells of a level: by halves, as long as cells in the middle are decided,
+    /// then from both ends. If the solid knows the crossing, that is the answer.
     fn narrow<W: Worker>(
         &self,
         frame: &Frame,
@@ -139,7 +141,8 @@ impl Edge {
         Segment { from, to }
     }
 
-    /// The cell of a level, at least the frame's depth, that has piece `number` of the edge as one of its edges.
+    /// The cell of a level, at least the frame's depth, that has piece `number` of the edge as one of its
+    /// edges.
     fn cell(&self, frame: &Frame, level: u8, number: u32) -> (Cell, Piece) {
         let finer = level - frame.depth();
         let pieces = 1u32 << finer;

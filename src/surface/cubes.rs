@@ -18,28 +18,29 @@ use crate::octree::OctreeRef;
 use crate::op::{Rule, build};
 use alloc::vec::Vec;
 
-/// The surface of an octree by marching cubes: a closed mesh, with vertices half-way between the centres of finest
-/// cells of which one lies inside and the other outside.
+/// The surface of an octree by marching cubes: a closed mesh, with vertices half-way between the centres of
+/// finest cells of which one lies inside and the other outside.
 ///
-/// Everything outside of the universe counts as EMPTY, so that the mesh is closed. Every edge belongs to exactly two
-/// triangles, in opposite directions, also where cells touch in an edge or a corner: inside cells hang together by
-/// faces alone, outside ones by faces and edges. Triangles turn counter-clockwise as seen from outside. No triangle
-/// is degenerate, and no two vertices are equal. Vertices and triangles come in Morton order of the cells.
+/// Everything outside of the universe counts as EMPTY, so that the mesh is closed. Every edge belongs to
+/// exactly two triangles, in opposite directions, also where cells touch in an edge or a corner: inside cells
+/// hang together by faces alone, outside ones by faces and edges. Triangles turn counter-clockwise as seen
+/// from outside. No triangle is degenerate, and no two vertices are equal. Vertices and triangles come in
+/// Morton order of the cells.
 ///
 /// `resolve` says what PARTIAL cells count as; `None` will do for trees without any.
 ///
-/// The method is that of Lorensen and Cline (1987), with a table that is made by one rule for faces, so that cells
-/// always fit together.
+/// The method is that of Lorensen and Cline (1987), with a table that is made by one rule for faces, so that
+/// cells always fit together.
 ///
-/// O(elements of the tree + mesh). Beside the mesh it takes 56 bytes for each block of 4³ cells at the surface, which
-/// is below a fifth of the mesh for surfaces that are not all corners. The result is the same for any number of
-/// threads.
+/// O(elements of the tree + mesh). Beside the mesh it takes 56 bytes for each block of 4³ cells at the
+/// surface, which is below a fifth of the mesh for surfaces that are not all corners. The result is the same
+/// for any number of threads.
 ///
 /// # Errors
-/// [`Error::Argument`] if the tree has PARTIAL cells and `resolve` is `None`, or if the frame is so far from the
-/// origin that doubles cannot tell its cells apart; [`MeshError::TooMany`](crate::MeshError::TooMany) for more than
-/// 2^32 − 1 vertices or triangles; [`Error::Damaged`]; [`Error::OutOfMemory`]; [`Error::Cancelled`]; and with
-/// [`Resolve::Source`] what the solid refuses.
+/// [`Error::Argument`] if the tree has PARTIAL cells and `resolve` is `None`, or if the frame is so far from
+/// the origin that doubles cannot tell its cells apart; [`MeshError::TooMany`](crate::MeshError::TooMany) for
+/// more than 2^32 − 1 vertices or triangles; [`Error::Damaged`]; [`Error::OutOfMemory`];
+/// [`Error::Cancelled`]; and with [`Resolve::Source`] what the solid refuses.
 ///
 /// ```
 /// use leafless::{Control, Csg, FillRule, Frame, Rule, build, marching_cubes};

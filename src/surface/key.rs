@@ -2,8 +2,8 @@
 
 use super::masks::bits;
 
-/// Where a block lies: the bits of its three coordinates, interleaved. Coordinates are biased, because blocks lie
-/// before the universe, too: there are the dual cells between its first samples and what is around it.
+/// Where a block lies: the bits of its three coordinates, interleaved. Coordinates are biased, because blocks
+/// lie before the universe, too: there are the dual cells between its first samples and what is around it.
 pub(super) type Key = u64;
 
 /// The bits of x.
@@ -49,7 +49,8 @@ pub(super) fn node(key: Key, j: usize) -> Key {
     result
 }
 
-/// The first place from `from` on in a list that ascends whose key is at least `key`. O(log of how far that is).
+/// The first place from `from` on in a list that ascends whose key is at least `key`. O(log of how far that
+/// is).
 #[inline(always)]
 pub(super) fn seek<T>(list: &[T], from: usize, key: Key, key_of: impl Fn(&T) -> Key) -> usize {
     let rest = list.get(from..).unwrap_or_default();

@@ -15,7 +15,8 @@ impl Lattice {
     /// The centres of the cells of a frame.
     ///
     /// # Errors
-    /// [`Error::Argument`] or [`MeshError::TooLarge`] if doubles cannot tell the vertices of a surface apart there.
+    /// [`Error::Argument`] or [`MeshError::TooLarge`] if doubles cannot tell the vertices of a surface apart
+    /// there.
     pub fn new(frame: &Frame) -> Result<Lattice, Error> {
         let (origin, half) = (frame.origin(), 0.5 * frame.cell_size());
         let farthest = origin.iter().fold(0.0, |most: f64, o| most.max(o.abs())) + 2.0 * frame.edge();
@@ -31,8 +32,8 @@ impl Lattice {
         Ok(Lattice { origin, half })
     }
 
-    /// The coordinate on an axis `k` half cells behind the frame's origin: odd numbers are samples. Greater `k` have
-    /// greater coordinates.
+    /// The coordinate on an axis `k` half cells behind the frame's origin: odd numbers are samples. Greater
+    /// `k` have greater coordinates.
     #[inline(always)]
     pub fn coordinate(&self, axis: usize, k: i32) -> f64 {
         let x = self.origin[axis] + f64::from(k) * self.half;

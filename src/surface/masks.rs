@@ -1,11 +1,13 @@
 //! Samples of 4³ blocks as words, and what lies beside them.
 //!
-//! The eight *nodes* of a block are the block itself and its neighbours towards +x, +y and +z: node j is j & 1 blocks
-//! further along x, j >> 1 & 1 along y, j >> 2 along z. A dual cell belongs to the block of its lowest sample.
+//! The eight *nodes* of a block are the block itself and its neighbours towards +x, +y and +z: node j is j &
+//! 1 blocks further along x, j >> 1 & 1 along y, j >> 2 along z. A dual cell belongs to the block of its
+//! lowest sample.
 
 use crate::lattice::morton::{self, SLAB};
 
-/// The cells of a block for which the cell one place further along `axis` is set; `beyond` is the block there.
+/// The cells of a block for which the cell one place further along `axis` is set; `beyond` is the block
+/// there.
 #[inline(always)]
 pub(super) const fn next(own: u64, beyond: u64, axis: usize) -> u64 {
     // The first slab of the block beyond is what the last slab of this one has beside it.
@@ -17,8 +19,8 @@ pub(super) const fn next(own: u64, beyond: u64, axis: usize) -> u64 {
 pub(super) fn corners(nodes: [u64; 8]) -> [u64; 8] {
     let mut words = nodes;
     for axis in 0..3 {
-        // The corners that are further along this axis, from those nodes; corners and nodes before this axis and
-        // after it stay apart.
+        // The corners that are further along this axis, from those nodes; corners and nodes before this axis
+        // and after it stay apart.
         for j in 0..8 {
             if j >> axis & 1 == 0 {
                 words[j | 1 << axis] = next(words[j], words[j | 1 << axis], axis);

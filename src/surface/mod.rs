@@ -1,19 +1,21 @@
 //! Surfaces: closed triangle meshes of solids.
 //!
-//! A surface separates *samples* that lie inside from those that lie outside. The samples of an octree are its finest
-//! cells, at their centres. Around the universe everything is outside.
+//! A surface separates *samples* that lie inside from those that lie outside. The samples of an octree are
+//! its finest cells, at their centres. Around the universe everything is outside.
 //!
-//! All methods share one walk, which finds the blocks of 4³ samples that the surface passes through, with their
-//! samples as 64-bit words; so extraction costs as much as there is surface. The vertices of a block have consecutive
-//! numbers, and the number of one is found by counting bits. Everything is counted before memory is asked for.
+//! All methods share one walk, which finds the blocks of 4³ samples that the surface passes through, with
+//! their samples as 64-bit words; so extraction costs as much as there is surface. The vertices of a block
+//! have consecutive numbers, and the number of one is found by counting bits. Everything is counted before
+//! memory is asked for.
 //!
-//! From the bottom up, each file uses only files named before it: `table` (marching cubes, cell by cell), `masks`
-//! (blocks as words), `key` (the order of blocks), `samples` (an octree as samples), `blocks` (the walk), `lattice`
-//! (where samples lie), `chunks` (threads), `resolve` (undecided cells), `cubes` (marching cubes), `snapped` and `smc`
-//! (simple marching cubes), `crossing` (edges on a solid's surface), `solid` (any solid).
+//! From the bottom up, each file uses only files named before it: `table` (marching cubes, cell by cell),
+//! `masks` (blocks as words), `key` (the order of blocks), `samples` (an octree as samples), `blocks` (the
+//! walk), `lattice` (where samples lie), `chunks` (threads), `resolve` (undecided cells), `cubes` (marching
+//! cubes), `snapped` and `smc` (simple marching cubes), `crossing` (edges on a solid's surface), `solid` (any
+//! solid).
 //!
-//! Solids that are no octrees are sampled at the corners of the lattice, as an octree whose cells have these corners as
-//! centres.
+//! Solids that are no octrees are sampled at the corners of the lattice, as an octree whose cells have these
+//! corners as centres.
 
 mod blocks;
 mod chunks;

@@ -32,8 +32,8 @@ impl Sets {
     const SOLID: Sets = Sets { solid: !0, void: 0, branch: 0, parent: 0, long: 0 };
 }
 
-/// The samples of an octree. Its lattice is the smallest of 4^levels cells per axis; there is nothing around the
-/// universe.
+/// The samples of an octree. Its lattice is the smallest of 4^levels cells per axis; there is nothing around
+/// the universe.
 #[derive(Clone, Copy)]
 pub(super) struct Samples<'a> {
     tree: OctreeRef<'a>,

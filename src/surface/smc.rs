@@ -23,11 +23,11 @@ use core::ops::Range;
 /// Where simple marching cubes puts its vertices.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Snap {
-    /// At the outer end of each edge between an inside and an outside sample: the mesh contains the centres of all inside
-    /// cells.
+    /// At the outer end of each edge between an inside and an outside sample: the mesh contains the centres
+    /// of all inside cells.
     Fat,
-    /// At the inner end: the mesh has the centres of inside cells as vertices. What is one cell thick has no thickness
-    /// then, and what is one cell long and wide, too, is nothing.
+    /// At the inner end: the mesh has the centres of inside cells as vertices. What is one cell thick has no
+    /// thickness then, and what is one cell long and wide, too, is nothing.
     Thin,
 }
 
@@ -40,20 +40,22 @@ impl Snap {
     }
 }
 
-/// The surface of an octree by simple marching cubes: marching cubes with each vertex moved to one end of its edge, so
-/// that all vertices are centres of finest cells, and triangles without area dropped. All normals have one of 13
-/// directions up to sign, with components −1, 0 and 1.
+/// The surface of an octree by simple marching cubes: marching cubes with each vertex moved to one end of its
+/// edge, so that all vertices are centres of finest cells, and triangles without area dropped. All normals
+/// have one of 13 directions up to sign, with components −1, 0 and 1.
 ///
-/// The mesh is closed and *balanced*: every edge is run along as often in one direction as in the other. It is no
-/// 2-manifold where sheets touch: where inside cells meet in an edge or a corner only, where a gap between them is one cell
-/// wide ([`Snap::Fat`]), or where they are one cell thick ([`Snap::Thin`]); there four triangles or more meet on an
-/// edge, and two may lie on each other, facing opposite ways. Vertices that are samples of the same cell are one. All
-/// vertices are used. Vertices and triangles come in Morton order of the cells.
+/// The mesh is closed and *balanced*: every edge is run along as often in one direction as in the other. It
+/// is no 2-manifold where sheets touch: where inside cells meet in an edge or a corner only, where a gap
+/// between them is one cell wide ([`Snap::Fat`]), or where they are one cell thick ([`Snap::Thin`]); there
+/// four triangles or more meet on an edge, and two may lie on each other, facing opposite ways. Vertices that
+/// are samples of the same cell are one. All vertices are used. Vertices and triangles come in Morton order
+/// of the cells.
 ///
-/// Everything outside of the universe counts as EMPTY. `resolve` is as in [`marching_cubes`](crate::marching_cubes).
+/// Everything outside of the universe counts as EMPTY. `resolve` is as in
+/// [`marching_cubes`](crate::marching_cubes).
 ///
-/// O(elements of the tree + mesh). Beside the mesh it takes up to 128 bytes for each block of 4³ cells at the surface.
-/// The result is the same for any number of threads.
+/// O(elements of the tree + mesh). Beside the mesh it takes up to 128 bytes for each block of 4³ cells at the
+/// surface. The result is the same for any number of threads.
 ///
 /// # Errors
 /// As [`marching_cubes`](crate::marching_cubes).

@@ -1,15 +1,15 @@
 //! The tables of simple marching cubes, made from that of marching cubes when the library is compiled.
 //!
-//! Each vertex on a cut edge moves to one end of the edge, always the outer or always the inner one. Triangles whose
-//! corners then coincide are dropped. All others have one of 13 directions of normals up to sign, with components −1, 0
-//! and 1: so it is with any three corners of a cube.
+//! Each vertex on a cut edge moves to one end of the edge, always the outer or always the inner one.
+//! Triangles whose corners then coincide are dropped. All others have one of 13 directions of normals up to
+//! sign, with components −1, 0 and 1: so it is with any three corners of a cube.
 
 use super::table::{ENDS, TABLE, Triangles};
 
 /// One table of simple marching cubes.
 pub(super) struct Snapped {
-    /// The triangles of each configuration, their corners being corners of the cube; counter-clockwise as seen from
-    /// outside.
+    /// The triangles of each configuration, their corners being corners of the cube; counter-clockwise as
+    /// seen from outside.
     pub triangles: [Triangles; 256],
     /// The corners that these use, as bits.
     pub used: [u8; 256],

@@ -27,33 +27,36 @@ pub enum VertexPlacement {
     Midpoint,
     /// Where the edge crosses the solid's surface. If it does so several times, at one of them.
     ///
-    /// The solid is asked for the crossing ([`Worker::crossing`](crate::Worker::crossing)). If it cannot tell, cells
-    /// along the edge are split, down to the depth of 20, and their verdicts and slabs narrow down where the
-    /// crossing is. With slabs, as half-spaces, CSG and meshes know them, it is found to rounding in a few
-    /// steps; without, to a finest cell of depth 20 or somewhat more.
+    /// The solid is asked for the crossing ([`Worker::crossing`](crate::Worker::crossing)). If it cannot
+    /// tell, cells along the edge are split, down to the depth of 20, and their verdicts and slabs narrow
+    /// down where the crossing is. With slabs, as half-spaces, CSG and meshes know them, it is found to
+    /// rounding in a few steps; without, to a finest cell of depth 20 or somewhat more.
     ///
-    /// Vertices that then lie at one place, which is a sample, are one vertex, and triangles without area are dropped:
-    /// so boxes whose faces lie on the lattice are boxes. Where the solid has no thickness at a sample, such
-    /// a mesh is closed and balanced, but more than two triangles may meet on an edge.
+    /// Vertices that then lie at one place, which is a sample, are one vertex, and triangles without area are
+    /// dropped. Faces that lie in planes of the lattice come out exactly there; edges between them are cut off
+    /// by one cell where samples on both faces lie outside. Where the solid has no thickness at a sample, the
+    /// mesh is closed and balanced, but more than two triangles may meet on an edge.
     Crossing,
 }
 
-/// The surface of a solid by marching cubes, sampled at the corners of the cells of `frame`: 2^depth + 1 to an axis.
+/// The surface of a solid by marching cubes, sampled at the corners of the cells of `frame`: 2^depth + 1 to
+/// an axis.
 ///
-/// The mesh is closed and oriented as that of [`marching_cubes`](crate::marching_cubes). What the solid has outside of the
-/// frame's universe is cut off. There vertices lie on the boundary of the universe with
-/// [`VertexPlacement::Crossing`], else half a cell beyond it. A corner on the solid's surface is decided by the shift
-/// by (ε, ε², ε³) that all samples share.
+/// The mesh is closed and oriented as that of [`marching_cubes`](crate::marching_cubes). What the solid has
+/// outside of the frame's universe is cut off. There vertices lie on the boundary of the universe with
+/// [`VertexPlacement::Crossing`], else half a cell beyond it. A corner on the solid's surface is decided by
+/// the shift by (ε, ε², ε³) that all samples share.
 ///
-/// The solid is built on a frame of twice the edge and one more level, whose cells have the corners as centres.
-/// So the time is that of [`build`](crate::build) with [`Rule::Sampled`](crate::Rule::Sampled), and for crossings some
-/// splits a vertex. (A solid that goes on beyond the universe is sampled there, too.) The result is the same for
-/// any number of threads.
+/// The solid is built on a frame of twice the edge and one more level, whose cells have the corners as
+/// centres. So the time is that of [`build`](crate::build) with [`Rule::Sampled`](crate::Rule::Sampled), and
+/// for crossings some splits a vertex. (A solid that goes on beyond the universe is sampled there, too.) The
+/// result is the same for any number of threads.
 ///
 /// # Errors
 /// [`Error::Argument`] if the depth of the frame is 20, which leaves no level, or as
 /// [`marching_cubes`](crate::marching_cubes); [`Error::NotSampled`] if the solid cannot decide points;
-/// [`Error::FrameMismatch`] for stored octrees, which have samples of their own; and as [`build`](crate::build).
+/// [`Error::FrameMismatch`] for stored octrees, which have samples of their own; and as
+/// [`build`](crate::build).
 ///
 /// ```
 /// use leafless::{Control, Csg, Frame, VertexPlacement, marching_cubes_of};
@@ -98,8 +101,8 @@ pub fn marching_cubes_of<S: Solid>(
     })
 }
 
-/// The surface of a solid by simple marching cubes, sampled as by [`marching_cubes_of`]: its vertices are corners of the
-/// lattice, or of cells beside the universe. Else as [`smc`](crate::smc).
+/// The surface of a solid by simple marching cubes, sampled as by [`marching_cubes_of`]: its vertices are
+/// corners of the lattice, or of cells beside the universe. Else as [`smc`](crate::smc).
 ///
 /// # Errors
 /// As [`marching_cubes_of`].

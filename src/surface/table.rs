@@ -1,28 +1,30 @@
 //! The marching-cubes table, computed when the library is compiled.
 //!
-//! A *dual cell* is a cube between eight samples. Its *configuration* is the byte of which corners lie inside. The
-//! surface crosses those edges of the cube, the *cut* edges, of which one end lies inside; there it has a vertex.
+//! A *dual cell* is a cube between eight samples. Its *configuration* is the byte of which corners lie
+//! inside. The surface crosses those edges of the cube, the *cut* edges, of which one end lies inside; there
+//! it has a vertex.
 //!
-//! **One rule for faces.** On each face of the cube, every run of inside corners is cut off by one segment. So two
-//! inside corners at the ends of a face's diagonal are separated there, and the two outside corners are joined. The
-//! rule looks at nothing but the face, so that both cells at a face see the same segments. (Lorensen and Cline 1987
-//! turned fifteen cases and their complements about, and left holes between them: Dürst 1988.)
+//! **One rule for faces.** On each face of the cube, every run of inside corners is cut off by one segment.
+//! So two inside corners at the ends of a face's diagonal are separated there, and the two outside corners
+//! are joined. The rule looks at nothing but the face, so that both cells at a face see the same segments.
+//! (Lorensen and Cline 1987 turned fifteen cases and their complements about, and left holes between them:
+//! Dürst 1988.)
 //!
-//! **Loops.** Each cut edge begins one segment and ends one. The segments form loops, and each loop bounds one
-//! disc. So inside samples hang together by faces of voxels (6-connected), outside ones by faces and edges
-//! (18-connected). That is the pair (6, 18): Lachaud and Montanvert, *Continuous analogs of digital boundaries*, 2000.
-//! The face rule alone also allows the pair (6, 26): then two outside corners at the ends of a body diagonal, in a cube
-//! whose other corners lie inside, are joined by a tunnel. Walls of two voxels across a body diagonal would be full of
-//! tunnels, so there are none.
+//! **Loops.** Each cut edge begins one segment and ends one. The segments form loops, and each loop bounds
+//! one disc. So inside samples hang together by faces of voxels (6-connected), outside ones by faces and
+//! edges (18-connected). That is the pair (6, 18): Lachaud and Montanvert, *Continuous analogs of digital
+//! boundaries*, 2000. The face rule alone also allows the pair (6, 26): then two outside corners at the ends
+//! of a body diagonal, in a cube whose other corners lie inside, are joined by a tunnel. Walls of two voxels
+//! across a body diagonal would be full of tunnels, so there are none.
 //!
-//! **Triangles.** A loop is cut into triangles by diagonals, none of which lies in a face of the cube: a diagonal in a
-//! face could be an edge of the neighbouring cell's triangles, too, and four triangles would meet on it. With this
-//! restriction every edge of the mesh belongs to exactly two triangles, in opposite directions, whatever the samples.
-//! Each loop of each configuration allows such triangles; that is checked when the table is made. Of the allowed
-//! ones, those with the shortest diagonals are taken.
+//! **Triangles.** A loop is cut into triangles by diagonals, none of which lies in a face of the cube: a
+//! diagonal in a face could be an edge of the neighbouring cell's triangles, too, and four triangles would
+//! meet on it. With this restriction every edge of the mesh belongs to exactly two triangles, in opposite
+//! directions, whatever the samples. Each loop of each configuration allows such triangles; that is checked
+//! when the table is made. Of the allowed ones, those with the shortest diagonals are taken.
 //!
-//! Corner k lies at (k & 1, k >> 1 & 1, k >> 2 & 1). Edge 4 a + p runs along axis a; the bits of p are its place on
-//! the other two axes, the lower axis first.
+//! Corner k lies at (k & 1, k >> 1 & 1, k >> 2 & 1). Edge 4 a + p runs along axis a; the bits of p are its
+//! place on the other two axes, the lower axis first.
 
 /// Most triangles of a configuration.
 pub(super) const MOST: usize = 5;
@@ -44,7 +46,8 @@ impl Triangles {
     }
 }
 
-/// The triangles of each configuration, their corners being edges of the cube; counter-clockwise as seen from outside.
+/// The triangles of each configuration, their corners being edges of the cube; counter-clockwise as seen from
+/// outside.
 pub(super) static MARCHING_CUBES: [Triangles; 256] = TABLE;
 
 /// The same as a constant, for other tables.
@@ -172,8 +175,8 @@ struct Loop {
     len: usize,
 }
 
-/// The triangles between the edges `first..=last` of a loop with the least sum of diagonals: that sum, and for each
-/// pair the corner of the triangle on it. (Klincsek 1980: minimal triangulations of polygons.)
+/// The triangles between the edges `first..=last` of a loop with the least sum of diagonals: that sum, and
+/// for each pair the corner of the triangle on it. (Klincsek 1980: minimal triangulations of polygons.)
 const fn best(polygon: &Loop) -> (u32, [[usize; 12]; 12]) {
     let (mut cost, mut apex) = ([[0u32; 12]; 12], [[0; 12]; 12]);
     let mut width = 2;

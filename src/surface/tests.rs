@@ -49,8 +49,8 @@ fn every_face_is_cut_by_the_rule() {
                     .filter(|(a, b)| is_in_face(*a, axis, side) && is_in_face(*b, axis, side))
                     .copied()
                     .collect();
-                // Each segment has the inside corners of one run on its left, seen from outside of the cube; an
-                // inside corner alone has both of its edges cut.
+                // Each segment has the inside corners of one run on its left, seen from outside of the cube;
+                // an inside corner alone has both of its edges cut.
                 let corners: Vec<u8> =
                     (0..8).filter(|c| c >> axis & 1 == side && configuration >> c & 1 == 1).collect();
                 let diagonal = corners.len() == 2 && (corners[0] ^ corners[1]).count_ones() == 2;
@@ -158,7 +158,8 @@ fn triangles_face_outward() {
     assert!([[0, 8, 4], [8, 4, 0], [4, 0, 8]].contains(&[a, b, c]));
 }
 
-/// A random bitmap of `edge` samples per axis, somewhere in an octree of this depth: bit by bit, with `chance` in 256.
+/// A random bitmap of `edge` samples per axis, somewhere in an octree of this depth: bit by bit, with
+/// `chance` in 256.
 fn bitmap(depth: u8, edge: u32, chance: u64, state: &mut u64) -> Vec<bool> {
     let n = 1u32 << depth;
     let mut random = || {
@@ -208,8 +209,8 @@ fn octree(depth: u8, bits: &[bool]) -> Octree {
     writer.finish(frame, root, Tag::Empty).unwrap()
 }
 
-/// Twelve times the volume of each configuration in a cube of edge 2 around the origin, by divergence: its triangles,
-/// and what it has of the faces.
+/// Twelve times the volume of each configuration in a cube of edge 2 around the origin, by divergence: its
+/// triangles, and what it has of the faces.
 fn volumes() -> Vec<i32> {
     let middle = |edge: u8| {
         let [a, b] = ENDS[edge as usize];
@@ -240,8 +241,8 @@ fn volumes() -> Vec<i32> {
 
 type Facet = [[i64; 3]; 3];
 
-/// The triangles of marching cubes in half cells, cell by cell of a dense array, and twelve times their volume in
-/// eighths of cells.
+/// The triangles of marching cubes in half cells, cell by cell of a dense array, and twelve times their
+/// volume in eighths of cells.
 fn dense(depth: u8, bits: &[bool], volumes: &[i32]) -> (Vec<Facet>, i64) {
     let n = 1i64 << depth;
     let inside = |at: [i64; 3]| {

@@ -19,8 +19,8 @@ pub fn assert_balanced(mesh: &TriangleMesh) {
     assert!(used.iter().all(|&used| used), "a vertex is not used");
 }
 
-/// Every edge belongs to two triangles, in opposite directions; every vertex is used; around each its triangles form
-/// one fan. Returns V − E + F.
+/// Every edge belongs to two triangles, in opposite directions; every vertex is used; around each its
+/// triangles form one fan. Returns V − E + F.
 #[track_caller]
 pub fn euler_of_manifold(mesh: &TriangleMesh) -> i64 {
     let mut next = HashMap::new();

@@ -18,7 +18,7 @@
 //! (the caps' winding number), `reach` (how far an open surface's solid may reach), `scan` (blocks of 64³ cells),
 //! `on_frame` (a mesh on a frame, and what is known of a cell), `local` (triangles in a cell's coordinates), `base` (a
 //! point whose winding number is known), `fronts` (on which sides of triangles the solid lies), `integral` (moments and
-//! areas), `slab` (enclosures), `open` (cells of an open surface), `split` (the solid, its classifier and its workers).
+//! areas), `slab` (enclosures), `segment` (crossings), `open` (cells of an open surface), `split` (the solid, its classifier and its workers).
 
 mod base;
 mod crossing;
@@ -31,6 +31,7 @@ mod overlap;
 mod placed;
 mod reach;
 mod scan;
+mod segment;
 mod slab;
 mod split;
 mod winding;

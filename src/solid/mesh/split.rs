@@ -14,7 +14,9 @@ use crate::error::{Error, MeshError};
 use crate::lattice::{Affine, Bounds, Cell, CellMoments, Frame, Interval, VolumeMoments};
 use crate::mesh::{FillRule, Loops, MeshMoments, Sides, TriangleMesh};
 use crate::octree::{Block, Proof, Tag};
-use crate::solid::{Classifier, Enclosure, Fingerprint, Fingerprinter, Motion, Solid, Verdict, Worker};
+use crate::solid::{
+    Classifier, Crossing, Enclosure, Fingerprint, Fingerprinter, Motion, Segment, Solid, Verdict, Worker,
+};
 use alloc::boxed::Box;
 use alloc::sync::Arc;
 use alloc::vec::Vec;
@@ -473,6 +475,17 @@ impl Worker for MeshWorker {
         }
         let (at, size) = extent(cell, mesh.placed.frame.depth());
         Ok(mesh.open_slab(surroundings, list(&mesh.roots, triangles, part), at, size, *part))
+    }
+
+    fn crossing(
+        &mut self,
+        cell: Cell,
+        part: &MeshPart,
+        segment: &Segment,
+    ) -> Result<Option<Crossing>, Error> {
+        let MeshWorker { mesh, triangles, surroundings, .. } = self;
+        let view = view(mesh, triangles, surroundings, cell, part);
+        Ok(view.and_then(|view| view.first_crossing(segment, mesh.fill)))
     }
 
     fn sample(&mut self, cell: Cell, part: &MeshPart) -> Result<Option<bool>, Error> {

@@ -1,0 +1,78 @@
+//! Where a segment first crosses the boundary of what a mesh encloses.
+//!
+//! The winding number at the segment's beginning is found on the way from a base. From there on it changes at each
+//! triangle that the segment passes through, and where the fill rule's answer changes is the boundary. Whether the
+//! segment passes through a triangle is decided with the bounds of all that is rounded; where that is not sure, as
+//! next to edges of triangles, there is no answer.
+
+use super::local::{Point, UNIT, View, cross, dot, minus};
+use crate::mesh::FillRule;
+use crate::solid::{Crossing, Segment};
+
+/// A segment that passes through more triangles in one cell gets no answer.
+const MOST: usize = 16;
+
+/// A triangle that a segment passes through.
+#[derive(Clone, Copy)]
+struct Hit {
+    t: f64,
+    /// What the winding number changes by.
+    step: i32,
+    normal: Point,
+}
+
+impl View<'_> {
+    /// Where a segment in the cell first crosses the boundary; `None` if it does not, or that is not sure.
+    pub(super) fn first_crossing(&self, segment: &Segment, fill: FillRule) -> Option<Crossing> {
+        if self.displacement() > 0.0 {
+            return None;
+        }
+        let base = self.base()?;
+        let [from, to] = [segment.from, segment.to].map(|p| self.local(p));
+        // What the ends are off by: two roundings of lattice coordinates, and one here.
+        let frame = &self.placed.frame;
+        let error = 4.0 * UNIT * f64::from(frame.cells()) * self.scale();
+        let mut winding = base.winding;
+        let mut hits = [Hit { t: f64::INFINITY, step: 0, normal: [0.0; 3] }; MOST];
+        let mut count = 0;
+        for &triangle in self.triangles {
+            let mut seen = self.seen(triangle);
+            seen.error += error;
+            winding += seen.pierced(&base.at, &from)?;
+            let step = seen.pierced(&from, &to)?;
+            if step != 0 {
+                // In model space, so that the bits do not depend on the cell.
+                let [a, b, c] = self.placed.original(triangle);
+                let normal = cross(&minus(&b, &a), &minus(&c, &a));
+                let way = dot(&normal, &minus(&segment.to, &segment.from));
+                let t = dot(&normal, &minus(&a, &segment.from)) / way;
+                if !t.is_finite() {
+                    return None;
+                }
+                *hits.get_mut(count)? = Hit { t: t.clamp(0.0, 1.0), step, normal };
+                count += 1;
+            }
+        }
+        let hits = &mut hits[..count];
+        hits.sort_unstable_by(|a, b| a.t.total_cmp(&b.t));
+        for hit in hits {
+            let before = fill.encloses(winding);
+            winding += hit.step;
+            if fill.encloses(winding) != before {
+                // A way that leaves the solid and passes the triangle from behind leaves along its normal.
+                let is_along = hit.step < 0;
+                let normal = if is_along == before { hit.normal } else { hit.normal.map(|n| -n) };
+                return Some(Crossing { t: hit.t, normal });
+            }
+        }
+        None
+    }
+
+    /// A point of model space in coordinates of the cell.
+    fn local(&self, p: Point) -> Point {
+        let half = f64::from(self.size) / 2.0;
+        core::array::from_fn(|axis| {
+            (self.placed.frame.scaled(axis, p[axis]) - (f64::from(self.at[axis]) + half)) * self.scale()
+        })
+    }
+}
