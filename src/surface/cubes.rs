@@ -46,7 +46,7 @@ use alloc::vec::Vec;
 /// use leafless::{Control, Csg, FillRule, Frame, Rule, build, marching_cubes};
 /// let frame = Frame::new([-1.0; 3], 2.0, 6)?;
 /// let ball = build(&Csg::ball([0.0; 3], 0.75)?, &frame, Rule::Sampled, &Control::default())?;
-/// let mesh = marching_cubes(&ball, None, &Control::default())?;
+/// let mesh = marching_cubes(ball.view(), None, &Control::default())?;
 /// mesh.check_closed(FillRule::NonZero)?;
 /// assert!((mesh.volume() - 1.767).abs() < 0.01);
 /// # Ok::<(), leafless::Error>(())

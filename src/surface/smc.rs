@@ -65,9 +65,9 @@ impl Snap {
 /// let frame = Frame::new([0.0; 3], 8.0, 3)?;
 /// let block = build(&Csg::cuboid([2.0; 3], [5.0; 3])?, &frame, Rule::Sampled, &Control::default())?;
 /// // From the centre of the cell before the block to that of the cell behind it.
-/// let mesh = smc(&block, Snap::Fat, None, &Control::default())?;
+/// let mesh = smc(block.view(), Snap::Fat, None, &Control::default())?;
 /// assert_eq!(mesh.bounds(), ([1.5; 3], [5.5; 3]));
-/// let mesh = smc(&block, Snap::Thin, None, &Control::default())?;
+/// let mesh = smc(block.view(), Snap::Thin, None, &Control::default())?;
 /// assert_eq!(mesh.bounds(), ([2.5; 3], [4.5; 3]));
 /// assert_eq!(mesh.volume(), 8.0);
 /// # Ok::<(), leafless::Error>(())
