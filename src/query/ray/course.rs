@@ -99,7 +99,7 @@ impl Course {
     /// `at` of edge 1 there.
     #[inline(always)]
     pub(super) fn leaves(&self, at: [u32; 4], shift: u32) -> (f64x4, f64x4) {
-        let far = f64x4::from(at.map(|a| ((a >> shift) + 1 << shift) as i32 as f64));
+        let far = f64x4::from(at.map(|a| (((a >> shift) + 1) << shift) as i32 as f64));
         (far, (far - f64x4::from(self.from)) * f64x4::from(self.slowness))
     }
 
