@@ -5,8 +5,10 @@ use crate::input::Input;
 use crate::output::{self, Output, number, seconds};
 use crate::progress::watched;
 use crate::report::Info;
+use crate::volume::Sampling;
 use clap::Args;
-use leafless::{Control, Error, Metadata, Octree, OctreeRef};
+use leafless::exchange::VolumeFormat;
+use leafless::{Control, Error, Metadata, Octree, OctreeRef, file};
 use std::ffi::OsString;
 use std::time::Instant;
 
@@ -14,7 +16,7 @@ use std::time::Instant;
 /// one of them.
 #[derive(Args)]
 pub struct Arguments {
-    /// Solids (.lfl), two or more; one of them may be `-` for standard input
+    /// Solids (.lfl) or volumes (NRRD, MetaImage), two or more; one of them may be `-` for standard input
     #[arg(required = true, num_args = 2.., value_name = "FILE")]
     files: Vec<OsString>,
     #[command(flatten)]
@@ -24,7 +26,7 @@ pub struct Arguments {
 /// Solid where there was none, and none where there was some; also outside of the bounds.
 #[derive(Args)]
 pub struct ComplementArguments {
-    /// Solid (.lfl), or `-` for standard input
+    /// Solid (.lfl) or volume (NRRD, MetaImage), or `-` for standard input
     file: OsString,
     #[command(flatten)]
     common: Common,
@@ -38,6 +40,8 @@ struct Common {
     /// Threads to use; 0: as many as there are processors. The result is the same
     #[arg(long, default_value_t = 0, value_name = "N", value_parser = crate::voxelize::threads)]
     threads: usize,
+    #[command(flatten)]
+    sampling: Sampling,
 }
 
 /// What is made of the solids.
@@ -101,7 +105,7 @@ fn combine(operation: Operation, inputs: &[Input], common: &Common) -> Result<()
     let mut octrees = Vec::with_capacity(inputs.len());
     for input in inputs {
         // What is proven of the result is proven only if the operands are what their makers wrote.
-        octrees.push(input.octree(true)?.0);
+        octrees.push(operand(input, common)?);
     }
     for (input, octree) in inputs.iter().zip(&octrees).skip(1) {
         if octree.frame() != octrees[0].frame() {
@@ -134,6 +138,18 @@ fn combine(operation: Operation, inputs: &[Input], common: &Common) -> Result<()
         output::count(bytes),
         seconds(start.elapsed().as_secs_f64()),
     ))
+}
+
+/// A solid from a file, or the voxels of a volume that are inside.
+fn operand(input: &Input, common: &Common) -> Result<Octree, Failure> {
+    if input.begins_as_solid() {
+        return Ok(input.octree(true)?.0);
+    }
+    let bytes = input.read()?;
+    if VolumeFormat::detect(&bytes).is_some() {
+        return common.sampling.read(input, &bytes)?.octree(input, common.threads);
+    }
+    if input.path().is_some() { Ok(input.octree(true)?.0) } else { file::from_bytes(&bytes).of(input) }
 }
 
 /// What the operands' files say that holds of the result: name and unit, if it is the same in all; and by which

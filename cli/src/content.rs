@@ -2,7 +2,7 @@
 
 use crate::failure::Failure;
 use crate::input::Input;
-use leafless::exchange::MeshFormat;
+use leafless::exchange::{MeshFormat, VolumeFormat};
 use leafless::{file, scene};
 
 /// The kinds of files that hold a shape.
@@ -14,6 +14,8 @@ pub enum Content {
     Mesh,
     /// A scene (.csg).
     Scene,
+    /// A volume (NRRD, MetaImage).
+    Volume,
 }
 
 impl Content {
@@ -24,6 +26,8 @@ impl Content {
         let extension = input.path().and_then(|path| path.extension()?.to_str()).unwrap_or_default();
         if bytes.starts_with(&file::MAGIC) || extension == "lfl" {
             Ok(Content::Solid)
+        } else if !is_mesh && VolumeFormat::detect(bytes).is_some() {
+            Ok(Content::Volume)
         } else if is_mesh || MeshFormat::detect(bytes, None).is_some() {
             Ok(Content::Mesh)
         } else if scene::is_scene(bytes) || extension.eq_ignore_ascii_case("csg") {
@@ -33,7 +37,8 @@ impl Content {
         } else if bytes.is_empty() {
             Err(Failure::of(input, "is empty"))
         } else {
-            let kinds = "a solid (.lfl), nor a mesh (STL, OBJ, PLY, OFF, 3MF), nor a scene (.csg)";
+            let kinds = "a solid (.lfl), nor a mesh (STL, OBJ, PLY, OFF, 3MF), nor a scene (.csg), \
+                         nor a volume (NRRD, MetaImage)";
             Err(Failure::of(input, format_args!("neither the content nor the name is that of {kinds}")))
         }
     }

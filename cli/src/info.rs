@@ -48,6 +48,10 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
                 arguments.reading.refuse(&input, "a scene")?;
                 return scene::tell(&input, &bytes, &arguments.drawing, arguments.json);
             }
+            Content::Volume => {
+                arguments.drawing.refuse(&input, "a volume")?;
+                return arguments.reading.volume(&input, &bytes)?.tell(arguments.json);
+            }
             Content::Mesh => {
                 arguments.drawing.refuse(&input, "a mesh")?;
                 let mesh = arguments.reading.mesh(&input, bytes)?;

@@ -30,6 +30,7 @@ mod source;
 mod surface;
 mod target;
 mod verify;
+mod volume;
 mod voxelize;
 
 use clap::error::ErrorKind;
@@ -54,7 +55,7 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Command {
-    /// Make a solid from a mesh (STL, OBJ, PLY, OFF, 3MF)
+    /// Make a solid from a mesh (STL, OBJ, PLY, OFF, 3MF) or a volume (NRRD, MetaImage)
     Voxelize(voxelize::Arguments),
     /// Make a solid from a scene: primitives and set operations, as OpenSCAD exports them (.csg)
     Csg(csg::Arguments),

@@ -5,6 +5,7 @@ use crate::failure::{Failure, Of};
 use crate::input::Input;
 use crate::output::{self, count, counted, measured, number};
 use crate::report::{Defect, Mesh, Volume};
+use crate::volume::{Sampling, Voxels};
 use clap::{Args, ValueEnum};
 use leafless::exchange::{LengthUnit, MeshFile, MeshFormat, MeshOptions, MeshWarning};
 use leafless::{
@@ -34,6 +35,8 @@ pub struct Reading {
     /// all others
     #[arg(long, value_enum)]
     fill: Option<FillName>,
+    #[command(flatten)]
+    pub sampling: Sampling,
 }
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
@@ -106,8 +109,19 @@ impl Reading {
         self.format.is_some()
     }
 
-    /// Refuses the options for meshes where something else is read: `what` it is.
+    /// Refuses the options for meshes and volumes where something else is read: `what` it is.
     pub fn refuse(&self, input: &Input, what: &str) -> Result<(), Failure> {
+        self.sampling.refuse(input, what)?;
+        self.refuse_for_meshes(input, what)
+    }
+
+    /// The volume in these bytes of a file.
+    pub fn volume(&self, input: &Input, bytes: &[u8]) -> Result<Voxels, Failure> {
+        self.refuse_for_meshes(input, "a volume")?;
+        self.sampling.read(input, bytes)
+    }
+
+    fn refuse_for_meshes(&self, input: &Input, what: &str) -> Result<(), Failure> {
         let given = [
             ("--format", self.format.is_some()),
             ("--unit", self.unit.is_some()),
@@ -136,12 +150,12 @@ impl Reading {
         self.format.map(MeshFormat::from).or_else(|| MeshFormat::detect(bytes, extension))
     }
 
-    /// The mesh in a file, hair cracks closed, and a fingerprint of the file.
-    pub fn read(&self, input: &Input) -> Result<(MeshFile, String), Failure> {
-        let bytes = input.read()?;
+    /// The mesh in a file with these bytes, hair cracks closed, and a fingerprint of the file.
+    pub fn read(&self, input: &Input, bytes: Vec<u8>) -> Result<(MeshFile, String), Failure> {
         match Content::of(input, &bytes, self.has_format())? {
             Content::Solid => return Err(Failure::of(input, "is a solid already, not a mesh")),
             Content::Scene => return Err(Failure::of(input, "is a scene, not a mesh: use `leafless csg`")),
+            Content::Volume => return Err(Failure::of(input, "is a volume, not a mesh")),
             Content::Mesh => {}
         }
         let source = format!("crc32:{:08x} bytes:{}", crc32fast::hash(&bytes), bytes.len());
@@ -150,6 +164,7 @@ impl Reading {
 
     /// The mesh in these bytes of a file, hair cracks closed.
     pub fn mesh(&self, input: &Input, bytes: Vec<u8>) -> Result<MeshFile, Failure> {
+        self.sampling.refuse(input, "a mesh")?;
         let (format, unit, target) = (self.format_of(input, &bytes), self.unit, self.to);
         let options = MeshOptions { format, unit, target, scale: self.scale.unwrap_or(1.0) };
         let mut file = exchange::read_mesh(&bytes, &options).of(input)?;

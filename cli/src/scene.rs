@@ -53,6 +53,7 @@ pub fn read_scene(input: &Input, drawing: &Drawing) -> Result<(Scene, String), F
     match Content::of(input, &text, false)? {
         Content::Solid => Err(Failure::of(input, "is a solid already, not a scene")),
         Content::Mesh => Err(Failure::of(input, "is a mesh, not a scene: use `leafless voxelize`")),
+        Content::Volume => Err(Failure::of(input, "is a volume, not a scene: use `leafless voxelize`")),
         Content::Scene => scene_of(input, &text, drawing),
     }
 }

@@ -6,11 +6,12 @@ use crate::input::Input;
 use crate::mesh::{Reading, check_closed, ends_at_vertices, frame_around, openness};
 use crate::output;
 use crate::scene::{Curves, Drawing, bounds_of, frame_of, scene_of};
+use crate::volume::Voxels;
 use leafless::exchange::LengthUnit;
 use leafless::scene::Scene;
 use leafless::{
-    Affine, AnySolid, Csg, FillRule, Frame, MAX_DEPTH, MeshSolid, Octree, Proof, Transform, TriangleMesh,
-    file,
+    Affine, AnySolid, Csg, FillRule, Frame, MAX_DEPTH, MeshSolid, Octree, Proof, Solid, Transform,
+    TriangleMesh, file,
 };
 
 /// Of a box, the lower and the upper one.
@@ -24,10 +25,12 @@ pub enum Source {
     Mesh(TriangleMesh, FillRule, Option<LengthUnit>),
     /// A scene.
     Scene(Scene),
+    /// A volume.
+    Volume(Box<Voxels>),
 }
 
 impl Source {
-    /// Reads a solid, a mesh or a scene. Answers about a solid are proven, so its file is verified.
+    /// Reads a solid, a mesh, a scene or a volume. Answers about a solid are proven, so its file is verified.
     pub fn read(input: &Input, reading: &Reading, drawing: &Drawing) -> Result<Source, Failure> {
         const SOLID: &str = "a solid";
         if input.begins_as_solid() {
@@ -45,6 +48,10 @@ impl Source {
             Content::Scene => {
                 reading.refuse(input, "a scene")?;
                 return Ok(Source::Scene(scene_of(input, &bytes, drawing)?.0));
+            }
+            Content::Volume => {
+                drawing.refuse(input, "a volume")?;
+                return Ok(Source::Volume(Box::new(reading.volume(input, &bytes)?)));
             }
             Content::Mesh => drawing.refuse(input, "a mesh")?,
         }
@@ -74,7 +81,7 @@ impl Source {
     pub fn curves(&self) -> Option<Curves> {
         match self {
             Source::Scene(scene) => Some(scene.report().into()),
-            Source::Octree(_) | Source::Mesh(..) => None,
+            Source::Octree(_) | Source::Mesh(..) | Source::Volume(_) => None,
         }
     }
 
@@ -84,13 +91,15 @@ impl Source {
             Source::Octree(octree) => octree.metadata().get("units")?.parse().ok(),
             Source::Mesh(_, _, unit) => *unit,
             Source::Scene(_) => None,
+            Source::Volume(volume) => volume.unit,
         }
     }
 
-    /// The frame of a solid.
+    /// The frame of a solid, or of a volume's voxels.
     pub fn own_frame(&self) -> Option<&Frame> {
         match self {
             Source::Octree(octree) => Some(octree.frame()),
+            Source::Volume(volume) => volume.frame.as_ref(),
             Source::Mesh(..) | Source::Scene(_) => None,
         }
     }
@@ -102,6 +111,14 @@ impl Source {
             (Source::Octree(octree), Some(depth)) => octree.frame().with_depth(depth).of(input),
             (Source::Mesh(mesh, ..), depth) => frame_around(mesh, depth.unwrap_or(MAX_DEPTH)).of(input),
             (Source::Scene(scene), depth) => frame_of(input, scene, None, depth.unwrap_or(MAX_DEPTH)),
+            (Source::Volume(volume), depth) => match (&volume.frame, depth) {
+                (Some(frame), None) => Ok(*frame),
+                (Some(frame), Some(depth)) => frame.with_depth(depth).of(input),
+                (None, depth) => {
+                    let (min, max) = self.bounds(input)?;
+                    Frame::fitted(min, max, depth.unwrap_or(MAX_DEPTH)).of(input)
+                }
+            },
         }
     }
 
@@ -124,7 +141,7 @@ impl Source {
     /// Whether nothing of it lies beyond its bounds.
     pub fn ends_at_bounds(&self, input: &Input) -> Result<bool, Failure> {
         match self {
-            Source::Octree(_) | Source::Scene(_) => Ok(true),
+            Source::Octree(_) | Source::Scene(_) | Source::Volume(_) => Ok(true),
             Source::Mesh(mesh, ..) => ends_at_vertices(mesh).of(input),
         }
     }
@@ -138,6 +155,10 @@ impl Source {
             }
             Source::Mesh(mesh, ..) => mesh.bounds(),
             Source::Scene(scene) => bounds_of(input, scene)?,
+            Source::Volume(volume) => {
+                let bounds = volume.solid.bounds().ok_or_else(|| Failure::of(input, "has no bounds"))?;
+                (bounds.min, bounds.max)
+            }
         })
     }
 
@@ -151,6 +172,7 @@ impl Source {
             Source::Octree(octree) => AnySolid::new(*octree),
             Source::Mesh(mesh, fill, _) => AnySolid::new(MeshSolid::new(mesh, fill).of(input)?),
             Source::Scene(scene) => AnySolid::new(scene.solid(frame).of(input)?),
+            Source::Volume(volume) => volume.solid,
         };
         solid.placed(placement).of(input)
     }

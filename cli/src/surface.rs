@@ -23,11 +23,11 @@ use std::time::Instant;
 /// Writes the surface of a solid as a closed triangle mesh.
 ///
 /// The surface separates samples that lie inside from those outside. Samples of a mesh or a scene are the corners of
-/// cells, and vertices lie where the edges between corners cross the surface. Samples of a solid from a file (.lfl) are
-/// its cells at their finest level; what is undecided there has no sign, so that --resolve must say what it counts as.
+/// cells, and vertices lie where the edges between corners cross the surface. Samples of a volume are its voxels, and of
+/// a solid from a file (.lfl) its cells at their finest level; what is undecided there has no sign, so that --resolve must say what it counts as.
 #[derive(Args)]
 pub struct Arguments {
-    /// Solid (.lfl), mesh (STL, OBJ, PLY, OFF, 3MF) or scene (.csg), or `-` for standard input
+    /// Solid (.lfl), mesh (STL, OBJ, PLY, OFF, 3MF), scene (.csg) or volume (NRRD, MetaImage), or `-` for standard input
     file: OsString,
     /// Where to write: the extension .ply, .stl, .obj, .off or .3mf tells the format; `-` is standard output
     #[arg(short, long, value_name = "OUTPUT")]
@@ -51,7 +51,7 @@ pub struct Arguments {
     /// makes them, and not the corners
     #[arg(long, value_enum)]
     resolve: Option<ResolveName>,
-    /// Level of the cells of a mesh or scene, 1 to 19. Without it: 8
+    /// Level of the cells of a mesh or scene, 1 to 19. Without it: 8, and of a volume the voxels
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..MAX_DEPTH as i64))]
     depth: Option<u8>,
     /// Lower corner and edge length of the cube to look at, for a mesh or scene. Without it: the cube around it
@@ -210,11 +210,14 @@ fn extract(source: Source, input: &Input, arguments: &Arguments) -> Result<Trian
         return watched("mesh", arguments.threads, |control| of_cells(&octree, resolve, arguments, control))
             .of(input);
     }
-    let frame = source.frame_in(input, arguments.bounds.as_ref(), Some(arguments.depth.unwrap_or(DEPTH)))?;
+    // A volume has its own samples, if its voxels are cubes.
+    let has_own = source.own_frame().is_some() && arguments.depth.is_none();
+    let depth = if has_own { None } else { Some(arguments.depth.unwrap_or(DEPTH)) };
+    let frame = source.frame_in(input, arguments.bounds.as_ref(), depth)?;
     let solid = source.placed(input, &Affine::IDENTITY, &frame)?;
     watched("mesh", arguments.threads, |control| match arguments.resolve {
-        None => of_solid(&solid, &frame, arguments, control),
-        Some(_) => {
+        None if !has_own => of_solid(&solid, &frame, arguments, control),
+        _ => {
             let rule = if resolve.is_some() { Rule::Certified } else { Rule::Sampled };
             let octree = build(&solid, &frame, rule, control)?;
             of_cells(&octree, resolve, arguments, control)

@@ -1,11 +1,13 @@
 //! `leafless voxelize`: from a mesh file to a solid.
 
+use crate::content::Content;
 use crate::failure::{Failure, Of};
 use crate::input::Input;
 use crate::mesh::{Reading, check_closed, fill_name, format_name, frame_around, in_words, openness};
 use crate::output::{self, Output, count, counted, number, seconds};
 use crate::progress::watched;
 use crate::report::{Info, Mesh};
+use crate::volume::Job;
 use clap::{Args, ValueEnum};
 use leafless::exchange::{LengthUnit, MeshFile};
 use leafless::{FillRule, Frame, MeshError, MeshReport, MeshSolid, Metadata, Octree, Rule, build};
@@ -27,7 +29,7 @@ use std::time::Instant;
 /// gives equal bytes, for any number of threads.
 #[derive(Args)]
 pub struct Arguments {
-    /// Mesh (STL, OBJ, PLY, OFF or 3MF), or `-` for standard input
+    /// Mesh (STL, OBJ, PLY, OFF or 3MF) or volume (NRRD, MetaImage), or `-` for standard input
     #[arg(value_name = "MESH")]
     input: OsString,
     /// File to write, or `-` for standard output, whose summary then goes to standard error; it is written
@@ -35,9 +37,9 @@ pub struct Arguments {
     #[arg(short, long, value_name = "OUT.lfl")]
     output: OsString,
     /// Levels of the octree, 1 to 20: each halves the cells, and the error, and makes the file some four
-    /// times as long
+    /// times as long. A volume can do without it: then its voxels are the finest cells
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=leafless::MAX_DEPTH as i64))]
-    depth: u8,
+    depth: Option<u8>,
     /// What becomes of the finest cells that the surface passes through
     #[arg(long, value_enum, default_value_t = RuleName::Certified)]
     rule: RuleName,
@@ -140,7 +142,24 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         return Err(Failure::of(&output, "is the mesh itself, which is not overwritten"));
     }
 
-    let (MeshFile { mesh, format, unit, skipped, warnings, .. }, source) = arguments.reading.read(&input)?;
+    let bytes = input.read()?;
+    if Content::of(&input, &bytes, arguments.reading.has_format())? == Content::Volume {
+        let job = Job {
+            bounds: arguments.bounds,
+            depth: arguments.depth,
+            rule: arguments.rule.into(),
+            threads: arguments.threads,
+            json: arguments.json,
+        };
+        return arguments.reading.volume(&input, &bytes)?.save(&input, &output, &job);
+    }
+    let Some(depth) = arguments.depth else {
+        let problem =
+            "the following required arguments were not provided: --depth <N> (see `leafless --help`)";
+        return Err(Failure::Usage(problem.into()));
+    };
+    let (MeshFile { mesh, format, unit, skipped, warnings, .. }, source) =
+        arguments.reading.read(&input, bytes)?;
     let fill = arguments.reading.fill(format);
     check_closed(&input, &mesh, fill)?;
     let mesh_report = mesh.report().of(&input)?;
@@ -151,8 +170,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let told = if arguments.json { Some(Mesh::new(&mesh).of(&input)?) } else { None };
     let (min, max) = mesh.bounds();
     let frame = match &arguments.bounds {
-        Some(bounds) => bounds.with_depth(arguments.depth),
-        None => frame_around(&mesh, arguments.depth),
+        Some(bounds) => bounds.with_depth(depth),
+        None => frame_around(&mesh, depth),
     };
     let frame = frame.of(&input)?;
     let read = start.elapsed().as_secs_f64();

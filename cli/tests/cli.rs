@@ -56,7 +56,7 @@ fn wrong_usage_is_one_line_and_code_2() {
     let before = place.files();
     for (line, words) in [
         ("voxelise a", &["voxelise", "voxelize"][..]),
-        ("voxelize", &["MESH", "--output", "--depth"]),
+        ("voxelize", &["MESH", "--output"]),
         ("voxelize cube.stl -o out.lfl", &["--depth"]),
         ("voxelize cube.stl --depth 5", &["--output"]),
         ("voxelize cube.stl -o out.lfl --depth 0", &["--depth", "0"]),

@@ -45,8 +45,9 @@ pub struct WriteOptions {
 /// O(n) time and memory.
 ///
 /// # Errors
-/// [`Error::Argument`] for an STL of coordinates beyond the range of `f32`, and for an OBJ without vertices; [`MeshFileError::Unsupported`](crate::MeshFileError::Unsupported) for a 3MF
-/// without the feature; [`Error::OutOfMemory`]. (Compressing a 3MF takes some 300 KiB that cannot be refused.)
+/// [`Error::Argument`] for an STL of coordinates beyond the range of `f32`, and for an OBJ without vertices;
+/// [`MeshFileError::Unsupported`](crate::MeshFileError::Unsupported) for a 3MF without the feature;
+/// [`Error::OutOfMemory`]. (Compressing a 3MF takes some 300 KiB that cannot be refused.)
 ///
 /// ```
 /// use leafless::exchange::{MeshFormat, WriteOptions, read_mesh, write_mesh};
