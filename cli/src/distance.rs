@@ -21,7 +21,7 @@ use std::fmt::Write;
 /// so that another program can ask and wait.
 #[derive(Args)]
 pub struct Arguments {
-    /// Solid (.lfl), mesh (STL, OBJ, PLY, OFF, 3MF) or scene (.csg)
+    /// Solid (.lfl), mesh (STL, OBJ, PLY, OFF, 3MF), scene (.csg) or volume (NRRD, MetaImage)
     file: OsString,
     /// What the distance is measured to
     #[arg(long, value_enum, default_value_t = To::Solid)]

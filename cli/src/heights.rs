@@ -14,7 +14,7 @@ use std::ffi::OsString;
 /// second. What is empty is `nan`.
 #[derive(Args)]
 pub struct Arguments {
-    /// Solid (.lfl), mesh (STL, OBJ, PLY, OFF, 3MF) or scene (.csg), or `-` for standard input
+    /// Solid (.lfl), mesh (STL, OBJ, PLY, OFF, 3MF), scene (.csg) or volume (NRRD, MetaImage), or `-` for standard input
     file: OsString,
     /// The axis of the columns
     #[arg(long, value_enum)]

@@ -18,7 +18,7 @@ use std::ffi::OsString;
 /// are told, how its curves are drawn, and what is wrong with the meshes in it; `leafless measure` tells its volume.
 #[derive(Args)]
 pub struct Arguments {
-    /// Solid (.lfl), mesh (STL, OBJ, PLY, OFF, 3MF) or scene (.csg), or `-` for standard input
+    /// Solid (.lfl), mesh (STL, OBJ, PLY, OFF, 3MF), scene (.csg) or volume (NRRD, MetaImage), or `-` for standard input
     file: OsString,
     /// Print one JSON object
     #[arg(long)]

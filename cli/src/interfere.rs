@@ -27,7 +27,7 @@ use std::fmt::Write;
 /// inside. What is not known is null in JSON.
 #[derive(Args)]
 pub struct Arguments {
-    /// First solid (.lfl), mesh (STL, OBJ, PLY, OFF, 3MF) or scene (.csg), or `-` for standard input
+    /// First solid (.lfl), mesh (STL, OBJ, PLY, OFF, 3MF), scene (.csg) or volume (NRRD, MetaImage), or `-` for standard input
     #[arg(value_name = "A")]
     a: OsString,
     /// Second solid, mesh or scene

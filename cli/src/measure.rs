@@ -25,7 +25,7 @@ use std::fmt::Write;
 /// it was made; a mesh or a scene is split as deep as it takes.
 #[derive(Args)]
 pub struct Arguments {
-    /// Solid (.lfl), mesh (STL, OBJ, PLY, OFF, 3MF) or scene (.csg), or `-` for standard input
+    /// Solid (.lfl), mesh (STL, OBJ, PLY, OFF, 3MF), scene (.csg) or volume (NRRD, MetaImage), or `-` for standard input
     file: OsString,
     /// How wide the interval of the volume may be, relative to its middle; 0 goes on to the depth. Without
     /// it: 0.01, or 0 if --splits is given; much less costs little where surfaces are those of half-spaces

@@ -21,7 +21,7 @@ use std::fmt::Write;
 /// Answers come as soon as lines are there, so that another program can ask and wait.
 #[derive(Args)]
 pub struct Arguments {
-    /// Solid (.lfl), mesh (STL, OBJ, PLY, OFF, 3MF) or scene (.csg)
+    /// Solid (.lfl), mesh (STL, OBJ, PLY, OFF, 3MF), scene (.csg) or volume (NRRD, MetaImage)
     file: OsString,
     /// What stops a ray
     #[arg(long, value_enum, default_value_t = On::Upper)]

@@ -14,7 +14,7 @@ pub(super) fn write(mesh: &TriangleMesh, text: bool) -> Result<Vec<u8>, Error> {
          element face {}\nproperty list uchar {} vertex_indices\nend_header\n",
         vertices.len(),
         triangles.len(),
-        // Some programs know no other type; none has more vertices than this one.
+        // Some programs read no other type than `int`; only the largest meshes need another.
         if vertices.len() <= i32::MAX as usize { "int" } else { "uint" },
     ))?;
     if text {
