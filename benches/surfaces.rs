@@ -5,30 +5,36 @@
 //! ```
 //!
 //! A ball and, with models, the closed bunny, in octrees of 256, 512 and 1024 cells per axis. One thread and
-//! two.
+//! two. Coplanar shrink on these and on machined parts, with the counts that are left.
 
 use criterion::measurement::WallTime;
 use criterion::{BenchmarkGroup, Criterion, Throughput, criterion_group, criterion_main};
 use leafless::{
-    Control, Csg, FillRule, Frame, MeshSolid, Octree, Rule, Snap, Solid, VertexPlacement, build, exchange,
-    marching_cubes, marching_cubes_of, smc,
+    Control, Csg, FillRule, Frame, MeshSolid, Octree, Rule, Snap, Solid, TriangleMesh, VertexPlacement,
+    build, coplanar_shrink, exchange, marching_cubes, marching_cubes_of, published_shrink, smc,
 };
 use std::hint::black_box;
 
-/// The closed bunny, if there are models.
-fn bunny() -> Option<MeshSolid> {
-    let path = std::path::PathBuf::from(std::env::var_os("LEAFLESS_MODELS")?).join("bunny-closed.stl");
-    let mesh = exchange::open_mesh(path, &exchange::MeshOptions::default()).expect("the bunny").mesh;
+/// A mesh from a file, if there are models.
+fn model(file: &str) -> Option<MeshSolid> {
+    let path = std::path::PathBuf::from(std::env::var_os("LEAFLESS_MODELS")?).join(file);
+    let mesh = exchange::open_mesh(path, &exchange::MeshOptions::default()).expect("a mesh").mesh;
     Some(MeshSolid::new(mesh, FillRule::NonZero).expect("a solid"))
+}
+
+/// The closed bunny.
+fn bunny() -> Option<MeshSolid> {
+    model("bunny-closed.stl")
+}
+
+fn sampled<S: Solid>(solid: &S, depth: u8) -> Octree {
+    let bounds = solid.bounds().expect("a bounded solid");
+    let frame = Frame::around(bounds.min, bounds.max, depth).expect("a frame");
+    build(solid, &frame, Rule::Sampled, &Control::default()).expect("an octree")
 }
 
 /// The solids, sampled, with names.
 fn trees() -> Vec<(String, Octree)> {
-    fn sampled<S: Solid>(solid: &S, depth: u8) -> Octree {
-        let bounds = solid.bounds().expect("a bounded solid");
-        let frame = Frame::around(bounds.min, bounds.max, depth).expect("a frame");
-        build(solid, &frame, Rule::Sampled, &Control::default()).expect("an octree")
-    }
     let ball = Csg::ball([0.1, 0.2, 0.3], 1.0).expect("a ball");
     let bunny = bunny();
     let mut trees = Vec::new();
@@ -71,6 +77,40 @@ fn extract(c: &mut Criterion) {
     group.finish();
 }
 
+/// Of each solid the counts by simple marching cubes, by the published form of shrink and by ours, and the
+/// time of ours.
+fn shrink(c: &mut Criterion) {
+    let tetrahedron = vec![[3.0; 3], [94.0, 3.0, 3.0], [3.0, 94.0, 3.0], [3.0, 3.0, 94.0]];
+    let mesh = TriangleMesh::new(tetrahedron, vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]);
+    let solid = MeshSolid::new(mesh.expect("a mesh"), FillRule::NonZero).expect("a solid");
+    let frame = Frame::new([0.0; 3], 128.0, 7).expect("a frame");
+    let control = Control::threads(1);
+    let mut trees =
+        vec![("tetrahedron".into(), build(&solid, &frame, Rule::Sampled, &control).expect("an octree"))];
+    trees.push(("ball".into(), sampled(&Csg::ball([0.1, 0.2, 0.3], 1.0).expect("a ball"), 9)));
+    for file in ["plate_holes.STL", "featuretype.STL", "angle_block.STL", "fandisk.obj", "bunny-closed.stl"] {
+        trees.extend(model(file).map(|solid| (file.to_owned(), sampled(&solid, 9))));
+    }
+    let mut group = c.benchmark_group("coplanar shrink");
+    group.sample_size(10);
+    for (name, tree) in &trees {
+        let count = |mesh: Result<TriangleMesh, leafless::Error>| {
+            let mesh = mesh.expect("a mesh");
+            (mesh.vertices().len(), mesh.triangles().len(), mesh.report().expect("a report").is_closed())
+        };
+        let all = count(smc(tree.view(), Snap::Fat, None, &control));
+        let published = count(published_shrink(tree.view(), Snap::Fat, None, &control));
+        let ours = count(coplanar_shrink(tree.view(), Snap::Fat, None, &control));
+        println!("{name}: smc {all:?}, published {published:?}, ours {ours:?}");
+        group.bench_function(name, |b| {
+            b.iter_with_large_drop(|| {
+                coplanar_shrink(black_box(tree.view()), Snap::Fat, None, &control).expect("a mesh")
+            })
+        });
+    }
+    group.finish();
+}
+
 /// A ball, and the bunny, with vertices on the surface, of 256 cells per axis.
 fn crossings(c: &mut Criterion) {
     let mut group = c.benchmark_group("marching cubes of solids, 256");
@@ -96,5 +136,5 @@ fn crossings_of<S: Solid>(group: &mut BenchmarkGroup<'_, WallTime>, name: &str, 
     }
 }
 
-criterion_group!(benches, extract, crossings);
+criterion_group!(benches, extract, shrink, crossings);
 criterion_main!(benches);

@@ -208,6 +208,63 @@ static leafless_status open_sheet(void) {
     return status;
 }
 
+/* A volume of 64³ samples: its solid, its octree, the surface, what is told of it, its file and the volume's. */
+static leafless_status scanned_ball(void) {
+    enum { SIDE = 64 };
+    static uint16_t samples[SIDE * SIDE * SIDE];
+    leafless_volume *volume = (leafless_volume *)UNTOUCHED;
+    leafless_solid *solid = NULL;
+    leafless_octree *octree = NULL;
+    leafless_mesh *mesh = NULL, *other = NULL;
+    leafless_volume_layout layout;
+    leafless_surface_options surface;
+    leafless_mesh_write_options write;
+    leafless_mesh_report report;
+    leafless_options options;
+    leafless_frame frame;
+    leafless_status status;
+    uint64_t length;
+    int x, y, z;
+    for (z = 0; z < SIDE; z++) {
+        for (y = 0; y < SIDE; y++) {
+            for (x = 0; x < SIDE; x++) {
+                const int d[3] = {x - 31, y - 33, z - 30};
+                samples[x + SIDE * (y + SIDE * z)] = (uint16_t)(40000 - 11 * (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]));
+            }
+        }
+    }
+    OK(leafless_volume_layout_init(&layout, sizeof layout));
+    layout.sample_type = LEAFLESS_SAMPLE_U16;
+    layout.extents[0] = layout.extents[1] = layout.extents[2] = SIDE;
+    OK(leafless_surface_options_init(&surface, sizeof surface));
+    surface.method = LEAFLESS_SURFACE_SMC;
+    OK(leafless_mesh_write_options_init(&write, sizeof write));
+    write.format = LEAFLESS_MESH_FORMAT_PLY;
+    OK(leafless_options_init(&options, sizeof options));
+    options.threads = 1;
+    status = leafless_volume_new(&layout, samples, sizeof samples, &volume);
+    if (status != LEAFLESS_OK) {
+        return volume == (leafless_volume *)UNTOUCHED ? status : LEAFLESS_E_PANIC;
+    }
+    OK(leafless_volume_frame(volume, &frame));
+    status = leafless_solid_new_volume(volume, NULL, &options, &solid);
+    if (!status) status = leafless_octree_build(solid, &frame, LEAFLESS_RULE_SAMPLED, &options, &octree);
+    if (!status) status = leafless_octree_surface(octree, NULL, &options, &mesh);
+    if (!status) status = leafless_octree_surface(octree, &surface, &options, &other);
+    if (!status) status = leafless_mesh_describe(mesh, &report);
+    if (!status) status = leafless_mesh_to_bytes(mesh, &write, NULL, 0, &length);
+    if (!status) status = leafless_volume_to_bytes(volume, LEAFLESS_VOLUME_FORMAT_NRRD_GZIP, NULL, 0, &length);
+    if (!status) {
+        CHECK(report.is_manifold && report.triangles > 5000);
+    }
+    leafless_mesh_free(other);
+    leafless_mesh_free(mesh);
+    leafless_octree_free(octree);
+    leafless_solid_free(solid);
+    leafless_volume_free(volume);
+    return status;
+}
+
 static long address_space(void) {
     FILE *file = fopen("/proc/self/statm", "r");
     long pages = -1;
@@ -257,7 +314,7 @@ int main(int argc, char **argv) {
     /* The names of all, and of what is none. */
     CHECK(strcmp(leafless_status_name(LEAFLESS_OK), "LEAFLESS_OK") == 0);
     CHECK(strcmp(leafless_status_name(-1), "LEAFLESS_E_UNKNOWN") == 0);
-    CHECK(strcmp(leafless_status_name(21), "LEAFLESS_E_UNKNOWN") == 0);
+    CHECK(strcmp(leafless_status_name(22), "LEAFLESS_E_UNKNOWN") == 0);
     CHECK(strcmp(leafless_status_name(INT32_MIN), "LEAFLESS_E_UNKNOWN") == 0);
     CHECK(leafless_last_status() == LEAFLESS_OK);
     seen[LEAFLESS_OK] = true;
@@ -432,6 +489,7 @@ int main(int argc, char **argv) {
         /* Memory that runs out half-way, at many places. */
         runs_out(deep_ball, 0, 8192, 256);
         runs_out(open_sheet, 0, 2560, 160);
+        runs_out(scanned_ball, 0, 6144, 256);
     }
 
     OK(leafless_options_init(&options, sizeof options));
@@ -491,6 +549,21 @@ int main(int argc, char **argv) {
         failed(LEAFLESS_E_IO, "LEAFLESS_E_IO", "space");
     }
 
+    {
+        static const uint8_t cut[] = "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 2 2 2\nencoding: raw\n\n1234567";
+        leafless_volume *volume = (leafless_volume *)UNTOUCHED;
+        FAILS(LEAFLESS_E_VOLUME_FILE, leafless_volume_from_bytes(cut, sizeof cut - 1, NULL, 0, &volume));
+        failed(LEAFLESS_E_VOLUME_FILE, "LEAFLESS_E_VOLUME_FILE", "8 bytes of samples are expected, and there are 7");
+        check_write("errors.nrrd", cut, 20);
+        FAILS(LEAFLESS_E_VOLUME_FILE, leafless_volume_open("errors.nrrd", 11, &volume));
+        failed(LEAFLESS_E_VOLUME_FILE, "LEAFLESS_E_VOLUME_FILE", "errors.nrrd: ");
+        FAILS(LEAFLESS_E_IO, leafless_volume_open("no/such/file", 12, &volume));
+        failed(LEAFLESS_E_IO, "LEAFLESS_E_IO", "no/such/file: No such file");
+        FAILS(LEAFLESS_E_IO, leafless_mesh_save(cube, "no/such/file.stl", 16, NULL));
+        failed(LEAFLESS_E_IO, "LEAFLESS_E_IO", "no/such/file.stl: No such file");
+        CHECK(volume == (leafless_volume *)UNTOUCHED);
+    }
+
     FAILS(LEAFLESS_E_PANIC, leafless_test_panic());
     failed(LEAFLESS_E_PANIC, "LEAFLESS_E_PANIC", "as the test wanted");
 
@@ -524,7 +597,7 @@ int main(int argc, char **argv) {
             return 1;
         }
     }
-    CHECK(i == 21);
+    CHECK(i == 22);
 
     free(bytes);
     leafless_control_free(control);

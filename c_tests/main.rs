@@ -202,6 +202,22 @@ fn mesh_files() {
 }
 
 #[test]
+fn written_meshes() {
+    run("mesh_write", C99, Link::Static, &[]);
+}
+
+#[test]
+fn volumes() {
+    run("volume", C99, Link::Static, &[]);
+}
+
+#[test]
+fn surfaces() {
+    run("surface", C99, Link::Static, &[]);
+    run("extract", CPP17, Link::Static, &[]);
+}
+
+#[test]
 fn open_meshes() {
     run("open_mesh", C99, Link::Static, &[]);
 }
@@ -343,7 +359,13 @@ fn readme() {
 
 #[test]
 fn examples() {
-    let examples = [("c/voxelise.c", C99), ("c/scan.c", C99), ("c/fit.c", C99), ("cpp/cut_stock.cpp", CPP17)];
+    let examples = [
+        ("c/voxelise.c", C99),
+        ("c/scan.c", C99),
+        ("c/fit.c", C99),
+        ("c/isosurface.c", C99),
+        ("cpp/cut_stock.cpp", CPP17),
+    ];
     for (name, standard) in examples {
         let source = root().join("examples").join(name);
         let stem = source.file_stem().unwrap().to_str().unwrap().to_string();

@@ -1177,6 +1177,246 @@ static void lazy_octrees(void) {
     leafless_lazy_free(NULL);
 }
 
+/* All of volumes, surfaces, bitmaps and written meshes. */
+static void volumes_and_surfaces(void) {
+    void *out = fresh(), *never = UNTOUCHED;
+    leafless_volume **made = (leafless_volume **)&never, *volume = NULL;
+    leafless_solid **solid_result = (leafless_solid **)&never;
+    leafless_mesh **mesh_result = (leafless_mesh **)&never;
+    leafless_volume_info *info = (leafless_volume_info *)out;
+    leafless_interval *interval = (leafless_interval *)out;
+    uint64_t *count = (uint64_t *)out, number;
+    uint32_t samples[8] = {0};
+    const uint32_t low[4] = {0, 0, 0, 0}, high[4] = {2, 2, 2, 0};
+    const uint32_t *cell = (const uint32_t *)WRONG(low);
+    const leafless_interval band[2] = {{1, 2}, {0, 0}};
+    static const char HEADER[] = "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 2 1 1\nencoding: raw\ndata file: x\n";
+    const uint8_t *header = (const uint8_t *)HEADER;
+    const uint64_t length = sizeof HEADER - 1;
+    leafless_volume_layout layout;
+    leafless_mesh_write_options write;
+    leafless_surface_options surface;
+    leafless_interval range;
+    double real;
+
+    OK(leafless_volume_layout_init(&layout, sizeof layout));
+    OK(leafless_mesh_write_options_init(&write, sizeof write));
+    OK(leafless_surface_options_init(&surface, sizeof surface));
+    write.format = LEAFLESS_MESH_FORMAT_PLY;
+    layout.extents[0] = layout.extents[1] = layout.extents[2] = 2;
+    NULL_POINTER(leafless_volume_layout_init, layout,
+                 leafless_volume_layout_init(NULL, sizeof(leafless_volume_layout)));
+    NULL_POINTER(leafless_volume_new, layout, leafless_volume_new(NULL, samples, 8, made));
+    NULL_POINTER(leafless_volume_new, samples, leafless_volume_new(&layout, NULL, 8, made));
+    NULL_POINTER(leafless_volume_new, volume, leafless_volume_new(&layout, samples, 8, NULL));
+    NULL_POINTER(leafless_volume_view, layout, leafless_volume_view(NULL, samples, 8, made));
+    NULL_POINTER(leafless_volume_view, samples, leafless_volume_view(&layout, NULL, 8, made));
+    NULL_POINTER(leafless_volume_view, volume, leafless_volume_view(&layout, samples, 8, NULL));
+    BAD_NUMBER(leafless_volume_new, length, leafless_volume_new(&layout, NULL, 0, made));
+    BAD_NUMBER(leafless_volume_view, length, leafless_volume_view(&layout, NULL, 0, made));
+    OK(leafless_volume_new(&layout, samples, 8, &volume));
+    NULL_POINTER(leafless_volume_ref, volume, leafless_volume_ref(NULL, made));
+    NULL_POINTER(leafless_volume_ref, reference, leafless_volume_ref(volume, NULL));
+    NULL_POINTER(leafless_volume_describe, volume, leafless_volume_describe(NULL, info));
+    NULL_POINTER(leafless_volume_describe, info, leafless_volume_describe(volume, NULL));
+    NULL_POINTER(leafless_volume_peek_samples, volume,
+                 leafless_volume_peek_samples(NULL, (const void **)out, count + 1));
+    NULL_POINTER(leafless_volume_peek_samples, samples, leafless_volume_peek_samples(volume, NULL, count));
+    NULL_POINTER(leafless_volume_peek_samples, length,
+                 leafless_volume_peek_samples(volume, (const void **)out, NULL));
+    NULL_POINTER(leafless_volume_frame, volume, leafless_volume_frame(NULL, (leafless_frame *)out));
+    NULL_POINTER(leafless_volume_frame, frame, leafless_volume_frame(volume, NULL));
+    NULL_POINTER(leafless_volume_bounds, volume, leafless_volume_bounds(NULL, (double *)out, (double *)out + 3));
+    NULL_POINTER(leafless_volume_bounds, min_model, leafless_volume_bounds(volume, NULL, (double *)out));
+    NULL_POINTER(leafless_volume_bounds, max_model, leafless_volume_bounds(volume, (double *)out, NULL));
+    NULL_POINTER(leafless_volume_range, volume, leafless_volume_range(NULL, NULL, interval));
+    NULL_POINTER(leafless_volume_range, range, leafless_volume_range(volume, NULL, NULL));
+    NULL_POINTER(leafless_solid_new_volume, volume, leafless_solid_new_volume(NULL, band, NULL, solid_result));
+    NULL_POINTER(leafless_solid_new_volume, solid, leafless_solid_new_volume(volume, band, NULL, NULL));
+    NULL_POINTER(leafless_volume_open, path, leafless_volume_open(NULL, 3, made));
+    NULL_POINTER(leafless_volume_open, path, leafless_volume_open(NULL, 0, made));
+    NULL_POINTER(leafless_volume_open, volume, leafless_volume_open("x", 1, NULL));
+    NULL_POINTER(leafless_volume_from_bytes, bytes, leafless_volume_from_bytes(NULL, 9, NULL, 0, made));
+    NULL_POINTER(leafless_volume_from_bytes, data, leafless_volume_from_bytes(header, length, NULL, 2, made));
+    NULL_POINTER(leafless_volume_from_bytes, volume, leafless_volume_from_bytes(header, length, header, 2, NULL));
+    NULL_POINTER(leafless_volume_data_file, bytes, leafless_volume_data_file(NULL, 9, NULL, 0, count));
+    NULL_POINTER(leafless_volume_data_file, name, leafless_volume_data_file(header, length, NULL, 9, count));
+    NULL_POINTER(leafless_volume_data_file, name_length,
+                 leafless_volume_data_file(header, length, (char *)out, 9, NULL));
+    NULL_POINTER(leafless_volume_open_raw, path, leafless_volume_open_raw(NULL, 1, &layout, made));
+    NULL_POINTER(leafless_volume_open_raw, layout, leafless_volume_open_raw("x", 1, NULL, made));
+    NULL_POINTER(leafless_volume_open_raw, volume, leafless_volume_open_raw("x", 1, &layout, NULL));
+    NULL_POINTER(leafless_volume_save, volume, leafless_volume_save(NULL, 0, "x", 1));
+    NULL_POINTER(leafless_volume_save, path, leafless_volume_save(volume, 0, NULL, 1));
+    NULL_POINTER(leafless_volume_to_bytes, volume, leafless_volume_to_bytes(NULL, 0, NULL, 0, count));
+    NULL_POINTER(leafless_volume_to_bytes, bytes, leafless_volume_to_bytes(volume, 0, NULL, 8, count));
+    NULL_POINTER(leafless_volume_to_bytes, length, leafless_volume_to_bytes(volume, 0, NULL, 0, NULL));
+    NULL_POINTER(leafless_octree_bitmap, octree,
+                 leafless_octree_bitmap(NULL, 4, low, high, NULL, NULL, NULL, 0, count));
+    NULL_POINTER(leafless_octree_bitmap, min_cell,
+                 leafless_octree_bitmap(octree, 4, NULL, high, NULL, NULL, NULL, 0, count));
+    NULL_POINTER(leafless_octree_bitmap, max_cell,
+                 leafless_octree_bitmap(octree, 4, low, NULL, NULL, NULL, NULL, 0, count));
+    NULL_POINTER(leafless_octree_bitmap, inner,
+                 leafless_octree_bitmap(octree, 4, low, high, NULL, NULL, count + 4, 4, count));
+    NULL_POINTER(leafless_octree_bitmap, count,
+                 leafless_octree_bitmap(octree, 4, low, high, NULL, count, NULL, 4, NULL));
+    NULL_POINTER(leafless_surface_options_init, surface,
+                 leafless_surface_options_init(NULL, sizeof(leafless_surface_options)));
+    NULL_POINTER(leafless_octree_surface, octree, leafless_octree_surface(NULL, &surface, NULL, mesh_result));
+    NULL_POINTER(leafless_octree_surface, mesh, leafless_octree_surface(octree, &surface, NULL, NULL));
+    NULL_POINTER(leafless_volume_surface, volume, leafless_volume_surface(NULL, band, NULL, mesh_result));
+    NULL_POINTER(leafless_volume_surface, mesh, leafless_volume_surface(volume, band, NULL, NULL));
+    NULL_POINTER(leafless_solid_surface, solid, leafless_solid_surface(NULL, &frame, &surface, NULL, mesh_result));
+    NULL_POINTER(leafless_solid_surface, frame, leafless_solid_surface(solid, NULL, &surface, NULL, mesh_result));
+    NULL_POINTER(leafless_solid_surface, mesh, leafless_solid_surface(solid, &frame, &surface, NULL, NULL));
+    NULL_POINTER(leafless_mesh_normals, mesh, leafless_mesh_normals(NULL, NULL, 0, count));
+    NULL_POINTER(leafless_mesh_normals, normals, leafless_mesh_normals(mesh, NULL, 8, count));
+    NULL_POINTER(leafless_mesh_normals, count, leafless_mesh_normals(mesh, NULL, 0, NULL));
+    MISALIGNED(leafless_mesh_normals, normals, leafless_mesh_normals(mesh, (double *)WRONG(out), 8, count));
+    NULL_POINTER(leafless_mesh_area, mesh, leafless_mesh_area(NULL, (double *)out));
+    NULL_POINTER(leafless_mesh_area, area_model, leafless_mesh_area(mesh, NULL));
+    NULL_POINTER(leafless_mesh_write_options_init, options,
+                 leafless_mesh_write_options_init(NULL, sizeof(leafless_mesh_write_options)));
+    NULL_POINTER(leafless_mesh_save, mesh, leafless_mesh_save(NULL, "x.ply", 5, &write));
+    NULL_POINTER(leafless_mesh_save, path, leafless_mesh_save(mesh, NULL, 5, &write));
+    NULL_POINTER(leafless_mesh_to_bytes, mesh, leafless_mesh_to_bytes(NULL, &write, NULL, 0, count));
+    NULL_POINTER(leafless_mesh_to_bytes, options, leafless_mesh_to_bytes(mesh, NULL, NULL, 0, count));
+    NULL_POINTER(leafless_mesh_to_bytes, bytes, leafless_mesh_to_bytes(mesh, &write, NULL, 9, count));
+    NULL_POINTER(leafless_mesh_to_bytes, length, leafless_mesh_to_bytes(mesh, &write, NULL, 0, NULL));
+
+    MISALIGNED(leafless_volume_layout_init, layout,
+               leafless_volume_layout_init((leafless_volume_layout *)WRONG(out), sizeof(leafless_volume_layout)));
+    MISALIGNED(leafless_volume_new, layout,
+               leafless_volume_new((leafless_volume_layout *)WRONG(&layout), samples, 8, made));
+    MISALIGNED(leafless_volume_new, volume, leafless_volume_new(&layout, samples, 8, (leafless_volume **)WRONG(out)));
+    layout.sample_type = LEAFLESS_SAMPLE_U16;
+    MISALIGNED(leafless_volume_view, samples, leafless_volume_view(&layout, WRONG(samples), 16, made));
+    MISALIGNED(leafless_volume_view, volume,
+               leafless_volume_view(&layout, samples, 16, (leafless_volume **)WRONG(out)));
+    MISALIGNED(leafless_volume_describe, volume, leafless_volume_describe((leafless_volume *)WRONG(volume), info));
+    MISALIGNED(leafless_volume_describe, info,
+               leafless_volume_describe(volume, (leafless_volume_info *)WRONG(out)));
+    MISALIGNED(leafless_volume_peek_samples, samples,
+               leafless_volume_peek_samples(volume, (const void **)WRONG(out), count));
+    MISALIGNED(leafless_volume_frame, frame, leafless_volume_frame(volume, (leafless_frame *)WRONG(out)));
+    MISALIGNED(leafless_volume_bounds, max_model,
+               leafless_volume_bounds(volume, (double *)out, (double *)WRONG(out)));
+    MISALIGNED(leafless_volume_range, range, leafless_volume_range(volume, NULL, (leafless_interval *)WRONG(out)));
+    MISALIGNED(leafless_volume_surface, options,
+               leafless_volume_surface(volume, band, (leafless_options *)WRONG(&options), mesh_result));
+    MISALIGNED(leafless_volume_surface, band,
+               leafless_volume_surface(volume, (leafless_interval *)WRONG(band), NULL, mesh_result));
+    MISALIGNED(leafless_solid_new_volume, band,
+               leafless_solid_new_volume(volume, (leafless_interval *)WRONG(band), NULL, solid_result));
+    MISALIGNED(leafless_solid_new_volume, options,
+               leafless_solid_new_volume(volume, band, (leafless_options *)WRONG(&options), solid_result));
+    MISALIGNED(leafless_solid_new_volume, solid,
+               leafless_solid_new_volume(volume, band, NULL, (leafless_solid **)WRONG(out)));
+    MISALIGNED(leafless_volume_open, volume, leafless_volume_open("x", 1, (leafless_volume **)WRONG(out)));
+    MISALIGNED(leafless_volume_to_bytes, length,
+               leafless_volume_to_bytes(volume, 0, NULL, 0, (uint64_t *)WRONG(out)));
+    MISALIGNED(leafless_octree_bitmap, min_cell,
+               leafless_octree_bitmap(octree, 4, cell, high, NULL, NULL, NULL, 0, count));
+    MISALIGNED(leafless_octree_bitmap, max_cell,
+               leafless_octree_bitmap(octree, 4, low, cell, NULL, NULL, NULL, 0, count));
+    MISALIGNED(leafless_octree_bitmap, inner,
+               leafless_octree_bitmap(octree, 4, low, high, NULL, (uint64_t *)WRONG(out), NULL, 4, count));
+    MISALIGNED(leafless_octree_bitmap, outer,
+               leafless_octree_bitmap(octree, 4, low, high, NULL, count + 8, (uint64_t *)WRONG(out), 4, count));
+    MISALIGNED(leafless_octree_bitmap, count,
+               leafless_octree_bitmap(octree, 4, low, high, NULL, NULL, NULL, 0, (uint64_t *)WRONG(out)));
+    MISALIGNED(leafless_octree_surface, surface,
+               leafless_octree_surface(octree, (leafless_surface_options *)WRONG(&surface), NULL, mesh_result));
+    MISALIGNED(leafless_octree_surface, options,
+               leafless_octree_surface(octree, NULL, (leafless_options *)WRONG(&options), mesh_result));
+    MISALIGNED(leafless_octree_surface, mesh,
+               leafless_octree_surface(octree, NULL, NULL, (leafless_mesh **)WRONG(out)));
+    MISALIGNED(leafless_solid_surface, frame,
+               leafless_solid_surface(solid, (leafless_frame *)WRONG(&frame), NULL, NULL, mesh_result));
+    MISALIGNED(leafless_solid_surface, mesh,
+               leafless_solid_surface(solid, &frame, NULL, NULL, (leafless_mesh **)WRONG(out)));
+    surface.resolve = LEAFLESS_RESOLVE_SOURCE;
+    NULL_POINTER(leafless_octree_surface, surface.source, leafless_octree_surface(octree, &surface, NULL, mesh_result));
+    surface.source = (leafless_solid *)WRONG(solid);
+    MISALIGNED(leafless_octree_surface, surface.source, leafless_octree_surface(octree, &surface, NULL, mesh_result));
+    surface.resolve = LEAFLESS_RESOLVE_OUTER;
+    surface.source = NULL;
+    MISALIGNED(leafless_mesh_area, area_model, leafless_mesh_area(mesh, (double *)WRONG(out)));
+    MISALIGNED(leafless_mesh_save, options,
+               leafless_mesh_save(mesh, "x.ply", 5, (leafless_mesh_write_options *)WRONG(&write)));
+    MISALIGNED(leafless_mesh_to_bytes, options,
+               leafless_mesh_to_bytes(mesh, (leafless_mesh_write_options *)WRONG(&write), NULL, 0, count));
+    MISALIGNED(leafless_mesh_to_bytes, length,
+               leafless_mesh_to_bytes(mesh, &write, NULL, 0, (uint64_t *)WRONG(out)));
+
+    layout.sample_type = LEAFLESS_SAMPLE_U8;
+    BAD_NUMBER(leafless_volume_save, format, leafless_volume_save(volume, 4, "x", 1));
+    BAD_NUMBER(leafless_volume_to_bytes, format, leafless_volume_to_bytes(volume, UINT32_MAX, NULL, 0, count));
+    BAD_NUMBER(leafless_octree_bitmap, level,
+               leafless_octree_bitmap(octree, 5, low, high, NULL, NULL, NULL, 0, count));
+    BAD_NUMBER(leafless_octree_bitmap, level,
+               leafless_octree_bitmap(octree, UINT32_MAX, low, high, NULL, NULL, NULL, 0, count));
+    CHECK(leafless_volume_open("a\0b", 3, made) == LEAFLESS_E_UTF8);
+    CHECK(leafless_volume_open_raw("a\xff", 2, &layout, made) == LEAFLESS_E_UTF8);
+    CHECK(leafless_volume_save(volume, 0, "a\0b", 3) == LEAFLESS_E_UTF8);
+    CHECK(leafless_mesh_save(mesh, "a\xff.ply", 6, NULL) == LEAFLESS_E_UTF8);
+    refused(LEAFLESS_E_VOLUME_FILE, "leafless_volume_from_bytes", "", leafless_volume_from_bytes(NULL, 0, NULL, 0, made));
+    refused(LEAFLESS_E_VOLUME_FILE, "leafless_volume_data_file", "", leafless_volume_data_file(NULL, 0, NULL, 0, count));
+    untouched();
+    CHECK(never == UNTOUCHED);
+
+    MAY_BE_NULL(leafless_volume_range, options, leafless_volume_range(volume, NULL, &range));
+    MAY_BE_NULL(leafless_solid_new_volume, band, leafless_solid_new_volume(volume, NULL, &options, solid_result));
+    leafless_solid_free(*solid_result);
+    MAY_BE_NULL(leafless_solid_new_volume, options, leafless_solid_new_volume(volume, band, NULL, solid_result));
+    leafless_solid_free(*solid_result);
+    MAY_BE_NULL(leafless_volume_data_file, name, leafless_volume_data_file(header, length, NULL, 0, &number));
+    {
+        static const char WHOLE[] = "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 2 1 1\nencoding: raw\n\nab";
+        MAY_BE_NULL(leafless_volume_from_bytes, data,
+                    leafless_volume_from_bytes((const uint8_t *)WHOLE, sizeof WHOLE - 1, NULL, 0, made));
+        leafless_volume_free(*made);
+    }
+    MAY_BE_NULL(leafless_volume_to_bytes, bytes, leafless_volume_to_bytes(volume, 0, NULL, 0, &number));
+    CHECK(number == 8);
+    {
+        uint64_t inner[4], outer[4];
+        MAY_BE_NULL(leafless_octree_bitmap, inner,
+                    leafless_octree_bitmap(octree, 4, low, high, &options, NULL, NULL, 0, &number));
+        CHECK(number == 4);
+        MAY_BE_NULL(leafless_octree_bitmap, outer,
+                    leafless_octree_bitmap(octree, 4, low, high, &options, inner, NULL, 4, &number));
+        MAY_BE_NULL(leafless_octree_bitmap, options,
+                    leafless_octree_bitmap(octree, 4, low, high, NULL, inner, outer, 4, &number));
+    }
+    MAY_BE_NULL(leafless_volume_surface, band, leafless_volume_surface(volume, NULL, &options, mesh_result));
+    leafless_mesh_free(*mesh_result);
+    MAY_BE_NULL(leafless_volume_surface, options, leafless_volume_surface(volume, band, NULL, mesh_result));
+    leafless_mesh_free(*mesh_result);
+    MAY_BE_NULL(leafless_octree_surface, options, leafless_octree_surface(octree, &surface, NULL, mesh_result));
+    leafless_mesh_free(*mesh_result);
+    {
+        leafless_octree *full = NULL;
+        OK(leafless_octree_uniform(&frame, LEAFLESS_TAG_FULL, LEAFLESS_TAG_EMPTY, &full));
+        MAY_BE_NULL(leafless_octree_surface, surface, leafless_octree_surface(full, NULL, &options, mesh_result));
+        leafless_mesh_free(*mesh_result);
+        leafless_octree_free(full);
+    }
+    MAY_BE_NULL(leafless_solid_surface, surface, leafless_solid_surface(solid, &frame, NULL, &options, mesh_result));
+    leafless_mesh_free(*mesh_result);
+    surface.resolve = 0;
+    MAY_BE_NULL(leafless_solid_surface, options, leafless_solid_surface(solid, &frame, &surface, NULL, mesh_result));
+    leafless_mesh_free(*mesh_result);
+    MAY_BE_NULL(leafless_mesh_save, options, leafless_mesh_save(mesh, "null.ply", 8, NULL));
+    MAY_BE_NULL(leafless_mesh_to_bytes, bytes, leafless_mesh_to_bytes(mesh, &write, NULL, 0, &number));
+    MAY_BE_NULL(leafless_mesh_normals, normals, leafless_mesh_normals(mesh, NULL, 0, &number));
+    CHECK(number == 8);
+    OK(leafless_mesh_area(mesh, &real));
+    leafless_volume_free(volume);
+    leafless_volume_free(NULL);
+}
+
 static void cells_and_faces(void) {
     void *out = fresh();
     void *never = UNTOUCHED;
@@ -1509,6 +1749,8 @@ static void regions(void) {
     leafless_interval *volume = (leafless_interval *)out;
     leafless_region *relation = (leafless_region *)out;
     leafless_region itself;
+    leafless_cells_in *counts = (leafless_cells_in *)out, some;
+    leafless_interval range;
     uint64_t *least = (uint64_t *)out;
 
     NULL_POINTER(leafless_octree_cells_in_box, octree, leafless_octree_cells_in_box(NULL, cell, end, least, least));
@@ -1524,7 +1766,29 @@ static void regions(void) {
     NULL_POINTER(leafless_solid_classify_in, region, leafless_solid_classify_in(solid, NULL, &frame, NULL, relation));
     NULL_POINTER(leafless_solid_classify_in, frame, leafless_solid_classify_in(solid, solid, NULL, NULL, relation));
     NULL_POINTER(leafless_solid_classify_in, relation, leafless_solid_classify_in(solid, solid, &frame, NULL, NULL));
+    NULL_POINTER(leafless_octree_cells_in, octree, leafless_octree_cells_in(NULL, solid, NULL, counts));
+    NULL_POINTER(leafless_octree_cells_in, region, leafless_octree_cells_in(octree, NULL, NULL, counts));
+    NULL_POINTER(leafless_octree_cells_in, cells, leafless_octree_cells_in(octree, solid, NULL, NULL));
+    NULL_POINTER(leafless_octree_volume_in, octree, leafless_octree_volume_in(NULL, solid, NULL, volume));
+    NULL_POINTER(leafless_octree_volume_in, region, leafless_octree_volume_in(octree, NULL, NULL, volume));
+    NULL_POINTER(leafless_octree_volume_in, volume_model, leafless_octree_volume_in(octree, solid, NULL, NULL));
+    NULL_POINTER(leafless_solid_cells_in, solid, leafless_solid_cells_in(NULL, solid, &frame, NULL, counts));
+    NULL_POINTER(leafless_solid_cells_in, region, leafless_solid_cells_in(solid, NULL, &frame, NULL, counts));
+    NULL_POINTER(leafless_solid_cells_in, frame, leafless_solid_cells_in(solid, solid, NULL, NULL, counts));
+    NULL_POINTER(leafless_solid_cells_in, cells, leafless_solid_cells_in(solid, solid, &frame, NULL, NULL));
+    NULL_POINTER(leafless_solid_volume_in, solid, leafless_solid_volume_in(NULL, solid, &frame, NULL, volume));
+    NULL_POINTER(leafless_solid_volume_in, region, leafless_solid_volume_in(solid, NULL, &frame, NULL, volume));
+    NULL_POINTER(leafless_solid_volume_in, frame, leafless_solid_volume_in(solid, solid, NULL, NULL, volume));
+    NULL_POINTER(leafless_solid_volume_in, volume_model, leafless_solid_volume_in(solid, solid, &frame, NULL, NULL));
 
+    MISALIGNED(leafless_octree_cells_in, cells,
+               leafless_octree_cells_in(octree, solid, NULL, (leafless_cells_in *)WRONG(out)));
+    MISALIGNED(leafless_octree_volume_in, volume_model,
+               leafless_octree_volume_in(octree, solid, NULL, (leafless_interval *)WRONG(out)));
+    MISALIGNED(leafless_solid_cells_in, cells,
+               leafless_solid_cells_in(solid, solid, &frame, NULL, (leafless_cells_in *)WRONG(out)));
+    MISALIGNED(leafless_solid_volume_in, volume_model,
+               leafless_solid_volume_in(solid, solid, &frame, NULL, (leafless_interval *)WRONG(out)));
     MISALIGNED(leafless_octree_cells_in_box, min_cell,
                leafless_octree_cells_in_box(octree, wrong_cell, end, least, least));
     MISALIGNED(leafless_octree_cells_in_box, max_cell,
@@ -1545,6 +1809,12 @@ static void regions(void) {
     MAY_BE_NULL(leafless_solid_classify_in, options,
                 leafless_solid_classify_in(solid, solid, &frame, NULL, &itself));
     CHECK(itself != LEAFLESS_REGION_OUTSIDE);
+    MAY_BE_NULL(leafless_octree_cells_in, options, leafless_octree_cells_in(octree, solid, NULL, &some));
+    MAY_BE_NULL(leafless_octree_volume_in, options, leafless_octree_volume_in(octree, solid, NULL, &range));
+    MAY_BE_NULL(leafless_solid_cells_in, options, leafless_solid_cells_in(solid, solid, &frame, NULL, &some));
+    CHECK(some.full_least > 0 && some.full_least <= some.upper_most);
+    MAY_BE_NULL(leafless_solid_volume_in, options, leafless_solid_volume_in(solid, solid, &frame, NULL, &range));
+    CHECK(range.lower > 0 && range.lower <= range.upper);
 }
 
 static void distances(void) {
@@ -1641,6 +1911,7 @@ int main(void) {
     numbers();
     lazy_octrees();
     cells_and_faces();
+    volumes_and_surfaces();
     rays();
     columns();
     regions();

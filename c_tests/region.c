@@ -5,6 +5,36 @@
 
 static const double PI = 3.14159265358979323846;
 
+/* The octree has 64 cells along its edge of 2, the frame 128. Balls: inside, across the boundary, and outside. */
+static void contents(const leafless_octree *octree, const leafless_solid *solid, const leafless_solid *ball,
+                     const leafless_frame *frame, int i) {
+    const double truth = 4.0 / 3.0 * PI / 64.0;
+    leafless_cells_in cells, of_solid;
+    leafless_interval volume, of_both;
+    leafless_options options;
+    OK(leafless_octree_cells_in(octree, ball, NULL, &cells));
+    OK(leafless_octree_volume_in(octree, ball, NULL, &volume));
+    OK(leafless_solid_cells_in(solid, ball, frame, NULL, &of_solid));
+    OK(leafless_solid_volume_in(solid, ball, frame, NULL, &of_both));
+    CHECK(cells.full_least <= cells.full_most && cells.upper_least <= cells.upper_most);
+    CHECK(cells.full_least <= cells.upper_least && cells.full_most <= cells.upper_most);
+    CHECK(volume.lower <= of_both.upper && of_both.lower <= volume.upper);
+    if (i == 0) {
+        CHECK(volume.lower <= truth && truth <= volume.upper && volume.upper - volume.lower < 0.03 * truth);
+        CHECK(of_both.lower <= truth && truth <= of_both.upper);
+        CHECK(of_solid.full_least > 6 * cells.full_least && of_solid.full_most < 8 * cells.full_most);
+    } else if (i == 1) {
+        CHECK(volume.lower > truth && volume.upper < 8.0 * truth && of_both.upper < volume.upper);
+        CHECK(cells.full_most < cells.upper_most);
+    } else {
+        CHECK(volume.lower == 0 && cells.full_least == 0 && of_solid.full_least == 0);
+    }
+    OK(leafless_options_init(&options, sizeof options));
+    options.max_splits = 1;
+    OK(leafless_octree_cells_in(octree, ball, &options, &of_solid));
+    CHECK(of_solid.full_least <= cells.full_least && cells.upper_most <= of_solid.upper_most);
+}
+
 int main(void) {
     leafless_octree *octree = check_ball(6, LEAFLESS_RULE_CERTIFIED);
     leafless_solid *solid = check_ball_solid();
@@ -40,6 +70,7 @@ int main(void) {
         OK(leafless_solid_new_ball(centre, balls[i].radius, &ball));
         OK(leafless_solid_classify_in(solid, ball, &frame, NULL, &relation));
         CHECK(relation == balls[i].expected);
+        contents(octree, solid, ball, &frame, i);
         leafless_solid_free(ball);
     }
     leafless_octree_free(octree);

@@ -188,6 +188,10 @@ enum leafless_status
      * A lazy octree is in use by another call, in another thread or around this one. Nothing was done.
      */
     LEAFLESS_E_BUSY = 20,
+    /**
+     * A volume file cannot be read.
+     */
+    LEAFLESS_E_VOLUME_FILE = 21,
 };
 #ifndef __cplusplus
 typedef int32_t leafless_status;
@@ -227,7 +231,7 @@ typedef uint32_t leafless_defect;
 #endif // __cplusplus
 
 /**
- * The formats of mesh files that can be read.
+ * The formats of mesh files, which can be read and written.
  */
 enum leafless_mesh_format
 #ifdef __cplusplus
@@ -235,7 +239,8 @@ enum leafless_mesh_format
 #endif // __cplusplus
  {
     /**
-     * To be found out from the file's content and, where that is not clear, its name.
+     * To be found out: when reading from the file's content and, where that is not clear, its name; when writing
+     * from its name.
      */
     LEAFLESS_MESH_FORMAT_ANY = 0,
     /**
@@ -387,6 +392,101 @@ enum leafless_motion
 };
 #ifndef __cplusplus
 typedef uint32_t leafless_motion;
+#endif // __cplusplus
+
+/**
+ * The type of samples. The arrays of a volume are of the first five types. Samples of other types are
+ * converted to one of these when they are copied.
+ */
+enum leafless_sample_type
+#ifdef __cplusplus
+  : uint32_t
+#endif // __cplusplus
+ {
+    /**
+     * uint8_t.
+     */
+    LEAFLESS_SAMPLE_U8 = 0,
+    /**
+     * uint16_t.
+     */
+    LEAFLESS_SAMPLE_U16 = 1,
+    /**
+     * int16_t, as the Hounsfield units of tomography.
+     */
+    LEAFLESS_SAMPLE_I16 = 2,
+    /**
+     * float. One that is not a number is never inside.
+     */
+    LEAFLESS_SAMPLE_F32 = 3,
+    /**
+     * Bits with the values 0 and 1, in uint64_t: each row along x begins with a word of its own, and the bit
+     * of the sample (x, y, z) is bit x mod 64 of word x / 64 + w (y + ny z), where w = ⌈nx / 64⌉. Other bits
+     * of a row's last word do not count. leafless_octree_bitmap writes the same.
+     */
+    LEAFLESS_SAMPLE_BITS = 4,
+    /**
+     * Bits in bytes, eight to a byte, the lowest first: each row along x begins with a byte of its own. They
+     * become LEAFLESS_SAMPLE_BITS.
+     */
+    LEAFLESS_SAMPLE_BITS_IN_BYTES = 5,
+    /**
+     * int8_t. It becomes int16_t.
+     */
+    LEAFLESS_SAMPLE_I8 = 6,
+    /**
+     * int32_t. It becomes float, and so do all that follow.
+     */
+    LEAFLESS_SAMPLE_I32 = 7,
+    /**
+     * uint32_t.
+     */
+    LEAFLESS_SAMPLE_U32 = 8,
+    /**
+     * int64_t.
+     */
+    LEAFLESS_SAMPLE_I64 = 9,
+    /**
+     * uint64_t.
+     */
+    LEAFLESS_SAMPLE_U64 = 10,
+    /**
+     * double.
+     */
+    LEAFLESS_SAMPLE_F64 = 11,
+};
+#ifndef __cplusplus
+typedef uint32_t leafless_sample_type;
+#endif // __cplusplus
+
+/**
+ * The formats of volume files.
+ */
+enum leafless_volume_format
+#ifdef __cplusplus
+  : uint32_t
+#endif // __cplusplus
+ {
+    /**
+     * The samples alone. A leafless_volume_layout tells what must be known to read them.
+     */
+    LEAFLESS_VOLUME_FORMAT_RAW = 0,
+    /**
+     * NRRD, `.nrrd` or `.nhdr`. When written, with samples as they are.
+     */
+    LEAFLESS_VOLUME_FORMAT_NRRD = 1,
+    /**
+     * MetaImage, `.mha` or `.mhd`, which can be read only.
+     */
+    LEAFLESS_VOLUME_FORMAT_METAIMAGE = 2,
+    /**
+     * To be written: NRRD with samples compressed by DEFLATE. (A file that is read is
+     * LEAFLESS_VOLUME_FORMAT_NRRD, compressed or not.)
+     */
+    LEAFLESS_VOLUME_FORMAT_NRRD_GZIP = 3,
+};
+#ifndef __cplusplus
+typedef uint32_t leafless_volume_format;
 #endif // __cplusplus
 
 /**
@@ -831,6 +931,141 @@ typedef uint32_t leafless_distance_to;
 #endif // __cplusplus
 
 /**
+ * The order of a number's bytes.
+ */
+enum leafless_byte_order
+#ifdef __cplusplus
+  : uint32_t
+#endif // __cplusplus
+ {
+    /**
+     * As this machine has them.
+     */
+    LEAFLESS_BYTE_ORDER_NATIVE = 0,
+    /**
+     * The byte of the lowest weight first.
+     */
+    LEAFLESS_BYTE_ORDER_LITTLE = 1,
+    /**
+     * The byte of the highest weight first.
+     */
+    LEAFLESS_BYTE_ORDER_BIG = 2,
+};
+#ifndef __cplusplus
+typedef uint32_t leafless_byte_order;
+#endif // __cplusplus
+
+/**
+ * How a surface is made.
+ */
+enum leafless_surface_method
+#ifdef __cplusplus
+  : uint32_t
+#endif // __cplusplus
+ {
+    /**
+     * Marching cubes: vertices on the edges between inside and outside samples. Exactly two triangles meet
+     * on every edge.
+     */
+    LEAFLESS_SURFACE_MARCHING_CUBES = 0,
+    /**
+     * Simple marching cubes: all vertices are samples, all normals have one of 13 directions up to sign. The
+     * mesh is closed, but where its sheets touch, more than two triangles meet on an edge.
+     */
+    LEAFLESS_SURFACE_SMC = 1,
+    /**
+     * Coplanar shrink: the surface of simple marching cubes with far fewer triangles where it has plane parts.
+     * All that lies in one plane becomes one region with straight edges. There are no cracks; triangles may be
+     * long and thin.
+     */
+    LEAFLESS_SURFACE_SHRINK = 2,
+    /**
+     * Coplanar shrink in its published form, to compare with. It has cracks, so that the mesh is open where
+     * merged cells of several sizes meet.
+     */
+    LEAFLESS_SURFACE_SHRINK_PUBLISHED = 3,
+};
+#ifndef __cplusplus
+typedef uint32_t leafless_surface_method;
+#endif // __cplusplus
+
+/**
+ * To which end of an edge between an inside and an outside sample all methods but marching cubes move the
+ * vertex.
+ */
+enum leafless_snap
+#ifdef __cplusplus
+  : uint32_t
+#endif // __cplusplus
+ {
+    /**
+     * The outer one: the mesh contains all inside samples.
+     */
+    LEAFLESS_SNAP_FAT = 0,
+    /**
+     * The inner one: inside samples are vertices. What is one cell thick has no thickness then.
+     */
+    LEAFLESS_SNAP_THIN = 1,
+};
+#ifndef __cplusplus
+typedef uint32_t leafless_snap;
+#endif // __cplusplus
+
+/**
+ * On which side of the surface the PARTIAL cells of an octree lie, which have no sign of their own.
+ */
+enum leafless_resolve
+#ifdef __cplusplus
+  : uint32_t
+#endif // __cplusplus
+ {
+    /**
+     * Nobody says, which is an error if there are such cells.
+     */
+    LEAFLESS_RESOLVE_NONE = 0,
+    /**
+     * Outside: the surface is that of the FULL cells, of what is surely solid.
+     */
+    LEAFLESS_RESOLVE_INNER = 1,
+    /**
+     * Inside: the surface is that of the FULL and PARTIAL cells, of what is possibly solid.
+     */
+    LEAFLESS_RESOLVE_OUTER = 2,
+    /**
+     * Where the solid `source` says that the octree was made from: each cell's centre decides, as under
+     * LEAFLESS_RULE_SAMPLED. It is built anew on the octree's frame.
+     */
+    LEAFLESS_RESOLVE_SOURCE = 3,
+};
+#ifndef __cplusplus
+typedef uint32_t leafless_resolve;
+#endif // __cplusplus
+
+/**
+ * Where marching cubes puts a vertex on an edge between an inside and an outside sample.
+ */
+enum leafless_vertex_placement
+#ifdef __cplusplus
+  : uint32_t
+#endif // __cplusplus
+ {
+    /**
+     * Half-way. The mesh has steps, and is as far from the surface as half a cell.
+     */
+    LEAFLESS_PLACEMENT_MIDPOINT = 0,
+    /**
+     * Where the edge crosses the solid's surface; if it does so several times, at one of the crossings.
+     * Half-spaces, meshes and solids made of them tell the crossing to rounding. For a solid that only tells
+     * about boxes, cells along the edge are split down to the depth of 20, and the crossing is known to a
+     * cell of that depth.
+     */
+    LEAFLESS_PLACEMENT_CROSSING = 1,
+};
+#ifndef __cplusplus
+typedef uint32_t leafless_vertex_placement;
+#endif // __cplusplus
+
+/**
  * Cells of an octree one after another. It stands before its next cell.
  *
  * Reading changes it: while one thread reads, no other may use it. Threads may have one each.
@@ -939,6 +1174,16 @@ typedef struct leafless_scene leafless_scene;
  * frames at the same time prepare it again and again: give each a solid of its own.
  */
 typedef struct leafless_solid leafless_solid;
+
+/**
+ * A three-dimensional bitmap or array of samples, and where it lies. Each sample stands for the closed box
+ * around it, its voxel: on each axis voxel i reaches from corner + i·spacing to corner + (i + 1)·spacing.
+ * leafless_solid_new_volume makes a solid of those whose samples lie in a band.
+ *
+ * Immutable: all its functions may be called at once from any number of threads, but leafless_volume_free
+ * needs the reference that it gives back for itself.
+ */
+typedef struct leafless_volume leafless_volume;
 
 /**
  * Hears how far an operation is, with the fraction done (0 to 1); returns 0 to go on. Anything else ends the
@@ -1134,6 +1379,24 @@ typedef struct {
      * lies between the planes.
      */
     double polygon_deviation_model;
+    /**
+     * Edges, each counted once.
+     */
+    uint64_t edges;
+    /**
+     * V - E + F of the vertices that triangles use, the edges and the triangles: of a 2-manifold, 2 for each
+     * component less 2 for each of its handles.
+     */
+    int64_t euler_characteristic;
+    /**
+     * Whether the mesh is closed and consistently oriented: every edge is run along as often in one direction
+     * as in the other. (An empty mesh is.)
+     */
+    bool is_closed;
+    /**
+     * Whether exactly two triangles meet on every edge, which run along it in opposite directions.
+     */
+    bool is_manifold;
 } leafless_mesh_report;
 
 /**
@@ -1258,6 +1521,36 @@ typedef struct {
      */
     uint64_t skipped;
 } leafless_mesh_source;
+
+/**
+ * How a mesh file is written. NULL means the defaults. All fields but the first may be zero, which is their
+ * default; leafless_mesh_write_options_init sets them so.
+ */
+typedef struct {
+    /**
+     * sizeof(leafless_mesh_write_options).
+     */
+    uint32_t struct_size;
+    /**
+     * The file's format, a leafless_mesh_format. LEAFLESS_MESH_FORMAT_ANY means what the extension of the
+     * path says: .stl, .obj, .ply, .off or .3mf, in any letter case.
+     */
+    uint32_t format;
+    /**
+     * 1 to write STL and PLY as text, which is several times as long; OBJ and OFF always are text, and a 3MF
+     * never is. Else 0.
+     */
+    uint32_t is_text;
+    /**
+     * The unit of the coordinates, a leafless_unit, which only a 3MF tells. LEAFLESS_UNIT_UNKNOWN means the
+     * millimetre. Nothing is converted.
+     */
+    uint32_t unit;
+    /**
+     * 1 to write PLY and OBJ with the normals that leafless_mesh_normals tells; other formats have none. Else 0.
+     */
+    uint32_t has_normals;
+} leafless_mesh_write_options;
 
 /**
  * Mass properties of what a mesh encloses, of density 1, as in leafless_measures: all numbers unless they are known.
@@ -1721,6 +2014,100 @@ typedef struct {
 } leafless_function;
 
 /**
+ * What can be said of a volume at once.
+ */
+typedef struct {
+    /**
+     * How many samples there are along x, y and z.
+     */
+    uint32_t extents[3];
+    /**
+     * Their type in memory: one of the first five.
+     */
+    leafless_sample_type sample_type;
+    /**
+     * Their type in the file or array that the volume was made from.
+     */
+    leafless_sample_type file_type;
+    /**
+     * The file's format; LEAFLESS_VOLUME_FORMAT_RAW for arrays.
+     */
+    leafless_volume_format format;
+    /**
+     * The unit of all lengths, if the file says it.
+     */
+    leafless_unit unit;
+    /**
+     * Whether the file's axes are not x, y and z: then `placement` moves the voxels.
+     */
+    bool is_placed;
+    /**
+     * The number of samples.
+     */
+    uint64_t sample_count;
+    /**
+     * How many of them single precision had to round.
+     */
+    uint64_t rounded;
+    /**
+     * The least value that is inside if nobody says which: the middle of the range of `file_type`. 0.5 for
+     * bits, 127.5 for uint8_t, 32767.5 for uint16_t, -0.5 for integers with a sign, 0 for float and double.
+     */
+    double default_threshold;
+    /**
+     * The lower corner of the first voxel, before `placement` moves it.
+     */
+    double corner_model[3];
+    /**
+     * The edges of a voxel.
+     */
+    double spacing_model[3];
+    /**
+     * The affine map x' = M x + t that moves the voxels to where the file says: three rows of M and t. Its
+     * directions are rounded. The map that moves nothing unless `is_placed`.
+     */
+    double placement[12];
+} leafless_volume_info;
+
+/**
+ * How an array of samples is laid out, and where it lies: x varies fastest, then y, then z, without gaps.
+ * All fields but the first and `extents` may be zero, which is their default; leafless_volume_layout_init
+ * sets them so.
+ */
+typedef struct {
+    /**
+     * sizeof(leafless_volume_layout).
+     */
+    uint32_t struct_size;
+    /**
+     * A leafless_sample_type.
+     */
+    uint32_t sample_type;
+    /**
+     * How many samples there are along x, y and z: 1 to 2^20 each. An octree's cube may reach beyond them;
+     * nothing is stored there.
+     */
+    uint32_t extents[3];
+    /**
+     * A leafless_byte_order.
+     */
+    uint32_t byte_order;
+    /**
+     * Bytes before the first sample.
+     */
+    uint64_t skip;
+    /**
+     * The lower corner of the first voxel: the place of the first sample less half the spacing. Each
+     * coordinate is 0 or of a magnitude between 2^-256 and 2^256.
+     */
+    double corner_model[3];
+    /**
+     * The edges of a voxel, 2^-256 to 2^256; all three 0 means 1.
+     */
+    double spacing_model[3];
+} leafless_volume_layout;
+
+/**
  * How a scene is to be read. NULL means the defaults. All fields but the first may be zero, which is their
  * default; leafless_scene_options_init sets them so.
  */
@@ -1870,6 +2257,30 @@ typedef struct {
 } leafless_run;
 
 /**
+ * How many finest cells of a solid lie in a region, between bounds. A cell where the region is FULL lies in it, one
+ * where it is EMPTY does not, and one where it is PARTIAL may: so the bounds hold whether a cell counts that lies in the
+ * region as a whole, whose centre does, or that has any volume in common with it.
+ */
+typedef struct {
+    /**
+     * FULL cells of the solid that are proven to lie in the region.
+     */
+    uint64_t full_least;
+    /**
+     * FULL cells of the solid that may lie in the region.
+     */
+    uint64_t full_most;
+    /**
+     * FULL and PARTIAL cells of the solid that are proven to lie in the region.
+     */
+    uint64_t upper_least;
+    /**
+     * FULL and PARTIAL cells of the solid that may lie in the region.
+     */
+    uint64_t upper_most;
+} leafless_cells_in;
+
+/**
  * A cell of an octree and what is known of it.
  */
 typedef struct {
@@ -1914,6 +2325,42 @@ typedef struct {
      */
     bool has_outer;
 } leafless_boundary_face;
+
+/**
+ * How a surface is extracted. NULL means the defaults. All fields but the first may be zero, which is their
+ * default; leafless_surface_options_init sets them so. A field that the method does not use must be zero.
+ */
+typedef struct {
+    /**
+     * sizeof(leafless_surface_options).
+     */
+    uint32_t struct_size;
+    /**
+     * A leafless_surface_method.
+     */
+    uint32_t method;
+    /**
+     * Of all methods but LEAFLESS_SURFACE_MARCHING_CUBES: a leafless_snap.
+     */
+    uint32_t snap;
+    /**
+     * Of octrees: a leafless_resolve. Solids decide all samples themselves.
+     */
+    uint32_t resolve;
+    /**
+     * Of LEAFLESS_SURFACE_MARCHING_CUBES of solids: a leafless_vertex_placement. Octrees do not know where
+     * their solid's surface is.
+     */
+    uint32_t placement;
+    /**
+     * 0.
+     */
+    uint32_t reserved;
+    /**
+     * Of LEAFLESS_RESOLVE_SOURCE: the solid that the octree was made from.
+     */
+    const leafless_solid *source;
+} leafless_surface_options;
 
 /**
  * What the work on an octree came to.
@@ -2664,6 +3111,26 @@ leafless_status leafless_mesh_copy(const leafless_mesh *mesh,
                                    uint64_t triangle_capacity);
 
 /**
+ * The unit normals at the vertices of a mesh, outward where triangles turn counter-clockwise as seen from
+ * outside: the mean of the normals of the triangles there, each weighted by its angle. So they do not depend on
+ * how plane parts are cut into triangles. Where the mean is zero, as at a vertex without triangles, so is the
+ * normal. O(t + v).
+ *
+ * - Buffers: `normals`, room for `capacity` normals of 3 numbers, or NULL to ask for their number only; `count`,
+ *   one number.
+ * - Result: `*count`, that of the vertices; the normals, in the order of the vertices.
+ * - Errors: LEAFLESS_E_BUFFER if the capacity is too small; LEAFLESS_E_NO_MEMORY.
+ * - Ownership: nothing changes hands.
+ * - Threads: any. Each call computes them.
+ * - Untrusted input: any mesh.
+ * - Since: 0.1
+ */
+leafless_status leafless_mesh_normals(const leafless_mesh *mesh,
+                                      double *normals,
+                                      uint64_t capacity,
+                                      uint64_t *count);
+
+/**
  * The bounding box of a mesh's triangles.
  *
  * - Buffers: `min_model` and `max_model`, room for 3 numbers each.
@@ -2690,6 +3157,20 @@ leafless_status leafless_mesh_bounds(const leafless_mesh *mesh, double min_model
  * - Since: 0.1
  */
 leafless_status leafless_mesh_volume(const leafless_mesh *mesh, double *volume_model);
+
+/**
+ * The sum of the areas of a mesh's triangles. Rounded; the certified area of a solid's boundary is told by
+ * leafless_solid_surface_area. O(t).
+ *
+ * - Buffers: `area_model`, one number.
+ * - Result: `*area_model`, in square model units.
+ * - Errors: only the general ones.
+ * - Ownership: nothing changes hands.
+ * - Threads: any.
+ * - Untrusted input: any mesh.
+ * - Since: 0.1
+ */
+leafless_status leafless_mesh_area(const leafless_mesh *mesh, double *area_model);
 
 /**
  * What was found when a mesh was made, and how its triangles hang together. The first call analyses the
@@ -2917,6 +3398,64 @@ leafless_status leafless_mesh_to_stl(const leafless_mesh *mesh,
                                      uint8_t *bytes,
                                      uint64_t capacity,
                                      uint64_t *length);
+
+/**
+ * Sets options for writing mesh files to their defaults.
+ *
+ * - Buffers: `options`, one struct of `struct_size` bytes, which is sizeof(leafless_mesh_write_options);
+ *   need not be initialised.
+ * - Result: `*options`.
+ * - Errors: LEAFLESS_E_ARGUMENT if `struct_size` cannot be right.
+ * - Ownership: nothing changes hands.
+ * - Threads: any.
+ * - Untrusted input: none.
+ * - Since: 0.1
+ */
+leafless_status leafless_mesh_write_options_init(leafless_mesh_write_options *options, size_t struct_size);
+
+/**
+ * Saves a mesh in a file: STL, PLY, OBJ, OFF or 3MF. At any moment there is the old file or the new one,
+ * each complete, as leafless_octree_save tells.
+ *
+ * Vertices and triangles keep their order. PLY (little-endian, of type double), OBJ and OFF hold the
+ * coordinates exactly; STL rounds them to 32 bits; a 3MF has one object, which is the build's one item, and
+ * leaves out triangles that have a vertex twice. O(n) time and memory.
+ *
+ * - Buffers: `path`, `path_length` bytes of UTF-8; `options`, one struct, or NULL.
+ * - Result: LEAFLESS_OK once the file is on the disk.
+ * - Errors: LEAFLESS_E_ARGUMENT if the format or the unit is none, if the format is LEAFLESS_MESH_FORMAT_ANY
+ *   and the path has none of the extensions, for an STL of coordinates beyond the range of float, or for an
+ *   OBJ without vertices; LEAFLESS_E_IO; LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY. The old file is then as it
+ *   was; only if the very last step fails, synchronising the directory, the new one is in place.
+ * - Ownership: nothing changes hands.
+ * - Threads: any.
+ * - Untrusted input: any mesh.
+ * - Since: 0.1
+ */
+leafless_status leafless_mesh_save(const leafless_mesh *mesh,
+                                   const char *path,
+                                   size_t path_length,
+                                   const leafless_mesh_write_options *options);
+
+/**
+ * The bytes of a mesh's file, in memory: those that leafless_mesh_save writes. Asking for the length takes
+ * as long as filling.
+ *
+ * - Buffers: `options`, one struct, with a format; `bytes`, room for `capacity` bytes, or NULL to ask for
+ *   the length only; `length`, one number.
+ * - Result: `*length`, the length of the file; the file in `bytes`.
+ * - Errors: LEAFLESS_E_BUFFER if the capacity is too small; LEAFLESS_E_ARGUMENT as leafless_mesh_save, and
+ *   if the format is LEAFLESS_MESH_FORMAT_ANY; LEAFLESS_E_NO_MEMORY.
+ * - Ownership: nothing changes hands.
+ * - Threads: any.
+ * - Untrusted input: any mesh.
+ * - Since: 0.1
+ */
+leafless_status leafless_mesh_to_bytes(const leafless_mesh *mesh,
+                                       const leafless_mesh_write_options *options,
+                                       uint8_t *bytes,
+                                       uint64_t capacity,
+                                       uint64_t *length);
 
 /**
  * The volume and the moments of what a mesh encloses by a fill rule, exact up to rounding: usually to 14 digits.
@@ -3683,6 +4222,308 @@ leafless_status leafless_function_init(leafless_function *function, size_t struc
  * - Since: 0.1
  */
 leafless_status leafless_solid_new_function(const leafless_function *function, leafless_solid **solid);
+
+/**
+ * One more reference to a volume.
+ *
+ * - Buffers: `volume`, a handle; `reference`, one pointer.
+ * - Result: `*reference`, equal to `volume`.
+ * - Errors: only the general ones.
+ * - Ownership: give each reference back with leafless_volume_free.
+ * - Threads: any.
+ * - Untrusted input: none.
+ * - Since: 0.1
+ */
+leafless_status leafless_volume_ref(const leafless_volume *volume, leafless_volume **reference);
+
+/**
+ * Gives back a reference to a volume; with the last one the volume is gone. Solids made of it stay, and keep
+ * its samples.
+ *
+ * - Buffers: `volume`, a handle or NULL, which does nothing.
+ * - Result: none.
+ * - Errors: none.
+ * - Ownership: the reference is gone.
+ * - Threads: any; no other call may use this reference.
+ * - Untrusted input: none.
+ * - Since: 0.1
+ */
+void leafless_volume_free(leafless_volume *volume);
+
+/**
+ * What can be said of a volume at once. O(1).
+ *
+ * - Buffers: `info`, one struct.
+ * - Result: `*info`.
+ * - Errors: only the general ones.
+ * - Ownership: nothing changes hands.
+ * - Threads: any.
+ * - Untrusted input: none.
+ * - Since: 0.1
+ */
+leafless_status leafless_volume_describe(const leafless_volume *volume, leafless_volume_info *info);
+
+/**
+ * The samples of a volume where they lie, without a copy: x fastest, of the `sample_type` of
+ * leafless_volume_describe.
+ *
+ * - Buffers: `samples` and `length`, one each.
+ * - Result: `*samples`, the address of the first one; `*length`, their bytes.
+ * - Errors: only the general ones.
+ * - Ownership: the samples belong to the volume, or to the host that made it by leafless_volume_view, and
+ *   live as long as the reference `volume`.
+ * - Threads: any.
+ * - Untrusted input: none.
+ * - Since: 0.1
+ */
+leafless_status leafless_volume_peek_samples(const leafless_volume *volume,
+                                             const void **samples,
+                                             uint64_t *length);
+
+/**
+ * The frame whose finest cells are the voxels of a volume: of the least depth that holds all of them. On
+ * this frame a solid of the volume has no PARTIAL cell, and its octree is the bitmap, bit for bit.
+ *
+ * - Buffers: `frame`, one struct.
+ * - Result: `*frame`.
+ * - Errors: LEAFLESS_E_ARGUMENT if voxels are no cubes, or their axes not x, y and z: take a frame around
+ *   leafless_volume_bounds.
+ * - Ownership: nothing changes hands.
+ * - Threads: any.
+ * - Untrusted input: any volume.
+ * - Since: 0.1
+ */
+leafless_status leafless_volume_frame(const leafless_volume *volume, leafless_frame *frame);
+
+/**
+ * A box that contains all voxels of a volume, where the file says that they lie; rounded outward.
+ *
+ * - Buffers: `min_model` and `max_model`, room for 3 numbers each.
+ * - Result: both corners.
+ * - Errors: LEAFLESS_E_ARGUMENT if the box is beyond the range of double.
+ * - Ownership: nothing changes hands.
+ * - Threads: any.
+ * - Untrusted input: any volume.
+ * - Since: 0.1
+ *
+ */
+leafless_status leafless_volume_bounds(const leafless_volume *volume,
+                                       double min_model[3],
+                                       double max_model[3]);
+
+/**
+ * The least and the greatest sample of a volume. O(n), and O(n / 64) once a solid or a range was asked for.
+ *
+ * - Buffers: `options`, one struct or NULL, of which limits do not matter; `range`, one struct.
+ * - Result: `*range`: of bits 0 to 1, and all numbers if a sample is not a number.
+ * - Errors: LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
+ * - Ownership: nothing changes hands.
+ * - Threads: any; uses as many as `options` says.
+ * - Untrusted input: any volume.
+ * - Since: 0.1
+ */
+leafless_status leafless_volume_range(const leafless_volume *volume,
+                                      const leafless_options *options,
+                                      leafless_interval *range);
+
+/**
+ * The solid of a volume: the union of the closed voxels whose samples lie in a band, where the file says
+ * that they lie. What is beyond the voxels is outside. It is taken wherever solids are: it can be built,
+ * joined with others, measured, and have its surface extracted.
+ *
+ * On the frame of leafless_volume_frame finest cells are voxels, and nothing is PARTIAL. On any other,
+ * however its cells lie to the voxels, PARTIAL cells are those that voxels of both kinds share.
+ *
+ * The first solid of a volume reads all samples, in O(n); the next, with other bands, read only blocks of
+ * which the least and the greatest value do not tell. Beside the samples, which are shared, it takes about
+ * 1/32 of their memory for uint8_t.
+ *
+ * - Buffers: `band`, one struct: the least and the greatest value that are inside, which may be infinite; or
+ *   NULL, which means all values from the `default_threshold` of leafless_volume_describe on. `options`, one
+ *   struct or NULL, of which limits do not matter; `solid`, one pointer.
+ * - Result: `*solid`.
+ * - Errors: LEAFLESS_E_ARGUMENT if an end of the band is not a number, or the lower above the upper one;
+ *   LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
+ * - Ownership: the solid shares the samples, and `volume` may be freed; give `*solid` back with
+ *   leafless_solid_free.
+ * - Threads: any; uses as many as `options` says.
+ * - Untrusted input: any volume.
+ * - Since: 0.1
+ */
+leafless_status leafless_solid_new_volume(const leafless_volume *volume,
+                                          const leafless_interval *band,
+                                          const leafless_options *options,
+                                          leafless_solid **solid);
+
+/**
+ * Sets a layout to its defaults: no samples.
+ *
+ * - Buffers: `layout`, one struct of `struct_size` bytes, which is sizeof(leafless_volume_layout); need not
+ *   be initialised.
+ * - Result: `*layout`.
+ * - Errors: LEAFLESS_E_ARGUMENT if `struct_size` cannot be right.
+ * - Ownership: nothing changes hands.
+ * - Threads: any.
+ * - Untrusted input: none.
+ * - Since: 0.1
+ */
+leafless_status leafless_volume_layout_init(leafless_volume_layout *layout, size_t struct_size);
+
+/**
+ * Makes a volume of an array, which is copied. O(n).
+ *
+ * - Buffers: `layout`, one struct; `samples`, `length` bytes, on any address; `volume`, one pointer.
+ * - Result: `*volume`.
+ * - Errors: LEAFLESS_E_ARGUMENT if the type, the byte order, an extent, the corner or the spacing is none,
+ *   or if `length` is not that of the samples and the bytes to skip; LEAFLESS_E_NO_MEMORY.
+ * - Ownership: the samples may be freed after the call; give `*volume` back with leafless_volume_free.
+ * - Threads: any.
+ * - Untrusted input: any layout, any bytes.
+ * - Since: 0.1
+ */
+leafless_status leafless_volume_new(const leafless_volume_layout *layout,
+                                    const void *samples,
+                                    uint64_t length,
+                                    leafless_volume **volume);
+
+/**
+ * Makes a volume of an array, which is used where it lies, without a copy. O(1).
+ *
+ * - Buffers: `layout`, one struct, whose type is LEAFLESS_SAMPLE_U8, _U16, _I16, _F32 or _BITS, whose byte
+ *   order is this machine's, and which has nothing to skip; `samples`, `length` bytes, aligned for their
+ *   type; `volume`, one pointer.
+ * - Result: `*volume`.
+ * - Errors: LEAFLESS_E_ARGUMENT as leafless_volume_new, and if the layout is not of that kind.
+ * - Ownership: the samples stay the host's. They must stay, unchanged, until the last reference is given
+ *   back to the volume, to every solid that is made of it, and to what is made of these, but for octrees and
+ *   meshes, which have all of their own. Give `*volume` back with leafless_volume_free.
+ * - Threads: any.
+ * - Untrusted input: any layout, any bytes.
+ * - Since: 0.1
+ */
+leafless_status leafless_volume_view(const leafless_volume_layout *layout,
+                                     const void *samples,
+                                     uint64_t length,
+                                     leafless_volume **volume);
+
+/**
+ * Reads a volume file, NRRD or MetaImage; the content tells which. If it names another file for its samples,
+ * that is read from the same folder or below it.
+ *
+ * NRRD: versions 1 to 5, attached and detached, raw, gzip and ascii. MetaImage: binary, ASCII and
+ * compressed. All types of single numbers, both byte orders. What is neither 8 nor 16 bits wide becomes
+ * float, and int8_t becomes int16_t. O(n); the samples are copied once.
+ *
+ * - Buffers: `path`, `path_length` bytes of UTF-8; `volume`, one pointer.
+ * - Result: `*volume`; leafless_volume_describe tells what the file says.
+ * - Errors: LEAFLESS_E_VOLUME_FILE, with what is wrong where in the message, if the file is neither, is
+ *   damaged, or uses something that cannot be read; LEAFLESS_E_IO; LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY.
+ * - Ownership: give `*volume` back with leafless_volume_free.
+ * - Threads: any.
+ * - Untrusted input: any file. A header that asks for more samples than its data can hold is refused before
+ *   anything is allocated; compressed samples become at most 1032 times as long as the file.
+ * - Since: 0.1
+ */
+leafless_status leafless_volume_open(const char *path, size_t path_length, leafless_volume **volume);
+
+/**
+ * As leafless_volume_open for a file in memory.
+ *
+ * - Buffers: `bytes`, `length` bytes; may be NULL if there are none. `data`, `data_length` bytes: the file
+ *   of the samples, if leafless_volume_data_file tells of one; else NULL and 0. `volume`, one pointer.
+ * - Result: `*volume`.
+ * - Errors: as leafless_volume_open, but those of paths.
+ * - Ownership: the bytes are not kept; give `*volume` back with leafless_volume_free.
+ * - Threads: any.
+ * - Untrusted input: any bytes; memory as for leafless_volume_open.
+ * - Since: 0.1
+ */
+leafless_status leafless_volume_from_bytes(const uint8_t *bytes,
+                                           uint64_t length,
+                                           const uint8_t *data,
+                                           uint64_t data_length,
+                                           leafless_volume **volume);
+
+/**
+ * The name of the file that has the samples of a volume file, relative to that.
+ *
+ * - Buffers: `bytes`, `length` bytes: the file, or all of its header; may be NULL if there are none. `name`,
+ *   room for `capacity` bytes, or NULL to ask for the length only; `name_length`, one number.
+ * - Result: `*name_length`, in bytes; 0 if the samples stand behind the header. The name, in UTF-8, not
+ *   NUL-terminated. It may be any text: check it before you open such a file.
+ * - Errors: LEAFLESS_E_VOLUME_FILE; LEAFLESS_E_BUFFER if the capacity is too small; LEAFLESS_E_NO_MEMORY.
+ * - Ownership: nothing changes hands.
+ * - Threads: any.
+ * - Untrusted input: any bytes.
+ * - Since: 0.1
+ */
+leafless_status leafless_volume_data_file(const uint8_t *bytes,
+                                          uint64_t length,
+                                          char *name,
+                                          uint64_t capacity,
+                                          uint64_t *name_length);
+
+/**
+ * Reads an array of samples without a header. O(n). (In memory, leafless_volume_new does the same.)
+ *
+ * - Buffers: `path`, `path_length` bytes of UTF-8; `layout`, one struct; `volume`, one pointer.
+ * - Result: `*volume`.
+ * - Errors: LEAFLESS_E_VOLUME_FILE if the file is longer or shorter than the layout says;
+ *   LEAFLESS_E_ARGUMENT as leafless_volume_new; LEAFLESS_E_IO; LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY.
+ * - Ownership: give `*volume` back with leafless_volume_free.
+ * - Threads: any.
+ * - Untrusted input: any file, any layout; memory is at most the file's length and as much again for the
+ *   samples, twice as much for int8_t.
+ * - Since: 0.1
+ */
+leafless_status leafless_volume_open_raw(const char *path,
+                                         size_t path_length,
+                                         const leafless_volume_layout *layout,
+                                         leafless_volume **volume);
+
+/**
+ * Saves a volume in a file. At any moment there is the old file or the new one, each complete, as
+ * leafless_octree_save tells.
+ *
+ * The byte of the lowest weight comes first, and bits become bytes 0 and 1. A NRRD holds the place of the
+ * first sample, corner + spacing / 2, rounded, so that a volume that is read again may lie half a last place
+ * beside; and no unit. A raw file holds no place at all. O(n) time and memory.
+ *
+ * - Buffers: `path`, `path_length` bytes of UTF-8. `format` is a leafless_volume_format.
+ * - Result: LEAFLESS_OK once the file is on the disk.
+ * - Errors: LEAFLESS_E_ARGUMENT if `format` is none that can be written, or if the volume has other axes
+ *   than x, y and z and shall become a NRRD; LEAFLESS_E_IO; LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY. The old
+ *   file is then as it was; only if the very last step fails, synchronising the directory, the new one is in
+ *   place.
+ * - Ownership: nothing changes hands.
+ * - Threads: any.
+ * - Untrusted input: any volume.
+ * - Since: 0.1
+ */
+leafless_status leafless_volume_save(const leafless_volume *volume,
+                                     uint32_t format,
+                                     const char *path,
+                                     size_t path_length);
+
+/**
+ * The bytes of a volume's file, in memory: those that leafless_volume_save writes. Asking for the length
+ * takes as long as filling.
+ *
+ * - Buffers: `bytes`, room for `capacity` bytes, or NULL to ask for the length only; `length`, one number.
+ *   `format` is a leafless_volume_format.
+ * - Result: `*length`, the length of the file; the file in `bytes`.
+ * - Errors: LEAFLESS_E_BUFFER if the capacity is too small; LEAFLESS_E_ARGUMENT as leafless_volume_save;
+ *   LEAFLESS_E_NO_MEMORY.
+ * - Ownership: nothing changes hands.
+ * - Threads: any.
+ * - Untrusted input: any volume.
+ * - Since: 0.1
+ */
+leafless_status leafless_volume_to_bytes(const leafless_volume *volume,
+                                         uint32_t format,
+                                         uint8_t *bytes,
+                                         uint64_t capacity,
+                                         uint64_t *length);
 
 /**
  * Reads a scene from a file. Files that it names are looked for beside it.
@@ -4670,8 +5511,7 @@ leafless_status leafless_octree_volume_in_box(const leafless_octree *octree,
  * How a region lies to a solid, as far as cells of the frame tell: a ball, or any other solid.
  * LEAFLESS_REGION_INSIDE means that all of the region lies in the solid; LEAFLESS_REGION_OUTSIDE that the interiors are
  * disjoint, as they also are if the region is empty; LEAFLESS_REGION_CROSSING that some of the region does and some does
- * not. The work ends as soon as the answer is known, or once `max_splits` cells of both are split. (The volume that both
- * have in common is leafless_solid_measure's of their intersection.)
+ * not. The work ends as soon as the answer is known, or once `max_splits` cells of both are split.
  *
  * - Buffers: `frame`, one struct; `options`, one struct or NULL; `relation`, one.
  * - Result: `*relation`.
@@ -4687,6 +5527,90 @@ leafless_status leafless_solid_classify_in(const leafless_solid *solid,
                                            const leafless_frame *frame,
                                            const leafless_options *options,
                                            leafless_region *relation);
+
+/**
+ * How many finest cells of an octree lie in a region, which is a ball or any other solid. The octree's cells are taken
+ * as they are, whatever they prove; what is not proven of the region counts as PARTIAL. What lies outside of the
+ * universe does not count.
+ *
+ * Where the region is FULL, whole subtrees are counted, 64 cells at a time; where it is EMPTY, nothing is read; where it
+ * is undecided and the octree is not EMPTY, it is split, down to the octree's depth. Once `max_splits` cells of both are
+ * split, the others count as undecided.
+ *
+ * - Buffers: `options`, one struct or NULL; `cells`, one struct.
+ * - Result: `*cells`.
+ * - Errors: LEAFLESS_E_FRAME if the region belongs to another frame; LEAFLESS_E_CALLBACK; LEAFLESS_E_DAMAGED if the region
+ *   is; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
+ * - Ownership: nothing changes hands.
+ * - Threads: any; works in the calling thread.
+ * - Untrusted input: any octree, any region; no array element is read twice; damage reads as PARTIAL; set `max_splits`
+ *   where the depth or the region are not your own choice.
+ * - Since: 0.1
+ */
+leafless_status leafless_octree_cells_in(const leafless_octree *octree,
+                                         const leafless_solid *region,
+                                         const leafless_options *options,
+                                         leafless_cells_in *cells);
+
+/**
+ * The volume that an octree and a region have in common, as the octree's cells tell it: FULL ones bound it from below,
+ * FULL and PARTIAL ones from above. In a finest cell that the region cuts, its volume is known as well as the region
+ * knows it there: that of a ball to the third order. What lies outside of the universe does not count. The work is that
+ * of leafless_octree_cells_in, with a microsecond or two more for each cell that is cut.
+ *
+ * - Buffers: `options`, one struct or NULL; `volume_model`, one struct.
+ * - Result: `*volume_model`, in cubic model units.
+ * - Errors: as leafless_octree_cells_in.
+ * - Ownership: nothing changes hands.
+ * - Threads: any; works in the calling thread.
+ * - Untrusted input: as leafless_octree_cells_in.
+ * - Since: 0.1
+ */
+leafless_status leafless_octree_volume_in(const leafless_octree *octree,
+                                          const leafless_solid *region,
+                                          const leafless_options *options,
+                                          leafless_interval *volume_model);
+
+/**
+ * How many finest cells of a frame lie in a solid and in a region, which is a ball or any other solid. What is not proven
+ * of either counts as PARTIAL, and what lies outside of the universe does not count. No octree is made: the time is about
+ * that of splitting the region's boundary inside of the solid and the solid's boundary inside of the region, and the
+ * memory is proportional to the depth. Once `max_splits` cells of both are split, the others count as undecided.
+ *
+ * - Buffers: `frame`, one struct; `options`, one struct or NULL; `cells`, one struct.
+ * - Result: `*cells`.
+ * - Errors: LEAFLESS_E_FRAME if solid or region belong to another frame; LEAFLESS_E_ARGUMENT as leafless_frame_check;
+ *   LEAFLESS_E_CALLBACK; LEAFLESS_E_DAMAGED; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
+ * - Ownership: nothing changes hands.
+ * - Threads: any; works in the calling thread.
+ * - Untrusted input: any solids; set `max_splits` where the depth or the solids are not your own choice.
+ * - Since: 0.1
+ */
+leafless_status leafless_solid_cells_in(const leafless_solid *solid,
+                                        const leafless_solid *region,
+                                        const leafless_frame *frame,
+                                        const leafless_options *options,
+                                        leafless_cells_in *cells);
+
+/**
+ * The volume that a solid and a region have in common inside of a frame's universe: an interval that contains the
+ * truth. In a cell of the finest level it is known as well as solid and region know it there. The work is that of
+ * leafless_solid_cells_in, with a microsecond or two more for each cell that is cut. (To split until a volume is known to a
+ * tolerance, use leafless_solid_measure on the intersection.)
+ *
+ * - Buffers: `frame`, one struct; `options`, one struct or NULL; `volume_model`, one struct.
+ * - Result: `*volume_model`, in cubic model units.
+ * - Errors: as leafless_solid_cells_in.
+ * - Ownership: nothing changes hands.
+ * - Threads: any; works in the calling thread.
+ * - Untrusted input: as leafless_solid_cells_in.
+ * - Since: 0.1
+ */
+leafless_status leafless_solid_volume_in(const leafless_solid *solid,
+                                         const leafless_solid *region,
+                                         const leafless_frame *frame,
+                                         const leafless_options *options,
+                                         leafless_interval *volume_model);
 
 /**
  * The box of a cell of any level, in model units: the doubles nearest to its corners that contain it.
@@ -4906,6 +5830,145 @@ leafless_status leafless_faces_next(leafless_faces *faces,
                                     leafless_boundary_face *buffer,
                                     uint64_t capacity,
                                     uint64_t *count);
+
+/**
+ * The cells of a level in a box as bits: `inner` tells which are FULL, and `outer` which are not EMPTY.
+ * Those that only `outer` has are PARTIAL, or are cut further.
+ *
+ * The bit of the cell min_cell + (x, y, z) is bit x mod 64 of word x / 64 + w (y + ny z), where w = ⌈nx /
+ * 64⌉, and nx, ny and nz are max_cell - min_cell: x is fastest, each row begins with a word of its own, and
+ * bits beyond a row are 0. That is LEAFLESS_SAMPLE_BITS, from which leafless_volume_new and
+ * leafless_volume_view make a volume again.
+ *
+ * Time is linear in the words and the array elements in the box.
+ *
+ * - Buffers: `min_cell` and `max_cell`, 3 numbers each: the first cell of the box, and the first one beyond
+ *   it on each axis, in cells of `level`, which is 0 for the universe and the frame's depth for the finest;
+ *   `options`, one struct or NULL, of which limits do not matter; `inner` and `outer`, room for `capacity`
+ *   words each. `inner` is NULL to ask for the count only; `outer` may be NULL if it is not wanted. `count`,
+ *   one number.
+ * - Result: `*count`, the words of a bitmap, w ny nz; the words, the same for any number of threads.
+ * - Errors: LEAFLESS_E_ARGUMENT if there is no such level, or the box is none or lies outside of the
+ *   universe; LEAFLESS_E_BUFFER if the capacity is too small; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
+ * - Ownership: nothing changes hands.
+ * - Threads: any; uses as many as `options` says.
+ * - Untrusted input: any octree, any numbers; damage reads as PARTIAL.
+ * - Since: 0.1
+ *
+ */
+leafless_status leafless_octree_bitmap(const leafless_octree *octree,
+                                       uint32_t level,
+                                       const uint32_t min_cell[3],
+                                       const uint32_t max_cell[3],
+                                       const leafless_options *options,
+                                       uint64_t *inner,
+                                       uint64_t *outer,
+                                       uint64_t capacity,
+                                       uint64_t *count);
+
+/**
+ * Sets options for surfaces to their defaults: marching cubes, vertices half-way.
+ *
+ * - Buffers: `surface`, one struct of `struct_size` bytes, which is sizeof(leafless_surface_options); need
+ *   not be initialised.
+ * - Result: `*surface`.
+ * - Errors: LEAFLESS_E_ARGUMENT if `struct_size` cannot be right.
+ * - Ownership: nothing changes hands.
+ * - Threads: any.
+ * - Untrusted input: none.
+ * - Since: 0.1
+ */
+leafless_status leafless_surface_options_init(leafless_surface_options *surface, size_t struct_size);
+
+/**
+ * The surface of an octree: a closed mesh between the centres of finest cells that lie inside and those that
+ * lie outside. Everything around the universe counts as outside, so that the mesh is closed there, too.
+ *
+ * Every edge is run along as often in one direction as in the other, but for
+ * LEAFLESS_SURFACE_SHRINK_PUBLISHED. Triangles turn counter-clockwise as seen from outside; no two vertices
+ * are equal, and no triangle has a vertex twice. The order of vertices and triangles is always the same:
+ * that of the cells in Morton order, or for coplanar shrink that of places and planes. leafless_mesh_counts
+ * and leafless_mesh_copy hand the arrays out, leafless_mesh_describe and leafless_mesh_area tell about them,
+ * leafless_mesh_intersecting_pairs finds triangles that meet, and leafless_mesh_save writes them.
+ *
+ * Time is linear in the octree's array elements and the mesh: it grows with the surface, not with the
+ * volume. (Coplanar shrink takes O(n log n + n w) for n cells at the surface of which at most w lie along a
+ * line in a plane region.) Beside the mesh it takes 56 bytes (simple marching cubes: up to 128) for each
+ * block of 4³ cells at the surface, and coplanar shrink up to 200 bytes for each cell at a curved surface.
+ *
+ * - Buffers: `surface`, one struct or NULL; `options`, one struct or NULL, of which `max_nodes` and
+ *   `max_bytes` count for LEAFLESS_RESOLVE_SOURCE only; `mesh`, one pointer.
+ * - Result: `*mesh`, the same for any number of threads; it has no triangles if nothing is inside.
+ * - Errors: LEAFLESS_E_ARGUMENT if the octree has PARTIAL cells and `resolve` does not say what they count
+ *   as, if a field of `surface` is none of its enum, or is set though the method does not use it, or if the
+ *   frame lies so far from the origin that doubles cannot tell its cells apart; LEAFLESS_E_NULL if
+ *   LEAFLESS_RESOLVE_SOURCE has no `source`; LEAFLESS_E_MESH if there would be more than 2^32 - 1 vertices
+ *   or triangles; LEAFLESS_E_DAMAGED; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY; and those of
+ *   leafless_octree_build for the source.
+ * - Ownership: `octree` stays as it is; give `*mesh` back with leafless_mesh_free.
+ * - Threads: any; uses as many as `options` says.
+ * - Untrusted input: any octree; damage is LEAFLESS_E_DAMAGED or another surface.
+ * - Since: 0.1
+ */
+leafless_status leafless_octree_surface(const leafless_octree *octree,
+                                        const leafless_surface_options *surface,
+                                        const leafless_options *options,
+                                        leafless_mesh **mesh);
+
+/**
+ * The surface of a solid, which is sampled at the corners of the cells of a frame: 2^depth + 1 to an axis.
+ * Else as leafless_octree_surface. What the solid has outside of the universe is cut off.
+ *
+ * Time is that of leafless_octree_build with LEAFLESS_RULE_SAMPLED on as many cells as there are corners,
+ * and for LEAFLESS_PLACEMENT_CROSSING a few questions to the solid for each vertex; memory as well. With
+ * crossings, vertices that lie at one place are one, and triangles without area are dropped. Where the solid
+ * has no thickness at a sample, more than two triangles may then meet on an edge.
+ *
+ * - Buffers: `frame`, one struct; `surface`, one struct or NULL, whose `resolve` and `source` are 0;
+ *   `options`, one struct or NULL; `mesh`, one pointer.
+ * - Result: `*mesh`, the same for any number of threads; it has no triangles if nothing is inside.
+ * - Errors: LEAFLESS_E_ARGUMENT if the depth is 20, which leaves no level for corners, if a field of
+ *   `surface` is none of its enum, or is set though it is not used, or if the frame lies so far from the
+ *   origin that doubles cannot tell its corners apart; LEAFLESS_E_NOT_SAMPLED if the solid cannot decide
+ *   points; LEAFLESS_E_FRAME for the solid of leafless_octree_as_solid, which has samples of its own, and
+ *   for others that belong to another frame; LEAFLESS_E_MESH if there would be more than 2^32 - 1 vertices
+ *   or triangles; LEAFLESS_E_CALLBACK; LEAFLESS_E_DAMAGED; LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED;
+ *   LEAFLESS_E_NO_MEMORY.
+ * - Ownership: give `*mesh` back with leafless_mesh_free.
+ * - Threads: any; uses as many as `options` says.
+ * - Untrusted input: any solid; set `max_bytes` where the depth or the solid is not your own choice.
+ * - Since: 0.1
+ */
+leafless_status leafless_solid_surface(const leafless_solid *solid,
+                                       const leafless_frame *frame,
+                                       const leafless_surface_options *surface,
+                                       const leafless_options *options,
+                                       leafless_mesh **mesh);
+
+/**
+ * The surface of a volume by marching cubes: its samples are the centres of voxels, which need not be cubes,
+ * and its vertices lie where the samples, interpolated between two voxels, leave the band. For samples of a
+ * smooth function that is on the surface to second order in the spacing. Between bits, and beside a sample
+ * that is infinite or not a number, they lie half-way.
+ *
+ * Else as leafless_octree_surface; vertices that lie at one place are one, and there more than two triangles
+ * may meet on an edge. Time is linear in the samples, and in the surface.
+ *
+ * - Buffers: `band`, one struct, or NULL, as for leafless_solid_new_volume; `options`, one struct or NULL, of
+ *   which limits do not matter; `mesh`, one pointer.
+ * - Result: `*mesh`, the same for any number of threads, where the file says that the volume lies.
+ * - Errors: those of leafless_solid_new_volume; LEAFLESS_E_ARGUMENT if the volume lies so far from the origin
+ *   that doubles cannot tell its voxels apart; LEAFLESS_E_MESH if there would be more than 2^32 - 1 vertices
+ *   or triangles.
+ * - Ownership: `volume` stays as it is; give `*mesh` back with leafless_mesh_free.
+ * - Threads: any; uses as many as `options` says.
+ * - Untrusted input: any volume.
+ * - Since: 0.1
+ */
+leafless_status leafless_volume_surface(const leafless_volume *volume,
+                                        const leafless_interval *band,
+                                        const leafless_options *options,
+                                        leafless_mesh **mesh);
 
 /**
  * An octree of which only the universe is known. No cell will ever be finer than the frame's depth, which

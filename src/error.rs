@@ -527,8 +527,8 @@ pub enum VolumeFileError {
     /// not of a magnitude between 2^-256 and 2^256 (2^64 if the axes are turned).
     #[error("the spacing, the origin or the directions of the samples are out of range, or lie in one plane")]
     Place,
-    /// There are more or fewer bytes of samples than the header asks for.
-    #[error("the header asks for {expected} bytes of samples, and there are {found}")]
+    /// There are more or fewer bytes of samples than the header, or the caller, asks for.
+    #[error("{expected} bytes of samples are expected, and there are {found}")]
     Length {
         /// Bytes that are asked for, with those that are to be skipped. Of a text the fewest; of compressed samples what
         /// they should become.

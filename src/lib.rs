@@ -65,7 +65,7 @@
 //! | … a byte of a file checked? | `file/header.rs`, `object.rs`, `section.rs`, `layout.rs` |
 //! | … an allocation refused? | `memory.rs` |
 //! | … where a ray meets a solid, how high it is? | `query/ray/`, `query/columns/` |
-//! | … a closed triangle mesh of a solid? | `surface/cubes.rs`, `smc.rs`, `solid.rs` |
+//! | … a closed triangle mesh of a solid? | `surface/cubes.rs`, `smc.rs`, `shrink.rs`, `solid.rs`, `volume.rs` |
 //! | … the volume of a solid, the distance of two, or of a point? | `query/measure/`, `query/clearance/`, `query/distance/` |
 
 #![no_std]
@@ -116,12 +116,12 @@ pub use op::{
     intersection_of, resolve, union, union_of, xor, xor_of,
 };
 pub use query::{
-    AREA_SPLITS, BOUNDING_BOX_SPLITS, CLEARANCE_SPLITS, Clearance, ColumnCells, ColumnRuns, Columns,
+    AREA_SPLITS, BOUNDING_BOX_SPLITS, CLEARANCE_SPLITS, CellsIn, Clearance, ColumnCells, ColumnRuns, Columns,
     DISTANCE_SPLITS, DistanceTo, Extent, Heights, Interference, MEASURE_SPLITS, MassProperties, Membership,
     NearCell, Obstacle, Overlap, PointCursor, PointDistance, PointTable, Ray, RayHit, RaySpans, Region, Run,
-    Side, Sight, StopReason, SurfaceArea, Tolerance, bounding_box, cast_rays, classify_box, classify_in,
-    clearance, columns, contains, distances, heights, interference, interference_of, line_of_sight, measure,
-    ray_spans, surface_area,
+    Side, Sight, StopReason, SurfaceArea, Tolerance, bounding_box, cast_rays, cells_in, classify_box,
+    classify_in, clearance, columns, contains, distances, heights, interference, interference_of,
+    line_of_sight, measure, ray_spans, surface_area, volume_in,
 };
 pub use solid::{
     Adaptive, AnyClassifier, AnySolid, AnyWorker, Band, Callback, Classifier, Crossing, Csg, Enclosure,
@@ -130,7 +130,11 @@ pub use solid::{
     VoxelGrid, Worker,
 };
 
-pub use surface::{Resolve, Snap, VertexPlacement, marching_cubes, marching_cubes_of, smc, smc_of};
+pub use surface::{
+    Resolve, Snap, VertexPlacement, coplanar_shrink, coplanar_shrink_of, marching_cubes, marching_cubes_of,
+    marching_cubes_of_volume, marching_cubes_reusing, marching_cubes_with_volume, published_shrink,
+    published_shrink_of, smc, smc_of,
+};
 
 #[cfg(feature = "std")]
 pub use solid::Prepared;

@@ -41,6 +41,14 @@ pub(crate) fn filled<T: Clone>(count: usize, value: T) -> Result<Vec<T>, Error> 
     Ok(list)
 }
 
+/// `count` times `value`, in the memory of a list as far as that is large enough.
+pub(crate) fn refilled<T: Clone>(mut list: Vec<T>, count: usize, value: T) -> Result<Vec<T>, Error> {
+    list.clear();
+    list.try_reserve_exact(count)?;
+    list.resize(count, value);
+    Ok(list)
+}
+
 /// What an iterator yields that knows how much that is.
 pub(crate) fn collected<T>(items: impl ExactSizeIterator<Item = T>) -> Result<Vec<T>, Error> {
     let mut list = with_capacity(items.len())?;

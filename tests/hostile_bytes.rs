@@ -176,8 +176,8 @@ fn files_cut_at_every_length() {
 fn every_byte_and_the_first_bits_flipped() {
     let (mut viewed, mut verified) = (0, 0);
     for bytes in small_files() {
-        let bits = (0..512.min(bytes.len())).flat_map(|at| (0..8).map(move |bit| (at, 1u8 << bit)));
-        let all = (0..bytes.len()).flat_map(|at| [(at, 0xFF), (at, 0x80), (at, 0x01)]);
+        let bits = (0..256.min(bytes.len())).flat_map(|at| (0..8).map(move |bit| (at, 1u8 << bit)));
+        let all = (0..bytes.len()).flat_map(|at| [(at, 0xFF), (at, 0x01)]);
         for (at, flip) in bits.chain(all) {
             let mut flipped = bytes.clone();
             flipped[at] ^= flip;

@@ -37,7 +37,7 @@ fn mesh(seed: u64) -> TriangleMesh {
 const FORMATS: [MeshFormat; 4] = [MeshFormat::Stl, MeshFormat::Obj, MeshFormat::Ply, MeshFormat::Off];
 
 fn written(mesh: &TriangleMesh, format: MeshFormat, text: bool) -> Vec<u8> {
-    write_mesh(mesh, format, &WriteOptions { text, unit: None }).unwrap()
+    write_mesh(mesh, format, &WriteOptions { text, ..WriteOptions::default() }).unwrap()
 }
 
 proptest! {
@@ -68,11 +68,49 @@ proptest! {
         }
     }
 
+    /// Normals stand beside vertices, for this library's readers and for foreign ones.
+    #[test]
+    fn normals_are_written(seed: u64) {
+        let mesh = mesh(seed);
+        let normals: Vec<[f32; 3]> =
+            mesh.vertex_normals().unwrap().iter().map(|normal| normal.map(|x| x as f32)).collect();
+        for format in FORMATS {
+            for text in [false, true] {
+                let options = WriteOptions { text, normals: true, unit: None };
+                let bytes = write_mesh(&mesh, format, &options).unwrap();
+                if matches!(format, MeshFormat::Stl | MeshFormat::Off) {
+                    prop_assert_eq!(&bytes, &written(&mesh, format, text));
+                    continue;
+                }
+                let back = read_mesh(&bytes, &MeshOptions::default()).unwrap();
+                prop_assert_eq!(back.mesh.vertices(), mesh.vertices());
+                prop_assert_eq!(back.mesh.triangles(), mesh.triangles());
+                let found: Vec<[f32; 3]> = if format == MeshFormat::Ply {
+                    let ply = Parser::<DefaultElement>::new().read_ply(&mut &bytes[..]).unwrap();
+                    let float = |vertex: &DefaultElement, name: &str| match vertex[name] {
+                        Property::Float(x) => x,
+                        _ => panic!("{name} is no float"),
+                    };
+                    ply.payload["vertex"].iter().map(|v| ["nx", "ny", "nz"].map(|n| float(v, n))).collect()
+                } else {
+                    let text = std::str::from_utf8(&bytes).unwrap();
+                    let normals = text.lines().filter_map(|line| line.strip_prefix("vn "));
+                    let parsed = normals.map(|line| {
+                        let numbers: Vec<f32> = line.split(' ').map(|x| x.parse().unwrap()).collect();
+                        [numbers[0], numbers[1], numbers[2]]
+                    });
+                    parsed.collect()
+                };
+                prop_assert_eq!(&found, &normals);
+            }
+        }
+    }
+
     #[cfg(feature = "threemf")]
     #[test]
     fn a_package_comes_back_with_its_unit(seed: u64, unit in 0..6usize) {
         let (mesh, unit) = (mesh(seed), LengthUnit::ALL[unit]);
-        let bytes = write_mesh(&mesh, MeshFormat::ThreeMf, &WriteOptions { text: false, unit: Some(unit) }).unwrap();
+        let bytes = write_mesh(&mesh, MeshFormat::ThreeMf, &WriteOptions { unit: Some(unit), ..WriteOptions::default() }).unwrap();
         let back = read_mesh(&bytes, &MeshOptions::default()).unwrap();
         prop_assert_eq!((back.format, back.unit), (MeshFormat::ThreeMf, Some(unit)));
         prop_assert!(back.warnings.is_empty() && back.skipped == 0);
@@ -144,7 +182,7 @@ fn coordinates_that_a_format_has_not_are_refused() {
     let mesh =
         TriangleMesh::new(vec![[1e39, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], vec![[0, 1, 2]]).unwrap();
     for text in [false, true] {
-        let result = write_mesh(&mesh, MeshFormat::Stl, &WriteOptions { text, unit: None });
+        let result = write_mesh(&mesh, MeshFormat::Stl, &WriteOptions { text, ..WriteOptions::default() });
         assert!(matches!(result, Err(Error::Argument { name: "mesh", .. })));
     }
 }

@@ -9,7 +9,7 @@ use common::surfaces::{components, euler_of_manifold};
 use common::{Dense, Random, alone, cases, lattice_frame, model, shapes};
 use leafless::{
     Control, Csg, Error, FillRule, Frame, MeshSolid, Octree, Resolve, Rule, Snap, Solid, Tag, TriangleMesh,
-    build, exchange, file, marching_cubes, smc,
+    build, exchange, file, marching_cubes, marching_cubes_reusing, smc,
 };
 use proptest::prelude::*;
 
@@ -309,5 +309,23 @@ fn damaged_trees() {
             }
         }
         assert!(seen[0] > 5 && seen[1] > 5, "{seen:?}");
+    }
+}
+
+/// The memory of another mesh, larger or smaller, changes nothing; a large one is kept.
+#[test]
+fn memory_is_reused() {
+    let frame = lattice_frame(5);
+    let mut before = None;
+    for radius in [3.0, 14.0, 9.0, 0.1, 12.0] {
+        let ball = build(&Csg::ball([16.0; 3], radius).unwrap(), &frame, Rule::Sampled, &alone()).unwrap();
+        let expected = marching_cubes(ball.view(), None, &alone()).unwrap();
+        let mesh = match before.take() {
+            None => marching_cubes(ball.view(), None, &alone()).unwrap(),
+            Some(mesh) => marching_cubes_reusing(mesh, ball.view(), None, &alone()).unwrap(),
+        };
+        assert_eq!((mesh.vertices(), mesh.triangles()), (expected.vertices(), expected.triangles()));
+        assert_eq!(mesh.report().unwrap(), expected.report().unwrap());
+        before = Some(mesh);
     }
 }

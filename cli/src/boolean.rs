@@ -146,7 +146,7 @@ fn operand(input: &Input, common: &Common) -> Result<Octree, Failure> {
         return Ok(input.octree(true)?.0);
     }
     let bytes = input.read()?;
-    if VolumeFormat::detect(&bytes).is_some() {
+    if common.sampling.is_raw() || VolumeFormat::detect(&bytes).is_some() {
         return common.sampling.read(input, &bytes)?.octree(input, common.threads);
     }
     if input.path().is_some() { Ok(input.octree(true)?.0) } else { file::from_bytes(&bytes).of(input) }

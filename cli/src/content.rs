@@ -20,15 +20,17 @@ pub enum Content {
 
 impl Content {
     /// What the bytes of a file are. The content decides where it tells, then the extension of the file's name;
-    /// `is_mesh` says that the user calls it a mesh. What is called a solid is taken for nothing else: a damaged
+    /// `told` is what the user calls it. What is called a solid is taken for nothing else: a damaged
     /// one must not pass for some mesh.
-    pub fn of(input: &Input, bytes: &[u8], is_mesh: bool) -> Result<Content, Failure> {
+    pub fn of(input: &Input, bytes: &[u8], told: Option<Content>) -> Result<Content, Failure> {
         let extension = input.path().and_then(|path| path.extension()?.to_str()).unwrap_or_default();
         if bytes.starts_with(&file::MAGIC) || extension == "lfl" {
             Ok(Content::Solid)
-        } else if !is_mesh && VolumeFormat::detect(bytes).is_some() {
+        } else if let Some(told) = told {
+            Ok(told)
+        } else if VolumeFormat::detect(bytes).is_some() {
             Ok(Content::Volume)
-        } else if is_mesh || MeshFormat::detect(bytes, None).is_some() {
+        } else if MeshFormat::detect(bytes, None).is_some() {
             Ok(Content::Mesh)
         } else if scene::is_scene(bytes) || extension.eq_ignore_ascii_case("csg") {
             Ok(Content::Scene)
@@ -51,7 +53,7 @@ mod tests {
 
     #[test]
     fn the_content_decides() {
-        let of = |name: &str, bytes: &[u8]| Content::of(&Input::from(OsStr::new(name)), bytes, false).ok();
+        let of = |name: &str, bytes: &[u8]| Content::of(&Input::from(OsStr::new(name)), bytes, None).ok();
         for name in ["-", "a.csg", "a.stl", "a.txt", "a"] {
             assert_eq!(of(name, b"// v1\n#group() { cube(1); }"), Some(Content::Scene), "{name}");
             assert_eq!(of(name, b"\xEF\xBB\xBF // by hand\n%union () {}"), Some(Content::Scene), "{name}");

@@ -38,7 +38,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     } else {
         let bytes = input.read()?;
         let length = bytes.len() as u64;
-        match Content::of(&input, &bytes, arguments.reading.has_format())? {
+        match Content::of(&input, &bytes, arguments.reading.told())? {
             Content::Solid => {
                 arguments.reading.refuse(&input, "a solid")?;
                 arguments.drawing.refuse(&input, "a solid")?;

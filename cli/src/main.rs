@@ -5,6 +5,7 @@
 
 #![deny(unsafe_code)]
 
+mod bitmap;
 mod boolean;
 mod contains;
 mod content;
@@ -32,6 +33,7 @@ mod target;
 mod verify;
 mod volume;
 mod voxelize;
+mod within;
 
 use clap::error::ErrorKind;
 use clap::{Parser, Subcommand};
@@ -55,7 +57,7 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Command {
-    /// Make a solid from a mesh (STL, OBJ, PLY, OFF, 3MF) or a volume (NRRD, MetaImage)
+    /// Make a solid from a mesh (STL, OBJ, PLY, OFF, 3MF) or a volume (NRRD, MetaImage, raw)
     Voxelize(voxelize::Arguments),
     /// Make a solid from a scene: primitives and set operations, as OpenSCAD exports them (.csg)
     Csg(csg::Arguments),
@@ -85,10 +87,14 @@ enum Command {
     Heights(heights::Arguments),
     /// Write the surface of a solid, a mesh or a scene as a triangle mesh
     Mesh(surface::Arguments),
+    /// Write the cells of a solid as a volume (NRRD or raw)
+    Bitmap(bitmap::Arguments),
     /// Say whether two solids or meshes overlap, by how much, and how far they are apart
     Interfere(interfere::Arguments),
     /// Volume, centroid, inertia and bounds of a solid or a mesh, as intervals that hold the true ones
     Measure(measure::Arguments),
+    /// Say how much of a solid lies in a ball, a box or another solid: cells, and the volume in common
+    Within(within::Arguments),
     /// Show the main job end to end on a mechanical part that the program makes itself
     Demo(demo::Arguments),
 }
@@ -114,8 +120,10 @@ fn main() -> ExitCode {
         Command::Ray(arguments) => ray::run(arguments),
         Command::Heights(arguments) => heights::run(arguments),
         Command::Mesh(arguments) => surface::run(arguments),
+        Command::Bitmap(arguments) => bitmap::run(arguments),
         Command::Interfere(arguments) => interfere::run(arguments),
         Command::Measure(arguments) => measure::run(arguments),
+        Command::Within(arguments) => within::run(arguments),
         Command::Demo(arguments) => demo::run(arguments),
     };
     match result {

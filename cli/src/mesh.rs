@@ -104,9 +104,12 @@ fn scale(text: &str) -> Result<f64, String> {
 }
 
 impl Reading {
-    /// The format of mesh files that is asked for.
-    pub fn has_format(&self) -> bool {
-        self.format.is_some()
+    /// What the user calls the file.
+    pub fn told(&self) -> Option<Content> {
+        match self.format {
+            Some(_) => Some(Content::Mesh),
+            None => self.sampling.is_raw().then_some(Content::Volume),
+        }
     }
 
     /// Refuses the options for meshes and volumes where something else is read: `what` it is.
@@ -152,7 +155,7 @@ impl Reading {
 
     /// The mesh in a file with these bytes, hair cracks closed, and a fingerprint of the file.
     pub fn read(&self, input: &Input, bytes: Vec<u8>) -> Result<(MeshFile, String), Failure> {
-        match Content::of(input, &bytes, self.has_format())? {
+        match Content::of(input, &bytes, self.told())? {
             Content::Solid => return Err(Failure::of(input, "is a solid already, not a mesh")),
             Content::Scene => return Err(Failure::of(input, "is a scene, not a mesh: use `leafless csg`")),
             Content::Volume => return Err(Failure::of(input, "is a volume, not a mesh")),

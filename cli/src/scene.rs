@@ -50,7 +50,7 @@ impl Drawing {
 /// Reads a scene, and says what its text was.
 pub fn read_scene(input: &Input, drawing: &Drawing) -> Result<(Scene, String), Failure> {
     let text = input.read()?;
-    match Content::of(input, &text, false)? {
+    match Content::of(input, &text, None)? {
         Content::Solid => Err(Failure::of(input, "is a solid already, not a scene")),
         Content::Mesh => Err(Failure::of(input, "is a mesh, not a scene: use `leafless voxelize`")),
         Content::Volume => Err(Failure::of(input, "is a volume, not a scene: use `leafless voxelize`")),

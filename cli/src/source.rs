@@ -39,7 +39,7 @@ impl Source {
             return Ok(Source::Octree(Box::new(input.octree(true)?.0)));
         }
         let bytes = input.read()?;
-        match Content::of(input, &bytes, reading.has_format())? {
+        match Content::of(input, &bytes, reading.told())? {
             Content::Solid => {
                 reading.refuse(input, SOLID)?;
                 drawing.refuse(input, SOLID)?;

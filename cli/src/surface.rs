@@ -12,7 +12,8 @@ use clap::{Args, ValueEnum};
 use leafless::exchange::{LengthUnit, MeshFormat, WriteOptions, write_mesh};
 use leafless::{
     Affine, AnySolid, Control, Error, Frame, MAX_DEPTH, MeshReport, Octree, Resolve, Rule, Snap,
-    TriangleMesh, VertexPlacement, build, marching_cubes, marching_cubes_of, smc, smc_of,
+    TriangleMesh, VertexPlacement, build, coplanar_shrink, coplanar_shrink_of, marching_cubes,
+    marching_cubes_of, published_shrink, published_shrink_of, smc, smc_of,
 };
 use serde::Serialize;
 use std::ffi::OsString;
@@ -38,13 +39,16 @@ pub struct Arguments {
     /// Write STL and PLY as text
     #[arg(long)]
     text: bool,
+    /// Write normals at vertices, in PLY and OBJ
+    #[arg(long)]
+    normals: bool,
     /// How the surface is made
     #[arg(long, value_enum, default_value_t = Method::Mc)]
     method: Method,
-    /// Where --method smc moves vertices to
+    /// Where all methods but mc move vertices to
     #[arg(long, value_enum, default_value_t = SnapName::Fat)]
     snap: SnapName,
-    /// Where --method mc puts vertices of a mesh or scene
+    /// Where --method mc puts vertices of a mesh, scene or volume
     #[arg(long, value_enum, default_value_t = At::Crossing)]
     vertices: At,
     /// What undecided cells count as. Given for a mesh or scene, its cells are the samples, made as `leafless voxelize`
@@ -61,6 +65,9 @@ pub struct Arguments {
     reading: Reading,
     #[command(flatten)]
     drawing: Drawing,
+    /// Also count pairs of triangles that intersect each other
+    #[arg(long)]
+    intersections: bool,
     /// Threads to use; 0: as many as there are processors. The result is the same
     #[arg(long, default_value_t = 0, value_name = "N", value_parser = threads)]
     threads: usize,
@@ -100,6 +107,10 @@ enum Method {
     Mc,
     /// Simple marching cubes: all vertices are samples, all normals have one of 13 directions
     Smc,
+    /// The surface of smc, with one region of few triangles for all that lies in one plane; no cracks
+    Shrink,
+    /// Coplanar shrink as it was published, to compare with: it has cracks
+    ShrinkPublished,
 }
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
@@ -119,7 +130,7 @@ impl From<SnapName> for Snap {
     }
 }
 
-#[derive(Debug, Clone, Copy, ValueEnum)]
+#[derive(Debug, Clone, Copy, PartialEq, ValueEnum)]
 enum At {
     /// Half-way between an inside and an outside sample
     Midpoint,
@@ -145,13 +156,20 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let source = Source::read(&input, &arguments.reading, &arguments.drawing)?;
     let unit = source.unit();
     let mesh = extract(source, &input, arguments)?;
-    let options = WriteOptions { text: arguments.text, unit };
+    let options = WriteOptions { text: arguments.text, unit, normals: arguments.normals };
     let bytes = write_mesh(&mesh, format, &options).of(&output)?;
     match output.path() {
         Some(path) => write_file(path, &bytes)?,
         None => output::print(&bytes)?,
     }
     let report = mesh.report().of(&input)?;
+    let intersecting = if arguments.intersections {
+        let pairs =
+            watched("intersections", arguments.threads, |control| mesh.intersecting_pairs(0, control));
+        Some(pairs.of(&input)?)
+    } else {
+        None
+    };
     let told = Report {
         input: input.to_string(),
         output: output.to_string(),
@@ -166,6 +184,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         euler: report.euler_characteristic,
         area: mesh.area(),
         volume: mesh.volume(),
+        intersecting: intersecting.as_ref().map(|pairs| pairs.count),
+        all_intersecting_pairs: intersecting.as_ref().map(|pairs| pairs.is_complete),
         seconds: start.elapsed().as_secs_f64(),
     };
     output.report(&if arguments.json { output::json(&told)? } else { told.summary(&report) })
@@ -210,6 +230,14 @@ fn extract(source: Source, input: &Input, arguments: &Arguments) -> Result<Trian
         return watched("mesh", arguments.threads, |control| of_cells(&octree, resolve, arguments, control))
             .of(input);
     }
+    let is_plain = arguments.depth.is_none() && arguments.bounds.is_none() && arguments.resolve.is_none();
+    if let Source::Volume(voxels) = &source
+        && is_plain
+        && arguments.method == Method::Mc
+        && arguments.vertices == At::Crossing
+    {
+        return voxels.surface(input, arguments.threads);
+    }
     // A volume has its own samples, if its voxels are cubes.
     let has_own = source.own_frame().is_some() && arguments.depth.is_none();
     let depth = if has_own { None } else { Some(arguments.depth.unwrap_or(DEPTH)) };
@@ -233,9 +261,12 @@ fn of_cells(
     arguments: &Arguments,
     control: &Control<'_>,
 ) -> Result<TriangleMesh, Error> {
+    let snap = arguments.snap.into();
     match arguments.method {
         Method::Mc => marching_cubes(octree.view(), resolve, control),
-        Method::Smc => smc(octree.view(), arguments.snap.into(), resolve, control),
+        Method::Smc => smc(octree.view(), snap, resolve, control),
+        Method::Shrink => coplanar_shrink(octree.view(), snap, resolve, control),
+        Method::ShrinkPublished => published_shrink(octree.view(), snap, resolve, control),
     }
 }
 
@@ -250,9 +281,12 @@ fn of_solid(
         At::Midpoint => VertexPlacement::Midpoint,
         At::Crossing => VertexPlacement::Crossing,
     };
+    let snap = arguments.snap.into();
     match arguments.method {
         Method::Mc => marching_cubes_of(solid, frame, placement, control),
-        Method::Smc => smc_of(solid, frame, arguments.snap.into(), control),
+        Method::Smc => smc_of(solid, frame, snap, control),
+        Method::Shrink => coplanar_shrink_of(solid, frame, snap, control),
+        Method::ShrinkPublished => published_shrink_of(solid, frame, snap, control),
     }
 }
 
@@ -273,6 +307,12 @@ struct Report {
     euler: i64,
     area: f64,
     volume: f64,
+    /// Pairs of triangles that intersect, if they were asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    intersecting: Option<u64>,
+    /// Whether these are all.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    all_intersecting_pairs: Option<bool>,
     seconds: f64,
 }
 
@@ -301,6 +341,10 @@ impl Report {
             number(self.volume),
             self.seconds,
         );
+        if let Some(pairs) = self.intersecting {
+            let more = if self.all_intersecting_pairs == Some(false) { " or more" } else { "" };
+            let _ = writeln!(text, "{}{more} of triangles that intersect", counted(pairs, "pair", "pairs"));
+        }
         text
     }
 }

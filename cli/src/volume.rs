@@ -1,23 +1,47 @@
-//! Volumes from files, NRRD and MetaImage: which voxels are inside, and what is told of them.
+//! Volumes from files, NRRD, MetaImage and raw: which voxels are inside, and what is told of them.
 
 use crate::failure::{Failure, Of};
 use crate::input::Input;
 use crate::output::{self, Output, count, counted, number, seconds};
 use crate::progress::watched;
 use crate::report::Info;
-use clap::Args;
-use leafless::exchange::{LengthUnit, SampleKind, VolumeFile, open_volume, read_volume, volume_data_file};
-use leafless::{AnySolid, Band, Control, Frame, Metadata, Octree, Rule, Solid, build};
+use clap::{Args, ValueEnum};
+use leafless::exchange::{
+    LengthUnit, RawVolume, SampleKind, open_volume, read_raw_volume, read_volume, volume_data_file,
+};
+use leafless::{
+    Affine, AnySolid, Band, Control, Frame, Metadata, Octree, Rule, Samples, Solid, TriangleMesh, Volume,
+    VoxelGrid, build, marching_cubes_of_volume,
+};
 use serde::Serialize;
+use std::str::FromStr;
 use std::time::Instant;
 
-/// Which voxels of a volume are inside.
+/// Which voxels of a volume are inside, and what the bytes of one without a header mean.
 #[derive(Args)]
 pub struct Sampling {
-    /// Least sample of a volume (NRRD, MetaImage) that is inside. Without it: the middle of the range of the samples'
-    /// type, 0 for floating point numbers
+    /// Least sample of a volume (NRRD, MetaImage, raw) that is inside. Without it: the middle of the range of the
+    /// samples' type, 0 for floating point numbers
     #[arg(long, value_name = "T", value_parser = threshold, allow_hyphen_values = true)]
     threshold: Option<f64>,
+    /// Read the file as a raw volume, which has no header: an array of so many samples along x, y and z, x fastest
+    #[arg(long = "samples", value_name = "NX,NY,NZ", value_parser = extents)]
+    extents: Option<[u32; 3]>,
+    /// Type of the samples of a raw volume. Without it: u8
+    #[arg(long = "type", value_enum, requires = "extents")]
+    kind: Option<KindName>,
+    /// Edges of the voxels of a raw volume along x, y and z, or one for all. Without it: 1
+    #[arg(long, value_name = "S|SX,SY,SZ", value_parser = spacing, requires = "extents")]
+    spacing: Option<[f64; 3]>,
+    /// Lower corner of the first voxel of a raw volume. Without it: 0,0,0
+    #[arg(long, value_name = "X,Y,Z", value_parser = corner, requires = "extents", allow_hyphen_values = true)]
+    corner: Option<[f64; 3]>,
+    /// Bytes of a raw volume before its first sample. Without it: 0
+    #[arg(long, value_name = "BYTES", requires = "extents")]
+    skip: Option<u64>,
+    /// The first byte of each sample of a raw volume is the one of the highest weight
+    #[arg(long, requires = "extents")]
+    big_endian: bool,
 }
 
 fn threshold(text: &str) -> Result<f64, String> {
@@ -27,44 +51,165 @@ fn threshold(text: &str) -> Result<f64, String> {
     }
 }
 
+/// Numbers between commas.
+fn list<T: FromStr>(text: &str) -> Option<Vec<T>> {
+    text.split(',').map(|number| number.trim().parse().ok()).collect()
+}
+
+fn extents(text: &str) -> Result<[u32; 3], String> {
+    let three: Option<[u32; 3]> = list(text).and_then(|numbers| numbers.try_into().ok());
+    three.ok_or_else(|| "expected three whole numbers: nx,ny,nz".into())
+}
+
+fn spacing(text: &str) -> Result<[f64; 3], String> {
+    match list(text).as_deref() {
+        Some(&[edge]) => Ok([edge; 3]),
+        Some(&[x, y, z]) => Ok([x, y, z]),
+        _ => Err("expected one number, or three: sx,sy,sz".into()),
+    }
+}
+
+fn corner(text: &str) -> Result<[f64; 3], String> {
+    let three: Option<[f64; 3]> = list(text).and_then(|numbers| numbers.try_into().ok());
+    three.ok_or_else(|| "expected three numbers: x,y,z".into())
+}
+
+/// Types of samples.
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum KindName {
+    /// Eight to a byte, the lowest first; each row along x begins with a byte of its own
+    Bit,
+    I8,
+    U8,
+    I16,
+    U16,
+    I32,
+    U32,
+    I64,
+    U64,
+    F32,
+    F64,
+}
+
+impl From<KindName> for SampleKind {
+    fn from(name: KindName) -> SampleKind {
+        match name {
+            KindName::Bit => SampleKind::Bit,
+            KindName::I8 => SampleKind::I8,
+            KindName::U8 => SampleKind::U8,
+            KindName::I16 => SampleKind::I16,
+            KindName::U16 => SampleKind::U16,
+            KindName::I32 => SampleKind::I32,
+            KindName::U32 => SampleKind::U32,
+            KindName::I64 => SampleKind::I64,
+            KindName::U64 => SampleKind::U64,
+            KindName::F32 => SampleKind::F32,
+            KindName::F64 => SampleKind::F64,
+        }
+    }
+}
+
 /// A volume as a solid.
 pub struct Voxels {
     pub solid: AnySolid,
     /// The frame whose finest cells are voxels, if voxels are cubes along the axes.
     pub frame: Option<Frame>,
     pub unit: Option<LengthUnit>,
-    file: VolumeFile,
+    volume: Volume<'static>,
+    /// What moves the grid to its place, if its axes are not x, y and z.
+    placement: Option<Affine>,
+    format: String,
+    kind: SampleKind,
     threshold: f64,
 }
 
+/// What a file holds.
+struct Found {
+    samples: Samples<'static>,
+    grid: VoxelGrid,
+    placement: Option<Affine>,
+    unit: Option<LengthUnit>,
+    format: String,
+    kind: SampleKind,
+    rounded: u64,
+}
+
 impl Sampling {
+    /// Whether the user says that files are volumes without headers.
+    pub fn is_raw(&self) -> bool {
+        self.extents.is_some()
+    }
+
     /// Refuses the options for volumes where something else is read: `what` it is.
     pub fn refuse(&self, input: &Input, what: &str) -> Result<(), Failure> {
-        match self.threshold {
-            Some(_) => Err(Failure::Usage(format!("--threshold is for volumes: {input} is {what}"))),
+        // (All others need --samples.)
+        let given = [("--threshold", self.threshold.is_some()), ("--samples", self.is_raw())];
+        match given.into_iter().find(|option| option.1) {
+            Some((option, _)) => Err(Failure::Usage(format!("{option} is for volumes: {input} is {what}"))),
             None => Ok(()),
         }
     }
 
     /// The volume in a file with these bytes, whose samples may be in another file beside it.
     pub fn read(&self, input: &Input, bytes: &[u8]) -> Result<Voxels, Failure> {
-        let file = match (input.path(), volume_data_file(bytes).of(input)?) {
-            (Some(path), Some(_)) => open_volume(path).of(input)?,
-            _ => read_volume(bytes, None).of(input)?,
+        let found = match self.extents {
+            Some(extents) => self.without_header(input, bytes, extents)?,
+            None => with_header(input, bytes)?,
         };
-        if file.rounded > 0 {
-            let samples = counted(file.rounded, "sample was", "samples were");
+        if found.rounded > 0 {
+            let samples = counted(found.rounded, "sample was", "samples were");
             output::complain(&format!("{input}: warning: {samples} rounded to single precision"));
         }
-        let threshold = self.threshold.unwrap_or(file.kind.half_range());
+        let Found { samples, grid, placement, unit, format, kind, .. } = found;
+        let threshold = self.threshold.unwrap_or(kind.half_range());
         let band = Band::at_least(threshold).of(input)?;
-        let solid = file.solid(Some(band), &Control::default()).of(input)?;
-        let frame = if file.placement.is_none() { file.grid.frame().ok() } else { None };
-        Ok(Voxels { solid, frame, unit: file.unit, file, threshold })
+        let volume = Volume::new(samples, &grid, band, &Control::default()).of(input)?;
+        let solid = AnySolid::new(volume.clone());
+        let solid = match &placement {
+            Some(placement) => solid.placed(placement).of(input)?,
+            None => solid,
+        };
+        let frame = if placement.is_none() { grid.frame().ok() } else { None };
+        Ok(Voxels { solid, frame, unit, volume, placement, format, kind, threshold })
+    }
+
+    fn without_header(&self, input: &Input, bytes: &[u8], extents: [u32; 3]) -> Result<Found, Failure> {
+        let grid = VoxelGrid::new(extents, self.corner.unwrap_or([0.0; 3]), self.spacing.unwrap_or([1.0; 3]));
+        let grid = grid.map_err(|error| Failure::Usage(error.to_string()))?;
+        let kind = self.kind.map_or(SampleKind::U8, SampleKind::from);
+        let layout = RawVolume { grid, kind, big_endian: self.big_endian, skip: self.skip.unwrap_or(0) };
+        let (samples, rounded) = read_raw_volume(bytes, &layout).of(input)?;
+        Ok(Found { samples, grid, placement: None, unit: None, format: "raw".into(), kind, rounded })
     }
 }
 
+fn with_header(input: &Input, bytes: &[u8]) -> Result<Found, Failure> {
+    let file = match (input.path(), volume_data_file(bytes).of(input)?) {
+        (Some(path), Some(_)) => open_volume(path).of(input)?,
+        _ => read_volume(bytes, None).of(input)?,
+    };
+    Ok(Found {
+        samples: file.samples,
+        grid: file.grid,
+        placement: file.placement,
+        unit: file.unit,
+        format: file.format.to_string(),
+        kind: file.kind,
+        rounded: file.rounded,
+    })
+}
+
 impl Voxels {
+    /// The surface by marching cubes, with vertices where the samples cross the threshold.
+    pub fn surface(&self, input: &Input, threads: usize) -> Result<TriangleMesh, Failure> {
+        let mesh = watched("mesh", threads, |control| marching_cubes_of_volume(&self.volume, control));
+        let mesh = mesh.of(input)?;
+        match &self.placement {
+            Some(placement) => mesh.placed(placement).of(input),
+            None => Ok(mesh),
+        }
+    }
+
     /// The octree whose finest cells are the voxels.
     pub fn octree(&self, input: &Input, threads: usize) -> Result<Octree, Failure> {
         let frame = self.frame.as_ref().ok_or_else(|| {
@@ -152,12 +297,12 @@ impl Voxels {
 
     fn told(&self) -> Told {
         Told {
-            format: self.file.format.to_string(),
-            samples: kind(self.file.kind),
-            extents: self.file.grid.extents(),
-            spacing: self.file.grid.spacing(),
-            corner: self.file.grid.corner(),
-            is_turned: self.file.placement.is_some(),
+            format: self.format.clone(),
+            samples: kind(self.kind),
+            extents: self.volume.grid().extents(),
+            spacing: self.volume.grid().spacing(),
+            corner: self.volume.grid().corner(),
+            is_turned: self.placement.is_some(),
             unit: self.unit.map(LengthUnit::symbol),
         }
     }

@@ -143,7 +143,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
 
     let bytes = input.read()?;
-    if Content::of(&input, &bytes, arguments.reading.has_format())? == Content::Volume {
+    if Content::of(&input, &bytes, arguments.reading.told())? == Content::Volume {
         let job = Job {
             bounds: arguments.bounds,
             depth: arguments.depth,

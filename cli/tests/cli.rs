@@ -41,6 +41,8 @@ fn help_and_version() {
         "ray",
         "heights",
         "measure",
+        "within",
+        "bitmap",
         "demo",
     ];
     for command in commands {

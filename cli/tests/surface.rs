@@ -135,3 +135,64 @@ fn what_is_refused() {
     place.run("mesh none.lfl -o slab.ply").bad(1, &["none.lfl"]);
     place.run("mesh slab.lfl").bad(2, &["--output"]);
 }
+
+/// Shrink leaves few triangles, without cracks; its published form has cracks.
+#[test]
+fn plane_parts_are_shrunk() {
+    let place = solids();
+    place.write(
+        "part.csg",
+        "difference() { cube(size = [6, 5, 4]); \
+         multmatrix([[1, 0, 0, 2], [0, 1, 0, 2], [0, 0, 1, -1], [0, 0, 0, 1]]) cube(size = [2, 1, 6]); }",
+    );
+    let of = |method: &str| {
+        let report = json(
+            &place,
+            &format!(
+                "mesh part.csg -o {method}.ply --method {method} --depth 5 --bounds -1,-1,-1,8 --intersections --json"
+            ),
+        );
+        assert_eq!(report["method"], method);
+        report
+    };
+    let (all, few, published) = (of("smc"), of("shrink"), of("shrink-published"));
+    let count = |report: &Value| report["triangles"].as_u64().unwrap();
+    assert!(20 * count(&few) < count(&all) && 2 * count(&published) < count(&all));
+    for report in [&all, &few] {
+        assert_eq!((&report["closed"], &report["manifold"]), (&Value::Bool(true), &Value::Bool(true)));
+        assert_eq!((&report["euler"], &report["intersecting"]), (&Value::from(0), &Value::from(0)));
+    }
+    assert_eq!(published["closed"], false);
+    for name in ["volume", "area"] {
+        let [all, few] = [&all, &few].map(|report| report[name].as_f64().unwrap());
+        assert!((all - few).abs() < 1e-9 * all);
+    }
+    let thin = json(
+        &place,
+        "mesh part.csg -o thin.ply --method shrink --snap thin --depth 5 --bounds -1,-1,-1,8 --json",
+    );
+    assert!(thin.get("intersecting").is_none());
+    assert!(thin["volume"].as_f64().unwrap() < few["volume"].as_f64().unwrap());
+    let report = place.run("mesh part.csg -o part.ply --depth 4 --intersections").good();
+    assert!(report.text().contains("0 pairs of triangles"), "{}", report.text());
+}
+
+#[test]
+fn normals_are_written_if_asked_for() {
+    let place = ball();
+    let line = format!("mesh ball.csg --depth 4 {BOUNDS}");
+    place.run(&format!("{line} --text --normals -o ball.ply")).good();
+    place.run(&format!("{line} -o plain.ply --text")).good();
+    let text = String::from_utf8(place.bytes("ball.ply")).unwrap();
+    assert!(text.contains("property float nz"));
+    let body = text.split_once("end_header\n").unwrap().1;
+    for (line, vertex) in body.lines().zip(mesh(&place, "plain.ply").vertices()) {
+        let numbers: Vec<f64> = line.split(' ').map(|x| x.parse().unwrap()).collect();
+        // On a ball around the origin the normal is the vertex's direction, nearly.
+        for axis in 0..3 {
+            assert_eq!(numbers[axis], vertex[axis]);
+            assert!((numbers[3 + axis] - vertex[axis] / 2.0).abs() < 0.05, "{line}");
+        }
+    }
+    assert_eq!(mesh(&place, "ball.ply").triangles(), mesh(&place, "plain.ply").triangles());
+}

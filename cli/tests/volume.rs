@@ -100,7 +100,15 @@ fn volumes_answer_like_solids() {
     assert!(lower <= inside() as f64 && inside() as f64 <= upper && upper - lower < 1e-6, "{measured}");
     let hit = place.run_with("ray ball.nrrd", b"-4 7.1 6.1 1 0 0\n").good();
     assert!(hit.text().starts_with("6 6 -1 "), "{}", hit.text());
-    let report = json(&place, "mesh ball.nrrd -o ball.ply --json");
+    let crossing = json(&place, "mesh ball.nrrd -o ball.ply --json");
+    let report = json(&place, "mesh ball.nrrd -o ball.ply --vertices midpoint --json");
+    assert_eq!(report["triangles"], crossing["triangles"]);
+    // The threshold lies nearer to the samples inside.
+    assert!(crossing["volume"].as_f64().unwrap() < 0.97 * report["volume"].as_f64().unwrap(), "{crossing}");
+    // Voxels need not be cubes.
+    let flat = json(&place, "mesh flat.nrrd -o flat.off --json");
+    let ratio = flat["volume"].as_f64().unwrap() / crossing["volume"].as_f64().unwrap();
+    assert!((ratio - 2.0).abs() < 1e-9 && flat["euler"] == 2, "{flat}");
     assert_eq!((&report["closed"], &report["euler"]), (&Value::Bool(true), &Value::from(2)));
     // A voxel's corners and edges are cut off.
     let volume = report["volume"].as_f64().unwrap();
@@ -111,6 +119,88 @@ fn volumes_answer_like_solids() {
     let told = place.run("info ball.nrrd").good();
     assert!(told.text().contains("NRRD volume, 16 x 14 x 12 samples of type u8"), "{}", told.text());
     assert_eq!(json(&place, "info ball.mhd --json")["extents"], serde_json::json!([16, 14, 12]));
+}
+
+/// The same samples without a header, as bytes and as big-endian numbers of 16 bits behind a header of five bytes.
+#[test]
+fn raw_volumes() {
+    let place = place();
+    let wanted = inside() as f64;
+    let wide: Vec<u8> = samples().iter().flat_map(|&sample| (u16::from(sample) << 8).to_be_bytes()).collect();
+    place.write("wide.bin", [&b"abcde"[..], &wide].concat());
+    let bytes = "--samples 16,14,12";
+    let words = "--samples 16,14,12 --type u16 --big-endian --skip 5 --spacing 1,1,1";
+    for (file, options) in [("ball.raw", bytes), ("wide.bin", words)] {
+        let report = json(&place, &format!("voxelize {file} -o raw.lfl {options} --json"));
+        assert_eq!((report["depth"].as_u64(), volume(&report)), (Some(4), (wanted, wanted)), "{report}");
+        let told = json(&place, &format!("info {file} {options} --json"));
+        assert_eq!((&told["format"], &told["extents"]), (&"raw".into(), &serde_json::json!([16, 14, 12])));
+        let (lower, upper) = volume(&json(&place, &format!("measure {file} {options} --json")));
+        assert!(lower <= wanted && wanted <= upper && upper - lower < 1e-6);
+        place.run(&format!("difference {file} ball.nrrd -o none.lfl {options}")).bad(1, &["ball.nrrd"]);
+        place.run("voxelize ball.nrrd -o ball.lfl").good();
+        place.run(&format!("difference {file} ball.lfl -o none.lfl {options}")).good();
+        assert_eq!(volume(&json(&place, "info none.lfl --json")), (0.0, 0.0));
+    }
+    let moved = "--samples 16,14,12 --spacing 0.5 --corner -4,1,2.5 --threshold 10";
+    let told = json(&place, &format!("info ball.raw {moved} --json"));
+    assert_eq!(told["corner"], serde_json::json!([-4.0, 1.0, 2.5]));
+    let (lower, upper) = volume(&json(&place, &format!("measure ball.raw {moved} --json")));
+    let all = samples().len() as f64 / 8.0;
+    assert!(lower <= all && all <= upper);
+    place.run("info ball.raw --samples 16,14,13").bad(1, &["ball.raw"]);
+    place.run("info ball.raw --samples 16,14").bad(2, &["--samples", "nx,ny,nz"]);
+    place.run("info ball.raw --samples 16,14,0").bad(2, &["extents"]);
+    place.run("info ball.raw --spacing 2").bad(2, &["--samples"]);
+    place.run("info ball.raw --samples 16,14,12 --spacing 1,2").bad(2, &["--spacing"]);
+    place.run("info ball.raw --samples 16,14,12 --type text").bad(2, &["--type"]);
+    place.run("info ball.lfl --samples 16,14,12").bad(2, &["--samples", "ball.lfl"]);
+}
+
+/// Cells become voxels, and these the same cells.
+#[test]
+fn bitmaps() {
+    let place = place();
+    place.run("voxelize ball.nrrd -o ball.lfl").good();
+    let told = json(&place, "bitmap ball.lfl -o cells.nrrd --json");
+    assert_eq!(
+        (&told["extents"], &told["inside"]),
+        (&serde_json::json!([16, 16, 16]), &inside().into()),
+        "{told}"
+    );
+    place.run("bitmap ball.lfl -o packed.nrrd --gzip").good();
+    place.run("bitmap ball.lfl -o cells.raw").good();
+    let read = |name: &str| place.bytes(name);
+    assert!(read("packed.nrrd").len() < read("cells.nrrd").len() / 4);
+    assert_eq!(read("cells.raw").len(), 4096);
+    for (file, options) in [("cells.nrrd", ""), ("packed.nrrd", ""), ("cells.raw", "--samples 16,16,16")] {
+        place.run(&format!("voxelize {file} -o again.lfl {options}")).good();
+        place.run("xor ball.lfl again.lfl -o rest.lfl").good();
+        assert_eq!(volume(&json(&place, "info rest.lfl --json")), (0.0, 0.0), "{file}");
+        let [ball, again] =
+            ["ball.lfl", "again.lfl"].map(|name| json(&place, &format!("info {name} --json")));
+        assert_eq!((&ball["cells"], &ball["origin"]), (&again["cells"], &again["origin"]), "{file}");
+    }
+    // Coarser, and with undecided cells.
+    place.run("bitmap ball.lfl -o coarse.raw --level 3").bad(1, &["ball.lfl", "--resolve"]);
+    let inside = |resolve: &str| {
+        let line = format!("bitmap ball.lfl -o coarse.raw --level 3 --resolve {resolve} --json");
+        json(&place, &line)["inside"].as_u64().unwrap() * 8
+    };
+    assert!(inside("inner") < self::inside() && self::inside() < inside("outer"));
+    let piped = place.run("bitmap ball.lfl -o -");
+    assert_eq!((piped.code, &piped.bytes), (Some(0), &read("cells.nrrd")));
+    place.run("bitmap ball.lfl -o cells").bad(2, &["cells", ".nrrd", "--write"]);
+    place.run("bitmap ball.lfl -o cells.raw --gzip").bad(2, &["--gzip"]);
+    place.run("bitmap ball.lfl -o cells.raw --level 5").bad(2, &["--level 5"]);
+    place.run("bitmap ball.nrrd -o cells.raw").bad(1, &["ball.nrrd"]);
+    place.run("complement ball.lfl -o outside.lfl").good();
+    let outside = place.run("bitmap outside.lfl -o outside.raw");
+    assert!(outside.code == Some(0) && outside.errors.contains("may go on"), "{outside:?}");
+    assert_eq!(
+        read("outside.raw").iter().filter(|&&sample| sample == 255).count() as u64,
+        4096 - self::inside()
+    );
 }
 
 #[test]

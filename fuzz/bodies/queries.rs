@@ -3,7 +3,7 @@
 
 use super::{Aligned, CONTROL, Random, halves, walk};
 use leafless::{
-    Cell, CellFilter, Classifier, Columns, Control, Cursor, Direction, DistanceTo, Frame, LazyOctree,
+    Cell, CellFilter, Classifier, Columns, Control, Csg, Cursor, Direction, DistanceTo, Frame, LazyOctree,
     Membership, Obstacle, OctreeRef, PointCursor, PointTable, Proof, Ray, Region, Rule, Run, Side, Solid,
     Tag, TaggedCell, Verdict, Worker, Zone, build, classify_box, contains, file,
 };
@@ -224,6 +224,22 @@ fn ask_contents(tree: &OctreeRef<'_>, points: &[[f64; 3]], verified: bool) {
             continue;
         };
         assert!(0.0 <= volume.lower && volume.lower <= volume.upper);
+    }
+    // In the universe as a region of any shape, and in a ball.
+    let frame = tree.frame();
+    let middle = frame.origin().map(|c| c + frame.edge() / 2.0);
+    for radius in [2.0, 0.3] {
+        let Ok(ball) = Csg::ball(middle, radius * frame.edge()) else { continue };
+        let some = Control { max_splits: Some(1000), ..CONTROL };
+        let control = if radius > 1.0 { CONTROL } else { some };
+        let found = tree.cells_in(&ball, &control).expect("a ball");
+        assert!(found.full_least <= found.full_most && found.upper_least <= found.upper_most);
+        assert!(found.upper_most <= u64::from(cells).pow(3));
+        let volume = tree.volume_in(&ball, &control).expect("a ball");
+        assert!(0.0 <= volume.lower && volume.lower <= volume.upper);
+        if verified && radius > 1.0 {
+            assert_eq!([found.full_least, found.upper_most], [least, most]);
+        }
     }
 }
 

@@ -91,7 +91,8 @@ impl From<&Failure> for leafless_status {
                 Error::SourceMismatch => LEAFLESS_E_SOURCE,
                 Error::NotSampled => LEAFLESS_E_NOT_SAMPLED,
                 Error::Mesh(_) | Error::Polyhedron(_) => LEAFLESS_E_MESH,
-                Error::MeshFile(_) | Error::Package(_) | Error::VolumeFile(_) => LEAFLESS_E_MESH_FILE,
+                Error::MeshFile(_) | Error::Package(_) => LEAFLESS_E_MESH_FILE,
+                Error::VolumeFile(_) => LEAFLESS_E_VOLUME_FILE,
                 Error::Scene(_) => LEAFLESS_E_SCENE,
                 Error::Format(FormatError::Version { .. } | FormatError::Required { .. }) => {
                     LEAFLESS_E_VERSION
@@ -329,6 +330,7 @@ const _: () = {
     shared_by_threads::<super::leafless_octree>();
     shared_by_threads::<super::leafless_scene>();
     shared_by_threads::<super::leafless_solid>();
+    shared_by_threads::<super::leafless_volume>();
     shared_by_threads::<super::leafless_lazy>();
     shared_by_threads::<super::leafless_cursor>();
     shared_by_threads::<super::leafless_point_cursor>();
@@ -402,6 +404,25 @@ impl<T: Copy> Buffer<T> {
             unsafe { core::ptr::copy_nonoverlapping(elements.as_ptr(), self.start, elements.len()) };
         }
         Ok(())
+    }
+
+    /// The first `count` elements of the buffer, set to zero; `None` if there is none.
+    ///
+    /// # Safety
+    /// What [`buffer`] was promised holds for `'a`, and there is no other slice of the buffer.
+    pub(super) unsafe fn zeroed<'a>(&self, count: usize) -> Result<Option<&'a mut [T]>, Failure>
+    where
+        T: bytemuck::Zeroable,
+    {
+        self.check(count)?;
+        if !self.wanted() {
+            return Ok(None);
+        }
+        // SAFETY: promised to `buffer`, and there is room for them; zero bytes are a `T`.
+        unsafe {
+            self.start.write_bytes(0, count);
+            Ok(Some(core::slice::from_raw_parts_mut(self.start, count)))
+        }
     }
 
     /// Fills the buffer, if there is one, with what elements of the library are in C.

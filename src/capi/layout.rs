@@ -37,10 +37,12 @@ fn write_all(to: &mut dyn Write) -> fmt::Result {
         leafless_options { struct_size, threads, max_nodes, max_bytes, max_splits, progress, progress_ctx, control }
         leafless_frame { origin, edge, depth }
         leafless_interval { lower, upper }
+        leafless_cells_in { full_least, full_most, upper_least, upper_most }
         leafless_mesh_report {
             facets_read, triangles, vertices, welded, degenerate, boundary_edges, boundary_loops, misoriented_edges,
             non_manifold_edges, duplicate, opposite, flat, bodies, open_bodies, inside_out_bodies, sewn,
-            displacement_model, overlapping_bodies, undecided_bodies, polygons, bent_polygons, polygon_deviation_model
+            displacement_model, overlapping_bodies, undecided_bodies, polygons, bent_polygons, polygon_deviation_model,
+            edges, euler_characteristic, is_closed, is_manifold
         }
         leafless_mesh_defect { min_model, max_model, length_model, count, kind }
         leafless_mesh_arrays {
@@ -57,6 +59,15 @@ fn write_all(to: &mut dyn Write) -> fmt::Result {
         leafless_intersecting_pair { min_model, max_model, triangles }
         leafless_mesh_options { struct_size, format, unit, target, scale }
         leafless_mesh_source { format, unit, skipped }
+        leafless_mesh_write_options { struct_size, format, is_text, unit, has_normals }
+        leafless_volume_layout {
+            struct_size, sample_type, extents, byte_order, skip, corner_model, spacing_model
+        }
+        leafless_volume_info {
+            extents, sample_type, file_type, format, unit, is_placed, sample_count, rounded, default_threshold,
+            corner_model, spacing_model, placement
+        }
+        leafless_surface_options { struct_size, method, snap, resolve, placement, reserved, source }
         leafless_callbacks {
             struct_size, exterior, classify, contains, destroy, ctx, fingerprint, classify_many, contains_many, distance_many,
             gradient, tangent
@@ -105,7 +116,7 @@ fn write_all(to: &mut dyn Write) -> fmt::Result {
             LEAFLESS_E_FRAME, LEAFLESS_E_NOT_SAMPLED, LEAFLESS_E_MESH, LEAFLESS_E_MESH_FILE,
             LEAFLESS_E_FORMAT, LEAFLESS_E_VERSION, LEAFLESS_E_DAMAGED, LEAFLESS_E_LIMIT,
             LEAFLESS_E_NO_MEMORY, LEAFLESS_E_CANCELLED, LEAFLESS_E_CALLBACK, LEAFLESS_E_IO, LEAFLESS_E_PANIC,
-            LEAFLESS_E_SOURCE, LEAFLESS_E_SCENE, LEAFLESS_E_BUSY
+            LEAFLESS_E_SOURCE, LEAFLESS_E_SCENE, LEAFLESS_E_BUSY, LEAFLESS_E_VOLUME_FILE
         }
         leafless_tag { LEAFLESS_TAG_EMPTY, LEAFLESS_TAG_BRANCH, LEAFLESS_TAG_PARTIAL, LEAFLESS_TAG_FULL }
         leafless_tags {
@@ -146,6 +157,25 @@ fn write_all(to: &mut dyn Write) -> fmt::Result {
             LEAFLESS_UNIT_UNKNOWN, LEAFLESS_UNIT_MICROMETRE, LEAFLESS_UNIT_MILLIMETRE,
             LEAFLESS_UNIT_CENTIMETRE, LEAFLESS_UNIT_METRE, LEAFLESS_UNIT_INCH, LEAFLESS_UNIT_FOOT
         }
+        leafless_sample_type {
+            LEAFLESS_SAMPLE_U8, LEAFLESS_SAMPLE_U16, LEAFLESS_SAMPLE_I16, LEAFLESS_SAMPLE_F32, LEAFLESS_SAMPLE_BITS,
+            LEAFLESS_SAMPLE_BITS_IN_BYTES, LEAFLESS_SAMPLE_I8, LEAFLESS_SAMPLE_I32, LEAFLESS_SAMPLE_U32,
+            LEAFLESS_SAMPLE_I64, LEAFLESS_SAMPLE_U64, LEAFLESS_SAMPLE_F64
+        }
+        leafless_byte_order { LEAFLESS_BYTE_ORDER_NATIVE, LEAFLESS_BYTE_ORDER_LITTLE, LEAFLESS_BYTE_ORDER_BIG }
+        leafless_volume_format {
+            LEAFLESS_VOLUME_FORMAT_RAW, LEAFLESS_VOLUME_FORMAT_NRRD, LEAFLESS_VOLUME_FORMAT_METAIMAGE,
+            LEAFLESS_VOLUME_FORMAT_NRRD_GZIP
+        }
+        leafless_surface_method {
+            LEAFLESS_SURFACE_MARCHING_CUBES, LEAFLESS_SURFACE_SMC, LEAFLESS_SURFACE_SHRINK,
+            LEAFLESS_SURFACE_SHRINK_PUBLISHED
+        }
+        leafless_snap { LEAFLESS_SNAP_FAT, LEAFLESS_SNAP_THIN }
+        leafless_resolve {
+            LEAFLESS_RESOLVE_NONE, LEAFLESS_RESOLVE_INNER, LEAFLESS_RESOLVE_OUTER, LEAFLESS_RESOLVE_SOURCE
+        }
+        leafless_vertex_placement { LEAFLESS_PLACEMENT_MIDPOINT, LEAFLESS_PLACEMENT_CROSSING }
         leafless_defect {
             LEAFLESS_DEFECT_HOLE, LEAFLESS_DEFECT_MISORIENTED, LEAFLESS_DEFECT_DUPLICATE,
             LEAFLESS_DEFECT_NON_MANIFOLD, LEAFLESS_DEFECT_FLAT

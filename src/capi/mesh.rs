@@ -108,6 +108,16 @@ pub struct leafless_mesh_report {
     /// have all its corners between them, for the face where it is greatest. Each triangulation of the face
     /// lies between the planes.
     pub polygon_deviation_model: f64,
+    /// Edges, each counted once.
+    pub edges: u64,
+    /// V - E + F of the vertices that triangles use, the edges and the triangles: of a 2-manifold, 2 for each
+    /// component less 2 for each of its handles.
+    pub euler_characteristic: i64,
+    /// Whether the mesh is closed and consistently oriented: every edge is run along as often in one direction
+    /// as in the other. (An empty mesh is.)
+    pub is_closed: bool,
+    /// Whether exactly two triangles meet on every edge, which run along it in opposite directions.
+    pub is_manifold: bool,
 }
 
 impl From<MeshReport> for leafless_mesh_report {
@@ -135,6 +145,10 @@ impl From<MeshReport> for leafless_mesh_report {
             polygons: found.polygons,
             bent_polygons: found.bent_polygons,
             polygon_deviation_model: found.polygon_deviation,
+            edges: found.edges,
+            euler_characteristic: found.euler_characteristic,
+            is_closed: found.is_closed(),
+            is_manifold: found.is_manifold(),
         }
     }
 }
@@ -278,6 +292,38 @@ pub unsafe extern "C" fn leafless_mesh_copy(
     })
 }
 
+/// The unit normals at the vertices of a mesh, outward where triangles turn counter-clockwise as seen from
+/// outside: the mean of the normals of the triangles there, each weighted by its angle. So they do not depend on
+/// how plane parts are cut into triangles. Where the mean is zero, as at a vertex without triangles, so is the
+/// normal. O(t + v).
+///
+/// - Buffers: `normals`, room for `capacity` normals of 3 numbers, or NULL to ask for their number only; `count`,
+///   one number.
+/// - Result: `*count`, that of the vertices; the normals, in the order of the vertices.
+/// - Errors: LEAFLESS_E_BUFFER if the capacity is too small; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: nothing changes hands.
+/// - Threads: any. Each call computes them.
+/// - Untrusted input: any mesh.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_mesh_normals(
+    mesh: *const leafless_mesh,
+    normals: *mut f64,
+    capacity: u64,
+    count: *mut u64,
+) -> leafless_status {
+    guard(|| unsafe {
+        let mesh = &shared(mesh, "mesh")?.mesh;
+        let normals = buffer(normals.cast::<[f64; 3]>(), capacity, "normals")?;
+        let count = out(count, "count")?;
+        normals.check(mesh.vertices().len())?;
+        if normals.wanted() {
+            normals.fill(&mesh.vertex_normals()?)?;
+        }
+        count.write(mesh.vertices().len() as u64)
+    })
+}
+
 /// The bounding box of a mesh's triangles.
 ///
 /// - Buffers: `min_model` and `max_model`, room for 3 numbers each.
@@ -326,6 +372,27 @@ pub unsafe extern "C" fn leafless_mesh_volume(
     guard(|| unsafe {
         let mesh = &shared(mesh, "mesh")?.mesh;
         out(volume_model, "volume_model")?.write(mesh.volume())
+    })
+}
+
+/// The sum of the areas of a mesh's triangles. Rounded; the certified area of a solid's boundary is told by
+/// leafless_solid_surface_area. O(t).
+///
+/// - Buffers: `area_model`, one number.
+/// - Result: `*area_model`, in square model units.
+/// - Errors: only the general ones.
+/// - Ownership: nothing changes hands.
+/// - Threads: any.
+/// - Untrusted input: any mesh.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_mesh_area(
+    mesh: *const leafless_mesh,
+    area_model: *mut f64,
+) -> leafless_status {
+    guard(|| unsafe {
+        let mesh = &shared(mesh, "mesh")?.mesh;
+        out(area_model, "area_model")?.write(mesh.area())
     })
 }
 

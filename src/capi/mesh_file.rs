@@ -15,11 +15,12 @@ use core::fmt::Write;
 use leafless_mesh_format::*;
 use leafless_unit::*;
 
-/// The formats of mesh files that can be read.
+/// The formats of mesh files, which can be read and written.
 #[derive(Clone, Copy, PartialEq)]
 #[repr(u32)]
 pub enum leafless_mesh_format {
-    /// To be found out from the file's content and, where that is not clear, its name.
+    /// To be found out: when reading from the file's content and, where that is not clear, its name; when writing
+    /// from its name.
     LEAFLESS_MESH_FORMAT_ANY = 0,
     /// STL, binary or ASCII; which of the two is always found out.
     LEAFLESS_MESH_FORMAT_STL = 1,
@@ -104,7 +105,7 @@ const UNITS: [(leafless_unit, LengthUnit); 6] = [
     (LEAFLESS_UNIT_FOOT, LengthUnit::Foot),
 ];
 
-fn unit(unit: u32, name: &'static str) -> Result<Option<LengthUnit>, Failure> {
+pub(super) fn unit(unit: u32, name: &'static str) -> Result<Option<LengthUnit>, Failure> {
     if unit == LEAFLESS_UNIT_UNKNOWN as u32 {
         return Ok(None);
     }
@@ -112,23 +113,28 @@ fn unit(unit: u32, name: &'static str) -> Result<Option<LengthUnit>, Failure> {
     known.map(|&(_, unit)| Some(unit)).ok_or(Failure::Argument { name, problem: "is no leafless_unit" })
 }
 
+pub(super) fn unit_of(unit: Option<LengthUnit>) -> leafless_unit {
+    let known = UNITS.iter().find(|(_, known)| Some(*known) == unit);
+    known.map_or(LEAFLESS_UNIT_UNKNOWN, |(unit, _)| *unit)
+}
+
+/// The format with this number; `None` for LEAFLESS_MESH_FORMAT_ANY.
+pub(super) fn format(format: u32) -> Result<Option<MeshFormat>, Failure> {
+    if format == LEAFLESS_MESH_FORMAT_ANY as u32 {
+        return Ok(None);
+    }
+    let known = FORMATS.iter().find(|(known, _)| *known as u32 == format);
+    let problem = "is no leafless_mesh_format";
+    known.map(|&(_, format)| Some(format)).ok_or(Failure::Argument { name: "options.format", problem })
+}
+
 /// # Safety
 /// `options` is NULL or points to valid options.
 unsafe fn options(options: *const leafless_mesh_options) -> Result<MeshOptions, Failure> {
     // SAFETY: the caller's promise.
     let given = unsafe { sized(options, "options")? };
-    let format = match given.format {
-        any if any == LEAFLESS_MESH_FORMAT_ANY as u32 => None,
-        known => match FORMATS.iter().find(|(format, _)| *format as u32 == known) {
-            Some(&(_, format)) => Some(format),
-            None => {
-                let problem = "is no leafless_mesh_format";
-                return Err(Failure::Argument { name: "options.format", problem });
-            }
-        },
-    };
     Ok(MeshOptions {
-        format,
+        format: format(given.format)?,
         unit: unit(given.unit, "options.unit")?,
         target: unit(given.target, "options.target")?,
         scale: if given.scale == 0.0 { 1.0 } else { given.scale },
@@ -138,10 +144,9 @@ unsafe fn options(options: *const leafless_mesh_options) -> Result<MeshOptions, 
 impl From<&MeshFile> for leafless_mesh_source {
     fn from(file: &MeshFile) -> leafless_mesh_source {
         let format = FORMATS.iter().find(|(_, format)| *format == file.format);
-        let unit = UNITS.iter().find(|(_, unit)| Some(*unit) == file.unit);
         leafless_mesh_source {
             format: format.map_or(LEAFLESS_MESH_FORMAT_ANY, |(format, _)| *format),
-            unit: unit.map_or(LEAFLESS_UNIT_UNKNOWN, |(unit, _)| *unit),
+            unit: unit_of(file.unit),
             skipped: file.skipped,
         }
     }

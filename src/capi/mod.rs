@@ -13,9 +13,13 @@
 //! | `mesh` | triangle meshes |
 //! | `mesh_arrays` | triangle meshes from the host's arrays |
 //! | `mesh_file` | mesh files, units |
+//! | `mesh_write` | mesh files, written |
 //! | `polyhedron` | triangle meshes from faces with holes, shells and voids |
 //! | `octree` | octrees: describing, statistics, metadata |
 //! | `solid` | solids: primitives, meshes, octrees, the host's own |
+//! | `volume` | bitmaps and arrays of samples, and solids of them |
+//! | `volume_arrays` | volumes from the host's arrays |
+//! | `volume_file` | volume files |
 //! | `scene` | scenes in the language of OpenSCAD's CSG dumps |
 //! | `op` | building, resolving, Booleans |
 //! | `query` | points, boxes, cursors |
@@ -23,6 +27,8 @@
 //! | `rays` | rays: first hits, intervals, line of sight |
 //! | `columns` | columns of cells along an axis, height maps |
 //! | `cells` | neighbours of cells, cells and boundary faces one after another |
+//! | `bitmap` | the cells of a box as bits |
+//! | `surface` | surfaces: closed meshes of octrees and solids |
 //! | `lazy` | octrees that are split on demand |
 //! | `interference` | solids under affine maps; overlap and distance of two solids |
 //! | `measure` | volume, centroid, inertia, bounding boxes of solids |
@@ -33,6 +39,7 @@
 // What callers must keep to is said in the doc blocks in C's terms, and once for all in the header's preface.
 #![allow(clippy::missing_safety_doc)]
 
+mod bitmap;
 mod boundary;
 mod cells;
 mod columns;
@@ -51,6 +58,7 @@ mod mesh;
 mod mesh_arrays;
 mod mesh_file;
 mod mesh_moments;
+mod mesh_write;
 mod octree;
 mod op;
 mod point;
@@ -61,8 +69,13 @@ mod region;
 mod scene;
 mod solid;
 mod status;
+mod surface;
 mod version;
+mod volume;
+mod volume_arrays;
+mod volume_file;
 
+pub use bitmap::*;
 #[cfg(feature = "capi-test")]
 pub use boundary::leafless_test_panic;
 pub use cells::*;
@@ -82,6 +95,7 @@ pub use mesh::*;
 pub use mesh_arrays::*;
 pub use mesh_file::*;
 pub use mesh_moments::*;
+pub use mesh_write::*;
 pub use octree::*;
 pub use op::*;
 pub use point::*;
@@ -92,4 +106,8 @@ pub use region::*;
 pub use scene::*;
 pub use solid::*;
 pub use status::*;
+pub use surface::*;
 pub use version::*;
+pub use volume::*;
+pub use volume_arrays::*;
+pub use volume_file::*;

@@ -51,10 +51,12 @@ pub enum leafless_status {
     LEAFLESS_E_SCENE = 19,
     /// A lazy octree is in use by another call, in another thread or around this one. Nothing was done.
     LEAFLESS_E_BUSY = 20,
+    /// A volume file cannot be read.
+    LEAFLESS_E_VOLUME_FILE = 21,
 }
 use leafless_status::*;
 
-const ALL: [(leafless_status, &CStr); 21] = [
+const ALL: [(leafless_status, &CStr); 22] = [
     (LEAFLESS_OK, c"LEAFLESS_OK"),
     (LEAFLESS_E_NULL, c"LEAFLESS_E_NULL"),
     (LEAFLESS_E_ARGUMENT, c"LEAFLESS_E_ARGUMENT"),
@@ -76,6 +78,7 @@ const ALL: [(leafless_status, &CStr); 21] = [
     (LEAFLESS_E_SOURCE, c"LEAFLESS_E_SOURCE"),
     (LEAFLESS_E_SCENE, c"LEAFLESS_E_SCENE"),
     (LEAFLESS_E_BUSY, c"LEAFLESS_E_BUSY"),
+    (LEAFLESS_E_VOLUME_FILE, c"LEAFLESS_E_VOLUME_FILE"),
 ];
 
 /// The last failure of a thread. Of fixed size, so that a failure for want of memory can be told.

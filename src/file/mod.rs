@@ -94,6 +94,8 @@ pub use map::{map, map_verified};
 pub use read::{Probe, Section, from_bytes, from_static, probe_bytes, verify, view};
 #[cfg(feature = "std")]
 pub use read::{open, probe, probe_from};
+#[cfg(feature = "capi")]
+pub(crate) use write::save_with;
 pub use write::to_bytes;
 #[cfg(feature = "std")]
 pub use write::{save, write_to};

@@ -77,16 +77,24 @@ pub fn write_to(octree: &Octree, mut out: impl Write) -> Result<(), Error> {
 /// directory, the new file is already in place.
 #[cfg(feature = "std")]
 pub fn save(octree: &Octree, path: impl AsRef<Path>) -> Result<(), Error> {
-    let path = path.as_ref();
-    save_path(octree, path).map_err(|error| match error {
+    save_with(path.as_ref(), |file| write_to(octree, file))
+}
+
+/// As [`save`] for a file of any kind, whose bytes `write` writes.
+#[cfg(feature = "std")]
+pub(crate) fn save_with(
+    path: &Path,
+    write: impl FnOnce(&mut File) -> Result<(), Error>,
+) -> Result<(), Error> {
+    save_path(path, write).map_err(|error| match error {
         Error::Io(_) => error.of_file(path),
-        // It is the octree that is damaged.
+        // It is what is to be written that is damaged.
         error => error,
     })
 }
 
 #[cfg(feature = "std")]
-fn save_path(octree: &Octree, path: &Path) -> Result<(), Error> {
+fn save_path(path: &Path, write: impl FnOnce(&mut File) -> Result<(), Error>) -> Result<(), Error> {
     let existing = match std::fs::metadata(path) {
         Ok(metadata) => Some(metadata),
         Err(error) if error.kind() == ErrorKind::NotFound => None,
@@ -94,7 +102,7 @@ fn save_path(octree: &Octree, path: &Path) -> Result<(), Error> {
     };
     let target = follow_links(path)?.filter(|_| existing.as_ref().is_none_or(|file| file.is_file()));
     let Some(target) = target else {
-        return write_to(octree, OpenOptions::new().append(true).open(path)?);
+        return write(&mut OpenOptions::new().append(true).open(path)?);
     };
     let directory = target.parent().filter(|parent| !parent.as_os_str().is_empty());
     let directory = directory.unwrap_or(Path::new("."));
@@ -116,7 +124,7 @@ fn save_path(octree: &Octree, path: &Path) -> Result<(), Error> {
         builder.permissions(std::fs::Permissions::from_mode(0o666));
     }
     let mut temporary = builder.tempfile_in(directory).map_err(without_name)?;
-    write_to(octree, temporary.as_file_mut())?;
+    write(temporary.as_file_mut())?;
     if let Some(existing) = existing {
         temporary.as_file().set_permissions(existing.permissions())?;
     }

@@ -5,7 +5,7 @@
 //!
 //! From the bottom up, each file uses only files named before it: `positions` (equal vertices), `topology`
 //! (edges and bodies), `boundary` (loops of edges), `signs` (exact determinants), `surface` (the mesh); on the
-//! mesh `weld`, `sew`, `placement`, `defects`, `overlap` and `report`; `tree` (boxes around triangles),
+//! mesh `normals`, `weld`, `sew`, `placement`, `defects`, `overlap` and `report`; `tree` (boxes around triangles),
 //! `intersections`, `sheets` (winding numbers on both sides), `sides` (the same, triangle by triangle) and `moments`
 //! (volume and inertia); `polygon` (triangulation) and `polyhedron`.
 
@@ -13,6 +13,7 @@ mod boundary;
 mod defects;
 mod intersections;
 mod moments;
+mod normals;
 mod overlap;
 mod placement;
 #[cfg(feature = "std")]

@@ -191,6 +191,11 @@ impl TriangleMesh {
         }
     }
 
+    /// The memory of the mesh: its vertices and triangles.
+    pub(crate) fn into_arrays(self) -> (Vec<[f64; 3]>, Vec<[u32; 3]>) {
+        (self.vertices, self.triangles)
+    }
+
     /// The vertices, all different.
     pub fn vertices(&self) -> &[[f64; 3]] {
         &self.vertices

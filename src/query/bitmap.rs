@@ -57,16 +57,10 @@ impl OctreeRef<'_> {
         control: &Control<'_>,
     ) -> Result<(), Error> {
         let refuse = |name, problem| Err(Error::Argument { name, problem });
-        if level > self.frame.depth() {
-            return refuse("level", "must not be greater than the frame's depth");
-        }
-        if (0..3).any(|axis| min[axis] > max[axis] || max[axis] > 1 << level) {
-            return refuse("max", "must be a cell or the universe's end, and not below min");
-        }
+        let count = self.bitmap_words(level, min, max)?;
         let size = [0, 1, 2].map(|axis| max[axis] - min[axis]);
         let words = size[0].div_ceil(64) as usize;
         let layer = words * size[1] as usize;
-        let count = layer as u64 * u64::from(size[2]);
         if inner.len() as u64 != count {
             return refuse("inner", "must have ⌈nx / 64⌉ words for each of the ny · nz rows");
         }
@@ -98,6 +92,19 @@ impl OctreeRef<'_> {
         })?;
         job.advance(WHOLE % shares);
         Ok(())
+    }
+
+    /// Words in the bitmap of a box, whose parameters are those of [`bitmap`](Self::bitmap).
+    pub(crate) fn bitmap_words(&self, level: u8, min: [u32; 3], max: [u32; 3]) -> Result<u64, Error> {
+        let refuse = |name, problem| Err(Error::Argument { name, problem });
+        if level > self.frame.depth() {
+            return refuse("level", "must not be greater than the frame's depth");
+        }
+        if (0..3).any(|axis| min[axis] > max[axis] || max[axis] > 1 << level) {
+            return refuse("max", "must be a cell or the universe's end, and not below min");
+        }
+        let [x, y, z] = [0, 1, 2].map(|axis| u64::from(max[axis] - min[axis]));
+        Ok(x.div_ceil(64) * y * z)
     }
 }
 

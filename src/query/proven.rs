@@ -3,8 +3,8 @@
 use crate::control::Control;
 use crate::error::Error;
 use crate::lattice::{Cell, CellMoments, Frame, Interval, VolumeMoments};
-use crate::octree::{Proof, Tag};
-use crate::solid::{Classifier, Enclosure, Verdict, Worker};
+use crate::octree::{Planes, Proof, Tag};
+use crate::solid::{Classifier, Enclosure, Subtree, Verdict, Worker, split_twice};
 use alloc::vec::Vec;
 
 /// A solid on a frame, of whose verdicts those are believed that are proven: a FULL or an EMPTY cell of which
@@ -97,6 +97,22 @@ impl<W: Worker> Worker for ProvenWorker<W> {
 
     fn recall(&mut self, cell: Cell) -> Option<W::Part> {
         self.inner.recall(cell)
+    }
+
+    fn split64(
+        &mut self,
+        cell: Cell,
+        part: &W::Part,
+        parts: &mut Vec<(u8, W::Part)>,
+    ) -> Result<Planes, Error> {
+        if self.proof.is_certified() {
+            return self.inner.split64(cell, part, parts);
+        }
+        split_twice(self, cell, part, parts)
+    }
+
+    fn subtree(&self, part: &W::Part) -> Option<Subtree<'_>> {
+        if self.proof.is_certified() { self.inner.subtree(part) } else { None }
     }
 
     fn enclosure(&mut self, cell: Cell, part: &W::Part) -> Result<Option<Enclosure>, Error> {

@@ -24,6 +24,8 @@ pub(super) fn for_each<T: Send>(
     work: impl Fn(Range<usize>, &mut [T]) -> Result<(), Error> + Sync,
 ) -> Result<(), Error> {
     let count = blocks.div_ceil(CHUNK);
+    // What is left of the weight by rounding.
+    job.advance(weight.checked_rem(count).unwrap_or(weight));
     let mut pieces: Vec<(Range<usize>, &mut [T])> = memory::with_capacity(count)?;
     let mut rest = output;
     for chunk in 0..count {
@@ -81,4 +83,15 @@ fn flattened<T>(results: Vec<Option<T>>) -> Result<Vec<T>, Error> {
     let mut all = memory::with_capacity(results.len())?;
     all.extend(results.into_iter().flatten());
     Ok(all)
+}
+
+/// Sorts a list. Equal items cannot be told apart, so that any number of threads leaves the same.
+pub(super) fn sort<T: Ord + Send>(list: &mut [T], parallel: bool) {
+    #[cfg(feature = "parallel")]
+    if parallel {
+        use rayon::slice::ParallelSliceMut;
+        return list.par_sort_unstable();
+    }
+    let _ = parallel;
+    list.sort_unstable();
 }

@@ -5,7 +5,7 @@ use super::chunks;
 use super::key;
 use super::lattice::Lattice;
 use super::masks::{CORNER_AT, bits, configuration, next, rank};
-use super::resolve::{Resolve, partial_is_inside};
+use super::resolve::{Resolve, resolved};
 use super::samples::Samples;
 use super::table::{ENDS, MARCHING_CUBES};
 use crate::control::{Control, Job, WHOLE};
@@ -15,7 +15,6 @@ use crate::lattice::morton;
 use crate::memory;
 use crate::mesh::TriangleMesh;
 use crate::octree::OctreeRef;
-use crate::op::{Rule, build};
 use alloc::vec::Vec;
 
 /// The surface of an octree by marching cubes: a closed mesh, with vertices half-way between the centres of
@@ -56,32 +55,64 @@ pub fn marching_cubes(
     resolve: Option<Resolve<'_>>,
     control: &Control<'_>,
 ) -> Result<TriangleMesh, Error> {
-    if let Some(Resolve::Source(solid)) = resolve {
-        let sampled =
-            control.share([0.0, 0.5], |control| build(solid, tree.frame(), Rule::Sampled, control))?;
-        return control.share([0.5, 1.0], |control| marching_cubes(sampled.view(), None, control));
-    }
-    let partial = partial_is_inside(tree, resolve.as_ref())?;
-    let samples = Samples::new(tree, partial, u32::MAX)?;
-    let lattice = Lattice::new(tree.frame())?;
-    let job = Job::new(control);
-    job.check()?;
-    control.run(samples.levels() > 3, |parallel| {
-        let blocks = Blocks::find(&samples, &job, parallel)?;
-        let vertices = midpoints(&blocks, &lattice, &job, parallel)?;
-        let triangles = triangles(&blocks, &job, parallel)?;
-        Ok(TriangleMesh::from_welded(vertices, triangles, 0, 0))
+    in_memory((Vec::new(), Vec::new()), tree, resolve, control)
+}
+
+/// The same as [`marching_cubes`] in the memory of a mesh that is no longer needed: for a part that changes
+/// and is drawn again and again. Memory is asked for only where the new mesh is larger.
+///
+/// # Errors
+/// As [`marching_cubes`]; the memory is given back then.
+///
+/// ```
+/// use leafless::{Control, Csg, Frame, Rule, build, marching_cubes, marching_cubes_reusing};
+/// let (frame, control) = (Frame::new([-1.0; 3], 2.0, 5)?, Control::default());
+/// let [large, small] =
+///     [0.9, 0.5].map(|radius| build(&Csg::ball([0.0; 3], radius)?, &frame, Rule::Sampled, &control));
+/// let mesh = marching_cubes(large?.view(), None, &control)?;
+/// let place = mesh.vertices().as_ptr();
+/// let mesh = marching_cubes_reusing(mesh, small?.view(), None, &control)?;
+/// assert_eq!(mesh.vertices().as_ptr(), place);
+/// # Ok::<(), leafless::Error>(())
+/// ```
+pub fn marching_cubes_reusing(
+    mesh: TriangleMesh,
+    tree: &OctreeRef<'_>,
+    resolve: Option<Resolve<'_>>,
+    control: &Control<'_>,
+) -> Result<TriangleMesh, Error> {
+    in_memory(mesh.into_arrays(), tree, resolve, control)
+}
+
+fn in_memory(
+    memory: (Vec<[f64; 3]>, Vec<[u32; 3]>),
+    tree: &OctreeRef<'_>,
+    resolve: Option<Resolve<'_>>,
+    control: &Control<'_>,
+) -> Result<TriangleMesh, Error> {
+    resolved(tree, resolve, control, |tree, partial, control| {
+        let samples = Samples::new(tree, partial, u32::MAX)?;
+        let lattice = Lattice::new(tree.frame())?;
+        let job = Job::new(control);
+        job.check()?;
+        control.run(samples.levels() > 3, |parallel| {
+            let blocks = Blocks::find(&samples, &job, parallel)?;
+            let vertices = midpoints(memory.0, &blocks, &lattice, &job, parallel)?;
+            let triangles = triangles(memory.1, &blocks, &job, parallel)?;
+            Ok(TriangleMesh::from_welded(vertices, triangles, 0, 0))
+        })
     })
 }
 
-/// The vertices of a surface in the middles of cut edges.
+/// The vertices of a surface in the middles of cut edges, in the memory of a list.
 pub(super) fn midpoints(
+    memory: Vec<[f64; 3]>,
     blocks: &Blocks,
     lattice: &Lattice,
     job: &Job<'_>,
     parallel: bool,
 ) -> Result<Vec<[f64; 3]>, Error> {
-    let mut vertices = memory::filled(blocks.vertices, [0.0; 3])?;
+    let mut vertices = memory::refilled(memory, blocks.vertices, [0.0; 3])?;
     let (list, weight) = (&blocks.list, (WHOLE - FINDING) / 2);
     let start = |i: usize| list[i].vertex as usize;
     chunks::for_each(list.len(), &mut vertices, start, weight, job, parallel, |range, piece| {
@@ -123,9 +154,14 @@ impl Hot for Midpoints<'_> {
     }
 }
 
-/// The triangles of a surface.
-pub(super) fn triangles(blocks: &Blocks, job: &Job<'_>, parallel: bool) -> Result<Vec<[u32; 3]>, Error> {
-    let mut triangles = memory::filled(blocks.triangles, [0; 3])?;
+/// The triangles of a surface, in the memory of a list.
+pub(super) fn triangles(
+    memory: Vec<[u32; 3]>,
+    blocks: &Blocks,
+    job: &Job<'_>,
+    parallel: bool,
+) -> Result<Vec<[u32; 3]>, Error> {
+    let mut triangles = memory::refilled(memory, blocks.triangles, [0; 3])?;
     let (list, weight) = (&blocks.list, (WHOLE - FINDING) / 2);
     let start = |i: usize| list[i].triangle as usize;
     chunks::for_each(list.len(), &mut triangles, start, weight, job, parallel, |range, piece| {

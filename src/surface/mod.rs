@@ -11,29 +11,42 @@
 //! From the bottom up, each file uses only files named before it: `table` (marching cubes, cell by cell),
 //! `masks` (blocks as words), `key` (the order of blocks), `samples` (an octree as samples), `blocks` (the
 //! walk), `lattice` (where samples lie), `chunks` (threads), `resolve` (undecided cells), `cubes` (marching
-//! cubes), `snapped` and `smc` (simple marching cubes), `crossing` (edges on a solid's surface), `solid` (any
-//! solid).
+//! cubes), `snapped` and `smc` (simple marching cubes), `plane`, `points`, `bon` (coplanar cells merged),
+//! `outline` (regions), `sweep` (their triangles), `published` (cells of several sizes as they are), `shrink`
+//! (coplanar shrink), `crossing` (edges on a solid's surface), `weld` (vertices at one place), `solid` (any
+//! solid), `volume` (samples of a field).
 //!
 //! Solids that are no octrees are sampled at the corners of the lattice, as an octree whose cells have these
 //! corners as centres.
 
 mod blocks;
+mod bon;
 mod chunks;
 mod crossing;
 mod cubes;
 mod key;
 mod lattice;
 mod masks;
+mod outline;
+mod plane;
+mod points;
+mod published;
 mod resolve;
 mod samples;
+mod shrink;
 mod smc;
 mod snapped;
 mod solid;
+mod sweep;
 mod table;
 #[cfg(test)]
 mod tests;
+mod volume;
+mod weld;
 
-pub use cubes::marching_cubes;
+pub use cubes::{marching_cubes, marching_cubes_reusing};
 pub use resolve::Resolve;
+pub use shrink::{coplanar_shrink, published_shrink};
 pub use smc::{Snap, smc};
-pub use solid::{VertexPlacement, marching_cubes_of, smc_of};
+pub use solid::{VertexPlacement, coplanar_shrink_of, marching_cubes_of, published_shrink_of, smc_of};
+pub use volume::{marching_cubes_of_volume, marching_cubes_with_volume};

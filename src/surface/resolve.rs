@@ -1,7 +1,9 @@
 //! What undecided cells count as.
 
+use crate::control::Control;
 use crate::error::Error;
 use crate::octree::OctreeRef;
+use crate::op::{Rule, build};
 use crate::solid::AnySolid;
 
 /// On which side of the surface the samples of PARTIAL cells lie, which have no sign of their own.
@@ -16,15 +18,27 @@ pub enum Resolve<'s> {
     Source(&'s AnySolid),
 }
 
-/// Whether PARTIAL cells of a tree count as inside, by a choice that needs no source.
+/// What `extract` makes of a tree and of whether its PARTIAL cells count as inside. If a source decides, the
+/// tree is the one that is built of it, in the first half of the work.
 ///
 /// # Errors
-/// [`Error::Argument`] if the tree has PARTIAL cells and nothing is chosen.
-pub(super) fn partial_is_inside(tree: &OctreeRef<'_>, resolve: Option<&Resolve<'_>>) -> Result<bool, Error> {
+/// [`Error::Argument`] if the tree has PARTIAL cells and nothing is chosen; those of `extract`, and of
+/// building.
+pub(super) fn resolved<T>(
+    tree: &OctreeRef<'_>,
+    resolve: Option<Resolve<'_>>,
+    control: &Control<'_>,
+    extract: impl FnOnce(&OctreeRef<'_>, bool, &Control<'_>) -> Result<T, Error>,
+) -> Result<T, Error> {
     match resolve {
-        Some(Resolve::Outer) => Ok(true),
-        Some(_) => Ok(false),
-        None if tree.is_binary() => Ok(false),
+        Some(Resolve::Source(solid)) => {
+            let sampled =
+                control.share([0.0, 0.5], |control| build(solid, tree.frame(), Rule::Sampled, control))?;
+            control.share([0.5, 1.0], |control| extract(sampled.view(), false, control))
+        }
+        Some(Resolve::Inner) => extract(tree, false, control),
+        Some(Resolve::Outer) => extract(tree, true, control),
+        None if tree.is_binary() => extract(tree, false, control),
         None => {
             let problem = "the octree has PARTIAL cells, which have no sign: choose inner, outer or source";
             Err(Error::Argument { name: "resolve", problem })

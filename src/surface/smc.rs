@@ -6,7 +6,7 @@ use super::cubes::Around;
 use super::key::{self, Key};
 use super::lattice::Lattice;
 use super::masks::{CORNER_AT, bits, configuration, rank};
-use super::resolve::{Resolve, partial_is_inside};
+use super::resolve::{Resolve, resolved};
 use super::samples::Samples;
 use super::snapped::{FAT, Snapped, THIN};
 use crate::control::{Control, Job, WHOLE};
@@ -16,7 +16,6 @@ use crate::lattice::morton;
 use crate::memory;
 use crate::mesh::TriangleMesh;
 use crate::octree::OctreeRef;
-use crate::op::{Rule, build};
 use alloc::vec::Vec;
 use core::ops::Range;
 
@@ -32,7 +31,7 @@ pub enum Snap {
 }
 
 impl Snap {
-    fn table(self) -> &'static Snapped {
+    pub(super) fn table(self) -> &'static Snapped {
         match self {
             Snap::Fat => &FAT,
             Snap::Thin => &THIN,
@@ -78,13 +77,9 @@ pub fn smc(
     resolve: Option<Resolve<'_>>,
     control: &Control<'_>,
 ) -> Result<TriangleMesh, Error> {
-    if let Some(Resolve::Source(solid)) = resolve {
-        let sampled =
-            control.share([0.0, 0.5], |control| build(solid, tree.frame(), Rule::Sampled, control))?;
-        return control.share([0.5, 1.0], |control| smc(sampled.view(), snap, None, control));
-    }
-    let partial = partial_is_inside(tree, resolve.as_ref())?;
-    extract(&Samples::new(tree, partial, u32::MAX)?, &Lattice::new(tree.frame())?, snap, control)
+    resolved(tree, resolve, control, |tree, partial, control| {
+        extract(&Samples::new(tree, partial, u32::MAX)?, &Lattice::new(tree.frame())?, snap, control)
+    })
 }
 
 /// The surface of samples.

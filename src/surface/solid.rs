@@ -8,7 +8,9 @@ use super::key;
 use super::lattice::Lattice;
 use super::masks::bits;
 use super::samples::Samples;
+use super::shrink::{self, Form};
 use super::smc::{self, Snap};
+use super::weld::weld;
 use crate::control::{Control, Job};
 use crate::error::Error;
 use crate::lattice::{Frame, MAX_DEPTH, morton};
@@ -16,6 +18,7 @@ use crate::mesh::TriangleMesh;
 use crate::octree::Octree;
 use crate::op::{Rule, Trail, build};
 use crate::solid::{Classifier, Solid};
+use alloc::vec::Vec;
 use core::ops::Range;
 use core::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
@@ -85,17 +88,17 @@ pub fn marching_cubes_of<S: Solid>(
         };
         control.run(samples.levels() > 2, |parallel| {
             let blocks = Blocks::find(&samples, &job, parallel)?;
-            let mut vertices = midpoints(&blocks, &corners.lattice, &job, parallel)?;
+            let mut vertices = midpoints(Vec::new(), &blocks, &corners.lattice, &job, parallel)?;
             let mut is_welded = true;
             if let Some(classifier) = &finest {
                 let crossings = Crossings { classifier, frame, corners: &corners, blocks: &blocks };
                 is_welded = crossings.find(&mut vertices, &job, parallel)?;
             }
-            let triangles = triangles(&blocks, &job, parallel)?;
+            let triangles = triangles(Vec::new(), &blocks, &job, parallel)?;
             if is_welded {
                 Ok(TriangleMesh::from_welded(vertices, triangles, 0, 0))
             } else {
-                TriangleMesh::new(vertices, triangles)
+                weld(vertices, triangles)
             }
         })
     })
@@ -114,6 +117,47 @@ pub fn smc_of<S: Solid>(
 ) -> Result<TriangleMesh, Error> {
     let corners = Corners::new(solid, frame, control)?;
     control.share([0.5, 1.0], |control| smc::extract(&corners.samples()?, &corners.lattice, snap, control))
+}
+
+/// The surface of a solid by coplanar shrink, sampled as by [`marching_cubes_of`]. Else as
+/// [`coplanar_shrink`](crate::coplanar_shrink).
+///
+/// # Errors
+/// As [`marching_cubes_of`].
+pub fn coplanar_shrink_of<S: Solid>(
+    solid: &S,
+    frame: &Frame,
+    snap: Snap,
+    control: &Control<'_>,
+) -> Result<TriangleMesh, Error> {
+    shrunk(solid, frame, Form::Closed, snap, control)
+}
+
+/// The surface of a solid by the published form of coplanar shrink, which has cracks, sampled as by
+/// [`marching_cubes_of`]. Else as [`published_shrink`](crate::published_shrink).
+///
+/// # Errors
+/// As [`marching_cubes_of`].
+pub fn published_shrink_of<S: Solid>(
+    solid: &S,
+    frame: &Frame,
+    snap: Snap,
+    control: &Control<'_>,
+) -> Result<TriangleMesh, Error> {
+    shrunk(solid, frame, Form::Published, snap, control)
+}
+
+fn shrunk<S: Solid>(
+    solid: &S,
+    frame: &Frame,
+    form: Form,
+    snap: Snap,
+    control: &Control<'_>,
+) -> Result<TriangleMesh, Error> {
+    let corners = Corners::new(solid, frame, control)?;
+    control.share([0.5, 1.0], |control| {
+        shrink::extract(&corners.samples()?, &corners.lattice, form, snap, control)
+    })
 }
 
 /// Which corners of a lattice lie inside a solid.
@@ -189,7 +233,7 @@ impl<C: Classifier> Crossings<'_, C> {
 }
 
 /// The cut edges of a block in the order of their vertices.
-fn edges(block: &Block, bias: i32) -> impl Iterator<Item = Edge> {
+pub(super) fn edges(block: &Block, bias: i32) -> impl Iterator<Item = Edge> {
     let at = key::position(block.key, bias);
     let block = *block;
     (0..3).flat_map(move |axis| {

@@ -1,7 +1,7 @@
 //! What is asked of the meshes of surfaces.
 
 use leafless::TriangleMesh;
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 
 /// Every edge is run along as often in one direction as in the other, and every vertex is used.
 #[track_caller]
@@ -62,4 +62,52 @@ pub fn components(mesh: &TriangleMesh) -> usize {
         }
     }
     (0..mesh.vertices().len() as u32).filter(|&v| parent[v as usize] == v).count()
+}
+
+/// A sample, or a direction.
+pub type Point = [i64; 3];
+
+/// The plane of a triangle with its outer side: a primitive normal, and its product with a vertex.
+fn plane([p, q, r]: [Point; 3]) -> (Point, i64) {
+    let (u, v) = ([0, 1, 2].map(|k| q[k] - p[k]), [0, 1, 2].map(|k| r[k] - p[k]));
+    let normal = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
+    let scale = normal.iter().map(|n| n.abs()).max().unwrap();
+    assert!(scale > 0, "a triangle has no area");
+    let normal = normal.map(|n| n / scale);
+    (normal, (0..3).map(|k| normal[k] * p[k]).sum())
+}
+
+/// The sample that a vertex is, on a lattice of unit cells.
+pub fn sample(vertex: [f64; 3]) -> Point {
+    vertex.map(|x| (x - 0.5).round() as i64)
+}
+
+/// The outlines of planes, by their normals and offsets: how often each step is run along forwards.
+pub type Outlines = BTreeMap<(Point, i64), BTreeMap<(Point, Point), i64>>;
+
+/// For each plane the outline of what lies in it: its directed steps from sample to sample, those there and
+/// back taken away. Chains in a plane that have one outline are one chain, so that the triangles of a plane
+/// cover the same points equally often.
+pub fn outlines(mesh: &TriangleMesh) -> Outlines {
+    let mut outlines = Outlines::new();
+    for triangle in mesh.triangles() {
+        let triangle = triangle.map(|v| sample(mesh.vertices()[v as usize]));
+        let outline = outlines.entry(plane(triangle)).or_default();
+        for k in 0..3 {
+            let (from, to) = (triangle[k], triangle[(k + 1) % 3]);
+            let way = [0, 1, 2].map(|k| to[k] - from[k]);
+            let steps = way.iter().fold(0, |a, &b| gcd(a, b.abs()));
+            for i in 0..steps {
+                let point = |i: i64| [0, 1, 2].map(|k| from[k] + way[k] / steps * i);
+                let (a, b) = (point(i), point(i + 1));
+                *outline.entry((a.min(b), a.max(b))).or_default() += if a < b { 1 } else { -1 };
+            }
+        }
+    }
+    outlines.values_mut().for_each(|outline| outline.retain(|_, count| *count != 0));
+    outlines
+}
+
+fn gcd(a: i64, b: i64) -> i64 {
+    if b == 0 { a } else { gcd(b, a % b) }
 }

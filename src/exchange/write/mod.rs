@@ -28,6 +28,8 @@ pub struct WriteOptions {
     /// The unit of the coordinates, which only a 3MF tells; `None` stands for its default, the millimetre. Nothing is
     /// converted.
     pub unit: Option<LengthUnit>,
+    /// PLY and OBJ with the normals at vertices ([`TriangleMesh::vertex_normals`]). Other formats have none.
+    pub normals: bool,
 }
 
 /// The file of a mesh in a format.
@@ -35,8 +37,8 @@ pub struct WriteOptions {
 /// | format | what is written |
 /// |---|---|
 /// | STL | binary, 32-bit coordinates; ASCII with all digits that these have |
-/// | PLY | little-endian or ASCII, coordinates of type `double` |
-/// | OBJ | vertices and triangles |
+/// | PLY | little-endian or ASCII, coordinates of type `double`, normals of type `float` |
+/// | OBJ | vertices and triangles, normals |
 /// | OFF | vertices and triangles |
 /// | 3MF | (feature `threemf`) a package of the core specification: one object, which is the build's one item, in the given unit |
 ///
@@ -65,8 +67,8 @@ pub fn write_mesh(mesh: &TriangleMesh, format: MeshFormat, options: &WriteOption
     match format {
         MeshFormat::Stl if options.text => stl::text(mesh),
         MeshFormat::Stl => write_stl(mesh),
-        MeshFormat::Ply => ply::write(mesh, options.text),
-        MeshFormat::Obj => obj::write(mesh),
+        MeshFormat::Ply => ply::write(mesh, options),
+        MeshFormat::Obj => obj::write(mesh, options),
         MeshFormat::Off => off::write(mesh),
         #[cfg(feature = "threemf")]
         MeshFormat::ThreeMf => threemf::write(mesh, options.unit.unwrap_or(LengthUnit::Millimetre)),

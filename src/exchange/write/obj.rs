@@ -1,11 +1,12 @@
 //! Wavefront OBJ.
 
+use super::WriteOptions;
 use super::lines::{Lines, Point};
 use crate::error::Error;
 use crate::mesh::TriangleMesh;
 use alloc::vec::Vec;
 
-pub(super) fn write(mesh: &TriangleMesh) -> Result<Vec<u8>, Error> {
+pub(super) fn write(mesh: &TriangleMesh, options: &WriteOptions) -> Result<Vec<u8>, Error> {
     // A file of neither cannot be told from other text.
     if mesh.vertices().is_empty() {
         return Err(Error::Argument {
@@ -17,9 +18,18 @@ pub(super) fn write(mesh: &TriangleMesh) -> Result<Vec<u8>, Error> {
     for &vertex in mesh.vertices() {
         lines.add(format_args!("v {}\n", Point(vertex)))?;
     }
+    if options.normals {
+        for normal in mesh.vertex_normals()? {
+            lines.add(format_args!("vn {}\n", Point(normal.map(|x| x as f32))))?;
+        }
+    }
     for triangle in mesh.triangles() {
         let [a, b, c] = triangle.map(|v| u64::from(v) + 1);
-        lines.add(format_args!("f {a} {b} {c}\n"))?;
+        if options.normals {
+            lines.add(format_args!("f {a}//{a} {b}//{b} {c}//{c}\n"))?;
+        } else {
+            lines.add(format_args!("f {a} {b} {c}\n"))?;
+        }
     }
     Ok(lines.bytes())
 }

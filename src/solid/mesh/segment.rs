@@ -24,14 +24,12 @@ struct Hit {
 impl View<'_> {
     /// Where a segment in the cell first crosses the boundary; `None` if it does not, or that is not sure.
     pub(super) fn first_crossing(&self, segment: &Segment, fill: FillRule) -> Option<Crossing> {
-        if self.displacement() > 0.0 {
-            return None;
-        }
         let base = self.base()?;
         let [from, to] = [segment.from, segment.to].map(|p| self.local(p));
-        // What the ends are off by: two roundings of lattice coordinates, and one here.
+        // What the ends are off by: two roundings of lattice coordinates, and one here. Where the surface may lie
+        // beside the mesh, it is passed through if the mesh is that far from the triangle's edges.
         let frame = &self.placed.frame;
-        let error = 4.0 * UNIT * f64::from(frame.cells()) * self.scale();
+        let error = 4.0 * UNIT * f64::from(frame.cells()) * self.scale() + 2.0 * self.displacement();
         let mut winding = base.winding;
         let mut hits = [Hit { t: f64::INFINITY, step: 0, normal: [0.0; 3] }; MOST];
         let mut count = 0;

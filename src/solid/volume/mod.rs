@@ -152,6 +152,17 @@ impl<'a> Volume<'a> {
         self.field.brick(at)
     }
 
+    /// The same samples in voxels of edge 1, with the first corner at 0.
+    pub(crate) fn in_voxels(&self) -> Result<Volume<'a>, Error> {
+        let grid = VoxelGrid::new(self.field.grid.extents(), [0.0; 3], [1.0; 3])?;
+        Ok(Volume { field: Field { grid, ..self.field.clone() }, ..self.clone() })
+    }
+
+    /// The voxel that the first of a frame's finest cells is, if these are voxels, or would be beyond the grid.
+    pub(crate) fn first_voxel(&self, frame: &Frame) -> Option<[i64; 3]> {
+        OnFrame::new(self.clone(), frame).first_voxel()
+    }
+
     /// Bytes that are kept beside the samples.
     pub fn bytes(&self) -> usize {
         self.ranges.bytes() + self.occupancy.bytes()

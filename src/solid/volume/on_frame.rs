@@ -34,6 +34,11 @@ impl<'a> OnFrame<'a> {
         OnFrame { volume, frame: *frame, axes, aligned }
     }
 
+    /// The voxel that the first of the finest cells is, if these are voxels.
+    pub(super) fn first_voxel(&self) -> Option<[i64; 3]> {
+        self.aligned.filter(|&(_, k)| k == 0).map(|(first, _)| first)
+    }
+
     fn grid(&self) -> &VoxelGrid {
         self.volume.grid()
     }

@@ -30,8 +30,7 @@ impl OctreeRef<'_> {
     /// box may lie anywhere; cells that they cut count with the part in the box, rounded outward. What lies outside of
     /// the universe does not count. Whatever the bytes, no element is read more than 27 times.
     ///
-    /// (The volume in a ball or in any solid is that of an intersection: see [`measure`](crate::measure) and
-    /// [`Csg::intersection_of`](crate::Csg::intersection_of).)
+    /// (For regions of other shapes: [`volume_in`](OctreeRef::volume_in).)
     ///
     /// # Errors
     /// [`Error::Argument`] if min > max on an axis, or a coordinate is not a number.

@@ -1,0 +1,244 @@
+/* Mesh files, written and read again: every format, as text and binary, in memory and on disk; what is refused. */
+#include "check.h"
+
+/* A tetrahedron whose coordinates are no short decimal numbers. */
+static leafless_mesh *tetrahedron(double factor) {
+    const double t = factor / 3;
+    const double vertices[4][3] = {{t, 0, 0}, {0, t, -t}, {0, 0.1 * t, t}, {-t, 1e-5 * t, 0.7}};
+    static const uint32_t triangles[4][3] = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
+    const leafless_mesh_arrays arrays = check_arrays(vertices, 4, triangles, 4);
+    leafless_mesh *mesh = NULL;
+    OK(leafless_mesh_new(&arrays, &mesh));
+    return mesh;
+}
+
+/* The same arrays; of single precision, the same once they are rounded, but in another order. */
+static void same(const leafless_mesh *a, const leafless_mesh *b, bool is_single) {
+    double vertices[2][4][3], volumes[2];
+    uint32_t triangles[2][4][3];
+    uint64_t vertex_count, triangle_count;
+    OK(leafless_mesh_counts(b, &vertex_count, &triangle_count));
+    CHECK(vertex_count == 4 && triangle_count == 4);
+    OK(leafless_mesh_copy(a, vertices[0][0], 4, triangles[0][0], 4));
+    OK(leafless_mesh_copy(b, vertices[1][0], 4, triangles[1][0], 4));
+    OK(leafless_mesh_volume(a, &volumes[0]));
+    OK(leafless_mesh_volume(b, &volumes[1]));
+    if (is_single) {
+        int corner, axis;
+        for (corner = 0; corner < 12; corner++) {
+            for (axis = 0; axis < 3; axis++) {
+                CHECK((float)vertices[0][triangles[0][corner / 3][corner % 3]][axis] ==
+                      (float)vertices[1][triangles[1][corner / 3][corner % 3]][axis]);
+            }
+        }
+        CHECK(fabs(volumes[0] - volumes[1]) < 1e-6 * fabs(volumes[0]));
+    } else {
+        CHECK(memcmp(vertices[0], vertices[1], sizeof vertices[0]) == 0);
+        CHECK(memcmp(triangles[0], triangles[1], sizeof triangles[0]) == 0);
+    }
+}
+
+static leafless_mesh_write_options defaults(void) {
+    leafless_mesh_write_options options;
+    OK(leafless_mesh_write_options_init(&options, sizeof options));
+    return options;
+}
+
+static uint8_t *bytes_of(const leafless_mesh *mesh, const leafless_mesh_write_options *options, uint64_t *length) {
+    uint64_t again;
+    uint8_t *bytes;
+    OK(leafless_mesh_to_bytes(mesh, options, NULL, 0, length));
+    bytes = (uint8_t *)malloc((size_t)*length);
+    CHECK(bytes != NULL);
+    FAILS(LEAFLESS_E_BUFFER, leafless_mesh_to_bytes(mesh, options, bytes, *length - 1, &again));
+    OK(leafless_mesh_to_bytes(mesh, options, bytes, *length, &again));
+    CHECK(again == *length);
+    return bytes;
+}
+
+static void formats(void) {
+    static const struct {
+        const char *path;
+        uint32_t format;
+        const char *start[2];
+    } FORMATS[] = {
+        {"written.stl", LEAFLESS_MESH_FORMAT_STL, {NULL, "solid"}},
+        {"written.obj", LEAFLESS_MESH_FORMAT_OBJ, {NULL, NULL}},
+        {"written.PLY", LEAFLESS_MESH_FORMAT_PLY, {"ply\nformat binary", "ply\nformat ascii"}},
+        {"written.off", LEAFLESS_MESH_FORMAT_OFF, {"OFF", "OFF"}},
+        {"written.3mf", LEAFLESS_MESH_FORMAT_3MF, {"PK", "PK"}},
+    };
+    leafless_mesh *mesh = tetrahedron(1);
+    size_t i;
+    uint32_t text;
+    for (i = 0; i < COUNT(FORMATS); i++) {
+        for (text = 0; text < 2; text++) {
+            const char *const start = FORMATS[i].start[text];
+            leafless_mesh_write_options options = defaults();
+            leafless_mesh_source source;
+            leafless_mesh *back = NULL;
+            uint64_t length;
+            uint8_t *bytes, *file;
+            size_t file_length;
+            /* The format by its number, or by the extension. */
+            options.is_text = text;
+            options.format = FORMATS[i].format;
+            bytes = bytes_of(mesh, &options, &length);
+            CHECK(start == NULL || memcmp(bytes, start, strlen(start)) == 0);
+            options.format = LEAFLESS_MESH_FORMAT_ANY;
+            OK(leafless_mesh_save(mesh, FORMATS[i].path, strlen(FORMATS[i].path), &options));
+            file = check_read(FORMATS[i].path, &file_length);
+            CHECK(file_length == length && memcmp(file, bytes, file_length) == 0);
+            free(file);
+            OK(leafless_mesh_open(FORMATS[i].path, strlen(FORMATS[i].path), NULL, &source, &back));
+            CHECK(source.format == FORMATS[i].format);
+            CHECK(source.unit == (source.format == LEAFLESS_MESH_FORMAT_3MF ? LEAFLESS_UNIT_MILLIMETRE
+                                                                           : LEAFLESS_UNIT_UNKNOWN));
+            same(mesh, back, source.format == LEAFLESS_MESH_FORMAT_STL);
+            leafless_mesh_free(back);
+            free(bytes);
+        }
+        OK(leafless_mesh_save(mesh, FORMATS[i].path, strlen(FORMATS[i].path), NULL));
+    }
+    leafless_mesh_free(mesh);
+}
+
+static void units(void) {
+    leafless_mesh_write_options options = defaults();
+    leafless_mesh *mesh = tetrahedron(7), *back;
+    leafless_mesh_source source;
+    uint32_t unit;
+    options.format = LEAFLESS_MESH_FORMAT_3MF;
+    for (unit = LEAFLESS_UNIT_MICROMETRE; unit <= LEAFLESS_UNIT_FOOT; unit++) {
+        uint64_t length;
+        uint8_t *bytes;
+        options.unit = unit;
+        bytes = bytes_of(mesh, &options, &length);
+        OK(leafless_mesh_from_bytes(bytes, length, NULL, &source, &back));
+        CHECK(source.unit == unit);
+        same(mesh, back, false);
+        leafless_mesh_free(back);
+        free(bytes);
+    }
+    leafless_mesh_free(mesh);
+}
+
+/* Normals at vertices, handed out and written. */
+static void normals(void) {
+    static const struct {
+        uint32_t format, is_text;
+        const char *has;
+    } FORMATS[] = {{LEAFLESS_MESH_FORMAT_PLY, 0, "property float nx"},
+                   {LEAFLESS_MESH_FORMAT_PLY, 1, "property float nx"},
+                   {LEAFLESS_MESH_FORMAT_OBJ, 0, "\nvn "},
+                   {LEAFLESS_MESH_FORMAT_OFF, 0, NULL}};
+    leafless_mesh *cube = check_cube(), *mesh = tetrahedron(3);
+    double found[8][3];
+    uint64_t count;
+    size_t i;
+    int axis;
+    OK(leafless_mesh_normals(cube, NULL, 0, &count));
+    CHECK(count == 8);
+    FAILS(LEAFLESS_E_BUFFER, leafless_mesh_normals(cube, found[0], 7, &count));
+    OK(leafless_mesh_normals(cube, found[0], 8, &count));
+    for (i = 0; i < 8; i++) {
+        for (axis = 0; axis < 3; axis++) {
+            CHECK(fabs(found[i][axis] - (CHECK_CUBE[i][axis] > 0 ? 1 : -1) * sqrt(1.0 / 3)) < 1e-14);
+        }
+    }
+    for (i = 0; i < COUNT(FORMATS); i++) {
+        leafless_mesh_write_options options = defaults();
+        leafless_mesh *back = NULL;
+        uint64_t lengths[2];
+        uint8_t *bytes;
+        options.format = FORMATS[i].format;
+        options.is_text = FORMATS[i].is_text;
+        OK(leafless_mesh_to_bytes(mesh, &options, NULL, 0, &lengths[0]));
+        options.has_normals = 1;
+        bytes = bytes_of(mesh, &options, &lengths[1]);
+        CHECK((lengths[1] > lengths[0]) == (FORMATS[i].has != NULL));
+        if (FORMATS[i].has != NULL) {
+            const size_t length = strlen(FORMATS[i].has);
+            size_t at = 0;
+            while (at + length < lengths[1] && memcmp(bytes + at, FORMATS[i].has, length) != 0) at++;
+            CHECK(at + length < lengths[1]);
+        }
+        OK(leafless_mesh_from_bytes(bytes, lengths[1], NULL, NULL, &back));
+        same(mesh, back, false);
+        leafless_mesh_free(back);
+        free(bytes);
+    }
+    leafless_mesh_free(cube);
+    leafless_mesh_free(mesh);
+}
+
+static void refusals(void) {
+    leafless_mesh *mesh = tetrahedron(1), *huge = tetrahedron(1e40), *nothing = NULL;
+    const leafless_mesh_arrays none = check_arrays(NULL, 0, NULL, 0);
+    leafless_mesh_write_options options = defaults();
+    uint8_t stl[284], all[284];
+    uint64_t length = 0, size;
+    FILE *file;
+    /* As the function that has only this format. */
+    options.format = LEAFLESS_MESH_FORMAT_STL;
+    OK(leafless_mesh_to_stl(mesh, stl, sizeof stl, &length));
+    OK(leafless_mesh_to_bytes(mesh, &options, all, sizeof all, &length));
+    CHECK(length == 284 && memcmp(stl, all, sizeof stl) == 0);
+    FAILS(LEAFLESS_E_ARGUMENT, leafless_mesh_to_bytes(huge, &options, NULL, 0, &length));
+    FAILS(LEAFLESS_E_ARGUMENT, leafless_mesh_save(huge, "refused.stl", 11, NULL));
+    OK(leafless_mesh_new(&none, &nothing));
+    FAILS(LEAFLESS_E_ARGUMENT, leafless_mesh_save(nothing, "refused.obj", 11, NULL));
+    OK(leafless_mesh_save(nothing, "nothing.ply", 11, NULL));
+    options.format = LEAFLESS_MESH_FORMAT_ANY;
+    FAILS(LEAFLESS_E_ARGUMENT, leafless_mesh_to_bytes(mesh, &options, NULL, 0, &length));
+    FAILS(LEAFLESS_E_ARGUMENT, leafless_mesh_save(mesh, "refused", 7, NULL));
+    FAILS(LEAFLESS_E_ARGUMENT, leafless_mesh_save(mesh, "refused.lfl", 11, &options));
+    FAILS(LEAFLESS_E_ARGUMENT, leafless_mesh_save(mesh, ".ply", 4, &options));
+    options.format = 6;
+    FAILS(LEAFLESS_E_ARGUMENT, leafless_mesh_save(mesh, "refused.ply", 11, &options));
+    options = defaults();
+    options.is_text = 2;
+    FAILS(LEAFLESS_E_ARGUMENT, leafless_mesh_save(mesh, "refused.ply", 11, &options));
+    options = defaults();
+    options.unit = 7;
+    FAILS(LEAFLESS_E_ARGUMENT, leafless_mesh_save(mesh, "refused.ply", 11, &options));
+    options = defaults();
+    options.has_normals = 2;
+    FAILS(LEAFLESS_E_ARGUMENT, leafless_mesh_save(mesh, "refused.ply", 11, &options));
+    for (size = 0; size < 4; size++) {
+        options = defaults();
+        options.struct_size = (uint32_t)size;
+        FAILS(LEAFLESS_E_ARGUMENT, leafless_mesh_save(mesh, "refused.ply", 11, &options));
+        FAILS(LEAFLESS_E_ARGUMENT, leafless_mesh_write_options_init(&options, (size_t)size));
+    }
+    FAILS(LEAFLESS_E_IO, leafless_mesh_save(mesh, "no/such/file.ply", 16, NULL));
+    FAILS(LEAFLESS_E_UTF8, leafless_mesh_save(mesh, "a\0.ply", 6, NULL));
+    file = fopen("refused.ply", "rb");
+    CHECK(file == NULL);
+    file = fopen("refused.obj", "rb");
+    CHECK(file == NULL);
+    /* A format that is given does not look at the extension. */
+    options = defaults();
+    options.format = LEAFLESS_MESH_FORMAT_OFF;
+    OK(leafless_mesh_save(mesh, "written", 7, &options));
+    /* The old file stays if the new one is refused. */
+    OK(leafless_mesh_save(mesh, "kept.stl", 8, NULL));
+    FAILS(LEAFLESS_E_ARGUMENT, leafless_mesh_save(huge, "kept.stl", 8, NULL));
+    {
+        size_t kept;
+        uint8_t *bytes = check_read("kept.stl", &kept);
+        CHECK(kept == sizeof stl && memcmp(bytes, stl, kept) == 0);
+        free(bytes);
+    }
+    leafless_mesh_free(nothing);
+    leafless_mesh_free(huge);
+    leafless_mesh_free(mesh);
+}
+
+int main(void) {
+    formats();
+    units();
+    normals();
+    refusals();
+    return 0;
+}

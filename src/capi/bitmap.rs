@@ -1,0 +1,61 @@
+//! The cells of a box as bits.
+
+use super::boundary::{array, buffer, guard, out, shared};
+use super::control::{controlled, leafless_options};
+use super::octree::leafless_octree;
+use super::status::leafless_status;
+
+/// The cells of a level in a box as bits: `inner` tells which are FULL, and `outer` which are not EMPTY.
+/// Those that only `outer` has are PARTIAL, or are cut further.
+///
+/// The bit of the cell min_cell + (x, y, z) is bit x mod 64 of word x / 64 + w (y + ny z), where w = ⌈nx /
+/// 64⌉, and nx, ny and nz are max_cell - min_cell: x is fastest, each row begins with a word of its own, and
+/// bits beyond a row are 0. That is LEAFLESS_SAMPLE_BITS, from which leafless_volume_new and
+/// leafless_volume_view make a volume again.
+///
+/// Time is linear in the words and the array elements in the box.
+///
+/// - Buffers: `min_cell` and `max_cell`, 3 numbers each: the first cell of the box, and the first one beyond
+///   it on each axis, in cells of `level`, which is 0 for the universe and the frame's depth for the finest;
+///   `options`, one struct or NULL, of which limits do not matter; `inner` and `outer`, room for `capacity`
+///   words each. `inner` is NULL to ask for the count only; `outer` may be NULL if it is not wanted. `count`,
+///   one number.
+/// - Result: `*count`, the words of a bitmap, w ny nz; the words, the same for any number of threads.
+/// - Errors: LEAFLESS_E_ARGUMENT if there is no such level, or the box is none or lies outside of the
+///   universe; LEAFLESS_E_BUFFER if the capacity is too small; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: nothing changes hands.
+/// - Threads: any; uses as many as `options` says.
+/// - Untrusted input: any octree, any numbers; damage reads as PARTIAL.
+/// - Since: 0.1
+///
+/// cbindgen:ptrs-as-arrays=[[min_cell; 3], [max_cell; 3]]
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_octree_bitmap(
+    octree: *const leafless_octree,
+    level: u32,
+    min_cell: *const u32,
+    max_cell: *const u32,
+    options: *const leafless_options,
+    inner: *mut u64,
+    outer: *mut u64,
+    capacity: u64,
+    count: *mut u64,
+) -> leafless_status {
+    guard(|| unsafe {
+        let octree = shared(octree, "octree")?.octree.view();
+        let (min, max) = (array(min_cell, "min_cell")?, array(max_cell, "max_cell")?);
+        let inner = buffer(inner, capacity, "inner")?;
+        let outer = buffer(outer, if outer.is_null() { 0 } else { capacity }, "outer")?;
+        let count = out(count, "count")?;
+        let level = u8::try_from(level).unwrap_or(u8::MAX);
+        let words = octree.bitmap_words(level, min, max)?;
+        // What does not fit into an address space does not fit into a buffer either.
+        let needed = usize::try_from(words).unwrap_or(usize::MAX);
+        outer.check(needed)?;
+        if let Some(inner) = inner.zeroed(needed)? {
+            let outer = outer.zeroed(needed)?;
+            controlled(options, |control| octree.bitmap(level, min, max, inner, outer, control))?;
+        }
+        count.write(words)
+    })
+}

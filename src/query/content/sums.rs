@@ -1,0 +1,115 @@
+//! What is added up of cells.
+
+use super::CellsIn;
+use crate::lattice::{CellMoments, Frame, Interval};
+use crate::octree::Tag;
+use crate::solid::{Enclosure, cut};
+
+/// A finest cell's volume in the units in which volumes are added up: at most 2^60 cells, so sums are below 2^100.
+const CELL: i128 = 1 << BITS;
+const BITS: u32 = 40;
+
+/// More than what bounds of a cell's volume are off by, and their rounding to whole units.
+const SLACK: f64 = 2.0;
+
+/// Numbers of cells, and their volume if it is asked for.
+pub(super) struct Sums {
+    cells: CellsIn,
+    volume: Option<Share>,
+}
+
+/// What is known of a volume, in units: of a cell's, or of a sum's.
+#[derive(Clone, Copy)]
+pub(super) struct Share {
+    least: i128,
+    most: i128,
+}
+
+impl Share {
+    pub(super) const WHOLE: Share = Share { least: CELL, most: CELL };
+    pub(super) const UNKNOWN: Share = Share { least: 0, most: CELL };
+
+    pub(super) fn of_moments(known: &CellMoments) -> Share {
+        let volume = known.moments.volume;
+        Share::between(volume - known.error, volume + known.error)
+    }
+
+    pub(super) fn of_enclosure(enclosure: &Enclosure) -> Share {
+        let (low, high) = cut::bounds(enclosure);
+        Share::between(low.volume, high.volume)
+    }
+
+    /// Of eighths of a cell, as bounds by slabs and moments have them.
+    fn between(low: f64, high: f64) -> Share {
+        const EIGHTH: f64 = CELL as f64 / 8.0;
+        let (low, high) = (libm::floor(low * EIGHTH) - SLACK, libm::ceil(high * EIGHTH) + SLACK);
+        // What is no number says nothing.
+        let least = if low > 0.0 { (low as i128).min(CELL) } else { 0 };
+        let most = if high < CELL as f64 { (high as i128).max(least) } else { CELL };
+        Share { least, most }
+    }
+
+    /// What two sets have in common of which this is known.
+    pub(super) fn common(self, other: Share) -> Share {
+        Share { least: (self.least + other.least - CELL).max(0), most: self.most.min(other.most) }
+    }
+}
+
+impl Sums {
+    pub(super) fn of_cells() -> Sums {
+        Sums { cells: CellsIn::default(), volume: None }
+    }
+
+    pub(super) fn of_volume() -> Sums {
+        Sums { cells: CellsIn::default(), volume: Some(Share { least: 0, most: 0 }) }
+    }
+
+    /// Whether [`add_share`](Self::add_share) is wanted.
+    #[inline(always)]
+    pub(super) fn has_volume(&self) -> bool {
+        self.volume.is_some()
+    }
+
+    /// Adds `count` finest cells with these tags, neither of which is EMPTY, but for their volume.
+    #[inline(always)]
+    pub(super) fn add(&mut self, solid: Tag, region: Tag, count: u64) {
+        let CellsIn { full_least, full_most, upper_least, upper_most } = &mut self.cells;
+        let add = |to: &mut u64, counts: bool| {
+            *to = to.saturating_add(if counts { count } else { 0 });
+        };
+        add(full_least, solid == Tag::Full && region == Tag::Full);
+        add(full_most, solid == Tag::Full);
+        add(upper_least, region == Tag::Full);
+        add(upper_most, true);
+    }
+
+    /// Adds `count` finest cells that the region may meet, and of whose tags in the solid nothing is known.
+    pub(super) fn add_unknown(&mut self, count: u64) {
+        let CellsIn { full_most, upper_most, .. } = &mut self.cells;
+        (*full_most, *upper_most) = (full_most.saturating_add(count), upper_most.saturating_add(count));
+    }
+
+    /// Adds the volume of `count` cells, of each of which as much is known.
+    #[inline(always)]
+    pub(super) fn add_share(&mut self, share: Share, count: u64) {
+        if let Some(volume) = &mut self.volume {
+            volume.least += share.least * i128::from(count);
+            volume.most += share.most * i128::from(count);
+        }
+    }
+
+    pub(super) fn cells(&self) -> CellsIn {
+        self.cells
+    }
+
+    /// In cubic model units.
+    pub(super) fn volume(&self, frame: &Frame) -> Interval {
+        let Share { least, most } = self.volume.unwrap_or(Share { least: 0, most: 0 });
+        let units =
+            Interval { lower: Interval::of_integer(least).lower, upper: Interval::of_integer(most).upper };
+        let size = Interval::exactly(frame.cell_size());
+        let cells = units.times(Interval::exactly(1.0 / CELL as f64));
+        let Interval { lower, upper } = cells.times(size).times(size).times(size);
+        Interval { lower: lower.max(0.0), upper }
+    }
+}

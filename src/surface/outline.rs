@@ -1,0 +1,270 @@
+//! The outlines of plane regions of a surface.
+//!
+//! A *region* is all of a surface that lies in one plane, with one outer side. Its outline is what remains of
+//! the edges of all triangles in it if those that are run along in both directions are taken away. Outlines
+//! are found without triangles: a cell has the outlines of what lies in it, and so has a super-cell.
+//!
+//! A vertex of outlines is a *corner* unless all edges at it lie in one line. What lies between corners is
+//! straight in all outlines that pass there. So each can go without it, and they still fit together.
+
+use super::bon::Cell;
+use super::chunks;
+use super::plane::{self, Plane};
+use super::points::{self, Step};
+use super::snapped::Snapped;
+use super::table::{ENDS, MARCHING_CUBES, MOST, Triangles};
+use crate::control::Job;
+use crate::error::{Error, MeshError};
+use crate::memory;
+use alloc::vec::Vec;
+use hashbrown::HashMap;
+
+/// A step along the outline of a region, by the sample where it is lower. Sorted, steps there and back are
+/// beside each other.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+struct Side {
+    at: u64,
+    /// Its direction, the region's plane, and whether it is run along backwards.
+    rest: u64,
+}
+
+impl Side {
+    /// The step from a sample by `by`.
+    fn new(from: [i32; 3], by: [i32; 3], plane: Plane) -> Side {
+        let step = Step::by(by);
+        let low = if step.is_back { [0, 1, 2].map(|axis| from[axis] + by[axis]) } else { from };
+        let rest = u64::from(step.direction) << 40 | plane.code() << 1 | u64::from(step.is_back);
+        Side { at: points::code(low), rest }
+    }
+
+    fn direction(self) -> u8 {
+        (self.rest >> 40) as u8
+    }
+
+    /// The region's plane.
+    fn plane(self) -> u64 {
+        (self.rest >> 1) & ((1 << 39) - 1)
+    }
+
+    fn is_back(self) -> bool {
+        self.rest & 1 != 0
+    }
+
+    /// The same step, whichever way it is run along.
+    fn both(self) -> (u64, u64) {
+        (self.at, self.rest >> 1)
+    }
+
+    /// The samples at its ends, the lower first.
+    fn ends(self) -> [u64; 2] {
+        [self.at, self.at + Step::stride(self.direction())]
+    }
+}
+
+/// An edge of a region between two corners, which lies to the left of it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) struct Edge {
+    pub plane: u64,
+    pub from: u32,
+    pub to: u32,
+}
+
+/// The outlines of all regions.
+pub(super) struct Outlines {
+    /// The samples that are corners, ascending: the vertices of the mesh.
+    pub corners: Vec<u64>,
+    /// Sorted.
+    pub edges: Vec<Edge>,
+}
+
+impl Outlines {
+    /// The outlines of what lies in cells. O(n log n) for n, the cells that are not merged and what merged
+    /// ones have on their faces.
+    ///
+    /// # Errors
+    /// [`MeshError::TooMany`](crate::MeshError::TooMany), [`Error::OutOfMemory`] and [`Error::Cancelled`].
+    pub fn of(
+        cells: &[Cell],
+        bias: i32,
+        table: &Snapped,
+        job: &Job<'_>,
+        parallel: bool,
+    ) -> Result<Outlines, Error> {
+        let of_configuration = outlines(table);
+        // Most cancel each other near by.
+        let found = chunks::map(cells.len(), job, parallel, |range| {
+            let mut sides = Vec::new();
+            for cell in &cells[range] {
+                let corner = cell.corner(bias);
+                if cell.level == 0 {
+                    of_configuration[cell.configuration as usize].append(corner, &mut sides)?;
+                } else {
+                    append_super_cell(cell, corner, &mut sides)?;
+                }
+            }
+            sides.sort_unstable();
+            cancel(&mut sides);
+            Ok(sides)
+        })?;
+        let mut sides = memory::with_capacity(found.iter().map(Vec::len).sum())?;
+        found.iter().for_each(|part| sides.extend_from_slice(part));
+        drop(found);
+        chunks::sort(&mut sides, parallel);
+        cancel(&mut sides);
+        let corners = corners(&sides, parallel)?;
+        if corners.len() > u32::MAX as usize {
+            return Err(MeshError::TooMany.into());
+        }
+        let edges = edges(&sides, &corners, job, parallel)?;
+        Ok(Outlines { corners, edges })
+    }
+}
+
+/// Takes pairs of steps there and back away from a sorted list.
+fn cancel(sides: &mut Vec<Side>) {
+    let mut kept = 0;
+    let mut i = 0;
+    while i < sides.len() {
+        let side = sides[i];
+        let count = sides[i..].iter().take_while(|other| other.both() == side.both()).count();
+        let backwards = sides[i..i + count].iter().filter(|side| side.is_back()).count();
+        let forwards = count - backwards;
+        let rest = sides[if forwards > backwards { i } else { i + count - 1 }];
+        for _ in 0..forwards.abs_diff(backwards) {
+            sides[kept] = rest;
+            kept += 1;
+        }
+        i += count;
+    }
+    sides.truncate(kept);
+}
+
+/// The samples at which outlines turn or meet.
+fn corners(sides: &[Side], parallel: bool) -> Result<Vec<u64>, Error> {
+    let mut ends: Vec<(u64, u8)> = memory::with_capacity(2 * sides.len())?;
+    let mut before = None;
+    for side in sides {
+        if before.replace((side.at, side.direction())) != Some((side.at, side.direction())) {
+            ends.extend(side.ends().map(|end| (end, side.direction())));
+        }
+    }
+    chunks::sort(&mut ends, parallel);
+    let mut corners = Vec::new();
+    for at_sample in ends.chunk_by(|a, b| a.0 == b.0) {
+        if at_sample.iter().any(|end| end.1 != at_sample[0].1) {
+            memory::push(&mut corners, at_sample[0].0)?;
+        }
+    }
+    Ok(corners)
+}
+
+/// The edges between corners.
+fn edges(sides: &[Side], corners: &[u64], job: &Job<'_>, parallel: bool) -> Result<Vec<Edge>, Error> {
+    let mut numbers = HashMap::new();
+    numbers.try_reserve(corners.len())?;
+    numbers.extend(corners.iter().copied().zip(0u32..));
+    let found = chunks::map(sides.len(), job, parallel, |range| {
+        let mut edges = Vec::new();
+        for side in &sides[range] {
+            let stride = Step::stride(side.direction());
+            let (from, stride) =
+                if side.is_back() { (side.at + stride, stride.wrapping_neg()) } else { (side.at, stride) };
+            let Some(&from_number) = numbers.get(&from) else { continue };
+            let mut at = from.wrapping_add(stride);
+            // An outline that goes straight on from a corner ends at another one.
+            let to = loop {
+                match numbers.get(&at) {
+                    Some(&number) => break number,
+                    None => at = at.wrapping_add(stride),
+                }
+            };
+            memory::push(&mut edges, Edge { plane: side.plane(), from: from_number, to })?;
+        }
+        Ok(edges)
+    })?;
+    let mut edges = memory::with_capacity(found.iter().map(Vec::len).sum())?;
+    found.iter().for_each(|part| edges.extend_from_slice(part));
+    chunks::sort(&mut edges, parallel);
+    Ok(edges)
+}
+
+/// The outlines of a configuration's triangles in a dual cell at the origin.
+#[derive(Clone, Copy)]
+struct OfCell {
+    count: usize,
+    /// From a corner of the cell to another one, in the plane of a region.
+    sides: [([i32; 3], [i32; 3], Plane); 3 * MOST],
+}
+
+impl OfCell {
+    const NONE: OfCell = OfCell { count: 0, sides: [([0; 3], [0; 3], Plane::NONE); 3 * MOST] };
+
+    /// The sum of triangles. Edges that are run along in both directions in one plane are taken away.
+    fn of(triangles: impl Iterator<Item = (Plane, [[i32; 3]; 3])>) -> OfCell {
+        let mut sum = OfCell::NONE;
+        for (plane, [p, q, r]) in triangles {
+            for (from, to) in [(p, q), (q, r), (r, p)] {
+                let sides = &sum.sides[..sum.count];
+                if let Some(back) = sides.iter().position(|side| *side == (to, from, plane)) {
+                    sum.count -= 1;
+                    sum.sides[back] = sum.sides[sum.count];
+                } else {
+                    sum.sides[sum.count] = (from, to, plane);
+                    sum.count += 1;
+                }
+            }
+        }
+        sum
+    }
+
+    /// Appends all sides, step by step, for a cell with this lowest corner.
+    fn append(&self, corner: [i32; 3], sides: &mut Vec<Side>) -> Result<(), Error> {
+        for (from, to, plane) in &self.sides[..self.count] {
+            let way = [0, 1, 2].map(|axis| to[axis] - from[axis]);
+            let steps = way.iter().map(|w| w.abs()).max().unwrap_or(0);
+            let by = way.map(i32::signum);
+            sides.try_reserve(steps as usize)?;
+            for k in 0..steps {
+                let from = [0, 1, 2].map(|axis| corner[axis] + from[axis] + k * by[axis]);
+                sides.push(Side::new(from, by, plane.moved(corner)));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The outlines of all configurations.
+fn outlines(table: &Snapped) -> [OfCell; 256] {
+    let mut outlines = [OfCell::NONE; 256];
+    for (of_cell, triangles) in outlines.iter_mut().zip(&table.triangles) {
+        let placed = triangles
+            .list()
+            .iter()
+            .map(|&corners| (plane::of_corners(corners), corners.map(|corner| plane::corner(corner.into()))));
+        *of_cell = OfCell::of(placed);
+    }
+    outlines
+}
+
+/// Appends the outline of a super-cell: that of the polygon in which its plane cuts it.
+fn append_super_cell(cell: &Cell, corner: [i32; 3], sides: &mut Vec<Side>) -> Result<(), Error> {
+    let triangles = super_triangles(cell, corner).map(|triangle| (cell.plane, triangle));
+    OfCell::of(triangles).append([0; 3], sides)
+}
+
+/// The triangles of a super-cell: those of marching cubes, with the vertices where the plane cuts the cell's
+/// edges. Those without area are left out.
+pub(super) fn super_triangles(cell: &Cell, corner: [i32; 3]) -> impl Iterator<Item = [[i32; 3]; 3]> + use<> {
+    let triangles: &'static Triangles = &MARCHING_CUBES[cell.configuration as usize];
+    let (plane, size) = (cell.plane, 1 << cell.level);
+    let placed = triangles.list().iter().map(move |triangle| {
+        triangle.map(|edge| {
+            let (axis, lower) = (edge as usize / 4, plane::corner(ENDS[edge as usize][0].into()));
+            let mut point = [0, 1, 2].map(|axis| corner[axis] + size * lower[axis]);
+            // A cut edge leads through the plane.
+            point[axis] = plane.above(axis, point).unwrap_or(point[axis]);
+            point
+        })
+    });
+    placed.filter(|[p, q, r]| p != q && q != r && r != p)
+}

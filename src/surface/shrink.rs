@@ -1,0 +1,192 @@
+//! Coplanar shrink: simple marching cubes with one region where many triangles lie in one plane.
+
+use super::blocks::{Blocks, FINDING};
+use super::bon::{Cell, Merge, cells};
+use super::chunks;
+use super::lattice::Lattice;
+use super::outline::{Edge, Outlines};
+use super::plane::Plane;
+use super::points;
+use super::published;
+use super::resolve::{Resolve, resolved};
+use super::samples::Samples;
+use super::smc::Snap;
+use super::sweep::{Sweep, Vertex};
+use crate::control::{Control, Job, WHOLE};
+use crate::error::{Error, MeshError};
+use crate::memory;
+use crate::mesh::TriangleMesh;
+use crate::octree::OctreeRef;
+use alloc::vec::Vec;
+
+/// The surface of an octree by simple marching cubes, *shrunk*: the same surface as that of
+/// [`smc`](crate::smc) with far fewer triangles where it has plane parts. A block of cells has 44, however
+/// large it is.
+///
+/// All that lies in one plane becomes one region with straight edges, from corner to corner, and each region
+/// is cut into triangles without new vertices. Regions beside each other have the same edges between them. So
+/// the mesh has no cracks: it is closed and balanced as that of `smc`, with the same volume and area, and a
+/// 2-manifold where that is one. Triangles may be long and thin. Vertices are centres of cells, and come in
+/// the order of their z, y and x; triangles in that of their planes.
+///
+/// Cells in one plane are merged first, from the bottom of an octree up (see [`published_shrink`]). In place
+/// of the triangles of merged cells, which do not fit together where cells of several sizes meet, the
+/// outlines of all cells are added up; what is left bounds the regions.
+///
+/// Everything outside of the universe counts as EMPTY. `resolve` is as in
+/// [`marching_cubes`](crate::marching_cubes).
+///
+/// O(n log n + n w) for n cells at the surface of which at most w lie along a line in a plane region. Beside
+/// the mesh it takes up to 200 bytes for each cell at a curved surface. The result is the same for any number
+/// of threads.
+///
+/// # Errors
+/// As [`marching_cubes`](crate::marching_cubes).
+///
+/// ```
+/// use leafless::{Control, Csg, Frame, Rule, Snap, build, coplanar_shrink, smc};
+/// let frame = Frame::new([0.0; 3], 32.0, 5)?;
+/// let block = build(&Csg::cuboid([2.0; 3], [28.0; 3])?, &frame, Rule::Sampled, &Control::default())?;
+/// let all = smc(block.view(), Snap::Fat, None, &Control::default())?;
+/// let few = coplanar_shrink(block.view(), Snap::Fat, None, &Control::default())?;
+/// assert_eq!((all.triangles().len(), few.triangles().len()), (8_108, 44));
+/// assert_eq!(all.volume(), few.volume());
+/// # Ok::<(), leafless::Error>(())
+/// ```
+pub fn coplanar_shrink(
+    tree: &OctreeRef<'_>,
+    snap: Snap,
+    resolve: Option<Resolve<'_>>,
+    control: &Control<'_>,
+) -> Result<TriangleMesh, Error> {
+    of_octree(tree, Form::Closed, snap, resolve, control)
+}
+
+/// The surface of an octree by coplanar shrink in its published form. It is here to compare with, since **it
+/// has cracks**: [`coplanar_shrink`](crate::coplanar_shrink) has not, and fewer triangles.
+///
+/// The dual cells at the surface lie in an octree that branches on need. From the bottom up, the cells of a
+/// node become one if all of them have a *coplanar configuration*, one of the 54 that a plane with one of 13
+/// normals makes, and all lie in the same plane. A merged cell has the triangles of marching cubes, with
+/// vertices where the plane cuts its edges; others have those of [`smc`](crate::smc). Where cells of several
+/// sizes meet, the smaller ones have vertices on the edges of the larger ones' triangles, and the mesh is
+/// open there.
+///
+/// The method is that of <https://github.com/chnhideyoshi/OctreeBaseSimplifiedMarchingCubes>, which has
+/// vertices at the outer samples ([`Snap::Fat`]).
+///
+/// # Errors
+/// As [`marching_cubes`](crate::marching_cubes).
+pub fn published_shrink(
+    tree: &OctreeRef<'_>,
+    snap: Snap,
+    resolve: Option<Resolve<'_>>,
+    control: &Control<'_>,
+) -> Result<TriangleMesh, Error> {
+    of_octree(tree, Form::Published, snap, resolve, control)
+}
+
+/// Which form of the method.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Form {
+    Closed,
+    Published,
+}
+
+/// The surface of an octree.
+fn of_octree(
+    tree: &OctreeRef<'_>,
+    form: Form,
+    snap: Snap,
+    resolve: Option<Resolve<'_>>,
+    control: &Control<'_>,
+) -> Result<TriangleMesh, Error> {
+    resolved(tree, resolve, control, |tree, partial, control| {
+        extract(&Samples::new(tree, partial, u32::MAX)?, &Lattice::new(tree.frame())?, form, snap, control)
+    })
+}
+
+/// The surface of samples.
+pub(super) fn extract(
+    samples: &Samples<'_>,
+    lattice: &Lattice,
+    form: Form,
+    snap: Snap,
+    control: &Control<'_>,
+) -> Result<TriangleMesh, Error> {
+    let job = Job::new(control);
+    job.check()?;
+    control.run(samples.levels() > 3, |parallel| {
+        let blocks = Blocks::find(samples, &job, parallel)?;
+        let bias = blocks.bias;
+        let merge = match form {
+            Form::Closed => Merge::Sided,
+            Form::Published => Merge::Plane,
+        };
+        let cells = cells(&blocks, snap, merge, &job, parallel)?;
+        drop(blocks);
+        job.advance((WHOLE - FINDING) / 4);
+        let (corners, triangles) = match form {
+            Form::Closed => closed(&cells, bias, snap, &job, parallel)?,
+            Form::Published => published::triangles(&cells, bias, snap, &job, parallel)?,
+        };
+        drop(cells);
+        job.advance(WHOLE - FINDING - (WHOLE - FINDING) / 4);
+        let vertices = memory::collected(corners.iter().map(|&corner| {
+            let at = points::position(corner);
+            [0, 1, 2].map(|axis| lattice.coordinate(axis, 2 * at[axis] + 1))
+        }))?;
+        Ok(TriangleMesh::from_welded(vertices, triangles, 0, 0))
+    })
+}
+
+/// The samples that are vertices, and the triangles, of regions with outlines that fit together.
+fn closed(
+    cells: &[Cell],
+    bias: i32,
+    snap: Snap,
+    job: &Job<'_>,
+    parallel: bool,
+) -> Result<(Vec<u64>, Vec<[u32; 3]>), Error> {
+    let Outlines { corners, edges } = Outlines::of(cells, bias, snap.table(), job, parallel)?;
+    let mut regions = Vec::new();
+    for region in edges.chunk_by(|a, b| a.plane == b.plane) {
+        memory::push(&mut regions, region)?;
+    }
+    let found = chunks::map(regions.len(), job, parallel, |range| {
+        let (mut sweep, mut triangles) = (Sweep::default(), Vec::new());
+        for region in &regions[range] {
+            triangulate(region, &corners, &mut sweep, &mut triangles)?;
+        }
+        Ok(triangles)
+    })?;
+    let count = found.iter().map(Vec::len).sum();
+    if count > u32::MAX as usize {
+        return Err(MeshError::TooMany.into());
+    }
+    let mut triangles = memory::with_capacity(count)?;
+    found.iter().for_each(|part| triangles.extend_from_slice(part));
+    Ok((corners, triangles))
+}
+
+/// Appends the triangles of a region.
+fn triangulate(
+    region: &[Edge],
+    corners: &[u64],
+    sweep: &mut Sweep,
+    triangles: &mut Vec<[u32; 3]>,
+) -> Result<(), Error> {
+    let Some(first) = region.first() else { return Ok(()) };
+    // The region as seen from outside, along an axis that the plane does not contain.
+    let normal = Plane::from_code(first.plane).normal();
+    let axis = (0..3).find(|&axis| normal[axis] != 0).unwrap_or(0);
+    let (mut u, mut v) = ((axis + 1) % 3, (axis + 2) % 3);
+    if normal[axis] < 0 {
+        (u, v) = (v, u);
+    }
+    let vertex = |number: u32| -> Vertex {
+        let at = points::position(corners[number as usize]);
+        ([at[u], at[v]], number)
+    };
+    sweep.triangulate(region.iter().map(|edge| [vertex(edge.from), vertex(edge.to)]), triangles)
+}

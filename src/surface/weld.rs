@@ -1,0 +1,32 @@
+//! Meshes whose vertices may lie at one place.
+
+use crate::error::Error;
+use crate::memory;
+use crate::mesh::TriangleMesh;
+use alloc::vec::Vec;
+
+/// The mesh with equal vertices made one, without triangles that have lost their area by that, and without vertices that
+/// are then in no triangle. The others keep their order.
+///
+/// # Errors
+/// As [`TriangleMesh::new`].
+pub(super) fn weld(vertices: Vec<[f64; 3]>, triangles: Vec<[u32; 3]>) -> Result<TriangleMesh, Error> {
+    let mesh = TriangleMesh::new(vertices, triangles)?;
+    const UNUSED: u32 = u32::MAX;
+    let mut places = memory::filled(mesh.vertices().len(), UNUSED)?;
+    for &vertex in mesh.triangles().as_flattened() {
+        places[vertex as usize] = 0;
+    }
+    if !places.contains(&UNUSED) {
+        return Ok(mesh);
+    }
+    let mut vertices = memory::with_capacity(places.len())?;
+    for (place, &vertex) in places.iter_mut().zip(mesh.vertices()) {
+        if *place != UNUSED {
+            *place = vertices.len() as u32;
+            vertices.push(vertex);
+        }
+    }
+    let triangles = mesh.triangles().iter().map(|triangle| triangle.map(|v| places[v as usize]));
+    Ok(TriangleMesh::from_welded(vertices, memory::collected(triangles)?, 0, 0))
+}
