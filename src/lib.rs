@@ -41,6 +41,7 @@
 //! | `solid` | what can split a cell: one file or folder a producer |
 //! | `op` | building, splitting on demand, and the set algebra of stored trees |
 //! | `query` | points, boxes and rays, measures, interference |
+//! | `attribute` | what has a value at points, inside or outside of solids |
 //! | `surface` | triangle meshes of solids |
 //! | `file` | the file format |
 //! | `exchange` | the files of other programs |
@@ -75,6 +76,7 @@ extern crate alloc;
 #[cfg(feature = "std")]
 extern crate std;
 
+mod attribute;
 #[cfg(feature = "capi")]
 pub mod capi;
 mod control;
@@ -93,6 +95,7 @@ pub mod scene;
 mod solid;
 mod surface;
 
+pub use attribute::{Attribute, ConstantAttribute, Criterion, Detail, FunctionAttribute, ValueRange};
 pub use control::Control;
 pub use error::{
     Damage, Error, FormatError, MeshError, MeshFileError, PackageError, PolyhedronError, SceneError,
@@ -109,7 +112,7 @@ pub use mesh::{
 pub use mesh::{Polyhedron, PolyhedronArrays};
 pub use octree::{
     Block, BoundaryFace, BoundaryFaces, CellFilter, Cells, Cursor, Direction, LevelStatistics, Metadata,
-    Node, Octree, OctreeRef, Planes, Proof, Statistics, Tag, TaggedCell,
+    Node, Octree, OctreeRef, Planes, Proof, ScalarType, Statistics, Tag, TaggedCell, ValueType,
 };
 pub use op::{
     LazyOctree, Refinement, Rule, Zone, build, compact, complement, difference, intersection,

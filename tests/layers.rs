@@ -8,7 +8,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 /// From the bottom up; modules of one row may use each other.
-const LAYERS: [&[&str]; 12] = [
+const LAYERS: [&[&str]; 13] = [
     &["error", "memory", "control", "dispatch"],
     &["lattice"],
     &["octree"],
@@ -16,6 +16,7 @@ const LAYERS: [&[&str]; 12] = [
     &["solid"],
     &["op"],
     &["query"],
+    &["attribute"],
     &["surface"],
     &["file"],
     &["exchange"],

@@ -7,6 +7,7 @@
 pub(crate) mod block;
 pub(crate) mod brick;
 mod cells;
+pub(crate) mod channel;
 mod check;
 mod cursor;
 pub(crate) mod dictionary;
@@ -27,6 +28,7 @@ pub(crate) mod writer;
 
 pub use block::Block;
 pub use cells::{CellFilter, Cells, TaggedCell};
+pub use channel::{ScalarType, ValueType};
 pub use cursor::{Cursor, Node};
 pub use direction::Direction;
 pub use faces::{BoundaryFace, BoundaryFaces};

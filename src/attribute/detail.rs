@@ -1,0 +1,95 @@
+//! How finely an attribute is followed inside a solid.
+
+use super::Attribute;
+use crate::error::Error;
+use crate::lattice::Bounds;
+
+/// What makes a cell fine enough, once it is no longer than the coarse limit.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Criterion {
+    /// The variance of the values at the eight corners is at most the square of the tolerance (Zhu, Tang and
+    /// Dong 2002). The variance of several numbers is the sum of their variances. A detail between the
+    /// corners is missed.
+    Variance,
+    /// The attribute's range over the cell is proven to be no wider than the tolerance in any component.
+    /// Nothing is missed. A cell whose range is unknown is split.
+    Range,
+}
+
+/// How finely an attribute is followed inside a solid: a cell is split until its edge is at most `coarse`
+/// *and* the attribute hardly changes in it, or until its edge is at most `fine`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Detail {
+    coarse: f64,
+    fine: f64,
+    tolerance: f64,
+    criterion: Criterion,
+}
+
+impl Detail {
+    /// The rule with edges `coarse` and `fine` in model units, and `tolerance` in the attribute's units.
+    ///
+    /// # Errors
+    /// [`Error::Argument`] unless 0 < fine ≤ coarse and 0 ≤ tolerance; `coarse` and `tolerance` may be
+    /// infinite.
+    pub fn new(coarse: f64, fine: f64, tolerance: f64, criterion: Criterion) -> Result<Detail, Error> {
+        // A comparison with NaN is false.
+        let refused = |name, problem| Err(Error::Argument { name, problem });
+        if !(fine > 0.0 && fine <= coarse) {
+            return refused("fine", "must be positive and at most the coarse edge");
+        }
+        if !(tolerance >= 0.0) {
+            return refused("tolerance", "must be a number that is not negative");
+        }
+        Ok(Detail { coarse, fine, tolerance, criterion })
+    }
+
+    /// Uniform cells: those of which the edge is at most `edge`, whatever the attribute.
+    ///
+    /// # Errors
+    /// [`Error::Argument`] unless `edge` is positive.
+    pub fn uniform(edge: f64) -> Result<Detail, Error> {
+        Detail::new(edge, edge, f64::INFINITY, Criterion::Variance)
+    }
+
+    /// Whether a cell of this edge, with these bounds, need not be split.
+    ///
+    /// # Errors
+    /// What the attribute reports.
+    pub fn is_fine(&self, attribute: &dyn Attribute, bounds: &Bounds, edge: f64) -> Result<bool, Error> {
+        if edge <= self.fine {
+            return Ok(true);
+        }
+        if edge > self.coarse {
+            return Ok(false);
+        }
+        match self.criterion {
+            Criterion::Range => Ok(attribute.range(bounds)?.width(attribute.components()) <= self.tolerance),
+            Criterion::Variance => self.is_even(attribute, bounds),
+        }
+    }
+
+    fn is_even(&self, attribute: &dyn Attribute, bounds: &Bounds) -> Result<bool, Error> {
+        if self.tolerance == f64::INFINITY {
+            return Ok(true);
+        }
+        let corner = |k: usize| {
+            [0, 1, 2].map(|axis| if k >> axis & 1 == 0 { bounds.min[axis] } else { bounds.max[axis] })
+        };
+        let points: [[f64; 3]; 8] = core::array::from_fn(corner);
+        let mut values = [None; 8];
+        attribute.values(&points, &mut values)?;
+        let known = values.iter().flatten().count();
+        if known < values.len() {
+            // A cell that has a value at some of its corners changes.
+            return Ok(known == 0);
+        }
+        let mut variance = 0.0;
+        for component in 0..attribute.components() {
+            let numbers = values.iter().flatten().map(|value| value[component]);
+            let mean = numbers.clone().sum::<f64>() / 8.0;
+            variance += numbers.map(|number| (number - mean) * (number - mean)).sum::<f64>() / 8.0;
+        }
+        Ok(variance <= self.tolerance * self.tolerance)
+    }
+}

@@ -1,0 +1,130 @@
+//! What the values of a channel are made of.
+
+use crate::error::Error;
+
+/// The number type of a channel's values.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[repr(u8)]
+pub enum ScalarType {
+    /// Integers from 0 to 255.
+    U8 = 1,
+    /// Integers from 0 to 65 535.
+    U16 = 2,
+    /// Integers from 0 to 4 294 967 295.
+    U32 = 3,
+    /// Finite numbers of single precision.
+    F32 = 5,
+}
+
+impl ScalarType {
+    /// All of them.
+    pub const ALL: [ScalarType; 4] = [ScalarType::U8, ScalarType::U16, ScalarType::U32, ScalarType::F32];
+
+    /// Bytes that a number takes.
+    pub fn size(self) -> usize {
+        match self {
+            ScalarType::U8 => 1,
+            ScalarType::U16 => 2,
+            ScalarType::U32 | ScalarType::F32 => 4,
+        }
+    }
+
+    /// Its name: `u8`, `u16`, `u32` or `f32`.
+    pub fn name(self) -> &'static str {
+        match self {
+            ScalarType::U8 => "u8",
+            ScalarType::U16 => "u16",
+            ScalarType::U32 => "u32",
+            ScalarType::F32 => "f32",
+        }
+    }
+
+    /// The nearest number of the type, as its bits: integers round half to even, and zero is positive.
+    /// `None` beyond the type's range, and for NaN.
+    fn encode(self, value: f64) -> Option<u32> {
+        let integer = |greatest: u32| {
+            let nearest = libm::rint(value);
+            (0.0..=f64::from(greatest)).contains(&nearest).then_some(nearest as u32)
+        };
+        match self {
+            ScalarType::U8 => integer(u8::MAX.into()),
+            ScalarType::U16 => integer(u16::MAX.into()),
+            ScalarType::U32 => integer(u32::MAX),
+            ScalarType::F32 => {
+                let nearest = value as f32;
+                nearest.is_finite().then(|| if nearest == 0.0 { 0 } else { nearest.to_bits() })
+            }
+        }
+    }
+
+    fn decode(self, bits: u32) -> f64 {
+        match self {
+            ScalarType::F32 => f64::from(f32::from_bits(bits)),
+            _ => f64::from(bits),
+        }
+    }
+}
+
+/// What a value of a channel is: one to four numbers of one type.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct ValueType {
+    scalar: ScalarType,
+    components: u8,
+}
+
+/// A value as the bits of its numbers; those beyond the components are 0. Equal values have equal bits.
+pub(crate) type Bits = [u32; 4];
+
+impl ValueType {
+    /// Values of so many numbers each.
+    ///
+    /// # Errors
+    /// [`Error::Argument`] unless `components` is 1 to 4.
+    pub fn new(scalar: ScalarType, components: u8) -> Result<ValueType, Error> {
+        if (1..=4).contains(&components) {
+            return Ok(ValueType { scalar, components });
+        }
+        Err(Error::Argument { name: "components", problem: "must be 1 to 4" })
+    }
+
+    /// The type of the numbers.
+    pub fn scalar(self) -> ScalarType {
+        self.scalar
+    }
+
+    /// How many numbers a value has: 1 to 4.
+    pub fn components(self) -> usize {
+        self.components.into()
+    }
+
+    /// Bytes that a value takes: 1 to 16.
+    pub fn size(self) -> usize {
+        self.scalar.size() * self.components()
+    }
+
+    /// The value that a channel of this type keeps for `value`: each number rounded to the nearest one of the
+    /// type, integers half to even. The numbers beyond the components do not count, and become 0.
+    ///
+    /// # Errors
+    /// [`Error::Argument`] if a number is beyond the range of the type, infinite or not a number.
+    pub fn nearest(self, value: [f64; 4]) -> Result<[f64; 4], Error> {
+        Ok(self.decode(self.encode(value)?))
+    }
+
+    pub(crate) fn encode(self, value: [f64; 4]) -> Result<Bits, Error> {
+        let mut bits = [0; 4];
+        for (bits, &value) in bits.iter_mut().zip(&value).take(self.components()) {
+            let problem = "must lie in the range of the channel's type";
+            *bits = self.scalar.encode(value).ok_or(Error::Argument { name: "value", problem })?;
+        }
+        Ok(bits)
+    }
+
+    pub(crate) fn decode(self, bits: Bits) -> [f64; 4] {
+        let mut value = [0.0; 4];
+        for (value, &bits) in value.iter_mut().zip(&bits).take(self.components()) {
+            *value = self.scalar.decode(bits);
+        }
+        value
+    }
+}
