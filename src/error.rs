@@ -714,6 +714,18 @@ pub enum Damage {
     /// One-plane bricks although something is undecided.
     #[error("the bricks have one plane although a cell is undecided")]
     MissingPlane,
+    /// Of a channel, the number of values before an element is wrong.
+    #[error("the values before element or brick {index} of a channel are counted wrongly")]
+    Rank {
+        /// Index; bricks are counted on after the elements.
+        index: u64,
+    },
+    /// A value of a channel is not legal, or equals the one before.
+    #[error("value {index} of a channel is not legal, or equals the one before")]
+    Value {
+        /// Index of the value.
+        index: u64,
+    },
     /// The level table does not describe the tree.
     #[error("the level table is wrong at level {level}")]
     LevelTable {

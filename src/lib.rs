@@ -95,7 +95,10 @@ pub mod scene;
 mod solid;
 mod surface;
 
-pub use attribute::{Attribute, ConstantAttribute, Criterion, Detail, FunctionAttribute, ValueRange};
+pub use attribute::{
+    Attribute, CarryRule, ChannelOperand, ConstantAttribute, Criterion, Detail, FillOptions,
+    FunctionAttribute, MovedAttribute, ValueRange, carry_channel, carry_channels, fill_channel,
+};
 pub use control::Control;
 pub use error::{
     Damage, Error, FormatError, MeshError, MeshFileError, PackageError, PolyhedronError, SceneError,
@@ -111,8 +114,9 @@ pub use mesh::{
 #[cfg(feature = "std")]
 pub use mesh::{Polyhedron, PolyhedronArrays};
 pub use octree::{
-    Block, BoundaryFace, BoundaryFaces, CellFilter, Cells, Cursor, Direction, LevelStatistics, Metadata,
-    Node, Octree, OctreeRef, Planes, Proof, ScalarType, Statistics, Tag, TaggedCell, ValueType,
+    Block, BoundaryFace, BoundaryFaces, CellFilter, Cells, Channel, ChannelRef, Cursor, Direction,
+    LevelStatistics, Metadata, Node, Octree, OctreeRef, Planes, Proof, ScalarType, Statistics, Tag,
+    TaggedCell, ValueType,
 };
 pub use op::{
     LazyOctree, Refinement, Rule, Zone, build, compact, complement, difference, intersection,

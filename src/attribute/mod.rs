@@ -4,24 +4,33 @@
 //! octree: all of them are an [`Attribute`]. Whoever wants values (a channel that is filled, the records of
 //! voxels) asks it for the values at points, and for the range of the values in a box.
 
+mod carry;
+mod channel;
 mod detail;
+mod edit;
+mod fill;
 mod function;
+mod sampled;
+mod source;
 
+pub use carry::{CarryRule, ChannelOperand, carry_channel, carry_channels};
+pub use channel::MovedAttribute;
 pub use detail::{Criterion, Detail};
 pub use function::{ConstantAttribute, FunctionAttribute};
+pub use sampled::{FillOptions, fill_channel};
 
 use crate::error::Error;
 use crate::lattice::{Bounds, Interval};
 
-/// What is known of the values of an attribute in a closed box.
+/// What is known of the values of an attribute in the interior of a box.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum ValueRange {
     /// Nothing.
     Unknown,
-    /// No point of the box has a value.
+    /// No point has a value.
     Nowhere,
-    /// Every point of the box has a value, and component k of it lies in interval k. Intervals beyond the
-    /// components do not count.
+    /// Every point has a value, and component k of it lies in interval k. Intervals beyond the components do
+    /// not count.
     Within([Interval; 4]),
 }
 
@@ -60,7 +69,7 @@ pub trait Attribute: Sync {
     /// What the source of the values reports.
     fn values(&self, points: &[[f64; 3]], values: &mut [Option<[f64; 4]>]) -> Result<(), Error>;
 
-    /// What is known of the values in a closed box. The answer must be proven: a wrong range hides details
+    /// What is known of the values in the interior of a box. The answer must be proven: a wrong range hides details
     /// that nobody looks for any more. By default nothing is known.
     ///
     /// # Errors

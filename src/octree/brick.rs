@@ -114,6 +114,22 @@ impl Bricks<'_> {
         }
     }
 
+    /// Bytes that they take, with their dictionary.
+    pub(crate) fn bytes(&self) -> usize {
+        fn of<T>(bricks: &BrickArray<'_, T>) -> usize {
+            match *bricks {
+                BrickArray::Raw(bricks) => size_of_val(bricks),
+                BrickArray::Dictionary { indices, entries, segments, .. } => {
+                    size_of_val(indices) + size_of_val(entries) + size_of_val(segments)
+                }
+            }
+        }
+        match self {
+            Bricks::One(bricks) => of(bricks),
+            Bricks::Two(bricks) => of(bricks),
+        }
+    }
+
     /// Whether bricks have one plane: nothing in the tree is undecided.
     pub(crate) fn one_plane(&self) -> bool {
         matches!(self, Bricks::One(_))

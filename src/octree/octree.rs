@@ -1,5 +1,6 @@
 //! The owned, shared, immutable octree.
 
+use super::Channel;
 use super::brick::{Brick, BrickArray, Bricks, OwnedArray, OwnedBricks};
 use super::dictionary;
 use super::metadata::Metadata;
@@ -27,7 +28,12 @@ pub struct Octree {
     arrays: Yoke<OctreeRef<'static>, ErasedArcCart>,
     counts: Arc<OnceBox<Vec<LevelCounts>>>,
     metadata: Arc<Metadata>,
+    /// In ascending order of their names, which differ.
+    channels: Arc<Vec<Channel>>,
 }
+
+/// Most channels that an octree can have, so that its file has no more sections than a reader takes.
+const MOST_CHANNELS: usize = 256;
 
 /// The arrays behind an octree in memory.
 pub(crate) struct Arrays {
@@ -78,7 +84,7 @@ impl Arrays {
         Ok(Arrays { frame, root, exterior, planes, rel, base, bricks, starts })
     }
 
-    fn view(&self) -> OctreeRef<'_> {
+    pub(crate) fn view(&self) -> OctreeRef<'_> {
         OctreeRef {
             frame: self.frame,
             root: self.root,
@@ -110,6 +116,7 @@ impl Octree {
             arrays: Yoke::<OctreeRef<'static>, Arc<C>>::try_attach_to_cart(owner, view)?.erase_arc_cart(),
             counts: Arc::new(OnceBox::new()),
             metadata: Arc::new(metadata),
+            channels: Arc::new(Vec::new()),
         })
     }
 
@@ -207,6 +214,52 @@ impl Octree {
     /// Facts about the tree that its file carries along: units, name, source.
     pub fn metadata(&self) -> &Metadata {
         &self.metadata
+    }
+
+    /// The channels of the solid, in ascending order of their names.
+    pub fn channels(&self) -> &[Channel] {
+        &self.channels
+    }
+
+    /// The channel with this name.
+    pub fn channel(&self, name: &str) -> Option<&Channel> {
+        self.place_of(name).ok().and_then(|at| self.channels.get(at))
+    }
+
+    fn place_of(&self, name: &str) -> Result<usize, usize> {
+        self.channels.binary_search_by(|channel| channel.name().cmp(name))
+    }
+
+    /// The same tree with one more channel, in the place of one of the same name, if there is one; the arrays
+    /// are shared.
+    ///
+    /// # Errors
+    /// [`Error::FrameMismatch`] if the channel lies in another cube than the tree; [`Error::Argument`] if
+    /// there are 256 channels already; [`Error::OutOfMemory`].
+    pub fn with_channel(&self, channel: Channel) -> Result<Octree, Error> {
+        if !channel.frame().same_universe(self.frame()) {
+            return Err(self.frame().mismatch(channel.frame()));
+        }
+        let mut channels = memory::with_capacity(self.channels.len() + 1)?;
+        channels.extend(self.channels.iter().cloned());
+        match self.place_of(channel.name()) {
+            Ok(at) => channels[at] = channel,
+            Err(_) if channels.len() >= MOST_CHANNELS => {
+                return Err(Error::Argument { name: "channel", problem: "must not be one of more than 256" });
+            }
+            Err(at) => channels.insert(at, channel),
+        }
+        Ok(Octree { channels: Arc::new(channels), ..self.clone() })
+    }
+
+    /// The same tree without the channel of this name; the arrays are shared.
+    ///
+    /// # Errors
+    /// [`Error::OutOfMemory`].
+    pub fn without_channel(&self, name: &str) -> Result<Octree, Error> {
+        let mut channels = memory::with_capacity(self.channels.len())?;
+        channels.extend(self.channels.iter().filter(|channel| channel.name() != name).cloned());
+        Ok(Octree { channels: Arc::new(channels), ..self.clone() })
     }
 
     /// The same tree with the metadata of another, which are shared.

@@ -19,7 +19,7 @@ mod motion;
 #[cfg(feature = "std")]
 mod prepared;
 mod split_counter;
-mod stored;
+pub(crate) mod stored;
 mod subtree;
 mod transform;
 mod volume;

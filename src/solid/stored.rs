@@ -42,6 +42,38 @@ impl OctreeRef<'_> {
         entry.unwrap_or(Planes::uniform(Tag::Partial))
     }
 
+    /// The universe.
+    pub(crate) fn root_verdict(&self) -> Verdict<StoredPart> {
+        match self.root_tag() {
+            Tag::Empty => Verdict::Empty,
+            Tag::Full => Verdict::Full,
+            Tag::Partial => Verdict::Undecided,
+            Tag::Branch if starts_half_way(self.frame().depth()) => {
+                Verdict::Partial(StoredPart::Octant { level: 0, index: 0, octant: 0 })
+            }
+            Tag::Branch => Verdict::Partial(StoredPart::Element { level: 0, index: 0 }),
+        }
+    }
+
+    /// The eight children of a cut cell. (The links of a tree that is walked must have been checked.)
+    pub(crate) fn child_verdicts(&self, part: &StoredPart) -> [Verdict<StoredPart>; 8] {
+        match *part {
+            StoredPart::Element { level, index } => {
+                let planes = self.described(level, index);
+                OCTANTS.map(|octant| match planes.octant(octant as u32) {
+                    Tag::Empty => Verdict::Empty,
+                    Tag::Full => Verdict::Full,
+                    Tag::Partial => Verdict::Undecided,
+                    Tag::Branch => Verdict::Partial(StoredPart::Octant { level, index, octant }),
+                })
+            }
+            StoredPart::Octant { level, index, octant } => {
+                let planes = self.described(level, index);
+                OCTANTS.map(|k| self.verdict(level, index, planes, (8 * (octant & 7) + k) as u32))
+            }
+        }
+    }
+
     fn verdict(&self, level: u8, index: usize, planes: Planes, c: u32) -> Verdict<StoredPart> {
         match self.step(level.into(), index, planes, c) {
             Step::Into(index) => Verdict::Partial(StoredPart::Element { level: level + 1, index }),
@@ -119,35 +151,11 @@ impl<T: Tree> Worker for OnFrame<T> {
     }
 
     fn root(&mut self) -> Result<Verdict<StoredPart>, Error> {
-        let tree = self.tree.tree();
-        Ok(match tree.root_tag() {
-            Tag::Empty => Verdict::Empty,
-            Tag::Full => Verdict::Full,
-            Tag::Partial => Verdict::Undecided,
-            Tag::Branch if starts_half_way(tree.frame().depth()) => {
-                Verdict::Partial(StoredPart::Octant { level: 0, index: 0, octant: 0 })
-            }
-            Tag::Branch => Verdict::Partial(StoredPart::Element { level: 0, index: 0 }),
-        })
+        Ok(self.tree.tree().root_verdict())
     }
 
     fn split(&mut self, _: Cell, part: &StoredPart) -> Result<[Verdict<StoredPart>; 8], Error> {
-        let tree = self.tree.tree();
-        Ok(match *part {
-            StoredPart::Element { level, index } => {
-                let planes = tree.described(level, index);
-                OCTANTS.map(|octant| match planes.octant(octant as u32) {
-                    Tag::Empty => Verdict::Empty,
-                    Tag::Full => Verdict::Full,
-                    Tag::Partial => Verdict::Undecided,
-                    Tag::Branch => Verdict::Partial(StoredPart::Octant { level, index, octant }),
-                })
-            }
-            StoredPart::Octant { level, index, octant } => {
-                let planes = tree.described(level, index);
-                OCTANTS.map(|k| tree.verdict(level, index, planes, (8 * (octant & 7) + k) as u32))
-            }
-        })
+        Ok(self.tree.tree().child_verdicts(part))
     }
 
     fn split64(

@@ -1,5 +1,17 @@
 //! Channels: values inside a solid, in a tree of their own.
+//!
+//! [`ChannelRef`] explains how values are stored and does all reading; [`Channel`] owns or shares the arrays;
+//! the writer (crate-internal) is the one place where channels come into being.
 
+mod check;
+mod owned;
+mod point;
 mod value;
+mod view;
+pub(crate) mod writer;
 
+pub use owned::Channel;
+pub(crate) use value::Bits;
 pub use value::{ScalarType, ValueType};
+pub use view::ChannelRef;
+pub(crate) use view::Spot;

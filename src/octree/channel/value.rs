@@ -1,6 +1,7 @@
 //! What the values of a channel are made of.
 
 use crate::error::Error;
+use alloc::vec::Vec;
 
 /// The number type of a channel's values.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -118,6 +119,34 @@ impl ValueType {
             *bits = self.scalar.encode(value).ok_or(Error::Argument { name: "value", problem })?;
         }
         Ok(bits)
+    }
+
+    /// Appends a value as it lies in memory.
+    pub(super) fn write(self, value: Bits, out: &mut Vec<u8>) -> Result<(), Error> {
+        out.try_reserve(self.size())?;
+        for bits in &value[..self.components()] {
+            match self.scalar {
+                ScalarType::U8 => out.push(*bits as u8),
+                ScalarType::U16 => out.extend_from_slice(&(*bits as u16).to_ne_bytes()),
+                ScalarType::U32 | ScalarType::F32 => out.extend_from_slice(&bits.to_ne_bytes()),
+            }
+        }
+        Ok(())
+    }
+
+    /// The value that lies in memory as `raw`.
+    #[inline]
+    pub(super) fn read(self, raw: &[u8]) -> Bits {
+        let mut bits = [0; 4];
+        for (bits, raw) in bits.iter_mut().zip(raw.chunks_exact(self.scalar.size())) {
+            *bits = match *raw {
+                [a] => a.into(),
+                [a, b] => u16::from_ne_bytes([a, b]).into(),
+                [a, b, c, d] => u32::from_ne_bytes([a, b, c, d]),
+                _ => 0,
+            };
+        }
+        bits
     }
 
     pub(crate) fn decode(self, bits: Bits) -> [f64; 4] {

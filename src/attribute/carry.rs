@@ -1,0 +1,246 @@
+//! Channels of a solid that was made of others.
+
+use super::fill::fill;
+use super::source::{Known, Source};
+use crate::control::Control;
+use crate::error::Error;
+use crate::lattice::Cell;
+use crate::memory;
+use crate::octree::channel::{Bits, Spot};
+use crate::octree::{Channel, ChannelRef, Octree, OctreeRef, ValueType};
+use crate::solid::Verdict;
+use crate::solid::stored::StoredPart;
+use alloc::string::String;
+use alloc::vec::Vec;
+
+/// Whose value a point has that lies in several operands.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum CarryRule {
+    /// The first operand's that has one.
+    #[default]
+    Left,
+    /// The last operand's that has one.
+    Right,
+    /// The greatest of all, number by number.
+    Max,
+    /// The mean of all, number by number, rounded to the type.
+    Mean,
+}
+
+/// An operand of an operation on solids, with its channel.
+#[derive(Debug, Clone, Copy)]
+pub struct ChannelOperand<'a> {
+    /// The operand itself: its channel counts where it is not EMPTY.
+    pub solid: &'a OctreeRef<'a>,
+    /// Its values.
+    pub channel: &'a ChannelRef<'a>,
+}
+
+/// The channel of `result`, an octree that was made of operands in the same cube, whatever the operation: at
+/// each point the values of those operands count that are not EMPTY there, by `rule`. Where `result` is
+/// EMPTY, the channel says whatever takes the least memory.
+///
+/// It is as deep as the deepest of the operands' solids and channels. The same bits for any number of
+/// threads. Visits the cells at which solids or channels change.
+///
+/// # Errors
+/// [`Error::Argument`] if there is no operand, or values are not of one type; [`Error::FrameMismatch`] unless
+/// all lie in one cube; [`Error::Damaged`] for damaged links; what `control` asks for.
+pub fn carry_channel(
+    result: &OctreeRef<'_>,
+    operands: &[ChannelOperand<'_>],
+    rule: CarryRule,
+    control: &Control<'_>,
+) -> Result<Channel, Error> {
+    let refused = |name, problem| Err(Error::Argument { name, problem });
+    let Some(first) = operands.first() else { return refused("operands", "must be at least one") };
+    let value_type = first.channel.value_type();
+    if operands.iter().any(|operand| operand.channel.value_type() != value_type) {
+        return refused("operands", "must have channels of one type");
+    }
+    let mut depth = 1;
+    result.check_links()?;
+    for ChannelOperand { solid, channel } in operands {
+        for frame in [solid.frame(), channel.frame()] {
+            if !frame.same_universe(result.frame()) {
+                return Err(result.frame().mismatch(frame));
+            }
+            depth = depth.max(frame.depth());
+        }
+        solid.check_links()?;
+    }
+    let frame = result.frame().with_depth(depth)?;
+    fill(&Carried { result, operands, rule, value_type }, &frame, value_type, control)
+}
+
+/// `result`, an octree that was made of `operands`, with their channels. Channels of one name become one, by
+/// the rule that `rule` says for that name; see [`carry_channel`]. A channel that only one operand has is
+/// shared as it is. Metadata are those of the first operand that has the channel.
+///
+/// # Errors
+/// As [`carry_channel`].
+///
+/// ```
+/// use leafless::{
+///     CarryRule, ConstantAttribute, Control, Csg, FillOptions, Frame, Rule, ScalarType, ValueType, build,
+///     carry_channels, fill_channel, union,
+/// };
+/// let (frame, control) = (Frame::new([0.0; 3], 4.0, 5)?, Control::default());
+/// let value_type = ValueType::new(ScalarType::U8, 1)?;
+/// let part = |min: f64, max: f64, material: f64| {
+///     let solid = build(&Csg::cuboid([min, 0.0, 0.0], [max, 1.0, 1.0])?, &frame, Rule::Certified, &control)?;
+///     let options = FillOptions { value_type, frame, solid: None, detail: None };
+///     let material = fill_channel(&ConstantAttribute::new(&[material])?, &options, &control)?;
+///     solid.with_channel(material.with_name("material"))
+/// };
+/// let (a, b) = (part(0.0, 2.0, 1.0)?, part(1.0, 3.0, 2.0)?);
+/// let both = union(a.view(), b.view(), &control)?;
+/// let both = carry_channels(&both, &[&a, &b], |_| CarryRule::Left, &control)?;
+/// let material = both.channel("material").unwrap().view()?;
+/// let at = |x: f64| material.value_at([x, 0.5, 0.5]).unwrap()[0];
+/// assert_eq!([at(0.5), at(1.5), at(2.5)], [1.0, 1.0, 2.0]);
+/// # Ok::<(), leafless::Error>(())
+/// ```
+pub fn carry_channels(
+    result: &Octree,
+    operands: &[&Octree],
+    rule: impl Fn(&str) -> CarryRule,
+    control: &Control<'_>,
+) -> Result<Octree, Error> {
+    let mut names: Vec<String> = Vec::new();
+    for channel in operands.iter().flat_map(|operand| operand.channels()) {
+        if !names.iter().any(|name| name == channel.name()) {
+            memory::push(&mut names, memory::text(channel.name())?)?;
+        }
+    }
+    let mut carried = result.clone();
+    let parts = names.len() as f64;
+    for (name, i) in names.iter().zip(0..) {
+        let mut bearing = Vec::new();
+        for operand in operands {
+            if let Some(channel) = operand.channel(name) {
+                memory::push(&mut bearing, (operand, channel))?;
+            }
+        }
+        let [(_, first), more @ ..] = &bearing[..] else { continue };
+        let channel = if more.is_empty() {
+            (*first).clone()
+        } else {
+            let mut list = memory::with_capacity(bearing.len())?;
+            for (operand, channel) in &bearing {
+                list.push(ChannelOperand { solid: operand.view(), channel: channel.view()? });
+            }
+            let share = [f64::from(i) / parts, (f64::from(i) + 1.0) / parts];
+            let carry = |control: &Control<'_>| carry_channel(result.view(), &list, rule(name), control);
+            control.share(share, carry)?.with_metadata(first.metadata().clone())
+        };
+        carried = carried.with_channel(channel)?;
+    }
+    Ok(carried)
+}
+
+struct Carried<'a> {
+    result: &'a OctreeRef<'a>,
+    operands: &'a [ChannelOperand<'a>],
+    rule: CarryRule,
+    value_type: ValueType,
+}
+
+/// What is known of a cell of the result and of all operands.
+#[derive(Clone)]
+struct Part {
+    result: Verdict<StoredPart>,
+    operands: Vec<(Verdict<StoredPart>, Spot)>,
+}
+
+fn children(tree: &OctreeRef<'_>, verdict: &Verdict<StoredPart>) -> [Verdict<StoredPart>; 8] {
+    match verdict {
+        Verdict::Partial(part) => tree.child_verdicts(part),
+        settled => [*settled; 8],
+    }
+}
+
+impl Carried<'_> {
+    fn known(&self, part: Part) -> Known<Part> {
+        if matches!(part.result, Verdict::Empty) {
+            return Known::Free;
+        }
+        match self.value(&part, false) {
+            Ok(value) => Known::Settled(value),
+            Err(Unsettled) => Known::Open(part),
+        }
+    }
+
+    /// The value of all of a cell. A finest cell that an operand cuts lies in it.
+    fn value(&self, part: &Part, finest: bool) -> Result<Option<Bits>, Unsettled> {
+        let mut bearing = part.operands.iter().filter(|(verdict, _)| !matches!(verdict, Verdict::Empty));
+        let one = |(verdict, spot): &(Verdict<StoredPart>, Spot)| match (verdict, spot) {
+            (_, Spot::Settled(None)) => Ok(None),
+            (Verdict::Partial(_), _) if !finest => Err(Unsettled),
+            (_, Spot::Settled(value)) => Ok(*value),
+            (_, Spot::Split(_)) => Err(Unsettled),
+        };
+        match self.rule {
+            CarryRule::Left => bearing.map(one).find_map(Result::transpose).transpose(),
+            CarryRule::Right => bearing.rev().map(one).find_map(Result::transpose).transpose(),
+            CarryRule::Max | CarryRule::Mean => {
+                let (mut sum, mut count) = ([0.0; 4], 0.0);
+                bearing.try_for_each(|operand| {
+                    if let Some(bits) = one(operand)? {
+                        let value = self.value_type.decode(bits);
+                        for (sum, value) in sum.iter_mut().zip(value) {
+                            *sum = match self.rule {
+                                CarryRule::Mean => *sum + value,
+                                _ if count > 0.0 => value.max(*sum),
+                                _ => value,
+                            };
+                        }
+                        count += 1.0;
+                    }
+                    Ok(())
+                })?;
+                if count == 0.0 {
+                    return Ok(None);
+                }
+                let mean = if self.rule == CarryRule::Mean { sum.map(|sum| sum / count) } else { sum };
+                // What lies between legal values is legal.
+                Ok(self.value_type.encode(mean).ok())
+            }
+        }
+    }
+}
+
+/// Operands or channels change in the cell.
+struct Unsettled;
+
+impl Source for Carried<'_> {
+    type Part = Part;
+
+    fn root(&self) -> Result<Known<Part>, Error> {
+        let roots = self.operands.iter().map(|o| (o.solid.root_verdict(), o.channel.root()));
+        Ok(self.known(Part { result: self.result.root_verdict(), operands: memory::collected(roots)? }))
+    }
+
+    fn split(&self, _: Cell, part: &Part) -> Result<[Known<Part>; 8], Error> {
+        let result = children(self.result, &part.result);
+        let mut parts: [Part; 8] = result.map(|result| Part { result, operands: Vec::new() });
+        for part_of_child in &mut parts {
+            part_of_child.operands.try_reserve_exact(self.operands.len())?;
+        }
+        for (operand, (verdict, spot)) in self.operands.iter().zip(&part.operands) {
+            let below = children(operand.solid, verdict).into_iter().zip(operand.channel.children(spot));
+            for (part, child) in parts.iter_mut().zip(below) {
+                part.operands.push(child);
+            }
+        }
+        Ok(parts.map(|part| self.known(part)))
+    }
+
+    fn settle(&self, cells: &[(Cell, Part)], values: &mut [Option<Bits>]) -> Result<(), Error> {
+        for (value, (_, part)) in values.iter_mut().zip(cells) {
+            // Channels are no deeper than the result.
+            *value = self.value(part, true).unwrap_or(None);
+        }
+        Ok(())
+    }
+}
