@@ -1,10 +1,10 @@
 //! The first 128 bytes of a file.
 
+use super::counts::Counts;
+use super::field::{demand, illegal};
 use super::wire::{Wire, wire_struct};
 use crate::error::{Error, FormatError};
 use crate::lattice::Frame;
-use crate::octree::dictionary;
-use crate::octree::view::element_levels;
 use crate::octree::{Proof, Tag};
 use core::mem::offset_of;
 use core::ops::Range;
@@ -16,23 +16,15 @@ pub const MAGIC: [u8; 8] = *b"\x89LFL\r\n\x1a\n";
 /// Major version that this library reads and writes; part of the format.
 pub const MAJOR: u16 = 0;
 
-/// Minor version that this library writes; part of the format. Newer ones of the same major are readable.
-pub const MINOR: u16 = 1;
+/// The newest minor version that this library knows; part of the format. Newer ones of the same major are
+/// readable. A file has the oldest version that knows all of its objects.
+pub const MINOR: u16 = 2;
 
-/// The oldest minor version that is readable: 0.0 had another section table.
-const OLDEST_MINOR: u16 = 1;
+/// The oldest minor version that is readable, and of files without channels: 0.0 had another section table.
+pub(super) const OLDEST_MINOR: u16 = 1;
 
 /// Length of the header, and offset of the section table; part of the format.
 pub(super) const HEADER_LENGTH: usize = size_of::<Header>();
-
-/// Raw bricks, one after another; part of the format.
-pub(super) const ENCODING_RAW: u8 = 0;
-
-/// Bricks through a dictionary; part of the format.
-pub(super) const ENCODING_DICTIONARY: u8 = 1;
-
-/// Smallest base-2 logarithm of the bricks of a segment; part of the format.
-pub(super) const LEAST_SEGMENT_SHIFT: u8 = 16;
 
 /// Most sections that a file may have; part of the format. It bounds the work of the readers that trust
 /// nothing yet.
@@ -73,24 +65,23 @@ wire_struct! {
 }
 
 impl Header {
+    /// What the header says of the arrays of the solid's tree.
+    pub fn counts(&self) -> Counts {
+        Counts {
+            depth: self.depth,
+            root: self.root,
+            brick_encoding: self.brick_encoding,
+            segment_shift: self.segment_shift,
+            elements: self.elements,
+            bricks: self.bricks,
+            dictionary_entries: self.dictionary_entries,
+        }
+    }
+
     /// Whether a later version wrote the file, which may have given a meaning to what is reserved today.
     pub fn is_newer(&self) -> bool {
         self.minor > MINOR
     }
-}
-
-pub(super) fn illegal(name: &'static str, value: impl Into<u64>) -> FormatError {
-    FormatError::Field { name, value: value.into() }
-}
-
-/// Refuses `value` unless it is `expected`.
-pub(super) fn demand(
-    name: &'static str,
-    value: impl Into<u64>,
-    expected: impl Into<u64>,
-) -> Result<(), FormatError> {
-    let value = value.into();
-    if value == expected.into() { Ok(()) } else { Err(illegal(name, value)) }
 }
 
 /// A header of which everything has been checked that can be checked without other bytes.
@@ -174,33 +165,7 @@ impl Head {
         if !(1..=2).contains(&header.brick_planes) {
             return Err(illegal("planes of a brick", header.brick_planes));
         }
-        match header.brick_encoding {
-            ENCODING_RAW => {
-                demand("segment shift", header.segment_shift, 0u64)?;
-                demand("dictionary entries", header.dictionary_entries, 0u64)?;
-            }
-            ENCODING_DICTIONARY => {
-                let shift = header.segment_shift;
-                // A single segment has one spelling only.
-                let whole = segments(header.bricks, shift) == 1;
-                if !(LEAST_SEGMENT_SHIFT..=dictionary::WHOLE).contains(&shift)
-                    || whole != (shift == dictionary::WHOLE)
-                {
-                    return Err(illegal("segment shift", shift));
-                }
-                if header.dictionary_entries == 0 || header.dictionary_entries > header.bricks {
-                    return Err(illegal("dictionary entries", header.dictionary_entries));
-                }
-            }
-            unknown => return Err(illegal("brick encoding", unknown)),
-        }
-        if element_levels(header.depth) == 1 {
-            demand("elements", header.elements, 0u64)?;
-        }
-        if root != Tag::Branch {
-            demand("elements", header.elements, 0u64)?;
-            demand("bricks", header.bricks, 0u64)?;
-        }
+        header.counts().check()?;
         if !(1..=MAX_SECTIONS).contains(&header.section_count) {
             return Err(illegal("section count", header.section_count));
         }
@@ -227,14 +192,6 @@ impl Head {
             return Err(FormatError::Checksum { name: "the section table" });
         }
         Ok(table)
-    }
-}
-
-/// Segments of 2^`shift` bricks.
-pub(super) fn segments(bricks: u64, shift: u8) -> u64 {
-    match 1u64.checked_shl(shift.into()) {
-        Some(length) => bricks.div_ceil(length),
-        None => 0,
     }
 }
 

@@ -1,6 +1,7 @@
 //! Files mapped into memory and queried in place.
 
-use super::read::{metadata, verify_contents, viewed};
+use super::channel;
+use super::read::{metadata, verify_contents, viewed, with_channels};
 use crate::error::{Error, FormatError};
 use crate::octree::Octree;
 use alloc::sync::Arc;
@@ -73,11 +74,16 @@ unsafe fn mapped(path: &Path, verify: bool) -> Result<Octree, Error> {
     let map = Arc::new(unsafe { Mmap::map(&file) }?);
     let (layout, _) = viewed(&map)?;
     let metadata = if verify { verify_contents(&layout, &map)? } else { metadata(&layout, &map)? };
-    Octree::attach(map, metadata, |map| {
+    let channels = channel::read(&layout, &map)?;
+    let octree = Octree::attach(map.clone(), metadata, |map| {
         let tree = layout.octree(map)?;
         if verify {
             tree.check()?;
         }
-        Ok(tree)
-    })
+        Ok::<_, Error>(tree)
+    })?;
+    if verify {
+        channels.iter().try_for_each(|(channel, _)| channel.verify(&map))?;
+    }
+    with_channels(octree, map, channels, verify)
 }

@@ -78,6 +78,10 @@
 //! and its reason. Beside it lie test vectors, the reasons for the design, and the list of what readers
 //! accept although the writer never writes it.
 
+mod assemble;
+mod channel;
+mod counts;
+mod field;
 mod header;
 mod layout;
 #[cfg(feature = "mmap")]

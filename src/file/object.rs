@@ -1,6 +1,8 @@
-//! The records of what a file holds: the solid and, in later versions, whatever comes with it.
+//! The records of what a file holds: the solid, its channels and, in later versions, whatever else.
 
-use super::header::{Header, illegal};
+use super::counts::Counts;
+use super::field::illegal;
+use super::header::Header;
 use super::wire::{Wire, elements, wire_struct};
 use crate::error::FormatError;
 use bytemuck::Zeroable;
@@ -8,9 +10,15 @@ use bytemuck::Zeroable;
 /// Most objects that a file may hold; part of the format. It bounds the work of mapping a file.
 pub(super) const MAX_OBJECTS: u64 = 4096;
 
-/// The type of a solid; part of the format. 2 is reserved for channels, 3 for tri-dexel models, 4 for
-/// versions, 5 for values of PARTIAL cells.
+/// The type of a solid; part of the format. 3 is reserved for tri-dexel models, 4 for versions, 5 for values
+/// of PARTIAL cells.
 const SOLID: u32 = 1;
+
+/// The type of a channel; part of the format.
+pub(super) const CHANNEL: u32 = 2;
+
+/// The oldest minor version in which objects of that type are channels.
+pub(super) const CHANNEL_MINOR: u16 = 2;
 
 /// The parent of an object that has none; part of the format.
 const NO_PARENT: u32 = u32::MAX;
@@ -68,6 +76,21 @@ impl Object {
             bricks: header.bricks,
             dictionary_entries: header.dictionary_entries,
             ..Object::zeroed()
+        }
+    }
+}
+
+impl Object {
+    /// What the record says of the arrays of the object's tree.
+    pub(super) fn counts(&self) -> Counts {
+        Counts {
+            depth: self.depth,
+            root: self.root,
+            brick_encoding: self.brick_encoding,
+            segment_shift: self.segment_shift,
+            elements: self.elements,
+            bricks: self.bricks,
+            dictionary_entries: self.dictionary_entries,
         }
     }
 }

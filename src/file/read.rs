@@ -1,10 +1,11 @@
 //! The ways in that need no operating system, and reading from paths.
 
+use super::channel::{self, ChannelLayout};
 #[cfg(feature = "std")]
 use super::header::HEADER_LENGTH;
 use super::header::Head;
 use super::layout::Layout;
-use super::section::{Kind, SECTION_REQUIRED, Table, entries, section};
+use super::section::{Kind, SECTION_REQUIRED, entries, read_table, section};
 use crate::error::{Error, FormatError};
 use crate::lattice::Frame;
 use crate::memory;
@@ -69,7 +70,7 @@ pub struct Section {
 pub fn probe_bytes(bytes: &[u8]) -> Result<Probe, Error> {
     let head = Head::read(bytes)?;
     let raw = head.table(bytes)?;
-    Table::read(&head, raw)?;
+    read_table(&head, raw)?;
     let mut sections = memory::with_capacity(head.header.section_count as usize)?;
     sections.extend(entries(raw).map(|entry| Section {
         kind: entry.kind,
@@ -156,7 +157,8 @@ pub fn view(bytes: &[u8]) -> Result<OctreeRef<'_>, Error> {
 pub fn verify(bytes: &[u8]) -> Result<(), Error> {
     let (layout, tree) = viewed(bytes)?;
     verify_contents(&layout, bytes)?;
-    tree.check()
+    tree.check()?;
+    channel::read(&layout, bytes)?.iter().try_for_each(|(channel, _)| channel.verify(bytes))
 }
 
 /// The tree in `bytes`, a whole file, copied and [verified](verify). The bytes may have any alignment, and
@@ -181,7 +183,10 @@ pub fn from_bytes(bytes: &[u8]) -> Result<Octree, Error> {
 pub fn from_static(bytes: &'static [u8]) -> Result<Octree, Error> {
     let (layout, _) = viewed(bytes)?;
     let metadata = metadata(&layout, bytes)?;
-    Ok(Octree::attach(Arc::new(bytes), metadata, |bytes| layout.octree(bytes))?)
+    let channels = channel::read(&layout, bytes)?;
+    let owner = Arc::new(bytes);
+    let octree = Octree::attach(owner.clone(), metadata, |bytes| layout.octree(bytes))?;
+    with_channels(octree, owner, channels, false)
 }
 
 /// The tree in the file at `path`, read into memory and [verified](verify). Later changes of the file do not
@@ -253,7 +258,7 @@ pub(super) fn viewed(bytes: &[u8]) -> Result<(Layout, OctreeRef<'_>), Error> {
 
 /// The facts that the file carries along.
 pub(super) fn metadata(layout: &Layout, bytes: &[u8]) -> Result<Metadata, Error> {
-    Metadata::from_bytes(layout.table.bytes(bytes, Kind::Metadata)?)
+    Metadata::from_bytes(layout.sections.bytes(bytes, Kind::Metadata)?)
 }
 
 /// Everything but the tree itself: checksums, padding, metadata. The bytes are still in the file's order.
@@ -299,15 +304,40 @@ impl Buffer {
     }
 }
 
+impl AsRef<[u8]> for Buffer {
+    fn as_ref(&self) -> &[u8] {
+        self.bytes()
+    }
+}
+
 /// An octree over a file in memory, once all of it is verified.
 fn adopt(layout: Layout, mut buffer: Buffer) -> Result<Octree, Error> {
     let metadata = verify_contents(&layout, buffer.bytes())?;
+    let channels = channel::read(&layout, buffer.bytes())?;
     if cfg!(target_endian = "big") {
         layout.swap_bytes(buffer.bytes_mut());
+        channels.iter().for_each(|(channel, _)| channel.swap_bytes(buffer.bytes_mut()));
     }
-    Octree::attach(Arc::new(buffer), metadata, |buffer| {
+    let owner = Arc::new(buffer);
+    let octree = Octree::attach(owner.clone(), metadata, |buffer| {
         let tree = layout.octree(buffer.bytes())?;
         tree.check()?;
-        Ok(tree)
-    })
+        Ok::<_, Error>(tree)
+    })?;
+    channels.iter().try_for_each(|(channel, _)| channel.verify(owner.bytes()))?;
+    with_channels(octree, owner, channels, true)
+}
+
+/// The octree with the channels that lie in the same bytes.
+pub(super) fn with_channels<C: AsRef<[u8]> + Send + Sync + 'static>(
+    octree: Octree,
+    owner: Arc<C>,
+    channels: Vec<(ChannelLayout, Metadata)>,
+    verified: bool,
+) -> Result<Octree, Error> {
+    let mut attached = memory::with_capacity(channels.len())?;
+    for (channel, metadata) in channels {
+        attached.push(channel.attach(owner.clone(), metadata, verified)?);
+    }
+    Ok(octree.with_all_channels(attached))
 }

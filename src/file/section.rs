@@ -1,7 +1,9 @@
 //! The section table: which bytes of a file are what, and whose.
 
-use super::header::{ENCODING_DICTIONARY, ENTRY_LENGTH, Head, Header, illegal, segments};
-use super::object::{MAX_OBJECTS, Object};
+use super::counts::ENCODING_DICTIONARY;
+use super::field::illegal;
+use super::header::{ENTRY_LENGTH, Head};
+use super::object::{CHANNEL, MAX_OBJECTS, Object};
 use super::wire::{Wire, elements, wire_struct};
 use crate::error::FormatError;
 use crate::octree::view::LevelCounts;
@@ -21,9 +23,9 @@ pub(super) const SECTION_REQUIRED: u32 = 1;
 /// Elements one after another as they are; part of the format. 1 is reserved for the archive.
 const RAW: u8 = 0;
 
-/// The sections that this library knows. The numbers are part of the format. 16 to 31 are reserved for values
-/// (16 of channels, 17 of PARTIAL cells by rank), 32 to 47 for tri-dexel models, 48 to 55 for versions, 56 to
-/// 63 for the archive; from 2^31 on they belong to applications.
+/// The sections that this library knows. The numbers are part of the format. 16 to 31 are for values (17 is
+/// reserved for those of PARTIAL cells by rank), 32 to 47 are reserved for tri-dexel models, 48 to 55 for
+/// versions, 56 to 63 for the archive; from 2^31 on they belong to applications.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(u32)]
 pub(super) enum Kind {
@@ -47,10 +49,16 @@ pub(super) enum Kind {
     Entries = 9,
     /// First dictionary entry of each segment.
     Segments = 10,
+    /// The values of a channel.
+    Values = 16,
+    /// Values before each element and brick of a channel, less the base of its 1024.
+    ValueRel = 18,
+    /// Values before every 1024th element or brick of a channel.
+    ValueBase = 19,
 }
 
 /// Sections by kind: one more than the largest number in [`Kind`].
-const KINDS: usize = 11;
+const KINDS: usize = 20;
 
 /// What the elements of a section are made of; the numbers are part of the format.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -85,7 +93,7 @@ impl Element {
 }
 
 impl Kind {
-    pub(super) const ALL: [Kind; 10] = [
+    pub(super) const ALL: [Kind; 13] = [
         Kind::Objects,
         Kind::Metadata,
         Kind::Levels,
@@ -96,9 +104,25 @@ impl Kind {
         Kind::Indices,
         Kind::Entries,
         Kind::Segments,
+        Kind::Values,
+        Kind::ValueRel,
+        Kind::ValueBase,
     ];
 
-    pub(super) fn from_number(number: u32) -> Option<Kind> {
+    /// Sections that an object may have at most.
+    pub(super) const MOST: usize = 12;
+
+    /// The kind with this number, if the sections of such objects may be of it.
+    pub(super) fn of(number: u32, object: &Object) -> Option<Kind> {
+        let owned = |kind: &Kind| match kind {
+            Kind::Objects => object.kind != CHANNEL,
+            Kind::Values | Kind::ValueRel | Kind::ValueBase => object.kind == CHANNEL,
+            _ => true,
+        };
+        Kind::from_number(number).filter(owned)
+    }
+
+    fn from_number(number: u32) -> Option<Kind> {
         Kind::ALL.into_iter().find(|&kind| kind as u32 == number)
     }
 
@@ -114,6 +138,9 @@ impl Kind {
             Kind::Indices => "brick indices",
             Kind::Entries => "dictionary entries",
             Kind::Segments => "dictionary segments",
+            Kind::Values => "values",
+            Kind::ValueRel => "value rel",
+            Kind::ValueBase => "value base",
         }
     }
 
@@ -122,32 +149,40 @@ impl Kind {
         if self == Kind::Metadata { 0 } else { SECTION_REQUIRED }
     }
 
-    /// Type and components of an element, if bricks have so many planes.
-    pub(super) fn element(self, brick_planes: u8) -> (Element, u8) {
+    /// Type and components of an element of an object's section.
+    pub(super) fn element(self, object: &Object) -> (Element, u8) {
         match self {
             Kind::Objects => (Element::Record, (size_of::<Object>() / 8) as u8),
             Kind::Metadata => (Element::U8, 1),
             Kind::Levels => (Element::U64, (size_of::<LevelCounts>() / 8) as u8),
             Kind::Planes => (Element::U64, (size_of::<Planes>() / 8) as u8),
-            Kind::Rel | Kind::Indices => (Element::U16, 1),
-            Kind::Base | Kind::Segments => (Element::U64, 1),
-            Kind::Bricks | Kind::Entries => (Element::U64, brick_planes),
+            Kind::Rel | Kind::Indices | Kind::ValueRel => (Element::U16, 1),
+            Kind::Base | Kind::Segments | Kind::ValueBase => (Element::U64, 1),
+            Kind::Bricks | Kind::Entries => (Element::U64, object.brick_planes),
+            Kind::Values => {
+                (Element::from_number(object.value_type).unwrap_or(Element::U8), object.components)
+            }
         }
     }
 
-    /// How many elements the header demands of the solid's section; `None` where that is free.
-    fn demanded(self, header: &Header) -> Option<u64> {
-        let coded = header.brick_encoding == ENCODING_DICTIONARY;
+    /// How many elements an object's section must have; `None` where that is free.
+    fn demanded(self, object: &Object) -> Option<u64> {
+        let coded = object.brick_encoding == ENCODING_DICTIONARY;
+        // (Both were found to lie in memory, or the sections of elements and bricks do not.)
+        let entries = object.elements.saturating_add(object.bricks);
         let if_coded = |count: u64| if coded { count } else { 0 };
         match self {
             Kind::Objects | Kind::Metadata => None,
-            Kind::Levels => Some(header.depth as u64 + 1),
-            Kind::Planes | Kind::Rel => Some(header.elements),
-            Kind::Base => Some(header.elements.div_ceil(1024)),
-            Kind::Bricks => Some(if coded { 0 } else { header.bricks }),
-            Kind::Indices => Some(if_coded(header.bricks)),
-            Kind::Entries => Some(if_coded(header.dictionary_entries)),
-            Kind::Segments => Some(if_coded(segments(header.bricks, header.segment_shift))),
+            Kind::Levels => Some(object.depth as u64 + 1),
+            Kind::Planes | Kind::Rel => Some(object.elements),
+            Kind::Base => Some(object.elements.div_ceil(1024)),
+            Kind::Bricks => Some(if coded { 0 } else { object.bricks }),
+            Kind::Indices => Some(if_coded(object.bricks)),
+            Kind::Entries => Some(if_coded(object.dictionary_entries)),
+            Kind::Segments => Some(if_coded(object.counts().segments())),
+            Kind::Values => Some(object.values),
+            Kind::ValueRel => Some(entries),
+            Kind::ValueBase => Some(entries.div_ceil(1024)),
         }
     }
 }
@@ -183,12 +218,14 @@ impl Entry {
 
     /// The kind, if it is a section of the solid that this library knows.
     pub(super) fn known(&self) -> Option<Kind> {
-        Kind::from_number(self.kind).filter(|_| self.owner == 0)
+        let is_of_solid = |kind: &Kind| (*kind as u32) < Kind::Values as u32;
+        Kind::from_number(self.kind).filter(|kind| self.owner == 0 && is_of_solid(kind))
     }
 
     /// Its name in error messages.
     pub(super) fn name(&self) -> &'static str {
-        self.known().map_or("an unknown section", Kind::name)
+        let unknown = if self.owner == 0 { "an unknown section" } else { "a section of another object" };
+        self.known().map_or(unknown, Kind::name)
     }
 
     /// Checks the entry by itself.
@@ -221,61 +258,74 @@ impl Entry {
     }
 }
 
-/// Where the sections of the solid lie. Every one that the header makes necessary is there with its length.
-/// Entries ascend by owner and kind; their bytes ascend without overlap, or are those of an earlier entry;
-/// the last of them end where the file does.
+/// Checks the bytes of a section table against its header: entries ascend by owner and kind; their bytes
+/// ascend without overlap, or are those of an earlier entry; the last of them end where the file does.
+/// Returns where the sections of the solid lie. O(sections).
+pub(super) fn read_table(head: &Head, table: &[u8]) -> Result<Sections, FormatError> {
+    let newer = head.header.is_newer();
+    let mut end = head.table_range().end as u64;
+    // The first section says how many objects there are.
+    let mut objects = 0;
+    let mut last = (0, 0);
+    for (index, entry) in entries(table).enumerate() {
+        entry.check(newer)?;
+        if index == 0 {
+            objects = if entry.known() == Some(Kind::Objects) { entry.count } else { 0 };
+            if !(1..=MAX_OBJECTS).contains(&objects) {
+                return Err(FormatError::Section { name: Kind::Objects.name() });
+            }
+        }
+        let place = (entry.owner, entry.kind);
+        if entry.owner as u64 >= objects || place <= last {
+            return Err(illegal("section owner", entry.owner));
+        }
+        last = place;
+        if entry.same != 0 {
+            let Entry { kind, owner, flags, same, .. } = entry;
+            let before = &table[..index * size_of::<Entry>()];
+            let shares = |of: Entry| of.same == 0 && Entry { kind, owner, flags, same, ..of } == entry;
+            if !before
+                .chunks_exact(size_of::<Entry>())
+                .nth(same as usize - 1)
+                .is_some_and(|raw| entries(raw).any(shares))
+            {
+                return Err(illegal("shared section", entry.same));
+            }
+        } else {
+            if !entry.offset.is_multiple_of(SECTION_ALIGNMENT) || entry.offset < end {
+                return Err(illegal("section offset", entry.offset));
+            }
+            end = match entry.offset.checked_add(entry.length) {
+                Some(end) if end <= head.header.file_length => end,
+                _ => return Err(illegal("section length", entry.length)),
+            };
+        }
+    }
+    // Whose sections are not the solid's is known to whoever knows their objects.
+    let of_solid = entries(table).take_while(|entry| entry.owner == 0);
+    let sections = Sections::of(&Object::solid(&head.header), MAX_METADATA, of_solid)?;
+    if end != head.header.file_length {
+        return Err(FormatError::Length { expected: end, found: head.header.file_length });
+    }
+    Ok(sections)
+}
+
+/// Where the sections of an object lie. Every one that its record makes necessary is there with its length.
 #[derive(Debug, Clone)]
-pub(super) struct Table {
+pub(super) struct Sections {
     ranges: [Range<u64>; KINDS],
 }
 
-impl Table {
-    /// Checks the bytes of a section table against its header. O(sections).
-    pub(super) fn read(head: &Head, table: &[u8]) -> Result<Table, FormatError> {
-        let newer = head.header.is_newer();
+impl Sections {
+    /// Checks the entries of an object's sections, of which each by itself was found right.
+    pub(super) fn of(
+        object: &Object,
+        most_metadata: u64,
+        entries: impl Iterator<Item = Entry>,
+    ) -> Result<Sections, FormatError> {
         let mut ranges = [const { 0..0 }; KINDS];
-        let mut end = head.table_range().end as u64;
-        // The first section says how many objects there are.
-        let mut objects = 0;
-        let mut last = (0, 0);
-        for (index, entry) in entries(table).enumerate() {
-            entry.check(newer)?;
-            if index == 0 {
-                objects = if entry.known() == Some(Kind::Objects) { entry.count } else { 0 };
-                if !(1..=MAX_OBJECTS).contains(&objects) {
-                    return Err(FormatError::Section { name: Kind::Objects.name() });
-                }
-            }
-            let place = (entry.owner, entry.kind);
-            if entry.owner as u64 >= objects || place <= last {
-                return Err(illegal("section owner", entry.owner));
-            }
-            last = place;
-            if entry.same != 0 {
-                let Entry { kind, owner, flags, same, .. } = entry;
-                let before = &table[..index * size_of::<Entry>()];
-                let shares = |of: Entry| of.same == 0 && Entry { kind, owner, flags, same, ..of } == entry;
-                if !before
-                    .chunks_exact(size_of::<Entry>())
-                    .nth(same as usize - 1)
-                    .is_some_and(|raw| entries(raw).any(shares))
-                {
-                    return Err(illegal("shared section", entry.same));
-                }
-            } else {
-                if !entry.offset.is_multiple_of(SECTION_ALIGNMENT) || entry.offset < end {
-                    return Err(illegal("section offset", entry.offset));
-                }
-                end = match entry.offset.checked_add(entry.length) {
-                    Some(end) if end <= head.header.file_length => end,
-                    _ => return Err(illegal("section length", entry.length)),
-                };
-            }
-            // Whose sections are not the solid's is known to whoever knows their objects.
-            if entry.owner != 0 {
-                continue;
-            }
-            let Some(kind) = entry.known() else {
+        for entry in entries {
+            let Some(kind) = Kind::of(entry.kind, object) else {
                 if entry.flags & SECTION_REQUIRED != 0 {
                     return Err(FormatError::Required { name: "section", value: entry.kind.into() });
                 }
@@ -284,12 +334,12 @@ impl Table {
             if entry.encoding != RAW {
                 return Err(FormatError::Required { name: "section encoding", value: entry.encoding.into() });
             }
-            let (element, components) = kind.element(head.header.brick_planes);
-            let count = kind.demanded(&head.header).unwrap_or(entry.count);
+            let (element, components) = kind.element(object);
+            let count = kind.demanded(object).unwrap_or(entry.count);
             if (entry.element_type, entry.components, entry.count) != (element as u8, components, count) {
                 return Err(FormatError::Section { name: kind.name() });
             }
-            if kind == Kind::Metadata && entry.length > MAX_METADATA {
+            if kind == Kind::Metadata && entry.length > most_metadata {
                 return Err(illegal("section length", entry.length));
             }
             if entry.flags & SECTION_REQUIRED != kind.flags() {
@@ -297,25 +347,22 @@ impl Table {
             }
             ranges[kind as usize] = entry.range();
         }
-        for kind in Kind::ALL {
+        for kind in Kind::ALL.into_iter().filter(|&kind| Kind::of(kind as u32, object).is_some()) {
             // None is empty that is there.
             let present = ranges[kind as usize].end != 0;
-            if kind.demanded(&head.header).is_some_and(|count| present != (count != 0)) {
+            if kind.demanded(object).is_some_and(|count| present != (count != 0)) {
                 return Err(FormatError::Section { name: kind.name() });
             }
         }
-        if end != head.header.file_length {
-            return Err(FormatError::Length { expected: end, found: head.header.file_length });
-        }
-        Ok(Table { ranges })
+        Ok(Sections { ranges })
     }
 
-    /// Where a section of the solid lies; nowhere if it is absent.
+    /// Where a section lies; nowhere if it is absent.
     pub(super) fn range(&self, kind: Kind) -> &Range<u64> {
         &self.ranges[kind as usize]
     }
 
-    /// The bytes of a section of the solid; none if it is absent.
+    /// The bytes of a section; none if it is absent.
     pub(super) fn bytes<'a>(&self, bytes: &'a [u8], kind: Kind) -> Result<&'a [u8], FormatError> {
         section(bytes, self.range(kind))
     }

@@ -1,19 +1,9 @@
-//! Writing: the bytes of a tree, and how they reach a disk.
+//! Writing: how the bytes of a tree reach memory or a disk.
 
-use super::header::{ENCODING_DICTIONARY, ENCODING_RAW, HEADER_LENGTH, Header, MAGIC, MAJOR, MINOR};
-use super::object::Object;
-use super::section::{Entry, Kind, MAX_METADATA, SECTION_ALIGNMENT};
-use super::wire::Wire;
+use super::assemble::assemble;
 use crate::error::Error;
 use crate::octree::Octree;
-use crate::octree::brick::OwnedBricks;
-use crate::octree::brick::{Brick, BrickArray, Bricks};
-use crate::octree::dictionary;
-use crate::octree::view::LevelCounts;
-use crate::octree::word::Planes;
 use alloc::vec::Vec;
-use bytemuck::Zeroable;
-use core::mem::offset_of;
 #[cfg(feature = "std")]
 use std::{
     fs::{File, OpenOptions},
@@ -28,8 +18,9 @@ use std::{
 /// file that is written can be read. O(n); besides the result, memory for the dictionary is needed.
 ///
 /// # Errors
-/// [`Error::Damaged`] if the tree is a mapped one that nobody has verified, and is damaged;
-/// [`Error::Argument`] if the metadata take more than 1 MiB; [`Error::OutOfMemory`].
+/// [`Error::Damaged`] if the tree, or a channel of it, is a mapped one that nobody has verified, and is
+/// damaged; [`Error::Argument`] if the metadata take more than 1 MiB, or those of a channel more than 64 KiB;
+/// [`Error::OutOfMemory`].
 pub fn to_bytes(octree: &Octree) -> Result<Vec<u8>, Error> {
     let mut file = Vec::new();
     assemble(octree, &mut |length, write| {
@@ -183,188 +174,4 @@ fn follow_links(path: &Path) -> Result<Option<PathBuf>, Error> {
     // The system says what is wrong with such a chain.
     std::fs::metadata(&target)?;
     Ok(Some(target))
-}
-
-/// The elements of a section as they lie in memory.
-#[derive(Clone, Copy)]
-enum Elements<'a> {
-    Planes(&'a [Planes]),
-    U16(&'a [u16]),
-    U64(&'a [u64]),
-    Levels(&'a [LevelCounts]),
-    Objects(&'a [Object]),
-    Bytes(&'a [u8]),
-}
-
-/// Takes bytes of a file, in order.
-type Sink<'s> = &'s mut dyn FnMut(&[u8]) -> Result<(), Error>;
-
-impl Elements<'_> {
-    fn size(&self) -> usize {
-        match self {
-            Elements::Planes(_) => size_of::<Planes>(),
-            Elements::U16(_) => size_of::<u16>(),
-            Elements::U64(_) => size_of::<u64>(),
-            Elements::Levels(_) => size_of::<LevelCounts>(),
-            Elements::Objects(_) => size_of::<Object>(),
-            Elements::Bytes(_) => 1,
-        }
-    }
-
-    fn count(&self) -> usize {
-        match self {
-            Elements::Planes(elements) => elements.len(),
-            Elements::U16(elements) => elements.len(),
-            Elements::U64(elements) => elements.len(),
-            Elements::Levels(elements) => elements.len(),
-            Elements::Objects(elements) => elements.len(),
-            Elements::Bytes(elements) => elements.len(),
-        }
-    }
-
-    /// Hands the bytes to `sink` in the file's order.
-    fn write(&self, sink: Sink<'_>) -> Result<(), Error> {
-        match self {
-            Elements::Planes(elements) => write_elements(elements, sink),
-            Elements::U16(elements) => write_elements(elements, sink),
-            Elements::U64(elements) => write_elements(elements, sink),
-            Elements::Levels(elements) => write_elements(elements, sink),
-            Elements::Objects(elements) => write_elements(elements, sink),
-            Elements::Bytes(elements) => sink(elements),
-        }
-    }
-}
-
-fn write_elements<T: Wire>(elements: &[T], sink: Sink<'_>) -> Result<(), Error> {
-    if cfg!(target_endian = "little") {
-        return sink(bytemuck::cast_slice(elements));
-    }
-    let mut swapped = [T::zeroed(); 256];
-    for piece in elements.chunks(swapped.len()) {
-        for (swapped, element) in swapped.iter_mut().zip(piece) {
-            *swapped = element.ordered();
-        }
-        sink(bytemuck::cast_slice(&swapped[..piece.len()]))?;
-    }
-    Ok(())
-}
-
-/// Writes a file into whatever sink it is given.
-type WriteFile<'w> = &'w dyn Fn(Sink<'_>) -> Result<(), Error>;
-
-/// Lays out the file of `octree` and tells `deliver` its length and how to write it.
-fn assemble(
-    octree: &Octree,
-    deliver: &mut dyn FnMut(u64, WriteFile<'_>) -> Result<(), Error>,
-) -> Result<(), Error> {
-    let tree = octree.view();
-    // Thereby the links, too, are the ones that the planes determine.
-    tree.check()?;
-    if octree.metadata().len_in_file() as u64 > MAX_METADATA {
-        return Err(Error::Argument { name: "metadata", problem: "must not take more than 1 MiB in a file" });
-    }
-    let metadata = octree.metadata().to_bytes()?;
-    let encoded = dictionary::encode(&tree.bricks)?;
-    let bricks = encoded.as_ref().map_or(tree.bricks, OwnedBricks::view);
-    let mut header = Header {
-        magic: MAGIC,
-        major: MAJOR,
-        minor: MINOR,
-        header_length: HEADER_LENGTH as u32,
-        origin: tree.frame.origin().map(f64::to_bits),
-        edge: tree.frame.edge().to_bits(),
-        depth: tree.frame.depth(),
-        root: tree.root as u8,
-        exterior: tree.exterior as u8,
-        proof: tree.proof.bits(),
-        displacement: tree.proof.displacement().to_bits(),
-        brick_planes: if bricks.one_plane() { 1 } else { 2 },
-        elements: tree.element_count(),
-        bricks: tree.brick_count(),
-        ..Header::zeroed()
-    };
-    let [raw, indices, entries, segments] = match bricks {
-        Bricks::One(bricks) => brick_sections(&bricks, Elements::U64, &mut header),
-        Bricks::Two(bricks) => brick_sections(&bricks, Elements::Planes, &mut header),
-    };
-    let objects = [Object::solid(&header)];
-    // In ascending order, as they lie in the file: what is asked first lies together.
-    let sections = [
-        (Kind::Objects, Elements::Objects(&objects)),
-        (Kind::Metadata, Elements::Bytes(&metadata)),
-        (Kind::Levels, Elements::Levels(octree.counts())),
-        (Kind::Planes, Elements::Planes(tree.planes)),
-        (Kind::Rel, Elements::U16(tree.rel)),
-        (Kind::Base, Elements::U64(tree.base)),
-        (Kind::Bricks, raw),
-        (Kind::Indices, indices),
-        (Kind::Entries, entries),
-        (Kind::Segments, segments),
-    ];
-    let present = || sections.iter().filter(|(_, elements)| elements.count() != 0);
-
-    let mut head = [0; HEADER_LENGTH + Kind::ALL.len() * size_of::<Entry>()];
-    let head_length = HEADER_LENGTH + present().count() * size_of::<Entry>();
-    let (first, table) = head[..head_length].split_at_mut(HEADER_LENGTH);
-    // Offsets cannot overflow: all of it lies in memory.
-    let mut end = head_length as u64;
-    for ((kind, elements), raw) in present().zip(table.chunks_exact_mut(size_of::<Entry>())) {
-        let mut crc = crc32fast::Hasher::new();
-        elements.write(&mut |bytes| {
-            crc.update(bytes);
-            Ok(())
-        })?;
-        let (element, components) = kind.element(header.brick_planes);
-        let entry = Entry {
-            kind: *kind as u32,
-            element_type: element as u8,
-            components,
-            flags: kind.flags(),
-            offset: end.next_multiple_of(SECTION_ALIGNMENT),
-            length: elements.count() as u64 * elements.size() as u64,
-            count: elements.count() as u64,
-            crc: crc.finalize(),
-            ..Entry::zeroed()
-        };
-        end = entry.range().end;
-        header.section_count += 1;
-        raw.copy_from_slice(bytemuck::bytes_of(&entry.ordered()));
-    }
-    header.file_length = end;
-    header.table_crc = crc32fast::hash(table);
-    first.copy_from_slice(bytemuck::bytes_of(&header.ordered()));
-    header.header_crc = crc32fast::hash(&first[..offset_of!(Header, header_crc)]);
-    first.copy_from_slice(bytemuck::bytes_of(&header.ordered()));
-
-    deliver(end, &|sink| {
-        sink(&head[..head_length])?;
-        let mut end = head_length;
-        for (_, elements) in present() {
-            let start = end.next_multiple_of(SECTION_ALIGNMENT as usize);
-            sink(&[0; SECTION_ALIGNMENT as usize][..start - end])?;
-            elements.write(sink)?;
-            end = start + elements.count() * elements.size();
-        }
-        Ok(())
-    })
-}
-
-/// The sections that bricks take (raw bricks, indices, entries, segments), and what the header says of them.
-fn brick_sections<'a, T: Brick>(
-    bricks: &BrickArray<'a, T>,
-    elements: fn(&'a [T]) -> Elements<'a>,
-    header: &mut Header,
-) -> [Elements<'a>; 4] {
-    match *bricks {
-        BrickArray::Raw(raw) => {
-            header.brick_encoding = ENCODING_RAW;
-            [elements(raw), Elements::U16(&[]), elements(&[]), Elements::U64(&[])]
-        }
-        BrickArray::Dictionary { indices, entries, segments, shift } => {
-            header.brick_encoding = ENCODING_DICTIONARY;
-            header.segment_shift = shift;
-            header.dictionary_entries = entries.len() as u64;
-            [elements(&[]), Elements::U16(indices), elements(entries), Elements::U64(segments)]
-        }
-    }
 }

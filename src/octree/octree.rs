@@ -252,6 +252,11 @@ impl Octree {
         Ok(Octree { channels: Arc::new(channels), ..self.clone() })
     }
 
+    /// The same tree with these channels, which lie in its cube, in ascending order of their names.
+    pub(crate) fn with_all_channels(&self, channels: Vec<Channel>) -> Octree {
+        Octree { channels: Arc::new(channels), ..self.clone() }
+    }
+
     /// The same tree without the channel of this name; the arrays are shared.
     ///
     /// # Errors

@@ -1,0 +1,128 @@
+//! The channels in a file.
+
+use super::field::{demand, illegal};
+use super::layout::{Layout, Starts, cast, starts, swap_sections, tree};
+use super::object::{CHANNEL, CHANNEL_MINOR, Object};
+use super::section::{Kind, Sections, entries};
+use super::wire::elements;
+use crate::error::{Error, FormatError};
+use crate::lattice::Frame;
+use crate::memory;
+use crate::octree::{Channel, ChannelRef, Metadata, ScalarType, Tag, ValueType};
+use alloc::sync::Arc;
+use alloc::vec::Vec;
+
+/// Most channels of a file; part of the format.
+const MOST_CHANNELS: usize = 256;
+
+/// Most bytes that the metadata of a channel may take; part of the format. It bounds the work of mapping a
+/// file.
+pub(super) const MAX_METADATA: u64 = 1 << 16;
+
+/// All that must be known of a channel to read it in place.
+#[derive(Debug, Clone)]
+pub(super) struct ChannelLayout {
+    object: Object,
+    frame: Frame,
+    value_type: ValueType,
+    sections: Sections,
+    starts: Starts,
+}
+
+/// The channels of a file whose solid has been found right, in their order, which is that of their names.
+pub(super) fn read(layout: &Layout, bytes: &[u8]) -> Result<Vec<(ChannelLayout, Metadata)>, Error> {
+    let mut channels: Vec<(ChannelLayout, Metadata)> = Vec::new();
+    if layout.head.header.minor < CHANNEL_MINOR {
+        return Ok(channels);
+    }
+    let table = layout.head.table(bytes)?;
+    let objects = elements::<Object>(layout.sections.bytes(bytes, Kind::Objects)?);
+    for (object, owner) in objects.zip(0u32..).filter(|(object, _)| object.kind == CHANNEL) {
+        if channels.len() == MOST_CHANNELS {
+            return Err(illegal("channels", MOST_CHANNELS as u64 + 1).into());
+        }
+        let channel = ChannelLayout::read(layout, object, owner, table, bytes)?;
+        let metadata = Metadata::from_bytes(channel.sections.bytes(bytes, Kind::Metadata)?)?;
+        let name = metadata.get("name").unwrap_or("");
+        if channels.last().is_some_and(|(_, last)| last.get("name").unwrap_or("") >= name) {
+            return Err(illegal("name of channel", owner).into());
+        }
+        memory::push(&mut channels, (channel, metadata))?;
+    }
+    Ok(channels)
+}
+
+impl ChannelLayout {
+    fn read(
+        layout: &Layout,
+        object: Object,
+        owner: u32,
+        table: &[u8],
+        bytes: &[u8],
+    ) -> Result<ChannelLayout, Error> {
+        let header = &layout.head.header;
+        demand("channel's parent", object.parent, 0u64)?;
+        demand("channel's origin", u64::from(object.origin != header.origin), 0u64)?;
+        demand("channel's edge", object.edge, header.edge)?;
+        demand("channel's exterior", object.exterior, 0u64)?;
+        demand("channel's proof", object.proof, 0u64)?;
+        demand("channel's displacement", object.displacement, 0u64)?;
+        demand("planes of a brick", object.brick_planes, 2u64)?;
+        if object.extents != [0; 3] {
+            return Err(illegal("channel's extents", object.extents[0]).into());
+        }
+        if !header.is_newer() {
+            let Object { reserved, reserved_middle, reserved_tail, .. } = object;
+            if reserved != [0; 3] || reserved_middle != 0 || reserved_tail != [0; 16] {
+                return Err(illegal("reserved field", owner).into());
+            }
+        }
+        if object.root > 3 || object.root == Tag::Partial as u8 {
+            return Err(illegal("root tag", object.root).into());
+        }
+        let frame = layout.head.frame.with_depth(object.depth);
+        let frame = frame.map_err(|_| illegal("depth", object.depth))?;
+        let scalar = ScalarType::ALL.into_iter().find(|&scalar| scalar as u8 == object.value_type);
+        let scalar = scalar.ok_or(illegal("value type", object.value_type))?;
+        let value_type = ValueType::new(scalar, object.components);
+        let value_type = value_type.map_err(|_| illegal("components", object.components))?;
+        object.counts().check()?;
+        let own = entries(table).filter(|entry| entry.owner == owner);
+        let sections = Sections::of(&object, MAX_METADATA, own)?;
+        let starts = starts(&object.counts(), sections.bytes(bytes, Kind::Levels)?)?;
+        Ok(ChannelLayout { object, frame, value_type, sections, starts })
+    }
+
+    /// The channel in `bytes`, whose numbers have this machine's order.
+    fn view<'a>(&self, bytes: &'a [u8]) -> Result<ChannelRef<'a>, FormatError> {
+        let section = |kind| self.sections.bytes(bytes, kind);
+        Ok(ChannelRef {
+            tree: tree(&self.object, &self.sections, self.frame, &self.starts, bytes)?,
+            value_type: self.value_type,
+            value_rel: cast(section(Kind::ValueRel)?)?,
+            value_base: cast(section(Kind::ValueBase)?)?,
+            values: section(Kind::Values)?,
+        })
+    }
+
+    /// Checks all of the channel in `bytes`.
+    pub(super) fn verify(&self, bytes: &[u8]) -> Result<(), Error> {
+        self.view(bytes)?.check()
+    }
+
+    /// The channel in the bytes that `owner` has. Its links are checked on first use unless all of it is
+    /// `verified`.
+    pub(super) fn attach<C: AsRef<[u8]> + Send + Sync + 'static>(
+        &self,
+        owner: Arc<C>,
+        metadata: Metadata,
+        verified: bool,
+    ) -> Result<Channel, Error> {
+        Ok(Channel::attach(owner, metadata, verified, |owner| self.view(owner.as_ref()))?)
+    }
+
+    /// Reverses the bytes of every number in the channel's sections.
+    pub(super) fn swap_bytes(&self, bytes: &mut [u8]) {
+        swap_sections(&self.object, &self.sections, bytes);
+    }
+}
