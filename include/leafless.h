@@ -93,7 +93,7 @@
 /**
  * Minor version of the file format that this library writes; it reads newer ones, too.
  */
-#define LEAFLESS_FORMAT_MINOR 1
+#define LEAFLESS_FORMAT_MINOR 2
 
 /**
  * What a function returns. Codes are never renumbered and never used for something else; new ones may be

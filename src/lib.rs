@@ -96,8 +96,9 @@ mod solid;
 mod surface;
 
 pub use attribute::{
-    Attribute, CarryRule, ChannelOperand, ConstantAttribute, Criterion, Detail, FillOptions,
-    FunctionAttribute, MovedAttribute, ValueRange, carry_channel, carry_channels, fill_channel,
+    Attribute, CarryRule, ChannelOperand, ChannelSummary, ConstantAttribute, Criterion, Detail, FillOptions,
+    FunctionAttribute, Interpolation, MaterialProperties, MovedAttribute, ValueRange, ValueRegion,
+    VolumeAttribute, carry_channel, carry_channels, fill_channel, materials,
 };
 pub use control::Control;
 pub use error::{

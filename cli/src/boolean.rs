@@ -8,7 +8,7 @@ use crate::report::Info;
 use crate::volume::Sampling;
 use clap::Args;
 use leafless::exchange::VolumeFormat;
-use leafless::{Control, Error, Metadata, Octree, OctreeRef, file};
+use leafless::{CarryRule, Control, Error, Metadata, Octree, OctreeRef, carry_channels, file};
 use std::ffi::OsString;
 use std::time::Instant;
 
@@ -42,6 +42,22 @@ struct Common {
     threads: usize,
     #[command(flatten)]
     sampling: Sampling,
+    /// Whose value of a channel counts where several solids have one: that of the first, the last, the greatest, or
+    /// the mean. Without it: that of the first
+    #[arg(long, value_name = "NAME=left|right|max|mean", value_parser = carry)]
+    carry: Vec<(String, CarryRule)>,
+}
+
+fn carry(text: &str) -> Result<(String, CarryRule), String> {
+    let (name, rule) = text.rsplit_once('=').ok_or("expected the name of a channel, =, and a rule")?;
+    let rule = match rule {
+        "left" => CarryRule::Left,
+        "right" => CarryRule::Right,
+        "max" => CarryRule::Max,
+        "mean" => CarryRule::Mean,
+        _ => return Err("the rules are left, right, max and mean".into()),
+    };
+    Ok((name.into(), rule))
 }
 
 /// What is made of the solids.
@@ -115,7 +131,7 @@ fn combine(operation: Operation, inputs: &[Input], common: &Common) -> Result<()
     let trees: Vec<OctreeRef<'_>> = octrees.iter().map(|octree| *octree.view()).collect();
     let name = operation.name();
     let result = watched(name, common.threads, |control| operation.of(&trees[0], &trees, control));
-    let result = result.of(name)?.with_metadata(facts(&octrees)?);
+    let result = carried(result.of(name)?, &octrees, common).of(name)?.with_metadata(facts(&octrees)?);
     for (input, octree) in inputs.iter().zip(&octrees).skip(1) {
         let units = [&octrees[0], octree].map(|octree| octree.metadata().get("units"));
         if let [Some(first), Some(other)] = units
@@ -138,6 +154,19 @@ fn combine(operation: Operation, inputs: &[Input], common: &Common) -> Result<()
         output::count(bytes),
         seconds(start.elapsed().as_secs_f64()),
     ))
+}
+
+/// The result with the channels of the operands.
+fn carried(result: Octree, octrees: &[Octree], common: &Common) -> Result<Octree, String> {
+    if octrees.iter().all(|octree| octree.channels().is_empty()) {
+        return Ok(result);
+    }
+    let operands: Vec<&Octree> = octrees.iter().collect();
+    let rule = |name: &str| {
+        let told = common.carry.iter().rev().find(|(known, _)| known == name);
+        told.map_or(CarryRule::Left, |(_, rule)| *rule)
+    };
+    watched("channels", common.threads, |control| carry_channels(&result, &operands, rule, control))
 }
 
 /// A solid from a file, or the voxels of a volume that are inside.

@@ -25,9 +25,9 @@ pub struct Arguments {
     file: OsString,
     /// What the distance is measured to
     #[arg(long, value_enum, default_value_t = To::Solid)]
-    to: To,
-    /// Distance from the boundary, negative inside: short for --to boundary
-    #[arg(long, conflicts_with = "to")]
+    target: To,
+    /// Distance from the boundary, negative inside: short for --target boundary
+    #[arg(long, conflicts_with = "target")]
     signed: bool,
     /// How wide the interval may be, in the solid's units. Without it: a millionth of the cube that is looked at. A solid
     /// from a file (.lfl) is asked for what its cells tell
@@ -89,7 +89,7 @@ struct Batch<'a> {
 
 impl Batch<'_> {
     fn measure(&self, control: &Control<'_>) -> Result<Vec<Interval>, Error> {
-        let Arguments { to, signed, tolerance, .. } = *self.arguments;
+        let Arguments { target: to, signed, tolerance, .. } = *self.arguments;
         let to = if signed { DistanceTo::Boundary } else { to.into() };
         match &self.target {
             Target::Cells(octree) => {

@@ -5,13 +5,16 @@
 
 #![deny(unsafe_code)]
 
+mod attribute;
 mod bitmap;
 mod boolean;
+mod channel;
 mod contains;
 mod content;
 mod csg;
 mod demo;
 mod distance;
+mod expression;
 mod failure;
 mod heights;
 mod info;
@@ -26,8 +29,10 @@ mod progress;
 mod ray;
 mod report;
 mod rows;
+mod sample;
 mod scene;
 mod source;
+mod summary;
 mod surface;
 mod target;
 mod verify;
@@ -95,6 +100,12 @@ enum Command {
     Measure(measure::Arguments),
     /// Say how much of a solid lies in a ball, a box or another solid: cells, and the volume in common
     Within(within::Arguments),
+    /// Give a solid a channel: a colour, a temperature, a material at every point inside
+    Attribute(attribute::Arguments),
+    /// Say which value a channel has at points on standard input
+    Sample(sample::Arguments),
+    /// Say what a channel amounts to in a solid: least, greatest, mean, integral; or for each material
+    Summary(summary::Arguments),
     /// Show the main job end to end on a mechanical part that the program makes itself
     Demo(demo::Arguments),
 }
@@ -115,6 +126,9 @@ fn main() -> ExitCode {
         Command::Xor(arguments) => boolean::run(boolean::Operation::Xor, arguments),
         Command::Complement(arguments) => boolean::run_complement(arguments),
         Command::Contains(arguments) => contains::run(arguments),
+        Command::Attribute(arguments) => attribute::run(arguments),
+        Command::Sample(arguments) => sample::run(arguments),
+        Command::Summary(arguments) => summary::run(arguments),
         Command::Distance(arguments) => distance::run(arguments),
         Command::Neighbours(arguments) => neighbours::run(arguments),
         Command::Ray(arguments) => ray::run(arguments),
@@ -177,6 +191,17 @@ mod tests {
 
     #[test]
     fn the_definition_of_the_arguments_is_sound() {
+        fn check(command: &clap::Command) {
+            // Where debug assertions are off, as in a release, clap itself does not look.
+            let mut names = std::collections::BTreeSet::new();
+            for argument in command.get_arguments() {
+                assert!(names.insert(argument.get_id().to_string()), "{} {argument}", command.get_name());
+                let long = argument.get_long().map(|long| format!("--{long}"));
+                assert!(long.is_none_or(|long| names.insert(long)), "{} {argument}", command.get_name());
+            }
+            command.get_subcommands().for_each(check);
+        }
+        check(&Arguments::command());
         Arguments::command().debug_assert();
     }
 

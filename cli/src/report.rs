@@ -1,5 +1,6 @@
 //! What is told of a solid, for programs (JSON) and for people.
 
+use crate::channel::ChannelInfo;
 use crate::output::{count, ends, measured, number};
 use leafless::{
     DefectKind, Error, IntersectingPair, Interval, MeshDefect, MeshReport, Octree, Proof, Statistics,
@@ -117,6 +118,8 @@ pub struct Info {
     /// Absent (null) where there is no node.
     pub bytes_per_node: Option<f64>,
     levels: Vec<Level>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    channels: Vec<ChannelInfo>,
     metadata: BTreeMap<String, String>,
 }
 
@@ -148,6 +151,7 @@ impl Info {
                     upper: level.volume.upper,
                 })
                 .collect(),
+            channels: octree.channels().iter().map(ChannelInfo::new).collect(),
             metadata: octree
                 .metadata()
                 .iter()
@@ -188,6 +192,9 @@ impl Info {
         line("cells", format!("{} empty, {} full, {} partial", count(*empty), count(*full), count(*partial)));
         let each = self.bytes_per_node.map_or("-".to_owned(), |bytes| format!("{bytes:.2}"));
         line("bytes", format!("{}, {each} a node", count(self.bytes)));
+        for channel in &self.channels {
+            line("channel", channel.text());
+        }
         for (key, value) in &self.metadata {
             // A file may hold any text; a terminal should not obey it.
             line(&key.escape_debug().to_string(), value.escape_debug().to_string());

@@ -53,7 +53,7 @@ fn distances_line_by_line() {
     let lines: Vec<Value> = json.text().lines().map(|line| serde_json::from_str(line).unwrap()).collect();
     assert_eq!(lines, [json!({"lower": 0.0, "upper": 0.0}), json!({"lower": 0.0, "upper": null})]);
     place.run("distance - --signed").bad(2, &["standard input carries the points"]);
-    place.run("distance cube.lfl --signed --to solid").bad(2, &["--signed", "--to"]);
+    place.run("distance cube.lfl --signed --target solid").bad(2, &["--signed", "--target"]);
     place.run("distance cube.lfl --tolerance -1").bad(2, &["not below 0"]);
 }
 

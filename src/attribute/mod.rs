@@ -10,14 +10,22 @@ mod detail;
 mod edit;
 mod fill;
 mod function;
+mod materials;
+mod region;
 mod sampled;
 mod source;
+mod summary;
+mod volume;
 
 pub use carry::{CarryRule, ChannelOperand, carry_channel, carry_channels};
 pub use channel::MovedAttribute;
 pub use detail::{Criterion, Detail};
 pub use function::{ConstantAttribute, FunctionAttribute};
+pub use materials::{MaterialProperties, materials};
+pub use region::ValueRegion;
 pub use sampled::{FillOptions, fill_channel};
+pub use summary::ChannelSummary;
+pub use volume::{Interpolation, VolumeAttribute};
 
 use crate::error::Error;
 use crate::lattice::{Bounds, Interval};

@@ -4,6 +4,7 @@
 //! the writer (crate-internal) is the one place where trees come into being; [`Cursor`] walks the octree node
 //! by node as if it were stored that way.
 
+mod arrays;
 pub(crate) mod block;
 pub(crate) mod brick;
 mod cells;

@@ -5,9 +5,10 @@
 //! stored level order. An element whose cells all agree is not stored but reported as that tag, and as it
 //! then has no stored children nothing is ever taken back: the result is canonical by construction.
 
+use super::arrays::Arrays;
 use super::brick::{Brick, BrickArray, Bricks, OwnedArray, OwnedBricks};
 use super::links::Windows;
-use super::octree::{Arrays, Octree};
+use super::octree::Octree;
 use super::tag::Tag;
 use super::view::{MAX_ELEMENT_LEVELS, OctreeRef, element_levels, root_cells, starts_half_way};
 use super::word::Planes;

@@ -9,6 +9,7 @@ pub mod exact;
 mod models;
 pub mod slabs;
 pub mod surfaces;
+pub mod values;
 mod way;
 
 use leafless::{

@@ -91,47 +91,47 @@ impl ChannelRef<'_> {
         }
         Ok(())
     }
-}
 
-/// What is counted on each level: nodes, cells that have a value (`full`), cells that start one (`partial`).
-pub(super) fn count_levels(channel: &ChannelRef<'_>) -> Vec<LevelCounts> {
-    let tree = &channel.tree;
-    let mut counts = vec![LevelCounts::default(); tree.frame.depth() as usize + 1];
-    match tree.root {
-        Tag::Branch => {}
-        Tag::Full => (counts[0].full, counts[0].partial) = (1, 1),
-        Tag::Empty | Tag::Partial => {}
-    }
-    if tree.root != Tag::Branch {
-        return counts;
-    }
-    let half = starts_half_way(tree.frame.depth());
-    for e in 0..tree.levels() {
-        let cells = tree.cell_level(e) as usize;
-        for index in tree.starts[e]..tree.starts[e + 1] {
-            // Damage reads as cells without a value.
-            let planes = tree.entry(index).unwrap_or(Planes::uniform(Tag::Empty));
-            let octants = if half && e == 0 { 1 } else { 8 };
-            if octants == 8 {
-                counts[cells - 2].nodes += 1;
-            }
-            for k in 0..octants {
-                let of = |word: u64| u64::from(((word >> (8 * k)) as u8).count_ones());
-                match octant(planes, k) {
-                    // An octant that is the universe is a node.
-                    Octant::Nothing if octants == 8 => {}
-                    Octant::OneValue if octants == 8 => {
-                        counts[cells - 1].full += 1;
-                        counts[cells - 1].partial += of(planes.full());
-                    }
-                    _ => {
-                        counts[cells - 1].nodes += 1;
-                        counts[cells].full += of(planes.upper);
-                        counts[cells].partial += of(planes.full());
+    /// What is counted on each level: nodes, cells that have a value (`full`), cells that start one (`partial`).
+    pub(crate) fn count_levels(&self) -> Vec<LevelCounts> {
+        let tree = &self.tree;
+        let mut counts = vec![LevelCounts::default(); tree.frame.depth() as usize + 1];
+        match tree.root {
+            Tag::Branch => {}
+            Tag::Full => (counts[0].full, counts[0].partial) = (1, 1),
+            Tag::Empty | Tag::Partial => {}
+        }
+        if tree.root != Tag::Branch {
+            return counts;
+        }
+        let half = starts_half_way(tree.frame.depth());
+        for e in 0..tree.levels() {
+            let cells = tree.cell_level(e) as usize;
+            for index in tree.starts[e]..tree.starts[e + 1] {
+                // Damage reads as cells without a value.
+                let planes = tree.entry(index).unwrap_or(Planes::uniform(Tag::Empty));
+                let octants = if half && e == 0 { 1 } else { 8 };
+                if octants == 8 {
+                    counts[cells - 2].nodes += 1;
+                }
+                for k in 0..octants {
+                    let of = |word: u64| u64::from(((word >> (8 * k)) as u8).count_ones());
+                    match octant(planes, k) {
+                        // An octant that is the universe is a node.
+                        Octant::Nothing if octants == 8 => {}
+                        Octant::OneValue if octants == 8 => {
+                            counts[cells - 1].full += 1;
+                            counts[cells - 1].partial += of(planes.full());
+                        }
+                        _ => {
+                            counts[cells - 1].nodes += 1;
+                            counts[cells].full += of(planes.upper);
+                            counts[cells].partial += of(planes.full());
+                        }
                     }
                 }
             }
         }
+        counts
     }
-    counts
 }

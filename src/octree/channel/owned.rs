@@ -5,7 +5,7 @@ use super::view::ChannelRef;
 use crate::error::Error;
 use crate::lattice::Frame;
 use crate::octree::Metadata;
-use crate::octree::octree::Arrays;
+use crate::octree::arrays::Arrays;
 use alloc::boxed::Box;
 use alloc::sync::Arc;
 use alloc::vec::Vec;

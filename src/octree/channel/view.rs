@@ -3,7 +3,7 @@
 use super::value::{Bits, ValueType};
 use crate::lattice::{Frame, morton};
 use crate::octree::Tag;
-use crate::octree::view::{LevelCounts, OctreeRef};
+use crate::octree::view::OctreeRef;
 use crate::octree::word::Planes;
 use yoke::Yokeable;
 
@@ -94,11 +94,6 @@ impl<'a> ChannelRef<'a> {
     /// Elements and bricks of the tree; see [`OctreeRef::element_count`].
     pub fn element_count(&self) -> u64 {
         self.tree.element_count() + self.tree.brick_count()
-    }
-
-    /// Cells that have a value, on each level from the universe on, and those of them that start one.
-    pub(crate) fn count_levels(&self) -> alloc::vec::Vec<LevelCounts> {
-        super::check::count_levels(self)
     }
 
     /// The stored value with this index; `None` beyond the end.

@@ -142,7 +142,7 @@ impl VoxelGrid {
     }
 
     /// The voxel that contains a point; of two that share the face it lies on, the upper one. `None` outside.
-    pub(super) fn voxel_of(&self, point: [f64; 3]) -> Option<[u32; 3]> {
+    pub(crate) fn voxel_of(&self, point: [f64; 3]) -> Option<[u32; 3]> {
         let mut voxel = [0; 3];
         for axis in 0..3 {
             let (x, extent) = (point[axis], self.extents[axis]);

@@ -1,0 +1,97 @@
+//! The samples of a volume as an attribute.
+
+use super::{Attribute, ValueRange};
+use crate::error::Error;
+use crate::lattice::{Bounds, Interval};
+use crate::solid::Volume;
+
+/// Samples that are looked at before a range is given up.
+const MOST_SAMPLES: u64 = 4096;
+
+/// What lies between the samples of a volume.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Interpolation {
+    /// The sample of the voxel that contains the point; on a face between voxels, that of the upper one.
+    Nearest,
+    /// The trilinear interpolation of the eight samples around the point; see [`Volume::value_at`].
+    #[default]
+    Trilinear,
+}
+
+/// The samples of a [`Volume`] as an attribute of one number. There is no value outside of the grid, nor where
+/// a sample that counts is not a number. The volume's band does not matter.
+#[derive(Debug, Clone)]
+pub struct VolumeAttribute<'a> {
+    volume: Volume<'a>,
+    interpolation: Interpolation,
+}
+
+impl<'a> VolumeAttribute<'a> {
+    /// The attribute of a volume's samples.
+    pub fn new(volume: Volume<'a>, interpolation: Interpolation) -> VolumeAttribute<'a> {
+        VolumeAttribute { volume, interpolation }
+    }
+}
+
+impl Attribute for VolumeAttribute<'_> {
+    fn components(&self) -> usize {
+        1
+    }
+
+    fn values(&self, points: &[[f64; 3]], values: &mut [Option<[f64; 4]>]) -> Result<(), Error> {
+        for (value, &point) in values.iter_mut().zip(points) {
+            let found = match self.interpolation {
+                Interpolation::Nearest => {
+                    self.volume.grid().voxel_of(point).and_then(|at| self.volume.sample(at))
+                }
+                Interpolation::Trilinear => self.volume.value_at(point),
+            };
+            *value = found.filter(|found| !found.is_nan()).map(|found| [found, 0.0, 0.0, 0.0]);
+        }
+        Ok(())
+    }
+
+    /// Of all samples that count in the box; unknown if they are very many, or one is not a number.
+    fn range(&self, bounds: &Bounds) -> Result<ValueRange, Error> {
+        let grid = self.volume.grid();
+        let Some(common) = bounds.common(&grid.bounds()) else { return Ok(ValueRange::Nowhere) };
+        if common != *bounds {
+            return Ok(ValueRange::Unknown);
+        }
+        // The points lie before the upper faces of the box.
+        let last = [0, 1, 2].map(|axis| bounds.max[axis].next_down().max(bounds.min[axis]));
+        let (Some(mut first), Some(mut last)) = (grid.voxel_of(bounds.min), grid.voxel_of(last)) else {
+            return Ok(ValueRange::Unknown);
+        };
+        if self.interpolation == Interpolation::Trilinear {
+            first = first.map(|a| a.saturating_sub(1));
+            last = [0, 1, 2].map(|axis| (last[axis] + 1).min(grid.extents()[axis] - 1));
+        }
+        let counts = [0, 1, 2].map(|axis| u64::from(last[axis] - first[axis]) + 1);
+        if counts.iter().try_fold(1u64, |all, &count| all.checked_mul(count)).is_none_or(|n| n > MOST_SAMPLES)
+        {
+            return Ok(ValueRange::Unknown);
+        }
+        let mut range = Interval { lower: f64::INFINITY, upper: f64::NEG_INFINITY };
+        for z in first[2]..=last[2] {
+            for y in first[1]..=last[1] {
+                for x in first[0]..=last[0] {
+                    match self.volume.sample([x, y, z]) {
+                        Some(sample) if !sample.is_nan() => {
+                            range.lower = range.lower.min(sample);
+                            range.upper = range.upper.max(sample);
+                        }
+                        _ => return Ok(ValueRange::Unknown),
+                    }
+                }
+            }
+        }
+        if self.interpolation == Interpolation::Trilinear {
+            // Seven means, each of two products and a sum that are rounded.
+            let rounding = 32.0 * f64::EPSILON * range.lower.abs().max(range.upper.abs());
+            range = Interval { lower: range.lower - rounding, upper: range.upper + rounding };
+        }
+        let zero = Interval::exactly(0.0);
+        Ok(ValueRange::Within([range, zero, zero, zero]))
+    }
+}
