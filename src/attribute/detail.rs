@@ -38,7 +38,7 @@ impl Detail {
         if !(fine > 0.0 && fine <= coarse) {
             return refused("fine", "must be positive and at most the coarse edge");
         }
-        if !(tolerance >= 0.0) {
+        if tolerance.is_nan() || tolerance < 0.0 {
             return refused("tolerance", "must be a number that is not negative");
         }
         Ok(Detail { coarse, fine, tolerance, criterion })
