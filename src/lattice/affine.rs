@@ -1,6 +1,6 @@
 //! Affine maps of model space.
 
-use super::exact::{product_up, sign_of_products, two_product};
+use super::exact::{Expansion, product_up, sign_of_products, two_product};
 use crate::error::Error;
 
 /// Entries beyond ±2^64 are refused, and so are those but zero below 2^-64.
@@ -80,6 +80,54 @@ impl Affine {
         sign_of_products(parts.as_flattened())
     }
 
+    /// The cofactors of M, and its determinant, as exact sums.
+    fn cofactors(&self) -> ([[Expansion; 3]; 3], f64) {
+        let m = &self.rows;
+        let minor = |i: usize, j: usize| {
+            let (r, s) = ((i + 1) % 3, (i + 2) % 3);
+            let (c, d) = ((j + 1) % 3, (j + 2) % 3);
+            let (plus, minus) = (two_product(m[r][c], m[s][d]), two_product(m[r][d], m[s][c]));
+            Expansion::sum([plus.1, -minus.1, plus.0, -minus.0])
+        };
+        let cofactors = [0, 1, 2].map(|i| [0, 1, 2].map(|j| minor(i, j)));
+        let determinant = (0..3).fold(Expansion::default(), |sum, j| {
+            sum.plus(&cofactors[0][j].times(&Expansion::sum([m[0][j]])))
+        });
+        (cofactors, determinant.estimate())
+    }
+
+    /// The inverse of the linear part, each entry off by 5 · 2^-53 of itself at the most: quotients of a minor
+    /// and the determinant, both of which come from exact sums.
+    pub(crate) fn inverse_linear(&self) -> [[f64; 3]; 3] {
+        let (cofactors, determinant) = self.cofactors();
+        [0, 1, 2].map(|i| [0, 1, 2].map(|j| cofactors[j][i].estimate() / determinant))
+    }
+
+    /// The map that leads back, rounded: each entry is off by 5 · 2^-53 of itself at the most, but those of
+    /// magnitudes below 2^-64 become 0. Of a map that permutes and mirrors axes, stretches them by powers of
+    /// two, and moves, it is exact.
+    ///
+    /// # Errors
+    /// [`Error::Argument`] if an entry is beyond 2^64, or what is left is singular: maps that stretch, or
+    /// shrink, by that much.
+    ///
+    /// ```
+    /// let quarter = leafless::Affine::new([[0.0, -1.0, 0.0, 3.0], [1.0, 0.0, 0.0, 5.0], [0.0, 0.0, 2.0, 1.0]])?;
+    /// assert_eq!(quarter.inverse()?.apply(quarter.apply([7.0, 8.0, 9.0])), [7.0, 8.0, 9.0]);
+    /// # Ok::<(), leafless::Error>(())
+    /// ```
+    pub fn inverse(&self) -> Result<Affine, Error> {
+        let (cofactors, determinant) = self.cofactors();
+        let rows = [0, 1, 2].map(|i| {
+            let moved = (0..3).fold(Expansion::default(), |sum, j| {
+                sum.plus(&cofactors[j][i].times(&Expansion::sum([-self.rows[j][3]])))
+            });
+            let [x, y, z] = [0, 1, 2].map(|j| cofactors[j][i].estimate() / determinant);
+            [x, y, z, moved.estimate() / determinant]
+        });
+        Affine::new(rows.map(|row| row.map(|c| if c.abs() < 1.0 / LARGEST { 0.0 } else { c })))
+    }
+
     /// The image of a point, rounded: each coordinate is off by at most 2^-50 times the sum of the magnitudes
     /// of its four summands.
     pub fn apply(&self, p: [f64; 3]) -> [f64; 3] {
@@ -103,5 +151,33 @@ mod tests {
         assert_eq!(of([[0.1, 0.2, 0.3], [0.2, 0.4, 0.6], [1.0, 5.0, 7.0]]), 0);
         assert!(Affine::new([[0.0; 4]; 3]).is_err());
         assert!(Affine::translation([f64::NAN, 0.0, 0.0]).is_err());
+    }
+
+    #[test]
+    fn inverses() {
+        // A turn by a quarter, as libraries compute it: what is left of zero does not matter.
+        let c = 6.123233995736766e-17;
+        let quarter =
+            Affine::new([[c, -1.0, 0.0, 1e-5], [1.0, c, 0.0, -3.0], [0.0, 0.0, -0.5, 7.0]]).unwrap();
+        let back = quarter.inverse().unwrap();
+        for p in [[1.0, 2.0, 3.0], [-1e3, 1e-3, 0.0]] {
+            let there_and_back = back.apply(quarter.apply(p));
+            assert!((0..3).all(|k| (there_and_back[k] - p[k]).abs() < 1e-12), "{there_and_back:?}");
+        }
+        // Two of three directions are nearly one: rows of cofactors are differences of almost equal products.
+        let e = f64::EPSILON;
+        let thin =
+            Affine::new([[1.0, 1.0, 0.0, 0.0], [1.0, 1.0 + e, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]]).unwrap();
+        assert_eq!(thin.inverse().unwrap().rows()[0], [(1.0 + e) / e, -1.0 / e, 0.0, 0.0]);
+        let scaled =
+            |s: f64| Affine::new([[s, 0.0, 0.0, 0.0], [0.0, s, 0.0, 0.0], [0.0, 0.0, s, 1.0]]).unwrap();
+        assert_eq!(scaled(LARGEST).inverse().unwrap(), {
+            let mut small = scaled(1.0 / LARGEST);
+            small.rows[2][3] = -1.0 / LARGEST;
+            small
+        });
+        // The way back would be longer than a map can be.
+        let far = Affine::new([[1e-10, 0.0, 0.0, 1e19], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]]).unwrap();
+        assert!(far.inverse().is_err());
     }
 }

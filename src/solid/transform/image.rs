@@ -341,23 +341,6 @@ fn is_monomial(linear: &[[f64; 3]; 3]) -> bool {
     })
 }
 
-/// The inverse of the linear part, each entry off by 5 · 2^-53 of itself at the most: quotients of a minor
-/// and the determinant, both of which come from exact sums.
-pub(super) fn inverse(placement: &Affine) -> [[f64; 3]; 3] {
-    let m = placement.rows();
-    let minor = |i: usize, j: usize| {
-        let (r, s) = ((i + 1) % 3, (i + 2) % 3);
-        let (c, d) = ((j + 1) % 3, (j + 2) % 3);
-        let (plus, minus) = (two_product(m[r][c], m[s][d]), two_product(m[r][d], m[s][c]));
-        Expansion::sum([plus.1, -minus.1, plus.0, -minus.0])
-    };
-    let cofactors = [0, 1, 2].map(|i| [0, 1, 2].map(|j| minor(i, j)));
-    let determinant = (0..3)
-        .fold(Expansion::default(), |sum, j| sum.plus(&cofactors[0][j].times(&Expansion::sum([m[0][j]]))));
-    let determinant = determinant.estimate();
-    [0, 1, 2].map(|i| [0, 1, 2].map(|j| cofactors[j][i].estimate() / determinant))
-}
-
 /// The frame whose cells have those of `frame` as their images, if there is one and its origin is a double.
 pub(super) fn source_frame(placement: &Affine, inverse: &[[f64; 3]; 3], frame: &Frame) -> Option<Frame> {
     let linear = placement.rows().map(|[x, y, z, _]| [x, y, z]);

@@ -12,7 +12,7 @@ use crate::octree::{Proof, Tag};
 use alloc::sync::Arc;
 use alloc::vec::Vec;
 use core::ops::Range;
-use image::{Images, Maps, Point, Target, inverse};
+use image::{Images, Maps, Point, Target};
 use slabs::Source;
 
 /// A solid, known on a frame of its own, under an affine placement.
@@ -130,7 +130,7 @@ impl<S: Solid> Transform<S> {
 
     /// The frame for the solid where it has none of its own.
     fn own_frame(&self, frame: &Frame) -> Result<Frame, Error> {
-        let inverse = inverse(&self.placement);
+        let inverse = self.placement.inverse_linear();
         if let Some(exact) = image::source_frame(&self.placement, &inverse, frame) {
             return Ok(exact);
         }
@@ -204,7 +204,7 @@ impl<C: Classifier> TransformClassifier<C> {
     /// around the placed solid, if one is known. O(1).
     pub(crate) fn new(inner: C, placement: &Affine, frame: &Frame, bounds: Option<Bounds>) -> Self {
         let own = *inner.frame();
-        let maps = Maps::new(placement, &inverse(placement), frame, &own);
+        let maps = Maps::new(placement, &placement.inverse_linear(), frame, &own);
         let proof = inner.proof();
         let proof = proof.moved(placement.stretched(proof.displacement()));
         TransformClassifier { inner, own, maps, frame: *frame, bounds, proof }
