@@ -44,6 +44,34 @@ static int32_t knows_nothing(void *ctx, const double *points, uint64_t count, do
     return -815;
 }
 
+static int32_t has_no_values(void *ctx, const double *points, uint64_t count, double *values) {
+    (void)ctx;
+    (void)points;
+    (void)count;
+    (void)values;
+    return -4712;
+}
+
+/* As different from place to place as can be. */
+static int32_t grain(void *ctx, const double *points, uint64_t count, double *values) {
+    uint64_t i;
+    (void)ctx;
+    for (i = 0; i < count; i++) {
+        values[i] = fmod(1e4 * points[3 * i] + 3e5 * points[3 * i + 1] + 7e6 * points[3 * i + 2] + 1e8, 251.0);
+    }
+    return 0;
+}
+
+static leafless_attribute *host_attribute(leafless_attribute_values_fn values) {
+    leafless_attribute_callbacks callbacks;
+    leafless_attribute *attribute = NULL;
+    OK(leafless_attribute_callbacks_init(&callbacks, sizeof callbacks));
+    callbacks.components = 1;
+    callbacks.values = values;
+    OK(leafless_attribute_new_callbacks(&callbacks, &attribute));
+    return attribute;
+}
+
 static int32_t uses_the_octree(void *ctx, const double *min, const double *max) {
     leafless_lazy *const lazy = *(leafless_lazy **)ctx;
     leafless_lazy_counts counts;
@@ -73,7 +101,8 @@ enum {
     ENTRY = 48,
     ENTRY_OFFSET = 16,
     ENTRY_LENGTH = 24,
-    ENTRY_CRC = 40
+    ENTRY_CRC = 40,
+    SECTION_REL = 5
 };
 
 static uint64_t number(const uint8_t *bytes, size_t size) {
@@ -262,6 +291,51 @@ static leafless_status scanned_ball(void) {
     leafless_octree_free(octree);
     leafless_solid_free(solid);
     leafless_volume_free(volume);
+    return status;
+}
+
+/* Where values of channels matter. */
+static leafless_octree *grainy;
+
+/* A channel of many values: filled, attached, carried, changed, written and read. */
+static leafless_status grainy_ball(void) {
+    leafless_octree *with = NULL, *carried = NULL, *back = NULL;
+    leafless_attribute *attribute = host_attribute(grain);
+    leafless_channel *channel = (leafless_channel *)UNTOUCHED, *changed = NULL;
+    const leafless_octree *operands[2];
+    leafless_channel_fill_options fill;
+    leafless_options options;
+    leafless_status status;
+    uint64_t length = 0;
+    uint8_t *bytes = NULL;
+    const double value = 3;
+    OK(leafless_channel_fill_options_init(&fill, sizeof fill));
+    fill.solid = grainy;
+    fill.name = "grain";
+    fill.name_length = 5;
+    OK(leafless_options_init(&options, sizeof options));
+    options.threads = 1;
+    status = leafless_channel_fill(attribute, NULL, &fill, &options, &channel);
+    if (status != LEAFLESS_OK) {
+        return channel == (leafless_channel *)UNTOUCHED ? status : LEAFLESS_E_PANIC;
+    }
+    status = leafless_octree_with_channel(grainy, channel, &with);
+    operands[0] = operands[1] = with;
+    if (!status) status = leafless_octree_carry_channels(grainy, operands, 2, LEAFLESS_CARRY_MEAN, NULL, 0, &options, &carried);
+    if (!status) status = leafless_channel_with_value_in(channel, grainy, &value, &options, &changed);
+    if (!status) status = leafless_octree_to_bytes(carried, NULL, 0, &length);
+    if (!status) {
+        bytes = (uint8_t *)malloc((size_t)length);
+        status = bytes == NULL ? LEAFLESS_E_NO_MEMORY : leafless_octree_to_bytes(carried, bytes, length, &length);
+    }
+    if (!status) status = leafless_octree_from_bytes(bytes, length, &back);
+    free(bytes);
+    leafless_octree_free(back);
+    leafless_channel_free(changed);
+    leafless_octree_free(carried);
+    leafless_octree_free(with);
+    leafless_channel_free(channel);
+    leafless_attribute_free(attribute);
     return status;
 }
 
@@ -490,6 +564,9 @@ int main(int argc, char **argv) {
         runs_out(deep_ball, 0, 8192, 256);
         runs_out(open_sheet, 0, 2560, 160);
         runs_out(scanned_ball, 0, 6144, 256);
+        grainy = check_ball(6, LEAFLESS_RULE_CERTIFIED);
+        runs_out(grainy_ball, 0, 8192, 256);
+        leafless_octree_free(grainy);
     }
 
     OK(leafless_options_init(&options, sizeof options));
@@ -562,6 +639,73 @@ int main(int argc, char **argv) {
         FAILS(LEAFLESS_E_IO, leafless_mesh_save(cube, "no/such/file.stl", 16, NULL));
         failed(LEAFLESS_E_IO, "LEAFLESS_E_IO", "no/such/file.stl: No such file");
         CHECK(volume == (leafless_volume *)UNTOUCHED);
+    }
+
+    {
+        /* Channels: numbers that a type has not, another cube, the host's own error, limits, and a damaged file. */
+        const double large = 256;
+        const leafless_frame apart = {{0, 0, 0}, 1, 4};
+        leafless_attribute *one = NULL, *bad = host_attribute(has_no_values), *many = host_attribute(grain);
+        leafless_channel *channel = (leafless_channel *)UNTOUCHED, *filled = NULL;
+        leafless_octree *with = NULL;
+        leafless_channel_fill_options fill;
+        leafless_channel_info info;
+        leafless_probe probe;
+        leafless_section sections[32];
+        uint64_t file_length = 0;
+        uint8_t *file;
+        double value = 77;
+        OK(leafless_attribute_new_constant(&large, 1, &one));
+        OK(leafless_channel_fill_options_init(&fill, sizeof fill));
+        fill.scalar = LEAFLESS_SCALAR_U8;
+        FAILS(LEAFLESS_E_ARGUMENT, leafless_channel_fill(one, &frame, &fill, NULL, &channel));
+        failed(LEAFLESS_E_ARGUMENT, "LEAFLESS_E_ARGUMENT", "value: must lie in the range of the channel's type");
+        fill.solid = ball;
+        FAILS(LEAFLESS_E_FRAME, leafless_channel_fill(many, &apart, &fill, NULL, &channel));
+        failed(LEAFLESS_E_FRAME, "LEAFLESS_E_FRAME", "different frames: origin [");
+        FAILS(LEAFLESS_E_CALLBACK, leafless_channel_fill(bad, NULL, &fill, NULL, &channel));
+        failed(LEAFLESS_E_CALLBACK, "LEAFLESS_E_CALLBACK", "-4712");
+        FAILS(LEAFLESS_E_CALLBACK, leafless_attribute_values(bad, apart.origin, 1, &value));
+        fill.name = "\xff";
+        fill.name_length = 1;
+        FAILS(LEAFLESS_E_UTF8, leafless_channel_fill(many, NULL, &fill, NULL, &channel));
+        fill.name_length = 0;
+        OK(leafless_options_init(&options, sizeof options));
+        options.max_bytes = 100;
+        FAILS(LEAFLESS_E_LIMIT, leafless_channel_fill(many, NULL, &fill, &options, &channel));
+        failed(LEAFLESS_E_LIMIT, "LEAFLESS_E_LIMIT", "100 bytes");
+        options.max_bytes = 0;
+        options.control = control;
+        FAILS(LEAFLESS_E_CANCELLED, leafless_channel_fill(many, NULL, &fill, &options, &channel));
+        options.control = NULL;
+        CHECK(channel == (leafless_channel *)UNTOUCHED);
+
+        OK(leafless_channel_fill(many, NULL, &fill, NULL, &filled));
+        OK(leafless_octree_with_channel(ball, filled, &with));
+        file = check_bytes(with, &file_length);
+        OK(leafless_bytes_probe(file, file_length, &probe, sections, COUNT(sections)));
+        for (i = 0; i < probe.sections; i++) {
+            if (sections[i].owner != 0 && sections[i].kind == SECTION_REL) {
+                memset(file + sections[i].offset, 0x5a, (size_t)sections[i].length);
+            }
+        }
+        make_checksums_right(file);
+        FAILS(LEAFLESS_E_DAMAGED, leafless_octree_from_bytes(file, file_length, &octree));
+        check_write("channel.lfl", file, (size_t)file_length);
+        leafless_octree_free(with);
+        OK(leafless_octree_map("channel.lfl", 11, &with));
+        leafless_channel_free(filled);
+        OK(leafless_octree_channel_at(with, 0, &filled));
+        FAILS(LEAFLESS_E_DAMAGED, leafless_channel_describe(filled, &info));
+        FAILS(LEAFLESS_E_DAMAGED, leafless_channel_values(filled, apart.origin, 1, &value));
+        failed(LEAFLESS_E_DAMAGED, "LEAFLESS_E_DAMAGED", "damaged");
+        FAILS(LEAFLESS_E_DAMAGED, leafless_channel_check(filled));
+        free(file);
+        leafless_octree_free(with);
+        leafless_channel_free(filled);
+        leafless_attribute_free(one);
+        leafless_attribute_free(bad);
+        leafless_attribute_free(many);
     }
 
     FAILS(LEAFLESS_E_PANIC, leafless_test_panic());

@@ -212,6 +212,12 @@ fn volumes() {
 }
 
 #[test]
+fn channels() {
+    run("channel", C99, Link::Static, &[]);
+    run("attribute", CPP17, Link::Static, &[]);
+}
+
+#[test]
 fn surfaces() {
     run("surface", C99, Link::Static, &[]);
     run("extract", CPP17, Link::Static, &[]);
@@ -364,6 +370,7 @@ fn examples() {
         ("c/scan.c", C99),
         ("c/fit.c", C99),
         ("c/isosurface.c", C99),
+        ("c/attributes.c", C99),
         ("cpp/cut_stock.cpp", CPP17),
     ];
     for (name, standard) in examples {

@@ -1897,6 +1897,250 @@ static void distances(void) {
     MAY_BE_NULL(leafless_octree_distance_field, field, leafless_octree_distance_field(octree, cell, cell, NULL, NULL, 0));
 }
 
+static int32_t number_at(void *ctx, const double *at, double *number) {
+    (void)ctx;
+    *number = at[0];
+    return 0;
+}
+
+static void attributes_and_channels(void) {
+    void *out = fresh(), *never = UNTOUCHED;
+    leafless_attribute **made = (leafless_attribute **)&never, *attribute = NULL;
+    leafless_channel **channel_result = (leafless_channel **)&never, *channel = NULL, *other = NULL;
+    leafless_octree **result = (leafless_octree **)&never, *bearing = NULL, *bare = NULL;
+    const leafless_octree *operands[2];
+    const double matrix[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0}, flat[12] = {0};
+    const double one[4] = {1, 2, 3, 4}, bad[2] = {1, NAN};
+    const uint32_t cell[4] = {0, 0, 0, 0};
+    const char **text = (const char **)out;
+    size_t *text_length = (size_t *)out + 1;
+    double *values = (double *)out;
+    uint64_t *count = (uint64_t *)out, number;
+    leafless_value_range *range = (leafless_value_range *)out;
+    leafless_channel_info *info = (leafless_channel_info *)out;
+    leafless_attribute_callbacks callbacks;
+    leafless_channel_fill_options fill;
+    leafless_carry_rule rules[2] = {{"a", 1, 0}, {"b", 1, 0}};
+
+    OK(leafless_attribute_callbacks_init(&callbacks, sizeof callbacks));
+    OK(leafless_channel_fill_options_init(&fill, sizeof fill));
+    callbacks.components = 1;
+    NULL_POINTER(leafless_attribute_callbacks_init, callbacks, leafless_attribute_callbacks_init(NULL, sizeof callbacks));
+    NULL_POINTER(leafless_attribute_new_callbacks, callbacks, leafless_attribute_new_callbacks(NULL, made));
+    refused(LEAFLESS_E_NULL, "leafless_attribute_new_callbacks", "callbacks.value",
+            leafless_attribute_new_callbacks(&callbacks, made));
+    callbacks.value = number_at;
+    NULL_POINTER(leafless_attribute_new_callbacks, attribute, leafless_attribute_new_callbacks(&callbacks, NULL));
+    callbacks.components = 0;
+    BAD_NUMBER(leafless_attribute_new_callbacks, callbacks.components, leafless_attribute_new_callbacks(&callbacks, made));
+    callbacks.components = 5;
+    BAD_NUMBER(leafless_attribute_new_callbacks, callbacks.components, leafless_attribute_new_callbacks(&callbacks, made));
+    NULL_POINTER(leafless_attribute_new_constant, value, leafless_attribute_new_constant(NULL, 1, made));
+    NULL_POINTER(leafless_attribute_new_constant, attribute, leafless_attribute_new_constant(one, 1, NULL));
+    BAD_NUMBER(leafless_attribute_new_constant, components, leafless_attribute_new_constant(one, 0, made));
+    BAD_NUMBER(leafless_attribute_new_constant, components, leafless_attribute_new_constant(one, 5, made));
+    BAD_NUMBER(leafless_attribute_new_constant, value, leafless_attribute_new_constant(bad, 2, made));
+    OK(leafless_attribute_new_constant(one, 3, &attribute));
+    NULL_POINTER(leafless_attribute_placed, operand, leafless_attribute_placed(NULL, matrix, made));
+    NULL_POINTER(leafless_attribute_placed, matrix, leafless_attribute_placed(attribute, NULL, made));
+    NULL_POINTER(leafless_attribute_placed, attribute, leafless_attribute_placed(attribute, matrix, NULL));
+    BAD_NUMBER(leafless_attribute_placed, singular, leafless_attribute_placed(attribute, flat, made));
+    NULL_POINTER(leafless_attribute_components, attribute, leafless_attribute_components(NULL, (uint32_t *)out));
+    NULL_POINTER(leafless_attribute_components, components, leafless_attribute_components(attribute, NULL));
+    NULL_POINTER(leafless_attribute_values, attribute, leafless_attribute_values(NULL, point, 1, values));
+    NULL_POINTER(leafless_attribute_values, points_model, leafless_attribute_values(attribute, NULL, 1, values));
+    NULL_POINTER(leafless_attribute_values, values, leafless_attribute_values(attribute, point, 1, NULL));
+    MAY_BE_NULL(leafless_attribute_values, values, leafless_attribute_values(attribute, NULL, 0, NULL));
+    NULL_POINTER(leafless_attribute_range, attribute, leafless_attribute_range(NULL, point, above, range));
+    NULL_POINTER(leafless_attribute_range, min_model, leafless_attribute_range(attribute, NULL, above, range));
+    NULL_POINTER(leafless_attribute_range, max_model, leafless_attribute_range(attribute, point, NULL, range));
+    NULL_POINTER(leafless_attribute_range, range, leafless_attribute_range(attribute, point, above, NULL));
+    BAD_NUMBER(leafless_attribute_range, max_model, leafless_attribute_range(attribute, above, point, range));
+    NULL_POINTER(leafless_attribute_ref, attribute, leafless_attribute_ref(NULL, made));
+    NULL_POINTER(leafless_attribute_ref, reference, leafless_attribute_ref(attribute, NULL));
+
+    NULL_POINTER(leafless_channel_fill_options_init, fill, leafless_channel_fill_options_init(NULL, sizeof fill));
+    NULL_POINTER(leafless_channel_fill, attribute, leafless_channel_fill(NULL, &frame, &fill, NULL, channel_result));
+    NULL_POINTER(leafless_channel_fill, frame, leafless_channel_fill(attribute, NULL, &fill, NULL, channel_result));
+    NULL_POINTER(leafless_channel_fill, channel, leafless_channel_fill(attribute, &frame, &fill, NULL, NULL));
+    fill.name_length = 1;
+    NULL_POINTER(leafless_channel_fill, fill.name, leafless_channel_fill(attribute, &frame, &fill, NULL, channel_result));
+    fill.name_length = 0;
+#define FILL(field, wrong)                                                                                           \
+    fill.field = wrong;                                                                                              \
+    BAD_NUMBER(leafless_channel_fill, field, leafless_channel_fill(attribute, &frame, &fill, NULL, channel_result)); \
+    fill.field = 0
+    FILL(scalar, 4);
+    FILL(components, 2);
+    FILL(components, 5);
+    FILL(depth, 21);
+    FILL(depth, UINT32_MAX);
+    FILL(reserved, 1);
+    FILL(criterion, 3);
+    fill.tolerance = 1;
+    BAD_NUMBER(leafless_channel_fill, criterion, leafless_channel_fill(attribute, &frame, &fill, NULL, channel_result));
+    fill.tolerance = 0;
+    fill.criterion = LEAFLESS_CRITERION_RANGE;
+    FILL(tolerance, -1);
+    FILL(tolerance, NAN);
+    fill.coarse_model = 0.5;
+    BAD_NUMBER(leafless_channel_fill, fine, (fill.fine_model = 1, leafless_channel_fill(attribute, &frame, &fill, NULL,
+                                                                                       channel_result)));
+    OK(leafless_channel_fill_options_init(&fill, sizeof fill));
+#undef FILL
+    MAY_BE_NULL(leafless_channel_fill, fill, leafless_channel_fill(attribute, &frame, NULL, NULL, &other));
+    leafless_channel_free(other);
+    other = NULL;
+    MAY_BE_NULL(leafless_channel_fill, options, leafless_channel_fill(attribute, &frame, &fill, NULL, &channel));
+    NULL_POINTER(leafless_channel_ref, channel, leafless_channel_ref(NULL, channel_result));
+    NULL_POINTER(leafless_channel_ref, reference, leafless_channel_ref(channel, NULL));
+    NULL_POINTER(leafless_channel_describe, channel, leafless_channel_describe(NULL, info));
+    NULL_POINTER(leafless_channel_describe, info, leafless_channel_describe(channel, NULL));
+    NULL_POINTER(leafless_channel_check, channel, leafless_channel_check(NULL));
+    NULL_POINTER(leafless_channel_equal, a, leafless_channel_equal(NULL, channel, (bool *)out));
+    NULL_POINTER(leafless_channel_equal, b, leafless_channel_equal(channel, NULL, (bool *)out));
+    NULL_POINTER(leafless_channel_equal, equal, leafless_channel_equal(channel, channel, NULL));
+    NULL_POINTER(leafless_channel_as_attribute, channel, leafless_channel_as_attribute(NULL, made));
+    NULL_POINTER(leafless_channel_as_attribute, attribute, leafless_channel_as_attribute(channel, NULL));
+    NULL_POINTER(leafless_channel_with_metadata, channel,
+                 leafless_channel_with_metadata(NULL, "k", 1, "v", 1, channel_result));
+    NULL_POINTER(leafless_channel_with_metadata, key,
+                 leafless_channel_with_metadata(channel, NULL, 1, "v", 1, channel_result));
+    NULL_POINTER(leafless_channel_with_metadata, value,
+                 leafless_channel_with_metadata(channel, "k", 1, NULL, 1, channel_result));
+    NULL_POINTER(leafless_channel_with_metadata, named, leafless_channel_with_metadata(channel, "k", 1, "v", 1, NULL));
+    NULL_POINTER(leafless_channel_without_metadata, channel,
+                 leafless_channel_without_metadata(NULL, "k", 1, channel_result));
+    MAY_BE_NULL(leafless_channel_without_metadata, key, leafless_channel_without_metadata(channel, NULL, 0, &other));
+    leafless_channel_free(other);
+    NULL_POINTER(leafless_channel_without_metadata, unnamed, leafless_channel_without_metadata(channel, "k", 1, NULL));
+    NULL_POINTER(leafless_channel_peek_metadata, channel,
+                 leafless_channel_peek_metadata(NULL, "k", 1, text, text_length));
+    NULL_POINTER(leafless_channel_peek_metadata, key,
+                 leafless_channel_peek_metadata(channel, NULL, 1, text, text_length));
+    NULL_POINTER(leafless_channel_peek_metadata, value,
+                 leafless_channel_peek_metadata(channel, "k", 1, NULL, text_length));
+    NULL_POINTER(leafless_channel_peek_metadata, value_length,
+                 leafless_channel_peek_metadata(channel, "k", 1, text, NULL));
+    NULL_POINTER(leafless_channel_peek_metadata_at, channel,
+                 leafless_channel_peek_metadata_at(NULL, 0, count, NULL, NULL, NULL, NULL));
+    NULL_POINTER(leafless_channel_peek_metadata_at, count,
+                 leafless_channel_peek_metadata_at(channel, 0, NULL, NULL, NULL, NULL, NULL));
+    NULL_POINTER(leafless_channel_peek_metadata_at, key,
+                 leafless_channel_peek_metadata_at(channel, 0, count, NULL, text_length, text, text_length));
+    NULL_POINTER(leafless_channel_peek_metadata_at, key_length,
+                 leafless_channel_peek_metadata_at(channel, 0, count, text, NULL, text, text_length));
+    NULL_POINTER(leafless_channel_peek_metadata_at, value,
+                 leafless_channel_peek_metadata_at(channel, 0, count, text, text_length, NULL, text_length));
+    NULL_POINTER(leafless_channel_peek_metadata_at, value_length,
+                 leafless_channel_peek_metadata_at(channel, 0, count, text, text_length, text, NULL));
+    BAD_NUMBER(leafless_channel_peek_metadata_at, index,
+               leafless_channel_peek_metadata_at(channel, 0, count, text, text_length, text, text_length));
+    NULL_POINTER(leafless_channel_values, channel, leafless_channel_values(NULL, point, 1, values));
+    NULL_POINTER(leafless_channel_values, points_model, leafless_channel_values(channel, NULL, 1, values));
+    NULL_POINTER(leafless_channel_values, values, leafless_channel_values(channel, point, 1, NULL));
+    MAY_BE_NULL(leafless_channel_values, values, leafless_channel_values(channel, NULL, 0, NULL));
+    NULL_POINTER(leafless_channel_value, channel, leafless_channel_value(NULL, point, values));
+    NULL_POINTER(leafless_channel_value, point_model, leafless_channel_value(channel, NULL, values));
+    NULL_POINTER(leafless_channel_value, value, leafless_channel_value(channel, point, NULL));
+    NULL_POINTER(leafless_channel_value_of_cell, channel, leafless_channel_value_of_cell(NULL, cell, values));
+    NULL_POINTER(leafless_channel_value_of_cell, cell, leafless_channel_value_of_cell(channel, NULL, values));
+    NULL_POINTER(leafless_channel_value_of_cell, value, leafless_channel_value_of_cell(channel, cell, NULL));
+    NULL_POINTER(leafless_channel_with_value_in, channel,
+                 leafless_channel_with_value_in(NULL, octree, one, NULL, channel_result));
+    NULL_POINTER(leafless_channel_with_value_in, region,
+                 leafless_channel_with_value_in(channel, NULL, one, NULL, channel_result));
+    NULL_POINTER(leafless_channel_with_value_in, changed,
+                 leafless_channel_with_value_in(channel, octree, one, NULL, NULL));
+    other = NULL;
+    MAY_BE_NULL(leafless_channel_with_value_in, value,
+                leafless_channel_with_value_in(channel, octree, NULL, NULL, &other));
+    leafless_channel_free(other);
+    other = NULL;
+    MAY_BE_NULL(leafless_channel_with_value_in, options,
+                leafless_channel_with_value_in(channel, octree, one, NULL, &other));
+    leafless_channel_free(other);
+
+    NULL_POINTER(leafless_octree_with_channel, octree, leafless_octree_with_channel(NULL, channel, result));
+    NULL_POINTER(leafless_octree_with_channel, channel, leafless_octree_with_channel(octree, NULL, result));
+    NULL_POINTER(leafless_octree_with_channel, result, leafless_octree_with_channel(octree, channel, NULL));
+    OK(leafless_octree_with_channel(octree, channel, &bearing));
+    NULL_POINTER(leafless_octree_without_channel, octree, leafless_octree_without_channel(NULL, "a", 1, result));
+    NULL_POINTER(leafless_octree_without_channel, result, leafless_octree_without_channel(bearing, "a", 1, NULL));
+    MAY_BE_NULL(leafless_octree_without_channel, name, leafless_octree_without_channel(bearing, NULL, 0, &bare));
+    NULL_POINTER(leafless_octree_channel_count, octree, leafless_octree_channel_count(NULL, count));
+    NULL_POINTER(leafless_octree_channel_count, count, leafless_octree_channel_count(bare, NULL));
+    OK(leafless_octree_channel_count(bare, &number));
+    CHECK(number == 0);
+    NULL_POINTER(leafless_octree_channel_at, octree, leafless_octree_channel_at(NULL, 0, channel_result));
+    NULL_POINTER(leafless_octree_channel_at, channel, leafless_octree_channel_at(bearing, 0, NULL));
+    BAD_NUMBER(leafless_octree_channel_at, index, leafless_octree_channel_at(bearing, 1, channel_result));
+    BAD_NUMBER(leafless_octree_channel_at, index, leafless_octree_channel_at(bearing, UINT64_MAX, channel_result));
+    NULL_POINTER(leafless_octree_channel, octree, leafless_octree_channel(NULL, "a", 1, channel_result));
+    NULL_POINTER(leafless_octree_channel, name, leafless_octree_channel(bearing, NULL, 1, channel_result));
+    NULL_POINTER(leafless_octree_channel, channel, leafless_octree_channel(bearing, "a", 1, NULL));
+    operands[0] = operands[1] = bearing;
+    NULL_POINTER(leafless_octree_carry_channels, octree,
+                 leafless_octree_carry_channels(NULL, operands, 2, 0, rules, 2, NULL, result));
+    NULL_POINTER(leafless_octree_carry_channels, operands,
+                 leafless_octree_carry_channels(octree, NULL, 2, 0, rules, 2, NULL, result));
+    NULL_POINTER(leafless_octree_carry_channels, rules,
+                 leafless_octree_carry_channels(octree, operands, 2, 0, NULL, 2, NULL, result));
+    NULL_POINTER(leafless_octree_carry_channels, result,
+                 leafless_octree_carry_channels(octree, operands, 2, 0, rules, 2, NULL, NULL));
+    operands[1] = NULL;
+    NULL_POINTER(leafless_octree_carry_channels, operands,
+                 leafless_octree_carry_channels(octree, operands, 2, 0, rules, 2, NULL, result));
+    BAD_NUMBER(leafless_octree_carry_channels, carry,
+               leafless_octree_carry_channels(octree, operands, 1, 4, rules, 2, NULL, result));
+    rules[1].carry = 4;
+    BAD_NUMBER(leafless_octree_carry_channels, rules.carry,
+               leafless_octree_carry_channels(octree, operands, 1, 0, rules, 2, NULL, result));
+    rules[0].name = NULL;
+    NULL_POINTER(leafless_octree_carry_channels, rules.name,
+                 leafless_octree_carry_channels(octree, operands, 1, 0, rules, 2, NULL, result));
+
+    MISALIGNED(leafless_attribute_new_constant, value,
+               leafless_attribute_new_constant((const double *)WRONG(one), 1, made));
+    MISALIGNED(leafless_attribute_values, values, leafless_attribute_values(attribute, point, 1, (double *)WRONG(out)));
+    MISALIGNED(leafless_attribute_values, points_model,
+               leafless_attribute_values(attribute, (const double *)WRONG(one), 1, values));
+    MISALIGNED(leafless_attribute_range, range,
+               leafless_attribute_range(attribute, point, above, (leafless_value_range *)WRONG(out)));
+    MISALIGNED(leafless_channel_fill, fill,
+               leafless_channel_fill(attribute, &frame, (leafless_channel_fill_options *)WRONG(&fill), NULL, channel_result));
+    MISALIGNED(leafless_channel_describe, info, leafless_channel_describe(channel, (leafless_channel_info *)WRONG(out)));
+    MISALIGNED(leafless_channel_values, values, leafless_channel_values(channel, point, 1, (double *)WRONG(out)));
+    MISALIGNED(leafless_channel_value, value, leafless_channel_value(channel, point, (double *)WRONG(out)));
+    MISALIGNED(leafless_channel_value_of_cell, cell,
+               leafless_channel_value_of_cell(channel, (const uint32_t *)WRONG(cell), values));
+    MISALIGNED(leafless_channel_with_value_in, value,
+               leafless_channel_with_value_in(channel, octree, (const double *)WRONG(one), NULL, channel_result));
+    MISALIGNED(leafless_octree_channel_count, count,
+               leafless_octree_channel_count(octree, (uint64_t *)WRONG(out)));
+    MISALIGNED(leafless_octree_carry_channels, rules,
+               leafless_octree_carry_channels(octree, operands, 1, 0, (leafless_carry_rule *)WRONG(rules), 1, NULL, result));
+    untouched();
+    CHECK(never == UNTOUCHED);
+
+    leafless_octree_free(bare);
+    bare = NULL;
+    MAY_BE_NULL(leafless_octree_carry_channels, rules,
+                leafless_octree_carry_channels(octree, NULL, 0, 0, NULL, 0, NULL, &bare));
+    leafless_octree_free(bare);
+    bare = NULL;
+    MAY_BE_NULL(leafless_octree_carry_channels, options,
+                leafless_octree_carry_channels(octree, operands, 1, 0, NULL, 0, NULL, &bare));
+    OK(leafless_octree_channel_count(bare, &number));
+    CHECK(number == 1);
+    leafless_octree_free(bare);
+    leafless_octree_free(bearing);
+    leafless_channel_free(channel);
+    leafless_channel_free(NULL);
+    leafless_attribute_free(attribute);
+    leafless_attribute_free(NULL);
+}
+
 int main(void) {
     octree = check_ball(4, LEAFLESS_RULE_CERTIFIED);
     mesh = check_cube();
@@ -1912,6 +2156,7 @@ int main(void) {
     lazy_octrees();
     cells_and_faces();
     volumes_and_surfaces();
+    attributes_and_channels();
     rays();
     columns();
     regions();

@@ -490,6 +490,36 @@ typedef uint32_t leafless_volume_format;
 #endif // __cplusplus
 
 /**
+ * The type of the numbers of a channel. Numbers are rounded to the nearest one of the type, to an even integer
+ * half-way.
+ */
+enum leafless_scalar_type
+#ifdef __cplusplus
+  : uint32_t
+#endif // __cplusplus
+ {
+    /**
+     * Finite numbers of single precision.
+     */
+    LEAFLESS_SCALAR_F32 = 0,
+    /**
+     * Integers from 0 to 255.
+     */
+    LEAFLESS_SCALAR_U8 = 1,
+    /**
+     * Integers from 0 to 65 535.
+     */
+    LEAFLESS_SCALAR_U16 = 2,
+    /**
+     * Integers from 0 to 4 294 967 295.
+     */
+    LEAFLESS_SCALAR_U32 = 3,
+};
+#ifndef __cplusplus
+typedef uint32_t leafless_scalar_type;
+#endif // __cplusplus
+
+/**
  * The answer to a point query.
  */
 enum leafless_membership
@@ -1066,11 +1096,112 @@ typedef uint32_t leafless_vertex_placement;
 #endif // __cplusplus
 
 /**
+ * What is known of the values in the interior of a box.
+ */
+enum leafless_range_kind
+#ifdef __cplusplus
+  : uint32_t
+#endif // __cplusplus
+ {
+    /**
+     * Nothing.
+     */
+    LEAFLESS_RANGE_UNKNOWN = 0,
+    /**
+     * No point has a value.
+     */
+    LEAFLESS_RANGE_NOWHERE = 1,
+    /**
+     * Every point has a value, and each of its numbers lies in its interval.
+     */
+    LEAFLESS_RANGE_WITHIN = 2,
+};
+#ifndef __cplusplus
+typedef uint32_t leafless_range_kind;
+#endif // __cplusplus
+
+/**
+ * How finely an attribute is followed.
+ */
+enum leafless_criterion
+#ifdef __cplusplus
+  : uint32_t
+#endif // __cplusplus
+ {
+    /**
+     * To the finest cells, wherever it is not proven that all of a cell has one value.
+     */
+    LEAFLESS_CRITERION_NONE = 0,
+    /**
+     * Until the variance of the values at a cell's corners is at most the square of the tolerance. The variance of
+     * several numbers is the sum of their variances. A detail between the corners is missed.
+     */
+    LEAFLESS_CRITERION_VARIANCE = 1,
+    /**
+     * Until the values in a cell are proven to differ by no more than the tolerance, in each of their numbers.
+     * Nothing is missed. A cell whose range is unknown is split.
+     */
+    LEAFLESS_CRITERION_RANGE = 2,
+};
+#ifndef __cplusplus
+typedef uint32_t leafless_criterion;
+#endif // __cplusplus
+
+/**
+ * Whose value a point has that lies in several operands.
+ */
+enum leafless_carry
+#ifdef __cplusplus
+  : uint32_t
+#endif // __cplusplus
+ {
+    /**
+     * The first operand's that has one.
+     */
+    LEAFLESS_CARRY_LEFT = 0,
+    /**
+     * The last operand's that has one.
+     */
+    LEAFLESS_CARRY_RIGHT = 1,
+    /**
+     * The greatest of all, number by number.
+     */
+    LEAFLESS_CARRY_MAX = 2,
+    /**
+     * The mean of all, number by number, rounded to the type.
+     */
+    LEAFLESS_CARRY_MEAN = 3,
+};
+#ifndef __cplusplus
+typedef uint32_t leafless_carry;
+#endif // __cplusplus
+
+/**
+ * Something that has a value at every point of model space, or at some: one number, the host's own function,
+ * the values of a channel, any of them in another place. A value has one to four numbers, as many at all
+ * points of an attribute. Where a value is written and there is none, its numbers are NaN.
+ *
+ * Immutable: all its functions may be called at once from any number of threads, but leafless_attribute_free
+ * needs the reference that it gives back for itself.
+ */
+typedef struct leafless_attribute leafless_attribute;
+
+/**
  * Cells of an octree one after another. It stands before its next cell.
  *
  * Reading changes it: while one thread reads, no other may use it. Threads may have one each.
  */
 typedef struct leafless_cells leafless_cells;
+
+/**
+ * Values inside a cube, in a tree of their own: a colour, a temperature, a material at every point, or at some.
+ * leafless_octree_with_channel attaches it to a solid, in whose file it then travels. The tree may be finer or
+ * coarser than the solid's.
+ *
+ * Immutable: all its functions may be called at once from any number of threads, but leafless_channel_free
+ * needs the reference that it gives back for itself.
+ */
+typedef struct leafless_channel leafless_channel;
 
 /**
  * The solid cells of columns, as runs.
@@ -2106,6 +2237,197 @@ typedef struct {
      */
     double spacing_model[3];
 } leafless_volume_layout;
+
+/**
+ * What is known of the values of an attribute in the interior of a box.
+ */
+typedef struct {
+    /**
+     * For each number of a value an interval that contains it, if `kind` is LEAFLESS_RANGE_WITHIN. All numbers
+     * are NaN otherwise, and beyond the numbers that a value has.
+     */
+    leafless_interval values[4];
+    /**
+     * A leafless_range_kind.
+     */
+    uint32_t kind;
+} leafless_value_range;
+
+/**
+ * The value of the host's attribute at a point (3 numbers, model units): sets the numbers of `value`, as many as
+ * the attribute has components. All are NaN before; they stay so where there is no value, and a value whose
+ * first number is NaN is none. 0, or the number of the host's own error, which ends the operation with
+ * LEAFLESS_E_CALLBACK and the number in the message.
+ *
+ * It is called from several threads at once, which may all be the library's own, unless the operation's
+ * options say `threads` = 1; and it must give the same answer to the same point. It must return: no exception,
+ * no longjmp. It may call this library.
+ */
+typedef int32_t (*leafless_attribute_value_fn)(void *ctx, const double *point, double *value);
+
+/**
+ * The values at `count` points (3 numbers each) at once, for hosts that do that faster than one by one: the
+ * numbers of the first, then those of the second, and so on. Else as leafless_attribute_value_fn.
+ */
+typedef int32_t (*leafless_attribute_values_fn)(void *ctx,
+                                                const double *points,
+                                                uint64_t count,
+                                                double *values);
+
+/**
+ * Bounds the values of the host's attribute in the interior of the box [min, max] (3 numbers each, model
+ * units): sets `kind` and the intervals of `*range`, of which the kind is LEAFLESS_RANGE_UNKNOWN and all numbers
+ * are NaN before. The answer must be proven: a wrong range hides details that nobody looks for any more. An
+ * interval that contains a NaN, or of which lower > upper, says nothing; a `kind` that is none ends the operation
+ * with LEAFLESS_E_CALLBACK. Else as leafless_attribute_value_fn.
+ */
+typedef int32_t (*leafless_attribute_range_fn)(void *ctx,
+                                               const double *min,
+                                               const double *max,
+                                               leafless_value_range *range);
+
+/**
+ * An attribute of the host. `components` and one of `value` and `values` must be set; all other fields but the
+ * first may be zero.
+ */
+typedef struct {
+    /**
+     * sizeof(leafless_attribute_callbacks).
+     */
+    uint32_t struct_size;
+    /**
+     * How many numbers a value has: 1 to 4.
+     */
+    uint32_t components;
+    /**
+     * The value at a point; not called if `values` is set.
+     */
+    leafless_attribute_value_fn value;
+    /**
+     * The values at many points, as many as the work has at hand.
+     */
+    leafless_attribute_values_fn values;
+    /**
+     * Bounds the values in a box; optional. With it channels that hardly change are filled without asking at every
+     * cell, and LEAFLESS_CRITERION_RANGE misses no detail.
+     */
+    leafless_attribute_range_fn range;
+    /**
+     * Called when `ctx` is not needed any more; optional.
+     */
+    leafless_destroy_fn destroy;
+    /**
+     * What the functions are called with.
+     */
+    void *ctx;
+} leafless_attribute_callbacks;
+
+/**
+ * What can be said of a channel at once.
+ */
+typedef struct {
+    /**
+     * Where it lies: in the cube of its solid, with a depth of its own.
+     */
+    leafless_frame frame;
+    /**
+     * The type of the numbers.
+     */
+    leafless_scalar_type scalar;
+    /**
+     * How many numbers a value has: 1 to 4.
+     */
+    uint32_t components;
+    /**
+     * Values that are stored: one for each run of equal ones.
+     */
+    uint64_t value_count;
+    /**
+     * Array elements and bricks of the tree.
+     */
+    uint64_t elements;
+    /**
+     * Bytes that the channel takes in memory.
+     */
+    uint64_t bytes;
+} leafless_channel_info;
+
+/**
+ * How a channel is filled. NULL means the defaults. All fields but the first may be zero, which is their
+ * default; leafless_channel_fill_options_init sets them so.
+ */
+typedef struct {
+    /**
+     * sizeof(leafless_channel_fill_options).
+     */
+    uint32_t struct_size;
+    /**
+     * A leafless_scalar_type: what numbers are rounded to.
+     */
+    uint32_t scalar;
+    /**
+     * How many numbers a value has, which is as many as those of the attribute; 0 does not ask.
+     */
+    uint32_t components;
+    /**
+     * Levels of the channel; 0 means those of the frame.
+     */
+    uint32_t depth;
+    /**
+     * The solid inside which values matter; optional. Where it is EMPTY, the channel says whatever takes the
+     * least memory.
+     */
+    const leafless_octree *solid;
+    /**
+     * A leafless_criterion. Unless it is LEAFLESS_CRITERION_NONE, a cell is split until its edge is at most
+     * `coarse_model` and the criterion holds, or until its edge is at most `fine_model`. It then has the value at its
+     * centre.
+     */
+    uint32_t criterion;
+    /**
+     * Zero.
+     */
+    uint32_t reserved;
+    /**
+     * The longest edge of cells with a criterion; 0 means any.
+     */
+    double coarse_model;
+    /**
+     * The edge below which cells are not split any more, with a criterion, at most `coarse_model`; 0 means that of the
+     * finest cells.
+     */
+    double fine_model;
+    /**
+     * The tolerance of the criterion, in the attribute's units; may be infinite.
+     */
+    double tolerance;
+    /**
+     * The name of the channel, `name_length` bytes of UTF-8; optional.
+     */
+    const char *name;
+    /**
+     * The length of the name.
+     */
+    size_t name_length;
+} leafless_channel_fill_options;
+
+/**
+ * How channels of one name are carried.
+ */
+typedef struct {
+    /**
+     * The name of the channels, `name_length` bytes of UTF-8.
+     */
+    const char *name;
+    /**
+     * The length of the name.
+     */
+    size_t name_length;
+    /**
+     * A leafless_carry.
+     */
+    uint32_t carry;
+} leafless_carry_rule;
 
 /**
  * How a scene is to be read. NULL means the defaults. All fields but the first may be zero, which is their
@@ -3596,7 +3918,7 @@ void leafless_octree_free(leafless_octree *octree);
 leafless_status leafless_octree_describe(const leafless_octree *octree, leafless_octree_info *info);
 
 /**
- * The same octree, of whose cells this is said; the arrays are shared. Octrees that other programs made
+ * The same octree, of whose cells this is said; the arrays and the channels are shared. Octrees that other programs made
  * prove what these know. If FULL and EMPTY are said to be proven, the cells themselves are taken for the
  * solid: measures of a sampled octree then are those of its cells, and not of what was sampled.
  *
@@ -3646,7 +3968,8 @@ leafless_status leafless_octree_levels(const leafless_octree *octree,
                                        uint64_t *count);
 
 /**
- * Checks that an octree is well-formed and canonical: O(n). Those that the library makes, opens or maps
+ * Checks that an octree is well-formed and canonical: O(n). Its channels are not looked at: see
+ * leafless_channel_check. Those that the library makes, opens or maps
  * verified are; the bytes that checksums cover are not looked at here, see leafless_bytes_verify.
  *
  * - Buffers: none.
@@ -3660,7 +3983,8 @@ leafless_status leafless_octree_levels(const leafless_octree *octree,
 leafless_status leafless_octree_check(const leafless_octree *octree);
 
 /**
- * Whether two octrees have the same cells with the same tags on the same frame. Metadata does not count.
+ * Whether two octrees have the same cells with the same tags on the same frame. Metadata does not count, nor
+ * do channels.
  * O(n).
  *
  * - Buffers: `equal`, one truth value.
@@ -3674,8 +3998,8 @@ leafless_status leafless_octree_check(const leafless_octree *octree);
 leafless_status leafless_octree_equal(const leafless_octree *a, const leafless_octree *b, bool *equal);
 
 /**
- * The octree with one more fact in its metadata, or with another value of one; the arrays are shared. Names
- * in use: "name", "units", "source", "rule".
+ * The octree with one more fact in its metadata, or with another value of one; the arrays and the channels are
+ * shared. Names in use: "name", "units", "source", "rule".
  *
  * - Buffers: `key` and `value`, `key_length` and `value_length` bytes of UTF-8; `named`, one pointer.
  * - Result: `*named`.
@@ -3696,7 +4020,7 @@ leafless_status leafless_octree_with_metadata(const leafless_octree *octree,
                                               leafless_octree **named);
 
 /**
- * The octree with one fact less in its metadata, or with none; the arrays are shared.
+ * The octree with one fact less in its metadata, or with none; the arrays and the channels are shared.
  *
  * - Buffers: `key`, `key_length` bytes of UTF-8, or NULL for all facts; `unnamed`, one pointer.
  * - Result: `*unnamed`; a fact that is not there need not be.
@@ -4526,6 +4850,530 @@ leafless_status leafless_volume_to_bytes(const leafless_volume *volume,
                                          uint64_t *length);
 
 /**
+ * The attribute that has one value everywhere.
+ *
+ * - Buffers: `value`, `components` numbers; `attribute`, one pointer.
+ * - Result: `*attribute`.
+ * - Errors: LEAFLESS_E_ARGUMENT unless `components` is 1 to 4, and no number NaN.
+ * - Ownership: give `*attribute` back with leafless_attribute_free.
+ * - Threads: any.
+ * - Untrusted input: any numbers.
+ * - Since: 0.1
+ */
+leafless_status leafless_attribute_new_constant(const double *value,
+                                                uint32_t components,
+                                                leafless_attribute **attribute);
+
+/**
+ * An attribute in another place: its value at the image M p + t of a point p is that of `operand` at p. It
+ * carries attributes and channels along with a solid that leafless_solid_placed moves by the same map. The
+ * map is inverted; what is rounded thereby moves the values by about 2^-50 of the coordinates.
+ *
+ * - Buffers: `matrix`, 12 numbers, the rows of [M | t]; `attribute`, one pointer.
+ * - Result: `*attribute`.
+ * - Errors: LEAFLESS_E_ARGUMENT if an entry is neither 0 nor of a magnitude between 2^-64 and 2^64, M is
+ *   singular, or an entry of the inverse is beyond 2^64.
+ * - Ownership: the operand is shared and may be freed; give `*attribute` back with leafless_attribute_free.
+ * - Threads: any.
+ * - Untrusted input: any attribute and numbers.
+ * - Since: 0.1
+ *
+ */
+leafless_status leafless_attribute_placed(const leafless_attribute *operand,
+                                          const double matrix[12],
+                                          leafless_attribute **attribute);
+
+/**
+ * How many numbers a value of an attribute has.
+ *
+ * - Buffers: `components`, one number.
+ * - Result: `*components`, 1 to 4.
+ * - Errors: only the general ones.
+ * - Ownership: nothing changes hands.
+ * - Threads: any.
+ * - Untrusted input: any attribute.
+ * - Since: 0.1
+ */
+leafless_status leafless_attribute_components(const leafless_attribute *attribute, uint32_t *components);
+
+/**
+ * The values of an attribute at points.
+ *
+ * - Buffers: `points_model`, `count` points of 3 numbers; `values`, room for `count` values of as many numbers
+ *   as leafless_attribute_components says. Both may be NULL if `count` is 0.
+ * - Result: the value at point i from `values[components * i]` on; NaN where there is none.
+ * - Errors: LEAFLESS_E_CALLBACK; LEAFLESS_E_DAMAGED; LEAFLESS_E_NO_MEMORY.
+ * - Ownership: nothing changes hands.
+ * - Threads: any; works in the calling thread.
+ * - Untrusted input: any attribute, any numbers.
+ * - Since: 0.1
+ */
+leafless_status leafless_attribute_values(const leafless_attribute *attribute,
+                                          const double *points_model,
+                                          uint64_t count,
+                                          double *values);
+
+/**
+ * What is known of the values of an attribute in the interior of a box.
+ *
+ * - Buffers: `min_model` and `max_model`, 3 numbers each; `range`, one struct.
+ * - Result: `*range`.
+ * - Errors: LEAFLESS_E_ARGUMENT unless min <= max on every axis, and all coordinates are finite;
+ *   LEAFLESS_E_CALLBACK; LEAFLESS_E_DAMAGED.
+ * - Ownership: nothing changes hands.
+ * - Threads: any; works in the calling thread.
+ * - Untrusted input: any attribute, any numbers; the work is bounded.
+ * - Since: 0.1
+ *
+ */
+leafless_status leafless_attribute_range(const leafless_attribute *attribute,
+                                         const double min_model[3],
+                                         const double max_model[3],
+                                         leafless_value_range *range);
+
+/**
+ * One more reference to an attribute.
+ *
+ * - Buffers: `attribute`, a handle; `reference`, one pointer.
+ * - Result: `*reference`, equal to `attribute`.
+ * - Errors: only the general ones.
+ * - Ownership: give each reference back with leafless_attribute_free.
+ * - Threads: any.
+ * - Untrusted input: none.
+ * - Since: 0.1
+ */
+leafless_status leafless_attribute_ref(const leafless_attribute *attribute, leafless_attribute **reference);
+
+/**
+ * Gives back a reference to an attribute; with the last one the attribute is gone. Channels that were filled
+ * from it stay.
+ *
+ * - Buffers: `attribute`, a handle or NULL, which does nothing.
+ * - Result: none.
+ * - Errors: none.
+ * - Ownership: the reference is gone.
+ * - Threads: any; no other call may use this reference.
+ * - Untrusted input: none.
+ * - Since: 0.1
+ */
+void leafless_attribute_free(leafless_attribute *attribute);
+
+/**
+ * Sets callbacks to their defaults; `components` and one of `value` and `values` must then be set.
+ *
+ * - Buffers: `callbacks`, one struct of `struct_size` bytes, which is sizeof(leafless_attribute_callbacks); need
+ *   not be initialised.
+ * - Result: `*callbacks`.
+ * - Errors: LEAFLESS_E_ARGUMENT if `struct_size` cannot be right.
+ * - Ownership: nothing changes hands.
+ * - Threads: any.
+ * - Untrusted input: none.
+ * - Since: 0.1
+ */
+leafless_status leafless_attribute_callbacks_init(leafless_attribute_callbacks *callbacks,
+                                                  size_t struct_size);
+
+/**
+ * The host's own attribute.
+ *
+ * - Buffers: `callbacks`, one struct, which is copied; `attribute`, one pointer.
+ * - Result: `*attribute`.
+ * - Errors: LEAFLESS_E_NULL if `value` and `values` are NULL; LEAFLESS_E_ARGUMENT unless `components` is 1 to 4.
+ *   After an error `destroy` is not called.
+ * - Ownership: `ctx` must live until `destroy` is called with it; give `*attribute` back with
+ *   leafless_attribute_free.
+ * - Threads: any; in which the functions are called, leafless_attribute_value_fn says.
+ * - Untrusted input: any answers.
+ * - Since: 0.1
+ */
+leafless_status leafless_attribute_new_callbacks(const leafless_attribute_callbacks *callbacks,
+                                                 leafless_attribute **attribute);
+
+/**
+ * One more reference to a channel.
+ *
+ * - Buffers: `channel`, a handle; `reference`, one pointer.
+ * - Result: `*reference`, equal to `channel`.
+ * - Errors: only the general ones.
+ * - Ownership: give each reference back with leafless_channel_free.
+ * - Threads: any.
+ * - Untrusted input: none.
+ * - Since: 0.1
+ */
+leafless_status leafless_channel_ref(const leafless_channel *channel, leafless_channel **reference);
+
+/**
+ * Gives back a reference to a channel. With the last one the channel is gone, and with it the mapping of its
+ * file, unless an octree, an attribute, or a channel with other metadata still shares it.
+ *
+ * - Buffers: `channel`, a handle or NULL, which does nothing.
+ * - Result: none.
+ * - Errors: none.
+ * - Ownership: the reference is gone.
+ * - Threads: any; no other call may use this reference.
+ * - Untrusted input: none.
+ * - Since: 0.1
+ */
+void leafless_channel_free(leafless_channel *channel);
+
+/**
+ * What can be said of a channel at once. O(1), but for a channel of a file that was mapped unverified: when such
+ * a channel is first read, by whichever function, its links are checked in one pass.
+ *
+ * - Buffers: `info`, one struct.
+ * - Result: `*info`.
+ * - Errors: LEAFLESS_E_DAMAGED.
+ * - Ownership: nothing changes hands.
+ * - Threads: any.
+ * - Untrusted input: any channel.
+ * - Since: 0.1
+ */
+leafless_status leafless_channel_describe(const leafless_channel *channel,
+                                          leafless_channel_info *info);
+
+/**
+ * Checks that a channel is well-formed: O(n). Those that the library makes, opens or maps verified are.
+ *
+ * - Buffers: none.
+ * - Result: LEAFLESS_OK if it is.
+ * - Errors: LEAFLESS_E_DAMAGED, with the first damage in the message; LEAFLESS_E_NO_MEMORY.
+ * - Ownership: nothing changes hands.
+ * - Threads: any.
+ * - Untrusted input: any channel.
+ * - Since: 0.1
+ */
+leafless_status leafless_channel_check(const leafless_channel *channel);
+
+/**
+ * Whether two channels have the same values in the same cells, of one type and on one frame. Metadata does not
+ * count. O(n).
+ *
+ * - Buffers: `equal`, one truth value.
+ * - Result: `*equal`.
+ * - Errors: only the general ones.
+ * - Ownership: nothing changes hands.
+ * - Threads: any.
+ * - Untrusted input: any channels.
+ * - Since: 0.1
+ */
+leafless_status leafless_channel_equal(const leafless_channel *a,
+                                       const leafless_channel *b,
+                                       bool *equal);
+
+/**
+ * The values of a channel as an attribute, which may be placed, or fill a channel on another frame. It has no
+ * values outside of the channel's cube.
+ *
+ * - Buffers: `attribute`, one pointer.
+ * - Result: `*attribute`.
+ * - Errors: only the general ones; asking for its values returns LEAFLESS_E_DAMAGED if the channel was mapped
+ *   unverified and its links are damaged.
+ * - Ownership: the attribute shares the channel, which may be freed; give `*attribute` back with
+ *   leafless_attribute_free.
+ * - Threads: any.
+ * - Untrusted input: any channel.
+ * - Since: 0.1
+ */
+leafless_status leafless_channel_as_attribute(const leafless_channel *channel,
+                                              leafless_attribute **attribute);
+
+/**
+ * The channel with one more fact in its metadata, or with another value of one; the arrays are shared. Names in
+ * use: "name", by which a solid knows the channel, "unit" (of the values), "meaning" (what they are, such as
+ * "colour" or "density").
+ *
+ * - Buffers: `key` and `value`, `key_length` and `value_length` bytes of UTF-8; `named`, one pointer.
+ * - Result: `*named`.
+ * - Errors: LEAFLESS_E_UTF8; LEAFLESS_E_ARGUMENT if all facts would take more than 64 KiB in a file, 8 bytes
+ *   and the two texts each; LEAFLESS_E_NO_MEMORY.
+ * - Ownership: the texts are copied. `*named` shares the arrays of `channel`, which may be freed: what must
+ *   outlive `channel`, such as bytes that it views, must outlive `*named` too. Give that back with
+ *   leafless_channel_free.
+ * - Threads: any.
+ * - Untrusted input: any texts.
+ * - Since: 0.1
+ */
+leafless_status leafless_channel_with_metadata(const leafless_channel *channel,
+                                               const char *key,
+                                               size_t key_length,
+                                               const char *value,
+                                               size_t value_length,
+                                               leafless_channel **named);
+
+/**
+ * The channel with one fact less in its metadata, or with none; the arrays are shared.
+ *
+ * - Buffers: `key`, `key_length` bytes of UTF-8, or NULL for all facts; `unnamed`, one pointer.
+ * - Result: `*unnamed`; a fact that is not there need not be.
+ * - Errors: LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY.
+ * - Ownership: as leafless_channel_with_metadata.
+ * - Threads: any.
+ * - Untrusted input: any texts.
+ * - Since: 0.1
+ */
+leafless_status leafless_channel_without_metadata(const leafless_channel *channel,
+                                                  const char *key,
+                                                  size_t key_length,
+                                                  leafless_channel **unnamed);
+
+/**
+ * The value of a fact in a channel's metadata, such as "name".
+ *
+ * - Buffers: `key`, `key_length` bytes of UTF-8; `value` and `value_length`, one each.
+ * - Result: `*value`, not NUL-terminated; NULL if there is no such fact. `*value_length`, in bytes.
+ * - Errors: LEAFLESS_E_UTF8.
+ * - Ownership: the text belongs to the channel and lives as long as the reference `channel`.
+ * - Threads: any.
+ * - Untrusted input: any channel.
+ * - Since: 0.1
+ */
+leafless_status leafless_channel_peek_metadata(const leafless_channel *channel,
+                                               const char *key,
+                                               size_t key_length,
+                                               const char **value,
+                                               size_t *value_length);
+
+/**
+ * A fact of a channel's metadata by its place among all, which stand by ascending key.
+ *
+ * - Buffers: `count`, one number; `key`, `key_length`, `value`, `value_length`, one each, all four NULL to
+ *   ask for the count only.
+ * - Result: `*count`, the number of all facts; key and value, not NUL-terminated, with their lengths in
+ *   bytes.
+ * - Errors: LEAFLESS_E_ARGUMENT if there is no fact `index`, unless only the count is asked for.
+ * - Ownership: the texts belong to the channel and live as long as the reference `channel`.
+ * - Threads: any.
+ * - Untrusted input: any channel.
+ * - Since: 0.1
+ */
+leafless_status leafless_channel_peek_metadata_at(const leafless_channel *channel,
+                                                  uint64_t index,
+                                                  uint64_t *count,
+                                                  const char **key,
+                                                  size_t *key_length,
+                                                  const char **value,
+                                                  size_t *value_length);
+
+/**
+ * Sets options for filling to their defaults.
+ *
+ * - Buffers: `fill`, one struct of `struct_size` bytes, which is sizeof(leafless_channel_fill_options); need not be
+ *   initialised.
+ * - Result: `*fill`.
+ * - Errors: LEAFLESS_E_ARGUMENT if `struct_size` cannot be right.
+ * - Ownership: nothing changes hands.
+ * - Threads: any.
+ * - Untrusted input: none.
+ * - Since: 0.1
+ */
+leafless_status leafless_channel_fill_options_init(leafless_channel_fill_options *fill,
+                                                   size_t struct_size);
+
+/**
+ * The channel of an attribute: each cell has the attribute's value at its centre, rounded to the type of the
+ * numbers; a cell whose centre has no value has none. Cells are as large as proven ranges and the criterion
+ * allow. The result is the same bit for bit for any number of threads.
+ *
+ * Without a criterion the result is that of asking at the centre of every finest cell. An attribute without ranges is
+ * asked there: 8^depth times, or as often as the solid has cells that are not EMPTY.
+ *
+ * - Buffers: `frame`, one struct, or NULL for the frame of `fill->solid`, which is then needed; `fill`, one struct
+ *   or NULL; `options`, one struct or NULL; `channel`, one pointer.
+ * - Result: `*channel`, with the name as its only fact, if there is one.
+ * - Errors: LEAFLESS_E_ARGUMENT as leafless_frame_check, if a field of `fill` is wrong, or a value beyond the range
+ *   of the type, infinite, or partly NaN; LEAFLESS_E_FRAME if the solid lies in another cube than the frame;
+ *   LEAFLESS_E_NULL if both are missing; LEAFLESS_E_UTF8; LEAFLESS_E_CALLBACK; LEAFLESS_E_DAMAGED;
+ *   LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
+ * - Ownership: nothing is kept of the attribute, the solid and the name; give `*channel` back with
+ *   leafless_channel_free.
+ * - Threads: any; uses as many as `options` says.
+ * - Untrusted input: any attribute, any octree; set `max_bytes` where the depth or the attribute is not your own
+ *   choice.
+ * - Since: 0.1
+ */
+leafless_status leafless_channel_fill(const leafless_attribute *attribute,
+                                      const leafless_frame *frame,
+                                      const leafless_channel_fill_options *fill,
+                                      const leafless_options *options,
+                                      leafless_channel **channel);
+
+/**
+ * The values of a channel at points. A point on a face between cells belongs to the upper one. O(depth) each.
+ *
+ * - Buffers: `points_model`, `count` points of 3 numbers; `values`, room for `count` values of as many numbers as
+ *   `components` of leafless_channel_describe. Both may be NULL if `count` is 0.
+ * - Result: the value at point i from `values[components * i]` on; NaN where there is none, and outside of the
+ *   channel's cube.
+ * - Errors: LEAFLESS_E_DAMAGED.
+ * - Ownership: nothing changes hands.
+ * - Threads: any; works in the calling thread.
+ * - Untrusted input: any channel, any numbers; damage reads as no value.
+ * - Since: 0.1
+ */
+leafless_status leafless_channel_values(const leafless_channel *channel,
+                                        const double *points_model,
+                                        uint64_t count,
+                                        double *values);
+
+/**
+ * The value of a channel at a point, as leafless_channel_values.
+ *
+ * - Buffers: `point_model`, 3 numbers; `value`, room for 4 numbers.
+ * - Result: `value`: as many numbers as the channel's values have, and 0 beyond them; four NaN if there is none.
+ * - Errors: LEAFLESS_E_DAMAGED.
+ * - Ownership: nothing changes hands.
+ * - Threads: any.
+ * - Untrusted input: any channel, any numbers; damage reads as no value.
+ * - Since: 0.1
+ *
+ */
+leafless_status leafless_channel_value(const leafless_channel *channel,
+                                       const double point_model[3],
+                                       double value[4]);
+
+/**
+ * The value of a finest cell of a channel's own frame. O(depth).
+ *
+ * - Buffers: `cell`, 3 numbers; `value`, room for 4 numbers.
+ * - Result: `value`, as leafless_channel_value; four NaN if a coordinate is not below 2^depth.
+ * - Errors: LEAFLESS_E_DAMAGED.
+ * - Ownership: nothing changes hands.
+ * - Threads: any.
+ * - Untrusted input: any channel, any numbers; damage reads as no value.
+ * - Since: 0.1
+ *
+ */
+leafless_status leafless_channel_value_of_cell(const leafless_channel *channel,
+                                               const uint32_t cell[3],
+                                               double value[4]);
+
+/**
+ * The channel with one value wherever an octree is not EMPTY, and as it is elsewhere. It is as deep as the deeper of
+ * the two. The same bit for bit for any number of threads.
+ *
+ * - Buffers: `region`, a handle; `value`, as many numbers as the channel's values have, or NULL to take values
+ *   away; `options`, one struct or NULL; `changed`, one pointer.
+ * - Result: `*changed`, with the metadata of `channel`.
+ * - Errors: LEAFLESS_E_ARGUMENT if the value is beyond the type's range, or not finite; LEAFLESS_E_FRAME unless both
+ *   lie in one cube; LEAFLESS_E_DAMAGED; LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
+ * - Ownership: `channel` stays as it is; give `*changed` back with leafless_channel_free.
+ * - Threads: any; uses as many as `options` says.
+ * - Untrusted input: any channel, any octree, any numbers.
+ * - Since: 0.1
+ */
+leafless_status leafless_channel_with_value_in(const leafless_channel *channel,
+                                               const leafless_octree *region,
+                                               const double *value,
+                                               const leafless_options *options,
+                                               leafless_channel **changed);
+
+/**
+ * The octree with one more channel, in the place of one of the same name, if there is one; the arrays of both are
+ * shared. A channel without a name has the empty one.
+ *
+ * - Buffers: `result`, one pointer.
+ * - Result: `*result`, with the metadata of `octree`.
+ * - Errors: LEAFLESS_E_FRAME if the channel lies in another cube than the octree; LEAFLESS_E_ARGUMENT if there are
+ *   256 channels already; LEAFLESS_E_NO_MEMORY.
+ * - Ownership: `*result` shares the arrays of `octree` and `channel`, which may be freed: what must outlive these,
+ *   such as bytes that they view, must outlive `*result` too. Give that back with leafless_octree_free.
+ * - Threads: any.
+ * - Untrusted input: any octree, any channel.
+ * - Since: 0.1
+ */
+leafless_status leafless_octree_with_channel(const leafless_octree *octree,
+                                             const leafless_channel *channel,
+                                             leafless_octree **result);
+
+/**
+ * The octree without the channel of a name, or without any; the arrays are shared.
+ *
+ * - Buffers: `name`, `name_length` bytes of UTF-8, or NULL for all channels; `result`, one pointer.
+ * - Result: `*result`, with the metadata of `octree`; a channel that is not there need not be.
+ * - Errors: LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY.
+ * - Ownership: as leafless_octree_with_channel.
+ * - Threads: any.
+ * - Untrusted input: any octree, any text.
+ * - Since: 0.1
+ */
+leafless_status leafless_octree_without_channel(const leafless_octree *octree,
+                                                const char *name,
+                                                size_t name_length,
+                                                leafless_octree **result);
+
+/**
+ * How many channels an octree has.
+ *
+ * - Buffers: `count`, one number.
+ * - Result: `*count`, 0 to 256.
+ * - Errors: only the general ones.
+ * - Ownership: nothing changes hands.
+ * - Threads: any.
+ * - Untrusted input: any octree.
+ * - Since: 0.1
+ */
+leafless_status leafless_octree_channel_count(const leafless_octree *octree, uint64_t *count);
+
+/**
+ * A channel of an octree by its place among all, which stand in ascending order of their names.
+ *
+ * - Buffers: `channel`, one pointer.
+ * - Result: `*channel`.
+ * - Errors: LEAFLESS_E_ARGUMENT if there is no channel `index`.
+ * - Ownership: `*channel` shares the arrays of `octree`, which may be freed: what must outlive `octree`, such as
+ *   bytes that it views, must outlive `*channel` too. Give that back with leafless_channel_free.
+ * - Threads: any.
+ * - Untrusted input: any octree.
+ * - Since: 0.1
+ */
+leafless_status leafless_octree_channel_at(const leafless_octree *octree,
+                                           uint64_t index,
+                                           leafless_channel **channel);
+
+/**
+ * The channel of an octree with a name.
+ *
+ * - Buffers: `name`, `name_length` bytes of UTF-8; `channel`, one pointer.
+ * - Result: `*channel`; NULL if there is no such channel.
+ * - Errors: LEAFLESS_E_UTF8.
+ * - Ownership: as leafless_octree_channel_at.
+ * - Threads: any.
+ * - Untrusted input: any octree, any text.
+ * - Since: 0.1
+ */
+leafless_status leafless_octree_channel(const leafless_octree *octree,
+                                        const char *name,
+                                        size_t name_length,
+                                        leafless_channel **channel);
+
+/**
+ * An octree that was made of operands in the same cube, whatever the operation, with their channels. Channels of one
+ * name become one, in which at each point the values of those operands count that are not EMPTY there. A channel that
+ * only one operand has is shared as it is. The same bit for bit for any number of threads.
+ *
+ * - Buffers: `octree`, a handle; `operands`, `count` handles; `carry`, a leafless_carry, by which channels are joined
+ *   that none of `rules` names; `rules`, `rule_count` structs, or NULL if that is 0; the first that names a channel
+ *   counts. `options`, one struct or NULL, of which limits concern each channel; `result`, one pointer.
+ * - Result: `*result`: the cells and metadata of `octree`; its own channels, but those of names that operands have;
+ *   each channel with the metadata of the first operand that has it.
+ * - Errors: LEAFLESS_E_ARGUMENT if channels of one name have values of two types, or there are more than 256;
+ *   LEAFLESS_E_FRAME unless all lie in one cube; LEAFLESS_E_UTF8; LEAFLESS_E_DAMAGED; LEAFLESS_E_LIMIT;
+ *   LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
+ * - Ownership: as leafless_octree_with_channel.
+ * - Threads: any; uses as many as `options` says.
+ * - Untrusted input: any octrees, any texts.
+ * - Since: 0.1
+ */
+leafless_status leafless_octree_carry_channels(const leafless_octree *octree,
+                                               const leafless_octree *const *operands,
+                                               uint64_t count,
+                                               uint32_t carry,
+                                               const leafless_carry_rule *rules,
+                                               uint64_t rule_count,
+                                               const leafless_options *options,
+                                               leafless_octree **result);
+
+/**
  * Reads a scene from a file. Files that it names are looked for beside it.
  *
  * - Buffers: `path`, `path_length` bytes of UTF-8; `scene`, one pointer.
@@ -4742,7 +5590,7 @@ leafless_status leafless_octree_build(const leafless_solid *solid,
  * LEAFLESS_RULE_OUTER.
  *
  * - Buffers: `options`, one struct or NULL; `resolved`, one pointer. `rule` is a leafless_rule.
- * - Result: `*resolved`, with the octree's facts "name" and "units" and no others.
+ * - Result: `*resolved`, with the octree's facts "name" and "units" and no others, and with its channels.
  * - Errors: LEAFLESS_E_NOT_SAMPLED under LEAFLESS_RULE_SAMPLED if a cell is PARTIAL, because a stored octree
  *   knows no more about it; LEAFLESS_E_DAMAGED; LEAFLESS_E_ARGUMENT; LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED;
  *   LEAFLESS_E_NO_MEMORY.
@@ -4761,7 +5609,7 @@ leafless_status leafless_octree_resolve(const leafless_octree *octree,
  * shorter. Everything works on it as on any other.
  *
  * - Buffers: `compacted`, one pointer.
- * - Result: `*compacted`, with the same metadata.
+ * - Result: `*compacted`, with the same metadata and channels.
  * - Errors: LEAFLESS_E_DAMAGED if a brick cannot be read; LEAFLESS_E_NO_MEMORY.
  * - Ownership: `octree` stays as it is; give `*compacted` back with leafless_octree_free.
  * - Threads: any.
@@ -4772,7 +5620,7 @@ leafless_status leafless_octree_compact(const leafless_octree *octree, leafless_
 
 /**
  * The points that lie in `a`, in `b`, or in both. Exact, and the same bit for bit for any number of threads; never larger
- * than both operands together.
+ * than both operands together. The result has no channels: leafless_octree_carry_channels gives it those of the operands.
  *
  * - Buffers: `options`, one struct or NULL; `result`, one pointer.
  * - Result: `*result`, with those of the facts "name" and "units" that all operands have with one value, and

@@ -202,7 +202,7 @@ fn membership(code: i32) -> Result<bool, Error> {
 }
 
 /// Nothing, or a host's own error.
-fn done(code: i32) -> Result<(), Error> {
+pub(super) fn done(code: i32) -> Result<(), Error> {
     if code == 0 { Ok(()) } else { Err(Error::Callback { code }) }
 }
 

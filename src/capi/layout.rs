@@ -75,6 +75,14 @@ fn write_all(to: &mut dyn Write) -> fmt::Result {
         leafless_gradient { value, gradient }
         leafless_tangent { point, normal, inner_curvature, outer_curvature, error }
         leafless_function { struct_size, reserved, value, range, destroy, ctx, fingerprint }
+        leafless_value_range { values, kind }
+        leafless_attribute_callbacks { struct_size, components, value, values, range, destroy, ctx }
+        leafless_channel_info { frame, scalar, components, value_count, elements, bytes }
+        leafless_channel_fill_options {
+            struct_size, scalar, components, depth, solid, criterion, reserved, coarse_model, fine_model, tolerance, name,
+            name_length
+        }
+        leafless_carry_rule { name, name_length, carry }
         leafless_proof { displacement_model, full, empty }
         leafless_octree_info { frame, elements, bricks, proof, root, exterior, is_binary, is_clipped }
         leafless_statistics { nodes, empty, full, partial, lower_cells, upper_cells, volume_model }
@@ -184,6 +192,14 @@ fn write_all(to: &mut dyn Write) -> fmt::Result {
             LEAFLESS_RULE_CERTIFIED, LEAFLESS_RULE_SAMPLED, LEAFLESS_RULE_INNER, LEAFLESS_RULE_OUTER
         }
         leafless_facets { LEAFLESS_FACETS_AUTO, LEAFLESS_FACETS_EXACT, LEAFLESS_FACETS_POLYGON }
+        leafless_range_kind { LEAFLESS_RANGE_UNKNOWN, LEAFLESS_RANGE_NOWHERE, LEAFLESS_RANGE_WITHIN }
+        leafless_scalar_type {
+            LEAFLESS_SCALAR_F32, LEAFLESS_SCALAR_U8, LEAFLESS_SCALAR_U16, LEAFLESS_SCALAR_U32
+        }
+        leafless_criterion {
+            LEAFLESS_CRITERION_NONE, LEAFLESS_CRITERION_VARIANCE, LEAFLESS_CRITERION_RANGE
+        }
+        leafless_carry { LEAFLESS_CARRY_LEFT, LEAFLESS_CARRY_RIGHT, LEAFLESS_CARRY_MAX, LEAFLESS_CARRY_MEAN }
         leafless_exterior { LEAFLESS_EXTERIOR_UNKNOWN, LEAFLESS_EXTERIOR_EMPTY, LEAFLESS_EXTERIOR_FULL }
     }
     writeln!(to, "LEAFLESS_VERSION_MAJOR {LEAFLESS_VERSION_MAJOR}")?;

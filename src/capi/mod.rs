@@ -15,11 +15,17 @@
 //! | `mesh_file` | mesh files, units |
 //! | `mesh_write` | mesh files, written |
 //! | `polyhedron` | triangle meshes from faces with holes, shells and voids |
+//! | `metadata` | facts of octrees and channels, for both |
 //! | `octree` | octrees: describing, statistics, metadata |
 //! | `solid` | solids: primitives, meshes, octrees, the host's own |
 //! | `volume` | bitmaps and arrays of samples, and solids of them |
 //! | `volume_arrays` | volumes from the host's arrays |
 //! | `volume_file` | volume files |
+//! | `attribute` | attributes: one value, those of a channel, moved ones |
+//! | `attribute_host` | the host's own attributes |
+//! | `channel` | channels: describing, metadata |
+//! | `channel_fill` | channels filled from attributes, asked at points, changed in regions |
+//! | `octree_channels` | channels of octrees, carried to others |
 //! | `scene` | scenes in the language of OpenSCAD's CSG dumps |
 //! | `op` | building, resolving, Booleans |
 //! | `query` | points, boxes, cursors |
@@ -39,9 +45,13 @@
 // What callers must keep to is said in the doc blocks in C's terms, and once for all in the header's preface.
 #![allow(clippy::missing_safety_doc)]
 
+mod attribute;
+mod attribute_host;
 mod bitmap;
 mod boundary;
 mod cells;
+mod channel;
+mod channel_fill;
 mod columns;
 mod control;
 mod csg;
@@ -59,7 +69,9 @@ mod mesh_arrays;
 mod mesh_file;
 mod mesh_moments;
 mod mesh_write;
+mod metadata;
 mod octree;
+mod octree_channels;
 mod op;
 mod point;
 mod polyhedron;
@@ -75,10 +87,14 @@ mod volume;
 mod volume_arrays;
 mod volume_file;
 
+pub use attribute::*;
+pub use attribute_host::*;
 pub use bitmap::*;
 #[cfg(feature = "capi-test")]
 pub use boundary::leafless_test_panic;
 pub use cells::*;
+pub use channel::*;
+pub use channel_fill::*;
 pub use columns::*;
 pub use control::*;
 pub use csg::*;
@@ -97,6 +113,7 @@ pub use mesh_file::*;
 pub use mesh_moments::*;
 pub use mesh_write::*;
 pub use octree::*;
+pub use octree_channels::*;
 pub use op::*;
 pub use point::*;
 pub use polyhedron::*;

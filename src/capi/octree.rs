@@ -1,9 +1,11 @@
 //! Octrees: what they hold, and the facts that travel with them.
 
-use super::boundary::{Failure, buffer, guard, handle, out, refer, release, shared, text};
+use super::boundary::{Failure, buffer, guard, handle, out, refer, release, shared};
 use super::frame::{frame, leafless_frame, leafless_interval};
+use super::metadata::{self, Fact};
 use super::status::leafless_status;
-use crate::octree::{LevelStatistics, Metadata, Octree, Proof, Statistics, Tag};
+use crate::octree::metadata::MetadataLimit;
+use crate::octree::{LevelStatistics, Octree, Proof, Statistics, Tag};
 use core::ffi::c_char;
 
 /// A leaf-free octree, in memory or mapped from a file.
@@ -247,7 +249,7 @@ pub unsafe extern "C" fn leafless_octree_describe(
     })
 }
 
-/// The same octree, of whose cells this is said; the arrays are shared. Octrees that other programs made
+/// The same octree, of whose cells this is said; the arrays and the channels are shared. Octrees that other programs made
 /// prove what these know. If FULL and EMPTY are said to be proven, the cells themselves are taken for the
 /// solid: measures of a sampled octree then are those of its cells, and not of what was sampled.
 ///
@@ -328,7 +330,8 @@ pub unsafe extern "C" fn leafless_octree_levels(
     })
 }
 
-/// Checks that an octree is well-formed and canonical: O(n). Those that the library makes, opens or maps
+/// Checks that an octree is well-formed and canonical: O(n). Its channels are not looked at: see
+/// leafless_channel_check. Those that the library makes, opens or maps
 /// verified are; the bytes that checksums cover are not looked at here, see leafless_bytes_verify.
 ///
 /// - Buffers: none.
@@ -343,7 +346,8 @@ pub unsafe extern "C" fn leafless_octree_check(octree: *const leafless_octree) -
     guard(|| unsafe { Ok(shared(octree, "octree")?.octree.view().check()?) })
 }
 
-/// Whether two octrees have the same cells with the same tags on the same frame. Metadata does not count.
+/// Whether two octrees have the same cells with the same tags on the same frame. Metadata does not count, nor
+/// do channels.
 /// O(n).
 ///
 /// - Buffers: `equal`, one truth value.
@@ -365,8 +369,8 @@ pub unsafe extern "C" fn leafless_octree_equal(
     })
 }
 
-/// The octree with one more fact in its metadata, or with another value of one; the arrays are shared. Names
-/// in use: "name", "units", "source", "rule".
+/// The octree with one more fact in its metadata, or with another value of one; the arrays and the channels are
+/// shared. Names in use: "name", "units", "source", "rule".
 ///
 /// - Buffers: `key` and `value`, `key_length` and `value_length` bytes of UTF-8; `named`, one pointer.
 /// - Result: `*named`.
@@ -389,14 +393,14 @@ pub unsafe extern "C" fn leafless_octree_with_metadata(
 ) -> leafless_status {
     guard(|| unsafe {
         let octree = &shared(octree, "octree")?.octree;
-        let (key, value) = (text(key, key_length, "key")?, text(value, value_length, "value")?);
         let named = out(named, "named")?;
-        let metadata = octree.metadata().changed(key, Some(value))?;
-        named.write(give(octree.with_metadata(metadata)))
+        let (key, value) = ((key, key_length), (value, value_length));
+        let facts = metadata::with(octree.metadata(), key, value, MetadataLimit::SOLID)?;
+        named.write(give(octree.with_metadata(facts)))
     })
 }
 
-/// The octree with one fact less in its metadata, or with none; the arrays are shared.
+/// The octree with one fact less in its metadata, or with none; the arrays and the channels are shared.
 ///
 /// - Buffers: `key`, `key_length` bytes of UTF-8, or NULL for all facts; `unnamed`, one pointer.
 /// - Result: `*unnamed`; a fact that is not there need not be.
@@ -414,11 +418,8 @@ pub unsafe extern "C" fn leafless_octree_without_metadata(
 ) -> leafless_status {
     guard(|| unsafe {
         let octree = &shared(octree, "octree")?.octree;
-        let all = key.is_null();
-        let key = if all { "" } else { text(key, key_length, "key")? };
         let unnamed = out(unnamed, "unnamed")?;
-        let metadata = if all { Metadata::new() } else { octree.metadata().changed(key, None)? };
-        unnamed.write(give(octree.with_metadata(metadata)))
+        unnamed.write(give(octree.with_metadata(metadata::without(octree.metadata(), key, key_length)?)))
     })
 }
 
@@ -441,11 +442,7 @@ pub unsafe extern "C" fn leafless_octree_peek_metadata(
 ) -> leafless_status {
     guard(|| unsafe {
         let octree = &shared(octree, "octree")?.octree;
-        let key = text(key, key_length, "key")?;
-        let (value, value_length) = (out(value, "value")?, out(value_length, "value_length")?);
-        let found = octree.metadata().get(key);
-        value.write(found.map_or(core::ptr::null(), |found| found.as_ptr().cast()))?;
-        value_length.write(found.map_or(0, str::len))
+        metadata::peek(octree.metadata(), key, key_length, value, value_length)
     })
 }
 
@@ -472,21 +469,7 @@ pub unsafe extern "C" fn leafless_octree_peek_metadata_at(
 ) -> leafless_status {
     guard(|| unsafe {
         let octree = &shared(octree, "octree")?.octree;
-        let count = out(count, "count")?;
-        let facts = octree.metadata().iter();
-        let number = octree.metadata().iter().count() as u64;
-        if key.is_null() && key_length.is_null() && value.is_null() && value_length.is_null() {
-            return count.write(number);
-        }
-        let (key, key_length) = (out(key, "key")?, out(key_length, "key_length")?);
-        let (value, value_length) = (out(value, "value")?, out(value_length, "value_length")?);
-        let mut there = facts.skip(usize::try_from(index).unwrap_or(usize::MAX));
-        let missing = Failure::Argument { name: "index", problem: "is not below the number of facts" };
-        let (found_key, found_value) = there.next().ok_or(missing)?;
-        key.write(found_key.as_ptr().cast())?;
-        key_length.write(found_key.len())?;
-        value.write(found_value.as_ptr().cast())?;
-        value_length.write(found_value.len())?;
-        count.write(number)
+        let fact = Fact { key, key_length, value, value_length };
+        metadata::peek_at(octree.metadata(), index, count, fact)
     })
 }

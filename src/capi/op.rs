@@ -72,7 +72,7 @@ pub unsafe extern "C" fn leafless_octree_build(
 /// LEAFLESS_RULE_OUTER.
 ///
 /// - Buffers: `options`, one struct or NULL; `resolved`, one pointer. `rule` is a leafless_rule.
-/// - Result: `*resolved`, with the octree's facts "name" and "units" and no others.
+/// - Result: `*resolved`, with the octree's facts "name" and "units" and no others, and with its channels.
 /// - Errors: LEAFLESS_E_NOT_SAMPLED under LEAFLESS_RULE_SAMPLED if a cell is PARTIAL, because a stored octree
 ///   knows no more about it; LEAFLESS_E_DAMAGED; LEAFLESS_E_ARGUMENT; LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED;
 ///   LEAFLESS_E_NO_MEMORY.
@@ -92,7 +92,8 @@ pub unsafe extern "C" fn leafless_octree_resolve(
         let rule = self::rule(rule)?;
         let resolved = out(resolved, "resolved")?;
         let made = controlled(options, |control| resolve(octree.view(), rule, control))?;
-        resolved.write(give(made.with_metadata(Metadata::common([octree.metadata()])?)))
+        let made = made.with_metadata(Metadata::common([octree.metadata()])?);
+        resolved.write(give(made.with_channels_of(octree)))
     })
 }
 
@@ -100,7 +101,7 @@ pub unsafe extern "C" fn leafless_octree_resolve(
 /// shorter. Everything works on it as on any other.
 ///
 /// - Buffers: `compacted`, one pointer.
-/// - Result: `*compacted`, with the same metadata.
+/// - Result: `*compacted`, with the same metadata and channels.
 /// - Errors: LEAFLESS_E_DAMAGED if a brick cannot be read; LEAFLESS_E_NO_MEMORY.
 /// - Ownership: `octree` stays as it is; give `*compacted` back with leafless_octree_free.
 /// - Threads: any.
@@ -115,7 +116,7 @@ pub unsafe extern "C" fn leafless_octree_compact(
         let octree = &shared(octree, "octree")?.octree;
         let compacted = out(compacted, "compacted")?;
         let compact = compact(octree.view())?.with_metadata_of(octree);
-        compacted.write(give(compact))
+        compacted.write(give(compact.with_channels_of(octree)))
     })
 }
 
@@ -167,7 +168,7 @@ unsafe fn nary(
 }
 
 /// The points that lie in `a`, in `b`, or in both. Exact, and the same bit for bit for any number of threads; never larger
-/// than both operands together.
+/// than both operands together. The result has no channels: leafless_octree_carry_channels gives it those of the operands.
 ///
 /// - Buffers: `options`, one struct or NULL; `result`, one pointer.
 /// - Result: `*result`, with those of the facts "name" and "units" that all operands have with one value, and

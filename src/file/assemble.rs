@@ -1,15 +1,15 @@
 //! The bytes of a file: header, table and sections of a solid and its channels.
 
-use super::channel::MAX_METADATA as MAX_CHANNEL_METADATA;
 use super::counts::{ENCODING_DICTIONARY, ENCODING_RAW};
 use super::header::{HEADER_LENGTH, Header, MAGIC, MAJOR, OLDEST_MINOR};
 use super::object::{CHANNEL, CHANNEL_MINOR, Object};
-use super::section::{Entry, Kind, MAX_METADATA, SECTION_ALIGNMENT};
+use super::section::{Entry, Kind, SECTION_ALIGNMENT};
 use super::wire::Wire;
 use crate::error::Error;
 use crate::memory;
 use crate::octree::brick::{Brick, BrickArray, Bricks, OwnedBricks};
 use crate::octree::dictionary;
+use crate::octree::metadata::MetadataLimit;
 use crate::octree::view::{LevelCounts, OctreeRef};
 use crate::octree::word::Planes;
 use crate::octree::{ChannelRef, Metadata, Octree};
@@ -118,16 +118,15 @@ pub(super) fn assemble(
     let tree = octree.view();
     // Thereby the links, too, are the ones that the planes determine.
     tree.check()?;
-    let metadata = bytes_of(octree.metadata(), MAX_METADATA, "must not take more than 1 MiB in a file")?;
+    let metadata = bytes_of(octree.metadata(), MetadataLimit::SOLID)?;
     let encoded = dictionary::encode(&tree.bricks)?;
     let mut channels = memory::with_capacity(octree.channels().len())?;
     for channel in octree.channels() {
         let view = channel.view()?;
         view.check()?;
-        let problem = "must not take more than 64 KiB in a file for a channel";
         channels.push(ChannelParts {
             view,
-            metadata: bytes_of(channel.metadata(), MAX_CHANNEL_METADATA, problem)?,
+            metadata: bytes_of(channel.metadata(), MetadataLimit::CHANNEL)?,
             levels: view.count_levels(),
             encoded: dictionary::encode(&view.tree.bricks)?,
         });
@@ -225,10 +224,8 @@ pub(super) fn assemble(
     })
 }
 
-fn bytes_of(metadata: &Metadata, most: u64, problem: &'static str) -> Result<Vec<u8>, Error> {
-    if metadata.len_in_file() as u64 > most {
-        return Err(Error::Argument { name: "metadata", problem });
-    }
+fn bytes_of(metadata: &Metadata, limit: MetadataLimit) -> Result<Vec<u8>, Error> {
+    limit.check(metadata.len_in_file())?;
     metadata.to_bytes()
 }
 

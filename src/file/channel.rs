@@ -8,6 +8,7 @@ use super::wire::elements;
 use crate::error::{Error, FormatError};
 use crate::lattice::Frame;
 use crate::memory;
+use crate::octree::metadata::MetadataLimit;
 use crate::octree::{Channel, ChannelRef, Metadata, ScalarType, Tag, ValueType};
 use alloc::sync::Arc;
 use alloc::vec::Vec;
@@ -17,7 +18,8 @@ const MOST_CHANNELS: usize = 256;
 
 /// Most bytes that the metadata of a channel may take; part of the format. It bounds the work of mapping a
 /// file.
-pub(super) const MAX_METADATA: u64 = 1 << 16;
+const MAX_METADATA: u64 = 1 << 16;
+const _: () = assert!(MAX_METADATA == MetadataLimit::CHANNEL.bytes() as u64);
 
 /// All that must be known of a channel to read it in place.
 #[derive(Debug, Clone)]

@@ -6,6 +6,7 @@ use super::header::{ENTRY_LENGTH, Head};
 use super::object::{CHANNEL, MAX_OBJECTS, Object};
 use super::wire::{Wire, elements, wire_struct};
 use crate::error::FormatError;
+use crate::octree::metadata::MetadataLimit;
 use crate::octree::view::LevelCounts;
 use crate::octree::word::Planes;
 use core::ops::Range;
@@ -15,7 +16,7 @@ pub(super) const SECTION_ALIGNMENT: u64 = 64;
 
 /// Most bytes that the metadata may take; part of the format. It bounds the work of mapping a file.
 pub(super) const MAX_METADATA: u64 = 1 << 20;
-const _: () = assert!(MAX_METADATA == crate::octree::metadata::MOST as u64);
+const _: () = assert!(MAX_METADATA == MetadataLimit::SOLID.bytes() as u64);
 
 /// Flag of a section that a reader must know to read its object; part of the format.
 pub(super) const SECTION_REQUIRED: u32 = 1;

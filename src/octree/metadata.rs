@@ -12,8 +12,37 @@ use alloc::vec::Vec;
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Metadata(Vec<(String, String)>);
 
-/// Bytes that all facts together may take in a file; part of the format.
-pub(crate) const MOST: usize = 1 << 20;
+/// How many bytes all facts together may take in a file; part of the format.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct MetadataLimit {
+    bytes: usize,
+    problem: &'static str,
+}
+
+impl MetadataLimit {
+    /// Of the facts of a solid.
+    pub(crate) const SOLID: MetadataLimit =
+        MetadataLimit { bytes: 1 << 20, problem: "must not take more than 1 MiB in a file" };
+
+    /// Of the facts of a channel, so that the work of mapping a file is bounded.
+    pub(crate) const CHANNEL: MetadataLimit =
+        MetadataLimit { bytes: 1 << 16, problem: "must not take more than 64 KiB in a file for a channel" };
+
+    pub(crate) const fn bytes(self) -> usize {
+        self.bytes
+    }
+
+    /// Refuses facts that take so many bytes in a file.
+    ///
+    /// # Errors
+    /// [`Error::Argument`].
+    pub(crate) fn check(self, bytes: usize) -> Result<(), Error> {
+        if bytes > self.bytes {
+            return Err(Error::Argument { name: "metadata", problem: self.problem });
+        }
+        Ok(())
+    }
+}
 
 /// What set operations keep if their operands agree on it, in ascending order.
 const LASTING: [&str; 2] = ["name", "units"];
@@ -46,12 +75,16 @@ impl Metadata {
     /// # Errors
     /// [`Error::Argument`] if the copy would not fit into a file; [`Error::OutOfMemory`].
     #[cfg(feature = "capi")]
-    pub(crate) fn changed(&self, key: &str, value: Option<&str>) -> Result<Metadata, Error> {
+    pub(crate) fn changed(
+        &self,
+        key: &str,
+        value: Option<&str>,
+        limit: MetadataLimit,
+    ) -> Result<Metadata, Error> {
         let kept = || self.iter().filter(|(known, _)| *known != key);
         let length: usize = kept().map(|(key, value)| LENGTHS + key.len() + value.len()).sum();
-        if value.is_some_and(|value| length + LENGTHS + key.len() + value.len() > MOST) {
-            let problem = "must not take more than 1 MiB in a file";
-            return Err(Error::Argument { name: "metadata", problem });
+        if let Some(value) = value {
+            limit.check(length + LENGTHS + key.len() + value.len())?;
         }
         let mut facts = memory::with_capacity(self.0.len() + 1)?;
         for (key, value) in kept() {

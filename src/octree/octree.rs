@@ -202,6 +202,12 @@ impl Octree {
         Ok(Octree { channels: Arc::new(channels), ..self.clone() })
     }
 
+    /// The same tree with the channels of another, which lies in the same cube; they are shared.
+    #[cfg(feature = "capi")]
+    pub(crate) fn with_channels_of(&self, other: &Octree) -> Octree {
+        Octree { channels: other.channels.clone(), ..self.clone() }
+    }
+
     /// The same tree with the metadata of another, which are shared.
     #[cfg(feature = "capi")]
     pub(crate) fn with_metadata_of(&self, other: &Octree) -> Octree {

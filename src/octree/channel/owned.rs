@@ -92,6 +92,12 @@ impl Channel {
         Channel { metadata: Arc::new(metadata), ..self.clone() }
     }
 
+    /// The same channel with the metadata of another, which are shared.
+    #[cfg(feature = "capi")]
+    pub(crate) fn with_metadata_of(&self, other: &Channel) -> Channel {
+        Channel { metadata: other.metadata.clone(), ..self.clone() }
+    }
+
     /// Where the channel lies, and how finely its values may be told apart: the solid's cube, and a depth of
     /// its own.
     pub fn frame(&self) -> &Frame {
