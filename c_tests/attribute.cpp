@@ -92,7 +92,8 @@ void many_threads() {
             OK(leafless_octree_channel(keep[2].get(), "", 0, &raw));
             const Channel channel(raw);
             for (int i = 0; i < 2000; i++) {
-                const double at[3] = {((i * 31 + t) % 64 + 0.5) / 32 - 1, (i % 64 + 0.5) / 32 - 1, (t * 8 + 0.5) / 32 - 1};
+                const int cell[3] = {(i * 31 + t) % 64, i % 64, t * 8};
+                const double at[3] = {(cell[0] + 0.5) / 32 - 1, (cell[1] + 0.5) / 32 - 1, (cell[2] + 0.5) / 32 - 1};
                 double value[4];
                 OK(leafless_channel_value(channel.get(), at, value));
                 CHECK(value[0] == static_cast<double>(static_cast<float>(grain(at))));

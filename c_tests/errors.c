@@ -321,7 +321,9 @@ static leafless_status grainy_ball(void) {
     }
     status = leafless_octree_with_channel(grainy, channel, &with);
     operands[0] = operands[1] = with;
-    if (!status) status = leafless_octree_carry_channels(grainy, operands, 2, LEAFLESS_CARRY_MEAN, NULL, 0, &options, &carried);
+    if (!status) {
+        status = leafless_octree_carry_channels(grainy, operands, 2, LEAFLESS_CARRY_MEAN, NULL, 0, &options, &carried);
+    }
     if (!status) status = leafless_channel_with_value_in(channel, grainy, &value, &options, &changed);
     if (!status) status = leafless_octree_to_bytes(carried, NULL, 0, &length);
     if (!status) {
