@@ -42,6 +42,7 @@
 //! | `op` | building, splitting on demand, and the set algebra of stored trees |
 //! | `query` | points, boxes and rays, measures, interference |
 //! | `attribute` | what has a value at points, inside or outside of solids |
+//! | `voxel` | voxels as records, sorted by code |
 //! | `surface` | triangle meshes of solids |
 //! | `file` | the file format |
 //! | `exchange` | the files of other programs |
@@ -67,6 +68,7 @@
 //! | … an allocation refused? | `memory.rs` |
 //! | … where a ray meets a solid, how high it is? | `query/ray/`, `query/columns/` |
 //! | … a closed triangle mesh of a solid? | `surface/cubes.rs`, `smc.rs`, `shrink.rs`, `solid.rs`, `volume.rs` |
+//! | … the list of voxels, their depth order? | `voxel/walk.rs`, `records.rs`, `order.rs` |
 //! | … the volume of a solid, the distance of two, or of a point? | `query/measure/`, `query/clearance/`, `query/distance/` |
 
 #![no_std]
@@ -94,6 +96,7 @@ mod query;
 pub mod scene;
 mod solid;
 mod surface;
+mod voxel;
 
 pub use attribute::{
     Attribute, CarryRule, ChannelOperand, ChannelSummary, ConstantAttribute, Criterion, Detail, FillOptions,
@@ -142,6 +145,10 @@ pub use surface::{
     Resolve, Snap, VertexPlacement, coplanar_shrink, coplanar_shrink_of, marching_cubes, marching_cubes_of,
     marching_cubes_of_volume, marching_cubes_reusing, marching_cubes_with_volume, published_shrink,
     published_shrink_of, smc, smc_of,
+};
+
+pub use voxel::{
+    LinearCode, VoxelBoundary, VoxelKind, VoxelOptions, VoxelRecord, VoxelRecords, VoxelRecordsRef, Voxels,
 };
 
 #[cfg(feature = "std")]

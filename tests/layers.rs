@@ -8,7 +8,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 /// From the bottom up; modules of one row may use each other.
-const LAYERS: [&[&str]; 13] = [
+const LAYERS: [&[&str]; 14] = [
     &["error", "memory", "control", "dispatch"],
     &["lattice"],
     &["octree"],
@@ -17,6 +17,7 @@ const LAYERS: [&[&str]; 13] = [
     &["op"],
     &["query"],
     &["attribute"],
+    &["voxel"],
     &["surface"],
     &["file"],
     &["exchange"],

@@ -52,6 +52,11 @@ impl Detail {
         Detail::new(edge, edge, f64::INFINITY, Criterion::Variance)
     }
 
+    /// The fine limit in model units: no cell whose edge is at most this is split.
+    pub fn fine(&self) -> f64 {
+        self.fine
+    }
+
     /// Whether a cell of this edge, with these bounds, need not be split.
     ///
     /// # Errors

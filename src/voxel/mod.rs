@@ -1,0 +1,17 @@
+//! Voxel records: the list of a solid's voxels, sorted by linear octree code (Zhu, Tang and Dong 2002).
+//!
+//! A record says what a voxel is (outside, inside, boundary), which cell it is, and what value an attribute
+//! has in it. The cells of a record list are of any sizes: inside voxels follow an attribute, boundary voxels
+//! have a level of their own. [`Voxels`] hands out records one by one, [`VoxelRecords`] keeps them in arrays.
+
+mod code;
+mod options;
+mod record;
+mod records;
+mod walk;
+
+pub use code::LinearCode;
+pub use options::{VoxelBoundary, VoxelOptions};
+pub use record::{VoxelKind, VoxelRecord};
+pub use records::{VoxelRecords, VoxelRecordsRef};
+pub use walk::Voxels;

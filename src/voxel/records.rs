@@ -1,0 +1,367 @@
+//! Sorted arrays of voxel records, and what is found in them by code.
+
+use super::code::{LinearCode, cell_of, number_of, size};
+use super::record::{self, VoxelKind, VoxelRecord};
+use super::{VoxelOptions, Voxels};
+use crate::attribute::Attribute;
+use crate::control::Control;
+use crate::error::Error;
+use crate::lattice::{Cell, Frame};
+use crate::octree::{OctreeRef, Proof, Tag};
+use alloc::vec::Vec;
+use core::ops::Range;
+
+/// The records of voxels in four arrays, sorted by code; of two with one code the larger voxel comes first.
+/// A record takes 10 bytes, and 8 for each component of its value.
+///
+/// Reading is done by [`VoxelRecordsRef`].
+#[derive(Debug, Clone, PartialEq)]
+pub struct VoxelRecords {
+    pub(super) frame: Frame,
+    pub(super) exterior: Tag,
+    pub(super) proof: Proof,
+    pub(super) components: usize,
+    pub(super) codes: Vec<u64>,
+    pub(super) levels: Vec<u8>,
+    pub(super) kinds: Vec<u8>,
+    pub(super) values: Vec<f64>,
+}
+
+/// Borrowed records: everything that only reads.
+///
+/// The records lie in four arrays: the numbers of the [linear codes](LinearCode), levels, the numbers of the
+/// [kinds](VoxelKind), and values, as many numbers a record as the values have components. A record without
+/// value has NaN in each. Records are sorted by code, and of two with one code the coarser comes first. Voxels
+/// are disjoint, except that a [refined](VoxelKind::Refined) one is followed by those in it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct VoxelRecordsRef<'a> {
+    frame: Frame,
+    exterior: Tag,
+    proof: Proof,
+    components: usize,
+    codes: &'a [u64],
+    levels: &'a [u8],
+    kinds: &'a [u8],
+    values: &'a [f64],
+}
+
+impl VoxelRecords {
+    /// No records on a lattice.
+    pub(super) fn empty(frame: Frame, exterior: Tag, proof: Proof, components: usize) -> VoxelRecords {
+        let (codes, levels, kinds, values) = Default::default();
+        VoxelRecords { frame, exterior, proof, components, codes, levels, kinds, values }
+    }
+
+    /// The records of an octree's voxels; of any solid those of the octree that it is
+    /// [built](crate::build) into. O(records).
+    ///
+    /// # Errors
+    /// As [`Voxels::new`], what the attribute reports, [`Error::OutOfMemory`], and what `control` asks for: its
+    /// limit of bytes holds for the arrays.
+    pub fn of(
+        tree: &OctreeRef<'_>,
+        options: &VoxelOptions,
+        attribute: Option<&dyn Attribute>,
+        control: &Control<'_>,
+    ) -> Result<VoxelRecords, Error> {
+        let components = attribute.map_or(0, |attribute| attribute.components());
+        let mut voxels = Voxels::new(tree, options, attribute)?;
+        let mut records = VoxelRecords::empty(*voxels.frame(), tree.exterior(), tree.proof(), components);
+        let each = records.bytes_each() as u64;
+        loop {
+            control.check()?;
+            let batch = voxels.next_batch()?;
+            if batch.is_empty() {
+                break;
+            }
+            records.append(batch)?;
+            let limit = control.max_bytes.filter(|&limit| records.codes.len() as u64 * each > limit);
+            if let Some(limit) = limit {
+                return Err(Error::Limit { what: "bytes", limit });
+            }
+            if let Some(progress) = control.progress {
+                progress(voxels.progress());
+            }
+        }
+        Ok(records)
+    }
+
+    /// Records from arrays, as [`VoxelRecordsRef`] describes them. The exterior is not known, and nothing is
+    /// proven, until somebody says so.
+    ///
+    /// # Errors
+    /// As [`VoxelRecordsRef::new`].
+    pub fn from_arrays(
+        frame: &Frame,
+        codes: Vec<u64>,
+        levels: Vec<u8>,
+        kinds: Vec<u8>,
+        components: usize,
+        values: Vec<f64>,
+    ) -> Result<VoxelRecords, Error> {
+        let checked = VoxelRecordsRef::new(frame, &codes, &levels, &kinds, components, &values)?;
+        let VoxelRecordsRef { exterior, proof, .. } = checked;
+        Ok(VoxelRecords { frame: *frame, exterior, proof, components, codes, levels, kinds, values })
+    }
+
+    /// The same records, of which this is known: the tag of the space outside of the universe (BRANCH counts as
+    /// PARTIAL), and what voxels prove.
+    #[must_use]
+    pub fn with_exterior(self, exterior: Tag, proof: Proof) -> VoxelRecords {
+        let exterior = if exterior == Tag::Branch { Tag::Partial } else { exterior };
+        VoxelRecords { exterior, proof, ..self }
+    }
+
+    /// Borrows the records.
+    pub fn view(&self) -> VoxelRecordsRef<'_> {
+        VoxelRecordsRef {
+            frame: self.frame,
+            exterior: self.exterior,
+            proof: self.proof,
+            components: self.components,
+            codes: &self.codes,
+            levels: &self.levels,
+            kinds: &self.kinds,
+            values: &self.values,
+        }
+    }
+
+    /// Bytes that a record takes.
+    pub fn bytes_each(&self) -> usize {
+        size_of::<u64>() + 2 + self.components * size_of::<f64>()
+    }
+
+    /// Room for `count` more.
+    pub(super) fn reserve(&mut self, count: usize) -> Result<(), Error> {
+        self.codes.try_reserve(count)?;
+        self.levels.try_reserve(count)?;
+        self.kinds.try_reserve(count)?;
+        Ok(self.values.try_reserve(count.saturating_mul(self.components))?)
+    }
+
+    fn append(&mut self, batch: &[VoxelRecord]) -> Result<(), Error> {
+        self.reserve(batch.len())?;
+        for record in batch {
+            self.push(record.cell, record.kind, |component| {
+                record.value.map_or(f64::NAN, |value| value[component])
+            })?;
+        }
+        Ok(())
+    }
+
+    /// Appends a record, whose cell comes after all others.
+    pub(super) fn push(
+        &mut self,
+        cell: Cell,
+        kind: VoxelKind,
+        value: impl Fn(usize) -> f64,
+    ) -> Result<(), Error> {
+        self.reserve(1)?;
+        self.codes.push(number_of(cell, self.frame.depth()));
+        self.levels.push(cell.level);
+        self.kinds.push(kind as u8);
+        self.values.extend((0..self.components).map(value));
+        Ok(())
+    }
+}
+
+impl<'a> VoxelRecordsRef<'a> {
+    /// Records in arrays of somebody else. O(records).
+    ///
+    /// # Errors
+    /// [`Error::Argument`] if the arrays are not of one length (times `components`, 0 to 4, for the values), if a
+    /// level is beyond the frame's depth, a code is not one of its level, a kind is none, or records are out of
+    /// order or overlap.
+    pub fn new(
+        frame: &Frame,
+        codes: &'a [u64],
+        levels: &'a [u8],
+        kinds: &'a [u8],
+        components: usize,
+        values: &'a [f64],
+    ) -> Result<VoxelRecordsRef<'a>, Error> {
+        let refused = |name, problem| Err(Error::Argument { name, problem });
+        let count = codes.len();
+        if components > 4 {
+            return refused("components", "must be 0 to 4");
+        }
+        if levels.len() != count
+            || kinds.len() != count
+            || count.checked_mul(components) != Some(values.len())
+        {
+            return refused("records", "the arrays must be of one length");
+        }
+        // Where the last voxel ends that is not refined, and what came last.
+        let (mut end, mut last) = (0, None);
+        for ((&code, &level), &kind) in codes.iter().zip(levels).zip(kinds) {
+            LinearCode::from_number(code, level, frame.depth())?;
+            let kind = VoxelKind::from_number(kind)?;
+            if code < end || last.is_some_and(|last| (code, level) <= last) {
+                return refused("codes", "must ascend, and voxels must not overlap");
+            }
+            last = Some((code, level));
+            end = if kind == VoxelKind::Refined { code } else { code + size(level, frame.depth()) };
+        }
+        let (exterior, proof) = (Tag::Partial, Proof::new(false, false));
+        Ok(VoxelRecordsRef { frame: *frame, exterior, proof, components, codes, levels, kinds, values })
+    }
+
+    /// The lattice.
+    pub fn frame(&self) -> &Frame {
+        &self.frame
+    }
+
+    /// What is known of the space outside of the universe.
+    pub fn exterior(&self) -> Tag {
+        self.exterior
+    }
+
+    /// What inside voxels (as FULL cells) and outside voxels (as EMPTY ones) prove.
+    pub fn proof(&self) -> Proof {
+        self.proof
+    }
+
+    /// How many records there are.
+    pub fn len(&self) -> usize {
+        self.codes.len()
+    }
+
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.codes.is_empty()
+    }
+
+    /// How many numbers a value has; 0 if the records have no values.
+    pub fn components(&self) -> usize {
+        self.components
+    }
+
+    /// The numbers of the linear codes.
+    pub fn codes(&self) -> &'a [u64] {
+        self.codes
+    }
+
+    /// The levels.
+    pub fn levels(&self) -> &'a [u8] {
+        self.levels
+    }
+
+    /// The numbers of the kinds.
+    pub fn kinds(&self) -> &'a [u8] {
+        self.kinds
+    }
+
+    /// The values, [`components`](Self::components) numbers a record; NaN where there is no value.
+    pub fn values(&self) -> &'a [f64] {
+        self.values
+    }
+
+    /// How many records there are of a kind. O(n).
+    pub fn count(&self, kind: VoxelKind) -> u64 {
+        self.kinds.iter().filter(|&&number| number == kind as u8).count() as u64
+    }
+
+    /// The kind of a record of which the index is known to be good.
+    pub(super) fn kind_at(&self, index: usize) -> VoxelKind {
+        VoxelKind::ALL[self.kinds[index] as usize & 3]
+    }
+
+    /// The cell of a record of which the index is known to be good.
+    pub(super) fn cell_at(&self, index: usize) -> Cell {
+        cell_of(self.codes[index], self.levels[index], self.frame.depth())
+    }
+
+    /// The numbers of a record's value.
+    pub(super) fn numbers_at(&self, index: usize) -> &'a [f64] {
+        &self.values[index * self.components..][..self.components]
+    }
+
+    /// The record with this index.
+    pub fn get(&self, index: usize) -> Option<VoxelRecord> {
+        if index >= self.len() {
+            return None;
+        }
+        let numbers = self.numbers_at(index);
+        let known = !numbers.is_empty() && !numbers.iter().all(|number| number.is_nan());
+        let mut value = [0.0; 4];
+        value[..numbers.len()].copy_from_slice(numbers);
+        let (kind, cell) = (self.kind_at(index), self.cell_at(index));
+        Some(VoxelRecord { kind, cell, value: known.then_some(value) })
+    }
+
+    /// All records, in their order.
+    pub fn iter(&self) -> impl ExactSizeIterator<Item = VoxelRecord> + use<'a> {
+        let records = *self;
+        (0..self.len()).map(move |index| {
+            records.get(index).unwrap_or_else(|| unreachable!("the index is below the length"))
+        })
+    }
+
+    /// The linear code of a record.
+    pub fn code(&self, index: usize) -> Option<LinearCode> {
+        let cell = (index < self.len()).then(|| self.cell_at(index))?;
+        LinearCode::new(cell, self.frame.depth()).ok()
+    }
+
+    /// The minimum corner of a voxel in model units, rounded down where it is no double.
+    pub fn corner(&self, index: usize) -> Option<[f64; 3]> {
+        (index < self.len()).then(|| record::corner(&self.frame, self.cell_at(index)))
+    }
+
+    /// The edge of a voxel in model units, exactly.
+    pub fn edge(&self, index: usize) -> Option<f64> {
+        self.levels.get(index).map(|&level| record::edge(&self.frame, level))
+    }
+
+    /// The record of just this cell. O(log n).
+    pub fn find(&self, cell: Cell) -> Option<usize> {
+        let code = LinearCode::new(cell, self.frame.depth()).ok()?;
+        let key = (code.number(), cell.level);
+        let first = self.from_number(key.0);
+        // Of one code there are no more records than levels.
+        let found = (first..self.len()).take_while(|&index| self.codes[index] == key.0);
+        found.into_iter().find(|&index| self.levels[index] == cell.level)
+    }
+
+    /// The records of the cells in `cell`, with its own if there is one: they follow each other. O(log n).
+    pub fn within(&self, cell: Cell) -> Range<usize> {
+        let Ok(code) = LinearCode::new(cell, self.frame.depth()) else { return 0..0 };
+        let start = self.from_number(code.number());
+        let larger = (start..self.len())
+            .take_while(|&index| self.codes[index] == code.number() && self.levels[index] < cell.level);
+        start + larger.count()..self.from_number(code.number() + size(cell.level, self.frame.depth()))
+    }
+
+    /// For each octant of `cell` the records in it: the children of a voxel that is refined, or if a child is
+    /// refined further what it consists of. O(log n).
+    pub fn children(&self, cell: Cell) -> [Range<usize>; 8] {
+        if cell.level >= self.frame.depth() {
+            return core::array::from_fn(|_| 0..0);
+        }
+        core::array::from_fn(|octant| self.within(cell.child(octant as u8)))
+    }
+
+    /// The record, not of a refined voxel, that contains a cell. O(log n).
+    pub fn containing(&self, cell: Cell) -> Option<usize> {
+        let code = LinearCode::new(cell, self.frame.depth()).ok()?;
+        let (number, level) = (code.number(), cell.level);
+        let after = self.codes.partition_point(|&code| code <= number);
+        // Records of smaller cells at the same corner come last.
+        let index =
+            (0..after).rev().find(|&index| (self.codes[index], self.levels[index]) <= (number, level))?;
+        let end = self.codes[index] + size(self.levels[index], self.frame.depth());
+        (number < end && self.kind_at(index) != VoxelKind::Refined).then_some(index)
+    }
+
+    /// The record, not of a refined voxel, that contains a point (model units). What lies on a face between
+    /// voxels belongs to the upper one. O(log n).
+    pub fn at(&self, point: [f64; 3]) -> Option<usize> {
+        let at = self.frame.cell_of(point)?;
+        self.containing(Cell { level: self.frame.depth(), at })
+    }
+
+    /// The first record whose code is at least `number`.
+    fn from_number(&self, number: u64) -> usize {
+        self.codes.partition_point(|&code| code < number)
+    }
+}

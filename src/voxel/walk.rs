@@ -1,0 +1,300 @@
+//! The voxels of a stored octree one after another.
+
+use super::options::VoxelOptions;
+use super::record::{VoxelKind, centre, edge};
+use super::{VoxelRecord, code};
+use crate::attribute::{Attribute, ValueRange};
+use crate::error::Error;
+use crate::lattice::{Bounds, Cell, Cube, Frame};
+use crate::octree::{CellFilter, Cells, OctreeRef, Tag};
+
+/// What is followed inside where there is no attribute.
+struct Nothing;
+
+impl Attribute for Nothing {
+    fn components(&self) -> usize {
+        1
+    }
+
+    fn values(&self, _: &[[f64; 3]], values: &mut [Option<[f64; 4]>]) -> Result<(), Error> {
+        values.fill(None);
+        Ok(())
+    }
+
+    fn range(&self, _: &Bounds) -> Result<ValueRange, Error> {
+        Ok(ValueRange::Nowhere)
+    }
+}
+
+/// An inside cell of the octree on the way through the voxels that it is split into.
+#[derive(Clone)]
+struct Inside {
+    root: Cell,
+    at: Cell,
+    /// Cells of this level and below on the way are known to touch no outside cell.
+    quiet: u8,
+}
+
+impl Inside {
+    /// The next cell behind the current one; `None` behind the last.
+    fn advance(&mut self) -> Option<()> {
+        while self.at.level > self.root.level && self.at.octant() == 7 {
+            self.at = self.at.parent();
+        }
+        if self.at.level == self.root.level {
+            return None;
+        }
+        let next = self.at.octant() + 1;
+        self.at = self.at.parent().child(next);
+        if self.at.level <= self.quiet {
+            self.quiet = u8::MAX;
+        }
+        Some(())
+    }
+}
+
+/// Cells and what they are, in the order of their codes, without values.
+#[derive(Clone)]
+pub(super) struct Walk<'a> {
+    tree: OctreeRef<'a>,
+    options: VoxelOptions,
+    attribute: &'a dyn Attribute,
+    frame: Frame,
+    boundary_level: u8,
+    cells: Cells<'a>,
+    inside: Option<Inside>,
+}
+
+impl<'a> Walk<'a> {
+    pub(super) fn new(
+        tree: &OctreeRef<'a>,
+        options: &VoxelOptions,
+        attribute: Option<&'a dyn Attribute>,
+    ) -> Result<Walk<'a>, Error> {
+        if options.touching() {
+            // Looking beside every cell, a descent remembers nothing: elements with shared children would be
+            // met again and again.
+            tree.check_links()?;
+        }
+        let boundary_level = options.boundary_level(tree);
+        let all = CellFilter::tags(&[Tag::Empty, Tag::Full, Tag::Partial, Tag::Branch]);
+        Ok(Walk {
+            tree: *tree,
+            options: *options,
+            attribute: attribute.unwrap_or(&Nothing),
+            frame: options.frame(tree)?,
+            boundary_level,
+            cells: tree.cells(all.levels(0..=boundary_level)),
+            inside: None,
+        })
+    }
+
+    pub(super) fn frame(&self) -> &Frame {
+        &self.frame
+    }
+
+    /// How much of the universe lies before a cell.
+    pub(super) fn progress(&self, cell: Cell) -> f64 {
+        let depth = self.frame.depth();
+        code::number_of(cell, depth) as f64 / code::size(0, depth) as f64
+    }
+
+    /// The next voxel.
+    pub(super) fn next(&mut self) -> Result<Option<(VoxelKind, Cell)>, Error> {
+        loop {
+            if let Some(mut inside) = self.inside.take() {
+                let cell = inside.at;
+                let kind = self.kind(&mut inside)?;
+                if kind == VoxelKind::Refined {
+                    inside.at = cell.child(0);
+                    self.inside = Some(inside);
+                    if !self.options.lists_refined() {
+                        continue;
+                    }
+                } else {
+                    self.inside = inside.advance().map(|()| inside);
+                }
+                return Ok(Some((kind, cell)));
+            }
+            let Some(found) = self.cells.next() else { return Ok(None) };
+            let cell = found.cell;
+            let kind = match found.tag {
+                Tag::Empty if self.options.lists_outside() => VoxelKind::Outside,
+                Tag::Empty => continue,
+                Tag::Full => {
+                    self.inside = Some(Inside { root: cell, at: cell, quiet: u8::MAX });
+                    continue;
+                }
+                Tag::Partial => VoxelKind::Boundary,
+                Tag::Branch if cell.level == self.boundary_level => VoxelKind::Boundary,
+                Tag::Branch if self.options.lists_refined() => VoxelKind::Refined,
+                Tag::Branch => continue,
+            };
+            return Ok(Some((kind, cell)));
+        }
+    }
+
+    /// What becomes of the current cell of an inside cell.
+    fn kind(&self, inside: &mut Inside) -> Result<VoxelKind, Error> {
+        let cell = inside.at;
+        if self.options.touching() && inside.quiet == u8::MAX {
+            if self.touches(cell) {
+                let finest = cell.level == self.boundary_level;
+                return Ok(if finest { VoxelKind::Boundary } else { VoxelKind::Refined });
+            }
+            inside.quiet = cell.level;
+        }
+        let fine = match self.options.how_fine() {
+            Some(detail) if cell.level < self.frame.depth() => {
+                let (min, max) = Cube { frame: &self.frame, cell }.bounds();
+                let bounds = Bounds { min, max };
+                detail.is_fine(self.attribute, &bounds, edge(&self.frame, cell.level))?
+            }
+            _ => true,
+        };
+        Ok(if fine { VoxelKind::Inside } else { VoxelKind::Refined })
+    }
+
+    /// Whether a face of an inside cell, not below the boundary level, touches an outside cell.
+    fn touches(&self, cell: Cell) -> bool {
+        let cells = self.tree.frame().cells();
+        let shift = self.tree.frame().depth() - cell.level;
+        let (min, max) = (cell.at.map(|a| a << shift), cell.at.map(|a| (a + 1) << shift));
+        let outside = CellFilter::tags(&[Tag::Empty]).levels(0..=self.boundary_level);
+        let any = |min, max| self.tree.cells(outside.within(min, max)).next().is_some();
+        let at_end = (0..3).any(|axis| min[axis] == 0 || max[axis] == cells);
+        if at_end && self.tree.exterior() == Tag::Empty {
+            return true;
+        }
+        // Most cells have nothing outside around them.
+        if !any(min.map(|a| a.saturating_sub(1)), max.map(|a| a + 1)) {
+            return false;
+        }
+        (0..3).any(|axis| {
+            let (mut low, mut high) = ((min, max), (min, max));
+            (low.0[axis], low.1[axis]) = (min[axis].saturating_sub(1), min[axis]);
+            (high.0[axis], high.1[axis]) = (max[axis], max[axis] + 1);
+            (min[axis] > 0 && any(low.0, low.1)) || (max[axis] < cells && any(high.0, high.1))
+        })
+    }
+}
+
+/// Records whose values are asked for at once.
+const BATCH: usize = 64;
+
+/// The records of an octree's voxels one after another, in the order of their codes. See
+/// [`VoxelOptions`] for which these are, and [`VoxelRecords::of`](crate::VoxelRecords::of) for all at once.
+///
+/// After an error there is nothing more.
+pub struct Voxels<'a> {
+    walk: Walk<'a>,
+    attribute: Option<&'a dyn Attribute>,
+    batch: [VoxelRecord; BATCH],
+    next: usize,
+    filled: usize,
+    ended: bool,
+}
+
+impl<'a> Voxels<'a> {
+    /// The voxels of a stored octree, with an attribute's values at their centres. Needs no allocation.
+    ///
+    /// ```
+    /// use leafless::{Control, Csg, Frame, Rule, VoxelKind, VoxelOptions, Voxels, build};
+    /// let frame = Frame::new([0.0; 3], 4.0, 2)?;
+    /// let bar = build(&Csg::cuboid([0.0; 3], [3.0, 1.0, 1.0])?, &frame, Rule::Certified, &Control::default())?;
+    /// let mut inside = 0;
+    /// for record in Voxels::new(bar.view(), &VoxelOptions::new(), None)? {
+    ///     inside += (record?.kind == VoxelKind::Inside) as u32;
+    /// }
+    /// assert_eq!(inside, 3);
+    /// # Ok::<(), leafless::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`VoxelOptions::frame`], and [`Error::Damaged`] if cells beside cells are asked for and links of the
+    /// tree are damaged. (Else damage reads as boundary voxels.) Items are errors if the attribute reports one.
+    pub fn new(
+        tree: &OctreeRef<'a>,
+        options: &VoxelOptions,
+        attribute: Option<&'a dyn Attribute>,
+    ) -> Result<Voxels<'a>, Error> {
+        let blank = VoxelRecord { kind: VoxelKind::Outside, cell: Cell::ROOT, value: None };
+        let walk = Walk::new(tree, options, attribute)?;
+        Ok(Voxels { walk, attribute, batch: [blank; BATCH], next: 0, filled: 0, ended: false })
+    }
+
+    /// The lattice of the records.
+    pub fn frame(&self) -> &Frame {
+        self.walk.frame()
+    }
+
+    /// How many records are still to come: a pass that asks for no values. O(records).
+    ///
+    /// # Errors
+    /// What the attribute reports.
+    pub fn count_records(&self) -> Result<u64, Error> {
+        let mut walk = self.walk.clone();
+        let mut count = (self.filled - self.next) as u64;
+        while !self.ended && walk.next()?.is_some() {
+            count += 1;
+        }
+        Ok(count)
+    }
+
+    /// How much of the universe has been told.
+    pub(super) fn progress(&self) -> f64 {
+        self.batch[..self.filled].last().map_or(0.0, |record| self.walk.progress(record.cell))
+    }
+
+    /// The next records; none at the end.
+    pub(super) fn next_batch(&mut self) -> Result<&[VoxelRecord], Error> {
+        if self.next == self.filled {
+            self.refill()?;
+        }
+        let next = core::mem::replace(&mut self.next, self.filled);
+        Ok(&self.batch[next..self.filled])
+    }
+
+    fn refill(&mut self) -> Result<(), Error> {
+        (self.next, self.filled) = (0, 0);
+        let mut filled = 0;
+        while filled < BATCH && !self.ended {
+            // Unless it goes well, it is the end.
+            self.ended = true;
+            if let Some((kind, cell)) = self.walk.next()? {
+                self.batch[filled] = VoxelRecord { kind, cell, value: None };
+                (filled, self.ended) = (filled + 1, false);
+            }
+        }
+        if let Some(attribute) = self.attribute.filter(|_| filled > 0) {
+            let (mut points, mut values) = ([[0.0; 3]; BATCH], [None; BATCH]);
+            for (point, record) in points.iter_mut().zip(&self.batch[..filled]) {
+                *point = centre(self.walk.frame(), record.cell);
+            }
+            if let Err(error) = attribute.values(&points[..filled], &mut values[..filled]) {
+                self.ended = true;
+                return Err(error);
+            }
+            for (record, value) in self.batch[..filled].iter_mut().zip(values) {
+                record.value = value;
+            }
+        }
+        self.filled = filled;
+        Ok(())
+    }
+}
+
+impl Iterator for Voxels<'_> {
+    type Item = Result<VoxelRecord, Error>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        if self.next == self.filled
+            && let Err(error) = self.refill()
+        {
+            return Some(Err(error));
+        }
+        let record = *self.batch[..self.filled].get(self.next)?;
+        self.next += 1;
+        Some(Ok(record))
+    }
+}
