@@ -148,7 +148,8 @@ pub use surface::{
 };
 
 pub use voxel::{
-    LinearCode, VoxelBoundary, VoxelKind, VoxelOptions, VoxelRecord, VoxelRecords, VoxelRecordsRef, Voxels,
+    LinearCode, Symmetry, Viewpoint, VoxelBoundary, VoxelKind, VoxelOptions, VoxelRecord, VoxelRecords,
+    VoxelRecordsRef, VoxelSolid, VoxelTriangles, Voxels,
 };
 
 #[cfg(feature = "std")]

@@ -5,13 +5,24 @@
 //! have a level of their own. [`Voxels`] hands out records one by one, [`VoxelRecords`] keeps them in arrays.
 
 mod code;
+mod descent;
+mod import;
 mod options;
+mod order;
 mod record;
 mod records;
+mod symmetry;
+mod touch;
+mod transform;
+mod triangles;
 mod walk;
 
 pub use code::LinearCode;
+pub use import::VoxelSolid;
 pub use options::{VoxelBoundary, VoxelOptions};
+pub use order::Viewpoint;
 pub use record::{VoxelKind, VoxelRecord};
 pub use records::{VoxelRecords, VoxelRecordsRef};
+pub use symmetry::Symmetry;
+pub use triangles::VoxelTriangles;
 pub use walk::Voxels;

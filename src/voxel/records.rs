@@ -6,7 +6,7 @@ use super::{VoxelOptions, Voxels};
 use crate::attribute::Attribute;
 use crate::control::Control;
 use crate::error::Error;
-use crate::lattice::{Cell, Frame};
+use crate::lattice::{Cell, Frame, MAX_DEPTH};
 use crate::octree::{OctreeRef, Proof, Tag};
 use alloc::vec::Vec;
 use core::ops::Range;
@@ -317,7 +317,7 @@ impl<'a> VoxelRecordsRef<'a> {
     pub fn find(&self, cell: Cell) -> Option<usize> {
         let code = LinearCode::new(cell, self.frame.depth()).ok()?;
         let key = (code.number(), cell.level);
-        let first = self.from_number(key.0);
+        let first = self.lower_bound(key.0);
         // Of one code there are no more records than levels.
         let found = (first..self.len()).take_while(|&index| self.codes[index] == key.0);
         found.into_iter().find(|&index| self.levels[index] == cell.level)
@@ -326,10 +326,10 @@ impl<'a> VoxelRecordsRef<'a> {
     /// The records of the cells in `cell`, with its own if there is one: they follow each other. O(log n).
     pub fn within(&self, cell: Cell) -> Range<usize> {
         let Ok(code) = LinearCode::new(cell, self.frame.depth()) else { return 0..0 };
-        let start = self.from_number(code.number());
+        let start = self.lower_bound(code.number());
         let larger = (start..self.len())
             .take_while(|&index| self.codes[index] == code.number() && self.levels[index] < cell.level);
-        start + larger.count()..self.from_number(code.number() + size(cell.level, self.frame.depth()))
+        start + larger.count()..self.lower_bound(code.number() + size(cell.level, self.frame.depth()))
     }
 
     /// For each octant of `cell` the records in it: the children of a voxel that is refined, or if a child is
@@ -341,8 +341,12 @@ impl<'a> VoxelRecordsRef<'a> {
         core::array::from_fn(|octant| self.within(cell.child(octant as u8)))
     }
 
-    /// The record, not of a refined voxel, that contains a cell. O(log n).
+    /// The record, not of a refined voxel, that contains a cell, which may be finer than the lattice. O(log n).
     pub fn containing(&self, cell: Cell) -> Option<usize> {
+        let depth = self.frame.depth();
+        let finer = (depth + 1..=MAX_DEPTH).contains(&cell.level);
+        let inside = finer && cell.at.iter().all(|&a| a >> cell.level == 0);
+        let cell = if inside { cell.ancestor(depth) } else { cell };
         let code = LinearCode::new(cell, self.frame.depth()).ok()?;
         let (number, level) = (code.number(), cell.level);
         let after = self.codes.partition_point(|&code| code <= number);
@@ -361,7 +365,7 @@ impl<'a> VoxelRecordsRef<'a> {
     }
 
     /// The first record whose code is at least `number`.
-    fn from_number(&self, number: u64) -> usize {
+    fn lower_bound(&self, number: u64) -> usize {
         self.codes.partition_point(|&code| code < number)
     }
 }

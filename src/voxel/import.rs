@@ -1,0 +1,131 @@
+//! Records as a solid, and so back into an octree.
+
+use super::descent::{Part, checked};
+use super::record::VoxelKind;
+use super::records::VoxelRecordsRef;
+use crate::control::Control;
+use crate::error::Error;
+use crate::lattice::{Bounds, Cell, Frame};
+use crate::octree::{Octree, Proof, Tag};
+use crate::op::{Rule, build};
+use crate::solid::{Classifier, Solid, Verdict, Worker};
+
+/// Records as a solid on their own universe: inside voxels are FULL, outside voxels and what no record speaks of
+/// are EMPTY, boundary voxels are what one asks for.
+#[derive(Debug, Clone, Copy)]
+pub struct VoxelSolid<'a> {
+    records: VoxelRecordsRef<'a>,
+    boundary: Tag,
+}
+
+/// The same on a frame: handle and worker.
+#[derive(Debug, Clone, Copy)]
+pub struct OnFrame<'a> {
+    solid: VoxelSolid<'a>,
+    frame: Frame,
+}
+
+impl<'a> VoxelSolid<'a> {
+    /// The solid of records, of which boundary voxels have the tag `boundary`.
+    ///
+    /// # Errors
+    /// [`Error::Argument`] if that is [`Tag::Branch`].
+    pub fn new(records: VoxelRecordsRef<'a>, boundary: Tag) -> Result<VoxelSolid<'a>, Error> {
+        Ok(VoxelSolid { records, boundary: checked(boundary)? })
+    }
+
+    fn verdict(&self, part: &Part) -> Verdict<(usize, usize)> {
+        if part.range.is_empty() {
+            return Verdict::Empty;
+        }
+        if self.records.has_own(part) {
+            let tag = match self.records.kind_at(part.range.start) {
+                VoxelKind::Outside => Tag::Empty,
+                VoxelKind::Inside => Tag::Full,
+                VoxelKind::Boundary => self.boundary,
+                VoxelKind::Refined => Tag::Branch,
+            };
+            match tag {
+                Tag::Empty => return Verdict::Empty,
+                Tag::Full => return Verdict::Full,
+                Tag::Partial => return Verdict::Undecided,
+                Tag::Branch => {}
+            }
+        }
+        Verdict::Partial((part.range.start, part.range.end))
+    }
+}
+
+impl VoxelRecordsRef<'_> {
+    /// The octree that the records speak of, to the depth of their frame. Records of an octree give that octree
+    /// again, as far as they went into it: cells that were split for an attribute merge, and values are left
+    /// behind. `boundary` is what boundary voxels become: PARTIAL for those that are not decided, FULL for those
+    /// of a binary octree.
+    ///
+    /// The exterior and what cells prove are what is known of the records.
+    ///
+    /// # Errors
+    /// [`Error::Argument`] if `boundary` is [`Tag::Branch`], and as [`build`](crate::build).
+    pub fn to_octree(&self, boundary: Tag, control: &Control<'_>) -> Result<Octree, Error> {
+        build(&VoxelSolid::new(*self, boundary)?, self.frame(), Rule::Certified, control)
+    }
+}
+
+impl<'a> Solid for VoxelSolid<'a> {
+    type Classifier = OnFrame<'a>;
+
+    fn on(&self, frame: &Frame, _: &Control<'_>) -> Result<OnFrame<'a>, Error> {
+        if !frame.same_universe(self.records.frame()) {
+            return Err(self.records.frame().mismatch(frame));
+        }
+        Ok(OnFrame { solid: *self, frame: *frame })
+    }
+
+    fn bounds(&self) -> Option<Bounds> {
+        let ends_inside = self.records.exterior() == Tag::Empty && self.records.proof().empty;
+        ends_inside.then(|| Bounds::of(self.records.frame()))
+    }
+
+    fn home(&self) -> Option<Frame> {
+        Some(*self.records.frame())
+    }
+}
+
+impl<'a> Classifier for OnFrame<'a> {
+    type Worker = OnFrame<'a>;
+
+    fn frame(&self) -> &Frame {
+        &self.frame
+    }
+
+    fn worker(&self) -> Result<OnFrame<'a>, Error> {
+        Ok(*self)
+    }
+
+    fn exterior(&self) -> Tag {
+        self.solid.records.exterior()
+    }
+
+    fn proof(&self) -> Proof {
+        self.solid.records.proof()
+    }
+}
+
+impl Worker for OnFrame<'_> {
+    /// The records in the cell, from the first to behind the last.
+    type Part = (usize, usize);
+
+    fn frame(&self) -> &Frame {
+        &self.frame
+    }
+
+    fn root(&mut self) -> Result<Verdict<(usize, usize)>, Error> {
+        Ok(self.solid.verdict(&self.solid.records.whole()))
+    }
+
+    fn split(&mut self, cell: Cell, part: &(usize, usize)) -> Result<[Verdict<(usize, usize)>; 8], Error> {
+        let end = part.1.min(self.solid.records.len());
+        let part = Part { cell, range: part.0.min(end)..end };
+        Ok(self.solid.records.split(&part).map(|part| self.solid.verdict(&part)))
+    }
+}
