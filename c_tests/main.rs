@@ -259,6 +259,11 @@ fn columns() {
 }
 
 #[test]
+fn voxels() {
+    run("voxel", C99, Link::Static, &[]);
+}
+
+#[test]
 fn regions() {
     run("region", C99, Link::Static, &[]);
 }

@@ -1642,6 +1642,113 @@ static void rays(void) {
     CHECK(hit.is_hit && inner == 1 && outer == 1 && sight == LEAFLESS_SIGHT_BLOCKED);
 }
 
+static void voxels(void) {
+    void *out = fresh();
+    void *never = UNTOUCHED;
+    const uint64_t codes[2] = {0, 8};
+    const uint8_t levels[2] = {3, 3}, kinds[2] = {2, 1};
+    const uint32_t cell[3] = {0, 0, 0};
+    const double direction[3] = {1, 0, 0}, zero[3] = {0, 0, 0};
+    const leafless_frame small = {{0, 0, 0}, 1, 4};
+    leafless_octree **result = (leafless_octree **)&never, *made = NULL;
+    leafless_frame lattice;
+    leafless_mesh *cube = NULL;
+    const leafless_mesh_arrays arrays = check_arrays(CHECK_CUBE, 8, CHECK_CUBE_TRIANGLES, 12);
+    uint64_t *count = (uint64_t *)out, number, other;
+    leafless_voxel_options options;
+
+    OK(leafless_mesh_from_arrays(&arrays, NULL, &cube));
+    NULL_POINTER(leafless_voxel_options_init, voxel_options, leafless_voxel_options_init(NULL, sizeof options));
+    MISALIGNED(leafless_voxel_options_init, voxel_options,
+               leafless_voxel_options_init((leafless_voxel_options *)WRONG(out), sizeof options));
+    BAD_NUMBER(leafless_voxel_options_init, struct_size, leafless_voxel_options_init((leafless_voxel_options *)out, 3));
+    NULL_POINTER(leafless_octree_voxels, octree,
+                 leafless_octree_voxels(NULL, NULL, NULL, (leafless_frame *)out, NULL, NULL, NULL, NULL, NULL, 0, count));
+    NULL_POINTER(leafless_octree_voxels, lattice,
+                 leafless_octree_voxels(octree, NULL, NULL, NULL, NULL, NULL, NULL, NULL, NULL, 0, count));
+    NULL_POINTER(leafless_octree_voxels, count,
+                 leafless_octree_voxels(octree, NULL, NULL, (leafless_frame *)out, NULL, NULL, NULL, NULL, NULL, 0, NULL));
+    MISALIGNED(leafless_octree_voxels, codes,
+               leafless_octree_voxels(octree, NULL, NULL, (leafless_frame *)out, (uint64_t *)WRONG(out), NULL, NULL, NULL,
+                                      NULL, 1, count));
+    NULL_POINTER(leafless_voxels_find, lattice, leafless_voxels_find(NULL, codes, levels, kinds, 2, cell, 0, count));
+    NULL_POINTER(leafless_voxels_find, codes, leafless_voxels_find(&small, NULL, levels, kinds, 2, cell, 0, count));
+    NULL_POINTER(leafless_voxels_find, levels, leafless_voxels_find(&small, codes, NULL, kinds, 2, cell, 0, count));
+    NULL_POINTER(leafless_voxels_find, kinds, leafless_voxels_find(&small, codes, levels, NULL, 2, cell, 0, count));
+    NULL_POINTER(leafless_voxels_find, cell, leafless_voxels_find(&small, codes, levels, kinds, 2, NULL, 0, count));
+    NULL_POINTER(leafless_voxels_find, index, leafless_voxels_find(&small, codes, levels, kinds, 2, cell, 0, NULL));
+    NULL_POINTER(leafless_voxels_order, lattice,
+                 leafless_voxels_order(NULL, codes, levels, kinds, 2, direction, false, NULL, NULL, 0, count));
+    NULL_POINTER(leafless_voxels_order, codes,
+                 leafless_voxels_order(&small, NULL, levels, kinds, 2, direction, false, NULL, NULL, 0, count));
+    NULL_POINTER(leafless_voxels_order, levels,
+                 leafless_voxels_order(&small, codes, NULL, kinds, 2, direction, false, NULL, NULL, 0, count));
+    NULL_POINTER(leafless_voxels_order, kinds,
+                 leafless_voxels_order(&small, codes, levels, NULL, 2, direction, false, NULL, NULL, 0, count));
+    NULL_POINTER(leafless_voxels_order, from,
+                 leafless_voxels_order(&small, codes, levels, kinds, 2, NULL, false, NULL, NULL, 0, count));
+    NULL_POINTER(leafless_voxels_order, order,
+                 leafless_voxels_order(&small, codes, levels, kinds, 2, direction, false, NULL, NULL, 2, count));
+    NULL_POINTER(leafless_voxels_order, order_count,
+                 leafless_voxels_order(&small, codes, levels, kinds, 2, direction, false, NULL, NULL, 0, NULL));
+    BAD_NUMBER(leafless_voxels_order, direction,
+               leafless_voxels_order(&small, codes, levels, kinds, 2, zero, false, NULL, NULL, 0, count));
+    NULL_POINTER(leafless_voxels_triangles, lattice,
+                 leafless_voxels_triangles(NULL, codes, levels, kinds, 2, cube, NULL, NULL, 0, count, NULL, 0, count));
+    NULL_POINTER(leafless_voxels_triangles, codes,
+                 leafless_voxels_triangles(&small, NULL, levels, kinds, 2, cube, NULL, NULL, 0, count, NULL, 0, count));
+    NULL_POINTER(leafless_voxels_triangles, levels,
+                 leafless_voxels_triangles(&small, codes, NULL, kinds, 2, cube, NULL, NULL, 0, count, NULL, 0, count));
+    NULL_POINTER(leafless_voxels_triangles, kinds,
+                 leafless_voxels_triangles(&small, codes, levels, NULL, 2, cube, NULL, NULL, 0, count, NULL, 0, count));
+    NULL_POINTER(leafless_voxels_triangles, mesh,
+                 leafless_voxels_triangles(&small, codes, levels, kinds, 2, NULL, NULL, NULL, 0, count, NULL, 0, count));
+    NULL_POINTER(leafless_voxels_triangles, offsets,
+                 leafless_voxels_triangles(&small, codes, levels, kinds, 2, cube, NULL, NULL, 3, count, NULL, 0, count));
+    NULL_POINTER(leafless_voxels_triangles, offset_count,
+                 leafless_voxels_triangles(&small, codes, levels, kinds, 2, cube, NULL, NULL, 0, NULL, NULL, 0, count));
+    NULL_POINTER(leafless_voxels_triangles, triangles,
+                 leafless_voxels_triangles(&small, codes, levels, kinds, 2, cube, NULL, NULL, 0, count, NULL, 9, count));
+    NULL_POINTER(leafless_voxels_triangles, triangle_count,
+                 leafless_voxels_triangles(&small, codes, levels, kinds, 2, cube, NULL, NULL, 0, count, NULL, 0, NULL));
+    NULL_POINTER(leafless_octree_from_voxels, lattice,
+                 leafless_octree_from_voxels(NULL, codes, levels, kinds, 2, LEAFLESS_TAG_FULL, NULL, result));
+    NULL_POINTER(leafless_octree_from_voxels, codes,
+                 leafless_octree_from_voxels(&small, NULL, levels, kinds, 2, LEAFLESS_TAG_FULL, NULL, result));
+    NULL_POINTER(leafless_octree_from_voxels, levels,
+                 leafless_octree_from_voxels(&small, codes, NULL, kinds, 2, LEAFLESS_TAG_FULL, NULL, result));
+    NULL_POINTER(leafless_octree_from_voxels, kinds,
+                 leafless_octree_from_voxels(&small, codes, levels, NULL, 2, LEAFLESS_TAG_FULL, NULL, result));
+    NULL_POINTER(leafless_octree_from_voxels, octree,
+                 leafless_octree_from_voxels(&small, codes, levels, kinds, 2, LEAFLESS_TAG_FULL, NULL, NULL));
+    BAD_NUMBER(leafless_octree_from_voxels, boundary,
+               leafless_octree_from_voxels(&small, codes, levels, kinds, 2, LEAFLESS_TAG_BRANCH, NULL, result));
+    untouched();
+    CHECK(never == UNTOUCHED);
+#define COUNTED leafless_octree_voxels(octree, NULL, NULL, &lattice, NULL, NULL, NULL, NULL, NULL, 0, &number)
+    MAY_BE_NULL(leafless_octree_voxels, voxel_options, COUNTED);
+    MAY_BE_NULL(leafless_octree_voxels, options, COUNTED);
+    MAY_BE_NULL(leafless_octree_voxels, codes, COUNTED);
+    MAY_BE_NULL(leafless_octree_voxels, levels, COUNTED);
+    MAY_BE_NULL(leafless_octree_voxels, kinds, COUNTED);
+    MAY_BE_NULL(leafless_octree_voxels, corners_model, COUNTED);
+    MAY_BE_NULL(leafless_octree_voxels, values, COUNTED);
+    MAY_BE_NULL(leafless_voxels_order, options,
+                leafless_voxels_order(&small, codes, levels, kinds, 2, direction, false, NULL, NULL, 0, &number));
+    MAY_BE_NULL(leafless_voxels_order, order,
+                leafless_voxels_order(&small, codes, levels, kinds, 2, direction, false, NULL, NULL, 0, &number));
+    MAY_BE_NULL(leafless_voxels_triangles, options,
+                leafless_voxels_triangles(&small, codes, levels, kinds, 2, cube, NULL, NULL, 0, &number, NULL, 0, &other));
+    MAY_BE_NULL(leafless_voxels_triangles, offsets,
+                leafless_voxels_triangles(&small, codes, levels, kinds, 2, cube, NULL, NULL, 0, &number, NULL, 0, &other));
+    MAY_BE_NULL(leafless_voxels_triangles, triangles,
+                leafless_voxels_triangles(&small, codes, levels, kinds, 2, cube, NULL, NULL, 0, &number, NULL, 0, &other));
+    MAY_BE_NULL(leafless_octree_from_voxels, options,
+                leafless_octree_from_voxels(&small, codes, levels, kinds, 2, LEAFLESS_TAG_FULL, NULL, &made));
+    leafless_octree_free(made);
+    leafless_mesh_free(cube);
+}
+
 static void columns(void) {
     void *out = fresh();
     void *never = UNTOUCHED;
@@ -2158,6 +2265,7 @@ int main(void) {
     volumes_and_surfaces();
     attributes_and_channels();
     rays();
+    voxels();
     columns();
     regions();
     distances();

@@ -12,10 +12,15 @@ use leafless::{
 
 /// A part, what is to be seen in it, and how finely.
 pub struct Part {
+    /// What it is called in the table.
     pub name: &'static str,
+    /// The part.
     pub octree: Octree,
+    /// Its colour or temperature.
     pub attribute: Box<dyn Attribute>,
+    /// What makes a voxel fine enough.
     pub criterion: Criterion,
+    /// How much the attribute may change in a voxel.
     pub tolerance: f64,
     /// Levels of the largest and the smallest voxels, and of the boundary.
     pub levels: [u8; 3],
@@ -23,12 +28,16 @@ pub struct Part {
 
 /// The records of a part's voxels: no longer than the coarse limit, adaptive, and no longer than the fine one.
 pub struct Lists {
+    /// Voxels of the coarse limit.
     pub coarse: VoxelRecords,
+    /// Voxels that follow the attribute.
     pub adaptive: VoxelRecords,
+    /// Voxels of the fine limit.
     pub fine: VoxelRecords,
 }
 
 impl Part {
+    /// The three lists of a part.
     pub fn lists(&self, control: &Control<'_>) -> Result<Lists, Error> {
         let edge = |level: u8| self.octree.frame().edge() / f64::from(1u32 << level);
         let [coarse, fine, boundary] = self.levels;
@@ -44,6 +53,7 @@ impl Part {
     }
 }
 
+/// How many inside voxels there are.
 pub fn inside(records: &VoxelRecords) -> u64 {
     records.view().count(VoxelKind::Inside)
 }
@@ -134,6 +144,7 @@ fn temperature() -> Result<impl Attribute, Error> {
     Ok(FunctionAttribute::new(1, function)?.with_range(range))
 }
 
+/// The gear, by both criteria, and the cover.
 pub fn parts(control: &Control<'_>) -> Result<[Part; 3], Error> {
     let octree = |solid: Csg| {
         let frame = Frame::new([FRAME[0]; 3], FRAME[1], 7)?;

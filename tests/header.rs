@@ -47,6 +47,7 @@ const SECTIONS: &[&str] = &[
     "region",
     "cells",
     "bitmap",
+    "voxel",
     "surface",
     "lazy",
     "interference",

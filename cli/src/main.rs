@@ -23,6 +23,7 @@ mod interfere;
 mod measure;
 mod mesh;
 mod neighbours;
+mod npz;
 mod output;
 mod part;
 mod progress;
@@ -38,6 +39,7 @@ mod target;
 mod verify;
 mod volume;
 mod voxelize;
+mod voxels;
 mod within;
 
 use clap::error::ErrorKind;
@@ -94,6 +96,8 @@ enum Command {
     Mesh(surface::Arguments),
     /// Write the cells of a solid as a volume (NRRD or raw)
     Bitmap(bitmap::Arguments),
+    /// Write the voxels of a solid, a mesh or a scene as records (NPZ or CSV), or make a solid of records
+    Voxels(voxels::Arguments),
     /// Say whether two solids or meshes overlap, by how much, and how far they are apart
     Interfere(interfere::Arguments),
     /// Volume, centroid, inertia and bounds of a solid or a mesh, as intervals that hold the true ones
@@ -135,6 +139,7 @@ fn main() -> ExitCode {
         Command::Heights(arguments) => heights::run(arguments),
         Command::Mesh(arguments) => surface::run(arguments),
         Command::Bitmap(arguments) => bitmap::run(arguments),
+        Command::Voxels(arguments) => voxels::run(arguments),
         Command::Interfere(arguments) => interfere::run(arguments),
         Command::Measure(arguments) => measure::run(arguments),
         Command::Within(arguments) => within::run(arguments),

@@ -67,6 +67,10 @@ fn write_all(to: &mut dyn Write) -> fmt::Result {
             extents, sample_type, file_type, format, unit, is_placed, sample_count, rounded, default_threshold,
             corner_model, spacing_model, placement
         }
+        leafless_voxel_options {
+            struct_size, boundary_depth, boundary, lists, coarse_model, fine_model, tolerance, criterion, components,
+            values, range, ctx
+        }
         leafless_surface_options { struct_size, method, snap, resolve, placement, reserved, source }
         leafless_callbacks {
             struct_size, exterior, classify, contains, destroy, ctx, fingerprint, classify_many, contains_many, distance_many,
@@ -184,6 +188,12 @@ fn write_all(to: &mut dyn Write) -> fmt::Result {
             LEAFLESS_RESOLVE_NONE, LEAFLESS_RESOLVE_INNER, LEAFLESS_RESOLVE_OUTER, LEAFLESS_RESOLVE_SOURCE
         }
         leafless_vertex_placement { LEAFLESS_PLACEMENT_MIDPOINT, LEAFLESS_PLACEMENT_CROSSING }
+        leafless_voxel_kind {
+            LEAFLESS_VOXEL_OUTSIDE, LEAFLESS_VOXEL_INSIDE, LEAFLESS_VOXEL_BOUNDARY, LEAFLESS_VOXEL_REFINED
+        }
+        leafless_voxel_boundary { LEAFLESS_VOXEL_BOUNDARY_UNDECIDED, LEAFLESS_VOXEL_BOUNDARY_TOUCHING }
+        leafless_voxel_lists { LEAFLESS_VOXEL_LISTS_OUTSIDE, LEAFLESS_VOXEL_LISTS_REFINED }
+        leafless_voxel_criterion { LEAFLESS_VOXEL_CRITERION_VARIANCE, LEAFLESS_VOXEL_CRITERION_RANGE }
         leafless_defect {
             LEAFLESS_DEFECT_HOLE, LEAFLESS_DEFECT_MISORIENTED, LEAFLESS_DEFECT_DUPLICATE,
             LEAFLESS_DEFECT_NON_MANIFOLD, LEAFLESS_DEFECT_FLAT

@@ -32,6 +32,7 @@
 //! | `point` | cursors and tables for points |
 //! | `rays` | rays: first hits, intervals, line of sight |
 //! | `columns` | columns of cells along an axis, height maps |
+//! | `voxel` | voxel records in arrays |
 //! | `cells` | neighbours of cells, cells and boundary faces one after another |
 //! | `bitmap` | the cells of a box as bits |
 //! | `surface` | surfaces: closed meshes of octrees and solids |
@@ -86,6 +87,7 @@ mod version;
 mod volume;
 mod volume_arrays;
 mod volume_file;
+mod voxel;
 
 pub use attribute::*;
 pub use attribute_host::*;
@@ -128,3 +130,4 @@ pub use version::*;
 pub use volume::*;
 pub use volume_arrays::*;
 pub use volume_file::*;
+pub use voxel::*;

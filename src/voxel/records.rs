@@ -206,6 +206,19 @@ impl<'a> VoxelRecordsRef<'a> {
         Ok(VoxelRecordsRef { frame: *frame, exterior, proof, components, codes, levels, kinds, values })
     }
 
+    /// Records without values that nobody has checked: what is found in them means nothing if they are none.
+    /// The arrays must be of one length.
+    #[cfg(feature = "capi")]
+    pub(crate) fn unchecked(
+        frame: &Frame,
+        codes: &'a [u64],
+        levels: &'a [u8],
+        kinds: &'a [u8],
+    ) -> VoxelRecordsRef<'a> {
+        let (exterior, proof) = (Tag::Partial, Proof::new(false, false));
+        VoxelRecordsRef { frame: *frame, exterior, proof, components: 0, codes, levels, kinds, values: &[] }
+    }
+
     /// The lattice.
     pub fn frame(&self) -> &Frame {
         &self.frame
@@ -353,7 +366,7 @@ impl<'a> VoxelRecordsRef<'a> {
         // Records of smaller cells at the same corner come last.
         let index =
             (0..after).rev().find(|&index| (self.codes[index], self.levels[index]) <= (number, level))?;
-        let end = self.codes[index] + size(self.levels[index], self.frame.depth());
+        let end = self.codes[index].saturating_add(size(self.levels[index].min(depth), depth));
         (number < end && self.kind_at(index) != VoxelKind::Refined).then_some(index)
     }
 
