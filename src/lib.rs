@@ -100,8 +100,8 @@ mod voxel;
 
 pub use attribute::{
     Attribute, CarryRule, ChannelOperand, ChannelSummary, ConstantAttribute, Criterion, Detail, FillOptions,
-    FunctionAttribute, Interpolation, MaterialProperties, MovedAttribute, ValueRange, ValueRegion,
-    VolumeAttribute, carry_channel, carry_channels, fill_channel, materials,
+    FunctionAttribute, Interpolation, MaterialProperties, MovedAttribute, SurfaceAttribute, ValueRange,
+    ValueRegion, VolumeAttribute, carry_channel, carry_channels, fill_channel, materials,
 };
 pub use control::Control;
 pub use error::{
@@ -112,11 +112,11 @@ pub use lattice::{
     Affine, Bounds, Cell, CellMoments, Cube, CubeMoments, Frame, Interval, MAX_DEPTH, VolumeMoments,
 };
 pub use mesh::{
-    DefectKind, FillRule, IntersectingPair, IntersectingPairs, MeshDefect, MeshMoments, MeshReport,
-    TriangleMesh,
+    AttributeDomain, DefectKind, FillRule, IntersectingPair, IntersectingPairs, MeshAttribute, MeshDefect,
+    MeshMoments, MeshReport, TriangleMesh,
 };
 #[cfg(feature = "std")]
-pub use mesh::{Polyhedron, PolyhedronArrays};
+pub use mesh::{Polyhedron, PolyhedronArrays, PolyhedronPart};
 pub use octree::{
     Block, BoundaryFace, BoundaryFaces, CellFilter, Cells, Channel, ChannelRef, Cursor, Direction,
     LevelStatistics, Metadata, Node, Octree, OctreeRef, Planes, Proof, ScalarType, Statistics, Tag,

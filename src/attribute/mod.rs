@@ -15,6 +15,7 @@ mod region;
 mod sampled;
 mod source;
 mod summary;
+mod surface;
 mod volume;
 
 pub use carry::{CarryRule, ChannelOperand, carry_channel, carry_channels};
@@ -25,6 +26,7 @@ pub use materials::{MaterialProperties, materials};
 pub use region::ValueRegion;
 pub use sampled::{FillOptions, fill_channel};
 pub use summary::ChannelSummary;
+pub use surface::SurfaceAttribute;
 pub use volume::{Interpolation, VolumeAttribute};
 
 use crate::error::Error;

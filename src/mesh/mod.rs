@@ -3,16 +3,20 @@
 //!
 //! Nothing here knows of cells. What the surface encloses, and how a cell of it is split, is `solid/mesh/`.
 //!
-//! From the bottom up, each file uses only files named before it: `positions` (equal vertices), `topology`
-//! (edges and bodies), `boundary` (loops of edges), `signs` (exact determinants), `surface` (the mesh); on the
-//! mesh `normals`, `weld`, `sew`, `placement`, `defects`, `overlap` and `report`; `tree` (boxes around triangles),
+//! From the bottom up, each file uses only files named before it: `positions` (equal vertices), `attributes`
+//! (data on triangles), `topology` (edges and bodies), `boundary` (loops of edges), `signs` (exact determinants), `surface` (the mesh); on the
+//! mesh `normals`, `weld`, `sew`, `placement`, `defects`, `overlap` and `report`; `tree` (boxes around triangles), `nearest`,
 //! `intersections`, `sheets` (winding numbers on both sides), `sides` (the same, triangle by triangle) and `moments`
-//! (volume and inertia); `polygon` (triangulation) and `polyhedron`.
+//! (volume and inertia); `polygon` (triangulation), `polyhedron` and its `faces`.
 
+mod attributes;
 mod boundary;
 mod defects;
+#[cfg(feature = "std")]
+mod faces;
 mod intersections;
 mod moments;
+mod nearest;
 mod normals;
 mod overlap;
 mod placement;
@@ -32,10 +36,14 @@ mod tree;
 mod turned;
 mod weld;
 
+pub use attributes::{AttributeDomain, MeshAttribute};
 pub(crate) use boundary::Loops;
 pub use defects::{DefectKind, MeshDefect};
+#[cfg(feature = "std")]
+pub use faces::PolyhedronPart;
 pub use intersections::{IntersectingPair, IntersectingPairs};
 pub use moments::MeshMoments;
+pub(crate) use nearest::{NearVisitor, NearestPoint, TriangleTree};
 #[cfg(feature = "std")]
 pub(crate) use polygon::flatness;
 #[cfg(feature = "std")]

@@ -8,6 +8,7 @@ use alloc::vec::Vec;
 
 use robust::{Coord, Coord3D, orient2d, orient3d};
 
+use super::attributes::MeshAttribute;
 use super::polygon::{PolygonDefect, flatness, triangulate};
 use super::positions::normalised;
 use super::surface::{Faces, TriangleMesh};
@@ -58,7 +59,8 @@ pub struct PolyhedronArrays<'a> {
 ///
 /// The solids are a [`TriangleMesh`] of the same vertices, closed and consistently oriented, and that mesh is
 /// from then on the truth: where a face is not plane to the last digit, its triangles say where the
-/// surface is. Needs the feature `std`.
+/// surface is. Which face, shell and solid a triangle belongs to [is kept](Self::parts), and faces can
+/// [bear values](Self::attribute). Needs the feature `std`.
 ///
 /// ```
 /// use leafless::{Polyhedron, PolyhedronArrays};
@@ -78,8 +80,13 @@ pub struct PolyhedronArrays<'a> {
 /// ```
 #[derive(Debug, Clone)]
 pub struct Polyhedron {
-    mesh: TriangleMesh,
+    pub(super) mesh: TriangleMesh,
     deviation: f64,
+    /// The face of each triangle.
+    pub(super) faces: Vec<u32>,
+    /// Offsets of the shells in the faces, and of the solids in the shells.
+    pub(super) shells: Vec<u32>,
+    pub(super) solids: Vec<u32>,
 }
 
 impl Polyhedron {
@@ -140,6 +147,7 @@ impl Polyhedron {
         let mut triangles = Vec::new();
         // A loop of n corners has n - 2 triangles, and each hole adds two more.
         triangles.try_reserve(parts.corners.len())?;
+        let mut faces: Vec<u32> = memory::with_capacity(parts.corners.len())?;
         let mut ends = Vec::new();
         let mut found = Faces::default();
         // Where each shell's triangles end.
@@ -155,12 +163,19 @@ impl Polyhedron {
                     return Err(PolyhedronError::NotPlane { face, deviation, tolerance }.into());
                 }
                 parts.triangulate(face, &vertices, &mut ends, &mut triangles)?;
+                faces.try_reserve(triangles.len() - faces.len())?;
+                faces.resize(triangles.len(), face as u32);
             }
             shells.push(triangles.len());
         }
         parts.check_shells(&vertices, &triangles, &shells)?;
-        let mesh = TriangleMesh::new(vertices, triangles)?.made_from(found);
-        Ok(Polyhedron { mesh, deviation: found.deviation })
+        // Of a triangle that is dropped, its face is.
+        let mut attributes = memory::with_capacity(1)?;
+        attributes.push(MeshAttribute::labels("", faces)?);
+        let mut mesh = TriangleMesh::with_attributes(vertices, triangles, attributes)?.made_from(found);
+        let faces = mesh.take_attributes().pop().map(MeshAttribute::into_labels).unwrap_or_default();
+        let (shells, solids) = (memory::copied(arrays.shells)?, memory::copied(arrays.solids)?);
+        Ok(Polyhedron { mesh, deviation: found.deviation, faces, shells, solids })
     }
 }
 

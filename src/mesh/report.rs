@@ -134,6 +134,19 @@ impl TriangleMesh {
         })
     }
 
+    /// The body that each triangle belongs to: a set of triangles that hang together over edges. Bodies are
+    /// numbered by their first triangles: the first triangle is one of body 0, the first one of another body is
+    /// one of body 1. There are [`MeshReport::bodies`] of them, and shells that touch only in single vertices,
+    /// or lie within each other, are different bodies.
+    ///
+    /// O(t + v), with 28 bytes per triangle and 9 per vertex of scratch memory.
+    ///
+    /// # Errors
+    /// [`Error::OutOfMemory`].
+    pub fn bodies(&self) -> Result<Vec<u32>, Error> {
+        Ok(Topology::with_bodies(self.triangles(), self.vertices().len())?.1.of_triangles)
+    }
+
     fn find_details(&self) -> Result<Box<Details>, Error> {
         let (topology, bodies) = Topology::with_bodies(self.triangles(), self.vertices().len())?;
         let open = open_edges(&topology.boundary)?;

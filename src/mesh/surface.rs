@@ -16,6 +16,7 @@ use core::fmt;
 use glam::DVec3;
 use once_cell::race::OnceBox;
 
+use super::attributes::{self, MeshAttribute};
 use super::boundary::Loops;
 use super::positions::{NOWHERE, Places, is_proper, normalised};
 use super::topology::Topology;
@@ -62,11 +63,14 @@ impl FillRule {
 /// corners turn counter-clockwise. Whether the mesh is closed is not implied:
 /// [`check_closed`](Self::check_closed) tells.
 ///
-/// A mesh takes 24 bytes per vertex and 12 bytes per triangle.
+/// A mesh takes 24 bytes per vertex and 12 bytes per triangle, and what its
+/// [attributes](Self::attributes) take, if it has any.
 #[derive(Clone)]
 pub struct TriangleMesh {
     vertices: Vec<[f64; 3]>,
     triangles: Vec<[u32; 3]>,
+    /// Each has as many triangles as the mesh.
+    attributes: Vec<MeshAttribute>,
     pub(super) welded: u64,
     pub(super) degenerate: u64,
     pub(super) sewn: u64,
@@ -127,7 +131,21 @@ impl TriangleMesh {
     ///
     /// O(v + t). Fails with [`MeshError::TooMany`], [`MeshError::NotFinite`], [`MeshError::TooLarge`],
     /// [`MeshError::Index`] or [`Error::OutOfMemory`].
-    pub fn new(mut vertices: Vec<[f64; 3]>, mut triangles: Vec<[u32; 3]>) -> Result<Self, Error> {
+    pub fn new(vertices: Vec<[f64; 3]>, triangles: Vec<[u32; 3]>) -> Result<Self, Error> {
+        Self::with_attributes(vertices, triangles, Vec::new())
+    }
+
+    /// A mesh of indexed triangles with attributes, which have values for the triangles as they are given.
+    /// Those of triangles that are dropped are dropped.
+    ///
+    /// O(v + t). Fails as [`new`](Self::new) does, and with [`Error::Argument`] unless each attribute has as
+    /// many triangles and a name of its own.
+    pub fn with_attributes(
+        mut vertices: Vec<[f64; 3]>,
+        mut triangles: Vec<[u32; 3]>,
+        mut attributes: Vec<MeshAttribute>,
+    ) -> Result<Self, Error> {
+        attributes::check(&attributes, triangles.len())?;
         let given = vertices.len();
         if u32::try_from(given).is_err() || u32::try_from(triangles.len()).is_err() {
             return Err(MeshError::TooMany.into());
@@ -165,10 +183,9 @@ impl TriangleMesh {
         if kept < given {
             triangles.iter_mut().for_each(|t| *t = t.map(|v| new_indices[v as usize]));
         }
-        let read = triangles.len();
-        triangles.retain(is_proper);
-        let (welded, degenerate) = ((given - kept) as u64, (read - triangles.len()) as u64);
-        Ok(Self::from_welded(vertices, triangles, welded, degenerate))
+        let degenerate = drop_improper(&mut triangles, &mut attributes);
+        let welded = (given - kept) as u64;
+        Ok(Self { attributes, ..Self::from_welded(vertices, triangles, welded, degenerate) })
     }
 
     /// The mesh of vertices that are all different and triangles of three different ones each.
@@ -181,6 +198,7 @@ impl TriangleMesh {
         Self {
             vertices,
             triangles,
+            attributes: Vec::new(),
             welded,
             degenerate,
             sewn: 0,
@@ -204,6 +222,33 @@ impl TriangleMesh {
     /// The triangles as indices into [`vertices`](Self::vertices).
     pub fn triangles(&self) -> &[[u32; 3]] {
         &self.triangles
+    }
+
+    /// What is known of the triangles: in the order in which attributes were added.
+    pub fn attributes(&self) -> &[MeshAttribute] {
+        &self.attributes
+    }
+
+    /// The attribute of this name.
+    pub fn attribute(&self, name: &str) -> Option<&MeshAttribute> {
+        self.attributes.iter().find(|attribute| attribute.name() == name)
+    }
+
+    /// Adds an attribute, whose triangles are those of the mesh.
+    ///
+    /// # Errors
+    /// [`Error::Argument`] unless it has as many triangles as the mesh, and a name that no other attribute of
+    /// the mesh has; [`Error::OutOfMemory`]. The mesh is then as before.
+    pub fn add_attribute(&mut self, attribute: MeshAttribute) -> Result<(), Error> {
+        memory::push(&mut self.attributes, attribute)?;
+        attributes::check(&self.attributes, self.triangles.len()).inspect_err(|_| {
+            self.attributes.pop();
+        })
+    }
+
+    /// Takes all attributes away from the mesh.
+    pub fn take_attributes(&mut self) -> Vec<MeshAttribute> {
+        core::mem::take(&mut self.attributes)
     }
 
     /// The least and the greatest coordinates of the vertices that triangles use; zeros if there are none.
@@ -279,17 +324,18 @@ impl TriangleMesh {
     /// O(v + t). Fails as `new` does.
     pub fn transformed(&self, f: impl FnMut([f64; 3]) -> [f64; 3]) -> Result<Self, Error> {
         let vertices = memory::collected(self.vertices.iter().copied().map(f))?;
-        Self::new(vertices, memory::copied(&self.triangles)?)
+        let attributes = attributes::copies(&self.attributes)?;
+        Self::with_attributes(vertices, memory::copied(&self.triangles)?, attributes)
     }
 
     /// The mesh with `f` applied to every coordinate. The report keeps what was found before.
     ///
     /// O(v + t), in place. Fails as [`new`](Self::new) does.
     pub(crate) fn scaled(self, f: impl Fn(f64) -> f64) -> Result<Self, Error> {
-        let Self { mut vertices, triangles, welded, degenerate, mut faces, .. } = self;
+        let Self { mut vertices, triangles, attributes, welded, degenerate, mut faces, .. } = self;
         faces.deviation = f(faces.deviation);
         vertices.as_flattened_mut().iter_mut().for_each(|x| *x = f(*x));
-        let mesh = Self::new(vertices, triangles)?;
+        let mesh = Self::with_attributes(vertices, triangles, attributes)?;
         Ok(Self { welded: welded + mesh.welded, degenerate: degenerate + mesh.degenerate, faces, ..mesh })
     }
 
@@ -308,6 +354,7 @@ impl TriangleMesh {
     /// The same with its triangles facing the other way.
     pub(super) fn turn_round(&mut self) {
         self.triangles.iter_mut().for_each(|[_, b, c]| core::mem::swap(b, c));
+        self.attributes.iter_mut().for_each(MeshAttribute::turn_round);
         self.topology = OnceBox::new();
         self.details = OnceBox::new();
     }
@@ -330,7 +377,9 @@ impl TriangleMesh {
     #[cfg(feature = "capi")]
     pub(crate) fn try_clone(&self) -> Result<Self, Error> {
         let (vertices, triangles) = (memory::copied(&self.vertices)?, memory::copied(&self.triangles)?);
-        Ok(Self { vertices, triangles, topology: OnceBox::new(), details: OnceBox::new(), ..*self })
+        let attributes = attributes::copies(&self.attributes)?;
+        let (topology, details) = (OnceBox::new(), OnceBox::new());
+        Ok(Self { vertices, triangles, attributes, topology, details, ..*self })
     }
 
     /// The loops of the surface's boundary, in the direction of its triangles.
@@ -360,9 +409,7 @@ impl TriangleMesh {
         }
         self.vertices.truncate(kept);
         self.triangles.iter_mut().for_each(|t| *t = t.map(|v| places[targets[v as usize] as usize]));
-        let before = self.triangles.len();
-        self.triangles.retain(is_proper);
-        self.degenerate += (before - self.triangles.len()) as u64;
+        self.degenerate += drop_improper(&mut self.triangles, &mut self.attributes);
         self.sewn += moves.len() as u64;
         self.displacement = self.displacement.max(displacement);
         self.topology = OnceBox::new();
@@ -377,6 +424,17 @@ impl TriangleMesh {
     pub(super) fn topology(&self) -> Result<&Topology, Error> {
         self.topology.get_or_try_init(|| Topology::of(&self.triangles, self.vertices.len()).map(Box::new))
     }
+}
+
+/// Drops triangles whose corners are not three different vertices, and what attributes say of them. Tells how
+/// many there were.
+fn drop_improper(triangles: &mut Vec<[u32; 3]>, attributes: &mut [MeshAttribute]) -> u64 {
+    let before = triangles.len();
+    for attribute in attributes {
+        attribute.retain(|triangle| triangles.get(triangle).is_some_and(is_proper));
+    }
+    triangles.retain(is_proper);
+    (before - triangles.len()) as u64
 }
 
 impl fmt::Debug for TriangleMesh {

@@ -16,24 +16,24 @@ const FEW: usize = 4;
 
 /// A balanced binary tree: each node has one half of its parent's triangles. 46 bytes a triangle.
 pub(super) struct Tree {
-    grid: Grid,
-    items: Vec<Item>,
+    pub(super) grid: Grid,
+    pub(super) items: Vec<Item>,
     /// The root is node 1, the children of node k are 2k and 2k + 1. All leaves are at one level.
-    nodes: Vec<Box3>,
+    pub(super) nodes: Vec<Box3>,
     levels: u32,
 }
 
 /// A triangle with the box around it.
 #[derive(Clone, Copy)]
-struct Item {
-    around: Box3,
-    triangle: u32,
+pub(super) struct Item {
+    pub(super) around: Box3,
+    pub(super) triangle: u32,
 }
 
 #[derive(Clone, Copy)]
-struct Box3 {
-    low: [f32; 3],
-    high: [f32; 3],
+pub(super) struct Box3 {
+    pub(super) low: [f32; 3],
+    pub(super) high: [f32; 3],
 }
 
 impl Box3 {
@@ -88,7 +88,7 @@ impl Grid {
     /// A point relative to the centre, scaled to [-1, 1]: each coordinate is off by a 2^-53 of itself and by a
     /// 2^-1074.
     #[inline(always)]
-    fn scaled(&self, p: &Point) -> Point {
+    pub(super) fn scaled(&self, p: &Point) -> Point {
         let scale = self.scale();
         array(|axis| (p[axis] - self.centre[axis]) * scale)
     }
@@ -206,7 +206,12 @@ impl Tree {
         self.arrange(2 * node + 1, first + half, end);
     }
 
-    fn is_leaf(&self, node: usize) -> bool {
+    /// The root, with all items.
+    pub(super) fn root(&self) -> Part {
+        (1, 0, self.items.len())
+    }
+
+    pub(super) fn is_leaf(&self, node: usize) -> bool {
         node >> self.levels != 0
     }
 
@@ -217,10 +222,10 @@ impl Tree {
         steps: &mut Steps,
         visit: &mut impl FnMut(u32, u32) -> Result<bool, Error>,
     ) -> Result<Search, Error> {
-        self.pairs_in((1, 0, self.items.len()), steps, visit)
+        self.pairs_in(self.root(), steps, visit)
     }
 
-    fn halves(&self, (node, first, end): Part) -> [Part; 2] {
+    pub(super) fn halves(&self, (node, first, end): Part) -> [Part; 2] {
         let middle = first + (end - first) / 2;
         [(2 * node, first, middle), (2 * node + 1, middle, end)]
     }
@@ -313,7 +318,7 @@ impl Tree {
         let mut low = at;
         let mut high = at;
         (low[axis], high[axis]) = (f32::NEG_INFINITY, f32::INFINITY);
-        self.within((1, 0, self.items.len()), &Box3 { low, high }, visit);
+        self.within(self.root(), &Box3 { low, high }, visit);
     }
 
     fn within(&self, part: Part, line: &Box3, visit: &mut impl FnMut(u32)) {
@@ -331,4 +336,4 @@ impl Tree {
 }
 
 /// A node with its items: from the first to before the end.
-type Part = (usize, usize, usize);
+pub(super) type Part = (usize, usize, usize);

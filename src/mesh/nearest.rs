@@ -1,0 +1,662 @@
+//! The triangle that is nearest to a point, and the triangles that may be nearest to a point of a box.
+//!
+//! **The nearest triangle** is the one whose *computed* distance is least; of equal ones the first. The tree
+//! leaves out only triangles whose computed distance cannot be as small, so the answer is that of a look at all
+//! triangles. Distances to vertices and edges are computed from these alone, in the order of their numbers:
+//! triangles that share them, and triangles with the same corners, are at equal distances, bit by bit.
+//!
+//! **What may be nearest in a box.** Let t be the triangle nearest to the box's centre. The distance to t is a
+//! convex function of position, so over the box it is greatest at a corner; say U there. No triangle that is
+//! further than U from the whole box is nearest to a point of the box. Computed distances differ from true
+//! ones, and U is enlarged by bounds of that:
+//!
+//! * The computed distance is at least the true one less 8u (D + L), with u = 2^-53, D the distance to a corner
+//!   of the triangle and L its longest edge, because it is that to a computed point of the triangle.
+//! * It is at most the true one plus 128u (D + L) L / h, with h the height on the longest edge: so far the
+//!   computed foot of the perpendicular may lie from the true one. For slivers, of which h is less than 2^-10 L,
+//!   the distances to the edges are looked at as well, which exceed the true one by at most h.
+//!
+//! Lengths are in the scale of the tree's grid, in which the mesh has a half extent of 1/2 to 1.
+
+use core::array::from_fn as array;
+
+use alloc::vec::Vec;
+
+use super::signs::Point;
+use super::surface::TriangleMesh;
+use super::tree::{Box3, Part, Tree};
+use crate::error::Error;
+use crate::lattice::Bounds;
+use crate::lattice::exact::sqrt;
+use crate::memory;
+
+/// How far a coordinate of a box in the tree may be off, and twice that: coordinates have 24 bits.
+const BOX: f64 = 1.0 / (1 << 24) as f64;
+/// Points further away, along an axis, are moved in to there: 2^100.
+const FAR: f64 = (1_u128 << 100) as f64;
+/// What rounding may change, as a part of the lengths concerned: 2^-42, eight times what is needed and more.
+const ROUNDING: f64 = 1.0 / (1_u64 << 42) as f64;
+
+/// Squares of areas that may have lost digits by underflow: of edges below 2^-240.
+const LOST: f64 = 1e-290;
+
+/// A tree of all triangles of a mesh.
+pub(crate) struct TriangleTree(Tree);
+
+/// The point of a surface that is nearest to another one.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct NearestPoint {
+    pub triangle: u32,
+    /// Of the triangle's corners; none is negative.
+    pub weights: [f64; 3],
+    /// The square of the distance, in the scale of the tree.
+    square: f64,
+}
+
+/// Whoever looks at the triangles that may be nearest.
+pub(crate) trait NearVisitor {
+    /// Whether the triangles of a node shall be visited one by one. If `all`, each of them may be nearest, or is
+    /// hardly further away.
+    fn enter(&mut self, node: usize, all: bool) -> bool;
+
+    /// Whether a triangle shall be visited, if it may be nearest.
+    fn wants(&self, triangle: u32) -> bool;
+
+    /// A triangle that may be nearest.
+    fn visit(&mut self, triangle: u32);
+}
+
+impl TriangleTree {
+    /// O(t log t); 46 bytes a triangle.
+    pub(crate) fn new(mesh: &TriangleMesh) -> Result<TriangleTree, Error> {
+        Ok(TriangleTree(Tree::new(mesh, |_| true)?))
+    }
+
+    /// For each node what is known of all its triangles: `none` of no triangle, `of` one, `join` of both parts.
+    pub(crate) fn summaries<T: Copy>(
+        &self,
+        none: T,
+        of: &impl Fn(u32) -> T,
+        join: &impl Fn(T, T) -> T,
+    ) -> Result<Vec<T>, Error> {
+        let mut summaries = memory::filled(self.0.nodes.len(), none)?;
+        self.summarise(self.0.root(), &mut summaries, of, join);
+        Ok(summaries)
+    }
+
+    fn summarise<T: Copy>(
+        &self,
+        part: Part,
+        summaries: &mut [T],
+        of: &impl Fn(u32) -> T,
+        join: &impl Fn(T, T) -> T,
+    ) {
+        let (node, first, end) = part;
+        let none = summaries[node];
+        summaries[node] = if self.0.is_leaf(node) {
+            self.0.items[first..end].iter().fold(none, |sum, item| join(sum, of(item.triangle)))
+        } else {
+            self.0.halves(part).into_iter().fold(none, |sum, half| {
+                self.summarise(half, summaries, of, join);
+                join(sum, summaries[half.0])
+            })
+        };
+    }
+
+    /// The nearest point of the mesh that the tree was made of; `None` if the mesh has no triangle, or the
+    /// point is not finite. `hint` is a triangle that may be near, which saves time. O(log t) as a rule.
+    pub(crate) fn nearest(
+        &self,
+        mesh: &TriangleMesh,
+        point: &Point,
+        hint: Option<u32>,
+    ) -> Option<NearestPoint> {
+        if !point.iter().all(|x| x.is_finite()) {
+            return None;
+        }
+        let limit = FAR / self.0.grid.scale();
+        let point = array(|axis| {
+            let centre = self.0.grid.centre[axis];
+            point[axis].clamp(centre - limit, centre + limit)
+        });
+        let hint = hint.filter(|&triangle| (triangle as usize) < mesh.triangles().len());
+        let mut search =
+            Search { tree: &self.0, mesh, point, scaled: self.0.grid.scaled(&point), best: None };
+        if let Some(triangle) = hint {
+            search.look_at(triangle);
+        }
+        search.descend(self.0.root());
+        search.best
+    }
+
+    /// Visits every triangle that [`nearest`](Self::nearest) can answer for a point of a closed box, and some
+    /// others; `false` if the box is so large, or so far away, that nothing is known.
+    pub(crate) fn visit_near(
+        &self,
+        mesh: &TriangleMesh,
+        bounds: &Bounds,
+        visitor: &mut impl NearVisitor,
+    ) -> bool {
+        if mesh.triangles().is_empty() {
+            return true;
+        }
+        let grid = &self.0.grid;
+        let [low, high] = [&bounds.min, &bounds.max].map(|corner| grid.scaled(corner));
+        if !low.iter().chain(&high).all(|x| x.abs() <= FAR / 1024.0) {
+            return false;
+        }
+        let centre: Point = array(|axis| bounds.min[axis].midpoint(bounds.max[axis]));
+        let Some(NearestPoint { triangle, .. }) = self.nearest(mesh, &centre, None) else { return true };
+        let shape = Corners::of(mesh, triangle, grid.scale());
+        let corner =
+            |k: usize| array(|axis| if k >> axis & 1 == 0 { bounds.min[axis] } else { bounds.max[axis] });
+        let most = (0..8).fold(0.0, |most: f64, k| most.max(shape.nearest_to(&shape.from(&corner(k))).0));
+        let most = sqrt(most);
+        let reach = (most + shape.error(most)) * (1.0 + ROUNDING) + ROUNDING;
+        let half: Point = array(|axis| {
+            let half = (bounds.max[axis] - centre[axis]).max(centre[axis] - bounds.min[axis]);
+            half * grid.scale()
+        });
+        let small = half[0].max(half[1]).max(half[2]) / 4.0;
+        Near { tree: &self.0, mesh, low, high, centre, half, reach, small }.descend(self.0.root(), visitor);
+        true
+    }
+}
+
+/// A search for the nearest triangle.
+struct Search<'a> {
+    tree: &'a Tree,
+    mesh: &'a TriangleMesh,
+    point: Point,
+    /// The point in the scale of the tree, about the grid's centre.
+    scaled: Point,
+    best: Option<NearestPoint>,
+}
+
+impl Search<'_> {
+    /// Less than the square of a computed distance to anything in a box.
+    #[inline(always)]
+    fn bound(&self, around: &Box3) -> f64 {
+        let square = (0..3).fold(0.0, |sum, axis| {
+            let (low, high) = (f64::from(around.low[axis]), f64::from(around.high[axis]));
+            let gap = (low - self.scaled[axis]).max(self.scaled[axis] - high) - BOX;
+            let gap = gap.max(0.0);
+            sum + gap * gap
+        });
+        // Where the point is far away, its own rounding is a part of the distance.
+        square * (1.0 - 1.0 / (1 << 20) as f64)
+    }
+
+    #[inline(always)]
+    fn may_hold_better(&self, bound: f64) -> bool {
+        self.best.is_none_or(|best| bound <= best.square)
+    }
+
+    fn descend(&mut self, part: Part) {
+        let (node, first, end) = part;
+        if self.tree.is_leaf(node) {
+            for k in first..end {
+                let item = self.tree.items[k];
+                if self.may_hold_better(self.bound(&item.around)) {
+                    self.look_at(item.triangle);
+                }
+            }
+            return;
+        }
+        let halves = self.tree.halves(part);
+        let bounds = halves.map(|half| self.bound(&self.tree.nodes[half.0]));
+        let near = usize::from(bounds[1] < bounds[0]);
+        for k in [near, 1 - near] {
+            if self.may_hold_better(bounds[k]) {
+                self.descend(halves[k]);
+            }
+        }
+    }
+
+    #[inline]
+    fn look_at(&mut self, triangle: u32) {
+        let corners = Corners::of(self.mesh, triangle, self.tree.grid.scale());
+        let from = corners.from(&self.point);
+        if self.best.is_some_and(|best| is_beyond(&from, best.square)) {
+            return;
+        }
+        let (square, weights) = corners.nearest_to(&from);
+        let is_better = |best: &NearestPoint| (square, triangle) < (best.square, best.triangle);
+        if self.best.as_ref().is_none_or(is_better) {
+            self.best = Some(NearestPoint { triangle, weights, square });
+        }
+    }
+}
+
+/// Whether a plane across the way to a triangle's centroid tells that its computed distance is greater than the
+/// root of `square`; `from` leads from the corners to the point.
+#[inline(always)]
+fn is_beyond(from: &[Point; 3], square: f64) -> bool {
+    let [a, b, c] = from;
+    let way: Point = array(|axis| a[axis] + b[axis] + c[axis]);
+    let length = dot(&way, &way);
+    let nearest = dot(&way, a).min(dot(&way, b)).min(dot(&way, c));
+    // More than rounding can change here and in a computed distance, both times the length of the way.
+    let rounding = ROUNDING * (length + dot(a, a).max(dot(b, b)).max(dot(c, c)));
+    let nearest = nearest - rounding;
+    nearest > 0.0 && nearest * nearest * (1.0 - 1e-9) > square * length
+}
+
+/// A triangle with its corners in the order of their vertices.
+struct Corners {
+    at: [Point; 3],
+    /// Which corners of the triangle they are.
+    corners: [usize; 3],
+    scale: f64,
+}
+
+impl Corners {
+    #[inline(always)]
+    fn of(mesh: &TriangleMesh, triangle: u32, scale: f64) -> Corners {
+        let vertices = mesh.triangles()[triangle as usize];
+        let mut corners = [0, 1, 2];
+        for [a, b] in [[0, 1], [1, 2], [0, 1]] {
+            if vertices[corners[a]] > vertices[corners[b]] {
+                corners.swap(a, b);
+            }
+        }
+        let at = corners.map(|corner| mesh.vertices()[vertices[corner] as usize]);
+        Corners { at, corners, scale }
+    }
+
+    /// The ways from the corners to a point.
+    #[inline(always)]
+    fn from(&self, point: &Point) -> [Point; 3] {
+        self.at.map(|corner| array(|axis| (point[axis] - corner[axis]) * self.scale))
+    }
+
+    /// The edges from the first corner to the second and third one, and from the second to the third one.
+    #[inline(always)]
+    fn edges(&self) -> [Edge; 3] {
+        EDGES.map(|[from, to]| {
+            let way = array(|axis| (self.at[to][axis] - self.at[from][axis]) * self.scale);
+            Edge { way, square: dot(&way, &way) }
+        })
+    }
+
+    /// How much more than the true distance the computed one may be, for points whose computed distance is at
+    /// most this; and what a computed one may be less besides.
+    fn error(&self, distance: f64) -> f64 {
+        let edges = self.edges();
+        let Base { square, normal, .. } = Base::of(&edges);
+        let area = dot(&normal, &normal);
+        let length = sqrt(square);
+        let height = sqrt(area) / length;
+        let rounding = ROUNDING * (distance + 3.0 * length);
+        let foot = rounding * length / height;
+        // Neither NaN nor infinity, of heights that are lost, counts in a minimum.
+        rounding + if is_plump(area, square) { foot } else { foot.min((2.0 * height).max(0.0)) }
+    }
+
+    /// The square of the distance of the point to which these ways lead from the corners, and the weights of the
+    /// triangle's corners in the nearest point.
+    #[inline(always)]
+    fn nearest_to(&self, from: &[Point; 3]) -> (f64, [f64; 3]) {
+        let edges = self.edges();
+        let Base { corners: [start, end, apex], way: base, square: length, side, normal } = Base::of(&edges);
+        let area = dot(&normal, &normal);
+        let mut best = (f64::INFINITY, [1.0, 0.0, 0.0]);
+        if area > LOST {
+            let offset = &from[start];
+            let up = dot(&cross(&base, offset), &normal) / area;
+            let along = (dot(offset, &base) - up * dot(&side, &base)) / length;
+            let rest = 1.0 - along - up;
+            if up >= 0.0 && along >= 0.0 && rest >= 0.0 {
+                let way: Point = array(|axis| offset[axis] - along * base[axis] - up * side[axis]);
+                let mut weights = [0.0; 3];
+                (weights[start], weights[end], weights[apex]) = (rest, along, up);
+                best = (dot(&way, &way), weights);
+                if is_plump(area, length) {
+                    return (best.0, self.in_order(best.1));
+                }
+            }
+        }
+        for ([a, b], Edge { way: edge, square }) in EDGES.into_iter().zip(&edges) {
+            let along = dot(&from[a], edge) / square;
+            let (square, along) = if along >= 1.0 {
+                (dot(&from[b], &from[b]), 1.0)
+            } else if along > 0.0 {
+                let way: Point = array(|axis| from[a][axis] - along * edge[axis]);
+                (dot(&way, &way), along)
+            } else {
+                // Also where it is NaN, because the length of the edge is lost.
+                (dot(&from[a], &from[a]), 0.0)
+            };
+            if square < best.0 {
+                let mut weights = [0.0; 3];
+                (weights[a], weights[b]) = (1.0 - along, along);
+                best = (square, weights);
+            }
+        }
+        (best.0, self.in_order(best.1))
+    }
+
+    /// Weights of these corners as those of the triangle's.
+    #[inline(always)]
+    fn in_order(&self, weights: [f64; 3]) -> [f64; 3] {
+        let mut ordered = [0.0; 3];
+        for (corner, weight) in self.corners.into_iter().zip(weights) {
+            ordered[corner] = weight;
+        }
+        ordered
+    }
+}
+
+/// The corners of the edges of a triangle.
+const EDGES: [[usize; 2]; 3] = [[0, 1], [0, 2], [1, 2]];
+
+/// The way from one corner to another one, and the square of its length.
+#[derive(Clone, Copy)]
+struct Edge {
+    way: Point,
+    square: f64,
+}
+
+/// The longest edge of a triangle; of equal ones the first.
+struct Base {
+    /// Its start, its end, and the corner that is not on it.
+    corners: [usize; 3],
+    way: Point,
+    square: f64,
+    /// From the start to the third corner.
+    side: Point,
+    /// The way times the side.
+    normal: Point,
+}
+
+impl Base {
+    #[inline(always)]
+    fn of([ab, ac, bc]: &[Edge; 3]) -> Base {
+        let (corners, Edge { way, square }, side) = if bc.square > ab.square && bc.square > ac.square {
+            ([1, 2, 0], *bc, ab.way.map(|x| -x))
+        } else if ac.square > ab.square {
+            ([0, 2, 1], *ac, ab.way)
+        } else {
+            ([0, 1, 2], *ab, ac.way)
+        };
+        Base { corners, way, square, side, normal: cross(&way, &side) }
+    }
+}
+
+/// A box, and how far from it triangles may be nearest to a point of it.
+struct Near<'a> {
+    tree: &'a Tree,
+    mesh: &'a TriangleMesh,
+    /// Corners of the box in the scale of the tree, about the grid's centre.
+    low: Point,
+    high: Point,
+    /// The middle of the box, in model units.
+    centre: Point,
+    /// Half the edges, in the scale of the tree.
+    half: Point,
+    reach: f64,
+    /// Nodes with edges of at most this are taken as a whole.
+    small: f64,
+}
+
+impl Near<'_> {
+    fn descend(&self, part: Part, visitor: &mut impl NearVisitor) {
+        let (node, first, end) = part;
+        let around = &self.tree.nodes[node];
+        let (nearest, furthest) = self.distances(around);
+        if first == end || nearest > self.reach {
+            return;
+        }
+        let is_small = (0..3).all(|axis| f64::from(around.high[axis] - around.low[axis]) <= self.small);
+        if !visitor.enter(node, is_small || furthest <= self.reach) {
+            return;
+        }
+        if !self.tree.is_leaf(node) {
+            self.tree.halves(part).into_iter().for_each(|half| self.descend(half, visitor));
+            return;
+        }
+        for item in &self.tree.items[first..end] {
+            let triangle = item.triangle;
+            let may_be = self.distances(&item.around).0 <= self.reach;
+            if may_be && visitor.wants(triangle) && self.may_reach(triangle) {
+                visitor.visit(triangle);
+            }
+        }
+    }
+
+    /// Bounds of the distances of points of a box from this one.
+    fn distances(&self, around: &Box3) -> (f64, f64) {
+        let (mut nearest, mut furthest) = (0.0, 0.0);
+        for axis in 0..3 {
+            let (low, high) = (f64::from(around.low[axis]), f64::from(around.high[axis]));
+            let gap = ((low - self.high[axis]).max(self.low[axis] - high) - BOX).max(0.0);
+            let beyond = ((self.low[axis] - low).max(high - self.high[axis]) + BOX).max(0.0);
+            nearest += gap * gap;
+            furthest += beyond * beyond;
+        }
+        (sqrt(nearest) * (1.0 - 1e-6), sqrt(furthest) * (1.0 + 1e-6))
+    }
+
+    /// Whether a triangle may be within reach: unless a plane between it and the box, across the way from the
+    /// box's centre to the triangle's centroid, tells that it is not.
+    fn may_reach(&self, triangle: u32) -> bool {
+        let scale = self.tree.grid.scale();
+        let [a, b, c]: [Point; 3] = self.mesh.triangles()[triangle as usize].map(|vertex| {
+            let at = self.mesh.vertices()[vertex as usize];
+            array(|axis| (at[axis] - self.centre[axis]) * scale)
+        });
+        let way: Point = array(|axis| a[axis] + b[axis] + c[axis]);
+        let length = sqrt(dot(&way, &way));
+        let triangle = dot(&way, &a).min(dot(&way, &b)).min(dot(&way, &c));
+        let corner: f64 = (0..3).map(|axis| way[axis].abs() * self.half[axis]).sum();
+        let most = sqrt(dot(&a, &a).max(dot(&b, &b)).max(dot(&c, &c)));
+        let rounding = ROUNDING * (most + self.half[0] + self.half[1] + self.half[2]);
+        // False if the length is 0.
+        let is_beyond = (triangle - corner) / length - rounding > self.reach;
+        !is_beyond
+    }
+}
+
+/// Whether the edges of a triangle need not be looked at: its height is at least 2^-10 of the base. `area` is
+/// the square of the height times the base, `square` that of the base.
+#[inline(always)]
+fn is_plump(area: f64, square: f64) -> bool {
+    area > LOST && area * (1 << 20) as f64 >= square * square
+}
+
+#[inline(always)]
+fn dot(a: &Point, b: &Point) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+#[inline(always)]
+fn cross(a: &Point, b: &Point) -> Point {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use alloc::vec;
+
+    /// Random numbers from 0 to 1.
+    struct Random(u64);
+
+    impl Random {
+        fn next(&mut self) -> f64 {
+            self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+            (self.0 >> 11) as f64 / (1_u64 << 53) as f64
+        }
+
+        fn point(&mut self, size: f64) -> Point {
+            array(|_| (self.next() - 0.5) * size)
+        }
+
+        fn below(&mut self, count: usize) -> usize {
+            (self.next() * count as f64) as usize
+        }
+    }
+
+    /// Small triangles, large ones, slivers, needles, triangles without area, and some twice.
+    fn soup(random: &mut Random, count: usize, scale: f64) -> TriangleMesh {
+        let mut vertices: Vec<Point> = Vec::new();
+        let mut triangles: Vec<[u32; 3]> = Vec::new();
+        while triangles.len() < count {
+            let first = vertices.len() as u32;
+            if random.below(4) == 0 && !triangles.is_empty() {
+                let [a, b, c] = triangles[random.below(triangles.len())];
+                triangles.push([[a, b, c], [b, c, a], [c, b, a]][random.below(3)]);
+                continue;
+            }
+            let at = random.point(1.0);
+            let size = [1.0, 0.1, 0.01][random.below(3)];
+            let corners: [Point; 3] = array(|_| {
+                let way = random.point(size);
+                array(|axis| at[axis] + way[axis])
+            });
+            let thin = [1.0, 1e-3, 1e-6, 1e-9, 1e-15, 0.0][random.below(6)];
+            let [a, b, c] = corners;
+            let along = random.next() * 1.5 - 0.25;
+            let apex = array(|axis| a[axis] + along * (b[axis] - a[axis]) + thin * (c[axis] - a[axis]));
+            vertices.extend([a, b, apex].map(|corner| corner.map(|x| x * scale)));
+            triangles.push([first, first + 1, first + 2]);
+            if random.below(3) == 0 {
+                // A neighbour.
+                vertices.push(random.point(1.0).map(|x| x * scale));
+                triangles.push([first + 1, first, first + 3]);
+            }
+        }
+        TriangleMesh::new(vertices, triangles).unwrap()
+    }
+
+    fn square(tree: &TriangleTree, mesh: &TriangleMesh, triangle: u32, point: &Point) -> f64 {
+        let corners = Corners::of(mesh, triangle, tree.0.grid.scale());
+        corners.nearest_to(&corners.from(point)).0
+    }
+
+    fn slow(tree: &TriangleTree, mesh: &TriangleMesh, point: &Point) -> (f64, u32) {
+        let of = |t: u32| (square(tree, mesh, t, point), t);
+        (0..mesh.triangles().len() as u32).map(of).min_by(|a, b| a.partial_cmp(b).unwrap()).unwrap()
+    }
+
+    #[test]
+    fn a_look_at_all_triangles_agrees() {
+        let mut random = Random(1);
+        for scale in [1.0, 1e-70, 3e60] {
+            for count in [1, 2, 9, 60, 500] {
+                let mesh = soup(&mut random, count, scale);
+                let tree = TriangleTree::new(&mesh).unwrap();
+                let mut hint = None;
+                for k in 0..200 {
+                    let mut point = random.point([1.0, 3.0, 1e9][k % 3]).map(|x| x * scale);
+                    if k % 5 == 0 {
+                        // On the surface: at a corner, or the middle of an edge.
+                        let [a, b, _] = mesh.triangles()[random.below(mesh.triangles().len())];
+                        let [a, b] = [a, b].map(|v| mesh.vertices()[v as usize]);
+                        point = if k % 2 == 0 { a } else { array(|axis| a[axis].midpoint(b[axis])) };
+                    }
+                    let found = tree.nearest(&mesh, &point, hint).unwrap();
+                    assert_eq!((found.square, found.triangle), slow(&tree, &mesh, &point), "{point:?}");
+                    assert!(found.weights.iter().all(|&w| w >= 0.0));
+                    assert!((found.weights.iter().sum::<f64>() - 1.0).abs() < 1e-15);
+                    hint = Some(found.triangle);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn triangles_that_share_the_nearest_point_are_equally_near() {
+        // A fan around a vertex, and the same triangles again with other first corners.
+        let mut random = Random(7);
+        let rim = (0..40).map(|_| random.point(2.0));
+        let vertices: Vec<Point> = core::iter::once([0.0, 0.0, 3.0]).chain(rim).collect();
+        let fan = (1..40).map(|k| [0, k, k + 1]);
+        let mesh =
+            TriangleMesh::new(vertices, fan.clone().chain(fan.map(|[a, b, c]| [b, c, a])).collect()).unwrap();
+        let tree = TriangleTree::new(&mesh).unwrap();
+        for _ in 0..1000 {
+            let point = random.point(8.0);
+            let found = tree.nearest(&mesh, &point, None).unwrap();
+            assert!(found.triangle < 39, "a later one is nearest");
+            let square = |t: u32| square(&tree, &mesh, t, &point);
+            assert_eq!(square(found.triangle), square(found.triangle + 39));
+            let zeros = found.weights.iter().filter(|&&w| w == 0.0).count();
+            if zeros > 0 {
+                // All that share the edge or vertex are at the same distance, so the first one was taken.
+                let own = mesh.triangles()[found.triangle as usize];
+                let used = |k: usize| found.weights[k] > 0.0;
+                let shared: Vec<u32> = (0..3).filter(|&k| used(k)).map(|k| own[k]).collect();
+                let first = mesh.triangles().iter().position(|t| shared.iter().all(|v| t.contains(v)));
+                assert_eq!(first, Some(found.triangle as usize), "{point:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_ends_of_what_is_answered() {
+        let triangle = |scale: f64| {
+            let vertices = vec![[0.0; 3], [scale, 0.0, 0.0], [0.0, scale, 0.0]];
+            TriangleMesh::new(vertices, vec![[0, 1, 2]]).unwrap()
+        };
+        for scale in [1.0, 1e77, 1e-77] {
+            let mesh = triangle(scale);
+            let tree = TriangleTree::new(&mesh).unwrap();
+            for x in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+                assert!(tree.nearest(&mesh, &[0.0, x, 0.0], None).is_none());
+            }
+            for x in [f64::MAX, f64::MIN, f64::MIN_POSITIVE, 0.0] {
+                let found = tree.nearest(&mesh, &[x, -x, x], Some(9)).unwrap();
+                assert!(found.weights.iter().all(|w| (0.0..=1.0).contains(w)), "{found:?}");
+            }
+        }
+        let empty = TriangleMesh::new(vec![], vec![]).unwrap();
+        assert!(TriangleTree::new(&empty).unwrap().nearest(&empty, &[0.0; 3], None).is_none());
+    }
+
+    #[test]
+    fn whatever_is_nearest_in_a_box_is_visited() {
+        struct Seen(Vec<bool>);
+        impl NearVisitor for Seen {
+            fn enter(&mut self, _: usize, _: bool) -> bool {
+                true
+            }
+            fn wants(&self, _: u32) -> bool {
+                true
+            }
+            fn visit(&mut self, triangle: u32) {
+                self.0[triangle as usize] = true;
+            }
+        }
+        let mut random = Random(3);
+        for scale in [1.0, 1e-70, 3e60] {
+            for round in 0..60 {
+                let mesh = soup(&mut random, [3, 30, 300][round % 3], scale);
+                let tree = TriangleTree::new(&mesh).unwrap();
+                for k in 0..20 {
+                    let size = [2.0, 0.3, 1e-2, 1e-5, 0.0][k % 5];
+                    let mut centre = random.point([1.0, 2.0, 1e6][k % 3]);
+                    if k % 2 == 0 {
+                        let [a, _, _] = mesh.triangles()[random.below(mesh.triangles().len())];
+                        centre = mesh.vertices()[a as usize].map(|x| x / scale);
+                    }
+                    let half = random.point(size).map(f64::abs);
+                    let min = array(|axis| (centre[axis] - half[axis]) * scale);
+                    let max = array(|axis| (centre[axis] + half[axis]) * scale);
+                    let mut seen = Seen(vec![false; mesh.triangles().len()]);
+                    assert!(tree.visit_near(&mesh, &Bounds { min, max }, &mut seen));
+                    for sample in 0..100 {
+                        let point = array(|axis| {
+                            let at = random.next();
+                            let inside = min[axis] + at * (max[axis] - min[axis]);
+                            let on = [min[axis], max[axis], inside][random.below(3)];
+                            (if sample % 2 == 0 { inside } else { on }).clamp(min[axis], max[axis])
+                        });
+                        let found = tree.nearest(&mesh, &point, None).unwrap();
+                        assert!(seen.0[found.triangle as usize], "{point:?} in {min:?} {max:?}");
+                    }
+                }
+            }
+        }
+    }
+}
