@@ -9,8 +9,6 @@ use super::{MeshWarning, refuse_utf16};
 #[cfg(feature = "std")]
 use super::{ply, read_obj, read_off};
 use crate::error::{Error, MeshFileError};
-#[cfg(feature = "threemf")]
-use crate::memory;
 use crate::mesh::TriangleMesh;
 use alloc::vec::Vec;
 
@@ -38,7 +36,8 @@ impl Default for MeshOptions {
 #[non_exhaustive]
 #[derive(Debug, Clone)]
 pub struct MeshFile {
-    /// The mesh, converted and scaled.
+    /// The mesh, converted and scaled, with the colours and materials of the file as its
+    /// [attributes](TriangleMesh::attributes).
     pub mesh: TriangleMesh,
     /// The format that the file has.
     pub format: MeshFormat,
@@ -113,10 +112,7 @@ fn read(bytes: &[u8], extension: Option<&str>, options: &MeshOptions) -> Result<
         }
         #[cfg(feature = "threemf")]
         MeshFormat::ThreeMf => {
-            let threemf::Built { mesh, unit, skipped, draft } = threemf::read(bytes)?;
-            if draft {
-                memory::push(&mut warnings, MeshWarning::Draft)?;
-            }
+            let threemf::Built { mesh, unit, skipped } = threemf::read(bytes, &mut warnings)?;
             (mesh, Some(unit), skipped)
         }
         #[cfg(not(feature = "threemf"))]

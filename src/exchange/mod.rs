@@ -7,9 +7,17 @@
 //! |---|---|
 //! | STL | binary and ASCII, several solids in one file |
 //! | OBJ | polygons, relative indices, continued lines; groups, materials and normals are skipped |
-//! | PLY | ASCII and both binary orders; any other elements and properties are skipped; triangle strips |
+//! | PLY | ASCII and both binary orders; colours of vertices and faces; any other elements and properties are skipped; triangle strips |
 //! | OFF | text and binary, with and without a keyword, with colours, normals and textures, which are skipped |
-//! | 3MF | (feature `threemf`) the core specification, its draft 0.93 and parts of the production extension: units, components, the build's transforms |
+//! | 3MF | (feature `threemf`) the core specification, its draft 0.93 and parts of the production extension: units, components, the build's transforms, base materials, colour groups |
+//!
+//! **Colours and materials** are [attributes](TriangleMesh::attributes) of the mesh. `colour` has four numbers from
+//! 0 to 255: red, green and blue, in sRGB as a rule, and alpha, which is 255 where the file has none. In a PLY
+//! vertices have colours, and the corners of triangles take them over; if faces have colours besides, these are
+//! `face_colour`. In a 3MF corners or triangles have colours: those of a colour group, or how a base material is
+//! displayed. `material` is the number of a triangle's base material, with the materials' names, and `object` that
+//! of the object of a 3MF, if several are built, in the order in which they are first placed, with the objects'
+//! names. A file without such things gives a mesh without attributes.
 //!
 //! Some files depart from their format in a way that leaves no doubt about the mesh. They are read, and
 //! [`MeshFile::warnings`] tells of it.
@@ -30,10 +38,14 @@
 //! Formats of polygons are read only with the feature `std`, which cutting polygons into triangles needs.
 
 use crate::error::{Error, MeshFileError};
+#[cfg(doc)]
+use crate::mesh::TriangleMesh;
 
 mod any;
 #[cfg(feature = "std")]
 mod bytes;
+#[cfg(feature = "std")]
+mod colours;
 #[cfg(feature = "std")]
 mod decimal;
 mod detect;

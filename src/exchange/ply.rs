@@ -6,6 +6,10 @@
 //! Blender 2.47 and Assimp 3.0 forgot the keyword. The types are `char`, `uchar`, `short`, `ushort`, `int`, `uint`, `float`,
 //! `double` and the same as `int8` to `float64`. A keyword or a type that is none of these is refused.
 //!
+//! **Colours.** Vertices and faces may have the properties `red`, `green` and `blue`, and `alpha`; or
+//! `diffuse_red` and so on. Integers are from 0 to 255, but `ushort` from 0 to 65 535, and floating point numbers
+//! from 0 to 1. The colour of an element that has another number, or no number, is left out, with a warning.
+//!
 //! **Elements** come in any order; those of other names, and all properties that are not needed, single ones
 //! and lists, are skipped. `vertex` needs `x`, `y` and `z` of any type. `face` needs a list of integers that
 //! is called `vertex_indices` or `vertex_index`, of three or more vertices each; without such a list, and with
@@ -24,19 +28,22 @@
 use alloc::vec::Vec;
 
 use super::bytes::{Bytes, TOO_LONG, TOO_SHORT};
+use super::colours::{self, Colours};
 use super::polygons::Polygons;
 use super::text::Text;
-use super::{MeshWarning, is_line_end, refuse_utf16};
+use super::{MeshWarning, decimal, is_line_end, refuse_utf16};
 use crate::error::{Error, MeshFileError};
 use crate::memory;
-use crate::mesh::TriangleMesh;
+use crate::mesh::{MeshAttribute, TriangleMesh};
 
 /// Reads a PLY file, ASCII or binary.
 ///
 /// Triangles keep the order of the faces. A face of more than three corners is cut into triangles that do not
 /// leave it; only where that cannot be, because its edges cross or it has no area, into the fan around its
 /// first corner. Equal vertices are welded, and triangles that two equal vertices make degenerate are dropped
-/// and counted, as in [`TriangleMesh::new`]. The mesh need not be closed, and may be empty.
+/// and counted, as in [`TriangleMesh::new`]. The mesh need not be closed, and may be empty. Colours of vertices
+/// become the attribute `colour` of corners; colours of faces the attribute `colour` of triangles, or, if there
+/// are both, `face_colour`.
 ///
 /// O(n), or O(n log n) for faces that are not convex. Memory is at most 128 times the length of the file,
 /// whatever its header claims. What [`read_mesh`](super::read_mesh) warns of is not told. Fails with
@@ -105,6 +112,16 @@ impl Kind {
 
     fn is_integer(self) -> bool {
         !matches!(self, Self::F32 | Self::F64)
+    }
+
+    /// A channel of a colour, from 0 to 255, that is stored as this number.
+    #[inline]
+    fn channel(self, value: f64) -> f64 {
+        match self {
+            Self::F32 | Self::F64 => value * 255.0,
+            Self::U16 => value / 257.0,
+            _ => value,
+        }
     }
 
     /// Bytes of a binary number.
@@ -273,6 +290,9 @@ trait Source: Copy {
     /// Takes a finite number.
     fn coordinate(&mut self, kind: Kind) -> Result<f64, MeshFileError>;
 
+    /// Takes anything that stands for a number; `None` if it is not a finite one.
+    fn value(&mut self, kind: Kind) -> Result<Option<f64>, MeshFileError>;
+
     /// Takes the length of a list.
     fn count(&mut self, kind: Kind) -> Result<u64, MeshFileError>;
 
@@ -319,7 +339,41 @@ enum Step {
         axis: usize,
         kind: Kind,
     },
+    /// Red, green, blue or alpha.
+    Channel {
+        channel: usize,
+        kind: Kind,
+    },
     Indices(Indices),
+}
+
+/// What the elements of a file say of colours.
+#[derive(Default)]
+struct Palette {
+    vertices: Option<Colours>,
+    faces: Option<Colours>,
+    /// The colour of each triangle, of faces that have one.
+    rows: Vec<u32>,
+}
+
+impl Palette {
+    fn unreadable(&self) -> u64 {
+        [&self.vertices, &self.faces].into_iter().flatten().map(|colours| colours.unreadable).sum()
+    }
+
+    /// The attributes of triangles of these vertices.
+    fn attributes(mut self, triangles: &[[u32; 3]]) -> Result<Vec<MeshAttribute>, Error> {
+        let mut attributes = Vec::new();
+        let face = if self.vertices.is_some() { "face_colour" } else { "colour" };
+        if let Some(colours) = self.vertices {
+            memory::push(&mut attributes, colours.of_corners("colour", memory::copied(triangles)?)?)?;
+        }
+        if let Some(colours) = self.faces {
+            colours::fill(&mut self.rows, triangles.len(), MeshAttribute::NO_ROW)?;
+            memory::push(&mut attributes, colours.of_triangles(face, self.rows)?)?;
+        }
+        Ok(attributes)
+    }
 }
 
 fn read_elements<S: Source>(
@@ -328,6 +382,7 @@ fn read_elements<S: Source>(
     warnings: &mut Vec<MeshWarning>,
 ) -> Result<TriangleMesh, Error> {
     let mut mesh = Polygons::default();
+    let mut palette = Palette::default();
     let vertex = elements.iter().find(|element| element.name == b"vertex");
     let vertices = vertex.map_or(0, |element| element.count);
     if let Some(vertex) = vertex.filter(|_| vertices > u32::MAX.into()) {
@@ -349,10 +404,16 @@ fn read_elements<S: Source>(
         if steps.is_empty() {
             continue;
         }
+        let has_colour = steps.iter().any(|step| matches!(step, Step::Channel { .. }));
+        let mut colours = has_colour.then(Colours::default);
+        if has_colour && element.name == b"face" {
+            colours::fill(&mut palette.rows, mesh.triangle_count(), MeshAttribute::NO_ROW)?;
+        }
         let mut more = None;
         for _ in 0..element.count {
             let start = source;
             let mut vertex = [0.0; 3];
+            let mut colour = [0.0, 0.0, 0.0, 255.0];
             for step in &steps {
                 match *step {
                     Step::Skip { values, bytes } => source.skip(values, bytes)?,
@@ -363,6 +424,9 @@ fn read_elements<S: Source>(
                         source.skip(count, bytes.ok_or_else(|| before.error(TOO_SHORT))?)?;
                     }
                     Step::Coordinate { axis, kind } => vertex[axis] = source.coordinate(kind)?,
+                    Step::Channel { channel, kind } => {
+                        colour[channel] = source.value(kind)?.map_or(f64::NAN, |value| kind.channel(value));
+                    }
                     Step::Indices(list) => {
                         let before = source;
                         let count = source.count(list.count)?;
@@ -383,6 +447,12 @@ fn read_elements<S: Source>(
             if element.name == b"vertex" {
                 mesh.push_vertex(vertex)?;
             }
+            if let Some(colours) = &mut colours {
+                if element.name == b"face" {
+                    colours::fill(&mut palette.rows, mesh.triangle_count(), colours.len() as u32)?;
+                }
+                colours.push(colour)?;
+            }
             let found = source.end_element(&start, more)?;
             if found > 0 && longer.1 == 0 {
                 longer.0 = source.line();
@@ -390,12 +460,19 @@ fn read_elements<S: Source>(
             longer.1 += u64::from(found > 0);
             more = Some(found);
         }
+        match element.name {
+            b"vertex" => palette.vertices = colours,
+            _ => palette.faces = palette.faces.or(colours),
+        }
     }
     source.end_file()?;
     if let (line, lines @ 1..) = longer {
         memory::push(warnings, MeshWarning::MoreValues { line, lines })?;
     }
-    mesh.finish()
+    if let colours @ 1.. = palette.unreadable() {
+        memory::push(warnings, MeshWarning::Colours { colours })?;
+    }
+    mesh.finish_with(|triangles| palette.attributes(triangles))
 }
 
 const STRIP: &str = "strips of at least three vertices";
@@ -404,7 +481,9 @@ const STRIP: &str = "strips of at least three vertices";
 fn steps(element: &Element, warnings: &mut Vec<MeshWarning>) -> Result<Vec<Step>, Error> {
     let mut steps = Vec::new();
     let (mut axes, mut lists) = ([0; 3], 0);
-    for property in &element.properties {
+    let channels = channels(element);
+    for (place, property) in element.properties.iter().enumerate() {
+        let channel = channels.iter().position(|&channel| channel == Some(place));
         let axis = [b"x", b"y", b"z"].iter().position(|axis| *axis == property.name);
         let is_list =
             matches!(property.name, b"vertex_indices" | b"vertex_index") && property.kind.is_integer();
@@ -418,6 +497,9 @@ fn steps(element: &Element, warnings: &mut Vec<MeshWarning>) -> Result<Vec<Step>
                 Step::Indices(Indices { count, kind: property.kind, strips: element.name == b"tristrips" })
             }
             (_, _, Some(count)) => Step::SkipList { count, kind: property.kind },
+            (_, _, None) if channel.is_some() => {
+                Step::Channel { channel: channel.unwrap_or_default(), kind: property.kind }
+            }
             (_, _, None) => {
                 let size = property.kind.size() as u64;
                 if let Some(Step::Skip { values, bytes }) = steps.last_mut() {
@@ -445,6 +527,27 @@ fn steps(element: &Element, warnings: &mut Vec<MeshWarning>) -> Result<Vec<Step>
         _ => return Ok(steps),
     };
     Err(element.at.error(missing).into())
+}
+
+/// The properties of a vertex or face that are red, green, blue and alpha of its colour. If one of the first
+/// three is missing there is no colour.
+fn channels(element: &Element) -> [Option<usize>; 4] {
+    let find = |name: &[u8]| {
+        let is_it = |property: &Property| property.name == name && property.count.is_none();
+        element.properties.iter().position(is_it)
+    };
+    if !matches!(element.name, b"vertex" | b"face") {
+        return [None; 4];
+    }
+    let names: [[&[u8]; 4]; 2] = [
+        [b"red", b"green", b"blue", b"alpha"],
+        [b"diffuse_red", b"diffuse_green", b"diffuse_blue", b"diffuse_alpha"],
+    ];
+    let all = names.map(|names| names.map(find));
+    match all.into_iter().find(|channels| channels[..3].iter().all(Option::is_some)) {
+        Some([red, green, blue, alpha]) => [red, green, blue, alpha.or(all[0][3])],
+        None => [None; 4],
+    }
 }
 
 /// The least number of values of an element that can be read, and of their bytes.
@@ -495,6 +598,15 @@ impl Source for Text<'_> {
     fn coordinate(&mut self, _: Kind) -> Result<f64, MeshFileError> {
         self.skip_space();
         self.number().ok_or_else(|| Source::error(self, "a finite number"))
+    }
+
+    #[inline]
+    fn value(&mut self, _: Kind) -> Result<Option<f64>, MeshFileError> {
+        self.skip_space();
+        match self.word() {
+            [] => Err(Text::error(self, TOO_SHORT)),
+            word => Ok(decimal::number(word).filter(|(_, rest)| rest.is_empty()).map(|(number, _)| number)),
+        }
     }
 
     #[inline]
@@ -619,12 +731,17 @@ impl<const BIG: bool> Source for Bytes<'_, BIG> {
     #[inline]
     fn coordinate(&mut self, kind: Kind) -> Result<f64, MeshFileError> {
         let start = *self;
+        self.value(kind)?.ok_or_else(|| start.error("a finite number"))
+    }
+
+    #[inline]
+    fn value(&mut self, kind: Kind) -> Result<Option<f64>, MeshFileError> {
         let number = match kind {
             Kind::F32 => f64::from(f32::from_le_bytes(self.number()?)),
             Kind::F64 => f64::from_le_bytes(self.number()?),
-            _ => return integer(self, kind).map(|integer| integer as f64),
+            _ => integer(self, kind)? as f64,
         };
-        if number.is_finite() { Ok(number) } else { Err(start.error("a finite number")) }
+        Ok(Some(number).filter(|number| number.is_finite()))
     }
 
     #[inline]

@@ -8,7 +8,7 @@ use alloc::vec::Vec;
 
 use crate::error::{Error, MeshError};
 use crate::memory;
-use crate::mesh::{Faces, TriangleMesh, flatness, triangulate_facet};
+use crate::mesh::{Faces, MeshAttribute, TriangleMesh, flatness, triangulate_facet};
 
 /// A mesh of polygons with shared vertices, whose vertices need not be known before the faces.
 ///
@@ -53,8 +53,23 @@ impl Polygons {
         memory::push(&mut self.fans, fan)
     }
 
+    /// How many triangles the faces so far have. Cutting the faces leaves each triangle in its face.
+    #[inline]
+    pub fn triangle_count(&self) -> usize {
+        self.triangles.len()
+    }
+
     /// The mesh. All corners must be vertices.
-    pub fn finish(mut self) -> Result<TriangleMesh, Error> {
+    pub fn finish(self) -> Result<TriangleMesh, Error> {
+        self.finish_with(|_| Ok(Vec::new()))
+    }
+
+    /// The mesh with attributes of its triangles, whose corners are vertices as they were added. All corners
+    /// must be vertices.
+    pub fn finish_with(
+        mut self,
+        attributes: impl FnOnce(&[[u32; 3]]) -> Result<Vec<MeshAttribute>, Error>,
+    ) -> Result<TriangleMesh, Error> {
         let (mut corners, mut cut, mut found) = (Vec::new(), Vec::new(), Faces::default());
         for &[start, count] in &self.fans {
             let fan = &mut self.triangles[start as usize..][..count as usize];
@@ -73,7 +88,8 @@ impl Polygons {
                 fan[..cut.len()].copy_from_slice(&cut);
             }
         }
-        Ok(TriangleMesh::new(self.vertices, self.triangles)?.made_from(found))
+        let attributes = attributes(&self.triangles)?;
+        Ok(TriangleMesh::with_attributes(self.vertices, self.triangles, attributes)?.made_from(found))
     }
 }
 

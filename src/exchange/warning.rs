@@ -29,6 +29,18 @@ pub enum MeshWarning {
         /// The line of the element, counted from 1.
         line: u64,
     },
+    /// Colours cannot be read: no hexadecimal number in a 3MF, a number beyond the range of its type's
+    /// colours in a PLY. What bears them has no colour.
+    Colours {
+        /// How many.
+        colours: u64,
+    },
+    /// Triangles of a 3MF refer to a group of properties, or to a property, that the part does not have. They
+    /// have no colour and no material.
+    Properties {
+        /// How many, in the build.
+        triangles: u64,
+    },
     /// A model part of a 3MF is of the draft 0.93. What it says of shapes has the same meaning in 1.0.
     Draft,
 }
@@ -52,8 +64,25 @@ impl fmt::Display for MeshWarning {
             Self::NoIndices { line } => {
                 write!(f, "line {line}: faces without a list of vertices; there are 0 of them")
             }
+            Self::Colours { colours } => {
+                write!(f, "{} cannot be read", Count(colours, "colour", "colours"))
+            }
+            Self::Properties { triangles } => write!(
+                f,
+                "{} to properties that the file does not have",
+                Count(triangles, "triangle refers", "triangles refer")
+            ),
             Self::Draft => f.write_str("this is 3MF of the draft 0.93; it was read as 1.0"),
         }
+    }
+}
+
+/// A number of one or more things.
+struct Count(u64, &'static str, &'static str);
+
+impl fmt::Display for Count {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} {}", self.0, if self.0 == 1 { self.1 } else { self.2 })
     }
 }
 

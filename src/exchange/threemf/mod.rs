@@ -10,10 +10,16 @@
 //! turns the triangles round, so that a volume keeps its sign. Objects of all types but `model` (`support`,
 //! `solidsupport`, `surface`, and `other`, which a build should not reach, but slicers put their modifiers
 //! there) are left out, and counted; the type of an object of components has no meaning. Objects that the
-//! build does not reach are not built. Metadata, materials, textures and triangle sets are ignored, and so
-//! are extensions that the model does not require. The fill rule of 3MF is `FillRule::Positive` for each
+//! build does not reach are not built. Metadata, textures and triangle sets are ignored, and so are extensions that the model does not require. The fill rule of 3MF is `FillRule::Positive` for each
 //! object, and the union of the objects: the mesh as a whole differs from that only where an object that is
 //! inside out overlaps another one.
+//!
+//! **Properties.** Base materials and colour groups become attributes of the mesh: `colour` and `material`. A
+//! triangle has the properties that it refers to, or else those of its object, wherever the object is placed. A
+//! group is one of the part in which it is referred to. Base materials are not mixed: that of the first corner
+//! counts. Groups of other kinds (textures, composites, multiproperties) are not read. Of what is not there, or
+//! is no colour, a triangle has nothing, and the caller is told how many there are. If several objects are
+//! built, `object` tells which one a triangle belongs to.
 //!
 //! **The draft 0.93** has a namespace of its own. Its relationship and content types, its objects, components
 //! and items are those of 1.0; its colours, materials and textures are ignored like others. The caller is
@@ -35,19 +41,21 @@
 
 mod model;
 mod package;
+mod properties;
 mod transform;
 mod xml;
 
 use alloc::vec::Vec;
 
-use model::{Component, Models, Purpose, Shape, Target};
+use model::{Component, Models, Object, Purpose, Shape, Target};
 use package::{Package, broken};
+use properties::BuiltProperties;
 use transform::Transform;
 
-use super::LengthUnit;
+use super::{LengthUnit, MeshWarning};
 use crate::error::{Error, MeshError};
 use crate::memory;
-use crate::mesh::TriangleMesh;
+use crate::mesh::{MeshAttribute, TriangleMesh};
 
 /// Vertices and triangles that instances may come to.
 const MAX_BUILT: u64 = 1 << 25;
@@ -60,12 +68,10 @@ pub(super) struct Built {
     pub unit: LengthUnit,
     /// Instances of objects that are no solids.
     pub skipped: u64,
-    /// Whether a part of it is of the draft 0.93.
-    pub draft: bool,
 }
 
 /// Reads a package.
-pub(super) fn read(bytes: &[u8]) -> Result<Built, Error> {
+pub(super) fn read(bytes: &[u8], warnings: &mut Vec<MeshWarning>) -> Result<Built, Error> {
     let mut package = Package::open(bytes)?;
     let root = package.model()?;
     let text = package.text(root)?;
@@ -98,8 +104,11 @@ pub(super) fn read(bytes: &[u8]) -> Result<Built, Error> {
         return Err(broken(&package.name(root), problem));
     }
     drop(package);
-    let mesh = build(&models, &totals, &sum)?;
-    Ok(Built { mesh, unit, skipped: sum.skipped, draft: models.draft })
+    let mesh = build(&models, &totals, &sum, warnings)?;
+    if models.draft {
+        memory::push(warnings, MeshWarning::Draft)?;
+    }
+    Ok(Built { mesh, unit, skipped: sum.skipped })
 }
 
 /// Reads the parts that the root model refers to, and replaces references to them by places of objects.
@@ -198,8 +207,52 @@ fn target(totals: &[Total], component: &Component) -> Total {
     }
 }
 
+/// The objects that triangles belong to, numbered in the order in which they are first placed.
+struct Places {
+    /// Of each object its number, or that it has none yet.
+    numbers: Vec<u32>,
+    /// The objects that have numbers.
+    placed: Vec<u32>,
+    of_triangles: Vec<u32>,
+}
+
+impl Places {
+    fn new(objects: usize, triangles: usize) -> Result<Places, Error> {
+        let numbers = memory::filled(objects, MeshAttribute::NO_ROW)?;
+        Ok(Places { numbers, placed: Vec::new(), of_triangles: memory::with_capacity(triangles)? })
+    }
+
+    fn push(&mut self, object: u32, triangles: usize) -> Result<(), Error> {
+        let number = &mut self.numbers[object as usize];
+        if *number == MeshAttribute::NO_ROW {
+            *number = self.placed.len() as u32;
+            memory::push(&mut self.placed, object)?;
+        }
+        self.of_triangles.try_reserve(triangles)?;
+        self.of_triangles.extend(core::iter::repeat_n(*number, triangles));
+        Ok(())
+    }
+
+    /// The attribute, if there are several objects.
+    fn attribute(self, models: &Models) -> Result<Option<MeshAttribute>, Error> {
+        if self.placed.len() < 2 {
+            return Ok(None);
+        }
+        let mut names = memory::with_capacity(self.placed.len())?;
+        for &object in &self.placed {
+            names.push(memory::text(&models.objects[object as usize].name)?);
+        }
+        Ok(Some(MeshAttribute::labels("object", self.of_triangles)?.named(names)))
+    }
+}
+
 /// All triangles of the build.
-fn build(models: &Models, totals: &[Total], sum: &Total) -> Result<TriangleMesh, Error> {
+fn build(
+    models: &Models,
+    totals: &[Total],
+    sum: &Total,
+    warnings: &mut Vec<MeshWarning>,
+) -> Result<TriangleMesh, Error> {
     let (Ok(vertex_count), Ok(triangle_count)) =
         (usize::try_from(sum.vertices), usize::try_from(sum.triangles))
     else {
@@ -211,6 +264,9 @@ fn build(models: &Models, totals: &[Total], sum: &Total) -> Result<TriangleMesh,
     let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
     vertices.try_reserve_exact(vertex_count)?;
     triangles.try_reserve_exact(triangle_count)?;
+    let mut properties = BuiltProperties::new(&models.properties, triangle_count)?;
+    let several = models.objects.iter().filter(|object| matches!(object.shape, Shape::Mesh(..))).count() > 1;
+    let mut places = Places::new(models.objects.len(), if several { triangle_count } else { 0 })?;
     // Components that are yet to be placed, and what they are placed by; nested as the objects are.
     let mut open = Vec::new();
     memory::push(&mut open, (models.items.iter(), Transform::IDENTITY))?;
@@ -224,7 +280,8 @@ fn build(models: &Models, totals: &[Total], sum: &Total) -> Result<TriangleMesh,
         }
         let placement = component.transform.then(placement);
         let Target::Object(object) = component.target else { continue };
-        match &models.objects[object as usize].shape {
+        let Object { shape, part, property, .. } = &models.objects[object as usize];
+        match shape {
             Shape::Unknown => {}
             Shape::Components(range) => {
                 let components = models.components.get(range.clone()).unwrap_or(&[]);
@@ -238,6 +295,12 @@ fn build(models: &Models, totals: &[Total], sum: &Total) -> Result<TriangleMesh,
                 } else {
                     vertices.extend(own_vertices.iter().map(|&vertex| placement.apply(vertex)));
                 }
+                for place in own_triangles.clone() {
+                    properties.push(place, *part, *property, placement.mirrors)?;
+                }
+                if several {
+                    places.push(object, own_triangles.len())?;
+                }
                 let own_triangles = models.triangles.get(own_triangles.clone()).unwrap_or(&[]);
                 triangles.extend(own_triangles.iter().map(|&triangle| {
                     let [a, b, c] = triangle.map(|vertex| base + vertex);
@@ -246,5 +309,15 @@ fn build(models: &Models, totals: &[Total], sum: &Total) -> Result<TriangleMesh,
             }
         }
     }
-    TriangleMesh::new(vertices, triangles)
+    if let triangles @ 1.. = properties.missing {
+        memory::push(warnings, MeshWarning::Properties { triangles })?;
+    }
+    let (mut attributes, unreadable) = properties.finish()?;
+    if let colours @ 1.. = unreadable {
+        memory::push(warnings, MeshWarning::Colours { colours })?;
+    }
+    if let Some(objects) = places.attribute(models)? {
+        memory::push(&mut attributes, objects)?;
+    }
+    TriangleMesh::with_attributes(vertices, triangles, attributes)
 }

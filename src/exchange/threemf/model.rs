@@ -7,6 +7,7 @@ use core::ops::Range;
 use hashbrown::HashMap;
 
 use super::package::Package;
+use super::properties::{Properties, Reference};
 use super::transform::Transform;
 use super::xml::{Element, Markup, Namespace, Text, Xml};
 use crate::error::Error;
@@ -25,6 +26,8 @@ pub(super) struct Models {
     pub items: Vec<Component>,
     /// Objects by part and identifier.
     pub known: HashMap<(u32, u32), u32>,
+    /// What triangles may refer to, and do.
+    pub properties: Properties,
     /// Whether a part is of the draft 0.93.
     pub draft: bool,
 }
@@ -32,6 +35,12 @@ pub(super) struct Models {
 pub(super) struct Object {
     pub purpose: Purpose,
     pub shape: Shape,
+    /// The part that it is in.
+    pub part: u32,
+    /// What its triangles have if they refer to nothing.
+    pub property: Reference,
+    /// Empty if it has none.
+    pub name: String,
 }
 
 /// What an object is meant for. Of objects of components it has no meaning.
@@ -74,6 +83,8 @@ pub(super) enum Target {
 enum Node {
     Model,
     Resources,
+    /// A group of properties.
+    Group,
     Object,
     Mesh,
     Vertices,
@@ -130,6 +141,26 @@ impl Models {
                     has_build = true;
                     Node::Build
                 }
+                (Some(Node::Resources), "basematerials") if element.namespace == Namespace::Core => {
+                    self.properties.read_group(&xml, part, Some(true))?;
+                    Node::Group
+                }
+                (Some(Node::Resources), "colorgroup") if element.namespace == Namespace::Materials => {
+                    self.properties.read_group(&xml, part, Some(false))?;
+                    Node::Group
+                }
+                (Some(Node::Resources), _) if element.namespace == Namespace::Materials => {
+                    self.properties.read_group(&xml, part, None)?;
+                    Node::Skipped
+                }
+                (Some(Node::Group), "base") if element.namespace == Namespace::Core => {
+                    self.properties.read_member(&xml)?;
+                    Node::Skipped
+                }
+                (Some(Node::Group), "color") if element.namespace == Namespace::Materials => {
+                    self.properties.read_member(&xml)?;
+                    Node::Skipped
+                }
                 (Some(Node::Resources), "object") if core => {
                     self.read_object(&xml, &element, part)?;
                     Node::Object
@@ -174,7 +205,7 @@ impl Models {
     }
 
     fn read_object(&mut self, xml: &Xml, element: &Element, part: u32) -> Result<(), Error> {
-        let (mut id, mut purpose) = (None, Purpose::Model);
+        let (mut id, mut purpose, mut name) = (None, Purpose::Model, String::new());
         for attribute in xml.attributes() {
             match (attribute.prefix, attribute.name) {
                 ("", "id") => id = Some(xml.index(attribute)?),
@@ -185,6 +216,7 @@ impl Models {
                         _ => return Err(xml.attribute_error(attribute, "is no type of objects")),
                     };
                 }
+                ("", "name") => name = memory::text(&xml.name(attribute).unwrap_or_default())?,
                 // Of the slice and the production extension, which the model may not even require.
                 (_, "meshresolution" | "modelresolution") if attribute.value.trim_ascii() != "fullres" => {
                     return Err(xml.attribute_error(attribute, "says that the mesh is not the true shape"));
@@ -198,8 +230,9 @@ impl Models {
         if self.known.insert((part, id), index).is_some() {
             return Err(xml.error(element.offset, alloc::format!("object {id} is defined a second time")));
         }
-        memory::push(&mut self.objects, Object { purpose, shape: Shape::Unknown })?;
-        Ok(())
+        let is_draft = element.namespace == Namespace::Draft;
+        let property = if is_draft { Reference::NONE } else { Reference::of_object(xml) };
+        memory::push(&mut self.objects, Object { purpose, shape: Shape::Unknown, part, property, name })
     }
 
     fn give_shape(&mut self, xml: &Xml, element: &Element, shape: Shape) -> Result<(), Error> {
@@ -255,6 +288,9 @@ impl Models {
         let [Some(a), Some(b), Some(c)] = found else {
             return Err(xml.error(element.offset, "the triangle lacks v1, v2 or v3"));
         };
+        if element.namespace == Namespace::Core {
+            self.properties.read_triangle(xml, self.triangles.len())?;
+        }
         memory::push(&mut self.triangles, [a, b, c])?;
         triangles.end = self.triangles.len();
         Ok(())
@@ -322,9 +358,11 @@ fn read_model(xml: &Xml) -> Result<LengthUnit, Error> {
             ("", "requiredextensions") => {
                 for prefix in attribute.value.split_ascii_whitespace() {
                     let what = match xml.namespace(prefix) {
-                        Namespace::Core | Namespace::Draft | Namespace::Production | Namespace::Harmless => {
-                            continue;
-                        }
+                        Namespace::Core
+                        | Namespace::Draft
+                        | Namespace::Production
+                        | Namespace::Materials
+                        | Namespace::Harmless => continue,
                         Namespace::Extension(name) => alloc::format!("the 3MF extension \"{name}\""),
                         _ => match xml.uri(prefix) {
                             Some(uri) => {

@@ -29,6 +29,8 @@ pub(super) enum Namespace {
     Draft,
     /// 3MF's production extension.
     Production,
+    /// 3MF's materials extension.
+    Materials,
     /// An extension that does not concern shapes.
     Harmless,
     /// Another extension of 3MF, of this name.
@@ -47,8 +49,8 @@ impl Namespace {
             "http://schemas.microsoft.com/3dmanufacturing/core/2015/02" => Self::Core,
             "http://schemas.microsoft.com/3dmanufacturing/2013/01" => Self::Draft,
             "http://schemas.microsoft.com/3dmanufacturing/production/2015/06" => Self::Production,
-            "http://schemas.microsoft.com/3dmanufacturing/material/2015/02"
-            | "http://schemas.microsoft.com/3dmanufacturing/trianglesets/2021/07" => Self::Harmless,
+            "http://schemas.microsoft.com/3dmanufacturing/material/2015/02" => Self::Materials,
+            "http://schemas.microsoft.com/3dmanufacturing/trianglesets/2021/07" => Self::Harmless,
             "http://schemas.openxmlformats.org/package/2006/relationships" => Self::Relationships,
             "http://schemas.openxmlformats.org/package/2006/content-types" => Self::ContentTypes,
             _ => extension(uri).map_or(Self::Other, Self::Extension),
