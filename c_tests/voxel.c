@@ -21,12 +21,13 @@ static int32_t values_at(void *ctx, const double *points, uint64_t number, doubl
     return 0;
 }
 
-static int32_t range_in(void *ctx, const double *min, const double *max, leafless_interval *ranges) {
+static int32_t range_in(void *ctx, const double *min, const double *max, leafless_value_range *range) {
     (void)ctx;
-    ranges[0].lower = min[0] + 2 * min[1] - 1e-9;
-    ranges[0].upper = max[0] + 2 * max[1] + 1e-9;
-    ranges[1].lower = min[2];
-    ranges[1].upper = max[2];
+    range->kind = LEAFLESS_RANGE_WITHIN;
+    range->values[0].lower = min[0] + 2 * min[1] - 1e-9;
+    range->values[0].upper = max[0] + 2 * max[1] + 1e-9;
+    range->values[1].lower = min[2];
+    range->values[1].upper = max[2];
     return 0;
 }
 
@@ -87,15 +88,24 @@ static void against_cells(void) {
 }
 
 static void attributes(void) {
+    leafless_attribute_callbacks callbacks;
+    leafless_attribute *attribute, *failing;
     leafless_voxel_options options;
     uint64_t calls = 0, i, few;
+    OK(leafless_attribute_callbacks_init(&callbacks, sizeof callbacks));
+    callbacks.components = 2;
+    callbacks.values = values_at;
+    callbacks.range = range_in;
+    callbacks.ctx = &calls;
+    OK(leafless_attribute_new_callbacks(&callbacks, &attribute));
+    callbacks.values = fails;
+    OK(leafless_attribute_new_callbacks(&callbacks, &failing));
     OK(leafless_voxel_options_init(&options, sizeof options));
     options.coarse_model = 0.5;
     options.fine_model = 1.0 / 32;
     options.tolerance = 0.4;
-    options.components = 2;
-    options.values = values_at;
-    options.ctx = &calls;
+    options.criterion = LEAFLESS_CRITERION_VARIANCE;
+    options.attribute = attribute;
     options.lists = LEAFLESS_VOXEL_LISTS_REFINED;
     list(&options);
     few = count;
@@ -106,20 +116,24 @@ static void attributes(void) {
         const double *corner = corners[i];
         CHECK(values[i][0] == corner[0] + half + 2 * (corner[1] + half) && values[i][1] == corner[2] + half);
     }
-    options.criterion = LEAFLESS_VOXEL_CRITERION_RANGE;
-    options.range = range_in;
+    options.criterion = LEAFLESS_CRITERION_RANGE;
     list(&options);
     CHECK(count > few);
     against_cells();
-    options.values = fails;
+    options.attribute = failing;
     FAILS(LEAFLESS_E_CALLBACK,
           leafless_octree_voxels(octree, &options, NULL, &lattice, NULL, NULL, NULL, NULL, NULL, 0, &count));
-    options.values = NULL;
-    FAILS(LEAFLESS_E_NULL,
-          leafless_octree_voxels(octree, &options, NULL, &lattice, NULL, NULL, NULL, NULL, NULL, 0, &count));
-    options.components = 5;
+    options.attribute = attribute;
+    options.criterion = LEAFLESS_CRITERION_NONE;
     FAILS(LEAFLESS_E_ARGUMENT,
           leafless_octree_voxels(octree, &options, NULL, &lattice, NULL, NULL, NULL, NULL, NULL, 0, &count));
+    options.fine_model = options.tolerance = 0;
+    list(&options);
+    options.criterion = 7;
+    FAILS(LEAFLESS_E_ARGUMENT,
+          leafless_octree_voxels(octree, &options, NULL, &lattice, NULL, NULL, NULL, NULL, NULL, 0, &count));
+    leafless_attribute_free(attribute);
+    leafless_attribute_free(failing);
 }
 
 /* Along the direction no voxel lies wholly before the one that comes before it in the order, on all axes. */

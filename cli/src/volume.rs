@@ -10,8 +10,9 @@ use leafless::exchange::{
     LengthUnit, RawVolume, SampleKind, open_volume, read_raw_volume, read_volume, volume_data_file,
 };
 use leafless::{
-    Affine, AnySolid, Attribute, Band, Control, Frame, Interpolation, Metadata, MovedAttribute, Octree, Rule,
-    Samples, Solid, TriangleMesh, Volume, VolumeAttribute, VoxelGrid, build, marching_cubes_of_volume,
+    Affine, AnySolid, Attribute, Band, Control, Error, Frame, Interpolation, Metadata, MovedAttribute,
+    Octree, Rule, Samples, Solid, TriangleMesh, Volume, VolumeAttribute, VoxelGrid, build,
+    marching_cubes_of_volume,
 };
 use serde::Serialize;
 use std::str::FromStr;
@@ -211,15 +212,12 @@ impl Voxels {
     }
 
     /// The samples as values at points.
-    pub fn attribute(&self, interpolation: Interpolation) -> Result<Box<dyn Attribute>, String> {
+    pub fn attribute(&self, interpolation: Interpolation) -> Result<Box<dyn Attribute>, Error> {
         let samples = VolumeAttribute::new(self.volume.clone(), interpolation);
-        match &self.placement {
-            Some(placement) => {
-                let back = inverse(placement).ok_or("its axes lie in a plane")?;
-                Ok(Box::new(MovedAttribute::new(samples, back)))
-            }
-            None => Ok(Box::new(samples)),
-        }
+        Ok(match &self.placement {
+            Some(placement) => Box::new(MovedAttribute::new(samples, placement.inverse()?)),
+            None => Box::new(samples),
+        })
     }
 
     /// The octree whose finest cells are the voxels.
@@ -318,24 +316,6 @@ impl Voxels {
             unit: self.unit.map(LengthUnit::symbol),
         }
     }
-}
-
-/// The map back.
-fn inverse(placement: &Affine) -> Option<Affine> {
-    let [a, b, c] = placement.rows();
-    let cross = |u: &[f64; 4], v: &[f64; 4]| {
-        [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]]
-    };
-    let columns = [cross(b, c), cross(c, a), cross(a, b)];
-    let determinant: f64 = (0..3).map(|k| a[k] * columns[0][k]).sum();
-    let mut rows = [[0.0; 4]; 3];
-    for (i, row) in rows.iter_mut().enumerate() {
-        for k in 0..3 {
-            row[k] = columns[k][i] / determinant;
-        }
-        row[3] = -(row[0] * a[3] + row[1] * b[3] + row[2] * c[3]);
-    }
-    Affine::new(rows).ok()
 }
 
 /// What the user wants of a volume's octree.

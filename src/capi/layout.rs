@@ -68,8 +68,8 @@ fn write_all(to: &mut dyn Write) -> fmt::Result {
             corner_model, spacing_model, placement
         }
         leafless_voxel_options {
-            struct_size, boundary_depth, boundary, lists, coarse_model, fine_model, tolerance, criterion, components,
-            values, range, ctx
+            struct_size, boundary_depth, boundary, lists, coarse_model, fine_model, tolerance, attribute,
+            criterion, reserved
         }
         leafless_surface_options { struct_size, method, snap, resolve, placement, reserved, source }
         leafless_callbacks {
@@ -193,7 +193,6 @@ fn write_all(to: &mut dyn Write) -> fmt::Result {
         }
         leafless_voxel_boundary { LEAFLESS_VOXEL_BOUNDARY_UNDECIDED, LEAFLESS_VOXEL_BOUNDARY_TOUCHING }
         leafless_voxel_lists { LEAFLESS_VOXEL_LISTS_OUTSIDE, LEAFLESS_VOXEL_LISTS_REFINED }
-        leafless_voxel_criterion { LEAFLESS_VOXEL_CRITERION_VARIANCE, LEAFLESS_VOXEL_CRITERION_RANGE }
         leafless_defect {
             LEAFLESS_DEFECT_HOLE, LEAFLESS_DEFECT_MISORIENTED, LEAFLESS_DEFECT_DUPLICATE,
             LEAFLESS_DEFECT_NON_MANIFOLD, LEAFLESS_DEFECT_FLAT

@@ -1,19 +1,20 @@
 //! Voxel records: the voxels of an octree in arrays of the host, found, put in order, and given triangles.
 
+use super::attribute::leafless_attribute;
 use super::boundary::{
     Buffer, Failure, Sized32, array, buffer, guard, handle, initialise, out, shared, sized, slice,
 };
+use super::channel_fill::leafless_criterion;
 use super::control::{controlled, leafless_options};
-use super::frame::{frame_of, leafless_frame, leafless_interval};
+use super::frame::{frame_of, leafless_frame};
 use super::mesh::leafless_mesh;
 use super::octree::{leafless_octree, settled_tag};
 use super::status::leafless_status;
-use crate::attribute::{Attribute, Criterion, Detail, ValueRange};
-use crate::error::Error;
-use crate::lattice::{Bounds, Cell, Frame, Interval};
+use crate::attribute::{Attribute, Criterion, Detail};
+use crate::lattice::{Cell, Frame};
 use crate::octree::Octree;
 use crate::voxel::{Viewpoint, VoxelBoundary, VoxelOptions, VoxelRecords, VoxelRecordsRef};
-use core::ffi::c_void;
+use leafless_criterion::*;
 
 /// What a voxel is: a number in the array `kinds`.
 #[repr(u8)]
@@ -46,34 +47,6 @@ pub enum leafless_voxel_lists {
     LEAFLESS_VOXEL_LISTS_REFINED = 2,
 }
 
-/// What makes an inside voxel fine enough that is longer than the fine limit and no longer than the coarse one.
-#[repr(u32)]
-pub enum leafless_voxel_criterion {
-    /// The variance of the values at its eight corners is at most the square of the tolerance.
-    LEAFLESS_VOXEL_CRITERION_VARIANCE = 0,
-    /// The values in it are proven to lie in a range no wider than the tolerance.
-    LEAFLESS_VOXEL_CRITERION_RANGE = 1,
-}
-
-/// The values of the host's attribute at `count` points (3 numbers each, model units): writes `components` numbers
-/// for each to `values`, NaN in each where there is no value. 0, or the number of the host's own error, which ends
-/// the operation with LEAFLESS_E_CALLBACK. The same point must always get the same value. Called in the thread that
-/// called the library.
-pub type leafless_attribute_fn =
-    Option<unsafe extern "C" fn(ctx: *mut c_void, points: *const f64, count: u64, values: *mut f64) -> i32>;
-
-/// For each component an interval that contains all values of the host's attribute in the box [min, max] (3 numbers
-/// each, model units), every point of which must have a value: writes `components` intervals to `ranges`. A NaN, or
-/// lower > upper, says that nothing is known. Else as leafless_attribute_fn.
-pub type leafless_attribute_range_fn = Option<
-    unsafe extern "C" fn(
-        ctx: *mut c_void,
-        min: *const f64,
-        max: *const f64,
-        ranges: *mut leafless_interval,
-    ) -> i32,
->;
-
 /// Which voxels of an octree are listed, and how large they are. All fields but the first may be zero, which is
 /// their default; leafless_voxel_options_init sets them so.
 #[derive(Clone, Copy)]
@@ -89,85 +62,24 @@ pub struct leafless_voxel_options {
     pub lists: u32,
     /// The longest edge of inside voxels, in model units; 0: as long as the octree's cells.
     pub coarse_model: f64,
-    /// Inside voxels of this edge are not split; 0: the coarse edge, whatever the attribute.
+    /// Inside voxels of this edge are not split, with a criterion; 0: the coarse edge.
     pub fine_model: f64,
-    /// How much the attribute may change in an inside voxel that is longer than the fine edge.
+    /// How much the attribute may change in an inside voxel that is longer than the fine edge, with a criterion.
     pub tolerance: f64,
-    /// A leafless_voxel_criterion.
+    /// The attribute that inside voxels follow, and whose values are listed; optional.
+    pub attribute: *const leafless_attribute,
+    /// A leafless_criterion: what makes an inside voxel fine enough that is longer than the fine edge and no longer
+    /// than the coarse one. Without one, all inside voxels have the coarse edge or less.
     pub criterion: u32,
-    /// How many numbers a value has: 1 to 4, or 0 without an attribute.
-    pub components: u32,
-    /// The attribute's values at points; needed if there are components.
-    pub values: leafless_attribute_fn,
-    /// What is known of its values in a box; optional.
-    pub range: leafless_attribute_range_fn,
-    /// What both are called with.
-    pub ctx: *mut c_void,
+    /// Zero.
+    pub reserved: u32,
 }
 
-// SAFETY: numbers, a pointer, and optional functions.
+// SAFETY: numbers and a pointer.
 unsafe impl Sized32 for leafless_voxel_options {}
 
-/// The host's attribute.
-struct HostAttribute(leafless_voxel_options);
-
-// SAFETY: the functions are called only in the thread that called the library: listing voxels has one.
-unsafe impl Sync for HostAttribute {}
-
-impl HostAttribute {
-    fn checked(&self, code: i32) -> Result<(), Error> {
-        if code == 0 { Ok(()) } else { Err(Error::Callback { code }) }
-    }
-}
-
-/// Points that the host is asked for at once.
-const BATCH: usize = 64;
-
-impl Attribute for HostAttribute {
-    fn components(&self) -> usize {
-        self.0.components as usize
-    }
-
-    fn values(&self, points: &[[f64; 3]], values: &mut [Option<[f64; 4]>]) -> Result<(), Error> {
-        let components = self.components();
-        let Some(of_host) = self.0.values else { return Ok(()) };
-        for (points, values) in points.chunks(BATCH).zip(values.chunks_mut(BATCH)) {
-            let mut numbers = [f64::NAN; 4 * BATCH];
-            // SAFETY: as the host gave it, with its own context; there is room for four numbers a point.
-            let code = unsafe {
-                of_host(self.0.ctx, points.as_ptr().cast(), points.len() as u64, numbers.as_mut_ptr())
-            };
-            self.checked(code)?;
-            for (value, told) in values.iter_mut().zip(numbers.chunks(components)) {
-                let mut padded = [0.0; 4];
-                padded[..components].copy_from_slice(told);
-                *value = told.iter().any(|number| !number.is_nan()).then_some(padded);
-            }
-        }
-        Ok(())
-    }
-
-    fn range(&self, bounds: &Bounds) -> Result<ValueRange, Error> {
-        let Some(of_host) = self.0.range else { return Ok(ValueRange::Unknown) };
-        let mut ranges = [leafless_interval { lower: f64::NAN, upper: f64::NAN }; 4];
-        // SAFETY: as the host gave it, with its own context; there is room for four intervals.
-        let code =
-            unsafe { of_host(self.0.ctx, bounds.min.as_ptr(), bounds.max.as_ptr(), ranges.as_mut_ptr()) };
-        self.checked(code)?;
-        let told = &ranges[..self.components()];
-        if !told.iter().all(|range| range.lower <= range.upper) {
-            return Ok(ValueRange::Unknown);
-        }
-        let mut within = [Interval::exactly(0.0); 4];
-        for (range, told) in within.iter_mut().zip(told) {
-            *range = Interval { lower: told.lower, upper: told.upper };
-        }
-        Ok(ValueRange::Within(within))
-    }
-}
-
 impl leafless_voxel_options {
-    fn check(&self) -> Result<(VoxelOptions, Option<HostAttribute>), Failure> {
+    fn check(&self) -> Result<VoxelOptions, Failure> {
         let refused = |name, problem| Err(Failure::Argument { name, problem });
         let boundary = match self.boundary {
             0 => VoxelBoundary::Undecided,
@@ -178,32 +90,32 @@ impl leafless_voxel_options {
             return refused("voxel_options.lists", "must be 0 or leafless_voxel_lists");
         }
         let criterion = match self.criterion {
-            0 => Criterion::Variance,
-            1 => Criterion::Range,
-            _ => return refused("voxel_options.criterion", "must be a leafless_voxel_criterion"),
+            given if given == LEAFLESS_CRITERION_NONE as u32 => None,
+            given if given == LEAFLESS_CRITERION_VARIANCE as u32 => Some(Criterion::Variance),
+            given if given == LEAFLESS_CRITERION_RANGE as u32 => Some(Criterion::Range),
+            _ => return refused("voxel_options.criterion", "must be a leafless_criterion"),
         };
-        if self.components > 4 {
-            return refused("voxel_options.components", "must be 0 to 4");
-        }
-        if self.components > 0 && self.values.is_none() {
-            return Err(Failure::Null { name: "voxel_options.values" });
-        }
         let mut options =
             VoxelOptions::new().boundary(boundary).outside(self.lists & 1 != 0).refined(self.lists & 2 != 0);
         if self.boundary_depth != 0 {
             options = options.boundary_depth(self.boundary_depth.try_into().unwrap_or(u8::MAX));
         }
-        if self.coarse_model != 0.0 {
-            let detail = match self.fine_model {
-                0.0 => Detail::uniform(self.coarse_model),
-                fine => Detail::new(self.coarse_model, fine, self.tolerance, criterion),
-            };
-            options = options.detail(detail?);
-        } else if self.fine_model != 0.0 {
-            return refused("voxel_options.fine_model", "needs a coarse edge");
+        let (coarse, fine) = (self.coarse_model, self.fine_model);
+        match criterion {
+            None if fine != 0.0 || self.tolerance != 0.0 => {
+                return refused("voxel_options.criterion", "is needed for a fine edge and a tolerance");
+            }
+            None if coarse == 0.0 => {}
+            None => options = options.detail(Detail::uniform(coarse)?),
+            Some(_) if coarse == 0.0 => {
+                return refused("voxel_options.coarse_model", "is needed with a criterion");
+            }
+            Some(criterion) => {
+                let fine = if fine == 0.0 { coarse } else { fine };
+                options = options.detail(Detail::new(coarse, fine, self.tolerance, criterion)?);
+            }
         }
-        let attribute = (self.components > 0).then_some(HostAttribute(*self));
-        Ok((options, attribute))
+        Ok(options)
     }
 }
 
@@ -260,8 +172,13 @@ pub unsafe extern "C" fn leafless_octree_voxels(
 ) -> leafless_status {
     guard(|| unsafe {
         let tree = shared(octree, "octree")?.octree.view();
-        let (wanted, attribute) = sized(voxel_options, "voxel_options")?.check()?;
-        let components = attribute.as_ref().map_or(0, |attribute| attribute.components());
+        let wanted = sized(voxel_options, "voxel_options")?;
+        let attribute: Option<&dyn Attribute> = match wanted.attribute.is_null() {
+            true => None,
+            false => Some(&shared(wanted.attribute, "voxel_options.attribute")?.attribute),
+        };
+        let wanted = wanted.check()?;
+        let components = attribute.map_or(0, |attribute| attribute.components());
         let (lattice, count) = (out(lattice, "lattice")?, out(count, "count")?);
         let room = |each: u64| capacity.saturating_mul(each);
         let (codes, levels, kinds, corners, values) = (
@@ -271,7 +188,6 @@ pub unsafe extern "C" fn leafless_octree_voxels(
             present(corners_model, room(3), "corners_model")?,
             present(values, room(components as u64), "values")?,
         );
-        let attribute = attribute.as_ref().map(|attribute| attribute as &dyn Attribute);
         let records = controlled(options, |control| VoxelRecords::of(tree, &wanted, attribute, control))?;
         let view = records.view();
         for (is_wanted, name) in [
