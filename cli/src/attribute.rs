@@ -10,10 +10,11 @@ use crate::progress::watched;
 use crate::volume::Sampling;
 use crate::voxelize::threads;
 use clap::{Args, ValueEnum};
+use leafless::exchange::{self, MeshOptions};
 use leafless::{
     Attribute, CarryRule, Channel, ChannelOperand, ConstantAttribute, Control, Criterion, Detail,
-    FillOptions, Interpolation, MAX_DEPTH, Metadata, Octree, ScalarType, ValueType, carry_channel,
-    fill_channel,
+    FillOptions, Interpolation, MAX_DEPTH, MeshAttribute, Metadata, Octree, ScalarType, SurfaceAttribute,
+    TriangleMesh, ValueType, carry_channel, fill_channel,
 };
 use serde::Serialize;
 use std::ffi::OsString;
@@ -26,17 +27,24 @@ use std::time::Instant;
 /// Without a detail, every cell of the channel's finest level has its own value, wherever it is not proven that all of a
 /// larger cell has one. With --coarse, --fine and --tolerance cells are split as far as the values demand it.
 #[derive(Args)]
-#[command(group = clap::ArgGroup::new("values").required(true).args(["from", "expr", "value", "remove"]))]
+#[command(group = clap::ArgGroup::new("values").required(true).args(["from", "bodies", "expr", "value", "remove"]))]
 pub struct Arguments {
     /// Solid (.lfl)
     file: OsString,
     /// Name of the channel. One of this name is replaced, or changed with --in
     #[arg(long, value_name = "NAME")]
     name: String,
-    /// Take the values from this file: the samples of a volume (NRRD, MetaImage, raw), or the channel of this name of
-    /// another solid (.lfl)
+    /// Take the values from this file: the samples of a volume (NRRD, MetaImage, raw), the colours or materials of a mesh
+    /// (3MF, PLY) at the nearest point of its surface, or the channel of this name of another solid (.lfl)
     #[arg(long, value_name = "FILE")]
     from: Option<OsString>,
+    /// Take the number of the nearest body of this mesh (STL, OBJ, PLY, OFF, 3MF), counted from 0 in the order of their
+    /// first triangles
+    #[arg(long, value_name = "MESH")]
+    bodies: Option<OsString>,
+    /// Which values of a mesh. Without it: those of the channel's name, or the only ones
+    #[arg(long, value_name = "NAME", requires = "from")]
+    pick: Option<String>,
     /// Take the values from a function of x, y and z; given up to four times, once for each number of a value
     #[arg(long, value_name = "EXPR", allow_hyphen_values = true, long_help = expression_help())]
     expr: Vec<String>,
@@ -180,7 +188,7 @@ fn made(arguments: &Arguments, input: &Input, octree: &Octree) -> Result<Channel
         Some(_) => Some(channel::find(octree, input, Some(&arguments.name))?),
         None => None,
     };
-    let values = values(arguments)?;
+    let values = values(arguments, octree)?;
     let kind = arguments.store.map(ScalarType::from).or(values.kind);
     let (kind, depth) = match old {
         Some(old) => (old.value_type().scalar(), arguments.depth.unwrap_or(old.frame().depth())),
@@ -240,11 +248,32 @@ fn detail(arguments: &Arguments, cell: f64) -> Result<Option<Detail>, Failure> {
     detail.map(Some).map_err(|error| Failure::Usage(error.to_string()))
 }
 
-fn values(arguments: &Arguments) -> Result<Values, Failure> {
+/// A mesh in the unit of a solid, if both are known.
+fn mesh(input: &Input, bytes: &[u8], octree: &Octree) -> Result<TriangleMesh, Failure> {
+    let file = exchange::read_mesh(bytes, &MeshOptions::default()).of(input)?;
+    let unit = octree.metadata().get("units").and_then(|unit| unit.parse().ok());
+    let target = file.unit.and(unit).filter(|&unit| Some(unit) != file.unit);
+    let mesh = match target {
+        Some(_) => {
+            exchange::read_mesh(bytes, &MeshOptions { target, ..MeshOptions::default() }).of(input)?.mesh
+        }
+        None => file.mesh,
+    };
+    mesh.sewn().of(input)
+}
+
+fn values(arguments: &Arguments, octree: &Octree) -> Result<Values, Failure> {
     let plain = |attribute| Values { attribute, kind: None, metadata: Metadata::new() };
     if let Some(Numbers(numbers)) = &arguments.value {
         let constant = ConstantAttribute::new(numbers).map_err(|error| Failure::Usage(error.to_string()))?;
         return Ok(plain(Box::new(constant)));
+    }
+    if let Some(bodies) = &arguments.bodies {
+        let bodies = Input::from(&**bodies);
+        let mesh = mesh(&bodies, &bodies.read()?, octree)?;
+        let labels = mesh.bodies().and_then(|labels| MeshAttribute::labels("body", labels)).of(&bodies)?;
+        let attribute = SurfaceAttribute::new(mesh, labels).of(&bodies)?;
+        return Ok(Values { kind: Some(ScalarType::U32), ..plain(Box::new(attribute)) });
     }
     let Some(from) = &arguments.from else {
         let expressions = Expressions::parse(&arguments.expr).map_err(Failure::Usage)?;
@@ -264,9 +293,34 @@ fn values(arguments: &Arguments) -> Result<Values, Failure> {
             let voxels = arguments.sampling.read(&from, &bytes)?;
             Ok(plain(voxels.attribute(nearest).of(&from)?))
         }
-        _ => Err(Failure::of(
-            &from,
-            "is neither a volume (NRRD, MetaImage, raw) nor a solid with channels (.lfl)",
-        )),
+        Content::Mesh => {
+            let mesh = mesh(&from, &bytes, octree)?;
+            let known: Vec<&str> = mesh.attributes().iter().map(MeshAttribute::name).collect();
+            let name = match (&arguments.pick, &known[..]) {
+                (_, []) => return Err(Failure::of(&from, "has neither colours nor materials")),
+                (Some(name), _) if known.contains(&&**name) => name.clone(),
+                (None, known) if known.contains(&&*arguments.name) => arguments.name.clone(),
+                (None, [only]) => (*only).to_owned(),
+                _ => {
+                    let list = known.join(", ");
+                    return Err(Failure::Usage(format!("choose one of {from}'s values with --pick: {list}")));
+                }
+            };
+            // Numbers of colours go from 0 to 255.
+            let kind = if name.ends_with("colour") { ScalarType::U8 } else { ScalarType::F32 };
+            let mut metadata = Metadata::new();
+            metadata.insert("meaning", &*name);
+            let picked = mesh.attributes().iter().find(|attribute| attribute.name() == name);
+            for (number, name) in picked.map_or(&[][..], MeshAttribute::names).iter().enumerate() {
+                metadata.insert(format!("value {number}"), &**name);
+            }
+            let attribute = SurfaceAttribute::of_mesh(mesh, &name).of(&from)?;
+            Ok(Values { attribute: Box::new(attribute), kind: Some(kind), metadata })
+        }
+        _ => {
+            let problem =
+                "is no volume (NRRD, MetaImage, raw), no mesh with colours or materials, and no solid (.lfl)";
+            Err(Failure::of(&from, problem))
+        }
     }
 }

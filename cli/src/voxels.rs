@@ -1,5 +1,6 @@
 //! `leafless voxels`: the voxels of a solid as records, and records as a solid.
 
+use crate::channel;
 use crate::failure::{Failure, Of};
 use crate::input::Input;
 use crate::npz::{Arrays, Reader};
@@ -50,9 +51,14 @@ pub struct Arguments {
     /// How much the solid's attribute may change in an inside voxel that is longer than --fine
     #[arg(long, value_name = "NUMBER", requires = "fine")]
     tolerance: Option<f64>,
-    /// Split until the attribute is proven to change by no more than the tolerance, instead of looking at the corners
+    /// Compare the values at the eight corners of a voxel, as published, instead of proving that they change by no more
+    /// than the tolerance: their standard deviation must be no more than it. Details between the corners are missed
     #[arg(long, requires = "tolerance")]
-    certified: bool,
+    corners: bool,
+    /// Channel of the solid that inside voxels follow, and whose values are listed. Without it: the only one, if there is
+    /// one
+    #[arg(long, value_name = "NAME", conflicts_with = "import")]
+    channel: Option<String>,
     /// Level of boundary voxels. Without it: the solid's finest cells
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(0..=MAX_DEPTH as i64))]
     boundary_depth: Option<u8>,
@@ -136,8 +142,16 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 /// The attribute that inside voxels follow, and whose values records have.
-fn attribute(_octree: &Octree) -> Option<Box<dyn Attribute>> {
-    None
+fn attribute(
+    arguments: &Arguments,
+    input: &Input,
+    octree: &Octree,
+) -> Result<Option<Box<dyn Attribute>>, Failure> {
+    if arguments.channel.is_none() && octree.channels().len() != 1 {
+        return Ok(None);
+    }
+    let channel = channel::find(octree, input, arguments.channel.as_deref())?;
+    Ok(Some(Box::new(channel.clone())))
 }
 
 fn list(arguments: &Arguments, input: &Input, output: &Output) -> Result<(), Failure> {
@@ -151,7 +165,7 @@ fn list(arguments: &Arguments, input: &Input, output: &Output) -> Result<(), Fai
         })
         .of(input)?,
     };
-    let attribute = attribute(&octree);
+    let attribute = attribute(arguments, input, &octree)?;
     let options = options(arguments, &octree, attribute.is_some())?;
     let listed = watched("voxels", looking.threads, |control| {
         let records = VoxelRecords::of(octree.view(), &options, attribute.as_deref(), control)?;
@@ -243,7 +257,9 @@ fn form(arguments: &Arguments, path: Option<&Path>) -> Result<WriteName, Failure
 fn options(arguments: &Arguments, octree: &Octree, has_attribute: bool) -> Result<VoxelOptions, Failure> {
     let refused = |error: leafless::Error| Failure::Usage(error.to_string());
     if arguments.tolerance.is_some() && !has_attribute {
-        return Err(Failure::Usage("--tolerance is for solids with values, and this one has none".into()));
+        return Err(Failure::Usage(
+            "--tolerance is for solids with a channel: name it with --channel".into(),
+        ));
     }
     let touching = match arguments.boundary {
         Some(name) => name == BoundaryName::Touching,
@@ -259,7 +275,7 @@ fn options(arguments: &Arguments, octree: &Octree, has_attribute: bool) -> Resul
         (None, None) => None,
         (Some(coarse), None) => Some(Detail::uniform(coarse).map_err(refused)?),
         (coarse, Some((fine, tolerance))) => {
-            let criterion = if arguments.certified { Criterion::Range } else { Criterion::Variance };
+            let criterion = if arguments.corners { Criterion::Variance } else { Criterion::Range };
             let coarse = coarse.unwrap_or(f64::INFINITY);
             Some(Detail::new(coarse, fine, tolerance, criterion).map_err(refused)?)
         }

@@ -229,3 +229,73 @@ fn what_cannot_be_done_is_said() {
     refused(path, &["summary", "block.lfl", "--name", "m", "--box", "0,0,0,0.5,0.5,0.5"], 1, "no value");
     refused(path, &["summary", "block.lfl", "--name", "m", "--box", "1,0,0,0.5,0.5,0.5"], 2, "lower corner");
 }
+
+#[test]
+fn channels_of_meshes() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path();
+    files(path);
+    let obj = "v 0 0 0\nv 0 9 0\nv 0 0 9\nv 8 0 0\nv 8 9 0\nv 8 0 9\nf 1 2 3\nf 4 5 6\n";
+    std::fs::write(path.join("two.obj"), obj).unwrap();
+    told(path, &["attribute", "block.lfl", "--name", "body", "--bodies", "two.obj", "--store", "u8"]);
+    let points = "2 2 2\n3.9 2 2\n4.1 2 2\n6 2 2\n";
+    assert_eq!(sample(path, &["block.lfl"], points), ["0", "0", "1", "1"]);
+    // Colours run from black at y = 0 to red at y = 8.
+    let ply = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n\
+               property uchar red\nproperty uchar green\nproperty uchar blue\nelement face 2\n\
+               property list uchar int vertex_indices\nend_header\n\
+               0 0 0 0 7 7\n8 0 0 0 7 7\n8 8 0 240 7 7\n0 8 0 240 7 7\n3 0 1 2\n3 0 2 3\n";
+    std::fs::write(path.join("c.ply"), ply).unwrap();
+    let made =
+        told(path, &["attribute", "block.lfl", "--name", "paint", "--from", "c.ply", "-o", "paint.lfl"]);
+    assert_eq!(
+        (&made["channel"]["type"], &made["channel"]["metadata"]["meaning"]),
+        (&"u8".into(), &"colour".into())
+    );
+    let red = |y: f64| {
+        let line = sample(path, &["paint.lfl", "--name", "paint"], &format!("4 {y} 2\n")).remove(0);
+        line.split(' ').map(|n| n.parse::<f64>().unwrap()).collect::<Vec<_>>()
+    };
+    // At the centre of the cell from 2 to 2.5.
+    assert_eq!((red(2.1)[0], red(2.1)[1], red(6.9)[0]), (68.0, 7.0, 203.0));
+    refused(
+        path,
+        &["attribute", "block.lfl", "--name", "paint", "--from", "two.obj"],
+        1,
+        "neither colours nor materials",
+    );
+    refused(
+        path,
+        &["attribute", "block.lfl", "--name", "paint", "--from", "c.ply", "--pick", "heat"],
+        2,
+        "colour",
+    );
+}
+
+#[test]
+fn voxels_follow_channels() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path();
+    files(path);
+    told(path, &["attribute", "block.lfl", "--name", "a", "--expr", "floor(x)", "--store", "u8"]);
+    let listed = |more: &[&str]| {
+        let inside = told(path, &[&["voxels", "block.lfl", "-o", "out.csv"], more].concat())["inside"]
+            .as_u64()
+            .unwrap();
+        (inside, std::fs::read_to_string(path.join("out.csv")).unwrap())
+    };
+    let coarse = listed(&["--coarse", "2"]).0;
+    let (adaptive, text) = listed(&["--coarse", "2", "--fine", "0.5", "--tolerance", "0"]);
+    let fine = listed(&["--coarse", "0.5"]).0;
+    assert!(coarse < adaptive && adaptive < fine, "{coarse} {adaptive} {fine}");
+    // No value is listed that the function does not have there.
+    assert!(text.lines().next().unwrap().contains("value"), "{}", text.lines().next().unwrap());
+    told(path, &["attribute", "block.lfl", "--name", "b", "--value", "1"]);
+    refused(path, &["voxels", "block.lfl", "-o", "x.csv", "--channel", "c"], 1, "It has a, b");
+    refused(
+        path,
+        &["voxels", "left.lfl", "-o", "x.csv", "--coarse", "1", "--fine", "1", "--tolerance", "1"],
+        2,
+        "--channel",
+    );
+}
