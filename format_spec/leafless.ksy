@@ -1,9 +1,10 @@
-# The file format of Leafless, version 0.1, as a Kaitai Struct description. The specification is specification.md
+# The file format of Leafless, version 0.2, as a Kaitai Struct description. The specification is specification.md
 # beside this file; where the two differ, that one is right.
 #
 # Every `valid` is a rule of §10 of the specification, except those that are marked "implied": these follow from rules
 # that a description cannot state. What it does not state: checksums, links, the counts of the level table but for the
-# implied ones, order and use of dictionary entries, and `planes-needless`. So a file that can be read through this
+# implied ones, order and use of dictionary entries, and `planes-needless`. Of channels it states what their records say;
+# which sections they have, and what lies in these, it does not. So a file that can be read through this
 # description need not be valid.
 #
 # Instances are read when they are asked for, and only then are their rules applied; check_ksy.py asks for all. Fields
@@ -283,8 +284,8 @@ types:
         doc: No bytes. The file is as long as it says. (`file-length`)
     instances:
       is_newer:
-        value: version_minor > 1
-        doc: Whether a later version wrote the file, which may have given a meaning to what is reserved in 0.1.
+        value: version_minor > 2
+        doc: Whether a later version wrote the file, which may have given a meaning to what is reserved in 0.2.
       is_full_proven:
         value: (proof & 1) != 0
         doc: Whether FULL cells are proven to lie in the solid.
@@ -637,7 +638,7 @@ types:
       - id: parent
         type: u4
         valid:
-          expr: '_ == 0xffff_ffff or _ < index'
+          expr: '(_ == 0xffff_ffff or _ < index) and (not is_channel or _ == 0)'
         doc: The number of an earlier object, or 0xFFFFFFFF. (`object-parent`; for object 0 there is none)
       - id: flags
         type: u4
@@ -650,59 +651,63 @@ types:
       - id: depth
         type: u1
         valid:
-          expr: not is_solid or _ == _root.header.depth
+          expr: 'is_solid ? _ == _root.header.depth : not is_channel or (_ >= 1 and _ <= 20)'
         doc: The header's, for object 0.
       - id: root_tag
         type: u1
         valid:
-          expr: not is_solid or _ == _root.header.root_tag.to_i
+          expr: 'is_solid ? _ == _root.header.root_tag.to_i : not is_channel or _ == 0 or _ == 1 or _ == 3'
         doc: The header's, for object 0.
       - id: exterior
         type: u1
         valid:
-          expr: not is_solid or _ == _root.header.exterior.to_i
+          expr: 'is_solid ? _ == _root.header.exterior.to_i : not is_channel or _ == 0'
         doc: The header's, for object 0.
       - id: proof
         type: u1
         valid:
-          expr: not is_solid or _ == _root.header.proof
+          expr: 'is_solid ? _ == _root.header.proof : not is_channel or _ == 0'
         doc: The header's, for object 0.
       - id: num_brick_planes
         type: u1
         valid:
-          expr: not is_solid or _ == _root.header.num_brick_planes
+          expr: 'is_solid ? _ == _root.header.num_brick_planes : not is_channel or _ == 2'
         doc: The header's, for object 0.
       - id: brick_encoding
         type: u1
         valid:
-          expr: not is_solid or _ == _root.header.brick_encoding.to_i
+          expr: 'is_solid ? _ == _root.header.brick_encoding.to_i : not is_channel or _ <= 1'
         doc: The header's, for object 0.
       - id: segment_shift
         type: u1
         valid:
-          expr: not is_solid or _ == _root.header.segment_shift
+          expr: >-
+            is_solid ? _ == _root.header.segment_shift
+            : not is_channel or (brick_encoding == 1 ? _ >= 16 and _ <= 63 : _ == 0)
         doc: The header's, for object 0.
       - id: value_type
         type: u1
         valid:
-          expr: not is_solid or _ == 0
+          expr: 'is_solid ? _ == 0 : not is_channel or _ == 1 or _ == 2 or _ == 3 or _ == 5'
         doc: The element type of the object's values; 0 for object 0.
       - id: num_components
         type: u1
         valid:
-          expr: not is_solid or _ == 0
+          expr: 'is_solid ? _ == 0 : not is_channel or (_ >= 1 and _ <= 4)'
         doc: Components of the object's values; 0 for object 0.
       - id: reserved1
         type: u1
         repeat: expr
         repeat-expr: 3
         valid:
-          expr: not is_solid or _ == 0 or _root.header.is_newer
+          expr: (not is_solid and not is_channel) or _ == 0 or _root.header.is_newer
         doc: Zero, for object 0.
       - id: displacement
         type: f8
         valid:
-          expr: not is_solid or (_ == _root.header.displacement.value and sign_byte < 0x80)
+          expr: >-
+            (not is_solid and not is_channel)
+            or (_ == (is_solid ? _root.header.displacement.value : 0.0) and sign_byte < 0x80)
         doc: The header's, for object 0.
       - id: origin
         size: 8
@@ -713,34 +718,40 @@ types:
       - id: edge
         type: f8
         valid:
-          expr: not is_solid or _ == _root.header.edge
+          expr: (not is_solid and not is_channel) or _ == _root.header.edge
         doc: The header's, for object 0.
       - id: extents
         type: u4
         repeat: expr
         repeat-expr: 3
         valid:
-          expr: not is_solid or _ == 0
+          expr: (not is_solid and not is_channel) or _ == 0
         doc: Cells along x, y and z of an object on a lattice; 0 for object 0.
       - id: reserved2
         type: u4
         valid:
-          expr: not is_solid or _ == 0 or _root.header.is_newer
+          expr: (not is_solid and not is_channel) or _ == 0 or _root.header.is_newer
         doc: Zero, for object 0.
       - id: num_elements
         type: u8
         valid:
-          expr: not is_solid or _ == _root.header.num_elements
+          expr: >-
+            is_solid ? _ == _root.header.num_elements : not is_channel or _ == 0 or (depth > 2 and root_tag == 1)
         doc: The header's, for object 0.
       - id: num_bricks
         type: u8
         valid:
-          expr: not is_solid or _ == _root.header.num_bricks
+          expr: >-
+            is_solid ? _ == _root.header.num_bricks
+            : not is_channel or ((_ == 0 or root_tag == 1) and (brick_encoding == 0
+            or (_ > 0 and (segment_shift == 63 or ((_ - 1) >> segment_shift) > 0))))
         doc: The header's, for object 0.
       - id: num_dictionary_entries
         type: u8
         valid:
-          expr: not is_solid or _ == _root.header.num_dictionary_entries
+          expr: >-
+            is_solid ? _ == _root.header.num_dictionary_entries
+            : not is_channel or (brick_encoding == 1 ? _ >= 1 and _ <= num_bricks : _ == 0)
         doc: The header's, for object 0.
       - id: num_values
         type: u8
@@ -752,11 +763,11 @@ types:
         repeat: expr
         repeat-expr: 16
         valid:
-          expr: not is_solid or _ == 0 or _root.header.is_newer
+          expr: (not is_solid and not is_channel) or _ == 0 or _root.header.is_newer
         doc: Zero, for object 0.
       - id: end_of_object
         size: 0
-        if: is_solid
+        if: is_solid or is_channel
         valid:
           expr: >-
             origin[0].value == _root.header.origin_x.value and origin[1].value == _root.header.origin_y.value
@@ -766,6 +777,9 @@ types:
             and (origin[2].value != 0.0 or origin[2].sign_byte == 0)
         doc: No bytes. The origin of object 0 is the header's.
     instances:
+      is_channel:
+        value: type_code == 2 and _root.header.version_minor >= 2
+        doc: Whether the object is a channel; before version 0.2 its type is unknown.
       is_solid:
         value: index == 0
         doc: Whether this is object 0, which repeats the header.
@@ -1255,7 +1269,7 @@ enums:
       doc: A solid.
     2:
       id: channel
-      doc: Reserved for channels.
+      doc: A channel of values, from version 0.2 on.
     3:
       id: tri_dexels
       doc: Reserved for tri-dexel models.

@@ -10,8 +10,8 @@
 //! integers.
 
 use leafless::{
-    Cell, Classifier, Control, Error, Frame, Metadata, Octree, Proof, Rule, Solid, Tag, Verdict, Worker,
-    build, file,
+    Cell, Channel, Classifier, Control, Error, FillOptions, Frame, FunctionAttribute, Metadata, Octree,
+    Proof, Rule, ScalarType, Solid, Tag, ValueType, Verdict, Worker, build, file, fill_channel,
 };
 use num_bigint::{BigInt, Sign};
 use std::cmp::Reverse;
@@ -63,6 +63,8 @@ struct Model {
     proof: Proof,
     metadata: Metadata,
     shape: Shape,
+    /// In the order of their names.
+    channels: Vec<Field>,
 }
 
 impl Solid for Model {
@@ -114,7 +116,8 @@ impl Model {
     ) -> Model {
         let frame = Frame::new(origin, edge, depth).expect("a frame in range");
         let (proof, metadata) = (Proof::CERTIFIED, Metadata::new());
-        Model { frame, exterior: Tag::Empty, proof, metadata, shape: Arc::new(shape) }
+        let channels = vec![];
+        Model { frame, exterior: Tag::Empty, proof, metadata, shape: Arc::new(shape), channels }
     }
 
     /// One in which lattice coordinates are model coordinates.
@@ -142,6 +145,11 @@ impl Model {
         self
     }
 
+    fn channel(mut self, channel: Field) -> Model {
+        self.channels.push(channel);
+        self
+    }
+
     fn verdict(&self, cell: Cell) -> Verdict<()> {
         match (self.shape)(cell) {
             Tag::Empty => Verdict::Empty,
@@ -153,7 +161,10 @@ impl Model {
 
     fn octree(&self) -> Octree {
         let octree = build(self, &self.frame, Rule::Certified, &Control::threads(1)).expect("a tree");
-        octree.with_proof(self.proof).with_metadata(self.metadata.clone())
+        let octree = octree.with_proof(self.proof).with_metadata(self.metadata.clone());
+        self.channels.iter().fold(octree, |octree, field| {
+            octree.with_channel(field.channel(&self.frame)).expect("a channel of this cube")
+        })
     }
 
     /// The tag of a finest cell.
@@ -198,6 +209,112 @@ impl Model {
         levels[0] = [Tag::Branch, Tag::Full, Tag::Partial].map(|tag| (root == tag) as u64);
         (root, levels)
     }
+}
+
+/// What a channel says of a point.
+type Value = Option<[f64; 4]>;
+
+/// What a channel is made from: a value, or none, of every finest cell of a lattice of its own.
+#[derive(Clone)]
+struct Field {
+    depth: u8,
+    kind: ValueType,
+    metadata: Metadata,
+    value: Arc<dyn Fn([u32; 3]) -> Value + Send + Sync>,
+}
+
+/// What a file must say of a channel.
+struct Told {
+    root: Tag,
+    /// Nodes, cells that have a value, cells that start one.
+    levels: Vec<[u64; 3]>,
+    values: u64,
+}
+
+impl Field {
+    fn new(
+        name: &str,
+        depth: u8,
+        (scalar, components): (ScalarType, u8),
+        value: impl Fn([u32; 3]) -> Value + Send + Sync + 'static,
+    ) -> Field {
+        let kind = ValueType::new(scalar, components).expect("1 to 4");
+        let mut metadata = Metadata::new();
+        if !name.is_empty() {
+            metadata.insert("name", name);
+        }
+        Field { depth, kind, metadata, value: Arc::new(value) }
+    }
+
+    fn fact(mut self, key: &str, value: &str) -> Field {
+        self.metadata.insert(key, value);
+        self
+    }
+
+    fn channel(&self, frame: &Frame) -> Channel {
+        let frame = frame.with_depth(self.depth).expect("1 to 20");
+        let value = self.value.clone();
+        let at = move |point| value(frame.cell_of(point).expect("a point of the universe"));
+        let attribute = FunctionAttribute::new(self.kind.components(), at).expect("1 to 4");
+        let options = FillOptions { value_type: self.kind, frame, solid: None, detail: None };
+        let channel = fill_channel(&attribute, &options, &Control::threads(1)).expect("a channel");
+        channel.with_metadata(self.metadata.clone())
+    }
+
+    /// The value of a cell; `None` if it has several, or a value and none.
+    fn uniform(&self, level: u8, at: [u32; 3]) -> Option<Value> {
+        if level == self.depth {
+            return Some((self.value)(at));
+        }
+        let child = |k: u32| self.uniform(level + 1, [0, 1, 2].map(|axis| at[axis] << 1 | k >> axis & 1));
+        let first = child(0)?;
+        (1..8).all(|k| child(k) == Some(first)).then_some(first)
+    }
+
+    /// The cells of a level in Morton order.
+    fn morton(level: u8) -> impl Iterator<Item = [u32; 3]> {
+        let bit =
+            move |m: u32, axis: u32| (0..u32::from(level)).map(move |i| (m >> (3 * i + axis) & 1) << i).sum();
+        (0..1u32 << (3 * level)).map(move |m| [0, 1, 2].map(|axis| bit(m, axis)))
+    }
+
+    fn told(&self) -> Told {
+        let mut levels = vec![[0; 3]; self.depth as usize + 1];
+        if let Some(value) = self.uniform(0, [0; 3]) {
+            let values = value.is_some() as u64;
+            levels[0] = [0, values, values];
+            return Told { root: if value.is_some() { Tag::Full } else { Tag::Empty }, levels, values };
+        }
+        for level in 0..self.depth {
+            let cut = Field::morton(level).filter(|&at| self.uniform(level, at).is_none());
+            levels[level as usize][0] = cut.count() as u64;
+        }
+        let (mut before, mut values) = (None, 0);
+        // The levels on which cells of elements lie.
+        for level in (1..=self.depth).filter(|level| (self.depth - level) % 2 == 0) {
+            let above = level.min(2);
+            for (m, at) in Field::morton(level).enumerate() {
+                if self.uniform(level - above, at.map(|a| a >> above)).is_some() {
+                    continue;
+                }
+                let Some(Some(value)) = self.uniform(level, at) else { continue };
+                let starts = before != Some(value);
+                before = Some(value);
+                values += starts as u64;
+                // Eight equal siblings are one cell.
+                let whole = self.uniform(level - 1, at.map(|a| a >> 1)).is_some();
+                let counts = &mut levels[(level - whole as u8) as usize];
+                counts[1] += (!whole || m % 8 == 0) as u64;
+                counts[2] += starts as u64;
+            }
+        }
+        Told { root: Tag::Branch, levels, values }
+    }
+}
+
+/// One number.
+fn one_value(value: f64) -> Value {
+    Some([value, 0.0, 0.0, 0.0])
 }
 
 /// A shape given by its finest cells.
@@ -250,6 +367,53 @@ fn ball(depth: u8) -> impl Fn(Cell) -> Tag + Sync {
     })
 }
 
+/// Only the first number counts.
+fn first([value, ..]: [f64; 4]) -> [f64; 4] {
+    [value, 0.0, 0.0, 0.0]
+}
+
+/// Values that the type can say: the smallest and the greatest among them.
+fn types_of(name: &str, depth: u8, kind: (ScalarType, u8)) -> Field {
+    let list: &'static [f64] = match kind.0 {
+        ScalarType::U8 => &[0.0, 255.0, 1.0, 7.0],
+        ScalarType::U16 => &[0.0, 65_535.0, 256.0, 1.0],
+        ScalarType::U32 => &[0.0, 4_294_967_295.0, 65_536.0, 16_777_217.0],
+        ScalarType::F32 => &[0.0, -0.5, 3.402_823_466_385_288_6e38, 1.401_298_464_324_817e-45],
+    };
+    Field::new(name, depth, kind, move |at| {
+        let hash = at.iter().fold(mix(17), |hash, &a| mix(hash ^ u64::from(a >> 1)));
+        let number = |k: u32| if k < kind.1.into() { list[(hash >> (8 * k)) as usize % 4] } else { 0.0 };
+        (hash >> 40 & 3 != 0).then(|| [0, 1, 2, 3].map(number))
+    })
+}
+
+/// Coarse and fine regions of a few values, and of none.
+fn grain(name: &str, depth: u8) -> Field {
+    Field::new(name, depth, (ScalarType::F32, 1), move |at| {
+        let hash = |bits: u8| at.iter().fold(mix(5), |hash, &a| mix(hash ^ u64::from(a >> (depth - bits))));
+        match hash(1) % 4 {
+            0 => None,
+            1 => one_value(20.5),
+            _ => match hash(2) % 6 {
+                0 => one_value(hash(depth) as f64 % 5.0 - 2.25),
+                1 => None,
+                k => one_value(k as f64),
+            },
+        }
+    })
+}
+
+/// The example with two channels: the first of odd depth with an element and bricks, the second of one brick.
+fn channelled() -> Model {
+    let second = |[x, y, z]: [u32; 3]| (x != 1).then_some([(x + y) as f64, z as f64, 0.0, 0.0]);
+    example().channel(grain("a", 3).fact("unit", "K")).channel(Field::new(
+        "b",
+        2,
+        (ScalarType::U16, 2),
+        second,
+    ))
+}
+
 /// The finest cells `marks` have tags of their own, everything else is EMPTY: long branches, nothing beside
 /// them.
 fn sparse(depth: u8, marks: &'static [([u32; 3], Tag)]) -> impl Fn(Cell) -> Tag + Sync {
@@ -273,6 +437,14 @@ fn example() -> Model {
         _ => Tag::Empty,
     });
     Model::new([-1.0, 0.0, 0.5], 4.0, 3, shape).fact("units", "mm")
+}
+
+/// A corner with two channels on the same cells.
+fn shared_channels() -> Model {
+    let corner = Model::plain(4, sparse(4, &[([0; 3], Tag::Full)]));
+    let value = |at: [u32; 3], low: f64| one_value(if at == [1, 2, 3] { low } else { low + 1.0 });
+    let first = Field::new("first", 4, (ScalarType::U8, 1), move |at| value(at, 3.0));
+    corner.channel(first).channel(Field::new("second", 4, (ScalarType::F32, 1), move |at| value(at, 0.5)))
 }
 
 /// Depth 5, binary: faces away from the bricks' own make many bricks of few kinds, hence a dictionary.
@@ -402,6 +574,35 @@ pub fn valid() -> Vec<Valid> {
     let about = "surfaces were moved by the smallest number above 0";
     add("displacement-smallest", about, model().moved(f64::from_bits(1)));
 
+    let colour = Field::new("", 4, (ScalarType::U8, 4), |_| Some([200.0, 100.0, 0.0, 255.0]));
+    let about = "a channel without a name that is one colour everywhere: a value and no element";
+    add("channel-constant", about, model().channel(colour));
+    let nothing = Field::new("nothing", 20, (ScalarType::F32, 1), |_| None);
+    add(
+        "channel-empty",
+        "a channel that has a value nowhere",
+        model().channel(Field { depth: 5, ..nothing }),
+    );
+    let types = model()
+        .channel(types_of("a", 3, (ScalarType::U8, 1)).fact("unit", "°C").fact("meaning", "temperature"))
+        .channel(types_of("b", 3, (ScalarType::U16, 2)).fact("unit", ""))
+        .channel(types_of("c", 3, (ScalarType::U32, 3)))
+        .channel(types_of("ç", 3, (ScalarType::F32, 4)).fact("unit", "m/s"));
+    add("channel-types", "channels of all types and numbers of components, with units", types);
+    let coarse =
+        Field::new("half", 1, (ScalarType::U8, 1), |[x, _, z]| (z == 0).then_some([x as f64; 4]).map(first));
+    let about = "a channel that is coarser than the solid: one brick, of which 8 cells exist";
+    add("channel-coarser", about, Model::plain(4, noise(4, 2, BINARY)).channel(coarse));
+    let about = "a channel that is finer than the solid, of odd depth, with regions without a value";
+    add("channel-finer", about, Model::plain(2, noise(2, 3, BINARY)).channel(grain("heat", 5)));
+    let about = "a channel of even depth beside a solid of odd depth, in a universe of other coordinates";
+    add("channel-even", about, example().channel(grain("heat", 4)));
+    let two = |at: [u32; 3]| one_value(if at[0] % 4 < 2 { 1.0 } else { 2.0 }).filter(|_| at[0] < 16);
+    let about =
+        "bricks of a channel through a dictionary, and more than 1024 of them: two numbers in `value base`";
+    let many = Field::new("stripes", 6, (ScalarType::U8, 1), two);
+    add("channel-dictionary", about, Model::plain(3, |_| Tag::Full).channel(many));
+
     let mut unusual = |name, about, model: Model, change: &dyn Fn(Parts) -> Vec<u8>| {
         let bytes = change(Parts::of(&model));
         vectors.push(Valid { name, about, canonical: false, bytes, model });
@@ -426,7 +627,7 @@ pub fn valid() -> Vec<Valid> {
         let own =
             [(16, (U8, 1)), (17, (U16, 2)), (18, (U32, 1)), (19, (U64, 1)), (20, (F32, 4)), (21, (F64, 1))];
         for (kind, element) in own {
-            parts.sections.push(Section::new(kind, element, vec![0x3F; 32]).of(1));
+            parts.sections.push(Section::new(kind, element, vec![0x3F; 32]).of(1).flagged(0));
         }
         // What a kind means to the solid it need not mean to another object; nor whether it is required.
         parts.sections.push(Section::new(REL, (F64, 2), vec![0; 16]).of(2).flagged(0));
@@ -462,7 +663,7 @@ pub fn valid() -> Vec<Valid> {
             solid[reserved].fill(0x66);
         }
         parts.object(3, 0, 0xFFFF_FFFE).fill(0x77);
-        let mut strange = Section::new(16, (200, 3), b"tomorrow".to_vec()).flagged(6);
+        let mut strange = Section::new(VALUES, (200, 3), b"tomorrow".to_vec()).flagged(6);
         (strange.encoding, strange.count) = (9, Some(1 << 60));
         parts.sections.push(strange);
         let mut packed = Section::new(17, (F32, 1), b"packed".to_vec()).of(1);
@@ -470,6 +671,53 @@ pub fn valid() -> Vec<Valid> {
         parts.sections.push(packed);
         let levels = parts.section(LEVELS);
         (levels.flags, levels.reserved) = (0x11, 0xEE);
+        parts.bytes()
+    });
+    let about = "minor version 2, and no channel";
+    unusual("version-needless", about, model(), &|mut parts| {
+        put(&mut parts.head, 10, 2, 2);
+        parts.bytes()
+    });
+    let about = "two channels on the same cells, of which all but the values lies in one place, and the links of the first \
+                 are the solid's, too";
+    unusual("channels-shared", about, shared_channels(), &|mut parts| {
+        let base = parts.shared(BASE, 1, BASE);
+        assert_eq!(base.bytes, parts.own(1, BASE).bytes);
+        *parts.own(1, BASE) = base;
+        for kind in [LEVELS, PLANES, REL, BASE, BRICKS, VALUE_REL, VALUE_BASE] {
+            let of = if kind == BASE { 0 } else { 1 };
+            let first = Section { owner: 2, same: Some((of, kind)), ..parts.own(1, kind).clone() };
+            assert_eq!(first.bytes, parts.own(2, kind).bytes);
+            *parts.own(2, kind) = first;
+        }
+        parts.bytes()
+    });
+    let about = "a channel beside an object of an unknown type, with sections of unknown kinds";
+    unusual("channel-unknown-parts", about, model().channel(grain("heat", 3)), &|mut parts| {
+        parts.object(9, 1, 0).fill(0xC3);
+        parts.sections.push(Section::new(OBJECTS, (U8, 1), vec![1; 3]).of(1).flagged(0));
+        parts.sections.push(Section::new(17, (F64, 1), vec![2; 24]).of(1));
+        parts.sections.push(Section::new(APPLICATION, (U8, 1), vec![3; 3]).of(1));
+        parts.sections.push(Section::new(VALUES, (U8, 1), vec![4; 3]).of(2));
+        // What a kind means to a channel it need not mean to the solid.
+        parts.sections.push(Section::new(VALUES, (F32, 3), vec![5; 12]).flagged(0));
+        parts.sort();
+        parts.bytes()
+    });
+    let about = "minor version 3: reserved fields of a channel's record, its flags and those of its sections";
+    unusual("channel-newer", about, model().channel(grain("heat", 3)), &|mut parts| {
+        put(&mut parts.head, 10, NEWER, 2);
+        let record = parts.record(1);
+        put(record, 8, 0xFE, 4);
+        for reserved in [21..24, 76..80, 112..128] {
+            record[reserved].fill(0x99);
+        }
+        parts.own(1, VALUES).flags = 0x21;
+        parts.own(1, PLANES).reserved = 0x44;
+        let mut packed = Section::new(17, (77, 1), b"packed".to_vec()).of(1);
+        (packed.encoding, packed.count) = (1, Some(1000));
+        parts.sections.push(packed);
+        parts.sort();
         parts.bytes()
     });
     unusual("unusual-raw", "raw bricks where a dictionary would be shorter", coded(), &|parts| {
@@ -515,14 +763,9 @@ impl Valid {
         line("planes", &if partial == 0 { 1 } else { 2 });
         line("encoding", &["raw", "dictionary"][number(bytes, 68, 1) as usize]);
         line("shift", &number(bytes, 69, 1));
-        // The nodes of every second level, the finest of which are bricks.
-        let own = |level: usize| level == 0 || (level + depth as usize).is_multiple_of(2);
-        let last = (depth as usize).saturating_sub(2);
-        let nodes = |range: std::ops::Range<usize>| -> u64 {
-            range.filter(|&level| own(level)).map(|level| levels[level][0]).sum()
-        };
-        line("elements", &nodes(0..last));
-        line("bricks", &nodes(last..depth as usize));
+        let (elements, bricks) = entries_of(depth, &levels);
+        line("elements", &elements);
+        line("bricks", &bricks);
         line("entries", &number(bytes, 88, 8));
         line("objects", &number(bytes, entry(bytes, OBJECTS) + COUNT, 8));
         for (key, field) in [("sections", KIND), ("owners", OWNER)] {
@@ -537,6 +780,30 @@ impl Valid {
         for (key, value) in model.metadata.iter() {
             line("metadata", &format!("{key}\t{value}"));
         }
+        let owners: Vec<u64> = channels(bytes).collect();
+        assert_eq!(owners.len(), model.channels.len());
+        let told: Vec<Told> = model.channels.iter().map(Field::told).collect();
+        for ((&owner, field), told) in owners.iter().zip(&model.channels).zip(&told) {
+            let record = &bytes[record(bytes, owner)..];
+            let encoding = ["raw", "dictionary"][number(record, 17, 1) as usize];
+            let (elements, bricks) = entries_of(field.depth, &told.levels);
+            let head = format!("{owner} {} {}", field.depth, name(told.root));
+            let values =
+                format!("{} {} {}", field.kind.scalar().name(), field.kind.components(), told.values);
+            let (shift, dictionary) = (number(record, 18, 1), number(record, 96, 8));
+            let coded = format!("{encoding} {shift} {elements} {bricks} {dictionary}");
+            line("channel", &format!("{head} {values} {coded}"));
+        }
+        for (owner, told) in owners.iter().zip(&told) {
+            for (level, [nodes, valued, starts]) in told.levels.iter().enumerate() {
+                line("channel-level", &format!("{owner} {level} {nodes} {valued} {starts}"));
+            }
+        }
+        for (owner, field) in owners.iter().zip(&model.channels) {
+            for (key, value) in field.metadata.iter() {
+                line("channel-metadata", &format!("{owner} {key}\t{value}"));
+            }
+        }
         for point in points(frame) {
             let answer = match cell_of(frame, point).map(|at| model.finest(at)) {
                 Some(Tag::Full) => "inside",
@@ -545,8 +812,29 @@ impl Valid {
             };
             line("point", &format!("{} {} {} {answer}", hex(point[0]), hex(point[1]), hex(point[2])));
         }
+        for (owner, field) in owners.iter().zip(&model.channels) {
+            let frame = frame.with_depth(field.depth).expect("1 to 20");
+            for point in points(&frame) {
+                let value = match cell_of(&frame, point).and_then(|at| (field.value)(at)) {
+                    Some(value) => value[..field.kind.components()].iter().map(|&v| hex(v)).collect(),
+                    None => vec!["none".to_owned()],
+                };
+                let [x, y, z] = point.map(hex);
+                line("value", &format!("{x} {y} {z} {owner} {}", value.join(" ")));
+            }
+        }
         text
     }
+}
+
+/// Elements and bricks, from the level table: the nodes of every second level, the finest of which are bricks.
+fn entries_of(depth: u8, levels: &[[u64; 3]]) -> (u64, u64) {
+    let own = |level: usize| level == 0 || (level + depth as usize).is_multiple_of(2);
+    let last = (depth as usize).saturating_sub(2);
+    let nodes = |range: std::ops::Range<usize>| -> u64 {
+        range.filter(|&level| own(level)).map(|level| levels[level][0]).sum()
+    };
+    (nodes(0..last), nodes(last..depth as usize))
 }
 
 /// The name of a tag in the specification.
@@ -687,6 +975,9 @@ const BRICKS: u64 = 7;
 const INDICES: u64 = 8;
 const ENTRIES: u64 = 9;
 const SEGMENTS: u64 = 10;
+const VALUES: u64 = 16;
+const VALUE_REL: u64 = 18;
+const VALUE_BASE: u64 = 19;
 /// The first kind that belongs to applications.
 const APPLICATION: u64 = 1 << 31;
 
@@ -699,8 +990,14 @@ const U64: u64 = 4;
 const F32: u64 = 5;
 const F64: u64 = 6;
 
+/// The type of an object that is a channel.
+const CHANNEL: u64 = 2;
+
 /// The parent of an object that has none.
 const NO_PARENT: u64 = u32::MAX as u64;
+
+/// A minor version that is newer than this one.
+const NEWER: u64 = 3;
 
 /// Length of a header, and of the record of an object.
 const HEADER: usize = 128;
@@ -786,6 +1083,38 @@ fn entry(bytes: &[u8], kind: u64) -> usize {
     entries(bytes).find(|&at| number(bytes, at, 4) == kind).expect("a section of this kind")
 }
 
+/// Where the record of an object begins.
+fn record(bytes: &[u8], object: u64) -> usize {
+    offset(bytes, OBJECTS) + HEADER * object as usize
+}
+
+/// The numbers of the objects that are channels.
+fn channels(bytes: &[u8]) -> impl Iterator<Item = u64> {
+    let known = number(bytes, 10, 2) >= 2;
+    let objects = number(bytes, entry(bytes, OBJECTS) + COUNT, 8);
+    (1..objects).filter(move |&object| known && number(bytes, record(bytes, object), 4) == CHANNEL)
+}
+
+/// Whether a file has anything that no reader of this version knows: objects, sections.
+#[allow(dead_code)]
+pub fn has_unknown_parts(bytes: &[u8]) -> bool {
+    let objects = number(bytes, entry(bytes, OBJECTS) + COUNT, 8);
+    let of_solid = OBJECTS..=SEGMENTS;
+    let unknown = |at: usize| {
+        let (kind, owner) = (number(bytes, at + KIND, 4), number(bytes, at + OWNER, 4));
+        let of_channel =
+            (METADATA..=SEGMENTS).contains(&kind) || [VALUES, VALUE_REL, VALUE_BASE].contains(&kind);
+        if owner == 0 { !of_solid.contains(&kind) } else { !of_channel }
+    };
+    channels(bytes).count() as u64 + 1 != objects || entries(bytes).any(unknown)
+}
+
+/// Where the section of a kind begins that an object owns.
+fn offset_of(bytes: &[u8], owner: u64, kind: u64) -> usize {
+    let is_it = |&at: &usize| (number(bytes, at + OWNER, 4), number(bytes, at, 4)) == (owner, kind);
+    number(bytes, entries(bytes).find(is_it).expect("a section of this kind") + OFFSET, 8) as usize
+}
+
 /// Where the section of a kind begins.
 fn offset(bytes: &[u8], kind: u64) -> usize {
     number(bytes, entry(bytes, kind) + OFFSET, 8) as usize
@@ -818,7 +1147,8 @@ struct Section {
 impl Section {
     /// One of the solid's. It is required if it is one that all readers know, and no metadata.
     fn new(kind: u64, element: (u64, u64), bytes: Vec<u8>) -> Section {
-        let flags = (kind <= SEGMENTS && kind != METADATA) as u64;
+        let known = kind <= SEGMENTS || [VALUES, VALUE_REL, VALUE_BASE].contains(&kind);
+        let flags = (known && kind != METADATA) as u64;
         Section {
             kind,
             owner: 0,
@@ -858,7 +1188,7 @@ impl Parts {
             let element = (field(TYPE, 1), field(COMPONENTS, 1));
             let section = Section::new(field(KIND, 4), element, bytes[start..start + length].to_vec());
             assert_eq!(section.flags, field(FLAGS, 4));
-            section
+            section.of(field(OWNER, 4))
         };
         Parts { head: bytes[..HEADER].to_vec(), sections: entries(&bytes).map(section).collect() }
     }
@@ -870,8 +1200,23 @@ impl Parts {
     }
 
     fn take(&mut self, kind: u64) -> Section {
-        let at = self.sections.iter().position(|section| section.kind == kind && section.owner == 0);
+        self.take_of(0, kind)
+    }
+
+    /// An object's section of a kind.
+    fn own(&mut self, owner: u64, kind: u64) -> &mut Section {
+        let is_it = |section: &&mut Section| (section.owner, section.kind) == (owner, kind);
+        self.sections.iter_mut().find(is_it).expect("a section of this kind")
+    }
+
+    fn take_of(&mut self, owner: u64, kind: u64) -> Section {
+        let at = self.sections.iter().position(|section| (section.owner, section.kind) == (owner, kind));
         self.sections.remove(at.expect("a section of this kind"))
+    }
+
+    /// The record of an object.
+    fn record(&mut self, object: u64) -> &mut [u8] {
+        &mut self.section(OBJECTS).bytes[HEADER * object as usize..][..HEADER]
     }
 
     /// A section of `kind` for `owner`, of which the bytes are those of the solid's section `of`.
@@ -1067,6 +1412,8 @@ pub fn invalid() -> Vec<Invalid> {
     objects(&mut list);
     before_use(&mut list);
     verification(&mut list);
+    channel_records(&mut list);
+    channel_contents(&mut list);
     list.vectors
 }
 
@@ -1261,7 +1608,7 @@ fn header(list: &mut List) {
     let flags = required("flags", 4);
     list.add("header-required-flags", "", "a required flag", flags, with(&raw, 16, 4, 4));
     let newer = changed(&raw, |bytes| {
-        put(bytes, 10, 2, 2);
+        put(bytes, 10, NEWER, 2);
         put(bytes, 16, 1 << 31, 4);
     });
     let flags = required("flags", 1 << 31);
@@ -1357,13 +1704,13 @@ fn table(list: &mut List) {
     strange("large", "the largest number of a type", 255, 2);
     strange("components", "elements of no component", U64, 0);
     let newer = changed(&raw, |bytes| {
-        put(bytes, 10, 2, 2);
+        put(bytes, 10, NEWER, 2);
         put(bytes, at(PLANES) + TYPE, 7, 2);
     });
     let about = "no component, of an unknown type in a newer minor version";
     list.add("table-element", "newer", about, field("element type", 7), newer);
     let newer = changed(&raw, |bytes| {
-        put(bytes, 10, 2, 2);
+        put(bytes, 10, NEWER, 2);
         put(bytes, at(PLANES) + ENCODING, 1, 1);
     });
     let about = "planes in an unknown encoding of a newer minor version";
@@ -1380,7 +1727,7 @@ fn table(list: &mut List) {
     list.add("section-length", "zero", "an empty section", error.clone(), extent(METADATA, 0, 0));
     list.add("section-length", "overflow", "count times size is 2^64", error, extent(PLANES, 0, 1 << 60));
     let newer = changed(&raw, |bytes| {
-        put(bytes, 10, 2, 2);
+        put(bytes, 10, NEWER, 2);
         put(bytes, at(BRICKS) + KIND, 99, 4);
         put(bytes, at(BRICKS) + ENCODING, 1, 1);
         put(bytes, at(BRICKS) + COUNT, 0, 8);
@@ -1398,7 +1745,7 @@ fn table(list: &mut List) {
     list.add("section-unknown", "", about, required("section", 20), unknown(20));
     let about = "a required section of an application's kind";
     list.add("section-unknown", "application", about, required("section", APPLICATION), unknown(APPLICATION));
-    let newer = changed(&unknown(u32::MAX.into()), |bytes| put(bytes, 10, 2, 2));
+    let newer = changed(&unknown(u32::MAX.into()), |bytes| put(bytes, 10, NEWER, 2));
     let about = "a required section of a newer minor version";
     list.add("section-unknown", "newer", about, required("section", u32::MAX.into()), newer);
 
@@ -1493,13 +1840,13 @@ fn table(list: &mut List) {
     seal_head(&mut crc);
     list.add("table-same", "crc", "another checksum", field("shared section", 4), crc);
     let newer = changed(&shared, |bytes| {
-        put(bytes, 10, 2, 2);
+        put(bytes, 10, NEWER, 2);
         put(bytes, last + RESERVED, 1, 1);
     });
     let about = "another value of the reserved byte, which a newer minor version uses";
     list.add("table-same", "reserved", about, field("shared section", 4), newer);
     let newer = changed(&shared, |bytes| {
-        put(bytes, 10, 2, 2);
+        put(bytes, 10, NEWER, 2);
         put(bytes, last + ENCODING, 1, 1);
     });
     let about = "another encoding, which is one of a newer minor version";
@@ -1619,7 +1966,7 @@ fn objects(list: &mut List) {
     other("values", "a number of values", 104, 1, 8);
     other("reserved-last", "the last of the reserved bytes", 127, 0x80, 1);
     let newer = |at: usize, value: u64, length: usize| {
-        let mut bytes = with(&raw, 10, 2, 2);
+        let mut bytes = with(&raw, 10, NEWER, 2);
         put(&mut bytes, solid + at, value, length);
         seal(&mut bytes);
         bytes
@@ -1638,7 +1985,7 @@ fn objects(list: &mut List) {
     };
     second("object-type", "", "a second object of type 0", field("object type", 0), [0, 0, 0], 1);
     let error = field("object type", 0);
-    second("object-type", "newer", "the same of a newer minor version", error, [0, 0, 2], 2);
+    second("object-type", "newer", "the same of a newer minor version", error, [0, 0, 2], NEWER);
     let about = "a flag that version 0.1 does not know";
     second("object-flags", "", about, field("object flags", 2), [2, 0, 2], 1);
     let about = "its own parent";
@@ -1650,7 +1997,7 @@ fn objects(list: &mut List) {
     let about = "another solid that is required";
     second("object-required", "solid", about, required("object", 1), [1, NO_PARENT, 1], 1);
     let about = "an object of a newer minor version that is required";
-    second("object-required", "newer", about, required("object", 77), [77, 0, 3], 2);
+    second("object-required", "newer", about, required("object", 77), [77, 0, 3], NEWER);
     let later = records(&|parts| {
         parts.object(2, 2, 0);
         parts.object(2, 0, 0);
@@ -1737,14 +2084,14 @@ fn verification(list: &mut List) {
     }
     let mut parts = Parts::of(&example());
     parts.object(2, 0, 0);
-    for (of, about, owner) in [
-        ("unknown", "a bit of an unknown section is flipped", 0),
-        ("object", "a bit of a section of an unknown object is flipped", 1),
+    for (of, about, name, owner) in [
+        ("unknown", "a bit of an unknown section is flipped", "an unknown section", 0),
+        ("object", "a bit of a section of an unknown object is flipped", "a section of another object", 1),
     ] {
         parts.sections.push(Section::new(1000, (U16, 1), b"colours!".to_vec()).of(owner));
         let mut wrong = parts.bytes();
         *wrong.last_mut().expect("a byte") ^= 1;
-        list.add("section-crc", of, about, checksum("an unknown section"), wrong);
+        list.add("section-crc", of, about, checksum(name), wrong);
     }
 
     links(list);
@@ -1967,6 +2314,293 @@ fn bricks(list: &mut List) {
         put(bytes, at + 8, 0, 8);
     });
     list.add("brick-branch", "all", "all cells of the only brick are BRANCH", branch(0), all);
+}
+
+/// §10.2, the records and sections of channels.
+fn channel_records(list: &mut List) {
+    list.way = Way::Metadata;
+    let raw = good(&channelled());
+    let mut one = |rule, of: &str, about, error: String, at: usize, value: u64, length| {
+        let bytes = with(&raw, record(&raw, 2) + at, value, length);
+        list.add(rule, of, about, error, bytes);
+    };
+    let mut fixed = |of: &str, about, name: &str, at, value: u64, length, found: u64| {
+        one("channel-record", of, about, field(name, found), at, value, length);
+    };
+    fixed("parent", "the parent is another channel", "channel's parent", 4, 1, 4, 1);
+    let about = "there is no parent";
+    fixed("parent-none", about, "channel's parent", 4, NO_PARENT, 4, NO_PARENT);
+    let about = "another universe than the solid's";
+    fixed("origin", about, "channel's origin", 40, 1f64.to_bits(), 8, 1);
+    let edge = 8f64.to_bits();
+    fixed("edge", "a longer edge than the solid's", "channel's edge", 56, edge, 8, edge);
+    fixed("exterior", "values outside of the universe", "channel's exterior", 14, 3, 1, 3);
+    fixed("proof", "proven values", "channel's proof", 15, 3, 1, 3);
+    let displacement = 1f64.to_bits();
+    fixed("displacement", "a displacement", "channel's displacement", 24, displacement, 8, displacement);
+    fixed("planes", "bricks of one plane", "planes of a brick", 16, 1, 1, 1);
+    fixed("extents", "the first extent", "channel's extents", 64, 4, 4, 4);
+    fixed("extents-last", "the last extent", "channel's extents", 72, 4, 4, 0);
+    fixed("reserved", "the first of the reserved bytes", "reserved field", 21, 1, 1, 2);
+    fixed("reserved-middle", "the reserved number", "reserved field", 79, 1, 1, 2);
+    fixed("reserved-last", "the last of the reserved bytes", "reserved field", 127, 0x80, 1, 2);
+    let mut one = |rule, of: &str, about, name: &str, at: usize, value: u64, length| {
+        let bytes = with(&raw, record(&raw, 2) + at, value, length);
+        list.add(rule, of, about, field(name, value), bytes);
+    };
+    one("channel-root", "partial", "cells of a tag that channels have no use for", "root tag", 13, 2, 1);
+    one("channel-root", "", "a tag of three bits", "root tag", 13, 4, 1);
+    one("channel-depth", "zero", "no level", "depth", 12, 0, 1);
+    one("channel-depth", "large", "21 levels", "depth", 12, 21, 1);
+    one("channel-type", "zero", "values of bytes of unknown meaning", "value type", 19, 0, 1);
+    one("channel-type", "u64", "u64, of which there are no values", "value type", 19, U64, 1);
+    one("channel-type", "f64", "f64, of which there are no values", "value type", 19, F64, 1);
+    one("channel-type", "", "an unknown type", "value type", 19, 7, 1);
+    one("channel-type", "components-zero", "values of no number", "components", 20, 0, 1);
+    one("channel-type", "components", "values of five numbers", "components", 20, 5, 1);
+    one("channel-counts", "", "an unknown encoding of bricks", "brick encoding", 17, 2, 1);
+    one("channel-counts", "shift", "a segment shift of raw bricks", "segment shift", 18, 63, 1);
+    one("channel-counts", "entries", "a dictionary entry of raw bricks", "dictionary entries", 96, 1, 8);
+    one("channel-counts", "elements", "an element at depth 2", "elements", 80, 1, 8);
+    one("channel-counts", "root", "a brick, and one value everywhere", "bricks", 13, 3, 1);
+    let last = list.vectors.last_mut().expect("a vector");
+    last.error = field("bricks", 1);
+    let newer = changed(&raw, |bytes| {
+        put(bytes, 10, NEWER, 2);
+        let at = record(bytes, 2);
+        put(bytes, at + 19, 9, 1);
+    });
+    let about = "an unknown type of values in a newer minor version";
+    list.add("channel-type", "newer", about, field("value type", 9), newer);
+
+    let mut parts = |rule, of: &str, about, error: String, change: &dyn Fn(&mut Parts)| {
+        let mut parts = Parts::of(&channelled());
+        change(&mut parts);
+        parts.sort();
+        list.add(rule, of, about, error, parts.bytes());
+    };
+    let about = "a required section of an unknown kind";
+    parts("channel-unknown", "", about, required("section", 17), &|parts| {
+        parts.sections.push(Section::new(17, (U8, 1), vec![1; 8]).of(1).flagged(1));
+    });
+    let about = "a required section of a kind that only the solid has";
+    parts("channel-unknown", "objects", about, required("section", 1), &|parts| {
+        parts.sections.push(Section::new(OBJECTS, (U8, 1), vec![1; 8]).of(2));
+    });
+    let about = "values in an unknown encoding of a newer minor version";
+    parts("channel-unknown", "encoding", about, required("section encoding", 1), &|parts| {
+        put(&mut parts.head, 10, NEWER, 2);
+        parts.own(2, VALUES).encoding = 1;
+    });
+    for (kind, name) in [
+        (LEVELS, "level table"),
+        (PLANES, "planes"),
+        (BRICKS, "bricks"),
+        (VALUES, "values"),
+        (VALUE_REL, "value rel"),
+        (VALUE_BASE, "value base"),
+    ] {
+        let of = |what: &str| format!("{}-{what}", name.replace(' ', "-"));
+        parts("channel-section", &of("absent"), "it is absent", section(name), &|parts| {
+            parts.take_of(1, kind);
+        });
+        parts("channel-section", &of("count"), "one element too many", section(name), &|parts| {
+            let whole = parts.own(1, kind);
+            whole.bytes.extend(vec![0; whole.size()]);
+        });
+    }
+    let about = "a section of dictionaries where bricks are raw";
+    parts("channel-section", "indices", about, section("brick indices"), &|parts| {
+        parts.sections.push(Section::new(INDICES, (U16, 1), vec![0, 0]).of(1));
+    });
+    parts("channel-section", "type", "values of another type", section("values"), &|parts| {
+        parts.own(2, VALUES).element = (U8, 4);
+    });
+    let about = "values of other components";
+    parts("channel-section", "components", about, section("values"), &|parts| {
+        let values = parts.own(2, VALUES);
+        (values.element, values.count) = ((U16, 1), None);
+    });
+    let about = "values that are not required";
+    parts("channel-section", "optional", about, field("section flags", 0), &|parts| {
+        parts.own(2, VALUES).flags = 0;
+    });
+    let about = "metadata that are required";
+    parts("channel-section", "metadata-required", about, field("section flags", 1), &|parts| {
+        parts.own(2, METADATA).flags = 1;
+    });
+    let about = "metadata of 2^16 + 1 bytes";
+    parts("channel-section", "metadata-length", about, field("section length", 65_537), &|parts| {
+        parts.own(2, METADATA).bytes.resize(65_537, 0);
+    });
+    let about = "more values than there are bytes";
+    parts("channel-section", "huge", about, section("values"), &|parts| {
+        put(parts.record(1), 104, u64::MAX, 8);
+    });
+
+    let nodes = |parts: &mut Parts, level: usize, value: u64| {
+        put(&mut parts.own(1, LEVELS).bytes, 24 * level, value, 8)
+    };
+    let about = "a channel without a node for the universe, which is cut";
+    parts("level-table-root", "channel", about, levels(0), &|parts| nodes(parts, 0, 0));
+    let about = "2^64 - 1 nodes of a channel";
+    parts("level-table-starts", "channel", about, levels(1), &|parts| nodes(parts, 1, u64::MAX));
+    let about = "a node less than a channel has elements and bricks";
+    parts("level-table-sum", "channel", about, levels(3), &|parts| {
+        let bricks = number(&parts.own(1, LEVELS).bytes, 24, 8);
+        nodes(parts, 1, bricks - 1);
+    });
+    let text = "Format(Metadata)";
+    parts("metadata-text", "channel", "a channel's value that is no UTF-8", text.into(), &|parts| {
+        *parts.own(1, METADATA).bytes.last_mut().expect("a byte") = 0xFF;
+    });
+    let name = |parts: &mut Parts, channel, name: u8| {
+        parts.own(channel, METADATA).bytes = [b"\x04\0\0\0\x01\0\0\0name", &[name][..]].concat();
+    };
+    let about = "names that descend";
+    parts("channel-name", "", about, field("name of channel", 2), &|parts| name(parts, 1, b'c'));
+    let about = "two channels of one name";
+    parts("channel-name", "twice", about, field("name of channel", 2), &|parts| name(parts, 1, b'b'));
+    let about = "two channels without a name";
+    parts("channel-name", "none", about, field("name of channel", 2), &|parts| {
+        parts.take_of(1, METADATA);
+        parts.take_of(2, METADATA);
+    });
+    let mut crowd = Parts::of(&Model::plain(1, |_| Tag::Full));
+    crowd.head[10] = 2;
+    for channel in 1..=257u64 {
+        let record = crowd.object(CHANNEL, 0, 0);
+        // Of depth 1, without a value, in the solid's universe: the fields from the depth on.
+        (record[0], record[4], record[7], record[8]) = (1, 2, 1, 1);
+        put(record, 56 - 12, 2f64.to_bits(), 8);
+        let name = format!("{channel:03}");
+        let facts = [b"\x04\0\0\0\x03\0\0\0name", name.as_bytes()].concat();
+        crowd.sections.push(Section::new(METADATA, (U8, 1), facts).of(channel));
+        let table = Section::new(LEVELS, (U64, 3), vec![0; 48]).of(channel);
+        crowd.sections.push(Section { same: (channel > 1).then_some((1, LEVELS)), ..table });
+    }
+    list.add("channel-count", "", "257 channels", field("channels", 257), crowd.bytes());
+}
+
+/// §10.3, the contents of channels.
+fn channel_contents(list: &mut List) {
+    list.way = Way::Verification;
+    let raw = good(&channelled());
+    let at = |owner, kind| offset_of(&raw, owner, kind);
+    let (elements, bricks) = (number(&raw, record(&raw, 1) + 80, 8), number(&raw, record(&raw, 1) + 88, 8));
+    let (planes, blocks) = (at(1, PLANES), at(1, BRICKS));
+    let words = |at: usize| [number(&raw, at, 8), number(&raw, at + 8, 8)];
+    let mut one = |rule, of: &str, about, error: String, change: &dyn Fn(&mut Vec<u8>)| {
+        list.add(rule, of, about, error, changed(&raw, change));
+    };
+    assert!(elements == 1 && bricks > 1);
+    let [lower, upper] = words(planes);
+    let branch = (lower & !upper) & (lower & !upper).wrapping_neg();
+    let count = (lower & !upper).count_ones() as u64;
+    let error = format!("Damaged(Count {{ level: 1, expected: {}, found: {bricks} }})", count - 1);
+    let about = "a refined cell of a channel's root less than there are bricks";
+    one("element-count", "channel", about, error, &|bytes| put(bytes, planes, lower & !branch, 8));
+    let about = "the children of a channel's element are one further";
+    one("element-link", "channel", about, link(0), &|bytes| put(bytes, at(1, BASE), 2, 8));
+    let about = "cell 63 of a channel's root continues a value at odd depth";
+    one("element-padding", "channel", about, "Damaged(Padding)".into(), &|bytes| bytes[planes + 15] |= 0x80);
+    let cut = "Damaged(BrickBranch { brick: 0 })";
+    let about = "a cell of a channel's brick is refined";
+    one("brick-branch", "channel", about, cut.into(), &|bytes| {
+        let [lower, upper] = words(blocks);
+        put(bytes, blocks, lower | 1, 8);
+        put(bytes, blocks + 8, upper & !1, 8);
+    });
+    let uniform = |index| format!("Damaged(Uniform {{ index: {index} }})");
+    let about = "no cell of a brick has a value";
+    one("channel-uniform", "empty", about, uniform(elements), &|bytes| bytes[blocks..blocks + 16].fill(0));
+    let about = "all cells of a brick continue one value";
+    one("channel-uniform", "", about, uniform(elements), &|bytes| {
+        bytes[blocks..blocks + 8].fill(0);
+        bytes[blocks + 8..blocks + 16].fill(0xFF);
+    });
+    let about = "the first cell of a brick starts a value, all others continue it";
+    one("channel-uniform", "starts", about, uniform(elements), &|bytes| {
+        put(bytes, blocks, 1, 8);
+        bytes[blocks + 8..blocks + 16].fill(0xFF);
+    });
+    let rank = |index| format!("Damaged(Rank {{ index: {index} }})");
+    let (rel, base, second) = (at(1, VALUE_REL), at(1, VALUE_BASE), at(2, VALUES));
+    let about = "one value more before the second element than there is";
+    one("channel-rank", "", about, rank(1), &|bytes| {
+        let wrong = number(bytes, rel + 2, 2) + 1;
+        put(bytes, rel + 2, wrong, 2);
+    });
+    one("channel-rank", "base", "a value before the first element", rank(0), &|bytes| put(bytes, base, 1, 8));
+    let about = "2^64 - 1 values before the first element";
+    one("channel-rank", "overflow", about, rank(0), &|bytes| put(bytes, base, u64::MAX, 8));
+    let about = "a value starts that no array has";
+    let starts = |bytes: &mut Vec<u8>| {
+        // Of the second channel, the last cell that continues a value starts one.
+        let block = at(2, BRICKS);
+        let [lower, upper] = [number(bytes, block, 8), number(bytes, block + 8, 8)];
+        let last = (upper & !lower).checked_ilog2().expect("a cell that continues a value");
+        put(bytes, block, lower | 1 << last, 8);
+    };
+    one("channel-values", "", about, rank(1), &starts);
+    let value = |index: u64| format!("Damaged(Value {{ index: {index} }})");
+    let about = "the first cell that has a value continues one";
+    one("channel-start", "", about, value(0), &|bytes| {
+        let block = at(2, BRICKS);
+        let lower = number(bytes, block, 8);
+        put(bytes, block, lower & (lower - 1), 8);
+    });
+    let about = "a value that is the one before";
+    one("channel-value", "same", about, value(1), &|bytes| bytes.copy_within(second..second + 4, second + 4));
+    let floats = at(1, VALUES);
+    for (of, about, bits) in [
+        ("nan", "not a number", f32::NAN.to_bits()),
+        ("infinite", "infinite", f32::INFINITY.to_bits()),
+        ("negative-infinite", "minus infinity", f32::NEG_INFINITY.to_bits()),
+        ("negative-zero", "-0", (-0f32).to_bits()),
+    ] {
+        one("channel-value", of, about, value(2), &|bytes| put(bytes, floats + 8, bits.into(), 4));
+    }
+    let table = at(1, LEVELS);
+    for (of, about, entry, level) in [
+        ("channel-nodes", "nodes of a channel of a level that no start depends on", 48, 2),
+        ("channel-full", "cells of a channel that have a value", 24 + 8, 1),
+        ("channel-partial", "cells of a channel that start a value", 72 + 16, 3),
+    ] {
+        one("level-table-counts", of, about, levels(level), &|bytes| {
+            let wrong = number(bytes, table + entry, 8) + 1;
+            put(bytes, table + entry, wrong, 8);
+        });
+    }
+    let mut parts = Parts::of(&channelled());
+    let values = parts.own(2, VALUES);
+    values.bytes.extend(vec![9; 4]);
+    let count = values.bytes.len() as u64 / 4;
+    put(parts.record(2), 104, count, 8);
+    list.add("channel-values", "many", "a value that no cell starts", rank(1), parts.bytes());
+    let constant = || {
+        Model::plain(1, |_| Tag::Full).channel(Field::new("one", 4, (ScalarType::U8, 1), |_| one_value(5.0)))
+    };
+    let mut parts = Parts::of(&constant());
+    parts.own(1, VALUES).bytes.push(6);
+    put(parts.record(1), 104, 2, 8);
+    list.add("channel-values", "uniform", "two values of a universe that has one", rank(0), parts.bytes());
+    let mut parts = Parts::of(&constant());
+    parts.record(1)[13] = 0;
+    list.add("channel-values", "nowhere", "a value of a universe that has none", rank(0), parts.bytes());
+    let mut parts = Parts::of(&constant());
+    parts.take_of(1, VALUES);
+    put(parts.record(1), 104, 0, 8);
+    list.add("channel-values", "none", "no value of a universe that has one", rank(0), parts.bytes());
+
+    let coded = Model::plain(1, |_| Tag::Full);
+    let stripes = |at: [u32; 3]| one_value(if at[0] % 4 < 2 { 1.0 } else { 2.0 });
+    let coded = good(&coded.channel(Field::new("stripes", 4, (ScalarType::U8, 1), stripes)));
+    let entry = offset_of(&coded, 1, INDICES);
+    assert_eq!(number(&coded, record(&coded, 1) + 96, 8), 1);
+    let about = "an index of a channel's brick beyond its dictionary";
+    let error = "Damaged(Dictionary { brick: 3 })";
+    list.add("dictionary-index", "channel", about, error, with(&coded, entry + 6, 1, 2));
 }
 
 // ---- what is too large for the folder -------------------------------------------------------------------

@@ -1,5 +1,5 @@
 /*
- * A reader of files of the Leafless format, version 0.1, in C99 and nothing but its library.
+ * A reader of files of the Leafless format, version 0.2, in C99 and nothing but its library.
  *
  * It is meant to be read beside specification.md, whose sections the comments name (§): each rule of §10 stands here
  * under its name, in the order in which the specification lists it. It favours being evident over being fast; yet every
@@ -11,12 +11,13 @@
  *     reader [--probe | --plain | --metadata] FILE...    prints what the files say, as vectors/valid/NAME.txt does
  *     reader [--plain | --metadata] --points FILE        reads lines `x y z`, prints inside, outside or undecided
  *     reader [--plain | --metadata] --volume FILE...     prints the volume in cubic model units, rounded outwards
+ *     reader [--metadata] --values FILE                  reads lines `x y z`, prints the values of all channels
  *
- * The option says how much is checked (§10): §10.1; also §10.2 without the metadata; also the metadata; without any
+ * The option says how much is checked (§10): §10.1; also §10.2 without metadata and channels; also these; without any
  * option all. The exit code is 0, or 1 if a file is refused (`refused: RULE`), or 2 for wrong usage and failing input.
  *
  * As a library: compile with LEAFLESS_READER_NO_MAIN, or include this file after defining it. The bytes of a file must
- * stay as they are while its reader is used. Only lfl_verify allocates memory, at most 1.3 MB, and releases it itself.
+ * stay as they are while its reader is used. Only lfl_verify allocates memory, at most 1.3 MB at a time, and releases it itself.
  *
  * No byte order, alignment or layout of structures is assumed, and no floating-point arithmetic is done: doubles are
  * taken apart and put together as 64 bits. The platform's `double` must be IEEE 754 binary64, in the byte order of its
@@ -35,7 +36,7 @@
 
 /* ---- Interface ------------------------------------------------------------------------------------------------- */
 
-enum { LFL_MAX_DEPTH = 20, LFL_KINDS = 11 };
+enum { LFL_MAX_DEPTH = 20, LFL_KINDS = 20 };
 
 /* §2.2. The last is no tag: it says that the bytes on the way to a cell are damaged (§6). */
 enum lfl_tag { LFL_EMPTY = 0, LFL_BRANCH = 1, LFL_PARTIAL = 2, LFL_FULL = 3, LFL_DAMAGED = 4 };
@@ -84,11 +85,20 @@ struct lfl_reader {
     uint64_t start[LFL_MAX_DEPTH / 2 + 1];
 };
 
+/* §5.6. The tree of a channel is read as that of the solid: `tree` has the depth, tags, counts and sections of the
+   channel, and is otherwise the reader of the file. */
+struct lfl_channel {
+    struct lfl_reader tree;
+    uint32_t owner;
+    unsigned value_type, components;
+    uint64_t values;
+};
+
 /* These return 1, or 0 after setting *error to the name of the rule that refuses the file. After a refusal by
    lfl_probe or lfl_open the reader must not be used. */
 int lfl_probe(const void *bytes, size_t length, struct lfl_reader *reader, const char **error); /* §10.1 */
 int lfl_open(const void *bytes, size_t length, struct lfl_reader *reader, const char **error);  /* and §10.2 */
-int lfl_check_metadata(const struct lfl_reader *reader, const char **error); /* `metadata-text` of §10.2 */
+int lfl_check_metadata(const struct lfl_reader *reader, const char **error); /* the rest of §10.2, with channels */
 int lfl_verify(const struct lfl_reader *reader, const char **error);         /* §10.3, or lfl_out_of_memory */
 
 extern const char lfl_out_of_memory[];
@@ -113,6 +123,13 @@ int lfl_cell(const struct lfl_reader *reader, unsigned axis, double coordinate, 
 
 /* Does the solid contain the point (§7.1)? Exact for each f64. */
 enum lfl_answer lfl_contains(const struct lfl_reader *reader, double x, double y, double z);
+
+/* The first channel whose object is not before *owner, which begins as 1 and is moved on behind it: 1; at the end 0. Needs
+   a file that has passed lfl_check_metadata. */
+int lfl_channel(const struct lfl_reader *reader, uint32_t *owner, struct lfl_channel *channel);
+
+/* The channel's value at a point (§7.3), `components` numbers: 1; 0 where it has none, or the file is damaged. */
+int lfl_value(const struct lfl_channel *channel, double x, double y, double z, double value[4]);
 
 /* V and W of §7.2 in finest cells. On a file that was not verified they saturate. */
 void lfl_volume_cells(const struct lfl_reader *reader, uint64_t *lower, uint64_t *upper);
@@ -320,13 +337,20 @@ enum {
     KIND_BRICKS,
     KIND_BRICK_INDICES,
     KIND_DICTIONARY_ENTRIES,
-    KIND_DICTIONARY_SEGMENTS
+    KIND_DICTIONARY_SEGMENTS,
+    KIND_VALUES = 16,
+    KIND_VALUE_REL = 18,
+    KIND_VALUE_BASE = 19
 };
+
+/* Types of objects (§5.1). */
+enum { SOLID = 1, CHANNEL = 2 };
+enum { MAX_CHANNELS = 256, MAX_CHANNEL_METADATA = 1 << 16 };
 
 enum { RAW = 0, DICTIONARY = 1, ONE_SEGMENT = 63, MAX_METADATA = 1 << 20, MAX_SEGMENT_ENTRIES = 1 << 16 };
 
-/* Element types (§4), with their sizes. The types that no known section has are not named here. */
-enum { TYPE_RECORD = 0, TYPE_U8 = 1, TYPE_U16 = 2, TYPE_U64 = 4, TYPES = 7 };
+/* Element types (§4), with their sizes. */
+enum { TYPE_RECORD = 0, TYPE_U8 = 1, TYPE_U16 = 2, TYPE_U32 = 3, TYPE_U64 = 4, TYPE_F32 = 5, TYPES = 7 };
 static const unsigned type_size[TYPES] = {8, 1, 2, 4, 8, 4, 8};
 
 /* The solid's sections of the kinds of §5. */
@@ -484,7 +508,7 @@ static int is_utf8(const unsigned char *p, size_t length)
 static int ascends(const struct lfl_fact *a, const struct lfl_fact *b)
 {
     size_t common = a->key_length < b->key_length ? a->key_length : b->key_length;
-    int order = memcmp(a->key, b->key, common);
+    int order = common == 0 ? 0 : memcmp(a->key, b->key, common);
     return order < 0 || (order == 0 && a->key_length < b->key_length);
 }
 
@@ -510,14 +534,32 @@ static int is_illegal(uint64_t bits)
     return magnitude < (uint64_t)(1023 - 256) << 52 || magnitude > (uint64_t)(1023 + 256) << 52;
 }
 
-/* §10: whether a later version wrote the file, which may have given a meaning to what is reserved in 0.1. */
-static int is_newer(const struct lfl_reader *r) { return r->minor > 1; }
+/* §10: whether a later version wrote the file, which may have given a meaning to what is reserved today. */
+static int is_newer(const struct lfl_reader *r) { return r->minor > 2; }
 
 static uint64_t end_of_table(const struct lfl_reader *r) { return 128 + 48 * (uint64_t)r->section_count; }
+
+/* The rules of §10.1 on how bricks are coded and how much there is of everything. */
+static const char *check_counts(const struct lfl_reader *r)
+{
+    REFUSE_IF(r->encoding != RAW && r->encoding != DICTIONARY, "header-encoding");
+    REFUSE_IF(r->encoding == RAW && r->shift != 0, "header-raw-shift");
+    REFUSE_IF(r->encoding == RAW && r->entries != 0, "header-raw-entries");
+    if (r->encoding == DICTIONARY) {
+        REFUSE_IF(r->shift < 16 || r->shift > ONE_SEGMENT, "header-shift");
+        REFUSE_IF(r->shift == ONE_SEGMENT && r->bricks == 0, "header-shift");
+        REFUSE_IF(r->shift < ONE_SEGMENT && r->bricks >= 1 && r->bricks <= UINT64_C(1) << r->shift, "header-shift");
+        REFUSE_IF(r->entries == 0 || r->entries > r->bricks, "header-entries");
+    }
+    REFUSE_IF(r->elements != 0 && (r->depth <= 2 || r->root != LFL_BRANCH), "header-elements");
+    REFUSE_IF(r->bricks != 0 && r->root != LFL_BRANCH, "header-bricks");
+    return NULL;
+}
 
 static const char *check_header(struct lfl_reader *r)
 {
     const unsigned char *h = r->bytes;
+    const char *error;
     size_t beginning = r->length < 8 ? r->length : 8;
     int is_magic = beginning == 0 || memcmp(h, magic, beginning) == 0, i;
 
@@ -560,17 +602,8 @@ static const char *check_header(struct lfl_reader *r)
     REFUSE_IF(r->proof > 3, "header-proof");
     REFUSE_IF(r->displacement >= UINT64_C(0x7FF) << 52, "header-displacement"); /* the sign, the infinity, NaN */
     REFUSE_IF(r->brick_planes != 1 && r->brick_planes != 2, "header-brick-planes");
-    REFUSE_IF(r->encoding != RAW && r->encoding != DICTIONARY, "header-encoding");
-    REFUSE_IF(r->encoding == RAW && r->shift != 0, "header-raw-shift");
-    REFUSE_IF(r->encoding == RAW && r->entries != 0, "header-raw-entries");
-    if (r->encoding == DICTIONARY) {
-        REFUSE_IF(r->shift < 16 || r->shift > ONE_SEGMENT, "header-shift");
-        REFUSE_IF(r->shift == ONE_SEGMENT && r->bricks == 0, "header-shift");
-        REFUSE_IF(r->shift < ONE_SEGMENT && r->bricks >= 1 && r->bricks <= UINT64_C(1) << r->shift, "header-shift");
-        REFUSE_IF(r->entries == 0 || r->entries > r->bricks, "header-entries");
-    }
-    REFUSE_IF(r->elements != 0 && (r->depth <= 2 || r->root != LFL_BRANCH), "header-elements");
-    REFUSE_IF(r->bricks != 0 && r->root != LFL_BRANCH, "header-bricks");
+    error = check_counts(r);
+    REFUSE_IF(error != NULL, error);
     REFUSE_IF(r->section_count == 0 || r->section_count > 4096, "header-section-count");
     REFUSE_IF(r->file_length <= end_of_table(r), "header-file-length");
     return NULL;
@@ -738,6 +771,152 @@ static const char *check_metadata(const struct lfl_reader *r)
     return NULL;
 }
 
+/* ---- Channels --------------------------------------------------------------------------------------------------- */
+
+/* §5.6: how many elements a section of a channel must have. */
+static struct demand demanded_of_channel(const struct lfl_channel *c, uint32_t kind)
+{
+    uint64_t all = c->tree.elements + c->tree.bricks; /* what follows from a sum that overflows fits into no file */
+    struct demand d = {TYPE_U64, 1, 0, 0};
+    switch (kind) {
+    case KIND_VALUES: d.element_type = c->value_type, d.components = c->components, d.count = c->values; break;
+    case KIND_VALUE_REL: d.element_type = TYPE_U16, d.count = all; break;
+    case KIND_VALUE_BASE: d.count = quotient_up(all, 1024); break;
+    default: d = demanded(&c->tree, kind); break;
+    }
+    return d;
+}
+
+static int is_known_of_channel(uint32_t kind)
+{
+    return (kind >= KIND_METADATA && kind <= KIND_DICTIONARY_SEGMENTS) || kind == KIND_VALUES ||
+           kind == KIND_VALUE_REL || kind == KIND_VALUE_BASE;
+}
+
+/* §10.2: the record of the object `owner`, a channel. */
+static const char *check_record(const struct lfl_reader *r, uint32_t owner, struct lfl_channel *c)
+{
+    const unsigned char *p = item(r, KIND_OBJECTS, owner), *solid = item(r, KIND_OBJECTS, 0);
+    struct lfl_reader *t = &c->tree;
+    *t = *r;
+    memset(t->section, 0, sizeof t->section);
+    c->owner = owner;
+    t->depth = p[12];
+    t->root = p[13];
+    t->exterior = LFL_EMPTY;
+    t->brick_planes = 2;
+    t->encoding = p[17];
+    t->shift = p[18];
+    c->value_type = p[19];
+    c->components = p[20];
+    t->elements = u64(p + 80);
+    t->bricks = u64(p + 88);
+    t->entries = u64(p + 96);
+    c->values = u64(p + 104);
+
+    REFUSE_IF(u32(p + 4) != 0, "channel-record"); /* the parent */
+    REFUSE_IF(memcmp(p + 32, solid + 32, 32) != 0, "channel-record"); /* origin and edge */
+    REFUSE_IF(p[14] != 0 || p[15] != 0 || u64(p + 24) != 0, "channel-record"); /* exterior, proof, displacement */
+    REFUSE_IF(p[16] != 2 || !all_zero(p + 64, 12), "channel-record"); /* planes of a brick, extents */
+    if (!is_newer(r))
+        REFUSE_IF(!all_zero(p + 21, 3) || !all_zero(p + 76, 4) || !all_zero(p + 112, 16), "channel-record");
+    REFUSE_IF(t->root > 3 || t->root == LFL_PARTIAL, "channel-root");
+    REFUSE_IF(t->depth < 1 || t->depth > LFL_MAX_DEPTH, "channel-depth");
+    REFUSE_IF(c->value_type < TYPE_U8 || c->value_type > TYPE_F32 || c->value_type == TYPE_U64, "channel-type");
+    REFUSE_IF(c->components < 1 || c->components > 4, "channel-type");
+    REFUSE_IF(check_counts(t) != NULL, "channel-counts");
+    return NULL;
+}
+
+/* §10.2: the sections of a channel. */
+static const char *check_channel_sections(struct lfl_channel *c)
+{
+    uint32_t i, kind;
+    for (i = 0; i < c->tree.section_count; i++) {
+        struct lfl_section s = lfl_section(&c->tree, i);
+        struct demand d;
+        if (s.owner != c->owner)
+            continue;
+        if (!is_known_of_channel(s.kind)) {
+            REFUSE_IF(s.flags & 1, "channel-unknown");
+            continue;
+        }
+        REFUSE_IF(s.encoding != RAW, "channel-unknown");
+        d = demanded_of_channel(c, s.kind);
+        REFUSE_IF(s.element_type != d.element_type || s.components != d.components, "channel-section");
+        REFUSE_IF(!d.any_count && s.count != d.count, "channel-section");
+        REFUSE_IF(s.kind == KIND_METADATA && s.length > MAX_CHANNEL_METADATA, "channel-section");
+        REFUSE_IF((s.flags & 1) != (s.kind != KIND_METADATA), "channel-section");
+        c->tree.section[s.kind] = s;
+    }
+    for (kind = KIND_METADATA; kind < LFL_KINDS; kind++) {
+        if (is_known_of_channel(kind))
+            REFUSE_IF(demanded_of_channel(c, kind).count != 0 && c->tree.section[kind].count == 0, "channel-section");
+    }
+    return NULL;
+}
+
+static const char *check_channel(const struct lfl_reader *r, uint32_t owner, struct lfl_channel *c)
+{
+    const char *error;
+    if ((error = check_record(r, owner, c)) != NULL || (error = check_channel_sections(c)) != NULL ||
+        (error = check_level_table(&c->tree)) != NULL)
+        return error;
+    return check_metadata(&c->tree);
+}
+
+/* The name of a channel as the value of a fact, empty without one. */
+static struct lfl_fact name_of(const struct lfl_channel *c)
+{
+    struct lfl_fact fact, none = {NULL, NULL, 0, 0};
+    uint64_t position = 0;
+    while (lfl_metadata(&c->tree, &position, &fact) > 0) {
+        if (fact.key_length == 4 && memcmp(fact.key, "name", 4) == 0)
+            return fact;
+    }
+    return none;
+}
+
+/* Files of 0.1 have no channels: objects of type 2 are unknown ones there. */
+static int is_channel(const struct lfl_reader *r, uint32_t owner)
+{
+    return r->minor >= 2 && u32(item(r, KIND_OBJECTS, owner)) == CHANNEL;
+}
+
+int lfl_channel(const struct lfl_reader *r, uint32_t *owner, struct lfl_channel *c)
+{
+    while (*owner < r->object_count && !is_channel(r, *owner))
+        ++*owner;
+    return *owner < r->object_count && check_channel(r, (*owner)++, c) == NULL;
+}
+
+static const char *check_channels(const struct lfl_reader *r)
+{
+    struct lfl_channel c;
+    struct lfl_fact name, previous = {NULL, NULL, 0, 0};
+    uint32_t owner, count = 0;
+    for (owner = 1; owner < r->object_count; owner++) {
+        const char *error;
+        if (!is_channel(r, owner))
+            continue;
+        REFUSE_IF(++count > MAX_CHANNELS, "channel-count");
+        error = check_channel(r, owner, &c);
+        REFUSE_IF(error != NULL, error);
+        name = name_of(&c);
+        name.key = name.value; /* names are ordered as keys are */
+        name.key_length = name.value_length;
+        REFUSE_IF(count > 1 && !ascends(&previous, &name), "channel-name");
+        previous = name;
+    }
+    return NULL;
+}
+
+static const char *check_metadata_and_channels(const struct lfl_reader *r)
+{
+    const char *error = check_metadata(r);
+    return error != NULL ? error : check_channels(r);
+}
+
 static const char *check_all_before_use(const void *bytes, size_t length, struct lfl_reader *r, int probing)
 {
     const char *error;
@@ -766,7 +945,10 @@ int lfl_open(const void *bytes, size_t length, struct lfl_reader *r, const char 
     return (*error = check_all_before_use(bytes, length, r, 0)) == NULL;
 }
 
-int lfl_check_metadata(const struct lfl_reader *r, const char **error) { return (*error = check_metadata(r)) == NULL; }
+int lfl_check_metadata(const struct lfl_reader *r, const char **error)
+{
+    return (*error = check_metadata_and_channels(r)) == NULL;
+}
 
 /* ---- §10.3 Verification ----------------------------------------------------------------------------------------- */
 
@@ -938,6 +1120,115 @@ static const char *verify_counts(const struct lfl_reader *r, const struct lfl_le
     return NULL;
 }
 
+/* §2.7: a cell of a channel has a value if its upper bit is set, and starts one if the lower is, too. */
+static uint64_t valued_cells(struct words w) { return w.upper; }
+static uint64_t starting_cells(struct words w) { return full_cells(w); }
+
+/* §5.6: element or brick n of a channel. Returns 0 if it cannot be read (§6). */
+static int entry_of(const struct lfl_channel *c, uint64_t n, struct words *w)
+{
+    if (n >= c->tree.elements)
+        return brick(&c->tree, n - c->tree.elements, w);
+    *w = element(&c->tree, n);
+    return 1;
+}
+
+/* §2.7: how many cells of the elements and bricks before n start a value. */
+static uint64_t rank_of(const struct lfl_channel *c, uint64_t n)
+{
+    return u64(item(&c->tree, KIND_VALUE_BASE, n / 1024)) + u16(item(&c->tree, KIND_VALUE_REL, n));
+}
+
+/* §5.3, of a channel. In an octant of one value the first cell alone may start it, and the octant counts once. */
+static void count_values(const struct lfl_channel *c, unsigned e, struct words w, struct lfl_level *counts)
+{
+    struct lfl_level *octants = &counts[2 * e + 1 - parity(&c->tree)], *cells = octants + 1;
+    unsigned k, existing = e == 0 && parity(&c->tree) ? 1 : 8;
+    for (k = 0; k < existing; k++) {
+        unsigned lower = (unsigned)(w.lower >> 8 * k & 0xFF), upper = (unsigned)(w.upper >> 8 * k & 0xFF);
+        if (existing == 8 && lower == 0 && upper == 0)
+            continue;
+        if (existing == 8 && lower <= 1 && upper == 0xFF) {
+            octants->full++;
+            octants->partial += lower;
+        } else {
+            octants->nodes++;
+            cells->nodes += popcount(lower & ~upper);
+            cells->full += popcount(upper);
+            cells->partial += popcount(lower & upper);
+        }
+    }
+}
+
+static const char *verify_entries(const struct lfl_channel *c, struct lfl_level *counts)
+{
+    const struct lfl_reader *t = &c->tree;
+    uint64_t n, all = t->elements + t->bricks, values = 0;
+    unsigned e = 0;
+    for (n = 0; n < all; n++) {
+        struct words w;
+        uint64_t existing, valued, starting;
+        while (n >= t->start[e + 1])
+            e++;
+        existing = existing_cells(t, e);
+        REFUSE_IF(!entry_of(c, n, &w), "dictionary-index"); /* never: the segments have been verified */
+        valued = valued_cells(w);
+        starting = starting_cells(w);
+        REFUSE_IF((w.lower | w.upper) & ~existing, n < t->elements ? "element-padding" : "brick-padding");
+        REFUSE_IF((w.lower | w.upper) == 0, "channel-uniform");
+        REFUSE_IF(valued == existing && w.lower <= 1, "channel-uniform");
+        REFUSE_IF(n >= t->elements && branch_cells(w) != 0, "brick-branch");
+        REFUSE_IF(rank_of(c, n) != values, "channel-rank");
+        REFUSE_IF(n % 1024 == 0 && u16(item(t, KIND_VALUE_REL, n)) != 0, "channel-rank");
+        REFUSE_IF(values == 0 && (valued & -valued & ~starting) != 0, "channel-start");
+        values += popcount(starting);
+        count_values(c, e, w, counts);
+    }
+    if (t->root == LFL_FULL)
+        values = 1;
+    REFUSE_IF(c->values != values, "channel-values");
+    return NULL;
+}
+
+static const char *verify_values(const struct lfl_channel *c)
+{
+    unsigned size = type_size[c->value_type], k;
+    uint64_t i;
+    for (i = 0; i < c->values; i++) {
+        const unsigned char *p = item(&c->tree, KIND_VALUES, i);
+        for (k = 0; c->value_type == TYPE_F32 && k < c->components; k++) {
+            uint32_t bits = u32(p + 4 * k);
+            REFUSE_IF((bits & 0x7F800000) == 0x7F800000 || bits == 0x80000000, "channel-value");
+        }
+        REFUSE_IF(i > 0 && memcmp(p, p - size * c->components, size * c->components) == 0, "channel-value");
+    }
+    return NULL;
+}
+
+static const char *verify_channels(const struct lfl_reader *r)
+{
+    struct lfl_channel c;
+    uint32_t owner = 1;
+    while (lfl_channel(r, &owner, &c)) {
+        struct lfl_level counts[LFL_MAX_DEPTH + 1];
+        const char *error;
+        unsigned l;
+        memset(counts, 0, sizeof counts);
+        counts[0].nodes = c.tree.root == LFL_BRANCH && parity(&c.tree) == 0;
+        counts[0].full = counts[0].partial = c.tree.root == LFL_FULL;
+        if ((error = verify_links(&c.tree)) != NULL || (error = verify_dictionary(&c.tree)) != NULL ||
+            (error = verify_entries(&c, counts)) != NULL || (error = verify_values(&c)) != NULL)
+            return error;
+        for (l = 0; l <= c.tree.depth; l++) {
+            struct lfl_level given = lfl_level(&c.tree, l);
+            REFUSE_IF(given.nodes != counts[l].nodes, "level-table-counts");
+            REFUSE_IF(given.full != counts[l].full, "level-table-counts");
+            REFUSE_IF(given.partial != counts[l].partial, "level-table-counts");
+        }
+    }
+    return NULL;
+}
+
 static const char *verify(const struct lfl_reader *r)
 {
     struct lfl_level counts[LFL_MAX_DEPTH + 1];
@@ -948,11 +1239,12 @@ static const char *verify(const struct lfl_reader *r)
     counts[0].full = r->root == LFL_FULL;
     counts[0].partial = r->root == LFL_PARTIAL;
 
-    if ((error = verify_sections(r)) != NULL || (error = check_metadata(r)) != NULL ||
+    if ((error = verify_sections(r)) != NULL || (error = check_metadata_and_channels(r)) != NULL ||
         (error = verify_links(r)) != NULL || (error = verify_elements(r, counts)) != NULL ||
-        (error = verify_dictionary(r)) != NULL || (error = verify_bricks(r, counts)) != NULL)
+        (error = verify_dictionary(r)) != NULL || (error = verify_bricks(r, counts)) != NULL ||
+        (error = verify_counts(r, counts)) != NULL)
         return error;
-    return verify_counts(r, counts);
+    return verify_channels(r);
 }
 
 int lfl_verify(const struct lfl_reader *r, const char **error) { return (*error = verify(r)) == NULL; }
@@ -1051,6 +1343,58 @@ enum lfl_answer lfl_contains(const struct lfl_reader *r, double x, double y, dou
     }
 }
 
+/* §7.3: the place of the value of a finest cell. Returns 0 if it has none, or the bytes are damaged. */
+static int find_value(const struct lfl_channel *c, uint32_t x, uint32_t y, uint32_t z, uint64_t *place)
+{
+    const struct lfl_reader *t = &c->tree;
+    uint64_t n = 0;
+    unsigned e;
+    *place = 0;
+    if (t->root != LFL_BRANCH)
+        return t->root == LFL_FULL;
+    for (e = 0; e < t->levels; e++) {
+        unsigned s = 2 * (t->levels - 1 - e), cell = morton(x >> s, y >> s, z >> s);
+        struct words w;
+        uint64_t up_to_cell = (UINT64_C(2) << cell) - 1; /* all bits for cell 63 */
+        if (!entry_of(c, n, &w))
+            return 0;
+        if (valued_cells(w) >> cell & 1) {
+            *place = rank_of(c, n) + popcount(starting_cells(w) & up_to_cell) - 1;
+            return 1;
+        }
+        if (tag_of(w, cell) != LFL_BRANCH || e + 1 == t->levels)
+            return 0;
+        n = first_child(t, n) + popcount(branch_cells(w) & up_to_cell) - 1;
+        if (n < t->start[e + 1] || n >= t->start[e + 2])
+            return 0;
+    }
+    return 0;
+}
+
+int lfl_value(const struct lfl_channel *c, double x, double y, double z, double value[4])
+{
+    const struct lfl_reader *t = &c->tree;
+    uint32_t i, j, k;
+    uint64_t place;
+    unsigned m;
+    if (!lfl_cell(t, 0, x, &i) || !lfl_cell(t, 1, y, &j) || !lfl_cell(t, 2, z, &k))
+        return 0;
+    if (!find_value(c, i, j, k, &place) || place >= c->values)
+        return 0;
+    for (m = 0; m < c->components; m++) {
+        const unsigned char *p = item(t, KIND_VALUES, place) + type_size[c->value_type] * m;
+        if (c->value_type == TYPE_F32) {
+            uint32_t bits = u32(p);
+            float number;
+            memcpy(&number, &bits, sizeof number);
+            value[m] = number;
+        } else {
+            value[m] = (double)little_endian(p, type_size[c->value_type]);
+        }
+    }
+    return 1;
+}
+
 /* sum + count · 8^levels, or 2^64 - 1 if that is greater. */
 static uint64_t saturating_sum(uint64_t sum, uint64_t count, unsigned levels)
 {
@@ -1099,7 +1443,7 @@ void lfl_volume(const struct lfl_reader *r, double *lower, double *upper)
 
 enum { OK = 0, REFUSED = 1, FAILED = 2 };
 enum checks { PROBE, PLAIN, METADATA, ALL };
-enum question { FACTS, POINTS, VOLUME };
+enum question { FACTS, POINTS, VALUES, VOLUME };
 
 /* Control characters could do things to a terminal, and are printed as \xHH. */
 static void print_text(const unsigned char *p, size_t length)
@@ -1163,6 +1507,39 @@ static void print_facts(const struct lfl_reader *r, enum checks checks)
     }
 }
 
+static void print_channels(const struct lfl_reader *r)
+{
+    static const char *const tags[] = {"EMPTY", "BRANCH", "PARTIAL", "FULL"};
+    static const char *const types[] = {"", "u8", "u16", "u32", "", "f32"};
+    struct lfl_channel c;
+    struct lfl_fact fact;
+    uint64_t position;
+    uint32_t owner, i;
+    for (owner = 1; lfl_channel(r, &owner, &c);) {
+        const struct lfl_reader *t = &c.tree;
+        printf("channel: %" PRIu32 " %u %s %s %u %" PRIu64, c.owner, t->depth, tags[t->root], types[c.value_type],
+               c.components, c.values);
+        printf(" %s %u %" PRIu64 " %" PRIu64 " %" PRIu64 "\n", t->encoding == RAW ? "raw" : "dictionary", t->shift,
+               t->elements, t->bricks, t->entries);
+    }
+    for (owner = 1; lfl_channel(r, &owner, &c);) {
+        for (i = 0; i <= c.tree.depth; i++) {
+            struct lfl_level level = lfl_level(&c.tree, i);
+            printf("channel-level: %" PRIu32 " %" PRIu32 " %" PRIu64 " %" PRIu64 " %" PRIu64 "\n", c.owner, i,
+                   level.nodes, level.full, level.partial);
+        }
+    }
+    for (owner = 1; lfl_channel(r, &owner, &c);) {
+        for (position = 0; lfl_metadata(&c.tree, &position, &fact) > 0;) {
+            printf("channel-metadata: %" PRIu32 " ", c.owner);
+            print_text(fact.key, fact.key_length);
+            putchar('\t');
+            print_text(fact.value, fact.value_length);
+            putchar('\n');
+        }
+    }
+}
+
 static void print_volume(const struct lfl_reader *r)
 {
     double lower, upper;
@@ -1170,7 +1547,22 @@ static void print_volume(const struct lfl_reader *r)
     printf("volume: %a %a\n", lower, upper);
 }
 
-static int answer_points(const struct lfl_reader *r)
+/* The values of all channels at a point, each in a line of its own with the number of the channel's object. */
+static void print_values(const struct lfl_reader *r, const double point[3])
+{
+    struct lfl_channel c;
+    uint32_t owner = 1;
+    while (lfl_channel(r, &owner, &c)) {
+        double value[4];
+        unsigned m, count = lfl_value(&c, point[0], point[1], point[2], value) ? c.components : 0;
+        printf("%" PRIu32 "%s", c.owner, count == 0 ? " none" : "");
+        for (m = 0; m < count; m++)
+            printf(" %a", value[m]);
+        putchar('\n');
+    }
+}
+
+static int answer_points(const struct lfl_reader *r, enum question question)
 {
     static const char *const answers[] = {"outside", "inside", "undecided"};
     char line[1024];
@@ -1187,7 +1579,10 @@ static int answer_points(const struct lfl_reader *r)
             fprintf(stderr, "not a point: %s", line);
             return FAILED;
         }
-        puts(answers[lfl_contains(r, v[0], v[1], v[2])]);
+        if (question == VALUES)
+            print_values(r, v);
+        else
+            puts(answers[lfl_contains(r, v[0], v[1], v[2])]);
     }
     return ferror(stdin) ? FAILED : OK;
 }
@@ -1240,12 +1635,14 @@ static int read_one(const char *path, enum checks checks, enum question question
     } else if (!passed) {
         printf("refused: %s\n", error);
         code = REFUSED;
-    } else if (question == POINTS) {
-        code = answer_points(&reader);
+    } else if (question == POINTS || question == VALUES) {
+        code = answer_points(&reader, question);
     } else if (question == VOLUME) {
         print_volume(&reader);
     } else {
         print_facts(&reader, checks);
+        if (checks >= METADATA)
+            print_channels(&reader);
     }
     free(bytes);
     return code;
@@ -1265,16 +1662,20 @@ int main(int argc, char **argv)
             checks = METADATA;
         else if (strcmp(argv[i], "--points") == 0)
             question = POINTS;
+        else if (strcmp(argv[i], "--values") == 0)
+            question = VALUES;
         else if (strcmp(argv[i], "--volume") == 0)
             question = VOLUME;
         else
             break;
     }
     files = argc - i;
-    if (files < 1 || argv[i][0] == '-' || (question == POINTS && files > 1) || (question != FACTS && checks == PROBE)) {
+    if (files < 1 || argv[i][0] == '-' || ((question == POINTS || question == VALUES) && files > 1) ||
+        (question != FACTS && checks == PROBE) || (question == VALUES && checks == PLAIN)) {
         fprintf(stderr, "usage: reader [--probe | --plain | --metadata] FILE...\n"
                         "       reader [--plain | --metadata] --points FILE\n"
-                        "       reader [--plain | --metadata] --volume FILE...\n");
+                        "       reader [--plain | --metadata] --volume FILE...\n"
+                        "       reader [--metadata] --values FILE\n");
         return FAILED;
     }
     for (; i < argc; i++) {

@@ -88,7 +88,7 @@ fn vectors(kind: &str) -> Vec<(PathBuf, String)> {
 fn it_gives_the_facts_of_every_valid_vector() {
     for (path, text) in vectors("valid") {
         // What no reader can know, or need not print.
-        let apart = ["about", "canonical", "origin-decimal", "edge-decimal", "point"];
+        let apart = ["about", "canonical", "origin-decimal", "edge-decimal", "point", "value"];
         let facts = text.lines().filter(|line| !apart.contains(&line.split(':').next().unwrap()));
         let (code, printed) = run(&[], &path, "");
         assert_eq!(code, 0, "{}", path.display());
@@ -102,6 +102,19 @@ fn it_gives_the_facts_of_every_valid_vector() {
         let (_, answers) = run(&["--points"], &path, &questions);
         let expected: Vec<&str> = points.iter().map(|(_, answer)| *answer).collect();
         assert_eq!(answers.split_whitespace().collect::<Vec<_>>(), expected, "{}", path.display());
+        // Every point of a channel is asked of all channels.
+        let channels = text.lines().filter(|line| line.starts_with("channel: ")).count();
+        let values: Vec<Vec<&str>> = text
+            .lines()
+            .filter_map(|line| Some(line.strip_prefix("value: ")?.splitn(4, ' ').collect()))
+            .collect();
+        let questions: String = values.iter().map(|words| words[..3].join(" ") + "\n").collect();
+        let (code, answers) = run(&["--values"], &path, &questions);
+        let answers: Vec<&str> = answers.lines().collect();
+        assert_eq!((code, answers.len()), (0, values.len() * channels));
+        for (words, answers) in values.iter().zip(answers.chunks(channels.max(1))) {
+            assert!(answers.contains(&words[3]), "{}: {words:?}, {answers:?}", path.display());
+        }
     }
 }
 
@@ -188,7 +201,34 @@ fn it_agrees_with_the_library_on_what_the_library_writes() {
             Membership::Undecided => "undecided",
         });
         assert_eq!(answers.split_whitespace().collect::<Vec<_>>(), expected.collect::<Vec<_>>());
+
+        let channels: Vec<_> = (1..).zip(tree.channels()).collect();
+        assert_eq!(all("channel").len(), channels.len());
+        let (_, answers) = run(&["--values"], &path, &questions);
+        let mut answers = answers.lines();
+        for &point in points.iter().filter(|_| !channels.is_empty()) {
+            for (owner, channel) in &channels {
+                let view = channel.view().unwrap();
+                let words: Vec<&str> = answers.next().unwrap().split(' ').collect();
+                assert_eq!(words[0], owner.to_string());
+                let value =
+                    view.value_at(point).map(|value| value[..view.value_type().components()].to_vec());
+                let found =
+                    (words[1] != "none").then(|| words[1..].iter().map(|word| double(word)).collect());
+                assert_eq!(found, value, "{point:?}");
+            }
+        }
+        assert_eq!(answers.next(), None);
     }
+}
+
+/// A normal number as C prints it with `%a`.
+fn double(text: &str) -> f64 {
+    let (sign, text) = text.strip_prefix('-').map_or((1.0, text), |text| (-1.0, text));
+    let (digits, exponent) = text.strip_prefix("0x").unwrap().split_once('p').unwrap();
+    let (lead, fraction) = digits.split_once('.').unwrap_or((digits, ""));
+    let all = u64::from_str_radix(&format!("{lead}{fraction}"), 16).unwrap() as f64;
+    sign * all * 2f64.powi(exponent.parse::<i32>().unwrap() - 4 * fraction.len() as i32)
 }
 
 /// Whether the library accepts a file at each of the four levels. The bytes stay until the test ends.
