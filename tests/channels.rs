@@ -6,8 +6,8 @@ use common::values::{Values, kinds, values, values_of};
 use common::{Dense, alone, cases, lattice_frame, noise, positions};
 use leafless::{
     Affine, Attribute, Bounds, CarryRule, Channel, ChannelOperand, ConstantAttribute, Control, Criterion,
-    Csg, Detail, Error, FillOptions, Frame, FunctionAttribute, Interval, Metadata, MovedAttribute, Octree,
-    Rule, ScalarType, Tag, ValueRange, ValueType, build, carry_channel, carry_channels, difference,
+    Csg, Damage, Detail, Error, FillOptions, Frame, FunctionAttribute, Interval, Metadata, MovedAttribute,
+    Octree, Rule, ScalarType, Tag, ValueRange, ValueType, build, carry_channel, carry_channels, difference,
     fill_channel, intersection, union, xor,
 };
 use proptest::prelude::*;
@@ -432,4 +432,137 @@ fn a_file_without_channels_is_of_the_first_version() {
     let octree = with_channels(4, &[]);
     let bytes = leafless::file::to_bytes(&octree).unwrap();
     assert_eq!(leafless::file::probe_bytes(&bytes).unwrap().version, (0, 1));
+}
+
+/// Sets the checksums of a changed file right.
+fn sealed(mut bytes: Vec<u8>, change: impl FnOnce(&mut Vec<u8>)) -> Vec<u8> {
+    change(&mut bytes);
+    let field = |bytes: &[u8], at: usize| u64::from_le_bytes(bytes[at..at + 8].try_into().unwrap()) as usize;
+    let count = u32::from_le_bytes(bytes[96..100].try_into().unwrap()) as usize;
+    for at in (0..count).map(|i| 128 + 48 * i) {
+        let start = field(&bytes, at + 16);
+        let crc = crc32fast::hash(&bytes[start..start + field(&bytes, at + 24)]);
+        bytes[at + 40..at + 44].copy_from_slice(&crc.to_le_bytes());
+    }
+    let crc = crc32fast::hash(&bytes[128..128 + 48 * count]);
+    bytes[100..104].copy_from_slice(&crc.to_le_bytes());
+    let crc = crc32fast::hash(&bytes[..124]);
+    bytes[124..128].copy_from_slice(&crc.to_le_bytes());
+    bytes
+}
+
+/// Where a section begins.
+fn section(bytes: &[u8], owner: u32, kind: u32) -> usize {
+    let sections = leafless::file::probe_bytes(bytes).unwrap().sections;
+    let is_it = |section: &&leafless::file::Section| (section.owner, section.kind) == (owner, kind);
+    sections.iter().find(is_it).unwrap().offset as usize
+}
+
+/// Two things are wrong, the solid's tree and the record of its channel: whoever verifies names the same one.
+#[test]
+fn all_ways_in_name_the_same_damage_first() {
+    let values = Values::from_fn(2, |[x, ..]| Some([f64::from(x), 0.0, 0.0, 0.0]));
+    let octree = with_channels(4, &[("heat", &values, scalar(ScalarType::U8))]);
+    let bytes = leafless::file::to_bytes(&octree).unwrap();
+    let (objects, rel) = (section(&bytes, 0, 1), section(&bytes, 0, 6));
+    let both = sealed(bytes, |bytes| {
+        bytes[objects + 128 + 14] = 3;
+        bytes[rel] ^= 1;
+    });
+    let words = bytemuck_words(&both).leak();
+    let verified = leafless::file::verify(&bytemuck_bytes(words)[..both.len()]).unwrap_err();
+    let copied = leafless::file::from_bytes(&both).unwrap_err();
+    assert_eq!(verified.to_string(), copied.to_string());
+    assert!(verified.to_string().contains("exterior"), "{verified}");
+}
+
+/// Values of other bits than those that the library stores, and the same value twice.
+#[test]
+fn wrong_values_are_refused_and_read_as_they_stand() {
+    let values = Values::from_fn(1, |[x, ..]| Some([f64::from(x) + 0.5, 2.0, 0.0, 0.0]));
+    let octree = with_channels(3, &[("v", &values, ValueType::new(ScalarType::F32, 2).unwrap())]);
+    let bytes = leafless::file::to_bytes(&octree).unwrap();
+    let start = section(&bytes, 1, 16);
+    for (at, bits) in [
+        (0, f32::NAN.to_bits()),
+        (4, 0x7F80_0001),
+        (8, f32::INFINITY.to_bits()),
+        (12, f32::NEG_INFINITY.to_bits()),
+        (4, (-0.0f32).to_bits()),
+        (8, 0.5f32.to_bits()),
+    ] {
+        let bad = sealed(bytes.clone(), |bytes| {
+            bytes[start + at..start + at + 4].copy_from_slice(&bits.to_le_bytes());
+        });
+        let refused = leafless::file::from_bytes(&bad);
+        assert!(matches!(refused, Err(Error::Damaged(Damage::Value { .. }))), "{at} {bits:#x}");
+        let words = bytemuck_words(&bad).leak();
+        let read = leafless::file::from_static(&bytemuck_bytes(words)[..bad.len()]).unwrap();
+        let _ = (Values::of(&read.channels()[0]), read.channels()[0].range(&Bounds::of(octree.frame())));
+        assert!(leafless::file::to_bytes(&read).is_err());
+    }
+    for bits in [1u32, 0x8000_0001, f32::MAX.to_bits(), f32::MIN.to_bits()] {
+        let other =
+            sealed(bytes.clone(), |bytes| bytes[start..start + 4].copy_from_slice(&bits.to_le_bytes()));
+        let back = leafless::file::from_bytes(&other).unwrap();
+        assert!(leafless::file::to_bytes(&back).unwrap() == other, "{bits:#x}");
+    }
+}
+
+/// As many records of channels as a file can have objects: the 257th is refused, whatever it says.
+#[test]
+fn thousands_of_records_of_channels_are_refused() {
+    let crowd = include_bytes!("../format_spec/vectors/invalid/channel-count.lfl");
+    assert!(leafless::file::from_bytes(crowd).is_err());
+    let octree = with_channels(2, &[]);
+    let bytes = leafless::file::to_bytes(&octree).unwrap();
+    // Records of nothing but a type behind the file, where its objects are now.
+    let (count, old) = (4096usize, section(&bytes, 0, 1));
+    let mut many = bytes.clone();
+    many.resize(bytes.len().next_multiple_of(64), 0);
+    let start = many.len();
+    many.extend_from_slice(&bytes[old..old + 128]);
+    for _ in 1..count {
+        let mut record = [0; 128];
+        record[0] = 2;
+        many.extend(record);
+    }
+    // The objects come first in a file: the other sections move behind them.
+    let sections = u32::from_le_bytes(bytes[96..100].try_into().unwrap()) as usize;
+    let mut moved = bytes[..128 + 48 * sections].to_vec();
+    moved.resize(moved.len().next_multiple_of(64), 0);
+    let put = |at: usize, part: &[u8], moved: &mut Vec<u8>| {
+        moved.resize(moved.len().next_multiple_of(64), 0);
+        let place = moved.len() as u64;
+        moved.extend_from_slice(part);
+        moved[at + 16..at + 24].copy_from_slice(&place.to_le_bytes());
+    };
+    put(128, &many[start..], &mut moved);
+    moved[128 + 24..128 + 32].copy_from_slice(&(128 * count as u64).to_le_bytes());
+    moved[128 + 32..128 + 40].copy_from_slice(&(count as u64).to_le_bytes());
+    for at in (1..sections).map(|i| 128 + 48 * i) {
+        let field = |at: usize| u64::from_le_bytes(bytes[at..at + 8].try_into().unwrap()) as usize;
+        let part = bytes[field(at + 16)..field(at + 16) + field(at + 24)].to_vec();
+        put(at, &part, &mut moved);
+    }
+    let length = moved.len() as u64;
+    moved[24..32].copy_from_slice(&length.to_le_bytes());
+    let file = |minor: u8| sealed(moved.clone(), |bytes| bytes[10] = minor);
+    // Version 0.1 does not know the type; version 0.2 refuses the first of the records.
+    assert_eq!(leafless::file::from_bytes(&file(1)).unwrap(), octree);
+    let refused = leafless::file::from_bytes(&file(2)).unwrap_err();
+    assert!(refused.to_string().contains("channel"), "{refused}");
+}
+
+/// Channels that share all but their values, with one another and with the solid.
+#[test]
+fn channels_that_share_sections_are_read() {
+    let bytes = include_bytes!("../format_spec/vectors/valid/channels-shared.lfl");
+    let octree = leafless::file::from_bytes(bytes).unwrap();
+    let [first, second] = octree.channels() else { panic!("two channels") };
+    let (first, second) = (Values::of(first), Values::of(second));
+    let same = |a: &Value, b: &Value| a.map(|v| v[0] - 2.5) == b.map(|v| v[0]);
+    assert!(first.cells.iter().zip(&second.cells).all(|(a, b)| same(a, b)));
+    let own = leafless::file::to_bytes(&octree).unwrap();
+    assert_same(&octree, &leafless::file::from_bytes(&own).unwrap());
 }

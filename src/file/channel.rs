@@ -1,9 +1,9 @@
 //! The channels in a file.
 
 use super::field::{demand, illegal};
-use super::layout::{Layout, Starts, cast, starts, swap_sections, tree};
+use super::layout::{Layout, Starts, cast, starts, tree};
 use super::object::{CHANNEL, CHANNEL_MINOR, Object};
-use super::section::{Kind, Sections, entries};
+use super::section::{Element, Kind, Sections, entries};
 use super::wire::elements;
 use crate::error::{Error, FormatError};
 use crate::lattice::Frame;
@@ -12,6 +12,7 @@ use crate::octree::metadata::MetadataLimit;
 use crate::octree::{Channel, ChannelRef, Metadata, ScalarType, Tag, ValueType};
 use alloc::sync::Arc;
 use alloc::vec::Vec;
+use core::ops::Range;
 
 /// Most channels of a file; part of the format.
 const MOST_CHANNELS: usize = 256;
@@ -123,8 +124,8 @@ impl ChannelLayout {
         Ok(Channel::attach(owner, metadata, verified, |owner| self.view(owner.as_ref()))?)
     }
 
-    /// Reverses the bytes of every number in the channel's sections.
-    pub(super) fn swap_bytes(&self, bytes: &mut [u8]) {
-        swap_sections(&self.object, &self.sections, bytes);
+    /// Where the channel's sections lie, and what their numbers are.
+    pub(super) fn numbers(&self) -> impl Iterator<Item = (Range<u64>, Element)> {
+        self.sections.numbers(&self.object)
     }
 }

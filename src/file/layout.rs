@@ -4,8 +4,8 @@ use super::counts::{Counts, ENCODING_RAW};
 use super::field::illegal;
 use super::header::Head;
 use super::object::{self, Object};
-use super::section::{Element, Kind, Sections, read_table};
-use super::wire::{Wire, elements, swap_all, wire_struct};
+use super::section::{Kind, Sections, read_table};
+use super::wire::{Wire, elements, wire_struct};
 use crate::error::{Damage, Error, FormatError};
 use crate::lattice::Frame;
 use crate::octree::brick::{BrickArray, Bricks};
@@ -55,12 +55,6 @@ impl Layout {
         let Head { header, frame, root, exterior, proof } = self.head;
         let tree = tree(&Object::solid(&header), &self.sections, frame, &self.starts, bytes)?;
         Ok(OctreeRef { root, exterior, proof, ..tree })
-    }
-
-    /// Reverses the bytes of every number in the solid's sections: from the file's order to that of a
-    /// big-endian machine.
-    pub(super) fn swap_bytes(&self, bytes: &mut [u8]) {
-        swap_sections(&Object::solid(&self.head.header), &self.sections, bytes);
     }
 }
 
@@ -116,26 +110,6 @@ pub(super) fn tree<'a>(
     })
 }
 
-/// Reverses the bytes of every number in an object's sections.
-pub(super) fn swap_sections(object: &Object, sections: &Sections, bytes: &mut [u8]) {
-    for (i, kind) in Kind::ALL.into_iter().enumerate() {
-        let range = sections.range(kind);
-        // What several sections share is turned once.
-        if Kind::ALL[..i].iter().any(|&earlier| sections.range(earlier) == range) {
-            continue;
-        }
-        // All of them lie in the file, as was checked.
-        let Some(section) = bytes.get_mut(range.start as usize..range.end as usize) else { continue };
-        match kind.element(object).0 {
-            Element::Record => swap_all::<Object>(section),
-            Element::U8 => {}
-            Element::U16 => swap_all::<u16>(section),
-            Element::U32 | Element::F32 => swap_all::<u32>(section),
-            Element::U64 | Element::F64 => swap_all::<u64>(section),
-        }
-    }
-}
-
 /// Where each element level begins, from the level table: the elements of level e are the nodes of the
 /// octree level at which their own cells lie. All reading code relies on what is checked here: the starts
 /// ascend, bricks begin where elements end, and all elements and bricks belong to a level.
@@ -169,63 +143,4 @@ pub(super) fn starts(counts: &Counts, levels: &[u8]) -> Result<Starts, Error> {
         return Err(wrong(depth as usize));
     }
     Ok(starts)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::super::counts::ENCODING_DICTIONARY;
-    use super::super::header::MAGIC;
-    use super::*;
-    use crate::control::Control;
-    use crate::octree::Metadata;
-    use crate::op::Rule;
-    use crate::solid::Csg;
-    use alloc::vec::Vec;
-
-    /// What a big-endian machine does when it reads a file, seen from a little-endian one.
-    #[test]
-    fn every_number_of_a_file_is_swapped_once() {
-        let frame = Frame::new([0.0; 3], 1.0, 7).unwrap();
-        let ball = Csg::ball([0.5; 3], 0.45).unwrap();
-        let ball = crate::op::build(&ball, &frame, Rule::Certified, &Control::threads(1)).unwrap();
-        let mut metadata = Metadata::new();
-        metadata.insert("units", "mm");
-        let bytes = super::super::to_bytes(&ball.with_metadata(metadata)).unwrap();
-        let layout = Layout::read(&bytes).unwrap();
-        assert_eq!(layout.head.header.brick_encoding, ENCODING_DICTIONARY);
-        let mut swapped = bytes.clone();
-        layout.swap_bytes(&mut swapped);
-        let head = layout.head.table_range().end;
-        assert_eq!(swapped[..head], bytes[..head]);
-        for kind in Kind::ALL.into_iter().take(10) {
-            let size = match kind {
-                Kind::Rel | Kind::Indices => 2,
-                Kind::Metadata => 1,
-                // The record is compared below.
-                Kind::Objects => continue,
-                _ => 8,
-            };
-            let section = layout.sections.bytes(&bytes, kind).unwrap();
-            let reversed: Vec<u8> =
-                section.chunks(size).flat_map(|number| number.iter().rev().copied()).collect();
-            assert_eq!(layout.sections.bytes(&swapped, kind).unwrap(), reversed, "{kind:?}");
-        }
-        layout.swap_bytes(&mut swapped);
-        assert_eq!(swapped, bytes);
-        // Of sections that share their bytes, too: `rel` and the brick indices, `base` and the dictionary.
-        let shared = include_bytes!("../../format_spec/vectors/valid/shared-sections.lfl");
-        let both = Layout::read(shared).unwrap();
-        assert_eq!(both.sections.range(Kind::Base), both.sections.range(Kind::Entries));
-        let mut swapped = shared.to_vec();
-        both.swap_bytes(&mut swapped);
-        assert_eq!(both.sections.bytes(&swapped, Kind::Base).unwrap(), 1u64.to_be_bytes());
-        // And the structures themselves.
-        let header = layout.head.header;
-        assert_eq!(header.swap_bytes().file_length.to_be_bytes(), header.file_length.to_le_bytes());
-        assert_eq!((header.swap_bytes().depth, header.swap_bytes().magic), (7, MAGIC));
-        assert_eq!(header.swap_bytes().swap_bytes(), header);
-        let object = Object::solid(&header);
-        assert_eq!(object.swap_bytes().bricks.to_be_bytes(), header.bricks.to_le_bytes());
-        assert_eq!((object.swap_bytes().depth, object.swap_bytes().swap_bytes()), (7, object));
-    }
 }

@@ -5,13 +5,14 @@
 //! | function | reads | checks | cost |
 //! |---|---|---|---|
 //! | [`probe`], [`probe_from`], [`probe_bytes`] | header and section table | both | O(sections) |
-//! | [`map`], [`view`], [`from_static`] (bytes) | in place | header, section table, bounds, objects, level table | O(sections + objects + depth) |
+//! | [`map`], [`view`], [`from_static`] (bytes) | in place | header, section table, bounds, objects, level tables | O(sections + objects + depth) |
 //! | [`map_verified`], [`verify`] (bytes) | in place | everything | O(n) |
 //! | [`open`], [`from_bytes`] | a copy | everything | O(n) |
 //!
 //! `open` is the plain way. Mapping is for files that are larger than what is asked of them, and is `unsafe`
 //! because of what others may do to a mapped file. [`save`], [`write_to`] and [`to_bytes`] write: equal trees
-//! that prove the same and have equal metadata give equal bytes.
+//! that prove the same, with equal metadata and equal channels, give equal bytes. All ways in but [`view`],
+//! which gives the solid alone, read [channels](crate::Channel).
 //!
 //! ```
 //! use leafless::{Control, Csg, Frame, Membership, Rule, build, file};
@@ -29,20 +30,24 @@
 //!
 //! Whatever the bytes, none of this panics, reads beyond them, or goes on for ever:
 //!
-//! * [`open`], [`from_bytes`], [`map_verified`] and [`verify`] accept nothing but a well-formed tree with
-//!   right checksums; everything that follows is then what it would be of a tree that was just built. They
-//!   need O(n) time, and memory for at most six times the length of the file (once for the copy; the rest
-//!   only for files that are all metadata). `open` asks for no more than the length that a regular file has;
-//!   of a pipe or device it takes memory as the bytes arrive.
+//! * [`open`], [`from_bytes`], [`map_verified`] and [`verify`] accept nothing but a well-formed tree and
+//!   well-formed channels with right checksums; everything that follows is then what it would be of a tree
+//!   that was just built. They need O(n) time, and memory for at most six times the length of the file (once
+//!   for the copy; the rest only for files that are all metadata, or all records of small channels). `open`
+//!   asks for no more than the length that a regular file has; of a pipe or device it takes memory as the
+//!   bytes arrive. The sections of channels may share their bytes, and every channel is checked by itself: n
+//!   is the sum of the lengths of all sections, at most 257 times the length of the file.
 //! * [`probe`] needs O(sections), at most 4096 of them, and twice the section table's memory. [`view`]
-//!   allocates nothing; [`map`] only for the metadata, which are at most 1 MiB, six times their length.
+//!   allocates nothing; [`map`] and [`from_static`] only for the metadata, six times their length, which is
+//!   at most 1 MiB for the solid and 64 KiB for each of at most 256 channels, and two kilobytes a channel.
 //! * After [`view`] or [`map`] nothing has looked at the tree itself. Point queries read at most ten elements
 //!   and allocate nothing. A box query, a walk with a [`Cursor`](crate::Cursor) and a Boolean meet every
 //!   element at most once; a tree is built from a stored one only once all of its links are checked. What is
 //!   damaged reads as PARTIAL or makes an operation return [`Error::Damaged`](crate::Error::Damaged). The
 //!   result of a Boolean never has more elements than its operands together, and the work takes at most 32
 //!   times their memory (their bricks may be 16-bit indices) and 128 KiB a thread. Statistics are the level
-//!   table's word.
+//!   table's word. The links of a channel are checked when it is first [viewed](crate::Channel::view); its
+//!   values are then read as they stand, within bounds.
 //! * Answers about damaged bytes are only this: safe. A changed tag with a right checksum is another tree,
 //!   and checksums are no signatures: who may have made a file must be known by other means.
 //!
@@ -51,7 +56,9 @@
 //!
 //! # The format
 //!
-//! Version 0.1. **Later versions of major version 0 only add to it**: a file of version 0.1 stays readable.
+//! Version 0.2. **Later versions of major version 0 only add to it**: a file of version 0.1 stays readable,
+//! and a reader of version 0.1 reads the solid of any later file. Version 0.2 added channels; a file has the
+//! oldest version that knows all of its objects, so a file without channels is one of version 0.1.
 //!
 //! A file is a header of 128 bytes, a table of sections, and the sections: the arrays of an
 //! [`OctreeRef`](crate::OctreeRef), each on a multiple of 64 bytes, all numbers little-endian. Header, table
@@ -69,10 +76,15 @@
 //! | 8 | brick indices | u16 | bricks, if through a dictionary |
 //! | 9 | dictionary entries | one or two u64 | dictionary entries |
 //! | 10 | dictionary segments | u64 | segments of the dictionary |
+//! | 16 | values of a channel | one to four u8, u16, u32 or f32 | values |
+//! | 18 | value rel of a channel | u16 | elements + bricks |
+//! | 19 | value base of a channel | u64 | ⌈(elements + bricks) / 1024⌉ |
 //!
-//! Each section belongs to an object, its owner. Object 0 is the solid. Other objects and other kinds are for
-//! later versions, and kinds from 2^31 on for applications: a reader skips what it does not know, unless it
-//! is required.
+//! Each section belongs to an object, its owner. Object 0 is the solid. Objects of type 2 are its channels, at
+//! most 256, each with a tree of its own in sections of the kinds 3 to 10, metadata of at most 2^16 bytes, and
+//! the kinds 16 to 19; see [`ChannelRef`](crate::ChannelRef). Other objects and other kinds are for later
+//! versions, and kinds from 2^31 on for applications: a reader skips what it does not know, unless it is
+//! required.
 //!
 //! The specification is `format_spec/specification.md` in the source of this crate: every field, every check
 //! and its reason. Beside it lie test vectors, the reasons for the design, and the list of what readers
@@ -89,6 +101,7 @@ mod map;
 mod object;
 mod read;
 mod section;
+mod swap;
 mod wire;
 mod write;
 

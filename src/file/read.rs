@@ -6,6 +6,7 @@ use super::header::HEADER_LENGTH;
 use super::header::Head;
 use super::layout::Layout;
 use super::section::{Kind, SECTION_REQUIRED, entries, read_table, section};
+use super::swap::swap_bytes;
 use crate::error::{Error, FormatError};
 use crate::lattice::Frame;
 use crate::memory;
@@ -148,17 +149,21 @@ pub fn view(bytes: &[u8]) -> Result<OctreeRef<'_>, Error> {
 }
 
 /// Checks everything that the format promises: what [`view`] checks, all checksums, that padding is zero,
-/// that the metadata can be read, and that the tree is well-formed and in canonical form
-/// ([`OctreeRef::check`]). Only whether a writer chose the encoding of the bricks by the rule is not checked:
-/// any encoding is readable. O(n); needs what `view` needs of the bytes.
+/// that the metadata can be read, and that the tree and the channels are well-formed and in canonical form
+/// ([`OctreeRef::check`], [`ChannelRef::check`](crate::ChannelRef::check)). Only whether a writer chose the
+/// encoding of the bricks by the rule is not checked: any encoding is readable. O(n) in the lengths of all
+/// sections, of which several may have the same bytes; needs what `view` needs of the bytes, and memory for
+/// the metadata.
 ///
 /// # Errors
 /// [`Error::Format`] or [`Error::Damaged`]; [`Error::OutOfMemory`].
 pub fn verify(bytes: &[u8]) -> Result<(), Error> {
     let (layout, tree) = viewed(bytes)?;
     verify_contents(&layout, bytes)?;
+    // All records before any contents, so that every way in that verifies finds the same thing first.
+    let channels = channel::read(&layout, bytes)?;
     tree.check()?;
-    channel::read(&layout, bytes)?.iter().try_for_each(|(channel, _)| channel.verify(bytes))
+    channels.iter().try_for_each(|(channel, _)| channel.verify(bytes))
 }
 
 /// The tree in `bytes`, a whole file, copied and [verified](verify). The bytes may have any alignment, and
@@ -315,8 +320,7 @@ fn adopt(layout: Layout, mut buffer: Buffer) -> Result<Octree, Error> {
     let metadata = verify_contents(&layout, buffer.bytes())?;
     let channels = channel::read(&layout, buffer.bytes())?;
     if cfg!(target_endian = "big") {
-        layout.swap_bytes(buffer.bytes_mut());
-        channels.iter().for_each(|(channel, _)| channel.swap_bytes(buffer.bytes_mut()));
+        swap_bytes(&layout, &channels, buffer.bytes_mut())?;
     }
     let owner = Arc::new(buffer);
     let octree = Octree::attach(owner.clone(), metadata, |buffer| {

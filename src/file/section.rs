@@ -363,6 +363,12 @@ impl Sections {
         &self.ranges[kind as usize]
     }
 
+    /// Where the sections of `object` lie that are there, and what their numbers are.
+    pub(super) fn numbers(&self, object: &Object) -> impl Iterator<Item = (Range<u64>, Element)> {
+        let numbers = |kind: Kind| (self.range(kind).clone(), kind.element(object).0);
+        Kind::ALL.into_iter().map(numbers).filter(|(range, _)| !range.is_empty())
+    }
+
     /// The bytes of a section; none if it is absent.
     pub(super) fn bytes<'a>(&self, bytes: &'a [u8], kind: Kind) -> Result<&'a [u8], FormatError> {
         section(bytes, self.range(kind))
