@@ -508,7 +508,7 @@ impl File {
     /// The records of the objects: the solid's says what the header says, the others nothing that must be
     /// understood; and every section belongs to one of them.
     fn repair_objects(&mut self) {
-        let newer = number(&self.header, 10, 2) > 1;
+        let newer = number(&self.header, 10, 2) > 2;
         let mut records = self.bytes(OBJECTS).to_vec();
         records.resize((records.len() / RECORD * RECORD).max(RECORD), 0);
         for (i, record) in records.chunks_exact_mut(RECORD).enumerate() {

@@ -2,6 +2,7 @@
 #![allow(dead_code, unused_imports)]
 
 mod aligned;
+mod channels;
 pub mod layout;
 pub mod meshes;
 mod mutator;
@@ -11,6 +12,7 @@ mod set_algebra;
 mod ways_in;
 
 pub use aligned::Aligned;
+pub use channels::channels;
 pub use mutator::{changed, mutate_file, mutate_pair, repairs};
 pub use queries::queries;
 pub use set_algebra::{set_algebra, threads};

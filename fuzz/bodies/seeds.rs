@@ -3,8 +3,8 @@
 use super::layout::{File, OBJECTS, PLANES, RECORD, Repairs, Section, put};
 use super::{CONTROL, Random, joined};
 use leafless::{
-    Cell, Classifier, Control, Csg, Error, Frame, Metadata, Octree, Proof, Rule, Solid, Tag, Verdict, Worker,
-    build, file,
+    Cell, Channel, Classifier, Control, Csg, Error, FillOptions, Frame, FunctionAttribute, Metadata, Octree,
+    Proof, Rule, ScalarType, Solid, Tag, ValueType, Verdict, Worker, build, file, fill_channel,
 };
 
 /// A different tree for every seed, with coarse and fine cells of every tag.
@@ -82,6 +82,44 @@ fn facts() -> Metadata {
     metadata
 }
 
+/// A channel of coarse and fine regions, with values and without.
+fn channel(name: &str, depth: u8, scalar: ScalarType, components: u8) -> Channel {
+    let frame = frame(depth);
+    let value = move |point: [f64; 3]| {
+        let at = frame.cell_of(point).expect("a point of the universe").map(u64::from);
+        let of = |bits: u8| {
+            let [x, y, z] = at.map(|a| a >> (depth - bits.min(depth)));
+            Random(x << 40 ^ y << 20 ^ z ^ u64::from(bits) << 60).below(256)
+        };
+        match of(1) % 4 {
+            0 => None,
+            1 => Some([7.0, 1.0, 2.0, 255.0]),
+            _ => (of(2) % 5 != 0).then(|| [0, 1, 2, 3].map(|k| f64::from((of(depth) >> k) as u8 % 6))),
+        }
+    };
+    let attribute = FunctionAttribute::new(components.into(), value).expect("1 to 4");
+    let value_type = ValueType::new(scalar, components).expect("1 to 4");
+    let options = FillOptions { value_type, frame, solid: None, detail: None };
+    fill_channel(&attribute, &options, &CONTROL).expect("no limits").with_name(name)
+}
+
+/// Trees with channels of all types, finer and coarser than the solid.
+fn trees_with_channels() -> Vec<Octree> {
+    let with = |tree: Octree, channels: &[Channel]| {
+        channels.iter().fold(tree, |tree, channel| tree.with_channel(channel.clone()).expect("of this cube"))
+    };
+    let noise = |depth| noise(depth, depth.into(), Rule::Certified);
+    let mut unit = facts();
+    unit.insert("unit", "K");
+    let full = Octree::uniform(frame(4), Tag::Full, Tag::Empty).expect("no branch");
+    vec![
+        with(noise(3), &[channel("heat", 3, ScalarType::F32, 1).with_metadata(unit)]),
+        with(noise(2), &[channel("", 4, ScalarType::U8, 3), channel("b", 1, ScalarType::U16, 2)]),
+        with(noise(4), &[channel("c", 2, ScalarType::U32, 4)]),
+        with(full, &[channel("fine", 5, ScalarType::U8, 1)]),
+    ]
+}
+
 /// Small trees of every kind.
 pub fn trees() -> Vec<Octree> {
     let mut trees = vec![];
@@ -105,6 +143,7 @@ pub fn trees() -> Vec<Octree> {
         build(&corner, &frame(11), certified, &CONTROL).expect("no limits"),
         build(&small, &frame(20), certified, &CONTROL).expect("no limits"),
     ]);
+    trees.extend(trees_with_channels());
     trees
 }
 

@@ -1,6 +1,6 @@
 //! Any bytes through every way in: none panics, and all agree.
 
-use super::{Aligned, walk};
+use super::{Aligned, channels, walk};
 use leafless::{Cursor, Error, Octree, Tag, file};
 use std::path::PathBuf;
 
@@ -49,10 +49,26 @@ pub fn read_in_all_ways(data: &[u8], as_a_file: bool) -> bool {
     if let Ok(tree) = &copied {
         good(tree);
     }
+    in_place(bytes, &copied);
     if as_a_file {
         through_a_file(data, &outcome(&probed), &outcome(&viewed), &verified);
     }
     verified.is_ok()
+}
+
+/// The same read where it lies, unverified, and with its channels.
+fn in_place(bytes: &[u8], copied: &Result<Octree, Error>) {
+    // SAFETY: the tree and all that is read from it are gone before the bytes are.
+    #[allow(unsafe_code)]
+    let bytes: &'static [u8] = unsafe { std::slice::from_raw_parts(bytes.as_ptr(), bytes.len()) };
+    match (file::from_static(bytes), copied) {
+        (Ok(tree), Ok(copied)) => {
+            assert!(&tree == copied && tree.channels() == copied.channels());
+            channels(&tree, true);
+        }
+        (Ok(tree), Err(_)) => channels(&tree, false),
+        (Err(error), copied) => assert!(copied.is_err(), "{error}"),
+    }
 }
 
 /// What holds of every verified tree.
@@ -60,6 +76,9 @@ fn good(tree: &Octree) {
     let written = file::to_bytes(tree).expect("a verified tree can be written");
     let back = file::from_bytes(&written).expect("what was written can be read");
     assert!(&back == tree && back.metadata() == tree.metadata() && back.proof() == tree.proof());
+    assert_eq!(back.channels(), tree.channels());
+    let metadata = |tree: &Octree| tree.channels().iter().map(|c| c.metadata().clone()).collect::<Vec<_>>();
+    assert_eq!(metadata(&back), metadata(tree));
     assert_eq!(file::to_bytes(&back).expect("a verified tree can be written"), written);
     // What the statistics say is what a walk over all cells meets.
     let walked = walk(Cursor::new(tree.view()));
@@ -112,6 +131,7 @@ fn through_a_file(
             let _ = (statistics.volume(), statistics.nodes(), statistics.cells(Tag::Full));
             assert_eq!(tree, &tree.clone());
             assert!(file::to_bytes(tree).is_err() || tree.view().check().is_ok());
+            channels(tree, verified.is_ok());
         }
         if let Ok(tree) = &scanned {
             good(tree);
