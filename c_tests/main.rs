@@ -215,6 +215,7 @@ fn volumes() {
 fn channels() {
     run("channel", C99, Link::Static, &[]);
     run("attribute", CPP17, Link::Static, &[]);
+    run("summary", C99, Link::Static, &[]);
 }
 
 #[test]

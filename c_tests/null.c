@@ -2010,6 +2010,68 @@ static int32_t number_at(void *ctx, const double *at, double *number) {
     return 0;
 }
 
+/* Of a channel of three numbers. */
+static void summaries(const leafless_channel *channel) {
+    void *out = fresh(), *never = UNTOUCHED;
+    leafless_attribute **made = (leafless_attribute **)&never, *attribute = NULL;
+    leafless_octree **result = (leafless_octree **)&never, *region = NULL;
+    leafless_channel_summary *summary = (leafless_channel_summary *)out, found;
+    leafless_material *materials = (leafless_material *)out, all[4];
+    leafless_volume_layout layout;
+    leafless_volume *volume = NULL;
+    const uint8_t samples[8] = {0};
+    const double low[3] = {0, 0, 0}, high[3] = {9, 9, 9}, bad[3] = {0, NAN, 0};
+    uint64_t *count = (uint64_t *)out, number;
+
+    OK(leafless_volume_layout_init(&layout, sizeof layout));
+    layout.extents[0] = layout.extents[1] = layout.extents[2] = 2;
+    OK(leafless_volume_new(&layout, samples, sizeof samples, &volume));
+    NULL_POINTER(leafless_channel_summarise, channel, leafless_channel_summarise(NULL, octree, point, above, NULL, summary));
+    NULL_POINTER(leafless_channel_summarise, min_model,
+                 leafless_channel_summarise(channel, octree, NULL, above, NULL, summary));
+    NULL_POINTER(leafless_channel_summarise, max_model,
+                 leafless_channel_summarise(channel, octree, point, NULL, NULL, summary));
+    NULL_POINTER(leafless_channel_summarise, summary, leafless_channel_summarise(channel, octree, point, above, NULL, NULL));
+    BAD_NUMBER(leafless_channel_summarise, min, leafless_channel_summarise(channel, octree, above, point, NULL, summary));
+    NULL_POINTER(leafless_channel_region, channel, leafless_channel_region(NULL, low, high, NULL, result));
+    NULL_POINTER(leafless_channel_region, low, leafless_channel_region(channel, NULL, high, NULL, result));
+    NULL_POINTER(leafless_channel_region, high, leafless_channel_region(channel, low, NULL, NULL, result));
+    NULL_POINTER(leafless_channel_region, octree, leafless_channel_region(channel, low, high, NULL, NULL));
+    BAD_NUMBER(leafless_channel_region, band, leafless_channel_region(channel, bad, high, NULL, result));
+    NULL_POINTER(leafless_solid_materials, solid,
+                 leafless_solid_materials(NULL, channel, &frame, 1, 0, NULL, materials, 1, count));
+    NULL_POINTER(leafless_solid_materials, channel,
+                 leafless_solid_materials(solid, NULL, &frame, 1, 0, NULL, materials, 1, count));
+    NULL_POINTER(leafless_solid_materials, frame,
+                 leafless_solid_materials(solid, channel, NULL, 1, 0, NULL, materials, 1, count));
+    NULL_POINTER(leafless_solid_materials, measured,
+                 leafless_solid_materials(solid, channel, &frame, 1, 0, NULL, NULL, 1, count));
+    NULL_POINTER(leafless_solid_materials, count,
+                 leafless_solid_materials(solid, channel, &frame, 1, 0, NULL, materials, 0, NULL));
+    BAD_NUMBER(leafless_solid_materials, tolerance,
+               leafless_solid_materials(solid, channel, &frame, -1, 0, NULL, NULL, 0, count));
+    NULL_POINTER(leafless_volume_as_attribute, volume, leafless_volume_as_attribute(NULL, 0, NULL, made));
+    NULL_POINTER(leafless_volume_as_attribute, attribute, leafless_volume_as_attribute(volume, 0, NULL, NULL));
+    BAD_NUMBER(leafless_volume_as_attribute, interpolation, leafless_volume_as_attribute(volume, 2, NULL, made));
+    MISALIGNED(leafless_channel_summarise, summary,
+               leafless_channel_summarise(channel, octree, NULL, NULL, NULL, (leafless_channel_summary *)WRONG(out)));
+    MISALIGNED(leafless_channel_region, low,
+               leafless_channel_region(channel, (const double *)WRONG(low), high, NULL, result));
+    untouched();
+    CHECK(never == UNTOUCHED);
+
+    MAY_BE_NULL(leafless_channel_summarise, solid, leafless_channel_summarise(channel, NULL, low, high, NULL, &found));
+    MAY_BE_NULL(leafless_channel_summarise, options, leafless_channel_summarise(channel, NULL, NULL, NULL, NULL, &found));
+    MAY_BE_NULL(leafless_channel_region, options, leafless_channel_region(channel, low, high, NULL, &region));
+    MAY_BE_NULL(leafless_solid_materials, options,
+                leafless_solid_materials(solid, channel, &frame, 1, 0, NULL, all, 4, &number));
+    CHECK(number == 1);
+    MAY_BE_NULL(leafless_volume_as_attribute, options, leafless_volume_as_attribute(volume, 0, NULL, &attribute));
+    leafless_attribute_free(attribute);
+    leafless_octree_free(region);
+    leafless_volume_free(volume);
+}
+
 static void attributes_and_channels(void) {
     void *out = fresh(), *never = UNTOUCHED;
     leafless_attribute **made = (leafless_attribute **)&never, *attribute = NULL;
@@ -2242,6 +2304,7 @@ static void attributes_and_channels(void) {
     CHECK(number == 1);
     leafless_octree_free(bare);
     leafless_octree_free(bearing);
+    summaries(channel);
     leafless_channel_free(channel);
     leafless_channel_free(NULL);
     leafless_attribute_free(attribute);

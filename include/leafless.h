@@ -1177,6 +1177,27 @@ typedef uint32_t leafless_carry;
 #endif // __cplusplus
 
 /**
+ * What lies between the samples of a volume.
+ */
+enum leafless_interpolation
+#ifdef __cplusplus
+  : uint32_t
+#endif // __cplusplus
+ {
+    /**
+     * The trilinear interpolation of the eight samples around a point.
+     */
+    LEAFLESS_INTERPOLATION_TRILINEAR = 0,
+    /**
+     * The sample of the voxel that contains the point; on a face between voxels, that of the upper one.
+     */
+    LEAFLESS_INTERPOLATION_NEAREST = 1,
+};
+#ifndef __cplusplus
+typedef uint32_t leafless_interpolation;
+#endif // __cplusplus
+
+/**
  * Something that has a value at every point of model space, or at some: one number, the host's own function,
  * the values of a channel, any of them in another place. A value has one to four numbers, as many at all
  * points of an attribute. Where a value is written and there is none, its numbers are NaN.
@@ -2926,6 +2947,56 @@ typedef struct {
 } leafless_extent;
 
 /**
+ * What the values of a channel amount to in a region, number by number; places beyond the numbers of a value
+ * are 0. All intervals contain the truth, as far as the cells of the solid and of the channel tell it.
+ */
+typedef struct {
+    /**
+     * The least value of any cell that may belong to the region.
+     */
+    double least[4];
+    /**
+     * The greatest value of any cell that may belong to the region.
+     */
+    double greatest[4];
+    /**
+     * The integral of the value over the region, in the value's units times cubic model units: of a density, the
+     * mass.
+     */
+    leafless_interval integral[4];
+    /**
+     * The mean value.
+     */
+    leafless_interval mean[4];
+    /**
+     * The volume of the region that has values, in cubic model units.
+     */
+    leafless_interval volume_model;
+    /**
+     * The volume of the region that has none.
+     */
+    leafless_interval volume_without_model;
+    /**
+     * Whether any of the region may have a value. If not, all else is 0.
+     */
+    bool has_values;
+} leafless_channel_summary;
+
+/**
+ * Volume, centroid and inertia of the part of a solid that has one value.
+ */
+typedef struct {
+    /**
+     * The value; places beyond its numbers are 0.
+     */
+    double value[4];
+    /**
+     * Measures of the points of the solid that have the value, of density 1.
+     */
+    leafless_measures measures;
+} leafless_material;
+
+/**
  * What is known of a point's distance from a solid.
  */
 typedef struct {
@@ -3918,9 +3989,9 @@ void leafless_octree_free(leafless_octree *octree);
 leafless_status leafless_octree_describe(const leafless_octree *octree, leafless_octree_info *info);
 
 /**
- * The same octree, of whose cells this is said; the arrays and the channels are shared. Octrees that other programs made
- * prove what these know. If FULL and EMPTY are said to be proven, the cells themselves are taken for the
- * solid: measures of a sampled octree then are those of its cells, and not of what was sampled.
+ * The same octree, of whose cells this is said; the arrays and the channels are shared. Octrees that other
+ * programs made prove what these know. If FULL and EMPTY are said to be proven, the cells themselves are taken
+ * for the solid: measures of a sampled octree then are those of its cells, and not of what was sampled.
  *
  * - Buffers: `octree`, a handle; `proven`, a leafless_proven; `displacement_model` as in leafless_proof;
  *   `result`, one pointer.
@@ -7265,6 +7336,97 @@ leafless_status leafless_solid_bounding_box(const leafless_solid *solid,
                                             double tolerance_model,
                                             const leafless_options *options,
                                             leafless_extent *extent);
+
+/**
+ * Least, greatest, mean and integral of a channel's values in the part of a solid that lies in a box, whose faces may
+ * lie anywhere. O(cells that the box meets).
+ *
+ * - Buffers: `solid`, a handle, or NULL for all space; `min_model` and `max_model`, 3 numbers each, which may be
+ *   infinite, or both NULL for all of the channel's cube; `options`, one struct or NULL, of which limits do not
+ *   matter; `summary`, one struct.
+ * - Result: `*summary`.
+ * - Errors: LEAFLESS_E_ARGUMENT if a coordinate is not a number, or min > max; LEAFLESS_E_FRAME if the solid lies in
+ *   another cube; LEAFLESS_E_DAMAGED; LEAFLESS_E_CANCELLED.
+ * - Ownership: nothing changes hands.
+ * - Threads: any; works in the calling thread.
+ * - Untrusted input: any channel, any octree, any numbers.
+ * - Since: 0.1
+ *
+ */
+leafless_status leafless_channel_summarise(const leafless_channel *channel,
+                                           const leafless_octree *solid,
+                                           const double min_model[3],
+                                           const double max_model[3],
+                                           const leafless_options *options,
+                                           leafless_channel_summary *summary);
+
+/**
+ * The octree of the cells whose values lie in a band: every number between those of `low` and `high`, both included.
+ * Where there is no value, it is EMPTY. It lies on the channel's frame, and nothing is PARTIAL. A Boolean makes it that of
+ * a part: of a material, of all that is hotter than a limit.
+ *
+ * - Buffers: `low` and `high`, as many numbers each as the channel's values have, which may be infinite; `options`, one
+ *   struct or NULL; `octree`, one pointer.
+ * - Result: `*octree`.
+ * - Errors: LEAFLESS_E_ARGUMENT if a bound is not a number; LEAFLESS_E_DAMAGED; LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED;
+ *   LEAFLESS_E_NO_MEMORY.
+ * - Ownership: give `*octree` back with leafless_octree_free.
+ * - Threads: any; uses as many as `options` says.
+ * - Untrusted input: any channel, any numbers.
+ * - Since: 0.1
+ */
+leafless_status leafless_channel_region(const leafless_channel *channel,
+                                        const double *low,
+                                        const double *high,
+                                        const leafless_options *options,
+                                        leafless_octree **octree);
+
+/**
+ * Measures the parts of a solid in which a channel has one value, each as leafless_solid_measure: one for each value of
+ * the channel that the solid may have somewhere, in ascending order of the values. The channel is taken as it is; its
+ * cells decide what is which material. To ask for the count alone takes as long.
+ *
+ * - Buffers: `frame`, one struct: where the solid is split, in the channel's cube; `options`, one struct or NULL;
+ *   `measured`, room for `capacity` structs, or NULL to ask for the count only; `count`, one number. `relative` and
+ *   `absolute_model` are those of leafless_solid_measure.
+ * - Result: `*count`; the materials.
+ * - Errors: LEAFLESS_E_LIMIT if the channel has more than 4096 different values; LEAFLESS_E_FRAME unless `frame` is of
+ *   the channel's cube; LEAFLESS_E_BUFFER if the capacity is too small; else as leafless_solid_measure.
+ * - Ownership: nothing changes hands.
+ * - Threads: any; uses as many as `options` says.
+ * - Untrusted input: any solid, any channel; the default of `max_splits` bounds the work for each value.
+ * - Since: 0.1
+ */
+leafless_status leafless_solid_materials(const leafless_solid *solid,
+                                         const leafless_channel *channel,
+                                         const leafless_frame *frame,
+                                         double relative,
+                                         double absolute_model,
+                                         const leafless_options *options,
+                                         leafless_material *measured,
+                                         uint64_t capacity,
+                                         uint64_t *count);
+
+/**
+ * The samples of a volume as an attribute of one number, where the file says that they lie. There is no value outside of
+ * the voxels, nor where a sample that counts is not a number. The first solid, range or attribute of a volume reads all
+ * samples, in O(n).
+ *
+ * - Buffers: `interpolation`, a leafless_interpolation; `options`, one struct or NULL, of which limits do not matter;
+ *   `attribute`, one pointer.
+ * - Result: `*attribute`.
+ * - Errors: LEAFLESS_E_ARGUMENT if the map that places the volume has no inverse that a map can have;
+ *   LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
+ * - Ownership: the attribute shares the samples, and `volume` may be freed; give `*attribute` back with
+ *   leafless_attribute_free.
+ * - Threads: any; uses as many as `options` says.
+ * - Untrusted input: any volume.
+ * - Since: 0.1
+ */
+leafless_status leafless_volume_as_attribute(const leafless_volume *volume,
+                                             uint32_t interpolation,
+                                             const leafless_options *options,
+                                             leafless_attribute **attribute);
 
 /**
  * The distances of points from a solid, its complement or its boundary, as an octree's cells and its exterior tell

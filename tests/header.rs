@@ -52,6 +52,7 @@ const SECTIONS: &[&str] = &[
     "lazy",
     "interference",
     "measure",
+    "channel_summary",
     "distance",
     "file",
     "layout",

@@ -86,6 +86,10 @@ fn write_all(to: &mut dyn Write) -> fmt::Result {
             struct_size, scalar, components, depth, solid, criterion, reserved, coarse_model, fine_model, tolerance, name,
             name_length
         }
+        leafless_channel_summary {
+            least, greatest, integral, mean, volume_model, volume_without_model, has_values
+        }
+        leafless_material { value, measures }
         leafless_carry_rule { name, name_length, carry }
         leafless_proof { displacement_model, full, empty }
         leafless_octree_info { frame, elements, bricks, proof, root, exterior, is_binary, is_clipped }
@@ -208,6 +212,7 @@ fn write_all(to: &mut dyn Write) -> fmt::Result {
         leafless_criterion {
             LEAFLESS_CRITERION_NONE, LEAFLESS_CRITERION_VARIANCE, LEAFLESS_CRITERION_RANGE
         }
+        leafless_interpolation { LEAFLESS_INTERPOLATION_TRILINEAR, LEAFLESS_INTERPOLATION_NEAREST }
         leafless_carry { LEAFLESS_CARRY_LEFT, LEAFLESS_CARRY_RIGHT, LEAFLESS_CARRY_MAX, LEAFLESS_CARRY_MEAN }
         leafless_exterior { LEAFLESS_EXTERIOR_UNKNOWN, LEAFLESS_EXTERIOR_EMPTY, LEAFLESS_EXTERIOR_FULL }
     }

@@ -25,6 +25,7 @@
 //! | `attribute_host` | the host's own attributes |
 //! | `channel` | channels: describing, metadata |
 //! | `channel_fill` | channels filled from attributes, asked at points, changed in regions |
+//! | `channel_summary` | least, greatest, mean and integral of channels, their regions, materials; volumes as attributes |
 //! | `octree_channels` | channels of octrees, carried to others |
 //! | `scene` | scenes in the language of OpenSCAD's CSG dumps |
 //! | `op` | building, resolving, Booleans |
@@ -53,6 +54,7 @@ mod boundary;
 mod cells;
 mod channel;
 mod channel_fill;
+mod channel_summary;
 mod columns;
 mod control;
 mod csg;
@@ -97,6 +99,7 @@ pub use boundary::leafless_test_panic;
 pub use cells::*;
 pub use channel::*;
 pub use channel_fill::*;
+pub use channel_summary::*;
 pub use columns::*;
 pub use control::*;
 pub use csg::*;

@@ -249,9 +249,9 @@ pub unsafe extern "C" fn leafless_octree_describe(
     })
 }
 
-/// The same octree, of whose cells this is said; the arrays and the channels are shared. Octrees that other programs made
-/// prove what these know. If FULL and EMPTY are said to be proven, the cells themselves are taken for the
-/// solid: measures of a sampled octree then are those of its cells, and not of what was sampled.
+/// The same octree, of whose cells this is said; the arrays and the channels are shared. Octrees that other
+/// programs made prove what these know. If FULL and EMPTY are said to be proven, the cells themselves are taken
+/// for the solid: measures of a sampled octree then are those of its cells, and not of what was sampled.
 ///
 /// - Buffers: `octree`, a handle; `proven`, a leafless_proven; `displacement_model` as in leafless_proof;
 ///   `result`, one pointer.
