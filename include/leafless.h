@@ -1177,6 +1177,77 @@ typedef uint32_t leafless_carry;
 #endif // __cplusplus
 
 /**
+ * What a voxel is: a number in the array `kinds`.
+ */
+enum leafless_voxel_kind
+#ifdef __cplusplus
+  : uint8_t
+#endif // __cplusplus
+ {
+    /**
+     * It lies outside of the solid.
+     */
+    LEAFLESS_VOXEL_OUTSIDE = 0,
+    /**
+     * It lies inside.
+     */
+    LEAFLESS_VOXEL_INSIDE = 1,
+    /**
+     * The boundary of the solid goes through it, or along it.
+     */
+    LEAFLESS_VOXEL_BOUNDARY = 2,
+    /**
+     * It consists of the smaller voxels that follow it.
+     */
+    LEAFLESS_VOXEL_REFINED = 3,
+};
+#ifndef __cplusplus
+typedef uint8_t leafless_voxel_kind;
+#endif // __cplusplus
+
+/**
+ * Which voxels are boundary voxels.
+ */
+enum leafless_voxel_boundary
+#ifdef __cplusplus
+  : uint32_t
+#endif // __cplusplus
+ {
+    /**
+     * Cells of the boundary depth that are cut further there, and cells that are not decided.
+     */
+    LEAFLESS_VOXEL_BOUNDARY_UNDECIDED = 0,
+    /**
+     * These, and inside cells of the boundary depth that touch an outside cell with a face.
+     */
+    LEAFLESS_VOXEL_BOUNDARY_TOUCHING = 1,
+};
+#ifndef __cplusplus
+typedef uint32_t leafless_voxel_boundary;
+#endif // __cplusplus
+
+/**
+ * Which voxels are listed beside inside and boundary voxels: 0, one of these values, or both joined by `|`.
+ */
+enum leafless_voxel_lists
+#ifdef __cplusplus
+  : uint32_t
+#endif // __cplusplus
+ {
+    /**
+     * Outside voxels.
+     */
+    LEAFLESS_VOXEL_LISTS_OUTSIDE = 1,
+    /**
+     * Voxels that are refined.
+     */
+    LEAFLESS_VOXEL_LISTS_REFINED = 2,
+};
+#ifndef __cplusplus
+typedef uint32_t leafless_voxel_lists;
+#endif // __cplusplus
+
+/**
  * What lies between the samples of a volume.
  */
 enum leafless_interpolation
@@ -2668,6 +2739,54 @@ typedef struct {
      */
     bool has_outer;
 } leafless_boundary_face;
+
+/**
+ * Which voxels of an octree are listed, and how large they are. All fields but the first may be zero, which is
+ * their default; leafless_voxel_options_init sets them so.
+ */
+typedef struct {
+    /**
+     * sizeof(leafless_voxel_options).
+     */
+    uint32_t struct_size;
+    /**
+     * The level of boundary voxels; 0, and what is beyond, is the octree's depth.
+     */
+    uint32_t boundary_depth;
+    /**
+     * A leafless_voxel_boundary.
+     */
+    uint32_t boundary;
+    /**
+     * 0, or leafless_voxel_lists.
+     */
+    uint32_t lists;
+    /**
+     * The longest edge of inside voxels, in model units; 0: as long as the octree's cells.
+     */
+    double coarse_model;
+    /**
+     * Inside voxels of this edge are not split, with a criterion; 0: the coarse edge.
+     */
+    double fine_model;
+    /**
+     * How much the attribute may change in an inside voxel that is longer than the fine edge, with a criterion.
+     */
+    double tolerance;
+    /**
+     * The attribute that inside voxels follow, and whose values are listed; optional.
+     */
+    const leafless_attribute *attribute;
+    /**
+     * A leafless_criterion: what makes an inside voxel fine enough that is longer than the fine edge and no longer
+     * than the coarse one. Without one, all inside voxels have the coarse edge or less.
+     */
+    uint32_t criterion;
+    /**
+     * Zero.
+     */
+    uint32_t reserved;
+} leafless_voxel_options;
 
 /**
  * How a surface is extracted. NULL means the defaults. All fields but the first may be zero, which is their
@@ -6784,6 +6903,159 @@ leafless_status leafless_octree_bitmap(const leafless_octree *octree,
                                        uint64_t *outer,
                                        uint64_t capacity,
                                        uint64_t *count);
+
+/**
+ * Sets all fields of leafless_voxel_options to their defaults.
+ *
+ * - Buffers: `voxel_options`, one struct of `struct_size` bytes, which is sizeof(leafless_voxel_options); need not be
+ *   initialised.
+ * - Result: `*voxel_options`.
+ * - Errors: LEAFLESS_E_ARGUMENT if `struct_size` makes no sense.
+ * - Ownership: nothing changes hands.
+ * - Threads: any.
+ * - Untrusted input: none.
+ * - Since: 0.1
+ */
+leafless_status leafless_voxel_options_init(leafless_voxel_options *voxel_options,
+                                            size_t struct_size);
+
+/**
+ * Lists the voxels of an octree: inside and boundary voxels, and others that `voxel_options` asks for, sorted by
+ * linear octree code, of two with one code the larger one first. The code of a voxel is the Morton code of its
+ * minimum corner on the lattice `*lattice`: an octal digit for each level of it from the root on, of which as many
+ * count as the voxel's level says. Call it once for the count, and then with buffers.
+ *
+ * - Buffers: `voxel_options`, one struct or NULL; `options`, one struct or NULL, of which `max_bytes` counts;
+ *   `lattice`, one struct; `codes`, `levels`, `kinds`, `corners_model` (3 numbers a record) and `values` (as many
+ *   numbers a record as values have components), room for `capacity` records each, each of them NULL if it is not
+ *   wanted; `count`, one number.
+ * - Result: `*lattice`, the octree's universe with the depth of the finest voxel that there may be; the arrays;
+ *   `*count`, how many records there are. `kinds` are leafless_voxel_kind. Corners are rounded down where they are
+ *   no doubles. Values are those at the centres of voxels, NaN where there is none.
+ * - Errors: LEAFLESS_E_ARGUMENT if an option is out of its range, or the universe would take more than 20 levels to
+ *   the fine edge; LEAFLESS_E_BUFFER if `capacity` is too small: nothing is written then; LEAFLESS_E_CALLBACK;
+ *   LEAFLESS_E_DAMAGED; LEAFLESS_E_LIMIT; LEAFLESS_E_NO_MEMORY; LEAFLESS_E_CANCELLED.
+ * - Ownership: nothing changes hands.
+ * - Threads: any; works in the calling thread.
+ * - Untrusted input: any octree: damage reads as boundary voxels.
+ * - Since: 0.1
+ */
+leafless_status leafless_octree_voxels(const leafless_octree *octree,
+                                       const leafless_voxel_options *voxel_options,
+                                       const leafless_options *options,
+                                       leafless_frame *lattice,
+                                       uint64_t *codes,
+                                       uint8_t *levels,
+                                       uint8_t *kinds,
+                                       double *corners_model,
+                                       double *values,
+                                       uint64_t capacity,
+                                       uint64_t *count);
+
+/**
+ * The record, not of a refined voxel, that contains a cell. O(log count).
+ *
+ * - Buffers: `lattice`, one struct; `codes`, `levels` and `kinds`, `count` elements each, as leafless_octree_voxels
+ *   writes them; `cell`, 3 numbers: the cell's place among those of its level; `index`, one number.
+ * - Result: `*index`, the index of the record, or UINT64_MAX if there is none.
+ * - Errors: LEAFLESS_E_ARGUMENT as leafless_frame_check.
+ * - Ownership: nothing changes hands.
+ * - Threads: any.
+ * - Untrusted input: any numbers; the answer means something if the records are sorted.
+ * - Since: 0.1
+ *
+ */
+leafless_status leafless_voxels_find(const leafless_frame *lattice,
+                                     const uint64_t *codes,
+                                     const uint8_t *levels,
+                                     const uint8_t *kinds,
+                                     uint64_t count,
+                                     const uint32_t cell[3],
+                                     uint32_t level,
+                                     uint64_t *index);
+
+/**
+ * The indices of the records from front to back: a voxel comes before every other one of which it hides a part.
+ * Refined voxels are left out. No two records are compared; exact.
+ *
+ * - Buffers: `lattice`, `codes`, `levels` and `kinds` as leafless_voxels_find; `from`, 3 numbers: the direction of
+ *   sight, or if `is_eye` the point (model units) from which voxels are seen; `options`, one struct or NULL; `order`,
+ *   room for `capacity` numbers, or NULL to ask for their count; `order_count`, one number.
+ * - Result: `order`; `*order_count`, the number of records that are not refined.
+ * - Errors: LEAFLESS_E_ARGUMENT if the arrays are no records, the direction is zero, or a number is not finite (of an
+ *   eye also one beyond ±2^256 or, but zero, below 2^-256); LEAFLESS_E_BUFFER if `capacity` is too small: nothing is
+ *   written then; LEAFLESS_E_NO_MEMORY; LEAFLESS_E_CANCELLED.
+ * - Ownership: nothing changes hands.
+ * - Threads: any; works in the calling thread.
+ * - Untrusted input: any numbers.
+ * - Since: 0.1
+ *
+ */
+leafless_status leafless_voxels_order(const leafless_frame *lattice,
+                                      const uint64_t *codes,
+                                      const uint8_t *levels,
+                                      const uint8_t *kinds,
+                                      uint64_t count,
+                                      const double from[3],
+                                      bool is_eye,
+                                      const leafless_options *options,
+                                      uint64_t *order,
+                                      uint64_t capacity,
+                                      uint64_t *order_count);
+
+/**
+ * For each boundary voxel the triangles of a mesh that meet it, in compressed rows: those of record i are
+ * `triangles[offsets[i]]` to before `triangles[offsets[i + 1]]`, and ascend. A triangle that only touches a voxel
+ * meets it. Exact.
+ *
+ * - Buffers: `lattice`, `codes`, `levels` and `kinds` as leafless_voxels_find; `options`, one struct or NULL, of which
+ *   `max_bytes` counts; `offsets`, room for `offset_capacity` numbers, and `triangles`, room for `triangle_capacity`,
+ *   each NULL to ask for its count only; `offset_count` and `triangle_count`, one number each.
+ * - Result: `offsets`, one more than records; `triangles`, indices into the mesh; their counts.
+ * - Errors: LEAFLESS_E_ARGUMENT if the arrays are no records; LEAFLESS_E_BUFFER if a capacity is too small: nothing is
+ *   written then; LEAFLESS_E_LIMIT; LEAFLESS_E_NO_MEMORY; LEAFLESS_E_CANCELLED.
+ * - Ownership: nothing changes hands.
+ * - Threads: any; works in the calling thread.
+ * - Untrusted input: any numbers, any mesh.
+ * - Since: 0.1
+ */
+leafless_status leafless_voxels_triangles(const leafless_frame *lattice,
+                                          const uint64_t *codes,
+                                          const uint8_t *levels,
+                                          const uint8_t *kinds,
+                                          uint64_t count,
+                                          const leafless_mesh *mesh,
+                                          const leafless_options *options,
+                                          uint64_t *offsets,
+                                          uint64_t offset_capacity,
+                                          uint64_t *offset_count,
+                                          uint32_t *triangles,
+                                          uint64_t triangle_capacity,
+                                          uint64_t *triangle_count);
+
+/**
+ * The octree that records speak of, to the depth of their lattice: inside voxels are FULL, outside voxels and what no
+ * record speaks of EMPTY. Nothing is known of the space outside, and nothing is proven.
+ *
+ * - Buffers: `lattice`, `codes`, `levels` and `kinds` as leafless_voxels_find; `options`, one struct or NULL; `octree`,
+ *   one pointer. `boundary` is the tag of boundary voxels: LEAFLESS_TAG_EMPTY, LEAFLESS_TAG_PARTIAL or
+ *   LEAFLESS_TAG_FULL.
+ * - Result: `*octree`.
+ * - Errors: LEAFLESS_E_ARGUMENT if the arrays are no records, or `boundary` is another tag; LEAFLESS_E_LIMIT;
+ *   LEAFLESS_E_NO_MEMORY; LEAFLESS_E_CANCELLED.
+ * - Ownership: give `*octree` back with leafless_octree_free.
+ * - Threads: any; uses as many as `options` says.
+ * - Untrusted input: any numbers.
+ * - Since: 0.1
+ */
+leafless_status leafless_octree_from_voxels(const leafless_frame *lattice,
+                                            const uint64_t *codes,
+                                            const uint8_t *levels,
+                                            const uint8_t *kinds,
+                                            uint64_t count,
+                                            uint32_t boundary,
+                                            const leafless_options *options,
+                                            leafless_octree **octree);
 
 /**
  * Sets options for surfaces to their defaults: marching cubes, vertices half-way.
