@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::values::{Values, kinds, values, values_of};
+use common::values::{Value, Values, kinds, values, values_of};
 use common::{Dense, alone, cases, lattice_frame, noise, positions};
 use leafless::{
     Affine, Attribute, Bounds, CarryRule, Channel, ChannelOperand, ConstantAttribute, Control, Criterion,
