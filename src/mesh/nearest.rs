@@ -437,23 +437,26 @@ impl Near<'_> {
         (sqrt(nearest) * (1.0 - 1e-6), sqrt(furthest) * (1.0 + 1e-6))
     }
 
-    /// Whether a triangle may be within reach: unless a plane between it and the box, across the way from the
-    /// box's centre to the triangle's centroid, tells that it is not.
+    /// Whether a triangle may be within reach: unless a plane between it and the box tells that it is not. Two
+    /// planes are tried, across the ways from the box's centre to the triangle's centroid and nearest point.
     fn may_reach(&self, triangle: u32) -> bool {
-        let scale = self.tree.grid.scale();
-        let [a, b, c]: [Point; 3] = self.mesh.triangles()[triangle as usize].map(|vertex| {
-            let at = self.mesh.vertices()[vertex as usize];
-            array(|axis| (at[axis] - self.centre[axis]) * scale)
-        });
-        let way: Point = array(|axis| a[axis] + b[axis] + c[axis]);
-        let length = sqrt(dot(&way, &way));
-        let triangle = dot(&way, &a).min(dot(&way, &b)).min(dot(&way, &c));
-        let corner: f64 = (0..3).map(|axis| way[axis].abs() * self.half[axis]).sum();
-        let most = sqrt(dot(&a, &a).max(dot(&b, &b)).max(dot(&c, &c)));
+        let corners = Corners::of(self.mesh, triangle, self.tree.grid.scale());
+        let from = corners.from(&self.centre);
+        let [a, b, c] = &from;
+        let most = sqrt(dot(a, a).max(dot(b, b)).max(dot(c, c)));
         let rounding = ROUNDING * (most + self.half[0] + self.half[1] + self.half[2]);
-        // False if the length is 0.
-        let is_beyond = (triangle - corner) / length - rounding > self.reach;
-        !is_beyond
+        let is_beyond = |way: Point| {
+            let nearest = dot(&way, a).min(dot(&way, b)).min(dot(&way, c));
+            let corner: f64 = (0..3).map(|axis| way[axis].abs() * self.half[axis]).sum();
+            // False if the way has no length.
+            (nearest - corner) / sqrt(dot(&way, &way)) - rounding > self.reach
+        };
+        if is_beyond(array(|axis| a[axis] + b[axis] + c[axis])) {
+            return false;
+        }
+        let (_, weights) = corners.nearest_to(&from);
+        let [u, v, w] = corners.corners.map(|corner| weights[corner]);
+        !is_beyond(array(|axis| u * a[axis] + v * b[axis] + w * c[axis]))
     }
 }
 
