@@ -453,6 +453,8 @@ fn open_meshes_are_taken_with_a_warning() {
 /// `part.3mf`: in inches, a tetrahedron of edge 1 and its mirror image, and a support.
 fn package() -> Vec<u8> {
     let resources = zip::tetrahedron(1, "") + &zip::tetrahedron(2, "type=\"support\"");
+    // Properties that are not there would be warned of.
+    let resources = resources.replace(" pid=\"1\" p1=\"0\"", "");
     let items = "<item objectid=\"1\"/><item objectid=\"2\"/>
         <item objectid=\"1\" transform=\"-1 0 0 0 1 0 0 0 1 -1 0 0\"/>";
     zip::zip(&zip::package(zip::model("unit=\"inch\"", &resources, items)))
