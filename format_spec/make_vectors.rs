@@ -291,7 +291,7 @@ impl Field {
         }
         let (mut before, mut values) = (None, 0);
         // The levels on which cells of elements lie.
-        for level in (1..=self.depth).filter(|level| (self.depth - level) % 2 == 0) {
+        for level in (1..=self.depth).filter(|level| (self.depth - level).is_multiple_of(2)) {
             let above = level.min(2);
             for (m, at) in Field::morton(level).enumerate() {
                 if self.uniform(level - above, at.map(|a| a >> above)).is_some() {
