@@ -567,7 +567,7 @@ int main(int argc, char **argv) {
         runs_out(open_sheet, 0, 2560, 160);
         runs_out(scanned_ball, 0, 6144, 256);
         grainy = check_ball(6, LEAFLESS_RULE_CERTIFIED);
-        runs_out(grainy_ball, 0, 8192, 256);
+        runs_out(grainy_ball, 0, 4096, 192);
         leafless_octree_free(grainy);
     }
 
