@@ -216,6 +216,7 @@ fn channels() {
     run("channel", C99, Link::Static, &[]);
     run("attribute", CPP17, Link::Static, &[]);
     run("summary", C99, Link::Static, &[]);
+    run("mesh_attribute", C99, Link::Static, &[]);
 }
 
 #[test]

@@ -207,6 +207,57 @@ static void null_pointers(void) {
     NULL_POINTER(leafless_mesh_copy, triangles, leafless_mesh_copy(mesh, NULL, 0, NULL, 12));
     MAY_BE_NULL(leafless_mesh_copy, vertices, leafless_mesh_copy(mesh, NULL, 0, &indices[0][0], 12));
     MAY_BE_NULL(leafless_mesh_copy, triangles, leafless_mesh_copy(mesh, &wanted[0][0], 8, NULL, 0));
+    {
+        static const double four[48] = {0};
+        const char **name = (const char **)out;
+        size_t *name_length = (size_t *)out + 1;
+        uint32_t *components = (uint32_t *)((size_t *)out + 2);
+        bool *per_corner = (bool *)((size_t *)out + 3);
+        uint64_t *total = (uint64_t *)out + 5;
+        void *untouched = UNTOUCHED;
+        leafless_attribute **made = (leafless_attribute **)&untouched;
+        NULL_POINTER(leafless_mesh_peek_attribute_at, mesh,
+                     leafless_mesh_peek_attribute_at(NULL, 0, total, NULL, NULL, NULL, NULL));
+        NULL_POINTER(leafless_mesh_peek_attribute_at, count,
+                     leafless_mesh_peek_attribute_at(mesh, 0, NULL, NULL, NULL, NULL, NULL));
+        NULL_POINTER(leafless_mesh_peek_attribute_at, name,
+                     leafless_mesh_peek_attribute_at(mesh, 0, total, NULL, name_length, components, per_corner));
+        NULL_POINTER(leafless_mesh_peek_attribute_at, name_length,
+                     leafless_mesh_peek_attribute_at(mesh, 0, total, name, NULL, components, per_corner));
+        NULL_POINTER(leafless_mesh_peek_attribute_at, components,
+                     leafless_mesh_peek_attribute_at(mesh, 0, total, name, name_length, NULL, per_corner));
+        NULL_POINTER(leafless_mesh_peek_attribute_at, per_corner,
+                     leafless_mesh_peek_attribute_at(mesh, 0, total, name, name_length, components, NULL));
+        NULL_POINTER(leafless_mesh_peek_attribute_name_at, mesh,
+                     leafless_mesh_peek_attribute_name_at(NULL, 0, 0, total, NULL, NULL));
+        NULL_POINTER(leafless_mesh_peek_attribute_name_at, count,
+                     leafless_mesh_peek_attribute_name_at(mesh, 0, 0, NULL, NULL, NULL));
+        NULL_POINTER(leafless_mesh_peek_attribute_name_at, name,
+                     leafless_mesh_peek_attribute_name_at(mesh, 0, 0, total, NULL, name_length));
+        NULL_POINTER(leafless_mesh_peek_attribute_name_at, name_length,
+                     leafless_mesh_peek_attribute_name_at(mesh, 0, 0, total, name, NULL));
+        NULL_POINTER(leafless_mesh_attribute_values, values, leafless_mesh_attribute_values(mesh, 0, NULL, 12, total));
+        NULL_POINTER(leafless_mesh_attribute_values, count, leafless_mesh_attribute_values(mesh, 0, NULL, 0, NULL));
+        MISALIGNED(leafless_mesh_attribute_values, values,
+                   leafless_mesh_attribute_values(mesh, 0, (double *)WRONG(out), 12, total));
+        NULL_POINTER(leafless_mesh_attribute_values, mesh, leafless_mesh_attribute_values(NULL, 0, NULL, 0, total));
+        NULL_POINTER(leafless_mesh_bodies, mesh, leafless_mesh_bodies(NULL, NULL, 0, total));
+        NULL_POINTER(leafless_mesh_bodies, count, leafless_mesh_bodies(mesh, NULL, 0, NULL));
+        NULL_POINTER(leafless_mesh_bodies, bodies, leafless_mesh_bodies(mesh, NULL, 12, total));
+        MISALIGNED(leafless_mesh_bodies, bodies, leafless_mesh_bodies(mesh, (uint32_t *)WRONG(out), 12, total));
+        MAY_BE_NULL(leafless_mesh_bodies, bodies, leafless_mesh_bodies(mesh, NULL, 0, &number));
+        NULL_POINTER(leafless_mesh_as_attribute, mesh, leafless_mesh_as_attribute(NULL, "a", 1, made));
+        NULL_POINTER(leafless_mesh_as_attribute, name, leafless_mesh_as_attribute(mesh, NULL, 1, made));
+        NULL_POINTER(leafless_mesh_as_attribute, attribute, leafless_mesh_as_attribute(mesh, "a", 1, NULL));
+        NULL_POINTER(leafless_mesh_values_as_attribute, mesh,
+                     leafless_mesh_values_as_attribute(NULL, four, 12, 1, false, made));
+        NULL_POINTER(leafless_mesh_values_as_attribute, values,
+                     leafless_mesh_values_as_attribute(mesh, NULL, 12, 1, false, made));
+        NULL_POINTER(leafless_mesh_values_as_attribute, attribute,
+                     leafless_mesh_values_as_attribute(mesh, four, 12, 1, false, NULL));
+        MISALIGNED(leafless_mesh_values_as_attribute, values,
+                   leafless_mesh_values_as_attribute(mesh, (const double *)WRONG(four), 11, 1, false, made));
+    }
     NULL_POINTER(leafless_mesh_bounds, mesh, leafless_mesh_bounds(NULL, (double *)out, (double *)out + 3));
     NULL_POINTER(leafless_mesh_bounds, min_model, leafless_mesh_bounds(mesh, NULL, (double *)out));
     NULL_POINTER(leafless_mesh_bounds, max_model, leafless_mesh_bounds(mesh, (double *)out, NULL));

@@ -35,6 +35,7 @@ const SECTIONS: &[&str] = &[
     "volume_file",
     "attribute",
     "attribute_host",
+    "mesh_attribute",
     "channel",
     "channel_fill",
     "octree_channels",

@@ -22,6 +22,7 @@
 //! | `volume_arrays` | volumes from the host's arrays |
 //! | `volume_file` | volume files |
 //! | `attribute` | attributes: one value, those of a channel, moved ones |
+//! | `mesh_attribute` | what triangles of meshes bear, and attributes of the nearest point of a surface |
 //! | `attribute_host` | the host's own attributes |
 //! | `channel` | channels: describing, metadata |
 //! | `channel_fill` | channels filled from attributes, asked at points, changed in regions |
@@ -69,6 +70,7 @@ mod lazy;
 mod measure;
 mod mesh;
 mod mesh_arrays;
+mod mesh_attribute;
 mod mesh_file;
 mod mesh_moments;
 mod mesh_write;
@@ -114,6 +116,7 @@ pub use lazy::*;
 pub use measure::*;
 pub use mesh::*;
 pub use mesh_arrays::*;
+pub use mesh_attribute::*;
 pub use mesh_file::*;
 pub use mesh_moments::*;
 pub use mesh_write::*;

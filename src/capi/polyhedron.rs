@@ -7,7 +7,7 @@ use super::status::leafless_status;
 use crate::error::{MeshError, PolyhedronError};
 use crate::lattice::valid;
 use crate::memory;
-use crate::mesh::{Polyhedron, PolyhedronArrays};
+use crate::mesh::{MeshAttribute, Polyhedron, PolyhedronArrays, PolyhedronPart};
 use alloc::borrow::Cow;
 use core::ffi::c_void;
 
@@ -212,7 +212,9 @@ pub unsafe extern "C" fn leafless_polyhedron_arrays_init(
 ///
 /// - Buffers: `arrays`, one struct; what its pointers lead to must not change during the call.
 ///   `deviation_model`, one number, or NULL if it is not wanted; `mesh`, one pointer.
-/// - Result: `*mesh`; `*deviation_model`, how far a corner lies beside the plane of its face at most.
+/// - Result: `*mesh`, with the attributes `face`, `shell` and `solid` (leafless_mesh_peek_attribute_at): the numbers of
+///   the parts that each triangle belongs to; `*deviation_model`, how far a corner lies beside the plane of its face at
+///   most.
 /// - Errors: LEAFLESS_E_MESH, with the numbers of loop, face, shell or vertices in the message, if the arrays
 ///   are not such solids, if a coordinate is infinite, not a number, or beyond ±2^256, if there is no solid,
 ///   or if there are more than 2^32 - 1 of anything; LEAFLESS_E_ARGUMENT if a type, a stride, the scale or
@@ -236,7 +238,15 @@ pub unsafe extern "C" fn leafless_mesh_from_polyhedron(
         let deviation: Option<Out<f64>> =
             if deviation_model.is_null() { None } else { Some(out(deviation_model, "deviation_model")?) };
         let mesh = out(mesh, "mesh")?;
-        let polyhedron = arrays.polyhedron()?;
+        let mut polyhedron = arrays.polyhedron()?;
+        for (name, part) in [
+            ("face", PolyhedronPart::Face),
+            ("shell", PolyhedronPart::Shell),
+            ("solid", PolyhedronPart::Solid),
+        ] {
+            let parts = polyhedron.parts(part)?;
+            polyhedron.add_attribute(MeshAttribute::labels(name, parts)?)?;
+        }
         if let Some(deviation) = deviation {
             deviation.write(polyhedron.deviation())?;
         }
