@@ -355,14 +355,14 @@ fn threads_do_not_change_certified_results() {
 fn a_flag_set_meanwhile_stops_a_boolean() {
     let (a, b) = sampled_pair();
     for threads in [1, 2] {
-        let stopped = (0..50).any(|attempt| {
+        let stopped = (0..500).any(|attempt| {
             let (started, flag) = (AtomicBool::new(false), AtomicBool::new(false));
             std::thread::scope(|scope| {
                 scope.spawn(|| {
                     while !started.load(Ordering::Acquire) {
                         std::hint::spin_loop();
                     }
-                    std::thread::sleep(std::time::Duration::from_micros(20 * attempt));
+                    std::thread::sleep(std::time::Duration::from_micros(20 * (attempt % 50)));
                     flag.store(true, Ordering::Relaxed);
                 });
                 let control = Control { cancel: Some(&flag), ..Control::threads(threads) };
