@@ -346,7 +346,12 @@ fn filling_can_be_cancelled_and_limited() {
     assert!(matches!(fill_channel(&grain, &options, &cancelled), Err(Error::Cancelled)));
     let limited = Control { max_bytes: Some(10_000), ..Control::threads(1) };
     assert!(matches!(fill_channel(&grain, &options, &limited), Err(Error::Limit { what: "bytes", .. })));
-    let whole = fill_channel(&grain, &options, &Control::threads(2)).unwrap();
+    let told = std::sync::Mutex::new(Vec::new());
+    let note = |done: f64| told.lock().unwrap().push(done);
+    let whole =
+        fill_channel(&grain, &options, &Control { progress: Some(&note), ..Control::threads(2) }).unwrap();
+    let told = told.into_inner().unwrap();
+    assert!(told.len() > 10 && told.iter().all(|&done| (0.0..=1.0).contains(&done)) && told.contains(&1.0));
     assert_eq!(whole, fill_channel(&grain, &options, &Control::threads(1)).unwrap());
 }
 

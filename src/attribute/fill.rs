@@ -9,6 +9,7 @@ use crate::octree::channel::writer::{Cells, ChannelWriter, Filled};
 use crate::octree::view::{element_levels, starts_half_way};
 use crate::octree::{Channel, Metadata, ValueType};
 use alloc::vec::Vec;
+use core::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
 /// The channel of all values that `source` has on the lattice of `frame`. The same bits for any number of
 /// threads.
@@ -21,9 +22,10 @@ pub(super) fn fill<S: Source>(
     let job = Job::new(control);
     job.check()?;
     let levels = element_levels(frame.depth());
+    let advanced = AtomicUsize::new(0);
     let (root, writer) = control.run(levels > 2, |parallel| {
         let mut writer = ChannelWriter::new(&job, frame.depth(), value_type)?;
-        let filler = Filler { source, frame: *frame, levels, parallel };
+        let filler = Filler { source, frame: *frame, levels, parallel, advanced: &advanced };
         let root = match source.root()? {
             Known::Free => Filled::Free,
             Known::Settled(value) => Filled::Settled(value),
@@ -32,7 +34,7 @@ pub(super) fn fill<S: Source>(
         Ok::<_, Error>((root, writer))
     })?;
     let channel = writer.finish(*frame, root, Metadata::new())?;
-    job.advance(WHOLE);
+    job.advance(WHOLE.saturating_sub(advanced.into_inner()));
     Ok(channel)
 }
 
@@ -42,7 +44,12 @@ struct Filler<'s, S> {
     levels: usize,
     #[cfg_attr(not(feature = "parallel"), allow(dead_code))]
     parallel: bool,
+    /// Parts of the whole that were reported as done.
+    advanced: &'s AtomicUsize,
 }
+
+/// What a cell of the root element counts for in the progress.
+const PART: usize = WHOLE / 64;
 
 /// Open cells of an element, each with its place in it.
 type Open<P> = Vec<(usize, Cell, P)>;
@@ -87,6 +94,14 @@ impl<S: Source> Filler<'_, S> {
         writer.put(e, &cells)
     }
 
+    /// Reports a cell of an element of level `e` as done.
+    fn advance(&self, e: usize, writer: &ChannelWriter<'_>) {
+        if e == 0 {
+            self.advanced.fetch_add(PART, Relaxed);
+            writer.job().advance(PART);
+        }
+    }
+
     fn settle(&self, open: Open<S::Part>, cells: &mut Cells) -> Result<(), Error> {
         let mut values = [None; 64];
         let places: Vec<usize> = memory::collected(open.iter().map(|&(place, ..)| place))?;
@@ -113,6 +128,7 @@ impl<S: Source> Filler<'_, S> {
             let done = open.into_par_iter().map(|(place, cell, part)| {
                 let mut own = from.sibling()?;
                 let filled = self.cell(e + 1, cell, &part, &mut own)?;
+                self.advance(e, &own);
                 Ok((place, filled, own))
             });
             for (place, filled, own) in done.collect::<Result<Vec<_>, Error>>()? {
@@ -123,6 +139,7 @@ impl<S: Source> Filler<'_, S> {
         }
         for (place, cell, part) in open {
             cells[place] = self.cell(e + 1, cell, &part, writer)?;
+            self.advance(e, writer);
         }
         Ok(())
     }
