@@ -112,7 +112,7 @@ static void check_fact(const char *line, const leafless_octree *octree, const le
 static void read_valid(const char *path, char *text) {
     leafless_octree *octrees[5];
     leafless_probe probe;
-    leafless_section sections[32];
+    leafless_section sections[64];
     size_t length, i;
     uint8_t *bytes = check_read(path, &length);
     char *line;

@@ -1708,7 +1708,7 @@ static void voxels(void) {
     uint64_t *count = (uint64_t *)out, number, other;
     leafless_voxel_options options;
 
-    OK(leafless_mesh_from_arrays(&arrays, NULL, &cube));
+    OK(leafless_mesh_new(&arrays, &cube));
     NULL_POINTER(leafless_voxel_options_init, voxel_options, leafless_voxel_options_init(NULL, sizeof options));
     MISALIGNED(leafless_voxel_options_init, voxel_options,
                leafless_voxel_options_init((leafless_voxel_options *)WRONG(out), sizeof options));

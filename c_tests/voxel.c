@@ -171,7 +171,7 @@ static void triangles(void) {
     const leafless_mesh_arrays arrays = check_arrays(CHECK_CUBE, 8, CHECK_CUBE_TRIANGLES, 12);
     leafless_mesh *mesh = NULL;
     uint64_t i;
-    OK(leafless_mesh_from_arrays(&arrays, NULL, &mesh));
+    OK(leafless_mesh_new(&arrays, &mesh));
     for (i = 0; i < 64; i++) {
         codes[i] = i;
         levels[i] = 2;

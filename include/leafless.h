@@ -4035,7 +4035,9 @@ leafless_status leafless_polyhedron_arrays_init(leafless_polyhedron_arrays *arra
  *
  * - Buffers: `arrays`, one struct; what its pointers lead to must not change during the call.
  *   `deviation_model`, one number, or NULL if it is not wanted; `mesh`, one pointer.
- * - Result: `*mesh`; `*deviation_model`, how far a corner lies beside the plane of its face at most.
+ * - Result: `*mesh`, with the attributes `face`, `shell` and `solid` (leafless_mesh_peek_attribute_at): the numbers of
+ *   the parts that each triangle belongs to; `*deviation_model`, how far a corner lies beside the plane of its face at
+ *   most.
  * - Errors: LEAFLESS_E_MESH, with the numbers of loop, face, shell or vertices in the message, if the arrays
  *   are not such solids, if a coordinate is infinite, not a number, or beyond ±2^256, if there is no solid,
  *   or if there are more than 2^32 - 1 of anything; LEAFLESS_E_ARGUMENT if a type, a stride, the scale or
@@ -5178,6 +5180,126 @@ leafless_status leafless_attribute_callbacks_init(leafless_attribute_callbacks *
  */
 leafless_status leafless_attribute_new_callbacks(const leafless_attribute_callbacks *callbacks,
                                                  leafless_attribute **attribute);
+
+/**
+ * What the triangles of a mesh bear, by its place among all: an array of values with a name. Files in PLY and 3MF
+ * give `colour` (red, green, blue and opacity from 0 to 255), 3MF `material` and `object` (numbers, which may have
+ * names); a mesh from a polyhedron has `face`, `shell` and `solid`, the numbers of the parts that a triangle belongs
+ * to.
+ *
+ * - Buffers: `count`, one number; `name`, `name_length`, `components` and `per_corner`, one each, all NULL to ask for
+ *   the count only.
+ * - Result: `*count`, the number of all attributes; the name in UTF-8, not NUL-terminated, with its length in bytes;
+ *   `*components`, how many numbers a value has, 1 to 4; `*per_corner`, whether each corner of a triangle has a value,
+ *   or each triangle one.
+ * - Errors: LEAFLESS_E_ARGUMENT if there is no attribute `index`, unless only the count is asked for.
+ * - Ownership: the name belongs to the mesh and lives as long as the reference `mesh`.
+ * - Threads: any.
+ * - Untrusted input: any mesh.
+ * - Since: 0.1
+ */
+leafless_status leafless_mesh_peek_attribute_at(const leafless_mesh *mesh,
+                                                uint64_t index,
+                                                uint64_t *count,
+                                                const char **name,
+                                                size_t *name_length,
+                                                uint32_t *components,
+                                                bool *per_corner);
+
+/**
+ * What the value `value` of an attribute of a mesh is called: the name of a material or of an object.
+ *
+ * - Buffers: `count`, one number; `name` and `name_length`, one each, both NULL to ask for the count only.
+ * - Result: `*count`, how many values from 0 on have names; the name in UTF-8, not NUL-terminated, with its length in
+ *   bytes.
+ * - Errors: LEAFLESS_E_ARGUMENT if there is no attribute `index`, or the value has no name, unless only the count is
+ *   asked for.
+ * - Ownership: the name belongs to the mesh and lives as long as the reference `mesh`.
+ * - Threads: any.
+ * - Untrusted input: any mesh.
+ * - Since: 0.1
+ */
+leafless_status leafless_mesh_peek_attribute_name_at(const leafless_mesh *mesh,
+                                                     uint64_t index,
+                                                     uint64_t value,
+                                                     uint64_t *count,
+                                                     const char **name,
+                                                     size_t *name_length);
+
+/**
+ * The values of an attribute of a mesh at the corners of all triangles.
+ *
+ * - Buffers: `values`, room for `capacity` numbers, or NULL to ask for the count only; `count`, one number.
+ * - Result: `*count`, 3 · components · triangles; in `values` the numbers at the three corners of the first triangle,
+ *   then of the second: NaN where there is no value.
+ * - Errors: LEAFLESS_E_ARGUMENT if there is no attribute `index`; LEAFLESS_E_BUFFER if the capacity is too small.
+ * - Ownership: nothing changes hands.
+ * - Threads: any.
+ * - Untrusted input: any mesh.
+ * - Since: 0.1
+ */
+leafless_status leafless_mesh_attribute_values(const leafless_mesh *mesh,
+                                               uint64_t index,
+                                               double *values,
+                                               uint64_t capacity,
+                                               uint64_t *count);
+
+/**
+ * The body that each triangle of a mesh belongs to: a set of triangles that hang together over edges. Bodies are
+ * numbered from 0 by their first triangles. Shells that touch only in single vertices, or lie within each other, are
+ * different bodies.
+ *
+ * - Buffers: `bodies`, room for `capacity` numbers, or NULL to ask for the count only; `count`, one number.
+ * - Result: `*count`, the number of triangles; in `bodies` one number for each.
+ * - Errors: LEAFLESS_E_BUFFER if the capacity is too small; LEAFLESS_E_NO_MEMORY.
+ * - Ownership: nothing changes hands.
+ * - Threads: any.
+ * - Untrusted input: any mesh.
+ * - Since: 0.1
+ */
+leafless_status leafless_mesh_bodies(const leafless_mesh *mesh,
+                                     uint32_t *bodies,
+                                     uint64_t capacity,
+                                     uint64_t *count);
+
+/**
+ * The attribute that has at each point what a mesh bears at the point of its surface that is nearest: the value of
+ * the nearest triangle, or, with values for corners, what lies between them. Of triangles that are equally near the
+ * first one counts. Its ranges are proven.
+ *
+ * - Buffers: `name`, `name_length` bytes of UTF-8: that of an attribute of the mesh; `attribute`, one pointer.
+ * - Result: `*attribute`.
+ * - Errors: LEAFLESS_E_UTF8; LEAFLESS_E_ARGUMENT if the mesh has no such attribute; LEAFLESS_E_NO_MEMORY.
+ * - Ownership: the mesh is shared and may be freed; give `*attribute` back with leafless_attribute_free.
+ * - Threads: any.
+ * - Untrusted input: any mesh, any text.
+ * - Since: 0.1
+ */
+leafless_status leafless_mesh_as_attribute(const leafless_mesh *mesh,
+                                           const char *name,
+                                           size_t name_length,
+                                           leafless_attribute **attribute);
+
+/**
+ * As leafless_mesh_as_attribute, of the host's own values: of bodies, faces, materials, or colours of corners.
+ *
+ * - Buffers: `values`, `count` numbers: `components` for each triangle, or for each of its three corners, one behind
+ *   the other; `attribute`, one pointer.
+ * - Result: `*attribute`. A value with a number that is not finite counts as none.
+ * - Errors: LEAFLESS_E_ARGUMENT unless `components` is 1 to 4, and there are values for all triangles;
+ *   LEAFLESS_E_NO_MEMORY.
+ * - Ownership: the values are copied, the mesh is shared and may be freed; give `*attribute` back with
+ *   leafless_attribute_free.
+ * - Threads: any.
+ * - Untrusted input: any mesh, any numbers.
+ * - Since: 0.1
+ */
+leafless_status leafless_mesh_values_as_attribute(const leafless_mesh *mesh,
+                                                  const double *values,
+                                                  uint64_t count,
+                                                  uint32_t components,
+                                                  bool per_corner,
+                                                  leafless_attribute **attribute);
 
 /**
  * One more reference to a channel.
