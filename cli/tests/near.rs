@@ -42,9 +42,9 @@ fn distances_line_by_line() {
         }
     };
     wanted("", [1.0, 0.0, 5f64.sqrt(), 2.0]);
-    wanted("--to complement", [0.0, 0.75, 0.0, 0.0]);
+    wanted("--target complement", [0.0, 0.75, 0.0, 0.0]);
     wanted("--signed", [1.0, -0.75, 5f64.sqrt(), 2.0]);
-    wanted("--to boundary --depth 5", [1.0, -0.75, 5f64.sqrt(), 2.0]);
+    wanted("--target boundary --depth 5", [1.0, -0.75, 5f64.sqrt(), 2.0]);
     assert_eq!(place.run("distance cube.lfl").good().text(), "");
     let run = place.run_with("distance cube.lfl", b"1 1 1\n1 2\n");
     assert_eq!((run.code, run.text().lines().count()), (Some(1), 1), "{run:?}");
