@@ -24,6 +24,9 @@ pub struct Arguments {
     /// Print what the channel says outside of the solid, too
     #[arg(long)]
     everywhere: bool,
+    /// Print a line of JSON for each point: the numbers in an array, or `null`
+    #[arg(long)]
+    json: bool,
 }
 
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
@@ -35,13 +38,14 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let channel = channel::find(&octree, &input, arguments.name.as_deref())?;
     let view = channel.view().map_err(|error| Failure::of(&input, error))?;
     let solid = if arguments.everywhere { None } else { Some(octree.view()) };
-    serve(&mut Batch { channel: view, solid, text: String::new() })
+    serve(&mut Batch { channel: view, solid, json: arguments.json, text: String::new() })
 }
 
 /// Points that are answered together.
 struct Batch<'c> {
     channel: &'c ChannelRef<'c>,
     solid: Option<&'c OctreeRef<'c>>,
+    json: bool,
     text: String,
 }
 
@@ -50,11 +54,12 @@ impl Questions<3> for Batch<'_> {
         let is_outside = self.solid.is_some_and(|solid| solid.contains(point) == Membership::Outside);
         let value = self.channel.value_at(point).filter(|_| !is_outside);
         match value {
-            None => self.text.push_str("none"),
+            None => self.text.push_str(if self.json { "null" } else { "none" }),
             Some(value) => {
                 let numbers = &value[..self.channel.value_type().components()];
                 let numbers: Vec<String> = numbers.iter().map(|&x| number(x)).collect();
-                self.text.push_str(&numbers.join(" "));
+                let line = if self.json { format!("[{}]", numbers.join(",")) } else { numbers.join(" ") };
+                self.text.push_str(&line);
             }
         }
         self.text.push('\n');

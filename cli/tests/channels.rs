@@ -147,6 +147,7 @@ fn set_operations_carry_channels() {
     }
     assert!(run(path, &["difference", "left.lfl", "right.lfl", "-o", "both.lfl"]).status.success());
     assert_eq!(sample(path, &["both.lfl"], points), ["1 10", "none", "none"]);
+    assert_eq!(sample(path, &["both.lfl", "--json"], points), ["[1,10]", "null", "null"]);
     refused(
         path,
         &["union", "left.lfl", "right.lfl", "-o", "x.lfl", "--carry", "n=first"],
