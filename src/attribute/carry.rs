@@ -153,13 +153,6 @@ struct Part {
     operands: Vec<(Verdict<StoredPart>, Spot)>,
 }
 
-fn children(tree: &OctreeRef<'_>, verdict: &Verdict<StoredPart>) -> [Verdict<StoredPart>; 8] {
-    match verdict {
-        Verdict::Partial(part) => tree.child_verdicts(part),
-        settled => [*settled; 8],
-    }
-}
-
 impl Carried<'_> {
     fn known(&self, part: Part) -> Known<Part> {
         if matches!(part.result, Verdict::Empty) {
@@ -222,13 +215,13 @@ impl Source for Carried<'_> {
     }
 
     fn split(&self, _: Cell, part: &Part) -> Result<[Known<Part>; 8], Error> {
-        let result = children(self.result, &part.result);
+        let result = self.result.verdicts_below(&part.result);
         let mut parts: [Part; 8] = result.map(|result| Part { result, operands: Vec::new() });
         for part_of_child in &mut parts {
             part_of_child.operands.try_reserve_exact(self.operands.len())?;
         }
         for (operand, (verdict, spot)) in self.operands.iter().zip(&part.operands) {
-            let below = children(operand.solid, verdict).into_iter().zip(operand.channel.children(spot));
+            let below = operand.solid.verdicts_below(verdict).into_iter().zip(operand.channel.children(spot));
             for (part, child) in parts.iter_mut().zip(below) {
                 part.operands.push(child);
             }

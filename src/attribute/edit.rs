@@ -61,10 +61,7 @@ impl Source for Edited<'_> {
     }
 
     fn split(&self, _: Cell, (verdict, spot): &Part) -> Result<[Known<Part>; 8], Error> {
-        let verdicts = match verdict {
-            Verdict::Partial(part) => self.region.child_verdicts(part),
-            settled => [*settled; 8],
-        };
+        let verdicts = self.region.verdicts_below(verdict);
         let mut spots = self.channel.children(spot).into_iter();
         Ok(verdicts.map(|verdict| self.known((verdict, spots.next().unwrap_or(Spot::Settled(None))))))
     }

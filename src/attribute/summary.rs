@@ -108,10 +108,7 @@ impl Sums<'_> {
             return Ok(());
         }
         self.job.check()?;
-        let verdicts = match (self.solid, verdict) {
-            (Some(solid), Verdict::Partial(part)) => solid.child_verdicts(part),
-            _ => [*verdict; 8],
-        };
+        let verdicts = self.solid.map_or([*verdict; 8], |solid| solid.verdicts_below(verdict));
         let spots = self.channel.children(spot);
         for ((verdict, spot), k) in verdicts.iter().zip(&spots).zip(0..) {
             self.cell(cell.child(k), verdict, spot)?;

@@ -55,6 +55,15 @@ impl OctreeRef<'_> {
         }
     }
 
+    /// The eight children of any cell: those of one that is not cut are like it. (As for
+    /// [`child_verdicts`](Self::child_verdicts).)
+    pub(crate) fn verdicts_below(&self, verdict: &Verdict<StoredPart>) -> [Verdict<StoredPart>; 8] {
+        match verdict {
+            Verdict::Partial(part) => self.child_verdicts(part),
+            settled => [*settled; 8],
+        }
+    }
+
     /// The eight children of a cut cell. (The links of a tree that is walked must have been checked.)
     pub(crate) fn child_verdicts(&self, part: &StoredPart) -> [Verdict<StoredPart>; 8] {
         match *part {
