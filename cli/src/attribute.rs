@@ -232,8 +232,10 @@ fn made(arguments: &Arguments, input: &Input, octree: &Octree) -> Result<Channel
 
 fn refused(error: &str, input: &Input, name: &str, kind: ScalarType) -> Failure {
     if error.contains("the channel's type") {
-        let problem =
-            format!("a value of {name} is beyond the range of {}: choose another --store", kind.name());
+        let problem = format!(
+            "a value of {name} is infinite, or beyond the range of {}: choose another function or --store",
+            kind.name()
+        );
         return Failure::of(input, problem);
     }
     Failure::of(input, error)
