@@ -710,6 +710,80 @@ int main(int argc, char **argv) {
         leafless_attribute_free(many);
     }
 
+    {
+        /* Tri-dexel models: two lattices, other directions, what no interval can be, and limits. */
+        const leafless_frame apart = {{0, 0, 0}, 1, 4};
+        leafless_tridexel *model = NULL, *other = NULL, *column = NULL, *result = (leafless_tridexel *)UNTOUCHED;
+        leafless_tridexel_editor *editor = NULL;
+        leafless_tridexel_format along_y;
+        const uint32_t ray[2] = {8, 8};
+        uint64_t count = 77, offset_count = 77;
+        OK(leafless_tridexel_format_init(&along_y, sizeof along_y));
+        along_y.directions = LEAFLESS_AXES_Y;
+        OK(leafless_tridexel_make(solid, &frame, LEAFLESS_RULE_SAMPLED, NULL, NULL, &model));
+        OK(leafless_tridexel_make(solid, &apart, LEAFLESS_RULE_SAMPLED, NULL, NULL, &other));
+        OK(leafless_tridexel_make(solid, &frame, LEAFLESS_RULE_SAMPLED, &along_y, NULL, &column));
+        OK(leafless_tridexel_editor_new(model, &editor));
+        FAILS(LEAFLESS_E_ARGUMENT, leafless_tridexel_make(solid, &frame, LEAFLESS_RULE_CERTIFIED, NULL, NULL, &result));
+        failed(LEAFLESS_E_ARGUMENT, "LEAFLESS_E_ARGUMENT", "take sampled, inner or outer");
+        FAILS(LEAFLESS_E_FRAME, leafless_tridexel_union(model, other, NULL, &result));
+        failed(LEAFLESS_E_FRAME, "LEAFLESS_E_FRAME", "different frames: origin [-1");
+        failed(LEAFLESS_E_FRAME, "LEAFLESS_E_FRAME", "origin [0");
+        FAILS(LEAFLESS_E_FRAME, leafless_tridexel_editor_subtract(editor, other, NULL));
+        failed(LEAFLESS_E_FRAME, "LEAFLESS_E_FRAME", "different frames: origin [-1");
+        FAILS(LEAFLESS_E_ARGUMENT, leafless_tridexel_xor(model, column, NULL, &result));
+        failed(LEAFLESS_E_ARGUMENT, "LEAFLESS_E_ARGUMENT", "must have rays in the same directions");
+        FAILS(LEAFLESS_E_ARGUMENT, leafless_tridexel_ray(column, 2, ray, NULL, 0, &count));
+        failed(LEAFLESS_E_ARGUMENT, "LEAFLESS_E_ARGUMENT", "axis: is none that the model has rays along");
+        FAILS(LEAFLESS_E_BUFFER, leafless_tridexel_read(column, 1, NULL, NULL, &count, 1, &offset_count, NULL, NULL, NULL, NULL,
+                                                        0, &count));
+        failed(LEAFLESS_E_BUFFER, "LEAFLESS_E_BUFFER", "offsets: has a capacity of 1, and ");
+        {
+            /* Intervals of a file that nobody has verified. */
+            leafless_tridexel *viewed = NULL;
+            leafless_probe probe;
+            leafless_section sections[32];
+            uint64_t file_length = 0;
+            uint8_t *file;
+            OK(leafless_tridexel_to_bytes(model, NULL, 0, &file_length));
+            file = (uint8_t *)malloc((size_t)file_length);
+            CHECK(file != NULL);
+            OK(leafless_tridexel_to_bytes(model, file, file_length, &file_length));
+            FAILS(LEAFLESS_E_ARGUMENT, leafless_octree_from_bytes(file, file_length, &octree));
+            failed(LEAFLESS_E_ARGUMENT, "LEAFLESS_E_ARGUMENT", "the file holds a tri-dexel model, where an octree is wanted");
+            FAILS(LEAFLESS_E_ARGUMENT, leafless_tridexel_from_bytes(bytes, length, &result));
+            failed(LEAFLESS_E_ARGUMENT, "LEAFLESS_E_ARGUMENT", "the file holds an octree, where a tri-dexel model is wanted");
+            OK(leafless_bytes_probe(file, file_length, &probe, sections, COUNT(sections)));
+            for (i = 0; i < probe.sections; i++) {
+                if (strstr(sections[i].name, "spans") != NULL) {
+                    memset(file + sections[i].offset, 0xff, (size_t)sections[i].length);
+                }
+            }
+            OK(leafless_tridexel_view_bytes(file, file_length, &viewed));
+            FAILS(LEAFLESS_E_DAMAGED, leafless_tridexel_check(viewed));
+            failed(LEAFLESS_E_DAMAGED, "LEAFLESS_E_DAMAGED", "the tri-dexel model is damaged: its rays along axis 0");
+            FAILS(LEAFLESS_E_DAMAGED, leafless_tridexel_union(model, viewed, NULL, &result));
+            FAILS(LEAFLESS_E_DAMAGED, leafless_tridexel_editor_subtract(editor, viewed, NULL));
+            FAILS(LEAFLESS_E_DAMAGED, leafless_tridexel_save(viewed, "damaged.lfl", 11));
+            leafless_tridexel_free(viewed);
+            free(file);
+        }
+        OK(leafless_options_init(&options, sizeof options));
+        options.max_bytes = 100;
+        FAILS(LEAFLESS_E_LIMIT, leafless_tridexel_make(solid, &frame, LEAFLESS_RULE_SAMPLED, NULL, &options, &result));
+        failed(LEAFLESS_E_LIMIT, "LEAFLESS_E_LIMIT", "100 bytes");
+        options.max_bytes = 0;
+        options.control = control;
+        FAILS(LEAFLESS_E_CANCELLED, leafless_tridexel_editor_subtract_solid(editor, solid, &options));
+        failed(LEAFLESS_E_CANCELLED, "LEAFLESS_E_CANCELLED", "cancelled");
+        options.control = NULL;
+        CHECK(result == (leafless_tridexel *)UNTOUCHED && count == 77 && offset_count == 77);
+        leafless_tridexel_editor_free(editor);
+        leafless_tridexel_free(column);
+        leafless_tridexel_free(other);
+        leafless_tridexel_free(model);
+    }
+
     FAILS(LEAFLESS_E_PANIC, leafless_test_panic());
     failed(LEAFLESS_E_PANIC, "LEAFLESS_E_PANIC", "as the test wanted");
 

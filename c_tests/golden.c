@@ -154,8 +154,61 @@ static void one_of(leafless_status status) {
     CHECK(status == LEAFLESS_E_FORMAT || status == LEAFLESS_E_VERSION || status == LEAFLESS_E_DAMAGED);
 }
 
+/* Vectors of tri-dexel models say so in their names. */
+static bool is_tridexel(const char *path) {
+    const char *name = strrchr(path, '/');
+    return strstr(name != NULL ? name : path, "dexel") != NULL;
+}
+
+static void read_valid_tridexel(const char *path, const char *text) {
+    leafless_tridexel *models[5];
+    leafless_octree *octree = NULL;
+    leafless_probe probe;
+    size_t length, i;
+    uint64_t again_length = 0;
+    uint8_t *again, *bytes = check_read(path, &length);
+    uint32_t axis;
+    OK(leafless_file_probe(path, strlen(path), &probe, NULL, 0));
+    OK(leafless_bytes_verify(bytes, length));
+    OK(leafless_tridexel_open(path, strlen(path), &models[0]));
+    OK(leafless_tridexel_map(path, strlen(path), &models[1]));
+    OK(leafless_tridexel_map_verified(path, strlen(path), &models[2]));
+    OK(leafless_tridexel_from_bytes(bytes, length, &models[3]));
+    OK(leafless_tridexel_view_bytes(bytes, length, &models[4]));
+    CHECK(probe.file_length == length && probe.tridexel.directions != 0);
+    for (i = 0; i < COUNT(models); i++) {
+        bool equal = false;
+        OK(leafless_tridexel_check(models[i]));
+        OK(leafless_tridexel_equal(models[0], models[i], &equal));
+        CHECK(equal);
+        for (axis = 0; axis < 3; axis++) {
+            leafless_dexel_statistics statistics;
+            if ((probe.tridexel.directions >> axis & 1) != 0) {
+                OK(leafless_tridexel_statistics(models[i], axis, &statistics));
+                CHECK(statistics.intervals == probe.tridexel.intervals[axis]);
+            }
+        }
+    }
+    CHECK(leafless_octree_open(path, strlen(path), &octree) == LEAFLESS_E_ARGUMENT && octree == NULL);
+    if (strstr(text, "canonical: yes") != NULL) {
+        OK(leafless_tridexel_to_bytes(models[1], NULL, 0, &again_length));
+        CHECK(again_length == length);
+        again = (uint8_t *)malloc((size_t)again_length);
+        CHECK(again != NULL);
+        OK(leafless_tridexel_to_bytes(models[1], again, again_length, &again_length));
+        CHECK(memcmp(again, bytes, length) == 0);
+        free(again);
+    }
+    for (i = 0; i < COUNT(models); i++) {
+        leafless_tridexel_free(models[i]);
+    }
+    free(bytes);
+    valid++;
+}
+
 static void read_invalid(const char *path, char *text) {
     leafless_octree *octree = NULL;
+    leafless_tridexel *model = NULL;
     leafless_probe probe;
     size_t length;
     uint8_t *bytes = check_read(path, &length);
@@ -187,21 +240,37 @@ static void read_invalid(const char *path, char *text) {
     } else {
         CHECK(status == LEAFLESS_OK);
     }
-    status = leafless_octree_map(path, strlen(path), &octree);
-    if (level <= 2) {
-        one_of(status);
-        CHECK(octree == NULL);
-        one_of(leafless_octree_view_bytes(bytes, length, &octree));
+    if (is_tridexel(path)) {
+        status = leafless_tridexel_map(path, strlen(path), &model);
+        if (level <= 2) {
+            one_of(status);
+            CHECK(model == NULL);
+            one_of(leafless_tridexel_view_bytes(bytes, length, &model));
+        } else {
+            CHECK(status == LEAFLESS_OK && model != NULL && !wrong_length);
+            leafless_tridexel_free(model);
+            model = NULL;
+        }
+        one_of(leafless_tridexel_open(path, strlen(path), &model));
+        one_of(leafless_tridexel_map_verified(path, strlen(path), &model));
+        one_of(leafless_tridexel_from_bytes(bytes, length, &model));
     } else {
-        CHECK(status == LEAFLESS_OK && octree != NULL && !wrong_length);
-        leafless_octree_free(octree);
-        octree = NULL;
+        status = leafless_octree_map(path, strlen(path), &octree);
+        if (level <= 2) {
+            one_of(status);
+            CHECK(octree == NULL);
+            one_of(leafless_octree_view_bytes(bytes, length, &octree));
+        } else {
+            CHECK(status == LEAFLESS_OK && octree != NULL && !wrong_length);
+            leafless_octree_free(octree);
+            octree = NULL;
+        }
+        one_of(leafless_octree_open(path, strlen(path), &octree));
+        one_of(leafless_octree_map_verified(path, strlen(path), &octree));
+        one_of(leafless_octree_from_bytes(bytes, length, &octree));
     }
-    one_of(leafless_octree_open(path, strlen(path), &octree));
-    one_of(leafless_octree_map_verified(path, strlen(path), &octree));
-    one_of(leafless_octree_from_bytes(bytes, length, &octree));
     one_of(leafless_bytes_verify(bytes, length));
-    CHECK(octree == NULL);
+    CHECK(octree == NULL && model == NULL);
     free(bytes);
     invalid++;
 }
@@ -220,6 +289,8 @@ int main(int argc, char **argv) {
         fprintf(stderr, "%s\n", argv[i]);
         if (strstr(text, "refused-by: ") != NULL) {
             read_invalid(argv[i], text);
+        } else if (is_tridexel(argv[i])) {
+            read_valid_tridexel(argv[i], text);
         } else {
             read_valid(argv[i], text);
         }

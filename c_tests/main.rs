@@ -155,8 +155,8 @@ fn panic() {
 
 #[test]
 fn null() {
-    // Each pointer that goes in or out is tried: the program names all of them.
-    let source = text("c_tests/null.c");
+    // Each pointer that goes in or out is tried: the programs name all of them.
+    let source = text("c_tests/null.c") + &text("c_tests/null_tridexel.c");
     let flat = source.split_whitespace().collect::<Vec<_>>().join(" ");
     for function in &header().functions {
         for parameter in &function.pointers {
@@ -174,11 +174,12 @@ fn null() {
             let own = matches!(name.as_str(), "leafless_last_error" | "leafless_test_layout");
             assert!(
                 tried || family || freed || own,
-                "c_tests/null.c does not try {name} without {parameter}"
+                "c_tests/null.c and null_tridexel.c do not try {name} without {parameter}"
             );
         }
     }
     run("null", C99, Link::Static, &[]);
+    run("null_tridexel", C99, Link::Static, &[]);
 }
 
 #[test]
@@ -204,6 +205,12 @@ fn mesh_files() {
 #[test]
 fn written_meshes() {
     run("mesh_write", C99, Link::Static, &[]);
+}
+
+#[test]
+fn tridexels() {
+    run("tridexel", C99, Link::Static, &[]);
+    run("tridexel_surface", C99, Link::Static, &[]);
 }
 
 #[test]
@@ -378,6 +385,7 @@ fn examples() {
         ("c/fit.c", C99),
         ("c/isosurface.c", C99),
         ("c/attributes.c", C99),
+        ("c/dexel_cuts.c", C99),
         ("cpp/cut_stock.cpp", CPP17),
     ];
     for (name, standard) in examples {

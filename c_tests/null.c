@@ -1,50 +1,7 @@
 /* What every function makes of pointers that are NULL or misaligned, and of numbers out of range: a status, each
    parameter by itself, and nothing is written. The driver counts these against the header: each pointer parameter
    of each function stands here as NULL_POINTER(function, parameter) or MAY_BE_NULL(function, parameter). */
-#include "check.h"
-
-#define WRONG(bytes) ((void *)((char *)(bytes) + 1))
-
-/* `call` with the parameter NULL is refused; `wrong`, the same with it misaligned, too. */
-#define NULL_POINTER(function, parameter, call) refused(LEAFLESS_E_NULL, #function, #parameter, (call))
-#define MISALIGNED(function, parameter, call) refused(LEAFLESS_E_ARGUMENT, #function, #parameter, (call))
-#define MAY_BE_NULL(function, parameter, call) refused(LEAFLESS_OK, #function, #parameter, (call))
-#define BAD_NUMBER(function, parameter, call) refused(LEAFLESS_E_ARGUMENT, #function, #parameter, (call))
-
-static void *const UNTOUCHED = (void *)(uintptr_t)0x5a5a5a58;
-
-static void refused(leafless_status expected, const char *function, const char *parameter, leafless_status found) {
-    char message[512];
-    if (found != expected) {
-        fprintf(stderr, "%s with a bad `%s`: %s instead of %s\n", function, parameter, leafless_status_name(found),
-                leafless_status_name(expected));
-        exit(1);
-    }
-    if (expected != LEAFLESS_OK) {
-        CHECK(leafless_last_status() == expected);
-        (void)leafless_last_error(message, sizeof message);
-        if (strstr(message, parameter) == NULL) {
-            fprintf(stderr, "%s with a bad `%s` says only \"%s\"\n", function, parameter, message);
-            exit(1);
-        }
-    }
-}
-
-/* Room for anything, all 0x5a, of which no function may change a byte here. */
-static double room[64];
-
-static void *fresh(void) {
-    memset(room, 0x5a, sizeof room);
-    return room;
-}
-
-static void untouched(void) {
-    const unsigned char *bytes = (const unsigned char *)room;
-    size_t i;
-    for (i = 0; i < sizeof room; i++) {
-        CHECK(bytes[i] == 0x5a);
-    }
-}
+#include "null.h"
 
 static int32_t classify(void *ctx, const double *min, const double *max) {
     (void)ctx;

@@ -31,7 +31,7 @@ OBJECT_FIELDS = {
     "object_record." + name
     for name in (
         "type_code parent flags depth root_tag exterior proof num_brick_planes brick_encoding segment_shift "
-        "value_type num_components reserved1 displacement edge extents reserved2 num_elements num_bricks "
+        "value_type num_components form reserved1 displacement edge extents reserved2 num_elements num_bricks "
         "num_dictionary_entries num_values reserved3 end_of_object"
     ).split()
 }
@@ -47,7 +47,7 @@ SEEN_BY = {
     "header-length": {"header.len_header"},
     "header-required-flags": {"header.required_flags"},
     "header-optional-flags": {"header.optional_flags"},
-    "header-reserved": {"header.reserved1", "header.reserved2"},
+    "header-reserved": {"header.form", "header.reserved2"},
     "header-origin": {"coordinate.value"},
     "header-edge": {"header.edge"},
     "header-depth": {"header.depth"},
@@ -118,7 +118,7 @@ SEEN_BY = {
     "channel-record": {
         "object_record." + name
         for name in (
-            "parent exterior proof num_brick_planes reserved1 displacement edge extents reserved2 reserved3 end_of_object"
+            "parent exterior proof num_brick_planes form reserved1 displacement edge extents reserved2 reserved3 end_of_object"
         ).split()
     },
     "channel-root": {"object_record.root_tag"},
@@ -136,6 +136,16 @@ SEEN_BY = {
     "channel-start": None,
     "channel-values": None,
     "channel-value": None,
+    "dexel-field": {"header.num_brick_planes", "header.segment_shift", "header.end_of_octree_fields"},
+    "dexel-form": {"header.form"},
+    "dexel-intervals": {"header.num_elements", "header.num_dictionary_entries"},
+    "dexel-window": {"window.end_of_window"},
+    # Of a direction that has no starts the table is refused; how many there are is not stated.
+    "dexel-rays": {None, "section.end_of_table"},
+    "dexel-starts": None,
+    "dexel-interval": None,
+    "dexel-normal": None,
+    "dexel-hull": None,
 }
 
 # Files that break another rule, too, and are refused for that one. None stands for files of which the sections of a
@@ -293,6 +303,33 @@ def channel(number, record):
     )
 
 
+def check_dexels(data, root, stated):
+    """Compares a valid file of a tri-dexel model with its text, but for what lies in the arrays of its directions."""
+    header = root.header
+    intervals = [header.num_elements, header.num_bricks, header.num_dictionary_entries]
+    axes = [axis for axis in range(3) if header.form >> (5 + axis) & 1]
+    windows = zip(axes, root.windows.windows)
+    known = {
+        "length": [str(len(data))],
+        "version": [f"{header.version_major}.{header.version_minor}"],
+        "depth": [str(header.depth)],
+        "ends": ["double" if header.form & 1 else "fixed"],
+        "normals": [str(16 * (header.form >> 1 & 3))],
+        "surfaces": ["yes" if header.form & 8 else "no"],
+        "materials": ["yes" if header.form & 16 else "no"],
+        "objects": [str(len(root.objects.objects))],
+        "sections": [" ".join(str(part.kind_code) for part in root.sections)],
+        "owners": [" ".join(str(part.owner) for part in root.sections)],
+        "direction": [f"{k} {w.first_u} {w.first_v} {w.width} {w.height} {intervals[k]}" for k, w in windows],
+        "metadata": [f"{fact.key}\t{fact.value}" for fact in root.metadata.facts] if root.metadata else [],
+    }
+    for key, value in known.items():
+        told = [line for name, line in stated if name == key]
+        if told != value:
+            raise Mismatch(f"{key}: the text says {told}, the file {value}")
+    return sum(map(len, known.values()))
+
+
 def check_valid(data, stated, description):
     """Compares a valid file with its text. Returns how many lines were compared."""
     by, root = refusal(data, description)
@@ -300,6 +337,8 @@ def check_valid(data, stated, description):
         raise Mismatch(f"refused by {by}")
     if wrong_checksums(data, root):
         raise Mismatch(f"checksums: {wrong_checksums(data, root)}")
+    if root.header.is_dexels:
+        return check_dexels(data, root, stated)
     header = root.header
     depth = header.depth
     frame = [header.origin_x.value, header.origin_y.value, header.origin_z.value]

@@ -1,10 +1,11 @@
-# The file format of Leafless, version 0.2, as a Kaitai Struct description. The specification is specification.md
+# The file format of Leafless, version 0.3, as a Kaitai Struct description. The specification is specification.md
 # beside this file; where the two differ, that one is right.
 #
 # Every `valid` is a rule of §10 of the specification, except those that are marked "implied": these follow from rules
 # that a description cannot state. What it does not state: checksums, links, the counts of the level table but for the
 # implied ones, order and use of dictionary entries, and `planes-needless`. Of channels it states what their records say;
-# which sections they have, and what lies in these, it does not. So a file that can be read through this
+# which sections they have, and what lies in these, it does not. Of tri-dexel models it states header, table, record and
+# windows; the arrays of their directions are read as bytes. So a file that can be read through this
 # description need not be valid.
 #
 # Instances are read when they are asked for, and only then are their rules applied; check_ksy.py asks for all. Fields
@@ -70,6 +71,16 @@ instances:
   find_dictionary_segments:
     type: finder(section_kind::dictionary_segments)
     doc: The place of the solid's section `dictionary segments` in the table.
+  find_windows:
+    type: finder(section_kind::windows)
+    doc: The place of the section `windows` of a tri-dexel model in the table.
+  windows:
+    pos: find_windows.section.ofs_body
+    size: find_windows.section.len_body
+    type: windows
+    if: find_windows.is_found
+    doc: The rays of each direction of a tri-dexel model.
+    doc-ref: specification.md §5.7
   objects:
     pos: find_objects.section.ofs_body
     size: find_objects.section.len_body
@@ -85,7 +96,8 @@ instances:
     pos: find_level_table.section.ofs_body
     size: find_level_table.section.len_body
     type: level_table
-    doc: Counts of cells of every octree level. It is always there.
+    if: find_level_table.is_found
+    doc: Counts of cells of every octree level. It is always there, but for tri-dexel models.
   planes:
     pos: find_planes.section.ofs_body
     size: find_planes.section.len_body
@@ -155,8 +167,11 @@ types:
         doc: Bytes of the header. (`header-length`)
       - id: required_flags
         type: u4
-        valid: 0
-        doc: What a reader must understand; nothing is defined. (`header-required-flags`)
+        valid:
+          expr: _ == 0 or (_ == 1 and version_minor >= 3)
+        doc: |
+          What a reader must understand. Bit 0: the solid is a tri-dexel model, and the fields of octrees below are 0 or
+          have another meaning. (`header-required-flags`)
       - id: optional_flags
         type: u4
         valid:
@@ -207,10 +222,10 @@ types:
       - id: num_brick_planes
         type: u1
         valid:
-          expr: _ == 2 or (_ == 1 and root_tag != tag::partial)
+          expr: 'is_dexels ? _ == 0 : _ == 2 or (_ == 1 and root_tag != tag::partial)'
         doc: |
           Words of a brick: 1 in a binary tree, 2 in a tree with any PARTIAL cell, even if it has no bricks.
-          (`header-brick-planes`; `planes-missing` as far as it is about the root tag)
+          (`header-brick-planes`; `planes-missing` as far as it is about the root tag; `dexel-field`)
       - id: brick_encoding
         type: u1
         enum: brick_encoding
@@ -231,30 +246,42 @@ types:
         doc: |
           What the tags prove. Bit 0: FULL cells are proven to lie in the solid; bit 1: EMPTY cells are proven to lie
           outside of it. (`header-proof`)
-      - id: reserved1
+      - id: form
         type: u1
         valid:
-          expr: _ == 0 or is_newer
-        doc: Zero. (`header-reserved`)
+          expr: 'is_dexels ? _ >= 32 and ((_ >> 1) & 3) != 3 : _ == 0 or is_newer'
+        doc: |
+          What a tri-dexel model stores; zero for an octree. Bit 0: ends are doubles. Bits 1 and 2: normals of 16 bits (1)
+          or 32 bits (2). Bit 3: surfaces. Bit 4: materials. Bits 5 to 7: rays along x, y, z. (`dexel-form`,
+          `header-reserved`)
       - id: num_elements
         type: u8
         valid:
-          expr: _ == 0 or (depth > 2 and root_tag == tag::branch)
-        doc: Number of elements without bricks. (`header-elements`)
+          expr: >-
+            is_dexels ? _ <= ((form & 0x20) != 0 ? 4294967294 : 0)
+            : _ == 0 or (depth > 2 and root_tag == tag::branch)
+        doc: |
+          Number of elements without bricks; of a tri-dexel model intervals along x. (`header-elements`,
+          `dexel-intervals`)
       - id: num_bricks
         type: u8
         valid:
           expr: >-
-            (_ == 0 or root_tag == tag::branch)
+            is_dexels ? _ <= ((form & 0x40) != 0 ? 4294967294 : 0)
+            : (_ == 0 or root_tag == tag::branch)
             and (not has_dictionary or (_ > 0 and (segment_shift == 63 or ((_ - 1) >> segment_shift) > 0)))
         doc: |
           Number of bricks. With a dictionary there is at least one, and with a shift below 63 they fill more than one
-          segment. (`header-bricks`, `header-shift`)
+          segment. Of a tri-dexel model intervals along y. (`header-bricks`, `header-shift`, `dexel-intervals`)
       - id: num_dictionary_entries
         type: u8
         valid:
-          expr: 'has_dictionary ? _ >= 1 and _ <= num_bricks : _ == 0'
-        doc: Number of dictionary entries in all segments. (`header-raw-entries`, `header-entries`)
+          expr: >-
+            is_dexels ? _ <= ((form & 0x80) != 0 ? 4294967294 : 0)
+            : has_dictionary ? _ >= 1 and _ <= num_bricks : _ == 0
+        doc: |
+          Number of dictionary entries in all segments; of a tri-dexel model intervals along z. (`header-raw-entries`,
+          `header-entries`, `dexel-intervals`)
       - id: num_sections
         type: u4
         valid:
@@ -277,6 +304,14 @@ types:
       - id: header_crc32
         type: u4
         doc: CRC32 of the 124 bytes before. (`header-crc`, which is not checked here)
+      - id: end_of_octree_fields
+        size: 0
+        if: is_dexels
+        valid:
+          expr: >-
+            root_tag == tag::empty and exterior == tag::empty and brick_encoding == brick_encoding::raw
+            and proof == 0 and displacement.value == 0.0
+        doc: No bytes. What only octrees have is 0 in the header of a tri-dexel model. (`dexel-field`)
       - id: end_of_header
         size: 0
         valid:
@@ -284,8 +319,18 @@ types:
         doc: No bytes. The file is as long as it says. (`file-length`)
     instances:
       is_newer:
-        value: version_minor > 2
-        doc: Whether a later version wrote the file, which may have given a meaning to what is reserved in 0.2.
+        value: version_minor > 3
+        doc: Whether a later version wrote the file, which may have given a meaning to what is reserved in 0.3.
+      is_dexels:
+        value: version_minor >= 3 and (required_flags & 1) != 0
+        doc: Whether the solid is a tri-dexel model, and not an octree.
+      num_directions:
+        value: '(((form >> 5) & 1) + ((form >> 6) & 1) + ((form >> 7) & 1)).as<u8>'
+        doc: Directions of a tri-dexel model.
+      columns_stored:
+        value: >-
+          3 | (((form >> 1) & 3) != 0 ? 4 : 0) | ((form & 8) != 0 ? 8 : 0) | ((form & 16) != 0 ? 16 : 0)
+        doc: Bit k is set if a direction with intervals has the k-th of its five sections.
       is_full_proven:
         value: (proof & 1) != 0
         doc: Whether FULL cells are proven to lie in the solid.
@@ -324,11 +369,16 @@ types:
         doc: Where the section table ends.
       kinds_demanded:
         value: |
-          0b1010 | (num_elements > 0 ? 0b111_0000 : 0)
+          is_dexels ? 0b1000_0000_0010
+          | ((form & 0x20) == 0 ? 0 : (num_elements > 0 ? columns_stored : 1) << 12)
+          | ((form & 0x40) == 0 ? 0 : (num_bricks > 0 ? columns_stored : 1) << 17)
+          | ((form & 0x80) == 0 ? 0 : (num_dictionary_entries > 0 ? columns_stored : 1) << 22)
+          : 0b1010 | (num_elements > 0 ? 0b111_0000 : 0)
           | (num_bricks == 0 ? 0 : has_dictionary ? 0b111_0000_0000 : 0b1000_0000)
         doc: |
           Bit k is set if the section of kind k must be there: objects and the level table always, planes, rel and base
-          if there are elements, and for bricks either those or indices, entries and segments.
+          if there are elements, and for bricks either those or indices, entries and segments. Of a tri-dexel model the kinds
+          from 32 on have the bits from 11 on.
   coordinate:
     doc: |
       A coordinate of the origin: zero, or of a magnitude of 2^-256 to 2^256. Negative zero is illegal.
@@ -462,7 +512,7 @@ types:
         valid:
           expr: >-
             is_known ? element_code == element_demanded and num_components == num_components_demanded
-            and (kind == section_kind::objects or (kind == section_kind::metadata ? len_body <= 1048576
+            and (kind == section_kind::objects or is_starts or (kind == section_kind::metadata ? len_body <= 1048576
             : num_elements == num_elements_demanded))
             and is_required == (kind != section_kind::metadata)
             : owner != 0 or not is_required
@@ -482,8 +532,22 @@ types:
           the last one that has its own bytes. (`section-missing`, `section-end`)
     instances:
       is_known:
-        value: owner == 0 and kind_code >= 1 and kind_code <= 10
+        value: >-
+          owner == 0 and kind_code >= 1 and (kind_code <= 2
+          or (_root.header.is_dexels ? kind_code >= 32 and kind_code <= 47 : kind_code <= 10))
         doc: Whether this description knows the section. It knows those of the solid.
+      is_starts:
+        value: kind_code >= 33 and (kind_code - 33) % 5 == 0
+        doc: Whether a known section has the starts of a direction, of which the window says how many there are.
+      column:
+        value: '(kind_code < 33 ? 5 : (kind_code - 33) % 5).as<u1>'
+        doc: Which of the five sections of a direction it is, if it is known.
+      num_intervals:
+        value: >-
+          (kind_code < 38 ? _root.header.num_elements
+          : kind_code < 43 ? _root.header.num_bricks
+          : _root.header.num_dictionary_entries).as<u8>
+        doc: Intervals of the direction that it belongs to, if it is one of a direction.
       kind:
         value: kind_code
         enum: section_kind
@@ -514,9 +578,9 @@ types:
         doc: Where the last section with its own bytes ends, of this one and those before.
       kinds_before:
         value: '(index == 0 ? 0 : _root.sections[index - 1].kinds_before_next).as<u4>'
-        doc: Bit k is set if a section before this one is the solid's of the known kind k.
+        doc: Bits of the known kinds that sections of the solid before this one have, as in `kinds_demanded`.
       kinds_before_next:
-        value: '(kinds_before | (is_known ? 1 << kind_code : 0)).as<u4>'
+        value: '(kinds_before | (is_known ? 1 << (kind_code > 10 ? kind_code - 21 : kind_code) : 0)).as<u4>'
         doc: The same with this section.
       len_number:
         value: |
@@ -534,7 +598,10 @@ types:
           kind == section_kind::objects ? 0
           : kind == section_kind::metadata ? 1
           : kind == section_kind::rel or kind == section_kind::brick_indices ? 2
-          : 4
+          : kind_code < 32 ? 4
+          : column == 1 and (_root.header.form & 1) != 0 ? 6
+          : column == 2 and ((_root.header.form >> 1) & 3) == 1 ? 2
+          : 3
         doc: The element type of a known section.
         doc-ref: specification.md §5
       num_components_demanded:
@@ -543,6 +610,8 @@ types:
           : kind == section_kind::level_table ? 3
           : kind == section_kind::planes ? 2
           : kind == section_kind::bricks or kind == section_kind::dictionary_entries ? _root.header.num_brick_planes
+          : kind == section_kind::windows ? 4
+          : column >= 1 and column <= 3 ? 2
           : 1).as<u1>
         doc: The components of a known section.
         doc-ref: specification.md §5
@@ -555,6 +624,8 @@ types:
           : kind == section_kind::brick_indices ? _root.header.num_indexed_bricks
           : kind == section_kind::dictionary_entries ? _root.header.num_dictionary_entries
           : kind == section_kind::dictionary_segments ? _root.header.num_segments
+          : kind == section_kind::windows ? _root.header.num_directions
+          : kind_code >= 33 ? ((_root.header.columns_stored >> column) & 1) * num_intervals
           : _root.header.depth + 1).as<u8>
         doc: The number of elements that a known section must have; objects and metadata may have any.
         doc-ref: specification.md §5
@@ -609,8 +680,43 @@ types:
         value: _root.sections[index]
         doc: The entry.
       is_found:
-        value: section.owner == 0 and section.kind == kind
+        value: section.is_known and section.kind == kind
         doc: Whether it is the solid's of that kind.
+  windows:
+    doc: The windows of the directions that a tri-dexel model has, in the order x, y, z.
+    doc-ref: specification.md §5.7
+    seq:
+      - id: windows
+        size: 16
+        type: window
+        repeat: eos
+        doc: One for each direction.
+  window:
+    doc: The rays of a direction that may have intervals, as indices on the other two axes, the lower axis first.
+    seq:
+      - id: first_u
+        type: u4
+        doc: The first on the lower axis.
+      - id: first_v
+        type: u4
+        doc: The first on the higher axis.
+      - id: width
+        type: u4
+        doc: How many on the lower axis.
+      - id: height
+        type: u4
+        doc: How many on the higher axis.
+      - id: end_of_window
+        size: 0
+        valid:
+          expr: >-
+            width <= num_cells and first_u <= num_cells - width and height <= num_cells and first_v <= num_cells - height
+            and ((width != 0 and height != 0) or (width == 0 and height == 0 and first_u == 0 and first_v == 0))
+        doc: No bytes. The window lies in the universe, and there is one window of nothing. (`dexel-window`)
+    instances:
+      num_cells:
+        value: 1 << _root.header.depth
+        doc: Finest cells along each axis.
   objects:
     doc: What the file holds. Each section belongs to one of these objects.
     doc-ref: specification.md §2.6, §5.1
@@ -633,8 +739,8 @@ types:
       - id: type_code
         type: u4
         valid:
-          expr: 'is_solid ? _ == 1 : _ != 0'
-        doc: What the object is, 1 is a solid. (`object-type`)
+          expr: 'is_solid ? _ == (_root.header.is_dexels ? 3 : 1) : _ != 0'
+        doc: What the object is; 1 is an octree, 3 a tri-dexel model. (`object-type`)
       - id: parent
         type: u4
         valid:
@@ -695,10 +801,17 @@ types:
         valid:
           expr: 'is_solid ? _ == 0 : not is_channel or (_ >= 1 and _ <= 4)'
         doc: Components of the object's values; 0 for object 0.
+      - id: form
+        type: u1
+        valid:
+          expr: >-
+            (not is_solid and not is_channel) or _ == (is_solid and _root.header.is_dexels ? _root.header.form : 0)
+            or (_root.header.is_newer and not _root.header.is_dexels)
+        doc: The header's, for object 0.
       - id: reserved1
         type: u1
         repeat: expr
-        repeat-expr: 3
+        repeat-expr: 2
         valid:
           expr: (not is_solid and not is_channel) or _ == 0 or _root.header.is_newer
         doc: Zero, for object 0.
@@ -778,7 +891,7 @@ types:
         doc: No bytes. The origin of object 0 is the header's.
     instances:
       is_channel:
-        value: type_code == 2 and _root.header.version_minor >= 2
+        value: type_code == 2 and _root.header.version_minor >= 2 and not _root.header.is_dexels
         doc: Whether the object is a channel; before version 0.2 its type is unknown.
       is_solid:
         value: index == 0
@@ -1310,3 +1423,51 @@ enums:
     10:
       id: dictionary_segments
       doc: First entries of segments, 8 bytes each.
+    32:
+      id: windows
+      doc: Rays of each direction, 16 bytes each.
+    33:
+      id: starts_x
+      doc: First interval of each ray along x.
+    34:
+      id: spans_x
+      doc: Ends of each interval along x.
+    35:
+      id: normals_x
+      doc: Normals at both ends of each interval along x.
+    36:
+      id: surfaces_x
+      doc: Surfaces of both ends of each interval along x.
+    37:
+      id: materials_x
+      doc: Material of each interval along x.
+    38:
+      id: starts_y
+      doc: First interval of each ray along y.
+    39:
+      id: spans_y
+      doc: Ends of each interval along y.
+    40:
+      id: normals_y
+      doc: Normals at both ends of each interval along y.
+    41:
+      id: surfaces_y
+      doc: Surfaces of both ends of each interval along y.
+    42:
+      id: materials_y
+      doc: Material of each interval along y.
+    43:
+      id: starts_z
+      doc: First interval of each ray along z.
+    44:
+      id: spans_z
+      doc: Ends of each interval along z.
+    45:
+      id: normals_z
+      doc: Normals at both ends of each interval along z.
+    46:
+      id: surfaces_z
+      doc: Surfaces of both ends of each interval along z.
+    47:
+      id: materials_z
+      doc: Material of each interval along z.

@@ -9,6 +9,8 @@
 //! that the files were made from, counts from a plain recursion over them, and the cells of points from
 //! integers.
 
+pub mod dexel_vectors;
+
 use leafless::{
     Cell, Channel, Classifier, Control, Error, FillOptions, Frame, FunctionAttribute, Metadata, Octree,
     Proof, Rule, ScalarType, Solid, Tag, ValueType, Verdict, Worker, build, file, fill_channel,
@@ -37,11 +39,16 @@ fn main() -> std::io::Result<()> {
 
 /// All files of the folder, by their paths in it.
 pub fn files() -> Vec<(PathBuf, Vec<u8>)> {
-    let (valid, invalid) = (valid(), invalid());
+    let (valid, mut invalid) = (valid(), invalid());
+    invalid.extend(dexel_vectors::invalid());
     let mut files = vec![(PathBuf::from("README.md"), readme(&valid, &invalid).into_bytes())];
     for vector in &valid {
         files.push((format!("valid/{}.lfl", vector.name).into(), vector.bytes.clone()));
         files.push((format!("valid/{}.txt", vector.name).into(), vector.facts().into_bytes()));
+    }
+    for vector in dexel_vectors::valid() {
+        files.push((format!("valid/{}.txt", vector.name).into(), vector.facts().into_bytes()));
+        files.push((format!("valid/{}.lfl", vector.name).into(), vector.bytes));
     }
     for vector in &invalid {
         files.push((format!("invalid/{}.lfl", vector.name).into(), vector.bytes.clone()));
@@ -704,7 +711,7 @@ pub fn valid() -> Vec<Valid> {
         parts.sort();
         parts.bytes()
     });
-    let about = "minor version 3: reserved fields of a channel's record, its flags and those of its sections";
+    let about = "minor version 4: reserved fields of a channel's record, its flags and those of its sections";
     unusual("channel-newer", about, model().channel(grain("heat", 3)), &|mut parts| {
         put(&mut parts.head, 10, NEWER, 2);
         let record = parts.record(1);
@@ -997,7 +1004,7 @@ const CHANNEL: u64 = 2;
 const NO_PARENT: u64 = u32::MAX as u64;
 
 /// A minor version that is newer than this one.
-const NEWER: u64 = 3;
+const NEWER: u64 = 4;
 
 /// Length of a header, and of the record of an object.
 const HEADER: usize = 128;
@@ -1045,6 +1052,10 @@ pub fn mirror(bytes: &mut [u8]) {
     }
     for (from, to, length) in MIRRORED {
         bytes.copy_within(from..from + length, start + to);
+    }
+    // What a tri-dexel model stores.
+    if number(bytes, start, 4) == 3 {
+        bytes.copy_within(71..72, start + 21);
     }
 }
 
@@ -1147,7 +1158,8 @@ struct Section {
 impl Section {
     /// One of the solid's. It is required if it is one that all readers know, and no metadata.
     fn new(kind: u64, element: (u64, u64), bytes: Vec<u8>) -> Section {
-        let known = kind <= SEGMENTS || [VALUES, VALUE_REL, VALUE_BASE].contains(&kind);
+        let of_dexels = (32..48).contains(&kind);
+        let known = kind <= SEGMENTS || [VALUES, VALUE_REL, VALUE_BASE].contains(&kind) || of_dexels;
         let flags = (known && kind != METADATA) as u64;
         Section {
             kind,
@@ -2637,10 +2649,11 @@ pub fn many_bricks_in_small_segments() -> Vec<u8> {
 fn readme(valid: &[Valid], invalid: &[Invalid]) -> String {
     let mut text = String::from(include_str!("vectors.md"));
     text += "\n## Valid\n\n| file | what it is there for |\n|---|---|\n";
-    for vector in valid {
-        let mark = if vector.canonical { "" } else { " (not canonical)" };
-        writeln!(text, "| [{0}](valid/{0}.txt) | {1}{mark} |", vector.name, vector.about)
-            .expect("strings grow");
+    let dexels = dexel_vectors::valid();
+    let dexels = dexels.iter().map(|vector| (vector.name, vector.about, vector.canonical));
+    for (name, about, canonical) in valid.iter().map(|v| (v.name, v.about, v.canonical)).chain(dexels) {
+        let mark = if canonical { "" } else { " (not canonical)" };
+        writeln!(text, "| [{name}](valid/{name}.txt) | {about}{mark} |").expect("strings grow");
     }
     text += "\n## Invalid\n\n| file | what is wrong | refused by |\n|---|---|---|\n";
     for vector in invalid {

@@ -1,5 +1,6 @@
 /*
- * A reader of files of the Leafless format, version 0.2, in C99 and nothing but its library.
+ * A reader of files of the Leafless format, version 0.3, in C99 and nothing but its library. What only tri-dexel models
+ * have is read by reader_dexels.c, which this file includes.
  *
  * It is meant to be read beside specification.md, whose sections the comments name (§): each rule of §10 stands here
  * under its name, in the order in which the specification lists it. It favours being evident over being fast; yet every
@@ -12,6 +13,8 @@
  *     reader [--plain | --metadata] --points FILE        reads lines `x y z`, prints inside, outside or undecided
  *     reader [--plain | --metadata] --volume FILE...     prints the volume in cubic model units, rounded outwards
  *     reader [--metadata] --values FILE                  reads lines `x y z`, prints the values of all channels
+ *     reader [--plain | --metadata] --cells FILE         of a tri-dexel model: reads lines `i j k` of indices of a finest
+ *                                                        cell, prints for x, y and z whether its centre lies in or out
  *
  * The option says how much is checked (§10): §10.1; also §10.2 without metadata and channels; also these; without any
  * option all. The exit code is 0, or 1 if a file is refused (`refused: RULE`), or 2 for wrong usage and failing input.
@@ -36,7 +39,7 @@
 
 /* ---- Interface ------------------------------------------------------------------------------------------------- */
 
-enum { LFL_MAX_DEPTH = 20, LFL_KINDS = 20 };
+enum { LFL_MAX_DEPTH = 20, LFL_KINDS = 48 };
 
 /* §2.2. The last is no tag: it says that the bytes on the way to a cell are damaged (§6). */
 enum lfl_tag { LFL_EMPTY = 0, LFL_BRANCH = 1, LFL_PARTIAL = 2, LFL_FULL = 3, LFL_DAMAGED = 4 };
@@ -62,6 +65,17 @@ struct lfl_fact {
     size_t key_length, value_length;
 };
 
+/* §5.7: the rays of a direction, as indices on the other two axes, the lower axis first. */
+struct lfl_window {
+    uint32_t first[2], size[2];
+};
+
+/* §5.7: an interval of a ray, its ends in cells. What is not stored is unknown: no surface, no normal, material 0. */
+struct lfl_interval {
+    double end[2];
+    uint32_t normal[2], surface[2], material;
+};
+
 struct lfl_reader {
     const unsigned char *bytes;
     size_t length;
@@ -70,7 +84,8 @@ struct lfl_reader {
     unsigned major, minor;
     uint64_t file_length;
     uint64_t origin[3], edge, displacement; /* the bits of the f64 */
-    unsigned depth, root, exterior, brick_planes, encoding, shift, proof;
+    uint32_t required_flags;
+    unsigned depth, root, exterior, brick_planes, encoding, shift, proof, form;
     uint64_t elements, bricks, entries;
     uint32_t section_count;
 
@@ -83,6 +98,9 @@ struct lfl_reader {
     /* §2.3: L. §5.3: start[0] to start[L]. */
     unsigned levels;
     uint64_t start[LFL_MAX_DEPTH / 2 + 1];
+
+    /* §5.7: of a tri-dexel model. */
+    struct lfl_window window[3];
 };
 
 /* §5.6. The tree of a channel is read as that of the solid: `tree` has the depth, tags, counts and sections of the
@@ -103,7 +121,11 @@ int lfl_verify(const struct lfl_reader *reader, const char **error);         /* 
 
 extern const char lfl_out_of_memory[];
 
-/* All of the following need a reader from lfl_open; none of them needs more. */
+/* Whether the file holds a tri-dexel model (§2.8), else an octree. After lfl_probe, too. */
+int lfl_is_dexels(const struct lfl_reader *reader);
+
+/* All of the following need a reader from lfl_open; none of them needs more. Those of levels, tags, points, channels and
+   volumes are for octrees. */
 
 /* Entry `index`, less than reader->section_count, of the section table (§4). After lfl_probe, too. */
 struct lfl_section lfl_section(const struct lfl_reader *reader, uint32_t index);
@@ -130,6 +152,16 @@ int lfl_channel(const struct lfl_reader *reader, uint32_t *owner, struct lfl_cha
 
 /* The channel's value at a point (§7.3), `components` numbers: 1; 0 where it has none, or the file is damaged. */
 int lfl_value(const struct lfl_channel *channel, double x, double y, double z, double value[4]);
+
+/* The intervals of a ray of a tri-dexel model, as numbers of the direction's intervals from *first to *end - 1: 1, or 0 if the
+   model has no such direction. Of a damaged ray none. */
+int lfl_ray(const struct lfl_reader *reader, unsigned axis, const uint32_t ray[2], uint64_t *first, uint64_t *end);
+
+/* Interval i of a direction, which there is. */
+void lfl_interval(const struct lfl_reader *reader, unsigned axis, uint64_t i, struct lfl_interval *interval);
+
+/* Whether the centre of a finest cell lies inside, as a direction says it (§7.4): 1 or 0, or -1 without that direction. */
+int lfl_holds(const struct lfl_reader *reader, unsigned axis, const uint32_t cell[3]);
 
 /* V and W of §7.2 in finest cells. On a file that was not verified they saturate. */
 void lfl_volume_cells(const struct lfl_reader *reader, uint64_t *lower, uint64_t *upper);
@@ -344,19 +376,31 @@ enum {
 };
 
 /* Types of objects (§5.1). */
-enum { SOLID = 1, CHANNEL = 2 };
+enum { SOLID = 1, CHANNEL = 2, DEXELS = 3 };
 enum { MAX_CHANNELS = 256, MAX_CHANNEL_METADATA = 1 << 16 };
 
 enum { RAW = 0, DICTIONARY = 1, ONE_SEGMENT = 63, MAX_METADATA = 1 << 20, MAX_SEGMENT_ENTRIES = 1 << 16 };
 
 /* Element types (§4), with their sizes. */
-enum { TYPE_RECORD = 0, TYPE_U8 = 1, TYPE_U16 = 2, TYPE_U32 = 3, TYPE_U64 = 4, TYPE_F32 = 5, TYPES = 7 };
+enum { TYPE_RECORD, TYPE_U8, TYPE_U16, TYPE_U32, TYPE_U64, TYPE_F32, TYPE_F64, TYPES };
 static const unsigned type_size[TYPES] = {8, 1, 2, 4, 8, 4, 8};
 
-/* The solid's sections of the kinds of §5. */
-static int is_known(const struct lfl_section *s)
+/* §3: bit 0 of the required flags, which versions before 0.3 do not know. */
+int lfl_is_dexels(const struct lfl_reader *r) { return r->minor >= 3 && (r->required_flags & 1) != 0; }
+
+/* Kinds of sections of object 0: those of §5, or of a tri-dexel model those of §5.7. */
+static int is_known_kind(const struct lfl_reader *r, uint32_t kind)
 {
-    return s->owner == 0 && s->kind >= KIND_OBJECTS && s->kind <= KIND_DICTIONARY_SEGMENTS;
+    if (kind == KIND_OBJECTS || kind == KIND_METADATA)
+        return 1;
+    if (lfl_is_dexels(r))
+        return kind >= 32 && kind < 48;
+    return kind > KIND_METADATA && kind <= KIND_DICTIONARY_SEGMENTS;
+}
+
+static int is_known(const struct lfl_reader *r, const struct lfl_section *s)
+{
+    return s->owner == 0 && is_known_kind(r, s->kind);
 }
 
 /* A row of §5's table. */
@@ -366,10 +410,14 @@ struct demand {
     uint64_t count; /* 0 where the section must be absent */
 };
 
+static struct demand demanded_of_dexels(const struct lfl_reader *r, uint32_t kind); /* reader_dexels.c */
+
 static struct demand demanded(const struct lfl_reader *r, uint32_t kind)
 {
     int dictionary = r->encoding == DICTIONARY;
     struct demand d = {TYPE_U64, 1, 0, 0};
+    if (kind >= 32)
+        return demanded_of_dexels(r, kind);
     switch (kind) {
     case KIND_OBJECTS: d.element_type = TYPE_RECORD, d.components = 16, d.any_count = 1; break;
     case KIND_METADATA: d.element_type = TYPE_U8, d.any_count = 1; break;
@@ -535,7 +583,7 @@ static int is_illegal(uint64_t bits)
 }
 
 /* §10: whether a later version wrote the file, which may have given a meaning to what is reserved today. */
-static int is_newer(const struct lfl_reader *r) { return r->minor > 2; }
+static int is_newer(const struct lfl_reader *r) { return r->minor > 3; }
 
 static uint64_t end_of_table(const struct lfl_reader *r) { return 128 + 48 * (uint64_t)r->section_count; }
 
@@ -556,6 +604,19 @@ static const char *check_counts(const struct lfl_reader *r)
     return NULL;
 }
 
+/* What only octrees have. */
+static const char *check_octree_header(const struct lfl_reader *r)
+{
+    REFUSE_IF(r->root > 3, "header-root");
+    REFUSE_IF(r->exterior == 1 || r->exterior > 3, "header-exterior");
+    REFUSE_IF(r->proof > 3, "header-proof");
+    REFUSE_IF(r->displacement >= UINT64_C(0x7FF) << 52, "header-displacement"); /* the sign, the infinity, NaN */
+    REFUSE_IF(r->brick_planes != 1 && r->brick_planes != 2, "header-brick-planes");
+    return check_counts(r);
+}
+
+static const char *check_dexel_header(const struct lfl_reader *r); /* reader_dexels.c */
+
 static const char *check_header(struct lfl_reader *r)
 {
     const unsigned char *h = r->bytes;
@@ -570,6 +631,7 @@ static const char *check_header(struct lfl_reader *r)
     /* §3 */
     r->major = u16(h + 8);
     r->minor = u16(h + 10);
+    r->required_flags = u32(h + 16);
     r->file_length = u64(h + 24);
     for (i = 0; i < 3; i++)
         r->origin[i] = u64(h + 32 + 8 * i);
@@ -581,6 +643,7 @@ static const char *check_header(struct lfl_reader *r)
     r->encoding = h[68];
     r->shift = h[69];
     r->proof = h[70];
+    r->form = h[71];
     r->elements = u64(h + 72);
     r->bricks = u64(h + 80);
     r->entries = u64(h + 88);
@@ -590,19 +653,15 @@ static const char *check_header(struct lfl_reader *r)
     REFUSE_IF(r->major != 0 || r->minor == 0, "header-major");
     REFUSE_IF(crc32(h, 124) != u32(h + 124), "header-crc");
     REFUSE_IF(u32(h + 12) != 128, "header-length");
-    REFUSE_IF(u32(h + 16) != 0, "header-required-flags");
+    REFUSE_IF(r->required_flags != (lfl_is_dexels(r) ? 1u : 0u), "header-required-flags");
     REFUSE_IF(u32(h + 20) != 0 && !is_newer(r), "header-optional-flags");
-    REFUSE_IF((h[71] != 0 || !all_zero(h + 112, 12)) && !is_newer(r), "header-reserved");
+    REFUSE_IF(h[71] != 0 && !lfl_is_dexels(r) && !is_newer(r), "header-reserved");
+    REFUSE_IF(!all_zero(h + 112, 12) && !is_newer(r), "header-reserved");
     for (i = 0; i < 3; i++)
         REFUSE_IF(r->origin[i] != 0 && is_illegal(r->origin[i]), "header-origin");
     REFUSE_IF(r->edge >> 63 != 0 || is_illegal(r->edge), "header-edge");
     REFUSE_IF(r->depth < 1 || r->depth > LFL_MAX_DEPTH, "header-depth");
-    REFUSE_IF(r->root > 3, "header-root");
-    REFUSE_IF(r->exterior == 1 || r->exterior > 3, "header-exterior");
-    REFUSE_IF(r->proof > 3, "header-proof");
-    REFUSE_IF(r->displacement >= UINT64_C(0x7FF) << 52, "header-displacement"); /* the sign, the infinity, NaN */
-    REFUSE_IF(r->brick_planes != 1 && r->brick_planes != 2, "header-brick-planes");
-    error = check_counts(r);
+    error = lfl_is_dexels(r) ? check_dexel_header(r) : check_octree_header(r);
     REFUSE_IF(error != NULL, error);
     REFUSE_IF(r->section_count == 0 || r->section_count > 4096, "header-section-count");
     REFUSE_IF(r->file_length <= end_of_table(r), "header-file-length");
@@ -642,7 +701,7 @@ static const char *check_section(struct lfl_reader *r, uint32_t index, uint64_t 
 {
     struct lfl_section s = lfl_section(r, index), earlier;
     struct demand d;
-    int known = is_known(&s), newer = is_newer(r);
+    int known = is_known(r, &s), newer = is_newer(r);
 
     REFUSE_IF(s.kind == 0, "section-kind");
     REFUSE_IF(s.flags >> 1 != 0 && !newer, "section-flags");
@@ -696,8 +755,8 @@ static const char *check_table(struct lfl_reader *r)
         error = check_section(r, i, &end, &owner, &kind);
         REFUSE_IF(error != NULL, error);
     }
-    for (i = KIND_OBJECTS; i <= KIND_DICTIONARY_SEGMENTS; i++)
-        REFUSE_IF(demanded(r, i).count != 0 && r->section[i].count == 0, "section-missing");
+    for (i = KIND_OBJECTS; i < LFL_KINDS; i++)
+        REFUSE_IF(is_known_kind(r, i) && demanded(r, i).count != 0 && r->section[i].count == 0, "section-missing");
     REFUSE_IF(end != r->file_length, "section-end");
     return NULL;
 }
@@ -709,9 +768,11 @@ static int is_the_solid(const struct lfl_reader *r, const unsigned char *p)
 {
     uint32_t flags = u32(p + 8);
     unsigned i;
-    if (u32(p) != 1 || u32(p + 4) != UINT32_MAX || (flags & 1) == 0)
+    if (u32(p) != (lfl_is_dexels(r) ? DEXELS : SOLID) || u32(p + 4) != UINT32_MAX || (flags & 1) == 0)
         return 0;
-    if (!is_newer(r) && (flags != 1 || !all_zero(p + 21, 3) || !all_zero(p + 76, 4) || !all_zero(p + 112, 16)))
+    if (!is_newer(r) && (flags != 1 || !all_zero(p + 22, 2) || !all_zero(p + 76, 4) || !all_zero(p + 112, 16)))
+        return 0;
+    if (lfl_is_dexels(r) ? p[21] != r->form : p[21] != 0 && !is_newer(r))
         return 0;
     for (i = 0; i < 3; i++) {
         if (u64(p + 32 + 8 * i) != r->origin[i])
@@ -914,8 +975,10 @@ static const char *check_channels(const struct lfl_reader *r)
 static const char *check_metadata_and_channels(const struct lfl_reader *r)
 {
     const char *error = check_metadata(r);
-    return error != NULL ? error : check_channels(r);
+    return error != NULL || lfl_is_dexels(r) ? error : check_channels(r);
 }
+
+#include "reader_dexels.c"
 
 static const char *check_all_before_use(const void *bytes, size_t length, struct lfl_reader *r, int probing)
 {
@@ -931,7 +994,7 @@ static const char *check_all_before_use(const void *bytes, size_t length, struct
     if (error == NULL && !probing)
         error = check_objects(r);
     if (error == NULL && !probing)
-        error = check_level_table(r);
+        error = lfl_is_dexels(r) ? check_windows(r) : check_level_table(r);
     return error;
 }
 
@@ -1233,6 +1296,11 @@ static const char *verify(const struct lfl_reader *r)
 {
     struct lfl_level counts[LFL_MAX_DEPTH + 1];
     const char *error;
+    if (lfl_is_dexels(r)) {
+        if ((error = verify_sections(r)) != NULL || (error = check_metadata(r)) != NULL)
+            return error;
+        return verify_dexels(r);
+    }
     memset(counts, 0, sizeof counts);
     /* The universe itself. Of odd depth its node is counted as octant 0 of the root element. */
     counts[0].nodes = r->root == LFL_BRANCH && parity(r) == 0;
@@ -1443,7 +1511,7 @@ void lfl_volume(const struct lfl_reader *r, double *lower, double *upper)
 
 enum { OK = 0, REFUSED = 1, FAILED = 2 };
 enum checks { PROBE, PLAIN, METADATA, ALL };
-enum question { FACTS, POINTS, VALUES, VOLUME };
+enum question { FACTS, POINTS, VALUES, VOLUME, CELLS };
 
 /* Control characters could do things to a terminal, and are printed as \xHH. */
 static void print_text(const unsigned char *p, size_t length)
@@ -1460,11 +1528,81 @@ static void print_text(const unsigned char *p, size_t length)
     }
 }
 
+static void print_sections(const struct lfl_reader *r)
+{
+    uint32_t i;
+    printf("objects: %" PRIu64 "\n", r->object_count);
+    printf("sections:");
+    for (i = 0; i < r->section_count; i++)
+        printf(" %" PRIu32, lfl_section(r, i).kind);
+    printf("\nowners:");
+    for (i = 0; i < r->section_count; i++)
+        printf(" %" PRIu32, lfl_section(r, i).owner);
+    putchar('\n');
+}
+
+static void print_metadata(const struct lfl_reader *r)
+{
+    struct lfl_fact fact;
+    uint64_t position = 0;
+    while (lfl_metadata(r, &position, &fact) > 0) {
+        printf("metadata: ");
+        print_text(fact.key, fact.key_length);
+        putchar('\t');
+        print_text(fact.value, fact.value_length);
+        putchar('\n');
+    }
+}
+
+static void print_intervals(const struct lfl_reader *r, unsigned axis, const uint32_t ray[2])
+{
+    struct lfl_interval one;
+    uint64_t i, end;
+    for (lfl_ray(r, axis, ray, &i, &end); i < end; i++) {
+        lfl_interval(r, axis, i, &one);
+        printf("interval: %u %" PRIu32 " %" PRIu32 " %a %a", axis, ray[0], ray[1], one.end[0], one.end[1]);
+        if (normal_kind(r) != 0)
+            printf(" %" PRIu32 " %" PRIu32, one.normal[0], one.normal[1]);
+        if (has_surfaces(r))
+            printf(" %" PRIu32 " %" PRIu32, one.surface[0], one.surface[1]);
+        if (has_materials(r))
+            printf(" %" PRIu32, one.material);
+        putchar('\n');
+    }
+}
+
+/* The part of the facts that only tri-dexel models have. Intervals are printed if all of them are verified. */
+static void print_dexels(const struct lfl_reader *r, enum checks checks)
+{
+    unsigned axis;
+    printf("ends: %s\nnormals: %u\n", has_doubles(r) ? "double" : "fixed", 16 * normal_kind(r));
+    printf("surfaces: %s\nmaterials: %s\n", has_surfaces(r) ? "yes" : "no", has_materials(r) ? "yes" : "no");
+    print_sections(r);
+    for (axis = 0; axis < 3 && checks != PROBE; axis++) {
+        const struct lfl_window *w = &r->window[axis];
+        if (has_direction(r, axis))
+            printf("direction: %u %" PRIu32 " %" PRIu32 " %" PRIu32 " %" PRIu32 " %" PRIu64 "\n", axis, w->first[0],
+                   w->first[1], w->size[0], w->size[1], intervals(r, axis));
+    }
+    if (checks >= METADATA)
+        print_metadata(r);
+    for (axis = 0; axis < 3 && checks == ALL; axis++) {
+        const struct lfl_window *w = &r->window[axis];
+        uint32_t ray[2], u, v;
+        for (v = 0; v < w->size[1]; v++) {
+            for (u = 0; u < w->size[0]; u++) {
+                ray[0] = w->first[0] + u;
+                ray[1] = w->first[1] + v;
+                print_intervals(r, axis, ray);
+            }
+        }
+    }
+}
+
 static void print_facts(const struct lfl_reader *r, enum checks checks)
 {
     static const char *const tags[] = {"EMPTY", "BRANCH", "PARTIAL", "FULL"};
-    struct lfl_fact fact;
-    uint64_t position = 0, lower, upper;
+    uint64_t lower, upper;
     uint32_t i;
 
     printf("length: %" PRIu64 "\n", r->file_length);
@@ -1472,6 +1610,10 @@ static void print_facts(const struct lfl_reader *r, enum checks checks)
     printf("origin: %a %a %a\n", from_bits(r->origin[0]), from_bits(r->origin[1]), from_bits(r->origin[2]));
     printf("edge: %a\n", from_bits(r->edge));
     printf("depth: %u\n", r->depth);
+    if (lfl_is_dexels(r)) {
+        print_dexels(r, checks);
+        return;
+    }
     printf("root: %s\n", tags[r->root]);
     printf("exterior: %s\n", tags[r->exterior]);
     printf("proof: %u\n", r->proof);
@@ -1482,14 +1624,7 @@ static void print_facts(const struct lfl_reader *r, enum checks checks)
     printf("elements: %" PRIu64 "\n", r->elements);
     printf("bricks: %" PRIu64 "\n", r->bricks);
     printf("entries: %" PRIu64 "\n", r->entries);
-    printf("objects: %" PRIu64 "\n", r->object_count);
-    printf("sections:");
-    for (i = 0; i < r->section_count; i++)
-        printf(" %" PRIu32, lfl_section(r, i).kind);
-    printf("\nowners:");
-    for (i = 0; i < r->section_count; i++)
-        printf(" %" PRIu32, lfl_section(r, i).owner);
-    putchar('\n');
+    print_sections(r);
     if (checks == PROBE)
         return;
     for (i = 0; i <= r->depth; i++) {
@@ -1498,13 +1633,8 @@ static void print_facts(const struct lfl_reader *r, enum checks checks)
     }
     lfl_volume_cells(r, &lower, &upper);
     printf("cells: %" PRIu64 " %" PRIu64 "\n", lower, upper);
-    while (checks >= METADATA && lfl_metadata(r, &position, &fact) > 0) {
-        printf("metadata: ");
-        print_text(fact.key, fact.key_length);
-        putchar('\t');
-        print_text(fact.value, fact.value_length);
-        putchar('\n');
-    }
+    if (checks >= METADATA)
+        print_metadata(r);
 }
 
 static void print_channels(const struct lfl_reader *r)
@@ -1562,6 +1692,18 @@ static void print_values(const struct lfl_reader *r, const double point[3])
     }
 }
 
+/* For each direction whether the centre of a finest cell lies inside. */
+static void print_cell(const struct lfl_reader *r, const double indices[3])
+{
+    static const char *const answers[] = {"none", "out", "in"};
+    uint32_t cell[3];
+    unsigned axis;
+    for (axis = 0; axis < 3; axis++)
+        cell[axis] = indices[axis] >= 0 && indices[axis] < 1 << 20 ? (uint32_t)indices[axis] : UINT32_MAX;
+    for (axis = 0; axis < 3; axis++)
+        printf("%s%c", answers[lfl_holds(r, axis, cell) + 1], axis < 2 ? ' ' : '\n');
+}
+
 static int answer_points(const struct lfl_reader *r, enum question question)
 {
     static const char *const answers[] = {"outside", "inside", "undecided"};
@@ -1579,7 +1721,9 @@ static int answer_points(const struct lfl_reader *r, enum question question)
             fprintf(stderr, "not a point: %s", line);
             return FAILED;
         }
-        if (question == VALUES)
+        if (question == CELLS)
+            print_cell(r, v);
+        else if (question == VALUES)
             print_values(r, v);
         else
             puts(answers[lfl_contains(r, v[0], v[1], v[2])]);
@@ -1635,13 +1779,16 @@ static int read_one(const char *path, enum checks checks, enum question question
     } else if (!passed) {
         printf("refused: %s\n", error);
         code = REFUSED;
-    } else if (question == POINTS || question == VALUES) {
+    } else if (question != FACTS && (question == CELLS) != lfl_is_dexels(&reader)) {
+        fprintf(stderr, "the question is for %s\n", question == CELLS ? "tri-dexel models" : "octrees");
+        code = FAILED;
+    } else if (question == POINTS || question == VALUES || question == CELLS) {
         code = answer_points(&reader, question);
     } else if (question == VOLUME) {
         print_volume(&reader);
     } else {
         print_facts(&reader, checks);
-        if (checks >= METADATA)
+        if (checks >= METADATA && !lfl_is_dexels(&reader))
             print_channels(&reader);
     }
     free(bytes);
@@ -1666,16 +1813,19 @@ int main(int argc, char **argv)
             question = VALUES;
         else if (strcmp(argv[i], "--volume") == 0)
             question = VOLUME;
+        else if (strcmp(argv[i], "--cells") == 0)
+            question = CELLS;
         else
             break;
     }
     files = argc - i;
-    if (files < 1 || argv[i][0] == '-' || ((question == POINTS || question == VALUES) && files > 1) ||
+    if (files < 1 || argv[i][0] == '-' || (question != FACTS && question != VOLUME && files > 1) ||
         (question != FACTS && checks == PROBE) || (question == VALUES && checks == PLAIN)) {
         fprintf(stderr, "usage: reader [--probe | --plain | --metadata] FILE...\n"
                         "       reader [--plain | --metadata] --points FILE\n"
                         "       reader [--plain | --metadata] --volume FILE...\n"
-                        "       reader [--metadata] --values FILE\n");
+                        "       reader [--metadata] --values FILE\n"
+                        "       reader [--plain | --metadata] --cells FILE\n");
         return FAILED;
     }
     for (; i < argc; i++) {

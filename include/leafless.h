@@ -13,7 +13,8 @@
  *   does not say may be; LEAFLESS_E_ARGUMENT if one is misaligned for what it points to, if a count is more than
  *   memory can hold, a number none of its enum, a path empty, or a struct_size not sensible or with fields set that
  *   this library does not know; LEAFLESS_E_PANIC if the library has a defect. That never ends the host program and
- *   leaves all objects usable; Rust's message about it also goes to stderr.
+ *   leaves all objects usable, but a leafless_tridexel_editor that it was changing; Rust's message about it also goes to
+ *   stderr.
  * - Memory whose size depends on an input or a result can be refused, and is then LEAFLESS_E_NO_MEMORY. What remains
  *   is at most 2 KiB a piece, what threads cost, and what polygons with holes or dents are triangulated with, for which
  *   as much was asked for, and given back, before; if even that cannot be had, the process ends.
@@ -22,7 +23,7 @@
  *   shares. Pointers from _peek functions belong to the object.
  * - Threads: calls whose handle parameters are pointers to const may run at once, on the same object too. Other
  *   calls need the object for themselves; but _free needs only its own reference, others may be in use meanwhile.
- *   A leafless_lazy that is in use says so itself: LEAFLESS_E_BUSY.
+ *   A leafless_lazy or a leafless_tridexel_editor that is in use says so itself: LEAFLESS_E_BUSY.
  *   Different objects never interfere. Nothing global is changed. No thread of the library outlives the call that
  *   started it.
  * - Structs with a field struct_size begin with sizeof of themselves, and all their other fields may be zero.
@@ -93,7 +94,7 @@
 /**
  * Minor version of the file format that this library writes; it reads newer ones, too.
  */
-#define LEAFLESS_FORMAT_MINOR 2
+#define LEAFLESS_FORMAT_MINOR 3
 
 /**
  * What a function returns. Codes are never renumbered and never used for something else; new ones may be
@@ -149,7 +150,7 @@ enum leafless_status
      */
     LEAFLESS_E_VERSION = 10,
     /**
-     * The arrays of an octree contradict each other.
+     * The arrays of an octree or of a tri-dexel model contradict each other.
      */
     LEAFLESS_E_DAMAGED = 11,
     /**
@@ -185,7 +186,7 @@ enum leafless_status
      */
     LEAFLESS_E_SCENE = 19,
     /**
-     * A lazy octree is in use by another call, in another thread or around this one. Nothing was done.
+     * A lazy octree or an editor is in use by another call, in another thread or around this one. Nothing was done.
      */
     LEAFLESS_E_BUSY = 20,
     /**
@@ -622,6 +623,82 @@ enum leafless_measured
 };
 #ifndef __cplusplus
 typedef uint32_t leafless_measured;
+#endif // __cplusplus
+
+/**
+ * How the ends of intervals are stored.
+ */
+enum leafless_dexel_ends
+#ifdef __cplusplus
+  : uint32_t
+#endif // __cplusplus
+ {
+    /**
+     * Start and length in units of 2^-31 edges of the universe, 8 bytes an interval. An end is off by at most one
+     * unit.
+     */
+    LEAFLESS_DEXEL_ENDS_FIXED = 0,
+    /**
+     * Start and end as doubles, 16 bytes an interval.
+     */
+    LEAFLESS_DEXEL_ENDS_DOUBLE = 1,
+};
+#ifndef __cplusplus
+typedef uint32_t leafless_dexel_ends;
+#endif // __cplusplus
+
+/**
+ * How the unit normals at the ends of intervals are stored: in an octahedral code.
+ */
+enum leafless_dexel_normals
+#ifdef __cplusplus
+  : uint32_t
+#endif // __cplusplus
+ {
+    /**
+     * Not at all.
+     */
+    LEAFLESS_DEXEL_NORMALS_NONE = 0,
+    /**
+     * In 16 bits, 4 bytes an interval, within a degree.
+     */
+    LEAFLESS_DEXEL_NORMALS_16 = 1,
+    /**
+     * In 32 bits, 8 bytes an interval, within 0.005 degrees.
+     */
+    LEAFLESS_DEXEL_NORMALS_32 = 2,
+};
+#ifndef __cplusplus
+typedef uint32_t leafless_dexel_normals;
+#endif // __cplusplus
+
+/**
+ * What a voxel is: a number in the array `kinds`.
+ */
+enum leafless_voxel_kind
+#ifdef __cplusplus
+  : uint8_t
+#endif // __cplusplus
+ {
+    /**
+     * It lies outside of the solid.
+     */
+    LEAFLESS_VOXEL_OUTSIDE = 0,
+    /**
+     * It lies inside.
+     */
+    LEAFLESS_VOXEL_INSIDE = 1,
+    /**
+     * The boundary of the solid goes through it, or along it.
+     */
+    LEAFLESS_VOXEL_BOUNDARY = 2,
+    /**
+     * It consists of the smaller voxels that follow it.
+     */
+    LEAFLESS_VOXEL_REFINED = 3,
+};
+#ifndef __cplusplus
+typedef uint8_t leafless_voxel_kind;
 #endif // __cplusplus
 
 /**
@@ -1177,35 +1254,6 @@ typedef uint32_t leafless_carry;
 #endif // __cplusplus
 
 /**
- * What a voxel is: a number in the array `kinds`.
- */
-enum leafless_voxel_kind
-#ifdef __cplusplus
-  : uint8_t
-#endif // __cplusplus
- {
-    /**
-     * It lies outside of the solid.
-     */
-    LEAFLESS_VOXEL_OUTSIDE = 0,
-    /**
-     * It lies inside.
-     */
-    LEAFLESS_VOXEL_INSIDE = 1,
-    /**
-     * The boundary of the solid goes through it, or along it.
-     */
-    LEAFLESS_VOXEL_BOUNDARY = 2,
-    /**
-     * It consists of the smaller voxels that follow it.
-     */
-    LEAFLESS_VOXEL_REFINED = 3,
-};
-#ifndef __cplusplus
-typedef uint8_t leafless_voxel_kind;
-#endif // __cplusplus
-
-/**
  * Which voxels are boundary voxels.
  */
 enum leafless_voxel_boundary
@@ -1266,6 +1314,58 @@ enum leafless_interpolation
 };
 #ifndef __cplusplus
 typedef uint32_t leafless_interpolation;
+#endif // __cplusplus
+
+/**
+ * The axes that rays run along. The numbers may be added.
+ */
+enum leafless_axes
+#ifdef __cplusplus
+  : uint32_t
+#endif // __cplusplus
+ {
+    /**
+     * Along x.
+     */
+    LEAFLESS_AXES_X = 1,
+    /**
+     * Along y.
+     */
+    LEAFLESS_AXES_Y = 2,
+    /**
+     * Along z.
+     */
+    LEAFLESS_AXES_Z = 4,
+    /**
+     * Along all three.
+     */
+    LEAFLESS_AXES_ALL = 7,
+};
+#ifndef __cplusplus
+typedef uint32_t leafless_axes;
+#endif // __cplusplus
+
+/**
+ * How the surface of a tri-dexel model is extracted.
+ */
+enum leafless_dexel_surface_method
+#ifdef __cplusplus
+  : uint32_t
+#endif // __cplusplus
+ {
+    /**
+     * Marching cubes: a vertex where a ray crosses the surface between two neighbouring centres of cells. Edges and
+     * corners of the solid are cut off by up to a cell.
+     */
+    LEAFLESS_DEXEL_SURFACE_MARCHING_CUBES = 0,
+    /**
+     * Dual contouring: a vertex for each sheet of the surface in a cube between eight centres, where the planes at its
+     * crossings fit best. Edges and corners of the solid stay, if the model stores normals.
+     */
+    LEAFLESS_DEXEL_SURFACE_DUAL_CONTOURING = 1,
+};
+#ifndef __cplusplus
+typedef uint32_t leafless_dexel_surface_method;
 #endif // __cplusplus
 
 /**
@@ -1397,6 +1497,28 @@ typedef struct leafless_scene leafless_scene;
  * frames at the same time prepare it again and again: give each a solid of its own.
  */
 typedef struct leafless_solid leafless_solid;
+
+/**
+ * A solid as intervals along the rays of a lattice, in one to three directions: a tri-dexel model.
+ *
+ * Rays run through the centres of the finest cells of a frame. Each has the sorted, disjoint intervals in which it
+ * runs inside of the solid. An interval holds its start and not its end, so that set algebra is exact. All directions
+ * agree about the centres of cells.
+ *
+ * Immutable: all its functions may be called at once from any number of threads, but leafless_tridexel_free
+ * needs the reference that it gives back for itself. A leafless_tridexel_editor changes a copy in place.
+ */
+typedef struct leafless_tridexel leafless_tridexel;
+
+/**
+ * A copy of a tri-dexel model that is changed in place, in time proportional to what the second operand's rays touch: for
+ * machining. It takes 12 bytes for each ray of the lattice beside the intervals.
+ *
+ * While one call changes it, every other call returns LEAFLESS_E_BUSY, from another thread as from the host's functions
+ * that are asked about a cell. While another call reads it, changing it returns LEAFLESS_E_BUSY. Calls that read it may
+ * be made at once from any number of threads.
+ */
+typedef struct leafless_tridexel_editor leafless_tridexel_editor;
 
 /**
  * A three-dimensional bitmap or array of samples, and where it lies. Each sample stands for the closed box
@@ -3154,6 +3276,292 @@ typedef struct {
 } leafless_near_cell;
 
 /**
+ * What a tri-dexel model stores. NULL means the defaults. All fields but the first may be zero, which is their
+ * default; leafless_tridexel_format_init sets them so.
+ */
+typedef struct {
+    /**
+     * sizeof(leafless_tridexel_format).
+     */
+    uint32_t struct_size;
+    /**
+     * The axes that rays run along, a sum of leafless_axes; 0 means those of the operand if there is one, else
+     * LEAFLESS_AXES_ALL.
+     */
+    uint32_t directions;
+    /**
+     * A leafless_dexel_ends.
+     */
+    uint32_t ends;
+    /**
+     * A leafless_dexel_normals.
+     */
+    uint32_t normals;
+    /**
+     * 1 to store on which of the source's surfaces the ends lie, 8 bytes an interval. Else 0.
+     */
+    uint32_t has_surfaces;
+    /**
+     * 1 to store what intervals are made of, 4 bytes an interval. Else 0.
+     */
+    uint32_t has_materials;
+} leafless_tridexel_format;
+
+/**
+ * What can be said of a tri-dexel model at once.
+ */
+typedef struct {
+    /**
+     * The lattice: rays run through the centres of its finest cells.
+     */
+    leafless_frame frame;
+    /**
+     * The axes that rays run along, a sum of leafless_axes.
+     */
+    uint32_t directions;
+    /**
+     * How the ends of intervals are stored.
+     */
+    leafless_dexel_ends ends;
+    /**
+     * How unit normals are stored.
+     */
+    leafless_dexel_normals normals;
+    /**
+     * 1 if it is stored on which surfaces the ends lie, else 0.
+     */
+    uint32_t has_surfaces;
+    /**
+     * 1 if it is stored what intervals are made of, else 0.
+     */
+    uint32_t has_materials;
+    /**
+     * Bytes that an interval takes.
+     */
+    uint32_t bytes_per_interval;
+    /**
+     * Intervals in all directions.
+     */
+    uint64_t interval_count;
+    /**
+     * Bytes that the arrays take.
+     */
+    uint64_t bytes;
+} leafless_tridexel_info;
+
+/**
+ * What the rays along one axis hold.
+ */
+typedef struct {
+    /**
+     * Rays that cross the solid.
+     */
+    uint64_t rays;
+    /**
+     * Intervals.
+     */
+    uint64_t intervals;
+    /**
+     * Bytes of the arrays.
+     */
+    uint64_t bytes;
+    /**
+     * The lengths of all intervals, each times the area of a cell's face: an estimate of the volume in cubic model
+     * units, no bound.
+     */
+    double volume_model;
+    /**
+     * The least coordinates of what the rays cross; INFINITY if they cross nothing.
+     */
+    double min_model[3];
+    /**
+     * The greatest coordinates of what the rays cross; -INFINITY if they cross nothing.
+     */
+    double max_model[3];
+} leafless_dexel_statistics;
+
+/**
+ * One end of a leafless_dexel.
+ */
+typedef struct {
+    /**
+     * The coordinate along the ray.
+     */
+    double at_model;
+    /**
+     * The outward unit normal of the surface there; three zeros if it is not known.
+     */
+    double normal[3];
+    /**
+     * On which of the source's surfaces it lies: a triangle of a mesh, a half-space in the order of the expression
+     * written out. UINT32_MAX if it is not known.
+     */
+    uint32_t surface;
+} leafless_dexel_end;
+
+/**
+ * An interval of a ray that lies inside of the solid.
+ */
+typedef struct {
+    /**
+     * Where it begins.
+     */
+    leafless_dexel_end start;
+    /**
+     * Where it ends, which is behind its start.
+     */
+    leafless_dexel_end end;
+    /**
+     * What it is made of; 0 where nothing was said.
+     */
+    uint32_t material;
+} leafless_dexel;
+
+/**
+ * Intervals of rays along one axis, as leafless_tridexel_read hands them out.
+ */
+typedef struct {
+    /**
+     * The axis that the rays run along: 0 for x, 1 for y, 2 for z.
+     */
+    uint32_t axis;
+    /**
+     * Zero.
+     */
+    uint32_t reserved;
+    /**
+     * The indices of the first ray's cells on the other two axes in the order x, y, z.
+     */
+    uint32_t first[2];
+    /**
+     * The first beyond those of the last ray. Rays outside of the rectangle are empty.
+     */
+    uint32_t end[2];
+    /**
+     * The intervals of ray i are those from `offsets[i]` to before `offsets[i + 1]`: one number more than rays, in
+     * ascending order. The ray at steps (u, v) from the first is i = v · width + u.
+     */
+    const uint64_t *offsets;
+    /**
+     * How many intervals there are, which is the last offset.
+     */
+    uint64_t interval_count;
+    /**
+     * Two coordinates for each interval, its start and its end.
+     */
+    const double *ends_model;
+    /**
+     * Six numbers for each interval: the outward normals at its start and at its end, of any length; three zeros where none
+     * is known. NULL if none is known at all.
+     */
+    const double *normals;
+    /**
+     * Two numbers for each interval: on which surfaces its start and its end lie; UINT32_MAX where it is not known. NULL if
+     * none is known at all.
+     */
+    const uint32_t *surfaces;
+    /**
+     * A number for each interval, what it is made of; 0 where nothing is said. NULL if nothing is said at all.
+     */
+    const uint32_t *materials;
+} leafless_ray_arrays;
+
+/**
+ * How exactly a surface of a tri-dexel model follows its rays.
+ */
+typedef struct {
+    /**
+     * Edges between neighbouring centres of cells of which one lies inside: places where a ray crosses the surface.
+     */
+    uint64_t crossings;
+    /**
+     * Crossings on edges that the ray crosses more than once: what is thinner than a cell is lost there.
+     */
+    uint64_t several;
+    /**
+     * Crossings that were put in the middle of their edges, because the model has no rays along these.
+     */
+    uint64_t without_rays;
+    /**
+     * Crossings that were put in the middle of their edges, because the directions of the model disagree there.
+     */
+    uint64_t disagreeing;
+    /**
+     * Crossings of which no normal is known. (By dual contouring alone.)
+     */
+    uint64_t without_normals;
+    /**
+     * Vertices with no normal at any of their crossings, which are the mean of these. (By dual contouring alone.)
+     */
+    uint64_t means;
+    /**
+     * Vertices that would fit their planes better outside of their cells. (By dual contouring alone.)
+     */
+    uint64_t clamped;
+} leafless_dexel_surface_report;
+
+/**
+ * A row of voxels along y that are all of one kind and of one material.
+ */
+typedef struct {
+    /**
+     * Its first voxel. The voxel (x, y, z) lies between the centres of the cells x - 1 and x, and likewise on the other
+     * axes: its indices go from 0 to the cells of an axis, that number included.
+     */
+    uint32_t first[3];
+    /**
+     * How many voxels it consists of.
+     */
+    uint32_t length;
+    /**
+     * What it is made of; 0 where nothing was said.
+     */
+    uint32_t material;
+    /**
+     * LEAFLESS_VOXEL_INSIDE or LEAFLESS_VOXEL_BOUNDARY.
+     */
+    leafless_voxel_kind kind;
+} leafless_long_voxel;
+
+/**
+ * What header and section table of a tri-dexel model's file say of it.
+ */
+typedef struct {
+    /**
+     * The axes that rays run along, a sum of leafless_axes; 0 if the file holds an octree.
+     */
+    uint32_t directions;
+    /**
+     * How the ends of intervals are stored.
+     */
+    leafless_dexel_ends ends;
+    /**
+     * How unit normals are stored.
+     */
+    leafless_dexel_normals normals;
+    /**
+     * 1 if it is stored on which surfaces the ends lie, else 0.
+     */
+    uint32_t has_surfaces;
+    /**
+     * 1 if it is stored what intervals are made of, else 0.
+     */
+    uint32_t has_materials;
+    /**
+     * Zero.
+     */
+    uint32_t reserved;
+    /**
+     * Rays in the window along each axis, empty ones among them.
+     */
+    uint64_t rays[3];
+    /**
+     * Intervals along each axis.
+     */
+    uint64_t intervals[3];
+} leafless_tridexel_probe;
+
+/**
  * What header and section table of a file say.
  */
 typedef struct {
@@ -3166,15 +3574,15 @@ typedef struct {
      */
     uint32_t minor;
     /**
-     * Where the octree lies, and its depth.
+     * Where the octree or the tri-dexel model lies, and its depth.
      */
     leafless_frame frame;
     /**
-     * Array elements without bricks.
+     * Array elements without bricks; 0 for a tri-dexel model.
      */
     uint64_t elements;
     /**
-     * Array elements of the deepest level.
+     * Array elements of the deepest level; 0 for a tri-dexel model.
      */
     uint64_t bricks;
     /**
@@ -3186,21 +3594,25 @@ typedef struct {
      */
     uint64_t sections;
     /**
-     * What the cells prove.
+     * What the cells prove; nothing for a tri-dexel model.
      */
     leafless_proof proof;
     /**
-     * The tag of the whole universe; BRANCH if it is cut.
+     * The tag of the whole universe; BRANCH if it is cut; EMPTY for a tri-dexel model.
      */
     leafless_tag root;
     /**
-     * What is known of the space outside of the universe; never BRANCH.
+     * What is known of the space outside of the universe; never BRANCH; EMPTY for a tri-dexel model.
      */
     leafless_tag exterior;
     /**
      * Whether nothing is undecided.
      */
     bool is_binary;
+    /**
+     * What is stored of a tri-dexel model; all zeros for an octree.
+     */
+    leafless_tridexel_probe tridexel;
 } leafless_probe;
 
 /**
@@ -7935,6 +8347,748 @@ leafless_status leafless_octree_distance_field(const leafless_octree *octree,
                                                uint64_t capacity);
 
 /**
+ * Sets what a tri-dexel model stores to the defaults.
+ *
+ * - Buffers: `format`, one struct of `struct_size` bytes, which is sizeof(leafless_tridexel_format); need not be
+ *   initialised.
+ * - Result: `*format`.
+ * - Errors: LEAFLESS_E_ARGUMENT if `struct_size` cannot be right.
+ * - Ownership: nothing changes hands.
+ * - Threads: any.
+ * - Untrusted input: none.
+ * - Since: 0.1
+ */
+leafless_status leafless_tridexel_format_init(leafless_tridexel_format *format,
+                                              size_t struct_size);
+
+/**
+ * Makes the tri-dexel model of a solid on the lattice of a frame. O(rays + crossings). The result is the same bit for
+ * bit for any number of threads.
+ *
+ * Under LEAFLESS_RULE_SAMPLED intervals are those of the solid on each ray. An end says of the centres of cells beside
+ * it just what the solid does; apart from that it is off by at most 2^-31 of the universe's edge, or 2^-36 with
+ * LEAFLESS_DEXEL_ENDS_DOUBLE. So it is with closed meshes, with half-spaces and expressions of them, and with octrees.
+ * Solids of other kinds, and open meshes around their holes, are sampled: an end between centres on different sides is
+ * narrowed down by cells to a depth of 20, and a wall between two neighbouring centres is missed. Under
+ * LEAFLESS_RULE_INNER and LEAFLESS_RULE_OUTER intervals are those of the solid's FULL cells, and of all that are not
+ * EMPTY.
+ *
+ * - Buffers: `frame`, one struct; `format`, one struct or NULL; `options`, one struct or NULL; `tridexel`, one
+ *   pointer. `rule` is a leafless_rule.
+ * - Result: `*tridexel`.
+ * - Errors: LEAFLESS_E_ARGUMENT also for LEAFLESS_RULE_CERTIFIED, because an interval cannot be undecided, and if a
+ *   field of `format` is wrong; LEAFLESS_E_FRAME if the solid belongs to another frame; LEAFLESS_E_NOT_SAMPLED if
+ *   LEAFLESS_RULE_SAMPLED is asked of a solid that cannot decide points; LEAFLESS_E_CALLBACK; LEAFLESS_E_DAMAGED;
+ *   LEAFLESS_E_LIMIT, also for 2^32 rays or intervals along one axis; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
+ * - Ownership: nothing is kept of the solid; give `*tridexel` back with leafless_tridexel_free.
+ * - Threads: any; uses as many as `options` says.
+ * - Untrusted input: any solid; set `max_bytes` where the depth or the solid is not your own choice.
+ * - Since: 0.1
+ */
+leafless_status leafless_tridexel_make(const leafless_solid *solid,
+                                       const leafless_frame *frame,
+                                       uint32_t rule,
+                                       const leafless_tridexel_format *format,
+                                       const leafless_options *options,
+                                       leafless_tridexel **tridexel);
+
+/**
+ * One more reference to a tri-dexel model.
+ *
+ * - Buffers: `tridexel`, a handle; `reference`, one pointer.
+ * - Result: `*reference`, equal to `tridexel`.
+ * - Errors: only the general ones.
+ * - Ownership: give each reference back with leafless_tridexel_free.
+ * - Threads: any.
+ * - Untrusted input: none.
+ * - Since: 0.1
+ */
+leafless_status leafless_tridexel_ref(const leafless_tridexel *tridexel, leafless_tridexel **reference);
+
+/**
+ * Gives back a reference to a tri-dexel model. With the last one the model is gone, and with it the mapping of its file,
+ * unless a model with other metadata still shares its arrays.
+ *
+ * - Buffers: `tridexel`, a handle or NULL, which does nothing.
+ * - Result: none.
+ * - Errors: none.
+ * - Ownership: the reference is gone.
+ * - Threads: any; no other call may use this reference.
+ * - Untrusted input: none.
+ * - Since: 0.1
+ */
+void leafless_tridexel_free(leafless_tridexel *tridexel);
+
+/**
+ * What can be said of a tri-dexel model at once. O(1).
+ *
+ * - Buffers: `info`, one struct.
+ * - Result: `*info`.
+ * - Errors: only the general ones.
+ * - Ownership: nothing changes hands.
+ * - Threads: any.
+ * - Untrusted input: any model.
+ * - Since: 0.1
+ */
+leafless_status leafless_tridexel_describe(const leafless_tridexel *tridexel, leafless_tridexel_info *info);
+
+/**
+ * Checks that a tri-dexel model is well-formed: intervals are in order, disjoint and inside of the universe. O(n).
+ * Whether the directions agree is not checked. Models that the library makes,
+ * opens or maps verified are well-formed.
+ *
+ * - Buffers: none.
+ * - Result: LEAFLESS_OK if it is.
+ * - Errors: LEAFLESS_E_DAMAGED, with the first damage in the message.
+ * - Ownership: nothing changes hands.
+ * - Threads: any.
+ * - Untrusted input: any model.
+ * - Since: 0.1
+ */
+leafless_status leafless_tridexel_check(const leafless_tridexel *tridexel);
+
+/**
+ * Whether two tri-dexel models store the same, bit for bit, on the same frame. Metadata does not count. O(n).
+ *
+ * - Buffers: `equal`, one truth value.
+ * - Result: `*equal`.
+ * - Errors: only the general ones.
+ * - Ownership: nothing changes hands.
+ * - Threads: any.
+ * - Untrusted input: any models.
+ * - Since: 0.1
+ */
+leafless_status leafless_tridexel_equal(const leafless_tridexel *a, const leafless_tridexel *b, bool *equal);
+
+/**
+ * The tri-dexel model with one more fact in its metadata, or with another value of one; the arrays are shared. Names in
+ * use: "name", "units".
+ *
+ * - Buffers: `key` and `value`, `key_length` and `value_length` bytes of UTF-8; `named`, one pointer.
+ * - Result: `*named`.
+ * - Errors: LEAFLESS_E_UTF8; LEAFLESS_E_ARGUMENT if all facts would take more than 1 MiB in a file, 8 bytes
+ *   and the two texts each; LEAFLESS_E_NO_MEMORY.
+ * - Ownership: the texts are copied. `*named` shares the arrays of `tridexel`, which may be freed: what must outlive
+ *   `tridexel`, such as bytes that it views, must outlive `*named` too. Give that back with leafless_tridexel_free.
+ * - Threads: any.
+ * - Untrusted input: any texts.
+ * - Since: 0.1
+ */
+leafless_status leafless_tridexel_with_metadata(const leafless_tridexel *tridexel,
+                                                const char *key,
+                                                size_t key_length,
+                                                const char *value,
+                                                size_t value_length,
+                                                leafless_tridexel **named);
+
+/**
+ * The tri-dexel model with one fact less in its metadata, or with none; the arrays are shared.
+ *
+ * - Buffers: `key`, `key_length` bytes of UTF-8, or NULL for all facts; `unnamed`, one pointer.
+ * - Result: `*unnamed`; a fact that is not there need not be.
+ * - Errors: LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY.
+ * - Ownership: as leafless_tridexel_with_metadata.
+ * - Threads: any.
+ * - Untrusted input: any texts.
+ * - Since: 0.1
+ */
+leafless_status leafless_tridexel_without_metadata(const leafless_tridexel *tridexel,
+                                                   const char *key,
+                                                   size_t key_length,
+                                                   leafless_tridexel **unnamed);
+
+/**
+ * The value of a fact in a tri-dexel model's metadata, such as "name".
+ *
+ * - Buffers: `key`, `key_length` bytes of UTF-8; `value` and `value_length`, one each.
+ * - Result: `*value`, not NUL-terminated; NULL if there is no such fact. `*value_length`, in bytes.
+ * - Errors: LEAFLESS_E_UTF8.
+ * - Ownership: the text belongs to the model and lives as long as the reference `tridexel`.
+ * - Threads: any.
+ * - Untrusted input: any model.
+ * - Since: 0.1
+ */
+leafless_status leafless_tridexel_peek_metadata(const leafless_tridexel *tridexel,
+                                                const char *key,
+                                                size_t key_length,
+                                                const char **value,
+                                                size_t *value_length);
+
+/**
+ * A fact of a tri-dexel model's metadata by its place among all, which stand by ascending key.
+ *
+ * - Buffers: `count`, one number; `key`, `key_length`, `value`, `value_length`, one each, all four NULL to
+ *   ask for the count only.
+ * - Result: `*count`, the number of all facts; key and value, not NUL-terminated, with their lengths in
+ *   bytes.
+ * - Errors: LEAFLESS_E_ARGUMENT if there is no fact `index`, unless only the count is asked for.
+ * - Ownership: the texts belong to the model and live as long as the reference `tridexel`.
+ * - Threads: any.
+ * - Untrusted input: any model.
+ * - Since: 0.1
+ */
+leafless_status leafless_tridexel_peek_metadata_at(const leafless_tridexel *tridexel,
+                                                   uint64_t index,
+                                                   uint64_t *count,
+                                                   const char **key,
+                                                   size_t *key_length,
+                                                   const char **value,
+                                                   size_t *value_length);
+
+/**
+ * What the rays along an axis hold. O(n).
+ *
+ * - Buffers: `statistics`, one struct. `axis` is 0 for x, 1 for y, 2 for z.
+ * - Result: `*statistics`.
+ * - Errors: LEAFLESS_E_ARGUMENT if the model has no rays along `axis`.
+ * - Ownership: nothing changes hands.
+ * - Threads: any.
+ * - Untrusted input: any model, any number.
+ * - Since: 0.1
+ */
+leafless_status leafless_tridexel_statistics(const leafless_tridexel *tridexel,
+                                             uint32_t axis,
+                                             leafless_dexel_statistics *statistics);
+
+/**
+ * Whether the centre of a finest cell lies inside. O(log intervals of a ray).
+ *
+ * - Buffers: `cell`, 3 numbers; `inside`, one truth value.
+ * - Result: `*inside`; false if a coordinate is not below 2^depth. Where the directions differ, as those of arrays from
+ *   elsewhere may, the highest axis decides.
+ * - Errors: only the general ones.
+ * - Ownership: nothing changes hands.
+ * - Threads: any.
+ * - Untrusted input: any model, any numbers.
+ * - Since: 0.1
+ *
+ */
+leafless_status leafless_tridexel_contains_cell(const leafless_tridexel *tridexel,
+                                                const uint32_t cell[3],
+                                                bool *inside);
+
+/**
+ * The smallest rectangle of rays along an axis that holds all rays that cross the solid.
+ *
+ * - Buffers: `first` and `end`, 2 numbers each: the indices of the first ray's cells on the other two axes in the order
+ *   x, y, z, and the first beyond the last one's. `axis` is 0 for x, 1 for y, 2 for z.
+ * - Result: `first` and `end`; equal to each other if no ray crosses the solid.
+ * - Errors: LEAFLESS_E_ARGUMENT if the model has no rays along `axis`.
+ * - Ownership: nothing changes hands.
+ * - Threads: any.
+ * - Untrusted input: any model, any number.
+ * - Since: 0.1
+ *
+ */
+leafless_status leafless_tridexel_window(const leafless_tridexel *tridexel,
+                                         uint32_t axis,
+                                         uint32_t first[2],
+                                         uint32_t end[2]);
+
+/**
+ * The intervals of one ray, in ascending order.
+ *
+ * - Buffers: `ray`, 2 numbers, the indices of the ray's cells on the other two axes in the order x, y, z; `dexels`,
+ *   room for `capacity` structs, or NULL to ask for the count only; `count`, one number. `axis` is 0 for x, 1 for y, 2
+ *   for z.
+ * - Result: `*count`; the intervals. A ray outside of the universe has none.
+ * - Errors: LEAFLESS_E_ARGUMENT if the model has no rays along `axis`; LEAFLESS_E_BUFFER if the capacity is too small.
+ * - Ownership: nothing changes hands.
+ * - Threads: any.
+ * - Untrusted input: any model, any numbers.
+ * - Since: 0.1
+ *
+ */
+leafless_status leafless_tridexel_ray(const leafless_tridexel *tridexel,
+                                      uint32_t axis,
+                                      const uint32_t ray[2],
+                                      leafless_dexel *dexels,
+                                      uint64_t capacity,
+                                      uint64_t *count);
+
+/**
+ * The intervals of many rays along one axis, in compressed rows: those of ray i are the elements `offsets[i]` to before
+ * `offsets[i + 1]` of each array. The ray at steps (u, v) from the first is i = v · width + u, of a rectangle that is
+ * `width` rays wide along the first of the other two axes. O(rays + intervals).
+ *
+ * - Buffers: `first` and `end`, 2 numbers each, or NULL both for the rectangle of leafless_tridexel_window: the indices
+ *   of the first ray's cells on the other two axes in the order x, y, z, and the first beyond the last one's.
+ *   `offsets`, room for `offset_capacity` numbers; for each of `interval_capacity` intervals `ends_model` has room for 2
+ *   numbers, `normals` for 6, `surfaces` for 2, `materials` for 1. Each of the five may be NULL, if it is not wanted.
+ *   `offset_count` and `interval_count`, one number each. `axis` is 0 for x, 1 for y, 2 for z.
+ * - Result: `offsets`, one more than rays. For each interval: the coordinates of its start and its end; the outward unit
+ *   normals there, three zeros where none is known; the surfaces there, UINT32_MAX where none is known; the material, 0
+ *   where nothing was said. The counts of offsets and intervals.
+ * - Errors: LEAFLESS_E_ARGUMENT if the model has no rays along `axis`, `first` lies beyond `end`, or the rays reach beyond
+ *   the universe; LEAFLESS_E_BUFFER if a capacity is too small: nothing is written then.
+ * - Ownership: nothing changes hands.
+ * - Threads: any; works in the calling thread.
+ * - Untrusted input: any model, any numbers.
+ * - Since: 0.1
+ *
+ */
+leafless_status leafless_tridexel_read(const leafless_tridexel *tridexel,
+                                       uint32_t axis,
+                                       const uint32_t first[2],
+                                       const uint32_t end[2],
+                                       uint64_t *offsets,
+                                       uint64_t offset_capacity,
+                                       uint64_t *offset_count,
+                                       double *ends_model,
+                                       double *normals,
+                                       uint32_t *surfaces,
+                                       uint32_t *materials,
+                                       uint64_t interval_capacity,
+                                       uint64_t *interval_count);
+
+/**
+ * The points that lie in `a`, in `b`, or in both. Exact: all laws of sets hold. O(rays + intervals), and the same bit for
+ * bit for any number of threads. The result stores what either operand does; ends are doubles if those of one operand
+ * are. An end keeps its surface and its normal, turned about where a subtraction shows its other side. Where both
+ * operands hold a place, the material of `a` counts.
+ *
+ * - Buffers: `options`, one struct or NULL; `result`, one pointer.
+ * - Result: `*result`, with those of the facts "name" and "units" that all operands have with one value, and
+ *   no other metadata.
+ * - Errors: LEAFLESS_E_FRAME if the frames differ; LEAFLESS_E_ARGUMENT if the operands have rays along different axes;
+ *   LEAFLESS_E_DAMAGED if an operand was mapped unverified and is damaged; LEAFLESS_E_LIMIT, also for 2^32 intervals along
+ *   one axis; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
+ * - Ownership: the operands stay as they are; give `*result` back with leafless_tridexel_free.
+ * - Threads: any; uses as many as `options` says.
+ * - Untrusted input: any models.
+ * - Since: 0.1
+ */
+leafless_status leafless_tridexel_union(const leafless_tridexel *a,
+                                        const leafless_tridexel *b,
+                                        const leafless_options *options,
+                                        leafless_tridexel **result);
+
+/**
+ * The points that `a` and `b` have in common.
+ *
+ * - Buffers: as leafless_tridexel_union.
+ * - Result: as leafless_tridexel_union.
+ * - Errors: as leafless_tridexel_union.
+ * - Ownership: as leafless_tridexel_union.
+ * - Threads: any; uses as many as `options` says.
+ * - Untrusted input: any models.
+ * - Since: 0.1
+ */
+leafless_status leafless_tridexel_intersection(const leafless_tridexel *a,
+                                               const leafless_tridexel *b,
+                                               const leafless_options *options,
+                                               leafless_tridexel **result);
+
+/**
+ * `a` without `b`.
+ *
+ * - Buffers: as leafless_tridexel_union.
+ * - Result: as leafless_tridexel_union.
+ * - Errors: as leafless_tridexel_union.
+ * - Ownership: as leafless_tridexel_union.
+ * - Threads: any; uses as many as `options` says.
+ * - Untrusted input: any models.
+ * - Since: 0.1
+ */
+leafless_status leafless_tridexel_difference(const leafless_tridexel *a,
+                                             const leafless_tridexel *b,
+                                             const leafless_options *options,
+                                             leafless_tridexel **result);
+
+/**
+ * The points of just one of `a` and `b`.
+ *
+ * - Buffers: as leafless_tridexel_union.
+ * - Result: as leafless_tridexel_union.
+ * - Errors: as leafless_tridexel_union.
+ * - Ownership: as leafless_tridexel_union.
+ * - Threads: any; uses as many as `options` says.
+ * - Untrusted input: any models.
+ * - Since: 0.1
+ */
+leafless_status leafless_tridexel_xor(const leafless_tridexel *a,
+                                      const leafless_tridexel *b,
+                                      const leafless_options *options,
+                                      leafless_tridexel **result);
+
+/**
+ * The points of the universe that do not lie in `tridexel`. O(rays of the universe + intervals).
+ *
+ * - Buffers: as leafless_tridexel_union.
+ * - Result: as leafless_tridexel_union.
+ * - Errors: LEAFLESS_E_DAMAGED; LEAFLESS_E_LIMIT, also for 2^32 rays along one axis; LEAFLESS_E_CANCELLED;
+ *   LEAFLESS_E_NO_MEMORY.
+ * - Ownership: as leafless_tridexel_union.
+ * - Threads: any; uses as many as `options` says.
+ * - Untrusted input: any model; set `max_bytes` where its depth is not your own choice.
+ * - Since: 0.1
+ */
+leafless_status leafless_tridexel_complement(const leafless_tridexel *tridexel,
+                                             const leafless_options *options,
+                                             leafless_tridexel **result);
+
+/**
+ * The union of any number of tri-dexel models, at least one. Where several hold a place, the material of the first one
+ * counts. O(rays + intervals · log models). Limits of `options` concern each of its steps.
+ *
+ * - Buffers: `tridexels`, `count` handles; `options`, one struct or NULL; `result`, one pointer.
+ * - Result: as leafless_tridexel_union.
+ * - Errors: as leafless_tridexel_union, and LEAFLESS_E_ARGUMENT if `count` is 0.
+ * - Ownership: as leafless_tridexel_union.
+ * - Threads: any; uses as many as `options` says.
+ * - Untrusted input: any models.
+ * - Since: 0.1
+ */
+leafless_status leafless_tridexel_union_of(const leafless_tridexel *const *tridexels,
+                                           uint64_t count,
+                                           const leafless_options *options,
+                                           leafless_tridexel **result);
+
+/**
+ * The intersection of any number of tri-dexel models, at least one.
+ *
+ * - Buffers: as leafless_tridexel_union_of.
+ * - Result: as leafless_tridexel_union.
+ * - Errors: as leafless_tridexel_union_of.
+ * - Ownership: as leafless_tridexel_union.
+ * - Threads: any; uses as many as `options` says.
+ * - Untrusted input: any models.
+ * - Since: 0.1
+ */
+leafless_status leafless_tridexel_intersection_of(const leafless_tridexel *const *tridexels,
+                                                  uint64_t count,
+                                                  const leafless_options *options,
+                                                  leafless_tridexel **result);
+
+/**
+ * The points that lie in an odd number of tri-dexel models, at least one.
+ *
+ * - Buffers: as leafless_tridexel_union_of.
+ * - Result: as leafless_tridexel_union.
+ * - Errors: as leafless_tridexel_union_of.
+ * - Ownership: as leafless_tridexel_union.
+ * - Threads: any; uses as many as `options` says.
+ * - Untrusted input: any models.
+ * - Since: 0.1
+ */
+leafless_status leafless_tridexel_xor_of(const leafless_tridexel *const *tridexels,
+                                         uint64_t count,
+                                         const leafless_options *options,
+                                         leafless_tridexel **result);
+
+/**
+ * The same tri-dexel model with other things stored. What `tridexel` does not store is unknown in the result: no surface,
+ * no normal, material 0. Doubles become fixed-point numbers and back; an interval that this makes empty is left out.
+ *
+ * - Buffers: `format`, one struct or NULL; `options`, one struct or NULL; `result`, one pointer.
+ * - Result: `*result`, with the metadata of `tridexel`.
+ * - Errors: LEAFLESS_E_ARGUMENT if a field of `format` is wrong, or `directions` are neither 0 nor those of `tridexel`;
+ *   LEAFLESS_E_DAMAGED; LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
+ * - Ownership: `tridexel` stays as it is; give `*result` back with leafless_tridexel_free.
+ * - Threads: any; uses as many as `options` says.
+ * - Untrusted input: any model.
+ * - Since: 0.1
+ */
+leafless_status leafless_tridexel_to_format(const leafless_tridexel *tridexel,
+                                            const leafless_tridexel_format *format,
+                                            const leafless_options *options,
+                                            leafless_tridexel **result);
+
+/**
+ * The same tri-dexel model, all of it of one material.
+ *
+ * - Buffers: `options`, one struct or NULL; `result`, one pointer. `material` is any number.
+ * - Result: `*result`, which stores materials, with the metadata of `tridexel`.
+ * - Errors: LEAFLESS_E_DAMAGED; LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
+ * - Ownership: `tridexel` stays as it is; give `*result` back with leafless_tridexel_free.
+ * - Threads: any; uses as many as `options` says.
+ * - Untrusted input: any model, any number.
+ * - Since: 0.1
+ */
+leafless_status leafless_tridexel_with_material(const leafless_tridexel *tridexel,
+                                                uint32_t material,
+                                                const leafless_options *options,
+                                                leafless_tridexel **result);
+
+/**
+ * A copy of a tri-dexel model that can be changed. O(rays of the universe + intervals).
+ *
+ * - Buffers: `editor`, one pointer.
+ * - Result: `*editor`, which stores what `tridexel` does.
+ * - Errors: LEAFLESS_E_DAMAGED if the model was mapped unverified and is damaged; LEAFLESS_E_LIMIT for 2^32 rays along
+ *   one axis, which is a depth of 16; LEAFLESS_E_NO_MEMORY.
+ * - Ownership: nothing is kept of `tridexel`; give `*editor` back with leafless_tridexel_editor_free.
+ * - Threads: any.
+ * - Untrusted input: any model; memory is needed for each ray of its universe.
+ * - Since: 0.1
+ */
+leafless_status leafless_tridexel_editor_new(const leafless_tridexel *tridexel,
+                                             leafless_tridexel_editor **editor);
+
+/**
+ * Gives back an editor. Tri-dexel models that it froze stay.
+ *
+ * - Buffers: `editor`, a handle or NULL, which does nothing.
+ * - Result: none.
+ * - Errors: none.
+ * - Ownership: the handle is gone.
+ * - Threads: no other call may use the handle.
+ * - Untrusted input: none.
+ * - Since: 0.1
+ */
+void leafless_tridexel_editor_free(leafless_tridexel_editor *editor);
+
+/**
+ * The lattice of an editor.
+ *
+ * - Buffers: `frame`, one struct.
+ * - Result: `*frame`, that of the model which was copied.
+ * - Errors: LEAFLESS_E_BUSY.
+ * - Ownership: nothing changes hands.
+ * - Threads: any; LEAFLESS_E_BUSY while another call changes the editor.
+ * - Untrusted input: none.
+ * - Since: 0.1
+ */
+leafless_status leafless_tridexel_editor_frame(const leafless_tridexel_editor *editor, leafless_frame *frame);
+
+/**
+ * Bytes that an editor takes.
+ *
+ * - Buffers: `bytes`, one number.
+ * - Result: `*bytes`.
+ * - Errors: LEAFLESS_E_BUSY.
+ * - Ownership: nothing changes hands.
+ * - Threads: any; LEAFLESS_E_BUSY while another call changes the editor.
+ * - Untrusted input: none.
+ * - Since: 0.1
+ */
+leafless_status leafless_tridexel_editor_bytes(const leafless_tridexel_editor *editor, uint64_t *bytes);
+
+/**
+ * Adds the points of a tri-dexel model. O(rays of its window + intervals there). What the model stores beyond what the
+ * editor does is left out.
+ *
+ * - Buffers: `options`, one struct or NULL.
+ * - Result: the editor is changed.
+ * - Errors: LEAFLESS_E_FRAME if the frames differ; LEAFLESS_E_ARGUMENT if the model has rays along other axes;
+ *   LEAFLESS_E_DAMAGED if the model was mapped unverified and is damaged; LEAFLESS_E_LIMIT for 2^32 intervals along one
+ *   axis; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY; LEAFLESS_E_BUSY.
+ *   After LEAFLESS_E_LIMIT, LEAFLESS_E_CANCELLED and LEAFLESS_E_NO_MEMORY some rays may be changed and others not; the
+ *   same call can be made again.
+ * - Ownership: nothing is kept of `tridexel`.
+ * - Threads: any; LEAFLESS_E_BUSY while another call uses the editor; uses the calling thread alone.
+ * - Untrusted input: any model.
+ * - Since: 0.1
+ */
+leafless_status leafless_tridexel_editor_unite(leafless_tridexel_editor *editor,
+                                               const leafless_tridexel *tridexel,
+                                               const leafless_options *options);
+
+/**
+ * Takes away the points of a tri-dexel model. O(rays of its window + intervals there).
+ *
+ * - Buffers: `options`, one struct or NULL.
+ * - Result: the editor is changed.
+ * - Errors: as leafless_tridexel_editor_unite.
+ * - Ownership: nothing is kept of `tridexel`.
+ * - Threads: any; LEAFLESS_E_BUSY while another call uses the editor; uses the calling thread alone.
+ * - Untrusted input: any model.
+ * - Since: 0.1
+ */
+leafless_status leafless_tridexel_editor_subtract(leafless_tridexel_editor *editor,
+                                                  const leafless_tridexel *tridexel,
+                                                  const leafless_options *options);
+
+/**
+ * Keeps only the points that lie in a tri-dexel model, too. O(rays of the universe).
+ *
+ * - Buffers: `options`, one struct or NULL.
+ * - Result: the editor is changed.
+ * - Errors: as leafless_tridexel_editor_unite.
+ * - Ownership: nothing is kept of `tridexel`.
+ * - Threads: any; LEAFLESS_E_BUSY while another call uses the editor; uses the calling thread alone.
+ * - Untrusted input: any model.
+ * - Since: 0.1
+ */
+leafless_status leafless_tridexel_editor_intersect(leafless_tridexel_editor *editor,
+                                                   const leafless_tridexel *tridexel,
+                                                   const leafless_options *options);
+
+/**
+ * Adds a solid. Its intervals are those of leafless_tridexel_make under LEAFLESS_RULE_SAMPLED, in the directions and
+ * with the contents of the editor. Only rays through the solid's bounding box are looked at.
+ *
+ * - Buffers: `options`, one struct or NULL.
+ * - Result: the editor is changed.
+ * - Errors: as leafless_tridexel_make, and nothing is changed; as leafless_tridexel_editor_unite.
+ * - Ownership: nothing is kept of the solid.
+ * - Threads: any; LEAFLESS_E_BUSY while another call uses the editor; uses as many as `options` says.
+ * - Untrusted input: any solid.
+ * - Since: 0.1
+ */
+leafless_status leafless_tridexel_editor_unite_solid(leafless_tridexel_editor *editor,
+                                                     const leafless_solid *solid,
+                                                     const leafless_options *options);
+
+/**
+ * Takes a solid away: one step of a tool. Its intervals are those of leafless_tridexel_make under LEAFLESS_RULE_SAMPLED,
+ * in the directions and with the contents of the editor. Only rays through the solid's bounding box are looked at.
+ *
+ * - Buffers: `options`, one struct or NULL.
+ * - Result: the editor is changed.
+ * - Errors: as leafless_tridexel_make, and nothing is changed; as leafless_tridexel_editor_unite.
+ * - Ownership: nothing is kept of the solid.
+ * - Threads: any; LEAFLESS_E_BUSY while another call uses the editor; uses as many as `options` says.
+ * - Untrusted input: any solid.
+ * - Since: 0.1
+ */
+leafless_status leafless_tridexel_editor_subtract_solid(leafless_tridexel_editor *editor,
+                                                        const leafless_solid *solid,
+                                                        const leafless_options *options);
+
+/**
+ * Keeps only the points that lie in a solid, too. Its intervals are those of leafless_tridexel_make under LEAFLESS_RULE_SAMPLED,
+ * in the directions and with the contents of the editor. O(rays of the universe), and the rays through the solid's
+ * bounding box.
+ *
+ * - Buffers: `options`, one struct or NULL.
+ * - Result: the editor is changed.
+ * - Errors: as leafless_tridexel_make, and nothing is changed; as leafless_tridexel_editor_unite.
+ * - Ownership: nothing is kept of the solid.
+ * - Threads: any; LEAFLESS_E_BUSY while another call uses the editor; uses as many as `options` says.
+ * - Untrusted input: any solid.
+ * - Since: 0.1
+ */
+leafless_status leafless_tridexel_editor_intersect_solid(leafless_tridexel_editor *editor,
+                                                         const leafless_solid *solid,
+                                                         const leafless_options *options);
+
+/**
+ * The tri-dexel model as it is now. O(rays of the universe + intervals). The editor can be changed further.
+ *
+ * - Buffers: `options`, one struct or NULL; `tridexel`, one pointer.
+ * - Result: `*tridexel`, without metadata.
+ * - Errors: LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY; LEAFLESS_E_BUSY.
+ * - Ownership: the editor stays as it is; give `*tridexel` back with leafless_tridexel_free.
+ * - Threads: any; LEAFLESS_E_BUSY while another call changes the editor; uses the calling thread alone.
+ * - Untrusted input: none.
+ * - Since: 0.1
+ */
+leafless_status leafless_tridexel_editor_freeze(const leafless_tridexel_editor *editor,
+                                                const leafless_options *options,
+                                                leafless_tridexel **tridexel);
+
+/**
+ * Makes a tri-dexel model of intervals that another program or a machine has. O(rays of the universe + intervals).
+ *
+ * The intervals of a ray ascend and are disjoint. What reaches beyond the universe is cut off; what `format` does not
+ * store is left out. Ends are rounded as `format` says, and keep their side of every centre of a cell. Intervals that are
+ * empty after rounding are left out; those that touch are joined, unless both have materials and these differ. The
+ * directions are not compared with each other.
+ *
+ * - Buffers: `frame`, one struct; `format`, one struct or NULL, whose `directions` are 0 or the axes of `rays`; `rays`,
+ *   `count` structs, 1 to 3, each for another axis; `options`, one struct or NULL; `tridexel`, one pointer.
+ * - Result: `*tridexel`.
+ * - Errors: LEAFLESS_E_ARGUMENT also if offsets do not ascend, if an end of an interval is not a number or not behind its
+ *   start, or if an interval begins before the one before it ends; LEAFLESS_E_LIMIT for 2^32 rays or intervals along one
+ *   axis, which is a depth of 16; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
+ * - Ownership: the arrays are not kept; give `*tridexel` back with leafless_tridexel_free.
+ * - Threads: any; works in the calling thread.
+ * - Untrusted input: any numbers.
+ * - Since: 0.1
+ */
+leafless_status leafless_tridexel_new(const leafless_frame *frame,
+                                      const leafless_tridexel_format *format,
+                                      const leafless_ray_arrays *rays,
+                                      uint64_t count,
+                                      const leafless_options *options,
+                                      leafless_tridexel **tridexel);
+
+/**
+ * The surface of a tri-dexel model: a closed mesh. Samples are the centres of cells; everything outside of the universe
+ * is outside.
+ *
+ * Triangles turn counter-clockwise as seen from outside. Every edge belongs to exactly two triangles, but where vertices
+ * lie at one place: these are one vertex, and triangles without area are dropped. Where a ray does not tell a crossing,
+ * because the model has no rays along an axis or its directions disagree, the crossing lies half-way between the two
+ * centres; the report counts such places.
+ *
+ * O(rays · 2^depth / 64 + mesh), for rays with few intervals each.
+ *
+ * - Buffers: `options`, one struct or NULL; `report`, one struct, or NULL if it is not wanted; `mesh`, one pointer.
+ *   `method` is a leafless_dexel_surface_method.
+ * - Result: `*mesh`, the same for any number of threads; it has no triangles if nothing is inside. `*report`.
+ * - Errors: LEAFLESS_E_ARGUMENT also if the frame lies so far from the origin that doubles cannot tell its cells apart;
+ *   LEAFLESS_E_MESH if there would be more than 2^32 - 1 vertices or triangles; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
+ * - Ownership: `tridexel` stays as it is; give `*mesh` back with leafless_mesh_free.
+ * - Threads: any; uses as many as `options` says.
+ * - Untrusted input: any model; a damaged one is refused (LEAFLESS_E_DAMAGED).
+ * - Since: 0.1
+ */
+leafless_status leafless_tridexel_surface(const leafless_tridexel *tridexel,
+                                          uint32_t method,
+                                          const leafless_options *options,
+                                          leafless_dexel_surface_report *report,
+                                          leafless_mesh **mesh);
+
+/**
+ * The octree of a tri-dexel model: a finest cell is FULL if its centre lies inside, else EMPTY. It proves nothing.
+ *
+ * - Buffers: `options`, one struct or NULL; `octree`, one pointer.
+ * - Result: `*octree`, with the model's facts "name" and "units" and no others; the same for any number of threads.
+ * - Errors: LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
+ * - Ownership: `tridexel` stays as it is; give `*octree` back with leafless_octree_free.
+ * - Threads: any; uses as many as `options` says.
+ * - Untrusted input: any model, of which a damaged one is refused (LEAFLESS_E_DAMAGED); set `max_bytes` where its depth is not your own choice.
+ * - Since: 0.1
+ */
+leafless_status leafless_tridexel_to_octree(const leafless_tridexel *tridexel,
+                                            const leafless_options *options,
+                                            leafless_octree **octree);
+
+/**
+ * A tri-dexel model as a solid on any frame: the inside of its surface by marching cubes.
+ *
+ * That surface is near the one that the model was made from, not on it. So what is built of the solid proves nothing,
+ * and measures of it are not bounded; with `is_truth` the surface is taken for the truth, and both are as of any mesh.
+ *
+ * - Buffers: `options`, one struct or NULL; `solid`, one pointer.
+ * - Result: `*solid`.
+ * - Errors: as leafless_tridexel_surface, and LEAFLESS_E_MESH if no centre of a cell lies inside.
+ * - Ownership: nothing is kept of `tridexel`; give `*solid` back with leafless_solid_free.
+ * - Threads: any; uses as many as `options` says.
+ * - Untrusted input: any model; a damaged one is refused (LEAFLESS_E_DAMAGED).
+ * - Since: 0.1
+ */
+leafless_status leafless_tridexel_as_solid(const leafless_tridexel *tridexel,
+                                           bool is_truth,
+                                           const leafless_options *options,
+                                           leafless_solid **solid);
+
+/**
+ * The voxels of a tri-dexel model, whose corners are the centres of cells: a voxel lies inside if all of its eight
+ * corners do, outside if none does, and else on the boundary. Those that do not lie outside are merged along y, as far as
+ * kind and material are the same. A voxel has the material at its first corner that lies inside, x running fastest and z
+ * slowest. Call it once for the count, and then with a buffer.
+ *
+ * O(8^depth / 64 + rows).
+ *
+ * - Buffers: `options`, one struct or NULL; `voxels`, room for `capacity` structs, or NULL to ask for the count only;
+ *   `count`, one number.
+ * - Result: `*count`; the rows of voxels by z, then by x, then by y.
+ * - Errors: LEAFLESS_E_BUFFER if the capacity is too small; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
+ * - Ownership: nothing changes hands.
+ * - Threads: any; works in the calling thread.
+ * - Untrusted input: any model; a damaged one is refused (LEAFLESS_E_DAMAGED).
+ * - Since: 0.1
+ */
+leafless_status leafless_tridexel_voxels(const leafless_tridexel *tridexel,
+                                         const leafless_options *options,
+                                         leafless_long_voxel *voxels,
+                                         uint64_t capacity,
+                                         uint64_t *count);
+
+/**
  * What a file says of itself, without looking at more than header and section table. Whether the rest is
  * good is not known then.
  *
@@ -7956,7 +9110,8 @@ leafless_status leafless_file_probe(const char *path,
 
 /**
  * As leafless_file_probe for the first bytes of a file in memory, or all of them: 128 and 40 for each
- * section. 488 suffice for every file that this library writes, 163 968 for any.
+ * section. 488 suffice for an octree without channels that this library wrote, 808 for a tri-dexel model, 163 968
+ * for any file.
  *
  * - Buffers: `bytes`, `length` bytes, may be NULL if there are none; `probe`, one struct; `sections`, room
  *   for `capacity` structs, or NULL if they are not wanted.
@@ -7994,14 +9149,16 @@ leafless_status leafless_bytes_verify(const uint8_t *bytes, uint64_t length);
  *
  * - Buffers: `path`, `path_length` bytes of UTF-8; `octree`, one pointer.
  * - Result: `*octree`.
- * - Errors: LEAFLESS_E_FORMAT; LEAFLESS_E_VERSION; LEAFLESS_E_DAMAGED; LEAFLESS_E_IO; LEAFLESS_E_UTF8;
- *   LEAFLESS_E_NO_MEMORY.
+ * - Errors: LEAFLESS_E_FORMAT, also if the file holds a tri-dexel model; LEAFLESS_E_VERSION; LEAFLESS_E_DAMAGED;
+ *   LEAFLESS_E_IO; LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY.
  * - Ownership: give `*octree` back with leafless_octree_free.
  * - Threads: any.
  * - Untrusted input: any file; memory is at most a small multiple of its length.
  * - Since: 0.1
  */
-leafless_status leafless_octree_open(const char *path, size_t path_length, leafless_octree **octree);
+leafless_status leafless_octree_open(const char *path,
+                                     size_t path_length,
+                                     leafless_octree **octree);
 
 /**
  * Maps a file into memory and looks at its header, section table, bounds, level table and metadata only:
@@ -8128,6 +9285,150 @@ leafless_status leafless_octree_to_bytes(const leafless_octree *octree,
  * - Since: 0.1
  */
 leafless_status leafless_octree_write(const leafless_octree *octree, leafless_write_fn write, void *ctx);
+
+/**
+ * Reads the file of a tri-dexel model into memory and verifies all of it: the plain way, and the one for files that may
+ * not be trusted. Later changes of the file do not matter.
+ *
+ * - Buffers: `path`, `path_length` bytes of UTF-8; `tridexel`, one pointer.
+ * - Result: `*tridexel`.
+ * - Errors: LEAFLESS_E_FORMAT, also if the file holds an octree; LEAFLESS_E_VERSION; LEAFLESS_E_DAMAGED; LEAFLESS_E_IO;
+ *   LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY.
+ * - Ownership: give `*tridexel` back with leafless_tridexel_free.
+ * - Threads: any.
+ * - Untrusted input: any file; memory is at most a small multiple of its length.
+ * - Since: 0.1
+ */
+leafless_status leafless_tridexel_open(const char *path,
+                                       size_t path_length,
+                                       leafless_tridexel **tridexel);
+
+/**
+ * Maps the file of a tri-dexel model into memory and looks at its header, section table, bounds, windows and metadata
+ * only: some microseconds for a file of any size. Of a file that is damaged elsewhere intervals are read as they stand
+ * there, in bounds; set algebra, editors and writing check all of it first and return LEAFLESS_E_DAMAGED.
+ *
+ * While the model lives, or one with other metadata that shares it, nobody may make the file shorter or write to it, as
+ * for leafless_octree_map. Removing the file, or replacing it by renaming another over it, as leafless_tridexel_save
+ * does, is harmless.
+ *
+ * - Buffers: `path`, `path_length` bytes of UTF-8; `tridexel`, one pointer.
+ * - Result: `*tridexel`.
+ * - Errors: LEAFLESS_E_FORMAT, also if the file holds an octree; LEAFLESS_E_VERSION; LEAFLESS_E_DAMAGED;
+ *   LEAFLESS_E_ARGUMENT if there is no regular file; LEAFLESS_E_IO; LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY.
+ * - Ownership: give `*tridexel` back with leafless_tridexel_free.
+ * - Threads: any.
+ * - Untrusted input: any contents, but only where nobody else can change the file; else leafless_tridexel_open.
+ * - Since: 0.1
+ */
+leafless_status leafless_tridexel_map(const char *path,
+                                      size_t path_length,
+                                      leafless_tridexel **tridexel);
+
+/**
+ * As leafless_tridexel_map, but verifies all of the file first, in one scan. Who writes to the file afterwards undoes that.
+ *
+ * - Buffers: `path`, `path_length` bytes of UTF-8; `tridexel`, one pointer.
+ * - Result: `*tridexel`.
+ * - Errors: as leafless_tridexel_open, and LEAFLESS_E_ARGUMENT if there is no regular file.
+ * - Ownership: give `*tridexel` back with leafless_tridexel_free.
+ * - Threads: any.
+ * - Untrusted input: any contents, but only where nobody else can change the file; else leafless_tridexel_open.
+ * - Since: 0.1
+ */
+leafless_status leafless_tridexel_map_verified(const char *path,
+                                               size_t path_length,
+                                               leafless_tridexel **tridexel);
+
+/**
+ * The tri-dexel model in the bytes of a whole file, copied and verified as by leafless_tridexel_open.
+ *
+ * - Buffers: `bytes`, `length` bytes, may be NULL if there are none; `tridexel`, one pointer.
+ * - Result: `*tridexel`.
+ * - Errors: LEAFLESS_E_FORMAT, also if the file holds an octree; LEAFLESS_E_VERSION; LEAFLESS_E_DAMAGED;
+ *   LEAFLESS_E_NO_MEMORY.
+ * - Ownership: the bytes are not kept; give `*tridexel` back with leafless_tridexel_free.
+ * - Threads: any.
+ * - Untrusted input: any bytes; memory is at most a small multiple of their number.
+ * - Since: 0.1
+ */
+leafless_status leafless_tridexel_from_bytes(const uint8_t *bytes,
+                                             uint64_t length,
+                                             leafless_tridexel **tridexel);
+
+/**
+ * The tri-dexel model in the bytes of a whole file, used where they lie, and checked as little as by
+ * leafless_tridexel_map; call leafless_bytes_verify first where they may be damaged. For files that are part of a
+ * program, or that the host maps itself.
+ *
+ * - Buffers: `bytes`, `length` bytes on an address that is a multiple of 8; `tridexel`, one pointer.
+ * - Result: `*tridexel`.
+ * - Errors: LEAFLESS_E_FORMAT, also if the file holds an octree; LEAFLESS_E_VERSION; LEAFLESS_E_DAMAGED;
+ *   LEAFLESS_E_ARGUMENT if the bytes are misaligned; LEAFLESS_E_NO_MEMORY.
+ * - Ownership: the bytes stay the host's. They must stay, unchanged, until the last reference is given back to the
+ *   model, and to every model that leafless_tridexel_with_metadata or leafless_tridexel_without_metadata made of it.
+ *   Give `*tridexel` back with leafless_tridexel_free.
+ * - Threads: any.
+ * - Untrusted input: any bytes, as leafless_tridexel_map.
+ * - Since: 0.1
+ */
+leafless_status leafless_tridexel_view_bytes(const uint8_t *bytes,
+                                             uint64_t length,
+                                             leafless_tridexel **tridexel);
+
+/**
+ * Saves a tri-dexel model: at any moment, also after a crash or a power failure, there is the old file or the new one,
+ * each complete. Equal models with equal metadata give equal bytes. What leafless_octree_save says of temporary files,
+ * permissions, links and pipes holds here, too.
+ *
+ * - Buffers: `path`, `path_length` bytes of UTF-8.
+ * - Result: LEAFLESS_OK once the file is on the disk.
+ * - Errors: LEAFLESS_E_IO; LEAFLESS_E_DAMAGED if the model was mapped unverified and is damaged; LEAFLESS_E_UTF8;
+ *   LEAFLESS_E_NO_MEMORY. The old file is then as it was; only if the very last step fails, synchronising the directory,
+ *   the new one is in place.
+ * - Ownership: nothing changes hands.
+ * - Threads: any.
+ * - Untrusted input: any model.
+ * - Since: 0.1
+ */
+leafless_status leafless_tridexel_save(const leafless_tridexel *tridexel,
+                                       const char *path,
+                                       size_t path_length);
+
+/**
+ * The bytes of a tri-dexel model's file, in memory. Asking for the length takes as long as filling.
+ *
+ * - Buffers: `bytes`, room for `capacity` bytes, or NULL to ask for the length only; `length`, one number.
+ * - Result: `*length`, the length of the file; the file in `bytes`.
+ * - Errors: LEAFLESS_E_BUFFER if the capacity is too small; LEAFLESS_E_DAMAGED if the model was mapped unverified and is
+ *   damaged; LEAFLESS_E_NO_MEMORY.
+ * - Ownership: nothing changes hands.
+ * - Threads: any.
+ * - Untrusted input: any model.
+ * - Since: 0.1
+ */
+leafless_status leafless_tridexel_to_bytes(const leafless_tridexel *tridexel,
+                                           uint8_t *bytes,
+                                           uint64_t capacity,
+                                           uint64_t *length);
+
+/**
+ * Writes a tri-dexel model's file through a function of the host, in a few large pieces; the file is never in memory as a
+ * whole.
+ *
+ * - Buffers: none.
+ * - Result: LEAFLESS_OK once `write` has taken all bytes.
+ * - Errors: LEAFLESS_E_CALLBACK with what `write` returned in the message; LEAFLESS_E_NULL if it is NULL;
+ *   LEAFLESS_E_DAMAGED if the model was mapped unverified and is damaged; LEAFLESS_E_NO_MEMORY. The last two come before
+ *   anything is written.
+ * - Ownership: nothing changes hands.
+ * - Threads: any.
+ * - Untrusted input: any model.
+ * - Since: 0.1
+ */
+leafless_status leafless_tridexel_write(const leafless_tridexel *tridexel,
+                                        leafless_write_fn write,
+                                        void *ctx);
 
 #if defined(LEAFLESS_TEST)
 /**

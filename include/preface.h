@@ -13,7 +13,8 @@
  *   does not say may be; LEAFLESS_E_ARGUMENT if one is misaligned for what it points to, if a count is more than
  *   memory can hold, a number none of its enum, a path empty, or a struct_size not sensible or with fields set that
  *   this library does not know; LEAFLESS_E_PANIC if the library has a defect. That never ends the host program and
- *   leaves all objects usable; Rust's message about it also goes to stderr.
+ *   leaves all objects usable, but a leafless_tridexel_editor that it was changing; Rust's message about it also goes to
+ *   stderr.
  * - Memory whose size depends on an input or a result can be refused, and is then LEAFLESS_E_NO_MEMORY. What remains
  *   is at most 2 KiB a piece, what threads cost, and what polygons with holes or dents are triangulated with, for which
  *   as much was asked for, and given back, before; if even that cannot be had, the process ends.
@@ -22,7 +23,7 @@
  *   shares. Pointers from _peek functions belong to the object.
  * - Threads: calls whose handle parameters are pointers to const may run at once, on the same object too. Other
  *   calls need the object for themselves; but _free needs only its own reference, others may be in use meanwhile.
- *   A leafless_lazy that is in use says so itself: LEAFLESS_E_BUSY.
+ *   A leafless_lazy or a leafless_tridexel_editor that is in use says so itself: LEAFLESS_E_BUSY.
  *   Different objects never interfere. Nothing global is changed. No thread of the library outlives the call that
  *   started it.
  * - Structs with a field struct_size begin with sizeof of themselves, and all their other fields may be zero.

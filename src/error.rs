@@ -69,6 +69,14 @@ pub enum Error {
     /// The arrays of an octree contradict each other.
     #[error("the octree is damaged: {0}")]
     Damaged(#[from] Damage),
+    /// The arrays of a tri-dexel model contradict each other.
+    #[error("the tri-dexel model is damaged: its rays along axis {axis}, at ray {ray} of them")]
+    DamagedRays {
+        /// The axis that the rays run along.
+        axis: u8,
+        /// The first ray that is not sound; 0 if the arrays as a whole are not.
+        ray: u64,
+    },
     /// More nodes or bytes than the caller allowed.
     #[error("the limit of {limit} {what} was reached")]
     Limit {
@@ -640,6 +648,14 @@ pub enum FormatError {
     /// The record of the solid does not repeat what the header says of it.
     #[error("the record of the solid contradicts the header")]
     Object,
+    /// The file is good, but its solid is of another kind than the one that was asked for.
+    #[error("the file holds {found}, where {wanted} is wanted")]
+    OtherModel {
+        /// What the solid is: an octree or a tri-dexel model.
+        found: &'static str,
+        /// What was asked for.
+        wanted: &'static str,
+    },
     /// A checksum does not match.
     #[error("the checksum of {name} is wrong")]
     Checksum {

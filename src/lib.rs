@@ -38,6 +38,7 @@
 //! | `lattice` | cells, cubes, frames: integers and model space |
 //! | `octree` | tags, the word algebra, views, the writer, checks, statistics |
 //! | `mesh` | triangle meshes as data: welding, topology, defects, repair |
+//! | `dexel` | intervals along the rays of a lattice |
 //! | `solid` | what can split a cell: one file or folder a producer |
 //! | `op` | building, splitting on demand, and the set algebra of stored trees |
 //! | `query` | points, boxes and rays, measures, interference |
@@ -67,7 +68,8 @@
 //! | … a byte of a file checked? | `file/header.rs`, `object.rs`, `section.rs`, `layout.rs` |
 //! | … an allocation refused? | `memory.rs` |
 //! | … where a ray meets a solid, how high it is? | `query/ray/`, `query/columns/` |
-//! | … a closed triangle mesh of a solid? | `surface/cubes.rs`, `smc.rs`, `shrink.rs`, `solid.rs`, `volume.rs` |
+//! | … a ray of a mesh, of a half-space? | `solid/mesh/chords.rs`, `solid/csg/lines.rs` |
+//! | … a closed triangle mesh of a solid? | `surface/cubes.rs`, `smc.rs`, `shrink.rs`, `solid.rs`, `volume.rs`, `dexel.rs` |
 //! | … the list of voxels, their depth order? | `voxel/walk.rs`, `records.rs`, `order.rs` |
 //! | … the volume of a solid, the distance of two, or of a point? | `query/measure/`, `query/clearance/`, `query/distance/` |
 
@@ -82,6 +84,7 @@ mod attribute;
 #[cfg(feature = "capi")]
 pub mod capi;
 mod control;
+mod dexel;
 mod dispatch;
 mod error;
 pub mod exchange;
@@ -104,6 +107,10 @@ pub use attribute::{
     ValueRegion, VolumeAttribute, carry_channel, carry_channels, fill_channel, materials,
 };
 pub use control::Control;
+pub use dexel::{
+    Beam, BeamEnd, Dexel, DexelEditor, DexelEnd, DexelEnds, DexelFormat, DexelNormals, DexelRays,
+    DexelStatistics, TriDexel, TriDexelRef,
+};
 pub use error::{
     Damage, Error, FormatError, MeshError, MeshFileError, PackageError, PolyhedronError, SceneError,
     VolumeFileError,
@@ -123,8 +130,8 @@ pub use octree::{
     TaggedCell, ValueType,
 };
 pub use op::{
-    LazyOctree, Refinement, Rule, Zone, build, compact, complement, difference, intersection,
-    intersection_of, resolve, union, union_of, xor, xor_of,
+    DexelOptions, LazyOctree, Refinement, Rule, Zone, build, compact, complement, dexelize, difference,
+    intersection, intersection_of, octree_of_dexels, resolve, union, union_of, xor, xor_of,
 };
 pub use query::{
     AREA_SPLITS, BOUNDING_BOX_SPLITS, CLEARANCE_SPLITS, CellsIn, Clearance, ColumnCells, ColumnRuns, Columns,
@@ -142,14 +149,15 @@ pub use solid::{
 };
 
 pub use surface::{
-    Resolve, Snap, VertexPlacement, coplanar_shrink, coplanar_shrink_of, marching_cubes, marching_cubes_of,
+    DexelSolid, DexelSurfaceReport, Resolve, Snap, VertexPlacement, coplanar_shrink, coplanar_shrink_of,
+    dual_contouring_of_dexels, marching_cubes, marching_cubes_of, marching_cubes_of_dexels,
     marching_cubes_of_volume, marching_cubes_reusing, marching_cubes_with_volume, published_shrink,
     published_shrink_of, smc, smc_of,
 };
 
 pub use voxel::{
-    LinearCode, Symmetry, Viewpoint, VoxelBoundary, VoxelKind, VoxelOptions, VoxelRecord, VoxelRecords,
-    VoxelRecordsRef, VoxelSolid, VoxelTriangles, Voxels,
+    DexelVoxels, LinearCode, LongVoxel, Symmetry, Viewpoint, VoxelBoundary, VoxelKind, VoxelOptions,
+    VoxelRecord, VoxelRecords, VoxelRecordsRef, VoxelSolid, VoxelTriangles, Voxels, dexel_voxels,
 };
 
 #[cfg(feature = "std")]

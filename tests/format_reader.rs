@@ -8,8 +8,13 @@
 #[path = "../fuzz/bodies/mod.rs"]
 mod bodies;
 
+// Its `main` is the program that writes the vectors.
+#[allow(dead_code)]
+#[path = "../format_spec/make_vectors.rs"]
+mod make_vectors;
+
 use bodies::Random;
-use leafless::{Membership, Octree, Tag, file};
+use leafless::{Membership, Octree, Tag, file, file::dexels};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -88,13 +93,24 @@ fn vectors(kind: &str) -> Vec<(PathBuf, String)> {
 fn it_gives_the_facts_of_every_valid_vector() {
     for (path, text) in vectors("valid") {
         // What no reader can know, or need not print.
-        let apart = ["about", "canonical", "origin-decimal", "edge-decimal", "point", "value"];
+        let apart = ["about", "canonical", "origin-decimal", "edge-decimal", "point", "value", "cell"];
         let facts = text.lines().filter(|line| !apart.contains(&line.split(':').next().unwrap()));
         let (code, printed) = run(&[], &path, "");
         assert_eq!(code, 0, "{}", path.display());
         assert_eq!(printed.lines().collect::<Vec<_>>(), facts.collect::<Vec<_>>(), "{}", path.display());
         for (_, options) in LEVELS {
             assert_eq!(run(options, &path, "").0, 0, "{}", path.display());
+        }
+        let cells: Vec<Vec<&str>> = text
+            .lines()
+            .filter_map(|line| Some(line.strip_prefix("cell: ")?.splitn(4, ' ').collect()))
+            .collect();
+        if !cells.is_empty() {
+            let questions: String = cells.iter().map(|words| words[..3].join(" ") + "\n").collect();
+            let (code, answers) = run(&["--cells"], &path, &questions);
+            let expected: Vec<&str> = cells.iter().map(|words| words[3]).collect();
+            assert_eq!((code, answers.lines().collect()), (0, expected), "{}", path.display());
+            continue;
         }
         let points: Vec<(&str, &str)> =
             text.lines().filter_map(|line| line.strip_prefix("point: ")?.rsplit_once(' ')).collect();
@@ -229,6 +245,57 @@ fn double(text: &str) -> f64 {
     let (lead, fraction) = digits.split_once('.').unwrap_or((digits, ""));
     let all = u64::from_str_radix(&format!("{lead}{fraction}"), 16).unwrap() as f64;
     sign * all * 2f64.powi(exponent.parse::<i32>().unwrap() - 4 * fraction.len() as i32)
+}
+
+#[test]
+fn it_agrees_with_the_library_on_tri_dexel_models() {
+    let scratch = tempfile::tempdir().unwrap();
+    let path = scratch.path().join("model.lfl");
+    let mut random = Random(3);
+    for seed in 0..60 {
+        let form = (0x20..=0xFFu8).filter(|form| form & 6 != 6).nth(random.below(168)).unwrap();
+        let mut bytes = make_vectors::dexel_vectors::Dexels::random(seed, 1 + seed as u8 % 4, form).bytes();
+        if seed % 2 == 1 {
+            // Anywhere but in the header, with right checksums.
+            let at = 128 + random.below(bytes.len() - 128);
+            bytes[at] = random.next() as u8;
+            make_vectors::seal(&mut bytes);
+        }
+        std::fs::write(&path, &bytes).unwrap();
+        let leaked = Box::leak(Box::new(bodies::Aligned::new(&bytes))).bytes();
+        let expected = [
+            file::probe_bytes(leaked).is_ok(),
+            dexels::view(leaked).is_ok(),
+            dexels::from_static(leaked).is_ok(),
+            file::verify(leaked).is_ok(),
+        ];
+        for ((name, options), expected) in LEVELS.iter().zip(expected) {
+            let (code, printed) = run(options, &path, "");
+            assert_eq!(code == 0, expected, "seed {seed}, {name}: {printed}");
+        }
+        let Ok(model) = dexels::from_bytes(&bytes) else { continue };
+        let (_, printed) = run(&[], &path, "");
+        let mut lines = printed.lines().filter_map(|line| line.strip_prefix("interval: "));
+        let (origin, size) = (model.frame().origin(), model.frame().cell_size());
+        for rays in (0..3).filter_map(|axis| model.view().rays(axis)) {
+            let [us, vs] = rays.window();
+            for (v, u) in vs.flat_map(|v| us.clone().map(move |u| (v, u))) {
+                for dexel in rays.dexels([u, v]) {
+                    let words: Vec<&str> = lines.next().unwrap().split(' ').collect();
+                    assert_eq!(
+                        [words[0], words[1], words[2]],
+                        [rays.axis() as u32, u, v].map(|n| n.to_string())
+                    );
+                    for (word, end) in words[3..].iter().zip([dexel.start, dexel.end]) {
+                        assert_eq!(origin[rays.axis()] + double(word) * size, end.at);
+                    }
+                    let material = words[5..].last().filter(|_| model.view().format().materials);
+                    assert_eq!(material.map_or(0, |word| word.parse().unwrap()), dexel.material);
+                }
+            }
+        }
+        assert_eq!(lines.next(), None);
+    }
 }
 
 /// Whether the library accepts a file at each of the four levels. The bytes stay until the test ends.

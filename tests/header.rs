@@ -55,7 +55,14 @@ const SECTIONS: &[&str] = &[
     "measure",
     "channel_summary",
     "distance",
+    "tridexel",
+    "tridexel_read",
+    "tridexel_op",
+    "tridexel_editor",
+    "tridexel_arrays",
+    "tridexel_surface",
     "file",
+    "tridexel_file",
     "layout",
 ];
 

@@ -8,11 +8,12 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 /// From the bottom up; modules of one row may use each other.
-const LAYERS: [&[&str]; 14] = [
+const LAYERS: [&[&str]; 15] = [
     &["error", "memory", "control", "dispatch"],
     &["lattice"],
     &["octree"],
     &["mesh"],
+    &["dexel"],
     &["solid"],
     &["op"],
     &["query"],

@@ -15,13 +15,15 @@ mod zip;
 
 use bodies::{Aligned, Random};
 use leafless::{
-    Affine, AnySolid, Band, Callback, Columns, Control, Csg, DistanceTo, Error, FillRule, Frame, HalfSpace,
-    LazyOctree, Membership, MeshSolid, Metadata, Obstacle, Octree, PointTable, Polyhedron, PolyhedronArrays,
-    Ray, Resolve, Rule, Side, Snap, Tag, Transform, TriangleMesh, Verdict, VertexPlacement, Volume,
-    VoxelGrid, Zone, bounding_box, build, cast_rays, cells_in, classify_box, classify_in, clearance, columns,
-    compact, complement, contains, difference, distances, exchange, file, heights, interference_of,
-    intersection, marching_cubes, marching_cubes_of, marching_cubes_of_volume, measure, ray_spans, resolve,
-    scene, smc, smc_of, surface_area, union, union_of, xor,
+    Affine, AnySolid, Band, Callback, Columns, Control, Csg, DexelEditor, DexelEnds, DexelFormat,
+    DexelNormals, DexelOptions, DistanceTo, Error, FillRule, Frame, HalfSpace, LazyOctree, Membership,
+    MeshSolid, Metadata, Obstacle, Octree, PointTable, Polyhedron, PolyhedronArrays, Ray, Resolve, Rule,
+    Side, Snap, Tag, Transform, TriDexel, TriangleMesh, Verdict, VertexPlacement, Volume, VoxelGrid, Zone,
+    bounding_box, build, cast_rays, cells_in, classify_box, classify_in, clearance, columns, compact,
+    complement, contains, dexel_voxels, dexelize, difference, distances, dual_contouring_of_dexels, exchange,
+    file, heights, interference_of, intersection, marching_cubes, marching_cubes_of,
+    marching_cubes_of_dexels, marching_cubes_of_volume, measure, octree_of_dexels, ray_spans, resolve, scene,
+    smc, smc_of, surface_area, union, union_of, xor,
 };
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
@@ -352,6 +354,58 @@ fn operations(directory: &Path) -> Vec<(&'static str, Operation)> {
         let moved = Transform::new(&a, &frame(), &Affine::translation([7.0, 9.0, 0.1])?);
         clearance(&a, &moved, &frame(), 0.0, &Control { max_splits: Some(3000), ..CONTROL })
     });
+    let marked = DexelOptions {
+        format: DexelFormat {
+            normals: DexelNormals::Bits16,
+            surfaces: true,
+            materials: true,
+            ..DexelFormat::default()
+        },
+        ..DexelOptions::default()
+    };
+    operation!("dexels of a mesh", [closed], {
+        dexelize(&MeshSolid::new(closed.clone(), FillRule::NonZero)?, &frame(), &marked, &CONTROL)
+    });
+    operation!("dexels of an open mesh", [cracked], {
+        let coarse = frame().with_depth(3)?;
+        dexelize(&MeshSolid::new(cracked.clone(), FillRule::NonZero)?, &coarse, &marked, &CONTROL)
+    });
+    operation!("dexels of half-spaces", [a], {
+        let ball = Csg::ball([15.0; 3], 9.0)?;
+        dexelize(&ball.complement(), &frame(), &marked, &CONTROL)?;
+        dexelize(
+            &Csg::solid(AnySolid::new(a.clone())).complement(),
+            &frame(),
+            &DexelOptions { rule: Rule::Outer, ..marked },
+            &CONTROL,
+        )?;
+        dexelize(&Csg::from(leafless::HalfSpace::torus(9.0, 3.0)?), &frame(), &marked, &CONTROL)
+    });
+    let balls = [13.0, 17.0]
+        .map(|x| dexelize(&Csg::ball([x, 15.0, 15.0], 7.0).unwrap(), &frame(), &marked, &CONTROL).unwrap());
+    operation!("dexel algebra", [balls], {
+        let [a, b] = [balls[0].view(), balls[1].view()];
+        a.union(b, &CONTROL)?;
+        a.complement(&CONTROL)?;
+        a.with_material(3, &CONTROL)?;
+        let plain =
+            a.to_format(DexelFormat { ends: DexelEnds::Double, ..DexelFormat::default() }, &CONTROL)?;
+        TriDexel::xor_of(&[*a, *b, *plain.view()], &CONTROL)
+    });
+    operation!("dexel editor", [balls], {
+        let mut editor = DexelEditor::new(balls[0].view())?;
+        editor.subtract(balls[1].view(), &CONTROL)?;
+        editor.unite(balls[1].view(), &CONTROL)?;
+        editor.subtract_solid(&Csg::ball([15.0; 3], 2.0)?, &CONTROL)?;
+        editor.freeze(&CONTROL)
+    });
+    operation!("dexel surfaces", [balls], {
+        marching_cubes_of_dexels(balls[0].view(), &CONTROL)?;
+        dual_contouring_of_dexels(balls[0].view(), &CONTROL)?;
+        octree_of_dexels(balls[0].view(), &CONTROL)?;
+        dexel_voxels(balls[0].view(), &CONTROL)
+    });
+    operation!("dexel bytes", [balls], file::dexels::from_bytes(&file::dexels::to_bytes(&balls[0])?));
     operation!("mesh placed", [closed], {
         closed.placed(&Affine::new([[0.0, 1.1, 0.0, 9.0], [1.0, 0.0, 0.0, -6.0], [0.0, 0.0, 1.0, 0.25]])?)
     });

@@ -1,5 +1,6 @@
 //! `leafless union`, `intersection`, `difference`, `xor` and `complement`.
 
+use crate::dexel_boolean;
 use crate::failure::{Failure, Of};
 use crate::input::Input;
 use crate::output::{self, Output, number, seconds};
@@ -8,25 +9,28 @@ use crate::report::Info;
 use crate::volume::Sampling;
 use clap::Args;
 use leafless::exchange::VolumeFormat;
-use leafless::{CarryRule, Control, Error, Metadata, Octree, OctreeRef, carry_channels, file};
+use leafless::{
+    CarryRule, Control, Error, Frame, Metadata, Octree, OctreeRef, TriDexel, carry_channels, file,
+};
 use std::ffi::OsString;
 use std::time::Instant;
 
 /// The solids must lie on one frame: voxelize them with the same --bounds and --depth. The result may replace
-/// one of them.
+/// one of them. Tri-dexel models can be combined with each other, made with the same --bounds and --resolution.
 #[derive(Args)]
 pub struct Arguments {
-    /// Solids (.lfl) or volumes (NRRD, MetaImage), two or more; one of them may be `-` for standard input
+    /// Solids or tri-dexel models (.lfl) or volumes (NRRD, MetaImage), two or more; one of them may be `-` for standard input
     #[arg(required = true, num_args = 2.., value_name = "FILE")]
     files: Vec<OsString>,
     #[command(flatten)]
     common: Common,
 }
 
-/// Solid where there was none, and none where there was some; also outside of the bounds.
+/// Solid where there was none, and none where there was some; also outside of the bounds, but for tri-dexel models, which
+/// end at them.
 #[derive(Args)]
 pub struct ComplementArguments {
-    /// Solid (.lfl) or volume (NRRD, MetaImage), or `-` for standard input
+    /// Solid or tri-dexel model (.lfl) or volume (NRRD, MetaImage), or `-` for standard input
     file: OsString,
     #[command(flatten)]
     common: Common,
@@ -71,7 +75,7 @@ pub enum Operation {
 }
 
 impl Operation {
-    fn name(self) -> &'static str {
+    pub fn name(self) -> &'static str {
         match self {
             Operation::Union => "union",
             Operation::Intersection => "intersection",
@@ -118,32 +122,20 @@ fn combine(operation: Operation, inputs: &[Input], common: &Common) -> Result<()
     let start = Instant::now();
     let output = Output::from(&*common.output);
     output.check()?;
-    let mut octrees = Vec::with_capacity(inputs.len());
-    for input in inputs {
-        // What is proven of the result is proven only if the operands are what their makers wrote.
-        octrees.push(operand(input, common)?);
-    }
-    for (input, octree) in inputs.iter().zip(&octrees).skip(1) {
-        if octree.frame() != octrees[0].frame() {
-            return Err(Failure::of(input, unlike(&inputs[0], &octrees[0], octree)));
+    let octrees = match operands(inputs, common)? {
+        Operands::Octrees(octrees) => octrees,
+        Operands::Dexels(models) => {
+            return dexel_boolean::combine(operation, inputs, &models, &output, common.threads, start);
         }
-    }
+    };
+    let places: Vec<Place> =
+        octrees.iter().map(|octree| Place::new(octree.frame(), octree.metadata())).collect();
+    check_places(inputs, &places, "--depth")?;
     let trees: Vec<OctreeRef<'_>> = octrees.iter().map(|octree| *octree.view()).collect();
     let name = operation.name();
     let result = watched(name, common.threads, |control| operation.of(&trees[0], &trees, control));
-    let result = carried(result.of(name)?, &octrees, common).of(name)?.with_metadata(facts(&octrees)?);
-    for (input, octree) in inputs.iter().zip(&octrees).skip(1) {
-        let units = [&octrees[0], octree].map(|octree| octree.metadata().get("units"));
-        if let [Some(first), Some(other)] = units
-            && first != other
-        {
-            let whole = &inputs[0];
-            let unlike = format!(
-                "its unit is {other}, and that of {whole} is {first}: the numbers are taken as they are"
-            );
-            output::complain(&format!("{input}: warning: {unlike}"));
-        }
-    }
+    let result = carried(result.of(name)?, &octrees, common).of(name)?.with_metadata(facts(&places)?);
+    warn_of_units(inputs, &places);
     let bytes = output.save(&result)?;
     let info = Info::new(&result, bytes);
     output.report(&format!(
@@ -169,40 +161,119 @@ fn carried(result: Octree, octrees: &[Octree], common: &Common) -> Result<Octree
     watched("channels", common.threads, |control| carry_channels(&result, &operands, rule, control))
 }
 
+/// What is combined: all of one kind.
+enum Operands {
+    Octrees(Vec<Octree>),
+    Dexels(Vec<TriDexel>),
+}
+
+enum Operand {
+    Octree(Box<Octree>),
+    Dexels(Box<TriDexel>),
+}
+
+/// Reads all operands, of which there is one at least. What is proven of the result is proven only if the operands are
+/// what their makers wrote.
+fn operands(inputs: &[Input], common: &Common) -> Result<Operands, Failure> {
+    let (mut octrees, mut models) = (Vec::new(), Vec::new());
+    for (i, input) in inputs.iter().enumerate() {
+        match operand(input, common)? {
+            Operand::Octree(octree) => octrees.push(*octree),
+            Operand::Dexels(model) => models.push(*model),
+        }
+        if !octrees.is_empty() && !models.is_empty() {
+            let kinds = ["an octree", "a tri-dexel model"];
+            let [this, first] = if models.len() == i { kinds } else { [kinds[1], kinds[0]] };
+            let problem = format!("is {this}, and {} is {first}: `leafless convert`", inputs[0]);
+            return Err(Failure::of(input, format!("{problem} makes one of the other's kind")));
+        }
+    }
+    if models.is_empty() {
+        return Ok(Operands::Octrees(octrees));
+    }
+    if !common.carry.is_empty() {
+        return Err(Failure::Usage("--carry is for octrees: tri-dexel models have no channels".into()));
+    }
+    Ok(Operands::Dexels(models))
+}
+
 /// A solid from a file, or the voxels of a volume that are inside.
-fn operand(input: &Input, common: &Common) -> Result<Octree, Failure> {
+fn operand(input: &Input, common: &Common) -> Result<Operand, Failure> {
+    let of_octree = |octree: Octree| Operand::Octree(Box::new(octree));
+    if let Some((model, _)) = input.dexels(true)? {
+        return Ok(Operand::Dexels(Box::new(model)));
+    }
     if input.begins_as_solid() {
-        return Ok(input.octree(true)?.0);
+        return Ok(of_octree(input.octree(true)?.0));
     }
     let bytes = input.read()?;
     if common.sampling.is_raw() || VolumeFormat::detect(&bytes).is_some() {
-        return common.sampling.read(input, &bytes)?.octree(input, common.threads);
+        return Ok(of_octree(common.sampling.read(input, &bytes)?.octree(input, common.threads)?));
     }
-    if input.path().is_some() { Ok(input.octree(true)?.0) } else { file::from_bytes(&bytes).of(input) }
+    if file::probe_bytes(&bytes).is_ok_and(|probe| probe.dexels.is_some()) {
+        return Ok(Operand::Dexels(Box::new(file::dexels::from_bytes(&bytes).of(input)?)));
+    }
+    Ok(of_octree(file::from_bytes(&bytes).of(input)?))
+}
+
+/// Where an operand lies, and what its file says.
+pub struct Place<'a> {
+    frame: &'a Frame,
+    metadata: &'a Metadata,
+}
+
+impl Place<'_> {
+    /// That of an operand.
+    pub fn new<'a>(frame: &'a Frame, metadata: &'a Metadata) -> Place<'a> {
+        Place { frame, metadata }
+    }
+
+    fn text(&self) -> String {
+        let frame = self.frame;
+        let origin = frame.origin().map(number).join(" ");
+        format!("origin {origin}, edge {}, depth {}", number(frame.edge()), frame.depth())
+    }
+}
+
+/// Refuses operands that lie on different frames; `depth` is the option that says how fine they are.
+pub fn check_places(inputs: &[Input], places: &[Place<'_>], depth: &str) -> Result<(), Failure> {
+    for (input, place) in inputs.iter().zip(places).skip(1) {
+        if place.frame != places[0].frame {
+            let (first, other, whole) = (&inputs[0], place.text(), places[0].text());
+            let problem = format!("lies on another frame ({other}) than {first} ({whole})");
+            return Err(Failure::of(
+                input,
+                format!("{problem}: make both with the same --bounds and {depth}"),
+            ));
+        }
+    }
+    Ok(())
+}
+
+/// Complains of operands whose units differ from that of the first one.
+pub fn warn_of_units(inputs: &[Input], places: &[Place<'_>]) {
+    for (input, place) in inputs.iter().zip(places).skip(1) {
+        let units = [&places[0], place].map(|place| place.metadata.get("units"));
+        if let [Some(first), Some(other)] = units
+            && first != other
+        {
+            let whole = &inputs[0];
+            let unlike = format!(
+                "its unit is {other}, and that of {whole} is {first}: the numbers are taken as they are"
+            );
+            output::complain(&format!("{input}: warning: {unlike}"));
+        }
+    }
 }
 
 /// What the operands' files say that holds of the result: name and unit, if it is the same in all; and by which
 /// rule cells were resolved, if they say it: the common one, or `mixed`.
-fn facts(octrees: &[Octree]) -> Result<Metadata, Failure> {
-    let mut metadata = Metadata::common(octrees.iter().map(Octree::metadata)).of("metadata")?;
-    let rules: Option<Vec<&str>> = octrees.iter().map(|octree| octree.metadata().get("rule")).collect();
+pub fn facts(places: &[Place<'_>]) -> Result<Metadata, Failure> {
+    let mut metadata = Metadata::common(places.iter().map(|place| place.metadata)).of("metadata")?;
+    let rules: Option<Vec<&str>> = places.iter().map(|place| place.metadata.get("rule")).collect();
     if let Some(rules) = rules {
         let same = rules.iter().all(|rule| *rule == rules[0]);
         metadata.insert("rule", if same { rules[0] } else { "mixed" });
     }
     Ok(metadata)
-}
-
-/// How the frame of `octree` differs from that of the first operand.
-fn unlike(first: &Input, whole: &Octree, octree: &Octree) -> String {
-    let shown = |octree: &Octree| {
-        let frame = octree.frame();
-        let origin = frame.origin().map(number).join(" ");
-        format!("origin {origin}, edge {}, depth {}", number(frame.edge()), frame.depth())
-    };
-    format!(
-        "lies on another frame ({}) than {first} ({}): make both with the same --bounds and --depth",
-        shown(octree),
-        shown(whole),
-    )
 }

@@ -1,5 +1,6 @@
 //! `leafless csg`: from a scene to a solid.
 
+use crate::convert;
 use crate::failure::{Failure, Of};
 use crate::input::Input;
 use crate::output::{self, Output, count, number, seconds};
@@ -65,6 +66,24 @@ pub struct Arguments {
     /// (on standard error if the solid goes to standard output)
     #[arg(long)]
     json: bool,
+}
+
+impl Arguments {
+    /// What `leafless convert` asks for.
+    pub fn converting(wanted: &convert::Arguments) -> Arguments {
+        Arguments {
+            input: wanted.input.clone(),
+            output: wanted.output.clone(),
+            depth: wanted.depth(),
+            rule: wanted.resolve.map_or(RuleName::Certified, RuleName::from),
+            adaptive: None,
+            touch: TouchName::Exact,
+            bounds: wanted.bounds,
+            drawing: wanted.drawing.clone(),
+            threads: wanted.threads,
+            json: wanted.json,
+        }
+    }
 }
 
 fn thickness(text: &str) -> Result<f64, String> {

@@ -1,5 +1,6 @@
 //! How a subcommand ends without success.
 
+use leafless::{Error, FormatError};
 use std::fmt::Display;
 
 /// Why a subcommand stopped.
@@ -28,9 +29,15 @@ pub trait Problem {
     fn text(&self) -> String;
 }
 
-impl Problem for leafless::Error {
+impl Problem for Error {
     fn text(&self) -> String {
-        self.cause().to_string()
+        let cause = self.cause();
+        match cause {
+            Error::Format(FormatError::OtherModel { wanted: "an octree", .. }) => {
+                format!("{cause}: `leafless convert --to octree` makes one")
+            }
+            _ => cause.to_string(),
+        }
     }
 }
 

@@ -1,6 +1,7 @@
 //! `leafless info`: what a solid, a mesh or a scene consists of.
 
 use crate::content::Content;
+use crate::dexels;
 use crate::failure::{Failure, Of};
 use crate::input::Input;
 use crate::mesh::{self, Reading};
@@ -12,7 +13,8 @@ use leafless::file;
 use std::ffi::OsString;
 
 /// Of a solid only the file's header and level table are read, so this takes the same short time for files of
-/// any size. Run `leafless verify` to know whether the rest of the file is good.
+/// any size. Run `leafless verify` to know whether the rest of the file is good. Of a tri-dexel model (.lfl) all
+/// intervals are read.
 ///
 /// Of a mesh everything is read: what its triangles bound, and what is wrong with them. Of a scene the bounds
 /// are told, how its curves are drawn, and what is wrong with the meshes in it; `leafless measure` tells its volume.
@@ -34,6 +36,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let (octree, bytes) = if input.begins_as_solid() {
         arguments.reading.refuse(&input, "a solid")?;
         arguments.drawing.refuse(&input, "a solid")?;
+        if let Some((model, length)) = input.dexels(false)? {
+            return dexels::tell(&model, length, arguments.json);
+        }
         input.octree(false)?
     } else {
         let bytes = input.read()?;
@@ -42,6 +47,13 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             Content::Solid => {
                 arguments.reading.refuse(&input, "a solid")?;
                 arguments.drawing.refuse(&input, "a solid")?;
+                if file::probe_bytes(&bytes).is_ok_and(|probe| probe.dexels.is_some()) {
+                    return dexels::tell(
+                        &file::dexels::from_bytes(&bytes).of(&input)?,
+                        length,
+                        arguments.json,
+                    );
+                }
                 (file::from_bytes(&bytes).of(&input)?, length)
             }
             Content::Scene => {

@@ -11,8 +11,13 @@ mod boolean;
 mod channel;
 mod contains;
 mod content;
+mod convert;
 mod csg;
 mod demo;
+mod dexel_boolean;
+mod dexel_surface;
+mod dexelize;
+mod dexels;
 mod distance;
 mod expression;
 mod failure;
@@ -32,6 +37,7 @@ mod report;
 mod rows;
 mod sample;
 mod scene;
+mod shape;
 mod source;
 mod summary;
 mod surface;
@@ -68,6 +74,10 @@ enum Command {
     Voxelize(voxelize::Arguments),
     /// Make a solid from a scene: primitives and set operations, as OpenSCAD exports them (.csg)
     Csg(csg::Arguments),
+    /// Make a tri-dexel model, intervals along rays, of a solid, a mesh, a scene or a volume
+    Dexelize(dexelize::Arguments),
+    /// Make an octree, a tri-dexel model or a triangle mesh of any of them
+    Convert(convert::Arguments),
     /// Show what a solid consists of (depth, nodes, cells, volume), a mesh (bodies, holes, defects) or a scene
     Info(info::Arguments),
     /// Check a file completely: exit code 0 if it is good, 1 with the reason if not
@@ -122,6 +132,8 @@ fn main() -> ExitCode {
     let result = match &arguments.command {
         Command::Voxelize(arguments) => voxelize::run(arguments),
         Command::Csg(arguments) => csg::run(arguments),
+        Command::Dexelize(arguments) => dexelize::run(arguments),
+        Command::Convert(arguments) => convert::run(arguments),
         Command::Info(arguments) => info::run(arguments),
         Command::Verify(arguments) => verify::run(arguments),
         Command::Union(arguments) => boolean::run(boolean::Operation::Union, arguments),

@@ -16,7 +16,7 @@ use serde::Serialize;
 use std::fmt::Write;
 
 /// How a mesh file is to be taken.
-#[derive(Args)]
+#[derive(Clone, Args)]
 pub struct Reading {
     /// Format of the mesh file. Without it the content tells, and the extension of the name
     #[arg(long, value_enum)]

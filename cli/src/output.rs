@@ -1,7 +1,7 @@
 //! What the program writes: lines, files, numbers.
 
 use crate::failure::{Failure, Of};
-use leafless::{Error, Interval, Octree, file};
+use leafless::{Error, Interval, Octree, TriDexel, file};
 use std::ffi::OsStr;
 use std::fmt;
 use std::io::{ErrorKind, IsTerminal, Write};
@@ -62,21 +62,34 @@ impl Output {
 
     /// Saves the octree, the whole of it or nothing, and returns the bytes that its file has.
     pub fn save(&self, octree: &Octree) -> Result<u64, Failure> {
+        self.put(|path| file::save(octree, path), |out| file::write_to(octree, out))
+    }
+
+    /// The same of a tri-dexel model.
+    pub fn save_dexels(&self, model: &TriDexel) -> Result<u64, Failure> {
+        self.put(|path| file::dexels::save(model, path), |out| file::dexels::write_to(model, out))
+    }
+
+    fn put(
+        &self,
+        save: impl FnOnce(&Path) -> Result<(), Error>,
+        write: impl Fn(&mut dyn Write) -> Result<(), Error>,
+    ) -> Result<u64, Failure> {
         let Output::Path(path) = self else {
             let mut counter = Counter { out: std::io::stdout().lock(), count: 0 };
-            return match file::write_to(octree, &mut counter) {
+            return match write(&mut counter) {
                 Ok(()) => Ok(counter.count),
                 Err(Error::Io(error)) if error.kind() == ErrorKind::BrokenPipe => Err(Failure::Undelivered),
                 Err(error) => Err(Failure::of(self, error)),
             };
         };
-        unharmed(|| file::save(octree, path)).of(self)?;
+        unharmed(|| save(path)).of(self)?;
         match std::fs::metadata(path) {
             Ok(metadata) if metadata.is_file() => Ok(metadata.len()),
             // A pipe or device does not tell.
             _ => {
                 let mut counter = Counter { out: std::io::sink(), count: 0 };
-                file::write_to(octree, &mut counter).of(self)?;
+                write(&mut counter).of(self)?;
                 Ok(counter.count)
             }
         }

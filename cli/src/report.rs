@@ -349,7 +349,7 @@ impl Defect {
 }
 
 /// A number for a table: six digits tell where to look.
-fn short(x: f64) -> String {
+pub fn short(x: f64) -> String {
     let rounded: f64 = format!("{x:.5e}").parse().unwrap_or(x);
     number(rounded)
 }

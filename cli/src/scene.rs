@@ -13,7 +13,7 @@ use std::fmt::Write;
 use std::path::Path;
 
 /// How a scene is to be taken.
-#[derive(Args)]
+#[derive(Clone, Args)]
 pub struct Drawing {
     /// Which circles, cylinders, balls and solids of revolution of a scene are polygons, as OpenSCAD draws them.
     /// Without it: those with a $fn of 12 or less

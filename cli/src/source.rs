@@ -14,6 +14,9 @@ use leafless::{
     TriangleMesh, file,
 };
 
+/// What a file of a solid is called.
+const SOLID: &str = "a solid";
+
 /// Of a box, the lower and the upper one.
 pub type Corners = ([f64; 3], [f64; 3]);
 
@@ -32,13 +35,21 @@ pub enum Source {
 impl Source {
     /// Reads a solid, a mesh, a scene or a volume. Answers about a solid are proven, so its file is verified.
     pub fn read(input: &Input, reading: &Reading, drawing: &Drawing) -> Result<Source, Failure> {
-        const SOLID: &str = "a solid";
         if input.begins_as_solid() {
             reading.refuse(input, SOLID)?;
             drawing.refuse(input, SOLID)?;
             return Ok(Source::Octree(Box::new(input.octree(true)?.0)));
         }
-        let bytes = input.read()?;
+        Source::of_bytes(input, input.read()?, reading, drawing)
+    }
+
+    /// The same of a file with these bytes.
+    pub fn of_bytes(
+        input: &Input,
+        bytes: Vec<u8>,
+        reading: &Reading,
+        drawing: &Drawing,
+    ) -> Result<Source, Failure> {
         match Content::of(input, &bytes, reading.told())? {
             Content::Solid => {
                 reading.refuse(input, SOLID)?;

@@ -1,19 +1,23 @@
 //! `leafless mesh`: the surface of a solid.
 
+use crate::convert;
+use crate::dexel_surface::{self, Followed};
 use crate::failure::{Failure, Of};
 use crate::input::Input;
 use crate::mesh::{Reading, format_name};
 use crate::output::{self, Output, counted, number, write_file};
 use crate::progress::watched;
 use crate::scene::Drawing;
+use crate::shape::Shape;
 use crate::source::Source;
 use crate::voxelize::{bounds, name_of, threads};
 use clap::{Args, ValueEnum};
 use leafless::exchange::{LengthUnit, MeshFormat, WriteOptions, write_mesh};
 use leafless::{
-    Affine, AnySolid, Control, Error, Frame, MAX_DEPTH, MeshReport, Octree, Resolve, Rule, Snap,
-    TriangleMesh, VertexPlacement, build, coplanar_shrink, coplanar_shrink_of, marching_cubes,
-    marching_cubes_of, published_shrink, published_shrink_of, smc, smc_of,
+    Affine, AnySolid, Control, DexelFormat, DexelNormals, DexelOptions, Error, Frame, MAX_DEPTH, MeshReport,
+    Octree, Resolve, Rule, Snap, TriDexel, TriangleMesh, VertexPlacement, build, coplanar_shrink,
+    coplanar_shrink_of, dexelize, marching_cubes, marching_cubes_of, published_shrink, published_shrink_of,
+    smc, smc_of,
 };
 use serde::Serialize;
 use std::ffi::OsString;
@@ -26,9 +30,11 @@ use std::time::Instant;
 /// The surface separates samples that lie inside from those outside. Samples of a mesh or a scene are the corners of
 /// cells, and vertices lie where the edges between corners cross the surface. Samples of a volume are its voxels, and of
 /// a solid from a file (.lfl) its cells at their finest level; what is undecided there has no sign, so that --resolve must say what it counts as.
+/// Samples of a tri-dexel model are the centres of its cells, and vertices lie where its rays leave the solid.
 #[derive(Args)]
 pub struct Arguments {
-    /// Solid (.lfl), mesh (STL, OBJ, PLY, OFF, 3MF), scene (.csg) or volume (NRRD, MetaImage), or `-` for standard input
+    /// Solid or tri-dexel model (.lfl), mesh (STL, OBJ, PLY, OFF, 3MF), scene (.csg) or volume (NRRD, MetaImage), or `-`
+    /// for standard input
     file: OsString,
     /// Where to write: the extension .ply, .stl, .obj, .off or .3mf tells the format; `-` is standard output
     #[arg(short, long, value_name = "OUTPUT")]
@@ -45,7 +51,7 @@ pub struct Arguments {
     /// How the surface is made
     #[arg(long, value_enum, default_value_t = Method::Mc)]
     method: Method,
-    /// Where all methods but mc move vertices to
+    /// Where the methods smc, shrink and shrink-published move vertices to
     #[arg(long, value_enum, default_value_t = SnapName::Fat)]
     snap: SnapName,
     /// Where --method mc puts vertices of a mesh, scene or volume
@@ -105,6 +111,9 @@ impl From<WriteName> for MeshFormat {
 enum Method {
     /// Marching cubes
     Mc,
+    /// Dual contouring, which keeps edges and corners: of a tri-dexel model with normals. Of a mesh, a scene or a volume
+    /// one is made first
+    Dual,
     /// Simple marching cubes: all vertices are samples, all normals have one of 13 directions
     Smc,
     /// The surface of smc, with one region of few triangles for all that lies in one plane; no cracks
@@ -138,6 +147,33 @@ enum At {
     Crossing,
 }
 
+impl Arguments {
+    /// What `leafless convert` asks for.
+    pub fn converting(wanted: &convert::Arguments) -> Arguments {
+        Arguments {
+            file: wanted.input.clone(),
+            output: wanted.output.clone(),
+            write: None,
+            text: false,
+            normals: false,
+            method: Method::Mc,
+            snap: SnapName::Fat,
+            vertices: At::Crossing,
+            resolve: wanted.resolve.map(|resolve| match resolve {
+                convert::ResolveName::Inner => ResolveName::Inner,
+                convert::ResolveName::Outer => ResolveName::Outer,
+            }),
+            depth: wanted.resolution,
+            bounds: wanted.bounds,
+            reading: wanted.reading.clone(),
+            drawing: wanted.drawing.clone(),
+            intersections: false,
+            threads: wanted.threads,
+            json: wanted.json,
+        }
+    }
+}
+
 #[derive(Debug, Clone, Copy, ValueEnum)]
 enum ResolveName {
     /// Outside: the surface is that of what is proven to be solid
@@ -153,9 +189,19 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let (input, output) = (Input::from(&*arguments.file), Output::from(&*arguments.output));
     output.check()?;
     let format = format(arguments, output.path())?;
-    let source = Source::read(&input, &arguments.reading, &arguments.drawing)?;
-    let unit = source.unit();
-    let mesh = extract(source, &input, arguments)?;
+    let (unit, mesh, followed) = match Shape::read(&input, &arguments.reading, &arguments.drawing)?.0 {
+        Shape::Dexels(model) => {
+            let unit = model.metadata().get("units").and_then(|unit| unit.parse().ok());
+            let (mesh, followed) = of_dexels(&model, &input, arguments)?;
+            (unit, mesh, Some(followed))
+        }
+        Shape::Source(source) if arguments.method == Method::Dual => {
+            let unit = source.unit();
+            let (mesh, followed) = dual(source, &input, arguments)?;
+            (unit, mesh, Some(followed))
+        }
+        Shape::Source(source) => (source.unit(), extract(source, &input, arguments)?, None),
+    };
     let options = WriteOptions { text: arguments.text, unit, normals: arguments.normals };
     let bytes = write_mesh(&mesh, format, &options).of(&output)?;
     match output.path() {
@@ -186,6 +232,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         volume: mesh.volume(),
         intersecting: intersecting.as_ref().map(|pairs| pairs.count),
         all_intersecting_pairs: intersecting.as_ref().map(|pairs| pairs.is_complete),
+        followed,
         seconds: start.elapsed().as_secs_f64(),
     };
     output.report(&if arguments.json { output::json(&told)? } else { told.summary(&report) })
@@ -203,6 +250,53 @@ fn format(arguments: &Arguments, path: Option<&Path>) -> Result<MeshFormat, Fail
             "has none of the extensions .ply, .stl, .obj, .off and .3mf: name the format with --write";
         Failure::Usage(format!("{}: {problem}", path.display()))
     })
+}
+
+/// The surface of a tri-dexel model.
+fn of_dexels(
+    model: &TriDexel,
+    input: &Input,
+    arguments: &Arguments,
+) -> Result<(TriangleMesh, Followed), Failure> {
+    let given = [
+        ("--depth", arguments.depth.is_some()),
+        ("--bounds", arguments.bounds.is_some()),
+        ("--resolve", arguments.resolve.is_some()),
+        ("--vertices", arguments.vertices != At::Crossing),
+    ];
+    if let Some((option, _)) = given.into_iter().find(|option| option.1) {
+        let problem = "is a tri-dexel model, whose rays leave nothing to choose";
+        return Err(Failure::Usage(format!("{option} is not for {input}: it {problem}")));
+    }
+    match arguments.method {
+        Method::Mc => dexel_surface::cubes(model, input, arguments.threads),
+        Method::Dual => dexel_surface::dual(model, input, arguments.threads),
+        method => {
+            let name = name_of(method);
+            let problem = "is a tri-dexel model, for which there are mc and dual";
+            Err(Failure::Usage(format!("--method {name} is not for {input}: it {problem}")))
+        }
+    }
+}
+
+/// The surface of anything else by dual contouring: of a tri-dexel model that is made for it.
+fn dual(source: Source, input: &Input, arguments: &Arguments) -> Result<(TriangleMesh, Followed), Failure> {
+    if let Source::Octree(_) = source {
+        let problem = "is an octree, whose cells know no normals, which dual contouring needs: make a tri-dexel model \
+                       of what it was made of, by `leafless dexelize --normals 32`";
+        return Err(Failure::of(input, problem));
+    }
+    if arguments.resolve.is_some() {
+        return Err(Failure::Usage("--resolve does not go with --method dual, which asks rays".into()));
+    }
+    let has_own = source.own_frame().is_some() && arguments.depth.is_none();
+    let depth = if has_own { None } else { Some(arguments.depth.unwrap_or(DEPTH)) };
+    let frame = source.frame_in(input, arguments.bounds.as_ref(), depth)?;
+    let solid = source.placed(input, &Affine::IDENTITY, &frame)?;
+    let format = DexelFormat { normals: DexelNormals::Bits32, ..Default::default() };
+    let options = DexelOptions { format, ..Default::default() };
+    let model = watched("dexelize", arguments.threads, |control| dexelize(&solid, &frame, &options, control));
+    dexel_surface::dual(&model.of(input)?, input, arguments.threads)
 }
 
 fn extract(source: Source, input: &Input, arguments: &Arguments) -> Result<TriangleMesh, Failure> {
@@ -263,6 +357,7 @@ fn of_cells(
 ) -> Result<TriangleMesh, Error> {
     let snap = arguments.snap.into();
     match arguments.method {
+        Method::Dual => unreachable!("dual contouring asks rays"),
         Method::Mc => marching_cubes(octree.view(), resolve, control),
         Method::Smc => smc(octree.view(), snap, resolve, control),
         Method::Shrink => coplanar_shrink(octree.view(), snap, resolve, control),
@@ -283,6 +378,7 @@ fn of_solid(
     };
     let snap = arguments.snap.into();
     match arguments.method {
+        Method::Dual => unreachable!("dual contouring asks rays"),
         Method::Mc => marching_cubes_of(solid, frame, placement, control),
         Method::Smc => smc_of(solid, frame, snap, control),
         Method::Shrink => coplanar_shrink_of(solid, frame, snap, control),
@@ -313,6 +409,9 @@ struct Report {
     /// Whether these are all.
     #[serde(skip_serializing_if = "Option::is_none")]
     all_intersecting_pairs: Option<bool>,
+    /// How exactly the surface follows rays, if it does.
+    #[serde(flatten)]
+    followed: Option<Followed>,
     seconds: f64,
 }
 
@@ -341,6 +440,9 @@ impl Report {
             number(self.volume),
             self.seconds,
         );
+        if let Some(followed) = &self.followed {
+            let _ = writeln!(text, "{}", followed.text());
+        }
         if let Some(pairs) = self.intersecting {
             let more = if self.all_intersecting_pairs == Some(false) { " or more" } else { "" };
             let _ = writeln!(text, "{}{more} of triangles that intersect", counted(pairs, "pair", "pairs"));

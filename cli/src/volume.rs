@@ -19,7 +19,7 @@ use std::str::FromStr;
 use std::time::Instant;
 
 /// Which voxels of a volume are inside, and what the bytes of one without a header mean.
-#[derive(Args)]
+#[derive(Clone, Args)]
 pub struct Sampling {
     /// Least sample of a volume (NRRD, MetaImage, raw) that is inside. Without it: the middle of the range of the
     /// samples' type, 0 for floating point numbers
@@ -121,7 +121,7 @@ pub struct Voxels {
     placement: Option<Affine>,
     format: String,
     kind: SampleKind,
-    threshold: f64,
+    pub threshold: f64,
 }
 
 /// What a file holds.

@@ -1,6 +1,7 @@
 //! `leafless voxelize`: from a mesh file to a solid.
 
 use crate::content::Content;
+use crate::convert;
 use crate::failure::{Failure, Of};
 use crate::input::Input;
 use crate::mesh::{Reading, check_closed, fill_name, format_name, frame_around, in_words, openness};
@@ -98,6 +99,22 @@ pub fn threads(text: &str) -> Result<usize, String> {
     match text.parse() {
         Ok(threads @ 0..=1024) => Ok(threads),
         _ => Err("expected a number from 0 to 1024".into()),
+    }
+}
+
+impl Arguments {
+    /// What `leafless convert` asks for.
+    pub fn converting(wanted: &convert::Arguments) -> Arguments {
+        Arguments {
+            input: wanted.input.clone(),
+            output: wanted.output.clone(),
+            depth: Some(wanted.depth()),
+            rule: wanted.resolve.map_or(RuleName::Certified, RuleName::from),
+            reading: wanted.reading.clone(),
+            bounds: wanted.bounds,
+            threads: wanted.threads,
+            json: wanted.json,
+        }
     }
 }
 
@@ -223,7 +240,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 /// What the solid's file says of its making: nothing that differs from run to run.
-fn facts(input: &Input, source: String, rule: RuleName, unit: Option<LengthUnit>) -> Metadata {
+pub fn facts(input: &Input, source: String, rule: impl ValueEnum, unit: Option<LengthUnit>) -> Metadata {
     let mut metadata = Metadata::new();
     if let Some(stem) = input.path().and_then(|path| path.file_stem()) {
         metadata.insert("name", stem.to_string_lossy());
@@ -242,7 +259,7 @@ pub fn name_of(value: impl ValueEnum) -> String {
 }
 
 /// Where the mesh sticks out of the bounds. If it does not, it is open, and what it encloses may.
-fn clipping(frame: &Frame, min: [f64; 3], max: [f64; 3]) -> String {
+pub fn clipping(frame: &Frame, min: [f64; 3], max: [f64; 3]) -> String {
     let mut text = String::new();
     for (axis, name) in ["x", "y", "z"].iter().enumerate() {
         let start = frame.origin()[axis];

@@ -30,6 +30,8 @@ fn help_and_version() {
     let commands = [
         "voxelize",
         "csg",
+        "dexelize",
+        "convert",
         "info",
         "verify",
         "union",

@@ -3,7 +3,10 @@
 
 use crate::common::exact::Exact;
 use crate::model::{Model, Other, Point, Probe};
-use leafless::{Affine, Control, Error, Frame, Octree, Rule, Tag, build, complement};
+use leafless::{
+    Affine, Control, DexelOptions, Error, Frame, Octree, Rule, Tag, build, complement, dexelize,
+    octree_of_dexels,
+};
 
 /// Most primitives of an expression, which is written out. (Exact arithmetic is slow, and few find as much as
 /// many.)
@@ -186,6 +189,22 @@ pub fn csg(data: &[u8]) {
     let other = build(&csg.complement(), &frame, Rule::Certified, &control).expect("as large");
     assert!(complement(tree.view(), &control).expect("memory") == other);
     let samples = made(Rule::Sampled);
+    if let Some(samples) = &samples {
+        for axis in 0..3 {
+            let directions = [0, 1, 2].map(|a| a == axis);
+            let options = DexelOptions { directions, ..DexelOptions::default() };
+            let dexels = dexelize(&csg, &frame, &options, &control).expect("as much");
+            dexels.view().check().expect("a sound model");
+            let found = octree_of_dexels(dexels.view(), &control).expect("memory");
+            // (What lies outside of the universe no ray tells.)
+            let n = frame.cells();
+            for i in 0..n * n * n {
+                let at = [i % n, i / n % n, i / n / n];
+                let [found, expected] = [&found, samples].map(|tree| tree.view().tag_at(at));
+                assert_eq!(found, expected, "along {axis} at {at:?} {frame:?}\n{model:#?}");
+            }
+        }
+    }
     for_each_point(&frame, |at| {
         let [x, y, z] = [0, 1, 2].map(|axis| Exact::half_plane(&frame, axis, at[axis]));
         let at_centre = at.iter().all(|k| k % 2 == 1);

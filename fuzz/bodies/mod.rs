@@ -3,6 +3,7 @@
 
 mod aligned;
 mod channels;
+mod dexels;
 pub mod layout;
 pub mod meshes;
 mod mutator;
@@ -13,6 +14,7 @@ mod ways_in;
 
 pub use aligned::Aligned;
 pub use channels::channels;
+pub use dexels::dexels_in_all_ways;
 pub use mutator::{changed, mutate_file, mutate_pair, repairs};
 pub use queries::queries;
 pub use set_algebra::{set_algebra, threads};

@@ -3,8 +3,9 @@
 use super::layout::{File, OBJECTS, PLANES, RECORD, Repairs, Section, put};
 use super::{CONTROL, Random, joined};
 use leafless::{
-    Cell, Channel, Classifier, Control, Csg, Error, FillOptions, Frame, FunctionAttribute, Metadata, Octree,
-    Proof, Rule, ScalarType, Solid, Tag, ValueType, Verdict, Worker, build, file, fill_channel,
+    Cell, Channel, Classifier, Control, Csg, DexelEnds, DexelFormat, DexelNormals, DexelOptions, Error,
+    FillOptions, Frame, FunctionAttribute, Metadata, Octree, Proof, Rule, ScalarType, Solid, Tag, ValueType,
+    Verdict, Worker, build, dexelize, file, fill_channel,
 };
 
 /// A different tree for every seed, with coarse and fine cells of every tag.
@@ -157,7 +158,7 @@ pub fn files() -> Vec<Vec<u8>> {
     };
     let more = [
         newer(6, &|file| {
-            put(&mut file.header, 10, 3, 2);
+            put(&mut file.header, 10, 4, 2);
             put(&mut file.header, 20, 1, 4);
             file.header[71] = 5;
             file.header[115] = 9;
@@ -184,6 +185,29 @@ pub fn files() -> Vec<Vec<u8>> {
     ];
     files.extend(more);
     files.retain(|file| file.len() <= MOST);
+    files
+}
+
+/// Files of tri-dexel models, of all formats and directions.
+pub fn dexel_files() -> Vec<Vec<u8>> {
+    let ball = Csg::ball([15.0, 16.0, 17.0], 12.0).expect("a ball");
+    let bar = Csg::cuboid([10.0, 0.0, 14.0], [32.0, 17.0, 18.0]).expect("a box");
+    let cut = ball.difference(&bar).expect("two figures");
+    let normals = [DexelNormals::None, DexelNormals::Bits16, DexelNormals::Bits32];
+    let mut files = vec![];
+    for (i, normals) in normals.into_iter().cycle().take(12).enumerate() {
+        let format = DexelFormat {
+            ends: if i % 2 == 0 { DexelEnds::Fixed } else { DexelEnds::Double },
+            normals,
+            surfaces: i % 4 < 2,
+            materials: i % 5 < 3,
+        };
+        let directions = [i % 7 != 0, i % 3 != 1, i % 7 == 0 || i % 4 == 1];
+        let options = DexelOptions { directions, format, ..DexelOptions::default() };
+        let model = dexelize(&cut, &frame(2 + i as u8 % 3), &options, &CONTROL).expect("no limits");
+        let model = if i % 5 == 0 { model.with_metadata(facts()) } else { model };
+        files.push(file::dexels::to_bytes(&model).expect("a good model"));
+    }
     files
 }
 

@@ -98,9 +98,11 @@ impl From<&Failure> for leafless_status {
                     LEAFLESS_E_VERSION
                 }
                 // Not the contents, but where the host has put them.
-                Error::Format(FormatError::Alignment | FormatError::NotRegular) => LEAFLESS_E_ARGUMENT,
+                Error::Format(
+                    FormatError::Alignment | FormatError::NotRegular | FormatError::OtherModel { .. },
+                ) => LEAFLESS_E_ARGUMENT,
                 Error::Format(_) => LEAFLESS_E_FORMAT,
-                Error::Damaged(_) => LEAFLESS_E_DAMAGED,
+                Error::Damaged(_) | Error::DamagedRays { .. } => LEAFLESS_E_DAMAGED,
                 Error::Limit { .. } => LEAFLESS_E_LIMIT,
                 Error::OutOfMemory => LEAFLESS_E_NO_MEMORY,
                 Error::Cancelled => LEAFLESS_E_CANCELLED,
@@ -114,8 +116,8 @@ impl From<&Failure> for leafless_status {
 /// Runs the body of a function.
 ///
 /// A panic does not reach the host. Nothing that survives it can be half-changed: handles are immutable but
-/// for atomic flags, cursors and lazy octrees. A cursor's position is checked at every step; a lazy octree
-/// changes only once the solid has answered.
+/// for atomic flags, cursors, lazy octrees and editors. A cursor's position is checked at every step; a lazy octree
+/// changes only once the solid has answered; an editor that a panic left refuses everything.
 #[inline(always)]
 pub(super) fn guard(body: impl FnOnce() -> Result<(), Failure>) -> leafless_status {
     match catch_unwind(AssertUnwindSafe(body)) {
@@ -339,6 +341,8 @@ const _: () = {
     shared_by_threads::<super::leafless_cells>();
     shared_by_threads::<super::leafless_faces>();
     shared_by_threads::<super::leafless_columns>();
+    shared_by_threads::<super::leafless_tridexel>();
+    shared_by_threads::<super::leafless_tridexel_editor>();
 };
 
 /// A place for a result, checked before the work begins and written once it is done.
@@ -406,6 +410,15 @@ impl<T: Copy> Buffer<T> {
             unsafe { core::ptr::copy_nonoverlapping(elements.as_ptr(), self.start, elements.len()) };
         }
         Ok(())
+    }
+
+    /// Writes one element, if there is a buffer, and room in it.
+    #[inline]
+    pub(super) fn put(&self, index: usize, element: T) {
+        if self.wanted() && (index as u64) < self.capacity {
+            // SAFETY: promised to `buffer`, and there is room.
+            unsafe { self.start.add(index).write(element) };
+        }
     }
 
     /// The first `count` elements of the buffer, set to zero; `None` if there is none.

@@ -4,8 +4,9 @@ use super::boundary::{Failure, buffer, guard, out, path, shared, slice};
 use super::frame::leafless_frame;
 use super::octree::{give, leafless_octree, leafless_proof, leafless_tag};
 use super::status::leafless_status;
+use super::tridexel::{axes, leafless_dexel_ends, leafless_dexel_normals};
 use crate::error::Error;
-use crate::file::{self, Probe, Section};
+use crate::file::{self, DexelProbe, Probe, Section};
 use crate::memory;
 use crate::octree::Octree;
 use core::ffi::{c_char, c_void};
@@ -14,7 +15,7 @@ use std::io;
 /// Major version of the file format that this library writes, and the only one that it reads.
 pub const LEAFLESS_FORMAT_MAJOR: u32 = 0;
 /// Minor version of the file format that this library writes; it reads newer ones, too.
-pub const LEAFLESS_FORMAT_MINOR: u32 = 2;
+pub const LEAFLESS_FORMAT_MINOR: u32 = 3;
 const _: () = {
     assert!(LEAFLESS_FORMAT_MAJOR == file::MAJOR as u32);
     assert!(LEAFLESS_FORMAT_MINOR == file::MINOR as u32);
@@ -28,24 +29,64 @@ pub struct leafless_probe {
     pub major: u32,
     /// Minor version of the format.
     pub minor: u32,
-    /// Where the octree lies, and its depth.
+    /// Where the octree or the tri-dexel model lies, and its depth.
     pub frame: leafless_frame,
-    /// Array elements without bricks.
+    /// Array elements without bricks; 0 for a tri-dexel model.
     pub elements: u64,
-    /// Array elements of the deepest level.
+    /// Array elements of the deepest level; 0 for a tri-dexel model.
     pub bricks: u64,
     /// Length of the file in bytes.
     pub file_length: u64,
     /// Sections of the file.
     pub sections: u64,
-    /// What the cells prove.
+    /// What the cells prove; nothing for a tri-dexel model.
     pub proof: leafless_proof,
-    /// The tag of the whole universe; BRANCH if it is cut.
+    /// The tag of the whole universe; BRANCH if it is cut; EMPTY for a tri-dexel model.
     pub root: leafless_tag,
-    /// What is known of the space outside of the universe; never BRANCH.
+    /// What is known of the space outside of the universe; never BRANCH; EMPTY for a tri-dexel model.
     pub exterior: leafless_tag,
     /// Whether nothing is undecided.
     pub is_binary: bool,
+    /// What is stored of a tri-dexel model; all zeros for an octree.
+    pub tridexel: leafless_tridexel_probe,
+}
+
+/// What header and section table of a tri-dexel model's file say of it.
+#[derive(Clone, Copy)]
+#[repr(C)]
+pub struct leafless_tridexel_probe {
+    /// The axes that rays run along, a sum of leafless_axes; 0 if the file holds an octree.
+    pub directions: u32,
+    /// How the ends of intervals are stored.
+    pub ends: leafless_dexel_ends,
+    /// How unit normals are stored.
+    pub normals: leafless_dexel_normals,
+    /// 1 if it is stored on which surfaces the ends lie, else 0.
+    pub has_surfaces: u32,
+    /// 1 if it is stored what intervals are made of, else 0.
+    pub has_materials: u32,
+    /// Zero.
+    pub reserved: u32,
+    /// Rays in the window along each axis, empty ones among them.
+    pub rays: [u64; 3],
+    /// Intervals along each axis.
+    pub intervals: [u64; 3],
+}
+
+impl From<Option<&DexelProbe>> for leafless_tridexel_probe {
+    fn from(probe: Option<&DexelProbe>) -> leafless_tridexel_probe {
+        let format = probe.map(|probe| probe.format).unwrap_or_default();
+        leafless_tridexel_probe {
+            directions: probe.map_or(0, |probe| axes(probe.directions)),
+            ends: format.ends.into(),
+            normals: format.normals.into(),
+            has_surfaces: format.surfaces.into(),
+            has_materials: format.materials.into(),
+            reserved: 0,
+            rays: probe.map_or([0; 3], |probe| probe.rays),
+            intervals: probe.map_or([0; 3], |probe| probe.intervals),
+        }
+    }
 }
 
 /// A section of a file.
@@ -82,6 +123,7 @@ impl From<&Probe> for leafless_probe {
             root: probe.root.into(),
             exterior: probe.exterior.into(),
             is_binary: probe.binary,
+            tridexel: probe.dexels.as_ref().into(),
         }
     }
 }
@@ -151,7 +193,8 @@ pub unsafe extern "C" fn leafless_file_probe(
 }
 
 /// As leafless_file_probe for the first bytes of a file in memory, or all of them: 128 and 40 for each
-/// section. 488 suffice for every file that this library writes, 163 968 for any.
+/// section. 488 suffice for an octree without channels that this library wrote, 808 for a tri-dexel model, 163 968
+/// for any file.
 ///
 /// - Buffers: `bytes`, `length` bytes, may be NULL if there are none; `probe`, one struct; `sections`, room
 ///   for `capacity` structs, or NULL if they are not wanted.
@@ -230,8 +273,8 @@ unsafe fn found_in<'a>(
 ///
 /// - Buffers: `path`, `path_length` bytes of UTF-8; `octree`, one pointer.
 /// - Result: `*octree`.
-/// - Errors: LEAFLESS_E_FORMAT; LEAFLESS_E_VERSION; LEAFLESS_E_DAMAGED; LEAFLESS_E_IO; LEAFLESS_E_UTF8;
-///   LEAFLESS_E_NO_MEMORY.
+/// - Errors: LEAFLESS_E_FORMAT, also if the file holds a tri-dexel model; LEAFLESS_E_VERSION; LEAFLESS_E_DAMAGED;
+///   LEAFLESS_E_IO; LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY.
 /// - Ownership: give `*octree` back with leafless_octree_free.
 /// - Threads: any.
 /// - Untrusted input: any file; memory is at most a small multiple of its length.
@@ -403,7 +446,7 @@ pub type leafless_write_fn =
     Option<unsafe extern "C" fn(ctx: *mut c_void, bytes: *const u8, count: u64) -> i32>;
 
 /// Hands bytes to the host.
-struct Sink {
+pub(super) struct Sink {
     write: unsafe extern "C" fn(*mut c_void, *const u8, u64) -> i32,
     ctx: *mut c_void,
     code: i32,
@@ -418,6 +461,23 @@ impl io::Write for Sink {
 
     fn flush(&mut self) -> io::Result<()> {
         Ok(())
+    }
+}
+
+/// Writes a file through a function of the host.
+///
+/// # Safety
+/// `write` may be called with `ctx`.
+pub(super) unsafe fn written(
+    write: leafless_write_fn,
+    ctx: *mut c_void,
+    work: impl FnOnce(&mut Sink) -> Result<(), Error>,
+) -> Result<(), Failure> {
+    let write = write.ok_or(Failure::Null { name: "write" })?;
+    let mut sink = Sink { write, ctx, code: 0 };
+    match work(&mut sink) {
+        Err(Error::Io(_)) if sink.code != 0 => Err(Error::Callback { code: sink.code }.into()),
+        done => Ok(done?),
     }
 }
 
@@ -441,11 +501,6 @@ pub unsafe extern "C" fn leafless_octree_write(
 ) -> leafless_status {
     guard(|| unsafe {
         let octree = &shared(octree, "octree")?.octree;
-        let write = write.ok_or(Failure::Null { name: "write" })?;
-        let mut sink = Sink { write, ctx, code: 0 };
-        match file::write_to(octree, &mut sink) {
-            Err(Error::Io(_)) if sink.code != 0 => Err(Error::Callback { code: sink.code }.into()),
-            done => Ok(done?),
-        }
+        written(write, ctx, |sink| file::write_to(octree, sink))
     })
 }

@@ -119,8 +119,23 @@ fn write_all(to: &mut dyn Write) -> fmt::Result {
         leafless_cell { cell, level, tag }
         leafless_boundary_face { inner, outer, axis, is_upper, has_outer }
         leafless_probe {
-            major, minor, frame, elements, bricks, file_length, sections, proof, root, exterior, is_binary
+            major, minor, frame, elements, bricks, file_length, sections, proof, root, exterior, is_binary, tridexel
         }
+        leafless_tridexel_format { struct_size, directions, ends, normals, has_surfaces, has_materials }
+        leafless_tridexel_info {
+            frame, directions, ends, normals, has_surfaces, has_materials, bytes_per_interval, interval_count, bytes
+        }
+        leafless_dexel_end { at_model, normal, surface }
+        leafless_dexel { start, end, material }
+        leafless_ray_arrays {
+            axis, reserved, first, end, offsets, interval_count, ends_model, normals, surfaces, materials
+        }
+        leafless_dexel_surface_report {
+            crossings, several, without_rays, disagreeing, without_normals, means, clamped
+        }
+        leafless_long_voxel { first, length, material, kind }
+        leafless_tridexel_probe { directions, ends, normals, has_surfaces, has_materials, reserved, rays, intervals }
+        leafless_dexel_statistics { rays, intervals, bytes, volume_model, min_model, max_model }
         leafless_scene_options { struct_size, facets }
         leafless_scene_report { polygons, exact, ignored_slices, meshes, is_empty }
         leafless_scene_mesh { line, column, turned, report }
@@ -214,6 +229,12 @@ fn write_all(to: &mut dyn Write) -> fmt::Result {
         }
         leafless_interpolation { LEAFLESS_INTERPOLATION_TRILINEAR, LEAFLESS_INTERPOLATION_NEAREST }
         leafless_carry { LEAFLESS_CARRY_LEFT, LEAFLESS_CARRY_RIGHT, LEAFLESS_CARRY_MAX, LEAFLESS_CARRY_MEAN }
+        leafless_axes { LEAFLESS_AXES_X, LEAFLESS_AXES_Y, LEAFLESS_AXES_Z, LEAFLESS_AXES_ALL }
+        leafless_dexel_ends { LEAFLESS_DEXEL_ENDS_FIXED, LEAFLESS_DEXEL_ENDS_DOUBLE }
+        leafless_dexel_normals { LEAFLESS_DEXEL_NORMALS_NONE, LEAFLESS_DEXEL_NORMALS_16, LEAFLESS_DEXEL_NORMALS_32 }
+        leafless_dexel_surface_method {
+            LEAFLESS_DEXEL_SURFACE_MARCHING_CUBES, LEAFLESS_DEXEL_SURFACE_DUAL_CONTOURING
+        }
         leafless_exterior { LEAFLESS_EXTERIOR_UNKNOWN, LEAFLESS_EXTERIOR_EMPTY, LEAFLESS_EXTERIOR_FULL }
     }
     writeln!(to, "LEAFLESS_VERSION_MAJOR {LEAFLESS_VERSION_MAJOR}")?;

@@ -41,6 +41,13 @@
 //! | `lazy` | octrees that are split on demand |
 //! | `interference` | solids under affine maps; overlap and distance of two solids |
 //! | `measure` | volume, centroid, inertia, bounding boxes of solids |
+//! | `tridexel` | tri-dexel models: made of solids, described, metadata |
+//! | `tridexel_read` | cells, rays and intervals of tri-dexel models, statistics |
+//! | `tridexel_op` | set algebra of tri-dexel models, what they store |
+//! | `tridexel_editor` | tri-dexel models that are changed in place |
+//! | `tridexel_arrays` | tri-dexel models from the host's arrays |
+//! | `tridexel_surface` | meshes, octrees, solids and voxels of tri-dexel models |
+//! | `tridexel_file` | files of tri-dexel models |
 //! | `file` | files and their bytes |
 //! | `layout` | for tests: what the structs look like |
 
@@ -87,6 +94,13 @@ mod scene;
 mod solid;
 mod status;
 mod surface;
+mod tridexel;
+mod tridexel_arrays;
+mod tridexel_editor;
+mod tridexel_file;
+mod tridexel_op;
+mod tridexel_read;
+mod tridexel_surface;
 mod version;
 mod volume;
 mod volume_arrays;
@@ -132,6 +146,13 @@ pub use scene::*;
 pub use solid::*;
 pub use status::*;
 pub use surface::*;
+pub use tridexel::*;
+pub use tridexel_arrays::*;
+pub use tridexel_editor::*;
+pub use tridexel_file::*;
+pub use tridexel_op::*;
+pub use tridexel_read::*;
+pub use tridexel_surface::*;
 pub use version::*;
 pub use volume::*;
 pub use volume_arrays::*;

@@ -28,7 +28,7 @@ pub enum leafless_rule {
 }
 use leafless_rule::*;
 
-fn rule(rule: u32) -> Result<Rule, Failure> {
+pub(super) fn rule(rule: u32) -> Result<Rule, Failure> {
     match rule {
         _ if rule == LEAFLESS_RULE_CERTIFIED as u32 => Ok(Rule::Certified),
         _ if rule == LEAFLESS_RULE_SAMPLED as u32 => Ok(Rule::Sampled),

@@ -31,7 +31,7 @@ pub enum leafless_status {
     LEAFLESS_E_FORMAT = 9,
     /// The file needs a newer version of the library.
     LEAFLESS_E_VERSION = 10,
-    /// The arrays of an octree contradict each other.
+    /// The arrays of an octree or of a tri-dexel model contradict each other.
     LEAFLESS_E_DAMAGED = 11,
     /// More nodes or bytes than leafless_options allows.
     LEAFLESS_E_LIMIT = 12,
@@ -49,7 +49,7 @@ pub enum leafless_status {
     LEAFLESS_E_SOURCE = 18,
     /// A scene cannot be read.
     LEAFLESS_E_SCENE = 19,
-    /// A lazy octree is in use by another call, in another thread or around this one. Nothing was done.
+    /// A lazy octree or an editor is in use by another call, in another thread or around this one. Nothing was done.
     LEAFLESS_E_BUSY = 20,
     /// A volume file cannot be read.
     LEAFLESS_E_VOLUME_FILE = 21,

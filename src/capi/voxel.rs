@@ -17,6 +17,7 @@ use crate::voxel::{Viewpoint, VoxelBoundary, VoxelOptions, VoxelRecords, VoxelRe
 use leafless_criterion::*;
 
 /// What a voxel is: a number in the array `kinds`.
+#[derive(Clone, Copy)]
 #[repr(u8)]
 pub enum leafless_voxel_kind {
     /// It lies outside of the solid.

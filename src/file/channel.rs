@@ -1,9 +1,10 @@
 //! The channels in a file.
 
 use super::field::{demand, illegal};
+use super::kind::{Element, Kind};
 use super::layout::{Layout, Starts, cast, starts, tree};
 use super::object::{CHANNEL, CHANNEL_MINOR, Object};
-use super::section::{Element, Kind, Sections, entries};
+use super::section::{Sections, entries};
 use super::wire::elements;
 use crate::error::{Error, FormatError};
 use crate::lattice::Frame;
@@ -75,8 +76,8 @@ impl ChannelLayout {
             return Err(illegal("channel's extents", object.extents[0]).into());
         }
         if !header.is_newer() {
-            let Object { reserved, reserved_middle, reserved_tail, .. } = object;
-            if reserved != [0; 3] || reserved_middle != 0 || reserved_tail != [0; 16] {
+            let Object { form, reserved, reserved_middle, reserved_tail, .. } = object;
+            if form != 0 || reserved != [0; 2] || reserved_middle != 0 || reserved_tail != [0; 16] {
                 return Err(illegal("reserved field", owner).into());
             }
         }

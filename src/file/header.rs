@@ -2,6 +2,7 @@
 
 use super::counts::Counts;
 use super::field::{demand, illegal};
+use super::form::Form;
 use super::wire::{Wire, wire_struct};
 use crate::error::{Error, FormatError};
 use crate::lattice::Frame;
@@ -18,10 +19,19 @@ pub const MAJOR: u16 = 0;
 
 /// The newest minor version that this library knows; part of the format. Newer ones of the same major are
 /// readable. A file has the oldest version that knows all of its objects.
-pub const MINOR: u16 = 2;
+pub const MINOR: u16 = 3;
 
 /// The oldest minor version that is readable, and of files without channels: 0.0 had another section table.
 pub(super) const OLDEST_MINOR: u16 = 1;
+
+/// Required flag of a file whose solid is a tri-dexel model; part of the format.
+pub(super) const FLAG_DEXELS: u32 = 1;
+
+/// The oldest minor version that knows tri-dexel models.
+pub(super) const DEXELS_MINOR: u16 = 3;
+
+/// Most intervals of a tri-dexel model along one axis; part of the format.
+const MOST_INTERVALS: u64 = u32::MAX as u64 - 1;
 
 /// Length of the header, and offset of the section table; part of the format.
 pub(super) const HEADER_LENGTH: usize = size_of::<Header>();
@@ -52,7 +62,8 @@ wire_struct! {
         68 brick_encoding: u8,
         69 segment_shift: u8,
         70 proof: u8,
-        71 reserved: u8,
+        /// What a tri-dexel model stores; else 0.
+        71 form: u8,
         72 elements: u64,
         80 bricks: u64,
         88 dictionary_entries: u64,
@@ -78,6 +89,11 @@ impl Header {
         }
     }
 
+    /// Whether the solid is a tri-dexel model.
+    pub fn is_dexels(&self) -> bool {
+        self.minor >= DEXELS_MINOR && self.flags_required & FLAG_DEXELS != 0
+    }
+
     /// Whether a later version wrote the file, which may have given a meaning to what is reserved today.
     pub fn is_newer(&self) -> bool {
         self.minor > MINOR
@@ -92,6 +108,8 @@ pub(super) struct Head {
     pub root: Tag,
     pub exterior: Tag,
     pub proof: Proof,
+    /// What is stored of a tri-dexel model; of an octree nothing.
+    pub form: Option<Form>,
 }
 
 impl Head {
@@ -119,14 +137,14 @@ impl Head {
 
     fn check(header: Header) -> Result<Head, FormatError> {
         demand("header length", header.header_length, HEADER_LENGTH as u64)?;
-        if header.flags_required != 0 {
-            let value = header.flags_required.into();
-            return Err(FormatError::Required { name: "flags", value });
+        let unknown = header.flags_required & !if header.is_dexels() { FLAG_DEXELS } else { 0 };
+        if unknown != 0 {
+            return Err(FormatError::Required { name: "flags", value: unknown.into() });
         }
         // A newer minor version may have given these a meaning that can be ignored.
         if !header.is_newer() {
             demand("optional flags", header.flags_optional, 0u64)?;
-            demand("reserved field", header.reserved, 0u64)?;
+            demand("reserved field", if header.is_dexels() { 0 } else { header.form }, 0u64)?;
             for byte in header.reserved_tail {
                 demand("reserved field", byte, 0u64)?;
             }
@@ -145,6 +163,21 @@ impl Head {
         for (value, normal) in header.origin.into_iter().zip(frame.origin()) {
             demand("origin", value, normal.to_bits())?;
         }
+        let head = if header.is_dexels() {
+            Head::of_dexels(header, frame)?
+        } else {
+            Head::of_octree(header, frame)?
+        };
+        if !(1..=MAX_SECTIONS).contains(&header.section_count) {
+            return Err(illegal("section count", header.section_count));
+        }
+        if header.file_length <= head.table_range().end as u64 {
+            return Err(illegal("file length", header.file_length));
+        }
+        Ok(head)
+    }
+
+    fn of_octree(header: Header, frame: Frame) -> Result<Head, FormatError> {
         if header.root > 3 {
             return Err(illegal("root tag", header.root));
         }
@@ -166,14 +199,40 @@ impl Head {
             return Err(illegal("planes of a brick", header.brick_planes));
         }
         header.counts().check()?;
-        if !(1..=MAX_SECTIONS).contains(&header.section_count) {
-            return Err(illegal("section count", header.section_count));
+        Ok(Head { header, frame, root, exterior, proof, form: None })
+    }
+
+    fn of_dexels(header: Header, frame: Frame) -> Result<Head, FormatError> {
+        let Header {
+            root, exterior, brick_planes, brick_encoding, segment_shift, proof, displacement, ..
+        } = header;
+        for byte in [root, exterior, brick_planes, brick_encoding, segment_shift, proof] {
+            demand("field of octrees", byte, 0u64)?;
         }
-        let head = Head { header, frame, root, exterior, proof };
-        if header.file_length <= head.table_range().end as u64 {
-            return Err(illegal("file length", header.file_length));
+        demand("field of octrees", displacement, 0u64)?;
+        let form = Form::from_bits(header.form).ok_or(illegal("form", header.form))?;
+        for (count, has) in
+            [header.elements, header.bricks, header.dictionary_entries].into_iter().zip(form.directions)
+        {
+            if count > if has { MOST_INTERVALS } else { 0 } {
+                return Err(illegal("intervals", count));
+            }
         }
-        Ok(head)
+        Ok(Head {
+            header,
+            frame,
+            root: Tag::Empty,
+            exterior: Tag::Empty,
+            proof: Proof::new(false, false),
+            form: Some(form),
+        })
+    }
+
+    /// Refuses a file of the other model: of a tri-dexel one unless `dexels` are wanted, of an octree if they are.
+    pub(super) fn demand_model(&self, dexels: bool) -> Result<(), FormatError> {
+        let names = ["an octree", "a tri-dexel model"];
+        let [found, wanted] = [self.form.is_some(), dexels].map(|dexels| names[usize::from(dexels)]);
+        if found == wanted { Ok(()) } else { Err(FormatError::OtherModel { found, wanted }) }
     }
 
     /// Where the section table lies.

@@ -3,8 +3,9 @@
 use super::counts::{Counts, ENCODING_RAW};
 use super::field::illegal;
 use super::header::Head;
+use super::kind::Kind;
 use super::object::{self, Object};
-use super::section::{Kind, Sections, read_table};
+use super::section::{Sections, read_table};
 use super::wire::{Wire, elements, wire_struct};
 use crate::error::{Damage, Error, FormatError};
 use crate::lattice::Frame;
@@ -40,6 +41,7 @@ impl Layout {
     /// the ones that are stored. O(sections + objects + depth); `bytes` are the whole file, of any alignment.
     pub(super) fn read(bytes: &[u8]) -> Result<Layout, Error> {
         let head = Head::read(bytes)?;
+        head.demand_model(false)?;
         let (expected, found) = (head.header.file_length, bytes.len() as u64);
         if expected != found {
             return Err(FormatError::Length { expected, found }.into());
@@ -52,8 +54,8 @@ impl Layout {
 
     /// The tree in `bytes`, whose numbers have this machine's order.
     pub(super) fn octree<'a>(&self, bytes: &'a [u8]) -> Result<OctreeRef<'a>, FormatError> {
-        let Head { header, frame, root, exterior, proof } = self.head;
-        let tree = tree(&Object::solid(&header), &self.sections, frame, &self.starts, bytes)?;
+        let Head { header, frame, root, exterior, proof, .. } = self.head;
+        let tree = tree(&Object::main(&header), &self.sections, frame, &self.starts, bytes)?;
         Ok(OctreeRef { root, exterior, proof, ..tree })
     }
 }

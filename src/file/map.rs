@@ -1,12 +1,13 @@
 //! Files mapped into memory and queried in place.
 
 use super::channel;
-use super::read::{metadata, verify_contents, viewed, with_channels};
-use crate::error::{Error, FormatError};
+use super::contents::{metadata, verify_contents};
+use super::layout::Layout;
+use super::mapping::mapping;
+use super::read::{viewed, with_channels};
+use crate::error::Error;
 use crate::octree::Octree;
 use alloc::sync::Arc;
-use memmap2::Mmap;
-use std::fs::File;
 use std::path::Path;
 
 /// The tree in the file at `path`, mapped into memory: nothing is copied, and only what queries touch is ever
@@ -61,19 +62,15 @@ pub unsafe fn map_verified(path: impl AsRef<Path>) -> Result<Octree, Error> {
 /// As [`map`].
 #[allow(unsafe_code)]
 unsafe fn mapped(path: &Path, verify: bool) -> Result<Octree, Error> {
-    // Asked before opening, because opening a pipe that nobody writes to would wait.
-    if !std::fs::metadata(path)?.is_file() {
-        return Err(FormatError::NotRegular.into());
-    }
-    let file = File::open(path)?;
-    if file.metadata()?.len() == 0 {
+    // SAFETY: the caller promises what `mapping` asks for.
+    let Some(map) = unsafe { mapping(path) }? else {
         // Nothing can be mapped; the error is the one of any file that is too short.
         return super::from_bytes(&[]);
-    }
-    // SAFETY: the caller promises that the file is not changed while the mapping lives.
-    let map = Arc::new(unsafe { Mmap::map(&file) }?);
+    };
+    let map = Arc::new(map);
     let (layout, _) = viewed(&map)?;
-    let metadata = if verify { verify_contents(&layout, &map)? } else { metadata(&layout, &map)? };
+    let Layout { head, sections, .. } = &layout;
+    let metadata = if verify { verify_contents(head, sections, &map)? } else { metadata(sections, &map)? };
     let channels = channel::read(&layout, &map)?;
     let octree = Octree::attach(map.clone(), metadata, |map| {
         let tree = layout.octree(map)?;

@@ -1,4 +1,7 @@
-//! The file format: an octree's arrays as they lie in memory, mapped and queried in place.
+//! The file format: the arrays of an octree or a tri-dexel model as they lie in memory, mapped and queried in place.
+//!
+//! The functions of this module are for octrees; those in [`dexels`] have the same names and are for tri-dexel models.
+//! [`probe`] and [`verify`] know both.
 //!
 //! # Ways in
 //!
@@ -56,9 +59,10 @@
 //!
 //! # The format
 //!
-//! Version 0.2. **Later versions of major version 0 only add to it**: a file of version 0.1 stays readable,
-//! and a reader of version 0.1 reads the solid of any later file. Version 0.2 added channels; a file has the
-//! oldest version that knows all of its objects, so a file without channels is one of version 0.1.
+//! Version 0.3. **Later versions of major version 0 only add to it**: a file of version 0.1 stays readable,
+//! and a reader of version 0.1 reads any later file that holds an octree. Version 0.2 added channels,
+//! version 0.3 tri-dexel models, which older readers refuse. A file has the oldest version that knows all of its objects,
+//! so an octree without channels is in a file of version 0.1.
 //!
 //! A file is a header of 128 bytes, a table of sections, and the sections: the arrays of an
 //! [`OctreeRef`](crate::OctreeRef), each on a multiple of 64 bytes, all numbers little-endian. Header, table
@@ -79,8 +83,15 @@
 //! | 16 | values of a channel | one to four u8, u16, u32 or f32 | values |
 //! | 18 | value rel of a channel | u16 | elements + bricks |
 //! | 19 | value base of a channel | u64 | ⌈(elements + bricks) / 1024⌉ |
+//! | 32 | windows of a tri-dexel model | four u32 | directions |
+//! | 33, 38, 43 | starts along x, y, z | u32 | rays of the window + 1 |
+//! | 34, 39, 44 | spans along x, y, z | two u32 or f64 | intervals |
+//! | 35, 40, 45 | normals along x, y, z | two u16 or u32 | intervals |
+//! | 36, 41, 46 | surfaces along x, y, z | two u32 | intervals |
+//! | 37, 42, 47 | materials along x, y, z | u32 | intervals |
 //!
-//! Each section belongs to an object, its owner. Object 0 is the solid. Objects of type 2 are its channels, at
+//! Each section belongs to an object, its owner. Object 0 is the solid: an octree with sections of the kinds 1 to 10, or a
+//! tri-dexel model with the kinds 1, 2 and 32 to 47. Objects of type 2 are the channels of an octree, at
 //! most 256, each with a tree of its own in sections of the kinds 3 to 10, metadata of at most 2^16 bytes, and
 //! the kinds 16 to 19; see [`ChannelRef`](crate::ChannelRef). Other objects and other kinds are for later
 //! versions, and kinds from 2^31 on for applications: a reader skips what it does not know, unless it is
@@ -91,26 +102,43 @@
 //! accept although the writer never writes it.
 
 mod assemble;
+mod buffer;
 mod channel;
+mod compose;
+mod contents;
 mod counts;
+mod dexel_assemble;
+mod dexel_layout;
+pub mod dexels;
+mod elements;
 mod field;
+mod form;
 mod header;
+mod kind;
 mod layout;
 #[cfg(feature = "mmap")]
 mod map;
+#[cfg(feature = "mmap")]
+mod mapping;
 mod object;
+mod probe;
 mod read;
 mod section;
 mod swap;
+mod verify;
 mod wire;
 mod write;
 
 pub use header::{MAGIC, MAJOR, MINOR};
 #[cfg(feature = "mmap")]
 pub use map::{map, map_verified};
-pub use read::{Probe, Section, from_bytes, from_static, probe_bytes, verify, view};
+pub use probe::{DexelProbe, Probe, Section, probe_bytes};
 #[cfg(feature = "std")]
-pub use read::{open, probe, probe_from};
+pub use probe::{probe, probe_from};
+#[cfg(feature = "std")]
+pub use read::open;
+pub use read::{from_bytes, from_static, view};
+pub use verify::verify;
 #[cfg(feature = "capi")]
 pub(crate) use write::save_with;
 pub use write::to_bytes;

@@ -10,12 +10,15 @@ use bytemuck::Zeroable;
 /// Most objects that a file may hold; part of the format. It bounds the work of mapping a file.
 pub(super) const MAX_OBJECTS: u64 = 4096;
 
-/// The type of a solid; part of the format. 3 is reserved for tri-dexel models, 4 for versions, 5 for values
-/// of PARTIAL cells.
+/// The type of a solid that is an octree; part of the format. 4 is reserved for versions, 5 for values of
+/// PARTIAL cells.
 const SOLID: u32 = 1;
 
 /// The type of a channel; part of the format.
 pub(super) const CHANNEL: u32 = 2;
+
+/// The type of a solid that is a tri-dexel model; part of the format.
+pub(super) const DEXELS: u32 = 3;
 
 /// The oldest minor version in which objects of that type are channels.
 pub(super) const CHANNEL_MINOR: u16 = 2;
@@ -41,7 +44,9 @@ wire_struct! {
         18 segment_shift: u8,
         19 value_type: u8,
         20 components: u8,
-        21 reserved: [u8; 3],
+        /// What a tri-dexel model stores; else 0.
+        21 form: u8,
+        22 reserved: [u8; 2],
         24 displacement: u64,
         32 origin: [u64; 3],
         56 edge: u64,
@@ -56,10 +61,10 @@ wire_struct! {
 }
 
 impl Object {
-    /// What the header says of the solid, the object 0.
-    pub(super) fn solid(header: &Header) -> Object {
+    /// What the header says of object 0: an octree or a tri-dexel model.
+    pub(super) fn main(header: &Header) -> Object {
         Object {
-            kind: SOLID,
+            kind: if header.is_dexels() { DEXELS } else { SOLID },
             parent: NO_PARENT,
             flags: OBJECT_REQUIRED,
             depth: header.depth,
@@ -69,6 +74,7 @@ impl Object {
             brick_planes: header.brick_planes,
             brick_encoding: header.brick_encoding,
             segment_shift: header.segment_shift,
+            form: if header.is_dexels() { header.form } else { 0 },
             displacement: header.displacement,
             origin: header.origin,
             edge: header.edge,
@@ -93,6 +99,12 @@ impl Object {
             dictionary_entries: self.dictionary_entries,
         }
     }
+
+    /// How many intervals a tri-dexel model has along x, y and z. They stand where an octree's record has the numbers
+    /// of elements, bricks and dictionary entries.
+    pub(super) fn intervals(&self) -> [u64; 3] {
+        [self.elements, self.bricks, self.dictionary_entries]
+    }
 }
 
 /// Checks the records of all objects: the first repeats the header, and none that is unknown is required.
@@ -101,11 +113,12 @@ pub(super) fn check(header: &Header, records: &[u8]) -> Result<(), FormatError> 
     for (index, object) in (0u32..).zip(elements::<Object>(records)) {
         if index == 0 {
             // A newer minor version may have given a meaning to what is reserved today.
-            let mut expected = Object::solid(header);
+            let mut expected = Object::main(header);
             if header.is_newer() {
-                let Object { reserved, reserved_middle, reserved_tail, flags, .. } = object;
+                let Object { form, reserved, reserved_middle, reserved_tail, flags, .. } = object;
+                let form = if header.is_dexels() { expected.form } else { form };
                 let flags = expected.flags | flags;
-                expected = Object { reserved, reserved_middle, reserved_tail, flags, ..expected };
+                expected = Object { form, reserved, reserved_middle, reserved_tail, flags, ..expected };
             }
             if object != expected {
                 return Err(FormatError::Object);

@@ -1,14 +1,12 @@
 //! The section table: which bytes of a file are what, and whose.
 
-use super::counts::ENCODING_DICTIONARY;
 use super::field::illegal;
 use super::header::{ENTRY_LENGTH, Head};
-use super::object::{CHANNEL, MAX_OBJECTS, Object};
+use super::kind::{Element, KINDS, Kind, SECTION_REQUIRED};
+use super::object::{MAX_OBJECTS, Object};
 use super::wire::{Wire, elements, wire_struct};
 use crate::error::FormatError;
 use crate::octree::metadata::MetadataLimit;
-use crate::octree::view::LevelCounts;
-use crate::octree::word::Planes;
 use core::ops::Range;
 
 /// Offsets of sections are multiples of this; part of the format.
@@ -18,175 +16,8 @@ pub(super) const SECTION_ALIGNMENT: u64 = 64;
 pub(super) const MAX_METADATA: u64 = 1 << 20;
 const _: () = assert!(MAX_METADATA == MetadataLimit::SOLID.bytes() as u64);
 
-/// Flag of a section that a reader must know to read its object; part of the format.
-pub(super) const SECTION_REQUIRED: u32 = 1;
-
 /// Elements one after another as they are; part of the format. 1 is reserved for the archive.
 const RAW: u8 = 0;
-
-/// The sections that this library knows. The numbers are part of the format. 16 to 31 are for values (17 is
-/// reserved for those of PARTIAL cells by rank), 32 to 47 are reserved for tri-dexel models, 48 to 55 for
-/// versions, 56 to 63 for the archive; from 2^31 on they belong to applications.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[repr(u32)]
-pub(super) enum Kind {
-    /// What the file holds.
-    Objects = 1,
-    /// Keys and values.
-    Metadata = 2,
-    /// What is counted on each octree level.
-    Levels = 3,
-    /// Elements: pairs of words.
-    Planes = 4,
-    /// First child of each element, less the base of its 1024.
-    Rel = 5,
-    /// First child of every 1024th element.
-    Base = 6,
-    /// Bricks, one after another.
-    Bricks = 7,
-    /// Dictionary index of each brick.
-    Indices = 8,
-    /// The dictionary: distinct bricks, segment by segment.
-    Entries = 9,
-    /// First dictionary entry of each segment.
-    Segments = 10,
-    /// The values of a channel.
-    Values = 16,
-    /// Values before each element and brick of a channel, less the base of its 1024.
-    ValueRel = 18,
-    /// Values before every 1024th element or brick of a channel.
-    ValueBase = 19,
-}
-
-/// Sections by kind: one more than the largest number in [`Kind`].
-const KINDS: usize = 20;
-
-/// What the elements of a section are made of; the numbers are part of the format.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[repr(u8)]
-pub(super) enum Element {
-    /// Records that the kind lays out, in units of eight bytes.
-    Record = 0,
-    U8 = 1,
-    U16 = 2,
-    U32 = 3,
-    U64 = 4,
-    F32 = 5,
-    F64 = 6,
-}
-
-impl Element {
-    const ALL: [Element; 7] =
-        [Element::Record, Element::U8, Element::U16, Element::U32, Element::U64, Element::F32, Element::F64];
-
-    fn from_number(number: u8) -> Option<Element> {
-        Element::ALL.get(number as usize).copied()
-    }
-
-    fn size(self) -> u64 {
-        match self {
-            Element::U8 => 1,
-            Element::U16 => 2,
-            Element::U32 | Element::F32 => 4,
-            Element::Record | Element::U64 | Element::F64 => 8,
-        }
-    }
-}
-
-impl Kind {
-    pub(super) const ALL: [Kind; 13] = [
-        Kind::Objects,
-        Kind::Metadata,
-        Kind::Levels,
-        Kind::Planes,
-        Kind::Rel,
-        Kind::Base,
-        Kind::Bricks,
-        Kind::Indices,
-        Kind::Entries,
-        Kind::Segments,
-        Kind::Values,
-        Kind::ValueRel,
-        Kind::ValueBase,
-    ];
-
-    /// Sections that an object may have at most.
-    pub(super) const MOST: usize = 12;
-
-    /// The kind with this number, if the sections of such objects may be of it.
-    pub(super) fn of(number: u32, object: &Object) -> Option<Kind> {
-        let owned = |kind: &Kind| match kind {
-            Kind::Objects => object.kind != CHANNEL,
-            Kind::Values | Kind::ValueRel | Kind::ValueBase => object.kind == CHANNEL,
-            _ => true,
-        };
-        Kind::from_number(number).filter(owned)
-    }
-
-    fn from_number(number: u32) -> Option<Kind> {
-        Kind::ALL.into_iter().find(|&kind| kind as u32 == number)
-    }
-
-    pub(super) fn name(self) -> &'static str {
-        match self {
-            Kind::Objects => "objects",
-            Kind::Metadata => "metadata",
-            Kind::Levels => "level table",
-            Kind::Planes => "planes",
-            Kind::Rel => "rel",
-            Kind::Base => "base",
-            Kind::Bricks => "bricks",
-            Kind::Indices => "brick indices",
-            Kind::Entries => "dictionary entries",
-            Kind::Segments => "dictionary segments",
-            Kind::Values => "values",
-            Kind::ValueRel => "value rel",
-            Kind::ValueBase => "value base",
-        }
-    }
-
-    /// Only the metadata can be done without.
-    pub(super) fn flags(self) -> u32 {
-        if self == Kind::Metadata { 0 } else { SECTION_REQUIRED }
-    }
-
-    /// Type and components of an element of an object's section.
-    pub(super) fn element(self, object: &Object) -> (Element, u8) {
-        match self {
-            Kind::Objects => (Element::Record, (size_of::<Object>() / 8) as u8),
-            Kind::Metadata => (Element::U8, 1),
-            Kind::Levels => (Element::U64, (size_of::<LevelCounts>() / 8) as u8),
-            Kind::Planes => (Element::U64, (size_of::<Planes>() / 8) as u8),
-            Kind::Rel | Kind::Indices | Kind::ValueRel => (Element::U16, 1),
-            Kind::Base | Kind::Segments | Kind::ValueBase => (Element::U64, 1),
-            Kind::Bricks | Kind::Entries => (Element::U64, object.brick_planes),
-            Kind::Values => {
-                (Element::from_number(object.value_type).unwrap_or(Element::U8), object.components)
-            }
-        }
-    }
-
-    /// How many elements an object's section must have; `None` where that is free.
-    fn demanded(self, object: &Object) -> Option<u64> {
-        let coded = object.brick_encoding == ENCODING_DICTIONARY;
-        // (Both were found to lie in memory, or the sections of elements and bricks do not.)
-        let entries = object.elements.saturating_add(object.bricks);
-        let if_coded = |count: u64| if coded { count } else { 0 };
-        match self {
-            Kind::Objects | Kind::Metadata => None,
-            Kind::Levels => Some(object.depth as u64 + 1),
-            Kind::Planes | Kind::Rel => Some(object.elements),
-            Kind::Base => Some(object.elements.div_ceil(1024)),
-            Kind::Bricks => Some(if coded { 0 } else { object.bricks }),
-            Kind::Indices => Some(if_coded(object.bricks)),
-            Kind::Entries => Some(if_coded(object.dictionary_entries)),
-            Kind::Segments => Some(if_coded(object.counts().segments())),
-            Kind::Values => Some(object.values),
-            Kind::ValueRel => Some(entries),
-            Kind::ValueBase => Some(entries.div_ceil(1024)),
-        }
-    }
-}
 
 wire_struct! {
     /// One entry of the section table.
@@ -217,16 +48,15 @@ impl Entry {
         self.offset..self.offset.saturating_add(self.length)
     }
 
-    /// The kind, if it is a section of the solid that this library knows.
-    pub(super) fn known(&self) -> Option<Kind> {
-        let is_of_solid = |kind: &Kind| (*kind as u32) < Kind::Values as u32;
-        Kind::from_number(self.kind).filter(|kind| self.owner == 0 && is_of_solid(kind))
+    /// The kind, if it is a section of object 0, `main`, that this library knows.
+    pub(super) fn known(&self, main: &Object) -> Option<Kind> {
+        Kind::of(self.kind, main).filter(|_| self.owner == 0)
     }
 
     /// Its name in error messages.
-    pub(super) fn name(&self) -> &'static str {
+    pub(super) fn name(&self, main: &Object) -> &'static str {
         let unknown = if self.owner == 0 { "an unknown section" } else { "a section of another object" };
-        self.known().map_or(unknown, Kind::name)
+        self.known(main).map_or(unknown, Kind::name)
     }
 
     /// Checks the entry by itself.
@@ -261,9 +91,10 @@ impl Entry {
 
 /// Checks the bytes of a section table against its header: entries ascend by owner and kind; their bytes
 /// ascend without overlap, or are those of an earlier entry; the last of them end where the file does.
-/// Returns where the sections of the solid lie. O(sections).
+/// Returns where the sections of object 0 lie. O(sections).
 pub(super) fn read_table(head: &Head, table: &[u8]) -> Result<Sections, FormatError> {
     let newer = head.header.is_newer();
+    let main = Object::main(&head.header);
     let mut end = head.table_range().end as u64;
     // The first section says how many objects there are.
     let mut objects = 0;
@@ -271,7 +102,7 @@ pub(super) fn read_table(head: &Head, table: &[u8]) -> Result<Sections, FormatEr
     for (index, entry) in entries(table).enumerate() {
         entry.check(newer)?;
         if index == 0 {
-            objects = if entry.known() == Some(Kind::Objects) { entry.count } else { 0 };
+            objects = if entry.known(&main) == Some(Kind::Objects) { entry.count } else { 0 };
             if !(1..=MAX_OBJECTS).contains(&objects) {
                 return Err(FormatError::Section { name: Kind::Objects.name() });
             }
@@ -302,9 +133,9 @@ pub(super) fn read_table(head: &Head, table: &[u8]) -> Result<Sections, FormatEr
             };
         }
     }
-    // Whose sections are not the solid's is known to whoever knows their objects.
-    let of_solid = entries(table).take_while(|entry| entry.owner == 0);
-    let sections = Sections::of(&Object::solid(&head.header), MAX_METADATA, of_solid)?;
+    // What the sections of other objects are is known to whoever knows these objects.
+    let of_main = entries(table).take_while(|entry| entry.owner == 0);
+    let sections = Sections::of(&main, MAX_METADATA, of_main)?;
     if end != head.header.file_length {
         return Err(FormatError::Length { expected: end, found: head.header.file_length });
     }
@@ -346,11 +177,11 @@ impl Sections {
             if entry.flags & SECTION_REQUIRED != kind.flags() {
                 return Err(illegal("section flags", entry.flags));
             }
-            ranges[kind as usize] = entry.range();
+            ranges[kind.slot()] = entry.range();
         }
         for kind in Kind::ALL.into_iter().filter(|&kind| Kind::of(kind as u32, object).is_some()) {
             // None is empty that is there.
-            let present = ranges[kind as usize].end != 0;
+            let present = ranges[kind.slot()].end != 0;
             if kind.demanded(object).is_some_and(|count| present != (count != 0)) {
                 return Err(FormatError::Section { name: kind.name() });
             }
@@ -360,7 +191,7 @@ impl Sections {
 
     /// Where a section lies; nowhere if it is absent.
     pub(super) fn range(&self, kind: Kind) -> &Range<u64> {
-        &self.ranges[kind as usize]
+        &self.ranges[kind.slot()]
     }
 
     /// Where the sections of `object` lie that are there, and what their numbers are.

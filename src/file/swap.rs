@@ -1,16 +1,19 @@
 //! From the file's byte order to that of a big-endian machine.
 
 use super::channel::ChannelLayout;
+use super::header::Header;
+use super::kind::{Element, Kind};
 use super::layout::Layout;
 use super::object::Object;
-use super::section::{Element, Kind};
+use super::section::Sections;
 use super::wire::swap_all;
 use crate::error::Error;
 use crate::memory;
 use crate::octree::Metadata;
 use alloc::vec::Vec;
+use core::ops::Range;
 
-/// Reverses the bytes of every number in the sections of the solid and its channels. Several sections, also of
+/// Reverses the bytes of every number in the sections of an octree and its channels. Several sections, also of
 /// several objects, may have the same bytes: those are reversed once.
 ///
 /// # Errors
@@ -21,10 +24,26 @@ pub(super) fn swap_bytes(
     bytes: &mut [u8],
 ) -> Result<(), Error> {
     let mut sections: Vec<_> = memory::with_capacity((1 + channels.len()) * Kind::MOST)?;
-    sections.extend(layout.sections.numbers(&Object::solid(&layout.head.header)));
+    sections.extend(layout.sections.numbers(&Object::main(&layout.head.header)));
     for (channel, _) in channels {
         sections.extend(channel.numbers());
     }
+    swap_sections(sections, bytes);
+    Ok(())
+}
+
+/// The same for the sections of a tri-dexel model.
+///
+/// # Errors
+/// [`Error::OutOfMemory`].
+pub(super) fn swap_dexels(header: &Header, sections: &Sections, bytes: &mut [u8]) -> Result<(), Error> {
+    let mut numbers: Vec<_> = memory::with_capacity(Kind::MOST)?;
+    numbers.extend(sections.numbers(&Object::main(header)));
+    swap_sections(numbers, bytes);
+    Ok(())
+}
+
+fn swap_sections(mut sections: Vec<(Range<u64>, Element)>, bytes: &mut [u8]) {
     // Sections with the same bytes have the same elements, as the section table was checked to say.
     sections.sort_unstable_by_key(|(range, _)| range.start);
     sections.dedup_by_key(|(range, _)| range.start);
@@ -39,7 +58,6 @@ pub(super) fn swap_bytes(
             Element::U64 | Element::F64 => swap_all::<u64>(section),
         }
     }
-    Ok(())
 }
 
 #[cfg(test)]
@@ -96,7 +114,7 @@ mod tests {
         assert_eq!(header.swap_bytes().file_length.to_be_bytes(), header.file_length.to_le_bytes());
         assert_eq!((header.swap_bytes().depth, header.swap_bytes().magic), (7, MAGIC));
         assert_eq!(header.swap_bytes().swap_bytes(), header);
-        let object = Object::solid(&header);
+        let object = Object::main(&header);
         assert_eq!(object.swap_bytes().bricks.to_be_bytes(), header.bricks.to_le_bytes());
         assert_eq!((object.swap_bytes().depth, object.swap_bytes().swap_bytes()), (7, object));
     }

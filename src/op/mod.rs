@@ -1,7 +1,11 @@
-//! What makes octrees: building from a solid, splitting on demand, and the set algebra of stored trees.
+//! What makes octrees: building from a solid, splitting on demand, the set algebra of stored trees, and tri-dexel models.
 
 mod boolean;
 mod build;
+mod dexel_centres;
+mod dexel_edit;
+mod dexelize;
+mod edge;
 pub(crate) mod gathered;
 mod lazy;
 mod rule;
@@ -9,6 +13,9 @@ mod rule;
 pub use boolean::{complement, difference, intersection, intersection_of, union, union_of, xor, xor_of};
 use build::build_on;
 pub use build::{build, compact, resolve};
+pub use dexel_centres::octree_of_dexels;
+pub use dexelize::{DexelOptions, dexelize};
+pub(crate) use edge::Edge;
 pub(crate) use gathered::split_one;
 pub(crate) use lazy::Trail;
 pub use lazy::{LazyOctree, Refinement, Zone};

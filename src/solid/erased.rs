@@ -8,6 +8,7 @@
 use super::forward::{forward_solid, forward_worker};
 use super::{Classifier, Crossing, Enclosure, Fingerprint, Motion, Segment, Solid, Subtree, Verdict, Worker};
 use crate::control::Control;
+use crate::dexel::Beam;
 use crate::error::Error;
 use crate::lattice::{Affine, Bounds, Cell, CellMoments, Frame, Interval, VolumeMoments};
 use crate::memory;
@@ -304,6 +305,7 @@ trait ErasedWorker: Send + Sync {
         inside: &mut Vec<Option<bool>>,
     ) -> Result<(), Error>;
     fn fill(&mut self, cell: Cell, part: &ErasedPart, block: &mut Block) -> Result<bool, Error>;
+    fn chords(&mut self, cell: Cell, part: &ErasedPart, beam: &mut Beam) -> Result<bool, Error>;
     fn subtree(&self, part: &ErasedPart) -> Option<Subtree<'_>>;
     fn sample(&mut self, cell: Cell, part: &ErasedPart) -> Result<Option<bool>, Error>;
     fn sample64(&mut self, cell: Cell, parts: &[(u8, ErasedPart)]) -> Result<Option<u64>, Error>;
@@ -403,6 +405,11 @@ impl<W: Worker<Part: 'static> + 'static> ErasedWorker for [Typed<W>; 1] {
     fn fill(&mut self, cell: Cell, part: &ErasedPart, block: &mut Block) -> Result<bool, Error> {
         let part = self[0].part(part);
         self[0].worker.fill(cell, &part, block)
+    }
+
+    fn chords(&mut self, cell: Cell, part: &ErasedPart, beam: &mut Beam) -> Result<bool, Error> {
+        let part = self[0].part(part);
+        self[0].worker.chords(cell, &part, beam)
     }
 
     fn subtree(&self, part: &ErasedPart) -> Option<Subtree<'_>> {

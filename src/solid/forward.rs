@@ -103,6 +103,15 @@ macro_rules! forward_worker {
             $to.fill(cell, part, block)
         }
 
+        fn chords(
+            &mut $self,
+            cell: $crate::lattice::Cell,
+            part: &$part,
+            beam: &mut $crate::dexel::Beam,
+        ) -> Result<bool, $crate::error::Error> {
+            $to.chords(cell, part, beam)
+        }
+
         fn subtree(&$self, part: &$part) -> Option<$crate::solid::Subtree<'_>> {
             $to.subtree(part)
         }

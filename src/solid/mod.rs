@@ -45,6 +45,7 @@ pub(crate) use transform::TransformClassifier;
 pub use volume::{Band, SampleArray, Samples, Volume, VoxelGrid};
 
 use crate::control::Control;
+use crate::dexel::Beam;
 use crate::error::Error;
 use crate::lattice::{Affine, Bounds, Cell, CellMoments, Frame, Interval, VolumeMoments};
 use crate::memory;
@@ -397,6 +398,18 @@ pub trait Worker: Send + Sync {
     /// As all questions.
     fn fill(&mut self, cell: Cell, part: &Self::Part, block: &mut Block) -> Result<bool, Error> {
         let _ = (cell, part, block);
+        Ok(false)
+    }
+
+    /// Finds where rays through the centres of finest cells enter and leave the solid in a PARTIAL cell, if that is known
+    /// for all rays that `beam` asks for: adds their intervals in the cell, and returns `true`. An interval holds just those
+    /// centres that [`sample`](Self::sample) would find inside. The default adds nothing, and returns `false`: whoever asks
+    /// descends.
+    ///
+    /// # Errors
+    /// As all questions.
+    fn chords(&mut self, cell: Cell, part: &Self::Part, beam: &mut Beam) -> Result<bool, Error> {
+        let _ = (cell, part, beam);
         Ok(false)
     }
 

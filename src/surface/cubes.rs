@@ -204,7 +204,7 @@ pub(super) struct Around {
 }
 
 /// Dual cells that have samples in node j.
-const AT_NODE: [u64; 8] = {
+pub(super) const AT_NODE: [u64; 8] = {
     let mut masks = [!0; 8];
     let mut i = 0;
     while i < 24 {

@@ -32,11 +32,22 @@ impl Lattice {
         Ok(Lattice { origin, half })
     }
 
+    /// The edge of a cell.
+    pub fn cell(&self) -> f64 {
+        2.0 * self.half
+    }
+
     /// The coordinate on an axis `k` half cells behind the frame's origin: odd numbers are samples. Greater
     /// `k` have greater coordinates.
     #[inline(always)]
     pub fn coordinate(&self, axis: usize, k: i32) -> f64 {
-        let x = self.origin[axis] + f64::from(k) * self.half;
+        self.position(axis, 0.5 * f64::from(k))
+    }
+
+    /// The coordinate on an axis so many cells behind the frame's origin.
+    #[inline(always)]
+    pub fn position(&self, axis: usize, cells: f64) -> f64 {
+        let x = self.origin[axis] + (2.0 * cells) * self.half;
         if x.abs() < crate::lattice::SMALLEST { 0.0 } else { x }
     }
 }

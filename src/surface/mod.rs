@@ -13,8 +13,10 @@
 //! walk), `lattice` (where samples lie), `chunks` (threads), `resolve` (undecided cells), `cubes` (marching
 //! cubes), `snapped` and `smc` (simple marching cubes), `plane`, `points`, `bon` (coplanar cells merged),
 //! `outline` (regions), `sweep` (their triangles), `published` (cells of several sizes as they are), `shrink`
-//! (coplanar shrink), `crossing` (edges on a solid's surface), `weld` (vertices at one place), `solid` (any
-//! solid), `volume` (samples of a field).
+//! (coplanar shrink), `weld` (vertices at one place), `solid` (any
+//! solid), `volume` (samples of a field), `loops` (the sheets in a cube), `qef` (the point that fits planes best),
+//! `hermite` (crossings with normals, and how rays tell them), `dual` (dual contouring), `dexel` (tri-dexel models),
+//! `dexel_solid` (these as solids).
 //!
 //! Solids that are no octrees are sampled at the corners of the lattice, as an octree whose cells have these
 //! corners as centres.
@@ -22,15 +24,20 @@
 mod blocks;
 mod bon;
 mod chunks;
-mod crossing;
 mod cubes;
+mod dexel;
+mod dexel_solid;
+mod dual;
+mod hermite;
 mod key;
 mod lattice;
+mod loops;
 mod masks;
 mod outline;
 mod plane;
 mod points;
 mod published;
+mod qef;
 mod resolve;
 mod samples;
 mod shrink;
@@ -45,6 +52,8 @@ mod volume;
 mod weld;
 
 pub use cubes::{marching_cubes, marching_cubes_reusing};
+pub use dexel::{DexelSurfaceReport, dual_contouring_of_dexels, marching_cubes_of_dexels};
+pub use dexel_solid::DexelSolid;
 pub use resolve::Resolve;
 pub use shrink::{coplanar_shrink, published_shrink};
 pub use smc::{Snap, smc};

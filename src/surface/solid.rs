@@ -2,7 +2,6 @@
 
 use super::blocks::{Block, Blocks};
 use super::chunks;
-use super::crossing::Edge;
 use super::cubes::{midpoints, triangles};
 use super::key;
 use super::lattice::Lattice;
@@ -16,7 +15,7 @@ use crate::error::Error;
 use crate::lattice::{Frame, MAX_DEPTH, morton};
 use crate::mesh::TriangleMesh;
 use crate::octree::Octree;
-use crate::op::{Rule, Trail, build};
+use crate::op::{Edge, Rule, Trail, build};
 use crate::solid::{Classifier, Solid};
 use alloc::vec::Vec;
 use core::ops::Range;
@@ -240,7 +239,7 @@ pub(super) fn edges(block: &Block, bias: i32) -> impl Iterator<Item = Edge> {
         bits(block.cut[axis]).map(move |c| {
             let inner = morton::position(c);
             let lower = [0, 1, 2].map(|axis| 4 * at[axis] + inner[axis] as i32);
-            Edge { axis, lower, starts_inside: block.inside >> c & 1 != 0 }
+            Edge { axis, lower, steps: 1, starts_inside: block.inside >> c & 1 != 0 }
         })
     })
 }

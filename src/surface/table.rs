@@ -118,10 +118,10 @@ const FACES_AT: [u8; 12] = {
 };
 
 /// No edge.
-const NONE: u8 = u8::MAX;
+pub(super) const NONE: u8 = u8::MAX;
 
 /// For each cut edge the one at which the segment ends that begins there.
-const fn successors(configuration: usize) -> [u8; 12] {
+pub(super) const fn successors(configuration: usize) -> [u8; 12] {
     let mut next = [NONE; 12];
     let mut face = 0;
     while face < 6 {

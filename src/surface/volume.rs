@@ -2,7 +2,6 @@
 
 use super::blocks::{Block, Blocks, FINDING};
 use super::chunks;
-use super::crossing::Edge;
 use super::cubes::triangles;
 use super::lattice::Lattice;
 use super::resolve::{Resolve, resolved};
@@ -15,7 +14,7 @@ use crate::lattice::{LARGEST, SMALLEST};
 use crate::memory;
 use crate::mesh::TriangleMesh;
 use crate::octree::OctreeRef;
-use crate::op::{Rule, build};
+use crate::op::{Edge, Rule, build};
 use crate::solid::{Volume, VoxelGrid};
 use alloc::vec::Vec;
 use core::sync::atomic::{AtomicBool, Ordering::Relaxed};

@@ -3,9 +3,12 @@
 //! A record says what a voxel is (outside, inside, boundary), which cell it is, and what value an attribute
 //! has in it. The cells of a record list are of any sizes: inside voxels follow an attribute, boundary voxels
 //! have a level of their own. [`Voxels`] hands out records one by one, [`VoxelRecords`] keeps them in arrays.
+//!
+//! The voxels of a tri-dexel model, which lie between its rays, are rows along y instead ([`DexelVoxels`]).
 
 mod code;
 mod descent;
+mod dexel;
 mod import;
 mod options;
 mod order;
@@ -18,6 +21,7 @@ mod triangles;
 mod walk;
 
 pub use code::LinearCode;
+pub use dexel::{DexelVoxels, LongVoxel, dexel_voxels};
 pub use import::VoxelSolid;
 pub use options::{VoxelBoundary, VoxelOptions};
 pub use order::Viewpoint;

@@ -11,9 +11,11 @@
 //!
 //! Both decide what floating point with an error bound leaves open; that filter belongs to the caller.
 
+mod double_double;
 mod dyadic;
 mod expansion;
 
+pub(crate) use double_double::DoubleDouble;
 pub(crate) use dyadic::{Dyadic, cross, dot};
 pub(crate) use expansion::{Expansion, certain};
 

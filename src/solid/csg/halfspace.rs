@@ -9,7 +9,7 @@ use super::quadric::{Coefficients, Quadric};
 use super::tangent::Tangent;
 use super::torus::{PlacedTorus, Torus};
 use crate::error::Error;
-use crate::lattice::exact::{Dyadic, sign};
+use crate::lattice::exact::{DoubleDouble, Dyadic, sign};
 use crate::lattice::{Frame, Interval, valid};
 use crate::solid::Fingerprint;
 use crate::solid::cut::Taylor;
@@ -287,6 +287,15 @@ impl Placed {
         })
     }
 
+    /// Whether the function is linear, or constant, along all lines parallel to an axis.
+    pub(super) fn is_linear_along(&self, axis: usize) -> bool {
+        match self {
+            Placed::Plane(_) => true,
+            Placed::Quadric(quadric) => quadric.is_linear_along(axis),
+            _ => false,
+        }
+    }
+
     /// Whether a piece of the surface may lie in a plane of the lattice, which has 2^depth cells.
     pub(super) fn may_hold_lattice_plane(&self, depth: u8) -> bool {
         match self {
@@ -329,7 +338,54 @@ impl Placed {
     /// if the host does not know.
     #[inline]
     pub(super) fn contains(&self, t: [f64; 3]) -> Result<Option<bool>, Error> {
-        let sign = match self.sign_at(t)? {
+        self.decided(t, self.sign_at(t)?)
+    }
+
+    /// The same of any point of the universe.
+    pub(super) fn contains_off_lattice(&self, t: [f64; 3]) -> Result<Option<bool>, Error> {
+        let sign = match self {
+            Placed::Plane(plane) => Some(plane.sign_off_lattice(t)),
+            Placed::Quadric(quadric) => Some(quadric.sign_off_lattice(t)),
+            _ => self.sign_at(t)?,
+        };
+        self.decided(t, sign)
+    }
+
+    /// On a ray along `axis` through a point, as a polynomial of degree two: the factors of 1, s and s² for the coordinate s,
+    /// and more than what its values on the universe are off by. `None` of others.
+    #[inline]
+    pub(super) fn along(&self, axis: usize, point: [f64; 3]) -> Option<([f64; 3], f64)> {
+        match self {
+            Placed::Plane(plane) => Some((plane.along(axis, point), plane.rounding())),
+            Placed::Quadric(quadric) => Some((quadric.along(axis, point), quadric.rounding())),
+            _ => None,
+        }
+    }
+
+    /// The same in numbers of 106 bits, of quadrics.
+    pub(super) fn finely_along(&self, axis: usize, point: [f64; 3]) -> Option<([DoubleDouble; 3], f64)> {
+        match self {
+            Placed::Quadric(quadric) => {
+                Some((quadric.finely_along(axis, point), 64.0 * DoubleDouble::EPSILON * quadric.size()))
+            }
+            _ => None,
+        }
+    }
+
+    /// More than what values of planes and quadrics are off by at points that are none of the lattice.
+    #[inline]
+    pub(super) fn rounding(&self) -> f64 {
+        match self {
+            Placed::Plane(plane) => plane.rounding(),
+            Placed::Quadric(quadric) => quadric.rounding(),
+            // Errors of others hold everywhere.
+            _ => 0.0,
+        }
+    }
+
+    #[inline]
+    fn decided(&self, t: [f64; 3], sign: Option<i32>) -> Result<Option<bool>, Error> {
+        let sign = match sign {
             Some(0) => match self {
                 Placed::Plane(plane) => plane.shifted_sign(),
                 Placed::Quadric(quadric) => quadric.shifted_sign_at(t),

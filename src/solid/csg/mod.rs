@@ -7,6 +7,7 @@
 mod area;
 mod bounds;
 mod centres;
+mod chords;
 mod extent;
 mod faceted;
 #[cfg(feature = "scene")]
@@ -20,6 +21,7 @@ mod host;
 mod hulls;
 mod kleene;
 mod linear;
+mod lines;
 mod lone;
 mod map;
 mod moments;

@@ -121,12 +121,32 @@ impl Plane {
         })
     }
 
-    /// Exact sign at a point of [−1, 2]³.
+    /// Exact sign at a point of the lattice, or of one with half its cells.
     #[inline]
     pub(super) fn sign_at(&self, t: [f64; 3]) -> i32 {
         let [a, b, c, d] = self.c;
         let value = ((a * t[0] + b * t[1]) + c * t[2]) + d;
         certain(value, self.error).unwrap_or_else(|| linear::value(&self.exact(), &t.map(Dyadic::new)).sign())
+    }
+
+    /// The function on a ray along `axis` through a point: the factors of 1 and s for the coordinate s, and 0.
+    #[inline]
+    pub(super) fn along(&self, axis: usize, point: [f64; 3]) -> [f64; 3] {
+        let [i, j] = [(axis + 1) % 3, (axis + 2) % 3];
+        [(self.c[i] * point[i] + self.c[j] * point[j]) + self.c[3], self.c[axis], 0.0]
+    }
+
+    /// More than the error of a value anywhere on [−1, 2]³, not only on the lattice.
+    pub(super) fn rounding(&self) -> f64 {
+        self.error.max(32.0 * f64::EPSILON * self.c.iter().map(|c| c.abs()).sum::<f64>())
+    }
+
+    /// The same of a point that is none of the lattice.
+    pub(super) fn sign_off_lattice(&self, t: [f64; 3]) -> i32 {
+        let [a, b, c, d] = self.c;
+        let value = ((a * t[0] + b * t[1]) + c * t[2]) + d;
+        let exact = || linear::value(&self.exact(), &t.map(Dyadic::new)).sign();
+        certain(value, self.rounding()).unwrap_or_else(exact)
     }
 
     /// The sign that the shift (ε, ε², ε³) gives at a zero.

@@ -4,7 +4,7 @@ use super::bounds::{Octants, Sides, sums};
 use super::linear;
 use super::map::ExactMap;
 use super::tangent::Tangent;
-use crate::lattice::exact::{Dyadic, certain};
+use crate::lattice::exact::{DoubleDouble, Dyadic, certain};
 use crate::solid::cut::{Quadratic, Taylor};
 use alloc::boxed::Box;
 use core::cmp::Ordering;
@@ -47,6 +47,8 @@ pub(super) fn substitute(given: &Coefficients, map: &ExactMap) -> Coefficients {
 /// A quadric on a universe, in unit coordinates.
 pub(super) struct Quadric {
     exact: Box<Coefficients>,
+    /// What the coefficients in doubles leave out.
+    low: [f64; 10],
     form: Form,
 }
 
@@ -108,7 +110,8 @@ impl Quadric {
                 error: 64.0 * f64::EPSILON * size,
             })
         };
-        Quadric { exact: Box::new(exact), form }
+        let low = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9].map(|i| (&exact[i] - &Dyadic::new(c[i])).rounded());
+        Quadric { exact: Box::new(exact), low, form }
     }
 
     /// For which of the eight cells the polynomial is proven not negative, and not positive.
@@ -169,7 +172,7 @@ impl Quadric {
     }
 
     /// The magnitudes of all coefficients.
-    fn size(&self) -> f64 {
+    pub(super) fn size(&self) -> f64 {
         match &self.form {
             Form::Separable(separable) => {
                 let [x, y, z, _] = (separable.square.abs() + separable.linear.abs()).to_array();
@@ -177,6 +180,11 @@ impl Quadric {
             }
             Form::Mixed(mixed) => mixed.c.iter().map(|c| c.abs()).sum(),
         }
+    }
+
+    /// Whether there is no square of a coordinate.
+    pub(super) fn is_linear_along(&self, axis: usize) -> bool {
+        self.exact[place(axis, axis)].is_zero()
     }
 
     /// Whether the surface may contain a plane of a lattice.
@@ -225,6 +233,57 @@ impl Quadric {
             Form::Mixed(mixed) => (mixed.value(t.map(f64x4::splat)).to_array()[0], mixed.error),
         };
         certain(value, error).unwrap_or_else(|| self.exact_sign_at(t))
+    }
+
+    /// The polynomial on a ray along `axis` through a point: the factors of 1, s and s² for the coordinate s.
+    #[inline]
+    pub(super) fn along(&self, axis: usize, point: [f64; 3]) -> [f64; 3] {
+        let [i, j] = [(axis + 1) % 3, (axis + 2) % 3];
+        let (u, v) = (point[i], point[j]);
+        match &self.form {
+            Form::Separable(separable) => {
+                let (square, linear) = (separable.square.as_array(), separable.linear.as_array());
+                let rest = (square[i] * u + linear[i]) * u + (square[j] * v + linear[j]) * v;
+                [separable.constant + rest, linear[axis], square[axis]]
+            }
+            Form::Mixed(Mixed { c, .. }) => {
+                let rest =
+                    (c[i] * u + c[place(i, 3)]) * u + (c[j] * v + c[place(j, 3)] + c[place(i, j)] * u) * v;
+                let slope = c[place(axis, 3)] + c[place(axis, i)] * u + c[place(axis, j)] * v;
+                [c[9] + rest, slope, c[axis]]
+            }
+        }
+    }
+
+    /// The same in numbers of 106 bits, off by no more than [`DoubleDouble::EPSILON`] times 64 times
+    /// [`size`](Self::size), as coordinates are at most 1.
+    pub(super) fn finely_along(&self, axis: usize, point: [f64; 3]) -> [DoubleDouble; 3] {
+        let [i, j] = [(axis + 1) % 3, (axis + 2) % 3];
+        let [u, v] = [point[i], point[j]].map(DoubleDouble::from);
+        let c = |a: usize, b: usize| {
+            let k = place(a, b);
+            DoubleDouble::sum(self.exact[k].rounded(), self.low[k])
+        };
+        let rest = (c(i, i) * u + c(i, 3)) * u + (c(j, j) * v + c(j, 3) + c(i, j) * u) * v;
+        let slope = c(axis, 3) + c(axis, i) * u + c(axis, j) * v;
+        [c(3, 3) + rest, slope, c(axis, axis)]
+    }
+
+    /// More than the error of a value anywhere on [−1, 2]³, not only on the lattice.
+    pub(super) fn rounding(&self) -> f64 {
+        match &self.form {
+            Form::Separable(_) => 128.0 * f64::EPSILON * self.size(),
+            Form::Mixed(mixed) => mixed.error,
+        }
+    }
+
+    /// The same of a point that is none of the lattice.
+    pub(super) fn sign_off_lattice(&self, t: [f64; 3]) -> i32 {
+        let value = match &self.form {
+            Form::Separable(separable) => separable.value(t),
+            Form::Mixed(mixed) => mixed.value(t.map(f64x4::splat)).to_array()[0],
+        };
+        certain(value, self.rounding()).unwrap_or_else(|| self.exact_sign_at(t))
     }
 
     #[cold]

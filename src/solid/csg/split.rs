@@ -1,10 +1,12 @@
 //! A CSG expression as a solid.
 
 use super::Csg;
+use super::chords::Rays;
 use super::kleene::Kleene;
 use super::program::Program;
 use super::worker::{Ask, CsgPart, Scratch};
 use crate::control::Control;
+use crate::dexel::Beam;
 use crate::error::Error;
 use crate::lattice::{Bounds, Cell, CellMoments, Frame, Interval, VolumeMoments};
 use crate::octree::{Block, Planes, Proof, Tag};
@@ -27,6 +29,7 @@ pub struct CsgWorker {
     program: Arc<Program>,
     universe: Verdict<CsgPart>,
     scratch: Scratch,
+    rays: Rays,
 }
 
 impl Solid for Csg {
@@ -77,7 +80,12 @@ impl Classifier for CsgClassifier {
 
     fn worker(&self) -> Result<CsgWorker, Error> {
         let scratch = Scratch::new(&self.program)?;
-        Ok(CsgWorker { program: self.program.clone(), universe: self.universe, scratch })
+        Ok(CsgWorker {
+            program: self.program.clone(),
+            universe: self.universe,
+            scratch,
+            rays: Rays::default(),
+        })
     }
 
     fn exterior(&self) -> Tag {
@@ -189,6 +197,21 @@ impl Worker for CsgWorker {
             block.complement();
         }
         Ok(filled.is_some_and(|(filled, _)| filled))
+    }
+
+    fn chords(&mut self, cell: Cell, part: &CsgPart, beam: &mut Beam) -> Result<bool, Error> {
+        let (program, scratch) = (&*self.program, &mut self.scratch);
+        let before = beam.len();
+        let found = scratch.ask_lone(program, *part, |worker, part| worker.chords(cell, part, beam))?;
+        match found {
+            Some((found, complement)) => {
+                if found && complement {
+                    beam.complement(before)?;
+                }
+                Ok(found)
+            }
+            None => self.rays.find(program, scratch, cell, *part, beam),
+        }
     }
 
     fn subtree(&self, part: &CsgPart) -> Option<Subtree<'_>> {

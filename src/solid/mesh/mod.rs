@@ -15,12 +15,14 @@
 //!
 //! From the bottom up, each file uses only files named before it: `placed` (vertices on the lattice),
 //! `crossing` (where lines of centres pierce triangles), `overlap` (which cells a triangle cuts), `winding`
-//! (the caps' winding number), `reach` (how far an open surface's solid may reach), `scan` (blocks of 64³ cells),
+//! (the caps' winding number), `reach` (how far an open surface's solid may reach), `scan` (blocks of 64³ cells), `chords` (rays through centres),
 //! `on_frame` (a mesh on a frame, and what is known of a cell), `local` (triangles in a cell's coordinates), `base` (a
 //! point whose winding number is known), `fronts` (on which sides of triangles the solid lies), `integral` (moments and
-//! areas), `slab` (enclosures), `segment` (crossings), `open` (cells of an open surface), `split` (the solid, its classifier and its workers).
+//! areas), `slab` (enclosures), `segment` (crossings), `open` (cells of an open surface), `split` (the solid, its classifier and its workers),
+//! `parity` (rays that pierce an open mesh an odd number of times).
 
 mod base;
+mod chords;
 mod crossing;
 mod fronts;
 mod integral;
@@ -28,6 +30,7 @@ mod local;
 mod on_frame;
 mod open;
 mod overlap;
+mod parity;
 mod placed;
 mod reach;
 mod scan;

@@ -1,5 +1,6 @@
 //! Splitting the cells of a mesh.
 
+use super::chords::{Chords, Rays};
 use super::crossing::Projection;
 use super::local::View;
 use super::on_frame::{Branch, MeshPart, OnFrame};
@@ -10,6 +11,7 @@ use super::reach;
 use super::scan::{Scan, Task};
 use super::winding::Caps;
 use crate::control::Control;
+use crate::dexel::Beam;
 use crate::error::{Error, MeshError};
 use crate::lattice::{Affine, Bounds, Cell, CellMoments, Frame, Interval, VolumeMoments};
 use crate::mesh::{FillRule, Loops, MeshMoments, Sides, TriangleMesh};
@@ -71,6 +73,7 @@ pub struct MeshWorker {
     masks: Vec<u8>,
     surroundings: Surroundings,
     scan: Option<Box<Scan>>,
+    chords: Chords,
 }
 
 impl MeshSolid {
@@ -285,6 +288,7 @@ impl Classifier for MeshClassifier {
             masks: Vec::new(),
             surroundings: Surroundings::default(),
             scan: None,
+            chords: Chords::default(),
         })
     }
 
@@ -449,6 +453,20 @@ impl Worker for MeshWorker {
             none => none.insert(Box::new(Scan::new()?)),
         };
         scan.fill(task, block)?;
+        Ok(true)
+    }
+
+    fn chords(&mut self, cell: Cell, part: &MeshPart, beam: &mut Beam) -> Result<bool, Error> {
+        if part.caps.is_some() || self.mesh.placed.count() > Chords::MOST {
+            return Ok(false);
+        }
+        let MeshWorker { mesh, triangles, chords, .. } = self;
+        let (at, _) = extent(cell, mesh.placed.frame.depth());
+        let triangles = list(&mesh.roots, triangles, part);
+        // Caps come last. They are not counted where the surface's own winding number is known.
+        let triangles = &triangles[..triangles.partition_point(|&triangle| !mesh.placed.is_cap(triangle))];
+        let rays = Rays { placed: &mesh.placed, at, triangles, winding: part.winding, fill: mesh.fill };
+        chords.find(rays, beam)?;
         Ok(true)
     }
 

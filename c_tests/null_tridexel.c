@@ -1,0 +1,423 @@
+/* As null.c, for tri-dexel models. */
+#include "null.h"
+
+static const leafless_frame frame = {{-1, -1, -1}, 2, 4};
+static leafless_solid *solid;
+static leafless_tridexel *model;
+static leafless_tridexel_editor *editor;
+
+static void models(void) {
+    void *out = fresh(), *never = UNTOUCHED;
+    leafless_tridexel **result = (leafless_tridexel **)&never, *other = NULL;
+    leafless_tridexel_info *info = (leafless_tridexel_info *)out;
+    leafless_dexel_statistics *statistics = (leafless_dexel_statistics *)out;
+    leafless_tridexel_format format;
+    leafless_options options;
+    const uint32_t cell[4] = {8, 8, 8, 8};
+    OK(leafless_options_init(&options, sizeof options));
+    OK(leafless_tridexel_format_init(&format, sizeof format));
+    NULL_POINTER(leafless_tridexel_format_init, format, leafless_tridexel_format_init(NULL, sizeof format));
+    BAD_NUMBER(leafless_tridexel_format_init, struct_size, leafless_tridexel_format_init(&format, 3));
+#define MAKE(solid, frame, rule, format, result) leafless_tridexel_make(solid, frame, rule, format, &options, result)
+    NULL_POINTER(leafless_tridexel_make, solid, MAKE(NULL, &frame, 1, &format, result));
+    NULL_POINTER(leafless_tridexel_make, frame, MAKE(solid, NULL, 1, &format, result));
+    NULL_POINTER(leafless_tridexel_make, tridexel, MAKE(solid, &frame, 1, &format, NULL));
+    BAD_NUMBER(leafless_tridexel_make, rule, MAKE(solid, &frame, 0, &format, result));
+    BAD_NUMBER(leafless_tridexel_make, rule, MAKE(solid, &frame, 4, &format, result));
+    BAD_NUMBER(leafless_tridexel_make, rule, MAKE(solid, &frame, UINT32_MAX, &format, result));
+    MISALIGNED(leafless_tridexel_make, format, MAKE(solid, &frame, 1, (leafless_tridexel_format *)WRONG(&format), result));
+#define FORMAT(field, wrong)                                                                                     \
+    format.field = wrong;                                                                                        \
+    BAD_NUMBER(leafless_tridexel_make, format.field, MAKE(solid, &frame, 1, &format, result));                   \
+    BAD_NUMBER(leafless_tridexel_to_format, format.field,                                                        \
+               leafless_tridexel_to_format(model, &format, NULL, result));                                       \
+    format.field = 0
+    FORMAT(directions, 8);
+    FORMAT(directions, UINT32_MAX);
+    FORMAT(ends, 2);
+    FORMAT(normals, 3);
+    FORMAT(normals, UINT32_MAX);
+    FORMAT(has_surfaces, 2);
+    FORMAT(has_materials, UINT32_MAX);
+#undef FORMAT
+    format.struct_size = 3;
+    BAD_NUMBER(leafless_tridexel_make, format, MAKE(solid, &frame, 1, &format, result));
+#undef MAKE
+    format.struct_size = sizeof format;
+    MAY_BE_NULL(leafless_tridexel_make, format, leafless_tridexel_make(solid, &frame, 1, NULL, &options, &other));
+    leafless_tridexel_free(other);
+    MAY_BE_NULL(leafless_tridexel_make, options, leafless_tridexel_make(solid, &frame, 1, &format, NULL, &other));
+    leafless_tridexel_free(other);
+
+    NULL_POINTER(leafless_tridexel_ref, tridexel, leafless_tridexel_ref(NULL, result));
+    NULL_POINTER(leafless_tridexel_ref, reference, leafless_tridexel_ref(model, NULL));
+    NULL_POINTER(leafless_tridexel_describe, tridexel, leafless_tridexel_describe(NULL, info));
+    NULL_POINTER(leafless_tridexel_describe, info, leafless_tridexel_describe(model, NULL));
+    MISALIGNED(leafless_tridexel_describe, info, leafless_tridexel_describe(model, (leafless_tridexel_info *)WRONG(out)));
+    NULL_POINTER(leafless_tridexel_check, tridexel, leafless_tridexel_check(NULL));
+    NULL_POINTER(leafless_tridexel_equal, a, leafless_tridexel_equal(NULL, model, (bool *)out));
+    NULL_POINTER(leafless_tridexel_equal, b, leafless_tridexel_equal(model, NULL, (bool *)out));
+    NULL_POINTER(leafless_tridexel_equal, equal, leafless_tridexel_equal(model, model, NULL));
+    NULL_POINTER(leafless_tridexel_statistics, tridexel, leafless_tridexel_statistics(NULL, 0, statistics));
+    NULL_POINTER(leafless_tridexel_statistics, statistics, leafless_tridexel_statistics(model, 0, NULL));
+    MISALIGNED(leafless_tridexel_statistics, statistics,
+               leafless_tridexel_statistics(model, 0, (leafless_dexel_statistics *)WRONG(out)));
+    BAD_NUMBER(leafless_tridexel_statistics, axis, leafless_tridexel_statistics(model, 3, statistics));
+    BAD_NUMBER(leafless_tridexel_statistics, axis, leafless_tridexel_statistics(model, UINT32_MAX, statistics));
+    NULL_POINTER(leafless_tridexel_contains_cell, tridexel, leafless_tridexel_contains_cell(NULL, cell, (bool *)out));
+    NULL_POINTER(leafless_tridexel_contains_cell, cell, leafless_tridexel_contains_cell(model, NULL, (bool *)out));
+    NULL_POINTER(leafless_tridexel_contains_cell, inside, leafless_tridexel_contains_cell(model, cell, NULL));
+    MISALIGNED(leafless_tridexel_contains_cell, cell,
+               leafless_tridexel_contains_cell(model, (const uint32_t *)WRONG(cell), (bool *)out));
+    untouched();
+    CHECK(never == UNTOUCHED);
+}
+
+static void intervals(void) {
+    void *out = fresh();
+    uint32_t *numbers = (uint32_t *)out;
+    uint64_t *count = (uint64_t *)out, found, also;
+    leafless_dexel *dexels = (leafless_dexel *)out;
+    double *doubles = (double *)out;
+    const uint32_t ray[3] = {8, 8, 8}, end[2] = {9, 9}, beyond[2] = {17, 9};
+    NULL_POINTER(leafless_tridexel_window, tridexel, leafless_tridexel_window(NULL, 0, numbers, numbers + 2));
+    NULL_POINTER(leafless_tridexel_window, first, leafless_tridexel_window(model, 0, NULL, numbers));
+    NULL_POINTER(leafless_tridexel_window, end, leafless_tridexel_window(model, 0, numbers, NULL));
+    BAD_NUMBER(leafless_tridexel_window, axis, leafless_tridexel_window(model, 3, numbers, numbers + 2));
+    NULL_POINTER(leafless_tridexel_ray, tridexel, leafless_tridexel_ray(NULL, 0, ray, dexels, 1, count));
+    NULL_POINTER(leafless_tridexel_ray, ray, leafless_tridexel_ray(model, 0, NULL, dexels, 1, count));
+    NULL_POINTER(leafless_tridexel_ray, dexels, leafless_tridexel_ray(model, 0, ray, NULL, 1, count));
+    NULL_POINTER(leafless_tridexel_ray, count, leafless_tridexel_ray(model, 0, ray, dexels, 1, NULL));
+    BAD_NUMBER(leafless_tridexel_ray, axis, leafless_tridexel_ray(model, 3, ray, dexels, 1, count));
+    BAD_NUMBER(leafless_tridexel_ray, dexels, leafless_tridexel_ray(model, 0, ray, dexels, UINT64_MAX, count));
+    MISALIGNED(leafless_tridexel_ray, dexels,
+               leafless_tridexel_ray(model, 0, ray, (leafless_dexel *)WRONG(out), 1, count));
+    refused(LEAFLESS_E_BUFFER, "leafless_tridexel_ray", "dexels", leafless_tridexel_ray(model, 0, ray, dexels, 0, count));
+#define READ(model, axis, first, end, offsets, offset_count, ends, normals, surfaces, materials, interval_count)      \
+    leafless_tridexel_read(model, axis, first, end, offsets, 2, offset_count, ends, normals, surfaces, materials, 1, \
+                           interval_count)
+    NULL_POINTER(leafless_tridexel_read, tridexel, READ(NULL, 0, ray, end, count, count, NULL, NULL, NULL, NULL, count));
+    NULL_POINTER(leafless_tridexel_read, first, READ(model, 0, NULL, end, count, count, NULL, NULL, NULL, NULL, count));
+    NULL_POINTER(leafless_tridexel_read, end, READ(model, 0, ray, NULL, count, count, NULL, NULL, NULL, NULL, count));
+    NULL_POINTER(leafless_tridexel_read, offsets, READ(model, 0, ray, end, NULL, count, NULL, NULL, NULL, NULL, count));
+    NULL_POINTER(leafless_tridexel_read, offset_count,
+                 READ(model, 0, ray, end, count, NULL, doubles, doubles, numbers, numbers, count));
+    NULL_POINTER(leafless_tridexel_read, interval_count,
+                 READ(model, 0, ray, end, count, count, doubles, doubles, numbers, numbers, NULL));
+    BAD_NUMBER(leafless_tridexel_read, axis, READ(model, 3, ray, end, count, count, NULL, NULL, NULL, NULL, count));
+    BAD_NUMBER(leafless_tridexel_read, first, READ(model, 0, beyond, end, count, count, NULL, NULL, NULL, NULL, count));
+    BAD_NUMBER(leafless_tridexel_read, end, READ(model, 0, ray, beyond, count, count, NULL, NULL, NULL, NULL, count));
+    MISALIGNED(leafless_tridexel_read, ends_model,
+               READ(model, 0, ray, end, count, count, (double *)WRONG(out), NULL, NULL, NULL, count));
+    MISALIGNED(leafless_tridexel_read, normals,
+               READ(model, 0, ray, end, count, count, NULL, (double *)WRONG(out), NULL, NULL, count));
+    MISALIGNED(leafless_tridexel_read, surfaces,
+               READ(model, 0, ray, end, count, count, NULL, NULL, (uint32_t *)WRONG(out), NULL, count));
+    MISALIGNED(leafless_tridexel_read, materials,
+               READ(model, 0, ray, end, count, count, NULL, NULL, NULL, (uint32_t *)WRONG(out), count));
+#undef READ
+    BAD_NUMBER(leafless_tridexel_read, ends_model,
+               leafless_tridexel_read(model, 0, ray, end, NULL, 0, count, doubles, NULL, NULL, NULL, UINT64_MAX, count));
+    untouched();
+    MAY_BE_NULL(leafless_tridexel_read, ends_model,
+                leafless_tridexel_read(model, 0, NULL, NULL, NULL, 0, &found, NULL, NULL, NULL, NULL, 0, &also));
+    MAY_BE_NULL(leafless_tridexel_read, normals,
+                leafless_tridexel_read(model, 1, ray, end, NULL, 0, &found, doubles, NULL, numbers + 8, numbers + 10, 1, &also));
+    MAY_BE_NULL(leafless_tridexel_read, surfaces,
+                leafless_tridexel_read(model, 1, ray, end, NULL, 0, &found, NULL, doubles, NULL, NULL, 1, &also));
+    MAY_BE_NULL(leafless_tridexel_read, materials,
+                leafless_tridexel_read(model, 1, ray, end, NULL, 0, &found, NULL, NULL, numbers, NULL, 1, &also));
+    CHECK(found == 2 && also == 1);
+}
+
+static void operations(void) {
+    void *out = fresh(), *never = UNTOUCHED;
+    leafless_tridexel **result = (leafless_tridexel **)&never, *other = NULL;
+    const leafless_tridexel *list[2];
+    leafless_tridexel_format format;
+    OK(leafless_tridexel_format_init(&format, sizeof format));
+    list[0] = list[1] = model;
+#define BINARY(function)                                                               \
+    NULL_POINTER(function, a, function(NULL, model, NULL, result));                    \
+    NULL_POINTER(function, b, function(model, NULL, NULL, result));                    \
+    NULL_POINTER(function, result, function(model, model, NULL, NULL));                \
+    MISALIGNED(function, options, function(model, model, (leafless_options *)WRONG(out), result)); \
+    MAY_BE_NULL(function, options, function(model, model, NULL, &other));              \
+    leafless_tridexel_free(other)
+    BINARY(leafless_tridexel_union);
+    BINARY(leafless_tridexel_intersection);
+    BINARY(leafless_tridexel_difference);
+    BINARY(leafless_tridexel_xor);
+#undef BINARY
+#define NARY(function)                                                                 \
+    NULL_POINTER(function, tridexels, function(NULL, 2, NULL, result));                \
+    BAD_NUMBER(function, count, function(list, 0, NULL, result));                      \
+    BAD_NUMBER(function, tridexels, function(list, UINT64_MAX, NULL, result));         \
+    NULL_POINTER(function, result, function(list, 2, NULL, NULL));                     \
+    list[1] = NULL;                                                                    \
+    NULL_POINTER(function, tridexels, function(list, 2, NULL, result));                \
+    list[1] = model;                                                                   \
+    MAY_BE_NULL(function, options, function(list, 2, NULL, &other));                   \
+    leafless_tridexel_free(other)
+    NARY(leafless_tridexel_union_of);
+    NARY(leafless_tridexel_intersection_of);
+    NARY(leafless_tridexel_xor_of);
+    NULL_POINTER(leafless_tridexel_union_of, tridexels, leafless_tridexel_union_of(NULL, 2, NULL, result));
+    NULL_POINTER(leafless_tridexel_intersection_of, tridexels, leafless_tridexel_intersection_of(NULL, 2, NULL, result));
+    NULL_POINTER(leafless_tridexel_xor_of, tridexels, leafless_tridexel_xor_of(NULL, 2, NULL, result));
+#undef NARY
+    NULL_POINTER(leafless_tridexel_complement, tridexel, leafless_tridexel_complement(NULL, NULL, result));
+    NULL_POINTER(leafless_tridexel_complement, result, leafless_tridexel_complement(model, NULL, NULL));
+    MAY_BE_NULL(leafless_tridexel_complement, options, leafless_tridexel_complement(model, NULL, &other));
+    leafless_tridexel_free(other);
+    NULL_POINTER(leafless_tridexel_to_format, tridexel, leafless_tridexel_to_format(NULL, &format, NULL, result));
+    NULL_POINTER(leafless_tridexel_to_format, result, leafless_tridexel_to_format(model, &format, NULL, NULL));
+    MAY_BE_NULL(leafless_tridexel_to_format, format, leafless_tridexel_to_format(model, NULL, NULL, &other));
+    leafless_tridexel_free(other);
+    MAY_BE_NULL(leafless_tridexel_to_format, options, leafless_tridexel_to_format(model, &format, NULL, &other));
+    leafless_tridexel_free(other);
+    NULL_POINTER(leafless_tridexel_with_material, tridexel, leafless_tridexel_with_material(NULL, 1, NULL, result));
+    NULL_POINTER(leafless_tridexel_with_material, result, leafless_tridexel_with_material(model, 1, NULL, NULL));
+    MAY_BE_NULL(leafless_tridexel_with_material, options, leafless_tridexel_with_material(model, 1, NULL, &other));
+    leafless_tridexel_free(other);
+    untouched();
+    CHECK(never == UNTOUCHED);
+}
+
+static void facts(void) {
+    void *out = fresh(), *never = UNTOUCHED;
+    leafless_tridexel **result = (leafless_tridexel **)&never, *other = NULL;
+    const char **text = (const char **)out;
+    size_t *length = (size_t *)out;
+    uint64_t *count = (uint64_t *)out;
+    NULL_POINTER(leafless_tridexel_with_metadata, tridexel, leafless_tridexel_with_metadata(NULL, "k", 1, "v", 1, result));
+    NULL_POINTER(leafless_tridexel_with_metadata, key, leafless_tridexel_with_metadata(model, NULL, 1, "v", 1, result));
+    NULL_POINTER(leafless_tridexel_with_metadata, value, leafless_tridexel_with_metadata(model, "k", 1, NULL, 1, result));
+    NULL_POINTER(leafless_tridexel_with_metadata, named, leafless_tridexel_with_metadata(model, "k", 1, "v", 1, NULL));
+    NULL_POINTER(leafless_tridexel_without_metadata, tridexel, leafless_tridexel_without_metadata(NULL, "k", 1, result));
+    NULL_POINTER(leafless_tridexel_without_metadata, unnamed, leafless_tridexel_without_metadata(model, "k", 1, NULL));
+    MAY_BE_NULL(leafless_tridexel_without_metadata, key, leafless_tridexel_without_metadata(model, NULL, 0, &other));
+    leafless_tridexel_free(other);
+    NULL_POINTER(leafless_tridexel_peek_metadata, tridexel, leafless_tridexel_peek_metadata(NULL, "k", 1, text, length));
+    NULL_POINTER(leafless_tridexel_peek_metadata, key, leafless_tridexel_peek_metadata(model, NULL, 1, text, length));
+    NULL_POINTER(leafless_tridexel_peek_metadata, value, leafless_tridexel_peek_metadata(model, "k", 1, NULL, length));
+    NULL_POINTER(leafless_tridexel_peek_metadata, value_length, leafless_tridexel_peek_metadata(model, "k", 1, text, NULL));
+#define PEEK(model, count, key, key_length, value, value_length) \
+    leafless_tridexel_peek_metadata_at(model, 0, count, key, key_length, value, value_length)
+    NULL_POINTER(leafless_tridexel_peek_metadata_at, tridexel, PEEK(NULL, count, NULL, NULL, NULL, NULL));
+    NULL_POINTER(leafless_tridexel_peek_metadata_at, count, PEEK(model, NULL, NULL, NULL, NULL, NULL));
+    NULL_POINTER(leafless_tridexel_peek_metadata_at, key, PEEK(model, count, NULL, length, text, length));
+    NULL_POINTER(leafless_tridexel_peek_metadata_at, key_length, PEEK(model, count, text, NULL, text, length));
+    NULL_POINTER(leafless_tridexel_peek_metadata_at, value, PEEK(model, count, text, length, NULL, length));
+    NULL_POINTER(leafless_tridexel_peek_metadata_at, value_length, PEEK(model, count, text, length, text, NULL));
+    BAD_NUMBER(leafless_tridexel_peek_metadata_at, index, PEEK(model, count, text, length, text, length));
+#undef PEEK
+    untouched();
+    CHECK(never == UNTOUCHED);
+}
+
+static int32_t take(void *ctx, const uint8_t *bytes, uint64_t count) {
+    (void)ctx, (void)bytes, (void)count;
+    return 0;
+}
+
+static void uses(void) {
+    void *out = fresh(), *never = UNTOUCHED;
+    leafless_dexel_surface_report *report = (leafless_dexel_surface_report *)out;
+    leafless_mesh **mesh = (leafless_mesh **)&never, *made = NULL;
+    leafless_octree **octree = (leafless_octree **)&never, *tree = NULL;
+    leafless_solid **result = (leafless_solid **)&never, *again = NULL;
+    leafless_long_voxel *voxels = (leafless_long_voxel *)out;
+    uint64_t *count = (uint64_t *)out, number = 0;
+    NULL_POINTER(leafless_tridexel_surface, tridexel, leafless_tridexel_surface(NULL, 0, NULL, report, mesh));
+    NULL_POINTER(leafless_tridexel_surface, mesh, leafless_tridexel_surface(model, 0, NULL, report, NULL));
+    BAD_NUMBER(leafless_tridexel_surface, method, leafless_tridexel_surface(model, 2, NULL, report, mesh));
+    BAD_NUMBER(leafless_tridexel_surface, method, leafless_tridexel_surface(model, UINT32_MAX, NULL, report, mesh));
+    MISALIGNED(leafless_tridexel_surface, report,
+               leafless_tridexel_surface(model, 0, NULL, (leafless_dexel_surface_report *)WRONG(out), mesh));
+    MAY_BE_NULL(leafless_tridexel_surface, report, leafless_tridexel_surface(model, 0, NULL, NULL, &made));
+    leafless_mesh_free(made);
+    MAY_BE_NULL(leafless_tridexel_surface, options, leafless_tridexel_surface(model, 1, NULL, NULL, &made));
+    leafless_mesh_free(made);
+    NULL_POINTER(leafless_tridexel_to_octree, tridexel, leafless_tridexel_to_octree(NULL, NULL, octree));
+    NULL_POINTER(leafless_tridexel_to_octree, octree, leafless_tridexel_to_octree(model, NULL, NULL));
+    MAY_BE_NULL(leafless_tridexel_to_octree, options, leafless_tridexel_to_octree(model, NULL, &tree));
+    leafless_octree_free(tree);
+    NULL_POINTER(leafless_tridexel_as_solid, tridexel, leafless_tridexel_as_solid(NULL, false, NULL, result));
+    NULL_POINTER(leafless_tridexel_as_solid, solid, leafless_tridexel_as_solid(model, false, NULL, NULL));
+    MAY_BE_NULL(leafless_tridexel_as_solid, options, leafless_tridexel_as_solid(model, true, NULL, &again));
+    leafless_solid_free(again);
+    NULL_POINTER(leafless_tridexel_voxels, tridexel, leafless_tridexel_voxels(NULL, NULL, voxels, 1, count));
+    NULL_POINTER(leafless_tridexel_voxels, voxels, leafless_tridexel_voxels(model, NULL, NULL, 1, count));
+    NULL_POINTER(leafless_tridexel_voxels, count, leafless_tridexel_voxels(model, NULL, voxels, 1, NULL));
+    BAD_NUMBER(leafless_tridexel_voxels, voxels, leafless_tridexel_voxels(model, NULL, voxels, UINT64_MAX, count));
+    MAY_BE_NULL(leafless_tridexel_voxels, options, leafless_tridexel_voxels(model, NULL, NULL, 0, &number));
+    untouched();
+    CHECK(never == UNTOUCHED && number > 0);
+}
+
+static void arrays(void) {
+    void *out = fresh(), *never = UNTOUCHED;
+    static const uint64_t offsets[2] = {0, 1};
+    static const double ends[2] = {-0.5, 0.25};
+    leafless_tridexel **result = (leafless_tridexel **)&never, *other = NULL;
+    leafless_tridexel_format format;
+    leafless_ray_arrays rays, good;
+    OK(leafless_tridexel_format_init(&format, sizeof format));
+    memset(&rays, 0, sizeof rays);
+    rays.first[0] = rays.first[1] = 3;
+    rays.end[0] = rays.end[1] = 4;
+    rays.offsets = offsets;
+    rays.interval_count = 1;
+    rays.ends_model = ends;
+    good = rays;
+    NULL_POINTER(leafless_tridexel_new, frame, leafless_tridexel_new(NULL, &format, &rays, 1, NULL, result));
+    NULL_POINTER(leafless_tridexel_new, rays, leafless_tridexel_new(&frame, &format, NULL, 1, NULL, result));
+    NULL_POINTER(leafless_tridexel_new, tridexel, leafless_tridexel_new(&frame, &format, &rays, 1, NULL, NULL));
+    MISALIGNED(leafless_tridexel_new, rays,
+               leafless_tridexel_new(&frame, &format, (leafless_ray_arrays *)WRONG(out), 1, NULL, result));
+    BAD_NUMBER(leafless_tridexel_new, count, leafless_tridexel_new(&frame, &format, &rays, 0, NULL, result));
+    BAD_NUMBER(leafless_tridexel_new, count, leafless_tridexel_new(&frame, &format, &rays, UINT64_MAX, NULL, result));
+    rays.offsets = NULL;
+    NULL_POINTER(leafless_tridexel_new, rays.offsets, leafless_tridexel_new(&frame, &format, &rays, 1, NULL, result));
+    rays = good;
+    rays.ends_model = NULL;
+    NULL_POINTER(leafless_tridexel_new, rays.ends_model, leafless_tridexel_new(&frame, &format, &rays, 1, NULL, result));
+    rays.ends_model = (const double *)WRONG(out);
+    MISALIGNED(leafless_tridexel_new, rays.ends_model, leafless_tridexel_new(&frame, &format, &rays, 1, NULL, result));
+    rays = good;
+    rays.normals = (const double *)WRONG(out);
+    MISALIGNED(leafless_tridexel_new, rays.normals, leafless_tridexel_new(&frame, &format, &rays, 1, NULL, result));
+    rays = good;
+    rays.surfaces = (const uint32_t *)WRONG(out);
+    MISALIGNED(leafless_tridexel_new, rays.surfaces, leafless_tridexel_new(&frame, &format, &rays, 1, NULL, result));
+    rays = good;
+    rays.materials = (const uint32_t *)WRONG(out);
+    MISALIGNED(leafless_tridexel_new, rays.materials, leafless_tridexel_new(&frame, &format, &rays, 1, NULL, result));
+    rays = good;
+    rays.interval_count = UINT64_MAX;
+    BAD_NUMBER(leafless_tridexel_new, rays.ends_model, leafless_tridexel_new(&frame, &format, &rays, 1, NULL, result));
+    rays = good;
+    rays.axis = 3;
+    BAD_NUMBER(leafless_tridexel_new, rays.axis, leafless_tridexel_new(&frame, &format, &rays, 1, NULL, result));
+    rays = good;
+    rays.reserved = 1;
+    BAD_NUMBER(leafless_tridexel_new, rays.reserved, leafless_tridexel_new(&frame, &format, &rays, 1, NULL, result));
+    rays = good;
+    rays.end[0] = 17;
+    BAD_NUMBER(leafless_tridexel_new, rays.end, leafless_tridexel_new(&frame, &format, &rays, 1, NULL, result));
+    rays.end[0] = 2;
+    BAD_NUMBER(leafless_tridexel_new, rays.first, leafless_tridexel_new(&frame, &format, &rays, 1, NULL, result));
+    rays = good;
+    format.directions = LEAFLESS_AXES_Y;
+    BAD_NUMBER(leafless_tridexel_new, format.directions, leafless_tridexel_new(&frame, &format, &rays, 1, NULL, result));
+    format.directions = 0;
+    untouched();
+    CHECK(never == UNTOUCHED);
+    MAY_BE_NULL(leafless_tridexel_new, format, leafless_tridexel_new(&frame, NULL, &rays, 1, NULL, &other));
+    leafless_tridexel_free(other);
+    MAY_BE_NULL(leafless_tridexel_new, options, leafless_tridexel_new(&frame, &format, &rays, 1, NULL, &other));
+    leafless_tridexel_free(other);
+}
+
+static void files(void) {
+    void *out = fresh(), *never = UNTOUCHED;
+    leafless_tridexel **result = (leafless_tridexel **)&never, *other = NULL;
+    uint64_t length = 0, number;
+    uint8_t *bytes;
+    MAY_BE_NULL(leafless_tridexel_to_bytes, bytes, leafless_tridexel_to_bytes(model, NULL, 0, &length));
+    bytes = (uint8_t *)malloc((size_t)length + 1);
+    CHECK(bytes != NULL);
+    NULL_POINTER(leafless_tridexel_open, path, leafless_tridexel_open(NULL, 1, result));
+    NULL_POINTER(leafless_tridexel_open, tridexel, leafless_tridexel_open("x", 1, NULL));
+    NULL_POINTER(leafless_tridexel_map, path, leafless_tridexel_map(NULL, 1, result));
+    NULL_POINTER(leafless_tridexel_map, tridexel, leafless_tridexel_map("x", 1, NULL));
+    NULL_POINTER(leafless_tridexel_map_verified, path, leafless_tridexel_map_verified(NULL, 1, result));
+    NULL_POINTER(leafless_tridexel_map_verified, tridexel, leafless_tridexel_map_verified("x", 1, NULL));
+    NULL_POINTER(leafless_tridexel_from_bytes, bytes, leafless_tridexel_from_bytes(NULL, length, result));
+    NULL_POINTER(leafless_tridexel_from_bytes, tridexel, leafless_tridexel_from_bytes(bytes, length, NULL));
+    NULL_POINTER(leafless_tridexel_view_bytes, bytes, leafless_tridexel_view_bytes(NULL, length, result));
+    NULL_POINTER(leafless_tridexel_view_bytes, tridexel, leafless_tridexel_view_bytes(bytes, length, NULL));
+    NULL_POINTER(leafless_tridexel_save, tridexel, leafless_tridexel_save(NULL, "x", 1));
+    NULL_POINTER(leafless_tridexel_save, path, leafless_tridexel_save(model, NULL, 1));
+    NULL_POINTER(leafless_tridexel_to_bytes, tridexel, leafless_tridexel_to_bytes(NULL, NULL, 0, (uint64_t *)out));
+    NULL_POINTER(leafless_tridexel_to_bytes, bytes, leafless_tridexel_to_bytes(model, NULL, length, (uint64_t *)out));
+    NULL_POINTER(leafless_tridexel_to_bytes, length, leafless_tridexel_to_bytes(model, NULL, 0, NULL));
+    NULL_POINTER(leafless_tridexel_write, tridexel, leafless_tridexel_write(NULL, take, NULL));
+    NULL_POINTER(leafless_tridexel_write, write, leafless_tridexel_write(model, NULL, NULL));
+    MAY_BE_NULL(leafless_tridexel_write, ctx, leafless_tridexel_write(model, take, NULL));
+    refused(LEAFLESS_E_FORMAT, "leafless_tridexel_from_bytes", "", leafless_tridexel_from_bytes(NULL, 0, result));
+    /* Copies may be made of bytes on any address, what is used in place must lie well. */
+    OK(leafless_tridexel_to_bytes(model, bytes + 1, length, &number));
+    refused(LEAFLESS_E_ARGUMENT, "leafless_tridexel_view_bytes", "",
+            leafless_tridexel_view_bytes(bytes + 1, length, result));
+    untouched();
+    CHECK(never == UNTOUCHED);
+    OK(leafless_tridexel_from_bytes(bytes + 1, length, &other));
+    leafless_tridexel_free(other);
+    free(bytes);
+}
+
+static void editors(void) {
+    void *out = fresh(), *never = UNTOUCHED;
+    leafless_tridexel *other = NULL;
+    NULL_POINTER(leafless_tridexel_editor_new, tridexel, leafless_tridexel_editor_new(NULL, (leafless_tridexel_editor **)&never));
+    NULL_POINTER(leafless_tridexel_editor_new, editor, leafless_tridexel_editor_new(model, NULL));
+    NULL_POINTER(leafless_tridexel_editor_frame, editor, leafless_tridexel_editor_frame(NULL, (leafless_frame *)out));
+    NULL_POINTER(leafless_tridexel_editor_frame, frame, leafless_tridexel_editor_frame(editor, NULL));
+    NULL_POINTER(leafless_tridexel_editor_bytes, editor, leafless_tridexel_editor_bytes(NULL, (uint64_t *)out));
+    NULL_POINTER(leafless_tridexel_editor_bytes, bytes, leafless_tridexel_editor_bytes(editor, NULL));
+    NULL_POINTER(leafless_tridexel_editor_unite, editor, leafless_tridexel_editor_unite(NULL, model, NULL));
+    NULL_POINTER(leafless_tridexel_editor_unite, tridexel, leafless_tridexel_editor_unite(editor, NULL, NULL));
+    MAY_BE_NULL(leafless_tridexel_editor_unite, options, leafless_tridexel_editor_unite(editor, model, NULL));
+    NULL_POINTER(leafless_tridexel_editor_subtract, editor, leafless_tridexel_editor_subtract(NULL, model, NULL));
+    NULL_POINTER(leafless_tridexel_editor_subtract, tridexel, leafless_tridexel_editor_subtract(editor, NULL, NULL));
+    MAY_BE_NULL(leafless_tridexel_editor_subtract, options, leafless_tridexel_editor_subtract(editor, model, NULL));
+    NULL_POINTER(leafless_tridexel_editor_intersect, editor, leafless_tridexel_editor_intersect(NULL, model, NULL));
+    NULL_POINTER(leafless_tridexel_editor_intersect, tridexel, leafless_tridexel_editor_intersect(editor, NULL, NULL));
+    MAY_BE_NULL(leafless_tridexel_editor_intersect, options, leafless_tridexel_editor_intersect(editor, model, NULL));
+    NULL_POINTER(leafless_tridexel_editor_unite_solid, editor, leafless_tridexel_editor_unite_solid(NULL, solid, NULL));
+    NULL_POINTER(leafless_tridexel_editor_unite_solid, solid, leafless_tridexel_editor_unite_solid(editor, NULL, NULL));
+    MAY_BE_NULL(leafless_tridexel_editor_unite_solid, options, leafless_tridexel_editor_unite_solid(editor, solid, NULL));
+    NULL_POINTER(leafless_tridexel_editor_subtract_solid, editor,
+                 leafless_tridexel_editor_subtract_solid(NULL, solid, NULL));
+    NULL_POINTER(leafless_tridexel_editor_subtract_solid, solid,
+                 leafless_tridexel_editor_subtract_solid(editor, NULL, NULL));
+    MAY_BE_NULL(leafless_tridexel_editor_subtract_solid, options,
+                leafless_tridexel_editor_subtract_solid(editor, solid, NULL));
+    NULL_POINTER(leafless_tridexel_editor_intersect_solid, editor,
+                 leafless_tridexel_editor_intersect_solid(NULL, solid, NULL));
+    NULL_POINTER(leafless_tridexel_editor_intersect_solid, solid,
+                 leafless_tridexel_editor_intersect_solid(editor, NULL, NULL));
+    MAY_BE_NULL(leafless_tridexel_editor_intersect_solid, options,
+                leafless_tridexel_editor_intersect_solid(editor, solid, NULL));
+    NULL_POINTER(leafless_tridexel_editor_freeze, editor,
+                 leafless_tridexel_editor_freeze(NULL, NULL, (leafless_tridexel **)&never));
+    NULL_POINTER(leafless_tridexel_editor_freeze, tridexel, leafless_tridexel_editor_freeze(editor, NULL, NULL));
+    MAY_BE_NULL(leafless_tridexel_editor_freeze, options, leafless_tridexel_editor_freeze(editor, NULL, &other));
+    leafless_tridexel_free(other);
+    untouched();
+    CHECK(never == UNTOUCHED);
+}
+
+int main(void) {
+    solid = check_ball_solid();
+    OK(leafless_tridexel_make(solid, &frame, LEAFLESS_RULE_SAMPLED, NULL, NULL, &model));
+    OK(leafless_tridexel_editor_new(model, &editor));
+    models();
+    intervals();
+    operations();
+    facts();
+    uses();
+    arrays();
+    files();
+    editors();
+    /* All of it is as good as ever. */
+    OK(leafless_tridexel_check(model));
+    leafless_tridexel_editor_free(NULL);
+    leafless_tridexel_editor_free(editor);
+    leafless_tridexel_free(NULL);
+    leafless_tridexel_free(model);
+    leafless_solid_free(solid);
+    return 0;
+}

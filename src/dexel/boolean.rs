@@ -1,0 +1,453 @@
+//! The set algebra of models on one lattice.
+//!
+//! Half-open intervals on a ray are closed under the set operations, so that all laws of sets hold exactly, as for point
+//! sets. What intervals carry follows: an end keeps its surface and normal, turned about where a subtraction shows its
+//! other side; where both operands hold a place, the first one's material counts.
+
+use super::arrays::{Form, ModelArrays, OwnedRows};
+use super::assemble::{Piece, assembled};
+use super::columns::Columns;
+use super::format::{DexelEnds, DexelFormat};
+use super::item::Item;
+use super::merge::{SetOp, complement, merge, merge_plain};
+use super::model::TriDexel;
+use super::place::{DoubleSpan, FixedSpan, Place, Span};
+use super::view::{Rows, RowsRef, TriDexelRef, Window, with_rows};
+use crate::control::{Control, Job, WHOLE};
+use crate::error::Error;
+use crate::lattice::Frame;
+use crate::memory;
+use core::ops::Range;
+
+/// Rows of rays that a thread works on at a time.
+const ROWS: u32 = 64;
+
+impl TriDexelRef<'_> {
+    /// What lies in this model or in `other`. O(rays + intervals). The same for any number of threads.
+    ///
+    /// # Errors
+    /// [`Error::FrameMismatch`] if the models lie on different lattices; [`Error::Argument`] if they have different
+    /// directions; [`Error::Limit`] for 2^32 intervals in one direction; [`Error::DamagedRays`] if a model is one of a file
+    /// that nobody has verified, and is damaged; [`Error::OutOfMemory`]; [`Error::Cancelled`].
+    pub fn union(&self, other: &TriDexelRef<'_>, control: &Control<'_>) -> Result<TriDexel, Error> {
+        combined(SetOp::Union, self, other, control)
+    }
+
+    /// What lies in both. Else as [`union`](Self::union).
+    ///
+    /// # Errors
+    /// As [`union`](Self::union).
+    pub fn intersection(&self, other: &TriDexelRef<'_>, control: &Control<'_>) -> Result<TriDexel, Error> {
+        combined(SetOp::Intersection, self, other, control)
+    }
+
+    /// What lies in this one, and not in `other`. Else as [`union`](Self::union).
+    ///
+    /// # Errors
+    /// As [`union`](Self::union).
+    pub fn difference(&self, other: &TriDexelRef<'_>, control: &Control<'_>) -> Result<TriDexel, Error> {
+        combined(SetOp::Difference, self, other, control)
+    }
+
+    /// What lies in one of them, and not in both. Else as [`union`](Self::union).
+    ///
+    /// # Errors
+    /// As [`union`](Self::union).
+    pub fn xor(&self, other: &TriDexelRef<'_>, control: &Control<'_>) -> Result<TriDexel, Error> {
+        combined(SetOp::Xor, self, other, control)
+    }
+
+    /// What lies in the universe, and not in this model. Else as [`union`](Self::union).
+    ///
+    /// # Errors
+    /// As [`union`](Self::union).
+    pub fn complement(&self, control: &Control<'_>) -> Result<TriDexel, Error> {
+        self.sound()?;
+        let depth = self.frame.depth();
+        each_direction(self.frame, self.format, self.directions(), control, |axis, job, parallel| {
+            let Some(rows) = &self.rays[axis] else { unreachable!("only directions that there are") };
+            with_rows!(rows, rows => complemented(rows, depth, &self.format, job, parallel))
+        })
+    }
+
+    /// The same model with other things stored. What it has not is unknown: no surface, no normal, material 0.
+    ///
+    /// # Errors
+    /// [`Error::DamagedRays`], [`Error::OutOfMemory`], [`Error::Cancelled`].
+    pub fn to_format(&self, format: DexelFormat, control: &Control<'_>) -> Result<TriDexel, Error> {
+        self.sound()?;
+        let depth = self.frame.depth();
+        each_direction(self.frame, format, self.directions(), control, |axis, job, parallel| {
+            let Some(rows) = &self.rays[axis] else { unreachable!("only directions that there are") };
+            with_rows!(rows, rows => match format.ends {
+                DexelEnds::Fixed => converted::<_, FixedSpan>(rows, &format, depth, job, parallel),
+                DexelEnds::Double => converted::<_, DoubleSpan>(rows, &format, depth, job, parallel),
+            })
+        })
+    }
+
+    /// The same model, all of it of one material.
+    ///
+    /// # Errors
+    /// As [`to_format`](Self::to_format).
+    pub fn with_material(&self, material: u32, control: &Control<'_>) -> Result<TriDexel, Error> {
+        self.sound()?;
+        let format = DexelFormat { materials: true, ..self.format };
+        each_direction(self.frame, format, self.directions(), control, |axis, job, parallel| {
+            let Some(rows) = &self.rays[axis] else { unreachable!("only directions that there are") };
+            with_rows!(rows, rows => painted(rows, material, &format, job, parallel))
+        })
+    }
+
+    /// Whether all that is stored is equal, bit for bit. O(n).
+    pub(crate) fn equals(&self, other: &TriDexelRef<'_>) -> bool {
+        fn same<S: Span>(a: &RowsRef<'_, S>, b: &RowsRef<'_, S>) -> bool {
+            let count = a.columns.spans.len();
+            a.window == b.window
+                && a.starts == b.starts
+                && a.columns.spans == b.columns.spans
+                && (0..count).all(|i| {
+                    let (a, b) = (a.columns.item(i), b.columns.item(i));
+                    a.marks == b.marks && a.material == b.material
+                })
+        }
+        self.frame == other.frame
+            && self.format == other.format
+            && (0..3).all(|axis| match (&self.rays[axis], &other.rays[axis]) {
+                (None, None) => true,
+                (Some(Rows::Fixed(a)), Some(Rows::Fixed(b))) => same(a, b),
+                (Some(Rows::Double(a)), Some(Rows::Double(b))) => same(a, b),
+                _ => false,
+            })
+    }
+}
+
+impl TriDexel {
+    /// What lies in any of the models; nothing of no model is an error, as its lattice is not known. Where several hold a
+    /// place, the first one's material counts. O(rays + intervals · log models).
+    ///
+    /// # Errors
+    /// [`Error::Argument`] for no model, else as [`TriDexelRef::union`].
+    pub fn union_of(models: &[TriDexelRef<'_>], control: &Control<'_>) -> Result<TriDexel, Error> {
+        combined_of(SetOp::Union, models, control)
+    }
+
+    /// What lies in all of the models. Else as [`union_of`](Self::union_of).
+    ///
+    /// # Errors
+    /// As [`union_of`](Self::union_of).
+    pub fn intersection_of(models: &[TriDexelRef<'_>], control: &Control<'_>) -> Result<TriDexel, Error> {
+        combined_of(SetOp::Intersection, models, control)
+    }
+
+    /// What lies in an odd number of the models. Else as [`union_of`](Self::union_of).
+    ///
+    /// # Errors
+    /// As [`union_of`](Self::union_of).
+    pub fn xor_of(models: &[TriDexelRef<'_>], control: &Control<'_>) -> Result<TriDexel, Error> {
+        combined_of(SetOp::Xor, models, control)
+    }
+}
+
+/// Neighbours two by two, until one is left: of n operands each interval is copied log n times.
+fn combined_of(op: SetOp, models: &[TriDexelRef<'_>], control: &Control<'_>) -> Result<TriDexel, Error> {
+    match models {
+        [] => Err(Error::Argument { name: "models", problem: "must be at least one" }),
+        [one] => one.to_format(one.format, control),
+        [a, b] => combined(op, a, b, control),
+        _ => {
+            let (first, second) = models.split_at(models.len().div_ceil(2));
+            let share = first.len() as f64 / models.len() as f64 * 0.9;
+            let a = control.share([0.0, share], |control| combined_of(op, first, control))?;
+            let b = control.share([share, 0.9], |control| combined_of(op, second, control))?;
+            control.share([0.9, 1.0], |control| combined(op, a.view(), b.view(), control))
+        }
+    }
+}
+
+/// Refuses an operand that does not fit.
+pub(crate) fn check_operands(
+    frame: &Frame,
+    directions: [bool; 3],
+    other: &TriDexelRef<'_>,
+) -> Result<(), Error> {
+    if *frame != other.frame {
+        return Err(frame.mismatch(&other.frame));
+    }
+    if directions != other.directions() {
+        return Err(Error::Argument { name: "other", problem: "must have rays in the same directions" });
+    }
+    Ok(())
+}
+
+fn combined(
+    op: SetOp,
+    a: &TriDexelRef<'_>,
+    b: &TriDexelRef<'_>,
+    control: &Control<'_>,
+) -> Result<TriDexel, Error> {
+    check_operands(&a.frame, a.directions(), b)?;
+    a.sound()?;
+    b.sound()?;
+    let format = a.format.join(b.format);
+    if a.kind() != b.kind() {
+        let [a, b] = [a, b].map(|model| {
+            let format = DexelFormat { ends: DexelEnds::Double, ..model.format };
+            model.to_format(format, &Control { progress: None, ..*control })
+        });
+        return combined(op, a?.view(), b?.view(), control);
+    }
+    each_direction(a.frame, format, a.directions(), control, |axis, job, parallel| {
+        match (&a.rays[axis], &b.rays[axis]) {
+            (Some(Rows::Fixed(a)), Some(Rows::Fixed(b))) => of_rows(op, a, b, &format, job, parallel),
+            (Some(Rows::Double(a)), Some(Rows::Double(b))) => of_rows(op, a, b, &format, job, parallel),
+            _ => unreachable!("operands of one kind, and only directions that there are"),
+        }
+    })
+}
+
+/// A model whose directions `work` makes, one after the other.
+fn each_direction(
+    frame: Frame,
+    format: DexelFormat,
+    directions: [bool; 3],
+    control: &Control<'_>,
+    work: impl Fn(usize, &Job<'_>, bool) -> Result<OwnedRows, Error> + Send + Sync,
+) -> Result<TriDexel, Error> {
+    let job = Job::new(control);
+    job.check()?;
+    control.run(frame.depth() > 6, |parallel| {
+        let mut rays = [const { None }; 3];
+        for axis in (0..3).filter(|&axis| directions[axis]) {
+            let rows = work(axis, &job, parallel)?;
+            job.spend(0, bytes(&rows, &format))?;
+            rays[axis] = Some(rows);
+            job.advance(WHOLE / directions.iter().filter(|&&has| has).count());
+        }
+        Ok(TriDexel::new(ModelArrays { frame, format, rays }))
+    })
+}
+
+fn bytes(rows: &OwnedRows, format: &DexelFormat) -> usize {
+    let (starts, count) = match rows {
+        OwnedRows::Fixed(rows) => (rows.starts.len(), rows.columns.spans.len()),
+        OwnedRows::Double(rows) => (rows.starts.len(), rows.columns.spans.len()),
+    };
+    4 * starts + count * format.bytes_per_interval()
+}
+
+/// The rays of a window, made by `work` for ranges of rows.
+fn by_rows<S: Form>(
+    window: Window,
+    format: &DexelFormat,
+    job: &Job<'_>,
+    parallel: bool,
+    work: impl Fn(Range<u32>) -> Result<Piece<S>, Error> + Send + Sync,
+) -> Result<OwnedRows, Error> {
+    let rows = window.range(1);
+    let one = |range: Range<u32>| {
+        job.check()?;
+        work(range)
+    };
+    #[cfg(feature = "parallel")]
+    if parallel && rows.len() > ROWS as usize {
+        use rayon::prelude::*;
+        let count = (rows.end - rows.start).div_ceil(ROWS);
+        let pieces = (0..count)
+            .into_par_iter()
+            .map(|i| one(rows.start + i * ROWS..rows.end.min(rows.start + (i + 1) * ROWS)))
+            .collect::<Result<alloc::vec::Vec<_>, Error>>()?;
+        return Ok(S::own(assembled(window, format, pieces)?));
+    }
+    let _ = (parallel, ROWS);
+    let mut pieces = memory::with_capacity(1)?;
+    pieces.push(one(rows)?);
+    Ok(S::own(assembled(window, format, pieces)?))
+}
+
+fn of_rows<S: Form>(
+    op: SetOp,
+    a: &RowsRef<'_, S>,
+    b: &RowsRef<'_, S>,
+    format: &DexelFormat,
+    job: &Job<'_>,
+    parallel: bool,
+) -> Result<OwnedRows, Error> {
+    let window = match op {
+        SetOp::Union | SetOp::Xor => a.window.hull(&b.window),
+        SetOp::Intersection => a.window.intersection(&b.window),
+        SetOp::Difference => a.window,
+    };
+    by_rows(window, format, job, parallel, |range| {
+        let rays = (range.len()) * window.size[0] as usize;
+        let mut piece = Piece { counts: memory::with_capacity(rays)?, columns: Columns::new(format) };
+        for v in range {
+            job.check()?;
+            for (run, from) in runs(window.range(0), v, a, b) {
+                match from {
+                    [true, true] => both(op, [run, v..v + 1], a, b, format, &mut piece)?,
+                    [true, false] if op.keeps()[0] => copy(run, v, a, &mut piece)?,
+                    [false, true] if op.keeps()[1] => copy(run, v, b, &mut piece)?,
+                    _ => piece.counts.resize(piece.counts.len() + run.len(), 0),
+                }
+            }
+        }
+        Ok(piece)
+    })
+}
+
+/// A row cut where the windows of the operands begin and end; with which of them each run lies in.
+fn runs<S>(
+    all: Range<u32>,
+    v: u32,
+    a: &RowsRef<'_, S>,
+    b: &RowsRef<'_, S>,
+) -> impl Iterator<Item = (Range<u32>, [bool; 2])> {
+    let windows = [a.window, b.window];
+    let mut cuts = [all.start, all.end, all.end, all.end, all.end];
+    for (i, window) in windows.iter().enumerate() {
+        cuts[1 + 2 * i] = window.range(0).start.clamp(all.start, all.end);
+        cuts[2 + 2 * i] = window.range(0).end.clamp(all.start, all.end);
+    }
+    cuts.sort_unstable();
+    let ends = [1, 2, 3, 4, 5].map(|i| cuts.get(i).copied().unwrap_or(all.end));
+    (0..5).filter_map(move |i| {
+        let run = cuts[i]..ends[i];
+        let has = |window: &Window| window.index([run.start, v]).is_some();
+        (!run.is_empty()).then(|| (run.clone(), [has(&windows[0]), has(&windows[1])]))
+    })
+}
+
+/// Copies the rays of a run.
+fn copy<S: Span>(run: Range<u32>, v: u32, from: &RowsRef<'_, S>, piece: &mut Piece<S>) -> Result<(), Error> {
+    let Some(first) = from.window.index([run.start, v]) else { return Ok(()) };
+    let last = first + run.len();
+    piece.counts.try_reserve(run.len())?;
+    let mut all = from.at(first).start..from.at(first).start;
+    for index in first..last {
+        let range = from.at(index);
+        piece.counts.push(range.len() as u32);
+        // Consecutive rays have consecutive intervals.
+        if range.start == all.end {
+            all.end = range.end;
+        } else if !range.is_empty() {
+            piece.columns.copy(&from.columns, all)?;
+            all = range;
+        }
+    }
+    piece.columns.copy(&from.columns, all)
+}
+
+/// Merges the rays of a run.
+fn both<S: Span>(
+    op: SetOp,
+    [run, row]: [Range<u32>; 2],
+    a: &RowsRef<'_, S>,
+    b: &RowsRef<'_, S>,
+    format: &DexelFormat,
+    piece: &mut Piece<S>,
+) -> Result<(), Error> {
+    let (Some(i), Some(j)) = (a.window.index([run.start, row.start]), b.window.index([run.start, row.start]))
+    else {
+        return Ok(());
+    };
+    let [keeps_a, keeps_b] = op.keeps();
+    piece.counts.try_reserve(run.len())?;
+    for k in 0..run.len() {
+        let (range_a, range_b) = (a.at(i + k), b.at(j + k));
+        let before = piece.columns.spans.len();
+        match (range_a.is_empty(), range_b.is_empty()) {
+            (true, true) => {}
+            (false, true) => {
+                if keeps_a {
+                    piece.columns.copy(&a.columns, range_a)?;
+                }
+            }
+            (true, false) => {
+                if keeps_b {
+                    piece.columns.copy(&b.columns, range_b)?;
+                }
+            }
+            (false, false) if format.is_plain() => {
+                merge_plain(
+                    op,
+                    &a.columns.spans[range_a],
+                    &b.columns.spans[range_b],
+                    &mut piece.columns.spans,
+                )?;
+            }
+            (false, false) => merge(op, (&a.columns, range_a), (&b.columns, range_b), &mut piece.columns)?,
+        }
+        piece.counts.push((piece.columns.spans.len() - before) as u32);
+    }
+    Ok(())
+}
+
+/// Rows with another form of ends and other columns.
+fn converted<S: Span, T: Form>(
+    rows: &RowsRef<'_, S>,
+    format: &DexelFormat,
+    depth: u8,
+    job: &Job<'_>,
+    parallel: bool,
+) -> Result<OwnedRows, Error> {
+    by_rows(rows.window, format, job, parallel, |range| {
+        let mut piece = Piece::<T>::new(format);
+        for v in range {
+            for u in rows.window.range(0) {
+                let before = piece.columns.spans.len();
+                for item in rows.items([u, v]) {
+                    // Without materials, or rounded, intervals may touch that did not.
+                    let ends = item.ends.map(|end| T::Place::rounded(end.cells(depth), depth));
+                    piece.add(before, &Item { ends, marks: item.marks, material: item.material })?;
+                }
+                memory::push(&mut piece.counts, (piece.columns.spans.len() - before) as u32)?;
+            }
+        }
+        Ok(piece)
+    })
+}
+
+/// What lies outside of all rays' intervals.
+fn complemented<S: Form>(
+    rows: &RowsRef<'_, S>,
+    depth: u8,
+    format: &DexelFormat,
+    job: &Job<'_>,
+    parallel: bool,
+) -> Result<OwnedRows, Error> {
+    by_rows(Window::all(depth), format, job, parallel, |range| {
+        let mut piece = Piece::<S>::new(format);
+        for v in range {
+            for u in 0..1 << depth {
+                let before = piece.columns.spans.len();
+                complement(&rows.columns, rows.ray([u, v]), depth, &mut piece.columns)?;
+                memory::push(&mut piece.counts, (piece.columns.spans.len() - before) as u32)?;
+            }
+        }
+        Ok(piece)
+    })
+}
+
+/// Rows of one material. Intervals touch only where their materials differ, so that these are joined.
+fn painted<S: Form>(
+    rows: &RowsRef<'_, S>,
+    material: u32,
+    format: &DexelFormat,
+    job: &Job<'_>,
+    parallel: bool,
+) -> Result<OwnedRows, Error> {
+    by_rows(rows.window, format, job, parallel, |range| {
+        let mut piece = Piece::<S>::new(format);
+        for v in range {
+            for u in rows.window.range(0) {
+                let before = piece.columns.spans.len();
+                for item in rows.items([u, v]) {
+                    piece.add(before, &Item { material, ..item })?;
+                }
+                memory::push(&mut piece.counts, (piece.columns.spans.len() - before) as u32)?;
+            }
+        }
+        Ok(piece)
+    })
+}

@@ -1,0 +1,188 @@
+//! Which centres of cells lie inside, 64 at a time.
+//!
+//! Rays of three directions may say three things of one centre, if their arrays come from elsewhere. One
+//! direction decides for all: the highest axis that has rays.
+
+use super::item::Item;
+use super::place::{Place, Span};
+use super::view::{OTHERS, Rows, RowsRef, TriDexelRef, with_rows};
+
+/// Edge of a block of cells.
+pub(crate) const BLOCK: u32 = 64;
+
+impl TriDexelRef<'_> {
+    /// Whether the centre of a finest cell lies inside. Where the directions differ, as those of arrays from elsewhere
+    /// may, the highest axis that has rays decides. A cell outside of the universe does not lie inside. O(log intervals
+    /// of a ray).
+    pub fn contains_cell(&self, cell: [u32; 3]) -> bool {
+        let Some((axis, rows)) = self.deciding() else { return false };
+        let [u, v] = OTHERS[axis];
+        with_rows!(rows, rows => find(rows, [cell[u], cell[v]], cell[axis], self.frame.depth())).is_some()
+    }
+
+    /// What a finest cell is made of, by the rays that decide whether its centre lies inside; 0 if that lies outside, or
+    /// nothing was said.
+    pub(crate) fn material_of_cell(&self, cell: [u32; 3]) -> u32 {
+        let Some((axis, rows)) = self.deciding() else { return 0 };
+        let [u, v] = OTHERS[axis];
+        with_rows!(rows, rows => {
+            let interval = find(rows, [cell[u], cell[v]], cell[axis], self.frame.depth());
+            interval.map_or(0, |i| { let Item { material, .. } = rows.columns.item(i); material })
+        })
+    }
+
+    /// The rays that decide about centres, and their axis.
+    pub(crate) fn deciding(&self) -> Option<(usize, &Rows<'_>)> {
+        (0..3).rev().find_map(|axis| Some((axis, self.rays[axis].as_ref()?)))
+    }
+
+    /// Which of 64³ centres from cell `first` on lie inside, as bit columns along an axis: bit k of `words[p + 64 q]`
+    /// is cell k along `along`, cell p along the lower and cell q along the higher one of the other two axes. The
+    /// answer is whether any centre may lie inside; if not, the words are left as they are.
+    pub(crate) fn fill_centres(&self, first: [u32; 3], along: usize, words: &mut [u64; 4096]) -> bool {
+        let Some((axis, rows)) = self.deciding() else { return false };
+        with_rows!(rows, rows => fill(rows, axis, first, along, self.frame.depth(), words))
+    }
+}
+
+/// The interval of the ray that holds the centre of cell k.
+fn find<S: Span>(rows: &RowsRef<'_, S>, ray: [u32; 2], k: u32, depth: u8) -> Option<usize> {
+    let range = rows.ray(ray);
+    let list = &rows.columns.spans[range.clone()];
+    let after = list.partition_point(|span| span.ends()[0].gap(depth) <= k);
+    (after > 0 && list[after - 1].ends()[1].gap(depth) > k).then(|| range.start + after - 1)
+}
+
+fn fill<S: Span>(
+    rows: &RowsRef<'_, S>,
+    axis: usize,
+    first: [u32; 3],
+    along: usize,
+    depth: u8,
+    words: &mut [u64; 4096],
+) -> bool {
+    let others = OTHERS[axis];
+    let apart = |i: usize| {
+        let (window, low) = (rows.window.range(i), first[others[i]]);
+        window.end <= low || window.start >= low.saturating_add(BLOCK)
+    };
+    if apart(0) || apart(1) {
+        return false;
+    }
+    let row = |v: u32, into: &mut [u64; 64]| {
+        for (u, word) in (0..BLOCK).zip(into) {
+            let range = rows.ray([first[others[0]] + u, first[others[1]] + v]);
+            *word = if range.is_empty() { 0 } else { column(&rows.columns.spans[range], first[axis], depth) };
+        }
+    };
+    if axis == along {
+        let (lines, _) = words.as_chunks_mut::<64>();
+        for (v, line) in (0..BLOCK).zip(lines) {
+            row(v, line);
+        }
+        return true;
+    }
+    // The words run along the rays. Planes that hold both axes are turned about.
+    let mut block = [[0; 64]; 64];
+    for (v, line) in (0..BLOCK).zip(&mut block) {
+        row(v, line);
+    }
+    let third = 3 - axis - along;
+    for t in 0..64 {
+        // Bit r of matrix[k]: the cell at k along `along`, and at r along the rays.
+        let mut matrix = [0u64; 64];
+        for (k, word) in matrix.iter_mut().enumerate() {
+            *word = if third == others[0] { block[k][t] } else { block[t][k] };
+        }
+        turn(&mut matrix);
+        for (r, &word) in matrix.iter().enumerate() {
+            // The other two axes of `along` are that of the rays and the third one.
+            let place = if axis < third { r + 64 * t } else { t + 64 * r };
+            words[place] = word;
+        }
+    }
+    true
+}
+
+/// Which of 64 centres from cell `first` on the intervals of a ray hold.
+#[inline(always)]
+fn column<S: Span>(spans: &[S], first: u32, depth: u8) -> u64 {
+    let last = first + BLOCK;
+    // Most rays have few intervals.
+    let skip =
+        if spans.len() > 8 { spans.partition_point(|span| span.ends()[1].gap(depth) <= first) } else { 0 };
+    let mut word = 0;
+    for span in &spans[skip..] {
+        let [start, end] = span.ends().map(|end| end.gap(depth));
+        if start >= last {
+            break;
+        }
+        let (start, end) = (start.max(first) - first, end.min(last).saturating_sub(first));
+        if start < end {
+            word |= (!0 >> (63 - (end - 1 - start))) << start;
+        }
+    }
+    word
+}
+
+/// Makes bit j of word i bit i of word j. (Warren, Hacker's Delight, 7-3.)
+fn turn(matrix: &mut [u64; 64]) {
+    let (mut width, mut mask) = (32, 0x0000_0000_FFFF_FFFF_u64);
+    while width != 0 {
+        let mut k = 0;
+        while k < 64 {
+            let swapped = (matrix[k] >> width ^ matrix[k + width]) & mask;
+            matrix[k] ^= swapped << width;
+            matrix[k + width] ^= swapped;
+            k = (k + width + 1) & !width;
+        }
+        width /= 2;
+        mask ^= mask << width;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::dexel::FixedSpan;
+    use alloc::vec::Vec;
+
+    #[test]
+    fn turning_swaps_rows_and_columns() {
+        let mut state = 3u64;
+        let matrix: [u64; 64] = core::array::from_fn(|_| {
+            state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+            state ^ state >> 31
+        });
+        let mut turned = matrix;
+        turn(&mut turned);
+        for i in 0..64 {
+            for j in 0..64 {
+                assert_eq!(turned[j] >> i & 1, matrix[i] >> j & 1);
+            }
+        }
+    }
+
+    #[test]
+    fn columns_hold_what_intervals_hold() {
+        let depth = 8;
+        let mut state = 11u64;
+        let mut random = |below: u32| {
+            state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+            ((state >> 33) % u64::from(below)) as u32
+        };
+        for count in [1, 2, 5, 20] {
+            let mut ends: Vec<u32> = (0..2 * count).map(|_| random((1 << 31) + 1)).collect();
+            ends.sort_unstable();
+            let spans: Vec<FixedSpan> = ends.chunks(2).map(|e| FixedSpan::new([e[0], e[1]])).collect();
+            for first in [0, 64, 192] {
+                let word = column(&spans, first, depth);
+                for k in 0..64 {
+                    let centre = (2 * (first + k) + 1) << (30 - depth);
+                    let holds = ends.chunks(2).any(|e| e[0] <= centre && centre < e[1]);
+                    assert_eq!(word >> k & 1 == 1, holds);
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,391 @@
+//! Changes in place: rows with slack.
+//!
+//! Every ray has a slot in one array of intervals, as large as it once needed. A ray that outgrows its slot moves to the end,
+//! and the array is packed when most of it is no longer used. So a cut costs what it touches.
+
+use super::arrays::{Form, ModelArrays, OwnedRows};
+use super::assemble::{Piece, assembled};
+use super::boolean::check_operands;
+use super::columns::Columns;
+use super::format::{DexelEnds, DexelFormat};
+use super::merge::{SetOp, merge, merge_plain};
+use super::model::TriDexel;
+use super::place::{DoubleSpan, FixedSpan, Span};
+use super::view::{RowsRef, TriDexelRef, Window};
+use crate::control::Control;
+use crate::error::Error;
+use crate::lattice::Frame;
+use crate::memory;
+use alloc::vec::Vec;
+use core::ops::Range;
+
+/// A tri-dexel model that is changed in place, in time proportional to what the second operand's rays touch: for machining.
+///
+/// It takes 12 bytes for each ray of the lattice beside the intervals.
+///
+/// ```
+/// use leafless::{Control, Csg, DexelEditor, DexelOptions, Frame, dexelize};
+/// let (frame, control) = (Frame::new([0.0; 3], 64.0, 6)?, Control::default());
+/// let dexels = |solid: Csg| dexelize(&solid, &frame, &DexelOptions::default(), &control);
+/// let mut part = DexelEditor::new(dexels(Csg::cuboid([2.0; 3], [62.0; 3])?)?.view())?;
+/// for x in [10.0, 20.0, 30.0] {
+///     part.subtract(dexels(Csg::ball([x, 32.0, 62.0], 4.0)?)?.view(), &control)?;
+/// }
+/// let part = part.freeze(&control)?;
+/// assert!(!part.view().contains_cell([20, 32, 60]) && part.view().contains_cell([20, 32, 50]));
+/// # Ok::<(), leafless::Error>(())
+/// ```
+pub struct DexelEditor {
+    frame: Frame,
+    format: DexelFormat,
+    rays: Rays,
+}
+
+/// All directions, in one of the two forms of ends.
+enum Rays {
+    Fixed([Option<Slots<FixedSpan>>; 3]),
+    Double([Option<Slots<DoubleSpan>>; 3]),
+}
+
+/// A place for the intervals of one ray.
+#[derive(Debug, Clone, Copy, Default)]
+struct Slot {
+    first: u32,
+    count: u32,
+    room: u32,
+}
+
+impl Slot {
+    fn range(&self) -> Range<usize> {
+        self.first as usize..(self.first + self.count) as usize
+    }
+}
+
+/// The rays of one direction, all of the universe's.
+struct Slots<S> {
+    window: Window,
+    slots: Vec<Slot>,
+    columns: Columns<S>,
+    /// Intervals that are in no slot any more.
+    lost: usize,
+    scratch: Columns<S>,
+}
+
+impl DexelEditor {
+    /// A copy that can be changed. O(rays + intervals).
+    ///
+    /// # Errors
+    /// [`Error::Limit`] for 2^32 rays in one direction (a depth of 16), [`Error::OutOfMemory`], [`Error::DamagedRays`].
+    pub fn new(model: &TriDexelRef<'_>) -> Result<DexelEditor, Error> {
+        model.sound()?;
+        let rays = match model.kind() {
+            DexelEnds::Fixed => Rays::Fixed(thawed(model)?),
+            DexelEnds::Double => Rays::Double(thawed(model)?),
+        };
+        Ok(DexelEditor { frame: model.frame, format: model.format, rays })
+    }
+
+    /// The lattice.
+    pub fn frame(&self) -> &Frame {
+        &self.frame
+    }
+
+    /// What of each interval is stored: that of the model which was copied. What more an operand has is left out.
+    pub fn format(&self) -> DexelFormat {
+        self.format
+    }
+
+    /// Which directions have rays: x, y, z.
+    pub fn directions(&self) -> [bool; 3] {
+        match &self.rays {
+            Rays::Fixed(all) => all.each_ref().map(Option::is_some),
+            Rays::Double(all) => all.each_ref().map(Option::is_some),
+        }
+    }
+
+    /// Adds what lies in `other`. O(rays of its window + intervals there).
+    ///
+    /// # Errors
+    /// As [`TriDexelRef::union`]. After [`Error::OutOfMemory`] and [`Error::Cancelled`] some rays are changed and others not: the
+    /// same operation can be done again, or the editor dropped.
+    pub fn unite(&mut self, other: &TriDexelRef<'_>, control: &Control<'_>) -> Result<(), Error> {
+        self.apply(SetOp::Union, other, control)
+    }
+
+    /// Takes away what lies in `other`. O(rays of its window + intervals there).
+    ///
+    /// # Errors
+    /// As [`unite`](Self::unite).
+    pub fn subtract(&mut self, other: &TriDexelRef<'_>, control: &Control<'_>) -> Result<(), Error> {
+        self.apply(SetOp::Difference, other, control)
+    }
+
+    /// Leaves what lies in `other`, too. O(rays of the lattice).
+    ///
+    /// # Errors
+    /// As [`unite`](Self::unite).
+    pub fn intersect(&mut self, other: &TriDexelRef<'_>, control: &Control<'_>) -> Result<(), Error> {
+        self.apply(SetOp::Intersection, other, control)
+    }
+
+    /// Bytes that it takes.
+    pub fn bytes(&self) -> u64 {
+        fn of<S: Span>(all: &[Option<Slots<S>>], format: &DexelFormat) -> u64 {
+            let one = |slots: &Slots<S>| {
+                size_of_val(&*slots.slots) + slots.columns.spans.len() * format.bytes_per_interval()
+            };
+            all.iter().flatten().map(one).sum::<usize>() as u64
+        }
+        match &self.rays {
+            Rays::Fixed(all) => of(all, &self.format),
+            Rays::Double(all) => of(all, &self.format),
+        }
+    }
+
+    /// The model as it is now, in dense arrays. O(rays + intervals).
+    ///
+    /// # Errors
+    /// [`Error::OutOfMemory`], [`Error::Cancelled`].
+    pub fn freeze(&self, control: &Control<'_>) -> Result<TriDexel, Error> {
+        let rays = match &self.rays {
+            Rays::Fixed(all) => frozen(all, &self.format, control)?,
+            Rays::Double(all) => frozen(all, &self.format, control)?,
+        };
+        Ok(TriDexel::new(ModelArrays { frame: self.frame, format: self.format, rays }))
+    }
+
+    fn apply(&mut self, op: SetOp, other: &TriDexelRef<'_>, control: &Control<'_>) -> Result<(), Error> {
+        check_operands(&self.frame, self.directions(), other)?;
+        other.sound()?;
+        if other.kind() != self.format.ends {
+            let format = DexelFormat { ends: self.format.ends, ..other.format };
+            let quiet = Control { progress: None, ..*control };
+            return self.apply(op, other.to_format(format, &quiet)?.view(), control);
+        }
+        let plain = self.format.is_plain();
+        match &mut self.rays {
+            Rays::Fixed(all) => changed(op, all, other, plain, control),
+            Rays::Double(all) => changed(op, all, other, plain, control),
+        }
+    }
+}
+
+fn thawed<S: Form>(model: &TriDexelRef<'_>) -> Result<[Option<Slots<S>>; 3], Error> {
+    let mut all = [const { None }; 3];
+    for (slots, rows) in all.iter_mut().zip(&model.rays) {
+        if let Some(rows) = rows.as_ref().and_then(S::rows) {
+            *slots = Some(Slots::new(&rows, model)?);
+        }
+    }
+    Ok(all)
+}
+
+fn frozen<S: Form>(
+    all: &[Option<Slots<S>>; 3],
+    format: &DexelFormat,
+    control: &Control<'_>,
+) -> Result<[Option<OwnedRows>; 3], Error> {
+    let mut rays = [const { None }; 3];
+    for (rows, slots) in rays.iter_mut().zip(all) {
+        if let Some(slots) = slots {
+            let mut piece =
+                Piece { counts: memory::with_capacity(slots.slots.len())?, columns: Columns::new(format) };
+            let view = slots.columns.view();
+            let live = slots.slots.iter().map(|slot| slot.count as usize).sum();
+            piece.columns.reserve(live, true)?;
+            for (i, slot) in slots.slots.iter().enumerate() {
+                if i % (1 << 16) == 0 {
+                    control.check()?;
+                }
+                piece.counts.push(slot.count);
+                piece.columns.copy(&view, slot.range())?;
+            }
+            let mut pieces = memory::with_capacity(1)?;
+            pieces.push(piece);
+            *rows = Some(S::own(assembled(slots.window, format, pieces)?));
+        }
+    }
+    Ok(rays)
+}
+
+fn changed<S: Form>(
+    op: SetOp,
+    all: &mut [Option<Slots<S>>; 3],
+    other: &TriDexelRef<'_>,
+    plain: bool,
+    control: &Control<'_>,
+) -> Result<(), Error> {
+    for (slots, rows) in all.iter_mut().zip(&other.rays) {
+        control.check()?;
+        if let (Some(slots), Some(rows)) = (slots, rows.as_ref().and_then(S::rows)) {
+            slots.apply(op, &rows, plain)?;
+        }
+    }
+    Ok(())
+}
+
+impl<S: Span> Slots<S> {
+    fn new(rows: &RowsRef<'_, S>, model: &TriDexelRef<'_>) -> Result<Slots<S>, Error> {
+        const MOST: u64 = u32::MAX as u64;
+        let window = Window::all(model.frame.depth());
+        if window.count() > MOST {
+            return Err(Error::Limit { what: "rays in one direction", limit: MOST });
+        }
+        let mut slots = memory::filled(window.count() as usize, Slot::default())?;
+        let mut columns = Columns::new(&model.format);
+        columns.reserve(rows.columns.spans.len(), true)?;
+        for v in rows.window.range(1) {
+            for u in rows.window.range(0) {
+                let range = rows.ray([u, v]);
+                if let Some(index) = window.index([u, v])
+                    && !range.is_empty()
+                {
+                    let count = range.len() as u32;
+                    slots[index] = Slot { first: columns.spans.len() as u32, count, room: count };
+                    columns.copy(&rows.columns, range)?;
+                }
+            }
+        }
+        Ok(Slots { window, slots, columns, lost: 0, scratch: Columns::new(&model.format) })
+    }
+
+    fn apply(&mut self, op: SetOp, other: &RowsRef<'_, S>, plain: bool) -> Result<(), Error> {
+        if op == SetOp::Intersection {
+            // Nothing is left outside of the other's window.
+            for v in self.window.range(1) {
+                for u in self.window.range(0) {
+                    if other.ray([u, v]).is_empty()
+                        && let Some(index) = self.window.index([u, v])
+                    {
+                        self.slots[index].count = 0;
+                    }
+                }
+            }
+        }
+        for v in other.window.range(1) {
+            let (Some(first), Some(from)) = (
+                self.window.index([other.window.first[0], v]),
+                other.window.index([other.window.first[0], v]),
+            ) else {
+                continue;
+            };
+            for k in 0..other.window.size[0] as usize {
+                let range = other.at(from + k);
+                let slot = self.slots[first + k];
+                if range.is_empty() || slot.count == 0 && !op.keeps()[1] {
+                    continue;
+                }
+                if plain
+                    && op == SetOp::Difference
+                    && range.len() == 1
+                    && cut(
+                        &mut self.columns.spans,
+                        &mut self.slots[first + k],
+                        other.columns.spans[range.start].ends(),
+                    )
+                {
+                    continue;
+                }
+                self.scratch.clear();
+                if plain {
+                    let own = &self.columns.spans[slot.range()];
+                    merge_plain(op, own, &other.columns.spans[range], &mut self.scratch.spans)?;
+                } else {
+                    let own = self.columns.view();
+                    merge(op, (&own, slot.range()), (&other.columns, range), &mut self.scratch)?;
+                }
+                self.put(first + k)?;
+            }
+        }
+        if self.lost > self.columns.spans.len() / 2 + 1024 {
+            self.pack()?;
+        }
+        Ok(())
+    }
+
+    /// Makes what lies in the scratch memory the intervals of a ray.
+    #[inline]
+    fn put(&mut self, index: usize) -> Result<(), Error> {
+        let count = self.scratch.spans.len();
+        let slot = self.slots[index];
+        if count <= slot.room as usize {
+            self.columns.overwrite(slot.first as usize, &self.scratch);
+            self.slots[index].count = count as u32;
+            return Ok(());
+        }
+        let first = self.columns.spans.len();
+        let room = count.next_power_of_two();
+        if first + room > u32::MAX as usize {
+            let what = "intervals in one direction";
+            return Err(Error::Limit { what, limit: u64::from(u32::MAX) });
+        }
+        self.columns.lengthen(room)?;
+        self.columns.overwrite(first, &self.scratch);
+        self.slots[index] = Slot { first: first as u32, count: count as u32, room: room as u32 };
+        self.lost += slot.room as usize;
+        Ok(())
+    }
+
+    /// Moves all intervals together.
+    fn pack(&mut self) -> Result<(), Error> {
+        let mut packed = self.scratch.empty_copy();
+        let live = self.slots.iter().map(|slot| slot.count as usize).sum();
+        packed.reserve(live, true)?;
+        let view = self.columns.view();
+        for slot in &mut self.slots {
+            let range = slot.range();
+            *slot = Slot { first: packed.spans.len() as u32, count: slot.count, room: slot.count };
+            packed.copy(&view, range)?;
+        }
+        (self.columns, self.lost) = (packed, 0);
+        Ok(())
+    }
+}
+
+/// Takes one interval away from those in a slot; `false`, and nothing done, if there is no room for what is left.
+#[inline]
+fn cut<S: Span>(spans: &mut [S], slot: &mut Slot, [low, high]: [S::Place; 2]) -> bool {
+    let own = &mut spans[slot.first as usize..(slot.first + slot.room) as usize];
+    let count = slot.count as usize;
+    // The intervals that are met: `first..end`.
+    let mut first = 0;
+    while first < count && own[first].ends()[1] <= low {
+        first += 1;
+    }
+    let mut end = first;
+    while end < count && own[end].ends()[0] < high {
+        end += 1;
+    }
+    if first == end {
+        return true;
+    }
+    let (start, stop) = (own[first].ends()[0], own[end - 1].ends()[1]);
+    let mut left = first;
+    match (start < low, high < stop) {
+        (true, true) if end - first == 1 => {
+            if count == own.len() {
+                return false;
+            }
+            own.copy_within(end..count, end + 1);
+            own[first] = S::new([start, low]);
+            own[first + 1] = S::new([high, stop]);
+            slot.count += 1;
+            return true;
+        }
+        (before, behind) => {
+            if before {
+                own[left] = S::new([start, low]);
+                left += 1;
+            }
+            if behind {
+                own[left] = S::new([high, stop]);
+                left += 1;
+            }
+        }
+    }
+    if left < end {
+        own.copy_within(end..count, left);
+        slot.count -= (end - left) as u32;
+    }
+    true
+}

@@ -1,0 +1,216 @@
+//! Models from intervals that a host program brings along.
+
+use super::arrays::{Form, ModelArrays, OwnedRows};
+use super::assemble::{Piece, assembled};
+use super::format::{DexelEnds, DexelFormat};
+use super::item::{Item, Mark, NO_SURFACE};
+use super::model::TriDexel;
+use super::normal::{NO_NORMAL, encoded};
+use super::place::{DoubleSpan, FixedSpan, Place, Span};
+use super::view::{Dexel, DexelEnd, Window};
+use crate::control::Control;
+use crate::error::Error;
+use crate::lattice::Frame;
+use crate::memory;
+use alloc::vec::Vec;
+use core::cmp::Ordering;
+
+impl TriDexel {
+    /// A model of intervals that are handed in, ray by ray: those of another program, of a machine, of a test.
+    ///
+    /// For each axis of `directions` and each ray, `dexels` is called with the axis, with the ray's indices of cells on
+    /// the other two axes (the lower axis first, which runs faster), and with an empty list. It appends the ray's
+    /// intervals in model units: in ascending order, disjoint. What reaches beyond the universe is cut off. What
+    /// `format` does not store is left out.
+    ///
+    /// Ends are rounded as the format says, and keep their side of every centre of a cell. An end on a centre is on
+    /// this centre: intervals are half-open, and a start there holds the centre, while an end does not. Intervals that
+    /// are empty after rounding are left out; those that touch are joined, unless both have materials and these differ.
+    ///
+    /// The directions are not compared with each other. Where they disagree about a centre, the highest axis decides
+    /// ([`TriDexelRef::contains_cell`](crate::TriDexelRef::contains_cell)).
+    ///
+    /// O(rays + intervals), by the calling thread.
+    ///
+    /// # Errors
+    /// [`Error::Argument`] if an interval's end is not a number or not behind its start, or if an interval begins before
+    /// the one before it ends; [`Error::Limit`] for 2^32 rays (a depth of 16) or intervals in one direction;
+    /// [`Error::OutOfMemory`]; [`Error::Cancelled`]; and those of `dexels`.
+    ///
+    /// ```
+    /// use leafless::{Control, Dexel, DexelEnd, DexelFormat, Frame, TriDexel};
+    /// let frame = Frame::new([0.0; 3], 8.0, 3)?;
+    /// let end = |at: f64| DexelEnd { at, surface: None, normal: None };
+    /// // A plate between z = 2 and z = 3.25, by rays along z alone.
+    /// let plate = |_axis: usize, _ray: [u32; 2], list: &mut Vec<Dexel>| {
+    ///     list.push(Dexel { start: end(2.0), end: end(3.25), material: 0 });
+    ///     Ok(())
+    /// };
+    /// let directions = [false, false, true];
+    /// let model =
+    ///     TriDexel::from_rays(&frame, DexelFormat::default(), directions, plate, &Control::default())?;
+    /// assert!(model.view().contains_cell([0, 0, 2]) && !model.view().contains_cell([0, 0, 3]));
+    /// # Ok::<(), leafless::Error>(())
+    /// ```
+    pub fn from_rays(
+        frame: &Frame,
+        format: DexelFormat,
+        directions: [bool; 3],
+        mut dexels: impl FnMut(usize, [u32; 2], &mut Vec<Dexel>) -> Result<(), Error>,
+        control: &Control<'_>,
+    ) -> Result<TriDexel, Error> {
+        let mut rays = [const { None }; 3];
+        let mut list = Vec::new();
+        for axis in (0..3).filter(|&axis| directions[axis]) {
+            let source = Source { frame, format: &format, axis, control };
+            rays[axis] = Some(match format.ends {
+                DexelEnds::Fixed => source.rows::<FixedSpan>(&mut list, &mut dexels)?,
+                DexelEnds::Double => source.rows::<DoubleSpan>(&mut list, &mut dexels)?,
+            });
+        }
+        Ok(TriDexel::new(ModelArrays { frame: *frame, format, rays }))
+    }
+}
+
+/// One direction, to be read.
+struct Source<'a> {
+    frame: &'a Frame,
+    format: &'a DexelFormat,
+    axis: usize,
+    control: &'a Control<'a>,
+}
+
+impl Source<'_> {
+    fn rows<S: Form>(
+        &self,
+        list: &mut Vec<Dexel>,
+        dexels: &mut impl FnMut(usize, [u32; 2], &mut Vec<Dexel>) -> Result<(), Error>,
+    ) -> Result<OwnedRows, Error> {
+        const MOST: u64 = u32::MAX as u64 - 1;
+        let window = Window::all(self.frame.depth());
+        if window.count() > MOST {
+            return Err(Error::Limit { what: "rays in one direction", limit: MOST });
+        }
+        let mut piece = Piece::<S>::new(self.format);
+        piece.counts = memory::with_capacity(window.count() as usize)?;
+        for v in window.range(1) {
+            self.control.check()?;
+            for u in window.range(0) {
+                list.clear();
+                dexels(self.axis, [u, v], list)?;
+                let before = piece.columns.spans.len();
+                self.append(list, &mut piece)?;
+                let count = piece.columns.spans.len() - before;
+                if piece.columns.spans.len() as u64 > MOST {
+                    return Err(Error::Limit { what: "intervals in one direction", limit: MOST });
+                }
+                piece.counts.push(count as u32);
+            }
+        }
+        let mut pieces = memory::with_capacity(1)?;
+        pieces.push(piece);
+        Ok(S::own(assembled(window, self.format, pieces)?))
+    }
+
+    /// Appends the intervals of a ray.
+    fn append<S: Span>(&self, list: &[Dexel], piece: &mut Piece<S>) -> Result<(), Error> {
+        let depth = self.frame.depth();
+        let most = f64::from(self.frame.cells());
+        let cells = |at: f64| (at - self.frame.origin()[self.axis]) / self.frame.cell_size();
+        let first = piece.columns.spans.len();
+        let mut reached = f64::NEG_INFINITY;
+        for dexel in list {
+            let [start, end] = [dexel.start.at, dexel.end.at];
+            // (What is not a number is not less than another one.)
+            if start.partial_cmp(&end) != Some(Ordering::Less) {
+                let problem = "an interval must have an end that is behind its start";
+                return Err(Error::Argument { name: "dexels", problem });
+            }
+            if start < reached {
+                let problem = "the intervals of a ray must be in ascending order and disjoint";
+                return Err(Error::Argument { name: "dexels", problem });
+            }
+            reached = end;
+            let ends = [start, end].map(|at| S::Place::rounded(cells(at).clamp(0.0, most), depth));
+            let marks = [dexel.start, dexel.end].map(mark);
+            piece.add(first, &Item { ends, marks, material: dexel.material })?;
+        }
+        Ok(())
+    }
+}
+
+fn mark(end: DexelEnd) -> Mark {
+    Mark { surface: end.surface.unwrap_or(NO_SURFACE), normal: end.normal.map_or(NO_NORMAL, encoded) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::dexel::DexelNormals;
+
+    fn at(at: f64) -> DexelEnd {
+        DexelEnd { at, surface: Some(3), normal: Some([0.0, 0.0, 1.0]) }
+    }
+
+    fn one_ray(format: DexelFormat, intervals: &[(f64, f64, u32)]) -> Result<Vec<Dexel>, Error> {
+        let frame = Frame::new([-1.0; 3], 8.0, 3).unwrap();
+        let control = Control::default();
+        let rays = |axis: usize, ray: [u32; 2], list: &mut Vec<Dexel>| {
+            assert_eq!(axis, 2);
+            if ray == [3, 5] {
+                list.extend(intervals.iter().map(|&(start, end, material)| Dexel {
+                    start: at(start),
+                    end: at(end),
+                    material,
+                }));
+            }
+            Ok(())
+        };
+        let model = TriDexel::from_rays(&frame, format, [false, false, true], rays, &control)?;
+        model.view().check()?;
+        let rays = model.view().rays(2).unwrap();
+        assert!(rays.interval_count() == 0 || rays.window() == [3..4, 5..6]);
+        Ok(rays.dexels([3, 5]).collect())
+    }
+
+    #[test]
+    fn intervals_come_out_as_they_went_in() {
+        let all = DexelFormat {
+            ends: DexelEnds::Double,
+            normals: DexelNormals::Bits32,
+            surfaces: true,
+            materials: true,
+        };
+        for format in [all, DexelFormat { ends: DexelEnds::Fixed, ..all }] {
+            let list = one_ray(format, &[(-9.0, -0.25, 4), (0.5, 1.0, 7), (1.0, 2.0, 8)]).unwrap();
+            let said: Vec<_> = list.iter().map(|d| (d.start.at, d.end.at, d.material)).collect();
+            assert_eq!(said, [(-1.0, -0.25, 4), (0.5, 1.0, 7), (1.0, 2.0, 8)]);
+            assert_eq!((list[0].start.surface, list[1].end.normal), (Some(3), Some([0.0, 0.0, 1.0])));
+        }
+        // What touches is one, and what lies outside of the universe is nothing.
+        let plain = DexelFormat::default();
+        let list = one_ray(plain, &[(-9.0, -4.0, 0), (0.5, 1.0, 7), (1.0, 2.0, 8), (7.0, 9.0, 0)]).unwrap();
+        assert_eq!(list.len(), 1);
+        assert_eq!((list[0].start.at, list[0].end.at, list[0].material), (0.5, 2.0, 0));
+    }
+
+    #[test]
+    fn what_makes_no_sense_is_refused() {
+        for bad in [
+            &[(1.0, 1.0, 0)][..],
+            &[(2.0, 1.0, 0)],
+            &[(f64::NAN, 1.0, 0)],
+            &[(1.0, f64::NAN, 0)],
+            &[(1.0, 3.0, 0), (2.0, 4.0, 0)],
+            &[(3.0, 4.0, 0), (1.0, 2.0, 0)],
+        ] {
+            let error = one_ray(DexelFormat::default(), bad).unwrap_err();
+            assert!(matches!(error, Error::Argument { name: "dexels", .. }), "{bad:?}: {error}");
+        }
+        // From end to end is no mistake.
+        assert_eq!(
+            one_ray(DexelFormat::default(), &[(f64::NEG_INFINITY, f64::INFINITY, 0)]).unwrap().len(),
+            1
+        );
+    }
+}

@@ -1,0 +1,194 @@
+//! The set operations on one ray.
+
+use super::columns::{Columns, ColumnsRef};
+use super::item::{Item, Mark};
+use super::place::{Place, Span};
+use crate::error::Error;
+use alloc::vec::Vec;
+use core::ops::Range;
+
+/// A set operation of two operands, neither of which holds anything outside of both.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum SetOp {
+    Union,
+    Intersection,
+    Difference,
+    Xor,
+}
+
+impl SetOp {
+    #[inline(always)]
+    pub fn holds(self, a: bool, b: bool) -> bool {
+        match self {
+            SetOp::Union => a | b,
+            SetOp::Intersection => a & b,
+            SetOp::Difference => a & !b,
+            SetOp::Xor => a ^ b,
+        }
+    }
+
+    /// Whether the result holds what only the first operand, or only the second one, holds.
+    pub fn keeps(self) -> [bool; 2] {
+        [self.holds(true, false), self.holds(false, true)]
+    }
+}
+
+/// Appends the result on one ray, of intervals that carry nothing. O(intervals).
+#[inline(always)]
+pub(crate) fn merge_plain<S: Span>(op: SetOp, a: &[S], b: &[S], out: &mut Vec<S>) -> Result<(), Error> {
+    out.try_reserve(a.len() + b.len())?;
+    let (mut i, mut j) = (0, 0);
+    // Even: the next end is a start.
+    let (last_a, last_b) = (2 * a.len(), 2 * b.len());
+    let end = |list: &[S], k: usize| list[k / 2].ends()[k % 2];
+    let (mut inside, mut start) = (false, S::Place::LOW);
+    while i < last_a || j < last_b {
+        let at = if j == last_b {
+            end(a, i)
+        } else if i == last_a {
+            end(b, j)
+        } else {
+            let (x, y) = (end(a, i), end(b, j));
+            if y < x { y } else { x }
+        };
+        // Of intervals that touch both ends are passed.
+        while i < last_a && end(a, i) <= at {
+            i += 1;
+        }
+        while j < last_b && end(b, j) <= at {
+            j += 1;
+        }
+        let now = op.holds(i % 2 == 1, j % 2 == 1);
+        if now != inside {
+            if now {
+                start = at;
+            } else {
+                out.push(S::new([start, at]));
+            }
+            inside = now;
+        }
+    }
+    Ok(())
+}
+
+/// What a ray is made of at a place.
+type Matter = Option<u32>;
+
+/// Appends the result on one ray. Where both operands hold a place, the first one says of what it is made, and which end
+/// lies there.
+pub(crate) fn merge<S: Span>(
+    op: SetOp,
+    (a, range_a): (&ColumnsRef<'_, S>, Range<usize>),
+    (b, range_b): (&ColumnsRef<'_, S>, Range<usize>),
+    out: &mut Columns<S>,
+) -> Result<(), Error> {
+    let mut ways = [Way::new(a, range_a), Way::new(b, range_b)];
+    let mut matter: Matter = None;
+    let mut open = Item::plain([S::Place::LOW; 2]);
+    while let Some(at) = least(ways[0].next(), ways[1].next()) {
+        // Which ends lie here: of each operand the last start or end of what goes on after it.
+        let marks = [ways[0].pass(at), ways[1].pass(at)];
+        let [first, second] = [ways[0].matter, ways[1].matter];
+        let now = if op.holds(first.is_some(), second.is_some()) { first.or(second) } else { None };
+        if now == matter {
+            continue;
+        }
+        let mark = |side: usize| {
+            let wanted = marks.iter().flatten().find(|passed| passed.has[side]);
+            if let Some(passed) = wanted {
+                return passed.marks[side];
+            }
+            // An end that is a start in the result shows its other side.
+            let other = marks.iter().flatten().find(|passed| passed.has[1 - side]);
+            other.map_or(Mark::NONE, |passed| passed.marks[1 - side].flipped())
+        };
+        if matter.is_some() {
+            (open.ends[1], open.marks[1]) = (at, mark(1));
+            out.push(&open)?;
+        }
+        if let Some(material) = now {
+            open = Item { ends: [at; 2], marks: [mark(0), Mark::NONE], material };
+        }
+        matter = now;
+    }
+    Ok(())
+}
+
+fn least<P: Place>(a: Option<P>, b: Option<P>) -> Option<P> {
+    match (a, b) {
+        (Some(a), Some(b)) => Some(if b < a { b } else { a }),
+        (a, b) => a.or(b),
+    }
+}
+
+/// The ends of one operand that lie at a place.
+#[derive(Clone, Copy)]
+struct Passed {
+    has: [bool; 2],
+    marks: [Mark; 2],
+}
+
+/// The way along a ray through one operand.
+struct Way<'c, 'a, S: Span> {
+    columns: &'c ColumnsRef<'a, S>,
+    range: Range<usize>,
+    /// The interval that comes next, or in which the way is.
+    item: Option<Item<S::Place>>,
+    matter: Matter,
+}
+
+impl<'c, 'a, S: Span> Way<'c, 'a, S> {
+    fn new(columns: &'c ColumnsRef<'a, S>, mut range: Range<usize>) -> Self {
+        let item = range.next().map(|i| columns.item(i));
+        Way { columns, range, item, matter: None }
+    }
+
+    fn next(&self) -> Option<S::Place> {
+        self.item.map(|item| item.ends[usize::from(self.matter.is_some())])
+    }
+
+    /// Passes all ends at a place, the end of one interval and the start of the next one if they touch.
+    fn pass(&mut self, at: S::Place) -> Option<Passed> {
+        let mut passed = None;
+        while let Some(item) = self.item {
+            let side = usize::from(self.matter.is_some());
+            if item.ends[side] > at {
+                break;
+            }
+            let seen = passed.get_or_insert(Passed { has: [false; 2], marks: [Mark::NONE; 2] });
+            (seen.has[side], seen.marks[side]) = (true, item.marks[side]);
+            if side == 0 {
+                self.matter = Some(item.material);
+            } else {
+                self.matter = None;
+                self.item = self.range.next().map(|i| self.columns.item(i));
+            }
+        }
+        passed
+    }
+}
+
+/// Appends the complement of one ray of a universe: what lies between its lower and its upper face outside of the
+/// intervals. Its material is 0.
+pub(crate) fn complement<S: Span>(
+    columns: &ColumnsRef<'_, S>,
+    range: Range<usize>,
+    depth: u8,
+    out: &mut Columns<S>,
+) -> Result<(), Error> {
+    let mut open = Item::plain([S::Place::LOW; 2]);
+    for i in range {
+        let item = columns.item(i);
+        if open.ends[0] < item.ends[0] {
+            (open.ends[1], open.marks[1]) = (item.ends[0], item.marks[0].flipped());
+            out.push(&open)?;
+        }
+        (open.ends[0], open.marks[0]) = (item.ends[1], item.marks[1].flipped());
+    }
+    let high = S::Place::high(depth);
+    if open.ends[0] < high {
+        (open.ends[1], open.marks[1]) = (high, Mark::NONE);
+        out.push(&open)?;
+    }
+    Ok(())
+}

@@ -1,0 +1,260 @@
+//! The borrowed view of a tri-dexel model, on which all reading is written.
+
+use super::columns::{ColumnsRef, NormalsRef};
+use super::format::{DexelEnds, DexelFormat, DexelNormals};
+use super::item::{Item, NO_SURFACE};
+use super::normal::decoded;
+use super::place::{DoubleSpan, FixedSpan, Place, Span};
+use crate::lattice::Frame;
+use core::ops::Range;
+use yoke::Yokeable;
+
+/// The other two axes of each axis, ascending.
+pub(crate) const OTHERS: [[usize; 2]; 3] = [[1, 2], [0, 2], [0, 1]];
+
+/// Rays of one direction, as indices on the other two axes: those outside of it are empty.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(crate) struct Window {
+    pub first: [u32; 2],
+    pub size: [u32; 2],
+}
+
+impl Window {
+    /// All rays of a universe.
+    pub fn all(depth: u8) -> Window {
+        Window { first: [0; 2], size: [1 << depth; 2] }
+    }
+
+    pub fn of(ranges: [Range<u32>; 2]) -> Window {
+        let size = [0, 1].map(|i| ranges[i].end.saturating_sub(ranges[i].start));
+        if size.contains(&0) {
+            return Window::default();
+        }
+        Window { first: [ranges[0].start, ranges[1].start], size }
+    }
+
+    pub fn range(&self, i: usize) -> Range<u32> {
+        self.first[i]..self.first[i] + self.size[i]
+    }
+
+    /// How many rays.
+    pub fn count(&self) -> u64 {
+        u64::from(self.size[0]) * u64::from(self.size[1])
+    }
+
+    pub fn is_empty(&self) -> bool {
+        self.count() == 0
+    }
+
+    /// The number of a ray in it.
+    #[inline(always)]
+    pub fn index(&self, [u, v]: [u32; 2]) -> Option<usize> {
+        let (u, v) = (u.wrapping_sub(self.first[0]), v.wrapping_sub(self.first[1]));
+        (u < self.size[0] && v < self.size[1]).then(|| v as usize * self.size[0] as usize + u as usize)
+    }
+
+    /// The ray with a number in it.
+    pub fn ray(&self, index: usize) -> [u32; 2] {
+        let width = (self.size[0] as usize).max(1);
+        [self.first[0] + (index % width) as u32, self.first[1] + (index / width) as u32]
+    }
+
+    pub fn intersection(&self, other: &Window) -> Window {
+        Window::of([0, 1].map(|i| {
+            let (a, b) = (self.range(i), other.range(i));
+            a.start.max(b.start)..a.end.min(b.end)
+        }))
+    }
+
+    /// The least window that holds both.
+    pub fn hull(&self, other: &Window) -> Window {
+        if self.is_empty() || other.is_empty() {
+            return if self.is_empty() { *other } else { *self };
+        }
+        Window::of([0, 1].map(|i| {
+            let (a, b) = (self.range(i), other.range(i));
+            a.start.min(b.start)..a.end.max(b.end)
+        }))
+    }
+}
+
+/// The rays of one direction.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct RowsRef<'a, S> {
+    pub window: Window,
+    /// For each ray of the window the number of its first interval, and behind the last the number of all.
+    pub starts: &'a [u32],
+    pub columns: ColumnsRef<'a, S>,
+}
+
+impl<S: Span> RowsRef<'_, S> {
+    /// The intervals of the ray with this number in the window.
+    #[inline(always)]
+    pub fn at(&self, index: usize) -> Range<usize> {
+        // Arrays from a file may say anything.
+        match self.starts.get(index..).and_then(|rest| rest.get(..2)) {
+            Some(&[first, end]) if first <= end && end as usize <= self.columns.spans.len() => {
+                first as usize..end as usize
+            }
+            _ => 0..0,
+        }
+    }
+
+    /// The intervals of a ray.
+    #[inline(always)]
+    pub fn ray(&self, ray: [u32; 2]) -> Range<usize> {
+        self.window.index(ray).map_or(0..0, |index| self.at(index))
+    }
+
+    pub fn items(&self, ray: [u32; 2]) -> impl Iterator<Item = Item<S::Place>> {
+        self.ray(ray).map(|i| self.columns.item(i))
+    }
+}
+
+/// The rays of one direction, in one of the two forms of ends.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Rows<'a> {
+    Fixed(RowsRef<'a, FixedSpan>),
+    Double(RowsRef<'a, DoubleSpan>),
+}
+
+/// `$body` for the rows of whichever form.
+macro_rules! with_rows {
+    ($rows:expr, $name:ident => $body:expr) => {
+        match $rows {
+            $crate::dexel::Rows::Fixed($name) => $body,
+            $crate::dexel::Rows::Double($name) => $body,
+        }
+    };
+}
+pub(crate) use with_rows;
+
+/// One end of a [`Dexel`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct DexelEnd {
+    /// The coordinate along the ray, in model units.
+    pub at: f64,
+    /// On which of the source's surfaces it lies: a triangle of a mesh, a half-space of an expression. `None` if it is not
+    /// known.
+    pub surface: Option<u32>,
+    /// The outward unit normal there, if it is known.
+    pub normal: Option<[f64; 3]>,
+}
+
+/// An interval of a ray that lies inside of the solid.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Dexel {
+    /// Where it begins.
+    pub start: DexelEnd,
+    /// Where it ends, which is behind its start.
+    pub end: DexelEnd,
+    /// What it is made of; 0 where nothing was said.
+    pub material: u32,
+}
+
+/// The rays of a tri-dexel model along one axis.
+#[derive(Debug, Clone, Copy)]
+pub struct DexelRays<'a> {
+    pub(crate) frame: Frame,
+    pub(crate) axis: usize,
+    pub(crate) rows: Rows<'a>,
+}
+
+impl<'a> DexelRays<'a> {
+    /// The axis that the rays run along.
+    pub fn axis(&self) -> usize {
+        self.axis
+    }
+
+    /// Rays outside of these are empty: indices of cells on the other two axes, the lower axis first.
+    pub fn window(&self) -> [Range<u32>; 2] {
+        let window = with_rows!(&self.rows, rows => rows.window);
+        [window.range(0), window.range(1)]
+    }
+
+    /// How many intervals there are.
+    pub fn interval_count(&self) -> u64 {
+        with_rows!(&self.rows, rows => rows.columns.spans.len()) as u64
+    }
+
+    /// The intervals of the ray through the centres of cells with these indices on the other two axes, the lower axis
+    /// first; in ascending order, disjoint. A ray outside of the universe has none.
+    pub fn dexels(&self, ray: [u32; 2]) -> impl ExactSizeIterator<Item = Dexel> + 'a {
+        let &DexelRays { frame, axis, rows } = self;
+        let range = with_rows!(&rows, rows => rows.ray(ray));
+        range.map(move |i| with_rows!(&rows, rows => dexel(&frame, axis, rows.columns.item(i))))
+    }
+}
+
+fn dexel<P: Place>(frame: &Frame, axis: usize, item: Item<P>) -> Dexel {
+    let end = |k: usize| DexelEnd {
+        at: frame.origin()[axis] + item.ends[k].cells(frame.depth()) * frame.cell_size(),
+        surface: Some(item.marks[k].surface).filter(|&surface| surface != NO_SURFACE),
+        normal: decoded(item.marks[k].normal),
+    };
+    Dexel { start: end(0), end: end(1), material: item.material }
+}
+
+/// A borrowed tri-dexel model. Copying it copies no interval.
+#[derive(Debug, Clone, Copy, Yokeable)]
+pub struct TriDexelRef<'a> {
+    pub(crate) frame: Frame,
+    pub(crate) format: DexelFormat,
+    pub(crate) rays: [Option<Rows<'a>>; 3],
+    /// Whether the arrays are known to be sound: those of a file that nobody has verified are not.
+    pub(crate) checked: bool,
+}
+
+impl<'a> TriDexelRef<'a> {
+    /// The lattice: rays run through the centres of its finest cells.
+    pub fn frame(&self) -> &Frame {
+        &self.frame
+    }
+
+    /// What of each interval is stored.
+    pub fn format(&self) -> DexelFormat {
+        self.format
+    }
+
+    /// Which directions have rays: x, y, z.
+    pub fn directions(&self) -> [bool; 3] {
+        self.rays.map(|rays| rays.is_some())
+    }
+
+    /// The rays along an axis, if the model has any.
+    pub fn rays(&self, axis: usize) -> Option<DexelRays<'a>> {
+        let rows = (*self.rays.get(axis)?)?;
+        Some(DexelRays { frame: self.frame, axis, rows })
+    }
+
+    /// How many intervals there are in all directions.
+    pub fn interval_count(&self) -> u64 {
+        (0..3).filter_map(|axis| self.rays(axis)).map(|rays| rays.interval_count()).sum()
+    }
+
+    /// Bytes that the arrays take.
+    pub fn bytes(&self) -> u64 {
+        let starts = |rows: &Rows<'_>| with_rows!(rows, rows => size_of_val(rows.starts)) as u64;
+        let starts = self.rays.iter().flatten().map(starts).sum::<u64>();
+        starts + self.interval_count() * self.format.bytes_per_interval() as u64
+    }
+
+    /// The rays as of one form of ends; of directions that the model has not none.
+    pub(crate) fn kind(&self) -> DexelEnds {
+        self.format.ends
+    }
+}
+
+/// Whether formats agree with arrays.
+pub(crate) fn carries<S: Span>(columns: &ColumnsRef<'_, S>, format: &DexelFormat) -> bool {
+    let count = columns.spans.len();
+    let normals = match (columns.normals, format.normals) {
+        (NormalsRef::None, DexelNormals::None) => true,
+        (NormalsRef::Bits16(codes), DexelNormals::Bits16) => codes.len() == count,
+        (NormalsRef::Bits32(codes), DexelNormals::Bits32) => codes.len() == count,
+        _ => false,
+    };
+    normals
+        && columns.surfaces.map(|list| list.len()) == format.surfaces.then_some(count)
+        && columns.materials.map(|list| list.len()) == format.materials.then_some(count)
+}

@@ -1,0 +1,164 @@
+//! What the first bytes of a file say of it, whatever it holds.
+
+#[cfg(feature = "std")]
+use super::buffer::regular_length;
+use super::form::Form;
+#[cfg(feature = "std")]
+use super::header::HEADER_LENGTH;
+use super::header::Head;
+use super::kind::{Column, Kind, SECTION_REQUIRED};
+use super::object::Object;
+use super::section::{Entry, entries, read_table};
+use crate::dexel::DexelFormat;
+use crate::error::Error;
+#[cfg(feature = "std")]
+use crate::error::FormatError;
+use crate::lattice::Frame;
+use crate::memory;
+use crate::octree::{Proof, Tag};
+use alloc::vec::Vec;
+#[cfg(feature = "std")]
+use std::{fs::File, io::Read, path::Path};
+
+/// What the first bytes of a file say of it.
+#[non_exhaustive]
+#[derive(Debug, Clone, PartialEq)]
+pub struct Probe {
+    /// Major and minor version of the format.
+    pub version: (u16, u16),
+    /// Where the solid lies, and its depth.
+    pub frame: Frame,
+    /// The tag of the whole universe; BRANCH if it is cut. EMPTY for a tri-dexel model.
+    pub root: Tag,
+    /// What is known of the space outside of the universe: EMPTY, FULL or PARTIAL. EMPTY for a tri-dexel model.
+    pub exterior: Tag,
+    /// What the cells prove of the solid that the tree was made from. A tri-dexel model proves nothing.
+    pub proof: Proof,
+    /// Whether nothing is undecided.
+    pub binary: bool,
+    /// Elements, without bricks; 0 for a tri-dexel model.
+    pub elements: u64,
+    /// Bricks; 0 for a tri-dexel model.
+    pub bricks: u64,
+    /// What is stored of a tri-dexel model; `None` if the file holds an octree.
+    pub dexels: Option<DexelProbe>,
+    /// Length of the file in bytes.
+    pub file_len: u64,
+    /// What the file consists of, in the order in which it lies there.
+    pub sections: Vec<Section>,
+}
+
+/// What the first bytes of the file of a tri-dexel model say of it.
+#[non_exhaustive]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct DexelProbe {
+    /// What of each interval is stored.
+    pub format: DexelFormat,
+    /// Which directions have rays: x, y, z.
+    pub directions: [bool; 3],
+    /// Rays in the window of each direction, empty ones among them. (That the windows are as large is checked when
+    /// the model is read.)
+    pub rays: [u64; 3],
+    /// Intervals of each direction.
+    pub intervals: [u64; 3],
+}
+
+/// A section of a file.
+#[non_exhaustive]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Section {
+    /// Number of its kind; see the [table](super#the-format).
+    pub kind: u32,
+    /// The object that it belongs to: 0 is the solid.
+    pub owner: u32,
+    /// Name of its kind, if this library knows it.
+    pub name: Option<&'static str>,
+    /// Where it begins in the file, in bytes.
+    pub offset: u64,
+    /// Its length in bytes.
+    pub length: u64,
+    /// Its length in elements.
+    pub count: u64,
+    /// Whether a reader must know the kind to read the file.
+    pub required: bool,
+}
+
+/// Reads header and section table from `bytes`, the beginning of a file or all of it. Their checksums and
+/// everything that can be known from them is checked; whether the rest of the file is there and good is not.
+/// O(sections).
+///
+/// # Errors
+/// [`Error::Format`]; among them [`FormatError::Length`] if `bytes` end before the section table does.
+pub fn probe_bytes(bytes: &[u8]) -> Result<Probe, Error> {
+    let head = Head::read(bytes)?;
+    let raw = head.table(bytes)?;
+    read_table(&head, raw)?;
+    let main = Object::main(&head.header);
+    let mut sections = memory::with_capacity(head.header.section_count as usize)?;
+    sections.extend(entries(raw).map(|entry| Section {
+        kind: entry.kind,
+        owner: entry.owner,
+        name: entry.known(&main).map(Kind::name),
+        offset: entry.offset,
+        length: entry.length,
+        count: entry.count,
+        required: entry.flags & SECTION_REQUIRED != 0,
+    }));
+    Ok(Probe {
+        version: (head.header.major, head.header.minor),
+        frame: head.frame,
+        root: head.root,
+        exterior: head.exterior,
+        proof: head.proof,
+        binary: head.header.brick_planes != 2 && head.root != Tag::Partial,
+        elements: if head.form.is_some() { 0 } else { head.header.elements },
+        bricks: if head.form.is_some() { 0 } else { head.header.bricks },
+        dexels: head.form.map(|Form { format, directions }| DexelProbe {
+            format,
+            directions,
+            rays: [0, 1, 2].map(|axis| {
+                let of_kind = |entry: &Entry| entry.known(&main) == Some(Kind::along(axis, Column::Starts));
+                entries(raw).find(of_kind).map_or(0, |entry| entry.count - 1)
+            }),
+            intervals: main.intervals(),
+        }),
+        file_len: head.header.file_length,
+        sections,
+    })
+}
+
+/// As [`probe_bytes`], reading from `reader` no more than header and section table.
+///
+/// # Errors
+/// As [`probe_bytes`], and [`Error::Io`].
+#[cfg(feature = "std")]
+pub fn probe_from(mut reader: impl Read) -> Result<Probe, Error> {
+    let mut bytes = Vec::new();
+    reader.by_ref().take(HEADER_LENGTH as u64).read_to_end(&mut bytes)?;
+    let table = Head::read(&bytes)?.table_range();
+    reader.take(table.len() as u64).read_to_end(&mut bytes)?;
+    probe_bytes(&bytes)
+}
+
+/// As [`probe_bytes`] for the file at `path`, whose length is checked too.
+///
+/// # Errors
+/// [`Error::File`] with the path and one of these causes: as [`probe_bytes`], and [`Error::Io`].
+#[cfg(feature = "std")]
+pub fn probe(path: impl AsRef<Path>) -> Result<Probe, Error> {
+    let path = path.as_ref();
+    probe_path(path).map_err(|error| error.of_file(path))
+}
+
+#[cfg(feature = "std")]
+fn probe_path(path: &Path) -> Result<Probe, Error> {
+    let file = File::open(path)?;
+    let found = regular_length(&file)?;
+    let probe = probe_from(file)?;
+    match found {
+        Some(found) if found != probe.file_len => {
+            Err(FormatError::Length { expected: probe.file_len, found }.into())
+        }
+        _ => Ok(probe),
+    }
+}

@@ -1,0 +1,100 @@
+//! Octrees of tri-dexel models, by the centres of cells.
+
+use super::build::build_on;
+use super::rule::Rule;
+use crate::control::Control;
+use crate::dexel::TriDexelRef;
+use crate::error::Error;
+use crate::lattice::{Cell, Frame};
+use crate::octree::{Block, Octree, Proof, Tag};
+use crate::solid::{Classifier, Verdict, Worker};
+
+/// The octree of a tri-dexel model by the centres of its cells: a finest cell is FULL if its centre lies inside, and EMPTY
+/// if it does not.
+///
+/// Where the directions of the model disagree, as those of arrays from elsewhere may, the highest axis that has rays
+/// decides, as in [`TriDexelRef::contains_cell`]. A model without rays gives an EMPTY octree.
+///
+/// The result is canonical and binary. Around the universe it is EMPTY. Its cells prove nothing of the solid that the
+/// rays came from ([`Proof`]), as those of [`Rule::Sampled`](crate::Rule::Sampled).
+///
+/// O(rays · 2^depth / 64 + octree), for rays with few intervals each. The same for any number of threads.
+///
+/// # Errors
+/// [`Error::OutOfMemory`], and what `control` asks for.
+///
+/// ```
+/// use leafless::{Control, Dexel, DexelEnd, DexelFormat, Frame, TriDexel, octree_of_dexels};
+/// let (frame, control) = (Frame::new([0.0; 3], 8.0, 3)?, Control::default());
+/// let end = |at: f64| DexelEnd { at, surface: None, normal: None };
+/// let plate = |_: usize, _: [u32; 2], list: &mut Vec<Dexel>| {
+///     list.push(Dexel { start: end(2.0), end: end(4.25), material: 0 });
+///     Ok(())
+/// };
+/// let model = TriDexel::from_rays(&frame, DexelFormat::default(), [false, false, true], plate, &control)?;
+/// let tree = octree_of_dexels(model.view(), &control)?;
+/// assert_eq!(tree.statistics().volume().lower, 2.0 * 64.0);
+/// # Ok::<(), leafless::Error>(())
+/// ```
+pub fn octree_of_dexels(model: &TriDexelRef<'_>, control: &Control<'_>) -> Result<Octree, Error> {
+    model.sound()?;
+    build_on(&Centres { model: *model }, Rule::Sampled, control)
+}
+
+/// A model that says which centres lie inside, and nothing else.
+#[derive(Clone, Copy)]
+struct Centres<'a> {
+    model: TriDexelRef<'a>,
+}
+
+impl Classifier for Centres<'_> {
+    type Worker = Self;
+
+    fn frame(&self) -> &Frame {
+        self.model.frame()
+    }
+
+    fn worker(&self) -> Result<Self, Error> {
+        Ok(*self)
+    }
+
+    fn exterior(&self) -> Tag {
+        Tag::Empty
+    }
+
+    fn proof(&self) -> Proof {
+        Proof::new(false, false)
+    }
+}
+
+impl Worker for Centres<'_> {
+    type Part = ();
+
+    fn frame(&self) -> &Frame {
+        self.model.frame()
+    }
+
+    fn root(&mut self) -> Result<Verdict<()>, Error> {
+        Ok(Verdict::Partial(()))
+    }
+
+    fn split(&mut self, _: Cell, _: &()) -> Result<[Verdict<()>; 8], Error> {
+        Ok([Verdict::Partial(()); 8])
+    }
+
+    fn recall(&mut self, _: Cell) -> Option<()> {
+        Some(())
+    }
+
+    fn fill(&mut self, cell: Cell, _: &(), block: &mut Block) -> Result<bool, Error> {
+        let Some(words) = block.centres_mut() else { return Ok(false) };
+        if !self.model.fill_centres(cell.at.map(|a| 64 * a), 2, words) {
+            words.fill(0);
+        }
+        Ok(true)
+    }
+
+    fn sample(&mut self, cell: Cell, _: &()) -> Result<Option<bool>, Error> {
+        Ok(Some(self.model.contains_cell(cell.at)))
+    }
+}

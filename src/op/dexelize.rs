@@ -1,0 +1,365 @@
+//! From any solid to a tri-dexel model.
+//!
+//! Rays are made in tiles, each with a descent of its own through the cells that it crosses. A solid that knows rays
+//! ([`Worker::chords`]) answers for large cells at once: meshes by scan conversion, expressions of half-spaces by roots. Of
+//! others the finest cells are sampled, and between two centres on different sides the crossing is narrowed down by finer
+//! cells and their slabs.
+
+use super::edge::Edge;
+use super::gathered::split_one;
+use super::lazy::Trail;
+use super::rule::Rule;
+use crate::control::{Control, Job, WHOLE};
+use crate::dexel::{
+    Beam, BeamEnd, DexelEnds, DexelFormat, DoubleSpan, FixedSpan, Form, ModelArrays, OTHERS, Piece, Scratch,
+    TriDexel, Window, assembled, first_above,
+};
+use crate::error::Error;
+use crate::lattice::{Bounds, Cell, Frame, MAX_DEPTH};
+use crate::memory;
+use crate::solid::{Classifier, PartOf, Solid, Verdict, Worker, WorkerOf};
+use alloc::boxed::Box;
+use alloc::vec::Vec;
+use core::ops::Range;
+use once_cell::race::OnceBox;
+
+/// Rows of rays of a tile.
+const ROWS: u32 = 64;
+
+/// What a tri-dexel model is to be like.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct DexelOptions {
+    /// Along which axes rays run: x, y, z; one at least.
+    pub directions: [bool; 3],
+    /// What of intervals is stored.
+    pub format: DexelFormat,
+    /// [`Rule::Sampled`]: intervals are those of the solid on each ray. [`Rule::Inner`] and [`Rule::Outer`]: those of its FULL
+    /// cells, and of all that are not EMPTY.
+    pub rule: Rule,
+}
+
+impl Default for DexelOptions {
+    /// All three directions of fixed-point ends that carry nothing, sampled.
+    fn default() -> DexelOptions {
+        DexelOptions { directions: [true; 3], format: DexelFormat::default(), rule: Rule::Sampled }
+    }
+}
+
+/// Makes a tri-dexel model of a solid on the lattice of a frame.
+///
+/// A ray runs through the centres of finest cells, in thought shifted by (ε, ε², ε³), so that it meets no edge and no face
+/// of the solid at its side; it has an end where it crosses the surface. An end says of the centres beside it just what the
+/// solid does, so that the model has the samples of [`build`](crate::build) with [`Rule::Sampled`]; apart from that it is off
+/// by at most 2^-31 of the universe's edge, or 2^-36 with [`DexelEnds::Double`]. Intervals shorter than this vanish.
+///
+/// So it is with closed meshes, under any fill rule, with half-spaces (planes, quadrics, powers, tori) and expressions of
+/// them, and with stored octrees. Of other solids, and of open meshes around their holes, cells and samples are asked: ends
+/// between centres on different sides are narrowed down by cells to a depth of 20, and walls between two neighbouring
+/// centres on one side are not seen. Surfaces at ends are numbers of triangles and of half-spaces, the latter in the order
+/// of the expression written out.
+///
+/// (The method is that of Gao, Zhang and Hou 2007 for polygons, with exact decisions at edges and vertices.)
+///
+/// O(rays + crossings), and the descent to where the solid knows rays. The same for any number of threads.
+///
+/// # Errors
+/// [`Error::Argument`] if no direction is asked for, or for [`Rule::Certified`], as intervals cannot be undecided;
+/// [`Error::NotSampled`] if the solid cannot decide points ([`Rule::Inner`] and [`Rule::Outer`] do without that);
+/// [`Error::Limit`] for 2^32 rays or intervals in one direction; and as [`build`](crate::build).
+///
+/// ```
+/// use leafless::{Control, Csg, DexelOptions, Frame, dexelize};
+/// let frame = Frame::new([-1.0; 3], 2.0, 7)?;
+/// let ball = dexelize(&Csg::ball([0.0; 3], 0.75)?, &frame, &DexelOptions::default(), &Control::default())?;
+/// let volume = ball.view().statistics(2).unwrap().volume;
+/// assert!((volume - 4.0 / 3.0 * 3.14159265 * 0.75f64.powi(3)).abs() < 1e-3);
+/// # Ok::<(), leafless::Error>(())
+/// ```
+pub fn dexelize<S: Solid>(
+    solid: &S,
+    frame: &Frame,
+    options: &DexelOptions,
+    control: &Control<'_>,
+) -> Result<TriDexel, Error> {
+    if options.rule == Rule::Certified {
+        let problem = "must not be certified: an interval cannot be undecided; take sampled, inner or outer";
+        return Err(Error::Argument { name: "rule", problem });
+    }
+    if options.directions == [false; 3] {
+        return Err(Error::Argument { name: "directions", problem: "must be one at least" });
+    }
+    let extent = extent(solid.bounds(), frame);
+    match options.format.ends {
+        DexelEnds::Fixed => model::<_, FixedSpan>(solid, frame, extent, options, control),
+        DexelEnds::Double => model::<_, DoubleSpan>(solid, frame, extent, options, control),
+    }
+}
+
+/// The cells of each axis whose centres may lie within bounds.
+fn extent(bounds: Option<Bounds>, frame: &Frame) -> [Range<u32>; 3] {
+    let all = 0..frame.cells();
+    let Some(bounds) = bounds else { return [all.clone(), all.clone(), all] };
+    [0, 1, 2].map(|axis| {
+        // A cell more than needed, for what is rounded.
+        let cells = f64::from(frame.cells());
+        let low = frame.scaled(axis, bounds.min[axis]) - 1.0;
+        let high = frame.scaled(axis, bounds.max[axis]) + 2.0;
+        // (What is not a number is no bound.)
+        let low = if low > 0.0 { low.min(cells) as u32 } else { 0 };
+        let high = if high < cells { high.max(0.0) as u32 } else { frame.cells() };
+        low.min(high)..high
+    })
+}
+
+fn model<T: Solid, S: Form>(
+    solid: &T,
+    frame: &Frame,
+    extent: [Range<u32>; 3],
+    options: &DexelOptions,
+    control: &Control<'_>,
+) -> Result<TriDexel, Error> {
+    let (frame, classifier) = (*frame, &solid.on(frame, control)?);
+    let finest = OnceBox::new();
+    let job = Job::new(control);
+    job.check()?;
+    let window = |axis: usize| Window::of(OTHERS[axis].map(|axis| extent[axis].clone()));
+    let worth = (0..3).map(|axis| window(axis).count()).sum::<u64>() > 1 << 14;
+    control.run(worth, |parallel| {
+        let axes = options.directions.iter().filter(|&&has| has).count();
+        let mut rays = [const { None }; 3];
+        for axis in (0..3).filter(|&axis| options.directions[axis]) {
+            let tiles = Tiles {
+                solid,
+                classifier,
+                finest: &finest,
+                frame,
+                axis,
+                window: window(axis),
+                options,
+                job: &job,
+            };
+            let pieces = tiles.pieces::<S>(parallel)?;
+            let rows = assembled(tiles.window, &options.format, pieces)?;
+            let bytes =
+                4 * rows.starts.len() + rows.columns.spans.len() * options.format.bytes_per_interval();
+            job.spend(0, bytes)?;
+            rays[axis] = Some(S::own(rows));
+            job.advance(WHOLE / axes);
+        }
+        Ok(TriDexel::new(ModelArrays { frame, format: options.format, rays }))
+    })
+}
+
+/// The rays of one direction, in tiles of some rows.
+struct Tiles<'a, S: Solid> {
+    solid: &'a S,
+    classifier: &'a S::Classifier,
+    /// The same on the finest lattice, once somebody needs it.
+    finest: &'a OnceBox<S::Classifier>,
+    frame: Frame,
+    axis: usize,
+    window: Window,
+    options: &'a DexelOptions,
+    job: &'a Job<'a>,
+}
+
+/// What one thread needs.
+struct Hand<S: Solid> {
+    worker: WorkerOf<S>,
+    beam: Beam,
+    scratch: Scratch,
+    /// The finest cells that were sampled: the ray's number and the cell's place on it.
+    sampled: Vec<(u32, u32)>,
+    /// On the finest lattice: made when it is first needed.
+    trail: Option<Trail<WorkerOf<S>>>,
+}
+
+impl<T: Solid> Tiles<'_, T> {
+    fn pieces<S: Form>(&self, parallel: bool) -> Result<Vec<Piece<S>>, Error> {
+        let rows = self.window.range(1);
+        // Tiles begin where blocks of cells do.
+        let first = rows.start / ROWS;
+        let count = rows.end.div_ceil(ROWS).saturating_sub(first);
+        let tile = |i: u32| {
+            let range = rows.start.max((first + i) * ROWS)..rows.end.min((first + i + 1) * ROWS);
+            Window::of([self.window.range(0), range])
+        };
+        #[cfg(feature = "parallel")]
+        if parallel && count > 1 {
+            use rayon::prelude::*;
+            return (0..count)
+                .into_par_iter()
+                .map_init(
+                    || None,
+                    |own, i| {
+                        let hand = match own {
+                            Some(hand) => hand,
+                            none => none.insert(self.hand()?),
+                        };
+                        let mut piece = Piece::new(&self.options.format);
+                        self.tile(hand, tile(i), &mut piece)?;
+                        Ok(piece)
+                    },
+                )
+                .collect();
+        }
+        let _ = parallel;
+        let mut pieces = memory::with_capacity(1)?;
+        let (mut hand, mut piece) = (self.hand()?, Piece::new(&self.options.format));
+        for i in 0..count {
+            self.tile(&mut hand, tile(i), &mut piece)?;
+        }
+        pieces.push(piece);
+        Ok(pieces)
+    }
+
+    fn hand(&self) -> Result<Hand<T>, Error> {
+        let format = &self.options.format;
+        let marked = format.surfaces || format.normals != Default::default();
+        Ok(Hand {
+            worker: self.classifier.worker()?,
+            beam: Beam::new(self.axis, self.frame.depth(), self.window, marked),
+            scratch: Scratch::default(),
+            sampled: Vec::new(),
+            trail: None,
+        })
+    }
+
+    fn tile<S: Form>(&self, hand: &mut Hand<T>, window: Window, piece: &mut Piece<S>) -> Result<(), Error> {
+        self.job.check()?;
+        hand.beam.restart(window);
+        hand.sampled.clear();
+        let root = hand.worker.root()?;
+        self.cell(hand, Cell::ROOT, root)?;
+        hand.beam.join(&mut hand.scratch)?;
+        if !hand.sampled.is_empty() {
+            self.refine(hand)?;
+        }
+        hand.beam.append(piece)
+    }
+
+    /// What of a cell lies in the tile: rays, and the cell's span along them.
+    fn shadow(&self, window: &Window, cell: Cell) -> (Window, Range<u32>) {
+        let shift = self.frame.depth() - cell.level;
+        let range = |axis: usize| cell.at[axis] << shift..(cell.at[axis] + 1) << shift;
+        (Window::of(OTHERS[self.axis].map(range)).intersection(window), range(self.axis))
+    }
+
+    /// Adds the intervals in a cell. The recursion is as deep as the frame, 20 levels at the most.
+    fn cell(&self, hand: &mut Hand<T>, cell: Cell, verdict: Verdict<PartOf<T>>) -> Result<(), Error> {
+        if matches!(verdict, Verdict::Empty) {
+            return Ok(());
+        }
+        let (rays, span) = self.shadow(&hand.beam.window(), cell);
+        if rays.is_empty() {
+            return Ok(());
+        }
+        match verdict {
+            Verdict::Empty => Ok(()),
+            Verdict::Full => fill(&mut hand.beam, rays, span),
+            Verdict::Undecided => match self.options.rule {
+                Rule::Inner => Ok(()),
+                Rule::Outer => fill(&mut hand.beam, rays, span),
+                Rule::Sampled | Rule::Certified => Err(Error::NotSampled),
+            },
+            Verdict::Partial(part) => {
+                if self.options.rule == Rule::Sampled {
+                    hand.beam.enter(rays, span.clone());
+                    if hand.worker.chords(cell, &part, &mut hand.beam)? {
+                        return Ok(());
+                    }
+                }
+                if cell.level == self.frame.depth() {
+                    return self.finest(hand, cell, &part, rays, span);
+                }
+                self.job.check()?;
+                let mark = hand.worker.mark();
+                let verdicts = split_one(&mut hand.worker, cell, &part, self.job.control())?;
+                for (octant, verdict) in (0..8).zip(verdicts) {
+                    self.cell(hand, cell.child(octant), verdict)?;
+                }
+                hand.worker.release(mark);
+                Ok(())
+            }
+        }
+    }
+
+    /// A finest cell that is not decided.
+    fn finest(
+        &self,
+        hand: &mut Hand<T>,
+        cell: Cell,
+        part: &PartOf<T>,
+        rays: Window,
+        span: Range<u32>,
+    ) -> Result<(), Error> {
+        match self.options.rule {
+            Rule::Inner => Ok(()),
+            Rule::Outer => fill(&mut hand.beam, rays, span),
+            Rule::Sampled | Rule::Certified => {
+                let inside = hand.worker.sample(cell, part)?.ok_or(Error::NotSampled)?;
+                if let Some(ray) = hand.beam.window().index(rays.first) {
+                    memory::push(&mut hand.sampled, (ray as u32, span.start))?;
+                }
+                if inside { fill(&mut hand.beam, rays, span) } else { Ok(()) }
+            }
+        }
+    }
+
+    /// Moves the ends at sampled cells from the planes between cells to where the surface is.
+    fn refine(&self, hand: &mut Hand<T>) -> Result<(), Error> {
+        let depth = self.frame.depth();
+        if depth >= MAX_DEPTH {
+            return Ok(());
+        }
+        hand.sampled.sort_unstable();
+        let frame = self.frame.with_depth(depth + 1)?;
+        let window = hand.beam.window();
+        let [u, v] = OTHERS[self.axis];
+        for i in 0..hand.beam.chords().len() {
+            let chord = hand.beam.chords()[i];
+            for (side, end) in chord.ends.into_iter().enumerate() {
+                self.job.check()?;
+                let plane = end as u32;
+                let is_open = |k: u32| hand.sampled.binary_search(&(chord.ray, k)).is_ok();
+                let is_between = end == f64::from(plane) && plane > 0 && plane < self.frame.cells();
+                if !is_between || !(is_open(plane - 1) || is_open(plane)) {
+                    continue;
+                }
+                let [column, row] = window.ray(chord.ray as usize);
+                let mut lower = [0; 3];
+                (lower[u], lower[v]) = (2 * column as i32 + 1, 2 * row as i32 + 1);
+                lower[self.axis] = 2 * plane as i32 - 1;
+                let edge = Edge { axis: self.axis, lower, steps: 2, starts_inside: side == 1 };
+                let trail = match &mut hand.trail {
+                    Some(trail) => trail,
+                    none => none.insert(self.trail()?),
+                };
+                let t = edge.crossing(&frame, trail, self.job.control())?;
+                let at = f64::from(plane) - 0.5 + t;
+                let moved = BeamEnd::new(at, plane, self.frame.cells());
+                debug_assert_eq!(first_above(moved.at), i64::from(plane));
+                hand.beam.set_end(i, side, moved);
+            }
+        }
+        Ok(())
+    }
+
+    fn trail(&self) -> Result<Trail<WorkerOf<T>>, Error> {
+        // (This runs on one of several threads.)
+        let control = Control { threads: 1, progress: None, ..*self.job.control() };
+        let find = || self.solid.on(&self.frame.with_depth(MAX_DEPTH)?, &control).map(Box::new);
+        Trail::new(self.finest.get_or_try_init(find)?.worker()?)
+    }
+}
+
+/// Adds whole spans.
+fn fill(beam: &mut Beam, rays: Window, span: Range<u32>) -> Result<(), Error> {
+    let [start, end] = [span.start, span.end].map(BeamEnd::between);
+    for v in rays.range(1) {
+        for u in rays.range(0) {
+            beam.push([u, v], start, end)?;
+        }
+    }
+    Ok(())
+}

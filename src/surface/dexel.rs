@@ -1,0 +1,241 @@
+//! Surfaces of tri-dexel models: vertices where rays cross the solid's surface.
+
+use super::blocks::{Blocks, FINDING};
+use super::chunks;
+use super::cubes::triangles;
+use super::dual;
+use super::hermite::{Hermite, Said, said};
+use super::lattice::Lattice;
+use super::samples::Samples;
+use super::solid::edges;
+use super::weld::weld;
+use crate::control::{Control, Job, WHOLE};
+use crate::dexel::TriDexelRef;
+use crate::error::Error;
+use crate::memory;
+use crate::mesh::TriangleMesh;
+use crate::op::{Edge, octree_of_dexels};
+use alloc::vec::Vec;
+use core::sync::atomic::{AtomicBool, AtomicUsize, Ordering::Relaxed};
+
+/// How exactly a surface of a tri-dexel model follows its rays.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[non_exhaustive]
+pub struct DexelSurfaceReport {
+    /// Edges between neighbouring centres of cells of which one lies inside: places where a ray crosses the surface.
+    pub crossings: u64,
+    /// Crossings on edges that the ray crosses more than once: what is thinner than a cell is lost there.
+    pub several: u64,
+    /// Crossings that were put in the middle of their edges, because the model has no rays along these.
+    pub without_rays: u64,
+    /// Crossings that were put in the middle of their edges, because the ray along it does not leave the solid there: the
+    /// directions of the model disagree.
+    pub disagreeing: u64,
+    /// Crossings of which no normal is known. (By dual contouring alone.)
+    pub without_normals: u64,
+    /// Vertices with no normal at any of their crossings, which are the mean of these. (By dual contouring alone.)
+    pub means: u64,
+    /// Vertices that would fit their planes better outside of their cells. (By dual contouring alone.)
+    pub clamped: u64,
+}
+
+/// The surface of a tri-dexel model by marching cubes: a closed mesh, with vertices where rays cross the solid's surface.
+///
+/// Samples are the centres of cells, as [`octree_of_dexels`](crate::octree_of_dexels) has them; everything outside of the
+/// universe is outside. On each edge between two neighbouring centres of which one lies inside, there is one vertex. It
+/// lies where the ray along this edge leaves the solid, nearest to the inside centre. The report counts edges that the
+/// ray crosses more often, and edges on which there is no such place: because the model has no rays in this direction,
+/// or because its directions disagree. There the vertex lies half-way.
+///
+/// The mesh is oriented as that of [`marching_cubes`](crate::marching_cubes). Vertices that lie at one place, which is a
+/// centre on the surface, are one vertex, and triangles without area are dropped: there more than two triangles may meet
+/// on an edge, in balance. Else every edge belongs to exactly two triangles.
+///
+/// Edges and corners of the solid are cut off by up to a cell; [`dual_contouring_of_dexels`] keeps them.
+///
+/// O(rays · 2^depth / 64 + mesh), for rays with few intervals each. The result is the same for any number of threads.
+///
+/// # Errors
+/// [`Error::Argument`] if the frame is so far from the origin that doubles cannot tell its cells apart;
+/// [`MeshError::TooMany`](crate::MeshError::TooMany) for more than 2^32 − 1 vertices or triangles;
+/// [`Error::OutOfMemory`]; [`Error::Cancelled`].
+///
+/// ```
+/// use leafless::{Control, Dexel, DexelEnd, DexelFormat, Frame, TriDexel, marching_cubes_of_dexels};
+/// let (frame, control) = (Frame::new([-1.0; 3], 2.0, 5)?, Control::default());
+/// // A ball of radius 0.75.
+/// let ball = |_: usize, ray: [u32; 2], list: &mut Vec<Dexel>| {
+///     let [u, v] = ray.map(|i| (f64::from(i) + 0.5) / 16.0 - 1.0);
+///     let rest = 0.75 * 0.75 - u * u - v * v;
+///     if rest > 0.0 {
+///         let end = |at: f64| DexelEnd { at, surface: None, normal: None };
+///         list.push(Dexel { start: end(-rest.sqrt()), end: end(rest.sqrt()), material: 0 });
+///     }
+///     Ok(())
+/// };
+/// let model = TriDexel::from_rays(&frame, DexelFormat::default(), [true; 3], ball, &control)?;
+/// let (mesh, report) = marching_cubes_of_dexels(model.view(), &control)?;
+/// assert_eq!(report.without_rays + report.disagreeing, 0);
+/// for [x, y, z] in mesh.vertices() {
+///     assert!((x * x + y * y + z * z - 0.75 * 0.75).abs() < 1e-8);
+/// }
+/// # Ok::<(), leafless::Error>(())
+/// ```
+pub fn marching_cubes_of_dexels(
+    model: &TriDexelRef<'_>,
+    control: &Control<'_>,
+) -> Result<(TriangleMesh, DexelSurfaceReport), Error> {
+    model.sound()?;
+    surface(model, control, |lattice, blocks, job, parallel| {
+        let mut vertices = memory::filled(blocks.vertices, [0.0; 3])?;
+        let is_welded = AtomicBool::new(true);
+        let rays = Rays { model, blocks, counts: Counts::default() };
+        rays.for_each(&mut vertices, (WHOLE - FINDING) / 2, job, parallel, |edge, hermite, vertex| {
+            let place = |axis: usize| f64::from(edge.lower[axis]) + 0.5;
+            *vertex = [0, 1, 2].map(|axis| lattice.position(axis, place(axis)));
+            let (low, high) = (vertex[edge.axis], lattice.position(edge.axis, place(edge.axis) + 1.0));
+            let x = lattice.position(edge.axis, place(edge.axis) + hermite.t).clamp(low, high);
+            vertex[edge.axis] = x;
+            if !(low < x && x < high) {
+                is_welded.store(false, Relaxed);
+            }
+        })?;
+        let triangles = triangles(Vec::new(), blocks, job, parallel)?;
+        let mesh = if is_welded.into_inner() {
+            TriangleMesh::from_welded(vertices, triangles, 0, 0)
+        } else {
+            weld(vertices, triangles)?
+        };
+        Ok((mesh, DexelSurfaceReport { without_normals: 0, ..rays.counts.report(blocks) }))
+    })
+}
+
+/// The surface of a tri-dexel model by dual contouring: a closed mesh that keeps the solid's edges and corners.
+///
+/// Samples are those of [`marching_cubes_of_dexels`], and the crossings are found as there. In each cube between eight
+/// centres the mesh has a vertex for each sheet of the surface. It lies where the planes at the sheet's crossings, with
+/// the normals that the model stores, fit best (their quadratic error function has its minimum), and never outside of the
+/// cube. On a smooth surface that is near the mean of the crossings, on an edge of the solid it is on the edge, and
+/// where three faces meet at the corner. Two faces that meet at less than about 11 degrees count as smooth. Crossings of
+/// which no normal is known count for the mean alone; so a model without normals gives a smooth mesh.
+///
+/// For each crossing there is a quadrilateral between the four cubes around, which is split by the diagonal that leads
+/// nearer to the crossing. (Ju, Losasso, Schaefer and Warren 2002; one vertex for each sheet after Nielson 2004 and
+/// Schaefer, Ju and Warren 2007.)
+///
+/// The mesh is oriented as that of [`marching_cubes`](crate::marching_cubes). Every edge belongs to exactly two triangles,
+/// in opposite directions. For that there are some more vertices where two sheets come near each other: on a face between
+/// two cubes with two inside centres at the ends of a diagonal, if the sheets around both hang together in both cubes.
+/// Vertices that lie at one place, as on the common face of two cubes, are one vertex, and triangles without area are
+/// dropped: there more than two triangles may meet on an edge, in balance. Triangles may intersect.
+///
+/// Time as [`marching_cubes_of_dexels`]. The result is the same for any number of threads.
+///
+/// # Errors
+/// As [`marching_cubes_of_dexels`].
+pub fn dual_contouring_of_dexels(
+    model: &TriDexelRef<'_>,
+    control: &Control<'_>,
+) -> Result<(TriangleMesh, DexelSurfaceReport), Error> {
+    model.sound()?;
+    surface(model, control, |lattice, blocks, job, parallel| {
+        let mut crossings = memory::filled(blocks.vertices, Hermite::default())?;
+        let rays = Rays { model, blocks, counts: Counts::default() };
+        rays.for_each(&mut crossings, (WHOLE - FINDING) / 4, job, parallel, |_, hermite, crossing| {
+            *crossing = hermite;
+        })?;
+        let (mesh, counts) = dual::extract(blocks, lattice, &crossings, job, parallel)?;
+        let report = rays.counts.report(blocks);
+        Ok((mesh, DexelSurfaceReport { means: counts.means, clamped: counts.clamped, ..report }))
+    })
+}
+
+/// What `extract` makes of the blocks of a model's samples.
+fn surface<R: Send>(
+    model: &TriDexelRef<'_>,
+    control: &Control<'_>,
+    extract: impl FnOnce(&Lattice, &Blocks, &Job<'_>, bool) -> Result<R, Error> + Send,
+) -> Result<R, Error> {
+    let lattice = Lattice::new(model.frame())?;
+    let tree = control.share([0.0, 0.5], |control| octree_of_dexels(model, control))?;
+    control.share([0.5, 1.0], |control| {
+        let samples = Samples::new(tree.view(), false, u32::MAX)?;
+        let job = Job::new(control);
+        job.check()?;
+        control.run(samples.levels() > 3, |parallel| {
+            let blocks = Blocks::find(&samples, &job, parallel)?;
+            extract(&lattice, &blocks, &job, parallel)
+        })
+    })
+}
+
+/// The rays of a model, asked for all cut edges.
+struct Rays<'a> {
+    model: &'a TriDexelRef<'a>,
+    blocks: &'a Blocks,
+    counts: Counts,
+}
+
+#[derive(Default)]
+struct Counts {
+    several: AtomicUsize,
+    without_rays: AtomicUsize,
+    disagreeing: AtomicUsize,
+    without_normals: AtomicUsize,
+}
+
+impl Counts {
+    fn report(&self, blocks: &Blocks) -> DexelSurfaceReport {
+        let count = |counter: &AtomicUsize| counter.load(Relaxed) as u64;
+        DexelSurfaceReport {
+            crossings: blocks.vertices as u64,
+            several: count(&self.several),
+            without_rays: count(&self.without_rays),
+            disagreeing: count(&self.disagreeing),
+            without_normals: count(&self.without_normals),
+            means: 0,
+            clamped: 0,
+        }
+    }
+}
+
+impl Rays<'_> {
+    /// Hands each cut edge with its crossing to `put`, with its place in a list of all.
+    fn for_each<T: Send>(
+        &self,
+        output: &mut [T],
+        weight: usize,
+        job: &Job<'_>,
+        parallel: bool,
+        put: impl Fn(&Edge, Hermite, &mut T) + Sync,
+    ) -> Result<(), Error> {
+        let list = &self.blocks.list;
+        let start = |i: usize| list[i].vertex as usize;
+        chunks::for_each(list.len(), output, start, weight, job, parallel, |range, piece| {
+            let mut places = piece.iter_mut();
+            let [mut several, mut without_rays, mut disagreeing, mut without_normals] = [0; 4];
+            for block in &list[range] {
+                for (edge, place) in edges(block, self.blocks.bias).zip(&mut places) {
+                    let mut hermite = Hermite { t: 0.5, normal: [0.0; 3] };
+                    match said(self.model, &edge) {
+                        Said::NoRays => without_rays += 1,
+                        Said::Nothing => disagreeing += 1,
+                        Said::At { place, normal, several: more } => {
+                            several += usize::from(more);
+                            let t = place - (f64::from(edge.lower[edge.axis]) + 0.5);
+                            let normal = normal.map_or([0.0; 3], |normal| normal.map(|c| c as f32));
+                            hermite = Hermite { t: t.clamp(0.0, 1.0), normal };
+                        }
+                    }
+                    without_normals += usize::from(hermite.normal == [0.0; 3]);
+                    put(&edge, hermite, place);
+                }
+            }
+            self.counts.several.fetch_add(several, Relaxed);
+            self.counts.without_rays.fetch_add(without_rays, Relaxed);
+            self.counts.disagreeing.fetch_add(disagreeing, Relaxed);
+            self.counts.without_normals.fetch_add(without_normals, Relaxed);
+            Ok(())
+        })
+    }
+}

@@ -1,0 +1,136 @@
+//! Rays that pierce an open mesh an odd number of times, against one ray after the other in whole numbers.
+
+use leafless::{Control, Error, FillRule, Frame, MeshSolid, TriangleMesh};
+
+/// Cells to an axis; their centres are (2 k + 1) / 2.
+const CELLS: i32 = 16;
+
+fn frame() -> Frame {
+    Frame::new([0.0; 3], f64::from(CELLS), 4).unwrap()
+}
+
+fn odd_rays(mesh: TriangleMesh) -> [u64; 3] {
+    let solid = MeshSolid::new(mesh, FillRule::NonZero).unwrap();
+    solid.odd_rays(&frame(), &Control::default()).unwrap()
+}
+
+/// The same from the definition: each ray against each triangle. Vertices are multiples of 1/2 below 64 from the origin.
+///
+/// In units of 2^-51, differences are multiples of 2^50 below 2^59, and determinants multiples of 2^100. The shift along x
+/// adds less than 2^99 to them, so that it decides those that are zero alone; 2^88 at the least, if it adds anything, and the
+/// shift along y less than 2^85; and so on.
+fn one_by_one(mesh: &TriangleMesh) -> [u64; 3] {
+    let scaled = |x: f64| {
+        let doubled = 2.0 * x;
+        assert!(doubled == doubled.round() && doubled.abs() < 128.0);
+        (doubled as i128) << 50
+    };
+    let shift = [1i128 << 38, 1 << 25, 1 << 12];
+    let centre = |axis: usize, k: i32| (i128::from(2 * k + 1) << 50) + shift[axis];
+    [0, 1, 2].map(|axis| {
+        let [u, v] = [[1, 2], [0, 2], [0, 1]][axis];
+        let mut odd = 0;
+        for row in 0..CELLS {
+            for column in 0..CELLS {
+                let at = [centre(u, column), centre(v, row)];
+                let pierces = |triangle: &&[u32; 3]| {
+                    let corners = triangle.map(|vertex| {
+                        let vertex = mesh.vertices()[vertex as usize];
+                        [scaled(vertex[u]) - at[0], scaled(vertex[v]) - at[1]]
+                    });
+                    let sides = [0, 1, 2].map(|i| {
+                        let ([a, b], [c, d]) = (corners[i], corners[(i + 1) % 3]);
+                        (a * d - b * c).signum()
+                    });
+                    sides == [1; 3] || sides == [-1; 3]
+                };
+                odd += u64::from(mesh.triangles().iter().filter(pierces).count() % 2 == 1);
+            }
+        }
+        odd
+    })
+}
+
+/// |x − 8| + |y − 8| + |z − 8| = 8, whose edges run through centres; without its first triangles.
+fn octahedron(without: usize) -> TriangleMesh {
+    let vertices = (0..6).map(|i| {
+        [0, 1, 2].map(|axis| 8.0 + if axis == i / 2 { if i % 2 == 0 { 8.0 } else { -8.0 } } else { 0.0 })
+    });
+    let triangles = (0..8u32).map(|octant| {
+        let [x, y, z] = [0, 1, 2].map(|axis| 2 * axis + (octant >> axis & 1));
+        if octant.count_ones() % 2 == 0 { [x, y, z] } else { [x, z, y] }
+    });
+    TriangleMesh::new(vertices.collect(), triangles.skip(without).collect()).unwrap()
+}
+
+#[test]
+fn a_closed_mesh_has_none() {
+    assert_eq!(odd_rays(octahedron(0)), [0; 3]);
+    assert_eq!(one_by_one(&octahedron(0)), [0; 3]);
+}
+
+/// Of the face that is missing each projection is the triangle of the centres with i + j + 1 ≤ 8; those on its hypotenuse
+/// are shifted out of it.
+#[test]
+fn a_missing_face_makes_the_rays_through_it_odd() {
+    let found = odd_rays(octahedron(1));
+    assert_eq!(found, [28; 3]);
+    assert_eq!(found, one_by_one(&octahedron(1)));
+    for without in 2..7 {
+        assert_eq!(odd_rays(octahedron(without)), one_by_one(&octahedron(without)), "without {without}");
+    }
+}
+
+/// A numbers' generator after Knuth.
+struct Random(u64);
+
+impl Random {
+    fn below(&mut self, n: u32) -> u32 {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        ((self.0 >> 33) % u64::from(n)) as u32
+    }
+}
+
+/// Triangles anywhere, also outside of the universe, whose corners often lie on rays, and edges on rows.
+#[test]
+fn any_triangles() {
+    let mut random = Random(7);
+    let mut odd = 0;
+    for case in 0..200 {
+        let vertices = (0..12).map(|_| [(); 3].map(|()| f64::from(random.below(65)) / 2.0 - 8.0)).collect();
+        let triangles = (0..1 + case % 20).map(|_| [(); 3].map(|()| random.below(12))).collect();
+        let mesh = TriangleMesh::new(vertices, triangles).unwrap();
+        if mesh.triangles().is_empty() {
+            continue;
+        }
+        let expected = one_by_one(&mesh);
+        assert_eq!(odd_rays(mesh), expected, "case {case}");
+        odd += u64::from(expected != [0; 3]);
+    }
+    assert!(odd > 150);
+}
+
+/// More rows than the bits of one pass hold, of a plate that covers all of them.
+#[test]
+fn a_wide_frame_is_counted_in_several_passes() {
+    let mut vertices = vec![];
+    for corner in 0..4 {
+        vertices.push([f64::from(corner % 2) * 3.0 - 1.0, f64::from(corner / 2) * 3.0 - 1.0, 0.25]);
+    }
+    let plate = TriangleMesh::new(vertices, vec![[0, 1, 3], [0, 3, 2]]).unwrap();
+    let solid = MeshSolid::new(plate, FillRule::NonZero).unwrap();
+    for depth in [6, 14] {
+        let frame = Frame::new([0.0; 3], 1.0, depth).unwrap();
+        let odd = solid.odd_rays(&frame, &Control::default()).unwrap();
+        // Along x and y a ray of the plate's height would run in it.
+        assert_eq!(odd, [0, 0, 1 << (2 * depth)], "depth {depth}");
+    }
+}
+
+#[test]
+fn it_can_be_cancelled() {
+    let solid = MeshSolid::new(octahedron(1), FillRule::NonZero).unwrap();
+    let cancel = std::sync::atomic::AtomicBool::new(true);
+    let control = Control { cancel: Some(&cancel), ..Control::default() };
+    assert!(matches!(solid.odd_rays(&frame(), &control), Err(Error::Cancelled)));
+}
