@@ -725,6 +725,15 @@ fn a_cell_that_nobody_can_split_is_asked_about_once() {
     assert!(!lazy.can_split(cell));
     assert_eq!(lazy.split(cell).unwrap(), [Tag::Partial; 8]);
     assert_eq!(lazy.splits(), ball.statistics().nodes());
+    // An octree that is taken up again forgot it, and has to ask.
+    let octree = lazy.freeze(&alone()).unwrap();
+    let frame = *lazy.frame();
+    let mut lazy = LazyOctree::resume(&octree, *ball.view(), &frame, &alone()).unwrap();
+    let none = Control { max_splits: Some(0), ..alone() };
+    assert_eq!(lazy.refine(&Zone::Whole, 12, &none).unwrap(), Refinement::Spent);
+    assert_eq!(lazy.refine(&Zone::Whole, 12, &alone()).unwrap(), Refinement::Done);
+    assert_eq!(lazy.refine(&Zone::Whole, 12, &none).unwrap(), Refinement::Done);
+    assert_eq!(lazy.splits_at(5), 0);
 }
 
 #[test]

@@ -6,31 +6,66 @@ use super::columns::Columns;
 use super::format::DexelFormat;
 use super::item::Item;
 use super::place::Span;
-use super::view::Window;
+use super::view::{RowsRef, Window};
 use crate::error::Error;
 use crate::memory;
 use alloc::vec::Vec;
 use core::ops::Range;
 
-/// Consecutive whole rows of a window: how many intervals each ray has, and these.
+/// Consecutive whole rows of a window.
 #[derive(Debug)]
 pub(crate) struct Piece<S> {
-    pub counts: Vec<u32>,
+    /// For each ray the number of its first interval, and behind the last the number of all.
+    starts: Vec<u32>,
     pub columns: Columns<S>,
 }
 
 impl<S: Span> Piece<S> {
-    pub fn new(format: &DexelFormat) -> Piece<S> {
-        Piece { counts: Vec::new(), columns: Columns::new(format) }
+    /// No ray yet, with room for this many.
+    pub fn new(format: &DexelFormat, rays: usize) -> Result<Piece<S>, Error> {
+        let mut starts = memory::with_capacity(rays + 1)?;
+        starts.push(0);
+        Ok(Piece { starts, columns: Columns::new(format) })
     }
 
-    /// Appends an interval of the ray whose intervals begin at the one numbered `first`: nothing if it is empty; one that
-    /// touches the interval before is joined to that, unless both have materials that differ.
+    /// The number of the next ray's first interval.
+    #[inline(always)]
+    pub fn begin(&self) -> usize {
+        self.starts.last().map_or(0, |&start| start as usize)
+    }
+
+    /// Ends a ray: all intervals that were added since the last one are its own.
+    #[inline(always)]
+    pub fn end_ray(&mut self) -> Result<(), Error> {
+        // (A number that is too large for this is refused once all is put together.)
+        memory::push(&mut self.starts, self.columns.spans.len() as u32)
+    }
+
+    /// Appends rays without intervals.
+    pub fn skip(&mut self, rays: usize) -> Result<(), Error> {
+        self.starts.try_reserve(rays)?;
+        self.starts.resize(self.starts.len() + rays, self.begin() as u32);
+        Ok(())
+    }
+
+    /// Appends rays as they are, given by their numbers in the window of rows that were checked.
+    pub fn copy(&mut self, from: &RowsRef<'_, S>, rays: Range<usize>) -> Result<(), Error> {
+        let base = self.columns.spans.len() as u32;
+        let starts = &from.starts[rays.start..=rays.end];
+        let (first, end) = (starts[0], starts[rays.len()]);
+        self.starts.try_reserve(rays.len())?;
+        self.starts.extend(starts[1..].iter().map(|&start| base + (start - first)));
+        self.columns.copy(&from.columns, first as usize..end as usize)
+    }
+
+    /// Appends an interval of the present ray: nothing if it is empty; one that touches the interval before is joined to
+    /// that, unless both have materials that differ.
     #[inline]
-    pub fn add(&mut self, first: usize, item: &Item<S::Place>) -> Result<(), Error> {
+    pub fn add(&mut self, item: &Item<S::Place>) -> Result<(), Error> {
         if item.ends[0] >= item.ends[1] {
             return Ok(());
         }
+        let first = self.begin();
         let columns = &mut self.columns;
         if let Some(last) = columns.spans.len().checked_sub(1).filter(|&last| last >= first)
             && columns.spans[last].ends()[1] >= item.ends[0]
@@ -44,6 +79,40 @@ impl<S: Span> Piece<S> {
         }
         columns.push(item)
     }
+
+    /// Makes one of pieces that follow on one another.
+    fn concatenated(format: &DexelFormat, mut pieces: Vec<Piece<S>>) -> Result<Piece<S>, Error> {
+        if pieces.len() == 1 {
+            return Ok(pieces.swap_remove(0));
+        }
+        let mut all = Piece::new(format, pieces.iter().map(|piece| piece.starts.len() - 1).sum())?;
+        all.columns.reserve(pieces.iter().map(|piece| piece.columns.spans.len()).sum(), true)?;
+        for piece in pieces {
+            let base = all.columns.spans.len() as u32;
+            all.starts.extend(piece.starts[1..].iter().map(|&start| base + start));
+            all.columns.copy(&piece.columns.view(), 0..piece.columns.spans.len())?;
+        }
+        Ok(all)
+    }
+
+    /// Leaves away the rays outside of the least window that holds those that are not empty.
+    fn trim(&mut self, window: Window) -> Window {
+        let starts = &mut self.starts;
+        let trimmed = least(window, starts);
+        if trimmed != window {
+            // What is left away is empty, so that numbers of intervals stay as they are.
+            let (mut to, width) = (0, trimmed.size[0] as usize);
+            for row in trimmed.range(1) {
+                if let Some(from) = window.index([trimmed.first[0], row]) {
+                    starts.copy_within(from..from + width, to);
+                    to += width;
+                }
+            }
+            starts.truncate(to);
+            starts.push(self.columns.spans.len() as u32);
+        }
+        trimmed
+    }
 }
 
 /// The rays of a window from pieces that follow on one another.
@@ -53,58 +122,32 @@ impl<S: Span> Piece<S> {
 pub(crate) fn assembled<S: Span>(
     window: Window,
     format: &DexelFormat,
-    mut pieces: Vec<Piece<S>>,
+    pieces: Vec<Piece<S>>,
 ) -> Result<RowArrays<S>, Error> {
     const MOST: u64 = u32::MAX as u64 - 1;
     let intervals = pieces.iter().map(|piece| piece.columns.spans.len() as u64).sum::<u64>();
     if intervals > MOST {
         return Err(Error::Limit { what: "intervals in one direction", limit: MOST });
     }
-    let trimmed = trim(window, &pieces);
-    if trimmed.count() > MOST {
+    let mut piece = Piece::concatenated(format, pieces)?;
+    let window = piece.trim(window);
+    if window.count() > MOST {
         return Err(Error::Limit { what: "rays in one direction", limit: MOST });
     }
-    let mut starts = memory::with_capacity(trimmed.count() as usize + 1)?;
-    let mut next = 0u32;
-    let kept = trimmed.range(0);
-    let kept = (kept.start.saturating_sub(window.first[0])) as usize
-        ..(kept.end.saturating_sub(window.first[0])) as usize;
-    for (row, counts) in rows(window, &pieces) {
-        if trimmed.range(1).contains(&row) {
-            for &count in &counts[kept.clone()] {
-                starts.push(next);
-                next += count;
-            }
-        }
-    }
-    starts.push(next);
-    let columns = if pieces.len() == 1 {
-        pieces.swap_remove(0).columns
-    } else {
-        let mut all = Columns::new(format);
-        all.reserve(intervals as usize, true)?;
-        for piece in pieces {
-            all.copy(&piece.columns.view(), 0..piece.columns.spans.len())?;
-        }
-        all
-    };
-    Ok(RowArrays { window: trimmed, starts, columns })
-}
-
-/// The rows of pieces, each with its index.
-fn rows<S>(window: Window, pieces: &[Piece<S>]) -> impl Iterator<Item = (u32, &[u32])> {
-    let width = (window.size[0] as usize).max(1);
-    window.range(1).zip(pieces.iter().flat_map(move |piece| piece.counts.chunks_exact(width)))
+    Ok(RowArrays { window, starts: piece.starts, columns: piece.columns })
 }
 
 /// The least window that holds the rays that are not empty.
-fn trim<S>(window: Window, pieces: &[Piece<S>]) -> Window {
-    let (mut low, mut high) = (usize::MAX, 0);
+fn least(window: Window, starts: &[u32]) -> Window {
+    let width = window.size[0] as usize;
+    let (mut low, mut high) = (width, 0);
     let mut along: Option<Range<u32>> = None;
-    for (row, counts) in rows(window, pieces) {
-        if let Some(first) = counts.iter().position(|&count| count > 0) {
-            let last = counts.iter().rposition(|&count| count > 0).unwrap_or(first);
-            (low, high) = (low.min(first), high.max(last + 1));
+    for (row, first) in window.range(1).zip((0..).step_by(width.max(1))) {
+        let starts = &starts[first..=first + width];
+        let (before, after) = (starts[0], starts[width]);
+        if before < after {
+            low = starts[1..=low].iter().position(|&start| start != before).unwrap_or(low);
+            high = high.max(starts.iter().rposition(|&start| start != after).map_or(0, |last| last + 1));
             along = Some(along.map_or(row, |along| along.start)..row + 1);
         }
     }

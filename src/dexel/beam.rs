@@ -235,20 +235,16 @@ impl Beam {
     /// # Errors
     /// [`Error::OutOfMemory`].
     pub(crate) fn append<S: Span>(&self, piece: &mut Piece<S>) -> Result<(), Error> {
-        let first = piece.counts.len();
-        piece.counts.try_reserve(self.window.count() as usize)?;
-        piece.counts.resize(first + self.window.count() as usize, 0);
         piece.columns.reserve(self.chords.len(), false)?;
-        let (mut ray, mut begin) = (u32::MAX, 0);
-        for (i, chord) in self.chords.iter().enumerate() {
-            if chord.ray != ray {
-                (ray, begin) = (chord.ray, piece.columns.spans.len());
+        let mut chords = self.chords.iter().enumerate().peekable();
+        for ray in 0..self.window.count() as u32 {
+            while let Some((i, chord)) = chords.next_if(|(_, chord)| chord.ray == ray) {
+                let ends = chord.ends.map(|end| S::Place::rounded(end, self.depth));
+                let marks = if self.marked { [self.faced(i, 0), self.faced(i, 1)] } else { [Mark::NONE; 2] };
+                // What was rounded may touch, or be empty.
+                piece.add(&Item { ends, marks, material: 0 })?;
             }
-            let ends = chord.ends.map(|end| S::Place::rounded(end, self.depth));
-            let marks = if self.marked { [self.faced(i, 0), self.faced(i, 1)] } else { [Mark::NONE; 2] };
-            // What was rounded may touch, or be empty.
-            piece.add(begin, &Item { ends, marks, material: 0 })?;
-            piece.counts[first + ray as usize] = (piece.columns.spans.len() - begin) as u32;
+            piece.end_ray()?;
         }
         Ok(())
     }

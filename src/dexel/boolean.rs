@@ -6,10 +6,9 @@
 
 use super::arrays::{Form, ModelArrays, OwnedRows};
 use super::assemble::{Piece, assembled};
-use super::columns::Columns;
 use super::format::{DexelEnds, DexelFormat};
 use super::item::Item;
-use super::merge::{SetOp, complement, merge, merge_plain};
+use super::merge::{SetOp, complement, merge, merge_plain, merge_single};
 use super::model::TriDexel;
 use super::place::{DoubleSpan, FixedSpan, Place, Span};
 use super::view::{Rows, RowsRef, TriDexelRef, Window, with_rows};
@@ -242,12 +241,14 @@ fn by_rows<S: Form>(
     format: &DexelFormat,
     job: &Job<'_>,
     parallel: bool,
-    work: impl Fn(Range<u32>) -> Result<Piece<S>, Error> + Send + Sync,
+    work: impl Fn(Range<u32>, &mut Piece<S>) -> Result<(), Error> + Send + Sync,
 ) -> Result<OwnedRows, Error> {
     let rows = window.range(1);
     let one = |range: Range<u32>| {
         job.check()?;
-        work(range)
+        let mut piece = Piece::new(format, range.len() * window.size[0] as usize)?;
+        work(range, &mut piece)?;
+        Ok(piece)
     };
     #[cfg(feature = "parallel")]
     if parallel && rows.len() > ROWS as usize {
@@ -278,21 +279,21 @@ fn of_rows<S: Form>(
         SetOp::Intersection => a.window.intersection(&b.window),
         SetOp::Difference => a.window,
     };
-    by_rows(window, format, job, parallel, |range| {
-        let rays = (range.len()) * window.size[0] as usize;
-        let mut piece = Piece { counts: memory::with_capacity(rays)?, columns: Columns::new(format) };
+    by_rows(window, format, job, parallel, |range, piece| {
+        let [most_a, most_b] = [a, b].map(|rows| rows.within(range.clone()).len());
+        piece.columns.reserve(most_a + most_b, true)?;
         for v in range {
             job.check()?;
             for (run, from) in runs(window.range(0), v, a, b) {
                 match from {
-                    [true, true] => both(op, [run, v..v + 1], a, b, format, &mut piece)?,
-                    [true, false] if op.keeps()[0] => copy(run, v, a, &mut piece)?,
-                    [false, true] if op.keeps()[1] => copy(run, v, b, &mut piece)?,
-                    _ => piece.counts.resize(piece.counts.len() + run.len(), 0),
+                    [true, true] => both(op, [run, v..v + 1], a, b, format, piece)?,
+                    [true, false] if op.keeps()[0] => copy(run, v, a, piece)?,
+                    [false, true] if op.keeps()[1] => copy(run, v, b, piece)?,
+                    _ => piece.skip(run.len())?,
                 }
             }
         }
-        Ok(piece)
+        Ok(())
     })
 }
 
@@ -321,21 +322,7 @@ fn runs<S>(
 /// Copies the rays of a run.
 fn copy<S: Span>(run: Range<u32>, v: u32, from: &RowsRef<'_, S>, piece: &mut Piece<S>) -> Result<(), Error> {
     let Some(first) = from.window.index([run.start, v]) else { return Ok(()) };
-    let last = first + run.len();
-    piece.counts.try_reserve(run.len())?;
-    let mut all = from.at(first).start..from.at(first).start;
-    for index in first..last {
-        let range = from.at(index);
-        piece.counts.push(range.len() as u32);
-        // Consecutive rays have consecutive intervals.
-        if range.start == all.end {
-            all.end = range.end;
-        } else if !range.is_empty() {
-            piece.columns.copy(&from.columns, all)?;
-            all = range;
-        }
-    }
-    piece.columns.copy(&from.columns, all)
+    piece.copy(from, first..first + run.len())
 }
 
 /// Merges the rays of a run.
@@ -352,33 +339,35 @@ fn both<S: Span>(
         return Ok(());
     };
     let [keeps_a, keeps_b] = op.keeps();
-    piece.counts.try_reserve(run.len())?;
     for k in 0..run.len() {
         let (range_a, range_b) = (a.at(i + k), b.at(j + k));
-        let before = piece.columns.spans.len();
-        match (range_a.is_empty(), range_b.is_empty()) {
-            (true, true) => {}
-            (false, true) => {
+        let out = &mut piece.columns;
+        match (range_a.len(), range_b.len()) {
+            (0, 0) => {}
+            (_, 0) => {
                 if keeps_a {
-                    piece.columns.copy(&a.columns, range_a)?;
+                    out.copy(&a.columns, range_a)?;
                 }
             }
-            (true, false) => {
+            (0, _) => {
                 if keeps_b {
-                    piece.columns.copy(&b.columns, range_b)?;
+                    out.copy(&b.columns, range_b)?;
                 }
             }
-            (false, false) if format.is_plain() => {
-                merge_plain(
+            (1, 1) if format.is_plain() => {
+                merge_single(
                     op,
-                    &a.columns.spans[range_a],
-                    &b.columns.spans[range_b],
-                    &mut piece.columns.spans,
+                    a.columns.spans[range_a.start],
+                    b.columns.spans[range_b.start],
+                    &mut out.spans,
                 )?;
             }
-            (false, false) => merge(op, (&a.columns, range_a), (&b.columns, range_b), &mut piece.columns)?,
+            _ if format.is_plain() => {
+                merge_plain(op, &a.columns.spans[range_a], &b.columns.spans[range_b], &mut out.spans)?;
+            }
+            _ => merge(op, (&a.columns, range_a), (&b.columns, range_b), out)?,
         }
-        piece.counts.push((piece.columns.spans.len() - before) as u32);
+        piece.end_ray()?;
     }
     Ok(())
 }
@@ -391,20 +380,18 @@ fn converted<S: Span, T: Form>(
     job: &Job<'_>,
     parallel: bool,
 ) -> Result<OwnedRows, Error> {
-    by_rows(rows.window, format, job, parallel, |range| {
-        let mut piece = Piece::<T>::new(format);
+    by_rows(rows.window, format, job, parallel, |range, piece: &mut Piece<T>| {
         for v in range {
             for u in rows.window.range(0) {
-                let before = piece.columns.spans.len();
                 for item in rows.items([u, v]) {
                     // Without materials, or rounded, intervals may touch that did not.
                     let ends = item.ends.map(|end| T::Place::rounded(end.cells(depth), depth));
-                    piece.add(before, &Item { ends, marks: item.marks, material: item.material })?;
+                    piece.add(&Item { ends, marks: item.marks, material: item.material })?;
                 }
-                memory::push(&mut piece.counts, (piece.columns.spans.len() - before) as u32)?;
+                piece.end_ray()?;
             }
         }
-        Ok(piece)
+        Ok(())
     })
 }
 
@@ -416,16 +403,14 @@ fn complemented<S: Form>(
     job: &Job<'_>,
     parallel: bool,
 ) -> Result<OwnedRows, Error> {
-    by_rows(Window::all(depth), format, job, parallel, |range| {
-        let mut piece = Piece::<S>::new(format);
+    by_rows(Window::all(depth), format, job, parallel, |range, piece| {
         for v in range {
             for u in 0..1 << depth {
-                let before = piece.columns.spans.len();
                 complement(&rows.columns, rows.ray([u, v]), depth, &mut piece.columns)?;
-                memory::push(&mut piece.counts, (piece.columns.spans.len() - before) as u32)?;
+                piece.end_ray()?;
             }
         }
-        Ok(piece)
+        Ok(())
     })
 }
 
@@ -437,17 +422,15 @@ fn painted<S: Form>(
     job: &Job<'_>,
     parallel: bool,
 ) -> Result<OwnedRows, Error> {
-    by_rows(rows.window, format, job, parallel, |range| {
-        let mut piece = Piece::<S>::new(format);
+    by_rows(rows.window, format, job, parallel, |range, piece: &mut Piece<S>| {
         for v in range {
             for u in rows.window.range(0) {
-                let before = piece.columns.spans.len();
                 for item in rows.items([u, v]) {
-                    piece.add(before, &Item { material, ..item })?;
+                    piece.add(&Item { material, ..item })?;
                 }
-                memory::push(&mut piece.counts, (piece.columns.spans.len() - before) as u32)?;
+                piece.end_ray()?;
             }
         }
-        Ok(piece)
+        Ok(())
     })
 }

@@ -188,8 +188,7 @@ fn frozen<S: Form>(
     let mut rays = [const { None }; 3];
     for (rows, slots) in rays.iter_mut().zip(all) {
         if let Some(slots) = slots {
-            let mut piece =
-                Piece { counts: memory::with_capacity(slots.slots.len())?, columns: Columns::new(format) };
+            let mut piece = Piece::new(format, slots.slots.len())?;
             let view = slots.columns.view();
             let live = slots.slots.iter().map(|slot| slot.count as usize).sum();
             piece.columns.reserve(live, true)?;
@@ -197,8 +196,8 @@ fn frozen<S: Form>(
                 if i % (1 << 16) == 0 {
                     control.check()?;
                 }
-                piece.counts.push(slot.count);
                 piece.columns.copy(&view, slot.range())?;
+                piece.end_ray()?;
             }
             let mut pieces = memory::with_capacity(1)?;
             pieces.push(piece);

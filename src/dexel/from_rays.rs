@@ -91,20 +91,17 @@ impl Source<'_> {
         if window.count() > MOST {
             return Err(Error::Limit { what: "rays in one direction", limit: MOST });
         }
-        let mut piece = Piece::<S>::new(self.format);
-        piece.counts = memory::with_capacity(window.count() as usize)?;
+        let mut piece = Piece::<S>::new(self.format, window.count() as usize)?;
         for v in window.range(1) {
             self.control.check()?;
             for u in window.range(0) {
                 list.clear();
                 dexels(self.axis, [u, v], list)?;
-                let before = piece.columns.spans.len();
                 self.append(list, &mut piece)?;
-                let count = piece.columns.spans.len() - before;
                 if piece.columns.spans.len() as u64 > MOST {
                     return Err(Error::Limit { what: "intervals in one direction", limit: MOST });
                 }
-                piece.counts.push(count as u32);
+                piece.end_ray()?;
             }
         }
         let mut pieces = memory::with_capacity(1)?;
@@ -117,7 +114,6 @@ impl Source<'_> {
         let depth = self.frame.depth();
         let most = f64::from(self.frame.cells());
         let cells = |at: f64| (at - self.frame.origin()[self.axis]) / self.frame.cell_size();
-        let first = piece.columns.spans.len();
         let mut reached = f64::NEG_INFINITY;
         for dexel in list {
             let [start, end] = [dexel.start.at, dexel.end.at];
@@ -133,7 +129,7 @@ impl Source<'_> {
             reached = end;
             let ends = [start, end].map(|at| S::Place::rounded(cells(at).clamp(0.0, most), depth));
             let marks = [dexel.start, dexel.end].map(mark);
-            piece.add(first, &Item { ends, marks, material: dexel.material })?;
+            piece.add(&Item { ends, marks, material: dexel.material })?;
         }
         Ok(())
     }

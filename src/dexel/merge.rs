@@ -4,6 +4,7 @@ use super::columns::{Columns, ColumnsRef};
 use super::item::{Item, Mark};
 use super::place::{Place, Span};
 use crate::error::Error;
+use crate::memory;
 use alloc::vec::Vec;
 use core::ops::Range;
 
@@ -30,6 +31,38 @@ impl SetOp {
     /// Whether the result holds what only the first operand, or only the second one, holds.
     pub fn keeps(self) -> [bool; 2] {
         [self.holds(true, false), self.holds(false, true)]
+    }
+}
+
+/// Appends the result on one ray of two intervals that carry nothing: what most rays have.
+#[inline(always)]
+pub(crate) fn merge_single<S: Span>(op: SetOp, a: S, b: S, out: &mut Vec<S>) -> Result<(), Error> {
+    fn lower<P: Place>(x: P, y: P) -> P {
+        if y < x { y } else { x }
+    }
+    fn upper<P: Place>(x: P, y: P) -> P {
+        if x < y { y } else { x }
+    }
+    let ([a_start, a_end], [b_start, b_end]) = (a.ends(), b.ends());
+    let (start, end) = (upper(a_start, b_start), lower(a_end, b_end));
+    let mut add = |start: S::Place, end: S::Place| {
+        if start < end { memory::push(out, S::new([start, end])) } else { Ok(()) }
+    };
+    match op {
+        SetOp::Intersection => add(start, end),
+        SetOp::Difference => {
+            add(a_start, lower(a_end, b_start))?;
+            add(upper(a_start, b_end), a_end)
+        }
+        SetOp::Union | SetOp::Xor => {
+            let (least, most) = (lower(a_start, b_start), upper(a_end, b_end));
+            if end < start || op == SetOp::Xor && end != start {
+                add(least, lower(start, end))?;
+                add(upper(start, end), most)
+            } else {
+                add(least, most)
+            }
+        }
     }
 }
 

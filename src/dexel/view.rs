@@ -100,6 +100,15 @@ impl<S: Span> RowsRef<'_, S> {
         }
     }
 
+    /// The intervals of rows.
+    pub fn within(&self, rows: Range<u32>) -> Range<usize> {
+        let [first, end] = [rows.start, rows.end].map(|row| {
+            let row = row.clamp(self.window.range(1).start, self.window.range(1).end) - self.window.first[1];
+            self.starts.get(row as usize * self.window.size[0] as usize).map_or(0, |&start| start as usize)
+        });
+        first..end
+    }
+
     /// The intervals of a ray.
     #[inline(always)]
     pub fn ray(&self, ray: [u32; 2]) -> Range<usize> {

@@ -24,7 +24,7 @@ use core::ops::Range;
 use once_cell::race::OnceBox;
 
 /// Rows of rays of a tile.
-const ROWS: u32 = 64;
+const ROWS: u32 = 32;
 
 /// What a tri-dexel model is to be like.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -196,8 +196,9 @@ impl<T: Solid> Tiles<'_, T> {
                             Some(hand) => hand,
                             none => none.insert(self.hand()?),
                         };
-                        let mut piece = Piece::new(&self.options.format);
-                        self.tile(hand, tile(i), &mut piece)?;
+                        let tile = tile(i);
+                        let mut piece = Piece::new(&self.options.format, tile.count() as usize)?;
+                        self.tile(hand, tile, &mut piece)?;
                         Ok(piece)
                     },
                 )
@@ -205,7 +206,8 @@ impl<T: Solid> Tiles<'_, T> {
         }
         let _ = parallel;
         let mut pieces = memory::with_capacity(1)?;
-        let (mut hand, mut piece) = (self.hand()?, Piece::new(&self.options.format));
+        let mut hand = self.hand()?;
+        let mut piece = Piece::new(&self.options.format, self.window.count() as usize)?;
         for i in 0..count {
             self.tile(&mut hand, tile(i), &mut piece)?;
         }

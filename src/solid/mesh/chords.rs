@@ -35,7 +35,7 @@ impl Hit {
 }
 
 /// Rows of rays of a band: those of a tile of `dexelize`. Rows that lie in several bands are looked for in all triangles.
-const BAND: i32 = 64;
+const BAND: i32 = 32;
 
 /// Fewer triangles than this are looked at one by one.
 const MANY: usize = 1 << 10;
@@ -46,6 +46,7 @@ pub(super) struct Chords {
     floor: Vec<i32>,
     rows: Vec<i32>,
     hits: Vec<Hit>,
+    /// How many hits each ray has, two places behind it; then where those of each ray begin.
     starts: Vec<u32>,
     sorted: Vec<Hit>,
     bands: Bands,
@@ -243,8 +244,9 @@ impl Chords {
     fn pierce(&mut self, rays: &Rays<'_>, bundle: &Bundle) -> Result<(), Error> {
         let &Rays { placed, .. } = rays;
         let &Bundle { w, u, v, ref columns, ref rows, ref span } = bundle;
-        let Chords { hits, bands, .. } = self;
+        let Chords { hits, starts, bands, .. } = self;
         hits.clear();
+        refill(starts, columns.len() * rows.len() + 2)?;
         let cells = f64::from(placed.frame.cells());
         let (bottom, top) = (f64::from(span.start), f64::from(span.end));
         for &triangle in bands.list(rays, bundle)? {
@@ -274,6 +276,7 @@ impl Chords {
                     let at = within(at, above, cells);
                     if bottom < at && at < top {
                         hits.push(Hit::new(at, ray, triangle, found.step));
+                        starts[ray as usize + 2] += 1;
                     }
                 }
             }
@@ -283,16 +286,14 @@ impl Chords {
 
     /// Sorts the hits by ray, and those of a ray by place.
     fn sort(&mut self) -> Result<(), Error> {
-        let Chords { floor, hits, starts, sorted, .. } = self;
-        refill(starts, floor.len() + 2)?;
-        sorted.clear();
-        sorted.try_reserve(hits.len())?;
-        sorted.extend_from_slice(hits);
-        for hit in hits.iter() {
-            starts[hit.ray as usize + 2] += 1;
-        }
+        let Chords { hits, starts, sorted, .. } = self;
         for i in 2..starts.len() {
             starts[i] += starts[i - 1];
+        }
+        // (What lies there of cells before is written over.)
+        if let Some(more) = hits.len().checked_sub(sorted.len()) {
+            sorted.try_reserve(more)?;
+            sorted.extend_from_slice(&hits[sorted.len()..]);
         }
         for hit in hits.iter() {
             let place = &mut starts[hit.ray as usize + 1];

@@ -96,7 +96,7 @@ impl<'p> Projection<'p> {
     #[inline]
     pub(super) fn span(&self, row: i32) -> Option<Span> {
         let v = self.axes.v;
-        let above = self.corners.map(|corner| row >= corner.rank[v]);
+        let above = self.corners.each_ref().map(|corner| row >= corner.rank[v]);
         if above[0] == above[1] && above[1] == above[2] {
             return None;
         }
@@ -127,10 +127,10 @@ impl<'p> Projection<'p> {
 
     /// The first column whose centre lies to the right of edge `i` in `row`, which the edge crosses. A centre
     /// on the edge lies to the right: the shift along u outweighs the one along v.
-    #[inline]
+    #[inline(always)]
     fn column(&self, i: usize, row: i32) -> i32 {
         let Axes { u, v, .. } = self.axes;
-        let (a, b) = (self.corners[i], self.corners[(i + 1) % 3]);
+        let (a, b) = (&self.corners[i], &self.corners[(i + 1) % 3]);
         let (first, last) = (a.rank[u].min(b.rank[u]), a.rank[u].max(b.rank[u]));
         if first == last {
             return first;
@@ -218,13 +218,15 @@ impl<'p> Projection<'p> {
         let mut centre = [0; 3];
         (centre[u], centre[v], centre[w]) = (column, row, k);
         let mut size = 0.0f64;
-        let [a, b, c] = self.placed.original(self.triangle).map(|corner| {
-            [0, 1, 2].map(|axis| {
-                let offset = self.placed.frame.near_offset(axis, corner[axis], 2 * centre[axis] as i64 + 1);
-                size = size.max(offset.high.abs());
-                offset
-            })
-        });
+        let mut offsets = [[DoubleDouble::default(); 3]; 3];
+        for (offsets, corner) in offsets.iter_mut().zip(self.placed.original(self.triangle)) {
+            for axis in 0..3 {
+                offsets[axis] =
+                    self.placed.frame.near_offset(axis, corner[axis], 2 * centre[axis] as i64 + 1);
+                size = size.max(offsets[axis].high.abs());
+            }
+        }
+        let [a, b, c] = &offsets;
         let minor = |i: usize, j: usize| b[i] * c[j] - b[j] * c[i];
         let det = a[u] * minor(v, w) + a[v] * minor(w, u) + a[w] * minor(u, v);
         let slope = (b[u] - a[u]) * (c[v] - a[v]) - (b[v] - a[v]) * (c[u] - a[u]);
