@@ -247,11 +247,14 @@ static void uses(void) {
     NULL_POINTER(leafless_tridexel_as_solid, solid, leafless_tridexel_as_solid(model, false, NULL, NULL));
     MAY_BE_NULL(leafless_tridexel_as_solid, options, leafless_tridexel_as_solid(model, true, NULL, &again));
     leafless_solid_free(again);
-    NULL_POINTER(leafless_tridexel_voxels, tridexel, leafless_tridexel_voxels(NULL, NULL, voxels, 1, count));
-    NULL_POINTER(leafless_tridexel_voxels, voxels, leafless_tridexel_voxels(model, NULL, NULL, 1, count));
-    NULL_POINTER(leafless_tridexel_voxels, count, leafless_tridexel_voxels(model, NULL, voxels, 1, NULL));
-    BAD_NUMBER(leafless_tridexel_voxels, voxels, leafless_tridexel_voxels(model, NULL, voxels, UINT64_MAX, count));
-    MAY_BE_NULL(leafless_tridexel_voxels, options, leafless_tridexel_voxels(model, NULL, NULL, 0, &number));
+    NULL_POINTER(leafless_tridexel_voxels, tridexel, leafless_tridexel_voxels(NULL, NULL, NULL, 0, voxels, 1, count));
+    NULL_POINTER(leafless_tridexel_voxels, voxels, leafless_tridexel_voxels(model, NULL, NULL, 0, NULL, 1, count));
+    NULL_POINTER(leafless_tridexel_voxels, count, leafless_tridexel_voxels(model, NULL, NULL, 0, voxels, 1, NULL));
+    BAD_NUMBER(leafless_tridexel_voxels, voxels, leafless_tridexel_voxels(model, NULL, NULL, 0, voxels, UINT64_MAX, count));
+    NULL_POINTER(leafless_tridexel_voxels, colours, leafless_tridexel_voxels(model, NULL, NULL, 1, voxels, 1, count));
+    BAD_NUMBER(leafless_tridexel_voxels, colours,
+               leafless_tridexel_voxels(model, NULL, (const uint8_t *)out, UINT64_MAX, voxels, 1, count));
+    MAY_BE_NULL(leafless_tridexel_voxels, options, leafless_tridexel_voxels(model, NULL, NULL, 0, NULL, 0, &number));
     untouched();
     CHECK(never == UNTOUCHED && number > 0);
 }

@@ -164,15 +164,19 @@ static void voxels(void) {
     uint64_t count = 0, again = 0, i, inside = 0, boundary = 0, expected_inside = 0, expected_boundary = 0;
     leafless_long_voxel *list;
     uint32_t x, y, z;
+    uint8_t colours[8 * 4] = {0};
+    colours[7 * 4] = 200;
+    colours[7 * 4 + 3] = 255;
     OK(leafless_tridexel_with_material(plain, 7, NULL, &model));
-    OK(leafless_tridexel_voxels(model, NULL, NULL, 0, &count));
+    OK(leafless_tridexel_voxels(model, NULL, NULL, 0, NULL, 0, &count));
     list = (leafless_long_voxel *)malloc((size_t)count * sizeof *list);
     CHECK(list != NULL && count > 100);
-    FAILS(LEAFLESS_E_BUFFER, leafless_tridexel_voxels(model, NULL, list, count - 1, &again));
-    OK(leafless_tridexel_voxels(model, NULL, list, count, &again));
+    FAILS(LEAFLESS_E_BUFFER, leafless_tridexel_voxels(model, NULL, colours, 8, list, count - 1, &again));
+    OK(leafless_tridexel_voxels(model, NULL, colours, 8, list, count, &again));
     CHECK(again == count);
     for (i = 0; i < count; i++) {
         CHECK(list[i].material == 7 && list[i].length > 0 && list[i].first[1] + list[i].length <= SIDE + 1);
+        CHECK(memcmp(list[i].colour, colours + 7 * 4, 4) == 0);
         CHECK(list[i].kind == LEAFLESS_VOXEL_INSIDE || list[i].kind == LEAFLESS_VOXEL_BOUNDARY);
         *(list[i].kind == LEAFLESS_VOXEL_INSIDE ? &inside : &boundary) += list[i].length;
     }
@@ -193,6 +197,9 @@ static void voxels(void) {
         }
     }
     CHECK(inside == expected_inside && boundary == expected_boundary);
+    /* A material without a colour is grey. */
+    OK(leafless_tridexel_voxels(model, NULL, colours, 7, list, count, &again));
+    CHECK(list[0].colour[0] == 128 && list[0].colour[3] == 255);
     free(list);
     leafless_tridexel_free(model);
     leafless_tridexel_free(plain);

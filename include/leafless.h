@@ -3518,6 +3518,10 @@ typedef struct {
      */
     uint32_t material;
     /**
+     * The material's colour: red, green, blue and opacity, 0 to 255.
+     */
+    uint8_t colour[4];
+    /**
      * LEAFLESS_VOXEL_INSIDE or LEAFLESS_VOXEL_BOUNDARY.
      */
     leafless_voxel_kind kind;
@@ -9069,12 +9073,13 @@ leafless_status leafless_tridexel_as_solid(const leafless_tridexel *tridexel,
  * The voxels of a tri-dexel model, whose corners are the centres of cells: a voxel lies inside if all of its eight
  * corners do, outside if none does, and else on the boundary. Those that do not lie outside are merged along y, as far as
  * kind and material are the same. A voxel has the material at its first corner that lies inside, x running fastest and z
- * slowest. Call it once for the count, and then with a buffer.
+ * slowest, and the colour that `colours` has at the place of the material's number; materials beyond are grey (128, 128,
+ * 128, 255). Call it once for the count, and then with a buffer.
  *
  * O(8^depth / 64 + rows).
  *
- * - Buffers: `options`, one struct or NULL; `voxels`, room for `capacity` structs, or NULL to ask for the count only;
- *   `count`, one number.
+ * - Buffers: `options`, one struct or NULL; `colours`, `colour_count` colours of four bytes (red, green, blue, opacity), or
+ *   NULL for none; `voxels`, room for `capacity` structs, or NULL to ask for the count only; `count`, one number.
  * - Result: `*count`; the rows of voxels by z, then by x, then by y.
  * - Errors: LEAFLESS_E_BUFFER if the capacity is too small; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
  * - Ownership: nothing changes hands.
@@ -9084,6 +9089,8 @@ leafless_status leafless_tridexel_as_solid(const leafless_tridexel *tridexel,
  */
 leafless_status leafless_tridexel_voxels(const leafless_tridexel *tridexel,
                                          const leafless_options *options,
+                                         const uint8_t *colours,
+                                         uint64_t colour_count,
                                          leafless_long_voxel *voxels,
                                          uint64_t capacity,
                                          uint64_t *count);

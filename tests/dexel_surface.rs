@@ -622,6 +622,9 @@ fn models_are_solids() -> Result<(), Error> {
     Ok(())
 }
 
+/// Of some of the materials.
+const COLOURS: [[u8; 4]; 2] = [[10, 20, 30, 40], [250, 0, 0, 255]];
+
 #[test]
 fn voxels_lie_between_centres() -> Result<(), Error> {
     for depth in [1, 2, 5, 6, 7] {
@@ -632,7 +635,7 @@ fn voxels_lie_between_centres() -> Result<(), Error> {
             }
             let format = DexelFormat { materials: seed % 2 == 0, ..FORMAT };
             let model = soup(&frame, format, directions, seed + u64::from(depth));
-            let voxels = dexel_voxels(model.view(), &Control::default())?;
+            let voxels = dexel_voxels(model.view(), &COLOURS, &Control::default())?;
             let n = frame.cells();
             let deciding = directions.iter().rposition(|&has| has).unwrap();
             // Dense: which centres lie inside, and of what they are made.
@@ -668,7 +671,9 @@ fn voxels_lie_between_centres() -> Result<(), Error> {
                     match here {
                         Some(_) if here == last => expected.last_mut().unwrap().length += 1,
                         Some((kind, material)) => {
-                            expected.push(LongVoxel { first: [x, y, z], length: 1, kind, material })
+                            let colour =
+                                COLOURS.get(material as usize).copied().unwrap_or([128, 128, 128, 255]);
+                            expected.push(LongVoxel { first: [x, y, z], length: 1, kind, material, colour })
                         }
                         None => {}
                     }

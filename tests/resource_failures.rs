@@ -403,7 +403,7 @@ fn operations(directory: &Path) -> Vec<(&'static str, Operation)> {
         marching_cubes_of_dexels(balls[0].view(), &CONTROL)?;
         dual_contouring_of_dexels(balls[0].view(), &CONTROL)?;
         octree_of_dexels(balls[0].view(), &CONTROL)?;
-        dexel_voxels(balls[0].view(), &CONTROL)
+        dexel_voxels(balls[0].view(), &[], &CONTROL)
     });
     operation!("dexel bytes", [balls], file::dexels::from_bytes(&file::dexels::to_bytes(&balls[0])?));
     operation!("mesh placed", [closed], {

@@ -113,7 +113,7 @@ fn changed(model: &TriDexel) {
         // What else meets all rays.
         let others = [
             octree_of_dexels(view, &CONTROL).map(drop),
-            dexel_voxels(view, &CONTROL).map(drop),
+            dexel_voxels(view, &[], &CONTROL).map(drop),
             marching_cubes_of_dexels(view, &CONTROL).map(drop),
             dual_contouring_of_dexels(view, &CONTROL).map(drop),
         ];

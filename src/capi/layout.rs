@@ -133,7 +133,7 @@ fn write_all(to: &mut dyn Write) -> fmt::Result {
         leafless_dexel_surface_report {
             crossings, several, without_rays, disagreeing, without_normals, means, clamped
         }
-        leafless_long_voxel { first, length, material, kind }
+        leafless_long_voxel { first, length, material, colour, kind }
         leafless_tridexel_probe { directions, ends, normals, has_surfaces, has_materials, reserved, rays, intervals }
         leafless_dexel_statistics { rays, intervals, bytes, volume_model, min_model, max_model }
         leafless_scene_options { struct_size, facets }

@@ -1,6 +1,6 @@
 //! What tri-dexel models become: meshes, octrees, solids, voxels.
 
-use super::boundary::{Failure, buffer, guard, out, shared};
+use super::boundary::{Failure, buffer, guard, out, shared, slice};
 use super::control::{controlled, leafless_options};
 use super::mesh::{give as give_mesh, leafless_mesh};
 use super::octree::{give as give_octree, leafless_octree};
@@ -71,6 +71,8 @@ pub struct leafless_long_voxel {
     pub length: u32,
     /// What it is made of; 0 where nothing was said.
     pub material: u32,
+    /// The material's colour: red, green, blue and opacity, 0 to 255.
+    pub colour: [u8; 4],
     /// LEAFLESS_VOXEL_INSIDE or LEAFLESS_VOXEL_BOUNDARY.
     pub kind: leafless_voxel_kind,
 }
@@ -81,6 +83,7 @@ impl From<&LongVoxel> for leafless_long_voxel {
             first: voxel.first,
             length: voxel.length,
             material: voxel.material,
+            colour: voxel.colour,
             kind: match voxel.kind {
                 VoxelKind::Inside => LEAFLESS_VOXEL_INSIDE,
                 _ => LEAFLESS_VOXEL_BOUNDARY,
@@ -189,12 +192,13 @@ pub unsafe extern "C" fn leafless_tridexel_as_solid(
 /// The voxels of a tri-dexel model, whose corners are the centres of cells: a voxel lies inside if all of its eight
 /// corners do, outside if none does, and else on the boundary. Those that do not lie outside are merged along y, as far as
 /// kind and material are the same. A voxel has the material at its first corner that lies inside, x running fastest and z
-/// slowest. Call it once for the count, and then with a buffer.
+/// slowest, and the colour that `colours` has at the place of the material's number; materials beyond are grey (128, 128,
+/// 128, 255). Call it once for the count, and then with a buffer.
 ///
 /// O(8^depth / 64 + rows).
 ///
-/// - Buffers: `options`, one struct or NULL; `voxels`, room for `capacity` structs, or NULL to ask for the count only;
-///   `count`, one number.
+/// - Buffers: `options`, one struct or NULL; `colours`, `colour_count` colours of four bytes (red, green, blue, opacity), or
+///   NULL for none; `voxels`, room for `capacity` structs, or NULL to ask for the count only; `count`, one number.
 /// - Result: `*count`; the rows of voxels by z, then by x, then by y.
 /// - Errors: LEAFLESS_E_BUFFER if the capacity is too small; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
 /// - Ownership: nothing changes hands.
@@ -205,15 +209,18 @@ pub unsafe extern "C" fn leafless_tridexel_as_solid(
 pub unsafe extern "C" fn leafless_tridexel_voxels(
     tridexel: *const leafless_tridexel,
     options: *const leafless_options,
+    colours: *const u8,
+    colour_count: u64,
     voxels: *mut leafless_long_voxel,
     capacity: u64,
     count: *mut u64,
 ) -> leafless_status {
     guard(|| unsafe {
         let model = shared(tridexel, "tridexel")?.model.view();
+        let colours = slice(colours.cast::<[u8; 4]>(), colour_count, "colours")?;
         let voxels = buffer(voxels, capacity, "voxels")?;
         let count = out(count, "count")?;
-        let found = controlled(options, |control| dexel_voxels(model, control))?;
+        let found = controlled(options, |control| dexel_voxels(model, colours, control))?;
         voxels.fill_with(found.list())?;
         count.write(found.list().len() as u64)
     })

@@ -21,7 +21,12 @@ pub struct LongVoxel {
     pub kind: VoxelKind,
     /// What it is made of; 0 where nothing was said.
     pub material: u32,
+    /// The material's colour: red, green, blue and opacity, 0 to 255.
+    pub colour: [u8; 4],
 }
+
+/// The colour of materials of which none is given: an opaque grey.
+const GREY: [u8; 4] = [128, 128, 128, 255];
 
 impl LongVoxel {
     /// Its lowest and highest corner in model space.
@@ -63,7 +68,8 @@ impl DexelVoxels {
 /// their material are the same.
 ///
 /// The material of a voxel is that of the model at the voxel's first corner that lies inside. Corners are counted with x
-/// running fastest and z slowest. If the model stores no materials it is 0.
+/// running fastest and z slowest. If the model stores no materials it is 0. Its colour is the one that `colours` has for the
+/// material, at the place of the material's number; materials beyond are grey (128, 128, 128, 255).
 ///
 /// Which centres lie inside is what [`TriDexelRef::contains_cell`] says.
 ///
@@ -85,14 +91,23 @@ impl DexelVoxels {
 ///     Ok(())
 /// };
 /// let model = TriDexel::from_rays(&frame, DexelFormat::default(), [true; 3], cube, &control)?;
-/// let voxels = dexel_voxels(model.view(), &control)?;
+/// let voxels = dexel_voxels(model.view(), &[[200, 40, 40, 255]], &control)?;
 /// assert_eq!(voxels.count(VoxelKind::Inside), 27);
 /// assert_eq!(voxels.count(VoxelKind::Boundary), 125 - 27);
 /// assert_eq!(voxels.list().iter().filter(|voxel| voxel.kind == VoxelKind::Inside).count(), 9);
+/// assert!(voxels.list().iter().all(|voxel| voxel.colour == [200, 40, 40, 255]));
 /// # Ok::<(), leafless::Error>(())
 /// ```
-pub fn dexel_voxels(model: &TriDexelRef<'_>, control: &Control<'_>) -> Result<DexelVoxels, Error> {
+pub fn dexel_voxels(
+    model: &TriDexelRef<'_>,
+    colours: &[[u8; 4]],
+    control: &Control<'_>,
+) -> Result<DexelVoxels, Error> {
     model.sound()?;
+    let row = |first: [u32; 3], length: u32, kind: VoxelKind, material: u32| {
+        let colour = colours.get(material as usize).copied().unwrap_or(GREY);
+        LongVoxel { first, length, kind, material, colour }
+    };
     let cells = model.frame().cells();
     let mut layers = Layers::new(cells)?;
     let mut voxels = DexelVoxels { list: Vec::new(), counts: [0; 3] };
@@ -113,12 +128,12 @@ pub fn dexel_voxels(model: &TriDexelRef<'_>, control: &Control<'_>) -> Result<De
                     voxels.counts[kind as usize] += u64::from(length);
                     let first = [x, 64 * w as u32 + start, z];
                     if !model.format().materials {
-                        voxels.append(LongVoxel { first, length, kind, material: 0 })?;
+                        voxels.append(row(first, length, kind, 0))?;
                         continue;
                     }
                     for y in first[1]..first[1] + length {
                         let material = layers.material(model, [x, y, z]);
-                        voxels.append(LongVoxel { first: [x, y, z], length: 1, kind, material })?;
+                        voxels.append(row([x, y, z], 1, kind, material))?;
                     }
                 }
             }

@@ -47,8 +47,8 @@ pub(super) fn substitute(given: &Coefficients, map: &ExactMap) -> Coefficients {
 /// A quadric on a universe, in unit coordinates.
 pub(super) struct Quadric {
     exact: Box<Coefficients>,
-    /// What the coefficients in doubles leave out.
-    low: [f64; 10],
+    /// The coefficients in 106 bits.
+    fine: [DoubleDouble; 10],
     form: Form,
 }
 
@@ -110,8 +110,9 @@ impl Quadric {
                 error: 64.0 * f64::EPSILON * size,
             })
         };
-        let low = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9].map(|i| (&exact[i] - &Dyadic::new(c[i])).rounded());
-        Quadric { exact: Box::new(exact), low, form }
+        let fine = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9]
+            .map(|i| DoubleDouble::sum(c[i], (&exact[i] - &Dyadic::new(c[i])).rounded()));
+        Quadric { exact: Box::new(exact), fine, form }
     }
 
     /// For which of the eight cells the polynomial is proven not negative, and not positive.
@@ -260,10 +261,7 @@ impl Quadric {
     pub(super) fn finely_along(&self, axis: usize, point: [f64; 3]) -> [DoubleDouble; 3] {
         let [i, j] = [(axis + 1) % 3, (axis + 2) % 3];
         let [u, v] = [point[i], point[j]].map(DoubleDouble::from);
-        let c = |a: usize, b: usize| {
-            let k = place(a, b);
-            DoubleDouble::sum(self.exact[k].rounded(), self.low[k])
-        };
+        let c = |a: usize, b: usize| self.fine[place(a, b)];
         let rest = (c(i, i) * u + c(i, 3)) * u + (c(j, j) * v + c(j, 3) + c(i, j) * u) * v;
         let slope = c(axis, 3) + c(axis, i) * u + c(axis, j) * v;
         [c(3, 3) + rest, slope, c(axis, axis)]
