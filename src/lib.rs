@@ -95,6 +95,7 @@ mod mesh;
 mod octree;
 mod op;
 mod query;
+mod render;
 #[cfg(feature = "scene")]
 pub mod scene;
 mod solid;

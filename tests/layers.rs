@@ -8,7 +8,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 /// From the bottom up; modules of one row may use each other.
-const LAYERS: [&[&str]; 15] = [
+const LAYERS: [&[&str]; 16] = [
     &["error", "memory", "control", "dispatch"],
     &["lattice"],
     &["octree"],
@@ -20,6 +20,7 @@ const LAYERS: [&[&str]; 15] = [
     &["attribute"],
     &["voxel"],
     &["surface"],
+    &["render"],
     &["file"],
     &["exchange"],
     &["scene"],

@@ -1,0 +1,104 @@
+//! Colours as light: linear, and multiplied by their opacity.
+
+use core::ops::{Add, Mul};
+use glam::{DVec3, Vec4};
+
+/// Red, green, blue and opacity, 0 to 1. Colours are linear, and multiplied by the opacity.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Light(pub Vec4);
+
+impl Light {
+    /// Nothing.
+    pub const NONE: Light = Light(Vec4::ZERO);
+
+    /// A colour in sRGB and opacity, 0 to 255.
+    pub fn of(rgba: [u8; 4]) -> Light {
+        let [r, g, b] = [rgba[0], rgba[1], rgba[2]].map(linear);
+        let a = f32::from(rgba[3]) / 255.0;
+        Light(Vec4::new(r * a, g * a, b * a, a))
+    }
+
+    /// This in front of that.
+    pub fn over(self, behind: Light) -> Light {
+        Light(self.0 + behind.0 * (1.0 - self.0.w))
+    }
+
+    /// As bright as this, as opaque as before.
+    pub fn lit(self, brightness: f32) -> Light {
+        Light((self.0.truncate() * brightness).extend(self.0.w))
+    }
+
+    /// sRGB and opacity, 0 to 255.
+    pub fn rgba(self) -> [u8; 4] {
+        let a = self.0.w;
+        if a <= 0.0 {
+            return [0; 4];
+        }
+        let byte = |x: f32| (x.clamp(0.0, 1.0) * 255.0 + 0.5) as u8;
+        let [r, g, b] = [self.0.x, self.0.y, self.0.z].map(|x| byte(encoded(x / a)));
+        [r, g, b, byte(a)]
+    }
+}
+
+impl Add for Light {
+    type Output = Light;
+
+    fn add(self, other: Light) -> Light {
+        Light(self.0 + other.0)
+    }
+}
+
+impl Mul<f32> for Light {
+    type Output = Light;
+
+    fn mul(self, by: f32) -> Light {
+        Light(self.0 * by)
+    }
+}
+
+/// The light of an sRGB value (IEC 61966-2-1).
+fn linear(byte: u8) -> f32 {
+    let x = f32::from(byte) / 255.0;
+    if x <= 0.04045 { x / 12.92 } else { libm::powf((x + 0.055) / 1.055, 2.4) }
+}
+
+fn encoded(x: f32) -> f32 {
+    if x <= 0.003_130_8 { 12.92 * x } else { 1.055 * libm::powf(x, 1.0 / 2.4) - 0.055 }
+}
+
+/// How bright a matt surface is with an outward normal, of any length, as seen by a camera: a lamp on the upper left behind
+/// the camera, a weaker one on the right, and some light from everywhere, so that no side is black. A surface that is seen
+/// from behind is lit as if it faced the camera.
+pub fn brightness(normal: DVec3, along: DVec3, right: DVec3, up: DVec3, forward: DVec3) -> f32 {
+    let normal = normal.normalize_or_zero();
+    let normal = if normal.dot(along) > 0.0 { -normal } else { normal };
+    let lamp = |x: f64, y: f64, z: f64| (right * x + up * y - forward * z).normalize().dot(normal).max(0.0);
+    let (key, fill) = (lamp(-0.5, 0.7, 0.75), lamp(0.8, 0.1, 0.6));
+    // What faces upward gets more of the light from everywhere.
+    let sky = 0.5 + 0.5 * up.dot(normal);
+    (0.12 + 0.12 * sky + 0.62 * key + 0.22 * fill) as f32
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn colours_come_back() {
+        for byte in 0..=255u8 {
+            let colour = [byte, 255 - byte, byte / 2, 255];
+            assert_eq!(Light::of(colour).rgba(), colour);
+        }
+        assert_eq!(Light::of([9, 9, 9, 0]).rgba(), [0; 4]);
+        let half = Light::of([200, 100, 50, 128]).rgba();
+        assert_eq!(half, [200, 100, 50, 128]);
+    }
+
+    #[test]
+    fn what_is_opaque_hides() {
+        let (red, blue) = (Light::of([255, 0, 0, 255]), Light::of([0, 0, 255, 255]));
+        assert_eq!(red.over(blue), red);
+        assert_eq!(Light::NONE.over(blue), blue);
+        assert_eq!((red * 0.5).over(Light::NONE), red * 0.5);
+    }
+}

@@ -1,0 +1,139 @@
+//! Pictures: what solids, meshes and volumes look like.
+//!
+//! A picture is made of [layers](Layer), each of which draws into small tiles: surfaces hide each other by their depth, and
+//! volumes are seen before, between and behind them. Tiles are independent of each other, so that a picture is the same for
+//! any number of threads.
+
+mod camera;
+mod clip;
+mod light;
+mod picture;
+mod stage;
+mod tile;
+
+pub use camera::{Camera, FIELD_OF_VIEW, Lens};
+pub use clip::Clip;
+pub use picture::Picture;
+
+use crate::control::{Control, Job, WHOLE};
+use crate::error::Error;
+use crate::memory;
+use alloc::vec::Vec;
+use camera::View;
+use light::Light;
+use stage::{Pass, Stage};
+use tile::Tile;
+
+/// Pixels of a tile along each axis.
+const TILE: u32 = 32;
+
+/// Most pixels of a row, and most rows.
+const MOST_PIXELS: u32 = 1 << 14;
+
+/// Most samples of a pixel along each axis.
+const MOST_GRID: u32 = 8;
+
+/// How a picture is taken.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Shot {
+    /// From where.
+    pub camera: Camera,
+    /// Width and height in pixels, 1 to 16384 each.
+    pub size: [u32; 2],
+    /// Samples of a pixel: 1, 4, 9, 16, 25, 36, 49 or 64, on a grid.
+    pub samples: u32,
+    /// What is cut away.
+    pub clip: Clip,
+    /// What is seen where nothing is: red, green, blue (sRGB) and opacity.
+    pub background: [u8; 4],
+}
+
+impl Shot {
+    /// A picture of this size with four samples a pixel, nothing cut away, on white.
+    pub fn new(camera: Camera, size: [u32; 2]) -> Shot {
+        Shot { camera, size, samples: 4, clip: Clip::new(), background: [255; 4] }
+    }
+
+    fn grid(&self) -> Result<u32, Error> {
+        let grid = (1..=MOST_GRID).find(|grid| grid * grid == self.samples);
+        grid.ok_or(Error::Argument { name: "samples", problem: "must be 1, 4, 9, 16, 25, 36, 49 or 64" })
+    }
+}
+
+/// Something that can be drawn.
+pub trait Layer: Sync + stage::Draw {}
+
+impl<T: Sync + stage::Draw> Layer for T {}
+
+/// Takes a picture of layers. Surfaces hide what lies behind them, whichever layer it is of; of two at one depth the first
+/// layer's is seen. O(pixels · samples), and what each layer says.
+///
+/// # Errors
+/// [`Error::Argument`] for a size or a number of samples that is not as it must be; what a layer reports;
+/// [`Error::OutOfMemory`], [`Error::Cancelled`].
+pub fn render(shot: &Shot, layers: &[&dyn Layer], control: &Control<'_>) -> Result<Picture, Error> {
+    let grid = shot.grid()?;
+    let [width, height] = shot.size;
+    if !shot.size.iter().all(|side| (1..=MOST_PIXELS).contains(side)) {
+        return Err(Error::Argument { name: "size", problem: "must be 1 to 16384 pixels on each side" });
+    }
+    let job = &Job::new(control);
+    job.check()?;
+    let count = width as usize * height as usize;
+    let (mut colours, mut depths) = (memory::filled(count, [0; 4])?, memory::filled(count, f32::INFINITY)?);
+    let view = &View::new(&shot.camera, shot.size);
+    let stage = Stage { view, clip: &shot.clip, grid, job };
+    let mut painters = memory::with_capacity(layers.len())?;
+    for layer in layers {
+        painters.push(layer.prepare(&stage)?);
+    }
+    let columns = width.div_ceil(TILE);
+    let tiles = columns * height.div_ceil(TILE);
+    let background = Light::of(shot.background);
+    let one = |i: u32| {
+        job.check()?;
+        let first = [i % columns * TILE, i / columns * TILE];
+        let size = [TILE.min(width - first[0]), TILE.min(height - first[1])];
+        let mut tile = Tile::new(view, first, size, grid)?;
+        for painter in painters.iter().filter(|painter| painter.pass() == Pass::Surfaces) {
+            painter.paint(&mut tile)?;
+        }
+        tile.sort();
+        for painter in painters.iter().filter(|painter| painter.pass() == Pass::Volumes) {
+            painter.paint(&mut tile)?;
+        }
+        let mut pixels = memory::with_capacity((size[0] * size[1]) as usize)?;
+        tile.resolve(background, |_, light, depth| pixels.push((light.rgba(), depth as f32)));
+        job.advance(WHOLE / tiles as usize);
+        Ok((first, size, pixels))
+    };
+    let done: Vec<_> = control.run(tiles > 1, |parallel| each(parallel, 0..tiles, one))?;
+    for (first, size, pixels) in done {
+        for (row, pixels) in (first[1]..).zip(pixels.chunks_exact(size[0] as usize)) {
+            let start = row as usize * width as usize + first[0] as usize;
+            for (i, &(colour, depth)) in (start..).zip(pixels) {
+                (colours[i], depths[i]) = (colour, depth);
+            }
+        }
+    }
+    Ok(Picture { width, height, colours, depths })
+}
+
+/// Does all tasks, on the threads at hand if `parallel`: the results in the order of the tasks.
+fn each<R: Send>(
+    parallel: bool,
+    tasks: core::ops::Range<u32>,
+    work: impl Fn(u32) -> Result<R, Error> + Send + Sync,
+) -> Result<Vec<R>, Error> {
+    #[cfg(feature = "parallel")]
+    if parallel {
+        use rayon::prelude::*;
+        return tasks.into_par_iter().map(work).collect();
+    }
+    let _ = parallel;
+    let mut done = memory::with_capacity(tasks.len())?;
+    for task in tasks {
+        done.push(work(task)?);
+    }
+    Ok(done)
+}

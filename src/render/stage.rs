@@ -1,0 +1,50 @@
+//! What layers know of the picture, and what they do.
+
+use super::camera::View;
+use super::clip::Clip;
+use super::tile::Tile;
+use crate::control::Job;
+use crate::error::Error;
+use alloc::boxed::Box;
+
+/// What layers know of the picture.
+#[derive(Clone, Copy)]
+pub struct Stage<'a> {
+    pub(crate) view: &'a View,
+    pub(crate) clip: &'a Clip,
+    /// Samples of a pixel along each axis.
+    pub(crate) grid: u32,
+    pub(crate) job: &'a Job<'a>,
+}
+
+/// What a layer does.
+pub trait Draw {
+    /// Makes ready what all tiles need.
+    ///
+    /// # Errors
+    /// The layer's own.
+    fn prepare<'a>(&'a self, stage: &Stage<'a>) -> Result<Box<dyn Painter + 'a>, Error>;
+}
+
+/// When a layer is drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Pass {
+    /// With the surfaces.
+    Surfaces,
+    /// Once all surfaces are there.
+    Volumes,
+}
+
+/// A layer that is ready to draw.
+pub trait Painter: Sync {
+    /// When it draws.
+    fn pass(&self) -> Pass {
+        Pass::Surfaces
+    }
+
+    /// Draws what it shows of a tile.
+    ///
+    /// # Errors
+    /// The layer's own.
+    fn paint(&self, tile: &mut Tile<'_>) -> Result<(), Error>;
+}
