@@ -142,6 +142,7 @@ pub use query::{
     classify_in, clearance, columns, contains, distances, heights, interference, interference_of,
     line_of_sight, measure, ray_spans, surface_area, volume_in,
 };
+pub use render::{Camera, Clip, FIELD_OF_VIEW, Finish, Layer, Lens, OctreeLayer, Picture, Shot, render};
 pub use solid::{
     Adaptive, AnyClassifier, AnySolid, AnyWorker, Band, Callback, Classifier, Crossing, Csg, Enclosure,
     Erasable, Fingerprint, Fingerprinter, GradientRange, HalfSpace, MeshSolid, Motion, SampleArray, Samples,

@@ -7,13 +7,16 @@
 mod camera;
 mod clip;
 mod light;
+mod normals;
 mod picture;
+mod solid;
 mod stage;
 mod tile;
 
 pub use camera::{Camera, FIELD_OF_VIEW, Lens};
 pub use clip::Clip;
 pub use picture::Picture;
+pub use solid::{Finish, OctreeLayer};
 
 use crate::control::{Control, Job, WHOLE};
 use crate::error::Error;

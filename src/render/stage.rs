@@ -48,3 +48,14 @@ pub trait Painter: Sync {
     /// The layer's own.
     fn paint(&self, tile: &mut Tile<'_>) -> Result<(), Error>;
 }
+
+/// What an allocation that may fail makes of one.
+impl<P: Painter> Painter for [P; 1] {
+    fn pass(&self) -> Pass {
+        self[0].pass()
+    }
+
+    fn paint(&self, tile: &mut Tile<'_>) -> Result<(), Error> {
+        self[0].paint(tile)
+    }
+}
