@@ -45,6 +45,7 @@
 //! | `attribute` | what has a value at points, inside or outside of solids |
 //! | `voxel` | voxels as records, sorted by code |
 //! | `surface` | triangle meshes of solids |
+//! | `render` | pictures of solids, meshes and volumes |
 //! | `file` | the file format |
 //! | `exchange` | the files of other programs |
 //! | `scene` | the language of OpenSCAD's CSG dumps |
@@ -142,7 +143,9 @@ pub use query::{
     classify_in, clearance, columns, contains, distances, heights, interference, interference_of,
     line_of_sight, measure, ray_spans, surface_area, volume_in,
 };
-pub use render::{Camera, Clip, FIELD_OF_VIEW, Finish, Layer, Lens, OctreeLayer, Picture, Shot, render};
+pub use render::{
+    Camera, Clip, FIELD_OF_VIEW, Finish, Layer, Lens, OctreeLayer, Picture, Shot, SolidLayer, render,
+};
 pub use solid::{
     Adaptive, AnyClassifier, AnySolid, AnyWorker, Band, Callback, Classifier, Crossing, Csg, Enclosure,
     Erasable, Fingerprint, Fingerprinter, GradientRange, HalfSpace, MeshSolid, Motion, SampleArray, Samples,

@@ -33,6 +33,7 @@ mod output;
 mod part;
 mod progress;
 mod ray;
+mod render;
 mod report;
 mod rows;
 mod sample;
@@ -100,6 +101,8 @@ enum Command {
     Neighbours(neighbours::Arguments),
     /// Say where rays on standard input first meet a solid, a mesh or a scene
     Ray(ray::Arguments),
+    /// Make a picture (PNG)
+    Render(render::Arguments),
     /// Write how far a solid, a mesh or a scene reaches in each column of cells: a height map
     Heights(heights::Arguments),
     /// Write the surface of a solid, a mesh or a scene as a triangle mesh
@@ -148,6 +151,7 @@ fn main() -> ExitCode {
         Command::Distance(arguments) => distance::run(arguments),
         Command::Neighbours(arguments) => neighbours::run(arguments),
         Command::Ray(arguments) => ray::run(arguments),
+        Command::Render(arguments) => render::run(arguments),
         Command::Heights(arguments) => heights::run(arguments),
         Command::Mesh(arguments) => surface::run(arguments),
         Command::Bitmap(arguments) => bitmap::run(arguments),

@@ -90,6 +90,8 @@ pub use volume::{
     volume_data_file, write_nrrd, write_raw_volume,
 };
 pub use warning::MeshWarning;
+#[cfg(feature = "png")]
+pub use write::write_png;
 pub use write::{WriteOptions, write_mesh, write_stl};
 
 /// Refuses text in UTF-16. Of the formats that are one text, none can be read in it.

@@ -8,15 +8,19 @@ mod camera;
 mod clip;
 mod light;
 mod normals;
+mod octree;
 mod picture;
+mod sight;
 mod solid;
 mod stage;
 mod tile;
 
 pub use camera::{Camera, FIELD_OF_VIEW, Lens};
 pub use clip::Clip;
+pub use octree::OctreeLayer;
 pub use picture::Picture;
-pub use solid::{Finish, OctreeLayer};
+pub use sight::Finish;
+pub use solid::SolidLayer;
 
 use crate::control::{Control, Job, WHOLE};
 use crate::error::Error;

@@ -7,10 +7,14 @@ mod lines;
 mod obj;
 mod off;
 mod ply;
+#[cfg(feature = "png")]
+mod png;
 mod stl;
 #[cfg(feature = "threemf")]
 mod threemf;
 
+#[cfg(feature = "png")]
+pub use png::write_png;
 pub use stl::write_stl;
 
 use super::{LengthUnit, MeshFormat};

@@ -1,0 +1,46 @@
+//! PNG.
+
+use crate::error::Error;
+use crate::render::Picture;
+use alloc::vec::Vec;
+use png::{BitDepth, ColorType, Encoder, SrgbRenderingIntent};
+
+/// Writes the colours of a picture as a PNG file: red, green and blue in sRGB, and opacity if any pixel is not opaque. The
+/// same picture makes the same bytes.
+///
+/// # Errors
+/// [`Error::OutOfMemory`]. (The encoder's own memory, some hundred kilobytes and a copy of the picture, cannot be refused.)
+///
+/// ```
+/// use leafless::{Camera, Control, Lens, Shot, exchange, render};
+/// let camera = Camera::new([0.0, -5.0, 0.0], [0.0; 3], [0.0, 0.0, 1.0], Lens::Perspective(30.0))?;
+/// let picture = render(&Shot::new(camera, [64, 48]), &[], &Control::default())?;
+/// assert!(exchange::write_png(&picture)?.starts_with(b"\x89PNG"));
+/// # Ok::<(), leafless::Error>(())
+/// ```
+pub fn write_png(picture: &Picture) -> Result<Vec<u8>, Error> {
+    let is_opaque = picture.colours().iter().all(|colour| colour[3] == 255);
+    let mut rows = Vec::new();
+    let data = if is_opaque {
+        rows.try_reserve_exact(3 * picture.colours().len())?;
+        for &[r, g, b, _] in picture.colours() {
+            rows.extend_from_slice(&[r, g, b]);
+        }
+        &rows[..]
+    } else {
+        picture.bytes()
+    };
+    let mut bytes = Vec::new();
+    let mut encoder = Encoder::new(&mut bytes, picture.width(), picture.height());
+    encoder.set_color(if is_opaque { ColorType::Rgb } else { ColorType::Rgba });
+    encoder.set_depth(BitDepth::Eight);
+    encoder.set_source_srgb(SrgbRenderingIntent::Perceptual);
+    // A vector takes all bytes, and a picture has a size that the format knows.
+    let write = || -> Result<(), png::EncodingError> {
+        let mut writer = encoder.write_header()?;
+        writer.write_image_data(data)?;
+        writer.finish()
+    };
+    write().map_err(|_| Error::OutOfMemory)?;
+    Ok(bytes)
+}

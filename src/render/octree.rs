@@ -1,0 +1,104 @@
+//! Surfaces of stored octrees, by rays.
+
+use super::normals::Normals;
+use super::sight::{Finish, Sight};
+use super::stage::{Draw, Painter, Stage};
+use super::tile::Tile;
+use crate::error::Error;
+use crate::lattice::Frame;
+use crate::memory;
+use crate::octree::OctreeRef;
+use crate::query::{Obstacle, Ray, RayHit};
+use alloc::boxed::Box;
+use alloc::vec::Vec;
+use glam::DVec3;
+
+/// The surface of a stored octree: the first cells that are not EMPTY along each line of sight.
+///
+/// Normals are those of planes fitted to the cells of 12³ about each block of 4³; where the surface is not plane there, the
+/// gradient of the occupancy over 5³ cells, in which PARTIAL cells count half. What is cut open by a clip plane is shown flat.
+///
+/// O(samples · cells along a line of sight).
+#[derive(Debug, Clone, Copy)]
+pub struct OctreeLayer<'a> {
+    tree: OctreeRef<'a>,
+    finish: Finish,
+}
+
+impl<'a> OctreeLayer<'a> {
+    /// The cells of an octree that are not EMPTY.
+    pub fn new(tree: &OctreeRef<'a>, finish: Finish) -> OctreeLayer<'a> {
+        OctreeLayer { tree: *tree, finish }
+    }
+}
+
+/// Samples of a block that rays are cast of at once: columns and rows.
+const BLOCK: [usize; 2] = [8, 4];
+
+impl Draw for OctreeLayer<'_> {
+    fn prepare<'a>(&'a self, stage: &Stage<'a>) -> Result<Box<dyn Painter + 'a>, Error> {
+        Ok(memory::boxed(OctreePainter { layer: self, stage: *stage })?)
+    }
+}
+
+struct OctreePainter<'a> {
+    layer: &'a OctreeLayer<'a>,
+    stage: Stage<'a>,
+}
+
+impl Painter for OctreePainter<'_> {
+    fn paint(&self, tile: &mut Tile<'_>) -> Result<(), Error> {
+        let tree = &self.layer.tree;
+        let mut normals = Normals::new(tree);
+        let (mut rays, mut sights): (Vec<Ray>, Vec<Sight>) = (Vec::new(), Vec::new());
+        let mut hits = [None; BLOCK[0] * BLOCK[1]];
+        for row in (0..tile.height()).step_by(BLOCK[1]) {
+            self.stage.job.check()?;
+            for column in (0..tile.width()).step_by(BLOCK[0]) {
+                rays.clear();
+                sights.clear();
+                for y in row..(row + BLOCK[1]).min(tile.height()) {
+                    for x in column..(column + BLOCK[0]).min(tile.width()) {
+                        if let Some((sight, ray)) = Sight::new(&self.stage, tile, [x, y]) {
+                            memory::push(&mut rays, ray)?;
+                            memory::push(&mut sights, sight)?;
+                        }
+                    }
+                }
+                let hits = &mut hits[..rays.len()];
+                tree.cast_rays(&rays, Obstacle::Upper, hits)?;
+                for (sight, hit) in sights.iter().zip(hits) {
+                    let Some(hit) = hit else { continue };
+                    let (t, face) = (hit.t.lower.max(0.0), DVec3::from(hit.normal));
+                    let normal = if sight.begins_in(t, face) {
+                        None
+                    } else if self.layer.finish.faces {
+                        Some(face)
+                    } else {
+                        let point = sight.from + sight.along * t;
+                        let found = normal_of_cells(&mut normals, tree.frame(), point, hit)?;
+                        Some(if found == DVec3::ZERO { face } else { found })
+                    };
+                    sight.draw(&self.layer.finish, tile, t, normal)?;
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+fn normal_of_cells(
+    normals: &mut Normals<'_>,
+    frame: &Frame,
+    point: DVec3,
+    hit: &RayHit,
+) -> Result<DVec3, Error> {
+    let scaled = DVec3::from([0, 1, 2].map(|axis| frame.scaled(axis, point[axis])));
+    let shift = frame.depth() - hit.cell.level;
+    let at = [0, 1, 2].map(|axis| {
+        let (low, high) = (hit.cell.at[axis] << shift, ((hit.cell.at[axis] + 1) << shift) - 1);
+        // (A cast saturates.)
+        (scaled[axis] as u32).clamp(low, high)
+    });
+    normals.at(scaled, at)
+}

@@ -1,0 +1,86 @@
+//! Lines of sight, and how what they meet is drawn.
+
+use super::light::{Light, brightness};
+use super::stage::Stage;
+use super::tile::Tile;
+use crate::error::Error;
+use crate::query::Ray;
+use glam::DVec3;
+
+/// What surfaces look like.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Finish {
+    /// The colour in full light: red, green, blue (sRGB) and opacity, 0 to 255.
+    pub colour: [u8; 4],
+    /// The colour of what a clip plane cuts open.
+    pub cut: [u8; 4],
+    /// Shows cells by their faces, instead of the surface that they stand for.
+    pub faces: bool,
+}
+
+impl Default for Finish {
+    /// Opaque grey, orange where it is cut.
+    fn default() -> Finish {
+        Finish { colour: [178, 187, 196, 255], cut: [213, 142, 74, 255], faces: false }
+    }
+}
+
+/// A line of sight that begins where it is shown.
+pub struct Sight {
+    sample: usize,
+    pub from: DVec3,
+    pub along: DVec3,
+    /// The depth at which it begins, and the outward normal of the clip plane there.
+    pub start: f64,
+    entry: Option<DVec3>,
+}
+
+impl Sight {
+    /// `None` if nothing of it is shown.
+    pub fn new(stage: &Stage<'_>, tile: &Tile<'_>, [x, y]: [usize; 2]) -> Option<(Sight, Ray)> {
+        let (eye, along) = tile.line(x, y);
+        let (sight, ray) = Sight::along(stage, eye, along)?;
+        Some((Sight { sample: y * tile.width() + x, ..sight }, ray))
+    }
+
+    /// The same of no sample.
+    pub fn along(stage: &Stage<'_>, eye: DVec3, along: DVec3) -> Option<(Sight, Ray)> {
+        let shown = stage.clip.shown(eye, along)?;
+        let from = eye + along * shown.from;
+        // Components far below a rounding of the others only get in the way.
+        let plain = along.to_array().map(|c| if c.abs() < 1e-60 { 0.0 } else { c });
+        let ray = Ray::new(from.to_array(), plain).and_then(|ray| ray.until(shown.to - shown.from)).ok()?;
+        Some((Sight { sample: 0, from, along, start: shown.from, entry: shown.entry }, ray))
+    }
+
+    /// Whether it begins in what it meets by such a face after t times its direction.
+    pub fn begins_in(&self, t: f64, face: DVec3) -> bool {
+        t == 0.0 && face == DVec3::ZERO
+    }
+
+    /// Draws what it meets after t times its direction, given the outward normal there; `None` if it begins in it.
+    pub fn draw(
+        &self,
+        finish: &Finish,
+        tile: &mut Tile<'_>,
+        t: f64,
+        normal: Option<DVec3>,
+    ) -> Result<(), Error> {
+        let colour = if normal.is_some() { finish.colour } else { finish.cut };
+        let normal = match normal {
+            Some(normal) if normal.dot(self.along) < 0.0 => normal,
+            Some(normal) => silhouette(normal, self.along),
+            None => self.entry.unwrap_or(-self.along),
+        };
+        let camera = &tile.view.camera;
+        let [right, up, forward] = [camera.right(), camera.up(), camera.forward()].map(DVec3::from);
+        let light = Light::of(colour).lit(brightness(normal, self.along, right, up, forward));
+        tile.put(self.sample, self.start + t, light)
+    }
+}
+
+/// The normal nearest to one that seems to face away, though it is seen: that of a silhouette.
+fn silhouette(normal: DVec3, along: DVec3) -> DVec3 {
+    let across = normal - along * (normal.dot(along) / along.length_squared());
+    across.try_normalize().unwrap_or(-along)
+}
