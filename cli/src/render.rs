@@ -11,8 +11,9 @@ use crate::source::Source;
 use crate::voxelize::threads;
 use clap::Args;
 use leafless::{
-    Affine, AnySolid, Bounds, Camera, Clip, Control, FIELD_OF_VIEW, Finish, Frame, Layer, Lens, Octree,
-    OctreeLayer, Picture, Shot, SolidLayer, bounding_box, exchange, octree_of_dexels, render,
+    Affine, AnySolid, Bounds, Camera, CellFilter, Clip, Control, Cube, FIELD_OF_VIEW, Finish, Frame, Layer,
+    Lens, Octree, OctreeLayer, Picture, Rule, Shot, SolidLayer, Tag, build, exchange, octree_of_dexels,
+    render,
 };
 use serde::Serialize;
 use std::ffi::OsString;
@@ -132,23 +133,39 @@ impl Subject {
         }
     }
 
-    /// A box around it: its bounds, or all that it is looked at in.
-    fn bounds(&self, control: &Control<'_>) -> Result<Bounds, leafless::Error> {
-        let (extent, frame) = match self {
-            Subject::Octree(octree) => {
-                (bounding_box(octree.view(), octree.frame(), 0.0, control)?, octree.frame())
+    /// Points that whoever sees sees all of it: corners of coarse cells around it, those of the universe if it is empty.
+    fn points(&self, control: &Control<'_>) -> Result<Vec<[f64; 3]>, leafless::Error> {
+        let coarse = |octree: &Octree| {
+            let frame = *octree.frame();
+            let finest = COARSE.min(frame.depth());
+            let leaves = octree.view().cells(CellFilter::tags(&[Tag::Full, Tag::Partial]).levels(0..=finest));
+            let cut = octree.view().cells(CellFilter::tags(&[Tag::Branch]).levels(finest..=finest));
+            let mut points = Vec::new();
+            for found in leaves.chain(cut) {
+                let (min, max) = Cube { frame: &frame, cell: found.cell }.bounds();
+                points.extend(corners(min, max));
             }
-            Subject::Solid(solid, frame) => {
-                let tolerance = frame.edge() / 256.0;
-                (bounding_box(&**solid, frame, tolerance, control)?, frame)
+            if points.is_empty() {
+                let bounds = Bounds::of(&frame);
+                points.extend(corners(bounds.min, bounds.max));
             }
+            points
         };
-        let corners = extent.corners.and_then(|[min, max]| {
-            Bounds::new(min.map(|interval| interval.lower), max.map(|interval| interval.upper))
-        });
-        Ok(corners.unwrap_or(Bounds::of(frame)))
+        match self {
+            Subject::Octree(octree) => Ok(coarse(octree)),
+            Subject::Solid(solid, frame) => {
+                Ok(coarse(&build(&**solid, &frame.with_depth(COARSE)?, Rule::Certified, control)?))
+            }
+        }
     }
 }
+
+fn corners(min: [f64; 3], max: [f64; 3]) -> impl Iterator<Item = [f64; 3]> {
+    (0..8).map(move |k| [0, 1, 2].map(|axis| if k >> axis & 1 == 0 { min[axis] } else { max[axis] }))
+}
+
+/// Level of the cells that a camera is fitted to.
+const COARSE: u8 = 6;
 
 /// Levels of cells of what has none of its own.
 const DEPTH: u8 = 8;
@@ -214,19 +231,24 @@ fn shot(arguments: &Arguments, subject: &Subject, control: &Control<'_>) -> Resu
     for &plane in &arguments.clip {
         clip = clip.plane(plane)?;
     }
-    let mut bounds = subject.bounds(&Control { progress: None, ..*control })?;
+    let mut points = subject.points(&Control { progress: None, ..*control })?;
     if let Some([x0, y0, z0, x1, y1, z1]) = arguments.clip_box {
         let problem = "the lower corner must not be above the upper one";
         let kept = Bounds::new([x0, y0, z0], [x1, y1, z1])
             .ok_or(leafless::Error::Argument { name: "clip-box", problem })?;
         clip = clip.within(&kept)?;
-        bounds = bounds.common(&kept).unwrap_or(kept);
+        let clamped =
+            |point: [f64; 3]| [0, 1, 2].map(|axis| point[axis].clamp(kept.min[axis], kept.max[axis]));
+        points = points.into_iter().map(clamped).collect();
     }
     let field = (!arguments.ortho).then_some(arguments.fov);
     let camera = match arguments.eye {
-        None => Camera::fitted(&bounds, arguments.from, field, f64::from(width) / f64::from(height))?,
+        None => Camera::fitted(&points, arguments.from, field, f64::from(width) / f64::from(height))?,
         Some(eye) => {
-            let middle = [0, 1, 2].map(|axis| 0.5 * (bounds.min[axis] + bounds.max[axis]));
+            let middle = [0, 1, 2].map(|axis| {
+                let at = points.iter().map(|point| point[axis]);
+                0.5 * at.clone().fold(f64::INFINITY, f64::min) + 0.5 * at.fold(f64::NEG_INFINITY, f64::max)
+            });
             let at = arguments.at.unwrap_or(middle);
             let along = [0, 1, 2].map(|axis| at[axis] - eye[axis]);
             let is_upright = along[0].hypot(along[1]) < 1e-6 * along[2].abs();

@@ -1,7 +1,6 @@
 //! From where a picture is taken.
 
 use crate::error::Error;
-use crate::lattice::Bounds;
 use crate::lattice::valid::numbers;
 use glam::DVec3;
 
@@ -50,15 +49,16 @@ impl Camera {
         Ok(Camera::facing(eye, forward, right.normalize(), lens))
     }
 
-    /// A camera that shows all of a box in a picture of width : height = `aspect`, as large as can be with a small margin.
-    /// It looks at the box from an azimuth and an elevation in degrees: 0, 0 is from −y with x to the right and z upward, a
-    /// positive azimuth from further right, a positive elevation from further above. `field_of_view`: degrees, as in
-    /// [`Lens::Perspective`]; `None` for a parallel lens.
+    /// A camera that shows all of some points (model units), one at least, in a picture of width : height = `aspect`, as
+    /// large as can be with a small margin. It looks at them from an azimuth and an elevation in degrees: 0, 0 is from −y with
+    /// x to the right and z upward, a positive azimuth from further right, a positive elevation from further above.
+    /// `field_of_view`: degrees, as in [`Lens::Perspective`]; `None` for a parallel lens. O(points).
     ///
     /// # Errors
-    /// [`Error::Argument`] if a number is not finite, the field of view not between 0 and 180, or the aspect not above 0.
+    /// [`Error::Argument`] if there is no point, a number is not finite or beyond ±2^256, the field of view not between 0 and
+    /// 180, or the aspect not above 0.
     pub fn fitted(
-        bounds: &Bounds,
+        points: &[[f64; 3]],
         [azimuth, elevation]: [f64; 2],
         field_of_view: Option<f64>,
         aspect: f64,
@@ -70,34 +70,53 @@ impl Camera {
         }
         let lens = field_of_view.map_or(Lens::Parallel(1.0), Lens::Perspective);
         check(lens)?;
+        let (mut min, mut max) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+        for point in points {
+            numbers("points", point)?;
+            (min, max) = (min.min(DVec3::from(*point)), max.max(DVec3::from(*point)));
+        }
+        if points.is_empty() {
+            return Err(Error::Argument { name: "points", problem: "must be one at least" });
+        }
         let (sin, cos) = libm::sincos(azimuth.to_radians());
         let (rise, flat) = libm::sincos(elevation.to_radians());
         let right = DVec3::new(cos, sin, 0.0);
         let forward = DVec3::new(-sin * flat, cos * flat, -rise);
-        let (min, max) = (DVec3::from(bounds.min), DVec3::from(bounds.max));
         let centre = 0.5 * min + 0.5 * max;
         // A point has no size to be fitted.
-        let size = (max - min).length().max(centre.length() * 1e-9).max(f64::MIN_POSITIVE.sqrt());
-        let camera = Camera::facing(centre, forward, right, lens);
-        let corners = (0..8).map(|k| {
-            let corner = DVec3::select(glam::BVec3::new(k & 1 != 0, k & 2 != 0, k & 4 != 0), max, min);
-            camera.seen(corner)
-        });
+        let size = (max - min).length().max(centre.length() * 1e-9).max(1e-60);
+        let mut camera = Camera::facing(centre, forward, right, lens);
+        let seen = |camera: &Camera| {
+            let camera = *camera;
+            points.iter().map(move |&point| camera.seen(DVec3::from(point)))
+        };
         let fill = 1.0 - 2.0 * MARGIN;
-        Ok(match lens {
+        let tangent = camera.half_height() * fill;
+        match lens {
             Lens::Parallel(_) => {
-                let half = corners.fold(0.0, |half: f64, at| half.max(at.y.abs()).max(at.x.abs() / aspect));
-                let height = (2.0 * half / fill).max(size * 1e-9);
-                Camera { eye: centre - forward * size, lens: Lens::Parallel(height), ..camera }
+                let (low, high) = extremes(seen(&camera));
+                let half = 0.5 * (high - low);
+                let height = 2.0 * half.y.max(half.x / aspect) / fill;
+                let middle = 0.5 * (low + high);
+                camera.eye += right * middle.x + camera.up * middle.y - forward * size;
+                camera.lens = Lens::Parallel(height.max(size * 1e-9));
             }
             Lens::Perspective(_) => {
-                let tangent = camera.half_height() * fill;
-                let far = corners.fold(0.0, |far: f64, at| {
-                    far.max(at.y.abs() / tangent - at.z).max(at.x.abs() / (tangent * aspect) - at.z)
+                // The eye lies where the wedges from left and right, and those from above and below, just hold all points.
+                let [wide, high] = [(tangent * aspect, 0), (tangent, 1)].map(|(tangent, axis)| {
+                    let sides = seen(&camera).fold([f64::NEG_INFINITY; 2], |sides, at| {
+                        let (across, deep) = (at[axis] / tangent, at.z);
+                        [sides[0].max(-across - deep), sides[1].max(across - deep)]
+                    });
+                    // Across by x, back by y: y + x ≥ sides[0], y − x ≥ sides[1], in units of the tangent.
+                    (0.5 * (sides[1] - sides[0]) * tangent, 0.5 * (sides[0] + sides[1]))
                 });
-                Camera { eye: centre - forward * far.max(0.51 * size), ..camera }
+                let nearest = seen(&camera).fold(f64::INFINITY, |nearest, at| nearest.min(at.z));
+                let back = wide.1.max(high.1).max(0.01 * size - nearest);
+                camera.eye += right * wide.0 + camera.up * high.0 - forward * back;
             }
-        })
+        }
+        Ok(camera)
     }
 
     fn facing(eye: DVec3, forward: DVec3, right: DVec3, lens: Lens) -> Camera {
@@ -143,6 +162,10 @@ impl Camera {
             Lens::Parallel(height) => 0.5 * height,
         }
     }
+}
+
+fn extremes(points: impl Iterator<Item = DVec3>) -> (DVec3, DVec3) {
+    points.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), at| (low.min(at), high.max(at)))
 }
 
 fn vector(name: &'static str, v: [f64; 3]) -> Result<DVec3, Error> {
@@ -210,6 +233,7 @@ impl View {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use alloc::vec::Vec;
 
     #[test]
     fn places_and_lines_are_inverse() {
@@ -227,34 +251,40 @@ mod tests {
     }
 
     #[test]
-    fn a_fitted_camera_shows_all_of_the_box() {
-        let bounds = Bounds::new([1.0, -2.0, 5.0], [4.0, 7.0, 5.5]).unwrap();
+    fn a_fitted_camera_shows_all_points_as_large_as_can_be() {
+        let points: Vec<[f64; 3]> = (0..50)
+            .map(|i| [0.37, 0.71, 0.13].map(|step| 5.0 * (f64::from(i) * step).fract()))
+            .map(|[x, y, z]| [x + 3.0, 2.0 * y, z - 1.0])
+            .collect();
         for aspect in [0.5, 1.0, 3.0] {
             for from in [[0.0, 0.0], [30.0, 20.0], [215.0, -80.0], [0.0, 90.0]] {
                 for lens in [None, Some(30.0), Some(120.0)] {
-                    let camera = Camera::fitted(&bounds, from, lens, aspect).unwrap();
+                    let camera = Camera::fitted(&points, from, lens, aspect).unwrap();
                     let view = View::new(&camera, [(1000.0 * aspect) as u32, 1000]);
-                    let mut least = [f64::INFINITY; 2];
-                    for k in 0..8 {
-                        let corner =
-                            [0, 1, 2].map(|i| if k >> i & 1 == 0 { bounds.min[i] } else { bounds.max[i] });
-                        let seen = camera.seen(DVec3::from(corner));
+                    let size = [view.width, view.height].map(f64::from);
+                    let mut margins = [[f64::INFINITY; 2]; 2];
+                    for &point in &points {
+                        let seen = camera.seen(DVec3::from(point));
                         assert!(seen.z > 0.0);
                         let place = view.place(seen);
-                        let size = [view.width, view.height].map(f64::from);
                         for axis in 0..2 {
-                            let margin = place[axis].min(size[axis] - place[axis]) / size[axis];
-                            least[axis] = least[axis].min(margin);
+                            margins[axis][0] = margins[axis][0].min(place[axis] / size[axis]);
+                            margins[axis][1] = margins[axis][1].min(1.0 - place[axis] / size[axis]);
                         }
                     }
-                    let margin = least[0].min(least[1]);
-                    assert!(
-                        margin > 0.039 && margin < 0.05 || lens == Some(120.0) && margin > 0.039,
-                        "{least:?}"
-                    );
+                    let least = margins.iter().flatten().fold(1.0f64, |least, margin| least.min(*margin));
+                    assert!(least > 0.0399, "{margins:?}");
+                    // Both sides of one axis are as near as they may be, unless a point would come too near to the eye.
+                    let tight = |[low, high]: [f64; 2]| low < 0.0401 && high < 0.0401;
+                    assert!(lens == Some(120.0) || margins.iter().any(|&sides| tight(sides)), "{margins:?}");
                 }
             }
         }
+        let point = Camera::fitted(&[[1.0, 2.0, 3.0]], [0.0, 0.0], Some(30.0), 1.0).unwrap();
+        assert!(point.seen(DVec3::new(1.0, 2.0, 3.0)).z > 0.0);
+        assert!(Camera::fitted(&[], [0.0, 0.0], None, 1.0).is_err());
+        assert!(Camera::fitted(&[[f64::NAN; 3]], [0.0, 0.0], None, 1.0).is_err());
+        assert!(Camera::fitted(&points, [0.0, 0.0], None, 0.0).is_err());
     }
 
     #[test]

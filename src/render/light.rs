@@ -27,16 +27,32 @@ impl Light {
     pub fn lit(self, brightness: f32) -> Light {
         Light((self.0.truncate() * brightness).extend(self.0.w))
     }
+}
+
+/// How light becomes bytes.
+pub struct Tones {
+    /// The light from which on a byte is at least as large as its place here.
+    from: [f32; 256],
+}
+
+impl Tones {
+    pub fn new() -> Tones {
+        let mut from = [0.0; 256];
+        for (byte, from) in from.iter_mut().enumerate().skip(1) {
+            *from = linear_of((byte as f32 - 0.5) / 255.0);
+        }
+        Tones { from }
+    }
 
     /// sRGB and opacity, 0 to 255.
-    pub fn rgba(self) -> [u8; 4] {
-        let a = self.0.w;
+    pub fn rgba(&self, light: Light) -> [u8; 4] {
+        let a = light.0.w;
         if a <= 0.0 {
             return [0; 4];
         }
-        let byte = |x: f32| (x.clamp(0.0, 1.0) * 255.0 + 0.5) as u8;
-        let [r, g, b] = [self.0.x, self.0.y, self.0.z].map(|x| byte(encoded(x / a)));
-        [r, g, b, byte(a)]
+        let byte = |x: f32| (self.from.partition_point(|&from| from <= x).max(1) - 1) as u8;
+        let [r, g, b] = [light.0.x, light.0.y, light.0.z].map(|x| byte(x / a));
+        [r, g, b, (a.clamp(0.0, 1.0) * 255.0 + 0.5) as u8]
     }
 }
 
@@ -56,14 +72,13 @@ impl Mul<f32> for Light {
     }
 }
 
-/// The light of an sRGB value (IEC 61966-2-1).
 fn linear(byte: u8) -> f32 {
-    let x = f32::from(byte) / 255.0;
-    if x <= 0.04045 { x / 12.92 } else { libm::powf((x + 0.055) / 1.055, 2.4) }
+    linear_of(f32::from(byte) / 255.0)
 }
 
-fn encoded(x: f32) -> f32 {
-    if x <= 0.003_130_8 { 12.92 * x } else { 1.055 * libm::powf(x, 1.0 / 2.4) - 0.055 }
+/// The light of an sRGB value, 0 to 1 (IEC 61966-2-1).
+fn linear_of(x: f32) -> f32 {
+    if x <= 0.04045 { x / 12.92 } else { libm::powf((x + 0.055) / 1.055, 2.4) }
 }
 
 /// How bright a matt surface is with an outward normal, of any length, as seen by a camera: a lamp on the upper left behind
@@ -76,7 +91,7 @@ pub fn brightness(normal: DVec3, along: DVec3, right: DVec3, up: DVec3, forward:
     let (key, fill) = (lamp(-0.5, 0.7, 0.75), lamp(0.8, 0.1, 0.6));
     // What faces upward gets more of the light from everywhere.
     let sky = 0.5 + 0.5 * up.dot(normal);
-    (0.12 + 0.12 * sky + 0.62 * key + 0.22 * fill) as f32
+    (0.05 + 0.09 * sky + 0.8 * key + 0.16 * fill) as f32
 }
 
 #[cfg(test)]
@@ -85,12 +100,13 @@ mod tests {
 
     #[test]
     fn colours_come_back() {
+        let tones = Tones::new();
         for byte in 0..=255u8 {
             let colour = [byte, 255 - byte, byte / 2, 255];
-            assert_eq!(Light::of(colour).rgba(), colour);
+            assert_eq!(tones.rgba(Light::of(colour)), colour);
         }
-        assert_eq!(Light::of([9, 9, 9, 0]).rgba(), [0; 4]);
-        let half = Light::of([200, 100, 50, 128]).rgba();
+        assert_eq!(tones.rgba(Light::of([9, 9, 9, 0])), [0; 4]);
+        let half = tones.rgba(Light::of([200, 100, 50, 128]));
         assert_eq!(half, [200, 100, 50, 128]);
     }
 

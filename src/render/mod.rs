@@ -27,7 +27,7 @@ use crate::error::Error;
 use crate::memory;
 use alloc::vec::Vec;
 use camera::View;
-use light::Light;
+use light::{Light, Tones};
 use stage::{Pass, Stage};
 use tile::Tile;
 
@@ -96,7 +96,7 @@ pub fn render(shot: &Shot, layers: &[&dyn Layer], control: &Control<'_>) -> Resu
     }
     let columns = width.div_ceil(TILE);
     let tiles = columns * height.div_ceil(TILE);
-    let background = Light::of(shot.background);
+    let (background, tones) = (Light::of(shot.background), Tones::new());
     let one = |i: u32| {
         job.check()?;
         let first = [i % columns * TILE, i / columns * TILE];
@@ -110,7 +110,7 @@ pub fn render(shot: &Shot, layers: &[&dyn Layer], control: &Control<'_>) -> Resu
             painter.paint(&mut tile)?;
         }
         let mut pixels = memory::with_capacity((size[0] * size[1]) as usize)?;
-        tile.resolve(background, |_, light, depth| pixels.push((light.rgba(), depth as f32)));
+        tile.resolve(background, |_, light, depth| pixels.push((tones.rgba(light), depth as f32)));
         job.advance(WHOLE / tiles as usize);
         Ok((first, size, pixels))
     };

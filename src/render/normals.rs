@@ -169,82 +169,125 @@ const WEIGHTS: [f64; 13] = [
 /// Cells of 2³ along each axis of the window.
 const COARSE: usize = 6;
 
+/// Where lines along one axis cross the surface: how many, and the sums of their places and of the products of these.
+#[derive(Clone, Copy, Default)]
+struct Crossings {
+    count: f64,
+    sum: DVec3,
+    squares: DVec3,
+    /// y z, z x, x y.
+    products: DVec3,
+    /// From inside to outside, added up.
+    out: f64,
+}
+
+impl Crossings {
+    #[inline(always)]
+    fn add(&mut self, axis: usize, [x, y, z]: [usize; 3], here: u8, next: u8) {
+        // Sixteenths of a cell of 2³, of which half is the surface.
+        if (here < 8) == (next < 8) {
+            return;
+        }
+        let (here, next) = (f64::from(here), f64::from(next));
+        let mut at = DVec3::new(x as f64, y as f64, z as f64) * 2.0 + (1.0 - COARSE as f64);
+        at[axis] += 2.0 * (here - 8.0) / (here - next);
+        self.count += 1.0;
+        self.sum += at;
+        self.squares += at * at;
+        self.products += DVec3::new(at.y * at.z, at.z * at.x, at.x * at.y);
+        self.out += here - next;
+    }
+}
+
 /// The plane about the block in the middle.
 fn fitted(words: &[[[Planes; 3]; 3]; 3]) -> Fit {
-    let mut filled = [[[0.0f64; COARSE]; COARSE]; COARSE];
-    let (mut any, mut all) = (0u64, !0u64);
+    let all = words.iter().flatten().flatten();
+    let (any, all) = all.fold((0, !0), |(any, all), word| (any | word.upper, all & word.full()));
+    if any == 0 || all == !0 {
+        return Fit::default();
+    }
+    let mut filled = [[[0u8; COARSE]; COARSE]; COARSE];
     for (z, plane) in words.iter().enumerate() {
         for (y, row) in plane.iter().enumerate() {
             for (x, word) in row.iter().enumerate() {
-                (any, all) = (any | word.upper, all & word.full());
-                for octant in 0..8usize {
-                    let bits = |word: u64| f64::from((word >> (8 * octant) & 0xFF).count_ones());
-                    let share = (bits(word.upper) + bits(word.full())) / 16.0;
+                let shares = (set_bits_by_byte(word.upper) + set_bits_by_byte(word.full())).to_le_bytes();
+                for (octant, share) in shares.into_iter().enumerate() {
                     filled[2 * z + (octant >> 2)][2 * y + (octant >> 1 & 1)][2 * x + (octant & 1)] = share;
                 }
             }
         }
     }
-    if any == 0 || all == !0 {
-        return Fit::default();
-    }
-    let mut points = [(DVec3::ZERO, 0usize); 3 * COARSE * COARSE * COARSE];
-    let mut count = 0;
-    // From inside to outside, added up.
-    let mut out = DVec3::ZERO;
-    let mut add = |at: [usize; 3], axis: usize, inner: f64, outer: f64| {
-        if (inner < 0.5) == (outer < 0.5) {
-            return;
-        }
-        let mut point = DVec3::from(at.map(|a| 2.0 * a as f64 + 1.0));
-        point[axis] += 2.0 * (inner - 0.5) / (inner - outer);
-        out[axis] += inner - outer;
-        points[count] = (point, axis);
-        count += 1;
-    };
+    let mut crossings = [Crossings::default(); 3];
     for z in 0..COARSE {
         for y in 0..COARSE {
             for x in 0..COARSE {
-                let here = filled[z][y][x];
+                let (at, here) = ([x, y, z], filled[z][y][x]);
                 if x + 1 < COARSE {
-                    add([x, y, z], 0, here, filled[z][y][x + 1]);
+                    crossings[0].add(0, at, here, filled[z][y][x + 1]);
                 }
                 if y + 1 < COARSE {
-                    add([x, y, z], 1, here, filled[z][y + 1][x]);
+                    crossings[1].add(1, at, here, filled[z][y + 1][x]);
                 }
                 if z + 1 < COARSE {
-                    add([x, y, z], 2, here, filled[z + 1][y][x]);
+                    crossings[2].add(2, at, here, filled[z + 1][y][x]);
                 }
             }
         }
     }
-    let points = &points[..count];
-    let out = out.normalize_or_zero();
-    if count < 3 || out == DVec3::ZERO {
+    let count: f64 = crossings.iter().map(|found| found.count).sum();
+    let out = DVec3::from(crossings.map(|found| found.out)).normalize_or_zero();
+    // Crossings of lines that run along the surface are no good.
+    let weights = (out * out).to_array();
+    let total: f64 = (0..3).map(|axis| weights[axis] * crossings[axis].count).sum();
+    let is_known = count >= 3.0 && total > 1e-9;
+    if !is_known {
         return Fit::default();
     }
-    // Crossings of lines that run along the surface are no good.
-    let weight = |axis: usize| out[axis] * out[axis];
-    let total: f64 = points.iter().map(|&(_, axis)| weight(axis)).sum();
-    let middle = points.iter().map(|&(point, axis)| point * weight(axis)).sum::<DVec3>() / total;
-    let mut spread = DMat3::ZERO;
-    for &(point, axis) in points {
-        let from = point - middle;
-        let weighted = from * (weight(axis) / total);
-        spread += DMat3::from_cols(weighted * from.x, weighted * from.y, weighted * from.z);
+    let mean = |part: fn(&Crossings) -> DVec3| {
+        (0..3).map(|axis| part(&crossings[axis]) * weights[axis]).sum::<DVec3>() / total
+    };
+    let middle = mean(|found| found.sum);
+    let squares = mean(|found| found.squares) - middle * middle;
+    let products = mean(|found| found.products)
+        - DVec3::new(middle.y * middle.z, middle.z * middle.x, middle.x * middle.y);
+    let spread = DMat3::from_cols(
+        DVec3::new(squares.x, products.z, products.y),
+        DVec3::new(products.z, squares.y, products.x),
+        DVec3::new(products.y, products.x, squares.z),
+    );
+    // The direction in which the points spread least: eight inverse iterations, by squaring.
+    let mut inverse = (spread + DMat3::from_diagonal(DVec3::splat(1e-3))).inverse();
+    for _ in 0..3 {
+        let scale = inverse.x_axis.x.abs().max(inverse.y_axis.y.abs()).max(inverse.z_axis.z.abs());
+        inverse *= 1.0 / scale;
+        inverse = inverse * inverse;
     }
-    // The direction in which the points spread least: by inverse iteration.
-    let inverse = (spread + DMat3::from_diagonal(DVec3::splat(1e-3))).inverse();
-    let mut normal = out;
-    for _ in 0..16 {
-        normal = (inverse * normal).normalize_or_zero();
-    }
+    let normal = (inverse * out).normalize_or_zero();
     let off = libm::sqrt(normal.dot(spread * normal).max(0.0));
     let is_sound = normal.is_finite() && normal != DVec3::ZERO;
     if !is_sound {
         return Fit::default();
     }
-    let normal = if normal.dot(out) < 0.0 { -normal } else { normal };
     let confidence = ((PLANE[1] - off) / (PLANE[1] - PLANE[0])).clamp(0.0, 1.0);
-    Fit { normal, confidence }
+    Fit { normal: if normal.dot(out) < 0.0 { -normal } else { normal }, confidence }
+}
+
+/// How many bits of each byte are set.
+fn set_bits_by_byte(word: u64) -> u64 {
+    let pairs = word - (word >> 1 & 0x5555_5555_5555_5555);
+    let fours = (pairs & 0x3333_3333_3333_3333) + (pairs >> 2 & 0x3333_3333_3333_3333);
+    (fours + (fours >> 4)) & 0x0F0F_0F0F_0F0F_0F0F
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bits_are_counted_by_byte() {
+        for word in [0, !0, 0x0123_4567_89AB_CDEF, 0x8000_0000_0000_0001] {
+            let expected = u64::to_le_bytes(word).map(|byte| byte.count_ones() as u8);
+            assert_eq!(set_bits_by_byte(word).to_le_bytes(), expected);
+        }
+    }
 }

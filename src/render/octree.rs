@@ -50,44 +50,70 @@ impl Painter for OctreePainter<'_> {
     fn paint(&self, tile: &mut Tile<'_>) -> Result<(), Error> {
         let tree = &self.layer.tree;
         let mut normals = Normals::new(tree);
-        let (mut rays, mut sights): (Vec<Ray>, Vec<Sight>) = (Vec::new(), Vec::new());
-        let mut hits = [None; BLOCK[0] * BLOCK[1]];
-        for row in (0..tile.height()).step_by(BLOCK[1]) {
-            self.stage.job.check()?;
-            for column in (0..tile.width()).step_by(BLOCK[0]) {
-                rays.clear();
-                sights.clear();
-                for y in row..(row + BLOCK[1]).min(tile.height()) {
-                    for x in column..(column + BLOCK[0]).min(tile.width()) {
-                        if let Some((sight, ray)) = Sight::new(&self.stage, tile, [x, y]) {
-                            memory::push(&mut rays, ray)?;
-                            memory::push(&mut sights, sight)?;
-                        }
-                    }
-                }
-                let hits = &mut hits[..rays.len()];
-                tree.cast_rays(&rays, Obstacle::Upper, hits)?;
-                for (sight, hit) in sights.iter().zip(hits) {
-                    let Some(hit) = hit else { continue };
-                    let (t, face) = (hit.t.lower.max(0.0), DVec3::from(hit.normal));
-                    let normal = if sight.begins_in(t, face) {
-                        None
-                    } else if self.layer.finish.faces {
-                        Some(face)
-                    } else {
-                        let point = sight.from + sight.along * t;
-                        let found = normal_of_cells(&mut normals, tree.frame(), point, hit)?;
-                        Some(if found == DVec3::ZERO { face } else { found })
-                    };
-                    sight.draw(&self.layer.finish, tile, t, normal)?;
-                }
+        let mut cast = Cast::new(tree, self.stage);
+        while let Some((sights, hits)) = cast.next(tile)? {
+            for (sight, hit) in sights.iter().zip(hits) {
+                let Some(hit) = hit else { continue };
+                let (t, face) = (hit.t.lower.max(0.0), DVec3::from(hit.normal));
+                let normal = if sight.begins_in(t, face) {
+                    None
+                } else if self.layer.finish.faces {
+                    Some(face)
+                } else {
+                    let point = sight.from + sight.along * t;
+                    let found = normal_of_cells(&mut normals, tree.frame(), point, hit)?;
+                    Some(if found == DVec3::ZERO { face } else { found })
+                };
+                sight.draw(&self.layer.finish, tile, t, normal)?;
             }
         }
         Ok(())
     }
 }
 
-fn normal_of_cells(
+/// The lines of sight of a tile and what they meet, block by block.
+pub struct Cast<'t, 'a> {
+    tree: &'t OctreeRef<'a>,
+    stage: Stage<'t>,
+    block: usize,
+    rays: Vec<Ray>,
+    sights: Vec<Sight>,
+    hits: [Option<RayHit>; BLOCK[0] * BLOCK[1]],
+}
+
+impl<'t, 'a> Cast<'t, 'a> {
+    pub fn new(tree: &'t OctreeRef<'a>, stage: Stage<'t>) -> Cast<'t, 'a> {
+        let (rays, sights) = (Vec::new(), Vec::new());
+        Cast { tree, stage, block: 0, rays, sights, hits: [None; BLOCK[0] * BLOCK[1]] }
+    }
+
+    /// The next block; `None` after the last one.
+    pub fn next(&mut self, tile: &Tile<'_>) -> Result<Option<(&[Sight], &[Option<RayHit>])>, Error> {
+        let across = tile.width().div_ceil(BLOCK[0]);
+        let (column, row) = (self.block % across * BLOCK[0], self.block / across * BLOCK[1]);
+        if row >= tile.height() {
+            return Ok(None);
+        }
+        self.block += 1;
+        self.stage.job.check()?;
+        self.rays.clear();
+        self.sights.clear();
+        for y in row..(row + BLOCK[1]).min(tile.height()) {
+            for x in column..(column + BLOCK[0]).min(tile.width()) {
+                if let Some((sight, ray)) = Sight::new(&self.stage, tile, [x, y]) {
+                    memory::push(&mut self.rays, ray)?;
+                    memory::push(&mut self.sights, sight)?;
+                }
+            }
+        }
+        let hits = &mut self.hits[..self.rays.len()];
+        self.tree.cast_rays(&self.rays, Obstacle::Upper, hits)?;
+        Ok(Some((&self.sights, hits)))
+    }
+}
+
+/// The normal at a point of the surface that lies on a cell.
+pub fn normal_of_cells(
     normals: &mut Normals<'_>,
     frame: &Frame,
     point: DVec3,

@@ -32,6 +32,8 @@ pub struct Sight {
     pub along: DVec3,
     /// The depth at which it begins, and the outward normal of the clip plane there.
     pub start: f64,
+    /// Where it ends.
+    length: f64,
     entry: Option<DVec3>,
 }
 
@@ -47,10 +49,18 @@ impl Sight {
     pub fn along(stage: &Stage<'_>, eye: DVec3, along: DVec3) -> Option<(Sight, Ray)> {
         let shown = stage.clip.shown(eye, along)?;
         let from = eye + along * shown.from;
+        let length = shown.to - shown.from;
+        let sight = Sight { sample: 0, from, along, start: shown.from, length, entry: shown.entry };
+        let ray = sight.beyond(0.0)?;
+        Some((sight, ray))
+    }
+
+    /// The rest of it after t times its direction; `None` if that is nothing.
+    pub fn beyond(&self, t: f64) -> Option<Ray> {
         // Components far below a rounding of the others only get in the way.
-        let plain = along.to_array().map(|c| if c.abs() < 1e-60 { 0.0 } else { c });
-        let ray = Ray::new(from.to_array(), plain).and_then(|ray| ray.until(shown.to - shown.from)).ok()?;
-        Some((Sight { sample: 0, from, along, start: shown.from, entry: shown.entry }, ray))
+        let plain = self.along.to_array().map(|c| if c.abs() < 1e-60 { 0.0 } else { c });
+        let from = (self.from + self.along * t).to_array().map(|c| if c.abs() < 1e-60 { 0.0 } else { c });
+        Ray::new(from, plain).and_then(|ray| ray.until(self.length - t)).ok()
     }
 
     /// Whether it begins in what it meets by such a face after t times its direction.

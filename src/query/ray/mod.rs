@@ -6,14 +6,12 @@
 
 mod beam;
 mod course;
-mod glance;
 mod line;
 mod march;
 mod octree;
 mod search;
 mod solid;
 
-pub(crate) use glance::Glance;
 pub use solid::{Sight, cast_rays, line_of_sight, ray_spans};
 
 use crate::error::Error;
