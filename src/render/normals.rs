@@ -1,9 +1,9 @@
 //! Normals of surfaces of which only cells are known.
 //!
 //! Cells of one size say little of a direction: a plane that rises by less than a cell over five of them looks level. So a
-//! plane is fitted to the surface about each block of 4³ cells, in a window of 12³, and the planes of the eight blocks about a
-//! point are blended. Where the surface is not plane there, about edges and thin walls, it is the gradient of the occupancy
-//! over 5³ cells instead.
+//! plane is fitted to the surface about each block of 8³ cells, in a window of 24³, and the planes of the 27 blocks about a
+//! point are blended. Where the surface is not plane there, it is blocks of 4³ in windows of 12³; and where it is not plane
+//! there either, about edges and thin walls, the gradient of the occupancy over 5³ cells.
 
 use crate::error::Error;
 use crate::lattice::morton;
@@ -20,7 +20,7 @@ pub struct Normals<'a> {
     blocks: i32,
     outside: Planes,
     words: HashMap<[i32; 3], Planes>,
-    fits: HashMap<[i32; 3], Fit>,
+    fits: [HashMap<[i32; 3], Fit>; 2],
 }
 
 /// A plane through the surface about a block.
@@ -32,60 +32,95 @@ struct Fit {
     confidence: f64,
 }
 
-/// Root mean squares of the distances from the plane, in cells, up to which a surface counts as plane, and from which on not at
-/// all. (Rounding to cells alone makes some 0.3.)
-const PLANE: [f64; 2] = [0.45, 0.8];
+/// Edges of blocks, large and small.
+const EDGES: [i32; 2] = [8, 4];
 
-/// Confidence below which planes do not say anything.
-const LEAST: f64 = 0.3;
+/// Root mean squares of the distances from the plane, in cells, up to which a surface counts as plane, and from which on not at
+/// all. (In small windows rounding to cells alone makes some 0.3.)
+const PLANE: [[f64; 2]; 2] = [[0.25, 0.45], [0.45, 0.8]];
+
+/// Confidences below which planes do not say anything.
+const LEAST: [f64; 2] = [0.7, 0.3];
 
 impl<'a> Normals<'a> {
     pub fn new(tree: &OctreeRef<'a>) -> Normals<'a> {
         let outside = Planes::uniform(if tree.exterior() == Tag::Full { Tag::Full } else { Tag::Empty });
         let blocks = (tree.frame().cells() as i32 + 3) / 4;
-        Normals { tree: *tree, blocks, outside, words: HashMap::new(), fits: HashMap::new() }
+        Normals {
+            tree: *tree,
+            blocks,
+            outside,
+            words: HashMap::new(),
+            fits: [HashMap::new(), HashMap::new()],
+        }
     }
 
     /// The outward normal at a point of the surface, in cells from the universe's lower corner, that lies in or on the finest
     /// cell `at`; of length 1, or zero if nothing is known.
     pub fn at(&mut self, point: DVec3, at: [u32; 3]) -> Result<DVec3, Error> {
-        let place = point / 4.0 - 0.5;
-        let base = place.floor();
-        let part = place - base;
-        let base = [base.x as i32, base.y as i32, base.z as i32];
-        let (mut sum, mut confidence) = (DVec3::ZERO, 0.0);
-        for k in 0..8 {
-            let corner = [k & 1, k >> 1 & 1, k >> 2];
-            let weight =
-                (0..3).fold(1.0, |weight, i| weight * if corner[i] == 1 { part[i] } else { 1.0 - part[i] });
-            if weight > 0.0 {
-                let fit = self.fit([0, 1, 2].map(|i| base[i] + corner[i]))?;
-                sum += fit.normal * (weight * fit.confidence);
-                confidence += weight * fit.confidence;
+        for size in [0, 1] {
+            if let Some(normal) = self.blended(size, point)? {
+                return Ok(normal);
             }
-        }
-        // Planes that disagree have a short sum.
-        if confidence > LEAST && sum.length() > 0.9 * confidence {
-            return Ok(sum.normalize());
         }
         self.gradient(at)
     }
 
-    fn fit(&mut self, block: [i32; 3]) -> Result<Fit, Error> {
-        if let Some(fit) = self.fits.get(&block) {
-            return Ok(*fit);
-        }
-        let mut words = [[[Planes::uniform(Tag::Empty); 3]; 3]; 3];
-        for (z, plane) in (-1..).zip(&mut words) {
-            for (y, row) in (-1..).zip(plane) {
-                for (x, word) in (-1..).zip(row) {
-                    *word = self.word([block[0] + x, block[1] + y, block[2] + z])?;
+    /// The mean of the planes about a point.
+    fn blended(&mut self, size: usize, point: DVec3) -> Result<Option<DVec3>, Error> {
+        let place = point / f64::from(EDGES[size]);
+        let middle = place.floor();
+        // Quadratic splines over three blocks along each axis.
+        let from = place - middle - 0.5;
+        let (low, high) = (0.5 - from, 0.5 + from);
+        let weights = [0.5 * low * low, 0.75 - from * from, 0.5 * high * high];
+        let block = [middle.x as i32, middle.y as i32, middle.z as i32];
+        let (mut sum, mut confidence, mut total) = (DVec3::ZERO, 0.0, 0.0);
+        for (z, wz) in (-1..).zip(weights.map(|w| w.z)) {
+            for (y, wy) in (-1..).zip(weights.map(|w| w.y * wz)) {
+                for (x, weight) in (-1..).zip(weights.map(|w| w.x * wy)) {
+                    let fit = self.fit(size, [block[0] + x, block[1] + y, block[2] + z])?;
+                    sum += fit.normal * (weight * fit.confidence);
+                    confidence += weight * fit.confidence;
+                    // (Blocks without a surface do not count.)
+                    total += if fit.normal == DVec3::ZERO { 0.0 } else { weight };
                 }
             }
         }
-        let fit = fitted(&words);
-        self.fits.try_reserve(1)?;
-        self.fits.insert(block, fit);
+        // Planes that disagree have a short sum.
+        let is_plane = confidence > LEAST[size] * total && sum.length() > 0.9 * confidence && total > 0.2;
+        Ok(is_plane.then(|| sum.normalize()))
+    }
+
+    fn fit(&mut self, size: usize, block: [i32; 3]) -> Result<Fit, Error> {
+        if let Some(fit) = self.fits[size].get(&block) {
+            return Ok(*fit);
+        }
+        let mut filled = [[[0; COARSE]; COARSE]; COARSE];
+        if size == 0 {
+            for (z, plane) in (-2..).zip(&mut filled) {
+                for (y, row) in (-2..).zip(plane) {
+                    for (x, share) in (-2..).zip(row) {
+                        let word = self.word([2 * block[0] + x, 2 * block[1] + y, 2 * block[2] + z])?;
+                        *share = (word.upper.count_ones() + word.full().count_ones()) as u8;
+                    }
+                }
+            }
+        } else {
+            for (z, y, x) in (0..27).map(|k| (k / 9, k / 3 % 3, k % 3)) {
+                let at = [x, y, z].map(|k| k as i32 - 1);
+                let word = self.word([block[0] + at[0], block[1] + at[1], block[2] + at[2]])?;
+                let shares = set_bits_by_byte(word.upper) + set_bits_by_byte(word.full());
+                for (octant, share) in shares.to_le_bytes().into_iter().enumerate() {
+                    filled[2 * z + (octant >> 2)][2 * y + (octant >> 1 & 1)][2 * x + (octant & 1)] = share;
+                }
+            }
+        }
+        // Two for each FULL cell of those that are counted together.
+        let fit =
+            if size == 0 { fitted(&filled, 128, 4.0, PLANE[0]) } else { fitted(&filled, 16, 2.0, PLANE[1]) };
+        self.fits[size].try_reserve(1)?;
+        self.fits[size].insert(block, fit);
         Ok(fit)
     }
 
@@ -166,7 +201,7 @@ const WEIGHTS: [f64; 13] = [
     0.108_368, 0.086_774, 0.069_483,
 ];
 
-/// Cells of 2³ along each axis of the window.
+/// What is counted together, along each axis of a window.
 const COARSE: usize = 6;
 
 /// Where lines along one axis cross the surface: how many, and the sums of their places and of the products of these.
@@ -182,15 +217,15 @@ struct Crossings {
 }
 
 impl Crossings {
+    /// `half`: how much is half full.
     #[inline(always)]
-    fn add(&mut self, axis: usize, [x, y, z]: [usize; 3], here: u8, next: u8) {
-        // Sixteenths of a cell of 2³, of which half is the surface.
-        if (here < 8) == (next < 8) {
+    fn add(&mut self, axis: usize, [x, y, z]: [usize; 3], [here, next]: [u8; 2], half: u8) {
+        if (here < half) == (next < half) {
             return;
         }
         let (here, next) = (f64::from(here), f64::from(next));
-        let mut at = DVec3::new(x as f64, y as f64, z as f64) * 2.0 + (1.0 - COARSE as f64);
-        at[axis] += 2.0 * (here - 8.0) / (here - next);
+        let mut at = DVec3::new(x as f64, y as f64, z as f64) - 0.5 * (COARSE as f64 - 1.0);
+        at[axis] += (here - f64::from(half)) / (here - next);
         self.count += 1.0;
         self.sum += at;
         self.squares += at * at;
@@ -199,23 +234,14 @@ impl Crossings {
     }
 }
 
-/// The plane about the block in the middle.
-fn fitted(words: &[[[Planes; 3]; 3]; 3]) -> Fit {
-    let all = words.iter().flatten().flatten();
-    let (any, all) = all.fold((0, !0), |(any, all), word| (any | word.upper, all & word.full()));
-    if any == 0 || all == !0 {
+/// The plane about the block in the middle of a window, of which is given how full each part is, `full` at the most; parts are
+/// `edge` cells long.
+fn fitted(filled: &[[[u8; COARSE]; COARSE]; COARSE], full: u8, edge: f64, plane: [f64; 2]) -> Fit {
+    let mut all = filled.iter().flatten().flatten();
+    let half = full / 2;
+    let first = filled[0][0][0] < half;
+    if all.all(|&share| (share < half) == first) {
         return Fit::default();
-    }
-    let mut filled = [[[0u8; COARSE]; COARSE]; COARSE];
-    for (z, plane) in words.iter().enumerate() {
-        for (y, row) in plane.iter().enumerate() {
-            for (x, word) in row.iter().enumerate() {
-                let shares = (set_bits_by_byte(word.upper) + set_bits_by_byte(word.full())).to_le_bytes();
-                for (octant, share) in shares.into_iter().enumerate() {
-                    filled[2 * z + (octant >> 2)][2 * y + (octant >> 1 & 1)][2 * x + (octant & 1)] = share;
-                }
-            }
-        }
     }
     let mut crossings = [Crossings::default(); 3];
     for z in 0..COARSE {
@@ -223,13 +249,13 @@ fn fitted(words: &[[[Planes; 3]; 3]; 3]) -> Fit {
             for x in 0..COARSE {
                 let (at, here) = ([x, y, z], filled[z][y][x]);
                 if x + 1 < COARSE {
-                    crossings[0].add(0, at, here, filled[z][y][x + 1]);
+                    crossings[0].add(0, at, [here, filled[z][y][x + 1]], half);
                 }
                 if y + 1 < COARSE {
-                    crossings[1].add(1, at, here, filled[z][y + 1][x]);
+                    crossings[1].add(1, at, [here, filled[z][y + 1][x]], half);
                 }
                 if z + 1 < COARSE {
-                    crossings[2].add(2, at, here, filled[z + 1][y][x]);
+                    crossings[2].add(2, at, [here, filled[z + 1][y][x]], half);
                 }
             }
         }
@@ -256,19 +282,19 @@ fn fitted(words: &[[[Planes; 3]; 3]; 3]) -> Fit {
         DVec3::new(products.y, products.x, squares.z),
     );
     // The direction in which the points spread least: eight inverse iterations, by squaring.
-    let mut inverse = (spread + DMat3::from_diagonal(DVec3::splat(1e-3))).inverse();
+    let mut inverse = (spread + DMat3::from_diagonal(DVec3::splat(2.5e-4))).inverse();
     for _ in 0..3 {
         let scale = inverse.x_axis.x.abs().max(inverse.y_axis.y.abs()).max(inverse.z_axis.z.abs());
         inverse *= 1.0 / scale;
         inverse = inverse * inverse;
     }
     let normal = (inverse * out).normalize_or_zero();
-    let off = libm::sqrt(normal.dot(spread * normal).max(0.0));
+    let off = edge * libm::sqrt(normal.dot(spread * normal).max(0.0));
     let is_sound = normal.is_finite() && normal != DVec3::ZERO;
     if !is_sound {
         return Fit::default();
     }
-    let confidence = ((PLANE[1] - off) / (PLANE[1] - PLANE[0])).clamp(0.0, 1.0);
+    let confidence = ((plane[1] - off) / (plane[1] - plane[0])).clamp(0.0, 1.0);
     Fit { normal: if normal.dot(out) < 0.0 { -normal } else { normal }, confidence }
 }
 

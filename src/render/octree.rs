@@ -15,8 +15,9 @@ use glam::DVec3;
 
 /// The surface of a stored octree: the first cells that are not EMPTY along each line of sight.
 ///
-/// Normals are those of planes fitted to the cells of 12³ about each block of 4³; where the surface is not plane there, the
-/// gradient of the occupancy over 5³ cells, in which PARTIAL cells count half. What is cut open by a clip plane is shown flat.
+/// Normals are those of planes fitted to the surface in windows of 24³ cells, or of 12³ where it is not plane; where it is not
+/// plane there either, the gradient of the occupancy over 5³ cells, in which PARTIAL cells count half. What is cut open by a
+/// clip plane is shown flat.
 ///
 /// O(samples · cells along a line of sight).
 #[derive(Debug, Clone, Copy)]

@@ -7,12 +7,12 @@ use super::stage::{Draw, Painter, Stage};
 use super::tile::Tile;
 use crate::control::Control;
 use crate::error::Error;
-use crate::lattice::{Cell, Cube, Frame};
+use crate::lattice::{Cell, Cube, Frame, Interval, MAX_DEPTH};
 use crate::memory;
 use crate::octree::{Octree, Tag};
 use crate::op::{Rule, Trail, build};
-use crate::query::RayHit;
-use crate::solid::{Classifier, Enclosure, Segment, SlabJoin, Solid, WorkerOf};
+use crate::query::{Obstacle, RayHit};
+use crate::solid::{Classifier, Enclosure, Segment, SlabJoin, Solid, Verdict, WorkerOf};
 use alloc::boxed::Box;
 use glam::DVec3;
 use hashbrown::HashMap;
@@ -33,6 +33,9 @@ pub struct SolidLayer<'a, S> {
 
 /// Levels to which a solid is split at most.
 const DEEPEST: u8 = 11;
+
+/// Radians by which a boundary may turn in a cell whose slab gives the normal.
+const CONE: f64 = 0.08 * core::f64::consts::PI / 180.0;
 
 impl<'a, S: Solid> SolidLayer<'a, S> {
     /// What lies of a solid in the universe of a frame, whatever its depth.
@@ -63,7 +66,7 @@ impl<S: Solid> Draw for SolidLayer<'_, S> {
         let frame = self.pixelled(stage)?;
         let control = Control { progress: None, ..*stage.job.control() };
         let octree = build(self.solid, &frame, Rule::Certified, &control)?;
-        let classifier = self.solid.on(&frame, &control)?;
+        let classifier = self.solid.on(&frame.with_depth(MAX_DEPTH)?, &control)?;
         Ok(memory::boxed(SolidPainter::<S> { finish: self.finish, stage: *stage, octree, classifier })?)
     }
 }
@@ -72,6 +75,7 @@ struct SolidPainter<'a, S: Solid> {
     finish: Finish,
     stage: Stage<'a>,
     octree: Octree,
+    /// On the finest lattice.
     classifier: S::Classifier,
 }
 
@@ -85,8 +89,9 @@ impl<S: Solid> Painter for SolidPainter<'_, S> {
         let mut cast = Cast::new(self.octree.view(), self.stage);
         while let Some((sights, hits)) = cast.next(tile)? {
             for (sight, hit) in sights.iter().zip(hits) {
-                if let Some(hit) = hit {
-                    self.sample(&mut hand, tile, sight, *hit)?;
+                let Some(hit) = hit else { continue };
+                if let Some((t, normal)) = self.sees(&mut hand, sight, *hit)? {
+                    sight.draw(&self.finish, tile, t, normal)?;
                 }
             }
         }
@@ -98,7 +103,7 @@ impl<S: Solid> Painter for SolidPainter<'_, S> {
 struct Hand<'t, S: Solid> {
     trail: Trail<WorkerOf<S>>,
     normals: Normals<'t>,
-    enclosures: HashMap<[u32; 3], Option<Enclosure>>,
+    enclosures: HashMap<Cell, Option<Enclosure>>,
 }
 
 /// Most cells of one line of sight whose slabs it passes by.
@@ -115,46 +120,43 @@ enum Met {
 }
 
 impl<S: Solid> SolidPainter<'_, S> {
-    fn sample(
+    /// Where a line of sight meets the surface whose cells it first meets so, and the outward normal there; `None` for the
+    /// normal if it begins inside.
+    fn sees(
         &self,
         hand: &mut Hand<'_, S>,
-        tile: &mut Tile<'_>,
         sight: &Sight,
         mut hit: RayHit,
-    ) -> Result<(), Error> {
+    ) -> Result<Option<(f64, Option<DVec3>)>, Error> {
+        let (octree, frame) = (self.octree.view(), self.octree.frame());
         for _ in 0..MOST_PASSED {
             let (t, face) = (hit.t.lower.max(0.0), DVec3::from(hit.normal));
-            let frame = self.octree.frame();
+            let begins = sight.begins_in(t, face);
             let at = hit.cell.first_at(frame.depth()).at;
-            if hit.cell.level < frame.depth() || self.octree.view().tag_at(at) != Tag::Partial {
+            if hit.cell.level < frame.depth() || octree.tag_at(at) != Tag::Partial {
                 // The face of a FULL cell is the surface.
-                let normal = (!sight.begins_in(t, face)).then_some(face);
-                return sight.draw(&self.finish, tile, t, normal);
+                return Ok(Some((t, (!begins).then_some(face))));
             }
             let leaves = leaves(frame, hit.cell, sight);
             match self.met(hand, hit.cell, sight, [t, leaves])? {
-                Met::At(s, _) if s <= 0.0 => return sight.draw(&self.finish, tile, 0.0, None),
-                Met::At(s, normal) => return sight.draw(&self.finish, tile, s, Some(normal)),
+                Met::At(s, normal) => return Ok(Some((s, (s > 0.0).then_some(normal)))),
                 Met::Unknown => {
                     let point = sight.from + sight.along * t;
                     let found = normal_of_cells(&mut hand.normals, frame, point, &hit)?;
                     let normal = if found == DVec3::ZERO { face } else { found };
-                    let begins = sight.begins_in(t, face);
-                    return sight.draw(&self.finish, tile, t, (!begins).then_some(normal));
+                    return Ok(Some((t, (!begins).then_some(normal))));
                 }
                 Met::Nowhere => {}
             }
             // On behind the cell, past its faces.
             let beyond = leaves + 1e-9 * frame.cell_size() / sight.along.length();
-            let Some(next) = sight
-                .beyond(beyond)
-                .and_then(|ray| self.octree.cast_ray(&ray, crate::query::Obstacle::Upper))
+            let Some(next) = sight.beyond(beyond).and_then(|ray| octree.cast_ray(&ray, Obstacle::Upper))
             else {
-                return Ok(());
+                return Ok(None);
             };
-            hit = RayHit { t: next.t.plus(crate::lattice::Interval::exactly(beyond)), ..next };
+            hit = RayHit { t: next.t.plus(Interval::exactly(beyond)), ..next };
         }
-        Ok(())
+        Ok(None)
     }
 
     /// Where a line of sight meets the surface in a cell that it crosses between two times.
@@ -165,18 +167,14 @@ impl<S: Solid> SolidPainter<'_, S> {
         sight: &Sight,
         [enters, leaves]: [f64; 2],
     ) -> Result<Met, Error> {
-        let found = match hand.enclosures.get(&cell.at) {
-            Some(found) => *found,
-            None => {
-                hand.trail.follow(cell.parent(), self.stage.job.control())?;
-                let found = hand.trail.enclosure(cell)?;
-                hand.enclosures.try_reserve(1)?;
-                hand.enclosures.insert(cell.at, found);
-                found
-            }
-        };
-        if let Some(enclosure) = found {
-            return Ok(self.through(&enclosure, cell, sight, [enters, leaves]));
+        if let Some(enclosure) = self.enclosure(hand, cell)? {
+            let met = self.through(&enclosure, cell, sight, [enters, leaves]);
+            return match met {
+                Met::At(t, normal) if enclosure.cone > CONE && t > enters => {
+                    Ok(self.closer(hand, cell, enclosure.cone, sight, (t, normal))?.unwrap_or(met))
+                }
+                met => Ok(met),
+            };
         }
         hand.trail.follow(cell.parent(), self.stage.job.control())?;
         let cube = Cube { frame: self.octree.frame(), cell };
@@ -190,6 +188,53 @@ impl<S: Solid> SolidPainter<'_, S> {
             }
             None => Met::Unknown,
         })
+    }
+
+    /// What is known of the boundary in a cell.
+    fn enclosure(&self, hand: &mut Hand<'_, S>, cell: Cell) -> Result<Option<Enclosure>, Error> {
+        if let Some(found) = hand.enclosures.get(&cell) {
+            return Ok(*found);
+        }
+        hand.trail.follow(cell.parent(), self.stage.job.control())?;
+        let found = match hand.trail.verdict(cell) {
+            Verdict::Partial(_) => hand.trail.enclosure(cell)?,
+            _ => None,
+        };
+        hand.enclosures.try_reserve(1)?;
+        hand.enclosures.insert(cell, found);
+        Ok(found)
+    }
+
+    /// Where it meets the surface in a smaller cell about the place and the normal that were found, in which the boundary
+    /// turns less; `None` if nothing is known of that.
+    fn closer(
+        &self,
+        hand: &mut Hand<'_, S>,
+        cell: Cell,
+        cone: f64,
+        sight: &Sight,
+        (t, normal): (f64, DVec3),
+    ) -> Result<Option<Met>, Error> {
+        let finest = self.octree.frame().with_depth(MAX_DEPTH)?;
+        // A boundary turns half as much in a cell of half the size.
+        let more = (1..8).find(|&more| cone / f64::from(1u32 << more) <= CONE).unwrap_or(8);
+        let level = (cell.level + more).min(MAX_DEPTH);
+        let size = finest.edge() / f64::from(1u32 << level);
+        let outward = normal.normalize_or_zero() * size;
+        let point = sight.from + sight.along * t;
+        for offset in [DVec3::ZERO, outward, -outward] {
+            let Some(at) = finest.cell_of((point + offset).to_array()) else { continue };
+            let near = Cell { level, at: at.map(|a| a >> (MAX_DEPTH - level)) };
+            let Some(found) = self.enclosure(hand, near)? else { continue };
+            let reach = 4.0 * size / sight.along.length();
+            let normal = DVec3::from(found.slabs[0].normal);
+            return Ok(Some(match self.through(&found, near, sight, [t - reach, t + reach]) {
+                Met::At(s, normal) if s > t - reach => Met::At(s, normal),
+                // It only just touches what turns away there.
+                _ => Met::At(t, normal),
+            }));
+        }
+        Ok(None)
     }
 
     /// Where it first is below the middles of slabs.
@@ -249,4 +294,83 @@ fn leaves(frame: &Frame, cell: Cell, sight: &Sight) -> f64 {
         // (What is not a number is never.)
         if t < leaves { t } else { leaves }
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::camera::{Camera, Lens, View};
+    use super::super::clip::Clip;
+    use super::*;
+    use crate::control::Job;
+    use crate::solid::Csg;
+    use std::vec::Vec;
+
+    /// Angles in degrees between the normals that are seen of a ball and its own, and how far off the points are.
+    fn angles(depth: u8, use_slabs: bool, lens: Lens) -> (Vec<f64>, f64) {
+        let centre = DVec3::new(0.013, -0.021, 0.017);
+        let ball = Csg::ball(centre.to_array(), 0.8).unwrap();
+        let frame = Frame::new([-1.0; 3], 2.0, depth).unwrap();
+        let camera = Camera::new([3.0, -4.0, 2.5], [0.0; 3], [0.0, 0.0, 1.0], lens).unwrap();
+        let view = View::new(&camera, [256, 256]);
+        let (control, clip) = (Control::threads(1), Clip::new());
+        let job = Job::new(&control);
+        let stage = Stage { view: &view, clip: &clip, grid: 1, job: &job };
+        let painter = SolidPainter::<Csg> {
+            finish: Finish::default(),
+            stage,
+            octree: build(&ball, &frame, Rule::Certified, &control).unwrap(),
+            classifier: ball.on(&frame.with_depth(MAX_DEPTH).unwrap(), &control).unwrap(),
+        };
+        let octree = painter.octree.view();
+        let mut hand = Hand::<Csg> {
+            trail: Trail::new(painter.classifier.worker().unwrap()).unwrap(),
+            normals: Normals::new(octree),
+            enclosures: HashMap::new(),
+        };
+        let tile = Tile::new(&view, [0, 0], [256, 256], 1).unwrap();
+        let mut cast = Cast::new(octree, stage);
+        let (mut angles, mut off) = (Vec::new(), 0.0f64);
+        while let Some((sights, hits)) = cast.next(&tile).unwrap() {
+            for (sight, hit) in sights.iter().zip(hits) {
+                let Some(hit) = hit else { continue };
+                let seen = if use_slabs {
+                    painter.sees(&mut hand, sight, *hit).unwrap()
+                } else {
+                    let point = sight.from + sight.along * hit.t.lower;
+                    let found = normal_of_cells(&mut hand.normals, &frame, point, hit).unwrap();
+                    Some((hit.t.lower, Some(found)))
+                };
+                let Some((t, normal)) = seen else { continue };
+                let from = sight.from + sight.along * t - centre;
+                let (normal, exact) = (normal.unwrap().normalize(), from.normalize());
+                angles.push(normal.cross(exact).length().atan2(normal.dot(exact)).to_degrees());
+                off = off.max((from.length() - 0.8).abs());
+            }
+        }
+        (angles, off)
+    }
+
+    fn worst(angles: &[f64]) -> f64 {
+        angles.iter().fold(0.0, |worst, angle| angle.max(worst))
+    }
+
+    #[test]
+    fn normals_of_slabs_are_exact() {
+        for lens in [Lens::Perspective(25.0), Lens::Parallel(2.0)] {
+            let (angles, off) = angles(7, true, lens);
+            assert!(angles.len() > 20_000);
+            assert!(worst(&angles) < 0.1);
+            assert!(off < 1e-4);
+        }
+    }
+
+    #[test]
+    fn normals_of_cells_are_near() {
+        for lens in [Lens::Perspective(25.0), Lens::Parallel(2.0)] {
+            let (angles, _) = angles(9, false, lens);
+            let mean = angles.iter().sum::<f64>() / angles.len() as f64;
+            assert!(angles.len() > 20_000);
+            assert!(worst(&angles) < 5.0 && mean < 0.5);
+        }
+    }
 }
