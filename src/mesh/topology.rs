@@ -95,7 +95,7 @@ impl Topology {
 }
 
 /// An edge with all triangles that use it.
-pub(super) struct Edge<'a> {
+pub(crate) struct Edge<'a> {
     /// The lower one of its vertices.
     pub low: u32,
     /// The higher one.
@@ -136,7 +136,7 @@ impl Edge<'_> {
 /// Calls `visit` with each edge, in the order of the lower vertices, then the higher ones. Costs as
 /// [`Topology::of`], but for 4 bytes per triangle.
 #[inline(always)]
-pub(super) fn for_each_edge(
+pub(crate) fn for_each_edge(
     triangles: &[[u32; 3]],
     vertices: usize,
     mut visit: impl FnMut(&Edge) -> Result<(), Error>,

@@ -24,6 +24,13 @@ pub(crate) struct Shown {
     pub entry: Option<DVec3>,
 }
 
+/// Whether something at a depth is shown, between these depths. A face in a clip plane is, whatever rounding says.
+#[inline]
+pub(crate) fn holds([from, to]: [f64; 2], depth: f64) -> bool {
+    const ROUNDING: f64 = 1e-9;
+    depth * (1.0 + ROUNDING) >= from && depth * (1.0 - ROUNDING) <= to
+}
+
 impl Clip {
     /// Nothing is cut away.
     pub fn new() -> Clip {

@@ -4,22 +4,34 @@
 //! volumes are seen before, between and behind them. Tiles are independent of each other, so that a picture is the same for
 //! any number of threads.
 
+mod bins;
 mod camera;
 mod clip;
+mod coverage;
+mod crease;
+mod legend;
 mod light;
+mod lines;
+mod mesh;
 mod normals;
 mod octree;
 mod picture;
 mod sight;
+mod slice;
 mod solid;
 mod stage;
+mod stroke;
 mod tile;
 
 pub use camera::{Camera, FIELD_OF_VIEW, Lens};
 pub use clip::Clip;
+pub use legend::{LegendBox, LegendSide, draw_colour_bar, draw_names};
+pub use lines::LinesLayer;
+pub use mesh::{MeshEdges, MeshLayer};
 pub use octree::OctreeLayer;
 pub use picture::Picture;
 pub use sight::Finish;
+pub use slice::{SliceLayer, SlicePlane, TAG_COLOURS};
 pub use solid::SolidLayer;
 
 use crate::control::{Control, Job, WHOLE};
@@ -29,10 +41,7 @@ use alloc::vec::Vec;
 use camera::View;
 use light::{Light, Tones};
 use stage::{Pass, Stage};
-use tile::Tile;
-
-/// Pixels of a tile along each axis.
-const TILE: u32 = 32;
+use tile::{TILE, Tile};
 
 /// Most pixels of a row, and most rows.
 const MOST_PIXELS: u32 = 1 << 14;

@@ -10,6 +10,9 @@ use crate::memory;
 use alloc::vec::Vec;
 use glam::DVec3;
 
+/// Pixels of a tile along each axis.
+pub const TILE: u32 = 32;
+
 /// What is seen at a sample: opaque.
 #[derive(Debug, Clone, Copy)]
 pub struct Opaque {

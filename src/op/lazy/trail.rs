@@ -122,6 +122,12 @@ impl<W: Worker> Trail<W> {
         verdict_at(&self.steps, &self.root, cell.ancestor(self.steps.len() as u8))
     }
 
+    /// The level of the cell that the way, led to a parent, ends at: one below that of the parent, or that of an ancestor
+    /// which the solid does not split.
+    pub(crate) fn level(&self) -> u8 {
+        self.steps.len() as u8
+    }
+
     /// What the solid knows of the boundary in `cell`, to whose parent the way was led.
     ///
     /// # Errors

@@ -1,0 +1,135 @@
+//! Which samples a triangle covers, exactly.
+//!
+//! A corner is a vector from the eye, and a sample is the vector d = (x, y, 1) of its line of sight. The line meets the
+//! triangle in front of the eye if d · (a × b), d · (b × c) and d · (c × a) have the sign of a · (b × c). No triangle has to
+//! be clipped at the plane of the eye for that. Under a parallel lens the corners are (x, y, 1), and all else is the same.
+//!
+//! The signs are those of the exact determinants of the corners as they were rounded. So two triangles with a common edge
+//! never cover one sample both and never leave one out between them, however small they are. A sample on an edge counts as
+//! shifted by (ε, −ε²), to the right and downward: edges on the left and on top belong to a triangle.
+
+use crate::lattice::exact::{Expansion, sign};
+use core::ops::Range;
+use glam::{DVec3, Vec3Swizzles};
+
+/// The determinant d · (a × b) as a function of d = (x, y, 1).
+struct EdgeFunction {
+    a: DVec3,
+    b: DVec3,
+    /// a × b, rounded.
+    normal: DVec3,
+    /// Its value is off by no more than this, at any sample of the picture.
+    error: f64,
+}
+
+impl EdgeFunction {
+    /// `reach`: the greatest |x| and |y| of samples.
+    fn new(a: DVec3, b: DVec3, reach: [f64; 2]) -> EdgeFunction {
+        // Not a × b itself, which loses digits if both lie far away and near each other.
+        let along = b - a;
+        let (left, right) = (a.yzx() * along.zxy(), a.zxy() * along.yzx());
+        let size = (left.abs() + right.abs()).dot(DVec3::new(reach[0], reach[1], 1.0));
+        // At most eight roundings lie behind each product.
+        let error = 16.0 * f64::EPSILON * size + f64::MIN_POSITIVE;
+        EdgeFunction { a, b, normal: left - right, error }
+    }
+
+    /// The value, rounded.
+    #[inline(always)]
+    fn value(&self, x: f64, y: f64) -> f64 {
+        self.normal.x * x + (self.normal.y * y + self.normal.z)
+    }
+
+    /// The sign of the value; 0 only if a and b lie in one direction.
+    #[inline(always)]
+    fn sign(&self, value: f64, x: f64, y: f64) -> i32 {
+        if value.abs() > self.error { sign(value) } else { self.exact_sign(x, y) }
+    }
+
+    #[cold]
+    fn exact_sign(&self, x: f64, y: f64) -> i32 {
+        let normal = exact_cross(self.a, self.b);
+        let times = |factor: f64, k: usize| normal[k].times(&Expansion::sum([factor]));
+        match times(x, 0).plus(&times(y, 1)).plus(&normal[2]).sign() {
+            0 if normal[0].sign() == 0 => -normal[1].sign(),
+            0 => normal[0].sign(),
+            sign => sign,
+        }
+    }
+}
+
+fn exact_cross(a: DVec3, b: DVec3) -> [Expansion; 3] {
+    let (a, b) = (a.to_array().map(|x| Expansion::sum([x])), b.to_array().map(|x| Expansion::sum([x])));
+    [0, 1, 2].map(|k| {
+        let (i, j) = ((k + 1) % 3, (k + 2) % 3);
+        a[i].times(&b[j]).minus(&a[j].times(&b[i]))
+    })
+}
+
+/// The sign of a · (b × c).
+fn determinant_sign(a: DVec3, b: DVec3, c: DVec3) -> i32 {
+    let (u, v) = (b - a, c - a);
+    let (left, right) = (u.yzx() * v.zxy(), u.zxy() * v.yzx());
+    let value = (left - right).dot(a);
+    let error = 16.0 * f64::EPSILON * (left.abs() + right.abs()).dot(a.abs()) + f64::MIN_POSITIVE;
+    if value.abs() > error {
+        return sign(value);
+    }
+    let normal = exact_cross(b, c);
+    let times = |factor: f64, k: usize| normal[k].times(&Expansion::sum([factor]));
+    times(a.x, 0).plus(&times(a.y, 1)).plus(&times(a.z, 2)).sign()
+}
+
+/// The samples that a triangle covers.
+pub struct Coverage {
+    /// Opposite to the corners 0, 1 and 2.
+    edges: [EdgeFunction; 3],
+    /// 1 if the corners turn counter-clockwise as seen from the eye, −1 if clockwise.
+    pub facing: i32,
+}
+
+impl Coverage {
+    /// The samples that a triangle with these corners covers, with |x| and |y| up to `reach`; `None` if it is seen on edge.
+    pub fn new([a, b, c]: [DVec3; 3], reach: [f64; 2]) -> Option<Coverage> {
+        let facing = determinant_sign(a, b, c);
+        let edges = [(b, c), (c, a), (a, b)].map(|(from, to)| EdgeFunction::new(from, to, reach));
+        (facing != 0).then_some(Coverage { edges, facing })
+    }
+
+    /// What each corner counts for at the sample (x, y), in all 1; `None` if the triangle does not cover it.
+    #[inline(always)]
+    pub fn weights(&self, x: f64, y: f64) -> Option<[f64; 3]> {
+        let mut weights = [0.0; 3];
+        for (weight, edge) in weights.iter_mut().zip(&self.edges) {
+            let value = edge.value(x, y);
+            if edge.sign(value, x, y) != self.facing {
+                return None;
+            }
+            // The rounded value of a tiny one may have the other sign.
+            *weight = (value * f64::from(self.facing)).max(0.0);
+        }
+        let sum = weights[0] + weights[1] + weights[2];
+        Some(if sum > 0.0 { weights.map(|weight| weight / sum) } else { [1.0 / 3.0; 3] })
+    }
+
+    /// A part of the columns with x = x₀ + i · step, 0 ≤ i < count, that holds all whose samples in the row y are covered.
+    #[inline]
+    pub fn columns(&self, y: f64, [x, step]: [f64; 2], columns: Range<usize>) -> Range<usize> {
+        let (mut low, mut high) = (columns.start as f64, columns.end as f64);
+        for edge in &self.edges {
+            let slope = edge.normal.x * step * f64::from(self.facing);
+            let first = edge.value(x, y) * f64::from(self.facing);
+            let root = -first / slope;
+            // Rounding moves the root by less than a column if the slope is greater than the error.
+            if slope.abs() <= edge.error || root.is_nan() {
+                continue;
+            }
+            if slope > 0.0 {
+                low = low.max(libm::floor(root) - 1.0);
+            } else {
+                high = high.min(libm::ceil(root) + 2.0);
+            }
+        }
+        if low >= high { columns.start..columns.start } else { low as usize..high as usize }
+    }
+}

@@ -1,0 +1,117 @@
+//! Where a mesh is smooth, and where it has edges.
+
+use crate::control::Job;
+use crate::error::Error;
+use crate::memory;
+use crate::mesh::{TriangleMesh, for_each_edge};
+use alloc::vec::Vec;
+use glam::{DVec3, Vec3};
+
+/// Triangles at a vertex beyond which their normals are not averaged. It bounds the work: each is compared with each.
+const MOST_TRIANGLES: usize = 256;
+
+/// What is not steeper than this counts as plane, for the rounding: the cosine of a fiftieth of a degree.
+const PLANE: f64 = 1.0 - 1e-7;
+
+/// A vector of length 1, or zero. It neither overflows nor vanishes on the way.
+fn unit(v: DVec3) -> DVec3 {
+    let size = v.abs().max_element();
+    if size > 0.0 { (v / size).normalize_or_zero() } else { DVec3::ZERO }
+}
+
+fn corners(mesh: &TriangleMesh, triangle: [u32; 3]) -> [DVec3; 3] {
+    triangle.map(|v| DVec3::from(mesh.vertices()[v as usize]))
+}
+
+/// The outward normals of the triangles, of length 1; zero if a triangle has no area.
+pub fn normals(mesh: &TriangleMesh) -> Result<Vec<DVec3>, Error> {
+    memory::collected(mesh.triangles().iter().map(|&triangle| {
+        let [a, b, c] = corners(mesh, triangle);
+        unit(unit(b - a).cross(unit(c - a)))
+    }))
+}
+
+/// The normals at the corners of each triangle: the mean over the triangles at the vertex whose normals differ by less than
+/// `crease` (degrees), weighted by their angles there. A vertex of more than 256 triangles is not smooth. O(t + v) if few
+/// triangles meet in a vertex.
+pub fn corner_normals(
+    mesh: &TriangleMesh,
+    normals: &[DVec3],
+    crease: f64,
+    job: &Job<'_>,
+) -> Result<Vec<[Vec3; 3]>, Error> {
+    let least = libm::cos(crease.to_radians());
+    // Slot v + 1 counts first, then holds the place of the next triangle of vertex v, and at last the end of its list.
+    let mut ends: Vec<usize> = memory::filled(mesh.vertices().len() + 2, 0)?;
+    for &v in mesh.triangles().iter().flatten() {
+        ends[v as usize + 2] += 1;
+    }
+    let mut sum = 0;
+    for end in &mut ends {
+        sum += *end;
+        *end = sum;
+    }
+    let mut around: Vec<(u32, f32)> = memory::filled(sum, (0, 0.0))?;
+    for (i, &triangle) in (0..).zip(mesh.triangles()) {
+        let [a, b, c] = corners(mesh, triangle);
+        let [u, v, w] = [b - a, c - b, a - c].map(unit);
+        let cosines = [-w.dot(u), -u.dot(v), -v.dot(w)];
+        for (&vertex, cosine) in triangle.iter().zip(cosines) {
+            let place = &mut ends[vertex as usize + 1];
+            around[*place] = (i, libm::acos(cosine.clamp(-1.0, 1.0)) as f32);
+            *place += 1;
+        }
+    }
+    let mut smooth = memory::with_capacity(mesh.triangles().len())?;
+    for (i, triangle) in mesh.triangles().iter().enumerate() {
+        if i % (1 << 12) == 0 {
+            job.check()?;
+        }
+        let own = normals[i];
+        smooth.push(triangle.map(|v| {
+            let around = &around[ends[v as usize]..ends[v as usize + 1]];
+            if around.len() > MOST_TRIANGLES {
+                return own.as_vec3();
+            }
+            let mean: DVec3 = (around.iter())
+                .map(|&(other, angle)| (normals[other as usize], f64::from(angle)))
+                .filter(|(normal, _)| normal.dot(own) > least)
+                .map(|(normal, angle)| normal * angle)
+                .sum();
+            if mean.length() > 1e-6 { mean.normalize().as_vec3() } else { own.as_vec3() }
+        }));
+    }
+    Ok(smooth)
+}
+
+/// The edges at which a mesh ends, branches, or bends by more than `crease` (degrees); all edges if `all`.
+pub fn edges(
+    mesh: &TriangleMesh,
+    normals: &[DVec3],
+    crease: f64,
+    all: bool,
+    job: &Job<'_>,
+) -> Result<Vec<[u32; 2]>, Error> {
+    let least = libm::cos(crease.to_radians()).min(PLANE);
+    let mut found = Vec::new();
+    let mut visited = 0_u64;
+    for_each_edge(mesh.triangles(), mesh.vertices().len(), |edge| {
+        visited += 1;
+        if visited.is_multiple_of(1 << 14) {
+            job.check()?;
+        }
+        let mut two = edge.triangles();
+        let is_feature = match (edge.count(), two.next(), two.next()) {
+            (2, Some(a), Some(b)) => {
+                let [a, b] = [a, b].map(|i| normals[i as usize]);
+                // Two triangles that run along the edge in one direction face opposite ways.
+                let cosine = if edge.excess() == 0 { a.dot(b) } else { -a.dot(b) };
+                // A triangle without area has no normal, and its neighbours are not known to bend.
+                cosine < least && a != DVec3::ZERO && b != DVec3::ZERO
+            }
+            _ => true,
+        };
+        if all || is_feature { memory::push(&mut found, [edge.low, edge.high]) } else { Ok(()) }
+    })?;
+    Ok(found)
+}

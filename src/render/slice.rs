@@ -1,0 +1,377 @@
+//! Plane sections of octrees and other solids in pictures.
+
+use super::camera::View;
+use super::clip::holds;
+use super::light::Light;
+use super::stage::{Draw, Painter, Stage};
+use super::tile::Tile;
+use crate::attribute::Attribute;
+use crate::control::Control;
+use crate::error::Error;
+use crate::lattice::valid::numbers;
+use crate::lattice::{Cell, Frame};
+use crate::memory;
+use crate::octree::{Cursor, OctreeRef, Tag};
+use crate::op::Trail;
+use crate::solid::{Classifier, Solid, Worker};
+use alloc::boxed::Box;
+use alloc::vec::Vec;
+use glam::DVec3;
+
+/// The colours of EMPTY, FULL and PARTIAL cells in a slice unless others are chosen: sky blue, hardly visible, blue and
+/// orange of the palette that Okabe and Ito made to be told apart by the colour-blind (*Color Universal Design*, 2002).
+pub const TAG_COLOURS: [[u8; 4]; 3] = [[86, 180, 233, 40], [0, 114, 178, 255], [230, 159, 0, 255]];
+
+/// A cell of fewer pixels has no outline; one of the greater number has all of it.
+const FADING: [f64; 2] = [2.0, 5.0];
+
+/// A plane through a picture's scene.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SlicePlane {
+    /// Its length is 1.
+    normal: DVec3,
+    /// n · p of its points p.
+    offset: f64,
+    /// The axis that it is perpendicular to, if there is one, and where it crosses that.
+    across: Option<(usize, f64)>,
+}
+
+impl SlicePlane {
+    /// The points p with `normal` · p = `offset` (model units times the normal's length).
+    ///
+    /// # Errors
+    /// [`Error::Argument`] if a number is not zero and not between 2^-256 and 2^256 in magnitude, or if the normal is zero.
+    pub fn new(normal: [f64; 3], offset: f64) -> Result<SlicePlane, Error> {
+        numbers("normal", &normal)?;
+        numbers("offset", &[offset])?;
+        let vector = DVec3::from(normal);
+        let length = vector.length();
+        if length == 0.0 {
+            return Err(Error::Argument { name: "normal", problem: "must not be zero" });
+        }
+        let mut others = (0..3).filter(|&axis| normal[axis] != 0.0);
+        let across = match (others.next(), others.next()) {
+            (Some(axis), None) => Some((axis, offset / normal[axis])),
+            _ => None,
+        };
+        Ok(SlicePlane { normal: vector / length, offset: offset / length, across })
+    }
+
+    /// The plane across an axis (0 to 2 for x, y and z) at a coordinate (model units). Where it is a plane of the lattice,
+    /// the cells above it are those that are cut.
+    ///
+    /// # Errors
+    /// [`Error::Argument`] if the axis is none, or the coordinate not zero and not between 2^-256 and 2^256 in magnitude.
+    pub fn across(axis: usize, coordinate: f64) -> Result<SlicePlane, Error> {
+        if axis > 2 {
+            return Err(Error::Argument { name: "axis", problem: "must be 0, 1 or 2" });
+        }
+        SlicePlane::new([0, 1, 2].map(|k| f64::from(u8::from(k == axis))), coordinate)
+    }
+
+    /// Where a line meets the plane: the depth and the point. `None` if it does not, or not before the eye.
+    fn meet(&self, from: DVec3, along: DVec3) -> Option<(f64, DVec3)> {
+        let depth = (self.offset - self.normal.dot(from)) / self.normal.dot(along);
+        let is_seen = depth > 0.0 && depth.is_finite();
+        let mut point = from + along * depth;
+        if let Some((axis, coordinate)) = self.across {
+            // On a plane of the lattice rounding would choose between the cells on both sides.
+            point[axis] = coordinate;
+        }
+        is_seen.then_some((depth, point))
+    }
+
+    /// By how much each coordinate changes from a pixel to the next one, in model units.
+    fn steps(&self, view: &View, along: DVec3, depth: f64) -> DVec3 {
+        let camera = &view.camera;
+        let pixel = view.pixel_at(depth);
+        let [x, y] = [camera.right(), camera.up()].map(|side| {
+            let side = DVec3::from(side);
+            side - along * (self.normal.dot(side) / self.normal.dot(along))
+        });
+        (x * x + y * y).map(libm::sqrt) * pixel
+    }
+}
+
+/// Colours of values: red, green, blue (sRGB) and opacity.
+type Colouring<'a> = &'a (dyn Fn(Option<[f64; 4]>) -> [u8; 4] + Sync);
+
+/// A plane section of a solid on a frame: each sample shows the tag of the cell in which the line of sight meets the plane,
+/// or the value of an attribute there, and the outlines of the cells that the plane cuts. Nothing is seen outside of the
+/// universe.
+///
+/// Drawing: for an octree O(samples) and O(depth) for each change of the cell; for other solids as many splits as these.
+pub struct SliceLayer<'a> {
+    source: Box<dyn Source + 'a>,
+    plane: SlicePlane,
+    colours: [[u8; 4]; 3],
+    outlines: Option<[u8; 4]>,
+    values: Option<(&'a dyn Attribute, Colouring<'a>)>,
+}
+
+impl core::fmt::Debug for SliceLayer<'_> {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.debug_struct("SliceLayer").field("plane", &self.plane).finish_non_exhaustive()
+    }
+}
+
+impl<'a> SliceLayer<'a> {
+    /// A section of an octree in [`TAG_COLOURS`], with outlines of its cells.
+    pub fn new(tree: &OctreeRef<'a>, plane: SlicePlane) -> SliceLayer<'a> {
+        SliceLayer::of_source(Box::new(*tree), plane)
+    }
+
+    /// A section of a solid on a frame, whose cells are split down to its depth. Otherwise as [`new`](Self::new).
+    pub fn of_solid<S: Solid>(solid: &'a S, frame: &Frame, plane: SlicePlane) -> SliceLayer<'a> {
+        SliceLayer::of_source(Box::new(OnFrame { solid, frame: *frame }), plane)
+    }
+
+    fn of_source(source: Box<dyn Source + 'a>, plane: SlicePlane) -> SliceLayer<'a> {
+        SliceLayer { source, plane, colours: TAG_COLOURS, outlines: Some([40, 40, 40, 255]), values: None }
+    }
+
+    /// The same with other colours for EMPTY, FULL and PARTIAL cells: red, green, blue (sRGB) and opacity.
+    #[must_use]
+    pub fn colours(self, colours: [[u8; 4]; 3]) -> SliceLayer<'a> {
+        SliceLayer { colours, ..self }
+    }
+
+    /// The same with outlines of this colour, or without any. The outline of a cell that is only a few pixels large is
+    /// fainter, and that of a smaller one not drawn.
+    #[must_use]
+    pub fn outlines(self, colour: Option<[u8; 4]>) -> SliceLayer<'a> {
+        SliceLayer { outlines: colour, ..self }
+    }
+
+    /// The same with the values of an attribute, as a channel is one, where cells are FULL or PARTIAL: `colour` tells the
+    /// colour of a value, and of none.
+    #[must_use]
+    pub fn values(self, attribute: &'a dyn Attribute, colour: Colouring<'a>) -> SliceLayer<'a> {
+        SliceLayer { values: Some((attribute, colour)), ..self }
+    }
+}
+
+/// What has cells, before it is put on its frame.
+trait Source: Sync {
+    fn frame(&self) -> &Frame;
+
+    fn ready<'s>(&'s self, control: &Control<'_>) -> Result<Box<dyn Ready + 's>, Error>;
+}
+
+/// What has cells, on its frame.
+trait Ready: Sync {
+    /// What one thread asks.
+    fn finder<'r>(&'r self, control: &'r Control<'r>) -> Result<Box<dyn Finder + 'r>, Error>;
+}
+
+/// Who finds cells.
+trait Finder {
+    /// The unsplit cell in which a finest cell of the universe lies, and its tag.
+    fn find(&mut self, at: [u32; 3]) -> Result<(Cell, Tag), Error>;
+}
+
+impl Source for OctreeRef<'_> {
+    fn frame(&self) -> &Frame {
+        OctreeRef::frame(self)
+    }
+
+    fn ready<'s>(&'s self, _: &Control<'_>) -> Result<Box<dyn Ready + 's>, Error> {
+        Ok(Box::new(*self))
+    }
+}
+
+impl Ready for OctreeRef<'_> {
+    fn finder<'r>(&'r self, _: &'r Control<'r>) -> Result<Box<dyn Finder + 'r>, Error> {
+        Ok(Box::new(InTree { cursor: Cursor::new(self), depth: OctreeRef::frame(self).depth() }))
+    }
+}
+
+/// A cursor that goes from a cell to the next one by way of what they have in common.
+struct InTree<'t> {
+    cursor: Cursor<'t>,
+    depth: u8,
+}
+
+impl Finder for InTree<'_> {
+    fn find(&mut self, at: [u32; 3]) -> Result<(Cell, Tag), Error> {
+        let finest = Cell { level: self.depth, at };
+        while finest.ancestor(self.cursor.cell().level) != self.cursor.cell() {
+            self.cursor.ascend();
+        }
+        while self.cursor.tag() == Tag::Branch && self.cursor.cell().level < self.depth {
+            let octant = finest.ancestor(self.cursor.cell().level + 1).octant();
+            self.cursor.descend(octant);
+        }
+        Ok((self.cursor.cell(), self.cursor.tag()))
+    }
+}
+
+/// A solid and the frame on which it is cut.
+struct OnFrame<'a, S> {
+    solid: &'a S,
+    frame: Frame,
+}
+
+impl<S: Solid> Source for OnFrame<'_, S> {
+    fn frame(&self) -> &Frame {
+        &self.frame
+    }
+
+    fn ready<'s>(&'s self, control: &Control<'_>) -> Result<Box<dyn Ready + 's>, Error> {
+        Ok(Box::new(Classified(self.solid.on(&self.frame, control)?)))
+    }
+}
+
+struct Classified<C>(C);
+
+impl<C: Classifier> Ready for Classified<C> {
+    fn finder<'r>(&'r self, control: &'r Control<'r>) -> Result<Box<dyn Finder + 'r>, Error> {
+        let trail = Trail::new(self.0.worker()?)?;
+        Ok(Box::new(InSolid { trail, depth: self.0.frame().depth(), control }))
+    }
+}
+
+/// The splits on the way to the last cell.
+struct InSolid<'r, W: Worker> {
+    trail: Trail<W>,
+    depth: u8,
+    control: &'r Control<'r>,
+}
+
+impl<W: Worker> Finder for InSolid<'_, W> {
+    fn find(&mut self, at: [u32; 3]) -> Result<(Cell, Tag), Error> {
+        let finest = Cell { level: self.depth, at };
+        self.trail.follow(finest.parent(), self.control)?;
+        Ok((finest.ancestor(self.trail.level()), self.trail.verdict(finest).tag()))
+    }
+}
+
+impl Draw for SliceLayer<'_> {
+    fn prepare<'a>(&'a self, stage: &Stage<'a>) -> Result<Box<dyn Painter + 'a>, Error> {
+        let ready = self.source.ready(stage.job.control())?;
+        let colours = self.colours.map(Light::of);
+        let outlines = self.outlines.map(Light::of);
+        Ok(Box::new(Slice { layer: self, stage: *stage, ready, colours, outlines }))
+    }
+}
+
+/// A slice that is ready to be drawn.
+struct Slice<'a> {
+    layer: &'a SliceLayer<'a>,
+    stage: Stage<'a>,
+    ready: Box<dyn Ready + 'a>,
+    colours: [Light; 3],
+    outlines: Option<Light>,
+}
+
+/// A sample that shows the plane.
+struct Met {
+    sample: usize,
+    depth: f64,
+    /// How much of it the outline of its cell covers.
+    outline: f32,
+    /// `None` if an attribute tells.
+    light: Option<Light>,
+}
+
+impl Painter for Slice<'_> {
+    fn paint(&self, tile: &mut Tile<'_>) -> Result<(), Error> {
+        let control = self.stage.job.control();
+        let mut finder = None;
+        let mut row_met: Vec<Met> = memory::with_capacity(tile.width())?;
+        let (mut points, mut values) = (Vec::new(), Vec::new());
+        let mut last = None;
+        for row in 0..tile.height() {
+            self.stage.job.check()?;
+            (row_met.clear(), points.clear());
+            for column in 0..tile.width() {
+                let (from, along) = tile.line(column, row);
+                let sample = row * tile.width() + column;
+                let Some((depth, point)) = self.layer.plane.meet(from, along) else { continue };
+                let Some(at) = self.layer.source.frame().cell_of(point.to_array()) else { continue };
+                if depth >= tile.opaque[sample].depth || !self.shows(from, along, depth) {
+                    continue;
+                }
+                let (cell, tag) = match last {
+                    Some((finest, found)) if finest == at => found,
+                    _ => {
+                        if finder.is_none() {
+                            finder = Some(self.ready.finder(control)?);
+                        }
+                        let Some(finder) = &mut finder else { continue };
+                        finder.find(at)?
+                    }
+                };
+                last = Some((at, (cell, tag)));
+                let light = match tag {
+                    Tag::Empty => Some(self.colours[0]),
+                    _ if self.layer.values.is_some() => None,
+                    Tag::Full => Some(self.colours[1]),
+                    Tag::Partial | Tag::Branch => Some(self.colours[2]),
+                };
+                if light.is_none() {
+                    memory::push(&mut points, point.to_array())?;
+                }
+                let outline = match self.outlines {
+                    Some(_) => self.outline(along, depth, point, cell),
+                    None => 0.0,
+                };
+                memory::push(&mut row_met, Met { sample, depth, outline, light })?;
+            }
+            values.clear();
+            values.try_reserve(points.len())?;
+            values.resize(points.len(), None);
+            if let Some((attribute, _)) = self.layer.values
+                && !points.is_empty()
+            {
+                attribute.values(&points, &mut values)?;
+            }
+            let mut values = values.iter();
+            for met in &row_met {
+                let light = met.light.unwrap_or_else(|| {
+                    let value = values.next().copied().flatten();
+                    self.layer.values.map_or(Light::NONE, |(_, colour)| Light::of(colour(value)))
+                });
+                let outline = self.outlines.unwrap_or(Light::NONE);
+                let light = light * (1.0 - met.outline) + outline.over(light) * met.outline;
+                if light.0.w > 0.0 {
+                    tile.put(met.sample, met.depth, light)?;
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+impl Slice<'_> {
+    fn shows(&self, from: DVec3, along: DVec3, depth: f64) -> bool {
+        let clip = self.stage.clip;
+        clip.is_empty() || clip.shown(from, along).is_some_and(|shown| holds([shown.from, shown.to], depth))
+    }
+
+    /// How much the outline of a cell covers of a sample at a point: all if it is less than half a pixel away, so that the
+    /// outlines of two neighbours are a pixel wide together.
+    fn outline(&self, along: DVec3, depth: f64, point: DVec3, cell: Cell) -> f32 {
+        let frame = self.layer.source.frame();
+        let steps = self.layer.plane.steps(self.stage.view, along, depth);
+        let greatest = steps.max_element();
+        let shift = frame.depth() - cell.level;
+        let side = f64::from(1_u32 << shift);
+        // In pixels.
+        let (mut away, mut size) = (f64::INFINITY, f64::INFINITY);
+        for axis in 0..3 {
+            // Along a face that lies in the plane no pixel leads away from it.
+            if steps[axis] <= 1e-9 * greatest {
+                continue;
+            }
+            let step = frame.scaled_length(steps[axis]);
+            let from = frame.scaled(axis, point[axis]) - f64::from(cell.at[axis]) * side;
+            away = away.min(from.min(side - from) / step);
+            size = size.min(side / step);
+        }
+        if away > 0.5 {
+            return 0.0;
+        }
+        ((size - FADING[0]) / (FADING[1] - FADING[0])).clamp(0.0, 1.0) as f32
+    }
+}

@@ -1,0 +1,170 @@
+//! Straight lines in space, drawn a few pixels wide.
+
+use super::bins::Bins;
+use super::camera::View;
+use super::light::Light;
+use super::stage::Stage;
+use super::tile::Tile;
+use crate::error::Error;
+use crate::memory;
+use alloc::vec::Vec;
+use glam::{DVec2, DVec3};
+
+/// The nearest part of a line that is drawn, as a part of its farthest depth: nearer ones are seen far beside the picture.
+const NEAREST: f64 = 1e-9;
+
+/// Samples count as shifted by this, in pixels: a line of a whole number of pixels that runs between samples covers that
+/// number, not one more.
+const NUDGE: DVec2 = DVec2::new(1e-6, 2e-6);
+
+/// An end of a line: its place in pixels, and its depth or, under a perspective, one over its depth.
+#[derive(Clone, Copy)]
+struct End {
+    place: DVec2,
+    depth: f64,
+}
+
+/// Lines in space that are ready to be drawn. A line on a surface is seen, because it counts as nearer than it is by its
+/// width and a pixel.
+pub struct Strokes {
+    lines: Vec<[End; 2]>,
+    bins: Bins,
+    /// In pixels.
+    half_width: f64,
+    light: Light,
+}
+
+impl Strokes {
+    /// Lines between points of model space, cut by the clip planes. `width` in pixels. O(lines + tiles).
+    pub fn new(
+        stage: &Stage<'_>,
+        lines: impl ExactSizeIterator<Item = [DVec3; 2]>,
+        width: f64,
+        light: Light,
+    ) -> Result<Strokes, Error> {
+        let view = stage.view;
+        let half_width = 0.5 * width;
+        let mut seen: Vec<[End; 2]> = memory::with_capacity(lines.len())?;
+        for (i, line) in lines.enumerate() {
+            if i % (1 << 12) == 0 {
+                stage.job.check()?;
+            }
+            let cut = stage.clip.planes().iter().try_fold(line, |line, &(normal, offset)| {
+                cut(line, line.map(|end| normal.dot(end) + offset))
+            });
+            let ends = cut.map(|line| line.map(|end| view.camera.seen(end)));
+            let near = |ends: [DVec3; 2]| match view.is_perspective() {
+                true => NEAREST * ends[0].z.max(ends[1].z),
+                false => 0.0,
+            };
+            seen.extend(ends.and_then(|ends| {
+                let near = near(ends);
+                // What is no number is seen nowhere.
+                let ends = cut_numbers(ends, ends.map(|end| end.z - near))?;
+                Some(ends.map(|end| End::new(view, end, near)))
+            }));
+        }
+        let margin = DVec2::splat(half_width);
+        let size = DVec2::new(f64::from(view.width), f64::from(view.height));
+        let bins = Bins::new([view.width, view.height], seen.len(), stage.job, |i| {
+            let [a, b] = within(seen[i].map(|end| end.place), -margin, size + margin)?;
+            let (low, high) = (a.min(b) - margin, a.max(b) + margin);
+            Some([low.x, low.y, high.x, high.y])
+        })?;
+        Ok(Strokes { lines: seen, bins, half_width, light })
+    }
+
+    /// Draws what is seen in a tile. A translucent line is no darker where two of these lines overlap.
+    pub fn paint(&self, tile: &mut Tile<'_>) -> Result<(), Error> {
+        let lines = self.bins.of(tile)?;
+        if lines.is_empty() || self.light.0.w <= 0.0 {
+            return Ok(());
+        }
+        let mut nearest = memory::filled(tile.width() * tile.height(), f64::INFINITY)?;
+        for i in lines {
+            self.reach(tile, self.lines[i as usize], &mut nearest);
+        }
+        let width = 1.0 + 2.0 * self.half_width;
+        for (sample, depth) in nearest.into_iter().enumerate() {
+            if depth < f64::INFINITY {
+                // No nearer than half way, for wide lines in the face of the eye.
+                let nearer = (depth - width * tile.view.pixel_at(depth)).max(0.5 * depth);
+                tile.put(sample, nearer, self.light)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Brings the depths of a line to the samples that it covers: those that lie within half its width.
+    fn reach(&self, tile: &Tile<'_>, [a, b]: [End; 2], nearest: &mut [f64]) {
+        let along = b.place - a.place;
+        let (square, reach) = (along.length_squared(), self.half_width + 2.0 * NUDGE.y);
+        let top = a.place.y.min(b.place.y) - reach;
+        let bottom = a.place.y.max(b.place.y) + reach;
+        for row in tile.between(1, top, bottom) {
+            let y = tile.place(0, row)[1];
+            // The part of the line that lies within reach of the row.
+            let part = |y: f64| ((y - a.place.y) / along.y).clamp(0.0, 1.0);
+            let parts = if along.y == 0.0 { [0.0, 1.0] } else { [part(y - reach), part(y + reach)] };
+            let ends = parts.map(|part| a.place.x + along.x * part);
+            let (left, right) = (ends[0].min(ends[1]) - reach, ends[0].max(ends[1]) + reach);
+            for column in tile.between(0, left, right) {
+                let from = DVec2::from(tile.place(column, row)) + NUDGE - a.place;
+                let part = if square > 0.0 { (from.dot(along) / square).clamp(0.0, 1.0) } else { 0.0 };
+                if (from - along * part).length_squared() > self.half_width * self.half_width {
+                    continue;
+                }
+                let depth = a.depth + (b.depth - a.depth) * part;
+                let depth = if tile.view.is_perspective() { 1.0 / depth } else { depth };
+                let nearest = &mut nearest[row * tile.width() + column];
+                *nearest = nearest.min(depth);
+            }
+        }
+    }
+}
+
+impl End {
+    fn new(view: &View, seen: DVec3, near: f64) -> End {
+        // An end that was cut may be rounded to behind the cut.
+        let seen = seen.with_z(seen.z.max(near));
+        let depth = if view.is_perspective() { 1.0 / seen.z } else { seen.z };
+        End { place: DVec2::from(view.place(seen)), depth }
+    }
+}
+
+/// The part of a line where a linear function is not negative, given its values at the ends.
+fn cut(line: [DVec3; 2], heights: [f64; 2]) -> Option<[DVec3; 2]> {
+    let [a, b] = line;
+    match heights.map(|height| height >= 0.0) {
+        [true, true] => Some(line),
+        [false, false] => None,
+        [a_is_kept, _] => {
+            let between = a + (b - a) * (heights[0] / (heights[0] - heights[1]));
+            Some(if a_is_kept { [a, between] } else { [between, b] })
+        }
+    }
+}
+
+fn cut_numbers(line: [DVec3; 2], heights: [f64; 2]) -> Option<[DVec3; 2]> {
+    let are_numbers = line.iter().all(|end| end.is_finite()) && heights.iter().any(|&height| height > 0.0);
+    if are_numbers { cut(line, heights) } else { None }
+}
+
+/// The part of a line in the plane that lies in a box.
+fn within(line: [DVec2; 2], low: DVec2, high: DVec2) -> Option<[DVec2; 2]> {
+    let [a, b] = line;
+    let along = b - a;
+    let (mut from, mut to) = (0.0, 1.0);
+    for axis in 0..2 {
+        if along[axis] == 0.0 {
+            if a[axis] < low[axis] || a[axis] > high[axis] {
+                return None;
+            }
+            continue;
+        }
+        let [enter, leave] = [low, high].map(|side| (side[axis] - a[axis]) / along[axis]);
+        from = enter.min(leave).max(from);
+        to = enter.max(leave).min(to);
+    }
+    (from <= to).then(|| [a + along * from, a + along * to])
+}
