@@ -1,5 +1,6 @@
 //! Which things may be seen in which tile.
 
+use super::mapped::mapped;
 use super::tile::{TILE, Tile};
 use crate::control::Job;
 use crate::error::Error;
@@ -31,24 +32,19 @@ impl Bins {
         size: [u32; 2],
         count: usize,
         job: &Job<'_>,
-        mut place: impl FnMut(usize) -> Option<[f64; 4]>,
+        place: impl Fn(usize) -> Option<[f64; 4]> + Sync,
     ) -> Result<Bins, Error> {
         let tiles = size.map(|side| side.div_ceil(TILE) as usize);
-        let mut spans: Vec<Span> = memory::with_capacity(count)?;
+        let mut spans: Vec<Span> =
+            mapped(job, count, |i| place(i).map_or(NOWHERE, |place| span(place, size)))?;
         let mut starts: Vec<usize> = memory::filled(tiles[0] * tiles[1] + 1, 0)?;
         let mut wide = Vec::new();
-        for i in 0..count {
-            if i % (1 << 14) == 0 {
-                job.check()?;
+        for (i, span) in (0..).zip(&mut spans) {
+            if area(*span) > MOST_TILES {
+                memory::push(&mut wide, (i, *span))?;
+                *span = NOWHERE;
             }
-            let span = place(i).map_or(NOWHERE, |place| span(place, size));
-            if area(span) > MOST_TILES {
-                memory::push(&mut wide, (i as u32, span))?;
-                spans.push(NOWHERE);
-            } else {
-                each_tile(span, tiles[0], |tile| starts[tile + 1] += 1);
-                spans.push(span);
-            }
+            each_tile(*span, tiles[0], |tile| starts[tile + 1] += 1);
         }
         for tile in 1..starts.len() {
             starts[tile] += starts[tile - 1];

@@ -8,7 +8,7 @@
 //! never cover one sample both and never leave one out between them, however small they are. A sample on an edge counts as
 //! shifted by (ε, −ε²), to the right and downward: edges on the left and on top belong to a triangle.
 
-use crate::lattice::exact::{Expansion, sign};
+use crate::lattice::exact::{certain, sign, sign_of_products, sign_of_sum, two_product};
 use core::ops::Range;
 use glam::{DVec3, Vec3Swizzles};
 
@@ -48,22 +48,34 @@ impl EdgeFunction {
 
     #[cold]
     fn exact_sign(&self, x: f64, y: f64) -> i32 {
-        let normal = exact_cross(self.a, self.b);
-        let times = |factor: f64, k: usize| normal[k].times(&Expansion::sum([factor]));
-        match times(x, 0).plus(&times(y, 1)).plus(&normal[2]).sign() {
-            0 if normal[0].sign() == 0 => -normal[1].sign(),
-            0 => normal[0].sign(),
+        let (a, b) = (self.a, self.b);
+        match exact_determinant(DVec3::new(x, y, 1.0), a, b) {
+            0 => match sign_of_products(&[(a.y, b.z), (-a.z, b.y)]) {
+                0 => -sign_of_products(&[(a.z, b.x), (-a.x, b.z)]),
+                sign => sign,
+            },
             sign => sign,
         }
     }
 }
 
-fn exact_cross(a: DVec3, b: DVec3) -> [Expansion; 3] {
-    let (a, b) = (a.to_array().map(|x| Expansion::sum([x])), b.to_array().map(|x| Expansion::sum([x])));
-    [0, 1, 2].map(|k| {
-        let (i, j) = ((k + 1) % 3, (k + 2) % 3);
-        a[i].times(&b[j]).minus(&a[j].times(&b[i]))
-    })
+/// The sign of d · (a × b).
+fn exact_determinant(d: DVec3, a: DVec3, b: DVec3) -> i32 {
+    let mut terms = [0.0; 24];
+    let factors = [
+        [d.x, a.y, b.z],
+        [-d.x, a.z, b.y],
+        [d.y, a.z, b.x],
+        [-d.y, a.x, b.z],
+        [d.z, a.x, b.y],
+        [-d.z, a.y, b.x],
+    ];
+    for (terms, [p, q, r]) in terms.chunks_exact_mut(4).zip(factors) {
+        let (high, low) = two_product(q, r);
+        (terms[0], terms[1]) = two_product(low, p);
+        (terms[2], terms[3]) = two_product(high, p);
+    }
+    sign_of_sum(&terms)
 }
 
 /// The sign of a · (b × c).
@@ -71,13 +83,8 @@ fn determinant_sign(a: DVec3, b: DVec3, c: DVec3) -> i32 {
     let (u, v) = (b - a, c - a);
     let (left, right) = (u.yzx() * v.zxy(), u.zxy() * v.yzx());
     let value = (left - right).dot(a);
-    let error = 16.0 * f64::EPSILON * (left.abs() + right.abs()).dot(a.abs()) + f64::MIN_POSITIVE;
-    if value.abs() > error {
-        return sign(value);
-    }
-    let normal = exact_cross(b, c);
-    let times = |factor: f64, k: usize| normal[k].times(&Expansion::sum([factor]));
-    times(a.x, 0).plus(&times(a.y, 1)).plus(&times(a.z, 2)).sign()
+    let error = 16.0 * f64::EPSILON * (left.abs() + right.abs()).dot(a.abs());
+    certain(value, error).unwrap_or_else(|| exact_determinant(a, b, c))
 }
 
 /// The samples that a triangle covers.

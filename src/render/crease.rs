@@ -1,5 +1,6 @@
 //! Where a mesh is smooth, and where it has edges.
 
+use super::mapped::mapped;
 use crate::control::Job;
 use crate::error::Error;
 use crate::memory;
@@ -24,11 +25,11 @@ fn corners(mesh: &TriangleMesh, triangle: [u32; 3]) -> [DVec3; 3] {
 }
 
 /// The outward normals of the triangles, of length 1; zero if a triangle has no area.
-pub fn normals(mesh: &TriangleMesh) -> Result<Vec<DVec3>, Error> {
-    memory::collected(mesh.triangles().iter().map(|&triangle| {
-        let [a, b, c] = corners(mesh, triangle);
+pub fn normals(mesh: &TriangleMesh, job: &Job<'_>) -> Result<Vec<DVec3>, Error> {
+    mapped(job, mesh.triangles().len(), |i| {
+        let [a, b, c] = corners(mesh, mesh.triangles()[i]);
         unit(unit(b - a).cross(unit(c - a)))
-    }))
+    })
 }
 
 /// The normals at the corners of each triangle: the mean over the triangles at the vertex whose normals differ by less than
@@ -51,24 +52,23 @@ pub fn corner_normals(
         sum += *end;
         *end = sum;
     }
-    let mut around: Vec<(u32, f32)> = memory::filled(sum, (0, 0.0))?;
-    for (i, &triangle) in (0..).zip(mesh.triangles()) {
-        let [a, b, c] = corners(mesh, triangle);
+    let angles: Vec<[f32; 3]> = mapped(job, mesh.triangles().len(), |i| {
+        let [a, b, c] = corners(mesh, mesh.triangles()[i]);
         let [u, v, w] = [b - a, c - b, a - c].map(unit);
-        let cosines = [-w.dot(u), -u.dot(v), -v.dot(w)];
-        for (&vertex, cosine) in triangle.iter().zip(cosines) {
+        [-w.dot(u), -u.dot(v), -v.dot(w)].map(|cosine| libm::acos(cosine.clamp(-1.0, 1.0)) as f32)
+    })?;
+    let mut around: Vec<(u32, f32)> = memory::filled(sum, (0, 0.0))?;
+    for (i, (triangle, angles)) in (0..).zip(mesh.triangles().iter().zip(&angles)) {
+        for (&vertex, &angle) in triangle.iter().zip(angles) {
             let place = &mut ends[vertex as usize + 1];
-            around[*place] = (i, libm::acos(cosine.clamp(-1.0, 1.0)) as f32);
+            around[*place] = (i, angle);
             *place += 1;
         }
     }
-    let mut smooth = memory::with_capacity(mesh.triangles().len())?;
-    for (i, triangle) in mesh.triangles().iter().enumerate() {
-        if i % (1 << 12) == 0 {
-            job.check()?;
-        }
+    drop(angles);
+    mapped(job, mesh.triangles().len(), |i| {
         let own = normals[i];
-        smooth.push(triangle.map(|v| {
+        mesh.triangles()[i].map(|v| {
             let around = &around[ends[v as usize]..ends[v as usize + 1]];
             if around.len() > MOST_TRIANGLES {
                 return own.as_vec3();
@@ -79,9 +79,8 @@ pub fn corner_normals(
                 .map(|(normal, angle)| normal * angle)
                 .sum();
             if mean.length() > 1e-6 { mean.normalize().as_vec3() } else { own.as_vec3() }
-        }));
-    }
-    Ok(smooth)
+        })
+    })
 }
 
 /// The edges at which a mesh ends, branches, or bends by more than `crease` (degrees); all edges if `all`.

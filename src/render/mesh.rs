@@ -7,6 +7,7 @@ use super::coverage::Coverage;
 use super::crease;
 use super::light::{Light, brightness};
 use super::lines::check_width;
+use super::mapped::mapped;
 use super::stage::{Draw, Painter, Stage};
 use super::stroke::Strokes;
 use super::tile::Tile;
@@ -111,12 +112,13 @@ impl Draw for MeshLayer<'_> {
             return Err(Error::Argument { name: "colours", problem: "must be as many as triangles" });
         }
         let view = stage.view;
-        let seen = memory::collected(mesh.vertices().iter().map(|&v| view.camera.seen(DVec3::from(v))))?;
+        let vertex = |v: usize| DVec3::from(mesh.vertices()[v]);
+        let seen = mapped(stage.job, mesh.vertices().len(), |v| view.camera.seen(vertex(v)))?;
         let triangles = mesh.triangles();
         let bins = Bins::new([view.width, view.height], triangles.len(), stage.job, |i| {
             place(view, triangles[i].map(|v| seen[v as usize]))
         })?;
-        let normals = crease::normals(mesh)?;
+        let normals = crease::normals(mesh, stage.job)?;
         let smooth = match self.crease {
             0.0 => None,
             crease => Some(crease::corner_normals(mesh, &normals, crease, stage.job)?),
@@ -126,8 +128,7 @@ impl Draw for MeshLayer<'_> {
             which => {
                 let all = which == MeshEdges::All;
                 let edges = crease::edges(mesh, &normals, self.crease, all, stage.job)?;
-                let position = |v: u32| DVec3::from(mesh.vertices()[v as usize]);
-                let lines = edges.into_iter().map(|ends| ends.map(position));
+                let lines = edges.into_iter().map(|ends| ends.map(|v| vertex(v as usize)));
                 Some(Strokes::new(stage, lines, self.edge_width, Light::of(self.edge_colour))?)
             }
         };

@@ -12,6 +12,7 @@ mod crease;
 mod legend;
 mod light;
 mod lines;
+mod mapped;
 mod mesh;
 mod normals;
 mod octree;

@@ -1,0 +1,38 @@
+//! Lists that are made item by item, on the threads at hand.
+
+use crate::control::Job;
+use crate::error::Error;
+use crate::memory;
+use alloc::vec::Vec;
+
+/// Items between two looks at whether the caller cancelled.
+const BLOCK: usize = 1 << 19;
+
+/// Fewer items are not worth starting threads.
+const WORTH: usize = 1 << 14;
+
+/// What `make` makes of 0, 1, 2 … `count` − 1.
+pub fn mapped<T: Send>(
+    job: &Job<'_>,
+    count: usize,
+    make: impl Fn(usize) -> T + Sync,
+) -> Result<Vec<T>, Error> {
+    job.control().run(count > WORTH, |parallel| {
+        let mut list = memory::with_capacity(count)?;
+        for start in (0..count).step_by(BLOCK) {
+            job.check()?;
+            let range = start..count.min(start + BLOCK);
+            #[cfg(feature = "parallel")]
+            if parallel {
+                use rayon::prelude::*;
+                let mut block = memory::with_capacity(range.len())?;
+                range.into_par_iter().map(&make).collect_into_vec(&mut block);
+                list.append(&mut block);
+                continue;
+            }
+            let _ = parallel;
+            list.extend(range.map(&make));
+        }
+        Ok(list)
+    })
+}
