@@ -144,9 +144,9 @@ pub use query::{
     line_of_sight, measure, ray_spans, surface_area, volume_in,
 };
 pub use render::{
-    Camera, Clip, FIELD_OF_VIEW, Finish, Layer, LegendBox, LegendSide, Lens, LinesLayer, MeshEdges,
-    MeshLayer, OctreeLayer, Picture, Shot, SliceLayer, SlicePlane, SolidLayer, TAG_COLOURS, draw_colour_bar,
-    draw_names, render,
+    Camera, Clip, ColourMap, Compositing, FIELD_OF_VIEW, Finish, Layer, LegendBox, LegendSide, Lens,
+    LinesLayer, MeshEdges, MeshLayer, OctreeLayer, Picture, Shot, SliceLayer, SlicePlane, SolidLayer,
+    TAG_COLOURS, Transfer, VolumeLayer, draw_colour_bar, draw_names, render,
 };
 pub use solid::{
     Adaptive, AnyClassifier, AnySolid, AnyWorker, Band, Callback, Classifier, Crossing, Csg, Enclosure,

@@ -23,6 +23,8 @@ mod solid;
 mod stage;
 mod stroke;
 mod tile;
+mod transfer;
+mod volume;
 
 pub use camera::{Camera, FIELD_OF_VIEW, Lens};
 pub use clip::Clip;
@@ -34,6 +36,8 @@ pub use picture::Picture;
 pub use sight::Finish;
 pub use slice::{SliceLayer, SlicePlane, TAG_COLOURS};
 pub use solid::SolidLayer;
+pub use transfer::{ColourMap, Transfer};
+pub use volume::{Compositing, VolumeLayer};
 
 use crate::control::{Control, Job, WHOLE};
 use crate::error::Error;

@@ -275,17 +275,17 @@ impl<'a> VoxelRecordsRef<'a> {
     }
 
     /// The kind of a record of which the index is known to be good.
-    pub(super) fn kind_at(&self, index: usize) -> VoxelKind {
+    pub(crate) fn kind_at(&self, index: usize) -> VoxelKind {
         VoxelKind::ALL[self.kinds[index] as usize & 3]
     }
 
     /// The cell of a record of which the index is known to be good.
-    pub(super) fn cell_at(&self, index: usize) -> Cell {
+    pub(crate) fn cell_at(&self, index: usize) -> Cell {
         cell_of(self.codes[index], self.levels[index], self.frame.depth())
     }
 
     /// The numbers of a record's value.
-    pub(super) fn numbers_at(&self, index: usize) -> &'a [f64] {
+    pub(crate) fn numbers_at(&self, index: usize) -> &'a [f64] {
         &self.values[index * self.components..][..self.components]
     }
 

@@ -1,0 +1,57 @@
+//! Speed of pictures, on two threads.
+//!
+//! ```text
+//! cargo bench --bench render
+//! ```
+
+use criterion::{Criterion, Throughput, criterion_group, criterion_main};
+use leafless::{
+    Bounds, Camera, ColourMap, Control, Csg, Detail, Frame, FunctionAttribute, Interval, Rule, Shot,
+    Transfer, ValueRange, VolumeLayer, VoxelOptions, VoxelRecords, build, render,
+};
+use std::hint::black_box;
+
+/// Pixels on a side of the picture.
+const SIDE: u32 = 1024;
+
+/// The voxels of a block with a spherical hollow in a lattice of 256³ cells; what they hold changes with the distance from a
+/// corner, and they are as fine as that asks for.
+fn voxels(control: &Control<'_>) -> VoxelRecords {
+    let frame = Frame::new([-1.0; 3], 2.0, 8).expect("a frame");
+    let block = Csg::cuboid([-0.95; 3], [0.95; 3]).expect("a block");
+    let ball = Csg::ball([0.1, 0.0, 0.2], 0.6).expect("a ball");
+    let solid = block.difference(&ball).expect("a solid");
+    let tree = build(&solid, &frame, Rule::Certified, control).expect("an octree");
+    let value = |[x, y, z]: [f64; 3]| (x + 1.0) * (x + 1.0) + (y + 1.0) * (y + 1.0) + (z + 1.0) * (z + 1.0);
+    let attribute =
+        FunctionAttribute::new(1, move |p| Some([value(p), 0.0, 0.0, 0.0])).expect("an attribute");
+    let attribute = attribute.with_range(move |bounds| {
+        ValueRange::Within([Interval { lower: value(bounds.min), upper: value(bounds.max) }; 4])
+    });
+    let cell = frame.cell_size();
+    let detail = Detail::new(16.0 * cell, cell, 0.09, leafless::Criterion::Range).expect("a detail");
+    let options = VoxelOptions::new().detail(detail);
+    VoxelRecords::of(tree.view(), &options, Some(&attribute), control).expect("records")
+}
+
+fn volumes(c: &mut Criterion) {
+    let control = Control::threads(2);
+    let records = voxels(&control);
+    let mut group = c.benchmark_group("pictures of volumes");
+    group.sample_size(10).throughput(Throughput::Elements(u64::from(SIDE * SIDE)));
+    let transfer = Transfer::new(ColourMap::Viridis, [0.0, 12.0], 0.1, 0.1).expect("a transfer function");
+    let layer = VolumeLayer::new(records.view(), transfer);
+    for (view, field_of_view) in [("parallel", None), ("perspective", Some(30.0))] {
+        let bounds = Bounds::new([-1.0; 3], [1.0; 3]).expect("a box");
+        let camera = Camera::fitted(&bounds, [30.0, 25.0], field_of_view, 1.0).expect("a camera");
+        let shot = Shot { samples: 1, ..Shot::new(camera, [SIDE; 2]) };
+        let name = format!("{} voxels of 256³ cells, {view}", records.view().len());
+        group.bench_function(name, |b| {
+            b.iter(|| render(black_box(&shot), &[&layer], &control).expect("a picture"))
+        });
+    }
+    group.finish();
+}
+
+criterion_group!(benches, volumes);
+criterion_main!(benches);
