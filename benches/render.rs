@@ -29,7 +29,7 @@ fn voxels(control: &Control<'_>) -> VoxelRecords {
         ValueRange::Within([Interval { lower: value(bounds.min), upper: value(bounds.max) }; 4])
     });
     let cell = frame.cell_size();
-    let detail = Detail::new(16.0 * cell, cell, 0.09, leafless::Criterion::Range).expect("a detail");
+    let detail = Detail::new(16.0 * cell, cell, 0.25, leafless::Criterion::Range).expect("a detail");
     let options = VoxelOptions::new().detail(detail);
     VoxelRecords::of(tree.view(), &options, Some(&attribute), control).expect("records")
 }
