@@ -329,6 +329,13 @@ fn a_cube_looks_as_one_however_it_is_divided() {
             let [a, b] = [whole, parts].map(|layer| render(&shot, &[&layer], &control).unwrap());
             assert!(difference(&a, &b) <= 1, "{}", difference(&a, &b));
         }
+        // From a corner of voxels.
+        for (at, lens) in [([1.0, 0.0, 0.0], Lens::Perspective(120.0)), ([1.0; 3], Lens::Perspective(60.0))] {
+            let camera = Camera::new([0.0; 3], at, [0.0, 0.0, 1.0], lens).unwrap();
+            let shot = Shot { size: [21, 21], ..shot(camera) };
+            let [a, b] = [whole, parts].map(|layer| render(&shot, &[&layer], &control).unwrap());
+            assert!(difference(&a, &b) <= 1, "{}", difference(&a, &b));
+        }
         // Lines along the planes between voxels.
         for axis in 0..6 {
             let mut forward = [0.0; 3];
@@ -341,6 +348,36 @@ fn a_cube_looks_as_one_however_it_is_divided() {
             let [a, b] = [whole, parts].map(|layer| render(&shot, &[&layer], &control).unwrap());
             assert!(difference(&a, &b) <= 1, "{}", difference(&a, &b));
             assert_ne!(a.colours()[10 * 21 + 10], shot.background);
+        }
+    }
+}
+
+#[test]
+fn a_picture_moves_with_its_voxels() {
+    for seed in 0..4 {
+        let random = &mut Random(seed);
+        let records = random_records(random, 1);
+        let near = records.view();
+        for (scale, shift) in [(1.0, [1e6, -3e6, 2e6]), (1e-9, [0.0; 3]), (1e12, [7e12, 0.0, -1e9])] {
+            let map = |p: [f64; 3]| [0, 1, 2].map(|i| scale * p[i] + shift[i]);
+            let frame = Frame::new(map([-1.0; 3]), 2.0 * scale, 4).unwrap();
+            let (codes, levels, kinds) = (near.codes(), near.levels(), near.kinds());
+            let far = VoxelRecordsRef::new(&frame, codes, levels, kinds, 1, near.values()).unwrap();
+            for camera in cameras(random) {
+                let lens = match camera.lens() {
+                    Lens::Parallel(height) => Lens::Parallel(scale * height),
+                    lens => lens,
+                };
+                let at = [0, 1, 2].map(|i| camera.eye()[i] + camera.forward()[i]);
+                let moved = Camera::new(map(camera.eye()), map(at), camera.up(), lens).unwrap();
+                let other = Transfer::new(ColourMap::Plasma, [0.0, 255.0], 0.6, 0.4 * scale).unwrap();
+                let picture = |records, camera, transfer| {
+                    render(&shot(camera), &[&VolumeLayer::new(records, transfer)], &Control::default())
+                        .unwrap()
+                };
+                let (a, b) = (picture(near, camera, transfer()), picture(far, moved, other));
+                assert!(difference(&a, &b) <= 1, "{}", difference(&a, &b));
+            }
         }
     }
 }

@@ -258,7 +258,7 @@ impl Volume<'_> {
                 break;
             }
             count = count.wrapping_add(1);
-            if count.is_multiple_of(4096) {
+            if count.is_multiple_of(256) {
                 self.job.check()?;
             }
             if range.len() == 1 {
