@@ -43,7 +43,7 @@ fn volumes(c: &mut Criterion) {
     let layer = VolumeLayer::new(records.view(), transfer);
     for (view, field_of_view) in [("parallel", None), ("perspective", Some(30.0))] {
         let bounds = Bounds::new([-1.0; 3], [1.0; 3]).expect("a box");
-        let camera = Camera::fitted(&bounds, [30.0, 25.0], field_of_view, 1.0).expect("a camera");
+        let camera = Camera::fitted(&bounds.corners(), [30.0, 25.0], field_of_view, 1.0).expect("a camera");
         let shot = Shot { samples: 1, ..Shot::new(camera, [SIDE; 2]) };
         let name = format!("{} voxels of 256³ cells, {view}", records.view().len());
         group.bench_function(name, |b| {

@@ -144,8 +144,8 @@ pub use query::{
     line_of_sight, measure, ray_spans, surface_area, volume_in,
 };
 pub use render::{
-    Camera, Clip, ColourMap, Compositing, FIELD_OF_VIEW, Finish, Layer, LegendBox, LegendSide, Lens,
-    LinesLayer, MeshEdges, MeshLayer, OctreeLayer, Picture, Shot, SliceLayer, SlicePlane, SolidLayer,
+    Camera, Clip, ClippedLayer, ColourMap, Compositing, FIELD_OF_VIEW, Finish, Layer, LegendBox, LegendSide,
+    Lens, LinesLayer, MeshEdges, MeshLayer, OctreeLayer, Picture, Shot, SliceLayer, SlicePlane, SolidLayer,
     TAG_COLOURS, Transfer, VolumeLayer, draw_colour_bar, draw_names, render,
 };
 pub use solid::{

@@ -388,7 +388,7 @@ fn faces_in_clip_planes_are_shown() {
     let bounds = Bounds::new([0.0; 3], [0.6; 3]).unwrap();
     for from in [[0.0, 0.0], [30.0, 20.0], [210.0, -35.0]] {
         for lens in [None, Some(40.0)] {
-            let camera = Camera::fitted(&bounds, from, lens, 1.0).unwrap();
+            let camera = Camera::fitted(&bounds.corners(), from, lens, 1.0).unwrap();
             let whole = shot(camera, [50, 50]);
             let cut = Shot { clip: Clip::new().within(&bounds).unwrap(), ..whole.clone() };
             let [whole, cut] = [whole, cut].map(|shot| take(&shot, &[&MeshLayer::new(&mesh)]));
@@ -431,7 +431,8 @@ fn creases_are_kept_and_the_rest_is_smooth() {
     assert!(steps(&flat) > 2.0 * steps(&smooth), "{} {}", steps(&flat), steps(&smooth));
     // A box is flat with an angle below 90 degrees.
     let mesh = grid_box(3, 1.0);
-    let camera = Camera::fitted(&Bounds::new([0.0; 3], [3.0; 3]).unwrap(), [30.0, 30.0], None, 1.0).unwrap();
+    let camera =
+        Camera::fitted(&Bounds::new([0.0; 3], [3.0; 3]).unwrap().corners(), [30.0, 30.0], None, 1.0).unwrap();
     let shades = |degrees: f64| {
         let picture = take(&shot(camera, [64, 64]), &[&MeshLayer::new(&mesh).crease(degrees)]);
         let mut shades = picture.colours().to_vec();

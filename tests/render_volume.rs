@@ -222,7 +222,7 @@ fn cameras(random: &mut Random) -> Vec<Camera> {
     let mut cameras = Vec::new();
     for field_of_view in [None, Some(30.0), Some(100.0)] {
         let from = [random.between(-180.0, 180.0), random.between(-89.0, 89.0)];
-        cameras.push(Camera::fitted(&bounds, from, field_of_view, 1.5).unwrap());
+        cameras.push(Camera::fitted(&bounds.corners(), from, field_of_view, 1.5).unwrap());
     }
     let point = |random: &mut Random| [0; 3].map(|_| random.between(-0.9, 0.9));
     for lens in [Lens::Perspective(90.0), Lens::Perspective(25.0), Lens::Parallel(1.5)] {
@@ -285,7 +285,7 @@ fn repetitions_are_so_many_layers() {
     let transfer = Transfer::new(ColourMap::Viridis, [0.0, 1.0], 0.01, 0.5).unwrap();
     let records = cube(None);
     let bounds = Bounds::new([-1.0; 3], [1.0; 3]).unwrap();
-    let camera = Camera::fitted(&bounds, [20.0, 30.0], None, 1.0).unwrap();
+    let camera = Camera::fitted(&bounds.corners(), [20.0, 30.0], None, 1.0).unwrap();
     let alone = Control::threads(1);
     let (mut opacity, mut through) = (0.0, 1.0);
     for k in 1..=1024u32 {
@@ -457,7 +457,7 @@ fn what_absorbs_everything_hides_everything() {
     let parts = cube(Some(&mut Random(3)));
     let bounds = Bounds::new([-1.0; 3], [1.0; 3]).unwrap();
     for field_of_view in [None, Some(40.0)] {
-        let camera = Camera::fitted(&bounds, [30.0, 40.0], field_of_view, 1.0).unwrap();
+        let camera = Camera::fitted(&bounds.corners(), [30.0, 40.0], field_of_view, 1.0).unwrap();
         let opaque = transfer().ramp([1.0; 2]).unwrap();
         for compositing in [Compositing::Exact, Compositing::Published { unit: 0.1 }] {
             let layer = VolumeLayer::new(parts.view(), opaque).compositing(compositing).unwrap();

@@ -1,5 +1,7 @@
 //! `leafless render`: what does it look like?
 
+use crate::channel;
+use crate::dexel_surface;
 use crate::failure::{Failure, Of};
 use crate::input::Input;
 use crate::mesh::Reading;
@@ -9,11 +11,14 @@ use crate::scene::Drawing;
 use crate::shape::Shape;
 use crate::source::Source;
 use crate::voxelize::threads;
-use clap::Args;
+use clap::{Args, ValueEnum};
 use leafless::{
-    Affine, AnySolid, Bounds, Camera, CellFilter, Clip, Control, Cube, FIELD_OF_VIEW, Finish, Frame, Layer,
-    Lens, Octree, OctreeLayer, Picture, Rule, Shot, SolidLayer, Tag, build, exchange, octree_of_dexels,
-    render,
+    Affine, AnySolid, Attribute, Bounds, Camera, CellFilter, Channel, Clip, ClippedLayer, ColourMap,
+    Compositing, Control, Criterion, Cube, Detail, FIELD_OF_VIEW, Finish, Frame, Layer, LegendSide, Lens,
+    MAX_DEPTH, MeshEdges, MeshLayer, Octree, OctreeLayer, Picture, Resolve, Rule, Shot, SliceLayer,
+    SlicePlane, SolidLayer, TAG_COLOURS, Tag, Transfer, TriangleMesh, VolumeLayer, VoxelOptions,
+    VoxelRecords, bounding_box, build, draw_colour_bar, draw_names, exchange, marching_cubes,
+    octree_of_dexels, render,
 };
 use serde::Serialize;
 use std::ffi::OsString;
@@ -32,14 +37,18 @@ pub struct Arguments {
     /// File to write (PNG), or `-` for standard output; it is written whole or not at all
     #[arg(short, long, value_name = "OUT")]
     output: OsString,
+    /// What to show
+    #[arg(long, value_enum, default_value_t = View::Surface)]
+    view: View,
     /// Width and height in pixels
     #[arg(long, value_name = "WxH", default_value = "1024x768", value_parser = size)]
     size: [u32; 2],
     /// From where to look, in degrees: 0,0 is from the front (−y) with z upward, a positive azimuth from further right, a
     /// positive elevation from further above
-    #[arg(long, value_name = "AZIMUTH,ELEVATION", default_value = "30,25", value_parser = numbers::<2>,
-          allow_hyphen_values = true)]
-    from: [f64; 2],
+    /// [default: 30,25; of a slice its plane from in front]
+    #[arg(long, value_name = "AZIMUTH,ELEVATION", value_parser = numbers::<2>, allow_hyphen_values = true,
+          verbatim_doc_comment)]
+    from: Option<[f64; 2]>,
     /// Where the eye is, instead of --from
     #[arg(long, value_name = "X,Y,Z", value_parser = numbers::<3>, allow_hyphen_values = true)]
     eye: Option<[f64; 3]>,
@@ -64,6 +73,34 @@ pub struct Arguments {
     /// Samples of a pixel: 1, 4, 9, 16, 25, 36, 49 or 64
     #[arg(long, value_name = "N", default_value_t = 4)]
     samples: u32,
+    /// Plane of the slice: the points x, y, z with a x + b y + c z = d. Without it: the one through the middle that is
+    /// seen best of those along the axes
+    #[arg(long, value_name = "A,B,C,D", value_parser = numbers::<4>, allow_hyphen_values = true)]
+    plane: Option<[f64; 4]>,
+    /// Channel of the solid whose values are shown. Without it: the only one, if there is one
+    #[arg(long, value_name = "NAME")]
+    channel: Option<String>,
+    /// Colours of values: viridis, cividis, inferno, magma, plasma or grey
+    #[arg(long, value_name = "NAME", default_value = "viridis", value_parser = map)]
+    map: ColourMap,
+    /// Values at both ends of the colours. Without it: the least and the greatest
+    #[arg(long, value_name = "A,B", value_parser = numbers::<2>, allow_hyphen_values = true)]
+    range: Option<[f64; 2]>,
+    /// Opacity of a volume as thick as the solid's longest side, 0 to 1
+    #[arg(long, value_name = "ALPHA", default_value_t = 0.95)]
+    opacity: f64,
+    /// Show voxels as published: of an edge of k finest voxels as k layers, wherever a line of sight crosses them
+    #[arg(long)]
+    published: bool,
+    /// Draw the edges of a mesh at which its faces meet at more than 30 degrees
+    #[arg(long)]
+    edges: bool,
+    /// Level of the cells that a mesh, a scene or a volume is split to for a slice or a volume, 1 to 20
+    #[arg(long, value_name = "N", default_value_t = DEPTH, value_parser = clap::value_parser!(u8).range(1..=MAX_DEPTH as i64))]
+    depth: u8,
+    /// Leave out the legend
+    #[arg(long)]
+    no_legend: bool,
     /// Show the cells of a solid by their faces
     #[arg(long)]
     faces: bool,
@@ -112,23 +149,55 @@ fn colour(text: &str) -> Result<[u8; 4], String> {
     }
 }
 
+fn map(text: &str) -> Result<ColourMap, String> {
+    ColourMap::from_name(text).map_err(|error| error.to_string())
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, ValueEnum)]
+#[serde(rename_all = "lowercase")]
+enum View {
+    /// The shaded surface
+    Surface,
+    /// The inside, translucent
+    Volume,
+    /// Both: clip planes cut only the surface, which is translucent without any
+    Hybrid,
+    /// A plane through it, with its cells and what they are
+    Slice,
+}
+
 /// What is shown.
 enum Subject {
     Octree(Box<Octree>),
+    Mesh(Box<TriangleMesh>),
     Solid(Box<AnySolid>, Frame),
 }
 
 impl Subject {
-    fn of(shape: Shape, input: &Input) -> Result<Subject, Failure> {
+    fn of(shape: Shape, input: &Input, arguments: &Arguments) -> Result<Subject, Failure> {
+        let of_cells = matches!(arguments.view, View::Volume | View::Hybrid | View::Slice);
         match shape {
-            Shape::Dexels(model) => {
+            Shape::Dexels(model) if of_cells || arguments.faces => {
                 let octree = octree_of_dexels(model.view(), &Control::default()).of(input)?;
                 Ok(Subject::Octree(Box::new(octree)))
             }
+            Shape::Dexels(model) => {
+                Ok(Subject::Mesh(Box::new(dexel_surface::cubes(&model, input, arguments.threads)?.0)))
+            }
             Shape::Source(Source::Octree(octree)) => Ok(Subject::Octree(octree)),
+            Shape::Source(Source::Mesh(mesh, ..)) if !of_cells && !arguments.faces => {
+                Ok(Subject::Mesh(Box::new(mesh)))
+            }
             Shape::Source(source) => {
-                let frame = source.frame(input, Some(DEPTH))?;
-                Ok(Subject::Solid(Box::new(source.placed(input, &Affine::IDENTITY, &frame)?), frame))
+                let frame = source.frame(input, Some(arguments.depth))?;
+                let solid = source.placed(input, &Affine::IDENTITY, &frame)?;
+                if !of_cells && !arguments.faces {
+                    return Ok(Subject::Solid(Box::new(solid), frame));
+                }
+                let octree = watched("render", arguments.threads, |control| {
+                    build(&solid, &frame, Rule::Certified, control)
+                });
+                Ok(Subject::Octree(Box::new(octree.of(input)?)))
             }
         }
     }
@@ -143,25 +212,21 @@ impl Subject {
             let mut points = Vec::new();
             for found in leaves.chain(cut) {
                 let (min, max) = Cube { frame: &frame, cell: found.cell }.bounds();
-                points.extend(corners(min, max));
+                points.extend(Bounds { min, max }.corners());
             }
             if points.is_empty() {
-                let bounds = Bounds::of(&frame);
-                points.extend(corners(bounds.min, bounds.max));
+                points.extend(Bounds::of(&frame).corners());
             }
             points
         };
         match self {
             Subject::Octree(octree) => Ok(coarse(octree)),
+            Subject::Mesh(mesh) => Ok(mesh.vertices().to_vec()),
             Subject::Solid(solid, frame) => {
                 Ok(coarse(&build(&**solid, &frame.with_depth(COARSE)?, Rule::Certified, control)?))
             }
         }
     }
-}
-
-fn corners(min: [f64; 3], max: [f64; 3]) -> impl Iterator<Item = [f64; 3]> {
-    (0..8).map(move |k| [0, 1, 2].map(|axis| if k >> axis & 1 == 0 { min[axis] } else { max[axis] }))
 }
 
 /// Level of the cells that a camera is fitted to.
@@ -176,7 +241,7 @@ struct Made {
     width: u32,
     height: u32,
     samples: u32,
-    view: &'static str,
+    view: View,
     eye: [f64; 3],
     forward: [f64; 3],
     /// Pixels where something is seen.
@@ -190,10 +255,19 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let (input, output) = (Input::from(&*arguments.input), Output::from(&*arguments.output));
     output.check()?;
     let shape = Shape::read(&input, &arguments.reading, &arguments.drawing)?.0;
-    let subject = Subject::of(shape, &input)?;
+    let subject = Subject::of(shape, &input, arguments)?;
+    let channel = match &subject {
+        Subject::Octree(octree) if arguments.channel.is_some() || octree.channels().len() == 1 => {
+            Some(channel::find(octree, &input, arguments.channel.as_deref())?)
+        }
+        _ if arguments.channel.is_some() => {
+            return Err(Failure::of(&input, "has no channels to show in this view"));
+        }
+        _ => None,
+    };
     let (shot, picture) = watched("render", arguments.threads, |control| {
         let shot = shot(arguments, &subject, control)?;
-        let picture = picture(arguments, &subject, &shot, control)?;
+        let picture = picture(arguments, &subject, channel, &shot, control)?;
         Ok((shot, picture))
     })
     .of(&input)?;
@@ -206,7 +280,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         width: picture.width(),
         height: picture.height(),
         samples: shot.samples,
-        view: "surface",
+        view: arguments.view,
         eye: shot.camera.eye(),
         forward: shot.camera.forward(),
         covered: picture.depths().iter().filter(|depth| depth.is_finite()).count(),
@@ -241,15 +315,21 @@ fn shot(arguments: &Arguments, subject: &Subject, control: &Control<'_>) -> Resu
             |point: [f64; 3]| [0, 1, 2].map(|axis| point[axis].clamp(kept.min[axis], kept.max[axis]));
         points = points.into_iter().map(clamped).collect();
     }
-    let field = (!arguments.ortho).then_some(arguments.fov);
+    let is_slice = arguments.view == View::Slice && arguments.from.is_none();
+    let field = (!arguments.ortho && !is_slice).then_some(arguments.fov);
     let camera = match arguments.eye {
-        None => Camera::fitted(&points, arguments.from, field, f64::from(width) / f64::from(height))?,
-        Some(eye) => {
-            let middle = [0, 1, 2].map(|axis| {
-                let at = points.iter().map(|point| point[axis]);
-                0.5 * at.clone().fold(f64::INFINITY, f64::min) + 0.5 * at.fold(f64::NEG_INFINITY, f64::max)
+        None => {
+            let from = arguments.from.unwrap_or(match arguments.plane {
+                Some([a, b, c, _]) if is_slice => {
+                    [a.atan2(-b).to_degrees(), c.atan2(a.hypot(b)).to_degrees()]
+                }
+                None if is_slice => [0.0, 0.0],
+                _ => [30.0, 25.0],
             });
-            let at = arguments.at.unwrap_or(middle);
+            Camera::fitted(&points, from, field, f64::from(width) / f64::from(height))?
+        }
+        Some(eye) => {
+            let at = arguments.at.unwrap_or(middle(&points));
             let along = [0, 1, 2].map(|axis| at[axis] - eye[axis]);
             let is_upright = along[0].hypot(along[1]) < 1e-6 * along[2].abs();
             let up = arguments.up.unwrap_or(if is_upright { [0.0, 1.0, 0.0] } else { [0.0, 0.0, 1.0] });
@@ -263,24 +343,192 @@ fn shot(arguments: &Arguments, subject: &Subject, control: &Control<'_>) -> Resu
     Ok(Shot { camera, size: arguments.size, samples, clip, background })
 }
 
+/// The middle of the box around points.
+fn middle(points: &[[f64; 3]]) -> [f64; 3] {
+    let (low, high) = extremes(points);
+    [0, 1, 2].map(|axis| 0.5 * low[axis] + 0.5 * high[axis])
+}
+
+fn extremes(points: &[[f64; 3]]) -> ([f64; 3], [f64; 3]) {
+    let end = |start: f64, choose: fn(f64, f64) -> f64| {
+        [0, 1, 2].map(|axis| points.iter().map(|point| point[axis]).fold(start, choose))
+    };
+    (end(f64::INFINITY, f64::min), end(f64::NEG_INFINITY, f64::max))
+}
+
 fn picture(
+    arguments: &Arguments,
+    subject: &Subject,
+    channel: Option<&Channel>,
+    shot: &Shot,
+    control: &Control<'_>,
+) -> Result<Picture, leafless::Error> {
+    match (subject, arguments.view) {
+        (Subject::Octree(octree), View::Volume) => volume(arguments, octree, channel, shot, &[], control),
+        (Subject::Octree(octree), View::Hybrid) => hybrid(arguments, octree, channel, shot, control),
+        (Subject::Octree(octree), View::Slice) => slice(arguments, octree, channel, shot, control),
+        _ => surface(arguments, subject, shot, control),
+    }
+}
+
+fn surface(
     arguments: &Arguments,
     subject: &Subject,
     shot: &Shot,
     control: &Control<'_>,
 ) -> Result<Picture, leafless::Error> {
-    let mut finish = Finish { faces: arguments.faces, ..Finish::default() };
-    if let Some(colour) = arguments.colour {
-        finish.colour = colour;
-    }
+    let plain = Finish::default();
+    let finish = Finish { faces: arguments.faces, colour: arguments.colour.unwrap_or(plain.colour), ..plain };
     match subject {
-        Subject::Octree(octree) => {
-            let layer = OctreeLayer::new(octree.view(), finish);
-            render(shot, &[&layer as &dyn Layer], control)
-        }
-        Subject::Solid(solid, frame) => {
-            let layer = SolidLayer::new(&**solid, frame, finish);
-            render(shot, &[&layer as &dyn Layer], control)
+        Subject::Octree(octree) => render(shot, &[&OctreeLayer::new(octree.view(), finish)], control),
+        Subject::Solid(solid, frame) => render(shot, &[&SolidLayer::new(&**solid, frame, finish)], control),
+        Subject::Mesh(mesh) => {
+            let edges = if arguments.edges { MeshEdges::Features } else { MeshEdges::None };
+            let layer = MeshLayer::new(mesh).colour(finish.colour).inside(finish.cut).edges(edges, 1.5, INK);
+            render(shot, &[&layer], control)
         }
     }
+}
+
+/// The colour of lines.
+const INK: [u8; 4] = [35, 40, 45, 255];
+
+/// What values look like: for a solid without a channel, all the same.
+fn transfer(
+    arguments: &Arguments,
+    octree: &Octree,
+    channel: Option<&Channel>,
+    control: &Control<'_>,
+) -> Result<Transfer, leafless::Error> {
+    let range = match (arguments.range, channel) {
+        (Some(range), _) => range,
+        (None, Some(channel)) => {
+            let control = Control { progress: None, ..*control };
+            let found = channel.view()?.summary(Some(octree.view()), None, &control)?;
+            match found.map(|found| (found.least[0], found.greatest[0])) {
+                Some((low, high)) if low < high => [low, high],
+                Some((low, _)) => [low, low + 1.0],
+                None => [0.0, 1.0],
+            }
+        }
+        (None, None) => [0.0, 1.0],
+    };
+    let extent = bounding_box(octree.view(), octree.frame(), 0.0, &Control { progress: None, ..*control })?;
+    let longest = extent.corners.map_or(octree.frame().edge(), |[min, max]| {
+        (0..3).map(|axis| max[axis].upper - min[axis].lower).fold(0.0, f64::max)
+    });
+    Transfer::new(arguments.map, range, arguments.opacity, longest)
+}
+
+/// The voxels of an octree, with surfaces before and between them.
+fn volume(
+    arguments: &Arguments,
+    octree: &Octree,
+    channel: Option<&Channel>,
+    shot: &Shot,
+    surfaces: &[&dyn Layer],
+    control: &Control<'_>,
+) -> Result<Picture, leafless::Error> {
+    let transfer = transfer(arguments, octree, channel, control)?;
+    let attribute = channel.map(|channel| channel as &dyn Attribute);
+    let mut options = VoxelOptions::new();
+    if let Some(channel) = channel {
+        // Voxels as large as the channel's values allow.
+        let fine = channel.frame().cell_size().min(octree.frame().cell_size());
+        let [low, high] = transfer.range();
+        let tolerance = (high - low) / 64.0;
+        options = options.detail(Detail::new(octree.frame().edge(), fine, tolerance, Criterion::Range)?);
+    }
+    let quiet = Control { progress: None, ..*control };
+    let records = VoxelRecords::of(octree.view(), &options, attribute, &quiet)?;
+    let compositing = match arguments.published {
+        true => Compositing::Published { unit: octree.frame().cell_size() },
+        false => Compositing::Exact,
+    };
+    let layer = VolumeLayer::new(records.view(), transfer).compositing(compositing)?;
+    let mut layers = surfaces.to_vec();
+    layers.push(&layer);
+    let mut picture = render(shot, &layers, control)?;
+    if let Some(channel) = channel.filter(|channel| channel.value_type().components() == 1) {
+        bar(arguments, &mut picture, channel, &transfer)?;
+    }
+    Ok(picture)
+}
+
+fn bar(
+    arguments: &Arguments,
+    picture: &mut Picture,
+    channel: &Channel,
+    transfer: &Transfer,
+) -> Result<(), leafless::Error> {
+    if !arguments.no_legend {
+        let colour = |value: f64| {
+            let [r, g, b] = transfer.colour(&[value]);
+            [r, g, b, 255]
+        };
+        draw_colour_bar(picture, channel.name(), transfer.range(), &colour, LegendSide::Right)?;
+    }
+    Ok(())
+}
+
+fn hybrid(
+    arguments: &Arguments,
+    octree: &Octree,
+    channel: Option<&Channel>,
+    shot: &Shot,
+    control: &Control<'_>,
+) -> Result<Picture, leafless::Error> {
+    let quiet = Control { progress: None, ..*control };
+    let mesh = marching_cubes(octree.view(), Some(Resolve::Outer), &quiet)?;
+    let mut colour = arguments.colour.unwrap_or(Finish::default().colour);
+    if shot.clip.is_empty() && arguments.colour.is_none() {
+        colour[3] = 70;
+    }
+    let skin = MeshLayer::new(&mesh).colour(colour).inside(colour);
+    // Clip planes cut the skin away, and show what is behind it.
+    let cut = ClippedLayer::new(&skin, shot.clip.clone());
+    let whole = Shot { clip: Clip::new(), ..shot.clone() };
+    volume(arguments, octree, channel, &whole, &[&cut], control)
+}
+
+fn slice(
+    arguments: &Arguments,
+    octree: &Octree,
+    channel: Option<&Channel>,
+    shot: &Shot,
+    control: &Control<'_>,
+) -> Result<Picture, leafless::Error> {
+    let plane = match arguments.plane {
+        Some([a, b, c, d]) => SlicePlane::new([a, b, c], d)?,
+        None => {
+            let forward = shot.camera.forward();
+            let axis = (0..3).max_by(|&i, &j| forward[i].abs().total_cmp(&forward[j].abs())).unwrap_or(2);
+            let frame = octree.frame();
+            // Half a cell beside the middle, which is a plane of the lattice.
+            let middle = frame.origin()[axis] + 0.5 * frame.edge() + 0.5 * frame.cell_size();
+            SlicePlane::across(axis, middle)?
+        }
+    };
+    let layer = SliceLayer::new(octree.view(), plane);
+    let Some(channel) = channel else {
+        let mut picture = render(shot, &[&layer], control)?;
+        if !arguments.no_legend {
+            let names = [("EMPTY", TAG_COLOURS[0]), ("FULL", TAG_COLOURS[1]), ("PARTIAL", TAG_COLOURS[2])];
+            draw_names(&mut picture, "", &names, LegendSide::Right);
+        }
+        return Ok(picture);
+    };
+    let transfer = transfer(arguments, octree, Some(channel), control)?;
+    let components = channel.value_type().components();
+    let colour = |value: Option<[f64; 4]>| {
+        let value = value.unwrap_or([f64::NAN; 4]);
+        let [r, g, b] = transfer.colour(&value[..components]);
+        [r, g, b, 255]
+    };
+    let layer = layer.values(channel, &colour);
+    let mut picture = render(shot, &[&layer], control)?;
+    if components == 1 {
+        bar(arguments, &mut picture, channel, &transfer)?;
+    }
+    Ok(picture)
 }

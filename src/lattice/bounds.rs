@@ -29,6 +29,13 @@ impl Bounds {
         Bounds { min: frame.origin(), max }
     }
 
+    /// The eight corners, x running fastest and z slowest.
+    pub fn corners(&self) -> [[f64; 3]; 8] {
+        core::array::from_fn(|k| {
+            [0, 1, 2].map(|axis| if k >> axis & 1 == 0 { self.min[axis] } else { self.max[axis] })
+        })
+    }
+
     /// The least box that contains both.
     #[must_use]
     pub fn hull(&self, other: &Bounds) -> Bounds {

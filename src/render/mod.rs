@@ -7,6 +7,7 @@
 mod bins;
 mod camera;
 mod clip;
+mod clipped;
 mod coverage;
 mod crease;
 mod legend;
@@ -28,6 +29,7 @@ mod volume;
 
 pub use camera::{Camera, FIELD_OF_VIEW, Lens};
 pub use clip::Clip;
+pub use clipped::ClippedLayer;
 pub use legend::{LegendBox, LegendSide, draw_colour_bar, draw_names};
 pub use lines::LinesLayer;
 pub use mesh::{MeshEdges, MeshLayer};
@@ -36,6 +38,7 @@ pub use picture::Picture;
 pub use sight::Finish;
 pub use slice::{SliceLayer, SlicePlane, TAG_COLOURS};
 pub use solid::SolidLayer;
+pub use stage::Layer;
 pub use transfer::{ColourMap, Transfer};
 pub use volume::{Compositing, VolumeLayer};
 
@@ -81,11 +84,6 @@ impl Shot {
     }
 }
 
-/// Something that can be drawn.
-pub trait Layer: Sync + stage::Draw {}
-
-impl<T: Sync + stage::Draw> Layer for T {}
-
 /// Takes a picture of layers. Surfaces hide what lies behind them, whichever layer it is of; of two at one depth the first
 /// layer's is seen. O(pixels · samples), and what each layer says.
 ///
@@ -103,7 +101,7 @@ pub fn render(shot: &Shot, layers: &[&dyn Layer], control: &Control<'_>) -> Resu
     let count = width as usize * height as usize;
     let (mut colours, mut depths) = (memory::filled(count, [0; 4])?, memory::filled(count, f32::INFINITY)?);
     let view = &View::new(&shot.camera, shot.size);
-    let stage = Stage { view, clip: &shot.clip, grid, job };
+    let stage = Stage { view, clip: &shot.clip, job };
     let mut painters = memory::with_capacity(layers.len())?;
     for layer in layers {
         painters.push(layer.prepare(&stage)?);

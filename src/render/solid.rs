@@ -314,7 +314,7 @@ mod tests {
         let view = View::new(&camera, [256, 256]);
         let (control, clip) = (Control::threads(1), Clip::new());
         let job = Job::new(&control);
-        let stage = Stage { view: &view, clip: &clip, grid: 1, job: &job };
+        let stage = Stage { view: &view, clip: &clip, job: &job };
         let painter = SolidPainter::<Csg> {
             finish: Finish::default(),
             stage,

@@ -12,8 +12,6 @@ use alloc::boxed::Box;
 pub struct Stage<'a> {
     pub(crate) view: &'a View,
     pub(crate) clip: &'a Clip,
-    /// Samples of a pixel along each axis.
-    pub(crate) grid: u32,
     pub(crate) job: &'a Job<'a>,
 }
 
@@ -25,6 +23,11 @@ pub trait Draw {
     /// The layer's own.
     fn prepare<'a>(&'a self, stage: &Stage<'a>) -> Result<Box<dyn Painter + 'a>, Error>;
 }
+
+/// Something that can be drawn.
+pub trait Layer: Sync + Draw {}
+
+impl<T: Sync + Draw> Layer for T {}
 
 /// When a layer is drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

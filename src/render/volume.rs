@@ -62,7 +62,7 @@ pub enum Compositing {
 /// // Voxels without values are grey. Half a model unit absorbs 30 % of the light.
 /// let transfer = Transfer::new(ColourMap::Viridis, [0.0, 1.0], 0.3, 0.5)?;
 /// let layer = VolumeLayer::new(records.view(), transfer);
-/// let camera = Camera::fitted(&Bounds::new([-1.0; 3], [1.0; 3])?, [30.0, 20.0], None, 1.0)?;
+/// let camera = Camera::fitted(&Bounds::of(&frame).corners(), [30.0, 20.0], None, 1.0)?;
 /// let picture = render(&Shot::new(camera, [64, 64]), &[&layer], &control)?;
 /// assert_eq!(picture.colours()[0], [255; 4]);
 /// assert!(picture.colours()[64 * 32 + 32][0] < 240);
@@ -543,7 +543,7 @@ mod tests {
     fn seen(view: &View, clip: &Clip, sheets: &Sheets, volumes: &[VolumeLayer<'_>]) -> Vec<DVec4> {
         let control = Control::threads(1);
         let job = &Job::new(&control);
-        let stage = Stage { view, clip, grid: 1, job };
+        let stage = Stage { view, clip, job };
         let mut tile = Tile::new(view, [0; 2], [view.width, view.height], 1).unwrap();
         sheets.prepare(&stage).unwrap().paint(&mut tile).unwrap();
         tile.sort();
