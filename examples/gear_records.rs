@@ -87,8 +87,9 @@ fn distances(bounds: &Bounds, [x, y]: [f64; 2]) -> [f64; 2] {
     [least.sqrt() * (1.0 - 1e-12), most.sqrt() * (1.0 + 1e-12)]
 }
 
-/// Red, green, blue and opacity of hub, web and rim, and the radii where these end.
-const COLOURS: [[f64; 4]; 3] = [[0.9, 0.2, 0.1, 1.0], [0.1, 0.7, 0.2, 0.3], [0.2, 0.3, 0.9, 0.6]];
+/// Red, green, blue and opacity of hub, web and rim, 0 to 255, and the radii where these end.
+const COLOURS: [[f64; 4]; 3] =
+    [[230.0, 51.0, 26.0, 255.0], [26.0, 179.0, 51.0, 77.0], [51.0, 77.0, 230.0, 153.0]];
 const RADII: [f64; 2] = [0.32, 0.58];
 
 fn zone(radius: f64) -> usize {
@@ -157,7 +158,7 @@ pub fn parts(control: &Control<'_>) -> Result<[Part; 3], Error> {
             octree: gear.clone(),
             attribute: Box::new(colour()?),
             criterion: Criterion::Variance,
-            tolerance: 0.01,
+            tolerance: 2.5,
             levels: [5, 7, 6],
         },
         Part {
@@ -165,7 +166,7 @@ pub fn parts(control: &Control<'_>) -> Result<[Part; 3], Error> {
             octree: gear,
             attribute: Box::new(colour()?),
             criterion: Criterion::Range,
-            tolerance: 0.01,
+            tolerance: 2.5,
             levels: [5, 7, 6],
         },
         Part {
