@@ -113,8 +113,8 @@ const MOST_PASSED: usize = 32;
 enum Met {
     /// It meets the surface.
     At(f64, DVec3),
-    /// It passes it by.
-    Nowhere,
+    /// It passes it by, though it comes near to a face with this normal.
+    Nowhere(DVec3),
     /// Nothing.
     Unknown,
 }
@@ -129,13 +129,16 @@ impl<S: Solid> SolidPainter<'_, S> {
         mut hit: RayHit,
     ) -> Result<Option<(f64, Option<DVec3>)>, Error> {
         let (octree, frame) = (self.octree.view(), self.octree.frame());
+        let step = 1e-6 * frame.cell_size() / sight.along.length();
+        let mut passed: Option<(f64, DVec3)> = None;
         for _ in 0..MOST_PASSED {
             let (t, face) = (hit.t.lower.max(0.0), DVec3::from(hit.normal));
             let begins = sight.begins_in(t, face);
             let at = hit.cell.first_at(frame.depth()).at;
             if hit.cell.level < frame.depth() || octree.tag_at(at) != Tag::Partial {
-                // The face of a FULL cell is the surface.
-                return Ok(Some((t, (!begins).then_some(face))));
+                // The face of a FULL cell is the surface, unless that was just passed by for a rounding.
+                let near = passed.filter(|(end, normal)| t - end <= step && *normal != DVec3::ZERO);
+                return Ok(Some((t, (!begins).then_some(near.map_or(face, |(_, normal)| normal)))));
             }
             let leaves = leaves(frame, hit.cell, sight);
             match self.met(hand, hit.cell, sight, [t, leaves])? {
@@ -146,10 +149,10 @@ impl<S: Solid> SolidPainter<'_, S> {
                     let normal = if found == DVec3::ZERO { face } else { found };
                     return Ok(Some((t, (!begins).then_some(normal))));
                 }
-                Met::Nowhere => {}
+                Met::Nowhere(normal) => passed = Some((leaves, normal)),
             }
             // On behind the cell, past its faces.
-            let beyond = leaves + 1e-9 * frame.cell_size() / sight.along.length();
+            let beyond = leaves + 1e-3 * step;
             let Some(next) = sight.beyond(beyond).and_then(|ray| octree.cast_ray(&ray, Obstacle::Upper))
             else {
                 return Ok(None);
@@ -248,6 +251,7 @@ impl<S: Solid> SolidPainter<'_, S> {
         let any = enclosure.join == SlabJoin::Any;
         // All: the time within all; any: the first time within one.
         let (mut first, mut last, mut normal) = (enters, leaves, None);
+        let mut facing = DVec3::ZERO;
         let mut earliest: Option<(f64, Option<DVec3>)> = None;
         for slab in enclosure.slabs.iter().filter(|slab| slab.normal != [0.0; 3]) {
             let outward = DVec3::from(slab.normal);
@@ -257,6 +261,9 @@ impl<S: Solid> SolidPainter<'_, S> {
                 _ => slab.outer,
             };
             let (height, rise) = (outward.dot(from) - middle, outward.dot(along));
+            if rise < 0.0 {
+                facing = outward;
+            }
             let crosses = -height / rise;
             let (begins, ends, by) = if rise < 0.0 {
                 if crosses > enters { (crosses, leaves, Some(outward)) } else { (enters, leaves, None) }
@@ -279,9 +286,9 @@ impl<S: Solid> SolidPainter<'_, S> {
             last = last.min(ends);
         }
         if any {
-            return earliest.and_then(|(t, by)| Some(Met::At(t, by?))).unwrap_or(Met::Nowhere);
+            return earliest.and_then(|(t, by)| Some(Met::At(t, by?))).unwrap_or(Met::Nowhere(facing));
         }
-        if first < last { Met::At(first, normal.unwrap_or(-sight.along)) } else { Met::Nowhere }
+        if first < last { Met::At(first, normal.unwrap_or(-sight.along)) } else { Met::Nowhere(facing) }
     }
 }
 
