@@ -28,11 +28,12 @@ pub enum Compositing {
     Exact,
     /// As published (Zhu, Tang and Dong 2002): a voxel is a cell of one unit, repeated edge / unit times, wherever its
     /// projection covers a sample. The transfer function's opacity holds for one repetition, and its length does not count.
-    /// A voxel whose centre is cut away is left out. A surface hides a voxel, or is seen through it, by the depth at which the
-    /// line of sight enters the voxel.
+    /// A voxel whose centre is cut away is left out. A voxel lies behind a surface if the line of sight enters the voxel behind
+    /// the surface; else all of the voxel lies before the surface.
     ///
-    /// With n repetitions of the colour C and the opacity α, in front of the colour D and the opacity β, the colour is
-    /// D (1 − α)^n + C (1 − (1 − α)^n) and the opacity 1 − (1 − β)(1 − α)^n. The number n need not be whole.
+    /// Let n repetitions of the colour C and the opacity α lie in front of the light D (a colour times its opacity) with the
+    /// opacity β. The light of both is D (1 − α)^n + C (1 − (1 − α)^n), and their opacity is 1 − (1 − β)(1 − α)^n. The number n
+    /// need not be whole.
     Published {
         /// The edge of a cell that is composited once, in model units: above 0.
         unit: f64,
@@ -48,8 +49,8 @@ pub enum Compositing {
 /// The voxels of one layer are seen in their right order from everywhere, also from among them. Of two volume layers, the one
 /// that comes first in the picture is taken to be in front.
 ///
-/// O(samples covered by each voxel + tiles met by each voxel · levels). Light that is weakened below 10⁻⁷ is not followed
-/// farther: each channel is within 10⁻⁶ of what following it to the end gives.
+/// O(pairs of a voxel and a sample that it covers + pairs of a voxel and a tile that it meets · levels). Where less than 10⁻⁷
+/// of the light comes through, nothing farther away is drawn. So each channel, as linear light from 0 to 1, is within 10⁻⁶ of the truth.
 ///
 /// ```
 /// use leafless::{
