@@ -50,7 +50,8 @@ pub enum Compositing {
 /// that comes first in the picture is taken to be in front.
 ///
 /// O(pairs of a voxel and a sample that it covers + pairs of a voxel and a tile that it meets · levels). Where less than 10⁻⁷
-/// of the light comes through, nothing farther away is drawn. So each channel, as linear light from 0 to 1, is within 10⁻⁶ of the truth.
+/// of the light comes through, nothing farther away is drawn. So each channel, as linear light from 0 to 1, is within 10⁻⁶ of
+/// the truth.
 ///
 /// ```
 /// use leafless::{
