@@ -326,7 +326,10 @@ fn shot(arguments: &Arguments, subject: &Subject, control: &Control<'_>) -> Resu
                 None if is_slice => [0.0, 0.0],
                 _ => [30.0, 25.0],
             });
-            Camera::fitted(&points, from, field, f64::from(width) / f64::from(height))?
+            // A legend lies at the right side.
+            let is_clear = arguments.no_legend || matches!(arguments.view, View::Surface);
+            let free = if is_clear { 1.0 } else { LEGEND_FREE };
+            Camera::fitted(&points, from, field, free * f64::from(width) / f64::from(height))?
         }
         Some(eye) => {
             let at = arguments.at.unwrap_or(middle(&points));
@@ -342,6 +345,9 @@ fn shot(arguments: &Arguments, subject: &Subject, control: &Control<'_>) -> Resu
     let Arguments { samples, background, .. } = *arguments;
     Ok(Shot { camera, size: arguments.size, samples, clip, background })
 }
+
+/// The part of a picture's width that is left for what is shown beside a legend: it is as far from both sides.
+const LEGEND_FREE: f64 = 0.72;
 
 /// The middle of the box around points.
 fn middle(points: &[[f64; 3]]) -> [f64; 3] {
