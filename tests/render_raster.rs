@@ -162,6 +162,19 @@ fn depths_of_random_triangles() {
     assert!(seen[0] > 50_000 && seen[1] < 200, "{seen:?}");
 }
 
+/// Triangles that are seen in more tiles than are listed one by one.
+#[test]
+fn depths_of_large_triangles() {
+    let mut random = Random(41);
+    for _ in 0..4 {
+        let vertices: Vec<V> = (0..9).map(|_| random.point(3.0)).collect();
+        let mesh = TriangleMesh::new(vertices, vec![[0, 1, 2], [3, 4, 5], [6, 7, 8]]).unwrap();
+        for camera in cameras(&mut random, 2.0) {
+            check_depths(&mesh, &shot(camera, [500, 410]));
+        }
+    }
+}
+
 #[test]
 fn depths_of_closed_meshes() {
     let mesh = ball(6);
@@ -491,7 +504,10 @@ fn lines_cover_what_they_should() {
         let width = [1.0, 3.0, 10.5][round % 3];
         let lens = if round % 2 == 0 { Lens::Parallel(2.0) } else { Lens::Perspective(30.0) };
         let camera = Camera::new([0.0, -5.0, 0.3], [0.0; 3], [0.1, 0.0, 1.0], lens).unwrap();
-        let shot = shot(camera, [70, 50]);
+        // Some large, with lines through many tiles.
+        let scale = if round % 10 == 9 { 9.0 } else { 1.0 };
+        let (columns, size) = (70 * scale as usize, [70.0 * scale, 50.0 * scale]);
+        let shot = shot(camera, size.map(|side| side as u32));
         let lines = [ends];
         let picture = take(&shot, &[&LinesLayer::new(&lines).width(width)]);
         // Its ends in the picture, by search for the lines of sight through them.
@@ -499,15 +515,15 @@ fn lines_cover_what_they_should() {
             let from = add(end, camera.eye(), -1.0);
             let [x, y, z] = [camera.right(), camera.up(), camera.forward()].map(|axis| dot(from, axis));
             let pixel = match lens {
-                Lens::Parallel(height) => height / 50.0,
-                Lens::Perspective(degrees) => 2.0 * (0.5 * degrees.to_radians()).tan() / 50.0 * z,
+                Lens::Parallel(height) => height / size[1],
+                Lens::Perspective(degrees) => 2.0 * (0.5 * degrees.to_radians()).tan() / size[1] * z,
             };
-            ([35.0 + x / pixel, 25.0 - y / pixel], z)
+            ([0.5 * size[0] + x / pixel, 0.5 * size[1] - y / pixel], z)
         });
         let [(a, near), (b, far)] = seen;
         let along = [b[0] - a[0], b[1] - a[1]];
         for (i, (&depth, colour)) in picture.depths().iter().zip(picture.colours()).enumerate() {
-            let at = [(i % 70) as f64 + 0.5 - a[0], (i / 70) as f64 + 0.5 - a[1]];
+            let at = [(i % columns) as f64 + 0.5 - a[0], (i / columns) as f64 + 0.5 - a[1]];
             let square = along[0] * along[0] + along[1] * along[1];
             let part = ((at[0] * along[0] + at[1] * along[1]) / square).clamp(0.0, 1.0);
             let distance = (at[0] - along[0] * part).hypot(at[1] - along[1] * part);
@@ -521,12 +537,23 @@ fn lines_cover_what_they_should() {
                     Lens::Perspective(_) => 1.0 / ((1.0 - part) / near + part / far),
                 };
                 // Nearer than it is, by its width and a pixel.
-                let pixel = 2.0 / 50.0 * if round % 2 == 0 { 1.0 } else { expected * 0.268 };
+                let pixel = 2.0 / size[1] * if round % 2 == 0 { 1.0 } else { expected * 0.268 };
                 let nearer = expected - f64::from(depth);
                 assert!(nearer > 0.0 && nearer < 1.01 * (1.0 + width) * pixel, "{expected} {depth}");
             }
         }
     }
+}
+
+/// Lines of one layer that cross are no darker there.
+#[test]
+fn translucent_lines_are_drawn_once() {
+    let lines = [[[-1.0, 0.0, -0.4], [1.0, 0.0, 0.5]], [[-0.9, 0.5, 0.5], [0.8, -0.2, -0.6]]];
+    let picture =
+        take(&shot(front(2.0), [64, 64]), &[&LinesLayer::new(&lines).width(5.0).colour([9, 9, 9, 100])]);
+    assert!(picture.colours().iter().all(|colour| [0, 100].contains(&colour[3])));
+    assert!(picture.colours().iter().filter(|colour| colour[3] == 100).count() > 400);
+    assert!(picture.depths().iter().all(|&depth| depth == f32::INFINITY));
 }
 
 #[test]

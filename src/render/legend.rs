@@ -144,35 +144,33 @@ pub fn draw_names(
     let (line, pad) = (canvas.line(), canvas.pad());
     let row = line + pad;
     let heading = if title.is_empty() { 0 } else { row };
-    let count = |text: &str| text.chars().count().min(LONGEST);
-    let title_width = 2 * pad + canvas.width_of(count(title));
+    let letter = canvas.width_of(1);
+    let width_of = |text: &str| text.chars().count().min(LONGEST) as u32 * letter;
     // A box, a gap, the name, and a gap to the next one.
-    let entry = |canvas: &Canvas<'_>, name: &str| line + pad + canvas.width_of(count(name)) + 2 * pad;
-    let most = match side {
-        LegendSide::Right => limit,
-        LegendSide::Bottom => canvas.size[0],
+    let entry = |name: &str| line + pad + width_of(name) + 2 * pad;
+    let (most, room) = match side {
+        LegendSide::Right => (limit, canvas.size[1]),
+        LegendSide::Bottom => (canvas.size[0], limit),
     };
-    // Where each entry lies in the panel: side by side below, one under another on the right.
-    let place_all = |canvas: &Canvas<'_>, visit: &mut dyn FnMut(usize, [u32; 2])| {
+    // Where each entry lies in the panel: side by side below, one under another on the right. Those beyond its end are not
+    // visited.
+    let place_all = |visit: &mut dyn FnMut(&str, [u8; 4], [u32; 2])| {
         let [mut x, mut y] = [pad, pad + heading];
-        for (i, (name, _)) in names.iter().enumerate() {
-            if x > pad && (side == LegendSide::Right || x + entry(canvas, name) > most) {
-                (x, y) = (pad, y.saturating_add(row));
+        for &(name, colour) in names {
+            if x > pad && (side == LegendSide::Right || x + entry(name) > most) {
+                (x, y) = (pad, y + row);
             }
-            visit(i, [x, y]);
-            x = x.saturating_add(entry(canvas, name));
+            if y + row > room {
+                break;
+            }
+            visit(name, colour, [x, y]);
+            x += entry(name);
         }
     };
-    let room = match side {
-        LegendSide::Right => canvas.size[1],
-        LegendSide::Bottom => limit,
-    };
-    let (mut width, mut height) = (title_width, pad + heading);
-    place_all(&canvas, &mut |i, [x, y]| {
-        if y.saturating_add(row) <= room {
-            width = width.max(x.saturating_add(entry(&canvas, names[i].0)));
-            height = height.max(y + row);
-        }
+    let (mut width, mut height) = (2 * pad + width_of(title), pad + heading);
+    place_all(&mut |name, _, [x, y]| {
+        width = width.max(x + entry(name));
+        height = height.max(y + row);
     });
     let (width, height) = (width.min(most), height.min(room));
     let [left, top] = match side {
@@ -181,20 +179,12 @@ pub fn draw_names(
     };
     canvas.panel([left, top, width, height]);
     canvas.text(title, [left + pad, top + pad]);
-    for (i, (name, colour)) in names.iter().enumerate() {
-        let mut place = None;
-        place_all(&canvas, &mut |other, at| {
-            if other == i {
-                place = Some(at);
-            }
-        });
-        if let Some([x, y]) = place.filter(|[_, y]| y.saturating_add(row) <= height) {
-            let square = [left + x, top + y, line, line];
-            canvas.fill(square, *colour);
-            canvas.frame(square);
-            canvas.text(name, [left + x + line + pad, top + y]);
-        }
-    }
+    place_all(&mut |name, colour, [x, y]| {
+        let square = [left + x, top + y, line, line];
+        canvas.fill(square, colour);
+        canvas.frame(square);
+        canvas.text(name, [left + x + line + pad, top + y]);
+    });
     Some([left, top, width, height])
 }
 
