@@ -468,8 +468,7 @@ fn edges_of_features_are_drawn() {
         let layer = MeshLayer::new(&mesh).crease(crease).edges(edges, 1.0, [0, 0, 0, 255]);
         let camera = Camera::new([0.5, -5.0, 0.5], [0.5; 3], [0.0, 0.0, 1.0], Lens::Parallel(2.0)).unwrap();
         let picture = take(&shot(camera, [64, 64]), &[&layer]);
-        let colours = picture.colours().iter().map(|&colour| is_dark(colour)).collect::<Vec<_>>();
-        colours
+        picture.colours().iter().map(|&colour| is_dark(colour)).collect::<Vec<_>>()
     };
     let (none, features, all) =
         (dark(MeshEdges::None, 30.0), dark(MeshEdges::Features, 30.0), dark(MeshEdges::All, 30.0));

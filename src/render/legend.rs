@@ -154,7 +154,7 @@ pub fn draw_names(
     };
     // Where each entry lies in the panel: side by side below, one under another on the right. Those beyond its end are not
     // visited.
-    let place_all = |visit: &mut dyn FnMut(&str, [u8; 4], [u32; 2])| {
+    let place_all = |visit: Visit<'_>| {
         let [mut x, mut y] = [pad, pad + heading];
         for &(name, colour) in names {
             if x > pad && (side == LegendSide::Right || x + entry(name) > most) {
@@ -187,6 +187,9 @@ pub fn draw_names(
     });
     Some([left, top, width, height])
 }
+
+/// Is called with a name, its colour, and the place of its entry.
+type Visit<'v> = &'v mut dyn FnMut(&str, [u8; 4], [u32; 2]);
 
 const INK_BYTES: [u8; 4] = [20, 20, 20, 255];
 

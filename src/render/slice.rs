@@ -283,7 +283,8 @@ impl Painter for Slice<'_> {
         let mut last = None;
         for row in 0..tile.height() {
             self.stage.job.check()?;
-            (row_met.clear(), points.clear());
+            row_met.clear();
+            points.clear();
             for column in 0..tile.width() {
                 let (from, along) = tile.line(column, row);
                 let sample = row * tile.width() + column;
