@@ -134,8 +134,8 @@ impl Draw for MeshLayer<'_> {
         };
         // The coordinates of the outermost samples: x and y of a line of sight that is 1 long along the view.
         let reach = [view.width, view.height].map(|side| 0.5 * f64::from(side) * view.pixel_at(1.0));
-        let inside = self.inside.map(Light::of);
-        Ok(Box::new(Ready { layer: self, stage: *stage, seen, bins, normals, smooth, edges, reach, inside }))
+        let lights = lights(self.colour, self.inside);
+        Ok(Box::new(Ready { layer: self, stage: *stage, seen, bins, normals, smooth, edges, reach, lights }))
     }
 }
 
@@ -192,7 +192,8 @@ struct Ready<'a> {
     smooth: Option<Vec<[Vec3; 3]>>,
     edges: Option<Strokes>,
     reach: [f64; 2],
-    inside: Option<Light>,
+    /// Of faces seen from the front and from behind, unless each has a colour of its own.
+    lights: [Light; 2],
 }
 
 /// What all triangles of a tile need to know of its samples.
@@ -266,7 +267,7 @@ impl Ready<'_> {
         let flat = |corner: DVec3| if view.is_perspective() { corner } else { corner.with_z(1.0) };
         let Some(coverage) = Coverage::new(corners.map(flat), self.reach) else { return Ok(()) };
         let depths = corners.map(|corner| corner.z);
-        let shade = Shade::new(self, i, coverage.facing > 0);
+        let mut shade = None;
         let first = [samples.columns[0], view.pixel_at(1.0) / f64::from(tile.grid)];
         for row in rows {
             let y = samples.rows[row];
@@ -276,6 +277,7 @@ impl Ready<'_> {
                 let sample = row * tile.width() + column;
                 let is_seen = depth > 0.0 && depth < tile.opaque[sample].depth;
                 if is_seen && samples.shows(sample, depth) {
+                    let shade = shade.get_or_insert_with(|| Shade::new(self, i, coverage.facing > 0));
                     let light = shade.light(self, tile, [column, row], weights);
                     tile.put(sample, depth, light)?;
                 }
@@ -292,6 +294,13 @@ impl Ready<'_> {
     }
 }
 
+/// The colours of a face seen from the front and from behind.
+fn lights(colour: [u8; 4], inside: Option<[u8; 4]>) -> [Light; 2] {
+    let own = Light::of(colour);
+    let mixed = || own * 0.5 + Light::of(INSIDE) * (0.5 * own.0.w);
+    [own, inside.map_or_else(mixed, Light::of)]
+}
+
 /// What light comes from a triangle.
 enum Shade<'a> {
     /// The same from all of it.
@@ -303,12 +312,11 @@ enum Shade<'a> {
 impl<'a> Shade<'a> {
     fn new(mesh: &'a Ready<'_>, i: usize, is_front: bool) -> Shade<'a> {
         let layer = mesh.layer;
-        let own = Light::of(layer.colours.map_or(layer.colour, |colours| colours[i]));
-        let colour = match mesh.inside {
-            _ if is_front => own,
-            Some(inside) => inside,
-            None => own * 0.5 + Light::of(INSIDE) * (0.5 * own.0.w),
+        let lights = match layer.colours {
+            Some(colours) => lights(colours[i], layer.inside),
+            None => mesh.lights,
         };
+        let colour = lights[usize::from(!is_front)];
         let facing = if is_front { 1.0 } else { -1.0 };
         if let Some(smooth) = &mesh.smooth {
             let [a, b, c] = &smooth[i];
