@@ -24,7 +24,7 @@ pub fn pictures(
         Camera::fitted(&bounds.corners(), [25.0, 50.0], None, f64::from(size[0]) / f64::from(size[1]))?;
     let shot = Shot { background: [0; 4], ..Shot::new(camera, size) };
     // Temperatures in degrees; colours are colours already.
-    let transfer = Transfer::new(ColourMap::Viridis, [20.0, 80.0], 0.9, 0.5)?;
+    let transfer = Transfer::new(ColourMap::Viridis, [20.0, 80.0], 0.5, 0.1)?;
     let picture = |records: &VoxelRecords| {
         debug_assert!(part.levels[2] > 0);
         render(&shot, &[&VolumeLayer::new(records.view(), transfer)], control)

@@ -170,11 +170,11 @@ pub fn parts(control: &Control<'_>) -> Result<[Part; 3], Error> {
             levels: [5, 7, 6],
         },
         Part {
-            name: "cover, temperature to 2 degrees, certified",
+            name: "cover, temperature to 1.5 degrees, certified",
             octree: octree(cover()?)?,
             attribute: Box::new(temperature()?),
             criterion: Criterion::Range,
-            tolerance: 2.0,
+            tolerance: 1.5,
             levels: [5, 8, 6],
         },
     ])
