@@ -29,6 +29,8 @@ use std::time::Instant;
 /// A solid from a file is shown as its cells make its surface likely to be; with --faces, as its cells are. A mesh, a scene or
 /// a volume is shown itself, without an octree.
 #[derive(Args)]
+// Of arrays without a header, `--samples` says the extents everywhere else.
+#[command(mut_arg("extents", |extents| extents.long("array-samples")))]
 pub struct Arguments {
     /// Solid or tri-dexel model (.lfl), mesh (STL, OBJ, PLY, OFF, 3MF), scene (.csg) or volume (NRRD, MetaImage), or `-` for
     /// standard input
@@ -71,7 +73,7 @@ pub struct Arguments {
     #[arg(long, value_name = "X0,Y0,Z0,X1,Y1,Z1", value_parser = numbers::<6>, allow_hyphen_values = true)]
     clip_box: Option<[f64; 6]>,
     /// Samples of a pixel: 1, 4, 9, 16, 25, 36, 49 or 64
-    #[arg(long, value_name = "N", default_value_t = 4)]
+    #[arg(id = "per_pixel", long = "samples", value_name = "N", default_value_t = 4)]
     samples: u32,
     /// Plane of the slice: the points x, y, z with a x + b y + c z = d. Without it: the one through the middle that is
     /// seen best of those along the axes

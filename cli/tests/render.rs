@@ -46,7 +46,8 @@ fn every_kind_of_file_is_shown_in_every_view() {
             let marked = pixels.iter().filter(|pixel| **pixel != [255; 3]).count();
             // A fitted cube or ball covers a good part of the picture.
             assert!(marked > 3000, "{file} {view}: {marked}");
-            assert_eq!(pixels[0], [255; 3], "{file} {view}");
+            // (What is EMPTY is faint in a slice.)
+            assert!(view == "slice" || pixels[0] == [255; 3], "{file} {view}");
         }
     }
 }

@@ -25,6 +25,9 @@ impl Default for Finish {
     }
 }
 
+/// Part of its depth by which a line of sight keeps away from clip planes.
+const ASIDE: f64 = 1e-9;
+
 /// A line of sight that begins where it is shown.
 pub struct Sight {
     sample: usize,
@@ -48,9 +51,10 @@ impl Sight {
     /// The same of no sample.
     pub fn along(stage: &Stage<'_>, eye: DVec3, along: DVec3) -> Option<(Sight, Ray)> {
         let shown = stage.clip.shown(eye, along)?;
-        let from = eye + along * shown.from;
-        let length = shown.to - shown.from;
-        let sight = Sight { sample: 0, from, along, start: shown.from, length, entry: shown.entry };
+        // Cells are closed: those beyond a clip plane that only touch it are not seen.
+        let (start, end) = (shown.from * (1.0 + ASIDE), shown.to * (1.0 - ASIDE));
+        let from = eye + along * start;
+        let sight = Sight { sample: 0, from, along, start, length: end - start, entry: shown.entry };
         let ray = sight.beyond(0.0)?;
         Some((sight, ray))
     }
