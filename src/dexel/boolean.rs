@@ -248,7 +248,7 @@ fn by_rows<S: Form>(
         job.check()?;
         let mut piece = Piece::new(format, range.len() * window.size[0] as usize)?;
         work(range, &mut piece)?;
-        Ok(piece)
+        Ok::<_, Error>(piece)
     };
     #[cfg(feature = "parallel")]
     if parallel && rows.len() > ROWS as usize {

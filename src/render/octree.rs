@@ -52,9 +52,8 @@ impl Painter for OctreePainter<'_> {
         let tree = &self.layer.tree;
         let mut normals = Normals::new(tree);
         let mut cast = Cast::new(tree, self.stage);
-        while let Some((sights, hits)) = cast.next(tile)? {
-            for (sight, hit) in sights.iter().zip(hits) {
-                let Some(hit) = hit else { continue };
+        while let Some(met) = cast.next(tile)? {
+            for (sight, hit) in met {
                 let (t, face) = (hit.t.lower.max(0.0), DVec3::from(hit.normal));
                 let normal = if sight.begins_in(t, face) {
                     None
@@ -62,7 +61,7 @@ impl Painter for OctreePainter<'_> {
                     Some(face)
                 } else {
                     let point = sight.from + sight.along * t;
-                    let found = normal_of_cells(&mut normals, tree.frame(), point, hit)?;
+                    let found = normal_of_cells(&mut normals, tree.frame(), point, &hit)?;
                     Some(if found == DVec3::ZERO { face } else { found })
                 };
                 sight.draw(&self.layer.finish, tile, t, normal)?;
@@ -88,8 +87,11 @@ impl<'t, 'a> Cast<'t, 'a> {
         Cast { tree, stage, block: 0, rays, sights, hits: [None; BLOCK[0] * BLOCK[1]] }
     }
 
-    /// The next block; `None` after the last one.
-    pub fn next(&mut self, tile: &Tile<'_>) -> Result<Option<(&[Sight], &[Option<RayHit>])>, Error> {
+    /// What is met in the next block; `None` after the last one.
+    pub fn next<'s>(
+        &'s mut self,
+        tile: &Tile<'_>,
+    ) -> Result<Option<impl Iterator<Item = (&'s Sight, RayHit)> + use<'s, 't, 'a>>, Error> {
         let across = tile.width().div_ceil(BLOCK[0]);
         let (column, row) = (self.block % across * BLOCK[0], self.block / across * BLOCK[1]);
         if row >= tile.height() {
@@ -109,7 +111,7 @@ impl<'t, 'a> Cast<'t, 'a> {
         }
         let hits = &mut self.hits[..self.rays.len()];
         self.tree.cast_rays(&self.rays, Obstacle::Upper, hits)?;
-        Ok(Some((&self.sights, hits)))
+        Ok(Some(self.sights.iter().zip(&*hits).filter_map(|(sight, hit)| Some((sight, (*hit)?)))))
     }
 }
 

@@ -87,10 +87,9 @@ impl<S: Solid> Painter for SolidPainter<'_, S> {
             enclosures: HashMap::new(),
         };
         let mut cast = Cast::new(self.octree.view(), self.stage);
-        while let Some((sights, hits)) = cast.next(tile)? {
-            for (sight, hit) in sights.iter().zip(hits) {
-                let Some(hit) = hit else { continue };
-                if let Some((t, normal)) = self.sees(&mut hand, sight, *hit)? {
+        while let Some(met) = cast.next(tile)? {
+            for (sight, hit) in met {
+                if let Some((t, normal)) = self.sees(&mut hand, sight, hit)? {
                     sight.draw(&self.finish, tile, t, normal)?;
                 }
             }
@@ -337,14 +336,13 @@ mod tests {
         let tile = Tile::new(&view, [0, 0], [256, 256], 1).unwrap();
         let mut cast = Cast::new(octree, stage);
         let (mut angles, mut off) = (Vec::new(), 0.0f64);
-        while let Some((sights, hits)) = cast.next(&tile).unwrap() {
-            for (sight, hit) in sights.iter().zip(hits) {
-                let Some(hit) = hit else { continue };
+        while let Some(met) = cast.next(&tile).unwrap() {
+            for (sight, hit) in met {
                 let seen = if use_slabs {
-                    painter.sees(&mut hand, sight, *hit).unwrap()
+                    painter.sees(&mut hand, sight, hit).unwrap()
                 } else {
                     let point = sight.from + sight.along * hit.t.lower;
-                    let found = normal_of_cells(&mut hand.normals, &frame, point, hit).unwrap();
+                    let found = normal_of_cells(&mut hand.normals, &frame, point, &hit).unwrap();
                     Some((hit.t.lower, Some(found)))
                 };
                 let Some((t, normal)) = seen else { continue };
