@@ -6,8 +6,9 @@
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use leafless::{
-    Bounds, Camera, ColourMap, Control, Csg, Detail, Frame, FunctionAttribute, Interval, Rule, Shot,
-    Transfer, ValueRange, VolumeLayer, VoxelOptions, VoxelRecords, build, render,
+    Bounds, Camera, ColourMap, Control, Csg, Detail, Finish, Frame, FunctionAttribute, Interval, Layer,
+    MeshLayer, OctreeLayer, Resolve, Rule, Shot, SolidLayer, Transfer, ValueRange, VolumeLayer, VoxelOptions,
+    VoxelRecords, build, marching_cubes, render,
 };
 use std::hint::black_box;
 
@@ -53,5 +54,40 @@ fn volumes(c: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, volumes);
+/// A part with curved and plane faces.
+fn part() -> Csg {
+    let block = Csg::cuboid([-0.9, -0.9, -0.4], [0.9, 0.9, 0.4]).expect("a block");
+    let ball = Csg::ball([0.0, 0.0, 0.3], 0.8).expect("a ball");
+    let bore = Csg::cylinder(0.3, -2.0, 2.0).expect("a bore");
+    Csg::union_of([block, ball]).expect("a part").difference(&bore).expect("a part")
+}
+
+fn surfaces(c: &mut Criterion) {
+    let control = Control::threads(2);
+    let frame = Frame::new([-1.125; 3], 2.25, 10).expect("a frame");
+    let solid = part();
+    let tree = build(&solid, &frame, Rule::Certified, &control).expect("an octree");
+    let mesh = marching_cubes(tree.view(), Some(Resolve::Outer), &control).expect("a mesh");
+    let points = mesh.vertices();
+    let camera = Camera::fitted(points, [30.0, 25.0], Some(30.0), 1.0).expect("a camera");
+    let mut group = c.benchmark_group("pictures of surfaces");
+    group.sample_size(10).throughput(Throughput::Elements(u64::from(SIDE * SIDE)));
+    let octree = OctreeLayer::new(tree.view(), Finish::default());
+    let of_solid = SolidLayer::new(&solid, &frame, Finish::default());
+    let of_mesh = MeshLayer::new(&mesh);
+    let triangles = format!("mesh of {} triangles", mesh.triangles().len());
+    let layers: [(&str, &dyn Layer); 3] =
+        [("octree of 1024³ cells", &octree), ("solid", &of_solid), (&triangles, &of_mesh)];
+    for (name, layer) in layers {
+        for samples in [1, 4] {
+            let shot = Shot { samples, ..Shot::new(camera, [SIDE; 2]) };
+            group.bench_function(format!("{name}, {samples} samples"), |b| {
+                b.iter(|| render(black_box(&shot), &[layer], &control).expect("a picture"))
+            });
+        }
+    }
+    group.finish();
+}
+
+criterion_group!(benches, surfaces, volumes);
 criterion_main!(benches);

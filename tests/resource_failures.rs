@@ -15,15 +15,17 @@ mod zip;
 
 use bodies::{Aligned, Random};
 use leafless::{
-    Affine, AnySolid, Band, Callback, Columns, Control, Csg, DexelEditor, DexelEnds, DexelFormat,
-    DexelNormals, DexelOptions, DistanceTo, Error, FillRule, Frame, HalfSpace, LazyOctree, Membership,
-    MeshSolid, Metadata, Obstacle, Octree, PointTable, Polyhedron, PolyhedronArrays, Ray, Resolve, Rule,
-    Side, Snap, Tag, Transform, TriDexel, TriangleMesh, Verdict, VertexPlacement, Volume, VoxelGrid, Zone,
-    bounding_box, build, cast_rays, cells_in, classify_box, classify_in, clearance, columns, compact,
-    complement, contains, dexel_voxels, dexelize, difference, distances, dual_contouring_of_dexels, exchange,
-    file, heights, interference_of, intersection, marching_cubes, marching_cubes_of,
-    marching_cubes_of_dexels, marching_cubes_of_volume, measure, octree_of_dexels, ray_spans, resolve, scene,
-    smc, smc_of, surface_area, union, union_of, xor,
+    Affine, AnySolid, Band, Bounds, Callback, Camera, Clip, ColourMap, Columns, Control, Csg, DexelEditor,
+    DexelEnds, DexelFormat, DexelNormals, DexelOptions, DistanceTo, Error, FillRule, Finish, Frame,
+    HalfSpace, LazyOctree, Membership, MeshEdges, MeshLayer, MeshSolid, Metadata, Obstacle, Octree,
+    OctreeLayer, PointTable, Polyhedron, PolyhedronArrays, Ray, Resolve, Rule, Shot, Side, SliceLayer,
+    SlicePlane, Snap, SolidLayer, Tag, Transfer, Transform, TriDexel, TriangleMesh, Verdict, VertexPlacement,
+    Volume, VolumeLayer, VoxelGrid, VoxelOptions, VoxelRecords, Zone, bounding_box, build, cast_rays,
+    cells_in, classify_box, classify_in, clearance, columns, compact, complement, contains, dexel_voxels,
+    dexelize, difference, distances, dual_contouring_of_dexels, exchange, file, heights, interference_of,
+    intersection, marching_cubes, marching_cubes_of, marching_cubes_of_dexels, marching_cubes_of_volume,
+    measure, octree_of_dexels, ray_spans, render, resolve, scene, smc, smc_of, surface_area, union, union_of,
+    xor,
 };
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
@@ -404,6 +406,20 @@ fn operations(directory: &Path) -> Vec<(&'static str, Operation)> {
         dual_contouring_of_dexels(balls[0].view(), &CONTROL)?;
         octree_of_dexels(balls[0].view(), &CONTROL)?;
         dexel_voxels(balls[0].view(), &[], &CONTROL)
+    });
+    let seen = build(&Csg::ball([15.0; 3], 9.0).unwrap(), &frame(), Rule::Certified, &CONTROL).unwrap();
+    let records = VoxelRecords::of(seen.view(), &VoxelOptions::new(), None, &CONTROL).unwrap();
+    operation!("picture", [seen, records, closed], {
+        let camera = Camera::fitted(&Bounds::of(seen.frame()).corners(), [20.0, 30.0], Some(30.0), 1.0)?;
+        let shot = Shot { clip: Clip::new().plane([1.0, 0.0, 0.0, -14.0])?, ..Shot::new(camera, [40, 40]) };
+        let ball = Csg::ball([12.0; 3], 5.0)?;
+        let octree = OctreeLayer::new(seen.view(), Finish::default());
+        let solid = SolidLayer::new(&ball, seen.frame(), Finish::default()).at_most(5);
+        let mesh = MeshLayer::new(&closed).colour([200, 0, 0, 90]).edges(MeshEdges::All, 1.0, [0, 0, 0, 255]);
+        let slice = SliceLayer::new(seen.view(), SlicePlane::across(2, 15.0)?);
+        let transfer = Transfer::new(ColourMap::Viridis, [0.0, 1.0], 0.5, 10.0)?;
+        let volume = VolumeLayer::new(records.view(), transfer);
+        render(&shot, &[&octree, &solid, &mesh, &slice, &volume], &CONTROL)
     });
     operation!("dexel bytes", [balls], file::dexels::from_bytes(&file::dexels::to_bytes(&balls[0])?));
     operation!("mesh placed", [closed], {

@@ -94,9 +94,9 @@ pub struct Arguments {
     /// Show voxels as published: of an edge of k finest voxels as k layers, wherever a line of sight crosses them
     #[arg(long)]
     published: bool,
-    /// Draw the edges of a mesh at which its faces meet at more than 30 degrees
-    #[arg(long)]
-    edges: bool,
+    /// Draw edges of a mesh: those at which its faces meet at more than 30 degrees, or all
+    #[arg(long, value_enum, value_name = "WHICH", num_args = 0..=1, default_missing_value = "features")]
+    edges: Option<Edges>,
     /// Level of the cells that a mesh, a scene or a volume is split to for a slice or a volume, 1 to 20
     #[arg(long, value_name = "N", default_value_t = DEPTH, value_parser = clap::value_parser!(u8).range(1..=MAX_DEPTH as i64))]
     depth: u8,
@@ -166,6 +166,14 @@ enum View {
     Hybrid,
     /// A plane through it, with its cells and what they are
     Slice,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum Edges {
+    /// Where faces meet at more than 30 degrees
+    Features,
+    /// Those of all triangles
+    All,
 }
 
 /// What is shown.
@@ -391,8 +399,13 @@ fn surface(
         Subject::Octree(octree) => render(shot, &[&OctreeLayer::new(octree.view(), finish)], control),
         Subject::Solid(solid, frame) => render(shot, &[&SolidLayer::new(&**solid, frame, finish)], control),
         Subject::Mesh(mesh) => {
-            let edges = if arguments.edges { MeshEdges::Features } else { MeshEdges::None };
-            let layer = MeshLayer::new(mesh).colour(finish.colour).inside(finish.cut).edges(edges, 1.5, INK);
+            let (edges, width) = match arguments.edges {
+                None => (MeshEdges::None, 1.0),
+                Some(Edges::Features) => (MeshEdges::Features, 1.5),
+                Some(Edges::All) => (MeshEdges::All, 0.75),
+            };
+            let layer =
+                MeshLayer::new(mesh).colour(finish.colour).inside(finish.cut).edges(edges, width, INK);
             render(shot, &[&layer], control)
         }
     }

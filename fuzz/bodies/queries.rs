@@ -3,9 +3,10 @@
 
 use super::{Aligned, CONTROL, Random, halves, walk};
 use leafless::{
-    Cell, CellFilter, Classifier, Columns, Control, Csg, Cursor, Direction, DistanceTo, Frame, LazyOctree,
-    Membership, Obstacle, OctreeRef, PointCursor, PointTable, Proof, Ray, Region, Rule, Run, Side, Solid,
-    Tag, TaggedCell, Verdict, Worker, Zone, build, classify_box, contains, file,
+    Camera, Cell, CellFilter, Classifier, Columns, Control, Csg, Cursor, Direction, DistanceTo, Finish,
+    Frame, Layer, LazyOctree, Lens, Membership, Obstacle, OctreeLayer, OctreeRef, PointCursor, PointTable,
+    Proof, Ray, Region, Rule, Run, Shot, Side, SliceLayer, SlicePlane, Solid, Tag, TaggedCell, Verdict,
+    Worker, Zone, build, classify_box, contains, file, render,
 };
 
 /// Asks the tree in the first half of `data` what the second half says.
@@ -31,6 +32,7 @@ pub fn ask(tree: &OctreeRef<'_>, questions: &[u8], verified: bool) {
     ask_columns(tree, verified);
     ask_distances(tree, &points, verified);
     ask_contents(tree, &points, verified);
+    ask_pictures(tree, &points);
     if verified {
         tree.check().expect("it is verified");
     } else {
@@ -39,6 +41,24 @@ pub fn ask(tree: &OctreeRef<'_>, questions: &[u8], verified: bool) {
     // An element has 8 + 64 cells at the most.
     let steps = walk(Cursor::new(tree)).steps;
     assert!(steps <= 1 + 72 * (tree.element_count() + tree.brick_count()), "{steps} steps");
+}
+
+/// Small pictures of the surface and of a slice, from anywhere.
+fn ask_pictures(tree: &OctreeRef<'_>, points: &[[f64; 3]]) {
+    let [Some(eye), Some(at)] = [points.first(), points.get(1)] else { return };
+    let lenses = [Lens::Perspective(50.0), Lens::Parallel(tree.frame().edge())];
+    for lens in lenses {
+        let Ok(camera) = Camera::new(*eye, *at, [0.1, 0.2, 1.0], lens) else { continue };
+        let surface = OctreeLayer::new(tree, Finish::default());
+        let middle = tree.frame().origin()[2] + 0.5 * tree.frame().edge();
+        let Ok(plane) = SlicePlane::across(2, middle) else { continue };
+        let slice = SliceLayer::new(tree, plane);
+        let shot = Shot { samples: 1, ..Shot::new(camera, [7, 5]) };
+        for layers in [&[&surface as &dyn Layer][..], &[&slice]] {
+            let picture = render(&shot, layers, &CONTROL).expect("nothing is wrong with it");
+            assert_eq!(picture.colours().len(), 35);
+        }
+    }
 }
 
 /// All cells of a tree, as a cursor that takes them in order sees them.
