@@ -276,7 +276,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         _ => None,
     };
     let (shot, picture) = watched("render", arguments.threads, |control| {
-        let shot = shot(arguments, &subject, control)?;
+        let shot = shot(arguments, &subject, channel, control)?;
         let picture = picture(arguments, &subject, channel, &shot, control)?;
         Ok((shot, picture))
     })
@@ -309,7 +309,12 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     ))
 }
 
-fn shot(arguments: &Arguments, subject: &Subject, control: &Control<'_>) -> Result<Shot, leafless::Error> {
+fn shot(
+    arguments: &Arguments,
+    subject: &Subject,
+    channel: Option<&Channel>,
+    control: &Control<'_>,
+) -> Result<Shot, leafless::Error> {
     let [width, height] = arguments.size;
     let mut clip = Clip::new();
     for &plane in &arguments.clip {
@@ -337,7 +342,7 @@ fn shot(arguments: &Arguments, subject: &Subject, control: &Control<'_>) -> Resu
                 _ => [30.0, 25.0],
             });
             // A legend lies at the right side.
-            let is_clear = arguments.no_legend || matches!(arguments.view, View::Surface);
+            let is_clear = arguments.no_legend || arguments.view == View::Surface && channel.is_none();
             let free = if is_clear { 1.0 } else { LEGEND_FREE };
             Camera::fitted(&points, from, field, free * f64::from(width) / f64::from(height))?
         }
@@ -383,20 +388,30 @@ fn picture(
         (Subject::Octree(octree), View::Volume) => volume(arguments, octree, channel, shot, &[], control),
         (Subject::Octree(octree), View::Hybrid) => hybrid(arguments, octree, channel, shot, control),
         (Subject::Octree(octree), View::Slice) => slice(arguments, octree, channel, shot, control),
-        _ => surface(arguments, subject, shot, control),
+        _ => surface(arguments, subject, channel, shot, control),
     }
 }
 
 fn surface(
     arguments: &Arguments,
     subject: &Subject,
+    channel: Option<&Channel>,
     shot: &Shot,
     control: &Control<'_>,
 ) -> Result<Picture, leafless::Error> {
     let plain = Finish::default();
     let finish = Finish { faces: arguments.faces, colour: arguments.colour.unwrap_or(plain.colour), ..plain };
     match subject {
-        Subject::Octree(octree) => render(shot, &[&OctreeLayer::new(octree.view(), finish)], control),
+        Subject::Octree(octree) => {
+            let layer = OctreeLayer::new(octree.view(), finish);
+            let Some(channel) = channel else { return render(shot, &[&layer], control) };
+            let transfer = transfer(arguments, octree, Some(channel), control)?;
+            let components = channel.value_type().components();
+            let colour = |value: Option<[f64; 4]>| value_colour(&transfer, components, value);
+            let mut picture = render(shot, &[&layer.values(channel, &colour)], control)?;
+            bar(arguments, &mut picture, channel, &transfer)?;
+            Ok(picture)
+        }
         Subject::Solid(solid, frame) => render(shot, &[&SolidLayer::new(&**solid, frame, finish)], control),
         Subject::Mesh(mesh) => {
             let (edges, width) = match arguments.edges {
@@ -470,19 +485,27 @@ fn volume(
     let mut layers = surfaces.to_vec();
     layers.push(&layer);
     let mut picture = render(shot, &layers, control)?;
-    if let Some(channel) = channel.filter(|channel| channel.value_type().components() == 1) {
+    if let Some(channel) = channel {
         bar(arguments, &mut picture, channel, &transfer)?;
     }
     Ok(picture)
 }
 
+/// The colour of a value on a surface.
+fn value_colour(transfer: &Transfer, components: usize, value: Option<[f64; 4]>) -> [u8; 4] {
+    let value = value.unwrap_or([f64::NAN; 4]);
+    let [r, g, b] = transfer.colour(&value[..components]);
+    [r, g, b, 255]
+}
+
+/// The legend of a channel of one number.
 fn bar(
     arguments: &Arguments,
     picture: &mut Picture,
     channel: &Channel,
     transfer: &Transfer,
 ) -> Result<(), leafless::Error> {
-    if !arguments.no_legend {
+    if !arguments.no_legend && channel.value_type().components() == 1 {
         let colour = |value: f64| {
             let [r, g, b] = transfer.colour(&[value]);
             [r, g, b, 255]
@@ -541,15 +564,9 @@ fn slice(
     };
     let transfer = transfer(arguments, octree, Some(channel), control)?;
     let components = channel.value_type().components();
-    let colour = |value: Option<[f64; 4]>| {
-        let value = value.unwrap_or([f64::NAN; 4]);
-        let [r, g, b] = transfer.colour(&value[..components]);
-        [r, g, b, 255]
-    };
+    let colour = |value: Option<[f64; 4]>| value_colour(&transfer, components, value);
     let layer = layer.values(channel, &colour);
     let mut picture = render(shot, &[&layer], control)?;
-    if components == 1 {
-        bar(arguments, &mut picture, channel, &transfer)?;
-    }
+    bar(arguments, &mut picture, channel, &transfer)?;
     Ok(picture)
 }

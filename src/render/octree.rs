@@ -2,8 +2,9 @@
 
 use super::normals::Normals;
 use super::sight::{Finish, Sight};
-use super::stage::{Draw, Painter, Stage};
+use super::stage::{Colouring, Draw, Painter, Stage};
 use super::tile::Tile;
+use crate::attribute::Attribute;
 use crate::error::Error;
 use crate::lattice::Frame;
 use crate::memory;
@@ -20,16 +21,30 @@ use glam::DVec3;
 /// clip plane is shown flat.
 ///
 /// O(samples · cells along a line of sight).
-#[derive(Debug, Clone, Copy)]
+#[derive(Clone, Copy)]
 pub struct OctreeLayer<'a> {
     tree: OctreeRef<'a>,
     finish: Finish,
+    values: Option<(&'a dyn Attribute, Colouring<'a>)>,
+}
+
+impl core::fmt::Debug for OctreeLayer<'_> {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.debug_struct("OctreeLayer").field("finish", &self.finish).finish_non_exhaustive()
+    }
 }
 
 impl<'a> OctreeLayer<'a> {
     /// The cells of an octree that are not EMPTY.
     pub fn new(tree: &OctreeRef<'a>, finish: Finish) -> OctreeLayer<'a> {
-        OctreeLayer { tree: *tree, finish }
+        OctreeLayer { tree: *tree, finish, values: None }
+    }
+
+    /// The same in the colours of an attribute's values, as a channel has them: `colour` tells the colour of a value, and of
+    /// none. Values are those half a finest cell below the surface, where a solid's channel has one.
+    #[must_use]
+    pub fn values(self, attribute: &'a dyn Attribute, colour: Colouring<'a>) -> OctreeLayer<'a> {
+        OctreeLayer { values: Some((attribute, colour)), ..self }
     }
 }
 
@@ -51,6 +66,7 @@ impl Painter for OctreePainter<'_> {
     fn paint(&self, tile: &mut Tile<'_>) -> Result<(), Error> {
         let tree = &self.layer.tree;
         let mut normals = Normals::new(tree);
+        let half = 0.5 * tree.frame().cell_size();
         let mut cast = Cast::new(tree, self.stage);
         while let Some(met) = cast.next(tile)? {
             for (sight, hit) in met {
@@ -64,7 +80,14 @@ impl Painter for OctreePainter<'_> {
                     let found = normal_of_cells(&mut normals, tree.frame(), point, &hit)?;
                     Some(if found == DVec3::ZERO { face } else { found })
                 };
-                sight.draw(&self.layer.finish, tile, t, normal)?;
+                let mut finish = self.layer.finish;
+                if let Some((attribute, colour)) = self.layer.values {
+                    let below = sight.from + sight.along * t
+                        - half * normal.unwrap_or(-sight.along).normalize_or_zero();
+                    let shown = colour(attribute.value(below.to_array())?);
+                    (finish.colour, finish.cut) = (shown, shown);
+                }
+                sight.draw(&finish, tile, t, normal)?;
             }
         }
         Ok(())

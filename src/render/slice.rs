@@ -3,7 +3,7 @@
 use super::camera::View;
 use super::clip::holds;
 use super::light::Light;
-use super::stage::{Draw, Painter, Stage};
+use super::stage::{Colouring, Draw, Painter, Stage};
 use super::tile::Tile;
 use crate::attribute::Attribute;
 use crate::control::Control;
@@ -92,9 +92,6 @@ impl SlicePlane {
         (x * x + y * y).map(libm::sqrt) * pixel
     }
 }
-
-/// Colours of values: red, green, blue (sRGB) and opacity.
-type Colouring<'a> = &'a (dyn Fn(Option<[f64; 4]>) -> [u8; 4] + Sync);
 
 /// A plane section of a solid on a frame: each sample shows the tag of the cell in which the line of sight meets the plane,
 /// or the value of an attribute there, and the outlines of the cells that the plane cuts. Nothing is seen outside of the

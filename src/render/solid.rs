@@ -294,11 +294,10 @@ impl<S: Solid> SolidPainter<'_, S> {
 /// When a line of sight leaves a cell.
 fn leaves(frame: &Frame, cell: Cell, sight: &Sight) -> f64 {
     let (min, max) = Cube { frame, cell }.bounds();
-    (0..3).fold(f64::INFINITY, |leaves, axis| {
+    let axes = (0..3).filter(|&axis| sight.along[axis] != 0.0);
+    axes.fold(f64::INFINITY, |leaves, axis| {
         let plane = if sight.along[axis] > 0.0 { max[axis] } else { min[axis] };
-        let t = (plane - sight.from[axis]) / sight.along[axis];
-        // (What is not a number is never.)
-        if t < leaves { t } else { leaves }
+        leaves.min((plane - sight.from[axis]) / sight.along[axis])
     })
 }
 

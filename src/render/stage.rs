@@ -7,6 +7,9 @@ use crate::control::Job;
 use crate::error::Error;
 use alloc::boxed::Box;
 
+/// Colours of values: red, green, blue (sRGB) and opacity.
+pub type Colouring<'a> = &'a (dyn Fn(Option<[f64; 4]>) -> [u8; 4] + Sync);
+
 /// What layers know of the picture.
 #[derive(Clone, Copy)]
 pub struct Stage<'a> {

@@ -1,0 +1,264 @@
+//! Surfaces of octrees and solids in pictures, against formulas: where they are seen, how deep, cut open, in the colours of
+//! values.
+
+mod common;
+
+use common::alone;
+use leafless::{
+    Bounds, Camera, Clip, ClippedLayer, Control, Csg, Error, Finish, Frame, FunctionAttribute, Layer, Lens,
+    MeshLayer, OctreeLayer, Picture, Rule, Shot, SolidLayer, TriangleMesh, build, render,
+};
+
+const SIZE: [u32; 2] = [120, 90];
+
+fn frame(depth: u8) -> Frame {
+    Frame::new([-1.0; 3], 2.0, depth).unwrap()
+}
+
+const CENTRE: [f64; 3] = [0.05, -0.1, 0.15];
+const RADIUS: f64 = 0.7;
+
+fn ball() -> Csg {
+    Csg::ball(CENTRE, RADIUS).unwrap()
+}
+
+/// Cameras of both lenses, from several sides.
+fn shots() -> Vec<Shot> {
+    let mut shots = Vec::new();
+    for (eye, up) in [
+        ([2.0, -3.0, 1.0], [0.0, 0.0, 1.0]),
+        ([-0.5, 0.4, 3.5], [0.0, 1.0, 0.2]),
+        ([-4.0, 0.0, 0.0], [0.0, 0.0, 1.0]),
+    ] {
+        for lens in [Lens::Perspective(35.0), Lens::Parallel(2.2)] {
+            let camera = Camera::new(eye, [0.0; 3], up, lens).unwrap();
+            shots.push(Shot { samples: 1, ..Shot::new(camera, SIZE) });
+        }
+    }
+    shots
+}
+
+/// The line of sight of a pixel's centre: from, and along, of depth 1.
+fn line(camera: &Camera, [x, y]: [u32; 2]) -> ([f64; 3], [f64; 3]) {
+    let half = match camera.lens() {
+        Lens::Perspective(degrees) => (0.5 * degrees.to_radians()).tan(),
+        Lens::Parallel(height) => 0.5 * height,
+    };
+    let pixel = 2.0 * half / f64::from(SIZE[1]);
+    let across = (f64::from(x) + 0.5 - 0.5 * f64::from(SIZE[0])) * pixel;
+    let above = (0.5 * f64::from(SIZE[1]) - f64::from(y) - 0.5) * pixel;
+    let side = [0, 1, 2].map(|axis| across * camera.right()[axis] + above * camera.up()[axis]);
+    let plus = |a: [f64; 3]| [0, 1, 2].map(|axis| a[axis] + side[axis]);
+    match camera.lens() {
+        Lens::Perspective(_) => (camera.eye(), plus(camera.forward())),
+        Lens::Parallel(_) => (plus(camera.eye()), camera.forward()),
+    }
+}
+
+fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
+    (0..3).map(|axis| a[axis] * b[axis]).sum()
+}
+
+/// When a line meets a ball of a radius, and how near it comes to its centre.
+fn meets([from, along]: [[f64; 3]; 2], radius: f64) -> (Option<[f64; 2]>, f64) {
+    let to = [0, 1, 2].map(|axis| from[axis] - CENTRE[axis]);
+    let (a, b, c) = (dot(along, along), dot(to, along), dot(to, to) - radius * radius);
+    let near = (dot(to, to) - b * b / a).max(0.0).sqrt();
+    let root = b * b - a * c;
+    ((root >= 0.0).then(|| [(-b - root.sqrt()) / a, (-b + root.sqrt()) / a]), near)
+}
+
+fn pixels(picture: &Picture) -> impl Iterator<Item = ([u32; 2], [u8; 4], f64)> + '_ {
+    let places = (0..SIZE[1]).flat_map(|y| (0..SIZE[0]).map(move |x| [x, y]));
+    places
+        .zip(picture.colours())
+        .zip(picture.depths())
+        .map(|((at, &colour), &depth)| (at, colour, f64::from(depth)))
+}
+
+#[test]
+fn balls_are_where_they_are() {
+    let solid = ball();
+    let fine = frame(8);
+    let tree = build(&solid, &fine, Rule::Certified, &alone()).unwrap();
+    let cell = fine.cell_size();
+    let octree = OctreeLayer::new(tree.view(), Finish::default());
+    let faces = OctreeLayer::new(tree.view(), Finish { faces: true, ..Finish::default() });
+    // Cells of a sixteenth: what is seen in them comes from slabs.
+    let by_slabs = SolidLayer::new(&solid, &fine, Finish::default()).at_most(5);
+    for shot in shots() {
+        for (layer, early, late) in
+            [(&octree as &dyn Layer, 4.0 * cell, 1e-6), (&faces, 4.0 * cell, 1e-6), (&by_slabs, 3e-3, 3e-3)]
+        {
+            let picture = render(&shot, &[layer], &alone()).unwrap();
+            let mut seen = 0;
+            for (at, colour, depth) in pixels(&picture) {
+                let (from, along) = line(&shot.camera, at);
+                let (times, near) = meets([from, along], RADIUS);
+                // Near the silhouette cells hide a little more, and depths are anything.
+                if (near - RADIUS).abs() < 2.0 * cell + 2e-3 {
+                    continue;
+                }
+                assert_eq!(
+                    colour != [255; 4],
+                    times.is_some(),
+                    "{at:?} {early} {:?} {times:?} {near}",
+                    shot.camera
+                );
+                assert_eq!(depth.is_finite(), times.is_some());
+                if let Some([first, _]) = times {
+                    let steep = RADIUS / (RADIUS * RADIUS - near * near).sqrt();
+                    let along = dot(along, along).sqrt();
+                    let off = (depth - first) * along;
+                    assert!(-early * steep < off && off < late * steep, "{at:?} {off} {steep}");
+                    seen += 1;
+                }
+            }
+            assert!(seen > 1000);
+        }
+    }
+}
+
+#[test]
+fn what_is_cut_open_is_flat() {
+    let solid = ball();
+    let tree = build(&solid, &frame(7), Rule::Certified, &alone()).unwrap();
+    let finish = Finish { cut: [255, 0, 0, 255], ..Finish::default() };
+    let cell = frame(7).cell_size();
+    // Kept is what lies on the side away from the eye.
+    let camera = Camera::new([0.0, -4.0, 0.5], [0.0; 3], [0.0, 0.0, 1.0], Lens::Perspective(35.0)).unwrap();
+    let clip = Clip::new().plane([0.0, 2.0, 0.0, 0.4]).unwrap();
+    let shot = Shot { samples: 1, clip, ..Shot::new(camera, SIZE) };
+    let layers: [&dyn Layer; 2] =
+        [&OctreeLayer::new(tree.view(), finish), &SolidLayer::new(&solid, &frame(7), finish)];
+    for layer in layers {
+        let picture = render(&shot, &[layer], &alone()).unwrap();
+        let mut cut = 0;
+        for (at, colour, depth) in pixels(&picture) {
+            let (from, along) = line(&camera, at);
+            let t = (-0.2 - from[1]) / along[1];
+            let point = [0, 1, 2].map(|axis| from[axis] + t * along[axis] - CENTRE[axis]);
+            let off = dot(point, point).sqrt() - RADIUS;
+            if off < -2.0 * cell {
+                // All of one brightness, and of no green.
+                assert!(
+                    (depth - t).abs() < 1e-5 && colour[0] > 90 && colour[1] == 0,
+                    "{at:?} {colour:?} {depth} {t}"
+                );
+                cut += 1;
+            }
+        }
+        assert!(cut > 500);
+    }
+}
+
+#[test]
+fn values_give_their_colours() {
+    let tree = build(&ball(), &frame(7), Rule::Certified, &alone()).unwrap();
+    let cell = frame(7).cell_size();
+    let side = FunctionAttribute::new(1, |p: [f64; 3]| {
+        (p[2] != 9.0).then_some([f64::from(u8::from(p[0] > 0.0)), 0.0, 0.0, 0.0])
+    });
+    let side = side.unwrap();
+    let colour = |value: Option<[f64; 4]>| match value {
+        Some([0.0, ..]) => [0, 200, 0, 255],
+        Some(_) => [0, 0, 200, 255],
+        None => [200, 0, 0, 255],
+    };
+    let layer = OctreeLayer::new(tree.view(), Finish::default()).values(&side, &colour);
+    for shot in shots() {
+        let picture = render(&shot, &[&layer], &alone()).unwrap();
+        let mut seen = [0; 2];
+        for (at, colour, depth) in pixels(&picture).filter(|pixel| pixel.2.is_finite()) {
+            let (from, along) = line(&shot.camera, at);
+            let x = from[0] + depth * along[0];
+            if x.abs() > 2.0 * cell {
+                let right = x > 0.0;
+                assert!(
+                    colour[0] == 0 && (colour[1] == 0) == right && (colour[2] == 0) != right,
+                    "{at:?} {colour:?}"
+                );
+                seen[usize::from(right)] += 1;
+            }
+        }
+        assert!(seen[0] + seen[1] > 1000);
+    }
+}
+
+#[test]
+fn layers_hide_each_other() {
+    let tree = build(&ball(), &frame(6), Rule::Certified, &alone()).unwrap();
+    // A sheet through the ball's middle, seen beside it, and where it lies before it.
+    let sheet = TriangleMesh::new(
+        vec![[-5.0, CENTRE[1], -5.0], [5.0, CENTRE[1], -5.0], [0.0, CENTRE[1], 8.0]],
+        vec![[0, 1, 2]],
+    )
+    .unwrap();
+    let camera = Camera::new([0.0, -4.0, 0.0], [0.0; 3], [0.0, 0.0, 1.0], Lens::Parallel(1.9)).unwrap();
+    let shot = Shot { samples: 1, ..Shot::new(camera, SIZE) };
+    let mesh = MeshLayer::new(&sheet).colour([255, 0, 0, 255]).inside([255, 0, 0, 255]);
+    let octree = OctreeLayer::new(tree.view(), Finish { colour: [0, 255, 0, 255], ..Finish::default() });
+    let behind = render(&shot, &[&mesh, &octree], &alone()).unwrap();
+    assert_eq!(behind, render(&shot, &[&octree, &mesh], &alone()).unwrap());
+    // A layer's own clip leaves the other one whole.
+    let clipped = ClippedLayer::new(&octree, Clip::new().plane([0.0, 1.0, 0.0, 0.0]).unwrap());
+    let front = render(&shot, &[&mesh, &clipped], &alone()).unwrap();
+    let middle = (SIZE[1] / 2 * SIZE[0] + SIZE[0] / 2) as usize;
+    let corner = 0;
+    assert!(behind.colours()[middle][1] > 0 && behind.colours()[corner][0] > 0);
+    assert!(front.colours()[middle][0] > 0 && front.colours()[middle][1] == 0);
+}
+
+#[test]
+fn pictures_do_not_depend_on_threads_or_tiles() {
+    let (solid, frame) = (ball(), frame(7));
+    let tree = build(&solid, &frame, Rule::Certified, &alone()).unwrap();
+    let octree = OctreeLayer::new(tree.view(), Finish::default());
+    let by_slabs = SolidLayer::new(&solid, &frame, Finish::default());
+    for shot in shots() {
+        for layer in [&octree as &dyn Layer, &by_slabs] {
+            let one = render(&shot, &[layer], &alone()).unwrap();
+            assert_eq!(one, render(&shot, &[layer], &Control::threads(3)).unwrap());
+        }
+    }
+}
+
+#[test]
+fn nothing_and_everything() {
+    let control = alone();
+    let bounds = Bounds::of(&frame(4));
+    let camera = Camera::fitted(&bounds.corners(), [30.0, 30.0], Some(30.0), 1.0).unwrap();
+    let shot = Shot { background: [10, 20, 30, 255], ..Shot::new(camera, [32, 32]) };
+    for depth in [1, 4, 20] {
+        let empty =
+            build(&Csg::ball([9.0; 3], 1.0).unwrap(), &frame(depth), Rule::Certified, &control).unwrap();
+        let picture = render(&shot, &[&OctreeLayer::new(empty.view(), Finish::default())], &control).unwrap();
+        assert!(picture.colours().iter().all(|&colour| colour == [10, 20, 30, 255]));
+        let full =
+            build(&Csg::ball([0.0; 3], 9.0).unwrap(), &frame(depth), Rule::Certified, &control).unwrap();
+        let picture = render(&shot, &[&OctreeLayer::new(full.view(), Finish::default())], &control).unwrap();
+        assert!(picture.depths()[16 * 32 + 16].is_finite() && picture.depths()[0].is_infinite());
+    }
+    // From within.
+    let full = build(&Csg::ball([0.0; 3], 9.0).unwrap(), &frame(4), Rule::Certified, &control).unwrap();
+    let inside = Camera::new([0.1; 3], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0], Lens::Perspective(60.0)).unwrap();
+    let finish = Finish { cut: [255, 0, 0, 255], ..Finish::default() };
+    let picture =
+        render(&Shot::new(inside, [16, 16]), &[&OctreeLayer::new(full.view(), finish)], &control).unwrap();
+    assert!(picture.colours().iter().all(|colour| colour[0] > 90 && colour[1] == 0));
+}
+
+#[test]
+fn what_is_no_picture_is_refused() {
+    let camera = shots()[0].camera;
+    let refused = |shot: Shot| matches!(render(&shot, &[], &alone()), Err(Error::Argument { .. }));
+    for size in [[0, 10], [10, 0], [16385, 1], [u32::MAX; 2]] {
+        assert!(refused(Shot::new(camera, size)));
+    }
+    for samples in [0, 2, 3, 81, u32::MAX] {
+        assert!(refused(Shot { samples, ..Shot::new(camera, [8, 8]) }));
+    }
+    let cancel = std::sync::atomic::AtomicBool::new(true);
+    let control = Control { cancel: Some(&cancel), ..alone() };
+    assert!(matches!(render(&Shot::new(camera, [8, 8]), &[], &control), Err(Error::Cancelled)));
+}
