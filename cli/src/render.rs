@@ -342,7 +342,7 @@ fn shot(
                 _ => [30.0, 25.0],
             });
             // A legend lies at the right side.
-            let is_clear = arguments.no_legend || arguments.view == View::Surface && channel.is_none();
+            let is_clear = arguments.no_legend || arguments.view != View::Slice && channel.is_none();
             let free = if is_clear { 1.0 } else { LEGEND_FREE };
             Camera::fitted(&points, from, field, free * f64::from(width) / f64::from(height))?
         }
