@@ -828,3 +828,32 @@ fn adaptive_voxels_are_fewer_and_no_value_is_off() {
         assert!(off, "{}", part.name);
     }
 }
+
+/// The parts of voxels that are solid add up to the volume.
+#[test]
+fn solid_parts_add_up() {
+    let control = alone();
+    let frame = Frame::new([-1.0; 3], 2.0, 5).unwrap();
+    let volume_of = |solid: &Csg| {
+        let tree = build(solid, &frame, Rule::Certified, &control).unwrap();
+        let records =
+            VoxelRecords::of(tree.view(), &VoxelOptions::new().outside(true), None, &control).unwrap();
+        let parts = records.view().solid_parts(solid, &control).unwrap();
+        let mut volume = 0.0;
+        for (record, part) in records.view().iter().zip(parts) {
+            let expected = match record.kind {
+                VoxelKind::Inside => 1.0..=1.0,
+                VoxelKind::Outside => 0.0..=0.0,
+                _ => 0.0..=1.0,
+            };
+            assert!(expected.contains(&part));
+            volume += part * (2.0 / f64::from(1u32 << record.cell.level)).powi(3);
+        }
+        volume
+    };
+    // Faces off the lattice are cut exactly.
+    let block = Csg::cuboid([-0.71, -0.52, -0.33], [0.64, 0.81, 0.27]).unwrap();
+    assert!((volume_of(&block) - 1.35 * 1.33 * 0.6).abs() < 1e-12);
+    let ball = Csg::ball([0.01, 0.02, 0.03], 0.8).unwrap();
+    assert!((volume_of(&ball) - 4.0 / 3.0 * std::f64::consts::PI * 0.512).abs() < 1e-4);
+}

@@ -178,7 +178,8 @@ enum Edges {
 
 /// What is shown.
 enum Subject {
-    Octree(Box<Octree>),
+    /// With what it was made of, if that is known.
+    Octree(Box<Octree>, Option<Box<AnySolid>>),
     Mesh(Box<TriangleMesh>),
     Solid(Box<AnySolid>, Frame),
 }
@@ -189,12 +190,12 @@ impl Subject {
         match shape {
             Shape::Dexels(model) if of_cells || arguments.faces => {
                 let octree = octree_of_dexels(model.view(), &Control::default()).of(input)?;
-                Ok(Subject::Octree(Box::new(octree)))
+                Ok(Subject::Octree(Box::new(octree), None))
             }
             Shape::Dexels(model) => {
                 Ok(Subject::Mesh(Box::new(dexel_surface::cubes(&model, input, arguments.threads)?.0)))
             }
-            Shape::Source(Source::Octree(octree)) => Ok(Subject::Octree(octree)),
+            Shape::Source(Source::Octree(octree)) => Ok(Subject::Octree(octree, None)),
             Shape::Source(Source::Mesh(mesh, ..)) if !of_cells && !arguments.faces => {
                 Ok(Subject::Mesh(Box::new(mesh)))
             }
@@ -207,7 +208,7 @@ impl Subject {
                 let octree = watched("render", arguments.threads, |control| {
                     build(&solid, &frame, Rule::Certified, control)
                 });
-                Ok(Subject::Octree(Box::new(octree.of(input)?)))
+                Ok(Subject::Octree(Box::new(octree.of(input)?), Some(Box::new(solid))))
             }
         }
     }
@@ -230,7 +231,7 @@ impl Subject {
             points
         };
         match self {
-            Subject::Octree(octree) => Ok(coarse(octree)),
+            Subject::Octree(octree, _) => Ok(coarse(octree)),
             Subject::Mesh(mesh) => Ok(mesh.vertices().to_vec()),
             Subject::Solid(solid, frame) => {
                 Ok(coarse(&build(&**solid, &frame.with_depth(COARSE)?, Rule::Certified, control)?))
@@ -267,7 +268,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let shape = Shape::read(&input, &arguments.reading, &arguments.drawing)?.0;
     let subject = Subject::of(shape, &input, arguments)?;
     let channel = match &subject {
-        Subject::Octree(octree) if arguments.channel.is_some() || octree.channels().len() == 1 => {
+        Subject::Octree(octree, _) if arguments.channel.is_some() || octree.channels().len() == 1 => {
             Some(channel::find(octree, &input, arguments.channel.as_deref())?)
         }
         _ if arguments.channel.is_some() => {
@@ -293,7 +294,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         view: arguments.view,
         eye: shot.camera.eye(),
         forward: shot.camera.forward(),
-        covered: picture.depths().iter().filter(|depth| depth.is_finite()).count(),
+        covered: picture.colours().iter().filter(|&&colour| colour != shot.background).count(),
         bytes: bytes.len(),
         seconds: start.elapsed().as_secs_f64(),
     };
@@ -385,9 +386,13 @@ fn picture(
     control: &Control<'_>,
 ) -> Result<Picture, leafless::Error> {
     match (subject, arguments.view) {
-        (Subject::Octree(octree), View::Volume) => volume(arguments, octree, channel, shot, &[], control),
-        (Subject::Octree(octree), View::Hybrid) => hybrid(arguments, octree, channel, shot, control),
-        (Subject::Octree(octree), View::Slice) => slice(arguments, octree, channel, shot, control),
+        (Subject::Octree(octree, source), View::Volume) => {
+            volume(arguments, octree, source.as_deref(), channel, shot, &[], control)
+        }
+        (Subject::Octree(octree, source), View::Hybrid) => {
+            hybrid(arguments, octree, source.as_deref(), channel, shot, control)
+        }
+        (Subject::Octree(octree, _), View::Slice) => slice(arguments, octree, channel, shot, control),
         _ => surface(arguments, subject, channel, shot, control),
     }
 }
@@ -402,7 +407,7 @@ fn surface(
     let plain = Finish::default();
     let finish = Finish { faces: arguments.faces, colour: arguments.colour.unwrap_or(plain.colour), ..plain };
     match subject {
-        Subject::Octree(octree) => {
+        Subject::Octree(octree, _) => {
             let layer = OctreeLayer::new(octree.view(), finish);
             let Some(channel) = channel else { return render(shot, &[&layer], control) };
             let transfer = transfer(arguments, octree, Some(channel), control)?;
@@ -460,6 +465,7 @@ fn transfer(
 fn volume(
     arguments: &Arguments,
     octree: &Octree,
+    source: Option<&AnySolid>,
     channel: Option<&Channel>,
     shot: &Shot,
     surfaces: &[&dyn Layer],
@@ -481,7 +487,12 @@ fn volume(
         true => Compositing::Published { unit: octree.frame().cell_size() },
         false => Compositing::Exact,
     };
-    let layer = VolumeLayer::new(records.view(), transfer).compositing(compositing)?;
+    // Undecided cells weigh what of them is solid, where that can be known.
+    let weights = source.map(|source| records.view().solid_parts(source, &quiet)).transpose()?;
+    let mut layer = VolumeLayer::new(records.view(), transfer).compositing(compositing)?;
+    if let Some(weights) = &weights {
+        layer = layer.weights(weights)?;
+    }
     let mut layers = surfaces.to_vec();
     layers.push(&layer);
     let mut picture = render(shot, &layers, control)?;
@@ -518,6 +529,7 @@ fn bar(
 fn hybrid(
     arguments: &Arguments,
     octree: &Octree,
+    source: Option<&AnySolid>,
     channel: Option<&Channel>,
     shot: &Shot,
     control: &Control<'_>,
@@ -532,7 +544,7 @@ fn hybrid(
     // Clip planes cut the skin away, and show what is behind it.
     let cut = ClippedLayer::new(&skin, shot.clip.clone());
     let whole = Shot { clip: Clip::new(), ..shot.clone() };
-    volume(arguments, octree, channel, &whole, &[&cut], control)
+    volume(arguments, octree, source, channel, &whole, &[&cut], control)
 }
 
 fn slice(

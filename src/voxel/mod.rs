@@ -9,6 +9,7 @@
 mod code;
 mod descent;
 mod dexel;
+mod fraction;
 mod import;
 mod options;
 mod order;

@@ -2,7 +2,7 @@
 
 use crate::control::Control;
 use crate::error::Error;
-use crate::lattice::Cell;
+use crate::lattice::{Cell, CellMoments};
 use crate::memory;
 use crate::op::split_one;
 use crate::solid::{Crossing, Enclosure, Segment, Verdict, Worker};
@@ -134,6 +134,14 @@ impl<W: Worker> Trail<W> {
     /// The solid's own.
     pub(crate) fn enclosure(&mut self, cell: Cell) -> Result<Option<Enclosure>, Error> {
         self.ask(cell, |worker, part| worker.enclosure(cell, part))
+    }
+
+    /// What the solid knows of its moments in `cell`, to whose parent the way was led.
+    ///
+    /// # Errors
+    /// The solid's own.
+    pub(crate) fn moments(&mut self, cell: Cell) -> Result<Option<CellMoments>, Error> {
+        self.ask(cell, |worker, part| worker.moments(cell, part))
     }
 
     /// Where a segment in `cell`, to whose parent the way was led, crosses the boundary, if the solid can tell.
