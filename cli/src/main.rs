@@ -31,6 +31,7 @@ mod neighbours;
 mod npz;
 mod output;
 mod part;
+mod picture;
 mod progress;
 mod ray;
 mod render;
