@@ -25,6 +25,8 @@ pub struct Opaque {
 #[derive(Debug, Clone, Copy)]
 pub struct Fragment {
     pub sample: u32,
+    /// The number with which it was drawn.
+    order: u32,
     pub depth: f64,
     pub light: Light,
 }
@@ -114,7 +116,8 @@ impl<'v> Tile<'v> {
             *opaque = Opaque { light, depth };
             return Ok(());
         }
-        memory::push(&mut self.fragments, Fragment { sample: sample as u32, depth, light })
+        let order = self.fragments.len() as u32;
+        memory::push(&mut self.fragments, Fragment { sample: sample as u32, order, depth, light })
     }
 
     /// Puts the translucent surfaces in order; those of one depth stay in the order in which they were drawn. Call it once all
@@ -122,7 +125,10 @@ impl<'v> Tile<'v> {
     pub fn sort(&mut self) {
         let opaque = &self.opaque;
         self.fragments.retain(|fragment| fragment.depth < opaque[fragment.sample as usize].depth);
-        self.fragments.sort_by(|a, b| a.sample.cmp(&b.sample).then(a.depth.total_cmp(&b.depth)));
+        // (A stable sort would take memory that cannot be refused.)
+        self.fragments.sort_unstable_by(|a, b| {
+            a.sample.cmp(&b.sample).then(a.depth.total_cmp(&b.depth)).then(a.order.cmp(&b.order))
+        });
     }
 
     /// Where the fragments of a sample begin.
