@@ -39,7 +39,7 @@ use crate::memory;
 use alloc::vec::Vec;
 
 /// Does all tasks, on the threads at hand if `parallel`: the results in the order of the tasks.
-fn each<T: Send, R: Send>(
+pub(crate) fn each<T: Send, R: Send>(
     parallel: bool,
     tasks: impl ExactSizeIterator<Item = T>,
     work: impl Fn(T) -> Result<R, Error> + Send + Sync,

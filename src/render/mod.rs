@@ -45,7 +45,7 @@ pub use volume::{Compositing, VolumeLayer};
 use crate::control::{Control, Job, WHOLE};
 use crate::error::Error;
 use crate::memory;
-use alloc::vec::Vec;
+use crate::query::each;
 use camera::View;
 use light::{Light, Tones};
 use stage::{Pass, Stage};
@@ -122,11 +122,11 @@ pub fn render(shot: &Shot, layers: &[&dyn Layer], control: &Control<'_>) -> Resu
             painter.paint(&mut tile)?;
         }
         let mut pixels = memory::with_capacity((size[0] * size[1]) as usize)?;
-        tile.resolve(background, |_, light, depth| pixels.push((tones.rgba(light), depth as f32)));
+        tile.resolve(background, |light, depth| pixels.push((tones.rgba(light), depth as f32)));
         job.advance(WHOLE / tiles as usize);
         Ok((first, size, pixels))
     };
-    let done: Vec<_> = control.run(tiles > 1, |parallel| each(parallel, 0..tiles, one))?;
+    let done = control.run(tiles > 1, |parallel| each(parallel, 0..tiles, one))?;
     for (first, size, pixels) in done {
         for (row, pixels) in (first[1]..).zip(pixels.chunks_exact(size[0] as usize)) {
             let start = row as usize * width as usize + first[0] as usize;
@@ -136,23 +136,4 @@ pub fn render(shot: &Shot, layers: &[&dyn Layer], control: &Control<'_>) -> Resu
         }
     }
     Ok(Picture { width, height, colours, depths })
-}
-
-/// Does all tasks, on the threads at hand if `parallel`: the results in the order of the tasks.
-fn each<R: Send>(
-    parallel: bool,
-    tasks: core::ops::Range<u32>,
-    work: impl Fn(u32) -> Result<R, Error> + Send + Sync,
-) -> Result<Vec<R>, Error> {
-    #[cfg(feature = "parallel")]
-    if parallel {
-        use rayon::prelude::*;
-        return tasks.into_par_iter().map(work).collect();
-    }
-    let _ = parallel;
-    let mut done = memory::with_capacity(tasks.len())?;
-    for task in tasks {
-        done.push(work(task)?);
-    }
-    Ok(done)
 }

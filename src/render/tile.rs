@@ -140,7 +140,7 @@ impl<'v> Tile<'v> {
     }
 
     /// Puts the samples of each pixel together, row by row.
-    pub fn resolve(&self, background: Light, mut put: impl FnMut([u32; 2], Light, f64)) {
+    pub fn resolve(&self, background: Light, mut put: impl FnMut(Light, f64)) {
         let grid = self.grid as usize;
         let share = 1.0 / (grid * grid) as f32;
         for y in 0..self.size[1] {
@@ -153,7 +153,7 @@ impl<'v> Tile<'v> {
                         depth = depth.min(self.opaque[sample].depth);
                     }
                 }
-                put([self.first[0] + x, self.first[1] + y], light, depth);
+                put(light, depth);
             }
         }
     }

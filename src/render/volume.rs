@@ -555,7 +555,7 @@ mod tests {
             painter.paint(&mut tile).unwrap();
         }
         let mut lights = Vec::new();
-        tile.resolve(Light::of(BEHIND), |_, light, _| lights.push(light.0.as_dvec4()));
+        tile.resolve(Light::of(BEHIND), |light, _| lights.push(light.0.as_dvec4()));
         lights
     }
 
