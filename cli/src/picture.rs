@@ -33,7 +33,7 @@ pub struct Looks {
     #[arg(long, value_name = "A,B", value_parser = numbers::<2>, allow_hyphen_values = true)]
     range: Option<[f64; 2]>,
     /// Opacity of a volume as thick as the solid's longest side, 0 to 1
-    #[arg(long, value_name = "ALPHA", default_value_t = 0.95)]
+    #[arg(long, value_name = "ALPHA", default_value_t = 0.95, value_parser = share)]
     opacity: f64,
     /// Show voxels as published: of an edge of k finest voxels as k layers, wherever a line of sight crosses them
     #[arg(long)]
@@ -91,6 +91,13 @@ pub fn colour(text: &str) -> Result<[u8; 4], String> {
         (Some(number), 6) => Ok((number << 8 | 0xFF).to_be_bytes()),
         (Some(number), 8) => Ok(number.to_be_bytes()),
         _ => Err("expected a colour of six or eight hexadecimal digits, as in #b2bbc4".into()),
+    }
+}
+
+fn share(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(share) if (0.0..=1.0).contains(&share) => Ok(share),
+        _ => Err("expected a number from 0 to 1".into()),
     }
 }
 

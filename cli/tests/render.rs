@@ -116,6 +116,7 @@ fn what_cannot_be_shown_is_refused() {
         ("render part.lfl -o out.png --map rainbow", "map"),
         ("render part.lfl -o out.png --colour red", "hexadecimal"),
         ("render part.lfl -o out.png --from 10", "2 numbers"),
+        ("render part.lfl -o out.png --view volume --opacity 2", "0 to 1"),
         ("render part.lfl -o out.png --ortho --fov 20", "--fov"),
     ] {
         let run = place.run(line);
