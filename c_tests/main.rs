@@ -156,7 +156,7 @@ fn panic() {
 #[test]
 fn null() {
     // Each pointer that goes in or out is tried: the programs name all of them.
-    let source = text("c_tests/null.c") + &text("c_tests/null_tridexel.c");
+    let source = text("c_tests/null.c") + &text("c_tests/null_tridexel.c") + &text("c_tests/null_picture.c");
     let flat = source.split_whitespace().collect::<Vec<_>>().join(" ");
     for function in &header().functions {
         for parameter in &function.pointers {
@@ -174,12 +174,13 @@ fn null() {
             let own = matches!(name.as_str(), "leafless_last_error" | "leafless_test_layout");
             assert!(
                 tried || family || freed || own,
-                "c_tests/null.c and null_tridexel.c do not try {name} without {parameter}"
+                "c_tests/null.c and those beside it do not try {name} without {parameter}"
             );
         }
     }
     run("null", C99, Link::Static, &[]);
     run("null_tridexel", C99, Link::Static, &[]);
+    run("null_picture", C99, Link::Static, &[]);
 }
 
 #[test]
@@ -270,6 +271,11 @@ fn columns() {
 #[test]
 fn voxels() {
     run("voxel", C99, Link::Static, &[]);
+}
+
+#[test]
+fn pictures() {
+    run("picture", C99, Link::Static, &[]);
 }
 
 #[test]
@@ -386,6 +392,7 @@ fn examples() {
         ("c/isosurface.c", C99),
         ("c/attributes.c", C99),
         ("c/dexel_cuts.c", C99),
+        ("c/pictures.c", C99),
         ("cpp/cut_stock.cpp", CPP17),
     ];
     for (name, standard) in examples {

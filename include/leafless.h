@@ -1369,6 +1369,89 @@ typedef uint32_t leafless_dexel_surface_method;
 #endif // __cplusplus
 
 /**
+ * Colour maps: equal steps of a number look like equal steps of the colour.
+ */
+enum leafless_colour_map
+#ifdef __cplusplus
+  : uint32_t
+#endif // __cplusplus
+ {
+    /**
+     * From dark violet by way of green to yellow.
+     */
+    LEAFLESS_COLOUR_MAP_VIRIDIS = 0,
+    /**
+     * From dark blue to yellow; the colour-blind see it as others do.
+     */
+    LEAFLESS_COLOUR_MAP_CIVIDIS = 1,
+    /**
+     * From black by way of red to light yellow.
+     */
+    LEAFLESS_COLOUR_MAP_INFERNO = 2,
+    /**
+     * From black by way of purple to near white.
+     */
+    LEAFLESS_COLOUR_MAP_MAGMA = 3,
+    /**
+     * From dark blue by way of red to yellow.
+     */
+    LEAFLESS_COLOUR_MAP_PLASMA = 4,
+    /**
+     * From black to white.
+     */
+    LEAFLESS_COLOUR_MAP_GREY = 5,
+};
+#ifndef __cplusplus
+typedef uint32_t leafless_colour_map;
+#endif // __cplusplus
+
+/**
+ * Which edges are drawn as lines.
+ */
+enum leafless_edges
+#ifdef __cplusplus
+  : uint32_t
+#endif // __cplusplus
+ {
+    /**
+     * None.
+     */
+    LEAFLESS_EDGES_NONE = 0,
+    /**
+     * Those at which a mesh ends, or where its triangles meet at more than the crease angle.
+     */
+    LEAFLESS_EDGES_FEATURES = 1,
+    /**
+     * Those of all triangles.
+     */
+    LEAFLESS_EDGES_ALL = 2,
+};
+#ifndef __cplusplus
+typedef uint32_t leafless_edges;
+#endif // __cplusplus
+
+/**
+ * At which side of a picture a legend lies.
+ */
+enum leafless_legend_side
+#ifdef __cplusplus
+  : uint32_t
+#endif // __cplusplus
+ {
+    /**
+     * In the middle of the right side, at most a third of the width.
+     */
+    LEAFLESS_LEGEND_RIGHT = 0,
+    /**
+     * In the middle of the lower side, at most a third of the height.
+     */
+    LEAFLESS_LEGEND_BOTTOM = 1,
+};
+#ifndef __cplusplus
+typedef uint32_t leafless_legend_side;
+#endif // __cplusplus
+
+/**
  * Something that has a value at every point of model space, or at some: one number, the host's own function,
  * the values of a channel, any of them in another place. A value has one to four numbers, as many at all
  * points of an attribute. Where a value is written and there is none, its numbers are NaN.
@@ -1423,6 +1506,17 @@ typedef struct leafless_cursor leafless_cursor;
  * Reading changes it: while one thread reads, no other may use it. Threads may have one each.
  */
 typedef struct leafless_faces leafless_faces;
+
+/**
+ * Something that is seen in a picture: the surface of an octree, a solid or a mesh, lines, a plane section, voxels.
+ *
+ * A layer shares or copies what it shows, which may be freed. It knows nothing of cameras: it may be part of any
+ * number of pictures.
+ *
+ * Immutable: all its functions may be called at once from any number of threads, but leafless_layer_free
+ * needs the reference that it gives back for itself.
+ */
+typedef struct leafless_layer leafless_layer;
 
 /**
  * An octree of a solid that is not built in one go: a cell is split when somebody asks for it, and what was
@@ -2945,6 +3039,306 @@ typedef struct {
      */
     const leafless_solid *source;
 } leafless_surface_options;
+
+/**
+ * From where a picture is taken. leafless_camera_fit sets all of it; a host may as well.
+ */
+typedef struct {
+    /**
+     * The point from which one looks.
+     */
+    double eye_model[3];
+    /**
+     * A point at which one looks, in the middle of the picture.
+     */
+    double at_model[3];
+    /**
+     * The direction that is shown upward, of any length but 0; not along the view.
+     */
+    double up[3];
+    /**
+     * The field of view in degrees, from the lower to the upper edge of the picture: above 0, below 180. What is
+     * farther away looks smaller. 0: parallel lines stay parallel, and `height_model` counts.
+     */
+    double field_of_view_degrees;
+    /**
+     * With parallel lines the height of what is seen; else not read.
+     */
+    double height_model;
+} leafless_camera;
+
+/**
+ * What values look like. A value of one number has the colour of a map over a range. A value of three or four
+ * numbers is a colour itself: red, green and blue in sRGB, 0 to 255, and of volumes an opacity, 0 to 255, that
+ * scales `alpha_upper`. Of a value of two numbers the first counts. Where there is no value the colour is grey.
+ *
+ * The range must be set, and for volumes the opacity. All other fields but the first may be zero, which is their
+ * default; leafless_transfer_init sets them so.
+ */
+typedef struct {
+    /**
+     * sizeof(leafless_transfer).
+     */
+    uint32_t struct_size;
+    /**
+     * A leafless_colour_map.
+     */
+    uint32_t map;
+    /**
+     * The value at the map's beginning.
+     */
+    double range_lower;
+    /**
+     * The value at its end; greater than `range_lower`.
+     */
+    double range_upper;
+    /**
+     * Of volumes: the opacity, 0 to 1, of a path of `length_model` through the value `range_lower`. Between the
+     * two ends it changes linearly.
+     */
+    double alpha_lower;
+    /**
+     * The same of `range_upper`, of values that are colours, and of voxels without a value.
+     */
+    double alpha_upper;
+    /**
+     * The path for which the opacities hold: what has the opacity a for it lets (1 - a)^(s / length_model) of the
+     * light through a path s. 0: 1.
+     */
+    double length_model;
+} leafless_transfer;
+
+/**
+ * What a surface looks like. NULL means the defaults. All fields but the first may be zero, which is their default;
+ * leafless_look_init sets them so. A field that a shape does not use must be zero. Colours are red, green and blue
+ * (sRGB) and opacity, 0 to 255.
+ */
+typedef struct {
+    /**
+     * sizeof(leafless_look).
+     */
+    uint32_t struct_size;
+    /**
+     * Of octrees and solids: 1 to show cells by their faces, instead of the surface that they stand for; else 0.
+     */
+    uint32_t faces;
+    /**
+     * The colour in full light; all zero: light grey.
+     */
+    uint8_t colour[4];
+    /**
+     * The colour of what clip planes cut open, and of a mesh's faces that are seen from behind; all zero: orange, or
+     * of a mesh the face's own colour mixed with orange.
+     */
+    uint8_t inside[4];
+    /**
+     * Of meshes: a leafless_edges.
+     */
+    uint32_t edges;
+    /**
+     * The colour of edges; all zero: dark grey.
+     */
+    uint8_t edge_colour[4];
+    /**
+     * The width of edges in pixels, at most 256; 0: 1.
+     */
+    double edge_width;
+    /**
+     * Of meshes: the angle in degrees, at most 180, up to which neighbouring triangles look smooth; 0: 30.
+     */
+    double crease_degrees;
+    /**
+     * Of meshes: 4 · `triangle_count` bytes, a colour for each triangle; NULL: all have one.
+     */
+    const uint8_t *triangle_colours;
+    /**
+     * How many colours of triangles there are.
+     */
+    uint64_t triangle_count;
+    /**
+     * Of octrees: values, as a channel's, that are shown half a finest cell below the surface; optional.
+     */
+    const leafless_attribute *attribute;
+    /**
+     * Of octrees with an attribute: the colours of its values.
+     */
+    const leafless_transfer *transfer;
+} leafless_look;
+
+/**
+ * What a plane section looks like. NULL means the defaults. All fields but the first may be zero, which is their
+ * default; leafless_slice_look_init sets them so. Colours are red, green and blue (sRGB) and opacity, 0 to 255.
+ */
+typedef struct {
+    /**
+     * sizeof(leafless_slice_look).
+     */
+    uint32_t struct_size;
+    /**
+     * 1 to draw no outlines of cells; else 0.
+     */
+    uint32_t is_plain;
+    /**
+     * The colour of EMPTY cells; all zero: sky blue, hardly visible.
+     */
+    uint8_t empty_colour[4];
+    /**
+     * The colour of FULL cells; all zero: blue.
+     */
+    uint8_t full_colour[4];
+    /**
+     * The colour of PARTIAL cells; all zero: orange.
+     */
+    uint8_t partial_colour[4];
+    /**
+     * The colour of outlines; all zero: dark grey.
+     */
+    uint8_t outline_colour[4];
+    /**
+     * Values, as a channel's, that are shown where cells are not EMPTY; optional.
+     */
+    const leafless_attribute *attribute;
+    /**
+     * With an attribute: the colours of its values.
+     */
+    const leafless_transfer *transfer;
+} leafless_slice_look;
+
+/**
+ * Voxels in arrays, as leafless_octree_voxels writes them: those of record i at `codes[i]`, `levels[i]`, `kinds[i]`.
+ * All fields but the first that are not said to be optional must be set.
+ */
+typedef struct {
+    /**
+     * sizeof(leafless_voxel_arrays).
+     */
+    uint32_t struct_size;
+    /**
+     * How many numbers a value has, 1 to 4; 0 without values.
+     */
+    uint32_t components;
+    /**
+     * The lattice that codes belong to.
+     */
+    leafless_frame lattice;
+    /**
+     * How many voxels there are.
+     */
+    uint64_t count;
+    /**
+     * Linear octree codes, ascending.
+     */
+    const uint64_t *codes;
+    /**
+     * Levels.
+     */
+    const uint8_t *levels;
+    /**
+     * Of each a leafless_voxel_kind. Inside and boundary voxels are seen.
+     */
+    const uint8_t *kinds;
+    /**
+     * `components` · `count` numbers, NaN where there is no value; NULL without values.
+     */
+    const double *values;
+    /**
+     * Of each voxel the part that is filled, 0 to 1; NULL: 1 inside and 1/2 at the boundary. As
+     * leafless_voxels_solid_parts writes it.
+     */
+    const double *weights;
+} leafless_voxel_arrays;
+
+/**
+ * How a picture is taken. The size and the camera must be set; all other fields but the first may be zero, which is
+ * their default. leafless_shot_init sets them so.
+ */
+typedef struct {
+    /**
+     * sizeof(leafless_shot).
+     */
+    uint32_t struct_size;
+    /**
+     * Pixels of a row, 1 to 16384.
+     */
+    uint32_t width;
+    /**
+     * Rows, 1 to 16384.
+     */
+    uint32_t height;
+    /**
+     * Samples of a pixel: 1, 4, 9, 16, 25, 36, 49 or 64, on a grid; 0: 4.
+     */
+    uint32_t samples;
+    /**
+     * From where.
+     */
+    leafless_camera camera;
+    /**
+     * 4 · `clip_plane_count` numbers: a, b, c and d of each plane, which cuts away the points with
+     * a x + b y + c z + d < 0.
+     */
+    const double *clip_planes;
+    /**
+     * How many clip planes there are.
+     */
+    uint64_t clip_plane_count;
+    /**
+     * 6 numbers, the least and the greatest corner of a box outside of which all is cut away; NULL: none.
+     */
+    const double *clip_box_model;
+    /**
+     * What is seen where nothing is: red, green, blue (sRGB) and opacity. All zero: nothing, transparent.
+     */
+    uint8_t background[4];
+    /**
+     * 0.
+     */
+    uint32_t reserved;
+} leafless_shot;
+
+/**
+ * A box in the picture, in C's order; all zero if there is none.
+ */
+typedef struct {
+    /**
+     * Pixels to the left of it.
+     */
+    uint32_t left;
+    /**
+     * Rows above it.
+     */
+    uint32_t top;
+    /**
+     * Its width in pixels.
+     */
+    uint32_t width;
+    /**
+     * Its height in pixels.
+     */
+    uint32_t height;
+} leafless_legend_box;
+
+/**
+ * A colour and what it stands for.
+ */
+typedef struct {
+    /**
+     * The name in UTF-8; need not be NUL-terminated.
+     */
+    const char *name;
+    /**
+     * Its length in bytes.
+     */
+    size_t name_length;
+    /**
+     * Red, green, blue (sRGB) and opacity.
+     */
+    uint8_t colour[4];
+    /**
+     * 0.
+     */
+    uint32_t reserved;
+} leafless_legend_name;
 
 /**
  * What the work on an octree came to.
@@ -7698,6 +8092,439 @@ leafless_status leafless_volume_surface(const leafless_volume *volume,
                                         const leafless_interval *band,
                                         const leafless_options *options,
                                         leafless_mesh **mesh);
+
+/**
+ * A camera that shows all of some points in a picture of width : height = `aspect`, as large as can be with a
+ * small margin. Points may be the vertices of a mesh, or the eight corners of a bounding box. It looks at them
+ * from an azimuth and an elevation in degrees: 0, 0 is from -y with x to the right and z upward, a positive
+ * azimuth from further right, a positive elevation from further above.
+ *
+ * - Buffers: `points_model`, 3 · `count` numbers; `camera`, one struct.
+ * - Result: `*camera`. O(count).
+ * - Errors: LEAFLESS_E_ARGUMENT if there is no point, a number is not finite or beyond ±2^256, the field of view
+ *   neither 0 (parallel lines stay parallel) nor between 0 and 180 degrees, or the aspect not above 0.
+ * - Ownership: nothing changes hands.
+ * - Threads: any.
+ * - Untrusted input: any numbers.
+ * - Since: 0.1
+ */
+leafless_status leafless_camera_fit(const double *points_model,
+                                    uint64_t count,
+                                    double azimuth_degrees,
+                                    double elevation_degrees,
+                                    double field_of_view_degrees,
+                                    double aspect,
+                                    leafless_camera *camera);
+
+/**
+ * Sets all fields of leafless_transfer to their defaults.
+ *
+ * - Buffers: `transfer`, one struct of `struct_size` bytes, which is sizeof(leafless_transfer); need not be
+ *   initialised.
+ * - Result: `*transfer`.
+ * - Errors: LEAFLESS_E_ARGUMENT if `struct_size` cannot be right.
+ * - Ownership: nothing changes hands.
+ * - Threads: any.
+ * - Untrusted input: none.
+ * - Since: 0.1
+ */
+leafless_status leafless_transfer_init(leafless_transfer *transfer, size_t struct_size);
+
+/**
+ * What lies of a layer within planes and a box of its own, which count instead of the picture's: a surface that is
+ * cut away, for instance, to show the voxels behind it. A layer that has some already keeps what lies within all
+ * of them.
+ *
+ * - Buffers: `planes`, 4 · `plane_count` numbers: a, b, c and d of each plane, which keeps the points with
+ *   a x + b y + c z + d ≥ 0; `box_model`, 6 numbers, the least and the greatest corner of the box, or NULL for none;
+ *   `clipped`, one pointer.
+ * - Result: `*clipped`.
+ * - Errors: LEAFLESS_E_ARGUMENT if a number is not finite or beyond ±2^256, a, b and c are zero, or the box is none;
+ *   LEAFLESS_E_NO_MEMORY.
+ * - Ownership: the layer is shared and may be freed; give `*clipped` back with leafless_layer_free.
+ * - Threads: any.
+ * - Untrusted input: any numbers.
+ * - Since: 0.1
+ */
+leafless_status leafless_layer_clipped(const leafless_layer *layer,
+                                       const double *planes,
+                                       uint64_t plane_count,
+                                       const double *box_model,
+                                       leafless_layer **clipped);
+
+/**
+ * One more reference to a layer.
+ *
+ * - Buffers: `layer`, a handle; `reference`, one pointer.
+ * - Result: `*reference`, equal to `layer`.
+ * - Errors: only the general ones.
+ * - Ownership: give each reference back with leafless_layer_free.
+ * - Threads: any.
+ * - Untrusted input: none.
+ * - Since: 0.1
+ */
+leafless_status leafless_layer_ref(const leafless_layer *layer, leafless_layer **reference);
+
+/**
+ * Gives back a reference to a layer; with the last one the layer is gone. What it shows stays, as far as others
+ * have references to it.
+ *
+ * - Buffers: `layer`, a handle or NULL, which does nothing.
+ * - Result: none.
+ * - Errors: none.
+ * - Ownership: the reference is gone.
+ * - Threads: any; no other call may use this reference.
+ * - Untrusted input: none.
+ * - Since: 0.1
+ */
+void leafless_layer_free(leafless_layer *layer);
+
+/**
+ * Sets all fields of leafless_look to their defaults.
+ *
+ * - Buffers: `look`, one struct of `struct_size` bytes, which is sizeof(leafless_look); need not be initialised.
+ * - Result: `*look`.
+ * - Errors: LEAFLESS_E_ARGUMENT if `struct_size` cannot be right.
+ * - Ownership: nothing changes hands.
+ * - Threads: any.
+ * - Untrusted input: none.
+ * - Since: 0.1
+ */
+leafless_status leafless_look_init(leafless_look *look,
+                                   size_t struct_size);
+
+/**
+ * The surface of an octree: along each line of sight the first cell that is not EMPTY. Its normals are those of the
+ * surface that the cells seem to stand for.
+ *
+ * - Buffers: `look`, one struct or NULL; `layer`, one pointer.
+ * - Result: `*layer`.
+ * - Errors: LEAFLESS_E_ARGUMENT if the look is not as it must be.
+ * - Ownership: the layer shares the octree and the attribute, which may be freed; give `*layer` back with
+ *   leafless_layer_free.
+ * - Threads: any.
+ * - Untrusted input: any octree.
+ * - Since: 0.1
+ */
+leafless_status leafless_layer_new_octree(const leafless_octree *octree,
+                                          const leafless_look *look,
+                                          leafless_layer **layer);
+
+/**
+ * The surface of a solid within a universe. For each picture the solid is split to cells as large as a pixel, 2^11
+ * to an axis at the most; in these a line of sight meets what the solid knows of its boundary there, with the
+ * normals of that.
+ *
+ * - Buffers: `frame`, one struct, of which the depth does not count; `look`, one struct or NULL; `layer`, one pointer.
+ * - Result: `*layer`.
+ * - Errors: LEAFLESS_E_ARGUMENT if the look or the frame is not as it must be; taking a picture also returns what
+ *   leafless_octree_build does.
+ * - Ownership: the layer shares the solid, which may be freed; give `*layer` back with leafless_layer_free.
+ * - Threads: any.
+ * - Untrusted input: any solid.
+ * - Since: 0.1
+ */
+leafless_status leafless_layer_new_solid(const leafless_solid *solid,
+                                         const leafless_frame *frame,
+                                         const leafless_look *look,
+                                         leafless_layer **layer);
+
+/**
+ * The triangles of a mesh.
+ *
+ * - Buffers: `look`, one struct or NULL; `layer`, one pointer.
+ * - Result: `*layer`.
+ * - Errors: LEAFLESS_E_ARGUMENT if the look is not as it must be, or there are colours of triangles and not one for
+ *   each; LEAFLESS_E_NO_MEMORY. Taking a picture returns LEAFLESS_E_ARGUMENT if the width or the crease angle is out
+ *   of range.
+ * - Ownership: the layer shares the mesh, which may be freed, and copies the colours; give `*layer` back with
+ *   leafless_layer_free.
+ * - Threads: any.
+ * - Untrusted input: any mesh.
+ * - Since: 0.1
+ */
+leafless_status leafless_layer_new_mesh(const leafless_mesh *mesh,
+                                        const leafless_look *look,
+                                        leafless_layer **layer);
+
+/**
+ * Lines in space, some pixels wide, with round ends. A surface hides what lies behind it; a line on a surface is seen.
+ *
+ * - Buffers: `points_model`, 6 · `count` numbers: the ends of each line; `colour`, 4 numbers: red, green, blue (sRGB) and
+ *   opacity, or NULL for dark grey; `layer`, one pointer. `width` is in pixels, at most 256; 0 means 1.
+ * - Result: `*layer`.
+ * - Errors: LEAFLESS_E_NO_MEMORY. Taking a picture returns LEAFLESS_E_ARGUMENT if the width is out of range, or a
+ *   coordinate not finite or beyond ±2^256.
+ * - Ownership: the layer copies the lines; give `*layer` back with leafless_layer_free.
+ * - Threads: any.
+ * - Untrusted input: any numbers.
+ * - Since: 0.1
+ */
+leafless_status leafless_layer_new_lines(const double *points_model,
+                                         uint64_t count,
+                                         double width,
+                                         const uint8_t *colour,
+                                         leafless_layer **layer);
+
+/**
+ * The edges of cells as lines. What several cells have in common is drawn once. A cell that is none of the frame is
+ * left out, and tags do not count.
+ *
+ * - Buffers: `frame`, one struct; `cells`, `count` structs; `colour`, `width` and `layer` as leafless_layer_new_lines.
+ * - Result: `*layer`.
+ * - Errors: LEAFLESS_E_ARGUMENT as leafless_frame_check, and as leafless_layer_new_lines; LEAFLESS_E_NO_MEMORY.
+ * - Ownership: give `*layer` back with leafless_layer_free.
+ * - Threads: any.
+ * - Untrusted input: any numbers; tags must be tags.
+ * - Since: 0.1
+ */
+leafless_status leafless_layer_new_cells(const leafless_frame *frame,
+                                         const leafless_cell *cells,
+                                         uint64_t count,
+                                         double width,
+                                         const uint8_t *colour,
+                                         leafless_layer **layer);
+
+/**
+ * Sets all fields of leafless_slice_look to their defaults.
+ *
+ * - Buffers: `look`, one struct of `struct_size` bytes, which is sizeof(leafless_slice_look); need not be initialised.
+ * - Result: `*look`.
+ * - Errors: LEAFLESS_E_ARGUMENT if `struct_size` cannot be right.
+ * - Ownership: nothing changes hands.
+ * - Threads: any.
+ * - Untrusted input: none.
+ * - Since: 0.1
+ */
+leafless_status leafless_slice_look_init(leafless_slice_look *look,
+                                         size_t struct_size);
+
+/**
+ * A plane section of an octree: in the colours of its cells' tags or of an attribute's values, with the outlines of
+ * the cells.
+ *
+ * - Buffers: `plane`, 4 numbers a, b, c and d: the plane of the points with a x + b y + c z = d; `look`, one struct or
+ *   NULL; `layer`, one pointer.
+ * - Result: `*layer`.
+ * - Errors: LEAFLESS_E_ARGUMENT if a number is not zero and not between 2^-256 and 2^256 in magnitude, a, b and c are
+ *   zero, or the look is not as it must be.
+ * - Ownership: the layer shares the octree and the attribute, which may be freed; give `*layer` back with
+ *   leafless_layer_free.
+ * - Threads: any.
+ * - Untrusted input: any octree, any numbers.
+ * - Since: 0.1
+ *
+ */
+leafless_status leafless_layer_new_slice(const leafless_octree *octree,
+                                         const double plane[4],
+                                         const leafless_slice_look *look,
+                                         leafless_layer **layer);
+
+/**
+ * A plane section of a solid on a frame, of which the cells at the plane are split down to the frame's depth.
+ *
+ * - Buffers: `frame`, one struct; the others as leafless_layer_new_slice.
+ * - Result: `*layer`.
+ * - Errors: as leafless_layer_new_slice; LEAFLESS_E_ARGUMENT as leafless_frame_check. Taking a picture also returns
+ *   what leafless_octree_build does.
+ * - Ownership: the layer shares the solid and the attribute, which may be freed; give `*layer` back with
+ *   leafless_layer_free.
+ * - Threads: any.
+ * - Untrusted input: any solid, any numbers.
+ * - Since: 0.1
+ *
+ */
+leafless_status leafless_layer_new_slice_of_solid(const leafless_solid *solid,
+                                                  const leafless_frame *frame,
+                                                  const double plane[4],
+                                                  const leafless_slice_look *look,
+                                                  leafless_layer **layer);
+
+/**
+ * Which part of each voxel is solid, 0 to 1: weights of voxels in a picture. Inside voxels have 1, outside and refined
+ * ones 0. Of a boundary voxel it is what the solid knows of its volume there, or the middle between what its slabs
+ * enclose; 1/2 where the solid knows neither.
+ *
+ * - Buffers: `lattice`, `codes`, `levels` and `kinds` as leafless_voxels_find; `options`, one struct or NULL; `parts`,
+ *   room for `count` numbers.
+ * - Result: `parts`. O(count · levels).
+ * - Errors: LEAFLESS_E_ARGUMENT if the arrays are no records; the solid's own; LEAFLESS_E_NO_MEMORY;
+ *   LEAFLESS_E_CANCELLED.
+ * - Ownership: nothing changes hands.
+ * - Threads: any; works in the calling thread.
+ * - Untrusted input: any numbers, any solid.
+ * - Since: 0.1
+ */
+leafless_status leafless_voxels_solid_parts(const leafless_frame *lattice,
+                                            const uint64_t *codes,
+                                            const uint8_t *levels,
+                                            const uint8_t *kinds,
+                                            uint64_t count,
+                                            const leafless_solid *solid,
+                                            const leafless_options *options,
+                                            double *parts);
+
+/**
+ * Sets all fields of leafless_voxel_arrays but the first to zero.
+ *
+ * - Buffers: `voxels`, one struct of `struct_size` bytes, which is sizeof(leafless_voxel_arrays); need not be
+ *   initialised.
+ * - Result: `*voxels`.
+ * - Errors: LEAFLESS_E_ARGUMENT if `struct_size` cannot be right.
+ * - Ownership: nothing changes hands.
+ * - Threads: any.
+ * - Untrusted input: none.
+ * - Since: 0.1
+ */
+leafless_status leafless_voxel_arrays_init(leafless_voxel_arrays *voxels, size_t struct_size);
+
+/**
+ * Voxels as a translucent volume, seen in their right order from everywhere; surfaces of other layers hide them, and
+ * are seen through them. Of two such layers the one that comes first in a picture is taken to be in front.
+ *
+ * - Buffers: `voxels`, one struct; `transfer`, one struct: what values look like; `layer`, one pointer. `unit_model`: 0
+ *   composites by the exact length of each line of sight in a voxel. Else it is done as published (Zhu, Tang and Dong
+ *   2002): a voxel is a cell of the edge `unit_model`, repeated as often as its own edge is longer, and the transfer
+ *   function's opacity holds for one repetition.
+ * - Result: `*layer`.
+ * - Errors: LEAFLESS_E_ARGUMENT if the arrays are no records, a weight is not 0 to 1, the transfer function not as it
+ *   must be, or the unit below 0 or not finite; LEAFLESS_E_NO_MEMORY.
+ * - Ownership: the layer copies the arrays; give `*layer` back with leafless_layer_free.
+ * - Threads: any.
+ * - Untrusted input: any numbers.
+ * - Since: 0.1
+ */
+leafless_status leafless_layer_new_voxels(const leafless_voxel_arrays *voxels,
+                                          const leafless_transfer *transfer,
+                                          double unit_model,
+                                          leafless_layer **layer);
+
+/**
+ * Sets all fields of leafless_shot but the first to zero.
+ *
+ * - Buffers: `shot`, one struct of `struct_size` bytes, which is sizeof(leafless_shot); need not be initialised.
+ * - Result: `*shot`.
+ * - Errors: LEAFLESS_E_ARGUMENT if `struct_size` cannot be right.
+ * - Ownership: nothing changes hands.
+ * - Threads: any.
+ * - Untrusted input: none.
+ * - Since: 0.1
+ */
+leafless_status leafless_shot_init(leafless_shot *shot,
+                                   size_t struct_size);
+
+/**
+ * Takes a picture of layers. Surfaces hide what lies behind them, whichever layer it is of; of two at one depth the
+ * first layer's is seen. The same bytes for any number of threads.
+ *
+ * - Buffers: `shot`, one struct; `layers`, `layer_count` handles; `options`, one struct or NULL; `colours`, room for
+ *   `colour_capacity` bytes, and `depths`, room for `depth_capacity` numbers, each NULL if it is not wanted.
+ * - Result: in `colours` 4 · width · height bytes: red, green, blue (sRGB, not multiplied by the opacity) and opacity of
+ *   each pixel, row by row from the upper left corner without gaps. In `depths` width · height numbers: the distance
+ *   from the plane of the eye to what is nearest and opaque, in model units; infinity where nothing is.
+ * - Errors: LEAFLESS_E_ARGUMENT if the shot is not as it must be; LEAFLESS_E_BUFFER if a capacity is too small: nothing
+ *   is written then; what solids and attributes of layers return; LEAFLESS_E_NO_MEMORY; LEAFLESS_E_CANCELLED.
+ * - Ownership: nothing changes hands.
+ * - Threads: any; uses as many as `options` says.
+ * - Untrusted input: any layers, any numbers.
+ * - Since: 0.1
+ */
+leafless_status leafless_render(const leafless_shot *shot,
+                                const leafless_layer *const *layers,
+                                uint64_t layer_count,
+                                const leafless_options *options,
+                                uint8_t *colours,
+                                uint64_t colour_capacity,
+                                float *depths,
+                                uint64_t depth_capacity);
+
+/**
+ * Saves a picture as a PNG file: without opacity if all pixels are opaque. At any moment there is the old file or the
+ * new one, each complete, as leafless_octree_save tells. The same picture makes the same bytes.
+ *
+ * - Buffers: `colours`, 4 · `width` · `height` bytes, as leafless_render writes them; `path`, `path_length` bytes of
+ *   UTF-8.
+ * - Result: LEAFLESS_OK once the file is on the disk.
+ * - Errors: LEAFLESS_E_ARGUMENT unless the sides are 1 to 16384 pixels; LEAFLESS_E_IO; LEAFLESS_E_UTF8;
+ *   LEAFLESS_E_NO_MEMORY. The old file is then as it was; only if the very last step fails, synchronising the directory,
+ *   the new one is in place.
+ * - Ownership: nothing changes hands.
+ * - Threads: any.
+ * - Untrusted input: any bytes.
+ * - Since: 0.1
+ */
+leafless_status leafless_picture_save(const uint8_t *colours,
+                                      uint32_t width,
+                                      uint32_t height,
+                                      const char *path,
+                                      size_t path_length);
+
+/**
+ * The bytes of a picture's PNG file, in memory: those that leafless_picture_save writes. Asking for the length takes as
+ * long as filling.
+ *
+ * - Buffers: `colours` as leafless_picture_save; `bytes`, room for `capacity` bytes, or NULL to ask for the length only;
+ *   `length`, one number.
+ * - Result: `*length`, the length of the file; the file in `bytes`.
+ * - Errors: LEAFLESS_E_BUFFER if the capacity is too small; LEAFLESS_E_ARGUMENT unless the sides are 1 to 16384 pixels;
+ *   LEAFLESS_E_NO_MEMORY.
+ * - Ownership: nothing changes hands.
+ * - Threads: any.
+ * - Untrusted input: any bytes.
+ * - Since: 0.1
+ */
+leafless_status leafless_picture_to_bytes(const uint8_t *colours,
+                                          uint32_t width,
+                                          uint32_t height,
+                                          uint8_t *bytes,
+                                          uint64_t capacity,
+                                          uint64_t *length);
+
+/**
+ * Draws a bar of the colours of values over a transfer function's range into a picture, with a title and numbers, on a
+ * light panel. Longer titles than find room are cut.
+ *
+ * - Buffers: `colours`, 4 · `width` · `height` bytes, as leafless_render writes them; `title`, `title_length` bytes of
+ *   UTF-8; `transfer`, one struct; `covered`, one struct. `side` is a leafless_legend_side.
+ * - Result: the picture with the legend; in `*covered` the box that it covers, all zero if the picture is smaller than
+ *   160 x 120 pixels, which has no legend.
+ * - Errors: LEAFLESS_E_ARGUMENT unless the sides are 1 to 16384 pixels, or if the transfer function is not as it must
+ *   be; LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY. The picture is then as it was.
+ * - Ownership: nothing changes hands.
+ * - Threads: any.
+ * - Untrusted input: any bytes.
+ * - Since: 0.1
+ */
+leafless_status leafless_picture_draw_bar(uint8_t *colours,
+                                          uint32_t width,
+                                          uint32_t height,
+                                          const char *title,
+                                          size_t title_length,
+                                          const leafless_transfer *transfer,
+                                          uint32_t side,
+                                          leafless_legend_box *covered);
+
+/**
+ * Draws boxes of colours with their names into a picture, under a title, on a light panel. Names that find no room are
+ * left out, or cut.
+ *
+ * - Buffers: `colours`, `title`, `side` and `covered` as leafless_picture_draw_bar; `names`, `name_count` structs.
+ * - Result: as leafless_picture_draw_bar; no legend either if there is neither a title nor a name.
+ * - Errors: as leafless_picture_draw_bar.
+ * - Ownership: nothing changes hands.
+ * - Threads: any.
+ * - Untrusted input: any bytes.
+ * - Since: 0.1
+ */
+leafless_status leafless_picture_draw_names(uint8_t *colours,
+                                            uint32_t width,
+                                            uint32_t height,
+                                            const char *title,
+                                            size_t title_length,
+                                            const leafless_legend_name *names,
+                                            uint64_t name_count,
+                                            uint32_t side,
+                                            leafless_legend_box *covered);
 
 /**
  * An octree of which only the universe is known. No cell will ever be finer than the frame's depth, which

@@ -152,6 +152,36 @@ fn what_is_cut_open_is_flat() {
     }
 }
 
+/// Lines of sight that begin at a wall and hardly part from it pass many cells by.
+#[test]
+fn grazed_walls_are_passed_by() {
+    let block = Csg::cuboid([-0.9, -0.5, -0.8], [0.9, 0.5, 0.8]).unwrap();
+    let solid = block.difference(&Csg::cylinder(0.3, -1.0, 1.0).unwrap()).unwrap();
+    let (rim, along) = ([-0.05f64.sqrt(), 0.2, 0.0], [-0.41, -0.57, 0.71]);
+    let eye = [0, 1, 2].map(|axis| rim[axis] - 3.0 * along[axis]);
+    let camera = Camera::new(eye, rim, [0.0, 1.0, 0.0], Lens::Perspective(2.0)).unwrap();
+    let clip = Clip::new().plane([0.0, -1.0, 0.0, 0.2]).unwrap();
+    let shot = Shot { samples: 1, clip, ..Shot::new(camera, SIZE) };
+    let picture = render(&shot, &[&SolidLayer::new(&solid, &frame(7), Finish::default())], &alone()).unwrap();
+    let (mut cut, mut far) = (0, 0);
+    for (at, _, depth) in pixels(&picture) {
+        let (from, along) = line(&camera, at);
+        let begins = (0.2 - from[1]) / along[1];
+        // Where the line leaves the bore, of which the axis is that of z.
+        let (a, b) = (along[0].powi(2) + along[1].powi(2), from[0] * along[0] + from[1] * along[1]);
+        let ends = (-b + (b * b - a * (from[0].powi(2) + from[1].powi(2) - 0.09)).sqrt()) / a;
+        let height = (from[0] + begins * along[0]).hypot(0.2) - 0.3;
+        if height > 2e-5 {
+            assert!((depth - begins).abs() < 1e-5, "{at:?} {depth} {begins}");
+            cut += 1;
+        } else if height < -2e-5 {
+            assert!((depth - ends).abs() < 1e-3, "{at:?} {depth} {ends}");
+            far += usize::from(ends > begins + 0.05);
+        }
+    }
+    assert!(cut > 1000 && far > 1000, "{cut} {far}");
+}
+
 #[test]
 fn values_give_their_colours() {
     let tree = build(&ball(), &frame(7), Rule::Certified, &alone()).unwrap();

@@ -855,5 +855,13 @@ fn solid_parts_add_up() {
     let block = Csg::cuboid([-0.71, -0.52, -0.33], [0.64, 0.81, 0.27]).unwrap();
     assert!((volume_of(&block) - 1.35 * 1.33 * 0.6).abs() < 1e-12);
     let ball = Csg::ball([0.01, 0.02, 0.03], 0.8).unwrap();
-    assert!((volume_of(&ball) - 4.0 / 3.0 * std::f64::consts::PI * 0.512).abs() < 1e-4);
+    let volume = 4.0 / 3.0 * std::f64::consts::PI * 0.512;
+    assert!((volume_of(&ball) - volume).abs() < 1e-4);
+    // The universe as one voxel.
+    let one = VoxelRecords::from_arrays(&frame, vec![0], vec![0], vec![VoxelKind::Boundary as u8], 0, vec![])
+        .unwrap();
+    let parts = one.view().solid_parts(&ball, &control).unwrap();
+    assert!((parts[0] - volume / 8.0).abs() < 0.1, "{parts:?}");
+    let parts = one.view().solid_parts(&block, &control).unwrap();
+    assert!((parts[0] - 1.35 * 1.33 * 0.6 / 8.0).abs() < 1e-12, "{parts:?}");
 }

@@ -213,7 +213,7 @@ fn surface(
             let Some(channel) = channel else { return render(shot, &[&layer], control) };
             let transfer = transfer(looks, octree, Some(channel), control)?;
             let components = channel.value_type().components();
-            let colour = |value: Option<[f64; 4]>| value_colour(&transfer, components, value);
+            let colour = |value: Option<[f64; 4]>| transfer.opaque(value, components);
             let mut picture = render(shot, &[&layer.values(channel, &colour)], control)?;
             bar(looks, &mut picture, channel, &transfer)?;
             Ok(picture)
@@ -303,13 +303,6 @@ fn volume(
     Ok(picture)
 }
 
-/// The colour of a value on a surface.
-fn value_colour(transfer: &Transfer, components: usize, value: Option<[f64; 4]>) -> [u8; 4] {
-    let value = value.unwrap_or([f64::NAN; 4]);
-    let [r, g, b] = transfer.colour(&value[..components]);
-    [r, g, b, 255]
-}
-
 /// The legend of a channel of one number.
 fn bar(looks: &Looks, picture: &mut Picture, channel: &Channel, transfer: &Transfer) -> Result<(), Error> {
     if !looks.no_legend && channel.value_type().components() == 1 {
@@ -376,7 +369,7 @@ fn slice(
     };
     let transfer = transfer(looks, octree, Some(channel), control)?;
     let components = channel.value_type().components();
-    let colour = |value: Option<[f64; 4]>| value_colour(&transfer, components, value);
+    let colour = |value: Option<[f64; 4]>| transfer.opaque(value, components);
     let layer = layer.values(channel, &colour);
     let mut picture = render(shot, &[&layer], control)?;
     bar(looks, &mut picture, channel, &transfer)?;

@@ -335,6 +335,7 @@ const _: () = {
     shared_by_threads::<super::leafless_volume>();
     shared_by_threads::<super::leafless_attribute>();
     shared_by_threads::<super::leafless_channel>();
+    shared_by_threads::<super::leafless_layer>();
     shared_by_threads::<super::leafless_lazy>();
     shared_by_threads::<super::leafless_cursor>();
     shared_by_threads::<super::leafless_point_cursor>();

@@ -72,6 +72,21 @@ fn write_all(to: &mut dyn Write) -> fmt::Result {
             criterion, reserved
         }
         leafless_surface_options { struct_size, method, snap, resolve, placement, reserved, source }
+        leafless_camera { eye_model, at_model, up, field_of_view_degrees, height_model }
+        leafless_transfer { struct_size, map, range_lower, range_upper, alpha_lower, alpha_upper, length_model }
+        leafless_look {
+            struct_size, faces, colour, inside, edges, edge_colour, edge_width, crease_degrees, triangle_colours,
+            triangle_count, attribute, transfer
+        }
+        leafless_slice_look {
+            struct_size, is_plain, empty_colour, full_colour, partial_colour, outline_colour, attribute, transfer
+        }
+        leafless_voxel_arrays { struct_size, components, lattice, count, codes, levels, kinds, values, weights }
+        leafless_shot {
+            struct_size, width, height, samples, camera, clip_planes, clip_plane_count, clip_box_model, background, reserved
+        }
+        leafless_legend_box { left, top, width, height }
+        leafless_legend_name { name, name_length, colour, reserved }
         leafless_callbacks {
             struct_size, exterior, classify, contains, destroy, ctx, fingerprint, classify_many, contains_many, distance_many,
             gradient, tangent
@@ -206,6 +221,12 @@ fn write_all(to: &mut dyn Write) -> fmt::Result {
         leafless_resolve {
             LEAFLESS_RESOLVE_NONE, LEAFLESS_RESOLVE_INNER, LEAFLESS_RESOLVE_OUTER, LEAFLESS_RESOLVE_SOURCE
         }
+        leafless_colour_map {
+            LEAFLESS_COLOUR_MAP_VIRIDIS, LEAFLESS_COLOUR_MAP_CIVIDIS, LEAFLESS_COLOUR_MAP_INFERNO, LEAFLESS_COLOUR_MAP_MAGMA,
+            LEAFLESS_COLOUR_MAP_PLASMA, LEAFLESS_COLOUR_MAP_GREY
+        }
+        leafless_edges { LEAFLESS_EDGES_NONE, LEAFLESS_EDGES_FEATURES, LEAFLESS_EDGES_ALL }
+        leafless_legend_side { LEAFLESS_LEGEND_RIGHT, LEAFLESS_LEGEND_BOTTOM }
         leafless_vertex_placement { LEAFLESS_PLACEMENT_MIDPOINT, LEAFLESS_PLACEMENT_CROSSING }
         leafless_voxel_kind {
             LEAFLESS_VOXEL_OUTSIDE, LEAFLESS_VOXEL_INSIDE, LEAFLESS_VOXEL_BOUNDARY, LEAFLESS_VOXEL_REFINED

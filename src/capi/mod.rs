@@ -38,6 +38,11 @@
 //! | `cells` | neighbours of cells, cells and boundary faces one after another |
 //! | `bitmap` | the cells of a box as bits |
 //! | `surface` | surfaces: closed meshes of octrees and solids |
+//! | `camera` | cameras |
+//! | `layer` | what pictures are made of; what values look like |
+//! | `layer_surface` | surfaces of octrees, solids and meshes in pictures, lines |
+//! | `layer_section` | plane sections and voxels in pictures |
+//! | `picture` | pictures, PNG files, legends |
 //! | `lazy` | octrees that are split on demand |
 //! | `interference` | solids under affine maps; overlap and distance of two solids |
 //! | `measure` | volume, centroid, inertia, bounding boxes of solids |
@@ -59,6 +64,7 @@ mod attribute;
 mod attribute_host;
 mod bitmap;
 mod boundary;
+mod camera;
 mod cells;
 mod channel;
 mod channel_fill;
@@ -71,6 +77,9 @@ mod file;
 mod frame;
 mod host;
 mod interference;
+mod layer;
+mod layer_section;
+mod layer_surface;
 #[cfg(feature = "capi-test")]
 mod layout;
 mod lazy;
@@ -85,6 +94,7 @@ mod metadata;
 mod octree;
 mod octree_channels;
 mod op;
+mod picture;
 mod point;
 mod polyhedron;
 mod query;
@@ -112,6 +122,7 @@ pub use attribute_host::*;
 pub use bitmap::*;
 #[cfg(feature = "capi-test")]
 pub use boundary::leafless_test_panic;
+pub use camera::*;
 pub use cells::*;
 pub use channel::*;
 pub use channel_fill::*;
@@ -124,6 +135,9 @@ pub use file::*;
 pub use frame::*;
 pub use host::*;
 pub use interference::*;
+pub use layer::*;
+pub use layer_section::*;
+pub use layer_surface::*;
 #[cfg(feature = "capi-test")]
 pub use layout::*;
 pub use lazy::*;
@@ -137,6 +151,7 @@ pub use mesh_write::*;
 pub use octree::*;
 pub use octree_channels::*;
 pub use op::*;
+pub use picture::*;
 pub use point::*;
 pub use polyhedron::*;
 pub use query::*;

@@ -231,7 +231,7 @@ unsafe fn present<T>(start: *mut T, capacity: u64, name: &'static str) -> Result
 ///
 /// # Safety
 /// As [`slice`].
-unsafe fn records<'a>(
+pub(super) unsafe fn records<'a>(
     lattice: &Frame,
     codes: *const u64,
     levels: *const u8,

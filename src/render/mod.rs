@@ -48,11 +48,9 @@ use crate::memory;
 use crate::query::each;
 use camera::View;
 use light::{Light, Tones};
+use picture::check_size;
 use stage::{Pass, Stage};
 use tile::{TILE, Tile};
-
-/// Most pixels of a row, and most rows.
-const MOST_PIXELS: u32 = 1 << 14;
 
 /// Most samples of a pixel along each axis.
 const MOST_GRID: u32 = 8;
@@ -93,9 +91,7 @@ impl Shot {
 pub fn render(shot: &Shot, layers: &[&dyn Layer], control: &Control<'_>) -> Result<Picture, Error> {
     let grid = shot.grid()?;
     let [width, height] = shot.size;
-    if !shot.size.iter().all(|side| (1..=MOST_PIXELS).contains(side)) {
-        return Err(Error::Argument { name: "size", problem: "must be 1 to 16384 pixels on each side" });
-    }
+    check_size(shot.size)?;
     let job = &Job::new(control);
     job.check()?;
     let count = width as usize * height as usize;

@@ -1,6 +1,11 @@
 //! Finished pictures.
 
+use crate::error::Error;
+use crate::memory;
 use alloc::vec::Vec;
+
+/// Most pixels of a row, and most rows.
+const MOST_PIXELS: u32 = 1 << 14;
 
 /// A picture: a colour and a depth for each pixel, row by row from the upper left corner.
 #[derive(Debug, Clone, PartialEq)]
@@ -12,6 +17,21 @@ pub struct Picture {
 }
 
 impl Picture {
+    /// A picture of somebody else's colours, row by row from the upper left corner, without depths: to draw a legend on it,
+    /// or to write it.
+    ///
+    /// # Errors
+    /// [`Error::Argument`] unless the sides (width and height) are 1 to 16384 pixels and there is one colour for each pixel;
+    /// [`Error::OutOfMemory`].
+    pub fn of_colours([width, height]: [u32; 2], colours: Vec<[u8; 4]>) -> Result<Picture, Error> {
+        check_size([width, height])?;
+        if colours.len() != width as usize * height as usize {
+            return Err(Error::Argument { name: "colours", problem: "must be one for each pixel" });
+        }
+        let depths = memory::filled(colours.len(), f32::INFINITY)?;
+        Ok(Picture { width, height, colours, depths })
+    }
+
     /// Pixels of a row.
     pub fn width(&self) -> u32 {
         self.width
@@ -35,5 +55,14 @@ impl Picture {
     /// The colours as bytes, four a pixel.
     pub fn bytes(&self) -> &[u8] {
         bytemuck::cast_slice(&self.colours)
+    }
+}
+
+/// Refuses a width and a height that no picture has.
+pub(super) fn check_size(sides: [u32; 2]) -> Result<(), Error> {
+    if sides.iter().all(|side| (1..=MOST_PIXELS).contains(side)) {
+        Ok(())
+    } else {
+        Err(Error::Argument { name: "size", problem: "must be 1 to 16384 pixels on each side" })
     }
 }

@@ -105,9 +105,6 @@ struct Hand<'t, S: Solid> {
     enclosures: HashMap<Cell, Option<Enclosure>>,
 }
 
-/// Most cells of one line of sight whose slabs it passes by.
-const MOST_PASSED: usize = 32;
-
 /// What is known of a line of sight in a cell.
 enum Met {
     /// It meets the surface.
@@ -130,7 +127,8 @@ impl<S: Solid> SolidPainter<'_, S> {
         let (octree, frame) = (self.octree.view(), self.octree.frame());
         let step = 1e-6 * frame.cell_size() / sight.along.length();
         let mut passed: Option<(f64, DVec3)> = None;
-        for _ in 0..MOST_PASSED {
+        // A line meets no more cells than that, and may pass by the slabs of all of them.
+        for _ in 0..3u32 << frame.depth() {
             let (t, face) = (hit.t.lower.max(0.0), DVec3::from(hit.normal));
             let begins = sight.begins_in(t, face);
             let at = hit.cell.first_at(frame.depth()).at;

@@ -172,6 +172,13 @@ impl Transfer {
         }
     }
 
+    /// The colour of a surface with a value of `components` numbers, opaque: [`NEUTRAL`](Self::NEUTRAL) where there is none.
+    pub fn opaque(&self, value: Option<[f64; 4]>, components: usize) -> [u8; 4] {
+        let value = value.as_ref().map_or(&[][..], |value| &value[..components.min(4)]);
+        let [r, g, b] = self.colour(value);
+        [r, g, b, 255]
+    }
+
     /// The opacity, 0 to 1, of a path of `path` model units through a value.
     pub fn opacity(&self, value: &[f64], path: f64) -> f64 {
         let path = path.max(0.0);

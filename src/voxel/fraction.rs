@@ -4,9 +4,10 @@ use super::record::VoxelKind;
 use super::records::VoxelRecordsRef;
 use crate::control::Control;
 use crate::error::Error;
+use crate::lattice::Cell;
 use crate::memory;
 use crate::op::Trail;
-use crate::solid::{Classifier, Solid, Verdict, cut};
+use crate::solid::{Classifier, Solid, Verdict, Worker, cut};
 use alloc::vec::Vec;
 
 impl VoxelRecordsRef<'_> {
@@ -39,21 +40,36 @@ impl VoxelRecordsRef<'_> {
             }
             control.check()?;
             let cell = self.cell_at(index);
-            trail.follow(cell.parent(), control)?;
-            let part = match trail.verdict(cell) {
-                Verdict::Empty => 0.0,
-                Verdict::Full => 1.0,
-                Verdict::Undecided => 0.5,
-                Verdict::Partial(_) => match trail.moments(cell)? {
-                    Some(known) if known.error < 1.0 => known.moments.volume / 8.0,
-                    _ => trail.enclosure(cell)?.map_or(0.5, |enclosure| {
-                        let (inner, outer) = cut::bounds(&enclosure);
-                        (inner.volume + outer.volume) / 16.0
-                    }),
-                },
+            let part = match cell.level {
+                // Solids are asked about the children of a cell.
+                0 => mean((0..8).map(|octant| part(&mut trail, cell.child(octant), control)))?,
+                _ => part(&mut trail, cell, control)?,
             };
-            parts.push(part.clamp(0.0, 1.0));
+            parts.push(part);
         }
         Ok(parts)
     }
+}
+
+/// The mean of eight parts.
+fn mean(parts: impl Iterator<Item = Result<f64, Error>>) -> Result<f64, Error> {
+    Ok(parts.sum::<Result<f64, Error>>()? / 8.0)
+}
+
+/// Which part of a cell below the universe is solid.
+fn part<W: Worker>(trail: &mut Trail<W>, cell: Cell, control: &Control<'_>) -> Result<f64, Error> {
+    trail.follow(cell.parent(), control)?;
+    let part = match trail.verdict(cell) {
+        Verdict::Empty => 0.0,
+        Verdict::Full => 1.0,
+        Verdict::Undecided => 0.5,
+        Verdict::Partial(_) => match trail.moments(cell)? {
+            Some(known) if known.error < 1.0 => known.moments.volume / 8.0,
+            _ => trail.enclosure(cell)?.map_or(0.5, |enclosure| {
+                let (inner, outer) = cut::bounds(&enclosure);
+                (inner.volume + outer.volume) / 16.0
+            }),
+        },
+    };
+    Ok(part.clamp(0.0, 1.0))
 }
