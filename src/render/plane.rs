@@ -1,0 +1,146 @@
+//! Planes fitted to the surface in a window of cells.
+
+use glam::{DMat3, DVec3, Vec3, Vec3A};
+
+/// A plane through the surface about a block.
+#[derive(Clone, Copy, Default, Debug, PartialEq)]
+pub struct Plane {
+    /// Outward; of length 1, or zero if there is no surface.
+    pub normal: Vec3,
+    /// 1 if the surface is plane there, 0 if it is not.
+    pub confidence: f32,
+}
+
+/// How planes are fitted in windows of one size.
+pub struct Fitting {
+    /// How full an octant is at the most.
+    pub full: u8,
+    /// Cells along the edge of an octant.
+    pub edge: f64,
+    /// Root mean squares of the distances from the plane, in cells, up to which a surface counts as plane, and from which on
+    /// not at all.
+    pub plane: [f64; 2],
+}
+
+/// Octants along each axis of a window.
+const COARSE: usize = 6;
+
+/// The high bits of bytes.
+const HIGH: u64 = 0x8080_8080_8080_8080;
+
+/// Octants of a layer of a window that have a next one along x, and along y.
+const HAS_NEXT: [u64; 2] = [0o37_37_37_37_37_37, 0o77_77_77_77_77];
+
+impl Fitting {
+    /// The plane about the block in the middle of a window, of which is given how full the octants of its 3³ blocks are.
+    pub fn plane(&self, window: &[u64; 27]) -> Plane {
+        // The high bit of each byte: at least half full.
+        let bias = u64::from(0x80 - self.full / 2) * 0x0101_0101_0101_0101;
+        let solid = window.map(|octants| octants.wrapping_add(bias) & HIGH);
+        let (any, all) = solid.iter().fold((0, HIGH), |(any, all), solid| (any | solid, all & solid));
+        if any == 0 || all == HIGH {
+            return Plane::default();
+        }
+        // Bit x + 6 y of layer z.
+        let mut layers = [0; COARSE];
+        let mut shares = [0; COARSE * COARSE * COARSE];
+        for (block, (octants, solid)) in window.iter().zip(solid).enumerate() {
+            let (x, y, z) = (2 * (block % 3), 2 * (block / 3 % 3), 2 * (block / 9));
+            let octants = octants.to_le_bytes();
+            // Bit k is octant k.
+            let solid = (solid >> 7).wrapping_mul(0x0102_0408_1020_4080) >> 56;
+            for (row, pair) in octants.chunks_exact(2).enumerate() {
+                let (y, z) = (y + (row & 1), z + (row >> 1));
+                layers[z] |= (solid >> (2 * row) & 3) << (x + COARSE * y);
+                let at = x + COARSE * (y + COARSE * z);
+                shares[at..at + 2].copy_from_slice(pair);
+            }
+        }
+        let half = f32::from(self.full / 2);
+        let mut crossings = [Crossings::default(); 3];
+        for z in 0..COARSE {
+            let layer = layers[z];
+            let next = if z + 1 < COARSE { layers[z + 1] } else { layer };
+            let changes =
+                [(layer ^ layer >> 1) & HAS_NEXT[0], (layer ^ layer >> COARSE) & HAS_NEXT[1], layer ^ next];
+            for (axis, mut changes) in changes.into_iter().enumerate() {
+                while changes != 0 {
+                    let place = changes.trailing_zeros() as usize;
+                    changes &= changes - 1;
+                    let at = place + z * COARSE * COARSE;
+                    let further = at + [1, COARSE, COARSE * COARSE][axis];
+                    let (here, next) = (f32::from(shares[at]), f32::from(shares[further]));
+                    let place = Vec3A::new((place % COARSE) as f32, (place / COARSE) as f32, z as f32);
+                    crossings[axis].add(axis, place, here, next, half);
+                }
+            }
+        }
+        self.through(&crossings)
+    }
+
+    fn through(&self, crossings: &[Crossings; 3]) -> Plane {
+        let count: f64 = crossings.iter().map(|found| f64::from(found.count)).sum();
+        let out = DVec3::from(crossings.map(|found| f64::from(found.out))).normalize_or_zero();
+        // Crossings of lines that run along the surface are no good.
+        let weights = (out * out).to_array();
+        let total: f64 = (0..3).map(|axis| weights[axis] * f64::from(crossings[axis].count)).sum();
+        let is_known = count >= 3.0 && total > 1e-9;
+        if !is_known {
+            return Plane::default();
+        }
+        let mean = |part: fn(&Crossings) -> Vec3A| {
+            (0..3).map(|axis| part(&crossings[axis]).as_dvec3() * weights[axis]).sum::<DVec3>() / total
+        };
+        let middle = mean(|found| found.sum);
+        let squares = mean(|found| found.squares) - middle * middle;
+        let products = mean(|found| found.products)
+            - DVec3::new(middle.y * middle.z, middle.z * middle.x, middle.x * middle.y);
+        let spread = DMat3::from_cols(
+            DVec3::new(squares.x, products.z, products.y),
+            DVec3::new(products.z, squares.y, products.x),
+            DVec3::new(products.y, products.x, squares.z),
+        );
+        // The direction in which the points spread least: eight inverse iterations, by squaring.
+        let mut inverse = (spread + DMat3::from_diagonal(DVec3::splat(2.5e-4))).inverse();
+        for _ in 0..3 {
+            let scale = inverse.x_axis.x.abs().max(inverse.y_axis.y.abs()).max(inverse.z_axis.z.abs());
+            inverse *= 1.0 / scale;
+            inverse = inverse * inverse;
+        }
+        let normal = (inverse * out).normalize_or_zero();
+        let off = self.edge * libm::sqrt(normal.dot(spread * normal).max(0.0));
+        let is_sound = normal.is_finite() && normal != DVec3::ZERO;
+        if !is_sound {
+            return Plane::default();
+        }
+        let confidence = ((self.plane[1] - off) / (self.plane[1] - self.plane[0])).clamp(0.0, 1.0);
+        let normal = if normal.dot(out) < 0.0 { -normal } else { normal };
+        Plane { normal: normal.as_vec3(), confidence: confidence as f32 }
+    }
+}
+
+/// Where lines along one axis cross the surface: how many, and the sums of their places and of the products of these.
+#[derive(Clone, Copy, Default)]
+struct Crossings {
+    count: f32,
+    sum: Vec3A,
+    squares: Vec3A,
+    /// y z, z x, x y.
+    products: Vec3A,
+    /// From inside to outside, added up.
+    out: f32,
+}
+
+impl Crossings {
+    /// A crossing between an octant and the next one along an axis, given how full both are; `half`: how much is half full.
+    #[inline(always)]
+    fn add(&mut self, axis: usize, place: Vec3A, here: f32, next: f32, half: f32) {
+        let mut at = place - 0.5 * (COARSE as f32 - 1.0);
+        at[axis] += (here - half) / (here - next);
+        self.count += 1.0;
+        self.sum += at;
+        self.squares += at * at;
+        self.products += Vec3A::new(at.y * at.z, at.z * at.x, at.x * at.y);
+        self.out += here - next;
+    }
+}
