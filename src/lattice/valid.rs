@@ -11,15 +11,18 @@ pub(crate) const SMALLEST: f64 = 1.0 / LARGEST;
 pub(crate) const IMMODERATE: &str = "every number must be zero or of a magnitude between 2^-256 and 2^256";
 
 /// Whether exact arithmetic can take a number: zero, or a magnitude between 2^-256 and 2^256.
+#[inline]
 pub(crate) fn is_moderate(value: f64) -> bool {
     value == 0.0 || (SMALLEST..=LARGEST).contains(&value.abs())
 }
 
+#[inline]
 fn check(accepted: bool, name: &'static str, problem: &'static str) -> Result<(), Error> {
     if accepted { Ok(()) } else { Err(Error::Argument { name, problem }) }
 }
 
 /// Coordinates and coefficients: each is zero or of a magnitude between 2^-256 and 2^256.
+#[inline]
 pub(crate) fn numbers(name: &'static str, values: &[f64]) -> Result<(), Error> {
     check(values.iter().all(|&value| is_moderate(value)), name, IMMODERATE)
 }
@@ -31,6 +34,7 @@ pub(crate) fn finite(name: &'static str, values: &[f64]) -> Result<(), Error> {
 }
 
 /// A length or a scale: between 2^-256 and 2^256.
+#[inline]
 pub(crate) fn length(name: &'static str, value: f64) -> Result<(), Error> {
     check((SMALLEST..=LARGEST).contains(&value), name, "must be between 2^-256 and 2^256")
 }

@@ -30,6 +30,7 @@ pub use measure::{
 };
 pub use point::{Membership, PointCursor, PointTable};
 pub use probe::contains;
+pub(crate) use ray::Touch;
 pub use ray::{Obstacle, Ray, RayHit, RaySpans, Sight, cast_rays, line_of_sight, ray_spans};
 pub use region::{Region, classify_box};
 pub use within::classify_in;

@@ -1,5 +1,6 @@
 //! From where a picture is taken.
 
+use super::light::Lamps;
 use crate::error::Error;
 use crate::lattice::valid::numbers;
 use glam::DVec3;
@@ -187,6 +188,7 @@ fn check(lens: Lens) -> Result<(), Error> {
 #[derive(Debug, Clone, Copy)]
 pub struct View {
     pub camera: Camera,
+    pub lamps: Lamps,
     pub width: u32,
     pub height: u32,
     /// Model units, or of a perspective tangents, to a pixel.
@@ -195,7 +197,8 @@ pub struct View {
 
 impl View {
     pub fn new(camera: &Camera, [width, height]: [u32; 2]) -> View {
-        View { camera: *camera, width, height, pixel: 2.0 * camera.half_height() / f64::from(height) }
+        let lamps = Lamps::new(camera.right, camera.up, camera.forward);
+        View { camera: *camera, lamps, width, height, pixel: 2.0 * camera.half_height() / f64::from(height) }
     }
 
     /// Whether what is farther away is smaller.

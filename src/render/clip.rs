@@ -81,6 +81,7 @@ impl Clip {
     }
 
     /// What is shown of the points from + t · along with t ≥ 0; `None` if that is nothing.
+    #[inline]
     pub(crate) fn shown(&self, from: DVec3, along: DVec3) -> Option<Shown> {
         let mut shown = Shown { from: 0.0, to: f64::INFINITY, entry: None };
         for &(normal, offset) in &self.planes {

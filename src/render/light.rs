@@ -72,8 +72,32 @@ impl Mul<f32> for Light {
     }
 }
 
+/// The light of each byte.
+const LINEAR: [f32; 256] = {
+    let mut light = [0.0; 256];
+    let mut byte = 0;
+    while byte < 256 {
+        let x = byte as f64 / 255.0;
+        light[byte] = if x <= 0.04045 { x / 12.92 } else { power_2_4((x + 0.055) / 1.055) } as f32;
+        byte += 1;
+    }
+    light
+};
+
+/// x^2.4 for x from 0.01 to 1: the fifth root of x^12, by Newton's iteration from above.
+const fn power_2_4(x: f64) -> f64 {
+    let (square, mut root) = (x * x, x * x);
+    let mut step = 0;
+    while step < 20 {
+        let fourth = root * root * root * root;
+        root -= (root - square * square * square * square * square * square / fourth) / 5.0;
+        step += 1;
+    }
+    root
+}
+
 fn linear(byte: u8) -> f32 {
-    linear_of(f32::from(byte) / 255.0)
+    LINEAR[byte as usize]
 }
 
 /// The light of an sRGB value, 0 to 1 (IEC 61966-2-1).
@@ -81,22 +105,46 @@ fn linear_of(x: f32) -> f32 {
     if x <= 0.04045 { x / 12.92 } else { libm::powf((x + 0.055) / 1.055, 2.4) }
 }
 
-/// How bright a matt surface is with an outward normal, of any length, as seen by a camera: a lamp on the upper left behind
-/// the camera, a weaker one on the right, and some light from everywhere, so that no side is black. A surface that is seen
-/// from behind is lit as if it faced the camera.
-pub fn brightness(normal: DVec3, along: DVec3, right: DVec3, up: DVec3, forward: DVec3) -> f32 {
-    let normal = normal.normalize_or_zero();
-    let normal = if normal.dot(along) > 0.0 { -normal } else { normal };
-    let lamp = |x: f64, y: f64, z: f64| (right * x + up * y - forward * z).normalize().dot(normal).max(0.0);
-    let (key, fill) = (lamp(-0.5, 0.7, 0.75), lamp(0.8, 0.1, 0.6));
-    // What faces upward gets more of the light from everywhere.
-    let sky = 0.5 + 0.5 * up.dot(normal);
-    (0.05 + 0.09 * sky + 0.8 * key + 0.16 * fill) as f32
+/// What lights a picture: a lamp on the upper left behind the camera, a weaker one on the right, and some light from
+/// everywhere, so that no side is black.
+#[derive(Debug, Clone, Copy)]
+pub struct Lamps {
+    /// Directions, of length 1, to the lamps.
+    key: DVec3,
+    fill: DVec3,
+    up: DVec3,
+}
+
+impl Lamps {
+    /// Those of a camera with these directions.
+    pub fn new(right: DVec3, up: DVec3, forward: DVec3) -> Lamps {
+        let lamp = |x: f64, y: f64, z: f64| (right * x + up * y - forward * z).normalize();
+        Lamps { key: lamp(-0.5, 0.7, 0.75), fill: lamp(0.8, 0.1, 0.6), up }
+    }
+
+    /// How bright a matt surface is with an outward normal, of any length, that is seen in a direction. A surface that is seen
+    /// from behind is lit as if it faced the camera.
+    pub fn brightness(&self, normal: DVec3, along: DVec3) -> f32 {
+        let normal = normal.normalize_or_zero();
+        let normal = if normal.dot(along) > 0.0 { -normal } else { normal };
+        let (key, fill) = (self.key.dot(normal).max(0.0), self.fill.dot(normal).max(0.0));
+        // What faces upward gets more of the light from everywhere.
+        let sky = 0.5 + 0.5 * self.up.dot(normal);
+        (0.05 + 0.09 * sky + 0.8 * key + 0.16 * fill) as f32
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn bytes_are_as_light_as_the_formula_says() {
+        for byte in 0..=255u8 {
+            let expected = linear_of(f32::from(byte) / 255.0);
+            assert!((linear(byte) - expected).abs() <= 1e-6 * expected, "{byte}");
+        }
+    }
 
     #[test]
     fn colours_come_back() {

@@ -5,7 +5,7 @@ use super::camera::View;
 use super::clip::holds;
 use super::coverage::Coverage;
 use super::crease;
-use super::light::{Light, brightness};
+use super::light::Light;
 use super::lines::check_width;
 use super::mapped::mapped;
 use super::stage::{Draw, Painter, Stage};
@@ -287,10 +287,8 @@ impl Ready<'_> {
     }
 
     fn brightness(&self, normal: DVec3) -> f32 {
-        let camera = &self.stage.view.camera;
-        let [right, up, forward] = [camera.right(), camera.up(), camera.forward()].map(DVec3::from);
         // It faces the eye, whatever rounding says of one that is seen on edge.
-        brightness(normal, -normal, right, up, forward)
+        self.stage.view.lamps.brightness(normal, -normal)
     }
 }
 

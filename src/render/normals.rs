@@ -158,14 +158,17 @@ impl About {
     /// The sum of the planes by the weights of their blocks along each axis, and of the weights of those that have one.
     #[inline]
     fn blended(&self, weights: [Vec3A; 3]) -> (Vec4, f32) {
+        let mut of_blocks = [0.0; 27];
+        for (k, weight) in of_blocks.iter_mut().enumerate() {
+            *weight = weights[k % 3].x * (weights[k / 3 % 3].y * weights[k / 9].z);
+        }
         let (mut sum, mut total) = (Vec4::ZERO, 0.0);
         let mut rest = self.present;
         while rest != 0 {
             let k = rest.trailing_zeros() as usize;
             rest &= rest - 1;
-            let weight = weights[k % 3].x * weights[k / 3 % 3].y * weights[k / 9].z;
-            sum += self.planes[k] * weight;
-            total += weight;
+            sum += self.planes[k] * of_blocks[k];
+            total += of_blocks[k];
         }
         (sum, total)
     }

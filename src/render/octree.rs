@@ -9,7 +9,7 @@ use crate::error::Error;
 use crate::lattice::Frame;
 use crate::memory;
 use crate::octree::OctreeRef;
-use crate::query::{Obstacle, Ray, RayHit};
+use crate::query::{Ray, Touch};
 use alloc::boxed::Box;
 use alloc::vec::Vec;
 use glam::DVec3;
@@ -70,7 +70,7 @@ impl Painter for OctreePainter<'_> {
         let mut cast = Cast::new(tree, self.stage);
         while let Some(met) = cast.next(tile)? {
             for (sight, hit) in met {
-                let (t, face) = (hit.t.lower.max(0.0), DVec3::from(hit.normal));
+                let (t, face) = (hit.t, DVec3::from(hit.normal));
                 let normal = if sight.begins_in(t, face) {
                     None
                 } else if self.layer.finish.faces {
@@ -101,7 +101,7 @@ pub struct Cast<'t, 'a> {
     block: usize,
     rays: Vec<Ray>,
     sights: Vec<Sight>,
-    hits: [Option<RayHit>; BLOCK[0] * BLOCK[1]],
+    hits: [Option<Touch>; BLOCK[0] * BLOCK[1]],
 }
 
 impl<'t, 'a> Cast<'t, 'a> {
@@ -114,7 +114,7 @@ impl<'t, 'a> Cast<'t, 'a> {
     pub fn next<'s>(
         &'s mut self,
         tile: &Tile<'_>,
-    ) -> Result<Option<impl Iterator<Item = (&'s Sight, RayHit)> + use<'s, 't, 'a>>, Error> {
+    ) -> Result<Option<impl Iterator<Item = (&'s Sight, Touch)> + use<'s, 't, 'a>>, Error> {
         let across = tile.width().div_ceil(BLOCK[0]);
         let (column, row) = (self.block % across * BLOCK[0], self.block / across * BLOCK[1]);
         if row >= tile.height() {
@@ -133,7 +133,7 @@ impl<'t, 'a> Cast<'t, 'a> {
             }
         }
         let hits = &mut self.hits[..self.rays.len()];
-        self.tree.cast_rays(&self.rays, Obstacle::Upper, hits)?;
+        self.tree.touch(&self.rays, hits)?;
         Ok(Some(self.sights.iter().zip(&*hits).filter_map(|(sight, hit)| Some((sight, (*hit)?)))))
     }
 }
@@ -143,7 +143,7 @@ pub fn normal_of_cells(
     normals: &mut Normals<'_>,
     frame: &Frame,
     point: DVec3,
-    hit: &RayHit,
+    hit: &Touch,
 ) -> Result<DVec3, Error> {
     let scaled = DVec3::from([0, 1, 2].map(|axis| frame.scaled(axis, point[axis])));
     let shift = frame.depth() - hit.cell.level;

@@ -1,6 +1,6 @@
 //! Lines of sight, and how what they meet is drawn.
 
-use super::light::{Light, brightness};
+use super::light::Light;
 use super::stage::Stage;
 use super::tile::Tile;
 use crate::error::Error;
@@ -42,6 +42,7 @@ pub struct Sight {
 
 impl Sight {
     /// `None` if nothing of it is shown.
+    #[inline]
     pub fn new(stage: &Stage<'_>, tile: &Tile<'_>, [x, y]: [usize; 2]) -> Option<(Sight, Ray)> {
         let (eye, along) = tile.line(x, y);
         let (sight, ray) = Sight::along(stage, eye, along)?;
@@ -49,6 +50,7 @@ impl Sight {
     }
 
     /// The same of no sample.
+    #[inline]
     pub fn along(stage: &Stage<'_>, eye: DVec3, along: DVec3) -> Option<(Sight, Ray)> {
         let shown = stage.clip.shown(eye, along)?;
         // Cells are closed: those beyond a clip plane that only touch it are not seen.
@@ -60,6 +62,7 @@ impl Sight {
     }
 
     /// The rest of it after t times its direction; `None` if that is nothing.
+    #[inline]
     pub fn beyond(&self, t: f64) -> Option<Ray> {
         // Components far below a rounding of the others only get in the way.
         let plain = self.along.to_array().map(|c| if c.abs() < 1e-60 { 0.0 } else { c });
@@ -86,9 +89,7 @@ impl Sight {
             Some(normal) => silhouette(normal, self.along),
             None => self.entry.unwrap_or(-self.along),
         };
-        let camera = &tile.view.camera;
-        let [right, up, forward] = [camera.right(), camera.up(), camera.forward()].map(DVec3::from);
-        let light = Light::of(colour).lit(brightness(normal, self.along, right, up, forward));
+        let light = Light::of(colour).lit(tile.view.lamps.brightness(normal, self.along));
         tile.put(self.sample, self.start + t, light)
     }
 }

@@ -7,11 +7,11 @@ use super::stage::{Draw, Painter, Stage};
 use super::tile::Tile;
 use crate::control::Control;
 use crate::error::Error;
-use crate::lattice::{Cell, Cube, Frame, Interval, MAX_DEPTH};
+use crate::lattice::{Cell, Cube, Frame, MAX_DEPTH};
 use crate::memory;
 use crate::octree::{Octree, Tag};
 use crate::op::{Rule, Trail, build};
-use crate::query::{Obstacle, RayHit};
+use crate::query::Touch;
 use crate::solid::{Classifier, Enclosure, Segment, SlabJoin, Solid, Verdict, WorkerOf};
 use alloc::boxed::Box;
 use glam::DVec3;
@@ -122,14 +122,14 @@ impl<S: Solid> SolidPainter<'_, S> {
         &self,
         hand: &mut Hand<'_, S>,
         sight: &Sight,
-        mut hit: RayHit,
+        mut hit: Touch,
     ) -> Result<Option<(f64, Option<DVec3>)>, Error> {
         let (octree, frame) = (self.octree.view(), self.octree.frame());
         let step = 1e-6 * frame.cell_size() / sight.along.length();
         let mut passed: Option<(f64, DVec3)> = None;
         // A line meets no more cells than that, and may pass by the slabs of all of them.
         for _ in 0..3u32 << frame.depth() {
-            let (t, face) = (hit.t.lower.max(0.0), DVec3::from(hit.normal));
+            let (t, face) = (hit.t, DVec3::from(hit.normal));
             let begins = sight.begins_in(t, face);
             let at = hit.cell.first_at(frame.depth()).at;
             if hit.cell.level < frame.depth() || octree.tag_at(at) != Tag::Partial {
@@ -150,11 +150,12 @@ impl<S: Solid> SolidPainter<'_, S> {
             }
             // On behind the cell, past its faces.
             let beyond = leaves + 1e-3 * step;
-            let Some(next) = sight.beyond(beyond).and_then(|ray| octree.cast_ray(&ray, Obstacle::Upper))
-            else {
-                return Ok(None);
-            };
-            hit = RayHit { t: next.t.plus(Interval::exactly(beyond)), ..next };
+            let mut next = [None];
+            if let Some(ray) = sight.beyond(beyond) {
+                octree.touch(&[ray], &mut next)?;
+            }
+            let [Some(next)] = next else { return Ok(None) };
+            hit = Touch { t: next.t + beyond, ..next };
         }
         Ok(None)
     }
@@ -338,9 +339,9 @@ mod tests {
                 let seen = if use_slabs {
                     painter.sees(&mut hand, sight, hit).unwrap()
                 } else {
-                    let point = sight.from + sight.along * hit.t.lower;
+                    let point = sight.from + sight.along * hit.t;
                     let found = normal_of_cells(&mut hand.normals, &frame, point, &hit).unwrap();
-                    Some((hit.t.lower, Some(found)))
+                    Some((hit.t, Some(found)))
                 };
                 let Some((t, normal)) = seen else { continue };
                 let from = sight.from + sight.along * t - centre;

@@ -3,21 +3,30 @@
 use super::Ray;
 use super::course::{Clear, Course, Start};
 use super::search::Met;
-use crate::lattice::{Cell, morton};
-use crate::octree::links::Step;
-use crate::octree::view::{MAX_ELEMENT_LEVELS, OctreeRef};
-use crate::octree::{Planes, Tag};
+use super::way::Way;
+use crate::lattice::Cell;
+use crate::octree::Tag;
 
 /// The first cells that stop a ray.
 pub(super) struct March {
-    pub(super) outer: Option<Met>,
+    /// The first that is not EMPTY, and about when the ray meets it.
+    pub(super) outer: Option<(Met, f64)>,
+    /// The first that is FULL.
     pub(super) inner: Option<Met>,
 }
 
 impl March {
-    /// Along a ray that nothing stops where it is `clear`. `None` if rounding errors may change what is met.
+    /// Along a ray that nothing stops where it is `clear`: to the first FULL cell, or only to the first that is not EMPTY.
+    /// `None` if rounding errors may change what is met.
     #[inline(always)]
-    pub(super) fn run(tree: &OctreeRef<'_>, ray: &Ray, course: &Course, clear: Clear) -> Option<March> {
+    pub(super) fn run(
+        way: &mut Way<'_, '_>,
+        ray: &Ray,
+        course: &Course,
+        clear: Clear,
+        to_full: bool,
+    ) -> Option<March> {
+        let tree = way.tree;
         let frame = &tree.frame;
         let mut march = March { outer: None, inner: None };
         let start = match course.start(frame, ray.last) {
@@ -29,29 +38,10 @@ impl March {
             Start::At(at, by) => (at, by),
             Start::Unsure => return None,
         };
-        let levels = tree.levels();
-        let mut path = [0; MAX_ELEMENT_LEVELS];
-        let mut e = 0;
-        let mut planes = tree.entry(0).unwrap_or(Planes::uniform(Tag::Partial));
         loop {
             let place = [0, 1, 2, 3].map(|axis| at[axis] ^ course.mirror[axis]);
-            // Down to the cell in which the ray is.
-            let (tag, mut shift, c) = if tree.root != Tag::Branch {
-                (tree.root, frame.depth() as u32, 0)
-            } else {
-                loop {
-                    let shift = 2 * (levels - 1 - e) as u32;
-                    let c = morton::index(place[0] >> shift, place[1] >> shift, place[2] >> shift);
-                    match tree.step(e, path[e], planes, c) {
-                        Step::Into(child) => {
-                            e += 1;
-                            path[e] = child;
-                            planes = tree.entry(child).unwrap_or(Planes::uniform(Tag::Partial));
-                        }
-                        Step::Settled(tag) => break (tag, shift, c),
-                    }
-                }
-            };
+            let (tag, mut shift, c) = way.to(place);
+            let planes = way.planes;
             if tag != Tag::Empty {
                 let shift = shift + (tree.root == Tag::Branch && planes.octant(c >> 3) == tag) as u32;
                 let cell = Cell {
@@ -62,9 +52,13 @@ impl March {
                     if course.mirror[axis] == 0 { at[axis] } else { frame.cells() - at[axis] }
                 };
                 let met = (cell, by.map(|axis| (axis, plane(axis))));
-                march.outer.get_or_insert(met);
+                if march.outer.is_none() {
+                    march.outer = Some((met, by.map_or(0.0, |axis| course.time(axis, at[axis]))));
+                }
                 if tag == Tag::Full {
                     march.inner = Some(met);
+                }
+                if tag == Tag::Full || !to_full {
                     return Some(march);
                 }
             }
@@ -99,11 +93,6 @@ impl March {
                 return Some(march);
             }
             by = Some(axis);
-            let shared = levels - 1 - (31 - (changed | 1).leading_zeros()) as usize / 2;
-            if shared < e {
-                e = shared;
-                planes = tree.entry(path[e]).unwrap_or(Planes::uniform(Tag::Partial));
-            }
         }
     }
 }

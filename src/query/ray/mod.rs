@@ -11,8 +11,11 @@ mod march;
 mod octree;
 mod search;
 mod solid;
+mod touch;
+mod way;
 
 pub use solid::{Sight, cast_rays, line_of_sight, ray_spans};
+pub(crate) use touch::Touch;
 
 use crate::error::Error;
 use crate::lattice::exact::two_diff;
@@ -35,6 +38,7 @@ impl Ray {
     /// # Errors
     /// [`Error::Argument`] if `direction` is zero, or if a number is not zero and not of a magnitude between 2^-256
     /// and 2^256.
+    #[inline]
     pub fn new(origin: [f64; 3], direction: [f64; 3]) -> Result<Ray, Error> {
         valid::numbers("origin", &origin)?;
         valid::numbers("direction", &direction)?;
@@ -61,6 +65,7 @@ impl Ray {
     ///
     /// # Errors
     /// [`Error::Argument`] if `last` is neither ∞ nor between 2^-256 and 2^256.
+    #[inline]
     pub fn until(self, last: f64) -> Result<Ray, Error> {
         if last == f64::INFINITY {
             return Ok(self);
@@ -69,6 +74,7 @@ impl Ray {
         Ok(Ray { last: last.min(self.last), ..self })
     }
 
+    #[inline]
     fn along(from: [f64; 3], direction: [[f64; 2]; 3], last: f64) -> Result<Ray, Error> {
         if direction.iter().all(|&[high, _]| high == 0.0) {
             return Err(Error::Argument { name: "direction", problem: "must not be zero" });

@@ -5,6 +5,7 @@ use super::course::{Clear, Course};
 use super::line::Line;
 use super::march::March;
 use super::search::{Cells, First, Stays};
+use super::way::Way;
 use super::{Obstacle, Ray, RayHit, RaySpans};
 use crate::dispatch::{Hot, with_vectors};
 use crate::error::Error;
@@ -42,11 +43,7 @@ impl OctreeRef<'_> {
     /// # Ok::<(), leafless::Error>(())
     /// ```
     pub fn cast_rays(&self, rays: &[Ray], on: Obstacle, hits: &mut [Option<RayHit>]) -> Result<(), Error> {
-        if rays.len() != hits.len() {
-            return Err(Error::Argument { name: "hits", problem: "must be as long as rays" });
-        }
-        with_vectors(CastAll { tree: self, rays, on, hits });
-        Ok(())
+        cast_all(self, rays, on, hits)
     }
 
     /// Where a ray is in the octree's cells, whatever they prove of the solid that the tree was made from. What
@@ -57,13 +54,51 @@ impl OctreeRef<'_> {
     pub fn ray_spans(&self, ray: &Ray) -> Result<RaySpans, Error> {
         Stays::search(&mut Stored(self), &Line::new(&self.frame, *ray))
     }
+}
 
-    /// The slow way, for rays on which rounding errors tell.
-    #[cold]
-    fn cast_exactly(&self, ray: &Ray, on: Obstacle) -> Option<RayHit> {
-        // A stored tree's cells are split without fail.
-        First::search(&mut Stored(self), &Line::new(&self.frame, *ray)).ok()?.hit(on)
+/// What is asked about rays.
+pub(super) trait Question: Copy {
+    type Answer;
+
+    /// Whether the first FULL cell is needed, too.
+    const TO_FULL: bool;
+
+    /// The answer, given what was met.
+    fn answer(self, march: &March, tree: &OctreeRef<'_>, ray: &Ray) -> Option<Self::Answer>;
+
+    /// The answer by the slow way, for rays on which rounding errors tell.
+    fn exactly(self, tree: &OctreeRef<'_>, ray: &Ray) -> Option<Self::Answer>;
+}
+
+impl Question for Obstacle {
+    type Answer = RayHit;
+    const TO_FULL: bool = true;
+
+    #[inline(never)]
+    fn answer(self, march: &March, tree: &OctreeRef<'_>, ray: &Ray) -> Option<RayHit> {
+        let outer = march.outer.map(|(met, _)| met);
+        First::of(&Line::new(&tree.frame, *ray), outer, march.inner).hit(self)
     }
+
+    #[cold]
+    fn exactly(self, tree: &OctreeRef<'_>, ray: &Ray) -> Option<RayHit> {
+        // A stored tree's cells are split without fail.
+        First::search(&mut Stored(tree), &Line::new(&tree.frame, *ray)).ok()?.hit(self)
+    }
+}
+
+/// Answers a question about many rays.
+pub(super) fn cast_all<Q: Question>(
+    tree: &OctreeRef<'_>,
+    rays: &[Ray],
+    question: Q,
+    answers: &mut [Option<Q::Answer>],
+) -> Result<(), Error> {
+    if rays.len() != answers.len() {
+        return Err(Error::Argument { name: "hits", problem: "must be as long as rays" });
+    }
+    with_vectors(CastAll { tree, rays, question, answers });
+    Ok(())
 }
 
 struct Cast<'t, 'a> {
@@ -78,51 +113,52 @@ impl Hot for Cast<'_, '_> {
     #[inline(always)]
     fn run(self) -> Option<RayHit> {
         let course = Course::new(self.tree.frame(), self.ray);
-        cast(self.tree, self.ray, &course, Clear::UNKNOWN, self.on)
+        cast(&mut Way::new(self.tree), self.ray, &course, Clear::UNKNOWN, self.on)
     }
 }
 
-struct CastAll<'t, 'a> {
+struct CastAll<'t, 'a, Q: Question> {
     tree: &'t OctreeRef<'a>,
     rays: &'t [Ray],
-    on: Obstacle,
-    hits: &'t mut [Option<RayHit>],
+    question: Q,
+    answers: &'t mut [Option<Q::Answer>],
 }
 
-impl Hot for CastAll<'_, '_> {
+impl<Q: Question> Hot for CastAll<'_, '_, Q> {
     type Output = ();
 
     #[inline(always)]
     fn run(self) {
-        for (rays, hits) in self.rays.chunks(RAYS).zip(self.hits.chunks_mut(RAYS)) {
+        let mut way = Way::new(self.tree);
+        for (rays, answers) in self.rays.chunks(RAYS).zip(self.answers.chunks_mut(RAYS)) {
             let courses: [Course; RAYS] =
                 array::from_fn(|i| Course::new(self.tree.frame(), &rays[i.min(rays.len() - 1)]));
             let clear =
                 Beam::of(&courses, self.tree.frame()).map_or(Clear::UNKNOWN, |beam| beam.clear(self.tree));
             if clear.until == f64::INFINITY {
-                hits.fill(None);
+                answers.iter_mut().for_each(|answer| *answer = None);
                 continue;
             }
-            for ((ray, course), hit) in rays.iter().zip(&courses).zip(hits) {
-                *hit = cast(self.tree, ray, course, clear, self.on);
+            for ((ray, course), answer) in rays.iter().zip(&courses).zip(answers) {
+                *answer = cast(&mut way, ray, course, clear, self.question);
             }
         }
     }
 }
 
 #[inline(always)]
-fn cast(tree: &OctreeRef<'_>, ray: &Ray, course: &Course, clear: Clear, on: Obstacle) -> Option<RayHit> {
-    match March::run(tree, ray, course, clear) {
+fn cast<Q: Question>(
+    way: &mut Way<'_, '_>,
+    ray: &Ray,
+    course: &Course,
+    clear: Clear,
+    question: Q,
+) -> Option<Q::Answer> {
+    match March::run(way, ray, course, clear, Q::TO_FULL) {
         Some(March { outer: None, .. }) => None,
-        Some(march) => timed(&march, tree, ray, on),
-        None => tree.cast_exactly(ray, on),
+        Some(march) => question.answer(&march, way.tree, ray),
+        None => question.exactly(way.tree, ray),
     }
-}
-
-/// What a ray met, with exact times.
-#[inline(never)]
-fn timed(march: &March, tree: &OctreeRef<'_>, ray: &Ray, on: Obstacle) -> Option<RayHit> {
-    First::of(&Line::new(&tree.frame, *ray), march.outer, march.inner).hit(on)
 }
 
 /// A stored octree, whose cells are split as they are stored.
