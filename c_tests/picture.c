@@ -120,9 +120,23 @@ static void surfaces(void) {
     leafless_layer_free(layer);
     take(&shot, again);
     leafless_layer_free(again);
-    look.crease_degrees = 20;
+    look.edges = LEAFLESS_EDGES_ALL;
     octree = check_ball(3, LEAFLESS_RULE_CERTIFIED);
     FAILS(LEAFLESS_E_ARGUMENT, leafless_layer_new_octree(octree, &look, &layer));
+    /* The silhouette of a ball is black, its middle is not. */
+    look.edges = LEAFLESS_EDGES_FEATURES;
+    look.edge_colour[3] = 255;
+    look.edge_width = 3;
+    OK(leafless_layer_new_solid(solid, &frame, &look, &layer));
+    take(&shot, layer);
+    for (x = 0; x < SIDE; x++) {
+        const double from_rim = (0.75 - fabs(across(x))) / front.height_model * SIDE;
+        if (from_rim > 0.1 && from_rim < 1.4) {
+            CHECK(pixel(x, SIDE / 2)[1] == 0 && pixel(x, SIDE / 2)[3] == 255);
+        }
+        CHECK(from_rim < 5 || pixel(x, SIDE / 2)[1] > 50);
+    }
+    leafless_layer_free(layer);
     leafless_octree_free(octree);
     /* A cube, of which every triangle is red but those of the front. */
     OK(leafless_mesh_new(&arrays, &mesh));

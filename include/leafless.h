@@ -1418,11 +1418,12 @@ enum leafless_edges
      */
     LEAFLESS_EDGES_NONE = 0,
     /**
-     * Those at which a mesh ends, or where its triangles meet at more than the crease angle.
+     * Those at which a mesh ends, or where its triangles meet at more than the crease angle. Of octrees and solids:
+     * silhouettes, and where faces meet at more than that angle.
      */
     LEAFLESS_EDGES_FEATURES = 1,
     /**
-     * Those of all triangles.
+     * Those of all triangles of a mesh.
      */
     LEAFLESS_EDGES_ALL = 2,
 };
@@ -3132,7 +3133,7 @@ typedef struct {
      */
     uint8_t inside[4];
     /**
-     * Of meshes: a leafless_edges.
+     * A leafless_edges.
      */
     uint32_t edges;
     /**
@@ -3140,11 +3141,12 @@ typedef struct {
      */
     uint8_t edge_colour[4];
     /**
-     * The width of edges in pixels, at most 256; 0: 1.
+     * The width of edges in pixels, at most 256, or of octrees and solids 8; 0: 1, or of octrees and solids 1.5.
      */
     double edge_width;
     /**
-     * Of meshes: the angle in degrees, at most 180, up to which neighbouring triangles look smooth; 0: 30.
+     * The angle in degrees, at most 180, at which faces meet at an edge, and up to which neighbouring triangles of a
+     * mesh look smooth; 0: 30.
      */
     double crease_degrees;
     /**

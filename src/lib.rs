@@ -147,8 +147,8 @@ pub use query::{
 };
 pub use render::{
     Camera, Clip, ClippedLayer, ColourMap, Compositing, FIELD_OF_VIEW, Finish, Layer, LegendBox, LegendSide,
-    Lens, LinesLayer, MeshEdges, MeshLayer, OctreeLayer, Picture, Shot, SliceLayer, SlicePlane, SolidLayer,
-    TAG_COLOURS, Transfer, VolumeLayer, draw_colour_bar, draw_names, render,
+    Lens, LinesLayer, MeshEdges, MeshLayer, OctreeLayer, Outline, Picture, Shot, SliceLayer, SlicePlane,
+    SolidLayer, TAG_COLOURS, Transfer, VolumeLayer, draw_colour_bar, draw_names, render,
 };
 pub use solid::{
     Adaptive, AnyClassifier, AnySolid, AnyWorker, Band, Callback, Classifier, Crossing, Csg, Enclosure,

@@ -6,7 +6,7 @@ mod common;
 use common::alone;
 use leafless::{
     Bounds, Camera, Clip, ClippedLayer, Control, Csg, Error, Finish, Frame, FunctionAttribute, Layer, Lens,
-    MeshLayer, OctreeLayer, Picture, Rule, Shot, SolidLayer, TriangleMesh, build, render,
+    MeshLayer, OctreeLayer, Outline, Picture, Rule, Shot, SolidLayer, TriangleMesh, build, render,
 };
 
 const SIZE: [u32; 2] = [120, 90];
@@ -239,14 +239,136 @@ fn layers_hide_each_other() {
     assert!(front.colours()[middle][0] > 0 && front.colours()[middle][1] == 0);
 }
 
+/// Where a point is seen, in pixels.
+fn place(camera: &Camera, point: [f64; 3]) -> [f64; 2] {
+    let from = [0, 1, 2].map(|axis| point[axis] - camera.eye()[axis]);
+    let [x, y, z] = [camera.right(), camera.up(), camera.forward()].map(|side| dot(from, side));
+    let half = match camera.lens() {
+        Lens::Perspective(degrees) => z * (0.5 * degrees.to_radians()).tan(),
+        Lens::Parallel(height) => 0.5 * height,
+    };
+    let pixel = 2.0 * half / f64::from(SIZE[1]);
+    [0.5 * f64::from(SIZE[0]) + x / pixel, 0.5 * f64::from(SIZE[1]) - y / pixel]
+}
+
+/// How far a place is from a line between two others, and where along it its foot is, 0 to 1.
+fn beside(place: [f64; 2], [a, b]: [[f64; 2]; 2]) -> (f64, f64) {
+    let (to, from) = ([b[0] - a[0], b[1] - a[1]], [place[0] - a[0], place[1] - a[1]]);
+    let along = (from[0] * to[0] + from[1] * to[1]) / (to[0] * to[0] + to[1] * to[1]);
+    let foot = along.clamp(0.0, 1.0);
+    ((from[0] - foot * to[0]).hypot(from[1] - foot * to[1]), along)
+}
+
+/// The edges of a block that are seen: those of which at least one face is.
+fn edges_seen(camera: &Camera, corners: [[f64; 3]; 2]) -> Vec<[[f64; 2]; 2]> {
+    let faces = |axis: usize, upper: usize| {
+        let sign = if upper == 1 { 1.0 } else { -1.0 };
+        match camera.lens() {
+            Lens::Perspective(_) => sign * (camera.eye()[axis] - corners[upper][axis]) > 1e-9,
+            Lens::Parallel(_) => -sign * camera.forward()[axis] > 1e-9,
+        }
+    };
+    let mut edges = Vec::new();
+    for axis in 0..3 {
+        let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
+        for (i, j) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
+            if faces(u, i) || faces(v, j) {
+                edges.push([0, 1].map(|end| {
+                    let mut point = [corners[end][axis]; 3];
+                    (point[u], point[v]) = (corners[i][u], corners[j][v]);
+                    place(camera, point)
+                }));
+            }
+        }
+    }
+    edges
+}
+
+#[test]
+fn edges_are_drawn_where_faces_meet() {
+    let corners = [[-0.63, -0.52, -0.41], [0.58, 0.47, 0.36]];
+    let block = Csg::cuboid(corners[0], corners[1]).unwrap();
+    let edges = Some(Outline { width: 2.0, colour: [255, 0, 0, 255], crease: 40.0 });
+    let finish = Finish { edges, ..Finish::default() };
+    let trees = [8, 7].map(|depth| build(&block, &frame(depth), Rule::Certified, &alone()).unwrap());
+    // How far ink may be from an edge, and how much must be ink so near to it. Cells of a third of a pixel, or two, move it.
+    let layers: [(&dyn Layer, f64, f64, f64); 3] = [
+        (&SolidLayer::new(&block, &frame(7), finish), 1.2, 1.0, 0.7),
+        (&OctreeLayer::new(trees[0].view(), finish), 1.6, 0.97, 0.4),
+        (&OctreeLayer::new(trees[1].view(), finish), 2.2, 0.9, 0.2),
+    ];
+    for (layer, farthest, least, near) in layers {
+        let (mut drawn, mut all) = (0, 0);
+        for shot in shots() {
+            let edges = edges_seen(&shot.camera, corners);
+            let picture = render(&shot, &[layer], &alone()).unwrap();
+            for (at, colour, depth) in pixels(&picture) {
+                let ink = colour == [255, 0, 0, 255];
+                let middle = at.map(|x| f64::from(x) + 0.5);
+                let nearest =
+                    edges.iter().map(|&edge| beside(middle, edge)).min_by(|a, b| a.0.total_cmp(&b.0));
+                let (distance, along) = nearest.unwrap();
+                assert!(!ink || distance <= farthest, "{at:?}: {distance}");
+                if depth < f64::INFINITY && distance < near && (0.05..0.95).contains(&along) {
+                    (drawn, all) = (drawn + i32::from(ink), all + 1);
+                }
+            }
+        }
+        assert!(all > 300 && f64::from(drawn) >= least * f64::from(all), "{near}: {drawn} of {all}");
+    }
+}
+
+#[test]
+fn round_surfaces_have_silhouettes_only() {
+    let solid = ball();
+    let tree = build(&solid, &frame(8), Rule::Certified, &alone()).unwrap();
+    let edges = Some(Outline { width: 2.0, colour: [255, 0, 0, 255], crease: 30.0 });
+    let finish = Finish { edges, ..Finish::default() };
+    // What is surely drawn, in pixels from the rim: cells, a third of a pixel long, reach beyond it.
+    let layers: [(&dyn Layer, f64); 2] =
+        [(&SolidLayer::new(&solid, &frame(7), finish), 0.6), (&OctreeLayer::new(tree.view(), finish), 0.1)];
+    for shot in shots() {
+        for (layer, surely) in layers {
+            let picture = render(&shot, &[layer], &alone()).unwrap();
+            let mut rim = 0;
+            for (at, colour, depth) in pixels(&picture) {
+                let (from, along) = line(&shot.camera, at);
+                let (met, near) = meets([from, along], RADIUS);
+                let Some([t, _]) = met else { continue };
+                let pixel = match shot.camera.lens() {
+                    Lens::Perspective(degrees) => 2.0 * t * (0.5 * degrees.to_radians()).tan(),
+                    Lens::Parallel(height) => height,
+                } / f64::from(SIZE[1]);
+                let inward = (RADIUS - near) / pixel;
+                let ink = colour == [255, 0, 0, 255];
+                assert!(!ink || inward < 2.5, "{at:?}: {inward}");
+                if inward < surely && depth < f64::INFINITY {
+                    assert!(ink, "{at:?}: {inward}");
+                    rim += 1;
+                }
+            }
+            assert!(rim > 5, "{rim}");
+        }
+    }
+    // What is no outline is refused.
+    for (width, crease) in [(0.0, 30.0), (9.0, 30.0), (f64::NAN, 30.0), (1.0, -1.0), (1.0, f64::NAN)] {
+        let edges = Some(Outline { width, crease, ..Outline::default() });
+        let layer = OctreeLayer::new(tree.view(), Finish { edges, ..Finish::default() });
+        let refused = render(&shots()[0], &[&layer], &alone());
+        assert!(matches!(refused, Err(Error::Argument { .. })), "{width} {crease}");
+    }
+}
+
 #[test]
 fn pictures_do_not_depend_on_threads_or_tiles() {
     let (solid, frame) = (ball(), frame(7));
     let tree = build(&solid, &frame, Rule::Certified, &alone()).unwrap();
     let octree = OctreeLayer::new(tree.view(), Finish::default());
+    let outlined =
+        OctreeLayer::new(tree.view(), Finish { edges: Some(Outline::default()), ..Finish::default() });
     let by_slabs = SolidLayer::new(&solid, &frame, Finish::default());
     for shot in shots() {
-        for layer in [&octree as &dyn Layer, &by_slabs] {
+        for layer in [&octree as &dyn Layer, &outlined, &by_slabs] {
             let one = render(&shot, &[layer], &alone()).unwrap();
             assert_eq!(one, render(&shot, &[layer], &Control::threads(3)).unwrap());
         }

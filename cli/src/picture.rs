@@ -10,7 +10,7 @@ use clap::{Args, ValueEnum};
 use leafless::{
     Affine, AnySolid, Attribute, Bounds, CellFilter, Channel, Clip, ClippedLayer, ColourMap, Compositing,
     Control, Criterion, Cube, Detail, Error, Finish, Frame, Layer, LegendSide, MeshEdges, MeshLayer, Octree,
-    OctreeLayer, Picture, Resolve, Rule, Shot, SliceLayer, SlicePlane, SolidLayer, TAG_COLOURS, Tag,
+    OctreeLayer, Outline, Picture, Resolve, Rule, Shot, SliceLayer, SlicePlane, SolidLayer, TAG_COLOURS, Tag,
     Transfer, TriangleMesh, VolumeLayer, VoxelOptions, VoxelRecords, bounding_box, build, draw_colour_bar,
     draw_names, marching_cubes, octree_of_dexels, render,
 };
@@ -38,7 +38,7 @@ pub struct Looks {
     /// Show voxels as published: of an edge of k finest voxels as k layers, wherever a line of sight crosses them
     #[arg(long)]
     published: bool,
-    /// Draw edges of a mesh: those at which its faces meet at more than 30 degrees, or all
+    /// Draw edges: those at which faces meet at more than 30 degrees, or of a mesh those of all its triangles
     #[arg(long, value_enum, value_name = "WHICH", num_args = 0..=1, default_missing_value = "features")]
     edges: Option<Edges>,
     /// Leave out the legend
@@ -206,7 +206,13 @@ fn surface(
     control: &Control<'_>,
 ) -> Result<Picture, Error> {
     let plain = Finish::default();
-    let finish = Finish { faces: looks.faces, colour: looks.colour.unwrap_or(plain.colour), ..plain };
+    let edges = match (looks.edges, subject) {
+        (Some(Edges::All), Subject::Octree(..) | Subject::Solid(..)) => {
+            return Err(Error::Argument { name: "edges", problem: "of all triangles are for meshes" });
+        }
+        (edges, _) => edges.map(|_| Outline { colour: INK, ..Outline::default() }),
+    };
+    let finish = Finish { faces: looks.faces, colour: looks.colour.unwrap_or(plain.colour), edges, ..plain };
     match subject {
         Subject::Octree(octree, _) => {
             let layer = OctreeLayer::new(octree.view(), finish);

@@ -124,3 +124,22 @@ fn what_cannot_be_shown_is_refused() {
     }
     assert!(!place.path("out.png").exists());
 }
+
+#[test]
+fn edges_are_drawn_of_every_kind() {
+    let place = parts();
+    let dark = |arguments: &str| {
+        place.run(&format!("render {arguments} -o out.png --size 160x120 --samples 1")).good();
+        png(&place, "out.png").2.iter().filter(|pixel| **pixel == [35, 40, 45]).count()
+    };
+    for file in
+        ["part.lfl", "part.lfl --faces", "cube.stl", "cube.stl --faces --depth 5", "dexels.lfl", "scene.csg"]
+    {
+        assert_eq!(dark(file), 0, "{file}");
+        let edges = dark(&format!("{file} --edges"));
+        assert!((150..4000).contains(&edges), "{file}: {edges}");
+    }
+    assert!(dark("cube.stl --edges all") > 150);
+    place.run("render part.lfl -o never.png --edges all").bad(1, &["edges", "meshes"]);
+    assert!(!place.path("never.png").exists());
+}

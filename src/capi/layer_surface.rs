@@ -12,7 +12,7 @@ use super::status::leafless_status;
 use crate::lattice::{Cell, Frame};
 use crate::memory;
 use crate::mesh::TriangleMesh;
-use crate::render::{Finish, Layer, LinesLayer, MeshEdges, MeshLayer, OctreeLayer, SolidLayer};
+use crate::render::{Finish, Layer, LinesLayer, MeshEdges, MeshLayer, OctreeLayer, Outline, SolidLayer};
 use alloc::boxed::Box;
 use alloc::sync::Arc;
 use alloc::vec::Vec;
@@ -24,9 +24,10 @@ use leafless_edges::*;
 pub enum leafless_edges {
     /// None.
     LEAFLESS_EDGES_NONE = 0,
-    /// Those at which a mesh ends, or where its triangles meet at more than the crease angle.
+    /// Those at which a mesh ends, or where its triangles meet at more than the crease angle. Of octrees and solids:
+    /// silhouettes, and where faces meet at more than that angle.
     LEAFLESS_EDGES_FEATURES = 1,
-    /// Those of all triangles.
+    /// Those of all triangles of a mesh.
     LEAFLESS_EDGES_ALL = 2,
 }
 
@@ -45,13 +46,14 @@ pub struct leafless_look {
     /// The colour of what clip planes cut open, and of a mesh's faces that are seen from behind; all zero: orange, or
     /// of a mesh the face's own colour mixed with orange.
     pub inside: [u8; 4],
-    /// Of meshes: a leafless_edges.
+    /// A leafless_edges.
     pub edges: u32,
     /// The colour of edges; all zero: dark grey.
     pub edge_colour: [u8; 4],
-    /// The width of edges in pixels, at most 256; 0: 1.
+    /// The width of edges in pixels, at most 256, or of octrees and solids 8; 0: 1, or of octrees and solids 1.5.
     pub edge_width: f64,
-    /// Of meshes: the angle in degrees, at most 180, up to which neighbouring triangles look smooth; 0: 30.
+    /// The angle in degrees, at most 180, at which faces meet at an edge, and up to which neighbouring triangles of a
+    /// mesh look smooth; 0: 30.
     pub crease_degrees: f64,
     /// Of meshes: 4 · `triangle_count` bytes, a colour for each triangle; NULL: all have one.
     pub triangle_colours: *const u8,
@@ -66,6 +68,11 @@ pub struct leafless_look {
 // SAFETY: numbers and pointers.
 unsafe impl Sized32 for leafless_look {}
 
+/// A width or an angle that was chosen: 0 stands for the default.
+fn chosen_length(length: f64) -> Option<f64> {
+    (length != 0.0).then_some(length)
+}
+
 fn unused(is_unused: bool, name: &'static str, problem: &'static str) -> Result<(), Failure> {
     if is_unused { Ok(()) } else { Err(Failure::Argument { name, problem }) }
 }
@@ -73,20 +80,40 @@ fn unused(is_unused: bool, name: &'static str, problem: &'static str) -> Result<
 impl leafless_look {
     /// Of what is made of cells.
     fn finish(&self) -> Result<Finish, Failure> {
-        let of_mesh = "is for meshes only";
-        unused(self.edges == LEAFLESS_EDGES_NONE as u32, "look.edges", of_mesh)?;
-        unused(self.edge_width == 0.0, "look.edge_width", of_mesh)?;
-        unused(self.edge_colour == [0; 4], "look.edge_colour", of_mesh)?;
-        unused(self.crease_degrees == 0.0, "look.crease_degrees", of_mesh)?;
-        unused(self.triangle_colours.is_null(), "look.triangle_colours", of_mesh)?;
-        unused(self.triangle_count == 0, "look.triangle_count", of_mesh)?;
+        unused(self.triangle_colours.is_null(), "look.triangle_colours", "is for meshes only")?;
+        unused(self.triangle_count == 0, "look.triangle_count", "is for meshes only")?;
         unused(self.faces <= 1, "look.faces", "must be 0 or 1")?;
         let plain = Finish::default();
+        let outline = Outline::default();
+        let edges = match self.edges()? {
+            MeshEdges::None => None,
+            MeshEdges::Features => Some(Outline {
+                width: chosen_length(self.edge_width).unwrap_or(outline.width),
+                colour: chosen(self.edge_colour).unwrap_or(outline.colour),
+                crease: chosen_length(self.crease_degrees).unwrap_or(outline.crease),
+            }),
+            MeshEdges::All => {
+                return Err(Failure::Argument {
+                    name: "look.edges",
+                    problem: "of all triangles are for meshes",
+                });
+            }
+        };
         Ok(Finish {
             colour: chosen(self.colour).unwrap_or(plain.colour),
             cut: chosen(self.inside).unwrap_or(plain.cut),
             faces: self.faces == 1,
+            edges,
         })
+    }
+
+    fn edges(&self) -> Result<MeshEdges, Failure> {
+        match self.edges {
+            none if none == LEAFLESS_EDGES_NONE as u32 => Ok(MeshEdges::None),
+            features if features == LEAFLESS_EDGES_FEATURES as u32 => Ok(MeshEdges::Features),
+            all if all == LEAFLESS_EDGES_ALL as u32 => Ok(MeshEdges::All),
+            _ => Err(Failure::Argument { name: "look.edges", problem: "is no leafless_edges" }),
+        }
     }
 
     fn without_values(&self) -> Result<(), Failure> {
@@ -254,14 +281,9 @@ pub unsafe extern "C" fn leafless_layer_new_mesh(
         let look = MeshLook {
             colour: chosen(given.colour),
             inside: chosen(given.inside),
-            crease: (given.crease_degrees != 0.0).then_some(given.crease_degrees),
-            edges: match given.edges {
-                none if none == LEAFLESS_EDGES_NONE as u32 => MeshEdges::None,
-                features if features == LEAFLESS_EDGES_FEATURES as u32 => MeshEdges::Features,
-                all if all == LEAFLESS_EDGES_ALL as u32 => MeshEdges::All,
-                _ => return Err(Failure::Argument { name: "look.edges", problem: "is no leafless_edges" }),
-            },
-            edge_width: if given.edge_width == 0.0 { 1.0 } else { given.edge_width },
+            crease: chosen_length(given.crease_degrees),
+            edges: given.edges()?,
+            edge_width: chosen_length(given.edge_width).unwrap_or(1.0),
             edge_colour: chosen(given.edge_colour).unwrap_or(INK),
         };
         let colours: &[[u8; 4]] =
@@ -289,7 +311,7 @@ struct OfLines {
 
 impl OfLines {
     fn new(lines: Vec<[[f64; 3]; 2]>, width: f64, colour: Option<[u8; 4]>) -> OfLines {
-        OfLines { lines, width: if width == 0.0 { 1.0 } else { width }, colour: colour.unwrap_or(INK) }
+        OfLines { lines, width: chosen_length(width).unwrap_or(1.0), colour: colour.unwrap_or(INK) }
     }
 }
 

@@ -2,6 +2,7 @@
 
 use super::light::Lamps;
 use crate::error::Error;
+use crate::lattice::Frame;
 use crate::lattice::valid::numbers;
 use glam::DVec3;
 
@@ -225,6 +226,12 @@ impl View {
     pub fn place(&self, seen: DVec3) -> [f64; 2] {
         let scale = if self.is_perspective() { 1.0 / (self.pixel * seen.z) } else { 1.0 / self.pixel };
         [0.5 * f64::from(self.width) + seen.x * scale, 0.5 * f64::from(self.height) - seen.y * scale]
+    }
+
+    /// How near the universe of a frame comes to the eye, in model units: a sixteenth of its edge if the eye is in it.
+    pub fn nearest(&self, frame: &Frame) -> f64 {
+        let (eye, low) = (self.camera.eye, DVec3::from(frame.origin()));
+        (eye.clamp(low, low + frame.edge()) - eye).length().max(frame.edge() / 16.0)
     }
 
     /// Model units to a pixel at a depth.

@@ -6,6 +6,7 @@
 
 mod bins;
 mod camera;
+mod cast;
 mod clip;
 mod clipped;
 mod coverage;
@@ -18,6 +19,7 @@ mod mesh;
 mod normals;
 mod occupancy;
 mod octree;
+mod outline;
 mod picture;
 mod places;
 mod plane;
@@ -26,9 +28,11 @@ mod slice;
 mod solid;
 mod stage;
 mod stroke;
+mod surface;
 mod tile;
 mod transfer;
 mod volume;
+mod window;
 
 pub use camera::{Camera, FIELD_OF_VIEW, Lens};
 pub use clip::Clip;
@@ -37,6 +41,7 @@ pub use legend::{LegendBox, LegendSide, draw_colour_bar, draw_names};
 pub use lines::LinesLayer;
 pub use mesh::{MeshEdges, MeshLayer};
 pub use octree::OctreeLayer;
+pub use outline::Outline;
 pub use picture::Picture;
 pub use sight::Finish;
 pub use slice::{SliceLayer, SlicePlane, TAG_COLOURS};

@@ -1,17 +1,17 @@
 //! Surfaces of stored octrees, by rays.
 
 use super::normals::Normals;
-use super::sight::{Finish, Sight};
+use super::sight::Finish;
 use super::stage::{Colouring, Draw, Painter, Stage};
+use super::surface::{Seen, paint};
 use super::tile::Tile;
 use crate::attribute::Attribute;
 use crate::error::Error;
 use crate::lattice::Frame;
 use crate::memory;
 use crate::octree::OctreeRef;
-use crate::query::{Ray, Touch};
+use crate::query::Touch;
 use alloc::boxed::Box;
-use alloc::vec::Vec;
 use glam::DVec3;
 
 /// The surface of a stored octree: the first cells that are not EMPTY along each line of sight.
@@ -48,9 +48,6 @@ impl<'a> OctreeLayer<'a> {
     }
 }
 
-/// Samples of a block that rays are cast of at once: columns and rows.
-const BLOCK: [usize; 2] = [8, 4];
-
 impl Draw for OctreeLayer<'_> {
     fn prepare<'a>(&'a self, stage: &Stage<'a>) -> Result<Box<dyn Painter + 'a>, Error> {
         Ok(memory::boxed(OctreePainter { layer: self, stage: *stage })?)
@@ -67,76 +64,31 @@ impl Painter for OctreePainter<'_> {
         let tree = &self.layer.tree;
         let mut normals = Normals::new(tree);
         let half = 0.5 * tree.frame().cell_size();
-        let mut cast = Cast::new(tree, self.stage);
-        while let Some(met) = cast.next(tile)? {
-            for (sight, hit) in met {
-                let (t, face) = (hit.t, DVec3::from(hit.normal));
-                let normal = if sight.begins_in(t, face) {
-                    None
-                } else if self.layer.finish.faces {
-                    Some(face)
-                } else {
-                    let point = sight.from + sight.along * t;
-                    let found = normal_of_cells(&mut normals, tree.frame(), point, &hit)?;
-                    Some(if found == DVec3::ZERO { face } else { found })
-                };
-                let mut finish = self.layer.finish;
-                if let Some((attribute, colour)) = self.layer.values {
-                    let below = sight.from + sight.along * t
-                        - half * normal.unwrap_or(-sight.along).normalize_or_zero();
-                    let shown = colour(attribute.value(below.to_array())?);
-                    (finish.colour, finish.cut) = (shown, shown);
-                }
-                sight.draw(&finish, tile, t, normal)?;
+        let blur = if self.layer.finish.faces { 0.0 } else { BLUR * tree.frame().cell_size() };
+        paint(tile, &self.stage, tree, &self.layer.finish, blur, |sight, touch| {
+            let (t, face) = (touch.t, DVec3::from(touch.normal));
+            let point = sight.from + sight.along * t;
+            let normal = if sight.begins_in(t, face) {
+                None
+            } else if self.layer.finish.faces {
+                Some(face)
+            } else {
+                let found = normal_of_cells(&mut normals, tree.frame(), point, &touch)?;
+                Some(if found == DVec3::ZERO { face } else { found })
+            };
+            let mut finish = self.layer.finish;
+            if let Some((attribute, colour)) = self.layer.values {
+                let below = point - half * normal.unwrap_or(-sight.along).normalize_or_zero();
+                let shown = colour(attribute.value(below.to_array())?);
+                (finish.colour, finish.cut) = (shown, shown);
             }
-        }
-        Ok(())
+            Ok(Some(Seen { t, normal, finish }))
+        })
     }
 }
 
-/// The lines of sight of a tile and what they meet, block by block.
-pub struct Cast<'t, 'a> {
-    tree: &'t OctreeRef<'a>,
-    stage: Stage<'t>,
-    block: usize,
-    rays: Vec<Ray>,
-    sights: Vec<Sight>,
-    hits: [Option<Touch>; BLOCK[0] * BLOCK[1]],
-}
-
-impl<'t, 'a> Cast<'t, 'a> {
-    pub fn new(tree: &'t OctreeRef<'a>, stage: Stage<'t>) -> Cast<'t, 'a> {
-        let (rays, sights) = (Vec::new(), Vec::new());
-        Cast { tree, stage, block: 0, rays, sights, hits: [None; BLOCK[0] * BLOCK[1]] }
-    }
-
-    /// What is met in the next block; `None` after the last one.
-    pub fn next<'s>(
-        &'s mut self,
-        tile: &Tile<'_>,
-    ) -> Result<Option<impl Iterator<Item = (&'s Sight, Touch)> + use<'s, 't, 'a>>, Error> {
-        let across = tile.width().div_ceil(BLOCK[0]);
-        let (column, row) = (self.block % across * BLOCK[0], self.block / across * BLOCK[1]);
-        if row >= tile.height() {
-            return Ok(None);
-        }
-        self.block += 1;
-        self.stage.job.check()?;
-        self.rays.clear();
-        self.sights.clear();
-        for y in row..(row + BLOCK[1]).min(tile.height()) {
-            for x in column..(column + BLOCK[0]).min(tile.width()) {
-                if let Some((sight, ray)) = Sight::new(&self.stage, tile, [x, y]) {
-                    memory::push(&mut self.rays, ray)?;
-                    memory::push(&mut self.sights, sight)?;
-                }
-            }
-        }
-        let hits = &mut self.hits[..self.rays.len()];
-        self.tree.touch(&self.rays, hits)?;
-        Ok(Some(self.sights.iter().zip(&*hits).filter_map(|(sight, hit)| Some((sight, (*hit)?)))))
-    }
-}
+/// Cells over which normals turn at an edge.
+const BLUR: f64 = 6.0;
 
 /// The normal at a point of the surface that lies on a cell.
 pub fn normal_of_cells(

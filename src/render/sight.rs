@@ -1,9 +1,10 @@
 //! Lines of sight, and how what they meet is drawn.
 
+use super::camera::View;
 use super::light::Light;
+use super::outline::Outline;
 use super::stage::Stage;
-use super::tile::Tile;
-use crate::error::Error;
+use super::window::Window;
 use crate::query::Ray;
 use glam::DVec3;
 
@@ -16,12 +17,14 @@ pub struct Finish {
     pub cut: [u8; 4],
     /// Shows cells by their faces, instead of the surface that they stand for.
     pub faces: bool,
+    /// The edges that are drawn, if any are.
+    pub edges: Option<Outline>,
 }
 
 impl Default for Finish {
     /// Opaque grey, orange where it is cut.
     fn default() -> Finish {
-        Finish { colour: [178, 187, 196, 255], cut: [213, 142, 74, 255], faces: false }
+        Finish { colour: [178, 187, 196, 255], cut: [213, 142, 74, 255], faces: false, edges: None }
     }
 }
 
@@ -30,7 +33,8 @@ const ASIDE: f64 = 1e-9;
 
 /// A line of sight that begins where it is shown.
 pub struct Sight {
-    sample: usize,
+    /// The sample of the window that it belongs to.
+    pub sample: usize,
     pub from: DVec3,
     pub along: DVec3,
     /// The depth at which it begins, and the outward normal of the clip plane there.
@@ -43,10 +47,10 @@ pub struct Sight {
 impl Sight {
     /// `None` if nothing of it is shown.
     #[inline]
-    pub fn new(stage: &Stage<'_>, tile: &Tile<'_>, [x, y]: [usize; 2]) -> Option<(Sight, Ray)> {
-        let (eye, along) = tile.line(x, y);
+    pub fn new(stage: &Stage<'_>, window: &Window<'_>, [x, y]: [usize; 2]) -> Option<(Sight, Ray)> {
+        let (eye, along) = window.line(x, y);
         let (sight, ray) = Sight::along(stage, eye, along)?;
-        Some((Sight { sample: y * tile.width() + x, ..sight }, ray))
+        Some((Sight { sample: y * window.width() + x, ..sight }, ray))
     }
 
     /// The same of no sample.
@@ -75,22 +79,17 @@ impl Sight {
         t == 0.0 && face == DVec3::ZERO
     }
 
-    /// Draws what it meets after t times its direction, given the outward normal there; `None` if it begins in it.
-    pub fn draw(
-        &self,
-        finish: &Finish,
-        tile: &mut Tile<'_>,
-        t: f64,
-        normal: Option<DVec3>,
-    ) -> Result<(), Error> {
+    /// The light of what it meets, given the outward normal there; `None` if it begins in it.
+    pub fn light(&self, finish: &Finish, view: &View, normal: Option<DVec3>) -> Light {
         let colour = if normal.is_some() { finish.colour } else { finish.cut };
-        let normal = match normal {
-            Some(normal) if normal.dot(self.along) < 0.0 => normal,
-            Some(normal) => silhouette(normal, self.along),
-            None => self.entry.unwrap_or(-self.along),
-        };
-        let light = Light::of(colour).lit(tile.view.lamps.brightness(normal, self.along));
-        tile.put(self.sample, self.start + t, light)
+        let facing = self.outward(normal);
+        let facing = if facing.dot(self.along) < 0.0 { facing } else { silhouette(facing, self.along) };
+        Light::of(colour).lit(view.lamps.brightness(facing, self.along))
+    }
+
+    /// A normal, or where it begins inside that of what cuts it open.
+    pub fn outward(&self, normal: Option<DVec3>) -> DVec3 {
+        normal.or(self.entry).unwrap_or(-self.along)
     }
 }
 

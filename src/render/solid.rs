@@ -1,9 +1,10 @@
 //! Surfaces of any solids, by rays.
 
 use super::normals::Normals;
-use super::octree::{Cast, normal_of_cells};
+use super::octree::normal_of_cells;
 use super::sight::{Finish, Sight};
 use super::stage::{Draw, Painter, Stage};
+use super::surface::{Seen, paint};
 use super::tile::Tile;
 use crate::control::Control;
 use crate::error::Error;
@@ -52,10 +53,7 @@ impl<'a, S: Solid> SolidLayer<'a, S> {
     /// The frame whose cells are as large as a pixel where the universe is nearest.
     fn pixelled(&self, stage: &Stage<'_>) -> Result<Frame, Error> {
         let (view, frame) = (stage.view, &self.frame);
-        let eye = DVec3::from(view.camera.eye());
-        let low = DVec3::from(frame.origin());
-        let nearest = (eye.clamp(low, low + frame.edge()) - eye).length().max(frame.edge() / 16.0);
-        let pixel = view.pixel_at(nearest);
+        let pixel = view.pixel_at(view.nearest(frame));
         let fine = (1..self.deepest).find(|&depth| frame.edge() / f64::from(1u32 << depth) <= pixel);
         frame.with_depth(fine.unwrap_or(self.deepest))
     }
@@ -86,15 +84,11 @@ impl<S: Solid> Painter for SolidPainter<'_, S> {
             normals: Normals::new(self.octree.view()),
             enclosures: HashMap::new(),
         };
-        let mut cast = Cast::new(self.octree.view(), self.stage);
-        while let Some(met) = cast.next(tile)? {
-            for (sight, hit) in met {
-                if let Some((t, normal)) = self.sees(&mut hand, sight, hit)? {
-                    sight.draw(&self.finish, tile, t, normal)?;
-                }
-            }
-        }
-        Ok(())
+        // The cells are as large as a pixel.
+        paint(tile, &self.stage, self.octree.view(), &self.finish, 0.0, |sight, touch| {
+            let met = self.sees(&mut hand, sight, touch)?;
+            Ok(met.map(|(t, normal)| Seen { t, normal, finish: self.finish }))
+        })
     }
 }
 
@@ -303,6 +297,7 @@ fn leaves(frame: &Frame, cell: Cell, sight: &Sight) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::super::camera::{Camera, Lens, View};
+    use super::super::cast::Cast;
     use super::super::clip::Clip;
     use super::*;
     use crate::control::Job;

@@ -5,10 +5,10 @@
 
 use super::camera::View;
 use super::light::Light;
+use super::window::Window;
 use crate::error::Error;
 use crate::memory;
 use alloc::vec::Vec;
-use glam::DVec3;
 
 /// Pixels of a tile along each axis.
 pub const TILE: u32 = 32;
@@ -31,14 +31,9 @@ pub struct Fragment {
     pub light: Light,
 }
 
-/// The samples of some pixels.
+/// The samples of some pixels, and what is seen at them.
 pub struct Tile<'v> {
-    pub view: &'v View,
-    /// The first pixel, and how many.
-    pub first: [u32; 2],
-    pub size: [u32; 2],
-    /// Samples of a pixel along each axis.
-    pub grid: u32,
+    window: Window<'v>,
     /// Row by row.
     pub opaque: Vec<Opaque>,
     /// By sample, and those of a sample by depth, once [`Tile::sort`] was called.
@@ -49,60 +44,25 @@ pub struct Tile<'v> {
     pub passed: Vec<u32>,
 }
 
+impl<'v> core::ops::Deref for Tile<'v> {
+    type Target = Window<'v>;
+
+    #[inline(always)]
+    fn deref(&self) -> &Window<'v> {
+        &self.window
+    }
+}
+
 impl<'v> Tile<'v> {
     pub fn new(view: &'v View, first: [u32; 2], size: [u32; 2], grid: u32) -> Result<Tile<'v>, Error> {
         let count = (size[0] * size[1] * grid * grid) as usize;
         Ok(Tile {
-            view,
-            first,
-            size,
-            grid,
+            window: Window { view, first, size, grid },
             opaque: memory::filled(count, Opaque { light: Light::NONE, depth: f64::INFINITY })?,
             fragments: Vec::new(),
             volume: memory::filled(count, Light::NONE)?,
             passed: memory::filled(count, 0)?,
         })
-    }
-
-    /// Samples of a row.
-    #[inline(always)]
-    pub fn width(&self) -> usize {
-        (self.size[0] * self.grid) as usize
-    }
-
-    /// Rows of samples.
-    #[inline(always)]
-    pub fn height(&self) -> usize {
-        (self.size[1] * self.grid) as usize
-    }
-
-    /// Where the sample (column, row) of the tile lies in the picture, in pixels.
-    #[inline(always)]
-    pub fn place(&self, column: usize, row: usize) -> [f64; 2] {
-        let step = 1.0 / f64::from(self.grid);
-        [
-            f64::from(self.first[0]) + (column as f64 + 0.5) * step,
-            f64::from(self.first[1]) + (row as f64 + 0.5) * step,
-        ]
-    }
-
-    /// The samples that lie between two places along x (axis 0) or y (1), in pixels, as columns or rows of the tile.
-    #[inline]
-    pub fn between(&self, axis: usize, low: f64, high: f64) -> core::ops::Range<usize> {
-        let grid = f64::from(self.grid);
-        let index = |x: f64| (x - f64::from(self.first[axis])) * grid - 0.5;
-        let count = f64::from(self.size[axis] * self.grid);
-        // (What is not a number counts as far away.)
-        let first = libm::ceil(index(low)).max(0.0).min(count) as usize;
-        let end = (libm::floor(index(high)) + 1.0).max(0.0).min(count) as usize;
-        first..end.max(first)
-    }
-
-    /// The line of sight of a sample.
-    #[inline]
-    pub fn line(&self, column: usize, row: usize) -> (DVec3, DVec3) {
-        let [x, y] = self.place(column, row);
-        self.view.line(x, y)
     }
 
     /// Draws a surface at a sample: hides what is farther away if it is opaque.

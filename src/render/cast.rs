@@ -1,0 +1,57 @@
+//! Rays along lines of sight.
+
+use super::sight::Sight;
+use super::stage::Stage;
+use super::window::Window;
+use crate::error::Error;
+use crate::memory;
+use crate::octree::OctreeRef;
+use crate::query::{Ray, Touch};
+use alloc::vec::Vec;
+
+/// Samples of a block that rays are cast of at once: columns and rows.
+const BLOCK: [usize; 2] = [8, 4];
+
+/// The lines of sight of a window and what they meet, block by block.
+pub struct Cast<'t, 'a> {
+    tree: &'t OctreeRef<'a>,
+    stage: Stage<'t>,
+    block: usize,
+    rays: Vec<Ray>,
+    sights: Vec<Sight>,
+    hits: [Option<Touch>; BLOCK[0] * BLOCK[1]],
+}
+
+impl<'t, 'a> Cast<'t, 'a> {
+    pub fn new(tree: &'t OctreeRef<'a>, stage: Stage<'t>) -> Cast<'t, 'a> {
+        let (rays, sights) = (Vec::new(), Vec::new());
+        Cast { tree, stage, block: 0, rays, sights, hits: [None; BLOCK[0] * BLOCK[1]] }
+    }
+
+    /// What is met in the next block; `None` after the last one.
+    pub fn next<'s>(
+        &'s mut self,
+        window: &Window<'_>,
+    ) -> Result<Option<impl Iterator<Item = (&'s Sight, Touch)> + use<'s, 't, 'a>>, Error> {
+        let across = window.width().div_ceil(BLOCK[0]);
+        let (column, row) = (self.block % across * BLOCK[0], self.block / across * BLOCK[1]);
+        if row >= window.height() {
+            return Ok(None);
+        }
+        self.block += 1;
+        self.stage.job.check()?;
+        self.rays.clear();
+        self.sights.clear();
+        for y in row..(row + BLOCK[1]).min(window.height()) {
+            for x in column..(column + BLOCK[0]).min(window.width()) {
+                if let Some((sight, ray)) = Sight::new(&self.stage, window, [x, y]) {
+                    memory::push(&mut self.rays, ray)?;
+                    memory::push(&mut self.sights, sight)?;
+                }
+            }
+        }
+        let hits = &mut self.hits[..self.rays.len()];
+        self.tree.touch(&self.rays, hits)?;
+        Ok(Some(self.sights.iter().zip(&*hits).filter_map(|(sight, hit)| Some((sight, (*hit)?)))))
+    }
+}
