@@ -217,7 +217,7 @@ static void lines(void) {
 
 static void sections(void) {
     static const uint8_t FULL[4] = {1, 2, 3, 255}, VIOLET[4] = {68, 1, 84, 255};
-    const double plane[4] = {0, 1, 0, 0.01}, value = 20;
+    const double plane[4] = {0, 1, 0, -0.01}, value = 20;
     const leafless_frame frame = check_frame(5);
     leafless_solid *solid = check_ball_solid();
     leafless_octree *octree = check_ball(5, LEAFLESS_RULE_CERTIFIED);

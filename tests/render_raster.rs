@@ -692,7 +692,7 @@ fn part() -> Csg {
 /// Planes with normals, offsets, and the axis that they lie across.
 fn planes() -> Vec<(SlicePlane, V, f64, Option<usize>)> {
     let slanting = ([0.3, -0.8, 0.5], 0.05);
-    let mut planes = vec![(SlicePlane::new(slanting.0, slanting.1).unwrap(), slanting.0, slanting.1, None)];
+    let mut planes = vec![(SlicePlane::new(slanting.0, -slanting.1).unwrap(), slanting.0, slanting.1, None)];
     for axis in 0..3 {
         // In the middle of the universe and elsewhere in planes of the lattice, and in none.
         for at in [0.0, -0.1875, 0.123] {
@@ -875,7 +875,7 @@ fn slices_lie_in_clip_planes() {
     let (mesh, full) = (ball(20), [[1, 200, 3, 255]; 3]);
     for normal in [[0.0, 1.0, 0.0], [0.3, 0.9, -0.2]] {
         let clip = Clip::new().plane([normal[0], normal[1], normal[2], 0.1]).unwrap();
-        let plane = SlicePlane::new(normal, -0.1).unwrap();
+        let plane = SlicePlane::new(normal, 0.1).unwrap();
         for lens in [Lens::Parallel(2.0), Lens::Perspective(35.0)] {
             let camera = Camera::new([0.3, -3.0, 0.4], [0.0; 3], [0.0, 0.0, 1.0], lens).unwrap();
             let shot = Shot { clip: clip.clone(), ..shot(camera, [50, 50]) };
@@ -901,7 +901,7 @@ fn slices_lie_in_clip_planes() {
 fn slices_are_the_same_for_any_number_of_threads() {
     let frame = Frame::new([-1.0; 3], 2.0, 6).unwrap();
     let part = part();
-    let layer = SliceLayer::of_solid(&part, &frame, SlicePlane::new([0.3, -0.8, 0.5], 0.05).unwrap());
+    let layer = SliceLayer::of_solid(&part, &frame, SlicePlane::new([0.3, -0.8, 0.5], -0.05).unwrap());
     let camera = Camera::new([2.0, -3.0, 1.0], [0.0; 3], [0.0, 0.0, 1.0], Lens::Perspective(40.0)).unwrap();
     let pictures = [1, 2, 5].map(|threads| {
         render(&Shot::new(camera, [150, 100]), &[&layer], &Control::threads(threads)).unwrap()

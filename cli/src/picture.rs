@@ -22,7 +22,7 @@ pub struct Looks {
     /// What to show
     #[arg(long, value_enum, default_value_t = View::Surface)]
     pub view: View,
-    /// Plane of the slice: the points x, y, z with a x + b y + c z = d. Without it: the one through the middle that is
+    /// Plane of the slice: the points x, y, z with a x + b y + c z + d = 0. Without it: the one through the middle that is
     /// seen best of those along the axes
     #[arg(long, value_name = "A,B,C,D", value_parser = numbers::<4>, allow_hyphen_values = true)]
     pub plane: Option<[f64; 4]>,

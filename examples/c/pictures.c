@@ -86,7 +86,7 @@ static leafless_status section(const leafless_octree *octree) {
     const leafless_legend_name tags[3] = {{"EMPTY", 5, {86, 180, 233, 40}, 0},
                                           {"FULL", 4, {0, 114, 178, 255}, 0},
                                           {"PARTIAL", 7, {230, 159, 0, 255}, 0}};
-    const double plane[4] = {0, 1, 0, 0.1};
+    const double plane[4] = {0, 1, 0, -0.1};
     leafless_layer *layer = NULL;
     leafless_legend_box covered;
     leafless_shot shot;

@@ -115,7 +115,7 @@ unsafe fn section(
 /// A plane section of an octree: in the colours of its cells' tags or of an attribute's values, with the outlines of
 /// the cells.
 ///
-/// - Buffers: `plane`, 4 numbers a, b, c and d: the plane of the points with a x + b y + c z = d; `look`, one struct or
+/// - Buffers: `plane`, 4 numbers a, b, c and d: the plane of the points with a x + b y + c z + d = 0; `look`, one struct or
 ///   NULL; `layer`, one pointer.
 /// - Result: `*layer`.
 /// - Errors: LEAFLESS_E_ARGUMENT if a number is not zero and not between 2^-256 and 2^256 in magnitude, a, b and c are

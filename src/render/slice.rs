@@ -30,14 +30,14 @@ const FADING: [f64; 2] = [2.0, 5.0];
 pub struct SlicePlane {
     /// Its length is 1.
     normal: DVec3,
-    /// n · p of its points p.
+    /// Minus n · p of its points p.
     offset: f64,
     /// The axis that it is perpendicular to, if there is one, and where it crosses that.
     across: Option<(usize, f64)>,
 }
 
 impl SlicePlane {
-    /// The points p with `normal` · p = `offset` (model units times the normal's length).
+    /// The points p with `normal` · p + `offset` = 0 (model units times the normal's length).
     ///
     /// # Errors
     /// [`Error::Argument`] if a number is not zero and not between 2^-256 and 2^256 in magnitude, or if the normal is zero.
@@ -51,7 +51,7 @@ impl SlicePlane {
         }
         let mut others = (0..3).filter(|&axis| normal[axis] != 0.0);
         let across = match (others.next(), others.next()) {
-            (Some(axis), None) => Some((axis, offset / normal[axis])),
+            (Some(axis), None) => Some((axis, -offset / normal[axis])),
             _ => None,
         };
         Ok(SlicePlane { normal: vector / length, offset: offset / length, across })
@@ -66,12 +66,12 @@ impl SlicePlane {
         if axis > 2 {
             return Err(Error::Argument { name: "axis", problem: "must be 0, 1 or 2" });
         }
-        SlicePlane::new([0, 1, 2].map(|k| f64::from(u8::from(k == axis))), coordinate)
+        SlicePlane::new([0, 1, 2].map(|k| f64::from(u8::from(k == axis))), -coordinate)
     }
 
     /// Where a line meets the plane: the depth and the point. `None` if it does not, or not before the eye.
     fn meet(&self, from: DVec3, along: DVec3) -> Option<(f64, DVec3)> {
-        let depth = (self.offset - self.normal.dot(from)) / self.normal.dot(along);
+        let depth = -(self.normal.dot(from) + self.offset) / self.normal.dot(along);
         let is_seen = depth > 0.0 && depth.is_finite();
         let mut point = from + along * depth;
         if let Some((axis, coordinate)) = self.across {
