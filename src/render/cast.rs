@@ -51,7 +51,7 @@ impl<'t, 'a> Cast<'t, 'a> {
             }
         }
         let hits = &mut self.hits[..self.rays.len()];
-        self.tree.touch(&self.rays, hits)?;
+        self.tree.touch_all(&self.rays, hits)?;
         Ok(Some(self.sights.iter().zip(&*hits).filter_map(|(sight, hit)| Some((sight, (*hit)?)))))
     }
 }

@@ -173,3 +173,70 @@ impl About {
         (sum, total)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::control::Control;
+    use crate::lattice::Frame;
+    use crate::octree::{Octree, Tag};
+    use crate::op::{Rule, build};
+    use crate::solid::Csg;
+
+    /// A block with a dome and a bore: plane, curved, and with edges.
+    fn part() -> Octree {
+        let block = Csg::cuboid([-0.9, -0.9, -0.4], [0.9, 0.9, 0.4]).unwrap();
+        let ball = Csg::ball([0.0, 0.0, 0.3], 0.8).unwrap();
+        let bore = Csg::cylinder(0.3, -2.0, 2.0).unwrap();
+        let solid = Csg::union_of([block, ball]).unwrap().difference(&bore).unwrap();
+        let frame = Frame::new([-1.125; 3], 2.25, 7).unwrap();
+        build(&solid, &frame, Rule::Certified, &Control::threads(1)).unwrap()
+    }
+
+    #[test]
+    fn what_was_found_before_changes_nothing() {
+        let tree = part();
+        let cells = tree.frame().cells();
+        let (mut normals, mut seed, mut found) = (Normals::new(tree.view()), 1u64, 0);
+        while found < 500 {
+            let mut random = || {
+                seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+                (seed >> 40) as f64 / f64::from(1 << 24)
+            };
+            let point = DVec3::new(random(), random(), random()) * f64::from(cells);
+            let at = point.to_array().map(|x| x as u32);
+            if tree.view().tag_at(at) != Tag::Partial {
+                continue;
+            }
+            let fresh = Normals::new(tree.view()).at(point, at).unwrap();
+            assert_eq!(normals.at(point, at).unwrap(), fresh, "{point}");
+            assert!((fresh.length() - 1.0).abs() < 1e-6);
+            found += 1;
+        }
+    }
+
+    #[test]
+    fn gradients_are_those_of_all_cells() {
+        let tree = part();
+        let (outside, cells) = (0.0, tree.frame().cells() as i32);
+        let mut normals = Normals::new(tree.view());
+        for at in [[0, 0, 0], [12, 12, 40], [64, 64, 104], [51, 77, 41], [115, 20, 41], [127, 3, 64]] {
+            let mut sum = DVec3::ZERO;
+            for k in 0..125 {
+                let from = [k % 5 - 2, k / 5 % 5 - 2, k / 25 - 2];
+                let cell = [0, 1, 2].map(|axis| at[axis] as i32 + from[axis]);
+                let is_inside = cell.iter().all(|i| (0..cells).contains(i));
+                let solid = match is_inside.then(|| tree.view().tag_at(cell.map(|i| i as u32))) {
+                    None => outside,
+                    Some(Tag::Full) => 2.0,
+                    Some(Tag::Empty) => 0.0,
+                    Some(_) => 1.0,
+                };
+                let from = DVec3::from(from.map(f64::from));
+                sum -= from * solid * libm::exp(-from.length_squared() / (2.0 * 1.5 * 1.5));
+            }
+            let found = normals.gradient(at).unwrap();
+            assert!((found - sum.normalize_or_zero()).length() < 1e-5, "{at:?} {found} {sum}");
+        }
+    }
+}

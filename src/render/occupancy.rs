@@ -176,3 +176,72 @@ fn set_bits_by_byte(word: u64) -> u64 {
     let fours = (pairs & 0x3333_3333_3333_3333) + (pairs >> 2 & 0x3333_3333_3333_3333);
     (fours + (fours >> 4)) & 0x0F0F_0F0F_0F0F_0F0F
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::control::Control;
+    use crate::lattice::Frame;
+    use crate::octree::Octree;
+    use crate::op::{Rule, build};
+    use crate::solid::Csg;
+
+    /// How full a cube of cells is, cell by cell.
+    fn counted(tree: &Octree, low: [i32; 3], edge: i32) -> u8 {
+        let cells = tree.frame().cells() as i32;
+        let outside = if tree.view().exterior() == Tag::Full { 2 } else { 0 };
+        let mut sum = 0;
+        for z in low[2]..low[2] + edge {
+            for y in low[1]..low[1] + edge {
+                for x in low[0]..low[0] + edge {
+                    let at = [x, y, z];
+                    let is_inside = at.iter().all(|i| (0..cells).contains(i));
+                    sum += match is_inside.then(|| tree.view().tag_at(at.map(|i| i as u32))) {
+                        None => outside,
+                        Some(Tag::Full) => 2,
+                        Some(Tag::Empty) => 0,
+                        Some(_) => 1,
+                    };
+                }
+            }
+        }
+        sum
+    }
+
+    #[test]
+    fn windows_are_as_full_as_their_cells() {
+        let ball = Csg::ball([0.1, 0.0, -0.1], 0.75).unwrap();
+        let around = ball.complement();
+        for depth in 2..=6 {
+            let frame = Frame::new([-1.0; 3], 2.0, depth).unwrap();
+            for solid in [&ball, &around] {
+                let tree = build(solid, &frame, Rule::Certified, &Control::threads(1)).unwrap();
+                let mut occupancy = Occupancy::new(tree.view());
+                for (large, edge) in [(true, 8), (false, 4)] {
+                    let blocks = (frame.cells() as i32 + edge - 1) / edge;
+                    for at in (0..(blocks + 4).pow(3)).step_by(7) {
+                        let at = [1, blocks + 4, (blocks + 4).pow(2)].map(|by| at / by % (blocks + 4) - 2);
+                        let window = occupancy.window(at, large).unwrap();
+                        for (k, octants) in (0..).zip(window) {
+                            let block = [k % 3, k / 3 % 3, k / 9];
+                            let low = [0, 1, 2].map(|axis| edge * (at[axis] + block[axis] - 1));
+                            for (octant, share) in (0..).zip(octants.to_le_bytes()) {
+                                let half = edge / 2;
+                                let low = [0, 1, 2].map(|axis| low[axis] + half * (octant >> axis & 1));
+                                assert_eq!(share, counted(&tree, low, half), "{depth} {at:?} {k} {octant}");
+                            }
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn bits_are_counted_by_byte() {
+        for word in [0, !0, 0x0123_4567_89AB_CDEF, 0x8000_0000_0000_0001] {
+            let expected = u64::to_le_bytes(word).map(|byte| byte.count_ones() as u8);
+            assert_eq!(set_bits_by_byte(word).to_le_bytes(), expected);
+        }
+    }
+}

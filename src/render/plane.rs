@@ -144,3 +144,63 @@ impl Crossings {
         self.out += here - next;
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const FITTING: Fitting = Fitting { full: 128, edge: 4.0, plane: [0.25, 0.45] };
+
+    /// A window in which octants are as full as a function of their place in it says, from 0 to 1.
+    fn window(full: u8, share: impl Fn(DVec3) -> f64) -> [u64; 27] {
+        core::array::from_fn(|block| {
+            let octants: [u8; 8] = core::array::from_fn(|octant| {
+                let place = [0, 1, 2]
+                    .map(|axis| (2 * (block / [1, 3, 9][axis] % 3) + (octant >> axis & 1)) as f64 - 2.5);
+                (f64::from(full) * share(DVec3::from(place)).clamp(0.0, 1.0) + 0.5) as u8
+            });
+            u64::from_le_bytes(octants)
+        })
+    }
+
+    #[test]
+    fn planes_are_found() {
+        let mut worst = 0.0f64;
+        for k in 0..200 {
+            let turn = f64::from(k);
+            let normal =
+                DVec3::new(libm::sin(turn), libm::cos(1.3 * turn), libm::sin(2.1 * turn + 1.0)).normalize();
+            let height = libm::sin(0.7 * turn);
+            // An octant is as full as its middle is deep, over its width along the normal.
+            let width = normal.abs().element_sum();
+            let found = FITTING.plane(&window(128, |place| 0.5 - (normal.dot(place) - height) / width));
+            let off = found.normal.as_dvec3().angle_between(normal).to_degrees();
+            worst = worst.max(off);
+            assert!(off < 1.5 && found.confidence == 1.0, "{normal} {height} {found:?}");
+        }
+        assert!(worst > 0.0);
+    }
+
+    #[test]
+    fn what_has_no_plane_says_so() {
+        for share in [0.0, 0.3, 0.7, 1.0] {
+            assert_eq!(FITTING.plane(&window(128, |_| share)), Plane::default());
+        }
+        // A corner, and a thin wall.
+        let corner = FITTING.plane(&window(128, |place| f64::from(u8::from(place.min_element() > 0.0))));
+        let wall = FITTING.plane(&window(128, |place| f64::from(u8::from(place.x.abs() < 1.0))));
+        assert!(corner.confidence == 0.0 && wall.confidence == 0.0, "{corner:?} {wall:?}");
+    }
+
+    #[test]
+    fn crossings_along_all_axes_count() {
+        // One octant that is solid has a crossing on each of its six faces; all weigh alike in the middle.
+        for at in 0..216 {
+            let place = DVec3::new((at % 6) as f64, (at / 6 % 6) as f64, (at / 36) as f64) - 2.5;
+            let found = FITTING.plane(&window(128, |other| f64::from(u8::from(other == place))));
+            // What looks outward adds up to nothing, unless the window cuts some of it off.
+            let cut = place.abs().cmpeq(DVec3::splat(2.5));
+            assert_eq!(found == Plane::default(), !cut.any(), "{place} {found:?}");
+        }
+    }
+}

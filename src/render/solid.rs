@@ -144,11 +144,9 @@ impl<S: Solid> SolidPainter<'_, S> {
             }
             // On behind the cell, past its faces.
             let beyond = leaves + 1e-3 * step;
-            let mut next = [None];
-            if let Some(ray) = sight.beyond(beyond) {
-                octree.touch(&[ray], &mut next)?;
-            }
-            let [Some(next)] = next else { return Ok(None) };
+            let Some(next) = sight.beyond(beyond).and_then(|ray| octree.touch(&ray)) else {
+                return Ok(None);
+            };
             hit = Touch { t: next.t + beyond, ..next };
         }
         Ok(None)

@@ -21,7 +21,7 @@ impl OctreeRef<'_> {
     /// `None` if nothing stops it. What lies outside of the universe does not count. At most 3 · 2^depth cells are
     /// looked at, about a dozen as a rule, whatever the bytes.
     pub fn cast_ray(&self, ray: &Ray, on: Obstacle) -> Option<RayHit> {
-        with_vectors(Cast { tree: self, ray, on })
+        cast_one(self, ray, on)
     }
 
     /// Casts many rays, `hits[i]` for `rays[i]`; the same answers as [`cast_ray`](Self::cast_ray), faster. One thread.
@@ -101,19 +101,24 @@ pub(super) fn cast_all<Q: Question>(
     Ok(())
 }
 
-struct Cast<'t, 'a> {
-    tree: &'t OctreeRef<'a>,
-    ray: &'t Ray,
-    on: Obstacle,
+/// Answers a question about a ray.
+pub(super) fn cast_one<Q: Question>(tree: &OctreeRef<'_>, ray: &Ray, question: Q) -> Option<Q::Answer> {
+    with_vectors(Cast { tree, ray, question })
 }
 
-impl Hot for Cast<'_, '_> {
-    type Output = Option<RayHit>;
+struct Cast<'t, 'a, Q: Question> {
+    tree: &'t OctreeRef<'a>,
+    ray: &'t Ray,
+    question: Q,
+}
+
+impl<Q: Question> Hot for Cast<'_, '_, Q> {
+    type Output = Option<Q::Answer>;
 
     #[inline(always)]
-    fn run(self) -> Option<RayHit> {
+    fn run(self) -> Option<Q::Answer> {
         let course = Course::new(self.tree.frame(), self.ray);
-        cast(&mut Way::new(self.tree), self.ray, &course, Clear::UNKNOWN, self.on)
+        cast(&mut Way::new(self.tree), self.ray, &course, Clear::UNKNOWN, self.question)
     }
 }
 
