@@ -15,7 +15,12 @@ const MOST_TRIANGLES: usize = 256;
 const PLANE: f64 = 1.0 - 1e-7;
 
 /// A vector of length 1, or zero. It neither overflows nor vanishes on the way.
+#[inline]
 fn unit(v: DVec3) -> DVec3 {
+    let squared = v.length_squared();
+    if (1e-200..1e200).contains(&squared) {
+        return v * (1.0 / libm::sqrt(squared));
+    }
     let size = v.abs().max_element();
     if size > 0.0 { (v / size).normalize_or_zero() } else { DVec3::ZERO }
 }
@@ -55,7 +60,7 @@ pub fn corner_normals(
     let angles: Vec<[f32; 3]> = mapped(job, mesh.triangles().len(), |i| {
         let [a, b, c] = corners(mesh, mesh.triangles()[i]);
         let [u, v, w] = [b - a, c - b, a - c].map(unit);
-        [-w.dot(u), -u.dot(v), -v.dot(w)].map(|cosine| libm::acos(cosine.clamp(-1.0, 1.0)) as f32)
+        [-w.dot(u), -u.dot(v), -v.dot(w)].map(|cosine| libm::acosf(cosine.clamp(-1.0, 1.0) as f32))
     })?;
     let mut around: Vec<(u32, f32)> = memory::filled(sum, (0, 0.0))?;
     for (i, (triangle, angles)) in (0..).zip(mesh.triangles().iter().zip(&angles)) {

@@ -25,9 +25,8 @@ pub fn mapped<T: Send>(
             #[cfg(feature = "parallel")]
             if parallel {
                 use rayon::prelude::*;
-                let mut block = memory::with_capacity(range.len())?;
-                range.into_par_iter().map(&make).collect_into_vec(&mut block);
-                list.append(&mut block);
+                // The list has room for all of them.
+                list.par_extend(range.into_par_iter().map(&make));
                 continue;
             }
             let _ = parallel;

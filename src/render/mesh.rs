@@ -147,6 +147,14 @@ fn place(view: &View, corners: [DVec3; 3]) -> Option<[f64; 4]> {
     if !corners.iter().any(is_before) {
         return None;
     }
+    if corners.iter().all(is_before) || !view.is_perspective() {
+        let [a, b, c] = corners.map(|corner| view.place(corner));
+        if [a, b, c].iter().flatten().all(|x| x.is_finite()) {
+            let least = |axis: usize| a[axis].min(b[axis]).min(c[axis]);
+            let most = |axis: usize| a[axis].max(b[axis]).max(c[axis]);
+            return Some([least(0), least(1), most(0), most(1)]);
+        }
+    }
     let mut hull = NOWHERE;
     let mut add = |[x, y]: [f64; 2]| {
         // What is not a number may be anywhere.

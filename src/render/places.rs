@@ -1,60 +1,112 @@
 //! What is known of places on a lattice.
 
 use crate::error::Error;
+use crate::lattice::Cell;
 use crate::memory;
 use alloc::vec::Vec;
 use hashbrown::HashMap;
 
-/// Items by their place: three integers from −2^20 to 2^20 − 1. A cache: when there are too many it forgets all of them.
+/// Items by their place. A cache: when there are too many it forgets all of them.
 pub struct Places<T> {
-    indices: HashMap<u64, u32>,
+    indices: HashMap<Place, u32>,
     items: Vec<T>,
-    last: (u64, u32),
+    /// The place that was asked for last, and its item.
+    last: Option<(Place, u32)>,
 }
+
+/// A place on a lattice.
+#[derive(Clone, Copy, PartialEq, Eq, Hash)]
+pub struct Place(u64);
 
 /// Most items that are kept.
 const MOST: usize = 1 << 14;
 
-/// No place has this key.
-const NOWHERE: u64 = u64::MAX;
+impl From<[i32; 3]> for Place {
+    /// Three integers from −2^20 to 2^20 − 1.
+    #[inline]
+    fn from(at: [i32; 3]) -> Place {
+        let [x, y, z] = at.map(|i| u64::from(i.wrapping_add(1 << 20) as u32));
+        Place(x | y << 21 | z << 42)
+    }
+}
 
-fn key(place: [i32; 3]) -> u64 {
-    let [x, y, z] = place.map(|i| u64::from(i.wrapping_add(1 << 20) as u32));
-    x | y << 21 | z << 42
+impl From<Cell> for Place {
+    /// A cell of any level: the first bit of each coordinate tells which one.
+    #[inline]
+    fn from(cell: Cell) -> Place {
+        let [x, y, z] = cell.at.map(|i| u64::from(i + (1 << cell.level)));
+        Place(x | y << 21 | z << 42)
+    }
 }
 
 impl<T> Places<T> {
     pub fn new() -> Places<T> {
-        Places { indices: HashMap::new(), items: Vec::new(), last: (NOWHERE, 0) }
+        Places { indices: HashMap::new(), items: Vec::new(), last: None }
     }
 
     /// Where an item is kept; good until the next call of [`Places::keep`].
     #[inline]
-    pub fn find(&mut self, place: [i32; 3]) -> Option<usize> {
-        let key = key(place);
-        if self.last.0 != key {
-            self.last = (key, *self.indices.get(&key)?);
+    pub fn find(&mut self, place: impl Into<Place>) -> Option<usize> {
+        let place = place.into();
+        if self.last.is_none_or(|last| last.0 != place) {
+            self.last = Some((place, *self.indices.get(&place)?));
         }
-        Some(self.last.1 as usize)
+        self.last.map(|(_, index)| index as usize)
     }
 
     /// Keeps what was not there, and says where.
-    pub fn keep(&mut self, place: [i32; 3], item: T) -> Result<usize, Error> {
+    pub fn keep(&mut self, place: impl Into<Place>, item: T) -> Result<usize, Error> {
         if self.items.len() == MOST {
             self.indices.clear();
             self.items.clear();
         }
-        let (key, index) = (key(place), self.items.len());
+        let (place, index) = (place.into(), self.items.len());
         self.indices.try_reserve(1)?;
         memory::push(&mut self.items, item)?;
-        self.indices.insert(key, index as u32);
-        self.last = (key, index as u32);
+        self.indices.insert(place, index as u32);
+        self.last = Some((place, index as u32));
         Ok(index)
     }
 
-    /// What [`Places::find`] or [`Places::keep`] said.
+    /// What [`Places::find`] or [`Places::keep`] told the index of.
     #[inline]
     pub fn item(&self, index: usize) -> &T {
         &self.items[index]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_kept_is_found_until_all_is_forgotten() {
+        let mut places = Places::new();
+        let at = |i: i32| [i % 100 - 50, -i / 100, (1 << 20) - 1 - i];
+        for i in 0..MOST as i32 {
+            assert_eq!(places.find(at(i)), None);
+            let kept = places.keep(at(i), i).unwrap();
+            assert_eq!(places.find(at(i)), Some(kept));
+        }
+        for i in 0..MOST as i32 {
+            let found = places.find(at(i)).unwrap();
+            assert_eq!(*places.item(found), i);
+        }
+        let next = places.keep([7; 3], -1).unwrap();
+        assert_eq!((places.find([7; 3]), places.find(at(5)), *places.item(next)), (Some(next), None, -1));
+    }
+
+    #[test]
+    fn cells_of_all_levels_differ() {
+        let mut places = Places::new();
+        for level in 0..=20 {
+            for at in [[0; 3], [(1 << level) - 1; 3], [0, (1 << level) - 1, 0]] {
+                let cell = Cell { level, at };
+                match places.find(cell) {
+                    Some(found) => assert_eq!(*places.item(found), cell),
+                    None => _ = places.keep(cell, cell).unwrap(),
+                }
+            }
+        }
     }
 }

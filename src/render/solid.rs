@@ -2,6 +2,7 @@
 
 use super::normals::Normals;
 use super::octree::normal_of_cells;
+use super::places::Places;
 use super::sight::{Finish, Sight};
 use super::stage::{Draw, Painter, Stage};
 use super::surface::{Seen, paint};
@@ -16,7 +17,6 @@ use crate::query::Touch;
 use crate::solid::{Classifier, Enclosure, Segment, SlabJoin, Solid, Verdict, WorkerOf};
 use alloc::boxed::Box;
 use glam::DVec3;
-use hashbrown::HashMap;
 
 /// The surface of any solid within a universe.
 ///
@@ -82,7 +82,7 @@ impl<S: Solid> Painter for SolidPainter<'_, S> {
         let mut hand = Hand::<S> {
             trail: Trail::new(self.classifier.worker()?)?,
             normals: Normals::new(self.octree.view()),
-            enclosures: HashMap::new(),
+            enclosures: Places::new(),
         };
         // The cells are as large as a pixel.
         paint(tile, &self.stage, self.octree.view(), &self.finish, 0.0, |sight, touch| {
@@ -96,7 +96,7 @@ impl<S: Solid> Painter for SolidPainter<'_, S> {
 struct Hand<'t, S: Solid> {
     trail: Trail<WorkerOf<S>>,
     normals: Normals<'t>,
-    enclosures: HashMap<Cell, Option<Enclosure>>,
+    enclosures: Places<Option<Enclosure>>,
 }
 
 /// What is known of a line of sight in a cell.
@@ -161,10 +161,10 @@ impl<S: Solid> SolidPainter<'_, S> {
         [enters, leaves]: [f64; 2],
     ) -> Result<Met, Error> {
         if let Some(enclosure) = self.enclosure(hand, cell)? {
-            let met = self.through(&enclosure, cell, sight, [enters, leaves]);
+            let (met, cone) = (self.through(enclosure, cell, sight, [enters, leaves]), enclosure.cone);
             return match met {
-                Met::At(t, normal) if enclosure.cone > CONE && t > enters => {
-                    Ok(self.closer(hand, cell, enclosure.cone, sight, (t, normal))?.unwrap_or(met))
+                Met::At(t, normal) if cone > CONE && t > enters => {
+                    Ok(self.closer(hand, cell, cone, sight, (t, normal))?.unwrap_or(met))
                 }
                 met => Ok(met),
             };
@@ -184,18 +184,17 @@ impl<S: Solid> SolidPainter<'_, S> {
     }
 
     /// What is known of the boundary in a cell.
-    fn enclosure(&self, hand: &mut Hand<'_, S>, cell: Cell) -> Result<Option<Enclosure>, Error> {
-        if let Some(found) = hand.enclosures.get(&cell) {
-            return Ok(*found);
+    fn enclosure<'h>(&self, hand: &'h mut Hand<'_, S>, cell: Cell) -> Result<Option<&'h Enclosure>, Error> {
+        if let Some(found) = hand.enclosures.find(cell) {
+            return Ok(hand.enclosures.item(found).as_ref());
         }
         hand.trail.follow(cell.parent(), self.stage.job.control())?;
         let found = match hand.trail.verdict(cell) {
             Verdict::Partial(_) => hand.trail.enclosure(cell)?,
             _ => None,
         };
-        hand.enclosures.try_reserve(1)?;
-        hand.enclosures.insert(cell, found);
-        Ok(found)
+        let kept = hand.enclosures.keep(cell, found)?;
+        Ok(hand.enclosures.item(kept).as_ref())
     }
 
     /// Where it meets the surface in a smaller cell about the place and the normal that were found, in which the boundary
@@ -221,7 +220,7 @@ impl<S: Solid> SolidPainter<'_, S> {
             let Some(found) = self.enclosure(hand, near)? else { continue };
             let reach = 4.0 * size / sight.along.length();
             let normal = DVec3::from(found.slabs[0].normal);
-            return Ok(Some(match self.through(&found, near, sight, [t - reach, t + reach]) {
+            return Ok(Some(match self.through(found, near, sight, [t - reach, t + reach]) {
                 Met::At(s, normal) if s > t - reach => Met::At(s, normal),
                 // It only just touches what turns away there.
                 _ => Met::At(t, normal),
@@ -232,10 +231,9 @@ impl<S: Solid> SolidPainter<'_, S> {
 
     /// Where it first is below the middles of slabs.
     fn through(&self, enclosure: &Enclosure, cell: Cell, sight: &Sight, [enters, leaves]: [f64; 2]) -> Met {
-        let cube = Cube { frame: self.octree.frame(), cell };
-        let half = cube.half_edge();
-        let (min, max) = cube.bounds();
-        let centre = 0.5 * DVec3::from(min) + 0.5 * DVec3::from(max);
+        let (low, edge) = corner_of(self.octree.frame(), cell);
+        let half = 0.5 * edge;
+        let centre = low + half;
         let from = (sight.from - centre) / half;
         let along = sight.along / half;
         let any = enclosure.join == SlabJoin::Any;
@@ -282,12 +280,18 @@ impl<S: Solid> SolidPainter<'_, S> {
     }
 }
 
+/// The lower corner and the edge of a cell, but for rounding.
+fn corner_of(frame: &Frame, cell: Cell) -> (DVec3, f64) {
+    let edge = frame.edge() / f64::from(1u32 << cell.level);
+    (DVec3::from(frame.origin()) + DVec3::from(cell.at.map(f64::from)) * edge, edge)
+}
+
 /// When a line of sight leaves a cell.
 fn leaves(frame: &Frame, cell: Cell, sight: &Sight) -> f64 {
-    let (min, max) = Cube { frame, cell }.bounds();
+    let (low, edge) = corner_of(frame, cell);
     let axes = (0..3).filter(|&axis| sight.along[axis] != 0.0);
     axes.fold(f64::INFINITY, |leaves, axis| {
-        let plane = if sight.along[axis] > 0.0 { max[axis] } else { min[axis] };
+        let plane = low[axis] + if sight.along[axis] > 0.0 { edge } else { 0.0 };
         leaves.min((plane - sight.from[axis]) / sight.along[axis])
     })
 }
@@ -322,7 +326,7 @@ mod tests {
         let mut hand = Hand::<Csg> {
             trail: Trail::new(painter.classifier.worker().unwrap()).unwrap(),
             normals: Normals::new(octree),
-            enclosures: HashMap::new(),
+            enclosures: Places::new(),
         };
         let tile = Tile::new(&view, [0, 0], [256, 256], 1).unwrap();
         let mut cast = Cast::new(octree, stage);
