@@ -7,6 +7,7 @@
 
 mod attribute;
 mod bitmap;
+mod blocks;
 mod boolean;
 mod channel;
 mod contains;
@@ -40,10 +41,14 @@ mod rows;
 mod sample;
 mod scene;
 mod shape;
+mod show;
+mod shrink;
+mod sixel;
 mod source;
 mod summary;
 mod surface;
 mod target;
+mod terminal;
 mod verify;
 mod volume;
 mod voxelize;
@@ -102,7 +107,7 @@ enum Command {
     Neighbours(neighbours::Arguments),
     /// Say where rays on standard input first meet a solid, a mesh or a scene
     Ray(ray::Arguments),
-    /// Make a picture (PNG)
+    /// Make a picture (PNG), or show one on the terminal
     Render(render::Arguments),
     /// Write how far a solid, a mesh or a scene reaches in each column of cells: a height map
     Heights(heights::Arguments),

@@ -150,26 +150,26 @@ pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
     unharmed(write).of(path.display())
 }
 
-/// Whether a temporary file exists at the moment.
-static SAVING: AtomicBool = AtomicBool::new(false);
+/// Whether work is under way that must come to its end.
+static BUSY: AtomicBool = AtomicBool::new(false);
 /// Whether the user wanted to stop meanwhile.
 static INTERRUPTED: AtomicBool = AtomicBool::new(false);
 /// What shells report of a program that Ctrl-C ended.
 const STOPPED: i32 = 130;
 
-/// Runs `save`, which a first Ctrl-C (or SIGTERM, SIGHUP) does not interrupt but only keeps from being the
-/// last thing that the program does: so that no temporary file is left behind. A second one ends at once.
-fn unharmed<T>(save: impl FnOnce() -> T) -> T {
+/// Runs `work`, which a first Ctrl-C (or SIGTERM, SIGHUP) does not interrupt: the program ends after it. So no
+/// temporary file is left behind, and no terminal in another mode. A second one ends at once.
+pub fn unharmed<T>(work: impl FnOnce() -> T) -> T {
     // Fails the second time, which is well. Takes the signals also where one of them was ignored, as SIGHUP
     // is under `nohup`: the others must not find a temporary file either.
     let _ = ctrlc::set_handler(|| {
-        if !SAVING.load(SeqCst) || INTERRUPTED.swap(true, SeqCst) {
+        if !BUSY.load(SeqCst) || INTERRUPTED.swap(true, SeqCst) {
             std::process::exit(STOPPED);
         }
     });
-    SAVING.store(true, SeqCst);
-    let result = save();
-    SAVING.store(false, SeqCst);
+    BUSY.store(true, SeqCst);
+    let result = work();
+    BUSY.store(false, SeqCst);
     if INTERRUPTED.load(SeqCst) {
         std::process::exit(STOPPED);
     }

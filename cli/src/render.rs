@@ -9,6 +9,7 @@ use crate::picture::{Looks, Subject, View, colour, numbers, picture};
 use crate::progress::watched;
 use crate::scene::Drawing;
 use crate::shape::Shape;
+use crate::show::{Protocol, Screen};
 use crate::voxelize::threads;
 use clap::Args;
 use leafless::{Bounds, Camera, Channel, Clip, Control, FIELD_OF_VIEW, Lens, MAX_DEPTH, Shot, exchange};
@@ -16,7 +17,7 @@ use serde::Serialize;
 use std::ffi::OsString;
 use std::time::Instant;
 
-/// Makes a picture (PNG) of a solid, a mesh, a scene, a volume or a tri-dexel model.
+/// Makes a picture (PNG) of a solid, a mesh, a scene, a volume or a tri-dexel model, or shows one on the terminal.
 ///
 /// A solid from a file is shown as its cells make its surface likely to be; with --faces, as its cells are. A mesh, a scene or
 /// a volume is shown itself, without an octree.
@@ -29,11 +30,17 @@ pub struct Arguments {
     #[arg(value_name = "FILE")]
     input: OsString,
     /// File to write (PNG), or `-` for standard output; it is written whole or not at all
-    #[arg(short, long, value_name = "OUT")]
-    output: OsString,
-    /// Width and height in pixels
-    #[arg(long, value_name = "WxH", default_value = "1024x768", value_parser = size)]
-    size: [u32; 2],
+    #[arg(short, long, value_name = "OUT", required_unless_present = "show")]
+    output: Option<OsString>,
+    /// Show the picture on the terminal, smaller if it does not fit. Without a protocol, the best that the terminal
+    /// understands; with one, also where standard output is no terminal: then as it is, or in half blocks for 80x24 cells
+    /// or COLUMNS x LINES
+    #[arg(long, value_enum, value_name = "PROTOCOL", num_args = 0..=1, require_equals = true,
+          default_missing_value = "auto", conflicts_with = "json")]
+    show: Option<Protocol>,
+    /// Width and height in pixels [default: 1024x768; only shown: what fits the terminal]
+    #[arg(long, value_name = "WxH", value_parser = size)]
+    size: Option<[u32; 2]>,
     /// From where to look, in degrees: 0,0 is from the front (−y) with z upward, a positive azimuth from further right, a
     /// positive elevation from further above
     /// [default: 30,25; of a slice its plane from in front]
@@ -93,6 +100,9 @@ fn size(text: &str) -> Result<[u32; 2], String> {
     sides.filter(good).ok_or_else(|| "expected width and height, 1 to 16384 each, as in 800x600".into())
 }
 
+/// Width and height of a picture that goes to a file.
+const SIZE: [u32; 2] = [1024, 768];
+
 /// Levels of cells of what has none of its own.
 const DEPTH: u8 = 8;
 
@@ -113,8 +123,19 @@ struct Made {
 
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let start = Instant::now();
-    let (input, output) = (Input::from(&*arguments.input), Output::from(&*arguments.output));
-    output.check()?;
+    let input = Input::from(&*arguments.input);
+    let output = arguments.output.as_deref().map(Output::from);
+    if let Some(output) = &output {
+        if arguments.show.is_some() && output.path().is_none() {
+            let problem = "both -o - and --show want standard output: name a file, or leave one of them out";
+            return Err(Failure::Usage(problem.into()));
+        }
+        output.check()?;
+    }
+    // Before any work: what is shown may depend on the terminal, which may be none.
+    let screen = arguments.show.map(Screen::of).transpose()?;
+    let shown_size = screen.as_ref().filter(|_| output.is_none()).and_then(Screen::size);
+    let size = arguments.size.or(shown_size).unwrap_or(SIZE);
     let shape = Shape::read(&input, &arguments.reading, &arguments.drawing)?.0;
     let subject = Subject::of(shape, &input, &arguments.looks, arguments.depth, arguments.threads)?;
     let channel = match &subject {
@@ -127,15 +148,19 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         _ => None,
     };
     let (shot, picture) = watched("render", arguments.threads, |control| {
-        let shot = shot(arguments, &subject, channel, control)?;
+        let shot = shot(arguments, size, &subject, channel, control)?;
         let picture = picture(&arguments.looks, &subject, channel, &shot, control)?;
         Ok((shot, picture))
     })
     .of(&input)?;
-    let bytes = exchange::write_png(&picture).of(&output)?;
-    match output.path() {
-        Some(path) => output::write_file(path, &bytes)?,
-        None => output::print(&bytes)?,
+    let bytes = exchange::write_png(&picture).of(&input)?;
+    match output.as_ref().map(Output::path) {
+        Some(Some(path)) => output::write_file(path, &bytes)?,
+        Some(None) => output::print(&bytes)?,
+        None => {}
+    }
+    if let Some(screen) = &screen {
+        screen.show(&picture, &bytes)?;
     }
     let made = Made {
         width: picture.width(),
@@ -148,25 +173,36 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         bytes: bytes.len(),
         seconds: start.elapsed().as_secs_f64(),
     };
+    // Standard output carries the picture where it is shown.
+    let told = output.as_ref().filter(|_| screen.is_none()).unwrap_or(&Output::Standard);
     if arguments.json {
-        return output.report(&json(&made)?);
+        return told.report(&json(&made)?);
     }
     let Made { width, height, covered, .. } = made;
     let share = 100.0 * covered as f64 / (f64::from(width) * f64::from(height));
+    let what = format!("{width} x {height} pixels, {share:.0} % covered");
     let bytes = count(made.bytes as u64);
     let time = seconds(made.seconds);
-    output.report(&format!(
-        "{output}: {width} x {height} pixels, {share:.0} % covered, {bytes} bytes; {time}\n"
-    ))
+    told.report(&match (&output, &screen) {
+        (Some(output), None) => format!("{output}: {what}, {bytes} bytes; {time}\n"),
+        (Some(output), Some(screen)) => {
+            format!("{output}: {what}, {bytes} bytes, shown {}; {time}\n", screen.way())
+        }
+        (None, screen) => {
+            let way = screen.as_ref().map_or("", Screen::way);
+            format!("{input}: {what}, shown {way}; {time}\n")
+        }
+    })
 }
 
 fn shot(
     arguments: &Arguments,
+    size: [u32; 2],
     subject: &Subject,
     channel: Option<&Channel>,
     control: &Control<'_>,
 ) -> Result<Shot, leafless::Error> {
-    let [width, height] = arguments.size;
+    let [width, height] = size;
     let mut clip = Clip::new();
     for &plane in &arguments.clip {
         clip = clip.plane(plane)?;
@@ -210,7 +246,7 @@ fn shot(
         }
     };
     let Arguments { samples, background, .. } = *arguments;
-    Ok(Shot { camera, size: arguments.size, samples, clip, background })
+    Ok(Shot { camera, size, samples, clip, background })
 }
 
 /// The part of a picture's width that is left for what is shown beside a legend: it is as far from both sides.

@@ -1,0 +1,266 @@
+//! What the terminal is that standard output goes to: its size, and the protocols of pictures that it speaks.
+
+use std::env;
+
+/// A terminal, as far as it is known.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Terminal {
+    /// Columns and rows.
+    pub cells: Option<[usize; 2]>,
+    /// Width and height in pixels.
+    pub pixels: Option<[usize; 2]>,
+    /// What it said of itself, if it was asked and answered.
+    pub answer: Option<Answer>,
+}
+
+/// What a terminal says of itself.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Answer {
+    /// Whether it shows pictures by kitty's protocol.
+    pub kitty: bool,
+    /// Whether it shows sixels.
+    pub sixel: bool,
+    /// Colours that sixels may have.
+    pub colours: Option<usize>,
+    /// Width and height that sixels may have.
+    pub largest_sixels: Option<[usize; 2]>,
+    /// Width and height of the terminal in pixels.
+    pub pixels: Option<[usize; 2]>,
+}
+
+/// Whether pictures pass through a program that knows only some protocols, while the variables of the environment may tell of
+/// the terminal outside of it.
+pub fn is_multiplexed() -> bool {
+    let term = env::var("TERM").unwrap_or_default();
+    env::var_os("TMUX").is_some() || ["screen", "tmux"].iter().any(|name| term.starts_with(name))
+}
+
+/// Whether the terminal shows 24-bit colours, as the environment tells.
+pub fn has_true_colours() -> bool {
+    let said = env::var("COLORTERM").unwrap_or_default();
+    // Windows tells nothing, and does since 2017.
+    cfg!(windows) || ["truecolor", "24bit"].iter().any(|name| said.contains(name))
+}
+
+/// Whether the environment tells of a terminal that speaks kitty's protocol.
+pub fn is_kitty_by_name() -> bool {
+    !is_multiplexed()
+        && (is_one_of("TERM", &["xterm-kitty", "xterm-ghostty"])
+            || is_one_of("TERM_PROGRAM", &["WezTerm", "ghostty"]))
+}
+
+/// Whether the environment tells of iTerm2, which has a protocol of its own. (`LC_TERMINAL` survives `ssh`.)
+pub fn is_iterm_by_name() -> bool {
+    !is_multiplexed() && (is_one_of("TERM_PROGRAM", &["iTerm.app"]) || is_one_of("LC_TERMINAL", &["iTerm2"]))
+}
+
+/// Whether the terminal shows text only, as the environment tells.
+pub fn is_dumb() -> bool {
+    is_one_of("TERM", &["dumb"])
+}
+
+fn is_one_of(variable: &str, names: &[&str]) -> bool {
+    env::var(variable).is_ok_and(|value| names.contains(&value.as_str()))
+}
+
+/// Columns and rows as the environment tells: shells let users export them.
+pub fn cells_by_environment() -> Option<[usize; 2]> {
+    let number = |name| env::var(name).ok()?.parse().ok().filter(|&number| number > 0);
+    Some([number("COLUMNS")?, number("LINES")?])
+}
+
+#[cfg(unix)]
+pub use unix::terminal;
+
+#[cfg(unix)]
+mod unix {
+    use super::{Answer, Terminal, is_one_of, parse};
+    use rustix::fs::{Mode, OFlags, open};
+    use rustix::process::getpgrp;
+    use rustix::termios::{
+        LocalModes, OptionalActions, SpecialCodeIndex, Termios, tcgetattr, tcgetpgrp, tcgetwinsize,
+        tcsetattr, ttyname,
+    };
+    use std::env;
+    use std::fs::File;
+    use std::io::{Read, Write};
+    use std::time::{Duration, Instant};
+
+    /// Asks for kitty's protocol, the size in pixels, the colours and the size of sixels; at last what every terminal
+    /// answers, what it is. Whatever an old terminal shows of it is wiped away.
+    const QUESTION: &[u8] =
+        b"\x1b7\x1b_Gi=31,s=1,v=1,a=q,t=d,f=24;AAAA\x1b\\\x1b[14t\x1b[?1;1;0S\x1b[?2;1;0S\x1b[c\x1b8\x1b[K";
+
+    /// How long an answer is waited for; a terminal far away needs longer.
+    const PATIENCE: Duration = Duration::from_millis(200);
+    const PATIENCE_FAR: Duration = Duration::from_millis(1500);
+
+    /// The terminal of standard output.
+    pub fn terminal() -> Terminal {
+        let out = std::io::stdout();
+        let size = tcgetwinsize(&out).ok();
+        let pair = |a: u16, b: u16| (a > 0 && b > 0).then(|| [usize::from(a), usize::from(b)]);
+        let answer = ask();
+        let said = answer.as_ref().and_then(|answer| answer.pixels);
+        Terminal {
+            cells: size.and_then(|size| pair(size.ws_col, size.ws_row)),
+            pixels: size.and_then(|size| pair(size.ws_xpixel, size.ws_ypixel)).or(said),
+            answer,
+        }
+    }
+
+    /// The terminal's mode, which comes back when this is dropped.
+    struct Quiet<'a>(&'a File, Termios);
+
+    impl Drop for Quiet<'_> {
+        fn drop(&mut self) {
+            // If this fails the terminal is gone.
+            let _ = tcsetattr(self.0, OptionalActions::Now, &self.1);
+        }
+    }
+
+    /// What the terminal says; nothing if it cannot be asked, or does not answer in time.
+    fn ask() -> Option<Answer> {
+        // These write what they do not know as text.
+        if is_one_of("TERM", &["linux"]) || is_one_of("TERM_PROGRAM", &["Apple_Terminal"]) {
+            return None;
+        }
+        // Standard input may be a file: it is the terminal of standard output that is asked.
+        let name = ttyname(std::io::stdout(), Vec::new()).ok()?;
+        let flags = OFlags::RDWR | OFlags::NOCTTY | OFlags::CLOEXEC;
+        let terminal = File::from(open(&name, flags, Mode::empty()).ok()?);
+        // In the background, whoever changes the mode is stopped. (There is no group if the terminal is not the one that
+        // controls this process: then nobody is.)
+        if tcgetpgrp(&terminal).is_ok_and(|group| group != getpgrp()) {
+            return None;
+        }
+        let mode = tcgetattr(&terminal).ok()?;
+        let mut other = mode.clone();
+        // Answers come without a line's end, and are not to be seen.
+        other.local_modes.remove(LocalModes::ICANON | LocalModes::ECHO);
+        // Reading ends after a tenth of a second without anything. (Not all systems can wait for terminals by `poll`.)
+        other.special_codes[SpecialCodeIndex::VMIN] = 0;
+        other.special_codes[SpecialCodeIndex::VTIME] = 1;
+        let mut out = terminal.try_clone().ok()?;
+        let quiet = Quiet(&terminal, mode);
+        tcsetattr(&terminal, OptionalActions::Now, &other).ok()?;
+        let answer = exchange(&mut out);
+        drop(quiet);
+        answer
+    }
+
+    fn exchange(terminal: &mut File) -> Option<Answer> {
+        terminal.write_all(QUESTION).ok()?;
+        let is_far = ["SSH_CONNECTION", "SSH_TTY"].iter().any(|name| env::var_os(name).is_some());
+        let end = Instant::now() + if is_far { PATIENCE_FAR } else { PATIENCE };
+        let (mut bytes, mut buffer) = (Vec::new(), [0; 256]);
+        while Instant::now() < end && bytes.len() < 1 << 16 {
+            match terminal.read(&mut buffer) {
+                Ok(count) => bytes.extend_from_slice(&buffer[..count]),
+                Err(error) if error.kind() == std::io::ErrorKind::Interrupted => {}
+                Err(_) => return None,
+            }
+            let answer = parse(&bytes);
+            if answer.is_some() {
+                return answer;
+            }
+        }
+        None
+    }
+}
+
+/// What is known without a question.
+#[cfg(not(unix))]
+pub fn terminal() -> Terminal {
+    #[cfg(windows)]
+    {
+        // Old consoles must be told to obey.
+        let _ = anstyle_query::windows::enable_ansi_colors();
+        let cells = console::Term::stdout().size_checked();
+        Terminal {
+            cells: cells.map(|(rows, columns)| [columns, rows].map(usize::from)),
+            ..Terminal::default()
+        }
+    }
+    #[cfg(not(windows))]
+    Terminal::default()
+}
+
+/// What the terminal answered, once the last of the questions is answered: what the terminal is.
+#[cfg(any(unix, test))]
+fn parse(bytes: &[u8]) -> Option<Answer> {
+    let mut answer = Answer::default();
+    let mut is_whole = false;
+    for sequence in bytes.split(|&byte| byte == 0x1b).skip(1) {
+        match sequence {
+            [b'_', b'G', text @ ..] => {
+                let text = String::from_utf8_lossy(text);
+                answer.kitty |=
+                    text.split_once(';').is_some_and(|(keys, said)| keys.contains("i=31") && said == "OK");
+            }
+            [b'[', text @ ..] => {
+                let Some(end) = text.iter().position(|byte| (0x40..0x7f).contains(byte)) else { continue };
+                let (text, last) = (String::from_utf8_lossy(&text[..end]), text[end]);
+                let private = text.strip_prefix('?');
+                let numbers: Vec<usize> =
+                    private.unwrap_or(&text).split(';').map(|number| number.parse().unwrap_or(0)).collect();
+                match (private.is_some(), last, &numbers[..]) {
+                    // The first number is a class of terminals.
+                    (true, b'c', [_, parts @ ..]) => {
+                        answer.sixel = parts.contains(&4);
+                        is_whole = true;
+                    }
+                    (true, b'S', &[1, 0, colours]) if colours > 0 => answer.colours = Some(colours),
+                    (true, b'S', &[2, 0, width, height]) if width.min(height) > 0 => {
+                        answer.largest_sixels = Some([width, height]);
+                    }
+                    (false, b't', &[4, height, width]) if width.min(height) > 0 => {
+                        answer.pixels = Some([width, height]);
+                    }
+                    _ => {}
+                }
+            }
+            _ => {}
+        }
+    }
+    is_whole.then_some(answer)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn answers_of_terminals() {
+        let none = Answer::default();
+        let sixel = Answer { sixel: true, ..none.clone() };
+        for (bytes, expected) in [
+            // kitty, with keys that were typed meanwhile
+            (
+                &b"ls\x1b_Gi=31;OK\x1b\\\x1b[4;600;800t\x1b[?62;c"[..],
+                Some(Answer { kitty: true, pixels: Some([800, 600]), ..none.clone() }),
+            ),
+            // xterm as a VT340
+            (
+                b"\x1b[4;316;484t\x1b[?1;0;16S\x1b[?2;0;1000;1000S\x1b[?63;1;2;4;6c",
+                Some(Answer {
+                    colours: Some(16),
+                    largest_sixels: Some([1000, 1000]),
+                    pixels: Some([484, 316]),
+                    ..sixel.clone()
+                }),
+            ),
+            // 42 is no 4, and the class 4 tells of a VT132
+            (b"\x1b[?62;22;42c", Some(none.clone())),
+            (b"\x1b[?4;6c", Some(none.clone())),
+            (b"\x1b[?12;4c", Some(sixel)),
+            // A refusal of kitty's protocol, and sizes that are errors
+            (b"\x1b_Gi=31;EINVAL:no\x1b\\\x1b[?1;3;0S\x1b[4;0;0t\x1b[?62c", Some(none)),
+            (b"\x1b_Gi=31;OK\x1b\\\x1b[?62;4", None),
+            (b"", None),
+            (b"no terminal", None),
+        ] {
+            assert_eq!(parse(bytes), expected, "{}", String::from_utf8_lossy(bytes));
+        }
+    }
+}
