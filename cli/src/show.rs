@@ -64,8 +64,9 @@ impl Screen {
                 return Err(Failure::of("standard output", format_args!("{problem}; {remedy}")));
             }
         }
+        let is_asked = wanted != Protocol::Blocks;
         // A signal must not leave the terminal in another mode.
-        let known = if is_terminal { output::unharmed(terminal) } else { Terminal::default() };
+        let known = if is_terminal { output::unharmed(|| terminal(is_asked)) } else { Terminal::default() };
         Ok(Screen::new(wanted, is_terminal, &known))
     }
 
@@ -80,7 +81,7 @@ impl Screen {
             (named, _) => named,
         };
         let [columns, rows] = known.cells.or_else(terminal::cells_by_environment).unwrap_or(CELLS);
-        let used = rows.saturating_sub(FREE_ROWS).max(1);
+        let (rows, used) = (rows.max(1), rows.saturating_sub(FREE_ROWS).max(1));
         let answer = answer.unwrap_or_default();
         let area = match protocol {
             Protocol::Blocks => Some([columns, 2 * used]),
@@ -119,8 +120,8 @@ impl Screen {
         let image = image.shrunk(fitting);
         let file = || if fitting == size { Ok(Cow::Borrowed(file)) } else { png(&image).map(Cow::Owned) };
         let text = match self.protocol {
-            Protocol::Kitty => kitty(&*file()?),
-            Protocol::Iterm => iterm(&*file()?),
+            Protocol::Kitty => kitty(&file()?),
+            Protocol::Iterm => iterm(&file()?),
             Protocol::Sixel => sixel::text(&image, self.colours) + "\n",
             Protocol::Auto | Protocol::Blocks => {
                 let palette = if terminal::has_true_colours() { Palette::True } else { Palette::Indexed };

@@ -65,8 +65,8 @@ fn is_one_of(variable: &str, names: &[&str]) -> bool {
 
 /// Columns and rows as the environment tells: shells let users export them.
 pub fn cells_by_environment() -> Option<[usize; 2]> {
-    let number = |name| env::var(name).ok()?.parse().ok().filter(|&number| number > 0);
-    Some([number("COLUMNS")?, number("LINES")?])
+    let number = |name| env::var(name).ok()?.parse::<u16>().ok().filter(|&number| number > 0);
+    Some([number("COLUMNS")?, number("LINES")?].map(usize::from))
 }
 
 #[cfg(unix)]
@@ -95,12 +95,12 @@ mod unix {
     const PATIENCE: Duration = Duration::from_millis(200);
     const PATIENCE_FAR: Duration = Duration::from_millis(1500);
 
-    /// The terminal of standard output.
-    pub fn terminal() -> Terminal {
+    /// The terminal of standard output: with what it says of itself, if it is to be asked.
+    pub fn terminal(is_asked: bool) -> Terminal {
         let out = std::io::stdout();
         let size = tcgetwinsize(&out).ok();
         let pair = |a: u16, b: u16| (a > 0 && b > 0).then(|| [usize::from(a), usize::from(b)]);
-        let answer = ask();
+        let answer = if is_asked { ask() } else { None };
         let said = answer.as_ref().and_then(|answer| answer.pixels);
         Terminal {
             cells: size.and_then(|size| pair(size.ws_col, size.ws_row)),
@@ -171,7 +171,7 @@ mod unix {
 
 /// What is known without a question.
 #[cfg(not(unix))]
-pub fn terminal() -> Terminal {
+pub fn terminal(_is_asked: bool) -> Terminal {
     #[cfg(windows)]
     {
         // Old consoles must be told to obey.
@@ -202,8 +202,8 @@ fn parse(bytes: &[u8]) -> Option<Answer> {
                 let Some(end) = text.iter().position(|byte| (0x40..0x7f).contains(byte)) else { continue };
                 let (text, last) = (String::from_utf8_lossy(&text[..end]), text[end]);
                 let private = text.strip_prefix('?');
-                let numbers: Vec<usize> =
-                    private.unwrap_or(&text).split(';').map(|number| number.parse().unwrap_or(0)).collect();
+                let number = |text: &str| text.parse::<u16>().map_or(0, usize::from);
+                let numbers: Vec<usize> = private.unwrap_or(&text).split(';').map(number).collect();
                 match (private.is_some(), last, &numbers[..]) {
                     // The first number is a class of terminals.
                     (true, b'c', [_, parts @ ..]) => {
