@@ -494,6 +494,59 @@ fn edges_of_features_are_drawn() {
     );
 }
 
+/// A square of right-angled triangles, seen from in front, whose equal sides are so many pixels long: between the greatest
+/// size at which edges are left out and the least at which they are whole, they grow darker.
+#[test]
+fn edges_of_small_triangles_fade() {
+    let picture = |pixels: f64, edges: MeshEdges| {
+        let n = (120.0 / pixels) as u32;
+        let at = |i: u32| 2.0 * f64::from(i) / f64::from(n) - 1.0;
+        let vertices = (0..(n + 1) * (n + 1)).map(|v| [at(v % (n + 1)), 0.0, at(v / (n + 1))]);
+        let triangles = (0..n * n).flat_map(|square| {
+            let v = square / n * (n + 1) + square % n;
+            [[v, v + 1, v + n + 2], [v, v + n + 2, v + n + 1]]
+        });
+        let mesh = TriangleMesh::new(vertices.collect(), triangles.collect()).unwrap();
+        let layer = MeshLayer::new(&mesh).edges(edges, 1.0, [0, 0, 0, 255]);
+        take(&Shot { samples: 16, ..shot(front(2.0), [120, 120]) }, &[&layer])
+    };
+    // The part of the light that the edges take away, in the middle of the picture.
+    let darker = |pixels: f64| {
+        let light = |edges| -> f64 {
+            let picture = picture(pixels, edges);
+            let is_middle = |i: &usize| (20..100).contains(&(i % 120)) && (20..100).contains(&(i / 120));
+            (0..120 * 120).filter(is_middle).map(|i| linear(picture.colours()[i][0])).sum()
+        };
+        1.0 - light(MeshEdges::All) / light(MeshEdges::None)
+    };
+    for pixels in [0.5, 1.0, 2.0] {
+        assert_eq!(picture(pixels, MeshEdges::All), picture(pixels, MeshEdges::None), "{pixels}");
+    }
+    // Edges a pixel wide along two sides and the third, where they are whole.
+    let whole = |pixels: f64| 1.0 - (1.0 - 1.0 / pixels).powi(2) * (1.0 - 2f64.sqrt() / pixels);
+    for pixels in [8.0, 12.0, 20.0, 40.0] {
+        let (found, whole) = (darker(pixels), whole(pixels));
+        assert!((found - whole).abs() < 0.06, "{pixels}: {found} {whole}");
+    }
+    // Between, their opacity grows with the height of the triangles.
+    for pixels in [3.0, 4.0, 5.0, 6.0] {
+        let opacity = (pixels / 2f64.sqrt() - 1.5) / 4.0;
+        let (found, expected) = (darker(pixels), opacity * whole(pixels));
+        assert!((found - expected).abs() < 0.06, "{pixels}: {found} {expected}");
+    }
+    // Where a large triangle ends at small ones, its edge is seen.
+    let mut mesh = vec![[0.0, 0.0, -0.9], [0.0, 0.0, 0.9], [-0.9, 0.0, 0.0]];
+    let mut triangles = vec![[0, 1, 2]];
+    for i in 0..90u32 {
+        mesh.push([0.01, 0.0, -0.9 + 0.02 * f64::from(i)]);
+        triangles.push([0, 1, 3 + i]);
+    }
+    let mesh = TriangleMesh::new(mesh, triangles).unwrap();
+    let layer = MeshLayer::new(&mesh).edges(MeshEdges::All, 1.0, [0, 0, 0, 255]);
+    let picture = take(&shot(front(2.0), [100, 100]), &[&layer]);
+    assert!((10..90).all(|y| (48..52).any(|x| is_dark(picture.colours()[y * 100 + x]))));
+}
+
 /// The part of pixels that a line covers is its width, wherever it lies; samples are those within half of it.
 #[test]
 fn lines_cover_what_they_should() {

@@ -55,5 +55,5 @@ pub(crate) use sides::Sides;
 #[cfg(feature = "std")]
 pub(crate) use surface::Faces;
 pub use surface::{FillRule, TriangleMesh};
-pub(crate) use topology::for_each_edge;
+pub(crate) use topology::{Edge, for_each_edge};
 pub(crate) use weld::FacetWelder;

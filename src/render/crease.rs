@@ -4,7 +4,7 @@ use super::mapped::mapped;
 use crate::control::Job;
 use crate::error::Error;
 use crate::memory;
-use crate::mesh::{TriangleMesh, for_each_edge};
+use crate::mesh::{Edge, TriangleMesh, for_each_edge};
 use alloc::vec::Vec;
 use glam::{DVec3, Vec3};
 
@@ -88,22 +88,15 @@ pub fn corner_normals(
     })
 }
 
-/// The edges at which a mesh ends, branches, or bends by more than `crease` (degrees); all edges if `all`.
-pub fn edges(
+/// The edges at which a mesh ends, branches, or bends by more than `crease` (degrees).
+pub fn features(
     mesh: &TriangleMesh,
     normals: &[DVec3],
     crease: f64,
-    all: bool,
     job: &Job<'_>,
 ) -> Result<Vec<[u32; 2]>, Error> {
     let least = libm::cos(crease.to_radians()).min(PLANE);
-    let mut found = Vec::new();
-    let mut visited = 0_u64;
-    for_each_edge(mesh.triangles(), mesh.vertices().len(), |edge| {
-        visited += 1;
-        if visited.is_multiple_of(1 << 14) {
-            job.check()?;
-        }
+    edges(mesh, job, |edge| {
         let mut two = edge.triangles();
         let is_feature = match (edge.count(), two.next(), two.next()) {
             (2, Some(a), Some(b)) => {
@@ -115,7 +108,24 @@ pub fn edges(
             }
             _ => true,
         };
-        if all || is_feature { memory::push(&mut found, [edge.low, edge.high]) } else { Ok(()) }
+        is_feature.then_some([edge.low, edge.high])
+    })
+}
+
+/// What `choose` makes of the edges of a mesh.
+pub fn edges<T>(
+    mesh: &TriangleMesh,
+    job: &Job<'_>,
+    mut choose: impl FnMut(&Edge<'_>) -> Option<T>,
+) -> Result<Vec<T>, Error> {
+    let mut found = Vec::new();
+    let mut visited = 0_u64;
+    for_each_edge(mesh.triangles(), mesh.vertices().len(), |edge| {
+        visited += 1;
+        if visited.is_multiple_of(1 << 14) {
+            job.check()?;
+        }
+        choose(edge).map_or(Ok(()), |chosen| memory::push(&mut found, chosen))
     })?;
     Ok(found)
 }

@@ -123,7 +123,7 @@ impl Draw for LinesLayer<'_> {
     fn prepare<'a>(&'a self, stage: &Stage<'a>) -> Result<Box<dyn Painter + 'a>, Error> {
         check_width(self.width)?;
         self.lines.iter().flatten().try_for_each(|point| numbers("lines", point))?;
-        let lines = self.lines.iter().map(|line| line.map(DVec3::from));
+        let lines = self.lines.iter().map(|line| (line.map(DVec3::from), 1.0));
         Ok(Box::new(Lines(Strokes::new(stage, lines, self.width, Light::of(self.colour))?)))
     }
 }

@@ -16,7 +16,7 @@ use crate::memory;
 use crate::mesh::TriangleMesh;
 use alloc::boxed::Box;
 use alloc::vec::Vec;
-use glam::{DVec3, Vec3};
+use glam::{DVec2, DVec3, Vec3};
 
 /// Which edges of a mesh are drawn as lines.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -26,7 +26,8 @@ pub enum MeshEdges {
     None,
     /// Those at which the mesh ends, or where triangles meet at more than the crease angle.
     Features,
-    /// Those of all triangles.
+    /// Those of all triangles. The edges of triangles that are seen only a few pixels large are fainter, and those of smaller
+    /// ones not drawn: a fine mesh does not turn black.
     All,
 }
 
@@ -49,6 +50,10 @@ pub struct MeshLayer<'a> {
     edge_width: f64,
     edge_colour: [u8; 4],
 }
+
+/// The edges of a triangle whose least height is seen as fewer pixels are not drawn; with the greater number they are drawn
+/// wholly. (In a triangle with two equal sides at a right angle, these have 2 and 8 pixels.)
+const FADE: [f64; 2] = [1.5, 5.5];
 
 /// What faces that are seen from behind are mixed with, unless they have a colour of their own: vermilion.
 const INSIDE: [u8; 4] = [213, 94, 0, 255];
@@ -124,14 +129,24 @@ impl Draw for MeshLayer<'_> {
             crease => Some(crease::corner_normals(mesh, &normals, crease, stage.job)?),
         };
         let edges = match self.edges {
-            MeshEdges::None => None,
-            which => {
-                let all = which == MeshEdges::All;
-                let edges = crease::edges(mesh, &normals, self.crease, all, stage.job)?;
-                let lines = edges.into_iter().map(|ends| ends.map(|v| vertex(v as usize)));
-                Some(Strokes::new(stage, lines, self.edge_width, Light::of(self.edge_colour))?)
+            MeshEdges::None => Vec::new(),
+            MeshEdges::Features => {
+                let edges = crease::features(mesh, &normals, self.crease, stage.job)?;
+                mapped(stage.job, edges.len(), |i| (edges[i], 1.0))?
+            }
+            MeshEdges::All => {
+                let opacities = mapped(stage.job, triangles.len(), |i| {
+                    edge_opacity(view, triangles[i].map(|v| seen[v as usize]))
+                })?;
+                // Where a large triangle ends at a small one, its edge is seen.
+                crease::edges(mesh, stage.job, |edge| {
+                    let opacity = edge.triangles().map(|i| opacities[i as usize]).fold(0.0, f32::max);
+                    (opacity > 0.0).then_some(([edge.low, edge.high], opacity))
+                })?
             }
         };
+        let lines = edges.into_iter().map(|(ends, opacity)| (ends.map(|v| vertex(v as usize)), opacity));
+        let edges = Strokes::new(stage, lines, self.edge_width, Light::of(self.edge_colour))?;
         // The coordinates of the outermost samples: x and y of a line of sight that is 1 long along the view.
         let reach = [view.width, view.height].map(|side| 0.5 * f64::from(side) * view.pixel_at(1.0));
         let lights = lights(self.colour, self.inside);
@@ -188,6 +203,20 @@ fn place(view: &View, corners: [DVec3; 3]) -> Option<[f64; 4]> {
     Some(hull)
 }
 
+/// The opacity of the edges of a triangle, by the size in which it is seen: 0 to 1.
+fn edge_opacity(view: &View, corners: [DVec3; 3]) -> f32 {
+    if view.is_perspective() && corners.iter().any(|corner| corner.z <= 0.0) {
+        return 1.0;
+    }
+    let [a, b, c] = corners.map(|corner| DVec2::from(view.place(corner)));
+    let longest = (b - a).length().max((c - b).length()).max((a - c).length());
+    // (A triangle that is seen as a point has no height.)
+    let height = if longest > 0.0 { (b - a).perp_dot(c - a).abs() / longest } else { 0.0 };
+    let opacity = (height - FADE[0]) / (FADE[1] - FADE[0]);
+    // What is no number is large.
+    if opacity.is_nan() { 1.0 } else { opacity.clamp(0.0, 1.0) as f32 }
+}
+
 /// A mesh that is ready to be drawn.
 struct Ready<'a> {
     layer: &'a MeshLayer<'a>,
@@ -198,7 +227,7 @@ struct Ready<'a> {
     normals: Vec<DVec3>,
     /// Of the corners of each triangle, unless all are flat.
     smooth: Option<Vec<[Vec3; 3]>>,
-    edges: Option<Strokes>,
+    edges: Strokes,
     reach: [f64; 2],
     /// Of faces seen from the front and from behind, unless each has a colour of its own.
     lights: [Light; 2],
@@ -255,7 +284,7 @@ impl Painter for Ready<'_> {
                 self.draw(tile, &samples, i as usize)?;
             }
         }
-        self.edges.as_ref().map_or(Ok(()), |edges| edges.paint(tile))
+        self.edges.paint(tile)
     }
 }
 

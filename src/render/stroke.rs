@@ -24,10 +24,17 @@ struct End {
     depth: f64,
 }
 
+/// A line as it is seen, and the part of the colour's opacity that it has.
+#[derive(Clone, Copy)]
+struct Line {
+    ends: [End; 2],
+    opacity: f32,
+}
+
 /// Lines in space that are ready to be drawn. A line on a surface is seen, because it counts as nearer than it is by its
 /// width and a pixel.
 pub struct Strokes {
-    lines: Vec<[End; 2]>,
+    lines: Vec<Line>,
     bins: Bins,
     /// In pixels.
     half_width: f64,
@@ -35,17 +42,18 @@ pub struct Strokes {
 }
 
 impl Strokes {
-    /// Lines between points of model space, cut by the clip planes. `width` in pixels. O(lines + tiles).
+    /// Lines between points of model space, cut by the clip planes, with the parts of the opacity of `light` that they have,
+    /// 0 to 1. `width` in pixels. O(lines + tiles).
     pub fn new(
         stage: &Stage<'_>,
-        lines: impl ExactSizeIterator<Item = [DVec3; 2]>,
+        lines: impl ExactSizeIterator<Item = ([DVec3; 2], f32)>,
         width: f64,
         light: Light,
     ) -> Result<Strokes, Error> {
         let view = stage.view;
         let half_width = 0.5 * width;
-        let mut seen: Vec<[End; 2]> = memory::with_capacity(lines.len())?;
-        for (i, line) in lines.enumerate() {
+        let mut seen: Vec<Line> = memory::with_capacity(lines.len())?;
+        for (i, (line, opacity)) in lines.enumerate() {
             if i % (1 << 12) == 0 {
                 stage.job.check()?;
             }
@@ -61,42 +69,44 @@ impl Strokes {
                 let near = near(ends);
                 // What is no number is seen nowhere.
                 let ends = cut_numbers(ends, ends.map(|end| end.z - near))?;
-                Some(ends.map(|end| End::new(view, end, near)))
+                Some(Line { ends: ends.map(|end| End::new(view, end, near)), opacity })
             }));
         }
         let margin = DVec2::splat(half_width);
         let size = DVec2::new(f64::from(view.width), f64::from(view.height));
         let bins = Bins::new([view.width, view.height], seen.len(), stage.job, |i| {
-            let [a, b] = within(seen[i].map(|end| end.place), -margin, size + margin)?;
+            let [a, b] = within(seen[i].ends.map(|end| end.place), -margin, size + margin)?;
             let (low, high) = (a.min(b) - margin, a.max(b) + margin);
             Some([low.x, low.y, high.x, high.y])
         })?;
         Ok(Strokes { lines: seen, bins, half_width, light })
     }
 
-    /// Draws what is seen in a tile. A translucent line is no darker where two of these lines overlap.
+    /// Draws what is seen in a tile. Where several of these lines overlap only the nearest is drawn, so that translucent ones
+    /// are no darker there.
     pub fn paint(&self, tile: &mut Tile<'_>) -> Result<(), Error> {
         let lines = self.bins.of(tile)?;
         if lines.is_empty() || self.light.0.w <= 0.0 {
             return Ok(());
         }
-        let mut nearest = memory::filled(tile.width() * tile.height(), f64::INFINITY)?;
+        let mut nearest = memory::filled(tile.width() * tile.height(), (f64::INFINITY, 0.0))?;
         for i in lines {
             self.reach(tile, self.lines[i as usize], &mut nearest);
         }
         let width = 1.0 + 2.0 * self.half_width;
-        for (sample, depth) in nearest.into_iter().enumerate() {
+        for (sample, (depth, opacity)) in nearest.into_iter().enumerate() {
             if depth < f64::INFINITY {
                 // No nearer than half way, for wide lines in the face of the eye.
                 let nearer = (depth - width * tile.view.pixel_at(depth)).max(0.5 * depth);
-                tile.put(sample, nearer, self.light)?;
+                tile.put(sample, nearer, self.light * opacity)?;
             }
         }
         Ok(())
     }
 
-    /// Brings the depths of a line to the samples that it covers: those that lie within half its width.
-    fn reach(&self, tile: &Tile<'_>, [a, b]: [End; 2], nearest: &mut [f64]) {
+    /// Brings the depth and the opacity of a line to the samples that it covers: those that lie within half its width.
+    fn reach(&self, tile: &Tile<'_>, line: Line, nearest: &mut [(f64, f32)]) {
+        let [a, b] = line.ends;
         let along = b.place - a.place;
         let (square, reach) = (along.length_squared(), self.half_width + 2.0 * NUDGE.y);
         let top = a.place.y.min(b.place.y) - reach;
@@ -117,7 +127,10 @@ impl Strokes {
                 let depth = a.depth + (b.depth - a.depth) * part;
                 let depth = if tile.view.is_perspective() { 1.0 / depth } else { depth };
                 let nearest = &mut nearest[row * tile.width() + column];
-                *nearest = nearest.min(depth);
+                // Of lines that meet at their ends the most opaque one is seen.
+                if depth < nearest.0 || depth == nearest.0 && line.opacity > nearest.1 {
+                    *nearest = (depth, line.opacity);
+                }
             }
         }
     }
