@@ -69,7 +69,7 @@ pub enum View {
 enum Edges {
     /// Where faces meet at more than 30 degrees
     Features,
-    /// Those of all triangles
+    /// Those of all triangles, fainter where these are seen small
     All,
 }
 
