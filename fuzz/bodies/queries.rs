@@ -3,10 +3,11 @@
 
 use super::{Aligned, CONTROL, Random, halves, walk};
 use leafless::{
-    Camera, Cell, CellFilter, Classifier, Columns, Control, Csg, Cursor, Direction, DistanceTo, Finish,
-    Frame, Layer, LazyOctree, Lens, Membership, Obstacle, OctreeLayer, OctreeRef, PointCursor, PointTable,
-    Proof, Ray, Region, Rule, Run, Shot, Side, SliceLayer, SlicePlane, Solid, Tag, TaggedCell, Verdict,
-    Worker, Zone, build, classify_box, contains, file, render,
+    Camera, Cell, CellFilter, Classifier, ColourMap, Columns, Control, Csg, Cursor, Direction, DistanceTo,
+    Finish, Frame, Layer, LazyOctree, Lens, Membership, Obstacle, OctreeLayer, OctreeRef, Outline,
+    PointCursor, PointTable, Proof, Ray, Region, Rule, Run, Shot, Side, SliceLayer, SlicePlane, Solid, Tag,
+    TaggedCell, Transfer, Verdict, VolumeLayer, VoxelOptions, VoxelRecords, Worker, Zone, build,
+    classify_box, contains, file, render,
 };
 
 /// Asks the tree in the first half of `data` what the second half says.
@@ -43,20 +44,41 @@ pub fn ask(tree: &OctreeRef<'_>, questions: &[u8], verified: bool) {
     assert!(steps <= 1 + 72 * (tree.element_count() + tree.brick_count()), "{steps} steps");
 }
 
-/// Small pictures of the surface and of a slice, from anywhere.
+/// Small pictures of the surface, of a slice and of the voxels, from anywhere. Where a surface is seen, a ray meets it.
 fn ask_pictures(tree: &OctreeRef<'_>, points: &[[f64; 3]]) {
     let [Some(eye), Some(at)] = [points.first(), points.get(1)] else { return };
-    let lenses = [Lens::Perspective(50.0), Lens::Parallel(tree.frame().edge())];
-    for lens in lenses {
+    let edge = tree.frame().edge();
+    let middle = tree.frame().origin()[2] + 0.5 * edge;
+    let outlined = Finish { edges: Some(Outline::default()), ..Finish::default() };
+    let records = VoxelRecords::of(tree, &VoxelOptions::new().boundary_depth(4), None, &CONTROL);
+    for lens in [Lens::Perspective(50.0), Lens::Parallel(edge)] {
         let Ok(camera) = Camera::new(*eye, *at, [0.1, 0.2, 1.0], lens) else { continue };
-        let surface = OctreeLayer::new(tree, Finish::default());
-        let middle = tree.frame().origin()[2] + 0.5 * tree.frame().edge();
-        let Ok(plane) = SlicePlane::across(2, middle) else { continue };
-        let slice = SliceLayer::new(tree, plane);
         let shot = Shot { samples: 1, ..Shot::new(camera, [7, 5]) };
-        for layers in [&[&surface as &dyn Layer][..], &[&slice]] {
-            let picture = render(&shot, layers, &CONTROL).expect("nothing is wrong with it");
-            assert_eq!(picture.colours().len(), 35);
+        let take = |layer: &dyn Layer| render(&shot, &[layer], &CONTROL).expect("nothing is wrong with it");
+        let surface = take(&OctreeLayer::new(tree, Finish::default()));
+        assert_eq!(
+            surface.depths(),
+            take(&OctreeLayer::new(tree, Finish { faces: true, ..Finish::default() })).depths()
+        );
+        for (seen, lined) in surface.depths().iter().zip(take(&OctreeLayer::new(tree, outlined)).depths()) {
+            assert!(seen == lined || (seen - lined).abs() <= 1e-6 * seen.abs());
+        }
+        // The pixel in the middle.
+        let hit = Ray::new(camera.eye(), camera.forward())
+            .ok()
+            .and_then(|ray| tree.cast_ray(&ray, Obstacle::Upper));
+        let depth = f64::from(surface.depths()[17]);
+        match hit {
+            Some(hit) => assert!((hit.t.lower.max(0.0) - depth).abs() <= 1e-5 * depth.max(1e-9 * edge)),
+            None => assert_eq!(depth, f64::INFINITY),
+        }
+        if let Ok(plane) = SlicePlane::across(2, middle) {
+            take(&SliceLayer::new(tree, plane));
+        }
+        if let (Ok(records), Ok(transfer)) =
+            (&records, Transfer::new(ColourMap::Viridis, [0.0, 1.0], 0.5, edge))
+        {
+            take(&VolumeLayer::new(records.view(), transfer));
         }
     }
 }
