@@ -13,7 +13,7 @@ use crate::lattice::morton;
 use crate::octree::view::OctreeRef;
 use glam::{DVec3, Vec3A, Vec4};
 
-/// Normals of a stored octree, with what was found out before.
+/// Normals of a stored octree. What was found out before is kept: most samples lie in the block of the one before.
 pub struct Normals<'a> {
     occupancy: Occupancy<'a>,
     sizes: [Blocks; 2],
@@ -26,7 +26,6 @@ struct Blocks {
 }
 
 /// The planes of the 27 blocks about a point that lies in the block in their middle.
-#[derive(Clone, Copy)]
 struct About {
     /// Which blocks have a surface.
     present: u32,

@@ -104,5 +104,6 @@ pub fn normal_of_cells(
         // (A cast saturates.)
         (scaled[axis] as u32).clamp(low, high)
     });
-    normals.at(scaled, at)
+    let low = DVec3::from(at.map(f64::from));
+    normals.at(scaled.clamp(low, low + 1.0), at)
 }

@@ -131,7 +131,7 @@ impl<S: Solid> SolidPainter<'_, S> {
                 let near = passed.filter(|(end, normal)| t - end <= step && *normal != DVec3::ZERO);
                 return Ok(Some((t, (!begins).then_some(near.map_or(face, |(_, normal)| normal)))));
             }
-            let leaves = leaves(frame, hit.cell, sight);
+            let [_, leaves] = stay(frame, hit.cell, sight);
             match self.met(hand, hit.cell, sight, [t, leaves])? {
                 Met::At(s, normal) => return Ok(Some((s, (s > 0.0).then_some(normal)))),
                 Met::Unknown => {
@@ -218,11 +218,11 @@ impl<S: Solid> SolidPainter<'_, S> {
             let Some(at) = finest.cell_of((point + offset).to_array()) else { continue };
             let near = Cell { level, at: at.map(|a| a >> (MAX_DEPTH - level)) };
             let Some(found) = self.enclosure(hand, near)? else { continue };
-            let reach = 4.0 * size / sight.along.length();
             let normal = DVec3::from(found.slabs[0].normal);
-            return Ok(Some(match self.through(found, near, sight, [t - reach, t + reach]) {
-                Met::At(s, normal) if s > t - reach => Met::At(s, normal),
-                // It only just touches what turns away there.
+            let [enters, leaves] = stay(&finest, near, sight);
+            return Ok(Some(match self.through(found, near, sight, [enters, leaves]) {
+                Met::At(s, normal) if s > enters => Met::At(s, normal),
+                // It meets the surface beside that cell.
                 _ => Met::At(t, normal),
             }));
         }
@@ -286,13 +286,13 @@ fn corner_of(frame: &Frame, cell: Cell) -> (DVec3, f64) {
     (DVec3::from(frame.origin()) + DVec3::from(cell.at.map(f64::from)) * edge, edge)
 }
 
-/// When a line of sight leaves a cell.
-fn leaves(frame: &Frame, cell: Cell, sight: &Sight) -> f64 {
+/// When a line of sight enters and leaves a cell; it passes it by if it leaves before it enters.
+fn stay(frame: &Frame, cell: Cell, sight: &Sight) -> [f64; 2] {
     let (low, edge) = corner_of(frame, cell);
     let axes = (0..3).filter(|&axis| sight.along[axis] != 0.0);
-    axes.fold(f64::INFINITY, |leaves, axis| {
-        let plane = low[axis] + if sight.along[axis] > 0.0 { edge } else { 0.0 };
-        leaves.min((plane - sight.from[axis]) / sight.along[axis])
+    axes.fold([f64::NEG_INFINITY, f64::INFINITY], |[enters, leaves], axis| {
+        let [a, b] = [0.0, edge].map(|more| (low[axis] + more - sight.from[axis]) / sight.along[axis]);
+        [enters.max(a.min(b)), leaves.min(a.max(b))]
     })
 }
 
