@@ -90,6 +90,8 @@ static void layers(void) {
     look.faces = 2;
     BAD_NUMBER(leafless_layer_new_octree, faces, leafless_layer_new_octree(octree, &look, result));
     BAD_NUMBER(leafless_layer_new_mesh, faces, leafless_layer_new_mesh(mesh, &look, result));
+    look.faces = 1;
+    BAD_NUMBER(leafless_layer_new_solid, faces, leafless_layer_new_solid(solid, &frame, &look, result));
     look.faces = 0;
     look.edges = 3;
     BAD_NUMBER(leafless_layer_new_octree, edges, leafless_layer_new_octree(octree, &look, result));

@@ -224,6 +224,7 @@ static void sections(void) {
     leafless_attribute *attribute;
     leafless_transfer transfer;
     leafless_slice_look look;
+    leafless_look surface;
     leafless_layer *layer;
     leafless_shot shot = shot_of(1);
     uint8_t first[sizeof colours];
@@ -265,6 +266,22 @@ static void sections(void) {
     take(&shot, layer);
     CHECK(is(pixel(SIDE / 2, SIDE / 2), VIOLET));
     leafless_layer_free(layer);
+    /* The same on the surface, shaded: the ratio of red to blue light stays. */
+    OK(leafless_attribute_new_constant(&value, 1, &attribute));
+    OK(leafless_look_init(&surface, sizeof surface));
+    surface.attribute = attribute;
+    surface.transfer = &transfer;
+    for (x = 0; x < 2; x++) {
+        if (x == 0) {
+            OK(leafless_layer_new_octree(octree, &surface, &layer));
+        } else {
+            OK(leafless_layer_new_solid(solid, &frame, &surface, &layer));
+        }
+        take(&shot, layer);
+        CHECK(pixel(SIDE / 2, SIDE / 2)[1] < 3 && pixel(SIDE / 2, SIDE / 2)[2] > 60);
+        leafless_layer_free(layer);
+    }
+    leafless_attribute_free(attribute);
     leafless_octree_free(octree);
     leafless_solid_free(solid);
 }

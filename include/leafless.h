@@ -3120,7 +3120,7 @@ typedef struct {
      */
     uint32_t struct_size;
     /**
-     * Of octrees and solids: 1 to show cells by their faces, instead of the surface that they stand for; else 0.
+     * Of octrees: 1 to show cells by their faces, instead of the surface that they stand for; else 0.
      */
     uint32_t faces;
     /**
@@ -3158,11 +3158,12 @@ typedef struct {
      */
     uint64_t triangle_count;
     /**
-     * Of octrees: values, as a channel's, that are shown half a finest cell below the surface; optional.
+     * Of octrees and solids: values, as a channel's, that are shown half a finest cell below the surface, or of solids half
+     * a pixel; optional.
      */
     const leafless_attribute *attribute;
     /**
-     * Of octrees with an attribute: the colours of its values.
+     * With an attribute: the colours of its values.
      */
     const leafless_transfer *transfer;
 } leafless_look;
@@ -8221,7 +8222,8 @@ leafless_status leafless_layer_new_octree(const leafless_octree *octree,
  * - Result: `*layer`.
  * - Errors: LEAFLESS_E_ARGUMENT if the look or the frame is not as it must be; taking a picture also returns what
  *   leafless_octree_build does.
- * - Ownership: the layer shares the solid, which may be freed; give `*layer` back with leafless_layer_free.
+ * - Ownership: the layer shares the solid and the attribute, which may be freed; give `*layer` back with
+ *   leafless_layer_free.
  * - Threads: any.
  * - Untrusted input: any solid.
  * - Since: 0.1

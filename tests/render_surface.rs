@@ -195,9 +195,13 @@ fn values_give_their_colours() {
         Some(_) => [0, 0, 200, 255],
         None => [200, 0, 0, 255],
     };
-    let layer = OctreeLayer::new(tree.view(), Finish::default()).values(&side, &colour);
-    for shot in shots() {
-        let picture = render(&shot, &[&layer], &alone()).unwrap();
+    let solid = ball();
+    let octree = OctreeLayer::new(tree.view(), Finish::default()).values(&side, &colour);
+    let by_slabs = SolidLayer::new(&solid, &frame(7), Finish::default()).values(&side, &colour);
+    let both =
+        shots().into_iter().flat_map(|shot| [(shot.clone(), &octree as &dyn Layer), (shot, &by_slabs)]);
+    for (shot, layer) in both {
+        let picture = render(&shot, &[layer], &alone()).unwrap();
         let mut seen = [0; 2];
         for (at, colour, depth) in pixels(&picture).filter(|pixel| pixel.2.is_finite()) {
             let (from, along) = line(&shot.camera, at);

@@ -39,7 +39,7 @@ pub enum leafless_edges {
 pub struct leafless_look {
     /// sizeof(leafless_look).
     pub struct_size: u32,
-    /// Of octrees and solids: 1 to show cells by their faces, instead of the surface that they stand for; else 0.
+    /// Of octrees: 1 to show cells by their faces, instead of the surface that they stand for; else 0.
     pub faces: u32,
     /// The colour in full light; all zero: light grey.
     pub colour: [u8; 4],
@@ -59,9 +59,10 @@ pub struct leafless_look {
     pub triangle_colours: *const u8,
     /// How many colours of triangles there are.
     pub triangle_count: u64,
-    /// Of octrees: values, as a channel's, that are shown half a finest cell below the surface; optional.
+    /// Of octrees and solids: values, as a channel's, that are shown half a finest cell below the surface, or of solids half
+    /// a pixel; optional.
     pub attribute: *const leafless_attribute,
-    /// Of octrees with an attribute: the colours of its values.
+    /// With an attribute: the colours of its values.
     pub transfer: *const leafless_transfer,
 }
 
@@ -107,6 +108,13 @@ impl leafless_look {
         })
     }
 
+    /// # Safety
+    /// As [`values`].
+    unsafe fn values(&self) -> Result<Option<Values>, Failure> {
+        // SAFETY: the caller's promise.
+        unsafe { values(self.attribute, self.transfer, ["look.attribute", "look.transfer"]) }
+    }
+
     fn edges(&self) -> Result<MeshEdges, Failure> {
         match self.edges {
             none if none == LEAFLESS_EDGES_NONE as u32 => Ok(MeshEdges::None),
@@ -114,11 +122,6 @@ impl leafless_look {
             all if all == LEAFLESS_EDGES_ALL as u32 => Ok(MeshEdges::All),
             _ => Err(Failure::Argument { name: "look.edges", problem: "is no leafless_edges" }),
         }
-    }
-
-    fn without_values(&self) -> Result<(), Failure> {
-        unused(self.attribute.is_null(), "look.attribute", "is for octrees only")?;
-        unused(self.transfer.is_null(), "look.transfer", "is for octrees only")
     }
 }
 
@@ -173,7 +176,7 @@ pub unsafe extern "C" fn leafless_layer_new_octree(
         let octree = share(octree, "octree")?;
         let look = sized(look, "look")?;
         let finish = look.finish()?;
-        let values = values(look.attribute, look.transfer, ["look.attribute", "look.transfer"])?;
+        let values = look.values()?;
         out(layer, "layer")?.write(give(OfOctree { octree, finish, values }))
     })
 }
@@ -182,11 +185,16 @@ struct OfSolid {
     solid: Arc<leafless_solid>,
     frame: Frame,
     finish: Finish,
+    values: Option<Values>,
 }
 
 impl Shown for OfSolid {
     fn layer(&self) -> Result<Box<dyn Layer + '_>, Failure> {
-        Ok(Box::new(SolidLayer::new(&self.solid.solid, &self.frame, self.finish)))
+        let layer = SolidLayer::new(&self.solid.solid, &self.frame, self.finish);
+        Ok(match &self.values {
+            Some(values) => Box::new(layer.values(&values.attribute, &values.colour)),
+            None => Box::new(layer),
+        })
     }
 }
 
@@ -198,7 +206,8 @@ impl Shown for OfSolid {
 /// - Result: `*layer`.
 /// - Errors: LEAFLESS_E_ARGUMENT if the look or the frame is not as it must be; taking a picture also returns what
 ///   leafless_octree_build does.
-/// - Ownership: the layer shares the solid, which may be freed; give `*layer` back with leafless_layer_free.
+/// - Ownership: the layer shares the solid and the attribute, which may be freed; give `*layer` back with
+///   leafless_layer_free.
 /// - Threads: any.
 /// - Untrusted input: any solid.
 /// - Since: 0.1
@@ -213,9 +222,10 @@ pub unsafe extern "C" fn leafless_layer_new_solid(
         let solid = share(solid, "solid")?;
         let frame = self::frame(frame)?;
         let look = sized(look, "look")?;
+        unused(look.faces == 0, "look.faces", "is for octrees only")?;
         let finish = look.finish()?;
-        look.without_values()?;
-        out(layer, "layer")?.write(give(OfSolid { solid, frame, finish }))
+        let values = look.values()?;
+        out(layer, "layer")?.write(give(OfSolid { solid, frame, finish, values }))
     })
 }
 
@@ -276,8 +286,9 @@ pub unsafe extern "C" fn leafless_layer_new_mesh(
     guard(|| unsafe {
         let mesh = shared(mesh, "mesh")?.mesh.clone();
         let given = sized(look, "look")?;
-        unused(given.faces == 0, "look.faces", "is not for meshes")?;
-        given.without_values()?;
+        unused(given.faces == 0, "look.faces", "is for octrees only")?;
+        unused(given.attribute.is_null(), "look.attribute", "is not for meshes")?;
+        unused(given.transfer.is_null(), "look.transfer", "is not for meshes")?;
         let look = MeshLook {
             colour: chosen(given.colour),
             inside: chosen(given.inside),

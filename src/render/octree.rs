@@ -3,7 +3,7 @@
 use super::normals::Normals;
 use super::sight::Finish;
 use super::stage::{Colouring, Draw, Painter, Stage};
-use super::surface::{Seen, paint};
+use super::surface::{Seen, Skin, paint};
 use super::tile::Tile;
 use crate::attribute::Attribute;
 use crate::error::Error;
@@ -24,27 +24,26 @@ use glam::DVec3;
 #[derive(Clone, Copy)]
 pub struct OctreeLayer<'a> {
     tree: OctreeRef<'a>,
-    finish: Finish,
-    values: Option<(&'a dyn Attribute, Colouring<'a>)>,
+    skin: Skin<'a>,
 }
 
 impl core::fmt::Debug for OctreeLayer<'_> {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        f.debug_struct("OctreeLayer").field("finish", &self.finish).finish_non_exhaustive()
+        f.debug_struct("OctreeLayer").field("finish", &self.skin.finish).finish_non_exhaustive()
     }
 }
 
 impl<'a> OctreeLayer<'a> {
     /// The cells of an octree that are not EMPTY.
     pub fn new(tree: &OctreeRef<'a>, finish: Finish) -> OctreeLayer<'a> {
-        OctreeLayer { tree: *tree, finish, values: None }
+        OctreeLayer { tree: *tree, skin: Skin { finish, values: None } }
     }
 
     /// The same in the colours of an attribute's values, as a channel has them: `colour` tells the colour of a value, and of
     /// none. Values are those half a finest cell below the surface, where a solid's channel has one.
     #[must_use]
     pub fn values(self, attribute: &'a dyn Attribute, colour: Colouring<'a>) -> OctreeLayer<'a> {
-        OctreeLayer { values: Some((attribute, colour)), ..self }
+        OctreeLayer { skin: Skin { values: Some((attribute, colour)), ..self.skin }, ..self }
     }
 }
 
@@ -61,28 +60,21 @@ struct OctreePainter<'a> {
 
 impl Painter for OctreePainter<'_> {
     fn paint(&self, tile: &mut Tile<'_>) -> Result<(), Error> {
-        let tree = &self.layer.tree;
+        let OctreeLayer { tree, skin } = self.layer;
         let mut normals = Normals::new(tree);
-        let half = 0.5 * tree.frame().cell_size();
-        let blur = if self.layer.finish.faces { 0.0 } else { BLUR * tree.frame().cell_size() };
-        paint(tile, &self.stage, tree, &self.layer.finish, blur, |sight, touch| {
+        let blur = if skin.finish.faces { 0.0 } else { BLUR * tree.frame().cell_size() };
+        paint(tile, &self.stage, tree, skin, blur, |sight, touch| {
             let (t, face) = (touch.t, DVec3::from(touch.normal));
-            let point = sight.from + sight.along * t;
             let normal = if sight.begins_in(t, face) {
                 None
-            } else if self.layer.finish.faces {
+            } else if skin.finish.faces {
                 Some(face)
             } else {
+                let point = sight.from + sight.along * t;
                 let found = normal_of_cells(&mut normals, tree.frame(), point, &touch)?;
                 Some(if found == DVec3::ZERO { face } else { found })
             };
-            let mut finish = self.layer.finish;
-            if let Some((attribute, colour)) = self.layer.values {
-                let below = point - half * normal.unwrap_or(-sight.along).normalize_or_zero();
-                let shown = colour(attribute.value(below.to_array())?);
-                (finish.colour, finish.cut) = (shown, shown);
-            }
-            Ok(Some(Seen { t, normal, finish }))
+            Ok(Some(Seen { t, normal }))
         })
     }
 }

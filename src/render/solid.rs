@@ -4,9 +4,10 @@ use super::normals::Normals;
 use super::octree::normal_of_cells;
 use super::places::Places;
 use super::sight::{Finish, Sight};
-use super::stage::{Draw, Painter, Stage};
-use super::surface::{Seen, paint};
+use super::stage::{Colouring, Draw, Painter, Stage};
+use super::surface::{Seen, Skin, paint};
 use super::tile::Tile;
+use crate::attribute::Attribute;
 use crate::control::Control;
 use crate::error::Error;
 use crate::lattice::{Cell, Cube, Frame, MAX_DEPTH};
@@ -28,7 +29,7 @@ use glam::DVec3;
 pub struct SolidLayer<'a, S> {
     solid: &'a S,
     frame: Frame,
-    finish: Finish,
+    skin: Skin<'a>,
     deepest: u8,
 }
 
@@ -39,9 +40,17 @@ const DEEPEST: u8 = 11;
 const CONE: f64 = 0.08 * core::f64::consts::PI / 180.0;
 
 impl<'a, S: Solid> SolidLayer<'a, S> {
-    /// What lies of a solid in the universe of a frame, whatever its depth.
+    /// What lies of a solid in the universe of a frame, whatever its depth. (A solid has no cells that
+    /// [`faces`](Finish::faces) could show.)
     pub fn new(solid: &'a S, frame: &Frame, finish: Finish) -> SolidLayer<'a, S> {
-        SolidLayer { solid, frame: *frame, finish, deepest: DEEPEST }
+        SolidLayer { solid, frame: *frame, skin: Skin { finish, values: None }, deepest: DEEPEST }
+    }
+
+    /// The same in the colours of an attribute's values: `colour` tells the colour of a value, and of none. Values are those
+    /// half a pixel below the surface.
+    #[must_use]
+    pub fn values(self, attribute: &'a dyn Attribute, colour: Colouring<'a>) -> SolidLayer<'a, S> {
+        SolidLayer { skin: Skin { values: Some((attribute, colour)), ..self.skin }, ..self }
     }
 
     /// The same of larger cells: of the depth's, 1 to 11.
@@ -65,12 +74,12 @@ impl<S: Solid> Draw for SolidLayer<'_, S> {
         let control = Control { progress: None, ..*stage.job.control() };
         let octree = build(self.solid, &frame, Rule::Certified, &control)?;
         let classifier = self.solid.on(&frame.with_depth(MAX_DEPTH)?, &control)?;
-        Ok(memory::boxed(SolidPainter::<S> { finish: self.finish, stage: *stage, octree, classifier })?)
+        Ok(memory::boxed(SolidPainter::<S> { skin: &self.skin, stage: *stage, octree, classifier })?)
     }
 }
 
 struct SolidPainter<'a, S: Solid> {
-    finish: Finish,
+    skin: &'a Skin<'a>,
     stage: Stage<'a>,
     octree: Octree,
     /// On the finest lattice.
@@ -85,9 +94,9 @@ impl<S: Solid> Painter for SolidPainter<'_, S> {
             enclosures: Places::new(),
         };
         // The cells are as large as a pixel.
-        paint(tile, &self.stage, self.octree.view(), &self.finish, 0.0, |sight, touch| {
+        paint(tile, &self.stage, self.octree.view(), self.skin, 0.0, |sight, touch| {
             let met = self.sees(&mut hand, sight, touch)?;
-            Ok(met.map(|(t, normal)| Seen { t, normal, finish: self.finish }))
+            Ok(met.map(|(t, normal)| Seen { t, normal }))
         })
     }
 }
@@ -317,7 +326,7 @@ mod tests {
         let job = Job::new(&control);
         let stage = Stage { view: &view, clip: &clip, job: &job };
         let painter = SolidPainter::<Csg> {
-            finish: Finish::default(),
+            skin: &Skin { finish: Finish::default(), values: None },
             stage,
             octree: build(&ball, &frame, Rule::Certified, &control).unwrap(),
             classifier: ball.on(&frame.with_depth(MAX_DEPTH).unwrap(), &control).unwrap(),

@@ -1,14 +1,33 @@
 //! Surfaces that lines of sight meet: drawn, with their edges.
 
 use super::cast::Cast;
+use super::light::Light;
 use super::outline::{Field, Point};
 use super::sight::{Finish, Sight};
-use super::stage::Stage;
+use super::stage::{Colouring, Stage};
 use super::tile::Tile;
+use crate::attribute::Attribute;
 use crate::error::Error;
 use crate::octree::OctreeRef;
 use crate::query::Touch;
 use glam::DVec3;
+
+/// What a surface looks like.
+#[derive(Clone, Copy)]
+pub struct Skin<'a> {
+    pub finish: Finish,
+    /// Values that are shown, and their colours.
+    pub values: Option<(&'a dyn Attribute, Colouring<'a>)>,
+}
+
+impl Skin<'_> {
+    /// What it looks like at a point, given the outward normal, or the direction to who looks; values are those `below` it.
+    fn finish(&self, place: DVec3, outward: DVec3, below: f64) -> Result<Finish, Error> {
+        let Some((attribute, colour)) = self.values else { return Ok(self.finish) };
+        let shown = colour(attribute.value((place - below * outward.normalize_or_zero()).to_array())?);
+        Ok(Finish { colour: shown, cut: shown, ..self.finish })
+    }
+}
 
 /// What a line of sight meets.
 pub struct Seen {
@@ -16,7 +35,6 @@ pub struct Seen {
     pub t: f64,
     /// The outward normal there; `None` if the line begins inside.
     pub normal: Option<DVec3>,
-    pub finish: Finish,
 }
 
 /// Draws what `see` makes of the cells of an octree that lines of sight meet. `blur`: the length over which normals change
@@ -25,17 +43,22 @@ pub fn paint(
     tile: &mut Tile<'_>,
     stage: &Stage<'_>,
     tree: &OctreeRef<'_>,
-    finish: &Finish,
+    skin: &Skin<'_>,
     blur: f64,
     mut see: impl FnMut(&Sight, Touch) -> Result<Option<Seen>, Error>,
 ) -> Result<(), Error> {
+    let half = 0.5 * tree.frame().cell_size();
+    let light = |sight: &Sight, Seen { t, normal }: Seen| -> Result<Light, Error> {
+        let place = sight.from + sight.along * t;
+        let finish = skin.finish(place, normal.unwrap_or(-sight.along), half)?;
+        Ok(sight.light(&finish, stage.view, normal))
+    };
     let mut cast = Cast::new(tree, *stage);
-    let Some(outline) = &finish.edges else {
+    let Some(outline) = &skin.finish.edges else {
         while let Some(met) = cast.next(tile)? {
             for (sight, touch) in met {
                 if let Some(seen) = see(sight, touch)? {
-                    let light = sight.light(&seen.finish, tile.view, seen.normal);
-                    tile.put(sight.sample, sight.start + seen.t, light)?;
+                    tile.put(sight.sample, sight.start + seen.t, light(sight, seen)?)?;
                 }
             }
         }
@@ -50,7 +73,7 @@ pub fn paint(
             let normal = sight.outward(seen.normal).normalize_or_zero();
             field.put(sight.sample, Point { place, normal, depth });
             if let Some(sample) = field.sample_of_tile(sight.sample, tile) {
-                tile.put(sample, depth, sight.light(&seen.finish, tile.view, seen.normal))?;
+                tile.put(sample, depth, light(sight, seen)?)?;
             }
         }
     }
