@@ -17,12 +17,17 @@ const PLANE: f64 = 1.0 - 1e-7;
 /// A vector of length 1, or zero. It neither overflows nor vanishes on the way.
 #[inline]
 fn unit(v: DVec3) -> DVec3 {
+    moderate_unit(v).unwrap_or_else(|| {
+        let size = v.abs().max_element();
+        if size > 0.0 { (v / size).normalize_or_zero() } else { DVec3::ZERO }
+    })
+}
+
+/// A vector of length 1; `None` unless its square is far from the largest and the smallest numbers.
+#[inline]
+fn moderate_unit(v: DVec3) -> Option<DVec3> {
     let squared = v.length_squared();
-    if (1e-200..1e200).contains(&squared) {
-        return v * (1.0 / libm::sqrt(squared));
-    }
-    let size = v.abs().max_element();
-    if size > 0.0 { (v / size).normalize_or_zero() } else { DVec3::ZERO }
+    (1e-200..1e200).contains(&squared).then(|| v * (1.0 / libm::sqrt(squared)))
 }
 
 fn corners(mesh: &TriangleMesh, triangle: [u32; 3]) -> [DVec3; 3] {
@@ -33,7 +38,8 @@ fn corners(mesh: &TriangleMesh, triangle: [u32; 3]) -> [DVec3; 3] {
 pub fn normals(mesh: &TriangleMesh, job: &Job<'_>) -> Result<Vec<DVec3>, Error> {
     mapped(job, mesh.triangles().len(), |i| {
         let [a, b, c] = corners(mesh, mesh.triangles()[i]);
-        unit(unit(b - a).cross(unit(c - a)))
+        let (u, v) = (b - a, c - a);
+        moderate_unit(u.cross(v)).unwrap_or_else(|| unit(unit(u).cross(unit(v))))
     })
 }
 
