@@ -5,10 +5,10 @@ use crate::content::Content;
 use crate::expression::{Expressions, SYNTAX};
 use crate::failure::{Failure, Of};
 use crate::input::Input;
+use crate::options::threads;
 use crate::output::{self, Output, count, seconds};
 use crate::progress::watched;
 use crate::volume::Sampling;
-use crate::voxelize::threads;
 use clap::{Args, ValueEnum};
 use leafless::exchange::{self, MeshOptions};
 use leafless::{

@@ -2,9 +2,9 @@
 
 use crate::failure::{Failure, Of};
 use crate::input::Input;
+use crate::options::threads;
 use crate::output::{self, Output, count, write_file};
 use crate::progress::watched;
-use crate::voxelize::threads;
 use clap::{Args, ValueEnum};
 use leafless::exchange::{NrrdEncoding, write_nrrd, write_raw_volume};
 use leafless::{Control, Error, MAX_DEPTH, Octree, Samples, Tag, VoxelGrid};

@@ -3,15 +3,14 @@
 use crate::dexel_boolean;
 use crate::failure::{Failure, Of};
 use crate::input::Input;
-use crate::output::{self, Output, number, seconds};
+use crate::operands::{Operation, Place, check_places, facts, warn_of_units};
+use crate::output::{self, Output, seconds};
 use crate::progress::watched;
 use crate::report::Info;
 use crate::volume::Sampling;
 use clap::Args;
 use leafless::exchange::VolumeFormat;
-use leafless::{
-    CarryRule, Control, Error, Frame, Metadata, Octree, OctreeRef, TriDexel, carry_channels, file,
-};
+use leafless::{CarryRule, Control, Error, Octree, OctreeRef, TriDexel, carry_channels, file};
 use std::ffi::OsString;
 use std::time::Instant;
 
@@ -42,7 +41,7 @@ struct Common {
     #[arg(short, long, value_name = "OUT.lfl")]
     output: OsString,
     /// Threads to use; 0: as many as there are processors. The result is the same
-    #[arg(long, default_value_t = 0, value_name = "N", value_parser = crate::voxelize::threads)]
+    #[arg(long, default_value_t = 0, value_name = "N", value_parser = crate::options::threads)]
     threads: usize,
     #[command(flatten)]
     sampling: Sampling,
@@ -62,47 +61,6 @@ fn carry(text: &str) -> Result<(String, CarryRule), String> {
         _ => return Err("the rules are left, right, max and mean".into()),
     };
     Ok((name.into(), rule))
-}
-
-/// What is made of the solids.
-#[derive(Debug, Clone, Copy)]
-pub enum Operation {
-    Union,
-    Intersection,
-    Difference,
-    Xor,
-    Complement,
-}
-
-impl Operation {
-    pub fn name(self) -> &'static str {
-        match self {
-            Operation::Union => "union",
-            Operation::Intersection => "intersection",
-            Operation::Difference => "difference",
-            Operation::Xor => "symmetric difference",
-            Operation::Complement => "complement",
-        }
-    }
-
-    fn of(
-        self,
-        first: &OctreeRef<'_>,
-        trees: &[OctreeRef<'_>],
-        control: &Control<'_>,
-    ) -> Result<Octree, Error> {
-        match (self, trees) {
-            (Operation::Union, _) => leafless::union_of(trees, control),
-            (Operation::Intersection, _) => leafless::intersection_of(trees, control),
-            (Operation::Xor, _) => leafless::xor_of(trees, control),
-            (Operation::Difference, [_, tool]) => leafless::difference(first, tool, control),
-            (Operation::Difference, _) => {
-                let tools = leafless::union_of(&trees[1..], control)?;
-                leafless::difference(first, tools.view(), control)
-            }
-            (Operation::Complement, _) => leafless::complement(first, control),
-        }
-    }
 }
 
 pub fn run(operation: Operation, arguments: &Arguments) -> Result<(), Failure> {
@@ -133,7 +91,7 @@ fn combine(operation: Operation, inputs: &[Input], common: &Common) -> Result<()
     check_places(inputs, &places, "--depth")?;
     let trees: Vec<OctreeRef<'_>> = octrees.iter().map(|octree| *octree.view()).collect();
     let name = operation.name();
-    let result = watched(name, common.threads, |control| operation.of(&trees[0], &trees, control));
+    let result = watched(name, common.threads, |control| of(operation, &trees[0], &trees, control));
     let result = carried(result.of(name)?, &octrees, common).of(name)?.with_metadata(facts(&places)?);
     warn_of_units(inputs, &places);
     let bytes = output.save(&result)?;
@@ -216,64 +174,21 @@ fn operand(input: &Input, common: &Common) -> Result<Operand, Failure> {
     Ok(of_octree(file::from_bytes(&bytes).of(input)?))
 }
 
-/// Where an operand lies, and what its file says.
-pub struct Place<'a> {
-    frame: &'a Frame,
-    metadata: &'a Metadata,
-}
-
-impl Place<'_> {
-    /// That of an operand.
-    pub fn new<'a>(frame: &'a Frame, metadata: &'a Metadata) -> Place<'a> {
-        Place { frame, metadata }
-    }
-
-    fn text(&self) -> String {
-        let frame = self.frame;
-        let origin = frame.origin().map(number).join(" ");
-        format!("origin {origin}, edge {}, depth {}", number(frame.edge()), frame.depth())
-    }
-}
-
-/// Refuses operands that lie on different frames; `depth` is the option that says how fine they are.
-pub fn check_places(inputs: &[Input], places: &[Place<'_>], depth: &str) -> Result<(), Failure> {
-    for (input, place) in inputs.iter().zip(places).skip(1) {
-        if place.frame != places[0].frame {
-            let (first, other, whole) = (&inputs[0], place.text(), places[0].text());
-            let problem = format!("lies on another frame ({other}) than {first} ({whole})");
-            return Err(Failure::of(
-                input,
-                format!("{problem}: make both with the same --bounds and {depth}"),
-            ));
+fn of(
+    operation: Operation,
+    first: &OctreeRef<'_>,
+    trees: &[OctreeRef<'_>],
+    control: &Control<'_>,
+) -> Result<Octree, Error> {
+    match (operation, trees) {
+        (Operation::Union, _) => leafless::union_of(trees, control),
+        (Operation::Intersection, _) => leafless::intersection_of(trees, control),
+        (Operation::Xor, _) => leafless::xor_of(trees, control),
+        (Operation::Difference, [_, tool]) => leafless::difference(first, tool, control),
+        (Operation::Difference, _) => {
+            let tools = leafless::union_of(&trees[1..], control)?;
+            leafless::difference(first, tools.view(), control)
         }
+        (Operation::Complement, _) => leafless::complement(first, control),
     }
-    Ok(())
-}
-
-/// Complains of operands whose units differ from that of the first one.
-pub fn warn_of_units(inputs: &[Input], places: &[Place<'_>]) {
-    for (input, place) in inputs.iter().zip(places).skip(1) {
-        let units = [&places[0], place].map(|place| place.metadata.get("units"));
-        if let [Some(first), Some(other)] = units
-            && first != other
-        {
-            let whole = &inputs[0];
-            let unlike = format!(
-                "its unit is {other}, and that of {whole} is {first}: the numbers are taken as they are"
-            );
-            output::complain(&format!("{input}: warning: {unlike}"));
-        }
-    }
-}
-
-/// What the operands' files say that holds of the result: name and unit, if it is the same in all; and by which
-/// rule cells were resolved, if they say it: the common one, or `mixed`.
-pub fn facts(places: &[Place<'_>]) -> Result<Metadata, Failure> {
-    let mut metadata = Metadata::common(places.iter().map(|place| place.metadata)).of("metadata")?;
-    let rules: Option<Vec<&str>> = places.iter().map(|place| place.metadata.get("rule")).collect();
-    if let Some(rules) = rules {
-        let same = rules.iter().all(|rule| *rule == rules[0]);
-        metadata.insert("rule", if same { rules[0] } else { "mixed" });
-    }
-    Ok(metadata)
 }

@@ -1,13 +1,13 @@
 //! `leafless csg`: from a scene to a solid.
 
-use crate::convert;
+use crate::conversion;
 use crate::failure::{Failure, Of};
 use crate::input::Input;
+use crate::options::{RuleName, bounds, name_of, threads};
 use crate::output::{self, Output, count, number, seconds};
 use crate::progress::watched;
 use crate::report::Info;
 use crate::scene::{Curves, Drawing, frame_of, read_scene};
-use crate::voxelize::{RuleName, bounds, name_of, threads};
 use clap::{Args, ValueEnum};
 use leafless::{Adaptive, Frame, Metadata, Octree, SplitCounter, Touch, build};
 use serde::Serialize;
@@ -70,7 +70,7 @@ pub struct Arguments {
 
 impl Arguments {
     /// What `leafless convert` asks for.
-    pub fn converting(wanted: &convert::Arguments) -> Arguments {
+    pub fn converting(wanted: &conversion::Arguments) -> Arguments {
         Arguments {
             input: wanted.input.clone(),
             output: wanted.output.clone(),

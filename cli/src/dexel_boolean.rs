@@ -1,9 +1,9 @@
 //! The set operations on tri-dexel models.
 
-use crate::boolean::{Operation, Place, check_places, facts, warn_of_units};
 use crate::dexels::Info;
 use crate::failure::{Failure, Of};
 use crate::input::Input;
+use crate::operands::{Operation, Place, check_places, facts, warn_of_units};
 use crate::output::{Output, count, counted, seconds};
 use crate::progress::watched;
 use crate::report::short;

@@ -1,17 +1,18 @@
 //! `leafless dexelize`: from a solid of any kind to a tri-dexel model.
 
-use crate::convert;
+use crate::conversion;
 use crate::dexels::Info;
 use crate::failure::{Failure, Of};
 use crate::input::Input;
 use crate::mesh::Reading;
+use crate::options::{bounds, name_of, resolution, threads};
 use crate::output::{self, Output, count, counted, number, seconds};
 use crate::progress::watched;
 use crate::report::short;
 use crate::scene::Drawing;
 use crate::shape::Shape;
 use crate::source::Source;
-use crate::voxelize::{bounds, clipping, facts, name_of, threads};
+use crate::voxelize::{clipping, facts};
 use clap::{Args, ValueEnum};
 use leafless::{
     Affine, DexelEnds, DexelFormat, DexelNormals, DexelOptions, Frame, MeshSolid, Metadata, Octree, Rule,
@@ -80,29 +81,6 @@ pub struct Arguments {
 
 /// Levels of the lattice, if nobody says how many.
 const DEPTH: u8 = 8;
-/// Most levels of a lattice.
-const MOST: u8 = 19;
-
-/// The levels of a lattice of so many cells to an axis.
-pub fn resolution(text: &str) -> Result<u8, String> {
-    let most = 1u64 << MOST;
-    let Ok(cells) = text.parse::<u64>() else {
-        return Err(format!("expected a power of two from 2 to {most}"));
-    };
-    if cells.is_power_of_two() && (2..=most).contains(&cells) {
-        return Ok(cells.trailing_zeros() as u8);
-    }
-    let near = match cells {
-        0..2 => "2 is the nearest one".into(),
-        _ if cells > most => format!("{most} is the nearest one"),
-        _ => {
-            let below = 1u64 << cells.ilog2();
-            format!("{below} and {} are the nearest ones", 2 * below)
-        }
-    };
-    Err(format!("expected a power of two from 2 to {most}: {near}"))
-}
-
 /// Which axes rays run along.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct Directions([bool; 3]);
@@ -163,7 +141,7 @@ impl From<RuleName> for Rule {
 
 impl Arguments {
     /// What `leafless convert` asks for.
-    pub fn converting(wanted: &convert::Arguments) -> Arguments {
+    pub fn converting(wanted: &conversion::Arguments) -> Arguments {
         Arguments {
             input: wanted.input.clone(),
             output: wanted.output.clone(),
@@ -175,8 +153,8 @@ impl Arguments {
             material: None,
             rule: match wanted.resolve {
                 None => RuleName::Sampled,
-                Some(convert::ResolveName::Inner) => RuleName::Inner,
-                Some(convert::ResolveName::Outer) => RuleName::Outer,
+                Some(conversion::ResolveName::Inner) => RuleName::Inner,
+                Some(conversion::ResolveName::Outer) => RuleName::Outer,
             },
             bounds: wanted.bounds,
             reading: wanted.reading.clone(),

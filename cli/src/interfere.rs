@@ -3,11 +3,11 @@
 use crate::failure::{Failure, Of};
 use crate::input::Input;
 use crate::mesh::Reading;
+use crate::options::bounds;
 use crate::output::{self, count, measured, number};
 use crate::report::{Proven, stop_word};
 use crate::scene::Drawing;
 use crate::source::{Corners, Source, evaluations};
-use crate::voxelize::bounds;
 use clap::Args;
 use leafless::{
     Affine, Clearance, Control, Cube, Error, Frame, Interference, Interval, Overlap, Prepared, Proof,

@@ -12,6 +12,7 @@ mod boolean;
 mod channel;
 mod contains;
 mod content;
+mod conversion;
 mod convert;
 mod csg;
 mod demo;
@@ -30,6 +31,8 @@ mod measure;
 mod mesh;
 mod neighbours;
 mod npz;
+mod operands;
+mod options;
 mod output;
 mod part;
 mod picture;
@@ -84,7 +87,7 @@ enum Command {
     /// Make a tri-dexel model, intervals along rays, of a solid, a mesh, a scene or a volume
     Dexelize(dexelize::Arguments),
     /// Make an octree, a tri-dexel model or a triangle mesh of any of them
-    Convert(convert::Arguments),
+    Convert(conversion::Arguments),
     /// Show what a solid consists of (depth, nodes, cells, volume), a mesh (bodies, holes, defects) or a scene
     Info(info::Arguments),
     /// Check a file completely: exit code 0 if it is good, 1 with the reason if not
@@ -145,10 +148,10 @@ fn main() -> ExitCode {
         Command::Convert(arguments) => convert::run(arguments),
         Command::Info(arguments) => info::run(arguments),
         Command::Verify(arguments) => verify::run(arguments),
-        Command::Union(arguments) => boolean::run(boolean::Operation::Union, arguments),
-        Command::Intersection(arguments) => boolean::run(boolean::Operation::Intersection, arguments),
-        Command::Difference(arguments) => boolean::run(boolean::Operation::Difference, arguments),
-        Command::Xor(arguments) => boolean::run(boolean::Operation::Xor, arguments),
+        Command::Union(arguments) => boolean::run(operands::Operation::Union, arguments),
+        Command::Intersection(arguments) => boolean::run(operands::Operation::Intersection, arguments),
+        Command::Difference(arguments) => boolean::run(operands::Operation::Difference, arguments),
+        Command::Xor(arguments) => boolean::run(operands::Operation::Xor, arguments),
         Command::Complement(arguments) => boolean::run_complement(arguments),
         Command::Contains(arguments) => contains::run(arguments),
         Command::Attribute(arguments) => attribute::run(arguments),

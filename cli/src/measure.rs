@@ -3,12 +3,12 @@
 use crate::failure::{Failure, Of};
 use crate::input::Input;
 use crate::mesh::Reading;
+use crate::options::{bounds, threads};
 use crate::output::{self, count, measured};
 use crate::progress::watched;
 use crate::report::{Proven, Volume, stop_word};
 use crate::scene::{Curves, Drawing};
 use crate::source::{Source, evaluations};
-use crate::voxelize::{bounds, threads};
 use clap::Args;
 use leafless::{
     Affine, Control, Error, Extent, Frame, Interval, MAX_DEPTH, MassProperties, MeshMoments, MeshSolid,

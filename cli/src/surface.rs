@@ -1,16 +1,16 @@
 //! `leafless mesh`: the surface of a solid.
 
-use crate::convert;
+use crate::conversion;
 use crate::dexel_surface::{self, Followed};
 use crate::failure::{Failure, Of};
 use crate::input::Input;
 use crate::mesh::{Reading, format_name};
+use crate::options::{bounds, name_of, threads};
 use crate::output::{self, Output, counted, number, write_file};
 use crate::progress::watched;
 use crate::scene::Drawing;
 use crate::shape::Shape;
 use crate::source::Source;
-use crate::voxelize::{bounds, name_of, threads};
 use clap::{Args, ValueEnum};
 use leafless::exchange::{LengthUnit, MeshFormat, WriteOptions, write_mesh};
 use leafless::{
@@ -149,7 +149,7 @@ enum At {
 
 impl Arguments {
     /// What `leafless convert` asks for.
-    pub fn converting(wanted: &convert::Arguments) -> Arguments {
+    pub fn converting(wanted: &conversion::Arguments) -> Arguments {
         Arguments {
             file: wanted.input.clone(),
             output: wanted.output.clone(),
@@ -160,8 +160,8 @@ impl Arguments {
             snap: SnapName::Fat,
             vertices: At::Crossing,
             resolve: wanted.resolve.map(|resolve| match resolve {
-                convert::ResolveName::Inner => ResolveName::Inner,
-                convert::ResolveName::Outer => ResolveName::Outer,
+                conversion::ResolveName::Inner => ResolveName::Inner,
+                conversion::ResolveName::Outer => ResolveName::Outer,
             }),
             depth: wanted.resolution,
             bounds: wanted.bounds,

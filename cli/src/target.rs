@@ -3,9 +3,9 @@
 use crate::failure::Failure;
 use crate::input::Input;
 use crate::mesh::Reading;
+use crate::options::{bounds, threads};
 use crate::scene::Drawing;
 use crate::source::Source;
-use crate::voxelize::{bounds, threads};
 use clap::Args;
 use leafless::{Affine, Frame, Octree, Prepared};
 

@@ -1,17 +1,18 @@
 //! `leafless voxelize`: from a mesh file to a solid.
 
 use crate::content::Content;
-use crate::convert;
+use crate::conversion;
 use crate::failure::{Failure, Of};
 use crate::input::Input;
 use crate::mesh::{Reading, check_closed, fill_name, format_name, frame_around, in_words, openness};
+use crate::options::{RuleName, bounds, name_of, threads};
 use crate::output::{self, Output, count, counted, number, seconds};
 use crate::progress::watched;
 use crate::report::{Info, Mesh};
 use crate::volume::Job;
 use clap::{Args, ValueEnum};
 use leafless::exchange::{LengthUnit, MeshFile};
-use leafless::{FillRule, Frame, MeshError, MeshReport, MeshSolid, Metadata, Octree, Rule, build};
+use leafless::{FillRule, Frame, MeshError, MeshReport, MeshSolid, Metadata, Octree, build};
 use serde::Serialize;
 use std::ffi::OsString;
 use std::fmt::Write;
@@ -62,49 +63,9 @@ pub struct Arguments {
     json: bool,
 }
 
-#[derive(Debug, Clone, Copy, ValueEnum)]
-pub enum RuleName {
-    /// They stay undecided: volumes are intervals that hold the truth
-    Certified,
-    /// They are inside if their centre is
-    Sampled,
-    /// They are outside: the result lies within the solid
-    Inner,
-    /// They are inside: the result contains the solid
-    Outer,
-}
-
-impl From<RuleName> for Rule {
-    fn from(name: RuleName) -> Rule {
-        match name {
-            RuleName::Certified => Rule::Certified,
-            RuleName::Sampled => Rule::Sampled,
-            RuleName::Inner => Rule::Inner,
-            RuleName::Outer => Rule::Outer,
-        }
-    }
-}
-
-/// The universe of `--bounds`; its depth is a placeholder.
-pub fn bounds(text: &str) -> Result<Frame, String> {
-    let numbers: Result<Vec<f64>, _> = text.split(',').map(|number| number.trim().parse()).collect();
-    match numbers.as_deref() {
-        Ok(&[x, y, z, edge]) => Frame::new([x, y, z], edge, 1).map_err(|error| error.to_string()),
-        _ => Err("expected four numbers: x0,y0,z0,edge".into()),
-    }
-}
-
-/// A number of threads: far more than processors help nobody.
-pub fn threads(text: &str) -> Result<usize, String> {
-    match text.parse() {
-        Ok(threads @ 0..=1024) => Ok(threads),
-        _ => Err("expected a number from 0 to 1024".into()),
-    }
-}
-
 impl Arguments {
     /// What `leafless convert` asks for.
-    pub fn converting(wanted: &convert::Arguments) -> Arguments {
+    pub fn converting(wanted: &conversion::Arguments) -> Arguments {
         Arguments {
             input: wanted.input.clone(),
             output: wanted.output.clone(),
@@ -251,11 +212,6 @@ pub fn facts(input: &Input, source: String, rule: impl ValueEnum, unit: Option<L
         metadata.insert("units", unit.symbol());
     }
     metadata
-}
-
-/// The name of an option's value, as the user writes it.
-pub fn name_of(value: impl ValueEnum) -> String {
-    value.to_possible_value().map_or_else(String::new, |value| value.get_name().to_owned())
 }
 
 /// Where the mesh sticks out of the bounds. If it does not, it is open, and what it encloses may.

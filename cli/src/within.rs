@@ -3,12 +3,12 @@
 use crate::failure::{Failure, Of};
 use crate::input::Input;
 use crate::mesh::Reading;
+use crate::options::bounds;
 use crate::output::{self, count, measured};
 use crate::progress::watched;
 use crate::report::Volume;
 use crate::scene::Drawing;
 use crate::source::Source;
-use crate::voxelize::bounds;
 use clap::Args;
 use leafless::{
     Affine, AnySolid, CellsIn, Control, Csg, Error, Frame, Interval, MAX_DEPTH, Octree, cells_in, volume_in,
