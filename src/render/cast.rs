@@ -4,6 +4,7 @@ use super::sight::Sight;
 use super::stage::Stage;
 use super::window::Window;
 use crate::error::Error;
+use crate::lattice::Bounds;
 use crate::memory;
 use crate::octree::OctreeRef;
 use crate::query::{Ray, Touch};
@@ -16,6 +17,7 @@ const BLOCK: [usize; 2] = [8, 4];
 pub struct Cast<'t, 'a> {
     tree: &'t OctreeRef<'a>,
     stage: Stage<'t>,
+    universe: Bounds,
     block: usize,
     rays: Vec<Ray>,
     sights: Vec<Sight>,
@@ -25,7 +27,15 @@ pub struct Cast<'t, 'a> {
 impl<'t, 'a> Cast<'t, 'a> {
     pub fn new(tree: &'t OctreeRef<'a>, stage: Stage<'t>) -> Cast<'t, 'a> {
         let (rays, sights) = (Vec::new(), Vec::new());
-        Cast { tree, stage, block: 0, rays, sights, hits: [None; BLOCK[0] * BLOCK[1]] }
+        Cast {
+            tree,
+            stage,
+            universe: Bounds::of(tree.frame()),
+            block: 0,
+            rays,
+            sights,
+            hits: [None; BLOCK[0] * BLOCK[1]],
+        }
     }
 
     /// What is met in the next block; `None` after the last one.
@@ -44,7 +54,7 @@ impl<'t, 'a> Cast<'t, 'a> {
         self.sights.clear();
         for y in row..(row + BLOCK[1]).min(window.height()) {
             for x in column..(column + BLOCK[0]).min(window.width()) {
-                if let Some((sight, ray)) = Sight::new(&self.stage, window, [x, y]) {
+                if let Some((sight, ray)) = Sight::new(&self.stage, window, [x, y], &self.universe) {
                     memory::push(&mut self.rays, ray)?;
                     memory::push(&mut self.sights, sight)?;
                 }

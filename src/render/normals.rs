@@ -143,9 +143,13 @@ impl<'a> Normals<'a> {
                 }
             }
         }
-        Ok(sum.normalize_or_zero())
+        // What cancels out has no direction.
+        Ok(if sum.length() < LEAST_GRADIENT { DVec3::ZERO } else { sum.normalize() })
     }
 }
+
+/// Shorter sums are roundings of zero: a single cell makes one of 0.07 at least.
+const LEAST_GRADIENT: f64 = 1e-6;
 
 /// exp(−r² / (2 · 1.5²)) for r² = 0 … 12.
 const WEIGHTS: [f64; 13] = [

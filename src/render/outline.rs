@@ -18,7 +18,7 @@ use glam::DVec3;
 /// The edges of a surface that are drawn as lines: silhouettes, and creases, at which faces meet.
 ///
 /// Edges are found at the samples of the picture. A round edge counts as a crease if it turns within two pixels, or within
-/// six cells where only cells are known.
+/// six cells where only cells are known. Where these are larger than two pixels, only silhouettes are drawn.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Outline {
     /// In pixels: above 0, at most 8.
@@ -57,7 +57,7 @@ impl Outline {
 }
 
 /// From an edge to where its sides are sought, in pixels: at least, and at most.
-const REACH: [f64; 2] = [2.0, 24.0];
+const REACH: [f64; 2] = [2.0, 12.0];
 
 /// How much of the turn between two sides half as far from the edge must show. Of a round edge it is half.
 const SUDDEN: f64 = 0.72;
@@ -88,7 +88,11 @@ impl<'v> Field<'v> {
     /// `blur`: the length over which normals turn at an edge.
     pub fn new(tile: &Window<'v>, outline: &Outline, blur: f64, frame: &Frame) -> Result<Field<'v>, Error> {
         outline.check()?;
-        let reach = (blur / tile.view.pixel_at(tile.view.nearest(frame))).clamp(REACH[0], REACH[1]);
+        let nearest = tile.view.nearest(frame);
+        // An eye in the universe may be as near to the surface as can be.
+        let is_inside = blur > 0.0 && nearest <= frame.edge() / 16.0;
+        let reach =
+            if is_inside { REACH[1] } else { (blur / tile.view.pixel_at(nearest)).clamp(REACH[0], REACH[1]) };
         let window = tile.widened(libm::ceil(reach.max(0.5 * outline.width)) as u32);
         let points = memory::filled(window.width() * window.height(), None)?;
         let half = 0.5 * outline.width * f64::from(tile.grid);
@@ -169,7 +173,11 @@ impl<'v> Field<'v> {
 
     fn is_crease(&self, at: [i32; 2], here: &Point) -> bool {
         let pixel = self.window.view.pixel_at(here.depth);
-        let reach = (self.blur / pixel).clamp(REACH[0], REACH[1]) * f64::from(self.window.grid);
+        // Nearer than that normals only tell of single cells.
+        if self.blur > REACH[1] * pixel {
+            return false;
+        }
+        let reach = (self.blur / pixel).max(REACH[0]) * f64::from(self.window.grid);
         [[1.0, 0.0], [0.0, 1.0], [DIAGONAL, DIAGONAL], [DIAGONAL, -DIAGONAL]]
             .iter()
             .any(|direction| self.turns(at, here, direction.map(|along| along * reach)))

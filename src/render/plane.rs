@@ -25,6 +25,9 @@ pub struct Fitting {
 /// Octants along each axis of a window.
 const COARSE: usize = 6;
 
+/// Which part of what leads out must do so to one side: that below which a window has no plane, and that above which it has.
+const AGREEMENT: [f64; 2] = [0.5, 0.8];
+
 /// The high bits of bytes.
 const HIGH: u64 = 0x8080_8080_8080_8080;
 
@@ -113,7 +116,11 @@ impl Fitting {
         if !is_sound {
             return Plane::default();
         }
-        let confidence = ((self.plane[1] - off) / (self.plane[1] - self.plane[0])).clamp(0.0, 1.0);
+        let flat = ((self.plane[1] - off) / (self.plane[1] - self.plane[0])).clamp(0.0, 1.0);
+        // Of a plate both sides are in the window, and only its rim would be left.
+        let all = DVec3::from(crossings.map(|found| f64::from(found.all))).length();
+        let agreement = DVec3::from(crossings.map(|found| f64::from(found.out))).length() / all;
+        let confidence = flat * ((agreement - AGREEMENT[0]) / (AGREEMENT[1] - AGREEMENT[0])).clamp(0.0, 1.0);
         let normal = if normal.dot(out) < 0.0 { -normal } else { normal };
         Plane { normal: normal.as_vec3(), confidence: confidence as f32 }
     }
@@ -129,6 +136,8 @@ struct Crossings {
     products: Vec3A,
     /// From inside to outside, added up.
     out: f32,
+    /// The same whatever its sign.
+    all: f32,
 }
 
 impl Crossings {
@@ -142,6 +151,7 @@ impl Crossings {
         self.squares += at * at;
         self.products += Vec3A::new(at.y * at.z, at.z * at.x, at.x * at.y);
         self.out += here - next;
+        self.all += (here - next).abs();
     }
 }
 
@@ -190,6 +200,9 @@ mod tests {
         let corner = FITTING.plane(&window(128, |place| f64::from(u8::from(place.min_element() > 0.0))));
         let wall = FITTING.plane(&window(128, |place| f64::from(u8::from(place.x.abs() < 1.0))));
         assert!(corner.confidence == 0.0 && wall.confidence == 0.0, "{corner:?} {wall:?}");
+        // The rim of a plate is plane, but most of the surface is above and below.
+        let plate = |place: DVec3| f64::from(u8::from(place.x < 0.0 && place.z.abs() < 1.0));
+        assert_eq!(FITTING.plane(&window(128, plate)).confidence, 0.0);
     }
 
     #[test]

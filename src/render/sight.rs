@@ -5,6 +5,7 @@ use super::light::Light;
 use super::outline::Outline;
 use super::stage::Stage;
 use super::window::Window;
+use crate::lattice::Bounds;
 use crate::query::Ray;
 use glam::DVec3;
 
@@ -28,8 +29,14 @@ impl Default for Finish {
     }
 }
 
-/// Part of its depth by which a line of sight keeps away from clip planes.
+/// Part of the universe's edge by which a line of sight keeps away from clip planes and from the eye.
 const ASIDE: f64 = 1e-9;
+
+/// Roundings of its depth by which it does at least.
+const ROUNDINGS: f64 = 4.0 * f64::EPSILON;
+
+/// Part of the universe's edge by which a line of sight begins before it enters the universe.
+const BEFORE: f64 = 1e-3;
 
 /// A line of sight that begins where it is shown.
 pub struct Sight {
@@ -45,20 +52,36 @@ pub struct Sight {
 }
 
 impl Sight {
-    /// `None` if nothing of it is shown.
+    /// That of a sample in a universe; `None` if nothing of it is shown.
     #[inline]
-    pub fn new(stage: &Stage<'_>, window: &Window<'_>, [x, y]: [usize; 2]) -> Option<(Sight, Ray)> {
+    pub fn new(
+        stage: &Stage<'_>,
+        window: &Window<'_>,
+        [x, y]: [usize; 2],
+        universe: &Bounds,
+    ) -> Option<(Sight, Ray)> {
         let (eye, along) = window.line(x, y);
-        let (sight, ray) = Sight::along(stage, eye, along)?;
+        let (sight, ray) = Sight::along(stage, eye, along, universe)?;
         Some((Sight { sample: y * window.width() + x, ..sight }, ray))
     }
 
     /// The same of no sample.
     #[inline]
-    pub fn along(stage: &Stage<'_>, eye: DVec3, along: DVec3) -> Option<(Sight, Ray)> {
+    pub fn along(stage: &Stage<'_>, eye: DVec3, along: DVec3, universe: &Bounds) -> Option<(Sight, Ray)> {
         let shown = stage.clip.shown(eye, along)?;
-        // Cells are closed: those beyond a clip plane that only touch it are not seen.
-        let (start, end) = (shown.from * (1.0 + ASIDE), shown.to * (1.0 - ASIDE));
+        let (low, high) = (DVec3::from(universe.min), DVec3::from(universe.max));
+        let unit = (high.x - low.x) / along.length();
+        // Cells are closed: those beyond a clip plane that only touch it are not seen. An eye in a plane of the lattice would
+        // have all lines of sight begin on faces.
+        let aside = |depth: f64| (ASIDE * unit).max(ROUNDINGS * depth);
+        // Far from the universe a time would say little of a place in it.
+        let enters = (0..3).fold(0.0f64, |enters, axis| {
+            let planes = [low[axis], high[axis]].map(|plane| (plane - eye[axis]) / along[axis]);
+            // (A line along the planes says nothing.)
+            if along[axis] == 0.0 { enters } else { enters.max(planes[0].min(planes[1])) }
+        });
+        let start = (shown.from + aside(shown.from)).max(enters - BEFORE * unit);
+        let end = shown.to - aside(start);
         let from = eye + along * start;
         let sight = Sight { sample: 0, from, along, start, length: end - start, entry: shown.entry };
         let ray = sight.beyond(0.0)?;
@@ -83,8 +106,9 @@ impl Sight {
     pub fn light(&self, finish: &Finish, view: &View, normal: Option<DVec3>) -> Light {
         let colour = if normal.is_some() { finish.colour } else { finish.cut };
         let facing = self.outward(normal);
+        // (What is perpendicular to the line of sight would face it or not as it is rounded.)
         let facing = if facing.dot(self.along) < 0.0 { facing } else { silhouette(facing, self.along) };
-        Light::of(colour).lit(view.lamps.brightness(facing, self.along))
+        Light::of(colour).lit(view.lamps.brightness(facing, -facing))
     }
 
     /// A normal, or where it begins inside that of what cuts it open.

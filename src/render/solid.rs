@@ -128,7 +128,11 @@ impl<S: Solid> SolidPainter<'_, S> {
         mut hit: Touch,
     ) -> Result<Option<(f64, Option<DVec3>)>, Error> {
         let (octree, frame) = (self.octree.view(), self.octree.frame());
-        let step = 1e-6 * frame.cell_size() / sight.along.length();
+        let far = DVec3::from(frame.origin()).abs().max_element() + frame.edge();
+        let length = sight.along.length();
+        let step = 1e-6 * frame.cell_size() / length;
+        // Past a face, whatever rounding says.
+        let past = (1e-3 * step).max(4.0 * f64::EPSILON * far / length);
         let mut passed: Option<(f64, DVec3)> = None;
         // A line meets no more cells than that, and may pass by the slabs of all of them.
         for _ in 0..3u32 << frame.depth() {
@@ -152,7 +156,7 @@ impl<S: Solid> SolidPainter<'_, S> {
                 Met::Nowhere(normal) => passed = Some((leaves, normal)),
             }
             // On behind the cell, past its faces.
-            let beyond = leaves + 1e-3 * step;
+            let beyond = leaves + past;
             let Some(next) = sight.beyond(beyond).and_then(|ray| octree.touch(&ray)) else {
                 return Ok(None);
             };
