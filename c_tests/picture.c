@@ -18,11 +18,11 @@ static void look_from_front(void) {
         corners[i][1] = i & 2 ? 1 : -1;
         corners[i][2] = i & 4 ? 1 : -1;
     }
-    OK(leafless_camera_fit(&corners[0][0], 8, 0, 0, 0, 1, &front));
+    OK(leafless_camera_fitted(&corners[0][0], 8, 0, 0, 0, 1, &front));
     CHECK(front.eye_model[1] < -1 && fabs(front.eye_model[0]) < 1e-12 && fabs(front.eye_model[2]) < 1e-12);
     CHECK(front.up[2] == 1 && front.field_of_view_degrees == 0 && front.height_model > 2 && front.height_model < 2.4);
-    FAILS(LEAFLESS_E_ARGUMENT, leafless_camera_fit(&corners[0][0], 0, 0, 0, 0, 1, &front));
-    FAILS(LEAFLESS_E_ARGUMENT, leafless_camera_fit(&corners[0][0], 8, 0, 0, 180, 1, &front));
+    FAILS(LEAFLESS_E_ARGUMENT, leafless_camera_fitted(&corners[0][0], 0, 0, 0, 0, 1, &front));
+    FAILS(LEAFLESS_E_ARGUMENT, leafless_camera_fitted(&corners[0][0], 8, 0, 0, 180, 1, &front));
 }
 
 static leafless_shot shot_of(uint32_t samples) {
@@ -35,7 +35,7 @@ static leafless_shot shot_of(uint32_t samples) {
 }
 
 static void take(const leafless_shot *shot, const leafless_layer *layer) {
-    OK(leafless_render(shot, &layer, 1, NULL, colours, sizeof colours, depths, PIXELS));
+    OK(leafless_picture_render(shot, &layer, 1, NULL, colours, sizeof colours, depths, PIXELS));
 }
 
 /* Where the middle of a pixel lies across the view. */
@@ -126,6 +126,8 @@ static void surfaces(void) {
     /* The silhouette of a ball is black, its middle is not. */
     look.edges = LEAFLESS_EDGES_FEATURES;
     look.edge_colour[3] = 255;
+    look.edge_width = 9;
+    FAILS(LEAFLESS_E_ARGUMENT, leafless_layer_new_solid(solid, &frame, &look, &layer));
     look.edge_width = 3;
     OK(leafless_layer_new_solid(solid, &frame, &look, &layer));
     take(&shot, layer);
@@ -202,7 +204,7 @@ static void lines(void) {
     leafless_layer_free(layer);
     OK(leafless_layer_new_lines(ends, 1, 1000, RED, &layer));
     FAILS(LEAFLESS_E_ARGUMENT,
-          leafless_render(&shot, (const leafless_layer *const *)&layer, 1, NULL, colours, sizeof colours, NULL, 0));
+          leafless_picture_render(&shot, (const leafless_layer *const *)&layer, 1, NULL, colours, sizeof colours, NULL, 0));
     leafless_layer_free(layer);
     /* The universe as a cell: its edges are seen, its middle is not. */
     memset(&cell, 0, sizeof cell);
@@ -374,42 +376,42 @@ static void buffers(void) {
         const leafless_layer *layers[1];
         layers[0] = layer;
         memset(colours, 7, sizeof colours);
-        OK(leafless_render(&shot, layers, 1, &options, colours, sizeof colours, NULL, 0));
+        OK(leafless_picture_render(&shot, layers, 1, &options, colours, sizeof colours, NULL, 0));
         CHECK(memcmp(first, colours, sizeof colours) == 0);
     }
     {
         const leafless_layer *layers[2];
         layers[0] = layers[1] = layer;
         memset(colours, 7, sizeof colours);
-        FAILS(LEAFLESS_E_BUFFER, leafless_render(&shot, layers, 1, NULL, colours, sizeof colours - 1, NULL, 0));
-        FAILS(LEAFLESS_E_BUFFER, leafless_render(&shot, layers, 1, NULL, colours, sizeof colours, &one_depth, 1));
+        FAILS(LEAFLESS_E_BUFFER, leafless_picture_render(&shot, layers, 1, NULL, colours, sizeof colours - 1, NULL, 0));
+        FAILS(LEAFLESS_E_BUFFER, leafless_picture_render(&shot, layers, 1, NULL, colours, sizeof colours, &one_depth, 1));
         for (i = 0; i < sizeof colours; i++) {
             CHECK(colours[i] == 7);
         }
         CHECK(one_depth == 5);
-        OK(leafless_render(&shot, layers, 2, NULL, colours, sizeof colours, NULL, 0));
+        OK(leafless_picture_render(&shot, layers, 2, NULL, colours, sizeof colours, NULL, 0));
         CHECK(memcmp(first, colours, sizeof colours) == 0);
         OK(leafless_control_new(&control));
         OK(leafless_control_cancel(control));
         options.control = control;
-        FAILS(LEAFLESS_E_CANCELLED, leafless_render(&shot, layers, 1, &options, colours, sizeof colours, NULL, 0));
+        FAILS(LEAFLESS_E_CANCELLED, leafless_picture_render(&shot, layers, 1, &options, colours, sizeof colours, NULL, 0));
         leafless_control_free(control);
     }
     /* Nothing at all: the background. */
     shot.background[0] = shot.background[3] = 255;
-    OK(leafless_render(&shot, NULL, 0, NULL, colours, sizeof colours, depths, PIXELS));
+    OK(leafless_picture_render(&shot, NULL, 0, NULL, colours, sizeof colours, depths, PIXELS));
     CHECK(is(pixel(5, 5), shot.background) && isinf(depths[7]));
-    FAILS(LEAFLESS_E_NULL, leafless_render(&shot, &none, 1, NULL, colours, sizeof colours, NULL, 0));
+    FAILS(LEAFLESS_E_NULL, leafless_picture_render(&shot, &none, 1, NULL, colours, sizeof colours, NULL, 0));
     shot.samples = 5;
-    FAILS(LEAFLESS_E_ARGUMENT, leafless_render(&shot, NULL, 0, NULL, colours, sizeof colours, NULL, 0));
+    FAILS(LEAFLESS_E_ARGUMENT, leafless_picture_render(&shot, NULL, 0, NULL, colours, sizeof colours, NULL, 0));
     shot.samples = 1;
     shot.width = 0;
-    FAILS(LEAFLESS_E_ARGUMENT, leafless_render(&shot, NULL, 0, NULL, colours, sizeof colours, NULL, 0));
+    FAILS(LEAFLESS_E_ARGUMENT, leafless_picture_render(&shot, NULL, 0, NULL, colours, sizeof colours, NULL, 0));
     shot.width = UINT32_MAX;
-    FAILS(LEAFLESS_E_BUFFER, leafless_render(&shot, NULL, 0, NULL, colours, sizeof colours, NULL, 0));
+    FAILS(LEAFLESS_E_BUFFER, leafless_picture_render(&shot, NULL, 0, NULL, colours, sizeof colours, NULL, 0));
     shot.width = SIDE;
     shot.camera.up[2] = 0;
-    FAILS(LEAFLESS_E_ARGUMENT, leafless_render(&shot, NULL, 0, NULL, colours, sizeof colours, NULL, 0));
+    FAILS(LEAFLESS_E_ARGUMENT, leafless_picture_render(&shot, NULL, 0, NULL, colours, sizeof colours, NULL, 0));
     leafless_layer_free(layer);
     leafless_octree_free(octree);
 }

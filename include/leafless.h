@@ -3042,7 +3042,7 @@ typedef struct {
 } leafless_surface_options;
 
 /**
- * From where a picture is taken. leafless_camera_fit sets all of it; a host may as well.
+ * From where a picture is taken. leafless_camera_fitted sets all of it; a host may as well.
  */
 typedef struct {
     /**
@@ -3170,7 +3170,8 @@ typedef struct {
 
 /**
  * What a plane section looks like. NULL means the defaults. All fields but the first may be zero, which is their
- * default; leafless_slice_look_init sets them so. Colours are red, green and blue (sRGB) and opacity, 0 to 255.
+ * default; leafless_slice_look_init sets them so. Colours are red, green and blue (sRGB) and opacity, 0 to 255; what is
+ * to be invisible is {255, 255, 255, 0}.
  */
 typedef struct {
     /**
@@ -8104,20 +8105,20 @@ leafless_status leafless_volume_surface(const leafless_volume *volume,
  *
  * - Buffers: `points_model`, 3 · `count` numbers; `camera`, one struct.
  * - Result: `*camera`. O(count).
- * - Errors: LEAFLESS_E_ARGUMENT if there is no point, a number is not finite or beyond ±2^256, the field of view
+ * - Errors: LEAFLESS_E_ARGUMENT if there is no point, a number is not zero and not between 2^-256 and 2^256 in magnitude, the field of view
  *   neither 0 (parallel lines stay parallel) nor between 0 and 180 degrees, or the aspect not above 0.
  * - Ownership: nothing changes hands.
  * - Threads: any.
  * - Untrusted input: any numbers.
  * - Since: 0.1
  */
-leafless_status leafless_camera_fit(const double *points_model,
-                                    uint64_t count,
-                                    double azimuth_degrees,
-                                    double elevation_degrees,
-                                    double field_of_view_degrees,
-                                    double aspect,
-                                    leafless_camera *camera);
+leafless_status leafless_camera_fitted(const double *points_model,
+                                       uint64_t count,
+                                       double azimuth_degrees,
+                                       double elevation_degrees,
+                                       double field_of_view_degrees,
+                                       double aspect,
+                                       leafless_camera *camera);
 
 /**
  * Sets all fields of leafless_transfer to their defaults.
@@ -8142,7 +8143,7 @@ leafless_status leafless_transfer_init(leafless_transfer *transfer, size_t struc
  *   a x + b y + c z + d ≥ 0; `box_model`, 6 numbers, the least and the greatest corner of the box, or NULL for none;
  *   `clipped`, one pointer.
  * - Result: `*clipped`.
- * - Errors: LEAFLESS_E_ARGUMENT if a number is not finite or beyond ±2^256, a, b and c are zero, or the box is none;
+ * - Errors: LEAFLESS_E_ARGUMENT if a number is not zero and not between 2^-256 and 2^256 in magnitude, a, b and c are zero, or the box is none;
  *   LEAFLESS_E_NO_MEMORY.
  * - Ownership: the layer is shared and may be freed; give `*clipped` back with leafless_layer_free.
  * - Threads: any.
@@ -8258,7 +8259,7 @@ leafless_status leafless_layer_new_mesh(const leafless_mesh *mesh,
  *   opacity, or NULL for dark grey; `layer`, one pointer. `width` is in pixels, at most 256; 0 means 1.
  * - Result: `*layer`.
  * - Errors: LEAFLESS_E_NO_MEMORY. Taking a picture returns LEAFLESS_E_ARGUMENT if the width is out of range, or a
- *   coordinate not finite or beyond ±2^256.
+ *   coordinate not zero and not between 2^-256 and 2^256 in magnitude.
  * - Ownership: the layer copies the lines; give `*layer` back with leafless_layer_free.
  * - Threads: any.
  * - Untrusted input: any numbers.
@@ -8425,7 +8426,8 @@ leafless_status leafless_shot_init(leafless_shot *shot,
  *   `colour_capacity` bytes, and `depths`, room for `depth_capacity` numbers, each NULL if it is not wanted.
  * - Result: in `colours` 4 · width · height bytes: red, green, blue (sRGB, not multiplied by the opacity) and opacity of
  *   each pixel, row by row from the upper left corner without gaps. In `depths` width · height numbers: the distance
- *   from the plane of the eye to what is nearest and opaque, in model units; infinity where nothing is.
+ *   from the plane of the eye to what is nearest and opaque, in model units; infinity where nothing is, or farther than
+ *   a float tells.
  * - Errors: LEAFLESS_E_ARGUMENT if the shot is not as it must be; LEAFLESS_E_BUFFER if a capacity is too small: nothing
  *   is written then; what solids and attributes of layers return; LEAFLESS_E_NO_MEMORY; LEAFLESS_E_CANCELLED.
  * - Ownership: nothing changes hands.
@@ -8433,20 +8435,20 @@ leafless_status leafless_shot_init(leafless_shot *shot,
  * - Untrusted input: any layers, any numbers.
  * - Since: 0.1
  */
-leafless_status leafless_render(const leafless_shot *shot,
-                                const leafless_layer *const *layers,
-                                uint64_t layer_count,
-                                const leafless_options *options,
-                                uint8_t *colours,
-                                uint64_t colour_capacity,
-                                float *depths,
-                                uint64_t depth_capacity);
+leafless_status leafless_picture_render(const leafless_shot *shot,
+                                        const leafless_layer *const *layers,
+                                        uint64_t layer_count,
+                                        const leafless_options *options,
+                                        uint8_t *colours,
+                                        uint64_t colour_capacity,
+                                        float *depths,
+                                        uint64_t depth_capacity);
 
 /**
  * Saves a picture as a PNG file: without opacity if all pixels are opaque. At any moment there is the old file or the
  * new one, each complete, as leafless_octree_save tells. The same picture makes the same bytes.
  *
- * - Buffers: `colours`, 4 · `width` · `height` bytes, as leafless_render writes them; `path`, `path_length` bytes of
+ * - Buffers: `colours`, 4 · `width` · `height` bytes, as leafless_picture_render writes them; `path`, `path_length` bytes of
  *   UTF-8.
  * - Result: LEAFLESS_OK once the file is on the disk.
  * - Errors: LEAFLESS_E_ARGUMENT unless the sides are 1 to 16384 pixels; LEAFLESS_E_IO; LEAFLESS_E_UTF8;
@@ -8488,7 +8490,7 @@ leafless_status leafless_picture_to_bytes(const uint8_t *colours,
  * Draws a bar of the colours of values over a transfer function's range into a picture, with a title and numbers, on a
  * light panel. Longer titles than find room are cut.
  *
- * - Buffers: `colours`, 4 · `width` · `height` bytes, as leafless_render writes them; `title`, `title_length` bytes of
+ * - Buffers: `colours`, 4 · `width` · `height` bytes, as leafless_picture_render writes them; `title`, `title_length` bytes of
  *   UTF-8; `transfer`, one struct; `covered`, one struct. `side` is a leafless_legend_side.
  * - Result: the picture with the legend; in `*covered` the box that it covers, all zero if the picture is smaller than
  *   160 x 120 pixels, which has no legend.

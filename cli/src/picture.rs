@@ -9,10 +9,11 @@ use crate::source::Source;
 use clap::{Args, ValueEnum};
 use leafless::{
     Affine, AnySolid, Attribute, Bounds, CellFilter, Channel, Clip, ClippedLayer, ColourMap, Compositing,
-    Control, Criterion, Cube, Detail, Error, Finish, Frame, Layer, LegendSide, MeshEdges, MeshLayer, Octree,
-    OctreeLayer, Outline, Picture, Resolve, Rule, Shot, SliceLayer, SlicePlane, SolidLayer, TAG_COLOURS, Tag,
-    Transfer, TriangleMesh, VolumeLayer, VoxelOptions, VoxelRecords, bounding_box, build, draw_colour_bar,
-    draw_names, marching_cubes, octree_of_dexels, render,
+    Control, Criterion, Cube, Detail, Error, Finish, Frame, Layer, LegendBox, LegendSide, MeshEdges,
+    MeshLayer, Octree, OctreeLayer, Outline, Picture, Resolve, Rule, Shot, SliceLayer, SlicePlane,
+    SolidLayer, TAG_COLOURS, Tag, Transfer, TriangleMesh, VertexPlacement, VolumeLayer, VoxelOptions,
+    VoxelRecords, bounding_box, build, draw_colour_bar, draw_names, marching_cubes, marching_cubes_of,
+    octree_of_dexels, render,
 };
 use serde::Serialize;
 
@@ -71,6 +72,23 @@ enum Edges {
     Features,
     /// Those of all triangles, fainter where these are seen small
     All,
+}
+
+impl Looks {
+    /// Refuses options that say nothing in the view.
+    pub fn check(&self) -> Result<(), Failure> {
+        let (view, is_surface) = (self.view, self.view == View::Surface);
+        for (is_misplaced, option, of) in [
+            (self.plane.is_some() && view != View::Slice, "--plane", "slice"),
+            (self.faces && !is_surface, "--faces", "surface"),
+            (self.edges.is_some() && !is_surface, "--edges", "surface"),
+        ] {
+            if is_misplaced {
+                return Err(Failure::Usage(format!("{option} is for --view {of}")));
+            }
+        }
+        Ok(())
+    }
 }
 
 pub fn numbers<const N: usize>(text: &str) -> Result<[f64; N], String> {
@@ -167,7 +185,12 @@ impl Subject {
         };
         match self {
             Subject::Octree(octree, _) => Ok(coarse(octree)),
-            Subject::Mesh(mesh) => Ok(mesh.vertices().to_vec()),
+            Subject::Mesh(mesh) => {
+                // A file may have vertices that no triangle uses.
+                let mut is_used = vec![false; mesh.vertices().len()];
+                mesh.triangles().iter().flatten().for_each(|&vertex| is_used[vertex as usize] = true);
+                Ok(mesh.vertices().iter().zip(is_used).filter(|(_, used)| *used).map(|(at, _)| *at).collect())
+            }
             Subject::Solid(solid, frame) => {
                 Ok(coarse(&build(&**solid, &frame.with_depth(COARSE)?, Rule::Certified, control)?))
             }
@@ -178,30 +201,91 @@ impl Subject {
 /// Level of the cells that a camera is fitted to.
 const COARSE: u8 = 6;
 
-/// A picture of it.
+/// A channel, and what its values look like.
+pub struct Values<'a> {
+    channel: &'a Channel,
+    transfer: Transfer,
+}
+
+impl<'a> Values<'a> {
+    /// Those of a channel of an octree.
+    pub fn new(
+        looks: &Looks,
+        octree: &Octree,
+        channel: &'a Channel,
+        control: &Control<'_>,
+    ) -> Result<Values<'a>, Error> {
+        Ok(Values { channel, transfer: transfer(looks, octree, Some(channel), control)? })
+    }
+
+    /// The colour of a value on a surface.
+    fn colour(&self) -> impl Fn(Option<[f64; 4]>) -> [u8; 4] + use<'_, 'a> {
+        let components = self.channel.value_type().components();
+        move |value| self.transfer.opaque(value, components)
+    }
+}
+
+/// A picture of it, with a legend.
 pub fn picture(
     looks: &Looks,
     subject: &Subject,
-    channel: Option<&Channel>,
+    values: Option<&Values<'_>>,
     shot: &Shot,
     control: &Control<'_>,
 ) -> Result<Picture, Error> {
-    match (subject, looks.view) {
+    let mut picture = match (subject, looks.view) {
         (Subject::Octree(octree, source), View::Volume) => {
-            volume(looks, octree, source.as_deref(), channel, shot, &[], control)
+            volume(looks, octree, source.as_deref(), values, shot, &[], control)
         }
         (Subject::Octree(octree, source), View::Hybrid) => {
-            hybrid(looks, octree, source.as_deref(), channel, shot, control)
+            hybrid(looks, octree, source.as_deref(), values, shot, control)
         }
-        (Subject::Octree(octree, _), View::Slice) => slice(looks, octree, channel, shot, control),
-        _ => surface(looks, subject, channel, shot, control),
+        (Subject::Octree(octree, _), View::Slice) => slice(looks, octree, values, shot, control),
+        _ => surface(looks, subject, values, shot, control),
+    }?;
+    legend(looks, values, &mut picture)?;
+    Ok(picture)
+}
+
+/// Where the legend of a picture of this size will lie; `None` if there is none.
+pub fn legend_box(
+    looks: &Looks,
+    values: Option<&Values<'_>>,
+    size: [u32; 2],
+) -> Result<Option<LegendBox>, Error> {
+    if looks.no_legend || values.is_none() && looks.view != View::Slice {
+        return Ok(None);
+    }
+    let blank = vec![[255; 4]; size[0] as usize * size[1] as usize];
+    legend(looks, values, &mut Picture::of_colours(size, blank)?)
+}
+
+/// Draws the legend on the right, and tells where it lies; `None` if there is none.
+fn legend(
+    looks: &Looks,
+    values: Option<&Values<'_>>,
+    picture: &mut Picture,
+) -> Result<Option<LegendBox>, Error> {
+    let (is_slice, side) = (looks.view == View::Slice, LegendSide::Right);
+    match values {
+        _ if looks.no_legend => Ok(None),
+        // Of two numbers the first one has a colour; three are a colour themselves.
+        Some(Values { channel, transfer }) if channel.value_type().components() <= 2 => {
+            let colour = |value: f64| transfer.opaque(Some([value, 0.0, 0.0, 0.0]), 1);
+            draw_colour_bar(picture, channel.name(), transfer.range(), &colour, side)
+        }
+        None if is_slice => {
+            let names = [("EMPTY", TAG_COLOURS[0]), ("FULL", TAG_COLOURS[1]), ("PARTIAL", TAG_COLOURS[2])];
+            Ok(draw_names(picture, "", &names, side))
+        }
+        _ => Ok(None),
     }
 }
 
 fn surface(
     looks: &Looks,
     subject: &Subject,
-    channel: Option<&Channel>,
+    values: Option<&Values<'_>>,
     shot: &Shot,
     control: &Control<'_>,
 ) -> Result<Picture, Error> {
@@ -216,13 +300,8 @@ fn surface(
     match subject {
         Subject::Octree(octree, _) => {
             let layer = OctreeLayer::new(octree.view(), finish);
-            let Some(channel) = channel else { return render(shot, &[&layer], control) };
-            let transfer = transfer(looks, octree, Some(channel), control)?;
-            let components = channel.value_type().components();
-            let colour = |value: Option<[f64; 4]>| transfer.opaque(value, components);
-            let mut picture = render(shot, &[&layer.values(channel, &colour)], control)?;
-            bar(looks, &mut picture, channel, &transfer)?;
-            Ok(picture)
+            let Some(values) = values else { return render(shot, &[&layer], control) };
+            render(shot, &[&layer.values(values.channel, &values.colour())], control)
         }
         Subject::Solid(solid, frame) => render(shot, &[&SolidLayer::new(&**solid, frame, finish)], control),
         Subject::Mesh(mesh) => {
@@ -255,7 +334,7 @@ fn transfer(
             let found = channel.view()?.summary(Some(octree.view()), None, &control)?;
             match found.map(|found| (found.least[0], found.greatest[0])) {
                 Some((low, high)) if low < high => [low, high],
-                Some((low, _)) => [low, low + 1.0],
+                Some((low, _)) => [low, low + low.abs().max(1.0)],
                 None => [0.0, 1.0],
             }
         }
@@ -273,12 +352,14 @@ fn volume(
     looks: &Looks,
     octree: &Octree,
     source: Option<&AnySolid>,
-    channel: Option<&Channel>,
+    values: Option<&Values<'_>>,
     shot: &Shot,
     surfaces: &[&dyn Layer],
     control: &Control<'_>,
 ) -> Result<Picture, Error> {
-    let transfer = transfer(looks, octree, channel, control)?;
+    let channel = values.map(|values| values.channel);
+    let transfer =
+        values.map_or_else(|| transfer(looks, octree, None, control), |values| Ok(values.transfer))?;
     let attribute = channel.map(|channel| channel as &dyn Attribute);
     let mut options = VoxelOptions::new();
     if let Some(channel) = channel {
@@ -302,35 +383,22 @@ fn volume(
     }
     let mut layers = surfaces.to_vec();
     layers.push(&layer);
-    let mut picture = render(shot, &layers, control)?;
-    if let Some(channel) = channel {
-        bar(looks, &mut picture, channel, &transfer)?;
-    }
-    Ok(picture)
-}
-
-/// The legend of a channel of one number.
-fn bar(looks: &Looks, picture: &mut Picture, channel: &Channel, transfer: &Transfer) -> Result<(), Error> {
-    if !looks.no_legend && channel.value_type().components() == 1 {
-        let colour = |value: f64| {
-            let [r, g, b] = transfer.colour(&[value]);
-            [r, g, b, 255]
-        };
-        draw_colour_bar(picture, channel.name(), transfer.range(), &colour, LegendSide::Right)?;
-    }
-    Ok(())
+    render(shot, &layers, control)
 }
 
 fn hybrid(
     looks: &Looks,
     octree: &Octree,
     source: Option<&AnySolid>,
-    channel: Option<&Channel>,
+    values: Option<&Values<'_>>,
     shot: &Shot,
     control: &Control<'_>,
 ) -> Result<Picture, Error> {
     let quiet = Control { progress: None, ..*control };
-    let mesh = marching_cubes(octree.view(), Some(Resolve::Outer), &quiet)?;
+    let mesh = match source {
+        Some(source) => marching_cubes_of(source, octree.frame(), VertexPlacement::Crossing, &quiet)?,
+        None => marching_cubes(octree.view(), Some(Resolve::Outer), &quiet)?,
+    };
     let mut colour = looks.colour.unwrap_or(Finish::default().colour);
     if shot.clip.is_empty() && looks.colour.is_none() {
         colour[3] = 70;
@@ -339,13 +407,13 @@ fn hybrid(
     // Clip planes cut the skin away, and show what is behind it.
     let cut = ClippedLayer::new(&skin, shot.clip.clone());
     let whole = Shot { clip: Clip::new(), ..shot.clone() };
-    volume(looks, octree, source, channel, &whole, &[&cut], control)
+    volume(looks, octree, source, values, &whole, &[&cut], control)
 }
 
 fn slice(
     looks: &Looks,
     octree: &Octree,
-    channel: Option<&Channel>,
+    values: Option<&Values<'_>>,
     shot: &Shot,
     control: &Control<'_>,
 ) -> Result<Picture, Error> {
@@ -365,19 +433,6 @@ fn slice(
         }
     };
     let layer = SliceLayer::new(octree.view(), plane);
-    let Some(channel) = channel else {
-        let mut picture = render(shot, &[&layer], control)?;
-        if !looks.no_legend {
-            let names = [("EMPTY", TAG_COLOURS[0]), ("FULL", TAG_COLOURS[1]), ("PARTIAL", TAG_COLOURS[2])];
-            draw_names(&mut picture, "", &names, LegendSide::Right);
-        }
-        return Ok(picture);
-    };
-    let transfer = transfer(looks, octree, Some(channel), control)?;
-    let components = channel.value_type().components();
-    let colour = |value: Option<[f64; 4]>| transfer.opaque(value, components);
-    let layer = layer.values(channel, &colour);
-    let mut picture = render(shot, &[&layer], control)?;
-    bar(looks, &mut picture, channel, &transfer)?;
-    Ok(picture)
+    let Some(values) = values else { return render(shot, &[&layer], control) };
+    render(shot, &[&layer.values(values.channel, &values.colour())], control)
 }

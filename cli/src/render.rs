@@ -6,13 +6,13 @@ use crate::input::Input;
 use crate::mesh::Reading;
 use crate::options::threads;
 use crate::output::{self, Output, count, json, seconds};
-use crate::picture::{Looks, Subject, View, colour, numbers, picture};
+use crate::picture::{Looks, Subject, Values, View, colour, legend_box, numbers, picture};
 use crate::progress::watched;
 use crate::scene::Drawing;
 use crate::shape::Shape;
 use crate::show::{Protocol, Screen};
 use clap::Args;
-use leafless::{Bounds, Camera, Channel, Clip, Control, FIELD_OF_VIEW, Lens, MAX_DEPTH, Shot, exchange};
+use leafless::{Bounds, Camera, Clip, Control, FIELD_OF_VIEW, LegendBox, Lens, MAX_DEPTH, Shot, exchange};
 use serde::Serialize;
 use std::ffi::OsString;
 use std::time::Instant;
@@ -45,7 +45,7 @@ pub struct Arguments {
     /// positive elevation from further above
     /// [default: 30,25; of a slice its plane from in front]
     #[arg(long, value_name = "AZIMUTH,ELEVATION", value_parser = numbers::<2>, allow_hyphen_values = true,
-          verbatim_doc_comment)]
+          verbatim_doc_comment, conflicts_with = "eye")]
     from: Option<[f64; 2]>,
     /// Where the eye is, instead of --from
     #[arg(long, value_name = "X,Y,Z", value_parser = numbers::<3>, allow_hyphen_values = true)]
@@ -115,7 +115,7 @@ struct Made {
     view: View,
     eye: [f64; 3],
     forward: [f64; 3],
-    /// Pixels where something is seen.
+    /// Pixels that are not as the background, those of a legend too.
     covered: usize,
     bytes: usize,
     seconds: f64,
@@ -132,6 +132,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         }
         output.check()?;
     }
+    arguments.looks.check()?;
     // Before any work: what is shown may depend on the terminal, which may be none.
     let screen = arguments.show.map(Screen::of).transpose()?;
     let shown_size = screen.as_ref().filter(|_| output.is_none()).and_then(Screen::size);
@@ -147,9 +148,17 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         }
         _ => None,
     };
+    let looks = &arguments.looks;
     let (shot, picture) = watched("render", arguments.threads, |control| {
-        let shot = shot(arguments, size, &subject, channel, control)?;
-        let picture = picture(&arguments.looks, &subject, channel, &shot, control)?;
+        let values = match (&subject, channel) {
+            (Subject::Octree(octree, _), Some(channel)) => {
+                Some(Values::new(looks, octree, channel, control)?)
+            }
+            _ => None,
+        };
+        let legend = legend_box(looks, values.as_ref(), size)?;
+        let shot = shot(arguments, size, &subject, legend, control)?;
+        let picture = picture(looks, &subject, values.as_ref(), &shot, control)?;
         Ok((shot, picture))
     })
     .of(&input)?;
@@ -199,7 +208,7 @@ fn shot(
     arguments: &Arguments,
     size: [u32; 2],
     subject: &Subject,
-    channel: Option<&Channel>,
+    legend: Option<LegendBox>,
     control: &Control<'_>,
 ) -> Result<Shot, leafless::Error> {
     let [width, height] = size;
@@ -207,6 +216,7 @@ fn shot(
     for &plane in &arguments.clip {
         clip = clip.plane(plane)?;
     }
+    let looks = &arguments.looks;
     let mut points = subject.points(&Control { progress: None, ..*control })?;
     if let Some([x0, y0, z0, x1, y1, z1]) = arguments.clip_box {
         let problem = "the lower corner must not be above the upper one";
@@ -215,24 +225,25 @@ fn shot(
         clip = clip.within(&kept)?;
         let clamped =
             |point: [f64; 3]| [0, 1, 2].map(|axis| point[axis].clamp(kept.min[axis], kept.max[axis]));
-        points = points.into_iter().map(clamped).collect();
+        // The volume of a hybrid view is not cut.
+        if looks.view != View::Hybrid {
+            points = points.into_iter().map(clamped).collect();
+        }
     }
-    let is_slice = arguments.looks.view == View::Slice && arguments.from.is_none();
+    let is_slice = looks.view == View::Slice && arguments.from.is_none() && arguments.eye.is_none();
     let field = (!arguments.ortho && !is_slice).then_some(arguments.fov);
     let camera = match arguments.eye {
         None => {
-            let from = arguments.from.unwrap_or(match arguments.looks.plane {
+            let from = arguments.from.unwrap_or(match looks.plane {
                 Some([a, b, c, _]) if is_slice => {
                     [a.atan2(-b).to_degrees(), c.atan2(a.hypot(b)).to_degrees()]
                 }
                 None if is_slice => [0.0, 0.0],
                 _ => [30.0, 25.0],
             });
-            // A legend lies at the right side.
-            let is_clear =
-                arguments.looks.no_legend || arguments.looks.view != View::Slice && channel.is_none();
-            let free = if is_clear { 1.0 } else { LEGEND_FREE };
-            Camera::fitted(&points, from, field, free * f64::from(width) / f64::from(height))?
+            // What is shown is as far from both sides as the legend is wide.
+            let free = legend.map_or(1.0, |[left, ..]| 2.0 * f64::from(left) / f64::from(width) - 1.0);
+            Camera::fitted(&points, from, field, free.max(LEAST_FREE) * f64::from(width) / f64::from(height))?
         }
         Some(eye) => {
             let at = arguments.at.unwrap_or(middle(&points));
@@ -249,8 +260,8 @@ fn shot(
     Ok(Shot { camera, size, samples, clip, background })
 }
 
-/// The part of a picture's width that is left for what is shown beside a legend: it is as far from both sides.
-const LEGEND_FREE: f64 = 0.72;
+/// The least part of a picture's width that is left between what a legend takes.
+const LEAST_FREE: f64 = 0.3;
 
 /// The middle of the box around points.
 fn middle(points: &[[f64; 3]]) -> [f64; 3] {

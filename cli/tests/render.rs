@@ -143,3 +143,40 @@ fn edges_are_drawn_of_every_kind() {
     place.run("render part.lfl -o never.png --edges all").bad(1, &["edges", "meshes"]);
     assert!(!place.path("never.png").exists());
 }
+
+#[test]
+fn cameras_and_legends_fit_what_is_shown() {
+    let place = parts();
+    let covered = |arguments: &str| {
+        let report: Value = place
+            .run(&format!("render {arguments} -o out.png --size 160x120 --samples 1 --json"))
+            .good()
+            .json();
+        report["covered"].as_u64().unwrap()
+    };
+    // A vertex that no triangle uses.
+    place.write(
+        "stray.obj",
+        "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv 1000 1000 1000\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n",
+    );
+    assert!(covered("stray.obj") > 3000);
+    // What is cut away in a hybrid view is the skin alone.
+    let whole = covered("part.lfl --view hybrid --no-legend");
+    assert!(covered("part.lfl --view hybrid --no-legend --clip-box 3,3,3,5,5,5") > whole / 2);
+    // An eye beside the slice is heeded.
+    assert_ne!(
+        covered("part.lfl --view slice --eye 4,-9,30"),
+        covered("part.lfl --view slice --eye 4,-30,9")
+    );
+    // Values that are all the same, and large.
+    place.run("attribute part.lfl --name big --value 1e17 -o big.lfl").good();
+    assert!(covered("big.lfl") > 3000);
+    for (line, option) in [
+        ("part.lfl --plane 0,0,1,-4", "--plane"),
+        ("part.lfl --view slice --edges", "--edges"),
+        ("part.lfl --view volume --faces", "--faces"),
+        ("part.lfl --eye 1,2,3 --from 1,2", "--from"),
+    ] {
+        place.run(&format!("render {line} -o never.png")).bad(2, &[option]);
+    }
+}

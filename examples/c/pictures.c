@@ -1,5 +1,5 @@
-/* A bored block is shown four ways: its surface, a section with the cells of its octree, its inside by temperature, and
- * the bore's edge as lines on the surface cut open.
+/* A bored block is shown three ways: its surface, cut open, with the axis of the bore as a line; a section with the cells of
+ * its octree; its inside by temperature.
  *
  *     pictures
  *
@@ -50,12 +50,12 @@ static leafless_status look_from(double azimuth, double elevation, leafless_shot
     shot->width = WIDTH;
     shot->height = HEIGHT;
     memset(shot->background, 255, 4);
-    if (!s) s = leafless_camera_fit(corners[0], 8, azimuth, elevation, 30, (double)WIDTH / HEIGHT, &shot->camera);
+    if (!s) s = leafless_camera_fitted(corners[0], 8, azimuth, elevation, 30, (double)WIDTH / HEIGHT, &shot->camera);
     return s;
 }
 
 static leafless_status take(const leafless_shot *shot, leafless_layer *const *layers, uint64_t count) {
-    return leafless_render(shot, (const leafless_layer *const *)layers, count, NULL, colours, sizeof colours, NULL, 0);
+    return leafless_picture_render(shot, (const leafless_layer *const *)layers, count, NULL, colours, sizeof colours, NULL, 0);
 }
 
 static leafless_status save(const char *path) {
@@ -64,9 +64,9 @@ static leafless_status save(const char *path) {
     return s;
 }
 
-/* The surface, its right half cut away, and what marks the section. */
+/* The surface without what lies above z = 0.2, and the axis of the bore. */
 static leafless_status surface(const leafless_solid *solid, const leafless_frame *frame) {
-    const double cut[4] = {0, 0, -1, 0.2}, marks[6] = {0.3, -0.6, 0.2, 0.3, 0.6, 0.2};
+    const double cut[4] = {0, 0, -1, 0.2}, axis[6] = {0.3, -0.9, 0, 0.3, 0.9, 0};
     const uint8_t red[4] = {200, 30, 30, 255};
     leafless_layer *layers[2] = {NULL, NULL};
     leafless_shot shot;
@@ -74,7 +74,7 @@ static leafless_status surface(const leafless_solid *solid, const leafless_frame
     shot.clip_planes = cut;
     shot.clip_plane_count = 1;
     if (!s) s = leafless_layer_new_solid(solid, frame, NULL, &layers[0]);
-    if (!s) s = leafless_layer_new_lines(marks, 1, 2, red, &layers[1]);
+    if (!s) s = leafless_layer_new_lines(axis, 1, 2, red, &layers[1]);
     if (!s) s = take(&shot, layers, 2);
     if (!s) s = save("surface.png");
     leafless_layer_free(layers[1]);

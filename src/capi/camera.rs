@@ -4,7 +4,7 @@ use super::boundary::{Failure, guard, out, slice};
 use super::status::leafless_status;
 use crate::render::{Camera, Lens};
 
-/// From where a picture is taken. leafless_camera_fit sets all of it; a host may as well.
+/// From where a picture is taken. leafless_camera_fitted sets all of it; a host may as well.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_camera {
@@ -41,14 +41,14 @@ impl leafless_camera {
 ///
 /// - Buffers: `points_model`, 3 · `count` numbers; `camera`, one struct.
 /// - Result: `*camera`. O(count).
-/// - Errors: LEAFLESS_E_ARGUMENT if there is no point, a number is not finite or beyond ±2^256, the field of view
+/// - Errors: LEAFLESS_E_ARGUMENT if there is no point, a number is not zero and not between 2^-256 and 2^256 in magnitude, the field of view
 ///   neither 0 (parallel lines stay parallel) nor between 0 and 180 degrees, or the aspect not above 0.
 /// - Ownership: nothing changes hands.
 /// - Threads: any.
 /// - Untrusted input: any numbers.
 /// - Since: 0.1
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn leafless_camera_fit(
+pub unsafe extern "C" fn leafless_camera_fitted(
     points_model: *const f64,
     count: u64,
     azimuth_degrees: f64,

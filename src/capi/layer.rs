@@ -208,7 +208,7 @@ pub(super) unsafe fn clip(
 ///   a x + b y + c z + d ≥ 0; `box_model`, 6 numbers, the least and the greatest corner of the box, or NULL for none;
 ///   `clipped`, one pointer.
 /// - Result: `*clipped`.
-/// - Errors: LEAFLESS_E_ARGUMENT if a number is not finite or beyond ±2^256, a, b and c are zero, or the box is none;
+/// - Errors: LEAFLESS_E_ARGUMENT if a number is not zero and not between 2^-256 and 2^256 in magnitude, a, b and c are zero, or the box is none;
 ///   LEAFLESS_E_NO_MEMORY.
 /// - Ownership: the layer is shared and may be freed; give `*clipped` back with leafless_layer_free.
 /// - Threads: any.

@@ -18,7 +18,8 @@ use alloc::sync::Arc;
 use alloc::vec::Vec;
 
 /// What a plane section looks like. NULL means the defaults. All fields but the first may be zero, which is their
-/// default; leafless_slice_look_init sets them so. Colours are red, green and blue (sRGB) and opacity, 0 to 255.
+/// default; leafless_slice_look_init sets them so. Colours are red, green and blue (sRGB) and opacity, 0 to 255; what is
+/// to be invisible is {255, 255, 255, 0}.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_slice_look {

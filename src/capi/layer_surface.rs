@@ -100,6 +100,7 @@ impl leafless_look {
                 });
             }
         };
+        edges.map_or(Ok(()), |outline| outline.check())?;
         Ok(Finish {
             colour: chosen(self.colour).unwrap_or(plain.colour),
             cut: chosen(self.inside).unwrap_or(plain.cut),
@@ -346,7 +347,7 @@ unsafe fn colour_at(colour: *const u8) -> Result<Option<[u8; 4]>, Failure> {
 ///   opacity, or NULL for dark grey; `layer`, one pointer. `width` is in pixels, at most 256; 0 means 1.
 /// - Result: `*layer`.
 /// - Errors: LEAFLESS_E_NO_MEMORY. Taking a picture returns LEAFLESS_E_ARGUMENT if the width is out of range, or a
-///   coordinate not finite or beyond ±2^256.
+///   coordinate not zero and not between 2^-256 and 2^256 in magnitude.
 /// - Ownership: the layer copies the lines; give `*layer` back with leafless_layer_free.
 /// - Threads: any.
 /// - Untrusted input: any numbers.

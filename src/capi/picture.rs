@@ -94,7 +94,8 @@ pub unsafe extern "C" fn leafless_shot_init(shot: *mut leafless_shot, struct_siz
 ///   `colour_capacity` bytes, and `depths`, room for `depth_capacity` numbers, each NULL if it is not wanted.
 /// - Result: in `colours` 4 · width · height bytes: red, green, blue (sRGB, not multiplied by the opacity) and opacity of
 ///   each pixel, row by row from the upper left corner without gaps. In `depths` width · height numbers: the distance
-///   from the plane of the eye to what is nearest and opaque, in model units; infinity where nothing is.
+///   from the plane of the eye to what is nearest and opaque, in model units; infinity where nothing is, or farther than
+///   a float tells.
 /// - Errors: LEAFLESS_E_ARGUMENT if the shot is not as it must be; LEAFLESS_E_BUFFER if a capacity is too small: nothing
 ///   is written then; what solids and attributes of layers return; LEAFLESS_E_NO_MEMORY; LEAFLESS_E_CANCELLED.
 /// - Ownership: nothing changes hands.
@@ -102,7 +103,7 @@ pub unsafe extern "C" fn leafless_shot_init(shot: *mut leafless_shot, struct_siz
 /// - Untrusted input: any layers, any numbers.
 /// - Since: 0.1
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn leafless_render(
+pub unsafe extern "C" fn leafless_picture_render(
     shot: *const leafless_shot,
     layers: *const *const leafless_layer,
     layer_count: u64,
@@ -156,7 +157,7 @@ unsafe fn picture(colours: *const u8, width: u32, height: u32) -> Result<Picture
 /// Saves a picture as a PNG file: without opacity if all pixels are opaque. At any moment there is the old file or the
 /// new one, each complete, as leafless_octree_save tells. The same picture makes the same bytes.
 ///
-/// - Buffers: `colours`, 4 · `width` · `height` bytes, as leafless_render writes them; `path`, `path_length` bytes of
+/// - Buffers: `colours`, 4 · `width` · `height` bytes, as leafless_picture_render writes them; `path`, `path_length` bytes of
 ///   UTF-8.
 /// - Result: LEAFLESS_OK once the file is on the disk.
 /// - Errors: LEAFLESS_E_ARGUMENT unless the sides are 1 to 16384 pixels; LEAFLESS_E_IO; LEAFLESS_E_UTF8;
@@ -267,7 +268,7 @@ unsafe fn drawn(
 /// Draws a bar of the colours of values over a transfer function's range into a picture, with a title and numbers, on a
 /// light panel. Longer titles than find room are cut.
 ///
-/// - Buffers: `colours`, 4 · `width` · `height` bytes, as leafless_render writes them; `title`, `title_length` bytes of
+/// - Buffers: `colours`, 4 · `width` · `height` bytes, as leafless_picture_render writes them; `title`, `title_length` bytes of
 ///   UTF-8; `transfer`, one struct; `covered`, one struct. `side` is a leafless_legend_side.
 /// - Result: the picture with the legend; in `*covered` the box that it covers, all zero if the picture is smaller than
 ///   160 x 120 pixels, which has no legend.

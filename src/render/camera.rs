@@ -35,7 +35,7 @@ impl Camera {
     /// A camera at `eye` that looks at the point `at`; `up`, of any length, is shown upward. Model units.
     ///
     /// # Errors
-    /// [`Error::Argument`] if a number is not finite or beyond ±2^256, if eye and point are one, if `up` is zero or lies along
+    /// [`Error::Argument`] if a number is not zero and not between 2^-256 and 2^256 in magnitude, if eye and point are one, if `up` is zero or lies along
     /// the view, or if the lens is not as it must be.
     pub fn new(eye: [f64; 3], at: [f64; 3], up: [f64; 3], lens: Lens) -> Result<Camera, Error> {
         let [eye, at, up] = [("eye", eye), ("at", at), ("up", up)].map(|(name, v)| vector(name, v));
@@ -57,7 +57,7 @@ impl Camera {
     /// `field_of_view`: degrees, as in [`Lens::Perspective`]; `None` for a parallel lens. O(points).
     ///
     /// # Errors
-    /// [`Error::Argument`] if there is no point, a number is not finite or beyond ±2^256, the field of view not between 0 and
+    /// [`Error::Argument`] if there is no point, a number is not zero and not between 2^-256 and 2^256 in magnitude, the field of view not between 0 and
     /// 180, or the aspect not above 0.
     pub fn fitted(
         points: &[[f64; 3]],

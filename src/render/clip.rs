@@ -40,7 +40,7 @@ impl Clip {
     /// Keeps only points p with a x + b y + c z + d ≥ 0.
     ///
     /// # Errors
-    /// [`Error::Argument`] if a number is not finite or beyond ±2^256, or if a, b and c are zero; [`Error::OutOfMemory`].
+    /// [`Error::Argument`] if a number is not zero and not between 2^-256 and 2^256 in magnitude, or if a, b and c are zero; [`Error::OutOfMemory`].
     pub fn plane(mut self, [a, b, c, d]: [f64; 4]) -> Result<Clip, Error> {
         numbers("plane", &[a, b, c, d])?;
         let normal = DVec3::new(a, b, c);

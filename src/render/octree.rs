@@ -18,7 +18,7 @@ use glam::DVec3;
 ///
 /// Normals are those of planes fitted to the surface in windows of 24³ cells, or of 12³ where it is not plane; where it is not
 /// plane there either, the gradient of the occupancy over 5³ cells, in which PARTIAL cells count half. What is cut open by a
-/// clip plane is shown flat.
+/// clip plane is shown flat. Through what is translucent other layers are seen, but nothing more of this one.
 ///
 /// O(samples · cells along a line of sight).
 #[derive(Clone, Copy)]
@@ -49,6 +49,7 @@ impl<'a> OctreeLayer<'a> {
 
 impl Draw for OctreeLayer<'_> {
     fn prepare<'a>(&'a self, stage: &Stage<'a>) -> Result<Box<dyn Painter + 'a>, Error> {
+        self.skin.check()?;
         Ok(memory::boxed(OctreePainter { layer: self, stage: *stage })?)
     }
 }

@@ -41,7 +41,7 @@ const WIDEST: f64 = 8.0;
 
 impl Outline {
     /// Refuses what is no outline.
-    pub(super) fn check(&self) -> Result<(), Error> {
+    pub(crate) fn check(&self) -> Result<(), Error> {
         check_width(self.width)?;
         if self.width > WIDEST {
             return Err(Error::Argument {
@@ -87,7 +87,6 @@ pub struct Field<'v> {
 impl<'v> Field<'v> {
     /// `blur`: the length over which normals turn at an edge.
     pub fn new(tile: &Window<'v>, outline: &Outline, blur: f64, frame: &Frame) -> Result<Field<'v>, Error> {
-        outline.check()?;
         let nearest = tile.view.nearest(frame);
         // An eye in the universe may be as near to the surface as can be.
         let is_inside = blur > 0.0 && nearest <= frame.edge() / 16.0;

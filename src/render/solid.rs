@@ -23,7 +23,8 @@ use glam::DVec3;
 ///
 /// The solid is split to cells as large as a pixel, 2^11 to an axis at the most. In an undecided cell a line of sight meets what
 /// the solid knows of it: a crossing, or the middle of its slabs, with their normals. Of cells of which nothing is known the
-/// surface and its normals are those of an [`OctreeLayer`](crate::OctreeLayer).
+/// surface and its normals are those of an [`OctreeLayer`](crate::OctreeLayer). Through what is translucent other layers are seen,
+/// but nothing more of this one.
 ///
 /// O(cells of the surface), once; then O(samples · cells along a line of sight).
 pub struct SolidLayer<'a, S> {
@@ -70,6 +71,7 @@ impl<'a, S: Solid> SolidLayer<'a, S> {
 
 impl<S: Solid> Draw for SolidLayer<'_, S> {
     fn prepare<'a>(&'a self, stage: &Stage<'a>) -> Result<Box<dyn Painter + 'a>, Error> {
+        self.skin.check()?;
         let frame = self.pixelled(stage)?;
         let control = Control { progress: None, ..*stage.job.control() };
         let octree = build(self.solid, &frame, Rule::Certified, &control)?;

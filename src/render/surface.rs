@@ -21,6 +21,11 @@ pub struct Skin<'a> {
 }
 
 impl Skin<'_> {
+    /// Refuses edges that nobody can draw.
+    pub fn check(&self) -> Result<(), Error> {
+        self.finish.edges.map_or(Ok(()), |outline| outline.check())
+    }
+
     /// What it looks like at a point, given the outward normal, or the direction to who looks; values are those `below` it.
     fn finish(&self, place: DVec3, outward: DVec3, below: f64) -> Result<Finish, Error> {
         let Some((attribute, colour)) = self.values else { return Ok(self.finish) };

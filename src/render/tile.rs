@@ -91,7 +91,7 @@ impl<'v> Tile<'v> {
         });
     }
 
-    /// Where the fragments of a sample begin.
+    /// The fragments of a sample.
     pub fn fragments_of(&self, sample: usize) -> &[Fragment] {
         let first = self.fragments.partition_point(|fragment| (fragment.sample as usize) < sample);
         let rest = &self.fragments[first..];

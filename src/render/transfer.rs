@@ -120,7 +120,7 @@ impl Transfer {
     /// 1, holds for a path of `length` model units, whatever the value.
     ///
     /// # Errors
-    /// [`Error::Argument`] if a number is not finite or beyond ±2^256, if the range is empty, if `alpha` is not in [0, 1], or if
+    /// [`Error::Argument`] if a number is not zero and not between 2^-256 and 2^256 in magnitude, if the range is empty, if `alpha` is not in [0, 1], or if
     /// `length` is not above 0.
     pub fn new(map: ColourMap, range: [f64; 2], alpha: f64, length: f64) -> Result<Transfer, Error> {
         numbers("range", &range)?;
