@@ -243,6 +243,79 @@ fn layers_hide_each_other() {
     assert!(front.colours()[middle][0] > 0 && front.colours()[middle][1] == 0);
 }
 
+#[test]
+fn eyes_may_be_anywhere() {
+    // From very far away a time says little of a place in the solid.
+    let solid = ball();
+    let tree = build(&solid, &frame(8), Rule::Certified, &alone()).unwrap();
+    let layers: [&dyn Layer; 2] = [
+        &SolidLayer::new(&solid, &frame(7), Finish::default()),
+        &OctreeLayer::new(tree.view(), Finish::default()),
+    ];
+    for distance in [1e2, 1e6, 1e8] {
+        let eye = [0.3 * distance, -0.8 * distance, 0.5 * distance];
+        let camera =
+            Camera::new(eye, CENTRE, [0.0, 0.0, 1.0], Lens::Perspective((2.0f64 / distance).to_degrees()))
+                .unwrap();
+        for clip in [Clip::new(), Clip::new().plane([0.0, 0.0, -1.0, 0.2]).unwrap()] {
+            let pictures = layers.map(|layer| {
+                let shot = Shot { samples: 1, clip: clip.clone(), ..Shot::new(camera, SIZE) };
+                render(&shot, &[layer], &alone()).unwrap()
+            });
+            let [by_slabs, cells] = pictures
+                .each_ref()
+                .map(|picture| picture.depths().iter().filter(|depth| depth.is_finite()).count());
+            let pixel = (0.09 + 0.64 + 0.25f64).sqrt() * 2.0 / f64::from(SIZE[1]);
+            let disc = core::f64::consts::PI * (RADIUS / pixel).powi(2);
+            if clip.is_empty() {
+                assert!((by_slabs as f64 - disc).abs() < 0.02 * disc, "{distance}: {by_slabs} of {disc}");
+            }
+            assert!(
+                by_slabs <= cells && cells - by_slabs < cells / 20 + 100,
+                "{distance}: {by_slabs} {cells}"
+            );
+        }
+    }
+    // In a cavity, in planes of the lattice.
+    let block = Csg::cuboid([-0.9; 3], [0.9; 3]).unwrap();
+    let hollow = block.difference(&Csg::ball([0.0; 3], 0.5).unwrap()).unwrap();
+    let tree = build(&hollow, &frame(7), Rule::Certified, &alone()).unwrap();
+    let camera = Camera::new([0.0; 3], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0], Lens::Perspective(80.0)).unwrap();
+    let layers: [(&dyn Layer, f64); 2] = [
+        (&SolidLayer::new(&hollow, &frame(7), Finish::default()), 1e-3),
+        (&OctreeLayer::new(tree.view(), Finish::default()), 2.0 * frame(7).cell_size()),
+    ];
+    for (layer, tolerance) in layers {
+        let picture = render(&Shot { samples: 1, ..Shot::new(camera, SIZE) }, &[layer], &alone()).unwrap();
+        for (at, _, depth) in pixels(&picture) {
+            let (_, along) = line(&camera, at);
+            assert!((depth * dot(along, along).sqrt() - 0.5).abs() < tolerance, "{at:?} {depth}");
+        }
+    }
+}
+
+/// A wall of a single layer of cells has no gradient; a plate of a few is no wall of its rim.
+#[test]
+fn thin_plates_are_lit_as_their_faces() {
+    let camera = Camera::new([0.7, -1.5, 2.0], [0.0; 3], [0.0, 0.0, 1.0], Lens::Parallel(0.6)).unwrap();
+    for (thickness, depth) in [(0.006, 6), (0.04, 7), (0.08, 7), (0.1, 6)] {
+        let plate = Csg::cuboid([-0.9, -0.9, 0.005], [0.9, 0.9, 0.005 + thickness]).unwrap();
+        let tree = build(&plate, &frame(depth), Rule::Certified, &alone()).unwrap();
+        let shot = Shot { samples: 1, ..Shot::new(camera, SIZE) };
+        let picture = render(&shot, &[&OctreeLayer::new(tree.view(), Finish::default())], &alone()).unwrap();
+        let middle = picture.colours()[(SIZE[0] * SIZE[1] / 2 + SIZE[0] / 2) as usize];
+        for (at, colour, depth) in pixels(&picture) {
+            assert!(depth.is_finite());
+            assert!(
+                (0..3).all(|k| colour[k].abs_diff(middle[k]) <= 3),
+                "{thickness} {at:?} {colour:?} {middle:?}"
+            );
+        }
+        // From above it is bright.
+        assert!(middle[0] > 120, "{thickness} {middle:?}");
+    }
+}
+
 /// Where a point is seen, in pixels.
 fn place(camera: &Camera, point: [f64; 3]) -> [f64; 2] {
     let from = [0, 1, 2].map(|axis| point[axis] - camera.eye()[axis]);
