@@ -316,6 +316,31 @@ fn thin_plates_are_lit_as_their_faces() {
     }
 }
 
+/// What has no end in the universe ends there in a picture.
+#[test]
+fn faces_of_the_universe_are_flat() {
+    let tree = build(&ball().complement(), &frame(7), Rule::Certified, &alone()).unwrap();
+    let camera = Camera::new([0.7, -2.0, 1.5], [0.0; 3], [0.0, 0.0, 1.0], Lens::Parallel(3.6)).unwrap();
+    let shot = Shot { samples: 1, ..Shot::new(camera, SIZE) };
+    let picture = render(&shot, &[&OctreeLayer::new(tree.view(), Finish::default())], &alone()).unwrap();
+    let mut of_faces: [Vec<[u8; 4]>; 3] = Default::default();
+    for (at, colour, depth) in pixels(&picture).filter(|pixel| pixel.2.is_finite()) {
+        let (from, along) = line(&camera, at);
+        let point = [0, 1, 2].map(|axis| from[axis] + depth * along[axis]);
+        // At an edge normals turn.
+        let near = |axis: usize| point[axis].abs() > 1.0 - 12.0 * frame(7).cell_size();
+        let faces: Vec<usize> = (0..3).filter(|&axis| near(axis)).collect();
+        if let &[axis] = &faces[..] {
+            of_faces[axis].push(colour);
+        }
+    }
+    for colours in of_faces {
+        let unlike =
+            colours.iter().filter(|colour| (0..3).any(|k| colour[k].abs_diff(colours[0][k]) > 3)).count();
+        assert!(colours.len() > 300 && unlike == 0, "{unlike} of {}", colours.len());
+    }
+}
+
 /// Where a point is seen, in pixels.
 fn place(camera: &Camera, point: [f64; 3]) -> [f64; 2] {
     let from = [0, 1, 2].map(|axis| point[axis] - camera.eye()[axis]);

@@ -33,7 +33,8 @@ enum Source {
 
 impl<'a> Occupancy<'a> {
     pub fn new(tree: &OctreeRef<'a>) -> Occupancy<'a> {
-        let outside = Planes::uniform(if tree.exterior() == Tag::Full { Tag::Full } else { Tag::Empty });
+        // A picture shows what is FULL up to the universe's faces.
+        let outside = Planes::uniform(Tag::Empty);
         let words = tree.frame().cells().div_ceil(4) as i32;
         Occupancy { tree: *tree, words, outside, parts: Places::new() }
     }
@@ -189,7 +190,6 @@ mod tests {
     /// How full a cube of cells is, cell by cell.
     fn counted(tree: &Octree, low: [i32; 3], edge: i32) -> u8 {
         let cells = tree.frame().cells() as i32;
-        let outside = if tree.view().exterior() == Tag::Full { 2 } else { 0 };
         let mut sum = 0;
         for z in low[2]..low[2] + edge {
             for y in low[1]..low[1] + edge {
@@ -197,7 +197,8 @@ mod tests {
                     let at = [x, y, z];
                     let is_inside = at.iter().all(|i| (0..cells).contains(i));
                     sum += match is_inside.then(|| tree.view().tag_at(at.map(|i| i as u32))) {
-                        None => outside,
+                        // Whatever the exterior is.
+                        None => 0,
                         Some(Tag::Full) => 2,
                         Some(Tag::Empty) => 0,
                         Some(_) => 1,
