@@ -214,6 +214,15 @@ static void pictures(void) {
     shot.clip_plane_count = 0;
     shot.reserved = 1;
     BAD_NUMBER(leafless_picture_render, reserved, leafless_picture_render(&shot, all, 1, NULL, (uint8_t *)out, 4, NULL, 0));
+    shot.reserved = 0;
+    NULL_POINTER(leafless_shot_line_of_sight, shot,
+                 leafless_shot_line_of_sight(NULL, 0, 0, (double *)out, (double *)out + 3));
+    NULL_POINTER(leafless_shot_line_of_sight, from_model,
+                 leafless_shot_line_of_sight(&shot, 0, 0, NULL, (double *)out + 3));
+    NULL_POINTER(leafless_shot_line_of_sight, direction, leafless_shot_line_of_sight(&shot, 0, 0, (double *)out, NULL));
+    shot.width = 0;
+    BAD_NUMBER(leafless_shot_line_of_sight, width,
+               leafless_shot_line_of_sight(&shot, 0, 0, (double *)out, (double *)out + 3));
     NULL_POINTER(leafless_picture_save, colours, leafless_picture_save(NULL, 16, 16, PATH, sizeof PATH - 1));
     NULL_POINTER(leafless_picture_save, path, leafless_picture_save(colours, 16, 16, NULL, 1));
     BAD_NUMBER(leafless_picture_save, path, leafless_picture_save(colours, 16, 16, PATH, 0));
@@ -223,7 +232,12 @@ static void pictures(void) {
     OK(leafless_transfer_init(&transfer, sizeof transfer));
     BAD_NUMBER(leafless_picture_draw_bar, range,
                leafless_picture_draw_bar(colours, 16, 16, "x", 1, &transfer, 0, box));
+    BAD_NUMBER(leafless_transfer_colour, range, leafless_transfer_colour(&transfer, points, 1, (uint8_t *)out));
     transfer.range_upper = 1;
+    NULL_POINTER(leafless_transfer_colour, transfer, leafless_transfer_colour(NULL, points, 1, (uint8_t *)out));
+    NULL_POINTER(leafless_transfer_colour, value, leafless_transfer_colour(&transfer, NULL, 1, (uint8_t *)out));
+    NULL_POINTER(leafless_transfer_colour, colour, leafless_transfer_colour(&transfer, points, 1, NULL));
+    BAD_NUMBER(leafless_transfer_colour, components, leafless_transfer_colour(&transfer, points, 5, (uint8_t *)out));
     NULL_POINTER(leafless_picture_draw_bar, colours, leafless_picture_draw_bar(NULL, 16, 16, "x", 1, &transfer, 0, box));
     NULL_POINTER(leafless_picture_draw_bar, title, leafless_picture_draw_bar(colours, 16, 16, NULL, 1, &transfer, 0, box));
     NULL_POINTER(leafless_picture_draw_bar, transfer, leafless_picture_draw_bar(colours, 16, 16, "x", 1, NULL, 0, box));

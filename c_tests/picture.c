@@ -227,6 +227,7 @@ static void sections(void) {
     leafless_transfer transfer;
     leafless_slice_look look;
     leafless_look surface;
+    uint8_t colour[4];
     leafless_layer *layer;
     leafless_shot shot = shot_of(1);
     uint8_t first[sizeof colours];
@@ -268,6 +269,15 @@ static void sections(void) {
     take(&shot, layer);
     CHECK(is(pixel(SIDE / 2, SIDE / 2), VIOLET));
     leafless_layer_free(layer);
+    OK(leafless_transfer_colour(&transfer, &value, 1, colour));
+    CHECK(is(colour, VIOLET));
+    {
+        const double green[3] = {1, 200, 3}, none = NAN;
+        OK(leafless_transfer_colour(&transfer, green, 3, colour));
+        CHECK(colour[0] == 1 && colour[1] == 200 && colour[2] == 3 && colour[3] == 255);
+        OK(leafless_transfer_colour(&transfer, &none, 1, colour));
+        CHECK(colour[0] == colour[1] && colour[1] == colour[2]);
+    }
     /* The same on the surface, shaded: the ratio of red to blue light stays. */
     OK(leafless_attribute_new_constant(&value, 1, &attribute));
     OK(leafless_look_init(&surface, sizeof surface));
@@ -396,6 +406,21 @@ static void buffers(void) {
         options.control = control;
         FAILS(LEAFLESS_E_CANCELLED, leafless_picture_render(&shot, layers, 1, &options, colours, sizeof colours, NULL, 0));
         leafless_control_free(control);
+    }
+    /* What a pixel shows is where its line of sight is at its depth. */
+    {
+        const leafless_layer *layers[1];
+        double from[3], along[3], square = 0;
+        int axis;
+        layers[0] = layer;
+        shot.samples = 1;
+        OK(leafless_picture_render(&shot, layers, 1, NULL, NULL, 0, depths, PIXELS));
+        OK(leafless_shot_line_of_sight(&shot, 40.5, 60.5, from, along));
+        for (axis = 0; axis < 3; axis++) {
+            const double at = from[axis] + (double)depths[40 + 60 * SIDE] * along[axis];
+            square += at * at;
+        }
+        CHECK(fabs(sqrt(square) - 0.75) < 4.0 / 64);
     }
     /* Nothing at all: the background. */
     shot.background[0] = shot.background[3] = 255;

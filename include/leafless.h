@@ -8135,6 +8135,23 @@ leafless_status leafless_camera_fitted(const double *points_model,
 leafless_status leafless_transfer_init(leafless_transfer *transfer, size_t struct_size);
 
 /**
+ * The colour of a value under a transfer function, as surfaces show it in full light: for a legend of the host's own.
+ *
+ * - Buffers: `transfer`, one struct; `value`, `components` numbers; `colour`, 4 bytes.
+ * - Result: `colour`: red, green and blue (sRGB), and 255. Grey if a number is NaN.
+ * - Errors: LEAFLESS_E_ARGUMENT if the transfer function is not as it must be, or `components` not 1 to 4.
+ * - Ownership: nothing changes hands.
+ * - Threads: any.
+ * - Untrusted input: any numbers.
+ * - Since: 0.1
+ *
+ */
+leafless_status leafless_transfer_colour(const leafless_transfer *transfer,
+                                         const double *value,
+                                         uint32_t components,
+                                         uint8_t colour[4]);
+
+/**
  * What lies of a layer within planes and a box of its own, which count instead of the picture's: a surface that is
  * cut away, for instance, to show the voxels behind it. A layer that has some already keeps what lies within all
  * of them.
@@ -8417,6 +8434,25 @@ leafless_status leafless_layer_new_voxels(const leafless_voxel_arrays *voxels,
  */
 leafless_status leafless_shot_init(leafless_shot *shot,
                                    size_t struct_size);
+
+/**
+ * The line of sight of a place in a picture, in pixels from its upper left corner: the middle of the first pixel is 0.5, 0.5.
+ * What is seen there at the depth d is at `from_model` + d · `direction`.
+ *
+ * - Buffers: `shot`, one struct; `from_model` and `direction`, 3 numbers each.
+ * - Result: `from_model`, the point from which one looks there; `direction`, one long along the view.
+ * - Errors: LEAFLESS_E_ARGUMENT if the camera is not as it must be, or the size is none.
+ * - Ownership: nothing changes hands.
+ * - Threads: any.
+ * - Untrusted input: any numbers.
+ * - Since: 0.1
+ *
+ */
+leafless_status leafless_shot_line_of_sight(const leafless_shot *shot,
+                                            double x,
+                                            double y,
+                                            double from_model[3],
+                                            double direction[3]);
 
 /**
  * Takes a picture of layers. Surfaces hide what lies behind them, whichever layer it is of; of two at one depth the

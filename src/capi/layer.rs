@@ -1,6 +1,6 @@
 //! Layers: what a picture is made of.
 
-use super::attribute::{AnyAttribute, leafless_attribute};
+use super::attribute::{AnyAttribute, components, leafless_attribute};
 use super::boundary::{
     Failure, Sized32, guard, handle, initialise, out, refer, release, shared, sized, slice,
 };
@@ -131,6 +131,35 @@ pub unsafe extern "C" fn leafless_transfer_init(
     struct_size: usize,
 ) -> leafless_status {
     guard(|| unsafe { initialise(transfer, struct_size, "transfer") })
+}
+
+/// The colour of a value under a transfer function, as surfaces show it in full light: for a legend of the host's own.
+///
+/// - Buffers: `transfer`, one struct; `value`, `components` numbers; `colour`, 4 bytes.
+/// - Result: `colour`: red, green and blue (sRGB), and 255. Grey if a number is NaN.
+/// - Errors: LEAFLESS_E_ARGUMENT if the transfer function is not as it must be, or `components` not 1 to 4.
+/// - Ownership: nothing changes hands.
+/// - Threads: any.
+/// - Untrusted input: any numbers.
+/// - Since: 0.1
+///
+/// cbindgen:ptrs-as-arrays=[[colour; 4]]
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_transfer_colour(
+    transfer: *const leafless_transfer,
+    value: *const f64,
+    components: u32,
+    colour: *mut u8,
+) -> leafless_status {
+    guard(|| unsafe {
+        shared(transfer, "transfer")?;
+        let transfer = sized(transfer, "transfer")?.check()?;
+        let components = self::components(components, "components")?;
+        let value = slice(value, components as u64, "value")?;
+        let colour = out(colour.cast::<[u8; 4]>(), "colour")?;
+        let [r, g, b] = transfer.colour(value);
+        colour.write([r, g, b, 255])
+    })
 }
 
 /// An attribute, and the colours of its values on surfaces.

@@ -87,6 +87,40 @@ pub unsafe extern "C" fn leafless_shot_init(shot: *mut leafless_shot, struct_siz
     guard(|| unsafe { initialise(shot, struct_size, "shot") })
 }
 
+/// The line of sight of a place in a picture, in pixels from its upper left corner: the middle of the first pixel is 0.5, 0.5.
+/// What is seen there at the depth d is at `from_model` + d · `direction`.
+///
+/// - Buffers: `shot`, one struct; `from_model` and `direction`, 3 numbers each.
+/// - Result: `from_model`, the point from which one looks there; `direction`, one long along the view.
+/// - Errors: LEAFLESS_E_ARGUMENT if the camera is not as it must be, or the size is none.
+/// - Ownership: nothing changes hands.
+/// - Threads: any.
+/// - Untrusted input: any numbers.
+/// - Since: 0.1
+///
+/// cbindgen:ptrs-as-arrays=[[from_model; 3], [direction; 3]]
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_shot_line_of_sight(
+    shot: *const leafless_shot,
+    x: f64,
+    y: f64,
+    from_model: *mut f64,
+    direction: *mut f64,
+) -> leafless_status {
+    guard(|| unsafe {
+        shared(shot, "shot")?;
+        let shot = sized(shot, "shot")?.check()?;
+        let from_model = out(from_model.cast::<[f64; 3]>(), "from_model")?;
+        let direction = out(direction.cast::<[f64; 3]>(), "direction")?;
+        if shot.size.contains(&0) {
+            return Err(Failure::Argument { name: "shot.width", problem: "and height must be above 0" });
+        }
+        let (from, along) = shot.line_of_sight([x, y]);
+        from_model.write(from)?;
+        direction.write(along)
+    })
+}
+
 /// Takes a picture of layers. Surfaces hide what lies behind them, whichever layer it is of; of two at one depth the
 /// first layer's is seen. The same bytes for any number of threads.
 ///

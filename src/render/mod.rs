@@ -84,6 +84,21 @@ impl Shot {
         Shot { camera, size, samples: 4, clip: Clip::new(), background: [255; 4] }
     }
 
+    /// The line of sight of a place in the picture, in pixels from its upper left corner (the middle of the first pixel is
+    /// ½, ½): from where, and in which direction. What is seen there at the depth d is at from + d · direction.
+    ///
+    /// ```
+    /// use leafless::{Camera, Lens, Shot};
+    /// let camera = Camera::new([0.0, -5.0, 0.0], [0.0; 3], [0.0, 0.0, 1.0], Lens::Parallel(2.0))?;
+    /// let (from, direction) = Shot::new(camera, [200, 100]).line_of_sight([150.0, 0.0]);
+    /// assert_eq!((from, direction), ([1.0, -5.0, 1.0], [0.0, 1.0, 0.0]));
+    /// # Ok::<(), leafless::Error>(())
+    /// ```
+    pub fn line_of_sight(&self, [x, y]: [f64; 2]) -> ([f64; 3], [f64; 3]) {
+        let (from, direction) = View::new(&self.camera, self.size).line(x, y);
+        (from.to_array(), direction.to_array())
+    }
+
     fn grid(&self) -> Result<u32, Error> {
         let grid = (1..=MOST_GRID).find(|grid| grid * grid == self.samples);
         grid.ok_or(Error::Argument { name: "samples", problem: "must be 1, 4, 9, 16, 25, 36, 49 or 64" })
