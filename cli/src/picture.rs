@@ -395,17 +395,22 @@ fn hybrid(
     control: &Control<'_>,
 ) -> Result<Picture, Error> {
     let quiet = Control { progress: None, ..*control };
-    let mesh = match source {
-        Some(source) => marching_cubes_of(source, octree.frame(), VertexPlacement::Crossing, &quiet)?,
-        None => marching_cubes(octree.view(), Some(Resolve::Outer), &quiet)?,
-    };
     let mut colour = looks.colour.unwrap_or(Finish::default().colour);
     if shot.clip.is_empty() && looks.colour.is_none() {
         colour[3] = 70;
     }
-    let skin = MeshLayer::new(&mesh).colour(colour).inside(colour);
+    let mesh = match source {
+        Some(source) => Some(marching_cubes_of(source, octree.frame(), VertexPlacement::Crossing, &quiet)?),
+        // Through a translucent skin all of its sides are seen.
+        None if colour[3] < 255 => Some(marching_cubes(octree.view(), Some(Resolve::Outer), &quiet)?),
+        None => None,
+    };
+    let triangles = mesh.as_ref().map(|mesh| MeshLayer::new(mesh).colour(colour).inside(colour));
+    // Of an octree the steps of its lattice would be seen; what is cut open shows the inside.
+    let cells = OctreeLayer::new(octree.view(), Finish { colour, cut: [0; 4], ..Finish::default() });
+    let skin: &dyn Layer = triangles.as_ref().map_or(&cells, |triangles| triangles);
     // Clip planes cut the skin away, and show what is behind it.
-    let cut = ClippedLayer::new(&skin, shot.clip.clone());
+    let cut = ClippedLayer::new(skin, shot.clip.clone());
     let whole = Shot { clip: Clip::new(), ..shot.clone() };
     volume(looks, octree, source, values, &whole, &[&cut], control)
 }
