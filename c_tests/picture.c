@@ -208,6 +208,7 @@ static void lines(void) {
     leafless_layer_free(layer);
     /* The universe as a cell: its edges are seen, its middle is not. */
     memset(&cell, 0, sizeof cell);
+    memset(&cell.tag, 0x5a, sizeof cell.tag);
     OK(leafless_layer_new_cells(&frame, &cell, 1, 3, RED, &layer));
     take(&shot, layer);
     CHECK(is(pixel(SIDE / 2, SIDE / 2), NOTHING));

@@ -3301,7 +3301,7 @@ typedef struct {
 } leafless_shot;
 
 /**
- * A box in the picture, in C's order; all zero if there is none.
+ * The part of a picture that a legend covers; all zero if there is none.
  */
 typedef struct {
     /**
@@ -8290,14 +8290,14 @@ leafless_status leafless_layer_new_lines(const double *points_model,
 
 /**
  * The edges of cells as lines. What several cells have in common is drawn once. A cell that is none of the frame is
- * left out, and tags do not count.
+ * left out. Tags are not read.
  *
  * - Buffers: `frame`, one struct; `cells`, `count` structs; `colour`, `width` and `layer` as leafless_layer_new_lines.
  * - Result: `*layer`.
  * - Errors: LEAFLESS_E_ARGUMENT as leafless_frame_check, and as leafless_layer_new_lines; LEAFLESS_E_NO_MEMORY.
  * - Ownership: give `*layer` back with leafless_layer_free.
  * - Threads: any.
- * - Untrusted input: any numbers; tags must be tags.
+ * - Untrusted input: any numbers.
  * - Since: 0.1
  */
 leafless_status leafless_layer_new_cells(const leafless_frame *frame,

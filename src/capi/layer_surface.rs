@@ -16,6 +16,7 @@ use crate::render::{Finish, Layer, LinesLayer, MeshEdges, MeshLayer, OctreeLayer
 use alloc::boxed::Box;
 use alloc::sync::Arc;
 use alloc::vec::Vec;
+use core::mem::MaybeUninit;
 use leafless_edges::*;
 
 /// Which edges are drawn as lines.
@@ -368,15 +369,25 @@ pub unsafe extern "C" fn leafless_layer_new_lines(
     })
 }
 
+/// A leafless_cell of which the host may have left the tag uninitialised.
+#[repr(C)]
+struct Untagged {
+    cell: [u32; 3],
+    level: u32,
+    tag: MaybeUninit<u32>,
+}
+
+const _: () = assert!(size_of::<Untagged>() == size_of::<leafless_cell>());
+
 /// The edges of cells as lines. What several cells have in common is drawn once. A cell that is none of the frame is
-/// left out, and tags do not count.
+/// left out. Tags are not read.
 ///
 /// - Buffers: `frame`, one struct; `cells`, `count` structs; `colour`, `width` and `layer` as leafless_layer_new_lines.
 /// - Result: `*layer`.
 /// - Errors: LEAFLESS_E_ARGUMENT as leafless_frame_check, and as leafless_layer_new_lines; LEAFLESS_E_NO_MEMORY.
 /// - Ownership: give `*layer` back with leafless_layer_free.
 /// - Threads: any.
-/// - Untrusted input: any numbers; tags must be tags.
+/// - Untrusted input: any numbers.
 /// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_layer_new_cells(
@@ -389,7 +400,7 @@ pub unsafe extern "C" fn leafless_layer_new_cells(
 ) -> leafless_status {
     guard(|| unsafe {
         let frame = self::frame(frame)?;
-        let cells = slice(cells, count, "cells")?;
+        let cells: &[Untagged] = slice(cells.cast(), count, "cells")?;
         let colour = colour_at(colour)?;
         let layer = out(layer, "layer")?;
         let cells = cells.iter().filter(|cell| cell.level <= u32::from(frame.depth()));

@@ -266,7 +266,7 @@ fn legend_side(side: u32) -> Result<LegendSide, Failure> {
     }
 }
 
-/// A box in the picture, in C's order; all zero if there is none.
+/// The part of a picture that a legend covers; all zero if there is none.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_legend_box {

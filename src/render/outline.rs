@@ -62,7 +62,7 @@ const REACH: [f64; 2] = [2.0, 12.0];
 /// How much of the turn between two sides half as far from the edge must show. Of a round edge it is half.
 const SUDDEN: f64 = 0.72;
 
-/// Pixels, or lengths of blur, by which a surface may step without an edge.
+/// Pixels, or thirds of the blur, by which a surface may step without an edge.
 const STEP: f64 = 2.0;
 
 /// What is seen at a sample.

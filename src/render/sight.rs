@@ -61,13 +61,6 @@ impl Sight {
         universe: &Bounds,
     ) -> Option<(Sight, Ray)> {
         let (eye, along) = window.line(x, y);
-        let (sight, ray) = Sight::along(stage, eye, along, universe)?;
-        Some((Sight { sample: y * window.width() + x, ..sight }, ray))
-    }
-
-    /// The same of no sample.
-    #[inline]
-    pub fn along(stage: &Stage<'_>, eye: DVec3, along: DVec3, universe: &Bounds) -> Option<(Sight, Ray)> {
         let shown = stage.clip.shown(eye, along)?;
         let (low, high) = (DVec3::from(universe.min), DVec3::from(universe.max));
         let unit = (high.x - low.x) / along.length();
@@ -83,7 +76,8 @@ impl Sight {
         let start = (shown.from + aside(shown.from)).max(enters - BEFORE * unit);
         let end = shown.to - aside(start);
         let from = eye + along * start;
-        let sight = Sight { sample: 0, from, along, start, length: end - start, entry: shown.entry };
+        let sample = y * window.width() + x;
+        let sight = Sight { sample, from, along, start, length: end - start, entry: shown.entry };
         let ray = sight.beyond(0.0)?;
         Some((sight, ray))
     }
