@@ -1,6 +1,7 @@
 //! What the program reads.
 
 use crate::failure::{Failure, Of};
+use crate::memory;
 use leafless::{Octree, TriDexel, file};
 use std::ffi::OsStr;
 use std::fmt;
@@ -40,16 +41,33 @@ impl Input {
         }
     }
 
-    /// All bytes.
+    /// All bytes, if they are no more than memory allows. A regular file says beforehand how long it is; a pipe or a
+    /// device may go on for ever.
     pub fn read(&self) -> Result<Vec<u8>, Failure> {
-        match self {
-            Input::Standard => {
-                let mut bytes = Vec::new();
-                std::io::stdin().lock().read_to_end(&mut bytes).of(self)?;
-                Ok(bytes)
+        let most = memory::longest_file();
+        let refusal = |length: &str| {
+            let allowed = memory::told(most);
+            let problem = format!("has {length}, and {allowed} can be read: give more memory with --max-memory");
+            Failure::of(self, problem)
+        };
+        let (source, length): (&mut dyn Read, _) = match self {
+            Input::Standard => (&mut std::io::stdin().lock(), 0),
+            Input::Path(path) => {
+                let file = std::fs::File::open(path).of(self)?;
+                let metadata = file.metadata().of(self)?;
+                (&mut { file }, if metadata.is_file() { metadata.len() } else { 0 })
             }
-            Input::Path(path) => std::fs::read(path).of(self),
+        };
+        if length > most {
+            return Err(refusal(&memory::told(length)));
         }
+        let mut bytes = Vec::new();
+        bytes.try_reserve_exact(length as usize).map_err(|_| Failure::of(self, leafless::Error::OutOfMemory))?;
+        source.take(most + 1).read_to_end(&mut bytes).of(self)?;
+        if bytes.len() as u64 > most {
+            return Err(refusal(&format!("more than {}", memory::told(most))));
+        }
+        Ok(bytes)
     }
 
     /// Whether this is a regular file with the signature of solids. Nothing is taken from a pipe.
