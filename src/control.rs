@@ -21,10 +21,12 @@ pub struct Control<'a> {
     /// Refuse results of more than this many octree nodes with [`Error::Limit`]. (What is refined on demand
     /// stops there.)
     pub max_nodes: Option<u64>,
-    /// Refuse results that take more than this many bytes, with what is needed to make them. Where the size is known
-    /// beforehand, the refusal is [`Error::TooLarge`] and nothing is done; where it is found out on the way, it is
-    /// [`Error::Limit`]. (What is refined on demand stops there.) A small solid may have a large result: a file of some
-    /// hundred bytes holds a cell of depth 20, whose surface at the finest level has 2^43 triangles.
+    /// Refuse results whose working form is larger than this many bytes. Where the size is known beforehand, the refusal
+    /// is [`Error::TooLarge`] and nothing is done; where it is found out on the way, it is [`Error::Limit`]. (What is
+    /// refined on demand stops there.) When a result is put together, it takes as much again for a moment.
+    ///
+    /// A small solid may have a large result: a file of some hundred bytes holds a cell of depth 20, whose surface has
+    /// 2^43 triangles at the finest level. Set a limit where a solid or its depth is not your own choice.
     pub max_bytes: Option<u64>,
     /// Split at most this many cells; `None` means no limit, or the one that the operation names. Only
     /// operations that split on demand heed it, and say so: with it spent they stop, and keep or return what

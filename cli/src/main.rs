@@ -75,8 +75,8 @@ use std::process::ExitCode;
 Try `leafless demo` first. A file named `-` is standard input or standard output.
 Files are mapped, not loaded: let no other program rewrite one in place while it is read here.")]
 struct Arguments {
-    /// Most memory to take, as 512M or 2G; what would take more is refused. Without it: half of what the machine has to
-    /// spare, and 8G at most
+    /// Most memory to take, as 512M or 2G; what would take more is refused. Without it: what the machine has to spare,
+    /// and 16G at most
     #[arg(long, global = true, value_name = "SIZE", value_parser = memory::size)]
     max_memory: Option<u64>,
     #[command(subcommand)]

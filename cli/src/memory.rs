@@ -5,12 +5,12 @@ use std::sync::OnceLock;
 /// What the user allowed.
 static ALLOWED: OnceLock<u64> = OnceLock::new();
 
-/// Most that the program takes without being told, if the machine has twice as much to spare.
-const MOST: u64 = 8 << 30;
+/// Most that the program takes without being told, if the machine has as much to spare.
+const MOST: u64 = 16 << 30;
 /// The same where the system does not tell what it has.
-const UNTOLD: u64 = 4 << 30;
-/// Reading a file takes some times the memory that its bytes take.
-const READING: u64 = 4;
+const UNTOLD: u64 = 8 << 30;
+/// Most that is read from what does not say how long it is, such as a pipe, if the user allowed nothing.
+const STREAM: u64 = 1 << 30;
 
 /// A number of bytes: `1500000000`, or `1500M`, `1.5G`, in powers of 1024.
 pub fn size(text: &str) -> Result<u64, String> {
@@ -37,19 +37,25 @@ pub fn allow(bytes: u64) {
     let _ = ALLOWED.set(bytes);
 }
 
-/// The bytes that the program may take in all: what the user allowed, or half of what the machine has to spare.
-fn allowed() -> u64 {
-    ALLOWED.get().copied().unwrap_or_else(|| spare().map_or(UNTOLD, |spare| (spare / 2).min(MOST)))
-}
-
-/// The bytes that the next piece of work may take: what is allowed without what is taken already.
+/// The bytes that the next result may take: half of what is allowed and not taken yet. A result exists twice for a moment,
+/// when it is put together, or written.
 pub fn affordable() -> u64 {
-    allowed().saturating_sub(taken()).max(1)
+    let left = match ALLOWED.get() {
+        Some(allowed) => allowed.saturating_sub(taken()),
+        None => spare().unwrap_or(UNTOLD).min(MOST.saturating_sub(taken())),
+    };
+    (left / 2).max(1)
 }
 
-/// The longest file that is read into memory, in bytes.
+/// The longest file that is read into memory, in bytes: what is made of it takes as much again.
 pub fn longest_file() -> u64 {
-    affordable() / READING
+    affordable() / 2
+}
+
+/// The same of what does not say how long it is.
+pub fn longest_stream() -> u64 {
+    let longest = longest_file();
+    if ALLOWED.get().is_some() { longest } else { longest.min(STREAM) }
 }
 
 /// What the system can give without swapping, if it tells.
@@ -128,6 +134,6 @@ mod tests {
     fn the_system_tells_what_there_is() {
         assert!(spare().is_some_and(|bytes| bytes > 1 << 20));
         assert!((1..1 << 40).contains(&taken()));
-        assert!(longest_file() <= affordable() && affordable() <= MOST);
+        assert!(longest_file() <= affordable() && affordable() <= MOST / 2);
     }
 }

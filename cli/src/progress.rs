@@ -38,13 +38,13 @@ pub fn watched<R>(
     result.map_err(|error| match error {
         // The only limit that is set here; others are the library's own, and say what they are.
         Error::Limit { what: "bytes", limit } => format!(
-            "more than the {} of memory that are left is needed: take fewer levels of cells (one less takes about a \
-             quarter), or give more with --max-memory",
+            "needs more than the {} of memory that there is room for: take fewer levels of cells (one less takes about \
+             a quarter), or give more with --max-memory",
             memory::told(limit)
         ),
         Error::TooLarge { what, needed, limit } => format!(
-            "{what} would take {} of memory or more, and {} are left: take fewer levels of cells (one less takes about a \
-             quarter), or give more with --max-memory",
+            "{what} would take {} of memory or more, and there is room for {}: take fewer levels of cells (one less takes \
+             about a quarter), or give more with --max-memory",
             memory::told(needed),
             memory::told(limit)
         ),
