@@ -3,6 +3,7 @@
 use crate::channel;
 use crate::failure::{Failure, Of};
 use crate::input::Input;
+use crate::memory;
 use crate::npz::{Arrays, Reader};
 use crate::output::{self, Output, count, number, write_file};
 use crate::progress::watched;
@@ -174,6 +175,12 @@ fn list(arguments: &Arguments, input: &Input, output: &Output) -> Result<(), Fai
     });
     let (records, triangles) = listed.of(input)?;
     let (view, triangles) = (records.view(), triangles.as_ref());
+    // A line has a digit for each level, and words and numbers of twenty letters at the least.
+    let each = match form {
+        WriteName::Npz => records.bytes_each() as u64 + 24,
+        WriteName::Csv => 20 + u64::from(view.frame().depth()),
+    };
+    memory::afford_file(each * view.len() as u64).of(output)?;
     let bytes = match form {
         WriteName::Npz => npz(&view, triangles).of(output)?,
         WriteName::Csv => csv(&view, triangles).into_bytes(),
