@@ -54,7 +54,9 @@ pub fn afford_file(bytes: u64) -> Result<(), String> {
         return Ok(());
     }
     let (bytes, room) = (told(bytes), told(room));
-    Err(format!("would have {bytes} or more, and there is room for {room}: give more memory with --max-memory"))
+    Err(format!(
+        "would have {bytes} or more, and there is room for {room}: give more memory with --max-memory"
+    ))
 }
 
 /// The longest file that is read into memory, in bytes: what is made of it takes as much again.

@@ -3,7 +3,9 @@
 
 mod place;
 
-use leafless::{Cell, Classifier, Control, Error, Frame, Octree, Rule, Solid, Tag, Verdict, Worker, build, file};
+use leafless::{
+    Cell, Classifier, Control, Error, Frame, Octree, Rule, Solid, Tag, Verdict, Worker, build, file,
+};
 use place::{Place, Run};
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -204,7 +206,10 @@ fn all_commands(place: &Place, path: &Path) {
         let errors = done.errors.lines().filter(|line| !line.contains("warning")).count();
         assert_eq!(errors, usize::from(done.code != Some(0)), "{done:?}");
         // The limit was kept by the program itself.
-        assert!(!done.errors.contains("the system has no memory left") && !done.errors.contains("panicked"), "{done:?}");
+        assert!(
+            !done.errors.contains("the system has no memory left") && !done.errors.contains("panicked"),
+            "{done:?}"
+        );
     }
 }
 
@@ -232,8 +237,10 @@ fn trees_of_one_cell_take_little() {
 #[test]
 fn test_vectors_take_little() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../format_spec/vectors/valid");
-    let mut paths: Vec<PathBuf> =
-        std::fs::read_dir(folder.canonicalize().unwrap()).unwrap().map(|entry| entry.unwrap().path()).collect();
+    let mut paths: Vec<PathBuf> = std::fs::read_dir(folder.canonicalize().unwrap())
+        .unwrap()
+        .map(|entry| entry.unwrap().path())
+        .collect();
     paths.retain(|path| path.extension().is_some_and(|extension| extension == "lfl"));
     paths.sort();
     assert!(paths.len() > 50);
@@ -276,7 +283,8 @@ fn what_is_too_large_is_said_with_its_size_and_the_option() {
 #[cfg(unix)]
 fn endless_inputs_are_refused() {
     let place = Place::new();
-    for command in ["info", "verify", "measure", "voxelize -o out.lfl --depth 3", "csg -o out.lfl --depth 3"] {
+    for command in ["info", "verify", "measure", "voxelize -o out.lfl --depth 3", "csg -o out.lfl --depth 3"]
+    {
         let (name, rest) = command.split_once(' ').unwrap_or((command, ""));
         run(&place, &format!("{name} /dev/zero {rest}"), b"").bad(1, &["/dev/zero", "--max-memory"]);
     }
