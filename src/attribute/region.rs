@@ -186,6 +186,10 @@ impl<W: Worker> Worker for OnFrame<'_, W> {
         self.solid.mark()
     }
 
+    fn scratch_bytes(&self) -> usize {
+        self.solid.scratch_bytes()
+    }
+
     fn release(&mut self, mark: usize) {
         self.solid.release(mark);
     }
