@@ -270,7 +270,7 @@ const WAYS: &[Way] = &[
         make: |a| {
             let tree = a.with_channel();
             let channel = tree.channel("value").unwrap().view()?;
-            asked(&ValueRegion::new(tree.view(), &channel, [3.0; 4], [3.0; 4])?)
+            asked(&ValueRegion::new(tree.view(), channel, [3.0; 4], [3.0; 4])?)
         },
         proven: SAME,
     },

@@ -22,7 +22,7 @@ use super::exact::{sign_of_sum, sqrt, two_product, two_sum};
 pub struct Interval(IntervalEnds);
 
 /// The bounds of an [`Interval`], for reading.
-#[derive(Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct IntervalEnds {
     /// Nothing below is possible.
     pub lower: f64,
