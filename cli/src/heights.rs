@@ -6,7 +6,7 @@ use crate::output::{Output, number, print, write_file};
 use crate::progress::watched;
 use crate::target::{Looking, Target};
 use clap::{Args, ValueEnum};
-use leafless::{Columns, Error, Heights, Interval, MAX_DEPTH, Side, heights};
+use leafless::{Columns, Error, Heights, MAX_DEPTH, Side, heights};
 use std::ffi::OsString;
 
 /// Writes a height map: for each column of cells along an axis, how far the solid reaches in it. Heights are in the
@@ -96,10 +96,10 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 
 /// The height of a column.
 fn height(map: &Heights, on: On, index: usize) -> f64 {
-    let Some(Interval { lower, upper }) = map.height(index) else { return f64::NAN };
+    let Some(between) = map.height(index) else { return f64::NAN };
     let height = match (on, map.side()) {
-        (On::Full, Side::Above) | (On::Upper, Side::Below) => lower,
-        (On::Full, Side::Below) | (On::Upper, Side::Above) => upper,
+        (On::Full, Side::Above) | (On::Upper, Side::Below) => between.lower,
+        (On::Full, Side::Below) | (On::Upper, Side::Above) => between.upper,
     };
     // Nothing is proven of this column.
     if height.is_finite() { height } else { f64::NAN }
