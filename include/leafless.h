@@ -1656,7 +1656,10 @@ typedef struct {
      */
     uint64_t max_nodes;
     /**
-     * Refuse results whose working form is larger than this many bytes; 0 means no limit.
+     * Refuse results whose working form is larger than this many bytes; 0 means no limit. Where the size is known
+     * beforehand nothing is done. When a result is put together, it takes as much again for a moment. Set a limit
+     * where a solid or its depth is not your own choice: a file of some hundred bytes may hold a cell whose surface
+     * has 2^43 triangles.
      */
     uint64_t max_bytes;
     /**

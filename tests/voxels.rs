@@ -300,7 +300,25 @@ fn limits_and_refusals() {
         Err(Error::Argument { name: "fine", .. })
     ));
     let small = Control { max_bytes: Some(1000), ..Control::default() };
-    assert!(matches!(of(&VoxelOptions::new(), &small), Err(Error::Limit { what: "bytes", limit: 1000 })));
+    assert!(matches!(
+        of(&VoxelOptions::new(), &small),
+        Err(Error::TooLarge { limit: 1000, needed: 1001.., .. })
+    ));
+    // Of voxels that touch outside cells not all are known beforehand.
+    let touching = VoxelOptions::new().boundary(VoxelBoundary::Touching);
+    let shape = Csg::ball([0.1, 0.0, 0.0], 0.8).unwrap();
+    let tree = build(&shape, &Frame::new([-1.0; 3], 2.0, 6).unwrap(), Rule::Sampled, &alone()).unwrap();
+    let of = |options: &VoxelOptions, control: &Control<'_>| {
+        VoxelRecords::of(tree.view(), options, None, control).map(|records| records.view().len())
+    };
+    let bytes = 10 * of(&touching, &alone()).unwrap() as u64;
+    let scant = Control { max_bytes: Some(bytes - 1), ..Control::default() };
+    match of(&touching, &scant) {
+        Err(Error::Limit { what: "bytes", limit }) => assert_eq!(limit, bytes - 1),
+        other => panic!("{other:?}"),
+    }
+    let enough = Control { max_bytes: Some(bytes), ..Control::default() };
+    assert_eq!(of(&touching, &enough).unwrap() as u64 * 10, bytes);
     let flag = AtomicBool::new(true);
     let stopped = Control { cancel: Some(&flag), ..Control::default() };
     assert!(matches!(of(&VoxelOptions::new(), &stopped), Err(Error::Cancelled)));

@@ -20,6 +20,9 @@ pub const SYNTAX: &str = "x y z, numbers, + - * / ^, parentheses, pi, e, and the
                           floor ceil round min(a,b) max(a,b). A minus before a number or name binds most tightly: \
                           -x^2 is (-x)^2";
 
+/// Characters of an expression. It is evaluated at every cell.
+const LONGEST: usize = 1 << 14;
+
 impl Expressions {
     /// Understands one to four expressions.
     pub fn parse(texts: &[String]) -> Result<Expressions, String> {
@@ -28,6 +31,12 @@ impl Expressions {
         }
         let mut all = Expressions { values: Vec::new(), ranges: Vec::new(), variables: Vec::new() };
         for text in texts {
+            if text.len() > LONGEST {
+                return Err(format!(
+                    "an expression may have {LONGEST} characters, and this one has {}",
+                    text.len()
+                ));
+            }
             let mut open = 0i64;
             for c in text.chars() {
                 open += i64::from(c == '(') - i64::from(c == ')');
