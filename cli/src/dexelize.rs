@@ -191,11 +191,14 @@ impl Arguments {
                         "--bounds is not for {input}: an octree has its own"
                     )));
                 }
-                if self.resolution.is_some_and(|depth| depth != octree.frame().depth()) {
-                    let problem = format!("an octree of {cells} cells to an axis: leave the option out");
-                    return Err(Failure::Usage(format!("--resolution contradicts {input}, {problem}")));
+                match self.resolution {
+                    Some(depth) if depth > octree.frame().depth() => {
+                        let problem =
+                            format!("an octree of {cells} cells to an axis: it has no smaller ones");
+                        Err(Failure::Usage(format!("--resolution contradicts {input}, {problem}")))
+                    }
+                    depth => octree.frame().with_depth(depth.unwrap_or(octree.frame().depth())).of(input),
                 }
-                Ok(*octree.frame())
             }
             source => match (self.bounds, self.resolution) {
                 (Some(bounds), depth) => bounds.with_depth(depth.unwrap_or(DEPTH)).of(input),
@@ -267,7 +270,9 @@ fn made(
 ) -> Result<(TriDexel, [u64; 3]), Failure> {
     match source {
         Source::Octree(octree) => {
-            if arguments.rule == RuleName::Sampled && !octree.view().is_binary() {
+            // Cells that are cut further than the lattice goes are undecided there.
+            let is_coarser = frame.depth() < octree.frame().depth();
+            if arguments.rule == RuleName::Sampled && (is_coarser || !octree.view().is_binary()) {
                 let problem = "has undecided cells, which are neither inside nor outside: choose --rule inner or --rule \
                                outer (of `leafless convert` --resolve), or make it anew from its source with --rule sampled";
                 return Err(Failure::of(input, problem));

@@ -66,7 +66,8 @@ pub struct Arguments {
     /// makes them, and not the corners
     #[arg(long, value_enum)]
     resolve: Option<ResolveName>,
-    /// Level of the cells of a mesh or scene, 1 to 19. Without it: 8, and of a volume the voxels
+    /// Level of the cells of a mesh or scene, 1 to 19. Without it: 8, and of a volume the voxels. Of a solid from a file
+    /// its own or a coarser one
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..MAX_DEPTH as i64))]
     depth: Option<u8>,
     /// Lower corner and edge length of the cube to look at, for a mesh or scene. Without it: the cube around it
@@ -331,10 +332,10 @@ fn extract(source: Source, input: &Input, arguments: &Arguments) -> Result<Trian
         (Some(ResolveName::Source), _) => None,
     };
     if let Source::Octree(octree) = source {
-        if arguments.depth.is_some() || arguments.bounds.is_some() {
-            let problem = "--depth and --bounds are for meshes and scenes: a solid has its own";
-            return Err(Failure::Usage(problem.into()));
+        if arguments.bounds.is_some() {
+            return Err(Failure::Usage("--bounds is for meshes and scenes: a solid has its own".into()));
         }
+        let octree = coarser(*octree, input, arguments)?;
         if resolve.is_none() && !octree.view().is_binary() {
             let problem = "has undecided cells, which are neither inside nor outside: choose --resolve inner or \
                            --resolve outer, or make it anew from its source with --rule sampled";
@@ -365,6 +366,24 @@ fn extract(source: Source, input: &Input, arguments: &Arguments) -> Result<Trian
         }
     })
     .of(input)
+}
+
+/// The octree with cells no smaller than --depth says; those that are cut further are undecided.
+fn coarser(octree: Octree, input: &Input, arguments: &Arguments) -> Result<Octree, Failure> {
+    let own = octree.frame().depth();
+    match arguments.depth {
+        None => Ok(octree),
+        Some(depth) if depth > own => {
+            Err(Failure::Usage(format!("--depth {depth} is beyond the depth of {input}, which is {own}")))
+        }
+        Some(depth) => {
+            let frame = octree.frame().with_depth(depth).of(input)?;
+            watched("mesh", arguments.threads, |control| {
+                build(octree.view(), &frame, Rule::Certified, control)
+            })
+            .of(input)
+        }
+    }
 }
 
 /// The surface of an octree.

@@ -145,8 +145,15 @@ fn octrees_are_dexelised_exactly() {
     assert_eq!(report["metadata"]["rule"], "sampled");
     assert_eq!(json(&place, "dexelize sampled.lfl -o cells.lfl --resolution 64")["volume"], cells);
     place
-        .run("dexelize sampled.lfl -o no.lfl --resolution 32")
+        .run("dexelize sampled.lfl -o no.lfl --resolution 128")
         .bad(2, &["--resolution contradicts sampled.lfl", "64 cells"]);
+    // On a coarser lattice the cells from 9 to 25 are those from 5 to 12, with what is cut those from 4 to 12.
+    place.run("dexelize sampled.lfl -o no.lfl --resolution 32").bad(1, &["undecided", "--rule inner"]);
+    assert_eq!(json(&place, "dexelize sampled.lfl -o cells.lfl --resolution 32 --rule inner")["volume"], 8.0);
+    assert_eq!(
+        json(&place, "dexelize sampled.lfl -o cells.lfl --resolution 32 --rule outer")["volume"],
+        2.25f64.powi(3)
+    );
     place.run(&format!("dexelize sampled.lfl -o no.lfl {BOUNDS}")).bad(2, &["--bounds", "sampled.lfl"]);
     place.run("dexelize bounds.lfl -o no.lfl").bad(1, &["bounds.lfl", "undecided", "--rule inner", "outer"]);
     // Cells that the faces at 1.1 and 3.3 cut are those of 8 and 26.

@@ -77,7 +77,9 @@ fn undecided_cells_are_resolved_as_one_asks() {
     place.run(&format!("csg ball.csg -o ball.lfl --depth 6 {BOUNDS}")).good();
     place.run("mesh ball.lfl -o ball.ply").bad(1, &["ball.lfl", "undecided", "--resolve"]);
     place.run("mesh ball.lfl -o ball.ply --resolve source").bad(1, &["ball.lfl", "source", "inner"]);
-    place.run("mesh ball.lfl -o ball.ply --depth 3").bad(2, &["--depth"]);
+    place.run("mesh ball.lfl -o ball.ply --depth 3").bad(1, &["ball.lfl", "undecided", "--resolve"]);
+    place.run("mesh ball.lfl -o ball.ply --depth 7").bad(2, &["--depth"]);
+    place.run("mesh ball.lfl -o ball.ply --bounds 0,0,0,1").bad(2, &["--bounds"]);
     assert!(!place.files().contains(&"ball.ply".to_owned()));
     let volume = |line: &str| json(&place, line)["volume"].as_f64().unwrap();
     let whole = 32.0 / 3.0 * std::f64::consts::PI;
@@ -333,4 +335,17 @@ fn normals_are_refused_where_a_format_has_none() {
             .run(&format!("mesh slab.lfl -o slab.{extension} --normals"))
             .bad(2, &["--normals", "PLY and OBJ"]);
     }
+}
+
+#[test]
+fn solids_from_files_are_meshed_at_coarser_levels() {
+    let place = place::solids();
+    place.run("voxelize cube.stl -o coarse.lfl --depth 2 --bounds 0,0,0,8").good();
+    for resolve in ["inner", "outer"] {
+        place.run(&format!("mesh cube.lfl -o fine.ply --depth 2 --resolve {resolve}"));
+        place.run(&format!("mesh coarse.lfl -o coarse.ply --resolve {resolve}"));
+        assert_eq!(place.bytes("fine.ply"), place.bytes("coarse.ply"), "{resolve}");
+    }
+    place.run("mesh cube.lfl -o no.ply --depth 2").bad(1, &["undecided", "--resolve"]);
+    place.run("mesh cube.lfl -o no.ply --depth 6").bad(2, &["--depth 6", "cube.lfl", "5"]);
 }
