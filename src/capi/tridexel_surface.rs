@@ -44,6 +44,12 @@ pub struct leafless_dexel_surface_report {
     pub means: u64,
     /// Vertices that would fit their planes better outside of their cells. (By dual contouring alone.)
     pub clamped: u64,
+    /// Bodies that the mesh does not show at all: sets of centres of cells that lie inside and hang together along axes,
+    /// none of whose crossings has a triangle, because the surface lies nearer to them than doubles can tell.
+    pub vanished: u64,
+    /// Intervals in all directions that hold no centre of a cell, those that touch counted as one: what is thinner than the
+    /// lattice there is not in the mesh.
+    pub without_centres: u64,
 }
 
 impl From<DexelSurfaceReport> for leafless_dexel_surface_report {
@@ -56,6 +62,8 @@ impl From<DexelSurfaceReport> for leafless_dexel_surface_report {
             without_normals: report.without_normals,
             means: report.means,
             clamped: report.clamped,
+            vanished: report.vanished,
+            without_centres: report.without_centres,
         }
     }
 }
@@ -104,7 +112,8 @@ impl From<&LongVoxel> for leafless_long_voxel {
 ///
 /// - Buffers: `options`, one struct or NULL; `report`, one struct, or NULL if it is not wanted; `mesh`, one pointer.
 ///   `method` is a leafless_dexel_surface_method.
-/// - Result: `*mesh`, the same for any number of threads; it has no triangles if nothing is inside. `*report`.
+/// - Result: `*mesh`, the same for any number of threads; it has no triangles if no centre lies inside, or if all bodies
+///   vanish. `*report`.
 /// - Errors: LEAFLESS_E_ARGUMENT also if the frame lies so far from the origin that doubles cannot tell its cells apart;
 ///   LEAFLESS_E_MESH if there would be more than 2^32 - 1 vertices or triangles; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
 /// - Ownership: `tridexel` stays as it is; give `*mesh` back with leafless_mesh_free.

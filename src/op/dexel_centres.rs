@@ -26,7 +26,7 @@ use crate::solid::{Classifier, Verdict, Worker};
 /// ```
 /// use leafless::{Control, Dexel, DexelEnd, DexelFormat, Frame, TriDexel, octree_of_dexels};
 /// let (frame, control) = (Frame::new([0.0; 3], 8.0, 3)?, Control::default());
-/// let end = |at: f64| DexelEnd { at, surface: None, normal: None };
+/// let end = DexelEnd::new;
 /// let plate = |_: usize, _: [u32; 2], list: &mut Vec<Dexel>| {
 ///     list.push(Dexel { start: end(2.0), end: end(4.25), material: 0 });
 ///     Ok(())

@@ -82,7 +82,7 @@ impl DexelVoxels {
 /// ```
 /// use leafless::{Control, Dexel, DexelEnd, DexelFormat, Frame, TriDexel, VoxelKind, dexel_voxels};
 /// let (frame, control) = (Frame::new([0.0; 3], 8.0, 3)?, Control::default());
-/// let end = |at: f64| DexelEnd { at, surface: None, normal: None };
+/// let end = DexelEnd::new;
 /// // A cube of four cells to an edge.
 /// let cube = |_: usize, ray: [u32; 2], list: &mut Vec<Dexel>| {
 ///     if ray.iter().all(|i| (2..6).contains(i)) {
