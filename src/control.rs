@@ -21,7 +21,12 @@ pub struct Control<'a> {
     /// Refuse results of more than this many octree nodes with [`Error::Limit`]. (What is refined on demand
     /// stops there.)
     pub max_nodes: Option<u64>,
-    /// Refuse results whose working form is larger than this many bytes with [`Error::Limit`]. (As above.)
+    /// Refuse results whose working form is larger than this many bytes. Where the size is known beforehand, the refusal
+    /// is [`Error::TooLarge`] and nothing is done; where it is found out on the way, it is [`Error::Limit`]. (What is
+    /// refined on demand stops there.) When a result is put together, it takes as much again for a moment.
+    ///
+    /// A small solid may have a large result: a file of some hundred bytes holds a cell of depth 20, whose surface has
+    /// 2^43 triangles at the finest level. Set a limit where a solid or its depth is not your own choice.
     pub max_bytes: Option<u64>,
     /// Split at most this many cells; `None` means no limit, or the one that the operation names. Only
     /// operations that split on demand heed it, and say so: with it spent they stop, and keep or return what
@@ -65,6 +70,14 @@ impl Control<'_> {
         };
         let progress: Option<&(dyn Fn(f64) + Sync)> = self.progress.is_some().then_some(&report);
         work(&Control { progress, ..*self })
+    }
+
+    /// Refuses what is known to take more bytes than the caller allows.
+    pub(crate) fn afford(&self, what: &'static str, needed: u64) -> Result<(), Error> {
+        match self.max_bytes.filter(|&limit| needed > limit) {
+            Some(limit) => Err(Error::TooLarge { what, needed, limit }),
+            None => Ok(()),
+        }
     }
 
     /// Refuses when the caller cancelled.

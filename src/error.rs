@@ -85,6 +85,17 @@ pub enum Error {
         /// The limit that the caller set.
         limit: u64,
     },
+    /// A result is known beforehand to take more memory than the caller allowed with
+    /// [`Control::max_bytes`](crate::Control::max_bytes).
+    #[error("{what} would take {needed} bytes or more, and the limit is {limit} bytes")]
+    TooLarge {
+        /// What would take the memory, such as `"the triangles of the surface"`.
+        what: &'static str,
+        /// The bytes that the result takes at least, with what is needed to make it; `u64::MAX` if it is more than that.
+        needed: u64,
+        /// The limit that the caller set, in bytes.
+        limit: u64,
+    },
     /// An allocation failed, in the library or in the operating system.
     ///
     /// Every allocation whose size depends on an input or a result is asked for in a way that can be refused,

@@ -28,6 +28,7 @@ mod info;
 mod input;
 mod interfere;
 mod measure;
+mod memory;
 mod mesh;
 mod neighbours;
 mod npz;
@@ -74,6 +75,10 @@ use std::process::ExitCode;
 Try `leafless demo` first. A file named `-` is standard input or standard output.
 Files are mapped, not loaded: let no other program rewrite one in place while it is read here.")]
 struct Arguments {
+    /// Most memory to take, as 512M or 2G; what would take more is refused. Without it: what the machine has to spare,
+    /// and 16G at most
+    #[arg(long, global = true, value_name = "SIZE", value_parser = memory::size)]
+    max_memory: Option<u64>,
     #[command(subcommand)]
     command: Command,
 }
@@ -141,6 +146,9 @@ fn main() -> ExitCode {
         Ok(arguments) => arguments,
         Err(error) => return refuse_usage(&error),
     };
+    if let Some(bytes) = arguments.max_memory {
+        memory::allow(bytes);
+    }
     let result = match &arguments.command {
         Command::Voxelize(arguments) => voxelize::run(arguments),
         Command::Csg(arguments) => csg::run(arguments),

@@ -10,7 +10,7 @@ use clap::{Args, ValueEnum};
 use leafless::{
     Affine, AnySolid, Attribute, Bounds, CellFilter, Channel, Clip, ClippedLayer, ColourMap, Compositing,
     Control, Criterion, Cube, Detail, Error, Finish, Frame, Layer, LegendBox, LegendSide, MeshEdges,
-    MeshLayer, Octree, OctreeLayer, Outline, Picture, Resolve, Rule, Shot, SliceLayer, SlicePlane,
+    MeshError, MeshLayer, Octree, OctreeLayer, Outline, Picture, Resolve, Rule, Shot, SliceLayer, SlicePlane,
     SolidLayer, TAG_COLOURS, Tag, Transfer, TriangleMesh, VertexPlacement, VolumeLayer, VoxelOptions,
     VoxelRecords, bounding_box, build, draw_colour_bar, draw_names, marching_cubes, marching_cubes_of,
     octree_of_dexels, render,
@@ -143,7 +143,8 @@ impl Subject {
         let of_cells = matches!(looks.view, View::Volume | View::Hybrid | View::Slice);
         match shape {
             Shape::Dexels(model) if of_cells || looks.faces => {
-                let octree = octree_of_dexels(model.view(), &Control::default()).of(input)?;
+                let octree = watched("render", threads, |control| octree_of_dexels(model.view(), control));
+                let octree = octree.of(input)?;
                 Ok(Subject::Octree(Box::new(octree), None))
             }
             Shape::Dexels(model) => {
@@ -399,12 +400,9 @@ fn hybrid(
     if shot.clip.is_empty() && looks.colour.is_none() {
         colour[3] = 70;
     }
-    let mesh = match source {
-        Some(source) => Some(marching_cubes_of(source, octree.frame(), VertexPlacement::Crossing, &quiet)?),
-        // Through a translucent skin all of its sides are seen.
-        None if colour[3] < 255 => Some(marching_cubes(octree.view(), Some(Resolve::Outer), &quiet)?),
-        None => None,
-    };
+    // Through a translucent skin all of its sides are seen.
+    let has_mesh = source.is_some() || colour[3] < 255;
+    let mesh = if has_mesh { Some(skin_mesh(octree, source, &quiet)?) } else { None };
     let triangles = mesh.as_ref().map(|mesh| MeshLayer::new(mesh).colour(colour).inside(colour));
     // Of an octree the steps of its lattice would be seen; what is cut open shows the inside.
     let cells = OctreeLayer::new(octree.view(), Finish { colour, cut: [0; 4], ..Finish::default() });
@@ -413,6 +411,39 @@ fn hybrid(
     let cut = ClippedLayer::new(skin, shot.clip.clone());
     let whole = Shot { clip: Clip::new(), ..shot.clone() };
     volume(looks, octree, source, values, &whole, &[&cut], control)
+}
+
+/// Bytes that the triangles of a skin may take: some ten million, far more than a picture has pixels.
+const SKIN: u64 = 512 << 20;
+
+/// The surface as triangles, with the finest cells that memory allows.
+fn skin_mesh(
+    octree: &Octree,
+    source: Option<&AnySolid>,
+    control: &Control<'_>,
+) -> Result<TriangleMesh, Error> {
+    let limit = control.max_bytes.map_or(SKIN, |limit| limit.min(SKIN));
+    let limited = Control { max_bytes: Some(limit), ..*control };
+    let mut depth = octree.frame().depth();
+    loop {
+        let frame = octree.frame().with_depth(depth)?;
+        let mesh = match source {
+            Some(source) => marching_cubes_of(source, &frame, VertexPlacement::Crossing, &limited),
+            None if depth == octree.frame().depth() => {
+                marching_cubes(octree.view(), Some(Resolve::Outer), &limited)
+            }
+            None => build(octree.view(), &frame, Rule::Outer, control)
+                .and_then(|coarse| marching_cubes(coarse.view(), None, &limited)),
+        };
+        match mesh {
+            Err(Error::TooLarge { .. } | Error::Limit { .. } | Error::Mesh(MeshError::TooMany))
+                if depth > 1 =>
+            {
+                depth -= 1;
+            }
+            mesh => return mesh,
+        }
+    }
 }
 
 fn slice(

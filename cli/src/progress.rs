@@ -1,5 +1,6 @@
 //! Long work: a bar for whoever waits at a terminal, and an end before memory runs out.
 
+use crate::memory;
 use indicatif::{ProgressBar, ProgressStyle};
 use leafless::{Control, Error};
 use std::io::IsTerminal;
@@ -12,8 +13,8 @@ const PATIENCE: Duration = Duration::from_secs(1);
 const STEPS: u64 = 1000;
 
 /// Runs `work` on so many threads (0: one a processor), with a progress bar called `label` once it has taken
-/// more than a second, if standard error is a terminal. Says so, instead of being killed for it, when the
-/// solid outgrows the free memory.
+/// more than a second, if standard error is a terminal. Work that would take more memory than is allowed ends with a
+/// sentence that says so.
 pub fn watched<R>(
     label: &'static str,
     threads: usize,
@@ -29,27 +30,29 @@ pub fn watched<R>(
     };
     let progress: Option<&(dyn Fn(f64) + Sync)> =
         if std::io::stderr().is_terminal() { Some(&show) } else { None };
-    let result = work(&Control { threads, progress, max_bytes: affordable_bytes(), ..Control::default() });
+    let max_bytes = Some(memory::affordable());
+    let result = work(&Control { threads, progress, max_bytes, ..Control::default() });
     if let Some(bar) = bar.get() {
         bar.finish_and_clear();
     }
     result.map_err(|error| match error {
         // The only limit that is set here; others are the library's own, and say what they are.
-        Error::Limit { what: "bytes", .. } | Error::OutOfMemory => {
-            "not enough free memory for a solid of this depth (one of a level less takes a quarter)"
-                .to_string()
+        Error::Limit { what: "bytes", limit } => format!(
+            "needs more than the {} of memory that there is room for: take fewer levels of cells (one less takes about \
+             a quarter), or give more with --max-memory",
+            memory::told(limit)
+        ),
+        Error::TooLarge { what, needed, limit } => format!(
+            "{what} would take {} of memory or more, and there is room for {}: take fewer levels of cells (one less takes \
+             about a quarter), or give more with --max-memory",
+            memory::told(needed),
+            memory::told(limit)
+        ),
+        Error::OutOfMemory => {
+            "the system has no memory left: take fewer levels of cells (one less takes about a quarter)".into()
         }
         error => error.to_string(),
     })
-}
-
-/// Bytes that a solid's working form may take, where the system tells: half of what is available, because it
-/// exists twice for a moment when the finished arrays are put together.
-fn affordable_bytes() -> Option<u64> {
-    let meminfo = std::fs::read_to_string("/proc/meminfo").ok()?;
-    let line = meminfo.lines().find_map(|line| line.strip_prefix("MemAvailable:"))?;
-    let kibibytes: u64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;
-    Some(kibibytes * 512)
 }
 
 fn started(label: &'static str, start: Instant) -> ProgressBar {

@@ -43,8 +43,8 @@ pub struct Arguments {
     #[arg(long, value_name = "X0,Y0,Z0,EDGE", value_parser = bounds, allow_hyphen_values = true)]
     bounds: Option<Frame>,
     /// Cells to split at most, of both, for each of the two answers; what is not split is not certain
-    #[arg(long, value_name = "N")]
-    splits: Option<u64>,
+    #[arg(long, default_value_t = SPLITS, value_name = "N")]
+    splits: u64,
     /// Take the cells of a region from a file (.lfl) for the region itself, whatever they prove of what they were made
     /// from; and those of the solid, with --depth
     #[arg(long)]
@@ -58,6 +58,8 @@ pub struct Arguments {
     json: bool,
 }
 
+/// Splits that take a second or so.
+const SPLITS: u64 = 1 << 20;
 /// Levels of cells of what has none of its own.
 const DEPTH: u8 = 8;
 
@@ -151,7 +153,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         source => Subject::Solid(source.placed(&input, &Affine::IDENTITY, &frame)?),
     };
     let found = watched("within", 1, |control| {
-        subject.ask(&region, &frame, &Control { max_splits: arguments.splits, ..*control })
+        subject.ask(&region, &frame, &Control { max_splits: Some(arguments.splits), ..*control })
     });
     let (cells, volume) = found.of(&input)?;
     let cells = Cells {

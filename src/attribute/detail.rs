@@ -57,6 +57,11 @@ impl Detail {
         self.fine
     }
 
+    /// The edge above which every inside cell is split.
+    pub(crate) fn coarse(&self) -> f64 {
+        self.coarse
+    }
+
     /// Whether a cell of this edge, with these bounds, need not be split.
     ///
     /// # Errors

@@ -103,7 +103,7 @@ impl From<&Failure> for leafless_status {
                 ) => LEAFLESS_E_ARGUMENT,
                 Error::Format(_) => LEAFLESS_E_FORMAT,
                 Error::Damaged(_) | Error::DamagedRays { .. } => LEAFLESS_E_DAMAGED,
-                Error::Limit { .. } => LEAFLESS_E_LIMIT,
+                Error::Limit { .. } | Error::TooLarge { .. } => LEAFLESS_E_LIMIT,
                 Error::OutOfMemory => LEAFLESS_E_NO_MEMORY,
                 Error::Cancelled => LEAFLESS_E_CANCELLED,
                 Error::Callback { .. } => LEAFLESS_E_CALLBACK,

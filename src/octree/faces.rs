@@ -21,6 +21,16 @@ pub struct BoundaryFace {
     pub direction: Direction,
 }
 
+impl BoundaryFace {
+    /// The smaller of the two leaves, of which this is a whole face; the inner one if they are equal.
+    pub(crate) fn smaller(&self) -> Cell {
+        match self.outer {
+            Some(outer) if outer.cell.level > self.inner.cell.level => outer.cell,
+            _ => self.inner.cell,
+        }
+    }
+}
+
 /// The faces between cells that a [`CellFilter`] wants and leaves of other tags, in the Morton order of the
 /// wanted cells. See [`OctreeRef::boundary_faces`].
 #[derive(Clone, Yokeable)]

@@ -7,6 +7,7 @@
 
 use super::edge::Edge;
 use super::gathered::split_one;
+use super::hull::hull;
 use super::lazy::Trail;
 use super::rule::Rule;
 use crate::control::{Control, Job, WHOLE};
@@ -23,6 +24,8 @@ use alloc::vec::Vec;
 use core::ops::Range;
 use once_cell::race::OnceBox;
 
+/// As many rays are worth a look at where the solid lies.
+const MANY: u64 = 1 << 22;
 /// Rows of rays of a tile.
 const ROWS: u32 = 32;
 
@@ -65,7 +68,8 @@ impl Default for DexelOptions {
 /// # Errors
 /// [`Error::Argument`] if no direction is asked for, or for [`Rule::Certified`], as intervals cannot be undecided;
 /// [`Error::NotSampled`] if the solid cannot decide points ([`Rule::Inner`] and [`Rule::Outer`] do without that);
-/// [`Error::Limit`] for 2^32 rays or intervals in one direction; and as [`build`](crate::build).
+/// [`Error::Limit`] for 2^32 rays or intervals in one direction, and [`Error::TooLarge`] where the rays alone take more than
+/// `control.max_bytes`; and as [`build`](crate::build).
 ///
 /// ```
 /// use leafless::{Control, Csg, DexelOptions, Frame, dexelize};
@@ -111,6 +115,12 @@ fn extent(bounds: Option<Bounds>, frame: &Frame) -> [Range<u32>; 3] {
     })
 }
 
+/// Rays through the cells of an extent, in all directions that are asked for.
+fn rays(extent: &[Range<u32>; 3], options: &DexelOptions) -> u64 {
+    let count = |axis: usize| Window::of(OTHERS[axis].map(|axis| extent[axis].clone())).count();
+    (0..3).filter(|&axis| options.directions[axis]).map(count).sum()
+}
+
 fn model<T: Solid, S: Form>(
     solid: &T,
     frame: &Frame,
@@ -122,8 +132,19 @@ fn model<T: Solid, S: Form>(
     let finest = OnceBox::new();
     let job = Job::new(control);
     job.check()?;
+    let extent = if rays(&extent, options) > MANY {
+        let known = hull(&mut classifier.worker()?, frame.depth(), control)?;
+        [0, 1, 2].map(|axis| {
+            let start = extent[axis].start.max(known[axis].start);
+            start..extent[axis].end.min(known[axis].end).max(start)
+        })
+    } else {
+        extent
+    };
+    // Each ray has the number of its first interval.
+    control.afford("the rays", rays(&extent, options).saturating_mul(size_of::<u32>() as u64))?;
     let window = |axis: usize| Window::of(OTHERS[axis].map(|axis| extent[axis].clone()));
-    let worth = (0..3).map(|axis| window(axis).count()).sum::<u64>() > 1 << 14;
+    let worth = rays(&extent, options) > 1 << 14;
     control.run(worth, |parallel| {
         let axes = options.directions.iter().filter(|&&has| has).count();
         let mut rays = [const { None }; 3];
@@ -140,9 +161,6 @@ fn model<T: Solid, S: Form>(
             };
             let pieces = tiles.pieces::<S>(parallel)?;
             let rows = assembled(tiles.window, &options.format, pieces)?;
-            let bytes =
-                4 * rows.starts.len() + rows.columns.spans.len() * options.format.bytes_per_interval();
-            job.spend(0, bytes)?;
             rays[axis] = Some(S::own(rows));
             job.advance(WHOLE / axes);
         }
@@ -237,7 +255,12 @@ impl<T: Solid> Tiles<'_, T> {
         if !hand.sampled.is_empty() {
             self.refine(hand)?;
         }
-        hand.beam.append(piece)
+        let before = piece.columns.spans.len();
+        hand.beam.append(piece)?;
+        let intervals = piece.columns.spans.len() - before;
+        let bytes =
+            size_of::<u32>() * window.count() as usize + intervals * self.options.format.bytes_per_interval();
+        self.job.spend(0, bytes)
     }
 
     /// What of a cell lies in the tile: rays, and the cell's span along them.

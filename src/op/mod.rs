@@ -7,6 +7,7 @@ mod dexel_edit;
 mod dexelize;
 mod edge;
 pub(crate) mod gathered;
+mod hull;
 mod lazy;
 mod rule;
 

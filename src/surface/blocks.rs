@@ -7,6 +7,7 @@
 use super::key::Key;
 use super::masks::{CORNER_AT, all, any, bits, configuration, corners};
 use super::samples::{Node, Samples};
+use super::size::{self, Least};
 use super::table::MARCHING_CUBES;
 use crate::control::{Job, WHOLE};
 use crate::error::{Error, MeshError};
@@ -49,12 +50,18 @@ struct Task {
 pub(super) const FINDING: usize = WHOLE / 4;
 
 impl Blocks {
-    /// Finds the blocks of a surface. O(blocks), and what [`Samples::new`] costs.
+    /// Finds the blocks of a surface that takes `least` at the least. O(blocks), and what [`Samples::new`] costs.
     ///
     /// # Errors
-    /// [`MeshError::TooMany`] for more vertices or triangles than 32 bits can number, [`Error::Damaged`],
+    /// [`Error::TooLarge`] and [`Error::Limit`] by the job's control, [`MeshError::TooMany`] for more vertices or triangles than 32 bits can number, [`Error::Damaged`],
     /// [`Error::OutOfMemory`], and [`Error::Cancelled`].
-    pub fn find(samples: &Samples<'_>, job: &Job<'_>, parallel: bool) -> Result<Blocks, Error> {
+    pub fn find(
+        samples: &Samples<'_>,
+        least: &Least,
+        job: &Job<'_>,
+        parallel: bool,
+    ) -> Result<Blocks, Error> {
+        size::afford(samples, least, size_of::<Block>() as u64, job.control())?;
         let tasks = tasks(samples)?;
         let list = run(samples, &tasks, job, parallel)?;
         let mut blocks = Blocks { list, vertices: 0, triangles: 0, bias: samples.blocks() };
@@ -106,7 +113,7 @@ fn run(samples: &Samples<'_>, tasks: &[Task], job: &Job<'_>, parallel: bool) -> 
         let mut list = Vec::new();
         for task in tasks {
             job.check()?;
-            visit(samples, task, &mut list)?;
+            visit(samples, task, job, &mut list)?;
         }
         Ok(list)
     });
@@ -126,18 +133,23 @@ fn run_alone(samples: &Samples<'_>, tasks: &[Task], job: &Job<'_>) -> Result<Vec
     let mut list = Vec::new();
     for task in tasks {
         job.check()?;
-        visit(samples, task, &mut list)?;
+        visit(samples, task, job, &mut list)?;
     }
     job.advance(FINDING);
     Ok(list)
 }
 
 /// Appends the blocks in a node. The recursion is ten levels deep at the most.
-fn visit(samples: &Samples<'_>, task: &Task, list: &mut Vec<Block>) -> Result<(), Error> {
+fn visit(samples: &Samples<'_>, task: &Task, job: &Job<'_>, list: &mut Vec<Block>) -> Result<(), Error> {
     if task.e + 1 == samples.levels() {
         return leaf(samples, task, list);
     }
-    split(samples, task, &mut |task| visit(samples, &task, list))
+    let before = list.len();
+    split(samples, task, &mut |task| visit(samples, &task, job, list))?;
+    if task.e + 2 == samples.levels() {
+        job.spend(0, (list.len() - before) * size_of::<Block>())?;
+    }
+    Ok(())
 }
 
 /// Hands out the cells of a node through which the surface may pass, with their neighbours.

@@ -7,6 +7,7 @@ use super::lattice::Lattice;
 use super::masks::{CORNER_AT, bits, configuration, next, rank};
 use super::resolve::{Resolve, resolved};
 use super::samples::Samples;
+use super::size::Least;
 use super::table::{ENDS, MARCHING_CUBES};
 use crate::control::{Control, Job, WHOLE};
 use crate::dispatch::{Hot, with_popcount};
@@ -96,7 +97,7 @@ fn in_memory(
         let job = Job::new(control);
         job.check()?;
         control.run(samples.levels() > 3, |parallel| {
-            let blocks = Blocks::find(&samples, &job, parallel)?;
+            let blocks = Blocks::find(&samples, &Least::CUBES, &job, parallel)?;
             let vertices = midpoints(memory.0, &blocks, &lattice, &job, parallel)?;
             let triangles = triangles(memory.1, &blocks, &job, parallel)?;
             Ok(TriangleMesh::from_welded(vertices, triangles, 0, 0))

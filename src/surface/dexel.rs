@@ -7,6 +7,7 @@ use super::dual;
 use super::hermite::{Hermite, Said, said};
 use super::lattice::Lattice;
 use super::samples::Samples;
+use super::size::Least;
 use super::solid::edges;
 use super::vanished::{is_kept, vanished};
 use super::weld::weld;
@@ -182,7 +183,7 @@ fn surface<R: Send>(
         let job = Job::new(control);
         job.check()?;
         control.run(samples.levels() > 3, |parallel| {
-            let blocks = Blocks::find(&samples, &job, parallel)?;
+            let blocks = Blocks::find(&samples, &Least::CUBES, &job, parallel)?;
             extract(&lattice, &blocks, &job, parallel)
         })
     })

@@ -9,8 +9,8 @@
 //! memory is asked for.
 //!
 //! From the bottom up, each file uses only files named before it: `table` (marching cubes, cell by cell),
-//! `masks` (blocks as words), `key` (the order of blocks), `samples` (an octree as samples), `blocks` (the
-//! walk), `lattice` (where samples lie), `chunks` (threads), `resolve` (undecided cells), `cubes` (marching
+//! `masks` (blocks as words), `key` (the order of blocks), `samples` (an octree as samples), `size` (what is known
+//! of a surface beforehand), `blocks` (the walk), `lattice` (where samples lie), `chunks` (threads), `resolve` (undecided cells), `cubes` (marching
 //! cubes), `snapped` and `smc` (simple marching cubes), `plane`, `points`, `bon` (coplanar cells merged),
 //! `outline` (regions), `sweep` (their triangles), `published` (cells of several sizes as they are), `shrink`
 //! (coplanar shrink), `weld` (vertices at one place), `solid` (any
@@ -41,6 +41,7 @@ mod qef;
 mod resolve;
 mod samples;
 mod shrink;
+mod size;
 mod smc;
 mod snapped;
 mod solid;

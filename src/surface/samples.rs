@@ -54,6 +54,21 @@ impl<'a> Samples<'a> {
         Ok(Samples { tree: *tree, partial, end: end.min(tree.frame().cells()) })
     }
 
+    /// The tree.
+    pub fn tree(&self) -> &OctreeRef<'a> {
+        &self.tree
+    }
+
+    /// Whether PARTIAL cells count as inside.
+    pub fn counts_partial(&self) -> bool {
+        self.partial
+    }
+
+    /// Samples per axis.
+    pub fn end(&self) -> u32 {
+        self.end
+    }
+
     /// Element levels.
     pub fn levels(&self) -> usize {
         self.tree.levels()

@@ -10,6 +10,7 @@ use super::points;
 use super::published;
 use super::resolve::{Resolve, resolved};
 use super::samples::Samples;
+use super::size::Least;
 use super::smc::Snap;
 use super::sweep::{Sweep, Vertex};
 use crate::control::{Control, Job, WHOLE};
@@ -117,7 +118,7 @@ pub(super) fn extract(
     let job = Job::new(control);
     job.check()?;
     control.run(samples.levels() > 3, |parallel| {
-        let blocks = Blocks::find(samples, &job, parallel)?;
+        let blocks = Blocks::find(samples, &Least::REGIONS, &job, parallel)?;
         let bias = blocks.bias;
         let merge = match form {
             Form::Closed => Merge::Sided,

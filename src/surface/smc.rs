@@ -8,6 +8,7 @@ use super::lattice::Lattice;
 use super::masks::{CORNER_AT, bits, configuration, rank};
 use super::resolve::{Resolve, resolved};
 use super::samples::Samples;
+use super::size::Least;
 use super::snapped::{FAT, Snapped, THIN};
 use crate::control::{Control, Job, WHOLE};
 use crate::dispatch::{Hot, with_popcount};
@@ -92,7 +93,7 @@ pub(super) fn extract(
     let job = Job::new(control);
     job.check()?;
     control.run(samples.levels() > 3, |parallel| {
-        let mut blocks = Blocks::find(samples, &job, parallel)?;
+        let mut blocks = Blocks::find(samples, &Least::SAMPLES, &job, parallel)?;
         let table = snap.table();
         let places = places(&mut blocks, table, &job, parallel)?;
         let vertices = vertices(&places, blocks.bias, lattice, &job, parallel)?;

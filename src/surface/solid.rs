@@ -8,6 +8,7 @@ use super::lattice::Lattice;
 use super::masks::bits;
 use super::samples::Samples;
 use super::shrink::{self, Form};
+use super::size::Least;
 use super::smc::{self, Snap};
 use super::weld::weld;
 use crate::control::{Control, Job};
@@ -86,7 +87,7 @@ pub fn marching_cubes_of<S: Solid>(
             VertexPlacement::Crossing => Some(solid.on(&frame.with_depth(MAX_DEPTH)?, control)?),
         };
         control.run(samples.levels() > 2, |parallel| {
-            let blocks = Blocks::find(&samples, &job, parallel)?;
+            let blocks = Blocks::find(&samples, &Least::CUBES, &job, parallel)?;
             let mut vertices = midpoints(Vec::new(), &blocks, &corners.lattice, &job, parallel)?;
             let mut is_welded = true;
             if let Some(classifier) = &finest {

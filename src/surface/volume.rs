@@ -6,6 +6,7 @@ use super::cubes::triangles;
 use super::lattice::Lattice;
 use super::resolve::{Resolve, resolved};
 use super::samples::Samples;
+use super::size::Least;
 use super::solid::edges;
 use super::weld::weld;
 use crate::control::{Control, Job, WHOLE};
@@ -87,7 +88,7 @@ fn extract(
     let job = Job::new(control);
     job.check()?;
     control.run(samples.levels() > 3, |parallel| {
-        let blocks = Blocks::find(&samples, &job, parallel)?;
+        let blocks = Blocks::find(&samples, &Least::CUBES, &job, parallel)?;
         let mut vertices = memory::filled(blocks.vertices, [0.0; 3])?;
         let (list, weight) = (&blocks.list, (WHOLE - FINDING) / 2);
         let start = |i: usize| list[i].vertex as usize;

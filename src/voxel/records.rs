@@ -68,6 +68,9 @@ impl VoxelRecords {
         let mut voxels = Voxels::new(tree, options, attribute)?;
         let mut records = VoxelRecords::empty(*voxels.frame(), tree.exterior(), tree.proof(), components);
         let each = records.bytes_each() as u64;
+        if control.max_bytes.is_some() {
+            control.afford("the records", voxels.least_records().saturating_mul(each))?;
+        }
         loop {
             control.check()?;
             let batch = voxels.next_batch()?;

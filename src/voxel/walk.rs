@@ -6,7 +6,7 @@ use super::{VoxelRecord, code};
 use crate::attribute::{Attribute, ValueRange};
 use crate::error::Error;
 use crate::lattice::{Bounds, Cell, Cube, Frame};
-use crate::octree::{CellFilter, Cells, OctreeRef, Tag};
+use crate::octree::{CellFilter, Cells, Direction, OctreeRef, Tag};
 
 /// What is followed inside where there is no attribute.
 struct Nothing;
@@ -91,6 +91,48 @@ impl<'a> Walk<'a> {
 
     pub(super) fn frame(&self) -> &Frame {
         &self.frame
+    }
+
+    /// As many voxels as there are at the least: undecided cells, what inside cells are split into for their size, and
+    /// voxels at faces to outside cells. O(elements).
+    fn least(&self) -> u64 {
+        let (level, touching) = (self.boundary_level, self.options.touching());
+        // The level that inside cells are split to for their size.
+        let coarse = self.options.how_fine().map_or(0, |detail| {
+            let is_small = |&level: &u8| edge(&self.frame, level) <= detail.coarse();
+            (0..=self.frame.depth()).find(is_small).unwrap_or(self.frame.depth())
+        });
+        // (What a mapped file says of its levels may be wrong.)
+        let counts = self.tree.count_levels();
+        // Inside cells split to a level, each of them at least once.
+        let split = |to: u8| {
+            counts.iter().zip(0..=level).fold(0u64, |sum, (count, own)| {
+                sum.saturating_add(count.full.saturating_mul(1 << (3 * u32::from(to.saturating_sub(own)))))
+            })
+        };
+        let cut = counts.get(usize::from(level)).map_or(0, |count| count.nodes);
+        let undecided = counts
+            .iter()
+            .take(usize::from(level) + 1)
+            .fold(cut, |sum, count| sum.saturating_add(count.partial));
+        if !touching {
+            return undecided.saturating_add(split(coarse));
+        }
+        let mut faces = [0u64; 6];
+        for face in self.tree.boundary_faces(CellFilter::tags(&[Tag::Full]).levels(0..=level)) {
+            let smaller = face.smaller().level;
+            let is_outside = face.outer.map_or(self.tree.exterior(), |outer| outer.tag) == Tag::Empty;
+            if is_outside && smaller <= level {
+                let way = Direction::FACES.iter().position(|&way| way == face.direction).unwrap_or(0);
+                faces[way] = faces[way].saturating_add(1 << (2 * (level - smaller)));
+            }
+        }
+        // A voxel has one face in each direction. Those without any are as small as their size asks for.
+        let at_faces = faces.into_iter().fold(0, u64::max);
+        let inner = split(level).saturating_sub(faces.into_iter().fold(0, u64::saturating_add));
+        let inner = inner.saturating_mul(1 << (3 * u32::from(coarse.saturating_sub(level))));
+        let inner = if coarse > level { at_faces.saturating_add(inner) } else { split(coarse).max(at_faces) };
+        undecided.saturating_add(inner)
     }
 
     /// How much of the universe lies before a cell.
@@ -241,6 +283,11 @@ impl<'a> Voxels<'a> {
         Ok(count)
     }
 
+    /// As many records as there are at the least, without a look at each. O(elements).
+    pub(super) fn least_records(&self) -> u64 {
+        self.walk.least()
+    }
+
     /// How much of the universe has been told.
     pub(super) fn progress(&self) -> f64 {
         self.batch[..self.filled].last().map_or(0.0, |record| self.walk.progress(record.cell))
@@ -296,5 +343,49 @@ impl Iterator for Voxels<'_> {
         let record = *self.batch[..self.filled].get(self.next)?;
         self.next += 1;
         Some(Ok(record))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::attribute::Detail;
+    use crate::control::Control;
+    use crate::op::{Rule, build};
+    use crate::solid::Csg;
+
+    #[test]
+    fn no_fewer_voxels_are_told_than_beforehand() {
+        let (frame, control) = (Frame::new([-1.0; 3], 2.0, 5).unwrap(), Control::default());
+        let ball = Csg::ball([0.1, 0.0, 0.2], 0.8).unwrap();
+        let block = Csg::cuboid([-1.0; 3], [0.25, 0.5, 0.75]).unwrap();
+        for (solid, rule) in [
+            (&ball, Rule::Certified),
+            (&ball, Rule::Sampled),
+            (&block, Rule::Certified),
+            (&ball.complement(), Rule::Sampled),
+        ] {
+            let tree = build(solid, &frame, rule, &control).unwrap();
+            for depth in 0..=5 {
+                for touching in [false, true] {
+                    for detail in [None, Some(0.3), Some(0.01)] {
+                        let mut options = VoxelOptions::new().boundary_depth(depth);
+                        if touching {
+                            options = options.boundary(super::super::VoxelBoundary::Touching);
+                        }
+                        if let Some(edge) = detail {
+                            options = options.detail(Detail::uniform(edge).unwrap());
+                        }
+                        let voxels = Voxels::new(tree.view(), &options, None).unwrap();
+                        let (least, all) = (voxels.least_records(), voxels.count_records().unwrap());
+                        assert!(least <= all, "{rule:?} {options:?}: {least} of {all}");
+                        // Most of what lies at the surface is known beforehand, and what is split for its size.
+                        if touching && depth == 5 || !touching && detail == Some(0.01) {
+                            assert!(12 * least >= all, "{rule:?} {options:?}: {least} of {all}");
+                        }
+                    }
+                }
+            }
+        }
     }
 }
