@@ -1656,7 +1656,10 @@ typedef struct {
      */
     uint64_t max_nodes;
     /**
-     * Refuse results whose working form is larger than this many bytes; 0 means no limit.
+     * Refuse results whose working form is larger than this many bytes; 0 means no limit. Where the size is known
+     * beforehand nothing is done. When a result is put together, it takes as much again for a moment. Set a limit
+     * where a solid or its depth is not your own choice: a file of some hundred bytes may hold a cell whose surface
+     * has 2^43 triangles.
      */
     uint64_t max_bytes;
     /**
@@ -9933,7 +9936,7 @@ leafless_status leafless_tridexel_new(const leafless_frame *frame,
  * because the model has no rays along an axis or its directions disagree, the crossing lies half-way between the two
  * centres; the report counts such places.
  *
- * O(rays · 2^depth / 64 + mesh), for rays with few intervals each.
+ * O(rays + intervals + octree + mesh), with the octree of leafless_tridexel_to_octree.
  *
  * - Buffers: `options`, one struct or NULL; `report`, one struct, or NULL if it is not wanted; `mesh`, one pointer.
  *   `method` is a leafless_dexel_surface_method.

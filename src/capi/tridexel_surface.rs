@@ -108,7 +108,7 @@ impl From<&LongVoxel> for leafless_long_voxel {
 /// because the model has no rays along an axis or its directions disagree, the crossing lies half-way between the two
 /// centres; the report counts such places.
 ///
-/// O(rays · 2^depth / 64 + mesh), for rays with few intervals each.
+/// O(rays + intervals + octree + mesh), with the octree of leafless_tridexel_to_octree.
 ///
 /// - Buffers: `options`, one struct or NULL; `report`, one struct, or NULL if it is not wanted; `mesh`, one pointer.
 ///   `method` is a leafless_dexel_surface_method.

@@ -65,7 +65,8 @@ pub struct DexelSurfaceReport {
 ///
 /// Edges and corners of the solid are cut off by up to a cell; [`dual_contouring_of_dexels`] keeps them.
 ///
-/// O(rays · 2^depth / 64 + mesh), for rays with few intervals each. The result is the same for any number of threads.
+/// O(rays + intervals + octree + mesh), with the octree of [`octree_of_dexels`](crate::octree_of_dexels). The result is the
+/// same for any number of threads.
 ///
 /// # Errors
 /// [`Error::Argument`] if the frame is so far from the origin that doubles cannot tell its cells apart;
