@@ -870,3 +870,44 @@ fn intervals_that_hold_no_centre_are_counted() {
     let model = TriDexel::from_rays(&frame, format, [false, true, false], rays, &control).unwrap();
     assert_eq!(model.view().without_centres(), 1);
 }
+
+/// What a model of a few intervals becomes at a depth where nothing can be looked at cell by cell.
+#[test]
+fn at_the_greatest_depth_work_is_that_of_what_is_stored() {
+    let start = std::time::Instant::now();
+    let (depth, cells) = (20, 1u32 << 20);
+    let frame = Frame::new([0.0; 3], f64::from(cells), depth).unwrap();
+    let limited = Control { max_bytes: Some(1 << 30), ..Control::default() };
+    let block = |low: [f64; 3], high: [f64; 3], directions: [bool; 3]| {
+        let options = DexelOptions { directions, format: FORMAT, ..Default::default() };
+        dexelize(&Csg::cuboid(low, high).unwrap(), &frame, &options, &limited).unwrap()
+    };
+    let small = block([700_000.25; 3], [700_003.25; 3], ALL);
+    let tree = octree_of_dexels(small.view(), &limited).unwrap();
+    assert_eq!(tree.statistics().volume().lower, 27.0);
+    for (mesh, report) in both_surfaces(&small) {
+        assert!(mesh.report().unwrap().is_closed() && report.crossings == 54 && report.several == 0);
+    }
+    let voxels = dexel_voxels(small.view(), &[], &limited).unwrap();
+    let counts = [VoxelKind::Inside, VoxelKind::Boundary].map(|kind| voxels.count(kind));
+    assert_eq!(counts, [8, 64 - 8]);
+    assert_eq!(voxels.list().len(), 4 * 4 + 4 * 2);
+    // A wire through the whole universe.
+    for axis in 0..3 {
+        let (mut low, mut high) = ([300_000.25; 3], [300_001.25; 3]);
+        (low[axis], high[axis]) = (0.0, f64::from(cells));
+        let wire = block(low, high, [0, 1, 2].map(|a| a == axis));
+        assert_eq!(
+            octree_of_dexels(wire.view(), &limited).unwrap().statistics().volume().lower,
+            f64::from(cells)
+        );
+        // Another one far away: between them there are too many rays.
+        if axis < 2 {
+            let other = block([900_000.0; 3], [900_001.0; 3], [0, 1, 2].map(|a| a == axis));
+            let joined = wire.view().union(other.view(), &Control::default());
+            assert!(matches!(joined, Err(Error::Limit { .. })));
+            assert!(matches!(wire.view().complement(&Control::default()), Err(Error::Limit { .. })));
+        }
+    }
+    assert!(start.elapsed().as_secs() < 30, "{:?}", start.elapsed());
+}

@@ -40,6 +40,7 @@ pub(crate) use arrays::{Form, ModelArrays};
 pub(crate) use assemble::{Piece, assembled};
 pub use beam::{Beam, BeamEnd};
 pub(crate) use beam::{Scratch, first_above};
+pub(crate) use centres::BLOCK;
 pub(crate) use columns::{ColumnsRef, NormalsRef};
 pub use editor::DexelEditor;
 pub use format::{DexelEnds, DexelFormat, DexelNormals};

@@ -17,7 +17,7 @@ pub(crate) struct Occupied {
 }
 
 impl Occupied {
-    /// Those of a model that was checked, of at least 64 cells to an axis.
+    /// Those of a model that was checked. A lattice of fewer cells is one block.
     ///
     /// O(rays of the window + intervals · 2^depth / 4096 + b log b) for b blocks.
     ///
@@ -25,7 +25,8 @@ impl Occupied {
     /// [`Error::OutOfMemory`].
     pub fn of(model: &TriDexelRef<'_>) -> Result<Occupied, Error> {
         let depth = model.frame().depth();
-        let mut occupied = Occupied { codes: Vec::new(), levels: depth - BLOCK.trailing_zeros() as u8 };
+        let mut occupied =
+            Occupied { codes: Vec::new(), levels: depth.saturating_sub(BLOCK.trailing_zeros() as u8) };
         if let Some((axis, rows)) = model.deciding() {
             with_rows!(rows, rows => occupied.add(rows, axis, depth))?;
             occupied.codes.sort_unstable();
@@ -78,6 +79,14 @@ impl Occupied {
         Ok(())
     }
 
+    /// All blocks, by their places in the lattice of blocks.
+    ///
+    /// # Errors
+    /// [`Error::OutOfMemory`].
+    pub fn blocks(&self) -> Result<Vec<[u32; 3]>, Error> {
+        memory::collected(self.codes.iter().map(|&code| place(code)))
+    }
+
     /// Whether a centre in a cell of a level, 0 to that of blocks, lies inside.
     pub fn meets(&self, level: u8, at: [u32; 3]) -> bool {
         let shift = 3 * u32::from(self.levels.saturating_sub(level));
@@ -113,6 +122,19 @@ fn code(at: [u32; 3]) -> u64 {
     spread(at[0]) | spread(at[1]) << 1 | spread(at[2]) << 2
 }
 
+/// The three numbers of a code.
+fn place(code: u64) -> [u32; 3] {
+    let gather = |x: u64| {
+        let x = x & 0x1249_2492_4924_9249;
+        let x = (x | x >> 2) & 0x10C3_0C30_C30C_30C3;
+        let x = (x | x >> 4) & 0x100F_00F0_0F00_F00F;
+        let x = (x | x >> 8) & 0x001F_0000_FF00_00FF;
+        let x = (x | x >> 16) & 0x001F_0000_0000_FFFF;
+        ((x | x >> 32) & 0x001F_FFFF) as u32
+    };
+    [gather(code), gather(code >> 1), gather(code >> 2)]
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -127,6 +149,7 @@ mod tests {
                 .flat_map(|bit| (0..3).map(move |axis| (3 * bit + axis, at[axis as usize] >> bit & 1)));
             let expected: u64 = expected.map(|(place, bit)| u64::from(bit) << place).sum();
             assert_eq!(code(at), expected);
+            assert_eq!(place(expected), at);
         }
     }
 
