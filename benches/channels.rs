@@ -38,7 +38,7 @@ fn one(value: f64) -> Option<[f64; 4]> {
 }
 
 fn between(low: [f64; 3], high: [f64; 3], of: impl Fn([f64; 3]) -> f64) -> ValueRange {
-    ValueRange::Within([Interval { lower: of(low), upper: of(high) }; 4])
+    ValueRange::Within([Interval::new(of(low), of(high)).unwrap(); 4])
 }
 
 /// The channels of the table, with what they are asked for.

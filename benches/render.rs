@@ -27,7 +27,7 @@ fn voxels(control: &Control<'_>) -> VoxelRecords {
     let attribute =
         FunctionAttribute::new(1, move |p| Some([value(p), 0.0, 0.0, 0.0])).expect("an attribute");
     let attribute = attribute.with_range(move |bounds| {
-        ValueRange::Within([Interval { lower: value(bounds.min), upper: value(bounds.max) }; 4])
+        ValueRange::Within([Interval::new(value(bounds.min), value(bounds.max)).unwrap(); 4])
     });
     let cell = frame.cell_size();
     let detail = Detail::new(16.0 * cell, cell, 0.25, leafless::Criterion::Range).expect("a detail");

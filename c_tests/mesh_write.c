@@ -172,6 +172,43 @@ static void normals(void) {
     leafless_mesh_free(mesh);
 }
 
+/* What a file keeps of a mesh: everything but in an STL, of which a cube far away is a square. */
+static void losses(void) {
+    leafless_mesh *cube = check_cube(), *far = NULL;
+    const double matrix[12] = {1, 0, 0, 1e9, 0, 1, 0, 0, 0, 0, 1, 0};
+    uint32_t format;
+    OK(leafless_mesh_transformed(cube, matrix, &far));
+    for (format = LEAFLESS_MESH_FORMAT_STL; format <= LEAFLESS_MESH_FORMAT_3MF; format++) {
+        leafless_mesh_write_options options = defaults();
+        leafless_mesh *kept = NULL, *back = NULL;
+        uint64_t counts[2][2], length;
+        double volumes[2];
+        uint8_t *bytes;
+        options.format = format;
+        OK(leafless_mesh_written_form(far, &options, &kept));
+        bytes = bytes_of(far, &options, &length);
+        OK(leafless_mesh_from_bytes(bytes, length, NULL, NULL, &back));
+        OK(leafless_mesh_counts(kept, &counts[0][0], &counts[0][1]));
+        OK(leafless_mesh_counts(back, &counts[1][0], &counts[1][1]));
+        CHECK(memcmp(counts[0], counts[1], sizeof counts[0]) == 0);
+        CHECK(counts[0][1] == (format == LEAFLESS_MESH_FORMAT_STL ? 4u : 12u));
+        OK(leafless_mesh_volume(kept, &volumes[0]));
+        OK(leafless_mesh_volume(back, &volumes[1]));
+        CHECK(volumes[0] == volumes[1] && (volumes[0] == 0) == (format == LEAFLESS_MESH_FORMAT_STL));
+        leafless_mesh_free(kept);
+        leafless_mesh_free(back);
+        free(bytes);
+    }
+    {
+        leafless_mesh_write_options options = defaults();
+        leafless_mesh *kept = NULL;
+        FAILS(LEAFLESS_E_ARGUMENT, leafless_mesh_written_form(far, &options, &kept));
+        CHECK(kept == NULL);
+    }
+    leafless_mesh_free(far);
+    leafless_mesh_free(cube);
+}
+
 static void refusals(void) {
     leafless_mesh *mesh = tetrahedron(1), *huge = tetrahedron(1e40), *nothing = NULL;
     const leafless_mesh_arrays none = check_arrays(NULL, 0, NULL, 0);
@@ -239,6 +276,7 @@ int main(void) {
     formats();
     units();
     normals();
+    losses();
     refusals();
     return 0;
 }

@@ -1292,6 +1292,9 @@ static void volumes_and_surfaces(void) {
     NULL_POINTER(leafless_mesh_to_bytes, options, leafless_mesh_to_bytes(mesh, NULL, NULL, 0, count));
     NULL_POINTER(leafless_mesh_to_bytes, bytes, leafless_mesh_to_bytes(mesh, &write, NULL, 9, count));
     NULL_POINTER(leafless_mesh_to_bytes, length, leafless_mesh_to_bytes(mesh, &write, NULL, 0, NULL));
+    NULL_POINTER(leafless_mesh_written_form, mesh, leafless_mesh_written_form(NULL, &write, mesh_result));
+    NULL_POINTER(leafless_mesh_written_form, options, leafless_mesh_written_form(mesh, NULL, mesh_result));
+    NULL_POINTER(leafless_mesh_written_form, kept, leafless_mesh_written_form(mesh, &write, NULL));
 
     MISALIGNED(leafless_volume_layout_init, layout,
                leafless_volume_layout_init((leafless_volume_layout *)WRONG(out), sizeof(leafless_volume_layout)));
@@ -1355,6 +1358,8 @@ static void volumes_and_surfaces(void) {
                leafless_mesh_save(mesh, "x.ply", 5, (leafless_mesh_write_options *)WRONG(&write)));
     MISALIGNED(leafless_mesh_to_bytes, options,
                leafless_mesh_to_bytes(mesh, (leafless_mesh_write_options *)WRONG(&write), NULL, 0, count));
+    MISALIGNED(leafless_mesh_written_form, options,
+               leafless_mesh_written_form(mesh, (leafless_mesh_write_options *)WRONG(&write), mesh_result));
     MISALIGNED(leafless_mesh_to_bytes, length,
                leafless_mesh_to_bytes(mesh, &write, NULL, 0, (uint64_t *)WRONG(out)));
 

@@ -103,7 +103,7 @@ fn colour() -> Result<impl Attribute, Error> {
         ValueRange::Within([0, 1, 2, 3].map(|k| {
             let values = COLOURS[first..=last].iter().map(|colour| colour[k]);
             let lower = values.clone().fold(f64::INFINITY, f64::min);
-            Interval { lower, upper: values.fold(f64::NEG_INFINITY, f64::max) }
+            Interval::new(lower, values.fold(f64::NEG_INFINITY, f64::max)).unwrap()
         }))
     };
     Ok(FunctionAttribute::new(4, function)?.with_range(range))
@@ -139,7 +139,7 @@ fn temperature() -> Result<impl Attribute, Error> {
     };
     let range = |bounds: &Bounds| {
         let [near, far] = distances(bounds, BEARING).map(warmth);
-        let range = Interval { lower: far * (1.0 - 1e-12), upper: near * (1.0 + 1e-12) };
+        let range = Interval::new(far * (1.0 - 1e-12), near * (1.0 + 1e-12)).unwrap();
         ValueRange::Within([range; 4])
     };
     Ok(FunctionAttribute::new(1, function)?.with_range(range))

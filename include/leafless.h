@@ -4734,7 +4734,8 @@ leafless_status leafless_mesh_peek_warning_at(const leafless_mesh *mesh,
                                               size_t *warning_length);
 
 /**
- * Writes a binary STL file into memory: 84 + 50 t bytes. Coordinates are rounded to 32 bits.
+ * Writes a binary STL file into memory: 84 + 50 t bytes. Coordinates are rounded to 32 bits;
+ * leafless_mesh_written_form tells what that costs.
  *
  * - Buffers: `bytes`, room for `capacity` bytes, or NULL to ask for the length only.
  * - Result: `*length`, the length of the file; the file in `bytes`.
@@ -4769,8 +4770,9 @@ leafless_status leafless_mesh_write_options_init(leafless_mesh_write_options *op
  * each complete, as leafless_octree_save tells.
  *
  * Vertices and triangles keep their order. PLY (little-endian, of type double), OBJ and OFF hold the
- * coordinates exactly; STL rounds them to 32 bits; a 3MF has one object, which is the build's one item, and
- * leaves out triangles that have a vertex twice. O(n) time and memory.
+ * coordinates exactly; a 3MF has one object, which is the build's one item, and leaves out triangles that have a
+ * vertex twice. STL rounds coordinates to 32 bits without a word: what is small and far away loses triangles, up
+ * to all of them. leafless_mesh_written_form tells before. O(n) time and memory.
  *
  * - Buffers: `path`, `path_length` bytes of UTF-8; `options`, one struct, or NULL.
  * - Result: LEAFLESS_OK once the file is on the disk.
@@ -4807,6 +4809,24 @@ leafless_status leafless_mesh_to_bytes(const leafless_mesh *mesh,
                                        uint8_t *bytes,
                                        uint64_t capacity,
                                        uint64_t *length);
+
+/**
+ * The mesh that a reader gets back from the file that leafless_mesh_save writes. An STL has 32-bit coordinates:
+ * vertices move, vertices that meet are one, and triangles of which two corners meet are dropped, so that the
+ * surface may be pinched, flat or gone. leafless_mesh_describe of both meshes tells. All other formats keep
+ * vertices and triangles as they are. O(n) time and memory.
+ *
+ * - Buffers: `options`, one struct, with a format; `kept`, one pointer.
+ * - Result: `*kept`.
+ * - Errors: LEAFLESS_E_ARGUMENT as leafless_mesh_to_bytes; LEAFLESS_E_NO_MEMORY.
+ * - Ownership: `mesh` stays as it is; give `*kept` back with leafless_mesh_free.
+ * - Threads: any.
+ * - Untrusted input: any mesh.
+ * - Since: 0.1
+ */
+leafless_status leafless_mesh_written_form(const leafless_mesh *mesh,
+                                           const leafless_mesh_write_options *options,
+                                           leafless_mesh **kept);
 
 /**
  * The volume and the moments of what a mesh encloses by a fill rule, exact up to rounding: usually to 14 digits.
@@ -5769,6 +5789,10 @@ leafless_status leafless_volume_view(const leafless_volume_layout *layout,
  * compressed. All types of single numbers, both byte orders. What is neither 8 nor 16 bits wide becomes
  * float, and int8_t becomes int16_t. O(n); the samples are copied once.
  *
+ * Samples in another file must lie in the header's folder or below it, by their real path: links are followed
+ * before that is judged. The header's folder is the one that `path` names and, if the header is a link, also
+ * the one in which the header really lies, which is searched second.
+ *
  * - Buffers: `path`, `path_length` bytes of UTF-8; `volume`, one pointer.
  * - Result: `*volume`; leafless_volume_describe tells what the file says.
  * - Errors: LEAFLESS_E_VOLUME_FILE, with what is wrong where in the message, if the file is neither, is
@@ -5841,8 +5865,9 @@ leafless_status leafless_volume_open_raw(const char *path,
  * leafless_octree_save tells.
  *
  * The byte of the lowest weight comes first, and bits become bytes 0 and 1. A NRRD holds the place of the
- * first sample, corner + spacing / 2, rounded, so that a volume that is read again may lie half a last place
- * beside; and no unit. A raw file holds no place at all. O(n) time and memory.
+ * first sample, corner + spacing / 2, rounded so that the same corner is read again; where no double does that,
+ * near a power of two, the volume lies half a last place beside. It holds no unit. A raw file holds no place at all.
+ * O(n) time and memory.
  *
  * - Buffers: `path`, `path_length` bytes of UTF-8. `format` is a leafless_volume_format.
  * - Result: LEAFLESS_OK once the file is on the disk.

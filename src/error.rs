@@ -542,9 +542,12 @@ pub enum VolumeFileError {
         /// What should have stood there.
         expected: &'static str,
     },
-    /// The spacing, the origin or the directions of the samples are not such as a solid can have: zero, of one plane, or
-    /// not of a magnitude between 2^-256 and 2^256 (2^64 if the axes are turned).
-    #[error("the spacing, the origin or the directions of the samples are out of range, or lie in one plane")]
+    /// The spacing, the origin or the directions of the samples are not such as a solid can have: a spacing of zero,
+    /// directions that lie in one plane up to 2^-40, or a magnitude that is not between 2^-256 and 2^256 (2^64 if the axes
+    /// are turned).
+    #[error(
+        "the spacing, the origin or the directions of the samples are zero, out of range, or lie in one plane"
+    )]
     Place,
     /// There are more or fewer bytes of samples than the header, or the caller, asks for.
     #[error("{expected} bytes of samples are expected, and there are {found}")]

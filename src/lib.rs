@@ -120,7 +120,8 @@ pub use error::{
     VolumeFileError,
 };
 pub use lattice::{
-    Affine, Bounds, Cell, CellMoments, Cube, CubeMoments, Frame, Interval, MAX_DEPTH, VolumeMoments,
+    Affine, Bounds, Cell, CellMoments, Cube, CubeMoments, Frame, Interval, IntervalEnds, MAX_DEPTH,
+    VolumeMoments,
 };
 pub use mesh::{
     AttributeDomain, DefectKind, FillRule, IntersectingPair, IntersectingPairs, MeshAttribute, MeshDefect,

@@ -180,7 +180,7 @@ fn what_parts_have_in_common_does_not_count() {
 
 #[test]
 fn what_is_not_known_is_not_told() {
-    let whole = Interval { lower: 0.0, upper: f64::INFINITY };
+    let whole = Interval::new(0.0, f64::INFINITY).unwrap();
     let control = Control::default();
     // A stored octree: what its surface is like is not stored.
     let small = Frame::new([-4.0; 3], 8.0, 5).unwrap();
@@ -220,17 +220,17 @@ fn the_same_for_any_number_of_threads() {
 /// (Where a solid ends in a wall between two cells the area there is in neither.)
 fn by_finer<W: Worker>(worker: &mut W, cell: Cell, part: &W::Part, levels: u8) -> Interval {
     if levels == 0 {
-        return worker.area(cell, part).unwrap().unwrap_or(Interval { lower: 0.0, upper: f64::INFINITY });
+        return worker.area(cell, part).unwrap().unwrap_or(Interval::new(0.0, f64::INFINITY).unwrap());
     }
     let mut sum = Interval::exactly(0.0);
     let mark = worker.mark();
     for (octant, verdict) in (0..8).zip(worker.split(cell, part).unwrap()) {
         let child = match verdict {
             Verdict::Partial(part) => by_finer(worker, cell.child(octant), &part, levels - 1),
-            Verdict::Undecided => Interval { lower: 0.0, upper: f64::INFINITY },
+            Verdict::Undecided => Interval::new(0.0, f64::INFINITY).unwrap(),
             Verdict::Empty | Verdict::Full => continue,
         };
-        sum = Interval { lower: sum.lower + child.lower / 4.0, upper: sum.upper + child.upper / 4.0 };
+        sum = Interval::new(sum.lower + child.lower / 4.0, sum.upper + child.upper / 4.0).unwrap();
     }
     worker.release(mark);
     sum

@@ -841,7 +841,7 @@ fn nothing_is_known_of_an_undecided_universe() {
         let tree = made(&callback, &frame, Rule::Certified);
         assert_is(&tree, &Dense::uniform(depth, Tag::Partial));
         assert!(!tree.view().is_binary());
-        assert_eq!(tree.statistics().volume(), Interval { lower: 0.0, upper: 8f64.powi(depth as i32) });
+        assert_eq!(tree.statistics().volume(), Interval::new(0.0, 8f64.powi(depth as i32)).unwrap());
         assert_is(&made(&callback, &frame, Rule::Inner), &Dense::uniform(depth, Tag::Empty));
         assert_is(&made(&callback, &frame, Rule::Outer), &Dense::uniform(depth, Tag::Full));
         assert!(matches!(build(&callback, &frame, Rule::Sampled, &alone()), Err(Error::NotSampled)));

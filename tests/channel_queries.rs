@@ -61,7 +61,7 @@ proptest! {
                 }
             }
         }
-        let exact = |[lower, upper]: [f64; 2]| Interval { lower, upper };
+        let exact = |[lower, upper]: [f64; 2]| Interval::new(lower, upper).unwrap();
         match found {
             None => prop_assert_eq!(volume[1], 0.0),
             Some(found) => {
@@ -178,7 +178,7 @@ fn the_mass_of_two_materials_holds_the_analytic_one() {
     // The centroid of a cap lies at 3 (2r − h)² / (4 (3r − h)).
     let centroid = 3.0 * (1.5f64 - 0.5).powi(2) / (4.0 * (2.25 - 0.5));
     assert!(found[1].properties.centroid.unwrap()[2].contains(centroid));
-    let densities = [Interval { lower: 7.8, upper: 7.9 }, Interval { lower: 2.69, upper: 2.71 }];
+    let densities = [Interval::new(7.8, 7.9).unwrap(), Interval::new(2.69, 2.71).unwrap()];
     let mass = found.iter().zip(densities).fold((0.0, 0.0), |(lower, upper), (material, density)| {
         let volume = material.properties.volume;
         (lower + volume.lower * density.lower, upper + volume.upper * density.upper)

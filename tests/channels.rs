@@ -180,7 +180,7 @@ fn variance_misses_a_spot_that_a_range_does_not() {
     let range = |bounds: &Bounds| {
         let meets = (0..3).all(|k| bounds.min[k] < 3.7 && bounds.max[k] > 2.9);
         let within = (0..3).all(|k| bounds.min[k] > 2.9 && bounds.max[k] < 3.7);
-        let interval = Interval { lower: f64::from(u8::from(within)), upper: f64::from(u8::from(meets)) };
+        let interval = Interval::new(f64::from(u8::from(within)), f64::from(u8::from(meets))).unwrap();
         ValueRange::Within([interval; 4])
     };
     let attribute = FunctionAttribute::new(1, spot).unwrap().with_range(range);
@@ -220,7 +220,7 @@ fn simple_channels_are_small() {
     let layers = FunctionAttribute::new(1, |p| Some([(p[2] * 4.0).floor(), 0.0, 0.0, 0.0])).unwrap();
     let layers = layers.with_range(|b: &Bounds| {
         let (lower, upper) = ((b.min[2] * 4.0).floor(), (b.max[2] * 4.0).next_down().floor());
-        ValueRange::Within([Interval { lower, upper: upper.max(lower) }; 4])
+        ValueRange::Within([Interval::new(lower, upper.max(lower)).unwrap(); 4])
     });
     let layers = fill(&layers, scalar(ScalarType::U16));
     assert_eq!(layers.view().unwrap().element_count(), 1);

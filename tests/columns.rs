@@ -77,8 +77,8 @@ fn assert_heights(dense: &Dense, columns: &Columns, found: &Heights) {
         );
         // Cells have edge 1, and planes are whole numbers.
         let height = upper.map(|upper| match found.side() {
-            Side::Above => Interval { lower: full.map_or(f64::NEG_INFINITY, f64::from), upper: upper.into() },
-            Side::Below => Interval { lower: upper.into(), upper: full.map_or(f64::INFINITY, f64::from) },
+            Side::Above => Interval::new(full.map_or(f64::NEG_INFINITY, f64::from), upper.into()).unwrap(),
+            Side::Below => Interval::new(upper.into(), full.map_or(f64::INFINITY, f64::from)).unwrap(),
         });
         assert_eq!(found.height(index), height);
     }

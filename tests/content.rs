@@ -36,7 +36,7 @@ fn counts(solid: &Dense, region: &Dense) -> CellsIn {
 
 /// The volume of cells of edge 1, of which no more is known than their tags.
 fn plain(found: CellsIn) -> Interval {
-    Interval { lower: found.full_least as f64, upper: found.upper_most as f64 }
+    Interval::new(found.full_least as f64, found.upper_most as f64).unwrap()
 }
 
 fn holds(outer: CellsIn, inner: CellsIn) -> bool {
@@ -302,7 +302,7 @@ fn laws() {
         assert!(cells.full_least <= of_universe.0 && of_universe.1 <= cells.upper_most);
     }
     // A greater ball has no less in it.
-    let (mut before, mut volume) = (CellsIn::default(), Interval { lower: 0.0, upper: 0.0 });
+    let (mut before, mut volume) = (CellsIn::default(), Interval::exactly(0.0));
     for k in 1..30 {
         let ball = Csg::ball([0.9, -0.4, 0.3], 0.1 * f64::from(k)).unwrap();
         let found = tree.cells_in(&ball, &alone()).unwrap();
@@ -327,7 +327,7 @@ fn regions_that_are_none() {
     for centre in [[40.0, 4.0, 4.0], [-1.0; 3]] {
         let ball = Csg::ball(centre, 0.9).unwrap();
         assert_eq!(tree.cells_in(&ball, &alone()).unwrap(), CellsIn::default());
-        assert_eq!(tree.volume_in(&ball, &alone()).unwrap(), Interval { lower: 0.0, upper: 0.0 });
+        assert_eq!(tree.volume_in(&ball, &alone()).unwrap(), Interval::exactly(0.0));
     }
     // Far smaller than a cell.
     let found = tree.cells_in(&Csg::ball([4.1, 4.1, 4.1], 1e-6).unwrap(), &alone()).unwrap();
@@ -362,7 +362,7 @@ fn regions_that_are_none() {
     assert!(volume.contains(32.0 / 3.0 * std::f64::consts::PI), "{volume:?}");
     let whole = block.cells_in(&Csg::ball([4.0; 3], 20.0).unwrap(), &alone()).unwrap();
     assert_eq!(whole.full_least, 1 << 60);
-    assert_eq!(block.volume_in(&block, &alone()).unwrap(), Interval { lower: 512.0, upper: 512.0 });
+    assert_eq!(block.volume_in(&block, &alone()).unwrap(), Interval::exactly(512.0));
 }
 
 /// A file that is mapped and not looked through.

@@ -715,7 +715,7 @@ fn host_ball(asked: &Arc<[AtomicUsize; 2]>) -> HalfSpace {
             }
             // Dyadic boxes lose nothing; of others some last places are lost.
             let error = if min.iter().chain(&max).all(|c| (c * 1024.0).fract() == 0.0) { 0.0 } else { 1e-12 };
-            Ok(Interval { lower: 1.0 - far - error, upper: 1.0 - near + error })
+            Ok(Interval::new(1.0 - far - error, 1.0 - near + error).unwrap())
         },
         Some(Fingerprint::of_bytes(b"ball of radius 1")),
     )
@@ -764,7 +764,7 @@ fn a_host_is_asked_no_more_than_needed() {
         },
         move |min, max| {
             seen_boxes.lock().unwrap().push((min, max));
-            Ok(Interval { lower: min[2] - 0.3, upper: max[2] - 0.3 })
+            Ok(Interval::new(min[2] - 0.3, max[2] - 0.3).unwrap())
         },
         None,
     );
@@ -802,7 +802,7 @@ fn a_host_that_fails_or_talks_nonsense() {
         other => panic!("{:?}", other.map(|tree| tree.statistics().volume())),
     };
     let fail = |code| Err(Error::Callback { code });
-    let wide = Interval { lower: -1.0, upper: 1.0 };
+    let wide = Interval::new(-1.0, 1.0).unwrap();
     for rule in [Rule::Certified, Rule::Sampled] {
         assert_eq!(code(HalfSpace::host(move |_| fail(3), move |_, _| Ok(wide), None), rule), 3);
         assert_eq!(
@@ -820,15 +820,17 @@ fn a_host_that_fails_or_talks_nonsense() {
         (nan, 0.0, 0.0),
         (1.0, nan, 1.0),
     ] {
-        let solid = HalfSpace::host(move |_| Ok(value), move |_, _| Ok(Interval { lower, upper }), None);
+        // An interval that is none cannot be said: all that is left is that nothing is known.
+        let range = Interval::new(lower, upper).unwrap_or(Interval::ALL);
+        let solid = HalfSpace::host(move |_| Ok(value), move |_, _| Ok(range), None);
         let volume = build(&Csg::from(solid.clone()), &frame, Rule::Certified, &control)
             .unwrap()
             .statistics()
             .volume();
-        assert_eq!(volume, Interval { lower: 0.0, upper: 8.0 }, "{value} {lower} {upper}");
+        assert_eq!(volume, Interval::new(0.0, 8.0).unwrap(), "{value} {lower} {upper}");
         let complement = Csg::from(solid.clone()).complement();
         let volume = build(&complement, &frame, Rule::Certified, &control).unwrap().statistics().volume();
-        assert_eq!(volume, Interval { lower: 0.0, upper: 8.0 });
+        assert_eq!(volume, Interval::new(0.0, 8.0).unwrap());
         if value.is_nan() {
             let sampled = build(&Csg::from(solid), &frame, Rule::Sampled, &control);
             assert!(matches!(sampled, Err(Error::NotSampled)), "{value}");
@@ -876,5 +878,5 @@ fn fingerprints_tell_expressions_apart() {
 }
 
 fn fail_never() -> Result<Interval, Error> {
-    Ok(Interval { lower: -1.0, upper: 1.0 })
+    Ok(Interval::new(-1.0, 1.0).unwrap())
 }

@@ -103,10 +103,8 @@ fn host_ball(c: [f64; 3], radius: f64) -> HalfSpace {
         move |p| Ok(radius * radius - (0..3).map(|a| (p[a] - c[a]).powi(2)).sum::<f64>()),
         move |min, max| {
             let [near, far] = [0, 1].map(|k| (0..3).map(|a| square(c[a], min[a], max[a])[k]).sum::<f64>());
-            Ok(leafless::Interval {
-                lower: radius * radius - far - 1e-14,
-                upper: radius * radius - near + 1e-14,
-            })
+            Ok(leafless::Interval::new(radius * radius - far - 1e-14, radius * radius - near + 1e-14)
+                .unwrap())
         },
         None,
     )

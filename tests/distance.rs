@@ -246,7 +246,7 @@ fn points_that_are_none_and_points_far_away() {
         let point = [0.0, bad, 0.0];
         for to in TARGETS {
             let lower = if to == DistanceTo::Boundary { f64::NEG_INFINITY } else { 0.0 };
-            let nothing = Interval { lower, upper: f64::INFINITY };
+            let nothing = Interval::new(lower, f64::INFINITY).unwrap();
             assert_eq!(tree.distance(point, to).unwrap(), nothing);
             let found = distances(&solid, &frame, &[point], to, 0.0, &alone()).unwrap();
             assert_eq!((found[0].distance, found[0].splits), (nothing, 0));

@@ -184,7 +184,7 @@ fn speed() {
             let points: Vec<[f64; 3]> = (0..100_000)
                 .map(|k| [0, 1, 2].map(|axis| f64::from((k * [1, 17, 71][axis]) % 1009) / 504.0 - 1.0))
                 .collect();
-            let mut answers = vec![leafless::Interval { lower: 0.0, upper: 0.0 }; points.len()];
+            let mut answers = vec![leafless::Interval::exactly(0.0); points.len()];
             let start = std::time::Instant::now();
             tree.distances(&points, DistanceTo::Boundary, &mut answers, &alone()).unwrap();
             println!("{:?} a point", start.elapsed() / 100_000);

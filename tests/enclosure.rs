@@ -213,7 +213,7 @@ fn by_gradient(model: &Model, _: &Frame) -> Result<Csg, Error> {
             (least, most) = (least + ends[0].min(ends[1]), most + ends[0].max(ends[1]));
             size += ends[0].abs().max(ends[1].abs());
         }
-        Interval { lower: least - 1e-14 * size, upper: most + 1e-14 * size }
+        Interval::new(least - 1e-14 * size, most + 1e-14 * size).unwrap()
     };
     let gradient = move |min, max| {
         let rows = [[2.0 * xx, xy, zx, x], [xy, 2.0 * yy, yz, y], [zx, yz, 2.0 * zz, z]];
@@ -225,7 +225,7 @@ fn by_gradient(model: &Model, _: &Frame) -> Result<Csg, Error> {
                 [xx * p * p, yy * q * q, zz * r * r, xy * p * q, yz * q * r, zx * r * p, x * p, y * q, z * r];
             let (value, size) =
                 terms.iter().fold((constant, constant.abs()), |(sum, size), t| (sum + t, size + t.abs()));
-            let value = Interval { lower: -value - 1e-14 * size, upper: -value + 1e-14 * size };
+            let value = Interval::new(-value - 1e-14 * size, -value + 1e-14 * size).unwrap();
             Ok(Some(GradientRange { value, gradient: gradient(min, max) }))
         });
     Ok(Csg::solid(AnySolid::new(callback)))

@@ -131,7 +131,7 @@ fn affine(matrix: DMat3, offset: DVec3) -> Affine {
 fn sides(extent: &Extent) -> [Interval; 6] {
     let [min, max] = extent.corners.unwrap_or_else(|| panic!("{extent:?}"));
     core::array::from_fn(|side| match side {
-        0..3 => Interval { lower: -min[side].upper, upper: -min[side].lower },
+        0..3 => Interval::new(-min[side].upper, -min[side].lower).unwrap(),
         _ => max[side - 3],
     })
 }
@@ -378,4 +378,42 @@ fn flat_thin_and_empty_solids_end() {
     let found = bounding_box(&nothing, &frame, 1e-9, &control).unwrap();
     assert_eq!((found.corners, found.occupied, found.stop_reason), (None, false, StopReason::Tolerance));
     assert!(found.splits < 1000, "{found:?}");
+}
+
+/// What two sides prove of an empty solid, before it is proven empty, may contradict each other: it would end before
+/// it begins. That is a proof, and no box.
+#[test]
+fn a_box_that_ends_before_it_begins_is_none() {
+    let frame = Frame::new([-1.0; 3], 2.0, 20).unwrap();
+    let (mut none, mut open) = (0, 0);
+    for gap in [0.02, 0.01, 0.005] {
+        // A ball within what lies outside of a slightly larger one, and the same of rings.
+        let ball = |radius: f64| Csg::ball([0.1, 0.0, -0.05], radius).unwrap();
+        let ring = |minor: f64| Csg::torus(0.5, minor).unwrap();
+        for solid in [ball(0.7).difference(&ball(0.7 + gap)), ring(0.2).difference(&ring(0.2 + gap))] {
+            let solid = solid.unwrap();
+            // From nothing to more than it takes.
+            let budgets = (0..40).map(|k| (20.0 * 1.2f64.powi(k)) as u64);
+            for splits in budgets {
+                let control = Control { max_splits: Some(splits), ..alone() };
+                let found = bounding_box(&solid, &frame, 1e-9, &control).unwrap();
+                assert!(!found.occupied);
+                match found.corners {
+                    None => {
+                        none += 1;
+                        assert_eq!(found.stop_reason, StopReason::Tolerance);
+                    }
+                    Some([min, max]) => {
+                        open += 1;
+                        for axis in 0..3 {
+                            assert!(min[axis].lower <= min[axis].upper, "{gap} {splits} {min:?}");
+                            assert!(max[axis].lower <= max[axis].upper, "{gap} {splits} {max:?}");
+                            assert!(min[axis].lower <= max[axis].upper, "{gap} {splits} {min:?} {max:?}");
+                        }
+                    }
+                }
+            }
+        }
+    }
+    assert!(none > 20 && open > 20, "{none} {open}");
 }

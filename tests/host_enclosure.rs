@@ -14,7 +14,7 @@ const CENTRE: [f64; 3] = [0.1, -0.05, 0.025];
 const RADIUS: f64 = 0.75;
 
 fn about(value: f64) -> Interval {
-    Interval { lower: value - MARGIN, upper: value + MARGIN }
+    Interval::new(value - MARGIN, value + MARGIN).unwrap()
 }
 
 /// Decides boxes by the middle value and the greatest slopes of a function that is negative inside.
@@ -53,9 +53,9 @@ fn shape(
 /// |p − c|² − r².
 fn ball(min: [f64; 3], max: [f64; 3], middle: [f64; 3]) -> GradientRange {
     let value = (0..3).map(|axis| (middle[axis] - CENTRE[axis]).powi(2)).sum::<f64>() - RADIUS * RADIUS;
-    let gradient = [0, 1, 2].map(|axis| Interval {
-        lower: 2.0 * (min[axis] - CENTRE[axis]) - MARGIN,
-        upper: 2.0 * (max[axis] - CENTRE[axis]) + MARGIN,
+    let gradient = [0, 1, 2].map(|axis| {
+        Interval::new(2.0 * (min[axis] - CENTRE[axis]) - MARGIN, 2.0 * (max[axis] - CENTRE[axis]) + MARGIN)
+            .unwrap()
     });
     GradientRange { value: about(value), gradient }
 }
@@ -72,7 +72,7 @@ fn gyroid(min: [f64; 3], max: [f64; 3], [x, y, z]: [f64; 3]) -> GradientRange {
     let half = (0..3).map(|axis| 0.5 * (max[axis] - min[axis])).fold(0.0, f64::max);
     // Of x: |sin x cos y| + |sin z cos x|, |cos x sin y|, |cos z sin x|, and so on.
     let spread = 4.0 * half * (1.0 + 1e-9) + MARGIN;
-    let gradient = slopes.map(|slope| Interval { lower: slope - spread, upper: slope + spread });
+    let gradient = slopes.map(|slope| Interval::new(slope - spread, slope + spread).unwrap());
     GradientRange { value: about(value), gradient }
 }
 
@@ -198,9 +198,11 @@ fn nonsense_says_nothing() {
     let open = || Callback::new(|_, _| Ok(Verdict::Partial(())));
     let good = ball([-1.0; 3], [1.0; 3], [0.0; 3]);
     assert!(asked(&AnySolid::new(open().with_gradient(move |_, _, _| Ok(Some(good))))).unwrap() > 0);
-    let nonsense = Interval { lower: 1.0, upper: -1.0 };
     let (infinity, nan) = (f64::INFINITY, f64::NAN);
-    let everything = Interval { lower: -infinity, upper: infinity };
+    let everything = Interval::ALL;
+    // Bounds the wrong way round, and those that are not numbers, cannot even be said.
+    assert_eq!([Interval::new(1.0, -1.0), Interval::new(nan, 1.0), Interval::new(1.0, nan)], [None; 3]);
+    let nonsense = Interval::new(1.0, -1.0).unwrap_or(everything);
     for range in [nonsense, Interval::exactly(nan), Interval::exactly(infinity), everything] {
         let mut gradient = good.gradient;
         gradient[1] = range;
@@ -215,7 +217,7 @@ fn nonsense_says_nothing() {
     let zero = GradientRange { gradient: [Interval::exactly(0.0); 3], ..good };
     assert_eq!(asked(&AnySolid::new(open().with_gradient(move |_, _, _| Ok(Some(zero))))).unwrap(), 0);
     // One end of the value may be open.
-    let outside = GradientRange { value: Interval { lower: 0.0, upper: infinity }, ..good };
+    let outside = GradientRange { value: Interval::new(0.0, infinity).unwrap(), ..good };
     assert!(asked(&AnySolid::new(open().with_gradient(move |_, _, _| Ok(Some(outside))))).unwrap() > 0);
 
     let balls = TangentBalls {
@@ -248,8 +250,8 @@ fn nonsense_says_nothing() {
         told(TangentBalls { normal: [extreme, -extreme, 0.0], ..balls });
         told(TangentBalls { point: [extreme; 3], ..balls });
         told(TangentBalls { inner_curvature: extreme, outer_curvature: -extreme, error: extreme, ..balls });
-        let value = Interval { lower: -extreme, upper: extreme };
-        let range = GradientRange { value, gradient: [Interval { lower: extreme, upper: 1.5 * extreme }; 3] };
+        let value = Interval::new(-extreme, extreme).unwrap();
+        let range = GradientRange { value, gradient: [Interval::new(extreme, 1.5 * extreme).unwrap(); 3] };
         asked(&AnySolid::new(open().with_gradient(move |_, _, _| Ok(Some(range))))).unwrap();
     }
 

@@ -154,9 +154,9 @@ fn contains_all(measures: &MassProperties, sums: &Sums) -> Result<(), String> {
 /// of the magnitude.
 fn assert_tight(interval: Interval, least: &[Exact; 2], most: &[Exact; 2], slack: f64) {
     let slack = slack * interval.lower.abs().max(interval.upper.abs());
-    let narrow = Interval { lower: interval.lower + slack, upper: f64::INFINITY };
+    let narrow = Interval::new(interval.lower + slack, f64::INFINITY).unwrap();
     assert!(slack == 0.0 || !contains(narrow, least), "{interval:?} begins too low");
-    let narrow = Interval { lower: f64::NEG_INFINITY, upper: interval.upper - slack };
+    let narrow = Interval::new(f64::NEG_INFINITY, interval.upper - slack).unwrap();
     assert!(slack == 0.0 || !contains(narrow, most), "{interval:?} ends too high");
 }
 
@@ -585,7 +585,7 @@ fn a_host_s_shape_that_knows_little() {
     // Never decided: every cell would be split, and none gains anything.
     let doubtful = Callback::new(|_, _| Ok(Verdict::Partial(()))).with_exterior(Tag::Empty);
     let measures = measure(&doubtful, &frame, 0.1, &Control::default()).unwrap();
-    assert_eq!((measures.volume, measures.centroid), (Interval { lower: 0.0, upper: 1.0 }, None));
+    assert_eq!((measures.volume, measures.centroid), (Interval::new(0.0, 1.0).unwrap(), None));
     assert_eq!(measures.stop_reason, StopReason::Exhausted);
     let hopeless = Callback::new(|_, _| Ok(Verdict::Undecided));
     let measures = measure(&hopeless, &frame, 0.1, &Control::default()).unwrap();
@@ -600,7 +600,7 @@ fn a_host_s_shape_that_knows_little() {
     });
     let frame = Frame::new([0.0; 3], 1.0, 20).unwrap();
     let measures = measure(&eighths, &frame, 0.1, &Control::default()).unwrap();
-    assert_eq!(measures.volume, Interval { lower: 0.5, upper: 1.0 });
+    assert_eq!(measures.volume, Interval::new(0.5, 1.0).unwrap());
     assert_eq!((measures.stop_reason, measures.splits, measures.level), (StopReason::Exhausted, 37, 3));
     let z = measures.centroid.unwrap()[2];
     assert!(z.contains(0.5) && z.contains(0.75) && z.lower > 0.4 && z.upper < 0.82, "{z:?}");
@@ -804,7 +804,7 @@ fn boxes_of_what_is_empty_or_unknown() {
     assert_eq!((extent.corners, extent.occupied, extent.splits), (None, false, 0));
     let doubtful = Callback::new(|_, _| Ok(Verdict::Partial(()))).with_exterior(Tag::Empty);
     let extent = bounding_box(&doubtful, &frame, 0.0, &control).unwrap();
-    let all = Interval { lower: 0.0, upper: 1.0 };
+    let all = Interval::new(0.0, 1.0).unwrap();
     assert_eq!((extent.corners, extent.stop_reason), (Some([[all; 3]; 2]), StopReason::Exhausted));
     assert!(!extent.occupied && !extent.clipped);
     let limited = Control { max_splits: Some(100), ..control };

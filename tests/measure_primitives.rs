@@ -301,8 +301,7 @@ fn unions_and_intersections_add_up() {
             let [all, both, rest] =
                 parts.each_ref().map(|part| measure(part, &frame, 1e-7, &control).unwrap());
             let at = format!("round {round}, {most} splits\n{all:?}\n{both:?}\n{rest:?}");
-            let sum =
-                |a: Interval, b: Interval| Interval { lower: a.lower + b.lower, upper: a.upper + b.upper };
+            let sum = |a: Interval, b: Interval| Interval::new(a.lower + b.lower, a.upper + b.upper).unwrap();
             let volume = a.volume + b.volume;
             assert!(holds(sum(all.volume, both.volume), volume, volume), "{at}");
             assert!(holds(sum(rest.volume, both.volume), a.volume, volume), "{at}");

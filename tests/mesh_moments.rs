@@ -162,7 +162,7 @@ fn random_tetrahedra_and_blocks() {
             let measures = measured(mesh(from_ref(&facets)), rule);
             assert_eq!(measures.splits, 0);
             if rule == FillRule::Positive && sign < 0 {
-                assert_eq!((measures.volume, measures.centroid), (Interval { lower: 0.0, upper: 0.0 }, None));
+                assert_eq!((measures.volume, measures.centroid), (Interval::exactly(0.0), None));
                 continue;
             }
             let tiny = measures.volume.lower < 1e-3 * scale.powi(3);

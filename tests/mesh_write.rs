@@ -3,7 +3,9 @@
 mod common;
 
 use common::{Random, cases};
-use leafless::exchange::{LengthUnit, MeshFormat, MeshOptions, WriteOptions, read_mesh, write_mesh};
+use leafless::exchange::{
+    LengthUnit, MeshFormat, MeshOptions, WriteOptions, read_mesh, write_mesh, written_form,
+};
 use leafless::{Error, TriangleMesh};
 use ply_rs_bw::{parser::Parser, ply::DefaultElement, ply::Property};
 use proptest::prelude::*;
@@ -32,6 +34,25 @@ fn mesh(seed: u64) -> TriangleMesh {
         [i, (i + step) % count, (i + step + 1 + (step + 1 == count) as u32) % count]
     });
     TriangleMesh::new(vertices, triangles.filter(|[a, b, c]| a != b && b != c && c != a).collect()).unwrap()
+}
+
+/// A box with a small one beside it and a vertex that no triangle uses, so far away that single precision keeps all, some or
+/// nothing of it.
+fn far_away(seed: u64, far: i32) -> TriangleMesh {
+    let mut random = Random(seed);
+    let at = [0; 3].map(|_| random.between(1.0, 2.0) * 2f64.powi(far));
+    let mut vertices = vec![];
+    let mut triangles = vec![];
+    for edge in [random.between(0.5, 3.0), random.between(0.01, 0.1)] {
+        let first = vertices.len() as u32;
+        vertices.extend((0..8).map(|k| [0, 1, 2].map(|axis| at[axis] + f64::from(k >> axis & 1) * edge)));
+        let sides: [[u32; 4]; 6] =
+            [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
+        let both = sides.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]);
+        triangles.extend(both.map(|triangle| triangle.map(|v| v + first)));
+    }
+    vertices.push([0.5, 0.25, random.between(0.0, 1.0)]);
+    TriangleMesh::new(vertices, triangles).unwrap()
 }
 
 const FORMATS: [MeshFormat; 4] = [MeshFormat::Stl, MeshFormat::Obj, MeshFormat::Ply, MeshFormat::Off];
@@ -64,6 +85,36 @@ proptest! {
                     prop_assert_eq!(back.mesh.vertices(), mesh.vertices());
                     prop_assert_eq!(back.mesh.triangles(), mesh.triangles());
                 }
+            }
+        }
+    }
+
+    /// What is told before is what is read back, for meshes of which single precision keeps much or little.
+    #[test]
+    fn what_comes_back_is_told_before(seed: u64, far in 0..30i32, seen: bool) {
+        let mesh = if seen { mesh(seed) } else { far_away(seed, far) };
+        let formats = FORMATS.into_iter().chain(cfg!(feature = "threemf").then_some(MeshFormat::ThreeMf));
+        for (format, text) in formats.flat_map(|format| [(format, false), (format, true)]) {
+            let options = WriteOptions { text, ..WriteOptions::default() };
+            let told = written_form(&mesh, format, &options).unwrap();
+            let back = read_mesh(&write_mesh(&mesh, format, &options).unwrap(), &MeshOptions::default()).unwrap();
+            prop_assert_eq!(told.mesh.vertices(), back.mesh.vertices());
+            prop_assert_eq!(told.mesh.triangles(), back.mesh.triangles());
+            let report = back.mesh.report().unwrap();
+            prop_assert_eq!(told.degenerate, report.degenerate);
+            let used: std::collections::BTreeSet<u32> = mesh.triangles().iter().flatten().copied().collect();
+            if format != MeshFormat::Stl {
+                prop_assert_eq!((told.rounding, told.merged, told.degenerate), (0.0, 0, 0));
+            } else {
+                prop_assert_eq!(told.merged, used.len() as u64 - report.vertices);
+                let coordinates = || used.iter().flat_map(|&v| mesh.vertices()[v as usize]);
+                let moved = coordinates().map(|x| (x - f64::from(x as f32)).abs()).fold(0.0, f64::max);
+                // Decimal digits of a 32-bit number tell it, and not more.
+                let half = coordinates().map(|x| x.abs() as f32).map(|x| x.next_up() - x).fold(0.0, f32::max) / 2.0;
+                let slack = if text { f64::from(half) } else { 0.0 };
+                prop_assert!((told.rounding - moved).abs() <= slack, "{} {moved}", told.rounding);
+                // Vertices are put together, and none apart.
+                prop_assert!(!mesh.report().unwrap().is_closed() || report.is_closed());
             }
         }
     }
@@ -184,5 +235,45 @@ fn coordinates_that_a_format_has_not_are_refused() {
     for text in [false, true] {
         let result = write_mesh(&mesh, MeshFormat::Stl, &WriteOptions { text, ..WriteOptions::default() });
         assert!(matches!(result, Err(Error::Argument { name: "mesh", .. })));
+    }
+}
+
+/// A cube of edge 3 around x = 10⁹, where single precision has multiples of 64.
+#[test]
+fn a_far_cube_is_told_to_be_flat() {
+    let sides: [[u32; 4]; 6] =
+        [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
+    let corner = |k: u32| [0, 1, 2].map(|axis| f64::from(k >> axis & 1) * 3.0 + [1e9, 0.0, 0.0][axis]);
+    let triangles = sides.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
+    let cube = TriangleMesh::new((0..8).map(corner).collect(), triangles).unwrap();
+    for text in [false, true] {
+        let options = WriteOptions { text, ..WriteOptions::default() };
+        let kept = written_form(&cube, MeshFormat::Stl, &options).unwrap();
+        assert_eq!((kept.rounding, kept.merged, kept.degenerate), (3.0, 4, 8));
+        let report = kept.mesh.report().unwrap();
+        assert_eq!((report.triangles, report.vertices, kept.mesh.volume()), (4, 4, 0.0));
+        assert_eq!(kept.mesh.area(), 18.0);
+        // All of it becomes one place, or less than a number.
+        let huge = cube.transformed(|[_, y, z]| [1e30, 1e30 + y, 1e30 + z]).unwrap();
+        assert!(huge.triangles().is_empty());
+        let tiny = cube.transformed(|[x, y, z]| [x - 1e9, y, z].map(|c| c * 1e-60)).unwrap();
+        let kept = written_form(&tiny, MeshFormat::Stl, &options).unwrap();
+        assert_eq!((kept.merged, kept.degenerate, kept.mesh.vertices().len()), (7, 12, 1));
+        let far = TriangleMesh::new(vec![[1e39; 3], [0.0; 3], [0.0, 1.0, 0.0]], vec![[0, 1, 2]]).unwrap();
+        let result = written_form(&far, MeshFormat::Stl, &options);
+        assert!(matches!(result, Err(Error::Argument { name: "mesh", .. })));
+    }
+}
+
+#[test]
+fn a_mesh_of_nothing_has_no_area() {
+    let empty = TriangleMesh::new(vec![], vec![]).unwrap();
+    assert!(empty.area().is_sign_positive() && empty.volume().is_sign_positive());
+    assert!(written_form(&empty, MeshFormat::Obj, &WriteOptions::default()).is_err());
+    let points = TriangleMesh::new(vec![[1.0; 3]], vec![]).unwrap();
+    for format in FORMATS.into_iter().chain(cfg!(feature = "threemf").then_some(MeshFormat::ThreeMf)) {
+        let kept = written_form(&points, format, &WriteOptions::default()).unwrap();
+        let back = read_mesh(&written(&points, format, false), &MeshOptions::default()).unwrap();
+        assert_eq!(kept.mesh.vertices(), back.mesh.vertices(), "{format}");
     }
 }

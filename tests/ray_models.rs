@@ -198,7 +198,7 @@ fn primitives(count: usize) {
     // An oracle in doubles is right to this part of the numbers that it is made of, unless a ray grazes.
     let truth = |ray: &Plain| {
         let t = in_part(ray).unwrap();
-        Interval { lower: t - DOUBT, upper: t + DOUBT }
+        Interval::new(t - DOUBT, t + DOUBT).unwrap()
     };
     let tree = build(&part, &frame, Rule::Certified, &Control::default()).unwrap();
     let mut hits = vec![None; sure.len()];

@@ -465,6 +465,11 @@ fn operations(directory: &Path) -> Vec<(&'static str, Operation)> {
         exchange::write_mesh(&closed, exchange::MeshFormat::Ply, &Default::default())?;
         exchange::write_mesh(&closed, exchange::MeshFormat::Obj, &Default::default())
     });
+    operation!("what STL keeps", [closed], {
+        let options = exchange::WriteOptions { text: true, ..Default::default() };
+        exchange::written_form(&closed, exchange::MeshFormat::Stl, &options)?;
+        exchange::written_form(&closed, exchange::MeshFormat::Stl, &Default::default()).map(drop)
+    });
     for (k, (write, read)) in bodies::meshes::WRITERS.into_iter().enumerate() {
         const NAMES: [&str; bodies::meshes::WRITERS.len()] = [
             "read OBJ",

@@ -73,12 +73,17 @@ fn what_is_written_comes_back() {
         let (again, rounded) = read_raw_volume(&bytes, &layout).unwrap();
         assert!(same(&numbers(&again, &grid), &sampled.values) && rounded == 0);
     }
-    // Any other grid moves by less than two last places.
+    // Any other grid moves by less than two last places, and only if no origin tells its corner.
     for _ in 0..100 {
         let grid = grid(&mut random, [2, 1, 1], false);
         let file = read(&write_nrrd(&vec![0u8; 2].into(), &grid, NrrdEncoding::Raw).unwrap());
         assert_eq!(file.grid.spacing(), grid.spacing());
         for axis in 0..3 {
+            let (centre, half) = (grid.centre([0; 3])[axis], 0.5 * grid.spacing()[axis]);
+            let origins = [centre, centre.next_down(), centre.next_up()];
+            if origins.into_iter().any(|origin| origin - half == grid.corner()[axis]) {
+                assert_eq!(file.grid.corner()[axis], grid.corner()[axis]);
+            }
             let off = (file.grid.corner()[axis] - grid.corner()[axis]).abs();
             assert!(off <= 2.0 * f64::EPSILON * (grid.corner()[axis].abs() + grid.spacing()[axis]));
         }
@@ -354,6 +359,84 @@ fn samples_in_another_file() {
     }
 }
 
+/// What a link leads to counts, and not where the link lies.
+#[cfg(unix)]
+#[test]
+fn links_do_not_lead_out_of_the_folder() {
+    use std::os::unix::fs::symlink;
+    let all = tempfile::tempdir().unwrap();
+    let place = |name: &str| all.path().join(name);
+    for folder in ["in", "in/deep", "out", "other"] {
+        std::fs::create_dir(place(folder)).unwrap();
+    }
+    std::fs::write(place("out/secret.raw"), DATA).unwrap();
+    std::fs::write(place("in/a.raw"), DATA).unwrap();
+    let headers = |folder: &str, name: &str, data: &str| {
+        let of = |extension: &str| place(&format!("{folder}/{name}.{extension}"));
+        std::fs::write(of("nhdr"), format!("{NRRD}data file: {data}\n")).unwrap();
+        std::fs::write(of("mhd"), format!("{META}ElementDataFile = {data}\n")).unwrap();
+        [of("nhdr"), of("mhd")]
+    };
+    let good = |path: &std::path::Path| {
+        let file = open_volume(path).unwrap_or_else(|error| panic!("{error}"));
+        assert_eq!(values(&file)[11], 12.0, "{path:?}");
+    };
+    // A link to a file outside, a link to a folder outside, and a link to such a link.
+    symlink("../out/secret.raw", place("in/link.raw")).unwrap();
+    symlink(place("out"), place("in/folder")).unwrap();
+    symlink("../link.raw", place("in/deep/again.raw")).unwrap();
+    for data in ["link.raw", "folder/secret.raw", "deep/again.raw", "./deep/../link.raw"] {
+        for header in headers("in", "bad", data) {
+            let error = open_volume(&header).unwrap_err();
+            assert!(matches!(&error, Error::File { path, .. } if **path == *header), "{error}");
+            assert!(
+                matches!(error.cause(), Error::VolumeFile(VolumeFileError::Unsupported { .. })),
+                "{error}"
+            );
+            assert!(error.to_string().contains("outside of the header's folder"), "{error}");
+        }
+    }
+    // Links within the folder, and a folder that is reached by a link.
+    symlink("../a.raw", place("in/deep/inside.raw")).unwrap();
+    symlink(place("in"), place("way")).unwrap();
+    for data in ["a.raw", "deep/inside.raw"] {
+        for header in headers("in", "good", data) {
+            good(&header);
+            good(&place("way").join(header.file_name().unwrap()));
+        }
+    }
+    // A header that is a link: the data file lies beside it, beside the header itself, or is a link as well.
+    for header in headers("in", "linked", "a.raw") {
+        let name = header.file_name().unwrap();
+        let link = place("other").join(name);
+        symlink(&header, &link).unwrap();
+        good(&link);
+        std::fs::write(place("other/a.raw"), DATA).unwrap();
+        std::fs::rename(place("in/a.raw"), place("in/hidden.raw")).unwrap();
+        good(&link);
+        std::fs::remove_file(place("other/a.raw")).unwrap();
+        std::fs::rename(place("in/hidden.raw"), place("in/a.raw")).unwrap();
+        symlink(place("in/a.raw"), place("other/a.raw")).unwrap();
+        good(&link);
+        std::fs::remove_file(place("other/a.raw")).unwrap();
+        symlink(place("out/secret.raw"), place("other/a.raw")).unwrap();
+        assert!(open_volume(&link).is_err());
+        std::fs::remove_file(place("other/a.raw")).unwrap();
+    }
+    // What is not there is named as the header names it.
+    symlink("nowhere.raw", place("in/dangling.raw")).unwrap();
+    for data in ["none.raw", "dangling.raw"] {
+        for header in headers("in", "missing", data) {
+            let error = open_volume(&header).unwrap_err();
+            let is_it = |path: &std::path::Path| path == place("in").join(data);
+            assert!(matches!(&error, Error::File { path, .. } if is_it(path)), "{error}");
+            assert!(
+                matches!(error.cause(), Error::Io(cause) if cause.kind() == std::io::ErrorKind::NotFound)
+            );
+        }
+    }
+}
+
 #[test]
 fn files_become_solids() {
     let control = Control::default();
@@ -407,6 +490,25 @@ fn what_is_refused() {
         ("dimension: 3", "dimension: 3\nspace directions: (1,0,0) (0,1,0) (0,0,nan)"),
         ("dimension: 3", "dimension: 3\nbyte skip: -2"),
         ("dimension: 3", "dimension: 3\ndata file: "),
+        ("dimension: 3", "dimension: 3\nspacings: -1 1 1"),
+        ("dimension: 3", "dimension: 3\nspacings: 1 1 inf"),
+        ("dimension: 3", "dimension: 3\naxis mins: 0 -inf 0"),
+        ("dimension: 3", "dimension: 3\nthicknesses: 1 thin 1"),
+        ("dimension: 3", "dimension: 3\nendian: middle"),
+        ("encoding: raw", "encoding: ascii\nendian: middle"),
+        ("dimension: 3", "dimension: 3\nspace: here-there-everywhere"),
+        ("dimension: 3", "dimension: 3\nspace: scanner-xyz\nspace: scanner-xyz"),
+        ("dimension: 3", "dimension: 3\nspace dimension: 3\nspace dimension: 3"),
+        ("dimension: 3", "dimension: 3\nkinds: domain domain banana"),
+        ("dimension: 3", "dimension: 3\nkinds: domain domain"),
+        ("dimension: 3", "dimension: 3\ncenters: cell cell middle"),
+        ("dimension: 3", "dimension: 3\nspace origin: (1,2,3)"),
+        ("dimension: 3", "dimension: 3\nspace directions: (1,0,0) (0,1,0) (0,0,1)\nspacings: 2 2 2"),
+        ("dimension: 3", "dimension: 3\nspace directions: (1,0,0) (0,1,0) (0,0,1)\naxis mins: 0 nan nan"),
+        (
+            "dimension: 3",
+            "dimension: 3\nspace directions: (1,0,0) (0,1,0) (0,0,1)\ncenters: cell cell middle",
+        ),
     ] {
         let text = String::from_utf8(nrrd("")).unwrap().replace(field, wrong);
         assert!(line(text.as_bytes()) > 1, "{wrong}");
@@ -430,6 +532,36 @@ fn what_is_refused() {
     {
         assert_eq!(refused(&nrrd(place)), Place, "{place}");
     }
+    for place in [
+        "space directions: (1,0,0) (0,0,0) (0,0,1)\n",
+        "axis mins: 0 1 2\naxis maxs: 1 1 3\n",
+        // Three times the first, rounded.
+        "space directions: (0.1,0.2,0.7) (0.30000000000000004,0.6000000000000001,2.0999999999999996) (0,0,1)\n",
+    ] {
+        assert_eq!(refused(&nrrd(place)), Place, "{place}");
+    }
+    for place in [
+        "ElementSpacing = 1 0 1\n",
+        "ElementSize = 1 0 1\n",
+        "TransformMatrix = 0 0 0 0 0 0 0 0 0\n",
+        "TransformMatrix = 1 0 0 1 1e-15 0 0 0 1\n",
+    ] {
+        assert_eq!(refused(&meta(place)), Place, "{place}");
+    }
+    // Colours in a plane are no volume.
+    let several = Unsupported { what: "samples of several numbers" };
+    for kind in ["RGB-color", "rgbcolor", "vector", "complex", "list"] {
+        assert_eq!(refused(&nrrd(&format!("kinds: {kind} domain space\n"))), several, "{kind}");
+    }
+    for kinds in ["domain Space time", "none ??? domain"] {
+        assert_eq!(values(&read(&nrrd(&format!("kinds: {kinds}\n"))))[11], 12.0);
+    }
+    for space in ["RAS", "left-posterior-superior", "3D-right-handed", "ScannerXYZ"] {
+        assert_eq!(values(&read(&nrrd(&format!("space: {space}\n"))))[11], 12.0);
+    }
+    // Axes with directions may be said to have nothing else.
+    let nans = "space directions: (1,0,0) (0,1,0) (0,0,1)\nspacings: nan nan nan\n";
+    assert_eq!(lies(&nrrd(nans)), ([-0.5; 3], [1.0; 3], None));
     for (field, wrong) in [
         ("NDims = 3", "NDims = 0"),
         ("NDims = 3", "NDims = 3\nnonsense"),
@@ -441,6 +573,17 @@ fn what_is_refused() {
         ("NDims = 3", "NDims = 3\nElementSpacing = 1 nan 1"),
         ("NDims = 3", "NDims = 3\nTransformMatrix = 1 0 0 1"),
         ("NDims = 3", "NDims = 3\nHeaderSize = -3"),
+        ("NDims = 3", "NDims = 3\nElementSpacing = -1 1 1"),
+        ("NDims = 3", "NDims = 3\nElementSpacing = 1 inf 1"),
+        ("NDims = 3", "NDims = 3\nElementSize = 1 -1 1"),
+        ("NDims = 3", "NDims = 3\nElementSpacing = 1 1 1\nElementSize = 1 one 1"),
+        ("NDims = 3", "NDims = 3\nOffset = 0 0 nan"),
+        ("NDims = 3", "NDims = 3\nTransformMatrix = 1 0 0 0 1 0 0 0 inf"),
+        ("NDims = 3", "NDims = 3\nBinaryDataByteOrderMSB = tomato"),
+        ("NDims = 3", "NDims = 3\nElementByteOrderMSB = "),
+        ("NDims = 3", "NDims = 3\nBinaryData = fish"),
+        ("NDims = 3", "NDims = 3\nCompressedData = 10"),
+        ("NDims = 3", "NDims = 3\nBinaryData = False\nCompressedData = True"),
     ] {
         let text = String::from_utf8(meta("")).unwrap().replace(field, wrong);
         assert!(line(text.as_bytes()) > 0, "{wrong}");

@@ -20,11 +20,12 @@ fn slope() -> impl Attribute {
         if low[0] + low[1] <= 0.5 || low[0] < 0.0 {
             return ValueRange::Unknown;
         }
-        let first = Interval {
-            lower: low[0] * low[0] + 3.0 * low[1] - 0.5 * high[2] - 1e-9,
-            upper: high[0] * high[0] + 3.0 * high[1] - 0.5 * low[2] + 1e-9,
-        };
-        ValueRange::Within([first, Interval { lower: low[2], upper: high[2] }, first, first])
+        let first = Interval::new(
+            low[0] * low[0] + 3.0 * low[1] - 0.5 * high[2] - 1e-9,
+            high[0] * high[0] + 3.0 * high[1] - 0.5 * low[2] + 1e-9,
+        )
+        .unwrap();
+        ValueRange::Within([first, Interval::new(low[2], high[2]).unwrap(), first, first])
     })
 }
 
@@ -261,7 +262,7 @@ fn nothing_is_missed_by_the_certified_criterion() {
         let (least, most) = (least.sqrt() - 1e-12, most.sqrt() + 1e-12);
         let any = least < 0.405 && most >= 0.401;
         let all = least >= 0.401 && most < 0.405;
-        let range = Interval { lower: all as u8 as f64, upper: any as u8 as f64 };
+        let range = Interval::new(all as u8 as f64, any as u8 as f64).unwrap();
         ValueRange::Within([range; 4])
     });
     let tree = ball(5);

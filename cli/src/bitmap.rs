@@ -6,7 +6,7 @@ use crate::options::threads;
 use crate::output::{self, Output, count, write_file};
 use crate::progress::watched;
 use clap::{Args, ValueEnum};
-use leafless::exchange::{NrrdEncoding, write_nrrd, write_raw_volume};
+use leafless::exchange::{NrrdEncoding, read_volume, write_nrrd, write_raw_volume};
 use leafless::{Control, Error, MAX_DEPTH, Octree, Samples, Tag, VoxelGrid};
 use serde::Serialize;
 use std::ffi::OsString;
@@ -109,6 +109,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         Ok((bytes, inside))
     });
     let (bytes, inside) = made.of(&input)?;
+    if format == WriteName::Nrrd {
+        warn_of_rounding(&grid, &output).of(&input)?;
+    }
     match output.path() {
         Some(path) => write_file(path, &bytes)?,
         None => output::print(&bytes)?,
@@ -124,6 +127,19 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         bytes: bytes.len() as u64,
     };
     output.report(&if arguments.json { output::json(&report)? } else { report.text() })
+}
+
+/// Says if the corner does not come back: the format has the first voxel's centre, rounded.
+fn warn_of_rounding(grid: &VoxelGrid, output: &Output) -> Result<(), Error> {
+    let one = VoxelGrid::new([1; 3], grid.corner(), grid.spacing())?;
+    let header = write_nrrd(&vec![0u8].into(), &one, NrrdEncoding::Raw)?;
+    let (corner, back) = (grid.corner(), read_volume(&header, None)?.grid.corner());
+    if back != corner {
+        let list = |corner: [f64; 3]| corner.map(output::number).join(",");
+        let problem = "the centre of the first voxel is rounded, so that the corner is read back as";
+        output::complain(&format!("{output}: warning: {problem} {}, not {}", list(back), list(corner)));
+    }
+    Ok(())
 }
 
 /// The format to write.

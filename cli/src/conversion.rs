@@ -41,6 +41,9 @@ pub struct Arguments {
     pub reading: Reading,
     #[command(flatten)]
     pub drawing: Drawing,
+    /// Write an STL also if rounding to its 32-bit coordinates breaks the surface
+    #[arg(long)]
+    pub lossy: bool,
     /// Threads to use; 0: as many as there are processors. The result is the same
     #[arg(long, default_value_t = 0, value_name = "N", value_parser = threads)]
     pub threads: usize,

@@ -128,7 +128,8 @@ impl Questions<3> for Batch<'_> {
         let answers = watched("distance", self.arguments.looking.threads, |control| self.measure(control));
         self.points.clear();
         self.text.clear();
-        for Interval { lower, upper } in answers.of(&self.input)? {
+        for answer in answers.of(&self.input)? {
+            let (lower, upper) = (answer.lower, answer.upper);
             if self.arguments.json {
                 let [lower, upper] = [lower, upper].map(|end| end.is_finite().then_some(end));
                 self.text.push_str(&output::json_line(&Distance { lower, upper })?);

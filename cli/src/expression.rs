@@ -83,16 +83,14 @@ impl Attribute for Expressions {
 
     /// By interval arithmetic.
     fn range(&self, bounds: &Bounds) -> Result<ValueRange, Error> {
-        let mut ranges = [Interval { lower: 0.0, upper: 0.0 }; 4];
+        let mut ranges = [Interval::exactly(0.0); 4];
         for (k, expression) in self.ranges.iter().enumerate() {
             let mut variables = [Range::default(); 3];
             for (variable, &axis) in variables.iter_mut().zip(&self.variables[k]) {
                 *variable = Range { lower: bounds.min[axis], upper: bounds.max[axis] };
             }
             match expression.eval(&variables[..self.variables[k].len()]) {
-                Ok(range) if range.is_known() => {
-                    ranges[k] = Interval { lower: range.lower, upper: range.upper }
-                }
+                Ok(range) if range.is_known() => ranges[k] = Interval::new(range.lower, range.upper).unwrap(),
                 _ => return Ok(ValueRange::Unknown),
             }
         }

@@ -6,7 +6,7 @@ use crate::output::{Output, number, print, write_file};
 use crate::progress::watched;
 use crate::target::{Looking, Target};
 use clap::{Args, ValueEnum};
-use leafless::{Columns, Heights, Interval, MAX_DEPTH, Side, heights};
+use leafless::{Columns, Error, Heights, MAX_DEPTH, Side, heights};
 use std::ffi::OsString;
 
 /// Writes a height map: for each column of cells along an axis, how far the solid reaches in it. Heights are in the
@@ -76,6 +76,11 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     };
     let map = watched("heights", arguments.looking.threads, |control| {
         let columns = Columns::all(target.frame(), arguments.axis as usize)?;
+        // Two bounds, and a number in a text or eight bytes.
+        let needed = columns.count().saturating_mul(16);
+        if let Some(limit) = control.max_bytes.filter(|&limit| needed > limit) {
+            return Err(Error::TooLarge { what: "the heights", needed, limit });
+        }
         match &target {
             Target::Cells(octree) => octree.heights(&columns, side),
             Target::Solid(target) => heights(&target.0, &target.1, &columns, side, control),
@@ -91,10 +96,10 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 
 /// The height of a column.
 fn height(map: &Heights, on: On, index: usize) -> f64 {
-    let Some(Interval { lower, upper }) = map.height(index) else { return f64::NAN };
+    let Some(between) = map.height(index) else { return f64::NAN };
     let height = match (on, map.side()) {
-        (On::Full, Side::Above) | (On::Upper, Side::Below) => lower,
-        (On::Full, Side::Below) | (On::Upper, Side::Above) => upper,
+        (On::Full, Side::Above) | (On::Upper, Side::Below) => between.lower,
+        (On::Full, Side::Below) | (On::Upper, Side::Above) => between.upper,
     };
     // Nothing is proven of this column.
     if height.is_finite() { height } else { f64::NAN }

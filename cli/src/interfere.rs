@@ -99,7 +99,8 @@ impl Range {
         match (self.lower, self.upper) {
             (None, None) => "unknown".into(),
             (lower, upper) => {
-                measured(Interval { lower: lower.unwrap_or(0.0), upper: upper.unwrap_or(f64::INFINITY) })
+                let (lower, upper) = (lower.unwrap_or(0.0), upper.unwrap_or(f64::INFINITY));
+                measured(Interval::new(lower, upper).unwrap_or(Interval::ALL))
             }
         }
     }

@@ -58,6 +58,7 @@ mod volume;
 mod voxelize;
 mod voxels;
 mod within;
+mod written;
 
 use clap::error::ErrorKind;
 use clap::{Parser, Subcommand};

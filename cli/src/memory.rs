@@ -47,6 +47,18 @@ pub fn affordable() -> u64 {
     (left / 2).max(1)
 }
 
+/// Refuses to make a file in memory for which there is no room.
+pub fn afford_file(bytes: u64) -> Result<(), String> {
+    let room = affordable();
+    if bytes <= room {
+        return Ok(());
+    }
+    let (bytes, room) = (told(bytes), told(room));
+    Err(format!(
+        "would have {bytes} or more, and there is room for {room}: give more memory with --max-memory"
+    ))
+}
+
 /// The longest file that is read into memory, in bytes: what is made of it takes as much again.
 pub fn longest_file() -> u64 {
     affordable() / 2

@@ -240,7 +240,7 @@ pub fn number(x: f64) -> String {
 /// What is known of a number, with the digits that mean something: `42345.1 ± 0.2`, or `3.9 to 12.1` where
 /// the interval is wide. Rounded outward: what is printed contains the interval.
 pub fn measured(interval: Interval) -> String {
-    let Interval { lower, upper } = interval;
+    let (lower, upper) = (interval.lower, interval.upper);
     match (lower.is_finite(), upper.is_finite()) {
         (false, false) => return "unknown".into(),
         (true, false) => return format!("at least {}", number(rounded_down(lower))),
@@ -275,7 +275,7 @@ pub fn measured(interval: Interval) -> String {
 
 /// Both ends of an interval, rounded outward to a thousandth of its width or so.
 pub fn ends(interval: Interval) -> [String; 2] {
-    let Interval { lower, upper } = interval;
+    let (lower, upper) = (interval.lower, interval.upper);
     let width = upper - lower;
     if !(width > 1e-12 * lower.abs().max(upper.abs()) && width.is_finite()) {
         return [number(lower), number(upper)];
@@ -346,7 +346,7 @@ mod tests {
             (f64::NEG_INFINITY, -1.23456789, "at most -1.23456"),
             (f64::NEG_INFINITY, f64::INFINITY, "unknown"),
         ] {
-            assert_eq!(measured(Interval { lower, upper }), text);
+            assert_eq!(measured(Interval::new(lower, upper).unwrap()), text);
         }
     }
 
@@ -370,7 +370,7 @@ mod tests {
             let lower = random(10 + i % 40) - (1 << 8);
             let upper = lower + 1 + random(4 + i / 7 % 44);
             let [a, b] = [lower, upper].map(|n| n as f64 / (1 << 20) as f64);
-            let text = measured(Interval { lower: a, upper: b });
+            let text = measured(Interval::new(a, b).unwrap());
             // Full precision names the doubles themselves.
             if text.contains('e') || text == format!("{} to {}", number(a), number(b)) {
                 continue;

@@ -413,8 +413,8 @@ fn hybrid(
     volume(looks, octree, source, values, &whole, &[&cut], control)
 }
 
-/// Bytes that the triangles of a skin may take: some ten million, far more than a picture has pixels.
-const SKIN: u64 = 512 << 20;
+/// Bytes that the triangles of a skin may take: some two million, as many as a picture has pixels.
+const SKIN: u64 = 128 << 20;
 
 /// The surface as triangles, with the finest cells that memory allows.
 fn skin_mesh(

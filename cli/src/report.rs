@@ -20,7 +20,7 @@ pub struct Volume {
 impl Volume {
     /// The interval.
     pub fn interval(&self) -> Interval {
-        Interval { lower: self.lower, upper: self.upper }
+        Interval::new(self.lower, self.upper).unwrap_or(Interval::ALL)
     }
 
     /// How much is undecided.
@@ -201,7 +201,7 @@ impl Info {
         }
         let rows = (self.levels.iter())
             .map(|level| {
-                let [from, to] = ends(Interval { lower: level.lower, upper: level.upper });
+                let [from, to] = ends(Interval::new(level.lower, level.upper).unwrap());
                 [level.level.to_string(), count(level.nodes), from, to]
             })
             .collect::<Vec<_>>();
@@ -223,8 +223,7 @@ impl Info {
 
     /// The volume in words.
     pub fn volume_text(&self) -> String {
-        let Volume { lower, upper } = self.volume;
-        measured(Interval { lower, upper })
+        measured(self.volume.interval())
     }
 }
 

@@ -80,6 +80,14 @@ impl Source {
         Ok(Source::Mesh(read.mesh, fill, read.unit))
     }
 
+    /// What the cells of a solid from a file prove; of anything else, which is what it says it is, all.
+    pub fn proof(&self) -> Proof {
+        match self {
+            Source::Octree(octree) => octree.proof(),
+            Source::Mesh(..) | Source::Scene(_) | Source::Volume(_) => Proof::CERTIFIED,
+        }
+    }
+
     /// The same; of a solid from a file the cells themselves, if that is asked for, and not what they prove.
     pub fn taken(self, cells: bool) -> Source {
         match self {

@@ -51,7 +51,9 @@ fn density(text: &str) -> Result<(f64, Interval), String> {
         let (lower, upper) = density.split_once("..").unwrap_or((density, density));
         let [value, lower, upper] = [value, lower, upper].map(|text| text.trim().parse::<f64>());
         let (value, lower, upper) = (value.ok()?, lower.ok()?, upper.ok()?);
-        (lower <= upper && lower >= 0.0 && upper.is_finite()).then_some((value, Interval { lower, upper }))
+        let density =
+            Interval::new(lower, upper).filter(|density| lower >= 0.0 && density.upper.is_finite())?;
+        Some((value, density))
     };
     read().ok_or_else(|| "expected a value, = and a density, or two with .. between them".into())
 }
@@ -158,13 +160,11 @@ fn each(arguments: &Arguments, input: &Input, octree: &Octree) -> Result<String,
     let found: Vec<Material> =
         found.of(input)?.iter().map(|found| material(found, components, &arguments.density)).collect();
     let mass = found.iter().map(|material| material.mass.as_ref().map(Volume::interval)).try_fold(
-        Interval { lower: 0.0, upper: 0.0 },
+        Interval::exactly(0.0),
         |sum, mass| {
             let mass = mass?;
-            Some(Interval {
-                lower: (sum.lower + mass.lower).next_down().max(0.0),
-                upper: (sum.upper + mass.upper).next_up(),
-            })
+            let lower = (sum.lower + mass.lower).next_down().max(0.0);
+            Interval::new(lower, (sum.upper + mass.upper).next_up())
         },
     );
     let mass = mass.filter(|_| !arguments.density.is_empty());
@@ -198,9 +198,9 @@ fn each(arguments: &Arguments, input: &Input, octree: &Octree) -> Result<String,
 fn material(found: &MaterialProperties, components: usize, densities: &[(f64, Interval)]) -> Material {
     let properties = &found.properties;
     let density = densities.iter().rev().find(|(value, _)| *value == found.value[0]);
-    let mass = density.map(|(_, density)| Interval {
-        lower: (properties.volume.lower * density.lower).next_down().max(0.0),
-        upper: (properties.volume.upper * density.upper).next_up(),
+    let mass = density.and_then(|(_, density)| {
+        let lower = (properties.volume.lower * density.lower).next_down().max(0.0);
+        Interval::new(lower, (properties.volume.upper * density.upper).next_up())
     });
     Material {
         value: found.value[..components].to_vec(),

@@ -11,6 +11,7 @@ use crate::progress::watched;
 use crate::scene::Drawing;
 use crate::shape::Shape;
 use crate::source::Source;
+use crate::written::{self, Losses};
 use clap::{Args, ValueEnum};
 use leafless::exchange::{LengthUnit, MeshFormat, WriteOptions, write_mesh};
 use leafless::{
@@ -48,6 +49,10 @@ pub struct Arguments {
     /// Write normals at vertices, in PLY and OBJ
     #[arg(long)]
     normals: bool,
+    /// Write the file also if rounding to its coordinates breaks the surface: STL has 32-bit ones. Without it such a file
+    /// is refused
+    #[arg(long)]
+    lossy: bool,
     /// How the surface is made
     #[arg(long, value_enum, default_value_t = Method::Mc)]
     method: Method,
@@ -156,6 +161,7 @@ impl Arguments {
             write: None,
             text: false,
             normals: false,
+            lossy: wanted.lossy,
             method: Method::Mc,
             snap: SnapName::Fat,
             vertices: At::Crossing,
@@ -189,6 +195,12 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let (input, output) = (Input::from(&*arguments.file), Output::from(&*arguments.output));
     output.check()?;
     let format = format(arguments, output.path())?;
+    if arguments.normals && !matches!(format, MeshFormat::Ply | MeshFormat::Obj) {
+        let name = format_name(format).to_uppercase();
+        return Err(Failure::Usage(format!(
+            "--normals is for PLY and OBJ: {name} has no normals at vertices"
+        )));
+    }
     let (unit, mesh, followed) = match Shape::read(&input, &arguments.reading, &arguments.drawing)?.0 {
         Shape::Dexels(model) => {
             let unit = model.metadata().get("units").and_then(|unit| unit.parse().ok());
@@ -203,7 +215,10 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         Shape::Source(source) => (source.unit(), extract(source, &input, arguments)?, None),
     };
     let options = WriteOptions { text: arguments.text, unit, normals: arguments.normals };
+    let (kept, losses) = written::kept(&mesh, format, &options, arguments.lossy, &output)?;
     let bytes = write_mesh(&mesh, format, &options).of(&output)?;
+    // What is told is what a reader gets.
+    let mesh = kept.mesh;
     match output.path() {
         Some(path) => write_file(path, &bytes)?,
         None => output::print(&bytes)?,
@@ -224,12 +239,16 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         unit: unit.filter(|_| format == MeshFormat::ThreeMf).map(LengthUnit::symbol),
         vertices: report.vertices,
         triangles: report.triangles,
-        closed: report.is_closed(),
-        manifold: report.is_manifold(),
+        empty: report.triangles == 0,
+        closed: report.is_closed() && report.triangles > 0,
+        manifold: report.is_manifold() && report.triangles > 0,
+        open_edges: report.boundary_edges,
+        non_manifold_edges: report.non_manifold_edges,
         components: report.bodies,
         euler: report.euler_characteristic,
         area: mesh.area(),
         volume: mesh.volume(),
+        losses,
         intersecting: intersecting.as_ref().map(|pairs| pairs.count),
         all_intersecting_pairs: intersecting.as_ref().map(|pairs| pairs.is_complete),
         followed,
@@ -386,7 +405,7 @@ fn of_solid(
     }
 }
 
-/// What is told of a surface.
+/// What is told of a surface, as a reader gets it back from the file.
 #[derive(Serialize)]
 struct Report {
     input: String,
@@ -397,12 +416,21 @@ struct Report {
     unit: Option<&'static str>,
     vertices: u64,
     triangles: u64,
+    /// Whether there is no triangle.
+    empty: bool,
+    /// Whether the surface bounds a solid. An empty one does not, as `leafless info` has it.
     closed: bool,
     manifold: bool,
+    /// Edges that an odd number of triangles use.
+    open_edges: u64,
+    /// Edges that more than two triangles use.
+    non_manifold_edges: u64,
     components: u64,
     euler: i64,
     area: f64,
     volume: f64,
+    #[serde(flatten)]
+    losses: Losses,
     /// Pairs of triangles that intersect, if they were asked for.
     #[serde(skip_serializing_if = "Option::is_none")]
     intersecting: Option<u64>,
@@ -419,6 +447,10 @@ impl Report {
     fn summary(&self, report: &MeshReport) -> String {
         let mut text = String::new();
         let sound = match (self.closed, self.manifold) {
+            _ if self.empty && self.losses.has_lost() => "empty: rounding leaves no triangle".to_owned(),
+            _ if self.empty => {
+                "empty: there are no triangles, because no surface passes between samples".to_owned()
+            }
             (true, true) => "closed, 2-manifold".to_owned(),
             (true, false) => {
                 let edges = counted(report.non_manifold_edges, "edge", "edges");
@@ -440,6 +472,9 @@ impl Report {
             number(self.volume),
             self.seconds,
         );
+        if let Some(losses) = self.losses.text() {
+            let _ = writeln!(text, "{losses}");
+        }
         if let Some(followed) = &self.followed {
             let _ = writeln!(text, "{}", followed.text());
         }

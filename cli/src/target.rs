@@ -7,7 +7,7 @@ use crate::options::{bounds, threads};
 use crate::scene::Drawing;
 use crate::source::Source;
 use clap::Args;
-use leafless::{Affine, Frame, Octree, Prepared};
+use leafless::{Affine, Frame, Octree, Prepared, Proof};
 
 /// How a solid that is asked is read, and looked at.
 #[derive(Args)]
@@ -16,7 +16,7 @@ pub struct Looking {
     #[arg(long, value_name = "X0,Y0,Z0,EDGE", value_parser = bounds, allow_hyphen_values = true)]
     bounds: Option<Frame>,
     /// Take the cells of a solid from a file (.lfl) for the solid itself, whatever they prove of what they
-    /// were made from
+    /// were made from. A file that is written says what they prove, all the same
     #[arg(long)]
     cells: bool,
     #[command(flatten)]
@@ -31,8 +31,20 @@ pub struct Looking {
 impl Looking {
     /// Reads a solid. `depth` is the one that the user gave; without it a mesh or a scene is split to `deepest`.
     pub fn target(&self, input: &Input, depth: Option<u8>, deepest: u8) -> Result<Target, Failure> {
-        let source = Source::read(input, &self.reading, &self.drawing)?.taken(self.cells);
-        Target::of(source, input, self.bounds.as_ref(), depth, deepest)
+        Ok(self.target_and_proof(input, depth, deepest)?.0)
+    }
+
+    /// The same, and what the cells of a file prove of what they were made from, whatever they are taken for: what is
+    /// written of them proves no more.
+    pub fn target_and_proof(
+        &self,
+        input: &Input,
+        depth: Option<u8>,
+        deepest: u8,
+    ) -> Result<(Target, Proof), Failure> {
+        let source = Source::read(input, &self.reading, &self.drawing)?;
+        let proof = source.proof();
+        Ok((Target::of(source.taken(self.cells), input, self.bounds.as_ref(), depth, deepest)?, proof))
     }
 }
 

@@ -1,6 +1,6 @@
 //! Volumes from files, NRRD, MetaImage and raw: which voxels are inside, and what is told of them.
 
-use crate::failure::{Failure, Of};
+use crate::failure::{Failure, Of, Problem};
 use crate::input::Input;
 use crate::output::{self, Output, count, counted, number, seconds};
 use crate::progress::watched;
@@ -186,7 +186,11 @@ impl Sampling {
 
 fn with_header(input: &Input, bytes: &[u8]) -> Result<Found, Failure> {
     let file = match (input.path(), volume_data_file(bytes).of(input)?) {
-        (Some(path), Some(_)) => open_volume(path).of(input)?,
+        (Some(path), Some(_)) => open_volume(path).map_err(|error| match &error {
+            // Of the header or of the file of its samples.
+            Error::File { path, .. } => Failure::of(path.display(), error.text()),
+            _ => Failure::of(input, error.text()),
+        })?,
         _ => read_volume(bytes, None).of(input)?,
     };
     Ok(Found {

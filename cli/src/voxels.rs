@@ -3,14 +3,15 @@
 use crate::channel;
 use crate::failure::{Failure, Of};
 use crate::input::Input;
+use crate::memory;
 use crate::npz::{Arrays, Reader};
 use crate::output::{self, Output, count, number, write_file};
 use crate::progress::watched;
 use crate::target::{Looking, Target};
 use clap::{Args, ValueEnum};
 use leafless::{
-    Attribute, Criterion, Detail, Frame, MAX_DEPTH, Octree, Proof, Rule, Tag, TriangleMesh, VoxelBoundary,
-    VoxelKind, VoxelOptions, VoxelRecords, VoxelRecordsRef, VoxelTriangles, build, exchange,
+    Attribute, Criterion, Detail, Fingerprinter, Frame, MAX_DEPTH, Octree, Proof, Rule, Tag, TriangleMesh,
+    VoxelBoundary, VoxelKind, VoxelOptions, VoxelRecords, VoxelRecordsRef, VoxelTriangles, build, exchange,
 };
 use serde::Serialize;
 use std::ffi::OsString;
@@ -23,7 +24,13 @@ use std::path::Path;
 /// In the text form (.csv) a record is a line: its kind, its level, its code (an octal digit a level of the lattice,
 /// of which as many count as the level says), its minimum corner and its edge. The binary form (.npz, for NumPy) has
 /// the arrays `codes`, `levels`, `kinds` (0 outside, 1 inside, 2 boundary, 3 refined), `corners`, `origin`, `edge`,
-/// `depth`, `exterior`, `proof`, with values `values`, and with triangles `triangle_offsets` and `triangles`.
+/// `depth`, `exterior`, `proof`, `boundary`, `seal`, with values `values`, and with triangles `triangle_offsets` and
+/// `triangles`.
+///
+/// What --import makes proves what the records do: inside voxels the inside, and outside voxels and what no record speaks
+/// of the outside. Boundary voxels that count as inside or outside take that back, but for those of a solid in which all
+/// cells are decided, which are inside. Records that were changed since they were written, which `seal` tells, prove
+/// nothing.
 #[derive(Args)]
 pub struct Arguments {
     /// Solid (.lfl), mesh (STL, OBJ, PLY, OFF, 3MF), scene (.csg) or volume (NRRD, MetaImage), or `-` for standard
@@ -158,13 +165,16 @@ fn list(arguments: &Arguments, input: &Input, output: &Output) -> Result<(), Fai
     let form = form(arguments, output.path())?;
     let mesh = arguments.triangles.as_deref().map(|name| mesh(&Input::from(name))).transpose()?;
     let looking = &arguments.looking;
-    let octree = match looking.target(input, arguments.depth, DEPTH)? {
+    let (target, proof) = looking.target_and_proof(input, arguments.depth, DEPTH)?;
+    let octree = match target {
         Target::Cells(octree) => *octree,
         Target::Solid(target) => watched("voxelize", looking.threads, |control| {
             build(&target.0, &target.1, Rule::Certified, control)
         })
         .of(input)?,
     };
+    // Whatever the cells are taken for, records prove what the cells were said to prove.
+    let octree = octree.with_proof(octree.proof().and(proof));
     let attribute = attribute(arguments, input, &octree)?;
     let options = options(arguments, &octree, attribute.is_some())?;
     let listed = watched("voxels", looking.threads, |control| {
@@ -174,6 +184,12 @@ fn list(arguments: &Arguments, input: &Input, output: &Output) -> Result<(), Fai
     });
     let (records, triangles) = listed.of(input)?;
     let (view, triangles) = (records.view(), triangles.as_ref());
+    // A line has a digit for each level, and words and numbers of twenty letters at the least.
+    let each = match form {
+        WriteName::Npz => records.bytes_each() as u64 + 24,
+        WriteName::Csv => 20 + u64::from(view.frame().depth()),
+    };
+    memory::afford_file(each * view.len() as u64).of(output)?;
     let bytes = match form {
         WriteName::Npz => npz(&view, triangles).of(output)?,
         WriteName::Csv => csv(&view, triangles).into_bytes(),
@@ -306,12 +322,10 @@ fn npz(view: &VoxelRecordsRef<'_>, triangles: Option<&VoxelTriangles>) -> std::i
     arrays.add("edge", &[], &[frame.edge()])?;
     arrays.add("depth", &[], &[frame.depth()])?;
     arrays.add("exterior", &[], &[view.exterior() as u8])?;
-    let proof = view.proof();
-    arrays.add(
-        "proof",
-        &[3],
-        &[f64::from(u8::from(proof.full)), f64::from(u8::from(proof.empty)), proof.displacement()],
-    )?;
+    arrays.add("boundary", &[], &[view.boundary() as u8])?;
+    arrays.add("proof", &[3], &proof_numbers(view))?;
+    let seal = seal(view);
+    arrays.add("seal", &[seal.len() as u64], &seal)?;
     if view.components() > 0 {
         arrays.add("values", &[n, view.components() as u64], view.values())?;
     }
@@ -322,7 +336,29 @@ fn npz(view: &VoxelRecordsRef<'_>, triangles: Option<&VoxelTriangles>) -> std::i
     arrays.finish()
 }
 
-/// Reads what [`npz`] writes. Exterior and proof may be missing: then nothing is known.
+fn proof_numbers(view: &VoxelRecordsRef<'_>) -> [f64; 3] {
+    let proof = view.proof();
+    [f64::from(u8::from(proof.full)), f64::from(u8::from(proof.empty)), proof.displacement()]
+}
+
+/// A fingerprint of the records, but for their values, and of what is said of them: arrays are easily changed, and what
+/// was proven of other records is not proven of these. (It guards against mistakes. Whoever wants to can make one, as
+/// anybody can write a solid that says that it is proven.)
+fn seal(view: &VoxelRecordsRef<'_>) -> Vec<u8> {
+    let frame = view.frame();
+    let all = Fingerprinter::new("voxel records")
+        .numbers(&frame.origin())
+        .numbers(&[frame.edge()])
+        .integers(&[frame.depth().into(), view.exterior() as u64, view.boundary() as u64])
+        .numbers(&proof_numbers(view))
+        .integers(view.codes())
+        .bytes(view.levels())
+        .bytes(view.kinds());
+    all.finish().to_string().into_bytes()
+}
+
+/// Reads what [`npz`] writes. Nothing is proven unless the seal says that the records are as they were written. What
+/// is missing beside them is not known.
 fn records(bytes: &[u8]) -> Result<VoxelRecords, String> {
     let mut arrays = Reader::new(bytes).map_err(|error| format!("is no NPZ: {error}"))?;
     let text = |error: std::io::Error| error.to_string();
@@ -346,16 +382,24 @@ fn records(bytes: &[u8]) -> Result<VoxelRecords, String> {
     };
     let records = VoxelRecords::from_arrays(&frame, codes, levels, kinds, components, values)
         .map_err(|error| error.to_string())?;
-    if !arrays.has("exterior") || !arrays.has("proof") {
-        return Ok(records);
+    let tag = |arrays: &mut Reader<'_>, name: &str| match arrays.has(name) {
+        true => Ok(arrays.array::<u8>(name).map_err(text)?.1.first().copied().map(Tag::from_code)),
+        false => Ok::<_, String>(None),
+    };
+    let exterior = tag(&mut arrays, "exterior")?.unwrap_or(Tag::Partial);
+    let boundary = tag(&mut arrays, "boundary")?.unwrap_or(Tag::Partial);
+    let mut proof = Proof::new(false, false);
+    if arrays.has("proof") {
+        let numbers = arrays.array::<f64>("proof").map_err(text)?.1;
+        let [full, empty, displacement] =
+            <[f64; 3]>::try_from(numbers).map_err(|_| "proof: must be three numbers")?;
+        let told = Proof::new(full == 1.0, empty == 1.0).with_displacement(displacement);
+        proof = told.map_err(|error| error.to_string())?;
     }
-    let exterior = arrays.array::<u8>("exterior").map_err(text)?.1;
-    let exterior = Tag::from_code(exterior.first().copied().unwrap_or(Tag::Partial as u8));
-    let proof = arrays.array::<f64>("proof").map_err(text)?.1;
-    let [full, empty, displacement] =
-        <[f64; 3]>::try_from(proof).map_err(|_| "proof: must be three numbers")?;
-    let proof = Proof::new(full == 1.0, empty == 1.0).with_displacement(displacement);
-    Ok(records.with_exterior(exterior, proof.map_err(|error| error.to_string())?))
+    let told = records.with_exterior(exterior, proof).with_boundary(boundary);
+    let is_sealed = arrays.has("seal") && arrays.array::<u8>("seal").map_err(text)?.1 == seal(&told.view());
+    (proof.full, proof.empty) = (proof.full && is_sealed, proof.empty && is_sealed);
+    Ok(told.with_exterior(exterior, proof))
 }
 
 fn csv(view: &VoxelRecordsRef<'_>, triangles: Option<&VoxelTriangles>) -> String {

@@ -196,3 +196,141 @@ fn normals_are_written_if_asked_for() {
     }
     assert_eq!(mesh(&place, "ball.ply").triangles(), mesh(&place, "plain.ply").triangles());
 }
+
+/// The report is the one of the mesh that is read back.
+#[track_caller]
+fn same_as_read(place: &Place, report: &Value) {
+    let name = report["output"].as_str().unwrap();
+    let back = mesh(place, name);
+    let found = back.report().unwrap();
+    for (key, value) in [
+        ("vertices", found.vertices),
+        ("triangles", found.triangles),
+        ("components", found.bodies),
+        ("degenerate", found.degenerate),
+        ("flat", found.flat),
+        ("open_edges", found.boundary_edges),
+        ("non_manifold_edges", found.non_manifold_edges),
+    ] {
+        assert_eq!(report[key], value, "{key}");
+    }
+    assert_eq!(report["euler"], found.euler_characteristic);
+    assert_eq!(report["closed"], found.is_closed() && found.triangles > 0);
+    assert_eq!(report["manifold"], found.is_manifold() && found.triangles > 0);
+    assert_eq!((&report["area"], &report["volume"]), (&back.area().into(), &back.volume().into()));
+}
+
+fn moved(by: f64, what: &str) -> String {
+    format!("multmatrix([[1,0,0,{by}],[0,1,0,{by}],[0,0,1,{by}],[0,0,0,1]]) {what}")
+}
+
+/// What single precision breaks is not written as STL, unless one asks for it.
+#[test]
+fn losses_are_said() {
+    let place = Place::new();
+    place.write("cube.csg", moved(1e9, "cube(size = [3, 3, 3]);"));
+    place.write("ball.csg", moved(1e5, "sphere(r = 1.855, $fn = 0);"));
+    for (name, depth, why) in [("cube", 5, "nothing is left"), ("ball", 6, "more than two triangles meet")] {
+        for text in ["", "--text"] {
+            let line = format!("mesh {name}.csg -o {name}.stl --depth {depth} {text}");
+            let words = ["32-bit", "STL", why, "PLY, OBJ, OFF and 3MF keep doubles", "--lossy"];
+            place.run(&line).bad(1, &words);
+            assert!(!place.files().contains(&format!("{name}.stl")));
+            let run = place.run(&format!("{line} --lossy --json"));
+            assert_eq!((run.code, run.errors.lines().count()), (Some(0), 1), "{run:?}");
+            assert!(run.errors.contains("warning") && run.errors.contains(why), "{run:?}");
+            let report = run.json();
+            same_as_read(&place, &report);
+            assert_eq!(report["broken"], true);
+            assert!(report["degenerate"].as_u64().unwrap() > 0 && report["merged"].as_u64().unwrap() > 0);
+            std::fs::remove_file(place.path(&format!("{name}.stl"))).unwrap();
+        }
+        for extension in ["ply", "obj", "off", "3mf"] {
+            let line = format!("mesh {name}.csg -o {name}.{extension} --depth {depth} --json");
+            let report = json(&place, &line);
+            same_as_read(&place, &report);
+            assert_eq!((&report["closed"], &report["manifold"]), (&Value::Bool(true), &Value::Bool(true)));
+            assert_eq!((&report["rounding"], &report["broken"]), (&Value::from(0.0), &Value::Bool(false)));
+        }
+    }
+    let text = place.run("mesh ball.csg -o ball.stl --depth 6 --lossy");
+    let lines: Vec<&str> = text.text().lines().collect();
+    assert!(lines[0].contains("closed; at 16 edges"), "{text:?}");
+    assert!(lines[3].starts_with("rounded to 32 bits, by up to 0.00388"), "{text:?}");
+    assert!(lines[3].contains("1,728 degenerate triangles lost; 42 triangles without area"), "{text:?}");
+    let text = place.run("mesh cube.csg -o cube.stl --depth 5 --lossy");
+    assert!(text.text().contains("empty: rounding leaves no triangle"), "{text:?}");
+    // Nothing is written on standard output, and nothing takes the place of an older file.
+    place.write("old.stl", "old");
+    for line in ["mesh cube.csg -o - --write stl --depth 5", "mesh cube.csg -o old.stl --depth 5"] {
+        place.run(line).bad(1, &["32-bit"]);
+    }
+    assert_eq!(place.bytes("old.stl"), b"old");
+    // Other subcommands that write meshes.
+    place.run("convert cube.csg -o cube.stl --resolution 32").bad(1, &["cube.stl", "nothing is left"]);
+    assert_eq!(place.run("convert cube.csg -o cube.stl --resolution 32 --lossy").code, Some(0));
+    place.run("dexelize cube.csg -o cube.lfl --resolution 32 --normals 32").good();
+    place.write("cube.raw", [255; 27]);
+    let volume = "mesh cube.raw --samples 3,3,3 --corner 1e9,1e9,1e9";
+    for line in ["mesh cube.lfl", "mesh cube.lfl --method dual", volume] {
+        place.run(&format!("{line} -o new.stl")).bad(1, &["new.stl", "32-bit"]);
+        same_as_read(&place, &json(&place, &format!("{line} -o new.ply --json")));
+    }
+    assert!(!place.files().contains(&"new.stl".to_owned()));
+}
+
+/// A cube in one axis far away is flat, whose front and back stay.
+#[test]
+fn flat_figures_are_refused() {
+    let place = Place::new();
+    place
+        .write("cube.csg", "multmatrix([[1,0,0,1e9],[0,1,0,0],[0,0,1,0],[0,0,0,1]]) cube(size = [3, 3, 3]);");
+    place.run("mesh cube.csg -o cube.stl --depth 5").bad(1, &["flat", "encloses no volume"]);
+    let report = place.run("mesh cube.csg -o cube.stl --depth 5 --lossy --json").json();
+    same_as_read(&place, &report);
+    assert_eq!((&report["volume"], &report["broken"]), (&Value::from(0.0), &Value::Bool(true)));
+}
+
+/// Degenerate triangles alone are counted and warned of.
+#[test]
+fn degenerate_triangles_are_warned_of() {
+    let place = Place::new();
+    place.write("ball.csg", moved(300.0, "sphere(r = 2, $fn = 0);"));
+    let run = place.run("mesh ball.csg -o ball.stl --depth 7 --json");
+    assert_eq!(run.code, Some(0), "{run:?}");
+    assert!(run.errors.contains("warning") && run.errors.contains("ball.stl"), "{run:?}");
+    let report = run.json();
+    same_as_read(&place, &report);
+    assert_eq!((&report["manifold"], &report["broken"]), (&Value::Bool(true), &Value::Bool(false)));
+    let lost = report["degenerate"].as_u64().unwrap();
+    assert!(lost > 0 && run.errors.contains(&format!(" {lost} of ")), "{run:?}");
+}
+
+#[test]
+fn an_empty_mesh_is_called_empty() {
+    let place = Place::new();
+    place.write("none.csg", "difference() { cube(size = [1, 1, 1]); cube(size = [2, 2, 2]); }");
+    for extension in ["ply", "stl", "off", "3mf"] {
+        let line = format!("mesh none.csg -o none.{extension} --bounds 0,0,0,4 --depth 4");
+        let text = place.run(&line).good();
+        assert!(text.text().contains("empty: there are no triangles"), "{text:?}");
+        assert!(text.text().contains("area 0, volume 0;"), "{text:?}");
+        assert!(!text.text().contains("closed") && !text.text().contains("manifold"), "{text:?}");
+        let report = json(&place, &format!("{line} --json"));
+        assert_eq!((&report["empty"], &report["closed"]), (&Value::Bool(true), &Value::Bool(false)));
+        assert_eq!(report["manifold"], false);
+        assert!(!place.run(&format!("{line} --json")).text().contains("-0"));
+        let info = json(&place, &format!("info none.{extension} --json"));
+        assert_eq!(info["closed"], report["closed"]);
+    }
+}
+
+#[test]
+fn normals_are_refused_where_a_format_has_none() {
+    let place = solids();
+    for extension in ["stl", "off", "3mf"] {
+        place
+            .run(&format!("mesh slab.lfl -o slab.{extension} --normals"))
+            .bad(2, &["--normals", "PLY and OBJ"]);
+    }
+}

@@ -215,3 +215,54 @@ fn what_is_refused() {
     place.run("info cube.off --threshold 3").bad(2, &["--threshold", "cube.off"]);
     assert!(!place.files().contains(&"b.lfl".to_owned()));
 }
+
+/// A data file that cannot be had is named, and a link leads to none outside of the header's folder.
+#[cfg(unix)]
+#[test]
+fn data_files() {
+    let place = place();
+    let header = String::from_utf8(place.bytes("ball.mhd")).unwrap();
+    std::fs::create_dir(place.path("in")).unwrap();
+    std::os::unix::fs::symlink("../ball.raw", place.path("in/link.raw")).unwrap();
+    place.write("in/link.mhd", header.replace("ball.raw", "link.raw"));
+    place.write("in/none.mhd", header.replace("ball.raw", "none.raw"));
+    for line in ["info in/link.mhd", "voxelize in/link.mhd -o b.lfl", "mesh in/link.mhd -o b.ply"] {
+        place.run(line).bad(1, &["in/link.mhd", "outside of the header's folder", "link"]);
+    }
+    place.run("info in/none.mhd").bad(1, &["in/none.raw: No such file"]);
+    std::os::unix::fs::symlink("../ball.mhd", place.path("in/way.mhd")).unwrap();
+    place.run("info in/way.mhd").good();
+}
+
+/// What a header cannot mean is refused in words.
+#[test]
+fn nonsense_in_headers() {
+    let place = place();
+    for (from, to, words) in [
+        ("spacings: 1 1 1", "spacings: -1 1 1", "line 5: expected spacings above zero"),
+        ("encoding", "endian: middle\nencoding", "line 8: expected little or big"),
+    ] {
+        let text: Vec<u8> = nrrd("1 1 1");
+        let at = text.windows(2).position(|two| two == b"\n\n").unwrap();
+        let header = String::from_utf8(text[..at].to_vec()).unwrap().replace(from, to);
+        place.write("wrong.nrrd", [header.as_bytes(), &text[at..]].concat());
+        place.run("info wrong.nrrd").bad(1, &["wrong.nrrd", words]);
+    }
+}
+
+/// A corner that no origin of a NRRD leads back to is warned of.
+#[test]
+fn a_rounded_corner_is_said() {
+    let place = Place::new();
+    place.write("cube.csg", "multmatrix([[1,0,0,2],[0,1,0,2],[0,0,1,2],[0,0,0,1]]) cube(size = [4, 4, 4]);");
+    for (corner, warns) in [("0.9999999999999999", true), ("1", false), ("-1.1", false)] {
+        place.run(&format!("csg cube.csg -o cube.lfl --depth 4 --bounds {corner},0,0,8")).good();
+        let run = place.run("bitmap cube.lfl -o cube.nrrd --resolve inner");
+        assert_eq!(run.code, Some(0), "{run:?}");
+        let words = "cube.nrrd: warning: the centre of the first voxel is rounded";
+        assert_eq!(run.errors.contains(words), warns, "{run:?}");
+        place.run("voxelize cube.nrrd -o again.lfl").good();
+        let same = place.run("union cube.lfl again.lfl -o both.lfl");
+        assert_eq!(same.code == Some(0), !warns, "{same:?}");
+    }
+}

@@ -2,7 +2,7 @@
 
 use super::{Attribute, ValueRange};
 use crate::error::Error;
-use crate::lattice::{Affine, Bounds, Cell, Cube, Interval, Window};
+use crate::lattice::{Affine, Bounds, Cell, Cube, Window};
 use crate::octree::channel::Spot;
 use crate::octree::{Channel, ChannelRef};
 
@@ -63,8 +63,7 @@ impl Met<'_> {
             (Some(ValueRange::Nowhere), ValueRange::Nowhere) => fresh,
             (Some(ValueRange::Within(mut known)), ValueRange::Within(fresh)) => {
                 for (known, fresh) in known.iter_mut().zip(fresh) {
-                    *known =
-                        Interval { lower: known.lower.min(fresh.lower), upper: known.upper.max(fresh.upper) };
+                    *known = known.joined(fresh);
                 }
                 ValueRange::Within(known)
             }

@@ -70,9 +70,10 @@ impl ChannelRef<'_> {
         Ok(sums.found.map(|mut found| {
             found.volume_without = without;
             found.mean = core::array::from_fn(|k| {
-                let known = Interval { lower: found.least[k], upper: found.greatest[k] };
+                // Values may be no numbers.
+                let known = Interval::new(found.least[k], found.greatest[k]).unwrap_or(Interval::ALL);
                 // Where the volume may be 0 the quotient tells nothing.
-                found.integral[k].over(found.volume).within(known)
+                found.integral[k].over(found.volume).common(known).unwrap_or(known)
             });
             found
         }))
@@ -100,7 +101,7 @@ impl Sums<'_> {
         };
         let Some(volume) = self.volume(cell) else { return Ok(()) };
         if let (Verdict::Full | Verdict::Undecided, Spot::Settled(value)) = (verdict, spot) {
-            let volume = if sure { volume } else { Interval { lower: 0.0, upper: volume.upper } };
+            let volume = if sure { volume } else { Interval::between(0.0, volume.upper) };
             match value {
                 Some(bits) => self.add(self.channel.value_type().decode(*bits), volume),
                 None => self.without = self.without.plus(volume),
@@ -137,7 +138,7 @@ impl Sums<'_> {
                 let start = if side(min, first) > 0 { distance(min, first) } else { ZERO };
                 length = end.minus(start);
             }
-            volume = volume.times(Interval { lower: length.lower.max(0.0), upper: length.upper.max(0.0) });
+            volume = volume.times(length.not_negative());
         }
         Some(volume)
     }

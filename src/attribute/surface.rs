@@ -182,7 +182,12 @@ impl Summary {
     fn range(&self) -> ValueRange {
         match (self.has(), self.lacks) {
             (true, false) => {
-                ValueRange::Within([0, 1, 2, 3].map(|k| Interval { lower: self.low[k], upper: self.high[k] }))
+                // Numbers that are none have no range.
+                let ranges = [0, 1, 2, 3].map(|k| Interval::new(self.low[k], self.high[k]));
+                match ranges {
+                    [Some(a), Some(b), Some(c), Some(d)] => ValueRange::Within([a, b, c, d]),
+                    _ => ValueRange::Unknown,
+                }
             }
             (true, true) => ValueRange::Unknown,
             (false, _) => ValueRange::Nowhere,

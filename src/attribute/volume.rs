@@ -72,14 +72,14 @@ impl Attribute for VolumeAttribute<'_> {
         {
             return Ok(ValueRange::Unknown);
         }
-        let mut range = Interval { lower: f64::INFINITY, upper: f64::NEG_INFINITY };
+        let (mut lower, mut upper) = (f64::INFINITY, f64::NEG_INFINITY);
         for z in first[2]..=last[2] {
             for y in first[1]..=last[1] {
                 for x in first[0]..=last[0] {
                     match self.volume.sample([x, y, z]) {
                         Some(sample) if !sample.is_nan() => {
-                            range.lower = range.lower.min(sample);
-                            range.upper = range.upper.max(sample);
+                            lower = sample.min(lower);
+                            upper = sample.max(upper);
                         }
                         _ => return Ok(ValueRange::Unknown),
                     }
@@ -88,9 +88,11 @@ impl Attribute for VolumeAttribute<'_> {
         }
         if self.interpolation == Interpolation::Trilinear {
             // Seven means, each of two products and a sum that are rounded.
-            let rounding = 32.0 * f64::EPSILON * range.lower.abs().max(range.upper.abs());
-            range = Interval { lower: range.lower - rounding, upper: range.upper + rounding };
+            let rounding = 32.0 * f64::EPSILON * lower.abs().max(upper.abs());
+            (lower, upper) = (lower - rounding, upper + rounding);
         }
+        // Infinite samples have no means.
+        let Some(range) = Interval::new(lower, upper) else { return Ok(ValueRange::Unknown) };
         let zero = Interval::exactly(0.0);
         Ok(ValueRange::Within([range, zero, zero, zero]))
     }

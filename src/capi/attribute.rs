@@ -96,10 +96,10 @@ impl leafless_value_range {
             kind if kind == LEAFLESS_RANGE_WITHIN as u32 => {
                 let mut ranges = [Interval::exactly(0.0); 4];
                 for (range, given) in ranges.iter_mut().zip(&self.values).take(components) {
-                    if given.lower.is_nan() || given.upper.is_nan() || given.lower > given.upper {
+                    let Some(given) = Interval::new(given.lower, given.upper) else {
                         return Ok(ValueRange::Unknown);
-                    }
-                    *range = Interval { lower: given.lower, upper: given.upper };
+                    };
+                    *range = given;
                 }
                 Ok(ValueRange::Within(ranges))
             }

@@ -246,8 +246,8 @@ impl Host {
         let mut found = leafless_gradient { value: unset, gradient: [unset; 3] };
         // SAFETY: as above.
         done(unsafe { function(self.0.ctx, min.as_ptr(), max.as_ptr(), middle.as_ptr(), &mut found) })?;
-        let range = |given: leafless_interval| Interval { lower: given.lower, upper: given.upper };
-        Ok(Some(GradientRange { value: range(found.value), gradient: found.gradient.map(range) }))
+        let gradient = found.gradient.map(leafless_interval::known);
+        Ok(Some(GradientRange { value: found.value.known(), gradient }))
     }
 
     fn tangent(&self, min: [f64; 3], max: [f64; 3], middle: [f64; 3]) -> Result<Option<TangentBalls>, Error> {
@@ -460,7 +460,7 @@ impl HostFunction {
             // SAFETY: as for `Host`.
             done(unsafe { function(self.0.ctx, min.as_ptr(), max.as_ptr(), &mut range) })?;
         }
-        Ok(Interval { lower: range.lower, upper: range.upper })
+        Ok(range.known())
     }
 }
 

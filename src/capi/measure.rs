@@ -117,8 +117,6 @@ pub struct leafless_extent {
     pub is_clipped: bool,
 }
 
-pub(super) const ANY: Interval = Interval { lower: f64::NEG_INFINITY, upper: f64::INFINITY };
-
 pub(super) fn row_by_row(tensor: [[Interval; 3]; 3]) -> [leafless_interval; 9] {
     core::array::from_fn(|k| tensor[k / 3][k % 3].into())
 }
@@ -127,7 +125,7 @@ impl From<MassProperties> for leafless_measures {
     fn from(measures: MassProperties) -> leafless_measures {
         leafless_measures {
             volume_model: measures.volume.into(),
-            centroid_model: measures.centroid.unwrap_or([ANY; 3]).map(Into::into),
+            centroid_model: measures.centroid.unwrap_or([Interval::ALL; 3]).map(Into::into),
             inertia_origin_model: row_by_row(measures.inertia_about_origin),
             inertia_centroid_model: row_by_row(measures.inertia_about_centroid),
             proof: measures.proof.into(),
@@ -143,7 +141,7 @@ impl From<MassProperties> for leafless_measures {
 
 impl From<Extent> for leafless_extent {
     fn from(extent: Extent) -> leafless_extent {
-        let [min, max] = extent.corners.unwrap_or([[ANY; 3]; 2]);
+        let [min, max] = extent.corners.unwrap_or([[Interval::ALL; 3]; 2]);
         leafless_extent {
             min_model: min.map(Into::into),
             max_model: max.map(Into::into),

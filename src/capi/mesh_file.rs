@@ -300,7 +300,8 @@ pub unsafe extern "C" fn leafless_mesh_peek_warning_at(
     })
 }
 
-/// Writes a binary STL file into memory: 84 + 50 t bytes. Coordinates are rounded to 32 bits.
+/// Writes a binary STL file into memory: 84 + 50 t bytes. Coordinates are rounded to 32 bits;
+/// leafless_mesh_written_form tells what that costs.
 ///
 /// - Buffers: `bytes`, room for `capacity` bytes, or NULL to ask for the length only.
 /// - Result: `*length`, the length of the file; the file in `bytes`.

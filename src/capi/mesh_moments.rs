@@ -3,7 +3,7 @@
 use super::boundary::{buffer, guard, out, shared};
 use super::control::{controlled, leafless_options};
 use super::frame::leafless_interval;
-use super::measure::{ANY, row_by_row};
+use super::measure::row_by_row;
 use super::mesh::{fill_rule, leafless_mesh};
 use super::status::leafless_status;
 use crate::lattice::Interval;
@@ -46,9 +46,9 @@ pub struct leafless_mesh_moments {
 
 impl From<MeshMoments> for leafless_mesh_moments {
     fn from(moments: MeshMoments) -> leafless_mesh_moments {
-        let any = leafless_interval::from(ANY);
+        let any = leafless_interval::from(Interval::ALL);
         let unknown = leafless_mesh_moments {
-            volume_model: Interval { lower: 0.0, ..ANY }.into(),
+            volume_model: Interval::between(0.0, f64::INFINITY).into(),
             centroid_model: [any; 3],
             inertia_origin_model: [any; 9],
             inertia_centroid_model: [any; 9],
@@ -59,7 +59,7 @@ impl From<MeshMoments> for leafless_mesh_moments {
         match moments {
             MeshMoments::Known(moments) => leafless_mesh_moments {
                 volume_model: moments.volume.into(),
-                centroid_model: moments.centroid().unwrap_or([ANY; 3]).map(Into::into),
+                centroid_model: moments.centroid().unwrap_or([Interval::ALL; 3]).map(Into::into),
                 inertia_origin_model: row_by_row(moments.inertia_about_origin()),
                 inertia_centroid_model: row_by_row(moments.inertia_about_centroid()),
                 known: LEAFLESS_MOMENTS_KNOWN,

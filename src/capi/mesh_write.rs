@@ -1,11 +1,12 @@
 //! Mesh files, written.
 
 use super::boundary::{Failure, Sized32, buffer, guard, initialise, out, path, shared, sized};
-use super::mesh::leafless_mesh;
+use super::mesh::{give, leafless_mesh};
 use super::mesh_file::{format, unit};
 use super::status::leafless_status;
-use crate::exchange::{MeshFormat, WriteOptions, write_mesh};
+use crate::exchange::{MeshFormat, WriteOptions, write_mesh, written_form};
 use crate::file::save_with;
+use alloc::borrow::Cow;
 use core::ffi::c_char;
 use std::io::Write;
 use std::path::Path;
@@ -51,6 +52,22 @@ unsafe fn options(
     Ok((format(given.format)?, WriteOptions { text, unit, normals }))
 }
 
+/// The options for a file without a path, which must name the format.
+///
+/// # Safety
+/// `options` is NULL or points to valid options.
+unsafe fn in_memory(
+    options: *const leafless_mesh_write_options,
+) -> Result<(MeshFormat, WriteOptions), Failure> {
+    if options.is_null() {
+        return Err(Failure::Null { name: "options" });
+    }
+    // SAFETY: the caller's promise.
+    let (format, options) = unsafe { self::options(options)? };
+    let problem = "must be given for a file in memory, which has no name";
+    Ok((format.ok_or(Failure::Argument { name: "options.format", problem })?, options))
+}
+
 /// Sets options for writing mesh files to their defaults.
 ///
 /// - Buffers: `options`, one struct of `struct_size` bytes, which is sizeof(leafless_mesh_write_options);
@@ -73,8 +90,9 @@ pub unsafe extern "C" fn leafless_mesh_write_options_init(
 /// each complete, as leafless_octree_save tells.
 ///
 /// Vertices and triangles keep their order. PLY (little-endian, of type double), OBJ and OFF hold the
-/// coordinates exactly; STL rounds them to 32 bits; a 3MF has one object, which is the build's one item, and
-/// leaves out triangles that have a vertex twice. O(n) time and memory.
+/// coordinates exactly; a 3MF has one object, which is the build's one item, and leaves out triangles that have a
+/// vertex twice. STL rounds coordinates to 32 bits without a word: what is small and far away loses triangles, up
+/// to all of them. leafless_mesh_written_form tells before. O(n) time and memory.
 ///
 /// - Buffers: `path`, `path_length` bytes of UTF-8; `options`, one struct, or NULL.
 /// - Result: LEAFLESS_OK once the file is on the disk.
@@ -128,16 +146,40 @@ pub unsafe extern "C" fn leafless_mesh_to_bytes(
 ) -> leafless_status {
     guard(|| unsafe {
         let mesh = &shared(mesh, "mesh")?.mesh;
-        if options.is_null() {
-            return Err(Failure::Null { name: "options" });
-        }
-        let (format, options) = self::options(options)?;
-        let problem = "must be given for a file in memory, which has no name";
-        let format = format.ok_or(Failure::Argument { name: "options.format", problem })?;
+        let (format, options) = in_memory(options)?;
         let bytes = buffer(bytes, capacity, "bytes")?;
         let length = out(length, "length")?;
         let file = write_mesh(mesh, format, &options)?;
         bytes.fill(&file)?;
         length.write(file.len() as u64)
+    })
+}
+
+/// The mesh that a reader gets back from the file that leafless_mesh_save writes. An STL has 32-bit coordinates:
+/// vertices move, vertices that meet are one, and triangles of which two corners meet are dropped, so that the
+/// surface may be pinched, flat or gone. leafless_mesh_describe of both meshes tells. All other formats keep
+/// vertices and triangles as they are. O(n) time and memory.
+///
+/// - Buffers: `options`, one struct, with a format; `kept`, one pointer.
+/// - Result: `*kept`.
+/// - Errors: LEAFLESS_E_ARGUMENT as leafless_mesh_to_bytes; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: `mesh` stays as it is; give `*kept` back with leafless_mesh_free.
+/// - Threads: any.
+/// - Untrusted input: any mesh.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_mesh_written_form(
+    mesh: *const leafless_mesh,
+    options: *const leafless_mesh_write_options,
+    kept: *mut *mut leafless_mesh,
+) -> leafless_status {
+    guard(|| unsafe {
+        let mesh = &shared(mesh, "mesh")?.mesh;
+        let (format, options) = in_memory(options)?;
+        let kept = out(kept, "kept")?;
+        kept.write(give(match written_form(mesh, format, &options)?.mesh {
+            Cow::Borrowed(mesh) => mesh.try_clone()?,
+            Cow::Owned(mesh) => mesh,
+        }))
     })
 }

@@ -367,7 +367,7 @@ pub unsafe extern "C" fn leafless_volume_range(
             None if volume.sample_type() == LEAFLESS_SAMPLE_BITS => [0.0, 1.0],
             None => [f64::NEG_INFINITY, f64::INFINITY],
         };
-        range.write(Interval { lower, upper }.into())
+        range.write(Interval::new(lower, upper).unwrap_or(Interval::ALL).into())
     })
 }
 

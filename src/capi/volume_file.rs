@@ -61,6 +61,10 @@ impl leafless_volume {
 /// compressed. All types of single numbers, both byte orders. What is neither 8 nor 16 bits wide becomes
 /// float, and int8_t becomes int16_t. O(n); the samples are copied once.
 ///
+/// Samples in another file must lie in the header's folder or below it, by their real path: links are followed
+/// before that is judged. The header's folder is the one that `path` names and, if the header is a link, also
+/// the one in which the header really lies, which is searched second.
+///
 /// - Buffers: `path`, `path_length` bytes of UTF-8; `volume`, one pointer.
 /// - Result: `*volume`; leafless_volume_describe tells what the file says.
 /// - Errors: LEAFLESS_E_VOLUME_FILE, with what is wrong where in the message, if the file is neither, is
@@ -169,8 +173,9 @@ pub unsafe extern "C" fn leafless_volume_open_raw(
 /// leafless_octree_save tells.
 ///
 /// The byte of the lowest weight comes first, and bits become bytes 0 and 1. A NRRD holds the place of the
-/// first sample, corner + spacing / 2, rounded, so that a volume that is read again may lie half a last place
-/// beside; and no unit. A raw file holds no place at all. O(n) time and memory.
+/// first sample, corner + spacing / 2, rounded so that the same corner is read again; where no double does that,
+/// near a power of two, the volume lies half a last place beside. It holds no unit. A raw file holds no place at all.
+/// O(n) time and memory.
 ///
 /// - Buffers: `path`, `path_length` bytes of UTF-8. `format` is a leafless_volume_format.
 /// - Result: LEAFLESS_OK once the file is on the disk.

@@ -22,7 +22,8 @@
 //! Some files depart from their format in a way that leaves no doubt about the mesh. They are read, and
 //! [`MeshFile::warnings`] tells of it.
 //!
-//! [`write_mesh`] writes a file of any of them.
+//! [`write_mesh`] writes a file of any of them. STL rounds coordinates to 32 bits: [`written_form`] tells the mesh that is
+//! read back, and what is lost.
 //!
 //! An error says in which line, or at which byte or element, and for a 3MF in which part. Bytes may be
 //! anything: no reader panics, and memory is linear in the length of the file, with two exceptions of 3MF:
@@ -92,7 +93,7 @@ pub use volume::{
 pub use warning::MeshWarning;
 #[cfg(feature = "png")]
 pub use write::write_png;
-pub use write::{WriteOptions, write_mesh, write_stl};
+pub use write::{WriteOptions, WrittenForm, write_mesh, write_stl, written_form};
 
 /// Refuses text in UTF-16. Of the formats that are one text, none can be read in it.
 fn refuse_utf16(bytes: &[u8]) -> Result<(), Error> {

@@ -203,8 +203,8 @@ impl Frame {
         let rounded = sum + (sum_error + product_error);
         match sign_of_sum(&[sum, sum_error, product_error, -rounded]) {
             0 => Interval::exactly(rounded),
-            1 => Interval { lower: rounded, upper: rounded.next_up() },
-            _ => Interval { lower: rounded.next_down(), upper: rounded },
+            1 => Interval::between(rounded, rounded.next_up()),
+            _ => Interval::between(rounded.next_down(), rounded),
         }
     }
 

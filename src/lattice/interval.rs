@@ -3,18 +3,70 @@
 use super::exact::{sign_of_sum, sqrt, two_product, two_sum};
 
 /// A closed interval `[lower, upper]` of doubles that contains a real quantity.
+///
+/// The bounds are read as fields, `interval.lower` and `interval.upper` ([`IntervalEnds`]), and cannot be changed.
+/// They are numbers or infinities, and `lower <= upper`: [`new`](Interval::new) refuses anything else.
+///
+/// ```
+/// use leafless::Interval;
+/// let interval = Interval::new(1.0, 2.0).unwrap();
+/// assert_eq!((interval.lower, interval.upper), (1.0, 2.0));
+/// assert!(Interval::new(2.0, 1.0).is_none() && Interval::new(1.0, f64::NAN).is_none());
+/// ```
+///
+/// ```compile_fail
+/// let mut interval = leafless::Interval::exactly(1.0);
+/// interval.upper = 0.0;
+/// ```
+#[derive(Clone, Copy, PartialEq)]
+pub struct Interval(IntervalEnds);
+
+/// The bounds of an [`Interval`], for reading.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Interval {
+pub struct IntervalEnds {
     /// Nothing below is possible.
     pub lower: f64,
     /// Nothing above is possible.
     pub upper: f64,
 }
 
+impl core::ops::Deref for Interval {
+    type Target = IntervalEnds;
+
+    #[inline(always)]
+    fn deref(&self) -> &IntervalEnds {
+        &self.0
+    }
+}
+
+impl core::fmt::Debug for Interval {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.debug_struct("Interval").field("lower", &self.lower).field("upper", &self.upper).finish()
+    }
+}
+
 impl Interval {
-    /// The interval of a number that is known exactly.
+    /// All numbers: nothing is known.
+    pub const ALL: Interval = Interval::between(f64::NEG_INFINITY, f64::INFINITY);
+
+    /// The interval from `lower` to `upper`. `None` if `lower > upper`, or if one of them is not a number.
+    pub const fn new(lower: f64, upper: f64) -> Option<Interval> {
+        if lower <= upper { Some(Interval(IntervalEnds { lower, upper })) } else { None }
+    }
+
+    /// The interval between bounds that are known to be in order. Bounds that somebody else hands over, or that
+    /// two sources of knowledge tell, may contradict each other: they go through [`new`](Interval::new).
+    #[inline(always)]
+    pub(crate) const fn between(lower: f64, upper: f64) -> Interval {
+        debug_assert!(lower <= upper, "an interval's bounds are in order");
+        Interval(IntervalEnds { lower, upper })
+    }
+
+    /// The interval of a number that is known exactly. If `value` is not a number, nothing is known:
+    /// [`ALL`](Interval::ALL).
+    #[inline(always)]
     pub const fn exactly(value: f64) -> Interval {
-        Interval { lower: value, upper: value }
+        if value.is_nan() { Interval::ALL } else { Interval::between(value, value) }
     }
 
     /// Whether `value` lies in the interval.
@@ -38,18 +90,17 @@ impl Interval {
         let error = value - nearest as i128;
         let lower = if error < 0 { nearest.next_down() } else { nearest };
         let upper = if error > 0 { nearest.next_up() } else { nearest };
-        Interval { lower, upper }
+        Interval::between(lower, upper)
     }
 
     pub(crate) fn negated(self) -> Interval {
-        Interval { lower: -self.upper, upper: -self.lower }
+        Interval::between(-self.upper, -self.lower)
     }
 
     pub(crate) fn plus(self, other: Interval) -> Interval {
-        Interval {
-            lower: rounded(two_sum(self.lower, other.lower), true).lower,
-            upper: rounded(two_sum(self.upper, other.upper), true).upper,
-        }
+        let lower = rounded(two_sum(self.lower, other.lower), true).lower;
+        let upper = rounded(two_sum(self.upper, other.upper), true).upper;
+        Interval::between(lower, upper)
     }
 
     pub(crate) fn minus(self, other: Interval) -> Interval {
@@ -60,26 +111,24 @@ impl Interval {
         let [a, b] = [self.lower, self.upper];
         let [c, d] = [other.lower, other.upper];
         let [ac, ad, bc, bd] = [product(a, c), product(a, d), product(b, c), product(b, d)];
-        Interval {
-            lower: ac.lower.min(ad.lower).min(bc.lower.min(bd.lower)),
-            upper: ac.upper.max(ad.upper).max(bc.upper.max(bd.upper)),
-        }
+        let lower = ac.lower.min(ad.lower).min(bc.lower.min(bd.lower));
+        let upper = ac.upper.max(ad.upper).max(bc.upper.max(bd.upper));
+        Interval::between(lower, upper)
     }
 
     /// The square, which is never negative.
     pub(crate) fn square(self) -> Interval {
-        let Interval { lower, upper } = self.times(self);
-        Interval { lower: lower.max(0.0), upper }
+        self.times(self).not_negative()
     }
 
     /// Divided by a positive number; all numbers if `divisor` may be 0.
     pub(crate) fn over(self, divisor: Interval) -> Interval {
         if divisor.lower <= 0.0 {
-            return Interval { lower: f64::NEG_INFINITY, upper: f64::INFINITY };
+            return Interval::ALL;
         }
         let lower = if self.lower < 0.0 { divisor.lower } else { divisor.upper };
         let upper = if self.upper < 0.0 { divisor.upper } else { divisor.lower };
-        Interval { lower: quotient(self.lower, lower).lower, upper: quotient(self.upper, upper).upper }
+        Interval::between(quotient(self.lower, lower).lower, quotient(self.upper, upper).upper)
     }
 
     /// The square root of a number that is not negative, whatever its bounds say.
@@ -90,18 +139,29 @@ impl Interval {
             let is_exact = x == 0.0 || is_splittable(x) && two_product(root, root) == (x, 0.0);
             if is_exact { Interval::exactly(root) } else { around(root) }
         };
-        Interval { lower: of(self.lower).lower.max(0.0), upper: of(self.upper).upper }
+        Interval::between(of(self.lower).lower.max(0.0), of(self.upper).upper)
     }
 
-    /// With what else is known of the same number.
-    pub(crate) fn within(self, other: Interval) -> Interval {
-        Interval { lower: self.lower.max(other.lower), upper: self.upper.min(other.upper) }
+    /// With what else is known of the same number. `None` if the two have no number in common: then one of
+    /// them does not contain the truth, or there is no such number.
+    pub(crate) fn common(self, other: Interval) -> Option<Interval> {
+        Interval::new(self.lower.max(other.lower), self.upper.min(other.upper))
+    }
+
+    /// Of a number that is known not to be negative. (A negative upper bound contradicts that, and counts as 0.)
+    pub(crate) fn not_negative(self) -> Interval {
+        Interval::between(self.lower.max(0.0), self.upper.max(0.0))
+    }
+
+    /// The least interval that contains both.
+    pub(crate) fn joined(self, other: Interval) -> Interval {
+        Interval::between(self.lower.min(other.lower), self.upper.max(other.upper))
     }
 }
 
 /// A number between the neighbours of `value`, or beyond the largest double on the same side.
 fn around(value: f64) -> Interval {
-    Interval { lower: value.next_down(), upper: value.next_up() }
+    Interval::between(value.next_down(), value.next_up())
 }
 
 /// The number `value + error` with `value` the nearest double, if the error is one that can be relied on.
@@ -110,9 +170,9 @@ fn rounded((value, error): (f64, f64), reliable: bool) -> Interval {
     if reliable && value.is_finite() && !error.is_nan() {
         let lower = if error < 0.0 { value.next_down() } else { value };
         let upper = if error > 0.0 { value.next_up() } else { value };
-        Interval { lower, upper }
+        Interval::between(lower, upper)
     } else if value.is_nan() {
-        Interval { lower: f64::NEG_INFINITY, upper: f64::INFINITY }
+        Interval::ALL
     } else {
         around(value)
     }
@@ -152,7 +212,7 @@ mod tests {
     use super::*;
 
     fn of(lower: f64, upper: f64) -> Interval {
-        Interval { lower, upper }
+        Interval::new(lower, upper).unwrap()
     }
 
     #[test]
@@ -198,5 +258,47 @@ mod tests {
         assert_eq!(all.times(Interval::exactly(0.0)), Interval::exactly(0.0));
         assert_eq!(of(1.0, 2.0).over(of(0.0, 1.0)), all);
         assert_eq!(of(0.0, f64::INFINITY).times(of(-1.0, 2.0)), all);
+    }
+
+    #[test]
+    fn bounds_are_in_order_or_refused() {
+        let (nan, inf) = (f64::NAN, f64::INFINITY);
+        for (lower, upper) in
+            [(1.0, 0.0), (nan, 1.0), (1.0, nan), (nan, nan), (inf, -inf), (f64::MIN_POSITIVE, 0.0)]
+        {
+            assert_eq!(Interval::new(lower, upper), None, "{lower} {upper}");
+        }
+        for (lower, upper) in [(0.0, 0.0), (-0.0, 0.0), (0.0, -0.0), (-inf, inf), (inf, inf), (1.0, 2.0)] {
+            let interval = Interval::new(lower, upper).unwrap();
+            assert_eq!((interval.lower, interval.upper), (lower, upper));
+        }
+        assert_eq!(Interval::exactly(nan), Interval::ALL);
+        assert_eq!(of(0.0, 2.0).common(of(1.0, 3.0)), Some(of(1.0, 2.0)));
+        assert_eq!(of(0.0, 1.0).common(of(1.0, 3.0)), Some(Interval::exactly(1.0)));
+        assert_eq!(of(0.0, 1.0).common(of(2.0, 3.0)), None);
+        assert_eq!(of(0.0, 1.0).joined(of(2.0, 3.0)), of(0.0, 3.0));
+        assert_eq!(of(-2.0, -1.0).not_negative(), Interval::exactly(0.0));
+        assert_eq!(of(-2.0, 1.0).not_negative(), of(0.0, 1.0));
+    }
+
+    /// Every operation on every pair of a set of bounds that are hard: the bounds stay in order, which the
+    /// constructor asserts.
+    #[test]
+    fn arithmetic_keeps_the_order() {
+        let inf = f64::INFINITY;
+        let numbers =
+            [-inf, f64::MIN, -1.0, -f64::MIN_POSITIVE, -5e-324, 0.0, 5e-324, 0.1, 1.0, f64::MAX, inf];
+        let pairs =
+            || numbers.iter().enumerate().flat_map(|(i, &a)| numbers[i..].iter().map(move |&b| of(a, b)));
+        for a in pairs() {
+            for c in [a.negated(), a.square(), a.root(), a.not_negative()] {
+                assert!(c.lower <= c.upper, "{a:?} {c:?}");
+            }
+            for b in pairs() {
+                for c in [a.plus(b), a.minus(b), a.times(b), a.over(b), a.joined(b)] {
+                    assert!(c.lower <= c.upper, "{a:?} {b:?} {c:?}");
+                }
+            }
+        }
     }
 }

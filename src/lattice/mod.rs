@@ -39,7 +39,7 @@ pub use cube::Cube;
 pub use cube_moments::{CellMoments, CubeMoments};
 pub(crate) use cube_moments::{PAIRS, PLACES};
 pub use frame::Frame;
-pub use interval::Interval;
+pub use interval::{Interval, IntervalEnds};
 pub use moments::VolumeMoments;
 pub(crate) use valid::{LARGEST, SMALLEST};
 pub(crate) use window::Window;

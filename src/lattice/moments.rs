@@ -49,9 +49,9 @@ impl VolumeMoments {
         // The set may be anything between nothing and what the second moments allow. M ≽ 0, so that Mij² ≤ Mii Mjj.
         tensor(array(|k| {
             let (i, j) = PAIRS[k];
-            let [a, b] = [i, j].map(|axis| Interval { lower: 0.0, upper: self.second[axis].upper.max(0.0) });
+            let [a, b] = [i, j].map(|axis| Interval::between(0.0, self.second[axis].upper.max(0.0)));
             let radius = a.times(b).root().upper;
-            Interval { lower: if i == j { 0.0 } else { -radius }, upper: radius }
+            Interval::between(if i == j { 0.0 } else { -radius }, radius)
         }))
     }
 }
@@ -62,7 +62,7 @@ fn tensor(second: [Interval; 6]) -> [[Interval; 3]; 3] {
     for (k, (i, j)) in (0..6).zip(PAIRS) {
         tensor[i][j] = if i == j {
             let sum = second[(i + 1) % 3].plus(second[(i + 2) % 3]);
-            Interval { lower: sum.lower.max(0.0), upper: sum.upper.max(0.0) }
+            sum.not_negative()
         } else {
             second[k].negated()
         };

@@ -173,7 +173,7 @@ impl Sums {
         let volume = of(0, 6.0, 3);
         VolumeMoments {
             point: grid.centre,
-            volume: Interval { lower: volume.lower.max(0.0), upper: volume.upper.max(0.0) },
+            volume: volume.not_negative(),
             first: [1, 2, 3].map(|k| of(k, 24.0, 4)),
             second: [4, 5, 6, 7, 8, 9].map(|k| of(k, 120.0, 5)),
         }
@@ -181,7 +181,7 @@ impl Sums {
 }
 
 fn around_zero(radius: f64) -> Interval {
-    Interval { lower: -radius, upper: radius }
+    Interval::between(-radius, radius)
 }
 
 /// 6 times the volume, 24 times the first and 120 times the second moments of the tetrahedron with the tip 0, in the

@@ -280,7 +280,8 @@ impl TriangleMesh {
                 a.dot(b.cross(c))
             })
             .sum();
-        six_fold / 6.0
+        // A sum of nothing is −0.
+        six_fold / 6.0 + 0.0
     }
 
     /// The sum of the areas of the triangles (square model units), in doubles. O(t).
@@ -289,7 +290,8 @@ impl TriangleMesh {
             let [a, b, c] = t.map(|v| self.position(v));
             (b - a).cross(c - a).length()
         };
-        0.5 * self.triangles.iter().map(twice).sum::<f64>()
+        // A sum of nothing is −0.
+        0.5 * self.triangles.iter().map(twice).sum::<f64>() + 0.0
     }
 
     /// Checks that the mesh bounds a solid under `rule`.

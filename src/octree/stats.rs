@@ -107,7 +107,7 @@ pub(crate) fn volume_of(frame: &Frame, lower: u64, upper: u64) -> Interval {
     let (least, most) = (lower as f64, upper as f64);
     let least = if least as u64 > lower { least.next_down() } else { least };
     let most = if (most as u64) < upper { most.next_up() } else { most };
-    Interval { lower: down(least), upper: up(most) }
+    Interval::between(down(least), up(most))
 }
 
 impl OctreeRef<'_> {

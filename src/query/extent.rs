@@ -170,9 +170,14 @@ fn start(side: usize, cell: Cell) -> u64 {
 }
 
 impl<C: Classifier> Search<'_, C> {
-    /// Whether no part of the universe may hold some of the solid.
+    /// Whether the solid is proven empty: no part of the universe may hold some of it, or along some axis it would
+    /// end before it begins.
     fn is_empty(&self) -> bool {
-        self.outer.contains(&NOWHERE)
+        let ends_first = |axis: usize| {
+            let [near, far] = [self.outer[axis], self.outer[axis + 3]];
+            self.inner[axis] == NOWHERE && near > EDGE.saturating_sub(far)
+        };
+        self.outer.contains(&NOWHERE) || (0..3).any(ends_first)
     }
 
     /// How much is open at a side.
@@ -267,12 +272,12 @@ impl<C: Classifier> Search<'_, C> {
             // With nothing proven solid, each side may be wherever the solid may be.
             let reach = |side: usize, other: usize| match self.inner[side] {
                 NOWHERE => EDGE.saturating_sub(self.outer[other]),
-                inner => inner,
+                // Only a host that contradicts itself has something solid before it may begin.
+                inner => inner.max(self.outer[side]),
             };
             let (near, far) = (axis, axis + 3);
-            let between = |a: u64, b: u64| Interval {
-                lower: self.coordinate(axis, a).lower,
-                upper: self.coordinate(axis, b).upper,
+            let between = |a: u64, b: u64| {
+                Interval::between(self.coordinate(axis, a).lower, self.coordinate(axis, b).upper)
             };
             let opposite = |distance: u64| EDGE.saturating_sub(distance);
             corners[0][axis] = between(self.outer[near], reach(near, far));

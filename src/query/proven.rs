@@ -87,6 +87,10 @@ impl<W: Worker> Worker for ProvenWorker<W> {
         self.inner.mark()
     }
 
+    fn scratch_bytes(&self) -> usize {
+        self.inner.scratch_bytes()
+    }
+
     fn release(&mut self, mark: usize) {
         self.inner.release(mark);
     }

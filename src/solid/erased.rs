@@ -281,6 +281,7 @@ trait ErasedWorker: Send + Sync {
     fn frame(&self) -> &Frame;
     fn root(&mut self) -> Result<Verdict<ErasedPart>, Error>;
     fn mark(&self) -> usize;
+    fn scratch_bytes(&self) -> usize;
     fn release(&mut self, mark: usize);
     fn hand_over(&mut self, from: &AnyWorker, part: &ErasedPart) -> Result<ErasedPart, Error>;
     fn recall(&mut self, cell: Cell) -> Option<ErasedPart>;
@@ -337,6 +338,10 @@ impl<W: Worker<Part: 'static> + 'static> ErasedWorker for [Typed<W>; 1] {
 
     fn mark(&self) -> usize {
         self[0].parts.len()
+    }
+
+    fn scratch_bytes(&self) -> usize {
+        size_of_val(&*self[0].parts) + self[0].worker.scratch_bytes()
     }
 
     fn release(&mut self, mark: usize) {

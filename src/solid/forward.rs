@@ -54,6 +54,10 @@ macro_rules! forward_worker {
             $to.mark()
         }
 
+        fn scratch_bytes(&$self) -> usize {
+            $to.scratch_bytes()
+        }
+
         fn release(&mut $self, mark: usize) {
             $to.release(mark);
         }

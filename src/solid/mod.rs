@@ -328,6 +328,11 @@ pub trait Worker: Send + Sync {
         0
     }
 
+    /// Bytes that the scratch memory takes for parts. Whoever keeps many parts at once keeps an eye on it.
+    fn scratch_bytes(&self) -> usize {
+        0
+    }
+
     /// Back to an earlier height.
     fn release(&mut self, mark: usize) {
         let _ = mark;

@@ -12,10 +12,21 @@ use crate::solid::{Classifier, Solid, Verdict, Worker};
 
 /// Records as a solid on their own universe: inside voxels are FULL, outside voxels and what no record speaks of
 /// are EMPTY, boundary voxels are what one asks for.
+///
+/// Its verdicts prove what the records do ([`VoxelRecordsRef::proof`]), less what boundary voxels are taken for:
+///
+/// | boundary voxels as | FULL | EMPTY |
+/// |---|---|---|
+/// | PARTIAL | as the records | as the records |
+/// | FULL | not proven, unless all of them are known to lie inside ([`VoxelRecordsRef::boundary`]) | as the records |
+/// | EMPTY | as the records | not proven |
+///
+/// Where there are no boundary voxels, it is as the records say.
 #[derive(Debug, Clone, Copy)]
 pub struct VoxelSolid<'a> {
     records: VoxelRecordsRef<'a>,
     boundary: Tag,
+    proof: Proof,
 }
 
 /// The same on a frame: handle and worker.
@@ -26,12 +37,18 @@ pub struct OnFrame<'a> {
 }
 
 impl<'a> VoxelSolid<'a> {
-    /// The solid of records, of which boundary voxels have the tag `boundary`.
+    /// The solid of records, of which boundary voxels have the tag `boundary`. O(records).
     ///
     /// # Errors
     /// [`Error::Argument`] if that is [`Tag::Branch`].
     pub fn new(records: VoxelRecordsRef<'a>, boundary: Tag) -> Result<VoxelSolid<'a>, Error> {
-        Ok(VoxelSolid { records, boundary: checked(boundary)? })
+        let boundary = checked(boundary)?;
+        let mut proof = records.proof();
+        if boundary != Tag::Partial && records.count(VoxelKind::Boundary) > 0 {
+            proof.full &= boundary == Tag::Empty || records.boundary() == Tag::Full;
+            proof.empty &= boundary == Tag::Full;
+        }
+        Ok(VoxelSolid { records, boundary, proof })
     }
 
     fn verdict(&self, part: &Part) -> Verdict<(usize, usize)> {
@@ -62,7 +79,7 @@ impl VoxelRecordsRef<'_> {
     /// behind. `boundary` is what boundary voxels become: PARTIAL for those that are not decided, FULL for those
     /// of a binary octree.
     ///
-    /// The exterior and what cells prove are what is known of the records.
+    /// The exterior is what is known of the records, and cells prove what [`VoxelSolid`] says.
     ///
     /// # Errors
     /// [`Error::Argument`] if `boundary` is [`Tag::Branch`], and as [`build`](crate::build).
@@ -82,7 +99,7 @@ impl<'a> Solid for VoxelSolid<'a> {
     }
 
     fn bounds(&self) -> Option<Bounds> {
-        let ends_inside = self.records.exterior() == Tag::Empty && self.records.proof().empty;
+        let ends_inside = self.records.exterior() == Tag::Empty && self.proof.empty;
         ends_inside.then(|| Bounds::of(self.records.frame()))
     }
 
@@ -107,7 +124,7 @@ impl<'a> Classifier for OnFrame<'a> {
     }
 
     fn proof(&self) -> Proof {
-        self.solid.records.proof()
+        self.solid.proof
     }
 }
 

@@ -20,6 +20,8 @@ pub struct VoxelRecords {
     pub(super) frame: Frame,
     pub(super) exterior: Tag,
     pub(super) proof: Proof,
+    /// FULL or PARTIAL, as [`VoxelRecordsRef::boundary`] says.
+    pub(super) boundary: Tag,
     pub(super) components: usize,
     pub(super) codes: Vec<u64>,
     pub(super) levels: Vec<u8>,
@@ -38,6 +40,7 @@ pub struct VoxelRecordsRef<'a> {
     frame: Frame,
     exterior: Tag,
     proof: Proof,
+    boundary: Tag,
     components: usize,
     codes: &'a [u64],
     levels: &'a [u8],
@@ -49,7 +52,8 @@ impl VoxelRecords {
     /// No records on a lattice.
     pub(super) fn empty(frame: Frame, exterior: Tag, proof: Proof, components: usize) -> VoxelRecords {
         let (codes, levels, kinds, values) = Default::default();
-        VoxelRecords { frame, exterior, proof, components, codes, levels, kinds, values }
+        let boundary = Tag::Partial;
+        VoxelRecords { frame, exterior, proof, boundary, components, codes, levels, kinds, values }
     }
 
     /// The records of an octree's voxels; of any solid those of the octree that it is
@@ -86,11 +90,15 @@ impl VoxelRecords {
                 progress(voxels.progress());
             }
         }
+        if voxels.boundary_is_inside() {
+            records.boundary = Tag::Full;
+        }
         Ok(records)
     }
 
-    /// Records from arrays, as [`VoxelRecordsRef`] describes them. The exterior is not known, and nothing is
-    /// proven, until somebody says so.
+    /// Records from arrays, as [`VoxelRecordsRef`] describes them. The exterior and what boundary voxels are is
+    /// not known, and nothing is proven, until somebody says so: [`with_exterior`](Self::with_exterior) and
+    /// [`with_boundary`](Self::with_boundary).
     ///
     /// # Errors
     /// As [`VoxelRecordsRef::new`].
@@ -103,16 +111,35 @@ impl VoxelRecords {
         values: Vec<f64>,
     ) -> Result<VoxelRecords, Error> {
         let checked = VoxelRecordsRef::new(frame, &codes, &levels, &kinds, components, &values)?;
-        let VoxelRecordsRef { exterior, proof, .. } = checked;
-        Ok(VoxelRecords { frame: *frame, exterior, proof, components, codes, levels, kinds, values })
+        let VoxelRecordsRef { exterior, proof, boundary, .. } = checked;
+        Ok(VoxelRecords {
+            frame: *frame,
+            exterior,
+            proof,
+            boundary,
+            components,
+            codes,
+            levels,
+            kinds,
+            values,
+        })
     }
 
     /// The same records, of which this is known: the tag of the space outside of the universe (BRANCH counts as
-    /// PARTIAL), and what voxels prove.
+    /// PARTIAL), and what voxels prove ([`VoxelRecordsRef::proof`]). Only a list that is complete may say that
+    /// EMPTY is proven: whoever leaves out or changes records of a solid must take that back.
     #[must_use]
     pub fn with_exterior(self, exterior: Tag, proof: Proof) -> VoxelRecords {
         let exterior = if exterior == Tag::Branch { Tag::Partial } else { exterior };
         VoxelRecords { exterior, proof, ..self }
+    }
+
+    /// The same records, of which boundary voxels are known to be this: FULL if each of them lies inside. Any
+    /// other tag says that this is not known.
+    #[must_use]
+    pub fn with_boundary(self, boundary: Tag) -> VoxelRecords {
+        let boundary = if boundary == Tag::Full { Tag::Full } else { Tag::Partial };
+        VoxelRecords { boundary, ..self }
     }
 
     /// Borrows the records.
@@ -121,6 +148,7 @@ impl VoxelRecords {
             frame: self.frame,
             exterior: self.exterior,
             proof: self.proof,
+            boundary: self.boundary,
             components: self.components,
             codes: &self.codes,
             levels: &self.levels,
@@ -205,8 +233,17 @@ impl<'a> VoxelRecordsRef<'a> {
             last = Some((code, level));
             end = if kind == VoxelKind::Refined { code } else { code + size(level, frame.depth()) };
         }
-        let (exterior, proof) = (Tag::Partial, Proof::new(false, false));
-        Ok(VoxelRecordsRef { frame: *frame, exterior, proof, components, codes, levels, kinds, values })
+        Ok(VoxelRecordsRef {
+            frame: *frame,
+            exterior: Tag::Partial,
+            proof: Proof::new(false, false),
+            boundary: Tag::Partial,
+            components,
+            codes,
+            levels,
+            kinds,
+            values,
+        })
     }
 
     /// Records without values that nobody has checked: what is found in them means nothing if they are none.
@@ -218,8 +255,17 @@ impl<'a> VoxelRecordsRef<'a> {
         levels: &'a [u8],
         kinds: &'a [u8],
     ) -> VoxelRecordsRef<'a> {
-        let (exterior, proof) = (Tag::Partial, Proof::new(false, false));
-        VoxelRecordsRef { frame: *frame, exterior, proof, components: 0, codes, levels, kinds, values: &[] }
+        VoxelRecordsRef {
+            frame: *frame,
+            exterior: Tag::Partial,
+            proof: Proof::new(false, false),
+            boundary: Tag::Partial,
+            components: 0,
+            codes,
+            levels,
+            kinds,
+            values: &[],
+        }
     }
 
     /// The lattice.
@@ -232,9 +278,23 @@ impl<'a> VoxelRecordsRef<'a> {
         self.exterior
     }
 
-    /// What inside voxels (as FULL cells) and outside voxels (as EMPTY ones) prove.
+    /// What voxels prove of the solid that they were made from. FULL is proven if inside voxels are proven to lie
+    /// in it. EMPTY is proven if outside voxels **and all that no record speaks of** are proven to lie outside: so
+    /// the list is complete. Of boundary voxels nothing is proven but what [`boundary`](Self::boundary) says.
+    ///
+    /// The records of an octree prove what its cells do, and so do their images under symmetries and
+    /// [exact placements](Self::placed_exactly). Those that were [sampled](Self::placed_by_centres), and arrays of
+    /// somebody else, prove nothing.
     pub fn proof(&self) -> Proof {
         self.proof
+    }
+
+    /// What is known of boundary voxels: FULL if each lies inside as inside voxels do, else PARTIAL. It is FULL for
+    /// the records of a binary octree, whose boundary voxels are inside cells that
+    /// [touch](crate::VoxelBoundary::Touching) an outside one, but not if their level is above the octree's depth
+    /// and cells that are cut became boundary voxels.
+    pub fn boundary(&self) -> Tag {
+        self.boundary
     }
 
     /// How many records there are.

@@ -82,7 +82,7 @@ impl Number for Interval {
 
     fn magnitude(&self) -> Interval {
         let least = self.lower.max(-self.upper).max(0.0);
-        Interval { lower: least, upper: self.upper.max(-self.lower) }
+        Interval::between(least, self.upper.max(-self.lower))
     }
 
     fn negated(&self) -> Interval {

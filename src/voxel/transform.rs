@@ -31,6 +31,7 @@ impl VoxelRecordsRef<'_> {
         let mut order = [0; 8];
         (0u8..).zip(images).for_each(|(old, new)| order[new as usize] = old);
         let mut turned = VoxelRecords::empty(frame, self.exterior(), self.proof(), self.components());
+        turned.boundary = self.boundary();
         turned.reserve(self.len())?;
         let mut put = |index: usize| {
             if turned.codes.len().is_multiple_of(4096) {

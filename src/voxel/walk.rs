@@ -63,6 +63,8 @@ pub(super) struct Walk<'a> {
     boundary_level: u8,
     cells: Cells<'a>,
     inside: Option<Inside>,
+    /// Whether all boundary voxels so far are inside cells.
+    boundary_is_inside: bool,
 }
 
 impl<'a> Walk<'a> {
@@ -86,6 +88,7 @@ impl<'a> Walk<'a> {
             boundary_level,
             cells: tree.cells(all.levels(0..=boundary_level)),
             inside: None,
+            boundary_is_inside: true,
         })
     }
 
@@ -172,6 +175,7 @@ impl<'a> Walk<'a> {
                 Tag::Branch if self.options.lists_refined() => VoxelKind::Refined,
                 Tag::Branch => continue,
             };
+            self.boundary_is_inside &= kind != VoxelKind::Boundary;
             return Ok(Some((kind, cell)));
         }
     }
@@ -286,6 +290,11 @@ impl<'a> Voxels<'a> {
     /// As many records as there are at the least, without a look at each. O(elements).
     pub(super) fn least_records(&self) -> u64 {
         self.walk.least()
+    }
+
+    /// Whether all boundary voxels that were told are inside cells, which touch outside ones.
+    pub(super) fn boundary_is_inside(&self) -> bool {
+        self.walk.boundary_is_inside
     }
 
     /// How much of the universe has been told.

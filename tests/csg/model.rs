@@ -203,7 +203,7 @@ fn host(centre: [f64; 3], radius: f64) -> HalfSpace {
             });
             let coordinates = min.iter().chain(&max).chain(&centre).chain([&radius]);
             let size = coordinates.map(|c| c * c).sum::<f64>();
-            Ok(Interval { lower: value(far) - slack(size), upper: value(near) + slack(size) })
+            Ok(Interval::new(value(far) - slack(size), value(near) + slack(size)).unwrap())
         },
         None,
     )

@@ -59,7 +59,7 @@ impl Triangles {
 
     /// Contains the least t at which the ray meets a triangle: ∞ if it may miss all of them.
     pub fn first_hit(&self, from: [f64; 3], direction: [f64; 3]) -> Interval {
-        let mut first = Interval { lower: f64::INFINITY, upper: f64::INFINITY };
+        let mut first = Interval::new(f64::INFINITY, f64::INFINITY).unwrap();
         search(&self.0, from, direction, &mut first);
         first
     }
@@ -124,7 +124,7 @@ fn meet(triangle: &[[f64; 3]; 3], from: [f64; 3], direction: [f64; 3], first: &m
     if determinant <= determinant_error {
         // Along its plane, or nearly so.
         if let Some([near, _]) = Bounds::of(&[*triangle]).stay(from, direction) {
-            first.lower = first.lower.min(near);
+            *first = Interval::new(first.lower.min(near), first.upper).unwrap();
         }
         return;
     }
@@ -134,8 +134,9 @@ fn meet(triangle: &[[f64; 3]; 3], from: [f64; 3], direction: [f64; 3], first: &m
     }
     let lower = ((t - t_error) / (determinant + determinant_error)).max(0.0);
     let upper = (t + t_error) / (determinant - determinant_error);
-    first.lower = first.lower.min(lower * (1.0 - ERROR));
+    let least = first.lower.min(lower * (1.0 - ERROR));
+    *first = Interval::new(least, first.upper).unwrap();
     if u > error && v > error && w > 3.0 * error && t > t_error {
-        first.upper = first.upper.min(upper * (1.0 + ERROR));
+        *first = Interval::new(first.lower, first.upper.min(upper * (1.0 + ERROR))).unwrap();
     }
 }

@@ -68,17 +68,23 @@ pub(super) fn header(bytes: &[u8]) -> Result<Header, Error> {
     }
     let flag = |line: Option<Line<'_>>, default: bool| match line {
         None => Ok(default),
-        Some(line) => match line.value.as_bytes().first().map(u8::to_ascii_lowercase) {
-            Some(b't' | b'1') => Ok(true),
-            Some(b'f' | b'0') => Ok(false),
-            _ => Err(line.error("True or False")),
-        },
+        Some(line) => {
+            let is_one_of = |names: [&str; 3]| names.iter().any(|name| line.value.eq_ignore_ascii_case(name));
+            match (is_one_of(["true", "t", "1"]), is_one_of(["false", "f", "0"])) {
+                (true, _) => Ok(true),
+                (_, true) => Ok(false),
+                _ => Err(line.error("True or False")),
+            }
+        }
     };
     let needed = |field: Option<_>, what| field.ok_or(VolumeFileError::Missing { what });
     let kind: Line<'_> = needed(fields.kind, "ElementType")?;
     let kind = kind_of(kind.value).ok_or_else(|| kind.error("a type of single numbers, as MET_SHORT"))?;
     let binary = flag(fields.binary, true)?;
     let compressed = flag(fields.compressed, false)?;
+    if let (Some(line), false, true) = (fields.binary, binary, compressed) {
+        return Err(line.error("True, as CompressedData is").into());
+    }
     let encoding = match (binary, compressed) {
         (_, true) => Encoding::Deflated,
         (true, false) => Encoding::Raw,
@@ -154,7 +160,7 @@ fn take<'a>(fields: &mut Fields<'a>, line: &'a [u8], number: u64) -> Result<Opti
 }
 
 fn list<T>(line: &Line<'_>, count: u64, parse: impl Fn(&str) -> Option<T>) -> Result<Vec<T>, Error> {
-    const EXPECTED: &str = "as many numbers as axes, or axes squared";
+    const EXPECTED: &str = "as many finite numbers as axes, or axes squared";
     let mut found = Vec::new();
     for word in line.value.split_ascii_whitespace().take(count as usize + 1) {
         memory::push(&mut found, parse(word).ok_or_else(|| line.error(EXPECTED))?)?;
@@ -166,7 +172,15 @@ fn axes(fields: &Fields<'_>, chosen: [usize; 3], count: usize) -> Result<Axes, E
     let numbers = |line: Option<Line<'_>>, count: usize| {
         line.map(|line| list(&line, count as u64, super::header::number)).transpose()
     };
-    let spacing = numbers(fields.spacing.or(fields.size), count)?;
+    let (spacing, size) = (numbers(fields.spacing, count)?, numbers(fields.size, count)?);
+    for (line, all) in [(fields.spacing, &spacing), (fields.size, &size)] {
+        if let (Some(line), Some(all)) = (line, all)
+            && all.iter().any(|&number| number < 0.0)
+        {
+            return Err(line.error("numbers above zero").into());
+        }
+    }
+    let spacing = spacing.or(size);
     let offset = numbers(fields.offset, count)?;
     let matrix = numbers(fields.matrix, count * count)?;
     let of = |list: &Option<Vec<f64>>, axis: usize, default: f64| {

@@ -8,9 +8,9 @@
 //!
 //! | | what is refused, by name |
 //! |---|---|
-//! | both | samples of several numbers (colours, vectors); more than three axes of more than one sample; samples in several files (`LIST`, patterns); a data file outside of the header's folder |
-//! | NRRD | encodings bzip2, hex and zrl; blocks; spaces of another dimension than three; fields that the format does not have, and fields that stand twice |
-//! | MetaImage | objects that are no images |
+//! | both | samples of several numbers (colours, vectors); more than three axes of more than one sample; samples in several files (`LIST`, patterns); a data file outside of the header's folder, also one that a link leads to ([`open_volume`]); spacings that are negative, zero, infinite or NaN, and directions that lie in one plane up to rounding |
+//! | NRRD | encodings bzip2, hex and zrl; blocks; spaces of another dimension than three; fields that the format does not have, values that a field does not have, and fields that stand twice; spacings or ends of an axis that has a direction, and a `space origin` without directions |
+//! | MetaImage | objects that are no images; flags that are neither true nor false; text that is compressed |
 //!
 //! Of a MetaImage, fields that are not known are skipped, as MetaIO does; `ElementToIntensityFunctionSlope`
 //! and `Offset` change nothing, as in ITK. Samples lie at the centres of voxels, in the words of NRRD: `space
@@ -27,11 +27,13 @@ mod inflate;
 mod kind;
 mod metaimage;
 mod nrrd;
+mod open;
 mod place;
 mod raw;
 mod write;
 
 pub use kind::SampleKind;
+pub use open::open_volume;
 pub use raw::{RawVolume, read_raw_volume};
 pub use write::{NrrdEncoding, write_nrrd, write_raw_volume};
 
@@ -165,34 +167,6 @@ pub fn read_volume(bytes: &[u8], data: Option<&[u8]>) -> Result<VolumeFile, Erro
     let (samples, rounded) = samples(&header, data, &grid)?;
     let (unit, kind) = (header.unit, header.kind);
     Ok(VolumeFile { samples, grid, placement, unit, format, kind, rounded })
-}
-
-/// Reads a volume from a path, with the file of its samples if that is another one, in the same folder or
-/// below it.
-///
-/// # Errors
-/// As [`read_volume`], and [`Error::Io`], both as the cause of an [`Error::File`] with the path.
-pub fn open_volume(path: impl AsRef<std::path::Path>) -> Result<VolumeFile, Error> {
-    let path = path.as_ref();
-    let bytes = std::fs::read(path).map_err(|error| Error::from(error).of_file(path))?;
-    let name = volume_data_file(&bytes).map_err(|error| error.of_file(path))?;
-    let Some(name) = name else { return read_volume(&bytes, None).map_err(|error| error.of_file(path)) };
-    let is_plain = |part| matches!(part, std::path::Component::Normal(_) | std::path::Component::CurDir);
-    let relative = std::path::Path::new(&name);
-    if !relative.components().all(is_plain) {
-        let what = "samples outside of the header's folder";
-        return Err(Error::from(VolumeFileError::Unsupported { what }).of_file(path));
-    }
-    let there = path.parent().unwrap_or(std::path::Path::new("")).join(relative);
-    let read = || -> Result<_, Error> {
-        // What is no file may have no end.
-        if !std::fs::metadata(&there)?.is_file() {
-            return Err(VolumeFileError::Unsupported { what: "samples in what is no regular file" }.into());
-        }
-        Ok(std::fs::read(&there)?)
-    };
-    let data = read().map_err(|error| error.of_file(&there))?;
-    read_volume(&bytes, Some(&data)).map_err(|error| error.of_file(path))
 }
 
 fn header(bytes: &[u8]) -> Result<(VolumeFormat, Header), Error> {

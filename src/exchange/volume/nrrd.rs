@@ -18,6 +18,10 @@ const MOST_AXES: u64 = 16;
 #[derive(Default)]
 struct Fields<'a> {
     dimension: Option<Line<'a>>,
+    space: Option<Line<'a>>,
+    space_dimension: Option<Line<'a>>,
+    kinds: Option<Line<'a>>,
+    thicknesses: Option<Line<'a>>,
     kind: Option<Line<'a>>,
     sizes: Option<Line<'a>>,
     encoding: Option<Line<'a>>,
@@ -56,11 +60,13 @@ pub(super) fn header(bytes: &[u8]) -> Result<Header, Error> {
         kind_of(kind_line.value).ok_or_else(|| kind_line.error("a type of numbers of up to 64 bits"))?;
     let encoding: Line<'_> = needed(fields.encoding, "encoding")?;
     let encoding = encoding_of(&encoding)?;
+    let has_order = encoding != Encoding::Text && !matches!(kind, SampleKind::I8 | SampleKind::U8);
+    // A wrong word is refused also where the order of bytes does not matter.
     let big = match fields.endian {
-        _ if encoding == Encoding::Text || matches!(kind, SampleKind::I8 | SampleKind::U8) => false,
         Some(line) if line.value.eq_ignore_ascii_case("little") => false,
         Some(line) if line.value.eq_ignore_ascii_case("big") => true,
         Some(line) => return Err(line.error("little or big").into()),
+        None if !has_order => false,
         None => return Err(VolumeFileError::Missing { what: "endian" }.into()),
     };
     let dimension: Line<'_> = needed(fields.dimension, "dimension")?;
@@ -71,6 +77,9 @@ pub(super) fn header(bytes: &[u8]) -> Result<Header, Error> {
     let sizes: Line<'_> = needed(fields.sizes, "sizes")?;
     let all = list(&sizes, count, "as many sizes as axes", |word| word.parse().ok())?;
     let (extents, chosen) = extents(&all, &sizes)?;
+    if let Some(line) = fields.kinds {
+        kinds(&line, &extents, chosen, count)?;
+    }
     let axes = axes(&fields, extents, chosen, count)?;
     let lines_before = fields.line_skip.map_or(Ok([0]), |line| line.whole("a number of lines"))?[0];
     let skip = match fields.byte_skip {
@@ -138,22 +147,13 @@ fn take<'a>(fields: &mut Fields<'a>, line: &'a [u8], number: u64) -> Result<(), 
         b"lineskip" => &mut fields.line_skip,
         b"byteskip" => &mut fields.byte_skip,
         b"datafile" => &mut fields.data_file,
-        b"space" => {
-            return match value {
-                _ if value.matches('-').count() == 2 && !value.ends_with("-time") => Ok(()),
-                "RAS" | "LAS" | "LPS" | "3D-right-handed" | "3D-left-handed" => Ok(()),
-                _ => Err(line.error("a space of three dimensions").into()),
-            };
-        }
-        b"spacedimension" => {
-            return match line.whole("a number")? {
-                [3] => Ok(()),
-                _ => Err(line.error("a space of three dimensions").into()),
-            };
-        }
+        b"space" => &mut fields.space,
+        b"spacedimension" => &mut fields.space_dimension,
+        b"kinds" => &mut fields.kinds,
+        b"thicknesses" => &mut fields.thicknesses,
         // These say nothing of the samples or their places.
-        b"content" | b"number" | b"min" | b"max" | b"oldmin" | b"oldmax" | b"thicknesses" | b"labels"
-        | b"kinds" | b"sampleunits" | b"measurementframe" | b"blocksize" => return Ok(()),
+        b"content" | b"number" | b"min" | b"max" | b"oldmin" | b"oldmax" | b"labels" | b"sampleunits"
+        | b"measurementframe" | b"blocksize" => return Ok(()),
         _ => return Err(wrong("a field of the format")),
     };
     if field.is_some() {
@@ -177,26 +177,104 @@ fn list<T>(
     if found.len() as u64 == count { Ok(found) } else { Err(line.error(expected).into()) }
 }
 
+/// Refuses axes of several numbers that belong together, such as colours: an axis of more than one sample must be one
+/// of space, of time, or of nobody knows what.
+fn kinds(line: &Line<'_>, extents: &[u32; 3], chosen: [usize; 3], count: u64) -> Result<(), Error> {
+    let all = list(line, count, "a kind of the format for each axis", is_domain)?;
+    for (&extent, &axis) in extents.iter().zip(&chosen) {
+        if extent > 1 && all.get(axis) == Some(&false) {
+            return Err(VolumeFileError::Unsupported { what: "samples of several numbers" }.into());
+        }
+    }
+    Ok(())
+}
+
+/// Whether samples lie one after the other along an axis of this kind; `None` for what is no kind.
+fn is_domain(kind: &str) -> Option<bool> {
+    const DOMAINS: [&str; 5] = ["domain", "space", "time", "none", "???"];
+    const OTHERS: [&str; 28] = [
+        "list",
+        "point",
+        "vector",
+        "covariant-vector",
+        "normal",
+        "stub",
+        "scalar",
+        "complex",
+        "2-vector",
+        "3-color",
+        "RGB-color",
+        "HSV-color",
+        "XYZ-color",
+        "4-color",
+        "RGBA-color",
+        "3-vector",
+        "3-gradient",
+        "3-normal",
+        "4-vector",
+        "quaternion",
+        "2D-symmetric-matrix",
+        "2D-masked-symmetric-matrix",
+        "2D-matrix",
+        "2D-masked-matrix",
+        "3D-symmetric-matrix",
+        "3D-masked-symmetric-matrix",
+        "3D-matrix",
+        "3D-masked-matrix",
+    ];
+    let is_one_of = |names: &[&str]| names.iter().any(|&name| is_word(kind, name));
+    if is_one_of(&DOMAINS) { Some(true) } else { is_one_of(&OTHERS).then_some(false) }
+}
+
+/// Whether a word is a name of the format, with or without its hyphens and its letter cases.
+fn is_word(word: &str, name: &str) -> bool {
+    let plain = |text| str::bytes(text).filter(|&byte| byte != b'-').map(|byte| byte.to_ascii_lowercase());
+    plain(word).eq(plain(name))
+}
+
+/// Refuses a space that has not three dimensions, or that the format does not have.
+fn check_space(fields: &Fields<'_>) -> Result<(), Error> {
+    const SPACES: [&str; 9] = [
+        "right-anterior-superior",
+        "RAS",
+        "left-anterior-superior",
+        "LAS",
+        "left-posterior-superior",
+        "LPS",
+        "scanner-xyz",
+        "3D-right-handed",
+        "3D-left-handed",
+    ];
+    const EXPECTED: &str = "a space of three dimensions";
+    if let Some(line) = fields.space
+        && !SPACES.iter().any(|&space| is_word(line.value, space))
+    {
+        return Err(line.error(EXPECTED).into());
+    }
+    match fields.space_dimension {
+        Some(line) if line.whole("a number")? != [3] => Err(line.error(EXPECTED).into()),
+        _ => Ok(()),
+    }
+}
+
+/// A number for each axis of the file; NaN stands for an axis that has none.
+fn numbers(line: Option<Line<'_>>, count: u64, expected: &'static str) -> Result<Option<Vec<f64>>, Error> {
+    let number = |word: &str| word.parse::<f64>().ok().filter(|x| !x.is_infinite());
+    line.map(|line| list(&line, count, expected, number)).transpose()
+}
+
 /// Where the samples lie: by directions in space, else by spacings and the ends of axes, else one unit apart
 /// from 0 on.
 fn axes(fields: &Fields<'_>, extents: [u32; 3], chosen: [usize; 3], count: u64) -> Result<Axes, Error> {
-    if let Some(line) = fields.directions {
-        return in_space(fields, &line, chosen, count);
+    check_space(fields)?;
+    let of = |line| numbers(line, count, "a finite number, or nan, for each axis");
+    let (all_spacings, all_mins, all_maxs) = (of(fields.spacings)?, of(fields.mins)?, of(fields.maxs)?);
+    of(fields.thicknesses)?;
+    if let (Some(line), Some(spacings)) = (fields.spacings, &all_spacings)
+        && spacings.iter().any(|&spacing| spacing < 0.0)
+    {
+        return Err(line.error("spacings above zero, or nan").into());
     }
-    let numbers = |line: Option<Line<'_>>, default: f64| -> Result<[Option<f64>; 3], Error> {
-        let Some(line) = line else { return Ok([None; 3]) };
-        let all = list(&line, count, "a number for each axis", |word| word.parse::<f64>().ok())?;
-        let mut found = [Some(default); 3];
-        for (place, &axis) in found.iter_mut().zip(&chosen) {
-            if let Some(&given) = all.get(axis) {
-                *place = Some(given).filter(|x| x.is_finite());
-                place.ok_or_else(|| line.error("finite numbers for all axes of more than one sample"))?;
-            }
-        }
-        Ok(found)
-    };
-    let (spacings, mins, maxs) =
-        (numbers(fields.spacings, 1.0)?, numbers(fields.mins, 0.0)?, numbers(fields.maxs, 1.0)?);
     let centres = match fields.centers {
         Some(line) => {
             let all = list(&line, count, "cell, node or none for each axis", |word| match word {
@@ -208,6 +286,33 @@ fn axes(fields: &Fields<'_>, extents: [u32; 3], chosen: [usize; 3], count: u64) 
         }
         None => [None; 3],
     };
+    if let Some(line) = fields.directions {
+        let given = [(fields.spacings, all_spacings), (fields.mins, all_mins), (fields.maxs, all_maxs)];
+        return in_space(fields, &line, chosen, count, &given);
+    }
+    if let Some(line) = fields.origin {
+        return Err(line
+            .error("space directions besides, without which an origin in space says nothing")
+            .into());
+    }
+    let chosen_ones = |line: Option<Line<'_>>, all: Option<Vec<f64>>, default: f64| {
+        let (Some(line), Some(all)) = (line, all) else { return Ok([None; 3]) };
+        let mut found = [Some(default); 3];
+        for (place, &axis) in found.iter_mut().zip(&chosen) {
+            if let Some(&given) = all.get(axis) {
+                if given.is_nan() {
+                    return Err(Error::from(
+                        line.error("finite numbers for all axes of more than one sample"),
+                    ));
+                }
+                *place = Some(given);
+            }
+        }
+        Ok(found)
+    };
+    let spacings = chosen_ones(fields.spacings, all_spacings, 1.0)?;
+    let mins = chosen_ones(fields.mins, all_mins, 0.0)?;
+    let maxs = chosen_ones(fields.maxs, all_maxs, 1.0)?;
     let is_cell = |axis: usize| centres[axis].unwrap_or(false);
     let mut found = Axes::along([1.0; 3], [0.0; 3]);
     for axis in 0..3 {
@@ -226,7 +331,13 @@ fn axes(fields: &Fields<'_>, extents: [u32; 3], chosen: [usize; 3], count: u64) 
     Ok(found)
 }
 
-fn in_space(fields: &Fields<'_>, line: &Line<'_>, chosen: [usize; 3], count: u64) -> Result<Axes, Error> {
+fn in_space(
+    fields: &Fields<'_>,
+    line: &Line<'_>,
+    chosen: [usize; 3],
+    count: u64,
+    given: &[(Option<Line<'_>>, Option<Vec<f64>>)],
+) -> Result<Axes, Error> {
     const EXPECTED: &str = "a vector (x,y,z) or none for each axis";
     let mut all: Vec<Option<[f64; 3]>> = Vec::new();
     let mut rest = line.value;
@@ -246,6 +357,13 @@ fn in_space(fields: &Fields<'_>, line: &Line<'_>, chosen: [usize; 3], count: u64
     }
     if all.len() as u64 != count {
         return Err(line.error(EXPECTED).into());
+    }
+    // As the format has it: a direction says all of an axis.
+    for (line, numbers) in given {
+        let (Some(line), Some(numbers)) = (line, numbers) else { continue };
+        if numbers.iter().zip(&all).any(|(number, direction)| !number.is_nan() && direction.is_some()) {
+            return Err(line.error("nan for each axis that has a space direction").into());
+        }
     }
     let mut axes = Axes::along([1.0; 3], [0.0; 3]);
     let mut taken = 0;

@@ -47,6 +47,9 @@ impl Axes {
         });
         let first = if self.is_corner { spacing.map(|edge| 0.5 * edge) } else { [0.0; 3] };
         let grid = VoxelGrid::with_first_sample(extents, first, spacing).map_err(wrong)?;
+        if self.is_flat(spacing) {
+            return Err(VolumeFileError::Place.into());
+        }
         // What is nothing but an error of rounding is nothing.
         let part = |c: f64| if c.abs() < 1.0 / (1u64 << 60) as f64 { 0.0 } else { c };
         let row = |i: usize| {
@@ -55,5 +58,17 @@ impl Axes {
         };
         let placement = Affine::new([row(0), row(1), row(2)]).map_err(wrong)?;
         Ok((grid, Some(placement)))
+    }
+
+    /// Whether the directions lie in one plane, up to the rounding of decimal numbers: then their box has less than 2^-40
+    /// of the volume that it would have if they were square to each other.
+    fn is_flat(&self, spacing: [f64; 3]) -> bool {
+        let [a, b, c] = [0, 1, 2].map(|axis| self.steps[axis].map(|x| x / spacing[axis]));
+        let cross = [0, 1, 2].map(|i| {
+            let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+            a[j] * b[k] - a[k] * b[j]
+        });
+        let volume = cross[0] * c[0] + cross[1] * c[1] + cross[2] * c[2];
+        volume.abs() < 1.0 / (1u64 << 40) as f64
     }
 }

@@ -50,8 +50,8 @@ fn bytes_of<T: Copy, const N: usize>(values: &[T], of: impl Fn(T) -> [u8; N]) ->
 }
 
 /// A NRRD file, version 4, with the grid as `space directions` and `space origin`. The origin is the first
-/// sample's place, corner + spacing / 2, rounded to doubles, so that a grid that is read again may lie half a
-/// last place beside. O(n).
+/// sample's place, corner + spacing / 2, rounded to a double from which [`read_volume`](super::read_volume) finds the
+/// same corner. Where there is none, near a power of two, a grid that is read again lies half a last place beside. O(n).
 ///
 /// # Errors
 /// As [`write_raw_volume`].
@@ -72,7 +72,7 @@ pub fn write_nrrd(samples: &Samples<'_>, grid: &VoxelGrid, encoding: NrrdEncodin
         Samples::I16(_) => ("int16", true),
         Samples::F32(_) => ("float", true),
     };
-    let ([nx, ny, nz], [x, y, z], [sx, sy, sz]) = (grid.extents(), grid.centre([0; 3]), grid.spacing());
+    let ([nx, ny, nz], [x, y, z], [sx, sy, sz]) = (grid.extents(), origin(grid), grid.spacing());
     let mut header = memory::text("")?;
     // Numbers of doubles take at most 80 characters, so that nothing is allocated below.
     header.try_reserve(1024)?;
@@ -92,6 +92,16 @@ pub fn write_nrrd(samples: &Samples<'_>, grid: &VoxelGrid, encoding: NrrdEncodin
         NrrdEncoding::Gzip => gzip(&data, &mut file)?,
     }
     Ok(file)
+}
+
+/// The first sample's place, as near as doubles come to it; of several, those that lead back to the corner.
+fn origin(grid: &VoxelGrid) -> [f64; 3] {
+    let (centre, corner, spacing) = (grid.centre([0; 3]), grid.corner(), grid.spacing());
+    [0, 1, 2].map(|axis| {
+        let near = centre[axis];
+        let leads_back = |x: &f64| x - 0.5 * spacing[axis] == corner[axis];
+        [near, near.next_down(), near.next_up()].into_iter().find(leads_back).unwrap_or(near)
+    })
 }
 
 /// What the compressor allocates for itself, and more.

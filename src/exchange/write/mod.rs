@@ -1,8 +1,10 @@
 //! Mesh files of all formats, written.
 //!
 //! Whatever is written here comes back through this library's readers: text has the shortest decimal numbers that are
-//! read as the same doubles, binary PLY has the doubles themselves. STL alone has 32-bit coordinates.
+//! read as the same doubles, binary PLY has the doubles themselves. STL alone has 32-bit coordinates; [`written_form`]
+//! tells what becomes of a mesh.
 
+mod form;
 mod lines;
 mod obj;
 mod off;
@@ -13,6 +15,7 @@ mod stl;
 #[cfg(feature = "threemf")]
 mod threemf;
 
+pub use form::{WrittenForm, written_form};
 #[cfg(feature = "png")]
 pub use png::write_png;
 pub use stl::write_stl;
@@ -46,6 +49,9 @@ pub struct WriteOptions {
 /// | OFF | vertices and triangles |
 /// | 3MF | (feature `threemf`) a package of the core specification: one object, which is the build's one item, in the given unit |
 ///
+/// Coordinates are kept exactly by all but STL, which may lose vertices and triangles and flatten what is small and far
+/// away: [`written_form`] tells. Attributes of the mesh are not written.
+///
 /// Vertices and triangles keep their order. A 3MF leaves out triangles that have a vertex twice, which it must not have.
 ///
 /// O(n) time and memory.
@@ -68,6 +74,7 @@ pub struct WriteOptions {
 /// # Ok::<(), leafless::Error>(())
 /// ```
 pub fn write_mesh(mesh: &TriangleMesh, format: MeshFormat, options: &WriteOptions) -> Result<Vec<u8>, Error> {
+    refuse(mesh, format)?;
     match format {
         MeshFormat::Stl if options.text => stl::text(mesh),
         MeshFormat::Stl => write_stl(mesh),
@@ -77,8 +84,23 @@ pub fn write_mesh(mesh: &TriangleMesh, format: MeshFormat, options: &WriteOption
         #[cfg(feature = "threemf")]
         MeshFormat::ThreeMf => threemf::write(mesh, options.unit.unwrap_or(LengthUnit::Millimetre)),
         #[cfg(not(feature = "threemf"))]
-        MeshFormat::ThreeMf => {
-            Err(MeshFileError::Unsupported { what: "3MF, which was left out of this build," }.into())
+        MeshFormat::ThreeMf => Err(WITHOUT_3MF.into()),
+    }
+}
+
+#[cfg(not(feature = "threemf"))]
+const WITHOUT_3MF: MeshFileError =
+    MeshFileError::Unsupported { what: "3MF, which was left out of this build," };
+
+/// Refuses meshes that a format does not have, apart from their coordinates.
+fn refuse(mesh: &TriangleMesh, format: MeshFormat) -> Result<(), Error> {
+    match format {
+        // A file of neither cannot be told from other text.
+        MeshFormat::Obj if mesh.vertices().is_empty() => {
+            Err(Error::Argument { name: "mesh", problem: "has no vertices, of which an OBJ must have some" })
         }
+        #[cfg(not(feature = "threemf"))]
+        MeshFormat::ThreeMf => Err(WITHOUT_3MF.into()),
+        _ => Ok(()),
     }
 }

@@ -7,13 +7,6 @@ use crate::mesh::TriangleMesh;
 use alloc::vec::Vec;
 
 pub(super) fn write(mesh: &TriangleMesh, options: &WriteOptions) -> Result<Vec<u8>, Error> {
-    // A file of neither cannot be told from other text.
-    if mesh.vertices().is_empty() {
-        return Err(Error::Argument {
-            name: "mesh",
-            problem: "has no vertices, of which an OBJ must have some",
-        });
-    }
     let mut lines = Lines::default();
     for &vertex in mesh.vertices() {
         lines.add(format_args!("v {}\n", Point(vertex)))?;

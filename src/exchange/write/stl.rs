@@ -14,7 +14,8 @@ const TITLE: &[u8] = b"binary STL written by leafless";
 /// Writes a binary STL file.
 ///
 /// Coordinates are rounded to `f32`. Vertices stay common to their triangles, so a closed mesh stays closed,
-/// also where rounding makes a triangle degenerate, which readers drop. Without area the normal is (0, 0, 0).
+/// also where rounding makes a triangle degenerate, which readers drop; but what is smaller than the rounding is lost,
+/// up to the whole solid. [`written_form`](super::written_form) tells. Without area the normal is (0, 0, 0).
 ///
 /// O(t), 84 + 50 t bytes. Fails with [`Error::Argument`] beyond the range of `f32`, or
 /// [`Error::OutOfMemory`].
@@ -54,7 +55,7 @@ pub(super) fn text(mesh: &TriangleMesh) -> Result<Vec<u8>, Error> {
 }
 
 /// A vector in 32-bit numbers.
-fn rounded(vector: [f64; 3]) -> Result<[f32; 3], Error> {
+pub(super) fn rounded(vector: [f64; 3]) -> Result<[f32; 3], Error> {
     let vector = vector.map(|x| x as f32);
     if !vector.iter().all(|x| x.is_finite()) {
         let problem = "has a coordinate beyond the range of 32-bit floating point numbers";

@@ -8,7 +8,7 @@ use num_bigint::{BigInt, Sign};
 use num_traits::{ToPrimitive, Zero};
 
 /// `mantissa · 2^exponent`; the mantissa is odd or zero.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub(crate) struct Dyadic {
     mantissa: BigInt,
     exponent: i64,

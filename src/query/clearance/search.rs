@@ -294,10 +294,10 @@ impl<'s, A: Classifier, B: Classifier> Search<'s, A, B> {
         let reached = self.bounds.reached.map(|(reached, _)| reached);
         let least = [least, reached].into_iter().flatten().min();
         let size = self.a.subject.classifier.frame().cell_size();
-        Interval {
-            lower: least.map_or(f64::INFINITY, |square| product_down(root(square).lower, size)),
-            upper: reached.map_or(f64::INFINITY, |square| product_up(root(square).upper, size)),
-        }
+        Interval::between(
+            least.map_or(f64::INFINITY, |square| product_down(root(square).lower, size)),
+            reached.map_or(f64::INFINITY, |square| product_up(root(square).upper, size)),
+        )
     }
 
     /// What is known.
@@ -310,9 +310,9 @@ impl<'s, A: Classifier, B: Classifier> Search<'s, A, B> {
     fn found(self, stop_reason: StopReason) -> Clearance {
         // What goes on outside of the universe may come as near as it likes.
         let clipped = self.a.subject.is_clipped() || self.b.subject.is_clipped();
-        let Interval { lower, upper } = self.distance();
+        let distance = self.distance();
         Clearance {
-            distance: Interval { lower: if clipped { 0.0 } else { lower }, upper },
+            distance: if clipped { Interval::between(0.0, distance.upper) } else { distance },
             nearest: self.bounds.reached.map(|(_, [a, b])| [self.a.cell(a), self.b.cell(b)]),
             stop_reason,
             splits: [self.a.subject.splits, self.b.subject.splits],
@@ -328,6 +328,6 @@ fn root(square: u64) -> Interval {
     let root = sqrt(square);
     match two_product(root, root) {
         exact if exact == (square, 0.0) => Interval::exactly(root),
-        _ => Interval { lower: root.next_down(), upper: root.next_up() },
+        _ => Interval::between(root.next_down(), root.next_up()),
     }
 }

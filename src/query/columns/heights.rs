@@ -68,12 +68,11 @@ impl Heights {
         let possible = self.frame.plane(axis, self.upper_plane(index)?);
         let proven = self.full_plane(index).map(|plane| self.frame.plane(axis, plane));
         Some(match self.side {
-            Side::Above => Interval {
-                lower: proven.map_or(f64::NEG_INFINITY, |plane| plane.lower),
-                upper: possible.upper,
-            },
+            Side::Above => {
+                Interval::between(proven.map_or(f64::NEG_INFINITY, |plane| plane.lower), possible.upper)
+            }
             Side::Below => {
-                Interval { lower: possible.lower, upper: proven.map_or(f64::INFINITY, |plane| plane.upper) }
+                Interval::between(possible.lower, proven.map_or(f64::INFINITY, |plane| plane.upper))
             }
         })
     }

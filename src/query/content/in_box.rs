@@ -54,15 +54,15 @@ impl OctreeRef<'_> {
                     let window =
                         Window { first: [x.first, y.first, z.first], last: [x.last, y.last, z.last] };
                     let (least, most) = count(self, window);
-                    let cells = Interval {
-                        lower: Interval::of_integer(least.into()).lower,
-                        upper: Interval::of_integer(most.into()).upper,
-                    };
+                    let cells = Interval::between(
+                        Interval::of_integer(least.into()).lower,
+                        Interval::of_integer(most.into()).upper,
+                    );
                     volume = volume.plus(cells.times(x.length).times(y.length).times(z.length));
                 }
             }
         }
-        Ok(Interval { lower: volume.lower.max(0.0), upper: volume.upper })
+        Ok(volume.not_negative())
     }
 }
 
@@ -102,7 +102,7 @@ fn rows(frame: &Frame, axis: usize, min: f64, max: f64, window: &Window) -> [Opt
     let low = || frame.rounded_offset(axis, min, lower);
     let high = || frame.rounded_offset(axis, max, upper);
     let row = |first: u32, last: u32, length: Interval| {
-        let length = Interval { lower: length.lower.max(0.0), upper: length.upper.max(0.0) };
+        let length = length.not_negative();
         (first <= last).then_some(Rows { first, last, length })
     };
     if first == last {

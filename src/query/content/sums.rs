@@ -105,11 +105,9 @@ impl Sums {
     /// In cubic model units.
     pub(super) fn volume(&self, frame: &Frame) -> Interval {
         let Share { least, most } = self.volume.unwrap_or(Share { least: 0, most: 0 });
-        let units =
-            Interval { lower: Interval::of_integer(least).lower, upper: Interval::of_integer(most).upper };
+        let units = Interval::between(Interval::of_integer(least).lower, Interval::of_integer(most).upper);
         let size = Interval::exactly(frame.cell_size());
         let cells = units.times(Interval::exactly(1.0 / CELL as f64));
-        let Interval { lower, upper } = cells.times(size).times(size).times(size);
-        Interval { lower: lower.max(0.0), upper }
+        cells.times(size).times(size).times(size).not_negative()
     }
 }

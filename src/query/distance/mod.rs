@@ -34,7 +34,7 @@ impl DistanceTo {
     /// What is known of a point that has no place.
     fn unknown(self) -> Interval {
         let lower = if self == DistanceTo::Boundary { f64::NEG_INFINITY } else { 0.0 };
-        Interval { lower, upper: f64::INFINITY }
+        Interval::between(lower, f64::INFINITY)
     }
 
     /// The answer, by one or two searches: `search(hollow)` is the distance from the solid, or from its complement.
@@ -49,8 +49,8 @@ impl DistanceTo {
                     return Ok(outside);
                 }
                 let inside = search(true)?;
-                let inside = Interval { lower: -inside.upper, upper: -inside.lower };
-                let both = Interval { lower: inside.lower, upper: outside.upper };
+                let inside = inside.negated();
+                let both = Interval::between(inside.lower, outside.upper);
                 Ok(if inside.upper < 0.0 { inside } else { both })
             }
         }

@@ -106,8 +106,7 @@ impl<'f> Place<'f> {
             Interval::of_integer(square as i128).root()
         };
         let distance = units.times(Interval::exactly(self.frame.edge() / (1u64 << self.bits) as f64));
-        let found = distance.plus(Interval { lower: -self.error, upper: self.error });
-        Interval { lower: found.lower.max(0.0), upper: found.upper }
+        distance.plus(Interval::between(-self.error, self.error)).not_negative()
     }
 
     /// The point of a closed cell that is nearest to `point`, next to which this place is: its coordinates are those of

@@ -207,7 +207,7 @@ impl<W: Worker> Search<'_, W> {
     }
 
     fn found(&self) -> Interval {
-        Interval { lower: self.upper.min(self.settled).min(self.begin()), upper: self.upper }
+        Interval::between(self.upper.min(self.settled).min(self.begin()), self.upper)
     }
 
     /// Takes in what is proven to be there.

@@ -103,7 +103,7 @@ impl OctreeRef<'_> {
         let Some(place) = Place::new(&self.frame, point) else { return Ok(to.unknown()) };
         to.ask(|hollow| {
             let [outer, inner] = least(self, &place, hollow)?;
-            Ok(Interval { lower: place.distance(outer).lower, upper: place.distance(inner).upper })
+            Ok(Interval::between(place.distance(outer).lower, place.distance(inner).upper))
         })
     }
 

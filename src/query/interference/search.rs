@@ -123,7 +123,7 @@ impl<'s, A: Classifier, B: Classifier> Search<'s, A, B> {
         // Where both go on outside of the universe, nobody knows what they do there.
         let clipped = self.a.is_clipped() && self.b.is_clipped();
         let undecided = clipped || self.waiting + self.undecided > 0;
-        let Interval { lower, upper } = self.volume();
+        let volume = self.volume();
         Interference {
             verdict: match self.witness {
                 Some(_) => Overlap::Overlapping,
@@ -131,7 +131,7 @@ impl<'s, A: Classifier, B: Classifier> Search<'s, A, B> {
                 None => Overlap::Disjoint,
             },
             witness: self.witness,
-            volume: Interval { lower, upper: if clipped { f64::INFINITY } else { upper } },
+            volume: if clipped { Interval::between(volume.lower, f64::INFINITY) } else { volume },
             splits: [self.a.splits, self.b.splits],
             level: self.level,
             proofs: [self.a.classifier.proof(), self.b.classifier.proof()],

@@ -89,10 +89,8 @@ pub fn surface_area<S: Solid>(
     // A half edge of the universe is 2^(BITS / 2) units.
     let edge = Interval::exactly(classifier.frame().edge());
     let unit = edge.square().times(Interval::exactly(0.25 / (1u128 << BITS) as f64));
-    let area = Interval {
-        lower: Interval::of_integer(lower).times(unit).lower,
-        upper: if unbounded > 0 { f64::INFINITY } else { Interval::of_integer(upper).times(unit).upper },
-    };
+    let most = if unbounded > 0 { f64::INFINITY } else { Interval::of_integer(upper).times(unit).upper };
+    let area = Interval::between(Interval::of_integer(lower).times(unit).lower, most);
     let (stop_reason, level, splits) = (walked.stop_reason, walked.level, walked.splits);
     Ok(SurfaceArea { area, clipped, stop_reason, level, splits })
 }
@@ -164,10 +162,11 @@ impl Quantity for Area {
     const DIMENSION: u8 = 2;
     const SIZE: f64 = 6.0;
     const UNIVERSE: f64 = 24.0 * (1u128 << BITS) as f64;
-    const NOTHING: Interval = Interval { lower: 0.0, upper: f64::INFINITY };
+    const NOTHING: Interval = Interval::between(0.0, f64::INFINITY);
 
     fn known<W: Worker>(worker: &mut W, cell: Cell, part: &W::Part) -> Result<Interval, Error> {
-        Ok(worker.area(cell, part)?.unwrap_or(Area::NOTHING))
+        // No area is negative: a solid that says so says nothing.
+        Ok(worker.area(cell, part)?.filter(|area| area.upper >= 0.0).unwrap_or(Area::NOTHING))
     }
 
     fn doubt(known: &Interval) -> f64 {

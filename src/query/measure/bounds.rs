@@ -27,6 +27,7 @@ type Symmetric = [Interval; 6];
 pub(super) type Tensor = [[Interval; 3]; 3];
 
 const ZERO: Interval = Interval::exactly(0.0);
+const NOT_NEGATIVE: Interval = Interval::between(0.0, f64::INFINITY);
 const HALF: Interval = Interval::exactly(0.5);
 const THREE: Interval = Interval::exactly(3.0);
 /// The unit of moments, as a share of what it would be without bits behind the point.
@@ -49,9 +50,8 @@ struct Bounded {
 impl Bounded {
     fn new(moments: &Moments) -> Bounded {
         let error = moments.error;
-        let within = |sum: i128, error: i128| Interval {
-            lower: Interval::of_integer(sum - error).lower,
-            upper: Interval::of_integer(sum + error).upper,
+        let within = |sum: i128, error: i128| {
+            Interval::of_integer(sum - error).joined(Interval::of_integer(sum + error))
         };
         Bounded {
             volume: within(moments.volume, error),
@@ -80,9 +80,10 @@ impl Known {
 
     pub(super) fn volume(&self) -> Interval {
         let (full, all) = (Bounded::new(&self.found.full).volume, Bounded::new(&self.all()).volume);
-        let Interval { lower, upper } = self.to_model(Interval { lower: full.lower, upper: all.upper });
-        let universe = self.to_model(Interval::of_integer(UNIVERSE)).upper;
-        Interval { lower: lower.max(0.0), upper: upper.min(universe) }
+        let universe = Interval::between(0.0, self.to_model(Interval::of_integer(UNIVERSE)).upper);
+        // (No solid that keeps the laws contradicts itself; of one that does, nothing is known.)
+        let between = Interval::new(full.lower, all.upper).map(|volume| self.to_model(volume));
+        between.and_then(|volume| volume.common(universe)).unwrap_or(universe)
     }
 
     /// None if nothing is proven full.
@@ -105,8 +106,9 @@ impl Known {
                     open.second[axis],
                 )
             };
-            let universe = Interval { lower: -point[axis] as f64, upper: (last - point[axis]) as f64 };
-            let from_point = Interval { lower: -of(-1.0), upper: of(1.0) }.within(universe);
+            let universe = Interval::between(-point[axis] as f64, (last - point[axis]) as f64);
+            let from_point = Interval::new(-of(-1.0), of(1.0)).and_then(|from| from.common(universe));
+            let from_point = from_point.unwrap_or(universe);
             let plane = self.frame.plane(axis, (point[axis] / 2) as u32);
             plane.plus(from_point.times(Interval::exactly(self.half())))
         }))
@@ -163,20 +165,18 @@ impl Known {
             tensor[i][j] = to_model(if i == j {
                 // Of the other two axes.
                 let (a, b) = ((i + 1) % 3, (i + 2) % 3);
-                Interval {
-                    lower: lower[a].plus(lower[b]).lower.max(0.0),
-                    upper: upper[a].plus(upper[b]).upper,
-                }
+                let between = Interval::new(lower[a].plus(lower[b]).lower, upper[a].plus(upper[b]).upper);
+                between.map_or(NOT_NEGATIVE, Interval::not_negative)
             } else {
                 let [a, b] = [i, j].map(|axis| Interval::exactly(spread[axis].max(0.0)));
                 let radius = a.times(b).root().upper;
-                let sum = lower[k].plus(upper[k]).plus(Interval { lower: -radius, upper: radius });
+                let sum = lower[k].plus(upper[k]).plus(Interval::between(-radius, radius));
                 sum.times(HALF).negated()
             });
             tensor[j][i] = tensor[i][j];
         }
         for i in 0..3 {
-            tensor[i][i].lower = tensor[i][i].lower.max(0.0);
+            tensor[i][i] = tensor[i][i].not_negative();
         }
         tensor
     }
@@ -187,7 +187,7 @@ fn second_about_centroid(moments: &Moments) -> Symmetric {
     if moments.volume <= moments.error {
         // Nothing, as far as is known; the greatest moments are those of the error.
         let Bounded { second, .. } = Bounded::new(moments);
-        return second.map(|sum| Interval { lower: ZERO.lower.min(sum.lower), upper: sum.upper.max(0.0) });
+        return second.map(|sum| sum.joined(ZERO));
     }
     // The half cell next to the centroid is the reference, so that little is taken off.
     let point = moments.first.map(|first| nearest(first, moments.volume).clamp(0, 2 << MAX_DEPTH));
@@ -232,12 +232,11 @@ fn farthest(
         c += step;
     }
     let at = Interval::exactly(c);
-    let zero = |sum: Interval| Interval { lower: sum.lower.max(0.0), upper: sum.upper.max(0.0) };
-    let (v, m, w, p) = (full_volume, full_first, zero(open_volume), open_first);
-    let q = zero(open_second.over(THREE));
+    let (v, m, w, p) = (full_volume, full_first, open_volume.not_negative(), open_first);
+    let q = open_second.over(THREE).not_negative();
     let about = p.minus(at.times(w));
     let square = q.minus(at.times(p).times(Interval::exactly(2.0))).plus(at.square().times(w));
     let excess = m.minus(at.times(v)).plus(about.plus(w.times(square).root()).times(HALF));
-    let beyond = Interval { lower: 0.0, upper: excess.upper.max(0.0) };
+    let beyond = Interval::between(0.0, excess.upper.max(0.0));
     at.plus(beyond.over(v)).upper
 }

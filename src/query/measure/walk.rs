@@ -25,6 +25,9 @@ use core::sync::atomic::{AtomicU64, Ordering::Relaxed};
 /// A longer front is not split further, but walked through.
 const LONG_FRONT: usize = 1 << 13;
 
+/// Nor is one whose parts take more bytes: eight times as many remain when all of it is split once more.
+const LARGE_FRONT: usize = 1 << 26;
+
 /// Cells of the front that have their scratch memory in common, and that one thread takes on at once.
 const CHUNK: usize = 1 << 7;
 
@@ -152,7 +155,9 @@ impl<Q: Quantity, C: Classifier> Walk<'_, Q, C> {
             let length: usize = front.iter().map(|chunk| chunk.cells.len()).sum();
             let doubts = || front.iter().flat_map(|chunk| &chunk.cells).map(|open| open.doubt);
             let greatest = doubts().fold(0.0, f64::max);
-            if length <= self.long && greatest > 0.0 && !self.may_be_met(&settled, doubts().sum()) {
+            let bytes: usize = front.iter().map(|chunk| chunk.worker.scratch_bytes()).sum();
+            let is_short = length <= self.long && bytes <= LARGE_FRONT;
+            if is_short && greatest > 0.0 && !self.may_be_met(&settled, doubts().sum()) {
                 threshold = greatest / 8.0;
                 let count = doubts().filter(|&doubt| doubt > threshold).count() as u64;
                 if splits + count > self.budget {

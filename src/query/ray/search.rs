@@ -124,9 +124,10 @@ impl First {
             Obstacle::Full => self.inner?,
             Obstacle::Upper => self.outer?,
         };
-        let lower = self.outer?.0;
         let upper = self.inner.map_or(f64::INFINITY, |(t, ..)| t);
-        Some(RayHit { t: Interval { lower, upper }, cell, normal })
+        // What is solid may be solid: a solid whose slabs contradict this is believed as to what is solid.
+        let lower = self.outer?.0.min(upper);
+        Some(RayHit { t: Interval::between(lower, upper), cell, normal })
     }
 
     /// Whether the ray is surely stopped, and whether it may be.
@@ -208,7 +209,7 @@ impl Enclosed {
         let (entry, exit) = (passage.entry.t, passage.exit.t);
         let (mut possible, mut certain) = ([None; 3], [None; 3]);
         for (n, slab) in enclosure.slabs.iter().enumerate().filter(|(_, slab)| slab.normal != [0.0; 3]) {
-            let height = Height::new(line, cell, slab, Interval { lower: entry.lower, upper: exit.upper });
+            let height = Height::new(line, cell, slab, Interval::between(entry.lower, exit.upper));
             possible[n] = Some(height.perhaps_below(slab.outer, n));
             certain[n] = Some(height.surely_below(slab.inner, n));
         }
@@ -306,8 +307,8 @@ impl Stays {
         let mut stays = Stays::default();
         let root = cells.root()?;
         walk(cells, line, Cell::ROOT, root, &mut stays)?;
-        let inner = |[entry, exit]: [Moment; 2]| Interval { lower: entry.t.upper, upper: exit.t.lower };
-        let outer = |[entry, exit]: [Moment; 2]| Interval { lower: entry.t.lower, upper: exit.t.upper };
+        let inner = |[entry, exit]: [Moment; 2]| Interval::new(entry.t.upper, exit.t.lower);
+        let outer = |[entry, exit]: [Moment; 2]| Interval::new(entry.t.lower, exit.t.upper);
         Ok(RaySpans { inner: united(line, stays.inner, inner)?, outer: united(line, stays.outer, outer)? })
     }
 }
@@ -359,7 +360,7 @@ fn extend(line: &Line<'_>, last: &mut Passage, next: &Passage) {
 fn united(
     line: &Line<'_>,
     mut stays: Vec<Passage>,
-    rounded: impl Fn([Moment; 2]) -> Interval,
+    rounded: impl Fn([Moment; 2]) -> Option<Interval>,
 ) -> Result<Vec<Interval>, Error> {
     stays.sort_unstable_by(|a, b| line.order(&a.entry, &b.entry).then_with(|| line.order(&a.exit, &b.exit)));
     let mut united: Vec<Passage> = memory::with_capacity(stays.len())?;
@@ -371,12 +372,12 @@ fn united(
     }
     let mut spans: Vec<Interval> = memory::with_capacity(united.len())?;
     for Passage { entry, exit } in united {
-        let span = rounded([entry, exit]);
+        // A stay that is shorter than the rounding of its ends is not proven.
+        let Some(span) = rounded([entry, exit]) else { continue };
         match spans.last_mut() {
             // Two ends that differ by less than a rounding.
-            Some(last) if span.lower <= last.upper => last.upper = last.upper.max(span.upper),
-            _ if span.lower <= span.upper => spans.push(span),
-            _ => {}
+            Some(last) if span.lower <= last.upper => *last = last.joined(span),
+            _ => spans.push(span),
         }
     }
     Ok(spans)

@@ -11,7 +11,7 @@ use core::f64::consts::FRAC_PI_2;
 /// gradient's range shrinks with the box, as it does by interval arithmetic, the slab's thickness falls with the
 /// square of the cell's edge.
 ///
-/// A NaN, an infinite gradient, or lower > upper says nothing. One end of `value` may be infinite.
+/// An infinite gradient says nothing. One end of `value` may be infinite.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct GradientRange {
     /// Contains the value of f at the middle of the box.
@@ -27,9 +27,6 @@ impl GradientRange {
     /// Let m be the middle of the gradient's range. For each point y of the box, f(y) lies in
     /// value + m · (y − middle) + (range − m) · (y − middle).
     pub(super) fn enclosure(&self, cube: &Cube<'_>, middle: [f64; 3]) -> Option<Enclosure> {
-        if ![self.value].iter().chain(&self.gradient).all(|range| range.lower <= range.upper) {
-            return None;
-        }
         let half = cube.half_edge();
         let to_centre = cube.centre_from(middle);
         let normal = self.gradient.map(|range| 0.5 * range.lower + 0.5 * range.upper);
@@ -38,7 +35,7 @@ impl GradientRange {
         for axis in 0..3 {
             let slope = Interval::exactly(normal[axis]);
             let deviation = self.gradient[axis].minus(slope);
-            let way = to_centre[axis].plus(Interval { lower: -half, upper: half });
+            let way = to_centre[axis].plus(Interval::between(-half, half));
             rest = rest.plus(slope.times(to_centre[axis])).plus(deviation.times(way));
             square = square.plus(slope.square());
             deviation_square = deviation_square.plus(deviation.square());

@@ -158,10 +158,7 @@ impl<'a, F: Fn([f64; 3], [f64; 3]) -> Result<Verdict<()>, Error> + Send + Sync> 
     /// ```
     /// use leafless::{Callback, Control, Frame, GradientRange, Interval, Verdict, measure};
     /// // A paraboloid, z ≥ x² + y², by f = x² + y² − z: its values over a box, and its gradient.
-    /// let square = |low: f64, high: f64| Interval {
-    ///     lower: if low * high < 0.0 { 0.0 } else { (low * low).min(high * high) },
-    ///     upper: (low * low).max(high * high),
-    /// };
+    /// let square = |low: f64, high: f64| Interval::new(if low * high < 0.0 { 0.0 } else { (low * low).min(high * high) }, (low * low).max(high * high)).unwrap();
     /// let bowl = Callback::new(move |min, max| {
     ///     let (x, y) = (square(min[0], max[0]), square(min[1], max[1]));
     ///     // The margin is more than what is rounded.
@@ -173,9 +170,9 @@ impl<'a, F: Fn([f64; 3], [f64; 3]) -> Result<Verdict<()>, Error> + Send + Sync> 
     /// })
     /// .with_gradient(|min, max, [x, y, z]| {
     ///     let value = x * x + y * y - z;
-    ///     let slope = |axis: usize| Interval { lower: 2.0 * min[axis], upper: 2.0 * max[axis] };
+    ///     let slope = |axis: usize| Interval::new(2.0 * min[axis], 2.0 * max[axis]).unwrap();
     ///     Ok(Some(GradientRange {
-    ///         value: Interval { lower: value - 1e-14, upper: value + 1e-14 },
+    ///         value: Interval::new(value - 1e-14, value + 1e-14).unwrap(),
     ///         gradient: [slope(0), slope(1), Interval::exactly(-1.0)],
     ///     }))
     /// });

@@ -81,7 +81,7 @@ impl TangentBalls {
         let most = across.iter().fold(0.0, |sum: f64, c| sum + c.upper.max(-c.lower));
         // (The sum of three, rounded.)
         let sideways = half.times(bend).times(Interval::exactly(most * (1.0 + 4.0 * f64::EPSILON)));
-        let square_of_x = Interval { lower: 0.0, upper: 1.5 };
+        let square_of_x = Interval::between(0.0, 1.5);
         let rest = along
             .plus(bend.times(Interval::exactly(0.5)).times(dot(&a, &a)))
             .plus(square.root().times(Interval::exactly(self.error)))

@@ -34,7 +34,7 @@ impl Scratch {
         } else {
             most_area(program, words)?
         };
-        Some(Interval { lower: 0.0, upper })
+        Some(Interval::between(0.0, upper))
     }
 }
 

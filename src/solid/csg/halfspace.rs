@@ -156,10 +156,7 @@ impl HalfSpace {
     ///         let far = min[0].abs().max(max[0].abs());
     ///         let near = if min[0] <= 0.0 && max[0] >= 0.0 { 0.0 } else { min[0].abs().min(max[0].abs()) };
     ///         // Some last places for what is rounded.
-    ///         Ok(Interval {
-    ///             lower: (-far * far).exp() - max[2] - 1e-14,
-    ///             upper: (-near * near).exp() - min[2] + 1e-14,
-    ///         })
+    ///         Ok(Interval::new((-far * far).exp() - max[2] - 1e-14, (-near * near).exp() - min[2] + 1e-14).unwrap())
     ///     },
     ///     None,
     /// );

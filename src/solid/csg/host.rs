@@ -91,12 +91,13 @@ impl PlacedHost {
                 continue;
             }
             *evaluations += 1;
-            let Interval { lower, upper } = (self.host.range)(min, max)?;
-            // A function that is zero everywhere, or a range that is none, decides nothing.
-            if lower >= 0.0 && upper > 0.0 && lower <= upper && outer >> k & 1 == 0 {
+            let range = (self.host.range)(min, max)?;
+            let (lower, upper) = (range.lower, range.upper);
+            // A function that is zero everywhere decides nothing.
+            if lower >= 0.0 && upper > 0.0 && outer >> k & 1 == 0 {
                 sides.inside |= 1 << k;
             }
-            if upper <= 0.0 && lower < 0.0 && lower <= upper && inner >> k & 1 == 0 {
+            if upper <= 0.0 && lower < 0.0 && inner >> k & 1 == 0 {
                 sides.outside |= 1 << k;
             }
         }

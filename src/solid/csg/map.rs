@@ -14,7 +14,7 @@ pub(super) const MOST_BITS_ARE: &str =
 
 /// The map x ↦ (R x + r) / w, exactly: from the universe's unit coordinates into the space of a shape that
 /// stands under any number of placements.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub(super) struct ExactMap {
     /// Rows of `[R | r]`.
     pub(super) rows: [[Dyadic; 4]; 3],

@@ -8,6 +8,7 @@ mod area;
 mod bounds;
 mod centres;
 mod chords;
+mod distinct;
 mod extent;
 mod faceted;
 #[cfg(feature = "scene")]

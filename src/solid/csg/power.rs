@@ -13,6 +13,7 @@ use wide::f64x4;
 
 /// Σ coefficient · (coordinate − centre)^exponent + constant, as given: a term an axis, of which some may be
 /// zero.
+#[derive(PartialEq)]
 pub(super) struct Powers {
     pub(super) terms: [(f64, f64, u32); 3],
     pub(super) constant: f64,

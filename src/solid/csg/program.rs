@@ -1,6 +1,7 @@
 //! An expression on a universe: placements applied, complements pushed down to the half-spaces, and the whole
 //! written as words in postfix order, so that a cell's share of it is an array of words again.
 
+use super::distinct::Equals;
 use super::extent::{Extent, into_universe};
 use super::halfspace::{HalfSpace, Placed};
 use super::hierarchy::{Groups, Operand};
@@ -68,6 +69,8 @@ struct Writer<'c> {
     /// Half-spaces that may occur again, and other solids: they are written once.
     seen_half_spaces: HashMap<(usize, usize), u32>,
     seen_solids: HashMap<usize, u32>,
+    /// Half-spaces that are equal, wherever they come from.
+    equals: Equals,
     /// The spaces of placements that may occur again.
     spaces: HashMap<(usize, usize), Space>,
 }
@@ -96,6 +99,7 @@ impl Program {
             operands: Vec::new(),
             seen_half_spaces: HashMap::new(),
             seen_solids: HashMap::new(),
+            equals: Equals::default(),
             spaces: HashMap::new(),
         };
         writer.write(&csg.root)?;
@@ -243,6 +247,9 @@ impl Writer<'_> {
 
     /// Joins the operands from `first` on.
     fn join(&mut self, join: Join, complement: bool, first: usize) -> Result<(), Error> {
+        if !self.program.paper {
+            self.equals.reduce(join, first, &mut self.operands, &mut self.program.words)?;
+        }
         let Program { groups, words, paper, .. } = &mut self.program;
         let operands = &self.operands[first..];
         let count = if *paper { operands.len() } else { groups.gather(join, operands, words)? };
@@ -275,6 +282,7 @@ impl Writer<'_> {
                     return Err(Error::Cancelled);
                 }
                 memory::push(&mut self.program.half_spaces, half_space.0.on(map, &self.program.frame))?;
+                self.equals.note(half_space, map)?;
                 if shared {
                     self.seen_half_spaces.try_reserve(1)?;
                     self.seen_half_spaces.insert(key, index);

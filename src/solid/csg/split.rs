@@ -144,6 +144,10 @@ impl Worker for CsgWorker {
         self.scratch.mark()
     }
 
+    fn scratch_bytes(&self) -> usize {
+        self.scratch.bytes()
+    }
+
     fn release(&mut self, mark: usize) {
         self.scratch.release(mark);
     }

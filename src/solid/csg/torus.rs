@@ -12,6 +12,7 @@ use wide::f64x4;
 
 /// The points (x, y, z) for which (`scale` x, `scale` y, `scale` z + `shift`) is at most √`square` from the
 /// circle of radius `major` > 0 around the z axis in the plane z = 0.
+#[derive(PartialEq, Eq, Hash)]
 pub(super) struct Torus {
     pub(super) major: Dyadic,
     pub(super) square: Dyadic,

@@ -3,7 +3,7 @@
 use super::Join;
 
 /// One word: an operand, or what joins the operands before it.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(super) struct Word(u32);
 
 /// A word taken apart.

@@ -145,6 +145,12 @@ impl Scratch {
         self.words.len()
     }
 
+    /// Bytes of the parts, and of those of other solids.
+    pub(super) fn bytes(&self) -> usize {
+        let others = self.workers.iter().flatten().map(|other| other.worker.scratch_bytes()).sum::<usize>();
+        size_of_val(&*self.words) + size_of_val(&*self.slots) + others
+    }
+
     pub(super) fn release(&mut self, mark: usize) {
         self.words.truncate(mark);
         while let Some(slot) = self.slots.pop_if(|slot| slot.words >= mark) {

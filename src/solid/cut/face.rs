@@ -15,11 +15,11 @@ pub(crate) fn area_of_faces(surfaces: &[Option<Taylor>; 3]) -> Interval {
     let mut sum = Interval::exactly(0.0);
     for (i, surface) in surfaces.iter().enumerate() {
         let Some(surface) = surface else { continue };
-        let whole = Interval { lower: 0.0, upper: area_of_surface(surface).upper };
+        let whole = Interval::between(0.0, area_of_surface(surface).upper);
         let others = surfaces.iter().enumerate().filter(|(j, _)| *j != i).filter_map(|(_, f)| f.as_ref());
         let face = if are_known { area_of_face(surface, others).unwrap_or(whole) } else { whole };
         let upper = face.upper.min(whole.upper);
-        sum = Interval { lower: sum.lower + face.lower.clamp(0.0, upper), upper: sum.upper + upper };
+        sum = Interval::between(sum.lower + face.lower.clamp(0.0, upper), sum.upper + upper);
     }
     sum
 }
@@ -61,8 +61,5 @@ fn area_of_face<'a>(surface: &Taylor, others: impl Iterator<Item = &'a Taylor>) 
     }
     let steepest = ((length + bend) / (size[axis] - bend)) * (1.0 + 8.0 * f64::EPSILON);
     let flattest = ((length - bend) / (size[axis] + bend)) * (1.0 - 8.0 * f64::EPSILON);
-    Some(Interval {
-        lower: (inner.area() - ROUNDING) * flattest.max(1.0),
-        upper: (outer.area() + ROUNDING) * steepest,
-    })
+    Interval::new((inner.area() - ROUNDING) * flattest.max(1.0), (outer.area() + ROUNDING) * steepest)
 }

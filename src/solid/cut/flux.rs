@@ -30,20 +30,24 @@ pub(crate) fn area_of_surface(surface: &Taylor) -> Interval {
     let cosine = if sine < 1.0 { sqrt((1.0 - sine * sine) * (1.0 - 4.0 * f64::EPSILON)) } else { 0.0 };
     let is_known = cosine > 0.5 && f.error < f64::INFINITY;
     if !is_known {
-        return Interval { lower: 0.0, upper: most };
+        return Interval::between(0.0, most);
     }
     // Wall by wall: along each axis what flows out at the upper one and in at the lower one.
-    let mut flux = Interval::exactly(0.0);
+    let (mut least, mut greatest) = (0.0, 0.0);
     for axis in 0..3 {
         let share = f.gradient[axis] / length;
         let (upper, lower) = (on_wall(f, axis, 1.0), on_wall(f, axis, -1.0));
-        let (least, greatest) = (upper.lower - lower.upper, upper.upper - lower.lower);
-        let (a, b) = (share * least, share * greatest);
-        flux = Interval { lower: flux.lower + a.min(b), upper: flux.upper + a.max(b) };
+        let (a, b) = (share * (upper.lower - lower.upper), share * (upper.upper - lower.lower));
+        (least, greatest) = (least + a.min(b), greatest + a.max(b));
     }
-    let lower = (flux.lower - ROUNDING).max(0.0);
-    let upper = ((flux.upper + ROUNDING).max(0.0) / cosine).min(most);
-    Interval { lower: lower.min(upper), upper }
+    // Numbers that are too large to be told tell nothing.
+    let is_known = least <= greatest;
+    if !is_known {
+        return Interval::between(0.0, most);
+    }
+    let lower = (least - ROUNDING).max(0.0);
+    let upper = ((greatest + ROUNDING).max(0.0) / cosine).min(most);
+    Interval::between(lower.min(upper), upper)
 }
 
 /// The area in which f ≥ 0 on the wall of a cell where the coordinate of `axis` is `at`.
@@ -87,7 +91,7 @@ impl Figure {
         let share = (self.xy.abs() + 2.0 * self.yy.abs()) / fall * (1.0 + 8.0 * f64::EPSILON);
         let is_graph = share < 0.5 && self.error < 0.25 * fall;
         if !is_graph {
-            return Interval { lower: 0.0, upper: 4.0 };
+            return Interval::between(0.0, 4.0);
         }
         // Each x has at most one y on the outline: about y0 = offset + slope · x, a straight line, by `moved` at the most.
         // On the line itself f tells by how much, up to `share` of it.
@@ -117,7 +121,8 @@ impl Figure {
         let within = width * (moved * share + self.error / fall * steeper);
         let error = (within + near(1.0) + near(-1.0)) * (1.0 + 16.0 * f64::EPSILON) + ROUNDING;
         let area = if self.of_y < 0.0 { below } else { 4.0 - below };
-        Interval { lower: (area - error).clamp(0.0, 4.0), upper: (area + error).clamp(0.0, 4.0) }
+        let bounds = Interval::new((area - error).clamp(0.0, 4.0), (area + error).clamp(0.0, 4.0));
+        bounds.unwrap_or(Interval::between(0.0, 4.0))
     }
 }
 

@@ -86,7 +86,7 @@ impl View<'_> {
             }
         }
         let of_sums = UNIT * self.triangles.len() as f64;
-        Some(Interval { lower: lower * (1.0 - of_sums), upper: upper * (1.0 + of_sums) })
+        Interval::new(lower * (1.0 - of_sums), upper * (1.0 + of_sums))
     }
 
     /// An area that the boundary in the cell does not pass: cheap.
@@ -100,7 +100,7 @@ impl View<'_> {
             (seen.area() + error).min(1.5 * extent * extent)
         });
         let upper: f64 = areas.sum();
-        Interval { lower: 0.0, upper: upper * (1.0 + UNIT * self.triangles.len() as f64) }
+        Interval::between(0.0, upper * (1.0 + UNIT * self.triangles.len() as f64))
     }
 
     /// The moments of the solid, of which `senses` tells on which side of each triangle it lies.

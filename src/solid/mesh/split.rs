@@ -429,6 +429,10 @@ impl Worker for MeshWorker {
         self.triangles.len()
     }
 
+    fn scratch_bytes(&self) -> usize {
+        size_of_val(&*self.triangles)
+    }
+
     fn release(&mut self, mark: usize) {
         self.triangles.truncate(mark);
     }

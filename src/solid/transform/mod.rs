@@ -440,6 +440,10 @@ impl<W: Worker> Worker for TransformWorker<W> {
         self.lists.len()
     }
 
+    fn scratch_bytes(&self) -> usize {
+        size_of_val(&*self.lists) + size_of_val(&*self.known) + self.inner.scratch_bytes()
+    }
+
     fn release(&mut self, mark: usize) {
         self.lists.truncate(mark);
         let &(known, inner) = self.lists.last().unwrap_or(&(0, 0));

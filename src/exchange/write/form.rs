@@ -1,0 +1,101 @@
+//! What a written mesh file keeps.
+
+use super::stl::{rounded, text};
+use super::{WriteOptions, refuse};
+use crate::error::Error;
+use crate::exchange::{MeshFormat, read_stl};
+use crate::memory;
+use crate::mesh::{FacetWelder, TriangleMesh};
+use alloc::borrow::Cow;
+use alloc::vec::Vec;
+
+/// What a mesh file keeps of the mesh that it is written of: see [`written_form`].
+#[non_exhaustive]
+#[derive(Debug, Clone)]
+pub struct WrittenForm<'a> {
+    /// The mesh that a reader gets back. Borrowed if the format keeps vertices and triangles as they are.
+    pub mesh: Cow<'a, TriangleMesh>,
+    /// The farthest that rounding moves a vertex along an axis, in model units.
+    pub rounding: f64,
+    /// Vertices of triangles that are lost, because rounding puts them where others are.
+    pub merged: u64,
+    /// Triangles that are lost, because rounding puts two of their corners at one place.
+    pub degenerate: u64,
+}
+
+/// The mesh that a reader gets back from the file that [`write_mesh`](super::write_mesh) makes, and what is lost on the
+/// way.
+///
+/// PLY, OBJ, OFF and 3MF keep every bit of the coordinates, and nothing is lost. STL has 32-bit coordinates: vertices
+/// move, vertices that meet are one vertex for a reader, and triangles of which two corners meet are dropped. A closed
+/// mesh stays closed, but it may be flat, pinched, or have no triangle at all: a cube of edge 3 around x = 10⁹ becomes a
+/// square. Its [`report`](TriangleMesh::report) tells. An STL has no vertices that no triangle uses, and has the others in
+/// the order in which triangles first use them. No format keeps the [attributes](TriangleMesh::attributes) of a mesh.
+///
+/// O(n) time; O(1) memory where nothing is lost, else that of a second mesh, and for an STL as text also that of the
+/// file.
+///
+/// # Errors
+/// As [`write_mesh`](super::write_mesh).
+///
+/// ```
+/// use leafless::TriangleMesh;
+/// use leafless::exchange::{MeshFormat, WriteOptions, written_form};
+/// let vertices = vec![[1e9, 0.0, 0.0], [1e9 + 1.0, 0.0, 0.0], [1e9, 1.0, 0.0], [1e9, 0.0, 1.0]];
+/// let mesh = TriangleMesh::new(vertices, vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])?;
+/// let kept = written_form(&mesh, MeshFormat::Stl, &WriteOptions::default())?;
+/// assert_eq!((kept.mesh.triangles().len(), kept.mesh.volume()), (2, 0.0));
+/// assert_eq!((kept.rounding, kept.merged, kept.degenerate), (1.0, 1, 2));
+/// let kept = written_form(&mesh, MeshFormat::Ply, &WriteOptions::default())?;
+/// assert_eq!((kept.mesh.triangles().len(), kept.rounding, kept.degenerate), (4, 0.0, 0));
+/// # Ok::<(), leafless::Error>(())
+/// ```
+pub fn written_form<'a>(
+    mesh: &'a TriangleMesh,
+    format: MeshFormat,
+    options: &WriteOptions,
+) -> Result<WrittenForm<'a>, Error> {
+    refuse(mesh, format)?;
+    if format != MeshFormat::Stl {
+        // Without triangles a 3MF has no object.
+        let is_nothing = format == MeshFormat::ThreeMf && mesh.triangles().is_empty();
+        let mesh = match is_nothing {
+            true => Cow::Owned(TriangleMesh::new(Vec::new(), Vec::new())?),
+            false => Cow::Borrowed(mesh),
+        };
+        return Ok(WrittenForm { mesh, rounding: 0.0, merged: 0, degenerate: 0 });
+    }
+    let corners = |triangle: &[u32; 3]| triangle.map(|v| mesh.vertices()[v as usize]);
+    let single = |corners: [[f64; 3]; 3]| -> Result<[[f64; 3]; 3], Error> {
+        let [a, b, c] = corners.map(rounded);
+        Ok([a?, b?, c?].map(|corner| corner.map(f64::from)))
+    };
+    let kept = if options.text {
+        // Readers take decimal numbers for the doubles that are nearest to these, not for 32-bit ones.
+        read_stl(&text(mesh)?)?
+    } else {
+        let mut welder = FacetWelder::with_capacity(mesh.triangles().len())?;
+        for triangle in mesh.triangles() {
+            welder.push(&single(corners(triangle))?)?;
+        }
+        welder.finish()
+    };
+    let mut is_used = memory::filled(mesh.vertices().len(), false)?;
+    let mut rounding = 0f64;
+    let mut triangles = kept.triangles().iter();
+    for triangle in mesh.triangles() {
+        triangle.iter().for_each(|&v| is_used[v as usize] = true);
+        let given = corners(triangle);
+        let [a, b, c] = single(given)?;
+        let is_kept = a != b && b != c && c != a;
+        let found = if is_kept { triangles.next() } else { None };
+        let found = found.map_or([a, b, c], |found| found.map(|v| kept.vertices()[v as usize]));
+        for (x, y) in given.as_flattened().iter().zip(found.as_flattened()) {
+            rounding = rounding.max((x - y).abs());
+        }
+    }
+    let used = is_used.iter().filter(|&&used| used).count() as u64;
+    let merged = used.saturating_sub(kept.vertices().len() as u64);
+    let degenerate = mesh.triangles().len().saturating_sub(kept.triangles().len()) as u64;
+    Ok(WrittenForm { mesh: Cow::Owned(kept), rounding, merged, degenerate })
+}
