@@ -10021,7 +10021,7 @@ leafless_status leafless_tridexel_as_solid(const leafless_tridexel *tridexel,
  * slowest, and the colour that `colours` has at the place of the material's number; materials beyond are grey (128, 128,
  * 128, 255). Call it once for the count, and then with a buffer.
  *
- * O(8^depth / 64 + rows).
+ * O(rays of the window + blocks + rows), for blocks of 64 x 64 x 64 cells in which centres lie inside.
  *
  * - Buffers: `options`, one struct or NULL; `colours`, `colour_count` colours of four bytes (red, green, blue, opacity), or
  *   NULL for none; `voxels`, room for `capacity` structs, or NULL to ask for the count only; `count`, one number.
