@@ -116,6 +116,18 @@ static void intervals(void) {
     MISALIGNED(leafless_tridexel_read, materials,
                READ(model, 0, ray, end, count, count, NULL, NULL, NULL, (uint32_t *)WRONG(out), count));
 #undef READ
+#define CELLS(model, axis, first, end, ends, count) leafless_tridexel_read_cells(model, axis, first, end, ends, 1, count)
+    NULL_POINTER(leafless_tridexel_read_cells, tridexel, CELLS(NULL, 0, ray, end, doubles, count));
+    NULL_POINTER(leafless_tridexel_read_cells, first, CELLS(model, 0, NULL, end, doubles, count));
+    NULL_POINTER(leafless_tridexel_read_cells, end, CELLS(model, 0, ray, NULL, doubles, count));
+    NULL_POINTER(leafless_tridexel_read_cells, ends_cells, CELLS(model, 0, ray, end, NULL, count));
+    NULL_POINTER(leafless_tridexel_read_cells, interval_count, CELLS(model, 0, ray, end, doubles, NULL));
+    BAD_NUMBER(leafless_tridexel_read_cells, axis, CELLS(model, 3, ray, end, doubles, count));
+    BAD_NUMBER(leafless_tridexel_read_cells, end, CELLS(model, 0, ray, beyond, doubles, count));
+    MISALIGNED(leafless_tridexel_read_cells, ends_cells, CELLS(model, 0, ray, end, (double *)WRONG(out), count));
+#undef CELLS
+    BAD_NUMBER(leafless_tridexel_read_cells, ends_cells,
+               leafless_tridexel_read_cells(model, 0, ray, end, doubles, UINT64_MAX, count));
     BAD_NUMBER(leafless_tridexel_read, ends_model,
                leafless_tridexel_read(model, 0, ray, end, NULL, 0, count, doubles, NULL, NULL, NULL, UINT64_MAX, count));
     untouched();
@@ -288,6 +300,11 @@ static void arrays(void) {
     NULL_POINTER(leafless_tridexel_new, rays.ends_model, leafless_tridexel_new(&frame, &format, &rays, 1, NULL, result));
     rays.ends_model = (const double *)WRONG(out);
     MISALIGNED(leafless_tridexel_new, rays.ends_model, leafless_tridexel_new(&frame, &format, &rays, 1, NULL, result));
+    rays.ends_model = NULL;
+    rays.ends_cells = (const double *)WRONG(out);
+    MISALIGNED(leafless_tridexel_new, rays.ends_cells, leafless_tridexel_new(&frame, &format, &rays, 1, NULL, result));
+    rays.ends_cells = ends;
+    BAD_NUMBER(leafless_tridexel_new, rays.ends_cells, leafless_tridexel_new(&frame, &format, &rays, 1, NULL, result));
     rays = good;
     rays.normals = (const double *)WRONG(out);
     MISALIGNED(leafless_tridexel_new, rays.normals, leafless_tridexel_new(&frame, &format, &rays, 1, NULL, result));

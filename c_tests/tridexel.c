@@ -267,6 +267,82 @@ static void balls(void) {
     }
 }
 
+/* Ends beside centres of cells, on a frame whose centres no doubles are: out and in again, by coordinates, by places, and
+   by both. */
+static void places(void) {
+    enum { DEPTH = 3 };
+    static const double ends_cells[4] = {1.5000000000000002, 2.5, 3.4999999999999996, 7.5};
+    const double low[2] = {-5.148202647275424, 1e9};
+    static const uint64_t offsets[2] = {0, 2};
+    static const uint32_t first[2] = {2, 5}, end[2] = {3, 6};
+    int code;
+    for (code = 0; code < 4; code++) {
+        const leafless_tridexel_format format = format_of(code & 1, 0, 0, 0);
+        const bool is_far = code >= 2;
+        double model_ends[4], cells[4], also[4];
+        leafless_tridexel *models[3] = {NULL, NULL, NULL};
+        leafless_ray_arrays rays;
+        leafless_frame frame = check_frame(DEPTH);
+        leafless_dexel dexels[2];
+        uint64_t count, offset_count;
+        int i, k;
+        frame.origin[0] = frame.origin[1] = frame.origin[2] = low[is_far];
+        frame.edge = 8.342378659550686e-3;
+        memset(&rays, 0, sizeof rays);
+        rays.axis = 1;
+        memcpy(rays.first, first, sizeof first);
+        memcpy(rays.end, end, sizeof end);
+        rays.offsets = offsets;
+        rays.interval_count = 2;
+        rays.ends_cells = ends_cells;
+        OK(leafless_tridexel_new(&frame, &format, &rays, 1, NULL, &models[0]));
+        for (k = 0; k < 8; k++) {
+            const uint32_t cell[3] = {2, (uint32_t)k, 5};
+            bool inside;
+            OK(leafless_tridexel_contains_cell(models[0], cell, &inside));
+            CHECK(inside == (k >= 3 && k < 7));
+        }
+        OK(leafless_tridexel_read_cells(models[0], 1, first, end, NULL, 0, &count));
+        CHECK(count == 2);
+        OK(leafless_tridexel_read_cells(models[0], 1, NULL, NULL, cells, 2, &count));
+        OK(leafless_tridexel_read(models[0], 1, NULL, NULL, NULL, 0, &offset_count, model_ends, NULL, NULL, NULL, 2, &count));
+        CHECK(count == 2 && (!format.ends || memcmp(cells, ends_cells, sizeof cells) == 0));
+        OK(leafless_tridexel_ray(models[0], 1, first, dexels, 2, &count));
+        for (i = 0; i < 2; i++) {
+            CHECK(dexels[i].start.at_cells == cells[2 * i] && dexels[i].end.at_cells == cells[2 * i + 1]);
+            CHECK(dexels[i].start.at_model == model_ends[2 * i] && dexels[i].end.at_model == model_ends[2 * i + 1]);
+        }
+        /* Too small a buffer: nothing is written. */
+        also[0] = 77;
+        FAILS(LEAFLESS_E_BUFFER, leafless_tridexel_read_cells(models[0], 1, first, end, also, 1, &count));
+        CHECK(also[0] == 77);
+        rays.ends_cells = cells;
+        rays.ends_model = model_ends;
+        OK(leafless_tridexel_new(&frame, &format, &rays, 1, NULL, &models[1]));
+        CHECK(same(models[0], models[1]));
+        if (!is_far) {
+            rays.ends_cells = NULL;
+            OK(leafless_tridexel_new(&frame, &format, &rays, 1, NULL, &models[2]));
+            CHECK(format.ends || same(models[0], models[2]));
+            for (k = 0; k < 8; k++) {
+                const uint32_t cell[3] = {2, (uint32_t)k, 5};
+                bool inside;
+                OK(leafless_tridexel_contains_cell(models[2], cell, &inside));
+                CHECK(inside == (k >= 3 && k < 7));
+            }
+            /* A coordinate that was changed counts. */
+            rays.ends_cells = cells;
+            model_ends[3] = model_ends[2] + 0.5 * (model_ends[3] - model_ends[2]);
+            leafless_tridexel_free(models[2]);
+            OK(leafless_tridexel_new(&frame, &format, &rays, 1, NULL, &models[2]));
+            CHECK(!same(models[0], models[2]));
+        }
+        for (i = 0; i < 3; i++) {
+            leafless_tridexel_free(models[i]);
+        }
+    }
+}
+
 /* Solids of other kinds, and other rules. */
 static void sources(void) {
     enum { DEPTH = 5, SIDE = 1 << DEPTH };
@@ -645,6 +721,7 @@ static void refused(void) {
 int main(void) {
     boxes();
     balls();
+    places();
     sources();
     laws();
     contents();

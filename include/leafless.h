@@ -3786,9 +3786,14 @@ typedef struct {
  */
 typedef struct {
     /**
-     * The coordinate along the ray.
+     * The coordinate along the ray. It lies on the side of every centre of a cell that is stored, as far as there is a double
+     * between two centres.
      */
     double at_model;
+    /**
+     * The same in finest cells from the universe's lower face, exactly as it is stored; the centre of cell k lies at k + 1/2.
+     */
+    double at_cells;
     /**
      * The outward unit normal of the surface there; three zeros if it is not known.
      */
@@ -3848,7 +3853,7 @@ typedef struct {
      */
     uint64_t interval_count;
     /**
-     * Two coordinates for each interval, its start and its end.
+     * Two coordinates for each interval, its start and its end. NULL if `ends_cells` says where they lie.
      */
     const double *ends_model;
     /**
@@ -3865,6 +3870,13 @@ typedef struct {
      * A number for each interval, what it is made of; 0 where nothing is said. NULL if nothing is said at all.
      */
     const uint32_t *materials;
+    /**
+     * Two numbers for each interval: its start and its end in finest cells from the universe's lower face, as
+     * leafless_tridexel_read_cells hands them out; the centre of cell k lies at k + 1/2. An end counts by this number if its
+     * coordinate in `ends_model` is the one that leafless_tridexel_read would hand out for it, else by the coordinate. If
+     * `ends_model` is NULL it counts always. NULL if coordinates alone count.
+     */
+    const double *ends_cells;
 } leafless_ray_arrays;
 
 /**
@@ -3899,6 +3911,16 @@ typedef struct {
      * Vertices that would fit their planes better outside of their cells. (By dual contouring alone.)
      */
     uint64_t clamped;
+    /**
+     * Bodies that the mesh does not show at all: sets of centres of cells that lie inside and hang together along axes,
+     * none of whose crossings has a triangle, because the surface lies nearer to them than doubles can tell.
+     */
+    uint64_t vanished;
+    /**
+     * Intervals in all directions that hold no centre of a cell, those that touch counted as one: what is thinner than the
+     * lattice there is not in the mesh.
+     */
+    uint64_t without_centres;
 } leafless_dexel_surface_report;
 
 /**
@@ -9517,8 +9539,8 @@ leafless_status leafless_tridexel_ray(const leafless_tridexel *tridexel,
  *   `offsets`, room for `offset_capacity` numbers; for each of `interval_capacity` intervals `ends_model` has room for 2
  *   numbers, `normals` for 6, `surfaces` for 2, `materials` for 1. Each of the five may be NULL, if it is not wanted.
  *   `offset_count` and `interval_count`, one number each. `axis` is 0 for x, 1 for y, 2 for z.
- * - Result: `offsets`, one more than rays. For each interval: the coordinates of its start and its end; the outward unit
- *   normals there, three zeros where none is known; the surfaces there, UINT32_MAX where none is known; the material, 0
+ * - Result: `offsets`, one more than rays. For each interval: the coordinates of its start and its end, on the sides of
+ *   centres that are stored, as far as there are doubles between two centres; the outward unit normals there, three zeros where none is known; the surfaces there, UINT32_MAX where none is known; the material, 0
  *   where nothing was said. The counts of offsets and intervals.
  * - Errors: LEAFLESS_E_ARGUMENT if the model has no rays along `axis`, `first` lies beyond `end`, or the rays reach beyond
  *   the universe; LEAFLESS_E_BUFFER if a capacity is too small: nothing is written then.
@@ -9541,6 +9563,30 @@ leafless_status leafless_tridexel_read(const leafless_tridexel *tridexel,
                                        uint32_t *materials,
                                        uint64_t interval_capacity,
                                        uint64_t *interval_count);
+
+/**
+ * Where the intervals of many rays along one axis start and end, exactly as it is stored: in finest cells from the
+ * universe's lower face, of which the centre of cell k lies at k + 1/2. The intervals are those of leafless_tridexel_read, in
+ * the same order. O(rays + intervals).
+ *
+ * - Buffers: `first` and `end`, 2 numbers each, or NULL both, as leafless_tridexel_read has them; `ends_cells`, room for 2
+ *   numbers for each of `interval_capacity` intervals, or NULL to ask for the count only; `interval_count`, one number.
+ *   `axis` is 0 for x, 1 for y, 2 for z.
+ * - Result: `ends_cells`, 0 to 2^depth; `*interval_count`.
+ * - Errors: as leafless_tridexel_read.
+ * - Ownership: nothing changes hands.
+ * - Threads: any; works in the calling thread.
+ * - Untrusted input: any model, any numbers.
+ * - Since: 0.1
+ *
+ */
+leafless_status leafless_tridexel_read_cells(const leafless_tridexel *tridexel,
+                                             uint32_t axis,
+                                             const uint32_t first[2],
+                                             const uint32_t end[2],
+                                             double *ends_cells,
+                                             uint64_t interval_capacity,
+                                             uint64_t *interval_count);
 
 /**
  * The points that lie in `a`, in `b`, or in both. Exact: all laws of sets hold. O(rays + intervals), and the same bit for
@@ -9883,15 +9929,16 @@ leafless_status leafless_tridexel_editor_freeze(const leafless_tridexel_editor *
  * Makes a tri-dexel model of intervals that another program or a machine has. O(rays of the universe + intervals).
  *
  * The intervals of a ray ascend and are disjoint. What reaches beyond the universe is cut off; what `format` does not
- * store is left out. Ends are rounded as `format` says, and keep their side of every centre of a cell. Intervals that are
- * empty after rounding are left out; those that touch are joined, unless both have materials and these differ. The
- * directions are not compared with each other.
+ * store is left out. Ends are rounded as `format` says, and keep their side of every centre of a cell, which is the real
+ * number origin + (k + 1/2) edge / 2^depth; that is decided exactly. Intervals that are empty after rounding are left out; those that touch are joined, unless both have materials and these differ. The
+ * directions are not compared with each other. All that leafless_tridexel_read and leafless_tridexel_read_cells hand out of a
+ * model makes an equal one on the same frame.
  *
  * - Buffers: `frame`, one struct; `format`, one struct or NULL, whose `directions` are 0 or the axes of `rays`; `rays`,
  *   `count` structs, 1 to 3, each for another axis; `options`, one struct or NULL; `tridexel`, one pointer.
  * - Result: `*tridexel`.
  * - Errors: LEAFLESS_E_ARGUMENT also if offsets do not ascend, if an end of an interval is not a number or not behind its
- *   start, or if an interval begins before the one before it ends; LEAFLESS_E_LIMIT for 2^32 rays or intervals along one
+ *   start, if an end in cells does not lie in the universe, or if an interval begins before the one before it ends; LEAFLESS_E_LIMIT for 2^32 rays or intervals along one
  *   axis, which is a depth of 16; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
  * - Ownership: the arrays are not kept; give `*tridexel` back with leafless_tridexel_free.
  * - Threads: any; works in the calling thread.
@@ -9914,11 +9961,12 @@ leafless_status leafless_tridexel_new(const leafless_frame *frame,
  * because the model has no rays along an axis or its directions disagree, the crossing lies half-way between the two
  * centres; the report counts such places.
  *
- * O(rays · 2^depth / 64 + mesh), for rays with few intervals each.
+ * O(rays + intervals + octree + mesh), with the octree of leafless_tridexel_to_octree.
  *
  * - Buffers: `options`, one struct or NULL; `report`, one struct, or NULL if it is not wanted; `mesh`, one pointer.
  *   `method` is a leafless_dexel_surface_method.
- * - Result: `*mesh`, the same for any number of threads; it has no triangles if nothing is inside. `*report`.
+ * - Result: `*mesh`, the same for any number of threads; it has no triangles if no centre lies inside, or if all bodies
+ *   vanish. `*report`.
  * - Errors: LEAFLESS_E_ARGUMENT also if the frame lies so far from the origin that doubles cannot tell its cells apart;
  *   LEAFLESS_E_MESH if there would be more than 2^32 - 1 vertices or triangles; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
  * - Ownership: `tridexel` stays as it is; give `*mesh` back with leafless_mesh_free.
@@ -9973,7 +10021,7 @@ leafless_status leafless_tridexel_as_solid(const leafless_tridexel *tridexel,
  * slowest, and the colour that `colours` has at the place of the material's number; materials beyond are grey (128, 128,
  * 128, 255). Call it once for the count, and then with a buffer.
  *
- * O(8^depth / 64 + rows).
+ * O(rays of the window + blocks + rows), for blocks of 64 x 64 x 64 cells in which centres lie inside.
  *
  * - Buffers: `options`, one struct or NULL; `colours`, `colour_count` colours of four bytes (red, green, blue, opacity), or
  *   NULL for none; `voxels`, room for `capacity` structs, or NULL to ask for the count only; `count`, one number.

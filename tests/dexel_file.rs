@@ -72,7 +72,10 @@ fn agrees(view: &TriDexelRef<'_>, model: &Dexels) {
             met += usize::from(!list.is_empty());
             for (found, one) in rays.dexels([u, v]).zip(list) {
                 for (k, end) in [found.start, found.end].into_iter().enumerate() {
-                    assert_eq!(end.at, origin[axis] + one.ends[k] * cell);
+                    // The place exactly, and its coordinate rounded once (`dexel_ends` has it against exact numbers).
+                    assert_eq!(end.cells, Some(one.ends[k]));
+                    let (rounded, along) = (origin[axis] + one.ends[k] * cell, one.ends[k] * cell);
+                    assert!((end.at - rounded).abs() <= 2.0 * f64::EPSILON * (end.at.abs() + along));
                     let known = |known: bool, value: u32| (known && value != u32::MAX).then_some(value);
                     assert_eq!(end.surface, known(model.surfaces, one.surfaces[k]));
                     let code = one.normals[k];

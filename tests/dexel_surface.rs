@@ -32,7 +32,7 @@ impl Random {
 }
 
 fn plain_end(at: f64) -> DexelEnd {
-    DexelEnd { at, surface: None, normal: None }
+    DexelEnd::new(at)
 }
 
 /// Intervals of random length, and every ray as it likes: the directions agree about nothing.
@@ -729,4 +729,185 @@ fn time_of_1024() -> Result<(), Error> {
         }
     }
     Ok(())
+}
+
+/// A model of inside centres, which the rays of all directions hold; how far intervals go beyond their outermost centres
+/// each ray knows.
+fn around(
+    frame: &Frame,
+    inside: &BTreeSet<[u32; 3]>,
+    mut beyond: impl FnMut([u32; 3], usize) -> [f64; 2],
+) -> TriDexel {
+    let rays = |axis: usize, ray: [u32; 2], list: &mut Vec<Dexel>| {
+        let cell = |k: u32| {
+            let mut cell = [k; 3];
+            OTHERS[axis].into_iter().zip(ray).for_each(|(other, at)| cell[other] = at);
+            cell
+        };
+        let mut k = 0;
+        while k < frame.cells() {
+            let first = k;
+            while inside.contains(&cell(k)) {
+                k += 1;
+            }
+            if first < k {
+                let [before, behind] = beyond(cell(first), axis);
+                let end = |cells: f64, side: f64| {
+                    let mut normal = [0.0; 3];
+                    normal[axis] = side;
+                    DexelEnd { normal: Some(normal), ..DexelEnd::in_cells(frame, axis, cells).unwrap() }
+                };
+                let (low, high) = (f64::from(first) + 0.5, f64::from(k) - 0.5);
+                let (start, end) = (end(low - before, -1.0), end((high + behind).max(high.next_up()), 1.0));
+                list.push(Dexel { start, end, material: 0 });
+            }
+            k += 1;
+        }
+        Ok(())
+    };
+    TriDexel::from_rays(frame, FORMAT, ALL, rays, &Control::default()).unwrap()
+}
+
+fn both_surfaces(model: &TriDexel) -> [(TriangleMesh, DexelSurfaceReport); 2] {
+    let control = Control::default();
+    [marching_cubes_of_dexels(model.view(), &control), dual_contouring_of_dexels(model.view(), &control)]
+        .map(Result::unwrap)
+}
+
+#[test]
+fn a_body_of_one_centre_is_a_closed_mesh() {
+    let frame = Frame::new([-1.3; 3], 2.9, 3).unwrap();
+    for beyond in [[0.25, 0.25], [0.0, 0.25]] {
+        let model = around(&frame, &[[3, 4, 5]].into(), |_, _| beyond);
+        let size: f64 = (beyond[0] + beyond[1]) * frame.cell_size();
+        for (mesh, report) in both_surfaces(&model) {
+            let found = mesh.report().unwrap();
+            assert!(found.is_closed() && !mesh.triangles().is_empty());
+            assert_eq!((report.crossings, report.vanished, report.without_centres), (6, 0, 0));
+            let extent = mesh.bounds();
+            assert!((0..3).all(|axis| (extent.1[axis] - extent.0[axis] - size).abs() < 1e-9));
+        }
+        // That of dual contouring is the cuboid itself.
+        let [_, (mesh, _)] = both_surfaces(&model);
+        assert_eq!((mesh.vertices().len(), mesh.triangles().len()), (8, 12));
+    }
+}
+
+#[test]
+fn bodies_that_doubles_cannot_tell_from_their_centres_are_counted() {
+    let mut random = Random(31);
+    let (mut gone, mut there) = (0, 0);
+    for round in 0..60 {
+        // Near the origin ends are told apart to 2^-50, far from it to a millionth of a cell.
+        let origin = if round % 2 == 0 { 1e9 } else { 0.0 };
+        let frame = Frame::new([origin; 3], 8.0, 3).unwrap();
+        // One body in each octant: they do not touch.
+        let mut bodies = Vec::new();
+        for octant in 0..8u32 {
+            let thin = random.below(4) != 0;
+            let mut body: BTreeSet<[u32; 3]> = BTreeSet::new();
+            let mut at = [0, 1, 2].map(|axis| 4 * (octant >> axis & 1) + 1);
+            for _ in 0..=random.below(4) {
+                body.insert(at);
+                let axis = random.below(3) as usize;
+                at[axis] = (at[axis] ^ 3) & !4 | at[axis] & 4;
+            }
+            bodies.push((body, thin));
+        }
+        let beyond = |thin: bool| {
+            move |_: [u32; 3], axis: usize| {
+                let tiny = [0.0, 1e-12];
+                if thin { tiny } else { [0.25, 0.125 * (axis + 1) as f64] }
+            }
+        };
+        let all: BTreeSet<[u32; 3]> = bodies.iter().flat_map(|(body, _)| body.iter().copied()).collect();
+        let model = around(&frame, &all, |cell, axis| {
+            let (_, thin) = bodies.iter().find(|(body, _)| body.contains(&cell)).unwrap();
+            beyond(*thin)(cell, axis)
+        });
+        let together = both_surfaces(&model);
+        for method in 0..2 {
+            let mut expected = 0;
+            for (body, thin) in &bodies {
+                let alone = around(&frame, body, beyond(*thin));
+                let (mesh, report) = &both_surfaces(&alone)[method];
+                let vanished = mesh.triangles().is_empty();
+                assert_eq!(report.vanished, u64::from(vanished), "{body:?}");
+                expected += u64::from(vanished);
+                if vanished { gone += 1 } else { there += 1 }
+            }
+            assert_eq!(together[method].1.vanished, expected);
+            assert_eq!(together[method].1.without_centres, 0);
+        }
+    }
+    assert!(gone > 100 && there > 100, "{gone} {there}");
+}
+
+#[test]
+fn intervals_that_hold_no_centre_are_counted() {
+    let frame = Frame::new([0.0; 3], 8.0, 3).unwrap();
+    let control = Control::default();
+    // A plate between centres: rays of one direction meet it, and none of them has a centre.
+    let plate = Csg::cuboid([1.0, 1.0, 2.6], [7.0, 7.0, 3.4]).unwrap();
+    let model = dexelize(&plate, &frame, &DexelOptions::default(), &control).unwrap();
+    assert_eq!(model.view().without_centres(), 36);
+    for (mesh, report) in both_surfaces(&model) {
+        assert!(mesh.triangles().is_empty());
+        assert_eq!((report.crossings, report.vanished, report.without_centres), (0, 0, 36));
+    }
+    // Two materials in one gap and beyond it are one interval.
+    let format = DexelFormat { materials: true, ..FORMAT };
+    let rays = |_: usize, ray: [u32; 2], list: &mut Vec<Dexel>| {
+        let end = plain_end;
+        if ray == [4, 4] {
+            list.push(Dexel { start: end(1.6), end: end(2.4), material: 1 });
+            list.push(Dexel { start: end(2.4), end: end(2.6), material: 2 });
+            list.push(Dexel { start: end(3.6), end: end(4.0), material: 1 });
+            list.push(Dexel { start: end(4.0), end: end(4.4), material: 2 });
+        }
+        Ok(())
+    };
+    let model = TriDexel::from_rays(&frame, format, [false, true, false], rays, &control).unwrap();
+    assert_eq!(model.view().without_centres(), 1);
+}
+
+/// What a model of a few intervals becomes at a depth where nothing can be looked at cell by cell.
+#[test]
+fn at_the_greatest_depth_work_is_that_of_what_is_stored() {
+    let start = std::time::Instant::now();
+    let (depth, cells) = (20, 1u32 << 20);
+    let frame = Frame::new([0.0; 3], f64::from(cells), depth).unwrap();
+    let limited = Control { max_bytes: Some(1 << 30), ..Control::default() };
+    let block = |low: [f64; 3], high: [f64; 3], directions: [bool; 3]| {
+        let options = DexelOptions { directions, format: FORMAT, ..Default::default() };
+        dexelize(&Csg::cuboid(low, high).unwrap(), &frame, &options, &limited).unwrap()
+    };
+    let small = block([700_000.25; 3], [700_003.25; 3], ALL);
+    let tree = octree_of_dexels(small.view(), &limited).unwrap();
+    assert_eq!(tree.statistics().volume().lower, 27.0);
+    for (mesh, report) in both_surfaces(&small) {
+        assert!(mesh.report().unwrap().is_closed() && report.crossings == 54 && report.several == 0);
+    }
+    let voxels = dexel_voxels(small.view(), &[], &limited).unwrap();
+    let counts = [VoxelKind::Inside, VoxelKind::Boundary].map(|kind| voxels.count(kind));
+    assert_eq!(counts, [8, 64 - 8]);
+    assert_eq!(voxels.list().len(), 4 * 4 + 4 * 2);
+    // A wire through the whole universe.
+    for axis in 0..3 {
+        let (mut low, mut high) = ([300_000.25; 3], [300_001.25; 3]);
+        (low[axis], high[axis]) = (0.0, f64::from(cells));
+        let wire = block(low, high, [0, 1, 2].map(|a| a == axis));
+        assert_eq!(
+            octree_of_dexels(wire.view(), &limited).unwrap().statistics().volume().lower,
+            f64::from(cells)
+        );
+        // Another one far away: between them there are too many rays.
+        if axis < 2 {
+            let other = block([900_000.0; 3], [900_001.0; 3], [0, 1, 2].map(|a| a == axis));
+            let joined = wire.view().union(other.view(), &Control::default());
+            assert!(matches!(joined, Err(Error::Limit { .. })));
+            assert!(matches!(wire.view().complement(&Control::default()), Err(Error::Limit { .. })));
+        }
+    }
+    assert!(start.elapsed().as_secs() < 30, "{:?}", start.elapsed());
 }

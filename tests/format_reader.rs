@@ -287,7 +287,10 @@ fn it_agrees_with_the_library_on_tri_dexel_models() {
                         [rays.axis() as u32, u, v].map(|n| n.to_string())
                     );
                     for (word, end) in words[3..].iter().zip([dexel.start, dexel.end]) {
-                        assert_eq!(origin[rays.axis()] + double(word) * size, end.at);
+                        assert_eq!(Some(double(word)), end.cells);
+                        let along = double(word) * size;
+                        let off = (origin[rays.axis()] + along - end.at).abs();
+                        assert!(off <= 2.0 * f64::EPSILON * (end.at.abs() + along));
                     }
                     let material = words[5..].last().filter(|_| model.view().format().materials);
                     assert_eq!(material.map_or(0, |word| word.parse().unwrap()), dexel.material);

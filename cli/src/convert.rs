@@ -73,6 +73,8 @@ struct Report {
     input: String,
     output: String,
     seconds: f64,
+    /// Intervals that hold no centre of a cell, and are lost.
+    without_centres: u64,
     #[serde(flatten)]
     info: Info,
 }
@@ -99,14 +101,18 @@ fn of_dexels(model: &TriDexel, input: &Input, output: &Output, arguments: &Argum
     let octree = octree.with_metadata(metadata);
     let bytes = output.save(&octree)?;
     let info = Info::new(&octree, bytes);
-    let time = start.elapsed().as_secs_f64();
+    let (time, without_centres) = (start.elapsed().as_secs_f64(), model.view().without_centres());
     if arguments.json {
         let (input, output_name) = (input.to_string(), output.to_string());
-        let report = Report { input, output: output_name, seconds: time, info };
+        let report = Report { input, output: output_name, seconds: time, without_centres, info };
         return output.report(&output::json(&report)?);
     }
+    let lost = match without_centres {
+        0 => String::new(),
+        lost => format!("; {} between the centres of cells not seen", counted(lost, "interval", "intervals")),
+    };
     output.report(&format!(
-        "{output}: octree of depth {}, volume {}, {}, {} bytes, in {}\n",
+        "{output}: octree of depth {}, volume {}, {}, {} bytes, in {}{lost}\n",
         octree.frame().depth(),
         info.volume_text(),
         counted(info.nodes, "node", "nodes"),

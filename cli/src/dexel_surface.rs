@@ -23,12 +23,17 @@ pub struct Followed {
     disagreeing: u64,
     /// Vertices that would fit better outside of their cells. By dual contouring alone.
     clamped: u64,
+    /// Bodies that are not shown, because doubles cannot tell their surface from their centres.
+    vanished: u64,
+    /// Intervals that hold no centre of a cell, and are not shown.
+    without_centres: u64,
 }
 
 impl From<DexelSurfaceReport> for Followed {
     fn from(report: DexelSurfaceReport) -> Followed {
         let DexelSurfaceReport { crossings, several, without_rays, disagreeing, clamped, .. } = report;
-        Followed { crossings, several, without_rays, disagreeing, clamped }
+        let DexelSurfaceReport { vanished, without_centres, .. } = report;
+        Followed { crossings, several, without_rays, disagreeing, clamped, vanished, without_centres }
     }
 }
 
@@ -47,6 +52,14 @@ impl Followed {
         }
         if self.clamped > 0 {
             text += &format!("; {} kept in their cells", counted(self.clamped, "vertex", "vertices"));
+        }
+        if self.vanished > 0 {
+            let bodies = counted(self.vanished, "body", "bodies");
+            text += &format!("; {bodies} too thin to be shown");
+        }
+        if self.without_centres > 0 {
+            let intervals = counted(self.without_centres, "interval", "intervals");
+            text += &format!("; {intervals} between the centres of cells not seen");
         }
         text
     }

@@ -485,3 +485,33 @@ fn damage_is_told_as_what_it_is() {
         place.run(line).bad(1, &["flipped.lfl: ", "checksum"]);
     }
 }
+
+/// A file of three short intervals at depth 20 takes no time, and what is not seen of it is told.
+#[test]
+fn depth_20_takes_no_time() {
+    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../format_spec/vectors/valid/dexel-depth-20.lfl");
+    let folder = tempfile::tempdir().unwrap();
+    let start = std::time::Instant::now();
+    for (command, output) in
+        [("convert", "o.lfl"), ("convert", "o.ply"), ("mesh", "o.stl"), ("render", "o.png")]
+    {
+        let output = folder.path().join(output);
+        let mut arguments = vec![command, file, "-o", output.to_str().unwrap()];
+        if command == "convert" && output.extension().is_some_and(|name| name == "lfl") {
+            arguments.extend(["--to", "octree"]);
+        }
+        let done =
+            std::process::Command::new(env!("CARGO_BIN_EXE_leafless")).args(&arguments).output().unwrap();
+        assert!(done.status.success(), "{command}: {}", String::from_utf8_lossy(&done.stderr));
+        if command != "render" {
+            let told = String::from_utf8(done.stdout).unwrap();
+            assert!(told.contains("1 interval between the centres of cells not seen"), "{told}");
+        }
+    }
+    let output = folder.path().join("j.ply");
+    let arguments = ["mesh", file, "--json", "-o", output.to_str().unwrap()];
+    let done = std::process::Command::new(env!("CARGO_BIN_EXE_leafless")).args(arguments).output().unwrap();
+    let told: serde_json::Value = serde_json::from_slice(&done.stdout).unwrap();
+    assert_eq!((&told["vanished"], &told["without_centres"]), (&0.into(), &1.into()));
+    assert!(start.elapsed().as_secs() < 20, "{:?}", start.elapsed());
+}

@@ -55,9 +55,9 @@ fn model(
             // Eighths of cells, and now and then next to nothing.
             let step = |byte: u8| if byte == 255 { 1e-12 } else { f64::from(byte % 32) / 8.0 };
             let end = |at: f64, flip: f64| DexelEnd {
-                at,
                 surface: (what & 1 != 0).then_some(u32::from(what)),
                 normal: (what & 2 != 0).then(|| [flip, f64::from(what >> 4) - 8.0, 1.0]),
+                ..DexelEnd::new(at)
             };
             let (start, stop) = (at + step(gap), at + step(gap) + step(length));
             if start < stop {

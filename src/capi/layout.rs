@@ -140,13 +140,13 @@ fn write_all(to: &mut dyn Write) -> fmt::Result {
         leafless_tridexel_info {
             frame, directions, ends, normals, has_surfaces, has_materials, bytes_per_interval, interval_count, bytes
         }
-        leafless_dexel_end { at_model, normal, surface }
+        leafless_dexel_end { at_model, at_cells, normal, surface }
         leafless_dexel { start, end, material }
         leafless_ray_arrays {
-            axis, reserved, first, end, offsets, interval_count, ends_model, normals, surfaces, materials
+            axis, reserved, first, end, offsets, interval_count, ends_model, normals, surfaces, materials, ends_cells
         }
         leafless_dexel_surface_report {
-            crossings, several, without_rays, disagreeing, without_normals, means, clamped
+            crossings, several, without_rays, disagreeing, without_normals, means, clamped, vanished, without_centres
         }
         leafless_long_voxel { first, length, material, colour, kind }
         leafless_tridexel_probe { directions, ends, normals, has_surfaces, has_materials, reserved, rays, intervals }

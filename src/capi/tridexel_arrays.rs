@@ -5,7 +5,7 @@ use super::control::{controlled, leafless_options};
 use super::frame::{frame, leafless_frame};
 use super::status::leafless_status;
 use super::tridexel::{give, leafless_tridexel, leafless_tridexel_format};
-use crate::dexel::{Dexel, DexelEnd, TriDexel};
+use crate::dexel::{Dexel, DexelEnd, Line, TriDexel};
 use crate::lattice::Frame;
 use crate::memory;
 use alloc::vec::Vec;
@@ -28,7 +28,7 @@ pub struct leafless_ray_arrays {
     pub offsets: *const u64,
     /// How many intervals there are, which is the last offset.
     pub interval_count: u64,
-    /// Two coordinates for each interval, its start and its end.
+    /// Two coordinates for each interval, its start and its end. NULL if `ends_cells` says where they lie.
     pub ends_model: *const f64,
     /// Six numbers for each interval: the outward normals at its start and at its end, of any length; three zeros where none
     /// is known. NULL if none is known at all.
@@ -38,6 +38,11 @@ pub struct leafless_ray_arrays {
     pub surfaces: *const u32,
     /// A number for each interval, what it is made of; 0 where nothing is said. NULL if nothing is said at all.
     pub materials: *const u32,
+    /// Two numbers for each interval: its start and its end in finest cells from the universe's lower face, as
+    /// leafless_tridexel_read_cells hands them out; the centre of cell k lies at k + 1/2. An end counts by this number if its
+    /// coordinate in `ends_model` is the one that leafless_tridexel_read would hand out for it, else by the coordinate. If
+    /// `ends_model` is NULL it counts always. NULL if coordinates alone count.
+    pub ends_cells: *const f64,
 }
 
 /// Checked arrays.
@@ -45,7 +50,11 @@ struct Arrays<'a> {
     first: [u32; 2],
     end: [u32; 2],
     offsets: &'a [u64],
+    line: Line<'a>,
+    /// Coordinates, or none at all.
     ends: &'a [[f64; 2]],
+    /// Places in cells, or none at all.
+    cells: &'a [[f64; 2]],
     normals: &'a [[[f64; 3]; 2]],
     surfaces: &'a [[u32; 2]],
     materials: &'a [u32],
@@ -54,7 +63,7 @@ struct Arrays<'a> {
 impl leafless_ray_arrays {
     /// # Safety
     /// As [`slice`] for all arrays.
-    unsafe fn checked<'a>(&self, frame: &Frame) -> Result<Arrays<'a>, Failure> {
+    unsafe fn checked<'a>(&self, frame: &'a Frame) -> Result<Arrays<'a>, Failure> {
         let refused = |name, problem| Err(Failure::Argument { name, problem });
         if self.axis > 2 {
             return refused("rays.axis", "must be 0, 1 or 2");
@@ -71,13 +80,17 @@ impl leafless_ray_arrays {
         let size = [0, 1].map(|i| u64::from(self.end[i] - self.first[i]));
         let count = self.interval_count;
         let optional = |is_null: bool| if is_null { 0 } else { count };
+        // (One of the two arrays of ends there must be.)
+        let ends = if self.ends_cells.is_null() { count } else { optional(self.ends_model.is_null()) };
         // SAFETY: the caller's promise.
         let arrays = unsafe {
             Arrays {
                 first: self.first,
                 end: self.end,
                 offsets: slice(self.offsets, size[0] * size[1] + 1, "rays.offsets")?,
-                ends: slice(self.ends_model.cast(), count, "rays.ends_model")?,
+                line: Line { frame, axis: self.axis as usize },
+                ends: slice(self.ends_model.cast(), ends, "rays.ends_model")?,
+                cells: slice(self.ends_cells.cast(), optional(self.ends_cells.is_null()), "rays.ends_cells")?,
                 normals: slice(self.normals.cast(), optional(self.normals.is_null()), "rays.normals")?,
                 surfaces: slice(self.surfaces.cast(), optional(self.surfaces.is_null()), "rays.surfaces")?,
                 materials: slice(self.materials, optional(self.materials.is_null()), "rays.materials")?,
@@ -88,6 +101,10 @@ impl leafless_ray_arrays {
         }
         if arrays.offsets.windows(2).any(|pair| pair[0] > pair[1]) {
             return refused("rays.offsets", "must ascend");
+        }
+        let most = f64::from(frame.cells());
+        if arrays.cells.as_flattened().iter().any(|end| !(0.0..=most).contains(end)) {
+            return refused("rays.ends_cells", "must be 0 to 2^depth");
         }
         Ok(arrays)
     }
@@ -107,7 +124,11 @@ impl Arrays<'_> {
 
     fn dexel(&self, index: usize) -> Dexel {
         let end = |k: usize| DexelEnd {
-            at: self.ends[index][k],
+            at: match self.ends.get(index) {
+                Some(both) => both[k],
+                None => self.line.coordinate(self.cells[index][k]),
+            },
+            cells: self.cells.get(index).map(|both| both[k]),
             surface: self.surfaces.get(index).map(|both| both[k]).filter(|&surface| surface != u32::MAX),
             normal: self.normals.get(index).map(|both| both[k]).filter(|&normal| normal != [0.0; 3]),
         };
@@ -118,15 +139,16 @@ impl Arrays<'_> {
 /// Makes a tri-dexel model of intervals that another program or a machine has. O(rays of the universe + intervals).
 ///
 /// The intervals of a ray ascend and are disjoint. What reaches beyond the universe is cut off; what `format` does not
-/// store is left out. Ends are rounded as `format` says, and keep their side of every centre of a cell. Intervals that are
-/// empty after rounding are left out; those that touch are joined, unless both have materials and these differ. The
-/// directions are not compared with each other.
+/// store is left out. Ends are rounded as `format` says, and keep their side of every centre of a cell, which is the real
+/// number origin + (k + 1/2) edge / 2^depth; that is decided exactly. Intervals that are empty after rounding are left out; those that touch are joined, unless both have materials and these differ. The
+/// directions are not compared with each other. All that leafless_tridexel_read and leafless_tridexel_read_cells hand out of a
+/// model makes an equal one on the same frame.
 ///
 /// - Buffers: `frame`, one struct; `format`, one struct or NULL, whose `directions` are 0 or the axes of `rays`; `rays`,
 ///   `count` structs, 1 to 3, each for another axis; `options`, one struct or NULL; `tridexel`, one pointer.
 /// - Result: `*tridexel`.
 /// - Errors: LEAFLESS_E_ARGUMENT also if offsets do not ascend, if an end of an interval is not a number or not behind its
-///   start, or if an interval begins before the one before it ends; LEAFLESS_E_LIMIT for 2^32 rays or intervals along one
+///   start, if an end in cells does not lie in the universe, or if an interval begins before the one before it ends; LEAFLESS_E_LIMIT for 2^32 rays or intervals along one
 ///   axis, which is a depth of 16; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
 /// - Ownership: the arrays are not kept; give `*tridexel` back with leafless_tridexel_free.
 /// - Threads: any; works in the calling thread.

@@ -10,8 +10,11 @@ use core::ops::Range;
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_dexel_end {
-    /// The coordinate along the ray.
+    /// The coordinate along the ray. It lies on the side of every centre of a cell that is stored, as far as there is a double
+    /// between two centres.
     pub at_model: f64,
+    /// The same in finest cells from the universe's lower face, exactly as it is stored; the centre of cell k lies at k + 1/2.
+    pub at_cells: f64,
     /// The outward unit normal of the surface there; three zeros if it is not known.
     pub normal: [f64; 3],
     /// On which of the source's surfaces it lies: a triangle of a mesh, a half-space in the order of the expression
@@ -35,6 +38,7 @@ impl From<&DexelEnd> for leafless_dexel_end {
     fn from(end: &DexelEnd) -> leafless_dexel_end {
         leafless_dexel_end {
             at_model: end.at,
+            at_cells: end.cells.unwrap_or(f64::NAN),
             normal: end.normal.unwrap_or_default(),
             surface: end.surface.unwrap_or(u32::MAX),
         }
@@ -267,8 +271,8 @@ impl Arrays {
 ///   `offsets`, room for `offset_capacity` numbers; for each of `interval_capacity` intervals `ends_model` has room for 2
 ///   numbers, `normals` for 6, `surfaces` for 2, `materials` for 1. Each of the five may be NULL, if it is not wanted.
 ///   `offset_count` and `interval_count`, one number each. `axis` is 0 for x, 1 for y, 2 for z.
-/// - Result: `offsets`, one more than rays. For each interval: the coordinates of its start and its end; the outward unit
-///   normals there, three zeros where none is known; the surfaces there, UINT32_MAX where none is known; the material, 0
+/// - Result: `offsets`, one more than rays. For each interval: the coordinates of its start and its end, on the sides of
+///   centres that are stored, as far as there are doubles between two centres; the outward unit normals there, three zeros where none is known; the surfaces there, UINT32_MAX where none is known; the material, 0
 ///   where nothing was said. The counts of offsets and intervals.
 /// - Errors: LEAFLESS_E_ARGUMENT if the model has no rays along `axis`, `first` lies beyond `end`, or the rays reach beyond
 ///   the universe; LEAFLESS_E_BUFFER if a capacity is too small: nothing is written then.
@@ -328,6 +332,49 @@ pub unsafe extern "C" fn leafless_tridexel_read(
             offsets.put(ray_count as usize, index as u64);
         }
         offset_count.write(ray_count + 1)?;
+        interval_count.write(number)
+    })
+}
+
+/// Where the intervals of many rays along one axis start and end, exactly as it is stored: in finest cells from the
+/// universe's lower face, of which the centre of cell k lies at k + 1/2. The intervals are those of leafless_tridexel_read, in
+/// the same order. O(rays + intervals).
+///
+/// - Buffers: `first` and `end`, 2 numbers each, or NULL both, as leafless_tridexel_read has them; `ends_cells`, room for 2
+///   numbers for each of `interval_capacity` intervals, or NULL to ask for the count only; `interval_count`, one number.
+///   `axis` is 0 for x, 1 for y, 2 for z.
+/// - Result: `ends_cells`, 0 to 2^depth; `*interval_count`.
+/// - Errors: as leafless_tridexel_read.
+/// - Ownership: nothing changes hands.
+/// - Threads: any; works in the calling thread.
+/// - Untrusted input: any model, any numbers.
+/// - Since: 0.1
+///
+/// cbindgen:ptrs-as-arrays=[[first; 2], [end; 2]]
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_tridexel_read_cells(
+    tridexel: *const leafless_tridexel,
+    axis: u32,
+    first: *const u32,
+    end: *const u32,
+    ends_cells: *mut f64,
+    interval_capacity: u64,
+    interval_count: *mut u64,
+) -> leafless_status {
+    guard(|| unsafe {
+        let model = &shared(tridexel, "tridexel")?.model;
+        let rays = rays(model, axis)?;
+        let [columns, rows] = rectangle(model, &rays, first, end)?;
+        let ends = buffer::<[f64; 2]>(ends_cells.cast(), interval_capacity, "ends_cells")?;
+        let interval_count = out(interval_count, "interval_count")?;
+        let each_ray = || rows.clone().flat_map(|v| columns.clone().map(move |u| [u, v]));
+        let number: u64 = each_ray().map(|ray| rays.dexels(ray).len() as u64).sum();
+        ends.check(usize::try_from(number).unwrap_or(usize::MAX))?;
+        if ends.wanted() {
+            for (index, dexel) in each_ray().flat_map(|ray| rays.dexels(ray)).enumerate() {
+                ends.put(index, [dexel.start, dexel.end].map(|end| end.cells.unwrap_or(f64::NAN)));
+            }
+        }
         interval_count.write(number)
     })
 }

@@ -44,6 +44,12 @@ pub struct leafless_dexel_surface_report {
     pub means: u64,
     /// Vertices that would fit their planes better outside of their cells. (By dual contouring alone.)
     pub clamped: u64,
+    /// Bodies that the mesh does not show at all: sets of centres of cells that lie inside and hang together along axes,
+    /// none of whose crossings has a triangle, because the surface lies nearer to them than doubles can tell.
+    pub vanished: u64,
+    /// Intervals in all directions that hold no centre of a cell, those that touch counted as one: what is thinner than the
+    /// lattice there is not in the mesh.
+    pub without_centres: u64,
 }
 
 impl From<DexelSurfaceReport> for leafless_dexel_surface_report {
@@ -56,6 +62,8 @@ impl From<DexelSurfaceReport> for leafless_dexel_surface_report {
             without_normals: report.without_normals,
             means: report.means,
             clamped: report.clamped,
+            vanished: report.vanished,
+            without_centres: report.without_centres,
         }
     }
 }
@@ -100,11 +108,12 @@ impl From<&LongVoxel> for leafless_long_voxel {
 /// because the model has no rays along an axis or its directions disagree, the crossing lies half-way between the two
 /// centres; the report counts such places.
 ///
-/// O(rays · 2^depth / 64 + mesh), for rays with few intervals each.
+/// O(rays + intervals + octree + mesh), with the octree of leafless_tridexel_to_octree.
 ///
 /// - Buffers: `options`, one struct or NULL; `report`, one struct, or NULL if it is not wanted; `mesh`, one pointer.
 ///   `method` is a leafless_dexel_surface_method.
-/// - Result: `*mesh`, the same for any number of threads; it has no triangles if nothing is inside. `*report`.
+/// - Result: `*mesh`, the same for any number of threads; it has no triangles if no centre lies inside, or if all bodies
+///   vanish. `*report`.
 /// - Errors: LEAFLESS_E_ARGUMENT also if the frame lies so far from the origin that doubles cannot tell its cells apart;
 ///   LEAFLESS_E_MESH if there would be more than 2^32 - 1 vertices or triangles; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
 /// - Ownership: `tridexel` stays as it is; give `*mesh` back with leafless_mesh_free.
@@ -195,7 +204,7 @@ pub unsafe extern "C" fn leafless_tridexel_as_solid(
 /// slowest, and the colour that `colours` has at the place of the material's number; materials beyond are grey (128, 128,
 /// 128, 255). Call it once for the count, and then with a buffer.
 ///
-/// O(8^depth / 64 + rows).
+/// O(rays of the window + blocks + rows), for blocks of 64 x 64 x 64 cells in which centres lie inside.
 ///
 /// - Buffers: `options`, one struct or NULL; `colours`, `colour_count` colours of four bytes (red, green, blue, opacity), or
 ///   NULL for none; `voxels`, room for `capacity` structs, or NULL to ask for the count only; `count`, one number.

@@ -26,8 +26,10 @@ impl TriDexelRef<'_> {
     ///
     /// # Errors
     /// [`Error::FrameMismatch`] if the models lie on different lattices; [`Error::Argument`] if they have different
-    /// directions; [`Error::Limit`] for 2^32 intervals in one direction; [`Error::DamagedRays`] if a model is one of a file
-    /// that nobody has verified, and is damaged; [`Error::OutOfMemory`]; [`Error::Cancelled`].
+    /// directions; [`Error::Limit`] for 2^32 intervals in one direction, and for 2^32 rays between the outermost ones of the
+    /// result, as where two models lie far apart at a depth of 16 or more; [`Error::TooLarge`] where these rays alone take more
+    /// than `control.max_bytes`; [`Error::DamagedRays`] if a model is one of a file that nobody has verified, and is damaged;
+    /// [`Error::OutOfMemory`]; [`Error::Cancelled`].
     pub fn union(&self, other: &TriDexelRef<'_>, control: &Control<'_>) -> Result<TriDexel, Error> {
         combined(SetOp::Union, self, other, control)
     }
@@ -243,6 +245,12 @@ fn by_rows<S: Form>(
     parallel: bool,
     work: impl Fn(Range<u32>, &mut Piece<S>) -> Result<(), Error> + Send + Sync,
 ) -> Result<OwnedRows, Error> {
+    const MOST: u64 = u32::MAX as u64 - 1;
+    if window.count() > MOST {
+        return Err(Error::Limit { what: "rays in one direction", limit: MOST });
+    }
+    // Each ray has the number of its first interval.
+    job.control().afford("the rays", window.count() * size_of::<u32>() as u64)?;
     let rows = window.range(1);
     let one = |range: Range<u32>| {
         job.check()?;

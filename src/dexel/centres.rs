@@ -31,6 +31,13 @@ impl TriDexelRef<'_> {
         })
     }
 
+    /// How many intervals in all directions hold no centre of a cell, those that touch counted as one: what is thinner than
+    /// the lattice there is in no octree and in no surface of the model. O(rays of the windows + intervals).
+    pub fn without_centres(&self) -> u64 {
+        let depth = self.frame.depth();
+        self.rays.iter().flatten().map(|rows| with_rows!(rows, rows => without_centres(rows, depth))).sum()
+    }
+
     /// The rays that decide about centres, and their axis.
     pub(crate) fn deciding(&self) -> Option<(usize, &Rows<'_>)> {
         (0..3).rev().find_map(|axis| Some((axis, self.rays[axis].as_ref()?)))
@@ -43,6 +50,21 @@ impl TriDexelRef<'_> {
         let Some((axis, rows)) = self.deciding() else { return false };
         with_rows!(rows, rows => fill(rows, axis, first, along, self.frame.depth(), words))
     }
+}
+
+/// How many runs of intervals that touch hold no centre.
+fn without_centres<S: Span>(rows: &RowsRef<'_, S>, depth: u8) -> u64 {
+    let mut count = 0;
+    for index in 0..rows.window.count() as usize {
+        let mut list = rows.columns.spans[rows.at(index)].iter().map(|span| span.ends()).peekable();
+        while let Some([start, mut end]) = list.next() {
+            while let Some([_, next]) = list.next_if(|next| next[0] <= end) {
+                end = next;
+            }
+            count += u64::from(start.gap(depth) == end.gap(depth));
+        }
+    }
+    count
 }
 
 /// The interval of the ray that holds the centre of cell k.

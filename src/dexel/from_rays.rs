@@ -4,6 +4,7 @@ use super::arrays::{Form, ModelArrays, OwnedRows};
 use super::assemble::{Piece, assembled};
 use super::format::{DexelEnds, DexelFormat};
 use super::item::{Item, Mark, NO_SURFACE};
+use super::line::{Line, is_place};
 use super::model::TriDexel;
 use super::normal::{NO_NORMAL, encoded};
 use super::place::{DoubleSpan, FixedSpan, Place, Span};
@@ -13,7 +14,6 @@ use crate::error::Error;
 use crate::lattice::Frame;
 use crate::memory;
 use alloc::vec::Vec;
-use core::cmp::Ordering;
 
 impl TriDexel {
     /// A model of intervals that are handed in, ray by ray: those of another program, of a machine, of a test.
@@ -23,9 +23,14 @@ impl TriDexel {
     /// intervals in model units: in ascending order, disjoint. What reaches beyond the universe is cut off. What
     /// `format` does not store is left out.
     ///
-    /// Ends are rounded as the format says, and keep their side of every centre of a cell. An end on a centre is on
-    /// this centre: intervals are half-open, and a start there holds the centre, while an end does not. Intervals that
-    /// are empty after rounding are left out; those that touch are joined, unless both have materials and these differ.
+    /// Ends are rounded as the format says, and keep their side of every centre of a cell. That is the real number
+    /// origin + (k + ½) · edge / 2^depth, and the side is decided exactly. An end on a centre is on this centre:
+    /// intervals are half-open, and a start there holds the centre, while an end does not. Intervals that are empty after
+    /// rounding are left out; those that touch are joined, unless both have materials and these differ.
+    ///
+    /// An end that [`DexelRays::dexels`](crate::DexelRays::dexels) handed out goes back to the place where it was, since
+    /// it [tells this place](DexelEnd::cells): a model of all intervals of another one, on the same frame and in the same
+    /// format, is equal to that one. [`DexelEnd::in_cells`] makes such ends.
     ///
     /// The directions are not compared with each other. Where they disagree about a centre, the highest axis decides
     /// ([`TriDexelRef::contains_cell`](crate::TriDexelRef::contains_cell)).
@@ -40,7 +45,7 @@ impl TriDexel {
     /// ```
     /// use leafless::{Control, Dexel, DexelEnd, DexelFormat, Frame, TriDexel};
     /// let frame = Frame::new([0.0; 3], 8.0, 3)?;
-    /// let end = |at: f64| DexelEnd { at, surface: None, normal: None };
+    /// let end = DexelEnd::new;
     /// // A plate between z = 2 and z = 3.25, by rays along z alone.
     /// let plate = |_axis: usize, _ray: [u32; 2], list: &mut Vec<Dexel>| {
     ///     list.push(Dexel { start: end(2.0), end: end(3.25), material: 0 });
@@ -111,27 +116,62 @@ impl Source<'_> {
 
     /// Appends the intervals of a ray.
     fn append<S: Span>(&self, list: &[Dexel], piece: &mut Piece<S>) -> Result<(), Error> {
-        let depth = self.frame.depth();
-        let most = f64::from(self.frame.cells());
-        let cells = |at: f64| (at - self.frame.origin()[self.axis]) / self.frame.cell_size();
-        let mut reached = f64::NEG_INFINITY;
+        let refused = |problem| Err(Error::Argument { name: "dexels", problem });
+        let mut last: Option<(Given, S::Place)> = None;
         for dexel in list {
-            let [start, end] = [dexel.start.at, dexel.end.at];
-            // (What is not a number is not less than another one.)
-            if start.partial_cmp(&end) != Some(Ordering::Less) {
-                let problem = "an interval must have an end that is behind its start";
-                return Err(Error::Argument { name: "dexels", problem });
+            let given = [self.given(&dexel.start), self.given(&dexel.end)];
+            if !given[0].is_before(&given[1]) {
+                return refused("an interval must have an end that is behind its start");
             }
-            if start < reached {
-                let problem = "the intervals of a ray must be in ascending order and disjoint";
-                return Err(Error::Argument { name: "dexels", problem });
+            let mut ends = given.map(|end| end.place::<S::Place>());
+            if let Some((reached, place)) = last {
+                if given[0].is_before(&reached) {
+                    return refused("the intervals of a ray must be in ascending order and disjoint");
+                }
+                // Ends that are given in two ways may be rounded past each other, but not past a centre.
+                if ends[0] < place {
+                    ends[0] = place;
+                }
             }
-            reached = end;
-            let ends = [start, end].map(|at| S::Place::rounded(cells(at).clamp(0.0, most), depth));
+            // (So may the two of one interval, which is empty then.)
+            let end = if ends[1] < ends[0] { ends[0] } else { ends[1] };
+            last = Some((given[1], end));
             let marks = [dexel.start, dexel.end].map(mark);
             piece.add(&Item { ends, marks, material: dexel.material })?;
         }
         Ok(())
+    }
+
+    fn given(&self, end: &DexelEnd) -> Given<'_> {
+        let line = Line { frame: self.frame, axis: self.axis };
+        let is_own = |&cells: &f64| is_place(cells, self.frame.depth()) && line.coordinate(cells) == end.at;
+        Given { line, at: end.at, cells: end.cells.filter(is_own) }
+    }
+}
+
+/// An end as it was given.
+#[derive(Clone, Copy)]
+struct Given<'a> {
+    line: Line<'a>,
+    at: f64,
+    /// The place, if it is known and has this coordinate.
+    cells: Option<f64>,
+}
+
+impl Given<'_> {
+    /// (What is not a number is not before another one.)
+    fn is_before(&self, other: &Given<'_>) -> bool {
+        match (self.cells, other.cells) {
+            (Some(cells), Some(others)) => cells < others,
+            _ => self.at < other.at,
+        }
+    }
+
+    fn place<P: Place>(&self) -> P {
+        match self.cells {
+            Some(cells) => P::rounded(cells, self.line.frame.depth()),
+            None => self.line.place(self.at),
+        }
     }
 }
 
@@ -145,7 +185,7 @@ mod tests {
     use crate::dexel::DexelNormals;
 
     fn at(at: f64) -> DexelEnd {
-        DexelEnd { at, surface: Some(3), normal: Some([0.0, 0.0, 1.0]) }
+        DexelEnd { surface: Some(3), normal: Some([0.0, 0.0, 1.0]), ..DexelEnd::new(at) }
     }
 
     fn one_ray(format: DexelFormat, intervals: &[(f64, f64, u32)]) -> Result<Vec<Dexel>, Error> {

@@ -10,9 +10,9 @@
 //! agreeing through every Boolean.
 //!
 //! From the bottom up, each file uses only files named before it: `place` (positions on a ray), `normal` (unit vectors
-//! in 16 or 32 bits), `format` (what is stored), `item` (an interval with all that it may carry), `columns` (arrays of
+//! in 16 or 32 bits), `line` (places in model units), `format` (what is stored), `item` (an interval with all that it may carry), `columns` (arrays of
 //! intervals), `view` (borrowed arrays, on which all reading is written), `centres` (which centres of cells lie inside),
-//! `check` (whether arrays are sound), `arrays` (owned ones), `model` (the tri-dexel model), `assemble` (models from rows
+//! `occupied` (in which blocks any does), //! `check` (whether arrays are sound), `arrays` (owned ones), `model` (the tri-dexel model), `assemble` (models from rows
 //! of rays), `from_rays` (models from a host's intervals), `beam` (what a solid is asked to fill), `merge` (two rays),
 //! `boolean` (models), `editor` (changes in place), `statistics`.
 
@@ -27,9 +27,11 @@ mod editor;
 mod format;
 mod from_rays;
 mod item;
+mod line;
 mod merge;
 mod model;
 mod normal;
+mod occupied;
 mod place;
 mod statistics;
 mod view;
@@ -38,12 +40,16 @@ pub(crate) use arrays::{Form, ModelArrays};
 pub(crate) use assemble::{Piece, assembled};
 pub use beam::{Beam, BeamEnd};
 pub(crate) use beam::{Scratch, first_above};
+pub(crate) use centres::BLOCK;
 pub(crate) use columns::{ColumnsRef, NormalsRef};
 pub use editor::DexelEditor;
 pub use format::{DexelEnds, DexelFormat, DexelNormals};
 pub(crate) use item::Mark;
+#[cfg(feature = "capi")]
+pub(crate) use line::Line;
 pub use model::TriDexel;
 pub(crate) use normal::{decoded, encoded};
+pub(crate) use occupied::Occupied;
 pub(crate) use place::{DoubleSpan, FixedSpan, Place, Span, within};
 pub use statistics::DexelStatistics;
 pub use view::{Dexel, DexelEnd, DexelRays, TriDexelRef};

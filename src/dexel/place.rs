@@ -18,8 +18,15 @@ pub(crate) trait Place:
     /// The upper face of a universe of 2^depth cells.
     fn high(depth: u8) -> Self;
 
+    /// The place nearest to `x` cells from the lower face (0 to those of an axis) that lies in a gap, which is that of `x`
+    /// or, as far as `x` was rounded, one beside it.
+    fn rounded_in(x: f64, gap: u32, depth: u8) -> Self;
+
     /// The place nearest to `x` cells from the lower face that lies in the same gap.
-    fn rounded(x: f64, depth: u8) -> Self;
+    #[inline(always)]
+    fn rounded(x: f64, depth: u8) -> Self {
+        Self::rounded_in(x, gap(x) as u32, depth)
+    }
 
     /// Cells from the lower face.
     fn cells(self, depth: u8) -> f64;
@@ -54,8 +61,13 @@ impl Place for f64 {
     }
 
     #[inline(always)]
-    fn rounded(x: f64, _: u8) -> f64 {
+    fn rounded_in(x: f64, gap: u32, depth: u8) -> f64 {
         // Zero has one sign, so that equal places have equal bits.
+        within(x, gap as i32, f64::high(depth)) + 0.0
+    }
+
+    #[inline(always)]
+    fn rounded(x: f64, _: u8) -> f64 {
         x + 0.0
     }
 
@@ -85,11 +97,10 @@ impl Place for u32 {
     }
 
     #[inline(always)]
-    fn rounded(x: f64, depth: u8) -> u32 {
+    fn rounded_in(x: f64, beyond: u32, depth: u8) -> u32 {
         let unit = 1u32 << (31 - depth);
         let nearest = (x * f64::from(unit) + 0.5) as u32;
         // Only a position beside a centre may leave its gap.
-        let beyond = gap(x) as u32;
         let low = if beyond == 0 { 0 } else { (beyond * unit).wrapping_sub(unit / 2) + 1 };
         let high = if beyond >> depth != 0 { EDGE_UNITS } else { beyond * unit + unit / 2 };
         nearest.clamp(low, high)

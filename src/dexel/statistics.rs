@@ -1,5 +1,6 @@
 //! How much a model holds, direction by direction.
 
+use super::line::Line;
 use super::place::{Place, Span};
 use super::view::{OTHERS, RowsRef, TriDexelRef, with_rows};
 
@@ -38,7 +39,6 @@ impl TriDexelRef<'_> {
             extent: [[f64::INFINITY, f64::NEG_INFINITY]; 3],
         };
         let [u, v] = OTHERS[axis];
-        let origin = self.frame.origin();
         // Rays of a damaged file may have intervals in common: each is met once.
         let mut met = 0;
         for row in 0..rows.window.size[1] as usize {
@@ -53,8 +53,9 @@ impl TriDexelRef<'_> {
                 statistics.rays += 1;
                 let mut grow = |axis: usize, low: f64, high: f64| {
                     let [least, most] = &mut statistics.extent[axis];
-                    *least = least.min(origin[axis] + low * cell);
-                    *most = most.max(origin[axis] + high * cell);
+                    let line = Line { frame: &self.frame, axis };
+                    *least = least.min(line.coordinate(low));
+                    *most = most.max(line.coordinate(high));
                 };
                 let centre = |i: usize, k: usize| f64::from(rows.window.first[i]) + k as f64 + 0.5;
                 grow(u, centre(0, column), centre(0, column));

@@ -3,6 +3,7 @@
 use super::columns::{ColumnsRef, NormalsRef};
 use super::format::{DexelEnds, DexelFormat, DexelNormals};
 use super::item::{Item, NO_SURFACE};
+use super::line::{Line, is_place};
 use super::normal::decoded;
 use super::place::{DoubleSpan, FixedSpan, Place, Span};
 use crate::lattice::Frame;
@@ -142,7 +143,18 @@ pub(crate) use with_rows;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DexelEnd {
     /// The coordinate along the ray, in model units.
+    ///
+    /// An end that is handed out lies on the side of every centre of a cell that is stored: of the doubles on this side it is
+    /// the nearest, up to an ulp. Far from the origin there may be no double between two centres; then it is the nearest
+    /// double of all, and only `cells` tells the side.
     pub at: f64,
+    /// The same place in finest cells from the universe's lower face, exactly as it is stored: 0 to 2^depth. The centre of cell
+    /// k lies at k + ½.
+    ///
+    /// An end that is handed out has it always. Of an end that is handed in, `cells` counts if `at` is the coordinate that
+    /// would be handed out for it on that frame; else, and if it is `None`, `at` counts alone. So an end whose `at` is changed
+    /// lies where that says.
+    pub cells: Option<f64>,
     /// On which of the source's surfaces it lies: a triangle of a mesh, a half-space of an expression. `None` if it is not
     /// known.
     pub surface: Option<u32>,
@@ -150,12 +162,38 @@ pub struct DexelEnd {
     pub normal: Option<[f64; 3]>,
 }
 
+impl DexelEnd {
+    /// An end at a coordinate (model units), of which no surface and no normal is known.
+    pub const fn new(at: f64) -> DexelEnd {
+        DexelEnd { at, cells: None, surface: None, normal: None }
+    }
+
+    /// An end so many finest cells behind the universe's lower face (0 to 2^depth), along an axis, of which no surface and no
+    /// normal is known. The centre of cell k lies at k + ½. `None` for an axis greater than 2 and for a place outside of the
+    /// universe.
+    ///
+    /// ```
+    /// use leafless::{DexelEnd, Frame};
+    /// let frame = Frame::new([0.1; 3], 0.7, 3)?;
+    /// // On the centre of cell 4, and as little as possible behind it.
+    /// let centre = DexelEnd::in_cells(&frame, 0, 4.5).unwrap();
+    /// let behind = DexelEnd::in_cells(&frame, 0, 4.5f64.next_up()).unwrap();
+    /// assert!(centre.at < behind.at);
+    /// # Ok::<(), leafless::Error>(())
+    /// ```
+    pub fn in_cells(frame: &Frame, axis: usize, cells: f64) -> Option<DexelEnd> {
+        let is_end = axis < 3 && is_place(cells, frame.depth());
+        is_end
+            .then(|| DexelEnd { cells: Some(cells), ..DexelEnd::new(Line { frame, axis }.coordinate(cells)) })
+    }
+}
+
 /// An interval of a ray that lies inside of the solid.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Dexel {
     /// Where it begins.
     pub start: DexelEnd,
-    /// Where it ends, which is behind its start.
+    /// Where it ends, which is behind its start (in cells; far from the origin both may have one coordinate).
     pub end: DexelEnd,
     /// What it is made of; 0 where nothing was said.
     pub material: u32,
@@ -196,10 +234,15 @@ impl<'a> DexelRays<'a> {
 }
 
 fn dexel<P: Place>(frame: &Frame, axis: usize, item: Item<P>) -> Dexel {
-    let end = |k: usize| DexelEnd {
-        at: frame.origin()[axis] + item.ends[k].cells(frame.depth()) * frame.cell_size(),
-        surface: Some(item.marks[k].surface).filter(|&surface| surface != NO_SURFACE),
-        normal: decoded(item.marks[k].normal),
+    let line = Line { frame, axis };
+    let end = |k: usize| {
+        let cells = item.ends[k].cells(frame.depth());
+        DexelEnd {
+            at: line.coordinate(cells),
+            cells: Some(cells),
+            surface: Some(item.marks[k].surface).filter(|&surface| surface != NO_SURFACE),
+            normal: decoded(item.marks[k].normal),
+        }
     };
     Dexel { start: end(0), end: end(1), material: item.material }
 }

@@ -56,9 +56,11 @@ impl Default for DexelOptions {
 /// by at most 2^-31 of the universe's edge, or 2^-36 with [`DexelEnds::Double`]. Intervals shorter than this vanish.
 ///
 /// So it is with closed meshes, under any fill rule, with half-spaces (planes, quadrics, powers, tori) and expressions of
-/// them, and with stored octrees. Of other solids, and of open meshes around their holes, cells and samples are asked: ends
-/// between centres on different sides are narrowed down by cells to a depth of 20, and walls between two neighbouring
-/// centres on one side are not seen. Surfaces at ends are numbers of triangles and of half-spaces, the latter in the order
+/// them, and with stored octrees. Of other solids (expressions with other solids as operands, transforms, functions of a
+/// host, volumes), and of open meshes around their holes, cells and samples are asked. Ends between centres on different sides
+/// are narrowed down by cells to a depth of 20. So are ends between a face of the universe and the centre next to it, if the
+/// centre lies inside and the ray does not where it meets the face. Walls between two neighbouring centres on one side are not
+/// seen. With a frame of depth 20 ends of such solids lie in the planes between cells. Surfaces at ends are numbers of triangles and of half-spaces, the latter in the order
 /// of the expression written out.
 ///
 /// (The method is that of Gao, Zhang and Hou 2007 for polygons, with exact decisions at edges and vertices.)
@@ -331,7 +333,7 @@ impl<T: Solid> Tiles<'_, T> {
         }
     }
 
-    /// Moves the ends at sampled cells from the planes between cells to where the surface is.
+    /// Moves the ends at sampled cells from the planes between cells, and from the universe's faces, to where the surface is.
     fn refine(&self, hand: &mut Hand<T>) -> Result<(), Error> {
         let depth = self.frame.depth();
         if depth >= MAX_DEPTH {
@@ -339,7 +341,7 @@ impl<T: Solid> Tiles<'_, T> {
         }
         hand.sampled.sort_unstable();
         let frame = self.frame.with_depth(depth + 1)?;
-        let window = hand.beam.window();
+        let (window, cells) = (hand.beam.window(), self.frame.cells());
         let [u, v] = OTHERS[self.axis];
         for i in 0..hand.beam.chords().len() {
             let chord = hand.beam.chords()[i];
@@ -347,22 +349,30 @@ impl<T: Solid> Tiles<'_, T> {
                 self.job.check()?;
                 let plane = end as u32;
                 let is_open = |k: u32| hand.sampled.binary_search(&(chord.ray, k)).is_ok();
-                let is_between = end == f64::from(plane) && plane > 0 && plane < self.frame.cells();
-                if !is_between || !(is_open(plane - 1) || is_open(plane)) {
+                if end != f64::from(plane) || !(plane > 0 && is_open(plane - 1) || is_open(plane)) {
                     continue;
                 }
                 let [column, row] = window.ray(chord.ray as usize);
                 let mut lower = [0; 3];
                 (lower[u], lower[v]) = (2 * column as i32 + 1, 2 * row as i32 + 1);
-                lower[self.axis] = 2 * plane as i32 - 1;
-                let edge = Edge { axis: self.axis, lower, steps: 2, starts_inside: side == 1 };
+                // From centre to centre; at a face from the face to the first centre.
+                let first = (2 * plane as i32 - 1).max(0);
+                let last = (2 * plane as i32 + 1).min(2 * cells as i32);
+                lower[self.axis] = first;
+                let edge =
+                    Edge { axis: self.axis, lower, steps: (last - first) as u32, starts_inside: side == 1 };
                 let trail = match &mut hand.trail {
                     Some(trail) => trail,
                     none => none.insert(self.trail()?),
                 };
+                // (An interval may begin at the lower face and end at the upper one.)
+                let is_face = plane == 0 || plane == cells;
+                if is_face && edge.face(&frame, plane > 0, trail, self.job.control())? != Some(false) {
+                    continue;
+                }
                 let t = edge.crossing(&frame, trail, self.job.control())?;
-                let at = f64::from(plane) - 0.5 + t;
-                let moved = BeamEnd::new(at, plane, self.frame.cells());
+                let at = 0.5 * (f64::from(first) + f64::from(last - first) * t);
+                let moved = BeamEnd::new(at, plane, cells);
                 debug_assert_eq!(first_above(moved.at), i64::from(plane));
                 hand.beam.set_end(i, side, moved);
             }

@@ -85,6 +85,28 @@ impl Edge {
         }
     }
 
+    /// Whether the edge's lower end, or its upper one, lies inside: by the finest cell of the universe there, and by the
+    /// centre of this cell if it is not decided. `None` if the solid cannot tell.
+    ///
+    /// # Errors
+    /// The solid's own.
+    pub fn face<W: Worker>(
+        &self,
+        frame: &Frame,
+        upper: bool,
+        trail: &mut Trail<W>,
+        control: &Control<'_>,
+    ) -> Result<Option<bool>, Error> {
+        let pieces = self.steps << (MAX_DEPTH - frame.depth());
+        let (cell, _) = self.cell(frame, MAX_DEPTH, if upper { pieces - 1 } else { 0 });
+        trail.follow(cell.parent(), control)?;
+        match trail.verdict(cell).tag() {
+            Tag::Empty => Ok(Some(false)),
+            Tag::Full => Ok(Some(true)),
+            Tag::Partial | Tag::Branch => trail.sample(cell),
+        }
+    }
+
     /// Narrows the bracket down by cells of a level: by halves, as long as cells in the middle are decided,
     /// then from both ends. If the solid knows the crossing, that is the answer.
     fn narrow<W: Worker>(

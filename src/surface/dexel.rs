@@ -9,6 +9,7 @@ use super::lattice::Lattice;
 use super::samples::Samples;
 use super::size::Least;
 use super::solid::edges;
+use super::vanished::{is_kept, vanished};
 use super::weld::weld;
 use crate::control::{Control, Job, WHOLE};
 use crate::dexel::TriDexelRef;
@@ -38,6 +39,14 @@ pub struct DexelSurfaceReport {
     pub means: u64,
     /// Vertices that would fit their planes better outside of their cells. (By dual contouring alone.)
     pub clamped: u64,
+    /// Bodies that the mesh does not show at all. A body is a set of centres of cells that lie inside and hang together, each
+    /// with the next one along an axis. It vanishes if none of its crossings has a triangle: its surface lies nearer to its
+    /// centres than doubles can tell, so that its vertices lie at these, and each of its triangles has two corners at one
+    /// place.
+    pub vanished: u64,
+    /// Intervals in all directions that hold no centre of a cell, those that touch counted as one: what is thinner than the
+    /// lattice there is no part of any body, and no crossing tells of it.
+    pub without_centres: u64,
 }
 
 /// The surface of a tri-dexel model by marching cubes: a closed mesh, with vertices where rays cross the solid's surface.
@@ -50,11 +59,14 @@ pub struct DexelSurfaceReport {
 ///
 /// The mesh is oriented as that of [`marching_cubes`](crate::marching_cubes). Vertices that lie at one place, which is a
 /// centre on the surface, are one vertex, and triangles without area are dropped: there more than two triangles may meet
-/// on an edge, in balance. Else every edge belongs to exactly two triangles.
+/// on an edge, in balance. Else every edge belongs to exactly two triangles. A body that loses all of its triangles so
+/// [is counted](DexelSurfaceReport::vanished), and so is what [holds no centre](DexelSurfaceReport::without_centres) and is
+/// not seen.
 ///
 /// Edges and corners of the solid are cut off by up to a cell; [`dual_contouring_of_dexels`] keeps them.
 ///
-/// O(rays · 2^depth / 64 + mesh), for rays with few intervals each. The result is the same for any number of threads.
+/// O(rays + intervals + octree + mesh), with the octree of [`octree_of_dexels`](crate::octree_of_dexels). The result is the
+/// same for any number of threads.
 ///
 /// # Errors
 /// [`Error::Argument`] if the frame is so far from the origin that doubles cannot tell its cells apart;
@@ -69,7 +81,7 @@ pub struct DexelSurfaceReport {
 ///     let [u, v] = ray.map(|i| (f64::from(i) + 0.5) / 16.0 - 1.0);
 ///     let rest = 0.75 * 0.75 - u * u - v * v;
 ///     if rest > 0.0 {
-///         let end = |at: f64| DexelEnd { at, surface: None, normal: None };
+///         let end = DexelEnd::new;
 ///         list.push(Dexel { start: end(-rest.sqrt()), end: end(rest.sqrt()), material: 0 });
 ///     }
 ///     Ok(())
@@ -102,12 +114,19 @@ pub fn marching_cubes_of_dexels(
             }
         })?;
         let triangles = triangles(Vec::new(), blocks, job, parallel)?;
+        let mut bodies = 0;
         let mesh = if is_welded.into_inner() {
             TriangleMesh::from_welded(vertices, triangles, 0, 0)
         } else {
+            let mut covered = memory::filled(vertices.len(), false)?;
+            for &triangle in triangles.iter().filter(|&&triangle| is_kept(&vertices, triangle)) {
+                triangle.iter().for_each(|&crossing| covered[crossing as usize] = true);
+            }
+            bodies = vanished(model, blocks, |crossing| covered[crossing])?;
             weld(vertices, triangles)?
         };
-        Ok((mesh, DexelSurfaceReport { without_normals: 0, ..rays.counts.report(blocks) }))
+        let report = rays.counts.report(model, blocks);
+        Ok((mesh, DexelSurfaceReport { without_normals: 0, vanished: bodies, ..report }))
     })
 }
 
@@ -128,7 +147,8 @@ pub fn marching_cubes_of_dexels(
 /// in opposite directions. For that there are some more vertices where two sheets come near each other: on a face between
 /// two cubes with two inside centres at the ends of a diagonal, if the sheets around both hang together in both cubes.
 /// Vertices that lie at one place, as on the common face of two cubes, are one vertex, and triangles without area are
-/// dropped: there more than two triangles may meet on an edge, in balance. Triangles may intersect.
+/// dropped: there more than two triangles may meet on an edge, in balance. Triangles may intersect. A body is not shown, and
+/// counted, as by [`marching_cubes_of_dexels`]; a body of one centre is else a cuboid around it.
 ///
 /// Time as [`marching_cubes_of_dexels`]. The result is the same for any number of threads.
 ///
@@ -145,9 +165,9 @@ pub fn dual_contouring_of_dexels(
         rays.for_each(&mut crossings, (WHOLE - FINDING) / 4, job, parallel, |_, hermite, crossing| {
             *crossing = hermite;
         })?;
-        let (mesh, counts) = dual::extract(blocks, lattice, &crossings, job, parallel)?;
-        let report = rays.counts.report(blocks);
-        Ok((mesh, DexelSurfaceReport { means: counts.means, clamped: counts.clamped, ..report }))
+        let (mesh, counts) = dual::extract(model, blocks, lattice, &crossings, job, parallel)?;
+        let dual::DualCounts { means, clamped, vanished } = counts;
+        Ok((mesh, DexelSurfaceReport { means, clamped, vanished, ..rays.counts.report(model, blocks) }))
     })
 }
 
@@ -186,7 +206,7 @@ struct Counts {
 }
 
 impl Counts {
-    fn report(&self, blocks: &Blocks) -> DexelSurfaceReport {
+    fn report(&self, model: &TriDexelRef<'_>, blocks: &Blocks) -> DexelSurfaceReport {
         let count = |counter: &AtomicUsize| counter.load(Relaxed) as u64;
         DexelSurfaceReport {
             crossings: blocks.vertices as u64,
@@ -196,6 +216,8 @@ impl Counts {
             without_normals: count(&self.without_normals),
             means: 0,
             clamped: 0,
+            vanished: 0,
+            without_centres: model.without_centres(),
         }
     }
 }

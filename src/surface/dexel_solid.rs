@@ -21,7 +21,7 @@ use alloc::sync::Arc;
 /// ```
 /// use leafless::{Control, Dexel, DexelEnd, DexelFormat, DexelSolid, Frame, Rule, TriDexel, build, measure};
 /// let (frame, control) = (Frame::new([0.0; 3], 8.0, 3)?, Control::default());
-/// let end = |at: f64| DexelEnd { at, surface: None, normal: None };
+/// let end = DexelEnd::new;
 /// // A cube of edge 4, 2 from the origin on each axis.
 /// let cube = |_: usize, ray: [u32; 2], list: &mut Vec<Dexel>| {
 ///     if ray.iter().all(|i| (2..6).contains(i)) {

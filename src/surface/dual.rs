@@ -20,8 +20,10 @@ use super::loops::LOOPS;
 use super::masks::{CORNER_AT, bits, configuration, rank};
 use super::qef::Qef;
 use super::table::{ENDS, OTHERS};
+use super::vanished::{is_kept, vanished};
 use super::weld::weld;
 use crate::control::{Job, WHOLE};
+use crate::dexel::TriDexelRef;
 use crate::error::{Error, MeshError};
 use crate::lattice::morton;
 use crate::memory;
@@ -36,16 +38,19 @@ pub(super) struct DualCounts {
     pub means: u64,
     /// Vertices that would fit better outside of their cubes.
     pub clamped: u64,
+    /// Bodies without triangles.
+    pub vanished: u64,
 }
 
 /// Diagonals whose distances from the crossing differ by less than this part of a cell are alike.
 const ALIKE: f64 = 1.0 / (1 << 20) as f64;
 
-/// The mesh of crossings, which come in the order of the cut edges of `blocks`.
+/// The mesh of crossings of a model, which come in the order of the cut edges of `blocks`.
 ///
 /// # Errors
 /// [`MeshError::TooMany`], [`Error::OutOfMemory`], [`Error::Cancelled`].
 pub(super) fn extract(
+    model: &TriDexelRef<'_>,
     blocks: &Blocks,
     lattice: &Lattice,
     crossings: &[Hermite],
@@ -87,16 +92,30 @@ pub(super) fn extract(
     chunks::for_each(blocks.list.len(), &mut triangles, start, weight, job, parallel, |range, piece| {
         let mut places = piece.iter_mut();
         for i in range {
-            dual.quads(i, crossings, &vertices, &mut places);
+            dual.quads(i, crossings, &vertices, |_, triangle| {
+                if let Some(place) = places.next() {
+                    *place = triangle;
+                }
+            });
         }
         Ok(())
     })?;
+    let mut bodies = 0;
     let mesh = if is_welded.into_inner() {
         TriangleMesh::from_welded(vertices, triangles, 0, 0)
     } else {
+        let mut covered = memory::filled(crossings.len(), false)?;
+        for i in 0..blocks.list.len() {
+            job.check()?;
+            dual.quads(i, crossings, &vertices, |crossing, triangle| {
+                covered[crossing as usize] |= is_kept(&vertices, triangle);
+            });
+        }
+        bodies = vanished(model, blocks, |crossing| covered[crossing])?;
         weld(vertices, triangles)?
     };
-    Ok((mesh, DualCounts { means: means.into_inner() as u64, clamped: clamped.into_inner() as u64 }))
+    let [means, clamped] = [means, clamped].map(|count| count.into_inner() as u64);
+    Ok((mesh, DualCounts { means, clamped, vanished: bodies }))
 }
 
 /// A cube between eight samples that the surface passes through.
@@ -418,13 +437,13 @@ impl Dual<'_> {
         is_welded
     }
 
-    /// Makes the triangles of a block.
-    fn quads<'p>(
+    /// Makes the triangles of a block, each with the number of the crossing that it belongs to.
+    fn quads(
         &self,
         i: usize,
         crossings: &[Hermite],
         vertices: &[[f64; 3]],
-        places: &mut impl Iterator<Item = &'p mut [u32; 3]>,
+        mut each: impl FnMut(u32, [u32; 3]),
     ) {
         let list = &self.blocks.list;
         let block = &list[i];
@@ -450,17 +469,16 @@ impl Dual<'_> {
                     let lower = 4 * at[axis] + inner[axis] as i32 + i32::from(corner);
                     f64::from(lower) + 0.5
                 });
-                crossing[axis] += crossings[around.vertex(c, edge) as usize].t;
+                let number = around.vertex(c, edge);
+                crossing[axis] += crossings[number as usize].t;
                 let crossing = [0, 1, 2].map(|axis| self.lattice.position(axis, crossing[axis]));
                 if self.turns(axis, crossing, quad.map(|vertex| vertices[vertex as usize])) {
                     quad.rotate_left(1);
                     joints.rotate_left(1);
                 }
                 let mut put = |triangle: [u32; 3]| {
-                    if let Some(place) = places.next() {
-                        let [p, q, r] = triangle;
-                        *place = if starts_inside { triangle } else { [p, r, q] };
-                    }
+                    let [p, q, r] = triangle;
+                    each(number, if starts_inside { triangle } else { [p, r, q] });
                 };
                 let [p, q, r, s] = quad;
                 split([p, q, r], [joints[0], joints[1]], &mut put);

@@ -15,8 +15,8 @@
 //! `outline` (regions), `sweep` (their triangles), `published` (cells of several sizes as they are), `shrink`
 //! (coplanar shrink), `weld` (vertices at one place), `solid` (any
 //! solid), `volume` (samples of a field), `loops` (the sheets in a cube), `qef` (the point that fits planes best),
-//! `hermite` (crossings with normals, and how rays tell them), `dual` (dual contouring), `dexel` (tri-dexel models),
-//! `dexel_solid` (these as solids).
+//! `hermite` (crossings with normals, and how rays tell them), `vanished` (bodies without triangles), `dual` (dual contouring),
+//! `dexel` (tri-dexel models), `dexel_solid` (these as solids).
 //!
 //! Solids that are no octrees are sampled at the corners of the lattice, as an octree whose cells have these
 //! corners as centres.
@@ -49,6 +49,7 @@ mod sweep;
 mod table;
 #[cfg(test)]
 mod tests;
+mod vanished;
 mod volume;
 mod weld;
 

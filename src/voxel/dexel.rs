@@ -2,7 +2,7 @@
 
 use super::record::VoxelKind;
 use crate::control::Control;
-use crate::dexel::TriDexelRef;
+use crate::dexel::{BLOCK, Occupied, TriDexelRef};
 use crate::error::Error;
 use crate::lattice::Frame;
 use crate::memory;
@@ -73,8 +73,8 @@ impl DexelVoxels {
 ///
 /// Which centres lie inside is what [`TriDexelRef::contains_cell`] says.
 ///
-/// O(8^depth / 64 + rows), and O(log) for each voxel that does not lie outside if the model stores materials; by the
-/// calling thread.
+/// O(rays of the window + blocks + rows), for blocks of 64³ cells in which centres lie inside, and O(log) for each voxel
+/// that does not lie outside if the model stores materials; by the calling thread.
 ///
 /// # Errors
 /// [`Error::OutOfMemory`], [`Error::Cancelled`].
@@ -82,7 +82,7 @@ impl DexelVoxels {
 /// ```
 /// use leafless::{Control, Dexel, DexelEnd, DexelFormat, Frame, TriDexel, VoxelKind, dexel_voxels};
 /// let (frame, control) = (Frame::new([0.0; 3], 8.0, 3)?, Control::default());
-/// let end = |at: f64| DexelEnd { at, surface: None, normal: None };
+/// let end = DexelEnd::new;
 /// // A cube of four cells to an edge.
 /// let cube = |_: usize, ray: [u32; 2], list: &mut Vec<Dexel>| {
 ///     if ray.iter().all(|i| (2..6).contains(i)) {
@@ -109,36 +109,28 @@ pub fn dexel_voxels(
         LongVoxel { first, length, kind, material, colour }
     };
     let cells = model.frame().cells();
-    let mut layers = Layers::new(cells)?;
     let mut voxels = DexelVoxels { list: Vec::new(), counts: [0; 3] };
-    for z in 0..=cells {
-        control.check()?;
-        layers.advance(model, z)?;
-        for x in 0..=cells {
-            for w in 0..=layers.words {
-                let [any, all] = layers.corners(x, w);
-                let mut rest = any;
-                while rest != 0 {
-                    let start = rest.trailing_zeros();
-                    let inside = all >> start & 1 != 0;
-                    let same = if inside { all } else { any & !all };
-                    let length = (!(same >> start)).trailing_zeros();
-                    rest &= !((!0 >> (64 - length)) << start);
-                    let kind = if inside { VoxelKind::Inside } else { VoxelKind::Boundary };
-                    voxels.counts[kind as usize] += u64::from(length);
-                    let first = [x, 64 * w as u32 + start, z];
-                    if !model.format().materials {
-                        voxels.append(row(first, length, kind, 0))?;
-                        continue;
-                    }
-                    for y in first[1]..first[1] + length {
-                        let material = layers.material(model, [x, y, z]);
-                        voxels.append(row([x, y, z], 1, kind, material))?;
-                    }
-                }
+    each_word(model, control, |x, w, z, [any, all]| {
+        let mut rest = any;
+        while rest != 0 {
+            let start = rest.trailing_zeros();
+            let inside = all >> start & 1 != 0;
+            let same = if inside { all } else { any & !all };
+            let length = (!(same >> start)).trailing_zeros();
+            rest &= !((!0 >> (64 - length)) << start);
+            let kind = if inside { VoxelKind::Inside } else { VoxelKind::Boundary };
+            voxels.counts[kind as usize] += u64::from(length);
+            let first = [x, 64 * w + start, z];
+            if !model.format().materials {
+                voxels.append(row(first, length, kind, 0))?;
+                continue;
+            }
+            for y in first[1]..first[1] + length {
+                voxels.append(row([x, y, z], 1, kind, material(model, [x, y, z])))?;
             }
         }
-    }
+        Ok(())
+    })?;
     let all = (u64::from(cells) + 1).pow(3);
     voxels.counts[VoxelKind::Outside as usize] = all - voxels.counts.iter().sum::<u64>();
     Ok(voxels)
@@ -161,114 +153,162 @@ impl DexelVoxels {
     }
 }
 
-/// The centres of cells as columns along y: 64 layers at a time, and the one before.
-struct Layers {
-    cells: u32,
-    /// Words to a column.
-    words: usize,
-    /// Word w of the column at x in layer z is number (z · cells + x) · words + w.
-    slab: Vec<u64>,
-    /// The layers below and above the present voxels, if they are in the universe.
-    below: Option<Vec<u64>>,
-    above: Option<usize>,
-    block: Box<[u64; 4096]>,
+/// The material at the first corner of a voxel that lies inside.
+fn material(model: &TriDexelRef<'_>, at: [u32; 3]) -> u32 {
+    let corners =
+        (0..8u32).map(|corner| [0, 1, 2].map(|axis| (at[axis] + (corner >> axis & 1)).wrapping_sub(1)));
+    let first = corners.into_iter().find(|&corner| model.contains_cell(corner));
+    first.map_or(0, |corner| model.material_of_cell(corner))
 }
 
-impl Layers {
-    fn new(cells: u32) -> Result<Layers, Error> {
-        let words = cells.div_ceil(64) as usize;
-        let layer = cells as usize * words;
-        let slab = memory::filled(layer * cells.min(64) as usize, 0)?;
-        Ok(Layers { cells, words, slab, below: None, above: None, block: memory::zeros()? })
+/// 64³ centres of cells, as columns along y: bit y of word x + 64 z.
+struct Columns {
+    /// Which of the blocks along x and along y it is.
+    at: [u32; 2],
+    words: Box<[u64; 4096]>,
+}
+
+/// 64 layers of centres: the blocks in which any lies inside, by x, then by y.
+struct Slab {
+    /// Which of the slabs along z it is.
+    at: u32,
+    blocks: Vec<Columns>,
+}
+
+impl Slab {
+    /// The blocks of one place along x.
+    fn strip(&self, x: u32) -> &[Columns] {
+        let first = self.blocks.partition_point(|block| block.at[0] < x);
+        let count = self.blocks[first..].partition_point(|block| block.at[0] == x);
+        &self.blocks[first..first + count]
     }
 
-    fn layer(&self) -> usize {
-        self.cells as usize * self.words
+    /// The last of so many layers.
+    fn top(&self, deep: u32) -> Layer<'_> {
+        Layer { slab: self, z: deep - 1 }
     }
+}
 
-    /// Goes on to the voxels between layers z − 1 and z.
-    fn advance(&mut self, model: &TriDexelRef<'_>, z: u32) -> Result<(), Error> {
-        let size = self.layer();
-        if let Some(above) = self.above.take() {
-            let mut below = match self.below.take() {
-                Some(list) => list,
-                None => memory::filled(size, 0)?,
-            };
-            below.copy_from_slice(&self.slab[above * size..(above + 1) * size]);
-            self.below = Some(below);
+/// A layer of a slab.
+#[derive(Clone, Copy)]
+struct Layer<'a> {
+    slab: &'a Slab,
+    z: u32,
+}
+
+/// Hands out, by z, x and y, the words of voxels of which any has a corner inside: their place along x, the number of the
+/// word along y, their place along z, and which of the voxels have any corner inside, and which all.
+fn each_word(
+    model: &TriDexelRef<'_>,
+    control: &Control<'_>,
+    mut each: impl FnMut(u32, u32, u32, [u64; 2]) -> Result<(), Error>,
+) -> Result<(), Error> {
+    let mut blocks = Occupied::of(model)?.blocks()?;
+    blocks.sort_unstable_by_key(|&[x, y, z]| [z, x, y]);
+    // Layers of a slab.
+    let deep = model.frame().cells().min(BLOCK);
+    let mut before: Option<Slab> = None;
+    for group in blocks.chunk_by(|a, b| a[2] == b[2]) {
+        let z = group[0][2];
+        if let Some(slab) = before.take_if(|slab| slab.at + 1 != z) {
+            layer(deep, slab.at * BLOCK + deep, [Some(slab.top(deep)), None], control, &mut each)?;
         }
-        if z == self.cells {
-            return Ok(());
+        let mut slab = Slab { at: z, blocks: memory::with_capacity(group.len())? };
+        for &[x, y, _] in group {
+            let mut words = memory::zeros()?;
+            model.fill_centres([BLOCK * x, BLOCK * y, BLOCK * z], 1, &mut words);
+            slab.blocks.push(Columns { at: [x, y], words });
         }
-        if z.is_multiple_of(64) {
-            self.load(model, z);
+        let mut below = before.as_ref().map(|slab| slab.top(deep));
+        for k in 0..deep {
+            let above = Layer { slab: &slab, z: k };
+            layer(deep, BLOCK * z + k, [below, Some(above)], control, &mut each)?;
+            below = Some(above);
         }
-        self.above = Some((z % 64) as usize);
-        Ok(())
+        before = Some(slab);
     }
-
-    /// Takes in 64 layers.
-    fn load(&mut self, model: &TriDexelRef<'_>, z: u32) {
-        let (size, deep) = (self.layer(), self.cells.min(64) as usize);
-        self.slab.fill(0);
-        for x in (0..self.cells).step_by(64) {
-            for w in 0..self.words {
-                if !model.fill_centres([x, 64 * w as u32, z], 1, &mut self.block) {
-                    continue;
-                }
-                for k in 0..deep {
-                    for i in 0..deep {
-                        self.slab[k * size + (x as usize + i) * self.words + w] = self.block[64 * k + i];
-                    }
-                }
-            }
-        }
+    match before {
+        Some(slab) => layer(deep, slab.at * BLOCK + deep, [Some(slab.top(deep)), None], control, &mut each),
+        None => Ok(()),
     }
+}
 
-    /// The layers at the voxels' lower and upper faces.
-    fn both(&self) -> [Option<&[u64]>; 2] {
-        let size = self.layer();
-        [self.below.as_deref(), self.above.map(|above| &self.slab[above * size..(above + 1) * size])]
-    }
-
-    /// A word of a column. Outside of the universe it is empty.
-    #[inline(always)]
-    fn word(&self, layer: Option<&[u64]>, x: u32, w: usize) -> u64 {
-        match layer {
-            Some(layer) if x < self.cells && w < self.words => layer[x as usize * self.words + w],
-            _ => 0,
-        }
-    }
-
-    /// Which voxels of word `w` of a column have any corner inside, and which all.
-    #[inline(always)]
-    fn corners(&self, x: u32, w: usize) -> [u64; 2] {
-        let layers = self.both();
-        let four = |w: usize| {
-            let (mut any, mut all) = (0, !0);
-            for layer in layers {
-                for x in [x.wrapping_sub(1), x] {
-                    let word = self.word(layer, x, w);
-                    (any, all) = (any | word, all & word);
-                }
-            }
-            [any, all]
+/// The voxels between two layers. `deep` are the cells of a block along an axis.
+fn layer(
+    deep: u32,
+    z: u32,
+    layers: [Option<Layer<'_>>; 2],
+    control: &Control<'_>,
+    each: &mut impl FnMut(u32, u32, u32, [u64; 2]) -> Result<(), Error>,
+) -> Result<(), Error> {
+    control.check()?;
+    // Blocks along x, one after the other, in both layers.
+    let mut next = Some(0);
+    while let Some(from) = next {
+        let first = |layer: &Layer<'_>| {
+            let blocks = &layer.slab.blocks;
+            blocks.get(blocks.partition_point(|block| block.at[0] < from)).map(|block| block.at[0])
         };
-        let [any, all] = four(w);
-        let [any_before, all_before] = if w == 0 { [0; 2] } else { four(w - 1) };
-        [any | any << 1 | any_before >> 63, all & (all << 1 | all_before >> 63)]
+        let Some(x) = layers.iter().flatten().filter_map(first).min() else { break };
+        let strips = |x: Option<u32>| layers.map(|layer| Some((layer?.slab.strip(x?), layer?.z)));
+        let (own, before) = (strips(Some(x)), strips(x.checked_sub(1)));
+        for i in 0..deep {
+            let lower = if i > 0 { own } else { before };
+            column([(lower, (i + BLOCK - 1) % BLOCK), (own, i)], |w, words| {
+                each(BLOCK * x + i, w, z, words)
+            })?;
+        }
+        let after = strips(Some(x + 1));
+        if after.iter().flatten().all(|(strip, _)| strip.is_empty()) {
+            column([(own, deep - 1), (after, 0)], |w, words| each(BLOCK * x + deep, w, z, words))?;
+        }
+        next = Some(x + 1);
     }
+    Ok(())
+}
 
-    /// The material at the first corner of a voxel that lies inside.
-    fn material(&self, model: &TriDexelRef<'_>, at: [u32; 3]) -> u32 {
-        let layers = self.both();
-        for corner in 0..8u32 {
-            let [x, y, z] = [0, 1, 2].map(|axis| (at[axis] + (corner >> axis & 1)).wrapping_sub(1));
-            let word = self.word(layers[(corner >> 2) as usize], x, (y / 64) as usize);
-            if word >> (y % 64) & 1 != 0 {
-                return model.material_of_cell([x, y, z]);
+/// The blocks along y of two layers, each with the number of its layer.
+type Strips<'a> = [Option<(&'a [Columns], u32)>; 2];
+
+/// The voxels of a column along y, between columns of centres at two places along x.
+fn column(
+    sides: [(Strips<'_>, u32); 2],
+    mut each: impl FnMut(u32, [u64; 2]) -> Result<(), Error>,
+) -> Result<(), Error> {
+    let mut sources: [(&[Columns], usize); 4] = [(&[], 0); 4];
+    for ((strips, x), pair) in sides.into_iter().zip(sources.chunks_exact_mut(2)) {
+        for (strip, source) in strips.into_iter().zip(pair) {
+            if let Some((blocks, z)) = strip {
+                *source = (blocks, (x + BLOCK * z) as usize);
             }
         }
-        0
+    }
+    // What the word before left: whether its last four centres have any inside, and all.
+    let (mut at, mut carry) = (0, [0u64; 2]);
+    loop {
+        let first = sources.iter().filter_map(|(blocks, _)| blocks.first()).map(|block| block.at[1]).min();
+        if carry[0] == 0 {
+            match first {
+                Some(first) => at = first,
+                None => return Ok(()),
+            }
+        }
+        let [mut any, mut all] = [0, !0];
+        for (blocks, place) in &mut sources {
+            let word = match blocks.split_first() {
+                Some((block, rest)) if block.at[1] == at => {
+                    *blocks = rest;
+                    block.words[*place]
+                }
+                _ => 0,
+            };
+            (any, all) = (any | word, all & word);
+        }
+        let words = [any | any << 1 | carry[0], all & (all << 1 | carry[1])];
+        if words[0] != 0 {
+            each(at, words)?;
+        }
+        carry = [any >> 63, all >> 63];
+        at += 1;
     }
 }

@@ -152,6 +152,14 @@ impl<W: Worker> Trail<W> {
         self.ask(cell, |worker, part| worker.crossing(cell, part, segment))
     }
 
+    /// Whether the centre of a finest `cell`, to whose parent the way was led, lies inside, if the solid can tell.
+    ///
+    /// # Errors
+    /// The solid's own.
+    pub(crate) fn sample(&mut self, cell: Cell) -> Result<Option<bool>, Error> {
+        self.ask(cell, |worker, part| worker.sample(cell, part))
+    }
+
     /// Asks about a cell to whose parent the way was led, if it has a part.
     fn ask<R>(
         &mut self,
