@@ -196,9 +196,9 @@ fn run(place: &Place, line: &str, input: &[u8]) -> Run {
     Run::new(line, waiting.join().unwrap().unwrap())
 }
 
-/// Every command on a file ends by itself: with success, or with one sentence.
-fn all_commands(place: &Place, path: &Path) {
-    for command in COMMANDS {
+/// Commands on a file end by themselves: with success, or with one sentence.
+fn attempt(place: &Place, path: &Path, commands: impl Iterator<Item = &'static str>) {
+    for command in commands {
         let (line, input) = command.split_once('<').unwrap_or((command, ""));
         let line = line.replace(" F", &format!(" {}", path.display()));
         let done = run(place, &line, format!("{}\n", input.trim()).as_bytes());
@@ -206,45 +206,55 @@ fn all_commands(place: &Place, path: &Path) {
         let errors = done.errors.lines().filter(|line| !line.contains("warning")).count();
         assert_eq!(errors, usize::from(done.code != Some(0)), "{done:?}");
         // The limit was kept by the program itself.
-        assert!(
-            !done.errors.contains("the system has no memory left") && !done.errors.contains("panicked"),
-            "{done:?}"
-        );
+        let is_kept =
+            !done.errors.contains("the system has no memory left") && !done.errors.contains("panicked");
+        assert!(is_kept, "{done:?}");
     }
 }
 
-/// Files in turn, on as many threads as there are processors.
-fn in_turn(paths: &[PathBuf]) {
+/// Files in turn, on as many threads as there are processors: of each one command in so many, another one for each file.
+fn in_turn(paths: &[PathBuf], every: usize) {
     let next = std::sync::atomic::AtomicUsize::new(0);
     std::thread::scope(|scope| {
         for _ in 0..std::thread::available_parallelism().map_or(1, |n| n.get()) {
             scope.spawn(|| {
                 let place = Place::new();
-                while let Some(path) = paths.get(next.fetch_add(1, std::sync::atomic::Ordering::Relaxed)) {
-                    all_commands(&place, path);
+                loop {
+                    let i = next.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
+                    let Some(path) = paths.get(i) else { break };
+                    attempt(&place, path, COMMANDS.into_iter().skip(i % every).step_by(every));
                 }
             });
         }
     });
 }
 
+fn vectors() -> Vec<PathBuf> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../format_spec/vectors/valid");
+    let entries = std::fs::read_dir(folder.canonicalize().unwrap()).unwrap();
+    let mut paths: Vec<PathBuf> = entries.map(|entry| entry.unwrap().path()).collect();
+    paths.retain(|path| path.extension().is_some_and(|extension| extension == "lfl"));
+    paths.sort();
+    assert!(paths.len() > 50);
+    paths
+}
+
 #[test]
 fn trees_of_one_cell_take_little() {
     let place = Place::new();
-    in_turn(&trees(&place));
+    in_turn(&trees(&place), 1);
 }
 
 #[test]
 fn test_vectors_take_little() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../format_spec/vectors/valid");
-    let mut paths: Vec<PathBuf> = std::fs::read_dir(folder.canonicalize().unwrap())
-        .unwrap()
-        .map(|entry| entry.unwrap().path())
-        .collect();
-    paths.retain(|path| path.extension().is_some_and(|extension| extension == "lfl"));
-    paths.sort();
-    assert!(paths.len() > 50);
-    in_turn(&paths);
+    in_turn(&vectors(), 7);
+}
+
+/// Minutes: `--test limits -- --ignored`.
+#[test]
+#[ignore = "minutes"]
+fn every_command_on_every_test_vector_takes_little() {
+    in_turn(&vectors(), 1);
 }
 
 #[test]
