@@ -207,7 +207,7 @@ fn many_bodies_in_a_large_one() {
         let [x, y, z] = place(k);
         vec![block([x + by, y, z], [x + by + 2.0, y + 2.0, z + 2.0])]
     };
-    let row = |k: u32| k % 10 == 0 && k < 100;
+    let row = |k: u32| k.is_multiple_of(10) && k < 100;
     let crossing = |k: u32| if row(k) { moved(k, -3.0) } else { vec![turned(&small(k, 2.0))] };
     assert_eq!(all(&mut (0..1000).flat_map(crossing)), [11, 0]);
     let outside = |k: u32| if row(k) { moved(k, -5.0) } else { vec![turned(&small(k, 2.0))] };

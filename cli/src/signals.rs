@@ -26,8 +26,10 @@ fn undo() -> MutexGuard<'static, Option<Action>> {
 }
 
 /// A change that is undone when this is dropped, or when the program ends before.
+#[cfg(unix)]
 pub struct Change(());
 
+#[cfg(unix)]
 impl Change {
     /// Makes a change, if it can be made.
     pub fn make(
@@ -41,6 +43,7 @@ impl Change {
     }
 }
 
+#[cfg(unix)]
 impl Drop for Change {
     fn drop(&mut self) {
         let mut undo = undo();
@@ -71,6 +74,7 @@ pub fn write_whole<E>(text: &[u8], end: &[u8], write: impl Fn(&[u8]) -> Result<(
 }
 
 /// Does what must be done before the program ends. After that no other thread can save a file or change a terminal.
+#[cfg(any(unix, windows))]
 fn clean_up() {
     IS_ENDING.store(true, SeqCst);
     let start = Instant::now();

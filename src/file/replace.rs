@@ -6,7 +6,9 @@ use alloc::format;
 use alloc::string::ToString;
 use alloc::vec::Vec;
 use std::fs::{File, OpenOptions, Permissions};
-use std::io::{self, ErrorKind, Seek};
+#[cfg(target_os = "linux")]
+use std::io::Seek;
+use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use tempfile::{Builder, NamedTempFile};
