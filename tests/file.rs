@@ -1029,6 +1029,44 @@ mod save {
         assert_eq!(names(directory.path()), ["tree.lfl"]);
     }
 
+    /// Whether the file system has files without names.
+    #[cfg(target_os = "linux")]
+    fn has_unnamed_files(directory: &Path) -> bool {
+        use rustix::fs::{Mode, OFlags, open};
+        open(directory, OFlags::TMPFILE | OFlags::RDWR, Mode::from_raw_mode(0o600)).is_ok()
+    }
+
+    #[test]
+    fn other_contents_are_replaced_as_a_whole() {
+        use std::io::{Read, Write};
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join("text");
+        for text in ["first", "second"] {
+            let old = fs::read(&path).ok();
+            file::replace(&path, |file| {
+                file.write_all(text.as_bytes())?;
+                assert_eq!(fs::read(&path).ok(), old);
+                // A process that is killed now leaves nothing.
+                #[cfg(target_os = "linux")]
+                if has_unnamed_files(directory.path()) {
+                    assert_eq!(names(directory.path()).len(), usize::from(old.is_some()));
+                }
+                Ok(())
+            })
+            .unwrap();
+            assert_eq!(fs::read(&path).unwrap(), text.as_bytes());
+        }
+        let error = io_error(file::replace(&path, |file| {
+            file.write_all(b"third")?;
+            Ok(std::io::empty().read_exact(&mut [0])?)
+        }));
+        assert_eq!(error.kind(), std::io::ErrorKind::UnexpectedEof);
+        assert_eq!(
+            (fs::read(&path).unwrap(), names(directory.path())),
+            (b"second".to_vec(), vec!["text".into()])
+        );
+    }
+
     // The rest needs a process of its own: one with limits, another user, or another working directory.
 
     const TASK: &str = "LEAFLESS_TEST_SAVE";
@@ -1060,6 +1098,22 @@ mod save {
                 let error = io_error(file::save(&dictionary_coded(), "tree.lfl"));
                 assert_eq!(error.kind(), std::io::ErrorKind::FileTooLarge);
             }
+            "abandoned" => {
+                // A thread that never returns from its save.
+                let (send, receive) = std::sync::mpsc::channel();
+                std::thread::spawn(move || {
+                    let saved = file::replace("tree.lfl", |file| {
+                        std::io::Write::write_all(file, b"new")?;
+                        send.send(()).unwrap();
+                        std::thread::sleep(std::time::Duration::from_millis(100));
+                        Ok(())
+                    });
+                    panic!("{saved:?}");
+                });
+                receive.recv().unwrap();
+                file::abandon_saves();
+                std::thread::sleep(std::time::Duration::from_millis(300));
+            }
             "read-only" => {
                 let error = io_error(file::save(&dictionary_coded(), "tree.lfl"));
                 assert_eq!(error.kind(), std::io::ErrorKind::PermissionDenied);
@@ -1083,6 +1137,15 @@ mod save {
         run_child(directory.path(), "relative", |program| Command::new(program));
         assert_eq!(names(directory.path()), ["other", "tree.lfl"]);
         assert_eq!(file::open(directory.path().join("tree.lfl")).unwrap(), small());
+    }
+
+    #[test]
+    fn abandoned_saves_leave_the_old_file() {
+        let directory = tempfile::tempdir().unwrap();
+        fs::write(directory.path().join("tree.lfl"), "old").unwrap();
+        run_child(directory.path(), "abandoned", |program| Command::new(program));
+        assert_eq!(names(directory.path()), ["tree.lfl"]);
+        assert_eq!(fs::read(directory.path().join("tree.lfl")).unwrap(), b"old");
     }
 
     #[test]

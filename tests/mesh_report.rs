@@ -158,6 +158,65 @@ fn bodies_that_overlap() {
     assert_eq!(overlapping(&[far(&two), far(&turned(&one))]), [0, 0]);
 }
 
+/// A block whose sides are grids of so many squares along each edge.
+fn divided(low: [f64; 3], high: [f64; 3], count: u32) -> Vec<[[f64; 3]; 3]> {
+    let mut facets = vec![];
+    for [a, b, c] in block(low, high).chunks_exact(2).map(|pair| pair[0]) {
+        // The corner with the right angle comes first.
+        let right = |[p, q, r]: &[[f64; 3]; 3]| (0..3).all(|k| (q[k] - p[k]) * (r[k] - p[k]) == 0.0);
+        let corners = [[a, b, c], [b, c, a], [c, a, b]];
+        let [origin, one, two] = corners.into_iter().find(right).unwrap();
+        let at = |i: u32, j: u32| {
+            let share = |k: u32| f64::from(k) / f64::from(count);
+            [0, 1, 2].map(|axis| {
+                let way = |end: [f64; 3], k| {
+                    if k == count { end[axis] - origin[axis] } else { (end[axis] - origin[axis]) * share(k) }
+                };
+                origin[axis] + way(one, i) + way(two, j)
+            })
+        };
+        for (i, j) in (0..count).flat_map(|i| (0..count).map(move |j| (i, j))) {
+            let [p, q, r, s] = [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)];
+            facets.extend([[p, q, r], [p, r, s]]);
+        }
+    }
+    facets
+}
+
+/// Hundreds of bodies in one of many triangles: each is decided, for which all triangles of the large one need not be
+/// looked at each time.
+#[test]
+fn many_bodies_in_a_large_one() {
+    let outer = divided([0.0; 3], [64.0; 3], 64);
+    assert_eq!(outer.len(), 12 * 64 * 64);
+    let place = |k: u32| [k % 10, k / 10 % 10, k / 100].map(|k| 2.0 + 6.0 * f64::from(k));
+    let small = |k: u32, size: f64| block(place(k), place(k).map(|x| x + size));
+    let all = |inner: &mut dyn Iterator<Item = Vec<[[f64; 3]; 3]>>| {
+        let mut facets = vec![outer.clone()];
+        facets.extend(inner);
+        overlapping(&facets)
+    };
+    // Cavities, bodies, and bodies in cavities.
+    assert_eq!(all(&mut (0..1000).map(|k| turned(&small(k, 2.0)))), [0, 0]);
+    assert_eq!(all(&mut (0..1000).map(|k| small(k, 2.0))), [1001, 0]);
+    let nested =
+        |k: u32| [turned(&small(k, 2.0)), block(place(k).map(|x| x + 0.5), place(k).map(|x| x + 1.5))];
+    assert_eq!(all(&mut (0..1000).flat_map(nested)), [0, 0]);
+    // Ten in a row reach through the outer surface, and ten are outside of it.
+    let moved = |k: u32, by: f64| {
+        let [x, y, z] = place(k);
+        vec![block([x + by, y, z], [x + by + 2.0, y + 2.0, z + 2.0])]
+    };
+    let row = |k: u32| k.is_multiple_of(10) && k < 100;
+    let crossing = |k: u32| if row(k) { moved(k, -3.0) } else { vec![turned(&small(k, 2.0))] };
+    assert_eq!(all(&mut (0..1000).flat_map(crossing)), [11, 0]);
+    let outside = |k: u32| if row(k) { moved(k, -5.0) } else { vec![turned(&small(k, 2.0))] };
+    assert_eq!(all(&mut (0..1000).flat_map(outside)), [0, 0]);
+    // On its surface from inside, where corners lie on edges, and away from the others.
+    let touching = |k: u32| if row(k) { vec![turned(&moved(k, -2.0)[0])] } else { vec![] };
+    assert_eq!(all(&mut (0..1000).flat_map(touching)), [0, 0]);
+}
+
 /// Blocks with whole coordinates, where all can be told cell by cell.
 #[test]
 fn random_blocks_that_overlap() {

@@ -984,7 +984,8 @@ fn each_write_may_fail_or_be_short_or_interrupted() {
     assert!(pieces > 3 && failing(pieces).0 && !failing(pieces + 1).0);
 }
 
-/// A file-size limit by which the system ends the process: nobody can clean up then, but the old file stays.
+/// A file-size limit by which the system ends the process: nobody can clean up then, but the old file stays. Where files
+/// need no names, nothing else does.
 #[test]
 fn a_process_that_is_ended_while_it_saves_leaves_the_old_file() {
     use std::os::unix::process::ExitStatusExt;
@@ -997,6 +998,14 @@ fn a_process_that_is_ended_while_it_saves_leaves_the_old_file() {
     let status = shell.env(TASK, "limited").output().unwrap().status;
     assert!(status.signal().is_some(), "{status}");
     assert_eq!(std::fs::read(&path).unwrap(), old_file());
+    #[cfg(target_os = "linux")]
+    {
+        use rustix::fs::{Mode, OFlags, open};
+        let flags = OFlags::TMPFILE | OFlags::RDWR;
+        if open(directory.path(), flags, Mode::from_raw_mode(0o600)).is_ok() {
+            assert_eq!(names(directory.path()), ["tree.lfl"]);
+        }
+    }
     for name in names(directory.path()) {
         assert!(name == "tree.lfl" || name.starts_with(".leafless-"), "{name}");
     }

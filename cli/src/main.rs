@@ -1,7 +1,7 @@
 //! `leafless`: solids from mesh files to queries, on the command line.
 //!
 //! One file per subcommand. Every failure is one line on standard error that names the file; the exit code is
-//! 0 for success, 1 for failure, 2 for wrong usage.
+//! 0 for success, 1 for failure, 2 for wrong usage. A signal ends the program at once (see `signals`).
 
 #![deny(unsafe_code)]
 
@@ -47,6 +47,7 @@ mod scene;
 mod shape;
 mod show;
 mod shrink;
+mod signals;
 mod sixel;
 mod source;
 mod summary;
@@ -143,6 +144,7 @@ enum Command {
 }
 
 fn main() -> ExitCode {
+    signals::watch();
     let arguments = match Arguments::try_parse() {
         Ok(arguments) => arguments,
         Err(error) => return refuse_usage(&error),

@@ -1,12 +1,11 @@
 //! What the program writes: lines, files, numbers.
 
-use crate::failure::{Failure, Of};
+use crate::failure::{Failure, Of, Problem};
 use leafless::{Error, Interval, Octree, TriDexel, file};
 use std::ffi::OsStr;
 use std::fmt;
 use std::io::{ErrorKind, IsTerminal, Write};
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicBool, Ordering::SeqCst};
 
 /// Where a result goes: a file, or standard output where the name is `-`.
 #[derive(Debug, Clone)]
@@ -83,7 +82,7 @@ impl Output {
                 Err(error) => Err(Failure::of(self, error)),
             };
         };
-        unharmed(|| save(path)).of(self)?;
+        save(path).of(self)?;
         match std::fs::metadata(path) {
             Ok(metadata) if metadata.is_file() => Ok(metadata.len()),
             // A pipe or device does not tell.
@@ -128,52 +127,7 @@ impl<W: Write> Write for Counter<W> {
 
 /// Writes a file whole or not at all.
 pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
-    // A device or a pipe must not be replaced by a file.
-    if std::fs::metadata(path).is_ok_and(|found| !found.is_file()) {
-        return std::fs::write(path, bytes).of(path.display());
-    }
-    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let write = || {
-        let mut builder = tempfile::Builder::new();
-        builder.prefix(".leafless-").suffix(".tmp");
-        #[cfg(unix)]
-        {
-            use std::os::unix::fs::PermissionsExt;
-            // As for any new file: the system takes off the umask.
-            builder.permissions(std::fs::Permissions::from_mode(0o666));
-        }
-        let mut temporary = builder.tempfile_in(folder)?;
-        temporary.write_all(bytes)?;
-        temporary.persist(path).map_err(|refused| refused.error)?;
-        Ok::<_, std::io::Error>(())
-    };
-    unharmed(write).of(path.display())
-}
-
-/// Whether work is under way that must come to its end.
-static BUSY: AtomicBool = AtomicBool::new(false);
-/// Whether the user wanted to stop meanwhile.
-static INTERRUPTED: AtomicBool = AtomicBool::new(false);
-/// What shells report of a program that Ctrl-C ended.
-const STOPPED: i32 = 130;
-
-/// Runs `work`, which a first Ctrl-C (or SIGTERM, SIGHUP) does not interrupt: the program ends after it. So no
-/// temporary file is left behind, and no terminal in another mode. A second one ends at once.
-pub fn unharmed<T>(work: impl FnOnce() -> T) -> T {
-    // Fails the second time, which is well. Takes the signals also where one of them was ignored, as SIGHUP
-    // is under `nohup`: the others must not find a temporary file either.
-    let _ = ctrlc::set_handler(|| {
-        if !BUSY.load(SeqCst) || INTERRUPTED.swap(true, SeqCst) {
-            std::process::exit(STOPPED);
-        }
-    });
-    BUSY.store(true, SeqCst);
-    let result = work();
-    BUSY.store(false, SeqCst);
-    if INTERRUPTED.load(SeqCst) {
-        std::process::exit(STOPPED);
-    }
-    result
+    file::replace(path, |file| Ok(file.write_all(bytes)?)).of(path.display())
 }
 
 /// Writes to standard output.
@@ -181,7 +135,7 @@ pub fn print(bytes: &[u8]) -> Result<(), Failure> {
     let mut out = std::io::stdout().lock();
     out.write_all(bytes).and_then(|()| out.flush()).map_err(|error| match error.kind() {
         ErrorKind::BrokenPipe => Failure::ReaderGone,
-        _ => Failure::of("standard output", error),
+        _ => Failure::of("standard output", error.text()),
     })
 }
 

@@ -4,6 +4,7 @@ use crate::blocks::{self, Palette};
 use crate::failure::{Failure, Of};
 use crate::output;
 use crate::shrink::{Image, fitted};
+use crate::signals;
 use crate::sixel;
 use crate::terminal::{self, Terminal, terminal};
 use base64::Engine;
@@ -65,8 +66,7 @@ impl Screen {
             }
         }
         let is_asked = wanted != Protocol::Blocks;
-        // A signal must not leave the terminal in another mode.
-        let known = if is_terminal { output::unharmed(|| terminal(is_asked)) } else { Terminal::default() };
+        let known = if is_terminal { terminal(is_asked) } else { Terminal::default() };
         Ok(Screen::new(wanted, is_terminal, &known))
     }
 
@@ -128,8 +128,8 @@ impl Screen {
                 blocks::text(&image, palette)
             }
         };
-        // Half of a sequence would make the terminal wait for the other one.
-        output::unharmed(|| output::print(text.as_bytes()))
+        // Half of a sequence would make the terminal wait for the other one: this ends every sequence, and colours.
+        signals::write_whole(text.as_bytes(), b"\x1b\\\x1b[0m\n", output::print)
     }
 }
 

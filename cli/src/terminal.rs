@@ -75,11 +75,11 @@ pub use unix::terminal;
 #[cfg(unix)]
 mod unix {
     use super::{Answer, Terminal, is_one_of, parse};
+    use crate::signals::Change;
     use rustix::fs::{Mode, OFlags, open};
     use rustix::process::getpgrp;
     use rustix::termios::{
-        LocalModes, OptionalActions, SpecialCodeIndex, Termios, tcgetattr, tcgetpgrp, tcgetwinsize,
-        tcsetattr, ttyname,
+        LocalModes, OptionalActions, SpecialCodeIndex, tcgetattr, tcgetpgrp, tcgetwinsize, tcsetattr, ttyname,
     };
     use std::env;
     use std::fs::File;
@@ -109,16 +109,6 @@ mod unix {
         }
     }
 
-    /// The terminal's mode, which comes back when this is dropped.
-    struct Quiet<'a>(&'a File, Termios);
-
-    impl Drop for Quiet<'_> {
-        fn drop(&mut self) {
-            // If this fails the terminal is gone.
-            let _ = tcsetattr(self.0, OptionalActions::Now, &self.1);
-        }
-    }
-
     /// What the terminal says; nothing if it cannot be asked, or does not answer in time.
     fn ask() -> Option<Answer> {
         // These write what they do not know as text.
@@ -142,10 +132,14 @@ mod unix {
         other.special_codes[SpecialCodeIndex::VMIN] = 0;
         other.special_codes[SpecialCodeIndex::VTIME] = 1;
         let mut out = terminal.try_clone().ok()?;
-        let quiet = Quiet(&terminal, mode);
-        tcsetattr(&terminal, OptionalActions::Now, &other).ok()?;
+        // The mode comes back also when a signal ends the program meanwhile. If that fails the terminal is gone.
+        let again = terminal.try_clone().ok()?;
+        let undone = move || {
+            let _ = tcsetattr(&again, OptionalActions::Now, &mode);
+        };
+        let change = Change::make(|| tcsetattr(&terminal, OptionalActions::Now, &other).ok(), undone)?;
         let answer = exchange(&mut out);
-        drop(quiet);
+        drop(change);
         answer
     }
 

@@ -12,8 +12,9 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
-/// What every command is allowed.
+/// What every command is allowed, and what some are that take longer for it.
 const ALLOWED: &str = "1G";
+const LITTLE: &str = "160M";
 /// What ends a command that hangs. (They take ten seconds at most on a machine with nothing else to do.)
 const PATIENCE: Duration = Duration::from_secs(100);
 
@@ -164,7 +165,7 @@ fn trees(place: &Place) -> Vec<PathBuf> {
 }
 
 /// Runs the program under a limit of addresses, with twice what it is allowed: what it takes for threads counts, too.
-fn run(place: &Place, line: &str, input: &[u8]) -> Run {
+fn run(place: &Place, allowed: &str, line: &str, input: &[u8]) -> Run {
     let words: Vec<&str> = line.split_whitespace().collect();
     let mut command = if cfg!(target_os = "linux") {
         let mut shell = Command::new("sh");
@@ -173,7 +174,7 @@ fn run(place: &Place, line: &str, input: &[u8]) -> Run {
     } else {
         Command::new(env!("CARGO_BIN_EXE_leafless"))
     };
-    command.args(words).args(["--max-memory", ALLOWED]).current_dir(place.0.path());
+    command.args(words).args(["--max-memory", allowed]).current_dir(place.0.path());
     command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
     let start = Instant::now();
     let mut child = command.spawn().unwrap();
@@ -197,11 +198,11 @@ fn run(place: &Place, line: &str, input: &[u8]) -> Run {
 }
 
 /// Commands on a file end by themselves: with success, or with one sentence.
-fn attempt(place: &Place, path: &Path, commands: impl Iterator<Item = &'static str>) {
+fn attempt(place: &Place, allowed: &str, path: &Path, commands: impl Iterator<Item = &'static str>) {
     for command in commands {
         let (line, input) = command.split_once('<').unwrap_or((command, ""));
         let line = line.replace(" F", &format!(" {}", path.display()));
-        let done = run(place, &line, format!("{}\n", input.trim()).as_bytes());
+        let done = run(place, allowed, &line, format!("{}\n", input.trim()).as_bytes());
         assert!(matches!(done.code, Some(0..=2)), "{done:?}");
         let errors = done.errors.lines().filter(|line| !line.contains("warning")).count();
         assert_eq!(errors, usize::from(done.code != Some(0)), "{done:?}");
@@ -213,7 +214,7 @@ fn attempt(place: &Place, path: &Path, commands: impl Iterator<Item = &'static s
 }
 
 /// Files in turn, on as many threads as there are processors: of each one command in so many, another one for each file.
-fn in_turn(paths: &[PathBuf], every: usize) {
+fn in_turn(paths: &[PathBuf], allowed: &str, every: usize) {
     let next = std::sync::atomic::AtomicUsize::new(0);
     std::thread::scope(|scope| {
         for _ in 0..std::thread::available_parallelism().map_or(1, |n| n.get()) {
@@ -222,7 +223,7 @@ fn in_turn(paths: &[PathBuf], every: usize) {
                 loop {
                     let i = next.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
                     let Some(path) = paths.get(i) else { break };
-                    attempt(&place, path, COMMANDS.into_iter().skip(i % every).step_by(every));
+                    attempt(&place, allowed, path, COMMANDS.into_iter().skip(i % every).step_by(every));
                 }
             });
         }
@@ -242,19 +243,21 @@ fn vectors() -> Vec<PathBuf> {
 #[test]
 fn trees_of_one_cell_take_little() {
     let place = Place::new();
-    in_turn(&trees(&place), 1);
+    in_turn(&trees(&place), LITTLE, 1);
 }
 
 #[test]
 fn test_vectors_take_little() {
-    in_turn(&vectors(), 7);
+    in_turn(&vectors(), LITTLE, 7);
 }
 
 /// Minutes: `--test limits -- --ignored`.
 #[test]
 #[ignore = "minutes"]
-fn every_command_on_every_test_vector_takes_little() {
-    in_turn(&vectors(), 1);
+fn every_command_on_every_file_takes_little() {
+    let place = Place::new();
+    in_turn(&trees(&place), ALLOWED, 1);
+    in_turn(&vectors(), ALLOWED, 1);
 }
 
 #[test]
@@ -280,12 +283,12 @@ fn what_is_too_large_is_said_with_its_size_and_the_option() {
         (format!("dexelize {full} -o out.lfl"), "the rays would take 12 TB"),
         (format!("voxels {full} -o out.npz"), "the records would take 10 TB"),
     ] {
-        run(&place, &line, b"").bad(1, &[what, "--max-memory"]);
+        run(&place, ALLOWED, &line, b"").bad(1, &[what, "--max-memory"]);
     }
     assert!(!place.files().iter().any(|name| name.starts_with("out")));
     // A limit that is generous enough changes nothing.
     let small = trees.iter().find(|path| path.ends_with("cell-full-20.lfl")).unwrap().display();
-    let model = run(&place, &format!("dexelize {small} -o out.lfl"), b"").good();
+    let model = run(&place, ALLOWED, &format!("dexelize {small} -o out.lfl"), b"").good();
     assert!(model.text().contains("3 intervals"), "{model:?}");
 }
 
@@ -296,11 +299,11 @@ fn endless_inputs_are_refused() {
     for command in ["info", "verify", "measure", "voxelize -o out.lfl --depth 3", "csg -o out.lfl --depth 3"]
     {
         let (name, rest) = command.split_once(' ').unwrap_or((command, ""));
-        run(&place, &format!("{name} /dev/zero {rest}"), b"").bad(1, &["/dev/zero", "--max-memory"]);
+        run(&place, ALLOWED, &format!("{name} /dev/zero {rest}"), b"").bad(1, &["/dev/zero", "--max-memory"]);
     }
     // A regular file says how long it is, and nothing of it is read.
     std::fs::File::create(place.path("long.stl")).unwrap().set_len(1 << 40).unwrap();
-    run(&place, "info long.stl", b"").bad(1, &["long.stl: has 1 TB", "--max-memory"]);
+    run(&place, ALLOWED, "info long.stl", b"").bad(1, &["long.stl: has 1 TB", "--max-memory"]);
 }
 
 #[test]

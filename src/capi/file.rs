@@ -386,10 +386,13 @@ pub unsafe extern "C" fn leafless_octree_view_bytes(
 /// one, each complete. Equal octrees with equal metadata give equal bytes.
 ///
 /// The bytes go to a temporary file in the same directory, which is synchronised with the disk and then
-/// renamed over the old file; a process that is killed meanwhile may leave a file `.leafless-….tmp` behind. A
-/// file that is replaced keeps its permissions, its other hard links keep the old contents. A symbolic link
-/// is followed. What is no regular file, such as a pipe, is written to directly; a pipe that nobody reads
-/// raises SIGPIPE, and a file beyond the process's limit SIGXFSZ, if the host has not ignored them.
+/// renamed over the old file. On Linux the temporary file has no name until it is complete, so that nothing is
+/// left of it when the process is killed, where the file system has such files. Elsewhere a file
+/// `.leafless-….tmp` may stay behind. A file that is replaced keeps its permissions, its other hard links keep
+/// the old contents. A symbolic link is followed. What is no regular file, such as a pipe, is written to
+/// directly; a pipe that nobody reads raises SIGPIPE, and a file beyond the process's limit SIGXFSZ, if the
+/// host has not ignored them. A pipe that nobody has opened for reading is waited for, also if signal handlers
+/// run meanwhile.
 ///
 /// - Buffers: `path`, `path_length` bytes of UTF-8.
 /// - Result: LEAFLESS_OK once the file is on the disk.

@@ -5,7 +5,7 @@ use super::mesh::{give, leafless_mesh};
 use super::mesh_file::{format, unit};
 use super::status::leafless_status;
 use crate::exchange::{MeshFormat, WriteOptions, write_mesh, written_form};
-use crate::file::save_with;
+use crate::file::replace;
 use alloc::borrow::Cow;
 use core::ffi::c_char;
 use std::io::Write;
@@ -120,7 +120,7 @@ pub unsafe extern "C" fn leafless_mesh_save(
         let problem = "must be given for a path with none of the extensions .stl, .obj, .ply, .off and .3mf";
         let format = format.ok_or(Failure::Argument { name: "options.format", problem })?;
         let bytes = write_mesh(mesh, format, &options)?;
-        Ok(save_with(path, |file| Ok(file.write_all(&bytes)?))?)
+        Ok(replace(path, |file| Ok(file.write_all(&bytes)?))?)
     })
 }
 

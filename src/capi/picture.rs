@@ -8,7 +8,7 @@ use super::control::{controlled, leafless_options};
 use super::layer::{clip, leafless_layer, leafless_transfer};
 use super::status::leafless_status;
 use crate::exchange::write_png;
-use crate::file::save_with;
+use crate::file::replace;
 use crate::memory;
 use crate::render::{
     Clip, ClippedLayer, Layer, LegendBox, LegendSide, Picture, Shot, draw_colour_bar, draw_names, render,
@@ -213,7 +213,7 @@ pub unsafe extern "C" fn leafless_picture_save(
         let picture = picture(colours, width, height)?;
         let path = Path::new(self::path(path, path_length)?);
         let bytes = write_png(&picture)?;
-        Ok(save_with(path, |file| Ok(file.write_all(&bytes)?))?)
+        Ok(replace(path, |file| Ok(file.write_all(&bytes)?))?)
     })
 }
 

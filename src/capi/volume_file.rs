@@ -10,7 +10,7 @@ use crate::exchange::{
     NrrdEncoding, VolumeFile, VolumeFormat, open_volume, read_volume, volume_data_file, write_nrrd,
     write_raw_volume,
 };
-use crate::file::save_with;
+use crate::file::replace;
 use alloc::vec::Vec;
 use core::ffi::c_char;
 use std::io::Write;
@@ -198,7 +198,7 @@ pub unsafe extern "C" fn leafless_volume_save(
         let volume = shared(volume, "volume")?;
         let path = Path::new(self::path(path, path_length)?);
         let bytes = volume.file(format)?;
-        Ok(save_with(path, |file| Ok(file.write_all(&bytes)?))?)
+        Ok(replace(path, |file| Ok(file.write_all(&bytes)?))?)
     })
 }
 

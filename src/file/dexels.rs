@@ -34,15 +34,15 @@ use super::dexel_assemble::assemble;
 use super::dexel_layout::DexelLayout;
 #[cfg(feature = "mmap")]
 use super::mapping::mapping;
-use super::swap::swap_dexels;
 #[cfg(feature = "std")]
-use super::write::save_with;
+use super::replace::replace;
+use super::swap::swap_dexels;
 use crate::dexel::{TriDexel, TriDexelRef};
 use crate::error::Error;
 use alloc::sync::Arc;
 use alloc::vec::Vec;
 #[cfg(feature = "std")]
-use std::{fs::File, io::Write, path::Path};
+use std::{io::Write, path::Path};
 
 /// The file of `model`, in memory.
 ///
@@ -85,7 +85,7 @@ pub fn write_to(model: &TriDexel, mut out: impl Write) -> Result<(), Error> {
 /// is the very last step that fails, synchronising the directory.
 #[cfg(feature = "std")]
 pub fn save(model: &TriDexel, path: impl AsRef<Path>) -> Result<(), Error> {
-    save_with(path.as_ref(), |file: &mut File| write_to(model, file))
+    replace(path, |file| write_to(model, file))
 }
 
 /// The model in `bytes`, a whole file, read where it lies: no copy, no allocation.

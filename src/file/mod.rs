@@ -123,6 +123,8 @@ mod mapping;
 mod object;
 mod probe;
 mod read;
+#[cfg(feature = "std")]
+mod replace;
 mod section;
 mod swap;
 mod verify;
@@ -138,9 +140,9 @@ pub use probe::{probe, probe_from};
 #[cfg(feature = "std")]
 pub use read::open;
 pub use read::{from_bytes, from_static, view};
+#[cfg(feature = "std")]
+pub use replace::{abandon_saves, replace};
 pub use verify::verify;
-#[cfg(feature = "capi")]
-pub(crate) use write::save_with;
 pub use write::to_bytes;
 #[cfg(feature = "std")]
 pub use write::{save, write_to};

@@ -10,6 +10,7 @@
 //! (volume and inertia); `polygon` (triangulation), `polyhedron` and its `faces`.
 
 mod attributes;
+mod body;
 mod boundary;
 mod defects;
 #[cfg(feature = "std")]

@@ -17,6 +17,8 @@
 
 use alloc::vec::Vec;
 
+use super::body::{Body, Bounds, partition};
+use super::intersections::corners;
 use super::positions::normalised;
 use super::signs::{Point, cross_sign, volume_sign};
 use super::surface::{Overlaps, TriangleMesh};
@@ -28,8 +30,10 @@ use core::array::from_fn as array;
 /// Looks at the bodies whose `senses` are not zero: the signs of their volumes. They must be closed. If there
 /// are `walls` of two triangles that cancel each other, to go through one is no crossing.
 ///
-/// O(t + b log b) for t triangles and b bodies with few boxes that meet. Work is limited to 2^24 steps and 128
-/// a triangle; pairs that are left then are undecided.
+/// O(t + b log b) for t triangles and b bodies with few boxes that meet. A body whose box meets those of two other
+/// bodies is sorted, once, in O(t log t) for its t triangles. From then on, another body within its box costs only a
+/// search for the triangles near that body. Work is limited to 2^24 steps and 128 a triangle; pairs that are left then
+/// are undecided.
 pub(super) fn overlaps(
     mesh: &TriangleMesh,
     of_triangles: &[u32],
@@ -39,12 +43,8 @@ pub(super) fn overlaps(
     if senses.iter().filter(|&&sense| sense != 0).count() < 2 {
         return Ok(Overlaps::default());
     }
-    let mut all = Search {
-        vertices: mesh.vertices(),
-        triangles: mesh.triangles(),
-        walls,
-        steps: (1 << 24) + 128 * mesh.triangles().len() as u64,
-    };
+    let mut all = Search { mesh, walls, steps: (1 << 24) + 128 * mesh.triangles().len() as u64 };
+    let mut near = [Vec::new(), Vec::new()];
     let mut bodies = Body::all(mesh, of_triangles, senses)?;
     // By where their boxes begin along x.
     bodies.sort_unstable_by(|a, b| a.bounds.low[0].total_cmp(&b.bounds.low[0]));
@@ -66,7 +66,7 @@ pub(super) fn overlaps(
                 continue;
             }
             let mut touches = Touches::NONE;
-            match all.compare(a, b, &mut touches) {
+            match all.compare([a, b], &mut near, &mut touches)? {
                 Relation::Crossing => (a.overlaps, b.overlaps) = (true, true),
                 Relation::Around([of_a, of_b]) => {
                     (b.around, a.around) = (b.around + of_a, a.around + of_b);
@@ -100,73 +100,6 @@ pub(super) fn overlaps(
         overlapping: count(|body| body.overlaps),
         undecided: count(|body| body.undecided && !body.overlaps),
     })
-}
-
-/// A body and what is known of it.
-struct Body {
-    triangles: Vec<u32>,
-    bounds: Bounds,
-    sense: i32,
-    /// The winding numbers of other bodies around this one.
-    around: i32,
-    overlaps: bool,
-    undecided: bool,
-}
-
-impl Body {
-    fn all(mesh: &TriangleMesh, of_triangles: &[u32], senses: &[i32]) -> Result<Vec<Body>, Error> {
-        let mut counts: Vec<usize> = memory::filled(senses.len(), 0)?;
-        of_triangles.iter().for_each(|&body| counts[body as usize] += 1);
-        let mut bodies = memory::with_capacity(senses.len())?;
-        for (&sense, &count) in senses.iter().zip(&counts) {
-            let triangles = memory::with_capacity(if sense == 0 { 0 } else { count })?;
-            let bounds = Bounds::NONE;
-            bodies.push(Body { triangles, bounds, sense, around: 0, overlaps: false, undecided: false });
-        }
-        for (triangle, &body) in (0..).zip(of_triangles) {
-            let body = &mut bodies[body as usize];
-            if body.sense != 0 {
-                body.triangles.push(triangle);
-                let corners = mesh.triangles()[triangle as usize];
-                corners.iter().for_each(|&v| body.bounds.include(&mesh.vertices()[v as usize]));
-            }
-        }
-        bodies.retain(|body| body.sense != 0);
-        Ok(bodies)
-    }
-}
-
-#[derive(Clone, Copy)]
-struct Bounds {
-    low: Point,
-    high: Point,
-}
-
-impl Bounds {
-    const NONE: Bounds = Bounds { low: [f64::INFINITY; 3], high: [f64::NEG_INFINITY; 3] };
-
-    fn of(points: &[Point]) -> Bounds {
-        let mut bounds = Bounds::NONE;
-        points.iter().for_each(|p| bounds.include(p));
-        bounds
-    }
-
-    fn include(&mut self, p: &Point) {
-        for axis in 0..3 {
-            self.low[axis] = self.low[axis].min(p[axis]);
-            self.high[axis] = self.high[axis].max(p[axis]);
-        }
-    }
-
-    /// Whether the insides meet.
-    fn overlaps(&self, other: &Bounds) -> bool {
-        (0..3).all(|axis| self.low[axis] < other.high[axis] && other.low[axis] < self.high[axis])
-    }
-
-    /// Whether the closed boxes meet.
-    fn touches(&self, other: &Bounds) -> bool {
-        (0..3).all(|axis| self.low[axis] <= other.high[axis] && other.low[axis] <= self.high[axis])
-    }
 }
 
 /// A general direction: (s₀ε, s₁ε², s₂ε³) for all sufficiently small ε > 0, with signs s.
@@ -232,8 +165,7 @@ impl Touches {
 }
 
 struct Search<'a> {
-    vertices: &'a [Point],
-    triangles: &'a [[u32; 3]],
+    mesh: &'a TriangleMesh,
     /// Whether triangles may cancel each other.
     walls: bool,
     /// That may still be made.
@@ -241,22 +173,33 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// Compares two bodies whose boxes meet, and notes where they touch.
-    fn compare(&mut self, a: &mut Body, b: &mut Body, touches: &mut Touches) -> Relation {
-        let is_crossing = self.crossings(&mut a.triangles, &mut b.triangles, touches);
+    /// Compares two bodies whose boxes meet, and notes where they touch. `near` is scratch memory.
+    fn compare(
+        &mut self,
+        [a, b]: [&mut Body; 2],
+        [near_a, near_b]: &mut [Vec<u32>; 2],
+        touches: &mut Touches,
+    ) -> Result<Relation, Error> {
+        if self.steps == 0 {
+            return Ok(Relation::Undecided);
+        }
+        let (bounds_a, bounds_b) = (a.bounds, b.bounds);
+        let (near_a, steps_a) = a.near(self.mesh, &bounds_b, near_a)?;
+        let (near_b, steps_b) = b.near(self.mesh, &bounds_a, near_b)?;
+        let is_crossing =
+            if self.take(steps_a + steps_b) { self.divide(near_a, near_b, touches) } else { None };
         let apart = (0..Shift::COUNT).find(|k| touches.crossing >> k & 1 == 0).map(Shift::new);
-        match (is_crossing, apart) {
+        Ok(match (is_crossing, apart) {
             (Some(true), _) if !self.walls => Relation::Crossing,
             (Some(false), Some(shift)) => {
-                let [of_a, of_b] =
-                    [&b.triangles, &a.triangles].map(|triangles| self.corners(triangles[0])[0]);
+                let [of_a, of_b] = [&*b, &*a].map(|body| corners(self.mesh, body.triangles[0])[0]);
                 match (self.winding(a, &of_a, shift), self.winding(b, &of_b, shift.back())) {
                     (Some(of_a), Some(of_b)) => Relation::Around([of_a, of_b]),
                     _ => Relation::Undecided,
                 }
             }
             _ => Relation::Undecided,
-        }
+        })
     }
 
     /// Takes steps, if there are so many left.
@@ -266,35 +209,35 @@ impl Search<'_> {
         left.is_some()
     }
 
-    fn corners(&self, triangle: u32) -> [Point; 3] {
-        self.triangles[triangle as usize].map(|v| self.vertices[v as usize])
-    }
-
     fn bounds(&self, triangles: &[u32]) -> Bounds {
         let mut bounds = Bounds::NONE;
-        triangles.iter().for_each(|&t| self.corners(t).iter().for_each(|p| bounds.include(p)));
+        triangles.iter().for_each(|&t| corners(self.mesh, t).iter().for_each(|p| bounds.include(p)));
         bounds
     }
 
     /// Whether triangles of the two lists cross; `None` if there are no steps left. Notes where they touch. The
     /// lists come back in another order.
     fn crossings(&mut self, a: &mut [u32], b: &mut [u32], touches: &mut Touches) -> Option<bool> {
-        /// Pairs that are not worth dividing.
-        const FEW: usize = 64;
         if !self.take(a.len() + b.len()) {
             return None;
         }
         let (bounds_a, bounds_b) = (self.bounds(a), self.bounds(b));
         let kept_a = partition(a, |&t| self.bounds(&[t]).touches(&bounds_b));
         let kept_b = partition(b, |&t| self.bounds(&[t]).touches(&bounds_a));
-        let (a, b) = (&mut a[..kept_a], &mut b[..kept_b]);
+        self.divide(&mut a[..kept_a], &mut b[..kept_b], touches)
+    }
+
+    /// The same of lists without triangles that lie outside of the box around the other list.
+    fn divide(&mut self, a: &mut [u32], b: &mut [u32], touches: &mut Touches) -> Option<bool> {
+        /// Pairs that are not worth dividing.
+        const FEW: usize = 64;
         if a.is_empty() || b.is_empty() {
             return Some(false);
         }
         if a.len() * b.len() > FEW {
-            let (longer, other) = if a.len() >= b.len() { (a, b) } else { (b, a) };
             // Which of the two is moved matters for the moves, so the order is kept by a flag of its own.
-            let swapped = kept_b > kept_a;
+            let swapped = b.len() > a.len();
+            let (longer, other) = if swapped { (b, a) } else { (a, b) };
             let bounds = self.bounds(longer);
             let axis = (1..3).fold(0, |most, axis| {
                 let extent = |axis: usize| bounds.high[axis] - bounds.low[axis];
@@ -302,12 +245,12 @@ impl Search<'_> {
             });
             // In the middle of the box, if that divides the list, and of the list otherwise.
             let middle = bounds.low[axis].midpoint(bounds.high[axis]);
-            let below = partition(longer, |&t| self.corners(t)[0][axis] < middle);
+            let below = partition(longer, |&t| corners(self.mesh, t)[0][axis] < middle);
             let is_divided = below.min(longer.len() - below) > longer.len() / 8;
             let half = if is_divided { below } else { longer.len() / 2 };
             if !is_divided {
                 longer.select_nth_unstable_by(half, |&s, &t| {
-                    self.corners(s)[0][axis].total_cmp(&self.corners(t)[0][axis])
+                    corners(self.mesh, s)[0][axis].total_cmp(&corners(self.mesh, t)[0][axis])
                 });
             }
             let (low, high) = longer.split_at_mut(half);
@@ -323,10 +266,10 @@ impl Search<'_> {
             return None;
         }
         for &s in &*a {
-            let first = self.corners(s);
+            let first = corners(self.mesh, s);
             let box_of_first = Bounds::of(&first);
             for &t in &*b {
-                let second = self.corners(t);
+                let second = corners(self.mesh, t);
                 if box_of_first.touches(&Bounds::of(&second)) && crosses(&first, &second, touches) {
                     return Some(true);
                 }
@@ -340,10 +283,19 @@ impl Search<'_> {
         if (0..3).any(|axis| p[axis] < body.bounds.low[axis] || p[axis] > body.bounds.high[axis]) {
             return Some(0);
         }
-        if !self.take(body.triangles.len()) {
+        if self.steps == 0 {
             return None;
         }
-        Some(body.triangles.iter().map(|&t| above(&self.corners(t), p, shift)).sum())
+        let mut winding = 0;
+        // What lies below the point adds nothing, nor does what lies beside it.
+        let line = Bounds { low: *p, high: [p[0], p[1], f64::INFINITY] };
+        let steps = body.visit(&line, &mut |t| {
+            winding += above(&corners(self.mesh, t), p, shift);
+            Ok(())
+        });
+        // The visitor never fails.
+        let is_counted = steps.is_ok_and(|steps| self.take(steps));
+        is_counted.then_some(winding)
     }
 
     /// Whether points are found that prove an overlap: one around which both bodies wind in the same sense, and
@@ -377,18 +329,6 @@ impl Search<'_> {
         }
         false
     }
-}
-
-/// Brings the items that pass the test to the front; tells how many there are.
-fn partition<T>(items: &mut [T], test: impl Fn(&T) -> bool) -> usize {
-    let mut kept = 0;
-    for k in 0..items.len() {
-        if test(&items[k]) {
-            items.swap(kept, k);
-            kept += 1;
-        }
-    }
-    kept
 }
 
 /// Whether two triangles cross: an edge of one goes through the inside of the other. Where they only touch,
