@@ -330,6 +330,12 @@ fn threads() {
     run("threads", CPP17, Link::Shared, &[]);
 }
 
+/// What a careless host does.
+#[test]
+fn attacks() {
+    run("attack", CPP17, Link::Static, &[]);
+}
+
 #[test]
 fn map() {
     run("map", C99, Link::Static, &[]);
