@@ -129,9 +129,13 @@ impl<A: Attribute> Attribute for MovedAttribute<A> {
         // A point of the box may be rounded out of the exact image, so the image is a little larger.
         match bounds.placed(&self.back) {
             Some(image) => {
-                let reach = |axis: usize| image.min[axis].abs().max(image.max[axis].abs());
-                let rounding = 4.0 * f64::EPSILON * reach(0).max(reach(1)).max(reach(2));
-                self.attribute.range(&image.grown(rounding))
+                // Summands that cancel each other round by more than the image is large.
+                let reach = |axis: usize| bounds.min[axis].abs().max(bounds.max[axis].abs());
+                let summands = |row: &[f64; 4]| {
+                    (0..3).fold(row[3].abs(), |sum, axis| sum + row[axis].abs() * reach(axis))
+                };
+                let largest = self.back.rows().iter().map(summands).fold(0.0, f64::max);
+                self.attribute.range(&image.grown(4.0 * f64::EPSILON * largest))
             }
             None => Ok(ValueRange::Unknown),
         }

@@ -41,7 +41,8 @@ pub const CLEARANCE_SPLITS: u64 = 1 << 20;
 /// The search ends, and the result's `stop_reason` says why:
 /// - `Tolerance`: the interval is no wider than `tolerance` (model units).
 /// - `Exhausted`: the cells of the frame's depth cannot raise the lower bound, and the interval is no wider
-///   than twice their diagonal, which is what cells can tell of most solids; or no pair of cells is left.
+///   than twice their diagonal, which is what cells can tell of most solids; or no pair of cells is left; or a
+///   solid may go on outside of the universe, which keeps the lower bound at 0.
 /// - `Budget`: `control.max_splits` steps were taken, or [`CLEARANCE_SPLITS`] if that is `None`. A step looks
 ///   at the children of one cell. A cell whose children are looked at again, next to another cell, counts once
 ///   more.

@@ -310,9 +310,18 @@ impl<'s, A: Classifier, B: Classifier> Search<'s, A, B> {
     fn found(self, stop_reason: StopReason) -> Clearance {
         // What goes on outside of the universe may come as near as it likes.
         let clipped = self.a.subject.is_clipped() || self.b.subject.is_clipped();
-        let distance = self.distance();
+        let distance = match (self.distance(), clipped) {
+            (distance, true) => Interval::between(0.0, distance.upper),
+            (distance, false) => distance,
+        };
+        let is_wide = distance.width() > self.tolerance;
+        let stop_reason = match stop_reason {
+            // No cell of the universe can raise the lower bound.
+            StopReason::Tolerance if clipped && is_wide => StopReason::Exhausted,
+            other => other,
+        };
         Clearance {
-            distance: if clipped { Interval::between(0.0, distance.upper) } else { distance },
+            distance,
             nearest: self.bounds.reached.map(|(_, [a, b])| [self.a.cell(a), self.b.cell(b)]),
             stop_reason,
             splits: [self.a.subject.splits, self.b.subject.splits],

@@ -1,0 +1,7 @@
+//! Any bytes as scenes of unit cells and questions, against whole numbers.
+#![no_main]
+
+#[path = "../bodies/measures.rs"]
+mod measures;
+
+libfuzzer_sys::fuzz_target!(|data: &[u8]| measures::measures(data));
