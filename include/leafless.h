@@ -8971,7 +8971,8 @@ leafless_status leafless_solid_interfere_many(const leafless_solid *a,
  * `measured` of the result says why the search ended. With LEAFLESS_MEASURED_TOLERANCE the interval is no
  * wider than `tolerance_model` (model units). With LEAFLESS_MEASURED_EXHAUSTED the cells of the frame's depth
  * cannot raise the lower bound, and the interval is no wider than twice their diagonal, which is what cells
- * can tell of most solids; or no pair of cells is left. With LEAFLESS_MEASURED_BUDGET `max_splits` steps were
+ * can tell of most solids; or no pair of cells is left; or a solid may go on outside of the universe, which keeps
+ * the lower bound at 0. With LEAFLESS_MEASURED_BUDGET `max_splits` steps were
  * taken, or 1 048 576 if that is 0. A step looks at the children of one cell. A cell whose children are
  * looked at again, next to another cell, counts once more.
  *

@@ -884,3 +884,22 @@ fn solid_parts_add_up() {
     let parts = one.view().solid_parts(&block, &control).unwrap();
     assert!((parts[0] - 1.35 * 1.33 * 0.6 / 8.0).abs() < 1e-12, "{parts:?}");
 }
+
+#[test]
+fn equal_records_beside_each_other_cost_nothing_where_they_meet() {
+    // Four octants inside and four outside, on a lattice of 2^20 cells to an axis, moved by no lattice step. Where equal
+    // octants meet nothing is split; where the others do, the result is larger than the limit.
+    let frame = Frame::new([0.0; 3], 1.0, 20).unwrap();
+    let codes: Vec<u64> = (0..8).map(|octant| octant << 57).collect();
+    let records = |kinds: Vec<u8>| {
+        VoxelRecords::from_arrays(&frame, codes.clone(), vec![1; 8], kinds, 0, vec![]).unwrap()
+    };
+    let inside = VoxelKind::Inside as u8;
+    let moved = Affine::translation([0.1, 0.2, 0.3]).unwrap();
+    let into = Frame::new([0.25, 0.25, 0.375], 0.75, 20).unwrap();
+    let limited = Control { max_bytes: Some(1 << 16), ..alone() };
+    let same = records(vec![inside; 8]).view().placed_by_centres(&moved, &into, &limited).unwrap();
+    assert_eq!((same.view().len(), same.view().get(0).unwrap().cell), (1, Cell::ROOT));
+    let half = records([vec![inside; 4], vec![VoxelKind::Outside as u8; 4]].concat());
+    assert!(matches!(half.view().placed_by_centres(&moved, &into, &limited), Err(Error::Limit { .. })));
+}

@@ -55,7 +55,7 @@ impl<'a> Samples<'a> {
     }
 
     /// The tree.
-    pub fn tree(&self) -> &OctreeRef<'a> {
+    pub(super) fn tree(&self) -> &OctreeRef<'a> {
         &self.tree
     }
 

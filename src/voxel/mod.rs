@@ -19,6 +19,7 @@ mod symmetry;
 mod touch;
 mod transform;
 mod triangles;
+mod uniform;
 mod walk;
 
 pub use code::LinearCode;

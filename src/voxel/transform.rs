@@ -160,8 +160,7 @@ impl Sampler<'_, '_, '_> {
         let around = Cell { level, at: first.map(|a| a >> (own.depth() - level)) };
         match self.from.containing(around) {
             Some(index) => Known::One(Some(index)),
-            None if self.from.within(around).is_empty() => Known::One(None),
-            None => Known::Unknown,
+            None => self.from.uniform(first, last).map_or(Known::Unknown, Known::One),
         }
     }
 
