@@ -133,8 +133,8 @@ impl Cells {
             bounds.min[axis].floor() as i64..end as i64
         };
         let far = |axis: usize| {
-            !(bounds.min[axis].abs().max(bounds.max[axis].abs()) < 1e5)
-                || bounds.max[axis] - bounds.min[axis] > 64.0
+            let (min, max) = (bounds.min[axis], bounds.max[axis]);
+            min.abs().max(max.abs()) >= 1e5 || max - min > 64.0
         };
         if (0..3).any(far) {
             return ValueRange::Unknown;
@@ -267,7 +267,7 @@ fn map(bytes: &mut Bytes<'_>) -> (Affine, bool) {
     let kind = bytes.below(8);
     let scale = if kind == 5 { 2.0 } else { 1.0 };
     for (axis, row) in rows.iter_mut().enumerate() {
-        row[axes[axis]] = if code / 6 >> axis & 1 != 0 { -scale } else { scale };
+        row[axes[axis]] = if (code / 6) >> axis & 1 != 0 { -scale } else { scale };
         row[3] = bytes.below(17) as f64 - 8.0;
     }
     if kind >= 6 {

@@ -212,7 +212,7 @@ fn joined(code: usize, frame: &Frame, a: &Scene, b: &Scene) -> Scene {
 fn moved(bytes: &mut Bytes<'_>, frame: &Frame, scene: Scene) -> Scene {
     let (code, way) = (bytes.byte(), bytes.byte());
     let axes = [[0, 1, 2], [0, 2, 1], [1, 0, 2], [1, 2, 0], [2, 0, 1], [2, 1, 0]][code % 6];
-    let mirrored = [0, 1, 2].map(|axis| code / 6 >> axis & 1 != 0);
+    let mirrored = [0, 1, 2].map(|axis| (code / 6) >> axis & 1 != 0);
     let by = [0; 3].map(|_: i32| if way & 128 != 0 { bytes.below(9) as i32 - 4 } else { 0 });
     let Some(truth) = scene.truth.moved(axes, mirrored, by) else { return scene };
     let mut rows = [[0.0; 4]; 3];
@@ -347,7 +347,7 @@ fn as_a_function(bytes: &mut Bytes<'_>, truth: &Dense) -> Option<AnySolid> {
 /// What a list of voxels says of the octree that it was made of.
 fn as_records(frame: &Frame, scene: &Scene) -> Option<AnySolid> {
     let tree = build(&scene.solid, frame, Rule::Certified, &control(None)).expect("it can be built");
-    let records = VoxelRecords::of(&tree.view(), &VoxelOptions::new(), None, &control(None)).ok()?;
+    let records = VoxelRecords::of(tree.view(), &VoxelOptions::new(), None, &control(None)).ok()?;
     let octree = records.view().to_octree(Tag::Partial, &control(None)).expect("the records are good");
     Some(AnySolid::new(octree))
 }
