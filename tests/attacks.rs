@@ -4,6 +4,8 @@
 mod attributes;
 #[path = "../fuzz/bodies/measures.rs"]
 mod measures;
+#[path = "../fuzz/bodies/records.rs"]
+mod records;
 
 use leafless::{
     Affine, Attribute, Bounds, Control, Csg, Error, Frame, Interval, MovedAttribute, StopReason, ValueRange,
@@ -124,4 +126,15 @@ fn attributes_are_filled_in_and_carried() {
 #[ignore = "minutes"]
 fn more_attributes_are_filled_in_and_carried() {
     any_bytes(attributes::attributes, 3000..300_000, 120);
+}
+
+#[test]
+fn any_arrays_are_records_or_refused() {
+    any_bytes(records::records, 0..4000, 200);
+}
+
+#[test]
+#[ignore = "minutes"]
+fn more_arrays_are_records_or_refused() {
+    any_bytes(records::records, 4000..400_000, 200);
 }

@@ -903,3 +903,27 @@ fn equal_records_beside_each_other_cost_nothing_where_they_meet() {
     let half = records([vec![inside; 4], vec![VoxelKind::Outside as u8; 4]].concat());
     assert!(matches!(half.view().placed_by_centres(&moved, &into, &limited), Err(Error::Limit { .. })));
 }
+
+#[test]
+fn faces_that_run_along_the_lattice_cost_nothing() {
+    // Two of eight octants, of which nothing lies beside the others, on a lattice of 2^20 cells to an axis: 2^40 finest
+    // cells lie along each face.
+    let frame = Frame::new([-1.0, 0.5, 3.0], 4.0, 20).unwrap();
+    let (codes, kinds) = (vec![0, 3 << 57], vec![VoxelKind::Inside as u8, VoxelKind::Boundary as u8]);
+    let records = VoxelRecords::from_arrays(&frame, codes, vec![1; 2], kinds, 0, vec![]).unwrap();
+    let limited = Control { max_bytes: Some(1 << 16), ..alone() };
+    let step = frame.edge() / (1 << 20) as f64;
+    // Centres that lie in faces belong to the upper voxel, wherever rounding puts them.
+    let turned =
+        Affine::new([[0.0, -1.0, 0.0, 0.0], [1.0, 0.0, 0.0, 1.5], [0.0, 0.0, 1.0, 0.5 * step]]).unwrap();
+    for placement in [Affine::IDENTITY, turned] {
+        let there = records.view().placed_by_centres(&placement, &frame, &limited).unwrap();
+        let most = if placement == Affine::IDENTITY { 2 } else { 200 };
+        assert!((1..=most).contains(&there.view().len()), "{}", there.view().len());
+    }
+    // Of determinant -2^-60, which is zero in doubles.
+    let small = 2f64.powi(-30);
+    let flat = [[1.0 + small, 1.0, 0.0, 0.0], [1.0, 1.0 - small, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]];
+    let found = records.view().placed_by_centres(&Affine::new(flat).unwrap(), &frame, &limited);
+    assert!(matches!(found, Err(Error::Argument { name: "placement", .. })), "{found:?}");
+}

@@ -1,7 +1,7 @@
 //! Everything that a tree can be asked, whatever its bytes: no panic, bounded work, and where several ways
 //! lead to one answer it is the same.
 
-use super::{Aligned, CONTROL, Random, halves, walk};
+use super::{Aligned, CONTROL, Random, ask_measures, halves, walk};
 use leafless::{
     Camera, Cell, CellFilter, Classifier, ColourMap, Columns, Control, Csg, Cursor, Direction, DistanceTo,
     Finish, Frame, Layer, LazyOctree, Lens, Membership, Obstacle, OctreeLayer, OctreeRef, Outline,
@@ -33,6 +33,7 @@ pub fn ask(tree: &OctreeRef<'_>, questions: &[u8], verified: bool) {
     ask_columns(tree, verified);
     ask_distances(tree, &points, verified);
     ask_contents(tree, &points, verified);
+    ask_measures(tree, &points, verified);
     ask_pictures(tree, &points);
     if verified {
         tree.check().expect("it is verified");

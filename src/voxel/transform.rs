@@ -1,7 +1,7 @@
 //! Records moved: exactly where cells are the images of cells, by their centres otherwise.
 
 use super::code::size;
-use super::record::{VoxelKind, centre, edge};
+use super::record::{VoxelKind, centre};
 use super::records::{VoxelRecords, VoxelRecordsRef};
 use super::symmetry::Symmetry;
 use crate::control::Control;
@@ -92,7 +92,8 @@ impl VoxelRecordsRef<'_> {
     /// lies beyond the frame is cut off. O(cells next to faces between records · log n).
     ///
     /// # Errors
-    /// [`Error::OutOfMemory`], and what `control` asks for: its limit of bytes holds for the arrays.
+    /// [`Error::Argument`] if doubles hold no inverse of the map; [`Error::OutOfMemory`], and what `control` asks for:
+    /// its limit of bytes holds for the arrays.
     pub fn placed_by_centres(
         &self,
         placement: &Affine,
@@ -101,7 +102,7 @@ impl VoxelRecordsRef<'_> {
     ) -> Result<VoxelRecords, Error> {
         let exterior = if self.exterior() == Tag::Full { Tag::Full } else { Tag::Partial };
         let records = VoxelRecords::empty(*frame, exterior, Proof::new(false, false), self.components());
-        let inverse = inverse(placement);
+        let inverse = inverse(placement)?;
         let mut sampler = Sampler { from: *self, placement, inverse, frame, records, control, asked: 0 };
         sampler.fill(Cell::ROOT)?;
         Ok(sampler.records)
@@ -127,40 +128,43 @@ enum Known {
 }
 
 impl Sampler<'_, '_, '_> {
-    /// The preimage of a point, and how far about the sizes of what went into it add up.
-    fn preimage(&self, point: [f64; 3]) -> ([f64; 3], [f64; 3]) {
+    /// A box around the preimages of all finest centres in a cell, as they are computed: of each sum every summand
+    /// is taken where it is least, or largest, and rounding keeps the order.
+    fn preimages(&self, cell: Cell) -> ([f64; 3], [f64; 3]) {
+        let depth = self.frame.depth();
+        let finest = |at: [u32; 3]| centre(self.frame, Cell { level: depth, at });
+        let shift = depth - cell.level;
+        let first = finest(cell.at.map(|c| c << shift));
+        let last = finest(cell.at.map(|c| (c << shift) + ((1 << shift) - 1)));
         let rows = self.placement.rows();
-        let moved = [0, 1, 2].map(|axis| point[axis] - rows[axis][3]);
-        let sizes = [0, 1, 2].map(|axis| point[axis].abs() + rows[axis][3].abs());
-        let of = |row: &[f64; 3], p: [f64; 3]| row[0] * p[0] + row[1] * p[1] + row[2] * p[2];
-        let magnitude = |row: &[f64; 3]| of(&row.map(f64::abs), sizes);
-        (self.inverse.map(|row| of(&row, moved)), [0, 1, 2].map(|axis| magnitude(&self.inverse[axis])))
+        let sum = |row: &[f64; 3], low: [f64; 3], high: [f64; 3]| {
+            let summand = |k: usize| row[k] * (if row[k] >= 0.0 { low } else { high }[k] - rows[k][3]);
+            summand(0) + summand(1) + summand(2)
+        };
+        (self.inverse.map(|row| sum(&row, first, last)), self.inverse.map(|row| sum(&row, last, first)))
     }
 
     fn look(&self, cell: Cell) -> Known {
-        let (middle, sizes) = self.preimage(centre(self.frame, cell));
-        if cell.level == self.frame.depth() {
-            return Known::One(self.from.at(middle));
-        }
-        // A box around the preimages of all centres in the cell, as they are computed.
-        let half = 0.5 * edge(self.frame, cell.level);
-        let reach = [0, 1, 2].map(|axis| {
-            let spread: f64 = self.inverse[axis].iter().map(|entry| entry.abs() * half).sum();
-            spread + 1e-12 * (spread + sizes[axis])
-        });
-        let (low, high) = ([0, 1, 2].map(|a| middle[a] - reach[a]), [0, 1, 2].map(|a| middle[a] + reach[a]));
         let own = self.from.frame();
-        let bounds = crate::lattice::Bounds::of(own);
-        if (0..3).any(|axis| high[axis] < bounds.min[axis] || low[axis] > bounds.max[axis]) {
-            return Known::One(None);
+        let (low, high) = self.preimages(cell);
+        let (mut first, mut last, mut beyond) = ([0; 3], [own.cells() - 1; 3], false);
+        for axis in 0..3 {
+            let half = own.origin()[axis] + 0.5 * own.edge();
+            match (own.cell_at(axis, low[axis]), own.cell_at(axis, high[axis])) {
+                (None, None) if (low[axis] < half) == (high[axis] < half) => return Known::One(None),
+                (from, to) => {
+                    beyond |= from.is_none() || to.is_none();
+                    first[axis] = from.unwrap_or(first[axis]);
+                    last[axis] = to.unwrap_or(last[axis]);
+                }
+            }
         }
-        let (Some(first), Some(last)) = (own.cell_of(low), own.cell_of(high)) else { return Known::Unknown };
         let differ = (0..3).fold(0, |bits, axis| bits | (first[axis] ^ last[axis]));
         let level = own.depth() - (32 - differ.leading_zeros()) as u8;
         let around = Cell { level, at: first.map(|a| a >> (own.depth() - level)) };
         match self.from.containing(around) {
-            Some(index) => Known::One(Some(index)),
-            None => self.from.uniform(first, last).map_or(Known::Unknown, Known::One),
+            Some(index) if !beyond => Known::One(Some(index)),
+            _ => self.from.uniform(first, last, beyond).map_or(Known::Unknown, Known::One),
         }
     }
 
@@ -214,13 +218,17 @@ impl VoxelRecords {
     }
 }
 
-/// The inverse of a map's matrix, rounded.
-fn inverse(map: &Affine) -> [[f64; 3]; 3] {
+/// The inverse of a map's matrix, rounded. An error if rounding leaves none, of a matrix that is nearly singular.
+fn inverse(map: &Affine) -> Result<[[f64; 3]; 3], Error> {
     let m = map.rows();
     let minor = |i: usize, j: usize| {
         let ([a, b], [c, d]) = ([(i + 1) % 3, (i + 2) % 3], [(j + 1) % 3, (j + 2) % 3]);
         m[a][c] * m[b][d] - m[a][d] * m[b][c]
     };
     let determinant: f64 = (0..3).map(|j| m[0][j] * minor(0, j)).sum();
-    core::array::from_fn(|j| core::array::from_fn(|i| minor(i, j) / determinant))
+    let rows: [[f64; 3]; 3] = core::array::from_fn(|j| core::array::from_fn(|i| minor(i, j) / determinant));
+    if rows.iter().flatten().all(|entry| entry.is_finite()) {
+        return Ok(rows);
+    }
+    Err(Error::Argument { name: "placement", problem: "too nearly singular for doubles to hold its inverse" })
 }
