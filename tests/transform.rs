@@ -403,8 +403,18 @@ fn extreme_numbers_prove_nothing_wrong() {
     }
 }
 
-/// Planes of the frame lie next to planes of the solid's lattice, so near that sums of their coordinates are
-/// rounded.
+/// The universe's inverse image began beyond the numbers that a frame may have, and the error named an origin that
+/// nobody had given.
+#[test]
+fn a_universe_at_the_end_of_all_numbers_is_refused_for_the_placement() {
+    let frame = Frame::new([-1.0, 2f64.powi(256), 2.5], 2f64.powi(-20), 1).unwrap();
+    let turn = [[0.0, 1.0, 0.0, -1.625], [-1.0, 0.0, 0.0, -1.5], [0.0, 0.0, -1.0, 0.0625]];
+    let nothing = Csg::ball([0.0; 3], 1.0).unwrap().complement();
+    let moved = Transform::of(nothing, &Affine::new(turn).unwrap());
+    let found = build(&moved, &frame, Rule::Certified, &alone());
+    assert!(matches!(found, Err(Error::Argument { name: "placement", .. })), "{:?}", found.err());
+}
+
 /// Rounding errors of thousands of cells took all memory: each cell that a centre may be in was gathered.
 #[test]
 fn cells_far_smaller_than_rounding_errors_are_not_gathered() {
@@ -419,6 +429,8 @@ fn cells_far_smaller_than_rounding_errors_are_not_gathered() {
     assert!(matches!(build(&solid, &frame, Rule::Sampled, &alone()), Err(Error::NotSampled)));
 }
 
+/// Planes of the frame lie next to planes of the solid's lattice, so near that sums of their coordinates are
+/// rounded.
 #[test]
 fn what_rounds_is_not_taken_for_exact() {
     let size = 256.0 - 2f64.powi(-32);

@@ -183,6 +183,8 @@ pub fn csg(data: &[u8]) {
         Ok(tree) => Some(tree),
         // (Other solids that are moved may not know their points.)
         Err(Error::Limit { .. } | Error::NotSampled) => None,
+        // (Moved as far as doubles reach.)
+        Err(Error::Argument { name: "placement", .. }) => None,
         Err(other) => panic!("{other}"),
     };
     let Some(tree) = made(Rule::Certified) else { return };

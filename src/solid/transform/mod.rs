@@ -150,12 +150,10 @@ impl<S: Solid> Transform<S> {
             return Ok(own);
         }
         let common = seen.and_then(|seen| seen.common(&bounds?)).or(seen).or(bounds);
-        let Some(common) = common else {
-            let problem = "takes the universe beyond what doubles can tell";
-            return Err(Error::Argument { name: "placement", problem });
-        };
         // (What both have in common may be flat.)
-        around(common).or_else(|error| around(seen.ok_or(error)?)).map(|(own, _)| own)
+        let found = [common, seen].into_iter().flatten().find_map(|bounds| around(bounds).ok());
+        let problem = "takes the universe beyond what doubles can tell";
+        found.map(|(own, _)| own).ok_or(Error::Argument { name: "placement", problem })
     }
 }
 
