@@ -8,8 +8,8 @@ mod measures;
 mod records;
 
 use leafless::{
-    Affine, Attribute, Bounds, Control, Csg, Error, Frame, Interval, MovedAttribute, StopReason, ValueRange,
-    clearance,
+    Affine, Attribute, Bounds, Cell, Control, Criterion, Csg, Detail, Error, FillOptions, Frame, Interval,
+    MovedAttribute, ScalarType, StopReason, ValueRange, ValueType, VoxelRecords, clearance, fill_channel,
 };
 use std::path::Path;
 
@@ -96,6 +96,44 @@ fn a_clearance_of_what_goes_on_outside_does_not_claim_its_tolerance() {
     assert!(found.clipped && found.distance == Interval::new(0.0, 1.0).unwrap(), "{found:?}");
     assert_eq!(found.stop_reason, StopReason::Exhausted);
     assert_eq!(ask(2.0).stop_reason, StopReason::Tolerance);
+}
+
+/// One where x is at least 0, and no value elsewhere; nothing is known of ranges.
+struct HalfSpace;
+
+impl Attribute for HalfSpace {
+    fn components(&self) -> usize {
+        1
+    }
+
+    fn values(&self, points: &[[f64; 3]], values: &mut [Option<[f64; 4]>]) -> Result<(), Error> {
+        let of = |point: &[f64; 3]| (point[0] >= 0.0).then_some([1.0, 0.0, 0.0, 0.0]);
+        values.iter_mut().zip(points).for_each(|(value, point)| *value = of(point));
+        Ok(())
+    }
+}
+
+#[test]
+fn cells_of_unknown_range_are_split_whatever_the_tolerance() {
+    let frame = Frame::new([-3.0, 0.0, 0.0], 4.0, 2).unwrap();
+    let detail = Detail::new(f64::INFINITY, 1.0, f64::INFINITY, Criterion::Range).unwrap();
+    let value_type = ValueType::new(ScalarType::U8, 1).unwrap();
+    let options = FillOptions { value_type, frame, solid: None, detail: Some(detail) };
+    let channel = fill_channel(&HalfSpace, &options, &Control::threads(1)).unwrap();
+    let value = |x: u32| channel.view().unwrap().value_of_cell([x, 0, 0]).map(|value| value[0]);
+    assert_eq!([0, 1, 2, 3].map(value), [None, None, None, Some(1.0)]);
+}
+
+#[test]
+fn what_is_no_cell_has_no_children_among_records() {
+    let frame = Frame::new([0.0; 3], 1.0, 20).unwrap();
+    let records = VoxelRecords::from_arrays(&frame, vec![0], vec![1], vec![0], 0, vec![]).unwrap();
+    for at in [[u32::MAX; 3], [1, 0, 0], [1 << 31, 0, 0]] {
+        assert!(
+            records.view().children(Cell { level: 0, at }).iter().all(|range| range.is_empty()),
+            "{at:?}"
+        );
+    }
 }
 
 // ---- fuzz targets --------------------------------------------------------------------------------------

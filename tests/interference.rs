@@ -6,9 +6,10 @@ mod common;
 use common::cubes::Plain;
 use common::{Dense, Random, alone, model};
 use leafless::{
-    Affine, AnySolid, CLEARANCE_SPLITS, Cell, Clearance, Control, Csg, Cube, Error, FillRule, Frame,
-    HalfSpace, Interference, MeshSolid, Octree, Overlap, Rule, Solid, StopReason, Tag, Transform,
-    TriangleMesh, build, clearance, exchange, interference, interference_of, intersection,
+    Affine, AnySolid, CLEARANCE_SPLITS, Cell, Clearance, Control, Csg, Cube, DistanceTo, Error, FillRule,
+    Frame, HalfSpace, Interference, MeshSolid, Octree, Overlap, Rule, Solid, StopReason, Tag, Transform,
+    TriangleMesh, bounding_box, build, clearance, distances, exchange, interference, interference_of,
+    intersection,
 };
 use std::f64::consts::PI;
 use std::sync::atomic::AtomicBool;
@@ -725,4 +726,43 @@ fn full_cells_of_thin_walls_are_found() {
     let found = clearance(&wall(4.0), &wall(7.06), &frame, 0.0, &up_to(20_000)).unwrap();
     check_distance(&found, 3.0, "walls");
     assert!(found.distance.upper < 3.2, "{found:?}");
+}
+
+/// Thousands of parts that all run through the same cells: what is remembered of a cell is as large as the solid.
+#[test]
+fn searches_end_before_they_take_too_much_memory() {
+    let frame = Frame::new([-1.0; 3], 4.0, 12).unwrap();
+    let mut random = Random(3);
+    let mut cubes = |count: usize| {
+        let parts = (0..count).map(|_| {
+            let low = [0; 3].map(|_: u8| 1e-3 * (random.next() >> 11) as f64 / (1u64 << 53) as f64);
+            Csg::cuboid(low, low.map(|c| c + 1.0)).unwrap()
+        });
+        Csg::union_of(parts).unwrap()
+    };
+    let (a, b) = (cubes(1500), Csg::ball([0.5; 3], 0.4).unwrap());
+    let beside = Csg::ball([2.0, 2.0, 2.0], 0.4).unwrap();
+    let limited =
+        |max_bytes: u64| Control { max_bytes: Some(max_bytes), max_splits: Some(30_000), ..alone() };
+    let (little, more) = (limited(1 << 22), limited(1 << 26));
+    // The volume of the ball, of which all is in each cube.
+    let truth = 4.0 / 3.0 * PI * 0.4f64.powi(3);
+    let overlap = |control| interference(&a, &b, &frame, 1e-3, control).unwrap();
+    assert!(overlap(&little).volume.contains(truth) && overlap(&more).volume.contains(truth));
+    let own = |control| interference(&a, &a, &frame, 1e-3, control).unwrap().volume;
+    let [wide, narrow] = [own(&little), own(&more)];
+    assert!(narrow.width() < 0.8 * wide.width() && wide.lower <= narrow.lower && narrow.upper <= wide.upper);
+    assert!(wide.lower <= 1.0 && wide.upper >= 1.0);
+    let near = |control| clearance(&a, &beside, &frame, 1e-9, control).unwrap();
+    let (coarse, fine) = (near(&limited(1 << 16)), near(&more));
+    assert_eq!(coarse.stop_reason, StopReason::Budget);
+    assert!(coarse.splits[0] < fine.splits[0], "{coarse:?} {fine:?}");
+    assert!(coarse.distance.width() > fine.distance.width());
+    let extent = bounding_box(&a, &frame, 0.0, &limited(1 << 16)).unwrap();
+    assert_eq!(extent.stop_reason, StopReason::Budget);
+    assert!(extent.corners.unwrap()[1][0].contains(1.0005));
+    let point = [[2.0, 2.0, 2.0]];
+    let away = distances(&a, &frame, &point, DistanceTo::Solid, 1e-12, &limited(1 << 16)).unwrap();
+    assert_eq!(away[0].stop_reason, StopReason::Budget);
+    assert!(away[0].distance.contains(3f64.sqrt() * 0.9991), "{away:?}");
 }

@@ -2,6 +2,7 @@
 
 use crate::failure::{Failure, Of};
 use crate::input::Input;
+use crate::memory;
 use crate::mesh::Reading;
 use crate::options::bounds;
 use crate::output::{self, count, measured, number};
@@ -181,7 +182,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     };
     let first = Prepared::new(first.placed(a, &Affine::IDENTITY, &frame)?);
     let second = Prepared::new(second.placed(b, &placement, &frame)?);
-    let control = Control { max_splits: Some(arguments.splits), ..Control::default() };
+    let max_bytes = Some(memory::affordable());
+    let control = Control { max_splits: Some(arguments.splits), max_bytes, ..Control::default() };
     let (found, near, evaluations) =
         ask(&first, &second, &frame, &control).map_err(|error| Failure::of(a, error))?;
     let report = Report::new(&inputs, &frame, &found, &near, evaluations, arguments.splits);

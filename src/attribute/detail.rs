@@ -1,6 +1,6 @@
 //! How finely an attribute is followed inside a solid.
 
-use super::Attribute;
+use super::{Attribute, ValueRange};
 use crate::error::Error;
 use crate::lattice::Bounds;
 
@@ -12,7 +12,7 @@ pub enum Criterion {
     /// corners is missed.
     Variance,
     /// The attribute's range over the cell is proven to be no wider than the tolerance in any component.
-    /// Nothing is missed. A cell whose range is unknown is split.
+    /// Nothing is missed. A cell whose range is unknown is split, whatever the tolerance.
     Range,
 }
 
@@ -74,7 +74,10 @@ impl Detail {
             return Ok(false);
         }
         match self.criterion {
-            Criterion::Range => Ok(attribute.range(bounds)?.width(attribute.components()) <= self.tolerance),
+            Criterion::Range => {
+                let range = attribute.range(bounds)?;
+                Ok(range != ValueRange::Unknown && range.width(attribute.components()) <= self.tolerance)
+            }
             Criterion::Variance => self.is_even(attribute, bounds),
         }
     }

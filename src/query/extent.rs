@@ -46,7 +46,8 @@ pub const BOUNDING_BOX_SPLITS: u64 = 1 << 20;
 /// - `Exhausted`: the outermost undecided cells cannot be split, and either the interval is no wider than one of
 ///   the frame's finest cells, or nothing else is left to split.
 /// - `Budget`: `control.max_splits` cells were split, or [`BOUNDING_BOX_SPLITS`] if that is `None`. Each side gets
-///   its share of what the sides before it have left.
+///   its share of what the sides before it have left. Or what is remembered of a side comes near to
+///   `control.max_bytes`.
 ///
 /// Where the solid knows the slabs of a cell ([`Enclosure`](crate::Enclosure)), a linear program bounds how far it
 /// reaches there. A corner of three plane faces is exact to rounding as soon as a cell holds no more than these,
@@ -203,7 +204,7 @@ impl<C: Classifier> Search<'_, C> {
                 return Ok(true);
             }
             let Some((cell, part)) = self.open.pop() else { return Ok(true) };
-            if self.subject.splits == last {
+            if self.subject.splits == last || self.subject.takes(4) {
                 return Ok(false);
             }
             self.job.check()?;

@@ -409,12 +409,10 @@ impl<'a> VoxelRecordsRef<'a> {
     }
 
     /// For each octant of `cell` the records in it: the children of a voxel that is refined, or if a child is
-    /// refined further what it consists of. O(log n).
+    /// refined further what it consists of. None of a cell that is none of the lattice. O(log n).
     pub fn children(&self, cell: Cell) -> [Range<usize>; 8] {
-        if cell.level >= self.frame.depth() {
-            return core::array::from_fn(|_| 0..0);
-        }
-        core::array::from_fn(|octant| self.within(cell.child(octant as u8)))
+        let is_split = cell.level < self.frame.depth() && LinearCode::new(cell, self.frame.depth()).is_ok();
+        core::array::from_fn(|octant| if is_split { self.within(cell.child(octant as u8)) } else { 0..0 })
     }
 
     /// The record, not of a refined voxel, that contains a cell, which may be finer than the lattice. O(log n).

@@ -45,7 +45,7 @@ pub const CLEARANCE_SPLITS: u64 = 1 << 20;
 ///   solid may go on outside of the universe, which keeps the lower bound at 0.
 /// - `Budget`: `control.max_splits` steps were taken, or [`CLEARANCE_SPLITS`] if that is `None`. A step looks
 ///   at the children of one cell. A cell whose children are looked at again, next to another cell, counts once
-///   more.
+///   more. Or what is remembered of a solid comes near to `control.max_bytes`.
 ///
 /// The upper bound is finite once the search has met a FULL cell of each solid. It looks for them first, with
 /// up to half of the budget. With nothing else left to do, it spends all of the budget on that.

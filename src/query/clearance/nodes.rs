@@ -97,7 +97,7 @@ impl<'s, C: Classifier> Nodes<'s, C> {
                 return Ok(Some(node));
             }
             if matches!(self.nodes[node].1, Known::Whole(Verdict::Partial(_))) {
-                let Some(left) = budget.checked_sub(1) else { break };
+                let Some(left) = budget.checked_sub(1).filter(|_| !self.subject.takes(4)) else { break };
                 *budget = left;
             }
             for child in self.children(node)? {

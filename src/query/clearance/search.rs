@@ -129,12 +129,12 @@ impl<'s, A: Classifier, B: Classifier> Search<'s, A, B> {
                 if self.bounds.reached.is_some() {
                     continue;
                 }
-                break if self.left == 0 { StopReason::Budget } else { StopReason::Exhausted };
+                break if self.is_spent() { StopReason::Budget } else { StopReason::Exhausted };
             }
             if least.is_none() || is_final && distance.width() <= self.resolution() {
                 break StopReason::Exhausted;
             }
-            if self.left == 0 {
+            if self.is_spent() {
                 break StopReason::Budget;
             }
             if is_final || steps % BETWEEN == 0 && distance.width() > self.resolution() {
@@ -147,6 +147,11 @@ impl<'s, A: Classifier, B: Classifier> Search<'s, A, B> {
         Ok(self.found(stop_reason))
     }
 
+    /// Whether the steps or the memory that the caller allows are spent.
+    fn is_spent(&self) -> bool {
+        self.left == 0 || self.a.subject.takes(4) || self.b.subject.takes(4)
+    }
+
     /// From the first group to small cells that are near, until the upper bound falls.
     fn plunge(&mut self, steps: u64, job: &Job<'_>) -> Result<(), Error> {
         let Some(group) = self.open.pop() else { return Ok(()) };
@@ -155,7 +160,8 @@ impl<'s, A: Classifier, B: Classifier> Search<'s, A, B> {
         self.plunging = true;
         self.push(group)?;
         let spared = self.left.saturating_sub(steps);
-        while self.left > spared && self.bounds.reached == before && self.step(job)? {}
+        let is_open = |search: &Self| search.left > spared && search.bounds.reached == before;
+        while is_open(self) && !self.is_spent() && self.step(job)? {}
         let met = core::mem::replace(&mut self.open, others);
         self.plunging = false;
         met.into_items().try_for_each(|group| self.push(group))

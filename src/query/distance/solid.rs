@@ -40,7 +40,8 @@ pub const DISTANCE_SPLITS: u64 = 1 << 16;
 /// - `Tolerance`: the interval is no wider than `tolerance` (model units), or both ends are ∞.
 /// - `Exhausted`: no cell is left whose split would help, or of a solid without slabs, the nearest undecided cell cannot
 ///   be split, and the interval is no wider than twice the diagonal of the frame's finest cells.
-/// - `Budget`: `control.max_splits` cells were split, or [`DISTANCE_SPLITS`] if that is `None`.
+/// - `Budget`: `control.max_splits` cells were split, or [`DISTANCE_SPLITS`] if that is `None`; or what is remembered comes
+///   near to `control.max_bytes`.
 ///
 /// Where the solid knows the slabs of a cell ([`Enclosure`](crate::Enclosure)), these bound how near it comes: each
 /// level then makes the interval about four times as narrow, and a plane face is known at once. Without slabs a level
@@ -182,7 +183,7 @@ impl<W: Worker> Search<'_, W> {
                 return Ok(false);
             }
             let Some((cell, part)) = self.open.pop() else { return Ok(false) };
-            if *left == 0 {
+            if *left == 0 || self.is_full() {
                 // It still counts.
                 self.settled = self.settled.min(begin);
                 return Ok(true);
@@ -194,6 +195,12 @@ impl<W: Worker> Search<'_, W> {
                 self.note(cell.child(octant), child, begin)?;
             }
         }
+    }
+
+    /// Whether the parts in memory take much of what the caller allows.
+    fn is_full(&self) -> bool {
+        let allowed = self.job.control().max_bytes;
+        allowed.is_some_and(|limit| self.worker.scratch_bytes() as u64 > limit / 4)
     }
 
     /// The least distance of what may lie in the first open cell.

@@ -49,13 +49,14 @@ pub struct Interference {
 }
 
 /// Whether `a` and `b` overlap; a solid under a placement is moved first (see
-/// [`AnySolid::placed`](crate::AnySolid::placed)). What is looked at is the universe of `frame`. Once an overlap is proven its volume is refined
-/// until the interval is no wider than `tolerance` (cubic model units); infinity ends the work with the
-/// proof.
+/// [`AnySolid::placed`](crate::AnySolid::placed)). What is looked at is the universe of `frame`. Once an overlap is
+/// proven its volume is refined until the interval is no wider than `tolerance` (cubic model units); infinity ends the
+/// work with the proof.
 ///
-/// The work ends at the frame's depth, or once `control.max_splits` cells of both are split, with what is
-/// known by then. Memory is linear in the cells that are not decided. One thread; a host program's shape is
-/// asked about several cells at once, by as many threads as `control` allows.
+/// The work ends at the frame's depth, or once `control.max_splits` cells of both are split or what is remembered of
+/// them comes near to `control.max_bytes`, with what is known by then. Memory is linear in the cells that are not
+/// decided. One thread; a host program's shape is asked about several cells at once, by as many threads as `control`
+/// allows.
 ///
 /// # Errors
 /// [`Error::Argument`] if `tolerance` is negative or not a number; what the solids refuse;

@@ -114,7 +114,9 @@ impl<'s, A: Classifier, B: Classifier> Search<'s, A, B> {
             } else {
                 self.split(&pair, searching)?;
             }
-            self.tidy()?;
+            if !self.tidy()? {
+                break;
+            }
         }
         Ok(self.found())
     }
@@ -238,12 +240,14 @@ impl<'s, A: Classifier, B: Classifier> Search<'s, A, B> {
         Ok(())
     }
 
-    /// Gives back memory that only parts hold which are not in use.
-    fn tidy(&mut self) -> Result<(), Error> {
+    /// Gives back memory that only parts hold which are not in use. `false` if those in use take too much of what is
+    /// allowed.
+    fn tidy(&mut self) -> Result<bool, Error> {
         let (a, b) = (&mut self.a, &mut self.b);
-        let (tidy_a, tidy_b) = (a.is_wasteful(), b.is_wasteful());
+        let is_full = a.takes(4) || b.takes(4);
+        let (tidy_a, tidy_b) = (is_full || a.is_wasteful(), is_full || b.is_wasteful());
         if !(tidy_a || tidy_b) {
-            return Ok(());
+            return Ok(true);
         }
         self.open.change(|pairs| {
             if tidy_a {
@@ -252,7 +256,8 @@ impl<'s, A: Classifier, B: Classifier> Search<'s, A, B> {
             if tidy_b {
                 b.keep(pairs.iter_mut().map(|pair| &mut pair.item.b))?;
             }
-            Ok(())
+            // Half of it must be free, or the next step would end here again.
+            Ok(!(is_full && (a.takes(8) || b.takes(8))))
         })
     }
 }
