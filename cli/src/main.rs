@@ -15,6 +15,7 @@ mod content;
 mod conversion;
 mod convert;
 mod csg;
+mod csv;
 mod demo;
 mod dexel_boolean;
 mod dexel_surface;

@@ -3,8 +3,8 @@
 use crate::failure::{Failure, Of, Problem};
 use leafless::{Error, Interval, Octree, TriDexel, file};
 use std::ffi::OsStr;
-use std::fmt;
-use std::io::{ErrorKind, IsTerminal, Write};
+use std::fmt::{self, Write as _};
+use std::io::{BufWriter, ErrorKind, IsTerminal, Write};
 use std::path::{Path, PathBuf};
 
 /// Where a result goes: a file, or standard output where the name is `-`.
@@ -130,13 +130,59 @@ pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
     file::replace(path, |file| Ok(file.write_all(bytes)?)).of(path.display())
 }
 
+/// Writes a file whole or not at all, or to standard output, without having all of it in memory. Returns how many bytes
+/// it has.
+pub fn stream(
+    output: &Output,
+    write: impl FnOnce(&mut dyn Write) -> std::io::Result<()>,
+) -> Result<u64, Failure> {
+    let Some(path) = output.path() else {
+        let mut out = Counted { inner: BufWriter::new(std::io::stdout().lock()), bytes: 0 };
+        write(&mut out).and_then(|()| out.flush()).map_err(unwritten)?;
+        return Ok(out.bytes);
+    };
+    let mut bytes = 0;
+    let whole = file::replace(path, |file| {
+        let mut out = Counted { inner: BufWriter::new(file), bytes: 0 };
+        write(&mut out)?;
+        out.flush()?;
+        bytes = out.bytes;
+        Ok(())
+    });
+    whole.of(path.display())?;
+    Ok(bytes)
+}
+
+/// A writer that knows how many bytes it was given.
+struct Counted<W> {
+    inner: W,
+    bytes: u64,
+}
+
+impl<W: Write> Write for Counted<W> {
+    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
+        let written = self.inner.write(bytes)?;
+        self.bytes += written as u64;
+        Ok(written)
+    }
+
+    fn flush(&mut self) -> std::io::Result<()> {
+        self.inner.flush()
+    }
+}
+
 /// Writes to standard output.
 pub fn print(bytes: &[u8]) -> Result<(), Failure> {
     let mut out = std::io::stdout().lock();
-    out.write_all(bytes).and_then(|()| out.flush()).map_err(|error| match error.kind() {
+    out.write_all(bytes).and_then(|()| out.flush()).map_err(unwritten)
+}
+
+/// What is wrong with standard output.
+fn unwritten(error: std::io::Error) -> Failure {
+    match error.kind() {
         ErrorKind::BrokenPipe => Failure::ReaderGone,
         _ => Failure::of("standard output", error.text()),
-    })
+    }
 }
 
 /// Writes `value` as JSON, one object over several lines.
@@ -187,8 +233,18 @@ pub fn counted(number: u64, one: &str, many: &str) -> String {
 
 /// A number in full precision, in scientific notation if it is very large or small.
 pub fn number(x: f64) -> String {
-    let text = format!("{x:?}");
-    text.strip_suffix(".0").map_or(text.clone(), str::to_owned)
+    let mut text = String::new();
+    push_number(&mut text, x);
+    text
+}
+
+/// Appends a [`number`].
+pub fn push_number(text: &mut String, x: f64) {
+    // (A string takes whatever is written to it.)
+    let _ = write!(text, "{x:?}");
+    if text.ends_with(".0") {
+        text.truncate(text.len() - 2);
+    }
 }
 
 /// What is known of a number, with the digits that mean something: `42345.1 ± 0.2`, or `3.9 to 12.1` where

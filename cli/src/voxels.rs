@@ -1,11 +1,12 @@
 //! `leafless voxels`: the voxels of a solid as records, and records as a solid.
 
 use crate::channel;
+use crate::csv;
 use crate::failure::{Failure, Of};
 use crate::input::Input;
 use crate::memory;
 use crate::npz::{Arrays, Reader};
-use crate::output::{self, Output, count, number, write_file};
+use crate::output::{self, Output, count, write_file};
 use crate::progress::watched;
 use crate::target::{Looking, Target};
 use clap::{Args, ValueEnum};
@@ -15,7 +16,6 @@ use leafless::{
 };
 use serde::Serialize;
 use std::ffi::OsString;
-use std::fmt::Write;
 use std::path::Path;
 
 /// Writes the voxels of a solid as records, sorted by linear octree code: inside voxels, boundary voxels, and others
@@ -184,21 +184,19 @@ fn list(arguments: &Arguments, input: &Input, output: &Output) -> Result<(), Fai
     });
     let (records, triangles) = listed.of(input)?;
     let (view, triangles) = (records.view(), triangles.as_ref());
-    // A line has a digit for each level, and words and numbers of twenty letters at the least.
-    let each = match form {
-        WriteName::Npz => records.bytes_each() as u64 + 24,
-        WriteName::Csv => 20 + u64::from(view.frame().depth()),
-    };
-    memory::afford_file(each * view.len() as u64).of(output)?;
     let bytes = match form {
-        WriteName::Npz => npz(&view, triangles).of(output)?,
-        WriteName::Csv => csv(&view, triangles).into_bytes(),
+        WriteName::Csv => output::stream(output, |out| csv::write(&view, triangles, out))?,
+        WriteName::Npz => {
+            memory::afford_file((records.bytes_each() as u64 + 24) * view.len() as u64).of(output)?;
+            let bytes = npz(&view, triangles).of(output)?;
+            match output.path() {
+                Some(path) => write_file(path, &bytes)?,
+                None => output::print(&bytes)?,
+            }
+            bytes.len() as u64
+        }
     };
-    match output.path() {
-        Some(path) => write_file(path, &bytes)?,
-        None => output::print(&bytes)?,
-    }
-    report(arguments, input, output, &view, triangles, bytes.len() as u64)
+    report(arguments, input, output, &view, triangles, bytes)
 }
 
 fn import(arguments: &Arguments, input: &Input, output: &Output) -> Result<(), Failure> {
@@ -400,29 +398,4 @@ fn records(bytes: &[u8]) -> Result<VoxelRecords, String> {
     let is_sealed = arrays.has("seal") && arrays.array::<u8>("seal").map_err(text)?.1 == seal(&told.view());
     (proof.full, proof.empty) = (proof.full && is_sealed, proof.empty && is_sealed);
     Ok(told.with_exterior(exterior, proof))
-}
-
-fn csv(view: &VoxelRecordsRef<'_>, triangles: Option<&VoxelTriangles>) -> String {
-    let mut text = String::from("kind,level,code,x,y,z,edge");
-    for component in 0..view.components() {
-        let _ = write!(text, ",value{component}");
-    }
-    text.push_str(if triangles.is_some() { ",triangles\n" } else { "\n" });
-    for (index, record) in view.iter().enumerate() {
-        let code = view.code(index).map(|code| code.to_string()).unwrap_or_default();
-        let _ = write!(text, "{},{},{code}", record.kind.name(), record.cell.level);
-        let place = view.corner(index).unwrap_or_default().into_iter().chain(view.edge(index));
-        for x in place {
-            let _ = write!(text, ",{}", number(x));
-        }
-        for &x in &view.values()[index * view.components()..][..view.components()] {
-            let _ = write!(text, ",{}", if x.is_nan() { "nan".into() } else { number(x) });
-        }
-        if let Some(found) = triangles {
-            let list: Vec<String> = found.of(index).iter().map(|triangle| triangle.to_string()).collect();
-            let _ = write!(text, ",{}", list.join(" "));
-        }
-        text.push('\n');
-    }
-    text
 }

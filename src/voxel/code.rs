@@ -119,10 +119,8 @@ impl LinearCode {
 /// The digits, as many as the lattice has levels.
 impl fmt::Display for LinearCode {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for k in 0..self.depth {
-            write!(f, "{}", self.digit(k))?;
-        }
-        Ok(())
+        let digits: [u8; MAX_DEPTH as usize] = core::array::from_fn(|k| b'0' + self.digit(k as u8));
+        f.write_str(core::str::from_utf8(&digits[..self.depth.into()]).unwrap_or_default())
     }
 }
 
