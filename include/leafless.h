@@ -1659,7 +1659,8 @@ typedef struct {
      * Refuse results whose working form is larger than this many bytes; 0 means no limit. Where the size is known
      * beforehand nothing is done. When a result is put together, it takes as much again for a moment. Set a limit
      * where a solid or its depth is not your own choice: a file of some hundred bytes may hold a cell whose surface
-     * has 2^43 triangles.
+     * has 2^43 triangles. Interference, clearance and bounding boxes end with what they know, as with max_splits spent,
+     * before what they remember of a solid's parts takes so much.
      */
     uint64_t max_bytes;
     /**

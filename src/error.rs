@@ -77,12 +77,12 @@ pub enum Error {
         /// The first ray that is not sound; 0 if the arrays as a whole are not.
         ray: u64,
     },
-    /// More nodes or bytes than the caller allowed.
+    /// More nodes or bytes than the caller allowed, or than a pipe may have that is read whole.
     #[error("the limit of {limit} {what} was reached")]
     Limit {
         /// `"nodes"` or `"bytes"`.
         what: &'static str,
-        /// The limit that the caller set.
+        /// The limit.
         limit: u64,
     },
     /// A result is known beforehand to take more memory than the caller allowed with

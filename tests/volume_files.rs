@@ -9,8 +9,8 @@ mod volumes;
 
 use common::Random;
 use leafless::exchange::{
-    LengthUnit, NrrdEncoding, RawVolume, SampleKind, VolumeFile, VolumeFormat, open_volume, read_raw_volume,
-    read_volume, volume_data_file, write_nrrd, write_raw_volume,
+    LengthUnit, MeshOptions, NrrdEncoding, RawVolume, SampleKind, VolumeFile, VolumeFormat, open_mesh,
+    open_volume, read_raw_volume, read_volume, volume_data_file, write_nrrd, write_raw_volume,
 };
 use leafless::{
     Band, Control, Error, Frame, Rule, Samples, Solid, VolumeFileError, VoxelGrid, build, measure,
@@ -740,4 +740,15 @@ fn files_of_other_programs() {
         count += 1;
     }
     assert_eq!(count, 25);
+}
+
+/// What goes on for ever is read no further than a gigabyte.
+#[test]
+#[cfg(target_os = "linux")]
+fn devices_without_an_end_are_refused() {
+    let cause = |error: Error| error.cause().to_string();
+    let limit = "the limit of 1073741824 bytes was reached";
+    assert_eq!(open_volume("/dev/zero").map(|_| ()).map_err(cause), Err(limit.into()));
+    let options = MeshOptions::default();
+    assert_eq!(open_mesh("/dev/zero", &options).map(|_| ()).map_err(cause), Err(limit.into()));
 }

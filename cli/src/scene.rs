@@ -3,6 +3,7 @@
 use crate::content::Content;
 use crate::failure::{Failure, Of};
 use crate::input::Input;
+use crate::memory;
 use crate::mesh::openness;
 use crate::output::{self, count, counted, number};
 use clap::{Args, ValueEnum};
@@ -39,11 +40,13 @@ impl Drawing {
     }
 
     fn options(&self) -> SceneOptions {
-        SceneOptions::with_facets(match self.facets {
+        let mut options = SceneOptions::with_facets(match self.facets {
             None => Facets::Auto,
             Some(FacetsName::Exact) => Facets::Exact,
             Some(FacetsName::Polygon) => Facets::Polygon,
-        })
+        });
+        options.max_bytes = Some(memory::longest_file());
+        options
     }
 }
 

@@ -5,10 +5,9 @@ use super::status::leafless_status;
 use super::volume::leafless_volume_format::*;
 use super::volume::{leafless_volume, type_of};
 use super::volume_arrays::{Layout, leafless_volume_layout};
-use crate::error::Error;
 use crate::exchange::{
-    NrrdEncoding, VolumeFile, VolumeFormat, open_volume, read_volume, volume_data_file, write_nrrd,
-    write_raw_volume,
+    NrrdEncoding, VolumeFile, VolumeFormat, open_volume, read_volume, read_whole, volume_data_file,
+    write_nrrd, write_raw_volume,
 };
 use crate::file::replace;
 use alloc::vec::Vec;
@@ -163,7 +162,7 @@ pub unsafe extern "C" fn leafless_volume_open_raw(
         let path = Path::new(self::path(path, path_length)?);
         let layout = Layout::new(layout)?;
         let volume = out(volume, "volume")?;
-        let bytes = std::fs::read(path).map_err(|error| Error::from(error).of_file(path))?;
+        let bytes = read_whole(path).map_err(|error| error.of_file(path))?;
         let copied = layout.copied(&bytes).map_err(|error| error.of_file(path))?;
         volume.write(handle(layout.volume(copied)))
     })

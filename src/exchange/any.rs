@@ -73,12 +73,12 @@ pub fn read_mesh(bytes: &[u8], options: &MeshOptions) -> Result<MeshFile, Error>
 /// Reads a mesh file of any format from a path, whose extension helps to tell the format.
 ///
 /// As [`read_mesh`]. What is wrong with the file is the cause of an [`Error::File`] with the path, and may be
-/// [`Error::Io`] besides.
+/// [`Error::Io`] besides, or [`Error::Limit`] for a pipe or a device that goes on after 1 GiB.
 #[cfg(feature = "std")]
 pub fn open_mesh(path: impl AsRef<std::path::Path>, options: &MeshOptions) -> Result<MeshFile, Error> {
     let path = path.as_ref();
     let extension = path.extension().and_then(|extension| extension.to_str());
-    let bytes = std::fs::read(path).map_err(Error::from);
+    let bytes = super::read_whole(path);
     bytes.and_then(|bytes| read(&bytes, extension, options)).map_err(|error| error.of_file(path))
 }
 

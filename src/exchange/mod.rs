@@ -69,7 +69,12 @@ mod unit;
 #[cfg(feature = "volumes")]
 mod volume;
 mod warning;
+#[cfg(feature = "std")]
+mod whole;
 mod write;
+
+#[cfg(feature = "std")]
+pub(crate) use whole::read_whole;
 
 #[cfg(feature = "std")]
 pub use any::open_mesh;

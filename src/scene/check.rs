@@ -11,7 +11,7 @@ use std::path::Path;
 use super::arguments::{Given, Item};
 use super::facets::{Facets, Fineness, MOST_SIDES};
 use super::grammar::{Call, Cursor, Tree, shown};
-use super::{Node, Scene, SceneReport};
+use super::{Node, Scene, SceneOptions, SceneReport};
 use crate::error::Error;
 use crate::exchange::Polygons;
 use crate::lattice::Affine;
@@ -46,6 +46,8 @@ struct Open {
 pub(super) struct Checker<'a> {
     pub(super) tree: &'a Tree<'a>,
     pub(super) folder: Option<&'a Path>,
+    /// Most bytes of a file that the scene names.
+    pub(super) max_bytes: Option<u64>,
     facets: Facets,
     pub(super) report: SceneReport,
     /// Where the latest mesh is.
@@ -56,10 +58,11 @@ pub(super) struct Checker<'a> {
 }
 
 /// The scene of a whole text. Files are looked for in `folder`.
-pub(super) fn check(tree: &Tree<'_>, folder: Option<&Path>, facets: Facets) -> Result<Scene, Error> {
+pub(super) fn check(tree: &Tree<'_>, folder: Option<&Path>, options: &SceneOptions) -> Result<Scene, Error> {
     let (report, cursor, nodes, results) =
         (SceneReport::default(), Cursor::default(), Vec::new(), Vec::new());
-    let mut checker = Checker { tree, folder, facets, report, cursor, nodes, results };
+    let SceneOptions { facets, max_bytes } = *options;
+    let mut checker = Checker { tree, folder, max_bytes, facets, report, cursor, nodes, results };
     let mut open: Vec<Open> = Vec::new();
     let mut next = 0;
     loop {

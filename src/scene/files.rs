@@ -22,7 +22,18 @@ impl Checker<'_> {
         let Some(folder) = self.folder else {
             return Err(file.fault("files cannot be read by this scene, which has no folder"));
         };
-        read(&folder.join(&name)).map_err(|error| match error {
+        let path = folder.join(&name);
+        // What is no file may have no end, and opening a pipe may wait for ever. (What cannot be asked is told below.)
+        if let Ok(metadata) = std::fs::metadata(&path) {
+            if !metadata.is_file() {
+                return Err(file.fault(format!("{name}: is no regular file")));
+            }
+            if let Some(limit) = self.max_bytes.filter(|&limit| metadata.len() > limit) {
+                let problem = format!("{name}: has {} bytes, and the limit is {limit}", metadata.len());
+                return Err(file.fault(problem));
+            }
+        }
+        read(&path).map_err(|error| match error {
             Error::OutOfMemory => error,
             error => file.fault(format!("{name}: {}", error.cause())),
         })

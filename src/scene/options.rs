@@ -5,6 +5,7 @@ use std::path::Path;
 use super::facets::Facets;
 use super::{Scene, check, grammar};
 use crate::error::Error;
+use crate::exchange::read_whole;
 
 /// How a scene is to be read.
 ///
@@ -21,16 +22,18 @@ use crate::error::Error;
 pub struct SceneOptions {
     /// Which curved calls are drawn as polygons.
     pub facets: Facets,
+    /// Refuse files that the scene names and that are longer than this many bytes; `None` means no limit.
+    pub max_bytes: Option<u64>,
 }
 
 impl SceneOptions {
     /// The defaults, but for which curved calls are drawn as polygons.
     pub fn with_facets(facets: Facets) -> SceneOptions {
-        SceneOptions { facets }
+        SceneOptions { facets, ..SceneOptions::default() }
     }
 
     /// Reads a scene from its text, in UTF-8. Files that it names are looked for in `folder`; without one they
-    /// are refused.
+    /// are refused, and so are pipes and devices, which may have no end.
     ///
     /// O(text) for what is exact, times the sides of polygons, and the files.
     ///
@@ -43,18 +46,19 @@ impl SceneOptions {
             let valid = core::str::from_utf8(&bytes[..error.valid_up_to()]).unwrap_or_default();
             grammar::fault(valid, valid.len(), "the text is not UTF-8")
         })?;
-        check::check(&grammar::parse(text)?, folder, self.facets)
+        check::check(&grammar::parse(text)?, folder, self)
     }
 
     /// Reads a scene from a file. Files that it names are looked for beside it.
     ///
     /// # Errors
     /// [`Error::File`] with the path and one of these causes: as [`read`](Self::read), or [`Error::Io`] if the
-    /// file itself cannot be read; [`Error::OutOfMemory`].
+    /// file itself cannot be read, [`Error::Limit`] if it is a pipe that goes on after 1 GiB;
+    /// [`Error::OutOfMemory`].
     pub fn open(&self, path: impl AsRef<Path>) -> Result<Scene, Error> {
         let path = path.as_ref();
         let folder = path.parent().unwrap_or(Path::new(""));
-        let text = std::fs::read(path).map_err(Error::from);
+        let text = read_whole(path);
         text.and_then(|text| self.read(text, Some(folder))).map_err(|error| error.of_file(path))
     }
 }

@@ -2,6 +2,7 @@
 
 use super::{VolumeFile, read_volume, volume_data_file};
 use crate::error::{Error, VolumeFileError};
+use crate::exchange::read_whole;
 use crate::memory;
 use alloc::vec::Vec;
 use std::fs::{self, File};
@@ -23,7 +24,7 @@ use std::path::{Component, Path, PathBuf};
 /// [`VolumeFileError::Unsupported`] for samples outside of the header's folder, or in what is no regular file.
 pub fn open_volume(path: impl AsRef<Path>) -> Result<VolumeFile, Error> {
     let path = path.as_ref();
-    let bytes = fs::read(path).map_err(|error| Error::from(error).of_file(path))?;
+    let bytes = read_whole(path).map_err(|error| error.of_file(path))?;
     let name = volume_data_file(&bytes).map_err(|error| error.of_file(path))?;
     let Some(name) = name else { return read_volume(&bytes, None).map_err(|error| error.of_file(path)) };
     let relative = Path::new(&name);
