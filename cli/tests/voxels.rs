@@ -66,6 +66,9 @@ fn there_and_back() {
     // Damage.
     let bytes = place.bytes("a.npz");
     place.write("cut.npz", &bytes[..bytes.len() / 2]);
+    for option in ["--bounds 0,0,0,1", "--scale 2", "--fn exact", "--outside"] {
+        place.run(&format!("voxels --import cut.npz -o cut.lfl {option}")).bad(2, &["--import"]);
+    }
     place.run("voxels --import cut.npz -o cut.lfl").bad(1, &["cut.npz"]);
     place.write("text.npz", "no archive");
     place.run("voxels --import text.npz -o cut.lfl").bad(1, &["text.npz"]);

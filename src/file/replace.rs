@@ -200,14 +200,18 @@ struct Named {
 
 impl Named {
     fn new(directory: &Path, is_new: bool) -> io::Result<Named> {
-        let mut builder = builder();
+        let builder = builder();
         #[cfg(unix)]
-        if is_new {
+        let builder = {
             use std::os::unix::fs::PermissionsExt;
+            let mut builder = builder;
             // The umask is taken off by the system. Where a file is replaced nobody else may look at the new
             // one before it has the old one's permissions.
-            builder.permissions(Permissions::from_mode(0o666));
-        }
+            if is_new {
+                builder.permissions(Permissions::from_mode(0o666));
+            }
+            builder
+        };
         #[cfg(not(unix))]
         let _ = is_new;
         let mut names = names();
