@@ -142,6 +142,7 @@ fn what_is_no_cell_has_no_children_among_records() {
 fn what_the_fuzzer_found_interesting() {
     corpus("measures", measures::measures);
     corpus("attributes", attributes::attributes);
+    corpus("records", records::records);
 }
 
 #[test]

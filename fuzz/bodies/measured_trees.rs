@@ -8,7 +8,7 @@ use leafless::{
 };
 
 /// Splits of each question. A tree from a file of some kilobytes has fewer cells that can be split.
-const SOME: Control<'static> = Control { max_splits: Some(1000), ..CONTROL };
+const SOME: Control<'static> = Control { max_splits: Some(200), ..CONTROL };
 
 /// Asks what is measured of a tree, alone, against itself, against a ball, a box and a half-space.
 pub fn ask_measures(tree: &OctreeRef<'_>, points: &[[f64; 3]], verified: bool) {
