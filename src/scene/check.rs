@@ -11,7 +11,7 @@ use std::path::Path;
 use super::arguments::{Given, Item};
 use super::facets::{Facets, Fineness, MOST_SIDES};
 use super::grammar::{Call, Cursor, Tree, shown};
-use super::{Node, Scene, SceneOptions, SceneReport};
+use super::{Node, Scene, SceneReport};
 use crate::error::Error;
 use crate::exchange::Polygons;
 use crate::lattice::Affine;
@@ -45,9 +45,7 @@ struct Open {
 /// Shapes from a tree of calls.
 pub(super) struct Checker<'a> {
     pub(super) tree: &'a Tree<'a>,
-    pub(super) folder: Option<&'a Path>,
-    /// Most bytes of a file that the scene names.
-    pub(super) max_bytes: Option<u64>,
+    pub(super) files: Files<'a>,
     facets: Facets,
     pub(super) report: SceneReport,
     /// Where the latest mesh is.
@@ -57,12 +55,20 @@ pub(super) struct Checker<'a> {
     results: Vec<(usize, Shape)>,
 }
 
-/// The scene of a whole text. Files are looked for in `folder`.
-pub(super) fn check(tree: &Tree<'_>, folder: Option<&Path>, options: &SceneOptions) -> Result<Scene, Error> {
+/// The files that a scene may name.
+#[derive(Clone, Copy)]
+pub(super) struct Files<'a> {
+    /// Where they are looked for.
+    pub folder: Option<&'a Path>,
+    /// Most bytes of one.
+    pub max_bytes: Option<u64>,
+}
+
+/// The scene of a whole text.
+pub(super) fn check(tree: &Tree<'_>, files: Files<'_>, facets: Facets) -> Result<Scene, Error> {
     let (report, cursor, nodes, results) =
         (SceneReport::default(), Cursor::default(), Vec::new(), Vec::new());
-    let SceneOptions { facets, max_bytes } = *options;
-    let mut checker = Checker { tree, folder, max_bytes, facets, report, cursor, nodes, results };
+    let mut checker = Checker { tree, files, facets, report, cursor, nodes, results };
     let mut open: Vec<Open> = Vec::new();
     let mut next = 0;
     loop {

@@ -19,7 +19,7 @@ impl Checker<'_> {
     /// What `read` makes of the file that is named in the text.
     fn read<T>(&self, file: &Item<'_>, read: impl FnOnce(&Path) -> Result<T, Error>) -> Result<T, Error> {
         let name = file.text()?;
-        let Some(folder) = self.folder else {
+        let Some(folder) = self.files.folder else {
             return Err(file.fault("files cannot be read by this scene, which has no folder"));
         };
         let path = folder.join(&name);
@@ -28,7 +28,7 @@ impl Checker<'_> {
             if !metadata.is_file() {
                 return Err(file.fault(format!("{name}: is no regular file")));
             }
-            if let Some(limit) = self.max_bytes.filter(|&limit| metadata.len() > limit) {
+            if let Some(limit) = self.files.max_bytes.filter(|&limit| metadata.len() > limit) {
                 let problem = format!("{name}: has {} bytes, and the limit is {limit}", metadata.len());
                 return Err(file.fault(problem));
             }

@@ -46,7 +46,8 @@ impl SceneOptions {
             let valid = core::str::from_utf8(&bytes[..error.valid_up_to()]).unwrap_or_default();
             grammar::fault(valid, valid.len(), "the text is not UTF-8")
         })?;
-        check::check(&grammar::parse(text)?, folder, self)
+        let files = check::Files { folder, max_bytes: self.max_bytes };
+        check::check(&grammar::parse(text)?, files, self.facets)
     }
 
     /// Reads a scene from a file. Files that it names are looked for beside it.
