@@ -62,7 +62,10 @@ pub struct MeshFile {
 /// A file that departs from its format in a way that leaves no doubt about the mesh is read, and
 /// [`MeshFile::warnings`] tells of it.
 ///
-/// O(n). Fails with [`Error::Argument`] for a scale that is not allowed, [`MeshFileError::UnknownFormat`],
+/// O(n).
+///
+/// # Errors
+/// [`Error::Argument`] for a scale that is not allowed, [`MeshFileError::UnknownFormat`],
 /// [`MeshFileError::UnknownUnit`] if a conversion is asked for and nobody says from which unit,
 /// [`MeshFileError::Unsupported`] for text in UTF-16 and for a format that was left out of this build,
 /// [`MeshError::TooLarge`](crate::MeshError::TooLarge) if scaling exceeds ±2^256, and the reader's errors.

@@ -35,9 +35,11 @@ use crate::mesh::TriangleMesh;
 /// and counted, as in [`TriangleMesh::new`]. The mesh need not be closed, and may be empty.
 ///
 /// O(n), or O(n log n) for faces that are not convex. Memory is at most 128 times the length of the file.
-/// Fails with [`MeshFileError::Empty`], [`MeshFileError::Unsupported`] (UTF-16), [`MeshFileError::Syntax`], [`MeshFileError::Index`],
-/// [`MeshError::TooLarge`](crate::MeshError::TooLarge), [`MeshError::TooMany`](crate::MeshError::TooMany) or
-/// [`Error::OutOfMemory`].
+///
+/// # Errors
+/// [`MeshFileError::Empty`], [`MeshFileError::Unsupported`] (UTF-16), [`MeshFileError::Syntax`],
+/// [`MeshFileError::Index`], [`MeshError::TooLarge`](crate::MeshError::TooLarge),
+/// [`MeshError::TooMany`](crate::MeshError::TooMany) or [`Error::OutOfMemory`].
 pub fn read_obj(bytes: &[u8]) -> Result<TriangleMesh, Error> {
     if bytes.is_empty() {
         return Err(MeshFileError::Empty.into());

@@ -39,9 +39,11 @@ use crate::mesh::TriangleMesh;
 /// first corner. Equal vertices are welded, and triangles that two equal vertices make degenerate are dropped
 /// and counted, as in [`TriangleMesh::new`]. The mesh need not be closed, and may be empty.
 ///
-/// O(n), or O(n log n) for faces that are not convex. Memory is at most 128 times the length of the file,
-/// whatever its header claims. Fails with [`MeshFileError::Empty`], [`MeshFileError::Unsupported`] (UTF-16),
-/// [`MeshFileError::Syntax`] and
+/// O(n), or O(n log n) for faces that are not convex. Memory is at most 128 times the length of the file, whatever
+/// its header claims.
+///
+/// # Errors
+/// [`MeshFileError::Empty`], [`MeshFileError::Unsupported`] (UTF-16), [`MeshFileError::Syntax`] and
 /// [`MeshFileError::Index`] (in the header, and in a text), [`MeshFileError::Binary`] and
 /// [`MeshFileError::BinaryIndex`], [`MeshError::TooLarge`](crate::MeshError::TooLarge),
 /// [`MeshError::TooMany`](crate::MeshError::TooMany) or [`Error::OutOfMemory`].

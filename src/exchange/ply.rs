@@ -45,8 +45,10 @@ use crate::mesh::{MeshAttribute, TriangleMesh};
 /// become the attribute `colour` of corners; colours of faces the attribute `colour` of triangles, or, if there
 /// are both, `face_colour`.
 ///
-/// O(n), or O(n log n) for faces that are not convex. Memory is at most 128 times the length of the file,
-/// whatever its header claims. What [`read_mesh`](super::read_mesh) warns of is not told. Fails with
+/// O(n), or O(n log n) for faces that are not convex. Memory is at most 128 times the length of the file, whatever
+/// its header claims. What [`read_mesh`](super::read_mesh) warns of is not told.
+///
+/// # Errors
 /// [`MeshFileError::Empty`], [`MeshFileError::Unsupported`] (UTF-16), [`MeshFileError::Syntax`] and
 /// [`MeshFileError::Index`] (in the header, and in an ASCII file), [`MeshFileError::Binary`] and
 /// [`MeshFileError::BinaryIndex`], [`MeshError::TooLarge`](crate::MeshError::TooLarge),

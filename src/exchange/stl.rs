@@ -39,9 +39,11 @@ const FACET: usize = 50;
 /// Vertices at equal positions are welded, and facets that two equal vertices make degenerate are dropped and
 /// counted, as in [`TriangleMesh::from_facets`]. That the mesh is closed is not checked.
 ///
-/// O(n). Memory is allocated for facets that are there, not for facets that a header claims. Fails with
-/// [`MeshFileError::Empty`], [`MeshFileError::Length`], [`MeshFileError::NotFinite`],
-/// [`MeshFileError::Syntax`], [`MeshFileError::Unsupported`] (UTF-16), [`MeshError::TooLarge`](crate::MeshError::TooLarge),
+/// O(n). Memory is allocated for facets that are there, not for facets that a header claims.
+///
+/// # Errors
+/// [`MeshFileError::Empty`], [`MeshFileError::Length`], [`MeshFileError::NotFinite`], [`MeshFileError::Syntax`],
+/// [`MeshFileError::Unsupported`] (UTF-16), [`MeshError::TooLarge`](crate::MeshError::TooLarge),
 /// [`MeshError::TooMany`](crate::MeshError::TooMany) or [`Error::OutOfMemory`].
 pub fn read_stl(bytes: &[u8]) -> Result<TriangleMesh, Error> {
     if bytes.is_empty() {

@@ -52,7 +52,10 @@ impl EdgeLoops {
     /// Takes a boundary apart. Directed, every vertex must begin as many edges as it ends; undirected, edges
     /// must differ and every vertex have an even number. No loop has a vertex twice; each edge is in one.
     ///
-    /// O(n log n). Fails with [`MeshError::TooMany`] or [`Error::OutOfMemory`].
+    /// O(n log n).
+    ///
+    /// # Errors
+    /// [`MeshError::TooMany`] or [`Error::OutOfMemory`].
     pub fn of(open: &[[u32; 2]], is_directed: bool) -> Result<EdgeLoops, Error> {
         if u32::try_from(open.len()).is_err() {
             return Err(MeshError::TooMany.into());

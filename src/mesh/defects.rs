@@ -56,8 +56,10 @@ impl TriangleMesh {
     /// Where the mesh is not as it should be: the `limit` worst places, in the order of [`DefectKind`], and
     /// those of one kind by descending [extent](MeshDefect::extent), then by descending count, then position.
     ///
-    /// O(t + v) time and 24 bytes per triangle and 8 per vertex of scratch memory; O(n log n) time and about
-    /// 100 bytes for each of n edges and triangles that are part of a defect. Fails with
+    /// O(t + v) time and 24 bytes per triangle and 8 per vertex of scratch memory; O(n log n) time and about 100
+    /// bytes for each of n edges and triangles that are part of a defect.
+    ///
+    /// # Errors
     /// [`Error::OutOfMemory`].
     pub fn defects(&self, limit: usize) -> Result<Vec<MeshDefect>, Error> {
         let mut defects = Vec::new();

@@ -37,9 +37,11 @@ impl TriangleMesh {
     /// The pairs of triangles that have a point in common which is not on a common vertex or edge: they cross,
     /// touch, or fold onto each other. Decided exactly. Triangles without area are left out.
     ///
-    /// O(t log t) time for triangles that lie apart, and 46 bytes a triangle of scratch memory. A search ends
-    /// after 2^26 steps and 512 a triangle; [`is_complete`](IntersectingPairs::is_complete) tells. It is
-    /// deterministic. Fails with [`Error::OutOfMemory`] or [`Error::Cancelled`].
+    /// O(t log t) time for triangles that lie apart, and 46 bytes a triangle of scratch memory. A search ends after
+    /// 2^26 steps and 512 a triangle; [`is_complete`](IntersectingPairs::is_complete) tells. It is deterministic.
+    ///
+    /// # Errors
+    /// [`Error::OutOfMemory`] or [`Error::Cancelled`].
     ///
     /// ```
     /// use leafless::{Control, TriangleMesh};

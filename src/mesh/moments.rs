@@ -51,8 +51,10 @@ impl TriangleMesh {
     /// solid whose surface lies within that distance along each axis.
     ///
     /// O(t log t) time for triangles that lie apart, and 46 bytes a triangle of scratch memory. Work is limited as
-    /// in [`intersecting_pairs`](Self::intersecting_pairs). Fails with [`Error::OutOfMemory`] or
-    /// [`Error::Cancelled`].
+    /// in [`intersecting_pairs`](Self::intersecting_pairs).
+    ///
+    /// # Errors
+    /// [`Error::OutOfMemory`] or [`Error::Cancelled`].
     ///
     /// ```
     /// use leafless::{Control, FillRule, MeshMoments, TriangleMesh};

@@ -98,9 +98,11 @@ impl MeshReport {
 impl TriangleMesh {
     /// What was found when the mesh was made, and how its triangles hang together.
     ///
-    /// The first call analyses the edges, in O(t + v) time, O(n log n) for the n edges of the boundary, and
-    /// with 28 bytes per triangle and 9 per vertex of scratch memory, and looks for bodies that overlap where
-    /// their boxes meet, with at most 2^24 steps and 128 a triangle; later calls are free. Fails with
+    /// The first call analyses the edges, in O(t + v) time, O(n log n) for the n edges of the boundary, and with 28
+    /// bytes per triangle and 9 per vertex of scratch memory, and looks for bodies that overlap where their boxes
+    /// meet, with at most 2^24 steps and 128 a triangle; later calls are free.
+    ///
+    /// # Errors
     /// [`Error::OutOfMemory`].
     pub fn report(&self) -> Result<MeshReport, Error> {
         let details = self.details.get_or_try_init(|| self.find_details())?;

@@ -65,7 +65,10 @@ impl TriangleMesh {
     /// that comes later. A mesh without open edges is returned as it is, and wider gaps stay open.
     /// [`report`](Self::report) tells how many vertices were moved and how far.
     ///
-    /// O(t + v) for each power of two between the extents of the pieces. Fails with [`Error::OutOfMemory`].
+    /// O(t + v) for each power of two between the extents of the pieces.
+    ///
+    /// # Errors
+    /// [`Error::OutOfMemory`].
     pub fn sewn(self) -> Result<TriangleMesh, Error> {
         if self.open_vertices()?.is_empty() {
             return Ok(self);

@@ -129,8 +129,11 @@ impl TriangleMesh {
     /// Equal vertices are welded and keep the order of first appearance, so that the indices of the result
     /// are those given unless there were equal vertices. Vertices that no triangle uses are kept.
     ///
-    /// O(v + t). Fails with [`MeshError::TooMany`], [`MeshError::NotFinite`], [`MeshError::TooLarge`],
-    /// [`MeshError::Index`] or [`Error::OutOfMemory`].
+    /// O(v + t).
+    ///
+    /// # Errors
+    /// [`MeshError::TooMany`], [`MeshError::NotFinite`], [`MeshError::TooLarge`], [`MeshError::Index`] or
+    /// [`Error::OutOfMemory`].
     pub fn new(vertices: Vec<[f64; 3]>, triangles: Vec<[u32; 3]>) -> Result<Self, Error> {
         Self::with_attributes(vertices, triangles, Vec::new())
     }
@@ -301,8 +304,11 @@ impl TriangleMesh {
     /// overlaps, nested and inside-out bodies are all allowed.
     ///
     /// The first call analyses the edges, in O(t + v) time and with 28 bytes per triangle and 9 per vertex of
-    /// scratch memory; later calls are free. Fails with [`MeshError::Empty`], [`MeshError::Open`],
-    /// [`MeshError::Unoriented`] (tested in this order) or [`Error::OutOfMemory`].
+    /// scratch memory; later calls are free.
+    ///
+    /// # Errors
+    /// [`MeshError::Empty`], [`MeshError::Open`], [`MeshError::Unoriented`] (tested in this order) or
+    /// [`Error::OutOfMemory`].
     pub fn check_closed(&self, rule: FillRule) -> Result<(), Error> {
         if self.triangles.is_empty() {
             return Err(MeshError::Empty.into());

@@ -47,8 +47,11 @@ pub(super) struct Bodies {
 impl Topology {
     /// Analyses `triangles`, whose corners must be three different numbers below `vertices`.
     ///
-    /// O(t + v) time on ordinary meshes, O(t log t) when many edges share one vertex; 28 bytes per triangle
-    /// and 9 bytes per vertex of scratch memory. Fails with [`Error::OutOfMemory`].
+    /// O(t + v) time on ordinary meshes, O(t log t) when many edges share one vertex; 28 bytes per triangle and 9
+    /// bytes per vertex of scratch memory.
+    ///
+    /// # Errors
+    /// [`Error::OutOfMemory`].
     pub fn of(triangles: &[[u32; 3]], vertices: usize) -> Result<Self, Error> {
         Ok(Self::with_bodies(triangles, vertices)?.0)
     }

@@ -15,8 +15,11 @@ const BATCH: usize = Places::BATCH;
 impl TriangleMesh {
     /// A mesh of separate triangles, each given by its three corners. Vertices are in order of appearance.
     ///
-    /// O(t). Fails with [`MeshError::TooMany`], [`MeshError::NotFinite`], [`MeshError::TooLarge`] (both count
-    /// the corners of all facets through) or [`Error::OutOfMemory`].
+    /// O(t).
+    ///
+    /// # Errors
+    /// [`MeshError::TooMany`], [`MeshError::NotFinite`], [`MeshError::TooLarge`] (both count the corners of all
+    /// facets through) or [`Error::OutOfMemory`].
     pub fn from_facets<I>(facets: I) -> Result<Self, Error>
     where
         I: IntoIterator<Item: Borrow<[[f64; 3]; 3]>>,

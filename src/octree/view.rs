@@ -48,8 +48,9 @@ pub(crate) struct LevelCounts {
 /// The octree has **no leaves**. Only cells that are cut *and split* have a node, a node is eight 2-bit
 /// [`Tag`]s, and one array entry, an *element*, carries two octree levels: the 64 grandchildren of a cell as
 /// two words ([`Planes`]). Byte k of the two words is exactly the node of octant k, so nothing of the octree
-/// is lost; a link is just never spent on every other level. (The leaf-free octree: Peng, Tang et al. 2000;
-/// the nearest relatives are OctoMap's `.bt` stream and sparse 64-trees.)
+/// is lost; a link is just never spent on every other level. (The leaf-free octree: 改进的八叉树数据结构, 许胤龙 (Xu
+/// Yinlong), 陈国良 (Chen Guoliang) and others, 计算机科学 27 (6), 2000; the nearest relatives are OctoMap's `.bt` stream
+/// and sparse 64-trees.)
 ///
 /// Elements lie in level order: level by level, in Morton order within a level. So the children of an
 /// element follow each other, a subtree is one contiguous range per level, and a child is found by rank:

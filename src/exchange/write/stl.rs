@@ -17,8 +17,10 @@ const TITLE: &[u8] = b"binary STL written by leafless";
 /// also where rounding makes a triangle degenerate, which readers drop; but what is smaller than the rounding is lost,
 /// up to the whole solid. [`written_form`](super::written_form) tells. Without area the normal is (0, 0, 0).
 ///
-/// O(t), 84 + 50 t bytes. Fails with [`Error::Argument`] beyond the range of `f32`, or
-/// [`Error::OutOfMemory`].
+/// O(t), 84 + 50 t bytes.
+///
+/// # Errors
+/// [`Error::Argument`] beyond the range of `f32`, or [`Error::OutOfMemory`].
 pub fn write_stl(mesh: &TriangleMesh) -> Result<Vec<u8>, Error> {
     let count = u32::try_from(mesh.triangles().len()).map_err(|_| MeshError::TooMany)?;
     let length = usize::try_from(binary_length(count)).map_err(|_| Error::OutOfMemory)?;
