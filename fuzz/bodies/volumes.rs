@@ -78,7 +78,7 @@ fn check(samples: &Samples<'static>, grid: &VoxelGrid) {
 pub fn seeds() -> Vec<Vec<u8>> {
     let grid = VoxelGrid::with_first_sample([5, 4, 3], [1.0, -2.0, 0.5], [0.5; 3]).unwrap();
     let bytes: Vec<u8> = (0..60).map(|i| (i * 37 % 251) as u8).collect();
-    let shorts: Vec<i16> = bytes.iter().map(|&b| 300 * i16::from(b) - 3000).collect();
+    let shorts: Vec<i16> = bytes.iter().map(|&b| (300 * i32::from(b) - 3000) as i16).collect();
     let singles: Vec<f32> = bytes.iter().map(|&b| f32::from(b) / 16.0).collect();
     let mut seeds = Vec::new();
     for samples in [Samples::from(bytes.clone()), shorts.into(), singles.into()] {

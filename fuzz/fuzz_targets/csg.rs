@@ -10,7 +10,7 @@ mod cubes;
 #[path = "../../tests/common/exact.rs"]
 mod exact;
 #[allow(dead_code)]
-#[path = "../../tests/csg/model.rs"]
+#[path = "../../tests/solids/csg/model.rs"]
 mod model;
 
 /// Where the test suite has it.

@@ -149,7 +149,8 @@ mod tests {
     #[test]
     fn batches_do_not_matter() {
         for count in [0, 1, BATCH - 1, BATCH, BATCH + 1, 3 * BATCH] {
-            let words: Vec<u64> = (0..count as u64).map(|word| word * 0x9E37_79B9_7F4A_7C15).collect();
+            let words: Vec<u64> =
+                (0..count as u64).map(|word| word.wrapping_mul(0x9E37_79B9_7F4A_7C15)).collect();
             let bytes: Vec<u8> = words.iter().flat_map(|word| word.to_le_bytes()).collect();
             let mut whole = Fingerprinter::new("k");
             whole.0.update(&(count as u64).to_le_bytes());

@@ -10,6 +10,7 @@ mod models;
 pub mod slabs;
 pub mod surfaces;
 pub mod values;
+pub mod volumes;
 mod way;
 
 use leafless::{

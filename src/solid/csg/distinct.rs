@@ -86,7 +86,11 @@ impl Equals {
         }
     }
 
-    /// Takes away those of the operands from `first` on that change nothing, because an equal one stands before them. O(words).
+    /// Takes away those of the operands from `first` on that change nothing, because an equal one stands before them.
+    ///
+    /// O(operands) where no two are of one length. Otherwise those are read that are as long as another one: what they are
+    /// joined to is twice as long at least, so that no word of an expression is read more often than the logarithm of its
+    /// length, however deep it is nested.
     pub(super) fn reduce(
         &self,
         join: Join,
@@ -95,32 +99,48 @@ impl Equals {
         words: &mut Vec<Word>,
     ) -> Result<(), Error> {
         let own = &operands[first..];
-        let Some(begin) = own.first().map(|operand| operand.start).filter(|_| own.len() > 1) else {
+        if own.len() < 2 {
             return Ok(());
-        };
-        let mut plain = memory::with_capacity(words.len() - begin)?;
-        plain.extend(words[begin..].iter().map(|&word| self.plain(word)));
+        }
         let range = |i: usize| -> Range<usize> {
             own[i].start..own.get(i + 1).map_or(words.len(), |next| next.start)
         };
+        let mut lengths: HashMap<usize, u32> = HashMap::new();
+        lengths.try_reserve(own.len())?;
+        for i in 0..own.len() {
+            *lengths.entry(range(i).len()).or_insert(0) += 1;
+        }
+        if lengths.len() == own.len() {
+            return Ok(());
+        }
+        let like_others = || (0..own.len()).filter(|&i| lengths[&range(i).len()] > 1);
+        let mut plain = memory::with_capacity(like_others().map(|i| range(i).len()).sum())?;
+        for i in like_others() {
+            plain.extend(words[range(i)].iter().map(|&word| self.plain(word)));
+        }
         // For each operand how often it occurs, at the place of the first one.
-        let mut counts: Vec<u32> = memory::filled(own.len(), 0)?;
+        let mut counts: Vec<u32> = memory::filled(own.len(), 1)?;
         let mut seen: HashMap<&[Word], usize> = HashMap::new();
         seen.try_reserve(own.len())?;
-        for i in 0..own.len() {
-            let text = &plain[range(i).start - begin..range(i).end - begin];
+        let mut rest = &*plain;
+        for i in like_others() {
+            let text;
+            (text, rest) = rest.split_at(range(i).len());
             match seen.entry(text) {
-                Entry::Occupied(entry) => counts[*entry.get()] += 1,
-                Entry::Vacant(entry) => counts[*entry.insert(i)] += 1,
+                Entry::Occupied(entry) => {
+                    counts[i] = 0;
+                    counts[*entry.get()] += 1;
+                }
+                Entry::Vacant(entry) => _ = entry.insert(i),
             }
         }
-        if seen.len() == own.len() {
+        if counts.iter().all(|&count| count == 1) {
             return Ok(());
         }
         let is_kept = |i: usize| if join == Join::Parity { counts[i] % 2 == 1 } else { counts[i] > 0 };
         let mut kept = memory::with_capacity(own.len())?;
         kept.extend((0..own.len()).filter(|&i| is_kept(i)).map(|i| (i, range(i))));
-        let (mut to, mut number) = (begin, first);
+        let (mut to, mut number) = (own[0].start, first);
         for (i, range) in kept {
             let length = range.len();
             words.copy_within(range, to);

@@ -1,0 +1,98 @@
+//! Files changed by somebody who knows what a file is, mostly with good checksums, through every command of the program:
+//! each run ends by itself with code 0, 1 or 2 and says in one line what is wrong. What is made of a file that `verify`
+//! calls good is good.
+
+#[path = "../../../fuzz/bodies/layout.rs"]
+#[allow(dead_code)]
+mod layout;
+#[path = "../../../fuzz/bodies/mutator.rs"]
+#[allow(dead_code)]
+mod mutator;
+
+use crate::commands::{COMMANDS, attempt, vectors};
+use crate::place::Place;
+
+/// Numbers that only look random (splitmix64), as the mutator takes them.
+struct Random(u64);
+
+impl Random {
+    fn next(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let mut x = self.0;
+        x = (x ^ x >> 30).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        x = (x ^ x >> 27).wrapping_mul(0x94D0_49BB_1331_11EB);
+        x ^ x >> 31
+    }
+
+    fn below(&mut self, end: usize) -> usize {
+        if end == 0 { 0 } else { (self.next() % end as u64) as usize }
+    }
+
+    fn one_in(&mut self, n: usize) -> bool {
+        self.below(n) == 0
+    }
+}
+
+/// No input of these tests has two parts.
+fn halves(_: &[u8]) -> Option<(&[u8], &[u8])> {
+    None
+}
+
+fn joined(first: &[u8], _: &[u8]) -> Vec<u8> {
+    first.to_vec()
+}
+
+/// A change that knows nothing: one byte.
+fn blind(random: &mut Random, data: &mut [u8], size: usize) -> usize {
+    if size > 0 {
+        data[random.below(size)] = random.next() as u8;
+    }
+    size
+}
+
+/// Runs some commands on changed files of each vector.
+fn change(files: usize, seed: u64) -> [usize; 3] {
+    let vectors: Vec<Vec<u8>> = vectors().iter().map(|path| std::fs::read(path).unwrap()).collect();
+    let place = Place::new();
+    let mut random = Random(seed);
+    let [mut made, mut good, mut results] = [0; 3];
+    while made < files {
+        let original = &vectors[random.below(vectors.len())];
+        let repairs = mutator::repairs(&mut random);
+        let mut draw = Random(random.next());
+        let mut any = |data: &mut [u8], size: usize, _: usize| blind(&mut draw, data, size);
+        let Some(bytes) = mutator::changed(original, &mut random, &mut any, &repairs) else { continue };
+        made += 1;
+        place.write("changed.lfl", &bytes);
+        let path = place.path("changed.lfl");
+        let is_good = place.run("verify changed.lfl").code == Some(0);
+        good += usize::from(is_good);
+        let command = COMMANDS[random.below(COMMANDS.len())];
+        let _ = std::fs::remove_file(place.path("out.lfl"));
+        attempt(&place, "160M", &path, [command].into_iter());
+        if is_good && place.path("out.lfl").exists() {
+            place.run("verify out.lfl").good();
+            results += 1;
+        }
+        let left = place.files();
+        assert!(
+            left.iter().all(|name| name == "changed.lfl" || name.starts_with("out.")),
+            "{command}: {left:?}"
+        );
+    }
+    [made, good, results]
+}
+
+#[test]
+fn changed_files_end_every_command_by_themselves() {
+    let found = change(300, 1);
+    println!("{found:?}");
+    let [made, good, results] = found;
+    assert!(good > made / 10 && results > 10, "{found:?}");
+}
+
+#[test]
+#[ignore = "minutes"]
+fn thousands_of_changed_files_end_every_command_by_themselves() {
+    println!("{:?}", change(6000, 2));
+}

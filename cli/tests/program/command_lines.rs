@@ -1,0 +1,365 @@
+//! Command lines that nobody thought of: options of each subcommand in any number and order, with values that fit, that
+//! nearly fit, and that do not, on good files, damaged ones and none. Each run ends by itself with code 0, 1 or 2, says in
+//! one line what is wrong, and leaves no temporary file.
+
+use crate::place::{Place, Run, block, stl};
+use std::collections::BTreeMap;
+use std::io::Write;
+use std::process::{Command, Stdio};
+use std::time::{Duration, Instant};
+
+/// Runs of the default suite, and of the long one.
+const FEW: u64 = 400;
+const MANY: u64 = 7000;
+/// What ends a command that hangs.
+const PATIENCE: Duration = Duration::from_secs(100);
+
+/// Numbers that are as random as the tests need, from a seed.
+struct Random(u64);
+
+impl Random {
+    fn below(&mut self, n: usize) -> usize {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        ((self.0 >> 33) as usize) % n
+    }
+
+    fn one<'a, T: ?Sized>(&mut self, of: &[&'a T]) -> &'a T {
+        of[self.below(of.len())]
+    }
+}
+
+/// An option of a subcommand, and the values that its help names.
+#[derive(Debug)]
+struct Choice {
+    name: String,
+    takes_value: bool,
+    values: Vec<String>,
+}
+
+/// All subcommands with their options, as the program's help tells them.
+fn subcommands(place: &Place) -> BTreeMap<String, Vec<Choice>> {
+    let help = place.run("--help").good();
+    let list = help.text().split("Commands:\n").nth(1).unwrap().split("\n\n").next().unwrap().to_owned();
+    let names =
+        list.lines().filter_map(|line| line.strip_prefix("  ")?.split_whitespace().next().map(str::to_owned));
+    names
+        .filter(|name| name != "help" && name != "demo")
+        .map(|name| (name.clone(), choices(place, &name)))
+        .collect()
+}
+
+fn choices(place: &Place, name: &str) -> Vec<Choice> {
+    let help = place.run(&format!("{name} --help")).good();
+    let mut found: Vec<Choice> = vec![];
+    for line in help.text().lines() {
+        let line = line.trim_start();
+        if let Some(option) =
+            line.split(' ').find(|word| word.starts_with("--")).filter(|_| line.starts_with('-'))
+        {
+            let value = line.split_once(option).is_some_and(|(_, rest)| rest.trim_start().starts_with('<'));
+            found.push(Choice {
+                name: option.trim_end_matches(',').into(),
+                takes_value: value,
+                values: vec![],
+            });
+        }
+        let Some(last) = found.last_mut() else { continue };
+        if let Some((value, _)) = line.strip_prefix("- ").and_then(|rest| rest.split_once(':')) {
+            last.values.push(value.into());
+        }
+        if let Some(list) = line.split_once("[possible values: ").and_then(|(_, rest)| rest.strip_suffix(']'))
+        {
+            last.values.extend(list.split(", ").map(str::to_owned));
+        }
+    }
+    found.retain(|choice| !["--help", "--version", "--max-memory", "--show"].contains(&&*choice.name));
+    found
+}
+
+/// Small files of every kind, good and damaged ones.
+fn files(place: &Place) -> Vec<String> {
+    let mut names: Vec<String> = vec![];
+    place.write("cube.stl", stl(&block([1.0; 3], [3.0; 3])));
+    place.write("ball.csg", "sphere(1, $fn = 0);");
+    place.write("part.csg", "difference() { cube([2, 2, 2]); multmatrix([[1,0,0,1],[0,1,0,1],[0,0,1,0],[0,0,0,1]]) { cylinder(h = 2, r1 = 0.5, r2 = 0.5); } }");
+    place.write("open.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\n");
+    place.write("square.off", "OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n");
+    place.write(
+        "grid.nrrd",
+        b"NRRD0004\ntype: uint8\ndimension: 3\nsizes: 2 2 2\nencoding: raw\n\n\0\xFF\0\xFF\xFF\0\0\xFF",
+    );
+    place.write("samples.raw", [0u8; 64]);
+    for line in [
+        "voxelize cube.stl -o cube.lfl --depth 4",
+        "csg ball.csg -o ball.lfl --depth 4",
+        "csg ball.csg -o sampled.lfl --depth 5 --rule sampled",
+        "attribute ball.lfl -o values.lfl --name heat --expr x",
+        "dexelize ball.csg -o ball.dex.lfl --resolution 16 --normals 32",
+        "mesh ball.lfl -o ball.ply --resolve outer",
+        "mesh ball.lfl -o ball.3mf --resolve outer",
+        "voxels ball.lfl -o ball.npz",
+    ] {
+        let run = place.run(line);
+        assert_eq!(run.code, Some(0), "{run:?}");
+    }
+    for name in place.files() {
+        let bytes = place.bytes(&name);
+        names.push(name.clone());
+        // Cut in the middle, and with a byte changed.
+        let extension = name.rsplit_once('.').unwrap().1;
+        let stem = name.replace('.', "-");
+        place.write(&format!("{stem}-cut.{extension}"), &bytes[..bytes.len() / 2]);
+        let mut changed = bytes.clone();
+        let at = changed.len() / 3;
+        changed[at] ^= 0x55;
+        place.write(&format!("{stem}-changed.{extension}"), &changed);
+        names.extend([format!("{stem}-cut.{extension}"), format!("{stem}-changed.{extension}")]);
+    }
+    place.write("empty", "");
+    names.extend(["empty", "nothing.lfl", ".", "-", "/dev/null"].map(str::to_owned));
+    names
+}
+
+/// Values for options of any kind.
+const VALUES: [&str; 46] = [
+    "0",
+    "1",
+    "2",
+    "3",
+    "5",
+    "8",
+    "20",
+    "21",
+    "-1",
+    "255",
+    "4294967296",
+    "18446744073709551616",
+    "0.5",
+    "1e-9",
+    "1e300",
+    "-0",
+    "nan",
+    "inf",
+    "-inf",
+    "",
+    " ",
+    "x",
+    "x+y*z",
+    "1/0",
+    "sqrt(-x)",
+    "0,0,0,1",
+    "0,0,0,8",
+    "-1,-1,-1,2",
+    "0,0,0,0",
+    "0,0,0,nan",
+    "1e9,0,0,1e-9",
+    "0,0,0,1,1,1",
+    "1,1,1,0,0,0",
+    "1,0,0,0,0,1,0,0,0,0,1,0",
+    "0,0,1",
+    "0,0,1,0.5",
+    "2,2,2",
+    "100000,100000,100000",
+    "64x64",
+    "0x0",
+    "1x1",
+    "100000x100000",
+    "#ff8800",
+    "mm",
+    "heat",
+    "name=left",
+];
+
+/// Values that some options take.
+const FITTING: [(&str, &str); 24] = [
+    ("--bounds", "-2,-2,-2,4"),
+    ("--threads", "1"),
+    ("--threshold", "0.5"),
+    ("--unit", "mm"),
+    ("--scale", "2"),
+    ("--tolerance", "0.01"),
+    ("--splits", "1000"),
+    ("--level", "2"),
+    ("--resolution", "16"),
+    ("--size", "40x30"),
+    ("--boundary-depth", "2"),
+    ("--coarse", "0.5"),
+    ("--fine", "0.25"),
+    ("--channel", "heat"),
+    ("--name", "heat"),
+    ("--expr", "x + 2*y"),
+    ("--ball", "0,0,0,1"),
+    ("--box", "0,0,0,1,1,1"),
+    ("--axis", "z"),
+    ("--samples", "4,4,4"),
+    ("--spacing", "0.5"),
+    ("--clip", "1,0,0,0.2"),
+    ("--place-b", "1,0,0,0.5,0,1,0,0,0,0,1,0"),
+    ("--carry", "heat=max"),
+];
+
+/// What a subcommand cannot do without.
+const NEEDED: [(&str, &str); 6] = [
+    ("heights", "--axis z"),
+    ("within", "--ball 0.2,0,0,0.9"),
+    ("attribute", "--name warm --expr 2*x"),
+    ("sample", "--name heat"),
+    ("summary", "--name heat"),
+    ("dexelize", "--resolution 16"),
+];
+
+/// One line, without the program's name.
+fn line(random: &mut Random, name: &str, choices: &[Choice], files: &[String]) -> Vec<String> {
+    let file = |random: &mut Random| files[random.below(files.len())].clone();
+    let mut words = vec![name.to_owned()];
+    let operands =
+        if ["union", "intersection", "difference", "xor", "interfere"].contains(&name) { 2 } else { 1 };
+    for _ in 0..operands + random.below(12) / 11 {
+        words.push(file(random));
+    }
+    for (_, needed) in NEEDED.iter().filter(|(of, _)| *of == name && random.below(8) > 0) {
+        words.extend(needed.split(' ').map(str::to_owned));
+    }
+    if choices.iter().any(|choice| choice.name == "--output") && random.below(8) > 0 {
+        let extension = match name {
+            "render" => "out.png",
+            "mesh" => "out.stl",
+            "bitmap" => "out.nrrd",
+            "voxels" => "out.npz",
+            _ => "out.lfl",
+        };
+        let names = [
+            extension,
+            extension,
+            extension,
+            extension,
+            extension,
+            extension,
+            extension,
+            extension,
+            "out.lfl",
+            "out.ply",
+            "out.stl",
+            "out.obj",
+            "out.off",
+            "out.3mf",
+            "out.png",
+            "out.npz",
+            "out.csv",
+            "out.nrrd",
+            "out.raw",
+            "out",
+            "-",
+            "no/folder.lfl",
+            "/dev/full",
+        ];
+        words.extend(["-o".to_owned(), random.one::<str>(&names).to_owned()]);
+    }
+    if choices.iter().any(|choice| choice.name == "--depth") && random.below(3) > 0 {
+        words.extend(["--depth".to_owned(), (1 + random.below(5)).to_string()]);
+    }
+    // Most lines have few options.
+    for _ in 0..random.below(4) * random.below(2) {
+        let Some(choice) = choices.get(random.below(choices.len().max(1))) else { break };
+        if choice.name == "--output" || choice.name == "--depth" {
+            continue;
+        }
+        words.push(choice.name.clone());
+        if choice.takes_value && random.below(20) > 0 {
+            let fitting = FITTING.iter().find(|(of, _)| *of == choice.name);
+            words.push(match (random.below(8), fitting) {
+                (0, _) => file(random),
+                (1..=6, _) if !choice.values.is_empty() => {
+                    choice.values[random.below(choice.values.len())].clone()
+                }
+                (1..=6, Some((_, value))) => (*value).to_owned(),
+                _ => random.one::<str>(&VALUES).to_owned(),
+            });
+        }
+    }
+    // Sometimes in another order.
+    if random.below(16) == 0 && words.len() > 2 {
+        let (a, b) = (1 + random.below(words.len() - 1), 1 + random.below(words.len() - 1));
+        words.swap(a, b);
+    }
+    words
+}
+
+fn run(place: &Place, words: &[String], input: &str) -> Run {
+    let told = words.join(" ");
+    let mut command: Command = place.command(words);
+    command.args(["--max-memory", "512M"]);
+    command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
+    let start = Instant::now();
+    let mut child = command.spawn().unwrap();
+    let id = child.id();
+    // (The program may not care for its input.)
+    let _ = child.stdin.take().unwrap().write_all(input.as_bytes());
+    let (sender, receiver) = std::sync::mpsc::channel();
+    let waiting = std::thread::spawn(move || {
+        let output = child.wait_with_output();
+        let _ = sender.send(());
+        output
+    });
+    if receiver.recv_timeout(PATIENCE).is_err() {
+        let _ = Command::new("kill").args(["-9", &id.to_string()]).status();
+        panic!("{told}: no end after {:?}", start.elapsed());
+    }
+    if start.elapsed() > Duration::from_secs(10) {
+        eprintln!("SLOW {told}: {:?}", start.elapsed());
+    }
+    Run::new(&told, waiting.join().unwrap().unwrap())
+}
+
+fn attack(seed: u64, runs: u64) {
+    let place = Place::new();
+    let (subcommands, files) = (subcommands(&place), files(&place));
+    assert!(subcommands.len() > 20 && files.len() > 40);
+    let names: Vec<&String> = subcommands.keys().collect();
+    let mut random = Random(seed);
+    let mut codes = [0; 3];
+    for _ in 0..runs {
+        let name = names[random.below(names.len())];
+        let words = line(&mut random, name, &subcommands[name], &files);
+        let input = random.one::<str>(&[
+            "",
+            "0 0 0\n",
+            "1 2 3 0 0 1\n",
+            "1 0 0 0\n",
+            "nan nan nan\n",
+            "x\n\n0 0 0\n",
+            "0,0,0",
+        ]);
+        let done = run(&place, &words, input);
+        let code = done.code.unwrap_or(-1);
+        assert!((0..=2).contains(&code), "{done:?}");
+        codes[code as usize] += 1;
+        let mut lines = done.errors.lines().filter(|line| !line.contains("warning"));
+        assert!(!done.errors.contains("panicked") && !done.errors.contains("os error"), "{done:?}");
+        if code != 0 {
+            // The last line says why.
+            assert!(
+                lines.next_back().is_some_and(|line| line.starts_with("leafless: ") && line.len() > 20),
+                "{done:?}"
+            );
+        }
+        let left = place.files().into_iter().find(|name| name.starts_with('.') || name.ends_with(".tmp"));
+        assert!(left.is_none(), "{left:?} after {done:?}");
+    }
+    println!("{codes:?} ended with the codes 0, 1 and 2");
+    // The lines are not so wild that none does anything.
+    assert!(codes.iter().all(|&count| count > runs / 50), "{codes:?}");
+}
+
+#[test]
+fn wild_command_lines_end_with_a_sentence() {
+    attack(1, FEW);
+}
+
+/// Minutes: `--test command_lines -- --ignored`. `LEAFLESS_SEED` chooses other lines.
+#[test]
+#[ignore = "minutes"]
+fn thousands_of_command_lines() {
+    let seed = std::env::var("LEAFLESS_SEED").ok().and_then(|seed| seed.parse().ok()).unwrap_or(2);
+    attack(seed, MANY);
+}

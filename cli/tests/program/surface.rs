@@ -1,0 +1,350 @@
+//! The subcommand `leafless mesh`, from outside.
+
+use crate::place;
+use crate::place::{Place, solids};
+use leafless::TriangleMesh;
+use leafless::exchange::{LengthUnit, MeshFormat, MeshOptions, open_mesh};
+use serde_json::Value;
+
+fn ball() -> Place {
+    let place = solids();
+    place.write("ball.csg", "sphere(r = 2, $fn = 0);");
+    place
+}
+
+fn mesh(place: &Place, name: &str) -> TriangleMesh {
+    open_mesh(place.path(name), &MeshOptions::default()).unwrap().mesh
+}
+
+fn json(place: &Place, line: &str) -> Value {
+    serde_json::from_slice(&place.run(line).good().bytes).unwrap()
+}
+
+const BOUNDS: &str = "--bounds -3,-3,-3,6";
+
+#[test]
+fn every_format_has_the_same_mesh() {
+    let place = ball();
+    let counts =
+        |report: &Value| [report["vertices"].as_u64().unwrap(), report["triangles"].as_u64().unwrap()];
+    let mut seen = None;
+    for extension in ["ply", "stl", "obj", "off", "3mf"] {
+        for text in ["", "--text"] {
+            let report =
+                json(&place, &format!("mesh ball.csg -o ball.{extension} --depth 4 {BOUNDS} {text} --json"));
+            assert_eq!(report["format"], extension);
+            assert_eq!((&report["closed"], &report["manifold"]), (&Value::Bool(true), &Value::Bool(true)));
+            assert_eq!((&report["euler"], &report["components"]), (&Value::from(2), &Value::from(1)));
+            let back = mesh(&place, &format!("ball.{extension}"));
+            assert!(back.report().unwrap().is_closed());
+            assert_eq!([back.vertices().len() as u64, back.triangles().len() as u64], counts(&report));
+            assert_eq!(*seen.get_or_insert(counts(&report)), counts(&report));
+        }
+    }
+    let piped = place.run(&format!("mesh ball.csg -o - --depth 4 {BOUNDS}"));
+    assert!(piped.code == Some(0) && piped.errors.contains("2-manifold"));
+    place.write("piped.ply", &piped.bytes);
+    place.run(&format!("mesh ball.csg -o named --write ply --depth 4 {BOUNDS}")).good();
+    assert_eq!(place.bytes("piped.ply"), place.bytes("named"));
+    assert_eq!(mesh(&place, "piped.ply").triangles(), mesh(&place, "ball.off").triangles());
+}
+
+/// Vertices lie on the ball, and area and volume come near its own from below.
+#[test]
+fn vertices_lie_on_the_surface() {
+    let place = ball();
+    let mut gaps = vec![];
+    for depth in [4, 5, 6] {
+        let report = json(&place, &format!("mesh ball.csg -o ball.ply --depth {depth} {BOUNDS} --json"));
+        for vertex in mesh(&place, "ball.ply").vertices() {
+            let radius = vertex.iter().map(|x| x * x).sum::<f64>().sqrt();
+            assert!((radius - 2.0).abs() < 1e-9, "{radius}");
+        }
+        let of = |name: &str, true_one: f64| 1.0 - report[name].as_f64().unwrap() / true_one;
+        gaps.push([of("volume", 32.0 / 3.0 * std::f64::consts::PI), of("area", 16.0 * std::f64::consts::PI)]);
+    }
+    for pair in gaps.windows(2) {
+        for k in 0..2 {
+            assert!(pair[1][k] > 0.0 && pair[1][k] < 0.3 * pair[0][k], "{gaps:?}");
+        }
+    }
+}
+
+#[test]
+fn undecided_cells_are_resolved_as_one_asks() {
+    let place = ball();
+    place.run(&format!("csg ball.csg -o ball.lfl --depth 6 {BOUNDS}")).good();
+    place.run("mesh ball.lfl -o ball.ply").bad(1, &["ball.lfl", "undecided", "--resolve"]);
+    place.run("mesh ball.lfl -o ball.ply --resolve source").bad(1, &["ball.lfl", "source", "inner"]);
+    place.run("mesh ball.lfl -o ball.ply --depth 3").bad(1, &["ball.lfl", "undecided", "--resolve"]);
+    place.run("mesh ball.lfl -o ball.ply --depth 7").bad(2, &["--depth"]);
+    place.run("mesh ball.lfl -o ball.ply --bounds 0,0,0,1").bad(2, &["--bounds"]);
+    assert!(!place.files().contains(&"ball.ply".to_owned()));
+    let volume = |line: &str| json(&place, line)["volume"].as_f64().unwrap();
+    let whole = 32.0 / 3.0 * std::f64::consts::PI;
+    for method in ["mc", "smc"] {
+        let of = |file: &str, resolve: &str| {
+            volume(&format!("mesh {file} -o ball.ply --method {method} {resolve} --json"))
+        };
+        let scene = format!("ball.csg --depth 6 {BOUNDS}");
+        let [inner, outer] = ["--resolve inner", "--resolve outer"].map(|how| {
+            let found = of("ball.lfl", how);
+            assert_eq!(found, of(&scene, how));
+            found
+        });
+        assert!(0.8 * whole < inner && inner < whole && whole < outer && outer < 1.2 * whole);
+        let source = of(&scene, "--resolve source");
+        assert!(inner < source && source < outer);
+    }
+    let [fat, thin] = ["fat", "thin"].map(|snap| {
+        volume(&format!("mesh ball.lfl -o b.off --method smc --snap {snap} --resolve inner --json"))
+    });
+    assert!(thin < fat);
+}
+
+/// The slab is [2, 6] × [2, 6] × [0, 2], and its faces lie between cells.
+#[test]
+fn what_is_decided_needs_no_choice() {
+    let place = solids();
+    let report = json(&place, "mesh slab.lfl -o slab.obj --json");
+    assert_eq!(report["closed"], true);
+    // Corners and edges are cut off by half a cell.
+    let volume = report["volume"].as_f64().unwrap();
+    assert!(31.5 < volume && volume < 32.0, "{volume}");
+    let text = place.run("mesh slab.lfl -o slab.obj").good();
+    assert!(text.text().contains("2-manifold") && text.text().contains("Euler characteristic 2"));
+}
+
+#[test]
+fn a_package_keeps_the_unit() {
+    let place = ball();
+    let options = MeshOptions::default();
+    place.run(&format!("mesh ball.csg -o ball.stl --depth 4 {BOUNDS}")).good();
+    place.run("mesh ball.stl --unit in -o ball.3mf --depth 4").good();
+    let file = open_mesh(place.path("ball.3mf"), &options).unwrap();
+    assert_eq!((file.format, file.unit), (MeshFormat::ThreeMf, Some(LengthUnit::Inch)));
+    place.run("voxelize ball.3mf -o ball.lfl --depth 5 --rule sampled").good();
+    place.run("mesh ball.lfl -o again.3mf").good();
+    assert_eq!(open_mesh(place.path("again.3mf"), &options).unwrap().unit, Some(LengthUnit::Inch));
+}
+
+#[test]
+fn what_is_refused() {
+    let place = solids();
+    place.run("mesh slab.lfl -o slab").bad(2, &["slab", ".ply", "--write"]);
+    place.run("mesh slab.lfl -o none/slab.ply").bad(1, &["none"]);
+    place.run("mesh none.lfl -o slab.ply").bad(1, &["none.lfl"]);
+    place.run("mesh slab.lfl").bad(2, &["--output"]);
+}
+
+/// Shrink leaves few triangles, without cracks; its published form has cracks.
+#[test]
+fn plane_parts_are_shrunk() {
+    let place = solids();
+    place.write(
+        "part.csg",
+        "difference() { cube(size = [6, 5, 4]); \
+         multmatrix([[1, 0, 0, 2], [0, 1, 0, 2], [0, 0, 1, -1], [0, 0, 0, 1]]) cube(size = [2, 1, 6]); }",
+    );
+    let of = |method: &str| {
+        let report = json(
+            &place,
+            &format!(
+                "mesh part.csg -o {method}.ply --method {method} --depth 5 --bounds -1,-1,-1,8 --intersections --json"
+            ),
+        );
+        assert_eq!(report["method"], method);
+        report
+    };
+    let (all, few, published) = (of("smc"), of("shrink"), of("shrink-published"));
+    let count = |report: &Value| report["triangles"].as_u64().unwrap();
+    assert!(20 * count(&few) < count(&all) && 2 * count(&published) < count(&all));
+    for report in [&all, &few] {
+        assert_eq!((&report["closed"], &report["manifold"]), (&Value::Bool(true), &Value::Bool(true)));
+        assert_eq!((&report["euler"], &report["intersecting"]), (&Value::from(0), &Value::from(0)));
+    }
+    assert_eq!(published["closed"], false);
+    for name in ["volume", "area"] {
+        let [all, few] = [&all, &few].map(|report| report[name].as_f64().unwrap());
+        assert!((all - few).abs() < 1e-9 * all);
+    }
+    let thin = json(
+        &place,
+        "mesh part.csg -o thin.ply --method shrink --snap thin --depth 5 --bounds -1,-1,-1,8 --json",
+    );
+    assert!(thin.get("intersecting").is_none());
+    assert!(thin["volume"].as_f64().unwrap() < few["volume"].as_f64().unwrap());
+    let report = place.run("mesh part.csg -o part.ply --depth 4 --intersections").good();
+    assert!(report.text().contains("0 pairs of triangles"), "{}", report.text());
+}
+
+#[test]
+fn normals_are_written_if_asked_for() {
+    let place = ball();
+    let line = format!("mesh ball.csg --depth 4 {BOUNDS}");
+    place.run(&format!("{line} --text --normals -o ball.ply")).good();
+    place.run(&format!("{line} -o plain.ply --text")).good();
+    let text = String::from_utf8(place.bytes("ball.ply")).unwrap();
+    assert!(text.contains("property float nz"));
+    let body = text.split_once("end_header\n").unwrap().1;
+    for (line, vertex) in body.lines().zip(mesh(&place, "plain.ply").vertices()) {
+        let numbers: Vec<f64> = line.split(' ').map(|x| x.parse().unwrap()).collect();
+        // On a ball around the origin the normal is the vertex's direction, nearly.
+        for axis in 0..3 {
+            assert_eq!(numbers[axis], vertex[axis]);
+            assert!((numbers[3 + axis] - vertex[axis] / 2.0).abs() < 0.05, "{line}");
+        }
+    }
+    assert_eq!(mesh(&place, "ball.ply").triangles(), mesh(&place, "plain.ply").triangles());
+}
+
+/// The report is the one of the mesh that is read back.
+#[track_caller]
+fn same_as_read(place: &Place, report: &Value) {
+    let name = report["output"].as_str().unwrap();
+    let back = mesh(place, name);
+    let found = back.report().unwrap();
+    for (key, value) in [
+        ("vertices", found.vertices),
+        ("triangles", found.triangles),
+        ("components", found.bodies),
+        ("degenerate", found.degenerate),
+        ("flat", found.flat),
+        ("open_edges", found.boundary_edges),
+        ("non_manifold_edges", found.non_manifold_edges),
+    ] {
+        assert_eq!(report[key], value, "{key}");
+    }
+    assert_eq!(report["euler"], found.euler_characteristic);
+    assert_eq!(report["closed"], found.is_closed() && found.triangles > 0);
+    assert_eq!(report["manifold"], found.is_manifold() && found.triangles > 0);
+    assert_eq!((&report["area"], &report["volume"]), (&back.area().into(), &back.volume().into()));
+}
+
+fn moved(by: f64, what: &str) -> String {
+    format!("multmatrix([[1,0,0,{by}],[0,1,0,{by}],[0,0,1,{by}],[0,0,0,1]]) {what}")
+}
+
+/// What single precision breaks is not written as STL, unless one asks for it.
+#[test]
+fn losses_are_said() {
+    let place = Place::new();
+    place.write("cube.csg", moved(1e9, "cube(size = [3, 3, 3]);"));
+    place.write("ball.csg", moved(1e5, "sphere(r = 1.855, $fn = 0);"));
+    for (name, depth, why) in [("cube", 5, "nothing is left"), ("ball", 6, "more than two triangles meet")] {
+        for text in ["", "--text"] {
+            let line = format!("mesh {name}.csg -o {name}.stl --depth {depth} {text}");
+            let words = ["32-bit", "STL", why, "PLY, OBJ, OFF and 3MF keep doubles", "--lossy"];
+            place.run(&line).bad(1, &words);
+            assert!(!place.files().contains(&format!("{name}.stl")));
+            let run = place.run(&format!("{line} --lossy --json"));
+            assert_eq!((run.code, run.errors.lines().count()), (Some(0), 1), "{run:?}");
+            assert!(run.errors.contains("warning") && run.errors.contains(why), "{run:?}");
+            let report = run.json();
+            same_as_read(&place, &report);
+            assert_eq!(report["broken"], true);
+            assert!(report["degenerate"].as_u64().unwrap() > 0 && report["merged"].as_u64().unwrap() > 0);
+            std::fs::remove_file(place.path(&format!("{name}.stl"))).unwrap();
+        }
+        for extension in ["ply", "obj", "off", "3mf"] {
+            let line = format!("mesh {name}.csg -o {name}.{extension} --depth {depth} --json");
+            let report = json(&place, &line);
+            same_as_read(&place, &report);
+            assert_eq!((&report["closed"], &report["manifold"]), (&Value::Bool(true), &Value::Bool(true)));
+            assert_eq!((&report["rounding"], &report["broken"]), (&Value::from(0.0), &Value::Bool(false)));
+        }
+    }
+    let text = place.run("mesh ball.csg -o ball.stl --depth 6 --lossy");
+    let lines: Vec<&str> = text.text().lines().collect();
+    assert!(lines[0].contains("closed; at 16 edges"), "{text:?}");
+    assert!(lines[3].starts_with("rounded to 32 bits, by up to 0.00388"), "{text:?}");
+    assert!(lines[3].contains("1,728 degenerate triangles lost; 42 triangles without area"), "{text:?}");
+    let text = place.run("mesh cube.csg -o cube.stl --depth 5 --lossy");
+    assert!(text.text().contains("empty: rounding leaves no triangle"), "{text:?}");
+    // Nothing is written on standard output, and nothing takes the place of an older file.
+    place.write("old.stl", "old");
+    for line in ["mesh cube.csg -o - --write stl --depth 5", "mesh cube.csg -o old.stl --depth 5"] {
+        place.run(line).bad(1, &["32-bit"]);
+    }
+    assert_eq!(place.bytes("old.stl"), b"old");
+    // Other subcommands that write meshes.
+    place.run("convert cube.csg -o cube.stl --resolution 32").bad(1, &["cube.stl", "nothing is left"]);
+    assert_eq!(place.run("convert cube.csg -o cube.stl --resolution 32 --lossy").code, Some(0));
+    place.run("dexelize cube.csg -o cube.lfl --resolution 32 --normals 32").good();
+    place.write("cube.raw", [255; 27]);
+    let volume = "mesh cube.raw --samples 3,3,3 --corner 1e9,1e9,1e9";
+    for line in ["mesh cube.lfl", "mesh cube.lfl --method dual", volume] {
+        place.run(&format!("{line} -o new.stl")).bad(1, &["new.stl", "32-bit"]);
+        same_as_read(&place, &json(&place, &format!("{line} -o new.ply --json")));
+    }
+    assert!(!place.files().contains(&"new.stl".to_owned()));
+}
+
+/// A cube in one axis far away is flat, whose front and back stay.
+#[test]
+fn flat_figures_are_refused() {
+    let place = Place::new();
+    place
+        .write("cube.csg", "multmatrix([[1,0,0,1e9],[0,1,0,0],[0,0,1,0],[0,0,0,1]]) cube(size = [3, 3, 3]);");
+    place.run("mesh cube.csg -o cube.stl --depth 5").bad(1, &["flat", "encloses no volume"]);
+    let report = place.run("mesh cube.csg -o cube.stl --depth 5 --lossy --json").json();
+    same_as_read(&place, &report);
+    assert_eq!((&report["volume"], &report["broken"]), (&Value::from(0.0), &Value::Bool(true)));
+}
+
+/// Degenerate triangles alone are counted and warned of.
+#[test]
+fn degenerate_triangles_are_warned_of() {
+    let place = Place::new();
+    place.write("ball.csg", moved(300.0, "sphere(r = 2, $fn = 0);"));
+    let run = place.run("mesh ball.csg -o ball.stl --depth 7 --json");
+    assert_eq!(run.code, Some(0), "{run:?}");
+    assert!(run.errors.contains("warning") && run.errors.contains("ball.stl"), "{run:?}");
+    let report = run.json();
+    same_as_read(&place, &report);
+    assert_eq!((&report["manifold"], &report["broken"]), (&Value::Bool(true), &Value::Bool(false)));
+    let lost = report["degenerate"].as_u64().unwrap();
+    assert!(lost > 0 && run.errors.contains(&format!(" {lost} of ")), "{run:?}");
+}
+
+#[test]
+fn an_empty_mesh_is_called_empty() {
+    let place = Place::new();
+    place.write("none.csg", "difference() { cube(size = [1, 1, 1]); cube(size = [2, 2, 2]); }");
+    for extension in ["ply", "stl", "off", "3mf"] {
+        let line = format!("mesh none.csg -o none.{extension} --bounds 0,0,0,4 --depth 4");
+        let text = place.run(&line).good();
+        assert!(text.text().contains("empty: there are no triangles"), "{text:?}");
+        assert!(text.text().contains("area 0, volume 0;"), "{text:?}");
+        assert!(!text.text().contains("closed") && !text.text().contains("manifold"), "{text:?}");
+        let report = json(&place, &format!("{line} --json"));
+        assert_eq!((&report["empty"], &report["closed"]), (&Value::Bool(true), &Value::Bool(false)));
+        assert_eq!(report["manifold"], false);
+        assert!(!place.run(&format!("{line} --json")).text().contains("-0"));
+        let info = json(&place, &format!("info none.{extension} --json"));
+        assert_eq!(info["closed"], report["closed"]);
+    }
+}
+
+#[test]
+fn normals_are_refused_where_a_format_has_none() {
+    let place = solids();
+    for extension in ["stl", "off", "3mf"] {
+        place
+            .run(&format!("mesh slab.lfl -o slab.{extension} --normals"))
+            .bad(2, &["--normals", "PLY and OBJ"]);
+    }
+}
+
+#[test]
+fn solids_from_files_are_meshed_at_coarser_levels() {
+    let place = place::solids();
+    place.run("voxelize cube.stl -o coarse.lfl --depth 2 --bounds 0,0,0,8").good();
+    for resolve in ["inner", "outer"] {
+        place.run(&format!("mesh cube.lfl -o fine.ply --depth 2 --resolve {resolve}"));
+        place.run(&format!("mesh coarse.lfl -o coarse.ply --resolve {resolve}"));
+        assert_eq!(place.bytes("fine.ply"), place.bytes("coarse.ply"), "{resolve}");
+    }
+    place.run("mesh cube.lfl -o no.ply --depth 2").bad(1, &["undecided", "--resolve"]);
+    place.run("mesh cube.lfl -o no.ply --depth 6").bad(2, &["--depth 6", "cube.lfl", "5"]);
+}

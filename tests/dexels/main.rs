@@ -1,0 +1,12 @@
+//! Tri-dexel models.
+
+#[path = "../common/mod.rs"]
+mod common;
+#[path = "../../fuzz/bodies/dexel_algebra.rs"]
+mod dexel_algebra;
+
+mod ends;
+mod faces;
+mod models;
+mod real_meshes;
+mod surface;

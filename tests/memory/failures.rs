@@ -1,0 +1,918 @@
+//! What happens when an allocation or a write fails, each of them in turn: an error, no abort, the old file
+//! as it was, and no other file left.
+//!
+//! The allocator of this test program refuses the n-th request of a thread. Where that ends the process,
+//! because the request was one of those small ones that cannot be refused (see `Error::OutOfMemory`), it is
+//! a child process, and how much was asked for is read from its last words.
+
+#![cfg(all(feature = "mmap", unix))]
+
+use crate::allocator::{most_held, refusing};
+use crate::bodies::{Aligned, Random};
+use crate::{bodies, zip};
+use leafless::{
+    Affine, AnySolid, Band, Bounds, Callback, Camera, Clip, ColourMap, Columns, Control, Csg, DexelEditor,
+    DexelEnds, DexelFormat, DexelNormals, DexelOptions, DistanceTo, Error, FillRule, Finish, Frame,
+    HalfSpace, LazyOctree, Membership, MeshEdges, MeshLayer, MeshSolid, Metadata, Obstacle, Octree,
+    OctreeLayer, PointTable, Polyhedron, PolyhedronArrays, Ray, Resolve, Rule, Shot, Side, SliceLayer,
+    SlicePlane, Snap, SolidLayer, Tag, Transfer, Transform, TriDexel, TriangleMesh, Verdict, VertexPlacement,
+    Volume, VolumeLayer, VoxelGrid, VoxelOptions, VoxelRecords, Zone, bounding_box, build, cast_rays,
+    cells_in, classify_box, classify_in, clearance, columns, compact, complement, contains, dexel_voxels,
+    dexelize, difference, distances, dual_contouring_of_dexels, exchange, file, heights, interference_of,
+    intersection, marching_cubes, marching_cubes_of, marching_cubes_of_dexels, marching_cubes_of_volume,
+    measure, octree_of_dexels, ray_spans, render, resolve, scene, smc, smc_of, surface_area, union, union_of,
+    xor,
+};
+use std::io::{self, Write};
+use std::path::Path;
+use std::process::Command;
+use std::sync::Arc;
+
+// ---- what is tried --------------------------------------------------------------------------------------
+
+const CONTROL: Control<'static> =
+    Control { threads: 1, max_nodes: None, max_bytes: None, max_splits: None, cancel: None, progress: None };
+
+fn frame() -> Frame {
+    Frame::new([0.0; 3], 32.0, 6).unwrap()
+}
+
+fn ball(x: f64, rule: Rule) -> Octree {
+    build(&Csg::ball([x, 16.0, 16.0], 9.0).unwrap(), &frame(), rule, &CONTROL).unwrap()
+}
+
+fn facts() -> Metadata {
+    let mut metadata = Metadata::new();
+    metadata.insert("units", "mm");
+    metadata.insert("name", "Flansch Ø 120");
+    metadata
+}
+
+/// A closed surface: a cube whose faces are cut into squares. Facets that share corners only by position.
+fn facets() -> Vec<[[f64; 3]; 3]> {
+    const N: i32 = 6;
+    let mut facets = vec![];
+    for axis in 0..3 {
+        for (side, outward) in [(0, false), (N, true)] {
+            for i in 0..N {
+                for j in 0..N {
+                    let corner = |i: i32, j: i32| {
+                        let mut at = [0.0; 3];
+                        at[axis] = side as f64;
+                        at[(axis + 1) % 3] = i as f64;
+                        at[(axis + 2) % 3] = j as f64;
+                        at.map(|x| 3.3 + 2.9 * x)
+                    };
+                    let square = [corner(i, j), corner(i + 1, j), corner(i + 1, j + 1), corner(i, j + 1)];
+                    for [a, b, c] in [[0, 1, 2], [0, 2, 3]] {
+                        facets.push(if outward {
+                            [square[a], square[b], square[c]]
+                        } else {
+                            [square[a], square[c], square[b]]
+                        });
+                    }
+                }
+            }
+        }
+    }
+    facets
+}
+
+/// An OBJ of faces with many corners, some of them not convex, before their vertices.
+fn polygons() -> String {
+    const FACES: u32 = 60;
+    // Few corners: the crate that triangulates faces cannot be refused memory.
+    const N: u32 = 12;
+    let mut text = String::from("mtllib of a name that nobody looks for\n");
+    for k in 0..FACES {
+        let corners: String = (1..=N).map(|i| format!(" {}", i + N * k)).collect();
+        text += &format!("f{corners}\n");
+    }
+    for k in 0..FACES * N {
+        let angle = std::f64::consts::TAU * f64::from(k % N) / f64::from(N);
+        // Every other one is a star.
+        let radius = if k % (2 * N) < N || k % 2 == 0 { 3.0 } else { 2.0 };
+        text += &format!("v {} {} {}\n", radius * angle.cos(), radius * angle.sin(), k / N);
+    }
+    text
+}
+
+/// A mesh whose faces do not quite meet.
+fn cracked() -> TriangleMesh {
+    let mut facets = facets();
+    let count = facets.len();
+    for facet in &mut facets[count / 2..] {
+        for corner in facet {
+            corner[2] += 1e-15;
+        }
+    }
+    TriangleMesh::from_facets(facets).unwrap()
+}
+
+/// A prism over a zigzag band of `corners` corners, an even number, which is nowhere a fan.
+fn band(corners: u32) -> (Vec<[f64; 3]>, [Vec<u32>; 5]) {
+    let half = corners / 2;
+    let along = |k: u32| [f64::from(k), f64::from(k % 2) * 0.75];
+    let there = (0..half).map(along);
+    let back = (0..half).rev().map(|k| [along(k)[0], along(k)[1] + 0.25]);
+    let vertices = there.chain(back).flat_map(|[x, y]| [[x, y, 0.0], [x, y, 1.0]]).collect();
+    let mut list: Vec<u32> =
+        (0..corners).rev().map(|k| 2 * k).chain((0..corners).map(|k| 2 * k + 1)).collect();
+    for k in 0..corners {
+        let next = (k + 1) % corners;
+        list.extend([2 * k, 2 * next, 2 * next + 1, 2 * k + 1]);
+    }
+    let loops = [0, corners].into_iter().chain((0..=corners).map(|k| 2 * corners + 4 * k)).collect();
+    (vertices, [list, loops, (0..corners + 3).collect(), vec![0, corners + 2], vec![0, 1]])
+}
+
+fn polyhedron((vertices, lists): &(Vec<[f64; 3]>, [Vec<u32>; 5])) -> Result<Polyhedron, Error> {
+    let [corners, loops, faces, shells, solids] = lists;
+    Polyhedron::new(&PolyhedronArrays { vertices, corners, loops, faces, shells, solids })
+}
+
+/// Everything that allocates, by name. It may fail, and nothing but memory may be a reason.
+type Operation = Box<dyn Fn() -> Result<(), Error>>;
+
+fn operations(directory: &Path) -> Vec<(&'static str, Operation)> {
+    let (a, b) = (ball(14.0, Rule::Certified), ball(19.0, Rule::Certified));
+    let binary = ball(15.0, Rule::Sampled);
+    let coded = compact(a.view()).unwrap().with_metadata(facts());
+    let bytes = file::to_bytes(&coded).unwrap();
+    let (closed, cracked) = (Arc::new(TriangleMesh::from_facets(facets()).unwrap()), Arc::new(cracked()));
+    let facets = facets();
+    let stl = exchange::write_stl(&closed).unwrap();
+    let path = directory.join("tree.lfl");
+    let mut operations: Vec<(&'static str, Operation)> = vec![];
+    macro_rules! operation {
+        ($name:literal, [$($kept:ident),*], $result:expr) => {{
+            $(let $kept = $kept.clone();)*
+            #[allow(clippy::redundant_closure_call)]
+            operations.push(($name, Box::new(move || (|| $result)().map(drop))));
+        }};
+    }
+    operation!("build", [], build(&Csg::ball([15.0; 3], 9.0)?, &frame(), Rule::Certified, &CONTROL));
+    operation!("build sampled", [], build(&Csg::ball([15.0; 3], 9.0)?, &frame(), Rule::Sampled, &CONTROL));
+    operation!("build odd", [], {
+        let frame = frame().with_depth(5)?;
+        build(&Csg::cuboid([1.1; 3], [22.0; 3])?, &frame, Rule::Outer, &CONTROL)
+    });
+    operation!("build erased", [], {
+        let solid = AnySolid::new(Csg::ball([15.0; 3], 9.0)?);
+        build(&solid, &frame(), Rule::Certified, &CONTROL)
+    });
+    operation!("build callback", [], {
+        let slab = Callback::new(|min, max| match (min[2], max[2]) {
+            (low, high) if high <= 3.3 || low >= 9.1 => Ok(Verdict::Empty),
+            (low, high) if low >= 3.3 && high <= 9.1 => Ok(Verdict::Full),
+            _ => Ok(Verdict::Partial(())),
+        });
+        build(&slab, &frame(), Rule::Certified, &CONTROL)
+    });
+    // A comb of 400 teeth, a torus, and a power that is turned.
+    let tooth = |i: u32| [[i as f64 / 40.0, 1.0], [(i as f64 + 0.5) / 40.0, 1.5 + (i % 7) as f64]];
+    let comb =
+        [&[[0.0, 0.0]][..], (0..400).flat_map(tooth).collect::<Vec<_>>().as_slice(), &[[11.0, 0.0]]].concat();
+    operation!("build CSG", [comb], {
+        let turned = Affine::new([[6.0, -8.0, 0.0, 15.0], [8.0, 6.0, 0.0, 15.0], [0.0, 0.0, 9.0, 15.0]])?;
+        let rounded = Csg::from(HalfSpace::power([(-1.0, 0.0, 6); 3], 1.0)?).placed(&turned)?;
+        let all =
+            Csg::union_of([Csg::prism(&comb, 2.0, 20.0)?, rounded])?.difference(&Csg::torus(9.0, 4.0)?)?;
+        // A refusal of memory means that there is none, too.
+        let _ = leafless::Solid::fingerprint(&all);
+        build(&all, &frame(), Rule::Certified, &CONTROL)
+    });
+    operation!("build mesh", [closed], {
+        let solid = MeshSolid::new(closed.clone(), FillRule::NonZero)?;
+        build(&solid, &frame(), Rule::Certified, &CONTROL)
+    });
+    operation!("build mesh erased", [closed], {
+        let solid = AnySolid::new(MeshSolid::new(closed.clone(), FillRule::NonZero)?);
+        build(&solid, &frame(), Rule::Certified, &CONTROL)
+    });
+    operation!("build mesh deep", [closed], {
+        let frame = frame().with_depth(7)?;
+        build(&MeshSolid::new(closed.clone(), FillRule::EvenOdd)?, &frame, Rule::Sampled, &CONTROL)
+    });
+    operation!("build stored", [a], build(a.view(), &frame(), Rule::Inner, &CONTROL));
+    let waves: Vec<f32> =
+        (0..32 * 30 * 28).map(|i| ((i % 32) as f32 * 0.3).sin() + ((i / 960) as f32 * 0.2).cos()).collect();
+    let grid = VoxelGrid::new([32, 30, 28], [0.0; 3], [1.0; 3]).unwrap();
+    operation!("volume", [waves], {
+        let volume = Volume::new(waves[..].into(), &grid, Band::between(0.1, 0.9)?, &CONTROL)?;
+        let volume = volume.with_band(Band::at_least(0.2)?, &CONTROL)?;
+        let tree = build(&volume, &frame(), Rule::Certified, &CONTROL)?;
+        tree.bitmap(4, [0; 3], [16; 3], &mut [0; 256], Some(&mut [0; 256]), &CONTROL)
+    });
+    operation!("surface of a volume", [waves], {
+        let volume = Volume::new(waves[..].into(), &grid, Band::at_least(0.2)?, &CONTROL)?;
+        marching_cubes_of_volume(&volume, &CONTROL)
+    });
+    operation!("surfaces of an octree", [binary, a], {
+        marching_cubes(binary.view(), None, &CONTROL)?;
+        smc(a.view(), Snap::Fat, Some(Resolve::Outer), &CONTROL)
+    });
+    operation!("surfaces of a ball", [], {
+        let (ball, frame) = (Csg::ball([15.0; 3], 9.0)?, frame().with_depth(4)?);
+        marching_cubes_of(&ball, &frame, VertexPlacement::Crossing, &CONTROL)?;
+        smc_of(&ball, &frame, Snap::Thin, &CONTROL)
+    });
+    #[cfg(feature = "volumes")]
+    {
+        let samples: leafless::Samples<'static> = waves.into();
+        // The crate that compresses cannot be refused memory.
+        let nrrd = exchange::write_nrrd(&samples, &grid, exchange::NrrdEncoding::Gzip).unwrap();
+        let text =
+            b"NRRD0001\ntype: short\ndimension: 3\nsizes: 2 2 2\nencoding: ascii\n\n1 2 3 4 5 6 7 8".to_vec();
+        operation!("write NRRD", [samples], {
+            exchange::write_nrrd(&samples, &grid, exchange::NrrdEncoding::Raw)
+        });
+        operation!("read NRRD", [nrrd, text], {
+            exchange::read_volume(&nrrd, None)?;
+            exchange::read_volume(&text, None)
+        });
+    }
+    operation!("refine", [closed], {
+        let solid = || MeshSolid::new(closed.clone(), FillRule::NonZero);
+        let mut lazy = LazyOctree::new(solid()?, &frame())?;
+        let found = lazy.refine(&Zone::Whole, 5, &CONTROL).and_then(|_| lazy.freeze(&CONTROL));
+        if found.is_err() {
+            // What it was before the refusal is an octree, too, and goes on.
+            lazy.refine(&Zone::Point([12.0; 3]), 6, &CONTROL)?;
+            lazy.freeze(&CONTROL)?.view().check()?;
+        }
+        LazyOctree::resume(&found?, solid()?, &frame(), &CONTROL).map(drop)
+    });
+    operation!("interference", [a], {
+        let turn = Affine::new([[0.8, -0.6, 0.0, 9.0], [0.6, 0.8, 0.0, -6.0], [0.0, 0.0, 1.0, 0.25]])?;
+        interference_of(&Csg::ball([15.0; 3], 9.0)?, &a, &frame(), &[turn; 2], &frame(), 0.0, &CONTROL)
+    });
+    operation!("clearance", [a], {
+        let moved = Transform::new(&a, &frame(), &Affine::translation([7.0, 9.0, 0.1])?);
+        clearance(&a, &moved, &frame(), 0.0, &Control { max_splits: Some(3000), ..CONTROL })
+    });
+    let marked = DexelOptions {
+        format: DexelFormat {
+            normals: DexelNormals::Bits16,
+            surfaces: true,
+            materials: true,
+            ..DexelFormat::default()
+        },
+        ..DexelOptions::default()
+    };
+    operation!("dexels of a mesh", [closed], {
+        dexelize(&MeshSolid::new(closed.clone(), FillRule::NonZero)?, &frame(), &marked, &CONTROL)
+    });
+    operation!("dexels of an open mesh", [cracked], {
+        let coarse = frame().with_depth(3)?;
+        dexelize(&MeshSolid::new(cracked.clone(), FillRule::NonZero)?, &coarse, &marked, &CONTROL)
+    });
+    operation!("dexels of half-spaces", [a], {
+        let ball = Csg::ball([15.0; 3], 9.0)?;
+        dexelize(&ball.complement(), &frame(), &marked, &CONTROL)?;
+        dexelize(
+            &Csg::solid(AnySolid::new(a.clone())).complement(),
+            &frame(),
+            &DexelOptions { rule: Rule::Outer, ..marked },
+            &CONTROL,
+        )?;
+        dexelize(&Csg::from(leafless::HalfSpace::torus(9.0, 3.0)?), &frame(), &marked, &CONTROL)
+    });
+    let balls = [13.0, 17.0]
+        .map(|x| dexelize(&Csg::ball([x, 15.0, 15.0], 7.0).unwrap(), &frame(), &marked, &CONTROL).unwrap());
+    operation!("dexel algebra", [balls], {
+        let [a, b] = [balls[0].view(), balls[1].view()];
+        a.union(b, &CONTROL)?;
+        a.complement(&CONTROL)?;
+        a.with_material(3, &CONTROL)?;
+        let plain =
+            a.to_format(DexelFormat { ends: DexelEnds::Double, ..DexelFormat::default() }, &CONTROL)?;
+        TriDexel::xor_of(&[*a, *b, *plain.view()], &CONTROL)
+    });
+    operation!("dexel editor", [balls], {
+        let mut editor = DexelEditor::new(balls[0].view())?;
+        editor.subtract(balls[1].view(), &CONTROL)?;
+        editor.unite(balls[1].view(), &CONTROL)?;
+        editor.subtract_solid(&Csg::ball([15.0; 3], 2.0)?, &CONTROL)?;
+        editor.freeze(&CONTROL)
+    });
+    operation!("dexel surfaces", [balls], {
+        marching_cubes_of_dexels(balls[0].view(), &CONTROL)?;
+        dual_contouring_of_dexels(balls[0].view(), &CONTROL)?;
+        octree_of_dexels(balls[0].view(), &CONTROL)?;
+        dexel_voxels(balls[0].view(), &[], &CONTROL)
+    });
+    let seen = build(&Csg::ball([15.0; 3], 9.0).unwrap(), &frame(), Rule::Certified, &CONTROL).unwrap();
+    let records = VoxelRecords::of(seen.view(), &VoxelOptions::new(), None, &CONTROL).unwrap();
+    operation!("picture", [seen, records, closed], {
+        let camera = Camera::fitted(&Bounds::of(seen.frame()).corners(), [20.0, 30.0], Some(30.0), 1.0)?;
+        let shot = Shot { clip: Clip::new().plane([1.0, 0.0, 0.0, -14.0])?, ..Shot::new(camera, [40, 40]) };
+        let ball = Csg::ball([12.0; 3], 5.0)?;
+        let octree = OctreeLayer::new(seen.view(), Finish::default());
+        let solid = SolidLayer::new(&ball, seen.frame(), Finish::default()).at_most(5);
+        let mesh = MeshLayer::new(&closed).colour([200, 0, 0, 90]).edges(MeshEdges::All, 1.0, [0, 0, 0, 255]);
+        let slice = SliceLayer::new(seen.view(), SlicePlane::across(2, 15.0)?);
+        let transfer = Transfer::new(ColourMap::Viridis, [0.0, 1.0], 0.5, 10.0)?;
+        let volume = VolumeLayer::new(records.view(), transfer);
+        render(&shot, &[&octree, &solid, &mesh, &slice, &volume], &CONTROL)
+    });
+    operation!("dexel bytes", [balls], file::dexels::from_bytes(&file::dexels::to_bytes(&balls[0])?));
+    operation!("mesh placed", [closed], {
+        closed.placed(&Affine::new([[0.0, 1.1, 0.0, 9.0], [1.0, 0.0, 0.0, -6.0], [0.0, 0.0, 1.0, 0.25]])?)
+    });
+    operation!("mesh of facets", [facets], TriangleMesh::from_facets(&*facets));
+    operation!("mesh report", [closed], closed.translated([1.0; 3])?.report());
+    operation!("mesh defects", [cracked], cracked.defects(9));
+    operation!("open mesh report", [cracked], cracked.transformed(|corner| corner)?.report());
+    // Faces of few corners: the crate that triangulates faces cannot be refused memory.
+    operation!("polyhedron", [], polyhedron(&band(12)));
+    operation!("sew", [cracked], cracked.transformed(|corner| corner)?.sewn());
+    operation!("read STL", [stl], exchange::read_stl(&stl));
+    operation!("read mesh", [stl], {
+        let (unit, target) = (Some(exchange::LengthUnit::Inch), Some(exchange::LengthUnit::Millimetre));
+        exchange::read_mesh(&stl, &exchange::MeshOptions { unit, target, ..Default::default() })
+    });
+    #[cfg(feature = "threemf")]
+    {
+        // Many objects, one of them in another part, placed along a chain.
+        let mut resources = zip::tetrahedron(1, "");
+        for id in 2..200 {
+            resources += &zip::tetrahedron(1000 + id, "");
+            resources += &format!(
+                "<object id=\"{id}\"><components><component objectid=\"{}\"/><component objectid=\"{}\" \
+                 transform=\"1 0 0 0 1 0 0 0 1 {id} 0 0\"/></components></object>",
+                id - 1,
+                1000 + id
+            );
+        }
+        let items = "<item objectid=\"199\"/><item objectid=\"1\" p:path=\"/b.model\"/>";
+        let mut entries = zip::package(zip::model("", &resources, items));
+        entries.push(zip::Entry::deflated("b.model", zip::model("", &zip::tetrahedron(1, ""), "")));
+        let package = zip::zip(&entries);
+        operation!("read 3MF", [package], exchange::read_mesh(&package, &Default::default()));
+    }
+    operation!("write STL", [closed], exchange::write_stl(&closed));
+    operation!("write meshes", [closed], {
+        for format in [exchange::MeshFormat::Stl, exchange::MeshFormat::Ply, exchange::MeshFormat::Off] {
+            let options = exchange::WriteOptions { text: true, normals: true, unit: None };
+            exchange::write_mesh(&closed, format, &options)?;
+        }
+        exchange::write_mesh(&closed, exchange::MeshFormat::Ply, &Default::default())?;
+        exchange::write_mesh(&closed, exchange::MeshFormat::Obj, &Default::default())
+    });
+    operation!("what STL keeps", [closed], {
+        let options = exchange::WriteOptions { text: true, ..Default::default() };
+        exchange::written_form(&closed, exchange::MeshFormat::Stl, &options)?;
+        exchange::written_form(&closed, exchange::MeshFormat::Stl, &Default::default()).map(drop)
+    });
+    for (k, (write, read)) in bodies::meshes::WRITERS.into_iter().enumerate() {
+        const NAMES: [&str; bodies::meshes::WRITERS.len()] = [
+            "read OBJ",
+            "read OBJ again",
+            "read OFF",
+            "read OFF again",
+            "read PLY",
+            "read PLY little",
+            "read PLY big",
+            "read PLY strips",
+        ];
+        let bytes = write(&closed);
+        operations.push((NAMES[k], Box::new(move || read(&bytes).map(drop))));
+    }
+    let polygons = polygons();
+    operation!("read polygons", [polygons], exchange::read_obj(polygons.as_bytes()));
+    #[cfg(feature = "scene")]
+    {
+        let text: String = (0..40)
+            .map(|i| format!("multmatrix([[1,0,0,{i}],[0,1,0,0],[0,0,1,0],[0,0,0,1]]) sphere(r = 0.3);\n"))
+            .chain((0..3).map(|i| {
+                let points: String = (0..60).map(|k| format!("[{k}, {}], ", k * k + i)).collect();
+                format!("linear_extrude(height = 1) polygon(points = [{points}], paths = undef);\n")
+            }))
+            .chain([
+                "polyhedron([[0,0,0],[4,0,0],[0,4,0],[0,0,4]], [[0,1,2],[0,3,1],[0,2,3],[1,3,2]]);".into()
+            ])
+            .collect();
+        let scene = scene::read_scene(&text, None).unwrap();
+        operation!("read a scene", [text], scene::read_scene(&text, None));
+        operation!("solid of a scene", [scene], scene.solid(&Frame::new([0.0; 3], 64.0, 3)?));
+        operation!("bounds of a scene", [scene], scene.bounds());
+    }
+    operation!("union", [a, b], union(a.view(), b.view(), &CONTROL));
+    operation!("intersection", [a, b], intersection(a.view(), b.view(), &CONTROL));
+    operation!("difference", [coded, binary], difference(coded.view(), binary.view(), &CONTROL));
+    operation!("xor", [binary, b], xor(b.view(), binary.view(), &CONTROL));
+    operation!("complement", [coded], complement(coded.view(), &CONTROL));
+    operation!("union of three", [a, b, binary], {
+        union_of(&[*a.view(), *b.view(), *binary.view()], &CONTROL)
+    });
+    operation!("resolve", [a], resolve(a.view(), Rule::Outer, &CONTROL));
+    operation!("compact", [a], compact(a.view()));
+    operation!("compact again", [coded], compact(coded.view()));
+    operation!("check", [coded], coded.view().check());
+    operation!("statistics", [a], complement(a.view(), &CONTROL).map(|tree| tree.statistics()));
+    operation!("measure", [], measure(&Csg::ball([15.0; 3], 9.0)?, &frame(), 0.0, &CONTROL));
+    operation!("measure a mesh", [closed], {
+        let solid = MeshSolid::new(closed.clone(), FillRule::NonZero)?;
+        measure(&solid, &frame(), 0.0, &CONTROL)
+    });
+    operation!("bounding box", [closed], {
+        let solid = MeshSolid::new(closed.clone(), FillRule::NonZero)?;
+        bounding_box(&solid, &frame(), 0.0, &CONTROL)
+    });
+    operation!("points of a mesh", [closed], {
+        let points: [[f64; 3]; 64] = std::array::from_fn(|i| [i as f64 / 4.0, 7.7, 9.1 + i as f64 / 9.0]);
+        let solid = MeshSolid::new(closed.clone(), FillRule::NonZero)?;
+        contains(&solid, &frame(), &points, &mut [Membership::Undecided; 64], &CONTROL)
+    });
+    operation!("box of a mesh", [closed], {
+        let solid = MeshSolid::new(closed.clone(), FillRule::NonZero)?;
+        classify_box(&solid, &frame(), [7.1; 3], [16.0; 3], &CONTROL)
+    });
+    operation!("rays on a mesh", [closed], {
+        let solid = MeshSolid::new(closed.clone(), FillRule::NonZero)?;
+        let rays = [Ray::new([-3.0, 9.0, 11.0], [1.0, 0.1, 0.0])?, Ray::new([11.0; 3], [0.0, 0.0, 1.0])?];
+        ray_spans(&solid, &frame(), &rays[0], &CONTROL)?;
+        cast_rays(&solid, &frame(), &rays, Obstacle::Upper, &CONTROL)
+    });
+    operation!("columns", [a], {
+        a.ray_spans(&Ray::new([-3.0, 9.0, 11.0], [1.0, 0.1, 0.0])?)?;
+        let all = Columns::all(a.frame(), 1)?;
+        a.heights(&all, Side::Above)?;
+        a.columns(&all)
+    });
+    operation!("columns of a ball", [], {
+        let ball = Csg::ball([15.0; 3], 9.0)?;
+        let all = Columns::all(&frame(), 2)?;
+        heights(&ball, &frame(), &all, Side::Below, &CONTROL)?;
+        columns(&ball, &frame(), &all, &CONTROL)
+    });
+    operation!("distances of cells", [a], {
+        let mut field = [[0.0f32; 2]; 24 * 24 * 4];
+        a.distance_field([4, 4, 9], [28, 28, 13], &mut field, &CONTROL)?;
+        PointTable::new(a.view(), 4)?;
+        a.view().nearest_cells([1.0, 2.0, 3.0], &[Tag::Full, Tag::Partial], 40)
+    });
+    operation!("distances to a mesh", [closed], {
+        let solid = MeshSolid::new(closed.clone(), FillRule::NonZero)?;
+        let points: [[f64; 3]; 6] = std::array::from_fn(|i| [3.0 * i as f64, 7.7, 9.1]);
+        distances(&solid, &frame(), &points, DistanceTo::Boundary, 0.1, &CONTROL)
+    });
+    operation!("solid in a solid", [a], classify_in(&a, &Csg::ball([15.0; 3], 3.0)?, &frame(), &CONTROL));
+    operation!("content of a ball", [a], {
+        let ball = Csg::ball([15.0; 3], 3.0)?.difference(&Csg::cuboid([1.0; 3], [14.0; 3])?)?;
+        cells_in(&a, &ball, &frame(), &CONTROL)?;
+        a.volume_in(&ball, &CONTROL)
+    });
+    operation!("area", [], {
+        let ball = Csg::ball([15.0; 3], 9.0)?.difference(&Csg::cuboid([14.0; 3], [40.0; 3])?)?;
+        surface_area(&ball, &frame(), 1e-2, &CONTROL)
+    });
+    operation!("intersecting pairs", [closed], {
+        TriangleMesh::from_facets(closed.triangles().iter().flat_map(|corners| {
+            let corners = corners.map(|v| closed.vertices()[v as usize]);
+            [corners, corners.map(|corner| corner.map(|x| x + 1.1))]
+        }))?
+        .intersecting_pairs(9, &CONTROL)
+    });
+    operation!("to bytes", [b], file::to_bytes(&b.with_metadata(facts())));
+    operation!("to bytes again", [coded], file::to_bytes(&coded));
+    operation!("write", [binary], file::write_to(&binary, io::sink()));
+    operation!("save", [binary, path], file::save(&binary, &path));
+    operation!("probe bytes", [bytes], file::probe_bytes(&bytes));
+    operation!("from bytes", [bytes], file::from_bytes(&bytes));
+    operation!("probe", [path], file::probe(&path));
+    operation!("open", [path], file::open(&path));
+    // SAFETY: nobody else knows the file, and saving replaces it.
+    operation!("map", [path], unsafe { file::map(&path) });
+    // SAFETY: as before.
+    operation!("map verified", [path], unsafe { file::map_verified(&path) });
+    operations
+}
+
+/// Bytes of the largest request that may end the process.
+const SMALL: u64 = 2048;
+
+/// What the children are told: which operation, from which request on, how large a request must be to count,
+/// and whether all behind it fail too.
+const TASK: &str = "LEAFLESS_TEST_FAILING";
+
+fn names(directory: &Path) -> Vec<String> {
+    let entries = std::fs::read_dir(directory).unwrap();
+    let mut names: Vec<_> = entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+    names.sort();
+    names
+}
+
+/// The file that is there before anything is tried.
+fn old_file() -> Vec<u8> {
+    file::to_bytes(&compact(ball(14.0, Rule::Certified).view()).unwrap().with_metadata(facts())).unwrap()
+}
+
+/// What the other tests start in a directory of its own; nothing by itself.
+#[test]
+fn child() {
+    let Ok(task) = std::env::var(TASK) else { return };
+    let [name, first, spared, for_good] = task.split(',').collect::<Vec<_>>()[..] else { panic!("{task}") };
+    let (first, for_good): (u64, bool) = (first.parse().unwrap(), for_good.parse().unwrap());
+    let spared = spared.parse().unwrap();
+    let directory = std::env::current_dir().unwrap();
+    let path = directory.join("tree.lfl");
+    let old = old_file();
+    std::fs::write(&path, &old).unwrap();
+    let operations = operations(&directory);
+    let (_, operation) = operations.iter().find(|(known, _)| *known == name).unwrap();
+    let mut out = 0;
+    for n in first.. {
+        eprintln!("request {n}");
+        let (result, refused) = refusing(n, spared, for_good, operation);
+        let found = std::fs::read(&path).unwrap();
+        assert_eq!(names(&directory), ["tree.lfl"]);
+        match result {
+            Ok(()) if name == "save" => {
+                assert!(found != old);
+                std::fs::write(&path, &old).unwrap();
+            }
+            Ok(()) => assert!(found == old),
+            Err(Error::OutOfMemory) => {
+                assert!(refused > 0 && found == old);
+                out += 1;
+            }
+            Err(other) => panic!("{other}"),
+        }
+        if refused == 0 {
+            eprintln!("survived {out} of {n}");
+            return;
+        }
+    }
+}
+
+/// Runs an operation until no request of more than `spared` bytes is left that could be refused. Returns how
+/// many came back as an error, and how many ended the process. If these are many, requests are left out.
+fn try_all(name: &str, spared: u64, for_good: bool) -> (u64, u64) {
+    let directory = tempfile::tempdir().unwrap();
+    let (mut first, mut errors) = (1, 0);
+    let mut fatal = 0;
+    loop {
+        let mut command = Command::new(std::env::current_exe().unwrap());
+        command.args(["--exact", "failures::child", "--nocapture"]).current_dir(directory.path());
+        // What a process says before it ends needs memory for a backtrace.
+        command.env("RUST_BACKTRACE", "0");
+        let output = command.env(TASK, format!("{name},{first},{spared},{for_good}")).output().unwrap();
+        let text = String::from_utf8_lossy(&output.stderr);
+        let number = |line: Option<&str>, prefix: &str| -> Option<u64> {
+            line?.strip_prefix(prefix)?.split(' ').next()?.parse().ok()
+        };
+        if output.status.success() {
+            let survived = number(text.lines().rfind(|line| line.starts_with("survived ")), "survived ");
+            return (errors + survived.unwrap_or_else(|| panic!("{name}: {text}")), fatal);
+        }
+        // The first complaint counts; where all requests are refused it may be followed by others.
+        let request = text.lines().rfind(|line| line.starts_with("request "));
+        let refused = text.lines().find(|line| line.starts_with("memory allocation of "));
+        let (Some(n), Some(size)) = (number(request, "request "), number(refused, "memory allocation of "))
+        else {
+            panic!("{name}: {text}")
+        };
+        assert!(size <= SMALL, "{name}: request {n} is one of {size} bytes and cannot be refused");
+        errors += n - first;
+        fatal += 1;
+        first = if fatal < 5 { n + 1 } else { n + 1 + n / 2 };
+        // What a process leaves behind that was ended.
+        for name in names(directory.path()) {
+            assert!(name == "tree.lfl" || name.starts_with(".leafless-"));
+            std::fs::remove_file(directory.path().join(name)).unwrap();
+        }
+    }
+}
+
+/// Runs all operations; tells how many requests came back as an error, and how many ended a process.
+fn try_every_operation(spared: u64) -> (u64, u64) {
+    let directory = tempfile::tempdir().unwrap();
+    std::fs::write(directory.path().join("tree.lfl"), old_file()).unwrap();
+    let mut total = (0, 0);
+    for (name, _) in operations(directory.path()) {
+        for for_good in [false, true] {
+            let (errors, fatal) = try_all(name, spared, for_good);
+            println!("{name}: {errors} errors, {fatal} fatal");
+            total = (total.0 + errors, total.1 + fatal);
+        }
+    }
+    total
+}
+
+#[test]
+fn no_request_of_more_than_two_kibibytes_is_fatal() {
+    let (errors, fatal) = try_every_operation(SMALL);
+    assert!(errors > 200 && fatal == 0, "{errors} errors, {fatal} fatal");
+}
+
+#[test]
+fn small_requests_that_are_fatal_are_small() {
+    let (errors, _) = try_every_operation(0);
+    assert!(errors > 500, "{errors} errors");
+}
+
+// ---- no more memory than an input is worth ---------------------------------------------------------------
+
+/// Bytes that reading, and making a tree, may need whatever the input.
+const READING: usize = 4 << 10;
+const MAKING: usize = 128 << 10;
+
+/// Notes in `worst` how many times its input `work` held beyond what is `fixed`.
+fn weigh<R>(worst: &mut f64, fixed: usize, input: usize, work: impl FnOnce() -> R) {
+    let (_, held) = most_held(work);
+    *worst = worst.max(held.saturating_sub(fixed) as f64 / input as f64);
+}
+
+/// What `file` and `OctreeRef` promise for bytes that nobody has checked.
+#[test]
+fn memory_is_a_small_multiple_of_the_input() {
+    let mut inputs = bodies::seeds::files();
+    let (mut random, small) = (Random(11), inputs.len());
+    let facts = |count: usize| {
+        let mut metadata = Metadata::new();
+        (0..count).for_each(|i| metadata.insert(format!("{i:x}"), ""));
+        Octree::uniform(frame(), leafless::Tag::Full, leafless::Tag::Full).unwrap().with_metadata(metadata)
+    };
+    let tree = |rule| compact(ball(14.0, rule).view()).unwrap();
+    let large = [facts(60_000), tree(Rule::Certified), tree(Rule::Outer), dictionary()];
+    inputs.extend(large.map(|tree| file::to_bytes(&tree).unwrap()));
+    let mut worst = [0.0; 7];
+    for round in 0..4000 {
+        let base = if round < inputs.len() { round } else { random.below(small) };
+        let mut data = inputs[base].clone();
+        if round >= inputs.len() {
+            let (size, max) = (data.len(), data.len() + 4096);
+            data.resize(max, 0);
+            let size = bodies::mutate_file(&mut data, size, max, round as u32, &mut |_, size, _| size);
+            data.truncate(size);
+        }
+        let aligned = Aligned::new(&data);
+        let bytes = aligned.bytes();
+        let length = bytes.len();
+        weigh(&mut worst[0], READING, length, || file::probe_bytes(bytes));
+        let (view, held) = most_held(|| file::view(bytes));
+        assert_eq!(held, 0, "a view allocates nothing");
+        weigh(&mut worst[1], READING, length, || file::verify(bytes));
+        weigh(&mut worst[2], READING, length, || file::from_bytes(bytes));
+        let Ok(tree) = view else { continue };
+        let (_, held) = most_held(|| bodies::walk(leafless::Cursor::new(&tree)).steps);
+        assert!(held < READING);
+        weigh(&mut worst[3], MAKING, length, || complement(&tree, &CONTROL));
+        weigh(&mut worst[4], MAKING, 2 * length, || union(&tree, &tree, &CONTROL));
+        weigh(&mut worst[5], MAKING, length, || resolve(&tree, Rule::Outer, &CONTROL));
+        weigh(&mut worst[6], MAKING, length, || compact(&tree).map(|tree| file::to_bytes(&tree)));
+    }
+    println!("{worst:.2?}");
+    for (worst, stated) in worst.into_iter().zip([2.0, 6.0, 6.0, 32.0, 32.0, 32.0, 32.0]) {
+        assert!(worst <= stated, "{worst} times the input, not {stated}");
+    }
+}
+
+/// What `TriangleMesh` promises.
+#[test]
+fn memory_of_reports_is_that_of_the_edges() {
+    let grid: u32 = 200;
+    let vertices: Vec<[f64; 3]> =
+        (0..grid * grid).map(|k| [f64::from(k / grid), f64::from(k % grid), f64::from(k % 7)]).collect();
+    let squares = (0..grid * (grid - 1)).filter(|k| k % grid != grid - 1);
+    let triangles: Vec<[u32; 3]> =
+        squares.flat_map(|k| [[k, k + grid, k + 1], [k + 1, k + grid, k + grid + 1]]).collect();
+    let (many, edges) = (triangles.len(), 8 * vertices.len());
+    let mesh = TriangleMesh::new(vertices, triangles).unwrap();
+    let fixed = 64 << 10;
+    for (work, most) in [
+        (&(|| drop(mesh.clone().check_closed(FillRule::NonZero))) as &dyn Fn(), 28 * many + edges),
+        (&|| drop(mesh.clone().report()), 28 * many + edges),
+        (&|| drop(mesh.clone().defects(3)), 24 * many + edges),
+    ] {
+        let (_, held) = most_held(work);
+        let (_, copied) = most_held(|| mesh.clone());
+        assert!(held <= copied + most + fixed, "{held} bytes, {copied} of them a copy, not {most}");
+    }
+}
+
+/// What `Polyhedron` promises. The part of the triangulation is asked for before it begins.
+#[test]
+fn memory_of_polyhedra_is_a_small_multiple_of_their_corners() {
+    for corners in [2_000, 50_000] {
+        let arrays = band(corners);
+        let (made, held) = most_held(|| polyhedron(&arrays));
+        assert_eq!(made.unwrap().mesh().triangles().len() as u32, 4 * corners - 4);
+        // The prism has six times as many corners.
+        let allowed = (MAKING as u32 + 320 * corners + 100 * 6 * corners) as usize;
+        assert!(held <= allowed, "{held} bytes, not {allowed}");
+        println!("{} bytes a corner of the face", held / corners as usize);
+    }
+}
+
+/// What the reader of 3MF promises of parts whose instances come to nothing.
+#[cfg(feature = "threemf")]
+#[test]
+fn packages_take_twenty_times_their_parts() {
+    let vertices: String = (0..9999).map(|i| format!("<vertex x=\"{i}\" y=\"0\" z=\"0\"/>")).collect();
+    let triangles = "<triangle v1=\"0\" v2=\"1\" v3=\"2\"/>".repeat(9000);
+    let mesh = format!(
+        "<object id=\"1\"><mesh><vertices>{vertices}</vertices><triangles>{triangles}</triangles></mesh></object>"
+    );
+    let empty = "<object id=\"1\"><mesh/></object>";
+    let components = "<component objectid=\"1\"/>".repeat(9000);
+    let components = format!("{empty}<object id=\"2\"><components>{components}</components></object>");
+    let objects: String = (1..9000).map(|id| format!("<object id=\"{id}\"/>")).collect();
+    let items = "<item objectid=\"1\"/>";
+    let mut worst = 0.0_f64;
+    for (name, most, text) in [
+        ("mesh", 8.0, zip::model("", &mesh, items)),
+        ("components", 20.0, zip::model("", &components, "<item objectid=\"2\"/>")),
+        ("objects", 20.0, zip::model("", &objects, "")),
+        ("items", 20.0, zip::model("", empty, &items.repeat(9000))),
+    ] {
+        let package = zip::zip(&[
+            zip::Entry::stored("[Content_Types].xml", zip::CONTENT_TYPES),
+            zip::Entry::stored("_rels/.rels", zip::RELATIONSHIPS),
+            zip::Entry::stored("3D/3dmodel.model", &text),
+        ]);
+        let (result, held) = most_held(|| exchange::read_mesh(&package, &Default::default()));
+        result.unwrap();
+        let times = held as f64 / text.len() as f64;
+        println!("{name}: {times:.1} times {} bytes", text.len());
+        assert!(times < most, "{name}: {times}");
+        worst = worst.max(times);
+    }
+    assert!(worst > 1.0, "{worst}");
+}
+
+/// What the readers of meshes promise.
+#[test]
+fn meshes_take_a_small_multiple_of_their_files() {
+    let mesh = TriangleMesh::from_facets(facets()).unwrap();
+    let mut files: Vec<(Vec<u8>, bodies::meshes::Reader)> = vec![];
+    for (write, read) in bodies::meshes::WRITERS {
+        files.push((write(&mesh), read));
+    }
+    files.push((exchange::write_stl(&mesh).unwrap(), exchange::read_stl));
+    files.push((polygons().into_bytes(), exchange::read_obj));
+    // A face that is not convex, of many corners.
+    let comb: String = (0..9000).map(|i| format!("v {} {} 0\n", i / 2, i % 2 * (1 + i / 2 % 2))).collect();
+    let face: String = (1..=9000).map(|i| format!(" {i}")).collect();
+    files.push((format!("{comb}v 9 -1 0\nf{face} 9001\n").into_bytes(), exchange::read_obj));
+    let winding =
+        (0..100u8).flat_map(|x| (1..=100).map(move |y| [x, if x % 2 == 0 { y } else { 101 - y }, 0]));
+    let corners: Vec<[u8; 3]> = winding.chain([[101, 0, 0], [0, 0, 0]]).collect();
+    let face = [corners.len() as u16].into_iter().chain(0..corners.len() as u16).flat_map(u16::to_le_bytes);
+    let header = format!(
+        "ply\nformat binary_little_endian 1.0\nelement vertex {}\nproperty char x\nproperty char y\nproperty char z\n\
+         element face 1\nproperty list ushort ushort vertex_index\nend_header\n",
+        corners.len()
+    );
+    files.push((
+        header.bytes().chain(corners.iter().flatten().copied()).chain(face).collect(),
+        exchange::read_ply,
+    ));
+    // What takes the least text for each vertex, face and corner; and claims of what is not there.
+    files.push(("v 0 0 0\n".repeat(5000).into_bytes(), exchange::read_obj));
+    let vertices: String = (0..9999).map(|i| format!("v 0 0 {i}\n")).collect();
+    files.push((vertices.into_bytes(), exchange::read_obj));
+    files.push((("f 1 1 1\n".repeat(5000) + "v 0 0 0").into_bytes(), exchange::read_obj));
+    files.push((("f 1 1 1 1\n".repeat(5000) + "v 0 0 0").into_bytes(), exchange::read_obj));
+    files.push((format!("v 0 0 0\nf{}\n", " 1".repeat(5000)).into_bytes(), exchange::read_obj));
+    files.push((format!("1 5000\n0 0 0\n{}", "3 0 0 0\n".repeat(5000)).into_bytes(), exchange::read_off));
+    files.push((format!("4000000000 5000\n{}", "0 0 0\n".repeat(5000)).into_bytes(), exchange::read_off));
+    files.push((
+        format!("1 4000000000\n0 0 0\n{}", "4 0 0 0 0\n".repeat(5000)).into_bytes(),
+        exchange::read_off,
+    ));
+    let header = "ply\nformat binary_little_endian 1.0\nelement vertex 20000\nproperty char x\nproperty char y\n\
+                  property char z\nelement face 4000000000\nproperty list uchar uchar vertex_index\nend_header\n";
+    let vertices = (0..20_000u32).flat_map(|i| [i as u8, (i >> 8) as u8, (i >> 16) as u8]);
+    let both = header.bytes().chain(vertices.clone()).chain([3, 0, 1, 2].repeat(5000));
+    files.push((both.collect(), exchange::read_ply));
+    let only_vertices = header.replace("4000000000", "0");
+    files.push((only_vertices.bytes().chain(vertices).collect(), exchange::read_ply));
+    let strip = "ply\nformat binary_big_endian 1.0\nelement vertex 1\nproperty char x\nproperty char y\nproperty char z\n\
+                 element tristrips 1\nproperty list ushort char vertex_index\nend_header\n\0\0\0\x7F\0";
+    files.push((strip.bytes().chain([0; 0x7F00]).collect(), exchange::read_ply));
+    let mut worst = 0f64;
+    for (bytes, read) in &files {
+        let mut most = 0.0;
+        weigh(&mut most, READING, bytes.len(), || read(bytes));
+        println!("{most:.1} times {} bytes", bytes.len());
+        worst = worst.max(most);
+    }
+    assert!(worst <= 128.0 && worst > 64.0, "{worst} times the file");
+}
+
+/// A tree of many bricks of few kinds: nothing is shorter in a file, and nothing grows more when it is
+/// copied.
+fn dictionary() -> Octree {
+    let frame = frame().with_depth(8).unwrap();
+    let cuboid = Csg::cuboid([3.3; 3], [29.2; 3]).unwrap();
+    compact(build(&cuboid, &frame, Rule::Certified, &CONTROL).unwrap().view()).unwrap()
+}
+
+// ---- writes that fail ------------------------------------------------------------------------------------
+
+/// Takes `left` calls, each of at most `most` bytes, every second one interrupted; then fails.
+struct Unreliable {
+    left: usize,
+    most: usize,
+    interrupted: bool,
+    taken: Vec<u8>,
+    failure: fn() -> io::Result<usize>,
+}
+
+impl Write for Unreliable {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.interrupted = !self.interrupted;
+        if self.interrupted {
+            return Err(io::ErrorKind::Interrupted.into());
+        }
+        if self.left == 0 {
+            return (self.failure)();
+        }
+        self.left -= 1;
+        let count = bytes.len().min(self.most);
+        self.taken.extend_from_slice(&bytes[..count]);
+        Ok(count)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        if self.left == 0 { (self.failure)().map(drop) } else { Ok(()) }
+    }
+}
+
+#[test]
+fn each_write_may_fail_or_be_short_or_interrupted() {
+    let tree = ball(15.0, Rule::Certified);
+    let bytes = file::to_bytes(&tree).unwrap();
+    type Failure = (fn() -> io::Result<usize>, io::ErrorKind);
+    let failures: [Failure; 3] = [
+        (|| Err(io::ErrorKind::StorageFull.into()), io::ErrorKind::StorageFull),
+        (|| Err(io::ErrorKind::BrokenPipe.into()), io::ErrorKind::BrokenPipe),
+        (|| Ok(0), io::ErrorKind::WriteZero),
+    ];
+    for (failure, kind) in failures {
+        for most in [1, 7, 1000, usize::MAX] {
+            for left in (0..40).chain([bytes.len() / most.min(bytes.len()) + 60, usize::MAX]) {
+                let out = Unreliable { left, most, interrupted: false, taken: vec![], failure };
+                let mut out = out;
+                match file::write_to(&tree, &mut out) {
+                    Ok(()) => assert_eq!(out.taken, bytes),
+                    Err(Error::Io(error)) => {
+                        assert_eq!((error.kind(), out.left), (kind, 0));
+                        assert!(bytes.starts_with(&out.taken));
+                    }
+                    Err(other) => panic!("{other}"),
+                }
+                assert!(left != usize::MAX || out.taken == bytes);
+            }
+        }
+    }
+    // Every piece may be the last one that is taken, and flushing may fail, too.
+    let failing = |left| {
+        let failure: fn() -> io::Result<usize> = || Err(io::ErrorKind::StorageFull.into());
+        let mut out = Unreliable { left, most: usize::MAX, interrupted: false, taken: vec![], failure };
+        (file::write_to(&tree, &mut out).is_err(), out.taken.len())
+    };
+    let pieces = (0..).find(|&left| failing(left).1 == bytes.len()).unwrap();
+    assert!(pieces > 3 && failing(pieces).0 && !failing(pieces + 1).0);
+}
+
+/// A file-size limit by which the system ends the process: nobody can clean up then, but the old file stays. Where files
+/// need no names, nothing else does.
+#[test]
+fn a_process_that_is_ended_while_it_saves_leaves_the_old_file() {
+    use std::os::unix::process::ExitStatusExt;
+    let directory = tempfile::tempdir().unwrap();
+    let mut shell = Command::new("sh");
+    shell.args(["-c", "ulimit -c 0; ulimit -f 4; exec \"$0\" \"$@\""]).arg(std::env::current_exe().unwrap());
+    shell.args(["--exact", "failures::limited_child", "--nocapture"]).current_dir(directory.path());
+    let path = directory.path().join("tree.lfl");
+    std::fs::write(&path, old_file()).unwrap();
+    let status = shell.env(TASK, "limited").output().unwrap().status;
+    assert!(status.signal().is_some(), "{status}");
+    assert_eq!(std::fs::read(&path).unwrap(), old_file());
+    #[cfg(target_os = "linux")]
+    {
+        use rustix::fs::{Mode, OFlags, open};
+        let flags = OFlags::TMPFILE | OFlags::RDWR;
+        if open(directory.path(), flags, Mode::from_raw_mode(0o600)).is_ok() {
+            assert_eq!(names(directory.path()), ["tree.lfl"]);
+        }
+    }
+    for name in names(directory.path()) {
+        assert!(name == "tree.lfl" || name.starts_with(".leafless-"), "{name}");
+    }
+}
+
+/// What that test starts; nothing by itself.
+#[test]
+fn limited_child() {
+    if std::env::var(TASK).is_ok_and(|task| task == "limited") {
+        let tree = dictionary();
+        assert!(file::to_bytes(&tree).unwrap().len() > 4096);
+        let _ = file::save(&tree, "tree.lfl");
+        unreachable!("the limit is smaller than the file");
+    }
+}

@@ -1,0 +1,19 @@
+//! Meshes, and solids of meshes.
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod attributes;
+mod cells;
+mod closed;
+mod descended;
+mod enclosure;
+mod moments;
+mod odd_rays;
+mod open;
+mod open_extremes;
+mod oracle;
+mod polyhedron;
+mod report;
+mod shapes;
+mod soup;

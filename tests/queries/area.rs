@@ -1,0 +1,279 @@
+//! The area of a solid's boundary, against formulas and against the areas of smaller cells.
+
+#[allow(dead_code)]
+use crate::common::{Random, Way, alone};
+use crate::random::Maker;
+use leafless::{
+    Affine, Cell, Classifier, Control, Csg, Error, Frame, Interval, Rule, Solid, StopReason, SurfaceArea,
+    Tolerance, Verdict, Worker, build, surface_area,
+};
+use std::f64::consts::PI;
+
+fn frame() -> Frame {
+    Frame::new([-4.0; 3], 8.0, 20).unwrap()
+}
+
+/// A truth that is a rounded double.
+#[track_caller]
+fn holds(found: &SurfaceArea, truth: f64, name: &str) {
+    let slack = 1e-12 * truth;
+    let area = found.area;
+    assert!(area.lower <= truth + slack && truth - slack <= area.upper, "{name}: {truth} {found:?}");
+}
+
+/// The area of a cone's or a frustum's side.
+fn side(a: f64, b: f64, height: f64) -> f64 {
+    PI * (a + b) * ((a - b) * (a - b) + height * height).sqrt()
+}
+
+/// The area of an ellipsoid with two equal radii a and a smaller one c along the axis.
+fn oblate(a: f64, c: f64) -> f64 {
+    let e = (1.0 - c * c / (a * a)).sqrt();
+    2.0 * PI * a * a * (1.0 + (1.0 - e * e) / e * e.atanh())
+}
+
+fn primitives() -> Vec<(&'static str, Csg, f64)> {
+    let of = |solid: Result<Csg, Error>| solid.unwrap();
+    let octahedron = {
+        let signs = [1.0, -1.0];
+        let normals = signs.iter().flat_map(|&x| signs.iter().flat_map(move |&y| signs.map(|z| [x, y, z])));
+        let planes: Vec<_> = normals.map(|normal| (normal, 1.5)).collect();
+        of(Csg::convex(&planes))
+    };
+    let (r, s, h) = (0.8, 0.3, 1.7);
+    let ell = [[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [1.0, 1.0], [1.0, 2.0], [0.0, 2.0]];
+    // The slope of a wedge goes from a width of 1.5 to one of 0.4.
+    let slope = f64::hypot(1.5 - 0.4, 1.2);
+    vec![
+        ("ball", of(Csg::ball([0.1, 0.2, 0.3], 1.5)), 4.0 * PI * 2.25),
+        ("ellipsoid", of(Csg::ellipsoid([0.1, 0.2, 0.3], [1.5, 1.5, 0.5])), oblate(1.5, 0.5)),
+        ("cuboid", of(Csg::cuboid([-1.0; 3], [1.0, 2.0, 0.5])), 2.0 * (6.0 + 3.0 + 4.5)),
+        ("cylinder", of(Csg::cylinder(r, 0.0, h)), 2.0 * PI * r * r + side(r, r, h)),
+        ("frustum", of(Csg::frustum(r, s, 0.0, h)), PI * (r * r + s * s) + side(r, s, h)),
+        ("cone", of(Csg::frustum(0.0, r, 0.0, h)), PI * r * r + side(r, 0.0, h)),
+        ("torus", of(Csg::torus(1.5, 0.5)), 4.0 * PI * PI * 1.5 * 0.5),
+        ("wedge", of(Csg::wedge([1.5, 1.2, 0.7], 0.4)), (1.5 + 0.4) * 1.2 + 0.7 * (1.5 + 0.4 + 1.2 + slope)),
+        ("prism", of(Csg::prism(&ell, 0.0, 0.5)), 2.0 * 3.0 + 8.0 * 0.5),
+        // Edges of 1.5 √2.
+        ("octahedron", octahedron, 2.0 * 3f64.sqrt() * 4.5),
+    ]
+}
+
+/// A turn by a random angle about a random axis, a scale and an offset; and the scale.
+fn placement(random: &mut Random) -> (Affine, f64) {
+    let [a, b, c] = [0; 3].map(|_| random.between(-1.0, 1.0));
+    let turn = glam::DMat3::from_quat(glam::DQuat::from_scaled_axis(glam::DVec3::new(a, b, c) * 3.0));
+    let scale = random.between(0.3, 1.2);
+    let rows = [0, 1, 2].map(|i| {
+        let row = turn.row(i) * scale;
+        [row.x, row.y, row.z, random.between(-0.5, 0.5)]
+    });
+    (Affine::new(rows).unwrap(), scale)
+}
+
+#[test]
+fn primitives_have_the_areas_of_formulas() {
+    let mut random = Random(1);
+    for (name, solid, truth) in primitives() {
+        let upright = surface_area(&solid, &frame(), 1e-3, &Control::default()).unwrap();
+        assert_eq!((upright.stop_reason, upright.clipped), (StopReason::Tolerance, false), "{name}");
+        assert!(upright.area.width() <= 1e-3 * upright.area.upper, "{name} {upright:?}");
+        holds(&upright, truth, name);
+        let (placement, scale) = placement(&mut random);
+        let placed = solid.placed(&placement).unwrap();
+        for tolerance in [0.1, 0.01, 1e-3] {
+            let found = surface_area(&placed, &frame(), tolerance, &Control::default()).unwrap();
+            assert_eq!(found.stop_reason, StopReason::Tolerance, "{name}");
+            // Turns are rounded.
+            holds(&found, truth * scale * scale, name);
+        }
+        let complement = surface_area(&placed.complement(), &frame(), 0.01, &Control::default()).unwrap();
+        let itself = surface_area(&placed, &frame(), 0.01, &Control::default()).unwrap();
+        assert_eq!(complement, itself, "{name}");
+    }
+}
+
+#[test]
+fn each_budget_holds_the_truth() {
+    let mut random = Random(2);
+    for (name, solid, truth) in primitives() {
+        let (placement, scale) = placement(&mut random);
+        let placed = solid.placed(&placement).unwrap();
+        let mut last = f64::INFINITY;
+        for budget in [0, 1, 5, 50, 500, 5_000, 50_000] {
+            let control = Control { max_splits: Some(budget), ..Control::default() };
+            let found = surface_area(&placed, &frame(), 0.0, &control).unwrap();
+            assert!(found.splits <= budget, "{name} {found:?}");
+            // (As long as a cell knows only how large it is, eight smaller ones may know less; and roundings add up.)
+            assert!(budget < 50 || found.area.width() <= last + 1e-9, "{name} {budget} {found:?}");
+            assert_ne!(found.stop_reason, StopReason::Tolerance);
+            holds(&found, truth * scale * scale, name);
+            last = found.area.width();
+        }
+        assert!(last < 0.02 * truth, "{name} {last}");
+    }
+}
+
+#[test]
+fn widths_fall_with_the_number_of_splits() {
+    // Curved surfaces, and where they meet: with N splits by 1 / N. Plane ones are known at once.
+    for (name, solid, truth) in primitives() {
+        let width = |budget: u64| {
+            let control = Control { max_splits: Some(budget), ..Control::default() };
+            let found = surface_area(&solid, &frame(), 0.0, &control).unwrap();
+            (found.area.width() / truth, found.splits as f64)
+        };
+        let ((coarse, few), (fine, many)) = (width(10_000), width(400_000));
+        if ["cuboid", "wedge", "prism", "octahedron"].contains(&name) {
+            assert!(fine < 1e-9, "{name} {fine}");
+            continue;
+        }
+        let slope = (fine / coarse).ln() / (many / few).ln();
+        assert!(slope < -0.9, "{name} {slope} {coarse} {fine}");
+    }
+}
+
+#[test]
+fn what_parts_have_in_common_does_not_count() {
+    let ball = |x: f64| Csg::ball([x, 0.1, 0.2], 1.0).unwrap();
+    // Two balls at a distance of 1.2: caps of height 0.4 are within the other one.
+    let (whole, cap) = (4.0 * PI, 2.0 * PI * 0.4);
+    let (a, b) = (ball(-0.6), ball(0.6));
+    for (name, solid, truth) in [
+        ("union", Csg::union_of([a.clone(), b.clone()]).unwrap(), 2.0 * (whole - cap)),
+        ("intersection", Csg::intersection_of([a.clone(), b.clone()]).unwrap(), 2.0 * cap),
+        ("difference", a.difference(&b).unwrap(), whole),
+        ("xor", Csg::xor_of([a.clone(), b.clone()]).unwrap(), 2.0 * whole),
+    ] {
+        let found = surface_area(&solid, &frame(), 1e-2, &Control::default()).unwrap();
+        assert_eq!(found.stop_reason, StopReason::Tolerance);
+        holds(&found, truth, name);
+    }
+    // A plate with holes, of which all faces lie in planes of the lattice.
+    let mut plate = Csg::cuboid([-2.0, -2.0, -0.5], [2.0, 2.0, 0.5]).unwrap();
+    for (x, y) in [(-1.0, -1.0), (1.0, -1.0), (0.0, 1.0)] {
+        let hole = Csg::cylinder(0.5, -1.0, 1.0).unwrap();
+        let away = Affine::new([[1.0, 0.0, 0.0, x], [0.0, 1.0, 0.0, y], [0.0, 0.0, 1.0, 0.0]]).unwrap();
+        plate = plate.difference(&hole.placed(&away).unwrap()).unwrap();
+    }
+    let truth = 2.0 * 16.0 + 4.0 * 4.0 + 3.0 * (2.0 * PI * 0.5 - 2.0 * PI * 0.25);
+    let found = surface_area(&plate, &frame(), 1e-3, &Control::default()).unwrap();
+    holds(&found, truth, "plate");
+    assert_eq!(found.stop_reason, StopReason::Tolerance);
+    // A pocket that is as deep as the block is high: nothing is left of it.
+    let block = Csg::cuboid([-1.0; 3], [1.0; 3]).unwrap();
+    let rest = block.difference(&Csg::cuboid([-1.0, -1.0, -1.0], [0.0, 1.0, 1.0]).unwrap()).unwrap();
+    holds(
+        &surface_area(&rest, &frame(), 1e-2, &Control { max_splits: Some(10_000), ..Control::default() })
+            .unwrap(),
+        16.0,
+        "half",
+    );
+}
+
+#[test]
+fn what_is_not_known_is_not_told() {
+    let whole = Interval::new(0.0, f64::INFINITY).unwrap();
+    let control = Control::default();
+    // A stored octree: what its surface is like is not stored.
+    let small = Frame::new([-4.0; 3], 8.0, 5).unwrap();
+    let tree = build(&Csg::ball([0.0; 3], 1.5).unwrap(), &small, Rule::Certified, &control).unwrap();
+    let found = surface_area(&tree, &small, 0.01, &control).unwrap();
+    assert_eq!((found.area, found.stop_reason, found.splits), (whole, StopReason::Exhausted, 0));
+    // A face of a clipped block in a plane of the lattice, and beside one.
+    let block = |x: f64| Csg::cuboid([-9.0, -9.0, -9.0], [x, 9.0, 9.0]).unwrap();
+    let found = surface_area(&block(1.0), &frame(), 0.01, &control).unwrap();
+    assert_eq!((found.area, found.clipped), (whole, true));
+    let found = surface_area(&block(1.0 / 3.0), &frame(), 0.01, &control).unwrap();
+    assert!(found.clipped);
+    holds(&found, 64.0, "clipped");
+    // Nothing, and a ball outside.
+    let a = Csg::ball([0.1; 3], 1.0).unwrap();
+    let far = surface_area(&Csg::ball([50.0; 3], 1.0).unwrap(), &frame(), 0.01, &control).unwrap();
+    assert_eq!((far.area, far.clipped), (Interval::exactly(0.0), true));
+    let none = a.difference(&a).unwrap();
+    let found = surface_area(&none, &frame(), 0.01, &control).unwrap();
+    assert_eq!(found.area.lower, 0.0);
+    assert!(
+        surface_area(&a, &frame(), -1.0, &control).is_err()
+            && surface_area(&a, &frame(), f64::NAN, &control).is_err()
+    );
+    let loose = surface_area(&a, &frame(), Tolerance { relative: 0.0, absolute: 1.0 }, &control).unwrap();
+    assert!(loose.stop_reason == StopReason::Tolerance && loose.area.width() <= 1.0);
+}
+
+#[test]
+fn the_same_for_any_number_of_threads() {
+    let (_, solid, _) = primitives().swap_remove(6);
+    let many = surface_area(&solid, &frame(), 1e-3, &Control::default()).unwrap();
+    assert_eq!(surface_area(&solid, &frame(), 1e-3, &alone()).unwrap(), many);
+}
+
+/// Bounds of the area in a cell by those of cells that are some levels finer, in squares of the cell's half edge.
+/// (Where a solid ends in a wall between two cells the area there is in neither.)
+fn by_finer<W: Worker>(worker: &mut W, cell: Cell, part: &W::Part, levels: u8) -> Interval {
+    if levels == 0 {
+        return worker.area(cell, part).unwrap().unwrap_or(Interval::new(0.0, f64::INFINITY).unwrap());
+    }
+    let mut sum = Interval::exactly(0.0);
+    let mark = worker.mark();
+    for (octant, verdict) in (0..8).zip(worker.split(cell, part).unwrap()) {
+        let child = match verdict {
+            Verdict::Partial(part) => by_finer(worker, cell.child(octant), &part, levels - 1),
+            Verdict::Undecided => Interval::new(0.0, f64::INFINITY).unwrap(),
+            Verdict::Empty | Verdict::Full => continue,
+        };
+        sum = Interval::new(sum.lower + child.lower / 4.0, sum.upper + child.upper / 4.0).unwrap();
+    }
+    worker.release(mark);
+    sum
+}
+
+fn cells_agree(count: u64) {
+    let frame = Frame::new([-1.013, -1.027, -1.041], 2.1, 20).unwrap();
+    let (mut checked, mut tight) = (0, 0);
+    for seed in 0.. {
+        if checked >= count {
+            break;
+        }
+        let mut random = Random(seed ^ 0xA12EA);
+        let mut maker = Maker { random: &mut random, frame, aligned: false, others: false };
+        let count = 1 + maker.below(4);
+        let model = maker.joined(count);
+        let Ok(solid) = model.csg(&frame) else { continue };
+        let classifier = solid.on(&frame, &alone()).unwrap();
+        if !classifier.is_off_lattice() {
+            continue;
+        }
+        let Some(mut way) = Way::new(classifier.worker().unwrap()) else { continue };
+        while way.cell.level <= 14 {
+            let cell = way.cell;
+            if let Some(area) = way.worker.area(cell, &way.part).unwrap() {
+                let finer = by_finer(&mut way.worker, cell, &way.part, 2);
+                let slack = 1e-10;
+                assert!(
+                    area.lower <= finer.upper + slack && finer.lower <= area.upper + slack,
+                    "{seed} {cell:?} {area:?} {finer:?}"
+                );
+                checked += 1;
+                tight += (area.width() < 0.5) as u64;
+            }
+            if !way.descend(&mut random) {
+                break;
+            }
+        }
+    }
+    println!("{tight} of {checked}");
+    assert!(tight * 4 > checked, "{tight} of {checked}");
+}
+
+#[test]
+fn cells_have_the_area_of_finer_cells() {
+    cells_agree(20_000);
+}
+
+#[test]
+#[ignore = "a minute"]
+fn a_million_cells_have_the_area_of_finer_cells() {
+    cells_agree(1_000_000);
+}

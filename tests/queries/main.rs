@@ -1,0 +1,26 @@
+//! Queries and measures, of octrees and of any solid.
+
+#[path = "../../fuzz/bodies/aligned.rs"]
+mod aligned;
+#[path = "../common/mod.rs"]
+mod common;
+#[allow(dead_code)]
+#[path = "../solids/csg/model.rs"]
+mod model;
+#[path = "../solids/csg/random.rs"]
+mod random;
+
+mod area;
+mod columns;
+mod content;
+mod distance;
+mod distance_field;
+mod extent;
+mod interference;
+mod measure;
+mod measure_primitives;
+mod points;
+mod ray_models;
+mod rays;
+mod region;
+mod triangles;

@@ -1,0 +1,10 @@
+//! Pictures.
+
+#[path = "../common/mod.rs"]
+mod common;
+
+#[cfg(feature = "png")]
+mod gear;
+mod raster;
+mod surface;
+mod volume;

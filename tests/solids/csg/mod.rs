@@ -1,0 +1,18 @@
+//! Constructive solid geometry.
+
+mod costs;
+mod equals;
+mod exactness;
+mod extremes;
+mod hierarchy;
+mod hostile;
+mod laws;
+pub mod model;
+mod oracle;
+mod paper;
+mod passing;
+mod points;
+mod poses;
+mod primitives;
+pub mod random;
+mod tables;

@@ -1,0 +1,202 @@
+//! What solids say of the moments of a cell, against what they say of cells far smaller.
+
+#[allow(dead_code)]
+use crate::common::{Random, Way, alone, lattice_frame};
+use crate::model::Model;
+use crate::random::Maker;
+use leafless::{Cell, CellMoments, Classifier, Csg, CubeMoments, Frame, MAX_DEPTH, Solid, Verdict, Worker};
+
+/// The order of second moments.
+const PAIRS: [(usize, usize); 6] = [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)];
+
+/// 1, x, y, z and the second moments, with the greatest error, and the volume in cells of which nothing is known.
+#[derive(Debug, Clone, Copy)]
+struct Sum {
+    moments: [f64; 10],
+    error: f64,
+}
+
+impl Sum {
+    fn of(moments: &CubeMoments, error: f64) -> Sum {
+        let ([x, y, z], [a, b, c, d, e, f]) = (moments.first, moments.second);
+        Sum { moments: [moments.volume, x, y, z, a, b, c, d, e, f], error }
+    }
+
+    /// Adds what is known of a child.
+    fn add(&mut self, octant: u8, child: &Sum) {
+        let at = [0, 1, 2].map(|axis| (octant >> axis & 1) as f64 - 0.5);
+        let [volume, first @ .., _, _, _, _, _, _] = child.moments;
+        let first: [f64; 3] = first;
+        self.moments[0] += volume / 8.0;
+        for i in 0..3 {
+            self.moments[1 + i] += (0.5 * first[i] + at[i] * volume) / 8.0;
+        }
+        for (k, (i, j)) in PAIRS.into_iter().enumerate() {
+            let mixed = 0.5 * (at[i] * first[j] + at[j] * first[i]);
+            self.moments[4 + k] += (0.25 * child.moments[4 + k] + mixed + at[i] * at[j] * volume) / 8.0;
+        }
+        self.error += child.error / 8.0;
+    }
+}
+
+/// The moments of a cell from cells some levels below: those that are decided, those that know their moments, and
+/// others, of which any part may be solid.
+fn below<W: Worker>(worker: &mut W, cell: Cell, part: &W::Part, levels: u32, fine: bool) -> Sum {
+    if levels == 0 || cell.level == worker.frame().depth() {
+        let known = if fine { worker.moments(cell, part).unwrap() } else { None };
+        return match known {
+            Some(CellMoments { moments, error }) => Sum::of(&moments, error),
+            None => {
+                let mut half = Sum::of(&CubeMoments::FULL, 4.0);
+                half.moments.iter_mut().for_each(|moment| *moment *= 0.5);
+                half
+            }
+        };
+    }
+    let mark = worker.mark();
+    let mut sum = Sum::of(&CubeMoments::EMPTY, 0.0);
+    for (octant, verdict) in (0..8).zip(worker.split(cell, part).unwrap()) {
+        let child = match verdict {
+            Verdict::Empty => continue,
+            Verdict::Full => Sum::of(&CubeMoments::FULL, 0.0),
+            Verdict::Undecided => panic!("half-spaces can be split"),
+            Verdict::Partial(part) => below(worker, cell.child(octant), &part, levels - 1, fine),
+        };
+        sum.add(octant, &child);
+    }
+    worker.release(mark);
+    sum
+}
+
+/// The greatest difference.
+fn difference(a: &Sum, b: &Sum) -> f64 {
+    (0..10).fold(0.0, |most, i| most.max((a.moments[i] - b.moments[i]).abs()))
+}
+
+/// Cells that were asked, those whose moments were known, and those of which the cells below know far more.
+#[derive(Debug, Default)]
+struct Found {
+    asked: u64,
+    known: u64,
+    strong: u64,
+    /// The greatest difference as a share of the error, of strong ones.
+    most: f64,
+}
+
+fn walk(model: &Model, frame: &Frame, csg: &Csg, random: &mut Random, found: &mut Found) {
+    let way = |csg: &Csg| Way::new(csg.on(frame, &alone()).unwrap().worker().unwrap());
+    let (Some(mut way), Some(mut opposite)) = (way(csg), way(&csg.complement())) else { return };
+    while way.cell.level < frame.depth() {
+        let cell = way.cell;
+        found.asked += 1;
+        let context = || format!("{cell:?}\n{frame:?}\n{model:#?}");
+        let complement = opposite.worker.moments(cell, &opposite.part).unwrap();
+        let known = way.worker.moments(cell, &way.part).unwrap();
+        assert_eq!(known.is_some(), complement.is_some(), "{}", context());
+        if let (Some(known), Some(complement)) = (known, complement) {
+            found.known += 1;
+            let own = Sum::of(&known.moments, known.error);
+            let back = complement.complement();
+            let error = known.error + back.error;
+            assert!(difference(&own, &Sum::of(&back.moments, 0.0)) <= error, "{}", context());
+            for (levels, fine) in [(4, false), (2, true)] {
+                let sum = below(&mut way.worker, cell, &way.part, levels, fine);
+                let off = difference(&own, &sum);
+                let rounding = 1e-14;
+                assert!(
+                    off <= own.error + sum.error + rounding,
+                    "{off} {fine}: {known:?}\n{sum:?}\n{}",
+                    context()
+                );
+                if fine && sum.error < 0.25 * own.error {
+                    found.strong += 1;
+                    found.most = found.most.max(off / own.error);
+                }
+            }
+        }
+        if !way.descend(random) {
+            return;
+        }
+        opposite.follow(way.cell);
+    }
+}
+
+/// Random solids made by `make`, until `wanted` cells know their moments.
+fn hold(name: &str, wanted: u64, make: impl Fn(&mut Maker<'_>) -> Model) {
+    let mut found = Found::default();
+    for seed in 0.. {
+        if found.known >= wanted {
+            break;
+        }
+        assert!(seed < 10_000 + wanted, "{name}: {found:?}");
+        let mut random = Random(seed ^ 0x303);
+        let depth = 4 + random.below(MAX_DEPTH as u64 - 10) as u8;
+        let frame = match random.below(2) {
+            0 => lattice_frame(depth),
+            _ => Frame::new([0.1, -7.3, 1e5 / 3.0], 10.0 / 3.0, depth).unwrap(),
+        };
+        let aligned = random.below(3) == 0;
+        let mut maker = Maker { random: &mut random, frame, aligned, others: false };
+        let model = make(&mut maker);
+        // What the ranges of arguments do not admit.
+        let Ok(csg) = model.csg(&frame) else { continue };
+        walk(&model, &frame, &csg, &mut random, &mut found);
+    }
+    println!("{name}: {found:?}");
+    assert!(found.strong > wanted / 4, "{name}: {found:?}");
+}
+
+/// A curved half-space with one or two planes.
+fn cut(maker: &mut Maker<'_>) -> Model {
+    let mixed = maker.below(2) == 0;
+    let mut model = match maker.below(4) {
+        0 => maker.power(),
+        1 => maker.torus(),
+        _ => maker.quadric(mixed),
+    };
+    for _ in 0..1 + maker.below(2) {
+        let plane = maker.plane();
+        model = match maker.below(3) {
+            0 => Model::Union(vec![model, plane]),
+            1 => Model::Intersection(vec![plane, model]),
+            _ => Model::Difference(Box::new([plane, model])),
+        };
+    }
+    model
+}
+
+fn every_producer(cells: u64) {
+    hold("quadrics", cells, |maker| maker.quadric(false));
+    hold("mixed quadrics", cells, |maker| maker.quadric(true));
+    hold("turned quadrics", cells, |maker| {
+        let quadric = maker.quadric(false);
+        maker.placed(quadric)
+    });
+    hold("powers", cells, |maker| maker.power());
+    hold("turned powers", cells, |maker| {
+        let power = maker.power();
+        maker.placed(power)
+    });
+    hold("tori", cells, |maker| maker.torus());
+    hold("turned tori", cells, |maker| {
+        let torus = maker.torus();
+        maker.placed(torus)
+    });
+    hold("primitives", cells, |maker| maker.primitive());
+    hold("cut by planes", cells, cut);
+    hold("cut by planes, turned", cells, |maker| {
+        let cut = cut(maker);
+        maker.placed(cut)
+    });
+}
+
+#[test]
+fn moments_agree_with_those_of_smaller_cells() {
+    every_producer(400);
+}
+
+#[test]
+#[ignore = "minutes"]
+fn a_hundred_thousand_cells() {
+    every_producer(10_000);
+}

@@ -1,0 +1,13 @@
+//! Triangle meshes of octrees, solids and volumes.
+
+#[path = "../../fuzz/bodies/aligned.rs"]
+mod aligned;
+#[path = "../common/mod.rs"]
+mod common;
+
+mod marching_cubes;
+mod methods;
+mod shrink;
+mod simple;
+mod solid;
+mod volume;
