@@ -1,11 +1,8 @@
 //! Cancelling, watching and limiting long work.
 
 use crate::error::Error;
+use crate::parallel;
 use core::sync::atomic::{AtomicBool, AtomicUsize, Ordering::Relaxed};
-
-/// Most threads that an operation starts.
-#[cfg(feature = "parallel")]
-const MOST_THREADS: usize = 1024;
 
 /// How a long operation may proceed. The default has no limit, uses all processors and reports to nobody.
 ///
@@ -87,46 +84,10 @@ impl Control<'_> {
         if self.is_cancelled() { Err(Error::Cancelled) } else { Ok(()) }
     }
 
-    /// Runs `work` where parallel iterators use the threads that were asked for, if the work is `worth`
+    /// Runs `work` where the functions of [`parallel`] use the threads that were asked for, if the work is `worth`
     /// starting them; `work` is told whether there is more than one.
     pub(crate) fn run<R: Send>(&self, worth: bool, work: impl FnOnce(bool) -> R + Send) -> R {
-        #[cfg(feature = "parallel")]
-        let work = if worth {
-            let threads = match self.threads {
-                0 => std::thread::available_parallelism().map_or(1, |n| n.get()),
-                n => n.min(MOST_THREADS),
-            };
-            let mut work = Some(work);
-            if threads > 1 {
-                // All are joined, and not only done with their work, as a scope alone sees to: no thread
-                // outlives the call, not even by what it tidies up at its end.
-                let done = std::thread::scope(|scope| {
-                    let mut joinable = alloc::vec::Vec::new();
-                    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).spawn_handler(|thread| {
-                        joinable.push(std::thread::Builder::new().spawn_scoped(scope, || thread.run())?);
-                        Ok(())
-                    });
-                    let done = pool.build().ok().and_then(|pool| {
-                        let work = work.take()?;
-                        Some(pool.install(|| work(true)))
-                    });
-                    for thread in joinable {
-                        // A panic in one has reached `install`.
-                        let _ = thread.join();
-                    }
-                    done
-                });
-                if let Some(done) = done {
-                    return done;
-                }
-            }
-            // The pool takes the work only once it stands.
-            work.unwrap_or_else(|| unreachable!("work was taken and not done"))
-        } else {
-            work
-        };
-        let _ = worth;
-        work(false)
+        if worth { parallel::run(self.threads, work) } else { work(false) }
     }
 }
 

@@ -97,6 +97,7 @@ mod memory;
 mod mesh;
 mod octree;
 mod op;
+mod parallel;
 mod query;
 mod render;
 #[cfg(feature = "scene")]

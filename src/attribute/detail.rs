@@ -3,6 +3,7 @@
 use super::{Attribute, ValueRange};
 use crate::error::Error;
 use crate::lattice::Bounds;
+use crate::lattice::axes;
 
 /// What makes a cell fine enough, once it is no longer than the coarse limit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -86,9 +87,8 @@ impl Detail {
         if self.tolerance == f64::INFINITY {
             return Ok(true);
         }
-        let corner = |k: usize| {
-            [0, 1, 2].map(|axis| if k >> axis & 1 == 0 { bounds.min[axis] } else { bounds.max[axis] })
-        };
+        let corner =
+            |k: usize| axes(|axis| if k >> axis & 1 == 0 { bounds.min[axis] } else { bounds.max[axis] });
         let points: [[f64; 3]; 8] = core::array::from_fn(corner);
         let mut values = [None; 8];
         attribute.values(&points, &mut values)?;

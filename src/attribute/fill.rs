@@ -8,6 +8,7 @@ use crate::memory;
 use crate::octree::channel::writer::{Cells, ChannelWriter, Filled};
 use crate::octree::view::{element_levels, starts_half_way};
 use crate::octree::{Channel, Metadata, ValueType};
+use crate::parallel::each;
 use alloc::vec::Vec;
 use core::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
@@ -121,17 +122,15 @@ impl<S: Source> Filler<'_, S> {
         cells: &mut Cells,
         writer: &mut ChannelWriter<'_>,
     ) -> Result<(), Error> {
-        #[cfg(feature = "parallel")]
         if self.parallel && e < 2 && open.len() > 1 {
-            use rayon::prelude::*;
             let from = &*writer;
-            let done = open.into_par_iter().map(|(place, cell, part)| {
+            let done = each(true, open.into_iter(), |(place, cell, part)| {
                 let mut own = from.sibling()?;
                 let filled = self.cell(e + 1, cell, &part, &mut own)?;
                 self.advance(e, &own);
                 Ok((place, filled, own))
             });
-            for (place, filled, own) in done.collect::<Result<Vec<_>, Error>>()? {
+            for (place, filled, own) in done? {
                 cells[place] = filled;
                 writer.append(own)?;
             }

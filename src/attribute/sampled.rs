@@ -5,6 +5,7 @@ use super::source::{Known, Source};
 use super::{Attribute, Detail, ValueRange};
 use crate::control::Control;
 use crate::error::Error;
+use crate::lattice::axes;
 use crate::lattice::{Bounds, Cell, Cube, Frame};
 use crate::octree::channel::Bits;
 use crate::octree::{Channel, OctreeRef, ValueType};
@@ -87,7 +88,7 @@ type Part = Option<StoredPart>;
 impl Sampled<'_> {
     fn centre(&self, cell: Cell) -> [f64; 3] {
         let parts = (2u64 << cell.level) as f64;
-        [0, 1, 2].map(|axis| {
+        axes(|axis| {
             let middle = f64::from(cell.at[axis]) * 2.0 + 1.0;
             self.frame.origin()[axis] + self.frame.edge() * (middle / parts)
         })

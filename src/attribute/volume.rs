@@ -2,6 +2,7 @@
 
 use super::{Attribute, ValueRange};
 use crate::error::Error;
+use crate::lattice::axes;
 use crate::lattice::{Bounds, Interval};
 use crate::solid::Volume;
 
@@ -59,15 +60,15 @@ impl Attribute for VolumeAttribute<'_> {
             return Ok(ValueRange::Unknown);
         }
         // The points lie before the upper faces of the box.
-        let last = [0, 1, 2].map(|axis| bounds.max[axis].next_down().max(bounds.min[axis]));
+        let last = axes(|axis| bounds.max[axis].next_down().max(bounds.min[axis]));
         let (Some(mut first), Some(mut last)) = (grid.voxel_of(bounds.min), grid.voxel_of(last)) else {
             return Ok(ValueRange::Unknown);
         };
         if self.interpolation == Interpolation::Trilinear {
             first = first.map(|a| a.saturating_sub(1));
-            last = [0, 1, 2].map(|axis| (last[axis] + 1).min(grid.extents()[axis] - 1));
+            last = axes(|axis| (last[axis] + 1).min(grid.extents()[axis] - 1));
         }
-        let counts = [0, 1, 2].map(|axis| u64::from(last[axis] - first[axis]) + 1);
+        let counts = axes(|axis| u64::from(last[axis] - first[axis]) + 1);
         if counts.iter().try_fold(1u64, |all, &count| all.checked_mul(count)).is_none_or(|n| n > MOST_SAMPLES)
         {
             return Ok(ValueRange::Unknown);

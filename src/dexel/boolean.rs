@@ -16,6 +16,7 @@ use crate::control::{Control, Job, WHOLE};
 use crate::error::Error;
 use crate::lattice::Frame;
 use crate::memory;
+use crate::parallel::each;
 use core::ops::Range;
 
 /// Rows of rays that a thread works on at a time.
@@ -258,17 +259,14 @@ fn by_rows<S: Form>(
         work(range, &mut piece)?;
         Ok::<_, Error>(piece)
     };
-    #[cfg(feature = "parallel")]
     if parallel && rows.len() > ROWS as usize {
-        use rayon::prelude::*;
-        let count = (rows.end - rows.start).div_ceil(ROWS);
-        let pieces = (0..count)
-            .into_par_iter()
-            .map(|i| one(rows.start + i * ROWS..rows.end.min(rows.start + (i + 1) * ROWS)))
-            .collect::<Result<alloc::vec::Vec<_>, Error>>()?;
-        return Ok(S::own(assembled(window, format, pieces)?));
+        let count = (rows.end - rows.start).div_ceil(ROWS) as usize;
+        let tiles = (0..count).map(|i| {
+            let first = rows.start + i as u32 * ROWS;
+            first..rows.end.min(first + ROWS)
+        });
+        return Ok(S::own(assembled(window, format, each(true, tiles, one)?)?));
     }
-    let _ = (parallel, ROWS);
     let mut pieces = memory::with_capacity(1)?;
     pieces.push(one(rows)?);
     Ok(S::own(assembled(window, format, pieces)?))

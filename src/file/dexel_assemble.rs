@@ -8,6 +8,7 @@ use super::kind::{Column, Kind};
 use super::object::Object;
 use crate::dexel::{ColumnsRef, NormalsRef, Rows, RowsRef, Span, TriDexel, TriDexelRef, with_rows};
 use crate::error::Error;
+use crate::lattice::axes;
 use crate::memory;
 use crate::octree::metadata::MetadataLimit;
 use alloc::vec::Vec;
@@ -40,7 +41,7 @@ pub(super) fn assemble(model: &TriDexel, deliver: Deliver<'_>) -> Result<(), Err
 }
 
 fn header(model: &TriDexelRef<'_>) -> Header {
-    let [x, y, z] = [0, 1, 2].map(|axis| model.rays(axis).map_or(0, |rays| rays.interval_count()));
+    let [x, y, z] = axes(|axis| model.rays(axis).map_or(0, |rays| rays.interval_count()));
     Header {
         magic: MAGIC,
         major: MAJOR,

@@ -1,6 +1,5 @@
 //! What the first bytes of a file say of it, whatever it holds.
 
-#[cfg(feature = "std")]
 use super::buffer::regular_length;
 use super::form::Form;
 #[cfg(feature = "std")]
@@ -14,6 +13,8 @@ use crate::error::Error;
 #[cfg(feature = "std")]
 use crate::error::FormatError;
 use crate::lattice::Frame;
+#[cfg(feature = "std")]
+use crate::lattice::axes;
 use crate::memory;
 use crate::octree::{Proof, Tag};
 use alloc::vec::Vec;
@@ -116,7 +117,7 @@ pub fn probe_bytes(bytes: &[u8]) -> Result<Probe, Error> {
         dexels: head.form.map(|Form { format, directions }| DexelProbe {
             format,
             directions,
-            rays: [0, 1, 2].map(|axis| {
+            rays: axes(|axis| {
                 let of_kind = |entry: &Entry| entry.known(&main) == Some(Kind::along(axis, Column::Starts));
                 entries(raw).find(of_kind).map_or(0, |entry| entry.count - 1)
             }),

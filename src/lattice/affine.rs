@@ -1,5 +1,6 @@
 //! Affine maps of model space.
 
+use super::axes;
 use super::exact::{Expansion, product_up, sign_of_products, two_product};
 use crate::error::Error;
 
@@ -72,7 +73,7 @@ impl Affine {
     pub fn orientation(&self) -> i32 {
         // Six products of three doubles, four terms each, none of which leaves the range of doubles.
         let m = &self.rows;
-        let parts = [0, 1, 2].map(|i| {
+        let parts = axes(|i| {
             let (j, k) = ((i + 1) % 3, (i + 2) % 3);
             let (plus, minus) = (two_product(m[0][i], m[1][j]), two_product(m[0][j], m[1][i]));
             [(plus.0, m[2][k]), (plus.1, m[2][k]), (-minus.0, m[2][k]), (-minus.1, m[2][k])]
@@ -89,7 +90,7 @@ impl Affine {
             let (plus, minus) = (two_product(m[r][c], m[s][d]), two_product(m[r][d], m[s][c]));
             Expansion::sum([plus.1, -minus.1, plus.0, -minus.0])
         };
-        let cofactors = [0, 1, 2].map(|i| [0, 1, 2].map(|j| minor(i, j)));
+        let cofactors = axes(|i| axes(|j| minor(i, j)));
         let determinant = (0..3).fold(Expansion::default(), |sum, j| {
             sum.plus(&cofactors[0][j].times(&Expansion::sum([m[0][j]])))
         });
@@ -100,7 +101,7 @@ impl Affine {
     /// and the determinant, both of which come from exact sums.
     pub(crate) fn inverse_linear(&self) -> [[f64; 3]; 3] {
         let (cofactors, determinant) = self.cofactors();
-        [0, 1, 2].map(|i| [0, 1, 2].map(|j| cofactors[j][i].estimate() / determinant))
+        axes(|i| axes(|j| cofactors[j][i].estimate() / determinant))
     }
 
     /// The map that leads back, rounded: each entry is off by 5 · 2^-53 of itself at the most, but those of
@@ -118,11 +119,11 @@ impl Affine {
     /// ```
     pub fn inverse(&self) -> Result<Affine, Error> {
         let (cofactors, determinant) = self.cofactors();
-        let rows = [0, 1, 2].map(|i| {
+        let rows = axes(|i| {
             let moved = (0..3).fold(Expansion::default(), |sum, j| {
                 sum.plus(&cofactors[j][i].times(&Expansion::sum([-self.rows[j][3]])))
             });
-            let [x, y, z] = [0, 1, 2].map(|j| cofactors[j][i].estimate() / determinant);
+            let [x, y, z] = axes(|j| cofactors[j][i].estimate() / determinant);
             [x, y, z, moved.estimate() / determinant]
         });
         Affine::new(rows.map(|row| row.map(|c| if c.abs() < 1.0 / LARGEST { 0.0 } else { c })))

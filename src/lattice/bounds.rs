@@ -1,5 +1,6 @@
 //! Boxes in model space.
 
+use super::axes;
 use super::composed::{Composed, RoundedSum};
 use super::exact::{sign_of_sum, two_sum};
 use super::{Affine, Frame};
@@ -32,7 +33,7 @@ impl Bounds {
     /// The eight corners, x running fastest and z slowest.
     pub fn corners(&self) -> [[f64; 3]; 8] {
         core::array::from_fn(|k| {
-            [0, 1, 2].map(|axis| if k >> axis & 1 == 0 { self.min[axis] } else { self.max[axis] })
+            axes(|axis| if k >> axis & 1 == 0 { self.min[axis] } else { self.max[axis] })
         })
     }
 
@@ -40,16 +41,16 @@ impl Bounds {
     #[must_use]
     pub fn hull(&self, other: &Bounds) -> Bounds {
         Bounds {
-            min: [0, 1, 2].map(|axis| self.min[axis].min(other.min[axis])),
-            max: [0, 1, 2].map(|axis| self.max[axis].max(other.max[axis])),
+            min: axes(|axis| self.min[axis].min(other.min[axis])),
+            max: axes(|axis| self.max[axis].max(other.max[axis])),
         }
     }
 
     /// What both have in common, which may be a face; `None` if there is nothing.
     pub fn common(&self, other: &Bounds) -> Option<Bounds> {
         Bounds::new(
-            [0, 1, 2].map(|axis| self.min[axis].max(other.min[axis])),
-            [0, 1, 2].map(|axis| self.max[axis].min(other.max[axis])),
+            axes(|axis| self.min[axis].max(other.min[axis])),
+            axes(|axis| self.max[axis].min(other.max[axis])),
         )
     }
 
@@ -76,8 +77,7 @@ impl Bounds {
         for (i, (row, errors)) in map.rows.iter().zip(&map.errors).enumerate() {
             let factors = [row[0], row[1], row[2]];
             let end = |upper: bool| {
-                let corner =
-                    [0, 1, 2].map(|k| if (row[k] > 0.0) == upper { self.max[k] } else { self.min[k] });
+                let corner = axes(|k| if (row[k] > 0.0) == upper { self.max[k] } else { self.min[k] });
                 RoundedSum::of(factors, corner, row[3])
             };
             let reach = |k: usize| errors[k] * self.min[k].abs().max(self.max[k].abs());

@@ -1,5 +1,6 @@
 //! A cell together with its frame.
 
+use super::axes;
 use super::{Cell, Frame, Interval};
 
 /// A cell as a piece of model space: what a solid is asked about.
@@ -47,7 +48,7 @@ impl<'f> Cube<'f> {
     /// The vector from a point (model units) to the cube's centre, rounded outward.
     pub(crate) fn centre_from(&self, point: [f64; 3]) -> [Interval; 3] {
         let (lower, upper) = self.planes();
-        [0, 1, 2].map(|axis| {
+        axes(|axis| {
             let middle = lower[axis] as i64 + upper[axis] as i64;
             self.frame.rounded_offset(axis, point[axis], middle).negated()
         })

@@ -1,5 +1,6 @@
 //! Where the lattice lies in model space.
 
+use super::axes;
 use super::exact::{DoubleDouble, Expansion, floor, sign_of_sum, two_diff, two_product, two_sum};
 use super::{Interval, MAX_DEPTH, valid};
 use crate::error::{Error, MeshError};
@@ -54,7 +55,7 @@ impl Frame {
     /// doubles.
     pub fn around(min: [f64; 3], max: [f64; 3], depth: u8) -> Result<Frame, Error> {
         let edge = longest_extent(min, max)? * (1.0 + 1.0 / 32.0);
-        let frame = Frame::new([0, 1, 2].map(|axis| centred(min[axis], max[axis], edge)), edge, depth)?;
+        let frame = Frame::new(axes(|axis| centred(min[axis], max[axis], edge)), edge, depth)?;
         if frame.holds(min, max) { Ok(frame) } else { Err(UNRESOLVED) }
     }
 
@@ -431,7 +432,7 @@ mod tests {
             [[100.0, 60.0, 30.0], [1.0; 3], [128.0, 1.0, 64.0], [1e-3, 0.0, 0.1], [33.0, 0.5, 65.0]];
         for min in min {
             for extent in extents {
-                let max = [0, 1, 2].map(|axis| min[axis] + extent[axis]);
+                let max = axes(|axis| min[axis] + extent[axis]);
                 let Ok(frame) = Frame::aligned(min, max, 9) else { panic!("{min:?} {max:?}") };
                 let (edge, longest) = (frame.edge(), extent.into_iter().fold(0.0, f64::max));
                 assert!(frame.holds(min, max) && edge < 4.0 * longest, "{frame:?} {min:?} {max:?}");

@@ -18,6 +18,7 @@
 //! ```
 
 mod affine;
+mod axes;
 mod bounds;
 mod cell;
 mod composed;
@@ -32,6 +33,7 @@ pub(crate) mod valid;
 mod window;
 
 pub use affine::Affine;
+pub(crate) use axes::axes;
 pub use bounds::Bounds;
 pub use cell::Cell;
 pub(crate) use composed::Composed;

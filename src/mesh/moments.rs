@@ -22,6 +22,7 @@ use super::surface::{FillRule, TriangleMesh};
 use super::tree::{Grid, Search, Tree};
 use crate::control::Control;
 use crate::error::{Error, MeshError};
+use crate::lattice::axes;
 use crate::lattice::exact::{sqrt, two_sum};
 use crate::lattice::{Interval, VolumeMoments};
 use core::array::from_fn as array;
@@ -194,7 +195,7 @@ fn moments_of([a, u, v]: &[Point; 3], minus: impl Fn(f64, f64) -> f64) -> [f64; 
     let [b, c]: [Point; 2] = [u, v].map(|edge| array(|k| a[k] + edge[k]));
     let minor = |i: usize, j: usize| minus(u[i] * v[j], u[j] * v[i]);
     let six_fold = a[0] * minor(1, 2) + a[1] * minor(2, 0) + a[2] * minor(0, 1);
-    let [x, y, z] = [0, 1, 2].map(|k| a[k] + b[k] + c[k]);
+    let [x, y, z] = axes(|k| a[k] + b[k] + c[k]);
     let second =
         |i: usize, j: usize, of_sums: f64| six_fold * (of_sums + (a[i] * a[j] + b[i] * b[j] + c[i] * c[j]));
     [

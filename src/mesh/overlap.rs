@@ -15,6 +15,7 @@
 //! **Nesting.** The winding numbers of all bodies around a body add up. It is nested with the same sense if
 //! the sum has the sign of its own volume: a cavity in a body is not, and a body in a cavity is not either.
 
+use crate::lattice::axes;
 use alloc::vec::Vec;
 
 use super::body::{Body, Bounds, partition};
@@ -110,7 +111,7 @@ impl Shift {
     const COUNT: usize = 8;
 
     fn new(index: usize) -> Shift {
-        Shift([0, 1, 2].map(|axis| if index >> axis & 1 == 0 { 1 } else { -1 }))
+        Shift(axes(|axis| if index >> axis & 1 == 0 { 1 } else { -1 }))
     }
 
     fn back(self) -> Shift {

@@ -4,6 +4,7 @@
 //! edge, and that voids lie within their solids; faces that cut through each other, shells that overlap and
 //! solids that do are let through, because a mesh has a meaning for them.
 
+use crate::lattice::axes;
 use alloc::vec::Vec;
 
 use robust::{Coord, Coord3D, orient2d, orient3d};
@@ -498,7 +499,7 @@ fn holds(corners: [[f64; 3]; 3], p: [f64; 3]) -> bool {
 
 /// The volume that triangles enclose, as differences to the centre of their bounds.
 fn volume(vertices: &[[f64; 3]], triangles: &[[u32; 3]], bounds: &Bounds) -> f64 {
-    let centre = [0, 1, 2].map(|axis| bounds.low[axis].midpoint(bounds.high[axis]));
+    let centre = axes(|axis| bounds.low[axis].midpoint(bounds.high[axis]));
     let six_fold: f64 = (triangles.iter())
         .map(|triangle| {
             let [a, b, c] = triangle.map(|v| {

@@ -1,5 +1,6 @@
 //! On which side points lie: the signs of determinants, exactly.
 
+use crate::lattice::axes;
 use crate::lattice::exact::{Expansion, sign};
 use core::array::from_fn as array;
 
@@ -24,7 +25,7 @@ pub(super) fn volume_sign(a: &Point, b: &Point, c: &Point, d: &Point) -> i32 {
         // No product underflows: coordinates that are not zero, and differences of them, are at least 2^-308.
         return 0;
     }
-    let [u, v, w] = [b, c, d].map(|p| [0, 1, 2].map(|axis| Expansion::sum([p[axis], -a[axis]])));
+    let [u, v, w] = [b, c, d].map(|p| axes(|axis| Expansion::sum([p[axis], -a[axis]])));
     let mut sum = Expansion::default();
     for k in 0..3 {
         let (i, j) = ((k + 1) % 3, (k + 2) % 3);

@@ -11,7 +11,6 @@ use super::tag::Tag;
 use super::view::{MAX_ELEMENT_LEVELS, OctreeRef};
 use super::word::Planes;
 use crate::error::Damage;
-#[cfg(feature = "parallel")]
 use core::ops::Range;
 
 /// What lies in a cell of an element.
@@ -155,7 +154,6 @@ impl Windows {
     /// Cuts off the windows of the subtrees below the elements `range` of level `e`, which have been
     /// admitted, and passes them: what several threads visit below elements that were cut off one after
     /// another never overlaps.
-    #[cfg(feature = "parallel")]
     pub(crate) fn below(
         &mut self,
         tree: &OctreeRef<'_>,

@@ -17,11 +17,11 @@ use crate::dispatch::{Hot, with_popcount};
 use crate::error::{Damage, Error};
 use crate::lattice::Frame;
 use crate::memory;
+use crate::parallel;
 use alloc::vec::Vec;
 use core::ops::Range;
 
 /// Items that several threads copy at once when pieces are joined.
-#[cfg(feature = "parallel")]
 const BLOCK: usize = 64;
 
 /// A vector in pieces: it grows without ever copying what it holds or asking for twice the memory.
@@ -34,7 +34,6 @@ impl<T: Copy + Send + Sync> Chunks<T> {
     const SMALLEST: usize = 64;
     const LARGEST: usize = 1 << 17;
     /// What is joined by copying and not as a piece of its own.
-    #[cfg(feature = "parallel")]
     const COPIED: usize = 1 << 10;
 
     fn new() -> Chunks<T> {
@@ -81,7 +80,6 @@ impl<T: Copy + Send + Sync> Chunks<T> {
         Ok(())
     }
 
-    #[cfg(feature = "parallel")]
     fn append(&mut self, mut other: Chunks<T>) -> Result<(), Error> {
         let room = self.tail.capacity() - self.tail.len();
         if other.full.is_empty() && other.tail.len() <= room.min(Self::COPIED) {
@@ -104,15 +102,15 @@ impl<T: Copy + Send + Sync> Chunks<T> {
             return Ok(tail);
         }
         let mut all = memory::with_capacity(self.len())?;
-        #[cfg(feature = "parallel")]
         if joined {
-            use rayon::prelude::*;
             let count = self.len();
             let pieces = || self.full.iter().chain([&self.tail]).map(Vec::as_slice);
             let mut blocks: Vec<[T; BLOCK]> = memory::with_capacity(count.div_ceil(BLOCK))?;
-            let each = (0..count / BLOCK).into_par_iter().with_min_len(1 << 10);
-            // Each job takes neighbours, so it looks only for the first of them.
-            blocks.par_extend(each.map_init(
+            // Each share consists of neighbours, so it looks only for the first of them.
+            parallel::extend(
+                true,
+                &mut blocks,
+                0..count / BLOCK,
                 || None,
                 |at, i| {
                     let (rest, more) = at.get_or_insert_with(|| {
@@ -137,12 +135,11 @@ impl<T: Copy + Send + Sync> Chunks<T> {
                         }
                     })
                 },
-            ));
+            );
             let mut all = blocks.into_flattened();
             all.extend(pieces().flatten().skip(all.len()));
             return Ok(all);
         }
-        let _ = joined;
         for piece in self.full.into_iter().chain([self.tail]) {
             all.extend_from_slice(&piece);
         }
@@ -188,7 +185,6 @@ impl<'j> Writer<'j> {
     }
 
     /// An empty writer for a part of the same tree, to be [appended](Self::append) later.
-    #[cfg(feature = "parallel")]
     pub(crate) fn sibling(&self) -> Writer<'j> {
         Writer::new(self.job, self.depth, matches!(self.bricks, BrickChunks::One(_)))
     }
@@ -332,7 +328,6 @@ impl<'j> Writer<'j> {
     }
 
     /// Takes over what a sibling wrote, which comes after all that this one wrote so far.
-    #[cfg(feature = "parallel")]
     pub(crate) fn append(&mut self, other: Writer<'j>) -> Result<(), Error> {
         for (level, theirs) in self.levels.iter_mut().zip(other.levels) {
             level.append(theirs)?;

@@ -14,12 +14,12 @@
 use crate::control::{Control, Job, WHOLE};
 use crate::dispatch::{Hot, with_popcount};
 use crate::error::{Damage, Error};
-#[cfg(feature = "parallel")]
 use crate::memory;
 use crate::octree::links::Windows;
 use crate::octree::view::OctreeRef;
 use crate::octree::writer::Writer;
 use crate::octree::{Octree, Planes, Proof, Tag};
+use crate::parallel::each;
 use core::ops::Range;
 
 /// The points that lie in `a`, in `b`, or in both.
@@ -394,7 +394,6 @@ impl Kernel<'_> {
 
     /// The steps below an element of the first two levels as independent tasks, their outputs appended in
     /// order.
-    #[cfg(feature = "parallel")]
     fn visit_parallel(
         &self,
         e: usize,
@@ -404,8 +403,6 @@ impl Kernel<'_> {
         walk: &mut Walk<'_, '_>,
         result: &mut Planes,
     ) -> Result<(), Error> {
-        use alloc::vec::Vec;
-        use rayon::prelude::*;
         let mut tasks = memory::with_capacity(open.count_ones() as usize)?;
         while open != 0 {
             let before = open.count_ones();
@@ -429,15 +426,12 @@ impl Kernel<'_> {
             tasks.push((step, windows, before - open.count_ones()));
         }
         let subtrees = &*walk.writer;
-        let done = tasks
-            .into_par_iter()
-            .map(|(step, windows, cells)| {
-                let mut subtree = subtrees.sibling();
-                let found = self.go(e, step, &mut Walk { windows, writer: &mut subtree }, true)?;
-                self.advance(e, cells, &subtree);
-                Ok((found, subtree))
-            })
-            .collect::<Result<Vec<_>, Error>>()?;
+        let done = each(true, tasks.into_iter(), |(step, windows, cells)| {
+            let mut subtree = subtrees.sibling();
+            let found = self.go(e, step, &mut Walk { windows, writer: &mut subtree }, true)?;
+            self.advance(e, cells, &subtree);
+            Ok((found, subtree))
+        })?;
         for (found, subtree) in done {
             if let Some((c, tag)) = found {
                 result.set(c, tag);
@@ -475,7 +469,6 @@ impl Hot for Visit<'_, '_, '_, '_> {
         if e + 1 == levels {
             return Err(kernel.branching_brick(sources).into());
         }
-        #[cfg(feature = "parallel")]
         if parallel && (e == 0 || e == 1 && e + 3 < levels) {
             kernel.visit_parallel(e + 1, open, sources, planes, walk, &mut result)?;
             return walk.writer.put(e, result);

@@ -11,6 +11,7 @@ use crate::octree::links::Windows;
 use crate::octree::view::{OctreeRef, element_levels, starts_half_way};
 use crate::octree::writer::Writer;
 use crate::octree::{Block, Octree, Planes, Tag};
+use crate::parallel::{self, each_with};
 use crate::solid::{Classifier, Solid, Subtree, Verdict, Worker};
 use alloc::vec::Vec;
 
@@ -219,7 +220,6 @@ impl<C: Classifier> Builder<'_, C> {
             let decided = self.cells(e) - splittable.count_ones() as usize;
             writer.job().advance(decided * self.weight(e));
         }
-        #[cfg(feature = "parallel")]
         if self.parallel
             && e < 2
             && (e + 3 < self.levels || hand.worker.likes_many())
@@ -253,7 +253,6 @@ impl<C: Classifier> Builder<'_, C> {
         Ok(result)
     }
 
-    #[cfg(feature = "parallel")]
     fn children_parallel(
         &self,
         e: usize,
@@ -262,34 +261,32 @@ impl<C: Classifier> Builder<'_, C> {
         hand: &Hand<C>,
         writer: &mut Writer<'_>,
     ) -> Result<Vec<(u8, Tag)>, Error> {
-        use rayon::prelude::*;
         let subtrees = &*writer;
         let from = &hand.worker;
-        let done = hand.parts[first..]
-            .par_iter()
-            .map_init(
-                || None,
-                |own, (c, part)| {
-                    let mut subtree = subtrees.sibling();
-                    if let Some(stored) = self.stored(e + 1, part, from) {
-                        copy(&stored, 1, &mut subtree)?;
-                        return Ok((*c, Tag::Branch, subtree));
-                    }
-                    let hand = match own {
-                        Some(hand) => hand,
-                        none => none.insert(Hand::new(self.classifier)?),
-                    };
-                    let mark = hand.worker.mark();
-                    let part = hand.worker.hand_over(from, part)?;
-                    let tag = self.cell(e + 1, self.at(e, cell, *c), &part, hand, &mut subtree)?;
-                    hand.worker.release(mark);
-                    if e == 1 {
-                        subtree.job().advance(self.weight(e));
-                    }
-                    Ok((*c, tag, subtree))
-                },
-            )
-            .collect::<Result<Vec<_>, Error>>()?;
+        let done = each_with(
+            true,
+            hand.parts[first..].iter(),
+            || None,
+            |own, (c, part)| {
+                let mut subtree = subtrees.sibling();
+                if let Some(stored) = self.stored(e + 1, part, from) {
+                    copy(&stored, 1, &mut subtree)?;
+                    return Ok((*c, Tag::Branch, subtree));
+                }
+                let hand = match own {
+                    Some(hand) => hand,
+                    none => none.insert(Hand::new(self.classifier)?),
+                };
+                let mark = hand.worker.mark();
+                let part = hand.worker.hand_over(from, part)?;
+                let tag = self.cell(e + 1, self.at(e, cell, *c), &part, hand, &mut subtree)?;
+                hand.worker.release(mark);
+                if e == 1 {
+                    subtree.job().advance(self.weight(e));
+                }
+                Ok((*c, tag, subtree))
+            },
+        )?;
         done.into_iter().map(|(c, tag, subtree)| writer.append(subtree).map(|()| (c, tag))).collect()
     }
 
@@ -333,7 +330,7 @@ impl<C: Classifier> Builder<'_, C> {
         writer: &mut Writer<'_>,
     ) -> Result<Tag, Error> {
         // Below the root threads have cells of their own.
-        let threads = if self.parallel && e == 0 { gathered::threads() } else { 1 };
+        let threads = if self.parallel && e == 0 { parallel::threads() } else { 1 };
         let (centres, job) = (self.rule == Rule::Sampled, writer.job());
         let asked = (cell, part.clone());
         let known = Gathered::new(self.classifier, &mut hand.worker, asked, centres, job, threads)?;

@@ -16,8 +16,10 @@ use crate::dexel::{
     TriDexel, Window, assembled, first_above,
 };
 use crate::error::Error;
+use crate::lattice::axes;
 use crate::lattice::{Bounds, Cell, Frame, MAX_DEPTH};
 use crate::memory;
+use crate::parallel::each_with;
 use crate::solid::{Classifier, PartOf, Solid, Verdict, Worker, WorkerOf};
 use alloc::boxed::Box;
 use alloc::vec::Vec;
@@ -105,7 +107,7 @@ pub fn dexelize<S: Solid>(
 fn extent(bounds: Option<Bounds>, frame: &Frame) -> [Range<u32>; 3] {
     let all = 0..frame.cells();
     let Some(bounds) = bounds else { return [all.clone(), all.clone(), all] };
-    [0, 1, 2].map(|axis| {
+    axes(|axis| {
         // A cell more than needed, for what is rounded.
         let cells = f64::from(frame.cells());
         let low = frame.scaled(axis, bounds.min[axis]) - 1.0;
@@ -136,7 +138,7 @@ fn model<T: Solid, S: Form>(
     job.check()?;
     let extent = if rays(&extent, options) > MANY {
         let known = hull(&mut classifier.worker()?, frame.depth(), control)?;
-        [0, 1, 2].map(|axis| {
+        axes(|axis| {
             let start = extent[axis].start.max(known[axis].start);
             start..extent[axis].end.min(known[axis].end).max(start)
         })
@@ -204,27 +206,22 @@ impl<T: Solid> Tiles<'_, T> {
             let range = rows.start.max((first + i) * ROWS)..rows.end.min((first + i + 1) * ROWS);
             Window::of([self.window.range(0), range])
         };
-        #[cfg(feature = "parallel")]
         if parallel && count > 1 {
-            use rayon::prelude::*;
-            return (0..count)
-                .into_par_iter()
-                .map_init(
-                    || None,
-                    |own, i| {
-                        let hand = match own {
-                            Some(hand) => hand,
-                            none => none.insert(self.hand()?),
-                        };
-                        let tile = tile(i);
-                        let mut piece = Piece::new(&self.options.format, tile.count() as usize)?;
-                        self.tile(hand, tile, &mut piece)?;
-                        Ok(piece)
-                    },
-                )
-                .collect();
+            return each_with(
+                true,
+                (0..count as usize).map(|i| tile(i as u32)),
+                || None,
+                |own, tile| {
+                    let hand = match own {
+                        Some(hand) => hand,
+                        none => none.insert(self.hand()?),
+                    };
+                    let mut piece = Piece::new(&self.options.format, tile.count() as usize)?;
+                    self.tile(hand, tile, &mut piece)?;
+                    Ok(piece)
+                },
+            );
         }
-        let _ = parallel;
         let mut pieces = memory::with_capacity(1)?;
         let mut hand = self.hand()?;
         let mut piece = Piece::new(&self.options.format, self.window.count() as usize)?;

@@ -9,6 +9,7 @@
 use super::lazy::Trail;
 use crate::control::Control;
 use crate::error::Error;
+use crate::lattice::axes;
 use crate::lattice::{Cell, Frame, MAX_DEPTH};
 use crate::octree::Tag;
 use crate::solid::{Enclosure, Segment, SlabJoin, Worker};
@@ -161,7 +162,7 @@ impl Edge {
             let plane = frame.plane(axis, i as u32);
             0.5 * plane.lower + 0.5 * plane.upper
         };
-        let mut from = [0, 1, 2].map(|axis| corner(axis, self.lower[axis]));
+        let mut from = axes(|axis| corner(axis, self.lower[axis]));
         let mut to = from;
         from[self.axis] = corner(self.axis, self.lower[self.axis] + number as i32);
         to[self.axis] = corner(self.axis, self.lower[self.axis] + number as i32 + 1);

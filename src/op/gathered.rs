@@ -9,6 +9,7 @@ use crate::error::Error;
 use crate::lattice::{Cell, Frame};
 use crate::memory;
 use crate::octree::Tag;
+use crate::parallel;
 use crate::solid::{Classifier, Verdict, Worker};
 use alloc::vec::Vec;
 
@@ -119,9 +120,7 @@ pub(super) fn each_known<C: Classifier, A: Answer<Part<C>>>(
     ask: impl Fn(&mut C::Worker, &[(Cell, Part<C>)], &mut Vec<A>) -> Result<(), Error> + Sync,
     mut take: impl FnMut(usize, A) -> Result<(), Error>,
 ) -> Result<(), Error> {
-    #[cfg(feature = "parallel")]
     if threads > 1 && cells.len() > 1 {
-        use rayon::prelude::*;
         let from = &*worker;
         let share = cells.len().div_ceil(threads);
         let one = |cells: &[(Cell, Part<C>)]| {
@@ -134,7 +133,7 @@ pub(super) fn each_known<C: Classifier, A: Answer<Part<C>>>(
             let done = ask(&mut own, &handed, &mut answers);
             Ok::<_, Error>((own, answers, done))
         };
-        let shares: Vec<_> = cells.par_chunks(share).map(one).collect();
+        let shares = parallel::each(true, cells.chunks(share), |cells| Ok(one(cells)))?;
         let mut result = Ok(());
         for (i, known) in shares.into_iter().enumerate() {
             let done = known.and_then(|(own, answers, done)| {
@@ -148,7 +147,6 @@ pub(super) fn each_known<C: Classifier, A: Answer<Part<C>>>(
         }
         return result;
     }
-    let _ = (classifier, threads);
     let mut answers = Vec::new();
     let done = ask(worker, cells, &mut answers);
     for (k, answer) in answers.into_iter().enumerate() {
@@ -158,7 +156,6 @@ pub(super) fn each_known<C: Classifier, A: Answer<Part<C>>>(
 }
 
 /// An answer that may hold parts.
-#[cfg_attr(not(feature = "parallel"), allow(dead_code))]
 pub(super) trait Answer<P>: Send + Sized {
     fn handed_over(self, hand_over: impl FnMut(P) -> Result<P, Error>) -> Result<Self, Error>;
 }
@@ -228,14 +225,6 @@ impl Worker for &Gathered {
     fn sample(&mut self, _: Cell, part: &u32) -> Result<Option<bool>, Error> {
         Ok(self.centres.get(*part as usize).copied().flatten())
     }
-}
-
-/// Threads at work.
-pub(crate) fn threads() -> usize {
-    #[cfg(feature = "parallel")]
-    return rayon::current_num_threads();
-    #[cfg(not(feature = "parallel"))]
-    1
 }
 
 /// The eight children of a cell, by whichever form of splitting the solid likes; where that takes long,

@@ -4,6 +4,7 @@ use super::gathered::split_one;
 use crate::control::Control;
 use crate::error::Error;
 use crate::lattice::Cell;
+use crate::lattice::axes;
 use crate::solid::{Verdict, Worker};
 use core::ops::Range;
 
@@ -31,7 +32,7 @@ pub(super) fn hull<W: Worker>(
         if !search.visit(Cell::ROOT, root)? {
             return Ok(found);
         }
-        found = [0, 1, 2].map(|axis| search.low[axis].min(search.high[axis])..search.high[axis]);
+        found = axes(|axis| search.low[axis].min(search.high[axis])..search.high[axis]);
         if level == depth {
             return Ok(found);
         }

@@ -1,13 +1,14 @@
 //! The cells of a box as bits.
 
-use super::each;
 use crate::control::{Control, Job, WHOLE};
 use crate::error::Error;
+use crate::lattice::axes;
 use crate::lattice::morton;
 use crate::memory;
 use crate::octree::links::Windows;
 use crate::octree::view::OctreeRef;
 use crate::octree::{Octree, Planes, Tag};
+use crate::parallel::each;
 
 /// Layers of cells along z that are read at a time.
 const DEEP: u32 = 64;
@@ -58,7 +59,7 @@ impl OctreeRef<'_> {
     ) -> Result<(), Error> {
         let refuse = |name, problem| Err(Error::Argument { name, problem });
         let count = self.bitmap_words(level, min, max)?;
-        let size = [0, 1, 2].map(|axis| max[axis] - min[axis]);
+        let size = axes(|axis| max[axis] - min[axis]);
         let words = size[0].div_ceil(64) as usize;
         let layer = words * size[1] as usize;
         if inner.len() as u64 != count {
@@ -103,7 +104,7 @@ impl OctreeRef<'_> {
         if (0..3).any(|axis| min[axis] > max[axis] || max[axis] > 1 << level) {
             return refuse("max", "must be a cell or the universe's end, and not below min");
         }
-        let [x, y, z] = [0, 1, 2].map(|axis| u64::from(max[axis] - min[axis]));
+        let [x, y, z] = axes(|axis| u64::from(max[axis] - min[axis]));
         Ok(x.div_ceil(64) * y * z)
     }
 }
@@ -149,7 +150,7 @@ impl Bits<'_> {
 
     /// Sets the bits of a cube of cells.
     fn fill(&mut self, at: [u32; 3], edge: u32, is_full: bool) {
-        let [x, y, z] = [0, 1, 2].map(|axis| self.range(axis, at[axis], edge));
+        let [x, y, z] = axes(|axis| self.range(axis, at[axis], edge));
         if x.is_empty() {
             return;
         }
@@ -179,7 +180,7 @@ impl Bits<'_> {
 
     /// Sets the bits of 4³ cells.
     fn add(&mut self, at: [u32; 3], planes: Planes) {
-        let [x, y, z] = [0, 1, 2].map(|axis| self.range(axis, at[axis], 4));
+        let [x, y, z] = axes(|axis| self.range(axis, at[axis], 4));
         if x.is_empty() {
             return;
         }
@@ -284,7 +285,7 @@ impl Fill<'_, '_, '_> {
             let c = left.trailing_zeros();
             left &= left - 1;
             let place = morton::position(c);
-            let corner = [0, 1, 2].map(|axis| at[axis] + place[axis] * edge);
+            let corner = axes(|axis| at[axis] + place[axis] * edge);
             match planes.tag(c) {
                 Tag::Branch => match self.windows.child(self.tree, index, planes.branch(), c, e + 1) {
                     Ok(child) => self.element(e + 1, child, corner)?,

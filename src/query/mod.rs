@@ -34,26 +34,3 @@ pub(crate) use ray::Touch;
 pub use ray::{Obstacle, Ray, RayHit, RaySpans, Sight, cast_rays, line_of_sight, ray_spans};
 pub use region::{Region, classify_box};
 pub use within::classify_in;
-
-use crate::error::Error;
-use crate::memory;
-use alloc::vec::Vec;
-
-/// Does all tasks, on the threads at hand if `parallel`: the results in the order of the tasks.
-pub(crate) fn each<T: Send, R: Send>(
-    parallel: bool,
-    tasks: impl ExactSizeIterator<Item = T>,
-    work: impl Fn(T) -> Result<R, Error> + Send + Sync,
-) -> Result<Vec<R>, Error> {
-    #[cfg(feature = "parallel")]
-    if parallel && tasks.len() > 1 {
-        use rayon::prelude::*;
-        return memory::collected(tasks)?.into_par_iter().map(work).collect();
-    }
-    let _ = parallel;
-    let mut done = memory::with_capacity(tasks.len())?;
-    for task in tasks {
-        done.push(work(task)?);
-    }
-    Ok(done)
-}

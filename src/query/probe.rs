@@ -1,11 +1,12 @@
 //! Points of any solid, without an octree.
 
-use super::{Membership, each};
+use super::Membership;
 use crate::control::{Control, Job};
 use crate::error::Error;
 use crate::lattice::{Cell, Frame};
 use crate::memory;
 use crate::op::Trail;
+use crate::parallel::each;
 use crate::solid::{Classifier, Solid, Worker};
 use alloc::vec::Vec;
 

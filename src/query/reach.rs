@@ -5,6 +5,7 @@
 //! above (weak duality), and any point that satisfies the constraints bounds it from below.
 
 use crate::lattice::Interval;
+use crate::lattice::axes;
 use crate::solid::{Enclosure, SlabJoin};
 
 /// How far offsets are moved inward, as a share of the normal's range.
@@ -57,8 +58,7 @@ impl Halves {
     /// Whether a point is proven to lie in all of them, or inside of all of them.
     fn hold(&self, point: [f64; 3], strictly: bool) -> bool {
         self.as_slice().iter().all(|half| {
-            let terms =
-                [0, 1, 2].map(|i| Interval::exactly(half.normal[i]).times(Interval::exactly(point[i])));
+            let terms = axes(|i| Interval::exactly(half.normal[i]).times(Interval::exactly(point[i])));
             let most = terms[0].plus(terms[1]).plus(terms[2]).upper;
             most < half.offset || !strictly && most == half.offset
         })
@@ -229,7 +229,7 @@ fn vertex(halves: &Halves, direction: [f64; 3], margin: f64) -> Option<[f64; 3]>
                 _ => -1.0,
             };
             let [a, b, c] = [value(0), value(1), value(2)];
-            let point = [0, 1, 2].map(|i| a * columns[0][i] + b * columns[1][i] + c * columns[2][i]);
+            let point = axes(|i| a * columns[0][i] + b * columns[1][i] + c * columns[2][i]);
             let point = point.map(|c| if c.abs() <= 1.0 + slack { c.clamp(-1.0, 1.0) } else { f64::NAN });
             let is_inside = |row: usize| dot(rows[row], point) <= offsets[row] + slack;
             let reach = dot(point, direction);

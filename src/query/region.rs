@@ -4,6 +4,7 @@ use super::descent::{Step, descend};
 use super::proven::Proven;
 use crate::control::{Control, Job};
 use crate::error::Error;
+use crate::lattice::axes;
 use crate::lattice::{Cell, Cube, Frame, Window, morton};
 use crate::octree::links::Windows;
 use crate::octree::view::OctreeRef;
@@ -155,7 +156,7 @@ impl Search<'_, '_> {
             match self.windows.child(self.tree, index, planes.branch(), c, (e + 1).min(levels - 1)) {
                 Ok(child) if e + 1 < levels => {
                     let at = morton::position(c);
-                    self.element(e + 1, child, [0, 1, 2].map(|axis| origin[axis] + (at[axis] << shift)));
+                    self.element(e + 1, child, axes(|axis| origin[axis] + (at[axis] << shift)));
                 }
                 _ => self.survey.partial = true,
             }

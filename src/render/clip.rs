@@ -2,6 +2,7 @@
 
 use crate::error::Error;
 use crate::lattice::Bounds;
+use crate::lattice::axes;
 use crate::lattice::valid::numbers;
 use crate::memory;
 use alloc::vec::Vec;
@@ -58,7 +59,7 @@ impl Clip {
     /// [`Error::OutOfMemory`].
     pub fn within(mut self, bounds: &Bounds) -> Result<Clip, Error> {
         for axis in 0..3 {
-            let normal = DVec3::from([0, 1, 2].map(|i| f64::from(u8::from(i == axis))));
+            let normal = DVec3::from(axes(|i| f64::from(u8::from(i == axis))));
             memory::push(&mut self.planes, (normal, -bounds.min[axis]))?;
             memory::push(&mut self.planes, (-normal, bounds.max[axis]))?;
         }

@@ -5,6 +5,7 @@ use super::stage::{Draw, Painter, Stage};
 use super::stroke::Strokes;
 use super::tile::Tile;
 use crate::error::Error;
+use crate::lattice::axes;
 use crate::lattice::valid::numbers;
 use crate::lattice::{Cell, Frame};
 use crate::memory;
@@ -105,7 +106,7 @@ impl Edge {
     fn point(&self, frame: &Frame, axis: usize, end: u32) -> [f64; 3] {
         let mut planes = [end; 3];
         (planes[(axis + 1) % 3], planes[(axis + 2) % 3]) = (self.beside[0], self.beside[1]);
-        [0, 1, 2].map(|axis| frame.plane(axis, planes[axis]).lower)
+        axes(|axis| frame.plane(axis, planes[axis]).lower)
     }
 }
 

@@ -3,6 +3,7 @@
 use crate::control::Job;
 use crate::error::Error;
 use crate::memory;
+use crate::parallel;
 use alloc::vec::Vec;
 
 /// Items between two looks at whether the caller cancelled.
@@ -15,22 +16,13 @@ const WORTH: usize = 1 << 14;
 pub fn mapped<T: Send>(
     job: &Job<'_>,
     count: usize,
-    make: impl Fn(usize) -> T + Sync,
+    make: impl Fn(usize) -> T + Send + Sync,
 ) -> Result<Vec<T>, Error> {
     job.control().run(count > WORTH, |parallel| {
         let mut list = memory::with_capacity(count)?;
         for start in (0..count).step_by(BLOCK) {
             job.check()?;
-            let range = start..count.min(start + BLOCK);
-            #[cfg(feature = "parallel")]
-            if parallel {
-                use rayon::prelude::*;
-                // The list has room for all of them.
-                list.par_extend(range.into_par_iter().map(&make));
-                continue;
-            }
-            let _ = parallel;
-            list.extend(range.map(&make));
+            parallel::extend(parallel, &mut list, start..count.min(start + BLOCK), || (), |(), i| make(i));
         }
         Ok(list)
     })

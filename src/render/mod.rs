@@ -53,7 +53,7 @@ pub use volume::{Compositing, VolumeLayer};
 use crate::control::{Control, Job, WHOLE};
 use crate::error::Error;
 use crate::memory;
-use crate::query::each;
+use crate::parallel::each;
 use camera::View;
 use light::{Light, Tones};
 use picture::check_size;

@@ -9,6 +9,7 @@ use super::occupancy::Occupancy;
 use super::places::Places;
 use super::plane::{Fitting, Plane};
 use crate::error::Error;
+use crate::lattice::axes;
 use crate::lattice::morton;
 use crate::octree::view::OctreeRef;
 use glam::{DVec3, Vec3A, Vec4};
@@ -91,7 +92,7 @@ impl<'a> Normals<'a> {
         let mut about = About { present: 0, planes: [Vec4::ZERO; 27] };
         for (k, found) in (0..).zip(&mut about.planes) {
             let at = [k % 3, k / 3 % 3, k / 9];
-            let plane = self.plane(size, [0, 1, 2].map(|axis| block[axis] + at[axis] - 1))?;
+            let plane = self.plane(size, axes(|axis| block[axis] + at[axis] - 1))?;
             if plane != Plane::default() {
                 about.present |= 1 << k;
                 *found = plane.normal.extend(1.0) * plane.confidence;
@@ -227,7 +228,7 @@ mod tests {
             let mut sum = DVec3::ZERO;
             for k in 0..125 {
                 let from = [k % 5 - 2, k / 5 % 5 - 2, k / 25 - 2];
-                let cell = [0, 1, 2].map(|axis| at[axis] as i32 + from[axis]);
+                let cell = axes(|axis| at[axis] as i32 + from[axis]);
                 let is_inside = cell.iter().all(|i| (0..cells).contains(i));
                 let solid = match is_inside.then(|| tree.view().tag_at(cell.map(|i| i as u32))) {
                     None => outside,

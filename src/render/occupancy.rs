@@ -2,6 +2,7 @@
 
 use super::places::Places;
 use crate::error::Error;
+use crate::lattice::axes;
 use crate::lattice::morton;
 use crate::octree::links::Step;
 use crate::octree::view::OctreeRef;
@@ -116,8 +117,7 @@ impl<'a> Occupancy<'a> {
         let mut shares = [0; 64];
         for (c, share) in (0..).zip(&mut shares) {
             let place = morton::position(c);
-            let is_inside =
-                all_inside || self.is_inside([0, 1, 2].map(|axis| first[axis] + place[axis] as i32));
+            let is_inside = all_inside || self.is_inside(axes(|axis| first[axis] + place[axis] as i32));
             *share = set_bits(if is_inside { word_of(&self.tree, source, c) } else { self.outside });
         }
         Part { source, shares }
@@ -225,10 +225,10 @@ mod tests {
                         let window = occupancy.window(at, large).unwrap();
                         for (k, octants) in (0..).zip(window) {
                             let block = [k % 3, k / 3 % 3, k / 9];
-                            let low = [0, 1, 2].map(|axis| edge * (at[axis] + block[axis] - 1));
+                            let low = axes(|axis| edge * (at[axis] + block[axis] - 1));
                             for (octant, share) in (0..).zip(octants.to_le_bytes()) {
                                 let half = edge / 2;
-                                let low = [0, 1, 2].map(|axis| low[axis] + half * (octant >> axis & 1));
+                                let low = axes(|axis| low[axis] + half * (octant >> axis & 1));
                                 assert_eq!(share, counted(&tree, low, half), "{depth} {at:?} {k} {octant}");
                             }
                         }

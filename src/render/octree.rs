@@ -8,6 +8,7 @@ use super::tile::Tile;
 use crate::attribute::Attribute;
 use crate::error::Error;
 use crate::lattice::Frame;
+use crate::lattice::axes;
 use crate::memory;
 use crate::octree::OctreeRef;
 use crate::query::Touch;
@@ -90,9 +91,9 @@ pub fn normal_of_cells(
     point: DVec3,
     hit: &Touch,
 ) -> Result<DVec3, Error> {
-    let scaled = DVec3::from([0, 1, 2].map(|axis| frame.scaled(axis, point[axis])));
+    let scaled = DVec3::from(axes(|axis| frame.scaled(axis, point[axis])));
     let shift = frame.depth() - hit.cell.level;
-    let at = [0, 1, 2].map(|axis| {
+    let at = axes(|axis| {
         let (low, high) = (hit.cell.at[axis] << shift, ((hit.cell.at[axis] + 1) << shift) - 1);
         // (A cast saturates.)
         (scaled[axis] as u32).clamp(low, high)

@@ -8,6 +8,7 @@ use super::tile::Tile;
 use crate::attribute::Attribute;
 use crate::control::Control;
 use crate::error::Error;
+use crate::lattice::axes;
 use crate::lattice::valid::numbers;
 use crate::lattice::{Cell, Frame};
 use crate::memory;
@@ -66,7 +67,7 @@ impl SlicePlane {
         if axis > 2 {
             return Err(Error::Argument { name: "axis", problem: "must be 0, 1 or 2" });
         }
-        SlicePlane::new([0, 1, 2].map(|k| f64::from(u8::from(k == axis))), -coordinate)
+        SlicePlane::new(axes(|k| f64::from(u8::from(k == axis))), -coordinate)
     }
 
     /// Where a line meets the plane: the depth and the point. `None` if it does not, or not before the eye.

@@ -11,7 +11,9 @@ use super::size::{self, Least};
 use super::table::MARCHING_CUBES;
 use crate::control::{Job, WHOLE};
 use crate::error::{Error, MeshError};
+use crate::lattice::axes;
 use crate::memory;
+use crate::parallel::each;
 use alloc::vec::Vec;
 
 /// A block of 4³ samples with a dual cell that the surface passes through.
@@ -85,7 +87,7 @@ fn tasks(samples: &Samples<'_>) -> Result<Vec<Task>, Error> {
     let mut tasks = memory::with_capacity(8)?;
     for place in 0..8usize {
         // The first seven lie outside, and have the universe beside them.
-        let at = [0, 1, 2].map(|axis| (place >> axis & 1) as i32 - 1);
+        let at = axes(|axis| (place >> axis & 1) as i32 - 1);
         let nodes = [0, 1, 2, 3, 4, 5, 6, 7]
             .map(|j| if place | j == 7 && place & j == 0 { samples.root() } else { Node::Void });
         tasks.push(Task { e: 0, key: place as Key, at, nodes });
@@ -102,40 +104,22 @@ fn tasks(samples: &Samples<'_>) -> Result<Vec<Task>, Error> {
     Ok(tasks)
 }
 
-#[cfg(feature = "parallel")]
 fn run(samples: &Samples<'_>, tasks: &[Task], job: &Job<'_>, parallel: bool) -> Result<Vec<Block>, Error> {
-    use rayon::prelude::*;
-    if !parallel {
-        return run_alone(samples, tasks, job);
-    }
-    let chunks = tasks.par_chunks(tasks.len().div_ceil(512).max(1));
-    let found = chunks.map(|tasks| {
+    let share = if parallel { tasks.len().div_ceil(512).max(1) } else { tasks.len().max(1) };
+    let mut found = each(parallel, tasks.chunks(share), |tasks| {
         let mut list = Vec::new();
         for task in tasks {
             job.check()?;
             visit(samples, task, job, &mut list)?;
         }
         Ok(list)
-    });
-    let found = found.collect::<Result<Vec<_>, Error>>()?;
+    })?;
     job.advance(FINDING);
+    if found.len() == 1 {
+        return Ok(found.remove(0));
+    }
     let mut list = memory::with_capacity(found.iter().map(Vec::len).sum())?;
     found.iter().for_each(|part| list.extend_from_slice(part));
-    Ok(list)
-}
-
-#[cfg(not(feature = "parallel"))]
-fn run(samples: &Samples<'_>, tasks: &[Task], job: &Job<'_>, _: bool) -> Result<Vec<Block>, Error> {
-    run_alone(samples, tasks, job)
-}
-
-fn run_alone(samples: &Samples<'_>, tasks: &[Task], job: &Job<'_>) -> Result<Vec<Block>, Error> {
-    let mut list = Vec::new();
-    for task in tasks {
-        job.check()?;
-        visit(samples, task, job, &mut list)?;
-    }
-    job.advance(FINDING);
     Ok(list)
 }
 
@@ -167,7 +151,7 @@ fn split(
             *node = samples.child(&sets[of as usize], inner.into())?;
         }
         let place = crate::lattice::morton::position(c);
-        let at = [0, 1, 2].map(|axis| 4 * task.at[axis] + place[axis] as i32);
+        let at = axes(|axis| 4 * task.at[axis] + place[axis] as i32);
         put(Task { e: task.e + 1, key: task.key << 6 | Key::from(c), at, nodes })?;
     }
     Ok(())
@@ -178,7 +162,7 @@ fn split(
 fn sets(samples: &Samples<'_>, task: &Task) -> Result<[super::samples::Sets; 8], Error> {
     let mut sets = [super::samples::Sets::VOID; 8];
     for (j, (sets, &node)) in sets.iter_mut().zip(&task.nodes).enumerate() {
-        *sets = samples.sets(task.e, node, [0, 1, 2].map(|axis| task.at[axis] + (j >> axis & 1) as i32))?;
+        *sets = samples.sets(task.e, node, axes(|axis| task.at[axis] + (j >> axis & 1) as i32))?;
     }
     Ok(sets)
 }

@@ -3,6 +3,7 @@
 use crate::control::Job;
 use crate::error::Error;
 use crate::memory;
+use crate::parallel::each;
 use alloc::vec::Vec;
 use core::ops::Range;
 
@@ -41,13 +42,7 @@ pub(super) fn for_each<T: Send>(
         job.advance(weight / count);
         Ok(())
     };
-    #[cfg(feature = "parallel")]
-    if parallel {
-        use rayon::prelude::*;
-        return pieces.into_par_iter().map(done).collect();
-    }
-    let _ = parallel;
-    pieces.into_iter().try_for_each(done)
+    each(parallel, pieces.into_iter(), done).map(drop)
 }
 
 /// What `work` makes of the chunks of `blocks` blocks.
@@ -60,38 +55,8 @@ pub(super) fn map<T: Send>(
     parallel: bool,
     work: impl Fn(Range<usize>) -> Result<T, Error> + Sync,
 ) -> Result<Vec<T>, Error> {
-    let mut results = memory::with_capacity(blocks.div_ceil(CHUNK))?;
-    results.extend((0..blocks.div_ceil(CHUNK)).map(|_| None));
-    let ranges = |chunk: usize| CHUNK * chunk..blocks.min(CHUNK * (chunk + 1));
-    let done = |(chunk, result): (usize, &mut Option<T>)| {
+    each(parallel, 0..blocks.div_ceil(CHUNK), |chunk| {
         job.check()?;
-        *result = Some(work(ranges(chunk))?);
-        Ok::<(), Error>(())
-    };
-    #[cfg(feature = "parallel")]
-    if parallel {
-        use rayon::prelude::*;
-        results.par_iter_mut().enumerate().try_for_each(done)?;
-        return flattened(results);
-    }
-    let _ = parallel;
-    results.iter_mut().enumerate().try_for_each(done)?;
-    flattened(results)
-}
-
-fn flattened<T>(results: Vec<Option<T>>) -> Result<Vec<T>, Error> {
-    let mut all = memory::with_capacity(results.len())?;
-    all.extend(results.into_iter().flatten());
-    Ok(all)
-}
-
-/// Sorts a list. Equal items cannot be told apart, so that any number of threads leaves the same.
-pub(super) fn sort<T: Ord + Send>(list: &mut [T], parallel: bool) {
-    #[cfg(feature = "parallel")]
-    if parallel {
-        use rayon::slice::ParallelSliceMut;
-        return list.par_sort_unstable();
-    }
-    let _ = parallel;
-    list.sort_unstable();
+        work(CHUNK * chunk..blocks.min(CHUNK * (chunk + 1)))
+    })
 }

@@ -14,6 +14,7 @@ use super::weld::weld;
 use crate::control::{Control, Job, WHOLE};
 use crate::dexel::TriDexelRef;
 use crate::error::Error;
+use crate::lattice::axes;
 use crate::memory;
 use crate::mesh::TriangleMesh;
 use crate::op::{Edge, octree_of_dexels};
@@ -105,7 +106,7 @@ pub fn marching_cubes_of_dexels(
         let rays = Rays { model, blocks, counts: Counts::default() };
         rays.for_each(&mut vertices, (WHOLE - FINDING) / 2, job, parallel, |edge, hermite, vertex| {
             let place = |axis: usize| f64::from(edge.lower[axis]) + 0.5;
-            *vertex = [0, 1, 2].map(|axis| lattice.position(axis, place(axis)));
+            *vertex = axes(|axis| lattice.position(axis, place(axis)));
             let (low, high) = (vertex[edge.axis], lattice.position(edge.axis, place(edge.axis) + 1.0));
             let x = lattice.position(edge.axis, place(edge.axis) + hermite.t).clamp(low, high);
             vertex[edge.axis] = x;

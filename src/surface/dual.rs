@@ -25,6 +25,7 @@ use super::weld::weld;
 use crate::control::{Job, WHOLE};
 use crate::dexel::TriDexelRef;
 use crate::error::{Error, MeshError};
+use crate::lattice::axes;
 use crate::lattice::morton;
 use crate::memory;
 use crate::mesh::TriangleMesh;
@@ -357,13 +358,13 @@ impl Dual<'_> {
                 if let Some(qef) = qefs.get_mut(of as usize) {
                     let hermite = &crossings[around.vertex(c, edge) as usize];
                     let lower = ENDS[edge as usize][0];
-                    let mut point = [0, 1, 2].map(|axis| f64::from(lower >> axis & 1));
+                    let mut point = axes(|axis| f64::from(lower >> axis & 1));
                     point[edge as usize / 4] = hermite.t;
                     qef.add(point, hermite.normal());
                 }
             }
             let inner = morton::position(c);
-            let lower = [0, 1, 2].map(|axis| f64::from(4 * at[axis] + inner[axis] as i32) + 0.5);
+            let lower = axes(|axis| f64::from(4 * at[axis] + inner[axis] as i32) + 0.5);
             let bounds = |axis: usize| [0.0, 1.0].map(|side| self.lattice.position(axis, lower[axis] + side));
             let bounds = [bounds(0), bounds(1), bounds(2)];
             let mut set = [[0.0; 3]; 4];
@@ -405,7 +406,7 @@ impl Dual<'_> {
                 let before = rank(block.mixed, c) as usize;
                 let configuration = self.cubes.at(i)[before].configuration;
                 let inner = morton::position(c);
-                let lower = [0, 1, 2].map(|axis| f64::from(4 * at[axis] + inner[axis] as i32) + 0.5);
+                let lower = axes(|axis| f64::from(4 * at[axis] + inner[axis] as i32) + 0.5);
                 let [b, t] = OTHERS[axis];
                 for which in 0..2u8 {
                     // The inside corner that the segment cuts off: the two are ends of a diagonal.
@@ -421,7 +422,7 @@ impl Dual<'_> {
                         let off = if corner >> along & 1 == 0 { crossing } else { crossing - 1.0 };
                         point[along] += f64::from(corner >> along & 1) + 0.5 * off;
                     }
-                    let place = [0, 1, 2].map(|axis| self.lattice.position(axis, point[axis]));
+                    let place = axes(|axis| self.lattice.position(axis, point[axis]));
                     for along in [b, t] {
                         let half = 0.5 * f64::from(corner >> along & 1);
                         let [low, high] =
@@ -464,14 +465,14 @@ impl Dual<'_> {
                 });
                 let edge = 4 * axis as u8 + 3;
                 let inner = morton::position(c);
-                let mut crossing = [0, 1, 2].map(|axis| {
+                let mut crossing = axes(|axis| {
                     let corner = ENDS[edge as usize][0] >> axis & 1;
                     let lower = 4 * at[axis] + inner[axis] as i32 + i32::from(corner);
                     f64::from(lower) + 0.5
                 });
                 let number = around.vertex(c, edge);
                 crossing[axis] += crossings[number as usize].t;
-                let crossing = [0, 1, 2].map(|axis| self.lattice.position(axis, crossing[axis]));
+                let crossing = axes(|axis| self.lattice.position(axis, crossing[axis]));
                 if self.turns(axis, crossing, quad.map(|vertex| vertices[vertex as usize])) {
                     quad.rotate_left(1);
                     joints.rotate_left(1);

@@ -15,7 +15,9 @@ use super::snapped::Snapped;
 use super::table::{ENDS, MARCHING_CUBES, MOST, Triangles};
 use crate::control::Job;
 use crate::error::{Error, MeshError};
+use crate::lattice::axes;
 use crate::memory;
+use crate::parallel;
 use alloc::vec::Vec;
 use hashbrown::HashMap;
 
@@ -32,7 +34,7 @@ impl Side {
     /// The step from a sample by `by`.
     fn new(from: [i32; 3], by: [i32; 3], plane: Plane) -> Side {
         let step = Step::by(by);
-        let low = if step.is_back { [0, 1, 2].map(|axis| from[axis] + by[axis]) } else { from };
+        let low = if step.is_back { axes(|axis| from[axis] + by[axis]) } else { from };
         let rest = u64::from(step.direction) << 40 | plane.code() << 1 | u64::from(step.is_back);
         Side { at: points::code(low), rest }
     }
@@ -109,7 +111,7 @@ impl Outlines {
         let mut sides = memory::with_capacity(found.iter().map(Vec::len).sum())?;
         found.iter().for_each(|part| sides.extend_from_slice(part));
         drop(found);
-        chunks::sort(&mut sides, parallel);
+        parallel::sort(&mut sides, parallel);
         cancel(&mut sides);
         let corners = corners(&sides, parallel)?;
         if corners.len() > u32::MAX as usize {
@@ -148,7 +150,7 @@ fn corners(sides: &[Side], parallel: bool) -> Result<Vec<u64>, Error> {
             ends.extend(side.ends().map(|end| (end, side.direction())));
         }
     }
-    chunks::sort(&mut ends, parallel);
+    parallel::sort(&mut ends, parallel);
     let mut corners = Vec::new();
     for at_sample in ends.chunk_by(|a, b| a.0 == b.0) {
         if at_sample.iter().any(|end| end.1 != at_sample[0].1) {
@@ -184,7 +186,7 @@ fn edges(sides: &[Side], corners: &[u64], job: &Job<'_>, parallel: bool) -> Resu
     })?;
     let mut edges = memory::with_capacity(found.iter().map(Vec::len).sum())?;
     found.iter().for_each(|part| edges.extend_from_slice(part));
-    chunks::sort(&mut edges, parallel);
+    parallel::sort(&mut edges, parallel);
     Ok(edges)
 }
 
@@ -220,12 +222,12 @@ impl OfCell {
     /// Appends all sides, step by step, for a cell with this lowest corner.
     fn append(&self, corner: [i32; 3], sides: &mut Vec<Side>) -> Result<(), Error> {
         for (from, to, plane) in &self.sides[..self.count] {
-            let way = [0, 1, 2].map(|axis| to[axis] - from[axis]);
+            let way = axes(|axis| to[axis] - from[axis]);
             let steps = way.iter().map(|w| w.abs()).max().unwrap_or(0);
             let by = way.map(i32::signum);
             sides.try_reserve(steps as usize)?;
             for k in 0..steps {
-                let from = [0, 1, 2].map(|axis| corner[axis] + from[axis] + k * by[axis]);
+                let from = axes(|axis| corner[axis] + from[axis] + k * by[axis]);
                 sides.push(Side::new(from, by, plane.moved(corner)));
             }
         }
@@ -260,7 +262,7 @@ pub(super) fn super_triangles(cell: &Cell, corner: [i32; 3]) -> impl Iterator<It
     let placed = triangles.list().iter().map(move |triangle| {
         triangle.map(|edge| {
             let (axis, lower) = (edge as usize / 4, plane::corner(ENDS[edge as usize][0].into()));
-            let mut point = [0, 1, 2].map(|axis| corner[axis] + size * lower[axis]);
+            let mut point = axes(|axis| corner[axis] + size * lower[axis]);
             // A cut edge leads through the plane.
             point[axis] = plane.above(axis, point).unwrap_or(point[axis]);
             point

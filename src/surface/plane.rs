@@ -4,6 +4,7 @@
 //! are −1, 0 and 1, and d is an integer. There are 26 such normals, 13 up to sign.
 
 use super::smc::Snap;
+use crate::lattice::axes;
 
 /// A plane with its outer side. Planes ascend by their normals, then by their offsets.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -120,8 +121,8 @@ pub(super) fn of_configuration(configuration: usize, snap: Snap) -> Plane {
 /// The plane of a triangle whose corners are corners of a cell.
 pub(super) fn of_corners(corners: [u8; 3]) -> Plane {
     let [p, q, r] = corners.map(|c| corner(c.into()));
-    let (u, v) = ([0, 1, 2].map(|k| q[k] - p[k]), [0, 1, 2].map(|k| r[k] - p[k]));
-    Plane::through([0, 1, 2].map(|k| u[(k + 1) % 3] * v[(k + 2) % 3] - u[(k + 2) % 3] * v[(k + 1) % 3]), p)
+    let (u, v) = (axes(|k| q[k] - p[k]), axes(|k| r[k] - p[k]));
+    Plane::through(axes(|k| u[(k + 1) % 3] * v[(k + 2) % 3] - u[(k + 2) % 3] * v[(k + 1) % 3]), p)
 }
 
 #[cfg(test)]
@@ -167,7 +168,7 @@ mod tests {
                 let expected = (normal[axis] != 0).then_some(point[axis]);
                 assert_eq!(plane.above(axis, beside), expected);
             }
-            assert_eq!(plane.moved(by), Plane::through(normal, [0, 1, 2].map(|k| point[k] + by[k])));
+            assert_eq!(plane.moved(by), Plane::through(normal, axes(|k| point[k] + by[k])));
         }
     }
 }

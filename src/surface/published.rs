@@ -8,7 +8,9 @@ use super::points;
 use super::smc::Snap;
 use crate::control::Job;
 use crate::error::{Error, MeshError};
+use crate::lattice::axes;
 use crate::memory;
+use crate::parallel;
 use alloc::vec::Vec;
 
 /// The samples that are vertices, and the triangles.
@@ -28,7 +30,7 @@ pub(super) fn triangles(
                 for triangle in table.triangles[cell.configuration as usize].list() {
                     let points = triangle.map(|c| {
                         let place = plane::corner(c.into());
-                        points::code([0, 1, 2].map(|axis| corner[axis] + place[axis]))
+                        points::code(axes(|axis| corner[axis] + place[axis]))
                     });
                     memory::push(&mut found, points)?;
                 }
@@ -43,7 +45,7 @@ pub(super) fn triangles(
     let count: usize = found.iter().map(Vec::len).sum();
     let mut vertices = memory::with_capacity(3 * count)?;
     found.iter().for_each(|part| vertices.extend_from_slice(part.as_flattened()));
-    chunks::sort(&mut vertices, parallel);
+    parallel::sort(&mut vertices, parallel);
     vertices.dedup();
     if vertices.len().max(count) > u32::MAX as usize {
         return Err(MeshError::TooMany.into());

@@ -5,6 +5,7 @@
 //! the planes nearly coincide, and the minimum is found only across them: the eigenvectors of the normals' matrix with
 //! small eigenvalues are left out, and along these the place is that of the points' mean.
 
+use crate::lattice::axes;
 use crate::lattice::exact::sqrt;
 
 /// Eigenvalues below this part of the greatest one say nothing. Two planes of equal weight meet at an edge if their
@@ -73,7 +74,7 @@ impl Qef {
         let greatest = values.iter().fold(0.0, |most: f64, &value| most.max(value));
         // The gradient at the mean.
         let product = multiplied(&self.matrix, mean);
-        let rest = [0, 1, 2].map(|i| self.right[i] - product[i]);
+        let rest = axes(|i| self.right[i] - product[i]);
         let mut best = mean;
         let mut weights = [0.0; 3];
         for i in 0..3 {
@@ -146,11 +147,11 @@ fn in_cube(matrix: &[f64; 6], best: [f64; 3]) -> [f64; 3] {
             place[axis] = value;
         }
         // (Rounding may leave the cube by a last place, and combinations that are not the best one by more.)
-        let candidate = [0, 1, 2].map(|axis| match states[axis] {
+        let candidate = axes(|axis| match states[axis] {
             2 => (best[axis] + place[axis]).clamp(0.0, 1.0),
             state => f64::from(state),
         });
-        let off = [0, 1, 2].map(|axis| candidate[axis] - best[axis]);
+        let off = axes(|axis| candidate[axis] - best[axis]);
         let error = dot(off, multiplied(matrix, off));
         if error < least {
             (least, at) = (error, candidate);
@@ -264,8 +265,8 @@ mod tests {
                 for _ in 0..2 {
                     // A point of the plane.
                     let other = [0.0; 3].map(|_: f64| random.unit());
-                    let off = dot(normal, [0, 1, 2].map(|i| other[i] - corner[i]));
-                    qef.add([0, 1, 2].map(|i| other[i] - off * normal[i]), Some(normal));
+                    let off = dot(normal, axes(|i| other[i] - corner[i]));
+                    qef.add(axes(|i| other[i] - off * normal[i]), Some(normal));
                 }
             }
             let (values, _) = eigen(qef.matrix);

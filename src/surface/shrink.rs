@@ -15,6 +15,7 @@ use super::smc::Snap;
 use super::sweep::{Sweep, Vertex};
 use crate::control::{Control, Job, WHOLE};
 use crate::error::{Error, MeshError};
+use crate::lattice::axes;
 use crate::memory;
 use crate::mesh::TriangleMesh;
 use crate::octree::OctreeRef;
@@ -135,7 +136,7 @@ pub(super) fn extract(
         job.advance(WHOLE - FINDING - (WHOLE - FINDING) / 4);
         let vertices = memory::collected(corners.iter().map(|&corner| {
             let at = points::position(corner);
-            [0, 1, 2].map(|axis| lattice.coordinate(axis, 2 * at[axis] + 1))
+            axes(|axis| lattice.coordinate(axis, 2 * at[axis] + 1))
         }))?;
         Ok(TriangleMesh::from_welded(vertices, triangles, 0, 0))
     })

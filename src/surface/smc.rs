@@ -13,6 +13,7 @@ use super::snapped::{FAT, Snapped, THIN};
 use crate::control::{Control, Job, WHOLE};
 use crate::dispatch::{Hot, with_popcount};
 use crate::error::{Error, MeshError};
+use crate::lattice::axes;
 use crate::lattice::morton;
 use crate::memory;
 use crate::mesh::TriangleMesh;
@@ -200,8 +201,7 @@ fn vertices(
             let at = key::position(place.key, bias);
             for (c, vertex) in bits(place.used).zip(&mut piece) {
                 let inner = morton::position(c);
-                *vertex =
-                    [0, 1, 2].map(|axis| lattice.coordinate(axis, 8 * at[axis] + 2 * inner[axis] as i32 + 1));
+                *vertex = axes(|axis| lattice.coordinate(axis, 8 * at[axis] + 2 * inner[axis] as i32 + 1));
             }
         }
         Ok(())

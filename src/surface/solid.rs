@@ -13,6 +13,7 @@ use super::smc::{self, Snap};
 use super::weld::weld;
 use crate::control::{Control, Job};
 use crate::error::Error;
+use crate::lattice::axes;
 use crate::lattice::{Frame, MAX_DEPTH, morton};
 use crate::mesh::TriangleMesh;
 use crate::octree::Octree;
@@ -239,7 +240,7 @@ pub(super) fn edges(block: &Block, bias: i32) -> impl Iterator<Item = Edge> {
     (0..3).flat_map(move |axis| {
         bits(block.cut[axis]).map(move |c| {
             let inner = morton::position(c);
-            let lower = [0, 1, 2].map(|axis| 4 * at[axis] + inner[axis] as i32);
+            let lower = axes(|axis| 4 * at[axis] + inner[axis] as i32);
             Edge { axis, lower, steps: 1, starts_inside: block.inside >> c & 1 != 0 }
         })
     })

@@ -4,6 +4,7 @@ use super::marching_cubes;
 use super::table::{ENDS, MARCHING_CUBES, OTHERS};
 use crate::control::{Control, Job};
 use crate::lattice::Frame;
+use crate::lattice::axes;
 use crate::mesh::TriangleMesh;
 use crate::octree::writer::Writer;
 use crate::octree::{Octree, Planes, Tag};
@@ -102,7 +103,7 @@ fn neighbours_fit_together() {
 fn diagonals_lie_within() {
     let middle = |edge: u8| {
         let [a, b] = ENDS[edge as usize];
-        [0, 1, 2].map(|axis| i32::from((a >> axis & 1) + (b >> axis & 1)))
+        axes(|axis| i32::from((a >> axis & 1) + (b >> axis & 1)))
     };
     for configuration in 0..256usize {
         let outline = boundary(configuration);
@@ -195,7 +196,7 @@ fn octree(depth: u8, bits: &[bool]) -> Octree {
         let mut planes = Planes::uniform(Tag::Empty);
         for c in 0..64 {
             let place = crate::lattice::morton::position(c);
-            let child = [0, 1, 2].map(|axis| 4 * at[axis] + place[axis]);
+            let child = axes(|axis| 4 * at[axis] + place[axis]);
             let tag = match (e + 1 == levels, full(child)) {
                 (true, false) => Tag::Empty,
                 (true, true) => Tag::Full,
@@ -214,7 +215,7 @@ fn octree(depth: u8, bits: &[bool]) -> Octree {
 fn volumes() -> Vec<i32> {
     let middle = |edge: u8| {
         let [a, b] = ENDS[edge as usize];
-        [0, 1, 2].map(|axis| i32::from((a >> axis & 1) + (b >> axis & 1)) - 1)
+        axes(|axis| i32::from((a >> axis & 1) + (b >> axis & 1)) - 1)
     };
     (0..256usize)
         .map(|configuration| {
@@ -251,13 +252,13 @@ fn dense(depth: u8, bits: &[bool], volumes: &[i32]) -> (Vec<Facet>, i64) {
     let (mut facets, mut volume) = (Vec::new(), 0);
     for i in 0..(n + 1).pow(3) {
         let at = [i % (n + 1) - 1, i / (n + 1) % (n + 1) - 1, i / (n + 1) / (n + 1) - 1];
-        let corner = |k: u8| [0, 1, 2].map(|axis| at[axis] + i64::from(k >> axis & 1));
+        let corner = |k: u8| axes(|axis| at[axis] + i64::from(k >> axis & 1));
         let configuration = (0..8u8).fold(0, |sum, k| sum | usize::from(inside(corner(k))) << k);
         volume += i64::from(volumes[configuration]);
         facets.extend(MARCHING_CUBES[configuration].list().iter().map(|triangle| {
             triangle.map(|edge| {
                 let [a, b] = ENDS[edge as usize].map(corner);
-                [0, 1, 2].map(|axis| a[axis] + b[axis] + 1)
+                axes(|axis| a[axis] + b[axis] + 1)
             })
         }));
     }

@@ -11,6 +11,7 @@ use super::solid::edges;
 use super::weld::weld;
 use crate::control::{Control, Job, WHOLE};
 use crate::error::{Error, MeshError};
+use crate::lattice::axes;
 use crate::lattice::{LARGEST, SMALLEST};
 use crate::memory;
 use crate::mesh::TriangleMesh;
@@ -140,8 +141,8 @@ impl Places<'_> {
         for block in blocks {
             job.check()?;
             for (edge, place) in edges(block, self.bias).zip(&mut places) {
-                let at = [0, 1, 2].map(|axis| self.first[axis] + i64::from(edge.lower[axis]));
-                *place = [0, 1, 2].map(|axis| self.coordinate(axis, at[axis], 0.0));
+                let at = axes(|axis| self.first[axis] + i64::from(edge.lower[axis]));
+                *place = axes(|axis| self.coordinate(axis, at[axis], 0.0));
                 let (low, high) = (place[edge.axis], self.coordinate(edge.axis, at[edge.axis], 1.0));
                 let x = self.coordinate(edge.axis, at[edge.axis], self.crossing(&edge, at)).clamp(low, high);
                 place[edge.axis] = x;

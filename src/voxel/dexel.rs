@@ -5,6 +5,7 @@ use crate::control::Control;
 use crate::dexel::{BLOCK, Occupied, TriDexelRef};
 use crate::error::Error;
 use crate::lattice::Frame;
+use crate::lattice::axes;
 use crate::memory;
 use alloc::boxed::Box;
 use alloc::vec::Vec;
@@ -34,8 +35,8 @@ impl LongVoxel {
         let at = |axis: usize, cells: f64| frame.origin()[axis] + (cells - 0.5) * frame.cell_size();
         let length = [1, self.length, 1];
         (
-            [0, 1, 2].map(|axis| at(axis, f64::from(self.first[axis]))),
-            [0, 1, 2].map(|axis| at(axis, f64::from(self.first[axis]) + f64::from(length[axis]))),
+            axes(|axis| at(axis, f64::from(self.first[axis]))),
+            axes(|axis| at(axis, f64::from(self.first[axis]) + f64::from(length[axis]))),
         )
     }
 }
@@ -155,8 +156,7 @@ impl DexelVoxels {
 
 /// The material at the first corner of a voxel that lies inside.
 fn material(model: &TriDexelRef<'_>, at: [u32; 3]) -> u32 {
-    let corners =
-        (0..8u32).map(|corner| [0, 1, 2].map(|axis| (at[axis] + (corner >> axis & 1)).wrapping_sub(1)));
+    let corners = (0..8u32).map(|corner| axes(|axis| (at[axis] + (corner >> axis & 1)).wrapping_sub(1)));
     let first = corners.into_iter().find(|&corner| model.contains_cell(corner));
     first.map_or(0, |corner| model.material_of_cell(corner))
 }

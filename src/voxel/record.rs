@@ -1,6 +1,7 @@
 //! One voxel.
 
 use crate::error::Error;
+use crate::lattice::axes;
 use crate::lattice::{Cell, Frame};
 
 /// What a voxel is.
@@ -56,7 +57,7 @@ pub struct VoxelRecord {
 /// The minimum corner of a cell in model units, rounded down where it is no double.
 pub(super) fn corner(frame: &Frame, cell: Cell) -> [f64; 3] {
     let at = cell.first_at(frame.depth()).at;
-    [0, 1, 2].map(|axis| frame.plane(axis, at[axis]).lower)
+    axes(|axis| frame.plane(axis, at[axis]).lower)
 }
 
 /// The edge of a cell in model units, exactly.
@@ -68,5 +69,5 @@ pub(super) fn edge(frame: &Frame, level: u8) -> f64 {
 #[inline]
 pub(super) fn centre(frame: &Frame, cell: Cell) -> [f64; 3] {
     let half = 0.5 * edge(frame, cell.level);
-    [0, 1, 2].map(|axis| frame.origin()[axis] + (2 * cell.at[axis] + 1) as f64 * half)
+    axes(|axis| frame.origin()[axis] + (2 * cell.at[axis] + 1) as f64 * half)
 }

@@ -5,6 +5,7 @@
 //! products of the axes with the triangle's edges. Intervals decide nearly all; what they leave open is decided
 //! in integers.
 
+use crate::lattice::axes;
 use crate::lattice::exact::Dyadic;
 use crate::lattice::{Bounds, Cube, Interval};
 use crate::mesh::TriangleMesh;
@@ -20,8 +21,8 @@ pub(super) fn corners(mesh: &TriangleMesh, triangle: [u32; 3]) -> Corners {
 /// The least box around a triangle.
 pub(super) fn bounds([a, b, c]: &Corners) -> Bounds {
     Bounds {
-        min: [0, 1, 2].map(|axis| a[axis].min(b[axis]).min(c[axis])),
-        max: [0, 1, 2].map(|axis| a[axis].max(b[axis]).max(c[axis])),
+        min: axes(|axis| a[axis].min(b[axis]).min(c[axis])),
+        max: axes(|axis| a[axis].max(b[axis]).max(c[axis])),
     }
 }
 
@@ -40,19 +41,19 @@ fn by_intervals(corners: &Corners, cube: &Cube<'_>) -> Option<bool> {
     let edge = |k: usize, axis: usize| {
         Interval::exactly(corners[(k + 1) % 3][axis]).minus(Interval::exactly(corners[k][axis]))
     };
-    let edges = [0, 1, 2].map(|k| [0, 1, 2].map(|axis| edge(k, axis)));
+    let edges = axes(|k| axes(|axis| edge(k, axis)));
     apart(&places, &edges, &Interval::exactly(cube.half_edge())).map(|apart| !apart)
 }
 
 fn exactly(corners: &Corners, cube: &Cube<'_>) -> Option<bool> {
     let (lower, upper) = cube.planes();
     let half_cell = Dyadic::new(cube.frame.cell_size()).shifted(-1);
-    let centre = [0, 1, 2].map(|axis| {
+    let centre = axes(|axis| {
         let middle = Dyadic::new((lower[axis] + upper[axis]) as f64);
         &Dyadic::new(cube.frame.origin()[axis]) + &(&middle * &half_cell)
     });
-    let places = corners.map(|corner| [0, 1, 2].map(|axis| &Dyadic::new(corner[axis]) - &centre[axis]));
-    let edges = [0, 1, 2].map(|k| [0, 1, 2].map(|axis| &places[(k + 1) % 3][axis] - &places[k][axis]));
+    let places = corners.map(|corner| axes(|axis| &Dyadic::new(corner[axis]) - &centre[axis]));
+    let edges = axes(|k| axes(|axis| &places[(k + 1) % 3][axis] - &places[k][axis]));
     apart(&places, &edges, &Dyadic::new(cube.half_edge())).map(|apart| !apart)
 }
 
@@ -158,7 +159,7 @@ fn apart<N: Number>(places: &[[N; 3]; 3], edges: &[[N; 3]; 3], half: &N) -> Opti
         for axis in 0..3 {
             // The axis times the edge has the components −w along u and u along w.
             let (u, w) = ((axis + 1) % 3, (axis + 2) % 3);
-            let along = [0, 1, 2].map(|k| difference(&places[k][w], &edge[u], &places[k][u], &edge[w]));
+            let along = axes(|k| difference(&places[k][w], &edge[u], &places[k][u], &edge[w]));
             let reach = half.times(&edge[u].magnitude().plus(&edge[w].magnitude()));
             if separates([&along[0], &along[1], &along[2]], &reach) {
                 return Some(true);
@@ -166,7 +167,7 @@ fn apart<N: Number>(places: &[[N; 3]; 3], edges: &[[N; 3]; 3], half: &N) -> Opti
         }
     }
     let [a, b, _] = edges;
-    let normal = [0, 1, 2].map(|axis| {
+    let normal = axes(|axis| {
         let (u, w) = ((axis + 1) % 3, (axis + 2) % 3);
         difference(&a[u], &b[w], &a[w], &b[u])
     });

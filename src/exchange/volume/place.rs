@@ -2,6 +2,7 @@
 
 use crate::error::{Error, VolumeFileError};
 use crate::lattice::Affine;
+use crate::lattice::axes;
 use crate::lattice::exact::sqrt;
 use crate::solid::VoxelGrid;
 
@@ -32,7 +33,7 @@ impl Axes {
             (0..3).all(|i| if i == axis { self.steps[axis][i] > 0.0 } else { self.steps[axis][i] == 0.0 })
         });
         if is_straight {
-            let spacing = [0, 1, 2].map(|axis| self.steps[axis][axis]);
+            let spacing = axes(|axis| self.steps[axis][axis]);
             let grid = if self.is_corner {
                 VoxelGrid::new(extents, self.origin, spacing)
             } else {
@@ -53,7 +54,7 @@ impl Axes {
         // What is nothing but an error of rounding is nothing.
         let part = |c: f64| if c.abs() < 1.0 / (1u64 << 60) as f64 { 0.0 } else { c };
         let row = |i: usize| {
-            let [a, b, c] = [0, 1, 2].map(|axis| part(self.steps[axis][i] / spacing[axis]));
+            let [a, b, c] = axes(|axis| part(self.steps[axis][i] / spacing[axis]));
             [a, b, c, self.origin[i]]
         };
         let placement = Affine::new([row(0), row(1), row(2)]).map_err(wrong)?;
@@ -63,8 +64,8 @@ impl Axes {
     /// Whether the directions lie in one plane, up to the rounding of decimal numbers: then their box has less than 2^-40
     /// of the volume that it would have if they were square to each other.
     fn is_flat(&self, spacing: [f64; 3]) -> bool {
-        let [a, b, c] = [0, 1, 2].map(|axis| self.steps[axis].map(|x| x / spacing[axis]));
-        let cross = [0, 1, 2].map(|i| {
+        let [a, b, c] = axes(|axis| self.steps[axis].map(|x| x / spacing[axis]));
+        let cross = axes(|i| {
             let (j, k) = ((i + 1) % 3, (i + 2) % 3);
             a[j] * b[k] - a[k] * b[j]
         });

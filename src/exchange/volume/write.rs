@@ -1,6 +1,7 @@
 //! Volumes as raw arrays and as NRRD.
 
 use crate::error::Error;
+use crate::lattice::axes;
 use crate::memory;
 use crate::solid::{Samples, VoxelGrid};
 use alloc::vec::Vec;
@@ -97,7 +98,7 @@ pub fn write_nrrd(samples: &Samples<'_>, grid: &VoxelGrid, encoding: NrrdEncodin
 /// The first sample's place, as near as doubles come to it; of several, those that lead back to the corner.
 fn origin(grid: &VoxelGrid) -> [f64; 3] {
     let (centre, corner, spacing) = (grid.centre([0; 3]), grid.corner(), grid.spacing());
-    [0, 1, 2].map(|axis| {
+    axes(|axis| {
         let near = centre[axis];
         let leads_back = |x: &f64| x - 0.5 * spacing[axis] == corner[axis];
         [near, near.next_down(), near.next_up()].into_iter().find(leads_back).unwrap_or(near)

@@ -58,7 +58,6 @@ impl<'j> ChannelWriter<'j> {
     }
 
     /// An empty writer for a part of the same channel, to be [appended](Self::append) later.
-    #[cfg(feature = "parallel")]
     pub(crate) fn sibling(&self) -> Result<ChannelWriter<'j>, Error> {
         ChannelWriter::new(self.job, self.depth, self.value_type)
     }
@@ -117,7 +116,6 @@ impl<'j> ChannelWriter<'j> {
     }
 
     /// Takes over what a sibling wrote, which comes after all that this one wrote so far.
-    #[cfg(feature = "parallel")]
     pub(crate) fn append(&mut self, mut other: ChannelWriter<'j>) -> Result<(), Error> {
         other.report()?;
         for (level, theirs) in self.levels.iter_mut().zip(other.levels) {

@@ -14,6 +14,7 @@ use crate::error::Error;
 use crate::lattice::{Cell, Cube, Frame, MAX_DEPTH};
 use crate::memory;
 use crate::octree::{Octree, Statistics, Tag};
+use crate::parallel;
 use crate::solid::{Classifier, PartOf, Solid, Verdict, Worker, WorkerOf};
 use alloc::string::ToString;
 use alloc::vec::Vec;
@@ -266,7 +267,7 @@ impl<S: Solid> LazyOctree<S> {
         if unlimited && (direction.is_none() || control.max_splits.is_none()) && self.trail.likes_many() {
             // All that is open on a level at once; what the walk below then finds is to be merged.
             let done = control.run(true, |parallel| {
-                let threads = if parallel { gathered::threads() } else { 1 };
+                let threads = if parallel { parallel::threads() } else { 1 };
                 for above in 0..level {
                     if self.split_level(&mut run, above, threads)? == Refinement::Spent {
                         return Ok(Refinement::Spent);

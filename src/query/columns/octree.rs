@@ -3,6 +3,7 @@
 use super::runs::CellLists;
 use super::{ColumnCells, Columns, Heights, Side, Visitor};
 use crate::error::Error;
+use crate::lattice::axes;
 use crate::lattice::morton;
 use crate::octree::links::Windows;
 use crate::octree::view::OctreeRef;
@@ -94,7 +95,7 @@ impl<V: Visitor> Walk<'_, '_, '_, V> {
         }
         let corner = |c: u32| {
             let at = morton::position(c);
-            [0, 1, 2].map(|axis| low[axis] + (at[axis] << shift))
+            axes(|axis| low[axis] + (at[axis] << shift))
         };
         while left != 0 {
             let c = left.trailing_zeros();

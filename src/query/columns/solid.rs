@@ -1,6 +1,5 @@
 //! Columns of any solid, without an octree: blocks of columns, each by a descent of its own.
 
-use super::super::each;
 use super::super::proven::Proven;
 use super::runs::CellLists;
 use super::{ColumnCells, Columns, Heights, Shadow, Side, Visitor};
@@ -9,6 +8,7 @@ use crate::error::Error;
 use crate::lattice::{Cell, Frame};
 use crate::memory;
 use crate::op::split_one;
+use crate::parallel::each;
 use crate::solid::{Classifier, OCTANTS, Solid, Verdict, Worker};
 use alloc::vec::Vec;
 

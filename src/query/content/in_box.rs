@@ -1,6 +1,7 @@
 //! How much of a stored solid lies in a box?
 
 use crate::error::Error;
+use crate::lattice::axes;
 use crate::lattice::{Frame, Interval, Window, morton};
 use crate::octree::links::Windows;
 use crate::octree::view::OctreeRef;
@@ -46,7 +47,7 @@ impl OctreeRef<'_> {
     pub fn volume_in_box(&self, min: [f64; 3], max: [f64; 3]) -> Result<Interval, Error> {
         let nothing = Interval::exactly(0.0);
         let Some((window, _)) = Window::new(&self.frame, min, max)? else { return Ok(nothing) };
-        let rows = [0, 1, 2].map(|axis| rows(&self.frame, axis, min[axis], max[axis], &window));
+        let rows = axes(|axis| rows(&self.frame, axis, min[axis], max[axis], &window));
         let mut volume = nothing;
         for z in rows[2].into_iter().flatten() {
             for y in rows[1].into_iter().flatten() {
@@ -123,7 +124,7 @@ fn count(tree: &OctreeRef<'_>, window: Window) -> (u64, u64) {
     match tree.root {
         Tag::Branch => count.element(0, 0, [0; 3]),
         tag => {
-            let size = [0, 1, 2].map(|axis| u64::from(window.last[axis] - window.first[axis] + 1));
+            let size = axes(|axis| u64::from(window.last[axis] - window.first[axis] + 1));
             count.add(tag, size[0] * size[1] * size[2]);
         }
     }
@@ -155,7 +156,7 @@ impl Count<'_, '_> {
         let shift = 2 * (levels - 1 - e) as u32;
         let planes = self.tree.entry(index).unwrap_or(Planes::uniform(Tag::Partial));
         // How much of each cell lies in the window along each axis, in finest cells.
-        let lengths = [0, 1, 2].map(|axis| {
+        let lengths = axes(|axis| {
             [0, 1, 2, 3].map(|k| {
                 let start = origin[axis] + (k << shift);
                 let (first, last) = (
@@ -190,11 +191,7 @@ impl Count<'_, '_> {
                 Tag::Branch => {
                     match self.windows.child(self.tree, index, planes.branch(), c, (e + 1).min(levels - 1)) {
                         Ok(child) if e + 1 < levels => {
-                            self.element(
-                                e + 1,
-                                child,
-                                [0, 1, 2].map(|axis| origin[axis] + (at[axis] << shift)),
-                            );
+                            self.element(e + 1, child, axes(|axis| origin[axis] + (at[axis] << shift)));
                         }
                         _ => self.add(Tag::Partial, volume),
                     }

@@ -1,5 +1,6 @@
 //! A point on a lattice so fine that hardly any doubles lie between its planes: distances to cells are integers there.
 
+use crate::lattice::axes;
 use crate::lattice::exact::{floor, two_diff, two_product};
 use crate::lattice::{Cell, Cube, Frame, Interval};
 
@@ -33,7 +34,7 @@ impl<'f> Place<'f> {
             return None;
         }
         let mut bits = UNITS;
-        let edges = [0, 1, 2].map(|axis| (point[axis] - frame.origin()[axis]) / frame.edge());
+        let edges = axes(|axis| (point[axis] - frame.origin()[axis]) / frame.edge());
         let most = edges.iter().fold(0.0, |most: f64, c| most.max(c.abs()));
         while bits > frame.depth().into() && most * (1u64 << bits) as f64 >= (FAR / 2) as f64 {
             bits -= 1;
@@ -70,7 +71,7 @@ impl<'f> Place<'f> {
     /// The squares of the distances along each axis from four cells of `level` in a row; the first is `first`.
     pub(super) fn squares(&self, level: u8, first: [u32; 3]) -> [[Square; 4]; 3] {
         let shift = self.shift(level);
-        [0, 1, 2].map(|axis| {
+        axes(|axis| {
             [0, 1, 2, 3].map(|k| {
                 let low = i64::from(first[axis] + k) << shift;
                 square(gap(self.at[axis], low, low + (1 << shift)))
@@ -113,7 +114,7 @@ impl<'f> Place<'f> {
     /// the point, or rounded ones of the cell's faces.
     pub(super) fn nearest_in(&self, cell: Cell, point: [f64; 3]) -> [f64; 3] {
         let (lower, upper) = Cube { frame: self.frame, cell }.planes();
-        [0, 1, 2].map(|axis| {
+        axes(|axis| {
             let side = |plane: u32| self.frame.side(axis, point[axis], 2 * i64::from(plane));
             if side(lower[axis]) < 0 {
                 self.frame.plane(axis, lower[axis]).upper

@@ -5,6 +5,7 @@
 //! point gives a bound that is off by the square of the angle between them.
 
 use crate::lattice::Interval;
+use crate::lattice::axes;
 use crate::query::reach;
 use crate::solid::{Enclosure, Slab, SlabJoin};
 
@@ -80,7 +81,7 @@ fn lower_of_all(enclosure: &Enclosure, point: &Seen) -> f64 {
             return f64::INFINITY;
         }
         let direction = direction.map(Interval::exactly);
-        let [x, y, z] = [0, 1, 2].map(|axis| direction[axis].times(point[axis]));
+        let [x, y, z] = axes(|axis| direction[axis].times(point[axis]));
         let gap = x.plus(y).plus(z).minus(Interval::exactly(reach));
         best = best.max(gap.over(length(&direction)).lower);
     }
@@ -96,7 +97,7 @@ fn upper_of_all(enclosure: &Enclosure, point: &Seen) -> Option<f64> {
         let towards = minus(about, near);
         reach::witness(enclosure, towards)?
     };
-    Some(length(&[0, 1, 2].map(|axis| point[axis].minus(Interval::exactly(found[axis])))).upper)
+    Some(length(&axes(|axis| point[axis].minus(Interval::exactly(found[axis])))).upper)
 }
 
 /// A point of the cell near `point` that lies, to rounding, a little inside of all slabs, if some turns of projections
@@ -128,7 +129,7 @@ fn pulled(enclosure: &Enclosure, point: [f64; 3]) -> [f64; 3] {
 fn is_inside(enclosure: &Enclosure, point: [f64; 3]) -> bool {
     slabs(enclosure).all(|slab| {
         let [x, y, z] =
-            [0, 1, 2].map(|axis| Interval::exactly(slab.normal[axis]).times(Interval::exactly(point[axis])));
+            axes(|axis| Interval::exactly(slab.normal[axis]).times(Interval::exactly(point[axis])));
         x.plus(y).plus(z).upper < slab.inner
     }) && slabs(enclosure).next().is_some()
 }

@@ -9,7 +9,7 @@ use crate::lattice::{Cell, Interval, morton};
 use crate::memory;
 use crate::octree::view::OctreeRef;
 use crate::octree::{Octree, Planes, Tag};
-use crate::query::each;
+use crate::parallel::each;
 
 /// The squares of the least distances.
 struct Least {

@@ -2,6 +2,7 @@
 
 use super::place::{Place, Square};
 use crate::error::Error;
+use crate::lattice::axes;
 use crate::lattice::{Cell, morton};
 use crate::octree::links::Step;
 use crate::octree::view::OctreeRef;
@@ -60,7 +61,7 @@ impl<V: Visitor> Walk<'_, '_, V> {
         };
         let cell = |c: u32| {
             let place = morton::position(c);
-            Cell { level, at: [0, 1, 2].map(|axis| first[axis] + place[axis]) }
+            Cell { level, at: axes(|axis| first[axis] + place[axis]) }
         };
         let mut singles = if e == 0 { self.tree.root_cells() } else { !0 };
         let branches = singles & planes.branch();

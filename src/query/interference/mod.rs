@@ -3,14 +3,14 @@
 mod children;
 mod search;
 
-use super::each;
 use super::proven::Proven;
 use crate::control::{Control, Job, WHOLE};
 use crate::error::Error;
 use crate::lattice::{Affine, Cell, Frame, Interval, valid};
 use crate::memory;
 use crate::octree::Proof;
-use crate::op::gathered;
+use crate::parallel;
+use crate::parallel::each;
 use crate::solid::{Solid, TransformClassifier};
 use alloc::vec::Vec;
 use search::Search;
@@ -83,7 +83,7 @@ pub fn interference<A: Solid, B: Solid>(
     let (a, b) = (Proven(a.on(frame, control)?), Proven(b.on(frame, control)?));
     let search = Search::new(&a, &b, control)?;
     let found = control.run(search.likes_many(), |parallel| {
-        search.run(tolerance, if parallel { gathered::threads() } else { 1 }, &job)
+        search.run(tolerance, if parallel { parallel::threads() } else { 1 }, &job)
     })?;
     job.advance(WHOLE);
     Ok(found)

@@ -5,6 +5,7 @@ use super::walk::walk;
 use super::{StopReason, Tolerance};
 use crate::control::Control;
 use crate::error::Error;
+use crate::lattice::axes;
 use crate::lattice::{Cell, Frame, Interval, MAX_DEPTH, valid};
 use crate::octree::{Proof, Tag};
 use crate::query::proven::Proven;
@@ -105,8 +106,7 @@ fn off_lattice<S: Solid>(
     for k in 0..FRAMES {
         // Shares of the golden ratio: no dimension of a part is like them.
         let shift = [0.381_966_011_250_105, 0.236_067_977_499_790, 0.618_033_988_749_895];
-        let origin =
-            [0, 1, 2].map(|axis| frame.origin()[axis] - (shift[axis] + 0.01 * k as f64) * frame.edge());
+        let origin = axes(|axis| frame.origin()[axis] - (shift[axis] + 0.01 * k as f64) * frame.edge());
         let Ok(other) = Frame::new(origin, 2.0 * frame.edge(), depth) else { continue };
         let classifier = Proven(solid.on(&other, control)?);
         if classifier.is_off_lattice() && matches!(classifier.exterior(), Tag::Empty | Tag::Full) {

@@ -17,6 +17,7 @@
 
 use super::moments::{BITS, Moments, PAIRS, UNIVERSE};
 use super::volume::Found;
+use crate::lattice::axes;
 use crate::lattice::exact::sqrt;
 use crate::lattice::{Frame, Interval, MAX_DEPTH};
 
@@ -95,7 +96,7 @@ impl Known {
         let double = 2 * self.found.full.volume;
         let point = self.found.full.first.map(|first| (2 * nearest(first, double)).clamp(0, last));
         let [full, open] = [self.found.full, self.found.open].map(|m| Bounded::new(&m.about(point)));
-        Some([0, 1, 2].map(|axis| {
+        Some(axes(|axis| {
             let of = |sign: f64| {
                 let signed = |sum: Interval| sum.times(Interval::exactly(sign));
                 farthest(
@@ -118,7 +119,7 @@ impl Known {
     pub(super) fn inertia_about_origin(&self) -> Tensor {
         let [full, open, all] =
             [self.found.full, self.found.open, self.all()].map(|m| self.second_about_origin(&m));
-        self.tensor(&full, &all, [0, 1, 2].map(|axis| open[axis].upper))
+        self.tensor(&full, &all, axes(|axis| open[axis].upper))
     }
 
     /// About the solid's own centroid.
@@ -126,7 +127,7 @@ impl Known {
         let [full, all] = [self.found.full, self.all()].map(|m| second_about_centroid(&m));
         let spread = match (self.found.open.volume, self.found.open.error) {
             (0, 0) => [0.0; 3],
-            _ => [0, 1, 2].map(|axis| all[axis].minus(full[axis]).upper),
+            _ => axes(|axis| all[axis].minus(full[axis]).upper),
         };
         self.tensor(&full, &all, spread)
     }
@@ -135,13 +136,12 @@ impl Known {
     fn second_about_origin(&self, moments: &Moments) -> Symmetric {
         // The plane next to the origin is the reference, so that nothing cancels.
         let cells = self.frame.cells() as f64;
-        let planes = [0, 1, 2].map(|axis| {
+        let planes = axes(|axis| {
             let at = self.frame.scaled(axis, 0.0).clamp(0.0, cells);
             (at + 0.5) as u32
         });
         let point = planes.map(|plane| 2 * plane as i128);
-        let offset =
-            [0, 1, 2].map(|axis| self.frame.plane(axis, planes[axis]).over(Interval::exactly(self.half())));
+        let offset = axes(|axis| self.frame.plane(axis, planes[axis]).over(Interval::exactly(self.half())));
         let Bounded { volume, first, second } = Bounded::new(&moments.about(point));
         let mut second = second.map(|sum| sum.over(THREE));
         for (sum, (i, j)) in second.iter_mut().zip(PAIRS) {

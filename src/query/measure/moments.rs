@@ -3,6 +3,7 @@
 //! Whole cells are counted and nothing of theirs is rounded. Of cut cells the moments are rounded, to a 2^44th of the
 //! cell; what they may be off by is counted too.
 
+use crate::lattice::axes;
 use crate::lattice::{Cell, CubeMoments, MAX_DEPTH};
 use crate::solid::cut;
 use core::ops::{Add, AddAssign, Sub};
@@ -36,7 +37,7 @@ impl Moments {
             let (p, q) = (point[i], point[j]);
             *moment += 3 * (p * q * self.volume - p * self.first[j] - q * self.first[i]);
         }
-        let first = [0, 1, 2].map(|axis| self.first[axis] - point[axis] * self.volume);
+        let first = axes(|axis| self.first[axis] - point[axis] * self.volume);
         Moments { volume: self.volume, first, second, error: self.error }
     }
 }
@@ -173,7 +174,7 @@ impl CutSums {
         const OWN: i128 = (cut::ERROR / 8.0 * (1u64 << SHARE_BITS) as f64) as i128 + 2;
         Moments {
             volume: scaled(self.volume, 3),
-            first: [0, 1, 2].map(|i| scaled(self.first[i] + self.own_first[i], 4)),
+            first: axes(|i| scaled(self.first[i] + self.own_first[i], 4)),
             second: [0, 1, 2, 3, 4, 5].map(second),
             error: scaled(self.count as i128 * OWN, 3) + 2,
         }

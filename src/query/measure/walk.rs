@@ -16,7 +16,7 @@ use crate::lattice::{Cell, Frame};
 use crate::memory;
 use crate::op::gathered::{self, Part};
 use crate::op::split_one;
-use crate::query::each;
+use crate::parallel::{self, each};
 use crate::solid::{Classifier, Verdict, Worker};
 use alloc::vec::Vec;
 use core::marker::PhantomData;
@@ -315,7 +315,7 @@ impl<Q: Quantity, C: Classifier> Walk<'_, Q, C> {
             for open in chunk.cells.iter().filter(|open| open.doubt > threshold) {
                 memory::push(&mut cells, (open.cell, open.part.clone()))?;
             }
-            let threads = if self.parallel { gathered::threads() } else { 1 };
+            let threads = if self.parallel { parallel::threads() } else { 1 };
             let control = self.job.control();
             let worker = &mut chunk.worker;
             gathered = gathered::split_each(self.classifier, worker, &cells, threads, control)?.into_iter();

@@ -2,6 +2,7 @@
 
 use super::course::{Clear, Course};
 use crate::lattice::Frame;
+use crate::lattice::axes;
 use crate::lattice::morton::{self, SLABS};
 use crate::octree::links::Step;
 use crate::octree::view::{OctreeRef, root_cells};
@@ -80,7 +81,7 @@ impl Beam {
         (width < WIDEST * cells && reach < FARTHEST).then_some(Beam {
             axis,
             across,
-            falls: [0, 1, 2].map(|axis| first.falls(axis)),
+            falls: axes(|axis| first.falls(axis)),
             cells,
             start: (start - 1.0).max(0.0),
             low,
@@ -174,7 +175,7 @@ impl Search<'_, '_> {
                         self.left -= 1;
                         let [x, y, z] = morton::position(c);
                         let at = [x, y, z].map(|k| k << shift);
-                        self.visit(level + 1, child, [0, 1, 2].map(|axis| corner[axis] + at[axis]));
+                        self.visit(level + 1, child, axes(|axis| corner[axis] + at[axis]));
                     }
                     _ => self.until = near,
                 }

@@ -2,6 +2,7 @@
 
 use super::Ray;
 use crate::lattice::Frame;
+use crate::lattice::axes;
 use crate::lattice::morton::SLABS;
 use wide::f64x4;
 
@@ -63,7 +64,7 @@ impl Course {
     /// The cells of an element that a ray may still meet which is in one of them; they have an edge of 2^shift.
     #[inline(always)]
     pub(super) fn ahead(&self, place: [u32; 4], shift: u32) -> u64 {
-        let [x, y, z] = [0, 1, 2].map(|axis| {
+        let [x, y, z] = axes(|axis| {
             let k = (place[axis] >> shift & 3) as usize;
             if self.falls(axis) { SLABS[axis][0][k] } else { SLABS[axis][k][3] }
         });
@@ -138,7 +139,7 @@ impl Course {
     pub(super) fn start(&self, frame: &Frame, last: f64) -> Start {
         let cells = frame.cells() as f64;
         let mut entry = 0;
-        let near = [0, 1, 2].map(|axis| self.time(axis, 0));
+        let near = axes(|axis| self.time(axis, 0));
         for axis in 1..3 {
             if near[axis] > near[entry] {
                 entry = axis;

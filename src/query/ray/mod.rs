@@ -18,6 +18,7 @@ pub use solid::{Sight, cast_rays, line_of_sight, ray_spans};
 pub(crate) use touch::Touch;
 
 use crate::error::Error;
+use crate::lattice::axes;
 use crate::lattice::exact::two_diff;
 use crate::lattice::{Cell, Interval, valid};
 use alloc::vec::Vec;
@@ -54,7 +55,7 @@ impl Ray {
     pub fn between(from: [f64; 3], to: [f64; 3]) -> Result<Ray, Error> {
         valid::numbers("from", &from)?;
         valid::numbers("to", &to)?;
-        let direction = [0, 1, 2].map(|axis| {
+        let direction = axes(|axis| {
             let (high, low) = two_diff(to[axis], from[axis]);
             [high, low]
         });

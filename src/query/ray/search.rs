@@ -3,6 +3,7 @@
 use super::line::{Line, Moment, Passage};
 use super::{Obstacle, RayHit, RaySpans};
 use crate::error::Error;
+use crate::lattice::axes;
 use crate::lattice::exact::sqrt;
 use crate::lattice::{Cell, Cube, Interval};
 use crate::memory;
@@ -252,7 +253,7 @@ impl Height {
         let centre = cube.centre_from(line.ray.from);
         let half = Interval::exactly(cube.half_edge());
         let dot = |v: [Interval; 3]| {
-            let [x, y, z] = [0, 1, 2].map(|axis| v[axis].times(Interval::exactly(slab.normal[axis])));
+            let [x, y, z] = axes(|axis| v[axis].times(Interval::exactly(slab.normal[axis])));
             x.plus(y).plus(z).over(half)
         };
         let (at, slope) = (dot(centre).negated(), dot(line.direction));

@@ -1,6 +1,5 @@
 //! Rays on any solid, without an octree.
 
-use super::super::each;
 use super::super::proven::Proven;
 use super::line::Line;
 use super::search::{Cells, First, Stays};
@@ -11,6 +10,7 @@ use crate::lattice::{Cell, Frame};
 use crate::memory;
 use crate::octree::Tag;
 use crate::op::split_one;
+use crate::parallel::each;
 use crate::solid::{Classifier, Enclosure, Solid, Verdict, Worker};
 use alloc::vec::Vec;
 

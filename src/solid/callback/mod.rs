@@ -9,6 +9,7 @@ pub use tangent::TangentBalls;
 use super::{Classifier, Enclosure, Fingerprint, OCTANTS, Solid, Verdict, Worker};
 use crate::control::Control;
 use crate::error::Error;
+use crate::lattice::axes;
 use crate::lattice::exact::sqrt;
 use crate::lattice::{Bounds, Cell, Cube, Frame};
 use crate::memory;
@@ -461,7 +462,7 @@ impl<F: Fn([f64; 3], [f64; 3]) -> Result<Verdict<()>, Error> + Send + Sync> Work
 
 /// A point of a box, next to its middle.
 fn middle(min: [f64; 3], max: [f64; 3]) -> [f64; 3] {
-    [0, 1, 2].map(|axis| min[axis] + 0.5 * (max[axis] - min[axis]))
+    axes(|axis| min[axis] + 0.5 * (max[axis] - min[axis]))
 }
 
 /// The centre of a cell of the frame's depth.

@@ -1,5 +1,6 @@
 //! What a host knows of its surface next to a point: balls on both sides that touch it.
 
+use crate::lattice::axes;
 use crate::lattice::{Cube, Interval};
 use crate::solid::{Enclosure, Slab};
 
@@ -77,7 +78,7 @@ impl TangentBalls {
         let share = along.over(square);
         let bend = square.root().times(Interval::exactly(curvature));
         let factor = half.times(Interval::exactly(1.0).plus(bend.times(share)));
-        let across = [0, 1, 2].map(|axis| a[axis].minus(n[axis].times(share)));
+        let across = axes(|axis| a[axis].minus(n[axis].times(share)));
         let most = across.iter().fold(0.0, |sum: f64, c| sum + c.upper.max(-c.lower));
         // (The sum of three, rounded.)
         let sideways = half.times(bend).times(Interval::exactly(most * (1.0 + 4.0 * f64::EPSILON)));

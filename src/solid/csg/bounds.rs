@@ -1,6 +1,7 @@
 //! What one half-space says of the eight children of a cell.
 
 use crate::lattice::Cell;
+use crate::lattice::axes;
 use core::cmp::Ordering;
 use wide::f64x4;
 
@@ -50,7 +51,7 @@ impl Octants {
 
     /// The lower and the upper corner of child `k`.
     pub(super) fn octant(&self, k: u32) -> ([f64; 3], [f64; 3]) {
-        let at = [0, 1, 2].map(|axis| self.low[axis] + (k >> axis & 1) as f64 * self.half);
+        let at = axes(|axis| self.low[axis] + (k >> axis & 1) as f64 * self.half);
         (at, at.map(|t| t + self.half))
     }
 }

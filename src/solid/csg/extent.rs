@@ -3,6 +3,7 @@
 use super::word::MOST;
 use super::{Join, Kind, Node};
 use crate::error::Error;
+use crate::lattice::axes;
 use crate::lattice::{Affine, Bounds, Composed, Frame};
 use crate::memory;
 use crate::octree::Tag;
@@ -75,11 +76,11 @@ pub(super) fn into_universe(extent: Extent, outward: Option<&Composed>, frame: &
         let error = 4.0 * f64::EPSILON * (end.abs() + frame.origin()[axis].abs()) / frame.edge();
         (distance / frame.edge(), error + f64::MIN_POSITIVE)
     };
-    let low = [0, 1, 2].map(|axis| {
+    let low = axes(|axis| {
         let (at, error) = unit(axis, min[axis]);
         at - error
     });
-    let high = [0, 1, 2].map(|axis| {
+    let high = axes(|axis| {
         let (at, error) = unit(axis, max[axis]);
         at + error
     });

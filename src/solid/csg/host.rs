@@ -5,6 +5,7 @@ use super::linear;
 use super::map::ExactMap;
 use super::points;
 use crate::error::Error;
+use crate::lattice::axes;
 use crate::lattice::{Frame, Interval};
 use crate::solid::Fingerprint;
 use alloc::boxed::Box;
@@ -43,7 +44,7 @@ impl PlacedHost {
         let places = frame.depth() as i64 + 1;
         let lowest = LOWEST + places;
         let mut errors = [0.0; 3];
-        let rows = [0, 1, 2].map(|i| {
+        let rows = axes(|i| {
             let exact = map.rows[i].each_ref().map(|c| c.shifted(-shift));
             let row = exact.each_ref().map(|c| c.rounded() / divisor);
             let size: f64 = row.iter().map(|c| c.abs()).sum();
@@ -67,11 +68,11 @@ impl PlacedHost {
     fn image_of_box(&self, low: [f64; 3], high: [f64; 3]) -> ([f64; 3], [f64; 3]) {
         let end = |i: usize, upper: bool| {
             let row = self.rows[i];
-            let corner = [0, 1, 2].map(|k| if (row[k] > 0.0) == upper { high[k] } else { low[k] });
+            let corner = axes(|k| if (row[k] > 0.0) == upper { high[k] } else { low[k] });
             let at = ((row[0] * corner[0] + row[1] * corner[1]) + row[2] * corner[2]) + row[3];
             if upper { at + self.errors[i] } else { at - self.errors[i] }
         };
-        ([0, 1, 2].map(|i| end(i, false)), [0, 1, 2].map(|i| end(i, true)))
+        (axes(|i| end(i, false)), axes(|i| end(i, true)))
     }
 
     /// For which of the cells `wanted` the function is said to be nowhere negative, and nowhere positive. A

@@ -1,6 +1,7 @@
 //! Exact affine maps.
 
 use crate::error::Error;
+use crate::lattice::axes;
 use crate::lattice::exact::{Dyadic, cross, dot};
 use crate::lattice::{Affine, Frame};
 
@@ -26,14 +27,14 @@ impl ExactMap {
     /// The map that moves nothing.
     #[cfg(feature = "scene")]
     pub(super) fn identity() -> ExactMap {
-        let rows = [0, 1, 2].map(|i| [0, 1, 2, 3].map(|j| Dyadic::new(if i == j { 1.0 } else { 0.0 })));
+        let rows = axes(|i| [0, 1, 2, 3].map(|j| Dyadic::new(if i == j { 1.0 } else { 0.0 })));
         ExactMap { rows, w: Dyadic::new(1.0) }
     }
 
     /// From unit coordinates, in which the universe is [0, 1]³, to model space.
     pub(super) fn from_universe(frame: &Frame) -> ExactMap {
         let edge = Dyadic::new(frame.edge());
-        let rows = [0, 1, 2].map(|i| {
+        let rows = axes(|i| {
             let mut row = [0, 1, 2, 3].map(|_| Dyadic::zero());
             row[i] = edge.clone();
             row[3] = Dyadic::new(frame.origin()[i]);
@@ -59,17 +60,15 @@ impl ExactMap {
     /// [`Error::Limit`] if the exact entries become too long.
     pub(super) fn of_placed(&self, placement: &Affine) -> Result<ExactMap, Error> {
         let m = placement.rows().map(|row| row.map(Dyadic::new));
-        let cofactors = [0, 1, 2].map(|i| cross(&m[(i + 1) % 3], &m[(i + 2) % 3]));
+        let cofactors = axes(|i| cross(&m[(i + 1) % 3], &m[(i + 2) % 3]));
         let determinant = dot([&m[0][0], &m[0][1], &m[0][2]], cofactors[0].each_ref());
-        let moved = [0, 1, 2].map(|i| {
+        let moved = axes(|i| {
             let mut row = self.rows[i].clone();
             row[3] = &row[3] - &(&self.w * &m[i][3]);
             row
         });
         // The adjugate is the cofactors' transpose.
-        let rows = [0, 1, 2].map(|i| {
-            [0, 1, 2, 3].map(|j| dot([0, 1, 2].map(|k| &cofactors[k][i]), [0, 1, 2].map(|k| &moved[k][j])))
-        });
+        let rows = axes(|i| [0, 1, 2, 3].map(|j| dot(axes(|k| &cofactors[k][i]), axes(|k| &moved[k][j]))));
         // With w of a magnitude of one, sums of entries and products are as long as the entries are apart.
         let w = &self.w * &determinant;
         let scale = -w.magnitude().unwrap_or(0);
@@ -98,7 +97,7 @@ mod tests {
         // A point of the shape, its image, and the image's unit coordinates.
         let local = [0.5, -3.0, 2.0];
         let image = placement.apply(local);
-        let unit = [0, 1, 2].map(|i| Dyadic::new((image[i] - frame.origin()[i]) / 8.0));
+        let unit = axes(|i| Dyadic::new((image[i] - frame.origin()[i]) / 8.0));
         for i in 0..3 {
             let row = &map.rows[i];
             let value = &dot([&row[0], &row[1], &row[2]], unit.each_ref()) + &row[3];

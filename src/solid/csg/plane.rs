@@ -4,6 +4,7 @@ use super::bounds::{Octants, Sides};
 use super::linear;
 use super::map::ExactMap;
 use super::tangent::Tangent;
+use crate::lattice::axes;
 use crate::lattice::exact::{Dyadic, certain};
 use crate::solid::cut::{Quadratic, Taylor};
 use alloc::boxed::Box;
@@ -70,8 +71,7 @@ impl Plane {
         sides.settled(at, doubt, |low, high, which| {
             let exact = self.exact();
             let less = if which == Ordering::Less { 1 } else { -1 };
-            let corner =
-                [0, 1, 2].map(|i| if exact[i].sign() == less { low[i] } else { high[i] }).map(Dyadic::new);
+            let corner = axes(|i| if exact[i].sign() == less { low[i] } else { high[i] }).map(Dyadic::new);
             linear::value(&exact, &corner).sign()
         })
     }

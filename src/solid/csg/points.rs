@@ -2,6 +2,7 @@
 
 use super::bounds::Octants;
 use crate::error::Error;
+use crate::lattice::axes;
 
 /// The points that the eight children of a cell have as vertices, by their place on each axis (0 lower end, 1
 /// middle, 2 upper end), those of most children first: the centre, centres of faces, middles of edges,
@@ -60,7 +61,7 @@ pub(super) fn vertices(
         if owners & !(inner & outer) == 0 {
             continue;
         }
-        match inside([0, 1, 2].map(|axis| at.low[axis] + point[axis] as f64 * at.half))? {
+        match inside(axes(|axis| at.low[axis] + point[axis] as f64 * at.half))? {
             Some(true) => inner |= owners,
             Some(false) => outer |= owners,
             None => {}

@@ -5,6 +5,7 @@ use super::linear::{self, Linear};
 use super::map::ExactMap;
 use super::tangent::Tangent;
 use crate::lattice::PAIRS;
+use crate::lattice::axes;
 use crate::lattice::exact::{Dyadic, sign};
 use crate::solid::cut::{Quadratic, Taylor};
 use alloc::vec::Vec;
@@ -216,7 +217,7 @@ impl PlacedPowers {
                 Some(rest) => power(f64x4::splat(base), rest).to_array()[0],
                 None => 0.0,
             };
-            let along = [0, 1, 2].map(|axis| half * line.c[axis]);
+            let along = axes(|axis| half * line.c[axis]);
             let slope = weight * n * power(middle, 1);
             let curvature = weight * (0.5 * n * (n - 1.0)) * power(middle, 2);
             value += weight * power(middle, 0);

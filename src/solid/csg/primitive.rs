@@ -3,6 +3,7 @@
 use super::{Csg, HalfSpace};
 use crate::error::Error;
 use crate::lattice::Interval;
+use crate::lattice::axes;
 use crate::lattice::exact::Dyadic;
 use crate::lattice::valid::{self, length};
 
@@ -63,14 +64,14 @@ impl Csg {
         }
         // Σ (x − c)² / r² ≤ 1, times all r².
         let squares = radii.map(|radius| Dyadic::new(radius).pow(2));
-        let weights = [0, 1, 2].map(|axis| -&(&squares[(axis + 1) % 3] * &squares[(axis + 2) % 3]));
-        let linear = [0, 1, 2].map(|axis| -&(&weights[axis] * &Dyadic::new(centre[axis]).shifted(1)));
+        let weights = axes(|axis| -&(&squares[(axis + 1) % 3] * &squares[(axis + 2) % 3]));
+        let linear = axes(|axis| -&(&weights[axis] * &Dyadic::new(centre[axis]).shifted(1)));
         let constant = (0..3).fold(&(&squares[0] * &squares[1]) * &squares[2], |sum, axis| {
             &sum + &(&weights[axis] * &Dyadic::new(centre[axis]).pow(2))
         });
         let [centre, radii] = [centre, radii].map(|all| all.map(Interval::exactly));
-        let min = [0, 1, 2].map(|axis| centre[axis].minus(radii[axis]).lower);
-        let max = [0, 1, 2].map(|axis| centre[axis].plus(radii[axis]).upper);
+        let min = axes(|axis| centre[axis].minus(radii[axis]).lower);
+        let max = axes(|axis| centre[axis].plus(radii[axis]).upper);
         Ok(Csg::from(HalfSpace::separable(weights, linear, constant)).within(min, max))
     }
 

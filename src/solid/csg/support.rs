@@ -4,6 +4,7 @@
 //! if a direction e is −Σ λ n over some planes n · p + o ≥ 0 with exact λ ≥ 0, then e · p ≤ Σ λ o.
 
 use crate::error::Error;
+use crate::lattice::axes;
 use crate::lattice::exact::{self, Dyadic, sqrt};
 use crate::memory;
 use alloc::vec::Vec;
@@ -24,7 +25,7 @@ fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
 }
 
 fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [0, 1, 2].map(|i| a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3])
+    axes(|i| a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3])
 }
 
 /// A box that surely contains the polyhedron of all points with n · p + o ≥ 0 for each plane (n, o), if one
@@ -51,7 +52,7 @@ pub(super) fn box_around(planes: &[Plane]) -> Result<Option<Corners>, Error> {
             let mut direction = [0.0; 3];
             direction[axis] = sign;
             rows.truncate(planes.len());
-            rows.extend([0, 1, 2].map(|k| {
+            rows.extend(axes(|k| {
                 let mut outward = [0.0; 3];
                 outward[k] = if k == axis { -sign } else { -1.0 };
                 (outward, FAR)
@@ -75,8 +76,8 @@ fn best_planes(rows: &[Plane], direction: [f64; 3]) -> Option<[usize; 3]> {
         let normals = basis.map(|i| rows[i].0);
         // The dual basis: vectors d with the coordinates d · p.
         let volume = dot(normals[0], cross(normals[1], normals[2]));
-        let dual = [0, 1, 2].map(|i| cross(normals[(i + 1) % 3], normals[(i + 2) % 3]).map(|c| c / volume));
-        let corner = [0, 1, 2].map(|axis| -(0..3).map(|i| dual[i][axis] * rows[basis[i]].1).sum::<f64>());
+        let dual = axes(|i| cross(normals[(i + 1) % 3], normals[(i + 2) % 3]).map(|c| c / volume));
+        let corner = axes(|axis| -(0..3).map(|i| dual[i][axis] * rows[basis[i]].1).sum::<f64>());
         let height = |row: &Plane| dot(row.0, corner) + row.1;
         let lowest = (0..rows.len()).min_by(|&a, &b| height(&rows[a]).total_cmp(&height(&rows[b])))?;
         let size = 1.0 + dot(corner.map(f64::abs), [1.0; 3]);
@@ -100,7 +101,7 @@ fn best_planes(rows: &[Plane], direction: [f64; 3]) -> Option<[usize; 3]> {
 fn reach(planes: &[Plane], basis: [usize; 3], direction: [f64; 3]) -> Option<f64> {
     let exactly = |v: [f64; 3]| v.map(Dyadic::new);
     let determinant = |[a, b, c]: [&[Dyadic; 3]; 3]| exact::dot(a.each_ref(), exact::cross(b, c).each_ref());
-    let unit = |k: usize| [0, 1, 2].map(|axis| if axis == k { 1.0 } else { 0.0 });
+    let unit = |k: usize| axes(|axis| if axis == k { 1.0 } else { 0.0 });
     // The sign of a plane that has no share does not matter.
     let normals =
         basis.map(|i| exactly(planes.get(i).map_or_else(|| unit(i - planes.len()), |plane| plane.0)));

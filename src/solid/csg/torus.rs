@@ -5,6 +5,7 @@ use super::linear::{self, Linear};
 use super::map::ExactMap;
 use super::tangent::Tangent;
 use crate::lattice::PAIRS;
+use crate::lattice::axes;
 use crate::lattice::exact::{Dyadic, sign, sqrt};
 use crate::solid::cut::{Quadratic, Taylor};
 use core::cmp::Ordering;
@@ -129,7 +130,7 @@ impl PlacedTorus {
         // length.
         let share = rho.simd_gt(splat(NEAR)).select(off / rho, zero);
         let (slope_x, slope_y) = (x * share, y * share);
-        let slopes = [0, 1, 2].map(|axis| {
+        let slopes = axes(|axis| {
             let [a, b, c] = self.lines.each_ref().map(|line| splat(line.c[axis]));
             ((slope_x * a + slope_y * b) + z * c).abs()
         });
@@ -149,7 +150,7 @@ impl PlacedTorus {
         let value = self.square - off * off - z * z;
         let share = if rho > NEAR { off / rho } else { 0.0 };
         let (slope_x, slope_y) = (x * share, y * share);
-        let gradient = [0, 1, 2].map(|axis| {
+        let gradient = axes(|axis| {
             let [a, b, c] = self.lines.each_ref().map(|line| line.c[axis]);
             -2.0 * half * ((slope_x * a + slope_y * b) + z * c)
         });
@@ -177,7 +178,7 @@ impl PlacedTorus {
             let f = Quadratic { value: 0.5 * (low + high), gradient, squares: [0.0; 6], error };
             return Taylor { f, bend: f64::INFINITY, degree: 4 };
         }
-        let columns = [0, 1, 2].map(|axis| self.lines.each_ref().map(|line| half * line.c[axis]));
+        let columns = axes(|axis| self.lines.each_ref().map(|line| half * line.c[axis]));
         // Around the axis ρ bends.
         let around = columns.map(|[a, b, _]| (x * b - y * a) / rho);
         let share = self.major / rho;

@@ -7,6 +7,7 @@
 //! four times.
 
 use super::Half;
+use crate::lattice::axes;
 use crate::lattice::{CubeMoments, PAIRS};
 
 /// A face of the cube has four corners, a section six; each further plane adds one. Bent faces may have more.
@@ -124,7 +125,7 @@ fn clip(face: &Polygon, half: &Half, pieces: &mut Pieces) -> Option<Polygon> {
             // From the inner end to the outer, so that both faces of an edge find the same point.
             let (a, b, at_a, at_b) = if leaves { (p, q, at_p, at_q) } else { (q, p, at_q, at_p) };
             let t = at_a / (at_a - at_b);
-            let point = [0, 1, 2].map(|i| if a[i] == b[i] { a[i] } else { a[i] + t * (b[i] - a[i]) });
+            let point = axes(|i| if a[i] == b[i] { a[i] } else { a[i] + t * (b[i] - a[i]) });
             clipped.push(point)?;
             if leaves {
                 left = Some(point);
@@ -151,7 +152,7 @@ fn add_pyramid(sum: &mut CubeMoments, [a, b, c]: [[f64; 3]; 3]) {
         + a[2] * (b[0] * c[1] - b[1] * c[0]);
     let volume = det / 6.0;
     sum.volume += volume;
-    let s = [0, 1, 2].map(|i| (a[i] + b[i]) + c[i]);
+    let s = axes(|i| (a[i] + b[i]) + c[i]);
     for i in 0..3 {
         sum.first[i] += 0.25 * volume * s[i];
     }

@@ -9,6 +9,7 @@ extern crate std;
 use super::tests::Random;
 use super::*;
 use crate::lattice::PAIRS;
+use crate::lattice::axes;
 use alloc::vec::Vec;
 use std::println;
 
@@ -302,11 +303,11 @@ impl Random {
         squares = squares.map(|c| c * much);
         if self.below(8) == 0 {
             // A cone, or another centre, near the cube: (x − p)ᵀ Q (x − p) − constant.
-            let p = [0, 1, 2].map(|_| 3.0 * self.unit());
+            let p = axes(|_| 3.0 * self.unit());
             let q = |i: usize, j: usize| {
                 squares[PAIRS.iter().position(|&(a, b)| (a, b) == (i, j) || (b, a) == (i, j)).unwrap()]
             };
-            let qp = [0, 1, 2].map(|i| (0..3).map(|j| q(i, j) * p[j]).sum::<f64>());
+            let qp = axes(|i| (0..3).map(|j| q(i, j) * p[j]).sum::<f64>());
             gradient = qp.map(|c| -2.0 * c);
             let square: f64 = (0..3).map(|i| p[i] * qp[i]).sum();
             value = square - if self.below(2) == 0 { 0.0 } else { square * self.unit().abs() };

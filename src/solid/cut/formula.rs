@@ -1,6 +1,7 @@
 //! A cube and one plane.
 
 use super::Half;
+use crate::lattice::axes;
 use crate::lattice::{CubeMoments, PAIRS};
 
 /// Terms of the sum that are larger than this would cancel. (Moments are off by less than 2^-45 of the largest.)
@@ -36,7 +37,7 @@ pub(super) fn below(half: &Half) -> Option<CubeMoments> {
     let flip = half.normal.map(|c| if (c < 0.0) != upper { -1.0 } else { 1.0 });
     let mut moments = CubeMoments {
         volume: 8.0 * volume,
-        first: [0, 1, 2].map(|i| 8.0 * flip[i] * (2.0 * first[i] - volume)),
+        first: axes(|i| 8.0 * flip[i] * (2.0 * first[i] - volume)),
         second: [0.0; 6],
     };
     for (k, (i, j)) in PAIRS.into_iter().enumerate() {
@@ -57,7 +58,7 @@ fn sums<const USED: usize>(m: &[f64; 3], alpha: f64) -> Option<(f64, [f64; 3], [
         2 => r * r,
         _ => r * r * r,
     };
-    let inverse = [0, 1, 2].map(|axis| if is_used(axis) { 1.0 / m[axis] } else { 0.0 });
+    let inverse = axes(|axis| if is_used(axis) { 1.0 / m[axis] } else { 0.0 });
     let product = (0..3).filter(|&axis| is_used(axis)).fold(1.0, |product, axis| product * m[axis]);
     let unit = 1.0 / ([1.0, 1.0, 2.0, 6.0][count as usize] * product);
     let k = count as f64;
@@ -72,7 +73,7 @@ fn sums<const USED: usize>(m: &[f64; 3], alpha: f64) -> Option<(f64, [f64; 3], [
         if corner & !USED != 0 {
             continue;
         }
-        let at = [0, 1, 2].map(|axis| (corner >> axis & 1) as f64);
+        let at = axes(|axis| (corner >> axis & 1) as f64);
         let rest = ((alpha - at[0] * m[0]) - at[1] * m[1]) - at[2] * m[2];
         if rest <= 0.0 {
             continue;

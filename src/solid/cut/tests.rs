@@ -7,6 +7,7 @@ extern crate std;
 
 use super::*;
 use crate::lattice::PAIRS;
+use crate::lattice::axes;
 use alloc::vec::Vec;
 use num_bigint::BigInt;
 use num_traits::{Signed, ToPrimitive, Zero};
@@ -64,8 +65,7 @@ fn clip_tetrahedron(plane: &[BigInt; 4], corners: [Corner; 4], out: &mut Vec<[Co
             out.push([a[0].clone(), b[0].clone(), b[1].clone(), b[2].clone()]);
         }
         3 => {
-            let (a, b): ([Corner; 3], [Corner; 3]) =
-                ([0, 1, 2].map(inside), [0, 1, 2].map(|k| between(k, 0)));
+            let (a, b): ([Corner; 3], [Corner; 3]) = (axes(inside), axes(|k| between(k, 0)));
             out.push([a[0].clone(), a[1].clone(), a[2].clone(), b[2].clone()]);
             out.push([a[0].clone(), a[1].clone(), b[1].clone(), b[2].clone()]);
             out.push([a[0].clone(), b[0].clone(), b[1].clone(), b[2].clone()]);
@@ -114,12 +114,12 @@ impl Exactly {
         }
         let mut sums: [BigInt; 10] = Default::default();
         for corners in &pieces {
-            let p = corners.each_ref().map(|c| [0, 1, 2].map(|i| (&c[i] << POINT) / &c[3]));
-            let d = [1, 2, 3].map(|k| [0, 1, 2].map(|i| &p[k][i] - &p[0][i]));
+            let p = corners.each_ref().map(|c| axes(|i| (&c[i] << POINT) / &c[3]));
+            let d = [1, 2, 3].map(|k| axes(|i| &p[k][i] - &p[0][i]));
             let minor = |i: usize, j: usize| &d[1][i] * &d[2][j] - &d[1][j] * &d[2][i];
             let determinant = &d[0][0] * minor(1, 2) + &d[0][1] * minor(2, 0) + &d[0][2] * minor(0, 1);
             let volume: BigInt = (determinant.abs() / 6) >> (2 * POINT);
-            let s = [0, 1, 2].map(|i| p.iter().map(|p| &p[i]).sum::<BigInt>());
+            let s = axes(|i| p.iter().map(|p| &p[i]).sum::<BigInt>());
             for i in 0..3 {
                 sums[1 + i] += (&volume * &s[i] / 4) >> POINT;
             }

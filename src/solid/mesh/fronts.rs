@@ -7,6 +7,7 @@
 use super::base::Base;
 use super::local::{Polygon, Seen, View};
 use crate::error::Error;
+use crate::lattice::axes;
 use crate::mesh::{FillRule, Sides};
 use alloc::vec::Vec;
 
@@ -84,7 +85,7 @@ fn front(parts: &[Part], own: usize, base: &Base) -> Option<i32> {
     // The middle, and points nearer to three corners.
     let points = part.polygon.points();
     let tries = core::iter::once(middle)
-        .chain(points.iter().take(3).map(|corner| [0, 1, 2].map(|k| 0.75 * middle[k] + 0.25 * corner[k])));
+        .chain(points.iter().take(3).map(|corner| axes(|k| 0.75 * middle[k] + 0.25 * corner[k])));
     tries.into_iter().find_map(|p| {
         if !p.iter().all(|x| x.abs() < 1.0) {
             return None;

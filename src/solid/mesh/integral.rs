@@ -19,6 +19,7 @@
 use super::base::Base;
 use super::local::{CLIPPING, Point, Polygon, Seen, UNIT, View, between, cross, minus};
 use crate::error::Error;
+use crate::lattice::axes;
 use crate::lattice::exact::two_sum;
 use crate::lattice::{CellMoments, CubeMoments, Interval};
 use crate::mesh::{FillRule, Sides};
@@ -202,7 +203,7 @@ impl Sums {
                 continue;
             }
             let [ab, bc, ca] = [middle(a, b), middle(b, c), middle(c, a)];
-            let centre = [0, 1, 2].map(|k| (a[k] + b[k] + c[k]) * (1.0 / 3.0));
+            let centre = axes(|k| (a[k] + b[k] + c[k]) * (1.0 / 3.0));
             // Exact for polynomials of the third degree, as these are.
             let mut terms = [0.0; 10];
             for (p, weight) in [
@@ -321,5 +322,5 @@ impl Seen {
 }
 
 fn middle(a: &Point, b: &Point) -> Point {
-    [0, 1, 2].map(|k| 0.5 * (a[k] + b[k]))
+    axes(|k| 0.5 * (a[k] + b[k]))
 }

@@ -11,6 +11,7 @@
 //! the facet's own wrong side come to nearly 4π.
 
 use crate::error::Error;
+use crate::lattice::axes;
 use crate::lattice::exact::sqrt;
 use crate::memory;
 use crate::mesh::{Loops, TriangleMesh};
@@ -42,7 +43,7 @@ struct Patch {
 /// [`Error::OutOfMemory`].
 pub(super) fn reach(mesh: &TriangleMesh, loops: &Loops, displacement: f64) -> Result<[[f64; 3]; 2], Error> {
     let (min, max) = mesh.bounds();
-    let extents = [0, 1, 2].map(|axis| max[axis] - min[axis]);
+    let extents = axes(|axis| max[axis] - min[axis]);
     let unit = extents[0].max(extents[1]).max(extents[2]);
     if unit == 0.0 {
         return Ok([[0.0; 3]; 2]);
@@ -74,8 +75,8 @@ pub(super) fn reach(mesh: &TriangleMesh, loops: &Loops, displacement: f64) -> Re
         enough * unit * SLACK
     };
     Ok([
-        [0, 1, 2].map(|axis| beyond(&|patch| patch.min[axis])),
-        [0, 1, 2].map(|axis| beyond(&|patch| extents[axis] / unit - patch.max[axis])),
+        axes(|axis| beyond(&|patch| patch.min[axis])),
+        axes(|axis| beyond(&|patch| extents[axis] / unit - patch.max[axis])),
     ])
 }
 

@@ -13,6 +13,7 @@ use super::winding::Caps;
 use crate::control::Control;
 use crate::dexel::Beam;
 use crate::error::{Error, MeshError};
+use crate::lattice::axes;
 use crate::lattice::{Affine, Bounds, Cell, CellMoments, Frame, Interval, VolumeMoments};
 use crate::mesh::{FillRule, Loops, MeshMoments, Sides, TriangleMesh};
 use crate::octree::{Block, Proof, Tag};
@@ -239,14 +240,14 @@ impl Solid for MeshSolid {
         // (Without memory to find out, nothing is known.)
         let [below, above] = reach.get_or_try_init(find).ok()?;
         Bounds::new(
-            [0, 1, 2].map(|axis| {
+            axes(|axis| {
                 if below[axis] == 0.0 {
                     bounds.min[axis]
                 } else {
                     (bounds.min[axis] - below[axis]).next_down()
                 }
             }),
-            [0, 1, 2].map(|axis| {
+            axes(|axis| {
                 if above[axis] == 0.0 { bounds.max[axis] } else { (bounds.max[axis] + above[axis]).next_up() }
             }),
         )
@@ -416,7 +417,7 @@ impl Worker for MeshWorker {
         let mut verdicts = [Verdict::Undecided; 8];
         for (k, verdict) in verdicts.iter_mut().enumerate() {
             let (first, count) = (firsts[k], counts[k]);
-            let at = [0, 1, 2].map(|axis| at[axis] + if k >> axis & 1 != 0 { half } else { 0 });
+            let at = axes(|axis| at[axis] + if k >> axis & 1 != 0 { half } else { 0 });
             let caps = part.caps.map(|branch| branch.plus(jumps[k]));
             let winding = part.winding + steps[k];
             let part = MeshPart { first: shared + top + first, count, winding, caps };
@@ -562,7 +563,7 @@ fn children_cut(placed: &Placed, corners: &Corners, at: [i32; 3], half: i32, hei
     let overlap = Overlap::new(placed, corners, half as f64, height);
     let mut cut = 0;
     for k in (0..8).filter(|k| candidates >> k & 1 != 0) {
-        let corner = [0, 1, 2].map(|axis| (at[axis] + if k >> axis & 1 != 0 { half } else { 0 }) as f64);
+        let corner = axes(|axis| (at[axis] + if k >> axis & 1 != 0 { half } else { 0 }) as f64);
         cut |= (overlap.cuts(corner, half as f64) as u8) << k;
     }
     cut

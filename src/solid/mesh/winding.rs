@@ -20,6 +20,7 @@
 use super::crossing::Projection;
 use super::placed::{Placed, ranks};
 use crate::error::Error;
+use crate::lattice::axes;
 use crate::lattice::exact::{floor, sqrt};
 use crate::memory;
 use crate::mesh::Loops;
@@ -417,7 +418,7 @@ impl Caps {
             if u.x > v.x { apex } else { last }
         } else {
             // Of that edge the ends lie in opposite directions.
-            let cosines = [0, 1, 2].map(|i| units[i].dot(units[(i + 1) % 3]));
+            let cosines = axes(|i| units[i].dot(units[(i + 1) % 3]));
             let i = (0..3).fold(0, |least, i| if cosines[i] < cosines[least] { i } else { least });
             if cosines[i] >= -0.99 {
                 return 0.0;

@@ -1,5 +1,6 @@
 //! Boxes of one lattice as seen from another.
 
+use crate::lattice::axes;
 use crate::lattice::exact::Expansion;
 use crate::lattice::exact::{floor, sqrt, two_product};
 use crate::lattice::{Affine, Bounds, Cube, Frame, MAX_DEPTH};
@@ -182,7 +183,7 @@ pub(super) trait Target {
     fn touched_by_children(&self, corner: [f64; 3], edge: f64) -> [u8; 8] {
         let half = 0.5 * edge;
         [0, 1, 2, 3, 4, 5, 6, 7].map(|octant: u8| {
-            self.touched([0, 1, 2].map(|axis| corner[axis] + (octant >> axis & 1) as f64 * half), half)
+            self.touched(axes(|axis| corner[axis] + (octant >> axis & 1) as f64 * half), half)
         })
     }
 }
@@ -207,14 +208,14 @@ impl<'m> Images<'m> {
     pub(super) fn new(maps: &'m Maps, cube: &Cube<'_>, parts: u32) -> Images<'m> {
         let (lower, upper) = cube.planes();
         let edge = (upper[0] - lower[0]) as f64 / parts as f64;
-        let planes = [0, 1, 2].map(|axis| {
+        let planes = axes(|axis| {
             let low = lower[axis] as f64;
             [low, low + edge, upper[axis] as f64]
         });
         let grain = maps.grain * edge;
         let mut images = Images { maps, low: [[0.0; 8]; 3], high: [[0.0; 8]; 3], planes, grain };
         for k in 0..8 {
-            let corner = [0, 1, 2].map(|axis| planes[axis][if parts == 2 { k >> axis & 1 } else { 0 }]);
+            let corner = axes(|axis| planes[axis][if parts == 2 { k >> axis & 1 } else { 0 }]);
             let (low, high) = maps.inward.around(corner, edge);
             for axis in 0..3 {
                 (images.low[axis][k], images.high[axis][k]) = (low[axis], high[axis]);
@@ -273,7 +274,7 @@ impl Target for Images<'_> {
     fn touched_by_children(&self, corner: [f64; 3], edge: f64) -> [u8; 8] {
         // Children share their planes, and their images differ by an offset.
         let half = 0.5 * edge;
-        let halves = [0, 1, 2].map(|axis| {
+        let halves = axes(|axis| {
             let middle = corner[axis] + half;
             [self.between(axis, corner[axis], middle), self.between(axis, middle, corner[axis] + edge)]
         });
@@ -281,13 +282,13 @@ impl Target for Images<'_> {
         let (low, high) = outward.around(corner, half);
         let mut touched = [0; 8];
         for (octant, touched) in touched.iter_mut().enumerate() {
-            let upper = [0, 1, 2].map(|axis| octant >> axis & 1);
+            let upper = axes(|axis| octant >> axis & 1);
             *touched = halves[0][upper[0]] & halves[1][upper[1]] & halves[2][upper[2]];
             if *touched != 0 && !self.maps.inward.is_exact() {
                 let step = outward.linear.map(|[a, b, c]| {
                     a * (upper[0] as f64 * half) + b * (upper[1] as f64 * half) + c * (upper[2] as f64 * half)
                 });
-                let moved = |box_end: [f64; 3]| [0, 1, 2].map(|i| box_end[i] + step[i]);
+                let moved = |box_end: [f64; 3]| axes(|i| box_end[i] + step[i]);
                 *touched &= self.beside(moved(low), moved(high));
             }
         }

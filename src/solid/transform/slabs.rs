@@ -7,6 +7,7 @@
 
 use super::image::Maps;
 use crate::lattice::Cube;
+use crate::lattice::axes;
 use crate::lattice::exact::sqrt;
 use crate::octree::Tag;
 use crate::solid::{Enclosure, Slab, SlabJoin};
@@ -112,7 +113,7 @@ impl<'m> View<'m> {
     /// Aᵀ ν for the map A from the coordinates of the cell, in half edges.
     fn pulled_back(&self, direction: [f64; 3]) -> [f64; 3] {
         let rows = &self.maps.inward.linear;
-        [0, 1, 2].map(|j| {
+        axes(|j| {
             let sum = direction[0] * rows[0][j] + direction[1] * rows[1][j] + direction[2] * rows[2][j];
             sum * self.half
         })
@@ -159,8 +160,8 @@ impl<'m> View<'m> {
     /// What one cell knows along a direction, measured from the centre's image.
     fn known(&self, source: &Source, direction: [f64; 3]) -> Known {
         let high = source.corner.map(|c| c + source.edge);
-        let low = [0, 1, 2].map(|axis| source.corner[axis].max(self.low[axis]));
-        let high = [0, 1, 2].map(|axis| high[axis].min(self.high[axis]));
+        let low = axes(|axis| source.corner[axis].max(self.low[axis]));
+        let high = axes(|axis| high[axis].min(self.high[axis]));
         let (begin, end) = extremes(direction, low, high, self.centre, 0.0);
         match source.tag {
             Tag::Full => Known { inner: f64::INFINITY, outer: end },
@@ -201,11 +202,11 @@ impl<'m> View<'m> {
             return NOTHING;
         }
         let centre = source.corner.map(|c| c + half);
-        let rest = [0, 1, 2].map(|axis| direction[axis] - share * normal[axis]);
+        let rest = axes(|axis| direction[axis] - share * normal[axis]);
         // What the components of the rest are off by, relative to these.
-        let size = [0, 1, 2].map(|axis| direction[axis].abs() + share * normal[axis].abs());
+        let size = axes(|axis| direction[axis].abs() + share * normal[axis].abs());
         let (least, most) = extremes(rest, low, high, centre, dot(size, [ROUNDING * half; 3]));
-        let offset = [0, 1, 2].map(|axis| centre[axis] - self.centre[axis]);
+        let offset = axes(|axis| centre[axis] - self.centre[axis]);
         let shift = dot(direction, offset);
         let size = dot(direction.map(f64::abs), offset.map(f64::abs));
         let end = |offset: f64, rest: f64| {

@@ -1,6 +1,7 @@
 //! Where the voxels of a volume lie in model space.
 
 use crate::error::Error;
+use crate::lattice::axes;
 use crate::lattice::exact::{product_up, sign_of_sum, two_diff, two_product};
 use crate::lattice::{Bounds, Frame, MAX_DEPTH, valid};
 
@@ -53,7 +54,7 @@ impl VoxelGrid {
         sample: [f64; 3],
         spacing: [f64; 3],
     ) -> Result<VoxelGrid, Error> {
-        VoxelGrid::new(extents, [0, 1, 2].map(|axis| sample[axis] - 0.5 * spacing[axis]), spacing)
+        VoxelGrid::new(extents, axes(|axis| sample[axis] - 0.5 * spacing[axis]), spacing)
     }
 
     /// The numbers of voxels along x, y and z.
@@ -84,12 +85,12 @@ impl VoxelGrid {
     /// The place of a sample (model units), each coordinate with a relative error of some 2^-52 of its
     /// summands.
     pub fn centre(&self, at: [u32; 3]) -> [f64; 3] {
-        [0, 1, 2].map(|axis| self.corner[axis] + (f64::from(at[axis]) + 0.5) * self.spacing[axis])
+        axes(|axis| self.corner[axis] + (f64::from(at[axis]) + 0.5) * self.spacing[axis])
     }
 
     /// A box that contains all voxels, rounded outward.
     pub fn bounds(&self) -> Bounds {
-        let max = [0, 1, 2].map(|axis| {
+        let max = axes(|axis| {
             let length = product_up(f64::from(self.extents[axis]), self.spacing[axis]);
             let end = self.corner[axis] + length;
             if sign_of_sum(&[end, -self.corner[axis], -length]) < 0 { end.next_up() } else { end }

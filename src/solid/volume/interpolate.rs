@@ -1,6 +1,7 @@
 //! The field between the samples.
 
 use super::{Samples, Volume};
+use crate::lattice::axes;
 
 impl Volume<'_> {
     /// The value of the field at a point (model units), interpolated trilinearly between the eight samples
@@ -20,9 +21,9 @@ impl Volume<'_> {
             parts[axis] = place - f64::from(low[axis]);
         }
         let sample = |octant: u32| {
-            let at = [0, 1, 2].map(|axis| low[axis] + (octant >> axis & 1));
+            let at = axes(|axis| low[axis] + (octant >> axis & 1));
             // A sample that does not count may lie beyond the grid.
-            self.sample([0, 1, 2].map(|axis| at[axis].min(self.grid().extents()[axis] - 1)))
+            self.sample(axes(|axis| at[axis].min(self.grid().extents()[axis] - 1)))
         };
         let mix = |a: f64, b: f64, t: f64| match t {
             0.0 => a,

@@ -10,6 +10,7 @@ use super::slices::in_slices;
 use super::value::{Limits, Value};
 use crate::control::Control;
 use crate::error::Error;
+use crate::lattice::axes;
 use crate::lattice::morton;
 use crate::memory;
 use crate::octree::{Planes, Tag};
@@ -140,7 +141,7 @@ impl Occupancy {
         while mixed != 0 && !seen.both() {
             let place = morton::position(mixed.trailing_zeros());
             mixed &= mixed - 1;
-            let block = [0, 1, 2].map(|axis| 4 * at[axis] + place[axis]);
+            let block = axes(|axis| 4 * at[axis] + place[axis]);
             if level > 0 {
                 self.look_at(field, level - 1, block, voxels, seen);
                 continue;

@@ -4,6 +4,7 @@ use super::axis::{Axis, Run};
 use super::occupancy::Seen;
 use super::{Volume, VoxelGrid};
 use crate::error::Error;
+use crate::lattice::axes;
 use crate::lattice::{Cell, Frame};
 use crate::octree::{Planes, Tag};
 use crate::solid::{Classifier, OCTANTS, Verdict, Worker, split_twice};
@@ -22,7 +23,7 @@ pub struct OnFrame<'a> {
 
 impl<'a> OnFrame<'a> {
     pub(super) fn new(volume: Volume<'a>, frame: &Frame) -> OnFrame<'a> {
-        let axes = [0, 1, 2].map(|axis| Axis::new(volume.grid(), frame, axis));
+        let axes = axes(|axis| Axis::new(volume.grid(), frame, axis));
         let aligned = match axes {
             [
                 Axis::Lattice { offset: x, shift, .. },
@@ -69,7 +70,7 @@ impl<'a> OnFrame<'a> {
         let (offset, finest) = self.aligned?;
         let k = u32::from(self.frame.depth() - cell.level) + finest;
         let is_on = |axis: usize| offset[axis] & ((1 << k) - 1) == 0;
-        let at = [0, 1, 2].map(|axis| (offset[axis] >> k) + i64::from(cell.at[axis]));
+        let at = axes(|axis| (offset[axis] >> k) + i64::from(cell.at[axis]));
         (k < 62 && (0..3).all(is_on)).then_some((at, k))
     }
 
@@ -131,20 +132,19 @@ impl Worker for OnFrame<'_> {
 
     fn root(&mut self) -> Result<Verdict<()>, Error> {
         let end = 2 * self.frame.cells();
-        Ok(self.verdict([0, 1, 2].map(|axis| self.run(axis, [0, end]))))
+        Ok(self.verdict(axes(|axis| self.run(axis, [0, end]))))
     }
 
     fn split(&mut self, cell: Cell, _: &()) -> Result<[Verdict<()>; 8], Error> {
         // Planes of half cells, so that the middle of a finest cell is one, too.
         let shift = 1 + self.frame.depth().saturating_sub(cell.level);
-        let halves = [0, 1, 2].map(|axis| {
+        let halves = axes(|axis| {
             let first = cell.at[axis] << shift;
             let planes = [first, first + (1 << (shift - 1)), first + (1 << shift)];
             let [low, middle, high] = planes.map(|k| self.axes[axis].place(self.grid(), &self.frame, k));
             [self.axes[axis].run(low, middle), self.axes[axis].run(middle, high)]
         });
-        Ok(OCTANTS
-            .map(|octant| self.verdict([0, 1, 2].map(|axis| halves[axis][usize::from(octant >> axis & 1)]))))
+        Ok(OCTANTS.map(|octant| self.verdict(axes(|axis| halves[axis][usize::from(octant >> axis & 1)]))))
     }
 
     fn recall(&mut self, _: Cell) -> Option<()> {

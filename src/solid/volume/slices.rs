@@ -2,6 +2,7 @@
 
 use crate::control::Control;
 use crate::error::Error;
+use crate::parallel::each;
 
 /// Does `work` on each slice of `length` elements, with its index. The last may be shorter.
 pub(super) fn in_slices<T: Send>(
@@ -16,12 +17,6 @@ pub(super) fn in_slices<T: Send>(
         work(i, slice)
     };
     control.run(values.len() > 1 << 12, |parallel| {
-        #[cfg(feature = "parallel")]
-        if parallel {
-            use rayon::prelude::*;
-            return values.par_chunks_mut(length).enumerate().try_for_each(work);
-        }
-        let _ = parallel;
-        values.chunks_mut(length).enumerate().try_for_each(work)
+        each(parallel, values.chunks_mut(length).enumerate(), work).map(drop)
     })
 }

@@ -3,6 +3,7 @@
 use super::sets;
 use crate::control::Job;
 use crate::error::Error;
+use crate::lattice::axes;
 use crate::lattice::morton;
 use crate::memory;
 use crate::octree::links::Windows;
@@ -20,7 +21,7 @@ pub(super) struct Range {
 
 impl Range {
     pub(super) fn size(&self) -> [u32; 3] {
-        [0, 1, 2].map(|axis| self.max[axis].saturating_sub(self.min[axis]))
+        axes(|axis| self.max[axis].saturating_sub(self.min[axis]))
     }
 
     pub(super) fn cells(&self) -> u64 {
@@ -29,8 +30,8 @@ impl Range {
 
     pub(super) fn within(&self, other: &Range) -> Range {
         Range {
-            min: [0, 1, 2].map(|axis| self.min[axis].max(other.min[axis])),
-            max: [0, 1, 2].map(|axis| self.max[axis].min(other.max[axis])),
+            min: axes(|axis| self.min[axis].max(other.min[axis])),
+            max: axes(|axis| self.max[axis].min(other.max[axis])),
         }
     }
 
@@ -40,7 +41,7 @@ impl Range {
         let places = (0..counts[2])
             .flat_map(move |z| (0..counts[1]).flat_map(move |y| (0..counts[0]).map(move |x| [x, y, z])));
         places.map(move |place| {
-            let min = [0, 1, 2].map(|axis| self.min[axis] + place[axis] * edge);
+            let min = axes(|axis| self.min[axis] + place[axis] * edge);
             Range { min, max: min.map(|a| a + edge) }.within(&self)
         })
     }
@@ -196,7 +197,7 @@ impl Fill<'_, '_> {
             let c = real.trailing_zeros();
             real &= real - 1;
             let place = morton::position(c);
-            let corner = [0, 1, 2].map(|axis| at[axis] + (place[axis] << shift));
+            let corner = axes(|axis| at[axis] + (place[axis] << shift));
             let whole = Range { min: corner, max: corner.map(|a| a + (1 << shift)) };
             match planes.tag(c) {
                 Tag::Branch => match self.windows.child(self.tree, index, planes.branch(), c, e + 1) {

@@ -18,9 +18,10 @@ use super::place::{NOWHERE, Place, Square};
 use super::stored::least;
 use crate::control::{Control, Job, WHOLE};
 use crate::error::Error;
+use crate::lattice::axes;
 use crate::octree::view::OctreeRef;
 use crate::octree::{Octree, Tag};
-use crate::query::each;
+use crate::parallel::each;
 use mask::{Mask, Range};
 use rounding::Scale;
 use slab::{DEEP, Slab};
@@ -82,7 +83,7 @@ impl OctreeRef<'_> {
                 problem: "must be a cell or the universe's end, and not below min",
             });
         }
-        let size = [0, 1, 2].map(|axis| u64::from(max[axis] - min[axis]));
+        let size = axes(|axis| u64::from(max[axis] - min[axis]));
         let count = size[0] * size[1] * size[2];
         if field.len() as u64 != count {
             return Err(Error::Argument {
@@ -141,7 +142,7 @@ impl OctreeRef<'_> {
         let mut seen = wanted;
         for block in wanted.blocks(step) {
             let size = block.size();
-            let doubled = [0, 1, 2].map(|axis| i64::from(block.min[axis] + block.max[axis]) - 2);
+            let doubled = axes(|axis| i64::from(block.min[axis] + block.max[axis]) - 2);
             let place = Place::between_cells(&self.frame, doubled);
             let [outer, inner] = least(self, &place, false)?;
             let [not_inner, not_outer] = least(self, &place, true)?;
