@@ -109,57 +109,43 @@ impl Kit {
             (None, "cargo") => Command::new(env!("CARGO")),
             (None, _) => Command::new(std::env::var_os("RUSTC").unwrap_or_else(|| program.into())),
         };
-        // What cargo has set for this very test is not meant for the library.
-        for variable in ["CARGO_TARGET_DIR", "CARGO_BUILD_TARGET_DIR", "RUSTFLAGS", "CARGO_ENCODED_RUSTFLAGS"]
-        {
-            command.env_remove(variable);
-        }
-        if self.check.rust_flags().is_some() {
-            command.env_remove("RUSTC").env_remove("CARGO").env_remove("RUSTUP_TOOLCHAIN");
-        }
-        command.current_dir(root()).env("CARGO_TARGET_DIR", self.target());
-        // What is tested is the interface. Code that is optimised to its end takes four times as long to build.
-        command.env("CARGO_PROFILE_RELEASE_OPT_LEVEL", "1").env("CARGO_PROFILE_RELEASE_CODEGEN_UNITS", "16");
         if let Some(flags) = self.check.rust_flags() {
-            command.env("RUSTFLAGS", flags);
+            // What cargo has set for this very test is not meant for another toolchain.
+            for variable in ["RUSTC", "CARGO", "RUSTUP_TOOLCHAIN", "CARGO_ENCODED_RUSTFLAGS"] {
+                command.env_remove(variable);
+            }
+            command.env("RUSTFLAGS", flags).env("CARGO_TARGET_DIR", self.target());
         }
+        command.current_dir(root());
         command
     }
 
-    /// Builds both libraries as `include/README.md` says, with the function that panics.
+    /// Builds both libraries, with the function that panics. As a part of what `cargo test` has built: with the same
+    /// features of all packages, so that only the interface is left to compile.
     fn build(&mut self) -> Result<(), String> {
-        let commands = documented(&text("include/README.md"));
-        for kind in ["staticlib", "cdylib"] {
-            let line = commands.iter().find(|line| line.starts_with("cargo ") && line.contains(kind));
-            let line = line.ok_or_else(|| format!("include/README.md has no command for the {kind}"))?;
-            let mut words =
-                line.split_whitespace().map(|word| if word == "capi" { "capi-test" } else { word });
-            words.next();
-            if kind == "cdylib" && self.check.runtime().is_some() {
-                // A shared library with a runtime of its own would be a second one.
-                continue;
-            }
-            let mut command = self.rust("cargo");
-            command.args(words);
-            if self.check.rust_flags().is_some() {
-                // Build scripts and macros run on the host, without a sanitizer.
-                let place = command.get_args().position(|word| word == "--").unwrap_or(usize::MAX);
-                let mut arguments: Vec<_> = command.get_args().map(|word| word.to_os_string()).collect();
-                let place = place.min(arguments.len());
-                arguments.splice(place..place, ["--target".into(), self.triple.clone().into()]);
-                command = self.rust("cargo");
-                // `rustup run nightly cargo` stands in front already.
-                let own = command.get_args().count();
-                command.args(arguments.split_off(own));
-            }
-            let (_, told) = output(&mut command)?;
-            if kind == "staticlib" {
-                let list = told.lines().find_map(|line| line.split_once("native-static-libs: "));
-                self.native_libraries = list.ok_or("rustc names no native libraries")?.1.trim().into();
-            }
+        let mut command = self.rust("cargo");
+        command.args(["build", "--lib", "--features", "leafless-capi/test"]);
+        match self.profile() {
+            "debug" => command.args(["--profile", "test"]),
+            profile => command.args(["--profile", profile]),
+        };
+        if self.check.rust_flags().is_some() {
+            // Build scripts and macros run on the host, without a sanitizer.
+            command.args(["--package", "leafless-capi", "--target", &self.triple]);
+        } else {
+            command.args(["--test", "c_api"]);
         }
+        output(&mut command)?;
+        // What the standard library needs is what the library needs.
+        let source = self.folder("native").join("empty.rs");
+        std::fs::write(&source, "").map_err(|error| error.to_string())?;
+        let mut rustc = self.rust("rustc");
+        rustc.args(["--crate-type", "staticlib", "--print", "native-static-libs", "--out-dir"]);
+        let (_, told) = output(rustc.arg(self.folder("native")).arg(source))?;
+        let list = told.lines().find_map(|line| line.split_once("native-static-libs: "));
+        self.native_libraries = list.ok_or("rustc names no native libraries")?.1.trim().into();
         let (library, name) =
-            (self.release().join("libleafless.so"), self.release().join("libleafless.so.0"));
+            (self.libraries().join("libleafless.so"), self.libraries().join("libleafless.so.0"));
         if library.exists() && !name.exists() {
             std::os::unix::fs::symlink("libleafless.so", name).map_err(|error| error.to_string())?;
         }
@@ -190,19 +176,28 @@ impl Kit {
         Ok(())
     }
 
-    /// The target folder of the libraries: one for all checks that look from outside.
+    /// The folder of this very program's profile.
+    fn own(&self) -> PathBuf {
+        let program = std::env::current_exe().unwrap_or_default();
+        // …/debug/deps/c_api-…
+        program.ancestors().nth(2).map(Path::to_owned).unwrap_or_default()
+    }
+
+    /// Its name.
+    fn profile(&self) -> &'static str {
+        if self.own().ends_with("release") { "release" } else { "debug" }
+    }
+
+    /// The target folder of another toolchain.
     fn target(&self) -> PathBuf {
-        let flags = self.check.rust_flags().map(|_| self.check.name());
-        Path::new(env!("CARGO_TARGET_TMPDIR")).join("c_api").join(flags.unwrap_or("plain")).join("target")
+        Path::new(env!("CARGO_TARGET_TMPDIR")).join("c_api").join(self.check.name()).join("target")
     }
 
     /// Where the libraries are.
-    pub fn release(&self) -> PathBuf {
-        let target = self.target();
-        if self.check.rust_flags().is_some() {
-            target.join(&self.triple).join("release")
-        } else {
-            target.join("release")
+    pub fn libraries(&self) -> PathBuf {
+        match self.check.rust_flags() {
+            Some(_) => self.target().join(&self.triple).join(self.profile()),
+            None => self.own(),
         }
     }
 
@@ -281,10 +276,10 @@ impl Kit {
         } else {
             command.args(sources);
         }
-        let release = self.release();
+        let libraries = self.libraries();
         match link {
             Link::Static => {
-                command.arg(release.join("libleafless.a"));
+                command.arg(libraries.join("libleafless.a"));
                 if let Some(runtime) = &self.runtime {
                     command
                         .arg("-Wl,--whole-archive")
@@ -294,8 +289,8 @@ impl Kit {
                 command.args(self.native_libraries.split_whitespace());
             }
             Link::Shared => {
-                command.arg("-L").arg(&release).arg("-lleafless").arg("-lm").arg("-pthread");
-                command.arg(format!("-Wl,-rpath,{}", release.display()));
+                command.arg("-L").arg(&libraries).arg("-lleafless").arg("-lm").arg("-pthread");
+                command.arg(format!("-Wl,-rpath,{}", libraries.display()));
             }
         }
         output(command.arg("-o").arg(&program))?;

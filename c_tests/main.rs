@@ -1,18 +1,17 @@
-//! C and C++ programs against `include/leafless.h` and the libraries that `include/README.md` says how to
-//! build.
+//! C and C++ programs against `include/leafless.h` and both libraries.
 //!
 //! ```text
-//! cargo test --release --test c_api
-//! LEAFLESS_C_CHECK=valgrind cargo test --release --test c_api     # also: address, address-all, thread
+//! cargo test --test c_api
+//! LEAFLESS_C_CHECK=valgrind cargo test --test c_api     # also: address, address-all, thread
 //! ```
 //!
-//! The libraries are built by the commands that `include/README.md` documents, into a target folder of their
-//! own. Every program is compiled and linked as a user would do it, and run; `README.md` here tells what each
+//! The libraries are built as these tests are, by the same profile, of the same compiled parts. Every program is compiled and linked as a user would do it, and run; `README.md` here tells what each
 //! is for.
 
 #![cfg(unix)]
 
 mod check;
+mod generated;
 mod header;
 mod kit;
 
@@ -26,7 +25,7 @@ const C99: Standard = Standard::C("c99");
 const CPP17: Standard = Standard::Cpp("c++17");
 
 fn root() -> &'static Path {
-    Path::new(env!("CARGO_MANIFEST_DIR"))
+    Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("the interface has a folder of its own")
 }
 
 fn text(path: impl AsRef<Path>) -> String {
@@ -418,13 +417,13 @@ fn documented_commands() {
         return;
     }
     let folder = kit.folder("documented");
-    let release = kit.release();
+    let libraries = kit.libraries();
     // The repository as the commands see it.
     std::fs::create_dir_all(folder.join("target")).unwrap();
     for (name, place) in [
         ("include", root().join("include")),
         ("examples", root().join("examples")),
-        ("target/release", release.clone()),
+        ("target/release", libraries.clone()),
     ] {
         let link = folder.join(name);
         let _ = std::fs::remove_file(&link);
@@ -493,7 +492,7 @@ fn shared_library_exports_the_header() {
     if !kit().check.is_plain() {
         return;
     }
-    let library = kit().release().join("libleafless.so");
+    let library = kit().libraries().join("libleafless.so");
     let mut names: Vec<String> = table("nm", &["-D", "--defined-only"], &library)
         .into_iter()
         .filter_map(|mut line| line.pop())
@@ -512,7 +511,7 @@ fn static_library_has_no_other_names() {
     if !kit().check.is_plain() {
         return;
     }
-    let library = kit().release().join("libleafless.a");
+    let library = kit().libraries().join("libleafless.a");
     // Strong and global; hidden ones and weak ones give way.
     let mut ours = Vec::new();
     for object in elf_symbols(&library) {

@@ -144,7 +144,7 @@ impl Error {
 
     /// The error with the name of the file that it is about, if it is about a file.
     #[cfg(feature = "std")]
-    pub(crate) fn of_file(self, path: &std::path::Path) -> Error {
+    pub fn of_file(self, path: &std::path::Path) -> Error {
         match self {
             Error::Io(_)
             | Error::Format(_)

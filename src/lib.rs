@@ -49,7 +49,6 @@
 //! | `file` | the file format |
 //! | `exchange` | the files of other programs |
 //! | `scene` | the language of OpenSCAD's CSG dumps |
-//! | `capi` | the C interface |
 //!
 //! Where is …
 //!
@@ -84,8 +83,6 @@ extern crate alloc;
 extern crate std;
 
 mod attribute;
-#[cfg(feature = "capi")]
-pub mod capi;
 mod control;
 mod dexel;
 mod dispatch;
@@ -93,7 +90,8 @@ mod error;
 pub mod exchange;
 pub mod file;
 mod lattice;
-mod memory;
+#[doc(hidden)]
+pub mod memory;
 mod mesh;
 mod octree;
 mod op;
@@ -132,8 +130,8 @@ pub use mesh::{
 pub use mesh::{Polyhedron, PolyhedronArrays, PolyhedronPart};
 pub use octree::{
     Block, BoundaryFace, BoundaryFaces, CellFilter, Cells, Channel, ChannelRef, Cursor, Direction,
-    LevelStatistics, Metadata, Node, Octree, OctreeRef, Planes, Proof, ScalarType, Statistics, Tag,
-    TaggedCell, ValueType,
+    LevelStatistics, Metadata, MetadataLimit, Node, Octree, OctreeRef, Planes, Proof, ScalarType, Statistics,
+    Tag, TaggedCell, ValueType,
 };
 pub use op::{
     DexelOptions, LazyOctree, Refinement, Rule, Zone, build, compact, complement, dexelize, difference,

@@ -20,7 +20,7 @@ impl From<hashbrown::TryReserveError> for Error {
 }
 
 /// An empty vector with room for exactly `count`.
-pub(crate) fn with_capacity<T>(count: usize) -> Result<Vec<T>, Error> {
+pub fn with_capacity<T>(count: usize) -> Result<Vec<T>, Error> {
     let mut list = Vec::new();
     list.try_reserve_exact(count)?;
     Ok(list)
@@ -28,21 +28,21 @@ pub(crate) fn with_capacity<T>(count: usize) -> Result<Vec<T>, Error> {
 
 /// Appends; O(1) amortised.
 #[inline(always)]
-pub(crate) fn push<T>(list: &mut Vec<T>, item: T) -> Result<(), Error> {
+pub fn push<T>(list: &mut Vec<T>, item: T) -> Result<(), Error> {
     list.try_reserve(1)?;
     list.push(item);
     Ok(())
 }
 
 /// `count` times `value`.
-pub(crate) fn filled<T: Clone>(count: usize, value: T) -> Result<Vec<T>, Error> {
+pub fn filled<T: Clone>(count: usize, value: T) -> Result<Vec<T>, Error> {
     let mut list = with_capacity(count)?;
     list.resize(count, value);
     Ok(list)
 }
 
 /// `count` times `value`, in the memory of a list as far as that is large enough.
-pub(crate) fn refilled<T: Clone>(mut list: Vec<T>, count: usize, value: T) -> Result<Vec<T>, Error> {
+pub fn refilled<T: Clone>(mut list: Vec<T>, count: usize, value: T) -> Result<Vec<T>, Error> {
     list.clear();
     list.try_reserve_exact(count)?;
     list.resize(count, value);
@@ -50,21 +50,21 @@ pub(crate) fn refilled<T: Clone>(mut list: Vec<T>, count: usize, value: T) -> Re
 }
 
 /// What an iterator yields that knows how much that is.
-pub(crate) fn collected<T>(items: impl ExactSizeIterator<Item = T>) -> Result<Vec<T>, Error> {
+pub fn collected<T>(items: impl ExactSizeIterator<Item = T>) -> Result<Vec<T>, Error> {
     let mut list = with_capacity(items.len())?;
     list.extend(items);
     Ok(list)
 }
 
 /// A copy.
-pub(crate) fn copied<T: Copy>(slice: &[T]) -> Result<Vec<T>, Error> {
+pub fn copied<T: Copy>(slice: &[T]) -> Result<Vec<T>, Error> {
     let mut copy = with_capacity(slice.len())?;
     copy.extend_from_slice(slice);
     Ok(copy)
 }
 
 /// A copy of a text.
-pub(crate) fn text(text: &str) -> Result<String, Error> {
+pub fn text(text: &str) -> Result<String, Error> {
     let mut copy = String::new();
     copy.try_reserve_exact(text.len())?;
     copy.push_str(text);
@@ -72,13 +72,13 @@ pub(crate) fn text(text: &str) -> Result<String, Error> {
 }
 
 /// A value with an address of its own.
-pub(crate) fn boxed<T>(value: T) -> Result<Box<[T; 1]>, Error> {
+pub fn boxed<T>(value: T) -> Result<Box<[T; 1]>, Error> {
     let mut one = with_capacity(1)?;
     one.push(value);
     one.into_boxed_slice().try_into().map_err(|_| Error::OutOfMemory)
 }
 
 /// `N` times zero.
-pub(crate) fn zeros<T: Copy + Default, const N: usize>() -> Result<Box<[T; N]>, Error> {
+pub fn zeros<T: Copy + Default, const N: usize>() -> Result<Box<[T; N]>, Error> {
     filled(N, T::default())?.into_boxed_slice().try_into().map_err(|_| Error::OutOfMemory)
 }

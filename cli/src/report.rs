@@ -323,7 +323,6 @@ impl Defect {
             DefectKind::NonManifold => "non-manifold",
             DefectKind::Duplicate => "duplicate",
             DefectKind::Flat => "flat",
-            _ => "other",
         };
         let (min, max) = defect.bounds;
         Defect { kind, count: defect.count, length: defect.length, min, max }

@@ -45,8 +45,6 @@ pub(crate) use columns::{ColumnsRef, NormalsRef};
 pub use editor::DexelEditor;
 pub use format::{DexelEnds, DexelFormat, DexelNormals};
 pub(crate) use item::Mark;
-#[cfg(feature = "capi")]
-pub(crate) use line::Line;
 pub use model::TriDexel;
 pub(crate) use normal::{decoded, encoded};
 pub(crate) use occupied::Occupied;

@@ -74,7 +74,7 @@ mod whole;
 mod write;
 
 #[cfg(feature = "std")]
-pub(crate) use whole::read_whole;
+pub use whole::read_whole;
 
 #[cfg(feature = "std")]
 pub use any::open_mesh;

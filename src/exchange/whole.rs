@@ -13,7 +13,7 @@ const STREAM: u64 = 1 << 30;
 ///
 /// # Errors
 /// [`Error::Io`], [`Error::OutOfMemory`]; [`Error::Limit`] for what is no regular file and goes on after 1 GiB.
-pub(crate) fn read_whole(path: &Path) -> Result<Vec<u8>, Error> {
+pub fn read_whole(path: &Path) -> Result<Vec<u8>, Error> {
     let file = File::open(path)?;
     let metadata = file.metadata()?;
     let mut bytes = Vec::new();

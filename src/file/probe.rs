@@ -1,5 +1,6 @@
 //! What the first bytes of a file say of it, whatever it holds.
 
+#[cfg(feature = "std")]
 use super::buffer::regular_length;
 use super::form::Form;
 #[cfg(feature = "std")]
@@ -13,7 +14,6 @@ use crate::error::Error;
 #[cfg(feature = "std")]
 use crate::error::FormatError;
 use crate::lattice::Frame;
-#[cfg(feature = "std")]
 use crate::lattice::axes;
 use crate::memory;
 use crate::octree::{Proof, Tag};

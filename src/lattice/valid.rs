@@ -27,12 +27,6 @@ pub(crate) fn numbers(name: &'static str, values: &[f64]) -> Result<(), Error> {
     check(values.iter().all(|&value| is_moderate(value)), name, IMMODERATE)
 }
 
-/// Numbers of which only the results must be moderate.
-#[cfg(feature = "capi")]
-pub(crate) fn finite(name: &'static str, values: &[f64]) -> Result<(), Error> {
-    check(values.iter().all(|value| value.is_finite()), name, "every number must be finite")
-}
-
 /// A length or a scale: between 2^-256 and 2^256.
 #[inline]
 pub(crate) fn length(name: &'static str, value: f64) -> Result<(), Error> {

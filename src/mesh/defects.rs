@@ -15,7 +15,6 @@ use crate::error::Error;
 use crate::memory;
 
 /// What is wrong with a part of a mesh, the most harmful first.
-#[non_exhaustive]
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum DefectKind {
     /// A loop of edges that an odd number of triangles use: around a hole, or around a sheet.

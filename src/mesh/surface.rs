@@ -382,8 +382,7 @@ impl TriangleMesh {
     ///
     /// # Errors
     /// [`Error::OutOfMemory`].
-    #[cfg(feature = "capi")]
-    pub(crate) fn try_clone(&self) -> Result<Self, Error> {
+    pub fn try_clone(&self) -> Result<Self, Error> {
         let (vertices, triangles) = (memory::copied(&self.vertices)?, memory::copied(&self.triangles)?);
         let attributes = attributes::copies(&self.attributes)?;
         let (topology, details) = (OnceBox::new(), OnceBox::new());

@@ -404,7 +404,7 @@ impl<'a> Cells<'a> {
     }
 
     /// Hands at most `most` cells to `put`, and says how many these were.
-    pub(crate) fn put(&mut self, most: usize, put: impl FnMut(TaggedCell)) -> usize {
+    pub fn put(&mut self, most: usize, put: impl FnMut(TaggedCell)) -> usize {
         with_popcount(Put { cells: self, most, put })
     }
 }

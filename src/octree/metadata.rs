@@ -14,21 +14,22 @@ pub struct Metadata(Vec<(String, String)>);
 
 /// How many bytes all facts together may take in a file; part of the format.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct MetadataLimit {
+pub struct MetadataLimit {
     bytes: usize,
     problem: &'static str,
 }
 
 impl MetadataLimit {
     /// Of the facts of a solid.
-    pub(crate) const SOLID: MetadataLimit =
+    pub const SOLID: MetadataLimit =
         MetadataLimit { bytes: 1 << 20, problem: "must not take more than 1 MiB in a file" };
 
     /// Of the facts of a channel, so that the work of mapping a file is bounded.
-    pub(crate) const CHANNEL: MetadataLimit =
+    pub const CHANNEL: MetadataLimit =
         MetadataLimit { bytes: 1 << 16, problem: "must not take more than 64 KiB in a file for a channel" };
 
-    pub(crate) const fn bytes(self) -> usize {
+    /// That many bytes.
+    pub const fn bytes(self) -> usize {
         self.bytes
     }
 
@@ -74,13 +75,7 @@ impl Metadata {
     ///
     /// # Errors
     /// [`Error::Argument`] if the copy would not fit into a file; [`Error::OutOfMemory`].
-    #[cfg(feature = "capi")]
-    pub(crate) fn changed(
-        &self,
-        key: &str,
-        value: Option<&str>,
-        limit: MetadataLimit,
-    ) -> Result<Metadata, Error> {
+    pub fn changed(&self, key: &str, value: Option<&str>, limit: MetadataLimit) -> Result<Metadata, Error> {
         let kept = || self.iter().filter(|(known, _)| *known != key);
         let length: usize = kept().map(|(key, value)| LENGTHS + key.len() + value.len()).sum();
         if let Some(value) = value {

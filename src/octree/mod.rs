@@ -33,7 +33,7 @@ pub use channel::{Channel, ChannelRef, ScalarType, ValueType};
 pub use cursor::{Cursor, Node};
 pub use direction::Direction;
 pub use faces::{BoundaryFace, BoundaryFaces};
-pub use metadata::Metadata;
+pub use metadata::{Metadata, MetadataLimit};
 pub use octree::Octree;
 pub use proof::Proof;
 pub use stats::{LevelStatistics, Statistics};

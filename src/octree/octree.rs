@@ -192,6 +192,12 @@ impl Octree {
         Octree { channels: Arc::new(channels), ..self.clone() }
     }
 
+    /// The same tree without channels; the arrays are shared.
+    #[must_use]
+    pub fn without_channels(&self) -> Octree {
+        Octree { channels: Arc::new(Vec::new()), ..self.clone() }
+    }
+
     /// The same tree without the channel of this name; the arrays are shared.
     ///
     /// # Errors
@@ -203,14 +209,14 @@ impl Octree {
     }
 
     /// The same tree with the channels of another, which lies in the same cube; they are shared.
-    #[cfg(feature = "capi")]
-    pub(crate) fn with_channels_of(&self, other: &Octree) -> Octree {
+    #[must_use]
+    pub fn with_channels_of(&self, other: &Octree) -> Octree {
         Octree { channels: other.channels.clone(), ..self.clone() }
     }
 
     /// The same tree with the metadata of another, which are shared.
-    #[cfg(feature = "capi")]
-    pub(crate) fn with_metadata_of(&self, other: &Octree) -> Octree {
+    #[must_use]
+    pub fn with_metadata_of(&self, other: &Octree) -> Octree {
         Octree { metadata: other.metadata.clone(), ..self.clone() }
     }
 

@@ -96,7 +96,10 @@ impl OctreeRef<'_> {
     }
 
     /// Words in the bitmap of a box, whose parameters are those of [`bitmap`](Self::bitmap).
-    pub(crate) fn bitmap_words(&self, level: u8, min: [u32; 3], max: [u32; 3]) -> Result<u64, Error> {
+    ///
+    /// # Errors
+    /// [`Error::Argument`] for a level below the frame's depth, and for a box that does not lie in the universe.
+    pub fn bitmap_words(&self, level: u8, min: [u32; 3], max: [u32; 3]) -> Result<u64, Error> {
         let refuse = |name, problem| Err(Error::Argument { name, problem });
         if level > self.frame.depth() {
             return refuse("level", "must not be greater than the frame's depth");

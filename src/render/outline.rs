@@ -41,7 +41,10 @@ const WIDEST: f64 = 8.0;
 
 impl Outline {
     /// Refuses what is no outline.
-    pub(crate) fn check(&self) -> Result<(), Error> {
+    ///
+    /// # Errors
+    /// [`Error::Argument`] for a width or an angle out of range.
+    pub fn check(&self) -> Result<(), Error> {
         check_width(self.width)?;
         if self.width > WIDEST {
             return Err(Error::Argument {

@@ -18,9 +18,6 @@ use alloc::sync::Arc;
 use alloc::vec::Vec;
 use core::any::Any;
 
-/// Most solids within each other; see [`AnySolid::nesting`].
-pub(crate) const MOST_NESTED: u32 = 64;
-
 /// Any solid, shared. Costs an indirect call a split.
 #[derive(Clone)]
 pub struct AnySolid {
@@ -51,6 +48,9 @@ impl<S: Solid<Classifier: Classifier<Worker: Worker<Part: 'static> + 'static> + 
 }
 
 impl AnySolid {
+    /// Most solids within each other; see [`nesting`](Self::nesting).
+    pub const MOST_NESTED: u32 = 64;
+
     /// Wraps a solid in which so many others lie within each other.
     pub(super) fn around<S: Erasable>(solid: S, nesting: u32) -> AnySolid {
         AnySolid { solid: Arc::new(solid), nesting: nesting.saturating_add(1) }
@@ -73,7 +73,7 @@ impl AnySolid {
 impl AnySolid {
     /// The solid as its kind moves it, if it can.
     pub(super) fn placed_by_kind(&self, placement: &Affine) -> Result<Option<AnySolid>, Error> {
-        if self.nesting > MOST_NESTED {
+        if self.nesting > AnySolid::MOST_NESTED {
             return Ok(None);
         }
         self.solid.placed(placement)
@@ -131,8 +131,11 @@ impl Solid for AnySolid {
     type Classifier = AnyClassifier;
 
     fn on(&self, frame: &Frame, control: &Control<'_>) -> Result<AnyClassifier, Error> {
-        if self.nesting > MOST_NESTED {
-            return Err(Error::Limit { what: "solids within each other", limit: MOST_NESTED.into() });
+        if self.nesting > AnySolid::MOST_NESTED {
+            return Err(Error::Limit {
+                what: "solids within each other",
+                limit: AnySolid::MOST_NESTED.into(),
+            });
         }
         self.solid.on(frame, control)
     }
@@ -149,7 +152,7 @@ struct Shallow<'s>(&'s AnySolid);
 
 impl Shallow<'_> {
     fn known(&self) -> Option<&dyn ErasedSolid> {
-        (self.0.nesting <= MOST_NESTED).then_some(&*self.0.solid)
+        (self.0.nesting <= AnySolid::MOST_NESTED).then_some(&*self.0.solid)
     }
 
     fn bounds(&self) -> Option<Bounds> {

@@ -30,8 +30,6 @@ pub use csg::{Csg, HalfSpace, Touch};
 #[cfg(feature = "scene")]
 pub(crate) use csg::{Fan, Figure, cos_degrees, sin_degrees, wedge};
 pub use enclosure::{Crossing, Enclosure, Segment, Slab, SlabJoin};
-#[cfg(feature = "capi")]
-pub(crate) use erased::MOST_NESTED;
 pub use erased::{AnyClassifier, AnySolid, AnyWorker, Erasable};
 pub use fingerprint::{Fingerprint, Fingerprinter};
 pub use mesh::MeshSolid;

@@ -248,8 +248,8 @@ impl<'a> VoxelRecordsRef<'a> {
 
     /// Records without values that nobody has checked: what is found in them means nothing if they are none.
     /// The arrays must be of one length.
-    #[cfg(feature = "capi")]
-    pub(crate) fn unchecked(
+    #[doc(hidden)]
+    pub fn unchecked(
         frame: &Frame,
         codes: &'a [u64],
         levels: &'a [u8],

@@ -8,8 +8,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 /// From the bottom up; modules of one row may use each other.
-const LAYERS: [&[&str]; 16] = [
-    &["error", "memory", "control", "dispatch"],
+const LAYERS: [&[&str]; 15] = [
+    &["error", "memory", "parallel", "control", "dispatch"],
     &["lattice"],
     &["octree"],
     &["mesh"],
@@ -24,7 +24,6 @@ const LAYERS: [&[&str]; 16] = [
     &["file"],
     &["exchange"],
     &["scene"],
-    &["capi"],
 ];
 
 /// Modules of `solid` that its producers share. Every other one is a producer, which no other may use.

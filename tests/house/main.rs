@@ -1,5 +1,4 @@
-//! The order of the house: layers of modules, the header, a build without the standard library.
+//! The order of the house: layers of modules, a build without the standard library.
 
-mod header;
 mod layers;
 mod no_std;

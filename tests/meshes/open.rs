@@ -8,7 +8,7 @@
 //!
 //! ```text
 //! LEAFLESS_MODELS=/path/to/models \
-//!     cargo test --release --test mesh_open -- --ignored --nocapture --test-threads 1
+//!     cargo test --release --test meshes open:: -- --ignored --nocapture --test-threads 1
 //! ```
 
 use crate::common::{Random, alone};

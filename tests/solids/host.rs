@@ -309,7 +309,7 @@ fn distances_decide_cells() {
     assert!(classified.load(Relaxed) < asked.load(Relaxed));
 }
 
-/// With a host of 50 ms a call, as `cargo test --release --test host -- --ignored --nocapture` prints it.
+/// With a host of 50 ms a call, as `cargo test --release --test solids host:: -- --ignored --nocapture` prints it.
 #[test]
 #[ignore = "takes a minute: prints calls, threads and times"]
 fn fifty_milliseconds_a_call() {

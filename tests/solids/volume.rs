@@ -520,7 +520,7 @@ fn a_scanned_part() {
     assert!(moved.contains(exact) && moved.width() < 0.5 * exact, "{moved:?} {exact}");
 }
 
-/// `cargo test --release --test volume -- --ignored --nocapture times`.
+/// `cargo test --release --test solids volume::times -- --ignored --nocapture`.
 #[test]
 #[ignore = "takes a minute, and prints times"]
 fn times() {

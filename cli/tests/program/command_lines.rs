@@ -356,7 +356,7 @@ fn wild_command_lines_end_with_a_sentence() {
     attack(1, FEW);
 }
 
-/// Minutes: `--test command_lines -- --ignored`. `LEAFLESS_SEED` chooses other lines.
+/// Minutes: `--test program command_lines:: -- --ignored`. `LEAFLESS_SEED` chooses other lines.
 #[test]
 #[ignore = "minutes"]
 fn thousands_of_command_lines() {

@@ -133,7 +133,7 @@ fn test_vectors_take_little() {
     in_turn(&vectors(), LITTLE, 7);
 }
 
-/// Minutes: `--test limits -- --ignored`.
+/// Minutes: `--test program limits:: -- --ignored`.
 #[test]
 #[ignore = "minutes"]
 fn every_command_on_every_file_takes_little() {

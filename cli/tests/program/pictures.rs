@@ -1,6 +1,6 @@
 //! The pictures of the documentation, which the program and the library make: they must still match.
 //!
-//! `LEAFLESS_BLESS=1 cargo test --release -p leafless-cli --test pictures` makes them anew.
+//! `LEAFLESS_BLESS=1 cargo test --test program pictures::` makes them anew.
 
 #[path = "../../../examples/gear_pictures.rs"]
 #[allow(dead_code)]

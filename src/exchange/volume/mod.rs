@@ -48,7 +48,6 @@ use core::fmt;
 use header::{Encoding, Header, Place, Skip};
 
 /// The formats of volumes that say themselves what they hold.
-#[non_exhaustive]
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum VolumeFormat {
     /// NRRD, `.nrrd` or `.nhdr`.

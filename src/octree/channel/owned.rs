@@ -93,8 +93,8 @@ impl Channel {
     }
 
     /// The same channel with the metadata of another, which are shared.
-    #[cfg(feature = "capi")]
-    pub(crate) fn with_metadata_of(&self, other: &Channel) -> Channel {
+    #[must_use]
+    pub fn with_metadata_of(&self, other: &Channel) -> Channel {
         Channel { metadata: other.metadata.clone(), ..self.clone() }
     }
 

@@ -100,7 +100,10 @@ impl Samples<'_> {
     }
 
     /// Refuses an array that does not have one element for each sample of a grid.
-    pub(crate) fn check(&self, grid: &VoxelGrid) -> Result<(), Error> {
+    ///
+    /// # Errors
+    /// [`Error::Argument`].
+    pub fn check(&self, grid: &VoxelGrid) -> Result<(), Error> {
         let [_, y, z] = grid.extents().map(u64::from);
         let (count, problem) = match self {
             Samples::Bits(_) => {

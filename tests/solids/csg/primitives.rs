@@ -1,7 +1,7 @@
 //! Half-spaces and primitives under random placements, against exact arithmetic.
 //!
 //! By default there are some 10⁵ points of each; a million each take some minutes:
-//! `cargo test --release --test csg_primitives -- --ignored`
+//! `cargo test --release --test solids csg::primitives -- --ignored`
 
 use crate::common::exact::Exact;
 use leafless::{

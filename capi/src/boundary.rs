@@ -1,0 +1,599 @@
+//! What every function of the interface does first and last: check pointers, catch panics, keep the message.
+
+use super::status::keep;
+use super::status::leafless_status::{self, *};
+use core::any::Any;
+use core::ffi::{c_char, c_void};
+use core::fmt::{self, Display};
+use core::marker::PhantomData;
+use core::mem::{align_of, size_of};
+use core::ptr::NonNull;
+use leafless::{Error, FormatError};
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::Arc;
+
+/// Why a call fails.
+pub(super) enum Failure {
+    Null {
+        name: &'static str,
+    },
+    Argument {
+        name: &'static str,
+        problem: &'static str,
+    },
+    /// An element of an array is refused.
+    Element {
+        name: &'static str,
+        index: u64,
+        error: Error,
+    },
+    Utf8 {
+        name: &'static str,
+    },
+    Nul {
+        name: &'static str,
+    },
+    Buffer {
+        name: &'static str,
+        needed: u64,
+        capacity: u64,
+    },
+    Busy {
+        name: &'static str,
+    },
+    Library(Error),
+}
+
+impl<E: Into<Error>> From<E> for Failure {
+    fn from(error: E) -> Failure {
+        Failure::Library(error.into())
+    }
+}
+
+impl Display for Failure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Failure::Null { name } => write!(f, "{name}: must not be NULL"),
+            Failure::Argument { name, problem } => write!(f, "{name}: {problem}"),
+            Failure::Element { name, index, error } => write!(f, "{name}[{index}]: {error}"),
+            Failure::Utf8 { name } => write!(f, "{name}: is not UTF-8"),
+            Failure::Nul { name } => write!(f, "{name}: holds a NUL"),
+            Failure::Buffer { name, needed, capacity } => {
+                write!(f, "{name}: has a capacity of {capacity}, and {needed} is needed")
+            }
+            Failure::Busy { name } => write!(f, "{name}: is in use by another call that has not returned"),
+            Failure::Library(Error::File { path, error }) => {
+                write!(f, "{}: {error}", end(&path.to_string_lossy()))
+            }
+            Failure::Library(error) => write!(f, "{error}"),
+        }
+    }
+}
+
+/// The end of a path, so that what is wrong with the file fits beside it.
+fn end(path: &str) -> &str {
+    let start = path.len().saturating_sub(255);
+    (start..=path.len()).find_map(|start| path.get(start..)).unwrap_or_default()
+}
+
+impl From<&Failure> for leafless_status {
+    fn from(failure: &Failure) -> leafless_status {
+        match failure {
+            Failure::Null { .. } => LEAFLESS_E_NULL,
+            Failure::Argument { .. } | Failure::Element { .. } => LEAFLESS_E_ARGUMENT,
+            Failure::Utf8 { .. } | Failure::Nul { .. } => LEAFLESS_E_UTF8,
+            Failure::Buffer { .. } => LEAFLESS_E_BUFFER,
+            Failure::Busy { .. } => LEAFLESS_E_BUSY,
+            Failure::Library(error) => match error.cause() {
+                Error::Argument { .. } => LEAFLESS_E_ARGUMENT,
+                Error::FrameMismatch { .. } => LEAFLESS_E_FRAME,
+                Error::SourceMismatch => LEAFLESS_E_SOURCE,
+                Error::NotSampled => LEAFLESS_E_NOT_SAMPLED,
+                Error::Mesh(_) | Error::Polyhedron(_) => LEAFLESS_E_MESH,
+                Error::MeshFile(_) | Error::Package(_) => LEAFLESS_E_MESH_FILE,
+                Error::VolumeFile(_) => LEAFLESS_E_VOLUME_FILE,
+                Error::Scene(_) => LEAFLESS_E_SCENE,
+                Error::Format(FormatError::Version { .. } | FormatError::Required { .. }) => {
+                    LEAFLESS_E_VERSION
+                }
+                // Not the contents, but where the host has put them.
+                Error::Format(
+                    FormatError::Alignment | FormatError::NotRegular | FormatError::OtherModel { .. },
+                ) => LEAFLESS_E_ARGUMENT,
+                Error::Format(_) => LEAFLESS_E_FORMAT,
+                Error::Damaged(_) | Error::DamagedRays { .. } => LEAFLESS_E_DAMAGED,
+                Error::Limit { .. } | Error::TooLarge { .. } => LEAFLESS_E_LIMIT,
+                Error::OutOfMemory => LEAFLESS_E_NO_MEMORY,
+                Error::Cancelled => LEAFLESS_E_CANCELLED,
+                Error::Callback { .. } => LEAFLESS_E_CALLBACK,
+                Error::Io(_) | Error::File { .. } => LEAFLESS_E_IO,
+                // There is no other: a test compares this list with the library's.
+                _ => LEAFLESS_E_ARGUMENT,
+            },
+        }
+    }
+}
+
+/// Runs the body of a function.
+///
+/// A panic does not reach the host. Nothing that survives it can be half-changed: handles are immutable but
+/// for atomic flags, cursors, lazy octrees and editors. A cursor's position is checked at every step; a lazy octree
+/// changes only once the solid has answered; an editor that a panic left refuses everything.
+#[inline(always)]
+pub(super) fn guard(body: impl FnOnce() -> Result<(), Failure>) -> leafless_status {
+    match catch_unwind(AssertUnwindSafe(body)) {
+        Ok(Ok(())) => leafless_status::LEAFLESS_OK,
+        Ok(Err(failure)) => refused(failure),
+        Err(payload) => panicked(payload),
+    }
+}
+
+/// As [`guard`] for functions that have nothing to refuse, such as `_free`.
+fn guard_free(body: impl FnOnce()) {
+    if let Err(payload) = catch_unwind(AssertUnwindSafe(body)) {
+        panicked(payload);
+    }
+}
+
+#[cold]
+fn refused(failure: Failure) -> leafless_status {
+    let status = leafless_status::from(&failure);
+    keep(status, &failure);
+    status
+}
+
+#[cold]
+fn panicked(payload: Box<dyn Any + Send>) -> leafless_status {
+    let text = match (payload.downcast_ref::<&str>(), payload.downcast_ref::<std::string::String>()) {
+        (Some(text), _) => text,
+        (_, Some(text)) => text.as_str(),
+        _ => "no message",
+    };
+    let status = leafless_status::LEAFLESS_E_PANIC;
+    keep(status, &format_args!("a defect of the library, please report it: {text}"));
+    status
+}
+
+#[inline(always)]
+fn checked<T>(pointer: *const T, name: &'static str) -> Result<(), Failure> {
+    if pointer.is_null() {
+        return Err(Failure::Null { name });
+    }
+    if !pointer.is_aligned() {
+        return Err(Failure::Argument { name, problem: "is misaligned for its type" });
+    }
+    Ok(())
+}
+
+/// What `pointer` points to.
+///
+/// # Safety
+/// Unless it is NULL or misaligned, it points to a `T` that stays and does not change during the call.
+#[inline(always)]
+pub(super) unsafe fn shared<'a, T>(pointer: *const T, name: &'static str) -> Result<&'a T, Failure> {
+    checked(pointer, name)?;
+    // SAFETY: neither NULL nor misaligned; the rest the caller promises.
+    Ok(unsafe { &*pointer })
+}
+
+/// What `pointer` points to.
+///
+/// # Safety
+/// As [`shared`], and nothing else uses it during the call.
+#[inline(always)]
+pub(super) unsafe fn exclusive<'a, T>(pointer: *mut T, name: &'static str) -> Result<&'a mut T, Failure> {
+    checked(pointer, name)?;
+    // SAFETY: neither NULL nor misaligned; the rest the caller promises.
+    Ok(unsafe { &mut *pointer })
+}
+
+/// The `N` numbers at `pointer`.
+///
+/// # Safety
+/// Unless it is NULL or misaligned, it points to that many.
+#[inline(always)]
+pub(super) unsafe fn array<T: Copy, const N: usize>(
+    pointer: *const T,
+    name: &'static str,
+) -> Result<[T; N], Failure> {
+    checked(pointer, name)?;
+    // SAFETY: neither NULL nor misaligned; the rest the caller promises.
+    Ok(unsafe { *pointer.cast() })
+}
+
+/// The `count` elements at `pointer`, which may be NULL if there is none.
+///
+/// # Safety
+/// Unless it is NULL or misaligned, it points to that many, which stay and do not change during the call.
+pub(super) unsafe fn slice<'a, T>(
+    pointer: *const T,
+    count: u64,
+    name: &'static str,
+) -> Result<&'a [T], Failure> {
+    if count == 0 {
+        return Ok(&[]);
+    }
+    let count = length::<T>(pointer, count, name)?;
+    // SAFETY: neither NULL nor misaligned, and not longer than memory can be; the rest the caller promises.
+    Ok(unsafe { core::slice::from_raw_parts(pointer, count) })
+}
+
+fn length<T>(pointer: *const T, count: u64, name: &'static str) -> Result<usize, Failure> {
+    checked(pointer, name)?;
+    let most = isize::MAX as usize / size_of::<T>().max(1);
+    match usize::try_from(count) {
+        Ok(count) if count <= most => Ok(count),
+        _ => Err(Failure::Argument { name, problem: "has more elements than memory can hold" }),
+    }
+}
+
+/// Elements in memory of the host, at equal distances and on any address. Nothing between them is read.
+#[derive(Clone, Copy)]
+pub(super) struct Strided<'a, T> {
+    start: *const u8,
+    stride: usize,
+    len: usize,
+    host: PhantomData<&'a T>,
+}
+
+/// The `count` elements from `start` on, `stride` bytes from one's beginning to the next's; 0 means without a
+/// gap. `start` may be NULL if there is none. The names are those of `start` and `stride`.
+///
+/// # Safety
+/// Any bytes are a `T`. `start` is NULL, or that many elements lie there, and stay and do not change during
+/// the call.
+pub(super) unsafe fn strided<'a, T>(
+    start: *const c_void,
+    count: u64,
+    stride: u64,
+    names: [&'static str; 2],
+) -> Result<Strided<'a, T>, Failure> {
+    let size = size_of::<T>() as u64;
+    let stride = if stride == 0 { size } else { stride };
+    if stride < size {
+        let problem = "must be 0 or at least the size of an element";
+        return Err(Failure::Argument { name: names[1], problem });
+    }
+    if count == 0 {
+        return Ok(Strided { start: NonNull::dangling().as_ptr(), stride: 0, len: 0, host: PhantomData });
+    }
+    // From the first byte of the first element to the last of the last.
+    let span = stride.checked_mul(count - 1).and_then(|before| before.checked_add(size));
+    length::<u8>(start.cast(), span.unwrap_or(u64::MAX), names[0])?;
+    // Both fit, as the span does; but of a single element the stride need not, and is not used.
+    let stride = usize::try_from(stride).unwrap_or(0);
+    Ok(Strided { start: start.cast(), stride, len: count as usize, host: PhantomData })
+}
+
+impl<T: Copy> Strided<'_, T> {
+    pub(super) fn len(&self) -> usize {
+        self.len
+    }
+
+    /// The element with this index, which there must be.
+    #[inline(always)]
+    pub(super) fn at(&self, index: usize) -> T {
+        assert!(index < self.len, "index {index} of {}", self.len);
+        // SAFETY: one of the elements that `strided` was promised; where it begins is less than their span,
+        // which is no longer than memory can be.
+        unsafe { self.start.add(index * self.stride).cast::<T>().read_unaligned() }
+    }
+}
+
+impl<'a, T> Strided<'a, T> {
+    /// The elements themselves, if they follow each other without a gap where their type can lie.
+    pub(super) fn as_slice(&self) -> Option<&'a [T]> {
+        if self.len == 0 {
+            return Some(&[]);
+        }
+        let start = self.start.cast::<T>();
+        let is_packed = self.stride == size_of::<T>() || self.len == 1;
+        // SAFETY: promised to `strided`: that many elements, which stay and do not change during the call.
+        // Their span is no longer than memory can be.
+        (is_packed && start.is_aligned()).then(|| unsafe { core::slice::from_raw_parts(start, self.len) })
+    }
+}
+
+/// The UTF-8 text of `length` bytes at `pointer`, which may be NULL if there is none.
+///
+/// # Safety
+/// As [`slice`].
+pub(super) unsafe fn text<'a>(
+    pointer: *const c_char,
+    length: usize,
+    name: &'static str,
+) -> Result<&'a str, Failure> {
+    // SAFETY: the caller's promise is that of `slice`.
+    let bytes = unsafe { slice(pointer.cast(), length as u64, name)? };
+    core::str::from_utf8(bytes).map_err(|_| Failure::Utf8 { name })
+}
+
+/// The path of `length` bytes of UTF-8 at `pointer`.
+///
+/// # Safety
+/// As [`slice`].
+pub(super) unsafe fn path<'a>(pointer: *const c_char, length: usize) -> Result<&'a str, Failure> {
+    checked(pointer, "path")?;
+    // SAFETY: the caller's promise is that of `slice`.
+    let path = unsafe { text(pointer, length, "path")? };
+    if path.is_empty() {
+        return Err(Failure::Argument { name: "path", problem: "is empty" });
+    }
+    if path.contains('\0') {
+        return Err(Failure::Nul { name: "path" });
+    }
+    Ok(path)
+}
+
+/// What the header says of handles and threads.
+const _: () = {
+    const fn shared_by_threads<T: Send + Sync>() {}
+    shared_by_threads::<super::leafless_control>();
+    shared_by_threads::<super::leafless_mesh>();
+    shared_by_threads::<super::leafless_octree>();
+    shared_by_threads::<super::leafless_scene>();
+    shared_by_threads::<super::leafless_solid>();
+    shared_by_threads::<super::leafless_volume>();
+    shared_by_threads::<super::leafless_attribute>();
+    shared_by_threads::<super::leafless_channel>();
+    shared_by_threads::<super::leafless_layer>();
+    shared_by_threads::<super::leafless_lazy>();
+    shared_by_threads::<super::leafless_cursor>();
+    shared_by_threads::<super::leafless_point_cursor>();
+    shared_by_threads::<super::leafless_cells>();
+    shared_by_threads::<super::leafless_faces>();
+    shared_by_threads::<super::leafless_columns>();
+    shared_by_threads::<super::leafless_tridexel>();
+    shared_by_threads::<super::leafless_tridexel_editor>();
+};
+
+/// A place for a result, checked before the work begins and written once it is done.
+pub(super) struct Out<T>(NonNull<T>);
+
+/// # Safety
+/// Unless it is NULL or misaligned, `pointer` points to room for a `T` that nothing else uses during the
+/// call.
+#[inline(always)]
+pub(super) unsafe fn out<T>(pointer: *mut T, name: &'static str) -> Result<Out<T>, Failure> {
+    checked(pointer, name)?;
+    NonNull::new(pointer).map(Out).ok_or(Failure::Null { name })
+}
+
+impl<T> Out<T> {
+    #[inline(always)]
+    pub(super) fn write(self, value: T) -> Result<(), Failure> {
+        // SAFETY: promised to `out`. What lay there is not dropped: it may be uninitialised.
+        unsafe { self.0.write(value) };
+        Ok(())
+    }
+}
+
+/// A buffer for many elements, which may be absent to ask how many there are.
+pub(super) struct Buffer<T> {
+    name: &'static str,
+    start: *mut T,
+    capacity: u64,
+}
+
+/// # Safety
+/// Unless it is NULL or misaligned, `start` points to room for `capacity` elements that nothing else uses
+/// during the call.
+pub(super) unsafe fn buffer<T>(
+    start: *mut T,
+    capacity: u64,
+    name: &'static str,
+) -> Result<Buffer<T>, Failure> {
+    if capacity > 0 || !start.is_null() {
+        length(start, capacity, name)?;
+    }
+    Ok(Buffer { name, start, capacity })
+}
+
+impl<T: Copy> Buffer<T> {
+    /// Whether elements are wanted, and not only their number.
+    pub(super) fn wanted(&self) -> bool {
+        !self.start.is_null()
+    }
+
+    /// Refuses if there is a buffer, but not for `count` elements.
+    pub(super) fn check(&self, count: usize) -> Result<(), Failure> {
+        if self.wanted() && count as u64 > self.capacity {
+            let (name, capacity) = (self.name, self.capacity);
+            return Err(Failure::Buffer { name, needed: count as u64, capacity });
+        }
+        Ok(())
+    }
+
+    /// Fills the buffer, if there is one.
+    pub(super) fn fill(&self, elements: &[T]) -> Result<(), Failure> {
+        self.check(elements.len())?;
+        if self.wanted() {
+            // SAFETY: promised to `buffer`, and there is room for them.
+            unsafe { core::ptr::copy_nonoverlapping(elements.as_ptr(), self.start, elements.len()) };
+        }
+        Ok(())
+    }
+
+    /// Writes one element, if there is a buffer, and room in it.
+    #[inline]
+    pub(super) fn put(&self, index: usize, element: T) {
+        if self.wanted() && (index as u64) < self.capacity {
+            // SAFETY: promised to `buffer`, and there is room.
+            unsafe { self.start.add(index).write(element) };
+        }
+    }
+
+    /// The first `count` elements of the buffer, set to zero; `None` if there is none.
+    ///
+    /// # Safety
+    /// What [`buffer`] was promised holds for `'a`, and there is no other slice of the buffer.
+    pub(super) unsafe fn zeroed<'a>(&self, count: usize) -> Result<Option<&'a mut [T]>, Failure>
+    where
+        T: bytemuck::Zeroable,
+    {
+        self.check(count)?;
+        if !self.wanted() {
+            return Ok(None);
+        }
+        // SAFETY: promised to `buffer`, and there is room for them; zero bytes are a `T`.
+        unsafe {
+            self.start.write_bytes(0, count);
+            Ok(Some(core::slice::from_raw_parts_mut(self.start, count)))
+        }
+    }
+
+    /// Fills the buffer, if there is one, with what elements of the library are in C.
+    pub(super) fn fill_with<'e, E>(&self, elements: &'e [E]) -> Result<(), Failure>
+    where
+        T: From<&'e E>,
+    {
+        self.check(elements.len())?;
+        if self.wanted() {
+            for (index, element) in elements.iter().enumerate() {
+                // SAFETY: promised to `buffer`, and there is room for them.
+                unsafe { self.start.add(index).write(element.into()) };
+            }
+        }
+        Ok(())
+    }
+}
+
+/// A struct of the host that begins with its own size: older hosts have shorter ones, newer ones longer.
+///
+/// # Safety
+/// All-zero bytes are a `T`.
+pub(super) unsafe trait Sized32: Copy {}
+
+/// Whether a host's struct can have this size. No version's ends within a field: its size is a multiple of
+/// its alignment. So half a pointer is never taken for one.
+fn sensible<T>(size: usize) -> bool {
+    const LARGEST: usize = 4096;
+    (size_of::<u32>()..=LARGEST).contains(&size) && size.is_multiple_of(align_of::<T>())
+}
+
+/// The host's struct, or the default (all zero) if it is NULL. What an older host does not have yet is zero;
+/// what this library does not know yet must be.
+///
+/// # Safety
+/// Unless it is NULL or misaligned, `pointer` points to as many bytes as its first four say.
+pub(super) unsafe fn sized<T: Sized32>(pointer: *const T, name: &'static str) -> Result<T, Failure> {
+    // SAFETY: a promise of the trait.
+    let mut known: T = unsafe { core::mem::zeroed() };
+    if pointer.is_null() {
+        return Ok(known);
+    }
+    checked(pointer, name)?;
+    // SAFETY: the caller promises four bytes, and then as many as they say.
+    let given = unsafe {
+        let size = pointer.cast::<u32>().read() as usize;
+        if !sensible::<T>(size) {
+            return Err(Failure::Argument {
+                name,
+                problem: "has no sensible struct_size; was it initialised?",
+            });
+        }
+        core::slice::from_raw_parts(pointer.cast::<u8>(), size)
+    };
+    let (given, unknown) = given.split_at(given.len().min(size_of::<T>()));
+    if unknown.iter().any(|&byte| byte != 0) {
+        let problem = "has fields that this version of the library does not know";
+        return Err(Failure::Argument { name, problem });
+    }
+    // SAFETY: not longer than `known`; the fields are numbers, pointers and functions that the host has set.
+    unsafe { core::ptr::copy_nonoverlapping(given.as_ptr(), (&raw mut known).cast(), given.len()) };
+    Ok(known)
+}
+
+/// Makes the host's struct of `size` bytes its default: its size, and zeros.
+///
+/// # Safety
+/// Unless it is NULL or misaligned, `pointer` points to room for `size` bytes.
+pub(super) unsafe fn initialise<T: Sized32>(
+    pointer: *mut T,
+    size: usize,
+    name: &'static str,
+) -> Result<(), Failure> {
+    checked(pointer, name)?;
+    if !sensible::<T>(size) {
+        return Err(Failure::Argument { name: "struct_size", problem: "must be sizeof of the struct" });
+    }
+    // SAFETY: the caller's promise; all-zero bytes are a `T`, and its first field is its size.
+    unsafe {
+        pointer.cast::<u8>().write_bytes(0, size);
+        pointer.cast::<u32>().write(size as u32);
+    }
+    Ok(())
+}
+
+/// A new handle with one reference.
+pub(super) fn handle<T>(value: T) -> *mut T {
+    Arc::into_raw(Arc::new(value)).cast_mut()
+}
+
+/// One more share of what a handle stands for. Never through a reference: the count lies beside what that
+/// covers.
+///
+/// # Safety
+/// The handle is NULL or misaligned, or alive and came from [`handle`].
+pub(super) unsafe fn share<T>(handle: *const T, name: &'static str) -> Result<Arc<T>, Failure> {
+    checked(handle, name)?;
+    // SAFETY: `handle` came from `Arc::into_raw`.
+    Ok(unsafe {
+        Arc::increment_strong_count(handle);
+        Arc::from_raw(handle)
+    })
+}
+
+/// Writes one more reference to a handle.
+///
+/// # Safety
+/// As [`share`] and [`out`].
+pub(super) unsafe fn refer<T>(
+    handle: *const T,
+    name: &'static str,
+    reference: *mut *mut T,
+) -> Result<(), Failure> {
+    checked(handle, name)?;
+    // SAFETY: the caller's promises.
+    unsafe {
+        let reference = out(reference, "reference")?;
+        reference.write(Arc::into_raw(share(handle, name)?).cast_mut())
+    }
+}
+
+/// Gives back one reference.
+///
+/// # Safety
+/// The handle is NULL, or alive and came from [`handle`]; the reference is the caller's.
+pub(super) unsafe fn release<T>(handle: *mut T) {
+    if !handle.is_null() {
+        // SAFETY: `handle` came from `Arc::into_raw`.
+        guard_free(|| drop(unsafe { Arc::from_raw(handle.cast_const()) }));
+    }
+}
+
+/// Gives back a handle that nothing shares.
+///
+/// # Safety
+/// The handle is NULL, or alive and came from `Box::into_raw`; no other call uses it.
+pub(super) unsafe fn discard<T>(handle: *mut T) {
+    if !handle.is_null() {
+        // SAFETY: `handle` came from `Box::into_raw`.
+        guard_free(|| drop(unsafe { Box::from_raw(handle) }));
+    }
+}
+
+/// Panics inside, to show what becomes of it: only in libraries that are built for tests.
+///
+/// - Buffers: none.
+/// - Result: LEAFLESS_E_PANIC.
+/// - Errors: none.
+/// - Ownership: nothing changes hands.
+/// - Threads: any.
+/// - Untrusted input: none.
+/// - Since: 0.1
+#[cfg(feature = "test")]
+#[unsafe(no_mangle)]
+pub extern "C" fn leafless_test_panic() -> leafless_status {
+    guard(|| panic!("as the test wanted"))
+}

@@ -1,0 +1,300 @@
+//! Channels that are filled from attributes, asked at points, and changed in regions.
+
+use super::attribute::{components, leafless_attribute, sample};
+use super::boundary::{Failure, Sized32, array, guard, initialise, out, shared, sized, slice, text};
+use super::channel::{give, leafless_channel, leafless_scalar_type};
+use super::control::{controlled, leafless_options};
+use super::frame::{frame, leafless_frame};
+use super::octree::leafless_octree;
+use super::status::leafless_status;
+use core::ffi::c_char;
+use leafless::MetadataLimit;
+use leafless::{Attribute, Criterion, Detail, FillOptions, fill_channel};
+use leafless::{Metadata, ScalarType, ValueType};
+use leafless_criterion::*;
+use leafless_scalar_type::*;
+
+/// How finely an attribute is followed.
+#[derive(Clone, Copy)]
+#[repr(u32)]
+pub enum leafless_criterion {
+    /// To the finest cells, wherever it is not proven that all of a cell has one value.
+    LEAFLESS_CRITERION_NONE = 0,
+    /// Until the variance of the values at a cell's corners is at most the square of the tolerance. The variance of
+    /// several numbers is the sum of their variances. A detail between the corners is missed.
+    LEAFLESS_CRITERION_VARIANCE = 1,
+    /// Until the values in a cell are proven to differ by no more than the tolerance, in each of their numbers.
+    /// Nothing is missed. A cell whose range is unknown is split.
+    LEAFLESS_CRITERION_RANGE = 2,
+}
+
+/// How a channel is filled. NULL means the defaults. All fields but the first may be zero, which is their
+/// default; leafless_channel_fill_options_init sets them so.
+#[derive(Clone, Copy)]
+#[repr(C)]
+pub struct leafless_channel_fill_options {
+    /// sizeof(leafless_channel_fill_options).
+    pub struct_size: u32,
+    /// A leafless_scalar_type: what numbers are rounded to.
+    pub scalar: u32,
+    /// How many numbers a value has, which is as many as those of the attribute; 0 does not ask.
+    pub components: u32,
+    /// Levels of the channel; 0 means those of the frame.
+    pub depth: u32,
+    /// The solid inside which values matter; optional. Where it is EMPTY, the channel says whatever takes the
+    /// least memory.
+    pub solid: *const leafless_octree,
+    /// A leafless_criterion. Unless it is LEAFLESS_CRITERION_NONE, a cell is split until its edge is at most
+    /// `coarse_model` and the criterion holds, or until its edge is at most `fine_model`. It then has the value at its
+    /// centre.
+    pub criterion: u32,
+    /// Zero.
+    pub reserved: u32,
+    /// The longest edge of cells with a criterion; 0 means any.
+    pub coarse_model: f64,
+    /// The edge below which cells are not split any more, with a criterion, at most `coarse_model`; 0 means that of the
+    /// finest cells.
+    pub fine_model: f64,
+    /// The tolerance of the criterion, in the attribute's units; may be infinite.
+    pub tolerance: f64,
+    /// The name of the channel, `name_length` bytes of UTF-8; optional.
+    pub name: *const c_char,
+    /// The length of the name.
+    pub name_length: usize,
+}
+
+// SAFETY: numbers and pointers.
+unsafe impl Sized32 for leafless_channel_fill_options {}
+
+impl leafless_channel_fill_options {
+    fn value_type(&self, attribute: &dyn Attribute) -> Result<ValueType, Failure> {
+        let scalar = match self.scalar {
+            given if given == LEAFLESS_SCALAR_F32 as u32 => ScalarType::F32,
+            given if given == LEAFLESS_SCALAR_U8 as u32 => ScalarType::U8,
+            given if given == LEAFLESS_SCALAR_U16 as u32 => ScalarType::U16,
+            given if given == LEAFLESS_SCALAR_U32 as u32 => ScalarType::U32,
+            _ => {
+                return Err(Failure::Argument { name: "fill.scalar", problem: "is no leafless_scalar_type" });
+            }
+        };
+        let components = match self.components {
+            0 => attribute.components(),
+            given => components(given, "fill.components")?,
+        };
+        Ok(ValueType::new(scalar, components as u8)?)
+    }
+
+    fn detail(&self) -> Result<Option<Detail>, Failure> {
+        let refused = |name, problem| Err(Failure::Argument { name, problem });
+        let criterion = match self.criterion {
+            given if given == LEAFLESS_CRITERION_NONE as u32 => {
+                if self.coarse_model != 0.0 || self.fine_model != 0.0 || self.tolerance != 0.0 {
+                    return refused("fill.criterion", "is needed for edges and a tolerance");
+                }
+                return Ok(None);
+            }
+            given if given == LEAFLESS_CRITERION_VARIANCE as u32 => Criterion::Variance,
+            given if given == LEAFLESS_CRITERION_RANGE as u32 => Criterion::Range,
+            _ => return refused("fill.criterion", "is no leafless_criterion"),
+        };
+        let coarse = if self.coarse_model == 0.0 { f64::INFINITY } else { self.coarse_model };
+        // No cell is that small.
+        let fine = if self.fine_model == 0.0 { f64::MIN_POSITIVE } else { self.fine_model };
+        Ok(Some(Detail::new(coarse, fine, self.tolerance, criterion)?))
+    }
+}
+
+/// Sets options for filling to their defaults.
+///
+/// - Buffers: `fill`, one struct of `struct_size` bytes, which is sizeof(leafless_channel_fill_options); need not be
+///   initialised.
+/// - Result: `*fill`.
+/// - Errors: LEAFLESS_E_ARGUMENT if `struct_size` cannot be right.
+/// - Ownership: nothing changes hands.
+/// - Threads: any.
+/// - Untrusted input: none.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_channel_fill_options_init(
+    fill: *mut leafless_channel_fill_options,
+    struct_size: usize,
+) -> leafless_status {
+    guard(|| unsafe { initialise(fill, struct_size, "fill") })
+}
+
+/// The channel of an attribute: each cell has the attribute's value at its centre, rounded to the type of the
+/// numbers; a cell whose centre has no value has none. Cells are as large as proven ranges and the criterion
+/// allow. The result is the same bit for bit for any number of threads.
+///
+/// Without a criterion the result is that of asking at the centre of every finest cell. An attribute without ranges is
+/// asked there: 8^depth times, or as often as the solid has cells that are not EMPTY.
+///
+/// - Buffers: `frame`, one struct, or NULL for the frame of `fill->solid`, which is then needed; `fill`, one struct
+///   or NULL; `options`, one struct or NULL; `channel`, one pointer.
+/// - Result: `*channel`, with the name as its only fact, if there is one.
+/// - Errors: LEAFLESS_E_ARGUMENT as leafless_frame_check, if a field of `fill` is wrong, or a value beyond the range
+///   of the type, infinite, or partly NaN; LEAFLESS_E_FRAME if the solid lies in another cube than the frame;
+///   LEAFLESS_E_NULL if both are missing; LEAFLESS_E_UTF8; LEAFLESS_E_CALLBACK; LEAFLESS_E_DAMAGED;
+///   LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: nothing is kept of the attribute, the solid and the name; give `*channel` back with
+///   leafless_channel_free.
+/// - Threads: any; uses as many as `options` says.
+/// - Untrusted input: any attribute, any octree; set `max_bytes` where the depth or the attribute is not your own
+///   choice.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_channel_fill(
+    attribute: *const leafless_attribute,
+    frame: *const leafless_frame,
+    fill: *const leafless_channel_fill_options,
+    options: *const leafless_options,
+    channel: *mut *mut leafless_channel,
+) -> leafless_status {
+    guard(|| unsafe {
+        let attribute = &shared(attribute, "attribute")?.attribute;
+        let fill = sized(fill, "fill")?;
+        let channel = out(channel, "channel")?;
+        let solid = match fill.solid.is_null() {
+            true => None,
+            false => Some(shared(fill.solid, "fill.solid")?.octree.view()),
+        };
+        let frame = match solid {
+            Some(solid) if frame.is_null() => *solid.frame(),
+            _ => self::frame(frame)?,
+        };
+        let frame = match fill.depth {
+            0 => frame,
+            depth => frame.with_depth(u8::try_from(depth).unwrap_or(u8::MAX))?,
+        };
+        if fill.reserved != 0 {
+            return Err(Failure::Argument { name: "fill.reserved", problem: "must be zero" });
+        }
+        let name = text(fill.name, fill.name_length, "fill.name")?;
+        let metadata = match name.is_empty() {
+            true => Metadata::new(),
+            false => Metadata::new().changed("name", Some(name), MetadataLimit::CHANNEL)?,
+        };
+        let filling =
+            FillOptions { value_type: fill.value_type(attribute)?, frame, solid, detail: fill.detail()? };
+        let filled = controlled(options, |control| fill_channel(attribute, &filling, control))?;
+        channel.write(give(filled.with_metadata(metadata)))
+    })
+}
+
+/// The values of a channel at points. A point on a face between cells belongs to the upper one. O(depth) each.
+///
+/// - Buffers: `points_model`, `count` points of 3 numbers; `values`, room for `count` values of as many numbers as
+///   `components` of leafless_channel_describe. Both may be NULL if `count` is 0.
+/// - Result: the value at point i from `values[components * i]` on; NaN where there is none, and outside of the
+///   channel's cube.
+/// - Errors: LEAFLESS_E_DAMAGED.
+/// - Ownership: nothing changes hands.
+/// - Threads: any; works in the calling thread.
+/// - Untrusted input: any channel, any numbers; damage reads as no value.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_channel_values(
+    channel: *const leafless_channel,
+    points_model: *const f64,
+    count: u64,
+    values: *mut f64,
+) -> leafless_status {
+    guard(|| unsafe {
+        let channel = shared(channel, "channel")?.channel.view()?;
+        sample(channel, points_model, count, values)
+    })
+}
+
+/// A value in four places: those beyond its numbers are 0, and all are NaN if there is none.
+fn four(value: Option<[f64; 4]>) -> [f64; 4] {
+    value.unwrap_or([f64::NAN; 4])
+}
+
+/// The value of a channel at a point, as leafless_channel_values.
+///
+/// - Buffers: `point_model`, 3 numbers; `value`, room for 4 numbers.
+/// - Result: `value`: as many numbers as the channel's values have, and 0 beyond them; four NaN if there is none.
+/// - Errors: LEAFLESS_E_DAMAGED.
+/// - Ownership: nothing changes hands.
+/// - Threads: any.
+/// - Untrusted input: any channel, any numbers; damage reads as no value.
+/// - Since: 0.1
+///
+/// cbindgen:ptrs-as-arrays=[[point_model; 3], [value; 4]]
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_channel_value(
+    channel: *const leafless_channel,
+    point_model: *const f64,
+    value: *mut f64,
+) -> leafless_status {
+    guard(|| unsafe {
+        let channel = &shared(channel, "channel")?.channel;
+        let point = array(point_model, "point_model")?;
+        let value = out(value.cast(), "value")?;
+        value.write(four(channel.view()?.value_at(point)))
+    })
+}
+
+/// The value of a finest cell of a channel's own frame. O(depth).
+///
+/// - Buffers: `cell`, 3 numbers; `value`, room for 4 numbers.
+/// - Result: `value`, as leafless_channel_value; four NaN if a coordinate is not below 2^depth.
+/// - Errors: LEAFLESS_E_DAMAGED.
+/// - Ownership: nothing changes hands.
+/// - Threads: any.
+/// - Untrusted input: any channel, any numbers; damage reads as no value.
+/// - Since: 0.1
+///
+/// cbindgen:ptrs-as-arrays=[[cell; 3], [value; 4]]
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_channel_value_of_cell(
+    channel: *const leafless_channel,
+    cell: *const u32,
+    value: *mut f64,
+) -> leafless_status {
+    guard(|| unsafe {
+        let channel = &shared(channel, "channel")?.channel;
+        let cell = array(cell, "cell")?;
+        let value = out(value.cast(), "value")?;
+        value.write(four(channel.view()?.value_of_cell(cell)))
+    })
+}
+
+/// The channel with one value wherever an octree is not EMPTY, and as it is elsewhere. It is as deep as the deeper of
+/// the two. The same bit for bit for any number of threads.
+///
+/// - Buffers: `region`, a handle; `value`, as many numbers as the channel's values have, or NULL to take values
+///   away; `options`, one struct or NULL; `changed`, one pointer.
+/// - Result: `*changed`, with the metadata of `channel`.
+/// - Errors: LEAFLESS_E_ARGUMENT if the value is beyond the type's range, or not finite; LEAFLESS_E_FRAME unless both
+///   lie in one cube; LEAFLESS_E_DAMAGED; LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: `channel` stays as it is; give `*changed` back with leafless_channel_free.
+/// - Threads: any; uses as many as `options` says.
+/// - Untrusted input: any channel, any octree, any numbers.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_channel_with_value_in(
+    channel: *const leafless_channel,
+    region: *const leafless_octree,
+    value: *const f64,
+    options: *const leafless_options,
+    changed: *mut *mut leafless_channel,
+) -> leafless_status {
+    guard(|| unsafe {
+        let channel = &shared(channel, "channel")?.channel;
+        let region = shared(region, "region")?.octree.view();
+        let changed = out(changed, "changed")?;
+        let value = match value.is_null() {
+            true => None,
+            false => {
+                let numbers = slice(value, channel.value_type().components() as u64, "value")?;
+                let mut value = [0.0; 4];
+                value[..numbers.len()].copy_from_slice(numbers);
+                Some(value)
+            }
+        };
+        let view = channel.view()?;
+        let made = controlled(options, |control| view.with_value_in(region, value, control))?;
+        changed.write(give(made.with_metadata_of(channel)))
+    })
+}

@@ -1,0 +1,251 @@
+//! What the values of channels amount to, and where they lie in a band.
+
+use super::attribute::{give as give_attribute, leafless_attribute};
+use super::boundary::{Failure, array, buffer, guard, out, shared, slice};
+use super::channel::leafless_channel;
+use super::control::{controlled, leafless_options};
+use super::frame::{frame, leafless_frame, leafless_interval};
+use super::measure::leafless_measures;
+use super::octree::{give as give_octree, leafless_octree};
+use super::solid::leafless_solid;
+use super::status::leafless_status;
+use super::volume::leafless_volume;
+use leafless::Band;
+use leafless::Tolerance;
+use leafless::{Bounds, Interval};
+use leafless::{
+    ChannelSummary, Interpolation, MaterialProperties, MovedAttribute, VolumeAttribute, materials,
+};
+use leafless_interpolation::*;
+
+/// What lies between the samples of a volume.
+#[derive(Clone, Copy)]
+#[repr(u32)]
+pub enum leafless_interpolation {
+    /// The trilinear interpolation of the eight samples around a point.
+    LEAFLESS_INTERPOLATION_TRILINEAR = 0,
+    /// The sample of the voxel that contains the point; on a face between voxels, that of the upper one.
+    LEAFLESS_INTERPOLATION_NEAREST = 1,
+}
+
+/// What the values of a channel amount to in a region, number by number; places beyond the numbers of a value
+/// are 0. All intervals contain the truth, as far as the cells of the solid and of the channel tell it.
+#[derive(Clone, Copy)]
+#[repr(C)]
+pub struct leafless_channel_summary {
+    /// The least value of any cell that may belong to the region.
+    pub least: [f64; 4],
+    /// The greatest value of any cell that may belong to the region.
+    pub greatest: [f64; 4],
+    /// The integral of the value over the region, in the value's units times cubic model units: of a density, the
+    /// mass.
+    pub integral: [leafless_interval; 4],
+    /// The mean value.
+    pub mean: [leafless_interval; 4],
+    /// The volume of the region that has values, in cubic model units.
+    pub volume_model: leafless_interval,
+    /// The volume of the region that has none.
+    pub volume_without_model: leafless_interval,
+    /// Whether any of the region may have a value. If not, all else is 0.
+    pub has_values: bool,
+}
+
+impl From<Option<ChannelSummary>> for leafless_channel_summary {
+    fn from(found: Option<ChannelSummary>) -> leafless_channel_summary {
+        let zero = Interval::exactly(0.0);
+        let summary = found.unwrap_or(ChannelSummary {
+            least: [0.0; 4],
+            greatest: [0.0; 4],
+            volume: zero,
+            integral: [zero; 4],
+            mean: [zero; 4],
+            volume_without: zero,
+        });
+        leafless_channel_summary {
+            least: summary.least,
+            greatest: summary.greatest,
+            integral: summary.integral.map(Into::into),
+            mean: summary.mean.map(Into::into),
+            volume_model: summary.volume.into(),
+            volume_without_model: summary.volume_without.into(),
+            has_values: found.is_some(),
+        }
+    }
+}
+
+/// Volume, centroid and inertia of the part of a solid that has one value.
+#[derive(Clone, Copy)]
+#[repr(C)]
+pub struct leafless_material {
+    /// The value; places beyond its numbers are 0.
+    pub value: [f64; 4],
+    /// Measures of the points of the solid that have the value, of density 1.
+    pub measures: leafless_measures,
+}
+
+impl From<&MaterialProperties> for leafless_material {
+    fn from(found: &MaterialProperties) -> leafless_material {
+        leafless_material { value: found.value, measures: found.properties.into() }
+    }
+}
+
+/// Least, greatest, mean and integral of a channel's values in the part of a solid that lies in a box, whose faces may
+/// lie anywhere. O(cells that the box meets).
+///
+/// - Buffers: `solid`, a handle, or NULL for all space; `min_model` and `max_model`, 3 numbers each, which may be
+///   infinite, or both NULL for all of the channel's cube; `options`, one struct or NULL, of which limits do not
+///   matter; `summary`, one struct.
+/// - Result: `*summary`.
+/// - Errors: LEAFLESS_E_ARGUMENT if a coordinate is not a number, or min > max; LEAFLESS_E_FRAME if the solid lies in
+///   another cube; LEAFLESS_E_DAMAGED; LEAFLESS_E_CANCELLED.
+/// - Ownership: nothing changes hands.
+/// - Threads: any; works in the calling thread.
+/// - Untrusted input: any channel, any octree, any numbers.
+/// - Since: 0.1
+///
+/// cbindgen:ptrs-as-arrays=[[min_model; 3], [max_model; 3]]
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_channel_summarise(
+    channel: *const leafless_channel,
+    solid: *const leafless_octree,
+    min_model: *const f64,
+    max_model: *const f64,
+    options: *const leafless_options,
+    summary: *mut leafless_channel_summary,
+) -> leafless_status {
+    guard(|| unsafe {
+        let channel = &shared(channel, "channel")?.channel;
+        let solid = match solid.is_null() {
+            true => None,
+            false => Some(shared(solid, "solid")?.octree.view()),
+        };
+        let bounds = match min_model.is_null() && max_model.is_null() {
+            true => None,
+            false => {
+                Some(Bounds { min: array(min_model, "min_model")?, max: array(max_model, "max_model")? })
+            }
+        };
+        let summary = out(summary, "summary")?;
+        let view = channel.view()?;
+        summary.write(controlled(options, |control| view.summary(solid, bounds.as_ref(), control))?.into())
+    })
+}
+
+/// The octree of the cells whose values lie in a band: every number between those of `low` and `high`, both included.
+/// Where there is no value, it is EMPTY. It lies on the channel's frame, and nothing is PARTIAL. A Boolean makes it that of
+/// a part: of a material, of all that is hotter than a limit.
+///
+/// - Buffers: `low` and `high`, as many numbers each as the channel's values have, which may be infinite; `options`, one
+///   struct or NULL; `octree`, one pointer.
+/// - Result: `*octree`.
+/// - Errors: LEAFLESS_E_ARGUMENT if a bound is not a number; LEAFLESS_E_DAMAGED; LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED;
+///   LEAFLESS_E_NO_MEMORY.
+/// - Ownership: give `*octree` back with leafless_octree_free.
+/// - Threads: any; uses as many as `options` says.
+/// - Untrusted input: any channel, any numbers.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_channel_region(
+    channel: *const leafless_channel,
+    low: *const f64,
+    high: *const f64,
+    options: *const leafless_options,
+    octree: *mut *mut leafless_octree,
+) -> leafless_status {
+    guard(|| unsafe {
+        let channel = &shared(channel, "channel")?.channel;
+        let components = channel.value_type().components() as u64;
+        let mut band = [[0.0; 4]; 2];
+        for (to, given) in
+            band.iter_mut().zip([slice(low, components, "low")?, slice(high, components, "high")?])
+        {
+            to[..given.len()].copy_from_slice(given);
+        }
+        let octree = out(octree, "octree")?;
+        let view = channel.view()?;
+        octree.write(give_octree(controlled(options, |control| view.region(band[0], band[1], control))?))
+    })
+}
+
+/// Measures the parts of a solid in which a channel has one value, each as leafless_solid_measure: one for each value of
+/// the channel that the solid may have somewhere, in ascending order of the values. The channel is taken as it is; its
+/// cells decide what is which material. To ask for the count alone takes as long.
+///
+/// - Buffers: `frame`, one struct: where the solid is split, in the channel's cube; `options`, one struct or NULL;
+///   `measured`, room for `capacity` structs, or NULL to ask for the count only; `count`, one number. `relative` and
+///   `absolute_model` are those of leafless_solid_measure.
+/// - Result: `*count`; the materials.
+/// - Errors: LEAFLESS_E_LIMIT if the channel has more than 4096 different values; LEAFLESS_E_FRAME unless `frame` is of
+///   the channel's cube; LEAFLESS_E_BUFFER if the capacity is too small; else as leafless_solid_measure.
+/// - Ownership: nothing changes hands.
+/// - Threads: any; uses as many as `options` says.
+/// - Untrusted input: any solid, any channel; the default of `max_splits` bounds the work for each value.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_solid_materials(
+    solid: *const leafless_solid,
+    channel: *const leafless_channel,
+    frame: *const leafless_frame,
+    relative: f64,
+    absolute_model: f64,
+    options: *const leafless_options,
+    measured: *mut leafless_material,
+    capacity: u64,
+    count: *mut u64,
+) -> leafless_status {
+    guard(|| unsafe {
+        let solid = &shared(solid, "solid")?.solid;
+        let channel = &shared(channel, "channel")?.channel;
+        let frame = self::frame(frame)?;
+        let measured = buffer(measured, capacity, "measured")?;
+        let count = out(count, "count")?;
+        let tolerance = Tolerance { relative, absolute: absolute_model };
+        let view = channel.view()?;
+        let found = controlled(options, |control| materials(solid, view, &frame, tolerance, control))?;
+        measured.fill_with(&found)?;
+        count.write(found.len() as u64)
+    })
+}
+
+/// The samples of a volume as an attribute of one number, where the file says that they lie. There is no value outside of
+/// the voxels, nor where a sample that counts is not a number. The first solid, range or attribute of a volume reads all
+/// samples, in O(n).
+///
+/// - Buffers: `interpolation`, a leafless_interpolation; `options`, one struct or NULL, of which limits do not matter;
+///   `attribute`, one pointer.
+/// - Result: `*attribute`.
+/// - Errors: LEAFLESS_E_ARGUMENT if the map that places the volume has no inverse that a map can have;
+///   LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: the attribute shares the samples, and `volume` may be freed; give `*attribute` back with
+///   leafless_attribute_free.
+/// - Threads: any; uses as many as `options` says.
+/// - Untrusted input: any volume.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_volume_as_attribute(
+    volume: *const leafless_volume,
+    interpolation: u32,
+    options: *const leafless_options,
+    attribute: *mut *mut leafless_attribute,
+) -> leafless_status {
+    guard(|| unsafe {
+        let volume = shared(volume, "volume")?;
+        let interpolation = match interpolation {
+            given if given == LEAFLESS_INTERPOLATION_TRILINEAR as u32 => Interpolation::Trilinear,
+            given if given == LEAFLESS_INTERPOLATION_NEAREST as u32 => Interpolation::Nearest,
+            _ => {
+                let problem = "is no leafless_interpolation";
+                return Err(Failure::Argument { name: "interpolation", problem });
+            }
+        };
+        let attribute = out(attribute, "attribute")?;
+        // Any band will do.
+        let band = Band::between(f64::NEG_INFINITY, f64::INFINITY)?;
+        let samples = controlled(options, |control| volume.voxels(band, control))?;
+        let samples = VolumeAttribute::new(samples, interpolation);
+        attribute.write(match &volume.placement {
+            Some(placement) => give_attribute(MovedAttribute::new(samples, placement.inverse()?)),
+            None => give_attribute(samples),
+        })
+    })
+}

@@ -1,0 +1,233 @@
+//! Options of long operations: threads, limits, progress; cancelling from another thread.
+
+use super::boundary::{Failure, Sized32, guard, handle, initialise, out, release, shared, sized};
+use super::status::leafless_status;
+use core::ffi::c_void;
+use core::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
+use leafless::Control;
+use leafless::Error;
+
+/// A switch to stop long operations from any thread, and to ask how far they are.
+///
+/// All its functions may be called at once from any number of threads.
+pub struct leafless_control {
+    cancelled: AtomicBool,
+    /// The fraction done, as the bits of a double.
+    fraction: AtomicU64,
+}
+
+/// Hears how far an operation is, with the fraction done (0 to 1); returns 0 to go on. Anything else ends the
+/// operation with LEAFLESS_E_CANCELLED, unless it is already done, and cancels the `control` of its options,
+/// if there is one, until leafless_control_reset.
+///
+/// It is called from any of the operation's threads, also from two at once and then not in ascending order;
+/// with `threads` = 1 from the calling thread only. It must return: no exception, no longjmp. It may call
+/// this library.
+pub type leafless_progress_fn = Option<unsafe extern "C" fn(ctx: *mut c_void, fraction: f64) -> i32>;
+
+/// How a long operation may proceed. Where a function takes options, NULL means the defaults. All fields but
+/// the first may be zero, which is their default; leafless_options_init sets them so. No option but
+/// `max_splits` changes a result.
+#[derive(Clone, Copy)]
+#[repr(C)]
+pub struct leafless_options {
+    /// sizeof(leafless_options).
+    pub struct_size: u32,
+    /// Threads to use; 0 means as many as the machine has processors, numbers beyond 1024 mean 1024. Inside
+    /// of a function that the library calls it is always 1.
+    pub threads: u32,
+    /// Refuse results of more octree nodes than this; 0 means no limit.
+    pub max_nodes: u64,
+    /// Refuse results whose working form is larger than this many bytes; 0 means no limit. Where the size is known
+    /// beforehand nothing is done. When a result is put together, it takes as much again for a moment. Set a limit
+    /// where a solid or its depth is not your own choice: a file of some hundred bytes may hold a cell whose surface
+    /// has 2^43 triangles. Interference, clearance and bounding boxes end with what they know, as with max_splits spent,
+    /// before what they remember of a solid's parts takes so much.
+    pub max_bytes: u64,
+    /// Split at most this many cells; 0 means no limit, or the one that the function names. Only functions that split on demand heed it, and say
+    /// so: with it spent they stop, and keep or return what they have; it is no error.
+    pub max_splits: u64,
+    /// Hears of the progress; optional.
+    pub progress: leafless_progress_fn,
+    /// What `progress` is called with.
+    pub progress_ctx: *mut c_void,
+    /// Ends the operation when it is cancelled, and can be asked for the progress; optional. Give operations
+    /// that run at once a control each, or their progress is mixed up.
+    pub control: *const leafless_control,
+}
+
+// SAFETY: numbers, pointers, and an optional function.
+unsafe impl Sized32 for leafless_options {}
+
+/// Pointers of the host that are handed to its own functions, in any thread.
+struct Host<'a> {
+    progress: leafless_progress_fn,
+    ctx: *mut c_void,
+    control: &'a leafless_control,
+}
+
+// SAFETY: the library does nothing with `ctx` but hand it back; that the host's function may be called from
+// any thread is its documented contract.
+unsafe impl Sync for Host<'_> {}
+
+impl Host<'_> {
+    fn report(&self, fraction: f64) {
+        self.control.fraction.store(fraction.to_bits(), Relaxed);
+        if let Some(progress) = self.progress
+            // SAFETY: as the host gave it, with its own context.
+            && unsafe { progress(self.ctx, fraction) } != 0
+        {
+            self.control.cancelled.store(true, Relaxed);
+        }
+    }
+}
+
+/// Runs a long operation under the host's options.
+///
+/// # Safety
+/// `options` is NULL or points to valid options.
+pub(super) unsafe fn controlled<R>(
+    options: *const leafless_options,
+    operation: impl FnOnce(&Control<'_>) -> Result<R, Error>,
+) -> Result<R, Failure> {
+    let own = leafless_control { cancelled: AtomicBool::new(false), fraction: AtomicU64::new(0) };
+    // SAFETY: the caller's promise.
+    let options = unsafe { sized(options, "options")? };
+    let control = match options.control.is_null() {
+        true => &own,
+        // SAFETY: a living handle, as the caller promises.
+        false => unsafe { shared(options.control, "options.control")? },
+    };
+    let host = Host { progress: options.progress, ctx: options.progress_ctx, control };
+    let progress = |fraction: f64| host.report(fraction);
+    let limit = |most: u64| (most != 0).then_some(most);
+    control.fraction.store(0, Relaxed);
+    Ok(operation(&Control {
+        // A thread of the library that waited for others would meanwhile take up other work of theirs, and
+        // call the host's function again in the midst of a call.
+        threads: if rayon::current_thread_index().is_some() { 1 } else { options.threads as usize },
+        max_nodes: limit(options.max_nodes),
+        max_bytes: limit(options.max_bytes),
+        max_splits: limit(options.max_splits),
+        cancel: Some(&control.cancelled),
+        progress: Some(&progress),
+    })?)
+}
+
+/// Sets options to their defaults.
+///
+/// - Buffers: `options`, one struct of `struct_size` bytes, which is sizeof(leafless_options); need not be
+///   initialised.
+/// - Result: `*options`.
+/// - Errors: LEAFLESS_E_ARGUMENT if `struct_size` cannot be right.
+/// - Ownership: nothing changes hands.
+/// - Threads: any.
+/// - Untrusted input: none.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_options_init(
+    options: *mut leafless_options,
+    struct_size: usize,
+) -> leafless_status {
+    guard(|| unsafe { initialise(options, struct_size, "options") })
+}
+
+/// Makes a control.
+///
+/// - Buffers: `control`, one pointer.
+/// - Result: `*control`, not cancelled.
+/// - Errors: only the general ones.
+/// - Ownership: give `*control` back with leafless_control_free, not before the operations that use it are
+///   done.
+/// - Threads: any.
+/// - Untrusted input: none.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_control_new(control: *mut *mut leafless_control) -> leafless_status {
+    guard(|| unsafe {
+        let control = out(control, "control")?;
+        let (cancelled, fraction) = (AtomicBool::new(false), AtomicU64::new(0));
+        control.write(handle(leafless_control { cancelled, fraction }))
+    })
+}
+
+/// Gives back a control.
+///
+/// - Buffers: `control`, a handle or NULL, which does nothing.
+/// - Result: none.
+/// - Errors: none.
+/// - Ownership: the handle is gone.
+/// - Threads: no other call may use the handle.
+/// - Untrusted input: none.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_control_free(control: *mut leafless_control) {
+    // SAFETY: the caller's promise.
+    unsafe { release(control) }
+}
+
+/// Ends the operations that run with this control: they return LEAFLESS_E_CANCELLED soon, and so do later
+/// ones until leafless_control_reset.
+///
+/// - Buffers: `control`, a handle.
+/// - Result: none; returns at once.
+/// - Errors: only the general ones.
+/// - Ownership: nothing changes hands.
+/// - Threads: any.
+/// - Untrusted input: none.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_control_cancel(control: *const leafless_control) -> leafless_status {
+    guard(|| unsafe {
+        shared(control, "control")?.cancelled.store(true, Relaxed);
+        Ok(())
+    })
+}
+
+/// Makes a cancelled control usable again.
+///
+/// - Buffers: `control`, a handle.
+/// - Result: none.
+/// - Errors: only the general ones.
+/// - Ownership: nothing changes hands.
+/// - Threads: any, but operations that have not noticed the cancelling yet may go on.
+/// - Untrusted input: none.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_control_reset(control: *const leafless_control) -> leafless_status {
+    guard(|| unsafe {
+        let control = shared(control, "control")?;
+        control.cancelled.store(false, Relaxed);
+        control.fraction.store(0, Relaxed);
+        Ok(())
+    })
+}
+
+/// Whether a control was cancelled, and how far the operation is that runs with it.
+///
+/// - Buffers: `control`, a handle; `cancelled` and `fraction`, one each, each may be NULL.
+/// - Result: `*cancelled`; `*fraction`, 0 to 1.
+/// - Errors: only the general ones.
+/// - Ownership: nothing changes hands.
+/// - Threads: any.
+/// - Untrusted input: none.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_control_state(
+    control: *const leafless_control,
+    cancelled: *mut bool,
+    fraction: *mut f64,
+) -> leafless_status {
+    guard(|| unsafe {
+        let control = shared(control, "control")?;
+        let cancelled = if cancelled.is_null() { None } else { Some(out(cancelled, "cancelled")?) };
+        let fraction = if fraction.is_null() { None } else { Some(out(fraction, "fraction")?) };
+        if let Some(cancelled) = cancelled {
+            cancelled.write(control.cancelled.load(Relaxed))?;
+        }
+        if let Some(fraction) = fraction {
+            fraction.write(f64::from_bits(control.fraction.load(Relaxed)))?;
+        }
+        Ok(())
+    })
+}

@@ -1,0 +1,596 @@
+//! Constructive solid geometry: half-spaces, primitives, and the set operations that join solids.
+
+use super::boundary::{Failure, array, guard, out, shared, slice};
+use super::solid::{give, give_any, leafless_solid};
+use super::status::leafless_status;
+use leafless::Affine;
+use leafless::Error;
+use leafless::memory;
+use leafless::{Adaptive, AnySolid, Csg, HalfSpace, Motion, Solid, Touch};
+
+/// What counts as touching: when a cell that meets the boundary of an expression of half-spaces, but not its
+/// interior, is EMPTY.
+#[derive(Clone, Copy)]
+#[repr(u32)]
+pub enum leafless_touch {
+    /// Contact is not overlap: a cell is EMPTY if the interiors are disjoint.
+    LEAFLESS_TOUCH_EXACT = 0,
+    /// A vertex on the surface counts as inside, so that a cell that touches a primitive with a vertex from
+    /// outside is PARTIAL. It reproduces published tables and is no better for anything else.
+    LEAFLESS_TOUCH_PAPER = 1,
+}
+use leafless_touch::*;
+
+fn touch(touch: u32) -> Result<Touch, Failure> {
+    match touch {
+        _ if touch == LEAFLESS_TOUCH_EXACT as u32 => Ok(Touch::Exact),
+        _ if touch == LEAFLESS_TOUCH_PAPER as u32 => Ok(Touch::Paper),
+        _ => Err(Failure::Argument { name: "touch", problem: "is no leafless_touch" }),
+    }
+}
+
+/// A solid as an expression.
+///
+/// # Safety
+/// As [`shared`].
+unsafe fn operand(solid: *const leafless_solid, name: &'static str) -> Result<Csg, Failure> {
+    // SAFETY: as the caller promises.
+    Ok(Csg::solid(unsafe { shared(solid, name)? }.solid.solid().clone()))
+}
+
+/// An array of solids as expressions.
+///
+/// # Safety
+/// As [`slice`] and, for each element, [`shared`].
+unsafe fn operands(solids: *const *const leafless_solid, count: u64) -> Result<Vec<Csg>, Failure> {
+    // SAFETY: as the caller promises.
+    let solids = unsafe { slice(solids, count, "solids")? };
+    let mut operands = memory::with_capacity(solids.len())?;
+    for &solid in solids {
+        // SAFETY: as the caller promises.
+        operands.push(unsafe { operand(solid, "solids")? });
+    }
+    Ok(operands)
+}
+
+/// The map of twelve numbers.
+///
+/// # Safety
+/// As [`array`].
+pub(super) unsafe fn placement(matrix: *const f64) -> Result<Affine, Failure> {
+    // SAFETY: as the caller promises.
+    let m: [f64; 12] = unsafe { array(matrix, "matrix")? };
+    Ok(Affine::new([0, 4, 8].map(|row| [m[row], m[row + 1], m[row + 2], m[row + 3]]))?)
+}
+
+/// The ball of all points at most `radius` from `centre`. Its verdicts are exact.
+///
+/// - Buffers: `centre_model`, 3 numbers; `solid`, one pointer.
+/// - Result: `*solid`.
+/// - Errors: LEAFLESS_E_ARGUMENT if the radius is not between 2^-256 and 2^256, or a coordinate neither 0 nor
+///   of such a magnitude.
+/// - Ownership: give `*solid` back with leafless_solid_free.
+/// - Threads: any.
+/// - Untrusted input: any numbers.
+/// - Since: 0.1
+///
+/// cbindgen:ptrs-as-arrays=[[centre_model; 3]]
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_solid_new_ball(
+    centre_model: *const f64,
+    radius_model: f64,
+    solid: *mut *mut leafless_solid,
+) -> leafless_status {
+    guard(|| unsafe {
+        let centre = array(centre_model, "centre_model")?;
+        let solid = out(solid, "solid")?;
+        solid.write(give(Csg::ball(centre, radius_model)?))
+    })
+}
+
+/// The box [min, max] with faces parallel to the lattice. Its verdicts are exact, so a face on a lattice
+/// plane leaves nothing undecided.
+///
+/// - Buffers: `min_model` and `max_model`, 3 numbers each; `solid`, one pointer.
+/// - Result: `*solid`.
+/// - Errors: LEAFLESS_E_ARGUMENT if min ≥ max on an axis, or a coordinate is neither 0 nor of a magnitude
+///   between 2^-256 and 2^256.
+/// - Ownership: give `*solid` back with leafless_solid_free.
+/// - Threads: any.
+/// - Untrusted input: any numbers.
+/// - Since: 0.1
+///
+/// cbindgen:ptrs-as-arrays=[[min_model; 3], [max_model; 3]]
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_solid_new_box(
+    min_model: *const f64,
+    max_model: *const f64,
+    solid: *mut *mut leafless_solid,
+) -> leafless_status {
+    guard(|| unsafe {
+        let (min, max) = (array(min_model, "min_model")?, array(max_model, "max_model")?);
+        let solid = out(solid, "solid")?;
+        solid.write(give(Csg::cuboid(min, max)?))
+    })
+}
+
+/// The half-space of the points p with normal · p + offset ≥ 0. Its verdicts are exact.
+///
+/// - Buffers: `normal`, 3 numbers, of any length and pointing into the solid; `solid`, one pointer.
+/// - Result: `*solid`.
+/// - Errors: LEAFLESS_E_ARGUMENT if the normal is zero, or a coefficient neither 0 nor of a magnitude between
+///   2^-256 and 2^256.
+/// - Ownership: give `*solid` back with leafless_solid_free.
+/// - Threads: any.
+/// - Untrusted input: any numbers.
+/// - Since: 0.1
+///
+/// cbindgen:ptrs-as-arrays=[[normal; 3]]
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_solid_new_halfspace(
+    normal: *const f64,
+    offset: f64,
+    solid: *mut *mut leafless_solid,
+) -> leafless_status {
+    guard(|| unsafe {
+        let normal = array(normal, "normal")?;
+        let solid = out(solid, "solid")?;
+        solid.write(give(Csg::half_space(normal, offset)?))
+    })
+}
+
+/// The points p with a x² + b y² + c z² + d xy + e yz + f zx + g x + h y + i z + j ≥ 0, of which the ten
+/// coefficients are a to j. Its signs are exact.
+///
+/// - Buffers: `coefficients`, 10 numbers; `solid`, one pointer.
+/// - Result: `*solid`.
+/// - Errors: LEAFLESS_E_ARGUMENT if all coefficients but the last are 0, or one is neither 0 nor of a
+///   magnitude between 2^-256 and 2^256.
+/// - Ownership: give `*solid` back with leafless_solid_free.
+/// - Threads: any.
+/// - Untrusted input: any numbers.
+/// - Since: 0.1
+///
+/// cbindgen:ptrs-as-arrays=[[coefficients; 10]]
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_solid_new_quadric(
+    coefficients: *const f64,
+    solid: *mut *mut leafless_solid,
+) -> leafless_status {
+    guard(|| unsafe {
+        let coefficients = array(coefficients, "coefficients")?;
+        let solid = out(solid, "solid")?;
+        solid.write(give(Csg::from(HalfSpace::quadric(coefficients)?)))
+    })
+}
+
+/// The ellipsoid around `centre` with the semi-axes `radii` along x, y and z. Its verdicts are exact.
+///
+/// - Buffers: `centre_model` and `radii_model`, 3 numbers each; `solid`, one pointer.
+/// - Result: `*solid`.
+/// - Errors: LEAFLESS_E_ARGUMENT if a radius is not between 2^-256 and 2^256, or a coordinate neither 0 nor
+///   of such a magnitude.
+/// - Ownership: give `*solid` back with leafless_solid_free.
+/// - Threads: any.
+/// - Untrusted input: any numbers.
+/// - Since: 0.1
+///
+/// cbindgen:ptrs-as-arrays=[[centre_model; 3], [radii_model; 3]]
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_solid_new_ellipsoid(
+    centre_model: *const f64,
+    radii_model: *const f64,
+    solid: *mut *mut leafless_solid,
+) -> leafless_status {
+    guard(|| unsafe {
+        let (centre, radii) = (array(centre_model, "centre_model")?, array(radii_model, "radii_model")?);
+        let solid = out(solid, "solid")?;
+        solid.write(give(Csg::ellipsoid(centre, radii)?))
+    })
+}
+
+/// The cylinder of `radius` around the z axis between z = `low` and z = `high`. Its verdicts are exact.
+///
+/// - Buffers: `solid`, one pointer.
+/// - Result: `*solid`.
+/// - Errors: LEAFLESS_E_ARGUMENT if the radius is not between 2^-256 and 2^256, a coordinate neither 0 nor of
+///   such a magnitude, or `low` not less than `high`.
+/// - Ownership: give `*solid` back with leafless_solid_free.
+/// - Threads: any.
+/// - Untrusted input: any numbers.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_solid_new_cylinder(
+    radius_model: f64,
+    low_model: f64,
+    high_model: f64,
+    solid: *mut *mut leafless_solid,
+) -> leafless_status {
+    guard(|| unsafe {
+        let solid = out(solid, "solid")?;
+        solid.write(give(Csg::cylinder(radius_model, low_model, high_model)?))
+    })
+}
+
+/// The frustum of a cone around the z axis: of radius `bottom` at z = `low` and `top` at z = `high`. One of
+/// the radii may be 0, which makes a cone. Its verdicts are exact.
+///
+/// - Buffers: `solid`, one pointer.
+/// - Result: `*solid`.
+/// - Errors: LEAFLESS_E_ARGUMENT if both radii are 0 or one is not between 2^-256 and 2^256, a coordinate
+///   neither 0 nor of such a magnitude, or `low` not less than `high`.
+/// - Ownership: give `*solid` back with leafless_solid_free.
+/// - Threads: any.
+/// - Untrusted input: any numbers.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_solid_new_frustum(
+    bottom_model: f64,
+    top_model: f64,
+    low_model: f64,
+    high_model: f64,
+    solid: *mut *mut leafless_solid,
+) -> leafless_status {
+    guard(|| unsafe {
+        let solid = out(solid, "solid")?;
+        solid.write(give(Csg::frustum(bottom_model, top_model, low_model, high_model)?))
+    })
+}
+
+/// The points p with A (x − a)^n + B (y − b)^m + C (z − c)^k + `constant` ≥ 0. Its signs are exact.
+///
+/// - Buffers: `coefficients` A, B, C, `centre_model` a, b, c, and `exponents` n, m, k, 3 numbers each;
+///   `solid`, one pointer.
+/// - Result: `*solid`.
+/// - Errors: LEAFLESS_E_ARGUMENT if all coefficients are 0, an exponent is not 1 to 64, or a number neither 0
+///   nor of a magnitude between 2^-256 and 2^256.
+/// - Ownership: give `*solid` back with leafless_solid_free.
+/// - Threads: any.
+/// - Untrusted input: any numbers.
+/// - Since: 0.1
+///
+/// cbindgen:ptrs-as-arrays=[[coefficients; 3], [centre_model; 3], [exponents; 3]]
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_solid_new_power(
+    coefficients: *const f64,
+    centre_model: *const f64,
+    exponents: *const u32,
+    constant: f64,
+    solid: *mut *mut leafless_solid,
+) -> leafless_status {
+    guard(|| unsafe {
+        let coefficients: [f64; 3] = array(coefficients, "coefficients")?;
+        let centre: [f64; 3] = array(centre_model, "centre_model")?;
+        let exponents: [u32; 3] = array(exponents, "exponents")?;
+        let terms = [0, 1, 2].map(|i| (coefficients[i], centre[i], exponents[i]));
+        let solid = out(solid, "solid")?;
+        solid.write(give(Csg::from(HalfSpace::power(terms, constant)?)))
+    })
+}
+
+/// The torus around the z axis: all points at most `minor` from the circle of radius `major` in the plane z =
+/// 0; where `minor` is greater, there is no hollow core.
+///
+/// - Buffers: `solid`, one pointer.
+/// - Result: `*solid`.
+/// - Errors: LEAFLESS_E_ARGUMENT if a radius is not between 2^-256 and 2^256; `major` may be 0, which makes a
+///   ball.
+/// - Ownership: give `*solid` back with leafless_solid_free.
+/// - Threads: any.
+/// - Untrusted input: any numbers.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_solid_new_torus(
+    major_model: f64,
+    minor_model: f64,
+    solid: *mut *mut leafless_solid,
+) -> leafless_status {
+    guard(|| unsafe {
+        let solid = out(solid, "solid")?;
+        solid.write(give(Csg::torus(major_model, minor_model)?))
+    })
+}
+
+/// The right angular wedge: the box between the origin and `size` whose face at the greatest y is narrowed,
+/// or widened, to 0 ≤ x ≤ `top`; 0 makes that face an edge. (So it is defined by STEP, ISO 10303-42.)
+///
+/// - Buffers: `size_model`, 3 numbers; `solid`, one pointer.
+/// - Result: `*solid`.
+/// - Errors: LEAFLESS_E_ARGUMENT if a size, or `top` unless it is 0, is not between 2^-256 and 2^256.
+/// - Ownership: give `*solid` back with leafless_solid_free.
+/// - Threads: any.
+/// - Untrusted input: any numbers.
+/// - Since: 0.1
+///
+/// cbindgen:ptrs-as-arrays=[[size_model; 3]]
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_solid_new_wedge(
+    size_model: *const f64,
+    top_model: f64,
+    solid: *mut *mut leafless_solid,
+) -> leafless_status {
+    guard(|| unsafe {
+        let size = array(size_model, "size_model")?;
+        let solid = out(solid, "solid")?;
+        solid.write(give(Csg::wedge(size, top_model)?))
+    })
+}
+
+/// The prism over a simple polygon in the xy plane, between z = `low` and z = `high`. The polygon's corners
+/// are given in order, in either direction of rotation; the last is joined to the first. The planes through
+/// its edges are exact.
+///
+/// - Buffers: `polygon_model`, `count` points of 2 numbers each; `solid`, one pointer.
+/// - Result: `*solid`.
+/// - Errors: LEAFLESS_E_ARGUMENT if the outline touches or crosses itself or encloses nothing, a coordinate
+///   is neither 0 nor of a magnitude between 2^-256 and 2^256, or `low` not less than `high`;
+///   LEAFLESS_E_NO_MEMORY.
+/// - Ownership: give `*solid` back with leafless_solid_free.
+/// - Threads: any.
+/// - Untrusted input: any numbers.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_solid_new_prism(
+    polygon_model: *const f64,
+    count: u64,
+    low_model: f64,
+    high_model: f64,
+    solid: *mut *mut leafless_solid,
+) -> leafless_status {
+    guard(|| unsafe {
+        let polygon = slice(polygon_model.cast::<[f64; 2]>(), count, "polygon_model")?;
+        let solid = out(solid, "solid")?;
+        solid.write(give(Csg::prism(polygon, low_model, high_model)?))
+    })
+}
+
+/// The convex polyhedron of the points p with normal · p + offset ≥ 0 for all of the planes. It may be
+/// unbounded, or empty.
+///
+/// - Buffers: `planes`, `count` of 4 numbers each: the normal, of any length and pointing inward, and the
+///   offset; `solid`, one pointer.
+/// - Result: `*solid`.
+/// - Errors: LEAFLESS_E_ARGUMENT if there is no plane, a normal is zero, or a number neither 0 nor of a
+///   magnitude between 2^-256 and 2^256; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: give `*solid` back with leafless_solid_free.
+/// - Threads: any.
+/// - Untrusted input: any numbers.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_solid_new_convex(
+    planes: *const f64,
+    count: u64,
+    solid: *mut *mut leafless_solid,
+) -> leafless_status {
+    guard(|| unsafe {
+        let given = slice(planes.cast::<[f64; 4]>(), count, "planes")?;
+        let planes = memory::collected(given.iter().map(|&[x, y, z, offset]| ([x, y, z], offset)))?;
+        let solid = out(solid, "solid")?;
+        solid.write(give(Csg::convex(&planes)?))
+    })
+}
+
+/// What at least one of the solids contains; nothing, if there is none. No tree is built: the result asks its
+/// operands about each cell that it is asked about, and expressions of half-spaces join into one.
+///
+/// - Buffers: `solids`, `count` pointers, or NULL if there is none; `solid`, one pointer.
+/// - Result: `*solid`.
+/// - Errors: LEAFLESS_E_NULL, also of an element; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: the operands are shared and may be freed; give `*solid` back with leafless_solid_free.
+/// - Threads: any.
+/// - Untrusted input: any solids.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_solid_union(
+    solids: *const *const leafless_solid,
+    count: u64,
+    solid: *mut *mut leafless_solid,
+) -> leafless_status {
+    guard(|| unsafe {
+        let operands = operands(solids, count)?;
+        let solid = out(solid, "solid")?;
+        solid.write(give(Csg::union_of(operands)?))
+    })
+}
+
+/// What all of the solids contain; everything, if there is none. No tree is built: the result asks its
+/// operands about each cell that it is asked about, and expressions of half-spaces join into one.
+///
+/// - Buffers: `solids`, `count` pointers, or NULL if there is none; `solid`, one pointer.
+/// - Result: `*solid`.
+/// - Errors: LEAFLESS_E_NULL, also of an element; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: the operands are shared and may be freed; give `*solid` back with leafless_solid_free.
+/// - Threads: any.
+/// - Untrusted input: any solids.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_solid_intersection(
+    solids: *const *const leafless_solid,
+    count: u64,
+    solid: *mut *mut leafless_solid,
+) -> leafless_status {
+    guard(|| unsafe {
+        let operands = operands(solids, count)?;
+        let solid = out(solid, "solid")?;
+        solid.write(give(Csg::intersection_of(operands)?))
+    })
+}
+
+/// What an odd number of the solids contain: of two, what is in one and not in the other. No tree is built:
+/// the result asks its operands about each cell that it is asked about, and expressions of half-spaces join
+/// into one.
+///
+/// - Buffers: `solids`, `count` pointers, or NULL if there is none; `solid`, one pointer.
+/// - Result: `*solid`.
+/// - Errors: LEAFLESS_E_NULL, also of an element; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: the operands are shared and may be freed; give `*solid` back with leafless_solid_free.
+/// - Threads: any.
+/// - Untrusted input: any solids.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_solid_xor(
+    solids: *const *const leafless_solid,
+    count: u64,
+    solid: *mut *mut leafless_solid,
+) -> leafless_status {
+    guard(|| unsafe {
+        let operands = operands(solids, count)?;
+        let solid = out(solid, "solid")?;
+        solid.write(give(Csg::xor_of(operands)?))
+    })
+}
+
+/// What `a` contains and `b` does not. No tree is built.
+///
+/// - Buffers: `solid`, one pointer.
+/// - Result: `*solid`.
+/// - Errors: LEAFLESS_E_NULL; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: the operands are shared and may be freed; give `*solid` back with leafless_solid_free.
+/// - Threads: any.
+/// - Untrusted input: any solids.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_solid_difference(
+    a: *const leafless_solid,
+    b: *const leafless_solid,
+    solid: *mut *mut leafless_solid,
+) -> leafless_status {
+    guard(|| unsafe {
+        let (a, b) = (operand(a, "a")?, operand(b, "b")?);
+        let solid = out(solid, "solid")?;
+        solid.write(give(a.difference(&b)?))
+    })
+}
+
+/// What `operand` does not contain. A solid and its complement share their boundary.
+///
+/// - Buffers: `solid`, one pointer.
+/// - Result: `*solid`.
+/// - Errors: LEAFLESS_E_NULL.
+/// - Ownership: the operand is shared and may be freed; give `*solid` back with leafless_solid_free.
+/// - Threads: any.
+/// - Untrusted input: any solids.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_solid_complement(
+    operand: *const leafless_solid,
+    solid: *mut *mut leafless_solid,
+) -> leafless_status {
+    guard(|| unsafe {
+        let operand = self::operand(operand, "operand")?;
+        let solid = out(solid, "solid")?;
+        solid.write(give(operand.complement()))
+    })
+}
+
+/// What an affine map does to a solid.
+#[derive(Clone, Copy)]
+#[repr(u32)]
+pub enum leafless_motion {
+    /// Nothing is rounded: half-spaces, and what is made of them.
+    LEAFLESS_MOTION_EXACT = 0,
+    /// The vertices of a mesh are moved and rounded, by some 10^-16 of their coordinates; what is proven
+    /// allows for that.
+    LEAFLESS_MOTION_VERTICES = 1,
+    /// As leafless_solid_new_transform does, on a frame that is chosen for the solid: a surface that is not
+    /// parallel to the lattice blurs by about a cell. Where cells are the images of cells, nothing blurs.
+    LEAFLESS_MOTION_CONSERVATIVE = 2,
+}
+use leafless_motion::*;
+
+impl From<Motion> for leafless_motion {
+    fn from(motion: Motion) -> leafless_motion {
+        match motion {
+            Motion::Exact => LEAFLESS_MOTION_EXACT,
+            Motion::Vertices => LEAFLESS_MOTION_VERTICES,
+            Motion::Conservative => LEAFLESS_MOTION_CONSERVATIVE,
+        }
+    }
+}
+
+/// A solid moved by an affine map, in the best way that its kind knows: half-spaces exactly, meshes by their
+/// vertices, others as leafless_solid_new_transform; of an expression each part in its own way.
+///
+/// - Buffers: `matrix`, 12 numbers, the rows of [M | t], where a point p goes to M p + t; `motion`, one
+///   leafless_motion or NULL; `solid`, one pointer.
+/// - Result: `*solid`; `*motion`, the worst that a map does to any part (the identity does nothing).
+/// - Errors: LEAFLESS_E_ARGUMENT if an entry is neither 0 nor of a magnitude between 2^-64 and 2^64, or M is
+///   singular; LEAFLESS_E_MESH if a mesh is moved beyond the numbers that meshes may have;
+///   LEAFLESS_E_NO_MEMORY.
+/// - Ownership: the operand is shared and may be freed; give `*solid` back with leafless_solid_free.
+/// - Threads: any.
+/// - Untrusted input: any solids and numbers.
+/// - Since: 0.1
+///
+/// cbindgen:ptrs-as-arrays=[[matrix; 12]]
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_solid_placed(
+    operand: *const leafless_solid,
+    matrix: *const f64,
+    motion: *mut leafless_motion,
+    solid: *mut *mut leafless_solid,
+) -> leafless_status {
+    guard(|| unsafe {
+        let operand = shared(operand, "operand")?.solid.solid();
+        let placement = self::placement(matrix)?;
+        let motion = if motion.is_null() { None } else { Some(out(motion, "motion")?) };
+        let solid = out(solid, "solid")?;
+        let placed = operand.placed(&placement)?;
+        if let Some(motion) = motion {
+            motion.write(operand.motion().into())?;
+        }
+        solid.write(give_any(placed))
+    })
+}
+
+/// A solid whose cells are not split where its surface is known to lie within a layer no thicker than a tolerance:
+/// an octree of it stays coarse where the surface is flat. Such cells stay PARTIAL. Half-spaces know such layers;
+/// a solid that knows none is split as ever.
+///
+/// - Buffers: none.
+/// - Result: `*solid`, a new solid.
+/// - Errors: LEAFLESS_E_ARGUMENT if `tolerance_model` is negative or not a number; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: the caller's, to be given to leafless_solid_free; `operand` stays the caller's.
+/// - Threads: any.
+/// - Untrusted input: any solid.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_solid_adaptive(
+    operand: *const leafless_solid,
+    tolerance_model: f64,
+    solid: *mut *mut leafless_solid,
+) -> leafless_status {
+    guard(|| unsafe {
+        let operand = shared(operand, "operand")?.solid.solid();
+        if operand.nesting() >= AnySolid::MOST_NESTED {
+            let what = "solids of other kinds within each other";
+            return Err(Error::Limit { what, limit: AnySolid::MOST_NESTED.into() }.into());
+        }
+        let solid = out(solid, "solid")?;
+        solid.write(give(Adaptive::new(operand.clone(), tolerance_model)?))
+    })
+}
+
+/// The same solid by another rule of touching, which holds for the whole expression. What joins it to others
+/// follows its own rule.
+///
+/// - Buffers: `solid`, one pointer. `touch` is a leafless_touch.
+/// - Result: `*solid`.
+/// - Errors: LEAFLESS_E_NULL; LEAFLESS_E_ARGUMENT if `touch` is no leafless_touch.
+/// - Ownership: the operand is shared and may be freed; give `*solid` back with leafless_solid_free.
+/// - Threads: any.
+/// - Untrusted input: any solids.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_solid_with_touch(
+    operand: *const leafless_solid,
+    touch: u32,
+    solid: *mut *mut leafless_solid,
+) -> leafless_status {
+    guard(|| unsafe {
+        let operand = self::operand(operand, "operand")?;
+        let touch = self::touch(touch)?;
+        let solid = out(solid, "solid")?;
+        solid.write(give(operand.with_touch(touch)))
+    })
+}

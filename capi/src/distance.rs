@@ -1,0 +1,259 @@
+//! Distances of points and of cells from solids, and the nearest cells.
+
+use super::boundary::{Failure, array, buffer, guard, out, shared, slice};
+use super::cells::{leafless_cell, tags};
+use super::control::{controlled, leafless_options};
+use super::frame::{frame, leafless_frame, leafless_interval};
+use super::measure::leafless_measured;
+use super::octree::leafless_octree;
+use super::solid::leafless_solid;
+use super::status::leafless_status;
+use leafless::Interval;
+use leafless::memory;
+use leafless::{DistanceTo, NearCell, PointDistance, distances};
+
+/// What a distance is measured to.
+#[repr(u32)]
+pub enum leafless_distance_to {
+    /// To the solid: 0 for its points.
+    LEAFLESS_DISTANCE_TO_SOLID = 0,
+    /// To what is not solid: 0 for points outside.
+    LEAFLESS_DISTANCE_TO_COMPLEMENT = 1,
+    /// To the boundary, with a sign: positive outside of the solid, negative inside.
+    LEAFLESS_DISTANCE_TO_BOUNDARY = 2,
+}
+
+fn target(to: u32) -> Result<DistanceTo, Failure> {
+    match to {
+        0 => Ok(DistanceTo::Solid),
+        1 => Ok(DistanceTo::Complement),
+        2 => Ok(DistanceTo::Boundary),
+        _ => Err(Failure::Argument { name: "to", problem: "must be a leafless_distance_to" }),
+    }
+}
+
+/// What is known of a point's distance from a solid.
+#[derive(Clone, Copy)]
+#[repr(C)]
+pub struct leafless_point_distance {
+    /// The distance, in model units. The upper bound is infinite as long as nothing is proven to be there, and the lower
+    /// one if it is proven that nothing is.
+    pub distance_model: leafless_interval,
+    /// How many times a cell was split.
+    pub splits: u64,
+    /// Why the search ended.
+    pub measured: leafless_measured,
+}
+
+impl From<&PointDistance> for leafless_point_distance {
+    fn from(found: &PointDistance) -> leafless_point_distance {
+        leafless_point_distance {
+            distance_model: found.distance.into(),
+            splits: found.splits,
+            measured: found.stop_reason.into(),
+        }
+    }
+}
+
+/// A cell near a point.
+#[derive(Clone, Copy)]
+#[repr(C)]
+pub struct leafless_near_cell {
+    /// The point of the closed cell that is nearest to the given one: each coordinate is the given point's own, or a
+    /// rounded one of the cell's faces.
+    pub point_model: [f64; 3],
+    /// The distance of the closed cell from the given point, rounded outward.
+    pub distance_model: leafless_interval,
+    /// The cell and its tag.
+    pub found: leafless_cell,
+}
+
+impl From<&NearCell> for leafless_near_cell {
+    fn from(near: &NearCell) -> leafless_near_cell {
+        leafless_near_cell {
+            point_model: near.point,
+            distance_model: near.distance.into(),
+            found: near.found.into(),
+        }
+    }
+}
+
+/// The distances of points from a solid, its complement or its boundary, as an octree's cells and its exterior tell
+/// them. FULL cells bound a distance from the solid from above, FULL and PARTIAL ones from below. Points may lie outside
+/// of the universe. Some dozen array elements are read a point as a rule.
+///
+/// - Buffers: `points_model`, `count` points of 3 numbers; `options`, one struct or NULL, of which limits do not matter;
+///   `distances_model`, room for `count`. `points_model` and `distances_model` may be NULL if `count` is 0. `to` is a
+///   leafless_distance_to.
+/// - Result: `distances_model[i]` for point i, the same for any number of threads: 0 to infinity if a coordinate is not a
+///   finite number, and all numbers for LEAFLESS_DISTANCE_TO_BOUNDARY.
+/// - Errors: LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: nothing changes hands.
+/// - Threads: any; uses as many as `options` says.
+/// - Untrusted input: any octree, any numbers; damage reads as PARTIAL, and for each point no more array elements are
+///   read than twice those that there are.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_octree_distances(
+    octree: *const leafless_octree,
+    points_model: *const f64,
+    count: u64,
+    to: u32,
+    options: *const leafless_options,
+    distances_model: *mut leafless_interval,
+) -> leafless_status {
+    guard(|| unsafe {
+        let octree = &shared(octree, "octree")?.octree;
+        let points: &[[f64; 3]] = slice(points_model.cast(), count, "points_model")?;
+        let to = target(to)?;
+        if count > 0 {
+            out(distances_model, "distances_model")?;
+        }
+        let results = buffer(distances_model, count, "distances_model")?;
+        let mut found = memory::filled(points.len(), Interval::exactly(0.0))?;
+        controlled(options, |control| octree.distances(points, to, &mut found, control))?;
+        results.fill(&memory::collected(found.into_iter().map(leafless_interval::from))?)
+    })
+}
+
+/// The distances of points from a solid, its complement or its boundary, without an octree. Points may lie outside of
+/// the universe of the frame. The cells that may be nearest are split first.
+///
+/// `measured` of a result says why the search for the point ended. With LEAFLESS_MEASURED_TOLERANCE the interval is no
+/// wider than `tolerance_model` (model units), or both ends are infinite. With LEAFLESS_MEASURED_EXHAUSTED no cell is
+/// left whose split would help, or of a solid without slabs, the nearest undecided cell cannot be split, and the interval
+/// is no wider than twice the diagonal of the frame's finest cells. With LEAFLESS_MEASURED_BUDGET `max_splits` cells were
+/// split for the point, or 65 536 if that is 0.
+///
+/// - Buffers: `frame`, one struct; `points_model`, `count` points of 3 numbers; `options`, one struct or NULL;
+///   `distances`, room for `count`. `points_model` and `distances` may be NULL if `count` is 0. `to` is a
+///   leafless_distance_to.
+/// - Result: `distances[i]` for point i, the same for any number of threads.
+/// - Errors: LEAFLESS_E_FRAME if the solid belongs to another frame; LEAFLESS_E_ARGUMENT as leafless_frame_check, or if
+///   the tolerance is negative or not a number; LEAFLESS_E_CALLBACK; LEAFLESS_E_DAMAGED; LEAFLESS_E_CANCELLED;
+///   LEAFLESS_E_NO_MEMORY.
+/// - Ownership: nothing changes hands.
+/// - Threads: any; uses as many as `options` says.
+/// - Untrusted input: any solid, any numbers; the default of `max_splits` bounds the work.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_solid_distances(
+    solid: *const leafless_solid,
+    frame: *const leafless_frame,
+    points_model: *const f64,
+    count: u64,
+    to: u32,
+    tolerance_model: f64,
+    options: *const leafless_options,
+    distances: *mut leafless_point_distance,
+) -> leafless_status {
+    guard(|| unsafe {
+        let solid = &shared(solid, "solid")?.solid;
+        let frame = self::frame(frame)?;
+        let points: &[[f64; 3]] = slice(points_model.cast(), count, "points_model")?;
+        let to = target(to)?;
+        if count > 0 {
+            out(distances, "distances")?;
+        }
+        let results = buffer(distances, count, "distances")?;
+        let found = controlled(options, |control| {
+            self::distances(solid, &frame, points, to, tolerance_model, control)
+        })?;
+        results.fill_with(&found)
+    })
+}
+
+/// The cells of an octree that are nearest to a point, of those whose tag is among `tags`: the nearest first, and of
+/// equally near ones the first in Morton order. A cell is closed, as large as the octree has it, and no BRANCH. With
+/// LEAFLESS_TAGS_FULL and a capacity of 1 this is the nearest cell that is proven solid. The point may lie outside of the
+/// universe. It is rounded to 2^-56 of the universe's edge, or further out to 2^-57 of its distance, before cells are
+/// compared.
+///
+/// - Buffers: `point_model`, 3 numbers; `cells`, room for `capacity` structs, which may be NULL if `capacity` is 0;
+///   `count`, one number. `tags` is one or several leafless_tags.
+/// - Result: `*count`, which is `capacity` unless the octree has fewer such cells; the cells.
+/// - Errors: LEAFLESS_E_ARGUMENT if `tags` is none, or a coordinate is not a finite number; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: nothing changes hands.
+/// - Threads: any; works in the calling thread.
+/// - Untrusted input: any octree, any numbers; damage reads as PARTIAL, and no more array elements are read than there
+///   are.
+/// - Since: 0.1
+///
+/// cbindgen:ptrs-as-arrays=[[point_model; 3]]
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_octree_nearest_cells(
+    octree: *const leafless_octree,
+    point_model: *const f64,
+    tags: u32,
+    cells: *mut leafless_near_cell,
+    capacity: u64,
+    count: *mut u64,
+) -> leafless_status {
+    guard(|| unsafe {
+        let octree = &shared(octree, "octree")?.octree;
+        let point = array(point_model, "point_model")?;
+        let tags = self::tags(tags)?;
+        if capacity > 0 {
+            out(cells, "cells")?;
+        }
+        let results = buffer(cells, capacity, "cells")?;
+        let count = out(count, "count")?;
+        let found = octree.nearest_cells(point, &tags, usize::try_from(capacity).unwrap_or(usize::MAX))?;
+        results.fill_with(&found)?;
+        count.write(found.len() as u64)
+    })
+}
+
+/// The signed distances of the finest cells in a box from the boundary of the solid. Entry (z·ny + y)·nx + x, two
+/// numbers, is for the cell `min_cell` + (x, y, z), where nx, ny and nz are `max_cell` − `min_cell`.
+///
+/// The interval between the two (model units) contains the signed distance of the cell's centre from the boundary of any
+/// solid that the octree's cells and its exterior describe: positive outside, negative inside. The field is that of the
+/// whole solid, also of what lies outside of the box. The ends are exact distances from the nearest closed cells, but
+/// for one rounding, outward; they are infinite where there is no such cell.
+///
+/// The time is linear in the cells of the box and a margin around it as wide as the largest distance. Memory beside
+/// `field` is a quarter of a byte for each of these, and for each thread some 140 bytes for each cell of a slice across
+/// z. A small box far away from the solid costs as much as leafless_octree_distances for its cells.
+///
+/// - Buffers: `min_cell` and `max_cell`, 3 numbers each: the first finest cell, and the first one beyond the box on each
+///   axis; `options`, one struct or NULL, of which limits do not matter; `field`, `capacity` numbers, two for each cell,
+///   which may be NULL if there are none.
+/// - Result: the field, the same for any number of threads.
+/// - Errors: LEAFLESS_E_ARGUMENT if the box is none or lies outside of the universe, or if `capacity` is not twice the
+///   number of its cells; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: nothing changes hands.
+/// - Threads: any; uses as many as `options` says.
+/// - Untrusted input: any octree, any numbers; damage reads as PARTIAL.
+/// - Since: 0.1
+///
+/// cbindgen:ptrs-as-arrays=[[min_cell; 3], [max_cell; 3]]
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_octree_distance_field(
+    octree: *const leafless_octree,
+    min_cell: *const u32,
+    max_cell: *const u32,
+    options: *const leafless_options,
+    field: *mut f32,
+    capacity: u64,
+) -> leafless_status {
+    guard(|| unsafe {
+        let octree = &shared(octree, "octree")?.octree;
+        let (min, max) = (array(min_cell, "min_cell")?, array(max_cell, "max_cell")?);
+        if capacity > 0 {
+            out(field, "field")?;
+        }
+        buffer(field, capacity, "field")?;
+        if !capacity.is_multiple_of(2) {
+            return Err(Failure::Argument { name: "capacity", problem: "must be two for each cell" });
+        }
+        let entries: &mut [[f32; 2]] = if capacity == 0 {
+            &mut []
+        } else {
+            // The numbers are set before there is a slice of them.
+            field.write_bytes(0, capacity as usize);
+            core::slice::from_raw_parts_mut(field.cast(), capacity as usize / 2)
+        };
+        controlled(options, |control| octree.distance_field(min, max, entries, control))
+    })
+}

@@ -1,0 +1,299 @@
+//! Two solids: do they overlap, by how much, how far are they apart?
+
+use super::boundary::{buffer, guard, out, shared, slice};
+use super::control::{controlled, leafless_options};
+use super::csg::placement;
+use super::frame::{frame, frame_of, leafless_frame, leafless_interval};
+use super::measure::leafless_measured;
+use super::octree::leafless_proof;
+use super::solid::{give, leafless_solid};
+use super::status::leafless_status;
+use leafless::Cell;
+use leafless::Error;
+use leafless::Transform;
+use leafless::memory;
+use leafless::{AnySolid, Clearance, Interference, Overlap, clearance, interference, interference_of};
+
+/// Whether the interiors of two solids have points in common.
+#[derive(Clone, Copy)]
+#[repr(u32)]
+pub enum leafless_overlap {
+    /// Proven: they have none. The solids may touch.
+    LEAFLESS_OVERLAP_DISJOINT = 0,
+    /// Proven: a cell lies in both.
+    LEAFLESS_OVERLAP_OVERLAPPING = 1,
+    /// Not decided at the frame's depth, or before the splits were spent; or both solids go on outside of the
+    /// universe, where they may overlap.
+    LEAFLESS_OVERLAP_UNDECIDED = 2,
+}
+
+impl From<Overlap> for leafless_overlap {
+    fn from(overlap: Overlap) -> leafless_overlap {
+        match overlap {
+            Overlap::Disjoint => leafless_overlap::LEAFLESS_OVERLAP_DISJOINT,
+            Overlap::Overlapping => leafless_overlap::LEAFLESS_OVERLAP_OVERLAPPING,
+            Overlap::Undecided => leafless_overlap::LEAFLESS_OVERLAP_UNDECIDED,
+        }
+    }
+}
+
+/// What is known of two solids inside of the universe of a frame.
+#[derive(Clone, Copy)]
+#[repr(C)]
+pub struct leafless_interference {
+    /// The volume of what they have in common, in cubic model units; the upper bound is infinite if
+    /// `is_clipped`.
+    pub volume_model: leafless_interval,
+    /// What of the first solid is proven: what is not counts as undecided.
+    pub proof_a: leafless_proof,
+    /// What of the second solid is proven.
+    pub proof_b: leafless_proof,
+    /// Cells of the first solid that were split.
+    pub splits_a: u64,
+    /// Cells of the second solid that were split.
+    pub splits_b: u64,
+    /// A leafless_overlap.
+    pub verdict: u32,
+    /// The finest level of which cells were looked at.
+    pub level: u32,
+    /// A cell that lies in both, if they are proven to overlap: its position in cells of its level; else
+    /// zeros.
+    pub witness: [u32; 3],
+    /// The level of that cell.
+    pub witness_level: u32,
+    /// Whether both solids may go on outside of the universe. Then they are not proven to be disjoint.
+    pub is_clipped: bool,
+}
+
+impl From<&Interference> for leafless_interference {
+    fn from(found: &Interference) -> leafless_interference {
+        let witness = found.witness.unwrap_or(Cell::ROOT);
+        leafless_interference {
+            volume_model: found.volume.into(),
+            proof_a: found.proofs[0].into(),
+            proof_b: found.proofs[1].into(),
+            splits_a: found.splits[0],
+            splits_b: found.splits[1],
+            verdict: leafless_overlap::from(found.verdict) as u32,
+            level: found.level.into(),
+            witness: witness.at,
+            witness_level: witness.level.into(),
+            is_clipped: found.clipped,
+        }
+    }
+}
+
+/// What is known of the distance between two solids inside of the universe of a frame.
+#[derive(Clone, Copy)]
+#[repr(C)]
+pub struct leafless_clearance {
+    /// The least distance between points of the two, in model units: 0 if they touch or overlap. The upper
+    /// bound is infinite as long as one of them has no cell that is proven to be full, and the lower one too
+    /// if one of them is proven to be empty.
+    pub distance_model: leafless_interval,
+    /// What of the first solid is proven: what is not counts as undecided.
+    pub proof_a: leafless_proof,
+    /// What of the second solid is proven.
+    pub proof_b: leafless_proof,
+    /// Cells of the first solid that were split.
+    pub splits_a: u64,
+    /// Cells of the second solid that were split.
+    pub splits_b: u64,
+    /// If `has_nearest`, cells of the first and of the second solid with points that are no further apart
+    /// than the upper bound: the position of the first in cells of its level; else zeros.
+    pub nearest_a: [u32; 3],
+    /// The level of that cell.
+    pub nearest_a_level: u32,
+    /// The position of the second.
+    pub nearest_b: [u32; 3],
+    /// The level of that cell.
+    pub nearest_b_level: u32,
+    /// Why the search ended.
+    pub measured: leafless_measured,
+    /// Whether the upper bound is finite.
+    pub has_nearest: bool,
+    /// Whether one of the solids may go on outside of the universe, of which nothing is said.
+    pub is_clipped: bool,
+}
+
+impl From<&Clearance> for leafless_clearance {
+    fn from(found: &Clearance) -> leafless_clearance {
+        let [a, b] = found.nearest.unwrap_or([Cell::ROOT; 2]);
+        leafless_clearance {
+            distance_model: found.distance.into(),
+            proof_a: found.proofs[0].into(),
+            proof_b: found.proofs[1].into(),
+            splits_a: found.splits[0],
+            splits_b: found.splits[1],
+            nearest_a: a.at,
+            nearest_a_level: a.level.into(),
+            nearest_b: b.at,
+            nearest_b_level: b.level.into(),
+            measured: found.stop_reason.into(),
+            has_nearest: found.nearest.is_some(),
+            is_clipped: found.clipped,
+        }
+    }
+}
+
+/// A solid, known on a frame of its own, under an affine map.
+///
+/// A cell is FULL or EMPTY if all the cells of the solid's own frame are that its inverse image touches:
+/// cells of about its size, or larger ones that are decided. So a surface that is not parallel to the lattice
+/// blurs by about a cell, down to the depth of the solid's own frame; rounding is outward. Where the map
+/// takes lattice planes to lattice planes nothing blurs. What sticks out of the solid's own universe is
+/// undecided, unless the solid is proven to end inside. (leafless_solid_placed moves a solid in the best way
+/// that its kind knows, and chooses a frame where it takes one.)
+///
+/// - Buffers: `own`, one struct; `matrix`, 12 numbers, the rows of [M | t], where a point p goes to M p + t;
+///   `solid`, one pointer.
+/// - Result: `*solid`.
+/// - Errors: LEAFLESS_E_ARGUMENT as leafless_frame_check, or if an entry is neither 0 nor of a magnitude
+///   between 2^-64 and 2^64, or M is singular; LEAFLESS_E_LIMIT if too many transforms lie within each other.
+///   Asking the result returns LEAFLESS_E_FRAME if `operand` belongs to another frame than `own`.
+/// - Ownership: the operand is shared and may be freed; give `*solid` back with leafless_solid_free.
+/// - Threads: any.
+/// - Untrusted input: any solid and numbers.
+/// - Since: 0.1
+///
+/// cbindgen:ptrs-as-arrays=[[matrix; 12]]
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_solid_new_transform(
+    operand: *const leafless_solid,
+    own: *const leafless_frame,
+    matrix: *const f64,
+    solid: *mut *mut leafless_solid,
+) -> leafless_status {
+    guard(|| unsafe {
+        let operand = shared(operand, "operand")?.solid.solid();
+        let own = frame_of(own, "own")?;
+        let placement = placement(matrix)?;
+        if operand.nesting() >= AnySolid::MOST_NESTED {
+            return Err(Error::Limit {
+                what: "transforms within each other",
+                limit: AnySolid::MOST_NESTED.into(),
+            }
+            .into());
+        }
+        let solid = out(solid, "solid")?;
+        solid.write(give(Transform::new(operand.clone(), &own, &placement)))
+    })
+}
+
+/// Whether two solids overlap, as they are in the universe of a frame. Once an overlap is proven its volume
+/// is refined until the interval is no wider than `tolerance_model` cubic model units; infinity ends the work
+/// with the proof.
+///
+/// Only cells of one solid are split where the other one is. The work ends at the frame's depth, or once
+/// `max_splits` cells of both are split, with what is known by then.
+///
+/// - Buffers: `frame`, one struct; `options`, one struct or NULL; `interference`, one struct.
+/// - Result: `*interference`.
+/// - Errors: LEAFLESS_E_FRAME if a solid belongs to another frame; LEAFLESS_E_ARGUMENT as
+///   leafless_frame_check, or if the tolerance is negative or not a number; LEAFLESS_E_CALLBACK;
+///   LEAFLESS_E_DAMAGED; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: nothing changes hands.
+/// - Threads: any; works in the calling thread.
+/// - Untrusted input: any solids; set `max_splits` where the depth or the solids are not your own choice.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_solid_interfere(
+    a: *const leafless_solid,
+    b: *const leafless_solid,
+    frame: *const leafless_frame,
+    tolerance_model: f64,
+    options: *const leafless_options,
+    interference: *mut leafless_interference,
+) -> leafless_status {
+    guard(|| unsafe {
+        let (a, b) = (&shared(a, "a")?.solid, &shared(b, "b")?.solid);
+        let frame = self::frame(frame)?;
+        let result = out(interference, "interference")?;
+        let found =
+            controlled(options, |control| self::interference(a, b, &frame, tolerance_model, control))?;
+        result.write((&found).into())
+    })
+}
+
+/// As leafless_solid_interfere of `a` with `b` under each of many affine maps, as
+/// leafless_solid_new_transform makes them. `max_splits` concerns each of them. The results are the same for
+/// any number of threads.
+///
+/// - Buffers: `own`, one struct, the frame of `b`; `matrices`, `count` times 12 numbers; `frame`, one struct,
+///   that of `a`; `options`, one struct or NULL; `interferences`, room for `count`. `matrices` and
+///   `interferences` may be NULL if `count` is 0.
+/// - Result: `interferences[i]` for map i.
+/// - Errors: as leafless_solid_interfere and leafless_solid_new_transform; nothing is then written.
+/// - Ownership: nothing changes hands.
+/// - Threads: any; uses as many as `options` says.
+/// - Untrusted input: as leafless_solid_interfere, and any numbers.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_solid_interfere_many(
+    a: *const leafless_solid,
+    b: *const leafless_solid,
+    own: *const leafless_frame,
+    matrices: *const f64,
+    count: u64,
+    frame: *const leafless_frame,
+    tolerance_model: f64,
+    options: *const leafless_options,
+    interferences: *mut leafless_interference,
+) -> leafless_status {
+    guard(|| unsafe {
+        let (a, b) = (&shared(a, "a")?.solid, &shared(b, "b")?.solid);
+        let own = frame_of(own, "own")?;
+        let matrices: &[[f64; 12]] = slice(matrices.cast(), count, "matrices")?;
+        let frame = self::frame(frame)?;
+        if count > 0 {
+            out(interferences, "interferences")?;
+        }
+        let results = buffer(interferences, count, "interferences")?;
+        let mut placements = memory::with_capacity(matrices.len())?;
+        for matrix in matrices {
+            placements.push(placement(matrix.as_ptr())?);
+        }
+        let found = controlled(options, |control| {
+            interference_of(a, b, &own, &placements, &frame, tolerance_model, control)
+        })?;
+        results.fill_with(&found)
+    })
+}
+
+/// The distance between two solids, as they are in the universe of a frame.
+///
+/// `measured` of the result says why the search ended. With LEAFLESS_MEASURED_TOLERANCE the interval is no
+/// wider than `tolerance_model` (model units). With LEAFLESS_MEASURED_EXHAUSTED the cells of the frame's depth
+/// cannot raise the lower bound, and the interval is no wider than twice their diagonal, which is what cells
+/// can tell of most solids; or no pair of cells is left; or a solid may go on outside of the universe, which keeps
+/// the lower bound at 0. With LEAFLESS_MEASURED_BUDGET `max_splits` steps were
+/// taken, or 1 048 576 if that is 0. A step looks at the children of one cell. A cell whose children are
+/// looked at again, next to another cell, counts once more.
+///
+/// The upper bound is finite once the search has met a FULL cell of each solid. The work grows with the area
+/// where the distance is about the least one, measured in cells as large as the tolerance.
+///
+/// - Buffers: `frame`, one struct; `options`, one struct or NULL; `clearance`, one struct.
+/// - Result: `*clearance`.
+/// - Errors: as leafless_solid_interfere.
+/// - Ownership: nothing changes hands.
+/// - Threads: any; works in the calling thread.
+/// - Untrusted input: any solids; the default of `max_splits` bounds the work.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_solid_clearance(
+    a: *const leafless_solid,
+    b: *const leafless_solid,
+    frame: *const leafless_frame,
+    tolerance_model: f64,
+    options: *const leafless_options,
+    clearance: *mut leafless_clearance,
+) -> leafless_status {
+    guard(|| unsafe {
+        let (a, b) = (&shared(a, "a")?.solid, &shared(b, "b")?.solid);
+        let frame = self::frame(frame)?;
+        let result = out(clearance, "clearance")?;
+        let found = controlled(options, |control| self::clearance(a, b, &frame, tolerance_model, control))?;
+        result.write((&found).into())
+    })
+}

@@ -1,0 +1,293 @@
+//! Layers: what a picture is made of.
+
+use super::attribute::{AnyAttribute, components, leafless_attribute};
+use super::boundary::{
+    Failure, Sized32, guard, handle, initialise, out, refer, release, shared, sized, slice,
+};
+use super::status::leafless_status;
+use leafless::Attribute;
+use leafless::Bounds;
+use leafless::{Clip, ClippedLayer, ColourMap, Layer, Transfer};
+use leafless_colour_map::*;
+use std::sync::Arc;
+
+/// Something that is seen in a picture: the surface of an octree, a solid or a mesh, lines, a plane section, voxels.
+///
+/// A layer shares or copies what it shows, which may be freed. It knows nothing of cameras: it may be part of any
+/// number of pictures.
+///
+/// Immutable: all its functions may be called at once from any number of threads, but leafless_layer_free
+/// needs the reference that it gives back for itself.
+pub struct leafless_layer {
+    shape: Arc<dyn Shown>,
+    clip: Option<Clip>,
+}
+
+/// What the handle of a layer holds.
+pub(super) trait Shown: Send + Sync {
+    /// The layer that shows it.
+    fn layer(&self) -> Result<Box<dyn Layer + '_>, Failure>;
+}
+
+/// A handle of a layer.
+pub(super) fn give(shape: impl Shown + 'static) -> *mut leafless_layer {
+    handle(leafless_layer { shape: Arc::new(shape), clip: None })
+}
+
+impl leafless_layer {
+    pub(super) fn layer(&self) -> Result<Box<dyn Layer + '_>, Failure> {
+        self.shape.layer()
+    }
+
+    /// The same within its own clip, if it has one.
+    pub(super) fn clipped<'a>(&self, layer: &'a dyn Layer) -> Option<ClippedLayer<'a>> {
+        self.clip.clone().map(|clip| ClippedLayer::new(layer, clip))
+    }
+}
+
+/// Colour maps: equal steps of a number look like equal steps of the colour.
+#[derive(Clone, Copy)]
+#[repr(u32)]
+pub enum leafless_colour_map {
+    /// From dark violet by way of green to yellow.
+    LEAFLESS_COLOUR_MAP_VIRIDIS = 0,
+    /// From dark blue to yellow; the colour-blind see it as others do.
+    LEAFLESS_COLOUR_MAP_CIVIDIS = 1,
+    /// From black by way of red to light yellow.
+    LEAFLESS_COLOUR_MAP_INFERNO = 2,
+    /// From black by way of purple to near white.
+    LEAFLESS_COLOUR_MAP_MAGMA = 3,
+    /// From dark blue by way of red to yellow.
+    LEAFLESS_COLOUR_MAP_PLASMA = 4,
+    /// From black to white.
+    LEAFLESS_COLOUR_MAP_GREY = 5,
+}
+
+fn colour_map(map: u32) -> Result<ColourMap, Failure> {
+    match map {
+        _ if map == LEAFLESS_COLOUR_MAP_VIRIDIS as u32 => Ok(ColourMap::Viridis),
+        _ if map == LEAFLESS_COLOUR_MAP_CIVIDIS as u32 => Ok(ColourMap::Cividis),
+        _ if map == LEAFLESS_COLOUR_MAP_INFERNO as u32 => Ok(ColourMap::Inferno),
+        _ if map == LEAFLESS_COLOUR_MAP_MAGMA as u32 => Ok(ColourMap::Magma),
+        _ if map == LEAFLESS_COLOUR_MAP_PLASMA as u32 => Ok(ColourMap::Plasma),
+        _ if map == LEAFLESS_COLOUR_MAP_GREY as u32 => Ok(ColourMap::Grey),
+        _ => Err(Failure::Argument { name: "transfer.map", problem: "is no leafless_colour_map" }),
+    }
+}
+
+/// What values look like. A value of one number has the colour of a map over a range. A value of three or four
+/// numbers is a colour itself: red, green and blue in sRGB, 0 to 255, and of volumes an opacity, 0 to 255, that
+/// scales `alpha_upper`. Of a value of two numbers the first counts. Where there is no value the colour is grey.
+///
+/// The range must be set, and for volumes the opacity. All other fields but the first may be zero, which is their
+/// default; leafless_transfer_init sets them so.
+#[derive(Clone, Copy)]
+#[repr(C)]
+pub struct leafless_transfer {
+    /// sizeof(leafless_transfer).
+    pub struct_size: u32,
+    /// A leafless_colour_map.
+    pub map: u32,
+    /// The value at the map's beginning.
+    pub range_lower: f64,
+    /// The value at its end; greater than `range_lower`.
+    pub range_upper: f64,
+    /// Of volumes: the opacity, 0 to 1, of a path of `length_model` through the value `range_lower`. Between the
+    /// two ends it changes linearly.
+    pub alpha_lower: f64,
+    /// The same of `range_upper`, of values that are colours, and of voxels without a value.
+    pub alpha_upper: f64,
+    /// The path for which the opacities hold: what has the opacity a for it lets (1 - a)^(s / length_model) of the
+    /// light through a path s. 0: 1.
+    pub length_model: f64,
+}
+
+// SAFETY: numbers.
+unsafe impl Sized32 for leafless_transfer {}
+
+impl leafless_transfer {
+    pub(super) fn check(&self) -> Result<Transfer, Failure> {
+        let map = colour_map(self.map)?;
+        let length = if self.length_model == 0.0 { 1.0 } else { self.length_model };
+        let range = [self.range_lower, self.range_upper];
+        Ok(Transfer::new(map, range, self.alpha_upper, length)?.ramp([self.alpha_lower, self.alpha_upper])?)
+    }
+}
+
+/// Sets all fields of leafless_transfer to their defaults.
+///
+/// - Buffers: `transfer`, one struct of `struct_size` bytes, which is sizeof(leafless_transfer); need not be
+///   initialised.
+/// - Result: `*transfer`.
+/// - Errors: LEAFLESS_E_ARGUMENT if `struct_size` cannot be right.
+/// - Ownership: nothing changes hands.
+/// - Threads: any.
+/// - Untrusted input: none.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_transfer_init(
+    transfer: *mut leafless_transfer,
+    struct_size: usize,
+) -> leafless_status {
+    guard(|| unsafe { initialise(transfer, struct_size, "transfer") })
+}
+
+/// The colour of a value under a transfer function, as surfaces show it in full light: for a legend of the host's own.
+///
+/// - Buffers: `transfer`, one struct; `value`, `components` numbers; `colour`, 4 bytes.
+/// - Result: `colour`: red, green and blue (sRGB), and 255. Grey if a number is NaN.
+/// - Errors: LEAFLESS_E_ARGUMENT if the transfer function is not as it must be, or `components` not 1 to 4.
+/// - Ownership: nothing changes hands.
+/// - Threads: any.
+/// - Untrusted input: any numbers.
+/// - Since: 0.1
+///
+/// cbindgen:ptrs-as-arrays=[[colour; 4]]
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_transfer_colour(
+    transfer: *const leafless_transfer,
+    value: *const f64,
+    components: u32,
+    colour: *mut u8,
+) -> leafless_status {
+    guard(|| unsafe {
+        shared(transfer, "transfer")?;
+        let transfer = sized(transfer, "transfer")?.check()?;
+        let components = self::components(components, "components")?;
+        let value = slice(value, components as u64, "value")?;
+        let colour = out(colour.cast::<[u8; 4]>(), "colour")?;
+        let [r, g, b] = transfer.colour(value);
+        colour.write([r, g, b, 255])
+    })
+}
+
+/// An attribute, and the colours of its values on surfaces.
+pub(super) struct Values {
+    pub(super) attribute: AnyAttribute,
+    pub(super) colour: Box<dyn Fn(Option<[f64; 4]>) -> [u8; 4] + Send + Sync>,
+}
+
+/// The attribute and the transfer function of a layer, which has both or neither.
+///
+/// # Safety
+/// `attribute` is NULL or a living handle, `transfer` NULL or a valid struct.
+pub(super) unsafe fn values(
+    attribute: *const leafless_attribute,
+    transfer: *const leafless_transfer,
+    names: [&'static str; 2],
+) -> Result<Option<Values>, Failure> {
+    if attribute.is_null() {
+        return match transfer.is_null() {
+            true => Ok(None),
+            false => {
+                Err(Failure::Argument { name: names[1], problem: "is for layers with an attribute only" })
+            }
+        };
+    }
+    if transfer.is_null() {
+        return Err(Failure::Null { name: names[1] });
+    }
+    // SAFETY: the caller's promise.
+    let (attribute, transfer) =
+        unsafe { (shared(attribute, names[0])?.attribute.clone(), sized(transfer, names[1])?.check()?) };
+    let components = attribute.components();
+    Ok(Some(Values { attribute, colour: Box::new(move |value| transfer.opaque(value, components)) }))
+}
+
+/// A colour that was chosen: the one of which all bytes are zero stands for the default.
+pub(super) fn chosen(colour: [u8; 4]) -> Option<[u8; 4]> {
+    (colour != [0; 4]).then_some(colour)
+}
+
+/// The points for which all planes say a x + b y + c z + d ≥ 0 and that lie in the box, if there is one.
+///
+/// # Safety
+/// As [`slice`] for 4 · `count` numbers, and for 6 unless the box is NULL.
+pub(super) unsafe fn clip(
+    start: Clip,
+    planes: *const f64,
+    count: u64,
+    box_model: *const f64,
+    names: [&'static str; 2],
+) -> Result<Clip, Failure> {
+    // SAFETY: the caller's promise.
+    let (planes, corners) = unsafe {
+        let planes: &[[f64; 4]] = slice(planes.cast(), count, names[0])?;
+        let corners: &[[f64; 3]] =
+            slice(box_model.cast(), if box_model.is_null() { 0 } else { 2 }, names[1])?;
+        (planes, corners)
+    };
+    let mut clip = start;
+    for &plane in planes {
+        clip = clip.plane(plane)?;
+    }
+    if let &[min, max] = corners {
+        let none = Failure::Argument { name: names[1], problem: "must be finite, the least corner first" };
+        clip = clip.within(&Bounds::new(min, max).ok_or(none)?)?;
+    }
+    Ok(clip)
+}
+
+/// What lies of a layer within planes and a box of its own, which count instead of the picture's: a surface that is
+/// cut away, for instance, to show the voxels behind it. A layer that has some already keeps what lies within all
+/// of them.
+///
+/// - Buffers: `planes`, 4 · `plane_count` numbers: a, b, c and d of each plane, which keeps the points with
+///   a x + b y + c z + d ≥ 0; `box_model`, 6 numbers, the least and the greatest corner of the box, or NULL for none;
+///   `clipped`, one pointer.
+/// - Result: `*clipped`.
+/// - Errors: LEAFLESS_E_ARGUMENT if a number is not zero and not between 2^-256 and 2^256 in magnitude, a, b and c are zero, or the box is none;
+///   LEAFLESS_E_NO_MEMORY.
+/// - Ownership: the layer is shared and may be freed; give `*clipped` back with leafless_layer_free.
+/// - Threads: any.
+/// - Untrusted input: any numbers.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_layer_clipped(
+    layer: *const leafless_layer,
+    planes: *const f64,
+    plane_count: u64,
+    box_model: *const f64,
+    clipped: *mut *mut leafless_layer,
+) -> leafless_status {
+    guard(|| unsafe {
+        let layer = shared(layer, "layer")?;
+        let start = layer.clip.clone().unwrap_or_default();
+        let clip = clip(start, planes, plane_count, box_model, ["planes", "box_model"])?;
+        let clipped = out(clipped, "clipped")?;
+        clipped.write(handle(leafless_layer { shape: layer.shape.clone(), clip: Some(clip) }))
+    })
+}
+
+/// One more reference to a layer.
+///
+/// - Buffers: `layer`, a handle; `reference`, one pointer.
+/// - Result: `*reference`, equal to `layer`.
+/// - Errors: only the general ones.
+/// - Ownership: give each reference back with leafless_layer_free.
+/// - Threads: any.
+/// - Untrusted input: none.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_layer_ref(
+    layer: *const leafless_layer,
+    reference: *mut *mut leafless_layer,
+) -> leafless_status {
+    guard(|| unsafe { refer(layer, "layer", reference) })
+}
+
+/// Gives back a reference to a layer; with the last one the layer is gone. What it shows stays, as far as others
+/// have references to it.
+///
+/// - Buffers: `layer`, a handle or NULL, which does nothing.
+/// - Result: none.
+/// - Errors: none.
+/// - Ownership: the reference is gone.
+/// - Threads: any; no other call may use this reference.
+/// - Untrusted input: none.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_layer_free(layer: *mut leafless_layer) {
+    // SAFETY: the caller's promise.
+    unsafe { release(layer) }
+}

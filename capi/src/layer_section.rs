@@ -1,0 +1,309 @@
+//! Layers of what is inside: plane sections, and voxels as a translucent volume.
+
+use super::attribute::leafless_attribute;
+use super::boundary::{Failure, Sized32, array, buffer, guard, initialise, out, share, shared, sized, slice};
+use super::control::{controlled, leafless_options};
+use super::frame::{frame, leafless_frame};
+use super::layer::{Shown, Values, chosen, give, leafless_layer, leafless_transfer, values};
+use super::octree::leafless_octree;
+use super::solid::leafless_solid;
+use super::status::leafless_status;
+use super::voxel::records;
+use leafless::Frame;
+use leafless::VoxelRecords;
+use leafless::memory;
+use leafless::{Compositing, Layer, SliceLayer, SlicePlane, TAG_COLOURS, Transfer, VolumeLayer};
+use std::sync::Arc;
+
+/// What a plane section looks like. NULL means the defaults. All fields but the first may be zero, which is their
+/// default; leafless_slice_look_init sets them so. Colours are red, green and blue (sRGB) and opacity, 0 to 255; what is
+/// to be invisible is {255, 255, 255, 0}.
+#[derive(Clone, Copy)]
+#[repr(C)]
+pub struct leafless_slice_look {
+    /// sizeof(leafless_slice_look).
+    pub struct_size: u32,
+    /// 1 to draw no outlines of cells; else 0.
+    pub is_plain: u32,
+    /// The colour of EMPTY cells; all zero: sky blue, hardly visible.
+    pub empty_colour: [u8; 4],
+    /// The colour of FULL cells; all zero: blue.
+    pub full_colour: [u8; 4],
+    /// The colour of PARTIAL cells; all zero: orange.
+    pub partial_colour: [u8; 4],
+    /// The colour of outlines; all zero: dark grey.
+    pub outline_colour: [u8; 4],
+    /// Values, as a channel's, that are shown where cells are not EMPTY; optional.
+    pub attribute: *const leafless_attribute,
+    /// With an attribute: the colours of its values.
+    pub transfer: *const leafless_transfer,
+}
+
+// SAFETY: numbers and pointers.
+unsafe impl Sized32 for leafless_slice_look {}
+
+/// Sets all fields of leafless_slice_look to their defaults.
+///
+/// - Buffers: `look`, one struct of `struct_size` bytes, which is sizeof(leafless_slice_look); need not be initialised.
+/// - Result: `*look`.
+/// - Errors: LEAFLESS_E_ARGUMENT if `struct_size` cannot be right.
+/// - Ownership: nothing changes hands.
+/// - Threads: any.
+/// - Untrusted input: none.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_slice_look_init(
+    look: *mut leafless_slice_look,
+    struct_size: usize,
+) -> leafless_status {
+    guard(|| unsafe { initialise(look, struct_size, "look") })
+}
+
+struct OfSlice {
+    cut: Cut,
+    plane: SlicePlane,
+    colours: [[u8; 4]; 3],
+    outlines: Option<[u8; 4]>,
+    values: Option<Values>,
+}
+
+/// What is cut.
+enum Cut {
+    Octree(Arc<leafless_octree>),
+    Solid(Arc<leafless_solid>, Frame),
+}
+
+impl Shown for OfSlice {
+    fn layer(&self) -> Result<Box<dyn Layer + '_>, Failure> {
+        let slice = match &self.cut {
+            Cut::Octree(octree) => SliceLayer::new(octree.octree.view(), self.plane),
+            Cut::Solid(solid, frame) => SliceLayer::of_solid(&solid.solid, frame, self.plane),
+        };
+        let slice = slice.colours(self.colours).outlines(self.outlines);
+        Ok(match &self.values {
+            Some(values) => Box::new(slice.values(&values.attribute, &values.colour)),
+            None => Box::new(slice),
+        })
+    }
+}
+
+/// # Safety
+/// As the functions below.
+unsafe fn section(
+    cut: Cut,
+    plane: *const f64,
+    look: *const leafless_slice_look,
+    layer: *mut *mut leafless_layer,
+) -> Result<(), Failure> {
+    // SAFETY: the caller's promise.
+    unsafe {
+        let [a, b, c, d] = array(plane, "plane")?;
+        let plane = SlicePlane::new([a, b, c], d)?;
+        let look = sized(look, "look")?;
+        if look.is_plain > 1 {
+            return Err(Failure::Argument { name: "look.is_plain", problem: "must be 0 or 1" });
+        }
+        let values = values(look.attribute, look.transfer, ["look.attribute", "look.transfer"])?;
+        let given = [look.empty_colour, look.full_colour, look.partial_colour];
+        let colours = [0, 1, 2].map(|tag| chosen(given[tag]).unwrap_or(TAG_COLOURS[tag]));
+        let outlines = (look.is_plain == 0).then(|| chosen(look.outline_colour).unwrap_or([40, 40, 40, 255]));
+        out(layer, "layer")?.write(give(OfSlice { cut, plane, colours, outlines, values }))
+    }
+}
+
+/// A plane section of an octree: in the colours of its cells' tags or of an attribute's values, with the outlines of
+/// the cells.
+///
+/// - Buffers: `plane`, 4 numbers a, b, c and d: the plane of the points with a x + b y + c z + d = 0; `look`, one struct or
+///   NULL; `layer`, one pointer.
+/// - Result: `*layer`.
+/// - Errors: LEAFLESS_E_ARGUMENT if a number is not zero and not between 2^-256 and 2^256 in magnitude, a, b and c are
+///   zero, or the look is not as it must be.
+/// - Ownership: the layer shares the octree and the attribute, which may be freed; give `*layer` back with
+///   leafless_layer_free.
+/// - Threads: any.
+/// - Untrusted input: any octree, any numbers.
+/// - Since: 0.1
+///
+/// cbindgen:ptrs-as-arrays=[[plane; 4]]
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_layer_new_slice(
+    octree: *const leafless_octree,
+    plane: *const f64,
+    look: *const leafless_slice_look,
+    layer: *mut *mut leafless_layer,
+) -> leafless_status {
+    guard(|| unsafe { section(Cut::Octree(share(octree, "octree")?), plane, look, layer) })
+}
+
+/// A plane section of a solid on a frame, of which the cells at the plane are split down to the frame's depth.
+///
+/// - Buffers: `frame`, one struct; the others as leafless_layer_new_slice.
+/// - Result: `*layer`.
+/// - Errors: as leafless_layer_new_slice; LEAFLESS_E_ARGUMENT as leafless_frame_check. Taking a picture also returns
+///   what leafless_octree_build does.
+/// - Ownership: the layer shares the solid and the attribute, which may be freed; give `*layer` back with
+///   leafless_layer_free.
+/// - Threads: any.
+/// - Untrusted input: any solid, any numbers.
+/// - Since: 0.1
+///
+/// cbindgen:ptrs-as-arrays=[[plane; 4]]
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_layer_new_slice_of_solid(
+    solid: *const leafless_solid,
+    frame: *const leafless_frame,
+    plane: *const f64,
+    look: *const leafless_slice_look,
+    layer: *mut *mut leafless_layer,
+) -> leafless_status {
+    guard(|| unsafe {
+        let solid = share(solid, "solid")?;
+        section(Cut::Solid(solid, self::frame(frame)?), plane, look, layer)
+    })
+}
+
+/// Which part of each voxel is solid, 0 to 1: weights of voxels in a picture. Inside voxels have 1, outside and refined
+/// ones 0. Of a boundary voxel it is what the solid knows of its volume there, or the middle between what its slabs
+/// enclose; 1/2 where the solid knows neither.
+///
+/// - Buffers: `lattice`, `codes`, `levels` and `kinds` as leafless_voxels_find; `options`, one struct or NULL; `parts`,
+///   room for `count` numbers.
+/// - Result: `parts`. O(count · levels).
+/// - Errors: LEAFLESS_E_ARGUMENT if the arrays are no records; the solid's own; LEAFLESS_E_NO_MEMORY;
+///   LEAFLESS_E_CANCELLED.
+/// - Ownership: nothing changes hands.
+/// - Threads: any; works in the calling thread.
+/// - Untrusted input: any numbers, any solid.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_voxels_solid_parts(
+    lattice: *const leafless_frame,
+    codes: *const u64,
+    levels: *const u8,
+    kinds: *const u8,
+    count: u64,
+    solid: *const leafless_solid,
+    options: *const leafless_options,
+    parts: *mut f64,
+) -> leafless_status {
+    guard(|| unsafe {
+        let records = records(&super::frame::frame_of(lattice, "lattice")?, codes, levels, kinds, count)?;
+        let solid = &shared(solid, "solid")?.solid;
+        out(parts, "parts")?;
+        let parts = buffer(parts, count, "parts")?;
+        parts.fill(&controlled(options, |control| records.solid_parts(solid, control))?)
+    })
+}
+
+/// Voxels in arrays, as leafless_octree_voxels writes them: those of record i at `codes[i]`, `levels[i]`, `kinds[i]`.
+/// All fields but the first that are not said to be optional must be set.
+#[derive(Clone, Copy)]
+#[repr(C)]
+pub struct leafless_voxel_arrays {
+    /// sizeof(leafless_voxel_arrays).
+    pub struct_size: u32,
+    /// How many numbers a value has, 1 to 4; 0 without values.
+    pub components: u32,
+    /// The lattice that codes belong to.
+    pub lattice: leafless_frame,
+    /// How many voxels there are.
+    pub count: u64,
+    /// Linear octree codes, ascending.
+    pub codes: *const u64,
+    /// Levels.
+    pub levels: *const u8,
+    /// Of each a leafless_voxel_kind. Inside and boundary voxels are seen.
+    pub kinds: *const u8,
+    /// `components` · `count` numbers, NaN where there is no value; NULL without values.
+    pub values: *const f64,
+    /// Of each voxel the part that is filled, 0 to 1; NULL: 1 inside and 1/2 at the boundary. As
+    /// leafless_voxels_solid_parts writes it.
+    pub weights: *const f64,
+}
+
+// SAFETY: numbers and pointers.
+unsafe impl Sized32 for leafless_voxel_arrays {}
+
+/// Sets all fields of leafless_voxel_arrays but the first to zero.
+///
+/// - Buffers: `voxels`, one struct of `struct_size` bytes, which is sizeof(leafless_voxel_arrays); need not be
+///   initialised.
+/// - Result: `*voxels`.
+/// - Errors: LEAFLESS_E_ARGUMENT if `struct_size` cannot be right.
+/// - Ownership: nothing changes hands.
+/// - Threads: any.
+/// - Untrusted input: none.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_voxel_arrays_init(
+    voxels: *mut leafless_voxel_arrays,
+    struct_size: usize,
+) -> leafless_status {
+    guard(|| unsafe { initialise(voxels, struct_size, "voxels") })
+}
+
+struct OfVoxels {
+    records: VoxelRecords,
+    weights: Option<Vec<f64>>,
+    transfer: Transfer,
+    compositing: Compositing,
+}
+
+impl Shown for OfVoxels {
+    fn layer(&self) -> Result<Box<dyn Layer + '_>, Failure> {
+        let layer = VolumeLayer::new(self.records.view(), self.transfer).compositing(self.compositing)?;
+        Ok(match &self.weights {
+            Some(weights) => Box::new(layer.weights(weights)?),
+            None => Box::new(layer),
+        })
+    }
+}
+
+/// Voxels as a translucent volume, seen in their right order from everywhere; surfaces of other layers hide them, and
+/// are seen through them. Of two such layers the one that comes first in a picture is taken to be in front.
+///
+/// - Buffers: `voxels`, one struct; `transfer`, one struct: what values look like; `layer`, one pointer. `unit_model`: 0
+///   composites by the exact length of each line of sight in a voxel. Else it is done as published (Zhu, Tang and Dong
+///   2002): a voxel is a cell of the edge `unit_model`, repeated as often as its own edge is longer, and the transfer
+///   function's opacity holds for one repetition.
+/// - Result: `*layer`.
+/// - Errors: LEAFLESS_E_ARGUMENT if the arrays are no records, a weight is not 0 to 1, the transfer function not as it
+///   must be, or the unit below 0 or not finite; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: the layer copies the arrays; give `*layer` back with leafless_layer_free.
+/// - Threads: any.
+/// - Untrusted input: any numbers.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_layer_new_voxels(
+    voxels: *const leafless_voxel_arrays,
+    transfer: *const leafless_transfer,
+    unit_model: f64,
+    layer: *mut *mut leafless_layer,
+) -> leafless_status {
+    guard(|| unsafe {
+        shared(voxels, "voxels")?;
+        shared(transfer, "transfer")?;
+        let (voxels, transfer) = (sized(voxels, "voxels")?, sized(transfer, "transfer")?.check()?);
+        let layer = out(layer, "layer")?;
+        let frame = self::frame(&voxels.lattice)?;
+        let numbers = voxels.count.saturating_mul(u64::from(voxels.components));
+        let weights =
+            slice(voxels.weights, if voxels.weights.is_null() { 0 } else { voxels.count }, "voxels.weights")?;
+        let records = VoxelRecords::from_arrays(
+            &frame,
+            memory::copied(slice(voxels.codes, voxels.count, "voxels.codes")?)?,
+            memory::copied(slice(voxels.levels, voxels.count, "voxels.levels")?)?,
+            memory::copied(slice(voxels.kinds, voxels.count, "voxels.kinds")?)?,
+            voxels.components as usize,
+            memory::copied(slice(voxels.values, numbers, "voxels.values")?)?,
+        )?;
+        let weights = if voxels.weights.is_null() { None } else { Some(memory::copied(weights)?) };
+        let compositing =
+            if unit_model == 0.0 { Compositing::Exact } else { Compositing::Published { unit: unit_model } };
+        let shown = OfVoxels { records, weights, transfer, compositing };
+        // What is wrong is told now, not when a picture is taken.
+        shown.layer()?;
+        layer.write(give(shown))
+    })
+}

@@ -1,0 +1,409 @@
+//! Layers of surfaces: of octrees, solids and meshes; lines.
+
+use super::attribute::leafless_attribute;
+use super::boundary::{Failure, Sized32, guard, initialise, out, share, shared, sized, slice};
+use super::cells::leafless_cell;
+use super::frame::{frame, leafless_frame};
+use super::layer::{Shown, Values, chosen, give, leafless_layer, leafless_transfer, values};
+use super::mesh::leafless_mesh;
+use super::octree::leafless_octree;
+use super::solid::leafless_solid;
+use super::status::leafless_status;
+use core::mem::MaybeUninit;
+use leafless::TriangleMesh;
+use leafless::memory;
+use leafless::{Cell, Frame};
+use leafless::{Finish, Layer, LinesLayer, MeshEdges, MeshLayer, OctreeLayer, Outline, SolidLayer};
+use leafless_edges::*;
+use std::sync::Arc;
+
+/// Which edges are drawn as lines.
+#[derive(Clone, Copy)]
+#[repr(u32)]
+pub enum leafless_edges {
+    /// None.
+    LEAFLESS_EDGES_NONE = 0,
+    /// Those at which a mesh ends, or where its triangles meet at more than the crease angle. Of octrees and solids:
+    /// silhouettes, and where faces meet at more than that angle.
+    LEAFLESS_EDGES_FEATURES = 1,
+    /// Those of all triangles of a mesh.
+    LEAFLESS_EDGES_ALL = 2,
+}
+
+/// What a surface looks like. NULL means the defaults. All fields but the first may be zero, which is their default;
+/// leafless_look_init sets them so. A field that a shape does not use must be zero. Colours are red, green and blue
+/// (sRGB) and opacity, 0 to 255.
+#[derive(Clone, Copy)]
+#[repr(C)]
+pub struct leafless_look {
+    /// sizeof(leafless_look).
+    pub struct_size: u32,
+    /// Of octrees: 1 to show cells by their faces, instead of the surface that they stand for; else 0.
+    pub faces: u32,
+    /// The colour in full light; all zero: light grey.
+    pub colour: [u8; 4],
+    /// The colour of what clip planes cut open, and of a mesh's faces that are seen from behind; all zero: orange, or
+    /// of a mesh the face's own colour mixed with orange.
+    pub inside: [u8; 4],
+    /// A leafless_edges.
+    pub edges: u32,
+    /// The colour of edges; all zero: dark grey.
+    pub edge_colour: [u8; 4],
+    /// The width of edges in pixels, at most 256, or of octrees and solids 8; 0: 1, or of octrees and solids 1.5.
+    pub edge_width: f64,
+    /// The angle in degrees, at most 180, at which faces meet at an edge, and up to which neighbouring triangles of a
+    /// mesh look smooth; 0: 30.
+    pub crease_degrees: f64,
+    /// Of meshes: 4 · `triangle_count` bytes, a colour for each triangle; NULL: all have one.
+    pub triangle_colours: *const u8,
+    /// How many colours of triangles there are.
+    pub triangle_count: u64,
+    /// Of octrees and solids: values, as a channel's, that are shown half a finest cell below the surface, or of solids half
+    /// a pixel; optional.
+    pub attribute: *const leafless_attribute,
+    /// With an attribute: the colours of its values.
+    pub transfer: *const leafless_transfer,
+}
+
+// SAFETY: numbers and pointers.
+unsafe impl Sized32 for leafless_look {}
+
+/// A width or an angle that was chosen: 0 stands for the default.
+fn chosen_length(length: f64) -> Option<f64> {
+    (length != 0.0).then_some(length)
+}
+
+fn unused(is_unused: bool, name: &'static str, problem: &'static str) -> Result<(), Failure> {
+    if is_unused { Ok(()) } else { Err(Failure::Argument { name, problem }) }
+}
+
+impl leafless_look {
+    /// Of what is made of cells.
+    fn finish(&self) -> Result<Finish, Failure> {
+        unused(self.triangle_colours.is_null(), "look.triangle_colours", "is for meshes only")?;
+        unused(self.triangle_count == 0, "look.triangle_count", "is for meshes only")?;
+        unused(self.faces <= 1, "look.faces", "must be 0 or 1")?;
+        let plain = Finish::default();
+        let outline = Outline::default();
+        let edges = match self.edges()? {
+            MeshEdges::None => None,
+            MeshEdges::Features => Some(Outline {
+                width: chosen_length(self.edge_width).unwrap_or(outline.width),
+                colour: chosen(self.edge_colour).unwrap_or(outline.colour),
+                crease: chosen_length(self.crease_degrees).unwrap_or(outline.crease),
+            }),
+            MeshEdges::All => {
+                return Err(Failure::Argument {
+                    name: "look.edges",
+                    problem: "of all triangles are for meshes",
+                });
+            }
+        };
+        edges.map_or(Ok(()), |outline| outline.check())?;
+        Ok(Finish {
+            colour: chosen(self.colour).unwrap_or(plain.colour),
+            cut: chosen(self.inside).unwrap_or(plain.cut),
+            faces: self.faces == 1,
+            edges,
+        })
+    }
+
+    /// # Safety
+    /// As [`values`].
+    unsafe fn values(&self) -> Result<Option<Values>, Failure> {
+        // SAFETY: the caller's promise.
+        unsafe { values(self.attribute, self.transfer, ["look.attribute", "look.transfer"]) }
+    }
+
+    fn edges(&self) -> Result<MeshEdges, Failure> {
+        match self.edges {
+            none if none == LEAFLESS_EDGES_NONE as u32 => Ok(MeshEdges::None),
+            features if features == LEAFLESS_EDGES_FEATURES as u32 => Ok(MeshEdges::Features),
+            all if all == LEAFLESS_EDGES_ALL as u32 => Ok(MeshEdges::All),
+            _ => Err(Failure::Argument { name: "look.edges", problem: "is no leafless_edges" }),
+        }
+    }
+}
+
+/// Sets all fields of leafless_look to their defaults.
+///
+/// - Buffers: `look`, one struct of `struct_size` bytes, which is sizeof(leafless_look); need not be initialised.
+/// - Result: `*look`.
+/// - Errors: LEAFLESS_E_ARGUMENT if `struct_size` cannot be right.
+/// - Ownership: nothing changes hands.
+/// - Threads: any.
+/// - Untrusted input: none.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_look_init(look: *mut leafless_look, struct_size: usize) -> leafless_status {
+    guard(|| unsafe { initialise(look, struct_size, "look") })
+}
+
+struct OfOctree {
+    octree: Arc<leafless_octree>,
+    finish: Finish,
+    values: Option<Values>,
+}
+
+impl Shown for OfOctree {
+    fn layer(&self) -> Result<Box<dyn Layer + '_>, Failure> {
+        let layer = OctreeLayer::new(self.octree.octree.view(), self.finish);
+        Ok(match &self.values {
+            Some(values) => Box::new(layer.values(&values.attribute, &values.colour)),
+            None => Box::new(layer),
+        })
+    }
+}
+
+/// The surface of an octree: along each line of sight the first cell that is not EMPTY. Its normals are those of the
+/// surface that the cells seem to stand for.
+///
+/// - Buffers: `look`, one struct or NULL; `layer`, one pointer.
+/// - Result: `*layer`.
+/// - Errors: LEAFLESS_E_ARGUMENT if the look is not as it must be.
+/// - Ownership: the layer shares the octree and the attribute, which may be freed; give `*layer` back with
+///   leafless_layer_free.
+/// - Threads: any.
+/// - Untrusted input: any octree.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_layer_new_octree(
+    octree: *const leafless_octree,
+    look: *const leafless_look,
+    layer: *mut *mut leafless_layer,
+) -> leafless_status {
+    guard(|| unsafe {
+        let octree = share(octree, "octree")?;
+        let look = sized(look, "look")?;
+        let finish = look.finish()?;
+        let values = look.values()?;
+        out(layer, "layer")?.write(give(OfOctree { octree, finish, values }))
+    })
+}
+
+struct OfSolid {
+    solid: Arc<leafless_solid>,
+    frame: Frame,
+    finish: Finish,
+    values: Option<Values>,
+}
+
+impl Shown for OfSolid {
+    fn layer(&self) -> Result<Box<dyn Layer + '_>, Failure> {
+        let layer = SolidLayer::new(&self.solid.solid, &self.frame, self.finish);
+        Ok(match &self.values {
+            Some(values) => Box::new(layer.values(&values.attribute, &values.colour)),
+            None => Box::new(layer),
+        })
+    }
+}
+
+/// The surface of a solid within a universe. For each picture the solid is split to cells as large as a pixel, 2^11
+/// to an axis at the most; in these a line of sight meets what the solid knows of its boundary there, with the
+/// normals of that.
+///
+/// - Buffers: `frame`, one struct, of which the depth does not count; `look`, one struct or NULL; `layer`, one pointer.
+/// - Result: `*layer`.
+/// - Errors: LEAFLESS_E_ARGUMENT if the look or the frame is not as it must be; taking a picture also returns what
+///   leafless_octree_build does.
+/// - Ownership: the layer shares the solid and the attribute, which may be freed; give `*layer` back with
+///   leafless_layer_free.
+/// - Threads: any.
+/// - Untrusted input: any solid.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_layer_new_solid(
+    solid: *const leafless_solid,
+    frame: *const leafless_frame,
+    look: *const leafless_look,
+    layer: *mut *mut leafless_layer,
+) -> leafless_status {
+    guard(|| unsafe {
+        let solid = share(solid, "solid")?;
+        let frame = self::frame(frame)?;
+        let look = sized(look, "look")?;
+        unused(look.faces == 0, "look.faces", "is for octrees only")?;
+        let finish = look.finish()?;
+        let values = look.values()?;
+        out(layer, "layer")?.write(give(OfSolid { solid, frame, finish, values }))
+    })
+}
+
+struct OfMesh {
+    mesh: Arc<TriangleMesh>,
+    look: MeshLook,
+    colours: Option<Vec<[u8; 4]>>,
+}
+
+/// What of a look concerns meshes.
+struct MeshLook {
+    colour: Option<[u8; 4]>,
+    inside: Option<[u8; 4]>,
+    crease: Option<f64>,
+    edges: MeshEdges,
+    edge_width: f64,
+    edge_colour: [u8; 4],
+}
+
+impl Shown for OfMesh {
+    fn layer(&self) -> Result<Box<dyn Layer + '_>, Failure> {
+        let look = &self.look;
+        let mut layer = MeshLayer::new(&self.mesh).edges(look.edges, look.edge_width, look.edge_colour);
+        if let Some(colour) = look.colour {
+            layer = layer.colour(colour);
+        }
+        if let Some(colour) = look.inside {
+            layer = layer.inside(colour);
+        }
+        if let Some(degrees) = look.crease {
+            layer = layer.crease(degrees);
+        }
+        if let Some(colours) = &self.colours {
+            layer = layer.triangle_colours(colours);
+        }
+        Ok(Box::new(layer))
+    }
+}
+
+/// The triangles of a mesh.
+///
+/// - Buffers: `look`, one struct or NULL; `layer`, one pointer.
+/// - Result: `*layer`.
+/// - Errors: LEAFLESS_E_ARGUMENT if the look is not as it must be, or there are colours of triangles and not one for
+///   each; LEAFLESS_E_NO_MEMORY. Taking a picture returns LEAFLESS_E_ARGUMENT if the width or the crease angle is out
+///   of range.
+/// - Ownership: the layer shares the mesh, which may be freed, and copies the colours; give `*layer` back with
+///   leafless_layer_free.
+/// - Threads: any.
+/// - Untrusted input: any mesh.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_layer_new_mesh(
+    mesh: *const leafless_mesh,
+    look: *const leafless_look,
+    layer: *mut *mut leafless_layer,
+) -> leafless_status {
+    guard(|| unsafe {
+        let mesh = shared(mesh, "mesh")?.mesh.clone();
+        let given = sized(look, "look")?;
+        unused(given.faces == 0, "look.faces", "is for octrees only")?;
+        unused(given.attribute.is_null(), "look.attribute", "is not for meshes")?;
+        unused(given.transfer.is_null(), "look.transfer", "is not for meshes")?;
+        let look = MeshLook {
+            colour: chosen(given.colour),
+            inside: chosen(given.inside),
+            crease: chosen_length(given.crease_degrees),
+            edges: given.edges()?,
+            edge_width: chosen_length(given.edge_width).unwrap_or(1.0),
+            edge_colour: chosen(given.edge_colour).unwrap_or(INK),
+        };
+        let colours: &[[u8; 4]] =
+            slice(given.triangle_colours.cast(), given.triangle_count, "look.triangle_colours")?;
+        let colours = match given.triangle_colours.is_null() {
+            true => None,
+            false if colours.len() != mesh.triangles().len() => {
+                let problem = "must be the number of triangles";
+                return Err(Failure::Argument { name: "look.triangle_count", problem });
+            }
+            false => Some(memory::copied(colours)?),
+        };
+        out(layer, "layer")?.write(give(OfMesh { mesh, look, colours }))
+    })
+}
+
+/// The colour of lines.
+const INK: [u8; 4] = [30, 30, 30, 255];
+
+struct OfLines {
+    lines: Vec<[[f64; 3]; 2]>,
+    width: f64,
+    colour: [u8; 4],
+}
+
+impl OfLines {
+    fn new(lines: Vec<[[f64; 3]; 2]>, width: f64, colour: Option<[u8; 4]>) -> OfLines {
+        OfLines { lines, width: chosen_length(width).unwrap_or(1.0), colour: colour.unwrap_or(INK) }
+    }
+}
+
+impl Shown for OfLines {
+    fn layer(&self) -> Result<Box<dyn Layer + '_>, Failure> {
+        Ok(Box::new(LinesLayer::new(&self.lines).width(self.width).colour(self.colour)))
+    }
+}
+
+/// # Safety
+/// As [`slice`] for 4 bytes, unless it is NULL.
+unsafe fn colour_at(colour: *const u8) -> Result<Option<[u8; 4]>, Failure> {
+    // SAFETY: the caller's promise.
+    let colours: &[[u8; 4]] = unsafe { slice(colour.cast(), u64::from(!colour.is_null()), "colour")? };
+    Ok(colours.first().copied().and_then(chosen))
+}
+
+/// Lines in space, some pixels wide, with round ends. A surface hides what lies behind it; a line on a surface is seen.
+///
+/// - Buffers: `points_model`, 6 · `count` numbers: the ends of each line; `colour`, 4 numbers: red, green, blue (sRGB) and
+///   opacity, or NULL for dark grey; `layer`, one pointer. `width` is in pixels, at most 256; 0 means 1.
+/// - Result: `*layer`.
+/// - Errors: LEAFLESS_E_NO_MEMORY. Taking a picture returns LEAFLESS_E_ARGUMENT if the width is out of range, or a
+///   coordinate not zero and not between 2^-256 and 2^256 in magnitude.
+/// - Ownership: the layer copies the lines; give `*layer` back with leafless_layer_free.
+/// - Threads: any.
+/// - Untrusted input: any numbers.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_layer_new_lines(
+    points_model: *const f64,
+    count: u64,
+    width: f64,
+    colour: *const u8,
+    layer: *mut *mut leafless_layer,
+) -> leafless_status {
+    guard(|| unsafe {
+        let lines = slice(points_model.cast(), count, "points_model")?;
+        let colour = colour_at(colour)?;
+        let layer = out(layer, "layer")?;
+        layer.write(give(OfLines::new(memory::copied(lines)?, width, colour)))
+    })
+}
+
+/// A leafless_cell of which the host may have left the tag uninitialised.
+#[repr(C)]
+struct Untagged {
+    cell: [u32; 3],
+    level: u32,
+    tag: MaybeUninit<u32>,
+}
+
+const _: () = assert!(size_of::<Untagged>() == size_of::<leafless_cell>());
+
+/// The edges of cells as lines. What several cells have in common is drawn once. A cell that is none of the frame is
+/// left out. Tags are not read.
+///
+/// - Buffers: `frame`, one struct; `cells`, `count` structs; `colour`, `width` and `layer` as leafless_layer_new_lines.
+/// - Result: `*layer`.
+/// - Errors: LEAFLESS_E_ARGUMENT as leafless_frame_check, and as leafless_layer_new_lines; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: give `*layer` back with leafless_layer_free.
+/// - Threads: any.
+/// - Untrusted input: any numbers.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_layer_new_cells(
+    frame: *const leafless_frame,
+    cells: *const leafless_cell,
+    count: u64,
+    width: f64,
+    colour: *const u8,
+    layer: *mut *mut leafless_layer,
+) -> leafless_status {
+    guard(|| unsafe {
+        let frame = self::frame(frame)?;
+        let cells: &[Untagged] = slice(cells.cast(), count, "cells")?;
+        let colour = colour_at(colour)?;
+        let layer = out(layer, "layer")?;
+        let cells = cells.iter().filter(|cell| cell.level <= u32::from(frame.depth()));
+        let edges =
+            LinesLayer::of_cells(&frame, cells.map(|cell| Cell { level: cell.level as u8, at: cell.cell }))?;
+        layer.write(give(OfLines::new(memory::copied(edges.lines())?, width, colour)))
+    })
+}

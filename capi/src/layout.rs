@@ -1,0 +1,296 @@
+//! What this library takes the header's structs and constants for: for its own tests.
+
+use super::*;
+use core::ffi::c_char;
+use core::fmt::{self, Write};
+use core::mem::{offset_of, size_of};
+
+/// The size of what a field holds.
+const fn size_at<S, F>(_: fn(&S) -> &F) -> usize {
+    size_of::<F>()
+}
+
+macro_rules! structs {
+    ($to:ident; $($name:ident { $($field:ident),* })*) => {
+        $(
+            writeln!($to, "{} {}", stringify!($name), size_of::<$name>())?;
+            $(writeln!(
+                $to,
+                "{}.{} {} {}",
+                stringify!($name),
+                stringify!($field),
+                offset_of!($name, $field),
+                size_at(|all: &$name| &all.$field)
+            )?;)*
+        )*
+    };
+}
+
+macro_rules! values {
+    ($to:ident; $($name:ident { $($value:ident),* })*) => {
+        $($(writeln!($to, "{} {}", stringify!($value), $name::$value as i64)?;)*)*
+    };
+}
+
+fn write_all(to: &mut dyn Write) -> fmt::Result {
+    structs! { to;
+        leafless_options { struct_size, threads, max_nodes, max_bytes, max_splits, progress, progress_ctx, control }
+        leafless_frame { origin, edge, depth }
+        leafless_interval { lower, upper }
+        leafless_cells_in { full_least, full_most, upper_least, upper_most }
+        leafless_mesh_report {
+            facets_read, triangles, vertices, welded, degenerate, boundary_edges, boundary_loops, misoriented_edges,
+            non_manifold_edges, duplicate, opposite, flat, bodies, open_bodies, inside_out_bodies, sewn,
+            displacement_model, overlapping_bodies, undecided_bodies, polygons, bent_polygons, polygon_deviation_model,
+            edges, euler_characteristic, is_closed, is_manifold
+        }
+        leafless_mesh_defect { min_model, max_model, length_model, count, kind }
+        leafless_mesh_arrays {
+            struct_size, vertex_type, vertices, vertex_count, vertex_stride, indices, triangle_count,
+            triangle_stride, index_type, scale
+        }
+        leafless_polyhedron_arrays {
+            struct_size, vertex_type, vertices, vertex_count, vertex_stride, corners, corner_count, loops, loop_count,
+            faces, face_count, shells, shell_count, solids, solid_count, index_type, scale, tolerance_model
+        }
+        leafless_mesh_moments {
+            volume_model, centroid_model, inertia_origin_model, inertia_centroid_model, triangles, known, has_centroid
+        }
+        leafless_intersecting_pair { min_model, max_model, triangles }
+        leafless_mesh_options { struct_size, format, unit, target, scale }
+        leafless_mesh_source { format, unit, skipped }
+        leafless_mesh_write_options { struct_size, format, is_text, unit, has_normals }
+        leafless_volume_layout {
+            struct_size, sample_type, extents, byte_order, skip, corner_model, spacing_model
+        }
+        leafless_volume_info {
+            extents, sample_type, file_type, format, unit, is_placed, sample_count, rounded, default_threshold,
+            corner_model, spacing_model, placement
+        }
+        leafless_voxel_options {
+            struct_size, boundary_depth, boundary, lists, coarse_model, fine_model, tolerance, attribute,
+            criterion, reserved
+        }
+        leafless_surface_options { struct_size, method, snap, resolve, placement, reserved, source }
+        leafless_camera { eye_model, at_model, up, field_of_view_degrees, height_model }
+        leafless_transfer { struct_size, map, range_lower, range_upper, alpha_lower, alpha_upper, length_model }
+        leafless_look {
+            struct_size, faces, colour, inside, edges, edge_colour, edge_width, crease_degrees, triangle_colours,
+            triangle_count, attribute, transfer
+        }
+        leafless_slice_look {
+            struct_size, is_plain, empty_colour, full_colour, partial_colour, outline_colour, attribute, transfer
+        }
+        leafless_voxel_arrays { struct_size, components, lattice, count, codes, levels, kinds, values, weights }
+        leafless_shot {
+            struct_size, width, height, samples, camera, clip_planes, clip_plane_count, clip_box_model, background, reserved
+        }
+        leafless_legend_box { left, top, width, height }
+        leafless_legend_name { name, name_length, colour, reserved }
+        leafless_callbacks {
+            struct_size, exterior, classify, contains, destroy, ctx, fingerprint, classify_many, contains_many, distance_many,
+            gradient, tangent
+        }
+        leafless_gradient { value, gradient }
+        leafless_tangent { point, normal, inner_curvature, outer_curvature, error }
+        leafless_function { struct_size, reserved, value, range, destroy, ctx, fingerprint }
+        leafless_value_range { values, kind }
+        leafless_attribute_callbacks { struct_size, components, value, values, range, destroy, ctx }
+        leafless_channel_info { frame, scalar, components, value_count, elements, bytes }
+        leafless_channel_fill_options {
+            struct_size, scalar, components, depth, solid, criterion, reserved, coarse_model, fine_model, tolerance, name,
+            name_length
+        }
+        leafless_channel_summary {
+            least, greatest, integral, mean, volume_model, volume_without_model, has_values
+        }
+        leafless_material { value, measures }
+        leafless_carry_rule { name, name_length, carry }
+        leafless_proof { displacement_model, full, empty }
+        leafless_octree_info { frame, elements, bricks, proof, root, exterior, is_binary, is_clipped }
+        leafless_statistics { nodes, empty, full, partial, lower_cells, upper_cells, volume_model }
+        leafless_lazy_counts { splits, replays, bytes }
+        leafless_interference {
+            volume_model, proof_a, proof_b, splits_a, splits_b, verdict, level, witness, witness_level, is_clipped
+        }
+        leafless_clearance {
+            distance_model, proof_a, proof_b, splits_a, splits_b, nearest_a, nearest_a_level, nearest_b, nearest_b_level,
+            measured, has_nearest, is_clipped
+        }
+        leafless_measures {
+            volume_model, centroid_model, inertia_origin_model, inertia_centroid_model, proof, splits, level,
+            measured, has_centroid, is_clipped, is_exact
+        }
+        leafless_surface_area { area_model, splits, level, measured, is_clipped }
+        leafless_extent {
+            min_model, max_model, proof, splits, measured, is_empty, is_occupied, is_clipped
+        }
+        leafless_point_distance { distance_model, splits, measured }
+        leafless_near_cell { point_model, distance_model, found }
+        leafless_cursor_state { cell, level, tag, children }
+        leafless_ray { origin_model, direction_model, t_last }
+        leafless_ray_hit { t, normal, cell, level, is_hit }
+        leafless_run { start, length }
+        leafless_cell { cell, level, tag }
+        leafless_boundary_face { inner, outer, axis, is_upper, has_outer }
+        leafless_probe {
+            major, minor, frame, elements, bricks, file_length, sections, proof, root, exterior, is_binary, tridexel
+        }
+        leafless_tridexel_format { struct_size, directions, ends, normals, has_surfaces, has_materials }
+        leafless_tridexel_info {
+            frame, directions, ends, normals, has_surfaces, has_materials, bytes_per_interval, interval_count, bytes
+        }
+        leafless_dexel_end { at_model, at_cells, normal, surface }
+        leafless_dexel { start, end, material }
+        leafless_ray_arrays {
+            axis, reserved, first, end, offsets, interval_count, ends_model, normals, surfaces, materials, ends_cells
+        }
+        leafless_dexel_surface_report {
+            crossings, several, without_rays, disagreeing, without_normals, means, clamped, vanished, without_centres
+        }
+        leafless_long_voxel { first, length, material, colour, kind }
+        leafless_tridexel_probe { directions, ends, normals, has_surfaces, has_materials, reserved, rays, intervals }
+        leafless_dexel_statistics { rays, intervals, bytes, volume_model, min_model, max_model }
+        leafless_scene_options { struct_size, facets }
+        leafless_scene_report { polygons, exact, ignored_slices, meshes, is_empty }
+        leafless_scene_mesh { line, column, turned, report }
+        leafless_section { kind, owner, is_required, name, offset, length, count }
+    }
+    values! { to;
+        leafless_status {
+            LEAFLESS_OK, LEAFLESS_E_NULL, LEAFLESS_E_ARGUMENT, LEAFLESS_E_UTF8, LEAFLESS_E_BUFFER,
+            LEAFLESS_E_FRAME, LEAFLESS_E_NOT_SAMPLED, LEAFLESS_E_MESH, LEAFLESS_E_MESH_FILE,
+            LEAFLESS_E_FORMAT, LEAFLESS_E_VERSION, LEAFLESS_E_DAMAGED, LEAFLESS_E_LIMIT,
+            LEAFLESS_E_NO_MEMORY, LEAFLESS_E_CANCELLED, LEAFLESS_E_CALLBACK, LEAFLESS_E_IO, LEAFLESS_E_PANIC,
+            LEAFLESS_E_SOURCE, LEAFLESS_E_SCENE, LEAFLESS_E_BUSY, LEAFLESS_E_VOLUME_FILE
+        }
+        leafless_tag { LEAFLESS_TAG_EMPTY, LEAFLESS_TAG_BRANCH, LEAFLESS_TAG_PARTIAL, LEAFLESS_TAG_FULL }
+        leafless_tags {
+            LEAFLESS_TAGS_EMPTY, LEAFLESS_TAGS_BRANCH, LEAFLESS_TAGS_PARTIAL, LEAFLESS_TAGS_FULL,
+            LEAFLESS_TAGS_LEAVES
+        }
+        leafless_membership { LEAFLESS_MEMBERSHIP_OUTSIDE, LEAFLESS_MEMBERSHIP_INSIDE, LEAFLESS_MEMBERSHIP_UNDECIDED }
+        leafless_region {
+            LEAFLESS_REGION_OUTSIDE, LEAFLESS_REGION_INSIDE, LEAFLESS_REGION_CROSSING,
+            LEAFLESS_REGION_UNDECIDED
+        }
+        leafless_obstacle { LEAFLESS_OBSTACLE_FULL, LEAFLESS_OBSTACLE_UPPER }
+        leafless_side { LEAFLESS_SIDE_ABOVE, LEAFLESS_SIDE_BELOW }
+        leafless_sight { LEAFLESS_SIGHT_CLEAR, LEAFLESS_SIGHT_BLOCKED, LEAFLESS_SIGHT_UNDECIDED }
+        leafless_proven {
+            LEAFLESS_PROVEN_NOTHING, LEAFLESS_PROVEN_FULL, LEAFLESS_PROVEN_EMPTY, LEAFLESS_PROVEN_BOTH
+        }
+        leafless_touch { LEAFLESS_TOUCH_EXACT, LEAFLESS_TOUCH_PAPER }
+        leafless_motion { LEAFLESS_MOTION_EXACT, LEAFLESS_MOTION_VERTICES, LEAFLESS_MOTION_CONSERVATIVE }
+        leafless_overlap { LEAFLESS_OVERLAP_DISJOINT, LEAFLESS_OVERLAP_OVERLAPPING, LEAFLESS_OVERLAP_UNDECIDED }
+        leafless_measured {
+            LEAFLESS_MEASURED_TOLERANCE, LEAFLESS_MEASURED_BUDGET, LEAFLESS_MEASURED_EXHAUSTED
+        }
+        leafless_distance_to {
+            LEAFLESS_DISTANCE_TO_SOLID, LEAFLESS_DISTANCE_TO_COMPLEMENT, LEAFLESS_DISTANCE_TO_BOUNDARY
+        }
+        leafless_moments_known {
+            LEAFLESS_MOMENTS_KNOWN, LEAFLESS_MOMENTS_OPEN, LEAFLESS_MOMENTS_INTERSECTING, LEAFLESS_MOMENTS_UNDECIDED
+        }
+        leafless_fill { LEAFLESS_FILL_NON_ZERO, LEAFLESS_FILL_EVEN_ODD, LEAFLESS_FILL_POSITIVE }
+        leafless_vertex_type { LEAFLESS_VERTEX_F64, LEAFLESS_VERTEX_F32 }
+        leafless_index_type { LEAFLESS_INDEX_U32, LEAFLESS_INDEX_U64, LEAFLESS_INDEX_U16 }
+        leafless_mesh_format {
+            LEAFLESS_MESH_FORMAT_ANY, LEAFLESS_MESH_FORMAT_STL, LEAFLESS_MESH_FORMAT_OBJ,
+            LEAFLESS_MESH_FORMAT_PLY, LEAFLESS_MESH_FORMAT_OFF, LEAFLESS_MESH_FORMAT_3MF
+        }
+        leafless_unit {
+            LEAFLESS_UNIT_UNKNOWN, LEAFLESS_UNIT_MICROMETRE, LEAFLESS_UNIT_MILLIMETRE,
+            LEAFLESS_UNIT_CENTIMETRE, LEAFLESS_UNIT_METRE, LEAFLESS_UNIT_INCH, LEAFLESS_UNIT_FOOT
+        }
+        leafless_sample_type {
+            LEAFLESS_SAMPLE_U8, LEAFLESS_SAMPLE_U16, LEAFLESS_SAMPLE_I16, LEAFLESS_SAMPLE_F32, LEAFLESS_SAMPLE_BITS,
+            LEAFLESS_SAMPLE_BITS_IN_BYTES, LEAFLESS_SAMPLE_I8, LEAFLESS_SAMPLE_I32, LEAFLESS_SAMPLE_U32,
+            LEAFLESS_SAMPLE_I64, LEAFLESS_SAMPLE_U64, LEAFLESS_SAMPLE_F64
+        }
+        leafless_byte_order { LEAFLESS_BYTE_ORDER_NATIVE, LEAFLESS_BYTE_ORDER_LITTLE, LEAFLESS_BYTE_ORDER_BIG }
+        leafless_volume_format {
+            LEAFLESS_VOLUME_FORMAT_RAW, LEAFLESS_VOLUME_FORMAT_NRRD, LEAFLESS_VOLUME_FORMAT_METAIMAGE,
+            LEAFLESS_VOLUME_FORMAT_NRRD_GZIP
+        }
+        leafless_surface_method {
+            LEAFLESS_SURFACE_MARCHING_CUBES, LEAFLESS_SURFACE_SMC, LEAFLESS_SURFACE_SHRINK,
+            LEAFLESS_SURFACE_SHRINK_PUBLISHED
+        }
+        leafless_snap { LEAFLESS_SNAP_FAT, LEAFLESS_SNAP_THIN }
+        leafless_resolve {
+            LEAFLESS_RESOLVE_NONE, LEAFLESS_RESOLVE_INNER, LEAFLESS_RESOLVE_OUTER, LEAFLESS_RESOLVE_SOURCE
+        }
+        leafless_colour_map {
+            LEAFLESS_COLOUR_MAP_VIRIDIS, LEAFLESS_COLOUR_MAP_CIVIDIS, LEAFLESS_COLOUR_MAP_INFERNO, LEAFLESS_COLOUR_MAP_MAGMA,
+            LEAFLESS_COLOUR_MAP_PLASMA, LEAFLESS_COLOUR_MAP_GREY
+        }
+        leafless_edges { LEAFLESS_EDGES_NONE, LEAFLESS_EDGES_FEATURES, LEAFLESS_EDGES_ALL }
+        leafless_legend_side { LEAFLESS_LEGEND_RIGHT, LEAFLESS_LEGEND_BOTTOM }
+        leafless_vertex_placement { LEAFLESS_PLACEMENT_MIDPOINT, LEAFLESS_PLACEMENT_CROSSING }
+        leafless_voxel_kind {
+            LEAFLESS_VOXEL_OUTSIDE, LEAFLESS_VOXEL_INSIDE, LEAFLESS_VOXEL_BOUNDARY, LEAFLESS_VOXEL_REFINED
+        }
+        leafless_voxel_boundary { LEAFLESS_VOXEL_BOUNDARY_UNDECIDED, LEAFLESS_VOXEL_BOUNDARY_TOUCHING }
+        leafless_voxel_lists { LEAFLESS_VOXEL_LISTS_OUTSIDE, LEAFLESS_VOXEL_LISTS_REFINED }
+        leafless_defect {
+            LEAFLESS_DEFECT_HOLE, LEAFLESS_DEFECT_MISORIENTED, LEAFLESS_DEFECT_DUPLICATE,
+            LEAFLESS_DEFECT_NON_MANIFOLD, LEAFLESS_DEFECT_FLAT
+        }
+        leafless_rule {
+            LEAFLESS_RULE_CERTIFIED, LEAFLESS_RULE_SAMPLED, LEAFLESS_RULE_INNER, LEAFLESS_RULE_OUTER
+        }
+        leafless_facets { LEAFLESS_FACETS_AUTO, LEAFLESS_FACETS_EXACT, LEAFLESS_FACETS_POLYGON }
+        leafless_range_kind { LEAFLESS_RANGE_UNKNOWN, LEAFLESS_RANGE_NOWHERE, LEAFLESS_RANGE_WITHIN }
+        leafless_scalar_type {
+            LEAFLESS_SCALAR_F32, LEAFLESS_SCALAR_U8, LEAFLESS_SCALAR_U16, LEAFLESS_SCALAR_U32
+        }
+        leafless_criterion {
+            LEAFLESS_CRITERION_NONE, LEAFLESS_CRITERION_VARIANCE, LEAFLESS_CRITERION_RANGE
+        }
+        leafless_interpolation { LEAFLESS_INTERPOLATION_TRILINEAR, LEAFLESS_INTERPOLATION_NEAREST }
+        leafless_carry { LEAFLESS_CARRY_LEFT, LEAFLESS_CARRY_RIGHT, LEAFLESS_CARRY_MAX, LEAFLESS_CARRY_MEAN }
+        leafless_axes { LEAFLESS_AXES_X, LEAFLESS_AXES_Y, LEAFLESS_AXES_Z, LEAFLESS_AXES_ALL }
+        leafless_dexel_ends { LEAFLESS_DEXEL_ENDS_FIXED, LEAFLESS_DEXEL_ENDS_DOUBLE }
+        leafless_dexel_normals { LEAFLESS_DEXEL_NORMALS_NONE, LEAFLESS_DEXEL_NORMALS_16, LEAFLESS_DEXEL_NORMALS_32 }
+        leafless_dexel_surface_method {
+            LEAFLESS_DEXEL_SURFACE_MARCHING_CUBES, LEAFLESS_DEXEL_SURFACE_DUAL_CONTOURING
+        }
+        leafless_exterior { LEAFLESS_EXTERIOR_UNKNOWN, LEAFLESS_EXTERIOR_EMPTY, LEAFLESS_EXTERIOR_FULL }
+    }
+    writeln!(to, "LEAFLESS_VERSION_MAJOR {LEAFLESS_VERSION_MAJOR}")?;
+    writeln!(to, "LEAFLESS_VERSION_MINOR {LEAFLESS_VERSION_MINOR}")?;
+    writeln!(to, "LEAFLESS_VERSION_PATCH {LEAFLESS_VERSION_PATCH}")?;
+    writeln!(to, "LEAFLESS_FORMAT_MAJOR {LEAFLESS_FORMAT_MAJOR}")?;
+    writeln!(to, "LEAFLESS_FORMAT_MINOR {LEAFLESS_FORMAT_MINOR}")?;
+    writeln!(to, "LEAFLESS_ABI {LEAFLESS_ABI}")
+}
+
+/// What the library was built with, to be compared with what C makes of this header: only in libraries that
+/// are built for tests. One line for each struct with its size, for each field with its offset and size, and
+/// for each constant with its value.
+///
+/// - Buffers: `text`, `capacity` bytes; may be NULL if `capacity` is 0.
+/// - Result: the text's length in bytes, without the terminating NUL, also if not all of it was written. What
+///   is written is NUL-terminated.
+/// - Errors: none.
+/// - Ownership: the text is copied.
+/// - Threads: any.
+/// - Untrusted input: none.
+/// - Since: 0.1
+#[cfg(feature = "test")]
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_test_layout(text: *mut c_char, capacity: usize) -> usize {
+    let mut all = std::string::String::new();
+    // A string takes all that is written to it.
+    let _ = write_all(&mut all);
+    if !text.is_null() && capacity > 0 {
+        let length = all.len().min(capacity - 1);
+        // SAFETY: the caller has `capacity` bytes there; all of the text is ASCII.
+        unsafe {
+            core::ptr::copy_nonoverlapping(all.as_ptr(), text.cast(), length);
+            text.add(length).write(0);
+        }
+    }
+    all.len()
+}

@@ -1,0 +1,492 @@
+//! Octrees that are split on demand.
+
+use super::boundary::{Failure, array, buffer, discard, guard, out, shared};
+use super::control::{controlled, leafless_options};
+use super::frame::{frame, leafless_frame};
+use super::octree::{give, leafless_octree, leafless_statistics, leafless_tag};
+use super::query::leafless_membership;
+use super::solid::leafless_solid;
+use super::status::leafless_status;
+use leafless::Cell;
+use leafless::Prepared;
+use leafless::{LazyOctree, Refinement, Zone};
+use std::sync::{RwLock, RwLockReadGuard, RwLockWriteGuard, TryLockError, TryLockResult};
+
+/// An octree of a solid that is not built in one go: a cell is split when somebody asks for it, and what was
+/// split is remembered. FULL and EMPTY cells are proven; cells that nobody has split yet are PARTIAL.
+///
+/// Splitting and refining change it: while one call does so, every other call returns LEAFLESS_E_BUSY, from
+/// another thread as from the host's functions that are asked about a cell. While another call reads it,
+/// splitting and refining return LEAFLESS_E_BUSY. Its other functions may be called at once from any number
+/// of threads.
+pub struct leafless_lazy(RwLock<LazyOctree<Prepared>>);
+
+type Held = LazyOctree<Prepared>;
+
+/// To read the octree, unless another call changes it.
+///
+/// # Safety
+/// As [`shared`].
+unsafe fn read<'a>(lazy: *const leafless_lazy) -> Result<RwLockReadGuard<'a, Held>, Failure> {
+    // SAFETY: the caller's promise.
+    unlocked(unsafe { shared(lazy, "lazy")? }.0.try_read())
+}
+
+/// To change the octree, unless another call uses it.
+///
+/// # Safety
+/// As [`shared`].
+unsafe fn change<'a>(lazy: *const leafless_lazy) -> Result<RwLockWriteGuard<'a, Held>, Failure> {
+    // SAFETY: the caller's promise.
+    unlocked(unsafe { shared(lazy, "lazy")? }.0.try_write())
+}
+
+/// An octree stays as it was when a call panics.
+fn unlocked<G>(held: TryLockResult<G>) -> Result<G, Failure> {
+    match held {
+        Ok(held) => Ok(held),
+        Err(TryLockError::Poisoned(held)) => Ok(held.into_inner()),
+        Err(TryLockError::WouldBlock) => Err(Failure::Busy { name: "lazy" }),
+    }
+}
+
+/// What the work on an octree came to.
+#[derive(Clone, Copy)]
+#[repr(C)]
+pub struct leafless_lazy_counts {
+    /// Cells that were split, as it happened: also those that were merged again. Nothing is counted twice.
+    pub splits: u64,
+    /// Splits that the solid was asked for anew, because cells below were to be split.
+    pub replays: u64,
+    /// Bytes that the split cells take.
+    pub bytes: u64,
+}
+
+/// The cell at `pointer`.
+///
+/// # Safety
+/// As [`array`].
+unsafe fn cell(pointer: *const u32, level: u32) -> Result<Cell, Failure> {
+    // SAFETY: the caller's promise.
+    let at = unsafe { array(pointer, "cell")? };
+    Ok(Cell { level: self::level(level), at })
+}
+
+/// A level that is out of range stays so.
+fn level(level: u32) -> u8 {
+    u8::try_from(level).unwrap_or(u8::MAX)
+}
+
+fn new(lazy: LazyOctree<Prepared>) -> *mut leafless_lazy {
+    Box::into_raw(Box::new(leafless_lazy(RwLock::new(lazy))))
+}
+
+/// An octree of which only the universe is known. No cell will ever be finer than the frame's depth, which
+/// costs nothing until they are asked for.
+///
+/// - Buffers: `frame`, one struct; `lazy`, one pointer.
+/// - Result: `*lazy`.
+/// - Errors: LEAFLESS_E_FRAME if the solid belongs to another frame; LEAFLESS_E_CALLBACK; LEAFLESS_E_DAMAGED;
+///   LEAFLESS_E_ARGUMENT; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: the octree shares the solid, which may be freed; give `*lazy` back with leafless_lazy_free.
+/// - Threads: any.
+/// - Untrusted input: any solid.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_lazy_new(
+    solid: *const leafless_solid,
+    frame: *const leafless_frame,
+    lazy: *mut *mut leafless_lazy,
+) -> leafless_status {
+    guard(|| unsafe {
+        let solid = shared(solid, "solid")?.solid.clone();
+        let frame = self::frame(frame)?;
+        let lazy = out(lazy, "lazy")?;
+        lazy.write(new(LazyOctree::new(solid, &frame)?))
+    })
+}
+
+/// Takes up an octree that leafless_lazy_freeze made of the same solid, which is known by its fingerprint;
+/// `frame` may be deeper than the octree's. Whatever else the octree holds is believed, as far as the solid's
+/// splits do not contradict it. Splits are counted from zero.
+///
+/// - Buffers: `frame`, one struct; `options`, one struct or NULL; `lazy`, one pointer.
+/// - Result: `*lazy`. O(n).
+/// - Errors: LEAFLESS_E_SOURCE if the octree does not hold the solid's fingerprint; LEAFLESS_E_ARGUMENT if
+///   the solid has none, or the octree is deeper than the frame; LEAFLESS_E_FRAME if it lies on another
+///   universe, or the solid belongs to another frame; LEAFLESS_E_DAMAGED; LEAFLESS_E_CALLBACK;
+///   LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: `octree` stays as it is; `*lazy` shares the solid, which may be freed; give it back with
+///   leafless_lazy_free.
+/// - Threads: any.
+/// - Untrusted input: any octree; set `max_bytes` where it is not your own.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_lazy_resume(
+    octree: *const leafless_octree,
+    solid: *const leafless_solid,
+    frame: *const leafless_frame,
+    options: *const leafless_options,
+    lazy: *mut *mut leafless_lazy,
+) -> leafless_status {
+    guard(|| unsafe {
+        let octree = &shared(octree, "octree")?.octree;
+        let solid = shared(solid, "solid")?.solid.clone();
+        let frame = self::frame(frame)?;
+        let lazy = out(lazy, "lazy")?;
+        lazy.write(new(controlled(options, |control| LazyOctree::resume(octree, solid, &frame, control))?))
+    })
+}
+
+/// Gives back a lazy octree.
+///
+/// - Buffers: `lazy`, a handle or NULL, which does nothing.
+/// - Result: none.
+/// - Errors: none.
+/// - Ownership: the handle is gone.
+/// - Threads: no other call may use the handle.
+/// - Untrusted input: none.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_lazy_free(lazy: *mut leafless_lazy) {
+    // SAFETY: the caller's promise.
+    unsafe { discard(lazy) }
+}
+
+/// Splits a PARTIAL cell. A cell that was split before, is decided, or that splitting does not help costs
+/// nothing.
+///
+/// - Buffers: `cell`, 3 numbers, the cell's place among those of its level; `tags`, room for 8.
+/// - Result: the tags of its children in octant order (bit 0 of the octant is x, bit 1 y, bit 2 z).
+/// - Errors: LEAFLESS_E_ARGUMENT if the cell is none of the frame's, lies at its depth, or in a cell that is
+///   still to be split; LEAFLESS_E_SOURCE if the solid contradicts what the octree holds;
+///   LEAFLESS_E_CALLBACK; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: nothing changes hands.
+/// - Threads: any; LEAFLESS_E_BUSY while another call uses the handle.
+/// - Untrusted input: any solid, any numbers.
+/// - Since: 0.1
+///
+/// cbindgen:ptrs-as-arrays=[[cell; 3], [tags; 8]]
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_lazy_split(
+    lazy: *mut leafless_lazy,
+    cell: *const u32,
+    level: u32,
+    tags: *mut leafless_tag,
+) -> leafless_status {
+    guard(|| unsafe {
+        let mut lazy = change(lazy)?;
+        let cell = self::cell(cell, level)?;
+        let tags = out(tags.cast::<[leafless_tag; 8]>(), "tags")?;
+        tags.write(lazy.split(cell)?.map(leafless_tag::from))
+    })
+}
+
+/// # Safety
+/// As the functions below.
+unsafe fn refine(
+    lazy: *mut leafless_lazy,
+    zone: impl FnOnce() -> Result<Zone, Failure>,
+    level: u32,
+    options: *const leafless_options,
+    done: *mut bool,
+) -> leafless_status {
+    guard(|| unsafe {
+        let mut lazy = change(lazy)?;
+        let zone = zone()?;
+        let done = if done.is_null() { None } else { Some(out(done, "done")?) };
+        let level = self::level(level);
+        let refined = controlled(options, |control| lazy.refine(&zone, level, control))?;
+        done.map_or(Ok(()), |done| done.write(refined == Refinement::Done))
+    })
+}
+
+/// Splits all cells down to `level`, those that can be. Limits in `options` (`max_splits`; `max_nodes` and
+/// `max_bytes` of all that the octree then holds) end the work, not the octree; coarser cells are then split
+/// before finer ones.
+///
+/// - Buffers: `options`, one struct or NULL; `done`, one truth value, or NULL.
+/// - Result: `*done`, whether no limit was reached first.
+/// - Errors: LEAFLESS_E_ARGUMENT if `level` is beyond the frame's depth; LEAFLESS_E_SOURCE if the solid
+///   contradicts what the octree holds; LEAFLESS_E_CALLBACK; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY. What
+///   was split before stays so.
+/// - Ownership: nothing changes hands.
+/// - Threads: any; LEAFLESS_E_BUSY while another call uses the handle; uses the calling thread alone.
+/// - Untrusted input: any solid; set limits where the level or the solid is not your own choice.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_lazy_refine(
+    lazy: *mut leafless_lazy,
+    level: u32,
+    options: *const leafless_options,
+    done: *mut bool,
+) -> leafless_status {
+    // SAFETY: the caller's promise.
+    unsafe { refine(lazy, || Ok(Zone::Whole), level, options, done) }
+}
+
+/// As leafless_lazy_refine, for the cells that have more than their surface in common with the box [min,
+/// max]; of a box without thickness, for those that it lies in.
+///
+/// - Buffers: `min_model` and `max_model`, 3 numbers each; `options`, one struct or NULL; `done`, one truth
+///   value, or NULL.
+/// - Result: `*done`, whether no limit was reached first.
+/// - Errors: as leafless_lazy_refine; LEAFLESS_E_ARGUMENT also if min > max on an axis, or a coordinate is
+///   not a number.
+/// - Ownership: nothing changes hands.
+/// - Threads: any; LEAFLESS_E_BUSY while another call uses the handle; uses the calling thread alone.
+/// - Untrusted input: any solid, any numbers; set limits where the level or the solid is not your own choice.
+/// - Since: 0.1
+///
+/// cbindgen:ptrs-as-arrays=[[min_model; 3], [max_model; 3]]
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_lazy_refine_box(
+    lazy: *mut leafless_lazy,
+    min_model: *const f64,
+    max_model: *const f64,
+    level: u32,
+    options: *const leafless_options,
+    done: *mut bool,
+) -> leafless_status {
+    // SAFETY: the caller's promise.
+    unsafe {
+        let zone =
+            || Ok(Zone::Box { min: array(min_model, "min_model")?, max: array(max_model, "max_model")? });
+        refine(lazy, zone, level, options, done)
+    }
+}
+
+/// As leafless_lazy_refine, for the cells that contain a point: one of each level.
+///
+/// - Buffers: `point_model`, 3 numbers; `options`, one struct or NULL; `done`, one truth value, or NULL.
+/// - Result: `*done`, whether no limit was reached first.
+/// - Errors: as leafless_lazy_refine.
+/// - Ownership: nothing changes hands.
+/// - Threads: any; LEAFLESS_E_BUSY while another call uses the handle; uses the calling thread alone.
+/// - Untrusted input: any solid, any numbers.
+/// - Since: 0.1
+///
+/// cbindgen:ptrs-as-arrays=[[point_model; 3]]
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_lazy_refine_point(
+    lazy: *mut leafless_lazy,
+    point_model: *const f64,
+    level: u32,
+    options: *const leafless_options,
+    done: *mut bool,
+) -> leafless_status {
+    // SAFETY: the caller's promise.
+    unsafe { refine(lazy, || Ok(Zone::Point(array(point_model, "point_model")?)), level, options, done) }
+}
+
+/// As leafless_lazy_refine, for all cells that the points origin + t·direction with from ≤ t ≤ to touch.
+/// Limits leave those unsplit that the ray comes to last.
+///
+/// - Buffers: `origin_model` and `direction_model`, 3 numbers each; `options`, one struct or NULL; `done`,
+///   one truth value, or NULL.
+/// - Result: `*done`, whether no limit was reached first.
+/// - Errors: as leafless_lazy_refine; LEAFLESS_E_ARGUMENT also if a coordinate is neither 0 nor of a
+///   magnitude between 2^-256 and 2^256, the direction is zero, or not from ≤ to (both may be infinite).
+/// - Ownership: nothing changes hands.
+/// - Threads: any; LEAFLESS_E_BUSY while another call uses the handle; uses the calling thread alone.
+/// - Untrusted input: any solid, any numbers; set limits where the level or the solid is not your own choice.
+/// - Since: 0.1
+///
+/// cbindgen:ptrs-as-arrays=[[origin_model; 3], [direction_model; 3]]
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_lazy_refine_ray(
+    lazy: *mut leafless_lazy,
+    origin_model: *const f64,
+    direction_model: *const f64,
+    from: f64,
+    to: f64,
+    level: u32,
+    options: *const leafless_options,
+    done: *mut bool,
+) -> leafless_status {
+    // SAFETY: the caller's promise.
+    unsafe {
+        let zone = || {
+            let origin = array(origin_model, "origin_model")?;
+            Ok(Zone::Ray { origin, direction: array(direction_model, "direction_model")?, from, to })
+        };
+        refine(lazy, zone, level, options, done)
+    }
+}
+
+/// What is known of a cell. In a cell that is decided, or was not split yet, there are only cells like it.
+///
+/// - Buffers: `cell`, 3 numbers, the cell's place among those of its level; `tag`, one; `can_split`, one
+///   truth value, or NULL.
+/// - Result: `*tag`; BRANCH if the cell was split and its children differ; PARTIAL if it is none of the
+///   frame's. `*can_split`, whether leafless_lazy_split would ask the solid: the cell is PARTIAL, its parent
+///   was split, it is above the frame's depth, and the solid did not say that splitting does not help.
+/// - Errors: only the general ones.
+/// - Ownership: nothing changes hands.
+/// - Threads: any; LEAFLESS_E_BUSY while another call changes the octree.
+/// - Untrusted input: any numbers.
+/// - Since: 0.1
+///
+/// cbindgen:ptrs-as-arrays=[[cell; 3]]
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_lazy_tag(
+    lazy: *const leafless_lazy,
+    cell: *const u32,
+    level: u32,
+    tag: *mut leafless_tag,
+    can_split: *mut bool,
+) -> leafless_status {
+    guard(|| unsafe {
+        let lazy = read(lazy)?;
+        let cell = self::cell(cell, level)?;
+        let tag = out(tag, "tag")?;
+        let can_split = if can_split.is_null() { None } else { Some(out(can_split, "can_split")?) };
+        tag.write(lazy.tag(cell).into())?;
+        can_split.map_or(Ok(()), |can_split| can_split.write(lazy.can_split(cell)))
+    })
+}
+
+/// Whether the solid contains a point, as far as cells have been split. A point on the boundary may be
+/// answered either way.
+///
+/// - Buffers: `point_model`, 3 numbers; `membership`, one.
+/// - Result: `*membership`.
+/// - Errors: only the general ones.
+/// - Ownership: nothing changes hands.
+/// - Threads: any; LEAFLESS_E_BUSY while another call changes the octree.
+/// - Untrusted input: any numbers.
+/// - Since: 0.1
+///
+/// cbindgen:ptrs-as-arrays=[[point_model; 3]]
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_lazy_contains(
+    lazy: *const leafless_lazy,
+    point_model: *const f64,
+    membership: *mut leafless_membership,
+) -> leafless_status {
+    guard(|| unsafe {
+        let lazy = read(lazy)?;
+        let point = array(point_model, "point_model")?;
+        out(membership, "membership")?.write(lazy.contains(point).into())
+    })
+}
+
+/// Counts over all levels, and the certified volume, as far as cells have been split. O(depth).
+///
+/// - Buffers: `statistics`, one struct.
+/// - Result: `*statistics`. A cell counts as a node also if its eight children are PARTIAL.
+/// - Errors: only the general ones.
+/// - Ownership: nothing changes hands.
+/// - Threads: any; LEAFLESS_E_BUSY while another call changes the octree.
+/// - Untrusted input: none.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_lazy_statistics(
+    lazy: *const leafless_lazy,
+    statistics: *mut leafless_statistics,
+) -> leafless_status {
+    guard(|| unsafe {
+        let lazy = read(lazy)?;
+        out(statistics, "statistics")?.write((&lazy.statistics()).into())
+    })
+}
+
+/// What the work came to so far.
+///
+/// - Buffers: `counts`, one struct.
+/// - Result: `*counts`.
+/// - Errors: only the general ones.
+/// - Ownership: nothing changes hands.
+/// - Threads: any; LEAFLESS_E_BUSY while another call changes the octree.
+/// - Untrusted input: none.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_lazy_count(
+    lazy: *const leafless_lazy,
+    counts: *mut leafless_lazy_counts,
+) -> leafless_status {
+    guard(|| unsafe {
+        let lazy = read(lazy)?;
+        out(counts, "counts")?.write(leafless_lazy_counts {
+            splits: lazy.splits(),
+            replays: lazy.replays(),
+            bytes: lazy.bytes(),
+        })
+    })
+}
+
+/// Counts of each level, and the certified volumes of the octree cut there. Entry 0 is the universe, entry
+/// `depth` the finest cells.
+///
+/// - Buffers: `levels`, room for `capacity` structs, or NULL to ask for the count only; `count`, one number.
+/// - Result: `*count`, depth + 1; the levels.
+/// - Errors: LEAFLESS_E_BUFFER if the capacity is too small.
+/// - Ownership: nothing changes hands.
+/// - Threads: any; LEAFLESS_E_BUSY while another call changes the octree.
+/// - Untrusted input: none.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_lazy_levels(
+    lazy: *const leafless_lazy,
+    levels: *mut leafless_statistics,
+    capacity: u64,
+    count: *mut u64,
+) -> leafless_status {
+    guard(|| unsafe {
+        let lazy = read(lazy)?;
+        let levels = buffer(levels, capacity, "levels")?;
+        let count = out(count, "count")?;
+        let statistics = lazy.statistics();
+        levels.fill_with(statistics.levels())?;
+        count.write(statistics.levels().len() as u64)
+    })
+}
+
+/// How many cells of each level were split, as it happened. Entry 0 is the universe.
+///
+/// - Buffers: `splits`, room for `capacity` numbers, or NULL to ask for the count only; `count`, one number.
+/// - Result: `*count`, the frame's depth; the numbers.
+/// - Errors: LEAFLESS_E_BUFFER if the capacity is too small.
+/// - Ownership: nothing changes hands.
+/// - Threads: any; LEAFLESS_E_BUSY while another call changes the octree.
+/// - Untrusted input: none.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_lazy_splits(
+    lazy: *const leafless_lazy,
+    splits: *mut u64,
+    capacity: u64,
+    count: *mut u64,
+) -> leafless_status {
+    guard(|| unsafe {
+        let lazy = read(lazy)?;
+        let splits = buffer(splits, capacity, "splits")?;
+        let count = out(count, "count")?;
+        let found: Vec<u64> = (0..lazy.frame().depth()).map(|level| lazy.splits_at(level)).collect();
+        splits.fill(&found)?;
+        count.write(found.len() as u64)
+    })
+}
+
+/// The octree as it is now: canonical, and what is not split is PARTIAL. As the fact "source" it holds the
+/// solid's fingerprint, if there is one: saved or not, leafless_lazy_resume takes it up again.
+///
+/// - Buffers: `options`, one struct or NULL; `octree`, one pointer.
+/// - Result: `*octree`.
+/// - Errors: LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: give `*octree` back with leafless_octree_free.
+/// - Threads: any; LEAFLESS_E_BUSY while another call changes the octree; uses as many as `options` says.
+/// - Untrusted input: none.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_lazy_freeze(
+    lazy: *const leafless_lazy,
+    options: *const leafless_options,
+    octree: *mut *mut leafless_octree,
+) -> leafless_status {
+    guard(|| unsafe {
+        let lazy = read(lazy)?;
+        let octree = out(octree, "octree")?;
+        octree.write(give(controlled(options, |control| lazy.freeze(control))?))
+    })
+}

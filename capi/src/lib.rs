@@ -1,0 +1,175 @@
+//! The C interface: what `include/leafless.h` declares.
+//!
+//! Every function is a few lines: check what came from outside, call the one function of the library that
+//! does the work, hand its result over. The header's preface states the rules that hold for all of them;
+//! `boundary` enforces these, and the doc blocks here become the header's.
+//!
+//! | file | section of the header |
+//! |---|---|
+//! | `version` | versions of library and interface |
+//! | `status` | status codes, messages |
+//! | `control` | options, cancelling, progress |
+//! | `frame` | frames, intervals |
+//! | `mesh` | triangle meshes |
+//! | `mesh_arrays` | triangle meshes from the host's arrays |
+//! | `mesh_file` | mesh files, units |
+//! | `mesh_write` | mesh files, written |
+//! | `polyhedron` | triangle meshes from faces with holes, shells and voids |
+//! | `metadata` | facts of octrees and channels, for both |
+//! | `octree` | octrees: describing, statistics, metadata |
+//! | `solid` | solids: primitives, meshes, octrees, the host's own |
+//! | `volume` | bitmaps and arrays of samples, and solids of them |
+//! | `volume_arrays` | volumes from the host's arrays |
+//! | `volume_file` | volume files |
+//! | `attribute` | attributes: one value, those of a channel, moved ones |
+//! | `mesh_attribute` | what triangles of meshes bear, and attributes of the nearest point of a surface |
+//! | `attribute_host` | the host's own attributes |
+//! | `channel` | channels: describing, metadata |
+//! | `channel_fill` | channels filled from attributes, asked at points, changed in regions |
+//! | `channel_summary` | least, greatest, mean and integral of channels, their regions, materials; volumes as attributes |
+//! | `octree_channels` | channels of octrees, carried to others |
+//! | `scene` | scenes in the language of OpenSCAD's CSG dumps |
+//! | `op` | building, resolving, Booleans |
+//! | `query` | points, boxes, cursors |
+//! | `point` | cursors and tables for points |
+//! | `rays` | rays: first hits, intervals, line of sight |
+//! | `columns` | columns of cells along an axis, height maps |
+//! | `voxel` | voxel records in arrays |
+//! | `cells` | neighbours of cells, cells and boundary faces one after another |
+//! | `bitmap` | the cells of a box as bits |
+//! | `surface` | surfaces: closed meshes of octrees and solids |
+//! | `camera` | cameras |
+//! | `layer` | what pictures are made of; what values look like |
+//! | `layer_surface` | surfaces of octrees, solids and meshes in pictures, lines |
+//! | `layer_section` | plane sections and voxels in pictures |
+//! | `picture` | pictures, PNG files, legends |
+//! | `lazy` | octrees that are split on demand |
+//! | `interference` | solids under affine maps; overlap and distance of two solids |
+//! | `measure` | volume, centroid, inertia, bounding boxes of solids |
+//! | `tridexel` | tri-dexel models: made of solids, described, metadata |
+//! | `tridexel_read` | cells, rays and intervals of tri-dexel models, statistics |
+//! | `tridexel_op` | set algebra of tri-dexel models, what they store |
+//! | `tridexel_editor` | tri-dexel models that are changed in place |
+//! | `tridexel_arrays` | tri-dexel models from the host's arrays |
+//! | `tridexel_surface` | meshes, octrees, solids and voxels of tri-dexel models |
+//! | `tridexel_file` | files of tri-dexel models |
+//! | `file` | files and their bytes |
+//! | `layout` | for tests: what the structs look like |
+
+#![allow(unsafe_code, non_camel_case_types)]
+// What callers must keep to is said in the doc blocks in C's terms, and once for all in the header's preface.
+#![allow(clippy::missing_safety_doc)]
+
+mod attribute;
+mod attribute_host;
+mod bitmap;
+mod boundary;
+mod camera;
+mod cells;
+mod channel;
+mod channel_fill;
+mod channel_summary;
+mod columns;
+mod control;
+mod csg;
+mod distance;
+mod file;
+mod frame;
+mod host;
+mod interference;
+mod layer;
+mod layer_section;
+mod layer_surface;
+#[cfg(feature = "test")]
+mod layout;
+mod lazy;
+mod measure;
+mod mesh;
+mod mesh_arrays;
+mod mesh_attribute;
+mod mesh_file;
+mod mesh_moments;
+mod mesh_write;
+mod metadata;
+mod octree;
+mod octree_channels;
+mod op;
+mod picture;
+mod point;
+mod polyhedron;
+mod query;
+mod rays;
+mod region;
+mod scene;
+mod solid;
+mod status;
+mod surface;
+mod tridexel;
+mod tridexel_arrays;
+mod tridexel_editor;
+mod tridexel_file;
+mod tridexel_op;
+mod tridexel_read;
+mod tridexel_surface;
+mod version;
+mod volume;
+mod volume_arrays;
+mod volume_file;
+mod voxel;
+
+pub use attribute::*;
+pub use attribute_host::*;
+pub use bitmap::*;
+#[cfg(feature = "test")]
+pub use boundary::leafless_test_panic;
+pub use camera::*;
+pub use cells::*;
+pub use channel::*;
+pub use channel_fill::*;
+pub use channel_summary::*;
+pub use columns::*;
+pub use control::*;
+pub use csg::*;
+pub use distance::*;
+pub use file::*;
+pub use frame::*;
+pub use host::*;
+pub use interference::*;
+pub use layer::*;
+pub use layer_section::*;
+pub use layer_surface::*;
+#[cfg(feature = "test")]
+pub use layout::*;
+pub use lazy::*;
+pub use measure::*;
+pub use mesh::*;
+pub use mesh_arrays::*;
+pub use mesh_attribute::*;
+pub use mesh_file::*;
+pub use mesh_moments::*;
+pub use mesh_write::*;
+pub use octree::*;
+pub use octree_channels::*;
+pub use op::*;
+pub use picture::*;
+pub use point::*;
+pub use polyhedron::*;
+pub use query::*;
+pub use rays::*;
+pub use region::*;
+pub use scene::*;
+pub use solid::*;
+pub use status::*;
+pub use surface::*;
+pub use tridexel::*;
+pub use tridexel_arrays::*;
+pub use tridexel_editor::*;
+pub use tridexel_file::*;
+pub use tridexel_op::*;
+pub use tridexel_read::*;
+pub use tridexel_surface::*;
+pub use version::*;
+pub use volume::*;
+pub use volume_arrays::*;
+pub use volume_file::*;
+pub use voxel::*;

@@ -1,0 +1,256 @@
+//! Measures of solids: volume, centroid, inertia, bounding box.
+
+use super::boundary::{guard, out, shared};
+use super::control::{controlled, leafless_options};
+use super::frame::{frame, leafless_frame, leafless_interval};
+use super::octree::leafless_proof;
+use super::solid::leafless_solid;
+use super::status::leafless_status;
+use leafless::Interval;
+use leafless::{
+    Extent, MassProperties, StopReason, SurfaceArea, Tolerance, bounding_box, measure, surface_area,
+};
+
+/// Why a search or a measurement ended.
+#[derive(Clone, Copy)]
+#[repr(u32)]
+pub enum leafless_measured {
+    /// What was asked for is known well enough.
+    LEAFLESS_MEASURED_TOLERANCE = 0,
+    /// `max_splits` of the options, or the function's own limit, is spent.
+    LEAFLESS_MEASURED_BUDGET = 1,
+    /// No cell is left whose split would help: what is undecided has the size of the frame's finest cells, or
+    /// the solid itself knows no more about it, as an octree does of its PARTIAL cells.
+    LEAFLESS_MEASURED_EXHAUSTED = 2,
+}
+use leafless_measured::*;
+
+impl From<StopReason> for leafless_measured {
+    fn from(reason: StopReason) -> leafless_measured {
+        match reason {
+            StopReason::Tolerance => LEAFLESS_MEASURED_TOLERANCE,
+            StopReason::Budget => LEAFLESS_MEASURED_BUDGET,
+            StopReason::Exhausted => LEAFLESS_MEASURED_EXHAUSTED,
+        }
+    }
+}
+
+/// Mass properties of a solid of density 1. All intervals contain the truth. All of it concerns the part
+/// inside of the universe; unless `is_clipped` says otherwise, that is the whole solid.
+#[derive(Clone, Copy)]
+#[repr(C)]
+pub struct leafless_measures {
+    /// Volume.
+    pub volume_model: leafless_interval,
+    /// Centroid; all numbers unless `has_centroid`.
+    pub centroid_model: [leafless_interval; 3],
+    /// Tensor of inertia about the model's origin, row by row: the integral of |p|²δij - pi·pj over the
+    /// points p of the solid. So products of inertia are negative where the product of the coordinates is
+    /// mostly positive.
+    pub inertia_origin_model: [leafless_interval; 9],
+    /// The same about the solid's own centroid, wherever in the interval that lies.
+    pub inertia_centroid_model: [leafless_interval; 9],
+    /// What of the solid is proven: what is not counts as undecided.
+    pub proof: leafless_proof,
+    /// How many times a cell was split.
+    pub splits: u64,
+    /// The finest level of which cells were looked at.
+    pub level: u32,
+    /// Why it ended.
+    pub measured: leafless_measured,
+    /// Whether a cell is proven full: else the solid may be empty, and nothing is known of a centroid.
+    pub has_centroid: bool,
+    /// Whether the solid may go on outside of the universe, or does.
+    pub is_clipped: bool,
+    /// Whether the solid was not split because it knows its own moments, up to rounding: a mesh does that is closed and
+    /// whose triangles do not intersect.
+    pub is_exact: bool,
+}
+
+/// The area of a solid's boundary.
+#[derive(Clone, Copy)]
+#[repr(C)]
+pub struct leafless_surface_area {
+    /// Area. It contains the truth; its upper end is infinite where nothing is known.
+    pub area_model: leafless_interval,
+    /// How many times a cell was split.
+    pub splits: u64,
+    /// The finest level of which cells were looked at.
+    pub level: u32,
+    /// Why it ended.
+    pub measured: leafless_measured,
+    /// Whether the solid may go on outside of the universe, or does: then it is the boundary inside of it.
+    pub is_clipped: bool,
+}
+
+impl From<SurfaceArea> for leafless_surface_area {
+    fn from(surface: SurfaceArea) -> leafless_surface_area {
+        leafless_surface_area {
+            area_model: surface.area.into(),
+            splits: surface.splits,
+            level: surface.level.into(),
+            measured: surface.stop_reason.into(),
+            is_clipped: surface.clipped,
+        }
+    }
+}
+
+/// What is proven of a solid's bounding box inside of the universe.
+#[derive(Clone, Copy)]
+#[repr(C)]
+pub struct leafless_extent {
+    /// Lower corner; all numbers if `is_empty`.
+    pub min_model: [leafless_interval; 3],
+    /// Upper corner; all numbers if `is_empty`.
+    pub max_model: [leafless_interval; 3],
+    /// What of the solid is proven: what is not counts as undecided.
+    pub proof: leafless_proof,
+    /// How many times a cell was split.
+    pub splits: u64,
+    /// Why it ended.
+    pub measured: leafless_measured,
+    /// Whether the solid is proven to be empty.
+    pub is_empty: bool,
+    /// Whether it is proven not to be. If neither is proven, the corners are those of what the solid may be.
+    pub is_occupied: bool,
+    /// Whether the solid may go on outside of the universe, or does.
+    pub is_clipped: bool,
+}
+
+pub(super) fn row_by_row(tensor: [[Interval; 3]; 3]) -> [leafless_interval; 9] {
+    core::array::from_fn(|k| tensor[k / 3][k % 3].into())
+}
+
+impl From<MassProperties> for leafless_measures {
+    fn from(measures: MassProperties) -> leafless_measures {
+        leafless_measures {
+            volume_model: measures.volume.into(),
+            centroid_model: measures.centroid.unwrap_or([Interval::ALL; 3]).map(Into::into),
+            inertia_origin_model: row_by_row(measures.inertia_about_origin),
+            inertia_centroid_model: row_by_row(measures.inertia_about_centroid),
+            proof: measures.proof.into(),
+            splits: measures.splits,
+            level: measures.level.into(),
+            measured: measures.stop_reason.into(),
+            has_centroid: measures.centroid.is_some(),
+            is_clipped: measures.clipped,
+            is_exact: measures.exact,
+        }
+    }
+}
+
+impl From<Extent> for leafless_extent {
+    fn from(extent: Extent) -> leafless_extent {
+        let [min, max] = extent.corners.unwrap_or([[Interval::ALL; 3]; 2]);
+        leafless_extent {
+            min_model: min.map(Into::into),
+            max_model: max.map(Into::into),
+            proof: extent.proof.into(),
+            splits: extent.splits,
+            measured: extent.stop_reason.into(),
+            is_empty: extent.corners.is_none(),
+            is_occupied: extent.occupied,
+            is_clipped: extent.clipped,
+        }
+    }
+}
+
+/// Measures a solid in the universe of a frame, without building an octree: the cells of which most is in doubt are
+/// split first, until the width of the volume's interval is at most `relative` times its middle or at most
+/// `absolute_model` (cubic model units), `max_splits` of the options is spent (2^26 splits without it), or nothing is
+/// left to split at the frame's depth. Under a budget the last whole pass counts. The result is the same bit for
+/// bit for any number of threads.
+///
+/// - Buffers: `frame`, one struct; `options`, one struct or NULL, of which `max_nodes` and `max_bytes` do not
+///   matter; `measures`, one struct.
+/// - Result: `*measures`.
+/// - Errors: LEAFLESS_E_ARGUMENT, also if a tolerance is negative or not a number; LEAFLESS_E_FRAME if the
+///   solid belongs to another frame; LEAFLESS_E_CALLBACK; LEAFLESS_E_DAMAGED; LEAFLESS_E_CANCELLED;
+///   LEAFLESS_E_NO_MEMORY.
+/// - Ownership: nothing changes hands.
+/// - Threads: any; uses as many as `options` says.
+/// - Untrusted input: any solid; set `max_splits` where the depth or the solid is not your own choice.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_solid_measure(
+    solid: *const leafless_solid,
+    frame: *const leafless_frame,
+    relative: f64,
+    absolute_model: f64,
+    options: *const leafless_options,
+    measures: *mut leafless_measures,
+) -> leafless_status {
+    guard(|| unsafe {
+        let solid = &shared(solid, "solid")?.solid;
+        let frame = self::frame(frame)?;
+        let measures = out(measures, "measures")?;
+        let tolerance = Tolerance { relative, absolute: absolute_model };
+        measures.write(controlled(options, |control| measure(solid, &frame, tolerance, control))?.into())
+    })
+}
+
+/// The area of a solid's boundary in the universe of a frame, as leafless_solid_measure finds the volume: `relative` and
+/// `absolute_model` (square model units) say how wide the interval may be, and without `max_splits` of the options it ends
+/// after 2^23 splits. With N splits the width goes down with 1/N on curved surfaces; plane faces are exact. Where faces
+/// lie in planes of the frame's lattice, and the solid ends inside of the universe, another lattice is taken. Of an octree,
+/// of a host program's functions, and of what is clipped there and has such faces nothing is known.
+///
+/// - Buffers: as leafless_solid_measure; `surface`, one struct.
+/// - Result: `*surface`.
+/// - Errors: as leafless_solid_measure.
+/// - Ownership: nothing changes hands.
+/// - Threads: any; uses as many as `options` says.
+/// - Untrusted input: any solid; the default of `max_splits` bounds the work.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_solid_surface_area(
+    solid: *const leafless_solid,
+    frame: *const leafless_frame,
+    relative: f64,
+    absolute_model: f64,
+    options: *const leafless_options,
+    surface: *mut leafless_surface_area,
+) -> leafless_status {
+    guard(|| unsafe {
+        let solid = &shared(solid, "solid")?.solid;
+        let frame = self::frame(frame)?;
+        let surface = out(surface, "surface")?;
+        let tolerance = Tolerance { relative, absolute: absolute_model };
+        surface.write(controlled(options, |control| surface_area(solid, &frame, tolerance, control))?.into())
+    })
+}
+
+/// The bounding box of a solid in the universe of a frame: six intervals, one for each side. The search splits
+/// only cells that may reach beyond what is proven solid. It ends with LEAFLESS_MEASURED_TOLERANCE if no interval
+/// is wider than `tolerance_model`, or than 2^-44 of the universe's edge; with LEAFLESS_MEASURED_EXHAUSTED if the outermost undecided cells cannot be
+/// split, and either the interval is no wider than one of the frame's finest cells, or nothing else is left to
+/// split; with LEAFLESS_MEASURED_BUDGET after `max_splits` of the options, or 2^20 splits if that is 0.
+///
+/// Of half-spaces and what is made of them, a corner of three plane faces is known to rounding, and a curved side
+/// to some 10^-12 of the universe's edge at depth 20, after some hundred splits; a side that a cylinder touches
+/// along a line takes more. Of other solids, with n the universe's edge over the tolerance, a curved side takes
+/// some n splits and, unless it lies on a plane of the lattice, a flat one n².
+///
+/// - Buffers: as leafless_solid_measure; `extent`, one struct.
+/// - Result: `*extent`.
+/// - Errors: as leafless_solid_measure, with `tolerance_model` for its tolerances.
+/// - Ownership: nothing changes hands.
+/// - Threads: any; works in the calling thread.
+/// - Untrusted input: any solid; the default of `max_splits` bounds the work.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_solid_bounding_box(
+    solid: *const leafless_solid,
+    frame: *const leafless_frame,
+    tolerance_model: f64,
+    options: *const leafless_options,
+    extent: *mut leafless_extent,
+) -> leafless_status {
+    guard(|| unsafe {
+        let solid = &shared(solid, "solid")?.solid;
+        let frame = self::frame(frame)?;
+        let extent = out(extent, "extent")?;
+        let found = controlled(options, |control| bounding_box(solid, &frame, tolerance_model, control))?;
+        extent.write(found.into())
+    })
+}

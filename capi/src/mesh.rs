@@ -1,0 +1,555 @@
+//! Triangle meshes: what they are like, and what becomes of them.
+
+use super::boundary::{Failure, array, buffer, guard, handle, out, refer, release, shared};
+use super::status::leafless_status;
+use leafless::{DefectKind, FillRule, MeshDefect, MeshReport, TriangleMesh};
+use std::sync::Arc;
+
+/// A surface of triangles with shared vertices. Vertices at equal places are welded; whether the mesh is
+/// closed is not implied, and need not be.
+///
+/// Immutable: all its functions may be called at once from any number of threads, but leafless_mesh_free
+/// needs the reference that it gives back for itself.
+pub struct leafless_mesh {
+    pub(super) mesh: Arc<TriangleMesh>,
+    /// About the file that it was read from.
+    pub(super) warnings: Vec<String>,
+}
+
+/// Which points a surface encloses.
+///
+/// The winding number of a surface at a point is the solid angle at which it is seen from there, over 4π,
+/// counted positive where the inner side is seen. Of a closed surface it is an integer. Where a surface has
+/// holes, fins, or triangles turned over, it is a fraction, and the nearest integer decides by convention: a
+/// hole is closed by the surface from which half of all directions lead out.
+#[derive(Clone, Copy)]
+#[repr(u32)]
+pub enum leafless_fill {
+    /// Points whose winding number is at least 1/2 in magnitude: overlapping bodies are united, and a body
+    /// that is inside out is a body.
+    LEAFLESS_FILL_NON_ZERO = 0,
+    /// Points from which a ray crosses the surface an odd number of times: the overlap of two bodies is
+    /// outside. Orientation does not matter. An even number of triangles must meet on every edge.
+    LEAFLESS_FILL_EVEN_ODD = 1,
+    /// Points whose winding number is at least 1/2: a body that is inside out is a cavity, and takes away
+    /// from bodies that it overlaps.
+    LEAFLESS_FILL_POSITIVE = 2,
+}
+
+pub(super) fn fill_rule(fill: u32) -> Result<FillRule, Failure> {
+    match fill {
+        _ if fill == leafless_fill::LEAFLESS_FILL_NON_ZERO as u32 => Ok(FillRule::NonZero),
+        _ if fill == leafless_fill::LEAFLESS_FILL_EVEN_ODD as u32 => Ok(FillRule::EvenOdd),
+        _ if fill == leafless_fill::LEAFLESS_FILL_POSITIVE as u32 => Ok(FillRule::Positive),
+        _ => Err(Failure::Argument { name: "fill", problem: "is no leafless_fill" }),
+    }
+}
+
+/// What was found while a mesh was taken in, and how its triangles hang together.
+#[derive(Clone, Copy)]
+#[repr(C)]
+pub struct leafless_mesh_report {
+    /// Triangles that were handed in: triangles + degenerate.
+    pub facets_read: u64,
+    /// Triangles of the mesh.
+    pub triangles: u64,
+    /// Vertices of the mesh, all at different places.
+    pub vertices: u64,
+    /// Vertices that were handed in and lay on an earlier one.
+    pub welded: u64,
+    /// Triangles that were dropped because two of their corners lie at one place.
+    pub degenerate: u64,
+    /// Edges that an odd number of triangles use. A mesh is closed if there is none.
+    pub boundary_edges: u64,
+    /// Loops of these edges, without vertices that occur twice: the holes of the surface and the rims of
+    /// sheets.
+    pub boundary_loops: u64,
+    /// Edges that an even number of triangles use, but not half of them in each direction. A closed mesh is
+    /// consistently oriented if there is none.
+    pub misoriented_edges: u64,
+    /// Edges that more than two triangles use, for instance where two bodies touch. They do no harm.
+    pub non_manifold_edges: u64,
+    /// Triangles that repeat an earlier one, in the same direction. They count as often as they occur.
+    pub duplicate: u64,
+    /// Pairs of triangles with the same corners in opposite directions: walls without thickness. The two
+    /// cancel each other.
+    pub opposite: u64,
+    /// Triangles without area whose corners are three different vertices. They do no harm.
+    pub flat: u64,
+    /// Sets of triangles that hang together over edges. Bodies that touch only in single vertices count
+    /// separately, and so does the outer from the inner surface of a hollow body.
+    pub bodies: u64,
+    /// Bodies that are open or not consistently oriented.
+    pub open_bodies: u64,
+    /// Other bodies that enclose a negative volume: cavities, and bodies that are inside out.
+    pub inside_out_bodies: u64,
+    /// Vertices that leafless_mesh_sewn moved onto another one.
+    pub sewn: u64,
+    /// The farthest that any of them was moved along an axis, in model units.
+    pub displacement_model: f64,
+    /// Closed bodies that are proven to overlap another one: their surfaces cross, or one lies within the other
+    /// with the same sense and no cavity between them. There the surface winds around points more than once,
+    /// and leafless_mesh_volume is not what a fill rule encloses.
+    pub overlapping_bodies: u64,
+    /// Other closed bodies that may overlap another one: they touch in a way that is not decided, such as a
+    /// peg that fits its hole exactly, or there was too much to look at.
+    pub undecided_bodies: u64,
+    /// Faces of more than three corners that the triangles were made from: of OBJ, PLY and OFF files and of
+    /// polyhedra. 0 for other meshes.
+    pub polygons: u64,
+    /// Those that are not flat: corners lie beside the face's plane, by more than 2^-40 of its extent. Such a
+    /// face has no shape of its own. The mesh is one of its triangulations, and whatever is proven of the
+    /// mesh is proven of that one.
+    pub bent_polygons: u64,
+    /// Half the distance, in model units and up to rounding, between the two planes parallel to a face that
+    /// have all its corners between them, for the face where it is greatest. Each triangulation of the face
+    /// lies between the planes.
+    pub polygon_deviation_model: f64,
+    /// Edges, each counted once.
+    pub edges: u64,
+    /// V - E + F of the vertices that triangles use, the edges and the triangles: of a 2-manifold, 2 for each
+    /// component less 2 for each of its handles.
+    pub euler_characteristic: i64,
+    /// Whether the mesh is closed and consistently oriented: every edge is run along as often in one direction
+    /// as in the other. (An empty mesh is.)
+    pub is_closed: bool,
+    /// Whether exactly two triangles meet on every edge, which run along it in opposite directions.
+    pub is_manifold: bool,
+}
+
+impl From<MeshReport> for leafless_mesh_report {
+    fn from(found: MeshReport) -> leafless_mesh_report {
+        leafless_mesh_report {
+            facets_read: found.facets_read,
+            triangles: found.triangles,
+            vertices: found.vertices,
+            welded: found.welded,
+            degenerate: found.degenerate,
+            boundary_edges: found.boundary_edges,
+            boundary_loops: found.boundary_loops,
+            misoriented_edges: found.misoriented_edges,
+            non_manifold_edges: found.non_manifold_edges,
+            duplicate: found.duplicate,
+            opposite: found.opposite,
+            flat: found.flat,
+            bodies: found.bodies,
+            open_bodies: found.open_bodies,
+            inside_out_bodies: found.inside_out_bodies,
+            sewn: found.sewn,
+            displacement_model: found.displacement,
+            overlapping_bodies: found.overlapping_bodies,
+            undecided_bodies: found.undecided_bodies,
+            polygons: found.polygons,
+            bent_polygons: found.bent_polygons,
+            polygon_deviation_model: found.polygon_deviation,
+            edges: found.edges,
+            euler_characteristic: found.euler_characteristic,
+            is_closed: found.is_closed(),
+            is_manifold: found.is_manifold(),
+        }
+    }
+}
+
+/// What is wrong with a part of a mesh, the most harmful first.
+#[derive(Clone, Copy)]
+#[repr(u32)]
+pub enum leafless_defect {
+    /// A loop of edges that an odd number of triangles use: around a hole, or around a sheet.
+    LEAFLESS_DEFECT_HOLE = 0,
+    /// Edges that an even number of triangles use, but not half of them in each direction.
+    LEAFLESS_DEFECT_MISORIENTED = 1,
+    /// Triangles with the same corners as an earlier one, in the same or the opposite direction.
+    LEAFLESS_DEFECT_DUPLICATE = 2,
+    /// Edges that more than two triangles use. They do no harm.
+    LEAFLESS_DEFECT_NON_MANIFOLD = 3,
+    /// Triangles without area. They do no harm.
+    LEAFLESS_DEFECT_FLAT = 4,
+}
+
+/// A part of a mesh that is not as it should be: one loop of a hole, or, of the other kinds, edges or
+/// triangles that hang together over common vertices.
+#[derive(Clone, Copy)]
+#[repr(C)]
+pub struct leafless_mesh_defect {
+    /// The least coordinates of all its vertices.
+    pub min_model: [f64; 3],
+    /// The greatest coordinates of all its vertices.
+    pub max_model: [f64; 3],
+    /// The edges' lengths, added up; 0 where triangles are counted.
+    pub length_model: f64,
+    /// Edges; or triangles of LEAFLESS_DEFECT_DUPLICATE and LEAFLESS_DEFECT_FLAT.
+    pub count: u64,
+    /// What is wrong.
+    pub kind: leafless_defect,
+}
+
+impl From<&MeshDefect> for leafless_mesh_defect {
+    fn from(defect: &MeshDefect) -> leafless_mesh_defect {
+        leafless_mesh_defect {
+            min_model: defect.bounds.0,
+            max_model: defect.bounds.1,
+            length_model: defect.length,
+            count: defect.count,
+            kind: match defect.kind {
+                DefectKind::Hole => leafless_defect::LEAFLESS_DEFECT_HOLE,
+                DefectKind::Misoriented => leafless_defect::LEAFLESS_DEFECT_MISORIENTED,
+                DefectKind::Duplicate => leafless_defect::LEAFLESS_DEFECT_DUPLICATE,
+                DefectKind::NonManifold => leafless_defect::LEAFLESS_DEFECT_NON_MANIFOLD,
+                DefectKind::Flat => leafless_defect::LEAFLESS_DEFECT_FLAT,
+            },
+        }
+    }
+}
+
+pub(super) fn give(mesh: TriangleMesh) -> *mut leafless_mesh {
+    handle(leafless_mesh { mesh: Arc::new(mesh), warnings: Vec::new() })
+}
+
+/// One more reference to a mesh.
+///
+/// - Buffers: `mesh`, a handle; `reference`, one pointer.
+/// - Result: `*reference`, equal to `mesh`.
+/// - Errors: only the general ones.
+/// - Ownership: give each reference back with leafless_mesh_free.
+/// - Threads: any.
+/// - Untrusted input: none.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_mesh_ref(
+    mesh: *const leafless_mesh,
+    reference: *mut *mut leafless_mesh,
+) -> leafless_status {
+    guard(|| unsafe { refer(mesh, "mesh", reference) })
+}
+
+/// Gives back a reference to a mesh; with the last one the mesh is gone. Solids made of it stay.
+///
+/// - Buffers: `mesh`, a handle or NULL, which does nothing.
+/// - Result: none.
+/// - Errors: none.
+/// - Ownership: the reference is gone.
+/// - Threads: any; no other call may use this reference.
+/// - Untrusted input: none.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_mesh_free(mesh: *mut leafless_mesh) {
+    // SAFETY: the caller's promise.
+    unsafe { release(mesh) }
+}
+
+/// How many vertices and triangles a mesh has.
+///
+/// - Buffers: `vertex_count` and `triangle_count`, one number each.
+/// - Result: both.
+/// - Errors: only the general ones.
+/// - Ownership: nothing changes hands.
+/// - Threads: any.
+/// - Untrusted input: none.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_mesh_counts(
+    mesh: *const leafless_mesh,
+    vertex_count: *mut u64,
+    triangle_count: *mut u64,
+) -> leafless_status {
+    guard(|| unsafe {
+        let mesh = &shared(mesh, "mesh")?.mesh;
+        let vertex_count = out(vertex_count, "vertex_count")?;
+        let triangle_count = out(triangle_count, "triangle_count")?;
+        vertex_count.write(mesh.vertices().len() as u64)?;
+        triangle_count.write(mesh.triangles().len() as u64)
+    })
+}
+
+/// Copies the arrays of a mesh; leafless_mesh_counts tells their lengths.
+///
+/// - Buffers: `vertices`, room for `vertex_capacity` vertices of 3 numbers; `triangles`, room for
+///   `triangle_capacity` triangles of 3 indices. Each may be NULL if it is not wanted.
+/// - Result: both arrays.
+/// - Errors: LEAFLESS_E_BUFFER if a capacity is too small; then neither is written.
+/// - Ownership: nothing changes hands.
+/// - Threads: any.
+/// - Untrusted input: none.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_mesh_copy(
+    mesh: *const leafless_mesh,
+    vertices: *mut f64,
+    vertex_capacity: u64,
+    triangles: *mut u32,
+    triangle_capacity: u64,
+) -> leafless_status {
+    guard(|| unsafe {
+        let mesh = &shared(mesh, "mesh")?.mesh;
+        let vertices = buffer(vertices.cast::<[f64; 3]>(), vertex_capacity, "vertices")?;
+        let triangles = buffer(triangles.cast::<[u32; 3]>(), triangle_capacity, "triangles")?;
+        triangles.check(mesh.triangles().len())?;
+        vertices.fill(mesh.vertices())?;
+        triangles.fill(mesh.triangles())
+    })
+}
+
+/// The unit normals at the vertices of a mesh, outward where triangles turn counter-clockwise as seen from
+/// outside: the mean of the normals of the triangles there, each weighted by its angle. So they do not depend on
+/// how plane parts are cut into triangles. Where the mean is zero, as at a vertex without triangles, so is the
+/// normal. O(t + v).
+///
+/// - Buffers: `normals`, room for `capacity` normals of 3 numbers, or NULL to ask for their number only; `count`,
+///   one number.
+/// - Result: `*count`, that of the vertices; the normals, in the order of the vertices.
+/// - Errors: LEAFLESS_E_BUFFER if the capacity is too small; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: nothing changes hands.
+/// - Threads: any. Each call computes them.
+/// - Untrusted input: any mesh.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_mesh_normals(
+    mesh: *const leafless_mesh,
+    normals: *mut f64,
+    capacity: u64,
+    count: *mut u64,
+) -> leafless_status {
+    guard(|| unsafe {
+        let mesh = &shared(mesh, "mesh")?.mesh;
+        let normals = buffer(normals.cast::<[f64; 3]>(), capacity, "normals")?;
+        let count = out(count, "count")?;
+        normals.check(mesh.vertices().len())?;
+        if normals.wanted() {
+            normals.fill(&mesh.vertex_normals()?)?;
+        }
+        count.write(mesh.vertices().len() as u64)
+    })
+}
+
+/// The bounding box of a mesh's triangles.
+///
+/// - Buffers: `min_model` and `max_model`, room for 3 numbers each.
+/// - Result: both corners.
+/// - Errors: LEAFLESS_E_MESH if the mesh has no triangle.
+/// - Ownership: nothing changes hands.
+/// - Threads: any.
+/// - Untrusted input: none.
+/// - Since: 0.1
+///
+/// cbindgen:ptrs-as-arrays=[[min_model; 3], [max_model; 3]]
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_mesh_bounds(
+    mesh: *const leafless_mesh,
+    min_model: *mut f64,
+    max_model: *mut f64,
+) -> leafless_status {
+    guard(|| unsafe {
+        let mesh = &shared(mesh, "mesh")?.mesh;
+        let min = out(min_model.cast(), "min_model")?;
+        let max = out(max_model.cast(), "max_model")?;
+        if mesh.triangles().is_empty() {
+            return Err(leafless::MeshError::Empty.into());
+        }
+        let (low, high): ([f64; 3], [f64; 3]) = mesh.bounds();
+        min.write(low)?;
+        max.write(high)
+    })
+}
+
+/// The volume that a mesh encloses, by the divergence theorem: overlaps count twice, bodies that are inside
+/// out negative. Of an open mesh it has no meaning. Rounded; the certified volume is that of an octree.
+///
+/// - Buffers: `volume_model`, one number.
+/// - Result: `*volume_model`, in cubic model units.
+/// - Errors: only the general ones.
+/// - Ownership: nothing changes hands.
+/// - Threads: any.
+/// - Untrusted input: none.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_mesh_volume(
+    mesh: *const leafless_mesh,
+    volume_model: *mut f64,
+) -> leafless_status {
+    guard(|| unsafe {
+        let mesh = &shared(mesh, "mesh")?.mesh;
+        out(volume_model, "volume_model")?.write(mesh.volume())
+    })
+}
+
+/// The sum of the areas of a mesh's triangles. Rounded; the certified area of a solid's boundary is told by
+/// leafless_solid_surface_area. O(t).
+///
+/// - Buffers: `area_model`, one number.
+/// - Result: `*area_model`, in square model units.
+/// - Errors: only the general ones.
+/// - Ownership: nothing changes hands.
+/// - Threads: any.
+/// - Untrusted input: any mesh.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_mesh_area(
+    mesh: *const leafless_mesh,
+    area_model: *mut f64,
+) -> leafless_status {
+    guard(|| unsafe {
+        let mesh = &shared(mesh, "mesh")?.mesh;
+        out(area_model, "area_model")?.write(mesh.area())
+    })
+}
+
+/// What was found when a mesh was made, and how its triangles hang together. The first call analyses the
+/// edges and looks for bodies that overlap, later ones are free.
+///
+/// - Buffers: `report`, one struct.
+/// - Result: `*report`.
+/// - Errors: LEAFLESS_E_NO_MEMORY.
+/// - Ownership: nothing changes hands.
+/// - Threads: any.
+/// - Untrusted input: none.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_mesh_describe(
+    mesh: *const leafless_mesh,
+    report: *mut leafless_mesh_report,
+) -> leafless_status {
+    guard(|| unsafe {
+        let mesh = &shared(mesh, "mesh")?.mesh;
+        let report = out(report, "report")?;
+        report.write(mesh.report()?.into())
+    })
+}
+
+/// Where a mesh is not as it should be, the worst first: in the order of leafless_defect, and those of one
+/// kind by the longest side of their boxes, then by count, then by position.
+///
+/// - Buffers: `defects`, room for `capacity` of them, or NULL to ask for their number only.
+/// - Result: `*count`, how many there are, but not more than `limit`; the worst ones in `defects`.
+/// - Errors: LEAFLESS_E_BUFFER if the capacity is too small; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: nothing changes hands.
+/// - Threads: any. Each call analyses the mesh.
+/// - Untrusted input: any mesh.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_mesh_defects(
+    mesh: *const leafless_mesh,
+    limit: u64,
+    defects: *mut leafless_mesh_defect,
+    capacity: u64,
+    count: *mut u64,
+) -> leafless_status {
+    guard(|| unsafe {
+        let mesh = &shared(mesh, "mesh")?.mesh;
+        let defects = buffer(defects, capacity, "defects")?;
+        let count = out(count, "count")?;
+        let found = mesh.defects(usize::try_from(limit).unwrap_or(usize::MAX))?;
+        defects.fill_with(&found)?;
+        count.write(found.len() as u64)
+    })
+}
+
+/// Checks that a mesh has no hole, so that every point that is not on it is clearly inside or outside: an
+/// even number of triangles meet on every edge, and but for LEAFLESS_FILL_EVEN_ODD half of them run in each
+/// direction. Self-intersections, overlaps, nested and inside-out bodies are all allowed. Solids need not
+/// pass this.
+///
+/// - Buffers: none. `fill` is a leafless_fill.
+/// - Result: LEAFLESS_OK if it is so.
+/// - Errors: LEAFLESS_E_MESH if the mesh is empty, not closed, or (but for LEAFLESS_FILL_EVEN_ODD) not
+///   consistently oriented; LEAFLESS_E_ARGUMENT if `fill` is no leafless_fill; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: nothing changes hands.
+/// - Threads: any.
+/// - Untrusted input: any mesh.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_mesh_check_closed(
+    mesh: *const leafless_mesh,
+    fill: u32,
+) -> leafless_status {
+    guard(|| unsafe {
+        let mesh = &shared(mesh, "mesh")?.mesh;
+        Ok(mesh.check_closed(fill_rule(fill)?)?)
+    })
+}
+
+/// The mesh with hair cracks closed: vertices at open edges become one if they lie no further apart than 2^-24
+/// of the longest extent of the larger one of their pieces. (A piece is all triangles that hang together by
+/// common vertices.) Verdicts about solids made of it stay proven: the distance is added outward.
+///
+/// - Buffers: `sewn`, one pointer.
+/// - Result: `*sewn`; leafless_mesh_describe tells how many vertices moved and how far.
+/// - Errors: LEAFLESS_E_NO_MEMORY.
+/// - Ownership: `mesh` stays as it is; give `*sewn` back with leafless_mesh_free.
+/// - Threads: any.
+/// - Untrusted input: any mesh.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_mesh_sewn(
+    mesh: *const leafless_mesh,
+    sewn: *mut *mut leafless_mesh,
+) -> leafless_status {
+    guard(|| unsafe {
+        let mesh = &shared(mesh, "mesh")?.mesh;
+        let sewn = out(sewn, "sewn")?;
+        sewn.write(give(mesh.try_clone()?.sewn()?))
+    })
+}
+
+/// The mesh under an affine map: x' = M x + t, rounded. A reflection turns it inside out. The moved vertices
+/// count as the truth, whatever cracks were closed before.
+///
+/// - Buffers: `matrix`, 12 numbers: three rows of M and t, (m00 m01 m02 t0, m10 …); `moved`, one pointer.
+/// - Result: `*moved`, welded as by leafless_mesh_new.
+/// - Errors: LEAFLESS_E_ARGUMENT if a number of the matrix is not finite; LEAFLESS_E_MESH if a vertex leaves
+///   ±2^256; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: `mesh` stays as it is; give `*moved` back with leafless_mesh_free.
+/// - Threads: any.
+/// - Untrusted input: any numbers.
+/// - Since: 0.1
+///
+/// cbindgen:ptrs-as-arrays=[[matrix; 12]]
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_mesh_transformed(
+    mesh: *const leafless_mesh,
+    matrix: *const f64,
+    moved: *mut *mut leafless_mesh,
+) -> leafless_status {
+    guard(|| unsafe {
+        let mesh = &shared(mesh, "mesh")?.mesh;
+        let matrix: [[f64; 4]; 3] = array(matrix.cast(), "matrix")?;
+        let moved = out(moved, "moved")?;
+        finite("matrix", matrix.as_flattened())?;
+        let row = |[a, b, c, t]: [f64; 4], [x, y, z]: [f64; 3]| a * x + b * y + c * z + t;
+        moved.write(give(mesh.transformed(|vertex| matrix.map(|m| row(m, vertex)))?))
+    })
+}
+
+/// The mesh moved by a vector, rounded. What leafless_mesh_sewn has found stays known.
+///
+/// - Buffers: `offset_model`, 3 numbers; `moved`, one pointer.
+/// - Result: `*moved`.
+/// - Errors: LEAFLESS_E_ARGUMENT if a number of the offset is not finite; LEAFLESS_E_MESH if a vertex leaves
+///   ±2^256; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: `mesh` stays as it is; give `*moved` back with leafless_mesh_free.
+/// - Threads: any.
+/// - Untrusted input: any numbers.
+/// - Since: 0.1
+///
+/// cbindgen:ptrs-as-arrays=[[offset_model; 3]]
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_mesh_translated(
+    mesh: *const leafless_mesh,
+    offset_model: *const f64,
+    moved: *mut *mut leafless_mesh,
+) -> leafless_status {
+    guard(|| unsafe {
+        let mesh = &shared(mesh, "mesh")?.mesh;
+        let offset: [f64; 3] = array(offset_model, "offset_model")?;
+        let moved = out(moved, "moved")?;
+        finite("offset_model", &offset)?;
+        moved.write(give(mesh.translated(offset)?))
+    })
+}
+
+/// Refuses numbers that are none; what becomes of the others is another matter.
+fn finite(name: &'static str, values: &[f64]) -> Result<(), Failure> {
+    if values.iter().all(|value| value.is_finite()) {
+        return Ok(());
+    }
+    Err(Failure::Argument { name, problem: "every number must be finite" })
+}

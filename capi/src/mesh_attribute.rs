@@ -1,0 +1,217 @@
+//! What triangles and corners of meshes bear: colours, materials, faces and bodies.
+
+use super::attribute::{components, give, leafless_attribute};
+use super::boundary::{Failure, buffer, guard, out, shared, slice, text};
+use super::mesh::leafless_mesh;
+use super::status::leafless_status;
+use core::ffi::c_char;
+use leafless::SurfaceAttribute;
+use leafless::{AttributeDomain, MeshAttribute, TriangleMesh};
+
+/// The attribute of a mesh with a place among all.
+fn at(mesh: &TriangleMesh, index: u64) -> Result<&MeshAttribute, Failure> {
+    let missing = Failure::Argument { name: "index", problem: "is not below the number of attributes" };
+    usize::try_from(index).ok().and_then(|index| mesh.attributes().get(index)).ok_or(missing)
+}
+
+/// What the triangles of a mesh bear, by its place among all: an array of values with a name. Files in PLY and 3MF
+/// give `colour` (red, green, blue and opacity from 0 to 255), 3MF `material` and `object` (numbers, which may have
+/// names); a mesh from a polyhedron has `face`, `shell` and `solid`, the numbers of the parts that a triangle belongs
+/// to.
+///
+/// - Buffers: `count`, one number; `name`, `name_length`, `components` and `per_corner`, one each, all NULL to ask for
+///   the count only.
+/// - Result: `*count`, the number of all attributes; the name in UTF-8, not NUL-terminated, with its length in bytes;
+///   `*components`, how many numbers a value has, 1 to 4; `*per_corner`, whether each corner of a triangle has a value,
+///   or each triangle one.
+/// - Errors: LEAFLESS_E_ARGUMENT if there is no attribute `index`, unless only the count is asked for.
+/// - Ownership: the name belongs to the mesh and lives as long as the reference `mesh`.
+/// - Threads: any.
+/// - Untrusted input: any mesh.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_mesh_peek_attribute_at(
+    mesh: *const leafless_mesh,
+    index: u64,
+    count: *mut u64,
+    name: *mut *const c_char,
+    name_length: *mut usize,
+    components: *mut u32,
+    per_corner: *mut bool,
+) -> leafless_status {
+    guard(|| unsafe {
+        let mesh = &shared(mesh, "mesh")?.mesh;
+        let count = out(count, "count")?;
+        let number = mesh.attributes().len() as u64;
+        if name.is_null() && name_length.is_null() && components.is_null() && per_corner.is_null() {
+            return count.write(number);
+        }
+        let (name, name_length) = (out(name, "name")?, out(name_length, "name_length")?);
+        let (components, per_corner) = (out(components, "components")?, out(per_corner, "per_corner")?);
+        let found = at(mesh, index)?;
+        name.write(found.name().as_ptr().cast())?;
+        name_length.write(found.name().len())?;
+        components.write(found.components() as u32)?;
+        per_corner.write(found.domain() == AttributeDomain::Corner)?;
+        count.write(number)
+    })
+}
+
+/// What the value `value` of an attribute of a mesh is called: the name of a material or of an object.
+///
+/// - Buffers: `count`, one number; `name` and `name_length`, one each, both NULL to ask for the count only.
+/// - Result: `*count`, how many values from 0 on have names; the name in UTF-8, not NUL-terminated, with its length in
+///   bytes.
+/// - Errors: LEAFLESS_E_ARGUMENT if there is no attribute `index`, or the value has no name, unless only the count is
+///   asked for.
+/// - Ownership: the name belongs to the mesh and lives as long as the reference `mesh`.
+/// - Threads: any.
+/// - Untrusted input: any mesh.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_mesh_peek_attribute_name_at(
+    mesh: *const leafless_mesh,
+    index: u64,
+    value: u64,
+    count: *mut u64,
+    name: *mut *const c_char,
+    name_length: *mut usize,
+) -> leafless_status {
+    guard(|| unsafe {
+        let mesh = &shared(mesh, "mesh")?.mesh;
+        let count = out(count, "count")?;
+        if name.is_null() && name_length.is_null() {
+            return count.write(at(mesh, index)?.names().len() as u64);
+        }
+        let (name, name_length) = (out(name, "name")?, out(name_length, "name_length")?);
+        let names = at(mesh, index)?.names();
+        let missing = Failure::Argument { name: "value", problem: "has no name" };
+        let found = usize::try_from(value).ok().and_then(|value| names.get(value)).ok_or(missing)?;
+        name.write(found.as_ptr().cast())?;
+        name_length.write(found.len())?;
+        count.write(names.len() as u64)
+    })
+}
+
+/// The values of an attribute of a mesh at the corners of all triangles.
+///
+/// - Buffers: `values`, room for `capacity` numbers, or NULL to ask for the count only; `count`, one number.
+/// - Result: `*count`, 3 · components · triangles; in `values` the numbers at the three corners of the first triangle,
+///   then of the second: NaN where there is no value.
+/// - Errors: LEAFLESS_E_ARGUMENT if there is no attribute `index`; LEAFLESS_E_BUFFER if the capacity is too small.
+/// - Ownership: nothing changes hands.
+/// - Threads: any.
+/// - Untrusted input: any mesh.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_mesh_attribute_values(
+    mesh: *const leafless_mesh,
+    index: u64,
+    values: *mut f64,
+    capacity: u64,
+    count: *mut u64,
+) -> leafless_status {
+    guard(|| unsafe {
+        let mesh = &shared(mesh, "mesh")?.mesh;
+        let (values, count) = (buffer(values, capacity, "values")?, out(count, "count")?);
+        let found = at(mesh, index)?;
+        let each = found.components();
+        let all = found.len().saturating_mul(3 * each);
+        if let Some(values) = values.zeroed(all)? {
+            for (to, place) in values.chunks_exact_mut(each).zip(0..) {
+                let value = found.value(place / 3, place % 3).unwrap_or([f64::NAN; 4]);
+                to.copy_from_slice(&value[..each]);
+            }
+        }
+        count.write(all as u64)
+    })
+}
+
+/// The body that each triangle of a mesh belongs to: a set of triangles that hang together over edges. Bodies are
+/// numbered from 0 by their first triangles. Shells that touch only in single vertices, or lie within each other, are
+/// different bodies.
+///
+/// - Buffers: `bodies`, room for `capacity` numbers, or NULL to ask for the count only; `count`, one number.
+/// - Result: `*count`, the number of triangles; in `bodies` one number for each.
+/// - Errors: LEAFLESS_E_BUFFER if the capacity is too small; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: nothing changes hands.
+/// - Threads: any.
+/// - Untrusted input: any mesh.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_mesh_bodies(
+    mesh: *const leafless_mesh,
+    bodies: *mut u32,
+    capacity: u64,
+    count: *mut u64,
+) -> leafless_status {
+    guard(|| unsafe {
+        let mesh = &shared(mesh, "mesh")?.mesh;
+        let (bodies, count) = (buffer(bodies, capacity, "bodies")?, out(count, "count")?);
+        bodies.check(mesh.triangles().len())?;
+        if bodies.wanted() {
+            bodies.fill(&mesh.bodies()?)?;
+        }
+        count.write(mesh.triangles().len() as u64)
+    })
+}
+
+/// The attribute that has at each point what a mesh bears at the point of its surface that is nearest: the value of
+/// the nearest triangle, or, with values for corners, what lies between them. Of triangles that are equally near the
+/// first one counts. Its ranges are proven.
+///
+/// - Buffers: `name`, `name_length` bytes of UTF-8: that of an attribute of the mesh; `attribute`, one pointer.
+/// - Result: `*attribute`.
+/// - Errors: LEAFLESS_E_UTF8; LEAFLESS_E_ARGUMENT if the mesh has no such attribute; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: the mesh is shared and may be freed; give `*attribute` back with leafless_attribute_free.
+/// - Threads: any.
+/// - Untrusted input: any mesh, any text.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_mesh_as_attribute(
+    mesh: *const leafless_mesh,
+    name: *const c_char,
+    name_length: usize,
+    attribute: *mut *mut leafless_attribute,
+) -> leafless_status {
+    guard(|| unsafe {
+        let mesh = shared(mesh, "mesh")?.mesh.clone();
+        let name = text(name, name_length, "name")?;
+        let attribute = out(attribute, "attribute")?;
+        attribute.write(give(SurfaceAttribute::of_mesh(mesh, name)?))
+    })
+}
+
+/// As leafless_mesh_as_attribute, of the host's own values: of bodies, faces, materials, or colours of corners.
+///
+/// - Buffers: `values`, `count` numbers: `components` for each triangle, or for each of its three corners, one behind
+///   the other; `attribute`, one pointer.
+/// - Result: `*attribute`. A value with a number that is not finite counts as none.
+/// - Errors: LEAFLESS_E_ARGUMENT unless `components` is 1 to 4, and there are values for all triangles;
+///   LEAFLESS_E_NO_MEMORY.
+/// - Ownership: the values are copied, the mesh is shared and may be freed; give `*attribute` back with
+///   leafless_attribute_free.
+/// - Threads: any.
+/// - Untrusted input: any mesh, any numbers.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_mesh_values_as_attribute(
+    mesh: *const leafless_mesh,
+    values: *const f64,
+    count: u64,
+    components: u32,
+    per_corner: bool,
+    attribute: *mut *mut leafless_attribute,
+) -> leafless_status {
+    guard(|| unsafe {
+        let mesh = shared(mesh, "mesh")?.mesh.clone();
+        let values = slice(values, count, "values")?;
+        let components = self::components(components, "components")?;
+        let attribute = out(attribute, "attribute")?;
+        let own = match per_corner {
+            true => MeshAttribute::per_corner("", components, values)?,
+            false => MeshAttribute::per_triangle("", components, values)?,
+        };
+        attribute.write(give(SurfaceAttribute::new(mesh, own)?))
+    })
+}

@@ -1,0 +1,158 @@
+//! Triangle meshes: volume, centroid and inertia from the triangles themselves, and triangles that intersect.
+
+use super::boundary::{buffer, guard, out, shared};
+use super::control::{controlled, leafless_options};
+use super::frame::leafless_interval;
+use super::measure::row_by_row;
+use super::mesh::{fill_rule, leafless_mesh};
+use super::status::leafless_status;
+use leafless::Interval;
+use leafless::{IntersectingPair, IntersectingPairs, MeshMoments};
+
+/// Whether the moments of what a mesh encloses are known from its triangles.
+#[derive(Clone, Copy)]
+#[repr(u32)]
+pub enum leafless_moments_known {
+    /// They are, up to rounding and to the mesh's displacement.
+    LEAFLESS_MOMENTS_KNOWN = 0,
+    /// They are not: the mesh is empty, not closed, or not consistently oriented as the fill rule demands.
+    LEAFLESS_MOMENTS_OPEN = 1,
+    /// They are not: two triangles intersect.
+    LEAFLESS_MOMENTS_INTERSECTING = 2,
+    /// They are not: too many triangles lie close to each other to find out, or all triangles of a body are slivers.
+    LEAFLESS_MOMENTS_UNDECIDED = 3,
+}
+use leafless_moments_known::*;
+
+/// Mass properties of what a mesh encloses, of density 1, as in leafless_measures: all numbers unless they are known.
+#[derive(Clone, Copy)]
+#[repr(C)]
+pub struct leafless_mesh_moments {
+    /// Volume.
+    pub volume_model: leafless_interval,
+    /// Centroid; all numbers unless `has_centroid`.
+    pub centroid_model: [leafless_interval; 3],
+    /// Tensor of inertia about the model's origin, row by row.
+    pub inertia_origin_model: [leafless_interval; 9],
+    /// The same about the centroid.
+    pub inertia_centroid_model: [leafless_interval; 9],
+    /// Two triangles that intersect, if `known` says so; else 0.
+    pub triangles: [u32; 2],
+    /// Whether they are known, or why not.
+    pub known: leafless_moments_known,
+    /// Whether the volume is proven not to be 0.
+    pub has_centroid: bool,
+}
+
+impl From<MeshMoments> for leafless_mesh_moments {
+    fn from(moments: MeshMoments) -> leafless_mesh_moments {
+        let any = leafless_interval::from(Interval::ALL);
+        let unknown = leafless_mesh_moments {
+            volume_model: leafless_interval { lower: 0.0, ..any },
+            centroid_model: [any; 3],
+            inertia_origin_model: [any; 9],
+            inertia_centroid_model: [any; 9],
+            triangles: [0; 2],
+            known: LEAFLESS_MOMENTS_OPEN,
+            has_centroid: false,
+        };
+        match moments {
+            MeshMoments::Known(moments) => leafless_mesh_moments {
+                volume_model: moments.volume.into(),
+                centroid_model: moments.centroid().unwrap_or([Interval::ALL; 3]).map(Into::into),
+                inertia_origin_model: row_by_row(moments.inertia_about_origin()),
+                inertia_centroid_model: row_by_row(moments.inertia_about_centroid()),
+                known: LEAFLESS_MOMENTS_KNOWN,
+                has_centroid: moments.centroid().is_some(),
+                ..unknown
+            },
+            MeshMoments::Open => unknown,
+            MeshMoments::Intersecting(triangles) => {
+                leafless_mesh_moments { triangles, known: LEAFLESS_MOMENTS_INTERSECTING, ..unknown }
+            }
+            MeshMoments::Undecided => leafless_mesh_moments { known: LEAFLESS_MOMENTS_UNDECIDED, ..unknown },
+        }
+    }
+}
+
+/// Two triangles that have a point in common which is not on a common vertex or edge.
+#[derive(Clone, Copy)]
+#[repr(C)]
+pub struct leafless_intersecting_pair {
+    /// A box in which they meet: where the boxes around the two overlap.
+    pub min_model: [f64; 3],
+    /// Its upper corner.
+    pub max_model: [f64; 3],
+    /// Indices of the triangles, ascending.
+    pub triangles: [u32; 2],
+}
+
+impl From<&IntersectingPair> for leafless_intersecting_pair {
+    fn from(pair: &IntersectingPair) -> leafless_intersecting_pair {
+        let (min_model, max_model) = pair.bounds;
+        leafless_intersecting_pair { min_model, max_model, triangles: pair.triangles }
+    }
+}
+
+/// The volume and the moments of what a mesh encloses by a fill rule, exact up to rounding: usually to 14 digits.
+/// They are known if the mesh is closed and no two triangles intersect. leafless_solid_measure of a solid of such a
+/// mesh tells the same.
+///
+/// - Buffers: `options`, one struct or NULL, of which the limits do not matter; `moments`, one struct. `fill` is
+///   a leafless_fill.
+/// - Result: `*moments`, whether they are known or not.
+/// - Errors: LEAFLESS_E_ARGUMENT if `fill` is no leafless_fill; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: nothing changes hands.
+/// - Threads: any; works in the calling thread. Each call analyses the mesh.
+/// - Untrusted input: any mesh; the work is limited.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_mesh_measure(
+    mesh: *const leafless_mesh,
+    fill: u32,
+    options: *const leafless_options,
+    moments: *mut leafless_mesh_moments,
+) -> leafless_status {
+    guard(|| unsafe {
+        let mesh = &shared(mesh, "mesh")?.mesh;
+        let fill = fill_rule(fill)?;
+        let moments = out(moments, "moments")?;
+        moments.write(controlled(options, |control| mesh.moments(fill, control))?.into())
+    })
+}
+
+/// The pairs of triangles that intersect: they cross, touch, or fold onto each other. Decided exactly. Triangles
+/// without area are left out.
+///
+/// - Buffers: `options`, one struct or NULL, of which the limits do not matter; `pairs`, room for `capacity` of
+///   them, or NULL to ask for their number only; `count`, one number; `is_complete`, one number.
+/// - Result: `*count`, how many were found; the first `capacity` of them in `pairs`, in ascending order of triangles;
+///   `*is_complete`, whether these are all: else the search was ended, because too many triangles lie close to each
+///   other.
+/// - Errors: LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY. A `capacity` that is too small is none.
+/// - Ownership: nothing changes hands.
+/// - Threads: any; works in the calling thread. Each call analyses the mesh.
+/// - Untrusted input: any mesh; the work is limited.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_mesh_intersecting_pairs(
+    mesh: *const leafless_mesh,
+    options: *const leafless_options,
+    pairs: *mut leafless_intersecting_pair,
+    capacity: u64,
+    count: *mut u64,
+    is_complete: *mut bool,
+) -> leafless_status {
+    guard(|| unsafe {
+        let mesh = &shared(mesh, "mesh")?.mesh;
+        let pairs = buffer(pairs, capacity, "pairs")?;
+        let count = out(count, "count")?;
+        let is_complete = out(is_complete, "is_complete")?;
+        let limit = usize::try_from(capacity).unwrap_or(usize::MAX);
+        let IntersectingPairs { count: found, is_complete: complete, pairs: first } =
+            controlled(options, |control| mesh.intersecting_pairs(limit, control))?;
+        pairs.fill_with(&first)?;
+        count.write(found)?;
+        is_complete.write(complete)
+    })
+}

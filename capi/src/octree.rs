@@ -1,0 +1,476 @@
+//! Octrees: what they hold, and the facts that travel with them.
+
+use super::boundary::{Failure, buffer, guard, handle, out, refer, release, shared};
+use super::frame::{frame, leafless_frame, leafless_interval};
+use super::metadata::{self, Fact};
+use super::status::leafless_status;
+use core::ffi::c_char;
+use leafless::MetadataLimit;
+use leafless::{LevelStatistics, Octree, Proof, Statistics, Tag};
+
+/// A leaf-free octree, in memory or mapped from a file.
+///
+/// Immutable: all its functions may be called at once from any number of threads, but leafless_octree_free
+/// needs the reference that it gives back for itself.
+pub struct leafless_octree {
+    pub(super) octree: Octree,
+}
+
+/// What is known of a cell.
+#[derive(Clone, Copy)]
+#[repr(u8)]
+pub enum leafless_tag {
+    /// Proven outside of the solid.
+    LEAFLESS_TAG_EMPTY = 0,
+    /// Cut and split: the cell has a node.
+    LEAFLESS_TAG_BRANCH = 1,
+    /// Not decided.
+    LEAFLESS_TAG_PARTIAL = 2,
+    /// Proven to lie in the solid.
+    LEAFLESS_TAG_FULL = 3,
+}
+use leafless_tag::*;
+
+impl From<Tag> for leafless_tag {
+    fn from(tag: Tag) -> leafless_tag {
+        match tag {
+            Tag::Empty => LEAFLESS_TAG_EMPTY,
+            Tag::Branch => LEAFLESS_TAG_BRANCH,
+            Tag::Partial => LEAFLESS_TAG_PARTIAL,
+            Tag::Full => LEAFLESS_TAG_FULL,
+        }
+    }
+}
+
+/// The tag with this number, if it is EMPTY, PARTIAL or FULL.
+pub(super) fn settled_tag(tag: i64, name: &'static str) -> Result<Tag, Failure> {
+    match tag {
+        _ if tag == LEAFLESS_TAG_EMPTY as i64 => Ok(Tag::Empty),
+        _ if tag == LEAFLESS_TAG_PARTIAL as i64 => Ok(Tag::Partial),
+        _ if tag == LEAFLESS_TAG_FULL as i64 => Ok(Tag::Full),
+        _ => Err(Failure::Argument { name, problem: "must be EMPTY, PARTIAL or FULL" }),
+    }
+}
+
+/// What the cells of an octree prove of the solid that it was made from. Certified trees prove both, inner
+/// ones FULL, outer ones EMPTY, sampled ones nothing. Booleans prove what their operands do, and files keep
+/// it.
+#[derive(Clone, Copy)]
+#[repr(C)]
+pub struct leafless_proof {
+    /// How far the surfaces that the cells speak of were moved from those that were handed in, in model
+    /// units: cracks that were sewn, vertices that were rounded, a stated deviation of a tessellation.
+    pub displacement_model: f64,
+    /// A FULL cell is proven to lie in the solid.
+    pub full: bool,
+    /// An EMPTY cell is proven to lie outside of it.
+    pub empty: bool,
+}
+
+impl From<Proof> for leafless_proof {
+    fn from(proof: Proof) -> leafless_proof {
+        leafless_proof { displacement_model: proof.displacement(), full: proof.full, empty: proof.empty }
+    }
+}
+
+/// Which tags of an octree's cells are proven.
+#[repr(u32)]
+pub enum leafless_proven {
+    /// Neither.
+    LEAFLESS_PROVEN_NOTHING = 0,
+    /// FULL.
+    LEAFLESS_PROVEN_FULL = 1,
+    /// EMPTY.
+    LEAFLESS_PROVEN_EMPTY = 2,
+    /// FULL and EMPTY.
+    LEAFLESS_PROVEN_BOTH = 3,
+}
+
+/// What can be said of an octree at once.
+#[derive(Clone, Copy)]
+#[repr(C)]
+pub struct leafless_octree_info {
+    /// Where it lies, and its depth.
+    pub frame: leafless_frame,
+    /// Array elements without bricks; each holds two levels.
+    pub elements: u64,
+    /// Array elements of the deepest level.
+    pub bricks: u64,
+    /// What the cells prove.
+    pub proof: leafless_proof,
+    /// The tag of the whole universe; BRANCH if it is cut.
+    pub root: leafless_tag,
+    /// What is known of the space outside of the universe; never BRANCH.
+    pub exterior: leafless_tag,
+    /// Whether nothing is undecided.
+    pub is_binary: bool,
+    /// Whether the solid is not known to end inside of the universe: volumes then concern the part inside.
+    pub is_clipped: bool,
+}
+
+/// Counts and certified volumes. The volume is that of the part inside of the universe.
+#[derive(Clone, Copy)]
+#[repr(C)]
+pub struct leafless_statistics {
+    /// Internal nodes: cells that are cut and split.
+    pub nodes: u64,
+    /// EMPTY cells.
+    pub empty: u64,
+    /// FULL cells.
+    pub full: u64,
+    /// PARTIAL cells.
+    pub partial: u64,
+    /// Volume that is surely solid, in finest cells.
+    pub lower_cells: u64,
+    /// Volume that is possibly solid, in finest cells.
+    pub upper_cells: u64,
+    /// The same two in cubic model units, rounded outward.
+    pub volume_model: leafless_interval,
+}
+
+impl From<&Statistics> for leafless_statistics {
+    fn from(statistics: &Statistics) -> leafless_statistics {
+        let (lower_cells, upper_cells) = statistics.volume_cells();
+        leafless_statistics {
+            nodes: statistics.nodes(),
+            empty: statistics.cells(Tag::Empty),
+            full: statistics.cells(Tag::Full),
+            partial: statistics.cells(Tag::Partial),
+            lower_cells,
+            upper_cells,
+            volume_model: statistics.volume().into(),
+        }
+    }
+}
+
+impl From<&LevelStatistics> for leafless_statistics {
+    fn from(level: &LevelStatistics) -> leafless_statistics {
+        leafless_statistics {
+            nodes: level.nodes,
+            empty: level.empty,
+            full: level.full,
+            partial: level.partial,
+            lower_cells: level.lower_cells,
+            upper_cells: level.upper_cells,
+            volume_model: level.volume.into(),
+        }
+    }
+}
+
+pub(super) fn give(octree: Octree) -> *mut leafless_octree {
+    handle(leafless_octree { octree })
+}
+
+/// The octree whose whole universe has one tag.
+///
+/// - Buffers: `frame`, one struct; `octree`, one pointer. `tag` and `exterior` are leafless_tags, not BRANCH:
+///   what is known of the universe, and of the space around it.
+/// - Result: `*octree`.
+/// - Errors: LEAFLESS_E_ARGUMENT.
+/// - Ownership: give `*octree` back with leafless_octree_free.
+/// - Threads: any.
+/// - Untrusted input: any numbers.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_octree_uniform(
+    frame: *const leafless_frame,
+    tag: u32,
+    exterior: u32,
+    octree: *mut *mut leafless_octree,
+) -> leafless_status {
+    guard(|| unsafe {
+        let frame = self::frame(frame)?;
+        let tag = settled_tag(tag.into(), "tag")?;
+        let exterior = settled_tag(exterior.into(), "exterior")?;
+        let octree = out(octree, "octree")?;
+        octree.write(give(Octree::uniform(frame, tag, exterior)?))
+    })
+}
+
+/// One more reference to an octree.
+///
+/// - Buffers: `octree`, a handle; `reference`, one pointer.
+/// - Result: `*reference`, equal to `octree`.
+/// - Errors: only the general ones.
+/// - Ownership: give each reference back with leafless_octree_free.
+/// - Threads: any.
+/// - Untrusted input: none.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_octree_ref(
+    octree: *const leafless_octree,
+    reference: *mut *mut leafless_octree,
+) -> leafless_status {
+    guard(|| unsafe { refer(octree, "octree", reference) })
+}
+
+/// Gives back a reference to an octree. With the last one the octree is gone, and with it the mapping of its
+/// file, unless a cursor, a solid, or an octree with other metadata still shares it.
+///
+/// - Buffers: `octree`, a handle or NULL, which does nothing.
+/// - Result: none.
+/// - Errors: none.
+/// - Ownership: the reference is gone.
+/// - Threads: any; no other call may use this reference.
+/// - Untrusted input: none.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_octree_free(octree: *mut leafless_octree) {
+    // SAFETY: the caller's promise.
+    unsafe { release(octree) }
+}
+
+/// What can be said of an octree at once. O(1).
+///
+/// - Buffers: `info`, one struct.
+/// - Result: `*info`.
+/// - Errors: only the general ones.
+/// - Ownership: nothing changes hands.
+/// - Threads: any.
+/// - Untrusted input: any octree.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_octree_describe(
+    octree: *const leafless_octree,
+    info: *mut leafless_octree_info,
+) -> leafless_status {
+    guard(|| unsafe {
+        let view = shared(octree, "octree")?.octree.view();
+        out(info, "info")?.write(leafless_octree_info {
+            frame: view.frame().into(),
+            elements: view.element_count(),
+            bricks: view.brick_count(),
+            proof: view.proof().into(),
+            root: view.root_tag().into(),
+            exterior: view.exterior().into(),
+            is_binary: view.is_binary(),
+            is_clipped: view.is_clipped(),
+        })
+    })
+}
+
+/// The same octree, of whose cells this is said; the arrays and the channels are shared. Octrees that other
+/// programs made prove what these know. If FULL and EMPTY are said to be proven, the cells themselves are taken
+/// for the solid: measures of a sampled octree then are those of its cells, and not of what was sampled.
+///
+/// - Buffers: `octree`, a handle; `proven`, a leafless_proven; `displacement_model` as in leafless_proof;
+///   `result`, one pointer.
+/// - Result: `*result`.
+/// - Errors: LEAFLESS_E_ARGUMENT unless `proven` is one, and the displacement finite and not negative.
+/// - Ownership: give `*result` back with leafless_octree_free.
+/// - Threads: any.
+/// - Untrusted input: any octree, any numbers.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_octree_with_proof(
+    octree: *const leafless_octree,
+    proven: u32,
+    displacement_model: f64,
+    result: *mut *mut leafless_octree,
+) -> leafless_status {
+    guard(|| unsafe {
+        let octree = &shared(octree, "octree")?.octree;
+        let result = out(result, "result")?;
+        if proven > leafless_proven::LEAFLESS_PROVEN_BOTH as u32 {
+            return Err(Failure::Argument { name: "proven", problem: "is no leafless_proven" });
+        }
+        let Ok(proof) = Proof::new(proven & 1 != 0, proven & 2 != 0).with_displacement(displacement_model)
+        else {
+            let problem = "must be finite and not negative";
+            return Err(Failure::Argument { name: "displacement_model", problem });
+        };
+        result.write(give(octree.with_proof(proof)))
+    })
+}
+
+/// Counts over all levels, and the volume of the cells. O(depth) once the counts are known, which for an
+/// octree from a file they are and for a new one takes one pass over its arrays.
+///
+/// - Buffers: `statistics`, one struct.
+/// - Result: `*statistics`.
+/// - Errors: only the general ones.
+/// - Ownership: nothing changes hands.
+/// - Threads: any.
+/// - Untrusted input: any octree; of one that was mapped unverified the numbers may be wrong.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_octree_statistics(
+    octree: *const leafless_octree,
+    statistics: *mut leafless_statistics,
+) -> leafless_status {
+    guard(|| unsafe {
+        let found = shared(octree, "octree")?.octree.statistics();
+        out(statistics, "statistics")?.write((&found).into())
+    })
+}
+
+/// Counts of each level, and the certified volumes of the tree cut there. Entry 0 is the universe, entry
+/// `depth` the finest cells.
+///
+/// - Buffers: `levels`, room for `capacity` structs, or NULL to ask for the count only; `count`, one number.
+/// - Result: `*count`, depth + 1; the levels.
+/// - Errors: LEAFLESS_E_BUFFER if the capacity is too small.
+/// - Ownership: nothing changes hands.
+/// - Threads: any.
+/// - Untrusted input: any octree; of one that was mapped unverified the numbers may be wrong.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_octree_levels(
+    octree: *const leafless_octree,
+    levels: *mut leafless_statistics,
+    capacity: u64,
+    count: *mut u64,
+) -> leafless_status {
+    guard(|| unsafe {
+        let octree = &shared(octree, "octree")?.octree;
+        let levels = buffer(levels, capacity, "levels")?;
+        let count = out(count, "count")?;
+        let found = octree.statistics();
+        levels.fill_with(found.levels())?;
+        count.write(found.levels().len() as u64)
+    })
+}
+
+/// Checks that an octree is well-formed and canonical: O(n). Its channels are not looked at: see
+/// leafless_channel_check. Those that the library makes, opens or maps
+/// verified are; the bytes that checksums cover are not looked at here, see leafless_bytes_verify.
+///
+/// - Buffers: none.
+/// - Result: LEAFLESS_OK if it is.
+/// - Errors: LEAFLESS_E_DAMAGED, with the first damage in the message; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: nothing changes hands.
+/// - Threads: any.
+/// - Untrusted input: any octree.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_octree_check(octree: *const leafless_octree) -> leafless_status {
+    guard(|| unsafe { Ok(shared(octree, "octree")?.octree.view().check()?) })
+}
+
+/// Whether two octrees have the same cells with the same tags on the same frame. Metadata does not count, nor
+/// do channels.
+/// O(n).
+///
+/// - Buffers: `equal`, one truth value.
+/// - Result: `*equal`.
+/// - Errors: only the general ones.
+/// - Ownership: nothing changes hands.
+/// - Threads: any.
+/// - Untrusted input: any octrees.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_octree_equal(
+    a: *const leafless_octree,
+    b: *const leafless_octree,
+    equal: *mut bool,
+) -> leafless_status {
+    guard(|| unsafe {
+        let (a, b) = (shared(a, "a")?, shared(b, "b")?);
+        out(equal, "equal")?.write(a.octree == b.octree)
+    })
+}
+
+/// The octree with one more fact in its metadata, or with another value of one; the arrays and the channels are
+/// shared. Names in use: "name", "units", "source", "rule".
+///
+/// - Buffers: `key` and `value`, `key_length` and `value_length` bytes of UTF-8; `named`, one pointer.
+/// - Result: `*named`.
+/// - Errors: LEAFLESS_E_UTF8; LEAFLESS_E_ARGUMENT if all facts would take more than 1 MiB in a file, 8 bytes
+///   and the two texts each; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: the texts are copied. `*named` shares the arrays of `octree`, which may be freed: what must
+///   outlive `octree`, such as bytes that it views, must outlive `*named` too. Give that back with
+///   leafless_octree_free.
+/// - Threads: any.
+/// - Untrusted input: any texts.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_octree_with_metadata(
+    octree: *const leafless_octree,
+    key: *const c_char,
+    key_length: usize,
+    value: *const c_char,
+    value_length: usize,
+    named: *mut *mut leafless_octree,
+) -> leafless_status {
+    guard(|| unsafe {
+        let octree = &shared(octree, "octree")?.octree;
+        let named = out(named, "named")?;
+        let (key, value) = ((key, key_length), (value, value_length));
+        let facts = metadata::with(octree.metadata(), key, value, MetadataLimit::SOLID)?;
+        named.write(give(octree.with_metadata(facts)))
+    })
+}
+
+/// The octree with one fact less in its metadata, or with none; the arrays and the channels are shared.
+///
+/// - Buffers: `key`, `key_length` bytes of UTF-8, or NULL for all facts; `unnamed`, one pointer.
+/// - Result: `*unnamed`; a fact that is not there need not be.
+/// - Errors: LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: as leafless_octree_with_metadata.
+/// - Threads: any.
+/// - Untrusted input: any texts.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_octree_without_metadata(
+    octree: *const leafless_octree,
+    key: *const c_char,
+    key_length: usize,
+    unnamed: *mut *mut leafless_octree,
+) -> leafless_status {
+    guard(|| unsafe {
+        let octree = &shared(octree, "octree")?.octree;
+        let unnamed = out(unnamed, "unnamed")?;
+        unnamed.write(give(octree.with_metadata(metadata::without(octree.metadata(), key, key_length)?)))
+    })
+}
+
+/// The value of a fact in an octree's metadata.
+///
+/// - Buffers: `key`, `key_length` bytes of UTF-8; `value` and `value_length`, one each.
+/// - Result: `*value`, not NUL-terminated; NULL if there is no such fact. `*value_length`, in bytes.
+/// - Errors: LEAFLESS_E_UTF8.
+/// - Ownership: the text belongs to the octree and lives as long as the reference `octree`.
+/// - Threads: any.
+/// - Untrusted input: any octree.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_octree_peek_metadata(
+    octree: *const leafless_octree,
+    key: *const c_char,
+    key_length: usize,
+    value: *mut *const c_char,
+    value_length: *mut usize,
+) -> leafless_status {
+    guard(|| unsafe {
+        let octree = &shared(octree, "octree")?.octree;
+        metadata::peek(octree.metadata(), key, key_length, value, value_length)
+    })
+}
+
+/// A fact of an octree's metadata by its place among all, which stand by ascending key.
+///
+/// - Buffers: `count`, one number; `key`, `key_length`, `value`, `value_length`, one each, all four NULL to
+///   ask for the count only.
+/// - Result: `*count`, the number of all facts; key and value, not NUL-terminated, with their lengths in
+///   bytes.
+/// - Errors: LEAFLESS_E_ARGUMENT if there is no fact `index`, unless only the count is asked for.
+/// - Ownership: the texts belong to the octree and live as long as the reference `octree`.
+/// - Threads: any.
+/// - Untrusted input: any octree.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_octree_peek_metadata_at(
+    octree: *const leafless_octree,
+    index: u64,
+    count: *mut u64,
+    key: *mut *const c_char,
+    key_length: *mut usize,
+    value: *mut *const c_char,
+    value_length: *mut usize,
+) -> leafless_status {
+    guard(|| unsafe {
+        let octree = &shared(octree, "octree")?.octree;
+        let fact = Fact { key, key_length, value, value_length };
+        metadata::peek_at(octree.metadata(), index, count, fact)
+    })
+}

@@ -1,0 +1,217 @@
+//! The channels of octrees.
+
+use super::boundary::{Failure, guard, out, shared, slice, text};
+use super::channel::{give as give_channel, leafless_channel};
+use super::control::{controlled, leafless_options};
+use super::octree::{give, leafless_octree};
+use super::status::leafless_status;
+use core::ffi::c_char;
+use leafless::memory;
+use leafless::{CarryRule, carry_channels};
+use leafless_carry::*;
+
+/// Whose value a point has that lies in several operands.
+#[derive(Clone, Copy)]
+#[repr(u32)]
+pub enum leafless_carry {
+    /// The first operand's that has one.
+    LEAFLESS_CARRY_LEFT = 0,
+    /// The last operand's that has one.
+    LEAFLESS_CARRY_RIGHT = 1,
+    /// The greatest of all, number by number.
+    LEAFLESS_CARRY_MAX = 2,
+    /// The mean of all, number by number, rounded to the type.
+    LEAFLESS_CARRY_MEAN = 3,
+}
+
+fn rule(rule: u32, name: &'static str) -> Result<CarryRule, Failure> {
+    match rule {
+        _ if rule == LEAFLESS_CARRY_LEFT as u32 => Ok(CarryRule::Left),
+        _ if rule == LEAFLESS_CARRY_RIGHT as u32 => Ok(CarryRule::Right),
+        _ if rule == LEAFLESS_CARRY_MAX as u32 => Ok(CarryRule::Max),
+        _ if rule == LEAFLESS_CARRY_MEAN as u32 => Ok(CarryRule::Mean),
+        _ => Err(Failure::Argument { name, problem: "is no leafless_carry" }),
+    }
+}
+
+/// How channels of one name are carried.
+#[derive(Clone, Copy)]
+#[repr(C)]
+pub struct leafless_carry_rule {
+    /// The name of the channels, `name_length` bytes of UTF-8.
+    pub name: *const c_char,
+    /// The length of the name.
+    pub name_length: usize,
+    /// A leafless_carry.
+    pub carry: u32,
+}
+
+/// The octree with one more channel, in the place of one of the same name, if there is one; the arrays of both are
+/// shared. A channel without a name has the empty one.
+///
+/// - Buffers: `result`, one pointer.
+/// - Result: `*result`, with the metadata of `octree`.
+/// - Errors: LEAFLESS_E_FRAME if the channel lies in another cube than the octree; LEAFLESS_E_ARGUMENT if there are
+///   256 channels already; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: `*result` shares the arrays of `octree` and `channel`, which may be freed: what must outlive these,
+///   such as bytes that they view, must outlive `*result` too. Give that back with leafless_octree_free.
+/// - Threads: any.
+/// - Untrusted input: any octree, any channel.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_octree_with_channel(
+    octree: *const leafless_octree,
+    channel: *const leafless_channel,
+    result: *mut *mut leafless_octree,
+) -> leafless_status {
+    guard(|| unsafe {
+        let octree = &shared(octree, "octree")?.octree;
+        let channel = &shared(channel, "channel")?.channel;
+        let result = out(result, "result")?;
+        result.write(give(octree.with_channel(channel.clone())?))
+    })
+}
+
+/// The octree without the channel of a name, or without any; the arrays are shared.
+///
+/// - Buffers: `name`, `name_length` bytes of UTF-8, or NULL for all channels; `result`, one pointer.
+/// - Result: `*result`, with the metadata of `octree`; a channel that is not there need not be.
+/// - Errors: LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: as leafless_octree_with_channel.
+/// - Threads: any.
+/// - Untrusted input: any octree, any text.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_octree_without_channel(
+    octree: *const leafless_octree,
+    name: *const c_char,
+    name_length: usize,
+    result: *mut *mut leafless_octree,
+) -> leafless_status {
+    guard(|| unsafe {
+        let octree = &shared(octree, "octree")?.octree;
+        let result = out(result, "result")?;
+        result.write(give(match name.is_null() {
+            true => octree.without_channels(),
+            false => octree.without_channel(text(name, name_length, "name")?)?,
+        }))
+    })
+}
+
+/// How many channels an octree has.
+///
+/// - Buffers: `count`, one number.
+/// - Result: `*count`, 0 to 256.
+/// - Errors: only the general ones.
+/// - Ownership: nothing changes hands.
+/// - Threads: any.
+/// - Untrusted input: any octree.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_octree_channel_count(
+    octree: *const leafless_octree,
+    count: *mut u64,
+) -> leafless_status {
+    guard(|| unsafe {
+        let octree = &shared(octree, "octree")?.octree;
+        out(count, "count")?.write(octree.channels().len() as u64)
+    })
+}
+
+/// A channel of an octree by its place among all, which stand in ascending order of their names.
+///
+/// - Buffers: `channel`, one pointer.
+/// - Result: `*channel`.
+/// - Errors: LEAFLESS_E_ARGUMENT if there is no channel `index`.
+/// - Ownership: `*channel` shares the arrays of `octree`, which may be freed: what must outlive `octree`, such as
+///   bytes that it views, must outlive `*channel` too. Give that back with leafless_channel_free.
+/// - Threads: any.
+/// - Untrusted input: any octree.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_octree_channel_at(
+    octree: *const leafless_octree,
+    index: u64,
+    channel: *mut *mut leafless_channel,
+) -> leafless_status {
+    guard(|| unsafe {
+        let octree = &shared(octree, "octree")?.octree;
+        let channel = out(channel, "channel")?;
+        let found = usize::try_from(index).ok().and_then(|index| octree.channels().get(index));
+        let missing = Failure::Argument { name: "index", problem: "is not below the number of channels" };
+        channel.write(give_channel(found.ok_or(missing)?.clone()))
+    })
+}
+
+/// The channel of an octree with a name.
+///
+/// - Buffers: `name`, `name_length` bytes of UTF-8; `channel`, one pointer.
+/// - Result: `*channel`; NULL if there is no such channel.
+/// - Errors: LEAFLESS_E_UTF8.
+/// - Ownership: as leafless_octree_channel_at.
+/// - Threads: any.
+/// - Untrusted input: any octree, any text.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_octree_channel(
+    octree: *const leafless_octree,
+    name: *const c_char,
+    name_length: usize,
+    channel: *mut *mut leafless_channel,
+) -> leafless_status {
+    guard(|| unsafe {
+        let octree = &shared(octree, "octree")?.octree;
+        let name = text(name, name_length, "name")?;
+        let channel = out(channel, "channel")?;
+        let found = octree.channel(name).map(|found| give_channel(found.clone()));
+        channel.write(found.unwrap_or(core::ptr::null_mut()))
+    })
+}
+
+/// An octree that was made of operands in the same cube, whatever the operation, with their channels. Channels of one
+/// name become one, in which at each point the values of those operands count that are not EMPTY there. A channel that
+/// only one operand has is shared as it is. The same bit for bit for any number of threads.
+///
+/// - Buffers: `octree`, a handle; `operands`, `count` handles; `carry`, a leafless_carry, by which channels are joined
+///   that none of `rules` names; `rules`, `rule_count` structs, or NULL if that is 0; the first that names a channel
+///   counts. `options`, one struct or NULL, of which limits concern each channel; `result`, one pointer.
+/// - Result: `*result`: the cells and metadata of `octree`; its own channels, but those of names that operands have;
+///   each channel with the metadata of the first operand that has it.
+/// - Errors: LEAFLESS_E_ARGUMENT if channels of one name have values of two types, or there are more than 256;
+///   LEAFLESS_E_FRAME unless all lie in one cube; LEAFLESS_E_UTF8; LEAFLESS_E_DAMAGED; LEAFLESS_E_LIMIT;
+///   LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: as leafless_octree_with_channel.
+/// - Threads: any; uses as many as `options` says.
+/// - Untrusted input: any octrees, any texts.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_octree_carry_channels(
+    octree: *const leafless_octree,
+    operands: *const *const leafless_octree,
+    count: u64,
+    carry: u32,
+    rules: *const leafless_carry_rule,
+    rule_count: u64,
+    options: *const leafless_options,
+    result: *mut *mut leafless_octree,
+) -> leafless_status {
+    guard(|| unsafe {
+        let octree = &shared(octree, "octree")?.octree;
+        let operands = slice(operands, count, "operands")?;
+        let carry = self::rule(carry, "carry")?;
+        let rules = slice(rules, rule_count, "rules")?;
+        let result = out(result, "result")?;
+        let mut octrees = memory::with_capacity(operands.len())?;
+        for &operand in operands {
+            octrees.push(&shared(operand, "operands")?.octree);
+        }
+        let mut named = memory::with_capacity(rules.len())?;
+        for given in rules {
+            let name = text(given.name, given.name_length, "rules.name")?;
+            named.push((name, self::rule(given.carry, "rules.carry")?));
+        }
+        let of = |name: &str| named.iter().find(|(known, _)| *known == name).map_or(carry, |&(_, rule)| rule);
+        let made = controlled(options, |control| carry_channels(octree, &octrees, of, control))?;
+        result.write(give(made))
+    })
+}

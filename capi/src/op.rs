@@ -1,0 +1,336 @@
+//! From solids to octrees, and from octrees to others: building, resolving, set algebra.
+
+use super::boundary::{Failure, guard, out, shared, slice};
+use super::control::{controlled, leafless_options};
+use super::frame::{frame, leafless_frame};
+use super::octree::{give, leafless_octree};
+use super::solid::leafless_solid;
+use super::status::leafless_status;
+use leafless::Control;
+use leafless::Error;
+use leafless::Rule;
+use leafless::memory;
+use leafless::{self, build, compact, resolve};
+use leafless::{Metadata, Octree, OctreeRef};
+
+/// What becomes of finest cells that are not decided.
+#[derive(Clone, Copy)]
+#[repr(u32)]
+pub enum leafless_rule {
+    /// They stay PARTIAL: FULL is proven full, EMPTY proven empty.
+    LEAFLESS_RULE_CERTIFIED = 0,
+    /// Their centre decides.
+    LEAFLESS_RULE_SAMPLED = 1,
+    /// EMPTY: the result lies in the solid.
+    LEAFLESS_RULE_INNER = 2,
+    /// FULL: the result covers the solid.
+    LEAFLESS_RULE_OUTER = 3,
+}
+use leafless_rule::*;
+
+pub(super) fn rule(rule: u32) -> Result<Rule, Failure> {
+    match rule {
+        _ if rule == LEAFLESS_RULE_CERTIFIED as u32 => Ok(Rule::Certified),
+        _ if rule == LEAFLESS_RULE_SAMPLED as u32 => Ok(Rule::Sampled),
+        _ if rule == LEAFLESS_RULE_INNER as u32 => Ok(Rule::Inner),
+        _ if rule == LEAFLESS_RULE_OUTER as u32 => Ok(Rule::Outer),
+        _ => Err(Failure::Argument { name: "rule", problem: "is no leafless_rule" }),
+    }
+}
+
+/// Builds the octree of a solid to the depth of a frame. The result is the same bit for bit for any number of
+/// threads.
+///
+/// - Buffers: `frame`, one struct; `options`, one struct or NULL; `octree`, one pointer. `rule` is a
+///   leafless_rule.
+/// - Result: `*octree`.
+/// - Errors: LEAFLESS_E_FRAME if the solid belongs to another frame; LEAFLESS_E_NOT_SAMPLED if
+///   LEAFLESS_RULE_SAMPLED is asked of a solid that cannot decide points; LEAFLESS_E_CALLBACK;
+///   LEAFLESS_E_DAMAGED; LEAFLESS_E_ARGUMENT; LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: give `*octree` back with leafless_octree_free.
+/// - Threads: any; uses as many as `options` says.
+/// - Untrusted input: any solid; set `max_bytes` where the depth or the solid is not your own choice.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_octree_build(
+    solid: *const leafless_solid,
+    frame: *const leafless_frame,
+    rule: u32,
+    options: *const leafless_options,
+    octree: *mut *mut leafless_octree,
+) -> leafless_status {
+    guard(|| unsafe {
+        let solid = &shared(solid, "solid")?.solid;
+        let frame = self::frame(frame)?;
+        let rule = self::rule(rule)?;
+        let octree = out(octree, "octree")?;
+        octree.write(give(controlled(options, |control| build(solid, &frame, rule, control))?))
+    })
+}
+
+/// The octree with its PARTIAL cells resolved: EMPTY under LEAFLESS_RULE_INNER, FULL under
+/// LEAFLESS_RULE_OUTER.
+///
+/// - Buffers: `options`, one struct or NULL; `resolved`, one pointer. `rule` is a leafless_rule.
+/// - Result: `*resolved`, with the octree's facts "name" and "units" and no others, and with its channels.
+/// - Errors: LEAFLESS_E_NOT_SAMPLED under LEAFLESS_RULE_SAMPLED if a cell is PARTIAL, because a stored octree
+///   knows no more about it; LEAFLESS_E_DAMAGED; LEAFLESS_E_ARGUMENT; LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED;
+///   LEAFLESS_E_NO_MEMORY.
+/// - Ownership: `octree` stays as it is; give `*resolved` back with leafless_octree_free.
+/// - Threads: any; uses as many as `options` says.
+/// - Untrusted input: any octree.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_octree_resolve(
+    octree: *const leafless_octree,
+    rule: u32,
+    options: *const leafless_options,
+    resolved: *mut *mut leafless_octree,
+) -> leafless_status {
+    guard(|| unsafe {
+        let octree = &shared(octree, "octree")?.octree;
+        let rule = self::rule(rule)?;
+        let resolved = out(resolved, "resolved")?;
+        let made = controlled(options, |control| resolve(octree.view(), rule, control))?;
+        let made = made.with_metadata(Metadata::common([octree.metadata()])?);
+        resolved.write(give(made.with_channels_of(octree)))
+    })
+}
+
+/// The same octree with its bricks encoded as a file would have them, through a dictionary where that is
+/// shorter. Everything works on it as on any other.
+///
+/// - Buffers: `compacted`, one pointer.
+/// - Result: `*compacted`, with the same metadata and channels.
+/// - Errors: LEAFLESS_E_DAMAGED if a brick cannot be read; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: `octree` stays as it is; give `*compacted` back with leafless_octree_free.
+/// - Threads: any.
+/// - Untrusted input: any octree.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_octree_compact(
+    octree: *const leafless_octree,
+    compacted: *mut *mut leafless_octree,
+) -> leafless_status {
+    guard(|| unsafe {
+        let octree = &shared(octree, "octree")?.octree;
+        let compacted = out(compacted, "compacted")?;
+        let compact = compact(octree.view())?.with_metadata_of(octree);
+        compacted.write(give(compact.with_channels_of(octree)))
+    })
+}
+
+type Binary = fn(&OctreeRef<'_>, &OctreeRef<'_>, &Control<'_>) -> Result<Octree, Error>;
+type Nary = fn(&[OctreeRef<'_>], &Control<'_>) -> Result<Octree, Error>;
+
+/// # Safety
+/// As the functions below.
+unsafe fn binary(
+    operation: Binary,
+    a: *const leafless_octree,
+    b: *const leafless_octree,
+    options: *const leafless_options,
+    result: *mut *mut leafless_octree,
+) -> leafless_status {
+    guard(|| unsafe {
+        let (a, b) = (&shared(a, "a")?.octree, &shared(b, "b")?.octree);
+        let result = out(result, "result")?;
+        let made = controlled(options, |control| operation(a.view(), b.view(), control))?;
+        result.write(give(made.with_metadata(Metadata::common([a.metadata(), b.metadata()])?)))
+    })
+}
+
+/// # Safety
+/// As the functions below.
+unsafe fn nary(
+    operation: Nary,
+    octrees: *const *const leafless_octree,
+    count: u64,
+    options: *const leafless_options,
+    result: *mut *mut leafless_octree,
+) -> leafless_status {
+    guard(|| unsafe {
+        let octrees = slice(octrees, count, "octrees")?;
+        let result = out(result, "result")?;
+        let mut views = memory::with_capacity(octrees.len())?;
+        let mut metadata = memory::with_capacity(octrees.len())?;
+        for &octree in octrees {
+            let octree = &shared(octree, "octrees")?.octree;
+            views.push(*octree.view());
+            metadata.push(octree.metadata());
+        }
+        if views.is_empty() {
+            return Err(Failure::Argument { name: "count", problem: "must be at least 1" });
+        }
+        let made = controlled(options, |control| operation(&views, control))?;
+        result.write(give(made.with_metadata(Metadata::common(metadata.iter().copied())?)))
+    })
+}
+
+/// The points that lie in `a`, in `b`, or in both. Exact, and the same bit for bit for any number of threads; never larger
+/// than both operands together. The result has no channels: leafless_octree_carry_channels gives it those of the operands.
+///
+/// - Buffers: `options`, one struct or NULL; `result`, one pointer.
+/// - Result: `*result`, with those of the facts "name" and "units" that all operands have with one value, and
+///   no other metadata.
+/// - Errors: LEAFLESS_E_FRAME if the frames differ; LEAFLESS_E_DAMAGED; LEAFLESS_E_ARGUMENT;
+///   LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: the operands stay as they are; give `*result` back with leafless_octree_free.
+/// - Threads: any; uses as many as `options` says.
+/// - Untrusted input: any octrees; damage in ones that were mapped unverified is an error or reads as
+///   PARTIAL.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_octree_union(
+    a: *const leafless_octree,
+    b: *const leafless_octree,
+    options: *const leafless_options,
+    result: *mut *mut leafless_octree,
+) -> leafless_status {
+    // SAFETY: the caller's promise.
+    unsafe { binary(leafless::union, a, b, options, result) }
+}
+
+/// The points that `a` and `b` have in common.
+///
+/// - Buffers: as leafless_octree_union.
+/// - Result: as leafless_octree_union.
+/// - Errors: as leafless_octree_union.
+/// - Ownership: as leafless_octree_union.
+/// - Threads: any; uses as many as `options` says.
+/// - Untrusted input: as leafless_octree_union.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_octree_intersection(
+    a: *const leafless_octree,
+    b: *const leafless_octree,
+    options: *const leafless_options,
+    result: *mut *mut leafless_octree,
+) -> leafless_status {
+    // SAFETY: the caller's promise.
+    unsafe { binary(leafless::intersection, a, b, options, result) }
+}
+
+/// `a` without `b`.
+///
+/// - Buffers: as leafless_octree_union.
+/// - Result: as leafless_octree_union.
+/// - Errors: as leafless_octree_union.
+/// - Ownership: as leafless_octree_union.
+/// - Threads: any; uses as many as `options` says.
+/// - Untrusted input: as leafless_octree_union.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_octree_difference(
+    a: *const leafless_octree,
+    b: *const leafless_octree,
+    options: *const leafless_options,
+    result: *mut *mut leafless_octree,
+) -> leafless_status {
+    // SAFETY: the caller's promise.
+    unsafe { binary(leafless::difference, a, b, options, result) }
+}
+
+/// The points of just one of `a` and `b`.
+///
+/// - Buffers: as leafless_octree_union.
+/// - Result: as leafless_octree_union.
+/// - Errors: as leafless_octree_union.
+/// - Ownership: as leafless_octree_union.
+/// - Threads: any; uses as many as `options` says.
+/// - Untrusted input: as leafless_octree_union.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_octree_xor(
+    a: *const leafless_octree,
+    b: *const leafless_octree,
+    options: *const leafless_options,
+    result: *mut *mut leafless_octree,
+) -> leafless_status {
+    // SAFETY: the caller's promise.
+    unsafe { binary(leafless::xor, a, b, options, result) }
+}
+
+/// Everything but `octree`, inside of its universe and out.
+///
+/// - Buffers: as leafless_octree_union.
+/// - Result: as leafless_octree_union.
+/// - Errors: as leafless_octree_union.
+/// - Ownership: as leafless_octree_union.
+/// - Threads: any; uses as many as `options` says.
+/// - Untrusted input: as leafless_octree_union.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_octree_complement(
+    octree: *const leafless_octree,
+    options: *const leafless_options,
+    result: *mut *mut leafless_octree,
+) -> leafless_status {
+    guard(|| unsafe {
+        let octree = &shared(octree, "octree")?.octree;
+        let result = out(result, "result")?;
+        let made = controlled(options, |control| leafless::complement(octree.view(), control))?;
+        result.write(give(made.with_metadata(Metadata::common([octree.metadata()])?)))
+    })
+}
+
+/// The union of any number of octrees, at least one. Limits and progress of `options` concern each of its
+/// steps.
+///
+/// - Buffers: `octrees`, `count` handles; `options`, one struct or NULL; `result`, one pointer.
+/// - Result: as leafless_octree_union.
+/// - Errors: as leafless_octree_union, and LEAFLESS_E_ARGUMENT if `count` is 0.
+/// - Ownership: as leafless_octree_union.
+/// - Threads: any; uses as many as `options` says.
+/// - Untrusted input: as leafless_octree_union.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_octree_union_of(
+    octrees: *const *const leafless_octree,
+    count: u64,
+    options: *const leafless_options,
+    result: *mut *mut leafless_octree,
+) -> leafless_status {
+    // SAFETY: the caller's promise.
+    unsafe { nary(leafless::union_of, octrees, count, options, result) }
+}
+
+/// The intersection of any number of octrees, at least one.
+///
+/// - Buffers: as leafless_octree_union_of.
+/// - Result: as leafless_octree_union.
+/// - Errors: as leafless_octree_union_of.
+/// - Ownership: as leafless_octree_union.
+/// - Threads: any; uses as many as `options` says.
+/// - Untrusted input: as leafless_octree_union.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_octree_intersection_of(
+    octrees: *const *const leafless_octree,
+    count: u64,
+    options: *const leafless_options,
+    result: *mut *mut leafless_octree,
+) -> leafless_status {
+    // SAFETY: the caller's promise.
+    unsafe { nary(leafless::intersection_of, octrees, count, options, result) }
+}
+
+/// The points that lie in an odd number of octrees, at least one.
+///
+/// - Buffers: as leafless_octree_union_of.
+/// - Result: as leafless_octree_union.
+/// - Errors: as leafless_octree_union_of.
+/// - Ownership: as leafless_octree_union.
+/// - Threads: any; uses as many as `options` says.
+/// - Untrusted input: as leafless_octree_union.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_octree_xor_of(
+    octrees: *const *const leafless_octree,
+    count: u64,
+    options: *const leafless_options,
+    result: *mut *mut leafless_octree,
+) -> leafless_status {
+    // SAFETY: the caller's promise.
+    unsafe { nary(leafless::xor_of, octrees, count, options, result) }
+}

@@ -1,0 +1,398 @@
+//! Queries: points, boxes, and cursors on the nodes of an octree.
+
+use super::boundary::{Failure, array, discard, exclusive, guard, out, share, shared, slice};
+use super::control::{controlled, leafless_options};
+use super::frame::{frame, leafless_frame};
+use super::octree::{leafless_octree, leafless_tag};
+use super::solid::leafless_solid;
+use super::status::leafless_status;
+use core::mem::{align_of, size_of};
+use leafless::Cursor;
+use leafless::{Membership, Region, classify_box, contains};
+use std::sync::Arc;
+use yoke::Yoke;
+
+/// The answer to a point query.
+#[derive(Clone, Copy)]
+#[repr(u8)]
+pub enum leafless_membership {
+    /// Proven outside.
+    LEAFLESS_MEMBERSHIP_OUTSIDE = 0,
+    /// Proven inside.
+    LEAFLESS_MEMBERSHIP_INSIDE = 1,
+    /// In a PARTIAL cell, outside of the universe, or not a number.
+    LEAFLESS_MEMBERSHIP_UNDECIDED = 2,
+}
+
+impl From<Membership> for leafless_membership {
+    #[inline(always)]
+    fn from(membership: Membership) -> leafless_membership {
+        match membership {
+            Membership::Outside => leafless_membership::LEAFLESS_MEMBERSHIP_OUTSIDE,
+            Membership::Inside => leafless_membership::LEAFLESS_MEMBERSHIP_INSIDE,
+            Membership::Undecided => leafless_membership::LEAFLESS_MEMBERSHIP_UNDECIDED,
+        }
+    }
+}
+
+// Batches write their answers where the host wants them: the two are the same bytes.
+const _: () = {
+    assert!(size_of::<Membership>() == size_of::<leafless_membership>());
+    assert!(align_of::<Membership>() == align_of::<leafless_membership>());
+    assert!(Membership::Outside as u8 == leafless_membership::LEAFLESS_MEMBERSHIP_OUTSIDE as u8);
+    assert!(Membership::Inside as u8 == leafless_membership::LEAFLESS_MEMBERSHIP_INSIDE as u8);
+    assert!(Membership::Undecided as u8 == leafless_membership::LEAFLESS_MEMBERSHIP_UNDECIDED as u8);
+};
+
+/// Room for the answers to `count` points, at least one.
+///
+/// # Safety
+/// `memberships` is NULL, or has room for `count` answers that nobody else touches.
+pub(super) unsafe fn answers<'m>(
+    memberships: *mut leafless_membership,
+    count: usize,
+) -> Result<&'m mut [Membership], Failure> {
+    // SAFETY: the caller's promise.
+    unsafe {
+        out(memberships, "memberships")?;
+        // Every byte must be an answer before there is a slice of answers.
+        memberships.cast::<u8>().write_bytes(Membership::Undecided as u8, count);
+        Ok(core::slice::from_raw_parts_mut(memberships.cast(), count))
+    }
+}
+
+/// The answer to a box query. Each is proven, but for the last.
+#[derive(Clone, Copy)]
+#[repr(u8)]
+pub enum leafless_region {
+    /// The interiors of box and solid are disjoint.
+    LEAFLESS_REGION_OUTSIDE = 0,
+    /// The box lies in the solid.
+    LEAFLESS_REGION_INSIDE = 1,
+    /// Part of the box lies inside, part outside.
+    LEAFLESS_REGION_CROSSING = 2,
+    /// None of these could be proven at the octree's depth.
+    LEAFLESS_REGION_UNDECIDED = 3,
+}
+
+impl From<Region> for leafless_region {
+    fn from(region: Region) -> leafless_region {
+        match region {
+            Region::Outside => leafless_region::LEAFLESS_REGION_OUTSIDE,
+            Region::Inside => leafless_region::LEAFLESS_REGION_INSIDE,
+            Region::Crossing => leafless_region::LEAFLESS_REGION_CROSSING,
+            Region::Undecided => leafless_region::LEAFLESS_REGION_UNDECIDED,
+        }
+    }
+}
+
+/// Whether the solid contains a point. A point on the boundary may be answered either way; one that is
+/// outside of the universe or not a number is undecided. At most ⌈depth/2⌉ array elements are read.
+///
+/// - Buffers: `point_model`, 3 numbers; `membership`, one.
+/// - Result: `*membership`.
+/// - Errors: only the general ones.
+/// - Ownership: nothing changes hands.
+/// - Threads: any.
+/// - Untrusted input: any octree, any numbers; damage reads as undecided.
+/// - Since: 0.1
+///
+/// cbindgen:ptrs-as-arrays=[[point_model; 3]]
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_octree_contains(
+    octree: *const leafless_octree,
+    point_model: *const f64,
+    membership: *mut leafless_membership,
+) -> leafless_status {
+    guard(|| unsafe {
+        let octree = &shared(octree, "octree")?.octree;
+        let point = array(point_model, "point_model")?;
+        let membership = out(membership, "membership")?;
+        membership.write(octree.contains(point).into())
+    })
+}
+
+/// As leafless_octree_contains for many points at once, which is faster than one by one.
+///
+/// - Buffers: `points_model`, `count` points of 3 numbers; `memberships`, room for `count`. Both may be NULL
+///   if `count` is 0.
+/// - Result: `memberships[i]` for point i.
+/// - Errors: only the general ones.
+/// - Ownership: nothing changes hands.
+/// - Threads: any; works in the calling thread.
+/// - Untrusted input: any octree, any numbers; damage reads as undecided.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_octree_contains_many(
+    octree: *const leafless_octree,
+    points_model: *const f64,
+    count: u64,
+    memberships: *mut leafless_membership,
+) -> leafless_status {
+    guard(|| unsafe {
+        let octree = &shared(octree, "octree")?.octree;
+        let points: &[[f64; 3]] = slice(points_model.cast(), count, "points_model")?;
+        if points.is_empty() {
+            return Ok(());
+        }
+        let answers = answers(memberships, points.len())?;
+        Ok(octree.contains_many(points, answers)?)
+    })
+}
+
+/// The tag of a finest cell.
+///
+/// - Buffers: `cell`, 3 numbers; `tag`, one.
+/// - Result: `*tag`: EMPTY, FULL or PARTIAL; PARTIAL if a coordinate is not below 2^depth.
+/// - Errors: only the general ones.
+/// - Ownership: nothing changes hands.
+/// - Threads: any.
+/// - Untrusted input: any octree, any numbers; damage reads as PARTIAL.
+/// - Since: 0.1
+///
+/// cbindgen:ptrs-as-arrays=[[cell; 3]]
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_octree_tag_at(
+    octree: *const leafless_octree,
+    cell: *const u32,
+    tag: *mut leafless_tag,
+) -> leafless_status {
+    guard(|| unsafe {
+        let octree = &shared(octree, "octree")?.octree;
+        let cell = array(cell, "cell")?;
+        out(tag, "tag")?.write(octree.view().tag_at(cell).into())
+    })
+}
+
+/// How a box lies to the solid; what of it lies outside of the universe is undecided.
+///
+/// - Buffers: `min_model` and `max_model`, 3 numbers each; `region`, one.
+/// - Result: `*region`.
+/// - Errors: LEAFLESS_E_ARGUMENT if min > max on an axis, or a coordinate is not a number.
+/// - Ownership: nothing changes hands.
+/// - Threads: any.
+/// - Untrusted input: any octree, any numbers; no array element is read twice; damage reads as undecided.
+/// - Since: 0.1
+///
+/// cbindgen:ptrs-as-arrays=[[min_model; 3], [max_model; 3]]
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_octree_classify_box(
+    octree: *const leafless_octree,
+    min_model: *const f64,
+    max_model: *const f64,
+    region: *mut leafless_region,
+) -> leafless_status {
+    guard(|| unsafe {
+        let octree = &shared(octree, "octree")?.octree;
+        let (min, max) = (array(min_model, "min_model")?, array(max_model, "max_model")?);
+        let region = out(region, "region")?;
+        region.write(octree.classify_box(min, max)?.into())
+    })
+}
+
+/// Whether a solid contains points, without an octree: a point in a cell of the frame that is undecided at
+/// the frame's depth, outside of the universe, or not a number is undecided. A point on the boundary may be
+/// answered either way. The host's own `contains` is asked first, where there is one; for others at most one
+/// cell a level is split a point, and points near each other share the way.
+///
+/// - Buffers: `frame`, one struct; `points_model`, `count` points of 3 numbers; `options`, one struct or
+///   NULL, of which limits do not matter; `memberships`, room for `count`. `points_model` and `memberships`
+///   may be NULL if `count` is 0.
+/// - Result: `memberships[i]` for point i; the same for any number of threads.
+/// - Errors: LEAFLESS_E_FRAME if the solid belongs to another frame; LEAFLESS_E_ARGUMENT as
+///   leafless_frame_check; LEAFLESS_E_CALLBACK; LEAFLESS_E_DAMAGED; LEAFLESS_E_CANCELLED;
+///   LEAFLESS_E_NO_MEMORY.
+/// - Ownership: nothing changes hands.
+/// - Threads: any; uses as many as `options` says.
+/// - Untrusted input: any solid, any numbers.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_solid_contains(
+    solid: *const leafless_solid,
+    frame: *const leafless_frame,
+    points_model: *const f64,
+    count: u64,
+    options: *const leafless_options,
+    memberships: *mut leafless_membership,
+) -> leafless_status {
+    guard(|| unsafe {
+        let solid = &shared(solid, "solid")?.solid;
+        let frame = self::frame(frame)?;
+        let points: &[[f64; 3]] = slice(points_model.cast(), count, "points_model")?;
+        if points.is_empty() {
+            return Ok(());
+        }
+        let answers = answers(memberships, points.len())?;
+        controlled(options, |control| contains(solid, &frame, points, answers, control))
+    })
+}
+
+/// How a box lies to a solid, without an octree, as far as cells of the frame tell; what of the box lies
+/// outside of the universe is undecided. The work ends as soon as the answer is known, or once `max_splits`
+/// cells are split.
+///
+/// - Buffers: `frame`, one struct; `min_model` and `max_model`, 3 numbers each; `options`, one struct or
+///   NULL; `region`, one.
+/// - Result: `*region`.
+/// - Errors: LEAFLESS_E_ARGUMENT if min > max on an axis, or a coordinate is not a number; else as
+///   leafless_solid_contains.
+/// - Ownership: nothing changes hands.
+/// - Threads: any; works in the calling thread.
+/// - Untrusted input: any solid, any numbers; set `max_splits` where the depth or the solid is not your own
+///   choice.
+/// - Since: 0.1
+///
+/// cbindgen:ptrs-as-arrays=[[min_model; 3], [max_model; 3]]
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_solid_classify_box(
+    solid: *const leafless_solid,
+    frame: *const leafless_frame,
+    min_model: *const f64,
+    max_model: *const f64,
+    options: *const leafless_options,
+    region: *mut leafless_region,
+) -> leafless_status {
+    guard(|| unsafe {
+        let solid = &shared(solid, "solid")?.solid;
+        let frame = self::frame(frame)?;
+        let (min, max) = (array(min_model, "min_model")?, array(max_model, "max_model")?);
+        let region = out(region, "region")?;
+        let found = controlled(options, |control| classify_box(solid, &frame, min, max, control))?;
+        region.write(found.into())
+    })
+}
+
+/// A position in an octree that moves along its links, one level at a step. At first it stands on the
+/// universe.
+///
+/// Moving changes it: while one thread moves a cursor, no other may use it. Threads may have a cursor each.
+pub struct leafless_cursor(pub(super) Yoke<Cursor<'static>, Arc<leafless_octree>>);
+
+/// Where a cursor stands.
+#[derive(Clone, Copy)]
+#[repr(C)]
+pub struct leafless_cursor_state {
+    /// The cell's place among those of its level, per axis.
+    pub cell: [u32; 3],
+    /// The cell's level; 0 is the universe.
+    pub level: u32,
+    /// The cell's tag.
+    pub tag: leafless_tag,
+    /// Of a BRANCH the tags of its children, in octant order (bit 0 of the octant is x, bit 1 y, bit 2 z);
+    /// else eight times the cell's own.
+    pub children: [leafless_tag; 8],
+}
+
+/// Makes a cursor that stands on the universe.
+///
+/// - Buffers: `cursor`, one pointer.
+/// - Result: `*cursor`.
+/// - Errors: only the general ones.
+/// - Ownership: the cursor shares the octree, which may be freed; give `*cursor` back with
+///   leafless_cursor_free.
+/// - Threads: any.
+/// - Untrusted input: any octree.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_cursor_new(
+    octree: *const leafless_octree,
+    cursor: *mut *mut leafless_cursor,
+) -> leafless_status {
+    guard(|| unsafe {
+        let octree = share(octree, "octree")?;
+        let cursor = out(cursor, "cursor")?;
+        let yoke = Yoke::attach_to_cart(octree, |handle| Cursor::new(handle.octree.view()));
+        cursor.write(Box::into_raw(Box::new(leafless_cursor(yoke))))
+    })
+}
+
+/// Gives back a cursor.
+///
+/// - Buffers: `cursor`, a handle or NULL, which does nothing.
+/// - Result: none.
+/// - Errors: none.
+/// - Ownership: the handle is gone.
+/// - Threads: no other call may use the handle.
+/// - Untrusted input: none.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_cursor_free(cursor: *mut leafless_cursor) {
+    // SAFETY: the caller's promise.
+    unsafe { discard(cursor) }
+}
+
+/// Where a cursor stands.
+///
+/// - Buffers: `state`, one struct.
+/// - Result: `*state`.
+/// - Errors: only the general ones.
+/// - Ownership: nothing changes hands.
+/// - Threads: any, while nobody moves the cursor.
+/// - Untrusted input: any octree.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_cursor_read(
+    cursor: *const leafless_cursor,
+    state: *mut leafless_cursor_state,
+) -> leafless_status {
+    guard(|| unsafe {
+        let cursor = shared(cursor, "cursor")?.0.get();
+        let (cell, tag) = (cursor.cell(), cursor.tag());
+        let children = cursor.node().map_or([tag; 8], |node| node.tags());
+        out(state, "state")?.write(leafless_cursor_state {
+            cell: cell.at,
+            level: cell.level.into(),
+            tag: tag.into(),
+            children: children.map(leafless_tag::from),
+        })
+    })
+}
+
+/// Moves a cursor to a child of its cell. On a cell that is no BRANCH it stays where it is.
+///
+/// - Buffers: `moved`, one truth value, or NULL. `octant` is 0 to 7.
+/// - Result: `*moved`, whether the cell is a BRANCH.
+/// - Errors: LEAFLESS_E_ARGUMENT if `octant` is not 0 to 7.
+/// - Ownership: nothing changes hands.
+/// - Threads: no other call may use the cursor.
+/// - Untrusted input: any octree; damage reads as PARTIAL, so that a walk visits every cell at most once.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_cursor_descend(
+    cursor: *mut leafless_cursor,
+    octant: u32,
+    moved: *mut bool,
+) -> leafless_status {
+    guard(|| unsafe {
+        let cursor = exclusive(cursor, "cursor")?;
+        let moved = if moved.is_null() { None } else { Some(out(moved, "moved")?) };
+        let octant = match u8::try_from(octant) {
+            Ok(octant) if octant < 8 => octant,
+            _ => return Err(Failure::Argument { name: "octant", problem: "must be 0 to 7" }),
+        };
+        let descended = cursor.0.with_mut_return(move |cursor| cursor.descend(octant));
+        moved.map_or(Ok(()), |moved| moved.write(descended))
+    })
+}
+
+/// Moves a cursor to the parent of its cell. On the universe it stays where it is.
+///
+/// - Buffers: `moved`, one truth value, or NULL.
+/// - Result: `*moved`, whether there is a parent.
+/// - Errors: only the general ones.
+/// - Ownership: nothing changes hands.
+/// - Threads: no other call may use the cursor.
+/// - Untrusted input: any octree.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_cursor_ascend(
+    cursor: *mut leafless_cursor,
+    moved: *mut bool,
+) -> leafless_status {
+    guard(|| unsafe {
+        let cursor = exclusive(cursor, "cursor")?;
+        let moved = if moved.is_null() { None } else { Some(out(moved, "moved")?) };
+        let ascended = cursor.0.with_mut_return(|cursor| cursor.ascend());
+        moved.map_or(Ok(()), |moved| moved.write(ascended))
+    })
+}

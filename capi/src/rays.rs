@@ -1,0 +1,345 @@
+//! Rays: where they meet octrees and solids, and whether two points see each other.
+
+use super::boundary::{Failure, array, buffer, guard, out, shared, slice};
+use super::control::{controlled, leafless_options};
+use super::frame::{frame, leafless_frame, leafless_interval};
+use super::octree::leafless_octree;
+use super::solid::leafless_solid;
+use super::status::leafless_status;
+use leafless::Error;
+use leafless::memory;
+use leafless::{Obstacle, Ray, RayHit, RaySpans, Sight, cast_rays, line_of_sight, ray_spans};
+
+/// A half-line or a segment: the points origin + t · direction with 0 ≤ t ≤ t_last. A coordinate is zero or has
+/// a magnitude between 2^-256 and 2^256.
+#[derive(Clone, Copy)]
+#[repr(C)]
+pub struct leafless_ray {
+    /// Where the ray starts.
+    pub origin_model: [f64; 3],
+    /// Not zero, of any length. t is a distance if the length is 1.
+    pub direction_model: [f64; 3],
+    /// The greatest t: INFINITY for a half-line, or between 2^-256 and 2^256; 1 for the segment from
+    /// `origin_model` to `origin_model` + `direction_model`.
+    pub t_last: f64,
+}
+
+impl TryFrom<&leafless_ray> for Ray {
+    type Error = Error;
+
+    fn try_from(ray: &leafless_ray) -> Result<Ray, Error> {
+        Ray::new(ray.origin_model, ray.direction_model)?.until(ray.t_last)
+    }
+}
+
+/// Where a ray first meets a solid.
+#[derive(Clone, Copy)]
+#[repr(C)]
+pub struct leafless_ray_hit {
+    /// The least t at which the ray is in the solid lies in this interval: before `lower` the ray is proven
+    /// outside, at `upper` inside. `upper` is INFINITY if the ray is nowhere proven inside; then it may miss the
+    /// solid. Both are INFINITY if nothing stops the ray.
+    pub t: leafless_interval,
+    /// The outward normal of the face by which the ray enters the cell, or of the surface where the solid knows
+    /// it better. Its length is 1 but for rounding; zero if the ray starts in the cell, or nothing stops it.
+    pub normal: [f64; 3],
+    /// The place of the first cell that stops the ray among those of its level, per axis.
+    pub cell: [u32; 3],
+    /// The cell's level; 0 is the universe.
+    pub level: u32,
+    /// Whether something stops the ray.
+    pub is_hit: bool,
+}
+
+impl From<Option<RayHit>> for leafless_ray_hit {
+    fn from(hit: Option<RayHit>) -> leafless_ray_hit {
+        match hit {
+            Some(RayHit { t, cell, normal }) => leafless_ray_hit {
+                t: t.into(),
+                normal,
+                cell: cell.at,
+                level: cell.level.into(),
+                is_hit: true,
+            },
+            None => leafless_ray_hit {
+                t: leafless_interval { lower: f64::INFINITY, upper: f64::INFINITY },
+                normal: [0.0; 3],
+                cell: [0; 3],
+                level: 0,
+                is_hit: false,
+            },
+        }
+    }
+}
+
+/// Which cells stop a ray.
+#[repr(u32)]
+pub enum leafless_obstacle {
+    /// What is proven to be solid: FULL cells.
+    LEAFLESS_OBSTACLE_FULL = 0,
+    /// What may be solid: FULL and PARTIAL cells.
+    LEAFLESS_OBSTACLE_UPPER = 1,
+}
+
+/// Whether two points see each other past a solid.
+#[derive(Clone, Copy)]
+#[repr(u8)]
+pub enum leafless_sight {
+    /// Proven: no point of the segment lies in the solid.
+    LEAFLESS_SIGHT_CLEAR = 0,
+    /// Proven: some point of the segment lies in the solid, or on its surface.
+    LEAFLESS_SIGHT_BLOCKED = 1,
+    /// Neither could be proven with the cells of the frame.
+    LEAFLESS_SIGHT_UNDECIDED = 2,
+}
+
+impl From<Sight> for leafless_sight {
+    fn from(sight: Sight) -> leafless_sight {
+        match sight {
+            Sight::Clear => leafless_sight::LEAFLESS_SIGHT_CLEAR,
+            Sight::Blocked => leafless_sight::LEAFLESS_SIGHT_BLOCKED,
+            Sight::Undecided => leafless_sight::LEAFLESS_SIGHT_UNDECIDED,
+        }
+    }
+}
+
+pub(super) fn obstacle(on: u32) -> Result<Obstacle, Failure> {
+    match on {
+        0 => Ok(Obstacle::Full),
+        1 => Ok(Obstacle::Upper),
+        _ => Err(Failure::Argument { name: "on", problem: "must be a leafless_obstacle" }),
+    }
+}
+
+/// One of the host's rays.
+fn ray(index: usize, ray: &leafless_ray) -> Result<Ray, Failure> {
+    Ray::try_from(ray).map_err(|error| Failure::Element { name: "rays", index: index as u64, error })
+}
+
+/// Where rays first meet an octree's cells, whatever they prove of the solid that it was made from. What lies
+/// outside of the universe does not count. At most 3 · 2^depth cells a ray are looked at, about a dozen as a rule.
+///
+/// - Buffers: `rays`, `count` structs; `hits`, room for `count`. Both may be NULL if `count` is 0. `on` is a
+///   leafless_obstacle.
+/// - Result: `hits[i]` for ray i.
+/// - Errors: LEAFLESS_E_ARGUMENT if `on` is none, or a ray is not as leafless_ray says.
+/// - Ownership: nothing changes hands.
+/// - Threads: any; works in the calling thread.
+/// - Untrusted input: any octree, any numbers; damage reads as PARTIAL.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_octree_cast_rays(
+    octree: *const leafless_octree,
+    rays: *const leafless_ray,
+    count: u64,
+    on: u32,
+    hits: *mut leafless_ray_hit,
+) -> leafless_status {
+    guard(|| unsafe {
+        /// Rays that are cast together.
+        const BATCH: usize = 64;
+        let octree = &shared(octree, "octree")?.octree;
+        let rays = slice(rays, count, "rays")?;
+        let on = obstacle(on)?;
+        if rays.is_empty() {
+            return Ok(());
+        }
+        out(hits, "hits")?;
+        // Nothing is written before all rays are known to be good.
+        for (index, given) in rays.iter().enumerate() {
+            ray(index, given)?;
+        }
+        let mut some: Vec<Ray> = memory::with_capacity(rays.len().min(BATCH))?;
+        let mut to = hits;
+        for batch in rays.chunks(BATCH) {
+            some.clear();
+            for given in batch {
+                some.push(Ray::try_from(given)?);
+            }
+            let mut found = [None; BATCH];
+            octree.cast_rays(&some, on, &mut found[..batch.len()])?;
+            for &hit in &found[..batch.len()] {
+                to.write(hit.into());
+                to = to.add(1);
+            }
+        }
+        Ok(())
+    })
+}
+
+/// Where rays first meet a solid, without an octree, as far as cells of the frame tell, and what the solid knows
+/// of the surface in the finest of them. What lies outside of the universe does not count. A ray splits the
+/// PARTIAL cells that it passes up to the first FULL one: O(depth) cells across a surface, up to O(2^depth)
+/// along one.
+///
+/// - Buffers: `frame`, one struct; `rays`, `count` structs; `options`, one struct or NULL, of which
+///   `max_splits` counts for each ray by itself: cells that were not split count as PARTIAL; `hits`, room for
+///   `count`. `rays` and `hits` may be NULL if `count` is 0. `on` is a leafless_obstacle.
+/// - Result: `hits[i]` for ray i; the same for any number of threads.
+/// - Errors: LEAFLESS_E_ARGUMENT if `on` is none, or a ray is not as leafless_ray says; else as
+///   leafless_solid_contains.
+/// - Ownership: nothing changes hands.
+/// - Threads: any; uses as many as `options` says.
+/// - Untrusted input: any solid, any numbers; set `max_splits` where the depth or the solid is not your own
+///   choice.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_solid_cast_rays(
+    solid: *const leafless_solid,
+    frame: *const leafless_frame,
+    rays: *const leafless_ray,
+    count: u64,
+    on: u32,
+    options: *const leafless_options,
+    hits: *mut leafless_ray_hit,
+) -> leafless_status {
+    guard(|| unsafe {
+        let solid = &shared(solid, "solid")?.solid;
+        let frame = self::frame(frame)?;
+        let given = slice(rays, count, "rays")?;
+        let on = obstacle(on)?;
+        if given.is_empty() {
+            return Ok(());
+        }
+        out(hits, "hits")?;
+        let mut rays = memory::with_capacity(given.len())?;
+        for (index, given) in given.iter().enumerate() {
+            rays.push(ray(index, given)?);
+        }
+        let found = controlled(options, |control| cast_rays(solid, &frame, &rays, on, control))?;
+        for (index, hit) in found.into_iter().enumerate() {
+            // There is one hit a ray, and room for as many.
+            hits.add(index).write(hit.into());
+        }
+        Ok(())
+    })
+}
+
+/// Writes the spans of a ray where the host wants them: both lists or none.
+///
+/// # Safety
+/// As [`buffer`] and [`out`].
+unsafe fn write_spans(
+    spans: impl FnOnce() -> Result<RaySpans, Failure>,
+    inner: (*mut leafless_interval, u64, *mut u64),
+    outer: (*mut leafless_interval, u64, *mut u64),
+) -> Result<(), Failure> {
+    // SAFETY: the caller's promise.
+    unsafe {
+        let (to_inner, inner_count) = (buffer(inner.0, inner.1, "inner")?, out(inner.2, "inner_count")?);
+        let (to_outer, outer_count) = (buffer(outer.0, outer.1, "outer")?, out(outer.2, "outer_count")?);
+        let RaySpans { inner, outer } = spans()?;
+        to_inner.check(inner.len())?;
+        to_outer.check(outer.len())?;
+        to_inner.fill_with(&inner)?;
+        to_outer.fill_with(&outer)?;
+        inner_count.write(inner.len() as u64)?;
+        outer_count.write(outer.len() as u64)
+    }
+}
+
+/// Where a ray is in an octree's cells, whatever they prove of the solid that it was made from: intervals of t
+/// that ascend, of which no two of a list meet. What lies outside of the universe does not count. O(cells along
+/// the ray · depth).
+///
+/// - Buffers: `ray`, one struct; `inner` and `outer`, room for `inner_capacity` and `outer_capacity` structs, each
+///   NULL to ask for its count only; `inner_count` and `outer_count`, one number each.
+/// - Result: `inner`, where the ray is in FULL cells, rounded inward; `outer`, where it is in FULL or PARTIAL
+///   cells, rounded outward; their counts.
+/// - Errors: LEAFLESS_E_ARGUMENT if the ray is not as leafless_ray says; LEAFLESS_E_BUFFER if a capacity is too
+///   small: nothing is written then; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: nothing changes hands.
+/// - Threads: any.
+/// - Untrusted input: any octree, any numbers; damage reads as PARTIAL.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_octree_ray_spans(
+    octree: *const leafless_octree,
+    ray: *const leafless_ray,
+    inner: *mut leafless_interval,
+    inner_capacity: u64,
+    inner_count: *mut u64,
+    outer: *mut leafless_interval,
+    outer_capacity: u64,
+    outer_count: *mut u64,
+) -> leafless_status {
+    guard(|| unsafe {
+        let octree = &shared(octree, "octree")?.octree;
+        let ray = Ray::try_from(shared(ray, "ray")?)?;
+        let spans = || Ok(octree.ray_spans(&ray)?);
+        write_spans(spans, (inner, inner_capacity, inner_count), (outer, outer_capacity, outer_count))
+    })
+}
+
+/// Where a ray is in a solid, without an octree, as far as cells of the frame tell: intervals of t that ascend, of
+/// which no two of a list meet. What lies outside of the universe does not count. The ray splits all PARTIAL cells
+/// that it passes: O(depth) cells where it crosses a surface, up to O(2^depth) along one. Asking for the counts
+/// costs as much as asking for the intervals.
+///
+/// - Buffers: as leafless_octree_ray_spans; `frame`, one struct; `options`, one struct or NULL, of which
+///   `max_splits` counts: cells that were not split count as PARTIAL.
+/// - Result: `inner`, where the ray is proven inside, rounded inward; `outer`, where it is not proven outside,
+///   rounded outward; their counts.
+/// - Errors: LEAFLESS_E_ARGUMENT if the ray is not as leafless_ray says; LEAFLESS_E_BUFFER if a capacity is too
+///   small: nothing is written then; else as leafless_solid_contains.
+/// - Ownership: nothing changes hands.
+/// - Threads: any; works in the calling thread.
+/// - Untrusted input: any solid, any numbers; set `max_splits` where the depth or the solid is not your own
+///   choice.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_solid_ray_spans(
+    solid: *const leafless_solid,
+    frame: *const leafless_frame,
+    ray: *const leafless_ray,
+    options: *const leafless_options,
+    inner: *mut leafless_interval,
+    inner_capacity: u64,
+    inner_count: *mut u64,
+    outer: *mut leafless_interval,
+    outer_capacity: u64,
+    outer_count: *mut u64,
+) -> leafless_status {
+    guard(|| unsafe {
+        let solid = &shared(solid, "solid")?.solid;
+        let frame = self::frame(frame)?;
+        let ray = Ray::try_from(shared(ray, "ray")?)?;
+        let spans = || controlled(options, |control| ray_spans(solid, &frame, &ray, control));
+        write_spans(spans, (inner, inner_capacity, inner_count), (outer, outer_capacity, outer_count))
+    })
+}
+
+/// Whether two points see each other past a solid, without an octree, as far as cells of the frame tell. If the
+/// solid may go on outside of the universe and a point lies there, the answer is not LEAFLESS_SIGHT_CLEAR. Costs
+/// as much as one ray of leafless_solid_cast_rays.
+///
+/// - Buffers: `frame`, one struct; `from_model` and `to_model`, 3 numbers each; `options`, one struct or NULL,
+///   of which `max_splits` counts: cells that were not split count as PARTIAL; `sight`, one.
+/// - Result: `*sight`.
+/// - Errors: LEAFLESS_E_ARGUMENT if the points are equal, or a coordinate is not zero and not of a magnitude
+///   between 2^-256 and 2^256; else as leafless_solid_contains.
+/// - Ownership: nothing changes hands.
+/// - Threads: any; works in the calling thread.
+/// - Untrusted input: any solid, any numbers; set `max_splits` where the depth or the solid is not your own
+///   choice.
+/// - Since: 0.1
+///
+/// cbindgen:ptrs-as-arrays=[[from_model; 3], [to_model; 3]]
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_solid_line_of_sight(
+    solid: *const leafless_solid,
+    frame: *const leafless_frame,
+    from_model: *const f64,
+    to_model: *const f64,
+    options: *const leafless_options,
+    sight: *mut leafless_sight,
+) -> leafless_status {
+    guard(|| unsafe {
+        let solid = &shared(solid, "solid")?.solid;
+        let frame = self::frame(frame)?;
+        let (from, to) = (array(from_model, "from_model")?, array(to_model, "to_model")?);
+        let sight = out(sight, "sight")?;
+        let found = controlled(options, |control| line_of_sight(solid, &frame, from, to, control))?;
+        sight.write(found.into())
+    })
+}

@@ -1,0 +1,409 @@
+//! Scenes in the language of OpenSCAD's CSG dumps.
+
+use super::boundary::{
+    Failure, Sized32, buffer, guard, handle, initialise, out, path, refer, release, shared, sized, slice,
+    text,
+};
+use super::frame::{frame, leafless_frame};
+use super::mesh::leafless_mesh_report;
+use super::solid::{give, leafless_solid};
+use super::status::leafless_status;
+use core::ffi::c_char;
+use leafless::scene::{Facets, Scene, SceneMesh, SceneOptions, open_scene, read_scene};
+use std::path::Path;
+
+/// What a text describes: set operations on primitives, swept figures, meshes and octrees.
+///
+/// The language is that of the CSG dumps which OpenSCAD exports (group union difference intersection
+/// multmatrix color render cube sphere cylinder polyhedron linear_extrude rotate_extrude square circle
+/// polygon, and import of meshes), with these calls besides: halfspace([a, b, c, d]), which is a x + b y + c
+/// z + d ≥ 0, quadric([10 numbers]), power([A, a, n1], [B, b, n2], [C, c, n3], R), torus(major, minor),
+/// mesh("file.stl") and octree("file.lfl"). Curved shapes are exact, but for those with a $fn of 12 or less,
+/// which are the polygons, prisms and polyhedra that OpenSCAD draws; leafless_scene_options ask for others. What
+/// is not supported (hull, minkowski, text, projection and others) is refused by name.
+///
+/// Immutable: all its functions may be called at once from any number of threads, but leafless_scene_free
+/// needs the reference that it gives back for itself.
+pub struct leafless_scene {
+    scene: Scene,
+}
+
+/// Reads a scene from a file. Files that it names are looked for beside it.
+///
+/// - Buffers: `path`, `path_length` bytes of UTF-8; `scene`, one pointer.
+/// - Result: `*scene`.
+/// - Errors: LEAFLESS_E_SCENE, with line and column in the message, for whatever is wrong with the text or a
+///   file that it names; LEAFLESS_E_IO if the file itself cannot be read; LEAFLESS_E_UTF8;
+///   LEAFLESS_E_NO_MEMORY.
+/// - Ownership: give `*scene` back with leafless_scene_free.
+/// - Threads: any.
+/// - Untrusted input: any text; nesting costs memory, not stack, and memory is linear in the text and in the
+///   files that it names. It may name any file, by absolute paths too, which is then read as a mesh or an
+///   octree.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_scene_open(
+    path: *const c_char,
+    path_length: usize,
+    scene: *mut *mut leafless_scene,
+) -> leafless_status {
+    guard(|| unsafe {
+        let path = self::path(path, path_length)?;
+        let result = out(scene, "scene")?;
+        result.write(handle(leafless_scene { scene: open_scene(path)? }))
+    })
+}
+
+/// As leafless_scene_open for a text in memory, in UTF-8. Files that it names are looked for in `folder`.
+///
+/// - Buffers: `bytes`, `length` bytes; may be NULL if there are none. `folder`, `folder_length` bytes of
+///   UTF-8; NULL if the scene may name no files. `scene`, one pointer.
+/// - Result: `*scene`.
+/// - Errors: as leafless_scene_open, but LEAFLESS_E_IO; of names of files, if there is no folder,
+///   LEAFLESS_E_SCENE.
+/// - Ownership: the bytes are not kept; give `*scene` back with leafless_scene_free.
+/// - Threads: any.
+/// - Untrusted input: any bytes, as for leafless_scene_open.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_scene_from_bytes(
+    bytes: *const u8,
+    length: u64,
+    folder: *const c_char,
+    folder_length: usize,
+    scene: *mut *mut leafless_scene,
+) -> leafless_status {
+    guard(|| unsafe {
+        let bytes = slice(bytes, length, "bytes")?;
+        let folder = if folder.is_null() { None } else { Some(text(folder, folder_length, "folder")?) };
+        let result = out(scene, "scene")?;
+        let scene = read_scene(bytes, folder.map(Path::new))?;
+        result.write(handle(leafless_scene { scene }))
+    })
+}
+
+/// Which circles, balls, cylinders and solids of revolution are drawn as polygons, prisms and polyhedra.
+#[derive(Clone, Copy)]
+#[repr(u32)]
+pub enum leafless_facets {
+    /// Those with a $fn of 12 or less; all others are exact.
+    LEAFLESS_FACETS_AUTO = 0,
+    /// None: circles are round.
+    LEAFLESS_FACETS_EXACT = 1,
+    /// All, with as many sides as OpenSCAD gives them, which must be 1024 at most.
+    LEAFLESS_FACETS_POLYGON = 2,
+}
+use leafless_facets::*;
+
+/// How a scene is to be read. NULL means the defaults. All fields but the first may be zero, which is their
+/// default; leafless_scene_options_init sets them so.
+#[derive(Clone, Copy)]
+#[repr(C)]
+pub struct leafless_scene_options {
+    /// sizeof(leafless_scene_options).
+    pub struct_size: u32,
+    /// Which curves are drawn as polygons, a leafless_facets.
+    pub facets: u32,
+}
+
+// SAFETY: numbers.
+unsafe impl Sized32 for leafless_scene_options {}
+
+/// # Safety
+/// `options` is NULL or points to valid options.
+unsafe fn options(options: *const leafless_scene_options) -> Result<SceneOptions, Failure> {
+    // SAFETY: the caller's promise.
+    let given = unsafe { sized(options, "options")? };
+    let known = [
+        (LEAFLESS_FACETS_AUTO, Facets::Auto),
+        (LEAFLESS_FACETS_EXACT, Facets::Exact),
+        (LEAFLESS_FACETS_POLYGON, Facets::Polygon),
+    ];
+    match known.iter().find(|(facets, _)| *facets as u32 == given.facets) {
+        Some(&(_, facets)) => Ok(SceneOptions::with_facets(facets)),
+        None => Err(Failure::Argument { name: "options.facets", problem: "is no leafless_facets" }),
+    }
+}
+
+/// Sets options for scenes to their defaults.
+///
+/// - Buffers: `options`, one struct of `struct_size` bytes, which is sizeof(leafless_scene_options); need not
+///   be initialised.
+/// - Result: `*options`.
+/// - Errors: LEAFLESS_E_ARGUMENT if `struct_size` cannot be right.
+/// - Ownership: nothing changes hands.
+/// - Threads: any.
+/// - Untrusted input: none.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_scene_options_init(
+    options: *mut leafless_scene_options,
+    struct_size: usize,
+) -> leafless_status {
+    guard(|| unsafe { initialise(options, struct_size, "options") })
+}
+
+/// As leafless_scene_open, with options.
+///
+/// - Buffers: `path`, `path_length` bytes of UTF-8; `options`, one struct, or NULL; `scene`, one pointer.
+/// - Result: `*scene`.
+/// - Errors: as leafless_scene_open; LEAFLESS_E_ARGUMENT if `options.facets` is no leafless_facets.
+/// - Ownership: give `*scene` back with leafless_scene_free.
+/// - Threads: any.
+/// - Untrusted input: as for leafless_scene_open; with LEAFLESS_FACETS_POLYGON a ball may take memory for half
+///   a million half-spaces.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_scene_open_with(
+    path: *const c_char,
+    path_length: usize,
+    options: *const leafless_scene_options,
+    scene: *mut *mut leafless_scene,
+) -> leafless_status {
+    guard(|| unsafe {
+        let path = self::path(path, path_length)?;
+        let options = self::options(options)?;
+        let result = out(scene, "scene")?;
+        result.write(handle(leafless_scene { scene: options.open(path)? }))
+    })
+}
+
+/// As leafless_scene_from_bytes, with options.
+///
+/// - Buffers: `bytes`, `length` bytes; may be NULL if there are none. `folder`, `folder_length` bytes of
+///   UTF-8; NULL if the scene may name no files. `options`, one struct, or NULL; `scene`, one pointer.
+/// - Result: `*scene`.
+/// - Errors: as leafless_scene_from_bytes; LEAFLESS_E_ARGUMENT if `options.facets` is no leafless_facets.
+/// - Ownership: the bytes are not kept; give `*scene` back with leafless_scene_free.
+/// - Threads: any.
+/// - Untrusted input: any bytes, as for leafless_scene_open_with.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_scene_from_bytes_with(
+    bytes: *const u8,
+    length: u64,
+    folder: *const c_char,
+    folder_length: usize,
+    options: *const leafless_scene_options,
+    scene: *mut *mut leafless_scene,
+) -> leafless_status {
+    guard(|| unsafe {
+        let bytes = slice(bytes, length, "bytes")?;
+        let folder = if folder.is_null() { None } else { Some(text(folder, folder_length, "folder")?) };
+        let options = self::options(options)?;
+        let result = out(scene, "scene")?;
+        let scene = options.read(bytes, folder.map(Path::new))?;
+        result.write(handle(leafless_scene { scene }))
+    })
+}
+
+/// What was found while a scene was read.
+#[derive(Clone, Copy)]
+#[repr(C)]
+pub struct leafless_scene_report {
+    /// Calls of circle, sphere, cylinder and rotate_extrude that were drawn as polygons.
+    pub polygons: u64,
+    /// Calls of these that are exact. OpenSCAD draws them as polygons.
+    pub exact: u64,
+    /// Calls of linear_extrude of which `slices` has no effect though it has one in OpenSCAD.
+    pub ignored_slices: u64,
+    /// Meshes and polyhedra that have triangles: leafless_scene_describe_mesh tells of each.
+    pub meshes: u64,
+    /// Whether the scene is known to be empty: there is nothing in it, or what is intersected lies apart.
+    pub is_empty: bool,
+}
+
+/// What is told of a mesh or polyhedron in a scene.
+#[derive(Clone, Copy)]
+#[repr(C)]
+pub struct leafless_scene_mesh {
+    /// Line of the call in the text, counted from 1.
+    pub line: u64,
+    /// Column of the call in characters, counted from 1.
+    pub column: u64,
+    /// Triangles that face the other way than most of those that they hang together with.
+    pub turned: u64,
+    /// What was found while the mesh was taken in.
+    pub report: leafless_mesh_report,
+}
+
+/// What was found while a scene was read.
+///
+/// - Buffers: `report`, one struct.
+/// - Result: `*report`.
+/// - Errors: only the general ones.
+/// - Ownership: nothing changes hands.
+/// - Threads: any.
+/// - Untrusted input: none.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_scene_describe(
+    scene: *const leafless_scene,
+    report: *mut leafless_scene_report,
+) -> leafless_status {
+    guard(|| unsafe {
+        let scene = &shared(scene, "scene")?.scene;
+        let result = out(report, "report")?;
+        let found = scene.report();
+        result.write(leafless_scene_report {
+            polygons: found.polygons,
+            exact: found.exact,
+            ignored_slices: found.ignored_slices,
+            meshes: found.meshes.len() as u64,
+            is_empty: scene.is_empty()?,
+        })
+    })
+}
+
+/// # Safety
+/// `scene` is NULL or a scene.
+unsafe fn mesh<'a>(scene: *const leafless_scene, index: u64) -> Result<&'a SceneMesh, Failure> {
+    // SAFETY: the caller's promise.
+    let meshes = unsafe { &shared(scene, "scene")?.scene.report().meshes };
+    let found = usize::try_from(index).ok().and_then(|index| meshes.get(index));
+    found.ok_or(Failure::Argument { name: "index", problem: "must be less than the number of meshes" })
+}
+
+/// What was found while a mesh or polyhedron of a scene was taken in.
+///
+/// - Buffers: `mesh`, one struct. `index`, in the order of the text, is less than the report's `meshes`.
+/// - Result: `*mesh`.
+/// - Errors: LEAFLESS_E_ARGUMENT if there is no such mesh.
+/// - Ownership: nothing changes hands.
+/// - Threads: any.
+/// - Untrusted input: none.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_scene_describe_mesh(
+    scene: *const leafless_scene,
+    index: u64,
+    mesh: *mut leafless_scene_mesh,
+) -> leafless_status {
+    guard(|| unsafe {
+        let found = self::mesh(scene, index)?;
+        let result = out(mesh, "mesh")?;
+        let SceneMesh { line, column, turned, report, .. } = found;
+        result.write(leafless_scene_mesh {
+            line: *line,
+            column: *column,
+            turned: *turned,
+            report: (*report).into(),
+        })
+    })
+}
+
+/// The file of a mesh in a scene, as the text names it, in UTF-8 and not terminated by NUL; nothing for a
+/// polyhedron.
+///
+/// - Buffers: `bytes`, room for `capacity` bytes, or NULL to ask for the length only; `length`, one number.
+///   `index`, in the order of the text, is less than the report's `meshes`.
+/// - Result: `*length`, the length of the name in bytes; the name in `bytes`.
+/// - Errors: LEAFLESS_E_BUFFER if the capacity is too small; LEAFLESS_E_ARGUMENT if there is no such mesh.
+/// - Ownership: nothing changes hands.
+/// - Threads: any.
+/// - Untrusted input: none.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_scene_mesh_file(
+    scene: *const leafless_scene,
+    index: u64,
+    bytes: *mut u8,
+    capacity: u64,
+    length: *mut u64,
+) -> leafless_status {
+    guard(|| unsafe {
+        let file = &self::mesh(scene, index)?.file;
+        let bytes = buffer(bytes, capacity, "bytes")?;
+        let length = out(length, "length")?;
+        bytes.fill(file.as_bytes())?;
+        length.write(file.len() as u64)
+    })
+}
+
+/// One more reference to a scene.
+///
+/// - Buffers: `scene`, a handle; `reference`, one pointer.
+/// - Result: `*reference`, equal to `scene`.
+/// - Errors: only the general ones.
+/// - Ownership: give each reference back with leafless_scene_free.
+/// - Threads: any.
+/// - Untrusted input: none.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_scene_ref(
+    scene: *const leafless_scene,
+    reference: *mut *mut leafless_scene,
+) -> leafless_status {
+    guard(|| unsafe { refer(scene, "scene", reference) })
+}
+
+/// Gives back a reference to a scene; with the last one the scene is gone. Solids made of it stay.
+///
+/// - Buffers: `scene`, a handle or NULL, which does nothing.
+/// - Result: none.
+/// - Errors: none.
+/// - Ownership: the reference is gone.
+/// - Threads: any; no other call may use this reference.
+/// - Untrusted input: none.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_scene_free(scene: *mut leafless_scene) {
+    // SAFETY: the caller's promise.
+    unsafe { release(scene) }
+}
+
+/// A box that holds the solid of a scene. It may be larger than the solid.
+///
+/// - Buffers: `min_model` and `max_model`, 3 numbers each.
+/// - Result: both.
+/// - Errors: LEAFLESS_E_ARGUMENT if none is known: the scene is empty, or may be unbounded;
+///   LEAFLESS_E_NO_MEMORY.
+/// - Ownership: nothing changes hands.
+/// - Threads: any.
+/// - Untrusted input: none.
+/// - Since: 0.1
+///
+/// cbindgen:ptrs-as-arrays=[[min_model; 3], [max_model; 3]]
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_scene_bounds(
+    scene: *const leafless_scene,
+    min_model: *mut f64,
+    max_model: *mut f64,
+) -> leafless_status {
+    guard(|| unsafe {
+        let scene = &shared(scene, "scene")?.scene;
+        let min = out(min_model.cast(), "min_model")?;
+        let max = out(max_model.cast(), "max_model")?;
+        let Some((low, high)) = scene.bounds()? else {
+            return Err(Failure::Argument { name: "scene", problem: "has no bounds that are known" });
+        };
+        let (low, high): ([f64; 3], [f64; 3]) = (low, high);
+        min.write(low)?;
+        max.write(high)
+    })
+}
+
+/// The solid of a scene, to be built on this frame. If there are neither meshes nor octrees in it, it can be
+/// built on any.
+///
+/// - Buffers: `frame`, one struct; `solid`, one pointer.
+/// - Result: `*solid`.
+/// - Errors: LEAFLESS_E_ARGUMENT as leafless_frame_check; LEAFLESS_E_LIMIT if a mesh or octree is within more
+///   than 256 matrices; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: give `*solid` back with leafless_solid_free.
+/// - Threads: any.
+/// - Untrusted input: any scene.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_solid_new_scene(
+    scene: *const leafless_scene,
+    frame: *const leafless_frame,
+    solid: *mut *mut leafless_solid,
+) -> leafless_status {
+    guard(|| unsafe {
+        let scene = &shared(scene, "scene")?.scene;
+        let frame = self::frame(frame)?;
+        let solid = out(solid, "solid")?;
+        solid.write(give(scene.solid(&frame)?))
+    })
+}

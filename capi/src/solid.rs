@@ -1,0 +1,138 @@
+//! Solids: everything that can split a cell.
+
+use super::boundary::{guard, handle, out, refer, release, shared};
+use super::mesh::{fill_rule, leafless_mesh};
+use super::octree::leafless_octree;
+use super::status::leafless_status;
+use leafless::{AnySolid, Csg, Erasable, MeshSolid, Prepared};
+
+/// Anything that has a shape: it can split a cell of space into eight classified ones.
+///
+/// To answer about cells of a frame a solid is prepared for it, which takes time in proportion to the model:
+/// a mesh is brought onto the lattice, an expression is written out, all links of an octree are checked. It
+/// keeps the last frame that it was prepared for, so that a second question on the same frame costs none of
+/// that; another frame takes its place. (It keeps the last frame of its own only: what is made of it prepares
+/// it anew.)
+///
+/// Immutable otherwise: all its functions may be called at once from any number of threads, but
+/// leafless_solid_free needs the reference that it gives back for itself. Threads that ask on different
+/// frames at the same time prepare it again and again: give each a solid of its own.
+pub struct leafless_solid {
+    pub(super) solid: Prepared,
+}
+
+/// A handle of a solid.
+pub(super) fn give<S: Erasable>(solid: S) -> *mut leafless_solid {
+    give_any(AnySolid::new(solid))
+}
+
+/// A handle of a solid of any kind.
+pub(super) fn give_any(solid: AnySolid) -> *mut leafless_solid {
+    handle(leafless_solid { solid: Prepared::new(solid) })
+}
+
+/// What a mesh encloses. On a frame whose universe it reaches beyond it is clipped by that.
+///
+/// Where the mesh is closed, what it encloses is exact. Around holes leafless_fill says by which convention a
+/// point is inside: a cell is FULL or EMPTY if that is proven for all of its points, and others are PARTIAL
+/// though no triangle cuts them. leafless_mesh_describe tells whether to expect them.
+///
+/// - Buffers: `solid`, one pointer. `fill` is a leafless_fill.
+/// - Result: `*solid`. Time is linear in the mesh (n log n in the edges of its boundary).
+/// - Errors: LEAFLESS_E_MESH if the mesh is empty, or (LEAFLESS_FILL_EVEN_ODD) an odd number of triangles
+///   meet on an edge; LEAFLESS_E_ARGUMENT if `fill` is no leafless_fill; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: the solid shares the mesh, which may be freed; give `*solid` back with leafless_solid_free.
+/// - Threads: any.
+/// - Untrusted input: any mesh.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_solid_new_mesh(
+    mesh: *const leafless_mesh,
+    fill: u32,
+    solid: *mut *mut leafless_solid,
+) -> leafless_status {
+    guard(|| unsafe {
+        let mesh = shared(mesh, "mesh")?.mesh.clone();
+        let fill = fill_rule(fill)?;
+        let solid = out(solid, "solid")?;
+        solid.write(give(MeshSolid::new(mesh, fill)?))
+    })
+}
+
+/// A stored octree as a solid on its own universe. Built to fewer levels it is cut there, built to more its
+/// PARTIAL cells stay undecided.
+///
+/// - Buffers: `solid`, one pointer.
+/// - Result: `*solid`.
+/// - Errors: only the general ones; building it returns LEAFLESS_E_DAMAGED if the octree was mapped
+///   unverified and its links are damaged.
+/// - Ownership: the solid shares the octree, which may be freed; give `*solid` back with leafless_solid_free.
+/// - Threads: any.
+/// - Untrusted input: any octree.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_octree_as_solid(
+    octree: *const leafless_octree,
+    solid: *mut *mut leafless_solid,
+) -> leafless_status {
+    guard(|| unsafe {
+        let octree = &shared(octree, "octree")?.octree;
+        let solid = out(solid, "solid")?;
+        solid.write(give(octree.clone()))
+    })
+}
+
+/// Half-spaces that were evaluated so far, each at a point or over a box, for a solid that is made of
+/// half-spaces (see leafless_solid_new_halfspace and what follows it) and perhaps others: by calls that have
+/// returned, and by lazy octrees and the like that are given back. What else is made of the solid counts for
+/// itself.
+///
+/// - Buffers: `evaluations`, one number.
+/// - Result: `*evaluations`; 0 for solids of other kinds.
+/// - Errors: only the general ones.
+/// - Ownership: nothing changes hands.
+/// - Threads: any.
+/// - Untrusted input: any solid.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_solid_evaluations(
+    solid: *const leafless_solid,
+    evaluations: *mut u64,
+) -> leafless_status {
+    guard(|| unsafe {
+        let solid = shared(solid, "solid")?.solid.solid();
+        out(evaluations, "evaluations")?.write(solid.get::<Csg>().map_or(0, Csg::evaluations))
+    })
+}
+
+/// One more reference to a solid.
+///
+/// - Buffers: `solid`, a handle; `reference`, one pointer.
+/// - Result: `*reference`, equal to `solid`.
+/// - Errors: only the general ones.
+/// - Ownership: give each reference back with leafless_solid_free.
+/// - Threads: any.
+/// - Untrusted input: none.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_solid_ref(
+    solid: *const leafless_solid,
+    reference: *mut *mut leafless_solid,
+) -> leafless_status {
+    guard(|| unsafe { refer(solid, "solid", reference) })
+}
+
+/// Gives back a reference to a solid; with the last one the solid is gone. Octrees built from it stay.
+///
+/// - Buffers: `solid`, a handle or NULL, which does nothing.
+/// - Result: none.
+/// - Errors: none.
+/// - Ownership: the reference is gone.
+/// - Threads: any; no other call may use this reference.
+/// - Untrusted input: none.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_solid_free(solid: *mut leafless_solid) {
+    // SAFETY: the caller's promise.
+    unsafe { release(solid) }
+}

@@ -1,0 +1,332 @@
+//! Surfaces: closed triangle meshes of octrees and of solids.
+
+use super::boundary::{Failure, Sized32, guard, initialise, out, shared, sized};
+use super::control::{controlled, leafless_options};
+use super::frame::{frame, leafless_frame, leafless_interval};
+use super::mesh::{give, leafless_mesh};
+use super::octree::leafless_octree;
+use super::solid::leafless_solid;
+use super::status::leafless_status;
+use super::volume::leafless_volume;
+use leafless::{
+    Resolve, Snap, VertexPlacement, coplanar_shrink, coplanar_shrink_of, marching_cubes, marching_cubes_of,
+    marching_cubes_of_volume, published_shrink, published_shrink_of, smc, smc_of,
+};
+use leafless_resolve::*;
+use leafless_snap::*;
+use leafless_surface_method::*;
+use leafless_vertex_placement::*;
+
+/// How a surface is made.
+#[derive(Clone, Copy)]
+#[repr(u32)]
+pub enum leafless_surface_method {
+    /// Marching cubes: vertices on the edges between inside and outside samples. Exactly two triangles meet
+    /// on every edge.
+    LEAFLESS_SURFACE_MARCHING_CUBES = 0,
+    /// Simple marching cubes: all vertices are samples, all normals have one of 13 directions up to sign. The
+    /// mesh is closed, but where its sheets touch, more than two triangles meet on an edge.
+    LEAFLESS_SURFACE_SMC = 1,
+    /// Coplanar shrink: the surface of simple marching cubes with far fewer triangles where it has plane parts.
+    /// All that lies in one plane becomes one region with straight edges. There are no cracks; triangles may be
+    /// long and thin.
+    LEAFLESS_SURFACE_SHRINK = 2,
+    /// Coplanar shrink in its published form, to compare with. It has cracks, so that the mesh is open where
+    /// merged cells of several sizes meet.
+    LEAFLESS_SURFACE_SHRINK_PUBLISHED = 3,
+}
+
+/// To which end of an edge between an inside and an outside sample all methods but marching cubes move the
+/// vertex.
+#[derive(Clone, Copy)]
+#[repr(u32)]
+pub enum leafless_snap {
+    /// The outer one: the mesh contains all inside samples.
+    LEAFLESS_SNAP_FAT = 0,
+    /// The inner one: inside samples are vertices. What is one cell thick has no thickness then.
+    LEAFLESS_SNAP_THIN = 1,
+}
+
+/// On which side of the surface the PARTIAL cells of an octree lie, which have no sign of their own.
+#[derive(Clone, Copy)]
+#[repr(u32)]
+pub enum leafless_resolve {
+    /// Nobody says, which is an error if there are such cells.
+    LEAFLESS_RESOLVE_NONE = 0,
+    /// Outside: the surface is that of the FULL cells, of what is surely solid.
+    LEAFLESS_RESOLVE_INNER = 1,
+    /// Inside: the surface is that of the FULL and PARTIAL cells, of what is possibly solid.
+    LEAFLESS_RESOLVE_OUTER = 2,
+    /// Where the solid `source` says that the octree was made from: each cell's centre decides, as under
+    /// LEAFLESS_RULE_SAMPLED. It is built anew on the octree's frame.
+    LEAFLESS_RESOLVE_SOURCE = 3,
+}
+
+/// Where marching cubes puts a vertex on an edge between an inside and an outside sample.
+#[derive(Clone, Copy)]
+#[repr(u32)]
+pub enum leafless_vertex_placement {
+    /// Half-way. The mesh has steps, and is as far from the surface as half a cell.
+    LEAFLESS_PLACEMENT_MIDPOINT = 0,
+    /// Where the edge crosses the solid's surface; if it does so several times, at one of the crossings.
+    /// Half-spaces, meshes and solids made of them tell the crossing to rounding. For a solid that only tells
+    /// about boxes, cells along the edge are split down to the depth of 20, and the crossing is known to a
+    /// cell of that depth.
+    LEAFLESS_PLACEMENT_CROSSING = 1,
+}
+
+/// How a surface is extracted. NULL means the defaults. All fields but the first may be zero, which is their
+/// default; leafless_surface_options_init sets them so. A field that the method does not use must be zero.
+#[derive(Clone, Copy)]
+#[repr(C)]
+pub struct leafless_surface_options {
+    /// sizeof(leafless_surface_options).
+    pub struct_size: u32,
+    /// A leafless_surface_method.
+    pub method: u32,
+    /// Of all methods but LEAFLESS_SURFACE_MARCHING_CUBES: a leafless_snap.
+    pub snap: u32,
+    /// Of octrees: a leafless_resolve. Solids decide all samples themselves.
+    pub resolve: u32,
+    /// Of LEAFLESS_SURFACE_MARCHING_CUBES of solids: a leafless_vertex_placement. Octrees do not know where
+    /// their solid's surface is.
+    pub placement: u32,
+    /// 0.
+    pub reserved: u32,
+    /// Of LEAFLESS_RESOLVE_SOURCE: the solid that the octree was made from.
+    pub source: *const leafless_solid,
+}
+
+// SAFETY: numbers and a pointer.
+unsafe impl Sized32 for leafless_surface_options {}
+
+#[derive(Clone, Copy)]
+enum Method {
+    MarchingCubes,
+    Smc(Snap),
+    Shrink(Snap),
+    PublishedShrink(Snap),
+}
+
+/// Refuses a field that should be zero, and is not.
+fn zero(is_zero: bool, name: &'static str, problem: &'static str) -> Result<(), Failure> {
+    if is_zero { Ok(()) } else { Err(Failure::Argument { name, problem }) }
+}
+
+impl leafless_surface_options {
+    fn method(&self) -> Result<Method, Failure> {
+        zero(self.reserved == 0, "surface.reserved", "must be 0")?;
+        let snap = match self.snap {
+            fat if fat == LEAFLESS_SNAP_FAT as u32 => Snap::Fat,
+            thin if thin == LEAFLESS_SNAP_THIN as u32 => Snap::Thin,
+            _ => return Err(Failure::Argument { name: "surface.snap", problem: "is no leafless_snap" }),
+        };
+        match self.method {
+            cubes if cubes == LEAFLESS_SURFACE_MARCHING_CUBES as u32 => {
+                let problem = "is not for marching cubes, whose vertices lie between samples";
+                zero(self.snap == LEAFLESS_SNAP_FAT as u32, "surface.snap", problem)?;
+                Ok(Method::MarchingCubes)
+            }
+            smc if smc == LEAFLESS_SURFACE_SMC as u32 => Ok(Method::Smc(snap)),
+            shrink if shrink == LEAFLESS_SURFACE_SHRINK as u32 => Ok(Method::Shrink(snap)),
+            published if published == LEAFLESS_SURFACE_SHRINK_PUBLISHED as u32 => {
+                Ok(Method::PublishedShrink(snap))
+            }
+            _ => {
+                let problem = "is no leafless_surface_method";
+                Err(Failure::Argument { name: "surface.method", problem })
+            }
+        }
+    }
+
+    fn placement(&self) -> Result<VertexPlacement, Failure> {
+        match self.placement {
+            middle if middle == LEAFLESS_PLACEMENT_MIDPOINT as u32 => Ok(VertexPlacement::Midpoint),
+            crossing if crossing == LEAFLESS_PLACEMENT_CROSSING as u32 => Ok(VertexPlacement::Crossing),
+            _ => {
+                let problem = "is no leafless_vertex_placement";
+                Err(Failure::Argument { name: "surface.placement", problem })
+            }
+        }
+    }
+
+    /// # Safety
+    /// `source` is NULL or misaligned, or a living handle.
+    unsafe fn resolve<'a>(&self) -> Result<Option<Resolve<'a>>, Failure> {
+        if self.resolve == LEAFLESS_RESOLVE_SOURCE as u32 {
+            // SAFETY: the caller's promise.
+            let source = unsafe { shared(self.source, "surface.source")? };
+            return Ok(Some(Resolve::Source(source.solid.solid())));
+        }
+        zero(self.source.is_null(), "surface.source", "is for LEAFLESS_RESOLVE_SOURCE only")?;
+        match self.resolve {
+            none if none == LEAFLESS_RESOLVE_NONE as u32 => Ok(None),
+            inner if inner == LEAFLESS_RESOLVE_INNER as u32 => Ok(Some(Resolve::Inner)),
+            outer if outer == LEAFLESS_RESOLVE_OUTER as u32 => Ok(Some(Resolve::Outer)),
+            _ => Err(Failure::Argument { name: "surface.resolve", problem: "is no leafless_resolve" }),
+        }
+    }
+}
+
+/// Sets options for surfaces to their defaults: marching cubes, vertices half-way.
+///
+/// - Buffers: `surface`, one struct of `struct_size` bytes, which is sizeof(leafless_surface_options); need
+///   not be initialised.
+/// - Result: `*surface`.
+/// - Errors: LEAFLESS_E_ARGUMENT if `struct_size` cannot be right.
+/// - Ownership: nothing changes hands.
+/// - Threads: any.
+/// - Untrusted input: none.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_surface_options_init(
+    surface: *mut leafless_surface_options,
+    struct_size: usize,
+) -> leafless_status {
+    guard(|| unsafe { initialise(surface, struct_size, "surface") })
+}
+
+/// The surface of an octree: a closed mesh between the centres of finest cells that lie inside and those that
+/// lie outside. Everything around the universe counts as outside, so that the mesh is closed there, too.
+///
+/// Every edge is run along as often in one direction as in the other, but for
+/// LEAFLESS_SURFACE_SHRINK_PUBLISHED. Triangles turn counter-clockwise as seen from outside; no two vertices
+/// are equal, and no triangle has a vertex twice. The order of vertices and triangles is always the same:
+/// that of the cells in Morton order, or for coplanar shrink that of places and planes. leafless_mesh_counts
+/// and leafless_mesh_copy hand the arrays out, leafless_mesh_describe and leafless_mesh_area tell about them,
+/// leafless_mesh_intersecting_pairs finds triangles that meet, and leafless_mesh_save writes them.
+///
+/// Time is linear in the octree's array elements and the mesh: it grows with the surface, not with the
+/// volume. (Coplanar shrink takes O(n log n + n w) for n cells at the surface of which at most w lie along a
+/// line in a plane region.) Beside the mesh it takes 56 bytes (simple marching cubes: up to 128) for each
+/// block of 4³ cells at the surface, and coplanar shrink up to 200 bytes for each cell at a curved surface.
+///
+/// - Buffers: `surface`, one struct or NULL; `options`, one struct or NULL, of which `max_nodes` and
+///   `max_bytes` count for LEAFLESS_RESOLVE_SOURCE only; `mesh`, one pointer.
+/// - Result: `*mesh`, the same for any number of threads; it has no triangles if nothing is inside.
+/// - Errors: LEAFLESS_E_ARGUMENT if the octree has PARTIAL cells and `resolve` does not say what they count
+///   as, if a field of `surface` is none of its enum, or is set though the method does not use it, or if the
+///   frame lies so far from the origin that doubles cannot tell its cells apart; LEAFLESS_E_NULL if
+///   LEAFLESS_RESOLVE_SOURCE has no `source`; LEAFLESS_E_MESH if there would be more than 2^32 - 1 vertices
+///   or triangles; LEAFLESS_E_DAMAGED; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY; and those of
+///   leafless_octree_build for the source.
+/// - Ownership: `octree` stays as it is; give `*mesh` back with leafless_mesh_free.
+/// - Threads: any; uses as many as `options` says.
+/// - Untrusted input: any octree; damage is LEAFLESS_E_DAMAGED or another surface.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_octree_surface(
+    octree: *const leafless_octree,
+    surface: *const leafless_surface_options,
+    options: *const leafless_options,
+    mesh: *mut *mut leafless_mesh,
+) -> leafless_status {
+    guard(|| unsafe {
+        let octree = shared(octree, "octree")?.octree.view();
+        let surface = sized(surface, "surface")?;
+        let (method, resolve) = (surface.method()?, surface.resolve()?);
+        let problem = "octrees do not know where their solid's surface is: extract that of the solid";
+        zero(surface.placement()? == VertexPlacement::Midpoint, "surface.placement", problem)?;
+        let mesh = out(mesh, "mesh")?;
+        mesh.write(give(controlled(options, |control| match method {
+            Method::MarchingCubes => marching_cubes(octree, resolve, control),
+            Method::Smc(snap) => smc(octree, snap, resolve, control),
+            Method::Shrink(snap) => coplanar_shrink(octree, snap, resolve, control),
+            Method::PublishedShrink(snap) => published_shrink(octree, snap, resolve, control),
+        })?))
+    })
+}
+
+/// The surface of a solid, which is sampled at the corners of the cells of a frame: 2^depth + 1 to an axis.
+/// Else as leafless_octree_surface. What the solid has outside of the universe is cut off.
+///
+/// Time is that of leafless_octree_build with LEAFLESS_RULE_SAMPLED on as many cells as there are corners,
+/// and for LEAFLESS_PLACEMENT_CROSSING a few questions to the solid for each vertex; memory as well. With
+/// crossings, vertices that lie at one place are one, and triangles without area are dropped. Where the solid
+/// has no thickness at a sample, more than two triangles may then meet on an edge.
+///
+/// - Buffers: `frame`, one struct; `surface`, one struct or NULL, whose `resolve` and `source` are 0;
+///   `options`, one struct or NULL; `mesh`, one pointer.
+/// - Result: `*mesh`, the same for any number of threads; it has no triangles if nothing is inside.
+/// - Errors: LEAFLESS_E_ARGUMENT if the depth is 20, which leaves no level for corners, if a field of
+///   `surface` is none of its enum, or is set though it is not used, or if the frame lies so far from the
+///   origin that doubles cannot tell its corners apart; LEAFLESS_E_NOT_SAMPLED if the solid cannot decide
+///   points; LEAFLESS_E_FRAME for the solid of leafless_octree_as_solid, which has samples of its own, and
+///   for others that belong to another frame; LEAFLESS_E_MESH if there would be more than 2^32 - 1 vertices
+///   or triangles; LEAFLESS_E_CALLBACK; LEAFLESS_E_DAMAGED; LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED;
+///   LEAFLESS_E_NO_MEMORY.
+/// - Ownership: give `*mesh` back with leafless_mesh_free.
+/// - Threads: any; uses as many as `options` says.
+/// - Untrusted input: any solid; set `max_bytes` where the depth or the solid is not your own choice.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_solid_surface(
+    solid: *const leafless_solid,
+    frame: *const leafless_frame,
+    surface: *const leafless_surface_options,
+    options: *const leafless_options,
+    mesh: *mut *mut leafless_mesh,
+) -> leafless_status {
+    guard(|| unsafe {
+        // The corners lie on a frame of their own, for which nothing is kept.
+        let solid = shared(solid, "solid")?.solid.solid();
+        let frame = self::frame(frame)?;
+        let surface = sized(surface, "surface")?;
+        let (method, placement) = (surface.method()?, surface.placement()?);
+        let is_midpoint = placement == VertexPlacement::Midpoint;
+        let problem = "is for octrees: a solid decides all samples itself";
+        zero(surface.resolve == LEAFLESS_RESOLVE_NONE as u32, "surface.resolve", problem)?;
+        zero(surface.source.is_null(), "surface.source", problem)?;
+        let mesh = out(mesh, "mesh")?;
+        if !matches!(method, Method::MarchingCubes) {
+            let problem = "is for marching cubes only: vertices of other methods are samples";
+            zero(is_midpoint, "surface.placement", problem)?;
+        }
+        mesh.write(give(controlled(options, |control| match method {
+            Method::MarchingCubes => marching_cubes_of(solid, &frame, placement, control),
+            Method::Smc(snap) => smc_of(solid, &frame, snap, control),
+            Method::Shrink(snap) => coplanar_shrink_of(solid, &frame, snap, control),
+            Method::PublishedShrink(snap) => published_shrink_of(solid, &frame, snap, control),
+        })?))
+    })
+}
+
+/// The surface of a volume by marching cubes: its samples are the centres of voxels, which need not be cubes,
+/// and its vertices lie where the samples, interpolated between two voxels, leave the band. For samples of a
+/// smooth function that is on the surface to second order in the spacing. Between bits, and beside a sample
+/// that is infinite or not a number, they lie half-way.
+///
+/// Else as leafless_octree_surface; vertices that lie at one place are one, and there more than two triangles
+/// may meet on an edge. Time is linear in the samples, and in the surface.
+///
+/// - Buffers: `band`, one struct, or NULL, as for leafless_solid_new_volume; `options`, one struct or NULL, of
+///   which limits do not matter; `mesh`, one pointer.
+/// - Result: `*mesh`, the same for any number of threads, where the file says that the volume lies.
+/// - Errors: those of leafless_solid_new_volume; LEAFLESS_E_ARGUMENT if the volume lies so far from the origin
+///   that doubles cannot tell its voxels apart; LEAFLESS_E_MESH if there would be more than 2^32 - 1 vertices
+///   or triangles.
+/// - Ownership: `volume` stays as it is; give `*mesh` back with leafless_mesh_free.
+/// - Threads: any; uses as many as `options` says.
+/// - Untrusted input: any volume.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_volume_surface(
+    volume: *const leafless_volume,
+    band: *const leafless_interval,
+    options: *const leafless_options,
+    mesh: *mut *mut leafless_mesh,
+) -> leafless_status {
+    guard(|| unsafe {
+        let volume = shared(volume, "volume")?;
+        let band = volume.band(band)?;
+        let mesh = out(mesh, "mesh")?;
+        let surface = controlled(options, |control| {
+            let voxels = volume.voxels(band, control)?;
+            marching_cubes_of_volume(&voxels, control)
+        })?;
+        mesh.write(give(match &volume.placement {
+            Some(placement) => surface.placed(placement)?,
+            None => surface,
+        }))
+    })
+}

@@ -1,0 +1,437 @@
+//! Tri-dexel models: made of solids, described, and the facts that travel with them.
+
+use super::boundary::{Failure, Sized32, guard, handle, initialise, out, refer, release, shared, sized};
+use super::control::{controlled, leafless_options};
+use super::frame::{frame, leafless_frame};
+use super::metadata::{self, Fact};
+use super::op::rule;
+use super::solid::leafless_solid;
+use super::status::leafless_status;
+use core::ffi::c_char;
+use leafless::MetadataLimit;
+use leafless::{DexelEnds, DexelFormat, DexelNormals, TriDexel};
+use leafless::{DexelOptions, dexelize};
+use leafless_dexel_ends::*;
+use leafless_dexel_normals::*;
+
+/// A solid as intervals along the rays of a lattice, in one to three directions: a tri-dexel model.
+///
+/// Rays run through the centres of the finest cells of a frame. Each has the sorted, disjoint intervals in which it
+/// runs inside of the solid. An interval holds its start and not its end, so that set algebra is exact. All directions
+/// agree about the centres of cells.
+///
+/// Immutable: all its functions may be called at once from any number of threads, but leafless_tridexel_free
+/// needs the reference that it gives back for itself. A leafless_tridexel_editor changes a copy in place.
+pub struct leafless_tridexel {
+    pub(super) model: TriDexel,
+}
+
+/// The axes that rays run along. The numbers may be added.
+#[repr(u32)]
+pub enum leafless_axes {
+    /// Along x.
+    LEAFLESS_AXES_X = 1,
+    /// Along y.
+    LEAFLESS_AXES_Y = 2,
+    /// Along z.
+    LEAFLESS_AXES_Z = 4,
+    /// Along all three.
+    LEAFLESS_AXES_ALL = 7,
+}
+
+/// How the ends of intervals are stored.
+#[derive(Clone, Copy)]
+#[repr(u32)]
+pub enum leafless_dexel_ends {
+    /// Start and length in units of 2^-31 edges of the universe, 8 bytes an interval. An end is off by at most one
+    /// unit.
+    LEAFLESS_DEXEL_ENDS_FIXED = 0,
+    /// Start and end as doubles, 16 bytes an interval.
+    LEAFLESS_DEXEL_ENDS_DOUBLE = 1,
+}
+
+/// How the unit normals at the ends of intervals are stored: in an octahedral code.
+#[derive(Clone, Copy)]
+#[repr(u32)]
+pub enum leafless_dexel_normals {
+    /// Not at all.
+    LEAFLESS_DEXEL_NORMALS_NONE = 0,
+    /// In 16 bits, 4 bytes an interval, within a degree.
+    LEAFLESS_DEXEL_NORMALS_16 = 1,
+    /// In 32 bits, 8 bytes an interval, within 0.005 degrees.
+    LEAFLESS_DEXEL_NORMALS_32 = 2,
+}
+
+impl From<DexelEnds> for leafless_dexel_ends {
+    fn from(ends: DexelEnds) -> leafless_dexel_ends {
+        match ends {
+            DexelEnds::Fixed => LEAFLESS_DEXEL_ENDS_FIXED,
+            DexelEnds::Double => LEAFLESS_DEXEL_ENDS_DOUBLE,
+        }
+    }
+}
+
+impl From<DexelNormals> for leafless_dexel_normals {
+    fn from(normals: DexelNormals) -> leafless_dexel_normals {
+        match normals {
+            DexelNormals::None => LEAFLESS_DEXEL_NORMALS_NONE,
+            DexelNormals::Bits16 => LEAFLESS_DEXEL_NORMALS_16,
+            DexelNormals::Bits32 => LEAFLESS_DEXEL_NORMALS_32,
+        }
+    }
+}
+
+/// The sum of axes.
+pub(super) fn axes(directions: [bool; 3]) -> u32 {
+    (0..3).map(|axis| u32::from(directions[axis]) << axis).sum()
+}
+
+/// What a tri-dexel model stores. NULL means the defaults. All fields but the first may be zero, which is their
+/// default; leafless_tridexel_format_init sets them so.
+#[derive(Clone, Copy)]
+#[repr(C)]
+pub struct leafless_tridexel_format {
+    /// sizeof(leafless_tridexel_format).
+    pub struct_size: u32,
+    /// The axes that rays run along, a sum of leafless_axes; 0 means those of the operand if there is one, else
+    /// LEAFLESS_AXES_ALL.
+    pub directions: u32,
+    /// A leafless_dexel_ends.
+    pub ends: u32,
+    /// A leafless_dexel_normals.
+    pub normals: u32,
+    /// 1 to store on which of the source's surfaces the ends lie, 8 bytes an interval. Else 0.
+    pub has_surfaces: u32,
+    /// 1 to store what intervals are made of, 4 bytes an interval. Else 0.
+    pub has_materials: u32,
+}
+
+// SAFETY: numbers.
+unsafe impl Sized32 for leafless_tridexel_format {}
+
+impl leafless_tridexel_format {
+    /// The directions, if some are named, and what is stored.
+    pub(super) fn parts(&self) -> Result<(Option<[bool; 3]>, DexelFormat), Failure> {
+        let refused = |name, problem| Err(Failure::Argument { name, problem });
+        if self.directions > leafless_axes::LEAFLESS_AXES_ALL as u32 {
+            return refused("format.directions", "must be a sum of leafless_axes");
+        }
+        let directions = [0, 1, 2].map(|axis| self.directions >> axis & 1 == 1);
+        let ends = match self.ends {
+            given if given == LEAFLESS_DEXEL_ENDS_FIXED as u32 => DexelEnds::Fixed,
+            given if given == LEAFLESS_DEXEL_ENDS_DOUBLE as u32 => DexelEnds::Double,
+            _ => return refused("format.ends", "is no leafless_dexel_ends"),
+        };
+        let normals = match self.normals {
+            given if given == LEAFLESS_DEXEL_NORMALS_NONE as u32 => DexelNormals::None,
+            given if given == LEAFLESS_DEXEL_NORMALS_16 as u32 => DexelNormals::Bits16,
+            given if given == LEAFLESS_DEXEL_NORMALS_32 as u32 => DexelNormals::Bits32,
+            _ => return refused("format.normals", "is no leafless_dexel_normals"),
+        };
+        if self.has_surfaces > 1 {
+            return refused("format.has_surfaces", "must be 0 or 1");
+        }
+        if self.has_materials > 1 {
+            return refused("format.has_materials", "must be 0 or 1");
+        }
+        let (surfaces, materials) = (self.has_surfaces == 1, self.has_materials == 1);
+        let format = DexelFormat { ends, normals, surfaces, materials };
+        Ok(((self.directions != 0).then_some(directions), format))
+    }
+}
+
+/// What can be said of a tri-dexel model at once.
+#[derive(Clone, Copy)]
+#[repr(C)]
+pub struct leafless_tridexel_info {
+    /// The lattice: rays run through the centres of its finest cells.
+    pub frame: leafless_frame,
+    /// The axes that rays run along, a sum of leafless_axes.
+    pub directions: u32,
+    /// How the ends of intervals are stored.
+    pub ends: leafless_dexel_ends,
+    /// How unit normals are stored.
+    pub normals: leafless_dexel_normals,
+    /// 1 if it is stored on which surfaces the ends lie, else 0.
+    pub has_surfaces: u32,
+    /// 1 if it is stored what intervals are made of, else 0.
+    pub has_materials: u32,
+    /// Bytes that an interval takes.
+    pub bytes_per_interval: u32,
+    /// Intervals in all directions.
+    pub interval_count: u64,
+    /// Bytes that the arrays take.
+    pub bytes: u64,
+}
+
+/// A handle of a tri-dexel model.
+pub(super) fn give(model: TriDexel) -> *mut leafless_tridexel {
+    handle(leafless_tridexel { model })
+}
+
+/// Sets what a tri-dexel model stores to the defaults.
+///
+/// - Buffers: `format`, one struct of `struct_size` bytes, which is sizeof(leafless_tridexel_format); need not be
+///   initialised.
+/// - Result: `*format`.
+/// - Errors: LEAFLESS_E_ARGUMENT if `struct_size` cannot be right.
+/// - Ownership: nothing changes hands.
+/// - Threads: any.
+/// - Untrusted input: none.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_tridexel_format_init(
+    format: *mut leafless_tridexel_format,
+    struct_size: usize,
+) -> leafless_status {
+    guard(|| unsafe { initialise(format, struct_size, "format") })
+}
+
+/// Makes the tri-dexel model of a solid on the lattice of a frame. O(rays + crossings). The result is the same bit for
+/// bit for any number of threads.
+///
+/// Under LEAFLESS_RULE_SAMPLED intervals are those of the solid on each ray. An end says of the centres of cells beside
+/// it just what the solid does; apart from that it is off by at most 2^-31 of the universe's edge, or 2^-36 with
+/// LEAFLESS_DEXEL_ENDS_DOUBLE. So it is with closed meshes, with half-spaces and expressions of them, and with octrees.
+/// Solids of other kinds, and open meshes around their holes, are sampled: an end between centres on different sides is
+/// narrowed down by cells to a depth of 20, and a wall between two neighbouring centres is missed. Under
+/// LEAFLESS_RULE_INNER and LEAFLESS_RULE_OUTER intervals are those of the solid's FULL cells, and of all that are not
+/// EMPTY.
+///
+/// - Buffers: `frame`, one struct; `format`, one struct or NULL; `options`, one struct or NULL; `tridexel`, one
+///   pointer. `rule` is a leafless_rule.
+/// - Result: `*tridexel`.
+/// - Errors: LEAFLESS_E_ARGUMENT also for LEAFLESS_RULE_CERTIFIED, because an interval cannot be undecided, and if a
+///   field of `format` is wrong; LEAFLESS_E_FRAME if the solid belongs to another frame; LEAFLESS_E_NOT_SAMPLED if
+///   LEAFLESS_RULE_SAMPLED is asked of a solid that cannot decide points; LEAFLESS_E_CALLBACK; LEAFLESS_E_DAMAGED;
+///   LEAFLESS_E_LIMIT, also for 2^32 rays or intervals along one axis; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: nothing is kept of the solid; give `*tridexel` back with leafless_tridexel_free.
+/// - Threads: any; uses as many as `options` says.
+/// - Untrusted input: any solid; set `max_bytes` where the depth or the solid is not your own choice.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_tridexel_make(
+    solid: *const leafless_solid,
+    frame: *const leafless_frame,
+    rule: u32,
+    format: *const leafless_tridexel_format,
+    options: *const leafless_options,
+    tridexel: *mut *mut leafless_tridexel,
+) -> leafless_status {
+    guard(|| unsafe {
+        let solid = &shared(solid, "solid")?.solid;
+        let frame = self::frame(frame)?;
+        let rule = self::rule(rule)?;
+        let (directions, format) = sized(format, "format")?.parts()?;
+        let tridexel = out(tridexel, "tridexel")?;
+        let wanted = DexelOptions { directions: directions.unwrap_or([true; 3]), format, rule };
+        let made = controlled(options, |control| dexelize(solid, &frame, &wanted, control))?;
+        tridexel.write(give(made))
+    })
+}
+
+/// One more reference to a tri-dexel model.
+///
+/// - Buffers: `tridexel`, a handle; `reference`, one pointer.
+/// - Result: `*reference`, equal to `tridexel`.
+/// - Errors: only the general ones.
+/// - Ownership: give each reference back with leafless_tridexel_free.
+/// - Threads: any.
+/// - Untrusted input: none.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_tridexel_ref(
+    tridexel: *const leafless_tridexel,
+    reference: *mut *mut leafless_tridexel,
+) -> leafless_status {
+    guard(|| unsafe { refer(tridexel, "tridexel", reference) })
+}
+
+/// Gives back a reference to a tri-dexel model. With the last one the model is gone, and with it the mapping of its file,
+/// unless a model with other metadata still shares its arrays.
+///
+/// - Buffers: `tridexel`, a handle or NULL, which does nothing.
+/// - Result: none.
+/// - Errors: none.
+/// - Ownership: the reference is gone.
+/// - Threads: any; no other call may use this reference.
+/// - Untrusted input: none.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_tridexel_free(tridexel: *mut leafless_tridexel) {
+    // SAFETY: the caller's promise.
+    unsafe { release(tridexel) }
+}
+
+/// What can be said of a tri-dexel model at once. O(1).
+///
+/// - Buffers: `info`, one struct.
+/// - Result: `*info`.
+/// - Errors: only the general ones.
+/// - Ownership: nothing changes hands.
+/// - Threads: any.
+/// - Untrusted input: any model.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_tridexel_describe(
+    tridexel: *const leafless_tridexel,
+    info: *mut leafless_tridexel_info,
+) -> leafless_status {
+    guard(|| unsafe {
+        let view = shared(tridexel, "tridexel")?.model.view();
+        let info = out(info, "info")?;
+        let format = view.format();
+        info.write(leafless_tridexel_info {
+            frame: view.frame().into(),
+            directions: axes(view.directions()),
+            ends: format.ends.into(),
+            normals: format.normals.into(),
+            has_surfaces: format.surfaces.into(),
+            has_materials: format.materials.into(),
+            bytes_per_interval: format.bytes_per_interval() as u32,
+            interval_count: view.interval_count(),
+            bytes: view.bytes(),
+        })
+    })
+}
+
+/// Checks that a tri-dexel model is well-formed: intervals are in order, disjoint and inside of the universe. O(n).
+/// Whether the directions agree is not checked. Models that the library makes,
+/// opens or maps verified are well-formed.
+///
+/// - Buffers: none.
+/// - Result: LEAFLESS_OK if it is.
+/// - Errors: LEAFLESS_E_DAMAGED, with the first damage in the message.
+/// - Ownership: nothing changes hands.
+/// - Threads: any.
+/// - Untrusted input: any model.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_tridexel_check(tridexel: *const leafless_tridexel) -> leafless_status {
+    guard(|| unsafe { Ok(shared(tridexel, "tridexel")?.model.view().check()?) })
+}
+
+/// Whether two tri-dexel models store the same, bit for bit, on the same frame. Metadata does not count. O(n).
+///
+/// - Buffers: `equal`, one truth value.
+/// - Result: `*equal`.
+/// - Errors: only the general ones.
+/// - Ownership: nothing changes hands.
+/// - Threads: any.
+/// - Untrusted input: any models.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_tridexel_equal(
+    a: *const leafless_tridexel,
+    b: *const leafless_tridexel,
+    equal: *mut bool,
+) -> leafless_status {
+    guard(|| unsafe {
+        let (a, b) = (shared(a, "a")?, shared(b, "b")?);
+        out(equal, "equal")?.write(a.model == b.model)
+    })
+}
+
+/// The tri-dexel model with one more fact in its metadata, or with another value of one; the arrays are shared. Names in
+/// use: "name", "units".
+///
+/// - Buffers: `key` and `value`, `key_length` and `value_length` bytes of UTF-8; `named`, one pointer.
+/// - Result: `*named`.
+/// - Errors: LEAFLESS_E_UTF8; LEAFLESS_E_ARGUMENT if all facts would take more than 1 MiB in a file, 8 bytes
+///   and the two texts each; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: the texts are copied. `*named` shares the arrays of `tridexel`, which may be freed: what must outlive
+///   `tridexel`, such as bytes that it views, must outlive `*named` too. Give that back with leafless_tridexel_free.
+/// - Threads: any.
+/// - Untrusted input: any texts.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_tridexel_with_metadata(
+    tridexel: *const leafless_tridexel,
+    key: *const c_char,
+    key_length: usize,
+    value: *const c_char,
+    value_length: usize,
+    named: *mut *mut leafless_tridexel,
+) -> leafless_status {
+    guard(|| unsafe {
+        let model = &shared(tridexel, "tridexel")?.model;
+        let named = out(named, "named")?;
+        let (key, value) = ((key, key_length), (value, value_length));
+        let facts = metadata::with(model.metadata(), key, value, MetadataLimit::SOLID)?;
+        named.write(give(model.with_metadata(facts)))
+    })
+}
+
+/// The tri-dexel model with one fact less in its metadata, or with none; the arrays are shared.
+///
+/// - Buffers: `key`, `key_length` bytes of UTF-8, or NULL for all facts; `unnamed`, one pointer.
+/// - Result: `*unnamed`; a fact that is not there need not be.
+/// - Errors: LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: as leafless_tridexel_with_metadata.
+/// - Threads: any.
+/// - Untrusted input: any texts.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_tridexel_without_metadata(
+    tridexel: *const leafless_tridexel,
+    key: *const c_char,
+    key_length: usize,
+    unnamed: *mut *mut leafless_tridexel,
+) -> leafless_status {
+    guard(|| unsafe {
+        let model = &shared(tridexel, "tridexel")?.model;
+        let unnamed = out(unnamed, "unnamed")?;
+        unnamed.write(give(model.with_metadata(metadata::without(model.metadata(), key, key_length)?)))
+    })
+}
+
+/// The value of a fact in a tri-dexel model's metadata, such as "name".
+///
+/// - Buffers: `key`, `key_length` bytes of UTF-8; `value` and `value_length`, one each.
+/// - Result: `*value`, not NUL-terminated; NULL if there is no such fact. `*value_length`, in bytes.
+/// - Errors: LEAFLESS_E_UTF8.
+/// - Ownership: the text belongs to the model and lives as long as the reference `tridexel`.
+/// - Threads: any.
+/// - Untrusted input: any model.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_tridexel_peek_metadata(
+    tridexel: *const leafless_tridexel,
+    key: *const c_char,
+    key_length: usize,
+    value: *mut *const c_char,
+    value_length: *mut usize,
+) -> leafless_status {
+    guard(|| unsafe {
+        let model = &shared(tridexel, "tridexel")?.model;
+        metadata::peek(model.metadata(), key, key_length, value, value_length)
+    })
+}
+
+/// A fact of a tri-dexel model's metadata by its place among all, which stand by ascending key.
+///
+/// - Buffers: `count`, one number; `key`, `key_length`, `value`, `value_length`, one each, all four NULL to
+///   ask for the count only.
+/// - Result: `*count`, the number of all facts; key and value, not NUL-terminated, with their lengths in
+///   bytes.
+/// - Errors: LEAFLESS_E_ARGUMENT if there is no fact `index`, unless only the count is asked for.
+/// - Ownership: the texts belong to the model and live as long as the reference `tridexel`.
+/// - Threads: any.
+/// - Untrusted input: any model.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_tridexel_peek_metadata_at(
+    tridexel: *const leafless_tridexel,
+    index: u64,
+    count: *mut u64,
+    key: *mut *const c_char,
+    key_length: *mut usize,
+    value: *mut *const c_char,
+    value_length: *mut usize,
+) -> leafless_status {
+    guard(|| unsafe {
+        let model = &shared(tridexel, "tridexel")?.model;
+        let fact = Fact { key, key_length, value, value_length };
+        metadata::peek_at(model.metadata(), index, count, fact)
+    })
+}

@@ -1,0 +1,236 @@
+//! What tri-dexel models become: meshes, octrees, solids, voxels.
+
+use super::boundary::{Failure, buffer, guard, out, shared, slice};
+use super::control::{controlled, leafless_options};
+use super::mesh::{give as give_mesh, leafless_mesh};
+use super::octree::{give as give_octree, leafless_octree};
+use super::solid::{give as give_solid, leafless_solid};
+use super::status::leafless_status;
+use super::tridexel::leafless_tridexel;
+use super::voxel::leafless_voxel_kind::{self, *};
+use leafless::Metadata;
+use leafless::octree_of_dexels;
+use leafless::{DexelSolid, DexelSurfaceReport, dual_contouring_of_dexels, marching_cubes_of_dexels};
+use leafless::{LongVoxel, VoxelKind, dexel_voxels};
+use leafless_dexel_surface_method::*;
+
+/// How the surface of a tri-dexel model is extracted.
+#[derive(Clone, Copy)]
+#[repr(u32)]
+pub enum leafless_dexel_surface_method {
+    /// Marching cubes: a vertex where a ray crosses the surface between two neighbouring centres of cells. Edges and
+    /// corners of the solid are cut off by up to a cell.
+    LEAFLESS_DEXEL_SURFACE_MARCHING_CUBES = 0,
+    /// Dual contouring: a vertex for each sheet of the surface in a cube between eight centres, where the planes at its
+    /// crossings fit best. Edges and corners of the solid stay, if the model stores normals.
+    LEAFLESS_DEXEL_SURFACE_DUAL_CONTOURING = 1,
+}
+
+/// How exactly a surface of a tri-dexel model follows its rays.
+#[derive(Clone, Copy)]
+#[repr(C)]
+pub struct leafless_dexel_surface_report {
+    /// Edges between neighbouring centres of cells of which one lies inside: places where a ray crosses the surface.
+    pub crossings: u64,
+    /// Crossings on edges that the ray crosses more than once: what is thinner than a cell is lost there.
+    pub several: u64,
+    /// Crossings that were put in the middle of their edges, because the model has no rays along these.
+    pub without_rays: u64,
+    /// Crossings that were put in the middle of their edges, because the directions of the model disagree there.
+    pub disagreeing: u64,
+    /// Crossings of which no normal is known. (By dual contouring alone.)
+    pub without_normals: u64,
+    /// Vertices with no normal at any of their crossings, which are the mean of these. (By dual contouring alone.)
+    pub means: u64,
+    /// Vertices that would fit their planes better outside of their cells. (By dual contouring alone.)
+    pub clamped: u64,
+    /// Bodies that the mesh does not show at all: sets of centres of cells that lie inside and hang together along axes,
+    /// none of whose crossings has a triangle, because the surface lies nearer to them than doubles can tell.
+    pub vanished: u64,
+    /// Intervals in all directions that hold no centre of a cell, those that touch counted as one: what is thinner than the
+    /// lattice there is not in the mesh.
+    pub without_centres: u64,
+}
+
+impl From<DexelSurfaceReport> for leafless_dexel_surface_report {
+    fn from(report: DexelSurfaceReport) -> leafless_dexel_surface_report {
+        leafless_dexel_surface_report {
+            crossings: report.crossings,
+            several: report.several,
+            without_rays: report.without_rays,
+            disagreeing: report.disagreeing,
+            without_normals: report.without_normals,
+            means: report.means,
+            clamped: report.clamped,
+            vanished: report.vanished,
+            without_centres: report.without_centres,
+        }
+    }
+}
+
+/// A row of voxels along y that are all of one kind and of one material.
+#[derive(Clone, Copy)]
+#[repr(C)]
+pub struct leafless_long_voxel {
+    /// Its first voxel. The voxel (x, y, z) lies between the centres of the cells x - 1 and x, and likewise on the other
+    /// axes: its indices go from 0 to the cells of an axis, that number included.
+    pub first: [u32; 3],
+    /// How many voxels it consists of.
+    pub length: u32,
+    /// What it is made of; 0 where nothing was said.
+    pub material: u32,
+    /// The material's colour: red, green, blue and opacity, 0 to 255.
+    pub colour: [u8; 4],
+    /// LEAFLESS_VOXEL_INSIDE or LEAFLESS_VOXEL_BOUNDARY.
+    pub kind: leafless_voxel_kind,
+}
+
+impl From<&LongVoxel> for leafless_long_voxel {
+    fn from(voxel: &LongVoxel) -> leafless_long_voxel {
+        leafless_long_voxel {
+            first: voxel.first,
+            length: voxel.length,
+            material: voxel.material,
+            colour: voxel.colour,
+            kind: match voxel.kind {
+                VoxelKind::Inside => LEAFLESS_VOXEL_INSIDE,
+                _ => LEAFLESS_VOXEL_BOUNDARY,
+            },
+        }
+    }
+}
+
+/// The surface of a tri-dexel model: a closed mesh. Samples are the centres of cells; everything outside of the universe
+/// is outside.
+///
+/// Triangles turn counter-clockwise as seen from outside. Every edge belongs to exactly two triangles, but where vertices
+/// lie at one place: these are one vertex, and triangles without area are dropped. Where a ray does not tell a crossing,
+/// because the model has no rays along an axis or its directions disagree, the crossing lies half-way between the two
+/// centres; the report counts such places.
+///
+/// O(rays + intervals + octree + mesh), with the octree of leafless_tridexel_to_octree.
+///
+/// - Buffers: `options`, one struct or NULL; `report`, one struct, or NULL if it is not wanted; `mesh`, one pointer.
+///   `method` is a leafless_dexel_surface_method.
+/// - Result: `*mesh`, the same for any number of threads; it has no triangles if no centre lies inside, or if all bodies
+///   vanish. `*report`.
+/// - Errors: LEAFLESS_E_ARGUMENT also if the frame lies so far from the origin that doubles cannot tell its cells apart;
+///   LEAFLESS_E_MESH if there would be more than 2^32 - 1 vertices or triangles; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: `tridexel` stays as it is; give `*mesh` back with leafless_mesh_free.
+/// - Threads: any; uses as many as `options` says.
+/// - Untrusted input: any model; a damaged one is refused (LEAFLESS_E_DAMAGED).
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_tridexel_surface(
+    tridexel: *const leafless_tridexel,
+    method: u32,
+    options: *const leafless_options,
+    report: *mut leafless_dexel_surface_report,
+    mesh: *mut *mut leafless_mesh,
+) -> leafless_status {
+    guard(|| unsafe {
+        let model = shared(tridexel, "tridexel")?.model.view();
+        let extract = match method {
+            _ if method == LEAFLESS_DEXEL_SURFACE_MARCHING_CUBES as u32 => marching_cubes_of_dexels,
+            _ if method == LEAFLESS_DEXEL_SURFACE_DUAL_CONTOURING as u32 => dual_contouring_of_dexels,
+            _ => {
+                let problem = "is no leafless_dexel_surface_method";
+                return Err(Failure::Argument { name: "method", problem });
+            }
+        };
+        let report = if report.is_null() { None } else { Some(out(report, "report")?) };
+        let mesh = out(mesh, "mesh")?;
+        let (made, found) = controlled(options, |control| extract(model, control))?;
+        if let Some(report) = report {
+            report.write(found.into())?;
+        }
+        mesh.write(give_mesh(made))
+    })
+}
+
+/// The octree of a tri-dexel model: a finest cell is FULL if its centre lies inside, else EMPTY. It proves nothing.
+///
+/// - Buffers: `options`, one struct or NULL; `octree`, one pointer.
+/// - Result: `*octree`, with the model's facts "name" and "units" and no others; the same for any number of threads.
+/// - Errors: LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: `tridexel` stays as it is; give `*octree` back with leafless_octree_free.
+/// - Threads: any; uses as many as `options` says.
+/// - Untrusted input: any model, of which a damaged one is refused (LEAFLESS_E_DAMAGED); set `max_bytes` where its depth is not your own choice.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_tridexel_to_octree(
+    tridexel: *const leafless_tridexel,
+    options: *const leafless_options,
+    octree: *mut *mut leafless_octree,
+) -> leafless_status {
+    guard(|| unsafe {
+        let model = &shared(tridexel, "tridexel")?.model;
+        let octree = out(octree, "octree")?;
+        let made = controlled(options, |control| octree_of_dexels(model.view(), control))?;
+        octree.write(give_octree(made.with_metadata(Metadata::common([model.metadata()])?)))
+    })
+}
+
+/// A tri-dexel model as a solid on any frame: the inside of its surface by marching cubes.
+///
+/// That surface is near the one that the model was made from, not on it. So what is built of the solid proves nothing,
+/// and measures of it are not bounded; with `is_truth` the surface is taken for the truth, and both are as of any mesh.
+///
+/// - Buffers: `options`, one struct or NULL; `solid`, one pointer.
+/// - Result: `*solid`.
+/// - Errors: as leafless_tridexel_surface, and LEAFLESS_E_MESH if no centre of a cell lies inside.
+/// - Ownership: nothing is kept of `tridexel`; give `*solid` back with leafless_solid_free.
+/// - Threads: any; uses as many as `options` says.
+/// - Untrusted input: any model; a damaged one is refused (LEAFLESS_E_DAMAGED).
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_tridexel_as_solid(
+    tridexel: *const leafless_tridexel,
+    is_truth: bool,
+    options: *const leafless_options,
+    solid: *mut *mut leafless_solid,
+) -> leafless_status {
+    guard(|| unsafe {
+        let model = shared(tridexel, "tridexel")?.model.view();
+        let solid = out(solid, "solid")?;
+        let made = controlled(options, |control| DexelSolid::new(model, control))?;
+        solid.write(give_solid(if is_truth { made.as_truth() } else { made }))
+    })
+}
+
+/// The voxels of a tri-dexel model, whose corners are the centres of cells: a voxel lies inside if all of its eight
+/// corners do, outside if none does, and else on the boundary. Those that do not lie outside are merged along y, as far as
+/// kind and material are the same. A voxel has the material at its first corner that lies inside, x running fastest and z
+/// slowest, and the colour that `colours` has at the place of the material's number; materials beyond are grey (128, 128,
+/// 128, 255). Call it once for the count, and then with a buffer.
+///
+/// O(rays of the window + blocks + rows), for blocks of 64 x 64 x 64 cells in which centres lie inside.
+///
+/// - Buffers: `options`, one struct or NULL; `colours`, `colour_count` colours of four bytes (red, green, blue, opacity), or
+///   NULL for none; `voxels`, room for `capacity` structs, or NULL to ask for the count only; `count`, one number.
+/// - Result: `*count`; the rows of voxels by z, then by x, then by y.
+/// - Errors: LEAFLESS_E_BUFFER if the capacity is too small; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: nothing changes hands.
+/// - Threads: any; works in the calling thread.
+/// - Untrusted input: any model; a damaged one is refused (LEAFLESS_E_DAMAGED).
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_tridexel_voxels(
+    tridexel: *const leafless_tridexel,
+    options: *const leafless_options,
+    colours: *const u8,
+    colour_count: u64,
+    voxels: *mut leafless_long_voxel,
+    capacity: u64,
+    count: *mut u64,
+) -> leafless_status {
+    guard(|| unsafe {
+        let model = shared(tridexel, "tridexel")?.model.view();
+        let colours = slice(colours.cast::<[u8; 4]>(), colour_count, "colours")?;
+        let voxels = buffer(voxels, capacity, "voxels")?;
+        let count = out(count, "count")?;
+        let found = controlled(options, |control| dexel_voxels(model, colours, control))?;
+        voxels.fill_with(found.list())?;
+        count.write(found.list().len() as u64)
+    })
+}

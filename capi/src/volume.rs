@@ -1,0 +1,413 @@
+//! Volumes: bitmaps and arrays of samples, and the solids that they are.
+
+use super::boundary::{Failure, array, guard, out, refer, release, shared};
+use super::control::{controlled, leafless_options};
+use super::frame::{leafless_frame, leafless_interval};
+use super::mesh_file::{leafless_unit, unit_of};
+use super::solid::{give_any, leafless_solid};
+use super::status::leafless_status;
+use core::ffi::c_void;
+use leafless::Control;
+use leafless::Error;
+use leafless::exchange::{LengthUnit, SampleKind};
+use leafless::{Affine, Interval};
+use leafless::{AnySolid, Band, Samples, Volume, VoxelGrid};
+use leafless_sample_type::*;
+use std::sync::OnceLock;
+
+/// A three-dimensional bitmap or array of samples, and where it lies. Each sample stands for the closed box
+/// around it, its voxel: on each axis voxel i reaches from corner + i·spacing to corner + (i + 1)·spacing.
+/// leafless_solid_new_volume makes a solid of those whose samples lie in a band.
+///
+/// Immutable: all its functions may be called at once from any number of threads, but leafless_volume_free
+/// needs the reference that it gives back for itself.
+pub struct leafless_volume {
+    pub(super) samples: Samples<'static>,
+    pub(super) grid: VoxelGrid,
+    /// Moves the grid to where the file says, if its axes are not x, y and z.
+    pub(super) placement: Option<Affine>,
+    pub(super) unit: Option<LengthUnit>,
+    pub(super) format: leafless_volume_format,
+    pub(super) file_type: leafless_sample_type,
+    pub(super) rounded: u64,
+    /// What all bands share, once it was asked for.
+    pub(super) ranges: OnceLock<Volume<'static>>,
+}
+
+/// The type of samples. The arrays of a volume are of the first five types. Samples of other types are
+/// converted to one of these when they are copied.
+#[derive(Clone, Copy, PartialEq)]
+#[repr(u32)]
+pub enum leafless_sample_type {
+    /// uint8_t.
+    LEAFLESS_SAMPLE_U8 = 0,
+    /// uint16_t.
+    LEAFLESS_SAMPLE_U16 = 1,
+    /// int16_t, as the Hounsfield units of tomography.
+    LEAFLESS_SAMPLE_I16 = 2,
+    /// float. One that is not a number is never inside.
+    LEAFLESS_SAMPLE_F32 = 3,
+    /// Bits with the values 0 and 1, in uint64_t: each row along x begins with a word of its own, and the bit
+    /// of the sample (x, y, z) is bit x mod 64 of word x / 64 + w (y + ny z), where w = ⌈nx / 64⌉. Other bits
+    /// of a row's last word do not count. leafless_octree_bitmap writes the same.
+    LEAFLESS_SAMPLE_BITS = 4,
+    /// Bits in bytes, eight to a byte, the lowest first: each row along x begins with a byte of its own. They
+    /// become LEAFLESS_SAMPLE_BITS.
+    LEAFLESS_SAMPLE_BITS_IN_BYTES = 5,
+    /// int8_t. It becomes int16_t.
+    LEAFLESS_SAMPLE_I8 = 6,
+    /// int32_t. It becomes float, and so do all that follow.
+    LEAFLESS_SAMPLE_I32 = 7,
+    /// uint32_t.
+    LEAFLESS_SAMPLE_U32 = 8,
+    /// int64_t.
+    LEAFLESS_SAMPLE_I64 = 9,
+    /// uint64_t.
+    LEAFLESS_SAMPLE_U64 = 10,
+    /// double.
+    LEAFLESS_SAMPLE_F64 = 11,
+}
+
+/// The formats of volume files.
+#[derive(Clone, Copy, PartialEq)]
+#[repr(u32)]
+pub enum leafless_volume_format {
+    /// The samples alone. A leafless_volume_layout tells what must be known to read them.
+    LEAFLESS_VOLUME_FORMAT_RAW = 0,
+    /// NRRD, `.nrrd` or `.nhdr`. When written, with samples as they are.
+    LEAFLESS_VOLUME_FORMAT_NRRD = 1,
+    /// MetaImage, `.mha` or `.mhd`, which can be read only.
+    LEAFLESS_VOLUME_FORMAT_METAIMAGE = 2,
+    /// To be written: NRRD with samples compressed by DEFLATE. (A file that is read is
+    /// LEAFLESS_VOLUME_FORMAT_NRRD, compressed or not.)
+    LEAFLESS_VOLUME_FORMAT_NRRD_GZIP = 3,
+}
+
+/// What can be said of a volume at once.
+#[derive(Clone, Copy)]
+#[repr(C)]
+pub struct leafless_volume_info {
+    /// How many samples there are along x, y and z.
+    pub extents: [u32; 3],
+    /// Their type in memory: one of the first five.
+    pub sample_type: leafless_sample_type,
+    /// Their type in the file or array that the volume was made from.
+    pub file_type: leafless_sample_type,
+    /// The file's format; LEAFLESS_VOLUME_FORMAT_RAW for arrays.
+    pub format: leafless_volume_format,
+    /// The unit of all lengths, if the file says it.
+    pub unit: leafless_unit,
+    /// Whether the file's axes are not x, y and z: then `placement` moves the voxels.
+    pub is_placed: bool,
+    /// The number of samples.
+    pub sample_count: u64,
+    /// How many of them single precision had to round.
+    pub rounded: u64,
+    /// The least value that is inside if nobody says which: the middle of the range of `file_type`. 0.5 for
+    /// bits, 127.5 for uint8_t, 32767.5 for uint16_t, -0.5 for integers with a sign, 0 for float and double.
+    pub default_threshold: f64,
+    /// The lower corner of the first voxel, before `placement` moves it.
+    pub corner_model: [f64; 3],
+    /// The edges of a voxel.
+    pub spacing_model: [f64; 3],
+    /// The affine map x' = M x + t that moves the voxels to where the file says: three rows of M and t. Its
+    /// directions are rounded. The map that moves nothing unless `is_placed`.
+    pub placement: [f64; 12],
+}
+
+pub(super) const TYPES: [(leafless_sample_type, SampleKind); 12] = [
+    (LEAFLESS_SAMPLE_U8, SampleKind::U8),
+    (LEAFLESS_SAMPLE_U16, SampleKind::U16),
+    (LEAFLESS_SAMPLE_I16, SampleKind::I16),
+    (LEAFLESS_SAMPLE_F32, SampleKind::F32),
+    (LEAFLESS_SAMPLE_BITS_IN_BYTES, SampleKind::Bit),
+    (LEAFLESS_SAMPLE_BITS, SampleKind::Bit),
+    (LEAFLESS_SAMPLE_I8, SampleKind::I8),
+    (LEAFLESS_SAMPLE_I32, SampleKind::I32),
+    (LEAFLESS_SAMPLE_U32, SampleKind::U32),
+    (LEAFLESS_SAMPLE_I64, SampleKind::I64),
+    (LEAFLESS_SAMPLE_U64, SampleKind::U64),
+    (LEAFLESS_SAMPLE_F64, SampleKind::F64),
+];
+
+/// The type of a file's samples.
+pub(super) fn type_of(kind: SampleKind) -> leafless_sample_type {
+    TYPES.iter().find(|(_, known)| *known == kind).map_or(LEAFLESS_SAMPLE_U8, |(named, _)| *named)
+}
+
+impl leafless_volume {
+    /// The band of a caller, or that from the default threshold on.
+    ///
+    /// # Safety
+    /// `band` is NULL or misaligned, or points to a struct.
+    pub(super) unsafe fn band(&self, band: *const leafless_interval) -> Result<Band, Failure> {
+        let [low, high] = match band.is_null() {
+            true => [self.threshold(), f64::INFINITY],
+            // SAFETY: the caller's promise.
+            false => unsafe { array(band.cast::<f64>(), "band")? },
+        };
+        Ok(Band::between(low, high)?)
+    }
+
+    fn sample_type(&self) -> leafless_sample_type {
+        match self.samples {
+            Samples::Bits(_) => LEAFLESS_SAMPLE_BITS,
+            Samples::U8(_) => LEAFLESS_SAMPLE_U8,
+            Samples::U16(_) => LEAFLESS_SAMPLE_U16,
+            Samples::I16(_) => LEAFLESS_SAMPLE_I16,
+            Samples::F32(_) => LEAFLESS_SAMPLE_F32,
+        }
+    }
+
+    /// The least value that is inside if nobody says which.
+    fn threshold(&self) -> f64 {
+        let known = TYPES.iter().find(|(named, _)| *named == self.file_type);
+        known.map_or(0.0, |(_, kind)| kind.half_range())
+    }
+
+    /// The voxels that are inside. The samples are read by the first call only.
+    pub(super) fn voxels(&self, band: Band, control: &Control<'_>) -> Result<Volume<'static>, Error> {
+        match self.ranges.get() {
+            Some(volume) => volume.with_band(band, control),
+            None => {
+                let volume = Volume::new(self.samples.clone(), &self.grid, band, control)?;
+                // If another thread was faster, its ranges are the same.
+                let _ = self.ranges.set(volume.clone());
+                Ok(volume)
+            }
+        }
+    }
+}
+
+/// One more reference to a volume.
+///
+/// - Buffers: `volume`, a handle; `reference`, one pointer.
+/// - Result: `*reference`, equal to `volume`.
+/// - Errors: only the general ones.
+/// - Ownership: give each reference back with leafless_volume_free.
+/// - Threads: any.
+/// - Untrusted input: none.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_volume_ref(
+    volume: *const leafless_volume,
+    reference: *mut *mut leafless_volume,
+) -> leafless_status {
+    guard(|| unsafe { refer(volume, "volume", reference) })
+}
+
+/// Gives back a reference to a volume; with the last one the volume is gone. Solids made of it stay, and keep
+/// its samples.
+///
+/// - Buffers: `volume`, a handle or NULL, which does nothing.
+/// - Result: none.
+/// - Errors: none.
+/// - Ownership: the reference is gone.
+/// - Threads: any; no other call may use this reference.
+/// - Untrusted input: none.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_volume_free(volume: *mut leafless_volume) {
+    // SAFETY: the caller's promise.
+    unsafe { release(volume) }
+}
+
+/// What can be said of a volume at once. O(1).
+///
+/// - Buffers: `info`, one struct.
+/// - Result: `*info`.
+/// - Errors: only the general ones.
+/// - Ownership: nothing changes hands.
+/// - Threads: any.
+/// - Untrusted input: none.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_volume_describe(
+    volume: *const leafless_volume,
+    info: *mut leafless_volume_info,
+) -> leafless_status {
+    guard(|| unsafe {
+        let volume = shared(volume, "volume")?;
+        let rows = *volume.placement.unwrap_or(Affine::IDENTITY).rows();
+        out(info, "info")?.write(leafless_volume_info {
+            extents: volume.grid.extents(),
+            sample_type: volume.sample_type(),
+            file_type: volume.file_type,
+            format: volume.format,
+            unit: unit_of(volume.unit),
+            is_placed: volume.placement.is_some(),
+            sample_count: volume.grid.count(),
+            rounded: volume.rounded,
+            default_threshold: volume.threshold(),
+            corner_model: volume.grid.corner(),
+            spacing_model: volume.grid.spacing(),
+            placement: core::array::from_fn(|k| rows[k / 4][k % 4]),
+        })
+    })
+}
+
+/// The samples of a volume where they lie, without a copy: x fastest, of the `sample_type` of
+/// leafless_volume_describe.
+///
+/// - Buffers: `samples` and `length`, one each.
+/// - Result: `*samples`, the address of the first one; `*length`, their bytes.
+/// - Errors: only the general ones.
+/// - Ownership: the samples belong to the volume, or to the host that made it by leafless_volume_view, and
+///   live as long as the reference `volume`.
+/// - Threads: any.
+/// - Untrusted input: none.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_volume_peek_samples(
+    volume: *const leafless_volume,
+    samples: *mut *const c_void,
+    length: *mut u64,
+) -> leafless_status {
+    fn bytes<T>(values: &[T]) -> (*const c_void, u64) {
+        (values.as_ptr().cast(), size_of_val(values) as u64)
+    }
+    guard(|| unsafe {
+        let volume = shared(volume, "volume")?;
+        let (samples, length) = (out(samples, "samples")?, out(length, "length")?);
+        let (start, count) = match &volume.samples {
+            Samples::Bits(words) => bytes(words.values()),
+            Samples::U8(values) => bytes(values.values()),
+            Samples::U16(values) => bytes(values.values()),
+            Samples::I16(values) => bytes(values.values()),
+            Samples::F32(values) => bytes(values.values()),
+        };
+        samples.write(start)?;
+        length.write(count)
+    })
+}
+
+/// The frame whose finest cells are the voxels of a volume: of the least depth that holds all of them. On
+/// this frame a solid of the volume has no PARTIAL cell, and its octree is the bitmap, bit for bit.
+///
+/// - Buffers: `frame`, one struct.
+/// - Result: `*frame`.
+/// - Errors: LEAFLESS_E_ARGUMENT if voxels are no cubes, or their axes not x, y and z: take a frame around
+///   leafless_volume_bounds.
+/// - Ownership: nothing changes hands.
+/// - Threads: any.
+/// - Untrusted input: any volume.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_volume_frame(
+    volume: *const leafless_volume,
+    frame: *mut leafless_frame,
+) -> leafless_status {
+    guard(|| unsafe {
+        let volume = shared(volume, "volume")?;
+        let frame = out(frame, "frame")?;
+        if volume.placement.is_some() {
+            let problem = "has other axes than x, y and z, and cells have not; give bounds and a depth";
+            return Err(Failure::Argument { name: "volume", problem });
+        }
+        frame.write((&volume.grid.frame()?).into())
+    })
+}
+
+/// A box that contains all voxels of a volume, where the file says that they lie; rounded outward.
+///
+/// - Buffers: `min_model` and `max_model`, room for 3 numbers each.
+/// - Result: both corners.
+/// - Errors: LEAFLESS_E_ARGUMENT if the box is beyond the range of double.
+/// - Ownership: nothing changes hands.
+/// - Threads: any.
+/// - Untrusted input: any volume.
+/// - Since: 0.1
+///
+/// cbindgen:ptrs-as-arrays=[[min_model; 3], [max_model; 3]]
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_volume_bounds(
+    volume: *const leafless_volume,
+    min_model: *mut f64,
+    max_model: *mut f64,
+) -> leafless_status {
+    guard(|| unsafe {
+        let volume = shared(volume, "volume")?;
+        let (min, max) = (out(min_model.cast(), "min_model")?, out(max_model.cast(), "max_model")?);
+        let bounds = volume.grid.bounds();
+        let bounds = match &volume.placement {
+            Some(placement) => bounds.placed(placement),
+            None => Some(bounds),
+        };
+        let problem = "reaches beyond the range of double";
+        let bounds = bounds.ok_or(Failure::Argument { name: "volume", problem })?;
+        min.write(bounds.min)?;
+        max.write(bounds.max)
+    })
+}
+
+/// The least and the greatest sample of a volume. O(n), and O(n / 64) once a solid or a range was asked for.
+///
+/// - Buffers: `options`, one struct or NULL, of which limits do not matter; `range`, one struct.
+/// - Result: `*range`: of bits 0 to 1, and all numbers if a sample is not a number.
+/// - Errors: LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: nothing changes hands.
+/// - Threads: any; uses as many as `options` says.
+/// - Untrusted input: any volume.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_volume_range(
+    volume: *const leafless_volume,
+    options: *const leafless_options,
+    range: *mut leafless_interval,
+) -> leafless_status {
+    guard(|| unsafe {
+        let volume = shared(volume, "volume")?;
+        let range = out(range, "range")?;
+        let found = controlled(options, |control| match volume.ranges.get() {
+            Some(volume) => Ok(volume.value_range()),
+            None => Ok(volume.voxels(Band::at_least(volume.threshold())?, control)?.value_range()),
+        })?;
+        let [lower, upper] = match found {
+            Some(found) => found,
+            None if volume.sample_type() == LEAFLESS_SAMPLE_BITS => [0.0, 1.0],
+            None => [f64::NEG_INFINITY, f64::INFINITY],
+        };
+        range.write(Interval::new(lower, upper).unwrap_or(Interval::ALL).into())
+    })
+}
+
+/// The solid of a volume: the union of the closed voxels whose samples lie in a band, where the file says
+/// that they lie. What is beyond the voxels is outside. It is taken wherever solids are: it can be built,
+/// joined with others, measured, and have its surface extracted.
+///
+/// On the frame of leafless_volume_frame finest cells are voxels, and nothing is PARTIAL. On any other,
+/// however its cells lie to the voxels, PARTIAL cells are those that voxels of both kinds share.
+///
+/// The first solid of a volume reads all samples, in O(n); the next, with other bands, read only blocks of
+/// which the least and the greatest value do not tell. Beside the samples, which are shared, it takes about
+/// 1/32 of their memory for uint8_t.
+///
+/// - Buffers: `band`, one struct: the least and the greatest value that are inside, which may be infinite; or
+///   NULL, which means all values from the `default_threshold` of leafless_volume_describe on. `options`, one
+///   struct or NULL, of which limits do not matter; `solid`, one pointer.
+/// - Result: `*solid`.
+/// - Errors: LEAFLESS_E_ARGUMENT if an end of the band is not a number, or the lower above the upper one;
+///   LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: the solid shares the samples, and `volume` may be freed; give `*solid` back with
+///   leafless_solid_free.
+/// - Threads: any; uses as many as `options` says.
+/// - Untrusted input: any volume.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_solid_new_volume(
+    volume: *const leafless_volume,
+    band: *const leafless_interval,
+    options: *const leafless_options,
+    solid: *mut *mut leafless_solid,
+) -> leafless_status {
+    guard(|| unsafe {
+        let volume = shared(volume, "volume")?;
+        let band = volume.band(band)?;
+        let solid = out(solid, "solid")?;
+        let voxels = AnySolid::new(controlled(options, |control| volume.voxels(band, control))?);
+        solid.write(give_any(match &volume.placement {
+            Some(placement) => voxels.placed(placement)?,
+            None => voxels,
+        }))
+    })
+}

@@ -1,0 +1,236 @@
+//! Volumes from arrays as host programs have them.
+
+use super::boundary::{Failure, Sized32, guard, handle, initialise, out, sized, slice};
+use super::status::leafless_status;
+use super::volume::leafless_sample_type::{self, *};
+use super::volume::leafless_volume_format::LEAFLESS_VOLUME_FORMAT_RAW;
+use super::volume::{TYPES, leafless_volume};
+use core::ffi::c_void;
+use leafless::exchange::{RawVolume, read_raw_volume};
+use leafless::memory;
+use leafless::{Error, VolumeFileError};
+use leafless::{Samples, VoxelGrid};
+use leafless_byte_order::*;
+use std::sync::OnceLock;
+
+/// The order of a number's bytes.
+#[derive(Clone, Copy)]
+#[repr(u32)]
+pub enum leafless_byte_order {
+    /// As this machine has them.
+    LEAFLESS_BYTE_ORDER_NATIVE = 0,
+    /// The byte of the lowest weight first.
+    LEAFLESS_BYTE_ORDER_LITTLE = 1,
+    /// The byte of the highest weight first.
+    LEAFLESS_BYTE_ORDER_BIG = 2,
+}
+
+/// How an array of samples is laid out, and where it lies: x varies fastest, then y, then z, without gaps.
+/// All fields but the first and `extents` may be zero, which is their default; leafless_volume_layout_init
+/// sets them so.
+#[derive(Clone, Copy)]
+#[repr(C)]
+pub struct leafless_volume_layout {
+    /// sizeof(leafless_volume_layout).
+    pub struct_size: u32,
+    /// A leafless_sample_type.
+    pub sample_type: u32,
+    /// How many samples there are along x, y and z: 1 to 2^20 each. An octree's cube may reach beyond them;
+    /// nothing is stored there.
+    pub extents: [u32; 3],
+    /// A leafless_byte_order.
+    pub byte_order: u32,
+    /// Bytes before the first sample.
+    pub skip: u64,
+    /// The lower corner of the first voxel: the place of the first sample less half the spacing. Each
+    /// coordinate is 0 or of a magnitude between 2^-256 and 2^256.
+    pub corner_model: [f64; 3],
+    /// The edges of a voxel, 2^-256 to 2^256; all three 0 means 1.
+    pub spacing_model: [f64; 3],
+}
+
+// SAFETY: numbers.
+unsafe impl Sized32 for leafless_volume_layout {}
+
+/// A layout that was checked.
+pub(super) struct Layout {
+    /// The grid, the type and the bytes before it. Bits in words are of the same kind as those in bytes.
+    pub(super) raw: RawVolume,
+    pub(super) sample_type: leafless_sample_type,
+}
+
+impl Layout {
+    /// # Safety
+    /// As [`sized`]; `layout` is not NULL.
+    pub(super) unsafe fn new(layout: *const leafless_volume_layout) -> Result<Layout, Failure> {
+        if layout.is_null() {
+            return Err(Failure::Null { name: "layout" });
+        }
+        // SAFETY: the caller's promise.
+        let given = unsafe { sized(layout, "layout")? };
+        let known = TYPES.iter().find(|(named, _)| *named as u32 == given.sample_type);
+        let Some(&(sample_type, kind)) = known else {
+            let problem = "is no leafless_sample_type";
+            return Err(Failure::Argument { name: "layout.sample_type", problem });
+        };
+        let big_endian = match given.byte_order {
+            order if order == LEAFLESS_BYTE_ORDER_NATIVE as u32 => cfg!(target_endian = "big"),
+            order if order == LEAFLESS_BYTE_ORDER_LITTLE as u32 => false,
+            order if order == LEAFLESS_BYTE_ORDER_BIG as u32 => true,
+            _ => {
+                let problem = "is no leafless_byte_order";
+                return Err(Failure::Argument { name: "layout.byte_order", problem });
+            }
+        };
+        let spacing = if given.spacing_model == [0.0; 3] { [1.0; 3] } else { given.spacing_model };
+        let grid = VoxelGrid::new(given.extents, given.corner_model, spacing)?;
+        Ok(Layout { raw: RawVolume { grid, kind, big_endian, skip: given.skip }, sample_type })
+    }
+
+    /// The samples in bytes, copied, and how many were rounded.
+    pub(super) fn copied(&self, bytes: &[u8]) -> Result<(Samples<'static>, u64), Error> {
+        let found = bytes.len() as u64;
+        if self.raw.skip > found {
+            return Err(VolumeFileError::Length { expected: self.raw.skip, found }.into());
+        }
+        if self.sample_type != LEAFLESS_SAMPLE_BITS {
+            return read_raw_volume(bytes, &self.raw);
+        }
+        let [_, y, z] = self.raw.grid.extents().map(u64::from);
+        let length = (8 * self.raw.grid.words() as u64).checked_mul(y * z).ok_or(Error::OutOfMemory)?;
+        let expected = length.checked_add(self.raw.skip).ok_or(Error::OutOfMemory)?;
+        if found != expected {
+            return Err(VolumeFileError::Length { expected, found }.into());
+        }
+        let words = bytes.get(self.raw.skip as usize..).unwrap_or(&[]).as_chunks::<8>().0;
+        let word = |&bytes: &[u8; 8]| match self.raw.big_endian {
+            true => u64::from_be_bytes(bytes),
+            false => u64::from_le_bytes(bytes),
+        };
+        Ok((Samples::Bits(memory::collected(words.iter().map(word))?.into()), 0))
+    }
+
+    /// The volume of samples in this layout.
+    pub(super) fn volume(&self, (samples, rounded): (Samples<'static>, u64)) -> leafless_volume {
+        leafless_volume {
+            samples,
+            grid: self.raw.grid,
+            placement: None,
+            unit: None,
+            format: LEAFLESS_VOLUME_FORMAT_RAW,
+            file_type: self.sample_type,
+            rounded,
+            ranges: OnceLock::new(),
+        }
+    }
+}
+
+/// Sets a layout to its defaults: no samples.
+///
+/// - Buffers: `layout`, one struct of `struct_size` bytes, which is sizeof(leafless_volume_layout); need not
+///   be initialised.
+/// - Result: `*layout`.
+/// - Errors: LEAFLESS_E_ARGUMENT if `struct_size` cannot be right.
+/// - Ownership: nothing changes hands.
+/// - Threads: any.
+/// - Untrusted input: none.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_volume_layout_init(
+    layout: *mut leafless_volume_layout,
+    struct_size: usize,
+) -> leafless_status {
+    guard(|| unsafe { initialise(layout, struct_size, "layout") })
+}
+
+/// Makes a volume of an array, which is copied. O(n).
+///
+/// - Buffers: `layout`, one struct; `samples`, `length` bytes, on any address; `volume`, one pointer.
+/// - Result: `*volume`.
+/// - Errors: LEAFLESS_E_ARGUMENT if the type, the byte order, an extent, the corner or the spacing is none,
+///   or if `length` is not that of the samples and the bytes to skip; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: the samples may be freed after the call; give `*volume` back with leafless_volume_free.
+/// - Threads: any.
+/// - Untrusted input: any layout, any bytes.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_volume_new(
+    layout: *const leafless_volume_layout,
+    samples: *const c_void,
+    length: u64,
+    volume: *mut *mut leafless_volume,
+) -> leafless_status {
+    guard(|| unsafe {
+        let layout = Layout::new(layout)?;
+        let bytes: &[u8] = slice(samples.cast(), length, "samples")?;
+        let volume = out(volume, "volume")?;
+        let copied = layout.copied(bytes).map_err(|error| match error {
+            Error::VolumeFile(VolumeFileError::Length { .. }) => wrong_length(),
+            error => error.into(),
+        })?;
+        volume.write(handle(layout.volume(copied)))
+    })
+}
+
+fn wrong_length() -> Failure {
+    Failure::Argument {
+        name: "length",
+        problem: "must be the bytes of all samples that the layout tells of, and those to skip",
+    }
+}
+
+/// Makes a volume of an array, which is used where it lies, without a copy. O(1).
+///
+/// - Buffers: `layout`, one struct, whose type is LEAFLESS_SAMPLE_U8, _U16, _I16, _F32 or _BITS, whose byte
+///   order is this machine's, and which has nothing to skip; `samples`, `length` bytes, aligned for their
+///   type; `volume`, one pointer.
+/// - Result: `*volume`.
+/// - Errors: LEAFLESS_E_ARGUMENT as leafless_volume_new, and if the layout is not of that kind.
+/// - Ownership: the samples stay the host's. They must stay, unchanged, until the last reference is given
+///   back to the volume, to every solid that is made of it, and to what is made of these, but for octrees and
+///   meshes, which have all of their own. Give `*volume` back with leafless_volume_free.
+/// - Threads: any.
+/// - Untrusted input: any layout, any bytes.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_volume_view(
+    layout: *const leafless_volume_layout,
+    samples: *const c_void,
+    length: u64,
+    volume: *mut *mut leafless_volume,
+) -> leafless_status {
+    /// # Safety
+    /// As [`slice`], for as long as the volume or anything made of it lives.
+    unsafe fn viewed<T>(samples: *const c_void, length: u64) -> Result<&'static [T], Failure> {
+        let size = size_of::<T>() as u64;
+        if !length.is_multiple_of(size) {
+            return Err(wrong_length());
+        }
+        // SAFETY: the caller's promise.
+        unsafe { slice(samples.cast(), length / size, "samples") }
+    }
+    guard(|| unsafe {
+        let layout = Layout::new(layout)?;
+        if layout.raw.big_endian != cfg!(target_endian = "big") {
+            let problem = "must be this machine's for samples that are used where they lie";
+            return Err(Failure::Argument { name: "layout.byte_order", problem });
+        }
+        if layout.raw.skip != 0 {
+            let problem = "must be 0 for samples that are used where they lie";
+            return Err(Failure::Argument { name: "layout.skip", problem });
+        }
+        let samples = match layout.sample_type {
+            LEAFLESS_SAMPLE_BITS => Samples::Bits(viewed::<u64>(samples, length)?.into()),
+            LEAFLESS_SAMPLE_U8 => viewed::<u8>(samples, length)?.into(),
+            LEAFLESS_SAMPLE_U16 => viewed::<u16>(samples, length)?.into(),
+            LEAFLESS_SAMPLE_I16 => viewed::<i16>(samples, length)?.into(),
+            LEAFLESS_SAMPLE_F32 => viewed::<f32>(samples, length)?.into(),
+            _ => {
+                let problem = "must be U8, U16, I16, F32 or BITS for samples that are used where they lie";
+                return Err(Failure::Argument { name: "layout.sample_type", problem });
+            }
+        };
+        samples.check(&layout.raw.grid).map_err(|_| wrong_length())?;
+        out(volume, "volume")?.write(handle(layout.volume((samples, 0))))
+    })
+}

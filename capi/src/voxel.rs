@@ -1,0 +1,403 @@
+//! Voxel records: the voxels of an octree in arrays of the host, found, put in order, and given triangles.
+
+use super::attribute::leafless_attribute;
+use super::boundary::{
+    Buffer, Failure, Sized32, array, buffer, guard, handle, initialise, out, shared, sized, slice,
+};
+use super::channel_fill::leafless_criterion;
+use super::control::{controlled, leafless_options};
+use super::frame::{frame_of, leafless_frame};
+use super::mesh::leafless_mesh;
+use super::octree::{leafless_octree, settled_tag};
+use super::status::leafless_status;
+use leafless::Octree;
+use leafless::{Attribute, Criterion, Detail};
+use leafless::{Cell, Frame};
+use leafless::{Viewpoint, VoxelBoundary, VoxelOptions, VoxelRecords, VoxelRecordsRef};
+use leafless_criterion::*;
+
+/// What a voxel is: a number in the array `kinds`.
+#[derive(Clone, Copy)]
+#[repr(u8)]
+pub enum leafless_voxel_kind {
+    /// It lies outside of the solid.
+    LEAFLESS_VOXEL_OUTSIDE = 0,
+    /// It lies inside.
+    LEAFLESS_VOXEL_INSIDE = 1,
+    /// The boundary of the solid goes through it, or along it.
+    LEAFLESS_VOXEL_BOUNDARY = 2,
+    /// It consists of the smaller voxels that follow it.
+    LEAFLESS_VOXEL_REFINED = 3,
+}
+
+/// Which voxels are boundary voxels.
+#[repr(u32)]
+pub enum leafless_voxel_boundary {
+    /// Cells of the boundary depth that are cut further there, and cells that are not decided.
+    LEAFLESS_VOXEL_BOUNDARY_UNDECIDED = 0,
+    /// These, and inside cells of the boundary depth that touch an outside cell with a face.
+    LEAFLESS_VOXEL_BOUNDARY_TOUCHING = 1,
+}
+
+/// Which voxels are listed beside inside and boundary voxels: 0, one of these values, or both joined by `|`.
+#[repr(u32)]
+pub enum leafless_voxel_lists {
+    /// Outside voxels.
+    LEAFLESS_VOXEL_LISTS_OUTSIDE = 1,
+    /// Voxels that are refined.
+    LEAFLESS_VOXEL_LISTS_REFINED = 2,
+}
+
+/// Which voxels of an octree are listed, and how large they are. All fields but the first may be zero, which is
+/// their default; leafless_voxel_options_init sets them so.
+#[derive(Clone, Copy)]
+#[repr(C)]
+pub struct leafless_voxel_options {
+    /// sizeof(leafless_voxel_options).
+    pub struct_size: u32,
+    /// The level of boundary voxels; 0, and what is beyond, is the octree's depth.
+    pub boundary_depth: u32,
+    /// A leafless_voxel_boundary.
+    pub boundary: u32,
+    /// 0, or leafless_voxel_lists.
+    pub lists: u32,
+    /// The longest edge of inside voxels, in model units; 0: as long as the octree's cells.
+    pub coarse_model: f64,
+    /// Inside voxels of this edge are not split, with a criterion; 0: the coarse edge.
+    pub fine_model: f64,
+    /// How much the attribute may change in an inside voxel that is longer than the fine edge, with a criterion.
+    pub tolerance: f64,
+    /// The attribute that inside voxels follow, and whose values are listed; optional.
+    pub attribute: *const leafless_attribute,
+    /// A leafless_criterion: what makes an inside voxel fine enough that is longer than the fine edge and no longer
+    /// than the coarse one. Without one, all inside voxels have the coarse edge or less.
+    pub criterion: u32,
+    /// Zero.
+    pub reserved: u32,
+}
+
+// SAFETY: numbers and a pointer.
+unsafe impl Sized32 for leafless_voxel_options {}
+
+impl leafless_voxel_options {
+    fn check(&self) -> Result<VoxelOptions, Failure> {
+        let refused = |name, problem| Err(Failure::Argument { name, problem });
+        let boundary = match self.boundary {
+            0 => VoxelBoundary::Undecided,
+            1 => VoxelBoundary::Touching,
+            _ => return refused("voxel_options.boundary", "must be a leafless_voxel_boundary"),
+        };
+        if self.lists > 3 {
+            return refused("voxel_options.lists", "must be 0 or leafless_voxel_lists");
+        }
+        let criterion = match self.criterion {
+            given if given == LEAFLESS_CRITERION_NONE as u32 => None,
+            given if given == LEAFLESS_CRITERION_VARIANCE as u32 => Some(Criterion::Variance),
+            given if given == LEAFLESS_CRITERION_RANGE as u32 => Some(Criterion::Range),
+            _ => return refused("voxel_options.criterion", "must be a leafless_criterion"),
+        };
+        let mut options =
+            VoxelOptions::new().boundary(boundary).outside(self.lists & 1 != 0).refined(self.lists & 2 != 0);
+        if self.boundary_depth != 0 {
+            options = options.boundary_depth(self.boundary_depth.try_into().unwrap_or(u8::MAX));
+        }
+        let (coarse, fine) = (self.coarse_model, self.fine_model);
+        match criterion {
+            None if fine != 0.0 || self.tolerance != 0.0 => {
+                return refused("voxel_options.criterion", "is needed for a fine edge and a tolerance");
+            }
+            None if coarse == 0.0 => {}
+            None => options = options.detail(Detail::uniform(coarse)?),
+            Some(_) if coarse == 0.0 => {
+                return refused("voxel_options.coarse_model", "is needed with a criterion");
+            }
+            Some(criterion) => {
+                let fine = if fine == 0.0 { coarse } else { fine };
+                options = options.detail(Detail::new(coarse, fine, self.tolerance, criterion)?);
+            }
+        }
+        Ok(options)
+    }
+}
+
+/// Sets all fields of leafless_voxel_options to their defaults.
+///
+/// - Buffers: `voxel_options`, one struct of `struct_size` bytes, which is sizeof(leafless_voxel_options); need not be
+///   initialised.
+/// - Result: `*voxel_options`.
+/// - Errors: LEAFLESS_E_ARGUMENT if `struct_size` makes no sense.
+/// - Ownership: nothing changes hands.
+/// - Threads: any.
+/// - Untrusted input: none.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_voxel_options_init(
+    voxel_options: *mut leafless_voxel_options,
+    struct_size: usize,
+) -> leafless_status {
+    guard(|| unsafe { initialise(voxel_options, struct_size, "voxel_options") })
+}
+
+/// Lists the voxels of an octree: inside and boundary voxels, and others that `voxel_options` asks for, sorted by
+/// linear octree code, of two with one code the larger one first. The code of a voxel is the Morton code of its
+/// minimum corner on the lattice `*lattice`: an octal digit for each level of it from the root on, of which as many
+/// count as the voxel's level says. Call it once for the count, and then with buffers.
+///
+/// - Buffers: `voxel_options`, one struct or NULL; `options`, one struct or NULL, of which `max_bytes` counts;
+///   `lattice`, one struct; `codes`, `levels`, `kinds`, `corners_model` (3 numbers a record) and `values` (as many
+///   numbers a record as values have components), room for `capacity` records each, each of them NULL if it is not
+///   wanted; `count`, one number.
+/// - Result: `*lattice`, the octree's universe with the depth of the finest voxel that there may be; the arrays;
+///   `*count`, how many records there are. `kinds` are leafless_voxel_kind. Corners are rounded down where they are
+///   no doubles. Values are those at the centres of voxels, NaN where there is none.
+/// - Errors: LEAFLESS_E_ARGUMENT if an option is out of its range, or the universe would take more than 20 levels to
+///   the fine edge; LEAFLESS_E_BUFFER if `capacity` is too small: nothing is written then; LEAFLESS_E_CALLBACK;
+///   LEAFLESS_E_DAMAGED; LEAFLESS_E_LIMIT; LEAFLESS_E_NO_MEMORY; LEAFLESS_E_CANCELLED.
+/// - Ownership: nothing changes hands.
+/// - Threads: any; works in the calling thread.
+/// - Untrusted input: any octree: damage reads as boundary voxels.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_octree_voxels(
+    octree: *const leafless_octree,
+    voxel_options: *const leafless_voxel_options,
+    options: *const leafless_options,
+    lattice: *mut leafless_frame,
+    codes: *mut u64,
+    levels: *mut u8,
+    kinds: *mut u8,
+    corners_model: *mut f64,
+    values: *mut f64,
+    capacity: u64,
+    count: *mut u64,
+) -> leafless_status {
+    guard(|| unsafe {
+        let tree = shared(octree, "octree")?.octree.view();
+        let wanted = sized(voxel_options, "voxel_options")?;
+        let attribute: Option<&dyn Attribute> = match wanted.attribute.is_null() {
+            true => None,
+            false => Some(&shared(wanted.attribute, "voxel_options.attribute")?.attribute),
+        };
+        let wanted = wanted.check()?;
+        let components = attribute.map_or(0, |attribute| attribute.components());
+        let (lattice, count) = (out(lattice, "lattice")?, out(count, "count")?);
+        let room = |each: u64| capacity.saturating_mul(each);
+        let (codes, levels, kinds, corners, values) = (
+            present(codes, room(1), "codes")?,
+            present(levels, room(1), "levels")?,
+            present(kinds, room(1), "kinds")?,
+            present(corners_model, room(3), "corners_model")?,
+            present(values, room(components as u64), "values")?,
+        );
+        let records = controlled(options, |control| VoxelRecords::of(tree, &wanted, attribute, control))?;
+        let view = records.view();
+        for (is_wanted, name) in [
+            (codes.wanted(), "codes"),
+            (levels.wanted(), "levels"),
+            (kinds.wanted(), "kinds"),
+            (corners.wanted(), "corners_model"),
+            (values.wanted(), "values"),
+        ] {
+            if is_wanted && view.len() as u64 > capacity {
+                return Err(Failure::Buffer { name, needed: view.len() as u64, capacity });
+            }
+        }
+        codes.fill(view.codes())?;
+        levels.fill(view.levels())?;
+        kinds.fill(view.kinds())?;
+        if corners.wanted() {
+            for index in 0..view.len() {
+                corners_model.cast::<[f64; 3]>().add(index).write(view.corner(index).unwrap_or_default());
+            }
+        }
+        if components > 0 {
+            values.fill(view.values())?;
+        }
+        lattice.write(view.frame().into())?;
+        count.write(view.len() as u64)
+    })
+}
+
+/// A buffer that may be absent, whatever the capacity that it shares with others.
+///
+/// # Safety
+/// As [`buffer`].
+unsafe fn present<T>(start: *mut T, capacity: u64, name: &'static str) -> Result<Buffer<T>, Failure> {
+    // SAFETY: the caller's promise.
+    unsafe { buffer(start, if start.is_null() { 0 } else { capacity }, name) }
+}
+
+/// The host's records, checked.
+///
+/// # Safety
+/// As [`slice`].
+pub(super) unsafe fn records<'a>(
+    lattice: &Frame,
+    codes: *const u64,
+    levels: *const u8,
+    kinds: *const u8,
+    count: u64,
+) -> Result<VoxelRecordsRef<'a>, Failure> {
+    // SAFETY: the caller's promise.
+    let (codes, levels, kinds) = unsafe {
+        (slice(codes, count, "codes")?, slice(levels, count, "levels")?, slice(kinds, count, "kinds")?)
+    };
+    Ok(VoxelRecordsRef::new(lattice, codes, levels, kinds, 0, &[])?)
+}
+
+/// The record, not of a refined voxel, that contains a cell. O(log count).
+///
+/// - Buffers: `lattice`, one struct; `codes`, `levels` and `kinds`, `count` elements each, as leafless_octree_voxels
+///   writes them; `cell`, 3 numbers: the cell's place among those of its level; `index`, one number.
+/// - Result: `*index`, the index of the record, or UINT64_MAX if there is none.
+/// - Errors: LEAFLESS_E_ARGUMENT as leafless_frame_check.
+/// - Ownership: nothing changes hands.
+/// - Threads: any.
+/// - Untrusted input: any numbers; the answer means something if the records are sorted.
+/// - Since: 0.1
+///
+/// cbindgen:ptrs-as-arrays=[[cell; 3]]
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_voxels_find(
+    lattice: *const leafless_frame,
+    codes: *const u64,
+    levels: *const u8,
+    kinds: *const u8,
+    count: u64,
+    cell: *const u32,
+    level: u32,
+    index: *mut u64,
+) -> leafless_status {
+    guard(|| unsafe {
+        let lattice = frame_of(lattice, "lattice")?;
+        let (codes, levels, kinds) =
+            (slice(codes, count, "codes")?, slice(levels, count, "levels")?, slice(kinds, count, "kinds")?);
+        let cell = Cell { level: level.try_into().unwrap_or(u8::MAX), at: array(cell, "cell")? };
+        let index = out(index, "index")?;
+        let found = VoxelRecordsRef::unchecked(&lattice, codes, levels, kinds).containing(cell);
+        index.write(found.map_or(u64::MAX, |found| found as u64))
+    })
+}
+
+/// The indices of the records from front to back: a voxel comes before every other one of which it hides a part.
+/// Refined voxels are left out. No two records are compared; exact.
+///
+/// - Buffers: `lattice`, `codes`, `levels` and `kinds` as leafless_voxels_find; `from`, 3 numbers: the direction of
+///   sight, or if `is_eye` the point (model units) from which voxels are seen; `options`, one struct or NULL; `order`,
+///   room for `capacity` numbers, or NULL to ask for their count; `order_count`, one number.
+/// - Result: `order`; `*order_count`, the number of records that are not refined.
+/// - Errors: LEAFLESS_E_ARGUMENT if the arrays are no records, the direction is zero, or a number is not finite (of an
+///   eye also one beyond ±2^256 or, but zero, below 2^-256); LEAFLESS_E_BUFFER if `capacity` is too small: nothing is
+///   written then; LEAFLESS_E_NO_MEMORY; LEAFLESS_E_CANCELLED.
+/// - Ownership: nothing changes hands.
+/// - Threads: any; works in the calling thread.
+/// - Untrusted input: any numbers.
+/// - Since: 0.1
+///
+/// cbindgen:ptrs-as-arrays=[[from; 3]]
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_voxels_order(
+    lattice: *const leafless_frame,
+    codes: *const u64,
+    levels: *const u8,
+    kinds: *const u8,
+    count: u64,
+    from: *const f64,
+    is_eye: bool,
+    options: *const leafless_options,
+    order: *mut u64,
+    capacity: u64,
+    order_count: *mut u64,
+) -> leafless_status {
+    guard(|| unsafe {
+        let records = records(&frame_of(lattice, "lattice")?, codes, levels, kinds, count)?;
+        let from = array(from, "from")?;
+        let from = if is_eye { Viewpoint::Perspective(from) } else { Viewpoint::Parallel(from) };
+        let (order, order_count) = (buffer(order, capacity, "order")?, out(order_count, "order_count")?);
+        let found = controlled(options, |control| records.depth_order(&from, control))?;
+        order.fill(&found)?;
+        order_count.write(found.len() as u64)
+    })
+}
+
+/// For each boundary voxel the triangles of a mesh that meet it, in compressed rows: those of record i are
+/// `triangles[offsets[i]]` to before `triangles[offsets[i + 1]]`, and ascend. A triangle that only touches a voxel
+/// meets it. Exact.
+///
+/// - Buffers: `lattice`, `codes`, `levels` and `kinds` as leafless_voxels_find; `options`, one struct or NULL, of which
+///   `max_bytes` counts; `offsets`, room for `offset_capacity` numbers, and `triangles`, room for `triangle_capacity`,
+///   each NULL to ask for its count only; `offset_count` and `triangle_count`, one number each.
+/// - Result: `offsets`, one more than records; `triangles`, indices into the mesh; their counts.
+/// - Errors: LEAFLESS_E_ARGUMENT if the arrays are no records; LEAFLESS_E_BUFFER if a capacity is too small: nothing is
+///   written then; LEAFLESS_E_LIMIT; LEAFLESS_E_NO_MEMORY; LEAFLESS_E_CANCELLED.
+/// - Ownership: nothing changes hands.
+/// - Threads: any; works in the calling thread.
+/// - Untrusted input: any numbers, any mesh.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_voxels_triangles(
+    lattice: *const leafless_frame,
+    codes: *const u64,
+    levels: *const u8,
+    kinds: *const u8,
+    count: u64,
+    mesh: *const leafless_mesh,
+    options: *const leafless_options,
+    offsets: *mut u64,
+    offset_capacity: u64,
+    offset_count: *mut u64,
+    triangles: *mut u32,
+    triangle_capacity: u64,
+    triangle_count: *mut u64,
+) -> leafless_status {
+    guard(|| unsafe {
+        let records = records(&frame_of(lattice, "lattice")?, codes, levels, kinds, count)?;
+        let mesh = &shared(mesh, "mesh")?.mesh;
+        let (offsets, triangles) = (
+            buffer(offsets, offset_capacity, "offsets")?,
+            buffer(triangles, triangle_capacity, "triangles")?,
+        );
+        let (offset_count, triangle_count) =
+            (out(offset_count, "offset_count")?, out(triangle_count, "triangle_count")?);
+        let found = controlled(options, |control| records.triangles(mesh, control))?;
+        offsets.check(found.offsets().len())?;
+        triangles.check(found.triangles().len())?;
+        offsets.fill(found.offsets())?;
+        triangles.fill(found.triangles())?;
+        offset_count.write(found.offsets().len() as u64)?;
+        triangle_count.write(found.triangles().len() as u64)
+    })
+}
+
+/// The octree that records speak of, to the depth of their lattice: inside voxels are FULL, outside voxels and what no
+/// record speaks of EMPTY. Nothing is known of the space outside, and nothing is proven.
+///
+/// - Buffers: `lattice`, `codes`, `levels` and `kinds` as leafless_voxels_find; `options`, one struct or NULL; `octree`,
+///   one pointer. `boundary` is the tag of boundary voxels: LEAFLESS_TAG_EMPTY, LEAFLESS_TAG_PARTIAL or
+///   LEAFLESS_TAG_FULL.
+/// - Result: `*octree`.
+/// - Errors: LEAFLESS_E_ARGUMENT if the arrays are no records, or `boundary` is another tag; LEAFLESS_E_LIMIT;
+///   LEAFLESS_E_NO_MEMORY; LEAFLESS_E_CANCELLED.
+/// - Ownership: give `*octree` back with leafless_octree_free.
+/// - Threads: any; uses as many as `options` says.
+/// - Untrusted input: any numbers.
+/// - Since: 0.1
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_octree_from_voxels(
+    lattice: *const leafless_frame,
+    codes: *const u64,
+    levels: *const u8,
+    kinds: *const u8,
+    count: u64,
+    boundary: u32,
+    options: *const leafless_options,
+    octree: *mut *mut leafless_octree,
+) -> leafless_status {
+    guard(|| unsafe {
+        let records = records(&frame_of(lattice, "lattice")?, codes, levels, kinds, count)?;
+        let boundary = settled_tag(boundary.into(), "boundary")?;
+        let to = out(octree, "octree")?;
+        let octree: Octree = controlled(options, |control| records.to_octree(boundary, control))?;
+        to.write(handle(leafless_octree { octree }))
+    })
+}
