@@ -36,10 +36,12 @@
 //! | module | what it holds |
 //! |---|---|
 //! | `lattice` | cells, cubes, frames: integers and model space |
+//! | `cut` | cubes that planes and curved surfaces cut: slabs, moments, areas |
 //! | `octree` | tags, the word algebra, views, the writer, checks, statistics |
 //! | `mesh` | triangle meshes as data: welding, topology, defects, repair |
 //! | `dexel` | intervals along the rays of a lattice |
 //! | `solid` | what can split a cell: one file or folder a producer |
+//! | `walk` | what walks through the cells of a solid, for all that stands above |
 //! | `op` | building, splitting on demand, and the set algebra of stored trees |
 //! | `query` | points, boxes and rays, measures, interference |
 //! | `attribute` | what has a value at points, inside or outside of solids |
@@ -50,12 +52,16 @@
 //! | `exchange` | the files of other programs |
 //! | `scene` | the language of OpenSCAD's CSG dumps |
 //!
+//! Below them all lie `error`, `memory` (allocations that may be refused), `parallel` (work that threads share), `control`
+//! (limits, cancelling) and `dispatch` (run-time choice of instructions). The C interface and the program are packages of
+//! their own, `capi` and `cli`.
+//!
 //! Where is …
 //!
 //! | question | file |
 //! |---|---|
 //! | … the one operation that all is made of? | `solid/mod.rs` |
-//! | … a sphere, a prism, a torus? | `solid/csg/primitive.rs`, `faceted.rs`, `torus.rs` |
+//! | … a sphere, a prism, a torus? | `solid/csg/primitive.rs`, `faceted.rs`; `solid/half_space/torus.rs` |
 //! | … the sign of a polynomial decided exactly? | `lattice/exact/` |
 //! | … the winding number of an open mesh? | `solid/mesh/winding.rs` |
 //! | … a hole in a mesh found, a crack closed? | `mesh/defects.rs`, `mesh/sew.rs` |
@@ -68,7 +74,7 @@
 //! | … a byte of a file checked? | `file/header.rs`, `object.rs`, `section.rs`, `layout.rs` |
 //! | … an allocation refused? | `memory.rs` |
 //! | … where a ray meets a solid, how high it is? | `query/ray/`, `query/columns/` |
-//! | … a ray of a mesh, of a half-space? | `solid/mesh/chords.rs`, `solid/csg/lines.rs` |
+//! | … a ray of a mesh, of a half-space? | `solid/mesh/chords.rs`, `solid/half_space/lines.rs` |
 //! | … a closed triangle mesh of a solid? | `surface/cubes.rs`, `smc.rs`, `shrink.rs`, `solid.rs`, `volume.rs`, `dexel.rs` |
 //! | … a picture taken, a triangle drawn, a plane section, a volume, a legend? | `render/tile.rs`, `coverage.rs`, `slice.rs`, `volume.rs`, `legend.rs` |
 //! | … the normal of a surface of which only cells are known? | `render/normals.rs` |
@@ -84,6 +90,7 @@ extern crate std;
 
 mod attribute;
 mod control;
+mod cut;
 mod dexel;
 mod dispatch;
 mod error;
@@ -103,6 +110,7 @@ pub mod scene;
 mod solid;
 mod surface;
 mod voxel;
+mod walk;
 
 pub use attribute::{
     Attribute, CarryRule, ChannelOperand, ChannelSummary, ConstantAttribute, Criterion, Detail, FillOptions,
@@ -134,7 +142,7 @@ pub use octree::{
     Tag, TaggedCell, ValueType,
 };
 pub use op::{
-    DexelOptions, LazyOctree, Refinement, Rule, Zone, build, compact, complement, dexelize, difference,
+    DexelOptions, LazyOctree, Refinement, Rule, build, compact, complement, dexelize, difference,
     intersection, intersection_of, octree_of_dexels, resolve, union, union_of, xor, xor_of,
 };
 pub use query::{
@@ -163,6 +171,8 @@ pub use surface::{
     marching_cubes_of_volume, marching_cubes_reusing, marching_cubes_with_volume, published_shrink,
     published_shrink_of, smc, smc_of,
 };
+
+pub use walk::Zone;
 
 pub use voxel::{
     DexelVoxels, LinearCode, LongVoxel, Symmetry, Viewpoint, VoxelBoundary, VoxelKind, VoxelOptions,

@@ -1,6 +1,6 @@
 //! Mass properties of each material of a part.
 
-use super::region::ValueRegion;
+use super::value_region::ValueRegion;
 use crate::control::Control;
 use crate::error::Error;
 use crate::lattice::Frame;

@@ -11,11 +11,11 @@ mod edit;
 mod fill;
 mod function;
 mod materials;
-mod region;
 mod sampled;
 mod source;
 mod summary;
 mod surface;
+mod value_region;
 mod volume;
 
 pub use carry::{CarryRule, ChannelOperand, carry_channel, carry_channels};
@@ -23,10 +23,10 @@ pub use channel::MovedAttribute;
 pub use detail::{Criterion, Detail};
 pub use function::{ConstantAttribute, FunctionAttribute};
 pub use materials::{MaterialProperties, materials};
-pub use region::ValueRegion;
 pub use sampled::{FillOptions, fill_channel};
 pub use summary::ChannelSummary;
 pub use surface::SurfaceAttribute;
+pub use value_region::ValueRegion;
 pub use volume::{Interpolation, VolumeAttribute};
 
 use crate::error::Error;

@@ -8,7 +8,7 @@ use core::ops::Range;
 
 use super::intersections::corners;
 use super::signs::Point;
-use super::surface::TriangleMesh;
+use super::triangle_mesh::TriangleMesh;
 use crate::error::Error;
 use crate::memory;
 

@@ -9,8 +9,8 @@ use core::cmp::Ordering;
 use glam::DVec3;
 
 use super::boundary::EdgeLoops;
-use super::surface::TriangleMesh;
 use super::topology::{Coincident, DisjointSets, for_each_edge};
+use super::triangle_mesh::TriangleMesh;
 use crate::error::Error;
 use crate::memory;
 

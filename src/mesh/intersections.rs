@@ -4,8 +4,8 @@
 //! in common. All decisions are exact signs. Triangles without area are left out.
 
 use super::signs::{Point, cross_sign, volume_sign};
-use super::surface::TriangleMesh;
 use super::tree::{Search, Steps, Tree};
+use super::triangle_mesh::TriangleMesh;
 use crate::control::Control;
 use crate::error::Error;
 use crate::memory;

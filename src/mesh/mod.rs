@@ -31,9 +31,9 @@ mod sew;
 mod sheets;
 mod sides;
 mod signs;
-mod surface;
 mod topology;
 mod tree;
+mod triangle_mesh;
 mod turned;
 mod weld;
 
@@ -53,8 +53,8 @@ pub(crate) use polygon::triangulate_facet;
 pub use polyhedron::{Polyhedron, PolyhedronArrays};
 pub use report::MeshReport;
 pub(crate) use sides::Sides;
-#[cfg(feature = "std")]
-pub(crate) use surface::Faces;
-pub use surface::{FillRule, TriangleMesh};
 pub(crate) use topology::{Edge, for_each_edge};
+#[cfg(feature = "std")]
+pub(crate) use triangle_mesh::Faces;
+pub use triangle_mesh::{FillRule, TriangleMesh};
 pub(crate) use weld::FacetWelder;

@@ -18,8 +18,8 @@
 use super::intersections::{corners, intersections};
 use super::sheets::{Sense, sheets};
 use super::signs::Point;
-use super::surface::{FillRule, TriangleMesh};
 use super::tree::{Grid, Search, Tree};
+use super::triangle_mesh::{FillRule, TriangleMesh};
 use crate::control::Control;
 use crate::error::{Error, MeshError};
 use crate::lattice::axes;

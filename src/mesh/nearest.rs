@@ -23,8 +23,8 @@ use core::array::from_fn as array;
 use alloc::vec::Vec;
 
 use super::signs::Point;
-use super::surface::TriangleMesh;
 use super::tree::{Box3, Part, Tree};
+use super::triangle_mesh::TriangleMesh;
 use crate::error::Error;
 use crate::lattice::Bounds;
 use crate::lattice::exact::sqrt;

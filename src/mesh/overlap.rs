@@ -22,7 +22,7 @@ use super::body::{Body, Bounds, partition};
 use super::intersections::corners;
 use super::positions::normalised;
 use super::signs::{Point, cross_sign, volume_sign};
-use super::surface::{Overlaps, TriangleMesh};
+use super::triangle_mesh::{Overlaps, TriangleMesh};
 use crate::error::Error;
 use crate::lattice::exact::sign;
 use crate::memory;

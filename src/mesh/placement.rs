@@ -1,6 +1,6 @@
 //! A mesh under an affine map.
 
-use super::surface::TriangleMesh;
+use super::triangle_mesh::TriangleMesh;
 use crate::error::Error;
 use crate::lattice::exact::Expansion;
 use crate::lattice::exact::two_product;

@@ -12,7 +12,7 @@ use robust::{Coord, Coord3D, orient2d, orient3d};
 use super::attributes::MeshAttribute;
 use super::polygon::{PolygonDefect, flatness, triangulate};
 use super::positions::normalised;
-use super::surface::{Faces, TriangleMesh};
+use super::triangle_mesh::{Faces, TriangleMesh};
 use crate::error::{Error, MeshError, PolyhedronError};
 use crate::lattice::valid;
 use crate::memory;

@@ -7,8 +7,8 @@ use glam::{DVec3, Vec3Swizzles};
 
 use super::boundary::EdgeLoops;
 use super::overlap::overlaps;
-use super::surface::{Details, TriangleMesh};
 use super::topology::{Bodies, Topology};
+use super::triangle_mesh::{Details, TriangleMesh};
 use crate::error::Error;
 use crate::lattice::exact::sign_of_products;
 use crate::memory;

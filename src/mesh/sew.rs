@@ -14,8 +14,8 @@
 //! the edges at the vertex would be too short a one, because exporters make short edges in large parts; and
 //! the extent of all pieces together says nothing about one of them.
 
-use super::surface::TriangleMesh;
 use super::topology::DisjointSets;
+use super::triangle_mesh::TriangleMesh;
 use crate::error::Error;
 use crate::memory;
 use alloc::vec::Vec;
@@ -145,7 +145,7 @@ fn power_of_two(x: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::surface::{FillRule, TriangleMesh};
+    use crate::mesh::triangle_mesh::{FillRule, TriangleMesh};
     use alloc::vec::Vec;
 
     /// A tetrahedron whose four faces do not share vertices; `noise` is added to z in one of them.

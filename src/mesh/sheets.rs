@@ -7,9 +7,9 @@
 
 use super::intersections::{axis_of, corners};
 use super::signs::{Point, cross_sign};
-use super::surface::{FillRule, TriangleMesh};
 use super::topology::{DisjointSets, for_each_edge};
 use super::tree::Tree;
+use super::triangle_mesh::{FillRule, TriangleMesh};
 use crate::error::Error;
 use crate::lattice::exact::{Dyadic, cross, dot, sign};
 use crate::memory;

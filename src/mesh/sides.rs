@@ -2,8 +2,8 @@
 
 use super::intersections::{corners, intersections};
 use super::sheets::{Sense, sheets};
-use super::surface::{FillRule, TriangleMesh};
 use super::tree::{Search, Tree};
+use super::triangle_mesh::{FillRule, TriangleMesh};
 use crate::control::Control;
 use crate::error::Error;
 use crate::lattice::Interval;

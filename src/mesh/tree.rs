@@ -4,7 +4,7 @@
 //! that meet still meet, and no pair is missed.
 
 use super::signs::Point;
-use super::surface::TriangleMesh;
+use super::triangle_mesh::TriangleMesh;
 use crate::error::Error;
 use crate::lattice::exact::{floor, two_diff};
 use crate::memory;

@@ -2,8 +2,8 @@
 
 use alloc::vec::Vec;
 
-use super::surface::TriangleMesh;
 use super::topology::{DisjointSets, for_each_edge};
+use super::triangle_mesh::TriangleMesh;
 use crate::error::{Error, MeshError};
 use crate::memory;
 

@@ -4,7 +4,7 @@ use alloc::vec::Vec;
 use core::borrow::Borrow;
 
 use super::positions::{NOWHERE, Places, is_proper, normalised};
-use super::surface::TriangleMesh;
+use super::triangle_mesh::TriangleMesh;
 use crate::error::{Error, MeshError};
 use crate::memory;
 

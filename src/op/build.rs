@@ -1,6 +1,5 @@
 //! From any solid to an octree.
 
-use super::gathered::{self, Gathered};
 use super::rule::Rule;
 use crate::control::{Control, Job, WHOLE};
 use crate::error::Error;
@@ -13,6 +12,8 @@ use crate::octree::writer::Writer;
 use crate::octree::{Block, Octree, Planes, Tag};
 use crate::parallel::{self, each_with};
 use crate::solid::{Classifier, Solid, Subtree, Verdict, Worker};
+use crate::walk;
+use crate::walk::Gathered;
 use alloc::vec::Vec;
 
 /// Builds the octree of `solid` to the depth of `frame`, its undecided finest cells resolved by `rule`.
@@ -123,7 +124,7 @@ impl<C: Classifier> Builder<'_, C> {
         writer: &mut Writer<'_>,
     ) -> Result<Tag, Error> {
         writer.job().check()?;
-        if hand.worker.likes_many() && cell.level + gathered::LEVELS >= self.frame.depth() {
+        if hand.worker.likes_many() && cell.level + walk::LEVELS >= self.frame.depth() {
             return self.gathered(e, cell, part, hand, writer);
         }
         if cell.level + BLOCK_LEVELS == self.frame.depth() {

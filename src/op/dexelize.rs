@@ -5,10 +5,6 @@
 //! others the finest cells are sampled, and between two centres on different sides the crossing is narrowed down by finer
 //! cells and their slabs.
 
-use super::edge::Edge;
-use super::gathered::split_one;
-use super::hull::hull;
-use super::lazy::Trail;
 use super::rule::Rule;
 use crate::control::{Control, Job, WHOLE};
 use crate::dexel::{
@@ -21,6 +17,10 @@ use crate::lattice::{Bounds, Cell, Frame, MAX_DEPTH};
 use crate::memory;
 use crate::parallel::each_with;
 use crate::solid::{Classifier, PartOf, Solid, Verdict, Worker, WorkerOf};
+use crate::walk::Edge;
+use crate::walk::Trail;
+use crate::walk::hull;
+use crate::walk::split_one;
 use alloc::boxed::Box;
 use alloc::vec::Vec;
 use core::ops::Range;

@@ -1,16 +1,16 @@
 //! Where a solid begins and ends along each axis.
 
 use super::StopReason;
-use super::proven::Proven;
-use super::queue::Queue;
-use super::reach;
-use super::subject::Subject;
 use crate::control::{Control, Job, WHOLE};
+use crate::cut::reach;
 use crate::error::Error;
 use crate::lattice::{Cell, Frame, Interval, MAX_DEPTH, valid};
 use crate::octree::Proof;
-use crate::op::gathered::Part;
 use crate::solid::{Classifier, Solid, Verdict, Worker};
+use crate::walk::Part;
+use crate::walk::Proven;
+use crate::walk::Queue;
+use crate::walk::Subject;
 use core::cmp::Reverse;
 
 /// What is proven of the bounding box of a solid's part inside of the universe.

@@ -1,26 +1,55 @@
 //! Questions: such as a stored octree answers in place, and such as any solids answer.
+//!
+//! | question | of stored octrees | of any solids |
+//! |---|---|---|
+//! | does it contain a point? | `point` | `contains` |
+//! | how does a box, a region lie to it? | `classify_box` | `classify_box`, `classify_in` |
+//! | where does a ray meet it? | `ray` | `ray` |
+//! | which cells of a column are solid, how high is it? | `columns` | `columns` |
+//! | how much of it lies in a region? | `content` | `content` |
+//! | what are its volume, area, centroid, inertia? | | `measure` |
+//! | where does it begin and end? | | `extent` |
+//! | how far is a point? | `distance` | `distance` |
+//! | how far is another solid, do both overlap? | | `clearance`, `interference` |
+//! | which cells of a box are solid, as bits? | `bitmap` | |
+//!
+//! # A new question about any solids
+//!
+//! It is one file, or one folder, here; none of them uses another one. `classify_box` is the shortest to read.
+//!
+//! 1. **Solid.** A public function takes any [`Solid`](crate::Solid), a [`Frame`](crate::Frame) and a
+//!    [`Control`](crate::Control), and puts the solid on the frame once, by `Solid::on`. A method of `OctreeRef` beside it may
+//!    answer the same of a stored octree in place.
+//! 2. **Proof.** `walk::Proven` wraps the classifier: FULL and EMPTY that are not proven become PARTIAL, so that the answer
+//!    claims no more than the solid does.
+//! 3. **Budget.** What splits on demand heeds `control.max_splits`, or a default that is a public constant, and tells in its
+//!    answer whether it was spent; what keeps parts of cells heeds `control.max_bytes`.
+//! 4. **Walk.** `walk::split_one` splits a cell, `walk::descend` goes depth first, `walk::Queue` best first,
+//!    `walk::Subject` counts splits and keeps parts. Slabs (`Worker::enclosure`) make an answer better by an order.
+//! 5. **Job.** `Job` checks for a cancel now and then and reports progress; `parallel::each` shares out what is independent,
+//!    in an order that does not depend on the number of threads.
+//! 6. **Doors.** The name in `lib.rs`, a function in `capi/src`, a module in `tests/queries` with a dense oracle and a ball's
+//!    formula, and a row in `tests/octrees/proof_table.rs` if a solid comes out.
 
 mod bitmap;
+mod classify_box;
+mod classify_in;
 mod clearance;
 mod columns;
+mod contains;
 mod content;
-mod descent;
 mod distance;
 mod extent;
 mod interference;
 mod measure;
 mod point;
-mod probe;
-mod proven;
-mod queue;
 mod ray;
-mod reach;
-mod region;
-mod subject;
-mod within;
 
+pub use classify_box::{Region, classify_box};
+pub use classify_in::classify_in;
 pub use clearance::{CLEARANCE_SPLITS, Clearance, clearance};
 pub use columns::{ColumnCells, ColumnRuns, Columns, Heights, Run, Side, columns, heights};
+pub use contains::contains;
 pub use content::{CellsIn, cells_in, volume_in};
 pub use distance::{DISTANCE_SPLITS, DistanceTo, NearCell, PointDistance, distances};
 pub use extent::{BOUNDING_BOX_SPLITS, Extent, bounding_box};
@@ -29,8 +58,5 @@ pub use measure::{
     AREA_SPLITS, MEASURE_SPLITS, MassProperties, StopReason, SurfaceArea, Tolerance, measure, surface_area,
 };
 pub use point::{Membership, PointCursor, PointTable};
-pub use probe::contains;
-pub(crate) use ray::Touch;
+pub(crate) use ray::TouchedCell;
 pub use ray::{Obstacle, Ray, RayHit, RaySpans, Sight, cast_rays, line_of_sight, ray_spans};
-pub use region::{Region, classify_box};
-pub use within::classify_in;

@@ -1,13 +1,13 @@
 //! Rays along lines of sight.
 
-use super::sight::Sight;
+use super::sight::SightLine;
 use super::stage::Stage;
 use super::window::Window;
 use crate::error::Error;
 use crate::lattice::Bounds;
 use crate::memory;
 use crate::octree::OctreeRef;
-use crate::query::{Ray, Touch};
+use crate::query::{Ray, TouchedCell};
 use alloc::vec::Vec;
 
 /// Samples of a block that rays are cast of at once: columns and rows.
@@ -20,8 +20,8 @@ pub struct Cast<'t, 'a> {
     universe: Bounds,
     block: usize,
     rays: Vec<Ray>,
-    sights: Vec<Sight>,
-    hits: [Option<Touch>; BLOCK[0] * BLOCK[1]],
+    sights: Vec<SightLine>,
+    hits: [Option<TouchedCell>; BLOCK[0] * BLOCK[1]],
 }
 
 impl<'t, 'a> Cast<'t, 'a> {
@@ -42,7 +42,7 @@ impl<'t, 'a> Cast<'t, 'a> {
     pub fn next<'s>(
         &'s mut self,
         window: &Window<'_>,
-    ) -> Result<Option<impl Iterator<Item = (&'s Sight, Touch)> + use<'s, 't, 'a>>, Error> {
+    ) -> Result<Option<impl Iterator<Item = (&'s SightLine, TouchedCell)> + use<'s, 't, 'a>>, Error> {
         let across = window.width().div_ceil(BLOCK[0]);
         let (column, row) = (self.block % across * BLOCK[0], self.block / across * BLOCK[1]);
         if row >= window.height() {
@@ -54,7 +54,7 @@ impl<'t, 'a> Cast<'t, 'a> {
         self.sights.clear();
         for y in row..(row + BLOCK[1]).min(window.height()) {
             for x in column..(column + BLOCK[0]).min(window.width()) {
-                if let Some((sight, ray)) = Sight::new(&self.stage, window, [x, y], &self.universe) {
+                if let Some((sight, ray)) = SightLine::new(&self.stage, window, [x, y], &self.universe) {
                     memory::push(&mut self.rays, ray)?;
                     memory::push(&mut self.sights, sight)?;
                 }

@@ -21,7 +21,7 @@ mod occupancy;
 mod octree;
 mod outline;
 mod picture;
-mod places;
+mod place_cache;
 mod plane;
 mod sight;
 mod slice;

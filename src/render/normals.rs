@@ -6,7 +6,7 @@
 //! there either, about edges and thin walls, the gradient of the occupancy over 5³ cells.
 
 use super::occupancy::Occupancy;
-use super::places::Places;
+use super::place_cache::Places;
 use super::plane::{Fitting, Plane};
 use crate::error::Error;
 use crate::lattice::axes;

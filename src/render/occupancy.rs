@@ -1,6 +1,6 @@
 //! How full the parts of a stored octree are.
 
-use super::places::Places;
+use super::place_cache::Places;
 use crate::error::Error;
 use crate::lattice::axes;
 use crate::lattice::morton;

@@ -11,7 +11,7 @@ use crate::lattice::Frame;
 use crate::lattice::axes;
 use crate::memory;
 use crate::octree::OctreeRef;
-use crate::query::Touch;
+use crate::query::TouchedCell;
 use alloc::boxed::Box;
 use glam::DVec3;
 
@@ -89,7 +89,7 @@ pub fn normal_of_cells(
     normals: &mut Normals<'_>,
     frame: &Frame,
     point: DVec3,
-    hit: &Touch,
+    hit: &TouchedCell,
 ) -> Result<DVec3, Error> {
     let scaled = DVec3::from(axes(|axis| frame.scaled(axis, point[axis])));
     let shift = frame.depth() - hit.cell.level;

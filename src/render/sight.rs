@@ -39,7 +39,7 @@ const ROUNDINGS: f64 = 4.0 * f64::EPSILON;
 const BEFORE: f64 = 1e-3;
 
 /// A line of sight that begins where it is shown.
-pub struct Sight {
+pub struct SightLine {
     /// The sample of the window that it belongs to.
     pub sample: usize,
     pub from: DVec3,
@@ -51,7 +51,7 @@ pub struct Sight {
     entry: Option<DVec3>,
 }
 
-impl Sight {
+impl SightLine {
     /// That of a sample in a universe; `None` if nothing of it is shown.
     #[inline]
     pub fn new(
@@ -59,7 +59,7 @@ impl Sight {
         window: &Window<'_>,
         [x, y]: [usize; 2],
         universe: &Bounds,
-    ) -> Option<(Sight, Ray)> {
+    ) -> Option<(SightLine, Ray)> {
         let (eye, along) = window.line(x, y);
         let shown = stage.clip.shown(eye, along)?;
         let (low, high) = (DVec3::from(universe.min), DVec3::from(universe.max));
@@ -77,7 +77,7 @@ impl Sight {
         let end = shown.to - aside(start);
         let from = eye + along * start;
         let sample = y * window.width() + x;
-        let sight = Sight { sample, from, along, start, length: end - start, entry: shown.entry };
+        let sight = SightLine { sample, from, along, start, length: end - start, entry: shown.entry };
         let ray = sight.beyond(0.0)?;
         Some((sight, ray))
     }

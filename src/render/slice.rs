@@ -13,8 +13,8 @@ use crate::lattice::valid::numbers;
 use crate::lattice::{Cell, Frame};
 use crate::memory;
 use crate::octree::{Cursor, OctreeRef, Tag};
-use crate::op::Trail;
 use crate::solid::{Classifier, Solid, Worker};
+use crate::walk::Trail;
 use alloc::boxed::Box;
 use alloc::vec::Vec;
 use glam::DVec3;
@@ -121,7 +121,7 @@ impl<'a> SliceLayer<'a> {
 
     /// A section of a solid on a frame, whose cells are split down to its depth. Otherwise as [`new`](Self::new).
     pub fn of_solid<S: Solid>(solid: &'a S, frame: &Frame, plane: SlicePlane) -> SliceLayer<'a> {
-        SliceLayer::of_source(Box::new(OnFrame { solid, frame: *frame }), plane)
+        SliceLayer::of_source(Box::new(SolidOnFrame { solid, frame: *frame }), plane)
     }
 
     fn of_source(source: Box<dyn Source + 'a>, plane: SlicePlane) -> SliceLayer<'a> {
@@ -205,12 +205,12 @@ impl Finder for InTree<'_> {
 }
 
 /// A solid and the frame on which it is cut.
-struct OnFrame<'a, S> {
+struct SolidOnFrame<'a, S> {
     solid: &'a S,
     frame: Frame,
 }
 
-impl<S: Solid> Source for OnFrame<'_, S> {
+impl<S: Solid> Source for SolidOnFrame<'_, S> {
     fn frame(&self) -> &Frame {
         &self.frame
     }

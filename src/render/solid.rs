@@ -2,8 +2,8 @@
 
 use super::normals::Normals;
 use super::octree::normal_of_cells;
-use super::places::Places;
-use super::sight::{Finish, Sight};
+use super::place_cache::Places;
+use super::sight::{Finish, SightLine};
 use super::stage::{Colouring, Draw, Painter, Stage};
 use super::surface::{Seen, Skin, paint};
 use super::tile::Tile;
@@ -13,9 +13,10 @@ use crate::error::Error;
 use crate::lattice::{Cell, Cube, Frame, MAX_DEPTH};
 use crate::memory;
 use crate::octree::{Octree, Tag};
-use crate::op::{Rule, Trail, build};
-use crate::query::Touch;
+use crate::op::{Rule, build};
+use crate::query::TouchedCell;
 use crate::solid::{Classifier, Enclosure, Segment, SlabJoin, Solid, Verdict, WorkerOf};
+use crate::walk::Trail;
 use alloc::boxed::Box;
 use glam::DVec3;
 
@@ -126,8 +127,8 @@ impl<S: Solid> SolidPainter<'_, S> {
     fn sees(
         &self,
         hand: &mut Hand<'_, S>,
-        sight: &Sight,
-        mut hit: Touch,
+        sight: &SightLine,
+        mut hit: TouchedCell,
     ) -> Result<Option<(f64, Option<DVec3>)>, Error> {
         let (octree, frame) = (self.octree.view(), self.octree.frame());
         let far = DVec3::from(frame.origin()).abs().max_element() + frame.edge();
@@ -162,7 +163,7 @@ impl<S: Solid> SolidPainter<'_, S> {
             let Some(next) = sight.beyond(beyond).and_then(|ray| octree.touch(&ray)) else {
                 return Ok(None);
             };
-            hit = Touch { t: next.t + beyond, ..next };
+            hit = TouchedCell { t: next.t + beyond, ..next };
         }
         Ok(None)
     }
@@ -172,7 +173,7 @@ impl<S: Solid> SolidPainter<'_, S> {
         &self,
         hand: &mut Hand<'_, S>,
         cell: Cell,
-        sight: &Sight,
+        sight: &SightLine,
         [enters, leaves]: [f64; 2],
     ) -> Result<Met, Error> {
         if let Some(enclosure) = self.enclosure(hand, cell)? {
@@ -219,7 +220,7 @@ impl<S: Solid> SolidPainter<'_, S> {
         hand: &mut Hand<'_, S>,
         cell: Cell,
         cone: f64,
-        sight: &Sight,
+        sight: &SightLine,
         (t, normal): (f64, DVec3),
     ) -> Result<Option<Met>, Error> {
         let finest = self.octree.frame().with_depth(MAX_DEPTH)?;
@@ -245,7 +246,13 @@ impl<S: Solid> SolidPainter<'_, S> {
     }
 
     /// Where it first is below the middles of slabs.
-    fn through(&self, enclosure: &Enclosure, cell: Cell, sight: &Sight, [enters, leaves]: [f64; 2]) -> Met {
+    fn through(
+        &self,
+        enclosure: &Enclosure,
+        cell: Cell,
+        sight: &SightLine,
+        [enters, leaves]: [f64; 2],
+    ) -> Met {
         let (low, edge) = corner_of(self.octree.frame(), cell);
         let half = 0.5 * edge;
         let centre = low + half;
@@ -302,7 +309,7 @@ fn corner_of(frame: &Frame, cell: Cell) -> (DVec3, f64) {
 }
 
 /// When a line of sight enters and leaves a cell; it passes it by if it leaves before it enters.
-fn stay(frame: &Frame, cell: Cell, sight: &Sight) -> [f64; 2] {
+fn stay(frame: &Frame, cell: Cell, sight: &SightLine) -> [f64; 2] {
     let (low, edge) = corner_of(frame, cell);
     let axes = (0..3).filter(|&axis| sight.along[axis] != 0.0);
     axes.fold([f64::NEG_INFINITY, f64::INFINITY], |[enters, leaves], axis| {

@@ -3,13 +3,13 @@
 use super::cast::Cast;
 use super::light::Light;
 use super::outline::{Field, Point};
-use super::sight::{Finish, Sight};
+use super::sight::{Finish, SightLine};
 use super::stage::{Colouring, Stage};
 use super::tile::Tile;
 use crate::attribute::Attribute;
 use crate::error::Error;
 use crate::octree::OctreeRef;
-use crate::query::Touch;
+use crate::query::TouchedCell;
 use glam::DVec3;
 
 /// What a surface looks like.
@@ -50,10 +50,10 @@ pub fn paint(
     tree: &OctreeRef<'_>,
     skin: &Skin<'_>,
     blur: f64,
-    mut see: impl FnMut(&Sight, Touch) -> Result<Option<Seen>, Error>,
+    mut see: impl FnMut(&SightLine, TouchedCell) -> Result<Option<Seen>, Error>,
 ) -> Result<(), Error> {
     let half = 0.5 * tree.frame().cell_size();
-    let light = |sight: &Sight, Seen { t, normal }: Seen| -> Result<Light, Error> {
+    let light = |sight: &SightLine, Seen { t, normal }: Seen| -> Result<Light, Error> {
         let place = sight.from + sight.along * t;
         let finish = skin.finish(place, normal.unwrap_or(-sight.along), half)?;
         Ok(sight.light(&finish, stage.view, normal))

@@ -153,7 +153,7 @@ impl Painter for Volume<'_> {
 }
 
 /// A line of sight: point + t · direction has the depth t.
-struct Sight {
+struct SightThrough {
     from: DVec3,
     /// One over each component of the direction.
     inverse: DVec3,
@@ -171,7 +171,7 @@ struct Sight {
     through: f64,
 }
 
-impl Sight {
+impl SightThrough {
     /// Puts something of a colour and an opacity behind what has been seen.
     #[inline(always)]
     fn meet(&mut self, colour: DVec3, opacity: f64) {
@@ -344,7 +344,7 @@ impl Volume<'_> {
     }
 
     /// The lines of sight of a tile, with what other layers have left.
-    fn sights<const EXACT: bool>(&self, tile: &Tile<'_>) -> Result<Vec<Sight>, Error> {
+    fn sights<const EXACT: bool>(&self, tile: &Tile<'_>) -> Result<Vec<SightThrough>, Error> {
         let mut sights = memory::with_capacity(tile.opaque.len())?;
         let mut first = 0;
         for sample in 0..tile.opaque.len() {
@@ -363,7 +363,7 @@ impl Volume<'_> {
             let fragment = first + (tile.passed[sample] as usize).min(count);
             first += count;
             let next = if fragment < first { tile.fragments[fragment].depth } else { f64::INFINITY };
-            sights.push(Sight {
+            sights.push(SightThrough {
                 from: from - self.origin,
                 inverse: DVec3::from(along.to_array().map(inverse)),
                 stretch: along.length(),
@@ -384,7 +384,7 @@ impl Volume<'_> {
         &self,
         tile: &Tile<'_>,
         place: &Place,
-        sights: &mut [Sight],
+        sights: &mut [SightThrough],
         index: usize,
         cell: Cell,
         length: f64,

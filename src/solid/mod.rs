@@ -5,33 +5,38 @@
 //! callback. Whatever wants a shape puts it on a frame, takes a [`Worker`] and asks that. Each producer is
 //! one file, and none knows the others.
 
-mod adaptive;
-mod any;
-mod callback;
-mod csg;
-pub(crate) mod cut;
-mod enclosure;
-mod erased;
+// The contract is below; with it go what tells solids apart, what copies stored cells, and what hands questions on.
 mod fingerprint;
 mod forward;
-mod mesh;
 mod motion;
+mod subtree;
+
+// Producers: none knows another one. (Half-spaces are no solid by themselves; expressions are made of them.)
+mod callback;
+mod csg;
+mod half_space;
+mod mesh;
+pub(crate) mod stored;
+mod volume;
+
+// Wrappers: solids that are made of a solid of any kind.
+mod adaptive;
+mod any;
+mod erased;
 #[cfg(feature = "std")]
 mod prepared;
 mod split_counter;
-pub(crate) mod stored;
-mod subtree;
 mod transform;
-mod volume;
 
+pub use crate::cut::{Crossing, Enclosure, Segment, Slab, SlabJoin};
 pub use adaptive::Adaptive;
 pub use callback::{Callback, GradientRange, TangentBalls};
-pub use csg::{Csg, HalfSpace, Touch};
+pub use csg::{Csg, Touch};
 #[cfg(feature = "scene")]
 pub(crate) use csg::{Fan, Figure, cos_degrees, sin_degrees, wedge};
-pub use enclosure::{Crossing, Enclosure, Segment, Slab, SlabJoin};
 pub use erased::{AnyClassifier, AnySolid, AnyWorker, Erasable};
 pub use fingerprint::{Fingerprint, Fingerprinter};
+pub use half_space::HalfSpace;
 pub use mesh::MeshSolid;
 pub use motion::Motion;
 #[cfg(feature = "std")]

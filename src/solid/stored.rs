@@ -112,33 +112,33 @@ impl Tree for Octree {
 
 /// A stored octree whose links are checked, on a frame of its universe: handle and worker.
 #[derive(Debug, Clone)]
-pub struct OnFrame<T> {
+pub struct StoredOnFrame<T> {
     tree: T,
     frame: Frame,
 }
 
 #[allow(private_bounds)]
-impl<T: Tree> OnFrame<T> {
-    fn new(tree: T, frame: &Frame) -> Result<OnFrame<T>, Error> {
+impl<T: Tree> StoredOnFrame<T> {
+    fn new(tree: T, frame: &Frame) -> Result<StoredOnFrame<T>, Error> {
         if !frame.same_universe(tree.tree().frame()) {
             return Err(tree.tree().frame().mismatch(frame));
         }
         // A descent remembers nothing, so elements with shared children would be visited again and again:
         // 64^10 times in a file of a few kilobytes.
         tree.tree().check_links()?;
-        Ok(OnFrame { tree, frame: *frame })
+        Ok(StoredOnFrame { tree, frame: *frame })
     }
 }
 
 #[allow(private_bounds)]
-impl<T: Tree> Classifier for OnFrame<T> {
-    type Worker = OnFrame<T>;
+impl<T: Tree> Classifier for StoredOnFrame<T> {
+    type Worker = StoredOnFrame<T>;
 
     fn frame(&self) -> &Frame {
         &self.frame
     }
 
-    fn worker(&self) -> Result<OnFrame<T>, Error> {
+    fn worker(&self) -> Result<StoredOnFrame<T>, Error> {
         Ok(self.clone())
     }
 
@@ -152,7 +152,7 @@ impl<T: Tree> Classifier for OnFrame<T> {
 }
 
 #[allow(private_bounds)]
-impl<T: Tree> Worker for OnFrame<T> {
+impl<T: Tree> Worker for StoredOnFrame<T> {
     type Part = StoredPart;
 
     fn frame(&self) -> &Frame {
@@ -206,10 +206,10 @@ impl<T: Tree> Worker for OnFrame<T> {
 /// one whose links are sound, but not what they lead to, the copy is damaged, too, or [`Error::Damaged`] is
 /// returned.
 impl<'a> Solid for OctreeRef<'a> {
-    type Classifier = OnFrame<OctreeRef<'a>>;
+    type Classifier = StoredOnFrame<OctreeRef<'a>>;
 
     fn on(&self, frame: &Frame, _: &Control<'_>) -> Result<Self::Classifier, Error> {
-        OnFrame::new(*self, frame)
+        StoredOnFrame::new(*self, frame)
     }
 
     fn bounds(&self) -> Option<Bounds> {
@@ -240,10 +240,10 @@ impl<'a> Solid for OctreeRef<'a> {
 
 /// As a view of it, for whoever needs a solid that owns its tree.
 impl Solid for Octree {
-    type Classifier = OnFrame<Octree>;
+    type Classifier = StoredOnFrame<Octree>;
 
     fn on(&self, frame: &Frame, _: &Control<'_>) -> Result<Self::Classifier, Error> {
-        OnFrame::new(self.clone(), frame)
+        StoredOnFrame::new(self.clone(), frame)
     }
 
     forward_solid!(@description self => self.view());

@@ -17,7 +17,8 @@ use crate::error::Error;
 use crate::lattice::axes;
 use crate::memory;
 use crate::mesh::TriangleMesh;
-use crate::op::{Edge, octree_of_dexels};
+use crate::op::octree_of_dexels;
+use crate::walk::Edge;
 use alloc::vec::Vec;
 use core::sync::atomic::{AtomicBool, AtomicUsize, Ordering::Relaxed};
 

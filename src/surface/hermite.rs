@@ -1,7 +1,7 @@
 //! Where cut edges are crossed, and the normals there (Hermite data), and how rays of a tri-dexel model tell.
 
 use crate::dexel::{OTHERS, Place, RowsRef, Span, TriDexelRef, decoded, with_rows};
-use crate::op::Edge;
+use crate::walk::Edge;
 
 /// Where a cut edge between two samples is crossed.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]

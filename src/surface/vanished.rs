@@ -8,7 +8,7 @@ use super::blocks::Blocks;
 use super::solid::edges;
 use crate::dexel::TriDexelRef;
 use crate::error::Error;
-use crate::op::Edge;
+use crate::walk::Edge;
 use alloc::collections::VecDeque;
 use hashbrown::HashMap;
 

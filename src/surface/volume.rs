@@ -16,8 +16,9 @@ use crate::lattice::{LARGEST, SMALLEST};
 use crate::memory;
 use crate::mesh::TriangleMesh;
 use crate::octree::OctreeRef;
-use crate::op::{Edge, Rule, build};
+use crate::op::{Rule, build};
 use crate::solid::{Volume, VoxelGrid};
+use crate::walk::Edge;
 use alloc::vec::Vec;
 use core::sync::atomic::{AtomicBool, Ordering::Relaxed};
 

@@ -3,11 +3,12 @@
 use super::record::VoxelKind;
 use super::records::VoxelRecordsRef;
 use crate::control::Control;
+use crate::cut;
 use crate::error::Error;
 use crate::lattice::Cell;
 use crate::memory;
-use crate::op::Trail;
-use crate::solid::{Classifier, Solid, Verdict, Worker, cut};
+use crate::solid::{Classifier, Solid, Verdict, Worker};
+use crate::walk::Trail;
 use alloc::vec::Vec;
 
 impl VoxelRecordsRef<'_> {

@@ -31,7 +31,7 @@ pub struct VoxelSolid<'a> {
 
 /// The same on a frame: handle and worker.
 #[derive(Debug, Clone, Copy)]
-pub struct OnFrame<'a> {
+pub struct VoxelsOnFrame<'a> {
     solid: VoxelSolid<'a>,
     frame: Frame,
 }
@@ -89,13 +89,13 @@ impl VoxelRecordsRef<'_> {
 }
 
 impl<'a> Solid for VoxelSolid<'a> {
-    type Classifier = OnFrame<'a>;
+    type Classifier = VoxelsOnFrame<'a>;
 
-    fn on(&self, frame: &Frame, _: &Control<'_>) -> Result<OnFrame<'a>, Error> {
+    fn on(&self, frame: &Frame, _: &Control<'_>) -> Result<VoxelsOnFrame<'a>, Error> {
         if !frame.same_universe(self.records.frame()) {
             return Err(self.records.frame().mismatch(frame));
         }
-        Ok(OnFrame { solid: *self, frame: *frame })
+        Ok(VoxelsOnFrame { solid: *self, frame: *frame })
     }
 
     fn bounds(&self) -> Option<Bounds> {
@@ -108,14 +108,14 @@ impl<'a> Solid for VoxelSolid<'a> {
     }
 }
 
-impl<'a> Classifier for OnFrame<'a> {
-    type Worker = OnFrame<'a>;
+impl<'a> Classifier for VoxelsOnFrame<'a> {
+    type Worker = VoxelsOnFrame<'a>;
 
     fn frame(&self) -> &Frame {
         &self.frame
     }
 
-    fn worker(&self) -> Result<OnFrame<'a>, Error> {
+    fn worker(&self) -> Result<VoxelsOnFrame<'a>, Error> {
         Ok(*self)
     }
 
@@ -128,7 +128,7 @@ impl<'a> Classifier for OnFrame<'a> {
     }
 }
 
-impl Worker for OnFrame<'_> {
+impl Worker for VoxelsOnFrame<'_> {
     /// The records in the cell, from the first to behind the last.
     type Part = (usize, usize);
 

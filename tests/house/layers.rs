@@ -8,13 +8,15 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 /// From the bottom up; modules of one row may use each other.
-const LAYERS: [&[&str]; 15] = [
+const LAYERS: [&[&str]; 17] = [
     &["error", "memory", "parallel", "control", "dispatch"],
     &["lattice"],
+    &["cut"],
     &["octree"],
     &["mesh"],
     &["dexel"],
     &["solid"],
+    &["walk"],
     &["op"],
     &["query"],
     &["attribute"],
@@ -27,8 +29,8 @@ const LAYERS: [&[&str]; 15] = [
 ];
 
 /// Modules of `solid` that its producers share. Every other one is a producer, which no other may use.
-const SHARED: [&str; 9] =
-    ["any", "cut", "erased", "fingerprint", "forward", "enclosure", "motion", "prepared", "subtree"];
+const SHARED: [&str; 8] =
+    ["any", "erased", "fingerprint", "forward", "half_space", "motion", "prepared", "subtree"];
 
 /// Folders in which some files still use each other. Strike out those that have become clean.
 const WITH_CIRCLES: [&str; 0] = [];

@@ -266,7 +266,7 @@ const WAYS: &[Way] = &[
     },
     Way {
         name: "where a channel has values",
-        through: &["ValueRegion", "attribute/region.rs new"],
+        through: &["ValueRegion", "attribute/value_region.rs new"],
         make: |a| {
             let tree = a.with_channel();
             let channel = tree.channel("value").unwrap().view()?;
@@ -277,7 +277,7 @@ const WAYS: &[Way] = &[
     Way {
         // Of the values of the channel, whatever they were filled in by.
         name: "the cells of a channel's values",
-        through: &["attribute/region.rs region"],
+        through: &["attribute/value_region.rs region"],
         make: |a| {
             let tree = a.with_channel();
             let (channel, own) = (tree.channel("value").unwrap().clone(), tree.clone());
@@ -832,9 +832,9 @@ const NUMBERS: &[&str] = &[
     "scene/lower.rs",
     "solid/callback/mod.rs",
     "solid/csg/faceted.rs",
-    "solid/csg/figure.rs",
+    "solid/csg/figure/sweep.rs",
     "solid/csg/primitive.rs",
-    "solid/mesh/split.rs placed",
+    "solid/mesh/mesh_solid.rs placed",
     "mesh/polyhedron",
 ];
 

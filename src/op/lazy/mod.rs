@@ -1,14 +1,9 @@
 //! Octrees that are split where and when somebody asks.
 
 mod nodes;
-mod trail;
-mod zone;
 
-pub(crate) use trail::Trail;
-pub use zone::Zone;
-
+use super::build_on;
 use super::rule::Rule;
-use super::{build_on, gathered};
 use crate::control::{Control, Job, WHOLE};
 use crate::error::Error;
 use crate::lattice::{Cell, Cube, Frame, MAX_DEPTH};
@@ -16,10 +11,11 @@ use crate::memory;
 use crate::octree::{Octree, Statistics, Tag};
 use crate::parallel;
 use crate::solid::{Classifier, PartOf, Solid, Verdict, Worker, WorkerOf};
+use crate::walk;
+use crate::walk::{Reach, Trail, Zone};
 use alloc::string::ToString;
 use alloc::vec::Vec;
 use nodes::{Children, Nodes, Place};
-use zone::Reach;
 
 /// Key of the fact that holds the fingerprint of what a tree was made from.
 const SOURCE: &str = "source";
@@ -319,7 +315,7 @@ impl<S: Solid> LazyOctree<S> {
             worker.split_many(cells, control, verdicts)
         };
         // Of what was asked before an error nothing is lost.
-        let asked_all = gathered::each_known(classifier, worker, &cells, threads, ask, |i, verdicts| {
+        let asked_all = walk::each_known(classifier, worker, &cells, threads, ask, |i, verdicts| {
             nodes.open(places[i], level, Children::new(&verdicts))?;
             splits[level as usize] += 1;
             *asked += 1;

@@ -4,12 +4,12 @@ mod nodes;
 mod search;
 
 use super::StopReason;
-use super::proven::Proven;
 use crate::control::{Control, Job, WHOLE};
 use crate::error::Error;
 use crate::lattice::{Cell, Frame, Interval, valid};
 use crate::octree::Proof;
 use crate::solid::Solid;
+use crate::walk::Proven;
 use search::Search;
 
 /// What is known of the distance between two solids.

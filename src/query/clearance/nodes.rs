@@ -4,9 +4,9 @@ use crate::control::{Control, Job};
 use crate::error::Error;
 use crate::lattice::{Cell, Cube, MAX_DEPTH};
 use crate::memory;
-use crate::op::gathered::Part;
-use crate::query::subject::Subject;
 use crate::solid::{Classifier, Verdict, Worker};
+use crate::walk::Part;
+use crate::walk::Subject;
 use alloc::vec::Vec;
 use core::ops::Range;
 

@@ -23,8 +23,8 @@ use crate::lattice::Interval;
 use crate::lattice::exact::{product_down, product_up, sqrt, two_product};
 use crate::memory;
 use crate::query::StopReason;
-use crate::query::queue::Queue;
 use crate::solid::Classifier;
+use crate::walk::Queue;
 use alloc::vec::Vec;
 use core::cmp::Reverse;
 

@@ -1,15 +1,15 @@
 //! Columns of any solid, without an octree: blocks of columns, each by a descent of its own.
 
-use super::super::proven::Proven;
 use super::runs::CellLists;
 use super::{ColumnCells, Columns, Heights, Shadow, Side, Visitor};
 use crate::control::{Control, Job, WHOLE};
 use crate::error::Error;
 use crate::lattice::{Cell, Frame};
 use crate::memory;
-use crate::op::split_one;
 use crate::parallel::each;
 use crate::solid::{Classifier, OCTANTS, Solid, Verdict, Worker};
+use crate::walk::Proven;
+use crate::walk::split_one;
 use alloc::vec::Vec;
 
 /// Which cells of `frame` in these columns are solid: `full` are proven to be, and what is not in `upper` is proven

@@ -6,12 +6,12 @@ mod once;
 mod sums;
 mod walk;
 
-use super::proven::Proven;
 use crate::control::{Control, Job};
 use crate::error::Error;
 use crate::lattice::{Frame, Interval};
 use crate::octree::{Octree, OctreeRef};
 use crate::solid::{Classifier, Solid};
+use crate::walk::Proven;
 use once::Once;
 use sums::Sums;
 use walk::{Counted, walk};

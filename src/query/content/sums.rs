@@ -1,9 +1,10 @@
 //! What is added up of cells.
 
 use super::CellsIn;
+use crate::cut;
 use crate::lattice::{CellMoments, Frame, Interval};
 use crate::octree::Tag;
-use crate::solid::{Enclosure, cut};
+use crate::solid::Enclosure;
 
 /// A finest cell's volume in the units in which volumes are added up: at most 2^60 cells, so sums are below 2^100.
 const CELL: i128 = 1 << BITS;

@@ -6,9 +6,9 @@ use crate::control::Job;
 use crate::error::Error;
 use crate::lattice::Cell;
 use crate::octree::{Planes, Tag};
-use crate::op::split_one;
-use crate::query::proven::ProvenWorker;
 use crate::solid::{Verdict, Worker};
+use crate::walk::ProvenWorker;
+use crate::walk::split_one;
 use alloc::vec::Vec;
 
 /// A worker that may know how many cells there are below a cut one.

@@ -4,9 +4,9 @@
 //! solid has d · x > reach; so a point p is no nearer than (d · p − reach) / |d|. A direction near that of the nearest
 //! point gives a bound that is off by the square of the angle between them.
 
+use crate::cut::reach;
 use crate::lattice::Interval;
 use crate::lattice::axes;
-use crate::query::reach;
 use crate::solid::{Enclosure, Slab, SlabJoin};
 
 /// A point, as seen from a cell.

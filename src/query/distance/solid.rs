@@ -9,12 +9,12 @@ use crate::lattice::exact::sqrt;
 use crate::lattice::{Cell, Cube, Frame, Interval, MAX_DEPTH, valid};
 use crate::memory;
 use crate::octree::Tag;
-use crate::op::split_one;
 use crate::parallel::each;
 use crate::query::StopReason;
-use crate::query::proven::Proven;
-use crate::query::queue::Queue;
 use crate::solid::{Classifier, Solid, Verdict, Worker};
+use crate::walk::Proven;
+use crate::walk::Queue;
+use crate::walk::split_one;
 use alloc::vec::Vec;
 use core::cmp::Reverse;
 

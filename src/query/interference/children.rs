@@ -4,9 +4,9 @@ use crate::error::Error;
 use crate::lattice::Cell;
 use crate::memory;
 use crate::octree::Tag;
-use crate::op::gathered::Part;
-use crate::query::subject::Subject;
 use crate::solid::{Classifier, Verdict};
+use crate::walk::Part;
+use crate::walk::Subject;
 use alloc::vec::Vec;
 
 /// Eight siblings, and how likely it is for each that it lies in the solid.

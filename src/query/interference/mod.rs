@@ -3,7 +3,6 @@
 mod children;
 mod search;
 
-use super::proven::Proven;
 use crate::control::{Control, Job, WHOLE};
 use crate::error::Error;
 use crate::lattice::{Affine, Cell, Frame, Interval, valid};
@@ -12,6 +11,7 @@ use crate::octree::Proof;
 use crate::parallel;
 use crate::parallel::each;
 use crate::solid::{Solid, TransformClassifier};
+use crate::walk::Proven;
 use alloc::vec::Vec;
 use search::Search;
 

@@ -15,10 +15,10 @@ use crate::error::Error;
 use crate::lattice::{Cell, Interval};
 use crate::memory;
 use crate::octree::stats::volume_of;
-use crate::op::gathered::Part;
-use crate::query::queue::Queue;
-use crate::query::subject::Subject;
 use crate::solid::{Classifier, Verdict, Worker};
+use crate::walk::Part;
+use crate::walk::Queue;
+use crate::walk::Subject;
 use core::cmp::Reverse;
 
 /// A cell in which neither solid is EMPTY and one can be split.

@@ -8,8 +8,8 @@ use crate::error::Error;
 use crate::lattice::axes;
 use crate::lattice::{Cell, Frame, Interval, MAX_DEPTH, valid};
 use crate::octree::{Proof, Tag};
-use crate::query::proven::Proven;
 use crate::solid::{Classifier, Solid, Worker};
+use crate::walk::Proven;
 use core::ops::AddAssign;
 
 /// The area of a solid's boundary.

@@ -9,12 +9,12 @@ mod walk;
 
 pub use area::{AREA_SPLITS, SurfaceArea, surface_area};
 
-use super::proven::Proven;
 use crate::control::Control;
 use crate::error::Error;
 use crate::lattice::{Frame, Interval, MAX_DEPTH, VolumeMoments, valid};
 use crate::octree::{Proof, Tag};
 use crate::solid::{Classifier, Solid};
+use crate::walk::Proven;
 use bounds::Known;
 use volume::Volume;
 

@@ -3,9 +3,9 @@
 //! Whole cells are counted and nothing of theirs is rounded. Of cut cells the moments are rounded, to a 2^44th of the
 //! cell; what they may be off by is counted too.
 
+use crate::cut;
 use crate::lattice::axes;
 use crate::lattice::{Cell, CubeMoments, MAX_DEPTH};
-use crate::solid::cut;
 use core::ops::{Add, AddAssign, Sub};
 
 pub(super) use crate::lattice::PAIRS;

@@ -2,9 +2,10 @@
 
 use super::moments::{Moments, Tally, UNIVERSE};
 use super::quantity::{self, Quantity};
+use crate::cut;
 use crate::error::Error;
 use crate::lattice::{Cell, CellMoments, CubeMoments};
-use crate::solid::{Enclosure, Worker, cut};
+use crate::solid::{Enclosure, Worker};
 use core::ops::AddAssign;
 
 /// Moments of what is proven inside, and of what is open.

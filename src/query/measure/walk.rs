@@ -14,10 +14,11 @@ use crate::control::{Control, Job, WHOLE};
 use crate::error::Error;
 use crate::lattice::{Cell, Frame};
 use crate::memory;
-use crate::op::gathered::{self, Part};
-use crate::op::split_one;
 use crate::parallel::{self, each};
 use crate::solid::{Classifier, Verdict, Worker};
+use crate::walk;
+use crate::walk::Part;
+use crate::walk::split_one;
 use alloc::vec::Vec;
 use core::marker::PhantomData;
 use core::sync::atomic::{AtomicU64, Ordering::Relaxed};
@@ -318,7 +319,7 @@ impl<Q: Quantity, C: Classifier> Walk<'_, Q, C> {
             let threads = if self.parallel { parallel::threads() } else { 1 };
             let control = self.job.control();
             let worker = &mut chunk.worker;
-            gathered = gathered::split_each(self.classifier, worker, &cells, threads, control)?.into_iter();
+            gathered = walk::split_each(self.classifier, worker, &cells, threads, control)?.into_iter();
         }
         for open in &chunk.cells {
             self.job.check()?;

@@ -15,7 +15,7 @@ mod touch;
 mod way;
 
 pub use solid::{Sight, cast_rays, line_of_sight, ray_spans};
-pub(crate) use touch::Touch;
+pub(crate) use touch::TouchedCell;
 
 use crate::error::Error;
 use crate::lattice::axes;

@@ -1,6 +1,5 @@
 //! Rays on any solid, without an octree.
 
-use super::super::proven::Proven;
 use super::line::Line;
 use super::search::{Cells, First, Stays};
 use super::{Obstacle, Ray, RayHit, RaySpans};
@@ -9,9 +8,10 @@ use crate::error::Error;
 use crate::lattice::{Cell, Frame};
 use crate::memory;
 use crate::octree::Tag;
-use crate::op::split_one;
 use crate::parallel::each;
 use crate::solid::{Classifier, Enclosure, Solid, Verdict, Worker};
+use crate::walk::Proven;
+use crate::walk::split_one;
 use alloc::vec::Vec;
 
 /// Whether two points see each other past a solid.

@@ -9,7 +9,7 @@ use crate::octree::view::OctreeRef;
 
 /// Where a ray first meets a cell that is not EMPTY.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Touch {
+pub(crate) struct TouchedCell {
     /// When, but for rounding.
     pub(crate) t: f64,
     pub(crate) cell: Cell,
@@ -19,12 +19,12 @@ pub(crate) struct Touch {
 
 impl OctreeRef<'_> {
     /// The first cell that is not EMPTY along a ray, that of [`cast_ray`](Self::cast_ray).
-    pub(crate) fn touch(&self, ray: &Ray) -> Option<Touch> {
+    pub(crate) fn touch(&self, ray: &Ray) -> Option<TouchedCell> {
         cast_one(self, ray, FirstCell)
     }
 
     /// The same along many rays, as [`cast_rays`](Self::cast_rays): `touches[i]` for `rays[i]`.
-    pub(crate) fn touch_all(&self, rays: &[Ray], touches: &mut [Option<Touch>]) -> Result<(), Error> {
+    pub(crate) fn touch_all(&self, rays: &[Ray], touches: &mut [Option<TouchedCell>]) -> Result<(), Error> {
         cast_all(self, rays, FirstCell, touches)
     }
 }
@@ -33,22 +33,22 @@ impl OctreeRef<'_> {
 struct FirstCell;
 
 impl Question for FirstCell {
-    type Answer = Touch;
+    type Answer = TouchedCell;
     const TO_FULL: bool = false;
 
     #[inline(always)]
-    fn answer(self, march: &March, _: &OctreeRef<'_>, ray: &Ray) -> Option<Touch> {
+    fn answer(self, march: &March, _: &OctreeRef<'_>, ray: &Ray) -> Option<TouchedCell> {
         let ((cell, by), t) = march.outer?;
         let mut normal = [0.0; 3];
         if let Some((axis, _)) = by {
             normal[axis] = if ray.direction[axis][0] > 0.0 { -1.0 } else { 1.0 };
         }
-        Some(Touch { t, cell, normal })
+        Some(TouchedCell { t, cell, normal })
     }
 
-    fn exactly(self, tree: &OctreeRef<'_>, ray: &Ray) -> Option<Touch> {
+    fn exactly(self, tree: &OctreeRef<'_>, ray: &Ray) -> Option<TouchedCell> {
         let hit = Obstacle::Upper.exactly(tree, ray)?;
-        Some(Touch { t: hit.t.lower.max(0.0), cell: hit.cell, normal: hit.normal })
+        Some(TouchedCell { t: hit.t.lower.max(0.0), cell: hit.cell, normal: hit.normal })
     }
 }
 

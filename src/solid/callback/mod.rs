@@ -225,10 +225,10 @@ impl<'a, F: Fn([f64; 3], [f64; 3]) -> Result<Verdict<()>, Error> + Send + Sync> 
 }
 
 impl<'a, F: Fn([f64; 3], [f64; 3]) -> Result<Verdict<()>, Error> + Send + Sync> Solid for Callback<'a, F> {
-    type Classifier = OnFrame<'a, F>;
+    type Classifier = CallbackOnFrame<'a, F>;
 
-    fn on(&self, frame: &Frame, _: &Control<'_>) -> Result<OnFrame<'a, F>, Error> {
-        Ok(OnFrame { functions: self.0.clone(), frame: *frame })
+    fn on(&self, frame: &Frame, _: &Control<'_>) -> Result<CallbackOnFrame<'a, F>, Error> {
+        Ok(CallbackOnFrame { functions: self.0.clone(), frame: *frame })
     }
 
     fn bounds(&self) -> Option<Bounds> {
@@ -241,27 +241,27 @@ impl<'a, F: Fn([f64; 3], [f64; 3]) -> Result<Verdict<()>, Error> + Send + Sync> 
 }
 
 /// A host's shape on a frame: handle and worker.
-pub struct OnFrame<'a, F> {
+pub struct CallbackOnFrame<'a, F> {
     functions: Arc<Functions<'a, F>>,
     frame: Frame,
 }
 
-impl<F> Clone for OnFrame<'_, F> {
+impl<F> Clone for CallbackOnFrame<'_, F> {
     fn clone(&self) -> Self {
-        OnFrame { functions: self.functions.clone(), frame: self.frame }
+        CallbackOnFrame { functions: self.functions.clone(), frame: self.frame }
     }
 }
 
 impl<'a, F: Fn([f64; 3], [f64; 3]) -> Result<Verdict<()>, Error> + Send + Sync> Classifier
-    for OnFrame<'a, F>
+    for CallbackOnFrame<'a, F>
 {
-    type Worker = OnFrame<'a, F>;
+    type Worker = CallbackOnFrame<'a, F>;
 
     fn frame(&self) -> &Frame {
         &self.frame
     }
 
-    fn worker(&self) -> Result<OnFrame<'a, F>, Error> {
+    fn worker(&self) -> Result<CallbackOnFrame<'a, F>, Error> {
         Ok(self.clone())
     }
 
@@ -273,7 +273,7 @@ impl<'a, F: Fn([f64; 3], [f64; 3]) -> Result<Verdict<()>, Error> + Send + Sync> 
     }
 }
 
-impl<F: Fn([f64; 3], [f64; 3]) -> Result<Verdict<()>, Error> + Send + Sync> OnFrame<'_, F> {
+impl<F: Fn([f64; 3], [f64; 3]) -> Result<Verdict<()>, Error> + Send + Sync> CallbackOnFrame<'_, F> {
     /// What the host says of cells: of all that its distances leave open. With an error comes how many of the
     /// cells are known from the first on.
     fn classify(
@@ -346,7 +346,9 @@ impl<F: Fn([f64; 3], [f64; 3]) -> Result<Verdict<()>, Error> + Send + Sync> OnFr
     }
 }
 
-impl<F: Fn([f64; 3], [f64; 3]) -> Result<Verdict<()>, Error> + Send + Sync> Worker for OnFrame<'_, F> {
+impl<F: Fn([f64; 3], [f64; 3]) -> Result<Verdict<()>, Error> + Send + Sync> Worker
+    for CallbackOnFrame<'_, F>
+{
     type Part = ();
 
     fn frame(&self) -> &Frame {

@@ -1,7 +1,6 @@
 //! Boxes that contain a solid and its complement.
 
-use super::word::MOST;
-use super::{Join, Kind, Node};
+use super::{Join, Kind, MOST, Node};
 use crate::error::Error;
 use crate::lattice::axes;
 use crate::lattice::{Affine, Bounds, Composed, Frame};

@@ -1,6 +1,6 @@
 //! Named primitives with plane faces.
 
-use super::polygon::{Term, monotone_formula};
+use super::figure::polygon::{Term, monotone_formula};
 use super::primitive::{heights, slab};
 use super::{Csg, HalfSpace, support};
 use crate::error::Error;

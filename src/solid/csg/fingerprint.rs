@@ -1,10 +1,10 @@
 //! The fingerprint of an expression: of its parts before it, without recursion.
 
-use super::halfspace::{HalfSpace, Surface};
-use super::torus::Torus;
-use super::{Csg, Join, Kind, Node, word};
+use super::{Csg, Join, Kind, MOST, Node};
 use crate::lattice::exact::Dyadic;
 use crate::memory;
+use crate::solid::half_space::torus::Torus;
+use crate::solid::half_space::{HalfSpace, Surface};
 use crate::solid::{Fingerprint, Fingerprinter, Solid};
 use alloc::vec::Vec;
 
@@ -12,7 +12,7 @@ impl Csg {
     /// The fingerprint, of all numbers that the expression was given in their order; `None` if a part has
     /// none. O(n) in the expression written out.
     pub(super) fn fingerprint_of_expression(&self) -> Option<Fingerprint> {
-        if self.root.size > word::MOST {
+        if self.root.size > MOST {
             return None;
         }
         let mut tasks: Vec<(&Node, bool)> = Vec::new();

@@ -4,51 +4,17 @@
 //! Ni, *A fast decomposition algorithm of octree node in 3D-packing* (1994), with proofs in place of their
 //! approximations: see [`Csg`].
 
-mod area;
-mod bounds;
-mod centres;
-mod chords;
-mod distinct;
 mod extent;
 mod faceted;
-#[cfg(feature = "scene")]
-mod fan;
-#[cfg(feature = "scene")]
 mod figure;
 mod fingerprint;
-mod halfspace;
-mod hierarchy;
-mod host;
-mod hulls;
-mod kleene;
-mod linear;
-mod lines;
-mod lone;
-mod map;
-mod moments;
-mod plane;
-mod points;
-mod polygon;
-mod power;
 mod primitive;
 mod program;
-mod quadric;
-mod segment;
-mod simple;
-mod slabs;
-mod split;
 mod support;
-mod table;
-mod tangent;
-mod torus;
-mod word;
-mod worker;
 
+use crate::solid::HalfSpace;
 #[cfg(feature = "scene")]
-pub(crate) use fan::{Fan, cos_degrees, sin_degrees};
-#[cfg(feature = "scene")]
-pub(crate) use figure::{Figure, wedge};
-pub use halfspace::HalfSpace;
+pub(crate) use figure::{Fan, Figure, cos_degrees, sin_degrees, wedge};
 
 use super::Motion;
 use crate::error::Error;
@@ -60,6 +26,11 @@ use alloc::vec::Vec;
 use core::sync::atomic::{AtomicU64, Ordering::Relaxed};
 use extent::Extent;
 use hashbrown::HashMap;
+
+/// Most half-spaces, other solids, operations and placements of an expression that is written out. (A quadric
+/// takes a kilobyte, and a node that contains another twice, which contains another twice …, soon comes to
+/// more than there is.)
+const MOST: u64 = 1 << 22;
 
 /// What counts as touching: when a cell that meets the solid's boundary, but not its interior, is EMPTY.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

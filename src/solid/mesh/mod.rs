@@ -27,6 +27,7 @@ mod crossing;
 mod fronts;
 mod integral;
 mod local;
+mod mesh_solid;
 mod on_frame;
 mod open;
 mod overlap;
@@ -36,7 +37,6 @@ mod reach;
 mod scan;
 mod segment;
 mod slab;
-mod split;
 mod winding;
 
-pub use split::MeshSolid;
+pub use mesh_solid::MeshSolid;

@@ -11,7 +11,7 @@ use alloc::vec::Vec;
 use once_cell::race::OnceBox;
 
 /// A mesh on the lattice of a frame, with what is known of the universe.
-pub(super) struct OnFrame {
+pub(super) struct MeshOnFrame {
     pub(super) placed: Placed,
     pub(super) caps: Caps,
     pub(super) fill: FillRule,
@@ -54,7 +54,7 @@ impl Branch {
     }
 }
 
-impl OnFrame {
+impl MeshOnFrame {
     /// Whether no triangle lies in a plane between cells. Exact.
     pub(super) fn has_no_triangle_in_planes(&self) -> bool {
         let frame = &self.placed.frame;

@@ -11,7 +11,7 @@
 //!   bounded away from what the fill rule asks for: FULL or EMPTY.
 //! * Else its children are asked. A finest cell near a hole, that nothing cuts, may stay PARTIAL.
 
-use super::on_frame::{Branch, MeshPart, OnFrame};
+use super::on_frame::{Branch, MeshOnFrame, MeshPart};
 use super::slab;
 use super::winding::{Local, Range};
 use crate::lattice::MAX_DEPTH;
@@ -50,7 +50,7 @@ pub(super) struct Surroundings {
 impl Surroundings {
     /// The caps' winding number around the middle of the cell of `level` that holds `at`; of a finest cell on
     /// that side of every cap on which its centre counts.
-    fn local(&mut self, mesh: &OnFrame, level: u8, at: [i32; 3]) -> Option<Local> {
+    fn local(&mut self, mesh: &MeshOnFrame, level: u8, at: [i32; 3]) -> Option<Local> {
         let size = 1 << (mesh.placed.frame.depth() - level);
         let corner = at.map(|a| a & -size);
         let slot = &mut self.levels[level as usize];
@@ -68,7 +68,7 @@ impl Surroundings {
 }
 
 /// The caps' winding number at the centre of a finest cell.
-fn at_centre(mesh: &OnFrame, at: [i32; 3], enough: f64) -> Range {
+fn at_centre(mesh: &MeshOnFrame, at: [i32; 3], enough: f64) -> Range {
     let local = mesh.caps.local(&mesh.placed, middle(at, 1), 0.0, enough, Some(at));
     local.map_or(Range::UNKNOWN, |local| local.within(0.0))
 }
@@ -77,7 +77,7 @@ fn middle(corner: [i32; 3], size: i32) -> [f64; 3] {
     corner.map(|a| a as f64 + size as f64 / 2.0)
 }
 
-impl OnFrame {
+impl MeshOnFrame {
     /// What is known of a cell in which the caps' winding number is not known to be near one integer.
     #[cold]
     pub(super) fn open_verdict(

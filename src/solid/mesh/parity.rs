@@ -1,8 +1,8 @@
 //! Rays that pierce an open mesh an odd number of times.
 
 use super::crossing::Projection;
+use super::mesh_solid::MeshSolid;
 use super::placed::Placed;
-use super::split::MeshSolid;
 use crate::control::{Control, Job, WHOLE};
 use crate::dexel::OTHERS;
 use crate::error::{Error, MeshError};

@@ -21,7 +21,7 @@ use crate::lattice::{Bounds, Frame};
 use alloc::sync::Arc;
 use field::Field;
 use occupancy::Occupancy;
-use on_frame::OnFrame;
+use on_frame::VolumeOnFrame;
 use ranges::Ranges;
 use value::Limits;
 
@@ -160,7 +160,7 @@ impl<'a> Volume<'a> {
 
     /// The voxel that the first of a frame's finest cells is, if these are voxels, or would be beyond the grid.
     pub(crate) fn first_voxel(&self, frame: &Frame) -> Option<[i64; 3]> {
-        OnFrame::new(self.clone(), frame).first_voxel()
+        VolumeOnFrame::new(self.clone(), frame).first_voxel()
     }
 
     /// Bytes that are kept beside the samples.
@@ -170,10 +170,10 @@ impl<'a> Volume<'a> {
 }
 
 impl<'a> Solid for Volume<'a> {
-    type Classifier = OnFrame<'a>;
+    type Classifier = VolumeOnFrame<'a>;
 
-    fn on(&self, frame: &Frame, _: &Control<'_>) -> Result<OnFrame<'a>, Error> {
-        Ok(OnFrame::new(self.clone(), frame))
+    fn on(&self, frame: &Frame, _: &Control<'_>) -> Result<VolumeOnFrame<'a>, Error> {
+        Ok(VolumeOnFrame::new(self.clone(), frame))
     }
 
     /// The box of the grid.

@@ -12,7 +12,7 @@ use alloc::vec::Vec;
 
 /// A volume on a frame: handle and worker. A cell is decided by the cell itself, so that its part is nothing.
 #[derive(Debug, Clone)]
-pub struct OnFrame<'a> {
+pub struct VolumeOnFrame<'a> {
     volume: Volume<'a>,
     frame: Frame,
     axes: [Axis; 3],
@@ -21,8 +21,8 @@ pub struct OnFrame<'a> {
     aligned: Option<([i64; 3], u32)>,
 }
 
-impl<'a> OnFrame<'a> {
-    pub(super) fn new(volume: Volume<'a>, frame: &Frame) -> OnFrame<'a> {
+impl<'a> VolumeOnFrame<'a> {
+    pub(super) fn new(volume: Volume<'a>, frame: &Frame) -> VolumeOnFrame<'a> {
         let axes = axes(|axis| Axis::new(volume.grid(), frame, axis));
         let aligned = match axes {
             [
@@ -32,7 +32,7 @@ impl<'a> OnFrame<'a> {
             ] if shift == of_y && shift == of_z && shift >= -1 => Some(([x, y, z], (shift + 1) as u32)),
             _ => None,
         };
-        OnFrame { volume, frame: *frame, axes, aligned }
+        VolumeOnFrame { volume, frame: *frame, axes, aligned }
     }
 
     /// The voxel that the first of the finest cells is, if these are voxels.
@@ -107,14 +107,14 @@ impl<'a> OnFrame<'a> {
     }
 }
 
-impl<'a> Classifier for OnFrame<'a> {
-    type Worker = OnFrame<'a>;
+impl<'a> Classifier for VolumeOnFrame<'a> {
+    type Worker = VolumeOnFrame<'a>;
 
     fn frame(&self) -> &Frame {
         &self.frame
     }
 
-    fn worker(&self) -> Result<OnFrame<'a>, Error> {
+    fn worker(&self) -> Result<VolumeOnFrame<'a>, Error> {
         Ok(self.clone())
     }
 
@@ -123,7 +123,7 @@ impl<'a> Classifier for OnFrame<'a> {
     }
 }
 
-impl Worker for OnFrame<'_> {
+impl Worker for VolumeOnFrame<'_> {
     type Part = ();
 
     fn frame(&self) -> &Frame {

@@ -1,0 +1,237 @@
+//! The part of a solid in which a channel's values lie in a band.
+
+use crate::control::Control;
+use crate::error::Error;
+use crate::lattice::{Bounds, Cell, CellMoments, Frame, Interval};
+use crate::octree::channel::{Bits, Spot};
+use crate::octree::{ChannelRef, Octree, Proof, Tag, ValueType};
+use crate::op::{Rule, build};
+use crate::solid::{Classifier, Enclosure, Solid, Verdict, Worker};
+
+/// The part of a solid in which the values of a channel lie in a band: a material of a part, all that is
+/// hotter than a limit. It is a solid itself, and lies in the channel's cube.
+///
+/// Where the channel has one value, the region knows of the solid what the solid itself knows: a region of a
+/// solid with [enclosures](crate::Enclosure) is measured as fast as that.
+#[derive(Debug, Clone, Copy)]
+pub struct ValueRegion<'a, S> {
+    solid: S,
+    channel: &'a ChannelRef<'a>,
+    band: Band,
+}
+
+#[derive(Debug, Clone, Copy)]
+struct Band {
+    value_type: ValueType,
+    low: [f64; 4],
+    high: [f64; 4],
+}
+
+impl Band {
+    fn contains(&self, value: Option<Bits>) -> bool {
+        value.is_some_and(|bits| {
+            let value = self.value_type.decode(bits);
+            (0..self.value_type.components()).all(|k| self.low[k] <= value[k] && value[k] <= self.high[k])
+        })
+    }
+}
+
+impl<'a, S: Solid> ValueRegion<'a, S> {
+    /// The points of `solid` at which every number of the value lies between those of `low` and `high`, both
+    /// included. Numbers beyond the components do not count. Where there is no value, there is no region.
+    ///
+    /// # Errors
+    /// [`Error::Argument`] if a bound is not a number; [`Error::Damaged`] for a channel with damaged links.
+    pub fn new(
+        solid: S,
+        channel: &'a ChannelRef<'a>,
+        low: [f64; 4],
+        high: [f64; 4],
+    ) -> Result<ValueRegion<'a, S>, Error> {
+        let value_type = channel.value_type();
+        if (0..value_type.components()).any(|k| low[k].is_nan() || high[k].is_nan()) {
+            return Err(Error::Argument { name: "band", problem: "must be numbers" });
+        }
+        channel.check_links()?;
+        Ok(ValueRegion { solid, channel, band: Band { value_type, low, high } })
+    }
+}
+
+impl ChannelRef<'_> {
+    /// The cells whose values lie between `low` and `high`, number by number, both included, as a binary
+    /// octree of the channel's own frame. See [`ValueRegion`]. What the cells prove concerns the values in the
+    /// channel, and not what the channel was filled from.
+    ///
+    /// # Errors
+    /// As [`ValueRegion::new`], and what `control` asks for.
+    pub fn region(&self, low: [f64; 4], high: [f64; 4], control: &Control<'_>) -> Result<Octree, Error> {
+        let all = Octree::uniform(*self.frame(), Tag::Full, Tag::Empty)?;
+        build(&ValueRegion::new(all.view(), self, low, high)?, self.frame(), Rule::Certified, control)
+    }
+}
+
+impl<'a, S: Solid> Solid for ValueRegion<'a, S> {
+    type Classifier = RegionOnFrame<'a, S::Classifier>;
+
+    fn on(&self, frame: &Frame, control: &Control<'_>) -> Result<Self::Classifier, Error> {
+        if !self.channel.frame().same_universe(frame) {
+            return Err(self.channel.frame().mismatch(frame));
+        }
+        Ok(RegionOnFrame { solid: self.solid.on(frame, control)?, channel: self.channel, band: self.band })
+    }
+
+    fn bounds(&self) -> Option<Bounds> {
+        let cube = Bounds::of(self.channel.frame());
+        self.solid.bounds().map_or(Some(cube), |bounds| bounds.common(&cube).or(Some(cube)))
+    }
+
+    fn home(&self) -> Option<Frame> {
+        Some(*self.channel.frame())
+    }
+}
+
+/// A region on a frame: handle and worker.
+#[derive(Debug, Clone)]
+pub struct RegionOnFrame<'a, C> {
+    solid: C,
+    channel: &'a ChannelRef<'a>,
+    band: Band,
+}
+
+impl<'a, C: Classifier> Classifier for RegionOnFrame<'a, C> {
+    type Worker = RegionOnFrame<'a, C::Worker>;
+
+    fn frame(&self) -> &Frame {
+        self.solid.frame()
+    }
+
+    fn worker(&self) -> Result<Self::Worker, Error> {
+        Ok(RegionOnFrame { solid: self.solid.worker()?, channel: self.channel, band: self.band })
+    }
+
+    /// A channel has no values outside of its cube.
+    fn exterior(&self) -> Tag {
+        Tag::Empty
+    }
+
+    fn proof(&self) -> Proof {
+        self.solid.proof()
+    }
+}
+
+/// What is remembered about a cell of a region.
+#[derive(Clone)]
+pub enum RegionPart<P> {
+    /// All values lie in the band, and the solid is open.
+    Solid(P),
+    /// The solid is FULL, or (`true`) not decided and not to be split, and the values change.
+    Values(ChannelSpot, bool),
+    /// Both.
+    Both(P, ChannelSpot),
+}
+
+/// Where a channel describes a cell.
+#[derive(Clone, Copy)]
+pub struct ChannelSpot(Spot);
+
+impl<C> RegionOnFrame<'_, C> {
+    fn verdict<P>(&self, solid: Verdict<P>, spot: Spot) -> Verdict<RegionPart<P>> {
+        match (solid, spot) {
+            (Verdict::Empty, _) => Verdict::Empty,
+            (solid, Spot::Settled(value)) => match solid {
+                _ if !self.band.contains(value) => Verdict::Empty,
+                Verdict::Partial(part) => Verdict::Partial(RegionPart::Solid(part)),
+                Verdict::Full => Verdict::Full,
+                _ => Verdict::Undecided,
+            },
+            (Verdict::Full, spot) => Verdict::Partial(RegionPart::Values(ChannelSpot(spot), false)),
+            (Verdict::Undecided, spot) => Verdict::Partial(RegionPart::Values(ChannelSpot(spot), true)),
+            (Verdict::Partial(part), spot) => Verdict::Partial(RegionPart::Both(part, ChannelSpot(spot))),
+        }
+    }
+}
+
+impl<W: Worker> Worker for RegionOnFrame<'_, W> {
+    type Part = RegionPart<W::Part>;
+
+    fn frame(&self) -> &Frame {
+        self.solid.frame()
+    }
+
+    fn root(&mut self) -> Result<Verdict<Self::Part>, Error> {
+        let solid = self.solid.root()?;
+        Ok(self.verdict(solid, self.channel.root()))
+    }
+
+    fn split(&mut self, cell: Cell, part: &Self::Part) -> Result<[Verdict<Self::Part>; 8], Error> {
+        let of_solid = |worker: &mut W, part| worker.split(cell, part);
+        let (solids, spots) = match part {
+            RegionPart::Solid(part) => {
+                let verdicts = of_solid(&mut self.solid, part)?;
+                return Ok(verdicts.map(|verdict| match verdict {
+                    Verdict::Empty => Verdict::Empty,
+                    Verdict::Full => Verdict::Full,
+                    Verdict::Undecided => Verdict::Undecided,
+                    Verdict::Partial(part) => Verdict::Partial(RegionPart::Solid(part)),
+                }));
+            }
+            RegionPart::Values(spot, true) => ([const { Verdict::Undecided }; 8], spot),
+            RegionPart::Values(spot, false) => ([const { Verdict::Full }; 8], spot),
+            RegionPart::Both(part, spot) => (of_solid(&mut self.solid, part)?, spot),
+        };
+        let mut spots = self.channel.children(&spots.0).into_iter();
+        Ok(solids.map(|solid| self.verdict(solid, spots.next().unwrap_or(Spot::Settled(None)))))
+    }
+
+    fn mark(&self) -> usize {
+        self.solid.mark()
+    }
+
+    fn scratch_bytes(&self) -> usize {
+        self.solid.scratch_bytes()
+    }
+
+    fn release(&mut self, mark: usize) {
+        self.solid.release(mark);
+    }
+
+    fn hand_over(&mut self, from: &Self, part: &Self::Part) -> Result<Self::Part, Error> {
+        Ok(match part {
+            RegionPart::Solid(part) => RegionPart::Solid(self.solid.hand_over(&from.solid, part)?),
+            RegionPart::Both(part, spot) => RegionPart::Both(self.solid.hand_over(&from.solid, part)?, *spot),
+            RegionPart::Values(spot, open) => RegionPart::Values(*spot, *open),
+        })
+    }
+
+    fn likes_many(&self) -> bool {
+        self.solid.likes_many()
+    }
+
+    fn sample(&mut self, cell: Cell, part: &Self::Part) -> Result<Option<bool>, Error> {
+        match part {
+            RegionPart::Solid(part) => self.solid.sample(cell, part),
+            _ => Ok(None),
+        }
+    }
+
+    fn enclosure(&mut self, cell: Cell, part: &Self::Part) -> Result<Option<Enclosure>, Error> {
+        match part {
+            RegionPart::Solid(part) => self.solid.enclosure(cell, part),
+            _ => Ok(None),
+        }
+    }
+
+    fn moments(&mut self, cell: Cell, part: &Self::Part) -> Result<Option<CellMoments>, Error> {
+        match part {
+            RegionPart::Solid(part) => self.solid.moments(cell, part),
+            _ => Ok(None),
+        }
+    }
+
+    fn area(&mut self, cell: Cell, part: &Self::Part) -> Result<Option<Interval>, Error> {
+        match part {
+            RegionPart::Solid(part) => self.solid.area(cell, part),
+            _ => Ok(None),
+        }
+    }
+}

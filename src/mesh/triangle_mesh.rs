@@ -1,0 +1,707 @@
+//! Indexed triangle meshes: exact welding, and the check that a mesh bounds a solid.
+//!
+//! Topology is by position. Vertices at the same place become one vertex, whatever way the mesh comes in, so
+//! that every number that [`TriangleMesh::report`] gives is a statement about the surface and not about how a
+//! file happens to store it. "The same place" means equal coordinates, where -0.0 equals 0.0: there is no
+//! tolerance, hence no choice of one and no chain of merges.
+//!
+//! A triangle whose corners are not three different vertices is dropped. A triangle of no area but with three
+//! different corners is kept, because its edges pair with those of its neighbours: without it the mesh would
+//! be open.
+
+use alloc::boxed::Box;
+use alloc::vec::Vec;
+use core::fmt;
+
+use glam::DVec3;
+use once_cell::race::OnceBox;
+
+use super::attributes;
+use super::attributes::MeshAttribute;
+use super::boundary::Loops;
+use super::positions::{NOWHERE, Places, is_proper, normalised};
+use super::topology::Topology;
+
+use crate::error::{Error, MeshError};
+use crate::memory;
+
+/// Which points a surface encloses.
+///
+/// The *winding number* of a surface at a point is the solid angle at which it is seen from there, over 4π,
+/// counted positive where the inner side is seen. Of a closed surface it is an integer. Where a surface has
+/// holes, fins, or triangles turned over, it is a fraction, and the rules are a convention: they take the
+/// nearest integer, so that a hole is closed by the surface from which half of all directions lead out.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum FillRule {
+    /// Points whose winding number is at least ½ in magnitude: those that the surface winds around, in either
+    /// sense and any number of times. Overlapping bodies are united, and a body that is inside out is a body.
+    #[default]
+    NonZero,
+    /// Points from which a ray crosses the surface an odd number of times. The overlap of two bodies is
+    /// outside; orientation does not matter. An even number of triangles must meet on every edge.
+    EvenOdd,
+    /// Points whose winding number is at least ½. A body that is inside out is a cavity: it takes away from
+    /// bodies that it overlaps.
+    Positive,
+}
+
+impl FillRule {
+    /// Whether points of a winding number are enclosed.
+    #[inline(always)]
+    pub(crate) fn encloses(self, winding: i32) -> bool {
+        match self {
+            FillRule::NonZero => winding != 0,
+            FillRule::EvenOdd => winding % 2 != 0,
+            FillRule::Positive => winding > 0,
+        }
+    }
+}
+
+/// A surface of triangles with shared vertices.
+///
+/// Coordinates are finite and at most 2^256 in magnitude, those below 2^-256 count as zero, no two vertices
+/// are equal, and the corners of a triangle are three different vertices. Seen from outside of the solid the
+/// corners turn counter-clockwise. Whether the mesh is closed is not implied:
+/// [`check_closed`](Self::check_closed) tells.
+///
+/// A mesh takes 24 bytes per vertex and 12 bytes per triangle, and what its
+/// [attributes](Self::attributes) take, if it has any.
+#[derive(Clone)]
+pub struct TriangleMesh {
+    vertices: Vec<[f64; 3]>,
+    triangles: Vec<[u32; 3]>,
+    /// Each has as many triangles as the mesh.
+    attributes: Vec<MeshAttribute>,
+    pub(super) welded: u64,
+    pub(super) degenerate: u64,
+    pub(super) sewn: u64,
+    displacement: f64,
+    pub(super) faces: Faces,
+    pub(super) topology: OnceBox<Topology>,
+    pub(super) details: OnceBox<Details>,
+}
+
+/// What only a report needs to know.
+#[derive(Debug, Clone)]
+pub(super) struct Details {
+    pub boundary_loops: u64,
+    pub flat: u64,
+    pub open_bodies: u64,
+    pub inside_out_bodies: u64,
+    pub overlaps: Overlaps,
+}
+
+/// What was found about closed bodies whose boxes meet.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub(super) struct Overlaps {
+    /// Bodies that are proven to overlap another one.
+    pub overlapping: u64,
+    /// Other bodies that may overlap one.
+    pub undecided: u64,
+}
+
+/// What is known of the faces of more than three corners that triangles were made from.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Faces {
+    pub polygons: u64,
+    /// Those whose corners lie in no plane.
+    pub bent: u64,
+    /// How far at most.
+    pub deviation: f64,
+}
+
+#[cfg(feature = "std")]
+impl Faces {
+    /// Corners beside the plane by more than this part of the face's extent are not in the plane. What is
+    /// less may be the rounding of their distances.
+    const PLANE: f64 = 1.0 / (1_u64 << 40) as f64;
+
+    /// Adds a face with more than three corners, which lie so far beside its plane.
+    pub fn add(&mut self, deviation: f64, extent: f64) {
+        self.polygons += 1;
+        self.bent += u64::from(deviation > Self::PLANE * extent);
+        self.deviation = self.deviation.max(deviation);
+    }
+}
+
+impl TriangleMesh {
+    /// A mesh of indexed triangles.
+    ///
+    /// Equal vertices are welded and keep the order of first appearance, so that the indices of the result
+    /// are those given unless there were equal vertices. Vertices that no triangle uses are kept.
+    ///
+    /// O(v + t).
+    ///
+    /// # Errors
+    /// [`MeshError::TooMany`], [`MeshError::NotFinite`], [`MeshError::TooLarge`], [`MeshError::Index`] or
+    /// [`Error::OutOfMemory`].
+    pub fn new(vertices: Vec<[f64; 3]>, triangles: Vec<[u32; 3]>) -> Result<Self, Error> {
+        Self::with_attributes(vertices, triangles, Vec::new())
+    }
+
+    /// A mesh of indexed triangles with attributes, which have values for the triangles as they are given.
+    /// Those of triangles that are dropped are dropped.
+    ///
+    /// O(v + t). Fails as [`new`](Self::new) does, and with [`Error::Argument`] unless each attribute has as
+    /// many triangles and a name of its own.
+    pub fn with_attributes(
+        mut vertices: Vec<[f64; 3]>,
+        mut triangles: Vec<[u32; 3]>,
+        mut attributes: Vec<MeshAttribute>,
+    ) -> Result<Self, Error> {
+        attributes::check(&attributes, triangles.len())?;
+        let given = vertices.len();
+        if u32::try_from(given).is_err() || u32::try_from(triangles.len()).is_err() {
+            return Err(MeshError::TooMany.into());
+        }
+        for (i, vertex) in vertices.iter_mut().enumerate() {
+            *vertex = normalised(*vertex, i as u64)?;
+        }
+        for (t, triangle) in triangles.iter().enumerate() {
+            if let Some(&vertex) = triangle.iter().find(|&&v| v as usize >= given) {
+                let (triangle, vertices) = (t as u64, given as u64);
+                return Err(MeshError::Index { triangle, vertex: vertex.into(), vertices }.into());
+            }
+        }
+        let mut places = Places::with_capacity(given)?;
+        let mut new_indices = memory::with_capacity(given)?;
+        let mut kept = 0;
+        let mut batch = [[0.0; 3]; Places::BATCH];
+        for start in (0..given).step_by(Places::BATCH) {
+            let batch = &mut batch[..(given - start).min(Places::BATCH)];
+            batch.copy_from_slice(&vertices[start..start + batch.len()]);
+            let lookup = places.look_up(batch, &vertices);
+            for (k, &vertex) in batch.iter().enumerate() {
+                let mut index = lookup.found[k];
+                if index == NOWHERE {
+                    index = places.find_or_insert(lookup.hashes[k], &vertex, kept as u32, &vertices)?;
+                    if index == kept as u32 {
+                        vertices[kept] = vertex;
+                        kept += 1;
+                    }
+                }
+                new_indices.push(index);
+            }
+        }
+        vertices.truncate(kept);
+        if kept < given {
+            triangles.iter_mut().for_each(|t| *t = t.map(|v| new_indices[v as usize]));
+        }
+        let degenerate = drop_improper(&mut triangles, &mut attributes);
+        let welded = (given - kept) as u64;
+        Ok(Self { attributes, ..Self::from_welded(vertices, triangles, welded, degenerate) })
+    }
+
+    /// The mesh of vertices that are all different and triangles of three different ones each.
+    pub(crate) fn from_welded(
+        vertices: Vec<[f64; 3]>,
+        triangles: Vec<[u32; 3]>,
+        welded: u64,
+        degenerate: u64,
+    ) -> Self {
+        Self {
+            vertices,
+            triangles,
+            attributes: Vec::new(),
+            welded,
+            degenerate,
+            sewn: 0,
+            displacement: 0.0,
+            faces: Faces::default(),
+            topology: OnceBox::new(),
+            details: OnceBox::new(),
+        }
+    }
+
+    /// The memory of the mesh: its vertices and triangles.
+    pub(crate) fn into_arrays(self) -> (Vec<[f64; 3]>, Vec<[u32; 3]>) {
+        (self.vertices, self.triangles)
+    }
+
+    /// The vertices, all different.
+    pub fn vertices(&self) -> &[[f64; 3]] {
+        &self.vertices
+    }
+
+    /// The triangles as indices into [`vertices`](Self::vertices).
+    pub fn triangles(&self) -> &[[u32; 3]] {
+        &self.triangles
+    }
+
+    /// What is known of the triangles: in the order in which attributes were added.
+    pub fn attributes(&self) -> &[MeshAttribute] {
+        &self.attributes
+    }
+
+    /// The attribute of this name.
+    pub fn attribute(&self, name: &str) -> Option<&MeshAttribute> {
+        self.attributes.iter().find(|attribute| attribute.name() == name)
+    }
+
+    /// Adds an attribute, whose triangles are those of the mesh.
+    ///
+    /// # Errors
+    /// [`Error::Argument`] unless it has as many triangles as the mesh, and a name that no other attribute of
+    /// the mesh has; [`Error::OutOfMemory`]. The mesh is then as before.
+    pub fn add_attribute(&mut self, attribute: MeshAttribute) -> Result<(), Error> {
+        memory::push(&mut self.attributes, attribute)?;
+        attributes::check(&self.attributes, self.triangles.len()).inspect_err(|_| {
+            self.attributes.pop();
+        })
+    }
+
+    /// Takes all attributes away from the mesh.
+    pub fn take_attributes(&mut self) -> Vec<MeshAttribute> {
+        core::mem::take(&mut self.attributes)
+    }
+
+    /// The least and the greatest coordinates of the vertices that triangles use; zeros if there are none.
+    ///
+    /// O(t), computed anew on each call.
+    pub fn bounds(&self) -> ([f64; 3], [f64; 3]) {
+        if self.triangles.is_empty() {
+            return ([0.0; 3], [0.0; 3]);
+        }
+        let mut low = DVec3::INFINITY;
+        let mut high = DVec3::NEG_INFINITY;
+        for corner in self.triangles.iter().flatten().map(|&v| self.position(v)) {
+            low = low.min(corner);
+            high = high.max(corner);
+        }
+        (low.to_array(), high.to_array())
+    }
+
+    /// The enclosed volume, by the divergence theorem: what the surface winds around n times counts n times,
+    /// so overlaps count twice and bodies that are inside out count negative. Open meshes have none.
+    ///
+    /// O(t). The sum is taken relative to the centre of the bounds, so that a far-off origin costs no digits.
+    pub fn volume(&self) -> f64 {
+        let (low, high) = self.bounds();
+        let centre = DVec3::from(low).midpoint(DVec3::from(high));
+        let six_fold: f64 = (self.triangles.iter())
+            .map(|t| {
+                let [a, b, c] = t.map(|v| self.position(v) - centre);
+                a.dot(b.cross(c))
+            })
+            .sum();
+        // A sum of nothing is −0.
+        six_fold / 6.0 + 0.0
+    }
+
+    /// The sum of the areas of the triangles (square model units), in doubles. O(t).
+    pub fn area(&self) -> f64 {
+        let twice = |t: &[u32; 3]| {
+            let [a, b, c] = t.map(|v| self.position(v));
+            (b - a).cross(c - a).length()
+        };
+        // A sum of nothing is −0.
+        0.5 * self.triangles.iter().map(twice).sum::<f64>() + 0.0
+    }
+
+    /// Checks that the mesh bounds a solid under `rule`.
+    ///
+    /// For [`FillRule::EvenOdd`] an even number of triangles must meet on every edge; for the others half of
+    /// them must also run in each direction, and then every winding number is an integer. Self-intersections,
+    /// overlaps, nested and inside-out bodies are all allowed.
+    ///
+    /// The first call analyses the edges, in O(t + v) time and with 28 bytes per triangle and 9 per vertex of
+    /// scratch memory; later calls are free.
+    ///
+    /// # Errors
+    /// [`MeshError::Empty`], [`MeshError::Open`], [`MeshError::Unoriented`] (tested in this order) or
+    /// [`Error::OutOfMemory`].
+    pub fn check_closed(&self, rule: FillRule) -> Result<(), Error> {
+        if self.triangles.is_empty() {
+            return Err(MeshError::Empty.into());
+        }
+        let topology = self.topology()?;
+        if topology.boundary_edges > 0 {
+            return Err(MeshError::Open { edges: topology.boundary_edges }.into());
+        }
+        match rule {
+            FillRule::NonZero | FillRule::Positive if topology.misoriented_edges > 0 => {
+                Err(MeshError::Unoriented { edges: topology.misoriented_edges }.into())
+            }
+            FillRule::NonZero | FillRule::Positive | FillRule::EvenOdd => Ok(()),
+        }
+    }
+
+    /// The mesh with every vertex moved to where `f` says. Vertices that meet are welded, as in
+    /// [`new`](Self::new); a reflection turns the mesh inside out. The report starts anew, and the surface as
+    /// it then is counts as the truth, whatever cracks were closed before.
+    ///
+    /// O(v + t). Fails as `new` does.
+    pub fn transformed(&self, f: impl FnMut([f64; 3]) -> [f64; 3]) -> Result<Self, Error> {
+        let vertices = memory::collected(self.vertices.iter().copied().map(f))?;
+        let attributes = attributes::copies(&self.attributes)?;
+        Self::with_attributes(vertices, memory::copied(&self.triangles)?, attributes)
+    }
+
+    /// The mesh with `f` applied to every coordinate. The report keeps what was found before.
+    ///
+    /// O(v + t), in place. Fails as [`new`](Self::new) does.
+    pub(crate) fn scaled(self, f: impl Fn(f64) -> f64) -> Result<Self, Error> {
+        let Self { mut vertices, triangles, attributes, welded, degenerate, mut faces, .. } = self;
+        faces.deviation = f(faces.deviation);
+        vertices.as_flattened_mut().iter_mut().for_each(|x| *x = f(*x));
+        let mesh = Self::with_attributes(vertices, triangles, attributes)?;
+        Ok(Self { welded: welded + mesh.welded, degenerate: degenerate + mesh.degenerate, faces, ..mesh })
+    }
+
+    /// The mesh moved by `offset`: [`transformed`](Self::transformed) by a rounded sum.
+    pub fn translated(&self, offset: [f64; 3]) -> Result<Self, Error> {
+        let moved = self.transformed(|p| (DVec3::from(p) + DVec3::from(offset)).to_array())?;
+        Ok(Self { displacement: self.displacement, ..moved })
+    }
+
+    /// How far any vertex was moved along an axis to close hair cracks, in model units: the surface that was
+    /// handed in lies within that distance.
+    pub fn displacement(&self) -> f64 {
+        self.displacement
+    }
+
+    /// The same with its triangles facing the other way.
+    pub(super) fn turn_round(&mut self) {
+        self.triangles.iter_mut().for_each(|[_, b, c]| core::mem::swap(b, c));
+        self.attributes.iter_mut().for_each(MeshAttribute::turn_round);
+        self.topology = OnceBox::new();
+        self.details = OnceBox::new();
+    }
+
+    /// The same, made from these faces.
+    #[cfg(feature = "std")]
+    pub(crate) fn made_from(self, faces: Faces) -> Self {
+        Self { faces, ..self }
+    }
+
+    /// The same with a surface that lies within this distance of it.
+    pub(super) fn displaced(self, displacement: f64) -> Self {
+        Self { displacement, ..self }
+    }
+
+    /// A copy.
+    ///
+    /// # Errors
+    /// [`Error::OutOfMemory`].
+    pub fn try_clone(&self) -> Result<Self, Error> {
+        let (vertices, triangles) = (memory::copied(&self.vertices)?, memory::copied(&self.triangles)?);
+        let attributes = attributes::copies(&self.attributes)?;
+        let (topology, details) = (OnceBox::new(), OnceBox::new());
+        Ok(Self { vertices, triangles, attributes, topology, details, ..*self })
+    }
+
+    /// The loops of the surface's boundary, in the direction of its triangles.
+    pub(crate) fn loops(&self) -> Result<Loops, Error> {
+        Loops::of(&self.topology()?.boundary)
+    }
+
+    /// The vertices at open edges, ascending.
+    pub(super) fn open_vertices(&self) -> Result<&[u32], Error> {
+        Ok(&self.topology()?.open_vertices)
+    }
+
+    /// The mesh with each first vertex of `moves` replaced by the second, none of which is replaced itself.
+    pub(super) fn moved(mut self, moves: &[(u32, u32)], displacement: f64) -> Result<Self, Error> {
+        let mut targets = memory::with_capacity(self.vertices.len())?;
+        targets.extend(0..self.vertices.len() as u32);
+        moves.iter().for_each(|&(from, onto)| targets[from as usize] = onto);
+        // Whoever is not replaced moves up to where the replaced ones leave room.
+        let mut places = memory::filled(targets.len(), 0)?;
+        let mut kept = 0;
+        for vertex in 0..self.vertices.len() {
+            if targets[vertex] == vertex as u32 {
+                self.vertices[kept] = self.vertices[vertex];
+                places[vertex] = kept as u32;
+                kept += 1;
+            }
+        }
+        self.vertices.truncate(kept);
+        self.triangles.iter_mut().for_each(|t| *t = t.map(|v| places[targets[v as usize] as usize]));
+        self.degenerate += drop_improper(&mut self.triangles, &mut self.attributes);
+        self.sewn += moves.len() as u64;
+        self.displacement = self.displacement.max(displacement);
+        self.topology = OnceBox::new();
+        self.details = OnceBox::new();
+        Ok(self)
+    }
+
+    pub(super) fn position(&self, vertex: u32) -> DVec3 {
+        DVec3::from(self.vertices[vertex as usize])
+    }
+
+    pub(super) fn topology(&self) -> Result<&Topology, Error> {
+        self.topology.get_or_try_init(|| Topology::of(&self.triangles, self.vertices.len()).map(Box::new))
+    }
+}
+
+/// Drops triangles whose corners are not three different vertices, and what attributes say of them. Tells how
+/// many there were.
+fn drop_improper(triangles: &mut Vec<[u32; 3]>, attributes: &mut [MeshAttribute]) -> u64 {
+    let before = triangles.len();
+    for attribute in attributes {
+        attribute.retain(|triangle| triangles.get(triangle).is_some_and(is_proper));
+    }
+    triangles.retain(is_proper);
+    (before - triangles.len()) as u64
+}
+
+impl fmt::Debug for TriangleMesh {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("TriangleMesh")
+            .field("vertices", &self.vertices.len())
+            .field("triangles", &self.triangles.len())
+            .finish_non_exhaustive()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::lattice::LARGEST;
+    use crate::mesh::report::MeshReport;
+    use alloc::vec;
+
+    /// A tetrahedron of volume 1/6, seen from outside counter-clockwise.
+    const CORNERS: [[f64; 3]; 4] = [[0., 0., 0.], [1., 0., 0.], [0., 1., 0.], [0., 0., 1.]];
+    const FACES: [[u32; 3]; 4] = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];
+
+    fn tetrahedron() -> TriangleMesh {
+        TriangleMesh::new(CORNERS.to_vec(), FACES.to_vec()).unwrap()
+    }
+
+    fn facets(mesh: &TriangleMesh) -> Vec<[[f64; 3]; 3]> {
+        mesh.triangles().iter().map(|t| t.map(|v| mesh.vertices()[v as usize])).collect()
+    }
+
+    #[track_caller]
+    fn mesh_error<T: fmt::Debug>(result: Result<T, Error>) -> MeshError {
+        match result {
+            Err(Error::Mesh(error)) => error,
+            other => panic!("{other:?}"),
+        }
+    }
+
+    #[test]
+    fn indexed_triangles() {
+        let mesh = tetrahedron();
+        assert_eq!((mesh.vertices(), mesh.triangles()), (&CORNERS[..], &FACES[..]));
+        assert_eq!(mesh.bounds(), ([0.0; 3], [1.0; 3]));
+        assert!((mesh.volume() - 1.0 / 6.0).abs() < 1e-15);
+        let expected = MeshReport {
+            facets_read: 4,
+            triangles: 4,
+            vertices: 4,
+            welded: 0,
+            degenerate: 0,
+            edges: 6,
+            euler_characteristic: 2,
+            boundary_edges: 0,
+            misoriented_edges: 0,
+            boundary_loops: 0,
+            non_manifold_edges: 0,
+            duplicate: 0,
+            opposite: 0,
+            flat: 0,
+            bodies: 1,
+            open_bodies: 0,
+            inside_out_bodies: 0,
+            sewn: 0,
+            displacement: 0.0,
+            overlapping_bodies: 0,
+            undecided_bodies: 0,
+            polygons: 0,
+            bent_polygons: 0,
+            polygon_deviation: 0.0,
+        };
+        assert_eq!(mesh.report().unwrap(), expected);
+        assert_eq!(mesh.clone().report().unwrap(), expected);
+        assert!(expected.is_closed() && expected.is_manifold());
+        assert!((mesh.area() - (1.5 + 0.75f64.sqrt())).abs() < 1e-15);
+        assert_eq!(alloc::format!("{mesh:?}"), "TriangleMesh { vertices: 4, triangles: 4, .. }");
+    }
+
+    #[test]
+    fn equal_vertices_are_welded() {
+        // Vertex 4 is vertex 0 with other signs of zero, vertex 5 is vertex 1; 6 is used by nobody.
+        let mut vertices = CORNERS.to_vec();
+        vertices.extend([[-0.0, 0.0, -0.0], [1.0, -0.0, 0.0], [9.0, 9.0, 9.0]]);
+        let mesh = TriangleMesh::new(vertices, vec![[4, 2, 5], [0, 1, 3], [1, 2, 3], [2, 4, 3]]).unwrap();
+        assert_eq!(mesh.triangles(), FACES);
+        assert_eq!(mesh.vertices().len(), 5);
+        assert_eq!(mesh.bounds(), ([0.0; 3], [1.0; 3]));
+        assert_eq!(mesh.report().unwrap().welded, 2);
+        mesh.check_closed(FillRule::NonZero).unwrap();
+        assert!(mesh.vertices()[0].iter().all(|x| x.is_sign_positive()));
+        // The next number is another place.
+        let vertices = vec![[0.1 + 0.2, 0., 0.], [0.3, 0., 0.], [0., 1., 0.]];
+        assert_eq!(TriangleMesh::new(vertices, vec![[0, 1, 2]]).unwrap().vertices().len(), 3);
+    }
+
+    #[test]
+    fn triangle_soups() {
+        let mesh = tetrahedron();
+        let soup = TriangleMesh::from_facets(facets(&mesh)).unwrap();
+        // In the order of first appearance.
+        assert_eq!(soup.vertices(), [CORNERS[0], CORNERS[2], CORNERS[1], CORNERS[3]]);
+        assert_eq!(soup.triangles(), [[0, 1, 2], [0, 2, 3], [2, 1, 3], [1, 0, 3]]);
+        assert_eq!((soup.report().unwrap().welded, soup.report().unwrap().bodies), (8, 1));
+        soup.check_closed(FillRule::NonZero).unwrap();
+        // By reference, and from an iterator that does not know its length.
+        let owned = facets(&mesh);
+        let by_reference = TriangleMesh::from_facets(owned.iter()).unwrap();
+        assert_eq!(by_reference.triangles(), soup.triangles());
+        let unknown = facets(&mesh).into_iter().filter(|_| true);
+        assert_eq!(TriangleMesh::from_facets(unknown).unwrap().triangles(), soup.triangles());
+    }
+
+    #[test]
+    fn many_vertices_agree_with_new() {
+        let facet = |i: i32| {
+            let p = |j: i32| [f64::from((i * 7 + j * 13) % 50), f64::from((i + j) % 40), f64::from(j) - 1.0];
+            [p(0), p(1), p(2)]
+        };
+        let soup: Vec<_> = (0..20_000).map(facet).collect();
+        let corners: Vec<_> = soup.iter().flatten().copied().collect();
+        let triangles = (0..20_000).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+        let a = TriangleMesh::from_facets(&soup).unwrap();
+        let b = TriangleMesh::new(corners, triangles).unwrap();
+        assert_eq!(a.vertices(), b.vertices());
+        assert_eq!(a.triangles(), b.triangles());
+        assert_eq!(a.report().unwrap(), b.report().unwrap());
+        assert_eq!(facets(&a), soup);
+    }
+
+    #[test]
+    fn degenerate_facets() {
+        let mut soup = facets(&tetrahedron());
+        soup.insert(1, [CORNERS[0], CORNERS[1], CORNERS[0]]);
+        soup.insert(3, [[5.0; 3]; 3]);
+        let mesh = TriangleMesh::from_facets(&soup).unwrap();
+        let report = mesh.report().unwrap();
+        assert_eq!((report.facets_read, report.triangles, report.degenerate), (6, 4, 2));
+        assert_eq!((report.vertices, report.welded), (5, 13));
+        assert_eq!(mesh.bounds(), ([0.0; 3], [1.0; 3]));
+        mesh.check_closed(FillRule::NonZero).unwrap();
+
+        // A vertex on an edge: the collinear triangle closes the surface.
+        let middle = [0.5, 0.0, 0.0];
+        let mut soup = facets(&tetrahedron());
+        soup[0] = [CORNERS[0], CORNERS[2], middle];
+        soup.push([middle, CORNERS[2], CORNERS[1]]);
+        let open = TriangleMesh::from_facets(&soup).unwrap();
+        assert_eq!(mesh_error(open.check_closed(FillRule::NonZero)), MeshError::Open { edges: 3 });
+        soup.push([CORNERS[0], middle, CORNERS[1]]);
+        let closed = TriangleMesh::from_facets(&soup).unwrap();
+        assert_eq!(closed.report().unwrap().degenerate, 0);
+        closed.check_closed(FillRule::NonZero).unwrap();
+        assert!((closed.volume() - 1.0 / 6.0).abs() < 1e-15);
+    }
+
+    #[test]
+    fn what_closed_means() {
+        let check = |triangles: &[[u32; 3]], rule| {
+            TriangleMesh::new(CORNERS.to_vec(), triangles.to_vec()).unwrap().check_closed(rule)
+        };
+        let rules = [FillRule::NonZero, FillRule::EvenOdd];
+        assert_eq!(FillRule::default(), FillRule::NonZero);
+        for rule in rules {
+            check(&FACES, rule).unwrap();
+            assert_eq!(mesh_error(check(&[], rule)), MeshError::Empty);
+            assert_eq!(mesh_error(check(&[[0, 0, 1]], rule)), MeshError::Empty);
+            assert_eq!(mesh_error(check(&FACES[1..], rule)), MeshError::Open { edges: 3 });
+            // Wholly inside out is consistent.
+            check(&FACES.map(|[a, b, c]| [a, c, b]), rule).unwrap();
+            // Two sheets of one triangle enclose nothing, but are closed.
+            check(&[[0, 1, 2], [0, 2, 1]], rule).unwrap();
+        }
+        let one_turned = [[0, 1, 2], FACES[1], FACES[2], FACES[3]];
+        let error = mesh_error(check(&one_turned, FillRule::NonZero));
+        assert_eq!(error, MeshError::Unoriented { edges: 3 });
+        check(&one_turned, FillRule::EvenOdd).unwrap();
+        // Both defects: the hole is reported first.
+        let error = mesh_error(check(&[[0, 1, 2], FACES[1], FACES[2]], FillRule::NonZero));
+        assert!(matches!(error, MeshError::Open { .. }));
+    }
+
+    #[test]
+    fn volumes_of_several_bodies() {
+        let a = tetrahedron();
+        let far = a.translated([1e9, -2e9, 3e9]).unwrap();
+        assert!((far.volume() - 1.0 / 6.0).abs() < 1e-15);
+        assert_eq!(far.bounds(), ([1e9, -2e9, 3e9], [1e9 + 1.0, 1.0 - 2e9, 3e9 + 1.0]));
+        let turned = a.transformed(|[x, y, z]| [3.0 - x, y, z]).unwrap();
+        assert!((turned.volume() + 1.0 / 6.0).abs() < 1e-15);
+        let both = TriangleMesh::from_facets([facets(&a), facets(&turned)].concat()).unwrap();
+        assert_eq!(both.report().unwrap().bodies, 2);
+        assert!(both.volume().abs() < 1e-15);
+        both.check_closed(FillRule::NonZero).unwrap();
+        assert_eq!(TriangleMesh::new(vec![], vec![]).unwrap().volume(), 0.0);
+        assert_eq!(TriangleMesh::new(vec![], vec![]).unwrap().bounds(), ([0.0; 3], [0.0; 3]));
+    }
+
+    #[test]
+    fn moved_meshes_are_checked_anew() {
+        let mesh = tetrahedron();
+        let flat = mesh.transformed(|[x, y, _]| [x, y, 0.0]).unwrap();
+        assert_eq!((flat.vertices().len(), flat.triangles().len()), (3, 2));
+        assert_eq!(flat.report().unwrap().degenerate, 2);
+        flat.check_closed(FillRule::NonZero).unwrap();
+        let error = mesh_error(mesh.transformed(|[x, y, z]| [x, y / 0.0, z]));
+        assert_eq!(error, MeshError::NotFinite { vertex: 0 });
+        let error = mesh_error(mesh.translated([0.0, f64::INFINITY, 0.0]));
+        assert_eq!(error, MeshError::NotFinite { vertex: 0 });
+        let error = mesh_error(mesh.transformed(|p| p.map(|x| x * 1e80)));
+        assert_eq!(error, MeshError::TooLarge { vertex: 1 });
+    }
+
+    #[test]
+    fn refused_input() {
+        let with = |x: f64| {
+            let mut vertices = CORNERS.to_vec();
+            vertices[2][1] = x;
+            let mesh = TriangleMesh::new(vertices, FACES.to_vec());
+            let soup = TriangleMesh::from_facets([CORNERS_OF_FACE, [[0.0, x, 0.0]; 3]]);
+            (mesh, soup)
+        };
+        const CORNERS_OF_FACE: [[f64; 3]; 3] = [CORNERS[0], CORNERS[1], CORNERS[2]];
+        for x in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+            let (mesh, soup) = with(x);
+            assert_eq!(mesh_error(mesh), MeshError::NotFinite { vertex: 2 });
+            assert_eq!(mesh_error(soup), MeshError::NotFinite { vertex: 3 });
+        }
+        // 2^256.
+        assert_eq!(LARGEST, [65536.0; 16].iter().product::<f64>());
+        for x in [LARGEST.next_up(), -f64::MAX] {
+            let (mesh, soup) = with(x);
+            assert_eq!(mesh_error(mesh), MeshError::TooLarge { vertex: 2 });
+            assert_eq!(mesh_error(soup), MeshError::TooLarge { vertex: 3 });
+        }
+        let (mesh, soup) = with(-LARGEST);
+        assert!(mesh.unwrap().volume().is_finite());
+        soup.unwrap();
+
+        for bad in [4, u32::MAX] {
+            let error = mesh_error(TriangleMesh::new(CORNERS.to_vec(), vec![FACES[0], [0, bad, 1]]));
+            assert_eq!(error, MeshError::Index { triangle: 1, vertex: bad.into(), vertices: 4 });
+        }
+        let error = mesh_error(TriangleMesh::new(vec![], vec![[0, 0, 0]]));
+        assert_eq!(error, MeshError::Index { triangle: 0, vertex: 0, vertices: 0 });
+    }
+
+    #[test]
+    fn claimed_lengths_are_not_believed() {
+        /// Claims to be endless, and ends.
+        struct Liar(u32);
+        impl Iterator for Liar {
+            type Item = [[f64; 3]; 3];
+            fn next(&mut self) -> Option<Self::Item> {
+                self.0 = self.0.checked_sub(1)?;
+                Some([CORNERS[0], CORNERS[1], CORNERS[2]])
+            }
+            fn size_hint(&self) -> (usize, Option<usize>) {
+                (usize::MAX, None)
+            }
+        }
+        assert!(matches!(TriangleMesh::from_facets(Liar(3)), Err(Error::OutOfMemory)));
+    }
+}

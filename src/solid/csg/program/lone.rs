@@ -1,0 +1,127 @@
+//! Cells in which only one operand is open, a solid of another kind: all questions go on to it, bulk forms
+//! included.
+
+use super::Program;
+use super::word::{Op, Word};
+use super::worker::{CsgPart, Scratch, Slot};
+use crate::error::Error;
+use crate::lattice::Cell;
+use crate::memory;
+use crate::octree::Planes;
+use crate::solid::erased::ErasedPart;
+use crate::solid::{AnyWorker, Verdict, Worker};
+use alloc::vec::Vec;
+
+/// The only operand that is open in a cell: a part of another solid, or of its complement.
+#[derive(Clone, Copy)]
+pub(crate) struct Lone {
+    pub(crate) solid: u32,
+    pub(crate) part: ErasedPart,
+    pub(crate) complement: bool,
+}
+
+impl Scratch {
+    /// Whether it is worth asking for the only operand that is open.
+    #[inline(always)]
+    pub(crate) fn may_be_lone(&self, program: &Program, part: CsgPart) -> bool {
+        part.len == 1 && !program.solids.is_empty()
+    }
+
+    pub(crate) fn lone(&mut self, program: &Program, part: CsgPart) -> Result<Option<Lone>, Error> {
+        if !self.may_be_lone(program, part) {
+            return Ok(None);
+        }
+        let Op::Solid { index, complement } = Scratch::list(program, &self.words, part)[0].op() else {
+            return Ok(None);
+        };
+        Ok(self.slot(program, index)?.map(|(solid, part)| Lone { solid, part, complement }))
+    }
+
+    /// Runs `ask` with the worker and the part of the only operand that is open, if there is only one: what
+    /// it says, and whether the complement is meant.
+    pub(crate) fn ask_lone<T>(
+        &mut self,
+        program: &Program,
+        part: CsgPart,
+        ask: impl FnOnce(&mut AnyWorker, &ErasedPart) -> Result<T, Error>,
+    ) -> Result<Option<(T, bool)>, Error> {
+        let Some(Lone { solid, part, complement }) = self.lone(program, part)? else { return Ok(None) };
+        let other = Scratch::other(&mut self.workers, program, solid)?;
+        Ok(Some((ask(&mut other.worker, &part)?, complement)))
+    }
+
+    /// The worker and the part of the only operand that is open, if its worker has been asked before.
+    pub(crate) fn look_at_lone(
+        &self,
+        program: &Program,
+        part: CsgPart,
+    ) -> Option<(&AnyWorker, ErasedPart, bool)> {
+        if part.len != 1 {
+            return None;
+        }
+        let Op::Solid { index, complement } = Scratch::list(program, &self.words, part)[0].op() else {
+            return None;
+        };
+        let slot = self.slots.get((index as usize).checked_sub(program.solids.len())?)?;
+        let other = self.workers[slot.solid as usize].as_ref()?;
+        Some((&other.worker, slot.part, complement))
+    }
+
+    /// Two levels of the only operand that is open, if there is only one.
+    #[inline(never)]
+    pub(crate) fn lone64(
+        &mut self,
+        program: &Program,
+        cell: Cell,
+        part: CsgPart,
+        parts: &mut Vec<(u8, CsgPart)>,
+    ) -> Result<Option<Planes>, Error> {
+        let Some(Lone { solid, part, complement }) = self.lone(program, part)? else { return Ok(None) };
+        let mut passing = core::mem::take(&mut self.passing);
+        passing.clear();
+        let worker = &mut Scratch::other(&mut self.workers, program, solid)?.worker;
+        let height = worker.mark();
+        let planes = worker.split64(cell, &part, &mut passing)?;
+        parts.try_reserve(passing.len())?;
+        for (c, part) in passing.drain(..) {
+            parts.push((c, self.lone_part(program, solid, part, complement, height)?));
+        }
+        self.passing = passing;
+        Ok(Some(if complement { planes.complement() } else { planes }))
+    }
+
+    /// The part of a cell in which only one operand is open.
+    fn lone_part(
+        &mut self,
+        program: &Program,
+        solid: u32,
+        part: ErasedPart,
+        complement: bool,
+        height: usize,
+    ) -> Result<CsgPart, Error> {
+        let start = self.start(program)?;
+        let index = self.keep(program, Slot { solid, part, words: self.words.len(), height })?;
+        memory::push(&mut self.words, Word::new(Op::Solid { index, complement }))?;
+        Ok(CsgPart { start, len: 1 })
+    }
+
+    /// The eight cells of the only operand that is open, if there is only one.
+    #[inline(never)]
+    pub(crate) fn lone8(
+        &mut self,
+        program: &Program,
+        cell: Cell,
+        part: CsgPart,
+    ) -> Result<Option<[Verdict<CsgPart>; 8]>, Error> {
+        let Some(Lone { solid, part, complement }) = self.lone(program, part)? else { return Ok(None) };
+        let worker = &mut Scratch::other(&mut self.workers, program, solid)?.worker;
+        let height = worker.mark();
+        let split = worker.split(cell, &part)?;
+        let mut verdicts = [Verdict::Undecided; 8];
+        for (verdict, other) in verdicts.iter_mut().zip(split) {
+            let own = other.try_map(|part| self.lone_part(program, solid, part, complement, height))?;
+            *verdict = if complement { own.complement() } else { own };
+        }
+        Ok(Some(verdicts))
+    }
+}

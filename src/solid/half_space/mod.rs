@@ -1,0 +1,411 @@
+//! Half-spaces: what all primitives are made of.
+
+pub(crate) mod bounds;
+mod host;
+pub(crate) mod linear;
+pub(crate) mod lines;
+pub(crate) mod map;
+mod plane;
+pub(crate) mod points;
+pub(crate) mod power;
+pub(crate) mod quadric;
+pub(crate) mod tangent;
+pub(crate) mod torus;
+
+use crate::cut::Taylor;
+use crate::error::Error;
+use crate::lattice::exact::{DoubleDouble, Dyadic, sign};
+use crate::lattice::{Frame, Interval, valid};
+use crate::solid::Fingerprint;
+use alloc::boxed::Box;
+use alloc::sync::Arc;
+use bounds::{Octants, Sides, mask};
+use host::{Host, PlacedHost};
+use map::ExactMap;
+use plane::Plane;
+use power::{PlacedPowers, Powers};
+use quadric::{Coefficients, Quadric};
+use tangent::Tangent;
+use torus::{PlacedTorus, Torus};
+use wide::f64x4;
+
+/// The points with f(x, y, z) ≥ 0, for one function f. Cheap to clone.
+///
+/// f is that of exactly the doubles given, and its signs are exact: no rounding decides anything. (Of a host
+/// program's function it is the program that answers for the signs.)
+#[derive(Clone)]
+pub struct HalfSpace(pub(crate) Arc<Surface>);
+
+/// The function of a half-space, in the space in which it was given.
+pub(crate) enum Surface {
+    /// a x + b y + c z + d.
+    Plane([Dyadic; 4]),
+    /// Of degree two.
+    Quadric(Box<Coefficients>),
+    Powers(Powers),
+    Torus(Torus),
+    Host(Arc<Host>),
+}
+
+/// The largest exponent of a power.
+const LARGEST_EXPONENT: u32 = 64;
+
+impl HalfSpace {
+    /// `normal` · p + `offset` ≥ 0; the normal, of any length, points into the half-space.
+    ///
+    /// # Errors
+    /// [`Error::Argument`] if the normal is zero, or a number is not zero and not of a magnitude between
+    /// 2^-256 and 2^256.
+    pub fn plane(normal: [f64; 3], offset: f64) -> Result<HalfSpace, Error> {
+        if normal == [0.0; 3] {
+            return Err(Error::Argument { name: "normal", problem: "must not be zero" });
+        }
+        valid::numbers("normal", &normal)?;
+        valid::numbers("offset", &[offset])?;
+        let [x, y, z] = normal;
+        Ok(HalfSpace::linear([x, y, z, offset].map(Dyadic::new)))
+    }
+
+    /// a x² + b y² + c z² + d xy + e yz + f zx + g x + h y + i z + j ≥ 0 for the `coefficients` a to j.
+    ///
+    /// # Errors
+    /// [`Error::Argument`] if all but the last are zero, or one is not zero and not of a magnitude between
+    /// 2^-256 and 2^256.
+    pub fn quadric(coefficients: [f64; 10]) -> Result<HalfSpace, Error> {
+        valid::numbers("coefficients", &coefficients)?;
+        if coefficients[..9].iter().all(|&c| c == 0.0) {
+            let problem = "must not all be zero but the last: the function would be constant";
+            return Err(Error::Argument { name: "coefficients", problem });
+        }
+        Ok(HalfSpace::exactly(coefficients.map(Dyadic::new)))
+    }
+
+    /// A (x − a)^n + B (y − b)^m + C (z − c)^k + `constant` ≥ 0, for the `terms` (A, a, n), (B, b, m) and (C,
+    /// c, k). A coefficient 0 leaves a term out.
+    ///
+    /// Least and greatest values over a cell are exact under placements that take axes to axes, and bounded
+    /// outward under others.
+    ///
+    /// # Errors
+    /// [`Error::Argument`] if all coefficients are zero, an exponent is not 1 to 64, or a number is not zero
+    /// and not of a magnitude between 2^-256 and 2^256.
+    pub fn power(terms: [(f64, f64, u32); 3], constant: f64) -> Result<HalfSpace, Error> {
+        valid::numbers("terms", terms.map(|(coefficient, centre, _)| [coefficient, centre]).as_flattened())?;
+        valid::numbers("constant", &[constant])?;
+        if !terms.iter().all(|&(.., exponent)| (1..=LARGEST_EXPONENT).contains(&exponent)) {
+            return Err(Error::Argument { name: "terms", problem: "every exponent must be 1 to 64" });
+        }
+        if terms.iter().all(|&(coefficient, ..)| coefficient == 0.0) {
+            let problem = "must have a coefficient that is not zero: the function would be constant";
+            return Err(Error::Argument { name: "terms", problem });
+        }
+        let is_quadratic =
+            |&(coefficient, _, exponent): &(f64, f64, u32)| coefficient == 0.0 || exponent <= 2;
+        if !terms.iter().all(is_quadratic) {
+            return Ok(HalfSpace(Arc::new(Surface::Powers(Powers { terms, constant }))));
+        }
+        let [mut squares, mut linear] = [0.0; 2].map(|c| [c; 3].map(Dyadic::new));
+        let mut constant = Dyadic::new(constant);
+        for (axis, (coefficient, centre, exponent)) in terms.into_iter().enumerate() {
+            let (coefficient, centre) = (Dyadic::new(coefficient), Dyadic::new(centre));
+            let times_centre = &coefficient * &centre;
+            if exponent == 1 {
+                constant = &constant - &times_centre;
+                linear[axis] = coefficient;
+            } else {
+                constant = &constant + &(&times_centre * &centre);
+                linear[axis] = -&times_centre.shifted(1);
+                squares[axis] = coefficient;
+            }
+        }
+        Ok(HalfSpace::separable(squares, linear, constant))
+    }
+
+    /// The torus around the z axis: all points at most `minor` from the circle of radius `major` in the plane
+    /// z = 0. So where `minor` is greater than `major`, the ring being closed in the middle, there is no
+    /// hollow core.
+    ///
+    /// # Errors
+    /// [`Error::Argument`] if a radius is not between 2^-256 and 2^256; `major` may be 0, which makes a ball.
+    pub fn torus(major: f64, minor: f64) -> Result<HalfSpace, Error> {
+        valid::length("minor", minor)?;
+        if major != 0.0 {
+            valid::length("major", major)?;
+        } else {
+            let [squares, linear] = [-1.0, 0.0].map(|c| [c; 3].map(Dyadic::new));
+            return Ok(HalfSpace::separable(squares, linear, Dyadic::new(minor).pow(2)));
+        }
+        let [major, minor, scale, shift] = [major, minor, 1.0, 0.0].map(Dyadic::new);
+        Ok(HalfSpace::ring(Torus { major, square: minor.pow(2), scale, shift }))
+    }
+
+    /// Of a torus whose numbers need not be doubles.
+    pub(crate) fn ring(torus: Torus) -> HalfSpace {
+        HalfSpace(Arc::new(Surface::Torus(torus)))
+    }
+
+    /// A half-space that a host program supplies: by f's `value` at a point and its `range` over a box (lower
+    /// and upper corner), in model units; under a placement, in the space of the half-space.
+    ///
+    /// A range must contain all values that f has in the box. It alone proves anything: a cell is FULL if it
+    /// is nowhere negative over a box around the cell (the cell itself, where its corners are doubles), and
+    /// EMPTY if it is nowhere positive. Values, which are asked for first, keep a cell from it that has
+    /// vertices on both sides, so they need not be exact; they decide single points, at the point's rounded
+    /// image, where zero is inside. A value that is not a number, and a range with a NaN or with `lower >
+    /// upper`, decide nothing.
+    ///
+    /// Both functions are called from several threads at once, and must give the same answer to the same
+    /// question. An error, such as [`Error::Callback`], ends the operation and is what that returns. The
+    /// `fingerprint` is the promise that functions that are given the same one are the same; without one no
+    /// expression that contains the half-space has a fingerprint.
+    ///
+    /// ```
+    /// use leafless::{Control, Csg, Frame, HalfSpace, Interval, Rule, build};
+    /// // z ≤ exp(−x²), which over a box is least and greatest where |x| is.
+    /// let hill = HalfSpace::host(
+    ///     |[x, _, z]| Ok((-x * x).exp() - z),
+    ///     |min, max| {
+    ///         let far = min[0].abs().max(max[0].abs());
+    ///         let near = if min[0] <= 0.0 && max[0] >= 0.0 { 0.0 } else { min[0].abs().min(max[0].abs()) };
+    ///         // Some last places for what is rounded.
+    ///         Ok(Interval::new((-far * far).exp() - max[2] - 1e-14, (-near * near).exp() - min[2] + 1e-14).unwrap())
+    ///     },
+    ///     None,
+    /// );
+    /// let part = Csg::intersection_of([hill.into(), Csg::cuboid([-1.0, 0.0, 0.0], [1.0, 1.0, 2.0])?])?;
+    /// let tree = build(&part, &Frame::new([-1.0; 3], 2.0, 6)?, Rule::Certified, &Control::default())?;
+    /// assert!(tree.statistics().volume().contains(1.493648));
+    /// # Ok::<(), leafless::Error>(())
+    /// ```
+    pub fn host(
+        value: impl Fn([f64; 3]) -> Result<f64, Error> + Send + Sync + 'static,
+        range: impl Fn([f64; 3], [f64; 3]) -> Result<Interval, Error> + Send + Sync + 'static,
+        fingerprint: Option<Fingerprint>,
+    ) -> HalfSpace {
+        let host = Host { value: Box::new(value), range: Box::new(range), fingerprint };
+        HalfSpace(Arc::new(Surface::Host(Arc::new(host))))
+    }
+
+    /// Of coefficients in the order of [`quadric`](Self::quadric) that need not be doubles, of which one but
+    /// the last is not zero.
+    pub(crate) fn exactly(coefficients: Coefficients) -> HalfSpace {
+        if coefficients[..6].iter().all(Dyadic::is_zero) {
+            let [.., x, y, z, one] = coefficients;
+            return HalfSpace::linear([x, y, z, one]);
+        }
+        HalfSpace(Arc::new(Surface::Quadric(Box::new(coefficients))))
+    }
+
+    /// The sum of `squares` times x², y² and z², `linear` times x, y and z, and a constant; one that is not
+    /// the constant is not zero.
+    pub(crate) fn separable(squares: [Dyadic; 3], linear: [Dyadic; 3], constant: Dyadic) -> HalfSpace {
+        let ([xx, yy, zz], [x, y, z], zero) = (squares, linear, Dyadic::zero);
+        HalfSpace::exactly([xx, yy, zz, zero(), zero(), zero(), x, y, z, constant])
+    }
+
+    /// a x + b y + c z + d ≥ 0 for the coefficients a to d, of which one but the last is not zero.
+    pub(crate) fn linear(coefficients: [Dyadic; 4]) -> HalfSpace {
+        HalfSpace(Arc::new(Surface::Plane(coefficients)))
+    }
+}
+
+/// A half-space on a universe: f in unit coordinates, times something positive.
+pub(crate) enum Placed {
+    Plane(Plane),
+    Quadric(Box<Quadric>),
+    Powers(Box<PlacedPowers>),
+    Torus(Box<PlacedTorus>),
+    Host(Box<PlacedHost>),
+}
+
+impl Surface {
+    /// The half-space as `map` shows it on the universe of `frame`.
+    pub(crate) fn on(&self, map: &ExactMap, frame: &Frame) -> Placed {
+        match self {
+            Surface::Plane(plane) => Placed::Plane(Plane::new(plane, map, frame.depth())),
+            Surface::Quadric(coefficients) => {
+                Placed::Quadric(Box::new(Quadric::new(coefficients, map, frame.depth())))
+            }
+            Surface::Powers(powers) => Placed::Powers(Box::new(PlacedPowers::new(powers, map))),
+            Surface::Torus(torus) => Placed::Torus(Box::new(PlacedTorus::new(torus, map))),
+            Surface::Host(host) => Placed::Host(Box::new(PlacedHost::new(host, map, frame))),
+        }
+    }
+}
+
+impl Placed {
+    /// For which of the cells `wanted` f is proven not negative, and not positive; counts the evaluations.
+    #[inline(always)]
+    pub(crate) fn sides(&self, at: &Octants, wanted: u8, evaluations: &mut u64) -> Result<Sides, Error> {
+        *evaluations += wanted.count_ones() as u64;
+        Ok(match self {
+            Placed::Plane(plane) => plane.sides(at),
+            Placed::Quadric(quadric) => quadric.sides(at),
+            _ => return self.sides_of_others(at, wanted, evaluations),
+        })
+    }
+
+    /// Of those that are neither planes nor quadrics, which are the fastest by far.
+    #[inline(never)]
+    fn sides_of_others(&self, at: &Octants, wanted: u8, evaluations: &mut u64) -> Result<Sides, Error> {
+        Ok(match self {
+            Placed::Powers(powers) => powers.sides(at),
+            Placed::Torus(torus) => torus.sides(at),
+            Placed::Host(host) => {
+                // It counts what it asks the host program.
+                *evaluations -= wanted.count_ones() as u64;
+                host.sides(at, wanted, evaluations)?
+            }
+            Placed::Plane(_) | Placed::Quadric(_) => Sides { inside: 0, outside: 0 },
+        })
+    }
+
+    /// What is known of f over the cube of half edge `half` around `centre`, both in unit coordinates; `None` of
+    /// functions of the host.
+    #[inline]
+    pub(crate) fn tangent(&self, centre: [f64; 3], half: f64) -> Option<Tangent> {
+        Some(match self {
+            Placed::Plane(plane) => plane.tangent(centre, half),
+            Placed::Quadric(quadric) => quadric.tangent(centre, half),
+            Placed::Powers(powers) => powers.tangent(centre, half),
+            Placed::Torus(torus) => torus.tangent(centre, half),
+            Placed::Host(_) => return None,
+        })
+    }
+
+    /// f over the cube of half edge `half` around `centre`, both in unit coordinates; `None` of functions of the host.
+    #[inline]
+    pub(crate) fn taylor(&self, centre: [f64; 3], half: f64) -> Option<Taylor> {
+        Some(match self {
+            Placed::Plane(plane) => plane.taylor(centre, half),
+            Placed::Quadric(quadric) => quadric.taylor(centre, half),
+            Placed::Powers(powers) => powers.taylor(centre, half),
+            Placed::Torus(torus) => torus.taylor(centre, half),
+            Placed::Host(_) => return None,
+        })
+    }
+
+    /// How often a line that does not lie in the surface meets it at most; `None` of functions of the host.
+    pub(crate) fn degree(&self) -> Option<u32> {
+        Some(match self {
+            Placed::Plane(_) => 1,
+            Placed::Quadric(_) => 2,
+            Placed::Powers(powers) => powers.degree(),
+            Placed::Torus(_) => 4,
+            Placed::Host(_) => return None,
+        })
+    }
+
+    /// Whether the function is linear, or constant, along all lines parallel to an axis.
+    pub(crate) fn is_linear_along(&self, axis: usize) -> bool {
+        match self {
+            Placed::Plane(_) => true,
+            Placed::Quadric(quadric) => quadric.is_linear_along(axis),
+            _ => false,
+        }
+    }
+
+    /// Whether a piece of the surface may lie in a plane of the lattice, which has 2^depth cells.
+    pub(crate) fn may_hold_lattice_plane(&self, depth: u8) -> bool {
+        match self {
+            Placed::Plane(plane) => plane.is_of_lattice(depth),
+            Placed::Quadric(quadric) => quadric.may_hold_lattice_plane(),
+            Placed::Powers(powers) => powers.may_hold_lattice_plane(),
+            Placed::Torus(_) => false,
+            Placed::Host(_) => true,
+        }
+    }
+
+    /// In which of the eight cells the centre is surely inside, and in which surely outside, where that is
+    /// had at once.
+    #[inline(always)]
+    pub(crate) fn centres(&self, at: &Octants) -> (u8, u8) {
+        let (values, error) = match self {
+            Placed::Plane(plane) => plane.centres(at),
+            Placed::Quadric(quadric) => quadric.centres(at),
+            _ => return (0, 0),
+        };
+        (
+            mask(values.map(|v| v.simd_gt(f64x4::splat(error)))),
+            mask(values.map(|v| v.simd_lt(f64x4::splat(-error)))),
+        )
+    }
+
+    /// Exact sign of f at a point of the universe; `None` if the host does not know it.
+    #[inline]
+    pub(crate) fn sign_at(&self, t: [f64; 3]) -> Result<Option<i32>, Error> {
+        Ok(Some(match self {
+            Placed::Plane(plane) => plane.sign_at(t),
+            Placed::Quadric(quadric) => quadric.sign_at(t),
+            Placed::Powers(powers) => powers.sign_at(t),
+            Placed::Torus(torus) => torus.sign_at(t),
+            Placed::Host(host) => return Ok(host.value_at(t)?.map(sign)),
+        }))
+    }
+
+    /// Whether the centre `t` of a cell is inside, shifted by (ε, ε², ε³) if it lies on the surface; `None`
+    /// if the host does not know.
+    #[inline]
+    pub(crate) fn contains(&self, t: [f64; 3]) -> Result<Option<bool>, Error> {
+        self.decided(t, self.sign_at(t)?)
+    }
+
+    /// The same of any point of the universe.
+    pub(crate) fn contains_off_lattice(&self, t: [f64; 3]) -> Result<Option<bool>, Error> {
+        let sign = match self {
+            Placed::Plane(plane) => Some(plane.sign_off_lattice(t)),
+            Placed::Quadric(quadric) => Some(quadric.sign_off_lattice(t)),
+            _ => self.sign_at(t)?,
+        };
+        self.decided(t, sign)
+    }
+
+    /// On a ray along `axis` through a point, as a polynomial of degree two: the factors of 1, s and s² for the coordinate s,
+    /// and more than what its values on the universe are off by. `None` of others.
+    #[inline]
+    pub(crate) fn along(&self, axis: usize, point: [f64; 3]) -> Option<([f64; 3], f64)> {
+        match self {
+            Placed::Plane(plane) => Some((plane.along(axis, point), plane.rounding())),
+            Placed::Quadric(quadric) => Some((quadric.along(axis, point), quadric.rounding())),
+            _ => None,
+        }
+    }
+
+    /// The same in numbers of 106 bits, of quadrics.
+    pub(crate) fn finely_along(&self, axis: usize, point: [f64; 3]) -> Option<([DoubleDouble; 3], f64)> {
+        match self {
+            Placed::Quadric(quadric) => {
+                Some((quadric.finely_along(axis, point), 64.0 * DoubleDouble::EPSILON * quadric.size()))
+            }
+            _ => None,
+        }
+    }
+
+    /// More than what values of planes and quadrics are off by at points that are none of the lattice.
+    #[inline]
+    pub(crate) fn rounding(&self) -> f64 {
+        match self {
+            Placed::Plane(plane) => plane.rounding(),
+            Placed::Quadric(quadric) => quadric.rounding(),
+            // Errors of others hold everywhere.
+            _ => 0.0,
+        }
+    }
+
+    #[inline]
+    fn decided(&self, t: [f64; 3], sign: Option<i32>) -> Result<Option<bool>, Error> {
+        let sign = match sign {
+            Some(0) => match self {
+                Placed::Plane(plane) => plane.shifted_sign(),
+                Placed::Quadric(quadric) => quadric.shifted_sign_at(t),
+                Placed::Powers(powers) => powers.shifted_sign_at(t),
+                Placed::Torus(torus) => torus.shifted_sign_at(t),
+                // Which way the function goes is not known.
+                Placed::Host(_) => 1,
+            },
+            Some(sign) => sign,
+            None => return Ok(None),
+        };
+        Ok(Some(sign > 0))
+    }
+}

@@ -1,0 +1,163 @@
+//! Planes: polynomials of degree one.
+
+use super::bounds::{Octants, Sides};
+use super::linear;
+use super::map::ExactMap;
+use super::tangent::Tangent;
+use crate::cut::{Quadratic, Taylor};
+use crate::lattice::axes;
+use crate::lattice::exact::{Dyadic, certain};
+use alloc::boxed::Box;
+use alloc::vec::Vec;
+use core::cmp::Ordering;
+use wide::f64x4;
+
+/// A plane on a universe, a x + b y + c z + d in unit coordinates. Expressions have many of them, so it is
+/// small.
+pub(crate) struct Plane {
+    /// a to d, of which the largest has a magnitude of one.
+    c: [f64; 4],
+    /// How far the value at a corner of a unit cube can be below that at its lower corner, as a negative
+    /// number; and how far the values at the corners are apart.
+    fall: f64,
+    reach: f64,
+    /// More than the error of any value on [−1, 2]³; zero if they have none on the lattice.
+    error: f64,
+    /// The exact coefficients, one behind the other; empty if they are the doubles.
+    exact: Box<[u8]>,
+}
+
+impl Plane {
+    /// The plane `given` as the map shows it on the universe, whose lattice has 2^depth cells.
+    pub(crate) fn new(given: &[Dyadic; 4], map: &ExactMap, depth: u8) -> Plane {
+        let exact = map.linear(given);
+        // Only the sign counts: the largest coefficient is brought to a magnitude of one.
+        let scale = -linear::magnitude(&exact);
+        let exact = exact.map(|c| if map.w.sign() < 0 { -&c.shifted(scale) } else { c.shifted(scale) });
+        let c = exact.each_ref().map(Dyadic::rounded);
+        // No sum of some terms is larger than four times this.
+        let size: f64 = c.iter().map(|c| c.abs()).sum();
+        let is_double = exact.iter().all(|c| c.exactly().is_some());
+        let is_exact = is_double && linear::is_exact(&exact, depth as i64 + 1, 4.0 * size);
+        let mut bytes = Vec::new();
+        exact.iter().filter(|_| !is_double).for_each(|c| c.write(&mut bytes));
+        Plane {
+            c,
+            fall: (c[0].min(0.0) + c[1].min(0.0)) + c[2].min(0.0),
+            reach: (c[0].abs() + c[1].abs()) + c[2].abs(),
+            // A term is rounded at most fourteen times.
+            error: if is_exact { 0.0 } else { 32.0 * f64::EPSILON * size },
+            exact: bytes.into_boxed_slice(),
+        }
+    }
+
+    /// The least values over the eight cells, and by how much the greatest are greater.
+    #[inline(always)]
+    fn least(&self, at: &Octants) -> ([f64x4; 2], f64) {
+        let ([x, y, z], [a, b, c, d]) = (at.low, self.c);
+        let first = ((a * x + b * y) + c * z) + (d + self.fall * at.half);
+        let lower = f64x4::new([0.0, a, b, a + b]) * at.half + first;
+        ([lower, lower + c * at.half], self.reach * at.half)
+    }
+
+    /// For which of the eight cells the value is proven not negative, and not positive.
+    #[inline(always)]
+    pub(crate) fn sides(&self, at: &Octants) -> Sides {
+        let (least, reach) = self.least(at);
+        let (sides, doubt) = Sides::with_error(least, [least[0] + reach, least[1] + reach], self.error);
+        if doubt == 0 {
+            return sides;
+        }
+        sides.settled(at, doubt, |low, high, which| {
+            let exact = self.exact();
+            let less = if which == Ordering::Less { 1 } else { -1 };
+            let corner = axes(|i| if exact[i].sign() == less { low[i] } else { high[i] }).map(Dyadic::new);
+            linear::value(&exact, &corner).sign()
+        })
+    }
+
+    /// The values at the centres of the eight cells, and more than their error.
+    #[inline(always)]
+    pub(crate) fn centres(&self, at: &Octants) -> ([f64x4; 2], f64) {
+        let (least, reach) = self.least(at);
+        ([least[0] + 0.5 * reach, least[1] + 0.5 * reach], self.error)
+    }
+
+    /// What is known of the value over a cube: all, but for rounding.
+    #[inline(always)]
+    pub(crate) fn tangent(&self, centre: [f64; 3], half: f64) -> Tangent {
+        let [a, b, c, d] = self.c;
+        let value = ((a * centre[0] + b * centre[1]) + c * centre[2]) + d;
+        let gradient = [a * half, b * half, c * half];
+        if self.error == 0.0 {
+            return Tangent { gradient, low: value, high: value };
+        }
+        Tangent::new(value, gradient, (0.0, 0.0), self.error)
+    }
+
+    /// The value over a cube.
+    pub(crate) fn taylor(&self, centre: [f64; 3], half: f64) -> Taylor {
+        let Tangent { gradient, low, high } = self.tangent(centre, half);
+        let error = (0.5 * (high - low)).next_up();
+        let f = Quadratic { value: 0.5 * (low + high), gradient, squares: [0.0; 6], error };
+        Taylor { f, bend: self.error * half, degree: 1 }
+    }
+
+    /// Whether the plane may be one of the lattice's.
+    pub(crate) fn is_of_lattice(&self, depth: u8) -> bool {
+        let exact = self.exact();
+        let mut axes = (0..3).filter(|&axis| exact[axis].sign() != 0);
+        let (Some(axis), None) = (axes.next(), axes.next()) else { return false };
+        let cells = (1u64 << depth) as f64;
+        let nearest = libm::round(-self.c[3] / self.c[axis] * cells);
+        // What is far outside of the universe is no matter.
+        if !(-2.0..=2.0 * cells).contains(&nearest) {
+            return false;
+        }
+        let mut point = [0.0; 3];
+        [nearest - 1.0, nearest, nearest + 1.0].into_iter().any(|plane| {
+            point[axis] = plane / cells;
+            linear::value(&exact, &point.map(Dyadic::new)).sign() == 0
+        })
+    }
+
+    /// Exact sign at a point of the lattice, or of one with half its cells.
+    #[inline]
+    pub(crate) fn sign_at(&self, t: [f64; 3]) -> i32 {
+        let [a, b, c, d] = self.c;
+        let value = ((a * t[0] + b * t[1]) + c * t[2]) + d;
+        certain(value, self.error).unwrap_or_else(|| linear::value(&self.exact(), &t.map(Dyadic::new)).sign())
+    }
+
+    /// The function on a ray along `axis` through a point: the factors of 1 and s for the coordinate s, and 0.
+    #[inline]
+    pub(crate) fn along(&self, axis: usize, point: [f64; 3]) -> [f64; 3] {
+        let [i, j] = [(axis + 1) % 3, (axis + 2) % 3];
+        [(self.c[i] * point[i] + self.c[j] * point[j]) + self.c[3], self.c[axis], 0.0]
+    }
+
+    /// More than the error of a value anywhere on [−1, 2]³, not only on the lattice.
+    pub(crate) fn rounding(&self) -> f64 {
+        self.error.max(32.0 * f64::EPSILON * self.c.iter().map(|c| c.abs()).sum::<f64>())
+    }
+
+    /// The same of a point that is none of the lattice.
+    pub(crate) fn sign_off_lattice(&self, t: [f64; 3]) -> i32 {
+        let [a, b, c, d] = self.c;
+        let value = ((a * t[0] + b * t[1]) + c * t[2]) + d;
+        let exact = || linear::value(&self.exact(), &t.map(Dyadic::new)).sign();
+        certain(value, self.rounding()).unwrap_or_else(exact)
+    }
+
+    /// The sign that the shift (ε, ε², ε³) gives at a zero.
+    #[cold]
+    pub(crate) fn shifted_sign(&self) -> i32 {
+        self.exact()[..3].iter().map(Dyadic::sign).find(|&sign| sign != 0).unwrap_or(0)
+    }
+
+    #[cold]
+    fn exact(&self) -> [Dyadic; 4] {
+        let mut rest = &*self.exact;
+        self.c.map(|c| if self.exact.is_empty() { Dyadic::new(c) } else { Dyadic::read(&mut rest) })
+    }
+}

@@ -1,0 +1,570 @@
+//! Splitting the cells of a mesh.
+
+use super::chords::{Chords, Rays};
+use super::crossing::Projection;
+use super::local::View;
+use super::on_frame::{Branch, MeshOnFrame, MeshPart};
+use super::open::Surroundings;
+use super::overlap::Overlap;
+use super::placed::{Corners, Placed, bounds, ranks};
+use super::reach;
+use super::scan::{Scan, Task};
+use super::winding::Caps;
+use crate::control::Control;
+use crate::dexel::Beam;
+use crate::error::{Error, MeshError};
+use crate::lattice::axes;
+use crate::lattice::{Affine, Bounds, Cell, CellMoments, Frame, Interval, VolumeMoments};
+use crate::mesh::{FillRule, Loops, MeshMoments, Sides, TriangleMesh};
+use crate::octree::{Block, Proof, Tag};
+use crate::solid::{
+    Classifier, Crossing, Enclosure, Fingerprint, Fingerprinter, Motion, Segment, Solid, Verdict, Worker,
+};
+use alloc::boxed::Box;
+use alloc::sync::Arc;
+use alloc::vec::Vec;
+use once_cell::race::OnceBox;
+
+/// A triangle mesh as a solid. Cheap to clone.
+///
+/// Any mesh will do. Where it is closed, what it encloses is exact. Where it is not, [`FillRule`] says by
+/// which convention a point is inside; a cell is FULL or EMPTY if that is proven for all of its points, and
+/// around holes stay PARTIAL cells which no triangle cuts: [`TriangleMesh::report`] tells of holes.
+///
+/// ```
+/// use leafless::{Control, FillRule, Frame, MeshSolid, Rule, TriangleMesh, build};
+/// let vertices = vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+/// let mesh = TriangleMesh::new(vertices, vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]])?;
+/// let solid = MeshSolid::new(mesh, FillRule::NonZero)?;
+/// let tree = build(&solid, &Frame::new([0.0; 3], 1.0, 6)?, Rule::Certified, &Control::default())?;
+/// assert!(tree.statistics().volume().contains(1.0 / 6.0));
+/// # Ok::<(), leafless::Error>(())
+/// ```
+#[derive(Clone)]
+pub struct MeshSolid {
+    mesh: Arc<TriangleMesh>,
+    fill: FillRule,
+    boundary: Arc<Boundary>,
+}
+
+/// What is known of a mesh's boundary, and of what it encloses.
+struct Boundary {
+    loops: Loops,
+    /// How far the solid may reach beyond the mesh's box, once somebody has asked.
+    reach: OnceBox<[[f64; 3]; 2]>,
+    /// The same.
+    moments: OnceBox<MeshMoments>,
+    /// The same; nothing if the triangles lie too close to each other.
+    sides: OnceBox<Option<Sides>>,
+}
+
+/// A mesh on a frame: the handle.
+#[derive(Clone)]
+pub struct MeshClassifier {
+    mesh: Arc<MeshOnFrame>,
+    solid: MeshSolid,
+}
+
+/// A worker on a mesh: lists of triangles, one for each cell on the way down, and what scans a block.
+pub struct MeshWorker {
+    mesh: Arc<MeshOnFrame>,
+    solid: MeshSolid,
+    triangles: Vec<u32>,
+    /// Bit k: the triangle belongs to child k.
+    masks: Vec<u8>,
+    surroundings: Surroundings,
+    scan: Option<Box<Scan>>,
+    chords: Chords,
+}
+
+impl MeshSolid {
+    /// What a mesh encloses; the mesh is shared (an `Arc`) or taken over. O(1) for a closed mesh whose edges
+    /// were analysed before, else O(t), and n log n in the edges of the boundary.
+    ///
+    /// # Errors
+    /// [`Error::Mesh`] if the mesh is empty, or, for [`FillRule::EvenOdd`], if an odd number of triangles
+    /// meet on an edge; [`Error::OutOfMemory`].
+    pub fn new(mesh: impl Into<Arc<TriangleMesh>>, fill: FillRule) -> Result<MeshSolid, Error> {
+        let mesh = mesh.into();
+        let loops = match fill {
+            FillRule::EvenOdd => {
+                mesh.check_closed(fill)?;
+                Loops::default()
+            }
+            FillRule::NonZero | FillRule::Positive if mesh.triangles().is_empty() => {
+                return Err(MeshError::Empty.into());
+            }
+            FillRule::NonZero | FillRule::Positive => mesh.loops()?,
+        };
+        Ok(MeshSolid {
+            mesh,
+            fill,
+            boundary: Arc::new(Boundary {
+                loops,
+                reach: OnceBox::new(),
+                moments: OnceBox::new(),
+                sides: OnceBox::new(),
+            }),
+        })
+    }
+
+    /// The mesh.
+    pub fn mesh(&self) -> &Arc<TriangleMesh> {
+        &self.mesh
+    }
+
+    /// The volume and the moments of the solid, or why they are not known without splitting cells:
+    /// [`TriangleMesh::moments`], kept for the solid and its clones.
+    ///
+    /// # Errors
+    /// [`Error::OutOfMemory`], and [`Error::Cancelled`] by `control`.
+    pub fn moments(&self, control: &Control<'_>) -> Result<MeshMoments, Error> {
+        let find = || self.mesh.moments(self.fill, control).map(Box::new);
+        self.boundary.moments.get_or_try_init(find).copied()
+    }
+
+    /// On which side of each triangle the solid lies, as far as that is known.
+    fn sides(&self, control: &Control<'_>) -> Result<Option<&Sides>, Error> {
+        let find = || self.mesh.sides(self.fill, control).map(Box::new);
+        self.boundary.sides.get_or_try_init(find).map(Option::as_ref)
+    }
+
+    /// The solid under an affine map: its vertices are moved, as [`TriangleMesh::placed`] says.
+    ///
+    /// # Errors
+    /// As [`TriangleMesh::placed`].
+    pub fn placed(&self, placement: &Affine) -> Result<MeshSolid, Error> {
+        if placement.is_identity() {
+            return Ok(self.clone());
+        }
+        MeshSolid::new(self.mesh.placed(placement)?, self.fill)
+    }
+}
+
+impl MeshOnFrame {
+    fn exterior(&self) -> Tag {
+        let mesh = &self.placed.mesh;
+        let (min, max) = mesh.bounds();
+        let within = Bounds::new(min, max)
+            .is_some_and(|bounds| bounds.grown(mesh.displacement()).is_within(&self.placed.frame));
+        if within && self.is_empty_outside() { Tag::Empty } else { Tag::Partial }
+    }
+
+    /// What is known of a cell that these triangles cut.
+    #[inline]
+    fn verdict(
+        &self,
+        surroundings: &mut Surroundings,
+        triangles: &[u32],
+        at: [i32; 3],
+        size: i32,
+        part: MeshPart,
+    ) -> Verdict<MeshPart> {
+        match part.caps {
+            Some(_) => self.open_verdict(surroundings, triangles, at, size, part),
+            None => self.closed_verdict(part),
+        }
+    }
+}
+
+/// How many triangles are looked at together.
+const BATCH: usize = 64;
+
+/// The lowest finest cell of `cell`, and its edge in finest cells.
+fn extent(cell: Cell, depth: u8) -> ([i32; 3], i32) {
+    (cell.first_at(depth).at.map(|a| a as i32), 1 << (depth - cell.level))
+}
+
+/// The triangles of a part: the universe's are shared, others lie in the scratch memory.
+#[inline(always)]
+fn list<'t>(roots: &'t [u32], own: &'t [u32], part: &MeshPart) -> &'t [u32] {
+    match part.first.checked_sub(roots.len()) {
+        None => &roots[part.first..part.first + part.count],
+        Some(first) => &own[first..first + part.count],
+    }
+}
+
+impl Solid for MeshSolid {
+    type Classifier = MeshClassifier;
+
+    /// O(v + t); memory beyond the mesh 37 bytes a vertex, and 4 a triangle. A mesh that reaches beyond the
+    /// universe is clipped by it, which the exterior tells.
+    fn on(&self, frame: &Frame, control: &Control<'_>) -> Result<MeshClassifier, Error> {
+        let mut placed = Placed::new(self.mesh.clone(), frame)?;
+        let caps = Caps::close(&mut placed, &self.boundary.loops)?;
+        let mut roots = Vec::new();
+        let count = placed.count();
+        roots.try_reserve_exact(count as usize)?;
+        let size = frame.cells() as f64;
+        let mut winding = 0;
+        for triangle in 0..count {
+            if triangle % 65536 == 0 && control.is_cancelled() {
+                return Err(Error::Cancelled);
+            }
+            let corners = placed.corners(triangle);
+            // The winding number is zero at infinity: follow the lowest centre's line along x from there.
+            let spans = |axis: usize| {
+                let (first, end) = ranks(&corners, axis);
+                first <= 0 && 0 < end
+            };
+            if spans(1) && spans(2) && ranks(&corners, 0).0 <= 0 {
+                let mut seen = Projection::new(&placed, triangle, corners, 0);
+                if let Some(span) = seen.span(0).filter(|span| span.first <= 0 && 0 < span.end)
+                    && seen.above(0, 0, span.step) <= 0
+                {
+                    winding += span.step;
+                }
+            }
+            let (min, max) = bounds(&placed, &corners);
+            let within = (0..3).all(|axis| min[axis] > 0.0 && max[axis] < size);
+            if within || Overlap::new(&placed, &corners, size, frame.depth()).cuts([0.0; 3], size) {
+                roots.push(triangle);
+            }
+        }
+        let exterior = OnceBox::new();
+        let mesh = Arc::new(MeshOnFrame { placed, caps, fill: self.fill, roots, winding, exterior });
+        Ok(MeshClassifier { mesh, solid: self.clone() })
+    }
+
+    /// For a closed mesh, the box around it. An open one may enclose points beyond, and the box is larger by as
+    /// much; O(n) in the edges of the boundary, once.
+    fn bounds(&self) -> Option<Bounds> {
+        let (min, max) = self.mesh.bounds();
+        let displacement = self.mesh.displacement();
+        let bounds = Bounds::new(min, max)?.grown(displacement);
+        let Boundary { loops, reach, .. } = &*self.boundary;
+        if loops.caps() == 0 {
+            return Some(bounds);
+        }
+        let find = || reach::reach(&self.mesh, loops, displacement).map(Box::new);
+        // (Without memory to find out, nothing is known.)
+        let [below, above] = reach.get_or_try_init(find).ok()?;
+        Bounds::new(
+            axes(|axis| {
+                if below[axis] == 0.0 {
+                    bounds.min[axis]
+                } else {
+                    (bounds.min[axis] - below[axis]).next_down()
+                }
+            }),
+            axes(|axis| {
+                if above[axis] == 0.0 { bounds.max[axis] } else { (bounds.max[axis] + above[axis]).next_up() }
+            }),
+        )
+    }
+
+    fn placed(&self, placement: &Affine) -> Result<Option<MeshSolid>, Error> {
+        MeshSolid::placed(self, placement).map(Some)
+    }
+
+    fn motion(&self) -> Motion {
+        Motion::Vertices
+    }
+
+    /// Of the mesh. O(v + t).
+    fn fingerprint(&self) -> Option<Fingerprint> {
+        let (vertices, triangles) =
+            (self.mesh.vertices().as_flattened(), self.mesh.triangles().as_flattened());
+        let all = Fingerprinter::new("mesh")
+            .integers(&[self.fill as u64])
+            .numbers(&[self.mesh.displacement()])
+            .numbers(vertices)
+            .words(triangles.len() as u64, triangles.iter().map(|&index| index.into()));
+        Some(all.finish())
+    }
+}
+
+impl Classifier for MeshClassifier {
+    type Worker = MeshWorker;
+
+    fn frame(&self) -> &Frame {
+        &self.mesh.placed.frame
+    }
+
+    fn worker(&self) -> Result<MeshWorker, Error> {
+        Ok(MeshWorker {
+            mesh: self.mesh.clone(),
+            solid: self.solid.clone(),
+            triangles: Vec::new(),
+            masks: Vec::new(),
+            surroundings: Surroundings::default(),
+            scan: None,
+            chords: Chords::default(),
+        })
+    }
+
+    fn exterior(&self) -> Tag {
+        let mesh = &*self.mesh;
+        *mesh.exterior.get_or_init(|| Box::new(mesh.exterior()))
+    }
+
+    fn proof(&self) -> Proof {
+        Proof::CERTIFIED.moved(self.mesh.placed.mesh.displacement())
+    }
+
+    /// If the mesh is closed and no two triangles intersect.
+    fn moments(&self, control: &Control<'_>) -> Result<Option<VolumeMoments>, Error> {
+        Ok(match self.solid.moments(control)? {
+            MeshMoments::Known(moments) => Some(moments),
+            MeshMoments::Open | MeshMoments::Intersecting(_) | MeshMoments::Undecided => {
+                // Whoever asks for moments goes on to those of cells.
+                self.solid.sides(control)?;
+                None
+            }
+        })
+    }
+
+    /// If the mesh is closed and no two triangles intersect.
+    fn area(&self, control: &Control<'_>) -> Result<Option<Interval>, Error> {
+        Ok(self.solid.sides(control)?.and_then(|sides| self.solid.mesh.boundary_area(sides)))
+    }
+
+    /// O(t).
+    fn is_off_lattice(&self) -> bool {
+        let Placed { displacement, .. } = self.mesh.placed;
+        displacement == 0.0 && self.mesh.caps.is_empty() && self.mesh.has_no_triangle_in_planes()
+    }
+}
+
+/// A cell that the surface cuts, and in which its winding number is an integer or near to one.
+fn view<'a>(
+    mesh: &'a MeshOnFrame,
+    own: &'a [u32],
+    surroundings: &mut Surroundings,
+    cell: Cell,
+    part: &MeshPart,
+) -> Option<View<'a>> {
+    let placed = &mesh.placed;
+    let (at, size) = extent(cell, placed.frame.depth());
+    let mut triangles = list(&mesh.roots, own, part);
+    let mut winding = part.winding;
+    if part.caps.is_some() {
+        winding = mesh.nearest_winding(surroundings, triangles, at, size, *part)?;
+        triangles = &triangles[..triangles.partition_point(|&triangle| !placed.is_cap(triangle))];
+    }
+    let is_cut = !triangles.is_empty();
+    is_cut.then_some(View { placed, triangles, at, size, winding })
+}
+
+impl Worker for MeshWorker {
+    type Part = MeshPart;
+
+    fn frame(&self) -> &Frame {
+        &self.mesh.placed.frame
+    }
+
+    fn root(&mut self) -> Result<Verdict<MeshPart>, Error> {
+        let MeshWorker { mesh, surroundings, .. } = self;
+        let caps = if mesh.caps.is_empty() { None } else { Some(Branch::UNKNOWN) };
+        let part = MeshPart { first: 0, count: mesh.roots.len(), winding: mesh.winding, caps };
+        Ok(mesh.verdict(surroundings, &mesh.roots, [0; 3], mesh.placed.frame.cells() as i32, part))
+    }
+
+    fn split(&mut self, cell: Cell, part: &MeshPart) -> Result<[Verdict<MeshPart>; 8], Error> {
+        let depth = self.mesh.placed.frame.depth();
+        debug_assert!(cell.level < depth, "finest cells have no children");
+        let (at, size) = extent(cell, depth);
+        let half = size / 2;
+        let height = depth - cell.level - 1;
+        let MeshWorker { mesh, triangles, masks, surroundings, .. } = self;
+        let shared = mesh.roots.len();
+
+        masks.clear();
+        masks.try_reserve(part.count)?;
+        let mut counts = [0; 8];
+        let mut steps = [[0; 8]; 2];
+        let mut boxes = [[[0; 3]; 2]; BATCH];
+        for batch in list(&mesh.roots, triangles, part).chunks(BATCH) {
+            // Memory is slow: many are asked for before the first is looked at.
+            for (ranks, &triangle) in boxes.iter_mut().zip(batch) {
+                *ranks = mesh.placed.rank_box(triangle);
+            }
+            for (&ranks, &triangle) in boxes.iter().zip(batch) {
+                mesh.pierce(triangle, ranks, at, half, &mut steps);
+                let mask = match only_child(ranks, at, half) {
+                    Some(mask) if mesh.placed.ranks_tell() && height > 0 => mask,
+                    _ => children_cut(&mesh.placed, &mesh.placed.corners(triangle), at, half, height),
+                };
+                masks.push(mask);
+                counts.iter_mut().enumerate().for_each(|(k, count)| *count += (mask >> k & 1) as usize);
+            }
+        }
+        let top = triangles.len();
+        triangles.try_reserve(counts.iter().sum())?;
+        let mut firsts = [0; 8];
+        for k in 1..8 {
+            firsts[k] = firsts[k - 1] + counts[k - 1];
+        }
+        let mut next = firsts;
+        triangles.resize(top + counts.iter().sum::<usize>(), 0);
+        let (above, below) = triangles.split_at_mut(top);
+        for (&triangle, &mask) in list(&mesh.roots, above, part).iter().zip(masks.iter()) {
+            let mut left = mask;
+            while left != 0 {
+                let k = left.trailing_zeros() as usize;
+                left &= left - 1;
+                below[next[k]] = triangle;
+                next[k] += 1;
+            }
+        }
+        for steps in &mut steps {
+            for child in 2..8 {
+                // The way to children 2 and 3 begins at 0 and 1, to 4 … 7 at 0 … 3.
+                steps[child] += steps[child - if child < 4 { 2 } else { 4 }];
+            }
+        }
+        let [steps, jumps] = steps;
+        let mut verdicts = [Verdict::Undecided; 8];
+        for (k, verdict) in verdicts.iter_mut().enumerate() {
+            let (first, count) = (firsts[k], counts[k]);
+            let at = axes(|axis| at[axis] + if k >> axis & 1 != 0 { half } else { 0 });
+            let caps = part.caps.map(|branch| branch.plus(jumps[k]));
+            let winding = part.winding + steps[k];
+            let part = MeshPart { first: shared + top + first, count, winding, caps };
+            *verdict = mesh.verdict(surroundings, &below[first..first + count], at, half, part);
+        }
+        Ok(verdicts)
+    }
+
+    fn mark(&self) -> usize {
+        self.triangles.len()
+    }
+
+    fn scratch_bytes(&self) -> usize {
+        size_of_val(&*self.triangles)
+    }
+
+    fn release(&mut self, mark: usize) {
+        self.triangles.truncate(mark);
+    }
+
+    fn hand_over(&mut self, from: &Self, part: &MeshPart) -> Result<MeshPart, Error> {
+        let first = self.mesh.roots.len() + self.triangles.len();
+        self.triangles.try_reserve(part.count)?;
+        self.triangles.extend_from_slice(list(&from.mesh.roots, &from.triangles, part));
+        Ok(MeshPart { first, ..*part })
+    }
+
+    fn fill(&mut self, cell: Cell, part: &MeshPart, block: &mut Block) -> Result<bool, Error> {
+        if part.caps.is_some() {
+            return Ok(false);
+        }
+        let MeshWorker { mesh, triangles, scan, .. } = self;
+        let (at, _) = extent(cell, mesh.placed.frame.depth());
+        let triangles = list(&mesh.roots, triangles, part);
+        let task = Task { placed: &mesh.placed, at, triangles, winding: part.winding, fill: mesh.fill };
+        let scan = match scan {
+            Some(scan) => scan,
+            none => none.insert(Box::new(Scan::new()?)),
+        };
+        scan.fill(task, block)?;
+        Ok(true)
+    }
+
+    fn chords(&mut self, cell: Cell, part: &MeshPart, beam: &mut Beam) -> Result<bool, Error> {
+        if part.caps.is_some() || self.mesh.placed.count() > Chords::MOST {
+            return Ok(false);
+        }
+        let MeshWorker { mesh, triangles, chords, .. } = self;
+        let (at, _) = extent(cell, mesh.placed.frame.depth());
+        let triangles = list(&mesh.roots, triangles, part);
+        // Caps come last. They are not counted where the surface's own winding number is known.
+        let triangles = &triangles[..triangles.partition_point(|&triangle| !mesh.placed.is_cap(triangle))];
+        let rays = Rays { placed: &mesh.placed, at, triangles, winding: part.winding, fill: mesh.fill };
+        chords.find(rays, beam)?;
+        Ok(true)
+    }
+
+    fn moments(&mut self, cell: Cell, part: &MeshPart) -> Result<Option<CellMoments>, Error> {
+        let MeshWorker { mesh, solid, triangles, surroundings, .. } = self;
+        match (solid.sides(&Control::default())?, view(mesh, triangles, surroundings, cell, part)) {
+            (Some(sides), Some(view)) => view.moments(sides, mesh.fill),
+            _ => Ok(None),
+        }
+    }
+
+    fn area(&mut self, cell: Cell, part: &MeshPart) -> Result<Option<Interval>, Error> {
+        let MeshWorker { mesh, solid, triangles, surroundings, .. } = self;
+        match (solid.sides(&Control::default())?, view(mesh, triangles, surroundings, cell, part)) {
+            (Some(sides), Some(view)) => view.area(sides, mesh.fill),
+            _ => Ok(None),
+        }
+    }
+
+    fn enclosure(&mut self, cell: Cell, part: &MeshPart) -> Result<Option<Enclosure>, Error> {
+        let MeshWorker { mesh, triangles, surroundings, .. } = self;
+        if let Some(view) = view(mesh, triangles, surroundings, cell, part) {
+            return Ok(view.slab(mesh.fill));
+        }
+        let (at, size) = extent(cell, mesh.placed.frame.depth());
+        Ok(mesh.open_slab(surroundings, list(&mesh.roots, triangles, part), at, size, *part))
+    }
+
+    fn crossing(
+        &mut self,
+        cell: Cell,
+        part: &MeshPart,
+        segment: &Segment,
+    ) -> Result<Option<Crossing>, Error> {
+        let MeshWorker { mesh, triangles, surroundings, .. } = self;
+        let view = view(mesh, triangles, surroundings, cell, part);
+        Ok(view.and_then(|view| view.first_crossing(segment, mesh.fill)))
+    }
+
+    fn sample(&mut self, cell: Cell, part: &MeshPart) -> Result<Option<bool>, Error> {
+        // A finest cell's lowest centre is its only one.
+        let (at, _) = extent(cell, self.mesh.placed.frame.depth());
+        Ok(Some(match part.caps {
+            Some(_) => self.mesh.open_sample(&mut self.surroundings, at, *part),
+            None => self.mesh.fill.encloses(part.winding),
+        }))
+    }
+}
+
+/// The child of edge `half` of the cell at `at` in whose interior a triangle lies, if its ranks tell: what
+/// [`children_cut`] would find, without a look at the corners.
+#[inline(always)]
+fn only_child([low, high]: [[i32; 3]; 2], at: [i32; 3], half: i32) -> Option<u8> {
+    let mut mask = 0xFFu8;
+    for (axis, upper) in [0b1010_1010u8, 0b1100_1100, 0b1111_0000].into_iter().enumerate() {
+        let (bottom, middle, top) = (at[axis], at[axis] + half, at[axis] + 2 * half);
+        if low[axis] > bottom && high[axis] < middle {
+            mask &= !upper;
+        } else if low[axis] > middle && high[axis] < top {
+            mask &= upper;
+        } else {
+            return None;
+        }
+    }
+    Some(mask)
+}
+
+/// Which of the children of edge `half` of the cell at `at` a triangle cuts.
+fn children_cut(placed: &Placed, corners: &Corners, at: [i32; 3], half: i32, height: u8) -> u8 {
+    let (min, max) = bounds(placed, corners);
+    let mut candidates = 0xFFu8;
+    let mut strictly = true;
+    for (axis, upper) in [0b1010_1010u8, 0b1100_1100, 0b1111_0000].into_iter().enumerate() {
+        let (low, middle, high) = (at[axis] as f64, (at[axis] + half) as f64, (at[axis] + 2 * half) as f64);
+        if max[axis] <= middle {
+            candidates &= !upper;
+            strictly &= min[axis] > low && max[axis] < middle;
+        }
+        if min[axis] >= middle {
+            candidates &= upper;
+            strictly &= min[axis] > middle && max[axis] < high;
+        }
+    }
+    // A triangle well inside of the only child that its box reaches needs no further test. (A finest cell
+    // gets it all the same: of a triangle without area only the test knows that it cuts nothing.)
+    if candidates.count_ones() == 1 && strictly && height > 0 {
+        return candidates;
+    }
+    let overlap = Overlap::new(placed, corners, half as f64, height);
+    let mut cut = 0;
+    for k in (0..8).filter(|k| candidates >> k & 1 != 0) {
+        let corner = axes(|axis| (at[axis] + if k >> axis & 1 != 0 { half } else { 0 }) as f64);
+        cut |= (overlap.cuts(corner, half as f64) as u8) << k;
+    }
+    cut
+}
