@@ -247,15 +247,23 @@ const WAYS: &[Way] = &[
     },
     Way {
         name: "with metadata",
-        through: &["octree/octree.rs with_metadata"],
-        make: |a| of_ball(a.tree.with_metadata(Metadata::default())),
+        through: &["octree/octree.rs with_metadata", "octree/octree.rs with_metadata_of"],
+        make: |a| of_ball(a.tree.with_metadata(Metadata::default()).with_metadata_of(&a.tree)),
         proven: SAME,
     },
     // ---- channels
     Way {
         name: "with a channel and without",
-        through: &["octree/octree.rs with_channel", "octree/octree.rs without_channel"],
-        make: |a| of_ball(a.with_channel().without_channel("value")?),
+        through: &[
+            "octree/octree.rs with_channel",
+            "octree/octree.rs with_channels_of",
+            "octree/octree.rs without_channel",
+            "octree/octree.rs without_channels",
+        ],
+        make: |a| {
+            let bare = a.with_channel().without_channel("value")?;
+            of_ball(bare.with_channels_of(&a.with_channel()).without_channels())
+        },
         proven: SAME,
     },
     Way {
