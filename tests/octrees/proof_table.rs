@@ -540,7 +540,7 @@ const WAYS: &[Way] = &[
     Way {
         // A mesh is a solid of its own, the region inside of its triangles.
         name: "mesh of an octree",
-        through: &["MeshSolid", "solid/mesh/split.rs new"],
+        through: &["MeshSolid", "solid/mesh/mesh_solid.rs new"],
         make: |a| {
             let mesh = marching_cubes(resolve(a.tree.view(), Rule::Outer, &CONTROL)?.view(), None, &CONTROL)?;
             of_itself(whole(&MeshSolid::new(Arc::new(mesh), FillRule::NonZero)?)?)
