@@ -700,13 +700,15 @@ const WAYS: &[Way] = &[
     },
     Way {
         name: "records of somebody's arrays",
-        through: &["voxel/records.rs new", "voxel/records.rs from_arrays"],
+        through: &["voxel/records.rs new", "voxel/records.rs from_arrays", "voxel/records.rs unchecked"],
         make: |a| {
             let records = a.records(&VoxelOptions::new());
             let view = records.view();
             let (codes, levels, kinds) = (view.codes(), view.levels(), view.kinds());
             let borrowed = VoxelRecordsRef::new(view.frame(), codes, levels, kinds, 0, &[])?;
             assert_eq!(borrowed.proof(), Proof::new(false, false));
+            let unchecked = VoxelRecordsRef::unchecked(view.frame(), codes, levels, kinds);
+            assert_eq!(unchecked.proof(), Proof::new(false, false));
             let (codes, levels, kinds) = (codes.to_vec(), levels.to_vec(), kinds.to_vec());
             let owned = VoxelRecords::from_arrays(view.frame(), codes, levels, kinds, 0, vec![])?;
             of_ball(owned.view().to_octree(Tag::Partial, &CONTROL)?)
