@@ -104,6 +104,7 @@ mod octree;
 mod op;
 mod parallel;
 mod query;
+#[cfg(feature = "render")]
 mod render;
 #[cfg(feature = "scene")]
 pub mod scene;
@@ -153,6 +154,7 @@ pub use query::{
     classify_in, clearance, columns, contains, distances, heights, interference, interference_of,
     line_of_sight, measure, ray_spans, surface_area, volume_in,
 };
+#[cfg(feature = "render")]
 pub use render::{
     Camera, Clip, ClippedLayer, ColourMap, Compositing, FIELD_OF_VIEW, Finish, Layer, LegendBox, LegendSide,
     Lens, LinesLayer, MeshEdges, MeshLayer, OctreeLayer, Outline, Picture, Shot, SliceLayer, SlicePlane,

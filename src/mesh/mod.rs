@@ -53,6 +53,7 @@ pub(crate) use polygon::triangulate_facet;
 pub use polyhedron::{Polyhedron, PolyhedronArrays};
 pub use report::MeshReport;
 pub(crate) use sides::Sides;
+#[cfg(feature = "render")]
 pub(crate) use topology::{Edge, for_each_edge};
 #[cfg(feature = "std")]
 pub(crate) use triangle_mesh::Faces;

@@ -58,5 +58,6 @@ pub use measure::{
     AREA_SPLITS, MEASURE_SPLITS, MassProperties, StopReason, SurfaceArea, Tolerance, measure, surface_area,
 };
 pub use point::{Membership, PointCursor, PointTable};
+#[cfg(feature = "render")]
 pub(crate) use ray::TouchedCell;
 pub use ray::{Obstacle, Ray, RayHit, RaySpans, Sight, cast_rays, line_of_sight, ray_spans};

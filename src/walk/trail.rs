@@ -122,6 +122,7 @@ impl<W: Worker> Trail<W> {
         verdict_at(&self.steps, &self.root, cell.ancestor(self.steps.len() as u8))
     }
 
+    #[cfg(feature = "render")]
     /// The level of the cell that the way, led to a parent, ends at: one below that of the parent, or that of an ancestor
     /// which the solid does not split.
     pub(crate) fn level(&self) -> u8 {

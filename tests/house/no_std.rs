@@ -38,4 +38,19 @@ fn a_program_without_the_standard_library_builds_links_and_runs() {
     let program = target.join("debug").join(format!("leafless-no-std{}", std::env::consts::EXE_SUFFIX));
     let run = Command::new(&program).output().unwrap();
     assert_eq!(run.status.code(), Some(42), "{run:?}");
+
+    // The linker leaves out what the program does not use: meshes need no feature of their own.
+    #[cfg(target_os = "linux")]
+    {
+        let bytes = std::fs::read(&program).unwrap();
+        // As mangled names begin.
+        let has = |module: &str| {
+            let name = format!("8leafless{}{module}", module.len());
+            bytes.windows(name.len()).any(|window| window == name.as_bytes())
+        };
+        assert!(has("solid") && has("op"), "the program has no names");
+        for module in ["mesh", "surface", "render", "exchange"] {
+            assert!(!has(module), "{module} is in a program that does not use it");
+        }
+    }
 }

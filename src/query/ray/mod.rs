@@ -11,10 +11,12 @@ mod march;
 mod octree;
 mod search;
 mod solid;
+#[cfg(feature = "render")]
 mod touch;
 mod way;
 
 pub use solid::{Sight, cast_rays, line_of_sight, ray_spans};
+#[cfg(feature = "render")]
 pub(crate) use touch::TouchedCell;
 
 use crate::error::Error;
