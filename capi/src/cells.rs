@@ -1,9 +1,9 @@
 //! Cells of octrees: neighbours, and cells and boundary faces one after another.
 
 use super::boundary::{Failure, array, buffer, discard, exclusive, guard, out, share, slice};
+use super::cursor::leafless_cursor;
 use super::frame::{frame, leafless_frame};
 use super::octree::{leafless_octree, leafless_tag};
-use super::query::leafless_cursor;
 use super::status::leafless_status;
 use leafless::{BoundaryFace, BoundaryFaces, CellFilter, Cells, Direction, Tag, TaggedCell};
 use leafless::{Cell, Cube};

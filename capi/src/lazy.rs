@@ -1,10 +1,10 @@
 //! Octrees that are split on demand.
 
 use super::boundary::{Failure, array, buffer, discard, guard, out, shared};
+use super::contains::leafless_membership;
 use super::control::{controlled, leafless_options};
 use super::frame::{frame, leafless_frame};
 use super::octree::{give, leafless_octree, leafless_statistics, leafless_tag};
-use super::query::leafless_membership;
 use super::solid::leafless_solid;
 use super::status::leafless_status;
 use leafless::Cell;

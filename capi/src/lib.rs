@@ -30,8 +30,9 @@
 //! | `octree_channels` | channels of octrees, carried to others |
 //! | `scene` | scenes in the language of OpenSCAD's CSG dumps |
 //! | `op` | building, resolving, Booleans |
-//! | `query` | points, boxes, cursors |
-//! | `point` | cursors and tables for points |
+//! | `contains` | points, boxes |
+//! | `cursor` | cursors on the nodes of an octree |
+//! | `point_cursor` | cursors and tables for points |
 //! | `rays` | rays: first hits, intervals, line of sight |
 //! | `columns` | columns of cells along an axis, height maps |
 //! | `voxel` | voxel records in arrays |
@@ -70,8 +71,11 @@ mod channel;
 mod channel_fill;
 mod channel_summary;
 mod columns;
+mod contains;
+mod content;
 mod control;
 mod csg;
+mod cursor;
 mod distance;
 mod file;
 mod frame;
@@ -95,11 +99,9 @@ mod octree;
 mod octree_channels;
 mod op;
 mod picture;
-mod point;
+mod point_cursor;
 mod polyhedron;
-mod query;
 mod rays;
-mod region;
 mod scene;
 mod solid;
 mod status;
@@ -128,8 +130,11 @@ pub use channel::*;
 pub use channel_fill::*;
 pub use channel_summary::*;
 pub use columns::*;
+pub use contains::*;
+pub use content::*;
 pub use control::*;
 pub use csg::*;
+pub use cursor::*;
 pub use distance::*;
 pub use file::*;
 pub use frame::*;
@@ -152,11 +157,9 @@ pub use octree::*;
 pub use octree_channels::*;
 pub use op::*;
 pub use picture::*;
-pub use point::*;
+pub use point_cursor::*;
 pub use polyhedron::*;
-pub use query::*;
 pub use rays::*;
-pub use region::*;
 pub use scene::*;
 pub use solid::*;
 pub use status::*;

@@ -1,16 +1,13 @@
-//! Queries: points, boxes, and cursors on the nodes of an octree.
+//! Whether an octree or a solid contains a point, and how a box lies to it.
 
-use super::boundary::{Failure, array, discard, exclusive, guard, out, share, shared, slice};
+use super::boundary::{Failure, array, guard, out, shared, slice};
 use super::control::{controlled, leafless_options};
 use super::frame::{frame, leafless_frame};
 use super::octree::{leafless_octree, leafless_tag};
 use super::solid::leafless_solid;
 use super::status::leafless_status;
 use core::mem::{align_of, size_of};
-use leafless::Cursor;
 use leafless::{Membership, Region, classify_box, contains};
-use std::sync::Arc;
-use yoke::Yoke;
 
 /// The answer to a point query.
 #[derive(Clone, Copy)]
@@ -259,140 +256,5 @@ pub unsafe extern "C" fn leafless_solid_classify_box(
         let region = out(region, "region")?;
         let found = controlled(options, |control| classify_box(solid, &frame, min, max, control))?;
         region.write(found.into())
-    })
-}
-
-/// A position in an octree that moves along its links, one level at a step. At first it stands on the
-/// universe.
-///
-/// Moving changes it: while one thread moves a cursor, no other may use it. Threads may have a cursor each.
-pub struct leafless_cursor(pub(super) Yoke<Cursor<'static>, Arc<leafless_octree>>);
-
-/// Where a cursor stands.
-#[derive(Clone, Copy)]
-#[repr(C)]
-pub struct leafless_cursor_state {
-    /// The cell's place among those of its level, per axis.
-    pub cell: [u32; 3],
-    /// The cell's level; 0 is the universe.
-    pub level: u32,
-    /// The cell's tag.
-    pub tag: leafless_tag,
-    /// Of a BRANCH the tags of its children, in octant order (bit 0 of the octant is x, bit 1 y, bit 2 z);
-    /// else eight times the cell's own.
-    pub children: [leafless_tag; 8],
-}
-
-/// Makes a cursor that stands on the universe.
-///
-/// - Buffers: `cursor`, one pointer.
-/// - Result: `*cursor`.
-/// - Errors: only the general ones.
-/// - Ownership: the cursor shares the octree, which may be freed; give `*cursor` back with
-///   leafless_cursor_free.
-/// - Threads: any.
-/// - Untrusted input: any octree.
-/// - Since: 0.1
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn leafless_cursor_new(
-    octree: *const leafless_octree,
-    cursor: *mut *mut leafless_cursor,
-) -> leafless_status {
-    guard(|| unsafe {
-        let octree = share(octree, "octree")?;
-        let cursor = out(cursor, "cursor")?;
-        let yoke = Yoke::attach_to_cart(octree, |handle| Cursor::new(handle.octree.view()));
-        cursor.write(Box::into_raw(Box::new(leafless_cursor(yoke))))
-    })
-}
-
-/// Gives back a cursor.
-///
-/// - Buffers: `cursor`, a handle or NULL, which does nothing.
-/// - Result: none.
-/// - Errors: none.
-/// - Ownership: the handle is gone.
-/// - Threads: no other call may use the handle.
-/// - Untrusted input: none.
-/// - Since: 0.1
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn leafless_cursor_free(cursor: *mut leafless_cursor) {
-    // SAFETY: the caller's promise.
-    unsafe { discard(cursor) }
-}
-
-/// Where a cursor stands.
-///
-/// - Buffers: `state`, one struct.
-/// - Result: `*state`.
-/// - Errors: only the general ones.
-/// - Ownership: nothing changes hands.
-/// - Threads: any, while nobody moves the cursor.
-/// - Untrusted input: any octree.
-/// - Since: 0.1
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn leafless_cursor_read(
-    cursor: *const leafless_cursor,
-    state: *mut leafless_cursor_state,
-) -> leafless_status {
-    guard(|| unsafe {
-        let cursor = shared(cursor, "cursor")?.0.get();
-        let (cell, tag) = (cursor.cell(), cursor.tag());
-        let children = cursor.node().map_or([tag; 8], |node| node.tags());
-        out(state, "state")?.write(leafless_cursor_state {
-            cell: cell.at,
-            level: cell.level.into(),
-            tag: tag.into(),
-            children: children.map(leafless_tag::from),
-        })
-    })
-}
-
-/// Moves a cursor to a child of its cell. On a cell that is no BRANCH it stays where it is.
-///
-/// - Buffers: `moved`, one truth value, or NULL. `octant` is 0 to 7.
-/// - Result: `*moved`, whether the cell is a BRANCH.
-/// - Errors: LEAFLESS_E_ARGUMENT if `octant` is not 0 to 7.
-/// - Ownership: nothing changes hands.
-/// - Threads: no other call may use the cursor.
-/// - Untrusted input: any octree; damage reads as PARTIAL, so that a walk visits every cell at most once.
-/// - Since: 0.1
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn leafless_cursor_descend(
-    cursor: *mut leafless_cursor,
-    octant: u32,
-    moved: *mut bool,
-) -> leafless_status {
-    guard(|| unsafe {
-        let cursor = exclusive(cursor, "cursor")?;
-        let moved = if moved.is_null() { None } else { Some(out(moved, "moved")?) };
-        let octant = match u8::try_from(octant) {
-            Ok(octant) if octant < 8 => octant,
-            _ => return Err(Failure::Argument { name: "octant", problem: "must be 0 to 7" }),
-        };
-        let descended = cursor.0.with_mut_return(move |cursor| cursor.descend(octant));
-        moved.map_or(Ok(()), |moved| moved.write(descended))
-    })
-}
-
-/// Moves a cursor to the parent of its cell. On the universe it stays where it is.
-///
-/// - Buffers: `moved`, one truth value, or NULL.
-/// - Result: `*moved`, whether there is a parent.
-/// - Errors: only the general ones.
-/// - Ownership: nothing changes hands.
-/// - Threads: no other call may use the cursor.
-/// - Untrusted input: any octree.
-/// - Since: 0.1
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn leafless_cursor_ascend(
-    cursor: *mut leafless_cursor,
-    moved: *mut bool,
-) -> leafless_status {
-    guard(|| unsafe {
-        let cursor = exclusive(cursor, "cursor")?;
-        let moved = if moved.is_null() { None } else { Some(out(moved, "moved")?) };
-        let ascended = cursor.0.with_mut_return(|cursor| cursor.ascend());
-        moved.map_or(Ok(()), |moved| moved.write(ascended))
     })
 }

@@ -1,10 +1,10 @@
 //! How much of a solid lies in a region, and how the two lie to each other.
 
 use super::boundary::{array, guard, out, shared};
+use super::contains::leafless_region;
 use super::control::{controlled, leafless_options};
 use super::frame::{frame, leafless_frame, leafless_interval};
 use super::octree::leafless_octree;
-use super::query::leafless_region;
 use super::solid::leafless_solid;
 use super::status::leafless_status;
 use leafless::{CellsIn, cells_in, classify_in, volume_in};

@@ -1,8 +1,8 @@
 //! Points asked of a stored octree many times: cursors that remember their way, and tables.
 
 use super::boundary::{array, discard, exclusive, guard, out, share, shared, slice};
+use super::contains::{answers, leafless_membership};
 use super::octree::{leafless_octree, leafless_tag};
-use super::query::{answers, leafless_membership};
 use super::status::leafless_status;
 use leafless::{PointCursor, PointTable};
 use std::sync::Arc;
