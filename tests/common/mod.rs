@@ -25,6 +25,31 @@ pub fn lattice_frame(depth: u8) -> Frame {
     Frame::new([0.0; 3], (1u32 << depth) as f64, depth).unwrap()
 }
 
+/// What `work` makes of each item, on as many threads as there are processors: for the few tests that take long.
+pub fn on_all_processors<T: Sync, R: Send>(items: &[T], work: impl Fn(&T) -> R + Sync) -> Vec<R> {
+    use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
+    let next = AtomicUsize::new(0);
+    let threads = std::thread::available_parallelism().map_or(1, |count| count.get());
+    let mut found: Vec<(usize, R)> = std::thread::scope(|scope| {
+        let worker = || {
+            let mut found = Vec::new();
+            while let Some((i, item)) =
+                Some(next.fetch_add(1, Relaxed)).and_then(|i| Some((i, items.get(i)?)))
+            {
+                found.push((i, work(item)));
+            }
+            found
+        };
+        let workers: Vec<_> = (0..threads).map(|_| scope.spawn(worker)).collect();
+        workers
+            .into_iter()
+            .flat_map(|worker| worker.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)))
+            .collect()
+    });
+    found.sort_by_key(|&(i, _)| i);
+    found.into_iter().map(|(_, result)| result).collect()
+}
+
 /// One thread, and nothing else asked for.
 pub fn alone() -> Control<'static> {
     Control::threads(1)

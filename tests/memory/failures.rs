@@ -9,6 +9,7 @@
 
 use crate::allocator::{most_held, refusing};
 use crate::bodies::{Aligned, Random};
+use crate::common::on_all_processors;
 use crate::{bodies, zip};
 use leafless::{
     Affine, AnySolid, Band, Bounds, Callback, Camera, Clip, ColourMap, Columns, Control, Csg, DexelEditor,
@@ -590,15 +591,15 @@ fn try_all(name: &str, spared: u64, for_good: bool) -> (u64, u64) {
 fn try_every_operation(spared: u64) -> (u64, u64) {
     let directory = tempfile::tempdir().unwrap();
     std::fs::write(directory.path().join("tree.lfl"), old_file()).unwrap();
-    let mut total = (0, 0);
-    for (name, _) in operations(directory.path()) {
-        for for_good in [false, true] {
+    let names: Vec<&str> = operations(directory.path()).into_iter().map(|(name, _)| name).collect();
+    let counts = on_all_processors(&names, |name| {
+        [false, true].map(|for_good| {
             let (errors, fatal) = try_all(name, spared, for_good);
             println!("{name}: {errors} errors, {fatal} fatal");
-            total = (total.0 + errors, total.1 + fatal);
-        }
-    }
-    total
+            (errors, fatal)
+        })
+    });
+    counts.into_iter().flatten().fold((0, 0), |total, (errors, fatal)| (total.0 + errors, total.1 + fatal))
 }
 
 #[test]
