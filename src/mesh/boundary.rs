@@ -16,7 +16,10 @@ impl Loops {
     /// The loops of directed edges of which every vertex begins as many as it ends. Each has three vertices
     /// or more, and none twice; together they have the edges given.
     ///
-    /// O(n log n). Fails with [`MeshError::TooMany`] or [`Error::OutOfMemory`].
+    /// O(n log n).
+    ///
+    /// # Errors
+    /// [`MeshError::TooMany`], [`Error::OutOfMemory`].
     pub(crate) fn of(boundary: &[[u32; 2]]) -> Result<Loops, Error> {
         let mut edges = memory::copied(boundary)?;
         edges.sort_unstable();

@@ -78,7 +78,9 @@ pub(crate) fn triangulate(
 /// fan around the first corner, whose boundary is the same but whose triangles may overlap or leave the
 /// polygon. Tells whether it was a triangulation.
 ///
-/// A loop of fewer than three corners adds nothing. Corners must be vertices. Fails with
+/// A loop of fewer than three corners adds nothing. Corners must be vertices.
+///
+/// # Errors
 /// [`Error::OutOfMemory`].
 #[allow(dead_code)]
 pub(crate) fn triangulate_facet(

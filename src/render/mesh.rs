@@ -105,7 +105,8 @@ impl<'a> MeshLayer<'a> {
 }
 
 impl Draw for MeshLayer<'_> {
-    /// Fails with [`Error::Argument`] unless the crease angle is 0 to 180, the width of lines above 0 and at most 256, and
+    /// # Errors
+    /// [`Error::Argument`] unless the crease angle is 0 to 180, the width of lines above 0 and at most 256, and
     /// there are as many colours as triangles.
     fn prepare<'a>(&'a self, stage: &Stage<'a>) -> Result<Box<dyn Painter + 'a>, Error> {
         let mesh = self.mesh;

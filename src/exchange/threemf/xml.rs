@@ -127,8 +127,10 @@ pub(super) struct Text {
 }
 
 impl Text {
-    /// Decodes UTF-8, and UTF-16 that begins with its byte order mark. Fails with the problem, or with `None`
-    /// if there is no memory.
+    /// Decodes UTF-8, and UTF-16 that begins with its byte order mark.
+    ///
+    /// # Errors
+    /// The problem, or `None` if there is no memory.
     pub fn decode(bytes: Vec<u8>) -> Result<Self, Option<String>> {
         let order: fn([u8; 2]) -> u16 = match *bytes {
             [0xFE, 0xFF, ..] => u16::from_be_bytes,

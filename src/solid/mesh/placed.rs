@@ -87,14 +87,20 @@ fn error_of(at: f64) -> f32 {
 pub(super) type Corners = [Vertex; 3];
 
 impl Placed {
-    /// The mesh without caps. Fails with [`Error::OutOfMemory`].
+    /// The mesh without caps.
+    ///
+    /// # Errors
+    /// [`Error::OutOfMemory`].
     pub(super) fn new(mesh: Arc<TriangleMesh>, frame: &Frame) -> Result<Placed, Error> {
         let vertices = Vertices::new(&mesh, frame)?;
         let displacement = mesh.displacement() / frame.cell_size() * (1.0 + 4.0 * f64::EPSILON);
         Ok(Placed { frame: *frame, mesh, displacement, vertices, caps: Vec::new() })
     }
 
-    /// Adds the caps. Fails with [`MeshError::TooMany`] if `u32` cannot number all triangles.
+    /// Adds the caps.
+    ///
+    /// # Errors
+    /// [`MeshError::TooMany`] if `u32` cannot number all triangles.
     pub(super) fn close(&mut self, caps: Vec<[u32; 3]>) -> Result<(), Error> {
         if u32::try_from(self.mesh.triangles().len() + caps.len()).is_err() {
             return Err(MeshError::TooMany.into());
