@@ -31,6 +31,9 @@
 //!
 //! What the cells of an octree prove travels with it ([`Proof`]), through every operation and in its file.
 //!
+//! What everyone uses stands at the root; everything else is in the module of its topic. A name that ends with `_of` is
+//! about any number of operands.
+//!
 //! The modules from the bottom up; none uses one above it:
 //!
 //! | module | what it holds |
