@@ -1,0 +1,329 @@
+//! `leafless attribute`: a channel of values inside a solid.
+
+use crate::failure::{Failure, Of};
+use crate::options::threads;
+use crate::progress::watched;
+use crate::report::channel::{self, ChannelInfo};
+use crate::sink::{self, Output};
+use crate::source::content::Content;
+use crate::source::expression::{Expressions, SYNTAX};
+use crate::source::input::Input;
+use crate::source::volume::Sampling;
+use crate::words::{count, seconds};
+use clap::{Args, ValueEnum};
+use leafless::exchange::{self, MeshOptions};
+use leafless::{
+    Attribute, CarryRule, Channel, ChannelOperand, ConstantAttribute, Control, Criterion, Detail,
+    FillOptions, Interpolation, MAX_DEPTH, MeshAttribute, Metadata, Octree, ScalarType, SurfaceAttribute,
+    TriangleMesh, ValueType, carry_channel, fill_channel,
+};
+use serde::Serialize;
+use std::ffi::OsString;
+use std::time::Instant;
+
+/// Gives a solid a channel: a value of one to four numbers at every point inside. The values are those of a function, a
+/// volume or a channel of another solid, at the centres of cells; equal neighbours are stored as one. The channel
+/// travels in the solid's file, and through the Boolean commands.
+///
+/// Without a detail, every cell of the channel's finest level has its own value, wherever it is not proven that all of a
+/// larger cell has one. With --coarse, --fine and --tolerance cells are split as far as the values demand it.
+#[derive(Args)]
+#[command(group = clap::ArgGroup::new("values").required(true).args(["from", "bodies", "expr", "value", "remove"]))]
+pub struct Arguments {
+    /// Solid (.lfl)
+    file: OsString,
+    /// Name of the channel. One of this name is replaced, or changed with --in
+    #[arg(long, value_name = "NAME")]
+    name: String,
+    /// Take the values from this file: the samples of a volume (NRRD, MetaImage, raw), the colours or materials of a mesh
+    /// (3MF, PLY) at the nearest point of its surface, or the channel of this name of another solid (.lfl)
+    #[arg(long, value_name = "FILE")]
+    from: Option<OsString>,
+    /// Take the number of the nearest body of this mesh (STL, OBJ, PLY, OFF, 3MF), counted from 0 in the order of their
+    /// first triangles
+    #[arg(long, value_name = "MESH")]
+    bodies: Option<OsString>,
+    /// Which values of a mesh. Without it: those of the channel's name, or the only ones
+    #[arg(long, value_name = "NAME", requires = "from")]
+    pick: Option<String>,
+    /// Take the values from a function of x, y and z; given up to four times, once for each number of a value
+    #[arg(long, value_name = "EXPR", allow_hyphen_values = true, long_help = expression_help())]
+    expr: Vec<String>,
+    /// Take one value everywhere: one to four numbers
+    #[arg(long, value_name = "V,…", value_parser = numbers, allow_hyphen_values = true)]
+    value: Option<Numbers>,
+    /// Take the channel away
+    #[arg(long)]
+    remove: bool,
+    /// Change an existing channel, and only inside of this solid (.lfl), which lies in the same cube
+    #[arg(long = "in", value_name = "REGION.lfl", conflicts_with = "remove")]
+    region: Option<OsString>,
+    /// Type in which numbers are stored. Without it: f32, or that of the channel that is copied or changed
+    #[arg(long, value_enum, value_name = "TYPE")]
+    store: Option<KindName>,
+    /// Levels of the channel's cells, 1 to 20. Without it: those of the solid
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=MAX_DEPTH as i64))]
+    depth: Option<u8>,
+    /// Edge that no cell may exceed where the solid is. Without it: no limit
+    #[arg(long, value_name = "EDGE", requires = "tolerance", allow_hyphen_values = true)]
+    coarse: Option<f64>,
+    /// Edge at which cells are not split any more. Without it: that of the finest cells
+    #[arg(long, value_name = "EDGE", requires = "tolerance", allow_hyphen_values = true)]
+    fine: Option<f64>,
+    /// Split cells until the values in them are proven to differ by no more than this, in each number; where nothing
+    /// is proven, to the fine edge
+    #[arg(long, value_name = "V", allow_hyphen_values = true)]
+    tolerance: Option<f64>,
+    /// Compare the values at the eight corners of a cell instead, as published: their standard deviation must be no more
+    /// than the tolerance. Details between the corners are missed
+    #[arg(long, requires = "tolerance")]
+    corners: bool,
+    /// Take the sample of the nearest voxel, and do not interpolate
+    #[arg(long, requires = "from")]
+    nearest: bool,
+    /// Keep values outside of the solid, too
+    #[arg(long)]
+    everywhere: bool,
+    /// Unit of the values, which is kept beside them
+    #[arg(long, value_name = "TEXT")]
+    unit: Option<String>,
+    /// What the values mean, which is kept beside them: colour, density, material
+    #[arg(long, value_name = "TEXT")]
+    meaning: Option<String>,
+    /// File to write, or `-` for standard output. Without it: the solid's own
+    #[arg(short, long, value_name = "OUT.lfl")]
+    output: Option<OsString>,
+    #[command(flatten)]
+    sampling: Sampling,
+    /// Threads to use; 0: as many as there are processors. The result is the same
+    #[arg(long, default_value_t = 0, value_name = "N", value_parser = threads)]
+    threads: usize,
+    /// Print one JSON object
+    #[arg(long)]
+    json: bool,
+}
+
+fn expression_help() -> String {
+    format!(
+        "Take the values from a function of x, y and z; given up to four times, once for each number of a value.\n\nIt may have {SYNTAX}. A point at which it is not defined has no value"
+    )
+}
+
+#[derive(Debug, Clone)]
+struct Numbers(Vec<f64>);
+
+fn numbers(text: &str) -> Result<Numbers, String> {
+    let numbers: Result<Vec<f64>, _> = text.split(',').map(|number| number.trim().parse()).collect();
+    match numbers {
+        Ok(numbers) if (1..=4).contains(&numbers.len()) => Ok(Numbers(numbers)),
+        _ => Err("expected one to four numbers between commas".into()),
+    }
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum KindName {
+    U8,
+    U16,
+    U32,
+    F32,
+}
+
+impl From<KindName> for ScalarType {
+    fn from(name: KindName) -> ScalarType {
+        match name {
+            KindName::U8 => ScalarType::U8,
+            KindName::U16 => ScalarType::U16,
+            KindName::U32 => ScalarType::U32,
+            KindName::F32 => ScalarType::F32,
+        }
+    }
+}
+
+#[derive(Serialize)]
+struct Report {
+    output: String,
+    channel: Option<ChannelInfo>,
+    bytes: u64,
+    seconds: f64,
+}
+
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let start = Instant::now();
+    let input = Input::from(&*arguments.file);
+    let output = Output::from(arguments.output.as_deref().unwrap_or(&arguments.file));
+    output.check()?;
+    let (octree, _) = input.octree(true)?;
+    let changed = if arguments.remove {
+        channel::find(&octree, &input, Some(&arguments.name))?;
+        octree.without_channel(&arguments.name)
+    } else {
+        octree.with_channel(made(arguments, &input, &octree)?)
+    };
+    let changed = changed.of(&input)?;
+    let bytes = output.save(&changed)?;
+    let report = Report {
+        output: output.to_string(),
+        channel: changed.channel(&arguments.name).map(ChannelInfo::new),
+        bytes,
+        seconds: start.elapsed().as_secs_f64(),
+    };
+    output.report(&if arguments.json { sink::json(&report)? } else { report.text() })
+}
+
+impl Report {
+    fn text(&self) -> String {
+        let channel = self.channel.as_ref().map_or_else(|| "channel removed".into(), ChannelInfo::text);
+        format!("{}: {channel}; {} bytes, in {}\n", self.output, count(self.bytes), seconds(self.seconds))
+    }
+}
+
+/// Values at points, the type that suits them, and what is known of them.
+struct Values {
+    attribute: Box<dyn Attribute>,
+    kind: Option<ScalarType>,
+    metadata: Metadata,
+}
+
+fn made(arguments: &Arguments, input: &Input, octree: &Octree) -> Result<Channel, Failure> {
+    let old = match &arguments.region {
+        Some(_) => Some(channel::find(octree, input, Some(&arguments.name))?),
+        None => None,
+    };
+    let values = values(arguments, octree)?;
+    let kind = arguments.store.map(ScalarType::from).or(values.kind);
+    let (kind, depth) = match old {
+        Some(old) => (old.value_type().scalar(), arguments.depth.unwrap_or(old.frame().depth())),
+        None => (kind.unwrap_or(ScalarType::F32), arguments.depth.unwrap_or(octree.frame().depth())),
+    };
+    let frame = octree.frame().with_depth(depth).of(input)?;
+    let value_type = ValueType::new(kind, values.attribute.components() as u8).of(input)?;
+    let options = FillOptions {
+        value_type,
+        frame,
+        solid: if arguments.everywhere { None } else { Some(octree.view()) },
+        detail: detail(arguments, frame.cell_size())?,
+    };
+    let fill = |control: &Control<'_>| fill_channel(&*values.attribute, &options, control);
+    let channel = watched("attribute", arguments.threads, fill);
+    let channel = channel.map_err(|error| refused(&error, input, &arguments.name, kind))?;
+    let (channel, mut metadata) = match (old, &arguments.region) {
+        (Some(old), Some(region)) => {
+            let region = Input::from(&**region);
+            let (inside, _) = region.octree(true)?;
+            let changed = watched("attribute", arguments.threads, |control| {
+                let all = Octree::uniform(*octree.frame(), leafless::Tag::Full, leafless::Tag::Empty)?;
+                let operands = [
+                    ChannelOperand { solid: inside.view(), channel: channel.view()? },
+                    ChannelOperand { solid: all.view(), channel: old.view()? },
+                ];
+                carry_channel(octree.view(), &operands, CarryRule::Left, control)
+            });
+            (changed.of(&region)?, old.metadata().clone())
+        }
+        _ => (channel, values.metadata),
+    };
+    metadata.insert("name", &*arguments.name);
+    for (key, value) in [("unit", &arguments.unit), ("meaning", &arguments.meaning)] {
+        if let Some(value) = value {
+            metadata.insert(key, &**value);
+        }
+    }
+    Ok(channel.with_metadata(metadata))
+}
+
+fn refused(error: &str, input: &Input, name: &str, kind: ScalarType) -> Failure {
+    if error.contains("the channel's type") {
+        let problem = format!(
+            "a value of {name} is infinite, or beyond the range of {}: choose another function or --store",
+            kind.name()
+        );
+        return Failure::of(input, problem);
+    }
+    Failure::of(input, error)
+}
+
+fn detail(arguments: &Arguments, cell: f64) -> Result<Option<Detail>, Failure> {
+    let Some(tolerance) = arguments.tolerance else { return Ok(None) };
+    let criterion = if arguments.corners { Criterion::Variance } else { Criterion::Range };
+    let fine = arguments.fine.unwrap_or(cell);
+    let coarse = arguments.coarse.unwrap_or(f64::INFINITY);
+    let detail = Detail::new(coarse, fine, tolerance, criterion);
+    detail.map(Some).map_err(|error| Failure::Usage(error.to_string()))
+}
+
+/// A mesh in the unit of a solid, if both are known.
+fn mesh(input: &Input, bytes: &[u8], octree: &Octree) -> Result<TriangleMesh, Failure> {
+    let file = exchange::read_mesh(bytes, &MeshOptions::default()).of(input)?;
+    let unit = octree.metadata().get("units").and_then(|unit| unit.parse().ok());
+    let target = file.unit.and(unit).filter(|&unit| Some(unit) != file.unit);
+    let mesh = match target {
+        Some(_) => {
+            exchange::read_mesh(bytes, &MeshOptions { target, ..MeshOptions::default() }).of(input)?.mesh
+        }
+        None => file.mesh,
+    };
+    mesh.sewn().of(input)
+}
+
+fn values(arguments: &Arguments, octree: &Octree) -> Result<Values, Failure> {
+    let plain = |attribute| Values { attribute, kind: None, metadata: Metadata::new() };
+    if let Some(Numbers(numbers)) = &arguments.value {
+        let constant = ConstantAttribute::new(numbers).map_err(|error| Failure::Usage(error.to_string()))?;
+        return Ok(plain(Box::new(constant)));
+    }
+    if let Some(bodies) = &arguments.bodies {
+        let bodies = Input::from(&**bodies);
+        let mesh = mesh(&bodies, &bodies.read()?, octree)?;
+        let labels = mesh.bodies().and_then(|labels| MeshAttribute::labels("body", labels)).of(&bodies)?;
+        let attribute = SurfaceAttribute::new(mesh, labels).of(&bodies)?;
+        return Ok(Values { kind: Some(ScalarType::U32), ..plain(Box::new(attribute)) });
+    }
+    let Some(from) = &arguments.from else {
+        let expressions = Expressions::parse(&arguments.expr).map_err(Failure::Usage)?;
+        return Ok(plain(Box::new(expressions)));
+    };
+    let from = Input::from(&**from);
+    if from.begins_as_solid() {
+        let (other, _) = from.octree(true)?;
+        let channel = channel::find(&other, &from, Some(&arguments.name))?.clone();
+        let (kind, metadata) = (channel.value_type().scalar(), channel.metadata().clone());
+        return Ok(Values { attribute: Box::new(channel), kind: Some(kind), metadata });
+    }
+    let bytes = from.read()?;
+    match Content::of(&from, &bytes, arguments.sampling.is_raw().then_some(Content::Volume))? {
+        Content::Volume => {
+            let nearest = if arguments.nearest { Interpolation::Nearest } else { Interpolation::Trilinear };
+            let voxels = arguments.sampling.read(&from, &bytes)?;
+            Ok(plain(voxels.attribute(nearest).of(&from)?))
+        }
+        Content::Mesh => {
+            let mesh = mesh(&from, &bytes, octree)?;
+            let known: Vec<&str> = mesh.attributes().iter().map(MeshAttribute::name).collect();
+            let name = match (&arguments.pick, &known[..]) {
+                (_, []) => return Err(Failure::of(&from, "has neither colours nor materials")),
+                (Some(name), _) if known.contains(&&**name) => name.clone(),
+                (None, known) if known.contains(&&*arguments.name) => arguments.name.clone(),
+                (None, [only]) => (*only).to_owned(),
+                _ => {
+                    let list = known.join(", ");
+                    return Err(Failure::Usage(format!("choose one of {from}'s values with --pick: {list}")));
+                }
+            };
+            // Numbers of colours go from 0 to 255.
+            let kind = if name.ends_with("colour") { ScalarType::U8 } else { ScalarType::F32 };
+            let mut metadata = Metadata::new();
+            metadata.insert("meaning", &*name);
+            let picked = mesh.attributes().iter().find(|attribute| attribute.name() == name);
+            for (number, name) in picked.map_or(&[][..], MeshAttribute::names).iter().enumerate() {
+                metadata.insert(format!("value {number}"), &**name);
+            }
+            let attribute = SurfaceAttribute::of_mesh(mesh, &name).of(&from)?;
+            Ok(Values { attribute: Box::new(attribute), kind: Some(kind), metadata })
+        }
+        _ => {
+            let problem =
+                "is no volume (NRRD, MetaImage, raw), no mesh with colours or materials, and no solid (.lfl)";
+            Err(Failure::of(&from, problem))
+        }
+    }
+}

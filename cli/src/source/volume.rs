@@ -1,0 +1,374 @@
+//! Volumes from files, NRRD, MetaImage and raw: which voxels are inside, and what is told of them.
+
+use crate::failure::{Failure, Of, Problem, complain};
+use crate::progress::watched;
+use crate::report::octree::Info;
+use crate::sink::{self, Output};
+use crate::source::input::Input;
+use crate::words::{count, counted, number, seconds};
+use clap::{Args, ValueEnum};
+use leafless::exchange::{
+    LengthUnit, RawVolume, SampleKind, open_volume, read_raw_volume, read_volume, volume_data_file,
+};
+use leafless::{
+    Affine, AnySolid, Attribute, Band, Control, Error, Frame, Interpolation, Metadata, MovedAttribute,
+    Octree, Rule, Samples, Solid, TriangleMesh, Volume, VolumeAttribute, VoxelGrid, build,
+    marching_cubes_of_volume,
+};
+use serde::Serialize;
+use std::str::FromStr;
+use std::time::Instant;
+
+/// Which voxels of a volume are inside, and what the bytes of one without a header mean.
+#[derive(Clone, Args)]
+pub struct Sampling {
+    /// Least sample of a volume (NRRD, MetaImage, raw) that is inside. Without it: the middle of the range of the
+    /// samples' type, 0 for floating point numbers
+    #[arg(long, value_name = "T", value_parser = threshold, allow_hyphen_values = true)]
+    threshold: Option<f64>,
+    /// Read the file as a raw volume, which has no header: an array of so many samples along x, y and z, x fastest
+    #[arg(long = "samples", value_name = "NX,NY,NZ", value_parser = extents)]
+    extents: Option<[u32; 3]>,
+    /// Type of the samples of a raw volume. Without it: u8
+    #[arg(long = "type", value_enum, requires = "extents")]
+    kind: Option<KindName>,
+    /// Edges of the voxels of a raw volume along x, y and z, or one for all. Without it: 1
+    #[arg(long, value_name = "S|SX,SY,SZ", value_parser = spacing, requires = "extents")]
+    spacing: Option<[f64; 3]>,
+    /// Lower corner of the first voxel of a raw volume. Without it: 0,0,0
+    #[arg(long, value_name = "X,Y,Z", value_parser = corner, requires = "extents", allow_hyphen_values = true)]
+    corner: Option<[f64; 3]>,
+    /// Bytes of a raw volume before its first sample. Without it: 0
+    #[arg(long, value_name = "BYTES", requires = "extents")]
+    skip: Option<u64>,
+    /// The first byte of each sample of a raw volume is the one of the highest weight
+    #[arg(long, requires = "extents")]
+    big_endian: bool,
+}
+
+fn threshold(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(value) if f64::is_finite(value) => Ok(value),
+        _ => Err("expected a number".into()),
+    }
+}
+
+/// Numbers between commas.
+fn list<T: FromStr>(text: &str) -> Option<Vec<T>> {
+    text.split(',').map(|number| number.trim().parse().ok()).collect()
+}
+
+fn extents(text: &str) -> Result<[u32; 3], String> {
+    let three: Option<[u32; 3]> = list(text).and_then(|numbers| numbers.try_into().ok());
+    three.ok_or_else(|| "expected three whole numbers: nx,ny,nz".into())
+}
+
+fn spacing(text: &str) -> Result<[f64; 3], String> {
+    match list(text).as_deref() {
+        Some(&[edge]) => Ok([edge; 3]),
+        Some(&[x, y, z]) => Ok([x, y, z]),
+        _ => Err("expected one number, or three: sx,sy,sz".into()),
+    }
+}
+
+fn corner(text: &str) -> Result<[f64; 3], String> {
+    let three: Option<[f64; 3]> = list(text).and_then(|numbers| numbers.try_into().ok());
+    three.ok_or_else(|| "expected three numbers: x,y,z".into())
+}
+
+/// Types of samples.
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum KindName {
+    /// Eight to a byte, the lowest first; each row along x begins with a byte of its own
+    Bit,
+    I8,
+    U8,
+    I16,
+    U16,
+    I32,
+    U32,
+    I64,
+    U64,
+    F32,
+    F64,
+}
+
+impl From<KindName> for SampleKind {
+    fn from(name: KindName) -> SampleKind {
+        match name {
+            KindName::Bit => SampleKind::Bit,
+            KindName::I8 => SampleKind::I8,
+            KindName::U8 => SampleKind::U8,
+            KindName::I16 => SampleKind::I16,
+            KindName::U16 => SampleKind::U16,
+            KindName::I32 => SampleKind::I32,
+            KindName::U32 => SampleKind::U32,
+            KindName::I64 => SampleKind::I64,
+            KindName::U64 => SampleKind::U64,
+            KindName::F32 => SampleKind::F32,
+            KindName::F64 => SampleKind::F64,
+        }
+    }
+}
+
+/// A volume as a solid.
+pub struct Voxels {
+    pub solid: AnySolid,
+    /// The frame whose finest cells are voxels, if voxels are cubes along the axes.
+    pub frame: Option<Frame>,
+    pub unit: Option<LengthUnit>,
+    volume: Volume<'static>,
+    /// What moves the grid to its place, if its axes are not x, y and z.
+    placement: Option<Affine>,
+    format: String,
+    kind: SampleKind,
+    pub threshold: f64,
+}
+
+/// What a file holds.
+struct Found {
+    samples: Samples<'static>,
+    grid: VoxelGrid,
+    placement: Option<Affine>,
+    unit: Option<LengthUnit>,
+    format: String,
+    kind: SampleKind,
+    rounded: u64,
+}
+
+impl Sampling {
+    /// Whether the user says that files are volumes without headers.
+    pub fn is_raw(&self) -> bool {
+        self.extents.is_some()
+    }
+
+    /// Refuses the options for volumes where something else is read: `what` it is.
+    pub fn refuse(&self, input: &Input, what: &str) -> Result<(), Failure> {
+        // (All others need --samples.)
+        let given = [("--threshold", self.threshold.is_some()), ("--samples", self.is_raw())];
+        match given.into_iter().find(|option| option.1) {
+            Some((option, _)) => Err(Failure::Usage(format!("{option} is for volumes: {input} is {what}"))),
+            None => Ok(()),
+        }
+    }
+
+    /// The volume in a file with these bytes, whose samples may be in another file beside it.
+    pub fn read(&self, input: &Input, bytes: &[u8]) -> Result<Voxels, Failure> {
+        let found = match self.extents {
+            Some(extents) => self.without_header(input, bytes, extents)?,
+            None => with_header(input, bytes)?,
+        };
+        if found.rounded > 0 {
+            let samples = counted(found.rounded, "sample was", "samples were");
+            complain(&format!("{input}: warning: {samples} rounded to single precision"));
+        }
+        let Found { samples, grid, placement, unit, format, kind, .. } = found;
+        let threshold = self.threshold.unwrap_or(kind.half_range());
+        let band = Band::at_least(threshold).of(input)?;
+        let volume = Volume::new(samples, &grid, band, &Control::default()).of(input)?;
+        let solid = AnySolid::new(volume.clone());
+        let solid = match &placement {
+            Some(placement) => solid.placed(placement).of(input)?,
+            None => solid,
+        };
+        let frame = if placement.is_none() { grid.frame().ok() } else { None };
+        Ok(Voxels { solid, frame, unit, volume, placement, format, kind, threshold })
+    }
+
+    fn without_header(&self, input: &Input, bytes: &[u8], extents: [u32; 3]) -> Result<Found, Failure> {
+        let grid = VoxelGrid::new(extents, self.corner.unwrap_or([0.0; 3]), self.spacing.unwrap_or([1.0; 3]));
+        let grid = grid.map_err(|error| Failure::Usage(error.to_string()))?;
+        let kind = self.kind.map_or(SampleKind::U8, SampleKind::from);
+        let layout = RawVolume { grid, kind, big_endian: self.big_endian, skip: self.skip.unwrap_or(0) };
+        let (samples, rounded) = read_raw_volume(bytes, &layout).of(input)?;
+        Ok(Found { samples, grid, placement: None, unit: None, format: "raw".into(), kind, rounded })
+    }
+}
+
+fn with_header(input: &Input, bytes: &[u8]) -> Result<Found, Failure> {
+    let file = match (input.path(), volume_data_file(bytes).of(input)?) {
+        (Some(path), Some(_)) => open_volume(path).map_err(|error| match &error {
+            // Of the header or of the file of its samples.
+            Error::File { path, .. } => Failure::of(path.display(), error.text()),
+            _ => Failure::of(input, error.text()),
+        })?,
+        _ => read_volume(bytes, None).of(input)?,
+    };
+    Ok(Found {
+        samples: file.samples,
+        grid: file.grid,
+        placement: file.placement,
+        unit: file.unit,
+        format: file.format.to_string(),
+        kind: file.kind,
+        rounded: file.rounded,
+    })
+}
+
+impl Voxels {
+    /// The surface by marching cubes, with vertices where the samples cross the threshold.
+    pub fn surface(&self, input: &Input, threads: usize) -> Result<TriangleMesh, Failure> {
+        let mesh = watched("mesh", threads, |control| marching_cubes_of_volume(&self.volume, control));
+        let mesh = mesh.of(input)?;
+        match &self.placement {
+            Some(placement) => mesh.placed(placement).of(input),
+            None => Ok(mesh),
+        }
+    }
+
+    /// The samples as values at points.
+    pub fn attribute(&self, interpolation: Interpolation) -> Result<Box<dyn Attribute>, Error> {
+        let samples = VolumeAttribute::new(self.volume.clone(), interpolation);
+        Ok(match &self.placement {
+            Some(placement) => Box::new(MovedAttribute::new(samples, placement.inverse()?)),
+            None => Box::new(samples),
+        })
+    }
+
+    /// The octree whose finest cells are the voxels.
+    pub fn octree(&self, input: &Input, threads: usize) -> Result<Octree, Failure> {
+        let frame = self.frame.as_ref().ok_or_else(|| {
+            let problem = "its voxels are no cubes along the axes, so that its cells need --bounds and --depth of \
+                           `leafless voxelize`";
+            Failure::of(input, problem)
+        })?;
+        self.octree_on(input, frame, Rule::Sampled, threads)
+    }
+
+    fn octree_on(&self, input: &Input, frame: &Frame, rule: Rule, threads: usize) -> Result<Octree, Failure> {
+        let octree =
+            watched("voxelize", threads, |control| build(&self.solid, frame, rule, control)).of(input)?;
+        let mut metadata = Metadata::new();
+        if let Some(stem) = input.path().and_then(|path| path.file_stem()) {
+            metadata.insert("name", stem.to_string_lossy());
+        }
+        metadata.insert("threshold", number(self.threshold));
+        if let Some(unit) = self.unit {
+            metadata.insert("units", unit.symbol());
+        }
+        Ok(octree.with_metadata(metadata))
+    }
+
+    /// Makes a solid's file: on the frame of the voxels, or on the one that the user wants.
+    pub fn save(&self, input: &Input, output: &Output, job: &Job) -> Result<(), Failure> {
+        let start = Instant::now();
+        let bounds = self.solid.bounds().map(|bounds| (bounds.min, bounds.max));
+        let frame = match (&job.bounds, job.depth, &self.frame, bounds) {
+            (Some(bounds), Some(depth), ..) => Some(bounds.with_depth(depth).of(input)?),
+            (Some(_), None, ..) => {
+                return Err(Failure::Usage("--bounds needs --depth".into()));
+            }
+            (None, Some(depth), Some(frame), _) => Some(frame.with_depth(depth).of(input)?),
+            (None, Some(depth), None, Some((min, max))) => Some(Frame::fitted(min, max, depth).of(input)?),
+            _ => None,
+        };
+        let octree = match &frame {
+            Some(frame) => self.octree_on(input, frame, job.rule, job.threads)?,
+            None => self.octree(input, job.threads)?,
+        };
+        let bytes = output.save(&octree)?;
+        let info = Info::new(&octree, bytes);
+        if job.json {
+            let report = SavedReport {
+                input: input.to_string(),
+                output: output.to_string(),
+                seconds: start.elapsed().as_secs_f64(),
+                volume_file: self.told(),
+                threshold: self.threshold,
+                info,
+            };
+            return output.report(&sink::json(&report)?);
+        }
+        output.report(&format!(
+            "{output}: octree of depth {}, volume {}, {} nodes, {} bytes, in {}\n",
+            octree.frame().depth(),
+            info.volume_text(),
+            count(info.nodes),
+            count(bytes),
+            seconds(start.elapsed().as_secs_f64()),
+        ))
+    }
+
+    /// Prints what the volume is.
+    pub fn tell(&self, json: bool) -> Result<(), Failure> {
+        let told = self.told();
+        if json {
+            return sink::print(sink::json(&told)?.as_bytes());
+        }
+        let [x, y, z] = told.extents;
+        let place = |p: [f64; 3]| p.map(number).join(", ");
+        let unit = told.unit.map_or_else(String::new, |unit| format!(" {unit}"));
+        sink::print(
+            format!(
+                "{} volume, {x} x {y} x {z} samples of type {}\nvoxels {}{unit}, from {}\n",
+                told.format,
+                told.samples,
+                place(told.spacing),
+                place(told.corner),
+            )
+            .as_bytes(),
+        )
+    }
+
+    fn told(&self) -> Told {
+        Told {
+            format: self.format.clone(),
+            samples: kind(self.kind),
+            extents: self.volume.grid().extents(),
+            spacing: self.volume.grid().spacing(),
+            corner: self.volume.grid().corner(),
+            is_turned: self.placement.is_some(),
+            unit: self.unit.map(LengthUnit::symbol),
+        }
+    }
+}
+
+/// What the user wants of a volume's octree.
+pub struct Job {
+    pub bounds: Option<Frame>,
+    pub depth: Option<u8>,
+    pub rule: Rule,
+    pub threads: usize,
+    pub json: bool,
+}
+
+/// What a volume's file says.
+#[derive(Serialize)]
+struct Told {
+    format: String,
+    samples: &'static str,
+    extents: [u32; 3],
+    /// Of a volume whose axes are not x, y and z: before it is turned.
+    spacing: [f64; 3],
+    corner: [f64; 3],
+    is_turned: bool,
+    unit: Option<&'static str>,
+}
+
+#[derive(Serialize)]
+struct SavedReport {
+    input: String,
+    output: String,
+    seconds: f64,
+    volume_file: Told,
+    threshold: f64,
+    #[serde(flatten)]
+    info: Info,
+}
+
+/// The name of a type of samples.
+fn kind(kind: SampleKind) -> &'static str {
+    match kind {
+        SampleKind::Bit => "bit",
+        SampleKind::I8 => "i8",
+        SampleKind::U8 => "u8",
+        SampleKind::I16 => "i16",
+        SampleKind::U16 => "u16",
+        SampleKind::I32 => "i32",
+        SampleKind::U32 => "u32",
+        SampleKind::I64 => "i64",
+        SampleKind::U64 => "u64",
+        SampleKind::F32 => "f32",
+        SampleKind::F64 => "f64",
+    }
+}
