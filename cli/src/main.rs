@@ -53,7 +53,7 @@ enum Command {
     /// Make a tri-dexel model, intervals along rays, of a solid, a mesh, a scene or a volume
     Dexelize(dexelize::Arguments),
     /// Make an octree, a tri-dexel model or a triangle mesh of any of them
-    Convert(commands::conversion::Arguments),
+    Convert(convert::Arguments),
     /// Show what a solid consists of (depth, nodes, cells, volume), a mesh (bodies, holes, defects) or a scene
     Info(info::Arguments),
     /// Check a file completely: exit code 0 if it is good, 1 with the reason if not

@@ -40,6 +40,14 @@ pub fn bounds(text: &str) -> Result<Frame, String> {
     }
 }
 
+/// How wide an interval may be.
+pub fn tolerance(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(tolerance) if tolerance >= 0.0 && f64::is_finite(tolerance) => Ok(tolerance),
+        _ => Err("expected a number not below 0".into()),
+    }
+}
+
 /// A number of threads: far more than processors help nobody.
 pub fn threads(text: &str) -> Result<usize, String> {
     match text.parse() {
@@ -69,4 +77,50 @@ pub fn resolution(text: &str) -> Result<u8, String> {
         }
     };
     Err(format!("expected a power of two from 2 to {most}: {near}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bounds_are_four_numbers_that_make_a_frame() {
+        let frame = bounds("-1, 2.5,3e1,4").unwrap();
+        assert_eq!((frame.origin(), frame.edge()), ([-1.0, 2.5, 30.0], 4.0));
+        for text in [
+            "",
+            "1,2,3",
+            "1,2,3,4,5",
+            "1,2,3,x",
+            "0,0,0,0",
+            "0,0,0,-1",
+            "0,nan,0,1",
+            "0,0,0,inf",
+            "0,0,0,nan",
+        ] {
+            assert!(bounds(text).is_err(), "{text}");
+        }
+    }
+
+    #[test]
+    fn resolutions_are_powers_of_two() {
+        for depth in 1..=19u8 {
+            assert_eq!(resolution(&(1u32 << depth).to_string()), Ok(depth));
+        }
+        for (text, near) in [
+            ("0", "2 is the"),
+            ("1", "2 is the"),
+            ("3", "2 and 4 are"),
+            ("300", "256 and 512 are"),
+            ("524287", "262144 and 524288 are"),
+            ("524289", "524288 is the"),
+            ("1048576", "524288 is the"),
+            ("18446744073709551615", "524288 is the"),
+            ("-4", "from 2 to 524288"),
+            ("many", "from 2 to 524288"),
+        ] {
+            let error = resolution(text).unwrap_err();
+            assert!(error.contains(near), "{text}: {error}");
+        }
+    }
 }

@@ -125,6 +125,27 @@ pub fn seconds(seconds: f64) -> String {
     }
 }
 
+/// A number for a table: six digits tell where to look.
+pub fn short(x: f64) -> String {
+    let rounded: f64 = format!("{x:.5e}").parse().unwrap_or(x);
+    number(rounded)
+}
+
+/// Lines whose columns are aligned to the right.
+pub fn table<const N: usize>(head: &[String; N], rows: &[[String; N]]) -> String {
+    let width =
+        |column: usize| (rows.iter().chain([head])).map(|row| row[column].chars().count()).max().unwrap_or(0);
+    let mut text = String::new();
+    for row in [head].into_iter().chain(rows) {
+        for (column, cell) in row.iter().enumerate() {
+            let gap = if column == 0 { "" } else { "  " };
+            let _ = write!(text, "{gap}{cell:>width$}", width = width(column));
+        }
+        text.push('\n');
+    }
+    text
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -4,7 +4,7 @@ use crate::failure::{Failure, Of};
 use crate::options::threads;
 use crate::progress::watched;
 use crate::report::channel::{self, ChannelInfo};
-use crate::sink::{self, Output};
+use crate::sink::Output;
 use crate::source::content::Content;
 use crate::source::expression::{Expressions, SYNTAX};
 use crate::source::input::Input;
@@ -167,7 +167,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         bytes,
         seconds: start.elapsed().as_secs_f64(),
     };
-    output.report(&if arguments.json { sink::json(&report)? } else { report.text() })
+    output.tell(arguments.json, &report, Report::text)
 }
 
 impl Report {

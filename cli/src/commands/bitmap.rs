@@ -3,7 +3,7 @@
 use crate::failure::{Failure, Of, complain};
 use crate::options::threads;
 use crate::progress::watched;
-use crate::sink::{self, Output, write_file};
+use crate::sink::Output;
 use crate::source::input::Input;
 use crate::words::{count, number};
 use clap::{Args, ValueEnum};
@@ -113,10 +113,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     if format == WriteName::Nrrd {
         warn_of_rounding(&grid, &output).of(&input)?;
     }
-    match output.path() {
-        Some(path) => write_file(path, &bytes)?,
-        None => sink::print(&bytes)?,
-    }
+    output.write(&bytes)?;
     let report = Report {
         input: input.to_string(),
         output: output.to_string(),
@@ -127,7 +124,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         inside,
         bytes: bytes.len() as u64,
     };
-    output.report(&if arguments.json { sink::json(&report)? } else { report.text() })
+    output.tell(arguments.json, &report, Report::text)
 }
 
 /// Says if the corner does not come back: the format has the first voxel's centre, rounded.

@@ -2,16 +2,18 @@
 
 use crate::failure::{Failure, Of};
 use crate::making::dexel_boolean;
+use crate::making::octree_of_volume::of_voxels;
 use crate::making::operands::{Operation, Place, check_places, facts, warn_of_units};
 use crate::progress::watched;
 use crate::report::octree::Info;
 use crate::sink::Output;
+use crate::source::file::Stored;
 use crate::source::input::Input;
 use crate::source::volume::Sampling;
 use crate::words::{count, counted, seconds};
 use clap::Args;
 use leafless::exchange::VolumeFormat;
-use leafless::{CarryRule, Control, Error, Octree, OctreeRef, TriDexel, carry_channels, file};
+use leafless::{CarryRule, Control, Error, Octree, OctreeRef, TriDexel, carry_channels};
 use std::ffi::OsString;
 use std::time::Instant;
 
@@ -126,19 +128,14 @@ enum Operands {
     Dexels(Vec<TriDexel>),
 }
 
-enum Operand {
-    Octree(Box<Octree>),
-    Dexels(Box<TriDexel>),
-}
-
 /// Reads all operands, of which there is one at least. What is proven of the result is proven only if the operands are
 /// what their makers wrote.
 fn operands(inputs: &[Input], common: &Common) -> Result<Operands, Failure> {
     let (mut octrees, mut models) = (Vec::new(), Vec::new());
     for (i, input) in inputs.iter().enumerate() {
         match operand(input, common)? {
-            Operand::Octree(octree) => octrees.push(*octree),
-            Operand::Dexels(model) => models.push(*model),
+            Stored::Octree(octree) => octrees.push(octree),
+            Stored::Dexels(model) => models.push(model),
         }
         if !octrees.is_empty() && !models.is_empty() {
             let kinds = ["an octree", "a tri-dexel model"];
@@ -157,22 +154,16 @@ fn operands(inputs: &[Input], common: &Common) -> Result<Operands, Failure> {
 }
 
 /// A solid from a file, or the voxels of a volume that are inside.
-fn operand(input: &Input, common: &Common) -> Result<Operand, Failure> {
-    let of_octree = |octree: Octree| Operand::Octree(Box::new(octree));
-    if let Some((model, _)) = input.dexels(true)? {
-        return Ok(Operand::Dexels(Box::new(model)));
-    }
+fn operand(input: &Input, common: &Common) -> Result<Stored, Failure> {
     if input.begins_as_solid() {
-        return Ok(of_octree(input.octree(true)?.0));
+        return Ok(Stored::read(input, true)?.0);
     }
     let bytes = input.read()?;
     if common.sampling.is_raw() || VolumeFormat::detect(&bytes).is_some() {
-        return Ok(of_octree(common.sampling.read(input, &bytes)?.octree(input, common.threads)?));
+        let volume = common.sampling.read(input, &bytes)?;
+        return Ok(Stored::Octree(of_voxels(&volume, input, common.threads)?));
     }
-    if file::probe_bytes(&bytes).is_ok_and(|probe| probe.dexels.is_some()) {
-        return Ok(Operand::Dexels(Box::new(file::dexels::from_bytes(&bytes).of(input)?)));
-    }
-    Ok(of_octree(file::from_bytes(&bytes).of(input)?))
+    Stored::of_bytes(input, &bytes)
 }
 
 fn of(

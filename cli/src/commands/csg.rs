@@ -1,17 +1,15 @@
 //! `leafless csg`: from a scene to a solid.
 
-use crate::commands::conversion;
-use crate::failure::{Failure, Of, complain};
-use crate::options::{RuleName, bounds, name_of, threads};
-use crate::progress::watched;
-use crate::report::octree::Info;
-use crate::sink::{self, Output};
+use crate::failure::Failure;
+use crate::making::job::Job;
+use crate::making::octree_of_scene::{self, Splitting, TouchName};
+use crate::options::{RuleName, bounds, threads};
+use crate::sink::Output;
+use crate::source::file::Found;
 use crate::source::input::Input;
-use crate::source::scene::{Curves, Drawing, frame_of, read_scene};
-use crate::words::{count, number, seconds};
-use clap::{Args, ValueEnum};
-use leafless::{Adaptive, Frame, Metadata, Octree, SplitCounter, Touch, build};
-use serde::Serialize;
+use crate::source::scene::Drawing;
+use clap::Args;
+use leafless::Frame;
 use std::ffi::OsString;
 use std::time::Instant;
 
@@ -69,24 +67,6 @@ pub struct Arguments {
     json: bool,
 }
 
-impl Arguments {
-    /// What `leafless convert` asks for.
-    pub fn converting(wanted: &conversion::Arguments) -> Arguments {
-        Arguments {
-            input: wanted.input.clone(),
-            output: wanted.output.clone(),
-            depth: wanted.depth(),
-            rule: wanted.resolve.map_or(RuleName::Certified, RuleName::from),
-            adaptive: None,
-            touch: TouchName::Exact,
-            bounds: wanted.bounds,
-            drawing: wanted.drawing.clone(),
-            threads: wanted.threads,
-            json: wanted.json,
-        }
-    }
-}
-
 fn thickness(text: &str) -> Result<f64, String> {
     match text.parse() {
         Ok(thickness) if thickness >= 0.0 && f64::is_finite(thickness) => Ok(thickness),
@@ -94,50 +74,13 @@ fn thickness(text: &str) -> Result<f64, String> {
     }
 }
 
-#[derive(Debug, Clone, Copy, ValueEnum)]
-enum TouchName {
-    /// Contact is not overlap: a cell that the solid touches from outside is empty
-    Exact,
-    /// As in the paper that the method comes from: such a cell is undecided
-    Paper,
-}
-
-/// Seconds.
-#[derive(Serialize)]
-struct Timings {
-    read: f64,
-    build: f64,
-    save: f64,
-    total: f64,
-}
-
-#[derive(Serialize)]
-struct Report {
-    input: String,
-    output: String,
-    rule: String,
-    touch: String,
-    /// The thickness of layers that are not split; absent (null) if all are.
-    adaptive: Option<f64>,
-    timings: Timings,
-    /// Cells that were split; null if there are meshes or octrees in the scene, which work in bulk.
-    splits: Option<u64>,
-    /// Half-spaces that were evaluated, at a point or over a box.
-    evaluations: u64,
-    /// Volume of the undecided cells.
-    undecided_volume: f64,
-    /// How the curves of the scene were drawn.
-    curves: Curves,
-    #[serde(flatten)]
-    info: Info,
-}
-
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let start = Instant::now();
+    let Arguments { depth, rule, adaptive, touch, bounds, threads, json, .. } = *arguments;
     let (input, output) = (Input::from(&*arguments.input), Output::from(&*arguments.output));
-    output.check()?;
-    if arguments.adaptive.is_some() {
-        let useless = match (arguments.rule, arguments.touch) {
+    let job = Job { input, output, start: Instant::now(), depth: Some(depth), bounds, threads, json };
+    job.output.check()?;
+    if adaptive.is_some() {
+        let useless = match (rule, touch) {
             (RuleName::Certified, TouchName::Exact) => None,
             (RuleName::Certified, TouchName::Paper) => Some("--touch paper, by which no layers are known"),
             _ => Some("a --rule but certified: the cells that it leaves whole are undecided"),
@@ -146,103 +89,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             return Err(Failure::Usage(format!("--adaptive does not go with {useless}")));
         }
     }
-    if let (Some(from), Some(to)) = (input.path(), output.path())
-        && from.canonicalize().is_ok_and(|from| to.canonicalize().is_ok_and(|to| from == to))
-    {
-        return Err(Failure::of(&output, "is the scene itself, which is not overwritten"));
-    }
-    let (scene, source) = read_scene(&input, &arguments.drawing)?;
-    let frame = frame_of(&input, &scene, arguments.bounds.as_ref(), arguments.depth)?;
-    let touch = match arguments.touch {
-        TouchName::Exact => Touch::Exact,
-        TouchName::Paper => Touch::Paper,
-    };
-    let solid = scene.solid(&frame).of(&input)?.with_touch(touch);
-    // To count splits turns off what meshes and octrees do in bulk.
-    let counted = (solid.nesting() == 0).then(|| SplitCounter::new(solid.clone()));
-    let read = start.elapsed().as_secs_f64();
-
-    let building = Instant::now();
-    let rule = arguments.rule.into();
-    let octree = watched("csg", arguments.threads, |control| match (&counted, arguments.adaptive) {
-        (Some(counted), Some(t)) => build(&Adaptive::new(counted, t)?, &frame, rule, control),
-        (Some(counted), None) => build(counted, &frame, rule, control),
-        (None, Some(t)) => build(&Adaptive::new(&solid, t)?, &frame, rule, control),
-        (None, None) => build(&solid, &frame, rule, control),
-    });
-    let octree = octree.of(&input)?.with_metadata(facts(&input, source, arguments));
-    let build = building.elapsed().as_secs_f64();
-
-    let saving = Instant::now();
-    let bytes = output.save(&octree)?;
-    let save = saving.elapsed().as_secs_f64();
-
-    if octree.view().is_clipped() {
-        let warning = "the solid may go on outside of the bounds, where it was cut off";
-        complain(&format!("{input}: warning: {warning}"));
-    }
-    let mut info = Info::new(&octree, bytes);
-    let splits = counted.as_ref().map(SplitCounter::splits);
-    if let Some(splits) = &splits {
-        info.note_splits(splits);
-    }
-    let report = Report {
-        input: input.to_string(),
-        output: output.to_string(),
-        rule: name_of(arguments.rule),
-        touch: name_of(arguments.touch),
-        adaptive: arguments.adaptive,
-        timings: Timings { read, build, save, total: start.elapsed().as_secs_f64() },
-        splits: splits.map(|splits| splits.iter().sum()),
-        evaluations: solid.evaluations(),
-        undecided_volume: info.volume.width(),
-        curves: scene.report().into(),
-        info,
-    };
-    output.report(&if arguments.json { sink::json(&report)? } else { summary(&report, &octree) })
-}
-
-/// What the solid's file says of its making: nothing that differs from run to run.
-fn facts(input: &Input, source: String, arguments: &Arguments) -> Metadata {
-    let mut metadata = Metadata::new();
-    if let Some(stem) = input.path().and_then(|path| path.file_stem()) {
-        metadata.insert("name", stem.to_string_lossy());
-    }
-    metadata.insert("source", source);
-    metadata.insert("rule", name_of(arguments.rule));
-    if let Some(thickness) = arguments.adaptive {
-        metadata.insert("adaptive", number(thickness));
-    }
-    if let TouchName::Paper = arguments.touch {
-        metadata.insert("touch", name_of(arguments.touch));
-    }
-    metadata
-}
-
-fn summary(report: &Report, octree: &Octree) -> String {
-    let (frame, info) = (octree.frame(), &report.info);
-    let [read, build, save, total] =
-        [report.timings.read, report.timings.build, report.timings.save, report.timings.total].map(seconds);
-    format!(
-        "{}: {} octree of depth {}, cells of {}\n\
-         volume  {}{}\n\
-         {}\
-         splits  {}{} evaluations of half-spaces\n\
-         nodes   {} (a classical octree has {})\n\
-         bytes   {}{}\n\
-         time    {total}: read {read}, build {build}, save {save}\n",
-        report.output,
-        report.rule,
-        frame.depth(),
-        number(frame.cell_size()),
-        info.volume_text(),
-        info.volume_note(),
-        report.curves.text().map_or(String::new(), |curves| format!("curves  {curves}\n")),
-        report.splits.map_or(String::new(), |splits| count(splits) + ", "),
-        count(report.evaluations),
-        count(info.nodes),
-        count(info.classical_nodes),
-        count(info.bytes),
-        info.bytes_per_node.map_or(String::new(), |each| format!(", {each:.2} a node")),
-    )
+    job.output.check_beside(&job.input, "scene")?;
+    let found = Found::look(&job.input, None)?;
+    octree_of_scene::make(&job, found, &arguments.drawing, Splitting { depth, rule, adaptive, touch })
 }

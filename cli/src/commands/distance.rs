@@ -1,7 +1,7 @@
 //! `leafless distance`: how far are these points from the solid?
 
-use crate::commands::measure::tolerance;
 use crate::failure::{Failure, Of};
+use crate::options::tolerance;
 use crate::progress::watched;
 use crate::rows::{Questions, serve};
 use crate::sink::{self, print};

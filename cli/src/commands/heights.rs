@@ -2,7 +2,7 @@
 
 use crate::failure::{Failure, Of};
 use crate::progress::watched;
-use crate::sink::{Output, print, write_file};
+use crate::sink::Output;
 use crate::source::input::Input;
 use crate::source::target::{Looking, Target};
 use crate::words::number;
@@ -89,10 +89,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     });
     let map = map.of(&input)?;
     let written = if arguments.raw { raw(&map, arguments.on) } else { lines(&map, arguments.on) };
-    match output.path() {
-        Some(path) => write_file(path, &written),
-        None => print(&written),
-    }
+    output.write(&written)
 }
 
 /// The height of a column.

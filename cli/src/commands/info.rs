@@ -1,15 +1,12 @@
 //! `leafless info`: what a solid, a mesh or a scene consists of.
 
 use crate::failure::{Failure, Of};
-use crate::report::dexels;
-use crate::report::octree::Info;
-use crate::sink;
+use crate::report::{dexels, mesh, octree, scene, volume};
+use crate::sink::print_told;
 use crate::source::content::Content;
+use crate::source::file::{Found, Stored, Taking};
 use crate::source::input::Input;
-use crate::source::mesh::{self, Reading};
-use crate::source::scene::{self, Drawing};
 use clap::Args;
-use leafless::file;
 use std::ffi::OsString;
 
 /// Of a solid only the file's header and level table are read, so this takes the same short time for files of
@@ -26,54 +23,40 @@ pub struct Arguments {
     #[arg(long)]
     json: bool,
     #[command(flatten)]
-    reading: Reading,
-    #[command(flatten)]
-    drawing: Drawing,
+    taking: Taking,
 }
 
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let input = Input::from(&*arguments.file);
-    let (octree, bytes) = if input.begins_as_solid() {
-        arguments.reading.refuse(&input, "a solid")?;
-        arguments.drawing.refuse(&input, "a solid")?;
-        if let Some((model, length)) = input.dexels(false)? {
-            return dexels::tell(&model, length, arguments.json);
-        }
-        input.octree(false)?
-    } else {
-        let bytes = input.read()?;
-        let length = bytes.len() as u64;
-        match Content::of(&input, &bytes, arguments.reading.told())? {
-            Content::Solid => {
-                arguments.reading.refuse(&input, "a solid")?;
-                arguments.drawing.refuse(&input, "a solid")?;
-                if file::probe_bytes(&bytes).is_ok_and(|probe| probe.dexels.is_some()) {
-                    return dexels::tell(
-                        &file::dexels::from_bytes(&bytes).of(&input)?,
-                        length,
-                        arguments.json,
-                    );
+    let (input, taking, as_json) = (&Input::from(&*arguments.file), &arguments.taking, arguments.json);
+    let Taking { reading, drawing } = taking;
+    let found = Found::look(input, reading.told())?;
+    let bytes = found.length();
+    match found.content {
+        Content::Solid => {
+            taking.refuse(input, "a solid")?;
+            match found.stored(false)? {
+                (Stored::Octree(octree), bytes) => {
+                    print_told(as_json, &octree::Info::new(&octree, bytes), octree::Info::text)
                 }
-                (file::from_bytes(&bytes).of(&input)?, length)
-            }
-            Content::Scene => {
-                arguments.reading.refuse(&input, "a scene")?;
-                return scene::tell(&input, &bytes, &arguments.drawing, arguments.json);
-            }
-            Content::Volume => {
-                arguments.drawing.refuse(&input, "a volume")?;
-                return arguments.reading.volume(&input, &bytes)?.tell(arguments.json);
-            }
-            Content::Mesh => {
-                arguments.drawing.refuse(&input, "a mesh")?;
-                let mesh = arguments.reading.mesh(&input, bytes)?;
-                let fill = arguments.reading.fill(mesh.format);
-                mesh::check_closed(&input, &mesh.mesh, fill)?;
-                return mesh::tell(&input, &mesh, fill, length, arguments.json);
+                (Stored::Dexels(model), bytes) => {
+                    print_told(as_json, &dexels::Info::new(&model, bytes), dexels::Info::text)
+                }
             }
         }
-    };
-    let info = Info::new(&octree, bytes);
-    let text = if arguments.json { sink::json(&info)? } else { info.text() };
-    sink::print(text.as_bytes())
+        Content::Scene => {
+            reading.refuse(input, "a scene")?;
+            let info = scene::Info::new(input, &found.scene(drawing)?, bytes)?;
+            print_told(as_json, &info, scene::Info::text)
+        }
+        Content::Volume => {
+            drawing.refuse(input, "a volume")?;
+            print_told(as_json, &volume::Info::new(&found.volume(reading)?), volume::Info::text)
+        }
+        Content::Mesh => {
+            drawing.refuse(input, "a mesh")?;
+            let (file, fill) = found.mesh(reading)?;
+            let (info, report) = (mesh::Info::new(input, &file, fill, bytes)?, file.mesh.report().of(input)?);
+            print_told(as_json, &info, |info| info.text(&report))
+        }
+    }
 }

@@ -3,12 +3,11 @@
 use crate::failure::{Failure, Of};
 use crate::memory;
 use crate::options::bounds;
-use crate::report::octree::{Proven, stop_word};
+use crate::report::bounds::{Proven, stop_word};
 use crate::sink;
+use crate::source::file::Taking;
 use crate::source::input::Input;
-use crate::source::mesh::Reading;
-use crate::source::scene::Drawing;
-use crate::source::{Corners, Source, evaluations};
+use crate::source::solid::{Corners, Source, evaluations};
 use crate::words::{count, measured, number};
 use clap::Args;
 use leafless::{
@@ -53,9 +52,7 @@ pub struct Arguments {
     #[arg(long)]
     cells: bool,
     #[command(flatten)]
-    reading: Reading,
-    #[command(flatten)]
-    drawing: Drawing,
+    taking: Taking,
     /// Print one JSON object
     #[arg(long)]
     json: bool,
@@ -166,8 +163,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let [a, b] = &inputs;
     let placement = arguments.place_b.unwrap_or(Affine::IDENTITY);
     let (first, second) = (
-        Source::read(a, &arguments.reading, &arguments.drawing)?.taken(arguments.cells),
-        Source::read(b, &arguments.reading, &arguments.drawing)?.taken(arguments.cells),
+        Source::read(a, &arguments.taking)?.taken(arguments.cells),
+        Source::read(b, &arguments.taking)?.taken(arguments.cells),
     );
     let frame = match &arguments.bounds {
         Some(bounds) => bounds.with_depth(arguments.depth.unwrap_or(10)).of(a)?,

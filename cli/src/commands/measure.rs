@@ -1,14 +1,14 @@
 //! `leafless measure`: volume, centroid, inertia and bounds of a solid.
 
 use crate::failure::{Failure, Of};
-use crate::options::{bounds, threads};
+use crate::options::{bounds, threads, tolerance};
 use crate::progress::watched;
-use crate::report::octree::{Proven, Volume, stop_word};
+use crate::report::bounds::{Proven, Volume, stop_word};
+use crate::report::scene::Curves;
 use crate::sink;
+use crate::source::file::Taking;
 use crate::source::input::Input;
-use crate::source::mesh::Reading;
-use crate::source::scene::{Curves, Drawing};
-use crate::source::{Source, evaluations};
+use crate::source::solid::{Source, evaluations};
 use crate::words::{count, measured};
 use clap::Args;
 use leafless::{
@@ -51,22 +51,13 @@ pub struct Arguments {
     #[arg(long)]
     cells: bool,
     #[command(flatten)]
-    reading: Reading,
-    #[command(flatten)]
-    drawing: Drawing,
+    taking: Taking,
     /// Threads to use; 0: as many as there are processors. The result is the same
     #[arg(long, default_value_t = 0, value_name = "N", value_parser = threads)]
     threads: usize,
     /// Print one JSON object
     #[arg(long)]
     json: bool,
-}
-
-pub fn tolerance(text: &str) -> Result<f64, String> {
-    match text.parse() {
-        Ok(tolerance) if tolerance >= 0.0 && f64::is_finite(tolerance) => Ok(tolerance),
-        _ => Err("expected a number not below 0".into()),
-    }
 }
 
 /// Sides of the bounding box are told to this part of the universe's edge where that is cheap, …
@@ -162,8 +153,11 @@ struct Report {
 
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let input = Input::from(&*arguments.file);
-    let source = Source::read(&input, &arguments.reading, &arguments.drawing)?.taken(arguments.cells);
-    let curves = source.curves();
+    let source = Source::read(&input, &arguments.taking)?.taken(arguments.cells);
+    let curves = match &source {
+        Source::Scene(scene) => Some(Curves::from(scene.report())),
+        _ => None,
+    };
     let is_stored = source.own_frame().is_some();
     let frame = source.frame_in(&input, arguments.bounds.as_ref(), arguments.depth)?;
     let solid = Prepared::new(source.placed(&input, &Affine::IDENTITY, &frame)?);

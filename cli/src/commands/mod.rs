@@ -4,7 +4,6 @@ pub mod attribute;
 pub mod bitmap;
 pub mod boolean;
 pub mod contains;
-pub mod conversion;
 pub mod convert;
 pub mod csg;
 pub mod demo;

@@ -6,11 +6,10 @@ use crate::options::threads;
 use crate::progress::watched;
 use crate::report::channel;
 use crate::show::{Protocol, Screen};
-use crate::sink::{self, Output, json};
+use crate::sink::{Output, json};
+use crate::source::file::Taking;
 use crate::source::input::Input;
-use crate::source::mesh::Reading;
-use crate::source::scene::Drawing;
-use crate::source::shape::Shape;
+use crate::source::solid::Shape;
 use crate::words::{count, seconds};
 use clap::Args;
 use leafless::{Bounds, Camera, Clip, Control, FIELD_OF_VIEW, LegendBox, Lens, MAX_DEPTH, Shot, exchange};
@@ -84,9 +83,7 @@ pub struct Arguments {
     #[command(flatten)]
     looks: Looks,
     #[command(flatten)]
-    reading: Reading,
-    #[command(flatten)]
-    drawing: Drawing,
+    taking: Taking,
     /// Threads to use; 0: as many as there are processors. The picture is the same
     #[arg(long, default_value_t = 0, value_name = "N", value_parser = threads)]
     threads: usize,
@@ -138,7 +135,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let screen = arguments.show.map(Screen::of).transpose()?;
     let shown_size = screen.as_ref().filter(|_| output.is_none()).and_then(Screen::size);
     let size = arguments.size.or(shown_size).unwrap_or(SIZE);
-    let shape = Shape::read(&input, &arguments.reading, &arguments.drawing)?.0;
+    let shape = Shape::read(&input, &arguments.taking)?.0;
     let subject = Subject::of(shape, &input, &arguments.looks, arguments.depth, arguments.threads)?;
     let channel = match &subject {
         Subject::Octree(octree, _) if arguments.channel.is_some() || octree.channels().len() == 1 => {
@@ -164,10 +161,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     })
     .of(&input)?;
     let bytes = exchange::write_png(&picture).of(&input)?;
-    match output.as_ref().map(Output::path) {
-        Some(Some(path)) => sink::write_file(path, &bytes)?,
-        Some(None) => sink::print(&bytes)?,
-        None => {}
+    if let Some(output) = &output {
+        output.write(&bytes)?;
     }
     if let Some(screen) = &screen {
         screen.show(&picture, &bytes)?;

@@ -2,8 +2,8 @@
 
 use crate::failure::{Failure, Of};
 use crate::progress::watched;
+use crate::report::bounds::Volume;
 use crate::report::channel;
-use crate::report::octree::Volume;
 use crate::sink;
 use crate::source::input::Input;
 use crate::words::{measured, number};

@@ -4,9 +4,9 @@ use crate::failure::{Failure, Of};
 use crate::memory;
 use crate::progress::watched;
 use crate::report::channel;
+use crate::sink::Output;
 use crate::sink::csv;
 use crate::sink::npz::{Arrays, Reader};
-use crate::sink::{self, Output, write_file};
 use crate::source::input::Input;
 use crate::source::target::{Looking, Target};
 use crate::words::count;
@@ -187,14 +187,11 @@ fn list(arguments: &Arguments, input: &Input, output: &Output) -> Result<(), Fai
     let (records, triangles) = listed.of(input)?;
     let (view, triangles) = (records.view(), triangles.as_ref());
     let bytes = match form {
-        WriteName::Csv => sink::stream(output, |out| csv::write(&view, triangles, out))?,
+        WriteName::Csv => output.stream(|out| csv::write(&view, triangles, out))?,
         WriteName::Npz => {
             memory::afford_file((records.bytes_each() as u64 + 24) * view.len() as u64).of(output)?;
             let bytes = npz(&view, triangles).of(output)?;
-            match output.path() {
-                Some(path) => write_file(path, &bytes)?,
-                None => sink::print(&bytes)?,
-            }
+            output.write(&bytes)?;
             bytes.len() as u64
         }
     };
@@ -235,7 +232,7 @@ fn report(
         triangles: triangles.map(|found| found.triangles().len() as u64),
         bytes,
     };
-    output.report(&if arguments.json { sink::json(&report)? } else { report.text() })
+    output.tell(arguments.json, &report, Report::text)
 }
 
 impl Report {

@@ -3,12 +3,11 @@
 use crate::failure::{Failure, Of};
 use crate::options::bounds;
 use crate::progress::watched;
-use crate::report::octree::Volume;
+use crate::report::bounds::Volume;
 use crate::sink;
-use crate::source::Source;
+use crate::source::file::Taking;
 use crate::source::input::Input;
-use crate::source::mesh::Reading;
-use crate::source::scene::Drawing;
+use crate::source::solid::Source;
 use crate::words::{count, measured, number};
 use clap::Args;
 use leafless::{
@@ -51,9 +50,7 @@ pub struct Arguments {
     #[arg(long)]
     cells: bool,
     #[command(flatten)]
-    reading: Reading,
-    #[command(flatten)]
-    drawing: Drawing,
+    taking: Taking,
     /// Print one JSON object
     #[arg(long)]
     json: bool,
@@ -142,12 +139,8 @@ impl Subject {
 
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let input = Input::from(&*arguments.file);
-    let source = Source::read(&input, &arguments.reading, &arguments.drawing)?.taken(arguments.cells);
-    let depth = match source.own_frame() {
-        Some(_) => arguments.depth,
-        None => Some(arguments.depth.unwrap_or(DEPTH)),
-    };
-    let frame = source.frame_in(&input, arguments.bounds.as_ref(), depth)?;
+    let source = Source::read(&input, &arguments.taking)?.taken(arguments.cells);
+    let frame = source.frame_to(&input, arguments.bounds.as_ref(), arguments.depth, DEPTH)?;
     let (region, name) = region(arguments, &frame)?;
     let subject = match source {
         Source::Octree(octree) if arguments.depth.is_none() => Subject::Octree(octree),
@@ -195,6 +188,6 @@ fn region(arguments: &Arguments, frame: &Frame) -> Result<(AnySolid, String), Fa
         return Err(Failure::Usage("one of --ball, --box and --in is needed".into()));
     };
     let input = Input::from(&**other);
-    let source = Source::read(&input, &arguments.reading, &arguments.drawing)?.taken(arguments.cells);
+    let source = Source::read(&input, &arguments.taking)?.taken(arguments.cells);
     Ok((source.placed(&input, &Affine::IDENTITY, frame)?, input.to_string()))
 }

@@ -3,9 +3,9 @@
 use crate::failure::{Failure, Of};
 use crate::making::dexel_surface;
 use crate::progress::watched;
-use crate::source::Source;
 use crate::source::input::Input;
-use crate::source::shape::Shape;
+use crate::source::solid::Shape;
+use crate::source::solid::Source;
 use clap::{Args, ValueEnum};
 use leafless::{
     Affine, AnySolid, Attribute, Bounds, CellFilter, Channel, Clip, ClippedLayer, ColourMap, Compositing,

@@ -1,7 +1,5 @@
 //! What is told of tri-dexel models.
 
-use crate::failure::Failure;
-use crate::sink::{json, print};
 use crate::words::{count, counted, number};
 use leafless::{DexelEnds, DexelNormals, TriDexel};
 use serde::Serialize;
@@ -108,7 +106,8 @@ impl Info {
         self.directions.iter().map(|direction| direction.axis).collect()
     }
 
-    fn text(&self) -> String {
+    /// The same for people.
+    pub fn text(&self) -> String {
         let mut text = String::new();
         let mut line = |name: &str, value: String| {
             // Writing to a string does not fail.
@@ -142,13 +141,7 @@ impl Info {
     }
 }
 
-/// Prints what a model consists of, whose file has so many bytes.
-pub fn tell(model: &TriDexel, bytes: u64, as_json: bool) -> Result<(), Failure> {
-    let info = Info::new(model, bytes);
-    print((if as_json { json(&info)? } else { info.text() }).as_bytes())
-}
-
-/// The same in some words, for one that is good.
+/// A model in some words.
 pub fn summary(model: &TriDexel, bytes: u64) -> String {
     let axes = Info::new(model, bytes).axes();
     let intervals = counted(model.view().interval_count(), "interval", "intervals");

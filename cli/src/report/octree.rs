@@ -1,84 +1,12 @@
-//! What is told of a solid, for programs (JSON) and for people.
+//! What is told of an octree, for programs (JSON) and for people.
 
+use crate::report::bounds::{Proven, Volume};
 use crate::report::channel::ChannelInfo;
-use crate::words::{count, ends, measured, number};
-use leafless::{
-    DefectKind, Error, IntersectingPair, Interval, MeshDefect, MeshReport, Octree, Proof, Statistics,
-    StopReason, Tag, TriangleMesh,
-};
+use crate::words::{count, ends, measured, number, table};
+use leafless::{Interval, Octree, Statistics, Tag};
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::fmt::Write;
-
-/// A certified volume in cubic model units.
-#[derive(Serialize)]
-pub struct Volume {
-    lower: f64,
-    upper: f64,
-}
-
-impl Volume {
-    /// The interval.
-    pub fn interval(&self) -> Interval {
-        Interval::new(self.lower, self.upper).unwrap_or(Interval::ALL)
-    }
-
-    /// How much is undecided.
-    pub fn width(&self) -> f64 {
-        self.upper - self.lower
-    }
-}
-
-impl From<Interval> for Volume {
-    fn from(interval: Interval) -> Volume {
-        Volume { lower: interval.lower, upper: interval.upper }
-    }
-}
-
-/// Why a search ended, in a word.
-pub fn stop_word(reason: StopReason) -> &'static str {
-    match reason {
-        StopReason::Tolerance => "tolerance",
-        StopReason::Budget => "budget",
-        StopReason::Exhausted => "exhausted",
-    }
-}
-
-/// What cells prove of the solid that they were made from.
-#[derive(Serialize)]
-pub struct Proven {
-    full: bool,
-    empty: bool,
-    displacement: f64,
-}
-
-impl From<Proof> for Proven {
-    fn from(proof: Proof) -> Proven {
-        Proven { full: proof.full, empty: proof.empty, displacement: proof.displacement() }
-    }
-}
-
-impl Proven {
-    /// What is not proven, if that is anything, and what can be done.
-    pub fn doubt(&self) -> Option<String> {
-        let certified = self.full && self.empty;
-        (!certified).then(|| format!("{} (--cells takes the cells for the solid)", self.text()))
-    }
-
-    /// The same for people.
-    pub fn text(&self) -> String {
-        let proven = match (self.full, self.empty) {
-            (true, true) => "inside and outside",
-            (true, false) => "inside only; what is called outside need not be",
-            (false, true) => "outside only; what is called inside need not be",
-            (false, false) => "nothing: cells are called inside or outside as they were sampled",
-        };
-        match self.displacement {
-            0.0 => proven.into(),
-            moved => format!("{proven}; of surfaces that were moved by {} or less", number(moved)),
-        }
-    }
-}
 
 /// Cells of the canonical octree over all levels; together they are its classical nodes.
 #[derive(Serialize)]
@@ -213,7 +141,7 @@ impl Info {
 
     /// What the volume is the volume of.
     pub fn volume_note(&self) -> &'static str {
-        match (self.proof.full && self.proof.empty, self.clipped) {
+        match (self.proof.is_certified(), self.clipped) {
             (false, _) => " (of the cells)",
             (true, false) if self.volume.width() == 0.0 => " (exactly)",
             (true, false) => " (the true one lies between)",
@@ -236,133 +164,4 @@ impl Cells {
             full: statistics.cells(Tag::Full),
         }
     }
-}
-
-/// What was found while a mesh was taken in.
-#[derive(Serialize)]
-pub struct Mesh {
-    facets_read: u64,
-    triangles: u64,
-    vertices: u64,
-    welded: u64,
-    degenerate: u64,
-    boundary_edges: u64,
-    boundary_loops: u64,
-    misoriented_edges: u64,
-    non_manifold_edges: u64,
-    duplicate: u64,
-    opposite: u64,
-    flat: u64,
-    bodies: u64,
-    open_bodies: u64,
-    inside_out_bodies: u64,
-    sewn: u64,
-    displacement: f64,
-    overlapping_bodies: u64,
-    undecided_bodies: u64,
-    polygons: u64,
-    bent_polygons: u64,
-    polygon_deviation: f64,
-    pub defects: Vec<Defect>,
-}
-
-/// One of the worst places.
-#[derive(Serialize)]
-pub struct Defect {
-    kind: &'static str,
-    count: u64,
-    length: f64,
-    min: [f64; 3],
-    max: [f64; 3],
-}
-
-/// Defects that are told of.
-const DEFECTS: usize = 10;
-
-impl Mesh {
-    pub fn new(mesh: &TriangleMesh) -> Result<Mesh, Error> {
-        let report = mesh.report()?;
-        let MeshReport { boundary_edges, misoriented_edges, non_manifold_edges, .. } = report;
-        let faults = [boundary_edges, misoriented_edges, non_manifold_edges, report.duplicate, report.flat];
-        // Looking for them takes time.
-        let is_faultless = faults == [0; 5] && report.opposite == 0;
-        let defects = if is_faultless { Vec::new() } else { mesh.defects(DEFECTS)? };
-        Ok(Mesh {
-            facets_read: report.facets_read,
-            triangles: report.triangles,
-            vertices: report.vertices,
-            welded: report.welded,
-            degenerate: report.degenerate,
-            boundary_edges,
-            boundary_loops: report.boundary_loops,
-            misoriented_edges,
-            non_manifold_edges,
-            duplicate: report.duplicate,
-            opposite: report.opposite,
-            flat: report.flat,
-            bodies: report.bodies,
-            open_bodies: report.open_bodies,
-            inside_out_bodies: report.inside_out_bodies,
-            sewn: report.sewn,
-            displacement: report.displacement,
-            overlapping_bodies: report.overlapping_bodies,
-            undecided_bodies: report.undecided_bodies,
-            polygons: report.polygons,
-            bent_polygons: report.bent_polygons,
-            polygon_deviation: report.polygon_deviation,
-            defects: defects.iter().map(Defect::new).collect(),
-        })
-    }
-}
-
-impl Defect {
-    fn new(defect: &MeshDefect) -> Defect {
-        let kind = match defect.kind {
-            DefectKind::Hole => "hole",
-            DefectKind::Misoriented => "misoriented",
-            DefectKind::NonManifold => "non-manifold",
-            DefectKind::Duplicate => "duplicate",
-            DefectKind::Flat => "flat",
-        };
-        let (min, max) = defect.bounds;
-        Defect { kind, count: defect.count, length: defect.length, min, max }
-    }
-
-    /// Two triangles that intersect.
-    pub fn intersecting(pair: &IntersectingPair) -> Defect {
-        let (min, max) = pair.bounds;
-        Defect { kind: "intersecting", count: 2, length: 0.0, min, max }
-    }
-
-    /// The same for people, in columns.
-    pub fn table(defects: &[Defect]) -> String {
-        let rows: Vec<_> = (defects.iter())
-            .map(|defect| {
-                let [from, to] = [defect.min, defect.max].map(|corner| corner.map(short).join(" "));
-                [defect.kind.to_owned(), count(defect.count), short(defect.length), from, to]
-            })
-            .collect();
-        table(&["defect", "count", "length", "from", "to"].map(str::to_owned), &rows)
-    }
-}
-
-/// A number for a table: six digits tell where to look.
-pub fn short(x: f64) -> String {
-    let rounded: f64 = format!("{x:.5e}").parse().unwrap_or(x);
-    number(rounded)
-}
-
-/// Lines whose columns are aligned to the right.
-fn table<const N: usize>(head: &[String; N], rows: &[[String; N]]) -> String {
-    let width =
-        |column: usize| (rows.iter().chain([head])).map(|row| row[column].chars().count()).max().unwrap_or(0);
-    let mut text = String::new();
-    for row in [head].into_iter().chain(rows) {
-        for (column, cell) in row.iter().enumerate() {
-            let gap = if column == 0 { "" } else { "  " };
-            let _ = write!(text, "{gap}{cell:>width$}", width = width(column));
-        }
-        text.push('\n');
-    }
-    text
 }

@@ -5,7 +5,9 @@ pub mod npz;
 pub mod written;
 
 use crate::failure::{Failure, Of, Problem};
+use crate::source::input::Input;
 use leafless::{Error, Octree, TriDexel, file};
+use serde::Serialize;
 use std::ffi::OsStr;
 use std::fmt;
 use std::io::{BufWriter, ErrorKind, IsTerminal, Write};
@@ -63,6 +65,24 @@ impl Output {
         }
     }
 
+    /// Refuses to overwrite what is read: `what` it is.
+    pub fn check_beside(&self, input: &Input, what: &str) -> Result<(), Failure> {
+        if let (Some(from), Some(to)) = (input.path(), self.path())
+            && from.canonicalize().is_ok_and(|from| to.canonicalize().is_ok_and(|to| from == to))
+        {
+            return Err(Failure::of(self, format_args!("is the {what} itself, which is not overwritten")));
+        }
+        Ok(())
+    }
+
+    /// Writes the bytes, the whole of them or nothing.
+    pub fn write(&self, bytes: &[u8]) -> Result<(), Failure> {
+        match self {
+            Output::Standard => print(bytes),
+            Output::Path(path) => write_file(path, bytes),
+        }
+    }
+
     /// Saves the octree, the whole of it or nothing, and returns the bytes that its file has.
     pub fn save(&self, octree: &Octree) -> Result<u64, Failure> {
         self.put(|path| file::save(octree, path), |out| file::write_to(octree, out))
@@ -96,6 +116,35 @@ impl Output {
                 Ok(counter.count)
             }
         }
+    }
+
+    /// The same without having all of them in memory. Returns how many there are.
+    pub fn stream(&self, write: impl FnOnce(&mut dyn Write) -> std::io::Result<()>) -> Result<u64, Failure> {
+        let Some(path) = self.path() else {
+            let mut out = Counter { out: BufWriter::new(std::io::stdout().lock()), count: 0 };
+            write(&mut out).and_then(|()| out.flush()).map_err(unwritten)?;
+            return Ok(out.count);
+        };
+        let mut count = 0;
+        let whole = file::replace(path, |file| {
+            let mut out = Counter { out: BufWriter::new(file), count: 0 };
+            write(&mut out)?;
+            out.flush()?;
+            count = out.count;
+            Ok(())
+        });
+        whole.of(path.display())?;
+        Ok(count)
+    }
+
+    /// Tells what was done, as JSON or for people.
+    pub fn tell<T: Serialize>(
+        &self,
+        as_json: bool,
+        report: &T,
+        text: impl FnOnce(&T) -> String,
+    ) -> Result<(), Failure> {
+        self.report(&if as_json { json(report)? } else { text(report) })
     }
 
     /// Prints what was done: to standard error where standard output carries the result itself.
@@ -134,47 +183,6 @@ pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
     file::replace(path, |file| Ok(file.write_all(bytes)?)).of(path.display())
 }
 
-/// Writes a file whole or not at all, or to standard output, without having all of it in memory. Returns how many bytes
-/// it has.
-pub fn stream(
-    output: &Output,
-    write: impl FnOnce(&mut dyn Write) -> std::io::Result<()>,
-) -> Result<u64, Failure> {
-    let Some(path) = output.path() else {
-        let mut out = Counted { inner: BufWriter::new(std::io::stdout().lock()), bytes: 0 };
-        write(&mut out).and_then(|()| out.flush()).map_err(unwritten)?;
-        return Ok(out.bytes);
-    };
-    let mut bytes = 0;
-    let whole = file::replace(path, |file| {
-        let mut out = Counted { inner: BufWriter::new(file), bytes: 0 };
-        write(&mut out)?;
-        out.flush()?;
-        bytes = out.bytes;
-        Ok(())
-    });
-    whole.of(path.display())?;
-    Ok(bytes)
-}
-
-/// A writer that knows how many bytes it was given.
-struct Counted<W> {
-    inner: W,
-    bytes: u64,
-}
-
-impl<W: Write> Write for Counted<W> {
-    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
-        let written = self.inner.write(bytes)?;
-        self.bytes += written as u64;
-        Ok(written)
-    }
-
-    fn flush(&mut self) -> std::io::Result<()> {
-        self.inner.flush()
-    }
-}
-
 /// Writes to standard output.
 pub fn print(bytes: &[u8]) -> Result<(), Failure> {
     let mut out = std::io::stdout().lock();
@@ -189,15 +197,24 @@ fn unwritten(error: std::io::Error) -> Failure {
     }
 }
 
+/// Prints an answer, as JSON or for people.
+pub fn print_told<T: Serialize>(
+    as_json: bool,
+    answer: &T,
+    text: impl FnOnce(&T) -> String,
+) -> Result<(), Failure> {
+    print((if as_json { json(answer)? } else { text(answer) }).as_bytes())
+}
+
 /// Writes `value` as JSON, one object over several lines.
-pub fn json(value: &impl serde::Serialize) -> Result<String, Failure> {
+pub fn json(value: &impl Serialize) -> Result<String, Failure> {
     let mut text = serde_json::to_string_pretty(value).map_err(|error| Failure::of("JSON", error))?;
     text.push('\n');
     Ok(text)
 }
 
 /// Writes `value` as JSON on one line.
-pub fn json_line(value: &impl serde::Serialize) -> Result<String, Failure> {
+pub fn json_line(value: &impl Serialize) -> Result<String, Failure> {
     let mut text = serde_json::to_string(value).map_err(|error| Failure::of("JSON", error))?;
     text.push('\n');
     Ok(text)

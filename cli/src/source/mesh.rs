@@ -1,20 +1,13 @@
-//! Meshes from files of any format: the options of reading them, and what is told of them.
+//! Meshes from files of any format: the options of reading them.
 
 use crate::failure::{Failure, Of, complain};
-use crate::report::octree::{Defect, Mesh, Volume};
-use crate::sink;
 use crate::source::content::Content;
 use crate::source::input::Input;
 use crate::source::volume::{Sampling, Voxels};
-use crate::words::{count, counted, measured, number};
+use crate::words::counted;
 use clap::{Args, ValueEnum};
 use leafless::exchange::{LengthUnit, MeshFile, MeshFormat, MeshOptions, MeshWarning};
-use leafless::{
-    Control, Error, FillRule, Frame, Interval, MAX_DEPTH, MeshError, MeshReport, MeshSolid, TriangleMesh,
-    exchange, measure,
-};
-use serde::Serialize;
-use std::fmt::Write;
+use leafless::{Error, FillRule, Frame, MeshError, MeshReport, TriangleMesh, exchange};
 
 /// How a mesh file is to be taken.
 #[derive(Clone, Args)]
@@ -37,7 +30,7 @@ pub struct Reading {
     #[arg(long, value_enum)]
     fill: Option<FillName>,
     #[command(flatten)]
-    pub sampling: Sampling,
+    sampling: Sampling,
 }
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
@@ -140,7 +133,7 @@ impl Reading {
     }
 
     /// The rule by which points count as inside a mesh of this format.
-    pub fn fill(&self, format: MeshFormat) -> FillRule {
+    fn fill(&self, format: MeshFormat) -> FillRule {
         match (self.fill, format) {
             (Some(fill), _) => fill.into(),
             (None, MeshFormat::ThreeMf) => FillRule::Positive,
@@ -154,20 +147,9 @@ impl Reading {
         self.format.map(MeshFormat::from).or_else(|| MeshFormat::detect(bytes, extension))
     }
 
-    /// The mesh in a file with these bytes, hair cracks closed, and a fingerprint of the file.
-    pub fn read(&self, input: &Input, bytes: Vec<u8>) -> Result<(MeshFile, String), Failure> {
-        match Content::of(input, &bytes, self.told())? {
-            Content::Solid => return Err(Failure::of(input, "is a solid already, not a mesh")),
-            Content::Scene => return Err(Failure::of(input, "is a scene, not a mesh: use `leafless csg`")),
-            Content::Volume => return Err(Failure::of(input, "is a volume, not a mesh")),
-            Content::Mesh => {}
-        }
-        let source = format!("crc32:{:08x} bytes:{}", crc32fast::hash(&bytes), bytes.len());
-        Ok((self.mesh(input, bytes)?, source))
-    }
-
-    /// The mesh in these bytes of a file, hair cracks closed.
-    pub fn mesh(&self, input: &Input, bytes: Vec<u8>) -> Result<MeshFile, Failure> {
+    /// The mesh in these bytes of a file, hair cracks closed, and the rule by which points count as inside. A mesh that
+    /// is open is refused where the rule needs a closed one.
+    pub fn mesh(&self, input: &Input, bytes: Vec<u8>) -> Result<(MeshFile, FillRule), Failure> {
         self.sampling.refuse(input, "a mesh")?;
         let (format, unit, target) = (self.format_of(input, &bytes), self.unit, self.to);
         let options = MeshOptions { format, unit, target, scale: self.scale.unwrap_or(1.0) };
@@ -178,7 +160,9 @@ impl Reading {
         // Sewing needs memory of its own.
         drop(bytes);
         file.mesh = file.mesh.sewn().of(input)?;
-        Ok(file)
+        let fill = self.fill(file.format);
+        check_closed(input, &file.mesh, fill)?;
+        Ok((file, fill))
     }
 }
 
@@ -216,8 +200,18 @@ pub fn openness(report: &MeshReport) -> Option<String> {
     }
 }
 
+/// Complains of a mesh that bounds no solid, unless the fill rule has refused it.
+pub fn warn_of_openness(input: &Input, report: &MeshReport, fill: FillRule) {
+    if fill != FillRule::EvenOdd
+        && let Some(how) = openness(report)
+    {
+        let whole = "the mesh does not bound a solid";
+        complain(&format!("{input}: warning: {whole}: {how}; the winding number decides what is inside"));
+    }
+}
+
 /// Refuses a mesh that is open where the fill rule needs a closed one.
-pub fn check_closed(input: &Input, mesh: &TriangleMesh, fill: FillRule) -> Result<(), Failure> {
+fn check_closed(input: &Input, mesh: &TriangleMesh, fill: FillRule) -> Result<(), Failure> {
     if fill != FillRule::EvenOdd {
         return Ok(());
     }
@@ -233,153 +227,4 @@ pub fn check_closed(input: &Input, mesh: &TriangleMesh, fill: FillRule) -> Resul
 /// What is read though it departs from its format, in words.
 pub fn in_words(warnings: &[MeshWarning]) -> Vec<String> {
     warnings.iter().map(ToString::to_string).collect()
-}
-
-/// The volume that a mesh encloses by a fill rule, to a ten thousandth, or what is known of it after a moment.
-fn volume_by(rule: FillRule, mesh: &TriangleMesh) -> Result<Interval, Error> {
-    const TOLERANCE: f64 = 1e-4;
-    const SPLITS: u64 = 1 << 18;
-    let frame = frame_around(mesh, MAX_DEPTH)?;
-    let solid = MeshSolid::new(mesh.clone(), rule)?;
-    let control = Control { max_splits: Some(SPLITS), ..Control::default() };
-    Ok(measure(&solid, &frame, TOLERANCE, &control)?.volume)
-}
-
-/// Pairs of triangles that intersect, of which `info` tells the place.
-const PAIRS: usize = 5;
-
-/// What `info` tells of a mesh.
-#[derive(Serialize)]
-pub struct Info {
-    format: &'static str,
-    unit: Option<&'static str>,
-    bytes: u64,
-    min: [f64; 3],
-    max: [f64; 3],
-    /// The sum of signed volumes, by the divergence theorem; absent (null) for a mesh that bounds no solid.
-    volume: Option<f64>,
-    /// What is enclosed by the rule; absent (null) unless bodies overlap, or may, and make it another volume.
-    volume_by_rule: Option<Volume>,
-    /// The rule: `nonzero`, `positive` or `evenodd`.
-    rule: &'static str,
-    closed: bool,
-    /// Objects of a 3MF that are no solids.
-    skipped: u64,
-    /// Where the file departs from its format, though it could be read.
-    warnings: Vec<String>,
-    /// Pairs of triangles that intersect.
-    intersecting_pairs: u64,
-    /// Whether these are all: too many triangles close to each other end the search.
-    all_intersecting_pairs: bool,
-    mesh: Mesh,
-}
-
-impl Info {
-    pub fn new(input: &Input, file: &MeshFile, fill: FillRule, bytes: u64) -> Result<Info, Failure> {
-        let report = file.mesh.report().of(input)?;
-        let closed = openness(&report).is_none() && report.triangles > 0;
-        let (min, max) = file.mesh.bounds();
-        let may_overlap = report.overlapping_bodies + report.undecided_bodies > 0;
-        let by_rule = (closed && may_overlap).then(|| volume_by(fill, &file.mesh)).transpose().of(input)?;
-        let pairs = file.mesh.intersecting_pairs(PAIRS, &Control::default()).of(input)?;
-        let mut mesh = Mesh::new(&file.mesh).of(input)?;
-        mesh.defects.extend(pairs.pairs.iter().map(Defect::intersecting));
-        Ok(Info {
-            format: format_name(file.format),
-            unit: file.unit.map(LengthUnit::symbol),
-            bytes,
-            min,
-            max,
-            volume: closed.then(|| file.mesh.volume()),
-            volume_by_rule: by_rule.map(Into::into),
-            rule: fill_name(fill),
-            closed,
-            skipped: file.skipped,
-            warnings: in_words(&file.warnings),
-            intersecting_pairs: pairs.count,
-            all_intersecting_pairs: pairs.is_complete,
-            mesh,
-        })
-    }
-
-    /// The same for people.
-    pub fn text(&self, mesh: &TriangleMesh, input: &Input) -> Result<String, Failure> {
-        let report = mesh.report().of(input)?;
-        let mut text = String::new();
-        let mut line = |name: &str, value: String| {
-            // Writing to a string does not fail.
-            let _ = writeln!(text, "{name:<16}{value}");
-        };
-        line("format", self.format.to_uppercase());
-        line("unit", self.unit.unwrap_or("unknown").into());
-        for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
-            line(name, format!("{} to {}", number(self.min[axis]), number(self.max[axis])));
-        }
-        let state = match openness(&report) {
-            _ if report.triangles == 0 => "no: there is no triangle".to_owned(),
-            None => "yes".to_owned(),
-            Some(how) => format!("no: {how}"),
-        };
-        line("closed", state);
-        match (self.volume, &self.volume_by_rule) {
-            (None, _) => line("volume", "-".into()),
-            (Some(volume), None) => line("volume", number(volume)),
-            (Some(volume), Some(by_rule)) => {
-                line("volume", format!("{}, the sum of signed volumes", number(volume)));
-                line("", format!("{}, by the rule ({})", measured(by_rule.interval()), self.rule));
-            }
-        }
-        for (name, value) in [
-            ("triangles", report.triangles),
-            ("vertices", report.vertices),
-            ("bodies", report.bodies),
-            ("open", report.open_bodies),
-            ("inside out", report.inside_out_bodies),
-            ("overlapping", report.overlapping_bodies),
-            ("may overlap", report.undecided_bodies),
-            ("boundary edges", report.boundary_edges),
-            ("boundary loops", report.boundary_loops),
-            ("misoriented", report.misoriented_edges),
-            ("non-manifold", report.non_manifold_edges),
-            ("duplicate", report.duplicate),
-            ("opposite", report.opposite),
-            ("flat", report.flat),
-            ("degenerate", report.degenerate),
-            ("welded", report.welded),
-        ] {
-            line(name, count(value));
-        }
-        match self.all_intersecting_pairs {
-            true => line("intersecting", counted(self.intersecting_pairs, "pair", "pairs")),
-            false => line("intersecting", format!("{} pairs or more", count(self.intersecting_pairs))),
-        }
-        if report.polygons > 0 {
-            line("polygons", count(report.polygons));
-        }
-        if report.bent_polygons > 0 {
-            let most = number(report.polygon_deviation);
-            let bent = count(report.bent_polygons);
-            line("not flat", format!("{bent} of them, with corners up to {most} beside the mean plane;"));
-            line("", "what is measured is measured of one of their triangulations".into());
-        }
-        if report.sewn > 0 {
-            line("sewn", format!("{}, moved by {} or less", count(report.sewn), number(report.displacement)));
-        }
-        if self.skipped > 0 {
-            line("left out", counted(self.skipped, "object that is no solid", "objects that are no solids"));
-        }
-        line("bytes", count(self.bytes));
-        if !self.mesh.defects.is_empty() {
-            text.push('\n');
-            text.push_str(&Defect::table(&self.mesh.defects));
-        }
-        Ok(text)
-    }
-}
-
-/// Prints what is known of a mesh.
-pub fn tell(input: &Input, file: &MeshFile, fill: FillRule, bytes: u64, json: bool) -> Result<(), Failure> {
-    let info = Info::new(input, file, fill, bytes)?;
-    let text = if json { sink::json(&info)? } else { info.text(&file.mesh, input)? };
-    sink::print(text.as_bytes())
 }

@@ -2,10 +2,9 @@
 
 use crate::failure::Failure;
 use crate::options::{bounds, threads};
-use crate::source::Source;
+use crate::source::file::Taking;
 use crate::source::input::Input;
-use crate::source::mesh::Reading;
-use crate::source::scene::Drawing;
+use crate::source::solid::Source;
 use clap::Args;
 use leafless::{Affine, Frame, Octree, Prepared, Proof};
 
@@ -20,9 +19,7 @@ pub struct Looking {
     #[arg(long)]
     cells: bool,
     #[command(flatten)]
-    reading: Reading,
-    #[command(flatten)]
-    drawing: Drawing,
+    taking: Taking,
     /// Threads to use; 0: as many as there are processors. The result is the same
     #[arg(long, default_value_t = 0, value_name = "N", value_parser = threads)]
     pub threads: usize,
@@ -42,7 +39,7 @@ impl Looking {
         depth: Option<u8>,
         deepest: u8,
     ) -> Result<(Target, Proof), Failure> {
-        let source = Source::read(input, &self.reading, &self.drawing)?;
+        let source = Source::read(input, &self.taking)?;
         let proof = source.proof();
         Ok((Target::of(source.taken(self.cells), input, self.bounds.as_ref(), depth, deepest)?, proof))
     }
@@ -71,8 +68,7 @@ impl Target {
                 Ok(Target::Cells(octree))
             }
             source => {
-                let depth = depth.or(source.own_frame().is_none().then_some(deepest));
-                let frame = source.frame_in(input, bounds, depth)?;
+                let frame = source.frame_to(input, bounds, depth, deepest)?;
                 let solid = Prepared::new(source.placed(input, &Affine::IDENTITY, &frame)?);
                 Ok(Target::Solid(Box::new((solid, frame))))
             }

@@ -1,23 +1,17 @@
 //! Volumes from files, NRRD, MetaImage and raw: which voxels are inside, and what is told of them.
 
 use crate::failure::{Failure, Of, Problem, complain};
-use crate::progress::watched;
-use crate::report::octree::Info;
-use crate::sink::{self, Output};
 use crate::source::input::Input;
-use crate::words::{count, counted, number, seconds};
+use crate::words::counted;
 use clap::{Args, ValueEnum};
 use leafless::exchange::{
     LengthUnit, RawVolume, SampleKind, open_volume, read_raw_volume, read_volume, volume_data_file,
 };
 use leafless::{
-    Affine, AnySolid, Attribute, Band, Control, Error, Frame, Interpolation, Metadata, MovedAttribute,
-    Octree, Rule, Samples, Solid, TriangleMesh, Volume, VolumeAttribute, VoxelGrid, build,
-    marching_cubes_of_volume,
+    Affine, AnySolid, Attribute, Band, Control, Error, Frame, Interpolation, MovedAttribute, Samples, Volume,
+    VolumeAttribute, VoxelGrid,
 };
-use serde::Serialize;
 use std::str::FromStr;
-use std::time::Instant;
 
 /// Which voxels of a volume are inside, and what the bytes of one without a header mean.
 #[derive(Clone, Args)]
@@ -117,11 +111,11 @@ pub struct Voxels {
     /// The frame whose finest cells are voxels, if voxels are cubes along the axes.
     pub frame: Option<Frame>,
     pub unit: Option<LengthUnit>,
-    volume: Volume<'static>,
+    pub volume: Volume<'static>,
     /// What moves the grid to its place, if its axes are not x, y and z.
-    placement: Option<Affine>,
-    format: String,
-    kind: SampleKind,
+    pub placement: Option<Affine>,
+    pub format: String,
+    pub kind: SampleKind,
     pub threshold: f64,
 }
 
@@ -206,16 +200,6 @@ fn with_header(input: &Input, bytes: &[u8]) -> Result<Found, Failure> {
 }
 
 impl Voxels {
-    /// The surface by marching cubes, with vertices where the samples cross the threshold.
-    pub fn surface(&self, input: &Input, threads: usize) -> Result<TriangleMesh, Failure> {
-        let mesh = watched("mesh", threads, |control| marching_cubes_of_volume(&self.volume, control));
-        let mesh = mesh.of(input)?;
-        match &self.placement {
-            Some(placement) => mesh.placed(placement).of(input),
-            None => Ok(mesh),
-        }
-    }
-
     /// The samples as values at points.
     pub fn attribute(&self, interpolation: Interpolation) -> Result<Box<dyn Attribute>, Error> {
         let samples = VolumeAttribute::new(self.volume.clone(), interpolation);
@@ -223,152 +207,5 @@ impl Voxels {
             Some(placement) => Box::new(MovedAttribute::new(samples, placement.inverse()?)),
             None => Box::new(samples),
         })
-    }
-
-    /// The octree whose finest cells are the voxels.
-    pub fn octree(&self, input: &Input, threads: usize) -> Result<Octree, Failure> {
-        let frame = self.frame.as_ref().ok_or_else(|| {
-            let problem = "its voxels are no cubes along the axes, so that its cells need --bounds and --depth of \
-                           `leafless voxelize`";
-            Failure::of(input, problem)
-        })?;
-        self.octree_on(input, frame, Rule::Sampled, threads)
-    }
-
-    fn octree_on(&self, input: &Input, frame: &Frame, rule: Rule, threads: usize) -> Result<Octree, Failure> {
-        let octree =
-            watched("voxelize", threads, |control| build(&self.solid, frame, rule, control)).of(input)?;
-        let mut metadata = Metadata::new();
-        if let Some(stem) = input.path().and_then(|path| path.file_stem()) {
-            metadata.insert("name", stem.to_string_lossy());
-        }
-        metadata.insert("threshold", number(self.threshold));
-        if let Some(unit) = self.unit {
-            metadata.insert("units", unit.symbol());
-        }
-        Ok(octree.with_metadata(metadata))
-    }
-
-    /// Makes a solid's file: on the frame of the voxels, or on the one that the user wants.
-    pub fn save(&self, input: &Input, output: &Output, job: &Job) -> Result<(), Failure> {
-        let start = Instant::now();
-        let bounds = self.solid.bounds().map(|bounds| (bounds.min, bounds.max));
-        let frame = match (&job.bounds, job.depth, &self.frame, bounds) {
-            (Some(bounds), Some(depth), ..) => Some(bounds.with_depth(depth).of(input)?),
-            (Some(_), None, ..) => {
-                return Err(Failure::Usage("--bounds needs --depth".into()));
-            }
-            (None, Some(depth), Some(frame), _) => Some(frame.with_depth(depth).of(input)?),
-            (None, Some(depth), None, Some((min, max))) => Some(Frame::fitted(min, max, depth).of(input)?),
-            _ => None,
-        };
-        let octree = match &frame {
-            Some(frame) => self.octree_on(input, frame, job.rule, job.threads)?,
-            None => self.octree(input, job.threads)?,
-        };
-        let bytes = output.save(&octree)?;
-        let info = Info::new(&octree, bytes);
-        if job.json {
-            let report = SavedReport {
-                input: input.to_string(),
-                output: output.to_string(),
-                seconds: start.elapsed().as_secs_f64(),
-                volume_file: self.told(),
-                threshold: self.threshold,
-                info,
-            };
-            return output.report(&sink::json(&report)?);
-        }
-        output.report(&format!(
-            "{output}: octree of depth {}, volume {}, {} nodes, {} bytes, in {}\n",
-            octree.frame().depth(),
-            info.volume_text(),
-            count(info.nodes),
-            count(bytes),
-            seconds(start.elapsed().as_secs_f64()),
-        ))
-    }
-
-    /// Prints what the volume is.
-    pub fn tell(&self, json: bool) -> Result<(), Failure> {
-        let told = self.told();
-        if json {
-            return sink::print(sink::json(&told)?.as_bytes());
-        }
-        let [x, y, z] = told.extents;
-        let place = |p: [f64; 3]| p.map(number).join(", ");
-        let unit = told.unit.map_or_else(String::new, |unit| format!(" {unit}"));
-        sink::print(
-            format!(
-                "{} volume, {x} x {y} x {z} samples of type {}\nvoxels {}{unit}, from {}\n",
-                told.format,
-                told.samples,
-                place(told.spacing),
-                place(told.corner),
-            )
-            .as_bytes(),
-        )
-    }
-
-    fn told(&self) -> Told {
-        Told {
-            format: self.format.clone(),
-            samples: kind(self.kind),
-            extents: self.volume.grid().extents(),
-            spacing: self.volume.grid().spacing(),
-            corner: self.volume.grid().corner(),
-            is_turned: self.placement.is_some(),
-            unit: self.unit.map(LengthUnit::symbol),
-        }
-    }
-}
-
-/// What the user wants of a volume's octree.
-pub struct Job {
-    pub bounds: Option<Frame>,
-    pub depth: Option<u8>,
-    pub rule: Rule,
-    pub threads: usize,
-    pub json: bool,
-}
-
-/// What a volume's file says.
-#[derive(Serialize)]
-struct Told {
-    format: String,
-    samples: &'static str,
-    extents: [u32; 3],
-    /// Of a volume whose axes are not x, y and z: before it is turned.
-    spacing: [f64; 3],
-    corner: [f64; 3],
-    is_turned: bool,
-    unit: Option<&'static str>,
-}
-
-#[derive(Serialize)]
-struct SavedReport {
-    input: String,
-    output: String,
-    seconds: f64,
-    volume_file: Told,
-    threshold: f64,
-    #[serde(flatten)]
-    info: Info,
-}
-
-/// The name of a type of samples.
-fn kind(kind: SampleKind) -> &'static str {
-    match kind {
-        SampleKind::Bit => "bit",
-        SampleKind::I8 => "i8",
-        SampleKind::U8 => "u8",
-        SampleKind::I16 => "i16",
-        SampleKind::U16 => "u16",
-        SampleKind::I32 => "i32",
-        SampleKind::U32 => "u32",
-        SampleKind::I64 => "i64",
-        SampleKind::U64 => "u64",
-        SampleKind::F32 => "f32",
-        SampleKind::F64 => "f64",
     }
 }

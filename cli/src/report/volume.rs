@@ -1,0 +1,65 @@
+//! What is told of a volume.
+
+use crate::source::volume::Voxels;
+use crate::words::number;
+use leafless::exchange::{LengthUnit, SampleKind};
+use serde::Serialize;
+
+/// What a volume's file says.
+#[derive(Serialize)]
+pub struct Info {
+    format: String,
+    samples: &'static str,
+    extents: [u32; 3],
+    /// Of a volume whose axes are not x, y and z: before it is turned.
+    spacing: [f64; 3],
+    corner: [f64; 3],
+    is_turned: bool,
+    unit: Option<&'static str>,
+}
+
+impl Info {
+    pub fn new(volume: &Voxels) -> Info {
+        let grid = volume.volume.grid();
+        Info {
+            format: volume.format.clone(),
+            samples: kind(volume.kind),
+            extents: grid.extents(),
+            spacing: grid.spacing(),
+            corner: grid.corner(),
+            is_turned: volume.placement.is_some(),
+            unit: volume.unit.map(LengthUnit::symbol),
+        }
+    }
+
+    /// The same for people.
+    pub fn text(&self) -> String {
+        let [x, y, z] = self.extents;
+        let place = |p: [f64; 3]| p.map(number).join(", ");
+        let unit = self.unit.map_or_else(String::new, |unit| format!(" {unit}"));
+        format!(
+            "{} volume, {x} x {y} x {z} samples of type {}\nvoxels {}{unit}, from {}\n",
+            self.format,
+            self.samples,
+            place(self.spacing),
+            place(self.corner),
+        )
+    }
+}
+
+/// The name of a type of samples.
+fn kind(kind: SampleKind) -> &'static str {
+    match kind {
+        SampleKind::Bit => "bit",
+        SampleKind::I8 => "i8",
+        SampleKind::U8 => "u8",
+        SampleKind::I16 => "i16",
+        SampleKind::U16 => "u16",
+        SampleKind::I32 => "i32",
+        SampleKind::U32 => "u32",
+        SampleKind::I64 => "i64",
+        SampleKind::U64 => "u64",
+        SampleKind::F32 => "f32",
+        SampleKind::F64 => "f64",
+    }
+}
