@@ -1,7 +1,10 @@
 //! Values of options that several subcommands have.
 
 use clap::ValueEnum;
+use clap::builder::{PossibleValuesParser, TypedValueParser};
+use leafless::exchange::MeshFormat;
 use leafless::{Frame, Rule};
+use std::str::FromStr;
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
 pub enum RuleName {
@@ -31,13 +34,37 @@ pub fn name_of(value: impl ValueEnum) -> String {
     value.to_possible_value().map_or_else(String::new, |value| value.get_name().to_owned())
 }
 
+/// What cells that are not decided count as.
+#[derive(Debug, Clone, Copy, PartialEq, ValueEnum)]
+pub enum ResolveName {
+    /// Outside
+    Inner,
+    /// Inside
+    Outer,
+}
+
+/// Numbers between commas.
+pub fn list<T: FromStr>(text: &str) -> Option<Vec<T>> {
+    text.split(',').map(|number| number.trim().parse().ok()).collect()
+}
+
+/// The same if there are just `N`.
+pub fn numbers<T: FromStr, const N: usize>(text: &str) -> Option<[T; N]> {
+    list(text)?.try_into().ok()
+}
+
 /// The universe of `--bounds`; its depth is a placeholder.
 pub fn bounds(text: &str) -> Result<Frame, String> {
-    let numbers: Result<Vec<f64>, _> = text.split(',').map(|number| number.trim().parse()).collect();
-    match numbers.as_deref() {
-        Ok(&[x, y, z, edge]) => Frame::new([x, y, z], edge, 1).map_err(|error| error.to_string()),
-        _ => Err("expected four numbers: x0,y0,z0,edge".into()),
+    match numbers(text) {
+        Some([x, y, z, edge]) => Frame::new([x, y, z], edge, 1).map_err(|error| error.to_string()),
+        None => Err("expected four numbers: x0,y0,z0,edge".into()),
     }
+}
+
+/// Formats of meshes, named in this order.
+pub fn formats(names: [&'static str; 5]) -> impl TypedValueParser<Value = MeshFormat> {
+    PossibleValuesParser::new(names)
+        .try_map(|name| MeshFormat::from_extension(&name).ok_or("is no format of meshes"))
 }
 
 /// How wide an interval may be.

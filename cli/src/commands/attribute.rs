@@ -1,21 +1,20 @@
 //! `leafless attribute`: a channel of values inside a solid.
 
 use crate::failure::{Failure, Of};
-use crate::options::threads;
+use crate::options::{list, threads};
 use crate::progress::watched;
-use crate::report::channel::{self, ChannelInfo};
+use crate::report::channel::ChannelInfo;
 use crate::sink::Output;
-use crate::source::content::Content;
 use crate::source::expression::{Expressions, SYNTAX};
 use crate::source::input::Input;
+use crate::source::values::{Values, find};
 use crate::source::volume::Sampling;
 use crate::words::{count, seconds};
-use clap::{Args, ValueEnum};
-use leafless::exchange::{self, MeshOptions};
+use clap::Args;
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 use leafless::{
-    Attribute, CarryRule, Channel, ChannelOperand, ConstantAttribute, Control, Criterion, Detail,
-    FillOptions, Interpolation, MAX_DEPTH, MeshAttribute, Metadata, Octree, ScalarType, SurfaceAttribute,
-    TriangleMesh, ValueType, carry_channel, fill_channel,
+    CarryRule, Channel, ChannelOperand, ConstantAttribute, Control, Criterion, Detail, FillOptions,
+    Interpolation, MAX_DEPTH, Octree, ScalarType, ValueType, carry_channel, fill_channel,
 };
 use serde::Serialize;
 use std::ffi::OsString;
@@ -59,8 +58,8 @@ pub struct Arguments {
     #[arg(long = "in", value_name = "REGION.lfl", conflicts_with = "remove")]
     region: Option<OsString>,
     /// Type in which numbers are stored. Without it: f32, or that of the channel that is copied or changed
-    #[arg(long, value_enum, value_name = "TYPE")]
-    store: Option<KindName>,
+    #[arg(long, value_parser = scalars(), value_name = "TYPE")]
+    store: Option<ScalarType>,
     /// Levels of the channel's cells, 1 to 20. Without it: those of the solid
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=MAX_DEPTH as i64))]
     depth: Option<u8>,
@@ -113,30 +112,14 @@ fn expression_help() -> String {
 struct Numbers(Vec<f64>);
 
 fn numbers(text: &str) -> Result<Numbers, String> {
-    let numbers: Result<Vec<f64>, _> = text.split(',').map(|number| number.trim().parse()).collect();
-    match numbers {
-        Ok(numbers) if (1..=4).contains(&numbers.len()) => Ok(Numbers(numbers)),
-        _ => Err("expected one to four numbers between commas".into()),
-    }
+    let numbers = list(text).filter(|numbers| (1..=4).contains(&numbers.len()));
+    numbers.map(Numbers).ok_or_else(|| "expected one to four numbers between commas".into())
 }
 
-#[derive(Debug, Clone, Copy, ValueEnum)]
-enum KindName {
-    U8,
-    U16,
-    U32,
-    F32,
-}
-
-impl From<KindName> for ScalarType {
-    fn from(name: KindName) -> ScalarType {
-        match name {
-            KindName::U8 => ScalarType::U8,
-            KindName::U16 => ScalarType::U16,
-            KindName::U32 => ScalarType::U32,
-            KindName::F32 => ScalarType::F32,
-        }
-    }
+fn scalars() -> impl TypedValueParser<Value = ScalarType> {
+    const KINDS: [ScalarType; 4] = [ScalarType::U8, ScalarType::U16, ScalarType::U32, ScalarType::F32];
+    PossibleValuesParser::new(KINDS.map(ScalarType::name))
+        .try_map(|name| KINDS.into_iter().find(|kind| kind.name() == name).ok_or("is no type of numbers"))
 }
 
 #[derive(Serialize)]
@@ -154,7 +137,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     output.check()?;
     let (octree, _) = input.octree(true)?;
     let changed = if arguments.remove {
-        channel::find(&octree, &input, Some(&arguments.name))?;
+        find(&octree, &input, Some(&arguments.name))?;
         octree.without_channel(&arguments.name)
     } else {
         octree.with_channel(made(arguments, &input, &octree)?)
@@ -177,20 +160,13 @@ impl Report {
     }
 }
 
-/// Values at points, the type that suits them, and what is known of them.
-struct Values {
-    attribute: Box<dyn Attribute>,
-    kind: Option<ScalarType>,
-    metadata: Metadata,
-}
-
 fn made(arguments: &Arguments, input: &Input, octree: &Octree) -> Result<Channel, Failure> {
     let old = match &arguments.region {
-        Some(_) => Some(channel::find(octree, input, Some(&arguments.name))?),
+        Some(_) => Some(find(octree, input, Some(&arguments.name))?),
         None => None,
     };
     let values = values(arguments, octree)?;
-    let kind = arguments.store.map(ScalarType::from).or(values.kind);
+    let kind = arguments.store.or(values.kind);
     let (kind, depth) = match old {
         Some(old) => (old.value_type().scalar(), arguments.depth.unwrap_or(old.frame().depth())),
         None => (kind.unwrap_or(ScalarType::F32), arguments.depth.unwrap_or(octree.frame().depth())),
@@ -251,79 +227,19 @@ fn detail(arguments: &Arguments, cell: f64) -> Result<Option<Detail>, Failure> {
     detail.map(Some).map_err(|error| Failure::Usage(error.to_string()))
 }
 
-/// A mesh in the unit of a solid, if both are known.
-fn mesh(input: &Input, bytes: &[u8], octree: &Octree) -> Result<TriangleMesh, Failure> {
-    let file = exchange::read_mesh(bytes, &MeshOptions::default()).of(input)?;
-    let unit = octree.metadata().get("units").and_then(|unit| unit.parse().ok());
-    let target = file.unit.and(unit).filter(|&unit| Some(unit) != file.unit);
-    let mesh = match target {
-        Some(_) => {
-            exchange::read_mesh(bytes, &MeshOptions { target, ..MeshOptions::default() }).of(input)?.mesh
-        }
-        None => file.mesh,
-    };
-    mesh.sewn().of(input)
-}
-
 fn values(arguments: &Arguments, octree: &Octree) -> Result<Values, Failure> {
-    let plain = |attribute| Values { attribute, kind: None, metadata: Metadata::new() };
     if let Some(Numbers(numbers)) = &arguments.value {
         let constant = ConstantAttribute::new(numbers).map_err(|error| Failure::Usage(error.to_string()))?;
-        return Ok(plain(Box::new(constant)));
+        return Ok(Values::plain(Box::new(constant)));
     }
     if let Some(bodies) = &arguments.bodies {
-        let bodies = Input::from(&**bodies);
-        let mesh = mesh(&bodies, &bodies.read()?, octree)?;
-        let labels = mesh.bodies().and_then(|labels| MeshAttribute::labels("body", labels)).of(&bodies)?;
-        let attribute = SurfaceAttribute::new(mesh, labels).of(&bodies)?;
-        return Ok(Values { kind: Some(ScalarType::U32), ..plain(Box::new(attribute)) });
+        return Values::of_bodies(&Input::from(&**bodies), octree);
     }
     let Some(from) = &arguments.from else {
         let expressions = Expressions::parse(&arguments.expr).map_err(Failure::Usage)?;
-        return Ok(plain(Box::new(expressions)));
+        return Ok(Values::plain(Box::new(expressions)));
     };
-    let from = Input::from(&**from);
-    if from.begins_as_solid() {
-        let (other, _) = from.octree(true)?;
-        let channel = channel::find(&other, &from, Some(&arguments.name))?.clone();
-        let (kind, metadata) = (channel.value_type().scalar(), channel.metadata().clone());
-        return Ok(Values { attribute: Box::new(channel), kind: Some(kind), metadata });
-    }
-    let bytes = from.read()?;
-    match Content::of(&from, &bytes, arguments.sampling.is_raw().then_some(Content::Volume))? {
-        Content::Volume => {
-            let nearest = if arguments.nearest { Interpolation::Nearest } else { Interpolation::Trilinear };
-            let voxels = arguments.sampling.read(&from, &bytes)?;
-            Ok(plain(voxels.attribute(nearest).of(&from)?))
-        }
-        Content::Mesh => {
-            let mesh = mesh(&from, &bytes, octree)?;
-            let known: Vec<&str> = mesh.attributes().iter().map(MeshAttribute::name).collect();
-            let name = match (&arguments.pick, &known[..]) {
-                (_, []) => return Err(Failure::of(&from, "has neither colours nor materials")),
-                (Some(name), _) if known.contains(&&**name) => name.clone(),
-                (None, known) if known.contains(&&*arguments.name) => arguments.name.clone(),
-                (None, [only]) => (*only).to_owned(),
-                _ => {
-                    let list = known.join(", ");
-                    return Err(Failure::Usage(format!("choose one of {from}'s values with --pick: {list}")));
-                }
-            };
-            // Numbers of colours go from 0 to 255.
-            let kind = if name.ends_with("colour") { ScalarType::U8 } else { ScalarType::F32 };
-            let mut metadata = Metadata::new();
-            metadata.insert("meaning", &*name);
-            let picked = mesh.attributes().iter().find(|attribute| attribute.name() == name);
-            for (number, name) in picked.map_or(&[][..], MeshAttribute::names).iter().enumerate() {
-                metadata.insert(format!("value {number}"), &**name);
-            }
-            let attribute = SurfaceAttribute::of_mesh(mesh, &name).of(&from)?;
-            Ok(Values { attribute: Box::new(attribute), kind: Some(kind), metadata })
-        }
-        _ => {
-            let problem =
-                "is no volume (NRRD, MetaImage, raw), no mesh with colours or materials, and no solid (.lfl)";
-            Err(Failure::of(&from, problem))
-        }
-    }
+    let Arguments { name, pick, sampling, nearest, .. } = arguments;
+    let interpolation = if *nearest { Interpolation::Nearest } else { Interpolation::Trilinear };
+    Values::of_file(&Input::from(&**from), name, pick.as_deref(), sampling, interpolation, octree)
 }

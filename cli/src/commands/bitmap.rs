@@ -1,7 +1,7 @@
 //! `leafless bitmap`: the cells of a solid as a volume.
 
 use crate::failure::{Failure, Of, complain};
-use crate::options::threads;
+use crate::options::{ResolveName, threads};
 use crate::progress::watched;
 use crate::sink::Output;
 use crate::source::input::Input;
@@ -46,14 +46,6 @@ pub struct Arguments {
 enum WriteName {
     Nrrd,
     Raw,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, ValueEnum)]
-enum ResolveName {
-    /// Outside
-    Inner,
-    /// Inside
-    Outer,
 }
 
 #[derive(Serialize)]

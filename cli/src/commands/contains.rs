@@ -21,10 +21,7 @@ pub struct Arguments {
 }
 
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let input = Input::from(&*arguments.file);
-    if input.path().is_none() {
-        return Err(Failure::Usage("standard input carries the points, so the solid must be a file".into()));
-    }
+    let input = Input::file(&arguments.file, "points")?;
     // Proven answers need a file that is what its maker wrote.
     let (octree, _) = input.octree(true)?;
     serve(&mut Batch { tree: octree.view(), points: Vec::new(), answers: Vec::new(), text: Vec::new() })

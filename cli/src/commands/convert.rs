@@ -6,7 +6,7 @@ use crate::making::job::Job;
 use crate::making::octree_of_scene::{self, Splitting, TouchName};
 use crate::making::surface::{self, At, Method, SnapName, Wanted};
 use crate::making::{octree_of_dexels, octree_of_mesh};
-use crate::options::{RuleName, bounds, resolution, threads};
+use crate::options::{ResolveName, RuleName, bounds, resolution, threads};
 use crate::sink::Output;
 use crate::source::content::Content;
 use crate::source::file::{Found, Taking};
@@ -68,14 +68,6 @@ enum KindName {
     Dexels,
     /// A triangle mesh
     Mesh,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, ValueEnum)]
-enum ResolveName {
-    /// Outside
-    Inner,
-    /// Inside
-    Outer,
 }
 
 /// The depth of octrees, if none is asked for.

@@ -71,10 +71,7 @@ impl From<To> for DistanceTo {
 const FINE: f64 = 1e-6;
 
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let input = Input::from(&*arguments.file);
-    if input.path().is_none() {
-        return Err(Failure::Usage("standard input carries the points, so the solid must be a file".into()));
-    }
+    let input = Input::file(&arguments.file, "points")?;
     let target = arguments.looking.target(&input, arguments.depth, MAX_DEPTH)?;
     serve(&mut Batch { input, target, arguments, points: Vec::new(), text: String::new() })
 }

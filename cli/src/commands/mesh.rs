@@ -3,11 +3,11 @@
 use crate::failure::Failure;
 use crate::making::job::Job;
 use crate::making::surface::{At, Method, ResolveName, SnapName, Wanted, make};
-use crate::options::{bounds, threads};
+use crate::options::{bounds, formats, threads};
 use crate::sink::Output;
 use crate::source::file::Taking;
 use crate::source::input::Input;
-use clap::{Args, ValueEnum};
+use clap::Args;
 use leafless::exchange::MeshFormat;
 use leafless::{Frame, MAX_DEPTH};
 use std::ffi::OsString;
@@ -28,8 +28,8 @@ pub struct Arguments {
     #[arg(short, long, value_name = "OUTPUT")]
     output: OsString,
     /// Format to write. Without it: what the extension of the output says, or PLY for standard output
-    #[arg(long, value_enum)]
-    write: Option<WriteName>,
+    #[arg(long, value_parser = formats(["ply", "stl", "obj", "off", "3mf"]))]
+    write: Option<MeshFormat>,
     /// Write STL and PLY as text
     #[arg(long)]
     text: bool,
@@ -73,34 +73,13 @@ pub struct Arguments {
     json: bool,
 }
 
-#[derive(Debug, Clone, Copy, ValueEnum)]
-enum WriteName {
-    Ply,
-    Stl,
-    Obj,
-    Off,
-    #[value(name = "3mf")]
-    ThreeMf,
-}
-
-impl From<WriteName> for MeshFormat {
-    fn from(name: WriteName) -> MeshFormat {
-        match name {
-            WriteName::Ply => MeshFormat::Ply,
-            WriteName::Stl => MeshFormat::Stl,
-            WriteName::Obj => MeshFormat::Obj,
-            WriteName::Off => MeshFormat::Off,
-            WriteName::ThreeMf => MeshFormat::ThreeMf,
-        }
-    }
-}
-
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let Arguments { depth, bounds, threads, json, .. } = *arguments;
     let (input, output) = (Input::from(&*arguments.file), Output::from(&*arguments.output));
     let job = Job { input, output, start: Instant::now(), depth, bounds, threads, json };
-    let Arguments { method, snap, vertices, resolve, text, normals, lossy, intersections, .. } = *arguments;
-    let format = arguments.write.map(MeshFormat::from);
+    let Arguments {
+        method, snap, vertices, resolve, text, normals, lossy, intersections, write: format, ..
+    } = *arguments;
     let wanted = Wanted { method, snap, vertices, resolve, format, text, normals, lossy, intersections };
     make(&job, &arguments.taking, &wanted)
 }

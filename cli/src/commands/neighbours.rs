@@ -52,10 +52,7 @@ impl Through {
 }
 
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let input = Input::from(&*arguments.file);
-    if input.path().is_none() {
-        return Err(Failure::Usage("standard input carries the cells, so the solid must be a file".into()));
-    }
+    let input = Input::file(&arguments.file, "cells")?;
     let (octree, _) = input.octree(true)?;
     let tree = octree.view();
     serve(&mut Batch { tree, cursor: Cursor::new(tree), arguments, text: String::new() })

@@ -60,10 +60,7 @@ impl From<On> for Obstacle {
 }
 
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let input = Input::from(&*arguments.file);
-    if input.path().is_none() {
-        return Err(Failure::Usage("standard input carries the rays, so the solid must be a file".into()));
-    }
+    let input = Input::file(&arguments.file, "rays")?;
     let target = arguments.looking.target(&input, arguments.depth, MAX_DEPTH)?;
     serve(&mut Batch { input, target, arguments, rays: Vec::new(), text: String::new() })
 }

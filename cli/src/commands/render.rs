@@ -4,12 +4,12 @@ use crate::failure::{Failure, Of};
 use crate::making::picture::{Looks, Subject, Values, View, colour, legend_box, numbers, picture};
 use crate::options::threads;
 use crate::progress::watched;
-use crate::report::channel;
 use crate::show::{Protocol, Screen};
 use crate::sink::{Output, json};
 use crate::source::file::Taking;
 use crate::source::input::Input;
 use crate::source::solid::Shape;
+use crate::source::values::find;
 use crate::words::{count, seconds};
 use clap::Args;
 use leafless::{Bounds, Camera, Clip, Control, FIELD_OF_VIEW, LegendBox, Lens, MAX_DEPTH, Shot, exchange};
@@ -139,7 +139,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let subject = Subject::of(shape, &input, &arguments.looks, arguments.depth, arguments.threads)?;
     let channel = match &subject {
         Subject::Octree(octree, _) if arguments.channel.is_some() || octree.channels().len() == 1 => {
-            Some(channel::find(octree, &input, arguments.channel.as_deref())?)
+            Some(find(octree, &input, arguments.channel.as_deref())?)
         }
         _ if arguments.channel.is_some() => {
             return Err(Failure::of(&input, "has no channels to show in this view"));

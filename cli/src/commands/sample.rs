@@ -1,10 +1,10 @@
 //! `leafless sample`: the values of a channel at points.
 
 use crate::failure::Failure;
-use crate::report::channel;
 use crate::rows::{Questions, serve};
 use crate::sink::print;
 use crate::source::input::Input;
+use crate::source::values::find;
 use crate::words::number;
 use clap::Args;
 use leafless::{ChannelRef, Membership, OctreeRef};
@@ -31,12 +31,9 @@ pub struct Arguments {
 }
 
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let input = Input::from(&*arguments.file);
-    if input.path().is_none() {
-        return Err(Failure::Usage("standard input carries the points, so the solid must be a file".into()));
-    }
+    let input = Input::file(&arguments.file, "points")?;
     let (octree, _) = input.octree(true)?;
-    let channel = channel::find(&octree, &input, arguments.name.as_deref())?;
+    let channel = find(&octree, &input, arguments.name.as_deref())?;
     let view = channel.view().map_err(|error| Failure::of(&input, error))?;
     let solid = if arguments.everywhere { None } else { Some(octree.view()) };
     serve(&mut Batch { channel: view, solid, json: arguments.json, text: String::new() })

@@ -1,11 +1,12 @@
 //! `leafless summary`: what a channel amounts to in a solid.
 
 use crate::failure::{Failure, Of};
+use crate::options::numbers;
 use crate::progress::watched;
 use crate::report::bounds::Volume;
-use crate::report::channel;
 use crate::sink;
 use crate::source::input::Input;
+use crate::source::values::find;
 use crate::words::{measured, number};
 use clap::Args;
 use leafless::{Bounds, ChannelSummary, Interval, MaterialProperties, Octree, materials};
@@ -40,9 +41,7 @@ pub struct Arguments {
 }
 
 fn cuboid(text: &str) -> Result<Bounds, String> {
-    let numbers: Result<Vec<f64>, _> = text.split(',').map(|number| number.trim().parse()).collect();
-    let bounds = numbers.ok().and_then(|numbers| <[f64; 6]>::try_from(numbers).ok());
-    let bounds = bounds.and_then(|[a, b, c, x, y, z]| Bounds::new([a, b, c], [x, y, z]));
+    let bounds = numbers(text).and_then(|[a, b, c, x, y, z]| Bounds::new([a, b, c], [x, y, z]));
     bounds.ok_or_else(|| "expected six numbers with the lower corner first: x0,y0,z0,x1,y1,z1".into())
 }
 
@@ -110,7 +109,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 fn all(arguments: &Arguments, input: &Input, octree: &Octree) -> Result<String, Failure> {
-    let channel = channel::find(octree, input, arguments.name.as_deref())?;
+    let channel = find(octree, input, arguments.name.as_deref())?;
     let found = watched("summary", 1, |control| {
         channel.view()?.summary(Some(octree.view()), arguments.bounds.as_ref(), control)
     });
@@ -152,7 +151,7 @@ fn all(arguments: &Arguments, input: &Input, octree: &Octree) -> Result<String, 
 }
 
 fn each(arguments: &Arguments, input: &Input, octree: &Octree) -> Result<String, Failure> {
-    let channel = channel::find(octree, input, arguments.name.as_deref())?;
+    let channel = find(octree, input, arguments.name.as_deref())?;
     let components = channel.value_type().components();
     let depth = octree.frame().depth().max(channel.frame().depth());
     let found = watched("materials", 0, |control| {

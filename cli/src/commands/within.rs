@@ -1,10 +1,10 @@
 //! `leafless within`: how much of a solid lies in a ball, a box or another solid?
 
 use crate::failure::{Failure, Of};
-use crate::options::bounds;
+use crate::options::{bounds, numbers};
 use crate::progress::watched;
 use crate::report::bounds::Volume;
-use crate::sink;
+use crate::sink::print_told;
 use crate::source::file::Taking;
 use crate::source::input::Input;
 use crate::source::solid::Source;
@@ -60,11 +60,6 @@ pub struct Arguments {
 const SPLITS: u64 = 1 << 20;
 /// Levels of cells of what has none of its own.
 const DEPTH: u8 = 8;
-
-fn numbers<const N: usize>(text: &str) -> Option<[f64; N]> {
-    let numbers: Result<Vec<f64>, _> = text.split(',').map(|number| number.trim().parse()).collect();
-    numbers.ok()?.try_into().ok()
-}
 
 fn ball(text: &str) -> Result<Csg, String> {
     match numbers(text) {
@@ -154,26 +149,24 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         full: Range { least: cells.full_least, most: cells.full_most },
         upper: Range { least: cells.upper_least, most: cells.upper_most },
     };
-    let text = if arguments.json {
-        sink::json(&Report {
-            input: input.to_string(),
-            region: name,
-            cells,
-            volume: volume.into(),
-            depth: frame.depth(),
-            origin: frame.origin(),
-            edge: frame.edge(),
-        })?
-    } else {
-        let edge = number(frame.cell_size());
+    let report = Report {
+        input: input.to_string(),
+        region: name,
+        cells,
+        volume: volume.into(),
+        depth: frame.depth(),
+        origin: frame.origin(),
+        edge: frame.edge(),
+    };
+    print_told(arguments.json, &report, |Report { cells, .. }| {
         format!(
-            "FULL cells      {}\nor PARTIAL      {}\nof edge         {edge}\nvolume          {}\n",
+            "FULL cells      {}\nor PARTIAL      {}\nof edge         {}\nvolume          {}\n",
             cells.full.text(),
             cells.upper.text(),
+            number(frame.cell_size()),
             measured(volume),
         )
-    };
-    sink::print(text.as_bytes())
+    })
 }
 
 /// The region, and what it is called.

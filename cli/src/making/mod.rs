@@ -3,6 +3,7 @@
 //! A subcommand says in a `job` what it wants; each file here makes one kind of result of it. Nothing here knows the
 //! arguments of a subcommand, so that several can ask for the same.
 
+pub mod boolean;
 pub mod dexel_boolean;
 pub mod dexel_surface;
 pub mod dexels;

@@ -2,6 +2,7 @@
 
 use crate::failure::{Failure, Of};
 use crate::making::dexel_surface;
+use crate::options;
 use crate::progress::watched;
 use crate::source::input::Input;
 use crate::source::solid::Shape;
@@ -92,11 +93,8 @@ impl Looks {
 }
 
 pub fn numbers<const N: usize>(text: &str) -> Result<[f64; N], String> {
-    let numbers: Result<Vec<f64>, _> = text.split(',').map(|number| number.trim().parse()).collect();
-    let numbers = numbers.ok().filter(|numbers| numbers.iter().all(|x| x.is_finite()));
-    numbers
-        .and_then(|numbers| numbers.try_into().ok())
-        .ok_or_else(|| format!("expected {N} numbers with commas between"))
+    let numbers = options::numbers(text).filter(|numbers: &[f64; N]| numbers.iter().all(|x| x.is_finite()));
+    numbers.ok_or_else(|| format!("expected {N} numbers with commas between"))
 }
 
 pub fn colour(text: &str) -> Result<[u8; 4], String> {

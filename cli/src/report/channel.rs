@@ -1,9 +1,7 @@
-//! What is told of a channel, and how one is found.
+//! What is told of a channel.
 
-use crate::failure::Failure;
-use crate::source::input::Input;
 use crate::words::{count, counted};
-use leafless::{Channel, Octree};
+use leafless::Channel;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -47,21 +45,5 @@ impl ChannelInfo {
             counted(self.values, "value", "values"),
             count(*bytes),
         )
-    }
-}
-
-/// The channel of a solid that the user names; without a name, the only one.
-pub fn find<'o>(octree: &'o Octree, input: &Input, name: Option<&str>) -> Result<&'o Channel, Failure> {
-    let known: Vec<&str> = octree.channels().iter().map(Channel::name).collect();
-    let list = known.join(", ");
-    match (name, octree.channels()) {
-        (_, []) => Err(Failure::of(input, "has no channel; `leafless attribute` makes one")),
-        (None, [only]) => Ok(only),
-        (None, _) => {
-            Err(Failure::Usage(format!("{input} has several channels: name one of them with --name: {list}")))
-        }
-        (Some(name), _) => octree
-            .channel(name)
-            .ok_or_else(|| Failure::of(input, format!("has no channel \"{name}\". It has {list}"))),
     }
 }

@@ -1,8 +1,8 @@
 //! What is told of a volume.
 
-use crate::source::volume::Voxels;
+use crate::source::volume::{Voxels, kind_name};
 use crate::words::number;
-use leafless::exchange::{LengthUnit, SampleKind};
+use leafless::exchange::LengthUnit;
 use serde::Serialize;
 
 /// What a volume's file says.
@@ -23,7 +23,7 @@ impl Info {
         let grid = volume.volume.grid();
         Info {
             format: volume.format.clone(),
-            samples: kind(volume.kind),
+            samples: kind_name(volume.kind),
             extents: grid.extents(),
             spacing: grid.spacing(),
             corner: grid.corner(),
@@ -44,22 +44,5 @@ impl Info {
             place(self.spacing),
             place(self.corner),
         )
-    }
-}
-
-/// The name of a type of samples.
-fn kind(kind: SampleKind) -> &'static str {
-    match kind {
-        SampleKind::Bit => "bit",
-        SampleKind::I8 => "i8",
-        SampleKind::U8 => "u8",
-        SampleKind::I16 => "i16",
-        SampleKind::U16 => "u16",
-        SampleKind::I32 => "i32",
-        SampleKind::U32 => "u32",
-        SampleKind::I64 => "i64",
-        SampleKind::U64 => "u64",
-        SampleKind::F32 => "f32",
-        SampleKind::F64 => "f64",
     }
 }

@@ -2,6 +2,7 @@
 
 pub mod csv;
 pub mod npz;
+pub mod records;
 pub mod written;
 
 use crate::failure::{Failure, Of, Problem};

@@ -33,6 +33,17 @@ impl fmt::Display for Input {
 }
 
 impl Input {
+    /// A file, as standard input carries `questions` about it.
+    pub fn file(name: &OsStr, questions: &str) -> Result<Input, Failure> {
+        match Input::from(name) {
+            Input::Standard => {
+                let problem = format!("standard input carries the {questions}, so the solid must be a file");
+                Err(Failure::Usage(problem))
+            }
+            input => Ok(input),
+        }
+    }
+
     /// The path, unless it is standard input.
     pub fn path(&self) -> Option<&Path> {
         match self {

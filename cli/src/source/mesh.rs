@@ -1,6 +1,7 @@
 //! Meshes from files of any format: the options of reading them.
 
 use crate::failure::{Failure, Of, complain};
+use crate::options::formats;
 use crate::source::content::Content;
 use crate::source::input::Input;
 use crate::source::volume::{Sampling, Voxels};
@@ -13,8 +14,8 @@ use leafless::{Error, FillRule, Frame, MeshError, MeshReport, TriangleMesh, exch
 #[derive(Clone, Args)]
 pub struct Reading {
     /// Format of the mesh file. Without it the content tells, and the extension of the name
-    #[arg(long, value_enum)]
-    format: Option<FormatName>,
+    #[arg(long, value_parser = formats(["stl", "obj", "ply", "off", "3mf"]))]
+    format: Option<MeshFormat>,
     /// Unit of the numbers in the mesh file: um, mm, cm, m, in or ft. Without it that of a 3MF is known, and
     /// those of other formats are not
     #[arg(long, value_name = "UNIT", value_parser = unit)]
@@ -31,28 +32,6 @@ pub struct Reading {
     fill: Option<FillName>,
     #[command(flatten)]
     sampling: Sampling,
-}
-
-#[derive(Debug, Clone, Copy, ValueEnum)]
-enum FormatName {
-    Stl,
-    Obj,
-    Ply,
-    Off,
-    #[value(name = "3mf")]
-    ThreeMf,
-}
-
-impl From<FormatName> for MeshFormat {
-    fn from(name: FormatName) -> MeshFormat {
-        match name {
-            FormatName::Stl => MeshFormat::Stl,
-            FormatName::Obj => MeshFormat::Obj,
-            FormatName::Ply => MeshFormat::Ply,
-            FormatName::Off => MeshFormat::Off,
-            FormatName::ThreeMf => MeshFormat::ThreeMf,
-        }
-    }
 }
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
@@ -144,7 +123,7 @@ impl Reading {
     /// The format of a file with these bytes, if it is known to be a mesh.
     fn format_of(&self, input: &Input, bytes: &[u8]) -> Option<MeshFormat> {
         let extension = input.path().and_then(|path| path.extension()?.to_str());
-        self.format.map(MeshFormat::from).or_else(|| MeshFormat::detect(bytes, extension))
+        self.format.or_else(|| MeshFormat::detect(bytes, extension))
     }
 
     /// The mesh in these bytes of a file, hair cracks closed, and the rule by which points count as inside. A mesh that

@@ -11,4 +11,5 @@ pub mod mesh;
 pub mod scene;
 pub mod solid;
 pub mod target;
+pub mod values;
 pub mod volume;

@@ -1,9 +1,11 @@
 //! Volumes from files, NRRD, MetaImage and raw: which voxels are inside, and what is told of them.
 
 use crate::failure::{Failure, Of, Problem, complain};
+use crate::options::{list, numbers};
 use crate::source::input::Input;
 use crate::words::counted;
-use clap::{Args, ValueEnum};
+use clap::Args;
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use leafless::exchange::{
     LengthUnit, RawVolume, SampleKind, open_volume, read_raw_volume, read_volume, volume_data_file,
 };
@@ -11,7 +13,6 @@ use leafless::{
     Affine, AnySolid, Attribute, Band, Control, Error, Frame, Interpolation, MovedAttribute, Samples, Volume,
     VolumeAttribute, VoxelGrid,
 };
-use std::str::FromStr;
 
 /// Which voxels of a volume are inside, and what the bytes of one without a header mean.
 #[derive(Clone, Args)]
@@ -24,8 +25,8 @@ pub struct Sampling {
     #[arg(long = "samples", value_name = "NX,NY,NZ", value_parser = extents)]
     extents: Option<[u32; 3]>,
     /// Type of the samples of a raw volume. Without it: u8
-    #[arg(long = "type", value_enum, requires = "extents")]
-    kind: Option<KindName>,
+    #[arg(long = "type", value_parser = kinds(), requires = "extents")]
+    kind: Option<SampleKind>,
     /// Edges of the voxels of a raw volume along x, y and z, or one for all. Without it: 1
     #[arg(long, value_name = "S|SX,SY,SZ", value_parser = spacing, requires = "extents")]
     spacing: Option<[f64; 3]>,
@@ -47,14 +48,8 @@ fn threshold(text: &str) -> Result<f64, String> {
     }
 }
 
-/// Numbers between commas.
-fn list<T: FromStr>(text: &str) -> Option<Vec<T>> {
-    text.split(',').map(|number| number.trim().parse().ok()).collect()
-}
-
 fn extents(text: &str) -> Result<[u32; 3], String> {
-    let three: Option<[u32; 3]> = list(text).and_then(|numbers| numbers.try_into().ok());
-    three.ok_or_else(|| "expected three whole numbers: nx,ny,nz".into())
+    numbers(text).ok_or_else(|| "expected three whole numbers: nx,ny,nz".into())
 }
 
 fn spacing(text: &str) -> Result<[f64; 3], String> {
@@ -66,43 +61,37 @@ fn spacing(text: &str) -> Result<[f64; 3], String> {
 }
 
 fn corner(text: &str) -> Result<[f64; 3], String> {
-    let three: Option<[f64; 3]> = list(text).and_then(|numbers| numbers.try_into().ok());
-    three.ok_or_else(|| "expected three numbers: x,y,z".into())
+    numbers(text).ok_or_else(|| "expected three numbers: x,y,z".into())
 }
 
-/// Types of samples.
-#[derive(Debug, Clone, Copy, ValueEnum)]
-enum KindName {
-    /// Eight to a byte, the lowest first; each row along x begins with a byte of its own
-    Bit,
-    I8,
-    U8,
-    I16,
-    U16,
-    I32,
-    U32,
-    I64,
-    U64,
-    F32,
-    F64,
+/// Types of samples, and their names.
+const KINDS: [(&str, SampleKind); 11] = [
+    ("bit", SampleKind::Bit),
+    ("i8", SampleKind::I8),
+    ("u8", SampleKind::U8),
+    ("i16", SampleKind::I16),
+    ("u16", SampleKind::U16),
+    ("i32", SampleKind::I32),
+    ("u32", SampleKind::U32),
+    ("i64", SampleKind::I64),
+    ("u64", SampleKind::U64),
+    ("f32", SampleKind::F32),
+    ("f64", SampleKind::F64),
+];
+
+/// The name of a type of samples.
+pub fn kind_name(kind: SampleKind) -> &'static str {
+    KINDS.iter().find(|known| known.1 == kind).map_or("", |known| known.0)
 }
 
-impl From<KindName> for SampleKind {
-    fn from(name: KindName) -> SampleKind {
-        match name {
-            KindName::Bit => SampleKind::Bit,
-            KindName::I8 => SampleKind::I8,
-            KindName::U8 => SampleKind::U8,
-            KindName::I16 => SampleKind::I16,
-            KindName::U16 => SampleKind::U16,
-            KindName::I32 => SampleKind::I32,
-            KindName::U32 => SampleKind::U32,
-            KindName::I64 => SampleKind::I64,
-            KindName::U64 => SampleKind::U64,
-            KindName::F32 => SampleKind::F32,
-            KindName::F64 => SampleKind::F64,
-        }
-    }
+fn kinds() -> impl TypedValueParser<Value = SampleKind> {
+    let bits = "Eight to a byte, the lowest first; each row along x begins with a byte of its own";
+    let names = KINDS.map(|(name, kind)| {
+        let name = PossibleValue::new(name);
+        if kind == SampleKind::Bit { name.help(bits) } else { name }
+    });
+    let of = |name: String| KINDS.into_iter().find(|known| known.0 == name).map(|known| known.1);
+    PossibleValuesParser::new(names).try_map(move |name| of(name).ok_or("is no type of samples"))
 }
 
 /// A volume as a solid.
@@ -172,7 +161,7 @@ impl Sampling {
     fn without_header(&self, input: &Input, bytes: &[u8], extents: [u32; 3]) -> Result<Found, Failure> {
         let grid = VoxelGrid::new(extents, self.corner.unwrap_or([0.0; 3]), self.spacing.unwrap_or([1.0; 3]));
         let grid = grid.map_err(|error| Failure::Usage(error.to_string()))?;
-        let kind = self.kind.map_or(SampleKind::U8, SampleKind::from);
+        let kind = self.kind.unwrap_or(SampleKind::U8);
         let layout = RawVolume { grid, kind, big_endian: self.big_endian, skip: self.skip.unwrap_or(0) };
         let (samples, rounded) = read_raw_volume(bytes, &layout).of(input)?;
         Ok(Found { samples, grid, placement: None, unit: None, format: "raw".into(), kind, rounded })
