@@ -43,6 +43,31 @@ pub enum ResolveName {
     Outer,
 }
 
+impl From<ResolveName> for Rule {
+    fn from(name: ResolveName) -> Rule {
+        match name {
+            ResolveName::Inner => Rule::Inner,
+            ResolveName::Outer => Rule::Outer,
+        }
+    }
+}
+
+/// The name of a rule, as the user writes it.
+pub fn rule_name(rule: Rule) -> &'static str {
+    match rule {
+        Rule::Certified => "certified",
+        Rule::Sampled => "sampled",
+        Rule::Inner => "inner",
+        Rule::Outer => "outer",
+    }
+}
+
+/// A number that is finite and `good`; `what` is expected.
+pub fn number(text: &str, what: &str, good: impl Fn(f64) -> bool) -> Result<f64, String> {
+    let number = text.parse().ok().filter(|number: &f64| number.is_finite() && good(*number));
+    number.ok_or_else(|| format!("expected {what}"))
+}
+
 /// Numbers between commas.
 pub fn list<T: FromStr>(text: &str) -> Option<Vec<T>> {
     text.split(',').map(|number| number.trim().parse().ok()).collect()
@@ -69,10 +94,7 @@ pub fn formats(names: [&'static str; 5]) -> impl TypedValueParser<Value = MeshFo
 
 /// How wide an interval may be.
 pub fn tolerance(text: &str) -> Result<f64, String> {
-    match text.parse() {
-        Ok(tolerance) if tolerance >= 0.0 && f64::is_finite(tolerance) => Ok(tolerance),
-        _ => Err("expected a number not below 0".into()),
-    }
+    number(text, "a number not below 0", |tolerance| tolerance >= 0.0)
 }
 
 /// A number of threads: far more than processors help nobody.

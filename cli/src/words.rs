@@ -116,6 +116,12 @@ fn round_to(x: f64, digits: i32) -> f64 {
     }
 }
 
+/// Appends a line to a text: a name, and a value in a column behind it.
+pub fn put_line(text: &mut String, name: &str, value: &str) {
+    // (A string takes whatever is written to it.)
+    let _ = writeln!(text, "{name:<16}{value}");
+}
+
 /// A duration in the unit that suits it.
 pub fn seconds(seconds: f64) -> String {
     match seconds {

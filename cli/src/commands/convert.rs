@@ -4,16 +4,16 @@ use crate::failure::Failure;
 use crate::making::dexels::{self, Storing};
 use crate::making::job::Job;
 use crate::making::octree_of_scene::{self, Splitting, TouchName};
-use crate::making::surface::{self, At, Method, SnapName, Wanted};
+use crate::making::surface::{self, Wanted};
 use crate::making::{octree_of_dexels, octree_of_mesh};
-use crate::options::{ResolveName, RuleName, bounds, resolution, threads};
+use crate::options::{ResolveName, bounds, resolution, threads};
 use crate::sink::Output;
 use crate::source::content::Content;
-use crate::source::file::{Found, Taking};
+use crate::source::file::{Found, Stored, Taking};
 use crate::source::input::Input;
 use clap::{Args, ValueEnum};
-use leafless::Frame;
 use leafless::exchange::MeshFormat;
+use leafless::{Frame, Rule};
 use std::ffi::OsString;
 use std::time::Instant;
 
@@ -80,28 +80,14 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let taking = &arguments.taking;
     match kind(arguments, &job.output)? {
         KindName::Mesh => {
-            let wanted = Wanted {
-                method: Method::Mc,
-                snap: SnapName::Fat,
-                vertices: At::Crossing,
-                resolve: resolve.map(|resolve| match resolve {
-                    ResolveName::Inner => surface::ResolveName::Inner,
-                    ResolveName::Outer => surface::ResolveName::Outer,
-                }),
-                format: None,
-                text: false,
-                normals: false,
-                lossy,
-                intersections: false,
-            };
-            surface::make(&job, taking, &wanted)
+            let resolve = resolve.map(|resolve| match resolve {
+                ResolveName::Inner => surface::ResolveName::Inner,
+                ResolveName::Outer => surface::ResolveName::Outer,
+            });
+            surface::make(&job, taking, &Wanted { resolve, lossy, ..Default::default() })
         }
         KindName::Dexels => {
-            let rule = match resolve {
-                None => dexels::RuleName::Sampled,
-                Some(ResolveName::Inner) => dexels::RuleName::Inner,
-                Some(ResolveName::Outer) => dexels::RuleName::Outer,
-            };
+            let rule = resolve.map_or(Rule::Sampled, Rule::from);
             dexels::make(&job, taking, rule, Storing::default())
         }
         KindName::Octree => to_octree(&job, taking, resolve),
@@ -134,7 +120,11 @@ fn to_octree(job: &Job, taking: &Taking, resolve: Option<ResolveName>) -> Result
                        can read what comes through a pipe";
         return Err(Failure::of(input, problem));
     }
-    if let Some((model, _)) = input.dexels(true)? {
+    if input.begins_as_solid() {
+        // A damaged file is told to be damaged.
+        let Stored::Dexels(model) = Stored::read(input, true)?.0 else {
+            return Err(Failure::of(input, "is an octree already"));
+        };
         output.check()?;
         taking.refuse(input, "a tri-dexel model")?;
         let given = [
@@ -148,17 +138,8 @@ fn to_octree(job: &Job, taking: &Taking, resolve: Option<ResolveName>) -> Result
         }
         return octree_of_dexels::make(job, &model);
     }
-    if input.begins_as_solid() {
-        // A damaged file is told to be damaged.
-        input.octree(true)?;
-        return Err(Failure::of(input, "is an octree already"));
-    }
     let found = Found::look(input, taking.reading.told())?;
-    let rule = match resolve {
-        None => RuleName::Certified,
-        Some(ResolveName::Inner) => RuleName::Inner,
-        Some(ResolveName::Outer) => RuleName::Outer,
-    };
+    let rule = resolve.map_or(Rule::Certified, Rule::from);
     let depth = job.depth.unwrap_or(DEPTH);
     if found.content == Content::Scene {
         taking.reading.refuse(input, "a scene")?;

@@ -3,7 +3,7 @@
 use crate::failure::Failure;
 use crate::making::job::Job;
 use crate::making::octree_of_scene::{self, Splitting, TouchName};
-use crate::options::{RuleName, bounds, threads};
+use crate::options::{RuleName, bounds, number, threads};
 use crate::sink::Output;
 use crate::source::file::Found;
 use crate::source::input::Input;
@@ -68,10 +68,7 @@ pub struct Arguments {
 }
 
 fn thickness(text: &str) -> Result<f64, String> {
-    match text.parse() {
-        Ok(thickness) if thickness >= 0.0 && f64::is_finite(thickness) => Ok(thickness),
-        _ => Err("expected a length not below 0".into()),
-    }
+    number(text, "a length not below 0", |thickness| thickness >= 0.0)
 }
 
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
@@ -91,5 +88,10 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     job.output.check_beside(&job.input, "scene")?;
     let found = Found::look(&job.input, None)?;
-    octree_of_scene::make(&job, found, &arguments.drawing, Splitting { depth, rule, adaptive, touch })
+    octree_of_scene::make(
+        &job,
+        found,
+        &arguments.drawing,
+        Splitting { depth, rule: rule.into(), adaptive, touch },
+    )
 }

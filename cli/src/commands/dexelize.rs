@@ -1,14 +1,14 @@
 //! `leafless dexelize`: from a solid of any kind to a tri-dexel model.
 
 use crate::failure::Failure;
-use crate::making::dexels::{RuleName, Storing, make};
+use crate::making::dexels::{Storing, make};
 use crate::making::job::Job;
 use crate::options::{bounds, resolution, threads};
 use crate::sink::Output;
 use crate::source::file::Taking;
 use crate::source::input::Input;
 use clap::{Args, ValueEnum};
-use leafless::{DexelEnds, DexelFormat, DexelNormals, DexelOptions, Frame};
+use leafless::{DexelEnds, DexelFormat, DexelNormals, DexelOptions, Frame, Rule};
 use std::ffi::OsString;
 use std::time::Instant;
 
@@ -105,6 +105,26 @@ enum NormalsName {
     Bits32,
 }
 
+#[derive(Debug, Clone, Copy, PartialEq, ValueEnum)]
+enum RuleName {
+    /// Those of the solid on each ray
+    Sampled,
+    /// Those of cells that are wholly inside: the result lies within the solid
+    Inner,
+    /// Those of cells that are not wholly outside: the result contains what the solid holds of each ray
+    Outer,
+}
+
+impl From<RuleName> for Rule {
+    fn from(name: RuleName) -> Rule {
+        match name {
+            RuleName::Sampled => Rule::Sampled,
+            RuleName::Inner => Rule::Inner,
+            RuleName::Outer => Rule::Outer,
+        }
+    }
+}
+
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let Arguments { resolution: depth, directions, rule, bounds, threads, json, .. } = *arguments;
     let (input, output) = (Input::from(&*arguments.input), Output::from(&*arguments.output));
@@ -123,7 +143,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         materials: false,
     };
     let options = DexelOptions { directions: directions.0, format, ..Default::default() };
-    make(&job, &arguments.taking, rule, Storing { options, material: arguments.material })
+    make(&job, &arguments.taking, rule.into(), Storing { options, material: arguments.material })
 }
 
 #[cfg(test)]

@@ -4,11 +4,11 @@ use crate::failure::{Failure, Of};
 use crate::memory;
 use crate::options::bounds;
 use crate::report::bounds::{Proven, stop_word};
-use crate::sink;
+use crate::sink::print_told;
 use crate::source::file::Taking;
 use crate::source::input::Input;
 use crate::source::solid::{Corners, Source, evaluations};
-use crate::words::{count, measured, number};
+use crate::words::{count, measured, number, put_line};
 use clap::Args;
 use leafless::{
     Affine, Clearance, Control, Cube, Error, Frame, Interference, Interval, Overlap, Prepared, Proof,
@@ -16,7 +16,6 @@ use leafless::{
 };
 use serde::Serialize;
 use std::ffi::OsString;
-use std::fmt::Write;
 
 /// Says whether two solids have inner points in common: `disjoint` and `overlapping` are proven, `undecided`
 /// comes with the reason: the depth or the number of splits does not decide it, the cells of a file do not
@@ -185,12 +184,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let (found, near, evaluations) =
         ask(&first, &second, &frame, &control).map_err(|error| Failure::of(a, error))?;
     let report = Report::new(&inputs, &frame, &found, &near, evaluations, arguments.splits);
-    let text = if arguments.json {
-        sink::json(&report)?
-    } else {
-        text(&found, &report, reason(&found, arguments.splits).map(|reason| reason.1))
-    };
-    sink::print(text.as_bytes())
+    print_told(arguments.json, &report, |report| {
+        text(&found, report, reason(&found, arguments.splits).map(|reason| reason.1))
+    })
 }
 
 /// The cube that holds both: of a solid its own, as often doubled as it takes, so that its cells stay whole;
@@ -296,10 +292,7 @@ impl Report {
 /// The same for people.
 fn text(found: &Interference, report: &Report, reason: Option<&str>) -> String {
     let mut text = String::new();
-    let mut line = |name: &str, value: String| {
-        // Writing to a string does not fail.
-        let _ = writeln!(text, "{name:<16}{value}");
-    };
+    let mut line = |name: &str, value: String| put_line(&mut text, name, &value);
     line("verdict", reason.map_or(report.verdict.into(), |reason| format!("{}: {reason}", report.verdict)));
     line("overlap", report.overlap.text());
     // (Where the solids overlap it is 0, and nothing was searched.)

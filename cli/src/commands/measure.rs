@@ -9,7 +9,7 @@ use crate::sink;
 use crate::source::file::Taking;
 use crate::source::input::Input;
 use crate::source::solid::{Source, evaluations};
-use crate::words::{count, measured};
+use crate::words::{count, measured, put_line};
 use clap::Args;
 use leafless::{
     Affine, Control, Error, Extent, Frame, Interval, MAX_DEPTH, MassProperties, MeshMoments, MeshSolid,
@@ -17,7 +17,6 @@ use leafless::{
 };
 use serde::Serialize;
 use std::ffi::OsString;
-use std::fmt::Write;
 
 /// Measures a solid of density 1 without making an octree of it: the cells of which most is in doubt are split first,
 /// until the volume is known well enough. All numbers are intervals that hold the true ones.
@@ -252,10 +251,7 @@ fn text(
     inexact: Option<&Option<String>>,
 ) -> String {
     let mut text = String::new();
-    let mut line = |name: &str, value: String| {
-        // Writing to a string does not fail.
-        let _ = writeln!(text, "{name:<16}{value}");
-    };
+    let mut line = |name: &str, value: String| put_line(&mut text, name, &value);
     line("volume", measured(mass.volume));
     let area = match is_known(surface) {
         true => measured(surface.area),

@@ -66,5 +66,5 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     job.output.check()?;
     job.output.check_beside(input, "mesh")?;
     let found = Found::look(input, reading.told())?;
-    octree_of_mesh::make(&job, found, reading, rule)
+    octree_of_mesh::make(&job, found, reading, rule.into())
 }

@@ -1,16 +1,15 @@
 //! The set operations on solids of either kind.
 
 use crate::failure::{Failure, Of};
-use crate::making::dexel_boolean;
 use crate::making::octree_of_volume::of_voxels;
 use crate::making::operands::{Operation, Place, check_places, facts, warn_of_units};
 use crate::progress::watched;
-use crate::report::octree::Info;
+use crate::report::{dexels, octree};
 use crate::sink::Output;
 use crate::source::file::Stored;
 use crate::source::input::Input;
 use crate::source::volume::Sampling;
-use crate::words::{count, counted, seconds};
+use crate::words::{count, counted, seconds, short};
 use leafless::exchange::VolumeFormat;
 use leafless::{CarryRule, Control, Error, Octree, OctreeRef, TriDexel, carry_channels};
 use std::time::Instant;
@@ -29,30 +28,56 @@ pub struct Combining<'a> {
 pub fn combine(combining: &Combining, inputs: &[Input], output: &Output) -> Result<(), Failure> {
     let (start, operation) = (Instant::now(), combining.operation);
     output.check()?;
-    let octrees = match operands(inputs, combining)? {
-        Operands::Octrees(octrees) => octrees,
+    let operands = operands(inputs, combining)?;
+    let (places, depth): (Vec<Place>, _) = match &operands {
+        Operands::Octrees(octrees) => {
+            (octrees.iter().map(|octree| Place::new(octree.frame(), octree.metadata())).collect(), "--depth")
+        }
         Operands::Dexels(models) => {
-            return dexel_boolean::combine(operation, inputs, &models, output, combining.threads, start);
+            (models.iter().map(|model| Place::new(model.frame(), model.metadata())).collect(), "--resolution")
         }
     };
-    let places: Vec<Place> =
-        octrees.iter().map(|octree| Place::new(octree.frame(), octree.metadata())).collect();
-    check_places(inputs, &places, "--depth")?;
-    let trees: Vec<OctreeRef<'_>> = octrees.iter().map(|octree| *octree.view()).collect();
-    let name = operation.name();
-    let result = watched(name, combining.threads, |control| of(operation, &trees[0], &trees, control));
-    let result = carried(result.of(name)?, &octrees, combining).of(name)?.with_metadata(facts(&places)?);
-    warn_of_units(inputs, &places);
-    let bytes = output.save(&result)?;
-    let info = Info::new(&result, bytes);
-    output.report(&format!(
-        "{output}: {name} of {}, volume {}, {} nodes, {} bytes, in {}\n",
-        counted(inputs.len() as u64, "solid", "solids"),
-        info.volume_text(),
-        count(info.nodes),
-        count(bytes),
-        seconds(start.elapsed().as_secs_f64()),
-    ))
+    check_places(inputs, &places, depth)?;
+    let (name, threads, number) = (operation.name(), combining.threads, inputs.len() as u64);
+    let (solids, result, bytes) = match &operands {
+        Operands::Octrees(octrees) => {
+            let trees: Vec<OctreeRef<'_>> = octrees.iter().map(|octree| *octree.view()).collect();
+            let result = watched(name, threads, |control| of(operation, &trees[0], &trees, control));
+            let result = carried(result.of(name)?, octrees, combining).of(name)?;
+            let result = result.with_metadata(facts(&places)?);
+            warn_of_units(inputs, &places);
+            let bytes = output.save(&result)?;
+            let info = octree::Info::new(&result, bytes);
+            let told = format!("volume {}, {} nodes", info.volume_text(), count(info.nodes));
+            (counted(number, "solid", "solids"), told, bytes)
+        }
+        Operands::Dexels(models) => {
+            check_directions(inputs, models)?;
+            let result = watched(name, threads, |control| of_dexels(operation, models, control)).of(name)?;
+            let result = result.with_metadata(facts(&places)?);
+            warn_of_units(inputs, &places);
+            let bytes = output.save_dexels(&result)?;
+            let info = dexels::Info::new(&result, bytes);
+            let intervals = counted(info.intervals, "interval", "intervals");
+            let told = format!("volume about {}, {intervals}", short(info.mean_volume()));
+            (counted(number, "tri-dexel model", "tri-dexel models"), told, bytes)
+        }
+    };
+    let (bytes, time) = (count(bytes), seconds(start.elapsed().as_secs_f64()));
+    output.report(&format!("{output}: {name} of {solids}, {result}, {bytes} bytes, in {time}\n"))
+}
+
+/// Refuses tri-dexel models whose rays run along different axes.
+fn check_directions(inputs: &[Input], models: &[TriDexel]) -> Result<(), Failure> {
+    let axes = |model: &TriDexel| dexels::Info::new(model, 0).axes();
+    for (input, model) in inputs.iter().zip(models).skip(1) {
+        if model.view().directions() != models[0].view().directions() {
+            let (first, other) = (axes(&models[0]), axes(model));
+            let problem = format!("has rays along {other}, and {} along {first}", inputs[0]);
+            return Err(Failure::of(input, format!("{problem}: make both with the same --directions")));
+        }
+    }
+    Ok(())
 }
 
 /// The result with the channels of the operands.
@@ -129,4 +154,21 @@ fn of(
         }
         (Operation::Complement, _) => leafless::complement(first, control),
     }
+}
+
+fn of_dexels(operation: Operation, models: &[TriDexel], control: &Control<'_>) -> Result<TriDexel, Error> {
+    let (first, others) = (&models[0], &models[1..]);
+    if let Operation::Complement = operation {
+        return first.view().complement(control);
+    }
+    others.iter().try_fold(first.clone(), |whole, other| {
+        let (whole, other) = (whole.view(), other.view());
+        match operation {
+            Operation::Union => whole.union(other, control),
+            Operation::Intersection => whole.intersection(other, control),
+            // What lies in an odd number of them, one after the other.
+            Operation::Xor => whole.xor(other, control),
+            Operation::Difference | Operation::Complement => whole.difference(other, control),
+        }
+    })
 }

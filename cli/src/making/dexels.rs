@@ -3,14 +3,13 @@
 use crate::failure::{Failure, Of, complain};
 use crate::making::job::{Job, facts};
 use crate::making::octree_of_mesh::clipping;
-use crate::options::name_of;
+use crate::options::rule_name;
 use crate::progress::watched;
 use crate::report::dexels::Info;
 use crate::source::file::Taking;
 use crate::source::input::Input;
 use crate::source::solid::{Shape, Source};
 use crate::words::{count, counted, number, seconds, short};
-use clap::ValueEnum;
 use leafless::{
     Affine, DexelOptions, Frame, MeshSolid, Metadata, Octree, Rule, Solid, Tag, TriDexel, dexelize,
 };
@@ -18,26 +17,6 @@ use serde::Serialize;
 
 /// Levels of the lattice, if nobody says how many.
 const DEPTH: u8 = 8;
-
-#[derive(Debug, Clone, Copy, PartialEq, ValueEnum)]
-pub enum RuleName {
-    /// Those of the solid on each ray
-    Sampled,
-    /// Those of cells that are wholly inside: the result lies within the solid
-    Inner,
-    /// Those of cells that are not wholly outside: the result contains what the solid holds of each ray
-    Outer,
-}
-
-impl From<RuleName> for Rule {
-    fn from(name: RuleName) -> Rule {
-        match name {
-            RuleName::Sampled => Rule::Sampled,
-            RuleName::Inner => Rule::Inner,
-            RuleName::Outer => Rule::Outer,
-        }
-    }
-}
 
 /// What of a solid is stored.
 #[derive(Default)]
@@ -51,7 +30,7 @@ pub struct Storing {
 struct Report {
     input: String,
     output: String,
-    rule: String,
+    rule: &'static str,
     /// Cells to an axis.
     resolution: u32,
     /// Rays that cross the solid, in all directions.
@@ -66,9 +45,9 @@ struct Report {
 }
 
 /// Makes a tri-dexel model of a file, and saves it.
-pub fn make(job: &Job, taking: &Taking, rule: RuleName, mut storing: Storing) -> Result<(), Failure> {
+pub fn make(job: &Job, taking: &Taking, rule: Rule, mut storing: Storing) -> Result<(), Failure> {
     let Job { input, output, start, .. } = job;
-    storing.options.rule = rule.into();
+    storing.options.rule = rule;
     output.check()?;
     output.check_beside(input, "input")?;
     let (shape, fingerprint) = Shape::read(input, taking)?;
@@ -85,7 +64,7 @@ pub fn make(job: &Job, taking: &Taking, rule: RuleName, mut storing: Storing) ->
     let report = Report {
         input: input.to_string(),
         output: output.to_string(),
-        rule: name_of(rule),
+        rule: rule_name(rule),
         resolution: frame.cells(),
         rays: info.rays(),
         odd_rays: info.odd_rays(),
@@ -125,7 +104,7 @@ fn made(
     source: Source,
     job: &Job,
     frame: &Frame,
-    rule: RuleName,
+    rule: Rule,
     storing: &Storing,
 ) -> Result<(TriDexel, [u64; 3]), Failure> {
     let input = &job.input;
@@ -133,7 +112,7 @@ fn made(
         Source::Octree(octree) => {
             // Cells that are cut further than the lattice goes are undecided there.
             let is_coarser = frame.depth() < octree.frame().depth();
-            if rule == RuleName::Sampled && (is_coarser || !octree.view().is_binary()) {
+            if rule == Rule::Sampled && (is_coarser || !octree.view().is_binary()) {
                 let problem = "has undecided cells, which are neither inside nor outside: choose --rule inner or --rule \
                                outer (of `leafless convert` --resolve), or make it anew from its source with --rule sampled";
                 return Err(Failure::of(input, problem));
@@ -191,15 +170,15 @@ fn metadata(
     input: &Input,
     source: &Source,
     fingerprint: Option<String>,
-    rule: RuleName,
+    rule: Rule,
 ) -> Result<Metadata, Failure> {
     if let Source::Octree(octree) = source {
         let mut metadata = Metadata::common([octree.metadata()]).of(input)?;
         if let Some(known) = octree.metadata().get("rule") {
             metadata.insert("rule", known);
         }
-        if rule != RuleName::Sampled {
-            metadata.insert("rule", name_of(rule));
+        if rule != Rule::Sampled {
+            metadata.insert("rule", rule_name(rule));
         }
         return Ok(metadata);
     }

@@ -1,13 +1,12 @@
 //! What is wanted of a result of any kind, and what all octrees have in common that are made of something.
 
-use crate::options::name_of;
+use crate::options::rule_name;
 use crate::report::octree::Info;
 use crate::sink::Output;
 use crate::source::input::Input;
 use crate::words::{count, number, seconds};
-use clap::ValueEnum;
 use leafless::exchange::LengthUnit;
-use leafless::{Frame, Metadata, Octree};
+use leafless::{Frame, Metadata, Octree, Rule};
 use serde::Serialize;
 use std::time::Instant;
 
@@ -72,10 +71,10 @@ pub fn named(input: &Input) -> Metadata {
 }
 
 /// The same of what is made by a rule of a file with this fingerprint.
-pub fn facts(input: &Input, fingerprint: String, rule: impl ValueEnum, unit: Option<LengthUnit>) -> Metadata {
+pub fn facts(input: &Input, fingerprint: String, rule: Rule, unit: Option<LengthUnit>) -> Metadata {
     let mut metadata = named(input);
     metadata.insert("source", fingerprint);
-    metadata.insert("rule", name_of(rule));
+    metadata.insert("rule", rule_name(rule));
     if let Some(unit) = unit {
         metadata.insert("units", unit.symbol());
     }

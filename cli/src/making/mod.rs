@@ -4,7 +4,6 @@
 //! arguments of a subcommand, so that several can ask for the same.
 
 pub mod boolean;
-pub mod dexel_boolean;
 pub mod dexel_surface;
 pub mod dexels;
 pub mod job;

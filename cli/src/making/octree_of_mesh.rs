@@ -3,7 +3,7 @@
 use crate::failure::{Failure, Of, complain};
 use crate::making::job::{Job, Timings, facts};
 use crate::making::octree_of_volume;
-use crate::options::{RuleName, name_of};
+use crate::options::rule_name;
 use crate::progress::watched;
 use crate::report::mesh::Mesh;
 use crate::report::octree::Info;
@@ -13,7 +13,7 @@ use crate::source::file::Found;
 use crate::source::mesh::{Reading, fill_name, format_name, frame_around, in_words, warn_of_openness};
 use crate::words::{counted, number};
 use leafless::exchange::{LengthUnit, MeshFile};
-use leafless::{Frame, MeshError, MeshReport, MeshSolid, build};
+use leafless::{Frame, MeshError, MeshReport, MeshSolid, Rule, build};
 use serde::Serialize;
 use std::fmt::Write;
 use std::time::Instant;
@@ -22,7 +22,7 @@ use std::time::Instant;
 struct Report {
     input: String,
     output: String,
-    rule: String,
+    rule: &'static str,
     fill: &'static str,
     format: &'static str,
     /// Absent (null) where nobody knows it.
@@ -40,10 +40,10 @@ struct Report {
 }
 
 /// Makes an octree of a mesh or a volume, and saves it.
-pub fn make(job: &Job, found: Found<'_>, reading: &Reading, rule: RuleName) -> Result<(), Failure> {
+pub fn make(job: &Job, found: Found<'_>, reading: &Reading, rule: Rule) -> Result<(), Failure> {
     let Job { input, output, start, .. } = job;
     if found.content == Content::Volume {
-        return octree_of_volume::make(job, rule.into(), &found.volume(reading)?);
+        return octree_of_volume::make(job, rule, &found.volume(reading)?);
     }
     let Some(depth) = job.depth else {
         let problem =
@@ -74,7 +74,7 @@ pub fn make(job: &Job, found: Found<'_>, reading: &Reading, rule: RuleName) -> R
 
     let building = Instant::now();
     let solid = MeshSolid::new(mesh, fill).of(input)?;
-    let octree = watched("voxelize", job.threads, |control| build(&solid, &frame, rule.into(), control));
+    let octree = watched("voxelize", job.threads, |control| build(&solid, &frame, rule, control));
     let octree = octree.of(input)?.with_metadata(facts(input, fingerprint, rule, unit));
     let build = building.elapsed().as_secs_f64();
 
@@ -90,12 +90,12 @@ pub fn make(job: &Job, found: Found<'_>, reading: &Reading, rule: RuleName) -> R
     let info = Info::new(&octree, bytes);
     let Some(mesh) = told else {
         let head = head(job, &mesh_report, skipped);
-        return output.report(&(head + &job.summary(&name_of(rule), &octree, &info, "", &timings)));
+        return output.report(&(head + &job.summary(rule_name(rule), &octree, &info, "", &timings)));
     };
     let report = Report {
         input: input.to_string(),
         output: output.to_string(),
-        rule: name_of(rule),
+        rule: rule_name(rule),
         fill: fill_name(fill),
         format: format_name(format),
         unit: unit.map(LengthUnit::symbol),

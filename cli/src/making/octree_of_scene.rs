@@ -2,7 +2,7 @@
 
 use crate::failure::{Failure, Of, complain};
 use crate::making::job::{Job, Timings, facts};
-use crate::options::{RuleName, name_of};
+use crate::options::{name_of, rule_name};
 use crate::progress::watched;
 use crate::report::octree::Info;
 use crate::report::scene::Curves;
@@ -11,7 +11,7 @@ use crate::source::file::Found;
 use crate::source::scene::{Drawing, frame_of};
 use crate::words::{count, number};
 use clap::ValueEnum;
-use leafless::{Adaptive, SplitCounter, Touch, build};
+use leafless::{Adaptive, Rule, SplitCounter, Touch, build};
 use serde::Serialize;
 use std::time::Instant;
 
@@ -28,7 +28,7 @@ pub enum TouchName {
 #[derive(Clone, Copy)]
 pub struct Splitting {
     pub depth: u8,
-    pub rule: RuleName,
+    pub rule: Rule,
     /// The thickness of layers that are not split. Without it all are.
     pub adaptive: Option<f64>,
     pub touch: TouchName,
@@ -38,7 +38,7 @@ pub struct Splitting {
 struct Report {
     input: String,
     output: String,
-    rule: String,
+    rule: &'static str,
     touch: String,
     /// The thickness of layers that are not split; absent (null) if all are.
     adaptive: Option<f64>,
@@ -80,10 +80,10 @@ pub fn make(job: &Job, found: Found<'_>, drawing: &Drawing, splitting: Splitting
 
     let building = Instant::now();
     let octree = watched("csg", job.threads, |control| match (&counted, adaptive) {
-        (Some(counted), Some(t)) => build(&Adaptive::new(counted, t)?, &frame, rule.into(), control),
-        (Some(counted), None) => build(counted, &frame, rule.into(), control),
-        (None, Some(t)) => build(&Adaptive::new(&solid, t)?, &frame, rule.into(), control),
-        (None, None) => build(&solid, &frame, rule.into(), control),
+        (Some(counted), Some(t)) => build(&Adaptive::new(counted, t)?, &frame, rule, control),
+        (Some(counted), None) => build(counted, &frame, rule, control),
+        (None, Some(t)) => build(&Adaptive::new(&solid, t)?, &frame, rule, control),
+        (None, None) => build(&solid, &frame, rule, control),
     });
     let mut metadata = facts(input, found.fingerprint(), rule, None);
     if let Some(thickness) = adaptive {
@@ -111,7 +111,7 @@ pub fn make(job: &Job, found: Found<'_>, drawing: &Drawing, splitting: Splitting
     let report = Report {
         input: input.to_string(),
         output: output.to_string(),
-        rule: name_of(rule),
+        rule: rule_name(rule),
         touch: name_of(touch),
         adaptive,
         timings: Timings { read, build, save, total: start.elapsed().as_secs_f64() },
@@ -128,6 +128,6 @@ pub fn make(job: &Job, found: Found<'_>, drawing: &Drawing, splitting: Splitting
             report.splits.map_or(String::new(), |splits| count(splits) + ", "),
             count(report.evaluations),
         );
-        job.summary(&report.rule, &octree, &report.info, &more, &report.timings)
+        job.summary(report.rule, &octree, &report.info, &more, &report.timings)
     })
 }

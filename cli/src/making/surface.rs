@@ -27,6 +27,7 @@ use std::path::Path;
 const DEPTH: u8 = 8;
 
 /// How a surface is made and written.
+#[derive(Default)]
 pub struct Wanted {
     pub method: Method,
     pub snap: SnapName,
@@ -40,9 +41,10 @@ pub struct Wanted {
     pub intersections: bool,
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, ValueEnum)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, ValueEnum)]
 pub enum Method {
     /// Marching cubes
+    #[default]
     Mc,
     /// Dual contouring, which keeps edges and corners: of a tri-dexel model with normals. Of a mesh, a scene or a volume
     /// one is made first
@@ -55,9 +57,10 @@ pub enum Method {
     ShrinkPublished,
 }
 
-#[derive(Debug, Clone, Copy, ValueEnum)]
+#[derive(Debug, Clone, Copy, Default, ValueEnum)]
 pub enum SnapName {
     /// To the samples outside
+    #[default]
     Fat,
     /// To the samples inside
     Thin,
@@ -72,11 +75,12 @@ impl From<SnapName> for Snap {
     }
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, ValueEnum)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, ValueEnum)]
 pub enum At {
     /// Half-way between an inside and an outside sample
     Midpoint,
     /// Where the line between them crosses the surface
+    #[default]
     Crossing,
 }
 

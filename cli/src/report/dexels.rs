@@ -1,10 +1,9 @@
 //! What is told of tri-dexel models.
 
-use crate::words::{count, counted, number};
+use crate::words::{count, counted, number, put_line};
 use leafless::{DexelEnds, DexelNormals, TriDexel};
 use serde::Serialize;
 use std::collections::BTreeMap;
-use std::fmt::Write;
 
 /// What one direction holds.
 #[derive(Serialize)]
@@ -109,10 +108,7 @@ impl Info {
     /// The same for people.
     pub fn text(&self) -> String {
         let mut text = String::new();
-        let mut line = |name: &str, value: String| {
-            // Writing to a string does not fail.
-            let _ = writeln!(text, "{name:<16}{value}");
-        };
+        let mut line = |name: &str, value: String| put_line(&mut text, name, &value);
         line("depth", format!("{}, {} cells per axis", self.depth, count(1 << self.depth)));
         line("origin", self.origin.map(number).join(" "));
         line("edge", number(self.edge));

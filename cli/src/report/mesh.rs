@@ -4,14 +4,13 @@ use crate::failure::{Failure, Of};
 use crate::report::bounds::Volume;
 use crate::source::input::Input;
 use crate::source::mesh::{fill_name, format_name, frame_around, in_words, openness};
-use crate::words::{count, counted, measured, number, short, table};
+use crate::words::{count, counted, measured, number, put_line, short, table};
 use leafless::exchange::{LengthUnit, MeshFile};
 use leafless::{
     Control, DefectKind, Error, FillRule, IntersectingPair, Interval, MAX_DEPTH, MeshDefect, MeshReport,
     MeshSolid, TriangleMesh, measure,
 };
 use serde::Serialize;
-use std::fmt::Write;
 
 /// What was found while a mesh was taken in.
 #[derive(Serialize)]
@@ -191,10 +190,7 @@ impl Info {
     /// The same for people.
     pub fn text(&self, report: &MeshReport) -> String {
         let mut text = String::new();
-        let mut line = |name: &str, value: String| {
-            // Writing to a string does not fail.
-            let _ = writeln!(text, "{name:<16}{value}");
-        };
+        let mut line = |name: &str, value: String| put_line(&mut text, name, &value);
         line("format", self.format.to_uppercase());
         line("unit", self.unit.unwrap_or("unknown").into());
         for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {

@@ -2,11 +2,10 @@
 
 use crate::report::bounds::{Proven, Volume};
 use crate::report::channel::ChannelInfo;
-use crate::words::{count, ends, measured, number, table};
+use crate::words::{count, ends, measured, number, put_line, table};
 use leafless::{Interval, Octree, Statistics, Tag};
 use serde::Serialize;
 use std::collections::BTreeMap;
-use std::fmt::Write;
 
 /// Cells of the canonical octree over all levels; together they are its classical nodes.
 #[derive(Serialize)]
@@ -99,10 +98,7 @@ impl Info {
     /// The same for people.
     pub fn text(&self) -> String {
         let mut text = String::new();
-        let mut line = |name: &str, value: String| {
-            // Writing to a string does not fail.
-            let _ = writeln!(text, "{name:<16}{value}");
-        };
+        let mut line = |name: &str, value: String| put_line(&mut text, name, &value);
         let clipped = if self.clipped { " (the solid may go on outside of it)" } else { "" };
         line("depth", format!("{}, {} cells per axis", self.depth, count(1 << self.depth)));
         line("origin", self.origin.map(number).join(" "));

@@ -3,10 +3,9 @@
 use crate::failure::{Failure, Of};
 use crate::source::input::Input;
 use crate::source::mesh::openness;
-use crate::words::{count, counted, number};
+use crate::words::{count, counted, number, put_line};
 use leafless::scene::{Scene, SceneMesh, SceneReport};
 use serde::Serialize;
-use std::fmt::Write;
 
 /// How the curved calls of a scene were drawn.
 #[derive(Serialize)]
@@ -101,10 +100,7 @@ impl Info {
     /// The same for people.
     pub fn text(&self) -> String {
         let mut text = String::new();
-        let mut line = |name: &str, value: String| {
-            // Writing to a string does not fail.
-            let _ = writeln!(text, "{name:<16}{value}");
-        };
+        let mut line = |name: &str, value: String| put_line(&mut text, name, &value);
         line("format", "scene (OpenSCAD CSG)".into());
         for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
             let range = match (self.min, self.max) {

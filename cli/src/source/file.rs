@@ -2,7 +2,7 @@
 
 use crate::failure::{Failure, Of};
 use crate::source::content::Content;
-use crate::source::input::Input;
+use crate::source::input::{Input, map_dexels};
 use crate::source::mesh::Reading;
 use crate::source::scene::{Drawing, scene_of};
 use crate::source::volume::Voxels;
@@ -46,10 +46,15 @@ impl Stored {
     /// The solid in a file, and the file's length. A regular file is mapped and, unless `verified` is asked for, hardly
     /// read.
     pub fn read(input: &Input, verified: bool) -> Result<(Stored, u64), Failure> {
-        if let Some((model, length)) = input.dexels(verified)? {
-            return Ok((Stored::Dexels(model), length));
-        }
-        if input.path().is_some_and(|path| path.is_file()) {
+        if let Some(path) = input.path().filter(|path| path.is_file()) {
+            match file::probe(path) {
+                Ok(probe) if probe.dexels.is_some() => {
+                    let length = std::fs::metadata(path).of(input)?.len();
+                    return Ok((Stored::Dexels(map_dexels(path, verified).of(input)?), length));
+                }
+                Err(error) if input.begins_as_solid() => return Err(error).of(input),
+                _ => {}
+            }
             let (octree, length) = input.octree(verified)?;
             return Ok((Stored::Octree(octree), length));
         }

@@ -94,20 +94,6 @@ impl Input {
         })
     }
 
-    /// The tri-dexel model in the file, and the file's length, if it is the regular file of one. Else as
-    /// [`octree`](Self::octree).
-    pub fn dexels(&self, verified: bool) -> Result<Option<(TriDexel, u64)>, Failure> {
-        let Some(path) = self.path().filter(|path| path.is_file()) else { return Ok(None) };
-        match file::probe(path) {
-            Ok(probe) if probe.dexels.is_some() => {}
-            // A damaged file of either kind; what is no file of the format is told by whoever reads it.
-            Err(error) if self.begins_as_solid() => return Err(error).of(self),
-            _ => return Ok(None),
-        }
-        let length = std::fs::metadata(path).of(self)?.len();
-        Ok(Some((map_dexels(path, verified).of(self)?, length)))
-    }
-
     /// The octree in the file, and the file's length. A regular file is mapped and, unless `verified` is
     /// asked for, hardly read; what comes through a pipe is read and verified in any case.
     pub fn octree(&self, verified: bool) -> Result<(Octree, u64), Failure> {
@@ -124,7 +110,7 @@ impl Input {
 
 /// Maps a file of a tri-dexel model.
 #[allow(unsafe_code)]
-fn map_dexels(path: &Path, verified: bool) -> Result<TriDexel, leafless::Error> {
+pub fn map_dexels(path: &Path, verified: bool) -> Result<TriDexel, leafless::Error> {
     // SAFETY: as for `map`.
     unsafe { if verified { file::dexels::map_verified(path) } else { file::dexels::map(path) } }
 }

@@ -1,7 +1,7 @@
 //! Meshes from files of any format: the options of reading them.
 
 use crate::failure::{Failure, Of, complain};
-use crate::options::formats;
+use crate::options::{formats, number};
 use crate::source::content::Content;
 use crate::source::input::Input;
 use crate::source::volume::{Sampling, Voxels};
@@ -70,10 +70,7 @@ fn unit(text: &str) -> Result<LengthUnit, String> {
 }
 
 fn scale(text: &str) -> Result<f64, String> {
-    match text.parse() {
-        Ok(factor) if factor > 0.0 && f64::is_finite(factor) => Ok(factor),
-        _ => Err("expected a positive number".into()),
-    }
+    number(text, "a positive number", |factor| factor > 0.0)
 }
 
 impl Reading {

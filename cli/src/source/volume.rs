@@ -1,7 +1,7 @@
 //! Volumes from files, NRRD, MetaImage and raw: which voxels are inside, and what is told of them.
 
 use crate::failure::{Failure, Of, Problem, complain};
-use crate::options::{list, numbers};
+use crate::options::{list, number, numbers};
 use crate::source::input::Input;
 use crate::words::counted;
 use clap::Args;
@@ -42,10 +42,7 @@ pub struct Sampling {
 }
 
 fn threshold(text: &str) -> Result<f64, String> {
-    match text.parse() {
-        Ok(value) if f64::is_finite(value) => Ok(value),
-        _ => Err("expected a number".into()),
-    }
+    number(text, "a number", |_| true)
 }
 
 fn extents(text: &str) -> Result<[u32; 3], String> {
