@@ -1,7 +1,8 @@
-//! How a subcommand ends without success.
+//! What goes wrong: how a subcommand ends without success, and what it complains of.
 
 use leafless::{Error, FormatError};
 use std::fmt::Display;
+use std::io::Write;
 
 /// Why a subcommand stopped.
 #[derive(Debug)]
@@ -66,4 +67,18 @@ impl<T, E: Problem> Of<T> for Result<T, E> {
     fn of(self, name: impl Display) -> Result<T, Failure> {
         self.map_err(|error| Failure::of(name, error.text()))
     }
+}
+
+/// Writes one line to standard error. If that is closed nobody wants to know.
+pub fn complain(line: &str) {
+    let _ = writeln!(std::io::stderr().lock(), "leafless: {}", harmless(line));
+}
+
+/// The text without line ends and what else a terminal might obey: names of files may hold anything.
+fn harmless(text: &str) -> String {
+    let mut line = String::with_capacity(text.len());
+    for c in text.chars() {
+        if c.is_control() { line.extend(c.escape_default()) } else { line.push(c) }
+    }
+    line
 }

@@ -5,66 +5,24 @@
 
 #![deny(unsafe_code)]
 
-mod attribute;
-mod bitmap;
-mod blocks;
-mod boolean;
-mod channel;
-mod contains;
-mod content;
-mod conversion;
-mod convert;
-mod csg;
-mod csv;
-mod demo;
-mod dexel_boolean;
-mod dexel_surface;
-mod dexelize;
-mod dexels;
-mod distance;
-mod expression;
+mod commands;
 mod failure;
-mod heights;
-mod info;
-mod input;
-mod interfere;
-mod measure;
+mod making;
 mod memory;
-mod mesh;
-mod neighbours;
-mod npz;
-mod operands;
 mod options;
-mod output;
-mod part;
-mod picture;
 mod progress;
-mod ray;
-mod render;
 mod report;
 mod rows;
-mod sample;
-mod scene;
-mod shape;
 mod show;
-mod shrink;
 mod signals;
-mod sixel;
+mod sink;
 mod source;
-mod summary;
-mod surface;
-mod target;
-mod terminal;
-mod verify;
-mod volume;
-mod voxelize;
-mod voxels;
-mod within;
-mod written;
+mod words;
 
 use clap::error::ErrorKind;
 use clap::{Parser, Subcommand};
-use failure::Failure;
+use commands::*;
+use failure::{Failure, complain};
 use std::process::ExitCode;
 
 /// Turns meshes into solids, cuts and joins them exactly, and answers questions about them.
@@ -95,7 +53,7 @@ enum Command {
     /// Make a tri-dexel model, intervals along rays, of a solid, a mesh, a scene or a volume
     Dexelize(dexelize::Arguments),
     /// Make an octree, a tri-dexel model or a triangle mesh of any of them
-    Convert(conversion::Arguments),
+    Convert(convert::Arguments),
     /// Show what a solid consists of (depth, nodes, cells, volume), a mesh (bodies, holes, defects) or a scene
     Info(info::Arguments),
     /// Check a file completely: exit code 0 if it is good, 1 with the reason if not
@@ -123,7 +81,7 @@ enum Command {
     /// Write how far a solid, a mesh or a scene reaches in each column of cells: a height map
     Heights(heights::Arguments),
     /// Write the surface of a solid, a mesh or a scene as a triangle mesh
-    Mesh(surface::Arguments),
+    Mesh(mesh::Arguments),
     /// Write the cells of a solid as a volume (NRRD or raw)
     Bitmap(bitmap::Arguments),
     /// Write the voxels of a solid, a mesh or a scene as records (NPZ or CSV), or make a solid of records
@@ -160,10 +118,12 @@ fn main() -> ExitCode {
         Command::Convert(arguments) => convert::run(arguments),
         Command::Info(arguments) => info::run(arguments),
         Command::Verify(arguments) => verify::run(arguments),
-        Command::Union(arguments) => boolean::run(operands::Operation::Union, arguments),
-        Command::Intersection(arguments) => boolean::run(operands::Operation::Intersection, arguments),
-        Command::Difference(arguments) => boolean::run(operands::Operation::Difference, arguments),
-        Command::Xor(arguments) => boolean::run(operands::Operation::Xor, arguments),
+        Command::Union(arguments) => boolean::run(making::operands::Operation::Union, arguments),
+        Command::Intersection(arguments) => {
+            boolean::run(making::operands::Operation::Intersection, arguments)
+        }
+        Command::Difference(arguments) => boolean::run(making::operands::Operation::Difference, arguments),
+        Command::Xor(arguments) => boolean::run(making::operands::Operation::Xor, arguments),
         Command::Complement(arguments) => boolean::run_complement(arguments),
         Command::Contains(arguments) => contains::run(arguments),
         Command::Attribute(arguments) => attribute::run(arguments),
@@ -174,7 +134,7 @@ fn main() -> ExitCode {
         Command::Ray(arguments) => ray::run(arguments),
         Command::Render(arguments) => render::run(arguments),
         Command::Heights(arguments) => heights::run(arguments),
-        Command::Mesh(arguments) => surface::run(arguments),
+        Command::Mesh(arguments) => mesh::run(arguments),
         Command::Bitmap(arguments) => bitmap::run(arguments),
         Command::Voxels(arguments) => voxels::run(arguments),
         Command::Interfere(arguments) => interfere::run(arguments),
@@ -189,11 +149,11 @@ fn main() -> ExitCode {
         // Half a solid is none; but the reader knows best why it left.
         Err(Failure::Undelivered) => ExitCode::from(1),
         Err(Failure::Failed(line)) => {
-            output::complain(&line);
+            complain(&line);
             ExitCode::from(1)
         }
         Err(Failure::Usage(line)) => {
-            output::complain(&line);
+            complain(&line);
             ExitCode::from(2)
         }
     }
@@ -208,7 +168,7 @@ fn refuse_usage(error: &clap::Error) -> ExitCode {
             // Nobody is left to be told if this cannot be printed.
             let _ = error.print();
         }
-        _ => output::complain(&usage_line(&error.to_string())),
+        _ => complain(&usage_line(&error.to_string())),
     }
     ExitCode::from(error.exit_code() as u8)
 }

@@ -1,7 +1,10 @@
 //! Values of options that several subcommands have.
 
 use clap::ValueEnum;
+use clap::builder::{PossibleValuesParser, TypedValueParser};
+use leafless::exchange::MeshFormat;
 use leafless::{Frame, Rule};
+use std::str::FromStr;
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
 pub enum RuleName {
@@ -31,13 +34,67 @@ pub fn name_of(value: impl ValueEnum) -> String {
     value.to_possible_value().map_or_else(String::new, |value| value.get_name().to_owned())
 }
 
+/// What cells that are not decided count as.
+#[derive(Debug, Clone, Copy, PartialEq, ValueEnum)]
+pub enum ResolveName {
+    /// Outside
+    Inner,
+    /// Inside
+    Outer,
+}
+
+impl From<ResolveName> for Rule {
+    fn from(name: ResolveName) -> Rule {
+        match name {
+            ResolveName::Inner => Rule::Inner,
+            ResolveName::Outer => Rule::Outer,
+        }
+    }
+}
+
+/// The name of a rule, as the user writes it.
+pub fn rule_name(rule: Rule) -> &'static str {
+    match rule {
+        Rule::Certified => "certified",
+        Rule::Sampled => "sampled",
+        Rule::Inner => "inner",
+        Rule::Outer => "outer",
+    }
+}
+
+/// A number that is finite and `good`; `what` is expected.
+pub fn number(text: &str, what: &str, good: impl Fn(f64) -> bool) -> Result<f64, String> {
+    let number = text.parse().ok().filter(|number: &f64| number.is_finite() && good(*number));
+    number.ok_or_else(|| format!("expected {what}"))
+}
+
+/// Numbers between commas.
+pub fn list<T: FromStr>(text: &str) -> Option<Vec<T>> {
+    text.split(',').map(|number| number.trim().parse().ok()).collect()
+}
+
+/// The same if there are just `N`.
+pub fn numbers<T: FromStr, const N: usize>(text: &str) -> Option<[T; N]> {
+    list(text)?.try_into().ok()
+}
+
 /// The universe of `--bounds`; its depth is a placeholder.
 pub fn bounds(text: &str) -> Result<Frame, String> {
-    let numbers: Result<Vec<f64>, _> = text.split(',').map(|number| number.trim().parse()).collect();
-    match numbers.as_deref() {
-        Ok(&[x, y, z, edge]) => Frame::new([x, y, z], edge, 1).map_err(|error| error.to_string()),
-        _ => Err("expected four numbers: x0,y0,z0,edge".into()),
+    match numbers(text) {
+        Some([x, y, z, edge]) => Frame::new([x, y, z], edge, 1).map_err(|error| error.to_string()),
+        None => Err("expected four numbers: x0,y0,z0,edge".into()),
     }
+}
+
+/// Formats of meshes, named in this order.
+pub fn formats(names: [&'static str; 5]) -> impl TypedValueParser<Value = MeshFormat> {
+    PossibleValuesParser::new(names)
+        .try_map(|name| MeshFormat::from_extension(&name).ok_or("is no format of meshes"))
+}
+
+/// How wide an interval may be.
+pub fn tolerance(text: &str) -> Result<f64, String> {
+    number(text, "a number not below 0", |tolerance| tolerance >= 0.0)
 }
 
 /// A number of threads: far more than processors help nobody.
@@ -69,4 +126,50 @@ pub fn resolution(text: &str) -> Result<u8, String> {
         }
     };
     Err(format!("expected a power of two from 2 to {most}: {near}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bounds_are_four_numbers_that_make_a_frame() {
+        let frame = bounds("-1, 2.5,3e1,4").unwrap();
+        assert_eq!((frame.origin(), frame.edge()), ([-1.0, 2.5, 30.0], 4.0));
+        for text in [
+            "",
+            "1,2,3",
+            "1,2,3,4,5",
+            "1,2,3,x",
+            "0,0,0,0",
+            "0,0,0,-1",
+            "0,nan,0,1",
+            "0,0,0,inf",
+            "0,0,0,nan",
+        ] {
+            assert!(bounds(text).is_err(), "{text}");
+        }
+    }
+
+    #[test]
+    fn resolutions_are_powers_of_two() {
+        for depth in 1..=19u8 {
+            assert_eq!(resolution(&(1u32 << depth).to_string()), Ok(depth));
+        }
+        for (text, near) in [
+            ("0", "2 is the"),
+            ("1", "2 is the"),
+            ("3", "2 and 4 are"),
+            ("300", "256 and 512 are"),
+            ("524287", "262144 and 524288 are"),
+            ("524289", "524288 is the"),
+            ("1048576", "524288 is the"),
+            ("18446744073709551615", "524288 is the"),
+            ("-4", "from 2 to 524288"),
+            ("many", "from 2 to 524288"),
+        ] {
+            let error = resolution(text).unwrap_err();
+            assert!(error.contains(near), "{text}: {error}");
+        }
+    }
 }

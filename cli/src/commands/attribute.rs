@@ -1,0 +1,245 @@
+//! `leafless attribute`: a channel of values inside a solid.
+
+use crate::failure::{Failure, Of};
+use crate::options::{list, threads};
+use crate::progress::watched;
+use crate::report::channel::ChannelInfo;
+use crate::sink::Output;
+use crate::source::expression::{Expressions, SYNTAX};
+use crate::source::input::Input;
+use crate::source::values::{Values, find};
+use crate::source::volume::Sampling;
+use crate::words::{count, seconds};
+use clap::Args;
+use clap::builder::{PossibleValuesParser, TypedValueParser};
+use leafless::{
+    CarryRule, Channel, ChannelOperand, ConstantAttribute, Control, Criterion, Detail, FillOptions,
+    Interpolation, MAX_DEPTH, Octree, ScalarType, ValueType, carry_channel, fill_channel,
+};
+use serde::Serialize;
+use std::ffi::OsString;
+use std::time::Instant;
+
+/// Gives a solid a channel: a value of one to four numbers at every point inside. The values are those of a function, a
+/// volume or a channel of another solid, at the centres of cells; equal neighbours are stored as one. The channel
+/// travels in the solid's file, and through the Boolean commands.
+///
+/// Without a detail, every cell of the channel's finest level has its own value, wherever it is not proven that all of a
+/// larger cell has one. With --coarse, --fine and --tolerance cells are split as far as the values demand it.
+#[derive(Args)]
+#[command(group = clap::ArgGroup::new("values").required(true).args(["from", "bodies", "expr", "value", "remove"]))]
+pub struct Arguments {
+    /// Solid (.lfl)
+    file: OsString,
+    /// Name of the channel. One of this name is replaced, or changed with --in
+    #[arg(long, value_name = "NAME")]
+    name: String,
+    /// Take the values from this file: the samples of a volume (NRRD, MetaImage, raw), the colours or materials of a mesh
+    /// (3MF, PLY) at the nearest point of its surface, or the channel of this name of another solid (.lfl)
+    #[arg(long, value_name = "FILE")]
+    from: Option<OsString>,
+    /// Take the number of the nearest body of this mesh (STL, OBJ, PLY, OFF, 3MF), counted from 0 in the order of their
+    /// first triangles
+    #[arg(long, value_name = "MESH")]
+    bodies: Option<OsString>,
+    /// Which values of a mesh. Without it: those of the channel's name, or the only ones
+    #[arg(long, value_name = "NAME", requires = "from")]
+    pick: Option<String>,
+    /// Take the values from a function of x, y and z; given up to four times, once for each number of a value
+    #[arg(long, value_name = "EXPR", allow_hyphen_values = true, long_help = expression_help())]
+    expr: Vec<String>,
+    /// Take one value everywhere: one to four numbers
+    #[arg(long, value_name = "V,…", value_parser = numbers, allow_hyphen_values = true)]
+    value: Option<Numbers>,
+    /// Take the channel away
+    #[arg(long)]
+    remove: bool,
+    /// Change an existing channel, and only inside of this solid (.lfl), which lies in the same cube
+    #[arg(long = "in", value_name = "REGION.lfl", conflicts_with = "remove")]
+    region: Option<OsString>,
+    /// Type in which numbers are stored. Without it: f32, or that of the channel that is copied or changed
+    #[arg(long, value_parser = scalars(), value_name = "TYPE")]
+    store: Option<ScalarType>,
+    /// Levels of the channel's cells, 1 to 20. Without it: those of the solid
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=MAX_DEPTH as i64))]
+    depth: Option<u8>,
+    /// Edge that no cell may exceed where the solid is. Without it: no limit
+    #[arg(long, value_name = "EDGE", requires = "tolerance", allow_hyphen_values = true)]
+    coarse: Option<f64>,
+    /// Edge at which cells are not split any more. Without it: that of the finest cells
+    #[arg(long, value_name = "EDGE", requires = "tolerance", allow_hyphen_values = true)]
+    fine: Option<f64>,
+    /// Split cells until the values in them are proven to differ by no more than this, in each number; where nothing
+    /// is proven, to the fine edge
+    #[arg(long, value_name = "V", allow_hyphen_values = true)]
+    tolerance: Option<f64>,
+    /// Compare the values at the eight corners of a cell instead, as published: their standard deviation must be no more
+    /// than the tolerance. Details between the corners are missed
+    #[arg(long, requires = "tolerance")]
+    corners: bool,
+    /// Take the sample of the nearest voxel, and do not interpolate
+    #[arg(long, requires = "from")]
+    nearest: bool,
+    /// Keep values outside of the solid, too
+    #[arg(long)]
+    everywhere: bool,
+    /// Unit of the values, which is kept beside them
+    #[arg(long, value_name = "TEXT")]
+    unit: Option<String>,
+    /// What the values mean, which is kept beside them: colour, density, material
+    #[arg(long, value_name = "TEXT")]
+    meaning: Option<String>,
+    /// File to write, or `-` for standard output. Without it: the solid's own
+    #[arg(short, long, value_name = "OUT.lfl")]
+    output: Option<OsString>,
+    #[command(flatten)]
+    sampling: Sampling,
+    /// Threads to use; 0: as many as there are processors. The result is the same
+    #[arg(long, default_value_t = 0, value_name = "N", value_parser = threads)]
+    threads: usize,
+    /// Print one JSON object
+    #[arg(long)]
+    json: bool,
+}
+
+fn expression_help() -> String {
+    format!(
+        "Take the values from a function of x, y and z; given up to four times, once for each number of a value.\n\nIt may have {SYNTAX}. A point at which it is not defined has no value"
+    )
+}
+
+#[derive(Debug, Clone)]
+struct Numbers(Vec<f64>);
+
+fn numbers(text: &str) -> Result<Numbers, String> {
+    let numbers = list(text).filter(|numbers| (1..=4).contains(&numbers.len()));
+    numbers.map(Numbers).ok_or_else(|| "expected one to four numbers between commas".into())
+}
+
+fn scalars() -> impl TypedValueParser<Value = ScalarType> {
+    const KINDS: [ScalarType; 4] = [ScalarType::U8, ScalarType::U16, ScalarType::U32, ScalarType::F32];
+    PossibleValuesParser::new(KINDS.map(ScalarType::name))
+        .try_map(|name| KINDS.into_iter().find(|kind| kind.name() == name).ok_or("is no type of numbers"))
+}
+
+#[derive(Serialize)]
+struct Report {
+    output: String,
+    channel: Option<ChannelInfo>,
+    bytes: u64,
+    seconds: f64,
+}
+
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let start = Instant::now();
+    let input = Input::from(&*arguments.file);
+    let output = Output::from(arguments.output.as_deref().unwrap_or(&arguments.file));
+    output.check()?;
+    let (octree, _) = input.octree(true)?;
+    let changed = if arguments.remove {
+        find(&octree, &input, Some(&arguments.name))?;
+        octree.without_channel(&arguments.name)
+    } else {
+        octree.with_channel(made(arguments, &input, &octree)?)
+    };
+    let changed = changed.of(&input)?;
+    let bytes = output.save(&changed)?;
+    let report = Report {
+        output: output.to_string(),
+        channel: changed.channel(&arguments.name).map(ChannelInfo::new),
+        bytes,
+        seconds: start.elapsed().as_secs_f64(),
+    };
+    output.tell(arguments.json, &report, Report::text)
+}
+
+impl Report {
+    fn text(&self) -> String {
+        let channel = self.channel.as_ref().map_or_else(|| "channel removed".into(), ChannelInfo::text);
+        format!("{}: {channel}; {} bytes, in {}\n", self.output, count(self.bytes), seconds(self.seconds))
+    }
+}
+
+fn made(arguments: &Arguments, input: &Input, octree: &Octree) -> Result<Channel, Failure> {
+    let old = match &arguments.region {
+        Some(_) => Some(find(octree, input, Some(&arguments.name))?),
+        None => None,
+    };
+    let values = values(arguments, octree)?;
+    let kind = arguments.store.or(values.kind);
+    let (kind, depth) = match old {
+        Some(old) => (old.value_type().scalar(), arguments.depth.unwrap_or(old.frame().depth())),
+        None => (kind.unwrap_or(ScalarType::F32), arguments.depth.unwrap_or(octree.frame().depth())),
+    };
+    let frame = octree.frame().with_depth(depth).of(input)?;
+    let value_type = ValueType::new(kind, values.attribute.components() as u8).of(input)?;
+    let options = FillOptions {
+        value_type,
+        frame,
+        solid: if arguments.everywhere { None } else { Some(octree.view()) },
+        detail: detail(arguments, frame.cell_size())?,
+    };
+    let fill = |control: &Control<'_>| fill_channel(&*values.attribute, &options, control);
+    let channel = watched("attribute", arguments.threads, fill);
+    let channel = channel.map_err(|error| refused(&error, input, &arguments.name, kind))?;
+    let (channel, mut metadata) = match (old, &arguments.region) {
+        (Some(old), Some(region)) => {
+            let region = Input::from(&**region);
+            let (inside, _) = region.octree(true)?;
+            let changed = watched("attribute", arguments.threads, |control| {
+                let all = Octree::uniform(*octree.frame(), leafless::Tag::Full, leafless::Tag::Empty)?;
+                let operands = [
+                    ChannelOperand { solid: inside.view(), channel: channel.view()? },
+                    ChannelOperand { solid: all.view(), channel: old.view()? },
+                ];
+                carry_channel(octree.view(), &operands, CarryRule::Left, control)
+            });
+            (changed.of(&region)?, old.metadata().clone())
+        }
+        _ => (channel, values.metadata),
+    };
+    metadata.insert("name", &*arguments.name);
+    for (key, value) in [("unit", &arguments.unit), ("meaning", &arguments.meaning)] {
+        if let Some(value) = value {
+            metadata.insert(key, &**value);
+        }
+    }
+    Ok(channel.with_metadata(metadata))
+}
+
+fn refused(error: &str, input: &Input, name: &str, kind: ScalarType) -> Failure {
+    if error.contains("the channel's type") {
+        let problem = format!(
+            "a value of {name} is infinite, or beyond the range of {}: choose another function or --store",
+            kind.name()
+        );
+        return Failure::of(input, problem);
+    }
+    Failure::of(input, error)
+}
+
+fn detail(arguments: &Arguments, cell: f64) -> Result<Option<Detail>, Failure> {
+    let Some(tolerance) = arguments.tolerance else { return Ok(None) };
+    let criterion = if arguments.corners { Criterion::Variance } else { Criterion::Range };
+    let fine = arguments.fine.unwrap_or(cell);
+    let coarse = arguments.coarse.unwrap_or(f64::INFINITY);
+    let detail = Detail::new(coarse, fine, tolerance, criterion);
+    detail.map(Some).map_err(|error| Failure::Usage(error.to_string()))
+}
+
+fn values(arguments: &Arguments, octree: &Octree) -> Result<Values, Failure> {
+    if let Some(Numbers(numbers)) = &arguments.value {
+        let constant = ConstantAttribute::new(numbers).map_err(|error| Failure::Usage(error.to_string()))?;
+        return Ok(Values::plain(Box::new(constant)));
+    }
+    if let Some(bodies) = &arguments.bodies {
+        return Values::of_bodies(&Input::from(&**bodies), octree);
+    }
+    let Some(from) = &arguments.from else {
+        let expressions = Expressions::parse(&arguments.expr).map_err(Failure::Usage)?;
+        return Ok(Values::plain(Box::new(expressions)));
+    };
+    let Arguments { name, pick, sampling, nearest, .. } = arguments;
+    let interpolation = if *nearest { Interpolation::Nearest } else { Interpolation::Trilinear };
+    Values::of_file(&Input::from(&**from), name, pick.as_deref(), sampling, interpolation, octree)
+}

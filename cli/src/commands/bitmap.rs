@@ -1,0 +1,189 @@
+//! `leafless bitmap`: the cells of a solid as a volume.
+
+use crate::failure::{Failure, Of, complain};
+use crate::options::{ResolveName, threads};
+use crate::progress::watched;
+use crate::sink::Output;
+use crate::source::input::Input;
+use crate::words::{count, number};
+use clap::{Args, ValueEnum};
+use leafless::exchange::{NrrdEncoding, read_volume, write_nrrd, write_raw_volume};
+use leafless::{Control, Error, MAX_DEPTH, Octree, Samples, Tag, VoxelGrid};
+use serde::Serialize;
+use std::ffi::OsString;
+use std::path::Path;
+
+/// Writes the cells of a solid as a volume of bytes, 255 inside and 0 outside, a byte for each cell of the finest level
+/// in the whole universe. `leafless voxelize` makes the same solid of it.
+#[derive(Args)]
+pub struct Arguments {
+    /// Solid (.lfl), or `-` for standard input
+    file: OsString,
+    /// Where to write: the extension .nrrd or .raw tells the format; `-` is standard output
+    #[arg(short, long, value_name = "OUTPUT")]
+    output: OsString,
+    /// Format to write. Without it: what the extension of the output says, or NRRD for standard output
+    #[arg(long, value_enum)]
+    write: Option<WriteName>,
+    /// Compress the samples of a NRRD
+    #[arg(long)]
+    gzip: bool,
+    /// What undecided cells count as, and cells of the level that are cut further
+    #[arg(long, value_enum)]
+    resolve: Option<ResolveName>,
+    /// Level of the cells, 0 to the solid's depth. Without it: the finest one
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(0..=MAX_DEPTH as i64))]
+    level: Option<u8>,
+    /// Threads to use; 0: as many as there are processors. The result is the same
+    #[arg(long, default_value_t = 0, value_name = "N", value_parser = threads)]
+    threads: usize,
+    /// Print one JSON object
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, ValueEnum)]
+enum WriteName {
+    Nrrd,
+    Raw,
+}
+
+#[derive(Serialize)]
+struct Report {
+    input: String,
+    output: String,
+    format: &'static str,
+    extents: [u32; 3],
+    spacing: f64,
+    corner: [f64; 3],
+    /// Samples that are inside.
+    inside: u64,
+    bytes: u64,
+}
+
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let (input, output) = (Input::from(&*arguments.file), Output::from(&*arguments.output));
+    output.check()?;
+    let format = format(arguments, output.path())?;
+    if arguments.gzip && format == WriteName::Raw {
+        return Err(Failure::Usage(
+            "--gzip is for NRRD: a raw volume cannot say that it is compressed".into(),
+        ));
+    }
+    let (octree, _) = input.octree(true)?;
+    let frame = *octree.frame();
+    let level = arguments.level.unwrap_or(frame.depth());
+    if level > frame.depth() {
+        let problem = format!("--level {level} is beyond the depth of {input}, which is {}", frame.depth());
+        return Err(Failure::Usage(problem));
+    }
+    if arguments.resolve.is_none() && (level < frame.depth() || !octree.view().is_binary()) {
+        let problem = "has undecided cells, or cells that are cut further, which are neither inside nor outside: \
+                       choose --resolve inner or --resolve outer";
+        return Err(Failure::of(&input, problem));
+    }
+    if octree.view().exterior() != Tag::Empty {
+        let warning = "warning: the solid may go on outside of its bounds, which a volume does not tell";
+        complain(&format!("{input}: {warning}"));
+    }
+    let n = 1u32 << level;
+    let spacing = frame.edge() / f64::from(n);
+    let grid = VoxelGrid::new([n; 3], frame.origin(), [spacing; 3]).of(&input)?;
+    let is_outer = arguments.resolve == Some(ResolveName::Outer);
+    let made = watched("bitmap", arguments.threads, |control| {
+        let samples = samples(&octree, level, is_outer, control)?;
+        let inside = samples.iter().filter(|&&sample| sample != 0).count() as u64;
+        let samples = Samples::from(&samples[..]);
+        let encoding = if arguments.gzip { NrrdEncoding::Gzip } else { NrrdEncoding::Raw };
+        let bytes = match format {
+            WriteName::Nrrd => write_nrrd(&samples, &grid, encoding)?,
+            WriteName::Raw => write_raw_volume(&samples, &grid)?,
+        };
+        Ok((bytes, inside))
+    });
+    let (bytes, inside) = made.of(&input)?;
+    if format == WriteName::Nrrd {
+        warn_of_rounding(&grid, &output).of(&input)?;
+    }
+    output.write(&bytes)?;
+    let report = Report {
+        input: input.to_string(),
+        output: output.to_string(),
+        format: if format == WriteName::Raw { "raw" } else { "NRRD" },
+        extents: [n; 3],
+        spacing,
+        corner: frame.origin(),
+        inside,
+        bytes: bytes.len() as u64,
+    };
+    output.tell(arguments.json, &report, Report::text)
+}
+
+/// Says if the corner does not come back: the format has the first voxel's centre, rounded.
+fn warn_of_rounding(grid: &VoxelGrid, output: &Output) -> Result<(), Error> {
+    let one = VoxelGrid::new([1; 3], grid.corner(), grid.spacing())?;
+    let header = write_nrrd(&vec![0u8].into(), &one, NrrdEncoding::Raw)?;
+    let (corner, back) = (grid.corner(), read_volume(&header, None)?.grid.corner());
+    if back != corner {
+        let list = |corner: [f64; 3]| corner.map(number).join(",");
+        let problem = "the centre of the first voxel is rounded, so that the corner is read back as";
+        complain(&format!("{output}: warning: {problem} {}, not {}", list(back), list(corner)));
+    }
+    Ok(())
+}
+
+/// The format to write.
+fn format(arguments: &Arguments, path: Option<&Path>) -> Result<WriteName, Failure> {
+    if let Some(name) = arguments.write {
+        return Ok(name);
+    }
+    let Some(path) = path else { return Ok(WriteName::Nrrd) };
+    match path.extension().and_then(|extension| extension.to_str()) {
+        Some(extension) if extension.eq_ignore_ascii_case("nrrd") => Ok(WriteName::Nrrd),
+        Some(extension) if extension.eq_ignore_ascii_case("raw") => Ok(WriteName::Raw),
+        _ => {
+            let problem = "has neither of the extensions .nrrd and .raw: name the format with --write";
+            Err(Failure::Usage(format!("{}: {problem}", path.display())))
+        }
+    }
+}
+
+/// A byte for each cell of a level, x fastest.
+fn samples(octree: &Octree, level: u8, is_outer: bool, control: &Control<'_>) -> Result<Vec<u8>, Error> {
+    let n = 1usize << level;
+    let row = n.div_ceil(64);
+    // The bytes, the file made of them, and bits.
+    let needed = (n as u64).pow(3).saturating_mul(3);
+    if let Some(limit) = control.max_bytes.filter(|&limit| needed > limit) {
+        return Err(Error::Limit { what: "bytes", limit });
+    }
+    let bits = || -> Result<Vec<u64>, Error> {
+        let mut bits = Vec::new();
+        bits.try_reserve_exact(row * n * n)?;
+        bits.resize(row * n * n, 0);
+        Ok(bits)
+    };
+    let (mut inner, mut outer) = (bits()?, if is_outer { Some(bits()?) } else { None });
+    octree.bitmap(level, [0; 3], [n as u32; 3], &mut inner, outer.as_deref_mut(), control)?;
+    let bits = outer.unwrap_or(inner);
+    let mut samples = Vec::new();
+    samples.try_reserve_exact(n * n * n)?;
+    for words in bits.chunks(row) {
+        let of_row = words.iter().flat_map(|&word| (0..64).map(move |k| word >> k & 1));
+        samples.extend(of_row.take(n).map(|bit| if bit == 0 { 0u8 } else { 255 }));
+    }
+    Ok(samples)
+}
+
+impl Report {
+    fn text(&self) -> String {
+        let [n, ..] = self.extents;
+        format!(
+            "{}: {} volume of {n} x {n} x {n} bytes, {} of them inside, voxels of edge {}\n",
+            self.output,
+            self.format,
+            count(self.inside),
+            number(self.spacing),
+        )
+    }
+}

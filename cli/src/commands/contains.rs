@@ -1,0 +1,62 @@
+//! `leafless contains`: does the solid contain these points?
+
+use crate::failure::Failure;
+use crate::rows::{Questions, serve};
+use crate::sink::print;
+use crate::source::input::Input;
+use clap::Args;
+use leafless::{Membership, OctreeRef};
+use std::ffi::OsString;
+
+/// Reads points from standard input, one a line: x, y and z in the solid's units, separated by blanks, tabs
+/// or commas. Empty lines and lines that begin with # are skipped.
+///
+/// Prints a line for each point: `inside` and `outside` are proven if the solid is certified; `undecided` are
+/// points in cells that the surface may pass through, points outside of the solid's bounds, and such as
+/// `nan`. Answers come as soon as lines are there, so that another program can ask and wait.
+#[derive(Args)]
+pub struct Arguments {
+    /// Solid (.lfl)
+    file: OsString,
+}
+
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let input = Input::file(&arguments.file, "points")?;
+    // Proven answers need a file that is what its maker wrote.
+    let (octree, _) = input.octree(true)?;
+    serve(&mut Batch { tree: octree.view(), points: Vec::new(), answers: Vec::new(), text: Vec::new() })
+}
+
+/// Points that are answered together.
+struct Batch<'t, 'a> {
+    tree: &'t OctreeRef<'a>,
+    points: Vec<[f64; 3]>,
+    answers: Vec<Membership>,
+    text: Vec<u8>,
+}
+
+impl Questions<3> for Batch<'_, '_> {
+    fn ask(&mut self, point: [f64; 3]) -> Result<(), String> {
+        self.points.push(point);
+        Ok(())
+    }
+
+    fn answer(&mut self) -> Result<(), Failure> {
+        if self.points.is_empty() {
+            return Ok(());
+        }
+        self.answers.resize(self.points.len(), Membership::Undecided);
+        let answered = self.tree.contains_many(&self.points, &mut self.answers);
+        answered.map_err(|error| Failure::Failed(error.to_string()))?;
+        self.text.clear();
+        for answer in &self.answers {
+            self.text.extend_from_slice(match answer {
+                Membership::Outside => b"outside\n",
+                Membership::Inside => b"inside\n",
+                Membership::Undecided => b"undecided\n",
+            });
+        }
+        self.points.clear();
+        print(&self.text)
+    }
+}

@@ -1,0 +1,155 @@
+//! `leafless convert`: from each kind of solid to the others.
+
+use crate::failure::Failure;
+use crate::making::dexels::{self, Storing};
+use crate::making::job::Job;
+use crate::making::octree_of_scene::{self, Splitting, TouchName};
+use crate::making::surface::{self, Wanted};
+use crate::making::{octree_of_dexels, octree_of_mesh};
+use crate::options::{ResolveName, bounds, resolution, threads};
+use crate::sink::Output;
+use crate::source::content::Content;
+use crate::source::file::{Found, Stored, Taking};
+use crate::source::input::Input;
+use clap::{Args, ValueEnum};
+use leafless::exchange::MeshFormat;
+use leafless::{Frame, Rule};
+use std::ffi::OsString;
+use std::time::Instant;
+
+/// Makes an octree, a tri-dexel model or a triangle mesh of any of them, or of a scene or a volume, as
+/// `leafless voxelize`, `csg`, `dexelize` and `mesh` do where nothing more is asked for.
+///
+/// Of a tri-dexel model an octree has the cells whose centres lie inside. Of an octree a tri-dexel model has just
+/// the cells, exactly; undecided ones count as --resolve says. An octree of a mesh or a scene is certified, and its
+/// undecided cells stay so without --resolve.
+#[derive(Args)]
+// Of meshes, `--to` says the unit everywhere else.
+#[command(mut_arg("to", |unit| unit.long("to-unit")))]
+pub struct Arguments {
+    /// Octree or tri-dexel model (.lfl), mesh (STL, OBJ, PLY, OFF, 3MF), scene (.csg) or volume (NRRD, MetaImage), or `-`
+    /// for standard input
+    #[arg(value_name = "FILE")]
+    input: OsString,
+    /// File to write, or `-` for standard output; it is written whole or not at all
+    #[arg(short, long, value_name = "OUT")]
+    output: OsString,
+    /// What to make. The extension .ply, .stl, .obj, .off or .3mf of the output says that it is a mesh; .lfl says nothing,
+    /// as octrees and tri-dexel models both have it
+    #[arg(id = "target", long = "to", value_enum, value_name = "KIND")]
+    kind: Option<KindName>,
+    /// What cells count as that the surface passes through, or that are undecided
+    #[arg(long, value_enum)]
+    resolve: Option<ResolveName>,
+    /// Cells to an axis of the cube around a mesh or scene, a power of two. Without it: 256, and of a volume the voxels
+    #[arg(long, value_name = "N", value_parser = resolution)]
+    resolution: Option<u8>,
+    /// Lower corner and edge length of the cube, for a mesh or scene. Without it: the cube around it
+    #[arg(long, value_name = "X0,Y0,Z0,EDGE", value_parser = bounds, allow_hyphen_values = true)]
+    bounds: Option<Frame>,
+    #[command(flatten)]
+    taking: Taking,
+    /// Write an STL also if rounding to its 32-bit coordinates breaks the surface
+    #[arg(long)]
+    lossy: bool,
+    /// Threads to use; 0: as many as there are processors. The result is the same
+    #[arg(long, default_value_t = 0, value_name = "N", value_parser = threads)]
+    threads: usize,
+    /// Print one JSON object, that of the subcommand that does the work
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, ValueEnum)]
+enum KindName {
+    /// An octree (.lfl)
+    Octree,
+    /// A tri-dexel model (.lfl)
+    Dexels,
+    /// A triangle mesh
+    Mesh,
+}
+
+/// The depth of octrees, if none is asked for.
+const DEPTH: u8 = 8;
+
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let Arguments { resolution: depth, resolve, bounds, lossy, threads, json, .. } = *arguments;
+    let (input, output) = (Input::from(&*arguments.input), Output::from(&*arguments.output));
+    let job = Job { input, output, start: Instant::now(), depth, bounds, threads, json };
+    let taking = &arguments.taking;
+    match kind(arguments, &job.output)? {
+        KindName::Mesh => {
+            let resolve = resolve.map(|resolve| match resolve {
+                ResolveName::Inner => surface::ResolveName::Inner,
+                ResolveName::Outer => surface::ResolveName::Outer,
+            });
+            surface::make(&job, taking, &Wanted { resolve, lossy, ..Default::default() })
+        }
+        KindName::Dexels => {
+            let rule = resolve.map_or(Rule::Sampled, Rule::from);
+            dexels::make(&job, taking, rule, Storing::default())
+        }
+        KindName::Octree => to_octree(&job, taking, resolve),
+    }
+}
+
+/// What to make.
+fn kind(arguments: &Arguments, output: &Output) -> Result<KindName, Failure> {
+    let extension = output.path().and_then(|path| path.extension()?.to_str());
+    let is_mesh = extension.is_some_and(|extension| MeshFormat::from_extension(extension).is_some());
+    match arguments.kind {
+        None if is_mesh => Ok(KindName::Mesh),
+        None => {
+            let choices = "--to octree, --to dexels or --to mesh";
+            let problem = "its name does not say what it is to be";
+            Err(Failure::Usage(format!("{output}: {problem}: choose {choices}")))
+        }
+        Some(KindName::Octree | KindName::Dexels) if is_mesh => {
+            let problem = "its name is that of a mesh, which neither an octree nor a tri-dexel model is";
+            Err(Failure::Usage(format!("{output}: {problem}")))
+        }
+        Some(kind) => Ok(kind),
+    }
+}
+
+fn to_octree(job: &Job, taking: &Taking, resolve: Option<ResolveName>) -> Result<(), Failure> {
+    let Job { input, output, .. } = job;
+    if input.path().is_none_or(|path| !path.is_file()) {
+        let problem = "must be a regular file, because it is looked at first; `leafless voxelize` and `leafless csg` \
+                       can read what comes through a pipe";
+        return Err(Failure::of(input, problem));
+    }
+    if input.begins_as_solid() {
+        // A damaged file is told to be damaged.
+        let Stored::Dexels(model) = Stored::read(input, true)?.0 else {
+            return Err(Failure::of(input, "is an octree already"));
+        };
+        output.check()?;
+        taking.refuse(input, "a tri-dexel model")?;
+        let given = [
+            ("--resolve", resolve.is_some()),
+            ("--resolution", job.depth.is_some()),
+            ("--bounds", job.bounds.is_some()),
+        ];
+        if let Some((option, _)) = given.into_iter().find(|option| option.1) {
+            let problem = "is a tri-dexel model, whose cells are decided by their centres";
+            return Err(Failure::Usage(format!("{option} is not for {input}: it {problem}")));
+        }
+        return octree_of_dexels::make(job, &model);
+    }
+    let found = Found::look(input, taking.reading.told())?;
+    let rule = resolve.map_or(Rule::Certified, Rule::from);
+    let depth = job.depth.unwrap_or(DEPTH);
+    if found.content == Content::Scene {
+        taking.reading.refuse(input, "a scene")?;
+        output.check()?;
+        output.check_beside(input, "scene")?;
+        let splitting = Splitting { depth, rule, adaptive: None, touch: TouchName::Exact };
+        return octree_of_scene::make(job, found, &taking.drawing, splitting);
+    }
+    taking.drawing.refuse(input, "no scene")?;
+    output.check()?;
+    output.check_beside(input, "mesh")?;
+    octree_of_mesh::make(&Job { depth: Some(depth), ..job.clone() }, found, &taking.reading, rule)
+}

@@ -1,0 +1,97 @@
+//! `leafless csg`: from a scene to a solid.
+
+use crate::failure::Failure;
+use crate::making::job::Job;
+use crate::making::octree_of_scene::{self, Splitting, TouchName};
+use crate::options::{RuleName, bounds, number, threads};
+use crate::sink::Output;
+use crate::source::file::Found;
+use crate::source::input::Input;
+use crate::source::scene::Drawing;
+use clap::Args;
+use leafless::Frame;
+use std::ffi::OsString;
+use std::time::Instant;
+
+/// Splits space where the surface of a scene passes, down to cells of 2^-N of its extent. By the certified
+/// rule every cell is proven inside, proven outside, or undecided.
+///
+/// A scene is a text in the language of the CSG dumps that OpenSCAD writes (`openscad -o part.csg
+/// part.scad`): group union difference intersection multmatrix color render cube sphere cylinder polyhedron
+/// linear_extrude rotate_extrude square circle polygon, import of meshes, and some of ours:
+/// halfspace([a,b,c,d]) power([A,a,n1],[B,b,n2],[C,c,n3],R) quadric([10 numbers]) torus(major,minor)
+/// mesh("file.stl") octree("file.lfl"). Curved surfaces are exact, but for those with a $fn of 12 or less, which
+/// are the prisms and pyramids that OpenSCAD draws: --fn exact or --fn polygon decides for all.
+///
+/// The file records the scene's name, length and checksum, and the rule. Equal input gives equal bytes, for
+/// any number of threads.
+#[derive(Args)]
+pub struct Arguments {
+    /// Scene (.csg), or `-` for standard input
+    #[arg(value_name = "SCENE")]
+    input: OsString,
+    /// File to write, or `-` for standard output, whose summary then goes to standard error; it is written
+    /// whole or not at all
+    #[arg(short, long, value_name = "OUT.lfl")]
+    output: OsString,
+    /// Levels of the octree, 1 to 20: each halves the cells, and the error, and makes the file some four
+    /// times as long
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=leafless::MAX_DEPTH as i64))]
+    depth: u8,
+    /// What becomes of the finest cells that the surface passes through
+    #[arg(long, value_enum, default_value_t = RuleName::Certified)]
+    rule: RuleName,
+    /// Leave cells whole in which the surface is known to lie within a layer of this thickness, in the units of
+    /// the scene: flat faces take few cells, curves more, and edges as many as the depth allows. Such cells are
+    /// undecided
+    #[arg(long, value_name = "T", value_parser = thickness, allow_hyphen_values = true)]
+    adaptive: Option<f64>,
+    /// What counts as touching
+    #[arg(long, value_enum, default_value_t = TouchName::Exact)]
+    touch: TouchName,
+    /// Lower corner and edge length of the cube to cut into cells, in the units of the scene. Solids can be
+    /// combined if they were given the same bounds and depth. What sticks out is cut off, and reported.
+    /// Without it: a cube around the scene whose edge and cells are powers of two, so that faces at round
+    /// numbers lie between cells; if the scene's bounds are no round numbers, the cube around their middle, its
+    /// edge 33/32 of their longest extent
+    #[arg(long, value_name = "X0,Y0,Z0,EDGE", value_parser = bounds, allow_hyphen_values = true)]
+    bounds: Option<Frame>,
+    #[command(flatten)]
+    drawing: Drawing,
+    /// Threads to use; 0: as many as there are processors. The result is the same
+    #[arg(long, default_value_t = 0, value_name = "N", value_parser = threads)]
+    threads: usize,
+    /// Print one JSON object with timings, splits, evaluations of half-spaces and the volume, level by level
+    /// (on standard error if the solid goes to standard output)
+    #[arg(long)]
+    json: bool,
+}
+
+fn thickness(text: &str) -> Result<f64, String> {
+    number(text, "a length not below 0", |thickness| thickness >= 0.0)
+}
+
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let Arguments { depth, rule, adaptive, touch, bounds, threads, json, .. } = *arguments;
+    let (input, output) = (Input::from(&*arguments.input), Output::from(&*arguments.output));
+    let job = Job { input, output, start: Instant::now(), depth: Some(depth), bounds, threads, json };
+    job.output.check()?;
+    if adaptive.is_some() {
+        let useless = match (rule, touch) {
+            (RuleName::Certified, TouchName::Exact) => None,
+            (RuleName::Certified, TouchName::Paper) => Some("--touch paper, by which no layers are known"),
+            _ => Some("a --rule but certified: the cells that it leaves whole are undecided"),
+        };
+        if let Some(useless) = useless {
+            return Err(Failure::Usage(format!("--adaptive does not go with {useless}")));
+        }
+    }
+    job.output.check_beside(&job.input, "scene")?;
+    let found = Found::look(&job.input, None)?;
+    octree_of_scene::make(
+        &job,
+        found,
+        &arguments.drawing,
+        Splitting { depth, rule: rule.into(), adaptive, touch },
+    )
+}

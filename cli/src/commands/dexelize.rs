@@ -1,0 +1,161 @@
+//! `leafless dexelize`: from a solid of any kind to a tri-dexel model.
+
+use crate::failure::Failure;
+use crate::making::dexels::{Storing, make};
+use crate::making::job::Job;
+use crate::options::{bounds, resolution, threads};
+use crate::sink::Output;
+use crate::source::file::Taking;
+use crate::source::input::Input;
+use clap::{Args, ValueEnum};
+use leafless::{DexelEnds, DexelFormat, DexelNormals, DexelOptions, Frame, Rule};
+use std::ffi::OsString;
+use std::time::Instant;
+
+/// Writes a tri-dexel model: along rays through the centres of N × N × N cells, in three directions, the intervals
+/// that lie inside. Where a ray enters and leaves is known as finely as a fixed-point number can tell, not as finely as
+/// cells are.
+///
+/// Rays of meshes, scenes of half-spaces and stored octrees are exact. A stored octree has a frame of its own, and
+/// cells that may be undecided: these count as outside by the rule inner and as inside by the rule outer.
+///
+/// The file records the input's name, length and checksum, the rule, and the unit if it is known. Equal input
+/// gives equal bytes, for any number of threads.
+#[derive(Args)]
+pub struct Arguments {
+    /// Mesh (STL, OBJ, PLY, OFF or 3MF), scene (.csg), volume (NRRD, MetaImage) or octree (.lfl), or `-` for standard
+    /// input
+    #[arg(value_name = "FILE")]
+    input: OsString,
+    /// File to write, or `-` for standard output, whose summary then goes to standard error; it is written
+    /// whole or not at all
+    #[arg(short, long, value_name = "OUT.lfl")]
+    output: OsString,
+    /// Cells to an axis of the cube, a power of two from 2 to 524288. Without it: 256, or those of an octree or a volume
+    #[arg(long, value_name = "N", value_parser = resolution)]
+    resolution: Option<u8>,
+    /// Axes that rays run along: of x, y and z one, two or all
+    #[arg(long, default_value = "xyz", value_name = "AXES", value_parser = directions)]
+    directions: Directions,
+    /// How the ends of intervals are stored
+    #[arg(long, value_enum, default_value_t = EndsName::Fixed)]
+    ends: EndsName,
+    /// How the surface's normals at ends are stored, which keep edges sharp in `leafless mesh --method dual`
+    #[arg(long, value_enum, default_value_t = NormalsName::None)]
+    normals: NormalsName,
+    /// Store on which triangle of the mesh or half-space of the scene an end lies
+    #[arg(long)]
+    surfaces: bool,
+    /// Store that all of it is of this material, a number of your own
+    #[arg(long, value_name = "M")]
+    material: Option<u32>,
+    /// What intervals are
+    #[arg(long, value_enum, default_value_t = RuleName::Sampled)]
+    rule: RuleName,
+    /// Lower corner and edge length of the cube, in the units of the mesh once it is converted and scaled. Models can
+    /// be combined if they were given the same bounds and resolution. What sticks out is cut off, and reported. Without
+    /// it: the cube that `leafless voxelize` takes
+    #[arg(long, value_name = "X0,Y0,Z0,EDGE", value_parser = bounds, allow_hyphen_values = true)]
+    bounds: Option<Frame>,
+    #[command(flatten)]
+    taking: Taking,
+    /// Threads to use; 0: as many as there are processors. The result is the same
+    #[arg(long, default_value_t = 0, value_name = "N", value_parser = threads)]
+    threads: usize,
+    /// Print one JSON object with what each direction holds (on standard error if the model goes to standard output)
+    #[arg(long)]
+    json: bool,
+}
+
+/// Which axes rays run along.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+struct Directions([bool; 3]);
+
+fn directions(text: &str) -> Result<Directions, String> {
+    let mut directions = [false; 3];
+    for letter in text.chars() {
+        match "xyz".find(letter) {
+            Some(axis) if !directions[axis] => directions[axis] = true,
+            _ => return Err("expected x, y and z, one of them at least and each once: xyz".into()),
+        }
+    }
+    if directions == [false; 3] {
+        return Err("expected one of x, y and z at least".into());
+    }
+    Ok(Directions(directions))
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum EndsName {
+    /// 8 bytes an interval, to 2^-31 of the cube's edge
+    Fixed,
+    /// 16 bytes an interval, to 2^-36 of the cube's edge
+    Double,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum NormalsName {
+    /// Not at all
+    None,
+    /// In 16 bits, within a degree
+    #[value(name = "16")]
+    Bits16,
+    /// In 32 bits, within 0.005 degrees
+    #[value(name = "32")]
+    Bits32,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, ValueEnum)]
+enum RuleName {
+    /// Those of the solid on each ray
+    Sampled,
+    /// Those of cells that are wholly inside: the result lies within the solid
+    Inner,
+    /// Those of cells that are not wholly outside: the result contains what the solid holds of each ray
+    Outer,
+}
+
+impl From<RuleName> for Rule {
+    fn from(name: RuleName) -> Rule {
+        match name {
+            RuleName::Sampled => Rule::Sampled,
+            RuleName::Inner => Rule::Inner,
+            RuleName::Outer => Rule::Outer,
+        }
+    }
+}
+
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let Arguments { resolution: depth, directions, rule, bounds, threads, json, .. } = *arguments;
+    let (input, output) = (Input::from(&*arguments.input), Output::from(&*arguments.output));
+    let job = Job { input, output, start: Instant::now(), depth, bounds, threads, json };
+    let format = DexelFormat {
+        ends: match arguments.ends {
+            EndsName::Fixed => DexelEnds::Fixed,
+            EndsName::Double => DexelEnds::Double,
+        },
+        normals: match arguments.normals {
+            NormalsName::None => DexelNormals::None,
+            NormalsName::Bits16 => DexelNormals::Bits16,
+            NormalsName::Bits32 => DexelNormals::Bits32,
+        },
+        surfaces: arguments.surfaces,
+        materials: false,
+    };
+    let options = DexelOptions { directions: directions.0, format, ..Default::default() };
+    make(&job, &arguments.taking, rule.into(), Storing { options, material: arguments.material })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn directions_are_letters() {
+        assert_eq!(directions("xyz"), Ok(Directions([true; 3])));
+        assert_eq!(directions("zx"), Ok(Directions([true, false, true])));
+        for text in ["", "w", "xx", "x,y", "X"] {
+            assert!(directions(text).is_err(), "{text}");
+        }
+    }
+}

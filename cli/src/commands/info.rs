@@ -1,0 +1,62 @@
+//! `leafless info`: what a solid, a mesh or a scene consists of.
+
+use crate::failure::{Failure, Of};
+use crate::report::{dexels, mesh, octree, scene, volume};
+use crate::sink::print_told;
+use crate::source::content::Content;
+use crate::source::file::{Found, Stored, Taking};
+use crate::source::input::Input;
+use clap::Args;
+use std::ffi::OsString;
+
+/// Of a solid only the file's header and level table are read, so this takes the same short time for files of
+/// any size. Run `leafless verify` to know whether the rest of the file is good. Of a tri-dexel model (.lfl) all
+/// intervals are read.
+///
+/// Of a mesh everything is read: what its triangles bound, and what is wrong with them. Of a scene the bounds
+/// are told, how its curves are drawn, and what is wrong with the meshes in it; `leafless measure` tells its volume.
+#[derive(Args)]
+pub struct Arguments {
+    /// Solid (.lfl), mesh (STL, OBJ, PLY, OFF, 3MF), scene (.csg) or volume (NRRD, MetaImage), or `-` for standard input
+    file: OsString,
+    /// Print one JSON object
+    #[arg(long)]
+    json: bool,
+    #[command(flatten)]
+    taking: Taking,
+}
+
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let (input, taking, as_json) = (&Input::from(&*arguments.file), &arguments.taking, arguments.json);
+    let Taking { reading, drawing } = taking;
+    let found = Found::look(input, reading.told())?;
+    let bytes = found.length();
+    match found.content {
+        Content::Solid => {
+            taking.refuse(input, "a solid")?;
+            match found.stored(false)? {
+                (Stored::Octree(octree), bytes) => {
+                    print_told(as_json, &octree::Info::new(&octree, bytes), octree::Info::text)
+                }
+                (Stored::Dexels(model), bytes) => {
+                    print_told(as_json, &dexels::Info::new(&model, bytes), dexels::Info::text)
+                }
+            }
+        }
+        Content::Scene => {
+            reading.refuse(input, "a scene")?;
+            let info = scene::Info::new(input, &found.scene(drawing)?, bytes)?;
+            print_told(as_json, &info, scene::Info::text)
+        }
+        Content::Volume => {
+            drawing.refuse(input, "a volume")?;
+            print_told(as_json, &volume::Info::new(&found.volume(reading)?), volume::Info::text)
+        }
+        Content::Mesh => {
+            drawing.refuse(input, "a mesh")?;
+            let (file, fill) = found.mesh(reading)?;
+            let (info, report) = (mesh::Info::new(input, &file, fill, bytes)?, file.mesh.report().of(input)?);
+            print_told(as_json, &info, |info| info.text(&report))
+        }
+    }
+}

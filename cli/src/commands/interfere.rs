@@ -1,0 +1,344 @@
+//! `leafless interfere`: do two solids overlap, and how far are they apart?
+
+use crate::failure::{Failure, Of};
+use crate::memory;
+use crate::options::bounds;
+use crate::report::bounds::{Proven, stop_word};
+use crate::sink::print_told;
+use crate::source::file::Taking;
+use crate::source::input::Input;
+use crate::source::solid::{Corners, Source, evaluations};
+use crate::words::{count, measured, number, put_line};
+use clap::Args;
+use leafless::{
+    Affine, Clearance, Control, Cube, Error, Frame, Interference, Interval, Overlap, Prepared, Proof,
+    StopReason, clearance, interference,
+};
+use serde::Serialize;
+use std::ffi::OsString;
+
+/// Says whether two solids have inner points in common: `disjoint` and `overlapping` are proven, `undecided`
+/// comes with the reason: the depth or the number of splits does not decide it, the cells of a file do not
+/// prove enough, or both solids go on outside of the bounds. Solids that touch are disjoint, and their
+/// clearance is 0.
+///
+/// The volume that the solids have in common and the clearance, the least distance between them, are
+/// intervals that hold the true ones. An upper bound of the clearance needs cells that are proven to be
+/// inside. What is not known is null in JSON.
+#[derive(Args)]
+pub struct Arguments {
+    /// First solid (.lfl), mesh (STL, OBJ, PLY, OFF, 3MF), scene (.csg) or volume (NRRD, MetaImage), or `-` for standard input
+    #[arg(value_name = "A")]
+    a: OsString,
+    /// Second solid, mesh or scene
+    #[arg(value_name = "B")]
+    b: OsString,
+    /// Where the second solid is moved to first: the rows of the matrix [M | t], 12 numbers, or 16 with a
+    /// last row 0 0 0 1, in brackets or not
+    #[arg(long, value_name = "MATRIX", value_parser = matrix, allow_hyphen_values = true)]
+    place_b: Option<Affine>,
+    /// Levels to look at, 1 to 20. Without it: as many as the first solid has, or 10 for a mesh or scene
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=leafless::MAX_DEPTH as i64))]
+    depth: Option<u8>,
+    /// Lower corner and edge length of the cube to look at. Without it: the cube around both
+    #[arg(long, value_name = "X0,Y0,Z0,EDGE", value_parser = bounds, allow_hyphen_values = true)]
+    bounds: Option<Frame>,
+    /// Cells to split at most, for each of the three answers
+    #[arg(long, value_name = "N", default_value_t = 100_000)]
+    splits: u64,
+    /// Take the cells of solids from files (.lfl) for the solids themselves, whatever they prove of what they
+    /// were made from
+    #[arg(long)]
+    cells: bool,
+    #[command(flatten)]
+    taking: Taking,
+    /// Print one JSON object
+    #[arg(long)]
+    json: bool,
+}
+
+fn matrix(text: &str) -> Result<Affine, String> {
+    let words = text.split(|c: char| c.is_whitespace() || "[],;".contains(c)).filter(|word| !word.is_empty());
+    let numbers: Result<Vec<f64>, _> = words.map(str::parse).collect();
+    let m = match numbers.as_deref() {
+        Ok(m @ [.., a, b, c, d]) if m.len() == 16 && [*a, *b, *c, *d] == [0.0, 0.0, 0.0, 1.0] => &m[..12],
+        Ok(m) if m.len() == 12 => m,
+        _ => return Err("expected 12 numbers, the rows of [M | t], or 16 with a last row 0 0 0 1".into()),
+    };
+    let row = |i: usize| [m[4 * i], m[4 * i + 1], m[4 * i + 2], m[4 * i + 3]];
+    Affine::new([row(0), row(1), row(2)]).map_err(|error| error.to_string())
+}
+
+/// A cell in the units of the model.
+#[derive(Serialize)]
+struct Witness {
+    level: u8,
+    at: [u32; 3],
+    min: [f64; 3],
+    max: [f64; 3],
+}
+
+/// Bounds of a number that is not negative; null where nothing is known.
+#[derive(Serialize)]
+struct Range {
+    lower: Option<f64>,
+    upper: Option<f64>,
+}
+
+impl Range {
+    /// Of what lies in the universe only, if `clipped`: then the lower bound says nothing of the rest.
+    fn new(interval: Interval, clipped: bool) -> Range {
+        let upper = interval.upper.is_finite().then_some(interval.upper);
+        Range { lower: (!clipped || interval.lower > 0.0).then_some(interval.lower), upper }
+    }
+
+    /// The same for people.
+    fn text(&self) -> String {
+        match (self.lower, self.upper) {
+            (None, None) => "unknown".into(),
+            (lower, upper) => {
+                let (lower, upper) = (lower.unwrap_or(0.0), upper.unwrap_or(f64::INFINITY));
+                measured(Interval::new(lower, upper).unwrap_or(Interval::ALL))
+            }
+        }
+    }
+}
+
+/// Why a verdict is undecided, in a word and in a sentence.
+fn reason(found: &Interference, splits: u64) -> Option<(&'static str, &'static str)> {
+    let certified = |proof: Proof| proof.full && proof.empty;
+    match found.verdict {
+        // (What lies outside of such a solid's universe is not proven, either.)
+        Overlap::Undecided if !found.proofs.into_iter().all(certified) => {
+            Some(("unproven", "the cells of a file do not prove enough; --cells takes them for the solid"))
+        }
+        Overlap::Undecided if found.clipped => {
+            Some(("clipped", "both solids may go on outside of the bounds; give larger --bounds"))
+        }
+        Overlap::Undecided if found.splits.iter().sum::<u64>() >= splits => {
+            Some(("budget", "the splits are spent; give more --splits"))
+        }
+        Overlap::Undecided => {
+            Some(("depth", "cells of the finest level are undecided; give a greater --depth"))
+        }
+        Overlap::Disjoint | Overlap::Overlapping => None,
+    }
+}
+
+#[derive(Serialize)]
+struct Report {
+    a: String,
+    b: String,
+    verdict: &'static str,
+    /// Why nothing is decided: "clipped", "unproven", "budget" or "depth"; else absent (null).
+    reason: Option<&'static str>,
+    overlap: Range,
+    clearance: Range,
+    /// Why the search for the clearance ended.
+    clearance_measured: &'static str,
+    witness: Option<Witness>,
+    /// What of both is proven; what is not counts as undecided.
+    proof_a: Proven,
+    proof_b: Proven,
+    /// Of both, for the verdict.
+    splits: u64,
+    splits_a: u64,
+    splits_b: u64,
+    evaluations: u64,
+    /// The finest level of which cells were looked at for the verdict.
+    level: u8,
+    depth: u8,
+    origin: [f64; 3],
+    edge: f64,
+    /// Whether a solid may go on outside of the cube that was looked at.
+    clipped: bool,
+}
+
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let inputs = [&arguments.a, &arguments.b].map(|name| Input::from(&**name));
+    if inputs.iter().all(|input| input.path().is_none()) {
+        return Err(Failure::Usage("only one of the solids can be standard input".into()));
+    }
+    let [a, b] = &inputs;
+    let placement = arguments.place_b.unwrap_or(Affine::IDENTITY);
+    let (first, second) = (
+        Source::read(a, &arguments.taking)?.taken(arguments.cells),
+        Source::read(b, &arguments.taking)?.taken(arguments.cells),
+    );
+    let frame = match &arguments.bounds {
+        Some(bounds) => bounds.with_depth(arguments.depth.unwrap_or(10)).of(a)?,
+        None => {
+            let both = (first.bounds(a)?, second.bounds(b)?);
+            let around = if first.ends_at_bounds(a)? && second.ends_at_bounds(b)? {
+                Frame::fitted
+            } else {
+                Frame::around
+            };
+            common_frame(first.own_frame(), both, &placement, arguments.depth, around).of(a)?
+        }
+    };
+    let first = Prepared::new(first.placed(a, &Affine::IDENTITY, &frame)?);
+    let second = Prepared::new(second.placed(b, &placement, &frame)?);
+    let max_bytes = Some(memory::affordable());
+    let control = Control { max_splits: Some(arguments.splits), max_bytes, ..Control::default() };
+    let (found, near, evaluations) =
+        ask(&first, &second, &frame, &control).map_err(|error| Failure::of(a, error))?;
+    let report = Report::new(&inputs, &frame, &found, &near, evaluations, arguments.splits);
+    print_told(arguments.json, &report, |report| {
+        text(&found, report, reason(&found, arguments.splits).map(|reason| reason.1))
+    })
+}
+
+/// The cube that holds both: of a solid its own, as often doubled as it takes, so that its cells stay whole;
+/// else the one that `around` makes of their bounds.
+fn common_frame(
+    own: Option<&Frame>,
+    ((mut min, mut max), (low, high)): (Corners, Corners),
+    placement: &Affine,
+    depth: Option<u8>,
+    around: fn([f64; 3], [f64; 3], u8) -> Result<Frame, Error>,
+) -> Result<Frame, Error> {
+    for k in 0..8 {
+        let corner = placement.apply([0, 1, 2].map(|axis| if k >> axis & 1 == 0 { low } else { high }[axis]));
+        for axis in 0..3 {
+            min[axis] = min[axis].min(corner[axis]);
+            max[axis] = max[axis].max(corner[axis]);
+        }
+    }
+    let Some(own) = own else { return around(min, max, depth.unwrap_or(10)) };
+    let mut frame = match depth {
+        Some(depth) => own.with_depth(depth)?,
+        None => *own,
+    };
+    while frame.depth() < leafless::MAX_DEPTH {
+        let (origin, edge) = (frame.origin(), frame.edge());
+        if (0..3).all(|axis| min[axis] >= origin[axis] && max[axis] <= origin[axis] + edge) {
+            break;
+        }
+        // Towards the side where more is missing.
+        let grown = [0, 1, 2].map(|axis| {
+            let above = max[axis] - (origin[axis] + edge) >= origin[axis] - min[axis];
+            if above { origin[axis] } else { origin[axis] - edge }
+        });
+        frame = Frame::new(grown, 2.0 * edge, frame.depth() + 1)?;
+    }
+    Ok(frame)
+}
+
+/// The verdict; then how much, or how far; and the evaluations of half-spaces for the verdict.
+fn ask(
+    a: &Prepared,
+    b: &Prepared,
+    frame: &Frame,
+    control: &Control<'_>,
+) -> Result<(Interference, Clearance, u64), Error> {
+    let mut found = interference(a, b, frame, f64::INFINITY, control)?;
+    let evaluated = evaluations(a.solid()) + evaluations(b.solid());
+    if found.verdict == Overlap::Overlapping {
+        found.volume = interference(a, b, frame, 0.0, control)?.volume;
+        let near = Clearance {
+            distance: Interval::exactly(0.0),
+            nearest: None,
+            stop_reason: StopReason::Tolerance,
+            splits: [0, 0],
+            proofs: found.proofs,
+            clipped: found.clipped,
+        };
+        return Ok((found, near, evaluated));
+    }
+    Ok((found, clearance(a, b, frame, 4.0 * frame.cell_size(), control)?, evaluated))
+}
+
+impl Report {
+    fn new(
+        [a, b]: &[Input; 2],
+        frame: &Frame,
+        found: &Interference,
+        near: &Clearance,
+        evaluations: u64,
+        splits: u64,
+    ) -> Report {
+        Report {
+            a: a.to_string(),
+            b: b.to_string(),
+            verdict: match found.verdict {
+                Overlap::Disjoint => "disjoint",
+                Overlap::Overlapping => "overlapping",
+                Overlap::Undecided => "undecided",
+            },
+            reason: reason(found, splits).map(|reason| reason.0),
+            overlap: Range::new(found.volume, found.clipped),
+            clearance: Range::new(near.distance, near.clipped),
+            clearance_measured: stop_word(near.stop_reason),
+            witness: found.witness.map(|cell| {
+                let (min, max) = Cube { frame, cell }.bounds();
+                Witness { level: cell.level, at: cell.at, min, max }
+            }),
+            proof_a: found.proofs[0].into(),
+            proof_b: found.proofs[1].into(),
+            splits: found.splits.iter().sum(),
+            splits_a: found.splits[0],
+            splits_b: found.splits[1],
+            evaluations,
+            level: found.level,
+            depth: frame.depth(),
+            origin: frame.origin(),
+            edge: frame.edge(),
+            clipped: near.clipped,
+        }
+    }
+}
+
+/// The same for people.
+fn text(found: &Interference, report: &Report, reason: Option<&str>) -> String {
+    let mut text = String::new();
+    let mut line = |name: &str, value: String| put_line(&mut text, name, &value);
+    line("verdict", reason.map_or(report.verdict.into(), |reason| format!("{}: {reason}", report.verdict)));
+    line("overlap", report.overlap.text());
+    // (Where the solids overlap it is 0, and nothing was searched.)
+    let ended = match report.clearance_measured {
+        "budget" if report.clearance.upper != Some(0.0) => " (as far as the splits go)",
+        _ => "",
+    };
+    line("clearance", format!("{}{ended}", report.clearance.text()));
+    if let Some(Witness { min, max, .. }) = &report.witness {
+        line("witness", format!("{} to {}", min.map(number).join(" "), max.map(number).join(" ")));
+    }
+    for (input, proven) in [(&report.a, &report.proof_a), (&report.b, &report.proof_b)] {
+        if let Some(doubt) = proven.doubt() {
+            line("proven", format!("of {input}: {doubt}"));
+        }
+    }
+    let [a, b] = found.splits.map(count);
+    line("splits", format!("{} ({a} and {b})", count(report.splits)));
+    if report.clipped {
+        line("bounds", "a solid may go on outside of the cube that was looked at".into());
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn matrices_as_people_write_them() {
+        let expected = Affine::translation([1.0, -2.5, 3.0]).unwrap();
+        for text in [
+            "1,0,0,1,0,1,0,-2.5,0,0,1,3",
+            "1 0 0 1  0 1 0 -2.5  0 0 1 3",
+            "[[1, 0, 0, 1], [0, 1, 0, -2.5], [0, 0, 1, 3], [0, 0, 0, 1]]",
+        ] {
+            assert_eq!(matrix(text), Ok(expected));
+        }
+        for text in [
+            "",
+            "1 2 3",
+            "1 0 0 1 0 1 0 0 0 0 1 x",
+            "1 0 0 0 1 0 0 0 0 0 1 0",
+            "1 0 0 1 0 1 0 1 0 0 1 1 0 0 0 2",
+        ] {
+            assert!(matrix(text).is_err(), "{text}");
+        }
+    }
+}

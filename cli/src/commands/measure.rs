@@ -1,0 +1,307 @@
+//! `leafless measure`: volume, centroid, inertia and bounds of a solid.
+
+use crate::failure::{Failure, Of};
+use crate::options::{bounds, threads, tolerance};
+use crate::progress::watched;
+use crate::report::bounds::{Proven, Volume, stop_word};
+use crate::report::scene::Curves;
+use crate::sink;
+use crate::source::file::Taking;
+use crate::source::input::Input;
+use crate::source::solid::{Source, evaluations};
+use crate::words::{count, measured, put_line};
+use clap::Args;
+use leafless::{
+    Affine, Control, Error, Extent, Frame, Interval, MAX_DEPTH, MassProperties, MeshMoments, MeshSolid,
+    Prepared, Solid, StopReason, SurfaceArea, Tolerance, bounding_box, measure, surface_area,
+};
+use serde::Serialize;
+use std::ffi::OsString;
+
+/// Measures a solid of density 1 without making an octree of it: the cells of which most is in doubt are split first,
+/// until the volume is known well enough. All numbers are intervals that hold the true ones.
+///
+/// A solid from a file (.lfl) knows no more about its undecided cells, so its own bounds are told, as well as
+/// it was made; a mesh or a scene is split as deep as it takes.
+#[derive(Args)]
+pub struct Arguments {
+    /// Solid (.lfl), mesh (STL, OBJ, PLY, OFF, 3MF), scene (.csg) or volume (NRRD, MetaImage), or `-` for standard input
+    file: OsString,
+    /// How wide the interval of the volume may be, relative to its middle; 0 goes on to the depth. Without
+    /// it: 0.01, or 0 if --splits is given; much less costs little where surfaces are those of half-spaces
+    #[arg(long, value_name = "T", value_parser = tolerance, allow_hyphen_values = true)]
+    tolerance: Option<f64>,
+    /// How wide it may be otherwise, in cubic units. Without it: a billionth of the cube that is looked at, or 0 if
+    /// --tolerance or --splits is given
+    #[arg(long, value_name = "A", value_parser = tolerance, allow_hyphen_values = true)]
+    absolute: Option<f64>,
+    /// Cells to split at most. Without it: 67108864, a minute or so
+    #[arg(long, value_name = "N")]
+    splits: Option<u64>,
+    /// Deepest level to split to, 1 to 20. Without it: as deep as the solid is, or 20 for a mesh or scene
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=MAX_DEPTH as i64))]
+    depth: Option<u8>,
+    /// Lower corner and edge length of the cube to measure in, for a mesh or scene. Without it: the cube
+    /// around it
+    #[arg(long, value_name = "X0,Y0,Z0,EDGE", value_parser = bounds, allow_hyphen_values = true)]
+    bounds: Option<Frame>,
+    /// Take the cells of a solid from a file (.lfl) for the solid itself, whatever they prove of what they
+    /// were made from
+    #[arg(long)]
+    cells: bool,
+    #[command(flatten)]
+    taking: Taking,
+    /// Threads to use; 0: as many as there are processors. The result is the same
+    #[arg(long, default_value_t = 0, value_name = "N", value_parser = threads)]
+    threads: usize,
+    /// Print one JSON object
+    #[arg(long)]
+    json: bool,
+}
+
+/// Sides of the bounding box are told to this part of the universe's edge where that is cheap, …
+const FINE_SIDES: f64 = 1e-9;
+/// … which means that it takes no more splits than this …
+const FEW_SPLITS: u64 = 1 << 14;
+/// … and else to this part …
+const SIDES: f64 = 0.001;
+/// … unless that takes more splits than this.
+const MOST_SPLITS: u64 = 1 << 22;
+
+/// The bounding box, as well as it is known cheaply.
+fn sides<S: Solid>(
+    solid: &S,
+    frame: &Frame,
+    tolerance: f64,
+    control: &Control<'_>,
+) -> Result<Extent, leafless::Error> {
+    let few = Control {
+        max_splits: Some(control.max_splits.map_or(FEW_SPLITS, |most| most.min(FEW_SPLITS))),
+        ..*control
+    };
+    let coarse = SIDES * frame.edge();
+    let fine = bounding_box(solid, frame, tolerance.min(FINE_SIDES) * frame.edge(), &few)?;
+    let is_coarse =
+        |corners: [[Interval; 3]; 2]| corners.as_flattened().iter().any(|side| side.width() > coarse);
+    if fine.stop_reason == StopReason::Budget && fine.corners.is_some_and(is_coarse) {
+        let most = Control { max_splits: control.max_splits.or(Some(MOST_SPLITS)), ..*control };
+        return bounding_box(solid, frame, coarse, &most);
+    }
+    Ok(fine)
+}
+
+/// Cells that are split for the area at most, if --splits does not say otherwise.
+const AREA_SPLITS: u64 = 1 << 17;
+
+/// Lower and upper bounds of the elements of a vector or a matrix.
+#[derive(Serialize)]
+struct Bounds<T> {
+    lower: T,
+    upper: T,
+}
+
+impl From<[Interval; 3]> for Bounds<[f64; 3]> {
+    fn from(vector: [Interval; 3]) -> Bounds<[f64; 3]> {
+        Bounds { lower: vector.map(|x| x.lower), upper: vector.map(|x| x.upper) }
+    }
+}
+
+impl From<[[Interval; 3]; 3]> for Bounds<[[f64; 3]; 3]> {
+    fn from(matrix: [[Interval; 3]; 3]) -> Bounds<[[f64; 3]; 3]> {
+        let of = |end: fn(Interval) -> f64| matrix.map(|row| row.map(end));
+        Bounds { lower: of(|x| x.lower), upper: of(|x| x.upper) }
+    }
+}
+
+#[derive(Serialize)]
+struct Report {
+    input: String,
+    volume: Volume,
+    /// What of the solid is proven; what is not counts as undecided.
+    proof: Proven,
+    /// Absent (null) if nothing is proven to be inside.
+    centroid: Option<Bounds<[f64; 3]>>,
+    /// About the centroid.
+    inertia: Bounds<[[f64; 3]; 3]>,
+    inertia_about_origin: Bounds<[[f64; 3]; 3]>,
+    /// Corners of the bounding box; absent (null) if the solid is proven empty.
+    min: Option<Bounds<[f64; 3]>>,
+    max: Option<Bounds<[f64; 3]>>,
+    /// Of the boundary; absent (null) if nothing is known of it.
+    area: Option<Volume>,
+    area_measured: &'static str,
+    area_splits: u64,
+    /// Why it ended.
+    measured: &'static str,
+    /// Without those for the bounding box and for the area.
+    splits: u64,
+    evaluations: u64,
+    level: u8,
+    depth: u8,
+    origin: [f64; 3],
+    edge: f64,
+    clipped: bool,
+    /// Whether all is known up to rounding, without splitting cells, as of a closed mesh whose triangles do not
+    /// intersect; absent (null) for what is no mesh.
+    exact: Option<bool>,
+    /// Why not.
+    inexact_reason: Option<String>,
+    /// How the curves of a scene were drawn; else absent (null).
+    curves: Option<Curves>,
+}
+
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let input = Input::from(&*arguments.file);
+    let source = Source::read(&input, &arguments.taking)?.taken(arguments.cells);
+    let curves = match &source {
+        Source::Scene(scene) => Some(Curves::from(scene.report())),
+        _ => None,
+    };
+    let is_stored = source.own_frame().is_some();
+    let frame = source.frame_in(&input, arguments.bounds.as_ref(), arguments.depth)?;
+    let solid = Prepared::new(source.placed(&input, &Affine::IDENTITY, &frame)?);
+    let asked = arguments.tolerance.is_some() || arguments.splits.is_some();
+    let relative = arguments.tolerance.unwrap_or(if arguments.splits.is_some() { 0.0 } else { 0.01 });
+    // What is flat or empty has no volume to be relative to.
+    let absolute = arguments.absolute.unwrap_or(if asked { 0.0 } else { 1e-9 * frame.edge().powi(3) });
+    let tolerance = Tolerance { relative, absolute };
+    let found = watched("measure", arguments.threads, |control| {
+        let control = Control { max_splits: arguments.splits, ..*control };
+        let mass = measure(&solid, &frame, tolerance, &control)?;
+        let evaluated = evaluations(solid.solid());
+        let quiet = Control { progress: None, ..control };
+        let extent = sides(&solid, &frame, relative, &quiet)?;
+        // `measure` has found it out before, as a rule.
+        let inexact = match solid.solid().get::<MeshSolid>() {
+            Some(mesh) => Some(inexact_reason(mesh, mass.clipped, &quiet)?),
+            None => None,
+        };
+        let most = Some(arguments.splits.unwrap_or(AREA_SPLITS));
+        let surface = surface_area(solid.solid(), &frame, relative, &Control { max_splits: most, ..quiet })?;
+        Ok((mass, surface, extent, evaluated, inexact))
+    });
+    let (mass, surface, extent, evaluated, inexact) = found.of(&input)?;
+    let text = if arguments.json {
+        let exact = inexact.as_ref().map(Option::is_none);
+        let inexact_reason = inexact.flatten();
+        let report = report(&input, &frame, &mass, &surface, &extent, evaluated);
+        sink::json(&Report { curves, exact, inexact_reason, ..report })?
+    } else {
+        text(&mass, &surface, &extent, curves.as_ref(), is_stored, inexact.as_ref())
+    };
+    sink::print(text.as_bytes())
+}
+
+/// Why a mesh's moments were not known without splitting cells; `None` if they were.
+fn inexact_reason(mesh: &MeshSolid, clipped: bool, control: &Control<'_>) -> Result<Option<String>, Error> {
+    Ok(match mesh.moments(control)? {
+        MeshMoments::Known(_) if clipped => Some("the mesh reaches beyond the bounds, or may".into()),
+        MeshMoments::Known(_) => None,
+        MeshMoments::Open => Some("the mesh does not bound a solid".into()),
+        MeshMoments::Intersecting([a, b]) => Some(format!("triangles {a} and {b} intersect, for instance")),
+        MeshMoments::Undecided => Some("it is not known whether triangles intersect".into()),
+    })
+}
+
+fn report(
+    input: &Input,
+    frame: &Frame,
+    mass: &MassProperties,
+    surface: &SurfaceArea,
+    extent: &Extent,
+    evaluations: u64,
+) -> Report {
+    Report {
+        input: input.to_string(),
+        volume: mass.volume.into(),
+        proof: mass.proof.into(),
+        centroid: mass.centroid.map(Into::into),
+        inertia: mass.inertia_about_centroid.into(),
+        inertia_about_origin: mass.inertia_about_origin.into(),
+        min: extent.corners.map(|[min, _]| min.into()),
+        max: extent.corners.map(|[_, max]| max.into()),
+        area: is_known(surface).then(|| surface.area.into()),
+        area_measured: stop_word(surface.stop_reason),
+        area_splits: surface.splits,
+        measured: stop_word(mass.stop_reason),
+        splits: mass.splits,
+        evaluations,
+        level: mass.level,
+        depth: frame.depth(),
+        origin: frame.origin(),
+        edge: frame.edge(),
+        clipped: mass.clipped,
+        exact: None,
+        inexact_reason: None,
+        curves: None,
+    }
+}
+
+fn is_known(surface: &SurfaceArea) -> bool {
+    surface.area.upper < f64::INFINITY
+}
+
+/// The same for people.
+fn text(
+    mass: &MassProperties,
+    surface: &SurfaceArea,
+    extent: &Extent,
+    curves: Option<&Curves>,
+    is_stored: bool,
+    inexact: Option<&Option<String>>,
+) -> String {
+    let mut text = String::new();
+    let mut line = |name: &str, value: String| put_line(&mut text, name, &value);
+    line("volume", measured(mass.volume));
+    let area = match is_known(surface) {
+        true => measured(surface.area),
+        false if is_stored => "not known: a file does not tell what its surface is like between cells".into(),
+        false => "not known".into(),
+    };
+    line("area", area);
+    if let Some(doubt) = Proven::from(mass.proof).doubt() {
+        line("proven", doubt);
+    }
+    for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
+        if let Some(centroid) = mass.centroid {
+            line(&format!("centroid {name}"), measured(centroid[axis]));
+        }
+    }
+    for (name, tensor) in
+        [("inertia", &mass.inertia_about_centroid), ("about origin", &mass.inertia_about_origin)]
+    {
+        for (i, j, axes) in
+            [(0, 0, "xx"), (1, 1, "yy"), (2, 2, "zz"), (0, 1, "xy"), (0, 2, "xz"), (1, 2, "yz")]
+        {
+            line(&format!("{name} {axes}"), measured(tensor[i][j]));
+        }
+    }
+    if let Some([min, max]) = extent.corners {
+        for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
+            line(&format!("least {name}"), measured(min[axis]));
+            line(&format!("greatest {name}"), measured(max[axis]));
+        }
+    }
+    if let Some(curves) = curves.and_then(Curves::text) {
+        line("curves", curves);
+    }
+    match inexact {
+        Some(None) => {
+            line("exact", "yes, but for rounding: the mesh is closed, and no triangles intersect".into())
+        }
+        Some(Some(reason)) => line("exact", format!("no: {reason}")),
+        None => {}
+    }
+    let ended = match (mass.stop_reason, is_stored) {
+        (StopReason::Tolerance, _) => "",
+        _ if inexact == Some(&None) => "",
+        (StopReason::Budget, _) => ", which were all that may be split",
+        (StopReason::Exhausted, true) => ", and the file knows no more",
+        (StopReason::Exhausted, false) => ", and there is nothing left to split at this depth",
+    };
+    line("splits", format!("{}, to level {}{ended}", count(mass.splits), mass.level));
+    if mass.clipped {
+        line("clipped", "this is the part inside of the bounds; the solid may go on outside".into());
+    }
+    text
+}

@@ -1,0 +1,85 @@
+//! `leafless mesh`: the surface of a solid.
+
+use crate::failure::Failure;
+use crate::making::job::Job;
+use crate::making::surface::{At, Method, ResolveName, SnapName, Wanted, make};
+use crate::options::{bounds, formats, threads};
+use crate::sink::Output;
+use crate::source::file::Taking;
+use crate::source::input::Input;
+use clap::Args;
+use leafless::exchange::MeshFormat;
+use leafless::{Frame, MAX_DEPTH};
+use std::ffi::OsString;
+use std::time::Instant;
+
+/// Writes the surface of a solid as a closed triangle mesh.
+///
+/// The surface separates samples that lie inside from those outside. Samples of a mesh or a scene are the corners of
+/// cells, and vertices lie where the edges between corners cross the surface. Samples of a volume are its voxels, and of
+/// a solid from a file (.lfl) its cells at their finest level; what is undecided there has no sign, so that --resolve must say what it counts as.
+/// Samples of a tri-dexel model are the centres of its cells, and vertices lie where its rays leave the solid.
+#[derive(Args)]
+pub struct Arguments {
+    /// Solid or tri-dexel model (.lfl), mesh (STL, OBJ, PLY, OFF, 3MF), scene (.csg) or volume (NRRD, MetaImage), or `-`
+    /// for standard input
+    file: OsString,
+    /// Where to write: the extension .ply, .stl, .obj, .off or .3mf tells the format; `-` is standard output
+    #[arg(short, long, value_name = "OUTPUT")]
+    output: OsString,
+    /// Format to write. Without it: what the extension of the output says, or PLY for standard output
+    #[arg(long, value_parser = formats(["ply", "stl", "obj", "off", "3mf"]))]
+    write: Option<MeshFormat>,
+    /// Write STL and PLY as text
+    #[arg(long)]
+    text: bool,
+    /// Write normals at vertices, in PLY and OBJ
+    #[arg(long)]
+    normals: bool,
+    /// Write the file also if rounding to its coordinates breaks the surface: STL has 32-bit ones. Without it such a file
+    /// is refused
+    #[arg(long)]
+    lossy: bool,
+    /// How the surface is made
+    #[arg(long, value_enum, default_value_t = Method::Mc)]
+    method: Method,
+    /// Where the methods smc, shrink and shrink-published move vertices to
+    #[arg(long, value_enum, default_value_t = SnapName::Fat)]
+    snap: SnapName,
+    /// Where --method mc puts vertices of a mesh, scene or volume
+    #[arg(long, value_enum, default_value_t = At::Crossing)]
+    vertices: At,
+    /// What undecided cells count as. Given for a mesh or scene, its cells are the samples, made as `leafless voxelize`
+    /// makes them, and not the corners
+    #[arg(long, value_enum)]
+    resolve: Option<ResolveName>,
+    /// Level of the cells of a mesh or scene, 1 to 19. Without it: 8, and of a volume the voxels. Of a solid from a file
+    /// its own or a coarser one
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..MAX_DEPTH as i64))]
+    depth: Option<u8>,
+    /// Lower corner and edge length of the cube to look at, for a mesh or scene. Without it: the cube around it
+    #[arg(long, value_name = "X0,Y0,Z0,EDGE", value_parser = bounds, allow_hyphen_values = true)]
+    bounds: Option<Frame>,
+    #[command(flatten)]
+    taking: Taking,
+    /// Also count pairs of triangles that intersect each other
+    #[arg(long)]
+    intersections: bool,
+    /// Threads to use; 0: as many as there are processors. The result is the same
+    #[arg(long, default_value_t = 0, value_name = "N", value_parser = threads)]
+    threads: usize,
+    /// Print one JSON object
+    #[arg(long)]
+    json: bool,
+}
+
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let Arguments { depth, bounds, threads, json, .. } = *arguments;
+    let (input, output) = (Input::from(&*arguments.file), Output::from(&*arguments.output));
+    let job = Job { input, output, start: Instant::now(), depth, bounds, threads, json };
+    let Arguments {
+        method, snap, vertices, resolve, text, normals, lossy, intersections, write: format, ..
+    } = *arguments;
+    let wanted = Wanted { method, snap, vertices, resolve, format, text, normals, lossy, intersections };
+    make(&job, &arguments.taking, &wanted)
+}

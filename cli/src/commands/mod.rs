@@ -1,0 +1,25 @@
+//! The subcommands, one a file: what each takes, and what it asks.
+
+pub mod attribute;
+pub mod bitmap;
+pub mod boolean;
+pub mod contains;
+pub mod convert;
+pub mod csg;
+pub mod demo;
+pub mod dexelize;
+pub mod distance;
+pub mod heights;
+pub mod info;
+pub mod interfere;
+pub mod measure;
+pub mod mesh;
+pub mod neighbours;
+pub mod ray;
+pub mod render;
+pub mod sample;
+pub mod summary;
+pub mod verify;
+pub mod voxelize;
+pub mod voxels;
+pub mod within;

@@ -1,0 +1,273 @@
+//! `leafless render`: what does it look like?
+
+use crate::failure::{Failure, Of};
+use crate::making::picture::{Looks, Subject, Values, View, colour, legend_box, numbers, picture};
+use crate::options::threads;
+use crate::progress::watched;
+use crate::show::{Protocol, Screen};
+use crate::sink::{Output, json};
+use crate::source::file::Taking;
+use crate::source::input::Input;
+use crate::source::solid::Shape;
+use crate::source::values::find;
+use crate::words::{count, seconds};
+use clap::Args;
+use leafless::{Bounds, Camera, Clip, Control, FIELD_OF_VIEW, LegendBox, Lens, MAX_DEPTH, Shot, exchange};
+use serde::Serialize;
+use std::ffi::OsString;
+use std::time::Instant;
+
+/// Makes a picture (PNG) of a solid, a mesh, a scene, a volume or a tri-dexel model, or shows one on the terminal.
+///
+/// A solid from a file is shown as its cells make its surface likely to be; with --faces, as its cells are. A mesh, a scene or
+/// a volume is shown itself, without an octree.
+#[derive(Args)]
+// Of arrays without a header, `--samples` says the extents everywhere else.
+#[command(mut_arg("extents", |extents| extents.long("array-samples")))]
+pub struct Arguments {
+    /// Solid or tri-dexel model (.lfl), mesh (STL, OBJ, PLY, OFF, 3MF), scene (.csg) or volume (NRRD, MetaImage), or `-` for
+    /// standard input
+    #[arg(value_name = "FILE")]
+    input: OsString,
+    /// File to write (PNG), or `-` for standard output; it is written whole or not at all
+    #[arg(short, long, value_name = "OUT", required_unless_present = "show")]
+    output: Option<OsString>,
+    /// Show the picture on the terminal, smaller if it does not fit. Without a protocol, the best that the terminal
+    /// understands; with one, also where standard output is no terminal: then as it is, or in half blocks for 80x24 cells
+    /// or COLUMNS x LINES
+    #[arg(long, value_enum, value_name = "PROTOCOL", num_args = 0..=1, require_equals = true,
+          default_missing_value = "auto", conflicts_with = "json")]
+    show: Option<Protocol>,
+    /// Width and height in pixels [default: 1024x768; only shown: what fits the terminal]
+    #[arg(long, value_name = "WxH", value_parser = size)]
+    size: Option<[u32; 2]>,
+    /// From where to look, in degrees: 0,0 is from the front (−y) with z upward, a positive azimuth from further right, a
+    /// positive elevation from further above
+    /// [default: 30,25; of a slice its plane from in front]
+    #[arg(long, value_name = "AZIMUTH,ELEVATION", value_parser = numbers::<2>, allow_hyphen_values = true,
+          verbatim_doc_comment, conflicts_with = "eye")]
+    from: Option<[f64; 2]>,
+    /// Where the eye is, instead of --from
+    #[arg(long, value_name = "X,Y,Z", value_parser = numbers::<3>, allow_hyphen_values = true)]
+    eye: Option<[f64; 3]>,
+    /// What the eye looks at [default: the middle]
+    #[arg(long, value_name = "X,Y,Z", value_parser = numbers::<3>, allow_hyphen_values = true, requires = "eye")]
+    at: Option<[f64; 3]>,
+    /// What is upward [default: 0,0,1, or where one looks along it 0,1,0]
+    #[arg(long, value_name = "X,Y,Z", value_parser = numbers::<3>, allow_hyphen_values = true, requires = "eye")]
+    up: Option<[f64; 3]>,
+    /// Field of view from the lower to the upper edge, in degrees
+    #[arg(long, value_name = "DEGREES", default_value_t = FIELD_OF_VIEW)]
+    fov: f64,
+    /// Parallel lines stay parallel
+    #[arg(long, conflicts_with = "fov")]
+    ortho: bool,
+    /// Cut away the points x, y, z with a x + b y + c z + d < 0; may be given more than once
+    #[arg(long, value_name = "A,B,C,D", value_parser = numbers::<4>, allow_hyphen_values = true)]
+    clip: Vec<[f64; 4]>,
+    /// Cut away what lies outside of this box
+    #[arg(long, value_name = "X0,Y0,Z0,X1,Y1,Z1", value_parser = numbers::<6>, allow_hyphen_values = true)]
+    clip_box: Option<[f64; 6]>,
+    /// Samples of a pixel: 1, 4, 9, 16, 25, 36, 49 or 64
+    #[arg(id = "per_pixel", long = "samples", value_name = "N", default_value_t = 4)]
+    samples: u32,
+    /// Channel of the solid whose values are shown. Without it: the only one, if there is one
+    #[arg(long, value_name = "NAME")]
+    channel: Option<String>,
+    /// Level of the cells that a mesh, a scene or a volume is split to for a slice or a volume, 1 to 20
+    #[arg(long, value_name = "N", default_value_t = DEPTH, value_parser = clap::value_parser!(u8).range(1..=MAX_DEPTH as i64))]
+    depth: u8,
+    /// Colour of what is seen where nothing is, as in #ffffff, or `none`
+    #[arg(long, value_name = "COLOUR", default_value = "#ffffff", value_parser = colour)]
+    background: [u8; 4],
+    #[command(flatten)]
+    looks: Looks,
+    #[command(flatten)]
+    taking: Taking,
+    /// Threads to use; 0: as many as there are processors. The picture is the same
+    #[arg(long, default_value_t = 0, value_name = "N", value_parser = threads)]
+    threads: usize,
+    /// Print one JSON object
+    #[arg(long)]
+    json: bool,
+}
+
+fn size(text: &str) -> Result<[u32; 2], String> {
+    let sides = text.split_once(['x', 'X']).and_then(|(w, h)| Some([w.parse().ok()?, h.parse().ok()?]));
+    let good = |sides: &[u32; 2]| sides.iter().all(|side| (1..=16384).contains(side));
+    sides.filter(good).ok_or_else(|| "expected width and height, 1 to 16384 each, as in 800x600".into())
+}
+
+/// Width and height of a picture that goes to a file.
+const SIZE: [u32; 2] = [1024, 768];
+
+/// Levels of cells of what has none of its own.
+const DEPTH: u8 = 8;
+
+/// What is told of a picture.
+#[derive(Serialize)]
+struct Made {
+    width: u32,
+    height: u32,
+    samples: u32,
+    view: View,
+    eye: [f64; 3],
+    forward: [f64; 3],
+    /// Pixels that are not as the background, those of a legend too.
+    covered: usize,
+    bytes: usize,
+    seconds: f64,
+}
+
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let start = Instant::now();
+    let input = Input::from(&*arguments.input);
+    let output = arguments.output.as_deref().map(Output::from);
+    if let Some(output) = &output {
+        if arguments.show.is_some() && output.path().is_none() {
+            let problem = "both -o - and --show want standard output: name a file, or leave one of them out";
+            return Err(Failure::Usage(problem.into()));
+        }
+        output.check()?;
+    }
+    arguments.looks.check()?;
+    // Before any work: what is shown may depend on the terminal, which may be none.
+    let screen = arguments.show.map(Screen::of).transpose()?;
+    let shown_size = screen.as_ref().filter(|_| output.is_none()).and_then(Screen::size);
+    let size = arguments.size.or(shown_size).unwrap_or(SIZE);
+    let shape = Shape::read(&input, &arguments.taking)?.0;
+    let subject = Subject::of(shape, &input, &arguments.looks, arguments.depth, arguments.threads)?;
+    let channel = match &subject {
+        Subject::Octree(octree, _) if arguments.channel.is_some() || octree.channels().len() == 1 => {
+            Some(find(octree, &input, arguments.channel.as_deref())?)
+        }
+        _ if arguments.channel.is_some() => {
+            return Err(Failure::of(&input, "has no channels to show in this view"));
+        }
+        _ => None,
+    };
+    let looks = &arguments.looks;
+    let (shot, picture) = watched("render", arguments.threads, |control| {
+        let values = match (&subject, channel) {
+            (Subject::Octree(octree, _), Some(channel)) => {
+                Some(Values::new(looks, octree, channel, control)?)
+            }
+            _ => None,
+        };
+        let legend = legend_box(looks, values.as_ref(), size)?;
+        let shot = shot(arguments, size, &subject, legend, control)?;
+        let picture = picture(looks, &subject, values.as_ref(), &shot, control)?;
+        Ok((shot, picture))
+    })
+    .of(&input)?;
+    let bytes = exchange::write_png(&picture).of(&input)?;
+    if let Some(output) = &output {
+        output.write(&bytes)?;
+    }
+    if let Some(screen) = &screen {
+        screen.show(&picture, &bytes)?;
+    }
+    let made = Made {
+        width: picture.width(),
+        height: picture.height(),
+        samples: shot.samples,
+        view: arguments.looks.view,
+        eye: shot.camera.eye(),
+        forward: shot.camera.forward(),
+        covered: picture.colours().iter().filter(|&&colour| colour != shot.background).count(),
+        bytes: bytes.len(),
+        seconds: start.elapsed().as_secs_f64(),
+    };
+    // Standard output carries the picture where it is shown.
+    let told = output.as_ref().filter(|_| screen.is_none()).unwrap_or(&Output::Standard);
+    if arguments.json {
+        return told.report(&json(&made)?);
+    }
+    let Made { width, height, covered, .. } = made;
+    let share = 100.0 * covered as f64 / (f64::from(width) * f64::from(height));
+    let what = format!("{width} x {height} pixels, {share:.0} % covered");
+    let bytes = count(made.bytes as u64);
+    let time = seconds(made.seconds);
+    told.report(&match (&output, &screen) {
+        (Some(output), None) => format!("{output}: {what}, {bytes} bytes; {time}\n"),
+        (Some(output), Some(screen)) => {
+            format!("{output}: {what}, {bytes} bytes, shown {}; {time}\n", screen.way())
+        }
+        (None, screen) => {
+            let way = screen.as_ref().map_or("", Screen::way);
+            format!("{input}: {what}, shown {way}; {time}\n")
+        }
+    })
+}
+
+fn shot(
+    arguments: &Arguments,
+    size: [u32; 2],
+    subject: &Subject,
+    legend: Option<LegendBox>,
+    control: &Control<'_>,
+) -> Result<Shot, leafless::Error> {
+    let [width, height] = size;
+    let mut clip = Clip::new();
+    for &plane in &arguments.clip {
+        clip = clip.plane(plane)?;
+    }
+    let looks = &arguments.looks;
+    let mut points = subject.points(&Control { progress: None, ..*control })?;
+    if let Some([x0, y0, z0, x1, y1, z1]) = arguments.clip_box {
+        let problem = "the lower corner must not be above the upper one";
+        let kept = Bounds::new([x0, y0, z0], [x1, y1, z1])
+            .ok_or(leafless::Error::Argument { name: "clip-box", problem })?;
+        clip = clip.within(&kept)?;
+        let clamped =
+            |point: [f64; 3]| [0, 1, 2].map(|axis| point[axis].clamp(kept.min[axis], kept.max[axis]));
+        // The volume of a hybrid view is not cut.
+        if looks.view != View::Hybrid {
+            points = points.into_iter().map(clamped).collect();
+        }
+    }
+    let is_slice = looks.view == View::Slice && arguments.from.is_none() && arguments.eye.is_none();
+    let field = (!arguments.ortho && !is_slice).then_some(arguments.fov);
+    let camera = match arguments.eye {
+        None => {
+            let from = arguments.from.unwrap_or(match looks.plane {
+                Some([a, b, c, _]) if is_slice => {
+                    [a.atan2(-b).to_degrees(), c.atan2(a.hypot(b)).to_degrees()]
+                }
+                None if is_slice => [0.0, 0.0],
+                _ => [30.0, 25.0],
+            });
+            // What is shown is as far from both sides as the legend is wide.
+            let free = legend.map_or(1.0, |[left, ..]| 2.0 * f64::from(left) / f64::from(width) - 1.0);
+            Camera::fitted(&points, from, field, free.max(LEAST_FREE) * f64::from(width) / f64::from(height))?
+        }
+        Some(eye) => {
+            let at = arguments.at.unwrap_or(middle(&points));
+            let along = [0, 1, 2].map(|axis| at[axis] - eye[axis]);
+            let is_upright = along[0].hypot(along[1]) < 1e-6 * along[2].abs();
+            let up = arguments.up.unwrap_or(if is_upright { [0.0, 1.0, 0.0] } else { [0.0, 0.0, 1.0] });
+            let distance = along.iter().map(|c| c * c).sum::<f64>().sqrt();
+            // As high as what a perspective shows at the distance of what it looks at.
+            let parallel = 2.0 * distance * (0.5 * FIELD_OF_VIEW.to_radians()).tan();
+            Camera::new(eye, at, up, field.map_or(Lens::Parallel(parallel), Lens::Perspective))?
+        }
+    };
+    let Arguments { samples, background, .. } = *arguments;
+    Ok(Shot { camera, size, samples, clip, background })
+}
+
+/// The least part of a picture's width that is left between what a legend takes.
+const LEAST_FREE: f64 = 0.3;
+
+/// The middle of the box around points.
+fn middle(points: &[[f64; 3]]) -> [f64; 3] {
+    let (low, high) = extremes(points);
+    [0, 1, 2].map(|axis| 0.5 * low[axis] + 0.5 * high[axis])
+}
+
+fn extremes(points: &[[f64; 3]]) -> ([f64; 3], [f64; 3]) {
+    let end = |start: f64, choose: fn(f64, f64) -> f64| {
+        [0, 1, 2].map(|axis| points.iter().map(|point| point[axis]).fold(start, choose))
+    };
+    (end(f64::INFINITY, f64::min), end(f64::NEG_INFINITY, f64::max))
+}

@@ -1,0 +1,174 @@
+//! The set operations on solids of either kind.
+
+use crate::failure::{Failure, Of};
+use crate::making::octree_of_volume::of_voxels;
+use crate::making::operands::{Operation, Place, check_places, facts, warn_of_units};
+use crate::progress::watched;
+use crate::report::{dexels, octree};
+use crate::sink::Output;
+use crate::source::file::Stored;
+use crate::source::input::Input;
+use crate::source::volume::Sampling;
+use crate::words::{count, counted, seconds, short};
+use leafless::exchange::VolumeFormat;
+use leafless::{CarryRule, Control, Error, Octree, OctreeRef, TriDexel, carry_channels};
+use std::time::Instant;
+
+/// What is made of solids.
+pub struct Combining<'a> {
+    pub operation: Operation,
+    /// How volumes among them are taken.
+    pub sampling: &'a Sampling,
+    /// Rules for channels by their names.
+    pub carry: &'a [(String, CarryRule)],
+    pub threads: usize,
+}
+
+/// Reads the operands, at least one (a difference has two), combines them, saves the result.
+pub fn combine(combining: &Combining, inputs: &[Input], output: &Output) -> Result<(), Failure> {
+    let (start, operation) = (Instant::now(), combining.operation);
+    output.check()?;
+    let operands = operands(inputs, combining)?;
+    let (places, depth): (Vec<Place>, _) = match &operands {
+        Operands::Octrees(octrees) => {
+            (octrees.iter().map(|octree| Place::new(octree.frame(), octree.metadata())).collect(), "--depth")
+        }
+        Operands::Dexels(models) => {
+            (models.iter().map(|model| Place::new(model.frame(), model.metadata())).collect(), "--resolution")
+        }
+    };
+    check_places(inputs, &places, depth)?;
+    let (name, threads, number) = (operation.name(), combining.threads, inputs.len() as u64);
+    let (solids, result, bytes) = match &operands {
+        Operands::Octrees(octrees) => {
+            let trees: Vec<OctreeRef<'_>> = octrees.iter().map(|octree| *octree.view()).collect();
+            let result = watched(name, threads, |control| of(operation, &trees[0], &trees, control));
+            let result = carried(result.of(name)?, octrees, combining).of(name)?;
+            let result = result.with_metadata(facts(&places)?);
+            warn_of_units(inputs, &places);
+            let bytes = output.save(&result)?;
+            let info = octree::Info::new(&result, bytes);
+            let told = format!("volume {}, {} nodes", info.volume_text(), count(info.nodes));
+            (counted(number, "solid", "solids"), told, bytes)
+        }
+        Operands::Dexels(models) => {
+            check_directions(inputs, models)?;
+            let result = watched(name, threads, |control| of_dexels(operation, models, control)).of(name)?;
+            let result = result.with_metadata(facts(&places)?);
+            warn_of_units(inputs, &places);
+            let bytes = output.save_dexels(&result)?;
+            let info = dexels::Info::new(&result, bytes);
+            let intervals = counted(info.intervals, "interval", "intervals");
+            let told = format!("volume about {}, {intervals}", short(info.mean_volume()));
+            (counted(number, "tri-dexel model", "tri-dexel models"), told, bytes)
+        }
+    };
+    let (bytes, time) = (count(bytes), seconds(start.elapsed().as_secs_f64()));
+    output.report(&format!("{output}: {name} of {solids}, {result}, {bytes} bytes, in {time}\n"))
+}
+
+/// Refuses tri-dexel models whose rays run along different axes.
+fn check_directions(inputs: &[Input], models: &[TriDexel]) -> Result<(), Failure> {
+    let axes = |model: &TriDexel| dexels::Info::new(model, 0).axes();
+    for (input, model) in inputs.iter().zip(models).skip(1) {
+        if model.view().directions() != models[0].view().directions() {
+            let (first, other) = (axes(&models[0]), axes(model));
+            let problem = format!("has rays along {other}, and {} along {first}", inputs[0]);
+            return Err(Failure::of(input, format!("{problem}: make both with the same --directions")));
+        }
+    }
+    Ok(())
+}
+
+/// The result with the channels of the operands.
+fn carried(result: Octree, octrees: &[Octree], combining: &Combining) -> Result<Octree, String> {
+    if octrees.iter().all(|octree| octree.channels().is_empty()) {
+        return Ok(result);
+    }
+    let operands: Vec<&Octree> = octrees.iter().collect();
+    let rule = |name: &str| {
+        let told = combining.carry.iter().rev().find(|(known, _)| known == name);
+        told.map_or(CarryRule::Left, |(_, rule)| *rule)
+    };
+    watched("channels", combining.threads, |control| carry_channels(&result, &operands, rule, control))
+}
+
+/// What is combined: all of one kind.
+enum Operands {
+    Octrees(Vec<Octree>),
+    Dexels(Vec<TriDexel>),
+}
+
+/// Reads all operands, of which there is one at least. What is proven of the result is proven only if the operands are
+/// what their makers wrote.
+fn operands(inputs: &[Input], combining: &Combining) -> Result<Operands, Failure> {
+    let (mut octrees, mut models) = (Vec::new(), Vec::new());
+    for (i, input) in inputs.iter().enumerate() {
+        match operand(input, combining)? {
+            Stored::Octree(octree) => octrees.push(octree),
+            Stored::Dexels(model) => models.push(model),
+        }
+        if !octrees.is_empty() && !models.is_empty() {
+            let kinds = ["an octree", "a tri-dexel model"];
+            let [this, first] = if models.len() == i { kinds } else { [kinds[1], kinds[0]] };
+            let problem = format!("is {this}, and {} is {first}: `leafless convert`", inputs[0]);
+            return Err(Failure::of(input, format!("{problem} makes one of the other's kind")));
+        }
+    }
+    if models.is_empty() {
+        return Ok(Operands::Octrees(octrees));
+    }
+    if !combining.carry.is_empty() {
+        return Err(Failure::Usage("--carry is for octrees: tri-dexel models have no channels".into()));
+    }
+    Ok(Operands::Dexels(models))
+}
+
+/// A solid from a file, or the voxels of a volume that are inside.
+fn operand(input: &Input, combining: &Combining) -> Result<Stored, Failure> {
+    if input.begins_as_solid() {
+        return Ok(Stored::read(input, true)?.0);
+    }
+    let bytes = input.read()?;
+    if combining.sampling.is_raw() || VolumeFormat::detect(&bytes).is_some() {
+        let volume = combining.sampling.read(input, &bytes)?;
+        return Ok(Stored::Octree(of_voxels(&volume, input, combining.threads)?));
+    }
+    Stored::of_bytes(input, &bytes)
+}
+
+fn of(
+    operation: Operation,
+    first: &OctreeRef<'_>,
+    trees: &[OctreeRef<'_>],
+    control: &Control<'_>,
+) -> Result<Octree, Error> {
+    match (operation, trees) {
+        (Operation::Union, _) => leafless::union_of(trees, control),
+        (Operation::Intersection, _) => leafless::intersection_of(trees, control),
+        (Operation::Xor, _) => leafless::xor_of(trees, control),
+        (Operation::Difference, [_, tool]) => leafless::difference(first, tool, control),
+        (Operation::Difference, _) => {
+            let tools = leafless::union_of(&trees[1..], control)?;
+            leafless::difference(first, tools.view(), control)
+        }
+        (Operation::Complement, _) => leafless::complement(first, control),
+    }
+}
+
+fn of_dexels(operation: Operation, models: &[TriDexel], control: &Control<'_>) -> Result<TriDexel, Error> {
+    let (first, others) = (&models[0], &models[1..]);
+    if let Operation::Complement = operation {
+        return first.view().complement(control);
+    }
+    others.iter().try_fold(first.clone(), |whole, other| {
+        let (whole, other) = (whole.view(), other.view());
+        match operation {
+            Operation::Union => whole.union(other, control),
+            Operation::Intersection => whole.intersection(other, control),
+            // What lies in an odd number of them, one after the other.
+            Operation::Xor => whole.xor(other, control),
+            Operation::Difference | Operation::Complement => whole.difference(other, control),
+        }
+    })
+}

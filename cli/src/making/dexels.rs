@@ -1,0 +1,212 @@
+//! Tri-dexel models of solids of any kind.
+
+use crate::failure::{Failure, Of, complain};
+use crate::making::job::{Job, facts};
+use crate::making::octree_of_mesh::clipping;
+use crate::options::rule_name;
+use crate::progress::watched;
+use crate::report::dexels::Info;
+use crate::source::file::Taking;
+use crate::source::input::Input;
+use crate::source::solid::{Shape, Source};
+use crate::words::{count, counted, number, seconds, short};
+use leafless::{
+    Affine, DexelOptions, Frame, MeshSolid, Metadata, Octree, Rule, Solid, Tag, TriDexel, dexelize,
+};
+use serde::Serialize;
+
+/// Levels of the lattice, if nobody says how many.
+const DEPTH: u8 = 8;
+
+/// What of a solid is stored.
+#[derive(Default)]
+pub struct Storing {
+    pub options: DexelOptions,
+    /// The material that all of it is of.
+    pub material: Option<u32>,
+}
+
+#[derive(Serialize)]
+struct Report {
+    input: String,
+    output: String,
+    rule: &'static str,
+    /// Cells to an axis.
+    resolution: u32,
+    /// Rays that cross the solid, in all directions.
+    rays: u64,
+    /// Rays that pierce an open mesh an odd number of times, in all directions.
+    odd_rays: u64,
+    /// The mean over all directions: an estimate, in cubic model units.
+    volume: f64,
+    seconds: f64,
+    #[serde(flatten)]
+    info: Info,
+}
+
+/// Makes a tri-dexel model of a file, and saves it.
+pub fn make(job: &Job, taking: &Taking, rule: Rule, mut storing: Storing) -> Result<(), Failure> {
+    let Job { input, output, start, .. } = job;
+    storing.options.rule = rule;
+    output.check()?;
+    output.check_beside(input, "input")?;
+    let (shape, fingerprint) = Shape::read(input, taking)?;
+    let Shape::Source(source) = shape else {
+        return Err(Failure::of(input, "is a tri-dexel model already"));
+    };
+    let frame = frame(job, &source)?;
+    let metadata = metadata(input, &source, fingerprint, rule)?;
+    warn(input, &source, &frame);
+    let (model, odd) = made(source, job, &frame, rule, &storing)?;
+    let model = model.with_metadata(metadata);
+    let bytes = output.save_dexels(&model)?;
+    let info = Info::new(&model, bytes).with_odd(odd);
+    let report = Report {
+        input: input.to_string(),
+        output: output.to_string(),
+        rule: rule_name(rule),
+        resolution: frame.cells(),
+        rays: info.rays(),
+        odd_rays: info.odd_rays(),
+        volume: info.mean_volume(),
+        seconds: start.elapsed().as_secs_f64(),
+        info,
+    };
+    output.tell(job.json, &report, Report::summary)
+}
+
+/// The lattice that the solid is asked on.
+fn frame(job: &Job, source: &Source) -> Result<Frame, Failure> {
+    let input = &job.input;
+    match source {
+        Source::Octree(octree) => {
+            let cells = octree.frame().cells();
+            if job.bounds.is_some() {
+                return Err(Failure::Usage(format!("--bounds is not for {input}: an octree has its own")));
+            }
+            match job.depth {
+                Some(depth) if depth > octree.frame().depth() => {
+                    let problem = format!("an octree of {cells} cells to an axis: it has no smaller ones");
+                    Err(Failure::Usage(format!("--resolution contradicts {input}, {problem}")))
+                }
+                depth => octree.frame().with_depth(depth.unwrap_or(octree.frame().depth())).of(input),
+            }
+        }
+        source => match job.bounds {
+            Some(bounds) => bounds.with_depth(job.depth.unwrap_or(DEPTH)).of(input),
+            None => source.frame_to(input, None, job.depth, DEPTH),
+        },
+    }
+}
+
+/// The model, and how many rays of each direction pierce an open mesh an odd number of times.
+fn made(
+    source: Source,
+    job: &Job,
+    frame: &Frame,
+    rule: Rule,
+    storing: &Storing,
+) -> Result<(TriDexel, [u64; 3]), Failure> {
+    let input = &job.input;
+    match source {
+        Source::Octree(octree) => {
+            // Cells that are cut further than the lattice goes are undecided there.
+            let is_coarser = frame.depth() < octree.frame().depth();
+            if rule == Rule::Sampled && (is_coarser || !octree.view().is_binary()) {
+                let problem = "has undecided cells, which are neither inside nor outside: choose --rule inner or --rule \
+                               outer (of `leafless convert` --resolve), or make it anew from its source with --rule sampled";
+                return Err(Failure::of(input, problem));
+            }
+            Ok((of_solid::<Octree>(&octree, job, frame, storing)?, [0; 3]))
+        }
+        Source::Mesh(mesh, fill, _) => {
+            let solid = MeshSolid::new(mesh, fill).of(input)?;
+            let odd = watched("dexelize", job.threads, |control| solid.odd_rays(frame, control));
+            Ok((of_solid(&solid, job, frame, storing)?, odd.of(input)?))
+        }
+        source => {
+            let solid = source.placed(input, &Affine::IDENTITY, frame)?;
+            Ok((of_solid(&solid, job, frame, storing)?, [0; 3]))
+        }
+    }
+}
+
+fn of_solid<S: Solid>(solid: &S, job: &Job, frame: &Frame, storing: &Storing) -> Result<TriDexel, Failure> {
+    let made = watched("dexelize", job.threads, |control| {
+        let model = dexelize(solid, frame, &storing.options, control)?;
+        match storing.material {
+            Some(material) => model.view().with_material(material, control),
+            None => Ok(model),
+        }
+    });
+    made.of(&job.input)
+}
+
+/// Says what of the solid the model does not hold.
+fn warn(input: &Input, source: &Source, frame: &Frame) {
+    if let Source::Octree(octree) = source {
+        if octree.view().exterior() != Tag::Empty {
+            let problem = "the solid may go on outside of its bounds, which a tri-dexel model does not tell";
+            complain(&format!("{input}: warning: {problem}"));
+        }
+        return;
+    }
+    let Ok((min, max)) = source.bounds(input) else {
+        // Nobody knows how far a scene reaches that takes in half-spaces.
+        let problem = "the solid may go on outside of the bounds, where it was cut off";
+        return complain(&format!("{input}: warning: {problem}"));
+    };
+    let sticks_out = |axis: usize| {
+        let low = frame.origin()[axis];
+        min[axis] < low || max[axis] > low + frame.edge()
+    };
+    if (0..3).any(sticks_out) {
+        complain(&format!("{input}: warning: {}", clipping(frame, min, max)));
+    }
+}
+
+/// What the model's file says of its making: nothing that differs from run to run.
+fn metadata(
+    input: &Input,
+    source: &Source,
+    fingerprint: Option<String>,
+    rule: Rule,
+) -> Result<Metadata, Failure> {
+    if let Source::Octree(octree) = source {
+        let mut metadata = Metadata::common([octree.metadata()]).of(input)?;
+        if let Some(known) = octree.metadata().get("rule") {
+            metadata.insert("rule", known);
+        }
+        if rule != Rule::Sampled {
+            metadata.insert("rule", rule_name(rule));
+        }
+        return Ok(metadata);
+    }
+    let mut metadata = facts(input, fingerprint.unwrap_or_default(), rule, source.unit());
+    if let Source::Volume(volume) = source {
+        metadata.insert("threshold", number(volume.threshold));
+    }
+    Ok(metadata)
+}
+
+impl Report {
+    fn summary(&self) -> String {
+        let n = self.resolution;
+        let odd = match self.odd_rays {
+            0 => String::new(),
+            odd => {
+                let rays = counted(odd, "ray pierces", "rays pierce");
+                format!(", {rays} the open mesh an odd number of times")
+            }
+        };
+        format!(
+            "{}: tri-dexel model of {n} x {n} x {n} cells along {}, volume about {}, {}, {} bytes{odd}, in {}\n",
+            self.output,
+            self.info.axes(),
+            short(self.volume),
+            counted(self.info.intervals, "interval", "intervals"),
+            count(self.info.bytes),
+            seconds(self.seconds),
+        )
+    }
+}

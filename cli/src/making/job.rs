@@ -1,0 +1,82 @@
+//! What is wanted of a result of any kind, and what all octrees have in common that are made of something.
+
+use crate::options::rule_name;
+use crate::report::octree::Info;
+use crate::sink::Output;
+use crate::source::input::Input;
+use crate::words::{count, number, seconds};
+use leafless::exchange::LengthUnit;
+use leafless::{Frame, Metadata, Octree, Rule};
+use serde::Serialize;
+use std::time::Instant;
+
+/// What is made of which file, where it goes, and how it is told.
+#[derive(Clone)]
+pub struct Job {
+    pub input: Input,
+    pub output: Output,
+    /// When the work began.
+    pub start: Instant,
+    /// Levels of cells. Without it: those that the source has, or that suit the result.
+    pub depth: Option<u8>,
+    /// The cube to look at; its depth is a placeholder. Without it: the source's own, or the one around it.
+    pub bounds: Option<Frame>,
+    pub threads: usize,
+    pub json: bool,
+}
+
+impl Job {
+    /// What people are told of an octree; `more` is a part of it.
+    pub fn summary(&self, rule: &str, octree: &Octree, info: &Info, more: &str, timings: &Timings) -> String {
+        let frame = octree.frame();
+        let Timings { read, build, save, total } = *timings;
+        let [read, build, save, total] = [read, build, save, total].map(seconds);
+        format!(
+            "{}: {rule} octree of depth {}, cells of {}\n\
+             volume  {}{}\n\
+             {more}\
+             nodes   {} (a classical octree has {})\n\
+             bytes   {}{}\n\
+             time    {total}: read {read}, build {build}, save {save}\n",
+            self.output,
+            frame.depth(),
+            number(frame.cell_size()),
+            info.volume_text(),
+            info.volume_note(),
+            count(info.nodes),
+            count(info.classical_nodes),
+            count(info.bytes),
+            info.bytes_per_node.map_or(String::new(), |each| format!(", {each:.2} a node")),
+        )
+    }
+}
+
+/// Seconds.
+#[derive(Serialize)]
+pub struct Timings {
+    /// Reading the source; welding and sewing a mesh, and checking that it is closed.
+    pub read: f64,
+    pub build: f64,
+    pub save: f64,
+    pub total: f64,
+}
+
+/// What a result's file says of its making, to begin with: nothing that differs from run to run.
+pub fn named(input: &Input) -> Metadata {
+    let mut metadata = Metadata::new();
+    if let Some(stem) = input.path().and_then(|path| path.file_stem()) {
+        metadata.insert("name", stem.to_string_lossy());
+    }
+    metadata
+}
+
+/// The same of what is made by a rule of a file with this fingerprint.
+pub fn facts(input: &Input, fingerprint: String, rule: Rule, unit: Option<LengthUnit>) -> Metadata {
+    let mut metadata = named(input);
+    metadata.insert("source", fingerprint);
+    metadata.insert("rule", rule_name(rule));
+    if let Some(unit) = unit {
+        metadata.insert("units", unit.symbol());
+    }
+    metadata
+}

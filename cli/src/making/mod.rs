@@ -1,0 +1,17 @@
+//! What is made of sources: octrees, tri-dexel models, surfaces, pictures.
+//!
+//! A subcommand says in a `job` what it wants; each file here makes one kind of result of it. Nothing here knows the
+//! arguments of a subcommand, so that several can ask for the same.
+
+pub mod boolean;
+pub mod dexel_surface;
+pub mod dexels;
+pub mod job;
+pub mod octree_of_dexels;
+pub mod octree_of_mesh;
+pub mod octree_of_scene;
+pub mod octree_of_volume;
+pub mod operands;
+pub mod part;
+pub mod picture;
+pub mod surface;

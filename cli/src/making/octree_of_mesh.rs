@@ -1,0 +1,150 @@
+//! Octrees of meshes, and of volumes in their place.
+
+use crate::failure::{Failure, Of, complain};
+use crate::making::job::{Job, Timings, facts};
+use crate::making::octree_of_volume;
+use crate::options::rule_name;
+use crate::progress::watched;
+use crate::report::mesh::Mesh;
+use crate::report::octree::Info;
+use crate::sink::json;
+use crate::source::content::Content;
+use crate::source::file::Found;
+use crate::source::mesh::{Reading, fill_name, format_name, frame_around, in_words, warn_of_openness};
+use crate::words::{counted, number};
+use leafless::exchange::{LengthUnit, MeshFile};
+use leafless::{Frame, MeshError, MeshReport, MeshSolid, Rule, build};
+use serde::Serialize;
+use std::fmt::Write;
+use std::time::Instant;
+
+#[derive(Serialize)]
+struct Report {
+    input: String,
+    output: String,
+    rule: &'static str,
+    fill: &'static str,
+    format: &'static str,
+    /// Absent (null) where nobody knows it.
+    unit: Option<&'static str>,
+    /// Objects of a 3MF that are no solids.
+    skipped: u64,
+    timings: Timings,
+    /// Where the file departs from its format, though it could be read.
+    warnings: Vec<String>,
+    mesh: Mesh,
+    /// Volume of the undecided cells.
+    undecided_volume: f64,
+    #[serde(flatten)]
+    info: Info,
+}
+
+/// Makes an octree of a mesh or a volume, and saves it.
+pub fn make(job: &Job, found: Found<'_>, reading: &Reading, rule: Rule) -> Result<(), Failure> {
+    let Job { input, output, start, .. } = job;
+    if found.content == Content::Volume {
+        return octree_of_volume::make(job, rule, &found.volume(reading)?);
+    }
+    let Some(depth) = job.depth else {
+        let problem =
+            "the following required arguments were not provided: --depth <N> (see `leafless --help`)";
+        return Err(Failure::Usage(problem.into()));
+    };
+    match found.content {
+        Content::Solid => return Err(Failure::of(input, "is a solid already, not a mesh")),
+        Content::Scene => return Err(Failure::of(input, "is a scene, not a mesh: use `leafless csg`")),
+        Content::Mesh | Content::Volume => {}
+    }
+    let fingerprint = found.fingerprint();
+    let (file, fill) = found.mesh(reading)?;
+    let MeshFile { mesh, format, unit, skipped, warnings, .. } = file;
+    let mesh_report = mesh.report().of(input)?;
+    if mesh_report.triangles == 0 {
+        return Err(Failure::of(input, MeshError::Empty));
+    }
+    // The mesh is about to be taken over.
+    let told = if job.json { Some(Mesh::new(&mesh).of(input)?) } else { None };
+    let (min, max) = mesh.bounds();
+    let frame = match &job.bounds {
+        Some(bounds) => bounds.with_depth(depth),
+        None => frame_around(&mesh, depth),
+    };
+    let frame = frame.of(input)?;
+    let read = start.elapsed().as_secs_f64();
+
+    let building = Instant::now();
+    let solid = MeshSolid::new(mesh, fill).of(input)?;
+    let octree = watched("voxelize", job.threads, |control| build(&solid, &frame, rule, control));
+    let octree = octree.of(input)?.with_metadata(facts(input, fingerprint, rule, unit));
+    let build = building.elapsed().as_secs_f64();
+
+    let saving = Instant::now();
+    let bytes = output.save(&octree)?;
+    let save = saving.elapsed().as_secs_f64();
+
+    warn_of_openness(input, &mesh_report, fill);
+    if octree.view().is_clipped() {
+        complain(&format!("{input}: warning: {}", clipping(&frame, min, max)));
+    }
+    let timings = Timings { read, build, save, total: start.elapsed().as_secs_f64() };
+    let info = Info::new(&octree, bytes);
+    let Some(mesh) = told else {
+        let head = head(job, &mesh_report, skipped);
+        return output.report(&(head + &job.summary(rule_name(rule), &octree, &info, "", &timings)));
+    };
+    let report = Report {
+        input: input.to_string(),
+        output: output.to_string(),
+        rule: rule_name(rule),
+        fill: fill_name(fill),
+        format: format_name(format),
+        unit: unit.map(LengthUnit::symbol),
+        skipped,
+        timings,
+        warnings: in_words(&warnings),
+        mesh,
+        undecided_volume: info.volume.width(),
+        info,
+    };
+    output.report(&json(&report)?)
+}
+
+/// Where the mesh sticks out of the bounds. If it does not, it is open, and what it encloses may.
+pub fn clipping(frame: &Frame, min: [f64; 3], max: [f64; 3]) -> String {
+    let mut text = String::new();
+    for (axis, name) in ["x", "y", "z"].iter().enumerate() {
+        let start = frame.origin()[axis];
+        let end = start + frame.edge();
+        if min[axis] < start || max[axis] > end {
+            let [from, to, start, end] = [min[axis], max[axis], start, end].map(number);
+            let _ = write!(text, "; {name} from {from} to {to}, bounds {start} to {end}");
+        }
+    }
+    if text.is_empty() {
+        return "what the open mesh encloses may go on outside of the bounds, where it was cut off".into();
+    }
+    format!("the mesh sticks out of the bounds and was cut off{text}")
+}
+
+/// What people are told of the mesh, in a line.
+fn head(job: &Job, mesh: &MeshReport, skipped: u64) -> String {
+    let mut text = format!(
+        "{}: {}, {}",
+        job.input,
+        counted(mesh.triangles, "triangle", "triangles"),
+        counted(mesh.bodies, "body", "bodies"),
+    );
+    if mesh.degenerate > 0 {
+        let _ =
+            write!(text, ", {} dropped", counted(mesh.degenerate, "degenerate facet", "degenerate facets"));
+    }
+    if mesh.sewn > 0 {
+        let moved = counted(mesh.sewn, "vertex", "vertices");
+        let _ = write!(text, ", {moved} moved by {} or less to close hair cracks", number(mesh.displacement));
+    }
+    if skipped > 0 {
+        let left_out = counted(skipped, "object that is no solid", "objects that are no solids");
+        let _ = write!(text, ", {left_out} left out");
+    }
+    text + "\n"
+}

@@ -1,0 +1,133 @@
+//! Octrees of scenes.
+
+use crate::failure::{Failure, Of, complain};
+use crate::making::job::{Job, Timings, facts};
+use crate::options::{name_of, rule_name};
+use crate::progress::watched;
+use crate::report::octree::Info;
+use crate::report::scene::Curves;
+use crate::source::content::Content;
+use crate::source::file::Found;
+use crate::source::scene::{Drawing, frame_of};
+use crate::words::{count, number};
+use clap::ValueEnum;
+use leafless::{Adaptive, Rule, SplitCounter, Touch, build};
+use serde::Serialize;
+use std::time::Instant;
+
+#[derive(Debug, Clone, Copy, Default, ValueEnum)]
+pub enum TouchName {
+    /// Contact is not overlap: a cell that the solid touches from outside is empty
+    #[default]
+    Exact,
+    /// As in the paper that the method comes from: such a cell is undecided
+    Paper,
+}
+
+/// How space is split.
+#[derive(Clone, Copy)]
+pub struct Splitting {
+    pub depth: u8,
+    pub rule: Rule,
+    /// The thickness of layers that are not split. Without it all are.
+    pub adaptive: Option<f64>,
+    pub touch: TouchName,
+}
+
+#[derive(Serialize)]
+struct Report {
+    input: String,
+    output: String,
+    rule: &'static str,
+    touch: String,
+    /// The thickness of layers that are not split; absent (null) if all are.
+    adaptive: Option<f64>,
+    timings: Timings,
+    /// Cells that were split; null if there are meshes or octrees in the scene, which work in bulk.
+    splits: Option<u64>,
+    /// Half-spaces that were evaluated, at a point or over a box.
+    evaluations: u64,
+    /// Volume of the undecided cells.
+    undecided_volume: f64,
+    /// How the curves of the scene were drawn.
+    curves: Curves,
+    #[serde(flatten)]
+    info: Info,
+}
+
+/// Makes an octree of a scene, and saves it.
+pub fn make(job: &Job, found: Found<'_>, drawing: &Drawing, splitting: Splitting) -> Result<(), Failure> {
+    let Job { input, output, start, .. } = job;
+    let Splitting { depth, rule, adaptive, touch } = splitting;
+    let problem = match found.content {
+        Content::Scene => None,
+        Content::Solid => Some("is a solid already, not a scene"),
+        Content::Mesh => Some("is a mesh, not a scene: use `leafless voxelize`"),
+        Content::Volume => Some("is a volume, not a scene: use `leafless voxelize`"),
+    };
+    if let Some(problem) = problem {
+        return Err(Failure::of(input, problem));
+    }
+    let scene = found.scene(drawing)?;
+    let frame = frame_of(input, &scene, job.bounds.as_ref(), depth)?;
+    let solid = scene.solid(&frame).of(input)?.with_touch(match touch {
+        TouchName::Exact => Touch::Exact,
+        TouchName::Paper => Touch::Paper,
+    });
+    // To count splits turns off what meshes and octrees do in bulk.
+    let counted = (solid.nesting() == 0).then(|| SplitCounter::new(solid.clone()));
+    let read = start.elapsed().as_secs_f64();
+
+    let building = Instant::now();
+    let octree = watched("csg", job.threads, |control| match (&counted, adaptive) {
+        (Some(counted), Some(t)) => build(&Adaptive::new(counted, t)?, &frame, rule, control),
+        (Some(counted), None) => build(counted, &frame, rule, control),
+        (None, Some(t)) => build(&Adaptive::new(&solid, t)?, &frame, rule, control),
+        (None, None) => build(&solid, &frame, rule, control),
+    });
+    let mut metadata = facts(input, found.fingerprint(), rule, None);
+    if let Some(thickness) = adaptive {
+        metadata.insert("adaptive", number(thickness));
+    }
+    if let TouchName::Paper = touch {
+        metadata.insert("touch", name_of(touch));
+    }
+    let octree = octree.of(input)?.with_metadata(metadata);
+    let build = building.elapsed().as_secs_f64();
+
+    let saving = Instant::now();
+    let bytes = output.save(&octree)?;
+    let save = saving.elapsed().as_secs_f64();
+
+    if octree.view().is_clipped() {
+        let warning = "the solid may go on outside of the bounds, where it was cut off";
+        complain(&format!("{input}: warning: {warning}"));
+    }
+    let mut info = Info::new(&octree, bytes);
+    let splits = counted.as_ref().map(SplitCounter::splits);
+    if let Some(splits) = &splits {
+        info.note_splits(splits);
+    }
+    let report = Report {
+        input: input.to_string(),
+        output: output.to_string(),
+        rule: rule_name(rule),
+        touch: name_of(touch),
+        adaptive,
+        timings: Timings { read, build, save, total: start.elapsed().as_secs_f64() },
+        splits: splits.map(|splits| splits.iter().sum()),
+        evaluations: solid.evaluations(),
+        undecided_volume: info.volume.width(),
+        curves: scene.report().into(),
+        info,
+    };
+    output.tell(job.json, &report, |report| {
+        let more = format!(
+            "{}splits  {}{} evaluations of half-spaces\n",
+            report.curves.text().map_or(String::new(), |curves| format!("curves  {curves}\n")),
+            report.splits.map_or(String::new(), |splits| count(splits) + ", "),
+            count(report.evaluations),
+        );
+        job.summary(report.rule, &octree, &report.info, &more, &report.timings)
+    })
+}

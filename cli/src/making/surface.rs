@@ -1,0 +1,409 @@
+//! Surfaces of solids of any kind, as triangle meshes.
+
+use crate::failure::{Failure, Of};
+use crate::making::dexel_surface::{self, Followed};
+use crate::making::job::Job;
+use crate::options::name_of;
+use crate::progress::watched;
+use crate::sink::written::{self, Losses};
+use crate::source::file::Taking;
+use crate::source::mesh::format_name;
+use crate::source::solid::{Shape, Source};
+use crate::source::volume::Voxels;
+use crate::words::{counted, number};
+use clap::ValueEnum;
+use leafless::exchange::{LengthUnit, MeshFormat, WriteOptions, write_mesh};
+use leafless::{
+    Affine, AnySolid, Control, DexelFormat, DexelNormals, DexelOptions, Error, Frame, MeshReport, Octree,
+    Resolve, Rule, Snap, TriDexel, TriangleMesh, VertexPlacement, build, coplanar_shrink, coplanar_shrink_of,
+    dexelize, marching_cubes, marching_cubes_of, marching_cubes_of_volume, published_shrink,
+    published_shrink_of, smc, smc_of,
+};
+use serde::Serialize;
+use std::fmt::Write;
+use std::path::Path;
+
+/// The depth of meshes and scenes, if none is asked for.
+const DEPTH: u8 = 8;
+
+/// How a surface is made and written.
+#[derive(Default)]
+pub struct Wanted {
+    pub method: Method,
+    pub snap: SnapName,
+    pub vertices: At,
+    pub resolve: Option<ResolveName>,
+    /// The format to write. Without it the name of the output tells.
+    pub format: Option<MeshFormat>,
+    pub text: bool,
+    pub normals: bool,
+    pub lossy: bool,
+    pub intersections: bool,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Default, ValueEnum)]
+pub enum Method {
+    /// Marching cubes
+    #[default]
+    Mc,
+    /// Dual contouring, which keeps edges and corners: of a tri-dexel model with normals. Of a mesh, a scene or a volume
+    /// one is made first
+    Dual,
+    /// Simple marching cubes: all vertices are samples, all normals have one of 13 directions
+    Smc,
+    /// The surface of smc, with one region of few triangles for all that lies in one plane; no cracks
+    Shrink,
+    /// Coplanar shrink as it was published, to compare with: it has cracks
+    ShrinkPublished,
+}
+
+#[derive(Debug, Clone, Copy, Default, ValueEnum)]
+pub enum SnapName {
+    /// To the samples outside
+    #[default]
+    Fat,
+    /// To the samples inside
+    Thin,
+}
+
+impl From<SnapName> for Snap {
+    fn from(name: SnapName) -> Snap {
+        match name {
+            SnapName::Fat => Snap::Fat,
+            SnapName::Thin => Snap::Thin,
+        }
+    }
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Default, ValueEnum)]
+pub enum At {
+    /// Half-way between an inside and an outside sample
+    Midpoint,
+    /// Where the line between them crosses the surface
+    #[default]
+    Crossing,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub enum ResolveName {
+    /// Outside: the surface is that of what is proven to be solid
+    Inner,
+    /// Inside: the surface is that of what may be solid
+    Outer,
+    /// Where the mesh or the scene says: at the cell's centre
+    Source,
+}
+
+/// Makes the surface of a file, and writes it.
+pub fn make(job: &Job, taking: &Taking, wanted: &Wanted) -> Result<(), Failure> {
+    let Job { input, output, start, .. } = job;
+    output.check()?;
+    let format = format(wanted.format, output.path())?;
+    if wanted.normals && !matches!(format, MeshFormat::Ply | MeshFormat::Obj) {
+        let name = format_name(format).to_uppercase();
+        return Err(Failure::Usage(format!(
+            "--normals is for PLY and OBJ: {name} has no normals at vertices"
+        )));
+    }
+    let (unit, mesh, followed) = match Shape::read(input, taking)?.0 {
+        Shape::Dexels(model) => {
+            let unit = model.metadata().get("units").and_then(|unit| unit.parse().ok());
+            let (mesh, followed) = of_dexels(&model, job, wanted)?;
+            (unit, mesh, Some(followed))
+        }
+        Shape::Source(source) if wanted.method == Method::Dual => {
+            let unit = source.unit();
+            let (mesh, followed) = dual(source, job, wanted)?;
+            (unit, mesh, Some(followed))
+        }
+        Shape::Source(source) => (source.unit(), extract(source, job, wanted)?, None),
+    };
+    let options = WriteOptions { text: wanted.text, unit, normals: wanted.normals };
+    let (kept, losses) = written::kept(&mesh, format, &options, wanted.lossy, output)?;
+    let bytes = write_mesh(&mesh, format, &options).of(output)?;
+    // What is told is what a reader gets.
+    let mesh = kept.mesh;
+    output.write(&bytes)?;
+    let report = mesh.report().of(input)?;
+    let intersecting = if wanted.intersections {
+        let pairs = watched("intersections", job.threads, |control| mesh.intersecting_pairs(0, control));
+        Some(pairs.of(input)?)
+    } else {
+        None
+    };
+    let told = Report {
+        input: input.to_string(),
+        output: output.to_string(),
+        method: name_of(wanted.method),
+        format: format_name(format),
+        unit: unit.filter(|_| format == MeshFormat::ThreeMf).map(LengthUnit::symbol),
+        vertices: report.vertices,
+        triangles: report.triangles,
+        empty: report.triangles == 0,
+        closed: report.is_closed() && report.triangles > 0,
+        manifold: report.is_manifold() && report.triangles > 0,
+        open_edges: report.boundary_edges,
+        non_manifold_edges: report.non_manifold_edges,
+        components: report.bodies,
+        euler: report.euler_characteristic,
+        area: mesh.area(),
+        volume: mesh.volume(),
+        losses,
+        intersecting: intersecting.as_ref().map(|pairs| pairs.count),
+        all_intersecting_pairs: intersecting.as_ref().map(|pairs| pairs.is_complete),
+        followed,
+        seconds: start.elapsed().as_secs_f64(),
+    };
+    output.tell(job.json, &told, |told| told.summary(&report))
+}
+
+/// The format to write.
+fn format(named: Option<MeshFormat>, path: Option<&Path>) -> Result<MeshFormat, Failure> {
+    if let Some(format) = named {
+        return Ok(format);
+    }
+    let Some(path) = path else { return Ok(MeshFormat::Ply) };
+    let extension = path.extension().and_then(|extension| extension.to_str());
+    extension.and_then(MeshFormat::from_extension).ok_or_else(|| {
+        let problem =
+            "has none of the extensions .ply, .stl, .obj, .off and .3mf: name the format with --write";
+        Failure::Usage(format!("{}: {problem}", path.display()))
+    })
+}
+
+/// The surface of a tri-dexel model.
+fn of_dexels(model: &TriDexel, job: &Job, wanted: &Wanted) -> Result<(TriangleMesh, Followed), Failure> {
+    let input = &job.input;
+    let given = [
+        ("--depth", job.depth.is_some()),
+        ("--bounds", job.bounds.is_some()),
+        ("--resolve", wanted.resolve.is_some()),
+        ("--vertices", wanted.vertices != At::Crossing),
+    ];
+    if let Some((option, _)) = given.into_iter().find(|option| option.1) {
+        let problem = "is a tri-dexel model, whose rays leave nothing to choose";
+        return Err(Failure::Usage(format!("{option} is not for {input}: it {problem}")));
+    }
+    match wanted.method {
+        Method::Mc => dexel_surface::cubes(model, input, job.threads),
+        Method::Dual => dexel_surface::dual(model, input, job.threads),
+        method => {
+            let name = name_of(method);
+            let problem = "is a tri-dexel model, for which there are mc and dual";
+            Err(Failure::Usage(format!("--method {name} is not for {input}: it {problem}")))
+        }
+    }
+}
+
+/// The surface of anything else by dual contouring: of a tri-dexel model that is made for it.
+fn dual(source: Source, job: &Job, wanted: &Wanted) -> Result<(TriangleMesh, Followed), Failure> {
+    let input = &job.input;
+    if let Source::Octree(_) = source {
+        let problem = "is an octree, whose cells know no normals, which dual contouring needs: make a tri-dexel model \
+                       of what it was made of, by `leafless dexelize --normals 32`";
+        return Err(Failure::of(input, problem));
+    }
+    if wanted.resolve.is_some() {
+        return Err(Failure::Usage("--resolve does not go with --method dual, which asks rays".into()));
+    }
+    let frame = source.frame_to(input, job.bounds.as_ref(), job.depth, DEPTH)?;
+    let solid = source.placed(input, &Affine::IDENTITY, &frame)?;
+    let format = DexelFormat { normals: DexelNormals::Bits32, ..Default::default() };
+    let options = DexelOptions { format, ..Default::default() };
+    let model = watched("dexelize", job.threads, |control| dexelize(&solid, &frame, &options, control));
+    dexel_surface::dual(&model.of(input)?, input, job.threads)
+}
+
+fn extract(source: Source, job: &Job, wanted: &Wanted) -> Result<TriangleMesh, Failure> {
+    let input = &job.input;
+    let resolve = match (wanted.resolve, &source) {
+        (None, _) => None,
+        (Some(ResolveName::Inner), _) => Some(Resolve::Inner),
+        (Some(ResolveName::Outer), _) => Some(Resolve::Outer),
+        (Some(ResolveName::Source), Source::Octree(_)) => {
+            let problem =
+                "a solid from a file has no source: undecided cells can be resolved as inner or outer";
+            return Err(Failure::of(input, problem));
+        }
+        (Some(ResolveName::Source), _) => None,
+    };
+    if let Source::Octree(octree) = source {
+        if job.bounds.is_some() {
+            return Err(Failure::Usage("--bounds is for meshes and scenes: a solid has its own".into()));
+        }
+        let octree = coarser(*octree, job)?;
+        if resolve.is_none() && !octree.view().is_binary() {
+            let problem = "has undecided cells, which are neither inside nor outside: choose --resolve inner or \
+                           --resolve outer, or make it anew from its source with --rule sampled";
+            return Err(Failure::of(input, problem));
+        }
+        return watched("mesh", job.threads, |control| of_cells(&octree, resolve, wanted, control)).of(input);
+    }
+    let is_plain = job.depth.is_none() && job.bounds.is_none() && wanted.resolve.is_none();
+    if let Source::Volume(voxels) = &source
+        && is_plain
+        && wanted.method == Method::Mc
+        && wanted.vertices == At::Crossing
+    {
+        return of_volume(voxels, job);
+    }
+    // A volume has its own samples, if its voxels are cubes.
+    let has_own = source.own_frame().is_some() && job.depth.is_none();
+    let frame = source.frame_to(input, job.bounds.as_ref(), job.depth, DEPTH)?;
+    let solid = source.placed(input, &Affine::IDENTITY, &frame)?;
+    watched("mesh", job.threads, |control| match wanted.resolve {
+        None if !has_own => of_solid(&solid, &frame, wanted, control),
+        _ => {
+            let rule = if resolve.is_some() { Rule::Certified } else { Rule::Sampled };
+            let octree = build(&solid, &frame, rule, control)?;
+            of_cells(&octree, resolve, wanted, control)
+        }
+    })
+    .of(input)
+}
+
+/// The surface of a volume by marching cubes, with vertices where the samples cross the threshold.
+fn of_volume(voxels: &Voxels, job: &Job) -> Result<TriangleMesh, Failure> {
+    let mesh = watched("mesh", job.threads, |control| marching_cubes_of_volume(&voxels.volume, control));
+    let mesh = mesh.of(&job.input)?;
+    match &voxels.placement {
+        Some(placement) => mesh.placed(placement).of(&job.input),
+        None => Ok(mesh),
+    }
+}
+
+/// The octree with cells no smaller than --depth says; those that are cut further are undecided.
+fn coarser(octree: Octree, job: &Job) -> Result<Octree, Failure> {
+    let input = &job.input;
+    let own = octree.frame().depth();
+    match job.depth {
+        None => Ok(octree),
+        Some(depth) if depth > own => {
+            Err(Failure::Usage(format!("--depth {depth} is beyond the depth of {input}, which is {own}")))
+        }
+        Some(depth) => {
+            let frame = octree.frame().with_depth(depth).of(input)?;
+            watched("mesh", job.threads, |control| build(octree.view(), &frame, Rule::Certified, control))
+                .of(input)
+        }
+    }
+}
+
+/// The surface of an octree.
+fn of_cells(
+    octree: &Octree,
+    resolve: Option<Resolve<'_>>,
+    wanted: &Wanted,
+    control: &Control<'_>,
+) -> Result<TriangleMesh, Error> {
+    let snap = wanted.snap.into();
+    match wanted.method {
+        Method::Dual => unreachable!("dual contouring asks rays"),
+        Method::Mc => marching_cubes(octree.view(), resolve, control),
+        Method::Smc => smc(octree.view(), snap, resolve, control),
+        Method::Shrink => coplanar_shrink(octree.view(), snap, resolve, control),
+        Method::ShrinkPublished => published_shrink(octree.view(), snap, resolve, control),
+    }
+}
+
+/// The surface of a solid that is sampled at the corners of cells.
+fn of_solid(
+    solid: &AnySolid,
+    frame: &Frame,
+    wanted: &Wanted,
+    control: &Control<'_>,
+) -> Result<TriangleMesh, Error> {
+    let placement = match wanted.vertices {
+        At::Midpoint => VertexPlacement::Midpoint,
+        At::Crossing => VertexPlacement::Crossing,
+    };
+    let snap = wanted.snap.into();
+    match wanted.method {
+        Method::Dual => unreachable!("dual contouring asks rays"),
+        Method::Mc => marching_cubes_of(solid, frame, placement, control),
+        Method::Smc => smc_of(solid, frame, snap, control),
+        Method::Shrink => coplanar_shrink_of(solid, frame, snap, control),
+        Method::ShrinkPublished => published_shrink_of(solid, frame, snap, control),
+    }
+}
+
+/// What is told of a surface, as a reader gets it back from the file.
+#[derive(Serialize)]
+struct Report {
+    input: String,
+    output: String,
+    method: String,
+    format: &'static str,
+    /// What a 3MF says; others have none.
+    unit: Option<&'static str>,
+    vertices: u64,
+    triangles: u64,
+    /// Whether there is no triangle.
+    empty: bool,
+    /// Whether the surface bounds a solid. An empty one does not, as `leafless info` has it.
+    closed: bool,
+    manifold: bool,
+    /// Edges that an odd number of triangles use.
+    open_edges: u64,
+    /// Edges that more than two triangles use.
+    non_manifold_edges: u64,
+    components: u64,
+    euler: i64,
+    area: f64,
+    volume: f64,
+    #[serde(flatten)]
+    losses: Losses,
+    /// Pairs of triangles that intersect, if they were asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    intersecting: Option<u64>,
+    /// Whether these are all.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    all_intersecting_pairs: Option<bool>,
+    /// How exactly the surface follows rays, if it does.
+    #[serde(flatten)]
+    followed: Option<Followed>,
+    seconds: f64,
+}
+
+impl Report {
+    fn summary(&self, report: &MeshReport) -> String {
+        let mut text = String::new();
+        let sound = match (self.closed, self.manifold) {
+            _ if self.empty && self.losses.has_lost() => "empty: rounding leaves no triangle".to_owned(),
+            _ if self.empty => {
+                "empty: there are no triangles, because no surface passes between samples".to_owned()
+            }
+            (true, true) => "closed, 2-manifold".to_owned(),
+            (true, false) => {
+                let edges = counted(report.non_manifold_edges, "edge", "edges");
+                format!("closed; at {edges} more than two triangles meet")
+            }
+            (false, _) => format!("open at {}", counted(report.boundary_edges, "edge", "edges")),
+        };
+        // Writing to memory does not fail.
+        let _ = writeln!(
+            text,
+            "{}: {}, {}, {}; {sound}\n{}, Euler characteristic {}\narea {}, volume {}; {:.2} s",
+            self.output,
+            self.format,
+            counted(self.vertices, "vertex", "vertices"),
+            counted(self.triangles, "triangle", "triangles"),
+            counted(self.components, "component", "components"),
+            self.euler,
+            number(self.area),
+            number(self.volume),
+            self.seconds,
+        );
+        if let Some(losses) = self.losses.text() {
+            let _ = writeln!(text, "{losses}");
+        }
+        if let Some(followed) = &self.followed {
+            let _ = writeln!(text, "{}", followed.text());
+        }
+        if let Some(pairs) = self.intersecting {
+            let more = if self.all_intersecting_pairs == Some(false) { " or more" } else { "" };
+            let _ = writeln!(text, "{}{more} of triangles that intersect", counted(pairs, "pair", "pairs"));
+        }
+        text
+    }
+}

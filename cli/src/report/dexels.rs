@@ -1,0 +1,149 @@
+//! What is told of tri-dexel models.
+
+use crate::words::{count, counted, number, put_line};
+use leafless::{DexelEnds, DexelNormals, TriDexel};
+use serde::Serialize;
+use std::collections::BTreeMap;
+
+/// What one direction holds.
+#[derive(Serialize)]
+struct Direction {
+    axis: &'static str,
+    /// Rays that cross the solid.
+    rays: u64,
+    intervals: u64,
+    bytes: u64,
+    /// An estimate, in cubic model units.
+    volume: f64,
+    /// Rays that pierce an open mesh an odd number of times, where they were counted.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    odd_rays: Option<u64>,
+}
+
+/// What a tri-dexel model consists of.
+#[derive(Serialize)]
+pub struct Info {
+    kind: &'static str,
+    depth: u8,
+    origin: [f64; 3],
+    edge: f64,
+    ends: &'static str,
+    /// Bits of a normal.
+    normals: u8,
+    surfaces: bool,
+    materials: bool,
+    pub intervals: u64,
+    pub bytes: u64,
+    directions: Vec<Direction>,
+    metadata: BTreeMap<String, String>,
+}
+
+impl Info {
+    /// Of a model whose file has so many bytes. O(n).
+    pub fn new(model: &TriDexel, bytes: u64) -> Info {
+        let (view, frame, format) = (model.view(), model.frame(), model.view().format());
+        let direction = |axis: usize| {
+            let statistics = view.statistics(axis)?;
+            Some(Direction {
+                axis: ["x", "y", "z"][axis],
+                rays: statistics.rays,
+                intervals: statistics.intervals,
+                bytes: statistics.bytes,
+                volume: statistics.volume,
+                odd_rays: None,
+            })
+        };
+        Info {
+            kind: "tri-dexel",
+            depth: frame.depth(),
+            origin: frame.origin(),
+            edge: frame.edge(),
+            ends: if format.ends == DexelEnds::Double { "double" } else { "fixed" },
+            normals: match format.normals {
+                DexelNormals::None => 0,
+                DexelNormals::Bits16 => 16,
+                DexelNormals::Bits32 => 32,
+            },
+            surfaces: format.surfaces,
+            materials: format.materials,
+            intervals: view.interval_count(),
+            bytes,
+            directions: (0..3).filter_map(direction).collect(),
+            metadata: (model.metadata().iter())
+                .map(|(key, value)| (key.to_owned(), value.to_owned()))
+                .collect(),
+        }
+    }
+
+    /// The same with the rays along each axis that pierce an open mesh an odd number of times.
+    pub fn with_odd(mut self, odd: [u64; 3]) -> Info {
+        for direction in &mut self.directions {
+            direction.odd_rays =
+                ["x", "y", "z"].iter().position(|&axis| axis == direction.axis).map(|i| odd[i]);
+        }
+        self
+    }
+
+    /// Rays that cross the solid, in all directions.
+    pub fn rays(&self) -> u64 {
+        self.directions.iter().map(|direction| direction.rays).sum()
+    }
+
+    /// Rays that pierce an open mesh an odd number of times, in all directions, as far as they were counted.
+    pub fn odd_rays(&self) -> u64 {
+        self.directions.iter().filter_map(|direction| direction.odd_rays).sum()
+    }
+
+    /// The mean of what the directions estimate; 0 without any.
+    pub fn mean_volume(&self) -> f64 {
+        let sum: f64 = self.directions.iter().map(|direction| direction.volume).sum();
+        sum / self.directions.len().max(1) as f64
+    }
+
+    /// The axes that rays run along.
+    pub fn axes(&self) -> String {
+        self.directions.iter().map(|direction| direction.axis).collect()
+    }
+
+    /// The same for people.
+    pub fn text(&self) -> String {
+        let mut text = String::new();
+        let mut line = |name: &str, value: String| put_line(&mut text, name, &value);
+        line("depth", format!("{}, {} cells per axis", self.depth, count(1 << self.depth)));
+        line("origin", self.origin.map(number).join(" "));
+        line("edge", number(self.edge));
+        line("kind", "tri-dexel model: intervals along rays".into());
+        let mut stored =
+            vec![format!("{} ends", if self.ends == "fixed" { "fixed-point" } else { self.ends })];
+        if self.normals != 0 {
+            stored.push(format!("normals of {} bits", self.normals));
+        }
+        for (is, name) in [(self.surfaces, "surfaces"), (self.materials, "materials")] {
+            stored.extend(is.then(|| name.to_owned()));
+        }
+        line("stored", stored.join(", "));
+        for Direction { axis, rays, intervals, bytes, volume, .. } in &self.directions {
+            let held =
+                [counted(*rays, "ray", "rays"), counted(*intervals, "interval", "intervals")].join(", ");
+            let volume = number(*volume);
+            line(&format!("along {axis}"), format!("{held}, {} bytes, volume about {volume}", count(*bytes)));
+        }
+        line("bytes", count(self.bytes));
+        for (key, value) in &self.metadata {
+            // A file may hold any text; a terminal should not obey it.
+            line(&key.escape_debug().to_string(), value.escape_debug().to_string());
+        }
+        text
+    }
+}
+
+/// A model in some words.
+pub fn summary(model: &TriDexel, bytes: u64) -> String {
+    let axes = Info::new(model, bytes).axes();
+    let intervals = counted(model.view().interval_count(), "interval", "intervals");
+    format!(
+        "tri-dexel model, depth {}, along {axes}, {intervals}, {} bytes",
+        model.frame().depth(),
+        count(bytes)
+    )
+}

@@ -1,0 +1,9 @@
+//! What is told of solids and of what they are made of, for programs (JSON) and for people.
+
+pub mod bounds;
+pub mod channel;
+pub mod dexels;
+pub mod mesh;
+pub mod octree;
+pub mod scene;
+pub mod volume;

@@ -1,0 +1,163 @@
+//! What is told of an octree, for programs (JSON) and for people.
+
+use crate::report::bounds::{Proven, Volume};
+use crate::report::channel::ChannelInfo;
+use crate::words::{count, ends, measured, number, put_line, table};
+use leafless::{Interval, Octree, Statistics, Tag};
+use serde::Serialize;
+use std::collections::BTreeMap;
+
+/// Cells of the canonical octree over all levels; together they are its classical nodes.
+#[derive(Serialize)]
+struct Cells {
+    empty: u64,
+    branch: u64,
+    partial: u64,
+    full: u64,
+}
+
+/// What one level holds, and the volume with the tree cut there.
+#[derive(Serialize)]
+struct Level {
+    level: u8,
+    nodes: u64,
+    /// Cells above the level that were split on the way, where that was counted.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    splits: Option<u64>,
+    lower: f64,
+    upper: f64,
+}
+
+/// Everything that `info` tells.
+#[derive(Serialize)]
+pub struct Info {
+    depth: u8,
+    origin: [f64; 3],
+    edge: f64,
+    binary: bool,
+    clipped: bool,
+    proof: Proven,
+    pub nodes: u64,
+    pub classical_nodes: u64,
+    cells: Cells,
+    pub volume: Volume,
+    pub bytes: u64,
+    /// Absent (null) where there is no node.
+    pub bytes_per_node: Option<f64>,
+    levels: Vec<Level>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    channels: Vec<ChannelInfo>,
+    metadata: BTreeMap<String, String>,
+}
+
+impl Info {
+    /// Of a tree whose file has so many bytes. O(depth) for a tree from a file.
+    pub fn new(octree: &Octree, bytes: u64) -> Info {
+        let (view, frame, statistics) = (octree.view(), octree.frame(), octree.statistics());
+        let nodes = statistics.nodes();
+        Info {
+            depth: frame.depth(),
+            origin: frame.origin(),
+            edge: frame.edge(),
+            binary: view.is_binary(),
+            clipped: view.is_clipped(),
+            proof: octree.proof().into(),
+            nodes,
+            // The level table of a damaged file may hold anything.
+            classical_nodes: nodes.saturating_mul(8).saturating_add(1),
+            cells: Cells::new(&statistics),
+            volume: statistics.volume().into(),
+            bytes,
+            bytes_per_node: (nodes > 0).then(|| bytes as f64 / nodes as f64),
+            levels: (statistics.levels().iter())
+                .map(|level| Level {
+                    level: level.level,
+                    nodes: level.nodes,
+                    splits: None,
+                    lower: level.volume.lower,
+                    upper: level.volume.upper,
+                })
+                .collect(),
+            channels: octree.channels().iter().map(ChannelInfo::new).collect(),
+            metadata: octree
+                .metadata()
+                .iter()
+                .map(|(key, value)| (key.to_owned(), value.to_owned()))
+                .collect(),
+        }
+    }
+
+    /// Notes how many cells of each level were split while the tree was built; the canonical tree forgets
+    /// those splits whose eight children agree.
+    pub fn note_splits(&mut self, splits: &[u64]) {
+        for level in &mut self.levels {
+            level.splits = Some(splits.iter().take(level.level.into()).sum());
+        }
+    }
+
+    /// The same for people.
+    pub fn text(&self) -> String {
+        let mut text = String::new();
+        let mut line = |name: &str, value: String| put_line(&mut text, name, &value);
+        let clipped = if self.clipped { " (the solid may go on outside of it)" } else { "" };
+        line("depth", format!("{}, {} cells per axis", self.depth, count(1 << self.depth)));
+        line("origin", self.origin.map(number).join(" "));
+        line("edge", format!("{}{clipped}", number(self.edge)));
+        line(
+            "kind",
+            (if self.binary { "binary: every cell is decided" } else { "bounds: some cells are undecided" })
+                .into(),
+        );
+        line("proven", self.proof.text());
+        line("volume", self.volume_text());
+        line("nodes", count(self.nodes));
+        line("classical nodes", count(self.classical_nodes));
+        let Cells { empty, full, partial, .. } = &self.cells;
+        line("cells", format!("{} empty, {} full, {} partial", count(*empty), count(*full), count(*partial)));
+        let each = self.bytes_per_node.map_or("-".to_owned(), |bytes| format!("{bytes:.2}"));
+        line("bytes", format!("{}, {each} a node", count(self.bytes)));
+        for channel in &self.channels {
+            line("channel", channel.text());
+        }
+        for (key, value) in &self.metadata {
+            // A file may hold any text; a terminal should not obey it.
+            line(&key.escape_debug().to_string(), value.escape_debug().to_string());
+        }
+        let rows = (self.levels.iter())
+            .map(|level| {
+                let [from, to] = ends(Interval::new(level.lower, level.upper).unwrap());
+                [level.level.to_string(), count(level.nodes), from, to]
+            })
+            .collect::<Vec<_>>();
+        let head = ["level", "nodes", "volume from", "to"].map(str::to_owned);
+        text.push('\n');
+        text.push_str(&table(&head, &rows));
+        text
+    }
+
+    /// What the volume is the volume of.
+    pub fn volume_note(&self) -> &'static str {
+        match (self.proof.is_certified(), self.clipped) {
+            (false, _) => " (of the cells)",
+            (true, false) if self.volume.width() == 0.0 => " (exactly)",
+            (true, false) => " (the true one lies between)",
+            (true, true) => " (that of the part inside of the bounds lies between)",
+        }
+    }
+
+    /// The volume in words.
+    pub fn volume_text(&self) -> String {
+        measured(self.volume.interval())
+    }
+}
+
+impl Cells {
+    fn new(statistics: &Statistics) -> Cells {
+        Cells {
+            empty: statistics.cells(Tag::Empty),
+            branch: statistics.cells(Tag::Branch),
+            partial: statistics.cells(Tag::Partial),
+            full: statistics.cells(Tag::Full),
+        }
+    }
+}

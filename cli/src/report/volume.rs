@@ -1,0 +1,48 @@
+//! What is told of a volume.
+
+use crate::source::volume::{Voxels, kind_name};
+use crate::words::number;
+use leafless::exchange::LengthUnit;
+use serde::Serialize;
+
+/// What a volume's file says.
+#[derive(Serialize)]
+pub struct Info {
+    format: String,
+    samples: &'static str,
+    extents: [u32; 3],
+    /// Of a volume whose axes are not x, y and z: before it is turned.
+    spacing: [f64; 3],
+    corner: [f64; 3],
+    is_turned: bool,
+    unit: Option<&'static str>,
+}
+
+impl Info {
+    pub fn new(volume: &Voxels) -> Info {
+        let grid = volume.volume.grid();
+        Info {
+            format: volume.format.clone(),
+            samples: kind_name(volume.kind),
+            extents: grid.extents(),
+            spacing: grid.spacing(),
+            corner: grid.corner(),
+            is_turned: volume.placement.is_some(),
+            unit: volume.unit.map(LengthUnit::symbol),
+        }
+    }
+
+    /// The same for people.
+    pub fn text(&self) -> String {
+        let [x, y, z] = self.extents;
+        let place = |p: [f64; 3]| p.map(number).join(", ");
+        let unit = self.unit.map_or_else(String::new, |unit| format!(" {unit}"));
+        format!(
+            "{} volume, {x} x {y} x {z} samples of type {}\nvoxels {}{unit}, from {}\n",
+            self.format,
+            self.samples,
+            place(self.spacing),
+            place(self.corner),
+        )
+    }
+}

@@ -1,0 +1,75 @@
+//! What kind of file the bytes are.
+
+use crate::failure::Failure;
+use crate::source::input::Input;
+use leafless::exchange::{MeshFormat, VolumeFormat};
+use leafless::{file, scene};
+
+/// The kinds of files that hold a shape.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Content {
+    /// A solid (.lfl).
+    Solid,
+    /// A mesh of any format.
+    Mesh,
+    /// A scene (.csg).
+    Scene,
+    /// A volume (NRRD, MetaImage).
+    Volume,
+}
+
+impl Content {
+    /// What the bytes of a file are. The content decides where it tells, then the extension of the file's name;
+    /// `told` is what the user calls it. What is called a solid is taken for nothing else: a damaged
+    /// one must not pass for some mesh.
+    pub fn of(input: &Input, bytes: &[u8], told: Option<Content>) -> Result<Content, Failure> {
+        let extension = input.path().and_then(|path| path.extension()?.to_str()).unwrap_or_default();
+        if bytes.starts_with(&file::MAGIC) || extension == "lfl" {
+            Ok(Content::Solid)
+        } else if let Some(told) = told {
+            Ok(told)
+        } else if VolumeFormat::detect(bytes).is_some() {
+            Ok(Content::Volume)
+        } else if MeshFormat::detect(bytes, None).is_some() {
+            Ok(Content::Mesh)
+        } else if scene::is_scene(bytes) || extension.eq_ignore_ascii_case("csg") {
+            Ok(Content::Scene)
+        } else if MeshFormat::from_extension(extension).is_some() {
+            Ok(Content::Mesh)
+        } else if bytes.is_empty() {
+            Err(Failure::of(input, "is empty"))
+        } else {
+            let kinds = "a solid (.lfl), nor a mesh (STL, OBJ, PLY, OFF, 3MF), nor a scene (.csg), \
+                         nor a volume (NRRD, MetaImage)";
+            Err(Failure::of(input, format_args!("neither the content nor the name is that of {kinds}")))
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::ffi::OsStr;
+
+    #[test]
+    fn the_content_decides() {
+        let of = |name: &str, bytes: &[u8]| Content::of(&Input::from(OsStr::new(name)), bytes, None).ok();
+        for name in ["-", "a.csg", "a.stl", "a.txt", "a"] {
+            assert_eq!(of(name, b"// v1\n#group() { cube(1); }"), Some(Content::Scene), "{name}");
+            assert_eq!(of(name, b"\xEF\xBB\xBF // by hand\n%union () {}"), Some(Content::Scene), "{name}");
+            assert_eq!(of(name, b"solid cube(1)\nfacet normal 0 0 1\n"), Some(Content::Mesh), "{name}");
+            assert_eq!(of(name, b"# group()\nv 0 0 0\n"), Some(Content::Mesh), "{name}");
+            assert_eq!(of(name, &file::MAGIC), Some(Content::Solid), "{name}");
+        }
+        for (name, expected) in [
+            ("-", None),
+            ("a.csg", Some(Content::Scene)),
+            ("a.CSG", Some(Content::Scene)),
+            ("a.lfl", Some(Content::Solid)),
+            ("a.stl", Some(Content::Mesh)),
+        ] {
+            assert_eq!(of(name, b"nobody knows"), expected, "{name}");
+            assert_eq!(of(name, b""), expected, "{name}");
+        }
+    }
+}

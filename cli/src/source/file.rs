@@ -1,0 +1,128 @@
+//! A file that was looked at: what kind it is of, before anything is made of it.
+
+use crate::failure::{Failure, Of};
+use crate::source::content::Content;
+use crate::source::input::{Input, map_dexels};
+use crate::source::mesh::Reading;
+use crate::source::scene::{Drawing, scene_of};
+use crate::source::volume::Voxels;
+use clap::Args;
+use leafless::exchange::MeshFile;
+use leafless::scene::Scene;
+use leafless::{FillRule, Octree, TriDexel, file};
+
+/// How a file of any kind is to be taken.
+#[derive(Clone, Args)]
+pub struct Taking {
+    #[command(flatten)]
+    pub reading: Reading,
+    #[command(flatten)]
+    pub drawing: Drawing,
+}
+
+impl Taking {
+    /// Refuses the options where a stored solid is read: `what` it is.
+    pub fn refuse(&self, input: &Input, what: &str) -> Result<(), Failure> {
+        self.reading.refuse(input, what)?;
+        self.drawing.refuse(input, what)
+    }
+}
+
+/// A solid that is stored (.lfl), of either kind.
+pub enum Stored {
+    Octree(Octree),
+    Dexels(TriDexel),
+}
+
+impl Stored {
+    /// The solid with these bytes.
+    pub fn of_bytes(input: &Input, bytes: &[u8]) -> Result<Stored, Failure> {
+        if file::probe_bytes(bytes).is_ok_and(|probe| probe.dexels.is_some()) {
+            return file::dexels::from_bytes(bytes).of(input).map(Stored::Dexels);
+        }
+        file::from_bytes(bytes).of(input).map(Stored::Octree)
+    }
+
+    /// The solid in a file, and the file's length. A regular file is mapped and, unless `verified` is asked for, hardly
+    /// read.
+    pub fn read(input: &Input, verified: bool) -> Result<(Stored, u64), Failure> {
+        if let Some(path) = input.path().filter(|path| path.is_file()) {
+            match file::probe(path) {
+                Ok(probe) if probe.dexels.is_some() => {
+                    let length = std::fs::metadata(path).of(input)?.len();
+                    return Ok((Stored::Dexels(map_dexels(path, verified).of(input)?), length));
+                }
+                Err(error) if input.begins_as_solid() => return Err(error).of(input),
+                _ => {}
+            }
+            let (octree, length) = input.octree(verified)?;
+            return Ok((Stored::Octree(octree), length));
+        }
+        // What comes through a pipe can be read once.
+        let bytes = input.read()?;
+        Ok((Stored::of_bytes(input, &bytes)?, bytes.len() as u64))
+    }
+}
+
+/// A file, and its bytes, unless it is the regular file of a stored solid, which is mapped.
+pub struct Found<'a> {
+    input: &'a Input,
+    pub content: Content,
+    bytes: Option<Vec<u8>>,
+}
+
+impl Found<'_> {
+    /// Looks at a file; `told` is what the user calls it.
+    pub fn look(input: &Input, told: Option<Content>) -> Result<Found<'_>, Failure> {
+        if input.begins_as_solid() {
+            return Ok(Found { input, content: Content::Solid, bytes: None });
+        }
+        let bytes = input.read()?;
+        Ok(Found { input, content: Content::of(input, &bytes, told)?, bytes: Some(bytes) })
+    }
+
+    fn bytes(&self) -> &[u8] {
+        self.bytes.as_deref().unwrap_or_default()
+    }
+
+    /// How many bytes were read.
+    pub fn length(&self) -> u64 {
+        self.bytes().len() as u64
+    }
+
+    /// Checksum and length of the bytes that were read.
+    pub fn fingerprint(&self) -> String {
+        format!("crc32:{:08x} bytes:{}", crc32fast::hash(self.bytes()), self.length())
+    }
+
+    /// The stored solid, and the length of its file.
+    pub fn stored(&self, verified: bool) -> Result<(Stored, u64), Failure> {
+        match &self.bytes {
+            None => Stored::read(self.input, verified),
+            Some(bytes) => Ok((Stored::of_bytes(self.input, bytes)?, self.length())),
+        }
+    }
+
+    /// The octree, where nothing else will do. What is said about it is proven, so it is verified.
+    pub fn octree(&self) -> Result<Octree, Failure> {
+        match &self.bytes {
+            None => Ok(self.input.octree(true)?.0),
+            Some(bytes) => file::from_bytes(bytes).of(self.input),
+        }
+    }
+
+    /// The mesh, and the rule by which points count as inside.
+    pub fn mesh(self, reading: &Reading) -> Result<(MeshFile, FillRule), Failure> {
+        reading.mesh(self.input, self.bytes.unwrap_or_default())
+    }
+
+    /// The scene.
+    pub fn scene(&self, drawing: &Drawing) -> Result<Scene, Failure> {
+        scene_of(self.input, self.bytes(), drawing)
+    }
+
+    /// The volume.
+    pub fn volume(&self, reading: &Reading) -> Result<Voxels, Failure> {
+        reading.volume(self.input, self.bytes())
+    }
+}

@@ -1,0 +1,206 @@
+//! Meshes from files of any format: the options of reading them.
+
+use crate::failure::{Failure, Of, complain};
+use crate::options::{formats, number};
+use crate::source::content::Content;
+use crate::source::input::Input;
+use crate::source::volume::{Sampling, Voxels};
+use crate::words::counted;
+use clap::{Args, ValueEnum};
+use leafless::exchange::{LengthUnit, MeshFile, MeshFormat, MeshOptions, MeshWarning};
+use leafless::{Error, FillRule, Frame, MeshError, MeshReport, TriangleMesh, exchange};
+
+/// How a mesh file is to be taken.
+#[derive(Clone, Args)]
+pub struct Reading {
+    /// Format of the mesh file. Without it the content tells, and the extension of the name
+    #[arg(long, value_parser = formats(["stl", "obj", "ply", "off", "3mf"]))]
+    format: Option<MeshFormat>,
+    /// Unit of the numbers in the mesh file: um, mm, cm, m, in or ft. Without it that of a 3MF is known, and
+    /// those of other formats are not
+    #[arg(long, value_name = "UNIT", value_parser = unit)]
+    unit: Option<LengthUnit>,
+    /// Unit to convert the mesh to
+    #[arg(long, value_name = "UNIT", value_parser = unit)]
+    to: Option<LengthUnit>,
+    /// Factor to scale the mesh by besides. Without it: 1
+    #[arg(long, value_name = "FACTOR", value_parser = scale, allow_hyphen_values = true)]
+    scale: Option<f64>,
+    /// Which points count as inside a mesh. Without it: positive for 3MF, as that format demands, and nonzero for
+    /// all others
+    #[arg(long, value_enum)]
+    fill: Option<FillName>,
+    #[command(flatten)]
+    sampling: Sampling,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum FillName {
+    /// Those that the surface winds around, in either sense: overlapping bodies are joined
+    #[value(alias = "non-zero")]
+    Nonzero,
+    /// Those that it winds around in the positive sense: bodies that are inside out take away from others
+    Positive,
+    /// Those that it winds around an odd number of times: overlaps are holes. Needs a closed mesh
+    #[value(alias = "even-odd")]
+    Evenodd,
+}
+
+impl From<FillName> for FillRule {
+    fn from(name: FillName) -> FillRule {
+        match name {
+            FillName::Nonzero => FillRule::NonZero,
+            FillName::Positive => FillRule::Positive,
+            FillName::Evenodd => FillRule::EvenOdd,
+        }
+    }
+}
+
+/// The name of a fill rule, as the user writes it.
+pub fn fill_name(fill: FillRule) -> &'static str {
+    match fill {
+        FillRule::NonZero => "nonzero",
+        FillRule::Positive => "positive",
+        FillRule::EvenOdd => "evenodd",
+    }
+}
+
+fn unit(text: &str) -> Result<LengthUnit, String> {
+    text.parse().map_err(|_| "expected um, mm, cm, m, in or ft".into())
+}
+
+fn scale(text: &str) -> Result<f64, String> {
+    number(text, "a positive number", |factor| factor > 0.0)
+}
+
+impl Reading {
+    /// What the user calls the file.
+    pub fn told(&self) -> Option<Content> {
+        match self.format {
+            Some(_) => Some(Content::Mesh),
+            None => self.sampling.is_raw().then_some(Content::Volume),
+        }
+    }
+
+    /// Refuses the options for meshes and volumes where something else is read: `what` it is.
+    pub fn refuse(&self, input: &Input, what: &str) -> Result<(), Failure> {
+        self.sampling.refuse(input, what)?;
+        self.refuse_for_meshes(input, what)
+    }
+
+    /// The volume in these bytes of a file.
+    pub fn volume(&self, input: &Input, bytes: &[u8]) -> Result<Voxels, Failure> {
+        self.refuse_for_meshes(input, "a volume")?;
+        self.sampling.read(input, bytes)
+    }
+
+    fn refuse_for_meshes(&self, input: &Input, what: &str) -> Result<(), Failure> {
+        let given = [
+            ("--format", self.format.is_some()),
+            ("--unit", self.unit.is_some()),
+            ("--to", self.to.is_some()),
+            ("--scale", self.scale.is_some()),
+            ("--fill", self.fill.is_some()),
+        ];
+        match given.into_iter().find(|option| option.1) {
+            Some((option, _)) => Err(Failure::Usage(format!("{option} is for meshes: {input} is {what}"))),
+            None => Ok(()),
+        }
+    }
+
+    /// The rule by which points count as inside a mesh of this format.
+    fn fill(&self, format: MeshFormat) -> FillRule {
+        match (self.fill, format) {
+            (Some(fill), _) => fill.into(),
+            (None, MeshFormat::ThreeMf) => FillRule::Positive,
+            (None, _) => FillRule::NonZero,
+        }
+    }
+
+    /// The format of a file with these bytes, if it is known to be a mesh.
+    fn format_of(&self, input: &Input, bytes: &[u8]) -> Option<MeshFormat> {
+        let extension = input.path().and_then(|path| path.extension()?.to_str());
+        self.format.or_else(|| MeshFormat::detect(bytes, extension))
+    }
+
+    /// The mesh in these bytes of a file, hair cracks closed, and the rule by which points count as inside. A mesh that
+    /// is open is refused where the rule needs a closed one.
+    pub fn mesh(&self, input: &Input, bytes: Vec<u8>) -> Result<(MeshFile, FillRule), Failure> {
+        self.sampling.refuse(input, "a mesh")?;
+        let (format, unit, target) = (self.format_of(input, &bytes), self.unit, self.to);
+        let options = MeshOptions { format, unit, target, scale: self.scale.unwrap_or(1.0) };
+        let mut file = exchange::read_mesh(&bytes, &options).of(input)?;
+        for warning in &file.warnings {
+            complain(&format!("{input}: warning: {warning}"));
+        }
+        // Sewing needs memory of its own.
+        drop(bytes);
+        file.mesh = file.mesh.sewn().of(input)?;
+        let fill = self.fill(file.format);
+        check_closed(input, &file.mesh, fill)?;
+        Ok((file, fill))
+    }
+}
+
+/// Whether nothing of a mesh lies beyond its vertices: what an open mesh encloses may, and so may a surface
+/// that was moved to close hair cracks.
+pub fn ends_at_vertices(mesh: &TriangleMesh) -> Result<bool, Error> {
+    let report = mesh.report()?;
+    Ok(report.displacement == 0.0 && openness(&report).is_none())
+}
+
+/// The frame around a mesh. Only one that ends at its vertices can do without a margin.
+pub fn frame_around(mesh: &TriangleMesh, depth: u8) -> Result<Frame, Error> {
+    let (min, max) = mesh.bounds();
+    if ends_at_vertices(mesh)? { Frame::fitted(min, max, depth) } else { Frame::around(min, max, depth) }
+}
+
+/// The name of a format, as the user writes it.
+pub fn format_name(format: MeshFormat) -> &'static str {
+    format.extension()
+}
+
+/// Where a mesh is open or its facing contradicts itself, in words; `None` for one that bounds a solid.
+pub fn openness(report: &MeshReport) -> Option<String> {
+    let (open, turned) = (report.boundary_edges, report.misoriented_edges);
+    let facing = || format!("its facing changes across {}", counted(turned, "inner edge", "inner edges"));
+    let opening = || {
+        let loops = counted(report.boundary_loops, "loop", "loops");
+        format!("it is open along {} in {loops}", counted(open, "edge", "edges"))
+    };
+    match (open, turned) {
+        (0, 0) => None,
+        (0, _) => Some(facing()),
+        (_, 0) => Some(opening()),
+        _ => Some(format!("{}, and {}", opening(), facing())),
+    }
+}
+
+/// Complains of a mesh that bounds no solid, unless the fill rule has refused it.
+pub fn warn_of_openness(input: &Input, report: &MeshReport, fill: FillRule) {
+    if fill != FillRule::EvenOdd
+        && let Some(how) = openness(report)
+    {
+        let whole = "the mesh does not bound a solid";
+        complain(&format!("{input}: warning: {whole}: {how}; the winding number decides what is inside"));
+    }
+}
+
+/// Refuses a mesh that is open where the fill rule needs a closed one.
+fn check_closed(input: &Input, mesh: &TriangleMesh, fill: FillRule) -> Result<(), Failure> {
+    if fill != FillRule::EvenOdd {
+        return Ok(());
+    }
+    mesh.check_closed(fill).map_err(|error| {
+        let hint = match error {
+            Error::Mesh(MeshError::Open { .. }) => " (--fill nonzero and positive take open meshes)",
+            _ => "",
+        };
+        Failure::of(input, format_args!("{error}{hint}"))
+    })
+}
+
+/// What is read though it departs from its format, in words.
+pub fn in_words(warnings: &[MeshWarning]) -> Vec<String> {
+    warnings.iter().map(ToString::to_string).collect()
+}

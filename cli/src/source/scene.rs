@@ -1,0 +1,95 @@
+//! Scenes, as files of the program's users.
+
+use crate::failure::{Failure, Of, complain};
+use crate::memory;
+use crate::source::input::Input;
+use crate::source::mesh::openness;
+use crate::words::counted;
+use clap::{Args, ValueEnum};
+use leafless::Frame;
+use leafless::scene::{Facets, Scene, SceneOptions};
+use std::path::Path;
+
+/// How a scene is to be taken.
+#[derive(Clone, Args)]
+pub struct Drawing {
+    /// Which circles, cylinders, balls and solids of revolution of a scene are polygons, as OpenSCAD draws them.
+    /// Without it: those with a $fn of 12 or less
+    #[arg(long = "fn", value_enum, value_name = "CURVES")]
+    facets: Option<FacetsName>,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum FacetsName {
+    /// None: circles are round
+    Exact,
+    /// All, with as many sides as $fn, $fa and $fs say
+    Polygon,
+}
+
+impl Drawing {
+    /// Refuses the option where something else is read: `what` it is.
+    pub fn refuse(&self, input: &Input, what: &str) -> Result<(), Failure> {
+        match self.facets {
+            Some(_) => Err(Failure::Usage(format!("--fn is for scenes: {input} is {what}"))),
+            None => Ok(()),
+        }
+    }
+
+    fn options(&self) -> SceneOptions {
+        let mut options = SceneOptions::with_facets(match self.facets {
+            None => Facets::Auto,
+            Some(FacetsName::Exact) => Facets::Exact,
+            Some(FacetsName::Polygon) => Facets::Polygon,
+        });
+        options.max_bytes = Some(memory::longest_file());
+        options
+    }
+}
+
+/// The scene with this text. Files that it names are looked for beside it,
+/// or in the current folder if it comes from standard input. Complains of meshes in it that bound no solid.
+pub fn scene_of(input: &Input, text: &[u8], drawing: &Drawing) -> Result<Scene, Failure> {
+    let folder = input.path().and_then(Path::parent).unwrap_or(Path::new(""));
+    let scene = drawing.options().read(text, Some(folder)).of(input)?;
+    let doubtful = scene.report().meshes.iter().filter_map(|mesh| Some((mesh, openness(&mesh.report)?)));
+    for (at, (mesh, how)) in doubtful.enumerate() {
+        let place = format!("{input}: line {}, column {}", mesh.line, mesh.column);
+        if at == MOST_COMPLAINTS {
+            complain(&format!("{place}: warning: this mesh, and maybe more, bounds no solid, either"));
+            break;
+        }
+        let what =
+            if mesh.file.is_empty() { "the polyhedron".into() } else { format!("the mesh {}", mesh.file) };
+        let turned = match mesh.turned {
+            0 => String::new(),
+            turned => format!(", {} turned over", counted(turned, "triangle is", "triangles are")),
+        };
+        complain(&format!(
+            "{place}: warning: {what} does not bound a solid: {how}{turned}; the winding number decides what is inside"
+        ));
+    }
+    Ok(scene)
+}
+
+/// Meshes in a scene that are complained of, each in a line.
+const MOST_COMPLAINTS: usize = 10;
+
+/// The universe that a scene is cut into cells on: the bounds given, or the cube around the scene.
+pub fn frame_of(input: &Input, scene: &Scene, bounds: Option<&Frame>, depth: u8) -> Result<Frame, Failure> {
+    if let Some(bounds) = bounds {
+        return bounds.with_depth(depth).of(input);
+    }
+    let (min, max) = bounds_of(input, scene)?;
+    Frame::fitted(min, max, depth).of(input)
+}
+
+/// Corners of a box around a scene.
+pub fn bounds_of(input: &Input, scene: &Scene) -> Result<([f64; 3], [f64; 3]), Failure> {
+    if scene.is_empty().of(input)? {
+        // Any cube will do for nothing.
+        return Ok(([0.0; 3], [1.0; 3]));
+    }
+    let unknown = "reaches nobody knows how far: give --bounds X0,Y0,Z0,EDGE";
+    scene.bounds().of(input)?.ok_or_else(|| Failure::of(input, unknown))
+}

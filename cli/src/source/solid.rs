@@ -1,0 +1,213 @@
+//! Sources: solids, and what one can be made of, from files of any kind.
+
+use crate::failure::{Failure, Of};
+use crate::source::content::Content;
+use crate::source::file::{Found, Stored, Taking};
+use crate::source::input::Input;
+use crate::source::mesh::{ends_at_vertices, frame_around, warn_of_openness};
+use crate::source::scene::{bounds_of, frame_of};
+use crate::source::volume::Voxels;
+use leafless::exchange::{LengthUnit, MeshFile};
+use leafless::scene::Scene;
+use leafless::{
+    Affine, AnySolid, Csg, FillRule, Frame, MAX_DEPTH, MeshSolid, Octree, Proof, Solid, Transform, TriDexel,
+    TriangleMesh,
+};
+
+/// What a file of a solid is called.
+const SOLID: &str = "a solid";
+
+/// Of a box, the lower and the upper one.
+pub type Corners = ([f64; 3], [f64; 3]);
+
+/// What was read.
+pub enum Source {
+    /// A solid (.lfl).
+    Octree(Box<Octree>),
+    /// A mesh, which points count as inside, and the unit of its coordinates if it is known.
+    Mesh(TriangleMesh, FillRule, Option<LengthUnit>),
+    /// A scene.
+    Scene(Scene),
+    /// A volume.
+    Volume(Box<Voxels>),
+}
+
+/// A solid of either kind, and what one can be made of.
+pub enum Shape {
+    /// A tri-dexel model (.lfl).
+    Dexels(Box<TriDexel>),
+    /// Anything else.
+    Source(Source),
+}
+
+impl Shape {
+    /// Reads a file of any kind; of one that holds no solid yet, a fingerprint, too. Files of solids are verified.
+    pub fn read(input: &Input, taking: &Taking) -> Result<(Shape, Option<String>), Failure> {
+        let found = Found::look(input, taking.reading.told())?;
+        if found.content != Content::Solid {
+            let fingerprint = found.fingerprint();
+            return Ok((Shape::Source(Source::of(input, found, taking)?), Some(fingerprint)));
+        }
+        taking.refuse(input, SOLID)?;
+        let shape = match found.stored(true)?.0 {
+            Stored::Dexels(model) => Shape::Dexels(Box::new(model)),
+            Stored::Octree(octree) => Shape::Source(Source::Octree(Box::new(octree))),
+        };
+        Ok((shape, None))
+    }
+}
+
+impl Source {
+    /// Reads a solid, a mesh, a scene or a volume. Answers about a solid are proven, so its file is verified.
+    pub fn read(input: &Input, taking: &Taking) -> Result<Source, Failure> {
+        Source::of(input, Found::look(input, taking.reading.told())?, taking)
+    }
+
+    fn of(input: &Input, found: Found<'_>, Taking { reading, drawing }: &Taking) -> Result<Source, Failure> {
+        match found.content {
+            Content::Solid => {
+                reading.refuse(input, SOLID)?;
+                drawing.refuse(input, SOLID)?;
+                Ok(Source::Octree(Box::new(found.octree()?)))
+            }
+            Content::Scene => {
+                reading.refuse(input, "a scene")?;
+                Ok(Source::Scene(found.scene(drawing)?))
+            }
+            Content::Volume => {
+                drawing.refuse(input, "a volume")?;
+                Ok(Source::Volume(Box::new(found.volume(reading)?)))
+            }
+            Content::Mesh => {
+                drawing.refuse(input, "a mesh")?;
+                let (MeshFile { mesh, unit, .. }, fill) = found.mesh(reading)?;
+                warn_of_openness(input, &mesh.report().of(input)?, fill);
+                Ok(Source::Mesh(mesh, fill, unit))
+            }
+        }
+    }
+
+    /// What the cells of a solid from a file prove; of anything else, which is what it says it is, all.
+    pub fn proof(&self) -> Proof {
+        match self {
+            Source::Octree(octree) => octree.proof(),
+            Source::Mesh(..) | Source::Scene(_) | Source::Volume(_) => Proof::CERTIFIED,
+        }
+    }
+
+    /// The same; of a solid from a file the cells themselves, if that is asked for, and not what they prove.
+    pub fn taken(self, cells: bool) -> Source {
+        match self {
+            Source::Octree(octree) if cells => Source::Octree(Box::new(octree.with_proof(Proof::CERTIFIED))),
+            source => source,
+        }
+    }
+
+    /// The unit of its coordinates, if it is known.
+    pub fn unit(&self) -> Option<LengthUnit> {
+        match self {
+            Source::Octree(octree) => octree.metadata().get("units")?.parse().ok(),
+            Source::Mesh(_, _, unit) => *unit,
+            Source::Scene(_) => None,
+            Source::Volume(volume) => volume.unit,
+        }
+    }
+
+    /// The frame of a solid, or of a volume's voxels.
+    pub fn own_frame(&self) -> Option<&Frame> {
+        match self {
+            Source::Octree(octree) => Some(octree.frame()),
+            Source::Volume(volume) => volume.frame.as_ref(),
+            Source::Mesh(..) | Source::Scene(_) => None,
+        }
+    }
+
+    /// The frame to ask it on: a solid's own, or one around the mesh or scene, which can be split to any depth.
+    pub fn frame(&self, input: &Input, depth: Option<u8>) -> Result<Frame, Failure> {
+        match (self, depth) {
+            (Source::Octree(octree), None) => Ok(*octree.frame()),
+            (Source::Octree(octree), Some(depth)) => octree.frame().with_depth(depth).of(input),
+            (Source::Mesh(mesh, ..), depth) => frame_around(mesh, depth.unwrap_or(MAX_DEPTH)).of(input),
+            (Source::Scene(scene), depth) => frame_of(input, scene, None, depth.unwrap_or(MAX_DEPTH)),
+            (Source::Volume(volume), depth) => match (&volume.frame, depth) {
+                (Some(frame), None) => Ok(*frame),
+                (Some(frame), Some(depth)) => frame.with_depth(depth).of(input),
+                (None, depth) => {
+                    let (min, max) = self.bounds(input)?;
+                    Frame::fitted(min, max, depth.unwrap_or(MAX_DEPTH)).of(input)
+                }
+            },
+        }
+    }
+
+    /// The same in a cube that the user may have given, for a mesh or a scene.
+    pub fn frame_in(
+        &self,
+        input: &Input,
+        bounds: Option<&Frame>,
+        depth: Option<u8>,
+    ) -> Result<Frame, Failure> {
+        match bounds {
+            Some(_) if self.own_frame().is_some() => {
+                Err(Failure::Usage("--bounds is for meshes and scenes: a solid has its own".into()))
+            }
+            Some(bounds) => bounds.with_depth(depth.unwrap_or(MAX_DEPTH)).of(input),
+            None => self.frame(input, depth),
+        }
+    }
+
+    /// The same where the user need not say how deep: what has no frame of its own is then split to `deepest`.
+    pub fn frame_to(
+        &self,
+        input: &Input,
+        bounds: Option<&Frame>,
+        depth: Option<u8>,
+        deepest: u8,
+    ) -> Result<Frame, Failure> {
+        self.frame_in(input, bounds, depth.or(self.own_frame().is_none().then_some(deepest)))
+    }
+
+    /// Whether nothing of it lies beyond its bounds.
+    pub fn ends_at_bounds(&self, input: &Input) -> Result<bool, Failure> {
+        match self {
+            Source::Octree(_) | Source::Scene(_) | Source::Volume(_) => Ok(true),
+            Source::Mesh(mesh, ..) => ends_at_vertices(mesh).of(input),
+        }
+    }
+
+    /// Corners of what is around the solid: its universe, or the bounds of the mesh or the scene.
+    pub fn bounds(&self, input: &Input) -> Result<Corners, Failure> {
+        Ok(match self {
+            Source::Octree(octree) => {
+                let frame = octree.frame();
+                (frame.origin(), frame.origin().map(|low| low + frame.edge()))
+            }
+            Source::Mesh(mesh, ..) => mesh.bounds(),
+            Source::Scene(scene) => bounds_of(input, scene)?,
+            Source::Volume(volume) => {
+                let bounds = volume.solid.bounds().ok_or_else(|| Failure::of(input, "has no bounds"))?;
+                (bounds.min, bounds.max)
+            }
+        })
+    }
+
+    /// The solid under a placement, to be asked about cells of `frame`, moved in the best way that its kind
+    /// knows.
+    pub fn placed(self, input: &Input, placement: &Affine, frame: &Frame) -> Result<AnySolid, Failure> {
+        let solid = match self {
+            Source::Octree(octree) if placement.is_identity() && !octree.frame().same_universe(frame) => {
+                return Ok(AnySolid::new(Transform::of(*octree, placement)));
+            }
+            Source::Octree(octree) => AnySolid::new(*octree),
+            Source::Mesh(mesh, fill, _) => AnySolid::new(MeshSolid::new(mesh, fill).of(input)?),
+            Source::Scene(scene) => AnySolid::new(scene.solid(frame).of(input)?),
+            Source::Volume(volume) => volume.solid,
+        };
+        solid.placed(placement).of(input)
+    }
+}
+
+/// Half-spaces that were evaluated for a solid.
+pub fn evaluations(solid: &AnySolid) -> u64 {
+    solid.get::<Csg>().map_or(0, Csg::evaluations)
+}

@@ -1,0 +1,85 @@
+//! A solid that many questions are put to.
+
+use crate::failure::Failure;
+use crate::options::{bounds, threads};
+use crate::source::file::Taking;
+use crate::source::input::Input;
+use crate::source::solid::Source;
+use clap::Args;
+use leafless::{Affine, Frame, Octree, Prepared, Proof};
+
+/// How a solid that is asked is read, and looked at.
+#[derive(Args)]
+pub struct Looking {
+    /// Lower corner and edge length of the cube to look at, for a mesh or scene. Without it: the cube around it
+    #[arg(long, value_name = "X0,Y0,Z0,EDGE", value_parser = bounds, allow_hyphen_values = true)]
+    bounds: Option<Frame>,
+    /// Take the cells of a solid from a file (.lfl) for the solid itself, whatever they prove of what they
+    /// were made from. A file that is written says what they prove, all the same
+    #[arg(long)]
+    cells: bool,
+    #[command(flatten)]
+    taking: Taking,
+    /// Threads to use; 0: as many as there are processors. The result is the same
+    #[arg(long, default_value_t = 0, value_name = "N", value_parser = threads)]
+    pub threads: usize,
+}
+
+impl Looking {
+    /// Reads a solid. `depth` is the one that the user gave; without it a mesh or a scene is split to `deepest`.
+    pub fn target(&self, input: &Input, depth: Option<u8>, deepest: u8) -> Result<Target, Failure> {
+        Ok(self.target_and_proof(input, depth, deepest)?.0)
+    }
+
+    /// The same, and what the cells of a file prove of what they were made from, whatever they are taken for: what is
+    /// written of them proves no more.
+    pub fn target_and_proof(
+        &self,
+        input: &Input,
+        depth: Option<u8>,
+        deepest: u8,
+    ) -> Result<(Target, Proof), Failure> {
+        let source = Source::read(input, &self.taking)?;
+        let proof = source.proof();
+        Ok((Target::of(source.taken(self.cells), input, self.bounds.as_ref(), depth, deepest)?, proof))
+    }
+}
+
+/// What is asked.
+pub enum Target {
+    /// A stored octree whose cells prove what they say: it is asked where it lies.
+    Cells(Box<Octree>),
+    /// Anything else, on a frame.
+    Solid(Box<(Prepared, Frame)>),
+}
+
+impl Target {
+    fn of(
+        source: Source,
+        input: &Input,
+        bounds: Option<&Frame>,
+        depth: Option<u8>,
+        deepest: u8,
+    ) -> Result<Target, Failure> {
+        match source {
+            Source::Octree(octree)
+                if octree.view().proof().is_certified() && depth.is_none() && bounds.is_none() =>
+            {
+                Ok(Target::Cells(octree))
+            }
+            source => {
+                let frame = source.frame_to(input, bounds, depth, deepest)?;
+                let solid = Prepared::new(source.placed(input, &Affine::IDENTITY, &frame)?);
+                Ok(Target::Solid(Box::new((solid, frame))))
+            }
+        }
+    }
+
+    /// The frame that it is asked on.
+    pub fn frame(&self) -> &Frame {
+        match self {
+            Target::Cells(octree) => octree.frame(),
+            Target::Solid(target) => &target.1,
+        }
+    }
+}

@@ -1,0 +1,197 @@
+//! Volumes from files, NRRD, MetaImage and raw: which voxels are inside, and what is told of them.
+
+use crate::failure::{Failure, Of, Problem, complain};
+use crate::options::{list, number, numbers};
+use crate::source::input::Input;
+use crate::words::counted;
+use clap::Args;
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use leafless::exchange::{
+    LengthUnit, RawVolume, SampleKind, open_volume, read_raw_volume, read_volume, volume_data_file,
+};
+use leafless::{
+    Affine, AnySolid, Attribute, Band, Control, Error, Frame, Interpolation, MovedAttribute, Samples, Volume,
+    VolumeAttribute, VoxelGrid,
+};
+
+/// Which voxels of a volume are inside, and what the bytes of one without a header mean.
+#[derive(Clone, Args)]
+pub struct Sampling {
+    /// Least sample of a volume (NRRD, MetaImage, raw) that is inside. Without it: the middle of the range of the
+    /// samples' type, 0 for floating point numbers
+    #[arg(long, value_name = "T", value_parser = threshold, allow_hyphen_values = true)]
+    threshold: Option<f64>,
+    /// Read the file as a raw volume, which has no header: an array of so many samples along x, y and z, x fastest
+    #[arg(long = "samples", value_name = "NX,NY,NZ", value_parser = extents)]
+    extents: Option<[u32; 3]>,
+    /// Type of the samples of a raw volume. Without it: u8
+    #[arg(long = "type", value_parser = kinds(), requires = "extents")]
+    kind: Option<SampleKind>,
+    /// Edges of the voxels of a raw volume along x, y and z, or one for all. Without it: 1
+    #[arg(long, value_name = "S|SX,SY,SZ", value_parser = spacing, requires = "extents")]
+    spacing: Option<[f64; 3]>,
+    /// Lower corner of the first voxel of a raw volume. Without it: 0,0,0
+    #[arg(long, value_name = "X,Y,Z", value_parser = corner, requires = "extents", allow_hyphen_values = true)]
+    corner: Option<[f64; 3]>,
+    /// Bytes of a raw volume before its first sample. Without it: 0
+    #[arg(long, value_name = "BYTES", requires = "extents")]
+    skip: Option<u64>,
+    /// The first byte of each sample of a raw volume is the one of the highest weight
+    #[arg(long, requires = "extents")]
+    big_endian: bool,
+}
+
+fn threshold(text: &str) -> Result<f64, String> {
+    number(text, "a number", |_| true)
+}
+
+fn extents(text: &str) -> Result<[u32; 3], String> {
+    numbers(text).ok_or_else(|| "expected three whole numbers: nx,ny,nz".into())
+}
+
+fn spacing(text: &str) -> Result<[f64; 3], String> {
+    match list(text).as_deref() {
+        Some(&[edge]) => Ok([edge; 3]),
+        Some(&[x, y, z]) => Ok([x, y, z]),
+        _ => Err("expected one number, or three: sx,sy,sz".into()),
+    }
+}
+
+fn corner(text: &str) -> Result<[f64; 3], String> {
+    numbers(text).ok_or_else(|| "expected three numbers: x,y,z".into())
+}
+
+/// Types of samples, and their names.
+const KINDS: [(&str, SampleKind); 11] = [
+    ("bit", SampleKind::Bit),
+    ("i8", SampleKind::I8),
+    ("u8", SampleKind::U8),
+    ("i16", SampleKind::I16),
+    ("u16", SampleKind::U16),
+    ("i32", SampleKind::I32),
+    ("u32", SampleKind::U32),
+    ("i64", SampleKind::I64),
+    ("u64", SampleKind::U64),
+    ("f32", SampleKind::F32),
+    ("f64", SampleKind::F64),
+];
+
+/// The name of a type of samples.
+pub fn kind_name(kind: SampleKind) -> &'static str {
+    KINDS.iter().find(|known| known.1 == kind).map_or("", |known| known.0)
+}
+
+fn kinds() -> impl TypedValueParser<Value = SampleKind> {
+    let bits = "Eight to a byte, the lowest first; each row along x begins with a byte of its own";
+    let names = KINDS.map(|(name, kind)| {
+        let name = PossibleValue::new(name);
+        if kind == SampleKind::Bit { name.help(bits) } else { name }
+    });
+    let of = |name: String| KINDS.into_iter().find(|known| known.0 == name).map(|known| known.1);
+    PossibleValuesParser::new(names).try_map(move |name| of(name).ok_or("is no type of samples"))
+}
+
+/// A volume as a solid.
+pub struct Voxels {
+    pub solid: AnySolid,
+    /// The frame whose finest cells are voxels, if voxels are cubes along the axes.
+    pub frame: Option<Frame>,
+    pub unit: Option<LengthUnit>,
+    pub volume: Volume<'static>,
+    /// What moves the grid to its place, if its axes are not x, y and z.
+    pub placement: Option<Affine>,
+    pub format: String,
+    pub kind: SampleKind,
+    pub threshold: f64,
+}
+
+/// What a file holds.
+struct Found {
+    samples: Samples<'static>,
+    grid: VoxelGrid,
+    placement: Option<Affine>,
+    unit: Option<LengthUnit>,
+    format: String,
+    kind: SampleKind,
+    rounded: u64,
+}
+
+impl Sampling {
+    /// Whether the user says that files are volumes without headers.
+    pub fn is_raw(&self) -> bool {
+        self.extents.is_some()
+    }
+
+    /// Refuses the options for volumes where something else is read: `what` it is.
+    pub fn refuse(&self, input: &Input, what: &str) -> Result<(), Failure> {
+        // (All others need --samples.)
+        let given = [("--threshold", self.threshold.is_some()), ("--samples", self.is_raw())];
+        match given.into_iter().find(|option| option.1) {
+            Some((option, _)) => Err(Failure::Usage(format!("{option} is for volumes: {input} is {what}"))),
+            None => Ok(()),
+        }
+    }
+
+    /// The volume in a file with these bytes, whose samples may be in another file beside it.
+    pub fn read(&self, input: &Input, bytes: &[u8]) -> Result<Voxels, Failure> {
+        let found = match self.extents {
+            Some(extents) => self.without_header(input, bytes, extents)?,
+            None => with_header(input, bytes)?,
+        };
+        if found.rounded > 0 {
+            let samples = counted(found.rounded, "sample was", "samples were");
+            complain(&format!("{input}: warning: {samples} rounded to single precision"));
+        }
+        let Found { samples, grid, placement, unit, format, kind, .. } = found;
+        let threshold = self.threshold.unwrap_or(kind.half_range());
+        let band = Band::at_least(threshold).of(input)?;
+        let volume = Volume::new(samples, &grid, band, &Control::default()).of(input)?;
+        let solid = AnySolid::new(volume.clone());
+        let solid = match &placement {
+            Some(placement) => solid.placed(placement).of(input)?,
+            None => solid,
+        };
+        let frame = if placement.is_none() { grid.frame().ok() } else { None };
+        Ok(Voxels { solid, frame, unit, volume, placement, format, kind, threshold })
+    }
+
+    fn without_header(&self, input: &Input, bytes: &[u8], extents: [u32; 3]) -> Result<Found, Failure> {
+        let grid = VoxelGrid::new(extents, self.corner.unwrap_or([0.0; 3]), self.spacing.unwrap_or([1.0; 3]));
+        let grid = grid.map_err(|error| Failure::Usage(error.to_string()))?;
+        let kind = self.kind.unwrap_or(SampleKind::U8);
+        let layout = RawVolume { grid, kind, big_endian: self.big_endian, skip: self.skip.unwrap_or(0) };
+        let (samples, rounded) = read_raw_volume(bytes, &layout).of(input)?;
+        Ok(Found { samples, grid, placement: None, unit: None, format: "raw".into(), kind, rounded })
+    }
+}
+
+fn with_header(input: &Input, bytes: &[u8]) -> Result<Found, Failure> {
+    let file = match (input.path(), volume_data_file(bytes).of(input)?) {
+        (Some(path), Some(_)) => open_volume(path).map_err(|error| match &error {
+            // Of the header or of the file of its samples.
+            Error::File { path, .. } => Failure::of(path.display(), error.text()),
+            _ => Failure::of(input, error.text()),
+        })?,
+        _ => read_volume(bytes, None).of(input)?,
+    };
+    Ok(Found {
+        samples: file.samples,
+        grid: file.grid,
+        placement: file.placement,
+        unit: file.unit,
+        format: file.format.to_string(),
+        kind: file.kind,
+        rounded: file.rounded,
+    })
+}
+
+impl Voxels {
+    /// The samples as values at points.
+    pub fn attribute(&self, interpolation: Interpolation) -> Result<Box<dyn Attribute>, Error> {
+        let samples = VolumeAttribute::new(self.volume.clone(), interpolation);
+        Ok(match &self.placement {
+            Some(placement) => Box::new(MovedAttribute::new(samples, placement.inverse()?)),
+            None => Box::new(samples),
+        })
+    }
+}
