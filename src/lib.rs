@@ -74,7 +74,7 @@
 //! | … what cells prove? | `octree/proof.rs` |
 //! | … an STL read? | `exchange/stl.rs` |
 //! | … a bitmap or an array of samples a solid, and an octree a bitmap? | `solid/volume/`, `query/bitmap.rs` |
-//! | … a byte of a file checked? | `file/header.rs`, `object.rs`, `section.rs`, `layout.rs` |
+//! | … a byte of a file checked? | `file/header.rs`, `object.rs`, `section.rs`, `layout.rs`, `tree.rs`, `tridexel.rs` |
 //! | … an allocation refused? | `memory.rs` |
 //! | … where a ray meets a solid, how high it is? | `query/ray/`, `query/columns/` |
 //! | … a ray of a mesh, of a half-space? | `solid/mesh/chords.rs`, `solid/half_space/lines.rs` |

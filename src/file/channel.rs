@@ -1,18 +1,25 @@
 //! The channels in a file.
 
+use super::compose::{Section, bytes_of};
+use super::elements::Elements;
 use super::field::{demand, illegal};
+use super::header::Header;
 use super::kind::{Element, Kind};
-use super::layout::{Layout, Starts, cast, starts, tree};
+use super::layout::Layout;
 use super::object::{CHANNEL, CHANNEL_MINOR, Object};
 use super::section::{Sections, entries};
+use super::tree::{self, Starts, starts};
 use super::wire::elements;
 use crate::error::{Error, FormatError};
 use crate::lattice::Frame;
 use crate::memory;
+use crate::octree::brick::OwnedBricks;
 use crate::octree::metadata::MetadataLimit;
-use crate::octree::{Channel, ChannelRef, Metadata, ScalarType, Tag, ValueType};
+use crate::octree::view::LevelCounts;
+use crate::octree::{Channel, ChannelRef, Metadata, ScalarType, Tag, ValueType, dictionary};
 use alloc::sync::Arc;
 use alloc::vec::Vec;
+use bytemuck::Zeroable;
 use core::ops::Range;
 
 /// Most channels of a file; part of the format.
@@ -99,13 +106,12 @@ impl ChannelLayout {
 
     /// The channel in `bytes`, whose numbers have this machine's order.
     fn view<'a>(&self, bytes: &'a [u8]) -> Result<ChannelRef<'a>, FormatError> {
-        let section = |kind| self.sections.bytes(bytes, kind);
         Ok(ChannelRef {
-            tree: tree(&self.object, &self.sections, self.frame, &self.starts, bytes)?,
+            tree: tree::view(&self.object, &self.sections, self.frame, &self.starts, bytes)?,
             value_type: self.value_type,
-            value_rel: cast(section(Kind::ValueRel)?)?,
-            value_base: cast(section(Kind::ValueBase)?)?,
-            values: section(Kind::Values)?,
+            value_rel: self.sections.array(bytes, Kind::ValueRel)?,
+            value_base: self.sections.array(bytes, Kind::ValueBase)?,
+            values: self.sections.bytes(bytes, Kind::Values)?,
         })
     }
 
@@ -128,5 +134,63 @@ impl ChannelLayout {
     /// Where the channel's sections lie, and what their numbers are.
     pub(super) fn numbers(&self) -> impl Iterator<Item = (Range<u64>, Element)> {
         self.sections.numbers(&self.object)
+    }
+}
+
+/// A channel, with what a file needs besides.
+pub(super) struct PreparedChannel<'a> {
+    view: &'a ChannelRef<'a>,
+    metadata: Vec<u8>,
+    levels: Vec<LevelCounts>,
+    encoded: Option<OwnedBricks>,
+}
+
+impl<'a> PreparedChannel<'a> {
+    /// Checks all of `channel`.
+    pub(super) fn of(channel: &'a Channel) -> Result<PreparedChannel<'a>, Error> {
+        let view = channel.view()?;
+        view.check()?;
+        Ok(PreparedChannel {
+            view,
+            metadata: bytes_of(channel.metadata(), MetadataLimit::CHANNEL)?,
+            levels: view.count_levels(),
+            encoded: dictionary::encode(&view.tree.bricks)?,
+        })
+    }
+
+    /// Appends the sections of the channel, which is object `owner` of the file; returns its record.
+    pub(super) fn append_sections<'s>(
+        &'s self,
+        owner: u32,
+        header: &Header,
+        sections: &mut Vec<Section<'s>>,
+    ) -> Object {
+        let ChannelRef { tree, value_type, values, value_rel, value_base } = self.view;
+        sections.push((owner, Kind::Metadata, Elements::Bytes(&self.metadata)));
+        let coding = tree::append(owner, tree, &self.levels, &self.encoded, sections);
+        let (value, number) = (value_type.size(), value_type.scalar().size());
+        sections.extend([
+            (owner, Kind::Values, Elements::Values { bytes: values, value, number }),
+            (owner, Kind::ValueRel, Elements::U16(value_rel)),
+            (owner, Kind::ValueBase, Elements::U64(value_base)),
+        ]);
+        Object {
+            kind: CHANNEL,
+            parent: 0,
+            depth: tree.frame.depth(),
+            root: tree.root as u8,
+            brick_planes: coding.planes,
+            brick_encoding: coding.encoding,
+            segment_shift: coding.segment_shift,
+            value_type: value_type.scalar() as u8,
+            components: value_type.components() as u8,
+            origin: header.origin,
+            edge: header.edge,
+            elements: tree.element_count(),
+            bricks: tree.brick_count(),
+            dictionary_entries: coding.entries,
+            values: self.view.value_count(),
+            ..Object::zeroed()
+        }
     }
 }

@@ -7,6 +7,7 @@ use super::wire::{Wire, wire_struct};
 use crate::error::{Error, FormatError};
 use crate::lattice::Frame;
 use crate::octree::{Proof, Tag};
+use bytemuck::Zeroable;
 use core::mem::offset_of;
 use core::ops::Range;
 
@@ -75,7 +76,27 @@ wire_struct! {
     }
 }
 
+/// What the solid of a file can be.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Model {
+    Octree,
+    Dexels,
+}
+
 impl Header {
+    /// What the headers of all solids on a frame have in common.
+    pub fn of(frame: &Frame) -> Header {
+        Header {
+            magic: MAGIC,
+            major: MAJOR,
+            header_length: HEADER_LENGTH as u32,
+            origin: frame.origin().map(f64::to_bits),
+            edge: frame.edge().to_bits(),
+            depth: frame.depth(),
+            ..Header::zeroed()
+        }
+    }
+
     /// What the header says of the arrays of the solid's tree.
     pub fn counts(&self) -> Counts {
         Counts {
@@ -89,9 +110,15 @@ impl Header {
         }
     }
 
+    /// What the solid is.
+    pub fn model(&self) -> Model {
+        let is_dexels = self.minor >= DEXELS_MINOR && self.flags_required & FLAG_DEXELS != 0;
+        if is_dexels { Model::Dexels } else { Model::Octree }
+    }
+
     /// Whether the solid is a tri-dexel model.
     pub fn is_dexels(&self) -> bool {
-        self.minor >= DEXELS_MINOR && self.flags_required & FLAG_DEXELS != 0
+        self.model() == Model::Dexels
     }
 
     /// Whether a later version wrote the file, which may have given a meaning to what is reserved today.
@@ -228,10 +255,13 @@ impl Head {
         })
     }
 
-    /// Refuses a file of the other model: of a tri-dexel one unless `dexels` are wanted, of an octree if they are.
-    pub(super) fn demand_model(&self, dexels: bool) -> Result<(), FormatError> {
-        let names = ["an octree", "a tri-dexel model"];
-        let [found, wanted] = [self.form.is_some(), dexels].map(|dexels| names[usize::from(dexels)]);
+    /// Refuses a file of which the solid is something else.
+    pub(super) fn demand_model(&self, wanted: Model) -> Result<(), FormatError> {
+        let name = |model| match model {
+            Model::Octree => "an octree",
+            Model::Dexels => "a tri-dexel model",
+        };
+        let [found, wanted] = [self.header.model(), wanted].map(name);
         if found == wanted { Ok(()) } else { Err(FormatError::OtherModel { found, wanted }) }
     }
 

@@ -101,14 +101,10 @@
 //! and its reason. Beside it lie test vectors, the reasons for the design, and the list of what readers
 //! accept although the writer never writes it.
 
-mod assemble;
 mod buffer;
 mod channel;
 mod compose;
-mod contents;
 mod counts;
-mod dexel_assemble;
-mod dexel_layout;
 pub mod dexels;
 mod elements;
 mod field;
@@ -117,32 +113,31 @@ mod header;
 mod kind;
 mod layout;
 #[cfg(feature = "mmap")]
-mod map;
-#[cfg(feature = "mmap")]
 mod mapping;
 mod object;
+mod octree;
 mod probe;
 mod read;
 #[cfg(feature = "std")]
 mod replace;
 mod section;
+mod stored;
 mod swap;
+mod tree;
+mod tridexel;
 mod verify;
 mod wire;
 mod write;
 
 pub use header::{MAGIC, MAJOR, MINOR};
+pub use octree::{from_bytes, from_static, to_bytes, view};
 #[cfg(feature = "mmap")]
-pub use map::{map, map_verified};
+pub use octree::{map, map_verified};
+#[cfg(feature = "std")]
+pub use octree::{open, save, write_to};
 pub use probe::{DexelProbe, Probe, Section, probe_bytes};
 #[cfg(feature = "std")]
 pub use probe::{probe, probe_from};
 #[cfg(feature = "std")]
-pub use read::open;
-pub use read::{from_bytes, from_static, view};
-#[cfg(feature = "std")]
 pub use replace::{abandon_saves, replace};
 pub use verify::verify;
-pub use write::to_bytes;
-#[cfg(feature = "std")]
-pub use write::{save, write_to};

@@ -7,6 +7,7 @@ use super::object::{MAX_OBJECTS, Object};
 use super::wire::{Wire, elements, wire_struct};
 use crate::error::FormatError;
 use crate::octree::metadata::MetadataLimit;
+use bytemuck::Pod;
 use core::ops::Range;
 
 /// Offsets of sections are multiples of this; part of the format.
@@ -203,6 +204,11 @@ impl Sections {
     /// The bytes of a section; none if it is absent.
     pub(super) fn bytes<'a>(&self, bytes: &'a [u8], kind: Kind) -> Result<&'a [u8], FormatError> {
         section(bytes, self.range(kind))
+    }
+
+    /// The numbers of a section, where they lie; none if it is absent.
+    pub(super) fn array<'a, T: Pod>(&self, bytes: &'a [u8], kind: Kind) -> Result<&'a [T], FormatError> {
+        bytemuck::try_cast_slice(self.bytes(bytes, kind)?).map_err(|_| FormatError::Alignment)
     }
 }
 

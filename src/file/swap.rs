@@ -1,19 +1,16 @@
 //! From the file's byte order to that of a big-endian machine.
 
 use super::channel::ChannelLayout;
-use super::header::Header;
 use super::kind::{Element, Kind};
 use super::layout::Layout;
 use super::object::Object;
-use super::section::Sections;
 use super::wire::swap_all;
 use crate::error::Error;
 use crate::memory;
 use crate::octree::Metadata;
 use alloc::vec::Vec;
-use core::ops::Range;
 
-/// Reverses the bytes of every number in the sections of an octree and its channels. Several sections, also of
+/// Reverses the bytes of every number in the sections of a solid and its channels. Several sections, also of
 /// several objects, may have the same bytes: those are reversed once.
 ///
 /// # Errors
@@ -28,22 +25,6 @@ pub(super) fn swap_bytes(
     for (channel, _) in channels {
         sections.extend(channel.numbers());
     }
-    swap_sections(sections, bytes);
-    Ok(())
-}
-
-/// The same for the sections of a tri-dexel model.
-///
-/// # Errors
-/// [`Error::OutOfMemory`].
-pub(super) fn swap_dexels(header: &Header, sections: &Sections, bytes: &mut [u8]) -> Result<(), Error> {
-    let mut numbers: Vec<_> = memory::with_capacity(Kind::MOST)?;
-    numbers.extend(sections.numbers(&Object::main(header)));
-    swap_sections(numbers, bytes);
-    Ok(())
-}
-
-fn swap_sections(mut sections: Vec<(Range<u64>, Element)>, bytes: &mut [u8]) {
     // Sections with the same bytes have the same elements, as the section table was checked to say.
     sections.sort_unstable_by_key(|(range, _)| range.start);
     sections.dedup_by_key(|(range, _)| range.start);
@@ -58,12 +39,13 @@ fn swap_sections(mut sections: Vec<(Range<u64>, Element)>, bytes: &mut [u8]) {
             Element::U64 | Element::F64 => swap_all::<u64>(section),
         }
     }
+    Ok(())
 }
 
 #[cfg(test)]
 mod tests {
     use super::super::counts::ENCODING_DICTIONARY;
-    use super::super::header::MAGIC;
+    use super::super::header::{MAGIC, Model};
     use super::super::wire::Wire;
     use super::super::{channel, section};
     use super::*;
@@ -81,7 +63,7 @@ mod tests {
         let mut metadata = Metadata::new();
         metadata.insert("units", "mm");
         let bytes = super::super::to_bytes(&ball.with_metadata(metadata)).unwrap();
-        let layout = Layout::read(&bytes).unwrap();
+        let layout = Layout::read(&bytes, Model::Octree).unwrap();
         assert_eq!(layout.head.header.brick_encoding, ENCODING_DICTIONARY);
         let mut swapped = bytes.clone();
         swap_bytes(&layout, &[], &mut swapped).unwrap();
@@ -104,7 +86,7 @@ mod tests {
         assert_eq!(swapped, bytes);
         // Of sections that share their bytes, too: `rel` and the brick indices, `base` and the dictionary.
         let shared = include_bytes!("../../format_spec/vectors/valid/shared-sections.lfl");
-        let both = Layout::read(shared).unwrap();
+        let both = Layout::read(shared, Model::Octree).unwrap();
         assert_eq!(both.sections.range(Kind::Base), both.sections.range(Kind::Entries));
         let mut swapped = shared.to_vec();
         swap_bytes(&both, &[], &mut swapped).unwrap();
@@ -122,7 +104,7 @@ mod tests {
     #[test]
     fn what_channels_share_is_swapped_once() {
         let bytes = include_bytes!("../../format_spec/vectors/valid/channels-shared.lfl");
-        let layout = Layout::read(bytes).unwrap();
+        let layout = Layout::read(bytes, Model::Octree).unwrap();
         let channels = channel::read(&layout, bytes).unwrap();
         let table = layout.head.table(bytes).unwrap();
         let same = section::entries(table).filter(|entry| entry.same != 0 && entry.owner != 0).count();

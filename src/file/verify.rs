@@ -1,8 +1,10 @@
 //! Verifying whatever a file holds.
 
-use super::header::Head;
-use super::{dexels, read};
+use super::header::{Head, Model};
+use super::read;
+use crate::dexel::TriDexel;
 use crate::error::Error;
+use crate::octree::Octree;
 
 /// Checks everything that the format promises: what [`view`](super::view) checks, all checksums, that padding is zero,
 /// that the metadata can be read, and that the tree and the channels, or the tri-dexel model, are well-formed and in
@@ -15,5 +17,8 @@ use crate::error::Error;
 /// # Errors
 /// [`Error::Format`], [`Error::Damaged`] or [`Error::DamagedRays`]; [`Error::OutOfMemory`].
 pub fn verify(bytes: &[u8]) -> Result<(), Error> {
-    if Head::read(bytes)?.form.is_some() { dexels::verify_dexels(bytes) } else { read::verify_octree(bytes) }
+    match Head::read(bytes)?.header.model() {
+        Model::Octree => read::verify::<Octree>(bytes),
+        Model::Dexels => read::verify::<TriDexel>(bytes),
+    }
 }

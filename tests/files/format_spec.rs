@@ -342,15 +342,16 @@ fn each_rule_for_readers_has_a_vector() {
 }
 
 /// What of the library lays down the format.
-const SOURCES: [&str; 8] = [
+const SOURCES: [&str; 9] = [
     include_str!("../../src/file/header.rs"),
     include_str!("../../src/file/counts.rs"),
     include_str!("../../src/file/section.rs"),
     include_str!("../../src/file/kind.rs"),
     include_str!("../../src/file/object.rs"),
     include_str!("../../src/file/layout.rs"),
+    include_str!("../../src/file/tree.rs"),
     include_str!("../../src/file/channel.rs"),
-    include_str!("../../src/file/dexel_layout.rs"),
+    include_str!("../../src/file/tridexel.rs"),
 ];
 
 /// Every name that the reader's source can put into an error stands in the error of a vector, and so does

@@ -730,7 +730,7 @@ const WAYS: &[Way] = &[
     // ---- files
     Way {
         name: "a file in memory",
-        through: &["file/read.rs from_bytes", "file/read.rs view", "file/read.rs from_static"],
+        through: &["file/octree.rs from_bytes", "file/octree.rs view", "file/octree.rs from_static"],
         make: |a| {
             let bytes = file::to_bytes(&a.tree)?;
             assert_eq!(file::probe_bytes(&bytes)?.proof, a.tree.proof());
@@ -742,7 +742,7 @@ const WAYS: &[Way] = &[
     },
     Way {
         name: "a file on disk",
-        through: &["file/read.rs open", "file/map.rs map", "file/map.rs map_verified"],
+        through: &["file/octree.rs open", "file/octree.rs map", "file/octree.rs map_verified"],
         make: |a| {
             let folder = tempfile::tempdir().unwrap();
             let path = folder.path().join("ball.lfl");
