@@ -79,7 +79,7 @@
 //! | … where a ray meets a solid, how high it is? | `query/ray/`, `query/columns/` |
 //! | … a ray of a mesh, of a half-space? | `solid/mesh/chords.rs`, `solid/half_space/lines.rs` |
 //! | … a closed triangle mesh of a solid? | `surface/cubes.rs`, `smc.rs`, `shrink.rs`, `solid.rs`, `volume.rs`, `dexel.rs` |
-//! | … a picture taken, a triangle drawn, a plane section, a volume, a legend? | `render/tile.rs`, `coverage.rs`, `slice.rs`, `volume.rs`, `legend.rs` |
+//! | … a picture taken, a triangle drawn, a plane section, a volume, a legend? | `render/tile.rs`, `coverage.rs`, `slice.rs`, `volume/`, `legend.rs` |
 //! | … the normal of a surface of which only cells are known? | `render/normals.rs` |
 //! | … the list of voxels, their depth order? | `voxel/walk.rs`, `records.rs`, `order.rs` |
 //! | … the volume of a solid, the distance of two, or of a point? | `query/measure/`, `query/clearance/`, `query/distance/` |

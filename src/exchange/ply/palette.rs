@@ -1,0 +1,37 @@
+//! What the elements of a file say of colours.
+
+use alloc::vec::Vec;
+
+use crate::error::Error;
+use crate::exchange::colours::{self, Colours};
+use crate::memory;
+use crate::mesh::MeshAttribute;
+
+/// What the elements of a file say of colours.
+#[derive(Default)]
+pub(super) struct Palette {
+    pub vertices: Option<Colours>,
+    pub faces: Option<Colours>,
+    /// The colour of each triangle, of faces that have one.
+    pub rows: Vec<u32>,
+}
+
+impl Palette {
+    pub fn unreadable(&self) -> u64 {
+        [&self.vertices, &self.faces].into_iter().flatten().map(|colours| colours.unreadable).sum()
+    }
+
+    /// The attributes of triangles of these vertices.
+    pub fn attributes(mut self, triangles: &[[u32; 3]]) -> Result<Vec<MeshAttribute>, Error> {
+        let mut attributes = Vec::new();
+        let face = if self.vertices.is_some() { "face_colour" } else { "colour" };
+        if let Some(colours) = self.vertices {
+            memory::push(&mut attributes, colours.of_corners("colour", memory::copied(triangles)?)?)?;
+        }
+        if let Some(colours) = self.faces {
+            colours::fill(&mut self.rows, triangles.len(), MeshAttribute::NO_ROW)?;
+            memory::push(&mut attributes, colours.of_triangles(face, self.rows)?)?;
+        }
+        Ok(attributes)
+    }
+}
