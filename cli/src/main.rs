@@ -1,7 +1,12 @@
 //! `leafless`: solids from mesh files to queries, on the command line.
 //!
-//! One file per subcommand. Every failure is one line on standard error that names the file; the exit code is
-//! 0 for success, 1 for failure, 2 for wrong usage. A signal ends the program at once (see `signals`).
+//! A subcommand (`commands`) holds its arguments, and says what it wants. A file of any kind becomes a solid on a frame in
+//! `source`; what is made of it is made in `making`; `report` knows what is told of it, and `sink` takes it to a file or to
+//! standard output. `show` puts pictures on the terminal. A folder uses only those below it: from the bottom up these are
+//! `source`, `report` and `sink`, `show` and `making`, and `commands`; no subcommand uses another.
+//!
+//! Every failure is one line on standard error that names the file; the exit code is 0 for success, 1 for failure, 2 for
+//! wrong usage. A signal ends the program at once (see `signals`).
 
 #![deny(unsafe_code)]
 

@@ -1,32 +1,26 @@
 //! Values of options that several subcommands have.
 
 use clap::ValueEnum;
-use clap::builder::{PossibleValuesParser, TypedValueParser};
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use leafless::exchange::MeshFormat;
 use leafless::{Frame, Rule};
 use std::str::FromStr;
 
-#[derive(Debug, Clone, Copy, ValueEnum)]
-pub enum RuleName {
-    /// They stay undecided: volumes are intervals that hold the truth
-    Certified,
-    /// They are inside if their centre is
-    Sampled,
-    /// They are outside: the result lies within the solid
-    Inner,
-    /// They are inside: the result contains the solid
-    Outer,
+/// The rules of an octree, of which `certified` is the first.
+pub fn octree_rules() -> impl TypedValueParser<Value = Rule> {
+    rules([
+        (Rule::Certified, "They stay undecided: volumes are intervals that hold the truth"),
+        (Rule::Sampled, "They are inside if their centre is"),
+        (Rule::Inner, "They are outside: the result lies within the solid"),
+        (Rule::Outer, "They are inside: the result contains the solid"),
+    ])
 }
 
-impl From<RuleName> for Rule {
-    fn from(name: RuleName) -> Rule {
-        match name {
-            RuleName::Certified => Rule::Certified,
-            RuleName::Sampled => Rule::Sampled,
-            RuleName::Inner => Rule::Inner,
-            RuleName::Outer => Rule::Outer,
-        }
-    }
+/// Some rules, and what is said of each.
+pub fn rules<const N: usize>(known: [(Rule, &'static str); N]) -> impl TypedValueParser<Value = Rule> {
+    let values = known.map(|(rule, help)| PossibleValue::new(rule_name(rule)).help(help));
+    let of = move |name: String| known.into_iter().find(|(rule, _)| rule_name(*rule) == name);
+    PossibleValuesParser::new(values).try_map(move |name| of(name).map(|known| known.0).ok_or("is no rule"))
 }
 
 /// The name of an option's value, as the user writes it.

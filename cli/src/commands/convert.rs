@@ -144,12 +144,12 @@ fn to_octree(job: &Job, taking: &Taking, resolve: Option<ResolveName>) -> Result
     if found.content == Content::Scene {
         taking.reading.refuse(input, "a scene")?;
         output.check()?;
-        output.check_beside(input, "scene")?;
+        output.check_spares(input, "scene")?;
         let splitting = Splitting { depth, rule, adaptive: None, touch: TouchName::Exact };
         return octree_of_scene::make(job, found, &taking.drawing, splitting);
     }
     taking.drawing.refuse(input, "no scene")?;
     output.check()?;
-    output.check_beside(input, "mesh")?;
+    output.check_spares(input, "mesh")?;
     octree_of_mesh::make(&Job { depth: Some(depth), ..job.clone() }, found, &taking.reading, rule)
 }

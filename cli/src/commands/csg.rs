@@ -3,13 +3,13 @@
 use crate::failure::Failure;
 use crate::making::job::Job;
 use crate::making::octree_of_scene::{self, Splitting, TouchName};
-use crate::options::{RuleName, bounds, number, threads};
+use crate::options::{bounds, number, octree_rules, threads};
 use crate::sink::Output;
 use crate::source::file::Found;
 use crate::source::input::Input;
 use crate::source::scene::Drawing;
 use clap::Args;
-use leafless::Frame;
+use leafless::{Frame, Rule};
 use std::ffi::OsString;
 use std::time::Instant;
 
@@ -39,8 +39,8 @@ pub struct Arguments {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=leafless::MAX_DEPTH as i64))]
     depth: u8,
     /// What becomes of the finest cells that the surface passes through
-    #[arg(long, value_enum, default_value_t = RuleName::Certified)]
-    rule: RuleName,
+    #[arg(long, value_parser = octree_rules(), default_value = "certified")]
+    rule: Rule,
     /// Leave cells whole in which the surface is known to lie within a layer of this thickness, in the units of
     /// the scene: flat faces take few cells, curves more, and edges as many as the depth allows. Such cells are
     /// undecided
@@ -78,20 +78,15 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     job.output.check()?;
     if adaptive.is_some() {
         let useless = match (rule, touch) {
-            (RuleName::Certified, TouchName::Exact) => None,
-            (RuleName::Certified, TouchName::Paper) => Some("--touch paper, by which no layers are known"),
+            (Rule::Certified, TouchName::Exact) => None,
+            (Rule::Certified, TouchName::Paper) => Some("--touch paper, by which no layers are known"),
             _ => Some("a --rule but certified: the cells that it leaves whole are undecided"),
         };
         if let Some(useless) = useless {
             return Err(Failure::Usage(format!("--adaptive does not go with {useless}")));
         }
     }
-    job.output.check_beside(&job.input, "scene")?;
+    job.output.check_spares(&job.input, "scene")?;
     let found = Found::look(&job.input, None)?;
-    octree_of_scene::make(
-        &job,
-        found,
-        &arguments.drawing,
-        Splitting { depth, rule: rule.into(), adaptive, touch },
-    )
+    octree_of_scene::make(&job, found, &arguments.drawing, Splitting { depth, rule, adaptive, touch })
 }

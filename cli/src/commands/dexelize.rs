@@ -3,10 +3,11 @@
 use crate::failure::Failure;
 use crate::making::dexels::{Storing, make};
 use crate::making::job::Job;
-use crate::options::{bounds, resolution, threads};
+use crate::options::{bounds, resolution, rules, threads};
 use crate::sink::Output;
 use crate::source::file::Taking;
 use crate::source::input::Input;
+use clap::builder::TypedValueParser;
 use clap::{Args, ValueEnum};
 use leafless::{DexelEnds, DexelFormat, DexelNormals, DexelOptions, Frame, Rule};
 use std::ffi::OsString;
@@ -50,8 +51,8 @@ pub struct Arguments {
     #[arg(long, value_name = "M")]
     material: Option<u32>,
     /// What intervals are
-    #[arg(long, value_enum, default_value_t = RuleName::Sampled)]
-    rule: RuleName,
+    #[arg(long, value_parser = dexel_rules(), default_value = "sampled")]
+    rule: Rule,
     /// Lower corner and edge length of the cube, in the units of the mesh once it is converted and scaled. Models can
     /// be combined if they were given the same bounds and resolution. What sticks out is cut off, and reported. Without
     /// it: the cube that `leafless voxelize` takes
@@ -105,24 +106,15 @@ enum NormalsName {
     Bits32,
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, ValueEnum)]
-enum RuleName {
-    /// Those of the solid on each ray
-    Sampled,
-    /// Those of cells that are wholly inside: the result lies within the solid
-    Inner,
-    /// Those of cells that are not wholly outside: the result contains what the solid holds of each ray
-    Outer,
-}
-
-impl From<RuleName> for Rule {
-    fn from(name: RuleName) -> Rule {
-        match name {
-            RuleName::Sampled => Rule::Sampled,
-            RuleName::Inner => Rule::Inner,
-            RuleName::Outer => Rule::Outer,
-        }
-    }
+fn dexel_rules() -> impl TypedValueParser<Value = Rule> {
+    rules([
+        (Rule::Sampled, "Those of the solid on each ray"),
+        (Rule::Inner, "Those of cells that are wholly inside: the result lies within the solid"),
+        (
+            Rule::Outer,
+            "Those of cells that are not wholly outside: the result contains what the solid holds of each ray",
+        ),
+    ])
 }
 
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
@@ -143,7 +135,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         materials: false,
     };
     let options = DexelOptions { directions: directions.0, format, ..Default::default() };
-    make(&job, &arguments.taking, rule.into(), Storing { options, material: arguments.material })
+    make(&job, &arguments.taking, rule, Storing { options, material: arguments.material })
 }
 
 #[cfg(test)]

@@ -3,13 +3,13 @@
 use crate::failure::Failure;
 use crate::making::job::Job;
 use crate::making::octree_of_mesh;
-use crate::options::{RuleName, bounds, threads};
+use crate::options::{bounds, octree_rules, threads};
 use crate::sink::Output;
 use crate::source::file::Found;
 use crate::source::input::Input;
 use crate::source::mesh::Reading;
 use clap::Args;
-use leafless::Frame;
+use leafless::{Frame, Rule};
 use std::ffi::OsString;
 use std::time::Instant;
 
@@ -38,8 +38,8 @@ pub struct Arguments {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=leafless::MAX_DEPTH as i64))]
     depth: Option<u8>,
     /// What becomes of the finest cells that the surface passes through
-    #[arg(long, value_enum, default_value_t = RuleName::Certified)]
-    rule: RuleName,
+    #[arg(long, value_parser = octree_rules(), default_value = "certified")]
+    rule: Rule,
     #[command(flatten)]
     reading: Reading,
     /// Lower corner and edge length of the cube to cut into cells, in the units of the mesh once it is
@@ -64,7 +64,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let job = Job { input, output, start: Instant::now(), depth, bounds, threads, json };
     let (input, reading) = (&job.input, &arguments.reading);
     job.output.check()?;
-    job.output.check_beside(input, "mesh")?;
+    job.output.check_spares(input, "mesh")?;
     let found = Found::look(input, reading.told())?;
-    octree_of_mesh::make(&job, found, reading, rule.into())
+    octree_of_mesh::make(&job, found, reading, rule)
 }

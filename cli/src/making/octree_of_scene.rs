@@ -15,17 +15,15 @@ use leafless::{Adaptive, Rule, SplitCounter, Touch, build};
 use serde::Serialize;
 use std::time::Instant;
 
-#[derive(Debug, Clone, Copy, Default, ValueEnum)]
+#[derive(Debug, Clone, Copy, ValueEnum)]
 pub enum TouchName {
     /// Contact is not overlap: a cell that the solid touches from outside is empty
-    #[default]
     Exact,
     /// As in the paper that the method comes from: such a cell is undecided
     Paper,
 }
 
 /// How space is split.
-#[derive(Clone, Copy)]
 pub struct Splitting {
     pub depth: u8,
     pub rule: Rule,
@@ -68,7 +66,9 @@ pub fn make(job: &Job, found: Found<'_>, drawing: &Drawing, splitting: Splitting
     if let Some(problem) = problem {
         return Err(Failure::of(input, problem));
     }
-    let scene = found.scene(drawing)?;
+    let (scene, fingerprint) = (found.scene(drawing)?, found.fingerprint());
+    // The text is not needed any more.
+    drop(found);
     let frame = frame_of(input, &scene, job.bounds.as_ref(), depth)?;
     let solid = scene.solid(&frame).of(input)?.with_touch(match touch {
         TouchName::Exact => Touch::Exact,
@@ -85,7 +85,7 @@ pub fn make(job: &Job, found: Found<'_>, drawing: &Drawing, splitting: Splitting
         (None, Some(t)) => build(&Adaptive::new(&solid, t)?, &frame, rule, control),
         (None, None) => build(&solid, &frame, rule, control),
     });
-    let mut metadata = facts(input, found.fingerprint(), rule, None);
+    let mut metadata = facts(input, fingerprint, rule, None);
     if let Some(thickness) = adaptive {
         metadata.insert("adaptive", number(thickness));
     }

@@ -66,8 +66,8 @@ impl Output {
         }
     }
 
-    /// Refuses to overwrite what is read: `what` it is.
-    pub fn check_beside(&self, input: &Input, what: &str) -> Result<(), Failure> {
+    /// Refuses an output that is the input itself, which would be overwritten; `what` the input is.
+    pub fn check_spares(&self, input: &Input, what: &str) -> Result<(), Failure> {
         if let (Some(from), Some(to)) = (input.path(), self.path())
             && from.canonicalize().is_ok_and(|from| to.canonicalize().is_ok_and(|to| from == to))
         {
@@ -82,6 +82,25 @@ impl Output {
             Output::Standard => print(bytes),
             Output::Path(path) => write_file(path, bytes),
         }
+    }
+
+    /// The same without having all of them in memory. Returns how many there are.
+    pub fn stream(&self, write: impl FnOnce(&mut dyn Write) -> std::io::Result<()>) -> Result<u64, Failure> {
+        let Some(path) = self.path() else {
+            let mut out = Counter { out: BufWriter::new(std::io::stdout().lock()), count: 0 };
+            write(&mut out).and_then(|()| out.flush()).map_err(unwritten)?;
+            return Ok(out.count);
+        };
+        let mut count = 0;
+        let whole = file::replace(path, |file| {
+            let mut out = Counter { out: BufWriter::new(file), count: 0 };
+            write(&mut out)?;
+            out.flush()?;
+            count = out.count;
+            Ok(())
+        });
+        whole.of(path.display())?;
+        Ok(count)
     }
 
     /// Saves the octree, the whole of it or nothing, and returns the bytes that its file has.
@@ -117,25 +136,6 @@ impl Output {
                 Ok(counter.count)
             }
         }
-    }
-
-    /// The same without having all of them in memory. Returns how many there are.
-    pub fn stream(&self, write: impl FnOnce(&mut dyn Write) -> std::io::Result<()>) -> Result<u64, Failure> {
-        let Some(path) = self.path() else {
-            let mut out = Counter { out: BufWriter::new(std::io::stdout().lock()), count: 0 };
-            write(&mut out).and_then(|()| out.flush()).map_err(unwritten)?;
-            return Ok(out.count);
-        };
-        let mut count = 0;
-        let whole = file::replace(path, |file| {
-            let mut out = Counter { out: BufWriter::new(file), count: 0 };
-            write(&mut out)?;
-            out.flush()?;
-            count = out.count;
-            Ok(())
-        });
-        whole.of(path.display())?;
-        Ok(count)
     }
 
     /// Tells what was done, as JSON or for people.

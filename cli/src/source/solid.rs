@@ -63,11 +63,11 @@ impl Source {
         Source::of(input, Found::look(input, taking.reading.told())?, taking)
     }
 
-    fn of(input: &Input, found: Found<'_>, Taking { reading, drawing }: &Taking) -> Result<Source, Failure> {
+    fn of(input: &Input, found: Found<'_>, taking: &Taking) -> Result<Source, Failure> {
+        let Taking { reading, drawing } = taking;
         match found.content {
             Content::Solid => {
-                reading.refuse(input, SOLID)?;
-                drawing.refuse(input, SOLID)?;
+                taking.refuse(input, SOLID)?;
                 Ok(Source::Octree(Box::new(found.octree()?)))
             }
             Content::Scene => {
