@@ -1,6 +1,6 @@
 //! What is told of a volume.
 
-use crate::source::volume::{Voxels, kind_name};
+use crate::source::volume::Voxels;
 use crate::words::number;
 use leafless::exchange::LengthUnit;
 use serde::Serialize;
@@ -23,7 +23,7 @@ impl Info {
         let grid = volume.volume.grid();
         Info {
             format: volume.format.clone(),
-            samples: kind_name(volume.kind),
+            samples: volume.kind.name(),
             extents: grid.extents(),
             spacing: grid.spacing(),
             corner: grid.corner(),

@@ -61,33 +61,13 @@ fn corner(text: &str) -> Result<[f64; 3], String> {
     numbers(text).ok_or_else(|| "expected three numbers: x,y,z".into())
 }
 
-/// Types of samples, and their names.
-const KINDS: [(&str, SampleKind); 11] = [
-    ("bit", SampleKind::Bit),
-    ("i8", SampleKind::I8),
-    ("u8", SampleKind::U8),
-    ("i16", SampleKind::I16),
-    ("u16", SampleKind::U16),
-    ("i32", SampleKind::I32),
-    ("u32", SampleKind::U32),
-    ("i64", SampleKind::I64),
-    ("u64", SampleKind::U64),
-    ("f32", SampleKind::F32),
-    ("f64", SampleKind::F64),
-];
-
-/// The name of a type of samples.
-pub fn kind_name(kind: SampleKind) -> &'static str {
-    KINDS.iter().find(|known| known.1 == kind).map_or("", |known| known.0)
-}
-
 fn kinds() -> impl TypedValueParser<Value = SampleKind> {
     let bits = "Eight to a byte, the lowest first; each row along x begins with a byte of its own";
-    let names = KINDS.map(|(name, kind)| {
-        let name = PossibleValue::new(name);
+    let names = SampleKind::ALL.map(|kind| {
+        let name = PossibleValue::new(kind.name());
         if kind == SampleKind::Bit { name.help(bits) } else { name }
     });
-    let of = |name: String| KINDS.into_iter().find(|known| known.0 == name).map(|known| known.1);
+    let of = |name: String| SampleKind::ALL.into_iter().find(|kind| kind.name() == name);
     PossibleValuesParser::new(names).try_map(move |name| of(name).ok_or("is no type of samples"))
 }
 

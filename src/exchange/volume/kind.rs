@@ -33,6 +33,38 @@ pub enum SampleKind {
 }
 
 impl SampleKind {
+    /// All of them.
+    pub const ALL: [SampleKind; 11] = [
+        SampleKind::Bit,
+        SampleKind::I8,
+        SampleKind::U8,
+        SampleKind::I16,
+        SampleKind::U16,
+        SampleKind::I32,
+        SampleKind::U32,
+        SampleKind::I64,
+        SampleKind::U64,
+        SampleKind::F32,
+        SampleKind::F64,
+    ];
+
+    /// Its name: `bit`, or a letter and the number of bits, from `i8` and `u8` to `f64`.
+    pub const fn name(self) -> &'static str {
+        match self {
+            SampleKind::Bit => "bit",
+            SampleKind::I8 => "i8",
+            SampleKind::U8 => "u8",
+            SampleKind::I16 => "i16",
+            SampleKind::U16 => "u16",
+            SampleKind::I32 => "i32",
+            SampleKind::U32 => "u32",
+            SampleKind::I64 => "i64",
+            SampleKind::U64 => "u64",
+            SampleKind::F32 => "f32",
+            SampleKind::F64 => "f64",
+        }
+    }
+
     /// The middle of the type's range, which is where a threshold lies if nobody says where: ½ of bits, 127½ of
     /// bytes, −½ of whole numbers with a sign; 0 of single and double precision.
     pub const fn half_range(self) -> f64 {
