@@ -5,8 +5,7 @@ use crate::making::dexel_surface;
 use crate::options;
 use crate::progress::watched;
 use crate::source::input::Input;
-use crate::source::solid::Shape;
-use crate::source::solid::Source;
+use crate::source::solid::{Shape, Source};
 use clap::{Args, ValueEnum};
 use leafless::{
     Affine, AnySolid, Attribute, Bounds, CellFilter, Channel, Clip, ClippedLayer, ColourMap, Compositing,
