@@ -6,7 +6,8 @@
 //! ```
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
-use leafless::{Control, Csg, Frame, Membership, PointCursor, Rule, build};
+use leafless::query::PointCursor;
+use leafless::{Control, Csg, Frame, Membership, Rule, build};
 
 const POINTS: usize = 1_000_000;
 

@@ -8,11 +8,11 @@
 //! and carried through a Boolean.
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
-use leafless::{
-    Attribute, Bounds, CarryRule, Channel, ChannelOperand, ConstantAttribute, Control, Criterion as SplitBy,
-    Csg, Detail, FillOptions, Frame, FunctionAttribute, Interval, Octree, Rule, ScalarType, ValueRange,
-    ValueType, build, carry_channel, fill_channel, union,
+use leafless::attribute::{
+    Attribute, CarryRule, Channel, ChannelOperand, ConstantAttribute, Criterion as SplitBy, Detail,
+    FillOptions, FunctionAttribute, ScalarType, ValueRange, ValueType, carry_channel, fill_channel,
 };
+use leafless::{Bounds, Control, Csg, Frame, Interval, Octree, Rule, build, union};
 use std::hint::black_box;
 
 fn ball(centre: f64) -> Octree {

@@ -3,7 +3,8 @@
 //! `cargo bench --bench convergence` prints a table and writes the picture `benches/convergence.svg`. No clock is read:
 //! the figures are the same on every machine.
 
-use leafless::{Affine, Control, Csg, Error, Frame, Interval, measure, surface_area};
+use leafless::query::surface_area;
+use leafless::{Affine, Control, Csg, Error, Frame, Interval, measure};
 use plotters::prelude::*;
 use std::path::Path;
 

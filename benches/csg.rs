@@ -10,9 +10,8 @@
 //! `benches/README.md`.
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
-use leafless::{
-    Cell, Classifier, Control, Csg, Error, Frame, HalfSpace, Rule, Solid, Verdict, Worker, build,
-};
+use leafless::solid::HalfSpace;
+use leafless::{Cell, Classifier, Control, Csg, Error, Frame, Rule, Solid, Verdict, Worker, build};
 use std::hint::black_box;
 
 #[path = "peers/src/scene.rs"]

@@ -2,10 +2,9 @@
 //!
 //! `LEAFLESS_MODELS=/path/to/models cargo bench --bench dexels`. One thread. Medians of several runs.
 
-use leafless::{
-    Affine, Control, Csg, DexelEditor, DexelEnds, DexelFormat, DexelOptions, FillRule, Frame, MeshSolid,
-    TriDexel, dexelize, exchange,
-};
+use leafless::dexel::{DexelEditor, DexelEnds, DexelFormat};
+use leafless::op::DexelOptions;
+use leafless::{Affine, Control, Csg, FillRule, Frame, MeshSolid, TriDexel, dexelize, exchange};
 use std::time::{Duration, Instant};
 
 fn median(mut times: Vec<Duration>) -> f64 {

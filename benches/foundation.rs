@@ -10,10 +10,11 @@
 //! `benches/README.md`.
 
 use criterion::{BatchSize, Criterion, Throughput, criterion_group, criterion_main};
+use leafless::octree::{CellFilter, Cursor, Direction, TaggedCell};
+use leafless::query::{PointCursor, PointTable};
 use leafless::{
-    CellFilter, Control, Cursor, Direction, FillRule, Frame, Membership, MeshSolid, Octree, PointCursor,
-    PointTable, Rule, Tag, TaggedCell, TriangleMesh, build, compact, difference, exchange, file,
-    intersection, union, xor,
+    Control, FillRule, Frame, Membership, MeshSolid, Octree, Rule, Tag, TriangleMesh, build, compact,
+    difference, exchange, file, intersection, union, xor,
 };
 use std::hint::black_box;
 use std::path::Path;

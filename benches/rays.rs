@@ -10,9 +10,8 @@
 //! width D/2.
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
-use leafless::{
-    Control, FillRule, Frame, MeshSolid, Obstacle, Octree, Ray, RayHit, Rule, build, compact, exchange,
-};
+use leafless::query::{Obstacle, RayHit};
+use leafless::{Control, FillRule, Frame, MeshSolid, Octree, Ray, Rule, build, compact, exchange};
 use std::hint::black_box;
 use std::path::Path;
 use std::sync::Arc;

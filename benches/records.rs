@@ -5,10 +5,9 @@
 //! ```
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
-use leafless::{
-    Affine, Cell, Control, Csg, Frame, FunctionAttribute, Rule, Symmetry, Tag, Viewpoint, VoxelKind,
-    VoxelOptions, VoxelRecords, VoxelRecordsRef, Voxels, build, marching_cubes,
-};
+use leafless::attribute::FunctionAttribute;
+use leafless::voxel::{Symmetry, Viewpoint, VoxelKind, VoxelOptions, VoxelRecords, VoxelRecordsRef, Voxels};
+use leafless::{Affine, Cell, Control, Csg, Frame, Rule, Tag, build, marching_cubes};
 use std::hint::black_box;
 
 fn mixed(mut x: u64) -> u64 {
@@ -37,7 +36,8 @@ fn records(c: &mut Criterion) {
     let count_only = || Voxels::new(tree.view(), &options, None).expect("voxels").count_records();
     group.bench_function("counted", |b| b.iter(|| count_only().expect("a count")));
     let list = |values: bool| {
-        let attribute: Option<&dyn leafless::Attribute> = if values { Some(&colour) } else { None };
+        let attribute: Option<&dyn leafless::attribute::Attribute> =
+            if values { Some(&colour) } else { None };
         VoxelRecords::of(tree.view(), &options, attribute, &control).expect("records")
     };
     group.bench_function("listed", |b| b.iter(|| list(false)));

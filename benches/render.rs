@@ -5,11 +5,13 @@
 //! ```
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
-use leafless::{
-    Bounds, Camera, ColourMap, Control, Csg, Detail, Finish, Frame, FunctionAttribute, Interval, Layer,
-    MeshLayer, OctreeLayer, Resolve, Rule, Shot, SolidLayer, Transfer, ValueRange, VolumeLayer, VoxelOptions,
-    VoxelRecords, build, marching_cubes, render,
+use leafless::attribute::{Detail, FunctionAttribute, ValueRange};
+use leafless::render::{
+    Camera, ColourMap, Finish, Layer, MeshLayer, OctreeLayer, Shot, SolidLayer, Transfer, VolumeLayer, render,
 };
+use leafless::surface::Resolve;
+use leafless::voxel::{VoxelOptions, VoxelRecords};
+use leafless::{Bounds, Control, Csg, Frame, Interval, Rule, build, marching_cubes};
 use std::hint::black_box;
 
 /// Pixels on a side of the picture.
@@ -30,7 +32,8 @@ fn voxels(control: &Control<'_>) -> VoxelRecords {
         ValueRange::Within([Interval::new(value(bounds.min), value(bounds.max)).unwrap(); 4])
     });
     let cell = frame.cell_size();
-    let detail = Detail::new(16.0 * cell, cell, 0.25, leafless::Criterion::Range).expect("a detail");
+    let detail =
+        Detail::new(16.0 * cell, cell, 0.25, leafless::attribute::Criterion::Range).expect("a detail");
     let options = VoxelOptions::new().detail(detail);
     VoxelRecords::of(tree.view(), &options, Some(&attribute), control).expect("records")
 }

@@ -9,9 +9,12 @@
 
 use criterion::measurement::WallTime;
 use criterion::{BenchmarkGroup, Criterion, Throughput, criterion_group, criterion_main};
+use leafless::surface::{
+    Snap, VertexPlacement, coplanar_shrink, marching_cubes_solid, published_shrink, simple_marching_cubes,
+};
 use leafless::{
-    Control, Csg, FillRule, Frame, MeshSolid, Octree, Rule, Snap, Solid, TriangleMesh, VertexPlacement,
-    build, coplanar_shrink, exchange, marching_cubes, marching_cubes_of, published_shrink, smc,
+    Control, Csg, FillRule, Frame, MeshSolid, Octree, Rule, Solid, TriangleMesh, build, exchange,
+    marching_cubes,
 };
 use std::hint::black_box;
 
@@ -71,7 +74,9 @@ fn extract(c: &mut Criterion) {
     for (name, tree) in trees.iter().filter(|(name, _)| name.ends_with("512")) {
         let control = Control::threads(1);
         group.bench_function(name, |b| {
-            b.iter_with_large_drop(|| smc(black_box(tree.view()), Snap::Fat, None, &control).expect("a mesh"))
+            b.iter_with_large_drop(|| {
+                simple_marching_cubes(black_box(tree.view()), Snap::Fat, None, &control).expect("a mesh")
+            })
         });
     }
     group.finish();
@@ -98,7 +103,7 @@ fn shrink(c: &mut Criterion) {
             let mesh = mesh.expect("a mesh");
             (mesh.vertices().len(), mesh.triangles().len(), mesh.report().expect("a report").is_closed())
         };
-        let all = count(smc(tree.view(), Snap::Fat, None, &control));
+        let all = count(simple_marching_cubes(tree.view(), Snap::Fat, None, &control));
         let published = count(published_shrink(tree.view(), Snap::Fat, None, &control));
         let ours = count(coplanar_shrink(tree.view(), Snap::Fat, None, &control));
         println!("{name}: smc {all:?}, published {published:?}, ours {ours:?}");
@@ -130,7 +135,7 @@ fn crossings_of<S: Solid>(group: &mut BenchmarkGroup<'_, WallTime>, name: &str, 
         let control = Control::threads(1);
         group.bench_function(format!("{name}, {placement:?}"), |b| {
             b.iter_with_large_drop(|| {
-                marching_cubes_of(black_box(solid), &frame, placement, &control).expect("a mesh")
+                marching_cubes_solid(black_box(solid), &frame, placement, &control).expect("a mesh")
             })
         });
     }

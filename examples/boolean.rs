@@ -2,7 +2,8 @@
 //!
 //! Run it with `cargo run --release --example boolean`.
 
-use leafless::{Control, Csg, Frame, Metadata, Region, Rule, build, difference, file, intersection};
+use leafless::query::Region;
+use leafless::{Control, Csg, Frame, Metadata, Rule, build, difference, file, intersection};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     // Everything that is to be combined lies on one frame: here the cube [-1, 1]³ in 512 cells per axis.

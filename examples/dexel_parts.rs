@@ -5,11 +5,11 @@
 //! and compared with its volume by formula. Run it with
 //! `cargo run --release --example dexel_parts [folder]`; with a folder it writes the meshes there, as PLY.
 
+use leafless::dexel::{DexelFormat, DexelNormals};
 use leafless::exchange::{MeshFormat, WriteOptions, write_mesh};
-use leafless::{
-    Affine, Control, Csg, DexelFormat, DexelNormals, DexelOptions, Error, Frame, TriDexel, TriangleMesh,
-    dexelize, dual_contouring_of_dexels,
-};
+use leafless::op::DexelOptions;
+use leafless::surface::dual_contouring_dexels;
+use leafless::{Affine, Control, Csg, Error, Frame, TriDexel, TriangleMesh, dexelize};
 use std::f64::consts::PI;
 
 /// A part, and what is known of it.
@@ -27,7 +27,7 @@ pub struct Part {
 impl Part {
     /// Its surface by dual contouring, which keeps edges and corners.
     pub fn surface(&self, control: &Control<'_>) -> Result<TriangleMesh, Error> {
-        Ok(dual_contouring_of_dexels(self.model.view(), control)?.0)
+        Ok(dual_contouring_dexels(self.model.view(), control)?.0)
     }
 
     /// The volume of a material, by the rays along an axis.

@@ -8,9 +8,9 @@
 pub mod gear_records;
 
 use gear_records::{Lists, Part, inside, parts};
-use leafless::{
-    Camera, ColourMap, Control, Error, Picture, Shot, Transfer, VolumeLayer, VoxelRecords, render,
-};
+use leafless::render::{Camera, ColourMap, Picture, Shot, Transfer, VolumeLayer, render};
+use leafless::voxel::VoxelRecords;
+use leafless::{Control, Error};
 
 /// Pictures of the coarse, the adaptive and the fine records: one camera, one transfer function, one depth of the boundary.
 pub fn pictures(

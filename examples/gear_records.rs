@@ -5,10 +5,9 @@
 //! one, and 13 752 of the size that the colour asks for. Run it with
 //! `cargo run --release --example gear_records`.
 
-use leafless::{
-    Affine, Attribute, Bounds, Control, Criterion, Csg, Detail, Error, Frame, FunctionAttribute, Interval,
-    Octree, Rule, ValueRange, VoxelKind, VoxelOptions, VoxelRecords, build,
-};
+use leafless::attribute::{Attribute, Criterion, Detail, FunctionAttribute, ValueRange};
+use leafless::voxel::{VoxelKind, VoxelOptions, VoxelRecords};
+use leafless::{Affine, Bounds, Control, Csg, Error, Frame, Interval, Octree, Rule, build};
 
 /// A part, what is to be seen in it, and how finely.
 pub struct Part {

@@ -6,9 +6,8 @@
 //! cargo run --release --example shrink_edges > pictures/shrink.svg
 //! ```
 
-use leafless::{
-    Control, Csg, Error, Frame, Rule, Snap, TriangleMesh, build, coplanar_shrink, published_shrink, smc,
-};
+use leafless::surface::{Snap, coplanar_shrink, published_shrink, simple_marching_cubes};
+use leafless::{Control, Csg, Error, Frame, Rule, TriangleMesh, build};
 use std::collections::HashMap;
 
 /// Pixels of a picture on either side.
@@ -27,7 +26,7 @@ fn main() -> Result<(), Error> {
     let part = Csg::intersection_of([block, cut, edge])?;
     let tree = build(&part, &frame, Rule::Sampled, &control)?;
     let meshes = [
-        ("simple marching cubes", smc(tree.view(), Snap::Fat, None, &control)?),
+        ("simple marching cubes", simple_marching_cubes(tree.view(), Snap::Fat, None, &control)?),
         ("shrunk as published", published_shrink(tree.view(), Snap::Fat, None, &control)?),
         ("shrunk without cracks", coplanar_shrink(tree.view(), Snap::Fat, None, &control)?),
     ];

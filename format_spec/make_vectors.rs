@@ -11,9 +11,10 @@
 
 pub mod dexel_vectors;
 
+use leafless::attribute::{Channel, FillOptions, FunctionAttribute, ScalarType, ValueType, fill_channel};
 use leafless::{
-    Cell, Channel, Classifier, Control, Error, FillOptions, Frame, FunctionAttribute, Metadata, Octree,
-    Proof, Rule, ScalarType, Solid, Tag, ValueType, Verdict, Worker, build, file, fill_channel,
+    Cell, Classifier, Control, Error, Frame, Metadata, Octree, Proof, Rule, Solid, Tag, Verdict, Worker,
+    build, file,
 };
 use num_bigint::{BigInt, Sign};
 use std::cmp::Reverse;

@@ -78,7 +78,7 @@
 //! | … an allocation refused? | `memory.rs` |
 //! | … where a ray meets a solid, how high it is? | `query/ray/`, `query/columns/` |
 //! | … a ray of a mesh, of a half-space? | `solid/mesh/chords.rs`, `solid/half_space/lines.rs` |
-//! | … a closed triangle mesh of a solid? | `surface/cubes.rs`, `smc.rs`, `shrink.rs`, `solid.rs`, `volume.rs`, `dexel.rs` |
+//! | … a closed triangle mesh of a solid? | `surface/cubes.rs`, `simple.rs`, `shrink.rs`, `solid.rs`, `volume.rs`, `dexel.rs` |
 //! | … a picture taken, a triangle drawn, a plane section, a volume, a legend? | `render/tile.rs`, `coverage.rs`, `slice.rs`, `volume/`, `legend.rs` |
 //! | … the normal of a surface of which only cells are known? | `render/normals.rs` |
 //! | … the list of voxels, their depth order? | `voxel/walk.rs`, `records.rs`, `order.rs` |
@@ -91,101 +91,45 @@ extern crate alloc;
 #[cfg(feature = "std")]
 extern crate std;
 
-mod attribute;
+pub mod attribute;
 mod control;
 mod cut;
-mod dexel;
+pub mod dexel;
 mod dispatch;
-mod error;
+pub mod error;
 pub mod exchange;
 pub mod file;
-mod lattice;
+pub mod lattice;
 #[doc(hidden)]
 pub mod memory;
-mod mesh;
-mod octree;
-mod op;
+pub mod mesh;
+pub mod octree;
+pub mod op;
 mod parallel;
-mod query;
+pub mod query;
 #[cfg(feature = "render")]
-mod render;
+pub mod render;
 #[cfg(feature = "scene")]
 pub mod scene;
-mod solid;
-mod surface;
-mod voxel;
+pub mod solid;
+pub mod surface;
+pub mod voxel;
 mod walk;
 
-pub use attribute::{
-    Attribute, CarryRule, ChannelOperand, ChannelSummary, ConstantAttribute, Criterion, Detail, FillOptions,
-    FunctionAttribute, Interpolation, MaterialProperties, MovedAttribute, SurfaceAttribute, ValueRange,
-    ValueRegion, VolumeAttribute, carry_channel, carry_channels, fill_channel, materials,
-};
+// What everyone uses. Everything else is in the module of its topic.
 pub use control::Control;
-pub use dexel::{
-    Beam, BeamEnd, Dexel, DexelEditor, DexelEnd, DexelEnds, DexelFormat, DexelNormals, DexelRays,
-    DexelStatistics, TriDexel, TriDexelRef,
-};
-pub use error::{
-    Damage, Error, FormatError, MeshError, MeshFileError, PackageError, PolyhedronError, SceneError,
-    VolumeFileError,
-};
-pub use lattice::{
-    Affine, Bounds, Cell, CellMoments, Cube, CubeMoments, Frame, Interval, IntervalEnds, MAX_DEPTH,
-    VolumeMoments,
-};
-pub use mesh::{
-    AttributeDomain, DefectKind, FillRule, IntersectingPair, IntersectingPairs, MeshAttribute, MeshDefect,
-    MeshMoments, MeshReport, TriangleMesh,
-};
-#[cfg(feature = "std")]
-pub use mesh::{Polyhedron, PolyhedronArrays, PolyhedronPart};
-pub use octree::{
-    Block, BoundaryFace, BoundaryFaces, CellFilter, Cells, Channel, ChannelRef, Cursor, Direction,
-    LevelStatistics, Metadata, MetadataLimit, Node, Octree, OctreeRef, Planes, Proof, ScalarType, Statistics,
-    Tag, TaggedCell, ValueType,
-};
-pub use op::{
-    DexelOptions, LazyOctree, Refinement, Rule, build, compact, complement, dexelize, difference,
-    intersection, intersection_of, octree_of_dexels, resolve, union, union_of, xor, xor_of,
-};
+pub use dexel::TriDexel;
+pub use error::Error;
+pub use lattice::{Affine, Bounds, Cell, Frame, Interval};
+pub use mesh::{FillRule, TriangleMesh};
+pub use octree::{Metadata, Octree, OctreeRef, Proof, Tag};
+pub use op::{LazyOctree, Rule, build, compact, complement, dexelize, difference, intersection, union, xor};
 pub use query::{
-    AREA_SPLITS, BOUNDING_BOX_SPLITS, CLEARANCE_SPLITS, CellsIn, Clearance, ColumnCells, ColumnRuns, Columns,
-    DISTANCE_SPLITS, DistanceTo, Extent, Heights, Interference, MEASURE_SPLITS, MassProperties, Membership,
-    NearCell, Obstacle, Overlap, PointCursor, PointDistance, PointTable, Ray, RayHit, RaySpans, Region, Run,
-    Side, Sight, StopReason, SurfaceArea, Tolerance, bounding_box, cast_rays, cells_in, classify_box,
-    classify_in, clearance, columns, contains, distances, heights, interference, interference_of,
-    line_of_sight, measure, ray_spans, surface_area, volume_in,
+    Clearance, Interference, MassProperties, Membership, Ray, Tolerance, bounding_box, cast_rays, clearance,
+    contains, interference, measure,
 };
-#[cfg(feature = "render")]
-pub use render::{
-    Camera, Clip, ClippedLayer, ColourMap, Compositing, FIELD_OF_VIEW, Finish, Layer, LegendBox, LegendSide,
-    Lens, LinesLayer, MeshEdges, MeshLayer, OctreeLayer, Outline, Picture, Shot, SliceLayer, SlicePlane,
-    SolidLayer, TAG_COLOURS, Transfer, VolumeLayer, draw_colour_bar, draw_names, render,
-};
-pub use solid::{
-    Adaptive, AnyClassifier, AnySolid, AnyWorker, Band, Callback, Classifier, Crossing, Csg, Enclosure,
-    Erasable, Fingerprint, Fingerprinter, GradientRange, HalfSpace, MeshSolid, Motion, SampleArray, Samples,
-    Segment, Slab, SlabJoin, Solid, SplitCounter, Subtree, TangentBalls, Touch, Transform, Verdict, Volume,
-    VoxelGrid, Worker,
-};
-
-pub use surface::{
-    DexelSolid, DexelSurfaceReport, Resolve, Snap, VertexPlacement, coplanar_shrink, coplanar_shrink_of,
-    dual_contouring_of_dexels, marching_cubes, marching_cubes_of, marching_cubes_of_dexels,
-    marching_cubes_of_volume, marching_cubes_reusing, marching_cubes_with_volume, published_shrink,
-    published_shrink_of, smc, smc_of,
-};
-
-pub use walk::Zone;
-
-pub use voxel::{
-    DexelVoxels, LinearCode, LongVoxel, Symmetry, Viewpoint, VoxelBoundary, VoxelKind, VoxelOptions,
-    VoxelRecord, VoxelRecords, VoxelRecordsRef, VoxelSolid, VoxelTriangles, Voxels, dexel_voxels,
-};
-
-#[cfg(feature = "std")]
-pub use solid::Prepared;
+pub use solid::{AnySolid, Callback, Classifier, Csg, MeshSolid, Solid, Verdict, Volume, Worker};
+pub use surface::marching_cubes;
 
 /// The README's example is compiled and run.
 #[cfg(all(doctest, feature = "mmap"))]

@@ -5,7 +5,7 @@ use super::csg::placement;
 use super::frame::leafless_interval;
 use super::status::leafless_status;
 use leafless::Error;
-use leafless::{Attribute, ConstantAttribute, MovedAttribute, ValueRange};
+use leafless::attribute::{Attribute, ConstantAttribute, MovedAttribute, ValueRange};
 use leafless::{Bounds, Interval};
 use leafless_range_kind::*;
 use std::sync::Arc;

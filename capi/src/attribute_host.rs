@@ -7,8 +7,8 @@ use super::status::leafless_status;
 use core::ffi::c_void;
 use leafless::Bounds;
 use leafless::Error;
+use leafless::attribute::{Attribute, ValueRange};
 use leafless::memory;
-use leafless::{Attribute, ValueRange};
 
 /// The value of the host's attribute at a point (3 numbers, model units): sets the numbers of `value`, as many as
 /// the attribute has components. All are NaN before; they stay so where there is no value, and a value whose

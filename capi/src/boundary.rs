@@ -8,7 +8,8 @@ use core::fmt::{self, Display};
 use core::marker::PhantomData;
 use core::mem::{align_of, size_of};
 use core::ptr::NonNull;
-use leafless::{Error, FormatError};
+use leafless::Error;
+use leafless::error::FormatError;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 

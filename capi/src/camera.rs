@@ -2,7 +2,7 @@
 
 use super::boundary::{Failure, guard, out, slice};
 use super::status::leafless_status;
-use leafless::{Camera, Lens};
+use leafless::render::{Camera, Lens};
 
 /// From where a picture is taken. leafless_camera_fitted sets all of it; a host may as well.
 #[derive(Clone, Copy)]

@@ -5,8 +5,10 @@ use super::cursor::leafless_cursor;
 use super::frame::{frame, leafless_frame};
 use super::octree::{leafless_octree, leafless_tag};
 use super::status::leafless_status;
-use leafless::{BoundaryFace, BoundaryFaces, CellFilter, Cells, Direction, Tag, TaggedCell};
-use leafless::{Cell, Cube};
+use leafless::Cell;
+use leafless::Tag;
+use leafless::lattice::Cube;
+use leafless::octree::{BoundaryFace, BoundaryFaces, CellFilter, Cells, Direction, TaggedCell};
 use std::sync::Arc;
 use yoke::Yoke;
 

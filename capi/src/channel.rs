@@ -6,8 +6,8 @@ use super::frame::leafless_frame;
 use super::metadata::{self, Fact};
 use super::status::leafless_status;
 use core::ffi::c_char;
-use leafless::MetadataLimit;
-use leafless::{Channel, ScalarType};
+use leafless::attribute::{Channel, ScalarType};
+use leafless::octree::MetadataLimit;
 use leafless_scalar_type::*;
 
 /// Values inside a cube, in a tree of their own: a colour, a temperature, a material at every point, or at some.

@@ -8,9 +8,10 @@ use super::frame::{frame, leafless_frame};
 use super::octree::leafless_octree;
 use super::status::leafless_status;
 use core::ffi::c_char;
-use leafless::MetadataLimit;
-use leafless::{Attribute, Criterion, Detail, FillOptions, fill_channel};
-use leafless::{Metadata, ScalarType, ValueType};
+use leafless::Metadata;
+use leafless::attribute::{Attribute, Criterion, Detail, FillOptions, fill_channel};
+use leafless::attribute::{ScalarType, ValueType};
+use leafless::octree::MetadataLimit;
 use leafless_criterion::*;
 use leafless_scalar_type::*;
 
@@ -295,6 +296,6 @@ pub unsafe extern "C" fn leafless_channel_with_value_in(
         };
         let view = channel.view()?;
         let made = controlled(options, |control| view.with_value_in(region, value, control))?;
-        changed.write(give(made.with_metadata_of(channel)))
+        changed.write(give(made.with_metadata_from(channel)))
     })
 }

@@ -10,12 +10,12 @@ use super::octree::{give as give_octree, leafless_octree};
 use super::solid::leafless_solid;
 use super::status::leafless_status;
 use super::volume::leafless_volume;
-use leafless::Band;
 use leafless::Tolerance;
-use leafless::{Bounds, Interval};
-use leafless::{
+use leafless::attribute::{
     ChannelSummary, Interpolation, MaterialProperties, MovedAttribute, VolumeAttribute, materials,
 };
+use leafless::solid::Band;
+use leafless::{Bounds, Interval};
 use leafless_interpolation::*;
 
 /// What lies between the samples of a volume.

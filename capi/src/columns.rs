@@ -7,7 +7,7 @@ use super::octree::leafless_octree;
 use super::rays::obstacle;
 use super::solid::leafless_solid;
 use super::status::leafless_status;
-use leafless::{ColumnCells, Columns, Heights, Obstacle, Run, Side, columns, heights};
+use leafless::query::{ColumnCells, Columns, Heights, Obstacle, Run, Side, columns, heights};
 use leafless::{Frame, Interval};
 
 /// Consecutive finest cells of a column.

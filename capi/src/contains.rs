@@ -7,7 +7,8 @@ use super::octree::{leafless_octree, leafless_tag};
 use super::solid::leafless_solid;
 use super::status::leafless_status;
 use core::mem::{align_of, size_of};
-use leafless::{Membership, Region, classify_box, contains};
+use leafless::query::{Region, classify_box};
+use leafless::{Membership, contains};
 
 /// The answer to a point query.
 #[derive(Clone, Copy)]

@@ -7,7 +7,7 @@ use super::frame::{frame, leafless_frame, leafless_interval};
 use super::octree::leafless_octree;
 use super::solid::leafless_solid;
 use super::status::leafless_status;
-use leafless::{CellsIn, cells_in, classify_in, volume_in};
+use leafless::query::{CellsIn, cells_in, classify_in, volume_in};
 
 /// How many finest cells of a solid lie in a region, between bounds. A cell where the region is FULL lies in it, one
 /// where it is EMPTY does not, and one where it is PARTIAL may: so the bounds hold whether a cell counts that lies in the

@@ -6,7 +6,8 @@ use super::status::leafless_status;
 use leafless::Affine;
 use leafless::Error;
 use leafless::memory;
-use leafless::{Adaptive, AnySolid, Csg, HalfSpace, Motion, Solid, Touch};
+use leafless::solid::{Adaptive, HalfSpace, Motion, Touch};
+use leafless::{AnySolid, Csg, Solid};
 
 /// What counts as touching: when a cell that meets the boundary of an expression of half-spaces, but not its
 /// interior, is EMPTY.

@@ -3,7 +3,7 @@
 use super::boundary::{Failure, discard, exclusive, guard, out, share, shared};
 use super::octree::{leafless_octree, leafless_tag};
 use super::status::leafless_status;
-use leafless::Cursor;
+use leafless::octree::Cursor;
 use std::sync::Arc;
 use yoke::Yoke;
 

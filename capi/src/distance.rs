@@ -10,7 +10,7 @@ use super::solid::leafless_solid;
 use super::status::leafless_status;
 use leafless::Interval;
 use leafless::memory;
-use leafless::{DistanceTo, NearCell, PointDistance, distances};
+use leafless::query::{DistanceTo, NearCell, PointDistance, distances};
 
 /// What a distance is measured to.
 #[repr(u32)]

@@ -10,7 +10,8 @@ use leafless::Error;
 use leafless::Interval;
 use leafless::Tag;
 use leafless::memory;
-use leafless::{Callback, Csg, Fingerprint, GradientRange, HalfSpace, TangentBalls, Verdict};
+use leafless::solid::{Fingerprint, GradientRange, HalfSpace, TangentBalls};
+use leafless::{Callback, Csg, Verdict};
 use std::sync::Arc;
 
 /// What a host promises of its shape outside of the universe that it is asked about.

@@ -10,9 +10,10 @@ use super::solid::{give, leafless_solid};
 use super::status::leafless_status;
 use leafless::Cell;
 use leafless::Error;
-use leafless::Transform;
 use leafless::memory;
-use leafless::{AnySolid, Clearance, Interference, Overlap, clearance, interference, interference_of};
+use leafless::query::{Overlap, interference_at};
+use leafless::solid::Transform;
+use leafless::{AnySolid, Clearance, Interference, clearance, interference};
 
 /// Whether the interiors of two solids have points in common.
 #[derive(Clone, Copy)]
@@ -254,7 +255,7 @@ pub unsafe extern "C" fn leafless_solid_interfere_many(
             placements.push(placement(matrix.as_ptr())?);
         }
         let found = controlled(options, |control| {
-            interference_of(a, b, &own, &placements, &frame, tolerance_model, control)
+            interference_at(a, b, &own, &placements, &frame, tolerance_model, control)
         })?;
         results.fill_with(&found)
     })

@@ -5,9 +5,9 @@ use super::boundary::{
     Failure, Sized32, guard, handle, initialise, out, refer, release, shared, sized, slice,
 };
 use super::status::leafless_status;
-use leafless::Attribute;
 use leafless::Bounds;
-use leafless::{Clip, ClippedLayer, ColourMap, Layer, Transfer};
+use leafless::attribute::Attribute;
+use leafless::render::{Clip, ClippedLayer, ColourMap, Layer, Transfer};
 use leafless_colour_map::*;
 use std::sync::Arc;
 

@@ -10,9 +10,9 @@ use super::solid::leafless_solid;
 use super::status::leafless_status;
 use super::voxel::records;
 use leafless::Frame;
-use leafless::VoxelRecords;
 use leafless::memory;
-use leafless::{Compositing, Layer, SliceLayer, SlicePlane, TAG_COLOURS, Transfer, VolumeLayer};
+use leafless::render::{Compositing, Layer, SliceLayer, SlicePlane, TAG_COLOURS, Transfer, VolumeLayer};
+use leafless::voxel::VoxelRecords;
 use std::sync::Arc;
 
 /// What a plane section looks like. NULL means the defaults. All fields but the first may be zero, which is their

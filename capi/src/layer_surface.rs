@@ -12,8 +12,8 @@ use super::status::leafless_status;
 use core::mem::MaybeUninit;
 use leafless::TriangleMesh;
 use leafless::memory;
+use leafless::render::{Finish, Layer, LinesLayer, MeshEdges, MeshLayer, OctreeLayer, Outline, SolidLayer};
 use leafless::{Cell, Frame};
-use leafless::{Finish, Layer, LinesLayer, MeshEdges, MeshLayer, OctreeLayer, Outline, SolidLayer};
 use leafless_edges::*;
 use std::sync::Arc;
 

@@ -8,8 +8,9 @@ use super::octree::{give, leafless_octree, leafless_statistics, leafless_tag};
 use super::solid::leafless_solid;
 use super::status::leafless_status;
 use leafless::Cell;
-use leafless::Prepared;
-use leafless::{LazyOctree, Refinement, Zone};
+use leafless::LazyOctree;
+use leafless::op::{Refinement, Zone};
+use leafless::solid::Prepared;
 use std::sync::{RwLock, RwLockReadGuard, RwLockWriteGuard, TryLockError, TryLockResult};
 
 /// An octree of a solid that is not built in one go: a cell is split when somebody asks for it, and what was

@@ -7,9 +7,8 @@ use super::octree::leafless_proof;
 use super::solid::leafless_solid;
 use super::status::leafless_status;
 use leafless::Interval;
-use leafless::{
-    Extent, MassProperties, StopReason, SurfaceArea, Tolerance, bounding_box, measure, surface_area,
-};
+use leafless::query::{Extent, StopReason, SurfaceArea, surface_area};
+use leafless::{MassProperties, Tolerance, bounding_box, measure};
 
 /// Why a search or a measurement ended.
 #[derive(Clone, Copy)]

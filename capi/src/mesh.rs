@@ -2,7 +2,8 @@
 
 use super::boundary::{Failure, array, buffer, guard, handle, out, refer, release, shared};
 use super::status::leafless_status;
-use leafless::{DefectKind, FillRule, MeshDefect, MeshReport, TriangleMesh};
+use leafless::mesh::{DefectKind, MeshDefect, MeshReport};
+use leafless::{FillRule, TriangleMesh};
 use std::sync::Arc;
 
 /// A surface of triangles with shared vertices. Vertices at equal places are welded; whether the mesh is
@@ -343,7 +344,7 @@ pub unsafe extern "C" fn leafless_mesh_bounds(
         let min = out(min_model.cast(), "min_model")?;
         let max = out(max_model.cast(), "max_model")?;
         if mesh.triangles().is_empty() {
-            return Err(leafless::MeshError::Empty.into());
+            return Err(leafless::error::MeshError::Empty.into());
         }
         let (low, high): ([f64; 3], [f64; 3]) = mesh.bounds();
         min.write(low)?;

@@ -4,9 +4,10 @@ use super::boundary::{Failure, Sized32, Strided, guard, initialise, out, sized, 
 use super::mesh::{give, leafless_mesh};
 use super::status::leafless_status;
 use core::ffi::c_void;
+use leafless::Error;
 use leafless::TriangleMesh;
+use leafless::error::MeshError;
 use leafless::memory;
-use leafless::{Error, MeshError};
 use leafless_index_type::*;
 use leafless_vertex_type::*;
 use std::borrow::Cow;

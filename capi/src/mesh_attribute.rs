@@ -5,8 +5,9 @@ use super::boundary::{Failure, buffer, guard, out, shared, slice, text};
 use super::mesh::leafless_mesh;
 use super::status::leafless_status;
 use core::ffi::c_char;
-use leafless::SurfaceAttribute;
-use leafless::{AttributeDomain, MeshAttribute, TriangleMesh};
+use leafless::TriangleMesh;
+use leafless::attribute::SurfaceAttribute;
+use leafless::mesh::{AttributeDomain, MeshAttribute};
 
 /// The attribute of a mesh with a place among all.
 fn at(mesh: &TriangleMesh, index: u64) -> Result<&MeshAttribute, Failure> {

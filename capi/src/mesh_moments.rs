@@ -7,7 +7,7 @@ use super::measure::row_by_row;
 use super::mesh::{fill_rule, leafless_mesh};
 use super::status::leafless_status;
 use leafless::Interval;
-use leafless::{IntersectingPair, IntersectingPairs, MeshMoments};
+use leafless::mesh::{IntersectingPair, IntersectingPairs, MeshMoments};
 
 /// Whether the moments of what a mesh encloses are known from its triangles.
 #[derive(Clone, Copy)]

@@ -3,7 +3,7 @@
 use super::boundary::{Failure, out, text};
 use core::ffi::c_char;
 use leafless::Metadata;
-use leafless::MetadataLimit;
+use leafless::octree::MetadataLimit;
 
 /// A copy of `metadata` with another fact, or another value of one.
 ///

@@ -5,8 +5,9 @@ use super::frame::{frame, leafless_frame, leafless_interval};
 use super::metadata::{self, Fact};
 use super::status::leafless_status;
 use core::ffi::c_char;
-use leafless::MetadataLimit;
-use leafless::{LevelStatistics, Octree, Proof, Statistics, Tag};
+use leafless::octree::MetadataLimit;
+use leafless::octree::{LevelStatistics, Statistics};
+use leafless::{Octree, Proof, Tag};
 
 /// A leaf-free octree, in memory or mapped from a file.
 ///

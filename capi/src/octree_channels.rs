@@ -6,8 +6,8 @@ use super::control::{controlled, leafless_options};
 use super::octree::{give, leafless_octree};
 use super::status::leafless_status;
 use core::ffi::c_char;
+use leafless::attribute::{CarryRule, carry_channels};
 use leafless::memory;
-use leafless::{CarryRule, carry_channels};
 use leafless_carry::*;
 
 /// Whose value a point has that lies in several operands.

@@ -10,7 +10,8 @@ use leafless::Control;
 use leafless::Error;
 use leafless::Rule;
 use leafless::memory;
-use leafless::{self, build, compact, resolve};
+use leafless::op::resolve;
+use leafless::{self, build, compact};
 use leafless::{Metadata, Octree, OctreeRef};
 
 /// What becomes of finest cells that are not decided.
@@ -93,7 +94,7 @@ pub unsafe extern "C" fn leafless_octree_resolve(
         let resolved = out(resolved, "resolved")?;
         let made = controlled(options, |control| resolve(octree.view(), rule, control))?;
         let made = made.with_metadata(Metadata::common([octree.metadata()])?);
-        resolved.write(give(made.with_channels_of(octree)))
+        resolved.write(give(made.with_channels_from(octree)))
     })
 }
 
@@ -115,8 +116,8 @@ pub unsafe extern "C" fn leafless_octree_compact(
     guard(|| unsafe {
         let octree = &shared(octree, "octree")?.octree;
         let compacted = out(compacted, "compacted")?;
-        let compact = compact(octree.view())?.with_metadata_of(octree);
-        compacted.write(give(compact.with_channels_of(octree)))
+        let compact = compact(octree.view())?.with_metadata_from(octree);
+        compacted.write(give(compact.with_channels_from(octree)))
     })
 }
 
@@ -292,7 +293,7 @@ pub unsafe extern "C" fn leafless_octree_union_of(
     result: *mut *mut leafless_octree,
 ) -> leafless_status {
     // SAFETY: the caller's promise.
-    unsafe { nary(leafless::union_of, octrees, count, options, result) }
+    unsafe { nary(leafless::op::union_of, octrees, count, options, result) }
 }
 
 /// The intersection of any number of octrees, at least one.
@@ -312,7 +313,7 @@ pub unsafe extern "C" fn leafless_octree_intersection_of(
     result: *mut *mut leafless_octree,
 ) -> leafless_status {
     // SAFETY: the caller's promise.
-    unsafe { nary(leafless::intersection_of, octrees, count, options, result) }
+    unsafe { nary(leafless::op::intersection_of, octrees, count, options, result) }
 }
 
 /// The points that lie in an odd number of octrees, at least one.
@@ -332,5 +333,5 @@ pub unsafe extern "C" fn leafless_octree_xor_of(
     result: *mut *mut leafless_octree,
 ) -> leafless_status {
     // SAFETY: the caller's promise.
-    unsafe { nary(leafless::xor_of, octrees, count, options, result) }
+    unsafe { nary(leafless::op::xor_of, octrees, count, options, result) }
 }

@@ -11,7 +11,7 @@ use core::ffi::c_char;
 use leafless::exchange::write_png;
 use leafless::file::replace;
 use leafless::memory;
-use leafless::{
+use leafless::render::{
     Clip, ClippedLayer, Layer, LegendBox, LegendSide, Picture, Shot, draw_colour_bar, draw_names, render,
 };
 use leafless_legend_side::*;

@@ -4,7 +4,7 @@ use super::boundary::{array, discard, exclusive, guard, out, share, shared, slic
 use super::contains::{answers, leafless_membership};
 use super::octree::{leafless_octree, leafless_tag};
 use super::status::leafless_status;
-use leafless::{PointCursor, PointTable};
+use leafless::query::{PointCursor, PointTable};
 use std::sync::Arc;
 use yoke::Yoke;
 

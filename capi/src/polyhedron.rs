@@ -5,9 +5,9 @@ use super::mesh::{give, leafless_mesh};
 use super::mesh_arrays::{GivenVertices, Indices, Vertices};
 use super::status::leafless_status;
 use core::ffi::c_void;
+use leafless::error::{MeshError, PolyhedronError};
 use leafless::memory;
-use leafless::{MeshAttribute, Polyhedron, PolyhedronArrays, PolyhedronPart};
-use leafless::{MeshError, PolyhedronError};
+use leafless::mesh::{MeshAttribute, Polyhedron, PolyhedronArrays, PolyhedronPart};
 use std::borrow::Cow;
 
 /// Solids that plane faces bound, as boundary representations have them: solids of shells of faces of loops

@@ -8,7 +8,8 @@ use super::solid::leafless_solid;
 use super::status::leafless_status;
 use leafless::Error;
 use leafless::memory;
-use leafless::{Obstacle, Ray, RayHit, RaySpans, Sight, cast_rays, line_of_sight, ray_spans};
+use leafless::query::{Obstacle, RayHit, RaySpans, Sight, line_of_sight, ray_spans};
+use leafless::{Ray, cast_rays};
 
 /// A half-line or a segment: the points origin + t · direction with 0 ≤ t ≤ t_last. A coordinate is zero or has
 /// a magnitude between 2^-256 and 2^256.

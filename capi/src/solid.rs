@@ -4,7 +4,8 @@ use super::boundary::{guard, handle, out, refer, release, shared};
 use super::mesh::{fill_rule, leafless_mesh};
 use super::octree::leafless_octree;
 use super::status::leafless_status;
-use leafless::{AnySolid, Csg, Erasable, MeshSolid, Prepared};
+use leafless::solid::{Erasable, Prepared};
+use leafless::{AnySolid, Csg, MeshSolid};
 
 /// Anything that has a shape: it can split a cell of space into eight classified ones.
 ///

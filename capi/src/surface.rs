@@ -8,9 +8,11 @@ use super::octree::leafless_octree;
 use super::solid::leafless_solid;
 use super::status::leafless_status;
 use super::volume::leafless_volume;
-use leafless::{
-    Resolve, Snap, VertexPlacement, coplanar_shrink, coplanar_shrink_of, marching_cubes, marching_cubes_of,
-    marching_cubes_of_volume, published_shrink, published_shrink_of, smc, smc_of,
+use leafless::marching_cubes;
+use leafless::surface::{
+    Resolve, Snap, VertexPlacement, coplanar_shrink, coplanar_shrink_solid, marching_cubes_solid,
+    marching_cubes_volume, published_shrink, published_shrink_solid, simple_marching_cubes,
+    simple_marching_cubes_solid,
 };
 use leafless_resolve::*;
 use leafless_snap::*;
@@ -230,7 +232,7 @@ pub unsafe extern "C" fn leafless_octree_surface(
         let mesh = out(mesh, "mesh")?;
         mesh.write(give(controlled(options, |control| match method {
             Method::MarchingCubes => marching_cubes(octree, resolve, control),
-            Method::Smc(snap) => smc(octree, snap, resolve, control),
+            Method::Smc(snap) => simple_marching_cubes(octree, snap, resolve, control),
             Method::Shrink(snap) => coplanar_shrink(octree, snap, resolve, control),
             Method::PublishedShrink(snap) => published_shrink(octree, snap, resolve, control),
         })?))
@@ -283,10 +285,10 @@ pub unsafe extern "C" fn leafless_solid_surface(
             zero(is_midpoint, "surface.placement", problem)?;
         }
         mesh.write(give(controlled(options, |control| match method {
-            Method::MarchingCubes => marching_cubes_of(solid, &frame, placement, control),
-            Method::Smc(snap) => smc_of(solid, &frame, snap, control),
-            Method::Shrink(snap) => coplanar_shrink_of(solid, &frame, snap, control),
-            Method::PublishedShrink(snap) => published_shrink_of(solid, &frame, snap, control),
+            Method::MarchingCubes => marching_cubes_solid(solid, &frame, placement, control),
+            Method::Smc(snap) => simple_marching_cubes_solid(solid, &frame, snap, control),
+            Method::Shrink(snap) => coplanar_shrink_solid(solid, &frame, snap, control),
+            Method::PublishedShrink(snap) => published_shrink_solid(solid, &frame, snap, control),
         })?))
     })
 }
@@ -322,7 +324,7 @@ pub unsafe extern "C" fn leafless_volume_surface(
         let mesh = out(mesh, "mesh")?;
         let surface = controlled(options, |control| {
             let voxels = volume.voxels(band, control)?;
-            marching_cubes_of_volume(&voxels, control)
+            marching_cubes_volume(&voxels, control)
         })?;
         mesh.write(give(match &volume.placement {
             Some(placement) => surface.placed(placement)?,

@@ -8,9 +8,11 @@ use super::op::rule;
 use super::solid::leafless_solid;
 use super::status::leafless_status;
 use core::ffi::c_char;
-use leafless::MetadataLimit;
-use leafless::{DexelEnds, DexelFormat, DexelNormals, TriDexel};
-use leafless::{DexelOptions, dexelize};
+use leafless::TriDexel;
+use leafless::dexel::{DexelEnds, DexelFormat, DexelNormals};
+use leafless::dexelize;
+use leafless::octree::MetadataLimit;
+use leafless::op::DexelOptions;
 use leafless_dexel_ends::*;
 use leafless_dexel_normals::*;
 

@@ -7,8 +7,9 @@ use super::status::leafless_status;
 use super::tridexel::{give, leafless_tridexel, leafless_tridexel_format};
 use core::ops::Range;
 use leafless::Frame;
+use leafless::TriDexel;
+use leafless::dexel::{Dexel, DexelEnd};
 use leafless::memory;
-use leafless::{Dexel, DexelEnd, TriDexel};
 
 /// Intervals of rays along one axis, as leafless_tridexel_read hands them out.
 #[derive(Clone, Copy)]

@@ -8,8 +8,8 @@ use super::status::leafless_status;
 use super::tridexel::{give, leafless_tridexel};
 use leafless::Control;
 use leafless::Error;
-use leafless::Prepared;
-use leafless::{DexelEditor, TriDexelRef};
+use leafless::dexel::{DexelEditor, TriDexelRef};
+use leafless::solid::Prepared;
 use std::sync::{RwLock, RwLockReadGuard, RwLockWriteGuard, TryLockError, TryLockResult};
 
 /// A copy of a tri-dexel model that is changed in place, in time proportional to what the second operand's rays touch: for

@@ -7,8 +7,9 @@ use super::tridexel::{give, leafless_tridexel, leafless_tridexel_format};
 use leafless::Control;
 use leafless::Error;
 use leafless::Metadata;
+use leafless::TriDexel;
+use leafless::dexel::TriDexelRef;
 use leafless::memory;
-use leafless::{TriDexel, TriDexelRef};
 
 type Binary = fn(&TriDexelRef<'_>, &TriDexelRef<'_>, &Control<'_>) -> Result<TriDexel, Error>;
 type Nary = fn(&[TriDexelRef<'_>], &Control<'_>) -> Result<TriDexel, Error>;

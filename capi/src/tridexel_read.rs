@@ -4,7 +4,8 @@ use super::boundary::{Buffer, Failure, array, buffer, guard, out, shared};
 use super::status::leafless_status;
 use super::tridexel::leafless_tridexel;
 use core::ops::Range;
-use leafless::{Dexel, DexelEnd, DexelRays, DexelStatistics, TriDexel};
+use leafless::TriDexel;
+use leafless::dexel::{Dexel, DexelEnd, DexelRays, DexelStatistics};
 
 /// One end of a leafless_dexel.
 #[derive(Clone, Copy)]

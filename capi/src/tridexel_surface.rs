@@ -9,9 +9,9 @@ use super::status::leafless_status;
 use super::tridexel::leafless_tridexel;
 use super::voxel::leafless_voxel_kind::{self, *};
 use leafless::Metadata;
-use leafless::octree_of_dexels;
-use leafless::{DexelSolid, DexelSurfaceReport, dual_contouring_of_dexels, marching_cubes_of_dexels};
-use leafless::{LongVoxel, VoxelKind, dexel_voxels};
+use leafless::op::octree_from_dexels;
+use leafless::surface::{DexelSolid, DexelSurfaceReport, dual_contouring_dexels, marching_cubes_dexels};
+use leafless::voxel::{LongVoxel, VoxelKind, dexel_voxels};
 use leafless_dexel_surface_method::*;
 
 /// How the surface of a tri-dexel model is extracted.
@@ -131,8 +131,8 @@ pub unsafe extern "C" fn leafless_tridexel_surface(
     guard(|| unsafe {
         let model = shared(tridexel, "tridexel")?.model.view();
         let extract = match method {
-            _ if method == LEAFLESS_DEXEL_SURFACE_MARCHING_CUBES as u32 => marching_cubes_of_dexels,
-            _ if method == LEAFLESS_DEXEL_SURFACE_DUAL_CONTOURING as u32 => dual_contouring_of_dexels,
+            _ if method == LEAFLESS_DEXEL_SURFACE_MARCHING_CUBES as u32 => marching_cubes_dexels,
+            _ if method == LEAFLESS_DEXEL_SURFACE_DUAL_CONTOURING as u32 => dual_contouring_dexels,
             _ => {
                 let problem = "is no leafless_dexel_surface_method";
                 return Err(Failure::Argument { name: "method", problem });
@@ -166,7 +166,7 @@ pub unsafe extern "C" fn leafless_tridexel_to_octree(
     guard(|| unsafe {
         let model = &shared(tridexel, "tridexel")?.model;
         let octree = out(octree, "octree")?;
-        let made = controlled(options, |control| octree_of_dexels(model.view(), control))?;
+        let made = controlled(options, |control| octree_from_dexels(model.view(), control))?;
         octree.write(give_octree(made.with_metadata(Metadata::common([model.metadata()])?)))
     })
 }

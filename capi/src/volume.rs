@@ -10,8 +10,9 @@ use core::ffi::c_void;
 use leafless::Control;
 use leafless::Error;
 use leafless::exchange::{LengthUnit, SampleKind};
+use leafless::solid::{Band, Samples, VoxelGrid};
 use leafless::{Affine, Interval};
-use leafless::{AnySolid, Band, Samples, Volume, VoxelGrid};
+use leafless::{AnySolid, Volume};
 use leafless_sample_type::*;
 use std::sync::OnceLock;
 

@@ -6,10 +6,11 @@ use super::volume::leafless_sample_type::{self, *};
 use super::volume::leafless_volume_format::LEAFLESS_VOLUME_FORMAT_RAW;
 use super::volume::{TYPES, leafless_volume};
 use core::ffi::c_void;
+use leafless::Error;
+use leafless::error::VolumeFileError;
 use leafless::exchange::{RawVolume, read_raw_volume};
 use leafless::memory;
-use leafless::{Error, VolumeFileError};
-use leafless::{Samples, VoxelGrid};
+use leafless::solid::{Samples, VoxelGrid};
 use leafless_byte_order::*;
 use std::sync::OnceLock;
 

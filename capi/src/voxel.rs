@@ -11,9 +11,9 @@ use super::mesh::leafless_mesh;
 use super::octree::{leafless_octree, settled_tag};
 use super::status::leafless_status;
 use leafless::Octree;
-use leafless::{Attribute, Criterion, Detail};
+use leafless::attribute::{Attribute, Criterion, Detail};
+use leafless::voxel::{Viewpoint, VoxelBoundary, VoxelOptions, VoxelRecords, VoxelRecordsRef};
 use leafless::{Cell, Frame};
-use leafless::{Viewpoint, VoxelBoundary, VoxelOptions, VoxelRecords, VoxelRecordsRef};
 use leafless_criterion::*;
 
 /// What a voxel is: a number in the array `kinds`.

@@ -1,6 +1,7 @@
 //! What goes wrong: how a subcommand ends without success, and what it complains of.
 
-use leafless::{Error, FormatError};
+use leafless::Error;
+use leafless::error::FormatError;
 use std::fmt::Display;
 use std::io::Write;
 

@@ -2,11 +2,12 @@
 //! what set operations carry along, voxel records. An honest attribute is known in unit cells, so that a dense array
 //! decides; one that lies about its ranges may hide details, and nothing else.
 
-use leafless::{
-    Affine, Attribute, Bounds, CarryRule, Channel, ChannelOperand, ChannelRef, Control, Criterion, Csg,
-    Detail, Error, FillOptions, Frame, Interval, MovedAttribute, Octree, Rule, ScalarType, Tag, ValueRange,
-    ValueType, VoxelOptions, VoxelRecords, build, carry_channel, fill_channel, union,
+use leafless::attribute::{
+    Attribute, CarryRule, Channel, ChannelOperand, ChannelRef, Criterion, Detail, FillOptions,
+    MovedAttribute, ScalarType, ValueRange, ValueType, carry_channel, fill_channel,
 };
+use leafless::voxel::{VoxelOptions, VoxelRecords};
+use leafless::{Affine, Bounds, Control, Csg, Error, Frame, Interval, Octree, Rule, Tag, build, union};
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
 /// The bytes that are left; 0 for each that is missing.

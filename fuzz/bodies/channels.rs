@@ -1,10 +1,8 @@
 //! Everything that the channels of a file can be asked, also those that nobody has verified.
 
 use super::{CONTROL, Random};
-use leafless::{
-    Attribute, Bounds, CarryRule, ChannelOperand, ChannelRef, Control, Membership, Octree, ValueRange,
-    carry_channel,
-};
+use leafless::attribute::{Attribute, CarryRule, ChannelOperand, ChannelRef, ValueRange, carry_channel};
+use leafless::{Bounds, Control, Membership, Octree};
 
 /// Cells that are looked at in each channel.
 const CELLS: usize = 24;

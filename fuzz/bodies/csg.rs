@@ -3,10 +3,8 @@
 
 use crate::common::exact::Exact;
 use crate::model::{Model, Other, Point, Probe};
-use leafless::{
-    Affine, Control, DexelOptions, Error, Frame, Octree, Rule, Tag, build, complement, dexelize,
-    octree_of_dexels,
-};
+use leafless::op::{DexelOptions, octree_from_dexels};
+use leafless::{Affine, Control, Error, Frame, Octree, Rule, Tag, build, complement, dexelize};
 
 /// Most primitives of an expression, which is written out. (Exact arithmetic is slow, and few find as much as
 /// many.)
@@ -197,7 +195,7 @@ pub fn csg(data: &[u8]) {
             let options = DexelOptions { directions, ..DexelOptions::default() };
             let dexels = dexelize(&csg, &frame, &options, &control).expect("as much");
             dexels.view().check().expect("a sound model");
-            let found = octree_of_dexels(dexels.view(), &control).expect("memory");
+            let found = octree_from_dexels(dexels.view(), &control).expect("memory");
             // (What lies outside of the universe no ray tells.)
             let n = frame.cells();
             for i in 0..n * n * n {

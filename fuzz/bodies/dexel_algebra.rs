@@ -1,10 +1,11 @@
 //! Any bytes as tri-dexel models, and as triangles: the laws of sets, changes in place, closed surfaces, and the same samples
 //! along all three axes.
 
+use leafless::dexel::{Dexel, DexelEditor, DexelEnd, DexelEnds, DexelFormat, DexelNormals};
+use leafless::op::{DexelOptions, octree_from_dexels};
+use leafless::surface::{dual_contouring_dexels, marching_cubes_dexels};
 use leafless::{
-    Control, Dexel, DexelEditor, DexelEnd, DexelEnds, DexelFormat, DexelNormals, DexelOptions, Error,
-    FillRule, Frame, MeshSolid, Rule, TriDexel, TriangleMesh, build, dexelize, dual_contouring_of_dexels,
-    file, marching_cubes_of_dexels, octree_of_dexels,
+    Control, Error, FillRule, Frame, MeshSolid, Rule, TriDexel, TriangleMesh, build, dexelize, file,
 };
 use std::collections::HashMap;
 
@@ -126,8 +127,7 @@ fn models(bytes: &mut Bytes<'_>, frame: &Frame, format: DexelFormat, form: u8) {
     let edited =
         editor.freeze(&control).expect("a model").view().to_format(plain, &control).expect("a format");
     assert!(edited == and(&or(&less(&p, &q), &q), &p));
-    for mesh in [marching_cubes_of_dexels(a.view(), &control), dual_contouring_of_dexels(a.view(), &control)]
-    {
+    for mesh in [marching_cubes_dexels(a.view(), &control), dual_contouring_dexels(a.view(), &control)] {
         assert!(is_balanced(&mesh.expect("a surface").0));
     }
 }
@@ -155,7 +155,7 @@ fn triangles(bytes: &mut Bytes<'_>, frame: &Frame, format: DexelFormat) {
             let options = DexelOptions { directions, format, rule: Rule::Sampled };
             let model = dexelize(&solid, frame, &options, &control).expect("rays");
             model.view().check().expect("a sound model");
-            let found = octree_of_dexels(model.view(), &control).expect("an octree");
+            let found = octree_from_dexels(model.view(), &control).expect("an octree");
             // (What lies outside of the universe no ray tells.)
             let n = frame.cells();
             for i in 0..n * n * n {

@@ -2,10 +2,11 @@
 
 use super::ways_in::scratch_file;
 use super::{Aligned, CONTROL};
-use leafless::{
-    DexelEditor, DexelFormat, Error, TriDexel, TriDexelRef, dexel_voxels, dual_contouring_of_dexels, file,
-    file::dexels, marching_cubes_of_dexels, octree_of_dexels,
-};
+use leafless::dexel::{DexelEditor, DexelFormat, TriDexelRef};
+use leafless::op::octree_from_dexels;
+use leafless::surface::{dual_contouring_dexels, marching_cubes_dexels};
+use leafless::voxel::dexel_voxels;
+use leafless::{Error, TriDexel, file, file::dexels};
 
 /// What became of an attempt, as a text that can be compared.
 fn outcome<T>(result: &Result<T, Error>) -> Result<(), String> {
@@ -112,10 +113,10 @@ fn changed(model: &TriDexel) {
     if small {
         // What else meets all rays.
         let others = [
-            octree_of_dexels(view, &CONTROL).map(drop),
+            octree_from_dexels(view, &CONTROL).map(drop),
             dexel_voxels(view, &[], &CONTROL).map(drop),
-            marching_cubes_of_dexels(view, &CONTROL).map(drop),
-            dual_contouring_of_dexels(view, &CONTROL).map(drop),
+            marching_cubes_dexels(view, &CONTROL).map(drop),
+            dual_contouring_dexels(view, &CONTROL).map(drop),
         ];
         for result in others {
             assert_eq!(sound, !matches!(result, Err(Error::DamagedRays { .. })));

@@ -2,9 +2,10 @@
 //! what a count of its cells says.
 
 use super::CONTROL;
+use leafless::octree::CellFilter;
+use leafless::query::{Overlap, cells_in, classify_in, surface_area, volume_in};
 use leafless::{
-    CellFilter, Control, Csg, Interval, OctreeRef, Overlap, Proof, Solid, Tag, bounding_box, cells_in,
-    classify_in, clearance, interference, measure, surface_area, volume_in,
+    Control, Csg, Interval, OctreeRef, Proof, Solid, Tag, bounding_box, clearance, interference, measure,
 };
 
 /// Splits of each question. A tree from a file of some kilobytes has fewer cells that can be split.

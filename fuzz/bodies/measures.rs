@@ -5,10 +5,12 @@ mod dense;
 mod measures_ask;
 
 use dense::{Dense, LOW, N};
+use leafless::op::Zone;
+use leafless::solid::{Adaptive, Band, SampleArray, Samples, SplitCounter, Transform, VoxelGrid};
+use leafless::voxel::{VoxelOptions, VoxelRecords};
 use leafless::{
-    Adaptive, Affine, AnySolid, Band, Callback, Control, Csg, Error, FillRule, Frame, LazyOctree, MeshSolid,
-    Octree, Rule, SampleArray, Samples, SplitCounter, Tag, Transform, TriangleMesh, Verdict, Volume,
-    VoxelGrid, VoxelOptions, VoxelRecords, Zone, build, complement, difference, intersection, union, xor,
+    Affine, AnySolid, Callback, Control, Csg, Error, FillRule, Frame, LazyOctree, MeshSolid, Octree, Rule,
+    Tag, TriangleMesh, Verdict, Volume, build, complement, difference, intersection, union, xor,
 };
 use std::sync::Arc;
 

@@ -2,11 +2,13 @@
 
 use super::dense::Dense;
 use super::{Bytes, Scene, control, corners, doubles, universe};
+use leafless::query::{
+    Columns, DistanceTo, Obstacle, Overlap, Region, Side, Sight, StopReason, cells_in, classify_box,
+    classify_in, columns, distances, heights, line_of_sight, ray_spans, surface_area, volume_in,
+};
 use leafless::{
-    Columns, Control, DistanceTo, Error, Frame, Interval, Membership, Obstacle, Overlap, Ray, Region, Side,
-    Sight, StopReason, Tolerance, bounding_box, cast_rays, cells_in, classify_box, classify_in, clearance,
-    columns, contains, distances, heights, interference, line_of_sight, measure, ray_spans, surface_area,
-    volume_in,
+    Control, Error, Frame, Interval, Membership, Ray, Tolerance, bounding_box, cast_rays, clearance,
+    contains, interference, measure,
 };
 use std::fmt::Debug;
 
@@ -443,7 +445,7 @@ impl Asked<'_> {
                 for c in cells {
                     at[axis] = c;
                     let (met, covered) = truth.in_cell(frame, leafless::Cell { level: depth, at });
-                    let within = |runs: &[leafless::Run]| {
+                    let within = |runs: &[leafless::query::Run]| {
                         runs.iter().any(|run| (run.start..run.start + run.length).contains(&c))
                     };
                     let [full, upper] = [within(found.full.column(place)), within(found.upper.column(place))];

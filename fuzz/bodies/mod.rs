@@ -22,7 +22,8 @@ pub use queries::queries;
 pub use set_algebra::{set_algebra, threads};
 pub use ways_in::{read_in_all_ways, ways_in};
 
-use leafless::{Control, Cursor, Tag};
+use leafless::octree::Cursor;
+use leafless::{Control, Tag};
 
 /// One thread, which is what most work of this size gets.
 pub const CONTROL: Control<'static> =

@@ -2,12 +2,19 @@
 //! lead to one answer it is the same.
 
 use super::{Aligned, CONTROL, Random, ask_measures, halves, walk};
+use leafless::octree::{CellFilter, Cursor, Direction, TaggedCell};
+use leafless::op::Zone;
+use leafless::query::{
+    Columns, DistanceTo, Obstacle, PointCursor, PointTable, Region, Run, Side, classify_box,
+};
+use leafless::render::{
+    Camera, ColourMap, Finish, Layer, Lens, OctreeLayer, Outline, Shot, SliceLayer, SlicePlane, Transfer,
+    VolumeLayer, render,
+};
+use leafless::voxel::{VoxelOptions, VoxelRecords};
 use leafless::{
-    Camera, Cell, CellFilter, Classifier, ColourMap, Columns, Control, Csg, Cursor, Direction, DistanceTo,
-    Finish, Frame, Layer, LazyOctree, Lens, Membership, Obstacle, OctreeLayer, OctreeRef, Outline,
-    PointCursor, PointTable, Proof, Ray, Region, Rule, Run, Shot, Side, SliceLayer, SlicePlane, Solid, Tag,
-    TaggedCell, Transfer, Verdict, VolumeLayer, VoxelOptions, VoxelRecords, Worker, Zone, build,
-    classify_box, contains, file, render,
+    Cell, Classifier, Control, Csg, Frame, LazyOctree, Membership, OctreeRef, Proof, Ray, Rule, Solid, Tag,
+    Verdict, Worker, build, contains, file,
 };
 
 /// Asks the tree in the first half of `data` what the second half says.

@@ -1,10 +1,11 @@
 //! Any bytes as the arrays of voxel records: what is refused is wrong, and of what is taken every answer is that of a
 //! search through all records.
 
-use leafless::{
-    Affine, Cell, Control, Csg, Frame, LinearCode, MAX_DEPTH, Symmetry, Tag, TriangleMesh, Viewpoint,
-    VoxelKind, VoxelRecords, VoxelRecordsRef, VoxelSolid, measure,
+use leafless::lattice::MAX_DEPTH;
+use leafless::voxel::{
+    LinearCode, Symmetry, Viewpoint, VoxelKind, VoxelRecords, VoxelRecordsRef, VoxelSolid,
 };
+use leafless::{Affine, Cell, Control, Csg, Frame, Tag, TriangleMesh, measure};
 
 /// The bytes that are left; 0 for each that is missing.
 struct Bytes<'a>(&'a [u8]);

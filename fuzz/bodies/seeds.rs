@@ -2,10 +2,12 @@
 
 use super::layout::{File, OBJECTS, PLANES, RECORD, Repairs, Section, put};
 use super::{CONTROL, Random, joined};
+use leafless::attribute::{Channel, FillOptions, FunctionAttribute, ScalarType, ValueType, fill_channel};
+use leafless::dexel::{DexelEnds, DexelFormat, DexelNormals};
+use leafless::op::DexelOptions;
 use leafless::{
-    Cell, Channel, Classifier, Control, Csg, DexelEnds, DexelFormat, DexelNormals, DexelOptions, Error,
-    FillOptions, Frame, FunctionAttribute, Metadata, Octree, Proof, Rule, ScalarType, Solid, Tag, ValueType,
-    Verdict, Worker, build, dexelize, file, fill_channel,
+    Cell, Classifier, Control, Csg, Error, Frame, Metadata, Octree, Proof, Rule, Solid, Tag, Verdict, Worker,
+    build, dexelize, file,
 };
 
 /// A different tree for every seed, with coarse and fine cells of every tag.

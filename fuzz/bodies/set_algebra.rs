@@ -2,9 +2,10 @@
 //! operands the right ones.
 
 use super::{Aligned, CONTROL, halves, queries};
+use leafless::op::{intersection_of, resolve, union_of, xor_of};
 use leafless::{
     Control, Error, Octree, OctreeRef, Rule, Solid, Tag, build, compact, complement, difference, file,
-    intersection, intersection_of, resolve, union, union_of, xor, xor_of,
+    intersection, union, xor,
 };
 
 /// Combines the trees in the two halves of `data`.

@@ -5,7 +5,8 @@ use leafless::exchange::{
     NrrdEncoding, RawVolume, SampleKind, VolumeFile, read_raw_volume, read_volume, volume_data_file,
     write_nrrd, write_raw_volume,
 };
-use leafless::{Band, Control, Frame, Rule, Samples, Solid, Volume, VoxelGrid, build};
+use leafless::solid::{Band, Samples, VoxelGrid};
+use leafless::{Control, Frame, Rule, Solid, Volume, build};
 
 /// Reads `data` as a file; and the part before the first zero byte as a header, the rest as the file of its
 /// samples, and as an array of small extents.

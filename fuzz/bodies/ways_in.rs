@@ -1,7 +1,9 @@
 //! Any bytes through every way in: none panics, and all agree.
 
 use super::{Aligned, channels, dexels_in_all_ways, walk};
-use leafless::{Cursor, Error, FormatError, Octree, Tag, file};
+use leafless::error::FormatError;
+use leafless::octree::Cursor;
+use leafless::{Error, Octree, Tag, file};
 use std::path::PathBuf;
 
 /// What became of an attempt, as a text that can be compared.

@@ -82,8 +82,8 @@ pub fn carry_channel(
 ///
 /// ```
 /// use leafless::{
-///     CarryRule, ConstantAttribute, Control, Csg, FillOptions, Frame, Rule, ScalarType, ValueType, build,
-///     carry_channels, fill_channel, union,
+///     Control, Csg, Frame, Rule, build, union,
+///     attribute::{CarryRule, ConstantAttribute, FillOptions, ScalarType, ValueType, carry_channels, fill_channel},
 /// };
 /// let (frame, control) = (Frame::new([0.0; 3], 4.0, 5)?, Control::default());
 /// let value_type = ValueType::new(ScalarType::U8, 1)?;

@@ -42,7 +42,7 @@ impl Attribute for ConstantAttribute {
 /// A function of position, and what is known of its range.
 ///
 /// ```
-/// use leafless::{Attribute, FunctionAttribute, Interval, ValueRange};
+/// use leafless::{Interval, attribute::{Attribute, FunctionAttribute, ValueRange}};
 /// // A temperature that rises along z.
 /// let warm = FunctionAttribute::new(1, |[_, _, z]: [f64; 3]| Some([20.0 + 8.0 * z, 0.0, 0.0, 0.0]))?;
 /// assert_eq!(warm.value([1.0, 2.0, 0.5])?, Some([24.0, 0.0, 0.0, 0.0]));

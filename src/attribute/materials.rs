@@ -33,8 +33,8 @@ pub struct MaterialProperties {
 ///
 /// ```
 /// use leafless::{
-///     ConstantAttribute, Control, Csg, FillOptions, Frame, Rule, ScalarType, ValueType, build, fill_channel,
-///     materials,
+///     Control, Csg, Frame, Rule, build,
+///     attribute::{ConstantAttribute, FillOptions, ScalarType, ValueType, fill_channel, materials},
 /// };
 /// let (frame, control) = (Frame::new([-1.0; 3], 2.0, 6)?, Control::default());
 /// let value_type = ValueType::new(ScalarType::U8, 1)?;

@@ -18,6 +18,7 @@ mod surface;
 mod value_region;
 mod volume;
 
+pub use crate::octree::channel::{Channel, ChannelRef, ScalarType, ValueType};
 pub use carry::{CarryRule, ChannelOperand, carry_channel, carry_channels};
 pub use channel::MovedAttribute;
 pub use detail::{Criterion, Detail};

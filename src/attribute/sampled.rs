@@ -43,7 +43,9 @@ pub struct FillOptions<'a> {
 /// solid with damaged links; what the attribute reports, and what `control` asks for.
 ///
 /// ```
-/// use leafless::{ConstantAttribute, Control, FillOptions, Frame, ScalarType, ValueType, fill_channel};
+/// use leafless::{
+///     Control, Frame, attribute::{ConstantAttribute, FillOptions, ScalarType, ValueType, fill_channel},
+/// };
 /// let options = FillOptions {
 ///     value_type: ValueType::new(ScalarType::F32, 1)?,
 ///     frame: Frame::new([0.0; 3], 1.0, 10)?,

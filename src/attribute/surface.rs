@@ -22,7 +22,7 @@ use crate::mesh::{MeshAttribute, NearVisitor, NearestPoint, TriangleMesh, Triang
 /// [`range`](Attribute::range) is proven: it looks at every triangle that can be nearest to a point of the box.
 ///
 /// ```
-/// use leafless::{Attribute, MeshAttribute, SurfaceAttribute, TriangleMesh};
+/// use leafless::{TriangleMesh, attribute::{Attribute, SurfaceAttribute}, mesh::MeshAttribute};
 ///
 /// let vertices = vec![[0.0; 3], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
 /// let mesh = TriangleMesh::new(vertices, vec![[0, 1, 2], [0, 2, 3]])?;

@@ -12,7 +12,7 @@ use crate::solid::{Classifier, Enclosure, Solid, Verdict, Worker};
 /// hotter than a limit. It is a solid itself, and lies in the channel's cube.
 ///
 /// Where the channel has one value, the region knows of the solid what the solid itself knows: a region of a
-/// solid with [enclosures](crate::Enclosure) is measured as fast as that.
+/// solid with [enclosures](crate::solid::Enclosure) is measured as fast as that.
 #[derive(Debug, Clone, Copy)]
 pub struct ValueRegion<'a, S> {
     solid: S,

@@ -24,7 +24,7 @@ use core::ops::Range;
 /// It takes 12 bytes for each ray of the lattice beside the intervals.
 ///
 /// ```
-/// use leafless::{Control, Csg, DexelEditor, DexelOptions, Frame, dexelize};
+/// use leafless::{Control, Csg, Frame, dexelize, dexel::DexelEditor, op::DexelOptions};
 /// let (frame, control) = (Frame::new([0.0; 3], 64.0, 6)?, Control::default());
 /// let dexels = |solid: Csg| dexelize(&solid, &frame, &DexelOptions::default(), &control);
 /// let mut part = DexelEditor::new(dexels(Csg::cuboid([2.0; 3], [62.0; 3])?)?.view())?;

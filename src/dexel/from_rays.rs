@@ -28,12 +28,12 @@ impl TriDexel {
     /// intervals are half-open, and a start there holds the centre, while an end does not. Intervals that are empty after
     /// rounding are left out; those that touch are joined, unless both have materials and these differ.
     ///
-    /// An end that [`DexelRays::dexels`](crate::DexelRays::dexels) handed out goes back to the place where it was, since
+    /// An end that [`DexelRays::dexels`](crate::dexel::DexelRays::dexels) handed out goes back to the place where it was, since
     /// it [tells this place](DexelEnd::cells): a model of all intervals of another one, on the same frame and in the same
     /// format, is equal to that one. [`DexelEnd::in_cells`] makes such ends.
     ///
     /// The directions are not compared with each other. Where they disagree about a centre, the highest axis decides
-    /// ([`TriDexelRef::contains_cell`](crate::TriDexelRef::contains_cell)).
+    /// ([`TriDexelRef::contains_cell`](crate::dexel::TriDexelRef::contains_cell)).
     ///
     /// O(rays + intervals), by the calling thread.
     ///
@@ -43,7 +43,7 @@ impl TriDexel {
     /// [`Error::OutOfMemory`]; [`Error::Cancelled`]; and those of `dexels`.
     ///
     /// ```
-    /// use leafless::{Control, Dexel, DexelEnd, DexelFormat, Frame, TriDexel};
+    /// use leafless::{Control, Frame, TriDexel, dexel::{Dexel, DexelEnd, DexelFormat}};
     /// let frame = Frame::new([0.0; 3], 8.0, 3)?;
     /// let end = DexelEnd::new;
     /// // A plate between z = 2 and z = 3.25, by rays along z alone.

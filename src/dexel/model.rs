@@ -29,7 +29,7 @@ use yoke::erased::ErasedArcCart;
 /// | 512 | 0.001144 % | 0.000572 % | 0.000000 % |
 ///
 /// It is immutable, a clone costs two reference counts, and any number of threads may read it at once. All reading is done
-/// through its [`view`](TriDexel::view); [`DexelEditor`](crate::DexelEditor) changes a copy in place.
+/// through its [`view`](TriDexel::view); [`DexelEditor`](crate::dexel::DexelEditor) changes a copy in place.
 #[derive(Clone)]
 pub struct TriDexel {
     arrays: Yoke<TriDexelRef<'static>, ErasedArcCart>,

@@ -173,7 +173,7 @@ impl DexelEnd {
     /// universe.
     ///
     /// ```
-    /// use leafless::{DexelEnd, Frame};
+    /// use leafless::{Frame, dexel::DexelEnd};
     /// let frame = Frame::new([0.1; 3], 0.7, 3)?;
     /// // On the centre of cell 4, and as little as possible behind it.
     /// let centre = DexelEnd::in_cells(&frame, 0, 4.5).unwrap();

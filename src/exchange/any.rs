@@ -68,7 +68,7 @@ pub struct MeshFile {
 /// [`Error::Argument`] for a scale that is not allowed, [`MeshFileError::UnknownFormat`],
 /// [`MeshFileError::UnknownUnit`] if a conversion is asked for and nobody says from which unit,
 /// [`MeshFileError::Unsupported`] for text in UTF-16 and for a format that was left out of this build,
-/// [`MeshError::TooLarge`](crate::MeshError::TooLarge) if scaling exceeds ±2^256, and the reader's errors.
+/// [`MeshError::TooLarge`](crate::error::MeshError::TooLarge) if scaling exceeds ±2^256, and the reader's errors.
 pub fn read_mesh(bytes: &[u8], options: &MeshOptions) -> Result<MeshFile, Error> {
     read(bytes, None, options)
 }

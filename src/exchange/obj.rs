@@ -38,8 +38,8 @@ use crate::mesh::TriangleMesh;
 ///
 /// # Errors
 /// [`MeshFileError::Empty`], [`MeshFileError::Unsupported`] (UTF-16), [`MeshFileError::Syntax`],
-/// [`MeshFileError::Index`], [`MeshError::TooLarge`](crate::MeshError::TooLarge),
-/// [`MeshError::TooMany`](crate::MeshError::TooMany) or [`Error::OutOfMemory`].
+/// [`MeshFileError::Index`], [`MeshError::TooLarge`](crate::error::MeshError::TooLarge),
+/// [`MeshError::TooMany`](crate::error::MeshError::TooMany) or [`Error::OutOfMemory`].
 pub fn read_obj(bytes: &[u8]) -> Result<TriangleMesh, Error> {
     if bytes.is_empty() {
         return Err(MeshFileError::Empty.into());

@@ -45,8 +45,8 @@ use crate::mesh::TriangleMesh;
 /// # Errors
 /// [`MeshFileError::Empty`], [`MeshFileError::Unsupported`] (UTF-16), [`MeshFileError::Syntax`] and
 /// [`MeshFileError::Index`] (in the header, and in a text), [`MeshFileError::Binary`] and
-/// [`MeshFileError::BinaryIndex`], [`MeshError::TooLarge`](crate::MeshError::TooLarge),
-/// [`MeshError::TooMany`](crate::MeshError::TooMany) or [`Error::OutOfMemory`].
+/// [`MeshFileError::BinaryIndex`], [`MeshError::TooLarge`](crate::error::MeshError::TooLarge),
+/// [`MeshError::TooMany`](crate::error::MeshError::TooMany) or [`Error::OutOfMemory`].
 pub fn read_off(bytes: &[u8]) -> Result<TriangleMesh, Error> {
     if bytes.is_empty() {
         return Err(MeshFileError::Empty.into());

@@ -43,8 +43,8 @@ const FACET: usize = 50;
 ///
 /// # Errors
 /// [`MeshFileError::Empty`], [`MeshFileError::Length`], [`MeshFileError::NotFinite`], [`MeshFileError::Syntax`],
-/// [`MeshFileError::Unsupported`] (UTF-16), [`MeshError::TooLarge`](crate::MeshError::TooLarge),
-/// [`MeshError::TooMany`](crate::MeshError::TooMany) or [`Error::OutOfMemory`].
+/// [`MeshFileError::Unsupported`] (UTF-16), [`MeshError::TooLarge`](crate::error::MeshError::TooLarge),
+/// [`MeshError::TooMany`](crate::error::MeshError::TooMany) or [`Error::OutOfMemory`].
 pub fn read_stl(bytes: &[u8]) -> Result<TriangleMesh, Error> {
     if bytes.is_empty() {
         return Err(MeshFileError::Empty.into());

@@ -15,7 +15,7 @@
 //! `open` is the plain way. Mapping is for files that are larger than what is asked of them, and is `unsafe`
 //! because of what others may do to a mapped file. [`save`], [`write_to`] and [`to_bytes`] write: equal trees
 //! that prove the same, with equal metadata and equal channels, give equal bytes. All ways in but [`view`],
-//! which gives the solid alone, read [channels](crate::Channel).
+//! which gives the solid alone, read [channels](crate::attribute::Channel).
 //!
 //! ```
 //! use leafless::{Control, Csg, Frame, Membership, Rule, build, file};
@@ -44,12 +44,12 @@
 //!   allocates nothing; [`map`] and [`from_static`] only for the metadata, six times their length, which is
 //!   at most 1 MiB for the solid and 64 KiB for each of at most 256 channels, and two kilobytes a channel.
 //! * After [`view`] or [`map`] nothing has looked at the tree itself. Point queries read at most ten elements
-//!   and allocate nothing. A box query, a walk with a [`Cursor`](crate::Cursor) and a Boolean meet every
+//!   and allocate nothing. A box query, a walk with a [`Cursor`](crate::octree::Cursor) and a Boolean meet every
 //!   element at most once; a tree is built from a stored one only once all of its links are checked. What is
 //!   damaged reads as PARTIAL or makes an operation return [`Error::Damaged`](crate::Error::Damaged). The
 //!   result of a Boolean never has more elements than its operands together, and the work takes at most 32
 //!   times their memory (their bricks may be 16-bit indices) and 128 KiB a thread. Statistics are the level
-//!   table's word. The links of a channel are checked when it is first [viewed](crate::Channel::view); its
+//!   table's word. The links of a channel are checked when it is first [viewed](crate::attribute::Channel::view); its
 //!   values are then read as they stand, within bounds.
 //! * Answers about damaged bytes are only this: safe. A changed tag with a right checksum is another tree,
 //!   and checksums are no signatures: who may have made a file must be known by other means.
@@ -93,7 +93,7 @@
 //! Each section belongs to an object, its owner. Object 0 is the solid: an octree with sections of the kinds 1 to 10, or a
 //! tri-dexel model with the kinds 1, 2 and 32 to 47. Objects of type 2 are the channels of an octree, at
 //! most 256, each with a tree of its own in sections of the kinds 3 to 10, metadata of at most 2^16 bytes, and
-//! the kinds 16 to 19; see [`ChannelRef`](crate::ChannelRef). Other objects and other kinds are for later
+//! the kinds 16 to 19; see [`ChannelRef`](crate::attribute::ChannelRef). Other objects and other kinds are for later
 //! versions, and kinds from 2^31 on for applications: a reader skips what it does not know, unless it is
 //! required.
 //!

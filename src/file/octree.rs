@@ -162,7 +162,7 @@ pub fn save(octree: &Octree, path: impl AsRef<Path>) -> Result<(), Error> {
 ///
 /// # Errors
 /// [`Error::Format`], [`Error::Damaged`] if the level table contradicts the header,
-/// [`FormatError::Endianness`](crate::FormatError::Endianness) on big-endian machines.
+/// [`FormatError::Endianness`](crate::error::FormatError::Endianness) on big-endian machines.
 pub fn view(bytes: &[u8]) -> Result<OctreeRef<'_>, Error> {
     read::view::<Octree>(bytes)
 }
@@ -180,7 +180,7 @@ pub fn from_bytes(bytes: &[u8]) -> Result<Octree, Error> {
 /// read where it lies as by [`view`].
 ///
 /// # Errors
-/// As [`view`], and [`FormatError::Metadata`](crate::FormatError::Metadata).
+/// As [`view`], and [`FormatError::Metadata`](crate::error::FormatError::Metadata).
 pub fn from_static(bytes: &'static [u8]) -> Result<Octree, Error> {
     read::from_static(bytes)
 }
@@ -208,8 +208,8 @@ pub fn open(path: impl AsRef<Path>) -> Result<Octree, Error> {
 ///
 /// # Errors
 /// [`Error::File`] with the path and one of these causes: [`Error::Io`];
-/// [`FormatError::NotRegular`](crate::FormatError::NotRegular) if there is no regular file at `path`; else as
-/// [`view`](super::view), and [`FormatError::Metadata`](crate::FormatError::Metadata).
+/// [`FormatError::NotRegular`](crate::error::FormatError::NotRegular) if there is no regular file at `path`; else as
+/// [`view`](super::view), and [`FormatError::Metadata`](crate::error::FormatError::Metadata).
 ///
 /// # Safety
 /// While the mapping lives,

@@ -232,8 +232,8 @@ pub fn save(model: &TriDexel, path: impl AsRef<Path>) -> Result<(), Error> {
 /// intervals is said [above](super::dexels). The bytes must begin on an address that is a multiple of 8.
 ///
 /// # Errors
-/// [`Error::Format`]; among them [`FormatError::OtherModel`](crate::FormatError::OtherModel) for the file of an octree,
-/// and [`FormatError::Endianness`](crate::FormatError::Endianness) on big-endian machines.
+/// [`Error::Format`]; among them [`FormatError::OtherModel`](crate::error::FormatError::OtherModel) for the file of an octree,
+/// and [`FormatError::Endianness`](crate::error::FormatError::Endianness) on big-endian machines.
 pub fn view(bytes: &[u8]) -> Result<TriDexelRef<'_>, Error> {
     read::view::<TriDexel>(bytes)
 }
@@ -251,7 +251,7 @@ pub fn from_bytes(bytes: &[u8]) -> Result<TriDexel, Error> {
 /// lies as by [`view`].
 ///
 /// # Errors
-/// As [`view`], and [`FormatError::Metadata`](crate::FormatError::Metadata).
+/// As [`view`], and [`FormatError::Metadata`](crate::error::FormatError::Metadata).
 pub fn from_static(bytes: &'static [u8]) -> Result<TriDexel, Error> {
     read::from_static(bytes)
 }
@@ -272,8 +272,8 @@ pub fn open(path: impl AsRef<Path>) -> Result<TriDexel, Error> {
 ///
 /// # Errors
 /// [`Error::File`] with the path and one of these causes: [`Error::Io`];
-/// [`FormatError::NotRegular`](crate::FormatError::NotRegular) if there is no regular file at `path`; else as [`view`],
-/// and [`FormatError::Metadata`](crate::FormatError::Metadata).
+/// [`FormatError::NotRegular`](crate::error::FormatError::NotRegular) if there is no regular file at `path`; else as [`view`],
+/// and [`FormatError::Metadata`](crate::error::FormatError::Metadata).
 ///
 /// # Safety
 /// As [`file::map`](super::map()): while the mapping lives, nobody may write to the file or make it shorter.

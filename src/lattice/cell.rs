@@ -4,7 +4,7 @@
 /// one at the integer position `at` (0 ≤ at < 2^level). Level 0 is the universe itself.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Cell {
-    /// 0 for the universe, at most [`MAX_DEPTH`](crate::MAX_DEPTH).
+    /// 0 for the universe, at most [`MAX_DEPTH`](crate::lattice::MAX_DEPTH).
     pub level: u8,
     /// Position in cells of this level: x, y, z.
     pub at: [u32; 3],

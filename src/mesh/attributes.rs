@@ -26,7 +26,7 @@ pub enum AttributeDomain {
 /// corners.
 ///
 /// ```
-/// use leafless::{MeshAttribute, TriangleMesh};
+/// use leafless::{TriangleMesh, mesh::MeshAttribute};
 ///
 /// // A square of two triangles, and a triangle without extent between them.
 /// let vertices = vec![[0.0; 3], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];

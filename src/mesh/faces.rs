@@ -31,7 +31,7 @@ impl Polyhedron {
     }
 
     /// The face, shell or solid that each triangle of the [mesh](Self::mesh) belongs to, numbered as in the
-    /// [arrays](crate::PolyhedronArrays) that the polyhedron was made of. Triangles are in the order of faces.
+    /// [arrays](crate::mesh::PolyhedronArrays) that the polyhedron was made of. Triangles are in the order of faces.
     ///
     /// O(t).
     ///
@@ -55,7 +55,9 @@ impl Polyhedron {
     /// O(t + n).
     ///
     /// ```
-    /// use leafless::{Polyhedron, PolyhedronArrays, PolyhedronPart, SurfaceAttribute, Attribute};
+    /// use leafless::{
+    ///     attribute::{Attribute, SurfaceAttribute}, mesh::{Polyhedron, PolyhedronArrays, PolyhedronPart},
+    /// };
     ///
     /// # let vertices = [[0., 0., 0.], [2., 0., 0.], [2., 2., 0.], [0., 2., 0.], [1., 1., 3.]];
     /// # let corners = [3, 2, 1, 0, 0, 1, 4, 1, 2, 4, 2, 3, 4, 3, 0, 4];

@@ -58,7 +58,7 @@ impl TriangleMesh {
     /// [`Error::OutOfMemory`] or [`Error::Cancelled`].
     ///
     /// ```
-    /// use leafless::{Control, FillRule, MeshMoments, TriangleMesh};
+    /// use leafless::{Control, FillRule, TriangleMesh, mesh::MeshMoments};
     /// let vertices = vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
     /// let mesh = TriangleMesh::new(vertices, vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]])?;
     /// let MeshMoments::Known(moments) = mesh.moments(FillRule::NonZero, &Control::default())? else { panic!() };

@@ -64,7 +64,7 @@ pub struct PolyhedronArrays<'a> {
 /// [bear values](Self::attribute). Needs the feature `std`.
 ///
 /// ```
-/// use leafless::{Polyhedron, PolyhedronArrays};
+/// use leafless::mesh::{Polyhedron, PolyhedronArrays};
 ///
 /// // A pyramid with a square base.
 /// let polyhedron = Polyhedron::new(&PolyhedronArrays {

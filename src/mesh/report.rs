@@ -70,7 +70,7 @@ pub struct MeshReport {
     /// peg that fits its hole exactly, or there was too much to look at.
     pub undecided_bodies: u64,
     /// Faces of more than three corners that the triangles were made from: of OBJ, PLY and OFF files and of
-    /// a [`Polyhedron`](crate::Polyhedron). 0 for other meshes.
+    /// a [`Polyhedron`](crate::mesh::Polyhedron). 0 for other meshes.
     pub polygons: u64,
     /// Those that are not flat: corners lie beside the face's plane, by more than 2^-40 of its extent. Such a
     /// face has no shape of its own. The mesh is one of its triangulations, and whatever is proven of the mesh

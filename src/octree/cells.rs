@@ -23,7 +23,7 @@ pub struct TaggedCell {
 /// Which cells of an octree are wanted: those of certain tags, on certain levels, in a box.
 ///
 /// ```
-/// use leafless::{CellFilter, Tag};
+/// use leafless::{Tag, octree::CellFilter};
 /// // The surface of what may be solid, in the lower half of a tree of depth 10.
 /// let filter = CellFilter::tags(&[Tag::Full, Tag::Partial]).within([0; 3], [1024, 1024, 512]);
 /// ```
@@ -112,7 +112,7 @@ const LOW: u64 = 0x0101_0101_0101_0101;
 /// [`seek`](Cells::seek) goes on from any cell. It needs no allocation.
 ///
 /// Over bytes that nobody has checked it meets no element twice: the elements of a level must ascend, and a
-/// link that contradicts this makes its cell PARTIAL, as for a [`Cursor`](crate::Cursor).
+/// link that contradicts this makes its cell PARTIAL, as for a [`Cursor`](crate::octree::Cursor).
 #[derive(Clone, Yokeable)]
 pub struct Cells<'a> {
     tree: OctreeRef<'a>,
@@ -137,7 +137,7 @@ impl<'a> OctreeRef<'a> {
     /// of the filter's box or below its levels are not met. Damage reads as PARTIAL.
     ///
     /// ```
-    /// use leafless::{CellFilter, Control, Csg, Frame, Rule, Tag, build};
+    /// use leafless::{Control, Csg, Frame, Rule, Tag, build, octree::CellFilter};
     /// let frame = Frame::new([0.0; 3], 4.0, 2)?;
     /// let bar = build(&Csg::cuboid([0.0; 3], [3.0, 1.0, 1.0])?, &frame, Rule::Certified, &Control::default())?;
     /// let solid = bar.view().cells(CellFilter::tags(&[Tag::Full]));

@@ -55,7 +55,7 @@ impl Node {
 /// noticed depends on where the cursor has been before.)
 ///
 /// ```
-/// use leafless::{Control, Csg, Cursor, Frame, Rule, Tag, build};
+/// use leafless::{Control, Csg, Frame, Rule, Tag, build, octree::Cursor};
 /// let frame = Frame::new([0.0; 3], 1.0, 5)?;
 /// let ball = build(&Csg::ball([0.5; 3], 0.4)?, &frame, Rule::Certified, &Control::default())?;
 /// let mut cursor = Cursor::new(ball.view());

@@ -58,7 +58,7 @@ impl<'a> OctreeRef<'a> {
     /// cells; over damaged bytes, everything beyond is PARTIAL.
     ///
     /// ```
-    /// use leafless::{CellFilter, Control, Csg, Frame, Rule, Tag, build};
+    /// use leafless::{Control, Csg, Frame, Rule, Tag, build, octree::CellFilter};
     /// let frame = Frame::new([0.0; 3], 4.0, 2)?;
     /// let bar = Csg::cuboid([1.0; 3], [3.0, 2.0, 2.0])?;
     /// let bar = build(&bar, &frame, Rule::Certified, &Control::default())?;

@@ -29,7 +29,7 @@ pub(crate) mod writer;
 
 pub use block::Block;
 pub use cells::{CellFilter, Cells, TaggedCell};
-pub use channel::{Channel, ChannelRef, ScalarType, ValueType};
+pub(crate) use channel::{Channel, ChannelRef, ScalarType, ValueType};
 pub use cursor::{Cursor, Node};
 pub use direction::Direction;
 pub use faces::{BoundaryFace, BoundaryFaces};

@@ -111,7 +111,7 @@ impl<'a> Cursor<'a> {
     /// Along a walk amortised O(1), at most O(depth): only elements below the common ancestor are read.
     ///
     /// ```
-    /// use leafless::{Cell, Control, Csg, Cursor, Direction, Frame, Rule, Tag, build};
+    /// use leafless::{Cell, Control, Csg, Frame, Rule, Tag, build, octree::{Cursor, Direction}};
     /// let frame = Frame::new([0.0; 3], 4.0, 2)?;
     /// let bar = build(&Csg::cuboid([0.0; 3], [3.0, 1.0, 1.0])?, &frame, Rule::Certified, &Control::default())?;
     /// let mut cursor = Cursor::new(bar.view());

@@ -210,13 +210,13 @@ impl Octree {
 
     /// The same tree with the channels of another, which lies in the same cube; they are shared.
     #[must_use]
-    pub fn with_channels_of(&self, other: &Octree) -> Octree {
+    pub fn with_channels_from(&self, other: &Octree) -> Octree {
         Octree { channels: other.channels.clone(), ..self.clone() }
     }
 
     /// The same tree with the metadata of another, which are shared.
     #[must_use]
-    pub fn with_metadata_of(&self, other: &Octree) -> Octree {
+    pub fn with_metadata_from(&self, other: &Octree) -> Octree {
         Octree { metadata: other.metadata.clone(), ..self.clone() }
     }
 

@@ -71,7 +71,7 @@ pub(crate) struct LevelCounts {
 /// A view may lie over bytes that nobody has checked. Reading is then still memory-safe, terminates, and does
 /// bounded work; a damaged link or index reads as PARTIAL, or makes a bulk operation return
 /// [`Error::Damaged`](crate::Error::Damaged). A flipped tag cannot be told from a true one that way: only the
-/// checksums and [`check`](OctreeRef::check) find it. Also a [`Cursor`](crate::Cursor) that walks over all of
+/// checksums and [`check`](OctreeRef::check) find it. Also a [`Cursor`](crate::octree::Cursor) that walks over all of
 /// an unchecked tree meets no element twice.
 #[derive(Debug, Clone, Copy, Yokeable)]
 pub struct OctreeRef<'a> {

@@ -26,7 +26,7 @@ use crate::solid::{Classifier, Verdict, Worker};
 /// [`Error::OutOfMemory`], and what `control` asks for.
 ///
 /// ```
-/// use leafless::{Control, Dexel, DexelEnd, DexelFormat, Frame, TriDexel, octree_of_dexels};
+/// use leafless::{Control, Frame, TriDexel, dexel::{Dexel, DexelEnd, DexelFormat}, op::octree_from_dexels};
 /// let (frame, control) = (Frame::new([0.0; 3], 8.0, 3)?, Control::default());
 /// let end = DexelEnd::new;
 /// let plate = |_: usize, _: [u32; 2], list: &mut Vec<Dexel>| {
@@ -34,11 +34,11 @@ use crate::solid::{Classifier, Verdict, Worker};
 ///     Ok(())
 /// };
 /// let model = TriDexel::from_rays(&frame, DexelFormat::default(), [false, false, true], plate, &control)?;
-/// let tree = octree_of_dexels(model.view(), &control)?;
+/// let tree = octree_from_dexels(model.view(), &control)?;
 /// assert_eq!(tree.statistics().volume().lower, 2.0 * 64.0);
 /// # Ok::<(), leafless::Error>(())
 /// ```
-pub fn octree_of_dexels(model: &TriDexelRef<'_>, control: &Control<'_>) -> Result<Octree, Error> {
+pub fn octree_from_dexels(model: &TriDexelRef<'_>, control: &Control<'_>) -> Result<Octree, Error> {
     model.sound()?;
     let occupied = if model.frame().depth() >= BLOCK_LEVELS { Some(Occupied::of(model)?) } else { None };
     build_on(&Centres { model: *model, occupied: occupied.as_ref() }, Rule::Sampled, control)

@@ -25,7 +25,7 @@ impl DexelEditor {
     /// solid tells one. Its intervals are those of [`dexelize`] with [`Rule::Sampled`], and carry what the editor stores.
     ///
     /// ```
-    /// use leafless::{Control, Csg, DexelEditor, DexelOptions, Frame, dexelize};
+    /// use leafless::{Control, Csg, Frame, dexelize, dexel::DexelEditor, op::DexelOptions};
     /// let (frame, control) = (Frame::new([0.0; 3], 64.0, 6)?, Control::default());
     /// let block = dexelize(&Csg::cuboid([2.0; 3], [62.0; 3])?, &frame, &DexelOptions::default(), &control)?;
     /// let mut part = DexelEditor::new(block.view())?;

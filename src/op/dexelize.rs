@@ -76,7 +76,7 @@ impl Default for DexelOptions {
 /// `control.max_bytes`; and as [`build`](crate::build).
 ///
 /// ```
-/// use leafless::{Control, Csg, DexelOptions, Frame, dexelize};
+/// use leafless::{Control, Csg, Frame, dexelize, op::DexelOptions};
 /// let frame = Frame::new([-1.0; 3], 2.0, 7)?;
 /// let ball = dexelize(&Csg::ball([0.0; 3], 0.75)?, &frame, &DexelOptions::default(), &Control::default())?;
 /// let volume = ball.view().statistics(2).unwrap().volume;

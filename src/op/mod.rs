@@ -8,10 +8,11 @@ mod dexelize;
 mod lazy;
 mod rule;
 
+pub use crate::walk::Zone;
 pub use boolean::{complement, difference, intersection, intersection_of, union, union_of, xor, xor_of};
 use build::build_on;
 pub use build::{build, compact, resolve};
-pub use dexel_centres::octree_of_dexels;
+pub use dexel_centres::octree_from_dexels;
 pub use dexelize::{DexelOptions, dexelize};
 pub use lazy::{LazyOctree, Refinement};
 pub use rule::Rule;

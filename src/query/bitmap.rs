@@ -21,7 +21,7 @@ impl OctreeRef<'_> {
     /// (0 is the universe, the frame's depth the finest). The bit of the cell min + (x, y, z) is bit x mod 64
     /// of word x / 64 + w·(y + ny·z) with w = ⌈nx / 64⌉ and nx, ny, nz = max − min. x is fastest, each row
     /// begins with a word of its own, and bits beyond a row are 0: what
-    /// [`Samples::Bits`](crate::Samples::Bits) reads. All words are overwritten.
+    /// [`Samples::Bits`](crate::solid::Samples::Bits) reads. All words are overwritten.
     ///
     /// Whole rows of words are written for large cells, four bits at a time where the tree is fine: O(words +
     /// elements in the box). The result does not depend on the number of threads. Where the links of an
@@ -33,7 +33,7 @@ impl OctreeRef<'_> {
     /// [`Error::Cancelled`]: the slices then hold anything.
     ///
     /// ```
-    /// use leafless::{Band, Control, Csg, Frame, Rule, Samples, Volume, VoxelGrid, build};
+    /// use leafless::{Control, Csg, Frame, Rule, Volume, build, solid::{Band, Samples, VoxelGrid}};
     /// let (frame, control) = (Frame::new([-2.0; 3], 4.0, 6)?, Control::default());
     /// let ball = build(&Csg::ball([0.0; 3], 1.0)?, &frame, Rule::Sampled, &control)?;
     /// let mut bits = vec![0; 64 * 64];

@@ -34,7 +34,7 @@ pub enum Region {
 /// [`Error::OutOfMemory`], and [`Error::Cancelled`].
 ///
 /// ```
-/// use leafless::{Control, Csg, Frame, Region, classify_box};
+/// use leafless::{Control, Csg, Frame, query::{Region, classify_box}};
 /// let (frame, control) = (Frame::new([-2.0; 3], 4.0, 12)?, Control::default());
 /// let ball = Csg::ball([0.0; 3], 1.0)?;
 /// let ask = |min: [f64; 3], max: [f64; 3]| classify_box(&ball, &frame, min, max, &control);

@@ -22,7 +22,7 @@ use crate::walk::split_one;
 /// What solid and region refuse; [`Error::OutOfMemory`], and [`Error::Cancelled`].
 ///
 /// ```
-/// use leafless::{Control, Csg, Frame, Region, classify_in};
+/// use leafless::{Control, Csg, Frame, query::{Region, classify_in}};
 /// let (frame, control) = (Frame::new([-2.0; 3], 4.0, 8)?, Control::default());
 /// let block = Csg::cuboid([-1.0; 3], [1.0; 3])?;
 /// let ask = |centre: [f64; 3]| classify_in(&block, &Csg::ball(centre, 0.5)?, &frame, &control);

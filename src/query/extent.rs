@@ -49,7 +49,7 @@ pub const BOUNDING_BOX_SPLITS: u64 = 1 << 20;
 ///   its share of what the sides before it have left. Or what is remembered of a side comes near to
 ///   `control.max_bytes`.
 ///
-/// Where the solid knows the slabs of a cell ([`Enclosure`](crate::Enclosure)), a linear program bounds how far it
+/// Where the solid knows the slabs of a cell ([`Enclosure`](crate::solid::Enclosure)), a linear program bounds how far it
 /// reaches there. A corner of three plane faces is exact to rounding as soon as a cell holds no more than these,
 /// wherever the faces lie: a tilted plate takes 28 splits. At a curved side each level makes the interval four
 /// times as narrow. A level takes some ten splits a side, and twice as many as the level before where the side is

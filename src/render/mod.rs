@@ -88,7 +88,7 @@ impl Shot {
     /// ½, ½): from where, and in which direction. What is seen there at the depth d is at from + d · direction.
     ///
     /// ```
-    /// use leafless::{Camera, Lens, Shot};
+    /// use leafless::render::{Camera, Lens, Shot};
     /// let camera = Camera::new([0.0, -5.0, 0.0], [0.0; 3], [0.0, 0.0, 1.0], Lens::Parallel(2.0))?;
     /// let (from, direction) = Shot::new(camera, [200, 100]).line_of_sight([150.0, 0.0]);
     /// assert_eq!((from, direction), ([1.0, -5.0, 1.0], [0.0, 1.0, 0.0]));

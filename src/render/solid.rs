@@ -24,7 +24,7 @@ use glam::DVec3;
 ///
 /// The solid is split to cells as large as a pixel, 2^11 to an axis at the most. In an undecided cell a line of sight meets what
 /// the solid knows of it: a crossing, or the middle of its slabs, with their normals. Of cells of which nothing is known the
-/// surface and its normals are those of an [`OctreeLayer`](crate::OctreeLayer). Through what is translucent other layers are seen,
+/// surface and its normals are those of an [`OctreeLayer`](crate::render::OctreeLayer). Through what is translucent other layers are seen,
 /// but nothing more of this one.
 ///
 /// O(cells of the surface), once; then O(samples · cells along a line of sight).

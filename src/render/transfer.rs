@@ -97,7 +97,7 @@ fn step_of(number: f64) -> usize {
 /// (1 − α)^(s / length) through. So a picture does not depend on how finely a solid is divided into voxels.
 ///
 /// ```
-/// use leafless::{ColourMap, Transfer};
+/// use leafless::render::{ColourMap, Transfer};
 /// // Temperatures of 20 to 80 degrees. 3 mm of the material absorb half of the light.
 /// let transfer = Transfer::new(ColourMap::Viridis, [20.0, 80.0], 0.5, 3.0)?;
 /// assert_eq!(transfer.colour(&[100.0]), ColourMap::Viridis.colour(1.0));

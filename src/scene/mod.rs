@@ -46,7 +46,7 @@ use alloc::vec::Vec;
 /// | `linear_extrude(height, v, scale, center)` | the prism over figures, or the tapered one |
 /// | `rotate_extrude(angle, start)` | figures turned around the z axis |
 /// | `halfspace([a, b, c, d])` | a x + b y + c z + d ≥ 0 |
-/// | `quadric([a, …, j])` | as [`HalfSpace::quadric`](crate::HalfSpace::quadric) |
+/// | `quadric([a, …, j])` | as [`HalfSpace::quadric`](crate::solid::HalfSpace::quadric) |
 /// | `power([A, a, n1], [B, b, n2], [C, c, n3], R)` | A (x − a)^n1 + B (y − b)^n2 + C (z − c)^n3 + R ≥ 0 |
 /// | `torus(major, minor)` | around the z axis |
 /// | `mesh(file)` `import(file)` | a mesh file of any known format, as [`open_mesh`](crate::exchange::open_mesh) reads it |

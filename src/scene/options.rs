@@ -38,7 +38,7 @@ impl SceneOptions {
     /// O(text) for what is exact, times the sides of polygons, and the files.
     ///
     /// # Errors
-    /// [`SceneError`](crate::SceneError) with line and column for whatever is wrong with the text or a file that
+    /// [`SceneError`](crate::error::SceneError) with line and column for whatever is wrong with the text or a file that
     /// it names; [`Error::OutOfMemory`].
     pub fn read(&self, text: impl AsRef<[u8]>, folder: Option<&Path>) -> Result<Scene, Error> {
         let bytes = text.as_ref();

@@ -17,7 +17,7 @@ use alloc::vec::Vec;
 /// solid that knows no enclosures is split as ever.
 ///
 /// ```
-/// use leafless::{Adaptive, Control, Csg, Frame, Rule, build};
+/// use leafless::{Control, Csg, Frame, Rule, build, solid::Adaptive};
 /// let ball = Csg::ball([0.0; 3], 0.9)?;
 /// let frame = Frame::new([-1.0; 3], 2.0, 9)?;
 /// let whole = build(&ball, &frame, Rule::Certified, &Control::default())?;

@@ -20,7 +20,7 @@ impl AnySolid {
     /// As [`TriangleMesh::placed`](crate::TriangleMesh::placed) for meshes; [`Error::OutOfMemory`].
     ///
     /// ```
-    /// use leafless::{Affine, AnySolid, Csg, Frame, Motion, Octree, Rule, Control, Solid, build};
+    /// use leafless::{Affine, AnySolid, Csg, Frame, Octree, Rule, Control, Solid, build, solid::Motion};
     /// let turned = Affine::new([[0.8, -0.6, 0.0, 3.0], [0.6, 0.8, 0.0, 2.0], [0.0, 0.0, 1.0, 2.0]])?;
     /// let ball = AnySolid::new(Csg::ball([0.0; 3], 1.0)?);
     /// assert_eq!(ball.motion(), Motion::Exact);

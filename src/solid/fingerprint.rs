@@ -35,7 +35,7 @@ impl fmt::Display for Fingerprint {
 /// needed.
 ///
 /// ```
-/// use leafless::Fingerprinter;
+/// use leafless::solid::Fingerprinter;
 /// let ball = Fingerprinter::new("my ball").numbers(&[0.0, 0.0, 0.0, 1.0]).finish();
 /// let shell = Fingerprinter::new("my shell").part(ball).numbers(&[0.1]).finish();
 /// assert_ne!(ball, shell);

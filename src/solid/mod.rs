@@ -109,7 +109,10 @@ impl<P> Verdict<P> {
 /// thread takes a [`Worker`] from it, which has the scratch memory and answers.
 ///
 /// ```
-/// use leafless::{Bounds, Cell, Classifier, Control, Cube, Error, Frame, Rule, Solid, Tag, Verdict, Worker, build};
+/// use leafless::{
+///     Bounds, Cell, Classifier, Control, Error, Frame, Rule, Solid, Tag, Verdict, Worker, build,
+///     lattice::Cube,
+/// };
 ///
 /// /// All points p with |x| + |y| + |z| ≤ r.
 /// #[derive(Clone, Copy)]

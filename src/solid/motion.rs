@@ -9,7 +9,7 @@ pub enum Motion {
     /// The vertices of a mesh are moved and rounded, by some 10^-16 of their coordinates; what is proven
     /// allows for that.
     Vertices = 1,
-    /// As [`Transform`](crate::Transform) does: a surface that is not parallel to the lattice blurs by about
+    /// As [`Transform`](crate::solid::Transform) does: a surface that is not parallel to the lattice blurs by about
     /// a cell. (Where cells are the images of cells, nothing blurs.)
     Conservative = 2,
 }

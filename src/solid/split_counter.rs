@@ -13,7 +13,7 @@ use core::sync::atomic::{AtomicU64, Ordering::Relaxed};
 /// solid that it wraps; bulk production is turned off, so that every split is counted.
 ///
 /// ```
-/// use leafless::{Control, SplitCounter, Csg, Frame, Rule, build};
+/// use leafless::{Control, Csg, Frame, Rule, build, solid::SplitCounter};
 /// // The sphere of a published table: 65 cells of levels 0 to 2 are split.
 /// let sphere = SplitCounter::new(Csg::ball([64.0; 3], 64.0)?);
 /// build(&sphere, &Frame::new([0.0; 3], 128.0, 3)?, Rule::Certified, &Control::default())?;

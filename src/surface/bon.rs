@@ -12,7 +12,7 @@ use super::cubes::Around;
 use super::key::{self, Key};
 use super::masks::{bits, configuration};
 use super::plane::{Plane, of_configuration};
-use super::smc::Snap;
+use super::simple::Snap;
 use crate::control::Job;
 use crate::error::Error;
 use crate::memory;

@@ -38,7 +38,7 @@ use alloc::vec::Vec;
 ///
 /// # Errors
 /// [`Error::Argument`] if the tree has PARTIAL cells and `resolve` is `None`, or if the frame is so far from
-/// the origin that doubles cannot tell its cells apart; [`MeshError::TooMany`](crate::MeshError::TooMany) for
+/// the origin that doubles cannot tell its cells apart; [`MeshError::TooMany`](crate::error::MeshError::TooMany) for
 /// more than 2^32 − 1 vertices or triangles; [`Error::Damaged`]; [`Error::OutOfMemory`];
 /// [`Error::Cancelled`]; and with [`Resolve::Source`] what the solid refuses.
 ///
@@ -66,7 +66,7 @@ pub fn marching_cubes(
 /// As [`marching_cubes`]; the memory is given back then.
 ///
 /// ```
-/// use leafless::{Control, Csg, Frame, Rule, build, marching_cubes, marching_cubes_reusing};
+/// use leafless::{Control, Csg, Frame, Rule, build, marching_cubes, surface::marching_cubes_reusing};
 /// let (frame, control) = (Frame::new([-1.0; 3], 2.0, 5)?, Control::default());
 /// let [large, small] =
 ///     [0.9, 0.5].map(|radius| build(&Csg::ball([0.0; 3], radius)?, &frame, Rule::Sampled, &control));

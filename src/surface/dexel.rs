@@ -17,7 +17,7 @@ use crate::error::Error;
 use crate::lattice::axes;
 use crate::memory;
 use crate::mesh::TriangleMesh;
-use crate::op::octree_of_dexels;
+use crate::op::octree_from_dexels;
 use crate::walk::Edge;
 use alloc::vec::Vec;
 use core::sync::atomic::{AtomicBool, AtomicUsize, Ordering::Relaxed};
@@ -53,7 +53,7 @@ pub struct DexelSurfaceReport {
 
 /// The surface of a tri-dexel model by marching cubes: a closed mesh, with vertices where rays cross the solid's surface.
 ///
-/// Samples are the centres of cells, as [`octree_of_dexels`](crate::octree_of_dexels) has them; everything outside of the
+/// Samples are the centres of cells, as [`octree_from_dexels`](crate::op::octree_from_dexels) has them; everything outside of the
 /// universe is outside. On each edge between two neighbouring centres of which one lies inside, there is one vertex. It
 /// lies where the ray along this edge leaves the solid, nearest to the inside centre. The report counts edges that the
 /// ray crosses more often, and edges on which there is no such place: because the model has no rays in this direction,
@@ -65,18 +65,20 @@ pub struct DexelSurfaceReport {
 /// [is counted](DexelSurfaceReport::vanished), and so is what [holds no centre](DexelSurfaceReport::without_centres) and is
 /// not seen.
 ///
-/// Edges and corners of the solid are cut off by up to a cell; [`dual_contouring_of_dexels`] keeps them.
+/// Edges and corners of the solid are cut off by up to a cell; [`dual_contouring_dexels`] keeps them.
 ///
-/// O(rays + intervals + octree + mesh), with the octree of [`octree_of_dexels`](crate::octree_of_dexels). The result is the
+/// O(rays + intervals + octree + mesh), with the octree of [`octree_from_dexels`](crate::op::octree_from_dexels). The result is the
 /// same for any number of threads.
 ///
 /// # Errors
 /// [`Error::Argument`] if the frame is so far from the origin that doubles cannot tell its cells apart;
-/// [`MeshError::TooMany`](crate::MeshError::TooMany) for more than 2^32 − 1 vertices or triangles;
+/// [`MeshError::TooMany`](crate::error::MeshError::TooMany) for more than 2^32 − 1 vertices or triangles;
 /// [`Error::OutOfMemory`]; [`Error::Cancelled`].
 ///
 /// ```
-/// use leafless::{Control, Dexel, DexelEnd, DexelFormat, Frame, TriDexel, marching_cubes_of_dexels};
+/// use leafless::{
+///     Control, Frame, TriDexel, dexel::{Dexel, DexelEnd, DexelFormat}, surface::marching_cubes_dexels,
+/// };
 /// let (frame, control) = (Frame::new([-1.0; 3], 2.0, 5)?, Control::default());
 /// // A ball of radius 0.75.
 /// let ball = |_: usize, ray: [u32; 2], list: &mut Vec<Dexel>| {
@@ -89,14 +91,14 @@ pub struct DexelSurfaceReport {
 ///     Ok(())
 /// };
 /// let model = TriDexel::from_rays(&frame, DexelFormat::default(), [true; 3], ball, &control)?;
-/// let (mesh, report) = marching_cubes_of_dexels(model.view(), &control)?;
+/// let (mesh, report) = marching_cubes_dexels(model.view(), &control)?;
 /// assert_eq!(report.without_rays + report.disagreeing, 0);
 /// for [x, y, z] in mesh.vertices() {
 ///     assert!((x * x + y * y + z * z - 0.75 * 0.75).abs() < 1e-8);
 /// }
 /// # Ok::<(), leafless::Error>(())
 /// ```
-pub fn marching_cubes_of_dexels(
+pub fn marching_cubes_dexels(
     model: &TriDexelRef<'_>,
     control: &Control<'_>,
 ) -> Result<(TriangleMesh, DexelSurfaceReport), Error> {
@@ -134,7 +136,7 @@ pub fn marching_cubes_of_dexels(
 
 /// The surface of a tri-dexel model by dual contouring: a closed mesh that keeps the solid's edges and corners.
 ///
-/// Samples are those of [`marching_cubes_of_dexels`], and the crossings are found as there. In each cube between eight
+/// Samples are those of [`marching_cubes_dexels`], and the crossings are found as there. In each cube between eight
 /// centres the mesh has a vertex for each sheet of the surface. It lies where the planes at the sheet's crossings, with
 /// the normals that the model stores, fit best (their quadratic error function has its minimum), and never outside of the
 /// cube. On a smooth surface that is near the mean of the crossings, on an edge of the solid it is on the edge, and
@@ -150,13 +152,13 @@ pub fn marching_cubes_of_dexels(
 /// two cubes with two inside centres at the ends of a diagonal, if the sheets around both hang together in both cubes.
 /// Vertices that lie at one place, as on the common face of two cubes, are one vertex, and triangles without area are
 /// dropped: there more than two triangles may meet on an edge, in balance. Triangles may intersect. A body is not shown, and
-/// counted, as by [`marching_cubes_of_dexels`]; a body of one centre is else a cuboid around it.
+/// counted, as by [`marching_cubes_dexels`]; a body of one centre is else a cuboid around it.
 ///
-/// Time as [`marching_cubes_of_dexels`]. The result is the same for any number of threads.
+/// Time as [`marching_cubes_dexels`]. The result is the same for any number of threads.
 ///
 /// # Errors
-/// As [`marching_cubes_of_dexels`].
-pub fn dual_contouring_of_dexels(
+/// As [`marching_cubes_dexels`].
+pub fn dual_contouring_dexels(
     model: &TriDexelRef<'_>,
     control: &Control<'_>,
 ) -> Result<(TriangleMesh, DexelSurfaceReport), Error> {
@@ -180,7 +182,7 @@ fn surface<R: Send>(
     extract: impl FnOnce(&Lattice, &Blocks, &Job<'_>, bool) -> Result<R, Error> + Send,
 ) -> Result<R, Error> {
     let lattice = Lattice::new(model.frame())?;
-    let tree = control.share([0.0, 0.5], |control| octree_of_dexels(model, control))?;
+    let tree = control.share([0.0, 0.5], |control| octree_from_dexels(model, control))?;
     control.share([0.5, 1.0], |control| {
         let samples = Samples::new(tree.view(), false, u32::MAX)?;
         let job = Job::new(control);

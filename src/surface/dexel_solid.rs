@@ -1,6 +1,6 @@
 //! Tri-dexel models as solids.
 
-use super::dexel::{DexelSurfaceReport, marching_cubes_of_dexels};
+use super::dexel::{DexelSurfaceReport, marching_cubes_dexels};
 use crate::control::Control;
 use crate::dexel::TriDexelRef;
 use crate::error::Error;
@@ -10,7 +10,7 @@ use crate::octree::{Proof, Tag};
 use crate::solid::{Classifier, Fingerprint, MeshSolid, Motion, Solid};
 use alloc::sync::Arc;
 
-/// A tri-dexel model as a solid: the region inside of the surface that [`marching_cubes_of_dexels`] finds. Cheap to
+/// A tri-dexel model as a solid: the region inside of the surface that [`marching_cubes_dexels`] finds. Cheap to
 /// clone.
 ///
 /// It can be built on any frame, moved, queried, and taken into expressions. Its verdicts are exact about this surface.
@@ -19,7 +19,10 @@ use alloc::sync::Arc;
 /// [`as_truth`](DexelSolid::as_truth) takes the surface itself for the solid.
 ///
 /// ```
-/// use leafless::{Control, Dexel, DexelEnd, DexelFormat, DexelSolid, Frame, Rule, TriDexel, build, measure};
+/// use leafless::{
+///     Control, Frame, Rule, TriDexel, build, measure, dexel::{Dexel, DexelEnd, DexelFormat},
+///     surface::DexelSolid,
+/// };
 /// let (frame, control) = (Frame::new([0.0; 3], 8.0, 3)?, Control::default());
 /// let end = DexelEnd::new;
 /// // A cube of edge 4, 2 from the origin on each axis.
@@ -49,10 +52,10 @@ impl DexelSolid {
     /// The solid of a model. The surface is extracted once, here; the model is not kept.
     ///
     /// # Errors
-    /// As [`marching_cubes_of_dexels`], and [`MeshError::Empty`](crate::MeshError::Empty) if no centre of a cell lies
+    /// As [`marching_cubes_dexels`], and [`MeshError::Empty`](crate::error::MeshError::Empty) if no centre of a cell lies
     /// inside.
     pub fn new(model: &TriDexelRef<'_>, control: &Control<'_>) -> Result<DexelSolid, Error> {
-        let (mesh, report) = marching_cubes_of_dexels(model, control)?;
+        let (mesh, report) = marching_cubes_dexels(model, control)?;
         let surface = MeshSolid::new(mesh, FillRule::NonZero)?;
         Ok(DexelSolid { surface, report, proof: Proof::new(false, false) })
     }

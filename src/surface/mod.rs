@@ -11,7 +11,7 @@
 //! From the bottom up, each file uses only files named before it: `table` (marching cubes, cell by cell),
 //! `masks` (blocks as words), `key` (the order of blocks), `samples` (an octree as samples), `size` (what is known
 //! of a surface beforehand), `blocks` (the walk), `lattice` (where samples lie), `chunks` (threads), `resolve` (undecided cells), `cubes` (marching
-//! cubes), `snapped` and `smc` (simple marching cubes), `plane`, `points`, `bon` (coplanar cells merged),
+//! cubes), `snapped` and `simple` (simple marching cubes), `plane`, `points`, `bon` (coplanar cells merged),
 //! `outline` (regions), `sweep` (their triangles), `published` (cells of several sizes as they are), `shrink`
 //! (coplanar shrink), `weld` (vertices at one place), `solid` (any
 //! solid), `volume` (samples of a field), `loops` (the sheets in a cube), `qef` (the point that fits planes best),
@@ -41,8 +41,8 @@ mod qef;
 mod resolve;
 mod samples;
 mod shrink;
+mod simple;
 mod size;
-mod smc;
 mod snapped;
 mod solid;
 mod sweep;
@@ -54,10 +54,13 @@ mod volume;
 mod weld;
 
 pub use cubes::{marching_cubes, marching_cubes_reusing};
-pub use dexel::{DexelSurfaceReport, dual_contouring_of_dexels, marching_cubes_of_dexels};
+pub use dexel::{DexelSurfaceReport, dual_contouring_dexels, marching_cubes_dexels};
 pub use dexel_solid::DexelSolid;
 pub use resolve::Resolve;
 pub use shrink::{coplanar_shrink, published_shrink};
-pub use smc::{Snap, smc};
-pub use solid::{VertexPlacement, coplanar_shrink_of, marching_cubes_of, published_shrink_of, smc_of};
-pub use volume::{marching_cubes_of_volume, marching_cubes_with_volume};
+pub use simple::{Snap, simple_marching_cubes};
+pub use solid::{
+    VertexPlacement, coplanar_shrink_solid, marching_cubes_solid, published_shrink_solid,
+    simple_marching_cubes_solid,
+};
+pub use volume::{marching_cubes_volume, marching_cubes_with_volume};

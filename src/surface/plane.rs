@@ -3,7 +3,7 @@
 //! Every triangle of simple marching cubes lies in a plane n·x = d, x in samples, where the components of n
 //! are −1, 0 and 1, and d is an integer. There are 26 such normals, 13 up to sign.
 
-use super::smc::Snap;
+use super::simple::Snap;
 use crate::lattice::axes;
 
 /// A plane with its outer side. Planes ascend by their normals, then by their offsets.

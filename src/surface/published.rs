@@ -5,7 +5,7 @@ use super::chunks;
 use super::outline::super_triangles;
 use super::plane;
 use super::points;
-use super::smc::Snap;
+use super::simple::Snap;
 use crate::control::Job;
 use crate::error::{Error, MeshError};
 use crate::lattice::axes;

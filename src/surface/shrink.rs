@@ -10,8 +10,8 @@ use super::points;
 use super::published;
 use super::resolve::{Resolve, resolved};
 use super::samples::Samples;
+use super::simple::Snap;
 use super::size::Least;
-use super::smc::Snap;
 use super::sweep::{Sweep, Vertex};
 use crate::control::{Control, Job, WHOLE};
 use crate::error::{Error, MeshError};
@@ -22,7 +22,7 @@ use crate::octree::OctreeRef;
 use alloc::vec::Vec;
 
 /// The surface of an octree by simple marching cubes, *shrunk*: the same surface as that of
-/// [`smc`](crate::smc) with far fewer triangles where it has plane parts. A block of cells has 44, however
+/// [`simple_marching_cubes`](crate::surface::simple_marching_cubes) with far fewer triangles where it has plane parts. A block of cells has 44, however
 /// large it is.
 ///
 /// All that lies in one plane becomes one region with straight edges, from corner to corner, and each region
@@ -46,10 +46,10 @@ use alloc::vec::Vec;
 /// As [`marching_cubes`](crate::marching_cubes).
 ///
 /// ```
-/// use leafless::{Control, Csg, Frame, Rule, Snap, build, coplanar_shrink, smc};
+/// use leafless::{Control, Csg, Frame, Rule, build, surface::{Snap, coplanar_shrink, simple_marching_cubes}};
 /// let frame = Frame::new([0.0; 3], 32.0, 5)?;
 /// let block = build(&Csg::cuboid([2.0; 3], [28.0; 3])?, &frame, Rule::Sampled, &Control::default())?;
-/// let all = smc(block.view(), Snap::Fat, None, &Control::default())?;
+/// let all = simple_marching_cubes(block.view(), Snap::Fat, None, &Control::default())?;
 /// let few = coplanar_shrink(block.view(), Snap::Fat, None, &Control::default())?;
 /// assert_eq!((all.triangles().len(), few.triangles().len()), (8_108, 44));
 /// assert_eq!(all.volume(), few.volume());
@@ -65,12 +65,12 @@ pub fn coplanar_shrink(
 }
 
 /// The surface of an octree by coplanar shrink in its published form. It is here to compare with, since **it
-/// has cracks**: [`coplanar_shrink`](crate::coplanar_shrink) has not, and fewer triangles.
+/// has cracks**: [`coplanar_shrink`](crate::surface::coplanar_shrink) has not, and fewer triangles.
 ///
 /// The dual cells at the surface lie in an octree that branches on need. From the bottom up, the cells of a
 /// node become one if all of them have a *coplanar configuration*, one of the 54 that a plane with one of 13
 /// normals makes, and all lie in the same plane. A merged cell has the triangles of marching cubes, with
-/// vertices where the plane cuts its edges; others have those of [`smc`](crate::smc). Where cells of several
+/// vertices where the plane cuts its edges; others have those of [`simple_marching_cubes`](crate::surface::simple_marching_cubes). Where cells of several
 /// sizes meet, the smaller ones have vertices on the edges of the larger ones' triangles, and the mesh is
 /// open there.
 ///

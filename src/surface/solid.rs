@@ -8,8 +8,8 @@ use super::lattice::Lattice;
 use super::masks::bits;
 use super::samples::Samples;
 use super::shrink::{self, Form};
+use super::simple::{self, Snap};
 use super::size::Least;
-use super::smc::{self, Snap};
 use super::weld::weld;
 use crate::control::{Control, Job};
 use crate::error::Error;
@@ -64,16 +64,16 @@ pub enum VertexPlacement {
 /// [`build`](crate::build).
 ///
 /// ```
-/// use leafless::{Control, Csg, Frame, VertexPlacement, marching_cubes_of};
+/// use leafless::{Control, Csg, Frame, surface::{VertexPlacement, marching_cubes_solid}};
 /// let frame = Frame::new([-1.0; 3], 2.0, 5)?;
 /// let (ball, control) = (Csg::ball([0.0; 3], 0.75)?, Control::default());
-/// let mesh = marching_cubes_of(&ball, &frame, VertexPlacement::Crossing, &control)?;
+/// let mesh = marching_cubes_solid(&ball, &frame, VertexPlacement::Crossing, &control)?;
 /// for [x, y, z] in mesh.vertices() {
 ///     assert!((x * x + y * y + z * z - 0.75 * 0.75).abs() < 1e-9);
 /// }
 /// # Ok::<(), leafless::Error>(())
 /// ```
-pub fn marching_cubes_of<S: Solid>(
+pub fn marching_cubes_solid<S: Solid>(
     solid: &S,
     frame: &Frame,
     placement: VertexPlacement,
@@ -106,27 +106,27 @@ pub fn marching_cubes_of<S: Solid>(
     })
 }
 
-/// The surface of a solid by simple marching cubes, sampled as by [`marching_cubes_of`]: its vertices are
-/// corners of the lattice, or of cells beside the universe. Else as [`smc`](crate::smc).
+/// The surface of a solid by simple marching cubes, sampled as by [`marching_cubes_solid`]: its vertices are
+/// corners of the lattice, or of cells beside the universe. Else as [`simple_marching_cubes`](crate::surface::simple_marching_cubes).
 ///
 /// # Errors
-/// As [`marching_cubes_of`].
-pub fn smc_of<S: Solid>(
+/// As [`marching_cubes_solid`].
+pub fn simple_marching_cubes_solid<S: Solid>(
     solid: &S,
     frame: &Frame,
     snap: Snap,
     control: &Control<'_>,
 ) -> Result<TriangleMesh, Error> {
     let corners = Corners::new(solid, frame, control)?;
-    control.share([0.5, 1.0], |control| smc::extract(&corners.samples()?, &corners.lattice, snap, control))
+    control.share([0.5, 1.0], |control| simple::extract(&corners.samples()?, &corners.lattice, snap, control))
 }
 
-/// The surface of a solid by coplanar shrink, sampled as by [`marching_cubes_of`]. Else as
-/// [`coplanar_shrink`](crate::coplanar_shrink).
+/// The surface of a solid by coplanar shrink, sampled as by [`marching_cubes_solid`]. Else as
+/// [`coplanar_shrink`](crate::surface::coplanar_shrink).
 ///
 /// # Errors
-/// As [`marching_cubes_of`].
-pub fn coplanar_shrink_of<S: Solid>(
+/// As [`marching_cubes_solid`].
+pub fn coplanar_shrink_solid<S: Solid>(
     solid: &S,
     frame: &Frame,
     snap: Snap,
@@ -136,11 +136,11 @@ pub fn coplanar_shrink_of<S: Solid>(
 }
 
 /// The surface of a solid by the published form of coplanar shrink, which has cracks, sampled as by
-/// [`marching_cubes_of`]. Else as [`published_shrink`](crate::published_shrink).
+/// [`marching_cubes_solid`]. Else as [`published_shrink`](crate::surface::published_shrink).
 ///
 /// # Errors
-/// As [`marching_cubes_of`].
-pub fn published_shrink_of<S: Solid>(
+/// As [`marching_cubes_solid`].
+pub fn published_shrink_solid<S: Solid>(
     solid: &S,
     frame: &Frame,
     snap: Snap,

@@ -39,16 +39,16 @@ use core::sync::atomic::{AtomicBool, Ordering::Relaxed};
 /// [`MeshError::TooMany`] for more than 2^32 − 1 vertices or triangles; [`Error::OutOfMemory`]; [`Error::Cancelled`].
 ///
 /// ```
-/// use leafless::{Band, Control, Volume, VoxelGrid, marching_cubes_of_volume};
+/// use leafless::{Control, Volume, solid::{Band, VoxelGrid}, surface::marching_cubes_volume};
 /// let grid = VoxelGrid::new([3, 3, 3], [0.0; 3], [1.0; 3])?;
 /// let mut samples = [0.0f32; 27];
 /// samples[13] = 4.0;
 /// let volume = Volume::new(samples[..].into(), &grid, Band::at_least(1.0)?, &Control::default())?;
-/// let mesh = marching_cubes_of_volume(&volume, &Control::default())?;
+/// let mesh = marching_cubes_volume(&volume, &Control::default())?;
 /// assert_eq!(mesh.bounds(), ([0.75; 3], [2.25; 3]));
 /// # Ok::<(), leafless::Error>(())
 /// ```
-pub fn marching_cubes_of_volume(volume: &Volume<'_>, control: &Control<'_>) -> Result<TriangleMesh, Error> {
+pub fn marching_cubes_volume(volume: &Volume<'_>, control: &Control<'_>) -> Result<TriangleMesh, Error> {
     // Voxels become cells of edge 1, whatever their shape.
     let cells = volume.in_voxels()?;
     let frame = cells.grid().frame()?;
@@ -57,7 +57,7 @@ pub fn marching_cubes_of_volume(volume: &Volume<'_>, control: &Control<'_>) -> R
 }
 
 /// The surface of an octree whose finest cells are voxels of a volume, as that of
-/// [`marching_cubes`](crate::marching_cubes), with the vertices of [`marching_cubes_of_volume`] where the volume's own
+/// [`marching_cubes`](crate::marching_cubes), with the vertices of [`marching_cubes_volume`] where the volume's own
 /// surface passes between two cells. Elsewhere, as where the octree was cut by set operations, they lie half-way.
 ///
 /// `resolve` says what PARTIAL cells count as; `None` will do for trees without any.

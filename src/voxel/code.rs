@@ -12,7 +12,7 @@ use core::fmt;
 /// before the cells in it.
 ///
 /// ```
-/// use leafless::{Cell, LinearCode};
+/// use leafless::{Cell, voxel::LinearCode};
 /// let code = LinearCode::new(Cell { level: 3, at: [1, 2, 7] }, 5)?;
 /// assert_eq!((code.to_string().as_str(), code.number()), ("46500", 0o46500));
 /// assert_eq!((code.digit(0), code.digit(1), code.digit(2)), (4, 6, 5));

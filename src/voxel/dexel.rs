@@ -64,7 +64,7 @@ impl DexelVoxels {
 /// The voxels of a tri-dexel model, as Gao, Zhang and Hou have them (*DEXEL model of polyhedrons and boolean operations*,
 /// 2007): the rays of three directions cut space into voxels whose corners are the centres of cells. A voxel lies inside
 /// if all of its eight corners do, outside if none does, and else on the boundary: those are the voxels in which
-/// [`marching_cubes_of_dexels`](crate::marching_cubes_of_dexels) makes triangles. Centres outside of the universe lie
+/// [`marching_cubes_dexels`](crate::surface::marching_cubes_dexels) makes triangles. Centres outside of the universe lie
 /// outside. Voxels that do not lie outside are merged along y, between four neighbouring rays, as far as their kind and
 /// their material are the same.
 ///
@@ -81,7 +81,9 @@ impl DexelVoxels {
 /// [`Error::OutOfMemory`], [`Error::Cancelled`].
 ///
 /// ```
-/// use leafless::{Control, Dexel, DexelEnd, DexelFormat, Frame, TriDexel, VoxelKind, dexel_voxels};
+/// use leafless::{
+///     Control, Frame, TriDexel, dexel::{Dexel, DexelEnd, DexelFormat}, voxel::{VoxelKind, dexel_voxels},
+/// };
 /// let (frame, control) = (Frame::new([0.0; 3], 8.0, 3)?, Control::default());
 /// let end = DexelEnd::new;
 /// // A cube of four cells to an edge.

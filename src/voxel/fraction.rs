@@ -12,12 +12,12 @@ use crate::walk::Trail;
 use alloc::vec::Vec;
 
 impl VoxelRecordsRef<'_> {
-    /// Which part of each voxel is solid, 0 to 1: as a volume's [weights](crate::VolumeLayer::weights). Inside voxels have 1,
+    /// Which part of each voxel is solid, 0 to 1: as a volume's [weights](crate::render::VolumeLayer::weights). Inside voxels have 1,
     /// outside and refined ones 0. Of a boundary voxel it is what `solid` knows of its moments there, or the middle between
     /// what its slabs enclose; ½ where the solid knows neither. One thread; O(records · levels).
     ///
     /// ```
-    /// use leafless::{Control, Csg, Frame, Rule, VoxelOptions, VoxelRecords, build};
+    /// use leafless::{Control, Csg, Frame, Rule, build, voxel::{VoxelOptions, VoxelRecords}};
     /// let (frame, control) = (Frame::new([-1.0; 3], 2.0, 5)?, Control::default());
     /// let ball = Csg::ball([0.0; 3], 0.9)?;
     /// let tree = build(&ball, &frame, Rule::Certified, &control)?;

@@ -21,7 +21,7 @@ pub enum VoxelBoundary {
 /// Which voxels of an octree are listed, and how large they are.
 ///
 /// ```
-/// use leafless::{Control, Csg, Detail, Frame, Rule, VoxelOptions, VoxelRecords, build};
+/// use leafless::{Control, Csg, Frame, Rule, build, attribute::Detail, voxel::{VoxelOptions, VoxelRecords}};
 /// let frame = Frame::new([-1.0; 3], 2.0, 6)?;
 /// let control = Control::default();
 /// let ball = build(&Csg::ball([0.0; 3], 0.9)?, &frame, Rule::Certified, &control)?;

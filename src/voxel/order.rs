@@ -40,7 +40,7 @@ impl VoxelRecordsRef<'_> {
     /// O(n · levels). Exact.
     ///
     /// ```
-    /// use leafless::{Control, Csg, Frame, Rule, Viewpoint, VoxelOptions, VoxelRecords, build};
+    /// use leafless::{Control, Csg, Frame, Rule, build, voxel::{Viewpoint, VoxelOptions, VoxelRecords}};
     /// let (frame, control) = (Frame::new([0.0; 3], 4.0, 2)?, Control::default());
     /// let bar = build(&Csg::cuboid([0.0; 3], [3.0, 1.0, 1.0])?, &frame, Rule::Certified, &control)?;
     /// let records = VoxelRecords::of(bar.view(), &VoxelOptions::new(), None, &control)?;

@@ -291,7 +291,7 @@ impl<'a> VoxelRecordsRef<'a> {
 
     /// What is known of boundary voxels: FULL if each lies inside as inside voxels do, else PARTIAL. It is FULL for
     /// the records of a binary octree, whose boundary voxels are inside cells that
-    /// [touch](crate::VoxelBoundary::Touching) an outside one, but not if their level is above the octree's depth
+    /// [touch](crate::voxel::VoxelBoundary::Touching) an outside one, but not if their level is above the octree's depth
     /// and cells that are cut became boundary voxels.
     pub fn boundary(&self) -> Tag {
         self.boundary

@@ -229,7 +229,7 @@ impl<'a> Walk<'a> {
 const BATCH: usize = 64;
 
 /// The records of an octree's voxels one after another, in the order of their codes. See
-/// [`VoxelOptions`] for which these are, and [`VoxelRecords::of`](crate::VoxelRecords::of) for all at once.
+/// [`VoxelOptions`] for which these are, and [`VoxelRecords::of`](crate::voxel::VoxelRecords::of) for all at once.
 ///
 /// After an error there is nothing more.
 pub struct Voxels<'a> {
@@ -245,7 +245,7 @@ impl<'a> Voxels<'a> {
     /// The voxels of a stored octree, with an attribute's values at their centres. Needs no allocation.
     ///
     /// ```
-    /// use leafless::{Control, Csg, Frame, Rule, VoxelKind, VoxelOptions, Voxels, build};
+    /// use leafless::{Control, Csg, Frame, Rule, build, voxel::{VoxelKind, VoxelOptions, Voxels}};
     /// let frame = Frame::new([0.0; 3], 4.0, 2)?;
     /// let bar = build(&Csg::cuboid([0.0; 3], [3.0, 1.0, 1.0])?, &frame, Rule::Certified, &Control::default())?;
     /// let mut inside = 0;

@@ -4,7 +4,9 @@
 #![allow(dead_code)]
 
 use super::exact::Definition;
-use leafless::{Block, Bounds, Cell, Classifier, Csg, Cube, Error, Frame, Tag, Verdict, Worker};
+use leafless::lattice::Cube;
+use leafless::octree::Block;
+use leafless::{Bounds, Cell, Classifier, Csg, Error, Frame, Tag, Verdict, Worker};
 
 /// A shape whose verdict of a cell needs nothing but the cell. Types that have it become solids by
 /// [`solid_of_cubes`].

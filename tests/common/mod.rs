@@ -13,9 +13,9 @@ pub mod values;
 pub mod volumes;
 mod way;
 
-use leafless::{
-    Cell, Control, Cube, Cursor, Error, Frame, LevelStatistics, Octree, OctreeRef, Rule, Tag, Verdict, build,
-};
+use leafless::lattice::Cube;
+use leafless::octree::{Cursor, LevelStatistics};
+use leafless::{Cell, Control, Error, Frame, Octree, OctreeRef, Rule, Tag, Verdict, build};
 pub use models::model;
 use proptest::prelude::*;
 pub use way::Way;

@@ -1,7 +1,7 @@
 //! What an enclosure says of points, in exact arithmetic.
 
 use super::exact::Exact;
-use leafless::{Enclosure, Slab, SlabJoin};
+use leafless::solid::{Enclosure, Slab, SlabJoin};
 
 /// The sign of n · x − offset.
 fn side(slab: &Slab, offset: f64, x: [f64; 3]) -> i32 {

@@ -1,9 +1,8 @@
 //! Dense arrays of values, and channels of them.
 
 use super::{lattice_frame, noise, positions, shapes_of};
-use leafless::{
-    Channel, Control, FillOptions, FunctionAttribute, Octree, ScalarType, Tag, ValueType, fill_channel,
-};
+use leafless::attribute::{Channel, FillOptions, FunctionAttribute, ScalarType, ValueType, fill_channel};
+use leafless::{Control, Octree, Tag};
 use proptest::prelude::*;
 
 pub type Value = Option<[f64; 4]>;

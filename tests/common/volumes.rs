@@ -3,7 +3,7 @@
 #![allow(dead_code)]
 
 use super::Random;
-use leafless::{Band, Samples, VoxelGrid};
+use leafless::solid::{Band, Samples, VoxelGrid};
 
 /// Samples of one kind, as the numbers that they are.
 #[derive(Clone)]

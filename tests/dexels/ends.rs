@@ -1,9 +1,11 @@
 //! Ends of intervals beside centres of cells, against exact rationals: on all ways into tri-dexel models and out of them.
 
 use crate::common::exact::Exact;
+use leafless::dexel::{Dexel, DexelEditor, DexelEnd, DexelEnds, DexelFormat, DexelNormals, TriDexelRef};
+use leafless::op::DexelOptions;
 use leafless::{
-    AnySolid, Control, Csg, Dexel, DexelEditor, DexelEnd, DexelEnds, DexelFormat, DexelNormals, DexelOptions,
-    Error, FillRule, Frame, MeshSolid, Rule, TriDexel, TriDexelRef, TriangleMesh, build, dexelize, file,
+    AnySolid, Control, Csg, Error, FillRule, Frame, MeshSolid, Rule, TriDexel, TriangleMesh, build, dexelize,
+    file,
 };
 
 struct Random(u64);

@@ -1,8 +1,11 @@
 //! Where intervals of mixed solids begin and end: at the faces of the universe, and between centres.
 
+use leafless::dexel::{DexelEnds, DexelFormat};
+use leafless::op::DexelOptions;
+use leafless::solid::{Band, VoxelGrid};
 use leafless::{
-    Affine, AnySolid, Band, Callback, Control, Csg, DexelEnds, DexelFormat, DexelOptions, FillRule, Frame,
-    MeshSolid, TriangleMesh, Verdict, Volume, VoxelGrid, dexelize,
+    Affine, AnySolid, Callback, Control, Csg, FillRule, Frame, MeshSolid, TriangleMesh, Verdict, Volume,
+    dexelize,
 };
 
 const EDGE: f64 = 2.0;

@@ -1,9 +1,12 @@
 //! Tri-dexel models: dexelisation against samples and analytic crossings, set algebra against point sets.
 
 use crate::{common, dexel_algebra};
+use leafless::dexel::{DexelEditor, DexelEnds, DexelFormat, DexelNormals};
+use leafless::op::DexelOptions;
+use leafless::solid::HalfSpace;
 use leafless::{
-    Affine, AnySolid, Control, Csg, DexelEditor, DexelEnds, DexelFormat, DexelNormals, DexelOptions, Error,
-    FillRule, Frame, HalfSpace, MeshSolid, Octree, Rule, Solid, TriDexel, TriangleMesh, build, dexelize,
+    Affine, AnySolid, Control, Csg, Error, FillRule, Frame, MeshSolid, Octree, Rule, Solid, TriDexel,
+    TriangleMesh, build, dexelize,
 };
 
 fn options() -> DexelOptions {
@@ -227,7 +230,7 @@ fn polygonal_faces_are_sampled_as_half_spaces_are() {
         corners.extend([k, next, next + 6, k + 6]);
         loops.push(corners.len() as u32);
     }
-    let arrays = leafless::PolyhedronArrays {
+    let arrays = leafless::mesh::PolyhedronArrays {
         vertices: &vertices,
         corners: &corners,
         loops: &loops,
@@ -235,7 +238,7 @@ fn polygonal_faces_are_sampled_as_half_spaces_are() {
         shells: &[0, 8],
         solids: &[0, 1],
     };
-    let solid = solid_of(leafless::Polyhedron::new(&arrays).unwrap().into_mesh());
+    let solid = solid_of(leafless::mesh::Polyhedron::new(&arrays).unwrap().into_mesh());
     check_samples(&solid, &frame(5), "hexagonal prism");
     // The prism by half-spaces has the same crossings.
     let prism = Csg::prism(&hexagon, -0.4375, 0.53).unwrap();
@@ -275,7 +278,7 @@ fn octrees_come_out_exactly() {
         dexelize(&certified, &frame, &DexelOptions { rule: Rule::Certified, ..options() }, &control);
     assert!(matches!(refused, Err(Error::Argument { name: "rule", .. })));
     for (rule, of) in [(Rule::Inner, Rule::Inner), (Rule::Outer, Rule::Outer)] {
-        let cells = leafless::resolve(certified.view(), of, &control).unwrap();
+        let cells = leafless::op::resolve(certified.view(), of, &control).unwrap();
         let model = dexelize(&certified, &frame, &DexelOptions { rule, ..options() }, &control).unwrap();
         let of_cells = dexelize(&cells, &frame, &options(), &control).unwrap();
         assert_eq!(model, of_cells);
@@ -547,7 +550,7 @@ fn a_subtraction_shows_the_other_side() {
     let part = block.view().difference(ball.view(), &control).unwrap();
     let dexels: Vec<_> = part.view().rays(2).unwrap().dexels([16, 16]).collect();
     assert_eq!(dexels.len(), 2);
-    let z = |end: leafless::DexelEnd| end.normal.unwrap()[2];
+    let z = |end: leafless::dexel::DexelEnd| end.normal.unwrap()[2];
     // Into the hole the outward normal leads up, though the ball's own led down there.
     assert!(z(dexels[0].start) < -0.99 && z(dexels[0].end) > 0.99);
     assert!(z(dexels[1].start) < -0.99 && z(dexels[1].end) > 0.99);

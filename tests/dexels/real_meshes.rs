@@ -3,11 +3,13 @@
 use crate::common;
 use crate::common::model;
 use glam::DVec3;
+use leafless::dexel::{DexelEnds, DexelFormat, DexelNormals};
 use leafless::exchange::{MeshOptions, read_mesh};
+use leafless::op::{DexelOptions, octree_from_dexels};
+use leafless::surface::{dual_contouring_dexels, marching_cubes_dexels};
 use leafless::{
-    Control, Csg, DexelEnds, DexelFormat, DexelNormals, DexelOptions, FillRule, Frame, Membership, MeshSolid,
-    Rule, TriDexel, TriangleMesh, build, dexelize, difference, dual_contouring_of_dexels, intersection,
-    marching_cubes_of_dexels, octree_of_dexels, union, xor,
+    Control, Csg, FillRule, Frame, Membership, MeshSolid, Rule, TriDexel, TriangleMesh, build, dexelize,
+    difference, intersection, union, xor,
 };
 use std::collections::HashMap;
 
@@ -56,7 +58,7 @@ fn all_directions_have_the_samples_of_closed_meshes() {
             let directions = [0, 1, 2].map(|a| a == axis);
             let model = dexelize(&solid, &frame, &DexelOptions { directions, ..marked() }, &control).unwrap();
             model.view().check().unwrap();
-            assert!(octree_of_dexels(model.view(), &control).unwrap() == tree, "{name} along {axis}");
+            assert!(octree_from_dexels(model.view(), &control).unwrap() == tree, "{name} along {axis}");
             let found = model.view().statistics(axis).unwrap().volume;
             // (A plate of some cells is not measured by rays along it.)
             if name != "plate_holes.STL" {
@@ -158,12 +160,13 @@ fn surfaces_lead_back_to_closed_meshes() {
         let source = Nearest::new(&mesh, 2.0 * cell);
         let fine = build(&solid, &frame.with_depth(9).unwrap(), Rule::Sampled, &control).unwrap();
         type Way = fn(
-            &leafless::TriDexelRef<'_>,
+            &leafless::dexel::TriDexelRef<'_>,
             &Control<'_>,
-        ) -> Result<(TriangleMesh, leafless::DexelSurfaceReport), leafless::Error>;
+        )
+            -> Result<(TriangleMesh, leafless::surface::DexelSurfaceReport), leafless::Error>;
         let ways: [(&str, Way, f64); 2] = [
-            ("marching cubes", marching_cubes_of_dexels, 0.5 * diagonal),
-            ("dual contouring", dual_contouring_of_dexels, diagonal),
+            ("marching cubes", marching_cubes_dexels, 0.5 * diagonal),
+            ("dual contouring", dual_contouring_dexels, diagonal),
         ];
         for (way, extract, most) in ways {
             let (surface, report) = extract(model.view(), &control).unwrap();
@@ -207,7 +210,7 @@ fn dual_contouring_keeps_the_edges_of_a_part() {
     let cell = frame.cell_size();
     let solid = MeshSolid::new(mesh.clone(), FillRule::NonZero).unwrap();
     let model = dexelize(&solid, &frame, &marked(), &control).unwrap();
-    let (surface, _) = dual_contouring_of_dexels(model.view(), &control).unwrap();
+    let (surface, _) = dual_contouring_dexels(model.view(), &control).unwrap();
     let nearest = Nearest::new(&surface, 2.0 * cell);
     // Edges between faces that meet at more than 30 degrees.
     let mut edges: HashMap<[u32; 2], Vec<DVec3>> = HashMap::new();
@@ -256,7 +259,7 @@ fn dual_contouring_keeps_the_edges_of_a_part() {
     assert!(off[off.len() * 999 / 1000] <= 0.1);
     assert!(off[off.len() - 1].max(beyond[beyond.len() - 1]) <= 0.15);
     // Marching cubes cuts them off.
-    let (cut, _) = marching_cubes_of_dexels(model.view(), &control).unwrap();
+    let (cut, _) = marching_cubes_dexels(model.view(), &control).unwrap();
     assert!(cut.volume() < surface.volume());
     assert!((surface.volume() / mesh.volume() - 1.0).abs() < 1e-4);
 }
@@ -282,7 +285,7 @@ fn set_operations_agree_with_those_of_octrees() {
     ];
     for (i, (dexels, certified, sampled)) in results.into_iter().enumerate() {
         let (dexels, certified, sampled) = (dexels.unwrap(), certified.unwrap(), sampled.unwrap());
-        assert!(octree_of_dexels(dexels.view(), &control).unwrap() == sampled, "operation {i}");
+        assert!(octree_from_dexels(dexels.view(), &control).unwrap() == sampled, "operation {i}");
         let volume = certified.statistics().volume();
         for axis in 0..3 {
             let found = dexels.view().statistics(axis).unwrap().volume;

@@ -1,10 +1,14 @@
 //! What is made of tri-dexel models: octrees, surfaces, solids and voxels, against dense arrays and formulas.
 
+use leafless::dexel::{Dexel, DexelEnd, DexelEnds, DexelFormat, DexelNormals};
+use leafless::error::MeshError;
+use leafless::op::{DexelOptions, octree_from_dexels};
+use leafless::query::surface_area;
+use leafless::surface::{DexelSolid, DexelSurfaceReport, dual_contouring_dexels, marching_cubes_dexels};
+use leafless::voxel::{LongVoxel, VoxelKind, dexel_voxels};
 use leafless::{
-    AnySolid, Classifier, Control, Csg, Dexel, DexelEnd, DexelEnds, DexelFormat, DexelNormals, DexelOptions,
-    DexelSolid, DexelSurfaceReport, Error, FillRule, Frame, LongVoxel, Membership, MeshError, MeshSolid,
-    Proof, Rule, Solid, Tag, TriDexel, TriangleMesh, VoxelKind, build, dexel_voxels, dexelize,
-    dual_contouring_of_dexels, marching_cubes_of_dexels, measure, octree_of_dexels, surface_area,
+    AnySolid, Classifier, Control, Csg, Error, FillRule, Frame, Membership, MeshSolid, Proof, Rule, Solid,
+    Tag, TriDexel, TriangleMesh, build, dexelize, measure,
 };
 use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::PI;
@@ -95,7 +99,7 @@ fn octrees_hold_the_centres() -> Result<(), Error> {
         for (seed, directions) in (1u64..).zip(SOME_DIRECTIONS) {
             let ends = if seed % 2 == 0 { DexelEnds::Double } else { DexelEnds::Fixed };
             let model = soup(&frame, DexelFormat { ends, ..FORMAT }, directions, seed + u64::from(depth));
-            let tree = octree_of_dexels(model.view(), &Control::default())?;
+            let tree = octree_from_dexels(model.view(), &Control::default())?;
             let deciding = directions.iter().rposition(|&has| has).unwrap();
             for cell in cells(&frame) {
                 let expected = holds(&model, deciding, cell);
@@ -109,7 +113,7 @@ fn octrees_hold_the_centres() -> Result<(), Error> {
             assert_eq!(tree.proof(), Proof::new(false, false));
             assert_eq!(tree.view().exterior(), Tag::Empty);
             assert!(tree.view().is_binary());
-            let again = octree_of_dexels(model.view(), &Control::threads(2))?;
+            let again = octree_from_dexels(model.view(), &Control::threads(2))?;
             assert!(again == tree);
         }
     }
@@ -191,11 +195,11 @@ fn boxes(frame: &Frame, format: DexelFormat, directions: [bool; 3], boxes: &[[[f
 type Method = fn(&TriDexel, &Control<'_>) -> Result<(TriangleMesh, DexelSurfaceReport), Error>;
 
 fn cubes(model: &TriDexel, control: &Control<'_>) -> Result<(TriangleMesh, DexelSurfaceReport), Error> {
-    marching_cubes_of_dexels(model.view(), control)
+    marching_cubes_dexels(model.view(), control)
 }
 
 fn dual(model: &TriDexel, control: &Control<'_>) -> Result<(TriangleMesh, DexelSurfaceReport), Error> {
-    dual_contouring_of_dexels(model.view(), control)
+    dual_contouring_dexels(model.view(), control)
 }
 
 /// The surface by any method, which is balanced, the same for any number of threads, and says how many edges are cut.
@@ -204,7 +208,7 @@ fn surface(method: Method, model: &TriDexel) -> (TriangleMesh, DexelSurfaceRepor
     let (again, report_again) = method(model, &Control::threads(2)).unwrap();
     assert_eq!((mesh.vertices(), mesh.triangles()), (again.vertices(), again.triangles()));
     assert_eq!(report, report_again);
-    let tree = octree_of_dexels(model.view(), &Control::default()).unwrap();
+    let tree = octree_from_dexels(model.view(), &Control::default()).unwrap();
     let samples = leafless::marching_cubes(tree.view(), None, &Control::default()).unwrap();
     assert_eq!(report.crossings, samples.vertices().len() as u64);
     if !samples.triangles().is_empty() && !mesh.triangles().is_empty() {
@@ -571,7 +575,7 @@ fn surfaces_of_dexelised_solids() -> Result<(), Error> {
             let format = DexelFormat { ends, normals, ..DexelFormat::default() };
             let options = DexelOptions { format, ..DexelOptions::default() };
             let model = dexelize(&solid, &frame, &options, &control)?;
-            let tree = octree_of_dexels(model.view(), &control)?;
+            let tree = octree_from_dexels(model.view(), &control)?;
             assert!(tree == build(&solid, &frame, Rule::Sampled, &control)?.with_proof(tree.proof()));
             let [rough, sharp] = [cubes as Method, dual].map(|method| {
                 let (mesh, report) = surface(method, &model);
@@ -596,7 +600,7 @@ fn models_are_solids() -> Result<(), Error> {
     let (frame, control) = (Frame::new([-1.0; 3], 2.0, 5)?, Control::default());
     let model = implicit(&frame, ALL, &ball);
     let solid = DexelSolid::new(model.view(), &control)?;
-    let (mesh, report) = marching_cubes_of_dexels(model.view(), &control)?;
+    let (mesh, report) = marching_cubes_dexels(model.view(), &control)?;
     assert_eq!((solid.mesh().vertices(), solid.report()), (mesh.vertices(), report));
     let surface = MeshSolid::new(mesh, FillRule::NonZero)?;
     let other = Frame::new([-1.5; 3], 3.0, 6)?;
@@ -717,7 +721,7 @@ fn time_of_1024() -> Result<(), Error> {
             TriDexel::from_rays(&frame, DexelFormat::default(), directions, ball, &Control::default())?;
         for threads in [1, 2] {
             let start = std::time::Instant::now();
-            let tree = octree_of_dexels(model.view(), &Control::threads(threads))?;
+            let tree = octree_from_dexels(model.view(), &Control::threads(threads))?;
             let octree = start.elapsed();
             let volume = tree.statistics().volume().lower;
             println!("{directions:?} {threads} threads: octree {octree:?}, volume {volume}");
@@ -770,7 +774,7 @@ fn around(
 
 fn both_surfaces(model: &TriDexel) -> [(TriangleMesh, DexelSurfaceReport); 2] {
     let control = Control::default();
-    [marching_cubes_of_dexels(model.view(), &control), dual_contouring_of_dexels(model.view(), &control)]
+    [marching_cubes_dexels(model.view(), &control), dual_contouring_dexels(model.view(), &control)]
         .map(Result::unwrap)
 }
 
@@ -883,7 +887,7 @@ fn at_the_greatest_depth_work_is_that_of_what_is_stored() {
         dexelize(&Csg::cuboid(low, high).unwrap(), &frame, &options, &limited).unwrap()
     };
     let small = block([700_000.25; 3], [700_003.25; 3], ALL);
-    let tree = octree_of_dexels(small.view(), &limited).unwrap();
+    let tree = octree_from_dexels(small.view(), &limited).unwrap();
     assert_eq!(tree.statistics().volume().lower, 27.0);
     for (mesh, report) in both_surfaces(&small) {
         assert!(mesh.report().unwrap().is_closed() && report.crossings == 54 && report.several == 0);
@@ -898,7 +902,7 @@ fn at_the_greatest_depth_work_is_that_of_what_is_stored() {
         (low[axis], high[axis]) = (0.0, f64::from(cells));
         let wire = block(low, high, [0, 1, 2].map(|a| a == axis));
         assert_eq!(
-            octree_of_dexels(wire.view(), &limited).unwrap().statistics().volume().lower,
+            octree_from_dexels(wire.view(), &limited).unwrap().statistics().volume().lower,
             f64::from(cells)
         );
         // Another one far away: between them there are too many rays.

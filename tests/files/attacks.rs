@@ -1,10 +1,13 @@
 //! Attacks that are fuzz targets, too: any bytes as scenes of unit cells and as attributes, against dense arrays.
 
 use crate::{attributes, measures, records};
-use leafless::{
-    Affine, Attribute, Bounds, Cell, Control, Criterion, Csg, Detail, Error, FillOptions, Frame, Interval,
-    MovedAttribute, ScalarType, StopReason, ValueRange, ValueType, VoxelRecords, clearance, fill_channel,
+use leafless::attribute::{
+    Attribute, Criterion, Detail, FillOptions, MovedAttribute, ScalarType, ValueRange, ValueType,
+    fill_channel,
 };
+use leafless::query::StopReason;
+use leafless::voxel::VoxelRecords;
+use leafless::{Affine, Bounds, Cell, Control, Csg, Error, Frame, Interval, clearance};
 use std::path::Path;
 
 /// Numbers that only look random (splitmix64): the same for a seed everywhere.

@@ -7,10 +7,10 @@
 use crate::bodies::Aligned;
 use crate::make_vectors::dexel_vectors::{self, Dexels, ValidDexels};
 use crate::make_vectors::{Way, number, put, seal};
-use leafless::{
-    Control, Csg, DexelEditor, DexelEnds, DexelFormat, DexelNormals, DexelOptions, Error, FormatError, Frame,
-    Metadata, TriDexel, TriDexelRef, dexelize, file, file::dexels,
-};
+use leafless::dexel::{DexelEditor, DexelEnds, DexelFormat, DexelNormals, TriDexelRef};
+use leafless::error::FormatError;
+use leafless::op::DexelOptions;
+use leafless::{Control, Csg, Error, Frame, Metadata, TriDexel, dexelize, file, file::dexels};
 use std::path::{Path, PathBuf};
 
 const CONTROL: Control<'static> =

@@ -7,9 +7,9 @@ use crate::bodies::Aligned;
 #[allow(dead_code)]
 use crate::make_vectors;
 use crate::make_vectors::{Way, hex, name, number};
-use leafless::{
-    Error, FormatError, Frame, Membership, Octree, OctreeRef, PointCursor, PointTable, Proof, file,
-};
+use leafless::error::FormatError;
+use leafless::query::{PointCursor, PointTable};
+use leafless::{Error, Frame, Membership, Octree, OctreeRef, Proof, file};
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -517,7 +517,7 @@ fn the_tables_fit_the_constants() {
     assert_eq!(limit("sections"), &constant("MAX_SECTIONS").to_string());
     assert_eq!(limit("objects"), &constant("MAX_OBJECTS").to_string());
     assert_eq!((limit("metadata"), constant("MAX_METADATA")), (&"2^20 bytes".to_owned(), 1 << 20));
-    assert!(limit("depth").starts_with(&leafless::MAX_DEPTH.to_string()));
+    assert!(limit("depth").starts_with(&leafless::lattice::MAX_DEPTH.to_string()));
     assert!(text.contains(&format!("a multiple of {}", constant("SECTION_ALIGNMENT"))));
     assert!(text.contains(&format!("{} to 62 for segments", constant("LEAST_SEGMENT_SHIFT"))));
     let magic = file::MAGIC.map(|byte| format!("{byte:02X}")).join(" ");

@@ -6,7 +6,9 @@ use crate::bodies;
 use crate::bodies::layout::{BASE, BRICKS, File, LEVELS, PLANES, REL, Repairs, Section, put};
 use crate::bodies::{Aligned, Random, joined, read_in_all_ways, seeds, walk};
 use crate::common::on_all_processors;
-use leafless::{Cursor, Damage, Error, FormatError, file};
+use leafless::error::{Damage, FormatError};
+use leafless::octree::Cursor;
+use leafless::{Error, file};
 use std::path::Path;
 
 // ---- inputs ---------------------------------------------------------------------------------------------

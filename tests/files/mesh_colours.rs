@@ -4,8 +4,10 @@
 use crate::packages::zip;
 
 use crate::packages::zip::{CONTENT_TYPES, Entry, RELATIONSHIPS, package};
+use leafless::TriangleMesh;
+use leafless::attribute::{Attribute, SurfaceAttribute};
 use leafless::exchange::{MeshFile, MeshOptions, MeshWarning, read_mesh, read_ply};
-use leafless::{Attribute, AttributeDomain, MeshAttribute, SurfaceAttribute, TriangleMesh};
+use leafless::mesh::{AttributeDomain, MeshAttribute};
 use proptest::prelude::*;
 
 fn read(bytes: &[u8]) -> MeshFile {

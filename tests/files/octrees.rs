@@ -5,9 +5,13 @@
 
 use crate::bodies::Aligned;
 use crate::common::cubes::Cubes;
+use leafless::error::FormatError;
+use leafless::lattice::Cube;
+use leafless::octree::Cursor;
+use leafless::query::{PointCursor, PointTable};
 use leafless::{
-    Control, Csg, Cube, Cursor, Error, FormatError, Frame, Metadata, Octree, OctreeRef, PointCursor,
-    PointTable, Rule, Tag, Verdict, build, compact, complement, difference, file, intersection, union, xor,
+    Control, Csg, Error, Frame, Metadata, Octree, OctreeRef, Rule, Tag, Verdict, build, compact, complement,
+    difference, file, intersection, union, xor,
 };
 use std::path::Path;
 
@@ -646,7 +650,7 @@ fn shared_children_are_not_visited_again_and_again() {
         xor(&tree, &tree, &control),
         complement(&tree, &control),
         build(&tree, tree.frame(), Rule::Inner, &control),
-        leafless::resolve(&tree, Rule::Outer, &control),
+        leafless::op::resolve(&tree, Rule::Outer, &control),
     ] {
         assert!(matches!(result, Err(Error::Damaged(_))));
     }
@@ -772,7 +776,7 @@ fn each_field_is_checked() {
             }
         });
         match view(moved) {
-            Err(Error::Damaged(leafless::Damage::LevelTable { level })) => assert_eq!(level, wrong),
+            Err(Error::Damaged(leafless::error::Damage::LevelTable { level })) => assert_eq!(level, wrong),
             other => panic!("a node moved from level {from} to {to}: {other:?}"),
         }
     }

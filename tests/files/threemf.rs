@@ -2,8 +2,9 @@
 
 use crate::packages;
 use crate::packages::zip::{CONTENT_TYPES, Entry, RELATIONSHIPS, model, package, tetrahedron, zip};
+use leafless::error::PackageError;
 use leafless::exchange::{LengthUnit, MeshFile, MeshFormat, MeshOptions, MeshWarning, read_mesh};
-use leafless::{Error, FillRule, PackageError};
+use leafless::{Error, FillRule};
 use proptest::prelude::*;
 
 #[track_caller]

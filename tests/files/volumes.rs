@@ -4,13 +4,13 @@
 use crate::common::Random;
 use crate::common::volumes::{KINDS, Sampled, extents, grid};
 use crate::fuzzed_volumes;
+use leafless::error::VolumeFileError;
 use leafless::exchange::{
     LengthUnit, MeshOptions, NrrdEncoding, RawVolume, SampleKind, VolumeFile, VolumeFormat, open_mesh,
     open_volume, read_raw_volume, read_volume, volume_data_file, write_nrrd, write_raw_volume,
 };
-use leafless::{
-    Band, Control, Error, Frame, Rule, Samples, Solid, VolumeFileError, VoxelGrid, build, measure,
-};
+use leafless::solid::{Band, Samples, VoxelGrid};
+use leafless::{Control, Error, Frame, Rule, Solid, build, measure};
 
 /// The samples as numbers.
 fn numbers(samples: &Samples<'_>, grid: &VoxelGrid) -> Vec<f64> {

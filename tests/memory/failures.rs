@@ -11,18 +11,28 @@ use crate::allocator::{most_held, refusing};
 use crate::bodies::{Aligned, Random};
 use crate::common::on_all_processors;
 use crate::{bodies, zip};
+use leafless::dexel::{DexelEditor, DexelEnds, DexelFormat, DexelNormals};
+use leafless::mesh::{Polyhedron, PolyhedronArrays};
+use leafless::op::{DexelOptions, Zone, octree_from_dexels, resolve, union_of};
+use leafless::query::{
+    Columns, DistanceTo, Obstacle, PointTable, Side, cells_in, classify_box, classify_in, columns, distances,
+    heights, interference_at, ray_spans, surface_area,
+};
+use leafless::render::{
+    Camera, Clip, ColourMap, Finish, MeshEdges, MeshLayer, OctreeLayer, Shot, SliceLayer, SlicePlane,
+    SolidLayer, Transfer, VolumeLayer, render,
+};
+use leafless::solid::{Band, HalfSpace, Transform, VoxelGrid};
+use leafless::surface::{
+    Resolve, Snap, VertexPlacement, dual_contouring_dexels, marching_cubes_dexels, marching_cubes_solid,
+    marching_cubes_volume, simple_marching_cubes, simple_marching_cubes_solid,
+};
+use leafless::voxel::{VoxelOptions, VoxelRecords, dexel_voxels};
 use leafless::{
-    Affine, AnySolid, Band, Bounds, Callback, Camera, Clip, ColourMap, Columns, Control, Csg, DexelEditor,
-    DexelEnds, DexelFormat, DexelNormals, DexelOptions, DistanceTo, Error, FillRule, Finish, Frame,
-    HalfSpace, LazyOctree, Membership, MeshEdges, MeshLayer, MeshSolid, Metadata, Obstacle, Octree,
-    OctreeLayer, PointTable, Polyhedron, PolyhedronArrays, Ray, Resolve, Rule, Shot, Side, SliceLayer,
-    SlicePlane, Snap, SolidLayer, Tag, Transfer, Transform, TriDexel, TriangleMesh, Verdict, VertexPlacement,
-    Volume, VolumeLayer, VoxelGrid, VoxelOptions, VoxelRecords, Zone, bounding_box, build, cast_rays,
-    cells_in, classify_box, classify_in, clearance, columns, compact, complement, contains, dexel_voxels,
-    dexelize, difference, distances, dual_contouring_of_dexels, exchange, file, heights, interference_of,
-    intersection, marching_cubes, marching_cubes_of, marching_cubes_of_dexels, marching_cubes_of_volume,
-    measure, octree_of_dexels, ray_spans, render, resolve, scene, smc, smc_of, surface_area, union, union_of,
-    xor,
+    Affine, AnySolid, Bounds, Callback, Control, Csg, Error, FillRule, Frame, LazyOctree, Membership,
+    MeshSolid, Metadata, Octree, Ray, Rule, Tag, TriDexel, TriangleMesh, Verdict, Volume, bounding_box,
+    build, cast_rays, clearance, compact, complement, contains, dexelize, difference, exchange, file,
+    intersection, marching_cubes, measure, scene, union, xor,
 };
 use std::io::{self, Write};
 use std::path::Path;
@@ -207,20 +217,20 @@ fn operations(directory: &Path) -> Vec<(&'static str, Operation)> {
     });
     operation!("surface of a volume", [waves], {
         let volume = Volume::new(waves[..].into(), &grid, Band::at_least(0.2)?, &CONTROL)?;
-        marching_cubes_of_volume(&volume, &CONTROL)
+        marching_cubes_volume(&volume, &CONTROL)
     });
     operation!("surfaces of an octree", [binary, a], {
         marching_cubes(binary.view(), None, &CONTROL)?;
-        smc(a.view(), Snap::Fat, Some(Resolve::Outer), &CONTROL)
+        simple_marching_cubes(a.view(), Snap::Fat, Some(Resolve::Outer), &CONTROL)
     });
     operation!("surfaces of a ball", [], {
         let (ball, frame) = (Csg::ball([15.0; 3], 9.0)?, frame().with_depth(4)?);
-        marching_cubes_of(&ball, &frame, VertexPlacement::Crossing, &CONTROL)?;
-        smc_of(&ball, &frame, Snap::Thin, &CONTROL)
+        marching_cubes_solid(&ball, &frame, VertexPlacement::Crossing, &CONTROL)?;
+        simple_marching_cubes_solid(&ball, &frame, Snap::Thin, &CONTROL)
     });
     #[cfg(feature = "volumes")]
     {
-        let samples: leafless::Samples<'static> = waves.into();
+        let samples: leafless::solid::Samples<'static> = waves.into();
         // The crate that compresses cannot be refused memory.
         let nrrd = exchange::write_nrrd(&samples, &grid, exchange::NrrdEncoding::Gzip).unwrap();
         let text =
@@ -246,7 +256,7 @@ fn operations(directory: &Path) -> Vec<(&'static str, Operation)> {
     });
     operation!("interference", [a], {
         let turn = Affine::new([[0.8, -0.6, 0.0, 9.0], [0.6, 0.8, 0.0, -6.0], [0.0, 0.0, 1.0, 0.25]])?;
-        interference_of(&Csg::ball([15.0; 3], 9.0)?, &a, &frame(), &[turn; 2], &frame(), 0.0, &CONTROL)
+        interference_at(&Csg::ball([15.0; 3], 9.0)?, &a, &frame(), &[turn; 2], &frame(), 0.0, &CONTROL)
     });
     operation!("clearance", [a], {
         let moved = Transform::new(&a, &frame(), &Affine::translation([7.0, 9.0, 0.1])?);
@@ -277,7 +287,7 @@ fn operations(directory: &Path) -> Vec<(&'static str, Operation)> {
             &DexelOptions { rule: Rule::Outer, ..marked },
             &CONTROL,
         )?;
-        dexelize(&Csg::from(leafless::HalfSpace::torus(9.0, 3.0)?), &frame(), &marked, &CONTROL)
+        dexelize(&Csg::from(leafless::solid::HalfSpace::torus(9.0, 3.0)?), &frame(), &marked, &CONTROL)
     });
     let balls = [13.0, 17.0]
         .map(|x| dexelize(&Csg::ball([x, 15.0, 15.0], 7.0).unwrap(), &frame(), &marked, &CONTROL).unwrap());
@@ -298,9 +308,9 @@ fn operations(directory: &Path) -> Vec<(&'static str, Operation)> {
         editor.freeze(&CONTROL)
     });
     operation!("dexel surfaces", [balls], {
-        marching_cubes_of_dexels(balls[0].view(), &CONTROL)?;
-        dual_contouring_of_dexels(balls[0].view(), &CONTROL)?;
-        octree_of_dexels(balls[0].view(), &CONTROL)?;
+        marching_cubes_dexels(balls[0].view(), &CONTROL)?;
+        dual_contouring_dexels(balls[0].view(), &CONTROL)?;
+        octree_from_dexels(balls[0].view(), &CONTROL)?;
         dexel_voxels(balls[0].view(), &[], &CONTROL)
     });
     let seen = build(&Csg::ball([15.0; 3], 9.0).unwrap(), &frame(), Rule::Certified, &CONTROL).unwrap();
@@ -658,7 +668,7 @@ fn memory_is_a_small_multiple_of_the_input() {
         weigh(&mut worst[1], READING, length, || file::verify(bytes));
         weigh(&mut worst[2], READING, length, || file::from_bytes(bytes));
         let Ok(tree) = view else { continue };
-        let (_, held) = most_held(|| bodies::walk(leafless::Cursor::new(&tree)).steps);
+        let (_, held) = most_held(|| bodies::walk(leafless::octree::Cursor::new(&tree)).steps);
         assert!(held < READING);
         weigh(&mut worst[3], MAKING, length, || complement(&tree, &CONTROL));
         weigh(&mut worst[4], MAKING, 2 * length, || union(&tree, &tree, &CONTROL));

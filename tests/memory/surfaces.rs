@@ -2,7 +2,8 @@
 
 use crate::allocator::most_held;
 use crate::common::alone;
-use leafless::{Csg, Frame, Rule, Snap, TriangleMesh, build, marching_cubes, smc};
+use leafless::surface::{Snap, simple_marching_cubes};
+use leafless::{Csg, Frame, Rule, TriangleMesh, build, marching_cubes};
 #[test]
 fn a_fifth_of_the_mesh_at_the_most() {
     let frame = Frame::new([-1.0; 3], 2.0, 8).unwrap();
@@ -15,5 +16,5 @@ fn a_fifth_of_the_mesh_at_the_most() {
         part
     };
     assert!(measured(&|| marching_cubes(tree.view(), None, &alone()).unwrap()) < 1.2);
-    assert!(measured(&|| smc(tree.view(), Snap::Fat, None, &alone()).unwrap()) < 1.5);
+    assert!(measured(&|| simple_marching_cubes(tree.view(), Snap::Fat, None, &alone()).unwrap()) < 1.5);
 }

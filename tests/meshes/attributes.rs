@@ -2,10 +2,9 @@
 //! a look at all triangles.
 
 use crate::common::Random;
-use leafless::{
-    Affine, Attribute, AttributeDomain, Bounds, Error, FillRule, MeshAttribute, Polyhedron, PolyhedronArrays,
-    PolyhedronPart, SurfaceAttribute, TriangleMesh, ValueRange,
-};
+use leafless::attribute::{Attribute, SurfaceAttribute, ValueRange};
+use leafless::mesh::{AttributeDomain, MeshAttribute, Polyhedron, PolyhedronArrays, PolyhedronPart};
+use leafless::{Affine, Bounds, Error, FillRule, TriangleMesh};
 use std::array::from_fn as array;
 
 type Point = [f64; 3];

@@ -1,10 +1,9 @@
 //! What meshes know of cells without splitting them: moments and areas, against exact clipping of tetrahedra.
 
 use crate::common::{Random, Way, alone, lattice_frame};
-use leafless::{
-    Cell, CellMoments, Classifier, CubeMoments, FillRule, Frame, MAX_DEPTH, MeshSolid, Solid, StopReason,
-    TriangleMesh, Verdict, Worker, surface_area,
-};
+use leafless::lattice::{CellMoments, CubeMoments, MAX_DEPTH};
+use leafless::query::{StopReason, surface_area};
+use leafless::{Cell, Classifier, FillRule, Frame, MeshSolid, Solid, TriangleMesh, Verdict, Worker};
 use num_bigint::BigInt;
 use num_traits::{Signed, ToPrimitive};
 

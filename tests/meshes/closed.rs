@@ -5,9 +5,10 @@ use crate::descended::Descended;
 use crate::oracle::{Contact, Oracle, PointOracle};
 use crate::shapes;
 use crate::shapes::*;
+use leafless::error::MeshError;
 use leafless::{
-    AnySolid, Classifier, Control, Error, FillRule, Frame, Membership, MeshError, MeshSolid, Octree, Rule,
-    Solid, Tag, TriangleMesh, build, difference, exchange,
+    AnySolid, Classifier, Control, Error, FillRule, Frame, Membership, MeshSolid, Octree, Rule, Solid, Tag,
+    TriangleMesh, build, difference, exchange,
 };
 use proptest::prelude::*;
 

@@ -3,9 +3,12 @@
 
 use crate::common::exact::Exact;
 use crate::common::{Random, model};
+use leafless::lattice::VolumeMoments;
+use leafless::mesh::MeshMoments;
+use leafless::query::StopReason;
 use leafless::{
-    Affine, AnySolid, Control, FillRule, Frame, Interval, MassProperties, MeshMoments, MeshSolid, StopReason,
-    TriangleMesh, VolumeMoments, exchange, measure,
+    Affine, AnySolid, Control, FillRule, Frame, Interval, MassProperties, MeshSolid, TriangleMesh, exchange,
+    measure,
 };
 
 use std::slice::from_ref;

@@ -2,7 +2,9 @@
 
 #![cfg(feature = "std")]
 
-use leafless::{Error, FillRule, MeshError, Polyhedron, PolyhedronArrays, PolyhedronError};
+use leafless::error::{MeshError, PolyhedronError};
+use leafless::mesh::{Polyhedron, PolyhedronArrays};
+use leafless::{Error, FillRule};
 
 /// Arrays to be filled part by part.
 #[derive(Debug, Clone, Default, PartialEq)]

@@ -1,7 +1,8 @@
 //! What is told about meshes, and where their defects lie, against the definitions.
 
 use crate::common;
-use leafless::{DefectKind, MeshDefect, MeshReport, TriangleMesh};
+use leafless::TriangleMesh;
+use leafless::mesh::{DefectKind, MeshDefect, MeshReport};
 use std::collections::{BTreeMap, BTreeSet};
 
 struct Random(u64);

@@ -1,9 +1,12 @@
 //! Solids that are split to a geometric tolerance.
 
 use crate::common::alone;
+use leafless::octree::Cursor;
+use leafless::op::Zone;
+use leafless::solid::Adaptive;
 use leafless::{
-    Adaptive, Affine, AnySolid, Callback, Cell, Classifier, Control, Csg, Cursor, Error, Frame, LazyOctree,
-    Rule, Solid, Tag, Verdict, Worker, Zone, build,
+    Affine, AnySolid, Callback, Cell, Classifier, Control, Csg, Error, Frame, LazyOctree, Rule, Solid, Tag,
+    Verdict, Worker, build,
 };
 
 fn turned_block() -> Csg {

@@ -2,9 +2,10 @@
 
 use crate::common;
 use crate::common::{Dense, Random, alone, assert_is, cases, lattice_frame, pairs, shapes};
+use leafless::op::{intersection_of, union_of, xor_of};
 use leafless::{
     Control, Csg, Error, Frame, Octree, OctreeRef, Rule, Tag, build, compact, complement, difference,
-    intersection, intersection_of, union, union_of, xor, xor_of,
+    intersection, union, xor,
 };
 use proptest::prelude::*;
 use std::sync::OnceLock;

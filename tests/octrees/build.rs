@@ -3,9 +3,12 @@
 use crate::common::cubes::{Cubes, Plain};
 use crate::common::exact::Definition;
 use crate::common::{Dense, Random, Shape, alone, assert_is, cases, lattice_frame, positions, shapes};
+use leafless::lattice::Cube;
+use leafless::octree::Block;
+use leafless::op::{resolve, union_of};
 use leafless::{
-    AnySolid, Block, Callback, Cell, Classifier, Control, Csg, Cube, Error, Frame, Interval, Octree, Rule,
-    Solid, Tag, Verdict, Worker, build, compact, complement, resolve, union_of,
+    AnySolid, Callback, Cell, Classifier, Control, Csg, Error, Frame, Interval, Octree, Rule, Solid, Tag,
+    Verdict, Worker, build, compact, complement,
 };
 use proptest::prelude::*;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -672,7 +675,7 @@ impl Worker for BulkOnFrame<'_> {
         assert_eq!(block.planes_mut().is_some(), !is_sampled);
         assert_eq!(block.centres_mut().is_some(), is_sampled);
         if let Some((lower, upper)) = block.planes_mut() {
-            let mut cursor = leafless::PointCursor::new(self.bulk.certified.view());
+            let mut cursor = leafless::query::PointCursor::new(self.bulk.certified.view());
             for (x, y, word) in rows() {
                 (lower[word], upper[word]) = (0, 0);
                 for z in 0..64 {
@@ -683,7 +686,7 @@ impl Worker for BulkOnFrame<'_> {
             }
         }
         if let Some(centres) = block.centres_mut() {
-            let mut cursor = leafless::PointCursor::new(self.bulk.sampled.view());
+            let mut cursor = leafless::query::PointCursor::new(self.bulk.sampled.view());
             for (x, y, word) in rows() {
                 centres[word] = 0;
                 for z in 0..64 {
@@ -888,7 +891,7 @@ fn the_deepest_trees() {
             not.view().check().unwrap();
             assert_eq!(not.statistics().volume_cells().0, 8u64.pow(depth as u32) - cells);
             assert_eq!(complement(not.view(), &alone()).unwrap(), tree);
-            let mut again = leafless::Cursor::new(tree.view());
+            let mut again = leafless::octree::Cursor::new(tree.view());
             while again.tag() == Tag::Branch {
                 let tags = again.node().unwrap().tags();
                 again.descend(tags.iter().position(|&tag| tag != Tag::Empty).unwrap() as u8);

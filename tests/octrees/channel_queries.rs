@@ -3,10 +3,14 @@
 use crate::common;
 use crate::common::values::{Values, kinds, values_of};
 use crate::common::{Dense, alone, cases, lattice_frame, shapes_of};
+use leafless::attribute::{
+    Attribute, ConstantAttribute, FillOptions, FunctionAttribute, Interpolation, ScalarType, ValueRange,
+    ValueRegion, ValueType, VolumeAttribute, fill_channel, materials,
+};
+use leafless::solid::{Band, VoxelGrid};
 use leafless::{
-    Attribute, Band, Bounds, ConstantAttribute, Control, Csg, Error, FillOptions, Frame, FunctionAttribute,
-    Interpolation, Interval, Octree, Rule, ScalarType, Tag, ValueRange, ValueRegion, ValueType, Volume,
-    VolumeAttribute, VoxelGrid, build, fill_channel, intersection, materials, measure, union,
+    Bounds, Control, Csg, Error, Frame, Interval, Octree, Rule, Tag, Volume, build, intersection, measure,
+    union,
 };
 use proptest::prelude::*;
 use std::f64::consts::PI;
@@ -146,7 +150,7 @@ fn scalar(scalar: ScalarType) -> ValueType {
     ValueType::new(scalar, 1).unwrap()
 }
 
-fn constant(frame: &Frame, value: f64, kind: ValueType) -> leafless::Channel {
+fn constant(frame: &Frame, value: f64, kind: ValueType) -> leafless::attribute::Channel {
     let options = FillOptions { value_type: kind, frame: *frame, solid: None, detail: None };
     fill_channel(&ConstantAttribute::new(&[value]).unwrap(), &options, &alone()).unwrap()
 }

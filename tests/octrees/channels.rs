@@ -3,11 +3,15 @@
 use crate::common;
 use crate::common::values::{Value, Values, kinds, values, values_of};
 use crate::common::{Dense, alone, cases, lattice_frame, noise, positions};
+use leafless::attribute::{
+    Attribute, CarryRule, Channel, ChannelOperand, ConstantAttribute, Criterion, Detail, FillOptions,
+    FunctionAttribute, MovedAttribute, ScalarType, ValueRange, ValueType, carry_channel, carry_channels,
+    fill_channel,
+};
+use leafless::error::Damage;
 use leafless::{
-    Affine, Attribute, Bounds, CarryRule, Channel, ChannelOperand, ConstantAttribute, Control, Criterion,
-    Csg, Damage, Detail, Error, FillOptions, Frame, FunctionAttribute, Interval, Metadata, MovedAttribute,
-    Octree, Rule, ScalarType, Tag, ValueRange, ValueType, build, carry_channel, carry_channels, difference,
-    fill_channel, intersection, union, xor,
+    Affine, Bounds, Control, Csg, Error, Frame, Interval, Metadata, Octree, Rule, Tag, build, difference,
+    intersection, union, xor,
 };
 use proptest::prelude::*;
 

@@ -5,9 +5,11 @@
 //! and then the line that it had at first stays in the file behind the new one, after `was`.
 
 use crate::common::{Random, alone, model};
+use leafless::octree::Cursor;
+use leafless::solid::{HalfSpace, Transform};
 use leafless::{
-    Affine, AnySolid, Callback, Csg, Cursor, FillRule, Frame, HalfSpace, MeshSolid, Octree, Rule, Tag,
-    Transform, TriangleMesh, Verdict, build,
+    Affine, AnySolid, Callback, Csg, FillRule, Frame, MeshSolid, Octree, Rule, Tag, TriangleMesh, Verdict,
+    build,
 };
 use std::collections::BTreeMap;
 use std::fmt::Write;

@@ -3,10 +3,12 @@
 
 use crate::common::cubes::{Cubes, Plain};
 use crate::common::{Dense, Random, alone, assert_is, cases, lattice_frame, noise, positions, shapes};
+use leafless::lattice::Cube;
+use leafless::op::{Refinement, Zone};
+use leafless::solid::{Fingerprint, SplitCounter};
 use leafless::{
-    AnySolid, Callback, Cell, Classifier, Control, Csg, Cube, Error, FillRule, Fingerprint, Frame,
-    LazyOctree, Membership, MeshSolid, Metadata, Octree, Refinement, Rule, Solid, SplitCounter, Tag,
-    TriangleMesh, Verdict, Worker, Zone, build, compact, file,
+    AnySolid, Callback, Cell, Classifier, Control, Csg, Error, FillRule, Frame, LazyOctree, Membership,
+    MeshSolid, Metadata, Octree, Rule, Solid, Tag, TriangleMesh, Verdict, Worker, build, compact, file,
 };
 use proptest::prelude::*;
 use std::collections::HashSet;

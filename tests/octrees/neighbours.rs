@@ -3,10 +3,8 @@
 use crate::aligned::Aligned;
 use crate::common;
 use crate::common::{Dense, positions};
-use leafless::{
-    BoundaryFace, Cell, CellFilter, Cursor, Direction, Error, Octree, OctreeRef, Tag, TaggedCell, compact,
-    file,
-};
+use leafless::octree::{BoundaryFace, CellFilter, Cursor, Direction, TaggedCell};
+use leafless::{Cell, Error, Octree, OctreeRef, Tag, compact, file};
 use proptest::prelude::*;
 use std::collections::{HashMap, HashSet};
 

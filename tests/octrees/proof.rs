@@ -3,10 +3,11 @@
 
 #![cfg(feature = "std")]
 
+use leafless::op::{Zone, intersection_of, resolve, union_of, xor_of};
+use leafless::solid::Transform;
 use leafless::{
     Affine, AnySolid, Classifier, Control, Csg, Error, FillRule, Frame, LazyOctree, MeshSolid, Octree, Proof,
-    Rule, Solid, Tag, Transform, TriangleMesh, Zone, build, compact, complement, difference, file,
-    intersection, intersection_of, resolve, union, union_of, xor, xor_of,
+    Rule, Solid, Tag, TriangleMesh, build, compact, complement, difference, file, intersection, union, xor,
 };
 use std::sync::Arc;
 

@@ -9,13 +9,18 @@
 
 #![cfg(feature = "std")]
 
+use leafless::attribute::{
+    CarryRule, ConstantAttribute, FillOptions, ScalarType, ValueRegion, ValueType, carry_channels,
+    fill_channel,
+};
+use leafless::op::{DexelOptions, Zone, intersection_of, octree_from_dexels, resolve, union_of, xor_of};
+use leafless::solid::{Adaptive, Band, Prepared, Samples, SplitCounter, Transform, VoxelGrid};
+use leafless::surface::DexelSolid;
+use leafless::voxel::{Symmetry, VoxelBoundary, VoxelOptions, VoxelRecords, VoxelRecordsRef, VoxelSolid};
 use leafless::{
-    Adaptive, Affine, AnySolid, Band, Bounds, Callback, CarryRule, ConstantAttribute, Control, Csg,
-    DexelOptions, DexelSolid, Error, FillOptions, FillRule, Frame, LazyOctree, MeshSolid, Metadata, Octree,
-    Prepared, Proof, Rule, Samples, ScalarType, Solid, SplitCounter, Symmetry, Tag, Transform, ValueRegion,
-    ValueType, Verdict, Volume, VoxelBoundary, VoxelGrid, VoxelOptions, VoxelRecords, VoxelRecordsRef,
-    VoxelSolid, Zone, build, carry_channels, compact, complement, dexelize, difference, file, fill_channel,
-    intersection, intersection_of, marching_cubes, octree_of_dexels, resolve, union, union_of, xor, xor_of,
+    Affine, AnySolid, Bounds, Callback, Control, Csg, Error, FillRule, Frame, LazyOctree, MeshSolid,
+    Metadata, Octree, Proof, Rule, Solid, Tag, Verdict, Volume, build, compact, complement, dexelize,
+    difference, file, intersection, marching_cubes, union, xor,
 };
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -247,8 +252,8 @@ const WAYS: &[Way] = &[
     },
     Way {
         name: "with metadata",
-        through: &["octree/octree.rs with_metadata", "octree/octree.rs with_metadata_of"],
-        make: |a| of_ball(a.tree.with_metadata(Metadata::default()).with_metadata_of(&a.tree)),
+        through: &["octree/octree.rs with_metadata", "octree/octree.rs with_metadata_from"],
+        make: |a| of_ball(a.tree.with_metadata(Metadata::default()).with_metadata_from(&a.tree)),
         proven: SAME,
     },
     // ---- channels
@@ -256,13 +261,13 @@ const WAYS: &[Way] = &[
         name: "with a channel and without",
         through: &[
             "octree/octree.rs with_channel",
-            "octree/octree.rs with_channels_of",
+            "octree/octree.rs with_channels_from",
             "octree/octree.rs without_channel",
             "octree/octree.rs without_channels",
         ],
         make: |a| {
             let bare = a.with_channel().without_channel("value")?;
-            of_ball(bare.with_channels_of(&a.with_channel()).without_channels())
+            of_ball(bare.with_channels_from(&a.with_channel()).without_channels())
         },
         proven: SAME,
     },
@@ -416,7 +421,7 @@ const WAYS: &[Way] = &[
     Way {
         name: "expression of the published tables",
         through: &["solid/csg/mod.rs with_touch"],
-        make: |a| asked(&a.csg().with_touch(leafless::Touch::Paper)),
+        make: |a| asked(&a.csg().with_touch(leafless::solid::Touch::Paper)),
         proven: SAME,
     },
     Way {
@@ -565,12 +570,12 @@ const WAYS: &[Way] = &[
     // ---- tri-dexel models
     Way {
         name: "tri-dexel model to an octree",
-        through: &["op/dexel_centres.rs octree_of_dexels"],
+        through: &["op/dexel_centres.rs octree_from_dexels"],
         make: |a| {
             let rule = if a.rule == Rule::Certified { Rule::Inner } else { Rule::Sampled };
             let options = DexelOptions { rule, ..DexelOptions::default() };
             let model = dexelize(&a.tree, &frame(DEPTH), &options, &CONTROL)?;
-            of_ball(octree_of_dexels(model.view(), &CONTROL)?)
+            of_ball(octree_from_dexels(model.view(), &CONTROL)?)
         },
         proven: NOTHING,
     },

@@ -2,10 +2,13 @@
 
 use crate::common;
 use crate::common::{Dense, Random, alone, cases, lattice_frame, shapes};
+use leafless::attribute::{Attribute, Criterion, Detail, FunctionAttribute, ValueRange};
+use leafless::voxel::{
+    LinearCode, Symmetry, Viewpoint, VoxelBoundary, VoxelKind, VoxelOptions, VoxelRecord, VoxelRecords,
+    VoxelRecordsRef, Voxels,
+};
 use leafless::{
-    Affine, Attribute, Bounds, Cell, Control, Criterion, Csg, Detail, Error, Frame, FunctionAttribute,
-    Interval, LinearCode, Octree, Proof, Rule, Symmetry, Tag, TriangleMesh, ValueRange, Viewpoint,
-    VoxelBoundary, VoxelKind, VoxelOptions, VoxelRecord, VoxelRecords, VoxelRecordsRef, Voxels, build,
+    Affine, Bounds, Cell, Control, Csg, Error, Frame, Interval, Octree, Proof, Rule, Tag, TriangleMesh, build,
 };
 use proptest::prelude::*;
 use std::sync::atomic::AtomicBool;

@@ -3,9 +3,10 @@
 #[allow(dead_code)]
 use crate::common::{Random, Way, alone};
 use crate::random::Maker;
+use leafless::query::{StopReason, SurfaceArea, surface_area};
 use leafless::{
-    Affine, Cell, Classifier, Control, Csg, Error, Frame, Interval, Rule, Solid, StopReason, SurfaceArea,
-    Tolerance, Verdict, Worker, build, surface_area,
+    Affine, Cell, Classifier, Control, Csg, Error, Frame, Interval, Rule, Solid, Tolerance, Verdict, Worker,
+    build,
 };
 use std::f64::consts::PI;
 

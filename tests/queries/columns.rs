@@ -3,9 +3,10 @@
 use crate::aligned::Aligned;
 use crate::common;
 use crate::common::{Dense, DenseSolid, Shape, alone, cases, lattice_frame, shapes};
+use leafless::query::{ColumnRuns, Columns, Heights, Run, Side, columns, heights};
 use leafless::{
-    ColumnRuns, Columns, Control, Csg, Error, FillRule, Frame, Heights, Interval, MeshSolid, Octree,
-    OctreeRef, Proof, Rule, Run, Side, Tag, build, columns, exchange, file, heights,
+    Control, Csg, Error, FillRule, Frame, Interval, MeshSolid, Octree, OctreeRef, Proof, Rule, Tag, build,
+    exchange, file,
 };
 use proptest::prelude::*;
 use std::sync::atomic::AtomicBool;
@@ -126,8 +127,8 @@ proptest! {
                 // By splitting cells: of the array, and of the tree.
                 let solid = DenseSolid { dense: &dense, exterior: Tag::Empty };
                 let wanted = tree.columns(&columns).unwrap();
-                prop_assert_eq!(&leafless::columns(&solid, &frame, &columns, &alone()).unwrap(), &wanted);
-                prop_assert_eq!(&leafless::columns(&tree, &frame, &columns, &Control::threads(3)).unwrap(), &wanted);
+                prop_assert_eq!(&leafless::query::columns(&solid, &frame, &columns, &alone()).unwrap(), &wanted);
+                prop_assert_eq!(&leafless::query::columns(&tree, &frame, &columns, &Control::threads(3)).unwrap(), &wanted);
                 for side in [Side::Above, Side::Below] {
                     let wanted = tree.heights(&columns, side).unwrap();
                     prop_assert_eq!(&heights(&solid, &frame, &columns, side, &alone()).unwrap(), &wanted);

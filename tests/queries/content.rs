@@ -3,10 +3,11 @@
 
 use crate::common;
 use crate::common::{Dense, DenseSolid, Random, alone, cases, lattice_frame, positions, shapes};
+use leafless::query::{CellsIn, cells_in, volume_in};
+use leafless::solid::{Band, Samples, Transform, VoxelGrid};
 use leafless::{
-    AnySolid, Band, CellsIn, Control, Csg, Error, FillRule, Frame, Interval, MeshSolid, Octree, Proof, Rule,
-    Samples, Tag, Transform, TriangleMesh, Volume, VoxelGrid, build, cells_in, compact, complement,
-    volume_in,
+    AnySolid, Control, Csg, Error, FillRule, Frame, Interval, MeshSolid, Octree, Proof, Rule, Tag,
+    TriangleMesh, Volume, build, compact, complement,
 };
 use proptest::prelude::*;
 use proptest::strategy::ValueTree;

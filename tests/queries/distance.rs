@@ -3,9 +3,11 @@
 use crate::common;
 use crate::common::exact::Exact;
 use crate::common::{Classical, Dense, DenseSolid, Random, alone, cases, lattice_frame, positions, shapes};
+use leafless::octree::TaggedCell;
+use leafless::query::{DistanceTo, NearCell, StopReason, distances};
 use leafless::{
-    Affine, AnySolid, Cell, Control, Csg, DistanceTo, Error, Frame, Interval, NearCell, Octree, Proof, Rule,
-    Solid, StopReason, Tag, TaggedCell, build, compact, distances,
+    Affine, AnySolid, Cell, Control, Csg, Error, Frame, Interval, Octree, Proof, Rule, Solid, Tag, build,
+    compact,
 };
 use proptest::prelude::*;
 use std::sync::atomic::AtomicBool;

@@ -3,9 +3,9 @@
 
 use crate::common::alone;
 use glam::{DMat3, DVec3, EulerRot};
+use leafless::query::{BOUNDING_BOX_SPLITS, Extent, StopReason};
 use leafless::{
-    Affine, BOUNDING_BOX_SPLITS, Bounds, Callback, Control, Csg, Extent, Frame, Interval, Rule, Solid,
-    StopReason, Tag, Verdict, bounding_box, build,
+    Affine, Bounds, Callback, Control, Csg, Frame, Interval, Rule, Solid, Tag, Verdict, bounding_box, build,
 };
 
 /// A solid and how far it reaches along a direction.

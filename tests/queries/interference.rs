@@ -3,11 +3,12 @@
 
 use crate::common::cubes::Plain;
 use crate::common::{Dense, Random, alone, model};
+use leafless::lattice::Cube;
+use leafless::query::{CLEARANCE_SPLITS, DistanceTo, Overlap, StopReason, distances, interference_at};
+use leafless::solid::{HalfSpace, Transform};
 use leafless::{
-    Affine, AnySolid, CLEARANCE_SPLITS, Cell, Clearance, Control, Csg, Cube, DistanceTo, Error, FillRule,
-    Frame, HalfSpace, Interference, MeshSolid, Octree, Overlap, Rule, Solid, StopReason, Tag, Transform,
-    TriangleMesh, bounding_box, build, clearance, distances, exchange, interference, interference_of,
-    intersection,
+    Affine, AnySolid, Cell, Clearance, Control, Csg, Error, FillRule, Frame, Interference, MeshSolid, Octree,
+    Rule, Solid, Tag, TriangleMesh, bounding_box, build, clearance, exchange, interference, intersection,
 };
 use std::f64::consts::PI;
 use std::sync::atomic::AtomicBool;
@@ -465,8 +466,8 @@ fn many_placements_are_one_after_the_other() {
     let placements: Vec<Affine> = (0..40).map(|_| rigid(&mut random, 3.0)).collect();
     for tolerance in [PROOF, 0.5] {
         let control = |threads| Control { threads, max_splits: Some(3000), ..Control::default() };
-        let one = interference_of(&a, &b, &frame, &placements, &frame, tolerance, &control(1)).unwrap();
-        let many = interference_of(&a, &b, &frame, &placements, &frame, tolerance, &control(4)).unwrap();
+        let one = interference_at(&a, &b, &frame, &placements, &frame, tolerance, &control(1)).unwrap();
+        let many = interference_at(&a, &b, &frame, &placements, &frame, tolerance, &control(4)).unwrap();
         let single: Vec<Interference> = placements
             .iter()
             .map(|placement| {
@@ -477,7 +478,7 @@ fn many_placements_are_one_after_the_other() {
         assert_eq!(one, single);
         assert_eq!(many, single);
     }
-    assert!(interference_of(&a, &b, &frame, &[], &frame, PROOF, &alone()).unwrap().is_empty());
+    assert!(interference_at(&a, &b, &frame, &[], &frame, PROOF, &alone()).unwrap().is_empty());
 }
 
 #[test]

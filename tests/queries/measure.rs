@@ -4,10 +4,11 @@ use crate::common;
 use crate::common::cubes::Plain;
 use crate::common::exact::Exact;
 use crate::common::{Dense, DenseSolid, Random, alone, cases, model, positions, shapes};
+use leafless::query::{Extent, StopReason};
 use leafless::{
-    AnySolid, Callback, Cell, Classifier, Control, Csg, Error, Extent, FillRule, Frame, Interval,
-    MassProperties, MeshSolid, Rule, Solid, StopReason, Tag, TriangleMesh, Verdict, Worker, bounding_box,
-    build, complement, exchange, measure,
+    AnySolid, Callback, Cell, Classifier, Control, Csg, Error, FillRule, Frame, Interval, MassProperties,
+    MeshSolid, Rule, Solid, Tag, TriangleMesh, Verdict, Worker, bounding_box, build, complement, exchange,
+    measure,
 };
 use proptest::prelude::*;
 use std::f64::consts::PI;

@@ -2,9 +2,8 @@
 //! formulas' values at every depth, after every number of splits, and to every tolerance.
 
 use glam::{DMat3, DVec3};
-use leafless::{
-    Affine, Bounds, Control, Csg, Error, Frame, Interval, MassProperties, Solid, StopReason, measure,
-};
+use leafless::query::StopReason;
+use leafless::{Affine, Bounds, Control, Csg, Error, Frame, Interval, MassProperties, Solid, measure};
 use std::f64::consts::PI;
 
 /// A solid with its volume, its centroid, and ∫ (p − c)(p − c)ᵀ about that.

@@ -5,9 +5,12 @@ use crate::common::cubes::Plain;
 use crate::common::{
     Dense, DenseSolid, Random, Shape, alone, assert_is, cases, lattice_frame, positions, shapes,
 };
+use leafless::octree::Cursor;
+use leafless::query::{PointCursor, PointTable, Region, classify_box};
+use leafless::solid::SplitCounter;
 use leafless::{
-    AnySolid, Callback, Cell, Control, Csg, Cursor, Error, Frame, Membership, Octree, PointCursor,
-    PointTable, Region, Rule, Solid, SplitCounter, Tag, Verdict, build, classify_box, compact, contains,
+    AnySolid, Callback, Cell, Control, Csg, Error, Frame, Membership, Octree, Rule, Solid, Tag, Verdict,
+    build, compact, contains,
 };
 use proptest::prelude::*;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};

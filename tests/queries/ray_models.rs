@@ -3,9 +3,9 @@
 
 use crate::common::{Random, alone, model};
 use crate::triangles::Triangles;
+use leafless::query::{Obstacle, RayHit};
 use leafless::{
-    Control, Csg, FillRule, Frame, Interval, MeshSolid, Obstacle, Octree, Ray, RayHit, Rule, build,
-    cast_rays, exchange, file,
+    Control, Csg, FillRule, Frame, Interval, MeshSolid, Octree, Ray, Rule, build, cast_rays, exchange, file,
 };
 
 /// A ray's start and its direction.

@@ -3,10 +3,8 @@
 use crate::common;
 use crate::common::exact::Exact;
 use crate::common::{Dense, Random, Shape, alone, cases, shapes};
-use leafless::{
-    Csg, Frame, Interval, Obstacle, OctreeRef, Proof, Ray, RayHit, RaySpans, Rule, Sight, Tag, build,
-    cast_rays, file, line_of_sight, ray_spans,
-};
+use leafless::query::{Obstacle, RayHit, RaySpans, Sight, line_of_sight, ray_spans};
+use leafless::{Csg, Frame, Interval, OctreeRef, Proof, Ray, Rule, Tag, build, cast_rays, file};
 use proptest::prelude::*;
 use std::cmp::Ordering;
 

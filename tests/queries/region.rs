@@ -1,10 +1,8 @@
 //! How much of a solid lies in a box, and how regions of any shape lie to solids, against dense arrays.
 
 use crate::common::{Dense, DenseSolid, Random, alone, cases, lattice_frame, positions, shapes};
-use leafless::{
-    Control, Csg, Error, Frame, Interval, Octree, Region, Rule, Tag, build, classify_box, classify_in,
-    compact, measure,
-};
+use leafless::query::{Region, classify_box, classify_in};
+use leafless::{Control, Csg, Error, Frame, Interval, Octree, Rule, Tag, build, compact, measure};
 use proptest::prelude::*;
 
 /// Coordinates are multiples of 1 / ONE.

@@ -1,10 +1,12 @@
 //! Meshes, lines, slices and legends in pictures, against a caster of rays at every triangle and against formulas.
 
-use leafless::{
-    Bounds, Camera, Cell, CellFilter, Clip, Control, Csg, Error, Frame, FunctionAttribute, Layer, LegendSide,
-    Lens, LinesLayer, MeshEdges, MeshLayer, Picture, Rule, Shot, SliceLayer, SlicePlane, Tag, TaggedCell,
-    TriangleMesh, build, draw_colour_bar, draw_names, render,
+use leafless::attribute::FunctionAttribute;
+use leafless::octree::{CellFilter, TaggedCell};
+use leafless::render::{
+    Camera, Clip, Layer, LegendSide, Lens, LinesLayer, MeshEdges, MeshLayer, Picture, Shot, SliceLayer,
+    SlicePlane, draw_colour_bar, draw_names, render,
 };
+use leafless::{Bounds, Cell, Control, Csg, Error, Frame, Rule, Tag, TriangleMesh, build};
 
 type V = [f64; 3];
 

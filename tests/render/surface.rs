@@ -2,10 +2,12 @@
 //! values.
 
 use crate::common::alone;
-use leafless::{
-    Bounds, Camera, Clip, ClippedLayer, Control, Csg, Error, Finish, Frame, FunctionAttribute, Layer, Lens,
-    MeshLayer, OctreeLayer, Outline, Picture, Rule, Shot, SolidLayer, TriangleMesh, build, render,
+use leafless::attribute::FunctionAttribute;
+use leafless::render::{
+    Camera, Clip, ClippedLayer, Finish, Layer, Lens, MeshLayer, OctreeLayer, Outline, Picture, Shot,
+    SolidLayer, render,
 };
+use leafless::{Bounds, Control, Csg, Error, Frame, Rule, TriangleMesh, build};
 
 const SIZE: [u32; 2] = [120, 90];
 

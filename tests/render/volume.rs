@@ -1,10 +1,11 @@
 //! Volumes in pictures, against all voxels of each line of sight, sorted by where it enters them, and against formulas.
 
 use crate::common::Random;
-use leafless::{
-    Bounds, Camera, Clip, ColourMap, Compositing, Control, Error, Frame, Lens, LinearCode, Picture, Shot,
-    Transfer, VolumeLayer, VoxelKind, VoxelRecords, VoxelRecordsRef, render,
+use leafless::render::{
+    Camera, Clip, ColourMap, Compositing, Lens, Picture, Shot, Transfer, VolumeLayer, render,
 };
+use leafless::voxel::{LinearCode, VoxelKind, VoxelRecords, VoxelRecordsRef};
+use leafless::{Bounds, Control, Error, Frame};
 use std::sync::atomic::AtomicBool;
 
 /// The cube [-1, 1]³ with at most 16 cells along an axis.

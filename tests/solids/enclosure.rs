@@ -6,9 +6,10 @@ use crate::common::slabs::{bits, known, told};
 use crate::common::{Random, Way, alone, lattice_frame};
 use crate::model::{Model, Other, Point};
 use crate::random::Maker;
+use leafless::lattice::MAX_DEPTH;
+use leafless::solid::{Enclosure, GradientRange, Slab, TangentBalls, Transform};
 use leafless::{
-    Affine, AnySolid, Callback, Cell, Classifier, Csg, Enclosure, Error, Frame, GradientRange, Interval,
-    MAX_DEPTH, Slab, Solid, TangentBalls, Transform, Verdict, Worker,
+    Affine, AnySolid, Callback, Cell, Classifier, Csg, Error, Frame, Interval, Solid, Verdict, Worker,
 };
 
 /// Frames whose planes are integers, exact doubles, no doubles at all; far from the origin, tiny.

@@ -1,9 +1,10 @@
 //! A host program whose functions take their time: how often it is called, by how many threads, and how soon
 //! a cancel is answered.
 
+use leafless::op::{Refinement, Zone};
 use leafless::{
-    AnySolid, Bounds, Callback, Control, Csg, Error, Frame, LazyOctree, Octree, Refinement, Rule, Solid,
-    Verdict, Zone, bounding_box, build, clearance, interference, measure,
+    AnySolid, Bounds, Callback, Control, Csg, Error, Frame, LazyOctree, Octree, Rule, Solid, Verdict,
+    bounding_box, build, clearance, interference, measure,
 };
 use std::collections::HashSet;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};

@@ -1,9 +1,10 @@
 //! What a host program's functions say of where the surface lies in a cell: what measures, bounding boxes and
 //! adaptive octrees make of it, and of nonsense.
 
+use leafless::solid::{Adaptive, GradientRange, TangentBalls};
 use leafless::{
-    Adaptive, AnySolid, Bounds, Callback, Classifier, Control, Error, Frame, GradientRange, Interval, Octree,
-    Rule, Solid, TangentBalls, Verdict, Worker, bounding_box, build, measure,
+    AnySolid, Bounds, Callback, Classifier, Control, Error, Frame, Interval, Octree, Rule, Solid, Verdict,
+    Worker, bounding_box, build, measure,
 };
 use std::f64::consts::PI;
 
@@ -283,7 +284,7 @@ fn one_function_makes_up_for_the_other() {
         for y in 0..16 {
             let cell = leafless::Cell { level: 4, at: [x, y, 9] };
             // (Cells that are decided are not asked about.)
-            let (min, max) = leafless::Cube { frame: &universe(4), cell }.bounds();
+            let (min, max) = leafless::lattice::Cube { frame: &universe(4), cell }.bounds();
             if !matches!(decide(&ball(min, max, middle(min, max)), min, max), Verdict::Partial(())) {
                 continue;
             }

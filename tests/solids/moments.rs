@@ -4,7 +4,8 @@
 use crate::common::{Random, Way, alone, lattice_frame};
 use crate::model::Model;
 use crate::random::Maker;
-use leafless::{Cell, CellMoments, Classifier, Csg, CubeMoments, Frame, MAX_DEPTH, Solid, Verdict, Worker};
+use leafless::lattice::{CellMoments, CubeMoments, MAX_DEPTH};
+use leafless::{Cell, Classifier, Csg, Frame, Solid, Verdict, Worker};
 
 /// The order of second moments.
 const PAIRS: [(usize, usize); 6] = [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)];

@@ -4,9 +4,11 @@
 use crate::common;
 use crate::common::exact::Exact;
 use crate::common::{Dense, Random, alone, lattice_frame, positions, shapes};
+use leafless::op::Zone;
+use leafless::solid::Transform;
 use leafless::{
-    Affine, AnySolid, Cell, Classifier, Control, Csg, Error, Frame, LazyOctree, Rule, Solid, Tag, Transform,
-    Verdict, Worker, Zone, build, measure,
+    Affine, AnySolid, Cell, Classifier, Control, Csg, Error, Frame, LazyOctree, Rule, Solid, Tag, Verdict,
+    Worker, build, measure,
 };
 use proptest::prelude::*;
 use std::f64::consts::PI;

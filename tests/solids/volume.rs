@@ -3,9 +3,10 @@
 use crate::common::exact::Exact;
 use crate::common::volumes::{KINDS, Sampled, extents, grid};
 use crate::common::{Random, alone};
+use leafless::solid::{Band, SampleArray, Samples, VoxelGrid};
 use leafless::{
-    AnySolid, Band, Bounds, Cell, Classifier, Control, Csg, Error, Frame, Membership, Rule, SampleArray,
-    Samples, Solid, Tag, Verdict, Volume, VoxelGrid, Worker, build, complement, contains,
+    AnySolid, Bounds, Cell, Classifier, Control, Csg, Error, Frame, Membership, Rule, Solid, Tag, Verdict,
+    Volume, Worker, build, complement, contains,
 };
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;

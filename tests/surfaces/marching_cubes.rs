@@ -3,9 +3,10 @@
 use crate::aligned::Aligned;
 use crate::common::surfaces::{components, euler_of_manifold};
 use crate::common::{Dense, Random, alone, cases, lattice_frame, model, shapes};
+use leafless::surface::{Resolve, Snap, marching_cubes_reusing, simple_marching_cubes};
 use leafless::{
-    Control, Csg, Error, FillRule, Frame, MeshSolid, Octree, Resolve, Rule, Snap, Solid, Tag, TriangleMesh,
-    build, exchange, file, marching_cubes, marching_cubes_reusing, smc,
+    Control, Csg, Error, FillRule, Frame, MeshSolid, Octree, Rule, Solid, Tag, TriangleMesh, build, exchange,
+    file, marching_cubes,
 };
 use proptest::prelude::*;
 
@@ -295,7 +296,7 @@ fn damaged_trees() {
                     Ok(mesh) => {
                         seen[0] += 1;
                         assert!(mesh.triangles().is_empty() || mesh.check_closed(FillRule::NonZero).is_ok());
-                        smc(&tree, Snap::Fat, Some(resolve), &alone()).unwrap();
+                        simple_marching_cubes(&tree, Snap::Fat, Some(resolve), &alone()).unwrap();
                     }
                     Err(error) => {
                         seen[1] += 1;

@@ -3,10 +3,11 @@
 use crate::aligned::Aligned;
 use crate::common::surfaces::{assert_balanced, euler_of_manifold, outlines};
 use crate::common::{Random, alone, lattice_frame, model};
+use leafless::solid::{Band, Samples, VoxelGrid};
+use leafless::surface::{Resolve, Snap, coplanar_shrink, published_shrink, simple_marching_cubes};
 use leafless::{
-    Affine, Band, Control, Csg, Error, FillRule, Frame, MeshSolid, Octree, OctreeRef, Resolve, Rule, Samples,
-    Snap, Solid, Volume, VoxelGrid, build, coplanar_shrink, exchange, file, marching_cubes, published_shrink,
-    smc,
+    Affine, Control, Csg, Error, FillRule, Frame, MeshSolid, Octree, OctreeRef, Rule, Solid, Volume, build,
+    exchange, file, marching_cubes,
 };
 
 /// Four normals that together point nowhere: the faces of a tetrahedron. All 13 directions are among them.
@@ -111,7 +112,7 @@ fn check(name: &str, octree: &Octree) {
     euler_of_manifold(&cubes);
     assert!((cubes.volume() - voxels).abs() <= tolerance, "{name}");
     for snap in [Snap::Fat, Snap::Thin] {
-        let all = smc(tree, snap, None, &alone()).unwrap();
+        let all = simple_marching_cubes(tree, snap, None, &alone()).unwrap();
         let few = coplanar_shrink(tree, snap, None, &alone()).unwrap();
         assert_balanced(&all);
         assert_balanced(&few);
@@ -213,7 +214,7 @@ fn progress_ends_with_all() {
     let control = Control { progress: Some(&progress), ..alone() };
     let methods: [&dyn Fn() -> Result<leafless::TriangleMesh, Error>; 4] = [
         &|| marching_cubes(tree, None, &control),
-        &|| smc(tree, Snap::Fat, None, &control),
+        &|| simple_marching_cubes(tree, Snap::Fat, None, &control),
         &|| coplanar_shrink(tree, Snap::Fat, None, &control),
         &|| published_shrink(tree, Snap::Fat, None, &control),
     ];

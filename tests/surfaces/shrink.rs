@@ -3,10 +3,11 @@
 
 use crate::common::surfaces::{Point, assert_balanced, components, euler_of_manifold, outlines, sample};
 use crate::common::{Dense, Random, alone, cases, lattice_frame, shapes};
-use leafless::{
-    Control, Csg, Error, Frame, OctreeRef, Resolve, Rule, Snap, Tag, TriangleMesh, build, coplanar_shrink,
-    coplanar_shrink_of, published_shrink, published_shrink_of, smc, smc_of,
+use leafless::surface::{
+    Resolve, Snap, coplanar_shrink, coplanar_shrink_solid, published_shrink, published_shrink_solid,
+    simple_marching_cubes, simple_marching_cubes_solid,
 };
+use leafless::{Control, Csg, Error, Frame, OctreeRef, Rule, Tag, TriangleMesh, build};
 use proptest::prelude::*;
 use std::collections::{BTreeSet, HashMap};
 
@@ -28,7 +29,7 @@ fn corners(mesh: &TriangleMesh) -> BTreeSet<Point> {
 #[track_caller]
 fn check(tree: &OctreeRef<'_>) {
     for snap in SNAPS {
-        let all = smc(tree, snap, None, &alone()).unwrap();
+        let all = simple_marching_cubes(tree, snap, None, &alone()).unwrap();
         let few = coplanar_shrink(tree, snap, None, &alone()).unwrap();
         assert_balanced(&few);
         assert_eq!(outlines(&few), outlines(&all), "{snap:?}");
@@ -129,7 +130,7 @@ fn manifold_where_cells_are() {
         let tree = build(&solid, &frame, Rule::Sampled, &alone()).unwrap();
         check(tree.view());
         for snap in SNAPS {
-            let all = smc(tree.view(), snap, None, &alone()).unwrap();
+            let all = simple_marching_cubes(tree.view(), snap, None, &alone()).unwrap();
             let few = coplanar_shrink(tree.view(), snap, None, &alone()).unwrap();
             assert_eq!((euler_of_manifold(&few), components(&few)), (euler, 1));
             assert_eq!(few.bounds(), all.bounds());
@@ -166,7 +167,7 @@ fn the_published_tetrahedron() {
     let mesh = TriangleMesh::new(corners, vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]).unwrap();
     let solid = leafless::MeshSolid::new(mesh, leafless::FillRule::NonZero).unwrap();
     let tree = build(&solid, &frame, Rule::Sampled, &alone()).unwrap();
-    let all = smc(tree.view(), Snap::Fat, None, &alone()).unwrap();
+    let all = simple_marching_cubes(tree.view(), Snap::Fat, None, &alone()).unwrap();
     assert_eq!((all.vertices().len(), all.triangles().len()), (16_471, 32_938));
     let published = published_shrink(tree.view(), Snap::Fat, None, &alone()).unwrap();
     assert_eq!((published.vertices().len(), published.triangles().len()), (3_123, 5_174));
@@ -185,7 +186,7 @@ fn published_cells() {
     let voxel = Csg::cuboid([5.0; 3], [6.0; 3]).unwrap();
     let tree = build(&voxel, &frame, Rule::Sampled, &alone()).unwrap();
     let (all, merged) = (
-        smc(tree.view(), Snap::Fat, None, &alone()).unwrap(),
+        simple_marching_cubes(tree.view(), Snap::Fat, None, &alone()).unwrap(),
         published_shrink(tree.view(), Snap::Fat, None, &alone()).unwrap(),
     );
     assert_eq!(outlines(&all), outlines(&merged));
@@ -194,7 +195,7 @@ fn published_cells() {
     let half = Csg::cuboid([0.0; 3], [16.0, 16.0, 8.0]).unwrap();
     let tree = build(&half, &frame, Rule::Sampled, &alone()).unwrap();
     let merged = published_shrink(tree.view(), Snap::Fat, None, &alone()).unwrap();
-    let all = smc(tree.view(), Snap::Fat, None, &alone()).unwrap();
+    let all = simple_marching_cubes(tree.view(), Snap::Fat, None, &alone()).unwrap();
     assert!((merged.area() - all.area()).abs() < 1e-9 * all.area());
     assert!(merged.triangles().len() < all.triangles().len() / 2);
 }
@@ -204,17 +205,17 @@ fn corners_of_the_lattice() {
     let frame = Frame::new([0.0; 3], 16.0, 4).unwrap();
     let block = Csg::cuboid([2.0; 3], [13.0; 3]).unwrap();
     for snap in SNAPS {
-        let few = coplanar_shrink_of(&block, &frame, snap, &alone()).unwrap();
-        let all = smc_of(&block, &frame, snap, &alone()).unwrap();
+        let few = coplanar_shrink_solid(&block, &frame, snap, &alone()).unwrap();
+        let all = simple_marching_cubes_solid(&block, &frame, snap, &alone()).unwrap();
         assert_eq!(few.bounds(), all.bounds());
         assert!((few.volume() - all.volume()).abs() < 1e-9 * all.volume());
         assert_eq!(few.triangles().len(), if snap == Snap::Fat { 44 } else { 12 });
-        let published = published_shrink_of(&block, &frame, snap, &alone()).unwrap();
+        let published = published_shrink_solid(&block, &frame, snap, &alone()).unwrap();
         assert!((published.area() - all.area()).abs() < 1e-9 * all.area());
     }
     let too_deep = frame.with_depth(20).unwrap();
     assert!(matches!(
-        coplanar_shrink_of(&block, &too_deep, Snap::Fat, &alone()),
+        coplanar_shrink_solid(&block, &too_deep, Snap::Fat, &alone()),
         Err(Error::Argument { name: "frame", .. })
     ));
 }

@@ -2,9 +2,8 @@
 
 use crate::common::surfaces::{assert_balanced, components, euler_of_manifold};
 use crate::common::{Dense, Random, alone, cases, lattice_frame, shapes};
-use leafless::{
-    Control, Csg, Error, Frame, Resolve, Rule, Snap, Tag, TriangleMesh, build, marching_cubes, smc, smc_of,
-};
+use leafless::surface::{Resolve, Snap, simple_marching_cubes, simple_marching_cubes_solid};
+use leafless::{Control, Csg, Error, Frame, Rule, Tag, TriangleMesh, build, marching_cubes};
 use proptest::prelude::*;
 use std::collections::HashMap;
 
@@ -61,7 +60,7 @@ fn check(dense: &Dense) {
     let tree = dense.octree();
     let cubes = marching_cubes(tree.view(), None, &alone()).unwrap();
     for snap in SNAPS {
-        let mesh = smc(tree.view(), snap, None, &alone()).unwrap();
+        let mesh = simple_marching_cubes(tree.view(), snap, None, &alone()).unwrap();
         assert_balanced(&mesh);
         assert_eq!(chain(facets(&mesh)), chain(moved(&cubes, dense, snap)), "{dense:?}");
         let expected = moved(&cubes, dense, snap).count();
@@ -72,7 +71,7 @@ fn check(dense: &Dense) {
             let normal = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
             assert!(normal != [0.0; 3] && normal.iter().all(|n| [-1.0, 0.0, 1.0].contains(n)));
         }
-        let threads = smc(tree.view(), snap, None, &Control::threads(3)).unwrap();
+        let threads = simple_marching_cubes(tree.view(), snap, None, &Control::threads(3)).unwrap();
         assert_eq!((mesh.vertices(), mesh.triangles()), (threads.vertices(), threads.triangles()));
     }
 }
@@ -86,9 +85,9 @@ proptest! {
         check(&dense.resolved(Tag::Empty));
         if !dense.is_binary() {
             let tree = dense.octree();
-            prop_assert!(smc(tree.view(), Snap::Fat, None, &alone()).is_err());
-            let mesh = smc(tree.view(), Snap::Fat, Some(Resolve::Outer), &alone()).unwrap();
-            let expected = smc(dense.resolved(Tag::Full).octree().view(), Snap::Fat, None, &alone()).unwrap();
+            prop_assert!(simple_marching_cubes(tree.view(), Snap::Fat, None, &alone()).is_err());
+            let mesh = simple_marching_cubes(tree.view(), Snap::Fat, Some(Resolve::Outer), &alone()).unwrap();
+            let expected = simple_marching_cubes(dense.resolved(Tag::Full).octree().view(), Snap::Fat, None, &alone()).unwrap();
             prop_assert_eq!(mesh.triangles(), expected.triangles());
         }
     }
@@ -120,7 +119,7 @@ fn manifold_where_cells_are() {
     for (solid, euler) in [(ball, 2), (block, 2), (frame_of, 0)] {
         let tree = build(&solid, &frame, Rule::Sampled, &alone()).unwrap();
         for snap in SNAPS {
-            let mesh = smc(tree.view(), snap, None, &alone()).unwrap();
+            let mesh = simple_marching_cubes(tree.view(), snap, None, &alone()).unwrap();
             assert_eq!((euler_of_manifold(&mesh), components(&mesh)), (euler, 1));
         }
     }
@@ -139,7 +138,7 @@ fn the_published_tetrahedron() {
     assert_eq!(tree.statistics().volume_cells(), (125_580, 125_580));
     let sizes = [(Snap::Fat, 16_471, 32_938), (Snap::Thin, 2 * 89 * 89 + 2, 4 * 89 * 89)];
     for (snap, vertices, triangles) in sizes {
-        let mesh = smc(tree.view(), snap, None, &alone()).unwrap();
+        let mesh = simple_marching_cubes(tree.view(), snap, None, &alone()).unwrap();
         assert_eq!((mesh.vertices().len(), mesh.triangles().len()), (vertices, triangles), "{snap:?}");
         assert_eq!(euler_of_manifold(&mesh), 2);
         let report = mesh.report().unwrap();
@@ -153,13 +152,13 @@ fn corners_of_the_lattice() {
     let block = Csg::cuboid([2.0; 3], [5.0; 3]).unwrap();
     // The corners at the lower faces lie inside, by the shift of all samples, those at the upper ones
     // outside.
-    let mesh = smc_of(&block, &frame, Snap::Thin, &alone()).unwrap();
+    let mesh = simple_marching_cubes_solid(&block, &frame, Snap::Thin, &alone()).unwrap();
     assert_eq!((mesh.bounds(), mesh.volume()), (([2.0; 3], [4.0; 3]), 8.0));
-    let mesh = smc_of(&block, &frame, Snap::Fat, &alone()).unwrap();
+    let mesh = simple_marching_cubes_solid(&block, &frame, Snap::Fat, &alone()).unwrap();
     assert_eq!(mesh.bounds(), ([1.0; 3], [5.0; 3]));
     assert_eq!(euler_of_manifold(&mesh), 2);
     assert!(matches!(
-        smc_of(&block, &frame.with_depth(20).unwrap(), Snap::Fat, &alone()),
+        simple_marching_cubes_solid(&block, &frame.with_depth(20).unwrap(), Snap::Fat, &alone()),
         Err(Error::Argument { name: "frame", .. })
     ));
 }

@@ -2,13 +2,15 @@
 
 use crate::common::surfaces::{assert_balanced, components, euler_of_manifold};
 use crate::common::{Random, alone, lattice_frame, model};
+use leafless::solid::Segment;
+use leafless::surface::{VertexPlacement, marching_cubes_solid};
 use leafless::{
     Affine, AnySolid, Callback, Cell, Classifier, Control, Csg, Error, FillRule, Frame, MeshSolid, Rule,
-    Segment, Solid, TriangleMesh, Verdict, VertexPlacement, Worker, build, exchange, marching_cubes_of,
+    Solid, TriangleMesh, Verdict, Worker, build, exchange,
 };
 
 fn crossings<S: Solid>(solid: &S, frame: &Frame) -> TriangleMesh {
-    marching_cubes_of(solid, frame, VertexPlacement::Crossing, &alone()).unwrap()
+    marching_cubes_solid(solid, frame, VertexPlacement::Crossing, &alone()).unwrap()
 }
 
 /// Vertices of a ball lie on it, and area and volume converge with second order.
@@ -190,7 +192,7 @@ fn clipped_solids() {
     let mesh = crossings(&all, &frame);
     assert_balanced(&mesh);
     assert_eq!((mesh.bounds(), euler_of_manifold(&mesh)), (([-1.0; 3], [1.0; 3]), 2));
-    let midpoints = marching_cubes_of(&all, &frame, VertexPlacement::Midpoint, &alone()).unwrap();
+    let midpoints = marching_cubes_solid(&all, &frame, VertexPlacement::Midpoint, &alone()).unwrap();
     assert_eq!(midpoints.bounds(), ([-1.0625; 3], [1.0625; 3]));
 }
 
@@ -204,8 +206,8 @@ fn midpoints_and_threads() {
         let radius = random.between(2.0, 7.0);
         let ball = AnySolid::new(Csg::ball(centre, radius).unwrap());
         for placement in [VertexPlacement::Midpoint, VertexPlacement::Crossing] {
-            let mesh = marching_cubes_of(&ball, &frame, placement, &alone()).unwrap();
-            let threads = marching_cubes_of(&ball, &frame, placement, &Control::threads(4)).unwrap();
+            let mesh = marching_cubes_solid(&ball, &frame, placement, &alone()).unwrap();
+            let threads = marching_cubes_solid(&ball, &frame, placement, &Control::threads(4)).unwrap();
             assert_eq!((mesh.vertices(), mesh.triangles()), (threads.vertices(), threads.triangles()));
             assert_eq!(euler_of_manifold(&mesh), 2);
             // Each vertex lies on an edge of the lattice, one end of which lies inside.
@@ -249,10 +251,14 @@ fn verdicts_alone() {
 fn what_is_refused() {
     let frame = lattice_frame(4);
     let tree = build(&Csg::ball([8.0; 3], 4.0).unwrap(), &frame, Rule::Sampled, &alone()).unwrap();
-    let refused = marching_cubes_of(&tree, &frame, VertexPlacement::Midpoint, &alone());
+    let refused = marching_cubes_solid(&tree, &frame, VertexPlacement::Midpoint, &alone());
     assert!(matches!(refused, Err(Error::FrameMismatch { .. })));
     let deepest = frame.with_depth(20).unwrap();
-    let refused =
-        marching_cubes_of(&Csg::ball([8.0; 3], 4.0).unwrap(), &deepest, VertexPlacement::Midpoint, &alone());
+    let refused = marching_cubes_solid(
+        &Csg::ball([8.0; 3], 4.0).unwrap(),
+        &deepest,
+        VertexPlacement::Midpoint,
+        &alone(),
+    );
     assert!(matches!(refused, Err(Error::Argument { name: "frame", .. })));
 }

@@ -2,9 +2,10 @@
 
 use crate::common::surfaces::{assert_balanced, euler_of_manifold};
 use crate::common::{Random, alone};
+use leafless::solid::{Band, Samples, VoxelGrid};
+use leafless::surface::{Resolve, marching_cubes_volume, marching_cubes_with_volume};
 use leafless::{
-    Band, Control, Csg, Error, Frame, Octree, Resolve, Rule, Samples, TriangleMesh, Volume, VoxelGrid, build,
-    difference, marching_cubes, marching_cubes_of_volume, marching_cubes_with_volume,
+    Control, Csg, Error, Frame, Octree, Rule, TriangleMesh, Volume, build, difference, marching_cubes,
 };
 use std::f64::consts::PI;
 use std::sync::atomic::AtomicBool;
@@ -33,7 +34,7 @@ fn balls_of_second_order() {
             let spacing = spacing.map(|edge: f64| edge / f64::from(n));
             let grid = VoxelGrid::new(extents, [0.0; 3], spacing).unwrap();
             let samples = distances(&grid, centre, radius);
-            let mesh = marching_cubes_of_volume(&volume(&samples, &grid), &alone()).unwrap();
+            let mesh = marching_cubes_volume(&volume(&samples, &grid), &alone()).unwrap();
             assert_eq!(euler_of_manifold(&mesh), 2);
             // The second derivative of the distance along a line is at most one over the distance.
             let longest = spacing.into_iter().fold(0.0, f64::max);
@@ -64,13 +65,13 @@ fn octrees_with_their_volumes() {
     let volume = volume(&samples, &grid);
     let frame = grid.frame().unwrap();
     let tree = build(&volume, &frame, Rule::Sampled, &alone()).unwrap();
-    let own = marching_cubes_of_volume(&volume, &alone()).unwrap();
+    let own = marching_cubes_volume(&volume, &alone()).unwrap();
     let same = |a: &TriangleMesh, b: &TriangleMesh| {
         assert_eq!((a.vertices(), a.triangles()), (b.vertices(), b.triangles()));
     };
     same(&marching_cubes_with_volume(tree.view(), &volume, None, &alone()).unwrap(), &own);
     for threads in [2, 3] {
-        same(&marching_cubes_of_volume(&volume, &Control::threads(threads)).unwrap(), &own);
+        same(&marching_cubes_volume(&volume, &Control::threads(threads)).unwrap(), &own);
     }
     // On another frame of the same lattice, which begins elsewhere.
     let wider = Frame::new([-2.5 - 16.0 * 0.125, 1.0 - 8.0 * 0.125, 0.25], 16.0, 7).unwrap();
@@ -131,7 +132,7 @@ fn samples_on_the_surface() {
         for samples in samples {
             for band in [Band::at_least(2.0), Band::at_least(1.5), Band::between(1.0, 3.0)] {
                 let volume = Volume::new(samples.clone(), &grid, band.unwrap(), &alone()).unwrap();
-                let mesh = marching_cubes_of_volume(&volume, &alone()).unwrap();
+                let mesh = marching_cubes_volume(&volume, &alone()).unwrap();
                 assert_balanced(&mesh);
                 if mesh.triangles().is_empty() {
                     continue;
@@ -148,13 +149,13 @@ fn samples_on_the_surface() {
 fn what_is_refused() {
     let samples = [1.0f32; 8];
     let far = VoxelGrid::new([2; 3], [1e15, 0.0, 0.0], [0.25; 3]).unwrap();
-    let found = marching_cubes_of_volume(&volume(&samples, &far), &alone());
+    let found = marching_cubes_volume(&volume(&samples, &far), &alone());
     assert!(matches!(found, Err(Error::Argument { name: "grid", .. })));
     let grid = VoxelGrid::new([2; 3], [0.0; 3], [0.25; 3]).unwrap();
     let volume = volume(&samples, &grid);
     let flag = AtomicBool::new(true);
     let control = Control { cancel: Some(&flag), ..alone() };
-    assert!(matches!(marching_cubes_of_volume(&volume, &control), Err(Error::Cancelled)));
+    assert!(matches!(marching_cubes_volume(&volume, &control), Err(Error::Cancelled)));
     // Cells that are no voxels.
     for (origin, edge, depth) in [(0.0, 1.0, 1), (0.0, 1.0, 3), (0.1, 1.0, 2)] {
         let frame = Frame::new([origin; 3], edge, depth).unwrap();
@@ -164,5 +165,5 @@ fn what_is_refused() {
     }
     // Nothing inside.
     let none = volume.with_band(Band::at_least(2.0).unwrap(), &alone()).unwrap();
-    assert!(marching_cubes_of_volume(&none, &alone()).unwrap().triangles().is_empty());
+    assert!(marching_cubes_volume(&none, &alone()).unwrap().triangles().is_empty());
 }

@@ -1,6 +1,7 @@
 //! What the comparisons share: medians, processor time, a peer that answers line by line, cells for its grid.
 
-use leafless::{Cursor, FillRule, MeshSolid, TriangleMesh, exchange};
+use leafless::octree::Cursor;
+use leafless::{FillRule, MeshSolid, TriangleMesh, exchange};
 use std::error::Error;
 use std::io::{BufRead, BufReader, Write};
 use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};

@@ -1,6 +1,7 @@
 //! The scene that both programs build.
 
-use leafless::{Csg, Error, HalfSpace};
+use leafless::solid::HalfSpace;
+use leafless::{Csg, Error};
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 
 /// Centres (x, y) of the cylinders along z, whose radius is 0.1.

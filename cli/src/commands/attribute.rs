@@ -12,10 +12,12 @@ use crate::source::volume::Sampling;
 use crate::words::{count, seconds};
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
-use leafless::{
-    CarryRule, Channel, ChannelOperand, ConstantAttribute, Control, Criterion, Detail, FillOptions,
-    Interpolation, MAX_DEPTH, Octree, ScalarType, ValueType, carry_channel, fill_channel,
+use leafless::attribute::{
+    CarryRule, Channel, ChannelOperand, ConstantAttribute, Criterion, Detail, FillOptions, Interpolation,
+    ScalarType, ValueType, carry_channel, fill_channel,
 };
+use leafless::lattice::MAX_DEPTH;
+use leafless::{Control, Octree};
 use serde::Serialize;
 use std::ffi::OsString;
 use std::time::Instant;

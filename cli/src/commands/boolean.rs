@@ -7,7 +7,7 @@ use crate::sink::Output;
 use crate::source::input::Input;
 use crate::source::volume::Sampling;
 use clap::Args;
-use leafless::CarryRule;
+use leafless::attribute::CarryRule;
 use std::ffi::OsString;
 
 /// The solids must lie on one frame: voxelize them with the same --bounds and --depth. The result may replace

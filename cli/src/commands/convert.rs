@@ -5,7 +5,7 @@ use crate::making::dexels::{self, Storing};
 use crate::making::job::Job;
 use crate::making::octree_of_scene::{self, Splitting, TouchName};
 use crate::making::surface::{self, Wanted};
-use crate::making::{octree_of_dexels, octree_of_mesh};
+use crate::making::{octree_from_dexels, octree_of_mesh};
 use crate::options::{ResolveName, bounds, resolution, threads};
 use crate::sink::Output;
 use crate::source::content::Content;
@@ -136,7 +136,7 @@ fn to_octree(job: &Job, taking: &Taking, resolve: Option<ResolveName>) -> Result
             let problem = "is a tri-dexel model, whose cells are decided by their centres";
             return Err(Failure::Usage(format!("{option} is not for {input}: it {problem}")));
         }
-        return octree_of_dexels::make(job, &model);
+        return octree_from_dexels::make(job, &model);
     }
     let found = Found::look(input, taking.reading.told())?;
     let rule = resolve.map_or(Rule::Certified, Rule::from);

@@ -36,7 +36,7 @@ pub struct Arguments {
     output: OsString,
     /// Levels of the octree, 1 to 20: each halves the cells, and the error, and makes the file some four
     /// times as long
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=leafless::MAX_DEPTH as i64))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=leafless::lattice::MAX_DEPTH as i64))]
     depth: u8,
     /// What becomes of the finest cells that the surface passes through
     #[arg(long, value_parser = octree_rules(), default_value = "certified")]

@@ -9,7 +9,9 @@ use crate::source::file::Taking;
 use crate::source::input::Input;
 use clap::builder::TypedValueParser;
 use clap::{Args, ValueEnum};
-use leafless::{DexelEnds, DexelFormat, DexelNormals, DexelOptions, Frame, Rule};
+use leafless::dexel::{DexelEnds, DexelFormat, DexelNormals};
+use leafless::op::DexelOptions;
+use leafless::{Frame, Rule};
 use std::ffi::OsString;
 use std::time::Instant;
 

@@ -7,7 +7,9 @@ use crate::source::input::Input;
 use crate::source::target::{Looking, Target};
 use crate::words::number;
 use clap::{Args, ValueEnum};
-use leafless::{Columns, Error, Heights, MAX_DEPTH, Side, heights};
+use leafless::Error;
+use leafless::lattice::MAX_DEPTH;
+use leafless::query::{Columns, Heights, Side, heights};
 use std::ffi::OsString;
 
 /// Writes a height map: for each column of cells along an axis, how far the solid reaches in it. Heights are in the

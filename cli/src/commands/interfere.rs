@@ -10,9 +10,11 @@ use crate::source::input::Input;
 use crate::source::solid::{Corners, Source, evaluations};
 use crate::words::{count, measured, number, put_line};
 use clap::Args;
+use leafless::lattice::Cube;
+use leafless::query::{Overlap, StopReason};
+use leafless::solid::Prepared;
 use leafless::{
-    Affine, Clearance, Control, Cube, Error, Frame, Interference, Interval, Overlap, Prepared, Proof,
-    StopReason, clearance, interference,
+    Affine, Clearance, Control, Error, Frame, Interference, Interval, Proof, clearance, interference,
 };
 use serde::Serialize;
 use std::ffi::OsString;
@@ -38,7 +40,7 @@ pub struct Arguments {
     #[arg(long, value_name = "MATRIX", value_parser = matrix, allow_hyphen_values = true)]
     place_b: Option<Affine>,
     /// Levels to look at, 1 to 20. Without it: as many as the first solid has, or 10 for a mesh or scene
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=leafless::MAX_DEPTH as i64))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=leafless::lattice::MAX_DEPTH as i64))]
     depth: Option<u8>,
     /// Lower corner and edge length of the cube to look at. Without it: the cube around both
     #[arg(long, value_name = "X0,Y0,Z0,EDGE", value_parser = bounds, allow_hyphen_values = true)]
@@ -210,7 +212,7 @@ fn common_frame(
         Some(depth) => own.with_depth(depth)?,
         None => *own,
     };
-    while frame.depth() < leafless::MAX_DEPTH {
+    while frame.depth() < leafless::lattice::MAX_DEPTH {
         let (origin, edge) = (frame.origin(), frame.edge());
         if (0..3).all(|axis| min[axis] >= origin[axis] && max[axis] <= origin[axis] + edge) {
             break;

@@ -11,9 +11,13 @@ use crate::source::input::Input;
 use crate::source::solid::{Source, evaluations};
 use crate::words::{count, measured, put_line};
 use clap::Args;
+use leafless::lattice::MAX_DEPTH;
+use leafless::mesh::MeshMoments;
+use leafless::query::{Extent, StopReason, SurfaceArea, surface_area};
+use leafless::solid::Prepared;
 use leafless::{
-    Affine, Control, Error, Extent, Frame, Interval, MAX_DEPTH, MassProperties, MeshMoments, MeshSolid,
-    Prepared, Solid, StopReason, SurfaceArea, Tolerance, bounding_box, measure, surface_area,
+    Affine, Control, Error, Frame, Interval, MassProperties, MeshSolid, Solid, Tolerance, bounding_box,
+    measure,
 };
 use serde::Serialize;
 use std::ffi::OsString;

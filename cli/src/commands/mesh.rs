@@ -8,8 +8,9 @@ use crate::sink::Output;
 use crate::source::file::Taking;
 use crate::source::input::Input;
 use clap::Args;
+use leafless::Frame;
 use leafless::exchange::MeshFormat;
-use leafless::{Frame, MAX_DEPTH};
+use leafless::lattice::MAX_DEPTH;
 use std::ffi::OsString;
 use std::time::Instant;
 

@@ -7,7 +7,8 @@ use crate::source::input::Input;
 use crate::source::values::find;
 use crate::words::number;
 use clap::Args;
-use leafless::{ChannelRef, Membership, OctreeRef};
+use leafless::attribute::ChannelRef;
+use leafless::{Membership, OctreeRef};
 use std::ffi::OsString;
 
 /// Reads points from standard input, one a line: x, y and z in the solid's units, separated by blanks, tabs or commas.

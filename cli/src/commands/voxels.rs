@@ -11,10 +11,12 @@ use crate::source::target::{Looking, Target};
 use crate::source::values::find;
 use crate::words::count;
 use clap::{Args, ValueEnum};
-use leafless::{
-    Attribute, Criterion, Detail, MAX_DEPTH, Octree, Rule, Tag, TriangleMesh, VoxelBoundary, VoxelKind,
-    VoxelOptions, VoxelRecords, VoxelRecordsRef, VoxelTriangles, build, exchange,
+use leafless::attribute::{Attribute, Criterion, Detail};
+use leafless::lattice::MAX_DEPTH;
+use leafless::voxel::{
+    VoxelBoundary, VoxelKind, VoxelOptions, VoxelRecords, VoxelRecordsRef, VoxelTriangles,
 };
+use leafless::{Octree, Rule, Tag, TriangleMesh, build, exchange};
 use serde::Serialize;
 use std::ffi::OsString;
 use std::path::Path;

@@ -10,9 +10,9 @@ use crate::source::input::Input;
 use crate::source::solid::Source;
 use crate::words::{count, measured, number};
 use clap::Args;
-use leafless::{
-    Affine, AnySolid, CellsIn, Control, Csg, Error, Frame, Interval, MAX_DEPTH, Octree, cells_in, volume_in,
-};
+use leafless::lattice::MAX_DEPTH;
+use leafless::query::{CellsIn, cells_in, volume_in};
+use leafless::{Affine, AnySolid, Control, Csg, Error, Frame, Interval, Octree};
 use serde::Serialize;
 use std::ffi::OsString;
 

@@ -10,8 +10,9 @@ use crate::source::file::Stored;
 use crate::source::input::Input;
 use crate::source::volume::Sampling;
 use crate::words::{count, counted, seconds, short};
+use leafless::attribute::{CarryRule, carry_channels};
 use leafless::exchange::VolumeFormat;
-use leafless::{CarryRule, Control, Error, Octree, OctreeRef, TriDexel, carry_channels};
+use leafless::{Control, Error, Octree, OctreeRef, TriDexel};
 use std::time::Instant;
 
 /// What is made of solids.
@@ -144,12 +145,12 @@ fn of(
     control: &Control<'_>,
 ) -> Result<Octree, Error> {
     match (operation, trees) {
-        (Operation::Union, _) => leafless::union_of(trees, control),
-        (Operation::Intersection, _) => leafless::intersection_of(trees, control),
-        (Operation::Xor, _) => leafless::xor_of(trees, control),
+        (Operation::Union, _) => leafless::op::union_of(trees, control),
+        (Operation::Intersection, _) => leafless::op::intersection_of(trees, control),
+        (Operation::Xor, _) => leafless::op::xor_of(trees, control),
         (Operation::Difference, [_, tool]) => leafless::difference(first, tool, control),
         (Operation::Difference, _) => {
-            let tools = leafless::union_of(&trees[1..], control)?;
+            let tools = leafless::op::union_of(&trees[1..], control)?;
             leafless::difference(first, tools.view(), control)
         }
         (Operation::Complement, _) => leafless::complement(first, control),

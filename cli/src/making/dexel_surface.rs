@@ -4,10 +4,9 @@ use crate::failure::{Failure, Of};
 use crate::progress::watched;
 use crate::source::input::Input;
 use crate::words::{count, counted};
-use leafless::{
-    DexelNormals, DexelSurfaceReport, TriDexel, TriangleMesh, dual_contouring_of_dexels,
-    marching_cubes_of_dexels,
-};
+use leafless::dexel::DexelNormals;
+use leafless::surface::{DexelSurfaceReport, dual_contouring_dexels, marching_cubes_dexels};
+use leafless::{TriDexel, TriangleMesh};
 use serde::Serialize;
 
 /// How exactly a surface follows the rays of a model.
@@ -67,7 +66,7 @@ impl Followed {
 
 /// The surface by marching cubes.
 pub fn cubes(model: &TriDexel, input: &Input, threads: usize) -> Result<(TriangleMesh, Followed), Failure> {
-    let made = watched("mesh", threads, |control| marching_cubes_of_dexels(model.view(), control));
+    let made = watched("mesh", threads, |control| marching_cubes_dexels(model.view(), control));
     let (mesh, report) = made.of(input)?;
     Ok((mesh, report.into()))
 }
@@ -79,7 +78,7 @@ pub fn dual(model: &TriDexel, input: &Input, threads: usize) -> Result<(Triangle
                        `leafless dexelize --normals 32`";
         return Err(Failure::of(input, problem));
     }
-    let made = watched("mesh", threads, |control| dual_contouring_of_dexels(model.view(), control));
+    let made = watched("mesh", threads, |control| dual_contouring_dexels(model.view(), control));
     let (mesh, report) = made.of(input)?;
     Ok((mesh, report.into()))
 }

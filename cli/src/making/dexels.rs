@@ -10,9 +10,8 @@ use crate::source::file::Taking;
 use crate::source::input::Input;
 use crate::source::solid::{Shape, Source};
 use crate::words::{count, counted, number, seconds, short};
-use leafless::{
-    Affine, DexelOptions, Frame, MeshSolid, Metadata, Octree, Rule, Solid, Tag, TriDexel, dexelize,
-};
+use leafless::op::DexelOptions;
+use leafless::{Affine, Frame, MeshSolid, Metadata, Octree, Rule, Solid, Tag, TriDexel, dexelize};
 use serde::Serialize;
 
 /// Levels of the lattice, if nobody says how many.

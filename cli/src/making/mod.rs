@@ -7,7 +7,7 @@ pub mod boolean;
 pub mod dexel_surface;
 pub mod dexels;
 pub mod job;
-pub mod octree_of_dexels;
+pub mod octree_from_dexels;
 pub mod octree_of_mesh;
 pub mod octree_of_scene;
 pub mod octree_of_volume;

@@ -11,7 +11,8 @@ use crate::source::file::Found;
 use crate::source::scene::{Drawing, frame_of};
 use crate::words::{count, number};
 use clap::ValueEnum;
-use leafless::{Adaptive, Rule, SplitCounter, Touch, build};
+use leafless::solid::{Adaptive, SplitCounter, Touch};
+use leafless::{Rule, build};
 use serde::Serialize;
 use std::time::Instant;
 

@@ -7,13 +7,21 @@ use crate::progress::watched;
 use crate::source::input::Input;
 use crate::source::solid::{Shape, Source};
 use clap::{Args, ValueEnum};
+use leafless::attribute::{Attribute, Channel, Criterion, Detail};
+use leafless::error::MeshError;
+use leafless::lattice::Cube;
+use leafless::octree::CellFilter;
+use leafless::op::octree_from_dexels;
+use leafless::render::{
+    Clip, ClippedLayer, ColourMap, Compositing, Finish, Layer, LegendBox, LegendSide, MeshEdges, MeshLayer,
+    OctreeLayer, Outline, Picture, Shot, SliceLayer, SlicePlane, SolidLayer, TAG_COLOURS, Transfer,
+    VolumeLayer, draw_colour_bar, draw_names, render,
+};
+use leafless::surface::{Resolve, VertexPlacement, marching_cubes_solid};
+use leafless::voxel::{VoxelOptions, VoxelRecords};
 use leafless::{
-    Affine, AnySolid, Attribute, Bounds, CellFilter, Channel, Clip, ClippedLayer, ColourMap, Compositing,
-    Control, Criterion, Cube, Detail, Error, Finish, Frame, Layer, LegendBox, LegendSide, MeshEdges,
-    MeshError, MeshLayer, Octree, OctreeLayer, Outline, Picture, Resolve, Rule, Shot, SliceLayer, SlicePlane,
-    SolidLayer, TAG_COLOURS, Tag, Transfer, TriangleMesh, VertexPlacement, VolumeLayer, VoxelOptions,
-    VoxelRecords, bounding_box, build, draw_colour_bar, draw_names, marching_cubes, marching_cubes_of,
-    octree_of_dexels, render,
+    Affine, AnySolid, Bounds, Control, Error, Frame, Octree, Rule, Tag, TriangleMesh, bounding_box, build,
+    marching_cubes,
 };
 use serde::Serialize;
 
@@ -140,7 +148,7 @@ impl Subject {
         let of_cells = matches!(looks.view, View::Volume | View::Hybrid | View::Slice);
         match shape {
             Shape::Dexels(model) if of_cells || looks.faces => {
-                let octree = watched("render", threads, |control| octree_of_dexels(model.view(), control));
+                let octree = watched("render", threads, |control| octree_from_dexels(model.view(), control));
                 let octree = octree.of(input)?;
                 Ok(Subject::Octree(Box::new(octree), None))
             }
@@ -425,7 +433,7 @@ fn skin_mesh(
     loop {
         let frame = octree.frame().with_depth(depth)?;
         let mesh = match source {
-            Some(source) => marching_cubes_of(source, &frame, VertexPlacement::Crossing, &limited),
+            Some(source) => marching_cubes_solid(source, &frame, VertexPlacement::Crossing, &limited),
             None if depth == octree.frame().depth() => {
                 marching_cubes(octree.view(), Some(Resolve::Outer), &limited)
             }

@@ -12,12 +12,18 @@ use crate::source::solid::{Shape, Source};
 use crate::source::volume::Voxels;
 use crate::words::{counted, number};
 use clap::ValueEnum;
+use leafless::dexel::{DexelFormat, DexelNormals};
 use leafless::exchange::{LengthUnit, MeshFormat, WriteOptions, write_mesh};
+use leafless::mesh::MeshReport;
+use leafless::op::DexelOptions;
+use leafless::surface::{
+    Resolve, Snap, VertexPlacement, coplanar_shrink, coplanar_shrink_solid, marching_cubes_solid,
+    marching_cubes_volume, published_shrink, published_shrink_solid, simple_marching_cubes,
+    simple_marching_cubes_solid,
+};
 use leafless::{
-    Affine, AnySolid, Control, DexelFormat, DexelNormals, DexelOptions, Error, Frame, MeshReport, Octree,
-    Resolve, Rule, Snap, TriDexel, TriangleMesh, VertexPlacement, build, coplanar_shrink, coplanar_shrink_of,
-    dexelize, marching_cubes, marching_cubes_of, marching_cubes_of_volume, published_shrink,
-    published_shrink_of, smc, smc_of,
+    Affine, AnySolid, Control, Error, Frame, Octree, Rule, TriDexel, TriangleMesh, build, dexelize,
+    marching_cubes,
 };
 use serde::Serialize;
 use std::fmt::Write;
@@ -264,7 +270,7 @@ fn extract(source: Source, job: &Job, wanted: &Wanted) -> Result<TriangleMesh, F
 
 /// The surface of a volume by marching cubes, with vertices where the samples cross the threshold.
 fn of_volume(voxels: &Voxels, job: &Job) -> Result<TriangleMesh, Failure> {
-    let mesh = watched("mesh", job.threads, |control| marching_cubes_of_volume(&voxels.volume, control));
+    let mesh = watched("mesh", job.threads, |control| marching_cubes_volume(&voxels.volume, control));
     let mesh = mesh.of(&job.input)?;
     match &voxels.placement {
         Some(placement) => mesh.placed(placement).of(&job.input),
@@ -300,7 +306,7 @@ fn of_cells(
     match wanted.method {
         Method::Dual => unreachable!("dual contouring asks rays"),
         Method::Mc => marching_cubes(octree.view(), resolve, control),
-        Method::Smc => smc(octree.view(), snap, resolve, control),
+        Method::Smc => simple_marching_cubes(octree.view(), snap, resolve, control),
         Method::Shrink => coplanar_shrink(octree.view(), snap, resolve, control),
         Method::ShrinkPublished => published_shrink(octree.view(), snap, resolve, control),
     }
@@ -320,10 +326,10 @@ fn of_solid(
     let snap = wanted.snap.into();
     match wanted.method {
         Method::Dual => unreachable!("dual contouring asks rays"),
-        Method::Mc => marching_cubes_of(solid, frame, placement, control),
-        Method::Smc => smc_of(solid, frame, snap, control),
-        Method::Shrink => coplanar_shrink_of(solid, frame, snap, control),
-        Method::ShrinkPublished => published_shrink_of(solid, frame, snap, control),
+        Method::Mc => marching_cubes_solid(solid, frame, placement, control),
+        Method::Smc => simple_marching_cubes_solid(solid, frame, snap, control),
+        Method::Shrink => coplanar_shrink_solid(solid, frame, snap, control),
+        Method::ShrinkPublished => published_shrink_solid(solid, frame, snap, control),
     }
 }
 

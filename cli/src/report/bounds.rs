@@ -1,7 +1,8 @@
 //! What is told of what is known: volumes as intervals, what cells prove, and why a search ended.
 
 use crate::words::number;
-use leafless::{Interval, Proof, StopReason};
+use leafless::query::StopReason;
+use leafless::{Interval, Proof};
 use serde::Serialize;
 
 /// A certified volume in cubic model units.

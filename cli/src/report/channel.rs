@@ -1,7 +1,7 @@
 //! What is told of a channel.
 
 use crate::words::{count, counted};
-use leafless::Channel;
+use leafless::attribute::Channel;
 use serde::Serialize;
 use std::collections::BTreeMap;
 

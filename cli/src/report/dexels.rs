@@ -1,7 +1,8 @@
 //! What is told of tri-dexel models.
 
 use crate::words::{count, counted, number, put_line};
-use leafless::{DexelEnds, DexelNormals, TriDexel};
+use leafless::TriDexel;
+use leafless::dexel::{DexelEnds, DexelNormals};
 use serde::Serialize;
 use std::collections::BTreeMap;
 

@@ -6,10 +6,9 @@ use crate::source::input::Input;
 use crate::source::mesh::{fill_name, format_name, frame_around, in_words, openness};
 use crate::words::{count, counted, measured, number, put_line, short, table};
 use leafless::exchange::{LengthUnit, MeshFile};
-use leafless::{
-    Control, DefectKind, Error, FillRule, IntersectingPair, Interval, MAX_DEPTH, MeshDefect, MeshReport,
-    MeshSolid, TriangleMesh, measure,
-};
+use leafless::lattice::MAX_DEPTH;
+use leafless::mesh::{DefectKind, IntersectingPair, MeshDefect, MeshReport};
+use leafless::{Control, Error, FillRule, Interval, MeshSolid, TriangleMesh, measure};
 use serde::Serialize;
 
 /// What was found while a mesh was taken in.

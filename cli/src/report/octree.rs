@@ -3,7 +3,8 @@
 use crate::report::bounds::{Proven, Volume};
 use crate::report::channel::ChannelInfo;
 use crate::words::{count, ends, measured, number, put_line, table};
-use leafless::{Interval, Octree, Statistics, Tag};
+use leafless::octree::Statistics;
+use leafless::{Interval, Octree, Tag};
 use serde::Serialize;
 use std::collections::BTreeMap;
 

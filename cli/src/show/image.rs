@@ -1,6 +1,6 @@
 //! Smaller copies of pictures.
 
-use leafless::Picture;
+use leafless::render::Picture;
 use std::borrow::Cow;
 
 /// A picture without depths: red, green, blue (sRGB) and opacity a pixel, row by row from the upper left corner. Colours are

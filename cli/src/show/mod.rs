@@ -13,7 +13,7 @@ use base64::prelude::BASE64_STANDARD;
 use blocks::Palette;
 use clap::ValueEnum;
 use image::{Image, fitted};
-use leafless::Picture;
+use leafless::render::Picture;
 use std::borrow::Cow;
 use std::io::IsTerminal;
 use terminal::{Terminal, terminal};

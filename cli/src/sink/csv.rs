@@ -1,7 +1,7 @@
 //! Voxel records as lines of text, a header first.
 
 use crate::words::push_number;
-use leafless::{VoxelRecordsRef, VoxelTriangles};
+use leafless::voxel::{VoxelRecordsRef, VoxelTriangles};
 use std::fmt::Write as _;
 use std::io::{self, Write};
 

@@ -1,7 +1,9 @@
 //! Voxel records as arrays for NumPy, written and read back.
 
 use crate::sink::npz::{Arrays, Reader};
-use leafless::{Fingerprinter, Frame, Proof, Tag, VoxelRecords, VoxelRecordsRef, VoxelTriangles};
+use leafless::solid::Fingerprinter;
+use leafless::voxel::{VoxelRecords, VoxelRecordsRef, VoxelTriangles};
+use leafless::{Frame, Proof, Tag};
 
 /// The file of records.
 ///

@@ -4,8 +4,9 @@ use crate::failure::{Failure, Of, complain};
 use crate::sink::Output;
 use crate::source::mesh::format_name;
 use crate::words::{count, counted, number};
+use leafless::TriangleMesh;
 use leafless::exchange::{MeshFormat, WriteOptions, WrittenForm, written_form};
-use leafless::{MeshReport, TriangleMesh};
+use leafless::mesh::MeshReport;
 use serde::Serialize;
 
 /// What rounding to the coordinates of a format costs.

@@ -1,7 +1,8 @@
 //! Functions of position that the user writes: `20 + 3*sin(x)*y`.
 
 use exmex::{BinOp, Express, FlatEx, MakeOperators, MatchLiteral, Operator};
-use leafless::{Attribute, Bounds, Error, Interval, ValueRange};
+use leafless::attribute::{Attribute, ValueRange};
+use leafless::{Bounds, Error, Interval};
 use std::fmt::Debug;
 use std::str::FromStr;
 

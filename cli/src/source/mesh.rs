@@ -7,8 +7,10 @@ use crate::source::input::Input;
 use crate::source::volume::{Sampling, Voxels};
 use crate::words::counted;
 use clap::{Args, ValueEnum};
+use leafless::error::MeshError;
 use leafless::exchange::{LengthUnit, MeshFile, MeshFormat, MeshOptions, MeshWarning};
-use leafless::{Error, FillRule, Frame, MeshError, MeshReport, TriangleMesh, exchange};
+use leafless::mesh::MeshReport;
+use leafless::{Error, FillRule, Frame, TriangleMesh, exchange};
 
 /// How a mesh file is to be taken.
 #[derive(Clone, Args)]

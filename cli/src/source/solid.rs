@@ -8,10 +8,11 @@ use crate::source::mesh::{ends_at_vertices, frame_around, warn_of_openness};
 use crate::source::scene::{bounds_of, frame_of};
 use crate::source::volume::Voxels;
 use leafless::exchange::{LengthUnit, MeshFile};
+use leafless::lattice::MAX_DEPTH;
 use leafless::scene::Scene;
+use leafless::solid::Transform;
 use leafless::{
-    Affine, AnySolid, Csg, FillRule, Frame, MAX_DEPTH, MeshSolid, Octree, Proof, Solid, Transform, TriDexel,
-    TriangleMesh,
+    Affine, AnySolid, Csg, FillRule, Frame, MeshSolid, Octree, Proof, Solid, TriDexel, TriangleMesh,
 };
 
 /// What a file of a solid is called.

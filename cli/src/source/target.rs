@@ -6,7 +6,8 @@ use crate::source::file::Taking;
 use crate::source::input::Input;
 use crate::source::solid::Source;
 use clap::Args;
-use leafless::{Affine, Frame, Octree, Prepared, Proof};
+use leafless::solid::Prepared;
+use leafless::{Affine, Frame, Octree, Proof};
 
 /// How a solid that is asked is read, and looked at.
 #[derive(Args)]

@@ -4,11 +4,10 @@ use crate::failure::{Failure, Of};
 use crate::source::content::Content;
 use crate::source::input::Input;
 use crate::source::volume::Sampling;
+use leafless::attribute::{Attribute, Channel, Interpolation, ScalarType, SurfaceAttribute};
 use leafless::exchange::{self, MeshOptions};
-use leafless::{
-    Attribute, Channel, Interpolation, MeshAttribute, Metadata, Octree, ScalarType, SurfaceAttribute,
-    TriangleMesh,
-};
+use leafless::mesh::MeshAttribute;
+use leafless::{Metadata, Octree, TriangleMesh};
 
 /// Values at points, the type that suits them, and what is known of them.
 pub struct Values {

@@ -6,13 +6,12 @@ use crate::source::input::Input;
 use crate::words::counted;
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use leafless::attribute::{Attribute, Interpolation, MovedAttribute, VolumeAttribute};
 use leafless::exchange::{
     LengthUnit, RawVolume, SampleKind, open_volume, read_raw_volume, read_volume, volume_data_file,
 };
-use leafless::{
-    Affine, AnySolid, Attribute, Band, Control, Error, Frame, Interpolation, MovedAttribute, Samples, Volume,
-    VolumeAttribute, VoxelGrid,
-};
+use leafless::solid::{Band, Samples, VoxelGrid};
+use leafless::{Affine, AnySolid, Control, Error, Frame, Volume};
 
 /// Which voxels of a volume are inside, and what the bytes of one without a header mean.
 #[derive(Clone, Args)]

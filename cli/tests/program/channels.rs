@@ -1,6 +1,7 @@
 //! The subcommands `attribute`, `sample` and `summary`, and channels in others, from outside.
 
-use leafless::{Band, Control, Csg, Frame, Rule, Samples, Volume, VoxelGrid, build, exchange, file};
+use leafless::solid::{Band, Samples, VoxelGrid};
+use leafless::{Control, Csg, Frame, Rule, Volume, build, exchange, file};
 use serde_json::Value;
 use std::io::Write;
 use std::path::Path;

@@ -1,8 +1,9 @@
 //! Tri-dexel models with the program `leafless`: made, combined, converted, and their surfaces.
 
 use crate::place::{Place, block, stl};
+use leafless::dexel::{DexelEnds, DexelNormals};
 use leafless::exchange::{MeshOptions, open_mesh};
-use leafless::{DexelEnds, DexelNormals, TriDexel, TriangleMesh, file};
+use leafless::{TriDexel, TriangleMesh, file};
 use serde_json::Value;
 
 fn model(place: &Place, name: &str) -> TriDexel {

@@ -1,7 +1,9 @@
 //! The subcommands `leafless distance` and `leafless neighbours`, from outside.
 
 use crate::place::{Place, Run, solids};
-use leafless::{Cursor, Direction, DistanceTo, Tag, file};
+use leafless::octree::{Cursor, Direction};
+use leafless::query::DistanceTo;
+use leafless::{Tag, file};
 use serde_json::{Value, json};
 
 /// The numbers on each line.
@@ -94,7 +96,8 @@ fn neighbours_line_by_line() {
     let place: Place = solids();
     let octree = file::open(place.path("cube.lfl")).unwrap();
     // A cell of each tag, by the library.
-    let cells: Vec<_> = octree.view().cells(leafless::CellFilter::tags(&[Tag::Full, Tag::Branch])).collect();
+    let cells: Vec<_> =
+        octree.view().cells(leafless::octree::CellFilter::tags(&[Tag::Full, Tag::Branch])).collect();
     let input: String = (cells.iter().map(|found| (found.cell.level, found.cell.at)))
         .map(|(level, [x, y, z])| format!("{level} {x} {y} {z}\n"))
         .collect();
@@ -110,7 +113,7 @@ fn neighbours_line_by_line() {
                 cursor.seek(found.cell).unwrap();
                 let mut wanted = Vec::new();
                 for &direction in &Direction::ALL[..count] {
-                    let mut tell = |found: leafless::TaggedCell| {
+                    let mut tell = |found: leafless::octree::TaggedCell| {
                         let [dx, dy, dz] = direction.steps();
                         let ([x, y, z], level) = (found.cell.at, found.cell.level);
                         let tag = format!("{:?}", found.tag).to_lowercase();

@@ -7,10 +7,10 @@
 mod gear_pictures;
 
 use crate::place::Place;
-use leafless::{
-    Affine, Camera, CellFilter, Control, Csg, Finish, Frame, Layer, LazyOctree, LinesLayer, Picture, Rule,
-    Shot, SolidLayer, Tag, Zone, build, exchange, intersection, render,
-};
+use leafless::octree::CellFilter;
+use leafless::op::Zone;
+use leafless::render::{Camera, Finish, Layer, LinesLayer, Picture, Shot, SolidLayer, render};
+use leafless::{Affine, Control, Csg, Frame, LazyOctree, Rule, Tag, build, exchange, intersection};
 use std::io::Cursor;
 use std::path::PathBuf;
 

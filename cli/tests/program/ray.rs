@@ -1,7 +1,8 @@
 //! The subcommand `leafless ray`, from outside.
 
 use crate::place::{Place, Run, solids};
-use leafless::{Obstacle, Ray, file};
+use leafless::query::Obstacle;
+use leafless::{Ray, file};
 use serde_json::Value;
 use std::io::{Read, Write};
 use std::process::Stdio;

@@ -62,8 +62,8 @@ use header::{Encoding, Header};
 /// # Errors
 /// [`MeshFileError::Empty`], [`MeshFileError::Unsupported`] (UTF-16), [`MeshFileError::Syntax`] and
 /// [`MeshFileError::Index`] (in the header, and in an ASCII file), [`MeshFileError::Binary`] and
-/// [`MeshFileError::BinaryIndex`], [`MeshError::TooLarge`](crate::MeshError::TooLarge),
-/// [`MeshError::TooMany`](crate::MeshError::TooMany) or [`Error::OutOfMemory`].
+/// [`MeshFileError::BinaryIndex`], [`MeshError::TooLarge`](crate::error::MeshError::TooLarge),
+/// [`MeshError::TooMany`](crate::error::MeshError::TooMany) or [`Error::OutOfMemory`].
 pub fn read_ply(bytes: &[u8]) -> Result<TriangleMesh, Error> {
     read(bytes, &mut Vec::new())
 }

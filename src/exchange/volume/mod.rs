@@ -110,7 +110,7 @@ impl VolumeFile {
     ///
     /// ```no_run
     /// use leafless::exchange::open_volume;
-    /// use leafless::{Band, Control, Rule, build};
+    /// use leafless::{Control, Rule, build, solid::Band};
     /// let (file, control) = (open_volume("scan.nrrd")?, Control::default());
     /// let part = file.solid(Some(Band::at_least(900.0)?), &control)?;
     /// // The frame is that of the voxels, which suits a file without a placement.

@@ -7,12 +7,12 @@ use crate::solid::{Samples, VoxelGrid};
 /// What must be known of an array of samples to read it: x fastest, then y, then z.
 ///
 /// ```
-/// use leafless::VoxelGrid;
+/// use leafless::solid::VoxelGrid;
 /// use leafless::exchange::{RawVolume, SampleKind, read_raw_volume};
 /// let grid = VoxelGrid::new([2, 1, 2], [0.0; 3], [1.0; 3])?;
 /// let layout = RawVolume { grid, kind: SampleKind::U16, big_endian: true, skip: 0 };
 /// let (samples, rounded) = read_raw_volume(&[0, 1, 0, 2, 1, 0, 0, 255], &layout)?;
-/// assert!(matches!(samples, leafless::Samples::U16(array) if array.values() == [1, 2, 256, 255]));
+/// assert!(matches!(samples, leafless::solid::Samples::U16(array) if array.values() == [1, 2, 256, 255]));
 /// assert_eq!(rounded, 0);
 /// # Ok::<(), leafless::Error>(())
 /// ```

@@ -58,7 +58,7 @@ fn bytes_of<T: Copy, const N: usize>(values: &[T], of: impl Fn(T) -> [u8; N]) ->
 /// As [`write_raw_volume`].
 ///
 /// ```
-/// use leafless::VoxelGrid;
+/// use leafless::solid::VoxelGrid;
 /// use leafless::exchange::{NrrdEncoding, read_volume, write_nrrd};
 /// let grid = VoxelGrid::new([2, 3, 1], [-0.5, 2.0, 0.0], [0.25, 0.25, 1.0])?;
 /// let bytes = write_nrrd(&vec![1u16, 2, 3, 4, 5, 60_000].into(), &grid, NrrdEncoding::Gzip)?;

@@ -58,7 +58,7 @@ pub struct WriteOptions {
 ///
 /// # Errors
 /// [`Error::Argument`] for an STL of coordinates beyond the range of `f32`, and for an OBJ without vertices;
-/// [`MeshFileError::Unsupported`](crate::MeshFileError::Unsupported) for a 3MF without the feature;
+/// [`MeshFileError::Unsupported`](crate::error::MeshFileError::Unsupported) for a 3MF without the feature;
 /// [`Error::OutOfMemory`]. (Compressing a 3MF takes some 300 KiB that cannot be refused.)
 ///
 /// ```

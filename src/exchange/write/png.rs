@@ -12,7 +12,7 @@ use png::{BitDepth, ColorType, Encoder, SrgbRenderingIntent};
 /// [`Error::OutOfMemory`]. (The encoder's own memory, some hundred kilobytes and a copy of the picture, cannot be refused.)
 ///
 /// ```
-/// use leafless::{Camera, Control, Lens, Shot, exchange, render};
+/// use leafless::{Control, exchange, render::{Camera, Lens, Shot, render}};
 /// let camera = Camera::new([0.0, -5.0, 0.0], [0.0; 3], [0.0, 0.0, 1.0], Lens::Perspective(30.0))?;
 /// let picture = render(&Shot::new(camera, [64, 48]), &[], &Control::default())?;
 /// assert!(exchange::write_png(&picture)?.starts_with(b"\x89PNG"));

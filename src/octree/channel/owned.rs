@@ -94,7 +94,7 @@ impl Channel {
 
     /// The same channel with the metadata of another, which are shared.
     #[must_use]
-    pub fn with_metadata_of(&self, other: &Channel) -> Channel {
+    pub fn with_metadata_from(&self, other: &Channel) -> Channel {
         Channel { metadata: other.metadata.clone(), ..self.clone() }
     }
 

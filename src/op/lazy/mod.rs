@@ -32,7 +32,7 @@ const SOURCE: &str = "source";
 /// the splits that were asked for, which is counted apart, is small where these follow each other in space.
 ///
 /// ```
-/// use leafless::{Cell, Control, Csg, Frame, LazyOctree, Membership, Refinement, Tag, Zone};
+/// use leafless::{Cell, Control, Csg, Frame, LazyOctree, Membership, Tag, op::{Refinement, Zone}};
 /// let frame = Frame::new([0.0; 3], 64.0, 20)?; // up to 2^20 cells per axis
 /// let mut ball = LazyOctree::new(Csg::ball([32.0; 3], 24.0)?, &frame)?;
 /// assert_eq!(ball.tag(Cell::ROOT), Tag::Partial);

@@ -18,7 +18,7 @@ impl OctreeRef<'_> {
     /// [`Error::Argument`] if the columns reach beyond the universe; [`Error::OutOfMemory`].
     ///
     /// ```
-    /// use leafless::{Columns, Control, Csg, Frame, Rule, Run, build};
+    /// use leafless::{Control, Csg, Frame, Rule, build, query::{Columns, Run}};
     /// let frame = Frame::new([0.0; 3], 8.0, 3)?;
     /// let plate = build(&Csg::cuboid([0.0; 3], [8.0, 8.0, 2.0])?, &frame, Rule::Certified, &Control::default())?;
     /// let columns = Columns::all(&frame, 2)?;

@@ -21,7 +21,7 @@ use alloc::vec::Vec;
 /// result takes more than `control.max_bytes`; [`Error::OutOfMemory`], and [`Error::Cancelled`].
 ///
 /// ```
-/// use leafless::{Columns, Control, Csg, Frame, columns};
+/// use leafless::{Control, Csg, Frame, query::{Columns, columns}};
 /// let frame = Frame::new([-2.0; 3], 4.0, 6)?;
 /// let ball = Csg::ball([0.0; 3], 1.0)?;
 /// let middle = Columns::within(0, [32; 2], [33; 2])?;
@@ -50,7 +50,7 @@ pub fn columns<S: Solid>(
 /// As [`columns`].
 ///
 /// ```
-/// use leafless::{Columns, Control, Csg, Frame, Side, heights};
+/// use leafless::{Control, Csg, Frame, query::{Columns, Side, heights}};
 /// let frame = Frame::new([-2.0; 3], 4.0, 9)?;
 /// let ball = Csg::ball([0.0; 3], 1.0)?;
 /// let columns = Columns::all(&frame, 2)?;

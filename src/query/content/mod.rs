@@ -46,7 +46,7 @@ pub struct CellsIn {
 /// What solid and region refuse; [`Error::OutOfMemory`], and [`Error::Cancelled`].
 ///
 /// ```
-/// use leafless::{Control, Csg, Frame, cells_in};
+/// use leafless::{Control, Csg, Frame, query::cells_in};
 /// let (frame, control) = (Frame::new([0.0; 3], 8.0, 3)?, Control::default());
 /// let slab = Csg::cuboid([0.0; 3], [8.0, 8.0, 2.0])?;
 /// let found = cells_in(&slab, &Csg::cuboid([1.0; 3], [4.0, 3.0, 7.0])?, &frame, &control)?;

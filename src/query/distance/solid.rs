@@ -44,7 +44,7 @@ pub const DISTANCE_SPLITS: u64 = 1 << 16;
 /// - `Budget`: `control.max_splits` cells were split, or [`DISTANCE_SPLITS`] if that is `None`; or what is remembered comes
 ///   near to `control.max_bytes`.
 ///
-/// Where the solid knows the slabs of a cell ([`Enclosure`](crate::Enclosure)), these bound how near it comes: each
+/// Where the solid knows the slabs of a cell ([`Enclosure`](crate::solid::Enclosure)), these bound how near it comes: each
 /// level then makes the interval about four times as narrow, and a plane face is known at once. Without slabs a level
 /// makes it half as wide.
 ///
@@ -57,7 +57,7 @@ pub const DISTANCE_SPLITS: u64 = 1 << 16;
 /// [`Error::Cancelled`].
 ///
 /// ```
-/// use leafless::{Control, Csg, DistanceTo, Frame, distances};
+/// use leafless::{Control, Csg, Frame, query::{DistanceTo, distances}};
 /// let frame = Frame::new([-2.0; 3], 4.0, 20)?;
 /// let (ball, points) = (Csg::ball([0.0; 3], 1.0)?, [[3.0, 0.0, 4.0], [0.0, 0.5, 0.0]]);
 /// let found = distances(&ball, &frame, &points, DistanceTo::Boundary, 1e-9, &Control::default())?;

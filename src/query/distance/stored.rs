@@ -90,7 +90,7 @@ impl OctreeRef<'_> {
     /// None at present: the search allocates nothing.
     ///
     /// ```
-    /// use leafless::{Control, Csg, DistanceTo, Frame, Rule, build};
+    /// use leafless::{Control, Csg, Frame, Rule, build, query::DistanceTo};
     /// let frame = Frame::new([-2.0; 3], 4.0, 8)?;
     /// let ball = build(&Csg::ball([0.0; 3], 1.0)?, &frame, Rule::Certified, &Control::default())?;
     /// let far = ball.view().distance([3.0, 0.0, 4.0], DistanceTo::Solid)?;

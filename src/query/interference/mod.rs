@@ -63,7 +63,7 @@ pub struct Interference {
 /// [`Error::OutOfMemory`], and [`Error::Cancelled`].
 ///
 /// ```
-/// use leafless::{Control, Csg, Frame, Overlap, interference};
+/// use leafless::{Control, Csg, Frame, interference, query::Overlap};
 /// let frame = Frame::new([0.0; 3], 128.0, 10)?;
 /// let (a, b) = (Csg::ball([50.0; 3], 30.0)?, Csg::ball([83.0; 3], 30.0)?);
 /// let found = interference(&a, &b, &frame, f64::INFINITY, &Control::default())?;
@@ -95,7 +95,7 @@ pub fn interference<A: Solid, B: Solid>(
 ///
 /// # Errors
 /// As [`interference`].
-pub fn interference_of<A: Solid, B: Solid>(
+pub fn interference_at<A: Solid, B: Solid>(
     a: &A,
     b: &B,
     own: &Frame,

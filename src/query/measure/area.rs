@@ -48,7 +48,7 @@ const FRAMES: u8 = 8;
 /// As [`measure`](crate::measure).
 ///
 /// ```
-/// use leafless::{Control, Csg, Frame, surface_area};
+/// use leafless::{Control, Csg, Frame, query::surface_area};
 /// let frame = Frame::new([-1.0; 3], 2.0, 20)?;
 /// let ball = surface_area(&Csg::ball([0.1, 0.0, 0.0], 0.75)?, &frame, 1e-3, &Control::default())?;
 /// assert!(ball.area.contains(4.0 * std::f64::consts::PI * 0.75f64.powi(2)));

@@ -19,7 +19,7 @@ use yoke::Yokeable;
 /// the file.
 ///
 /// ```
-/// use leafless::{Control, Csg, Frame, Membership, PointTable, Rule, build};
+/// use leafless::{Control, Csg, Frame, Membership, Rule, build, query::PointTable};
 /// let frame = Frame::new([-1.0; 3], 2.0, 10)?;
 /// let ball = build(&Csg::ball([0.0; 3], 0.9)?, &frame, Rule::Certified, &Control::default())?;
 /// let table = PointTable::new(ball.view(), 6)?;

@@ -32,7 +32,7 @@ impl OctreeRef<'_> {
     /// [`Error::Argument`] if the slices differ in length.
     ///
     /// ```
-    /// use leafless::{Control, Csg, Frame, Obstacle, Ray, Rule, build};
+    /// use leafless::{Control, Csg, Frame, Ray, Rule, build, query::Obstacle};
     /// let frame = Frame::new([-2.0; 3], 4.0, 8)?;
     /// let ball = build(&Csg::ball([0.0; 3], 1.0)?, &frame, Rule::Certified, &Control::default())?;
     /// let rays = [Ray::new([-2.0, 0.1, 0.1], [1.0, 0.0, 0.0])?; 3];

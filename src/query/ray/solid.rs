@@ -36,7 +36,7 @@ pub enum Sight {
 /// What the solid refuses; [`Error::OutOfMemory`], and [`Error::Cancelled`].
 ///
 /// ```
-/// use leafless::{Control, Csg, Frame, Obstacle, Ray, cast_rays};
+/// use leafless::{Control, Csg, Frame, Ray, cast_rays, query::Obstacle};
 /// let (frame, control) = (Frame::new([-2.0; 3], 4.0, 16)?, Control::default());
 /// let ball = Csg::ball([0.0; 3], 1.0)?;
 /// let rays = [Ray::new([-2.0, 0.6, 0.0], [1.0, 0.0, 0.0])?, Ray::new([-2.0, 0.6, 0.0], [0.0, 1.0, 0.0])?];

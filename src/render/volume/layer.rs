@@ -40,8 +40,9 @@ pub enum Compositing {
 ///
 /// ```
 /// use leafless::{
-///     Bounds, Camera, ColourMap, Control, Csg, Frame, Rule, Shot, Transfer, VolumeLayer, VoxelOptions, VoxelRecords,
-///     build, render,
+///     Bounds, Control, Csg, Frame, Rule, build,
+///     render::{Camera, ColourMap, Shot, Transfer, VolumeLayer, render},
+///     voxel::{VoxelOptions, VoxelRecords},
 /// };
 /// let (frame, control) = (Frame::new([-1.0; 3], 2.0, 5)?, Control::default());
 /// let ball = build(&Csg::ball([0.0; 3], 0.9)?, &frame, Rule::Certified, &control)?;

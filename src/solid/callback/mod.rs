@@ -153,11 +153,11 @@ impl<'a, F: Fn([f64; 3], [f64; 3]) -> Result<Verdict<()>, Error> + Send + Sync> 
     /// nothing of the box.
     ///
     /// The function is asked about undecided cells by whoever uses their [enclosures](Worker::enclosure):
-    /// [`measure`](crate::measure), [`bounding_box`](crate::bounding_box) and [`Adaptive`](crate::Adaptive) need
+    /// [`measure`](crate::measure), [`bounding_box`](crate::bounding_box) and [`Adaptive`](crate::solid::Adaptive) need
     /// far fewer splits with it. No verdict depends on it.
     ///
     /// ```
-    /// use leafless::{Callback, Control, Frame, GradientRange, Interval, Verdict, measure};
+    /// use leafless::{Callback, Control, Frame, Interval, Verdict, measure, solid::GradientRange};
     /// // A paraboloid, z ≥ x² + y², by f = x² + y² − z: its values over a box, and its gradient.
     /// let square = |low: f64, high: f64| Interval::new(if low * high < 0.0 { 0.0 } else { (low * low).min(high * high) }, (low * low).max(high * high)).unwrap();
     /// let bowl = Callback::new(move |min, max| {

@@ -160,7 +160,7 @@ impl HalfSpace {
     /// expression that contains the half-space has a fingerprint.
     ///
     /// ```
-    /// use leafless::{Control, Csg, Frame, HalfSpace, Interval, Rule, build};
+    /// use leafless::{Control, Csg, Frame, Interval, Rule, build, solid::HalfSpace};
     /// // z ≤ exp(−x²), which over a box is least and greatest where |x| is.
     /// let hill = HalfSpace::host(
     ///     |[x, _, z]| Ok((-x * x).exp() - z),

@@ -35,7 +35,7 @@ use slabs::Source;
 /// surface is flat there, and where nothing blurs the solid's own enclosure, exactly.
 ///
 /// ```
-/// use leafless::{Affine, Control, Csg, Frame, Rule, Transform, build};
+/// use leafless::{Affine, Control, Csg, Frame, Rule, build, solid::Transform};
 /// let block = Csg::cuboid([-1.0, -0.5, -0.25], [1.0, 0.5, 0.25])?;
 /// let own = Frame::new([-2.0; 3], 4.0, 8)?;
 /// // Turned by the angle whose cosine is 0.8, and moved.

@@ -15,7 +15,7 @@ const MOST: u32 = 1 << MAX_DEPTH;
 /// exact. The sample (x, y, z) is the one with the index x + nx·(y + ny·z): x varies fastest.
 ///
 /// ```
-/// use leafless::VoxelGrid;
+/// use leafless::solid::VoxelGrid;
 /// let grid = VoxelGrid::new([200, 300, 400], [0.0; 3], [0.5; 3])?;
 /// let frame = grid.frame()?;
 /// assert_eq!((frame.depth(), frame.cell_size(), frame.origin()), (9, 0.5, [0.0; 3]));
@@ -77,7 +77,7 @@ impl VoxelGrid {
         self.extents.iter().map(|&extent| u64::from(extent)).product()
     }
 
-    /// Words in a row of bits along x: see [`Samples::Bits`](crate::Samples::Bits).
+    /// Words in a row of bits along x: see [`Samples::Bits`](crate::solid::Samples::Bits).
     pub fn words(&self) -> usize {
         self.extents[0].div_ceil(64) as usize
     }

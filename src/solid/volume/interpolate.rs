@@ -49,7 +49,7 @@ impl Volume<'_> {
     /// beyond. O(1).
     ///
     /// ```
-    /// use leafless::{Band, Control, Volume, VoxelGrid};
+    /// use leafless::{Control, Volume, solid::{Band, VoxelGrid}};
     /// let grid = VoxelGrid::new([3, 1, 1], [0.0; 3], [1.0; 3])?;
     /// let samples = [0u8, 200, 220];
     /// let volume = Volume::new(samples[..].into(), &grid, Band::at_least(150.0)?, &Control::default())?;

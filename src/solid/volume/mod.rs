@@ -45,7 +45,7 @@ use value::Limits;
 /// else it is linear in the number of 4³ blocks that the cell's surface meets.
 ///
 /// ```
-/// use leafless::{Band, Control, Octree, Rule, Volume, VoxelGrid, build};
+/// use leafless::{Control, Octree, Rule, Volume, build, solid::{Band, VoxelGrid}};
 ///
 /// // A ball in a volume of 100 × 90 × 80 bytes.
 /// let (extents, middle) = ([100, 90, 80], [50.0, 45.0, 40.0]);

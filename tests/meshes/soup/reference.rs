@@ -5,7 +5,8 @@ use super::check::{centre, margin};
 use super::winding::{Boundary, Soupy};
 use crate::common::cubes::Cubes;
 use crate::shapes::Soup;
-use leafless::{Cell, Cube, Error, FillRule, Frame, Tag, Verdict};
+use leafless::lattice::Cube;
+use leafless::{Cell, Error, FillRule, Frame, Tag, Verdict};
 use std::sync::{Arc, Mutex};
 
 /// Mistakes that a solid of this kind could make.

@@ -7,9 +7,8 @@
 
 use core::alloc::{GlobalAlloc, Layout};
 use core::ffi::{c_int, c_void};
-use leafless::{
-    AnySolid, Control, Csg, Error, Frame, Membership, PointCursor, Region, Rule, build, compact, difference,
-};
+use leafless::query::{PointCursor, Region};
+use leafless::{AnySolid, Control, Csg, Error, Frame, Membership, Rule, build, compact, difference};
 
 // The C library stands for the allocator and the start-up code that an embedded target would bring.
 #[link(name = "c")]

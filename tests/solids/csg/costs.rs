@@ -1,9 +1,10 @@
 //! Constructive solid geometry: the published tables, and what costs what.
 
 use crate::common::cubes::Plain;
+use leafless::solid::{HalfSpace, Touch, Transform};
 use leafless::{
-    Affine, AnySolid, Cell, Classifier, Control, Csg, Error, Frame, HalfSpace, Interval, Rule, Solid, Tag,
-    Touch, Transform, Verdict, Worker, build,
+    Affine, AnySolid, Cell, Classifier, Control, Csg, Error, Frame, Interval, Rule, Solid, Tag, Verdict,
+    Worker, build,
 };
 
 type CsgWorker = <<Csg as Solid>::Classifier as Classifier>::Worker;

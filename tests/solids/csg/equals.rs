@@ -1,6 +1,7 @@
 //! Operands of expressions that are equal are one: the same solid, without the doubt of coincident faces.
 
-use leafless::{Control, Csg, Frame, Rule, build, measure, surface_area};
+use leafless::query::surface_area;
+use leafless::{Control, Csg, Frame, Rule, build, measure};
 
 fn frame() -> Frame {
     Frame::new([-2.0; 3], 4.0, 4).unwrap()

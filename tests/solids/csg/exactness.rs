@@ -3,7 +3,8 @@
 use super::extremes::{Powers, Separable, Torus, Truth};
 use crate::common::exact::Exact;
 use crate::common::{Random, alone};
-use leafless::{Affine, Cell, Classifier, Csg, Frame, HalfSpace, Solid, Verdict, Worker};
+use leafless::solid::HalfSpace;
+use leafless::{Affine, Cell, Classifier, Csg, Frame, Solid, Verdict, Worker};
 
 /// Descends towards `target` (in finest cells) and away from it, and compares all verdicts on the way;
 /// returns how many levels were reached.

@@ -2,10 +2,8 @@
 //! one.
 
 use crate::common::{Dense, Random, alone};
-use leafless::{
-    Affine, Csg, Frame, Octree, Rule, Tag, build, complement, intersection, intersection_of, union, union_of,
-    xor, xor_of,
-};
+use leafless::op::{intersection_of, union_of, xor_of};
+use leafless::{Affine, Csg, Frame, Octree, Rule, Tag, build, complement, intersection, union, xor};
 
 const RULES: [Rule; 4] = [Rule::Certified, Rule::Inner, Rule::Outer, Rule::Sampled];
 

@@ -4,9 +4,9 @@
 use crate::common::alone;
 use crate::common::cubes::Plain;
 use crate::common::lattice_frame;
+use leafless::solid::HalfSpace;
 use leafless::{
-    Affine, AnySolid, Cell, Classifier, Csg, Error, Frame, HalfSpace, Rule, Solid, Tag, Verdict, Worker,
-    build,
+    Affine, AnySolid, Cell, Classifier, Csg, Error, Frame, Rule, Solid, Tag, Verdict, Worker, build,
 };
 use std::time::{Duration, Instant};
 

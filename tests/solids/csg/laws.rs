@@ -5,9 +5,10 @@ use super::oracle::frames;
 use super::random::Maker;
 use crate::common::lattice_frame;
 use crate::common::{Dense, Random, alone};
+use leafless::solid::SplitCounter;
 use leafless::{
-    AnySolid, Cell, Classifier, Control, Csg, Frame, Octree, Rule, Solid, SplitCounter, Tag, Verdict, Worker,
-    build, complement,
+    AnySolid, Cell, Classifier, Control, Csg, Frame, Octree, Rule, Solid, Tag, Verdict, Worker, build,
+    complement,
 };
 
 type CsgWorker = <<Csg as Solid>::Classifier as Classifier>::Worker;

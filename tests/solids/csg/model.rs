@@ -3,9 +3,10 @@
 
 use crate::common::cubes::Plain;
 use crate::common::exact::Exact;
+use leafless::solid::{HalfSpace, SplitCounter, Transform};
 use leafless::{
-    Affine, AnySolid, Callback, Csg, Error, FillRule, Frame, HalfSpace, Interval, MeshSolid, Octree,
-    SplitCounter, Tag, Transform, TriangleMesh, Verdict,
+    Affine, AnySolid, Callback, Csg, Error, FillRule, Frame, Interval, MeshSolid, Octree, Tag, TriangleMesh,
+    Verdict,
 };
 
 /// A point (x, y, z)/w with w ≠ 0, so that the inverse of a placement needs no division.

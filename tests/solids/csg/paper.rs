@@ -4,7 +4,8 @@
 use super::extremes::{Separable, corners};
 use crate::common::exact::Exact;
 use crate::common::{Dense, Random, alone, lattice_frame, positions};
-use leafless::{Cell, Classifier, Csg, Frame, HalfSpace, Rule, Solid, Tag, Touch, Verdict, Worker, build};
+use leafless::solid::{HalfSpace, Touch};
+use leafless::{Cell, Classifier, Csg, Frame, Rule, Solid, Tag, Verdict, Worker, build};
 
 /// A primitive as the library has it, and its half-spaces.
 #[derive(Clone)]

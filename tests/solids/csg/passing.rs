@@ -3,9 +3,10 @@
 
 use crate::common::alone;
 use crate::common::cubes::Plain;
+use leafless::op::resolve;
 use leafless::{
     AnySolid, Bounds, Callback, Control, Csg, FillRule, Frame, MeshSolid, Octree, Rule, Solid, Tag,
-    TriangleMesh, Verdict, build, complement, difference, intersection, resolve, union, xor,
+    TriangleMesh, Verdict, build, complement, difference, intersection, union, xor,
 };
 
 const RULES: [Rule; 4] = [Rule::Certified, Rule::Sampled, Rule::Inner, Rule::Outer];

@@ -2,7 +2,9 @@
 
 use crate::common::cubes::Plain;
 use crate::common::{Random, alone};
-use leafless::{Affine, Csg, Frame, Overlap, SplitCounter, interference_of};
+use leafless::query::{Overlap, interference_at};
+use leafless::solid::SplitCounter;
+use leafless::{Affine, Csg, Frame};
 
 /// Evaluations of half-spaces for each pose, among `n` balls.
 fn evaluations(n: u32) -> f64 {
@@ -23,7 +25,7 @@ fn evaluations(n: u32) -> f64 {
         })
         .collect();
     let before = union.solid().evaluations();
-    let found = interference_of(&union, &block, &own, &poses, &frame, f64::INFINITY, &alone()).unwrap();
+    let found = interference_at(&union, &block, &own, &poses, &frame, f64::INFINITY, &alone()).unwrap();
     let after = union.solid().evaluations();
     assert_eq!((union.frames(), block.frames()), (1, 1));
     let over = found.iter().filter(|found| found.verdict == Overlap::Overlapping).count();
@@ -60,7 +62,7 @@ fn evaluations_of_a_moved_union(n: u32) -> f64 {
                 .unwrap()
         })
         .collect();
-    let found = interference_of(&block, &union, &own, &poses, &frame, f64::INFINITY, &alone()).unwrap();
+    let found = interference_at(&block, &union, &own, &poses, &frame, f64::INFINITY, &alone()).unwrap();
     assert_eq!(union.frames(), 1);
     let over = found.iter().filter(|found| found.verdict == Overlap::Overlapping).count();
     let apart = found.iter().filter(|found| found.verdict == Overlap::Disjoint).count();

@@ -4,9 +4,10 @@
 //! `cargo test --release --test solids csg::primitives -- --ignored`
 
 use crate::common::exact::Exact;
+use leafless::solid::{Fingerprint, HalfSpace, Touch};
 use leafless::{
-    Affine, Bounds, Classifier, Control, Csg, Error, Fingerprint, Frame, HalfSpace, Interval, Membership,
-    Octree, Rule, Solid, Touch, Verdict, Worker, build,
+    Affine, Bounds, Classifier, Control, Csg, Error, Frame, Interval, Membership, Octree, Rule, Solid,
+    Verdict, Worker, build,
 };
 use std::f64::consts::PI;
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};

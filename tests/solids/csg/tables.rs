@@ -5,7 +5,8 @@ use super::oracle::frames;
 use super::points::{Found, Judge};
 use super::random::Maker;
 use crate::common::{Dense, Random, alone, lattice_frame, positions};
-use leafless::{Affine, Cell, Classifier, Csg, Frame, HalfSpace, Octree, Rule, Solid, Tag, Worker, build};
+use leafless::solid::HalfSpace;
+use leafless::{Affine, Cell, Classifier, Csg, Frame, Octree, Rule, Solid, Tag, Worker, build};
 
 const RULES: [Rule; 4] = [Rule::Certified, Rule::Sampled, Rule::Inner, Rule::Outer];
 

@@ -8,9 +8,8 @@
 //! the copy is moved by 10 % of its extent along x, on the same lattice. One thread each, in turn, processor time.
 //! Without the second argument: the mesh and its copy turned by 0.002 rad, on one thread and on two, elapsed time.
 
-use leafless::{
-    Control, Cursor, Frame, Octree, OctreeRef, Rule, TriangleMesh, build, difference, intersection, union,
-};
+use leafless::octree::Cursor;
+use leafless::{Control, Frame, Octree, OctreeRef, Rule, TriangleMesh, build, difference, intersection, union};
 use peers::{Peer, median, read, solid, spent, write_full};
 use std::error::Error;
 use std::io::{BufWriter, Write};

@@ -10,9 +10,9 @@
 //! processor time. The camera: eye at the centre of the box + 2 D w, D its diagonal, w along (1, 0.7, 0.5), half
 //! width D/2.
 
-use leafless::{
-    Control, Cursor, Frame, Membership, Obstacle, PointCursor, PointTable, Ray, Rule, build, compact,
-};
+use leafless::octree::Cursor;
+use leafless::query::{Obstacle, PointCursor, PointTable};
+use leafless::{Control, Frame, Membership, Ray, Rule, build, compact};
 use peers::{Peer, median, read, solid, spent, write_full};
 use std::error::Error;
 use std::io::{BufWriter, Write};

@@ -62,18 +62,18 @@ impl Snap {
 /// As [`marching_cubes`](crate::marching_cubes).
 ///
 /// ```
-/// use leafless::{Control, Csg, Frame, Rule, Snap, build, smc};
+/// use leafless::{Control, Csg, Frame, Rule, build, surface::{Snap, simple_marching_cubes}};
 /// let frame = Frame::new([0.0; 3], 8.0, 3)?;
 /// let block = build(&Csg::cuboid([2.0; 3], [5.0; 3])?, &frame, Rule::Sampled, &Control::default())?;
 /// // From the centre of the cell before the block to that of the cell behind it.
-/// let mesh = smc(block.view(), Snap::Fat, None, &Control::default())?;
+/// let mesh = simple_marching_cubes(block.view(), Snap::Fat, None, &Control::default())?;
 /// assert_eq!(mesh.bounds(), ([1.5; 3], [5.5; 3]));
-/// let mesh = smc(block.view(), Snap::Thin, None, &Control::default())?;
+/// let mesh = simple_marching_cubes(block.view(), Snap::Thin, None, &Control::default())?;
 /// assert_eq!(mesh.bounds(), ([2.5; 3], [4.5; 3]));
 /// assert_eq!(mesh.volume(), 8.0);
 /// # Ok::<(), leafless::Error>(())
 /// ```
-pub fn smc(
+pub fn simple_marching_cubes(
     tree: &OctreeRef<'_>,
     snap: Snap,
     resolve: Option<Resolve<'_>>,

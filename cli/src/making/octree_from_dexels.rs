@@ -5,7 +5,8 @@ use crate::making::job::Job;
 use crate::progress::watched;
 use crate::report::octree::Info;
 use crate::words::{count, counted, seconds};
-use leafless::{Metadata, TriDexel, octree_of_dexels};
+use leafless::op::octree_from_dexels;
+use leafless::{Metadata, TriDexel};
 use serde::Serialize;
 
 #[derive(Serialize)]
@@ -23,7 +24,7 @@ struct Report {
 pub fn make(job: &Job, model: &TriDexel) -> Result<(), Failure> {
     let Job { input, output, start, .. } = job;
     let octree =
-        watched("convert", job.threads, |control| octree_of_dexels(model.view(), control)).of(input)?;
+        watched("convert", job.threads, |control| octree_from_dexels(model.view(), control)).of(input)?;
     let mut metadata = Metadata::common([model.metadata()]).of(input)?;
     metadata.insert("rule", "sampled");
     let octree = octree.with_metadata(metadata);
