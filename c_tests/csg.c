@@ -53,8 +53,48 @@ static int32_t failing_range(void *ctx, const double *min, const double *max, le
     return -42;
 }
 
+static int32_t constant_range(void *ctx, const double *min, const double *max, leafless_interval *range) {
+    (void)min, (void)max;
+    *range = *(const leafless_interval *)ctx;
+    return 0;
+}
+
+static int32_t constant_value(void *ctx, const double *p, double *value) {
+    (void)p;
+    *value = ((const leafless_interval *)ctx)->lower > 0 ? 1 : -1;
+    return 0;
+}
+
 static void gone(void *ctx) {
     *(int *)ctx = -1;
+}
+
+/* Bounds the wrong way round, or that are not numbers, say nothing: no cell is decided by them. */
+static void ranges_that_say_nothing(void) {
+    const leafless_frame small = {{-2, -2, -2}, 4, 2};
+    const leafless_interval nothing[] = {{1, -1},    {-1, -2},   {2, 1},      {NAN, 1},  {NAN, -1},
+                                         {1, NAN},   {-1, NAN},  {NAN, NAN},  {INFINITY, -INFINITY}},
+                            all_inside = {1, INFINITY}, all_outside = {-INFINITY, -1}, open = {-1, INFINITY};
+    leafless_function function;
+    size_t i;
+    OK(leafless_function_init(&function, sizeof function));
+    function.value = constant_value;
+    function.range = constant_range;
+    for (i = 0; i < COUNT(nothing) + 3; i++) {
+        leafless_interval said = i < COUNT(nothing) ? nothing[i] : i == COUNT(nothing) ? open
+                               : i == COUNT(nothing) + 1 ? all_inside : all_outside;
+        leafless_solid *solid = NULL;
+        leafless_octree *octree = NULL;
+        leafless_statistics statistics;
+        function.ctx = &said;
+        OK(leafless_solid_new_function(&function, &solid));
+        OK(leafless_octree_build(solid, &small, LEAFLESS_RULE_CERTIFIED, NULL, &octree));
+        OK(leafless_octree_statistics(octree, &statistics));
+        CHECK(statistics.volume_model.lower == (i == COUNT(nothing) + 1 ? 64 : 0));
+        CHECK(statistics.volume_model.upper == (i == COUNT(nothing) + 2 ? 0 : 64));
+        leafless_octree_free(octree);
+        leafless_solid_free(solid);
+    }
 }
 
 static void functions(void) {
@@ -321,6 +361,7 @@ int main(void) {
     int i;
 
     functions();
+    ranges_that_say_nothing();
     other_primitives();
     motions();
     evaluations();

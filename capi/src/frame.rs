@@ -288,18 +288,3 @@ pub unsafe extern "C" fn leafless_frame_plane(
         plane.write(frame.plane(axis as usize, index).into())
     })
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn what_a_host_says_wrongly_says_nothing() {
-        let (nan, infinity) = (f64::NAN, f64::INFINITY);
-        for (lower, upper) in [(1.0, -1.0), (nan, 1.0), (1.0, nan), (nan, nan), (infinity, -infinity)] {
-            assert_eq!(leafless_interval { lower, upper }.known(), Interval::ALL, "{lower} {upper}");
-        }
-        let known = leafless_interval { lower: -1.0, upper: infinity }.known();
-        assert_eq!((known.lower, known.upper), (-1.0, infinity));
-    }
-}
